@@ -1,0 +1,163 @@
+# The front door: `make demo` shows a mesh in the browser, `make test` runs every test. Both may be repeated and do only what is missing.
+# Developers use cmake and ctest with the presets of CMakePresets.json; this file adds nothing to them but the packages.
+
+MESH ?=
+PORT ?= 8080
+export MESH PORT
+
+BUILD := build/release
+# A translation unit with Boost.Beast or VTK takes up to 1.5 GB to compile: no more jobs than cores, nor than memory allows.
+JOBS ?= $(shell awk -v cores="$$(nproc)" '/MemAvailable/ {n = int($$2 / 1500000); n = n < cores ? n : cores; print n < 1 ? 1 : n}' /proc/meminfo)
+
+SHELL := /bin/bash
+.SHELLFLAGS := -euo pipefail -c
+.ONESHELL:
+.NOTPARALLEL:
+.DELETE_ON_ERROR:
+.PHONY: help setup build demo demo-port demo-log test bench clean
+.DEFAULT_GOAL := help
+
+help:
+	@cat <<'END'
+	make demo                  build qtet and show its sample mesh at http://127.0.0.1:8080/
+	make demo MESH=file.vtu    the same with a mesh of yours (.vtu or .vtk, tetrahedra); PORT=8081 picks another port
+	make test                  build everything and run every test
+	make build                 build only: build/release/bin/qtet and qtet-server
+	make setup                 install the Debian packages of .ci/packages.txt that are missing (asks sudo if not root)
+	make bench                 build and run the benchmarks
+	make clean                 remove build/
+	JOBS=N                     compile N files at a time (now $(JOBS))
+	END
+
+setup:
+	@mapfile -t wanted < <(sed 's/#.*//' .ci/packages.txt | grep -o '[^[:space:]]*')
+	if ! command -v dpkg-query >/dev/null; then
+	  echo "setup: this is no Debian; if the build fails, install what .ci/packages.txt names from your system's packages"
+	  exit 0
+	fi
+	installed=$$(dpkg-query -W -f '$${db:Status-Status} $${Package}\n' "$${wanted[@]}" 2>/dev/null | sed -n 's/^installed //p') || true
+	mapfile -t missing < <(comm -23 <(printf '%s\n' "$${wanted[@]}" | sort) <(sort <<<"$$installed"))
+	nodeIsFine() {
+	  command -v npm >/dev/null && node -e 'process.exit(Number(process.versions.node.split(".")[0]) >= 18 ? 0 : 1)' 2>/dev/null
+	}
+	nodeIsFine || missing+=(nodejs npm)
+	if [[ $${#missing[@]} == 0 ]]; then
+	  echo "setup: all $${#wanted[@]} packages of .ci/packages.txt and node $$(node --version) are here"
+	  exit 0
+	fi
+	echo "setup: installing $${#missing[@]} packages: $${missing[*]}"
+	asRoot=(env)
+	if [[ $$(id -u) != 0 ]]; then
+	  command -v sudo >/dev/null || { echo "setup: there is no sudo; run as root: apt-get install --no-install-recommends $${missing[*]}" >&2; exit 1; }
+	  asRoot=(sudo)
+	  [[ $${CI:-} == true ]] && asRoot=(sudo -n)
+	  asRoot+=(env)
+	fi
+	asRoot+=(DEBIAN_FRONTEND=noninteractive)
+	"$${asRoot[@]}" apt-get update || echo "setup: apt-get update failed; going on with the package lists that are here"
+	"$${asRoot[@]}" apt-get install -y --no-install-recommends --no-remove "$${missing[@]}" || {
+	  echo "setup: apt-get could not install them (its reason stands above). qtet is built on Debian 12; a package that apt" >&2
+	  echo "setup: would have to remove, such as another version's wasm32 library, has to be removed by you first." >&2
+	  exit 1
+	}
+	nodeIsFine || { echo "setup: node $$(node --version 2>/dev/null || echo "is missing") - version 18 or later is needed, with npm" >&2; exit 1; }
+
+# Configures when there is no build yet, when the presets changed, or when the folder was moved; ninja sees to everything else.
+build:
+	@if ! grep -qsxF "CMAKE_HOME_DIRECTORY:INTERNAL=$$(pwd -P)" $(BUILD)/CMakeCache.txt; then
+	  cmake --preset release --fresh
+	elif [[ ! -f $(BUILD)/build.ninja || CMakePresets.json -nt $(BUILD)/build.ninja ]]; then
+	  cmake --preset release
+	fi
+	cmake --build --preset release --parallel $(JOBS) $(TARGETS)
+
+# Before anything is built: a port in use is told at once.
+demo-port:
+	@if [[ ! $$PORT =~ ^[0-9]{1,5}$$ ]] || ((10#$$PORT < 1 || 10#$$PORT > 65535)); then
+	  echo "demo: PORT=$$PORT is no port; give a number from 1024 to 65535, for example: make demo PORT=8081" >&2
+	  exit 1
+	fi
+	if (exec 3<>"/dev/tcp/127.0.0.1/$$PORT") 2>/dev/null; then
+	  echo "demo: port $$PORT is in use by another program; choose another: make demo PORT=$$((10#$$PORT + 1))" >&2
+	  exit 1
+	fi
+	if [[ -n $$MESH && ! -r $$MESH ]]; then
+	  echo "demo: MESH=$$MESH cannot be read; give the path of a .vtu or .vtk file, in quotes if it holds spaces" >&2
+	  exit 1
+	fi
+
+# The log's name, also the mesh's id in the URL: the file's name without its folder and ending, in letters that need no quoting.
+define demo_name
+name=fin
+if [[ -n $$MESH ]]; then
+  name=$$(basename -- "$$MESH")
+  name=$${name%.*}
+  name=$${name//[^A-Za-z0-9._-]/_}
+  name=$${name#.}
+fi
+endef
+
+# The demo waits for nothing that it does not show, the tests least of all.
+demo: TARGETS := --target qtet qtet-server qtet_viewer
+
+# Makes build/demo/NAME.qtet, unless it is there already, newer than the mesh, from this very mesh, and readable by this tool.
+# The tool writes its files whole or not at all, so an interrupted run leaves nothing half done.
+demo-log: demo-port setup build
+	@$(demo_name)
+	log=build/demo/$$name.qtet
+	origin=build/demo-input/$$name.origin
+	input=$${MESH:-build/demo-input/fin.vtu}
+	tool=$(BUILD)/bin/qtet
+	mkdir -p build/demo build/demo-input
+	[[ -n $$MESH || -f $$input ]] || "$$tool" sample fin -o "$$input"
+	path=$$(realpath -- "$$input")
+	if [[ -f $$log && ! $$input -nt $$log && $$(cat "$$origin" 2>/dev/null) == "$$path" ]] && "$$tool" info "$$log" &>/dev/null; then
+	  echo "demo: $$log is up to date"
+	  exit 0
+	fi
+	echo "demo: simplifying $$input"
+	rm -f "$$origin"
+	"$$tool" simplify "$$input" -o "$$log"
+	echo "$$path" >"$$origin"
+
+# In a terminal's foreground the server becomes the foreground job instead of make, which would call a Ctrl-C an error.
+# (Fields 3 and 6 behind the name in /proc/PID/stat: this process group, and the terminal's.) setpriv stops the server whenever this
+# shell is gone, however it went.
+demo: demo-log
+	@$(demo_name)
+	stat=$$(</proc/$$$$/stat)
+	read -r _ _ group _ _ terminalGroup _ <<<"$${stat##*) }"
+	terminal=$$([[ $$group == "$$terminalGroup" ]] && echo yes || echo no)
+	[[ $$terminal == no ]] || set -m
+	setpriv --pdeathsig TERM $(BUILD)/bin/qtet-server build/demo --port "$$PORT" --viewer $(BUILD)/share/qtet/viewer &
+	server=$$!
+	[[ $$terminal == yes ]] || trap 'kill -TERM $$server' INT TERM
+	until (exec 3<>"/dev/tcp/127.0.0.1/$$PORT") 2>/dev/null; do
+	  kill -0 $$server 2>/dev/null || { wait $$server || status=$$?; echo "demo: the server stopped; see its message above" >&2; exit $${status:-1}; }
+	  sleep 0.1
+	done
+	echo "Open http://127.0.0.1:$$PORT/?mesh=$$name  (Ctrl-C stops)"
+	status=0
+	if [[ $$terminal == yes ]]; then
+	  fg %1 >/dev/null || status=$$?
+	else
+	  wait $$server || true  # ends early when a signal arrives; the second one gives the server's own status
+	  wait $$server || status=$$?
+	fi
+	exit $$status
+
+test: setup build
+	@ctest --preset release --parallel $(JOBS)
+
+bench: setup build
+	@cmake --build --preset release --parallel $(JOBS) --target qtet_bench
+	shopt -s nullglob
+	for program in $(BUILD)/bench/*; do
+	  [[ -x $$program && -f $$program ]] || continue
+	  echo "== $$program"
+	  "$$program"
+	done
+
+clean:
+	@rm -rf build
+	echo "removed build/"

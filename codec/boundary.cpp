@@ -1,0 +1,24 @@
+#include "codec/boundary.h"
+
+#include <cstdint>
+
+#include "codec/face_groups.h"
+
+namespace qtet {
+
+std::vector<Triangle> boundaryOf(std::span<const Tetrahedron> tetrahedra) {
+  std::vector<std::uint8_t> open(tetrahedra.size(), 0);  // bit i: no other cell has the face opposite corner i
+  FaceGroups(tetrahedra).forEach([&](std::span<const FaceSide> sides) {
+    if (sides.size() == 1) open[cellOf(sides[0])] |= static_cast<std::uint8_t>(1u << oppositeCornerOf(sides[0]));
+  });
+
+  std::vector<Triangle> boundary;
+  for (std::size_t cell = 0; cell < tetrahedra.size(); ++cell) {
+    for (int i = 0; i < 4; ++i) {
+      if (open[cell] & (1u << i)) boundary.push_back(cellFace(tetrahedra[cell], i));
+    }
+  }
+  return boundary;
+}
+
+}  // namespace qtet

@@ -1,0 +1,23 @@
+// The boundary surface of a mesh as a standard Draco mesh, for viewers that know triangles and nothing of logs.
+#pragma once
+
+#include "codec/mesh.h"
+#include "proto/bytes.h"
+#include "proto/error.h"
+
+namespace qtet {
+
+/// Steps of a grid on which a coordinate or field value keeps its grid point as a float32 that Draco quantises, when no value
+/// is further from zero: the float loses at most 2^-5 of a step, twice, and Draco's three roundings at most 2^-2 together.
+inline constexpr double kMaxExactDracoSteps = 1 << 19;
+
+/// Encodes `mesh.boundary` and its vertices: POSITION as float32 in world coordinates, quantised on the mesh's own lattice, then one
+/// GENERIC float32 attribute a field, its name in the attribute's metadata under "name", quantised on the field's own steps.
+/// The decoder orders vertices and triangles anew. Lattice points survive (round((x - origin) / step) gives them back) while
+/// |origin / step| + 2^bits <= kMaxExactDracoSteps; further out float32 itself cannot tell them apart, and positions are the nearest
+/// floats. The same for fields, with minimum and step; a field of more bits is stored as raw floats.
+/// REQUIRES: indices within range, as many values as the fields' components say, lattice.bits and field bits within proto/limits.h.
+/// Errors: bad-input (no boundary), bad-codec (Draco refused, with its message).
+[[nodiscard]] Result<Bytes> boundaryDrc(const LatticeMesh& mesh);
+
+}  // namespace qtet

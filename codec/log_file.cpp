@@ -1,0 +1,143 @@
+#include "codec/log_file.h"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <string>
+#include <utility>
+
+#include "codec/draco_block.h"
+#include "proto/checksum.h"
+#include "proto/manifest.h"
+
+namespace qtet {
+
+struct LogFile::Mapping {
+  void* address = nullptr;
+  std::size_t bytes = 0;
+
+  Mapping() = default;
+  Mapping(const Mapping&) = delete;
+  Mapping& operator=(const Mapping&) = delete;
+  ~Mapping() {
+    if (address != nullptr) munmap(address, bytes);
+  }
+};
+
+LogFile::LogFile(LogFile&&) noexcept = default;
+LogFile& LogFile::operator=(LogFile&&) noexcept = default;
+LogFile::~LogFile() = default;
+
+Result<LogFile> LogFile::open(const std::filesystem::path& path) {
+  const auto io = [&](const char* what) { return fail(ErrorCode::kIo, path.string() + ": " + what + ": " + std::strerror(errno)); };
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return io("cannot be opened");
+  struct stat info {};
+  LogFile log;
+  log.mapping_ = std::make_unique<Mapping>();
+  const bool known = fstat(file, &info) == 0;
+  if (known && S_ISREG(info.st_mode) && info.st_size > 0) {
+    void* address = mmap(nullptr, static_cast<std::size_t>(info.st_size), PROT_READ, MAP_PRIVATE, file, 0);
+    if (address != MAP_FAILED) log.mapping_->address = address, log.mapping_->bytes = static_cast<std::size_t>(info.st_size);
+  }
+  ::close(file);
+  if (!known) return io("cannot be read");
+  if (!S_ISREG(info.st_mode)) return fail(ErrorCode::kIo, path.string() + ": not a regular file");
+  if (info.st_size == 0) return fail(ErrorCode::kTruncated, path.string() + ": the file is empty", 0);
+  if (log.mapping_->address == nullptr) return io("cannot be mapped into memory");
+
+  Result<LogIndex> index = LogIndex::parse(log.bytes());
+  if (!index) {
+    index.error().message = path.string() + ": " + index.error().message;
+    return std::unexpected(index.error());
+  }
+  if (index->fileBytes != log.bytes().size())
+    return fail(index->fileBytes > log.bytes().size() ? ErrorCode::kTruncated : ErrorCode::kBadValue,
+                path.string() + ": the file has " + std::to_string(log.bytes().size()) + " bytes, its header says " +
+                    std::to_string(index->fileBytes) + "; copy or fetch it again",
+                log.bytes().size());
+  log.index_ = std::move(*index);
+  log.digest_ = sha256Hex(log.bytes());
+  return log;
+}
+
+ByteView LogFile::bytes() const { return {static_cast<const std::uint8_t*>(mapping_->address), mapping_->bytes}; }
+
+ByteView LogFile::block(std::uint32_t chunk, std::uint32_t part) const {
+  const BlockEntry& b = index_.block(chunk, part);
+  return bytes().subspan(static_cast<std::size_t>(b.offset), b.size);
+}
+
+namespace {
+
+Status checkBlock(const LogFile& log, std::uint32_t chunk, std::uint32_t part) {
+  const BlockEntry& b = log.index().block(chunk, part);
+  if (crc32(log.block(chunk, part)) == b.crc) return {};
+  return fail(ErrorCode::kBadChecksum,
+              "chunk " + std::to_string(chunk) + ", part " + std::to_string(part) + ": the CRC-32 does not match; fetch the file again", b.offset);
+}
+
+Result<std::vector<std::int32_t>> blockValues(const LogFile& log, std::uint32_t chunk, std::uint32_t part, std::uint32_t components) {
+  if (Status s = checkBlock(log, chunk, part); !s) return std::unexpected(s.error());
+  return decodeDracoBlock(log.block(chunk, part), components, log.index().chunks[chunk].values);
+}
+
+FieldInfo fieldInfo(const ManifestField& f) { return {f.name, f.components, f.type, f.association, f.bits, f.step, f.minimum, f.range}; }
+
+}  // namespace
+
+Status LogFile::verifyChecksums() const {
+  for (std::uint32_t chunk = 0; chunk < index_.chunks.size(); ++chunk)
+    for (std::uint32_t part = 0; part < index_.parts(); ++part)
+      if (Status s = checkBlock(*this, chunk, part); !s) return s;
+  return {};
+}
+
+Status applyChunk(const LogFile& log, Refiner& refiner, std::uint32_t chunk, std::span<const std::uint32_t> fields) {
+  if (chunk >= log.index().chunks.size()) return fail(ErrorCode::kNotFound, "there is no chunk " + std::to_string(chunk));
+  if (Status s = checkBlock(log, chunk, kStructurePart); !s) return s;
+  const auto positions = blockValues(log, chunk, kPositionsPart, 3);
+  if (!positions) return std::unexpected(positions.error());
+  if (Status s = refiner.apply(chunk, log.block(chunk, kStructurePart), *positions); !s) return s;
+  for (const std::uint32_t f : fields) {
+    const auto values = blockValues(log, chunk, kFirstFieldPart + f, log.index().fieldComponents[f]);
+    if (!values) return std::unexpected(values.error());
+    if (Status s = refiner.applyField(f, chunk, *values); !s) return s;
+  }
+  return {};
+}
+
+Result<LatticeMesh> meshAtLevel(const LogFile& log, std::uint32_t level, const std::optional<std::vector<std::uint32_t>>& fields) {
+  const Result<Manifest> manifest = manifestFromJson(log.index().manifest);
+  if (!manifest) return std::unexpected(manifest.error());
+  if (manifest->fields.size() != log.index().fieldComponents.size())
+    return fail(ErrorCode::kBadValue, "manifest and chunk table differ in the number of fields; build the log again");
+  const std::uint32_t last = log.index().chunks.back().lastLevel;
+  if (level > last) return fail(ErrorCode::kNotFound, "there is no level " + std::to_string(level) + "; the last is " + std::to_string(last));
+  std::vector<std::uint32_t> wanted;
+  if (fields)
+    wanted = *fields;
+  else
+    for (std::uint32_t f = 0; f < manifest->fields.size(); ++f) wanted.push_back(f);
+
+  Refiner refiner(log.index());
+  refiner.stopAtLevel(level);
+  for (std::uint32_t chunk = 0; chunk < log.index().chunks.size() && (chunk == 0 || refiner.level() < level); ++chunk)
+    if (Status s = applyChunk(log, refiner, chunk, wanted); !s) return std::unexpected(s.error());
+  LatticeMesh mesh;
+  mesh.lattice = {manifest->latticeBits, manifest->latticeStep, manifest->latticeOrigin};
+  mesh.points.assign(refiner.points().begin(), refiner.points().end());
+  mesh.tetrahedra.assign(refiner.tetrahedra().begin(), refiner.tetrahedra().end());
+  mesh.boundary.assign(refiner.boundary().begin(), refiner.boundary().end());
+  for (const std::uint32_t f : wanted) {
+    mesh.fields.push_back(fieldInfo(manifest->fields[f]));
+    mesh.values.emplace_back(refiner.fieldValues(f).begin(), refiner.fieldValues(f).end());
+  }
+  return mesh;
+}
+
+}  // namespace qtet

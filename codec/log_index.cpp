@@ -1,0 +1,212 @@
+#include "codec/log_index.h"
+
+#include <array>
+
+#include "proto/checksum.h"
+#include "proto/limits.h"
+
+namespace qtet {
+namespace {
+
+// As PNG's: the high bit finds seven-bit transfers, CR LF and LF find text-mode copies, 0x1A stops DOS type.
+constexpr std::array<std::uint8_t, 8> kMagic{0x89, 'Q', 'T', 'E', 'T', '\r', '\n', 0x1A};
+
+struct Header {
+  std::uint32_t manifestBytes = 0, tableBytes = 0, manifestCrc = 0, tableCrc = 0;
+  std::uint32_t chunks = 0, fields = 0, dependencies = 0;
+  std::uint64_t fileBytes = 0;
+  Layout layout = Layout::kStream;
+  std::uint8_t positionBits = 0;
+
+  [[nodiscard]] std::uint64_t expectedTableBytes() const {
+    return std::uint64_t{fields} * 4 +
+           std::uint64_t{chunks} * (LogIndex::kChunkEntryBytes + (kFirstFieldPart + std::uint64_t{fields}) * LogIndex::kBlockEntryBytes) +
+           std::uint64_t{dependencies} * 4;
+  }
+  [[nodiscard]] std::uint64_t headBytes() const { return std::uint64_t{LogIndex::kHeaderBytes} + manifestBytes + tableBytes; }
+};
+
+Result<Header> readHeader(ByteView bytes) {
+  if (bytes.size() < LogIndex::kHeaderBytes)
+    return fail(ErrorCode::kTruncated, "a log starts with a header of 64 bytes; this has " + std::to_string(bytes.size()), bytes.size());
+  if (!std::equal(kMagic.begin(), kMagic.end(), bytes.begin()))
+    return fail(ErrorCode::kBadMagic, "this is not a qtet log (the first 8 bytes differ)", 0);
+  ByteReader r(bytes.first(LogIndex::kHeaderBytes));
+  r.take(kMagic.size());
+  const auto major = r.read<std::uint16_t>();
+  (void)r.read<std::uint16_t>();  // minor: additions that this reader may ignore
+  if (major != LogIndex::kVersionMajor)
+    return fail(ErrorCode::kBadVersion, "version " + std::to_string(major) + " of the format; this build reads version 1", 8);
+  Header h;
+  const auto layout = r.read<std::uint8_t>();
+  h.positionBits = r.read<std::uint8_t>();
+  (void)r.read<std::uint16_t>();
+  h.fileBytes = r.read<std::uint64_t>();
+  h.manifestBytes = r.read<std::uint32_t>();
+  h.tableBytes = r.read<std::uint32_t>();
+  h.manifestCrc = r.read<std::uint32_t>();
+  h.tableCrc = r.read<std::uint32_t>();
+  h.chunks = r.read<std::uint32_t>();
+  h.fields = r.read<std::uint32_t>();
+  h.dependencies = r.read<std::uint32_t>();
+  r.take(8);  // reserved
+  if (r.read<std::uint32_t>() != crc32(bytes.first(LogIndex::kHeaderBytes - 4)))
+    return fail(ErrorCode::kBadChecksum, "the header's CRC-32 does not match; fetch the file again", LogIndex::kHeaderBytes - 4);
+  if (layout > static_cast<std::uint8_t>(Layout::kRegions)) return fail(ErrorCode::kBadValue, "unknown layout " + std::to_string(layout), 12);
+  h.layout = static_cast<Layout>(layout);
+  if (h.positionBits < kMinPositionBits || h.positionBits > kMaxPositionBits)
+    return fail(ErrorCode::kBadValue, "a lattice of " + std::to_string(h.positionBits) + " bits; 4 to 28 are allowed", 13);
+  if (h.manifestBytes > kMaxManifestBytes) return fail(ErrorCode::kLimitExceeded, "the manifest is above 16 MiB", 24);
+  if (h.chunks == 0) return fail(ErrorCode::kBadValue, "a log has at least one chunk, the base mesh", 40);
+  if (h.chunks > kMaxChunks) return fail(ErrorCode::kLimitExceeded, "more than 2^20 chunks", 40);
+  if (h.fields > kMaxFields) return fail(ErrorCode::kLimitExceeded, "more than 256 fields", 44);
+  if (h.dependencies > kMaxDependencies) return fail(ErrorCode::kLimitExceeded, "more than 2^24 dependencies", 48);
+  if (h.expectedTableBytes() != h.tableBytes)
+    return fail(ErrorCode::kBadValue, "the chunk table's size does not fit the counts of chunks, fields and dependencies", 28);
+  if (h.headBytes() > h.fileBytes) return fail(ErrorCode::kBadValue, "the file's size is below that of its front", 16);
+  return h;
+}
+
+ChunkEntry readEntry(ByteReader& r, std::uint32_t parts) {
+  ChunkEntry e;
+  e.offset = r.read<std::uint64_t>();
+  for (std::uint32_t* value : {&e.firstLevel, &e.lastLevel, &e.endSlot, &e.records, &e.newVertices, &e.newTetrahedra,
+                               &e.newBoundaryTriangles, &e.values, &e.firstDependency, &e.dependencyCount})
+    *value = r.read<std::uint32_t>();
+  e.structureCodec = static_cast<CodecId>(r.read<std::uint8_t>());
+  e.valueCodec = static_cast<CodecId>(r.read<std::uint8_t>());
+  (void)r.read<std::uint16_t>();
+  (void)r.read<std::uint32_t>();
+  e.blocks.resize(parts);
+  std::uint64_t offset = e.offset;
+  for (BlockEntry& b : e.blocks) {
+    b.offset = offset;
+    b.size = r.read<std::uint32_t>();
+    b.crc = r.read<std::uint32_t>();
+    offset += b.size;
+  }
+  return e;
+}
+
+void writeEntry(ByteWriter& w, const ChunkEntry& e) {
+  w.write(e.offset);
+  for (const std::uint32_t value : {e.firstLevel, e.lastLevel, e.endSlot, e.records, e.newVertices, e.newTetrahedra, e.newBoundaryTriangles,
+                                    e.values, e.firstDependency, e.dependencyCount})
+    w.write(value);
+  w.write(static_cast<std::uint8_t>(e.structureCodec));
+  w.write(static_cast<std::uint8_t>(e.valueCodec));
+  w.write(std::uint16_t{0});
+  w.write(std::uint32_t{0});
+  for (const BlockEntry& b : e.blocks) w.write(b.size), w.write(b.crc);
+}
+
+// What every later step relies on: blocks back to back to the file's end, levels in order, counts within limits, dependencies backwards.
+Status check(const LogIndex& index, const Header& header) {
+  std::uint64_t offset = header.headBytes();
+  std::uint64_t vertices = 0;
+  std::uint64_t cells = 0;
+  std::uint64_t triangles = 0;
+  std::uint32_t level = 0;
+  for (std::uint32_t i = 0; i < index.chunks.size(); ++i) {
+    const ChunkEntry& e = index.chunks[i];
+    const auto bad = [i](ErrorCode code, const char* what) {
+      return fail(code, "chunk table, row " + std::to_string(i) + ": " + what + "; fetch or build the log again");
+    };
+    if (e.offset != offset) return bad(ErrorCode::kBadValue, "the chunk does not start where the one before it ends");
+    for (const BlockEntry& b : e.blocks) {
+      if (b.size > kMaxBlockBytes) return bad(ErrorCode::kLimitExceeded, "a block above 256 MiB");
+      offset += b.size;
+    }
+    vertices += e.newVertices, cells += e.newTetrahedra, triangles += e.newBoundaryTriangles;
+    if (vertices > kMaxElements || cells > kMaxElements || triangles > kMaxElements || e.values > kMaxElements)
+      return bad(ErrorCode::kLimitExceeded, "more than 2^31 vertices, cells, triangles or values");
+    if (e.structureCodec != CodecId::kRange || (e.valueCodec != CodecId::kDraco && e.valueCodec != CodecId::kEmpty))
+      return bad(ErrorCode::kBadCodec, "an unknown codec id");
+    if (i == 0 ? e.firstLevel != 0 || e.lastLevel != 0 || e.records != 0 || e.endSlot != kLevelEnd || e.values != e.newVertices
+               : e.firstLevel < level || e.lastLevel < e.firstLevel || e.firstLevel == 0)
+      return bad(ErrorCode::kBadValue, "levels out of order");
+    if (e.lastLevel > kMaxLevels) return bad(ErrorCode::kLimitExceeded, "more than 4,096 levels");
+    level = e.lastLevel;
+    if (std::uint64_t{e.firstDependency} + e.dependencyCount > index.dependencies.size())
+      return bad(ErrorCode::kBadValue, "dependencies beyond the end of their list");
+    for (std::uint32_t d = 0; d < e.dependencyCount; ++d)
+      if (index.dependencies[e.firstDependency + d] >= i) return bad(ErrorCode::kBadValue, "it depends on itself or on a later chunk");
+  }
+  if (offset != header.fileBytes) return fail(ErrorCode::kBadValue, "the chunks do not end where the file ends", offset);
+  return {};
+}
+
+}  // namespace
+
+std::uint64_t LogIndex::headBytes() const {
+  return chunks.empty() ? kHeaderBytes : chunks.front().offset;
+}
+
+Result<std::uint64_t> LogIndex::headBytesOf(ByteView firstBytes) {
+  const Result<Header> header = readHeader(firstBytes);
+  if (!header) return std::unexpected(header.error());
+  return header->headBytes();
+}
+
+Result<LogIndex> LogIndex::parse(ByteView bytes) {
+  const Result<Header> header = readHeader(bytes);
+  if (!header) return std::unexpected(header.error());
+  if (bytes.size() < header->headBytes())
+    return fail(ErrorCode::kTruncated, "the front of the log is " + std::to_string(header->headBytes()) + " bytes long, these are " +
+                                           std::to_string(bytes.size()), bytes.size());
+  const ByteView manifest = bytes.subspan(kHeaderBytes, header->manifestBytes);
+  const ByteView table = bytes.subspan(kHeaderBytes + std::size_t{header->manifestBytes}, header->tableBytes);
+  if (crc32(manifest) != header->manifestCrc)
+    return fail(ErrorCode::kBadChecksum, "the manifest's CRC-32 does not match; fetch the file again", kHeaderBytes);
+  if (crc32(table) != header->tableCrc)
+    return fail(ErrorCode::kBadChecksum, "the chunk table's CRC-32 does not match; fetch the file again", kHeaderBytes + std::uint64_t{header->manifestBytes});
+  LogIndex index;
+  index.layout = header->layout;
+  index.positionBits = header->positionBits;
+  index.fileBytes = header->fileBytes;
+  index.manifest.assign(manifest.begin(), manifest.end());
+  ByteReader r(table, kHeaderBytes + std::uint64_t{header->manifestBytes});
+  for (std::uint32_t f = 0; f < header->fields; ++f) {
+    index.fieldComponents.push_back(r.read<std::uint32_t>());
+    if (index.fieldComponents.back() == 0 || index.fieldComponents.back() > kMaxFieldComponents)
+      return fail(ErrorCode::kBadValue, "field " + std::to_string(f) + " has a number of components outside 1..16", r.offset() - 4);
+  }
+  index.chunks.reserve(header->chunks);
+  for (std::uint32_t i = 0; i < header->chunks; ++i) index.chunks.push_back(readEntry(r, index.parts()));
+  index.dependencies.reserve(header->dependencies);
+  for (std::uint32_t i = 0; i < header->dependencies; ++i) index.dependencies.push_back(r.read<std::uint32_t>());
+  if (r.failed()) return std::unexpected(r.error());
+  if (Status s = check(index, *header); !s) return std::unexpected(s.error());
+  return index;
+}
+
+Bytes LogIndex::encode() const {
+  ByteWriter table;
+  for (const std::uint32_t components : fieldComponents) table.write(components);
+  for (const ChunkEntry& e : chunks) writeEntry(table, e);
+  for (const std::uint32_t d : dependencies) table.write(d);
+  const ByteView manifestBytes(reinterpret_cast<const std::uint8_t*>(manifest.data()), manifest.size());
+
+  ByteWriter w;
+  w.append(kMagic);
+  w.write(kVersionMajor);
+  w.write(kVersionMinor);
+  w.write(static_cast<std::uint8_t>(layout));
+  w.write(positionBits);
+  w.write(std::uint16_t{0});
+  w.write(fileBytes);
+  w.write(static_cast<std::uint32_t>(manifest.size()));
+  w.write(static_cast<std::uint32_t>(table.bytes().size()));
+  w.write(crc32(manifestBytes));
+  w.write(crc32(table.bytes()));
+  w.write(static_cast<std::uint32_t>(chunks.size()));
+  w.write(static_cast<std::uint32_t>(fieldComponents.size()));
+  w.write(static_cast<std::uint32_t>(dependencies.size()));
+  w.write(std::uint64_t{0});
+  w.write(crc32(w.bytes()));
+  w.append(manifestBytes);
+  w.append(table.bytes());
+  return w.take();
+}
+
+}  // namespace qtet

@@ -1,0 +1,86 @@
+// The front of a log: header, manifest and chunk table (FORMAT.md, "Header", "Chunk table"). What a server, a viewer and a
+// verifier need to know before they touch a block. Trusts nothing: every count is checked against limits and against the bytes.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "proto/bytes.h"
+#include "proto/error.h"
+
+namespace qtet {
+
+enum class Layout : std::uint8_t { kStream = 0, kRegions = 1 };
+
+/// How a block's bytes are coded (FORMAT.md, "Codec ids").
+enum class CodecId : std::uint8_t {
+  kEmpty = 0,      ///< no bytes
+  kRange = 1,      ///< structure: the adaptive binary range coder
+  kDraco = 2,      ///< values: one Draco point cloud, sequential, one int32 attribute
+};
+
+struct BlockEntry {
+  std::uint64_t offset = 0;  ///< in the file; derived, not stored
+  std::uint32_t size = 0;    ///< bytes
+  std::uint32_t crc = 0;
+};
+
+/// Parts of a chunk, in file order: structure, positions, then one block a field.
+inline constexpr std::uint32_t kStructurePart = 0;
+inline constexpr std::uint32_t kPositionsPart = 1;
+inline constexpr std::uint32_t kFirstFieldPart = 2;
+
+/// `ChunkEntry::endSlot` of a chunk that finishes its last level.
+inline constexpr std::uint32_t kLevelEnd = 0xFFFFFFFFu;
+
+/// One row of the chunk table. Chunk 0 is the base mesh (level 0).
+struct ChunkEntry {
+  std::uint64_t offset = 0;           ///< of its first block in the file
+  std::uint32_t firstLevel = 0;       ///< the levels that its records belong to
+  std::uint32_t lastLevel = 0;
+  std::uint32_t endSlot = kLevelEnd;  ///< lastLevel is visited below this vertex slot; kLevelEnd = to its end
+  std::uint32_t records = 0;
+  std::uint32_t newVertices = 0;
+  std::uint32_t newTetrahedra = 0;
+  std::uint32_t newBoundaryTriangles = 0;
+  std::uint32_t values = 0;           ///< tuples in the positions block and in each field's block
+  std::uint32_t firstDependency = 0;  ///< into LogIndex::dependencies
+  std::uint32_t dependencyCount = 0;
+  CodecId structureCodec = CodecId::kRange;
+  CodecId valueCodec = CodecId::kDraco;
+  std::vector<BlockEntry> blocks;     ///< 2 + fields
+
+  [[nodiscard]] std::uint64_t size() const { return blocks.empty() ? 0 : blocks.back().offset + blocks.back().size - offset; }
+};
+
+struct LogIndex {
+  static constexpr std::uint32_t kHeaderBytes = 64;
+  static constexpr std::uint32_t kChunkEntryBytes = 56;
+  static constexpr std::uint32_t kBlockEntryBytes = 8;
+  static constexpr std::uint16_t kVersionMajor = 1;
+  static constexpr std::uint16_t kVersionMinor = 0;
+
+  Layout layout = Layout::kStream;
+  std::uint8_t positionBits = 0;
+  std::uint64_t fileBytes = 0;
+  std::string manifest;                        ///< JSON, see proto/manifest.h
+  std::vector<std::uint32_t> fieldComponents;  ///< one a field, 1..kMaxFieldComponents
+  std::vector<ChunkEntry> chunks;
+  std::vector<std::uint32_t> dependencies;
+
+  /// Bytes of header + manifest + table: where the first block starts.
+  [[nodiscard]] std::uint64_t headBytes() const;
+  [[nodiscard]] const BlockEntry& block(std::uint32_t chunk, std::uint32_t part) const { return chunks[chunk].blocks[part]; }
+  [[nodiscard]] std::uint32_t parts() const { return kFirstFieldPart + static_cast<std::uint32_t>(fieldComponents.size()); }
+
+  /// Bytes of the header's promise: how much of the file `parse` needs. Errors: truncated (under 64 bytes), bad-magic, bad-version,
+  /// bad-checksum, limit-exceeded, bad-value.
+  [[nodiscard]] static Result<std::uint64_t> headBytesOf(ByteView firstBytes);
+  /// Reads the front of a log; `bytes` holds at least headBytesOf() bytes, the rest is not looked at.
+  [[nodiscard]] static Result<LogIndex> parse(ByteView bytes);
+  /// Header, manifest and table as they stand in the file. REQUIRES: offsets and sizes consistent (LogWriter sees to that).
+  [[nodiscard]] Bytes encode() const;
+};
+
+}  // namespace qtet

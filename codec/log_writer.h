@@ -1,0 +1,42 @@
+// From a simplifier's history to the bytes of a log in the `stream` layout (FORMAT.md): deterministic, the same input gives the same bytes.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "codec/fusion_history.h"
+#include "proto/bytes.h"
+#include "proto/error.h"
+
+namespace qtet {
+
+struct LogWriterOptions {
+  std::string source;                          ///< the input's file name, for the manifest
+  std::string generator;                       ///< "qtet 0.1.0"
+  std::uint32_t chunkBytes = 32 << 10;         ///< a chunk ends at the record that takes it beyond
+  std::function<void(double)> progress;        ///< fraction done, 0..1
+};
+
+struct LogStatistics {
+  std::uint64_t headBytes = 0;       ///< header, manifest, table
+  std::uint64_t structureBytes = 0;
+  std::uint64_t positionBytes = 0;
+  std::vector<std::uint64_t> fieldBytes;
+  std::uint64_t baseBytes = 0;       ///< of the above, what chunk 0 takes
+  std::uint64_t fileBytes = 0;
+  std::uint32_t chunks = 0;
+  std::uint32_t levels = 0;          ///< without the base mesh
+};
+
+struct EncodedLog {
+  Bytes bytes;
+  LogStatistics statistics;
+};
+
+/// Writes the history backwards, coarse-first. Errors: bad-value (the history contradicts itself or holds a fusion that no label coding
+/// describes), limit-exceeded, bad-codec.
+[[nodiscard]] Result<EncodedLog> encodeLog(const FusionHistory& history, const LogWriterOptions& options);
+
+}  // namespace qtet

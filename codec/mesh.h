@@ -1,0 +1,57 @@
+// The words that every part of the codec shares: ids, lattice points, cells with a ghost vertex, and a mesh on the lattice.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace qtet {
+
+using VertexId = std::uint32_t;
+using CellId = std::uint32_t;
+
+/// The vertex "outside": every boundary triangle (a, b, c), counter-clockwise seen from outside, is the cell (a, b, c, kGhost).
+inline constexpr VertexId kGhost = 0xFFFFFFFFu;
+
+/// Four vertices; (b-a) x (c-a) . (d-a) > 0 for a cell that is not degenerate, the orientation of VTK_TETRA.
+using Tetrahedron = std::array<VertexId, 4>;
+/// Three vertices, counter-clockwise seen from outside.
+using Triangle = std::array<VertexId, 3>;
+/// Lattice coordinates, each in [0, 2^bits).
+using LatticePoint = std::array<std::int32_t, 3>;
+
+/// position = origin + step * lattice point, the same step on every axis.
+struct Lattice {
+  int bits = 16;
+  double step = 1;
+  std::array<double, 3> origin{};
+
+  [[nodiscard]] std::array<double, 3> position(const LatticePoint& p) const {
+    return {origin[0] + step * p[0], origin[1] + step * p[1], origin[2] + step * p[2]};
+  }
+};
+
+/// What a field's numbers mean: value of component c = minimum[c] + step * integer. Integer fields have step 1 and lose nothing.
+struct FieldInfo {
+  std::string name;
+  std::uint32_t components = 1;
+  std::string type = "float32";            ///< of the input: float32, float64, int8 ... uint64
+  std::string association = "point";
+  int bits = 12;                           ///< integers lie in [0, 2^bits)
+  double step = 1;
+  std::vector<double> minimum;             ///< one a component
+  std::array<double, 2> range{0, 0};       ///< of the values, or of the magnitude where components > 1
+};
+
+/// A mesh on the lattice with quantised fields; `values[f]` holds components * points integers, vertex by vertex.
+struct LatticeMesh {
+  Lattice lattice;
+  std::vector<LatticePoint> points;
+  std::vector<Tetrahedron> tetrahedra;
+  std::vector<Triangle> boundary;
+  std::vector<FieldInfo> fields;
+  std::vector<std::vector<std::int32_t>> values;
+};
+
+}  // namespace qtet

@@ -1,0 +1,171 @@
+// An adaptive binary range coder with integer probabilities (FORMAT.md, "Range coder"). Encoder, decoder and a coder that only answers
+// have the same face, so one template describes a stream in both directions.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+
+#include "proto/bytes.h"
+
+namespace qtet {
+
+/// Probability that the next decision is 1, in 1/65536, and how often it was asked: young models learn fast.
+struct BitModel {
+  std::uint16_t probability = 32768;
+  std::uint16_t count = 0;
+};
+
+namespace range {
+
+// A decision costs at least log2(65536 / 65504) = 1/1420 bit: kMaxDecisionsPerByte rests on it.
+inline constexpr std::uint32_t kLowest = 32;
+inline constexpr std::uint32_t kHighest = 65536 - kLowest;
+inline constexpr std::uint32_t kSlowest = 160;  // a model's memory in decisions; 100-250 measured alike
+
+inline constexpr auto kRates = [] {
+  std::array<std::uint16_t, kSlowest + 1> rates{};
+  for (std::uint32_t n = 0; n <= kSlowest; ++n) rates[n] = static_cast<std::uint16_t>(655360u / (10 * n + 16));
+  return rates;
+}();
+
+inline std::uint32_t clamped(const BitModel& model) {
+  const std::uint32_t p = model.probability;
+  return p < kLowest ? kLowest : p > kHighest ? kHighest : p;
+}
+
+inline void update(BitModel& model, int bit) {
+  const std::int32_t target = bit ? 65535 : 0;
+  const std::int64_t delta = std::int64_t{target - model.probability} * kRates[model.count] / 65536;
+  model.probability = static_cast<std::uint16_t>(model.probability + delta);
+  if (model.count < kSlowest) ++model.count;
+}
+
+}  // namespace range
+
+class RangeEncoder {
+ public:
+  static constexpr bool kEncoding = true;
+
+  int bit(int value, BitModel& model) {
+    encode(value, range::clamped(model));
+    range::update(model, value);
+    return value;
+  }
+  /// `bits` equiprobable bits, 0..32.
+  std::uint32_t raw(std::uint32_t value, int bits) {
+    for (int i = bits - 1; i >= 0; --i) encode(static_cast<int>(value >> i & 1), 32768);
+    return value;
+  }
+  [[nodiscard]] std::size_t size() const { return writer_.bytes().size(); }
+  /// Ends the stream and starts afresh.
+  [[nodiscard]] Bytes finish() {
+    for (int i = 0; i < 4; ++i) writer_.write(static_cast<std::uint8_t>(low_ >> (24 - 8 * i)));
+    low_ = 0, high_ = ~0u;
+    return std::exchange(writer_, ByteWriter{}).take();
+  }
+
+ private:
+  void encode(int value, std::uint32_t probability) {
+    const std::uint32_t middle = low_ + static_cast<std::uint32_t>((std::uint64_t{high_ - low_} * probability) >> 16);
+    if (value)
+      high_ = middle;
+    else
+      low_ = middle + 1;
+    while (((low_ ^ high_) >> 24) == 0) {
+      writer_.write(static_cast<std::uint8_t>(high_ >> 24));
+      low_ <<= 8, high_ = high_ << 8 | 255;
+    }
+  }
+
+  std::uint32_t low_ = 0;
+  std::uint32_t high_ = ~0u;
+  ByteWriter writer_;
+};
+
+class RangeDecoder {
+ public:
+  static constexpr bool kEncoding = false;
+
+  explicit RangeDecoder(ByteView bytes) : bytes_(bytes) {
+    for (int i = 0; i < 4; ++i) code_ = code_ << 8 | next();
+  }
+  int bit(int /*unknown*/, BitModel& model) {
+    const int value = decode(range::clamped(model));
+    range::update(model, value);
+    return value;
+  }
+  std::uint32_t raw(std::uint32_t /*unknown*/, int bits) {
+    std::uint32_t value = 0;
+    for (int i = 0; i < bits; ++i) value = value << 1 | static_cast<std::uint32_t>(decode(32768));
+    return value;
+  }
+  /// More was asked for than the bytes hold: what was decoded since is noise.
+  [[nodiscard]] bool overrun() const { return position_ > bytes_.size(); }
+  /// Every byte was used, none beyond.
+  [[nodiscard]] bool atEnd() const { return position_ == bytes_.size(); }
+
+ private:
+  int decode(std::uint32_t probability) {
+    const std::uint32_t middle = low_ + static_cast<std::uint32_t>((std::uint64_t{high_ - low_} * probability) >> 16);
+    const int value = code_ <= middle;
+    if (value)
+      high_ = middle;
+    else
+      low_ = middle + 1;
+    while (((low_ ^ high_) >> 24) == 0) {
+      low_ <<= 8, high_ = high_ << 8 | 255;
+      code_ = code_ << 8 | next();
+    }
+    return value;
+  }
+  std::uint32_t next() {
+    const std::uint32_t byte = position_ < bytes_.size() ? bytes_[position_] : 0;
+    ++position_;
+    return byte;
+  }
+
+  ByteView bytes_;
+  std::size_t position_ = 0;
+  std::uint32_t low_ = 0;
+  std::uint32_t high_ = ~0u;
+  std::uint32_t code_ = 0;
+};
+
+/// Answers every question with the truth and writes nothing: for asking what an encoder would say.
+class EchoCoder {
+ public:
+  static constexpr bool kEncoding = true;
+  static int bit(int value, BitModel&) { return value; }
+  static std::uint32_t raw(std::uint32_t value, int) { return value; }
+};
+
+/// An unsigned number as the count of its bits (unary, adaptive) and the bits below the first (the topmost two adaptive, the rest raw).
+struct NumberModel {
+  std::array<BitModel, 33> length;
+  std::array<std::array<BitModel, 4>, 33> top;
+
+  template <class Coder>
+  std::uint32_t code(Coder& coder, std::uint32_t value) {
+    const int wanted = std::bit_width(value);
+    int bits = 0;
+    while (bits < 32 && coder.bit(wanted > bits, length[static_cast<std::size_t>(bits)])) ++bits;
+    if (bits < 2) return static_cast<std::uint32_t>(bits);
+    std::uint32_t out = 1;
+    std::uint32_t context = 1;
+    for (int i = bits - 2; i >= 0; --i) {
+      const int asked = static_cast<int>(value >> i & 1);
+      std::uint32_t digit = 0;
+      if (bits - 2 - i < 2) {
+        digit = static_cast<std::uint32_t>(coder.bit(asked, top[static_cast<std::size_t>(bits)][context]));
+        context = context * 2 + digit;
+      } else {
+        digit = coder.raw(static_cast<std::uint32_t>(asked), 1);
+      }
+      out = out * 2 + digit;
+    }
+    return out;
+  }
+};
+
+}  // namespace qtet

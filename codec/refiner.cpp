@@ -1,0 +1,249 @@
+#include "codec/refiner.h"
+
+#include <string>
+
+#include "codec/base_coder.h"
+#include "codec/growing_mesh.h"
+#include "codec/record_coder.h"
+#include "proto/checksum.h"
+#include "proto/limits.h"
+
+namespace qtet {
+namespace {
+
+constexpr const char* kCorrupt = "; the log is damaged or was not written by qtet: fetch or build it again";
+
+std::unexpected<Error> refuse(ErrorCode code, std::uint32_t chunk, const std::string& what) {
+  return fail(code, "chunk " + std::to_string(chunk) + ": " + what + (code == ErrorCode::kBadOrder ? "" : kCorrupt));
+}
+
+struct FieldState {
+  std::vector<std::int32_t> values;
+  std::uint32_t chunks = 0;
+};
+
+}  // namespace
+
+struct Refiner::State {
+  LogIndex index;
+  GrowingMesh mesh;
+  Link link;
+  RecordModels models;
+  std::vector<BaseBirth> baseBirths;
+  std::vector<Birth> births;
+  std::vector<std::size_t> chunkBirths;  // births before chunk i
+  std::vector<FieldState> fields;
+  std::uint32_t chunks = 0;
+  std::uint32_t level = 0;       // being refined, or the last complete one
+  std::uint32_t nextSlot = 0;    // of the level being refined
+  bool inLevel = false;
+  bool broken = false;
+  std::uint32_t stopLevel = kMaxLevels + 1;
+  bool stopped = false;          // inside a chunk, at stopLevel
+
+  Status base(const ChunkEntry& entry, ByteView structure, Residuals& positions);
+  Status records(std::uint32_t chunk, const ChunkEntry& entry, ByteView structure, Residuals& positions);
+  Status run(std::uint32_t chunk, const ChunkEntry& entry, RangeDecoder& decoder, Residuals& positions);
+  Status split(std::uint32_t chunk, RecordCoder<RangeDecoder>& coder, VertexId v);
+  Status counts(std::uint32_t chunk) const;
+  void inherit(FieldState& field, std::uint32_t components, std::size_t firstBirth);
+
+  struct Totals {
+    std::uint64_t vertices = 0, tetrahedra = 0, triangles = 0, births = 0;
+  } totals;  // as the table promises, up to and including the chunk in hand
+};
+
+Refiner::Refiner(LogIndex index) : state_(std::make_unique<State>()) {
+  state_->fields.resize(index.fieldComponents.size());
+  state_->index = std::move(index);
+  state_->chunkBirths.push_back(0);
+}
+Refiner::~Refiner() = default;
+Refiner::Refiner(Refiner&&) noexcept = default;
+Refiner& Refiner::operator=(Refiner&&) noexcept = default;
+
+Status Refiner::apply(std::uint32_t chunk, ByteView structure, std::span<const std::int32_t> positions) {
+  State& s = *state_;
+  if (s.broken) return refuse(ErrorCode::kBadOrder, chunk, "an earlier chunk failed; start again from chunk 0");
+  if (s.index.layout != Layout::kStream) return refuse(ErrorCode::kBadVersion, chunk, "layout 'regions' needs a newer qtet");
+  if (chunk >= s.index.chunks.size()) return refuse(ErrorCode::kBadOrder, chunk, "there is no such chunk");
+  if (chunk != s.chunks) return refuse(ErrorCode::kBadOrder, chunk, "chunk " + std::to_string(s.chunks) + " has to be applied first");
+  if (s.stopped || (chunk > 0 && level() >= s.stopLevel)) return refuse(ErrorCode::kBadOrder, chunk, "the refiner was told to stop at a level before it");
+  const ChunkEntry& entry = s.index.chunks[chunk];
+  if (positions.size() != std::size_t{entry.values} * 3) return refuse(ErrorCode::kBadValue, chunk, "wrong number of position values");
+
+  s.broken = true;  // until the chunk has gone in whole
+  s.totals.vertices += entry.newVertices;
+  s.totals.tetrahedra += entry.newTetrahedra;
+  s.totals.triangles += entry.newBoundaryTriangles;
+  s.totals.births += entry.records;
+  Residuals residuals(positions);
+  const Status status = chunk == 0 ? s.base(entry, structure, residuals) : s.records(chunk, entry, structure, residuals);
+  if (!status) return status;
+  if (Status c = s.counts(chunk); !c && !s.stopped) return c;
+  if (!residuals.atEnd() && !s.stopped) return refuse(ErrorCode::kBadValue, chunk, "position values are left over");
+  for (std::size_t f = 0; f < s.fields.size(); ++f)
+    if (s.fields[f].chunks > 0) s.inherit(s.fields[f], s.index.fieldComponents[f], s.chunkBirths.back());
+  s.chunkBirths.push_back(s.births.size());
+  ++s.chunks;
+  s.broken = false;
+  return {};
+}
+
+Status Refiner::State::base(const ChunkEntry& entry, ByteView structure, Residuals& positions) {
+  RangeDecoder decoder(structure);
+  BaseCoder<RangeDecoder> coder(decoder, entry.newVertices, entry.newTetrahedra);
+  if (!coder.run(nullptr, [&] { return decoder.overrun(); }) || !decoder.atEnd())
+    return refuse(ErrorCode::kBadValue, 0, "the base mesh's structure contradicts itself");
+  mesh.tetrahedra = std::move(coder.tetrahedra);
+  mesh.boundary = boundaryOf(mesh.tetrahedra);
+  baseBirths = std::move(coder.births);
+  const std::int32_t size = std::int32_t{1} << index.positionBits;
+  mesh.points.reserve(entry.newVertices);
+  for (std::uint32_t v = 0; v < entry.newVertices; ++v) {
+    LatticePoint p{};
+    const auto at = [&](VertexId u, std::uint32_t c) { return mesh.points[u][c]; };
+    for (std::uint32_t c = 0; c < 3; ++c) {
+      p[c] = positions.code<false>(predictBase(baseBirths[v], v, c, true, at), 0);
+      if (positions.bad() || p[c] < 0 || p[c] >= size) return refuse(ErrorCode::kBadValue, 0, "a vertex lies outside the lattice");
+    }
+    mesh.points.push_back(p);
+  }
+  mesh.born.assign(mesh.points.size(), 0);
+  return {};
+}
+
+Status Refiner::State::records(std::uint32_t chunk, const ChunkEntry& entry, ByteView structure, Residuals& positions) {
+  // A split costs at least one decision, and brings at most four vertices back; a link triangle or a deleted cell one decision each.
+  const std::uint64_t decisions = kMaxDecisionsPerByte * (std::uint64_t{structure.size()} + 4);
+  if (entry.records > decisions || entry.newTetrahedra > 8 * decisions || entry.newBoundaryTriangles > 8 * decisions)
+    return refuse(ErrorCode::kLimitExceeded, chunk, "the table promises more records than the bytes can hold");
+  RangeDecoder decoder(structure);
+  if (Status s = run(chunk, entry, decoder, positions); !s) return s;
+  if (!decoder.atEnd() && !stopped) return refuse(ErrorCode::kBadValue, chunk, "the structure block is longer or shorter than its records");
+  return {};
+}
+
+Status Refiner::State::run(std::uint32_t chunk, const ChunkEntry& entry, RangeDecoder& decoder, Residuals& positions) {
+  RecordCoder<RangeDecoder> coder(decoder, models, mesh, link, positions);
+  if (entry.firstLevel != (inLevel ? level : level + 1)) return refuse(ErrorCode::kBadValue, chunk, "it does not continue the level before it");
+  for (;;) {
+    if (!inLevel) {
+      ++level;
+      nextSlot = 0;
+      inLevel = true;
+      mesh.beginLevel();
+    }
+    const std::uint32_t end = level == entry.lastLevel ? std::min(entry.endSlot, mesh.levelVertices()) : mesh.levelVertices();
+    for (; nextSlot < end; ++nextSlot) {
+      if (!mesh.maysplit(nextSlot)) continue;
+      const bool splits = coder.splits(nextSlot, level, false);
+      if (decoder.overrun()) return refuse(ErrorCode::kTruncated, chunk, "the structure block ends too early");
+      if (!splits) continue;
+      if (Status s = split(chunk, coder, nextSlot); !s) return s;
+    }
+    if (level == entry.lastLevel && entry.endSlot != kLevelEnd) return {};
+    inLevel = false;
+    if (level == entry.lastLevel) return {};
+    if (level == stopLevel) {
+      stopped = true;
+      return {};
+    }
+  }
+}
+
+Status Refiner::State::split(std::uint32_t chunk, RecordCoder<RangeDecoder>& coder, VertexId v) {
+  if (mesh.star(v).size() > kMaxLinkTriangles) return refuse(ErrorCode::kLimitExceeded, chunk, "a star has too many cells");
+  if (!mesh.enter(v, link)) return refuse(ErrorCode::kBadValue, chunk, "a vertex splits whose link is not a closed surface");
+  Split split;
+  if (!coder.code(v, {}, split)) return refuse(ErrorCode::kBadValue, chunk, "a record's labels or positions contradict each other");
+  const std::int32_t size = std::int32_t{1} << index.positionBits;
+  for (int i = 0; i < split.k; ++i)
+    for (const std::int32_t x : split.points[static_cast<std::size_t>(i)])
+      if (x < 0 || x >= size) return refuse(ErrorCode::kBadValue, chunk, "a vertex lies outside the lattice");
+  births.push_back({v, static_cast<VertexId>(mesh.points.size()), static_cast<std::uint8_t>(split.k), split.moved});
+  mesh.apply(v, link, split, static_cast<std::uint16_t>(level));
+  if (mesh.points.size() > totals.vertices || mesh.tetrahedra.size() > totals.tetrahedra || mesh.boundary.size() > totals.triangles ||
+      births.size() > totals.births)
+    return counts(chunk);
+  return {};
+}
+
+Status Refiner::State::counts(std::uint32_t chunk) const {
+  if (mesh.points.size() == totals.vertices && mesh.tetrahedra.size() == totals.tetrahedra && mesh.boundary.size() == totals.triangles &&
+      births.size() == totals.births)
+    return {};
+  return refuse(ErrorCode::kBadValue, chunk, "vertices, cells, triangles or records do not add up to the chunk table's counts");
+}
+
+// New vertices carry their fused vertex's value until the field's own chunk arrives.
+void Refiner::State::inherit(FieldState& field, std::uint32_t components, std::size_t firstBirth) {
+  const std::size_t n = components;
+  field.values.resize(mesh.points.size() * n);
+  for (std::size_t i = firstBirth; i < births.size(); ++i) {
+    const Birth& b = births[i];
+    for (std::size_t j = 0; j + 1 < b.k; ++j)
+      for (std::size_t c = 0; c < n; ++c) field.values[(b.firstNew + j) * n + c] = field.values[b.slot * n + c];
+  }
+}
+
+Status Refiner::applyField(std::uint32_t field, std::uint32_t chunk, std::span<const std::int32_t> values) {
+  State& s = *state_;
+  if (field >= s.fields.size()) return refuse(ErrorCode::kNotFound, chunk, "there is no such field");
+  FieldState& f = s.fields[field];
+  if (chunk != f.chunks) return refuse(ErrorCode::kBadOrder, chunk, "the field needs chunk " + std::to_string(f.chunks) + " first");
+  if (chunk >= s.chunks) return refuse(ErrorCode::kBadOrder, chunk, "a field cannot run ahead of the mesh");
+  const std::uint32_t n = s.index.fieldComponents[field];
+  if (values.size() != std::size_t{s.index.chunks[chunk].values} * n) return refuse(ErrorCode::kBadValue, chunk, "wrong number of field values");
+  Residuals residuals(values);
+  if (chunk == 0) {
+    f.values.assign(s.mesh.points.size() * n, 0);
+    const auto at = [&](VertexId u, std::uint32_t c) { return f.values[std::size_t{u} * n + c]; };
+    for (std::uint32_t v = 0; v < s.baseBirths.size(); ++v)
+      for (std::uint32_t c = 0; c < n; ++c)
+        f.values[std::size_t{v} * n + c] = residuals.code<false>(predictBase(s.baseBirths[v], v, c, false, at), 0);
+    s.inherit(f, n, 0);
+  }
+  for (std::size_t i = s.chunkBirths[chunk]; i < s.chunkBirths[chunk + 1]; ++i) {
+    const Birth& b = s.births[i];
+    std::array<std::int32_t, kMaxFieldComponents> fused{};
+    for (std::uint32_t c = 0; c < n; ++c) fused[c] = f.values[std::size_t{b.slot} * n + c];
+    codePreyTuples<false>(
+        residuals, b.k, b.moved, n, [&](std::uint32_t c) { return fused[c]; },
+        [&](int j, std::uint32_t c) -> std::int32_t& {
+          const std::size_t vertex = j == 0 ? b.slot : b.firstNew + static_cast<std::size_t>(j) - 1;
+          return f.values[vertex * n + c];
+        });
+  }
+  const bool whole = residuals.atEnd() || (s.stopped && chunk + 1 == s.chunks);
+  if (residuals.bad() || !whole) return refuse(ErrorCode::kBadValue, chunk, "field values out of range or left over");
+  ++f.chunks;
+  return {};
+}
+
+void Refiner::stopAtLevel(std::uint32_t level) { state_->stopLevel = level; }
+
+const LogIndex& Refiner::index() const { return state_->index; }
+std::uint32_t Refiner::chunksApplied() const { return state_->chunks; }
+std::uint32_t Refiner::fieldChunksApplied(std::uint32_t field) const { return state_->fields[field].chunks; }
+std::uint32_t Refiner::level() const { return state_->inLevel ? state_->level - 1 : state_->level; }
+std::span<const LatticePoint> Refiner::points() const { return state_->mesh.points; }
+std::span<const Tetrahedron> Refiner::tetrahedra() const { return state_->mesh.tetrahedra; }
+std::span<const Triangle> Refiner::boundary() const { return state_->mesh.boundary; }
+std::span<const std::int32_t> Refiner::fieldValues(std::uint32_t field) const { return state_->fields[field].values; }
+
+std::array<std::uint8_t, 32> Refiner::digest() const {
+  Sha256 hash;
+  const auto feed = [&hash](const auto& tuples) {
+    ByteWriter w;
+    for (const auto& tuple : tuples)
+      for (const auto value : tuple) w.write(static_cast<std::uint32_t>(value));
+    hash.update(w.bytes());
+  };
+  feed(points());
+  feed(tetrahedra());
+  feed(boundary());
+  return hash.finish();
+}
+
+}  // namespace qtet

@@ -1,0 +1,54 @@
+// From chunks to a mesh that grows in place (FORMAT.md, "Refinement"). Engine-free and exception-free; compiled natively and to WebAssembly.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "codec/log_index.h"
+#include "codec/mesh.h"
+
+namespace qtet {
+
+/// Applies the chunks of one log. Vertices and cells keep their slots for ever: new ones are appended, an affected cell changes one
+/// index. Not thread-safe. After an error no further chunk is accepted; ids stay in range, but the mesh is a part of a chunk's.
+class Refiner {
+ public:
+  explicit Refiner(LogIndex index);
+  ~Refiner();
+  Refiner(Refiner&&) noexcept;
+  Refiner& operator=(Refiner&&) noexcept;
+
+  /// Applies chunk `chunk`: `structure` is its structure block, `positions` the decoded positions block (3 integers a value).
+  /// Errors: bad-order (a dependency is missing, or applied already), bad-checksum is the caller's to find, anything else of FORMAT.md.
+  Status apply(std::uint32_t chunk, ByteView structure, std::span<const std::int32_t> positions);
+  /// Applies field `field` of chunk `chunk` (components integers a value). A field may lag behind the mesh, never run ahead, and takes
+  /// its chunks in the order in which they were applied to the mesh.
+  Status applyField(std::uint32_t field, std::uint32_t chunk, std::span<const std::int32_t> values);
+
+  /// Makes the chunk that goes beyond `level` end there: the mesh is then that level's, and later chunks are refused.
+  void stopAtLevel(std::uint32_t level);
+
+  [[nodiscard]] const LogIndex& index() const;
+  [[nodiscard]] std::uint32_t chunksApplied() const;
+  /// Chunks of one field that have been applied.
+  [[nodiscard]] std::uint32_t fieldChunksApplied(std::uint32_t field) const;
+  /// The last level that is complete.
+  [[nodiscard]] std::uint32_t level() const;
+
+  [[nodiscard]] std::span<const LatticePoint> points() const;
+  [[nodiscard]] std::span<const Tetrahedron> tetrahedra() const;
+  [[nodiscard]] std::span<const Triangle> boundary() const;
+  /// components * points integers; vertices of chunks that the field lacks carry their fused vertex's value.
+  [[nodiscard]] std::span<const std::int32_t> fieldValues(std::uint32_t field) const;
+
+  /// SHA-256 over points, tetrahedra and boundary in slot order, little-endian (FORMAT.md, "Mesh digest").
+  [[nodiscard]] std::array<std::uint8_t, 32> digest() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace qtet

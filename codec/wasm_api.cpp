@@ -1,0 +1,110 @@
+#include "codec/wasm_api.h"
+
+#include <cstdlib>
+#include <cstring>
+#include <optional>
+#include <string>
+
+#include "codec/refiner.h"
+#include "proto/checksum.h"
+
+using qtet::ByteView;
+using qtet::Error;
+using qtet::ErrorCode;
+using qtet::LogIndex;
+using qtet::Refiner;
+
+namespace {
+
+// One module instance is one refiner: a page that shows two logs makes two instances.
+std::optional<Refiner> refiner;
+std::string lastError;
+
+int report(const Error& error) {
+  lastError = error.text();
+  return 1 + static_cast<int>(error.code);
+}
+
+int noLog() { return report({ErrorCode::kBadOrder, "no log is open: call qtet_open first"}); }
+
+bool hasBlock(std::uint32_t chunk, std::uint32_t part) {
+  return refiner && chunk < refiner->index().chunks.size() && part < refiner->index().parts();
+}
+
+}  // namespace
+
+extern "C" {
+
+void* qtet_alloc(std::uint32_t bytes) { return std::malloc(bytes); }
+void qtet_free(void* memory) { std::free(memory); }
+
+std::uint32_t qtet_head_bytes(const std::uint8_t* first64) {
+  const auto bytes = LogIndex::headBytesOf(ByteView(first64, LogIndex::kHeaderBytes));
+  if (bytes) return static_cast<std::uint32_t>(*bytes);
+  report(bytes.error());
+  return 0;
+}
+
+int qtet_open(const std::uint8_t* head, std::uint32_t bytes) {
+  refiner.reset();
+  auto index = LogIndex::parse(ByteView(head, bytes));
+  if (!index) return report(index.error());
+  refiner.emplace(std::move(*index));
+  return 0;
+}
+
+const char* qtet_error() { return lastError.c_str(); }
+
+std::uint32_t qtet_chunk_count() { return refiner ? static_cast<std::uint32_t>(refiner->index().chunks.size()) : 0; }
+
+double qtet_block_offset(std::uint32_t chunk, std::uint32_t part) {
+  return hasBlock(chunk, part) ? static_cast<double>(refiner->index().block(chunk, part).offset) : 0;
+}
+std::uint32_t qtet_block_size(std::uint32_t chunk, std::uint32_t part) { return hasBlock(chunk, part) ? refiner->index().block(chunk, part).size : 0; }
+std::uint32_t qtet_block_values(std::uint32_t chunk) { return hasBlock(chunk, 0) ? refiner->index().chunks[chunk].values : 0; }
+std::uint32_t qtet_block_codec(std::uint32_t chunk, std::uint32_t part) {
+  if (!hasBlock(chunk, part)) return 0;
+  const qtet::ChunkEntry& e = refiner->index().chunks[chunk];
+  return static_cast<std::uint32_t>(part == qtet::kStructurePart ? e.structureCodec : e.valueCodec);
+}
+
+int qtet_check_block(std::uint32_t chunk, std::uint32_t part, const std::uint8_t* bytes, std::uint32_t size) {
+  if (!hasBlock(chunk, part)) return report({ErrorCode::kNotFound, "there is no such block"});
+  const qtet::BlockEntry& b = refiner->index().block(chunk, part);
+  if (size == b.size && qtet::crc32(ByteView(bytes, size)) == b.crc) return 0;
+  return report({ErrorCode::kBadChecksum, "chunk " + std::to_string(chunk) + ", part " + std::to_string(part) + " arrived damaged", b.offset});
+}
+
+int qtet_apply(std::uint32_t chunk, const std::uint8_t* structure, std::uint32_t size, const std::int32_t* positions, std::uint32_t count) {
+  if (!refiner) return noLog();
+  const auto status = refiner->apply(chunk, ByteView(structure, size), std::span(positions, count));
+  return status ? 0 : report(status.error());
+}
+
+int qtet_apply_field(std::uint32_t field, std::uint32_t chunk, const std::int32_t* values, std::uint32_t count) {
+  if (!refiner) return noLog();
+  const auto status = refiner->applyField(field, chunk, std::span(values, count));
+  return status ? 0 : report(status.error());
+}
+
+std::uint32_t qtet_chunks_applied() { return refiner ? refiner->chunksApplied() : 0; }
+std::uint32_t qtet_field_chunks_applied(std::uint32_t field) {
+  return refiner && field < refiner->index().fieldComponents.size() ? refiner->fieldChunksApplied(field) : 0;
+}
+std::uint32_t qtet_level() { return refiner ? refiner->level() : 0; }
+std::uint32_t qtet_vertex_count() { return refiner ? static_cast<std::uint32_t>(refiner->points().size()) : 0; }
+std::uint32_t qtet_tetrahedron_count() { return refiner ? static_cast<std::uint32_t>(refiner->tetrahedra().size()) : 0; }
+std::uint32_t qtet_boundary_count() { return refiner ? static_cast<std::uint32_t>(refiner->boundary().size()) : 0; }
+const std::int32_t* qtet_points() { return refiner && !refiner->points().empty() ? refiner->points().data()->data() : nullptr; }
+const std::uint32_t* qtet_tetrahedra() { return refiner && !refiner->tetrahedra().empty() ? refiner->tetrahedra().data()->data() : nullptr; }
+const std::uint32_t* qtet_boundary() { return refiner && !refiner->boundary().empty() ? refiner->boundary().data()->data() : nullptr; }
+const std::int32_t* qtet_field(std::uint32_t field) {
+  return qtet_field_chunks_applied(field) > 0 ? refiner->fieldValues(field).data() : nullptr;
+}
+
+void qtet_digest(std::uint8_t* out) {
+  if (!refiner) return;
+  const auto digest = refiner->digest();
+  std::memcpy(out, digest.data(), digest.size());
+}
+}

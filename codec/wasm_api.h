@@ -1,0 +1,49 @@
+// The codec as C functions for WebAssembly (and any other foreign caller). One refiner a module instance; addresses are byte offsets
+// into the module's memory and stay valid until the next call that applies something. Functions that can fail return 0 for success
+// or 1 + ErrorCode, and qtet_error() then gives the text.
+#pragma once
+
+#include <cstdint>
+
+extern "C" {
+
+/// Memory for bytes that the caller hands in; freed by qtet_free.
+void* qtet_alloc(std::uint32_t bytes);
+void qtet_free(void* memory);
+
+/// How many bytes of the log's front qtet_open needs, told from its first 64; 0 when these are not a log's (see qtet_error).
+std::uint32_t qtet_head_bytes(const std::uint8_t* first64);
+/// Starts (again) with the log whose header, manifest and table are `head`.
+int qtet_open(const std::uint8_t* head, std::uint32_t bytes);
+/// NUL-terminated text of the last failure.
+const char* qtet_error();
+
+std::uint32_t qtet_chunk_count();
+/// File offset (a double: exact up to 2^53), size and tuples of a block; part 0 structure, 1 positions, 2 + f field f.
+double qtet_block_offset(std::uint32_t chunk, std::uint32_t part);
+std::uint32_t qtet_block_size(std::uint32_t chunk, std::uint32_t part);
+/// Tuples in the positions block and each field block of a chunk.
+std::uint32_t qtet_block_values(std::uint32_t chunk);
+/// CodecId of a block.
+std::uint32_t qtet_block_codec(std::uint32_t chunk, std::uint32_t part);
+/// Compares a block's bytes with its CRC-32.
+int qtet_check_block(std::uint32_t chunk, std::uint32_t part, const std::uint8_t* bytes, std::uint32_t size);
+
+/// Refiner::apply; `positions` holds `count` integers (3 a tuple), as the Draco decoder gave them.
+int qtet_apply(std::uint32_t chunk, const std::uint8_t* structure, std::uint32_t size, const std::int32_t* positions, std::uint32_t count);
+/// Refiner::applyField.
+int qtet_apply_field(std::uint32_t field, std::uint32_t chunk, const std::int32_t* values, std::uint32_t count);
+
+std::uint32_t qtet_chunks_applied();
+std::uint32_t qtet_field_chunks_applied(std::uint32_t field);
+std::uint32_t qtet_level();
+std::uint32_t qtet_vertex_count();
+std::uint32_t qtet_tetrahedron_count();
+std::uint32_t qtet_boundary_count();
+const std::int32_t* qtet_points();          ///< 3 a vertex, lattice coordinates
+const std::uint32_t* qtet_tetrahedra();     ///< 4 a tetrahedron
+const std::uint32_t* qtet_boundary();       ///< 3 a triangle, counter-clockwise seen from outside
+const std::int32_t* qtet_field(std::uint32_t field);  ///< components a vertex; 0 when the field has no chunk yet
+/// Writes the 32 bytes of the mesh digest.
+void qtet_digest(std::uint8_t* out);
+}

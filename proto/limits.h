@@ -1,0 +1,41 @@
+// Every limit on what comes from outside, with its unit and its reason. Compared before anything is allocated or looped over.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace qtet {
+
+/// Bytes of the JSON manifest: a thousand levels and two hundred fields need under one MiB.
+inline constexpr std::uint32_t kMaxManifestBytes = 16u << 20;
+/// Chunks of one log: at 16 KB a chunk, a 16 GB log.
+inline constexpr std::uint32_t kMaxChunks = 1u << 20;
+/// Fields of one log; each costs 8 bytes in every table entry.
+inline constexpr std::uint32_t kMaxFields = 256;
+/// Bytes of a name (field, mesh, source file): what file systems allow, and a label on a screen is shorter.
+inline constexpr std::uint32_t kMaxNameBytes = 256;
+/// Components of one field: a 3x3 tensor has 9; 16 leaves room for a 4x4 matrix.
+inline constexpr std::uint32_t kMaxFieldComponents = 16;
+/// Dependencies listed in one log, over all chunks.
+inline constexpr std::uint32_t kMaxDependencies = 1u << 24;
+/// Levels of one log: 5 % growth a level takes a mesh from 1 to 10^9 cells in 425.
+inline constexpr std::uint32_t kMaxLevels = 4096;
+/// Vertices or cells of one mesh: ids are 32 bits wide and the top bit marks boundary triangles.
+inline constexpr std::uint32_t kMaxElements = (1u << 31) - 16;
+/// Bytes of one block: a base mesh of 10^7 cells fits; a decoder's buffer stays below a browser's memory.
+inline constexpr std::uint32_t kMaxBlockBytes = 256u << 20;
+/// New vertices, cells or triangles of one chunk that holds B structure bytes are at most B times this: the range coder
+/// spends at least 1/1,500 bit on a decision (codec/range_coder.h), so a hostile count cannot outgrow the bytes sent by more.
+inline constexpr std::uint64_t kMaxDecisionsPerByte = 8 * 1500;
+/// Bits of one lattice axis: differences and products of three then fit the exact predicates, and Draco's 2^30.
+inline constexpr int kMaxPositionBits = 28;
+inline constexpr int kMinPositionBits = 4;
+/// Bits of a quantised field value; Draco loses integers above 2^30 without a word.
+inline constexpr int kMaxFieldBits = 28;
+inline constexpr int kMinFieldBits = 1;
+/// Magnitude of any integer given to Draco.
+inline constexpr std::int32_t kMaxDracoMagnitude = 1 << 30;
+/// Triangles of one link, at coding and at fusing: local ids stay small and a record's work is bounded.
+inline constexpr std::uint32_t kMaxLinkTriangles = 4096;
+
+}  // namespace qtet

@@ -1,0 +1,48 @@
+// The manifest: the JSON that tells people and programs what a log holds (FORMAT.md, "Manifest"). Decoding needs only the chunk table.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "proto/error.h"
+
+namespace qtet {
+
+struct ManifestField {
+  std::string name;
+  std::uint32_t components = 1;
+  std::string type;                   ///< float32, float64, int8 ... uint64
+  std::string association = "point";
+  int bits = 0;                       ///< integers lie in [0, 2^bits)
+  double step = 1;                    ///< value = minimum[c] + step * integer
+  std::vector<double> minimum;
+  std::array<double, 2> range{};      ///< of the values, or of the magnitude where components > 1
+};
+
+struct ManifestLevel {
+  std::uint32_t level = 0;
+  std::uint32_t tetrahedra = 0;
+  std::uint32_t vertices = 0;
+  std::uint32_t boundaryTriangles = 0;
+  std::uint32_t chunk = 0;            ///< the level is complete once this chunk is applied
+};
+
+struct Manifest {
+  std::string generator;
+  std::string layout = "stream";
+  std::string source;                 ///< file name of the input, without its folder
+  int latticeBits = 0;
+  double latticeStep = 1;
+  std::array<double, 3> latticeOrigin{};
+  std::vector<ManifestField> fields;
+  std::vector<ManifestLevel> levels;  ///< level 0 = base mesh, the last = the input's mesh
+};
+
+[[nodiscard]] std::string manifestToJson(const Manifest& manifest);
+/// Errors: bad-value with the JSON pointer of what is missing or of the wrong type or range.
+[[nodiscard]] Result<Manifest> manifestFromJson(std::string_view json);
+
+}  // namespace qtet

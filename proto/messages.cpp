@@ -1,0 +1,156 @@
+#include "proto/messages.h"
+
+#include "proto/json_reader.h"
+#include "proto/limits.h"
+
+namespace qtet {
+namespace {
+
+constexpr std::size_t kDigestCharacters = 64;
+constexpr std::size_t kMaxTextBytes = 4096;  // of an error's detail
+
+bool isDigest(std::string_view text) {
+  return text.size() == kDigestCharacters && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+}
+
+std::string readDigest(const JsonCursor& json) {
+  std::string out = json.text(kDigestCharacters);
+  if (json.present() && !isDigest(out)) json.fail("must be 64 lower-case hexadecimal digits");
+  return out;
+}
+
+std::string readName(const JsonCursor& json) {
+  std::string out = json.text(kMaxNameBytes);
+  if (json.present() && out.empty()) json.fail("must not be empty");
+  return out;
+}
+
+OpenMessage readOpen(const JsonCursor& json) {
+  OpenMessage out;
+  out.mesh = readName(json["mesh"]);
+  out.digest = readDigest(json.optional("digest"));
+  for (const JsonCursor& name : json.optional("fields").items(0, kMaxFields)) out.fields.push_back(readName(name));
+  const JsonCursor have = json.optional("have");
+  out.haveChunks = have.optional("chunks").count32(0, kMaxChunks);
+  for (const auto& [name, chunks] : have.optional("fields").members(kMaxFields)) {
+    out.haveFields.emplace_back(name, chunks.count32(0, kMaxChunks));
+    if (out.haveFields.back().second > out.haveChunks) chunks.fail("is above have.chunks; a field never runs ahead of its mesh");
+  }
+  out.credit = json["credit"].count(0, kMaxCredit);
+  return out;
+}
+
+Json parseDocument(std::string_view json, std::optional<Error>& error) {
+  if (json.size() > kMaxMessageBytes) {
+    error = Error{ErrorCode::kLimitExceeded, "the message is longer than " + std::to_string(kMaxMessageBytes) + " bytes", Error::kNoOffset};
+    return Json::object();
+  }
+  Json document = Json::parse(json, nullptr, false);
+  if (!document.is_object()) error = Error{ErrorCode::kBadValue, "the message is not a JSON object", Error::kNoOffset};
+  return document;
+}
+
+std::uint32_t readStream(const JsonCursor& json) { return json["stream"].count32(0, 0xFFFFFFFFu); }
+
+template <class Message>
+Result<Message> checked(Message message, const std::optional<Error>& error) {
+  if (error) return std::unexpected(*error);
+  return message;
+}
+
+Json openToJson(const OpenMessage& m) {
+  Json out = {{"type", "open"}, {"mesh", m.mesh}, {"fields", m.fields}, {"credit", m.credit}};
+  if (!m.digest.empty()) out["digest"] = m.digest;
+  out["have"] = {{"chunks", m.haveChunks}, {"fields", Json::object()}};
+  for (const auto& [name, chunks] : m.haveFields) out["have"]["fields"][name] = chunks;
+  return out;
+}
+
+struct ToJson {
+  Json operator()(const OpenMessage& m) const { return openToJson(m); }
+  Json operator()(const CreditMessage& m) const { return {{"type", "credit"}, {"bytes", m.bytes}}; }
+  Json operator()(const StopMessage&) const { return {{"type", "stop"}}; }
+  Json operator()(const OpenedMessage& m) const {
+    return {{"type", "opened"}, {"stream", m.stream}, {"mesh", m.mesh}, {"digest", m.digest}, {"bytes", m.bytes}, {"planned", m.planned}};
+  }
+  Json operator()(const DoneMessage& m) const { return {{"type", "done"}, {"stream", m.stream}}; }
+  Json operator()(const StoppedMessage& m) const { return {{"type", "stopped"}, {"stream", m.stream}}; }
+  Json operator()(const ErrorMessage& m) const { return {{"type", "error"}, {"code", m.code}, {"detail", m.detail}}; }
+};
+
+}  // namespace
+
+Result<ClientMessage> parseClientMessage(std::string_view json) {
+  std::optional<Error> error;
+  const Json document = parseDocument(json, error);
+  if (error) return std::unexpected(*error);
+  const JsonCursor root(&document, "", &error);
+  const std::string type = root["type"].text(kMaxNameBytes);
+  ClientMessage out;
+  if (type == "open") {
+    out = readOpen(root);
+  } else if (type == "credit") {
+    out = CreditMessage{root["bytes"].count(0, kMaxCredit)};
+  } else if (type == "stop") {
+    out = StopMessage{};
+  } else {
+    root["type"].fail("must be 'open', 'credit' or 'stop'");
+  }
+  return checked(std::move(out), error);
+}
+
+Result<ServerMessage> parseServerMessage(std::string_view json) {
+  std::optional<Error> error;
+  const Json document = parseDocument(json, error);
+  if (error) return std::unexpected(*error);
+  const JsonCursor root(&document, "", &error);
+  const std::string type = root["type"].text(kMaxNameBytes);
+  ServerMessage out;
+  if (type == "opened") {
+    out = OpenedMessage{readStream(root), readName(root["mesh"]), readDigest(root["digest"]), root["bytes"].count(0, kMaxCredit),
+                        root["planned"].count(0, kMaxCredit)};
+  } else if (type == "done") {
+    out = DoneMessage{readStream(root)};
+  } else if (type == "stopped") {
+    out = StoppedMessage{readStream(root)};
+  } else if (type == "error") {
+    out = ErrorMessage{readName(root["code"]), root["detail"].text(kMaxTextBytes)};
+  } else {
+    root["type"].fail("must be 'opened', 'done', 'stopped' or 'error'");
+  }
+  return checked(std::move(out), error);
+}
+
+std::string toJson(const ClientMessage& message) { return dumpJson(std::visit(ToJson{}, message)); }
+std::string toJson(const ServerMessage& message) { return dumpJson(std::visit(ToJson{}, message)); }
+
+std::array<std::uint8_t, FrameHeader::kBytes> FrameHeader::encode() const {
+  ByteWriter writer;
+  writer.write(stream);
+  writer.write(chunk);
+  writer.write(firstPart);
+  writer.write(parts);
+  writer.write(size);
+  std::array<std::uint8_t, kBytes> out{};
+  std::copy(writer.bytes().begin(), writer.bytes().end(), out.begin());
+  return out;
+}
+
+Result<FrameHeader> FrameHeader::parse(ByteView frame) {
+  ByteReader reader(frame);
+  FrameHeader out;
+  out.stream = reader.read<std::uint32_t>();
+  out.chunk = reader.read<std::uint32_t>();
+  out.firstPart = reader.read<std::uint16_t>();
+  out.parts = reader.read<std::uint16_t>();
+  out.size = reader.read<std::uint32_t>();
+  if (reader.failed()) return std::unexpected(reader.error());
+  if (out.size != reader.remaining()) reader.fail(ErrorCode::kBadValue, "the frame's payload is not as long as its header says");
+  const bool head = out.firstPart == kHead;
+  if (head ? out.chunk != 0 || out.parts != 0 : out.parts == 0)
+    reader.fail(ErrorCode::kBadValue, "a head names no chunk and no parts, any other frame at least one part");
+  if (reader.failed()) return std::unexpected(reader.error());
+  return out;
+}
+
+}  // namespace qtet

@@ -1,0 +1,62 @@
+#include "server/descriptions.h"
+
+#include "proto/json_reader.h"
+#include "server/request_target.h"
+
+namespace qtet {
+namespace {
+
+Json links(const ServedMesh& mesh) {
+  const std::string self = "/v1/meshes/" + percentEncode(mesh.id);
+  return {{"self", self}, {"log", self + "/log?digest=" + mesh.log.digest()}, {"stream", "/v1/stream"}};
+}
+
+Json identity(const ServedMesh& mesh) { return {{"id", mesh.id}, {"digest", mesh.log.digest()}, {"bytes", mesh.log.bytes().size()}}; }
+
+Json levels(const ServedMesh& mesh) {
+  Json out = Json::array();
+  std::uint64_t before = 0;
+  for (const ManifestLevel& level : mesh.manifest.levels) {
+    const std::uint64_t prefix = mesh.prefixBytes(level.level);
+    out.push_back({{"level", level.level},
+                   {"tetrahedra", level.tetrahedra},
+                   {"vertices", level.vertices},
+                   {"boundaryTriangles", level.boundaryTriangles},
+                   {"bytes", prefix - before},
+                   {"cumulativeBytes", prefix}});
+    before = prefix;
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string describeMeshes(const MeshStore& store) {
+  Json meshes = Json::array();
+  for (const auto& [id, mesh] : store.meshes()) {
+    Json entry = identity(mesh);
+    const ManifestLevel& finest = mesh.manifest.levels.back();
+    entry["tetrahedra"] = finest.tetrahedra;
+    entry["vertices"] = finest.vertices;
+    entry["fields"] = Json::array();
+    for (const ManifestField& field : mesh.manifest.fields) entry["fields"].push_back(field.name);
+    entry["links"] = links(mesh);
+    meshes.push_back(std::move(entry));
+  }
+  return dumpJson({{"meshes", std::move(meshes)}});
+}
+
+std::string describeMesh(const ServedMesh& mesh) {
+  Json out = identity(mesh);
+  out["headBytes"] = mesh.log.index().headBytes();
+  // Parsed once at the start already, so it is JSON; read again here because a manifest may say more than this build knows.
+  out["manifest"] = Json::parse(mesh.log.index().manifest, nullptr, false);
+  out["levels"] = levels(mesh);
+  out["links"] = links(mesh);
+  const std::string self = out["links"]["self"];
+  out["links"]["vtu"] = self + "/levels/{k}.vtu";
+  out["links"]["drc"] = self + "/levels/{k}.drc";
+  return dumpJson(out);
+}
+
+}  // namespace qtet

@@ -1,0 +1,63 @@
+// A request and its answer as plain values, so that everything that decides can be tested without a socket.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "proto/bytes.h"
+
+namespace qtet {
+
+struct ServedMesh;
+
+/// What the router looks at. The views belong to the request that was parsed.
+struct RequestView {
+  std::string_view method;
+  std::string_view target;
+  std::optional<std::string_view> range = std::nullopt;
+  std::optional<std::string_view> ifRange = std::nullopt;
+  std::optional<std::string_view> ifMatch = std::nullopt;
+  std::optional<std::string_view> ifNoneMatch = std::nullopt;
+  std::optional<std::string_view> ifModifiedSince = std::nullopt;
+  std::optional<std::string_view> ifUnmodifiedSince = std::nullopt;
+};
+
+/// A level that somebody has to make before it can be sent.
+struct LevelRequest {
+  enum class Form { kVtu, kDrc };
+  const ServedMesh* mesh = nullptr;
+  std::uint32_t level = 0;
+  Form form = Form::kVtu;
+};
+
+/// `body` is either text of the reply's own, or bytes that live as long as the store and the router, or a level to be made.
+struct Reply {
+  unsigned status = 200;
+  std::vector<std::pair<std::string, std::string>> headers;  ///< without Content-Length, Date and Connection
+  std::variant<std::string, ByteView, LevelRequest> body;
+  bool sendBody = true;  ///< false for HEAD: the headers speak of the body that is left out
+  bool close = false;    ///< the connection cannot be used any further
+
+  /// Bytes of the body; nullopt for a level that is not made yet.
+  [[nodiscard]] std::optional<std::uint64_t> bodyBytes() const;
+};
+
+/// "Not Found" for 404.
+[[nodiscard]] std::string_view reasonPhrase(unsigned status);
+
+/// The status line and the headers, with Content-Length, Date and Connection, up to and with the empty line.
+[[nodiscard]] std::string headerText(const Reply& reply, bool keepAlive);
+
+/// An error as RFC 9457 has it; `type` is the last part of a path under /problems/.
+[[nodiscard]] Reply problem(unsigned status, std::string_view type, std::string_view detail);
+
+/// Headers that every answer of this server carries.
+void addCommonHeaders(Reply& reply);
+
+}  // namespace qtet

@@ -1,0 +1,88 @@
+#include <utility>  // before any Asio header: 1.74 uses std::exchange without it
+
+#include "server/http_request.h"
+
+#include <algorithm>
+#include <boost/beast/http/rfc7230.hpp>
+
+#include "proto/messages.h"
+#include "server/http_router.h"
+
+namespace qtet {
+namespace {
+
+namespace http = boost::beast::http;
+
+std::string_view toView(boost::beast::string_view text) { return {text.data(), text.size()}; }
+
+std::optional<std::string_view> headerValue(const RequestHeader& header, http::field name) {
+  const auto it = header.find(name);
+  if (it == header.end()) return std::nullopt;
+  return toView(it->value());
+}
+
+/// A host, perhaps with a port: enough to refuse what cannot be one.
+bool plausibleHost(std::string_view host) {
+  constexpr std::string_view kForbidden = " \t\"#%/<>?@\\^`{|}";
+  return std::ranges::all_of(host, [&](char c) { return c > ' ' && c < 0x7F && kForbidden.find(c) == std::string_view::npos; });
+}
+
+Reply closing(unsigned status, std::string_view type, std::string_view detail) {
+  Reply out = problem(status, type, detail);
+  out.close = true;
+  return out;
+}
+
+std::optional<Reply> bodyRefusal(const RequestHeader& header) {
+  const std::size_t lengths = header.count(http::field::content_length);
+  if (header.count(http::field::transfer_encoding) > 0) {
+    if (lengths > 0 || header.version() == 10)
+      return closing(400, "bad-request", "Transfer-Encoding stands beside Content-Length or in HTTP/1.0");
+    return closing(501, "not-implemented", "this server takes no request bodies");
+  }
+  if (lengths == 0) return std::nullopt;
+  const std::string_view length = *headerValue(header, http::field::content_length);
+  if (lengths > 1 || length.empty() || length.find_first_not_of("0123456789") != std::string_view::npos)
+    return closing(400, "bad-request", "Content-Length must be one number");
+  if (length.find_first_not_of('0') != std::string_view::npos)
+    return closing(413, "content-too-large", "this server takes no request bodies");
+  return std::nullopt;
+}
+
+}  // namespace
+
+RequestView viewOf(const RequestHeader& header) {
+  return {.method = toView(header.method_string()),
+          .target = toView(header.target()),
+          .range = headerValue(header, http::field::range),
+          .ifRange = headerValue(header, http::field::if_range),
+          .ifMatch = headerValue(header, http::field::if_match),
+          .ifNoneMatch = headerValue(header, http::field::if_none_match),
+          .ifModifiedSince = headerValue(header, http::field::if_modified_since),
+          .ifUnmodifiedSince = headerValue(header, http::field::if_unmodified_since)};
+}
+
+std::optional<Reply> refusalOf(const RequestHeader& header) {
+  if (header.version() != 11 && header.version() != 10)
+    return closing(505, "version-not-supported", "this server speaks HTTP/1.1 and HTTP/1.0");
+  const std::size_t hosts = header.count(http::field::host);
+  if (hosts > 1 || (hosts == 0 && header.version() == 11)) return closing(400, "bad-request", "there must be one Host header");
+  if (hosts == 1 && !plausibleHost(*headerValue(header, http::field::host)))
+    return closing(400, "bad-request", "the Host header is no host");
+  return bodyRefusal(header);
+}
+
+bool isStreamHandshake(const RequestHeader& header) {
+  const std::string_view target = toView(header.target());
+  if (target.substr(0, target.find('?')) != kStreamPath || header.method() != http::verb::get) return false;
+  return http::token_list{header[http::field::upgrade]}.exists("websocket") &&
+         http::token_list{header[http::field::connection]}.exists("upgrade");
+}
+
+std::optional<Reply> handshakeRefusal(const RequestHeader& header) {
+  http::token_list offered{header[http::field::sec_websocket_protocol]};
+  if (offered.exists({kStreamSubprotocol.data(), kStreamSubprotocol.size()})) return std::nullopt;
+  return closing(400, "bad-request", "offer the subprotocol " + std::string(kStreamSubprotocol));
+}
+
+}  // namespace qtet

@@ -1,0 +1,26 @@
+// One HTTP connection: reads requests, asks the router, writes answers, until one side has had enough or a WebSocket takes over.
+#pragma once
+
+#include <utility>  // before any Asio header: 1.74 uses std::exchange without it
+
+#include <boost/asio/awaitable.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <memory>
+
+#include "server/connections.h"
+#include "server/http_router.h"
+#include "server/level_jobs.h"
+
+namespace qtet {
+
+/// What every connection needs; outlives them all.
+struct Services {
+  const MeshStore& store;
+  const Router& router;
+  LevelJobs& jobs;
+};
+
+/// Serves until the connection ends. Runs on the stream's executor, which must be a single thread or a strand.
+boost::asio::awaitable<void> serveHttp(boost::beast::tcp_stream stream, const Services& services, std::shared_ptr<Connection> connection);
+
+}  // namespace qtet

@@ -1,0 +1,28 @@
+// Which cells share faces, and whether they agree on what is inside and outside.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "proto/error.h"
+#include "simplify/tet_mesh.h"
+
+namespace qtet {
+
+inline constexpr CellId kNoCell = 0xFFFFFFFFu;
+
+struct CellNeighbours {
+  std::array<CellId, 4> across{kNoCell, kNoCell, kNoCell, kNoCell};  ///< by opposite corner
+  std::uint8_t disagrees =
+      0;  ///< bit i: the neighbour across i has the face's vertices in the same rotation, so one of the two is inside out
+};
+
+/// The later cells of each set of cells with the same four vertices, ascending.
+[[nodiscard]] std::vector<CellId> duplicatesIn(std::span<const Tetrahedron> cells);
+
+/// Errors: bad-input for a face of more than two cells; `names[i]` is what cell i is called in the message.
+[[nodiscard]] Result<std::vector<CellNeighbours>> neighboursOf(std::span<const Tetrahedron> cells, std::span<const std::uint64_t> names);
+
+}  // namespace qtet

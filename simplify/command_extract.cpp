@@ -1,0 +1,66 @@
+#include <algorithm>
+#include <limits>
+
+#include "codec/atomic_file.h"
+#include "codec/vtu_writer.h"
+#include "simplify/command_line.h"
+#include "simplify/opened_log.h"
+
+namespace qtet {
+namespace {
+
+/// The finest level with at most `most` tetrahedra, at least level 0.
+std::uint32_t levelWithAtMost(const Manifest& manifest, double most) {
+  std::uint32_t found = 0;
+  for (const ManifestLevel& level : manifest.levels) {
+    if (level.tetrahedra <= most) found = level.level;
+  }
+  return found;
+}
+
+std::uint32_t chosenLevel(const ParsedWords& parsed, const Manifest& manifest) {
+  if (parsed.has("level")) return static_cast<std::uint32_t>(parsed.integer("level", 0, std::numeric_limits<int>::max()));
+  if (parsed.has("tets")) return levelWithAtMost(manifest, parsed.number("tets", 0, 1e18));
+  return levelWithAtMost(manifest, parsed.number("ratio", 0, 1) * manifest.levels.back().tetrahedra);
+}
+
+Status extract(const ParsedWords& parsed, Console& console) {
+  const auto input = parsed.get<std::string>("LOG"), output = parsed.get<std::string>("output");
+  if (Status checked = checkOutput(output, ".vtu", input); !checked) return checked;
+  const Result<OpenedLog> log = openLog(input);
+  if (!log) return std::unexpected(log.error());
+
+  const std::uint32_t level = chosenLevel(parsed, log->manifest);
+  const Result<LatticeMesh> mesh = meshAtLevel(log->file, level);
+  if (!mesh) return std::unexpected(mesh.error());
+  const Bytes bytes = vtuBytes(*mesh);
+  if (Status written = writeFileAtomically(output, bytes); !written) return written;
+  console.out << output << ": level " << level << " of " << log->manifest.levels.size() - 1 << ", " << mesh->tetrahedra.size()
+              << " tetrahedra, " << mesh->points.size() << " points, " << bytes.size() << " bytes\n";
+  return {};
+}
+
+}  // namespace
+
+int runExtract(const Words& words, Console& console) {
+  namespace po = boost::program_options;
+  po::options_description options("options");
+  options.add_options()("output,o", po::value<std::string>(), "required: the .vtu file to write")(
+      "level", po::value<int>(), "this level; 0 is the base mesh")("tets", po::value<double>(),
+                                                                   "the finest level with at most so many tetrahedra")(
+      "ratio", po::value<double>(), "the finest level with at most this fraction of all tetrahedra, 0 to 1");
+  const ParsedWords parsed(
+      words,
+      {"extract", "extract LOG.qtet (--level K | --tets N | --ratio R) -o OUT.vtu",
+       "Writes one level of a log, with all its fields, as an ordinary mesh. Where no level is small enough it is level 0.",
+       "  qtet extract fin.qtet --ratio 0.1 -o coarse.vtu\n  qtet extract fin.qtet --level 0 -o base.vtu\n"},
+      options, {"LOG"});
+  if (parsed.helped(console)) return kExitOk;
+  const auto given = static_cast<int>(parsed.has("level")) + parsed.has("tets") + parsed.has("ratio");
+  if (given != 1) throw UsageError("give exactly one of --level, --tets and --ratio\nsee 'qtet extract --help'");
+
+  const Status done = extract(parsed, console);
+  return done ? kExitOk : reportFailure(done.error(), false, console);
+}
+
+}  // namespace qtet

@@ -1,0 +1,98 @@
+#include "simplify/command_line.h"
+
+#include <unistd.h>
+
+#include <cmath>
+#include <limits>
+
+namespace qtet {
+
+namespace po = boost::program_options;
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string hint(const CommandHelp& help) { return "\nusage: qtet " + help.usage + "\nsee 'qtet " + help.name + " --help'"; }
+
+}  // namespace
+
+ParsedWords::ParsedWords(const Words& words, CommandHelp help, po::options_description options, const std::vector<std::string>& positional)
+    : help_(std::move(help)), positional_(positional) {
+  options.add_options()("help,h", "show this and stop");
+  options_.add(options);
+
+  po::options_description all, hidden;
+  po::positional_options_description places;
+  for (const std::string& name : positional_) {
+    hidden.add_options()(name.c_str(), po::value<std::string>());
+    places.add(name.c_str(), 1);
+  }
+  all.add(options_).add(hidden);
+  try {
+    const auto style = po::command_line_style::unix_style & ~po::command_line_style::allow_guessing;
+    po::store(po::command_line_parser(words).options(all).positional(places).style(style).run(), values_);
+    po::notify(values_);
+  } catch (const po::error& error) {
+    throw UsageError(error.what() + hint(help_));
+  }
+  if (has("help")) return;
+  for (const std::string& name : positional_) {
+    if (!has(name)) throw UsageError(name + " is missing" + hint(help_));
+  }
+  for (const auto& option : options_.options()) {
+    const bool isRequired = option->description().starts_with("required: ");
+    if (isRequired && !has(option->long_name())) throw UsageError("--" + option->long_name() + " is missing" + hint(help_));
+  }
+}
+
+bool ParsedWords::helped(Console& console) const {
+  if (!has("help")) return false;
+  console.out << "usage: qtet " << help_.usage << "\n\n" << help_.text << "\n\n" << options_ << "\nexamples:\n" << help_.examples;
+  return true;
+}
+
+double ParsedWords::number(const std::string& name, double low, double high) const {
+  const auto value = get<double>(name);
+  if (value >= low && value <= high) return value;
+  std::ostringstream text;
+  text << "--" << name << " " << value << " is outside " << low << " to " << high << hint(help_);
+  throw UsageError(text.str());
+}
+
+int ParsedWords::integer(const std::string& name, int low, int high) const {
+  const auto value = get<int>(name);
+  if (value >= low && value <= high) return value;
+  throw UsageError("--" + name + " " + std::to_string(value) + " is outside " + std::to_string(low) + " to " + std::to_string(high) +
+                   hint(help_));
+}
+
+Status checkOutput(const fs::path& output, const std::string& extension, const std::optional<fs::path>& input) {
+  if (output.extension() != extension) throw UsageError("the output " + output.string() + " must end in " + extension);
+  std::error_code code;
+  const fs::path folder = output.has_parent_path() ? output.parent_path() : fs::path(".");
+  if (!fs::is_directory(folder, code)) {
+    return fail(ErrorCode::kNotFound,
+                "the folder " + folder.string() + " of the output does not exist; make it first or choose another output");
+  }
+  if (fs::is_directory(output, code))
+    return fail(ErrorCode::kIo, "the output " + output.string() + " is a folder; give the name of a file");
+  if (::access(folder.c_str(), W_OK) != 0)
+    return fail(ErrorCode::kIo, "the folder " + folder.string() + " of the output cannot be written; choose another output");
+  if (input && fs::equivalent(output, *input, code)) {
+    return fail(ErrorCode::kIo,
+                "the output " + output.string() + " is the input itself; choose another name, the input is never overwritten");
+  }
+  return {};
+}
+
+int reportFailure(const Error& error, bool asJson, Console& console) {
+  console.err << "qtet: " << error.text() << "\n";
+  if (asJson) printJson({{"error", {{"code", errorCodeName(error.code)}, {"message", error.message}}}}, console);
+  return kExitFailed;
+}
+
+void printJson(const OrderedJson& json, Console& console) {
+  console.out << json.dump(2, ' ', false, OrderedJson::error_handler_t::replace) << "\n";
+}
+
+}  // namespace qtet

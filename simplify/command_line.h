@@ -1,0 +1,68 @@
+// What the tool's commands share: parsing their words, refusing them with a hint, reporting failures, checking outputs early.
+#pragma once
+
+#include <boost/program_options.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "proto/error.h"
+#include "simplify/commands.h"
+
+namespace qtet {
+
+/// Members keep the order in which they are set, which is the order in which people read them.
+using OrderedJson = nlohmann::ordered_json;
+
+/// Words that are not understood; the message says which and what would be.
+class UsageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// One command's help: usage line, what it does, options, examples.
+struct CommandHelp {
+  std::string name;
+  std::string usage;  ///< "simplify IN -o OUT.qtet [options]"
+  std::string text;
+  std::string examples;  ///< one a line
+};
+
+/// One command's words, parsed. Options may be given once, abbreviations are refused.
+class ParsedWords {
+ public:
+  /// `positional` are the names of the words without a dash, all required, each also an option of `options`.
+  ParsedWords(const Words& words, CommandHelp help, boost::program_options::options_description options,
+              const std::vector<std::string>& positional);
+
+  /// Whether --help was asked for; it is printed then.
+  [[nodiscard]] bool helped(Console& console) const;
+  [[nodiscard]] bool has(const std::string& name) const { return values_.count(name) > 0; }
+  template <class T>
+  [[nodiscard]] T get(const std::string& name) const {
+    return values_[name].as<T>();
+  }
+  /// A number of `low` to `high`. Throws UsageError.
+  [[nodiscard]] double number(const std::string& name, double low, double high) const;
+  [[nodiscard]] int integer(const std::string& name, int low, int high) const;
+
+ private:
+  CommandHelp help_;
+  boost::program_options::options_description options_;
+  std::vector<std::string> positional_;
+  boost::program_options::variables_map values_;
+};
+
+/// Refuses an output before the work is done: another ending than `extension` (UsageError), a folder that does not exist or cannot be written, the input itself.
+[[nodiscard]] Status checkOutput(const std::filesystem::path& output, const std::string& extension,
+                                 const std::optional<std::filesystem::path>& input = std::nullopt);
+
+/// Prints the failure, also as {"error":{"code","message"}} on `out` where JSON was asked for; returns kExitFailed.
+int reportFailure(const Error& error, bool asJson, Console& console);
+
+/// Prints one JSON object; bytes that are no UTF-8 are replaced.
+void printJson(const OrderedJson& json, Console& console);
+
+}  // namespace qtet

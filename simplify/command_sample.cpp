@@ -1,0 +1,37 @@
+#include "codec/atomic_file.h"
+#include "simplify/command_line.h"
+#include "simplify/samples.h"
+#include "simplify/write_mesh.h"
+
+namespace qtet {
+namespace {
+
+std::string listOfSamples() {
+  std::string out = "Writes a mesh that is computed, not read. NAME is one of:";
+  for (const Sample& sample : samples()) out += "\n  " + std::string(sample.name) + "  " + std::string(sample.description);
+  return out;
+}
+
+}  // namespace
+
+int runSample(const Words& words, Console& console) {
+  namespace po = boost::program_options;
+  po::options_description options("options");
+  options.add_options()("output,o", po::value<std::string>(), "required: the .vtu file to write");
+  const ParsedWords parsed(
+      words, {"sample", "sample NAME -o FILE.vtu", listOfSamples(), "  qtet sample box -o box.vtu\n  qtet sample fin -o fin.vtu\n"},
+      options, {"NAME"});
+  if (parsed.helped(console)) return kExitOk;
+
+  const auto output = parsed.get<std::string>("output");
+  if (Status checked = checkOutput(output, ".vtu"); !checked) return reportFailure(checked.error(), false, console);
+  const Result<TetMesh> mesh = makeSample(parsed.get<std::string>("NAME"));
+  if (!mesh) throw UsageError(mesh.error().message);
+  const Bytes bytes = vtuBytes(*mesh);
+  if (Status written = writeFileAtomically(output, bytes); !written) return reportFailure(written.error(), false, console);
+  console.out << output << ": " << mesh->tetrahedra.size() << " tetrahedra, " << mesh->points.size() << " points, " << mesh->fields.size()
+              << " fields, " << bytes.size() << " bytes\n";
+  return kExitOk;
+}
+
+}  // namespace qtet

@@ -1,0 +1,262 @@
+#include <chrono>
+#include <iomanip>
+#include <sstream>
+
+#include "codec/atomic_file.h"
+#include "codec/log_index.h"
+#include "codec/log_writer.h"
+#include "proto/checksum.h"
+#include "proto/limits.h"
+#include "proto/manifest.h"
+#include "simplify/clean_mesh.h"
+#include "simplify/command_line.h"
+#include "simplify/progress.h"
+#include "simplify/qtetfusion.h"
+#include "simplify/quantise.h"
+#include "simplify/read_mesh.h"
+
+namespace qtet {
+namespace {
+
+constexpr int kMaxThreads = 1024;
+
+struct Request {
+  std::string input, output;
+  FieldNames fields;
+  QuantiseOptions quantise;
+  FusionOptions fusion;
+};
+
+/// The names between commas; "all" is nullopt, "none" the empty list.
+FieldNames parseFields(const std::string& text) {
+  if (text == "all") return std::nullopt;
+  std::vector<std::string> names;
+  if (text == "none") return names;
+  std::istringstream stream(text);
+  for (std::string name; std::getline(stream, name, ',');) {
+    if (name.empty()) throw UsageError("--fields '" + text + "' holds an empty name; give all, none, or names between commas");
+    names.push_back(name);
+  }
+  if (names.empty()) throw UsageError("--fields is empty; give all, none, or names between commas");
+  return names;
+}
+
+Request requestOf(const ParsedWords& parsed) {
+  Request request;
+  request.input = parsed.get<std::string>("IN");
+  request.output = parsed.get<std::string>("output");
+  request.fields = parseFields(parsed.get<std::string>("fields"));
+  request.quantise.positionBits = parsed.integer("position-bits", kMinPositionBits, kMaxPositionBits);
+  request.quantise.fieldBits = parsed.integer("field-bits", kMinFieldBits, kMaxFieldBits);
+  request.fusion.targetRatio = parsed.number("target-ratio", 0, 1);
+  request.fusion.threads = parsed.integer("threads", 1, kMaxThreads);
+  return request;
+}
+
+/// Wall time of each stage, by name, in the order of doing.
+class Stopwatch {
+ public:
+  void lap(const std::string& name) {
+    const Clock::time_point now = Clock::now();
+    seconds_[name] = std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+  }
+  [[nodiscard]] OrderedJson seconds() const {
+    OrderedJson out = seconds_;
+    out["total"] = std::chrono::duration<double>(last_ - start_).count();
+    return out;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_ = Clock::now(), last_ = start_;
+  OrderedJson seconds_ = OrderedJson::object();
+};
+
+OrderedJson toJson(const Occurrences& found) { return {{"count", found.count}, {"first", found.first}}; }
+
+OrderedJson toJson(const CleanReport& report) {
+  OrderedJson edges = toJson(report.nonManifoldEdges);
+  edges["firstOtherEnds"] = report.nonManifoldEdgeEnds;
+  return {{"repeatedVertexCells", toJson(report.repeatedVertexCells)},
+          {"duplicateCells", toJson(report.duplicateCells)},
+          {"flatCells", toJson(report.flatCells)},
+          {"reorientedCells", toJson(report.reorientedCells)},
+          {"invertedCells", toJson(report.invertedCells)},
+          {"unusedPoints", toJson(report.unusedPoints)},
+          {"coincidentPoints", toJson(report.coincidentPoints)},
+          {"nonManifoldEdges", edges},
+          {"nonManifoldVertices", toJson(report.nonManifoldVertices)},
+          {"components", report.components}};
+}
+
+/// Bytes and bits a tetrahedron of each stream.
+void addSizes(const EncodedLog& log, const std::vector<FieldInfo>& fields, std::uint64_t tetrahedra, OrderedJson& report) {
+  const LogStatistics& statistics = log.statistics;
+  const auto bits = [&](std::uint64_t bytes) { return 8.0 * static_cast<double>(bytes) / static_cast<double>(tetrahedra); };
+  OrderedJson fieldBytes = OrderedJson::object(), fieldBits = OrderedJson::object();
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    fieldBytes[fields[f].name] = statistics.fieldBytes[f];
+    fieldBits[fields[f].name] = bits(statistics.fieldBytes[f]);
+  }
+  report["bytes"] = log.bytes.size();
+  report["bytesOf"] = {{"head", statistics.headBytes},
+                       {"connectivity", statistics.structureBytes},
+                       {"positions", statistics.positionBytes},
+                       {"fields", fieldBytes}};
+  report["bitsPerTetrahedron"] = {{"connectivity", bits(statistics.structureBytes)},
+                                  {"positions", bits(statistics.positionBytes)},
+                                  {"fields", fieldBits},
+                                  {"total", bits(log.bytes.size())}};
+}
+
+/// The input on the lattice, and what was said on the way there.
+struct Prepared {
+  std::uint64_t cellsIn = 0;
+  ReadReport read;
+  CleanReport clean;
+  QuantisedMesh quantised;
+
+  [[nodiscard]] std::vector<std::string> notes() const {
+    std::vector<std::string> out = read.notes;
+    for (const std::string& sentence : clean.sentences()) out.push_back(sentence);
+    out.insert(out.end(), quantised.report.notes.begin(), quantised.report.notes.end());
+    return out;
+  }
+};
+
+/// Reads, cleans and quantises. The mesh in floats is gone afterwards: large meshes need the room.
+Result<Prepared> prepare(const Request& request, Progress& progress, Stopwatch& watch) {
+  progress.stage("reading " + request.input);
+  Result<ReadMesh> read = readMesh(request.input, request.fields);
+  if (!read) return std::unexpected(read.error());
+  watch.lap("read");
+  Prepared out;
+  out.cellsIn = read->mesh.tetrahedra.size();
+
+  progress.stage("cleaning");
+  Result<CleanReport> cleaned = cleanMesh(read->mesh);
+  if (!cleaned) return std::unexpected(cleaned.error());
+  watch.lap("clean");
+
+  progress.stage("quantising");
+  Result<QuantisedMesh> quantised = quantise(read->mesh, request.quantise);
+  if (!quantised) return std::unexpected(quantised.error());
+  watch.lap("quantise");
+  out.read = std::move(read->report);
+  out.clean = std::move(*cleaned);
+  out.quantised = std::move(*quantised);
+  return out;
+}
+
+/// Simplifies, encodes and writes.
+Result<EncodedLog> makeLog(const Request& request, const LatticeMesh& mesh, Progress& progress, Stopwatch& watch) {
+  progress.stage("simplifying");
+  FusionOptions fusion = request.fusion;
+  fusion.progress = [&](double fraction) { progress.update(fraction); };
+  const Result<FusionHistory> history = simplify(mesh, fusion);
+  if (!history) return std::unexpected(history.error());
+  watch.lap("simplify");
+
+  progress.stage("encoding");
+  LogWriterOptions options;
+  options.source = std::filesystem::path(request.input).filename().string();
+  options.generator = "qtet " QTET_VERSION;
+  options.progress = fusion.progress;
+  Result<EncodedLog> log = encodeLog(*history, options);
+  if (!log) return log;
+  watch.lap("encode");
+  if (Status written = writeFileAtomically(request.output, log->bytes); !written) return std::unexpected(written.error());
+  watch.lap("write");
+  return log;
+}
+
+/// The counts are those of the bytes written, not of what was meant to be written.
+Result<OrderedJson> reportOf(const Request& request, const Prepared& prepared, const EncodedLog& log, const Stopwatch& watch) {
+  const Result<LogIndex> index = LogIndex::parse(log.bytes);
+  if (!index) return std::unexpected(index.error());
+  const Result<Manifest> manifest = manifestFromJson(index->manifest);
+  if (!manifest) return std::unexpected(manifest.error());
+
+  const QuantiseReport& quantised = prepared.quantised.report;
+  const Lattice& lattice = prepared.quantised.mesh.lattice;
+  const std::uint64_t full = manifest->levels.back().tetrahedra, base = manifest->levels.front().tetrahedra;
+  OrderedJson report = {{"input", request.input},
+                        {"output", request.output},
+                        {"digest", sha256Hex(log.bytes)},
+                        {"tetrahedra", {{"input", prepared.cellsIn}, {"full", full}, {"base", base}}},
+                        {"vertices", manifest->levels.back().vertices},
+                        {"percentRemoved", 100.0 * (1.0 - static_cast<double>(base) / static_cast<double>(full))},
+                        {"levels", manifest->levels.size() - 1},
+                        {"chunks", index->chunks.size()}};
+  addSizes(log, prepared.quantised.mesh.fields, full, report);
+  report["lattice"] = {{"bits", lattice.bits},
+                       {"requestedBits", quantised.requestedBits},
+                       {"step", lattice.step},
+                       {"origin", lattice.origin},
+                       {"worseCells", toJson(quantised.worseCells)}};
+  report["clean"] = toJson(prepared.clean);
+  report["ignoredCells"] = prepared.read.ignoredCells;
+  report["ignoredFields"] = prepared.read.ignoredFields;
+  report["nonFiniteValues"] = quantised.nonFiniteValues;
+  report["seconds"] = watch.seconds();
+  report["notes"] = prepared.notes();
+  return report;
+}
+
+Result<OrderedJson> run(const Request& request, Progress& progress) {
+  Stopwatch watch;
+  const Result<Prepared> prepared = prepare(request, progress, watch);
+  if (!prepared) return std::unexpected(prepared.error());
+  const Result<EncodedLog> log = makeLog(request, prepared->quantised.mesh, progress, watch);
+  if (!log) return std::unexpected(log.error());
+  return reportOf(request, *prepared, *log, watch);
+}
+
+void printReport(const OrderedJson& report, std::ostream& out) {
+  const OrderedJson& bits = report["bitsPerTetrahedron"];
+  out << std::fixed << std::setprecision(1) << report["output"].get<std::string>() << ": " << report["tetrahedra"]["full"]
+      << " tetrahedra, of which the base mesh keeps " << report["tetrahedra"]["base"] << " (" << report["percentRemoved"].get<double>()
+      << " % removed), " << report["levels"] << " levels\n"
+      << report["bytes"] << " bytes, " << std::setprecision(2) << bits["total"].get<double>() << " bits a tetrahedron: connectivity "
+      << bits["connectivity"].get<double>() << ", positions " << bits["positions"].get<double>();
+  for (const auto& [name, value] : bits["fields"].items()) out << ", " << name << " " << value.get<double>();
+  out << "\nlattice of " << report["lattice"]["bits"] << " bits an axis, step " << report["lattice"]["step"] << "; " << std::setprecision(1)
+      << report["seconds"]["total"].get<double>() << " s\n";
+}
+
+}  // namespace
+
+int runSimplify(const Words& words, Console& console) {
+  namespace po = boost::program_options;
+  po::options_description options("options");
+  options.add_options()("output,o", po::value<std::string>(), "required: the log to write, NAME.qtet")(
+      "fields", po::value<std::string>()->default_value("all"), "all, none, or names of point fields between commas")(
+      "position-bits", po::value<int>()->default_value(16),
+      "bits of the lattice an axis, 4 to 28; raised where a cell would be flattened or inverted")(
+      "field-bits", po::value<int>()->default_value(12), "bits of a float field's values, 1 to 28; integer fields are stored exactly")(
+      "target-ratio", po::value<double>()->default_value(0.01, "0.01"), "stop when the base mesh has this fraction of the tetrahedra")(
+      "threads", po::value<int>()->default_value(1), "threads; the result does not depend on it")("json", "print one JSON object");
+  const ParsedWords parsed(
+      words,
+      {"simplify", "simplify IN -o OUT.qtet [options]",
+       "Reads tetrahedra with their point fields (.vtu, legacy .vtk), cleans them, simplifies them level by level and writes the log,\n"
+       "from which every level and the whole mesh come back.",
+       "  qtet simplify fin.vtu -o fin.qtet\n  qtet simplify fin.vtu -o fin.qtet --fields Density,Velocity --field-bits 10 --json\n"},
+      options, {"IN"});
+  if (parsed.helped(console)) return kExitOk;
+  const Request request = requestOf(parsed);
+  const bool asJson = parsed.has("json");
+  if (Status checked = checkOutput(request.output, ".qtet", request.input); !checked)
+    return reportFailure(checked.error(), asJson, console);
+
+  Progress progress(console.err, console.errIsTerminal);
+  const Result<OrderedJson> report = run(request, progress);
+  progress.clear();
+  if (!report) return reportFailure(report.error(), asJson, console);
+  for (const OrderedJson& note : (*report)["notes"]) console.err << "qtet: note: " << note.get<std::string>() << "\n";
+  asJson ? printJson(*report, console) : printReport(*report, console.out);
+  return kExitOk;
+}
+
+}  // namespace qtet

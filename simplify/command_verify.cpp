@@ -1,0 +1,175 @@
+#include <algorithm>
+#include <iomanip>
+#include <sstream>
+
+#include "proto/checksum.h"
+#include "simplify/clean_mesh.h"
+#include "simplify/command_line.h"
+#include "simplify/opened_log.h"
+#include "simplify/progress.h"
+#include "simplify/read_mesh.h"
+#include "simplify/verify.h"
+
+namespace qtet {
+namespace {
+
+std::string countsText(std::size_t tetrahedra, std::size_t vertices, std::size_t boundary) {
+  return std::to_string(tetrahedra) + " tetrahedra, " + std::to_string(vertices) + " vertices and " + std::to_string(boundary) +
+         " boundary triangles";
+}
+
+/// The counts that the manifest states for `level`, against the mesh.
+Status checkCounts(const ManifestLevel& level, const Refiner& refiner) {
+  const std::size_t tetrahedra = refiner.tetrahedra().size(), vertices = refiner.points().size(), boundary = refiner.boundary().size();
+  if (tetrahedra == level.tetrahedra && vertices == level.vertices && boundary == level.boundaryTriangles) return {};
+  return fail(ErrorCode::kBadValue, "level " + std::to_string(level.level) + " decodes to " + countsText(tetrahedra, vertices, boundary) +
+                                        ", the manifest says " + countsText(level.tetrahedra, level.vertices, level.boundaryTriangles) +
+                                        "; build the log again");
+}
+
+std::vector<std::uint32_t> allFields(const Manifest& manifest) {
+  std::vector<std::uint32_t> out(manifest.fields.size());
+  for (std::uint32_t f = 0; f < out.size(); ++f) out[f] = f;
+  return out;
+}
+
+/// Decodes every chunk with every field, and checks the counts wherever a chunk ends with a level.
+Result<Refiner> decodeAll(const OpenedLog& log, Progress& progress) {
+  Refiner refiner(log.file.index());
+  const std::vector<std::uint32_t> fields = allFields(log.manifest);
+  const auto chunks = static_cast<std::uint32_t>(log.file.index().chunks.size());
+  for (std::uint32_t chunk = 0; chunk < chunks; ++chunk) {
+    if (Status applied = applyChunk(log.file, refiner, chunk, fields); !applied) return std::unexpected(applied.error());
+    const ChunkEntry& entry = log.file.index().chunks[chunk];
+    if (entry.endSlot == kLevelEnd) {
+      if (Status counted = checkCounts(log.manifest.levels[entry.lastLevel], refiner); !counted) return std::unexpected(counted.error());
+    }
+    progress.update((chunk + 1.0) / chunks);
+  }
+  if (Status counted = checkCounts(log.manifest.levels.back(), refiner); !counted) return std::unexpected(counted.error());
+  return refiner;
+}
+
+/// Levels that end inside a chunk are looked at one by one: the same decoding, stopped there.
+Status checkInnerLevels(const OpenedLog& log, Progress& progress) {
+  const auto& levels = log.manifest.levels;
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    const ChunkEntry& entry = log.file.index().chunks[levels[i].chunk];
+    if (entry.lastLevel == levels[i].level && entry.endSlot == kLevelEnd) continue;
+    Refiner refiner(log.file.index());
+    refiner.stopAtLevel(levels[i].level);
+    for (std::uint32_t chunk = 0; chunk <= levels[i].chunk; ++chunk) {
+      if (Status applied = applyChunk(log.file, refiner, chunk, {}); !applied) return applied;
+    }
+    if (Status counted = checkCounts(levels[i], refiner); !counted) return counted;
+    progress.update(static_cast<double>(i + 1) / static_cast<double>(levels.size()));
+  }
+  return {};
+}
+
+LatticeMesh finestMesh(const OpenedLog& log, const Refiner& refiner) {
+  LatticeMesh mesh;
+  mesh.lattice = {log.manifest.latticeBits, log.manifest.latticeStep, log.manifest.latticeOrigin};
+  mesh.points.assign(refiner.points().begin(), refiner.points().end());
+  mesh.tetrahedra.assign(refiner.tetrahedra().begin(), refiner.tetrahedra().end());
+  for (std::uint32_t f = 0; f < log.manifest.fields.size(); ++f) {
+    const ManifestField& field = log.manifest.fields[f];
+    mesh.fields.push_back(
+        {field.name, field.components, field.type, field.association, field.bits, field.step, field.minimum, field.range});
+    const auto values = refiner.fieldValues(f);
+    mesh.values.emplace_back(values.begin(), values.end());
+  }
+  return mesh;
+}
+
+/// The input read, cleaned and put on the log's lattice, against what was decoded; what was found in `out`.
+Status compareWithInput(const OpenedLog& log, const Refiner& refiner, const std::string& input, Progress& progress, OrderedJson& out) {
+  progress.stage("reading " + input);
+  const LatticeMesh decoded = finestMesh(log, refiner);
+  std::vector<std::string> names;
+  for (const FieldInfo& field : decoded.fields) names.push_back(field.name);
+  Result<ReadMesh> read = readMesh(input, names);
+  if (!read) return std::unexpected(read.error());
+  if (const Result<CleanReport> cleaned = cleanMesh(read->mesh); !cleaned) return std::unexpected(cleaned.error());
+
+  progress.stage("comparing");
+  const Result<OnLattice> expected = putOnLattice(read->mesh, decoded.lattice, decoded.fields);
+  if (!expected) return std::unexpected(expected.error());
+  const Result<VerifyReport> same = sameMesh(decoded, expected->mesh);
+  if (!same) return std::unexpected(same.error());
+  OrderedJson fieldErrors = OrderedJson::object();
+  for (std::size_t f = 0; f < names.size(); ++f) fieldErrors[names[f]] = expected->largestFieldErrors[f];
+  out = {{"input", input},
+         {"sameMesh", true},
+         {"largestPositionErrorSteps", expected->largestPositionError},
+         {"largestFieldErrorSteps", fieldErrors},
+         {"interchangeableVertices", same->interchangeable}};
+  return {};
+}
+
+Result<OrderedJson> verify(const ParsedWords& parsed, Progress& progress) {
+  progress.stage("checking checksums");
+  const Result<OpenedLog> log = openLog(parsed.get<std::string>("LOG"));
+  if (!log) return std::unexpected(log.error());
+  if (Status checked = log->file.verifyChecksums(); !checked) return std::unexpected(checked.error());
+  progress.stage("decoding");
+  const Result<Refiner> refiner = decodeAll(*log, progress);
+  if (!refiner) return std::unexpected(refiner.error());
+  progress.stage("decoding levels inside chunks");
+  if (Status inner = checkInnerLevels(*log, progress); !inner) return std::unexpected(inner.error());
+
+  const ManifestLevel& finest = log->manifest.levels.back();
+  OrderedJson report = {{"ok", true},
+                        {"digest", log->file.digest()},
+                        {"meshDigest", toHex(refiner->digest())},
+                        {"bytes", log->file.bytes().size()},
+                        {"chunks", log->file.index().chunks.size()},
+                        {"levels", log->manifest.levels.size()},
+                        {"tetrahedra", finest.tetrahedra},
+                        {"vertices", finest.vertices},
+                        {"boundaryTriangles", finest.boundaryTriangles}};
+  if (!parsed.has("against")) return report;
+  OrderedJson against;
+  if (Status compared = compareWithInput(*log, *refiner, parsed.get<std::string>("against"), progress, against); !compared)
+    return std::unexpected(compared.error());
+  report["against"] = against;
+  return report;
+}
+
+void printReport(const OrderedJson& report, std::ostream& out) {
+  out << "digest      " << report["digest"].get<std::string>() << "\nmeshDigest  " << report["meshDigest"].get<std::string>()
+      << "\nevery checksum and count is right: " << report["bytes"] << " bytes, " << report["chunks"] << " chunks, " << report["levels"]
+      << " levels, " << report["tetrahedra"] << " tetrahedra, " << report["vertices"] << " vertices\n";
+  if (!report.contains("against")) return;
+  const OrderedJson& against = report["against"];
+  out << std::setprecision(3) << "the finest level is the mesh of " << against["input"].get<std::string>()
+      << ", cell for cell; positions are within " << against["largestPositionErrorSteps"].get<double>() << " lattice steps";
+  for (const auto& [name, error] : against["largestFieldErrorSteps"].items())
+    out << ", " << name << " within " << error.get<double>() << " field steps";
+  out << "\n";
+}
+
+}  // namespace
+
+int runVerify(const Words& words, Console& console) {
+  namespace po = boost::program_options;
+  po::options_description options("options");
+  options.add_options()("against", po::value<std::string>(), "the mesh that the log was made from")("json", "print one JSON object");
+  const ParsedWords parsed(
+      words,
+      {"verify", "verify LOG.qtet [--against IN] [--json]",
+       "Checks every checksum, decodes every chunk and compares every level's counts with the manifest. With --against the finest level\n"
+       "must be the input's mesh cell for cell, positions within half a lattice step, fields within half a field step.",
+       "  qtet verify fin.qtet\n  qtet verify fin.qtet --against fin.vtu --json\n"},
+      options, {"LOG"});
+  if (parsed.helped(console)) return kExitOk;
+  const bool asJson = parsed.has("json");
+  Progress progress(console.err, console.errIsTerminal);
+  const Result<OrderedJson> report = verify(parsed, progress);
+  progress.clear();
+  if (!report) return reportFailure(report.error(), asJson, console);
+  asJson ? printJson(*report, console) : printReport(*report, console.out);
+  return kExitOk;
+}
+
+}  // namespace qtet

@@ -1,0 +1,44 @@
+// The commands of the `qtet` tool. They take their words and streams as arguments, so tests can run them in process.
+#pragma once
+
+#include <ostream>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace qtet {
+
+/// What a process ends with.
+inline constexpr int kExitOk = 0;
+inline constexpr int kExitFailed = 1;  ///< an input, a file or the machine is at fault
+inline constexpr int kExitUsage = 2;   ///< the words given are not understood
+
+/// Where a command writes: results to `out`, everything else to `err`, each line of it starting with "qtet: ".
+struct Console {
+  std::ostream& out;
+  std::ostream& err;
+  bool errIsTerminal = false;
+};
+
+using Words = std::vector<std::string>;
+
+struct Command {
+  std::string_view name;
+  std::string_view summary;
+  int (*run)(const Words& words, Console& console);
+};
+
+/// In the order in which help shows them.
+[[nodiscard]] std::span<const Command> commands();
+
+/// Runs the tool on what follows its name on the command line; returns the exit code. Throws nothing but std::bad_alloc and the like.
+int runTool(const Words& words, Console& console);
+
+int runSample(const Words& words, Console& console);
+int runSimplify(const Words& words, Console& console);
+int runInfo(const Words& words, Console& console);
+int runExtract(const Words& words, Console& console);
+int runVerify(const Words& words, Console& console);
+
+}  // namespace qtet

@@ -1,0 +1,29 @@
+// A log with its manifest, the two held against each other: what info, extract and verify start from.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "codec/log_file.h"
+#include "proto/manifest.h"
+
+namespace qtet {
+
+/// Members keep the order in which they are set, which is the order in which people read them.
+using OrderedJson = nlohmann::ordered_json;
+
+struct OpenedLog {
+  LogFile file;
+  Manifest manifest;
+
+  /// Length of the file's prefix that holds `level` (PROTOCOL.md, `cumulativeBytes`). REQUIRES: a level of the manifest.
+  [[nodiscard]] std::uint64_t prefixBytes(std::size_t level) const;
+};
+
+/// Errors: LogFile::open's, manifestFromJson's, bad-value where manifest and chunk table contradict each other.
+[[nodiscard]] Result<OpenedLog> openLog(const std::filesystem::path& path);
+
+/// [{level, tetrahedra, vertices, boundaryTriangles, bytes, cumulativeBytes}], as `GET /v1/meshes/{id}` has it.
+[[nodiscard]] OrderedJson levelsJson(const OpenedLog& log);
+
+}  // namespace qtet

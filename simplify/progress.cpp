@@ -1,0 +1,60 @@
+#include "simplify/progress.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace qtet {
+namespace {
+
+constexpr std::chrono::milliseconds kSilence{1000};
+constexpr std::chrono::milliseconds kRedraw{100};
+/// Between two lines where there is no terminal.
+constexpr std::chrono::seconds kLineInterval{2};
+constexpr int kBarCells = 30;
+
+}  // namespace
+
+Progress::Progress(std::ostream& out, bool onTerminal) : out_(out), onTerminal_(onTerminal) {}
+
+Progress::~Progress() { clear(); }
+
+void Progress::stage(std::string name) {
+  stage_ = std::move(name);
+  if (onTerminal_) lastDrawn_ = {};
+  update(0);
+}
+
+void Progress::update(double fraction) {
+  const Clock::time_point now = Clock::now();
+  if (now - start_ < kSilence) return;
+  fraction = std::clamp(fraction, 0.0, 1.0);
+  if (onTerminal_) {
+    if (now - lastDrawn_ < kRedraw) return;
+    lastDrawn_ = now;
+    drawBar(fraction);
+    return;
+  }
+  if (now - lastDrawn_ < kLineInterval) return;
+  lastDrawn_ = now;
+  out_ << "qtet: " << stage_ << ": " << static_cast<int>(fraction * 100) << " %\n" << std::flush;
+}
+
+void Progress::drawBar(double fraction) {
+  const int full = static_cast<int>(std::lround(fraction * kBarCells));
+  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(Clock::now() - start_).count();
+  std::string line = stage_ + " [" + std::string(static_cast<std::size_t>(full), '#') +
+                     std::string(static_cast<std::size_t>(kBarCells - full), '.') + "] " +
+                     std::to_string(static_cast<int>(fraction * 100)) + " %  " + std::to_string(seconds) + " s";
+  const std::size_t length = line.size();
+  if (length < barLength_) line.append(barLength_ - length, ' ');
+  barLength_ = length;
+  out_ << '\r' << line << std::flush;
+}
+
+void Progress::clear() {
+  if (barLength_ == 0) return;
+  out_ << '\r' << std::string(barLength_, ' ') << '\r' << std::flush;
+  barLength_ = 0;
+}
+
+}  // namespace qtet

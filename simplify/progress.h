@@ -1,0 +1,39 @@
+// How far a long command has come, for the person who waits: a bar on a terminal, a line now and then in a log file.
+#pragma once
+
+#include <chrono>
+#include <ostream>
+#include <string>
+
+namespace qtet {
+
+/// Writes to `out` only, and nothing at all in the first second: quick commands stay silent.
+class Progress {
+ public:
+  /// `onTerminal`: whether `out` understands carriage returns.
+  Progress(std::ostream& out, bool onTerminal);
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  ~Progress();
+
+  /// Starts a stage such as "simplifying"; the one before it is over.
+  void stage(std::string name);
+  /// 0..1 of the stage; cheap enough to be called often.
+  void update(double fraction);
+  /// Takes the bar away, so that other lines can follow.
+  void clear();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void drawBar(double fraction);
+
+  std::ostream& out_;
+  bool onTerminal_;
+  Clock::time_point start_ = Clock::now();
+  Clock::time_point lastDrawn_{};
+  std::string stage_;
+  std::size_t barLength_ = 0;
+};
+
+}  // namespace qtet

@@ -1,0 +1,23 @@
+// QTetFusion (Chopra & Meyer, sections 3.2-3.5): fuses tetrahedra, triangles and edges into points in order of their planar quadric error,
+// in levels of independent fusions, and keeps what undoes each of them (ALGORITHM.md).
+#pragma once
+
+#include <functional>
+
+#include "codec/fusion_history.h"
+#include "codec/mesh.h"
+#include "proto/error.h"
+
+namespace qtet {
+
+struct FusionOptions {
+  double targetRatio = 0.01;                         ///< stop when this fraction of the cells remains, 0..1
+  int threads = 1;                                   ///< reserved for parallel stages; the result never depends on it
+  std::function<void(double fraction)> progress;     ///< 0..1, called at most once a level
+};
+
+/// REQUIRES: `mesh` cleaned and quantised (clean_mesh.h, quantise.h). Vertices that no cell uses stay out of the history.
+/// Errors: bad-input (no tetrahedra, a ratio outside 0..1), limit-exceeded (too many levels).
+[[nodiscard]] Result<FusionHistory> simplify(const LatticeMesh& mesh, const FusionOptions& options);
+
+}  // namespace qtet

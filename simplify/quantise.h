@@ -1,0 +1,40 @@
+// From floats to the lattice: positions and fields become integers, and everything after this is exact.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "proto/error.h"
+#include "simplify/clean_mesh.h"
+#include "simplify/tet_mesh.h"
+
+namespace qtet {
+
+struct QuantiseOptions {
+  int positionBits = 16;  ///< kMinPositionBits..kMaxPositionBits; raised when cells would be flattened or inverted
+  int fieldBits = 12;     ///< kMinFieldBits..kMaxFieldBits, of fields that are not stored exactly
+};
+
+struct QuantiseReport {
+  int requestedBits = 0;
+  std::uint64_t worseAtRequestedBits = 0;  ///< cells that would have lost their sign at the bits asked for
+  Occurrences worseCells;                  ///< cells that lose it at the bits used; none below kMaxPositionBits
+  std::uint64_t nonFiniteValues = 0;       ///< field values that were NaN or infinite and became their component's minimum
+  std::vector<std::string> notes;          ///< the same and more in sentences, empty when there is nothing to say
+};
+
+struct QuantisedMesh {
+  LatticeMesh mesh;
+  QuantiseReport report;
+};
+
+/// Puts `mesh` on a lattice whose step is the largest extent / (2^bits - 1) and whose origin is the lowest corner, with as many bits
+/// above `positionBits` as it takes for no cell to become worse: positive volume to zero or less, zero to less.
+/// Float fields take `fieldBits`: step = largest component's extent / (2^bits - 1) and a minimum a component. Integer fields take
+/// step 1 and lose nothing where kMaxFieldBits bits hold their range. Points and cells keep their order; the boundary is boundaryOf's.
+/// Errors: bad-value (bits outside their limits), bad-input (extents that a double cannot hold or divide).
+/// REQUIRES: a mesh that cleanMesh has passed.
+[[nodiscard]] Result<QuantisedMesh> quantise(const TetMesh& mesh, const QuantiseOptions& options = {});
+
+}  // namespace qtet

@@ -1,0 +1,107 @@
+#include "simplify/vtk_file_checks.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <string>
+#include <string_view>
+
+namespace qtet {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The root element, after a byte order mark, an XML declaration and comments, stands within this many bytes.
+constexpr std::uintmax_t kFrontBytes = 16384;
+/// The closing tag stands within this many bytes of the end, with room for a comment after it.
+constexpr std::uintmax_t kBackBytes = 4096;
+
+struct FileEnds {
+  std::string front;
+  std::string back;
+};
+
+Result<FileEnds> readEnds(const fs::path& path, std::uintmax_t size) {
+  std::ifstream file(path, std::ios::binary);
+  FileEnds ends;
+  ends.front.resize(std::min(size, kFrontBytes));
+  ends.back.resize(std::min(size, kBackBytes));
+  file.read(ends.front.data(), static_cast<std::streamsize>(ends.front.size()));
+  file.seekg(static_cast<std::streamoff>(size - ends.back.size()));
+  file.read(ends.back.data(), static_cast<std::streamsize>(ends.back.size()));
+  if (!file) return fail(ErrorCode::kIo, "cannot read " + path.string() + ": " + std::strerror(errno));
+  return ends;
+}
+
+/// The value of `name="..."` (or '...') in the tag that starts at `tag`, or an empty text.
+std::string attribute(std::string_view text, std::size_t tag, std::string_view name) {
+  const std::size_t end = text.find('>', tag);
+  const std::string_view element = text.substr(tag, end == std::string_view::npos ? end : end - tag);
+  const std::size_t at = element.find(std::string(name) + "=");
+  if (at == std::string_view::npos || at + name.size() + 2 > element.size()) return {};
+  const char quote = element[at + name.size() + 1];
+  const std::string_view value = element.substr(at + name.size() + 2);
+  return std::string(value.substr(0, value.find(quote)));
+}
+
+Status checkXml(const fs::path& path, const FileEnds& ends) {
+  const std::size_t root = ends.front.find("<VTKFile");
+  if (root == std::string::npos) {
+    return fail(ErrorCode::kBadInput,
+                path.string() + " is not a VTK XML file: no <VTKFile> in its first bytes; export the mesh as .vtu again", 0);
+  }
+  const std::string type = attribute(ends.front, root, "type");
+  if (type != "UnstructuredGrid") {
+    return fail(ErrorCode::kBadInput,
+                path.string() + " holds a VTK data set of type '" + type +
+                    "', not an UnstructuredGrid; tetrahedralise it (in ParaView: filter Tetrahedralize) and save it as .vtu",
+                root);
+  }
+  if (ends.back.find("</VTKFile>") == std::string::npos) {
+    return fail(ErrorCode::kTruncated, path.string() + " ends without </VTKFile>: the file was cut off; copy or export it again");
+  }
+  return {};
+}
+
+Status checkLegacy(const fs::path& path, const FileEnds& ends) {
+  if (!ends.front.starts_with("# vtk DataFile Version")) {
+    return fail(ErrorCode::kBadInput, path.string() + " is not a legacy VTK file: its first line is not '# vtk DataFile Version ...'", 0);
+  }
+  std::string upper = ends.front.substr(0, 1024);
+  std::transform(upper.begin(), upper.end(), upper.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  if (upper.find("UNSTRUCTURED_GRID") == std::string::npos) {
+    return fail(ErrorCode::kBadInput, path.string() +
+                                          " has no 'DATASET UNSTRUCTURED_GRID' in its header; tetrahedralise the data set "
+                                          "(in ParaView: filter Tetrahedralize) and save it as .vtu");
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<VtkFormat> checkVtkFile(const fs::path& path) {
+  std::error_code code;
+  const fs::file_status status = fs::status(path, code);
+  if (status.type() == fs::file_type::not_found)
+    return fail(ErrorCode::kNotFound, "there is no file " + path.string() + "; check the name");
+  if (!fs::is_regular_file(status)) return fail(ErrorCode::kIo, path.string() + " is not a readable file; give a .vtu or .vtk file");
+
+  const std::string extension = path.extension().string();
+  if (extension != ".vtu" && extension != ".vtk") {
+    return fail(ErrorCode::kBadInput, path.string() + ": files of type '" + extension +
+                                          "' are not read; save the mesh as .vtu or legacy .vtk (in ParaView: Save Data)");
+  }
+  const std::uintmax_t size = fs::file_size(path, code);
+  if (code) return fail(ErrorCode::kIo, "cannot read " + path.string() + ": " + code.message());
+  if (size == 0) return fail(ErrorCode::kTruncated, path.string() + " is empty (0 bytes); copy or export it again");
+
+  const Result<FileEnds> ends = readEnds(path, size);
+  if (!ends) return std::unexpected(ends.error());
+  const bool isXml = extension == ".vtu";
+  if (Status checked = isXml ? checkXml(path, *ends) : checkLegacy(path, *ends); !checked) return std::unexpected(checked.error());
+  return isXml ? VtkFormat::kXml : VtkFormat::kLegacy;
+}
+
+}  // namespace qtet

@@ -1,0 +1,111 @@
+#!/usr/bin/env bash
+# Keeps the arrows between the rooms: proto <- codec <- simplify, and proto, codec <- server.
+#   check.sh [ROOT]      0 = all hold; 1 = every arrow that breaks is named as file:line, with what to do
+set -euo pipefail
+shopt -s nullglob globstar
+
+root=${1:-$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)}
+cd "$root"
+
+# Which rooms a room may include, besides itself.
+declare -A allowed=([proto]="" [codec]="proto" [simplify]="proto codec" [server]="proto codec")
+# Libraries that a room must do without: codec and proto are also built for the browser.
+declare -A foreign=(
+  [proto]='vtk|boost/|draco/'
+  [codec]='vtk|boost/asio|boost/beast'
+  [simplify]='boost/asio|boost/beast'
+  [server]='vtk'
+)
+
+broken=0
+complain() {
+  printf '%s\n' "$1"
+  broken=1
+}
+
+isIn() { # word list...
+  local word=$1 other
+  shift
+  for other in "$@"; do [[ $word == "$other" ]] && return 0; done
+  return 1
+}
+
+# The C++ sources of a folder, one a line; nothing that was built or fetched.
+sourcesOf() {
+  find "$1" \( -name node_modules -o -name dist \) -prune -o \
+    -type f \( -name '*.h' -o -name '*.hpp' -o -name '*.c' -o -name '*.cc' -o -name '*.cpp' -o -name '*.inc' \) -print | sort
+}
+
+# Lines "number:name" of a file's includes; $2 is the opening delimiter.
+includesOf() { sed -nE "/^[[:space:]]*#[[:space:]]*include/{=;s/^[^#]*#[[:space:]]*include[[:space:]]*$2([^\">]+)[\">].*/\\1/p}" "$1" \
+  | awk '/^[0-9]+$/ {line = $0; next} {print line ":" $0}'; }
+
+checkQuoted() { # file room
+  local file=$1 room=$2 line name target
+  while IFS=: read -r line name; do
+    target=${name%%/*}
+    if [[ $name != */* || ! -e $name ]]; then
+      complain "$file:$line: \"$name\" is no file of the repository; write includes from the root, like \"codec/mesh.h\""
+    elif [[ $target != "$room" ]] && ! isIn "$target" ${allowed[$room]}; then
+      complain "$file:$line: $room/ must not include \"$name\"; it may use only: $room ${allowed[$room]}"
+    fi
+  done < <(includesOf "$file" '"')
+}
+
+checkForeign() { # file room
+  local file=$1 room=$2 line name
+  while IFS=: read -r line name; do
+    if [[ $name =~ ^(${foreign[$room]}) ]]; then
+      complain "$file:$line: $room/ must not include <$name>; move what needs it to the room that may"
+    fi
+  done < <(includesOf "$file" '<')
+}
+
+checkLinks() { # room: a library linked is an arrow too
+  local room=$1 line name
+  [[ -f $room/CMakeLists.txt ]] || return 0
+  while IFS=: read -r line name; do
+    [[ $name == "$room" ]] || isIn "$name" ${allowed[$room]} ||
+      complain "$room/CMakeLists.txt:$line: $room/ must not link qtet::$name; it may link only: ${allowed[$room]}"
+  done < <(sed 's/#.*//' "$room/CMakeLists.txt" | grep -noE 'qtet::(proto|codec|simplify|server)\b' | sed 's/qtet:://' || true)
+}
+
+for room in proto codec simplify server; do
+  [[ -d $room ]] || continue
+  while IFS= read -r file; do
+    checkQuoted "$file" "$room"
+    checkForeign "$file" "$room"
+  done < <(sourcesOf "$room")
+  checkLinks "$room"
+done
+
+# The viewer's own C++, if any, stands on nothing but the compiled codec.
+if [[ -d web-client ]]; then
+  while IFS= read -r file; do
+    while IFS=: read -r line name; do
+      isIn "${name%%/*}" proto codec simplify server &&
+        complain "$file:$line: web-client/ must not include \"$name\"; it uses the codec through codec/wasm_api.h's exports"
+    done < <(includesOf "$file" '"')
+  done < <(sourcesOf web-client)
+fi
+
+# No file may include itself through others. tsort names the files of a loop on stderr.
+pairs=$(for room in proto codec simplify server; do
+  [[ -d $room ]] || continue
+  sourcesOf "$room" | while IFS= read -r file; do
+    includesOf "$file" '"' | while IFS=: read -r _ name; do printf '%s %s\n' "$file" "$name"; done
+  done
+done)
+if ! loops=$(tsort <<<"$pairs" 2>&1 >/dev/null); then
+  complain "these files include one another in a circle; move what they share into a file of its own:
+$(sed -E 's/^tsort: (-: )?/  /' <<<"$loops")"
+fi
+
+# A folder is a room with a meaning; "common" and "utils" have none.
+while IFS= read -r folder; do
+  complain "$folder: no folder may be called common, util or utils; name it after what it holds, or move its files to their room"
+done < <(find . \( -name node_modules -o -name build -o -name .git \) -prune -o \
+  -type d \( -iname common -o -iname util -o -iname utils \) -print | sed 's|^\./||' | sort)
+
+if [[ $broken == 0 ]]; then echo "arrows: all hold"; fi
+exit $broken

@@ -1,0 +1,50 @@
+// A slow line between the browser and the server: a TCP relay with a rate and a delay. Connections that the server loses, it loses.
+
+import {createServer, connect} from 'node:net';
+
+const kTickMs = 20;
+
+export class PoorLine {
+  #relay;
+  #connections = new Set();
+
+  /** `bytesPerSecond` towards the browser on each connection, or on those of /v1/stream only; `delayMs` is added each way. */
+  static async open(targetPort, {bytesPerSecond, delayMs = 0, streamsOnly = false}) {
+    const line = new PoorLine();
+    line.#relay = createServer((browser) => {
+      const server = connect(targetPort, '127.0.0.1');
+      const end = () => {
+        browser.destroy();
+        server.destroy();
+        line.#connections.delete(end);
+      };
+      line.#connections.add(end);
+      for (const socket of [browser, server]) socket.on('error', end).on('close', end).setNoDelay(true);
+      let slow = !streamsOnly;
+      browser.on('data', (bytes) => {
+        slow ||= bytes.includes('GET /v1/stream');
+        setTimeout(() => server.writable && server.write(bytes), delayMs);
+      });
+      relaySlowly(server, browser, () => (slow ? (bytesPerSecond * kTickMs) / 1000 : Infinity), delayMs);
+    });
+    await new Promise((resolve) => void line.#relay.listen(0, '127.0.0.1', resolve));
+    return line;
+  }
+
+  get url() { return `http://127.0.0.1:${this.#relay.address().port}/`; }
+  /** Breaks every connection, with what is under way: a server's death alone leaves its last megabytes in the kernel. */
+  cut() {
+    for (const end of [...this.#connections]) end();
+  }
+
+  close() { this.#relay.close(); }
+}
+
+/** Passes on `portion()` bytes a tick, and reads no further ahead, so that the server feels the line. */
+function relaySlowly(from, to, portion, delayMs) {
+  const timer = setInterval(() => {
+    const bytes = from.read(Math.min(portion(), from.readableLength));
+    if (bytes) setTimeout(() => to.writable && to.write(bytes), delayMs);
+  }, kTickMs);
+  from.on('close', () => clearInterval(timer));
+}

@@ -1,0 +1,61 @@
+// The programs under test: qtet makes logs, qtet-server serves them and can be killed and started again on its port.
+
+import {execFileSync, spawn} from 'node:child_process';
+import {mkdirSync} from 'node:fs';
+import {join} from 'node:path';
+
+const kStartTimeoutMs = 20000;
+
+/** Makes OUT/logs/NAME.qtet from the sample NAME and asks the tool for the digest of the whole mesh. */
+export function makeLog(bin, name, out) {
+  const folder = join(out, 'logs');
+  const mesh = join(out, `${name}.vtu`);
+  const log = join(folder, `${name}.qtet`);
+  const tool = join(bin, 'qtet');
+  mkdirSync(folder, {recursive: true});
+  const run = (...words) => execFileSync(tool, words, {encoding: 'utf8', stdio: ['ignore', 'pipe', 'pipe']});
+  run('sample', name, '-o', mesh);
+  run('simplify', mesh, '-o', log);
+  const report = JSON.parse(run('verify', log, '--json'));
+  return {name, folder, meshDigest: report.meshDigest};
+}
+
+export class Server {
+  #process = null;
+  port = 0;
+
+  constructor(bin, folder, viewer) {
+    this.command = join(bin, 'qtet-server');
+    this.arguments = [folder, '--viewer', viewer];
+  }
+
+  get url() { return `http://127.0.0.1:${this.port}/`; }
+
+  /** Starts it, on the port that it had before; nothing when it runs. */
+  async start() {
+    if (this.#process) return;
+    const started = spawn(this.command, [...this.arguments, '--port', String(this.port)], {stdio: ['ignore', 'pipe', 'pipe']});
+    this.#process = started;
+    let said = '';
+    this.port = await new Promise((resolve, reject) => {
+      const timer = setTimeout(() => reject(new Error(`qtet-server does not listen; it said: ${said}`)), kStartTimeoutMs);
+      const hear = (text) => {
+        said += text;
+        const port = /listening on http:\/\/[^:]+:(\d+)/.exec(said)?.[1];
+        if (port === undefined) return;
+        clearTimeout(timer);
+        resolve(Number(port));
+      };
+      started.stdout.setEncoding('utf8').on('data', hear);
+      started.stderr.setEncoding('utf8').on('data', (text) => void (said += text));
+      started.once('exit', (code) => reject(new Error(`qtet-server ended with ${code}; it said: ${said}`)));
+    });
+  }
+
+  /** Ends it without a chance to say goodbye. */
+  kill() {
+    this.#process?.removeAllListeners('exit');
+    this.#process?.kill('SIGKILL');
+    this.#process = null;
+  }
+}

@@ -1,0 +1,164 @@
+#include "codec/boundary_drc.h"
+
+#include <draco/compression/decode.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <random>
+
+namespace qtet {
+namespace {
+
+/// A wavy square of 2 (n - 1)^2 triangles on a lattice of `bits`, with a vertex that no triangle uses, a scalar and a vector.
+LatticeMesh wavySquare(int n, int bits, double step, const std::array<double, 3>& origin) {
+  LatticeMesh mesh;
+  mesh.lattice = {bits, step, origin};
+  std::mt19937 random(7);
+  const auto cell = static_cast<std::uint32_t>((1 << bits) / n);
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      mesh.points.push_back({static_cast<int>(static_cast<std::uint32_t>(i) * cell + random() % cell),
+                             static_cast<int>(static_cast<std::uint32_t>(j) * cell + random() % cell),
+                             static_cast<int>(random() % (1u << bits))});
+  mesh.points[0] = {0, 0, 0};
+  mesh.points[1] = {(1 << bits) - 1, (1 << bits) - 1, (1 << bits) - 1};
+  mesh.points.push_back({1, 2, 3});
+  const auto width = static_cast<std::uint32_t>(n);
+  for (std::uint32_t i = 0; i + 1 < width; ++i)
+    for (std::uint32_t j = 0; j + 1 < width; ++j) {
+      const std::uint32_t a = i * width + j;
+      mesh.boundary.push_back({a, a + width, a + 1});
+      mesh.boundary.push_back({a + 1, a + width, a + width + 1});
+    }
+  mesh.fields.push_back({.name = "density", .components = 1, .bits = 12, .step = 0.25, .minimum = {-7}});
+  mesh.fields.push_back({.name = "velocity", .components = 3, .bits = 16, .step = 0.001, .minimum = {-3, 0, 12}});
+  for (const FieldInfo& field : mesh.fields) {
+    mesh.values.emplace_back();
+    for (std::size_t i = 0; i < mesh.points.size() * field.components; ++i)
+      mesh.values.back().push_back(static_cast<std::int32_t>(random() % (1u << field.bits)));
+  }
+  return mesh;
+}
+
+std::unique_ptr<draco::Mesh> decode(const Bytes& bytes) {
+  draco::DecoderBuffer buffer;
+  buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  draco::Decoder decoder;
+  auto out = decoder.DecodeMeshFromBuffer(&buffer);
+  return out.ok() ? std::move(out).value() : nullptr;
+}
+
+/// Grid numbers of one decoded attribute of one point, with how far each was from its grid.
+std::vector<std::int32_t> gridValue(const draco::PointAttribute& attribute, std::uint32_t point, const std::vector<double>& origin,
+                                    double step) {
+  std::vector<float> raw(origin.size());
+  attribute.GetMappedValue(draco::PointIndex(point), raw.data());
+  std::vector<std::int32_t> out;
+  for (std::size_t c = 0; c < origin.size(); ++c)
+    out.push_back(static_cast<std::int32_t>(std::lround((static_cast<double>(raw[c]) - origin[c]) / step)));
+  return out;
+}
+
+/// Per triangle corner, everything that a vertex carries; sorted, since Draco numbers anew.
+using Corner = std::vector<std::int32_t>;
+std::vector<std::vector<Corner>> sorted(std::vector<std::vector<Corner>> triangles) {
+  for (auto& corners : triangles) std::ranges::rotate(corners, std::ranges::min_element(corners));
+  std::ranges::sort(triangles);
+  return triangles;
+}
+
+std::vector<std::vector<Corner>> trianglesOf(const LatticeMesh& mesh) {
+  std::vector<std::vector<Corner>> out;
+  for (const Triangle& triangle : mesh.boundary) {
+    out.emplace_back();
+    for (const VertexId v : triangle) {
+      Corner corner(mesh.points[v].begin(), mesh.points[v].end());
+      for (std::size_t f = 0; f < mesh.fields.size(); ++f)
+        for (std::uint32_t c = 0; c < mesh.fields[f].components; ++c)
+          corner.push_back(mesh.values[f][std::size_t{v} * mesh.fields[f].components + c]);
+      out.back().push_back(std::move(corner));
+    }
+  }
+  return sorted(std::move(out));
+}
+
+std::vector<std::vector<Corner>> trianglesOf(const draco::Mesh& decoded, const LatticeMesh& original) {
+  std::vector<std::vector<Corner>> out;
+  for (std::uint32_t i = 0; i < decoded.num_faces(); ++i) {
+    out.emplace_back();
+    for (const draco::PointIndex& p : decoded.face(draco::FaceIndex(i))) {
+      const auto& lattice = original.lattice;
+      Corner corner = gridValue(*decoded.GetNamedAttribute(draco::GeometryAttribute::POSITION), p.value(),
+                                {lattice.origin.begin(), lattice.origin.end()}, lattice.step);
+      for (const FieldInfo& field : original.fields) {
+        const auto* attribute = decoded.GetAttributeByUniqueId(
+            static_cast<std::uint32_t>(decoded.GetMetadata()->GetAttributeMetadataByStringEntry("name", field.name)->att_unique_id()));
+        const auto values = gridValue(*attribute, p.value(), field.minimum, field.step);
+        corner.insert(corner.end(), values.begin(), values.end());
+      }
+      out.back().push_back(std::move(corner));
+    }
+  }
+  return sorted(std::move(out));
+}
+
+TEST(BoundaryDrc, everyTriangleKeepsItsLatticePointsItsOrientationAndItsFields) {
+  struct Case {
+    int bits;
+    double step;
+    std::array<double, 3> origin;
+  };
+  for (const Case& c : {Case{16, 0.001, {-30.5, 2, 100.25}}, Case{16, 1.0 / 3, {0, 0, 0}}, Case{10, 1e-9, {1e-6, 0, -1e-6}},
+                        Case{18, 1e6, {-2.6e11, 0, 1e11}}, Case{4, 1, {0, 0, 0}}}) {
+    const LatticeMesh mesh = wavySquare(c.bits == 4 ? 4 : 30, c.bits, c.step, c.origin);
+    const Result<Bytes> bytes = boundaryDrc(mesh);
+    ASSERT_TRUE(bytes) << bytes.error().message;
+    const auto decoded = decode(*bytes);
+    ASSERT_TRUE(decoded);
+    EXPECT_EQ(trianglesOf(*decoded, mesh), trianglesOf(mesh)) << c.bits << " bits";
+  }
+}
+
+TEST(BoundaryDrc, onlyTheBoundarysVerticesAreStored) {
+  const LatticeMesh mesh = wavySquare(10, 16, 1, {0, 0, 0});
+  const auto decoded = decode(*boundaryDrc(mesh));
+  ASSERT_TRUE(decoded);
+  EXPECT_EQ(decoded->num_points(), mesh.points.size() - 1);
+}
+
+TEST(BoundaryDrc, theSameMeshGivesTheSameBytes) {
+  const LatticeMesh mesh = wavySquare(10, 16, 1, {0, 0, 0});
+  EXPECT_EQ(*boundaryDrc(mesh), *boundaryDrc(mesh));
+}
+
+TEST(BoundaryDrc, aFieldOfMoreBitsThanAFloatHasIsStoredAsItsNearestFloat) {
+  LatticeMesh mesh = wavySquare(8, 12, 1, {0, 0, 0});
+  mesh.fields.resize(1);
+  mesh.values.resize(1);
+  mesh.fields[0] = {.name = "id", .components = 1, .bits = 28, .step = 1, .minimum = {0}};
+  for (std::size_t i = 0; i < mesh.values[0].size(); ++i) mesh.values[0][i] = static_cast<std::int32_t>(i * 1000003);
+  const auto decoded = decode(*boundaryDrc(mesh));
+  ASSERT_TRUE(decoded);
+  const auto* attribute = decoded->GetNamedAttribute(draco::GeometryAttribute::GENERIC);
+  std::vector<float> stored;
+  for (std::uint32_t p = 0; p < decoded->num_points(); ++p) {
+    float value = 0;
+    attribute->GetMappedValue(draco::PointIndex(p), &value);
+    stored.push_back(value);
+  }
+  std::vector<float> expected;
+  for (std::size_t i = 0; i + 1 < mesh.points.size(); ++i) expected.push_back(static_cast<float>(mesh.values[0][i]));
+  std::ranges::sort(stored);
+  EXPECT_EQ(stored, expected);
+}
+
+TEST(BoundaryDrc, aMeshWithoutABoundaryIsRefused) {
+  const Result<Bytes> bytes = boundaryDrc(LatticeMesh());
+  ASSERT_FALSE(bytes);
+  EXPECT_EQ(bytes.error().code, ErrorCode::kBadInput);
+}
+
+}  // namespace
+}  // namespace qtet

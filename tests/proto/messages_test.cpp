@@ -1,0 +1,157 @@
+#include "proto/messages.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "proto/limits.h"
+
+namespace qtet {
+namespace {
+
+OpenMessage sampleOpen() {
+  return {.mesh = "comb",
+          .digest = std::string(64, 'a'),
+          .fields = {"density", "velocity"},
+          .haveChunks = 7,
+          .haveFields = {{"density", 3}},
+          .credit = 1 << 20};
+}
+
+ErrorCode refusal(const std::string& json) {
+  const Result<ClientMessage> message = parseClientMessage(json);
+  if (message) ADD_FAILURE() << "accepted: " << json;
+  return message ? ErrorCode::kIo : message.error().code;
+}
+
+TEST(Messages, openIsReadBack) {
+  const Result<ClientMessage> read = parseClientMessage(toJson(ClientMessage(sampleOpen())));
+  ASSERT_TRUE(read) << read.error().message;
+  const auto& open = std::get<OpenMessage>(*read);
+  EXPECT_EQ(open.mesh, "comb");
+  EXPECT_EQ(open.digest, std::string(64, 'a'));
+  EXPECT_EQ(open.fields, (std::vector<std::string>{"density", "velocity"}));
+  EXPECT_EQ(open.haveChunks, 7u);
+  ASSERT_EQ(open.haveFields.size(), 1u);
+  EXPECT_EQ(open.haveFields[0], (std::pair<std::string, std::uint32_t>("density", 3)));
+  EXPECT_EQ(open.credit, 1u << 20);
+}
+
+TEST(Messages, theProtocolDocumentsExamplesAreUnderstood) {
+  EXPECT_TRUE(parseClientMessage(R"({"type":"open","mesh":"a","fields":["x"],"have":{"chunks":2,"fields":{"x":1}},"credit":1000})"));
+  EXPECT_TRUE(parseClientMessage(R"({"type":"open","mesh":"a","credit":0})"));
+  const auto credit = parseClientMessage(R"({"type":"credit","bytes":12345})");
+  ASSERT_TRUE(credit);
+  EXPECT_EQ(std::get<CreditMessage>(*credit).bytes, 12345u);
+  const auto stop = parseClientMessage(R"({"type":"stop"})");
+  ASSERT_TRUE(stop);
+  EXPECT_TRUE(std::holds_alternative<StopMessage>(*stop));
+}
+
+TEST(Messages, membersOfLaterVersionsAreIgnored) { EXPECT_TRUE(parseClientMessage(R"({"type":"stop","why":"lunch"})")); }
+
+TEST(Messages, wrongShapesAreBadValues) {
+  for (const char* json : {"",
+                           "{",
+                           "null",
+                           "7",
+                           "[]",
+                           "\"stop\"",
+                           "{}",
+                           R"({"type":7})",
+                           R"({"type":"jump"})",
+                           R"({"type":"credit"})",
+                           R"({"type":"credit","bytes":-1})",
+                           R"({"type":"credit","bytes":1.5})",
+                           R"({"type":"credit","bytes":"1"})",
+                           R"({"type":"credit","bytes":9007199254740992})",
+                           R"({"type":"open","credit":1})",
+                           R"({"type":"open","mesh":"a"})",
+                           R"({"type":"open","mesh":"","credit":1})",
+                           R"({"type":"open","mesh":["a"],"credit":1})",
+                           R"({"type":"open","mesh":"a","fields":"x","credit":1})",
+                           R"({"type":"open","mesh":"a","fields":[1],"credit":1})",
+                           R"({"type":"open","mesh":"a","have":5,"credit":1})",
+                           R"({"type":"open","mesh":"a","have":{"chunks":-1},"credit":1})",
+                           R"({"type":"open","mesh":"a","have":{"chunks":1048577},"credit":1})",
+                           R"({"type":"open","mesh":"a","have":{"chunks":1,"fields":{"x":2}},"credit":1})",
+                           R"({"type":"open","mesh":"a","have":{"fields":[]},"credit":1})",
+                           R"({"type":"open","mesh":"a","digest":"abc","credit":1})",
+                           R"({"type":"stop"} {"type":"stop"})",
+                           "{\"type\":\"stop\xFF\"}"})
+    EXPECT_EQ(refusal(json), ErrorCode::kBadValue) << json;
+}
+
+TEST(Messages, aRefusalNamesThePlace) {
+  const auto result = parseClientMessage(R"({"type":"open","mesh":"a","fields":["x",7],"credit":1})");
+  ASSERT_FALSE(result);
+  EXPECT_NE(result.error().message.find("/fields/1"), std::string::npos) << result.error().message;
+}
+
+TEST(Messages, whatIsTooLongIsRefusedUnread) {
+  const std::string stop = R"({"type":"stop"})";
+  EXPECT_TRUE(parseClientMessage(stop + std::string(kMaxMessageBytes - stop.size(), ' ')));
+  EXPECT_EQ(refusal(stop + std::string(kMaxMessageBytes - stop.size() + 1, ' ')), ErrorCode::kLimitExceeded);
+}
+
+TEST(Messages, oneFieldTooManyIsRefused) {
+  OpenMessage open = sampleOpen();
+  open.fields.assign(kMaxFields, "f");
+  EXPECT_TRUE(parseClientMessage(toJson(ClientMessage(open))));
+  open.fields.push_back("f");
+  EXPECT_EQ(refusal(toJson(ClientMessage(open))), ErrorCode::kBadValue);
+}
+
+TEST(Messages, everyTruncationIsRefused) {
+  const std::string whole = toJson(ClientMessage(sampleOpen()));
+  for (std::size_t n = 0; n < whole.size(); ++n) EXPECT_FALSE(parseClientMessage(whole.substr(0, n))) << n;
+}
+
+TEST(Messages, theServersWordsAreReadBack) {
+  const auto opened = parseServerMessage(toJson(OpenedMessage{3, "comb", std::string(64, '0'), 5000000000ull, 77}));
+  ASSERT_TRUE(opened) << opened.error().message;
+  EXPECT_EQ(std::get<OpenedMessage>(*opened).bytes, 5000000000ull);
+  EXPECT_EQ(std::get<OpenedMessage>(*opened).stream, 3u);
+  EXPECT_EQ(std::get<OpenedMessage>(*opened).planned, 77u);
+  EXPECT_EQ(std::get<DoneMessage>(*parseServerMessage(toJson(DoneMessage{4}))).stream, 4u);
+  EXPECT_EQ(std::get<StoppedMessage>(*parseServerMessage(toJson(StoppedMessage{5}))).stream, 5u);
+  EXPECT_EQ(std::get<ErrorMessage>(*parseServerMessage(toJson(ErrorMessage{kNotFound, "no \"such\" mesh"}))).detail, "no \"such\" mesh");
+  EXPECT_FALSE(parseServerMessage(R"({"type":"hello"})"));
+}
+
+TEST(FrameHeader, itsSixteenBytesStandAsTheDocumentDrawsThem) {
+  const FrameHeader header{0x04030201, 0x08070605, 0x0A09, 0x0C0B, 0x100F0E0D};
+  const auto bytes = header.encode();
+  for (std::size_t i = 0; i < bytes.size(); ++i) EXPECT_EQ(bytes[i], i + 1);
+}
+
+Bytes frame(const FrameHeader& header, std::size_t payload) {
+  Bytes out(FrameHeader::kBytes + payload, 0x55);
+  std::ranges::copy(header.encode(), out.begin());
+  return out;
+}
+
+TEST(FrameHeader, aFrameIsReadBackAndEveryTruncationIsRefused) {
+  const FrameHeader header{1, 2, 1, 3, 20};
+  const Bytes whole = frame(header, 20);
+  const Result<FrameHeader> read = FrameHeader::parse(whole);
+  ASSERT_TRUE(read);
+  EXPECT_EQ(*read, header);
+  for (std::size_t n = 0; n < whole.size(); ++n) {
+    const Result<FrameHeader> cut = FrameHeader::parse(ByteView(whole).first(n));
+    ASSERT_FALSE(cut) << n;
+    EXPECT_EQ(cut.error().code, n < FrameHeader::kBytes ? ErrorCode::kTruncated : ErrorCode::kBadValue);
+  }
+}
+
+TEST(FrameHeader, contradictionsAreRefused) {
+  EXPECT_TRUE(FrameHeader::parse(frame({1, 0, FrameHeader::kHead, 0, 5}, 5)));
+  EXPECT_TRUE(FrameHeader::parse(frame({1, 0, 0, 1, 0}, 0)));
+  EXPECT_FALSE(FrameHeader::parse(frame({1, 0, 0, 1, 5}, 6)));
+  EXPECT_FALSE(FrameHeader::parse(frame({1, 0, 0, 0, 5}, 5)));
+  EXPECT_FALSE(FrameHeader::parse(frame({1, 1, FrameHeader::kHead, 0, 5}, 5)));
+  EXPECT_FALSE(FrameHeader::parse(frame({1, 0, FrameHeader::kHead, 1, 5}, 5)));
+}
+
+}  // namespace
+}  // namespace qtet

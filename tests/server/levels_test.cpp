@@ -1,0 +1,46 @@
+// Levels of a real log through a real server: what comes is the level that the manifest promises.
+#include "tests/support/sample_log.h"
+
+#include <draco/compression/decode.h>
+#include <gtest/gtest.h>
+
+#include "tests/server/loopback.h"
+
+namespace qtet {
+namespace {
+
+class SampleServer : public ::testing::Test {
+ protected:
+  static Result<MeshStore> openSample() { return MeshStore::open(qtet::testing::sampleLog().parent_path()); }
+
+  Result<MeshStore> store_ = openSample();
+  ViewerFiles viewer_;
+};
+
+TEST_F(SampleServer, everyLevelIsServedAsVtkAndAsDraco) {
+  ASSERT_TRUE(store_) << store_.error().message;
+  ASSERT_EQ(store_->meshes().size(), 1u);
+  const ServedMesh& mesh = store_->meshes().begin()->second;
+  test::RunningServer server(*store_, viewer_);
+  test::RawClient client(server.port());
+  for (const ManifestLevel& level : mesh.manifest.levels) {
+    const std::string path = "/v1/meshes/" + mesh.id + "/levels/" + std::to_string(level.level);
+    const auto vtu = client.get(path + ".vtu");
+    ASSERT_EQ(vtu.status, 200u) << vtu.body;
+    EXPECT_NE(vtu.body.find("NumberOfPoints=\"" + std::to_string(level.vertices) + "\""), std::string::npos);
+    EXPECT_NE(vtu.body.find("NumberOfCells=\"" + std::to_string(level.tetrahedra) + "\""), std::string::npos);
+
+    const auto drc = client.get(path + ".drc");
+    ASSERT_EQ(drc.status, 200u) << drc.body;
+    draco::DecoderBuffer buffer;
+    buffer.Init(drc.body.data(), drc.body.size());
+    draco::Decoder decoder;
+    const auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
+    ASSERT_TRUE(decoded.ok()) << decoded.status().error_msg();
+    EXPECT_EQ(decoded.value()->num_faces(), level.boundaryTriangles);
+    EXPECT_EQ(decoded.value()->num_attributes(), 1 + static_cast<int>(mesh.manifest.fields.size()));
+  }
+}
+
+}  // namespace
+}  // namespace qtet

@@ -1,0 +1,261 @@
+// The tool as people and scripts run it: exit codes, streams, JSON, files.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "codec/atomic_file.h"
+#include "simplify/read_mesh.h"
+#include "simplify/write_mesh.h"
+#include "tests/simplify/tet_meshes.h"
+
+namespace qtet {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Ran {
+  int code = -1;
+  std::string out;
+  std::string err;
+
+  [[nodiscard]] nlohmann::json json() const { return nlohmann::json::parse(out); }
+};
+
+std::string contentOf(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+class Tool : public ::testing::Test {
+ protected:
+  /// Runs `qtet WORDS` in the test's folder.
+  Ran run(const std::string& words) {
+    const std::string command = "cd '" + folder_.string() + "' && '" QTET_TOOL "' " + words + " >out.txt 2>err.txt";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contentOf(folder_ / "out.txt"), contentOf(folder_ / "err.txt")};
+  }
+  /// A failure must leave every line of the diagnostics marked and the standard output empty.
+  void expectFailure(const std::string& words, int code, const std::string& word) {
+    const Ran ran = run(words);
+    EXPECT_EQ(ran.code, code) << words << "\n" << ran.err;
+    EXPECT_TRUE(ran.out.empty()) << ran.out;
+    EXPECT_NE(ran.err.find(word), std::string::npos) << words << "\n" << ran.err;
+    std::istringstream lines(ran.err);
+    for (std::string line; std::getline(lines, line);) EXPECT_TRUE(line.starts_with("qtet: ")) << line;
+  }
+  void write(const std::string& name, const TetMesh& mesh) { ASSERT_TRUE(writeFileAtomically(folder_ / name, vtuBytes(mesh))); }
+  void makeBoxLog() {
+    ASSERT_EQ(run("sample box -o box.vtu").code, 0);
+    const Ran ran = run("simplify box.vtu -o box.qtet");
+    ASSERT_EQ(ran.code, 0) << ran.err;
+  }
+
+  fs::path folder_ = testing::freshFolder(std::string("tool-") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+};
+
+TEST_F(Tool, helpAndVersionSucceed) {
+  EXPECT_EQ(run("--version").out, "qtet " QTET_VERSION "\n");
+  const Ran help = run("--help");
+  EXPECT_EQ(help.code, 0);
+  for (const char* command : {"sample", "simplify", "info", "extract", "verify"}) {
+    EXPECT_NE(help.out.find(command), std::string::npos);
+    const Ran own = run(std::string(command) + " --help");
+    EXPECT_EQ(own.code, 0);
+    EXPECT_NE(own.out.find("examples:"), std::string::npos);
+    EXPECT_TRUE(own.err.empty());
+  }
+}
+
+TEST_F(Tool, wordsThatAreNotUnderstoodEndWithTwo) {
+  expectFailure("", 2, "a command is missing");
+  expectFailure("squash box.vtu", 2, "no command 'squash'");
+  expectFailure("info", 2, "LOG is missing");
+  expectFailure("simplify in.vtu", 2, "--output is missing");
+  expectFailure("simplify in.vtu -o out.qtet --colour red", 2, "--colour");
+  expectFailure("simplify in.vtu -o out.qtet --field 3", 2, "--field");
+  expectFailure("simplify in.vtu -o out.qtet --position-bits 29", 2, "4 to 28");
+  expectFailure("simplify in.vtu -o out.qtet --position-bits x", 2, "position-bits");
+  expectFailure("simplify in.vtu -o out.qtet --target-ratio 1.5", 2, "0 to 1");
+  expectFailure("simplify in.vtu -o out.qtet --threads 0", 2, "threads");
+  expectFailure("simplify in.vtu -o out.qtet --fields a,,b", 2, "empty name");
+  expectFailure("simplify in.vtu -o out.vtu", 2, ".qtet");
+  expectFailure("simplify a.vtu b.vtu -o out.qtet", 2, "positional");
+  expectFailure("extract a.qtet -o a.vtu", 2, "exactly one");
+  expectFailure("extract a.qtet -o a.vtu --level 1 --tets 5", 2, "exactly one");
+  expectFailure("extract a.qtet -o a.stl --level 1", 2, ".vtu");
+  expectFailure("sample pyramid -o a.vtu", 2, "box, fin");
+}
+
+TEST_F(Tool, filesAtFaultEndWithOne) {
+  expectFailure("simplify no.vtu -o out.qtet", 1, "not-found");
+  expectFailure("info no.qtet", 1, "no.qtet");
+  expectFailure("verify no.qtet", 1, "no.qtet");
+  expectFailure("sample box -o nowhere/box.vtu", 1, "nowhere");
+  std::ofstream(folder_ / "bad.qtet") << std::string(200, 'x');
+  expectFailure("info bad.qtet", 1, "bad-magic");
+  std::ofstream(folder_ / "bad.vtu") << "no mesh";
+  expectFailure("simplify bad.vtu -o out.qtet", 1, "bad.vtu");
+  EXPECT_FALSE(fs::exists(folder_ / "out.qtet"));
+}
+
+TEST_F(Tool, whatVtkSaysIsToldInOurForm) {
+  const Bytes whole = vtuBytes(boxSample());
+  std::ofstream file(folder_ / "hole.vtu", std::ios::binary);
+  file.write(reinterpret_cast<const char*>(whole.data()), 20000);
+  file.write(reinterpret_cast<const char*>(whole.data()) + whole.size() - 40, 40);
+  file.close();
+  expectFailure("simplify hole.vtu -o out.qtet", 1, "VTK could not read it");
+}
+
+TEST_F(Tool, anErrorIsAJsonObjectWhereJsonIsAsked) {
+  const Ran ran = run("simplify no.vtu -o out.qtet --json");
+  EXPECT_EQ(ran.code, 1);
+  EXPECT_EQ(ran.json()["error"]["code"], "not-found");
+}
+
+TEST_F(Tool, theInputIsNeverOverwritten) {
+  makeBoxLog();
+  fs::copy(folder_ / "box.vtu", folder_ / "same.qtet");
+  fs::create_symlink("same.qtet", folder_ / "link.qtet");
+  const std::string before = contentOf(folder_ / "same.qtet");
+  expectFailure("simplify same.qtet -o link.qtet", 1, "the input itself");
+  EXPECT_EQ(contentOf(folder_ / "same.qtet"), before);
+}
+
+TEST_F(Tool, simplifyReportsWhatItDid) {
+  ASSERT_EQ(run("sample box -o box.vtu").code, 0);
+  const Ran ran = run("simplify box.vtu -o box.qtet --json");
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const nlohmann::json report = ran.json();
+  EXPECT_EQ(report["tetrahedra"]["input"], 3072);
+  EXPECT_EQ(report["tetrahedra"]["full"], 3072);
+  EXPECT_GT(report["percentRemoved"], 90.0);
+  EXPECT_GT(report["levels"], 5);
+  EXPECT_EQ(report["bytes"], fs::file_size(folder_ / "box.qtet"));
+  EXPECT_GT(report["bitsPerTetrahedron"]["connectivity"], 0.0);
+  EXPECT_GT(report["bitsPerTetrahedron"]["fields"]["Scalar"], 0.0);
+  EXPECT_EQ(report["lattice"]["bits"], 16);
+  EXPECT_EQ(report["clean"]["components"], 1);
+  const nlohmann::json& parts = report["bytesOf"];
+  EXPECT_EQ(
+      parts["head"].get<int>() + parts["connectivity"].get<int>() + parts["positions"].get<int>() + parts["fields"]["Scalar"].get<int>(),
+      report["bytes"].get<int>());
+}
+
+TEST_F(Tool, infoTellsEveryLevel) {
+  makeBoxLog();
+  const nlohmann::json info = run("info box.qtet --json").json();
+  const nlohmann::json& levels = info["levels"];
+  ASSERT_GT(levels.size(), 5u);
+  EXPECT_EQ(levels.back()["tetrahedra"], 3072);
+  EXPECT_EQ(levels.back()["vertices"], 729);
+  EXPECT_EQ(levels.back()["cumulativeBytes"], fs::file_size(folder_ / "box.qtet"));
+  std::uint64_t sum = 0, tetrahedra = 0;
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    EXPECT_EQ(levels[i]["level"], i);
+    sum += levels[i]["bytes"].get<std::uint64_t>();
+    EXPECT_EQ(levels[i]["cumulativeBytes"], sum);
+    EXPECT_GE(levels[i]["tetrahedra"], tetrahedra);
+    tetrahedra = levels[i]["tetrahedra"];
+  }
+  EXPECT_EQ(info["fields"][0]["name"], "Scalar");
+  EXPECT_EQ(info["digest"].get<std::string>().size(), 64u);
+}
+
+TEST_F(Tool, extractChoosesTheLevel) {
+  makeBoxLog();
+  const nlohmann::json levels = run("info box.qtet --json").json()["levels"];
+  const auto cellsOf = [&](const std::string& option) {
+    const Ran ran = run("extract box.qtet -o level.vtu " + option);
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    const Result<ReadMesh> read = readMesh(folder_ / "level.vtu");
+    EXPECT_TRUE(read);
+    return read ? read->mesh.tetrahedra.size() : 0;
+  };
+  EXPECT_EQ(cellsOf("--level 0"), levels[0]["tetrahedra"]);
+  EXPECT_EQ(cellsOf("--level 7"), levels[7]["tetrahedra"]);
+  EXPECT_EQ(cellsOf("--ratio 1"), 3072u);
+  EXPECT_EQ(cellsOf("--ratio 0"), levels[0]["tetrahedra"]);
+  EXPECT_EQ(cellsOf("--tets 1"), levels[0]["tetrahedra"]);
+  EXPECT_EQ(cellsOf("--tets " + std::to_string(levels[9]["tetrahedra"].get<int>())), levels[9]["tetrahedra"]);
+  EXPECT_EQ(cellsOf("--tets " + std::to_string(levels[9]["tetrahedra"].get<int>() - 1)), levels[8]["tetrahedra"]);
+  expectFailure("extract box.qtet -o level.vtu --level 9999", 1, "no level 9999");
+}
+
+TEST_F(Tool, verifyProvesTheMesh) {
+  makeBoxLog();
+  const Ran ran = run("verify box.qtet --against box.vtu --json");
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_EQ(ran.json()["meshDigest"].get<std::string>().size(), 64u);
+  EXPECT_EQ(ran.json()["digest"], run("info box.qtet --json").json()["digest"]);
+  EXPECT_TRUE(ran.json()["against"]["sameMesh"].get<bool>());
+  EXPECT_LE(ran.json()["against"]["largestPositionErrorSteps"], 0.5 + 1e-9);
+}
+
+TEST_F(Tool, verifyFindsAnotherMesh) {
+  makeBoxLog();
+  TetMesh other = boxSample();
+  other.points[400][0] += 0.001;
+  write("moved.vtu", other);
+  expectFailure("verify box.qtet --against moved.vtu", 1, "vertex");
+  other = boxSample();
+  other.fields[0].values[100] += 0.01;
+  write("other.vtu", other);
+  expectFailure("verify box.qtet --against other.vtu", 1, "vertex");
+  other = boxSample();
+  other.tetrahedra.pop_back();
+  write("fewer.vtu", other);
+  expectFailure("verify box.qtet --against fewer.vtu", 1, "3071 tetrahedra");
+}
+
+TEST_F(Tool, verifyFindsAFlippedByteAnywhere) {
+  makeBoxLog();
+  const std::string whole = contentOf(folder_ / "box.qtet");
+  for (std::size_t at = 3; at < whole.size(); at += whole.size() / 40) {
+    std::string text = whole;
+    text[at] ^= 0x10;
+    std::ofstream(folder_ / "flipped.qtet", std::ios::binary) << text;
+    EXPECT_EQ(run("verify flipped.qtet").code, 1) << "byte " << at;
+  }
+  std::ofstream(folder_ / "cut.qtet", std::ios::binary) << whole.substr(0, whole.size() - 1);
+  EXPECT_EQ(run("verify cut.qtet").code, 1);
+}
+
+TEST_F(Tool, theSameInputGivesTheSameBytes) {
+  makeBoxLog();
+  ASSERT_EQ(run("simplify box.vtu -o again.qtet --threads 4").code, 0);
+  EXPECT_EQ(contentOf(folder_ / "box.qtet"), contentOf(folder_ / "again.qtet"));
+}
+
+TEST_F(Tool, fieldsCanBeLeftOut) {
+  ASSERT_EQ(run("sample box -o box.vtu").code, 0);
+  ASSERT_EQ(run("simplify box.vtu -o none.qtet --fields none").code, 0);
+  EXPECT_TRUE(run("info none.qtet --json").json()["fields"].empty());
+  EXPECT_EQ(run("verify none.qtet --against box.vtu").code, 0);
+  expectFailure("simplify box.vtu -o x.qtet --fields Speed", 1, "it has: Scalar");
+}
+
+TEST_F(Tool, aDirtyMeshIsCleanedReportedAndVerified) {
+  TetMesh mesh = boxSample();
+  mesh.tetrahedra.insert(mesh.tetrahedra.begin() + 5, {0, 0, 1, 2});
+  mesh.tetrahedra.push_back({mesh.tetrahedra[0][1], mesh.tetrahedra[0][0], mesh.tetrahedra[0][2], mesh.tetrahedra[0][3]});
+  std::swap(mesh.tetrahedra[7][0], mesh.tetrahedra[7][1]);
+  mesh.points.push_back({50, 50, 50});
+  mesh.fields[0].values.push_back(1000);
+  write("dirty.vtu", mesh);
+  const Ran ran = run("simplify dirty.vtu -o dirty.qtet --json");
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const nlohmann::json clean = ran.json()["clean"];
+  EXPECT_EQ(clean["repeatedVertexCells"]["first"][0], 5);
+  EXPECT_EQ(clean["duplicateCells"]["first"][0], 3073);
+  EXPECT_EQ(clean["reorientedCells"]["first"][0], 7);
+  EXPECT_EQ(clean["unusedPoints"]["first"][0], 729);
+  EXPECT_NE(ran.err.find("qtet: note: "), std::string::npos);
+  EXPECT_EQ(run("verify dirty.qtet --against dirty.vtu").code, 0);
+}
+
+}  // namespace
+}  // namespace qtet

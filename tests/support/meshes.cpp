@@ -1,0 +1,176 @@
+#include "tests/support/meshes.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <map>
+#include <random>
+#include <set>
+
+#include "codec/atomic_file.h"
+#include "codec/boundary.h"
+#include "codec/growing_mesh.h"
+#include "codec/log_writer.h"
+#include "codec/predicates.h"
+#include "simplify/qtetfusion.h"
+
+namespace qtet::testing {
+namespace {
+
+constexpr std::int32_t kCube = 64;  // lattice steps a cube
+
+void addCube(LatticeMesh& mesh, const std::function<VertexId(int, int, int)>& vertex, int i, int j, int k) {
+  static constexpr std::array<std::array<int, 3>, 6> kOrders{{{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
+  for (const auto& order : kOrders) {  // Kuhn: a path from corner to corner for each order of the axes
+    std::array<int, 3> at{i, j, k};
+    Tetrahedron t{vertex(at[0], at[1], at[2])};
+    for (std::size_t s = 0; s < 3; ++s) {
+      ++at[static_cast<std::size_t>(order[s])];
+      t[s + 1] = vertex(at[0], at[1], at[2]);
+    }
+    if (orientation(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]) < 0) std::swap(t[2], t[3]);
+    mesh.tetrahedra.push_back(t);
+  }
+}
+
+void dropUnused(LatticeMesh& mesh) {
+  std::vector<VertexId> renumbered(mesh.points.size(), kGhost);
+  std::vector<VertexId> kept;
+  for (Tetrahedron& t : mesh.tetrahedra)
+    for (VertexId& v : t) {
+      if (renumbered[v] == kGhost) renumbered[v] = static_cast<VertexId>(kept.size()), kept.push_back(v);
+      v = renumbered[v];
+    }
+  for (Triangle& t : mesh.boundary)
+    for (VertexId& v : t) v = renumbered[v];
+  LatticeMesh old = mesh;
+  mesh.points.clear();
+  for (const VertexId v : kept) mesh.points.push_back(old.points[v]);
+  for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
+    const auto n = static_cast<std::ptrdiff_t>(mesh.fields[f].components);
+    mesh.values[f].clear();
+    for (const VertexId v : kept) mesh.values[f].insert(mesh.values[f].end(), old.values[f].begin() + v * n, old.values[f].begin() + (v + 1) * n);
+  }
+}
+
+}  // namespace
+
+LatticeMesh gridMesh(int n, std::uint32_t seed, const std::function<bool(int, int, int)>& keep) {
+  std::mt19937 random(seed);
+  LatticeMesh mesh;
+  mesh.lattice = {12, 1.0 / kCube, {0, 0, 0}};
+  const auto vertex = [n](int i, int j, int k) { return static_cast<VertexId>((i * (n + 1) + j) * (n + 1) + k); };
+  for (int i = 0; i <= n; ++i)
+    for (int j = 0; j <= n; ++j)
+      for (int k = 0; k <= n; ++k) {
+        LatticePoint p{i * kCube, j * kCube, k * kCube};
+        const std::array<int, 3> at{i, j, k};
+        for (std::size_t a = 0; a < 3; ++a)
+          if (at[a] > 0 && at[a] < n) p[a] += static_cast<std::int32_t>(random() % (kCube / 4)) - kCube / 8;
+        mesh.points.push_back(p);
+      }
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      for (int k = 0; k < n; ++k)
+        if (keep(i, j, k)) addCube(mesh, vertex, i, j, k);
+  dropUnused(mesh);
+  mesh.boundary = boundaryOf(mesh.tetrahedra);
+  mesh.fields = {{"Height", 1, "float32", "point", 12, 0.25, {-3}, {-3, 1020}}, {"Swirl", 3, "float64", "point", 10, 0.5, {0, 0, -1}, {0, 900}}};
+  mesh.values.resize(2);
+  for (const LatticePoint& p : mesh.points) {
+    mesh.values[0].push_back((p[0] * p[0] + 3 * p[2]) % 4096);
+    for (const std::int32_t x : {p[1], p[2] - p[0] + 500, p[0] / 2}) mesh.values[1].push_back(x);
+  }
+  return mesh;
+}
+
+LatticeMesh meshOfHistory(const FusionHistory& history, std::uint32_t undone) {
+  FusionHistory h = history;
+  for (std::size_t i = h.fusions.size(); i-- > 0;) {
+    const Fusion& f = h.fusions[i];
+    if (h.levels - f.level > undone) break;
+    for (std::uint32_t j = 0; j < f.affectedCount; ++j)
+      std::ranges::replace(h.cells[h.affectedCells[f.firstAffected + j]], f.fused, f.prey[h.affectedLabels[f.firstAffected + j]]);
+    for (std::uint32_t j = 0; j < f.deletedCount; ++j) h.live[h.deletedCells[f.firstDeleted + j]] = 1;
+  }
+  LatticeMesh mesh;
+  mesh.lattice = h.lattice;
+  mesh.points = h.points;
+  mesh.fields = h.fields;
+  mesh.values = h.values;
+  for (std::size_t c = 0; c < h.cells.size(); ++c) {
+    if (!h.live[c]) continue;
+    const auto ghost = static_cast<std::size_t>(std::ranges::find(h.cells[c], kGhost) - h.cells[c].begin());
+    if (ghost == 4) {
+      mesh.tetrahedra.push_back(h.cells[c]);
+    } else {
+      const auto face = withLast(h.cells[c], ghost);
+      mesh.boundary.push_back({face[0], face[1], face[2]});
+    }
+  }
+  dropUnused(mesh);
+  return mesh;
+}
+
+std::array<std::int64_t, 2> eulerCharacteristics(const LatticeMesh& mesh) {
+  const auto count = [](const auto& cells, std::size_t corners) {
+    std::set<std::vector<VertexId>> simplices;
+    for (const auto& c : cells)
+      for (unsigned mask = 1; mask < (1u << corners); ++mask) {
+        std::vector<VertexId> s;
+        for (unsigned i = 0; i < corners; ++i)
+          if (mask >> i & 1) s.push_back(c[i]);
+        std::ranges::sort(s);
+        simplices.insert(std::move(s));
+      }
+    std::int64_t chi = 0;
+    for (const auto& s : simplices) chi += s.size() % 2 == 1 ? 1 : -1;
+    return chi;
+  };
+  return {count(mesh.tetrahedra, 4), count(mesh.boundary, 3)};
+}
+
+std::string whatIsWrongWith(const LatticeMesh& mesh) {
+  for (std::size_t i = 0; i < mesh.tetrahedra.size(); ++i) {
+    const Tetrahedron& t = mesh.tetrahedra[i];
+    if (orientation(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]) <= 0) return "cell " + std::to_string(i) + " is not positive";
+  }
+  std::map<Triangle, int> faces;
+  for (const Tetrahedron& t : mesh.tetrahedra)
+    for (int i = 0; i < 4; ++i) {
+      Triangle f = cellFace(t, i);
+      std::ranges::sort(f);
+      if (++faces[f] > 2) return "a face of three cells";
+    }
+  const auto turned = [](std::vector<Triangle> triangles) {
+    for (Triangle& t : triangles) std::ranges::rotate(t, std::ranges::min_element(t));
+    std::ranges::sort(triangles);
+    return triangles;
+  };
+  return turned(mesh.boundary) == turned(boundaryOf(mesh.tetrahedra)) ? "" : "the boundary is not that of the cells";
+}
+
+std::filesystem::path writeSampleLog(const std::filesystem::path& folder, const std::string& name, int n, std::uint32_t seed,
+                                     std::uint32_t chunkBytes) {
+  const auto history = simplify(gridMesh(n, seed), {});
+  if (!history) throw std::runtime_error(history.error().text());
+  LogWriterOptions options;
+  options.source = name + ".vtu";
+  options.generator = "qtet test";
+  options.chunkBytes = chunkBytes;
+  const auto log = encodeLog(*history, options);
+  if (!log) throw std::runtime_error(log.error().text());
+  const std::filesystem::path path = folder / (name + ".qtet");
+  if (const auto written = writeFileAtomically(path, log->bytes); !written) throw std::runtime_error(written.error().text());
+  return path;
+}
+
+std::filesystem::path freshFolder(const std::string& name) {
+  const auto folder = std::filesystem::temp_directory_path() / ("qtet-test-" + std::to_string(getpid())) / name;
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+  return folder;
+}
+
+}  // namespace qtet::testing

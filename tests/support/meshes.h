@@ -1,0 +1,35 @@
+// Meshes for tests: small, on the lattice, deterministic, of any topology.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+
+#include "codec/fusion_history.h"
+#include "codec/mesh.h"
+
+namespace qtet::testing {
+
+/// A grid of n cubes a side, six tetrahedra each, its inner points moved at random by up to a quarter of a cube; cubes for which
+/// `keep(i, j, k)` is false are left out, so that tunnels, voids and several components can be cut. Two point fields: "Height" (a scalar)
+/// and "Swirl" (a vector).
+[[nodiscard]] LatticeMesh gridMesh(int n, std::uint32_t seed, const std::function<bool(int, int, int)>& keep = [](int, int, int) { return true; });
+
+/// The mesh that is left of a history after its last `undone` levels have been taken back, in the history's numbering.
+[[nodiscard]] LatticeMesh meshOfHistory(const FusionHistory& history, std::uint32_t undone);
+
+/// Vertices - edges + faces - cells of the solid, and vertices - edges + triangles of its boundary.
+[[nodiscard]] std::array<std::int64_t, 2> eulerCharacteristics(const LatticeMesh& mesh);
+
+/// Every cell positive, no face of three cells, and `boundary` = the faces of one cell, with their orientation. The text says what is wrong.
+[[nodiscard]] std::string whatIsWrongWith(const LatticeMesh& mesh);
+
+/// A small real log (gridMesh simplified and encoded into chunks of about `chunkBytes`) as the file `name`.qtet in `folder`.
+std::filesystem::path writeSampleLog(const std::filesystem::path& folder, const std::string& name = "sample", int n = 6, std::uint32_t seed = 1,
+                                     std::uint32_t chunkBytes = 2048);
+
+/// A folder of the test's own, emptied.
+[[nodiscard]] std::filesystem::path freshFolder(const std::string& name);
+
+}  // namespace qtet::testing

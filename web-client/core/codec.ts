@@ -1,0 +1,157 @@
+// The WebAssembly codec (codec/wasm_api.h) with types: bytes in, views of the growing mesh out. One log a codec.
+
+import {QtetError} from './errors';
+
+/** What the session needs of a codec; tests bring their own. */
+export interface Codec {
+  open(head: Uint8Array): void;
+  readonly chunkCount: number;
+  blockSize(chunk: number, part: number): number;
+  blockValues(chunk: number): number;
+  blockCodec(chunk: number, part: number): number;
+  /** Throws `bad-checksum` when the bytes are not the block's. */
+  checkBlock(chunk: number, part: number, bytes: Uint8Array): void;
+  apply(chunk: number, structure: Uint8Array, positions: Int32Array): void;
+  applyField(field: number, chunk: number, values: Int32Array): void;
+  readonly chunksApplied: number;
+  fieldChunksApplied(field: number): number;
+  readonly level: number;
+  readonly vertexCount: number;
+  readonly tetrahedronCount: number;
+  readonly boundaryCount: number;
+  /** Views into the codec's memory, valid until the next apply. */
+  points(): Int32Array;
+  tetrahedra(): Uint32Array;
+  boundary(): Uint32Array;
+  /** Null while the field has no chunk. */
+  field(field: number, components: number): Int32Array | null;
+  /** SHA-256 of the mesh, lower-case hexadecimal. */
+  digest(): string;
+}
+
+/** CodecId of codec/log_index.h. */
+export const kDracoCodec = 2;
+
+/** Names by ErrorCode of proto/error.h. */
+const kErrorCodes = [
+  'truncated', 'bad-magic', 'bad-version', 'bad-checksum', 'bad-value', 'limit-exceeded', 'bad-codec', 'bad-order', 'not-found',
+  'bad-input', 'io',
+];
+
+interface Exports {
+  memory: WebAssembly.Memory;
+  _initialize?(): void;
+  qtet_alloc(bytes: number): number;
+  qtet_free(address: number): void;
+  qtet_open(head: number, bytes: number): number;
+  qtet_error(): number;
+  qtet_chunk_count(): number;
+  qtet_block_size(chunk: number, part: number): number;
+  qtet_block_values(chunk: number): number;
+  qtet_block_codec(chunk: number, part: number): number;
+  qtet_check_block(chunk: number, part: number, bytes: number, size: number): number;
+  qtet_apply(chunk: number, structure: number, size: number, positions: number, count: number): number;
+  qtet_apply_field(field: number, chunk: number, values: number, count: number): number;
+  qtet_chunks_applied(): number;
+  qtet_field_chunks_applied(field: number): number;
+  qtet_level(): number;
+  qtet_vertex_count(): number;
+  qtet_tetrahedron_count(): number;
+  qtet_boundary_count(): number;
+  qtet_points(): number;
+  qtet_tetrahedra(): number;
+  qtet_boundary(): number;
+  qtet_field(field: number): number;
+  qtet_digest(out: number): void;
+}
+
+export class WasmCodec implements Codec {
+  private constructor(private readonly wasm: Exports) {}
+
+  static async create(module: WebAssembly.Module): Promise<WasmCodec> {
+    const instance = await WebAssembly.instantiate(module, stubbedImports(module));
+    const wasm = instance.exports as unknown as Exports;
+    wasm._initialize?.();
+    return new WasmCodec(wasm);
+  }
+
+  open(head: Uint8Array): void {
+    this.with([head], ([address]) => this.wasm.qtet_open(address!, head.length));
+  }
+
+  get chunkCount(): number { return this.wasm.qtet_chunk_count() >>> 0; }
+  blockSize(chunk: number, part: number): number { return this.wasm.qtet_block_size(chunk, part) >>> 0; }
+  blockValues(chunk: number): number { return this.wasm.qtet_block_values(chunk) >>> 0; }
+  blockCodec(chunk: number, part: number): number { return this.wasm.qtet_block_codec(chunk, part) >>> 0; }
+
+  checkBlock(chunk: number, part: number, bytes: Uint8Array): void {
+    this.with([bytes], ([address]) => this.wasm.qtet_check_block(chunk, part, address!, bytes.length));
+  }
+
+  apply(chunk: number, structure: Uint8Array, positions: Int32Array): void {
+    this.with([structure, bytesOf(positions)], ([from, values]) =>
+      this.wasm.qtet_apply(chunk, from!, structure.length, values!, positions.length));
+  }
+
+  applyField(field: number, chunk: number, values: Int32Array): void {
+    this.with([bytesOf(values)], ([address]) => this.wasm.qtet_apply_field(field, chunk, address!, values.length));
+  }
+
+  get chunksApplied(): number { return this.wasm.qtet_chunks_applied() >>> 0; }
+  fieldChunksApplied(field: number): number { return this.wasm.qtet_field_chunks_applied(field) >>> 0; }
+  get level(): number { return this.wasm.qtet_level() >>> 0; }
+  get vertexCount(): number { return this.wasm.qtet_vertex_count() >>> 0; }
+  get tetrahedronCount(): number { return this.wasm.qtet_tetrahedron_count() >>> 0; }
+  get boundaryCount(): number { return this.wasm.qtet_boundary_count() >>> 0; }
+
+  points(): Int32Array { return new Int32Array(this.wasm.memory.buffer, this.wasm.qtet_points() >>> 0, 3 * this.vertexCount); }
+  tetrahedra(): Uint32Array {
+    return new Uint32Array(this.wasm.memory.buffer, this.wasm.qtet_tetrahedra() >>> 0, 4 * this.tetrahedronCount);
+  }
+  boundary(): Uint32Array {
+    return new Uint32Array(this.wasm.memory.buffer, this.wasm.qtet_boundary() >>> 0, 3 * this.boundaryCount);
+  }
+  field(field: number, components: number): Int32Array | null {
+    const address = this.wasm.qtet_field(field) >>> 0;
+    return address === 0 ? null : new Int32Array(this.wasm.memory.buffer, address, components * this.vertexCount);
+  }
+
+  digest(): string {
+    const out = this.wasm.qtet_alloc(32) >>> 0;
+    this.wasm.qtet_digest(out);
+    const bytes = [...new Uint8Array(this.wasm.memory.buffer, out, 32)];
+    this.wasm.qtet_free(out);
+    return bytes.map((byte) => byte.toString(16).padStart(2, '0')).join('');
+  }
+
+  /** Copies the blocks into the module, calls `use` with their addresses, frees them, and throws what the call reports. */
+  private with(blocks: Uint8Array[], use: (addresses: number[]) => number): void {
+    const addresses = blocks.map((bytes) => {
+      const address = this.wasm.qtet_alloc(Math.max(bytes.length, 1)) >>> 0;
+      if (address === 0) throw new QtetError('limit-exceeded', 'This mesh needs more memory than the browser gives to a page.');
+      new Uint8Array(this.wasm.memory.buffer, address, bytes.length).set(bytes);
+      return address;
+    });
+    const result = use(addresses);
+    for (const address of addresses) this.wasm.qtet_free(address);
+    if (result !== 0) throw new QtetError(kErrorCodes[result - 1] ?? 'internal', this.lastError());
+  }
+
+  private lastError(): string {
+    const from = this.wasm.qtet_error() >>> 0;
+    const memory = new Uint8Array(this.wasm.memory.buffer);
+    return new TextDecoder().decode(memory.slice(from, memory.indexOf(0, from)));
+  }
+}
+
+function bytesOf(values: Int32Array): Uint8Array {
+  return new Uint8Array(values.buffer, values.byteOffset, values.byteLength);
+}
+
+/** libc++'s abort path links three WASI calls that are never of use here; every import answers "bad file". */
+function stubbedImports(module: WebAssembly.Module): WebAssembly.Imports {
+  const kBadFile = 8;
+  const imports: Record<string, Record<string, () => number>> = {};
+  for (const {module: from, name} of WebAssembly.Module.imports(module)) (imports[from] ??= {})[name] = () => kBadFile;
+  return imports;
+}

@@ -1,0 +1,34 @@
+// From a field's integers to one number a vertex: the value, or the magnitude of a vector, in [0, 1] over the field's range.
+
+import type {FieldInfo} from './manifest';
+
+export class FieldScale {
+  private readonly low: number;
+  private readonly inverseSpan: number;
+  private readonly components: number;
+  private readonly step: number;
+  private readonly minimum: number[];
+
+  /** `values` holds `info.components` integers a vertex. */
+  constructor(private readonly values: Int32Array, info: FieldInfo) {
+    const span = info.range[1] - info.range[0];
+    this.low = info.range[0];
+    this.inverseSpan = span > 0 ? 1 / span : 0;
+    this.components = info.components;
+    this.step = info.step;
+    this.minimum = info.minimum;
+  }
+
+  /** Relative to the range, so that a small range round a large value keeps its digits in 32-bit floats. */
+  at(vertex: number): number {
+    if (this.components === 1) {
+      return (this.minimum[0]! + this.step * this.values[vertex]! - this.low) * this.inverseSpan;
+    }
+    let sum = 0;
+    for (let c = 0; c < this.components; ++c) {
+      const value = this.minimum[c]! + this.step * this.values[vertex * this.components + c]!;
+      sum += value * value;
+    }
+    return (Math.sqrt(sum) - this.low) * this.inverseSpan;
+  }
+}

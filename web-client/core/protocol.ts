@@ -1,0 +1,107 @@
+// The wire in TypeScript: messages and the binary frame of proto/PROTOCOL.md, read with every count checked.
+
+import {QtetError} from './errors';
+
+export const kSubprotocol = 'qtet.v1';
+export const kFrameHeaderBytes = 16;
+/** `firstPart` of the frame that holds the file's header, manifest and chunk table. */
+export const kHeadPart = 0xffff;
+/** Parts of a chunk, in file order: structure, positions, then one block a field. */
+export const kStructurePart = 0;
+export const kPositionsPart = 1;
+export const kFirstFieldPart = 2;
+
+export interface OpenRequest {
+  mesh: string;
+  fields: string[];
+  have: {chunks: number; fields: Record<string, number>};
+  credit: number;
+  digest?: string;
+}
+
+export type ServerMessage =
+  | {type: 'opened'; stream: number; mesh: string; digest: string; bytes: number; planned: number}
+  | {type: 'done'; stream: number}
+  | {type: 'stopped'; stream: number}
+  | {type: 'error'; code: string; detail: string};
+
+export interface Frame {
+  stream: number;
+  chunk: number;
+  firstPart: number;
+  parts: number;
+  payload: Uint8Array;
+}
+
+export function openMessage(request: OpenRequest): string {
+  return JSON.stringify({type: 'open', ...request});
+}
+
+export function creditMessage(bytes: number): string {
+  return JSON.stringify({type: 'credit', bytes});
+}
+
+export function stopMessage(): string {
+  return JSON.stringify({type: 'stop'});
+}
+
+/** Reads a binary message. Throws `bad-message` when it is not one frame exactly. */
+export function parseFrame(buffer: ArrayBuffer): Frame {
+  if (buffer.byteLength < kFrameHeaderBytes) {
+    throw badMessage(`a binary message of ${buffer.byteLength} bytes is shorter than its ${kFrameHeaderBytes}-byte header`);
+  }
+  const view = new DataView(buffer);
+  const size = view.getUint32(12, true);
+  if (size !== buffer.byteLength - kFrameHeaderBytes) {
+    throw badMessage(`a frame says ${size} payload bytes and holds ${buffer.byteLength - kFrameHeaderBytes}`);
+  }
+  return {
+    stream: view.getUint32(0, true),
+    chunk: view.getUint32(4, true),
+    firstPart: view.getUint16(8, true),
+    parts: view.getUint16(10, true),
+    payload: new Uint8Array(buffer, kFrameHeaderBytes, size),
+  };
+}
+
+/** Reads a text message; unknown types give null, so that a later server may say more. */
+export function parseServerMessage(text: string): ServerMessage | null {
+  let json: unknown;
+  try {
+    json = JSON.parse(text);
+  } catch {
+    throw badMessage('a text message is not JSON');
+  }
+  if (typeof json !== 'object' || json === null) throw badMessage('a text message is not a JSON object');
+  const message = json as Record<string, unknown>;
+  switch (message.type) {
+    case 'opened':
+      return {
+        type: 'opened', stream: numberOf(message, 'stream'), mesh: textOf(message, 'mesh'), digest: textOf(message, 'digest'),
+        bytes: numberOf(message, 'bytes'), planned: numberOf(message, 'planned'),
+      };
+    case 'done':
+    case 'stopped':
+      return {type: message.type, stream: numberOf(message, 'stream')};
+    case 'error':
+      return {type: 'error', code: textOf(message, 'code'), detail: textOf(message, 'detail')};
+    default:
+      return null;
+  }
+}
+
+function numberOf(message: Record<string, unknown>, key: string): number {
+  const value = message[key];
+  if (typeof value !== 'number' || !Number.isSafeInteger(value) || value < 0) throw badMessage(`"${key}" is not a count`);
+  return value;
+}
+
+function textOf(message: Record<string, unknown>, key: string): string {
+  const value = message[key];
+  if (typeof value !== 'string') throw badMessage(`"${key}" is not a text`);
+  return value;
+}
+
+function badMessage(what: string): QtetError {
+  return new QtetError('bad-message', `The server sent something that is not qtet.v1: ${what}.`);
+}

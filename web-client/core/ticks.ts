@@ -1,0 +1,62 @@
+// Numbers beside a colour bar: round steps of 1, 2 or 5, written short, with one power of ten taken out where it helps.
+
+export interface Tick {
+  /** In [0, 1] along the bar. */
+  at: number;
+  label: string;
+}
+
+export interface Ticks {
+  ticks: Tick[];
+  /** What the labels are multiplied by, as text ("× 10⁵"); empty for one. */
+  factor: string;
+}
+
+const kSuperscripts = '⁰¹²³⁴⁵⁶⁷⁸⁹';
+/** Values are written as they are from 10^-3 up to below 10^5. */
+const kPlainFrom = -3;
+const kPlainBelow = 5;
+const kMinus = '\u2212';
+
+/** At most `most` (2 or more) ticks inside [low, high]. A range without width gives one tick, in the middle. */
+export function niceTicks(low: number, high: number, most: number): Ticks {
+  const largest = Math.max(Math.abs(low), Math.abs(high));
+  const exponent = largest > 0 ? Math.floor(Math.log10(largest) + 1e-9) : 0;
+  const power = exponent < kPlainFrom || exponent >= kPlainBelow ? exponent : 0;
+  const unit = 10 ** power;
+  const factor = power === 0 ? '' : `× 10${superscript(power)}`;
+  if (!(high > low)) return {ticks: [{at: 0.5, label: label(low / unit, 3, true)}], factor};
+  const step = niceStep(low / unit, high / unit, most);
+  const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+  const ticks: Tick[] = [];
+  for (let i = firstTick(low / unit, step); i <= lastTick(high / unit, step); ++i) {
+    const at = (i * step * unit - low) / (high - low);
+    ticks.push({at: Math.min(1, Math.max(0, at)), label: label(i * step, decimals, false)});
+  }
+  return {ticks, factor};
+}
+
+/** The smallest step of 1, 2 or 5 times a power of ten that puts at most `most` ticks inside [low, high]. */
+function niceStep(low: number, high: number, most: number): number {
+  const power = 10 ** (Math.floor(Math.log10((high - low) / most)) - 1);
+  for (let unit = power; ; unit *= 10) {
+    for (const factor of [1, 2, 5]) {
+      const step = factor * unit;
+      if (lastTick(high, step) - firstTick(low, step) + 1 <= most) return step;
+    }
+  }
+}
+
+function firstTick(low: number, step: number): number { return Math.ceil(low / step - 1e-6); }
+function lastTick(high: number, step: number): number { return Math.floor(high / step + 1e-6); }
+
+function label(value: number, decimals: number, short: boolean): string {
+  const fixed = Math.abs(value).toFixed(Math.min(decimals, 20));
+  const digits = short ? String(Number(fixed)) : fixed;
+  return value < 0 && Number(digits) !== 0 ? kMinus + digits : digits;
+}
+
+function superscript(power: number): string {
+  const digits = [...String(Math.abs(power))].map((digit) => kSuperscripts[Number(digit)]).join('');
+  return power < 0 ? `⁻${digits}` : digits;
+}

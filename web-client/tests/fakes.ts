@@ -1,0 +1,112 @@
+// Stand-ins for the network and the codec: small, and strict about order, so that a wrong call fails a test.
+
+import type {Codec} from '../core/codec';
+import type {ValueDecoder} from '../core/draco';
+import {QtetError} from '../core/errors';
+import {kFirstFieldPart, kFrameHeaderBytes, kHeadPart} from '../core/protocol';
+import type {Socket} from '../core/transport';
+
+export class FakeSocket implements Socket {
+  binaryType = '';
+  onopen: ((event: never) => void) | null = null;
+  onmessage: ((event: {data: unknown}) => void) | null = null;
+  onclose: ((event: {code: number; reason: string}) => void) | null = null;
+  sent: Record<string, unknown>[] = [];
+  closed = false;
+
+  send(data: string): void { this.sent.push(JSON.parse(data) as Record<string, unknown>); }
+  close(): void { this.closed = true; }
+
+  accept(): void { this.onopen?.(undefined as never); }
+  deliver(data: unknown): void { this.onmessage?.({data}); }
+  lose(code: number): void { this.onclose?.({code, reason: ''}); }
+  sentOf(type: string): Record<string, unknown>[] { return this.sent.filter((message) => message.type === type); }
+}
+
+export function frame(options: {stream: number; chunk?: number; firstPart?: number; parts?: number; payload?: Uint8Array}): ArrayBuffer {
+  const payload = options.payload ?? new Uint8Array(0);
+  const bytes = new Uint8Array(kFrameHeaderBytes + payload.length);
+  const view = new DataView(bytes.buffer);
+  view.setUint32(0, options.stream, true);
+  view.setUint32(4, options.chunk ?? 0, true);
+  view.setUint16(8, options.firstPart ?? 0, true);
+  view.setUint16(10, options.parts ?? 0, true);
+  view.setUint32(12, payload.length, true);
+  bytes.set(payload, kFrameHeaderBytes);
+  return bytes.buffer;
+}
+
+export interface FakeLog {
+  fields: string[];
+  chunks: number;
+}
+
+/** Every block of a fake log is 10 bytes. */
+export const kFakeBlockBytes = 10;
+
+export function fakeHead({fields, chunks}: FakeLog): Uint8Array {
+  const manifest = new TextEncoder().encode(JSON.stringify({
+    generator: 'fake', layout: 'stream', source: 'fake.vtu', lattice: {bits: 16, step: 1, origin: [0, 0, 0]},
+    fields: fields.map((name) => (
+      {name, components: 1, type: 'float32', association: 'point', bits: 8, step: 1, minimum: [0], range: [0, 255]})),
+    levels: Array.from({length: chunks}, (_, level) => (
+      {level, tetrahedra: level + 1, vertices: level + 4, boundaryTriangles: 4, chunk: level})),
+  }));
+  const head = new Uint8Array(64 + manifest.length);
+  new DataView(head.buffer).setUint32(24, manifest.length, true);
+  head.set(manifest, 64);
+  return head;
+}
+
+export function headFrame(stream: number, log: FakeLog): ArrayBuffer {
+  return frame({stream, firstPart: kHeadPart, payload: fakeHead(log)});
+}
+
+export function meshFrame(stream: number, chunk: number): ArrayBuffer {
+  return frame({stream, chunk, firstPart: 0, parts: 2, payload: new Uint8Array(2 * kFakeBlockBytes)});
+}
+
+export function fieldFrame(stream: number, chunk: number, field: number): ArrayBuffer {
+  return frame({stream, chunk, firstPart: kFirstFieldPart + field, parts: 1, payload: new Uint8Array(kFakeBlockBytes)});
+}
+
+/** Counts what is applied, in order; chunk n gives a mesh of n + 1 tetrahedra. */
+export class FakeCodec implements Codec {
+  chunksApplied = 0;
+  corrupt = -1;
+  private fieldChunks: number[] = [];
+
+  constructor(private readonly log: FakeLog) {}
+
+  open(): void {
+    this.chunksApplied = 0;
+    this.fieldChunks = this.log.fields.map(() => 0);
+  }
+  get chunkCount(): number { return this.log.chunks; }
+  blockSize(): number { return kFakeBlockBytes; }
+  blockValues(): number { return 1; }
+  blockCodec(): number { return 2; }
+  checkBlock(chunk: number): void {
+    if (chunk === this.corrupt) throw new QtetError('bad-checksum', `chunk ${chunk} is damaged`);
+  }
+  apply(chunk: number): void {
+    if (chunk !== this.chunksApplied) throw new QtetError('bad-order', `chunk ${chunk} after ${this.chunksApplied} chunks`);
+    ++this.chunksApplied;
+  }
+  applyField(field: number, chunk: number): void {
+    if (chunk !== this.fieldChunks[field] || chunk >= this.chunksApplied) throw new QtetError('bad-order', `field chunk ${chunk}`);
+    ++this.fieldChunks[field]!;
+  }
+  fieldChunksApplied(field: number): number { return this.fieldChunks[field]!; }
+  get level(): number { return Math.max(0, this.chunksApplied - 1); }
+  get vertexCount(): number { return 0; }
+  get tetrahedronCount(): number { return this.chunksApplied; }
+  get boundaryCount(): number { return 0; }
+  points(): Int32Array { return new Int32Array(0); }
+  tetrahedra(): Uint32Array { return new Uint32Array(0); }
+  boundary(): Uint32Array { return new Uint32Array(0); }
+  field(field: number): Int32Array | null { return this.fieldChunks[field]! > 0 ? new Int32Array(0) : null; }
+  digest(): string { return 'fake'; }
+}
+
+export const kFakeValues: ValueDecoder = {decode: () => new Int32Array(0)};

@@ -1,0 +1,24 @@
+import {afterEach, beforeEach, expect, test, vi} from 'vitest';
+import {kLongestDelayMs} from '../core/backoff';
+import {kMostAttempts, retry} from '../core/retry';
+
+beforeEach(() => void vi.useFakeTimers());
+afterEach(() => void vi.useRealTimers());
+
+test('whatFailsForAWhileSucceedsInTheEnd', async () => {
+  let calls = 0;
+  const result = retry(async () => {
+    if (++calls < 4) throw new Error('no network');
+    return calls;
+  });
+  await vi.advanceTimersByTimeAsync(4 * kLongestDelayMs);
+  expect(await result).toBe(4);
+});
+
+test('whatNeverSucceedsFailsWithItsLastError', async () => {
+  let calls = 0;
+  const result = retry(() => Promise.reject(new Error(`call ${++calls}`)));
+  const caught = result.catch((thrown: Error) => thrown.message);
+  await vi.advanceTimersByTimeAsync(kMostAttempts * kLongestDelayMs);
+  expect(await caught).toBe(`call ${kMostAttempts}`);
+});

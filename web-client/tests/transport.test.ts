@@ -1,0 +1,101 @@
+import {afterEach, beforeEach, expect, test, vi} from 'vitest';
+import {kFirstDelayMs, kLongestDelayMs, reconnectDelayMs} from '../core/backoff';
+import type {OpenRequest} from '../core/protocol';
+import {Transport, type TransportHandlers} from '../core/transport';
+import {FakeSocket, frame} from './fakes';
+
+const kOpen: OpenRequest = {mesh: 'm', fields: [], have: {chunks: 0, fields: {}}, credit: 80};
+
+let sockets: FakeSocket[];
+let heard: string[];
+let transport: Transport;
+
+beforeEach(() => {
+  vi.useFakeTimers();
+  sockets = [];
+  heard = [];
+  const handlers: TransportHandlers = {
+    connected: () => heard.push('connected'),
+    message: (message) => heard.push(message.type),
+    frame: ({chunk}) => heard.push(`chunk ${chunk}`),
+    down: (attempt, delayMs) => heard.push(`down ${attempt} ${delayMs}`),
+    failed: (error) => heard.push(`failed ${error.code}`),
+  };
+  const makeSocket = (): FakeSocket => {
+    sockets.push(new FakeSocket());
+    return sockets.at(-1)!;
+  };
+  transport = new Transport('ws://x/v1/stream', handlers, makeSocket, () => 0.5);
+  transport.connect();
+});
+
+afterEach(() => void vi.useRealTimers());
+
+test('framesAndRepliesOfASupersededStreamAreDropped', () => {
+  sockets[0]!.accept();
+  transport.open(kOpen);
+  transport.open(kOpen);
+  sockets[0]!.deliver(frame({stream: 1, chunk: 5}));
+  sockets[0]!.deliver('{"type":"done","stream":1}');
+  sockets[0]!.deliver(frame({stream: 2, chunk: 6}));
+  sockets[0]!.deliver('{"type":"done","stream":2}');
+  expect(heard).toEqual(['connected', 'chunk 6', 'done']);
+});
+
+test('creditGoesBackInPortionsOfAnEighthOfTheWindow', () => {
+  sockets[0]!.accept();
+  transport.open(kOpen);
+  for (let i = 0; i < 5; ++i) transport.applied(4);
+  expect(sockets[0]!.sentOf('credit')).toEqual([{type: 'credit', bytes: 12}]);
+});
+
+test('aLostConnectionComesBackLaterEachTimeAndCountsStreamsFromOneAgain', () => {
+  sockets[0]!.accept();
+  transport.open(kOpen);
+  sockets[0]!.lose(1006);
+  expect(heard.at(-1)).toBe(`down 1 ${reconnectDelayMs(0, 0.5)}`);
+  vi.advanceTimersByTime(reconnectDelayMs(0, 0.5) - 1);
+  expect(sockets).toHaveLength(1);
+  vi.advanceTimersByTime(1);
+  expect(sockets).toHaveLength(2);
+  sockets[1]!.lose(1006);
+  expect(heard.at(-1)).toBe(`down 2 ${reconnectDelayMs(1, 0.5)}`);
+  vi.advanceTimersByTime(kLongestDelayMs);
+  sockets[2]!.accept();
+  transport.open(kOpen);
+  sockets[2]!.deliver(frame({stream: 1, chunk: 0}));
+  expect(heard.at(-1)).toBe('chunk 0');
+  sockets[2]!.lose(1006);
+  expect(heard.at(-1)).toBe(`down 1 ${reconnectDelayMs(0, 0.5)}`);
+});
+
+test('aServerThatDoesNotUnderstandUsIsNotAskedAgain', () => {
+  sockets[0]!.accept();
+  sockets[0]!.lose(1008);
+  vi.advanceTimersByTime(10 * kLongestDelayMs);
+  expect(heard).toEqual(['connected', 'failed bad-message']);
+  expect(sockets).toHaveLength(1);
+});
+
+test('aFrameThatCannotBeReadEndsTheConversation', () => {
+  sockets[0]!.accept();
+  transport.open(kOpen);
+  sockets[0]!.deliver(new ArrayBuffer(3));
+  expect(heard.at(-1)).toBe('failed bad-message');
+  expect(sockets[0]!.closed).toBe(true);
+});
+
+test('disconnectEndsTheAttempts', () => {
+  sockets[0]!.lose(1006);
+  transport.disconnect();
+  vi.advanceTimersByTime(10 * kLongestDelayMs);
+  expect(sockets).toHaveLength(1);
+});
+
+test('delaysDoubleUpToTheLongestAndStayWithinTheirHalf', () => {
+  for (let attempt = 0; attempt < 40; ++attempt) {
+    const full = Math.min(kLongestDelayMs, kFirstDelayMs * 2 ** attempt);
+    expect(reconnectDelayMs(attempt, 0)).toBe(full / 2);
+    expect(reconnectDelayMs(attempt, 0.999999)).toBeLessThanOrEqual(full);
+  }
+});

@@ -1,0 +1,127 @@
+// The one material: a colour map over field values, cell edges, and a clip plane by discarding. Colours go out as they stand in the
+// table (sRGB, no tone mapping), so that a flat cut shows exactly what the legend shows.
+
+import {DataTexture, DoubleSide, LinearFilter, RGBAFormat, ShaderMaterial, Vector3, Vector4, type ColorRepresentation, Color} from 'three';
+import {colorTable, kColorMapEntries, type ColorMapName} from '../core/color_maps';
+
+const kVertexShader = /* glsl */ `
+  in float value;
+  out float vValue;
+  out vec3 vLattice;
+  out vec3 vView;
+  out vec3 vCorner;
+  void main() {
+    int corner = gl_VertexID % 3;
+    vCorner = vec3(corner == 0, corner == 1, corner == 2);
+    // The side opposite to the first corner is a quad's diagonal in triangles from firstHalf on.
+    if (gl_VertexID / 3 >= firstHalf) vCorner.x = 1.0;
+    vValue = value;
+    vLattice = position;
+    vec4 view = modelViewMatrix * vec4(position, 1.0);
+    vView = view.xyz;
+    gl_Position = projectionMatrix * view;
+  }`;
+
+const kFragmentShader = /* glsl */ `
+  in float vValue;
+  in vec3 vLattice;
+  in vec3 vView;
+  in vec3 vCorner;
+  uniform sampler2D colorMap;
+  uniform vec2 range;
+  uniform bool colored;
+  uniform vec3 plainColor;
+  uniform bool lit;
+  uniform vec4 clipPlane;
+  uniform float edgeStrength;
+  uniform float pixelRatio;
+
+  vec3 surfaceColor() {
+    if (!colored) return plainColor;
+    float t = clamp((vValue - range.x) / max(range.y - range.x, 1e-12), 0.0, 1.0);
+    // Entry centres, so that both ends of the range show the table's own ends.
+    return texture(colorMap, vec2((t * ${kColorMapEntries - 1}.0 + 0.5) / ${kColorMapEntries}.0, 0.5)).rgb;
+  }
+
+  // 1 on an edge, 0 inside; fades where triangles come down to a few pixels, which would else turn dark.
+  float edge() {
+    vec3 perPixel = max(fwidth(vCorner), 1e-6);
+    vec3 distance = smoothstep(vec3(0.0), perPixel * 0.85 * pixelRatio, vCorner);
+    float coverage = 1.0 - min(min(distance.x, distance.y), distance.z);
+    float density = max(max(perPixel.x, perPixel.y), perPixel.z) * pixelRatio;
+    return coverage * (1.0 - smoothstep(0.16, 0.8, density));
+  }
+
+  void main() {
+    if (dot(clipPlane.xyz, vLattice) > clipPlane.w) discard;
+    vec3 color = surfaceColor();
+    if (lit) {
+      // Flat shading from the screen's derivatives: cells look like cells. The light sits a little above the eye.
+      vec3 normal = normalize(cross(dFdx(vView), dFdy(vView)));
+      vec3 light = normalize(vec3(0.25, 0.45, 1.0));
+      float facing = abs(dot(normal, light));
+      color *= 0.64 + 0.40 * facing;
+      if (!gl_FrontFacing) color = mix(color, vec3(0.24, 0.26, 0.30), 0.55);
+    }
+    color = mix(color, color * 0.22, edgeStrength * edge());
+    gl_FragColor = vec4(min(color, 1.0), 1.0);
+  }`;
+
+/** No point is above this plane. */
+const kNoPlane = new Vector4(0, 0, 0, 1);
+
+export class FieldMaterial extends ShaderMaterial {
+  private table: ColorMapName | null = null;
+
+  /** `lit`: shaded as a surface; else flat, as a cut. */
+  constructor(lit: boolean) {
+    super({
+      vertexShader: `uniform int firstHalf;\n${kVertexShader}`,
+      fragmentShader: kFragmentShader,
+      side: DoubleSide,
+      uniforms: {
+        firstHalf: {value: 0}, colorMap: {value: emptyTexture()}, range: {value: [0, 1]}, colored: {value: false},
+        plainColor: {value: new Vector3(0.72, 0.74, 0.78)}, lit: {value: lit}, clipPlane: {value: kNoPlane.clone()},
+        edgeStrength: {value: 0.6}, pixelRatio: {value: 1},
+      },
+    });
+  }
+
+  setColorMap(name: ColorMapName): void {
+    if (name === this.table) return;
+    this.table = name;
+    const texture = this.uniforms.colorMap!.value as DataTexture;
+    (texture.image.data as Uint8Array).set(colorTable(name));
+    texture.needsUpdate = true;
+  }
+
+  /** Values from `low` to `high`, in the soup's units (0 to 1 over the field's range), span the colour map. */
+  setRange(low: number, high: number): void { this.uniforms.range!.value = [low, high]; }
+  setColored(colored: boolean): void { this.uniforms.colored!.value = colored; }
+  setFirstHalf(triangle: number): void { this.uniforms.firstHalf!.value = triangle; }
+  /** 0 hides the edges, 1 draws them at full strength. */
+  setEdges(strength: number): void { this.uniforms.edgeStrength!.value = strength; }
+  setPixelRatio(ratio: number): void { this.uniforms.pixelRatio!.value = Math.max(1, ratio); }
+  setPlainColor(color: ColorRepresentation): void {
+    const {r, g, b} = new Color().setStyle(String(color)).convertLinearToSRGB();
+    (this.uniforms.plainColor!.value as Vector3).set(r, g, b);
+  }
+
+  /** Hides what lies above normal . p = offset (lattice coordinates); null hides nothing. */
+  setClip(plane: {normal: [number, number, number]; offset: number} | null): void {
+    const clip = this.uniforms.clipPlane!.value as Vector4;
+    if (plane) clip.set(...plane.normal, plane.offset);
+    else clip.copy(kNoPlane);
+  }
+
+  override dispose(): void {
+    (this.uniforms.colorMap!.value as DataTexture).dispose();
+    super.dispose();
+  }
+}
+
+function emptyTexture(): DataTexture {
+  const texture = new DataTexture(new Uint8Array(4 * kColorMapEntries), kColorMapEntries, 1, RGBAFormat);
+  texture.minFilter = texture.magFilter = LinearFilter;
+  return texture;
+}

@@ -1,0 +1,33 @@
+// What a server has: GET /v1/meshes of proto/PROTOCOL.md.
+
+import {QtetError} from '../core/errors';
+
+export interface MeshEntry {
+  id: string;
+  tetrahedra: number;
+  fields: string[];
+}
+
+/** Throws a QtetError whose text tells what to do. */
+export async function fetchCatalog(base: URL): Promise<MeshEntry[]> {
+  const url = new URL('v1/meshes', base);
+  let response: Response;
+  try {
+    response = await fetch(url);
+  } catch {
+    throw new QtetError('offline', `The server at ${base.host} does not answer. Check the connection and try again.`);
+  }
+  if (!response.ok) throw new QtetError('http', `The server at ${base.host} answers "${response.status} ${response.statusText}" instead of its meshes.`);
+  const body = (await response.json().catch(() => null)) as {meshes?: unknown} | null;
+  if (!Array.isArray(body?.meshes)) throw new QtetError('bad-message', `${url.href} is not a list of meshes. Is this a qtet server?`);
+  return (body.meshes as Partial<MeshEntry>[]).map((mesh) => ({
+    id: String(mesh.id), tetrahedra: Number(mesh.tetrahedra ?? 0), fields: Array.isArray(mesh.fields) ? mesh.fields.map(String) : [],
+  }));
+}
+
+/** Address of the stream beside the HTTP address. */
+export function streamUrl(base: URL): string {
+  const url = new URL('v1/stream', base);
+  url.protocol = base.protocol === 'https:' ? 'wss:' : 'ws:';
+  return url.href;
+}
