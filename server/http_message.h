@@ -26,6 +26,7 @@ struct RequestView {
   std::optional<std::string_view> ifNoneMatch = std::nullopt;
   std::optional<std::string_view> ifModifiedSince = std::nullopt;
   std::optional<std::string_view> ifUnmodifiedSince = std::nullopt;
+  std::optional<std::string_view> acceptEncoding = std::nullopt;
 };
 
 /// A level that somebody has to make before it can be sent.

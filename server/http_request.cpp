@@ -59,7 +59,8 @@ RequestView viewOf(const RequestHeader& header) {
           .ifMatch = headerValue(header, http::field::if_match),
           .ifNoneMatch = headerValue(header, http::field::if_none_match),
           .ifModifiedSince = headerValue(header, http::field::if_modified_since),
-          .ifUnmodifiedSince = headerValue(header, http::field::if_unmodified_since)};
+          .ifUnmodifiedSince = headerValue(header, http::field::if_unmodified_since),
+          .acceptEncoding = headerValue(header, http::field::accept_encoding)};
 }
 
 std::optional<Reply> refusalOf(const RequestHeader& header) {

@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "proto/checksum.h"
+#include "server/content_coding.h"
 #include "server/descriptions.h"
 #include "server/http_conditions.h"
 
@@ -203,7 +204,12 @@ Reply Router::viewerReply(const RequestView& request, const RequestTarget& targe
   if (file == nullptr) return notFound("the viewer has no file of that name; its page is at /");
   Resource resource{{file->etag, file->modified}, file->type, file->immutable ? kForEver : kRevalidate, {}};
   if (file->type.starts_with("text/html")) resource.headers.emplace_back("Content-Security-Policy", kPagePolicy);
-  return sendBytes(request, resource, file->bytes);
+  if (file->gzip.empty()) return sendBytes(request, resource, file->bytes);
+  resource.headers.emplace_back("Vary", "Accept-Encoding");
+  if (!request.acceptEncoding || !acceptsGzip(*request.acceptEncoding)) return sendBytes(request, resource, file->bytes);
+  resource.validators.etag.insert(resource.validators.etag.size() - 1, "-gzip");  // other bytes, another strong tag
+  resource.headers.emplace_back("Content-Encoding", "gzip");
+  return sendBytes(request, resource, file->gzip);
 }
 
 }  // namespace qtet

@@ -62,7 +62,7 @@ Result<ViewerFile> readFile(const fs::path& path, const std::string& name, std::
   struct stat info {};
   const std::time_t modified = ::stat(path.c_str(), &info) == 0 ? info.st_mtime : 0;
   std::string etag = '"' + sha256Hex(*bytes) + '"';
-  return ViewerFile{std::move(*bytes), std::string(typeOf(path)), std::move(etag), modified, name.starts_with("assets/")};
+  return ViewerFile{std::move(*bytes), {}, std::string(typeOf(path)), std::move(etag), modified, name.starts_with("assets/")};
 }
 
 bool hidden(const fs::path& path) { return path.filename().native().starts_with('.'); }
@@ -93,10 +93,25 @@ Result<ViewerFiles> ViewerFiles::load(const fs::path& folder) {
     if (!file) return std::unexpected(file.error());
     out.files_.emplace(name, std::move(*file));
   }
+  out.attachCompressed();
   if (ec) return fail(ErrorCode::kIo, folder.string() + ": " + ec.message() + "; name the built viewer's folder");
   if (!out.files_.contains("index.html"))
     return fail(ErrorCode::kIo, folder.string() + " holds no index.html; name the built viewer's folder");
   return out;
+}
+
+void ViewerFiles::attachCompressed() {
+  constexpr std::string_view kSuffix = ".gz";
+  for (auto it = files_.begin(); it != files_.end();) {
+    const std::string_view name = it->first;
+    const auto original = name.ends_with(kSuffix) ? files_.find(name.substr(0, name.size() - kSuffix.size())) : files_.end();
+    if (original == files_.end()) {
+      ++it;
+    } else {
+      original->second.gzip = std::move(it->second.bytes);
+      it = files_.erase(it);
+    }
+  }
 }
 
 const ViewerFile* ViewerFiles::find(std::string_view path) const {

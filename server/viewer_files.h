@@ -14,6 +14,7 @@ namespace qtet {
 
 struct ViewerFile {
   Bytes bytes;
+  Bytes gzip;            ///< the same compressed, from NAME.gz beside it; empty: there is none
   std::string type;      ///< media type
   std::string etag;      ///< strong, with its quotes
   std::time_t modified;  ///< seconds since 1970
@@ -26,6 +27,7 @@ class ViewerFiles {
   /// No viewer at all.
   ViewerFiles() = default;
   /// Reads every regular file below `folder`. Left out: names that start with a dot, and links that lead out of the folder.
+  /// NAME.gz is not a file of its own but NAME compressed, where there is a NAME.
   /// Errors: io (unreadable, or no index.html), limit-exceeded (not a viewer: too many files or bytes).
   [[nodiscard]] static Result<ViewerFiles> load(const std::filesystem::path& folder);
 
@@ -34,6 +36,8 @@ class ViewerFiles {
   [[nodiscard]] bool empty() const { return files_.empty(); }
 
  private:
+  void attachCompressed();
+
   std::map<std::string, ViewerFile, std::less<>> files_;
 };
 

@@ -178,6 +178,23 @@ TEST_F(RouterTest, theViewerAndNothingElseOfItsFolderIsServed) {
     expectProblem(get(target), 404, "not-found");
 }
 
+TEST_F(RouterTest, aCompressedFileGoesToWhoeverTakesIt) {
+  const Reply plain = get("/assets/app-1a2b.js");
+  const Reply gzip = router_.route({.method = "GET", .target = "/assets/app-1a2b.js", .acceptEncoding = "br, gzip"});
+  EXPECT_EQ(body(plain), "console.log(1)");
+  EXPECT_EQ(header(plain, "Content-Encoding"), "");
+  EXPECT_EQ(body(gzip), "(compressed)");
+  EXPECT_EQ(header(gzip, "Content-Encoding"), "gzip");
+  EXPECT_EQ(header(gzip, "Content-Type"), header(plain, "Content-Type"));
+  EXPECT_NE(header(gzip, "ETag"), header(plain, "ETag"));
+  for (const Reply* reply : {&plain, &gzip}) EXPECT_EQ(header(*reply, "Vary"), "Accept-Encoding");
+  const std::string tag = header(gzip, "ETag");
+  EXPECT_EQ(router_.route({.method = "GET", .target = "/assets/app-1a2b.js", .ifNoneMatch = tag, .acceptEncoding = "gzip"}).status, 304u);
+  EXPECT_EQ(router_.route({.method = "GET", .target = "/assets/app-1a2b.js", .ifNoneMatch = tag}).status, 200u);
+  expectProblem(get("/assets/app-1a2b.js.gz"), 404, "not-found");
+  EXPECT_EQ(body(get("/assets/alone.gz")), "an archive");
+}
+
 TEST_F(RouterTest, withoutAViewerThePageSaysSo) {
   const ViewerFiles none;
   const Router router(folder_.store(), none);

@@ -17,6 +17,8 @@ class ServedFolder {
     logs_.write("readme.txt", "not a log");
     viewer_.write("index.html", "<!doctype html><title>viewer</title>");
     viewer_.write("assets/app-1a2b.js", "console.log(1)");
+    viewer_.write("assets/app-1a2b.js.gz", "(compressed)");
+    viewer_.write("assets/alone.gz", "an archive");
     viewer_.write("assets/codec.wasm", std::string_view("\0asm", 4));
     viewer_.write("docs/index.html", "<title>docs</title>");
     viewer_.write(".secret", "hidden");

@@ -167,7 +167,15 @@ std::filesystem::path writeSampleLog(const std::filesystem::path& folder, const 
 }
 
 std::filesystem::path freshFolder(const std::string& name) {
-  const auto folder = std::filesystem::temp_directory_path() / ("qtet-test-" + std::to_string(getpid())) / name;
+  // One folder a process, gone when the process ends.
+  static const struct Root {
+    std::filesystem::path path = std::filesystem::temp_directory_path() / ("qtet-test-" + std::to_string(getpid()));
+    ~Root() {
+      std::error_code ignored;
+      std::filesystem::remove_all(path, ignored);
+    }
+  } root;
+  const auto folder = root.path / name;
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   return folder;
