@@ -136,7 +136,8 @@ demo: demo-log
 	  kill -0 $$server 2>/dev/null || { wait $$server || status=$$?; echo "demo: the server stopped; see its message above" >&2; exit $${status:-1}; }
 	  sleep 0.1
 	done
-	echo "Open http://127.0.0.1:$$PORT/?mesh=$$name  (Ctrl-C stops)"
+	[[ -n $$MESH ]] || look='&field=Velocity&clip=y'  # the sample at its best: cut open along the flow
+	echo "Open http://127.0.0.1:$$PORT/?mesh=$$name$${look:-}  (Ctrl-C stops)"
 	status=0
 	if [[ $$terminal == yes ]]; then
 	  fg %1 >/dev/null || status=$$?

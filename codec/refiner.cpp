@@ -33,6 +33,7 @@ struct Refiner::State {
   std::vector<Birth> births;
   std::vector<std::size_t> chunkBirths;  // births before chunk i
   std::vector<FieldState> fields;
+  std::vector<LevelCounts> levelCounts;
   std::uint32_t chunks = 0;
   std::uint32_t level = 0;       // being refined, or the last complete one
   std::uint32_t nextSlot = 0;    // of the level being refined
@@ -46,6 +47,7 @@ struct Refiner::State {
   Status run(std::uint32_t chunk, const ChunkEntry& entry, RangeDecoder& decoder, Residuals& positions);
   Status split(std::uint32_t chunk, RecordCoder<RangeDecoder>& coder, VertexId v);
   Status counts(std::uint32_t chunk) const;
+  void completeLevel() { levelCounts.push_back({mesh.points.size(), mesh.tetrahedra.size(), mesh.boundary.size()}); }
   void inherit(FieldState& field, std::uint32_t components, std::size_t firstBirth);
 
   struct Totals {
@@ -110,6 +112,7 @@ Status Refiner::State::base(const ChunkEntry& entry, ByteView structure, Residua
     mesh.points.push_back(p);
   }
   mesh.born.assign(mesh.points.size(), 0);
+  completeLevel();
   return {};
 }
 
@@ -144,6 +147,7 @@ Status Refiner::State::run(std::uint32_t chunk, const ChunkEntry& entry, RangeDe
     }
     if (level == entry.lastLevel && entry.endSlot != kLevelEnd) return {};
     inLevel = false;
+    completeLevel();
     if (level == entry.lastLevel) return {};
     if (level == stopLevel) {
       stopped = true;
@@ -227,6 +231,7 @@ const LogIndex& Refiner::index() const { return state_->index; }
 std::uint32_t Refiner::chunksApplied() const { return state_->chunks; }
 std::uint32_t Refiner::fieldChunksApplied(std::uint32_t field) const { return state_->fields[field].chunks; }
 std::uint32_t Refiner::level() const { return state_->inLevel ? state_->level - 1 : state_->level; }
+std::span<const LevelCounts> Refiner::levelCounts() const { return state_->levelCounts; }
 std::span<const LatticePoint> Refiner::points() const { return state_->mesh.points; }
 std::span<const Tetrahedron> Refiner::tetrahedra() const { return state_->mesh.tetrahedra; }
 std::span<const Triangle> Refiner::boundary() const { return state_->mesh.boundary; }

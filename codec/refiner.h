@@ -11,6 +11,11 @@
 
 namespace qtet {
 
+/// What a mesh held when a level was complete.
+struct LevelCounts {
+  std::size_t vertices = 0, tetrahedra = 0, boundaryTriangles = 0;
+};
+
 /// Applies the chunks of one log. Vertices and cells keep their slots for ever: new ones are appended, an affected cell changes one
 /// index. Not thread-safe. After an error no further chunk is accepted; ids stay in range, but the mesh is a part of a chunk's.
 class Refiner {
@@ -36,6 +41,9 @@ class Refiner {
   [[nodiscard]] std::uint32_t fieldChunksApplied(std::uint32_t field) const;
   /// The last level that is complete.
   [[nodiscard]] std::uint32_t level() const;
+
+  /// Of the complete levels, 0 first; several may have come with one chunk.
+  [[nodiscard]] std::span<const LevelCounts> levelCounts() const;
 
   [[nodiscard]] std::span<const LatticePoint> points() const;
   [[nodiscard]] std::span<const Tetrahedron> tetrahedra() const;

@@ -18,13 +18,19 @@ std::string countsText(std::size_t tetrahedra, std::size_t vertices, std::size_t
          " boundary triangles";
 }
 
-/// The counts that the manifest states for `level`, against the mesh.
-Status checkCounts(const ManifestLevel& level, const Refiner& refiner) {
-  const std::size_t tetrahedra = refiner.tetrahedra().size(), vertices = refiner.points().size(), boundary = refiner.boundary().size();
-  if (tetrahedra == level.tetrahedra && vertices == level.vertices && boundary == level.boundaryTriangles) return {};
-  return fail(ErrorCode::kBadValue, "level " + std::to_string(level.level) + " decodes to " + countsText(tetrahedra, vertices, boundary) +
-                                        ", the manifest says " + countsText(level.tetrahedra, level.vertices, level.boundaryTriangles) +
-                                        "; build the log again");
+/// Every level's counts as the manifest states them, against those that the refiner met on its way.
+Status checkCounts(const std::vector<ManifestLevel>& levels, std::span<const LevelCounts> met) {
+  if (levels.size() != met.size())
+    return fail(ErrorCode::kBadValue, "the log holds " + std::to_string(met.size()) + " levels, the manifest lists " +
+                                          std::to_string(levels.size()) + "; build the log again");
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    const ManifestLevel& level = levels[i];
+    if (met[i].tetrahedra != level.tetrahedra || met[i].vertices != level.vertices || met[i].boundaryTriangles != level.boundaryTriangles)
+      return fail(ErrorCode::kBadValue, "level " + std::to_string(level.level) + " decodes to " +
+                                            countsText(met[i].tetrahedra, met[i].vertices, met[i].boundaryTriangles) + ", the manifest says " +
+                                            countsText(level.tetrahedra, level.vertices, level.boundaryTriangles) + "; build the log again");
+  }
+  return {};
 }
 
 std::vector<std::uint32_t> allFields(const Manifest& manifest) {
@@ -33,38 +39,17 @@ std::vector<std::uint32_t> allFields(const Manifest& manifest) {
   return out;
 }
 
-/// Decodes every chunk with every field, and checks the counts wherever a chunk ends with a level.
+/// Decodes every chunk with every field.
 Result<Refiner> decodeAll(const OpenedLog& log, Progress& progress) {
   Refiner refiner(log.file.index());
   const std::vector<std::uint32_t> fields = allFields(log.manifest);
   const auto chunks = static_cast<std::uint32_t>(log.file.index().chunks.size());
   for (std::uint32_t chunk = 0; chunk < chunks; ++chunk) {
     if (Status applied = applyChunk(log.file, refiner, chunk, fields); !applied) return std::unexpected(applied.error());
-    const ChunkEntry& entry = log.file.index().chunks[chunk];
-    if (entry.endSlot == kLevelEnd) {
-      if (Status counted = checkCounts(log.manifest.levels[entry.lastLevel], refiner); !counted) return std::unexpected(counted.error());
-    }
     progress.update((chunk + 1.0) / chunks);
   }
-  if (Status counted = checkCounts(log.manifest.levels.back(), refiner); !counted) return std::unexpected(counted.error());
+  if (Status counted = checkCounts(log.manifest.levels, refiner.levelCounts()); !counted) return std::unexpected(counted.error());
   return refiner;
-}
-
-/// Levels that end inside a chunk are looked at one by one: the same decoding, stopped there.
-Status checkInnerLevels(const OpenedLog& log, Progress& progress) {
-  const auto& levels = log.manifest.levels;
-  for (std::size_t i = 0; i < levels.size(); ++i) {
-    const ChunkEntry& entry = log.file.index().chunks[levels[i].chunk];
-    if (entry.lastLevel == levels[i].level && entry.endSlot == kLevelEnd) continue;
-    Refiner refiner(log.file.index());
-    refiner.stopAtLevel(levels[i].level);
-    for (std::uint32_t chunk = 0; chunk <= levels[i].chunk; ++chunk) {
-      if (Status applied = applyChunk(log.file, refiner, chunk, {}); !applied) return applied;
-    }
-    if (Status counted = checkCounts(levels[i], refiner); !counted) return counted;
-    progress.update(static_cast<double>(i + 1) / static_cast<double>(levels.size()));
-  }
-  return {};
 }
 
 LatticeMesh finestMesh(const OpenedLog& log, const Refiner& refiner) {
@@ -115,9 +100,6 @@ Result<OrderedJson> verify(const ParsedWords& parsed, Progress& progress) {
   progress.stage("decoding");
   const Result<Refiner> refiner = decodeAll(*log, progress);
   if (!refiner) return std::unexpected(refiner.error());
-  progress.stage("decoding levels inside chunks");
-  if (Status inner = checkInnerLevels(*log, progress); !inner) return std::unexpected(inner.error());
-
   const ManifestLevel& finest = log->manifest.levels.back();
   OrderedJson report = {{"ok", true},
                         {"digest", log->file.digest()},

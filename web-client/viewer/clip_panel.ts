@@ -9,6 +9,13 @@ type Axis = 0 | 1 | 2;
 /** The side that is cut away first faces the first camera: front, right and top. */
 const kFirstSides: [number, number, number] = [1, -1, 1];
 
+/** A clip as an attribute tells it: "y", "y:0.3" (share of the extent), "-y:0.3" (from the other side); null for anything else. */
+export function parseClip(text: string | null): {axis: Axis; share: number; flipped: boolean} | null {
+  const match = /^(-?)([xyz])(?::(0(?:\.\d+)?|1(?:\.0+)?))?$/.exec(text ?? '');
+  if (!match) return null;
+  return {axis: 'xyz'.indexOf(match[2]!) as Axis, share: Number(match[3] ?? 0.5), flipped: match[1] === '-'};
+}
+
 export class ClipPanel {
   private readonly form: HTMLElement;
   private readonly on: HTMLInputElement;

@@ -9,7 +9,7 @@ declare global {
 }
 
 /** Query parameter -> attribute of the viewer. */
-const kParameters: Record<string, string> = {mesh: 'mesh', field: 'field', colormap: 'colormap', edges: 'edges', pauseAfter: 'pause-after'};
+const kParameters: Record<string, string> = {mesh: 'mesh', field: 'field', colormap: 'colormap', edges: 'edges', clip: 'clip', pauseAfter: 'pause-after'};
 
 customElements.define('qtet-viewer', QtetViewer);
 const viewer = document.createElement('qtet-viewer') as QtetViewer;

@@ -5,6 +5,7 @@
 //             field        name of the field; by default the first
 //             colormap     viridis (default), cividis or cool-warm
 //             edges        "off" hides the cells' edges
+//             clip         axis x, y or z, a share of the extent after a colon, "-" before it for the other side: "y", "-x:0.3"
 //             pause-after  payload bytes after which to pause until resume()
 // Events      load (first picture), progress, refine (a finer picture), complete (the whole mesh is on the screen), error;
 //             `detail` holds the figures or the error
@@ -19,7 +20,7 @@ import {kNoStatistics, type Counts, type Statistics} from '../core/statistics';
 import type {FromWorker, Snapshot, StreamState} from '../core/worker_messages';
 import type {MeshView} from '../three/mesh_view';
 import {fetchCatalog, streamUrl, type MeshEntry} from './catalog';
-import {ClipPanel} from './clip_panel';
+import {ClipPanel, parseClip} from './clip_panel';
 import {fieldTitle, Legend} from './legend';
 import {bindKeys} from './keys';
 import {insetsOf} from './layout';
@@ -32,7 +33,7 @@ import {Triad} from './triad';
 const kPhone = '(max-width: 640px)';
 
 export class QtetViewer extends HTMLElement {
-  static readonly observedAttributes = ['src', 'mesh', 'field', 'colormap', 'edges'];
+  static readonly observedAttributes = ['src', 'mesh', 'field', 'colormap', 'edges', 'clip'];
 
   private readonly root = this.attachShadow({mode: 'open'});
   private client: Client | null = null;
@@ -84,6 +85,7 @@ export class QtetViewer extends HTMLElement {
     this.parts.resizes.observe(this.find('.panel'));
     this.parts.resizes.observe(this);
     this.applyLook();
+    this.applyClip();
     void this.prepareView();
     void this.open();
   }
@@ -100,7 +102,13 @@ export class QtetViewer extends HTMLElement {
     if (!this.client || before === after) return;
     if (name === 'src' || name === 'mesh') void this.open();
     else if (name === 'field' && after) this.chooseField(after);
+    else if (name === 'clip') this.applyClip();
     else this.applyLook();
+  }
+
+  private applyClip(): void {
+    const clip = parseClip(this.getAttribute('clip'));
+    this.clip(clip?.axis ?? null, clip?.share, clip?.flipped);
   }
 
   // ---- start
