@@ -65,7 +65,7 @@ class BaseCoder {
         if (!seed()) return false;
       } else {
         const Open face = queue_[head++];
-        if (!face.closed(open_, head - 1)) continue;
+        if (!face.isOpen(open_, head - 1)) continue;
         if (!grow(face)) return false;
       }
       if (overrun()) return false;
@@ -88,12 +88,10 @@ class BaseCoder {
   struct Open {
     Triangle face{};     // a cell across it is (face, apex), positively oriented
     VertexId behind = 0; // the apex on this side
-    // Still open, that is: not met by another cell since it was queued at `index`. Takes it off the map.
-    bool closed(OpenFaces& open, std::size_t index) const {
+    // Not met by another cell since it was queued at `index`; place() takes it off the map when one comes.
+    [[nodiscard]] bool isOpen(const OpenFaces& open, std::size_t index) const {
       const auto at = open.find(sortedFace(face));
-      if (at == open.end() || at->second != index) return false;
-      open.erase(at);
-      return true;
+      return at != open.end() && at->second == index;
     }
   };
 

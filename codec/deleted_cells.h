@@ -132,22 +132,29 @@ class DeletedCells {
     return true;
   }
 
+  // A word pinched at a prey vertex is two words: the inner one is done first, by a call that is at most four deep (it holds its first letter
+  // once), the outer one by going on, since a hostile word has thousands of pinches.
   void triangulate(std::vector<int> word, std::uint32_t x) {
-    while (word.size() > 1 && word.front() == word.back()) word.pop_back();
-    if (word.size() < 3) return;
-    for (std::size_t i = 0; i < word.size(); ++i)
-      for (std::size_t j = i + 1; j < word.size(); ++j)
-        if (word[i] == word[j]) {  // pinched at one prey vertex: two words
-          std::vector<int> outer(word.begin() + static_cast<std::ptrdiff_t>(j), word.end());
-          outer.insert(outer.end(), word.begin(), word.begin() + static_cast<std::ptrdiff_t>(i));
-          triangulate({word.begin() + static_cast<std::ptrdiff_t>(i), word.begin() + static_cast<std::ptrdiff_t>(j)}, x);
-          triangulate(std::move(outer), x);
-          return;
-        }
+    for (;;) {
+      while (word.size() > 1 && word.front() == word.back()) word.pop_back();
+      if (word.size() < 3) return;
+      const auto [first, second] = pinch(word);
+      if (first == second) break;
+      triangulate({word.begin() + first, word.begin() + second}, x);
+      std::rotate(word.begin(), word.begin() + second, word.end());  // [second, end) and then [0, first)
+      word.resize(word.size() - static_cast<std::size_t>(second - first));
+    }
     if (word.size() == 3)
       fillTriangle(word, x);
     else
       fillQuadrilateral(word, x);
+  }
+
+  /// The lowest place whose letter comes again, and for it the next such place; equal places: none.
+  static std::pair<std::ptrdiff_t, std::ptrdiff_t> pinch(const std::vector<int>& word) {
+    for (auto i = word.begin(); i != word.end(); ++i)
+      if (const auto j = std::find(i + 1, word.end(), *i); j != word.end()) return {i - word.begin(), j - word.begin()};
+    return {0, 0};
   }
 
   void fillTriangle(const std::vector<int>& w, std::uint32_t x) {

@@ -16,8 +16,9 @@ struct Fusion {
   std::uint32_t level = 0;  ///< 0 = the first independent set fused, that is, the finest level
   VertexId fused = 0;
   std::array<VertexId, 4> prey{};
-  std::uint32_t firstAffected = 0, affectedCount = 0;  ///< into affectedCells / affectedLabels
-  std::uint32_t firstDeleted = 0, deletedCount = 0;    ///< into deletedCells
+  std::uint64_t firstAffected = 0;  ///< into affectedCells / affectedLabels
+  std::uint64_t firstDeleted = 0;   ///< into deletedCells
+  std::uint32_t affectedCount = 0, deletedCount = 0;
 };
 
 /// Cells are the input's tetrahedra followed by its boundary triangles as (a, b, c, kGhost). REQUIRES within one level no prey vertex in the

@@ -33,7 +33,7 @@ bool GrowingMesh::enter(VertexId v, Link& link) {
     for (const VertexId w : vertices)
       if (w != kGhost) marked_[w] = 1;
   }
-  return link.close();
+  return link.close() && link.isSphere();
 }
 
 void GrowingMesh::apply(VertexId v, const Link& link, const Split& split, std::uint16_t level) {

@@ -53,7 +53,8 @@ class GrowingMesh {
   [[nodiscard]] std::span<const CellRef> star(VertexId v) const {
     return std::span(starCells_).subspan(starOffsets_[v], starOffsets_[v + 1] - starOffsets_[v]);
   }
-  /// Builds the link of v into `link` and marks the star: none of its vertices may split in this level. False: not a closed surface.
+  /// Builds the link of v into `link` and marks the star: none of its vertices may split in this level. False: not one sphere,
+  /// so that a walk over the link would miss triangles.
   [[nodiscard]] bool enter(VertexId v, Link& link);
   /// Applies a split of v: labels stand in the link's triangles, in star order.
   void apply(VertexId v, const Link& link, const Split& split, std::uint16_t level);

@@ -119,12 +119,18 @@ Status check(const LogIndex& index, const Header& header) {
     }
     vertices += e.newVertices, cells += e.newTetrahedra, triangles += e.newBoundaryTriangles;
     if (vertices > kMaxElements || cells > kMaxElements || triangles > kMaxElements || e.values > kMaxElements)
-      return bad(ErrorCode::kLimitExceeded, "more than 2^31 vertices, cells, triangles or values");
+      return bad(ErrorCode::kLimitExceeded, "more than 2^29 vertices, cells, triangles or values");
     if (e.structureCodec != CodecId::kRange || (e.valueCodec != CodecId::kDraco && e.valueCodec != CodecId::kEmpty))
       return bad(ErrorCode::kBadCodec, "an unknown codec id");
     if (i == 0 ? e.firstLevel != 0 || e.lastLevel != 0 || e.records != 0 || e.endSlot != kLevelEnd || e.values != e.newVertices
                : e.firstLevel < level || e.lastLevel < e.firstLevel || e.firstLevel == 0)
       return bad(ErrorCode::kBadValue, "levels out of order");
+    // A split costs at least one decision and brings at most four vertices back; a link triangle or a deleted cell one decision each.
+    const std::uint64_t decisions = kMaxDecisionsPerByte * (std::uint64_t{e.blocks[kStructurePart].size} + 4);
+    if (e.records > decisions || e.newVertices > 4 * decisions || e.newTetrahedra > 8 * decisions || e.newBoundaryTriangles > 8 * decisions)
+      return bad(ErrorCode::kLimitExceeded, "it promises more than its bytes can hold");
+    if (i > 0 && (e.values < e.newVertices || e.values > std::uint64_t{e.newVertices} + e.records))
+      return bad(ErrorCode::kBadValue, "its number of values does not fit its records");
     if (e.lastLevel > kMaxLevels) return bad(ErrorCode::kLimitExceeded, "more than 4,096 levels");
     level = e.lastLevel;
     if (std::uint64_t{e.firstDependency} + e.dependencyCount > index.dependencies.size())

@@ -48,7 +48,7 @@ class LogEncoder {
   Status prepare() {
     if (h_.levels > kMaxLevels) return fail(ErrorCode::kLimitExceeded, "more than 4,096 levels");
     if (h_.fields.size() > kMaxFields) return fail(ErrorCode::kLimitExceeded, "more than 256 fields; choose some with --fields");
-    if (h_.points.size() > kMaxElements || h_.cells.size() > kMaxElements) return fail(ErrorCode::kLimitExceeded, "more than 2^31 cells");
+    if (h_.points.size() > kMaxElements || h_.cells.size() > kMaxElements) return fail(ErrorCode::kLimitExceeded, "more than 2^29 cells");
     fusionOf_.assign(h_.points.size(), kNone);
     for (std::uint32_t i = 0; i < h_.fusions.size(); ++i) fusionOf_[h_.fusions[i].fused] = i;
     slotOf_.assign(h_.points.size(), kNone);

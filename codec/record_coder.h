@@ -129,6 +129,9 @@ class RecordCoder {
     split.moved = coder_.bit(truth.moved, models_.moved[static_cast<std::size_t>(split.k)][edge]) != 0;
     codePoints(v, truth, split);
     if (positions_.bad()) return false;
+    for (int i = 0; i < split.k; ++i)
+      for (const std::int32_t x : split.points[static_cast<std::size_t>(i)])
+        if (x < 0 || x >> kMaxPositionBits != 0) return false;  // the predicates' range; the lattice's own is the refiner's to check
     const std::span prey(split.points.data(), static_cast<std::size_t>(split.k));
     LabelCoder<Coder>(coder_, models_.labels, link_, mesh_.points, split.k, prey).code(truth.labels);
     return codeDeletedCells(coder_, models_.deleted, link_, split.k, truth.deleted, split.deleted);

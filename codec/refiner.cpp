@@ -20,6 +20,7 @@ std::unexpected<Error> refuse(ErrorCode code, std::uint32_t chunk, const std::st
 struct FieldState {
   std::vector<std::int32_t> values;
   std::uint32_t chunks = 0;
+  bool broken = false;  // a block failed half-way: what it wrote is noise
 };
 
 }  // namespace
@@ -38,6 +39,7 @@ struct Refiner::State {
   std::uint32_t level = 0;       // being refined, or the last complete one
   std::uint32_t nextSlot = 0;    // of the level being refined
   bool inLevel = false;
+  std::size_t levelBirths = 0;   // births before the level
   bool broken = false;
   std::uint32_t stopLevel = kMaxLevels + 1;
   bool stopped = false;          // inside a chunk, at stopLevel
@@ -97,30 +99,28 @@ Status Refiner::State::base(const ChunkEntry& entry, ByteView structure, Residua
   BaseCoder<RangeDecoder> coder(decoder, entry.newVertices, entry.newTetrahedra);
   if (!coder.run(nullptr, [&] { return decoder.overrun(); }) || !decoder.atEnd())
     return refuse(ErrorCode::kBadValue, 0, "the base mesh's structure contradicts itself");
-  mesh.tetrahedra = std::move(coder.tetrahedra);
-  mesh.boundary = boundaryOf(mesh.tetrahedra);
   baseBirths = std::move(coder.births);
   const std::int32_t size = std::int32_t{1} << index.positionBits;
-  mesh.points.reserve(entry.newVertices);
+  std::vector<LatticePoint> points;  // the mesh gets its cells once all of their vertices are there
+  points.reserve(entry.newVertices);
   for (std::uint32_t v = 0; v < entry.newVertices; ++v) {
     LatticePoint p{};
-    const auto at = [&](VertexId u, std::uint32_t c) { return mesh.points[u][c]; };
+    const auto at = [&](VertexId u, std::uint32_t c) { return points[u][c]; };
     for (std::uint32_t c = 0; c < 3; ++c) {
       p[c] = positions.code<false>(predictBase(baseBirths[v], v, c, true, at), 0);
       if (positions.bad() || p[c] < 0 || p[c] >= size) return refuse(ErrorCode::kBadValue, 0, "a vertex lies outside the lattice");
     }
-    mesh.points.push_back(p);
+    points.push_back(p);
   }
+  mesh.points = std::move(points);
+  mesh.tetrahedra = std::move(coder.tetrahedra);
+  mesh.boundary = boundaryOf(mesh.tetrahedra);
   mesh.born.assign(mesh.points.size(), 0);
   completeLevel();
   return {};
 }
 
 Status Refiner::State::records(std::uint32_t chunk, const ChunkEntry& entry, ByteView structure, Residuals& positions) {
-  // A split costs at least one decision, and brings at most four vertices back; a link triangle or a deleted cell one decision each.
-  const std::uint64_t decisions = kMaxDecisionsPerByte * (std::uint64_t{structure.size()} + 4);
-  if (entry.records > decisions || entry.newTetrahedra > 8 * decisions || entry.newBoundaryTriangles > 8 * decisions)
-    return refuse(ErrorCode::kLimitExceeded, chunk, "the table promises more records than the bytes can hold");
   RangeDecoder decoder(structure);
   if (Status s = run(chunk, entry, decoder, positions); !s) return s;
   if (!decoder.atEnd() && !stopped) return refuse(ErrorCode::kBadValue, chunk, "the structure block is longer or shorter than its records");
@@ -135,6 +135,7 @@ Status Refiner::State::run(std::uint32_t chunk, const ChunkEntry& entry, RangeDe
       ++level;
       nextSlot = 0;
       inLevel = true;
+      levelBirths = births.size();
       mesh.beginLevel();
     }
     const std::uint32_t end = level == entry.lastLevel ? std::min(entry.endSlot, mesh.levelVertices()) : mesh.levelVertices();
@@ -147,6 +148,7 @@ Status Refiner::State::run(std::uint32_t chunk, const ChunkEntry& entry, RangeDe
     }
     if (level == entry.lastLevel && entry.endSlot != kLevelEnd) return {};
     inLevel = false;
+    if (births.size() == levelBirths) return refuse(ErrorCode::kBadValue, chunk, "a level without a record");
     completeLevel();
     if (level == entry.lastLevel) return {};
     if (level == stopLevel) {
@@ -158,7 +160,7 @@ Status Refiner::State::run(std::uint32_t chunk, const ChunkEntry& entry, RangeDe
 
 Status Refiner::State::split(std::uint32_t chunk, RecordCoder<RangeDecoder>& coder, VertexId v) {
   if (mesh.star(v).size() > kMaxLinkTriangles) return refuse(ErrorCode::kLimitExceeded, chunk, "a star has too many cells");
-  if (!mesh.enter(v, link)) return refuse(ErrorCode::kBadValue, chunk, "a vertex splits whose link is not a closed surface");
+  if (!mesh.enter(v, link)) return refuse(ErrorCode::kBadValue, chunk, "a vertex splits whose link is not a sphere");
   Split split;
   if (!coder.code(v, {}, split)) return refuse(ErrorCode::kBadValue, chunk, "a record's labels or positions contradict each other");
   const std::int32_t size = std::int32_t{1} << index.positionBits;
@@ -195,6 +197,7 @@ Status Refiner::applyField(std::uint32_t field, std::uint32_t chunk, std::span<c
   State& s = *state_;
   if (field >= s.fields.size()) return refuse(ErrorCode::kNotFound, chunk, "there is no such field");
   FieldState& f = s.fields[field];
+  if (f.broken) return refuse(ErrorCode::kBadOrder, chunk, "an earlier block of this field failed; start again from chunk 0");
   if (chunk != f.chunks) return refuse(ErrorCode::kBadOrder, chunk, "the field needs chunk " + std::to_string(f.chunks) + " first");
   if (chunk >= s.chunks) return refuse(ErrorCode::kBadOrder, chunk, "a field cannot run ahead of the mesh");
   const std::uint32_t n = s.index.fieldComponents[field];
@@ -220,7 +223,8 @@ Status Refiner::applyField(std::uint32_t field, std::uint32_t chunk, std::span<c
         });
   }
   const bool whole = residuals.atEnd() || (s.stopped && chunk + 1 == s.chunks);
-  if (residuals.bad() || !whole) return refuse(ErrorCode::kBadValue, chunk, "field values out of range or left over");
+  f.broken = residuals.bad() || !whole;
+  if (f.broken) return refuse(ErrorCode::kBadValue, chunk, "field values out of range or left over");
   ++f.chunks;
   return {};
 }

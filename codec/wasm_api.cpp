@@ -40,8 +40,8 @@ void qtet_free(void* memory) { std::free(memory); }
 
 std::uint32_t qtet_head_bytes(const std::uint8_t* first64) {
   const auto bytes = LogIndex::headBytesOf(ByteView(first64, LogIndex::kHeaderBytes));
-  if (bytes) return static_cast<std::uint32_t>(*bytes);
-  report(bytes.error());
+  if (bytes && *bytes <= 0x7FFFFFFF) return static_cast<std::uint32_t>(*bytes);
+  report(bytes ? Error{ErrorCode::kLimitExceeded, "the log's front is above 2 GiB: too large for a browser"} : bytes.error());
   return 0;
 }
 

@@ -20,8 +20,8 @@ inline constexpr std::uint32_t kMaxFieldComponents = 16;
 inline constexpr std::uint32_t kMaxDependencies = 1u << 24;
 /// Levels of one log: 5 % growth a level takes a mesh from 1 to 10^9 cells in 425.
 inline constexpr std::uint32_t kMaxLevels = 4096;
-/// Vertices or cells of one mesh: ids are 32 bits wide and the top bit marks boundary triangles.
-inline constexpr std::uint32_t kMaxElements = (1u << 31) - 16;
+/// Vertices, tetrahedra or boundary triangles of one mesh: the entries of all stars, 4 a tetrahedron and 3 a triangle, fit 32 bits.
+inline constexpr std::uint32_t kMaxElements = 1u << 29;
 /// Bytes of one block: a base mesh of 10^7 cells fits; a decoder's buffer stays below a browser's memory.
 inline constexpr std::uint32_t kMaxBlockBytes = 256u << 20;
 /// New vertices, cells or triangles of one chunk that holds B structure bytes are at most B times this: the range coder

@@ -108,9 +108,9 @@ VertexId FusionMesh::fuse(const Prey& prey, const FusionPoint& where, std::span<
   record.prey = prey.vertex;
   const auto first = record.moved ? 0u : static_cast<std::uint8_t>(where.stays);
   std::swap(record.prey[0], record.prey[first]);
-  record.firstAffected = static_cast<std::uint32_t>(history_.affectedCells.size());
+  record.firstAffected = history_.affectedCells.size();
   record.affectedCount = static_cast<std::uint32_t>(affected.size());
-  record.firstDeleted = static_cast<std::uint32_t>(history_.deletedCells.size());
+  record.firstDeleted = history_.deletedCells.size();
   record.deletedCount = static_cast<std::uint32_t>(deleted.size());
   history_.fusions.push_back(record);
   history_.affectedCells.insert(history_.affectedCells.end(), affected.begin(), affected.end());

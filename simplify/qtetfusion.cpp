@@ -26,6 +26,11 @@ constexpr double kWorthAnotherPass = 0.002;
 // How far (in radii of the prey) a quadric's minimum may lie from the prey's barycentre before it counts as ill-conditioned.
 constexpr double kReach = 1.5;
 
+// Keys are areas squared times a distance squared in lattice steps: scaled by a power of two, exactly, to what they would be at 16 bits, or
+// the finest lattices would take them beyond a float.
+constexpr int kLengthsInAKey = 6;
+constexpr int kScaleBits = 16;
+
 struct Candidate {
   float key = 0;
   std::array<VertexId, 3> partner{};  // the owner is the fourth
@@ -46,13 +51,16 @@ class Simplifier {
  public:
   Simplifier(const LatticeMesh& mesh, const FusionOptions& options)
       : options_(options), mesh_(mesh), test_(mesh_), original_(mesh.tetrahedra.size()),
-        target_(static_cast<std::size_t>(std::ceil(options.targetRatio * static_cast<double>(original_)))) {}
+        target_(static_cast<std::size_t>(std::ceil(options.targetRatio * static_cast<double>(original_)))),
+        keyScale_(std::ldexp(1.0, kLengthsInAKey * std::min(0, kScaleBits - mesh.lattice.bits))) {}
 
   Result<FusionHistory> run() {
     while (mesh_.liveTetrahedra() > target_) {
       const std::size_t before = mesh_.liveTetrahedra();
       fillQueue();
       while (!queue_.empty() && mesh_.liveTetrahedra() > target_ && level_ < kMaxLevels) runLevel();
+      if (level_ == kMaxLevels && mesh_.liveTetrahedra() > target_)
+        return fail(ErrorCode::kLimitExceeded, "4,096 levels do not reach the target; ask for more cells with --target-ratio");
       if (static_cast<double>(before - mesh_.liveTetrahedra()) < kWorthAnotherPass * static_cast<double>(before)) break;
     }
     return mesh_.takeHistory(level_);
@@ -76,7 +84,7 @@ class Simplifier {
     queue_.clear();
     queue_.reserve(entries.size());
     for (const Entry& e : entries) queue_.push(e);
-    candidateLimit_ = 2 * candidates_.size() + 4096;
+    candidateLimit_ = candidates_.size() + candidates_.size() / 2 + 4096;
   }
 
   // Lists of dead owners and candidates with dead partners would outgrow the mesh several times.
@@ -90,7 +98,7 @@ class Simplifier {
       lists_[v].end = kept.size();
     }
     candidates_ = std::move(kept);
-    candidateLimit_ = 2 * candidates_.size() + 4096;
+    candidateLimit_ = candidates_.size() + candidates_.size() / 2 + 4096;
   }
 
   [[nodiscard]] bool partnersAlive(const Candidate& c) const {
@@ -130,7 +138,7 @@ class Simplifier {
     for (std::size_t i = 1; i < k; ++i)
       if (mesh_.singular(vertices[i]) || (onlyLower && vertices[i] > vertices[0])) return;
     const Prey prey{k, vertices};
-    const auto key = static_cast<float>(kKeyFactor[k] * quadricOf(prey).at(ideal(prey)));
+    const auto key = static_cast<float>(keyScale_ * kKeyFactor[k] * quadricOf(prey).at(ideal(prey)));
     candidates_.push_back({key, {vertices[1], vertices[2], vertices[3]}, k});
   }
 
@@ -246,6 +254,7 @@ class Simplifier {
   FusionMesh mesh_;
   FusionTest test_;
   std::size_t original_, target_;
+  double keyScale_;
   std::uint32_t level_ = 0;
   std::size_t fusions_ = 0;
   Queue queue_;

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <functional>
 
+#include "codec/base_coder.h"
 #include "codec/draco_block.h"
 #include "codec/log_file.h"
 #include "tests/support/meshes.h"
@@ -146,6 +147,15 @@ TEST_F(HostileLog, aLatticeTooSmallForItsPointsIsRefused) {
   expectRefused(ErrorCode::kBadValue, [](LogIndex& i) { i.positionBits = 4; });
 }
 
+TEST_F(HostileLog, aBaseMeshWhosePositionsFailLeavesNoCellsBehind) {
+  const BlockEntry& block = index_.block(0, kStructurePart);
+  Refiner refiner(index_);
+  const std::vector<std::int32_t> far(std::size_t{index_.chunks[0].values} * 3, 1 << 20);
+  ASSERT_FALSE(refiner.apply(0, ByteView(bytes_).subspan(block.offset, block.size), far));
+  EXPECT_TRUE(refiner.tetrahedra().empty());
+  EXPECT_TRUE(refiner.boundary().empty());
+}
+
 TEST_F(HostileLog, chunksGoInInTheirOrderAndOnce) {
   const auto log = open(bytes_);
   ASSERT_TRUE(log);
@@ -156,6 +166,33 @@ TEST_F(HostileLog, chunksGoInInTheirOrderAndOnce) {
   EXPECT_EQ(applyChunk(*log, again, 0, {}).error().code, ErrorCode::kBadOrder);
   EXPECT_EQ(again.applyField(0, 1, {}).error().code, ErrorCode::kBadOrder);
   EXPECT_EQ(again.applyField(7, 0, {}).error().code, ErrorCode::kNotFound);
+}
+
+TEST(Refiner, aLinkOfTwoSpheresIsRefused) {
+  // Two tetrahedra that share one vertex: its link closes, but is two spheres. Whatever a record says of it, no id may leave its range.
+  RangeEncoder encoder;
+  const std::vector<Tetrahedron> cells{{0, 1, 2, 3}, {0, 5, 4, 6}};
+  BaseTruth truth(cells);
+  BaseCoder<RangeEncoder> base(encoder, 7, 2);
+  ASSERT_TRUE(base.run(&truth, [] { return false; }));
+  const Bytes structure = encoder.finish();
+  LogIndex index;
+  index.positionBits = 10;
+  index.chunks.resize(2);
+  index.chunks[0].newVertices = index.chunks[0].values = 7;
+  index.chunks[0].newTetrahedra = 2;
+  index.chunks[0].newBoundaryTriangles = 8;
+  index.chunks[1].firstLevel = index.chunks[1].lastLevel = 1;
+  index.chunks[1].newVertices = index.chunks[1].values = index.chunks[1].newTetrahedra = index.chunks[1].records = 3;
+  for (std::uint8_t seed = 0; seed < 64; ++seed) {
+    Refiner refiner(index);
+    std::vector<std::int32_t> positions(21);
+    for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = i < 3 ? 100 : 1;
+    ASSERT_TRUE(refiner.apply(0, structure, positions));
+    EXPECT_FALSE(refiner.apply(1, Bytes(64, static_cast<std::uint8_t>(seed * 37)), std::vector<std::int32_t>(9, 1)));
+    for (const Tetrahedron& t : refiner.tetrahedra())
+      for (const VertexId v : t) ASSERT_LT(v, refiner.points().size());
+  }
 }
 
 TEST(LogFile, saysWhatIsWrongWithTheFile) {
@@ -178,6 +215,9 @@ TEST(DracoBlock, refusesWhatDracoWouldLose) {
   EXPECT_EQ(decodeDracoBlock(*bytes, 3, 3).error().code, ErrorCode::kBadValue);
   EXPECT_EQ(decodeDracoBlock(*bytes, 2, 3).error().code, ErrorCode::kBadValue);
   EXPECT_EQ(decodeDracoBlock(Bytes{1, 2, 3}, 3, 2).error().code, ErrorCode::kBadCodec);
+  Bytes bomb = *encodeDracoBlock(std::vector<std::int32_t>(3000, 0), 3);
+  bomb[13] = 0x7F;  // eight million points and more, in a few bytes
+  EXPECT_EQ(decodeDracoBlock(bomb, 3, 1000).error().code, ErrorCode::kBadValue);
 }
 
 }  // namespace

@@ -52,7 +52,6 @@ TEST(RangeCoder, theCheapestDecisionCostsWhatTheLimitsRelyOn) {
 
 TEST(RangeCoder, tellsWhenMoreIsAskedThanWasWritten) {
   RangeEncoder encoder;
-  BitModel model;
   for (int i = 0; i < 100; ++i) encoder.raw(static_cast<std::uint32_t>(i), 8);
   const Bytes bytes = encoder.finish();
   RangeDecoder decoder(ByteView(bytes).first(bytes.size() - 5));

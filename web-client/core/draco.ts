@@ -21,6 +21,7 @@ export class DracoValueDecoder implements ValueDecoder {
   }
 
   decode(bytes: Uint8Array, count: number, components: number): Int32Array {
+    if (!announces(bytes, count)) throw new QtetError('bad-value', 'A block of the mesh holds other values than its chunk table says.');
     const draco = this.draco;
     const buffer = new draco.DecoderBuffer();
     const decoder = new draco.Decoder();
@@ -55,6 +56,14 @@ export class DracoValueDecoder implements ValueDecoder {
       draco._free(address);
     }
   }
+}
+
+/** Whether a Draco stream says at its start that it is sequential and of `count` points: a constant costs no bits, so nothing else bounds what
+ *  decoding allocates. Other bytes pass: Draco itself refuses them. */
+function announces(bytes: Uint8Array, count: number): boolean {
+  const kMethodAt = 8, kPointsAt = 11;
+  if (bytes.length < kPointsAt + 4 || String.fromCharCode(...bytes.subarray(0, 5)) !== 'DRACO') return true;
+  return bytes[kMethodAt] === 0 && new DataView(bytes.buffer, bytes.byteOffset).getUint32(kPointsAt, true) === count;
 }
 
 function refused(why: string): QtetError {
