@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "codec/draco_block.h"
+#include "codec/log_manifest.h"
 #include "proto/checksum.h"
-#include "proto/manifest.h"
 
 namespace qtet {
 
@@ -112,15 +112,8 @@ Status applyChunk(const LogFile& log, Refiner& refiner, std::uint32_t chunk, std
 }
 
 Result<LatticeMesh> meshAtLevel(const LogFile& log, std::uint32_t level, const std::optional<std::vector<std::uint32_t>>& fields) {
-  const Result<Manifest> manifest = manifestFromJson(log.index().manifest);
+  const Result<Manifest> manifest = manifestOf(log.index());
   if (!manifest) return std::unexpected(manifest.error());
-  if (manifest->fields.size() != log.index().fieldComponents.size())
-    return fail(ErrorCode::kBadValue, "manifest and chunk table differ in the number of fields; build the log again");
-  for (std::size_t f = 0; f < manifest->fields.size(); ++f)
-    if (manifest->fields[f].components != log.index().fieldComponents[f])
-      return fail(ErrorCode::kBadValue, "manifest and chunk table differ in the components of field " + manifest->fields[f].name + "; build the log again");
-  if (manifest->latticeBits != log.index().positionBits)
-    return fail(ErrorCode::kBadValue, "manifest and header differ in the bits of the lattice; build the log again");
   const std::uint32_t last = log.index().chunks.back().lastLevel;
   if (level > last) return fail(ErrorCode::kNotFound, "there is no level " + std::to_string(level) + "; the last is " + std::to_string(last));
   std::vector<std::uint32_t> wanted;

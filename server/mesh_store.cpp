@@ -4,26 +4,12 @@
 
 #include <algorithm>
 
+#include "codec/log_manifest.h"
+
 namespace qtet {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// The manifest is for people and the table for decoders; a log in which they disagree would be shown wrong.
-Status checkAgreement(const Manifest& manifest, const LogIndex& index) {
-  const auto disagree = [](const std::string& what) { return fail(ErrorCode::kBadValue, what + "; build the log again"); };
-  if (manifest.fields.size() != index.fieldComponents.size())
-    return disagree("the manifest has " + std::to_string(manifest.fields.size()) + " fields and the chunk table " +
-                    std::to_string(index.fieldComponents.size()));
-  for (std::size_t f = 0; f < manifest.fields.size(); ++f)
-    if (manifest.fields[f].components != index.fieldComponents[f])
-      return disagree("field '" + manifest.fields[f].name + "' has " + std::to_string(manifest.fields[f].components) +
-                      " components in the manifest and " + std::to_string(index.fieldComponents[f]) + " in the chunk table");
-  if (manifest.levels.back().chunk >= index.chunks.size())
-    return disagree("the manifest's last level ends in chunk " + std::to_string(manifest.levels.back().chunk) + " and there are only " +
-                    std::to_string(index.chunks.size()));
-  return {};
-}
 
 std::time_t modificationTime(const fs::path& path) {
   struct stat info {};
@@ -41,9 +27,8 @@ Result<ServedMesh> openMesh(const fs::path& path) {
   Result<LogFile> log = LogFile::open(path);
   if (!log) return std::unexpected(log.error());
   if (const Status whole = log->verifyChecksums(); !whole) return std::unexpected(whole.error());
-  Result<Manifest> manifest = manifestFromJson(log->index().manifest);
+  Result<Manifest> manifest = manifestOf(log->index());
   if (!manifest) return std::unexpected(manifest.error());
-  if (const Status agreed = checkAgreement(*manifest, log->index()); !agreed) return std::unexpected(agreed.error());
   return ServedMesh{path.stem().string(), std::move(*log), std::move(*manifest), modificationTime(path)};
 }
 

@@ -1,0 +1,31 @@
+#include "codec/log_manifest.h"
+
+#include <string>
+
+namespace qtet {
+namespace {
+
+Status agree(const Manifest& manifest, const LogIndex& index) {
+  const auto contradiction = [](const std::string& what) {
+    return fail(ErrorCode::kBadValue, "manifest and chunk table contradict each other in " + what + "; build the log again");
+  };
+  if (manifest.latticeBits != index.positionBits) return contradiction("the bits of the lattice");
+  if (manifest.fields.size() != index.fieldComponents.size()) return contradiction("the number of fields");
+  for (std::size_t f = 0; f < manifest.fields.size(); ++f)
+    if (manifest.fields[f].components != index.fieldComponents[f]) return contradiction("the components of field " + manifest.fields[f].name);
+  if (index.chunks.empty() || manifest.levels.size() != std::size_t{index.chunks.back().lastLevel} + 1) return contradiction("the number of levels");
+  for (const ManifestLevel& level : manifest.levels)
+    if (level.chunk >= index.chunks.size()) return contradiction("the chunk of level " + std::to_string(level.level));
+  return {};
+}
+
+}  // namespace
+
+Result<Manifest> manifestOf(const LogIndex& index) {
+  Result<Manifest> manifest = manifestFromJson(index.manifest);
+  if (!manifest) return manifest;
+  if (Status agreed = agree(*manifest, index); !agreed) return std::unexpected(agreed.error());
+  return manifest;
+}
+
+}  // namespace qtet
