@@ -4,23 +4,17 @@
 #include <cmath>
 
 #include "codec/boundary.h"
-#include "codec/face_groups.h"
 #include "codec/growing_mesh.h"
 #include "codec/link.h"
 
 namespace qtet {
-namespace {
-
-// A boundary plane counts this much more than an interior one: the paper's "weighted planar quadric error metrics" that keep features.
-constexpr double kBoundaryFactor = 10;
-
-}  // namespace
 
 FusionMesh::FusionMesh(const LatticeMesh& mesh) : liveTetrahedra_(mesh.tetrahedra.size()) {
   history_.lattice = mesh.lattice;
   history_.fields = mesh.fields;
   history_.points = mesh.points;
   history_.values = mesh.values;
+  history_.cells.reserve(mesh.tetrahedra.size() + mesh.boundary.size());
   history_.cells.assign(mesh.tetrahedra.begin(), mesh.tetrahedra.end());
   onBoundary_.assign(mesh.points.size(), 0);
   for (const Triangle& t : mesh.boundary) {
@@ -31,7 +25,6 @@ FusionMesh::FusionMesh(const LatticeMesh& mesh) : liveTetrahedra_(mesh.tetrahedr
   aliveVertex_.assign(mesh.points.size(), 1);
   buildStars();
   findSingular();
-  buildQuadrics(mesh.tetrahedra.size());
 }
 
 void FusionMesh::buildStars() {
@@ -39,7 +32,7 @@ void FusionMesh::buildStars() {
   for (const auto& c : history_.cells)
     for (const VertexId v : c)
       if (v != kGhost) ++stars_[v].size;
-  for (Star& s : stars_) {
+  for (StarRange& s : stars_) {
     s.first = livePool_;
     livePool_ += s.size;
     s.size = 0;
@@ -63,96 +56,95 @@ void FusionMesh::findSingular() {
   }
 }
 
-void FusionMesh::buildQuadrics(std::size_t tetrahedra) {
-  quadrics_.assign(history_.points.size(), {});
-  std::vector<Tetrahedron> cells(history_.cells.begin(), history_.cells.begin() + static_cast<std::ptrdiff_t>(tetrahedra));
-  FaceGroups(cells).forEach([&](std::span<const FaceSide> sides) {
-    const Triangle face = cellFace(cells[cellOf(sides[0])], oppositeCornerOf(sides[0]));
-    Quadric q;
-    q.addTriangle(position(face[0]), position(face[1]), position(face[2]), sides.size() == 1 ? kBoundaryFactor : 1);
-    for (const VertexId v : face) quadrics_[v] += q;
-  });
-}
-
-void FusionMesh::blendValues(const Prey& prey, const FusionPoint& where) {
-  std::array<double, 4> weight{};
-  double total = 0;
-  for (std::size_t i = 0; i < prey.k; ++i) {
-    const Vector3 p{static_cast<double>(where.point[0]), static_cast<double>(where.point[1]), static_cast<double>(where.point[2])};
-    const Vector3 d = position(prey.vertex[i]) - p;
-    weight[i] = where.stays == FusionPoint::kMoves ? 1 / (dot(d, d) + 1) : static_cast<int>(i) == where.stays;
-    total += weight[i];
-  }
-  for (std::size_t f = 0; f < history_.fields.size(); ++f) {
-    const std::size_t n = history_.fields[f].components;
-    std::vector<std::int32_t>& values = history_.values[f];
-    for (std::size_t c = 0; c < n; ++c) {
-      double sum = 0;
-      for (std::size_t i = 0; i < prey.k; ++i) sum += weight[i] * values[prey.vertex[i] * n + c];
-      values.push_back(static_cast<std::int32_t>(std::floor(sum / total + 0.5)));
+// The prey vertex that the fused one would equal in place and values, or -1.
+int FusionMesh::preyAt(const Prey& prey, const LatticePoint& point, std::span<const std::int32_t> fused) const {
+  for (int i = 0; i < prey.k; ++i) {
+    const VertexId v = prey.vertex[static_cast<std::size_t>(i)];
+    if (history_.points[v] != point) continue;
+    std::size_t first = 0;
+    bool same = true;
+    for (std::size_t f = 0; f < history_.fields.size() && same; ++f) {
+      if (history_.fields[f].association != "point") continue;
+      const auto own = values(f, v);
+      same = std::ranges::equal(own, fused.subspan(first, own.size()));
+      first += own.size();
     }
+    if (same) return i;
   }
+  return -1;
 }
 
-VertexId FusionMesh::fuse(const Prey& prey, const FusionPoint& where, std::span<const CellId> affected, std::span<const std::uint8_t> labels,
-                          std::span<const CellId> deleted, std::span<const VertexId> link, std::uint32_t level) {
-  const auto fused = static_cast<VertexId>(history_.points.size());
-  blendValues(prey, where);
-  history_.points.push_back(where.point);
-
+void FusionMesh::record(const Prey& prey, int stays, const Star& star, std::uint32_t level) {
   Fusion record;
   record.k = prey.k;
-  record.moved = where.stays == FusionPoint::kMoves;
+  record.moved = stays < 0;
   record.level = level;
-  record.fused = fused;
+  record.fused = static_cast<VertexId>(history_.points.size());
   record.prey = prey.vertex;
-  const auto first = record.moved ? 0u : static_cast<std::uint8_t>(where.stays);
+  const auto first = static_cast<std::uint8_t>(std::max(stays, 0));
   std::swap(record.prey[0], record.prey[first]);
   record.firstAffected = history_.affectedCells.size();
-  record.affectedCount = static_cast<std::uint32_t>(affected.size());
+  record.affectedCount = static_cast<std::uint32_t>(star.affected.size());
   record.firstDeleted = history_.deletedCells.size();
-  record.deletedCount = static_cast<std::uint32_t>(deleted.size());
+  record.deletedCount = static_cast<std::uint32_t>(star.deleted.size());
   history_.fusions.push_back(record);
-  history_.affectedCells.insert(history_.affectedCells.end(), affected.begin(), affected.end());
-  for (const std::uint8_t label : labels) history_.affectedLabels.push_back(label == first ? 0 : label == 0 ? static_cast<std::uint8_t>(first) : label);
-  history_.deletedCells.insert(history_.deletedCells.end(), deleted.begin(), deleted.end());
+  history_.affectedCells.insert(history_.affectedCells.end(), star.affected.begin(), star.affected.end());
+  for (const std::uint8_t label : star.labels)
+    history_.affectedLabels.push_back(label == first ? std::uint8_t{0} : label == 0 ? first : label);
+  history_.deletedCells.insert(history_.deletedCells.end(), star.deleted.begin(), star.deleted.end());
+}
 
-  for (std::size_t i = 0; i < affected.size(); ++i) std::ranges::replace(history_.cells[affected[i]], prey.vertex[labels[i]], fused);
-  for (const CellId c : deleted) {
-    history_.live[c] = 0;
-    if (std::ranges::find(history_.cells[c], kGhost) == history_.cells[c].end()) --liveTetrahedra_;
+void FusionMesh::removeFromStar(VertexId v, CellId c) {
+  const auto cells = std::span(pool_).subspan(stars_[v].first, stars_[v].size);
+  *std::ranges::find(cells, c) = cells.back();
+  --stars_[v].size;
+  --livePool_;
+}
+
+VertexId FusionMesh::fuse(const Prey& prey, const LatticePoint& point, std::span<const std::int32_t> values, const Star& star,
+                          std::uint32_t level) {
+  record(prey, preyAt(prey, point, values), star, level);
+  const VertexId fused = history_.fusions.back().fused;
+  history_.points.push_back(point);
+  std::size_t first = 0;
+  for (std::size_t f = 0; f < history_.fields.size(); ++f) {
+    if (history_.fields[f].association != "point") continue;
+    const auto own = values.subspan(first, history_.fields[f].components);
+    history_.values[f].insert(history_.values[f].end(), own.begin(), own.end());
+    first += own.size();
   }
-  Quadric q;
   bool boundary = false;
   for (const VertexId v : prey.vertices()) {
-    q += quadrics_[v];
     boundary |= onBoundary_[v] != 0;
     aliveVertex_[v] = 0;
     livePool_ -= stars_[v].size;
     stars_[v].size = 0;
   }
-  for (const VertexId v : link) {
-    if (v == kGhost) continue;
-    const auto cells = std::span(pool_).subspan(stars_[v].first, stars_[v].size);
-    const auto kept = std::ranges::remove_if(cells, [&](CellId c) { return !history_.live[c]; });
-    stars_[v].size -= static_cast<std::uint32_t>(kept.size());
-    livePool_ -= kept.size();
+  for (std::size_t i = 0; i < star.affected.size(); ++i)
+    std::ranges::replace(history_.cells[star.affected[i]], prey.vertex[star.labels[i]], fused);
+  for (const CellId c : star.deleted) {
+    history_.live[c] = 0;
+    bool ghost = false;
+    for (const VertexId v : history_.cells[c]) {
+      ghost |= v == kGhost;
+      if (v != kGhost && aliveVertex_[v]) removeFromStar(v, c);
+    }
+    if (!ghost) --liveTetrahedra_;
   }
-  quadrics_.push_back(q);
   onBoundary_.push_back(boundary);
   singular_.push_back(0);
   aliveVertex_.push_back(1);
-  stars_.push_back({pool_.size(), static_cast<std::uint32_t>(affected.size())});
-  pool_.insert(pool_.end(), affected.begin(), affected.end());
-  livePool_ += affected.size();
-  if (pool_.size() > 4 * livePool_ + 4096) compactPool();
+  stars_.push_back({pool_.size(), static_cast<std::uint32_t>(star.affected.size())});
+  pool_.insert(pool_.end(), star.affected.begin(), star.affected.end());
+  livePool_ += star.affected.size();
+  if (pool_.size() > 2 * livePool_ + 4096) compactPool();
   return fused;
 }
 
 void FusionMesh::compactPool() {
   std::vector<CellId> pool;
-  pool.reserve(2 * livePool_);
-  for (Star& s : stars_) {
+  pool.reserve(livePool_ + livePool_ / 4);
+  for (StarRange& s : stars_) {
     const std::uint64_t first = pool.size();
     for (std::uint32_t i = 0; i < s.size; ++i) pool.push_back(pool_[s.first + i]);
     s.first = first;

@@ -5,188 +5,278 @@
 
 #include "codec/growing_mesh.h"
 #include "codec/predicates.h"
+#include "simplify/full_link_test.h"
 
 namespace qtet {
 namespace {
 
 // Cells of a star beyond which a fusion is not tried: a hub of a graded mesh would make every later fusion near it expensive.
 constexpr std::size_t kMaxStarCells = 400;
-// A new cell's shape may fall to a fifth of the worst of its star, or to this, whichever is lower (1 = regular, 0 = flat).
-constexpr double kShapeFloor = 0.02;
+// A new cell's shape may fall to a fifth of the worst of its star, or to the floor, whichever is lower.
 constexpr double kShapeLoss = 0.2;
+// Cosine of the largest angle that the normal of a boundary triangle may turn by in one fusion.
+constexpr double kNormalCosine = 0.3;
 // Steps of the projection into the envelope; the last ones keep a distance that rounding to the lattice cannot use up.
 constexpr int kProjections = 8;
 constexpr int kExactProjections = 4;
 constexpr double kRoundingReach = 0.87;  // sqrt(3) / 2 lattice steps
 
-Vector3 toDouble(const LatticePoint& p) { return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])}; }
+// On lattices of up to 16 bits every volume below is an integer under 2^53, exact in doubles; on finer ones |error| < 2^(3 bits + 5 - 52).
+constexpr int kExactBits = 16;
+constexpr int kRoundingLog = 5 - 52;
 
-// 6 sqrt(2) V / l^3 with l the root mean square edge: 1 for the regular tetrahedron, below 0 for an inverted one.
-double shapeOf(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d) {
-  const Vector3 ab = b - a;
-  const Vector3 ac = c - a;
-  const Vector3 ad = d - a;
-  const Vector3 bc = c - b;
-  const Vector3 bd = d - b;
-  const Vector3 cd = d - c;
-  const double squared = (dot(ab, ab) + dot(ac, ac) + dot(ad, ad) + dot(bc, bc) + dot(bd, bd) + dot(cd, cd)) / 6;
-  return squared > 0 ? 1.4142135623730951 * dot(cross(ab, ac), ad) / (squared * std::sqrt(squared)) : 0;
-}
+// Shape = 6 sqrt(2) V / l^3, l the root mean square edge. With v = 6 V and s = the sum of the squared edges its square is 432 v^2 / s^3.
+constexpr double kShapeSquared = 432;
+
+constexpr std::size_t kNoGhost = 4;
+
+double shapeSquared(double volume6, double squares) { return kShapeSquared * volume6 * volume6 / (squares * squares * squares); }
 
 }  // namespace
 
-int FusionTest::preyIndex(VertexId v) const {
-  for (int i = 0; i < prey_.k; ++i)
-    if (prey_.vertex[static_cast<std::size_t>(i)] == v) return i;
-  return -1;
-}
+FusionTest::FusionTest(const FusionMesh& mesh, double shapeFloor)
+    : mesh_(mesh), shapeFloor_(shapeFloor),
+      rounding_(mesh.latticeBits() <= kExactBits ? 0 : std::ldexp(1.0, 3 * mesh.latticeBits() + kRoundingLog)),
+      full_(std::make_unique<FullLinkTest>()) {}
+FusionTest::~FusionTest() = default;
+FusionTest::FusionTest(FusionTest&&) noexcept = default;
 
 bool FusionTest::gather(const Prey& prey) {
-  prey_ = prey;
-  affected_.clear(), deleted_.clear(), labels_.clear(), turned_.clear(), boundaryFaces_.clear(), others_.clear();
-  ++stamp_;
-  if (vertexStamp_.size() < mesh_.vertexSlots()) vertexStamp_.resize(mesh_.vertexSlots() * 2, 0);
-  bool ghost = false;
   std::size_t size = 0;
-  for (const VertexId v : prey.vertices()) size += mesh_.star(v).size();
+  for (const VertexId v : prey.vertices()) mesh_.prefetchStar(v), size += mesh_.star(v).size();
   if (size > 2 * kMaxStarCells) return false;
-  for (const VertexId v : prey.vertices())
-    for (const CellId c : mesh_.star(v)) {
-      if (cellStamp_.size() <= c) cellStamp_.resize(std::max<std::size_t>(c + 1, cellStamp_.size() * 2), 0);
-      if (std::exchange(cellStamp_[c], stamp_) == stamp_) continue;
+  prey_ = prey;
+  star_.affected.clear(), star_.deleted.clear(), star_.labels.clear(), star_.link.clear();
+  places_.clear(), sides_.clear(), turned_.clear(), ring_.clear(), goingCells_.clear(), ghosts_.clear(), bases_.clear(), faces_.clear();
+  vertices_.clear();
+  const auto intern = [&](VertexId v) {
+    const std::uint32_t local = vertices_.intern(v);
+    if (local == sides_.size()) {
+      sides_.push_back(0);
+      if (v != kGhost) mesh_.prefetchPoint(v);
+    }
+    return local;
+  };
+  for (const VertexId v : prey.vertices()) (void)intern(v);
+  for (std::uint32_t i = 0; i < prey.k; ++i)
+    for (const CellId c : mesh_.star(prey.vertex[i])) {
       const auto& cell = mesh_.cell(c);
-      int shared = 0;
+      std::array<std::uint32_t, 4> local{};
+      std::uint32_t lowest = prey.k;
       std::size_t at = 0;
+      int shared = 0;
       int singular = 0;
-      for (std::size_t i = 0; i < 4; ++i) {
-        const VertexId w = cell[i];
-        if (preyIndex(w) >= 0) {
-          ++shared, at = i;
-        } else if (w == kGhost) {
-          ghost = true;
-          const auto face = withLast(cell, i);
-          boundaryFaces_.push_back({face[0], face[1], face[2]});
-        } else {
-          singular += mesh_.singular(w);
-          if (std::exchange(vertexStamp_[w], stamp_) != stamp_) others_.push_back(w);
+      for (std::size_t j = 0; j < 4; ++j) {
+        local[j] = intern(cell[j]);
+        if (local[j] < prey.k) {
+          ++shared, at = j;
+          lowest = std::min(lowest, local[j]);
         }
       }
-      if (shared == 1) {
-        affected_.push_back(c);
-        labels_.push_back(static_cast<std::uint8_t>(preyIndex(cell[at])));
-        turned_.push_back(withLast(cell, at));
-      } else {
+      if (lowest < i) continue;  // met before
+      if (shared > 1) {
+        for (std::size_t j = 0; j < 4; ++j) singular += cell[j] != kGhost && local[j] >= prey.k && mesh_.singular(cell[j]);
         if (singular > 1) return false;  // an edge that is not a manifold's could be fused away unseen
-        deleted_.push_back(c);
+        star_.deleted.push_back(c);
+      } else {
+        star_.affected.push_back(c);
+        star_.labels.push_back(static_cast<std::uint8_t>(i));
       }
+      addCell(cell, local, shared, at);
     }
-  if (ghost) others_.push_back(kGhost);
-  if (affected_.size() > kMaxStarCells) return false;
-  measureShape();
+  if (star_.affected.size() > kMaxStarCells) return false;
+  star_.link.assign(vertices_.ids().begin() + prey.k, vertices_.ids().end());
+  measure();
   return true;
+}
+
+void FusionTest::addCell(const std::array<VertexId, 4>& cell, const std::array<std::uint32_t, 4>& local, int shared, std::size_t at) {
+  std::uint8_t side = 0;
+  for (const std::uint32_t v : local)
+    if (v < prey_.k) side |= static_cast<std::uint8_t>(1u << v);
+  std::array<std::uint32_t, 4> others{};
+  std::size_t n = 0;
+  std::size_t ghost = kNoGhost;
+  for (std::size_t j = 0; j < 4; ++j) {
+    if (cell[j] == kGhost) ghost = j;
+    if (local[j] < prey_.k) continue;
+    sides_[local[j]] |= side;
+    others[n++] = local[j];
+  }
+  if (shared == 1)
+    turned_.push_back(withLast(local, at));
+  else if (prey_.k == 2)
+    ring_.push_back({others[0], others[1]});
+  if (ghost != kNoGhost)
+    ghosts_.push_back({withLast(local, ghost), shared == 1});
+  else if (shared > 1)
+    goingCells_.push_back(local);
+}
+
+// What needs positions, once all of them have been asked for.
+void FusionTest::measure() {
+  const Vector3 origin = mesh_.position(prey_.vertex[0]);
+  for (const VertexId v : vertices_.ids()) places_.push_back(v == kGhost ? Vector3{} : mesh_.position(v) - origin);
+  const std::uint32_t ghost = ghosts_.empty() ? ~0u : ghosts_[0].local[3];
+  for (std::size_t i = 0; i < turned_.size(); ++i)
+    if (turned_[i][0] != ghost && turned_[i][1] != ghost && turned_[i][2] != ghost) addBase(turned_[i], i);
+  for (const GhostCell& g : ghosts_) addFace(g.local, g.stays);
+  measureShape();
+}
+
+void FusionTest::addBase(const std::array<std::uint32_t, 4>& local, std::size_t index) {
+  const Vector3& a = places_[local[0]];
+  const Vector3& b = places_[local[1]];
+  const Vector3& c = places_[local[2]];
+  const Vector3 ab = b - a, ac = c - a, bc = c - b;
+  Base base;
+  base.normal = cross(ab, ac);
+  base.height = dot(base.normal, a);
+  base.corners = a + b + c;
+  base.squares = dot(ab, ab) + dot(ac, ac) + dot(bc, bc) + dot(a, a) + dot(b, b) + dot(c, c);
+  base.cell = static_cast<std::uint32_t>(index);
+  bases_.push_back(base);
+}
+
+void FusionTest::addFace(std::array<std::uint32_t, 4> f, bool stays) {
+  Face face;
+  const Vector3 ab = places_[f[1]] - places_[f[0]];
+  face.normal = cross(ab, places_[f[2]] - places_[f[0]]);
+  face.height = dot(face.normal, places_[f[0]]);
+  for (std::size_t i = 0; i < 3; ++i) face.vertex[i] = vertices_.ids()[f[i]];
+  face.stays = stays;
+  if (face.stays) {
+    while (f[2] >= prey_.k) f = {f[1], f[2], f[0], f[3]};
+    face.first = places_[f[0]], face.second = places_[f[1]];
+  }
+  faces_.push_back(face);
 }
 
 void FusionTest::measureShape() {
   double worst = 1;
-  const auto look = [&](const std::array<VertexId, 4>& c) {
-    if (std::ranges::find(c, kGhost) == c.end())
-      worst = std::min(worst, shapeOf(mesh_.position(c[0]), mesh_.position(c[1]), mesh_.position(c[2]), mesh_.position(c[3])));
-  };
-  for (const auto& c : turned_) look(c);
-  for (const CellId c : deleted_) look(mesh_.cell(c));
-  shapeFloor_ = std::min(kShapeFloor, kShapeLoss * worst);
-}
-
-bool FusionTest::keepsTopology() {
-  link_.clear(mesh_.vertexSlots());
-  for (const auto& t : turned_) link_.add(t[0], t[1], t[2]);
-  if (!link_.close() || link_.vertices().size() != others_.size() || !link_.isSphere()) return false;
-  return deletedOnLink() && patchIsDisc() && describable();
-}
-
-// Every edge of a deleted cell between two vertices that stay must be an edge of the link.
-bool FusionTest::deletedOnLink() const {
-  for (const CellId c : deleted_) {
-    std::array<std::uint32_t, 4> stay{};
-    std::size_t n = 0;
-    for (const VertexId v : mesh_.cell(c))
-      if (preyIndex(v) < 0) stay[n++] = link_.localOf(v);
-    if (n == 2 && link_.triangleAtEdge(stay[0], stay[1]) == kNoNeighbour) return false;
+  for (const Base& base : bases_) {
+    const Vector3& apex = places_[star_.labels[base.cell]];
+    const double volume = dot(base.normal, apex) - base.height;
+    const double squares = base.squares + 3 * dot(apex, apex) - 2 * dot(apex, base.corners);
+    worst = std::min(worst, volume > 0 ? shapeSquared(volume, squares) : 0);
   }
-  return true;
-}
-
-// The boundary faces that touch the prey must form one disc: then the new fan round the fused vertex, a disc too, replaces them.
-bool FusionTest::patchIsDisc() const {
-  if (boundaryFaces_.empty()) return true;
-  std::int64_t ring = 0;
-  for (const LinkTriangle& t : link_.triangles()) ring += t.ghost;
-  std::int64_t inner = 0;
-  for (const VertexId v : prey_.vertices()) inner += mesh_.onBoundary(v);
-  const auto faces = static_cast<std::int64_t>(boundaryFaces_.size());
-  if ((3 * faces + ring) % 2 != 0) return false;
-  return inner + ring - (3 * faces + ring) / 2 + faces == 1;
-}
-
-bool FusionTest::describable() {
-  if (prey_.k == 2) return true;  // labels tell all: a deleted cell stands exactly where they change
-  for (std::size_t i = 0; i < labels_.size(); ++i) link_.triangles()[i].label = labels_[i];
-  truth_.clear();
-  for (const CellId c : deleted_) {
-    LocalCell local{};
-    for (std::size_t i = 0; i < 4; ++i) {
-      const int p = preyIndex(mesh_.cell(c)[i]);
-      local[i] = p >= 0 ? kPreyBit | static_cast<LocalVertex>(p) : link_.localOf(mesh_.cell(c)[i]);
-    }
-    truth_.push_back(sorted(local));
+  for (const auto& c : goingCells_) {
+    const Vector3 ab = places_[c[1]] - places_[c[0]], ac = places_[c[2]] - places_[c[0]], ad = places_[c[3]] - places_[c[0]];
+    const Vector3 bc = ac - ab, bd = ad - ab, cd = ad - ac;
+    const double volume = dot(cross(ab, ac), ad);
+    const double squares = dot(ab, ab) + dot(ac, ac) + dot(ad, ad) + dot(bc, bc) + dot(bd, bd) + dot(cd, cd);
+    worst = std::min(worst, volume > 0 ? shapeSquared(volume, squares) : 0);
   }
-  std::ranges::sort(truth_);
-  EchoCoder echo;
-  return codeDeletedCells(echo, models_, link_, prey_.k, truth_, derived_);
+  oldShape_ = std::sqrt(worst);
+  const double floor = std::min(shapeFloor_, kShapeLoss * oldShape_);
+  floorSquared_ = floor * floor;
 }
 
-bool FusionTest::keepsCells(const LatticePoint& p) const {
-  const Vector3 position = toDouble(p);
-  for (const auto& t : turned_) {
-    if (t[0] == kGhost || t[1] == kGhost || t[2] == kGhost) continue;
-    const LatticePoint& a = mesh_.point(t[0]);
-    const LatticePoint& b = mesh_.point(t[1]);
-    const LatticePoint& c = mesh_.point(t[2]);
-    if (orientation(a, b, c, p) > 0) {
-      if (shapeOf(toDouble(a), toDouble(b), toDouble(c), position) < shapeFloor_) return false;
+double FusionTest::shapeAt(const LatticePoint& p) const {
+  const Vector3 d = toVector(p) - mesh_.position(prey_.vertex[0]);
+  for (const Face& face : faces_) {
+    if (!face.stays) continue;
+    const Vector3 normal = cross(face.second - face.first, d - face.first);
+    const double along = dot(normal, face.normal);
+    if (dot(face.normal, face.normal) == 0) continue;
+    if (along <= 0 || along * along <= kNormalCosine * kNormalCosine * dot(normal, normal) * dot(face.normal, face.normal)) return -1;
+  }
+  const double distance = 3 * dot(d, d);
+  double worst = 1;
+  for (const Base& base : bases_) {
+    const double volume = dot(base.normal, d) - base.height;
+    if (volume <= rounding_) {
+      if (!flatAsBefore(base, p)) return -1;
       continue;
     }
-    // Flat or inverted: allowed only where the input was no better.
-    const Int128 old = volume6(a, b, c, mesh_.point(t[3]));
-    if (old > 0 || volume6(a, b, c, p) < old) return false;
+    const double shape = shapeSquared(volume, base.squares + distance - 2 * dot(d, base.corners));
+    if (shape < floorSquared_) return -1;
+    worst = std::min(worst, shape);
   }
-  return true;
+  return std::sqrt(worst);
+}
+
+// Too close to call in doubles, flat or inverted: allowed only where it is positive after all, or the input was no better.
+bool FusionTest::flatAsBefore(const Base& base, const LatticePoint& p) const {
+  const auto& cell = mesh_.cell(star_.affected[base.cell]);
+  const VertexId apex = prey_.vertex[star_.labels[base.cell]];
+  const auto t = withLast(cell, static_cast<std::size_t>(std::ranges::find(cell, apex) - cell.begin()));
+  const Int128 volume = volume6(mesh_.point(t[0]), mesh_.point(t[1]), mesh_.point(t[2]), p);
+  if (volume > 0) return true;
+  const Int128 old = volume6(mesh_.point(t[0]), mesh_.point(t[1]), mesh_.point(t[2]), mesh_.point(t[3]));
+  return old <= 0 && volume >= old;
+}
+
+// `d` = p relative to the first prey vertex.
+bool FusionTest::isOutside(const Face& face, const Vector3& d, const LatticePoint& p) const {
+  const double side = dot(face.normal, d) - face.height;
+  if (std::abs(side) > rounding_ || rounding_ == 0) return side > 0;
+  return orientation(mesh_.point(face.vertex[0]), mesh_.point(face.vertex[1]), mesh_.point(face.vertex[2]), p) > 0;
 }
 
 bool FusionTest::insideEnvelope(const LatticePoint& p) const {
-  return std::ranges::all_of(boundaryFaces_, [&](const Triangle& f) {
-    return orientation(mesh_.point(f[0]), mesh_.point(f[1]), mesh_.point(f[2]), p) <= 0;
-  });
+  const Vector3 d = toVector(p) - mesh_.position(prey_.vertex[0]);
+  return std::ranges::none_of(faces_, [&](const Face& face) { return isOutside(face, d, p); });
 }
 
 bool FusionTest::projectInside(Vector3 p, LatticePoint& inside) const {
+  const Vector3 origin = mesh_.position(prey_.vertex[0]);
   for (int step = 0; step <= kProjections; ++step) {
     for (std::size_t a = 0; a < 3; ++a) inside[a] = static_cast<std::int32_t>(std::floor(p[a] + 0.5));
+    const Vector3 d = toVector(inside) - origin;
     double farthest = -1;
-    Vector3 normal{};
-    for (const Triangle& f : boundaryFaces_) {
-      if (orientation(mesh_.point(f[0]), mesh_.point(f[1]), mesh_.point(f[2]), inside) <= 0) continue;
-      const Vector3 a = mesh_.position(f[0]);
-      const Vector3 n = cross(mesh_.position(f[1]) - a, mesh_.position(f[2]) - a);
-      const double length = std::sqrt(dot(n, n));
-      const double outside = dot(n, p - a) / length;
-      if (std::abs(outside) > farthest) farthest = std::abs(outside), normal = (outside / length) * n;
-      if (step >= kExactProjections) normal = normal + (kRoundingReach / length) * n;
+    Vector3 back{};
+    for (const Face& face : faces_) {
+      if (!isOutside(face, d, inside)) continue;
+      const double length = std::sqrt(dot(face.normal, face.normal));
+      const double outside = (dot(face.normal, p - origin) - face.height) / length;
+      if (std::abs(outside) > farthest) farthest = std::abs(outside), back = (outside / length) * face.normal;
+      if (step >= kExactProjections) back = back + (kRoundingReach / length) * face.normal;
     }
     if (farthest < 0) return true;
-    p = p - normal;
+    p = p - back;
   }
   return false;
+}
+
+bool FusionTest::keepsTopology() { return prey_.k == 2 ? edgeKeepsTopology() : full_->passes(mesh_, prey_, star_); }
+
+// The link condition of Dey, Edelsbrunner, Guha and Nekhayev in the complex completed by the ghost: the links of the two vertices meet in the
+// edge's link and nowhere else. That link is one cycle, since neither vertex is singular.
+bool FusionTest::edgeKeepsTopology() {
+  std::size_t common = 0;
+  for (std::size_t v = 2; v < sides_.size(); ++v) common += sides_[v] == 3;
+  if (common != ring_.size()) return false;
+  ringNeighbours_.assign(sides_.size(), {0, 0});
+  for (const auto& [x, y] : ring_) {
+    for (const auto& [at, other] : {std::pair{x, y}, std::pair{y, x}}) {
+      auto& pair = ringNeighbours_[at];
+      if (pair[1] != 0) return false;
+      pair[pair[0] == 0 ? 0 : 1] = other;
+    }
+  }
+  return !hasCommonChord();
+}
+
+// An edge between two vertices of the ring that is in both links but not in the ring, or a triangle that fills a ring of three in both.
+bool FusionTest::hasCommonChord() {
+  chords_.clear();
+  unsigned filled = 0;
+  for (std::size_t i = 0; i < turned_.size(); ++i) {
+    const auto& t = turned_[i];
+    int onRing = 0;
+    for (std::size_t e = 0; e < 3; ++e) {
+      onRing += sides_[t[e]] == 3;
+      const std::uint32_t x = std::min(t[e], t[(e + 1) % 3]), y = std::max(t[e], t[(e + 1) % 3]);
+      if (sides_[x] != 3 || sides_[y] != 3 || ringNeighbours_[x][0] == y || ringNeighbours_[x][1] == y) continue;
+      if (star_.labels[i] == 0)
+        chords_.push_back({x, y});
+      else if (std::find(chords_.begin(), chords_.end(), std::array{x, y}) != chords_.end())
+        return true;
+    }
+    if (onRing == 3 && ring_.size() == 3) filled |= 1u << star_.labels[i];
+  }
+  return filled == 3;
 }
 
 }  // namespace qtet

@@ -1,58 +1,95 @@
-// Whether a fusion keeps the mesh what it is: topology exactly (the link test with the ghost vertex), no cell flipped, inside the boundary
-// envelope (ALGORITHM.md, "Legality"). All decisions on lattice integers, except the shape guard.
+// Whether a fusion keeps the mesh what it is: topology exactly (the link condition with the ghost vertex), no cell flipped, inside the boundary
+// envelope, and how well shaped the new cells are (ALGORITHM.md, "Legality"). All decisions but shape are exact on lattice integers.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
-#include "codec/deleted_cells.h"
-#include "codec/link.h"
 #include "simplify/fusion_mesh.h"
+#include "simplify/local_vertices.h"
 
 namespace qtet {
 
+class FullLinkTest;
+
+/// One thread's own; the mesh may be shared while nobody fuses.
 class FusionTest {
  public:
-  explicit FusionTest(const FusionMesh& mesh) : mesh_(mesh) {}
+  /// `shapeFloor`: no new cell may be shaped worse than this or than a fifth of its star's worst, whichever is lower.
+  explicit FusionTest(const FusionMesh& mesh, double shapeFloor = 0);
+  ~FusionTest();
+  FusionTest(FusionTest&&) noexcept;
+  FusionTest& operator=(FusionTest&&) = delete;
 
   /// Collects the star of the prey. False when it is too large or already rules the fusion out.
   [[nodiscard]] bool gather(const Prey& prey);
   /// Keeps topology: of the solid, of its boundary, and of every component of either; and the log can describe it. REQUIRES gather.
   [[nodiscard]] bool keepsTopology();
-  /// No affected cell flips or is squashed. REQUIRES gather.
-  [[nodiscard]] bool keepsCells(const LatticePoint& p) const;
+
   /// p lies on the inner side of (or on) every boundary face of the star. REQUIRES gather.
   [[nodiscard]] bool insideEnvelope(const LatticePoint& p) const;
   /// Moves p onto the planes of the boundary faces that it lies outside of, one after the other, until its lattice point is inside.
   [[nodiscard]] bool projectInside(Vector3 p, LatticePoint& inside) const;
+  /// The worst shape among the affected cells with the prey at p (1 = regular, 0 = flat), or a negative number where p is not legal: a cell
+  /// would flip or be squashed, or a boundary triangle turn by more than a right angle's four fifths. REQUIRES gather.
+  [[nodiscard]] double shapeAt(const LatticePoint& p) const;
+  /// The worst shape in the star as it is. REQUIRES gather.
+  [[nodiscard]] double oldShape() const { return oldShape_; }
 
-  [[nodiscard]] std::span<const CellId> affected() const { return affected_; }
-  [[nodiscard]] std::span<const std::uint8_t> labels() const { return labels_; }
-  [[nodiscard]] std::span<const CellId> deleted() const { return deleted_; }
-  /// The star's vertices that are not prey, kGhost among them where the prey touches the boundary.
-  [[nodiscard]] std::span<const VertexId> linkVertices() const { return others_; }
+  [[nodiscard]] const Star& star() const { return star_; }
 
  private:
-  [[nodiscard]] int preyIndex(VertexId v) const;
-  [[nodiscard]] bool deletedOnLink() const;
-  [[nodiscard]] bool patchIsDisc() const;
-  [[nodiscard]] bool describable();
+  // The base of an affected cell: volume and shape with an apex d, both relative to the first prey vertex.
+  struct Base {
+    Vector3 normal;      // of twice the area, towards the apex
+    double height;       // normal . a corner
+    Vector3 corners;     // sum of the corners
+    double squares;      // of the three edges and the corners' distances from the origin
+    std::uint32_t cell;  // index into star_.affected
+  };
+  struct GhostCell {
+    std::array<std::uint32_t, 4> local;  // the ghost last
+    bool stays;                          // is affected
+  };
+  // A boundary triangle of the star, counter-clockwise seen from outside.
+  struct Face {
+    Vector3 normal;
+    double height;
+    std::array<VertexId, 3> vertex;
+    Vector3 first, second;  // the edge that stays, of an affected face
+    bool stays = false;
+  };
+
+  void addCell(const std::array<VertexId, 4>& cell, const std::array<std::uint32_t, 4>& local, int shared, std::size_t at);
+  void addBase(const std::array<std::uint32_t, 4>& local, std::size_t apex);
+  void addFace(std::array<std::uint32_t, 4> local, bool stays);
+  void measure();
   void measureShape();
+  [[nodiscard]] bool edgeKeepsTopology();
+  [[nodiscard]] bool hasCommonChord();
+  [[nodiscard]] bool isOutside(const Face& face, const Vector3& d, const LatticePoint& p) const;
+  [[nodiscard]] bool flatAsBefore(const Base& base, const LatticePoint& p) const;
 
   const FusionMesh& mesh_;
+  double shapeFloor_, rounding_;
   Prey prey_;
-  std::vector<CellId> affected_, deleted_;
-  std::vector<std::uint8_t> labels_;
-  std::vector<std::array<VertexId, 4>> turned_;  // affected cells, prey vertex last
-  std::vector<Triangle> boundaryFaces_;          // of the star, counter-clockwise from outside
-  std::vector<VertexId> others_;
-  Link link_;
-  double shapeFloor_ = 0;                        // new cells must be at least as well shaped
-  std::vector<std::uint32_t> cellStamp_, vertexStamp_;
-  std::uint32_t stamp_ = 0;
-  DeletedModels models_;
-  std::vector<LocalCell> truth_, derived_;
+  Star star_;
+  LocalVertices vertices_;
+  std::vector<Vector3> places_;                           // by local vertex, relative to the first prey vertex
+  std::vector<std::uint8_t> sides_;                       // by local vertex: bit i = in the link of prey vertex i
+  std::vector<std::array<std::uint32_t, 4>> turned_;      // affected cells, the prey vertex last, local
+  std::vector<GhostCell> ghosts_;
+  std::vector<std::array<std::uint32_t, 2>> ring_;        // k = 2: the edges opposite the prey in deleted cells
+  std::vector<std::array<std::uint32_t, 4>> goingCells_;  // deleted cells, local
+  std::vector<Base> bases_;
+  std::vector<Face> faces_;
+  double oldShape_ = 1;
+  double floorSquared_ = 0;
+  std::vector<std::array<std::uint32_t, 2>> ringNeighbours_;
+  std::vector<std::array<std::uint32_t, 2>> chords_;
+  std::unique_ptr<FullLinkTest> full_;
 };
 
 }  // namespace qtet

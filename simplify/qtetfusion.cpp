@@ -3,43 +3,41 @@
 #include <algorithm>
 #include <boost/heap/d_ary_heap.hpp>
 #include <cmath>
+#include <deque>
 #include <limits>
+#include <memory>
 #include <span>
-#include <tuple>
 #include <utility>
 #include <vector>
 
-#include "codec/small_order.h"
 #include "proto/limits.h"
+#include "simplify/candidates.h"
 #include "simplify/fusion_mesh.h"
-#include "simplify/fusion_test.h"
+#include "simplify/fusion_proposer.h"
+#include "simplify/workers.h"
 
 namespace qtet {
 namespace {
 
-// One fusion of a tetrahedron does what three to five of edges do; its quadric sums four vertices. Factors on the key, by k.
-constexpr std::array<double, 5> kKeyFactor{0, 0, 1, 0.3, 0.1};
 // A level ends where the next key passes this quantile of the keys at its start: about 5 % growth a level, as good as strict order.
 constexpr double kLevelQuantile = 0.35;
 // A pass over all candidates that removes less than this fraction of the cells is the last.
 constexpr double kWorthAnotherPass = 0.002;
-// How far (in radii of the prey) a quadric's minimum may lie from the prey's barycentre before it counts as ill-conditioned.
-constexpr double kReach = 1.5;
+// A fusion that turns out to cost this much more than its key waits for those that cost less.
+constexpr float kDearer = 1.25f;
+// No new cell may be shaped worse than this, or than a fifth of its star's worst (1 = regular, 0 = flat).
+constexpr double kShapeFloor = 1e-4;
 
-// Keys are areas squared times a distance squared in lattice steps: scaled by a power of two, exactly, to what they would be at 16 bits, or
-// the finest lattices would take them beyond a float.
-constexpr int kLengthsInAKey = 6;
-constexpr int kScaleBits = 16;
-
-struct Candidate {
-  float key = 0;
-  std::array<VertexId, 3> partner{};  // the owner is the fourth
-  std::uint8_t k = 2;
-  bool operator<(const Candidate& other) const { return std::tie(key, k, partner) < std::tie(other.key, other.k, other.partner); }
-};
+// Vertices whose candidates are found at once, and how many of them a thread takes at a time.
+constexpr std::size_t kCollected = 4096;
+constexpr std::size_t kGrain = 16;
+// Entries of the queue for which threads make proposals ahead: a share of the level's, since a fusion spoils those of its neighbours.
+constexpr std::size_t kAheadShare = 16;
+constexpr std::size_t kLeastAhead = 64;
+constexpr std::size_t kMostAhead = 2048;
 
 struct Entry {
-  double key = 0;
+  float key = 0;
   VertexId owner = 0;
   // The heap keeps the largest on top; equal keys in order of the owner, so that the outcome is one and the same everywhere.
   bool operator<(const Entry& other) const { return key != other.key ? key > other.key : owner > other.owner; }
@@ -50,15 +48,18 @@ using Queue = boost::heap::d_ary_heap<Entry, boost::heap::arity<4>>;
 class Simplifier {
  public:
   Simplifier(const LatticeMesh& mesh, const FusionOptions& options)
-      : options_(options), mesh_(mesh), test_(mesh_), original_(mesh.tetrahedra.size()),
-        target_(static_cast<std::size_t>(std::ceil(options.targetRatio * static_cast<double>(original_)))),
-        keyScale_(std::ldexp(1.0, kLengthsInAKey * std::min(0, kScaleBits - mesh.lattice.bits))) {}
+      : options_(options), mesh_(mesh), cost_(mesh_, mesh, options.cost), workers_(options.threads), original_(mesh.tetrahedra.size()),
+        target_(static_cast<std::size_t>(std::ceil(options.targetRatio * static_cast<double>(original_)))), values_(cost_.components()) {
+    for (std::size_t i = 0; i < workers_.count(); ++i)
+      proposers_.push_back(std::make_unique<FusionProposer>(mesh_, cost_, touched_, kShapeFloor, options.shapeWeight));
+  }
 
   Result<FusionHistory> run() {
     while (mesh_.liveTetrahedra() > target_) {
       const std::size_t before = mesh_.liveTetrahedra();
-      fillQueue();
-      while (!queue_.empty() && mesh_.liveTetrahedra() > target_ && level_ < kMaxLevels) runLevel();
+      findCandidates();
+      while (mesh_.liveTetrahedra() > target_ && level_ < kMaxLevels && runLevel()) {
+      }
       if (level_ == kMaxLevels && mesh_.liveTetrahedra() > target_)
         return fail(ErrorCode::kLimitExceeded, "4,096 levels do not reach the target; ask for more cells with --target-ratio");
       if (static_cast<double>(before - mesh_.liveTetrahedra()) < kWorthAnotherPass * static_cast<double>(before)) break;
@@ -67,179 +68,193 @@ class Simplifier {
   }
 
  private:
-  struct List {
-    std::size_t next = 0, end = 0;
-  };
-
-  void fillQueue() {
+  void findCandidates() {
     candidates_.clear();
-    lists_.assign(mesh_.vertexSlots(), {});
-    locked_.resize(mesh_.vertexSlots(), 0);
-    std::vector<Entry> entries;
+    makeRoom();
+    vertices_.clear();
     for (VertexId v = 0; v < mesh_.vertexSlots(); ++v)
-      if (mesh_.alive(v) && !mesh_.singular(v)) {
-        collect(v, true);
-        if (lists_[v].next < lists_[v].end) entries.push_back({candidates_[lists_[v].next].key, v});
-      }
-    queue_.clear();
-    queue_.reserve(entries.size());
-    for (const Entry& e : entries) queue_.push(e);
-    candidateLimit_ = candidates_.size() + candidates_.size() / 2 + 4096;
+      if (mesh_.alive(v) && !mesh_.singular(v)) vertices_.push_back(v);
+    collect(vertices_, true);
   }
 
-  // Lists of dead owners and candidates with dead partners would outgrow the mesh several times.
-  void compactCandidates() {
-    std::vector<Candidate> kept;
-    for (VertexId v = 0; v < mesh_.vertexSlots(); ++v) {
-      const List old = lists_[v];
-      lists_[v].next = kept.size();
-      for (std::size_t i = old.next; mesh_.alive(v) && i < old.end; ++i)
-        if (i == old.next || partnersAlive(candidates_[i])) kept.push_back(candidates_[i]);
-      lists_[v].end = kept.size();
+  void makeRoom() {
+    touched_.resize(mesh_.vertexSlots());
+    proposalOf_.resize(mesh_.vertexSlots(), kNone);
+  }
+
+  /// The candidates of these vertices, found in parallel, kept in order.
+  void collect(std::span<const VertexId> vertices, bool onlyLower) {
+    std::vector<std::vector<Candidate>> found(std::min(vertices.size(), kCollected));
+    for (std::size_t first = 0; first < vertices.size(); first += found.size()) {
+      const auto part = vertices.subspan(first, std::min(found.size(), vertices.size() - first));
+      workers_.forEach(part.size(), kGrain, [&](std::size_t worker, std::size_t i) { proposers_[worker]->candidatesOf(part[i], onlyLower, found[i]); });
+      for (std::size_t i = 0; i < part.size(); ++i) candidates_.set(part[i], found[i]);
     }
-    candidates_ = std::move(kept);
-    candidateLimit_ = candidates_.size() + candidates_.size() / 2 + 4096;
   }
 
-  [[nodiscard]] bool partnersAlive(const Candidate& c) const {
-    return std::all_of(c.partner.begin(), c.partner.begin() + c.k - 1, [&](VertexId v) { return mesh_.alive(v); });
-  }
-
-  // All prey that hold v: its edges, and the triangles and tetrahedra of its star. `onlyLower` = v is their highest vertex.
-  void collect(VertexId v, bool onlyLower) {
-    List& list = lists_[v];
-    list.next = candidates_.size();
-    edges_.clear(), triangles_.clear();
-    for (const CellId c : mesh_.star(v)) {
-      std::array<VertexId, 3> w{};
-      std::size_t n = 0;
-      bool real = true;
-      for (const VertexId x : mesh_.cell(c)) {
-        if (x == v) continue;
-        real &= x != kGhost;
-        if (x != kGhost) w[n++] = x;
-      }
-      if (!real) continue;  // a boundary face belongs to a tetrahedron too
-      std::ranges::sort(w);
-      for (std::size_t i = 0; i < 3; ++i) edges_.push_back(w[i]), triangles_.push_back({w[i == 0], w[i == 2 ? 1 : 2]});
-      offer({v, w[0], w[1], w[2]}, 4, onlyLower);
+  /// False when nothing is left to try.
+  bool runLevel() {
+    fillQueue();
+    if (entries_.empty()) return false;
+    levelStart_ = fusions_;
+    fused_.clear();
+    while (nextKey() <= limit_ && mesh_.liveTetrahedra() > target_) {
+      if (next_ >= proposedTo_) proposeAhead();
+      const VertexId owner = pop();
+      if (!isLocked(owner)) process(owner);
     }
-    std::ranges::sort(edges_);
-    std::ranges::sort(triangles_);
-    edges_.erase(std::ranges::unique(edges_).begin(), edges_.end());
-    triangles_.erase(std::ranges::unique(triangles_).begin(), triangles_.end());
-    for (const auto& t : triangles_) offer({v, t[0], t[1], 0}, 3, onlyLower);
-    for (const VertexId w : edges_) offer({v, w, 0, 0}, 2, onlyLower);
-    std::sort(candidates_.begin() + static_cast<std::ptrdiff_t>(list.next), candidates_.end());
-    list.end = candidates_.size();
-  }
-
-  void offer(const std::array<VertexId, 4>& vertices, std::uint8_t k, bool onlyLower) {
-    for (std::size_t i = 1; i < k; ++i)
-      if (mesh_.singular(vertices[i]) || (onlyLower && vertices[i] > vertices[0])) return;
-    const Prey prey{k, vertices};
-    const auto key = static_cast<float>(keyScale_ * kKeyFactor[k] * quadricOf(prey).at(ideal(prey)));
-    candidates_.push_back({key, {vertices[1], vertices[2], vertices[3]}, k});
-  }
-
-  [[nodiscard]] Quadric quadricOf(const Prey& prey) const {
-    Quadric q;
-    for (const VertexId v : prey.vertices()) q += mesh_.quadric(v);
-    return q;
-  }
-
-  // Eq. 6-7 where that is well-conditioned, else the barycentre; of a prey with one boundary vertex, that vertex.
-  [[nodiscard]] Vector3 ideal(const Prey& prey) const {
-    std::size_t boundary = 0;
-    Vector3 centre{};
-    for (const VertexId v : prey.vertices()) boundary += mesh_.onBoundary(v);
-    for (const VertexId v : prey.vertices())
-      if (boundary == 0 || mesh_.onBoundary(v)) centre = centre + (1.0 / static_cast<double>(boundary ? boundary : prey.k)) * mesh_.position(v);
-    if (boundary == 1) return centre;
-    const auto minimum = quadricOf(prey).minimum();
-    if (!minimum) return centre;
-    double radius = 0;
-    for (const VertexId v : prey.vertices()) radius = std::max(radius, dot(mesh_.position(v) - centre, mesh_.position(v) - centre));
-    const Vector3 off = *minimum - centre;
-    return dot(off, off) <= kReach * kReach * radius ? *minimum : centre;
-  }
-
-  void runLevel() {
-    const double limit = keyLimit();
-    const std::size_t fusions = fusions_;
-    deferred_.clear();
-    ++level_;
-    while (!queue_.empty() && mesh_.liveTetrahedra() > target_) {
-      const Entry top = queue_.top();
-      if (top.key > limit && fusions_ > fusions) break;
-      queue_.pop();
-      if (mesh_.alive(top.owner)) process(top.owner);
-    }
-    for (const Entry& e : deferred_) queue_.push(e);
-    if (fusions_ == fusions) --level_;  // nothing was legal: no such level
-    if (candidates_.size() > candidateLimit_) compactCandidates();
+    for (const VertexId v : withProposal_) proposalOf_[v] = kNone;
+    withProposal_.clear();
+    if (fusions_ > levelStart_) ++level_;
+    vertices_.insert(vertices_.end(), fused_.begin(), fused_.end());
+    collect(fused_, false);
+    candidates_.compact([&](VertexId v) { return mesh_.alive(v); });
     if (options_.progress) options_.progress(progress());
-  }
-
-  [[nodiscard]] double keyLimit() {
-    keys_.clear();
-    for (const Entry& e : queue_) keys_.push_back(e.key);
-    const auto at = keys_.begin() + static_cast<std::ptrdiff_t>(kLevelQuantile * static_cast<double>(keys_.size()));
-    if (at == keys_.end()) return std::numeric_limits<double>::infinity();
-    std::nth_element(keys_.begin(), at, keys_.end());
-    return *at;
-  }
-
-  void process(VertexId owner) {
-    List& list = lists_[owner];
-    const Candidate candidate = candidates_[list.next];
-    Prey prey{candidate.k, {owner, candidate.partner[0], candidate.partner[1], candidate.partner[2]}};
-    const bool gone = !partnersAlive(candidate);
-    if (!gone && std::ranges::any_of(prey.vertices(), [&](VertexId v) { return locked_[v] == level_; })) {
-      deferred_.push_back({candidate.key, owner});
-      return;
-    }
-    if (!gone && tryFuse(prey)) return;
-    while (++list.next < list.end && !partnersAlive(candidates_[list.next])) {
-    }
-    if (list.next < list.end) queue_.push({candidates_[list.next].key, owner});
-  }
-
-  bool tryFuse(const Prey& prey) {
-    FusionPoint where;
-    if (!test_.gather(prey) || !place(prey, where) || !test_.keepsTopology()) return false;
-    const VertexId fused = mesh_.fuse(prey, where, test_.affected(), test_.labels(), test_.deleted(), test_.linkVertices(), level_ - 1);
-    locked_.resize(mesh_.vertexSlots(), 0);
-    lists_.resize(mesh_.vertexSlots());
-    locked_[fused] = level_;
-    for (const VertexId v : test_.linkVertices())
-      if (v != kGhost) locked_[v] = level_;
-    ++fusions_;
-    collect(fused, false);
-    if (lists_[fused].next < lists_[fused].end) deferred_.push_back({candidates_[lists_[fused].next].key, fused});
     return true;
   }
 
-  // The fusion point: the quadric's minimum, moved inside the envelope where need be, else the prey vertex of least error that fits.
-  bool place(const Prey& prey, FusionPoint& where) const {
-    std::size_t boundary = 0;
-    for (const VertexId v : prey.vertices()) boundary += mesh_.onBoundary(v);
-    where.stays = FusionPoint::kMoves;
-    if (boundary != 1 && test_.projectInside(ideal(prey), where.point) && test_.keepsCells(where.point)) {
-      for (int i = 0; i < prey.k; ++i)
-        if (mesh_.point(prey.vertex[static_cast<std::size_t>(i)]) == where.point) where.stays = i;
-      return true;
+  // The vertices whose best candidate is within the level's limit, cheapest first.
+  void fillQueue() {
+    entries_.clear();
+    queue_.clear();
+    std::erase_if(vertices_, [&](VertexId v) { return !mesh_.alive(v); });
+    for (const VertexId v : vertices_) {
+      dropDead(v);
+      if (const Candidate* best = candidates_.best(v)) entries_.push_back({best->key, v});
     }
-    const Quadric q = quadricOf(prey);
-    std::array<double, 4> error{};
-    for (std::size_t i = 0; i < prey.k; ++i) error[i] = q.at(mesh_.position(prey.vertex[i]));
-    const auto order = smallOrder(prey.k, [&](std::size_t a, std::size_t b) { return error[a] < error[b]; });
-    for (const std::size_t i : std::span(order).first(prey.k)) {
-      if (boundary > 0 && !mesh_.onBoundary(prey.vertex[i])) continue;
-      where = {mesh_.point(prey.vertex[i]), static_cast<int>(i)};
-      if (test_.insideEnvelope(where.point) && test_.keepsCells(where.point)) return true;
+    next_ = proposedTo_ = 0;
+    if (entries_.empty()) return;
+    const auto cheaper = [](const Entry& a, const Entry& b) { return b < a; };
+    const auto at = entries_.begin() + static_cast<std::ptrdiff_t>(kLevelQuantile * static_cast<double>(entries_.size() - 1));
+    std::nth_element(entries_.begin(), at, entries_.end(), cheaper);
+    limit_ = at->key;
+    entries_.erase(std::partition(at, entries_.end(), [&](const Entry& e) { return e.key <= limit_; }), entries_.end());
+    std::sort(entries_.begin(), entries_.end(), cheaper);
+    ahead_ = std::clamp(entries_.size() / kAheadShare, kLeastAhead, kMostAhead);
+  }
+
+  // The queue is the sorted entries and a heap of those that came back.
+  [[nodiscard]] float nextKey() const {
+    const float key = next_ < entries_.size() ? entries_[next_].key : std::numeric_limits<float>::infinity();
+    return queue_.empty() ? key : std::min(key, queue_.top().key);
+  }
+  VertexId pop() {
+    if (next_ < entries_.size() && (queue_.empty() || queue_.top() < entries_[next_])) return entries_[next_++].owner;
+    const VertexId owner = queue_.top().owner;
+    queue_.pop();
+    return owner;
+  }
+
+  void dropDead(VertexId v) {
+    while (const Candidate* best = candidates_.best(v)) {
+      if (mesh_.alive(best->partner)) return;
+      candidates_.advance(v);
     }
-    return false;
+  }
+
+  // A vertex that a fusion of this level touched waits for the next one: levels are independent sets.
+  [[nodiscard]] bool isLocked(VertexId v) const { return touched_.since(v, levelStart_); }
+
+  // Puts the owner back with its best remaining candidate, unless that waits for a later level.
+  void requeue(VertexId owner) {
+    dropDead(owner);
+    const Candidate* best = candidates_.best(owner);
+    if (best && best->key <= limit_) queue_.push({best->key, owner});
+  }
+
+  // With threads: proposals for the next entries, made in parallel. They are used as long as nothing they rely on is touched, so that the
+  // outcome is that of one thread.
+  void proposeAhead() {
+    proposedTo_ = std::min(entries_.size(), next_ + ahead_);
+    if (workers_.count() == 1) return;
+    jobs_.clear();
+    for (std::size_t i = next_; i < proposedTo_; ++i) {
+      const VertexId owner = entries_[i].owner;
+      if (isLocked(owner) || !mesh_.alive(owner)) continue;
+      const Candidate* best = candidates_.best(owner);
+      if (best && mesh_.alive(best->partner) && !isLocked(best->partner)) jobs_.push_back({owner, &proposalFor(owner)});
+    }
+    workers_.forEach(jobs_.size(), kGrain, [&](std::size_t worker, std::size_t i) {
+      const VertexId owner = jobs_[i].first;
+      proposers_[worker]->propose(owner, candidates_.best(owner)->partner, levelStart_, fusions_, *jobs_[i].second);
+    });
+  }
+
+  Proposal& proposalFor(VertexId owner) {
+    if (proposalOf_[owner] == kNone) {
+      proposalOf_[owner] = static_cast<std::uint32_t>(withProposal_.size());
+      withProposal_.push_back(owner);
+      if (proposals_.size() < withProposal_.size()) proposals_.emplace_back();
+    }
+    return proposals_[proposalOf_[owner]];
+  }
+
+  /// The proposal for the owner's best candidate, made now unless one that was made in this level still holds.
+  const Proposal& propose(VertexId owner, VertexId partner) {
+    const bool known = proposalOf_[owner] != kNone;
+    Proposal& proposal = proposalFor(owner);
+    const bool holds = known && proposal.owner == owner && proposal.partner == partner &&
+                       std::ranges::none_of(proposal.ring, [&](VertexId v) { return touched_.since(v, proposal.madeAfter); });
+    if (!holds) proposers_[0]->propose(owner, partner, levelStart_, fusions_, proposal);
+    return proposal;
+  }
+
+  void process(VertexId owner) {
+    const Candidate candidate = *candidates_.best(owner);
+    if (!mesh_.alive(candidate.partner)) return requeue(owner);
+    if (isLocked(candidate.partner)) return;
+    const Proposal& proposal = propose(owner, candidate.partner);
+    if (!proposal.legal) {
+      candidates_.advance(owner);
+      return requeue(owner);
+    }
+    const auto cost = static_cast<float>(proposal.where.cost);
+    if (cost > limit_ || (cost > kDearer * candidate.key && nextKey() < cost)) {
+      candidates_.raise(owner, cost);
+      return requeue(owner);
+    }
+    fuse(proposal);
+  }
+
+  void fuse(const Proposal& proposal) {
+    const Prey& prey = proposal.prey;
+    const LatticePoint& point = proposal.where.point;
+    cost_.valuesAt(prey, point, values_);
+    fuseIntegers(prey, point);
+    cost_.fuse(prey, point, values_);
+    const VertexId fused = mesh_.fuse(prey, point, integers_, proposal.star, level_);
+    makeRoom();
+    touched_.touch(fused, ++fusions_);
+    for (const VertexId v : prey.vertices()) touched_.touch(v, fusions_);
+    for (const VertexId v : proposal.star.link) {
+      if (v == kGhost) continue;
+      touched_.touch(v, fusions_);
+      candidates_.restart(v);  // what its old neighbours forbade its new ones may allow
+    }
+    fused_.push_back(fused);
+  }
+
+  // The fused vertex's integers: of a field in the cost what the cost says, of the others the nearest prey vertex's.
+  void fuseIntegers(const Prey& prey, const LatticePoint& point) {
+    VertexId nearest = prey.vertex[0];
+    double least = std::numeric_limits<double>::infinity();
+    for (const VertexId v : prey.vertices()) {
+      const Vector3 d = mesh_.position(v) - toVector(point);
+      if (dot(d, d) < least) least = dot(d, d), nearest = v;
+    }
+    integers_.clear();
+    std::size_t part = 0, component = 0;
+    for (std::size_t f = 0; f < mesh_.fields().size(); ++f) {
+      if (mesh_.fields()[f].association != "point") continue;
+      if (part < cost_.parts().size() && cost_.parts()[part].field == f) {
+        for (std::size_t c = 0; c < mesh_.fields()[f].components; ++c)
+          integers_.push_back(static_cast<std::int32_t>(std::floor(values_[component++] / cost_.parts()[part].scale + 0.5)));
+        ++part;
+      } else {
+        const auto values = mesh_.values(f, nearest);
+        integers_.insert(integers_.end(), values.begin(), values.end());
+      }
+    }
   }
 
   [[nodiscard]] double progress() const {
@@ -250,22 +265,31 @@ class Simplifier {
            std::log(static_cast<double>(original_) / static_cast<double>(target_));
   }
 
+ private:
+  static constexpr std::uint32_t kNone = ~0u;
+
   const FusionOptions& options_;
   FusionMesh mesh_;
-  FusionTest test_;
+  FusionCost cost_;
+  Touched touched_;
+  Workers workers_;
+  std::vector<std::unique_ptr<FusionProposer>> proposers_;  // one a worker
   std::size_t original_, target_;
-  double keyScale_;
   std::uint32_t level_ = 0;
-  std::size_t fusions_ = 0;
+  std::uint32_t fusions_ = 0, levelStart_ = 0;
+  std::vector<VertexId> vertices_;  // alive at the level's start
+  Candidates candidates_;
+  std::vector<Entry> entries_;
+  std::size_t next_ = 0, proposedTo_ = 0, ahead_ = 0;  // into entries_
+  float limit_ = 0;
   Queue queue_;
-  std::vector<Candidate> candidates_;
-  std::size_t candidateLimit_ = 0;
-  std::vector<List> lists_;
-  std::vector<std::uint32_t> locked_;  // by vertex: the level that locked it last
-  std::vector<Entry> deferred_;
-  std::vector<double> keys_;
-  std::vector<VertexId> edges_;
-  std::vector<std::array<VertexId, 2>> triangles_;
+  std::vector<VertexId> fused_;  // of this level
+  std::deque<Proposal> proposals_;
+  std::vector<std::uint32_t> proposalOf_;  // by vertex, into proposals_
+  std::vector<VertexId> withProposal_;
+  std::vector<std::pair<VertexId, Proposal*>> jobs_;
+  std::vector<double> values_;
+  std::vector<std::int32_t> integers_;
 };
 
 }  // namespace

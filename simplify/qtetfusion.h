@@ -1,5 +1,5 @@
-// QTetFusion (Chopra & Meyer, sections 3.2-3.5): fuses tetrahedra, triangles and edges into points in order of their planar quadric error,
-// in levels of independent fusions, and keeps what undoes each of them (ALGORITHM.md).
+// QTetFusion (Chopra & Meyer, sections 3.2-3.5): fuses tetrahedra, triangles and edges into points in order of what it costs, in levels of
+// independent fusions, and keeps what undoes each of them (ALGORITHM.md).
 #pragma once
 
 #include <functional>
@@ -7,17 +7,20 @@
 #include "codec/fusion_history.h"
 #include "codec/mesh.h"
 #include "proto/error.h"
+#include "simplify/fusion_cost.h"
 
 namespace qtet {
 
 struct FusionOptions {
   double targetRatio = 0.01;                         ///< stop when this fraction of the cells remains, 0..1
-  int threads = 1;                                   ///< reserved for parallel stages; the result never depends on it
+  CostOptions cost;
+  double shapeWeight = 0.5;                          ///< what badly shaped new cells add to the cost, >= 0 (ALGORITHM.md, "Shape")
+  int threads = 1;                                   ///< the result never depends on it
   std::function<void(double fraction)> progress;     ///< 0..1, called at most once a level
 };
 
 /// REQUIRES: `mesh` cleaned and quantised (clean_mesh.h, quantise.h). Vertices that no cell uses stay out of the history.
-/// Errors: bad-input (no tetrahedra, a ratio outside 0..1), limit-exceeded (too many levels).
+/// Errors: bad-input (no tetrahedra, a ratio outside 0..1, weights that are negative or not one a field), limit-exceeded (too many levels).
 [[nodiscard]] Result<FusionHistory> simplify(const LatticeMesh& mesh, const FusionOptions& options);
 
 }  // namespace qtet

@@ -1,62 +1,61 @@
-// The planar quadric error metric of the paper (Chopra & Meyer, section 3.3): squared distances to planes as one symmetric 4x4 matrix.
+// Quadrics: sums of squared distances to planes (Eq. 1-7 of the paper), and of squared residuals of linear fields, as functions of a point.
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <optional>
+
+#include "simplify/vector3.h"
 
 namespace qtet {
 
-using Vector3 = std::array<double, 3>;
+/// The symmetric matrix (xx xy xz / xy yy yz / xz yz zz).
+struct Symmetric3 {
+  double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
 
-[[nodiscard]] inline Vector3 operator-(const Vector3& a, const Vector3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-[[nodiscard]] inline Vector3 operator+(const Vector3& a, const Vector3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-[[nodiscard]] inline Vector3 operator*(double s, const Vector3& a) { return {s * a[0], s * a[1], s * a[2]}; }
-[[nodiscard]] inline double dot(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-[[nodiscard]] inline Vector3 cross(const Vector3& a, const Vector3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-/// Delta(v) = v^T Q v of Eq. 3 with v = [x y z 1]. Sums of quadrics are quadrics of the union of the planes (Eq. 4).
-class Quadric {
- public:
-  /// Adds the plane of a triangle with weight (area * factor)^2, Eq. 1-3; a triangle without area adds nothing.
-  void addTriangle(const Vector3& a, const Vector3& b, const Vector3& c, double factor) {
-    const Vector3 n = cross(b - a, c - a);  // length = twice the area, so n/2 is already a_p times the unit normal
-    const double w = 0.25 * factor * factor;
-    const double d = -dot(n, a);  // Eq. 2
-    const std::array<double, 4> p{n[0], n[1], n[2], d};
-    std::size_t at = 0;
-    for (std::size_t i = 0; i < 4; ++i)
-      for (std::size_t j = i; j < 4; ++j) q_[at++] += w * p[i] * p[j];
+  void addOuter(const Vector3& n, double weight) {
+    xx += weight * n[0] * n[0], xy += weight * n[0] * n[1], xz += weight * n[0] * n[2];
+    yy += weight * n[1] * n[1], yz += weight * n[1] * n[2], zz += weight * n[2] * n[2];
   }
-  Quadric& operator+=(const Quadric& other) {
-    for (std::size_t i = 0; i < q_.size(); ++i) q_[i] += other.q_[i];
+  Symmetric3& operator+=(const Symmetric3& o) {
+    xx += o.xx, xy += o.xy, xz += o.xz, yy += o.yy, yz += o.yz, zz += o.zz;
     return *this;
   }
+  [[nodiscard]] Vector3 operator*(const Vector3& d) const {
+    return {xx * d[0] + xy * d[1] + xz * d[2], xy * d[0] + yy * d[1] + yz * d[2], xz * d[0] + yz * d[1] + zz * d[2]};
+  }
+  [[nodiscard]] double trace() const { return xx + yy + zz; }
+};
+
+/// E(d) = d^T A d + 2 b.d + c, d relative to an origin that the owner knows: Eq. 3-5 with the plane's offset kept small, so that nothing cancels.
+struct Quadric {
+  Symmetric3 a;
+  Vector3 b{};
+  double c = 0;
+
   /// Eq. 5; never below zero, whatever rounding does.
-  [[nodiscard]] double at(const Vector3& v) const {
-    const double value = q_[0] * v[0] * v[0] + q_[4] * v[1] * v[1] + q_[7] * v[2] * v[2] + q_[9] +
-                         2 * (q_[1] * v[0] * v[1] + q_[2] * v[0] * v[2] + q_[5] * v[1] * v[2] + q_[3] * v[0] + q_[6] * v[1] + q_[8] * v[2]);
+  [[nodiscard]] double at(const Vector3& d) const {
+    const double value = dot(d, a * d) + 2 * dot(b, d) + c;
     return value > 0 ? value : 0;
   }
-  /// The point where Delta is least (Eq. 6-7), or nothing where the matrix is too close to singular to say.
-  [[nodiscard]] std::optional<Vector3> minimum() const {
-    const Vector3 r0{q_[0], q_[1], q_[2]};
-    const Vector3 r1{q_[1], q_[4], q_[5]};
-    const Vector3 r2{q_[2], q_[5], q_[7]};
-    const Vector3 c0 = cross(r1, r2);
-    const double determinant = dot(r0, c0);
-    const double scale = (q_[0] + q_[4] + q_[7]) / 3;
-    if (!(determinant > kSingular * scale * scale * scale)) return std::nullopt;
-    return (-1 / determinant) * (q_[3] * c0 + q_[6] * cross(r2, r0) + q_[8] * cross(r0, r1));
+  /// Where E(d) + pull |d - towards|^2 is least (Eq. 6-7, the pull standing in where the matrix is singular); nothing where even that
+  /// is too flat to say.
+  [[nodiscard]] std::optional<Vector3> minimum(const Vector3& towards, double pull) const {
+    // Gauss's elimination of a matrix that is positive definite up to rounding.
+    const double xx = a.xx + pull;
+    if (!(xx > 0)) return std::nullopt;
+    const double lxy = a.xy / xx, lxz = a.xz / xx;
+    const double yy = a.yy + pull - lxy * a.xy;
+    const double yz = a.yz - lxy * a.xz;
+    if (!(yy > 0)) return std::nullopt;
+    const double lyz = yz / yy;
+    const double zz = a.zz + pull - lxz * a.xz - lyz * yz;
+    if (!(zz > 0)) return std::nullopt;
+    const Vector3 right = pull * towards - b;
+    const double ry = right[1] - lxy * right[0];
+    const double z = (right[2] - lxz * right[0] - lyz * ry) / zz;
+    const double y = (ry - yz * z) / yy;
+    return Vector3{(right[0] - a.xy * y - a.xz * z) / xx, y, z};
   }
-
- private:
-  // Relative determinant below which Eq. 6's inverse is noise: the paper settles on the barycentre then.
-  static constexpr double kSingular = 1e-10;
-
-  std::array<double, 10> q_{};  // xx xy xz xw yy yz yw zz zw ww
 };
 
 }  // namespace qtet

@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "codec/predicates.h"
 #include "simplify/fusion_mesh.h"
-#include "simplify/fusion_test.h"
-#include "simplify/quadric.h"
 #include "simplify/quantise.h"
 #include "simplify/samples.h"
 #include "simplify/verify.h"
@@ -18,29 +18,6 @@ using testing::eulerCharacteristics;
 using testing::gridMesh;
 using testing::meshOfHistory;
 using testing::whatIsWrongWith;
-
-TEST(Quadric, isTheAreaWeightedSquaredDistanceOfEquationOne) {
-  Quadric q;
-  q.addTriangle({0, 0, 5}, {4, 0, 5}, {0, 2, 5}, 1);  // area 4 in the plane z = 5
-  EXPECT_DOUBLE_EQ(q.at({7, -3, 5}), 0);
-  EXPECT_DOUBLE_EQ(q.at({0, 0, 8}), 4 * 4 * 3 * 3);
-  Quadric weighted;
-  weighted.addTriangle({0, 0, 5}, {4, 0, 5}, {0, 2, 5}, 10);
-  EXPECT_DOUBLE_EQ(weighted.at({0, 0, 8}), 100 * 4 * 4 * 3 * 3);
-}
-
-TEST(Quadric, itsMinimumIsWhereThreePlanesMeet) {
-  Quadric q;
-  q.addTriangle({2, 0, 0}, {2, 1, 0}, {2, 0, 1}, 1);
-  q.addTriangle({0, 3, 0}, {1, 3, 0}, {0, 3, 1}, 1);
-  EXPECT_FALSE(q.minimum()) << "two planes meet in a line: equation 6 has no one answer";
-  q.addTriangle({0, 0, 4}, {1, 0, 4}, {0, 1, 4}, 1);
-  const auto p = q.minimum();
-  ASSERT_TRUE(p);
-  EXPECT_NEAR((*p)[0], 2, 1e-9);
-  EXPECT_NEAR((*p)[1], 3, 1e-9);
-  EXPECT_NEAR((*p)[2], 4, 1e-9);
-}
 
 // Every boundary point of the finer mesh's solid contains the coarser one's: checked on the cells' corners, which suffices for volumes.
 double volumeOf(const LatticeMesh& mesh) {
@@ -141,39 +118,36 @@ TEST(Fused, whatIsSingularStays) {
   EXPECT_EQ(eulerCharacteristics(meshOfHistory(*history, 0)), eulerCharacteristics(mesh));
 }
 
-TEST(FusionTest, anEdgeBetweenTwoBoundariesIsNotFused) {
-  // The wall between a void and the outside is one cube thick: every edge through it joins two boundary components.
-  const LatticeMesh mesh = gridMesh(3, 1, [](int i, int j, int k) { return i != 1 || j != 1 || k != 1; });
-  const FusionMesh live(mesh);
-  FusionTest test(live);
-  std::size_t edges = 0;
-  for (const Tetrahedron& t : mesh.tetrahedra)
-    for (std::size_t i = 0; i < 4; ++i)
-      for (std::size_t j = 0; j < i; ++j) {
-        const auto outer = [&](VertexId v) { return std::ranges::any_of(mesh.points[v], [](std::int32_t x) { return x == 0 || x == 192; }); };
-        if (outer(t[i]) == outer(t[j])) continue;
-        ++edges;
-        EXPECT_FALSE(test.gather({2, {t[i], t[j], 0, 0}}) && test.keepsTopology());
-      }
-  EXPECT_GT(edges, 0u);
+TEST(Fused, theNumberOfThreadsDecidesNothing) {
+  const LatticeMesh mesh = gridMesh(10, 4, [](int i, int j, int) { return i != 3 || j != 4; });
+  const auto one = simplify(mesh, {});
+  ASSERT_TRUE(one);
+  for (const int threads : {2, 5}) {
+    FusionOptions options;
+    options.threads = threads;
+    const auto several = simplify(mesh, options);
+    ASSERT_TRUE(several);
+    EXPECT_EQ(several->points, one->points);
+    EXPECT_EQ(several->values, one->values);
+    EXPECT_EQ(several->cells, one->cells);
+    EXPECT_EQ(several->affectedCells, one->affectedCells);
+    EXPECT_EQ(several->affectedLabels, one->affectedLabels);
+    EXPECT_EQ(several->levels, one->levels);
+  }
 }
 
-TEST(FusionTest, theEnvelopeIsClosedButNothingOutsideBelongsToIt) {
-  const LatticeMesh mesh = gridMesh(2, 1);
-  const FusionMesh live(mesh);
-  FusionTest test(live);
-  for (VertexId v = 0; v < mesh.points.size(); ++v) {
-    if (mesh.points[v] != LatticePoint{0, 64, 64}) continue;
-    const auto& cell = live.cell(live.star(v)[0]);
-    const VertexId w = cell[0] == v ? cell[1] : cell[0];
-    ASSERT_TRUE(test.gather({2, {v, w, 0, 0}}));
-    EXPECT_TRUE(test.insideEnvelope({0, 64, 64})) << "on the boundary is inside";
-    EXPECT_FALSE(test.insideEnvelope({-1, 64, 64}));
-    LatticePoint projected{};
-    ASSERT_TRUE(test.projectInside({-5.3, 60, 60}, projected));
-    EXPECT_TRUE(test.insideEnvelope(projected));
-    EXPECT_EQ(projected[0], 0);
-  }
+TEST(Fused, aFieldThatIsLinearCostsNothingAndStaysWhatItIs) {
+  LatticeMesh mesh = gridMesh(8, 2);
+  mesh.fields = {{"Linear", 1, "float32", "point", 16, 1, {0}, {0, 1}}};
+  mesh.values.assign(1, {});
+  const auto value = [](const LatticePoint& p) { return 3 * p[0] + 5 * p[1] + 7 * p[2]; };
+  for (const LatticePoint& p : mesh.points) mesh.values[0].push_back(value(p));
+  const auto [low, high] = std::ranges::minmax(mesh.values[0]);
+  mesh.fields[0].range = {static_cast<double>(low), static_cast<double>(high)};
+  const auto history = simplify(mesh, {});
+  ASSERT_TRUE(history);
+  ASSERT_LT(meshOfHistory(*history, 0).tetrahedra.size(), mesh.tetrahedra.size() / 20);
+  for (const Fusion& f : history->fusions) EXPECT_NEAR(history->values[0][f.fused], value(history->points[f.fused]), 1) << "of values up to " << high;
 }
 
 TEST(Samples, bothSamplesComeBackFromTheirHistory) {

@@ -1,0 +1,86 @@
+// The candidates of each vertex: the edges that it owns, cheapest first. What was tried and failed stays, to be tried again.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "codec/mesh.h"
+
+namespace qtet {
+
+struct Candidate {
+  float key = 0;
+  VertexId partner = 0;
+  bool operator<(const Candidate& other) const { return std::pair(key, partner) < std::pair(other.key, other.partner); }
+};
+
+class Candidates {
+ public:
+  void clear() {
+    pool_.clear();
+    lists_.clear();
+    live_ = 0;
+  }
+
+  /// The candidates of `owner`, which are sorted.
+  void set(VertexId owner, std::span<Candidate> found) {
+    std::sort(found.begin(), found.end());
+    if (lists_.size() <= owner) lists_.resize(std::size_t{owner} + 1);
+    live_ += found.size() - lists_[owner].count;
+    lists_[owner] = {pool_.size(), 0, static_cast<std::uint32_t>(found.size())};
+    pool_.insert(pool_.end(), found.begin(), found.end());
+  }
+
+  /// The cheapest that has not failed, or none. Valid until set or compact.
+  [[nodiscard]] const Candidate* best(VertexId owner) const {
+    if (owner >= lists_.size()) return nullptr;
+    const List& list = lists_[owner];
+    return list.next < list.count ? &pool_[list.first + list.next] : nullptr;
+  }
+  /// The best one failed: on to the next. REQUIRES: best(owner).
+  void advance(VertexId owner) { ++lists_[owner].next; }
+  /// All that failed may be tried again.
+  void restart(VertexId owner) {
+    if (owner < lists_.size()) lists_[owner].next = 0;
+  }
+  /// The best one costs `key`, more than was known. REQUIRES: best(owner).
+  void raise(VertexId owner, float key) {
+    const List& list = lists_[owner];
+    std::size_t i = list.first + list.next;
+    pool_[i].key = key;
+    for (; i + 1 < list.first + list.count && pool_[i + 1] < pool_[i]; ++i) std::swap(pool_[i], pool_[i + 1]);
+  }
+
+  /// Gives back the room of owners that are dead, when it is half of all.
+  template <class Alive>
+  void compact(const Alive& alive) {
+    for (VertexId v = 0; v < lists_.size(); ++v)
+      if (lists_[v].count > 0 && !alive(v)) {
+        live_ -= lists_[v].count;
+        lists_[v] = {};
+      }
+    if (pool_.size() < 2 * live_ + 4096) return;
+    std::vector<Candidate> kept;
+    kept.reserve(live_ + live_ / 4);
+    for (List& list : lists_) {
+      const std::size_t first = kept.size();
+      kept.insert(kept.end(), pool_.begin() + static_cast<std::ptrdiff_t>(list.first), pool_.begin() + static_cast<std::ptrdiff_t>(list.first + list.count));
+      list.first = first;
+    }
+    pool_ = std::move(kept);
+  }
+
+ private:
+  struct List {
+    std::size_t first = 0;
+    std::uint32_t next = 0, count = 0;
+  };
+  std::vector<Candidate> pool_;
+  std::vector<List> lists_;
+  std::size_t live_ = 0;
+};
+
+}  // namespace qtet

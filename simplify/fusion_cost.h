@@ -1,0 +1,92 @@
+// What a fusion costs (ALGORITHM.md, "Cost"): the residual of the fields over the volume and the distance of the hull, as one quadric in the fusion
+// point and its values; without fields the paper's planar quadric error (Eq. 1-7).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "codec/mesh.h"
+#include "simplify/fusion_mesh.h"
+#include "simplify/quadric.h"
+
+namespace qtet {
+
+/// Components of fields that the cost can hold; each adds 40 bytes a vertex.
+inline constexpr std::size_t kMaxCostComponents = 32;
+
+struct CostOptions {
+  /// One a field: what its squared error, over its range, counts. 0 leaves it out; so does a constant field. Empty: 1 for each point field of floats.
+  std::vector<double> fieldWeights;
+  /// What the squared distance of the hull counts beside the fields, areas and distances over the mesh's diagonal.
+  double hullWeight = 200;
+};
+
+class FusionCost {
+ public:
+  /// REQUIRES: `mesh` outlives this and was made of `lattice`.
+  FusionCost(const FusionMesh& mesh, const LatticeMesh& lattice, const CostOptions& options);
+
+  /// The prey's quadric as a function of the fusion point relative to prey.vertex[0], at the best values for each point.
+  [[nodiscard]] Quadric of(const Prey& prey) const;
+  /// Asks the memory for v's quadric.
+  void prefetch(VertexId v) const {
+    for (std::size_t i = 0; i < stride_; i += kLineDoubles) __builtin_prefetch(&quadrics_[at(v) + i]);
+  }
+  /// The weight of a pull towards the barycentre that decides where the quadric does not.
+  [[nodiscard]] double pull(const Quadric& quadric, const Prey& prey) const;
+
+  /// The fields in the cost, in the order of their values.
+  struct Part {
+    std::size_t field = 0;
+    double scale = 1;  ///< of an integer of the field to the unit that residuals are measured in
+  };
+  [[nodiscard]] std::span<const Part> parts() const { return parts_; }
+  [[nodiscard]] std::size_t components() const { return components_; }
+
+  /// The best values at p, within the fields' limits, in the cost's unit (components() numbers), and E there.
+  double valuesAt(const Prey& prey, const LatticePoint& p, std::span<double> values) const;
+  /// The prey's quadrics become the fused vertex's. REQUIRES: called before or after FusionMesh::fuse, once each fusion, in order.
+  void fuse(const Prey& prey, const LatticePoint& p, std::span<const double> values);
+
+ private:
+  // Of one vertex, relative to its place and values: A (6), b (3), c, W, then for each component G (3), h and its value:
+  // E(d, e) = d^T A d + 2 b.d + c + sum_f (W e_f^2 - 2 e_f (G_f.d + h_f)).
+  static constexpr std::size_t kHead = 11;
+  static constexpr std::size_t kPerComponent = 5;
+  static constexpr std::size_t kLineDoubles = 8;  // of a cache line
+
+  struct Sum {
+    Quadric q;
+    double weight = 0;
+    std::size_t components = 0;
+    std::array<Vector3, kMaxCostComponents> slope;
+    std::array<double, kMaxCostComponents> offset;
+
+    [[nodiscard]] Quadric reduced() const;
+  };
+
+  void chooseParts(const LatticeMesh& lattice, const CostOptions& options);
+  void takeValues(const LatticeMesh& lattice);
+  void addFields(const LatticeMesh& lattice);
+  void addSurface(const LatticeMesh& lattice, double hullFactor);
+  void addSlopes(std::span<const VertexId> corners, std::span<const Vector3> slopes, double weight, Symmetric3 a);
+  void addPlanes(const LatticeMesh& lattice);
+  [[nodiscard]] std::size_t at(VertexId v) const { return slot_[v] * stride_; }
+  [[nodiscard]] const double* component(VertexId v, std::size_t f) const { return &quadrics_[at(v) + kHead + kPerComponent * f]; }
+  [[nodiscard]] double value(VertexId v, std::size_t f) const { return component(v, f)[4]; }
+  void clear(Sum& sum) const;
+  template <class Value>
+  void accumulate(VertexId v, const Vector3& origin, const Value& valueOf, Sum& sum) const;
+  void sumOf(const Prey& prey, Sum& sum) const;
+
+  const FusionMesh& mesh_;
+  std::vector<Part> parts_;
+  std::size_t components_ = 0, stride_ = kHead;
+  double diagonal_ = 1;               // lattice steps
+  std::vector<double> limits_;        // a component's largest value; the smallest is 0
+  std::vector<double> quadrics_;      // stride_ a slot
+  std::vector<std::uint32_t> slot_;   // by vertex: a fused vertex takes its first prey vertex's
+};
+
+}  // namespace qtet

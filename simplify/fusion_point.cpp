@@ -1,0 +1,88 @@
+#include "simplify/fusion_point.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace qtet {
+namespace {
+
+// How far (in radii of the prey) a quadric's minimum may lie from the prey's barycentre before it counts as ill-conditioned.
+constexpr double kReach = 1.5;
+// A star shaped better than this asks no more of its new cells (1 = regular, 0 = flat).
+constexpr double kGoodShape = 0.3;
+// Flat cells that were flat before cost no more than this shape does.
+constexpr double kFlat = 1e-6;
+
+LatticePoint rounded(const Vector3& p) {
+  LatticePoint out{};
+  for (std::size_t a = 0; a < 3; ++a) out[a] = static_cast<std::int32_t>(std::floor(p[a] + 0.5));
+  return out;
+}
+
+}  // namespace
+
+// The barycentre of the prey vertices that matter: those on the boundary where there are any. Relative to the first.
+Vector3 FusionPointFinder::centre(const Prey& prey, bool& boundary) const {
+  std::size_t count = 0;
+  for (const VertexId v : prey.vertices()) count += mesh_.onBoundary(v);
+  boundary = count > 0;
+  Vector3 sum{};
+  for (const VertexId v : prey.vertices())
+    if (!boundary || mesh_.onBoundary(v)) sum = sum + (mesh_.position(v) - mesh_.position(prey.vertex[0]));
+  return (1.0 / static_cast<double>(boundary ? count : prey.k)) * sum;
+}
+
+FusionPointFinder::Ideal FusionPointFinder::idealOf(const Prey& prey, const Quadric& quadric) const {
+  bool boundary = false;
+  const Vector3 middle = centre(prey, boundary);
+  if (const auto minimum = quadric.minimum(middle, cost_.pull(quadric, prey))) {
+    double radius = 0;
+    for (const VertexId v : prey.vertices()) {
+      const Vector3 d = mesh_.position(v) - mesh_.position(prey.vertex[0]) - middle;
+      radius = std::max(radius, dot(d, d));
+    }
+    const Vector3 off = *minimum - middle;
+    if (dot(off, off) <= kReach * kReach * radius) return {*minimum, quadric.at(*minimum)};
+  }
+  return {middle, quadric.at(middle)};
+}
+
+FusionPointFinder::Ideal FusionPointFinder::ideal(const Prey& prey) const { return idealOf(prey, cost_.of(prey)); }
+
+void FusionPointFinder::offer(const LatticePoint& p) {
+  for (const Choice& c : choices_)
+    if (c.point == p) return;
+  choices_.push_back({p, quadric_.at(toVector(p) - origin_)});
+}
+
+void FusionPointFinder::offerChoices(const Prey& prey, const FusionTest& test) {
+  choices_.clear();
+  quadric_ = cost_.of(prey);
+  origin_ = mesh_.position(prey.vertex[0]);
+  bool boundary = false;
+  const Vector3 middle = origin_ + centre(prey, boundary);
+  const Vector3 best = origin_ + idealOf(prey, quadric_).offset;
+  for (const Vector3& p : {best, 0.5 * (best + middle), middle}) {
+    LatticePoint inside = rounded(p);
+    if (!boundary || test.projectInside(p, inside)) offer(inside);
+  }
+  for (const VertexId v : prey.vertices())
+    if (!boundary || (mesh_.onBoundary(v) && test.insideEnvelope(mesh_.point(v)))) offer(mesh_.point(v));
+}
+
+std::optional<FusionPoint> FusionPointFinder::find(const Prey& prey, const FusionTest& test) {
+  offerChoices(prey, test);
+  std::sort(choices_.begin(), choices_.end(), [](const Choice& a, const Choice& b) { return a.cost != b.cost ? a.cost < b.cost : a.point < b.point; });
+  std::optional<FusionPoint> found;
+  const double wanted = std::min(kGoodShape, test.oldShape());
+  for (const Choice& choice : choices_) {
+    if (found && choice.cost >= found->cost) break;
+    const double shape = test.shapeAt(choice.point);
+    if (shape < 0) continue;
+    const double cost = choice.cost * (shape < wanted ? 1 + shapeWeight_ * (wanted / std::max(shape, kFlat) - 1) : 1);
+    if (!found || cost < found->cost) found = FusionPoint{choice.point, cost};
+  }
+  return found;
+}
+
+}  // namespace qtet

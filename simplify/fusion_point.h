@@ -1,0 +1,51 @@
+// Where the prey goes: the legal lattice point of least cost among a few, shape included.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "simplify/fusion_cost.h"
+#include "simplify/fusion_test.h"
+
+namespace qtet {
+
+struct FusionPoint {
+  LatticePoint point{};
+  double cost = 0;  ///< the shape's share included
+};
+
+class FusionPointFinder {
+ public:
+  FusionPointFinder(const FusionMesh& mesh, const FusionCost& cost, double shapeWeight)
+      : mesh_(mesh), cost_(cost), shapeWeight_(shapeWeight) {}
+
+  /// The unconstrained minimum of the prey's quadric, and the cost there: what the queue is ordered by.
+  struct Ideal {
+    Vector3 offset{};  ///< from prey.vertex[0]
+    double cost = 0;
+  };
+  [[nodiscard]] Ideal ideal(const Prey& prey) const;
+
+  /// REQUIRES: test.gather(prey) was true.
+  [[nodiscard]] std::optional<FusionPoint> find(const Prey& prey, const FusionTest& test);
+
+ private:
+  struct Choice {
+    LatticePoint point;
+    double cost;
+  };
+
+  [[nodiscard]] Vector3 centre(const Prey& prey, bool& boundary) const;
+  [[nodiscard]] Ideal idealOf(const Prey& prey, const Quadric& quadric) const;
+  void offer(const LatticePoint& p);
+  void offerChoices(const Prey& prey, const FusionTest& test);
+
+  const FusionMesh& mesh_;
+  const FusionCost& cost_;
+  double shapeWeight_;
+  Quadric quadric_;
+  Vector3 origin_{};
+  std::vector<Choice> choices_;
+};
+
+}  // namespace qtet

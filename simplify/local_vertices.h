@@ -1,0 +1,52 @@
+// Small numbers for the vertices of one star: a hash table that is emptied at no cost.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "codec/mesh.h"
+
+namespace qtet {
+
+class LocalVertices {
+ public:
+  /// Vertices that fit: more than any star has that fusion_test.cpp looks at.
+  static constexpr std::size_t kMost = 512;
+
+  void clear() {
+    ids_.clear();
+    if (++generation_ == 0) {
+      slots_.fill({});
+      generation_ = 1;
+    }
+  }
+  /// The number of `v`, in order of first appearance. REQUIRES: fewer than kMost vertices so far, or v among them.
+  [[nodiscard]] std::uint32_t intern(VertexId v) {
+    std::size_t at = (v * 0x9E3779B1u) >> (32 - kLogSlots);
+    while (slots_[at].generation == generation_) {
+      if (slots_[at].id == v) return slots_[at].local;
+      at = (at + 1) % kSlots;
+    }
+    slots_[at] = {v, static_cast<std::uint16_t>(ids_.size()), generation_};
+    ids_.push_back(v);
+    return slots_[at].local;
+  }
+  [[nodiscard]] const std::vector<VertexId>& ids() const { return ids_; }
+
+ private:
+  static constexpr int kLogSlots = 10;
+  static constexpr std::size_t kSlots = std::size_t{1} << kLogSlots;
+  static_assert(kSlots >= 2 * kMost);
+
+  struct Slot {
+    VertexId id = 0;
+    std::uint16_t local = 0, generation = 0;
+  };
+  std::array<Slot, kSlots> slots_{};
+  std::vector<VertexId> ids_;
+  std::uint16_t generation_ = 0;
+};
+
+}  // namespace qtet

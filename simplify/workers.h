@@ -1,0 +1,40 @@
+// A few threads that wait for the next piece of work: for loops too short to start threads for.
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <functional>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace qtet {
+
+class Workers {
+ public:
+  /// `threads` >= 1, the caller's included.
+  explicit Workers(int threads);
+  ~Workers();
+  Workers(const Workers&) = delete;
+  Workers& operator=(const Workers&) = delete;
+
+  [[nodiscard]] std::size_t count() const { return threads_.size() + 1; }
+
+  /// Calls work(worker, i) for every i below `n`, each once, `grain` neighbours at a time; workers are numbered 0..count()-1. Returns when all are
+  /// done. What work does must not depend on the worker.
+  void forEach(std::size_t n, std::size_t grain, const std::function<void(std::size_t worker, std::size_t i)>& work);
+
+ private:
+  struct Job;
+  void serve(std::size_t worker);
+  static void take(Job& job, std::size_t worker);
+
+  std::mutex mutex_;
+  std::condition_variable changed_, idle_;
+  Job* job_ = nullptr;
+  std::size_t jobs_ = 0, busy_ = 0;
+  bool ending_ = false;
+  std::vector<std::thread> threads_;
+};
+
+}  // namespace qtet
