@@ -1,0 +1,124 @@
+#include "simplify/measure_boundary.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "simplify/measure_parallel.h"
+
+namespace qtet {
+
+void followFusion(const MeasuredMesh& mesh, const Fusion& fusion, const Point3& at, NearestTriangle& nearest) {
+  nearest = {};
+  for (const std::uint32_t cell : mesh.affected(fusion))
+    if (mesh.isGhost(cell)) mesh.boundaryTree().tryTriangle(at, cell, nearest);
+}
+
+BoundaryMeter::BoundaryMeter(const MeasuredMesh& mesh, const BoundaryOptions& options) : mesh_(mesh), options_(options) {
+  const FusionHistory& history = mesh.history();
+  const auto onIt = [](const Point3& at, std::uint32_t ghost) { return Followed{at, {ghost, {0, {}}}}; };
+  for (const Sample& s : samplesOnSurface(history.points, history.cells, mesh.originalBoundary(), options.samples, options.seed))
+    samples_.push_back(onIt(s.at, s.cell));
+  std::vector<std::uint8_t> met(history.points.size(), 0);
+  for (const std::uint32_t ghost : mesh.originalBoundary())
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const VertexId v = history.cells[ghost][corner];
+      if (!met[v]) vertices_.push_back(onIt(toPoint3(history.points[v]), ghost));
+      met[v] = 1;
+    }
+}
+
+void BoundaryMeter::follow() {
+  const auto followAll = [&](std::vector<Followed>& places, bool searching) {
+    inParallel(places.size(), options_.threads, [&, searching](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        Followed& place = places[i];
+        const Fusion* fusion = mesh_.fusionOf(place.nearest.triangle);
+        if (fusion == nullptr) continue;
+        followFusion(mesh_, *fusion, place.at, place.nearest);
+        if (searching) mesh_.boundaryTree().nearest(place.at, place.nearest);
+      }
+    });
+  };
+  followAll(samples_, true);
+  followAll(vertices_, false);
+}
+
+// The vertices with the largest bounds are searched exactly until no bound is above what was found.
+double BoundaryMeter::farthestVertex(double squared) {
+  std::vector<std::uint32_t> candidates;
+  for (std::uint32_t i = 0; i < vertices_.size(); ++i)
+    if (vertices_[i].nearest.point.squared > squared) candidates.push_back(i);
+  const auto isNearer = [&](std::uint32_t a, std::uint32_t b) {
+    const double da = vertices_[a].nearest.point.squared, db = vertices_[b].nearest.point.squared;
+    return da < db || (da == db && a > b);
+  };
+  std::ranges::make_heap(candidates, isNearer);
+  while (!candidates.empty()) {
+    Followed& farthest = vertices_[candidates.front()];
+    if (farthest.nearest.point.squared <= squared) break;
+    std::ranges::pop_heap(candidates, isNearer);
+    candidates.pop_back();
+    mesh_.boundaryTree().nearest(farthest.at, farthest.nearest);
+    squared = std::max(squared, farthest.nearest.point.squared);
+  }
+  return squared;
+}
+
+OneSidedDistance BoundaryMeter::toLevel() {
+  double sum = 0, farthest = 0;
+  for (const Followed& sample : samples_) {
+    sum += std::sqrt(sample.nearest.point.squared);
+    farthest = std::max(farthest, sample.nearest.point.squared);
+  }
+  const double mean = samples_.empty() ? 0 : sum / static_cast<double>(samples_.size());
+  return {mean / mesh_.diagonal(), std::sqrt(farthestVertex(farthest)) / mesh_.diagonal()};
+}
+
+// A level's triangle lies where it lay in the original, or near the triangle that it was there: a first guess for the search.
+double BoundaryMeter::farthestExtreme(double squared) const {
+  static constexpr std::array<std::array<double, 3>, 7> kPlaces{
+      {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.5, 0.5, 0}, {0, 0.5, 0.5}, {0.5, 0, 0.5}, {1 / 3.0, 1 / 3.0, 1 / 3.0}}};
+  const std::vector<std::uint32_t>& boundary = mesh_.boundary();
+  const std::size_t step = boundary.size() * kPlaces.size() / std::max(options_.extremeSamples, 1u) + 1;
+  const FusionHistory& history = mesh_.history();
+  std::vector<double> found(boundary.size() / step + 1, 0);
+  inParallel(found.size(), options_.threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end && i * step < boundary.size(); ++i) {
+      const std::uint32_t ghost = boundary[i * step];
+      std::array<Point3, 3> corners;
+      for (std::size_t c = 0; c < 3; ++c) corners[c] = toPoint3(history.points[history.cells[ghost][c]]);
+      for (const auto& weights : kPlaces) {
+        const Point3 at = blend(corners, weights);
+        NearestTriangle nearest;
+        mesh_.originalTree().tryTriangle(at, mesh_.originalTriangle(ghost), nearest);
+        mesh_.originalTree().nearest(at, nearest);
+        found[i] = std::max(found[i], nearest.point.squared);
+      }
+    }
+  });
+  return std::max(squared, *std::ranges::max_element(found));
+}
+
+OneSidedDistance BoundaryMeter::toOriginal() const {
+  const FusionHistory& history = mesh_.history();
+  const std::vector<Sample> samples =
+      samplesOnSurface(history.points, history.cells, mesh_.boundary(), options_.samples, options_.seed + mesh_.level() + 1);
+  std::vector<double> squared(samples.size());
+  inParallel(samples.size(), options_.threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      NearestTriangle nearest;
+      mesh_.originalTree().tryTriangle(samples[i].at, mesh_.originalTriangle(samples[i].cell), nearest);
+      mesh_.originalTree().nearest(samples[i].at, nearest);
+      squared[i] = nearest.point.squared;
+    }
+  });
+  double sum = 0, farthest = 0;
+  for (const double s : squared) {
+    sum += std::sqrt(s);
+    farthest = std::max(farthest, s);
+  }
+  const double mean = samples.empty() ? 0 : sum / static_cast<double>(samples.size());
+  return {mean / mesh_.diagonal(), std::sqrt(farthestExtreme(farthest)) / mesh_.diagonal()};
+}
+
+}  // namespace qtet
