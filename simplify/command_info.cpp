@@ -1,5 +1,6 @@
 #include <iomanip>
 
+#include "codec/log_levels.h"
 #include "simplify/command_line.h"
 #include "simplify/opened_log.h"
 
@@ -32,7 +33,7 @@ OrderedJson infoJson(const OpenedLog& log) {
           {"chunks", log.file.index().chunks.size()},
           {"lattice", {{"bits", manifest.latticeBits}, {"step", manifest.latticeStep}, {"origin", manifest.latticeOrigin}}},
           {"fields", fields},
-          {"levels", levelsJson(log)}};
+          {"levels", levelsJson(log.manifest, log.file.index())}};
 }
 
 void printInfo(const OrderedJson& info, std::ostream& out) {
