@@ -58,7 +58,7 @@ double BoundaryMeter::farthestVertex(double squared) {
     if (farthest.nearest.point.squared <= squared) break;
     std::ranges::pop_heap(candidates, isNearer);
     candidates.pop_back();
-    mesh_.boundaryTree().nearest(farthest.at, farthest.nearest);
+    mesh_.boundaryTree().nearest(farthest.at, farthest.nearest, squared);
     squared = std::max(squared, farthest.nearest.point.squared);
   }
   return squared;
@@ -83,17 +83,22 @@ double BoundaryMeter::farthestExtreme(double squared) const {
   const FusionHistory& history = mesh_.history();
   std::vector<double> found(boundary.size() / step + 1, 0);
   inParallel(found.size(), options_.threads, [&](std::size_t begin, std::size_t end) {
+    double farthest = squared;
     for (std::size_t i = begin; i < end && i * step < boundary.size(); ++i) {
       const std::uint32_t ghost = boundary[i * step];
+      if (mesh_.isOriginal(ghost)) continue;
       std::array<Point3, 3> corners;
       for (std::size_t c = 0; c < 3; ++c) corners[c] = toPoint3(history.points[history.cells[ghost][c]]);
+      std::uint32_t guess = mesh_.originalTriangle(ghost);
       for (const auto& weights : kPlaces) {
         const Point3 at = blend(corners, weights);
         NearestTriangle nearest;
-        mesh_.originalTree().tryTriangle(at, mesh_.originalTriangle(ghost), nearest);
-        mesh_.originalTree().nearest(at, nearest);
-        found[i] = std::max(found[i], nearest.point.squared);
+        mesh_.originalTree().tryTriangle(at, guess, nearest);
+        mesh_.originalTree().nearest(at, nearest, farthest);
+        guess = nearest.triangle;
+        farthest = std::max(farthest, nearest.point.squared);
       }
+      found[i] = farthest;
     }
   });
   return std::max(squared, *std::ranges::max_element(found));
@@ -106,6 +111,7 @@ OneSidedDistance BoundaryMeter::toOriginal() const {
   std::vector<double> squared(samples.size());
   inParallel(samples.size(), options_.threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
+      if (mesh_.isOriginal(samples[i].cell)) continue;
       NearestTriangle nearest;
       mesh_.originalTree().tryTriangle(samples[i].at, mesh_.originalTriangle(samples[i].cell), nearest);
       mesh_.originalTree().nearest(samples[i].at, nearest);

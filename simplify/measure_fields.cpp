@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "simplify/measure_boundary.h"
 #include "simplify/measure_parallel.h"
@@ -33,19 +34,32 @@ bool weightsIn(const std::array<Point3, 4>& corners, const Point3& p, double lea
 
 FieldMeter::FieldMeter(const MeasuredMesh& mesh, const FieldOptions& options) : mesh_(mesh), options_(options) {
   const FusionHistory& history = mesh.history();
-  findRanges();
   if (history.fields.empty()) return;
   for (const Sample& sample : samplesInVolume(history.points, history.cells, options.samples, options.seed)) places_.push_back({sample, {}});
+  uniform_ = places_.size();
+  addVertices();
   keepTruth();
   squaredErrors_.assign(history.fields.size(), std::vector<double>(places_.size(), 0));
 }
 
-void FieldMeter::findRanges() {
+void FieldMeter::addVertices() {
   const FusionHistory& history = mesh_.history();
+  std::vector<Sample> corners;  // a cell of each vertex, the first one
   std::vector<std::uint8_t> isOriginal(history.points.size(), 0);
-  for (const auto& cell : history.cells)
-    for (const VertexId v : cell)
-      if (v != kGhost) isOriginal[v] = 1;
+  for (std::uint32_t id = 0; id < history.cells.size(); ++id)
+    for (std::size_t i = 0; i < 4 && !mesh_.isGhost(id); ++i) {
+      const VertexId v = history.cells[id][i];
+      if (std::exchange(isOriginal[v], std::uint8_t{1}) != 0) continue;
+      corners.push_back({toPoint3(history.points[v]), id, {}});
+      corners.back().weights[i] = 1;
+    }
+  findRanges(isOriginal);
+  const std::size_t step = corners.size() / std::max(options_.vertices, 1u) + 1;
+  for (std::size_t i = 0; i < corners.size(); i += step) places_.push_back({corners[i], {}});
+}
+
+void FieldMeter::findRanges(const std::vector<std::uint8_t>& isOriginal) {
+  const FusionHistory& history = mesh_.history();
   for (std::size_t f = 0; f < history.fields.size(); ++f) {
     const std::size_t components = history.fields[f].components;
     double squared = 0;
@@ -154,11 +168,11 @@ std::vector<FieldError> FieldMeter::errors() const {
   std::vector<FieldError> out;
   for (const std::vector<double>& squared : squaredErrors_) {
     double sum = 0, worst = 0;
-    for (const double s : squared) {
-      sum += s;
-      worst = std::max(worst, s);
+    for (std::size_t i = 0; i < squared.size(); ++i) {
+      if (i < uniform_) sum += squared[i];
+      worst = std::max(worst, squared[i]);
     }
-    out.push_back({squared.empty() ? 0 : std::sqrt(sum / static_cast<double>(squared.size())), std::sqrt(worst)});
+    out.push_back({uniform_ == 0 ? 0 : std::sqrt(sum / static_cast<double>(uniform_)), std::sqrt(worst)});
   }
   return out;
 }

@@ -6,7 +6,7 @@ namespace qtet {
 namespace {
 
 /// Triangles of a leaf: boxes are cheaper to test than triangles, but each one is a cache line.
-constexpr std::uint32_t kLeafTriangles = 4;
+constexpr std::uint32_t kLeafTriangles = 2;
 /// Nodes that wait during a search: one a level of a tree that halves 2^29 triangles, and one more.
 constexpr std::size_t kMaxWaiting = 32;
 
@@ -85,7 +85,7 @@ void TriangleTree::tryTriangle(const Point3& p, std::uint32_t triangle, NearestT
   if (found.squared < best.point.squared) best = {triangle, found};
 }
 
-void TriangleTree::nearest(const Point3& p, NearestTriangle& best) const {
+void TriangleTree::nearest(const Point3& p, NearestTriangle& best, double enough) const {
   struct Waiting {
     double squared;
     std::uint32_t node;
@@ -93,7 +93,7 @@ void TriangleTree::nearest(const Point3& p, NearestTriangle& best) const {
   std::array<Waiting, kMaxWaiting> waiting;
   std::size_t size = 0;
   waiting[size++] = {squaredDistance(p, nodes_[0]), 0};
-  while (size > 0) {
+  while (size > 0 && best.point.squared > enough) {
     auto [squared, index] = waiting[--size];
     while (squared < best.point.squared) {
       const Node& node = nodes_[index];

@@ -29,8 +29,9 @@ class TriangleTree {
   void refit(std::span<const std::uint8_t> live);
   [[nodiscard]] std::size_t builtOver() const { return ids_.size(); }
 
-  /// Puts the nearest triangle into `best` if it is nearer than what stands there: a good guess makes the search short.
-  void nearest(const Point3& p, NearestTriangle& best) const;
+  /// Puts the nearest triangle into `best` if it is nearer than what stands there: a good guess makes the search short. A search for a maximum may end
+  /// at any triangle whose squared distance is not above `enough`.
+  void nearest(const Point3& p, NearestTriangle& best, double enough = 0) const;
   /// The same for one triangle.
   void tryTriangle(const Point3& p, std::uint32_t triangle, NearestTriangle& best) const;
 

@@ -24,6 +24,8 @@ class MeasuredMesh {
 
   /// The fusion of the last step whose star holds the cell, nullptr if there is none: then the cell is what and where it was before.
   [[nodiscard]] const Fusion* fusionOf(std::uint32_t cell) const;
+  /// Whether the cell is what and where it is in the original.
+  [[nodiscard]] bool isOriginal(std::uint32_t cell) const { return lastFusion_[cell] == 0; }
   [[nodiscard]] std::span<const std::uint32_t> affected(const Fusion& fusion) const {
     return std::span(history().affectedCells).subspan(fusion.firstAffected, fusion.affectedCount);
   }
