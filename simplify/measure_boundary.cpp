@@ -6,6 +6,13 @@
 #include "simplify/measure_parallel.h"
 
 namespace qtet {
+namespace {
+
+/// Parts of a triangle's edge in the grid that is searched for the farthest point: two give corners and middles; with sixteen a grid is as fine as
+/// needed, since the distance changes by less than the step.
+constexpr double kFewestParts = 2, kMostParts = 16;
+
+}  // namespace
 
 void followFusion(const MeasuredMesh& mesh, const Fusion& fusion, const Point3& at, NearestTriangle& nearest) {
   nearest = {};
@@ -18,6 +25,7 @@ BoundaryMeter::BoundaryMeter(const MeasuredMesh& mesh, const BoundaryOptions& op
   const auto onIt = [](const Point3& at, std::uint32_t ghost) { return Followed{at, {ghost, {0, {}}}}; };
   for (const Sample& s : samplesOnSurface(history.points, history.cells, mesh.originalBoundary(), options.samples, options.seed))
     samples_.push_back(onIt(s.at, s.cell));
+  triangleBounds_.assign(mesh.originalBoundary().size(), 0);
   std::vector<std::uint8_t> met(history.points.size(), 0);
   for (const std::uint32_t ghost : mesh.originalBoundary())
     for (std::size_t corner = 0; corner < 3; ++corner) {
@@ -74,40 +82,56 @@ OneSidedDistance BoundaryMeter::toLevel() {
   return {mean / mesh_.diagonal(), std::sqrt(farthestVertex(farthest)) / mesh_.diagonal()};
 }
 
-// A level's triangle lies where it lay in the original, or near the triangle that it was there: a first guess for the search.
-double BoundaryMeter::farthestExtreme(double squared) const {
-  static constexpr std::array<std::array<double, 3>, 7> kPlaces{
-      {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.5, 0.5, 0}, {0, 0.5, 0.5}, {0.5, 0, 0.5}, {1 / 3.0, 1 / 3.0, 1 / 3.0}}};
-  const std::vector<std::uint32_t>& boundary = mesh_.boundary();
-  const std::size_t step = boundary.size() * kPlaces.size() / std::max(options_.extremeSamples, 1u) + 1;
+double BoundaryMeter::farthestOnTriangle(std::uint32_t ghost, int parts, double enough) const {
   const FusionHistory& history = mesh_.history();
-  std::vector<double> found(boundary.size() / step + 1, 0);
-  inParallel(found.size(), options_.threads, [&](std::size_t begin, std::size_t end) {
-    double farthest = squared;
-    for (std::size_t i = begin; i < end && i * step < boundary.size(); ++i) {
-      const std::uint32_t ghost = boundary[i * step];
-      if (mesh_.isOriginal(ghost)) continue;
-      std::array<Point3, 3> corners;
-      for (std::size_t c = 0; c < 3; ++c) corners[c] = toPoint3(history.points[history.cells[ghost][c]]);
-      std::uint32_t guess = mesh_.originalTriangle(ghost);
-      for (const auto& weights : kPlaces) {
-        const Point3 at = blend(corners, weights);
-        NearestTriangle nearest;
-        mesh_.originalTree().tryTriangle(at, guess, nearest);
-        mesh_.originalTree().nearest(at, nearest, farthest);
-        guess = nearest.triangle;
-        farthest = std::max(farthest, nearest.point.squared);
-      }
-      found[i] = farthest;
+  std::array<Point3, 3> corners;
+  for (std::size_t c = 0; c < 3; ++c) corners[c] = toPoint3(history.points[history.cells[ghost][c]]);
+  std::uint32_t guess = mesh_.originalTriangle(ghost);  // it lay there once
+  const auto squaredAt = [&](const Point3& at, double limit) {
+    NearestTriangle nearest;
+    mesh_.originalTree().tryTriangle(at, guess, nearest);
+    mesh_.originalTree().nearest(at, nearest, limit);
+    guess = nearest.triangle;
+    return nearest.point.squared;
+  };
+  const Point3 middle = blend(corners, {1 / 3.0, 1 / 3.0, 1 / 3.0});
+  double radius = 0;
+  for (const Point3& corner : corners) radius = std::max(radius, dot(corner - middle, corner - middle));
+  radius = std::sqrt(radius);
+  // No point of the triangle is further than its middle by more than the radius.
+  const double spare = std::max(std::sqrt(enough) - radius, 0.0);
+  double farthest = squaredAt(middle, spare * spare);
+  if (farthest <= spare * spare) return enough;
+  for (int i = 0; i <= parts; ++i)
+    for (int j = 0; i + j <= parts; ++j) {
+      const double s = static_cast<double>(i) / parts, t = static_cast<double>(j) / parts;
+      farthest = std::max(farthest, squaredAt(blend(corners, {1 - s - t, s, t}), std::max(enough, farthest)));
     }
-  });
-  return std::max(squared, *std::ranges::max_element(found));
+  return farthest;
 }
 
-OneSidedDistance BoundaryMeter::toOriginal() const {
+// What was found for a triangle, an upper bound, holds until the triangle changes; it need not be exact while it is not above the maximum.
+double BoundaryMeter::farthestOfTriangles(double squared) {
+  const std::vector<std::uint32_t>& boundary = mesh_.boundary();
+  const double affordable = std::sqrt(static_cast<double>(options_.gridPoints) / static_cast<double>(boundary.size()));
+  const int parts = static_cast<int>(std::clamp(affordable, kFewestParts, kMostParts));
+  inParallel(boundary.size(), options_.threads, [&](std::size_t begin, std::size_t end) {
+    double farthest = squared;
+    for (std::size_t i = begin; i < end; ++i) {
+      double& bound = triangleBounds_[mesh_.originalTriangle(boundary[i])];
+      if (mesh_.fusionOf(boundary[i]) == nullptr && bound <= farthest) continue;
+      bound = farthestOnTriangle(boundary[i], parts, farthest);
+      farthest = std::max(farthest, bound);
+    }
+  });
+  for (const std::uint32_t ghost : boundary) squared = std::max(squared, triangleBounds_[mesh_.originalTriangle(ghost)]);
+  return squared;
+}
+
+OneSidedDistance BoundaryMeter::toOriginal() {
   const FusionHistory& history = mesh_.history();
   const std::vector<Sample> samples =
-      samplesOnSurface(history.points, history.cells, mesh_.boundary(), options_.samples, options_.seed + mesh_.level() + 1);
+      samplesOnSurface(history.points, history.cells, mesh_.boundary(), options_.levelSamples, options_.seed + mesh_.level() + 1);
   std::vector<double> squared(samples.size());
   inParallel(samples.size(), options_.threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -124,7 +148,7 @@ OneSidedDistance BoundaryMeter::toOriginal() const {
     farthest = std::max(farthest, s);
   }
   const double mean = samples.empty() ? 0 : sum / static_cast<double>(samples.size());
-  return {mean / mesh_.diagonal(), std::sqrt(farthestExtreme(farthest)) / mesh_.diagonal()};
+  return {mean / mesh_.diagonal(), std::sqrt(farthestOfTriangles(farthest)) / mesh_.diagonal()};
 }
 
 }  // namespace qtet

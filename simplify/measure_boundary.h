@@ -11,9 +11,9 @@
 namespace qtet {
 
 struct BoundaryOptions {
-  std::uint32_t samples = 0;  ///< places a side, uniform by area
-  /// Vertices, edge middles and centroids of the level's triangles looked at for the maximum: of every triangle, or of as many as this allows.
-  std::uint32_t extremeSamples = 0;
+  std::uint32_t samples = 0;       ///< places on the original's boundary, uniform by area
+  std::uint32_t levelSamples = 0;  ///< the same on a level's: dearer, because they are searched anew
+  std::uint32_t gridPoints = 0;    ///< for the maximum, on all triangles of a level; each has its corners, edge middles and centroid at least
   std::uint64_t seed = 0;
   int threads = 1;
 };
@@ -29,7 +29,8 @@ class BoundaryMeter {
   void follow();
   /// Mean over the samples; maximum over them and every vertex of the original's boundary.
   [[nodiscard]] OneSidedDistance toLevel();
-  [[nodiscard]] OneSidedDistance toOriginal() const;
+  /// Mean over samples of its own; maximum over them and a grid on every triangle of the level.
+  [[nodiscard]] OneSidedDistance toOriginal();
 
  private:
   struct Followed {
@@ -38,12 +39,15 @@ class BoundaryMeter {
   };
 
   [[nodiscard]] double farthestVertex(double squared);
-  [[nodiscard]] double farthestExtreme(double squared) const;
+  [[nodiscard]] double farthestOfTriangles(double squared);
+  /// At least the largest squared distance of the triangle's grid to the original; exact where it is above `enough`.
+  [[nodiscard]] double farthestOnTriangle(std::uint32_t ghost, int parts, double enough) const;
 
   const MeasuredMesh& mesh_;
   BoundaryOptions options_;
   std::vector<Followed> samples_;
   std::vector<Followed> vertices_;  // their distances are upper bounds; farthestVertex() searches where it matters
+  std::vector<double> triangleBounds_;  // a triangle of the original: how far it is by now, an upper bound of the square
 };
 
 /// `nearest` made the nearest among the triangles that the fusion has put in the place of its own. REQUIRES: the fusion holds nearest's triangle.

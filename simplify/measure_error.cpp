@@ -14,18 +14,18 @@ constexpr int kDigits = 4;
 constexpr int kVolumeDigits = 6;  // what matters is the loss, and a good level's is a thousandth
 
 struct Samples {
-  std::uint32_t volume, vertices, surface, extremes;
+  std::uint32_t volume, vertices, surface, levelSurface, grid;
 };
 
 /// Cells that pay for one place in the volume: measured, ALGORITHM.md, "Known error".
 constexpr std::size_t kCellsPerSample = 10;
-constexpr std::size_t kFewest = 2000, kMost = 50000;
-constexpr Samples kAllSamples{200000, 200000, 200000, 1000000};
+constexpr std::size_t kFewest = 3000, kMost = 50000;
+constexpr Samples kAllSamples{200000, 200000, 200000, 200000, 1000000};
 
 Samples samplesFor(Effort effort, std::size_t cells) {
   if (effort == Effort::kAll) return kAllSamples;
   const auto volume = static_cast<std::uint32_t>(std::clamp(cells / kCellsPerSample, kFewest, kMost));
-  return {volume, volume / 2, volume / 4, volume};
+  return {volume, volume / 2, volume / 4, volume / 8, volume};
 }
 
 OneSidedDistance rounded(const OneSidedDistance& d) { return {roundedTo(d.mean, kDigits), roundedTo(d.max, kDigits)}; }
@@ -34,7 +34,7 @@ class ErrorMeter {
  public:
   ErrorMeter(HistoryLevels& levels, const MeasureOptions& options, const Samples& samples)
       : mesh_(levels),
-        boundary_(mesh_, {samples.surface, samples.extremes, options.seed, options.threads}),
+        boundary_(mesh_, {samples.surface, samples.levelSurface, samples.grid, options.seed, options.threads}),
         fields_(mesh_, {samples.volume, samples.vertices, options.seed ^ kFieldSeed, options.threads}) {}
 
   void coarsen() {

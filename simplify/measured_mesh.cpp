@@ -65,7 +65,7 @@ const Fusion* MeasuredMesh::fusionOf(std::uint32_t cell) const {
 }
 
 std::uint32_t MeasuredMesh::originalTriangle(std::uint32_t ghost) const {
-  return static_cast<std::uint32_t>(std::ranges::lower_bound(originalBoundary_, ghost) - originalBoundary_.begin());
+  return ghost - originalBoundary_.front();  // boundary cells stand behind all others, fusion_history.h
 }
 
 double MeasuredMesh::volume() const {
