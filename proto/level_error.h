@@ -26,6 +26,8 @@ struct LevelError {
 
   /// The Hausdorff distance of the boundaries: the larger maximum of both ways.
   [[nodiscard]] double boundaryDistance() const { return std::max(toLevel.max, toOriginal.max); }
+  /// The larger mean of both ways.
+  [[nodiscard]] double boundaryMean() const { return std::max(toLevel.mean, toOriginal.mean); }
 };
 
 }  // namespace qtet

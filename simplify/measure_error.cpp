@@ -25,7 +25,7 @@ constexpr Samples kAllSamples{200000, 200000, 200000, 200000, 1000000};
 Samples samplesFor(Effort effort, std::size_t cells) {
   if (effort == Effort::kAll) return kAllSamples;
   const auto volume = static_cast<std::uint32_t>(std::clamp(cells / kCellsPerSample, kFewest, kMost));
-  return {volume, volume / 2, volume / 4, volume / 8, volume};
+  return {volume, volume / 2, volume / 4, volume / 8, 2 * volume};
 }
 
 OneSidedDistance rounded(const OneSidedDistance& d) { return {roundedTo(d.mean, kDigits), roundedTo(d.max, kDigits)}; }
