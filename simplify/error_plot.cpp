@@ -10,10 +10,14 @@ namespace qtet {
 namespace {
 
 // All lengths in pixels of the picture.
-constexpr double kLeft = 76, kTop = 56, kPlotWidth = 560, kPlotHeight = 320, kLegendX = kLeft + kPlotWidth + 24, kLegendWidth = 200, kRow = 22, kBelow = 60;
+constexpr double kLeft = 76, kTop = 56, kPlotWidth = 560, kPlotHeight = 320, kLegendX = kLeft + kPlotWidth + 24, kLegendStroke = 34,
+                 kCharacter = 7.5, kRow = 22, kBelow = 60;
 
 /// Middle tones, apart from one another on white and on black, also for most who see few colours (after Okabe & Ito).
 constexpr std::array kColours = {"#e69f00", "#3a9bdc", "#00a37a", "#d55e00", "#c774a8", "#8a7fd8", "#a59a10"};
+/// Errors this far below the largest are not worth the room that a logarithmic axis gives them.
+constexpr double kShown = 1e-5;
+
 /// With more curves than colours the strokes change.
 constexpr std::array kDashes = {"none", "7 3", "2 3", "9 3 2 3"};
 
@@ -77,16 +81,17 @@ class ErrorPlot {
     double leastX = HUGE_VAL, mostX = 0, leastY = HUGE_VAL, mostY = 0;
     for (const ErrorCurve& curve : curves)
       for (const ErrorPlotPoint& p : curve.points) {
+        longest_ = std::max(longest_, curve.name.size());
         leastX = std::min(leastX, p.bytes), mostX = std::max(mostX, p.bytes);
         if (p.error > 0) leastY = std::min(leastY, p.error), mostY = std::max(mostY, p.error);
       }
     x_ = LogAxis::around(leastX, mostX);
-    y_ = mostY > 0 ? LogAxis::around(leastY, mostY) : LogAxis{0.001, 1};
+    y_ = mostY > 0 ? LogAxis::around(std::max(leastY, mostY * kShown), mostY) : LogAxis{0.001, 1};
   }
 
   std::string svg(const std::string& title) {
     const double plotBottom = kTop + kPlotHeight, legendBottom = kTop + kRow * static_cast<double>(curves_.size());
-    const double width = kLegendX + kLegendWidth, height = std::max(plotBottom, legendBottom) + kBelow;
+    const double width = kLegendX + kLegendStroke + kCharacter * static_cast<double>(longest_) + kRow, height = std::max(plotBottom, legendBottom) + kBelow;
     out_ << R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 )" << width << " " << height << R"(" width=")" << width << R"(" height=")"
          << height << R"(" role="img">
 <title>)" << escaped(title)
@@ -115,7 +120,8 @@ class ErrorPlot {
 
  private:
   [[nodiscard]] double xOf(double bytes) const { return kLeft + kPlotWidth * x_.part(bytes); }
-  [[nodiscard]] double yOf(double error) const { return kTop + kPlotHeight * (1 - y_.part(error)); }
+  /// What is too small for the axis, 0 above all, lies on its end.
+  [[nodiscard]] double yOf(double error) const { return kTop + kPlotHeight * (1 - y_.part(std::max(error, y_.low))); }
 
   void text(double x, double y, const char* kind, const char* anchor, const std::string& words) {
     out_ << "<text class=\"" << kind << "\" x=\"" << number(x) << "\" y=\"" << number(y) << "\" text-anchor=\"" << anchor << "\">" << escaped(words)
@@ -151,20 +157,19 @@ class ErrorPlot {
             << kDashes[field / kColours.size() % kDashes.size()] << "\"";
     }
     out_ << "<path " << style.str() << " d=\"";
-    char command = 'M';
-    for (const ErrorPlotPoint& p : curve.points) {
-      if (!(p.error > 0)) continue;
-      out_ << command << number(xOf(p.bytes)) << " " << number(yOf(p.error));
-      command = 'L';
+    for (std::size_t i = 0; i < curve.points.size(); ++i) {  // steps: a level stands until the bytes of a finer one are there
+      const ErrorPlotPoint& p = curve.points[i];
+      if (i == 0) out_ << "M" << number(xOf(p.bytes)) << " " << number(yOf(p.error));
+      else out_ << "H" << number(xOf(p.bytes)) << "V" << number(yOf(p.error));
     }
     const double y = kTop + kRow * (static_cast<double>(index) + 0.5);
     out_ << "\"/>\n<path " << style.str() << " d=\"M" << kLegendX << " " << y << "h26\"/>\n";
-    text(kLegendX + 34, y + 4, "name", "start", curve.name);
+    text(kLegendX + kLegendStroke, y + 4, "name", "start", curve.name);
   }
 
   const std::vector<ErrorCurve>& curves_;
   LogAxis x_, y_;
-  std::size_t coloured_ = 0, plain_ = 0;
+  std::size_t coloured_ = 0, plain_ = 0, longest_ = 0;
   std::ostringstream out_;
 };
 
@@ -177,6 +182,7 @@ Result<std::vector<ErrorCurve>> errorCurves(const Manifest& manifest, const std:
   for (const ManifestLevel& level : manifest.levels) {
     if (!level.error) continue;
     any = true;
+    if (level.level + 1 < bytes.size() && bytes[level.level + 1] == bytes[level.level]) continue;
     const auto at = static_cast<double>(bytes[level.level]);
     out[0].points.push_back({at, level.error->boundaryDistance()});
     out[1].points.push_back({at, level.error->boundaryMean()});

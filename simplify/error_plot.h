@@ -21,10 +21,12 @@ struct ErrorCurve {
   std::vector<ErrorPlotPoint> points;  ///< coarse-first
 };
 
-/// The boundary's distance and the rms error of each field, over the prefix lengths `bytes`, one a level. Errors: not-found where the manifest has no errors.
+/// The boundary's distance and the rms error of each field, over the prefix lengths `bytes`, one a level. Of levels that end
+/// with the same byte only the finest counts. Errors: not-found where the manifest has no errors.
 [[nodiscard]] Result<std::vector<ErrorCurve>> errorCurves(const Manifest& manifest, const std::vector<std::uint64_t>& bytes);
 
-/// An SVG document with logarithmic axes and a legend, legible on light and dark ground. Errors of 0 have no place on such an axis and are left out.
+/// An SVG document with logarithmic axes and a legend, legible on light and dark ground. Curves are steps. Errors of 0, and those below a
+/// hundred-thousandth of the largest, lie on the lower edge.
 /// REQUIRES: at least one curve; bytes above 0.
 [[nodiscard]] std::string errorPlotSvg(const std::string& title, const std::vector<ErrorCurve>& curves);
 
