@@ -35,27 +35,30 @@ bool weightsIn(const std::array<Point3, 4>& corners, const Point3& p, double lea
 FieldMeter::FieldMeter(const MeasuredMesh& mesh, const FieldOptions& options) : mesh_(mesh), options_(options) {
   const FusionHistory& history = mesh.history();
   if (history.fields.empty()) return;
+  std::vector<std::uint8_t> isOriginal(history.points.size(), 0);
+  for (std::uint32_t id = 0; id < history.cells.size() && !mesh.isGhost(id); ++id)
+    for (const VertexId v : history.cells[id]) isOriginal[v] = 1;
+  findRanges(isOriginal);
   for (const Sample& sample : samplesInVolume(history.points, history.cells, options.samples, options.seed)) places_.push_back({sample, {}});
   uniform_ = places_.size();
-  addVertices();
+  addVertices(std::move(isOriginal));
   keepTruth();
   squaredErrors_.assign(history.fields.size(), std::vector<double>(places_.size(), 0));
 }
 
-void FieldMeter::addVertices() {
+// Every so-many-th vertex, in the order in which the cells meet them, each in the first cell that has it.
+void FieldMeter::addVertices(std::vector<std::uint8_t> isOriginal) {
   const FusionHistory& history = mesh_.history();
-  std::vector<Sample> corners;  // a cell of each vertex, the first one
-  std::vector<std::uint8_t> isOriginal(history.points.size(), 0);
-  for (std::uint32_t id = 0; id < history.cells.size(); ++id)
-    for (std::size_t i = 0; i < 4 && !mesh_.isGhost(id); ++i) {
+  const auto vertices = static_cast<std::size_t>(std::count(isOriginal.begin(), isOriginal.end(), std::uint8_t{1}));
+  const std::size_t step = vertices / std::max(options_.vertices, 1u) + 1;
+  std::size_t met = 0;
+  for (std::uint32_t id = 0; id < history.cells.size() && !mesh_.isGhost(id); ++id)
+    for (std::size_t i = 0; i < 4; ++i) {
       const VertexId v = history.cells[id][i];
-      if (std::exchange(isOriginal[v], std::uint8_t{1}) != 0) continue;
-      corners.push_back({toPoint3(history.points[v]), id, {}});
-      corners.back().weights[i] = 1;
+      if (std::exchange(isOriginal[v], std::uint8_t{0}) == 0 || met++ % step != 0) continue;
+      places_.push_back({{toPoint3(history.points[v]), id, {}}, {}});
+      places_.back().sample.weights[i] = 1;
     }
-  findRanges(isOriginal);
-  const std::size_t step = corners.size() / std::max(options_.vertices, 1u) + 1;
-  for (std::size_t i = 0; i < corners.size(); i += step) places_.push_back({corners[i], {}});
 }
 
 void FieldMeter::findRanges(const std::vector<std::uint8_t>& isOriginal) {

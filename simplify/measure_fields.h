@@ -38,7 +38,7 @@ class FieldMeter {
   };
 
   void findRanges(const std::vector<std::uint8_t>& isOriginal);
-  void addVertices();
+  void addVertices(std::vector<std::uint8_t> isOriginal);
   void keepTruth();
   /// Whether the place's cell or weights have changed.
   [[nodiscard]] bool follow(Place& place) const;
