@@ -98,10 +98,10 @@ double BoundaryMeter::farthestOnTriangle(std::uint32_t ghost, int parts, double 
   double radius = 0;
   for (const Point3& corner : corners) radius = std::max(radius, dot(corner - middle, corner - middle));
   radius = std::sqrt(radius);
-  // No point of the triangle is further than its middle by more than the radius.
-  const double spare = std::max(std::sqrt(enough) - radius, 0.0);
-  double farthest = squaredAt(middle, spare * spare);
-  if (farthest <= spare * spare) return enough;
+  // No point of the triangle is further than its middle by more than the radius: small triangles near the original are done with here.
+  const double spare = std::sqrt(enough) - radius;
+  double farthest = squaredAt(middle, spare > 0 ? spare * spare : enough);
+  if (spare > 0 && farthest <= spare * spare) return enough;
   for (int i = 0; i <= parts; ++i)
     for (int j = 0; i + j <= parts; ++j) {
       const double s = static_cast<double>(i) / parts, t = static_cast<double>(j) / parts;

@@ -20,12 +20,14 @@ struct Samples {
 /// Cells that pay for one place in the volume: measured, ALGORITHM.md, "Known error".
 constexpr std::size_t kCellsPerSample = 10;
 constexpr std::size_t kFewest = 3000, kMost = 50000;
+/// On a level's boundary, where nothing is kept from level to level and a search takes the longest.
+constexpr std::uint32_t kFewestOnLevel = 600;
 constexpr Samples kAllSamples{200000, 200000, 200000, 200000, 1000000};
 
 Samples samplesFor(Effort effort, std::size_t cells) {
   if (effort == Effort::kAll) return kAllSamples;
   const auto volume = static_cast<std::uint32_t>(std::clamp(cells / kCellsPerSample, kFewest, kMost));
-  return {volume, volume / 2, volume / 4, volume / 8, 2 * volume};
+  return {volume, volume / 2, volume / 4, std::max(volume / 12, kFewestOnLevel), 2 * volume};
 }
 
 OneSidedDistance rounded(const OneSidedDistance& d) { return {roundedTo(d.mean, kDigits), roundedTo(d.max, kDigits)}; }
