@@ -24,8 +24,10 @@ constexpr std::size_t kFewest = 3000, kMost = 50000;
 constexpr std::uint32_t kFewestOnLevel = 600;
 constexpr Samples kAllSamples{200000, 200000, 200000, 200000, 1000000};
 
-Samples samplesFor(Effort effort, std::size_t cells) {
+Samples samplesFor(Effort effort, const FusionHistory& history) {
   if (effort == Effort::kAll) return kAllSamples;
+  const auto isTetrahedron = [](const Tetrahedron& cell) { return cell[3] != kGhost; };
+  const auto cells = static_cast<std::size_t>(std::ranges::partition_point(history.cells, isTetrahedron) - history.cells.begin());
   const auto volume = static_cast<std::uint32_t>(std::clamp(cells / kCellsPerSample, kFewest, kMost));
   return {volume, volume / 2, volume / 4, std::max(volume / 12, kFewestOnLevel), 2 * volume};
 }
@@ -90,7 +92,7 @@ Result<std::vector<LevelError>> measureLevels(FusionHistory& history, const Meas
   };
 
   HistoryLevels levels(history);
-  ErrorMeter meter(levels, options, samplesFor(options.effort, history.cells.size()));
+  ErrorMeter meter(levels, options, samplesFor(options.effort, history));
   std::vector<LevelError> out{meter.measure()};
   while (levels.level() > 0) {
     meter.coarsen();
