@@ -12,7 +12,8 @@ namespace qtet {
 std::pair<std::string, double> parseNamedError(const std::string& option, const std::string& text) {
   const std::size_t equals = text.rfind('=');
   const auto refuse = [&](const std::string& what) -> UsageError {
-    return UsageError("--" + option + " '" + text + "' " + what + "; write NAME=E, a field's name and a fraction of its range such as Density=0.01");
+    return UsageError("--" + option + " '" + text + "' " + what +
+                      "; write NAME=E, a field's name and a fraction of its range such as Density=0.01");
   };
   if (equals == std::string::npos || equals == 0) throw refuse("names no field");
   double error = 0;
@@ -24,9 +25,10 @@ std::pair<std::string, double> parseNamedError(const std::string& option, const 
 
 void addMeasureOptions(boost::program_options::options_description& options) {
   namespace po = boost::program_options;
-  options.add_options()("measure", po::value<std::string>()->default_value("levels"),
-                        "the known error of each level, in the log's manifest: none, levels (sampled so that it costs less than simplifying), or all "
-                        "(200,000 samples of the volume and of each boundary)")(
+  options.add_options()(
+      "measure", po::value<std::string>()->default_value("levels"),
+      "the known error of each level, in the log's manifest: none, levels (sampled so that it costs less than simplifying), or all "
+      "(200,000 samples of the volume and of each boundary)")(
       "max-boundary-error", po::value<double>(),
       "stop before the boundary is further than this from the original's, either way, as a fraction of the diagonal")(
       "max-field-error", po::value<std::vector<std::string>>(),
@@ -64,8 +66,8 @@ std::string measureSentence(const OrderedJson& report, const OrderedJson& fields
   if (!report.contains("base")) return {};
   const OrderedJson& base = report["base"];
   const auto farthest = [&](const char* way) { return base["boundary"][way]["max"].get<double>(); };
-  std::string out = "\nbase mesh: boundary within " + percentText(std::max(farthest("toLevel"), farthest("toOriginal"))) + " of the diagonal, " +
-                    percentText(base["volumeKept"].get<double>()) + " of the volume";
+  std::string out = "\nbase mesh: boundary within " + percentText(std::max(farthest("toLevel"), farthest("toOriginal"))) +
+                    " of the diagonal, " + percentText(base["volumeKept"].get<double>()) + " of the volume";
   std::size_t f = 0;
   for (const auto& [name, ignored] : fields.items()) out += ", " + name + " rms " + percentText(base["fields"][f++]["rms"].get<double>());
   return out;

@@ -91,9 +91,10 @@ class ErrorPlot {
 
   std::string svg(const std::string& title) {
     const double plotBottom = kTop + kPlotHeight, legendBottom = kTop + kRow * static_cast<double>(curves_.size());
-    const double width = kLegendX + kLegendStroke + kCharacter * static_cast<double>(longest_) + kRow, height = std::max(plotBottom, legendBottom) + kBelow;
-    out_ << R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 )" << width << " " << height << R"(" width=")" << width << R"(" height=")"
-         << height << R"(" role="img">
+    const double width = kLegendX + kLegendStroke + kCharacter * static_cast<double>(longest_) + kRow,
+                 height = std::max(plotBottom, legendBottom) + kBelow;
+    out_ << R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 )" << width << " " << height << R"(" width=")" << width
+         << R"(" height=")" << height << R"(" role="img">
 <title>)" << escaped(title)
          << R"(</title>
 <style>
@@ -124,8 +125,8 @@ class ErrorPlot {
   [[nodiscard]] double yOf(double error) const { return kTop + kPlotHeight * (1 - y_.part(std::max(error, y_.low))); }
 
   void text(double x, double y, const char* kind, const char* anchor, const std::string& words) {
-    out_ << "<text class=\"" << kind << "\" x=\"" << number(x) << "\" y=\"" << number(y) << "\" text-anchor=\"" << anchor << "\">" << escaped(words)
-         << "</text>\n";
+    out_ << "<text class=\"" << kind << "\" x=\"" << number(x) << "\" y=\"" << number(y) << "\" text-anchor=\"" << anchor << "\">"
+         << escaped(words) << "</text>\n";
   }
 
   void line(double x1, double y1, double x2, double y2) {
@@ -141,7 +142,8 @@ class ErrorPlot {
       line(kLeft, yOf(tick), kLeft + kPlotWidth, yOf(tick));
       text(kLeft - 8, yOf(tick) + 4, "quiet", "end", number(100 * tick) + " %");
     }
-    out_ << "<rect class=\"frame\" x=\"" << kLeft << "\" y=\"" << kTop << "\" width=\"" << kPlotWidth << "\" height=\"" << kPlotHeight << "\"/>\n";
+    out_ << "<rect class=\"frame\" x=\"" << kLeft << "\" y=\"" << kTop << "\" width=\"" << kPlotWidth << "\" height=\"" << kPlotHeight
+         << "\"/>\n";
     text(kLeft + kPlotWidth / 2, kTop + kPlotHeight + 40, "quiet", "middle", "bytes of the log");
   }
 
@@ -159,8 +161,10 @@ class ErrorPlot {
     out_ << "<path " << style.str() << " d=\"";
     for (std::size_t i = 0; i < curve.points.size(); ++i) {  // steps: a level stands until the bytes of a finer one are there
       const ErrorPlotPoint& p = curve.points[i];
-      if (i == 0) out_ << "M" << number(xOf(p.bytes)) << " " << number(yOf(p.error));
-      else out_ << "H" << number(xOf(p.bytes)) << "V" << number(yOf(p.error));
+      if (i == 0)
+        out_ << "M" << number(xOf(p.bytes)) << " " << number(yOf(p.error));
+      else
+        out_ << "H" << number(xOf(p.bytes)) << "V" << number(yOf(p.error));
     }
     const double y = kTop + kRow * (static_cast<double>(index) + 0.5);
     out_ << "\"/>\n<path " << style.str() << " d=\"M" << kLegendX << " " << y << "h26\"/>\n";
@@ -188,7 +192,8 @@ Result<std::vector<ErrorCurve>> errorCurves(const Manifest& manifest, const std:
     out[1].points.push_back({at, level.error->boundaryMean()});
     for (std::size_t f = 0; f < manifest.fields.size(); ++f) out[f + 2].points.push_back({at, level.error->fields[f].rms});
   }
-  if (!any) return fail(ErrorCode::kNotFound, "the log does not tell its levels' errors; make it again with qtet simplify --measure levels");
+  if (!any)
+    return fail(ErrorCode::kNotFound, "the log does not tell its levels' errors; make it again with qtet simplify --measure levels");
   return out;
 }
 

@@ -61,7 +61,8 @@ std::string levelTable(const Manifest& manifest, const nlohmann::ordered_json& l
   for (const ManifestLevel& level : manifest.levels) {
     const nlohmann::ordered_json& told = levels[level.level];
     out << std::setw(5) << level.level << std::setw(kCountWidth) << level.tetrahedra << std::setw(kCountWidth) << level.vertices
-        << std::setw(kCountWidth) << told["bytes"].get<std::uint64_t>() << std::setw(kCountWidth) << told["cumulativeBytes"].get<std::uint64_t>();
+        << std::setw(kCountWidth) << told["bytes"].get<std::uint64_t>() << std::setw(kCountWidth)
+        << told["cumulativeBytes"].get<std::uint64_t>();
     if (level.error) {
       out << std::setw(kPercentWidth) << percentCell(level.error->boundaryMean()) << std::setw(kPercentWidth)
           << percentCell(level.error->boundaryDistance()) << std::setw(kPercentWidth) << std::fixed << std::setprecision(3)

@@ -13,7 +13,7 @@ namespace qtet {
 struct BoundaryOptions {
   std::uint32_t samples = 0;       ///< places on the original's boundary, uniform by area
   std::uint32_t levelSamples = 0;  ///< the same on a level's: dearer, because they are searched anew
-  std::uint32_t gridPoints = 0;    ///< for the maximum, on all triangles of a level; each has its corners, edge middles and centroid at least
+  std::uint32_t gridPoints = 0;  ///< for the maximum, on all triangles of a level; each has its corners, edge middles and centroid at least
   std::uint64_t seed = 0;
   int threads = 1;
 };
@@ -46,7 +46,7 @@ class BoundaryMeter {
   const MeasuredMesh& mesh_;
   BoundaryOptions options_;
   std::vector<Followed> samples_;
-  std::vector<Followed> vertices_;  // their distances are upper bounds; farthestVertex() searches where it matters
+  std::vector<Followed> vertices_;      // their distances are upper bounds; farthestVertex() searches where it matters
   std::vector<double> triangleBounds_;  // a triangle of the original: how far it is by now, an upper bound of the square
 };
 

@@ -67,7 +67,8 @@ Result<std::vector<FieldBound>> fieldBounds(const FusionHistory& history, const 
   std::vector<FieldBound> out;
   for (const auto& [name, bound] : bounds.fields) {
     const auto at = std::ranges::find(history.fields, name, &FieldInfo::name);
-    if (at == history.fields.end()) return fail(ErrorCode::kNotFound, "no field '" + name + "' to keep an error bound of; name one that the log carries");
+    if (at == history.fields.end())
+      return fail(ErrorCode::kNotFound, "no field '" + name + "' to keep an error bound of; name one that the log carries");
     out.emplace_back(static_cast<std::size_t>(at - history.fields.begin()), bound);
   }
   return out;

@@ -21,7 +21,7 @@ enum class Effort : std::uint8_t {
 
 /// What a level may be off by. A level beyond is no level.
 struct ErrorBounds {
-  std::optional<double> boundary;                    ///< LevelError::boundaryDistance()
+  std::optional<double> boundary;                      ///< LevelError::boundaryDistance()
   std::vector<std::pair<std::string, double>> fields;  ///< name and rms
 
   [[nodiscard]] bool any() const { return boundary.has_value() || !fields.empty(); }

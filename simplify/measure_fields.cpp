@@ -39,7 +39,8 @@ FieldMeter::FieldMeter(const MeasuredMesh& mesh, const FieldOptions& options) : 
   for (std::uint32_t id = 0; id < history.cells.size() && !mesh.isGhost(id); ++id)
     for (const VertexId v : history.cells[id]) isOriginal[v] = 1;
   findRanges(isOriginal);
-  for (const Sample& sample : samplesInVolume(history.points, history.cells, options.samples, options.seed)) places_.push_back({sample, {}});
+  for (const Sample& sample : samplesInVolume(history.points, history.cells, options.samples, options.seed))
+    places_.push_back({sample, {}});
   uniform_ = places_.size();
   addVertices(std::move(isOriginal));
   keepTruth();

@@ -41,6 +41,7 @@ using CellSpan = std::span<const std::array<VertexId, 4>>;
 [[nodiscard]] std::vector<Sample> samplesOnSurface(std::span<const LatticePoint> points, CellSpan cells, std::span<const std::uint32_t> ids,
                                                    std::size_t count, std::uint64_t seed);
 /// The same by volume in the cells that have no ghost vertex; an inverted cell counts with its volume's magnitude.
-[[nodiscard]] std::vector<Sample> samplesInVolume(std::span<const LatticePoint> points, CellSpan cells, std::size_t count, std::uint64_t seed);
+[[nodiscard]] std::vector<Sample> samplesInVolume(std::span<const LatticePoint> points, CellSpan cells, std::size_t count,
+                                                  std::uint64_t seed);
 
 }  // namespace qtet

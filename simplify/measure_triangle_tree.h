@@ -37,8 +37,8 @@ class TriangleTree {
 
  private:
   struct Node {
-    LatticePoint low, high;       // low > high where nothing lives
-    std::uint32_t right = 0;      // second child, the first one follows its parent; 0 = a leaf
+    LatticePoint low, high;              // low > high where nothing lives
+    std::uint32_t right = 0;             // second child, the first one follows its parent; 0 = a leaf
     std::uint32_t first = 0, count = 0;  // of a leaf, into ids_
   };
 

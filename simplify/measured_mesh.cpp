@@ -46,7 +46,8 @@ void MeasuredMesh::coarsen() {
   for (const Fusion& fusion : step_) {
     const auto mark = static_cast<std::uint32_t>(&fusion - history().fusions.data()) + 1;
     for (const std::uint32_t cell : affected(fusion)) lastFusion_[cell] = mark;
-    for (const std::uint32_t cell : std::span(history().deletedCells).subspan(fusion.firstDeleted, fusion.deletedCount)) lastFusion_[cell] = mark;
+    for (const std::uint32_t cell : std::span(history().deletedCells).subspan(fusion.firstDeleted, fusion.deletedCount))
+      lastFusion_[cell] = mark;
   }
   std::erase_if(boundary_, [&](std::uint32_t ghost) { return !history().live[ghost]; });
   if (boundary_.size() * 2 < tree_->builtOver()) {

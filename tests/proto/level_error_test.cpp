@@ -77,7 +77,8 @@ TEST(LevelError, everyMemberIsRequired) {
     if (json.at(pointer.parent_pointer()).is_object()) json.at(pointer.parent_pointer()).erase(pointer.back());
     const Result<Manifest> read = manifestFromJson(json.dump());
     ASSERT_FALSE(read) << member;
-    EXPECT_NE(read.error().message.find("/levels/0/error" + std::string(member) + " is missing"), std::string::npos) << read.error().message;
+    EXPECT_NE(read.error().message.find("/levels/0/error" + std::string(member) + " is missing"), std::string::npos)
+        << read.error().message;
   }
 }
 

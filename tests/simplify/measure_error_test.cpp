@@ -93,7 +93,8 @@ TEST(MeasureLevels, aCornerPulledInIsAsFarAsItsOldPlaceIs) {
   FusionHistory h = cube();
   displace(h, 1, {90, 0, 0}, 0);  // the corner at (120, 0, 0)
   const LevelError error = measured(h)[0];
-  const double distance = 120 / std::sqrt(17.0) / kDiagonal;  // of the old corner from the plane 4 x - y = 360 of the new triangle with 3 and 7
+  const double distance =
+      120 / std::sqrt(17.0) / kDiagonal;  // of the old corner from the plane 4 x - y = 360 of the new triangle with 3 and 7
   EXPECT_EQ(error.toLevel.max, roundedTo(distance, 4));
   // The tetrahedra (0, 1, 3, 7) and (0, 5, 1, 7) of a sixth each lose a quarter of their height over the plane through 0, 3, 7 or 0, 5, 7.
   EXPECT_EQ(error.volumeKept, roundedTo(1 - 2 / 6.0 / 4, 6));
@@ -104,7 +105,8 @@ TEST(MeasureLevels, aCornerPulledInIsAsFarAsItsOldPlaceIs) {
 
 TEST(MeasureLevels, aFlatSideMovedByAFifthIsAFifthAway) {
   FusionHistory h = cube();
-  for (const VertexId v : {4u, 5u, 6u, 7u}) displace(h, v, {h.points[v][0], h.points[v][1], 96}, 96);  // four levels; the base has the side z = 96
+  for (const VertexId v : {4u, 5u, 6u, 7u})
+    displace(h, v, {h.points[v][0], h.points[v][1], 96}, 96);  // four levels; the base has the side z = 96
   const auto errors = measured(h);
   ASSERT_EQ(errors.size(), 5u);
   const LevelError& base = errors.front();
@@ -152,7 +154,8 @@ TEST(MeasureLevels, aLinearFieldOnAConvexSolidLosesNothingWhileTheBoundaryStays)
   LatticeMesh mesh = gridMesh(6, 5);
   mesh.fields.resize(1);
   mesh.values.resize(1);
-  for (std::size_t v = 0; v < mesh.points.size(); ++v) mesh.values[0][v] = mesh.points[v][0] + 2 * mesh.points[v][1] + 3 * mesh.points[v][2];
+  for (std::size_t v = 0; v < mesh.points.size(); ++v)
+    mesh.values[0][v] = mesh.points[v][0] + 2 * mesh.points[v][1] + 3 * mesh.points[v][2];
   auto history = simplify(mesh, {});
   ASSERT_TRUE(history);
   for (std::size_t v = 0; v < history->points.size(); ++v) {  // also of fused vertices: what is measured here is measuring
@@ -232,7 +235,8 @@ TEST(MeasureLevels, aBoundEndsTheHistoryBeforeTheLevelThatPassesIt) {
   ASSERT_EQ(kept->size(), history->levels + 1u);
   ASSERT_LE(kept->size(), errors.size() - wanted + 1);
   EXPECT_TRUE(std::ranges::equal(*kept, std::span(errors).last(kept->size()), same));
-  EXPECT_GT(errors[errors.size() - kept->size() - 1].fields[1].rms, errors[wanted].fields[1].rms) << "a level more would have kept the bound";
+  EXPECT_GT(errors[errors.size() - kept->size() - 1].fields[1].rms, errors[wanted].fields[1].rms)
+      << "a level more would have kept the bound";
   EXPECT_EQ(testing::meshOfHistory(*history, 0).tetrahedra,
             testing::meshOfHistory(whole, static_cast<std::uint32_t>(errors.size() - kept->size())).tetrahedra);
 

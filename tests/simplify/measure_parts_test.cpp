@@ -58,7 +58,9 @@ struct Soup {
     double best = HUGE_VAL;
     for (std::size_t i = 0; i < cells.size(); ++i)
       if (live[i])
-        best = std::min(best, nearestOnTriangle(p, {toPoint3(points[cells[i][0]]), toPoint3(points[cells[i][1]]), toPoint3(points[cells[i][2]])}).squared);
+        best = std::min(
+            best,
+            nearestOnTriangle(p, {toPoint3(points[cells[i][0]]), toPoint3(points[cells[i][1]]), toPoint3(points[cells[i][2]])}).squared);
     return best;
   }
 };
