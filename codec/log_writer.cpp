@@ -47,6 +47,9 @@ class LogEncoder {
  private:
   Status prepare() {
     if (h_.levels > kMaxLevels) return fail(ErrorCode::kLimitExceeded, "more than 4,096 levels");
+    if (!options_.errors.empty() && options_.errors.size() != h_.levels + 1u)
+      return fail(ErrorCode::kBadValue, "there are known errors of " + std::to_string(options_.errors.size()) + " levels, but " +
+                                            std::to_string(h_.levels + 1u) + " levels; measure the history that is encoded");
     if (h_.fields.size() > kMaxFields) return fail(ErrorCode::kLimitExceeded, "more than 256 fields; choose some with --fields");
     if (h_.points.size() > kMaxElements || h_.cells.size() > kMaxElements) return fail(ErrorCode::kLimitExceeded, "more than 2^29 cells");
     fusionOf_.assign(h_.points.size(), kNone);
@@ -278,7 +281,8 @@ class LogEncoder {
     const bool closed = !chunks_.empty() && open_.entry.records == 0 && open_.entry.firstLevel == 0;
     const auto chunk = static_cast<std::uint32_t>(closed ? chunks_.size() - 1 : chunks_.size());
     levels_.push_back({level, static_cast<std::uint32_t>(mesh_.tetrahedra.size()), static_cast<std::uint32_t>(mesh_.points.size()),
-                       static_cast<std::uint32_t>(mesh_.boundary.size()), chunk});
+                       static_cast<std::uint32_t>(mesh_.boundary.size()), chunk, std::nullopt});
+    if (!options_.errors.empty()) levels_.back().error = options_.errors[level];
   }
 
   [[nodiscard]] std::string manifest() const {

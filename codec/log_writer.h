@@ -9,6 +9,7 @@
 #include "codec/fusion_history.h"
 #include "proto/bytes.h"
 #include "proto/error.h"
+#include "proto/level_error.h"
 
 namespace qtet {
 
@@ -16,6 +17,7 @@ struct LogWriterOptions {
   std::string source;                          ///< the input's file name, for the manifest
   std::string generator;                       ///< "qtet 0.1.0"
   std::uint32_t chunkBytes = 32 << 10;         ///< a chunk ends at the record that takes it beyond
+  std::vector<LevelError> errors;              ///< for the manifest: none, or one a level, coarse-first, the input's mesh included
   std::function<void(double)> progress;        ///< fraction done, 0..1
 };
 

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "proto/json_reader.h"
+#include "proto/level_error_json.h"
 #include "proto/limits.h"
 
 namespace qtet {
@@ -40,13 +41,14 @@ ManifestField readField(const JsonCursor& json) {
   return out;
 }
 
-ManifestLevel readLevel(const JsonCursor& json, std::uint32_t number, std::uint32_t leastChunk) {
+ManifestLevel readLevel(const JsonCursor& json, std::uint32_t number, std::uint32_t leastChunk, std::size_t fields) {
   ManifestLevel out;
   out.level = json["level"].count32(number, number);
   out.tetrahedra = json["tetrahedra"].count32(0, kMaxElements);
   out.vertices = json["vertices"].count32(0, kMaxElements);
   out.boundaryTriangles = json["boundaryTriangles"].count32(0, kMaxElements);
   out.chunk = json["chunk"].count32(leastChunk, kMaxChunks - 1);
+  if (const JsonCursor error = json.optional("error"); error.present()) out.error = readLevelError(error, fields);
   return out;
 }
 
@@ -61,7 +63,7 @@ void readFields(const JsonCursor& json, Manifest& out) {
 void readLevels(const JsonCursor& json, Manifest& out) {
   std::uint32_t chunk = 0;
   for (const JsonCursor& item : json.items(1, kMaxLevels)) {
-    out.levels.push_back(readLevel(item, static_cast<std::uint32_t>(out.levels.size()), chunk));
+    out.levels.push_back(readLevel(item, static_cast<std::uint32_t>(out.levels.size()), chunk, out.fields.size()));
     chunk = out.levels.back().chunk;
   }
 }
@@ -85,12 +87,14 @@ std::string manifestToJson(const Manifest& manifest) {
                              {"minimum", f.minimum},
                              {"range", f.range}});
   out["levels"] = Json::array();
-  for (const ManifestLevel& l : manifest.levels)
+  for (const ManifestLevel& l : manifest.levels) {
     out["levels"].push_back({{"level", l.level},
                              {"tetrahedra", l.tetrahedra},
                              {"vertices", l.vertices},
                              {"boundaryTriangles", l.boundaryTriangles},
                              {"chunk", l.chunk}});
+    if (l.error) out["levels"].back()["error"] = toJson(*l.error);
+  }
   return dumpJson(out);
 }
 

@@ -3,11 +3,13 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "proto/error.h"
+#include "proto/level_error.h"
 
 namespace qtet {
 
@@ -28,6 +30,7 @@ struct ManifestLevel {
   std::uint32_t vertices = 0;
   std::uint32_t boundaryTriangles = 0;
   std::uint32_t chunk = 0;            ///< the level is complete once this chunk is applied
+  std::optional<LevelError> error = std::nullopt;  ///< against the last level, where it was measured
 };
 
 struct Manifest {

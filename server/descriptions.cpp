@@ -1,5 +1,6 @@
 #include "server/descriptions.h"
 
+#include "codec/log_levels.h"
 #include "proto/json_reader.h"
 #include "server/request_target.h"
 
@@ -12,22 +13,6 @@ Json links(const ServedMesh& mesh) {
 }
 
 Json identity(const ServedMesh& mesh) { return {{"id", mesh.id}, {"digest", mesh.log.digest()}, {"bytes", mesh.log.bytes().size()}}; }
-
-Json levels(const ServedMesh& mesh) {
-  Json out = Json::array();
-  std::uint64_t before = 0;
-  for (const ManifestLevel& level : mesh.manifest.levels) {
-    const std::uint64_t prefix = mesh.prefixBytes(level.level);
-    out.push_back({{"level", level.level},
-                   {"tetrahedra", level.tetrahedra},
-                   {"vertices", level.vertices},
-                   {"boundaryTriangles", level.boundaryTriangles},
-                   {"bytes", prefix - before},
-                   {"cumulativeBytes", prefix}});
-    before = prefix;
-  }
-  return out;
-}
 
 }  // namespace
 
@@ -51,7 +36,7 @@ std::string describeMesh(const ServedMesh& mesh) {
   out["headBytes"] = mesh.log.index().headBytes();
   // Parsed once at the start already, so it is JSON; read again here because a manifest may say more than this build knows.
   out["manifest"] = Json::parse(mesh.log.index().manifest, nullptr, false);
-  out["levels"] = levels(mesh);
+  out["levels"] = levelsJson(mesh.manifest, mesh.log.index());
   out["links"] = links(mesh);
   const std::string self = out["links"]["self"];
   out["links"]["vtu"] = self + "/levels/{k}.vtu";

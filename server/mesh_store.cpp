@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "codec/log_levels.h"
 #include "codec/log_manifest.h"
 
 namespace qtet {
@@ -19,8 +20,7 @@ std::time_t modificationTime(const fs::path& path) {
 }  // namespace
 
 std::uint64_t ServedMesh::prefixBytes(std::uint32_t level) const {
-  const ChunkEntry& chunk = log.index().chunks[manifest.levels[level].chunk];
-  return chunk.offset + chunk.size();
+  return qtet::prefixBytes(manifest, log.index(), level);
 }
 
 Result<ServedMesh> openMesh(const fs::path& path) {

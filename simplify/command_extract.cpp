@@ -3,7 +3,7 @@
 
 #include "codec/atomic_file.h"
 #include "codec/vtu_writer.h"
-#include "simplify/command_line.h"
+#include "simplify/command_measure.h"
 #include "simplify/opened_log.h"
 
 namespace qtet {
@@ -18,7 +18,33 @@ std::uint32_t levelWithAtMost(const Manifest& manifest, double most) {
   return found;
 }
 
-std::uint32_t chosenLevel(const ParsedWords& parsed, const Manifest& manifest) {
+/// The coarsest level whose error is at most `bound`.
+template <class ErrorOf>
+Result<std::uint32_t> levelWithin(const Manifest& manifest, double bound, const ErrorOf& errorOf) {
+  for (const ManifestLevel& level : manifest.levels) {
+    if (!level.error)
+      return fail(ErrorCode::kNotFound, "the log does not tell the error of level " + std::to_string(level.level) +
+                                            "; choose by --ratio, or make it again with qtet simplify --measure levels");
+    if (errorOf(*level.error) <= bound) return level.level;
+  }
+  return manifest.levels.back().level;
+}
+
+Result<std::uint32_t> levelWithin(const Manifest& manifest, const std::pair<std::string, double>& fieldBound) {
+  const auto field = std::ranges::find(manifest.fields, fieldBound.first, &ManifestField::name);
+  if (field == manifest.fields.end()) {
+    std::string names;
+    for (const ManifestField& known : manifest.fields) names += (names.empty() ? "" : ", ") + known.name;
+    return fail(ErrorCode::kNotFound, "the log has no field '" + fieldBound.first + "'; it has: " + (names.empty() ? "none" : names));
+  }
+  const auto index = static_cast<std::size_t>(field - manifest.fields.begin());
+  return levelWithin(manifest, fieldBound.second, [index](const LevelError& error) { return error.fields[index].rms; });
+}
+
+Result<std::uint32_t> chosenLevel(const ParsedWords& parsed, const Manifest& manifest) {
+  if (parsed.has("error")) return levelWithin(manifest, parseNamedError("error", parsed.get<std::string>("error")));
+  if (parsed.has("boundary-error"))
+    return levelWithin(manifest, parsed.number("boundary-error", 0, 1), [](const LevelError& error) { return error.boundaryDistance(); });
   if (parsed.has("level")) return static_cast<std::uint32_t>(parsed.integer("level", 0, std::numeric_limits<int>::max()));
   if (parsed.has("tets")) return levelWithAtMost(manifest, parsed.number("tets", 0, 1e18));
   return levelWithAtMost(manifest, parsed.number("ratio", 0, 1) * manifest.levels.back().tetrahedra);
@@ -30,12 +56,13 @@ Status extract(const ParsedWords& parsed, Console& console) {
   const Result<OpenedLog> log = openLog(input);
   if (!log) return std::unexpected(log.error());
 
-  const std::uint32_t level = chosenLevel(parsed, log->manifest);
-  const Result<LatticeMesh> mesh = meshAtLevel(log->file, level);
+  const Result<std::uint32_t> level = chosenLevel(parsed, log->manifest);
+  if (!level) return std::unexpected(level.error());
+  const Result<LatticeMesh> mesh = meshAtLevel(log->file, *level);
   if (!mesh) return std::unexpected(mesh.error());
   const Bytes bytes = vtuBytes(*mesh);
   if (Status written = writeFileAtomically(output, bytes); !written) return written;
-  console.out << output << ": level " << level << " of " << log->manifest.levels.size() - 1 << ", " << mesh->tetrahedra.size()
+  console.out << output << ": level " << *level << " of " << log->manifest.levels.size() - 1 << ", " << mesh->tetrahedra.size()
               << " tetrahedra, " << mesh->points.size() << " points, " << bytes.size() << " bytes\n";
   return {};
 }
@@ -48,16 +75,20 @@ int runExtract(const Words& words, Console& console) {
   options.add_options()("output,o", po::value<std::string>(), "required: the .vtu file to write")(
       "level", po::value<int>(), "this level; 0 is the base mesh")("tets", po::value<double>(),
                                                                    "the finest level with at most so many tetrahedra")(
-      "ratio", po::value<double>(), "the finest level with at most this fraction of all tetrahedra, 0 to 1");
+      "ratio", po::value<double>(), "the finest level with at most this fraction of all tetrahedra, 0 to 1")(
+      "error", po::value<std::string>(), "NAME=E: the coarsest level at which this field's rms error is at most E, a fraction of its range")(
+      "boundary-error", po::value<double>(),
+      "the coarsest level whose boundary is nowhere further than this from the original's, as a fraction of the diagonal");
   const ParsedWords parsed(
       words,
-      {"extract", "extract LOG.qtet (--level K | --tets N | --ratio R) -o OUT.vtu",
-       "Writes one level of a log, with all its fields, as an ordinary mesh. Where no level is small enough it is level 0.",
-       "  qtet extract fin.qtet --ratio 0.1 -o coarse.vtu\n  qtet extract fin.qtet --level 0 -o base.vtu\n"},
+      {"extract", "extract LOG.qtet (--level K | --tets N | --ratio R | --error NAME=E | --boundary-error E) -o OUT.vtu",
+       "Writes one level of a log, with all its fields, as an ordinary mesh. Where no level is small enough it is level 0.\n"
+       "Errors are those that the log tells, measured when it was made (qtet info shows them).",
+       "  qtet extract fin.qtet --ratio 0.1 -o coarse.vtu\n  qtet extract fin.qtet --error Density=0.01 -o near.vtu\n"},
       options, {"LOG"});
   if (parsed.helped(console)) return kExitOk;
-  const auto given = static_cast<int>(parsed.has("level")) + parsed.has("tets") + parsed.has("ratio");
-  if (given != 1) throw UsageError("give exactly one of --level, --tets and --ratio\nsee 'qtet extract --help'");
+  const auto given = static_cast<int>(parsed.has("level")) + parsed.has("tets") + parsed.has("ratio") + parsed.has("error") + parsed.has("boundary-error");
+  if (given != 1) throw UsageError("give exactly one of --level, --tets, --ratio, --error and --boundary-error\nsee 'qtet extract --help'");
 
   const Status done = extract(parsed, console);
   return done ? kExitOk : reportFailure(done.error(), false, console);

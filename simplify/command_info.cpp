@@ -1,6 +1,8 @@
-#include <iomanip>
-
+#include "codec/atomic_file.h"
+#include "codec/log_levels.h"
 #include "simplify/command_line.h"
+#include "simplify/error_plot.h"
+#include "simplify/error_table.h"
 #include "simplify/opened_log.h"
 
 namespace qtet {
@@ -32,10 +34,10 @@ OrderedJson infoJson(const OpenedLog& log) {
           {"chunks", log.file.index().chunks.size()},
           {"lattice", {{"bits", manifest.latticeBits}, {"step", manifest.latticeStep}, {"origin", manifest.latticeOrigin}}},
           {"fields", fields},
-          {"levels", levelsJson(log)}};
+          {"levels", levelsJson(log.manifest, log.file.index())}};
 }
 
-void printInfo(const OrderedJson& info, std::ostream& out) {
+void printHead(const OrderedJson& info, std::ostream& out) {
   out << "digest   " << info["digest"].get<std::string>() << "\nsource   " << info["source"].get<std::string>() << "  ("
       << info["generator"].get<std::string>() << ")\nbytes    " << info["bytes"] << " in " << info["chunks"] << " chunks, the first "
       << info["headBytes"] << " are header, manifest and table\nlattice  " << info["lattice"]["bits"] << " bits an axis, step "
@@ -45,12 +47,21 @@ void printInfo(const OrderedJson& info, std::ostream& out) {
         << ", " << field["range"][0] << " to " << field["range"][1] << ", " << field["bits"] << " bits, step " << field["step"] << ", "
         << field["bytes"] << " bytes\n";
   }
-  out << "\nlevel  tetrahedra    vertices       bytes  cumulative\n";
-  for (const OrderedJson& level : info["levels"]) {
-    out << std::setw(5) << level["level"].get<std::uint64_t>() << std::setw(12) << level["tetrahedra"].get<std::uint64_t>() << std::setw(12)
-        << level["vertices"].get<std::uint64_t>() << std::setw(12) << level["bytes"].get<std::uint64_t>() << std::setw(12)
-        << level["cumulativeBytes"].get<std::uint64_t>() << "\n";
-  }
+}
+
+Status checkPlot(const std::string& plot, const std::string& input) {
+  if (plot.ends_with(".png"))
+    throw UsageError("--plot draws .svg only, which every browser shows; 'rsvg-convert PLOT.svg -o PLOT.png' makes pixels of it");
+  return checkOutput(plot, ".svg", input);
+}
+
+Status writePlot(const OpenedLog& log, const std::filesystem::path& file, const std::string& title) {
+  std::vector<std::uint64_t> bytes;
+  for (std::size_t level = 0; level < log.manifest.levels.size(); ++level) bytes.push_back(log.prefixBytes(level));
+  const Result<std::vector<ErrorCurve>> curves = errorCurves(log.manifest, bytes);
+  if (!curves) return std::unexpected(curves.error());
+  const std::string svg = errorPlotSvg(title, *curves);
+  return writeFileAtomically(file, Bytes(svg.begin(), svg.end()));
 }
 
 }  // namespace
@@ -58,20 +69,34 @@ void printInfo(const OrderedJson& info, std::ostream& out) {
 int runInfo(const Words& words, Console& console) {
   namespace po = boost::program_options;
   po::options_description options("options");
-  options.add_options()("json", "print one JSON object");
+  options.add_options()("json", "print one JSON object")("plot", po::value<std::string>(), "draw error against bytes into this file, NAME.svg");
   const ParsedWords parsed(
       words,
-      {"info", "info LOG.qtet [--json]",
+      {"info", "info LOG.qtet [--plot FILE.svg] [--json]",
        "Says what a log holds: digest, lattice, fields, and for each level its cells and bytes. Level 0 is the base mesh,\n"
-       "the last level the input's mesh; `cumulative` is the length of the file's prefix that holds a level.",
-       "  qtet info fin.qtet\n  qtet info fin.qtet --json | jq '.levels[0]'\n"},
+       "the last level the input's mesh; `cumulative` is the length of the file's prefix that holds a level. Where the log tells them,\n"
+       "the errors against the original follow: of the boundary in per cent of the diagonal (the worse one of both ways), the volume that is\n"
+       "left, and of each field in per cent of its range.",
+       "  qtet info fin.qtet\n  qtet info fin.qtet --plot fin.svg\n  qtet info fin.qtet --json | jq '.levels[0]'\n"},
       options, {"LOG"});
   if (parsed.helped(console)) return kExitOk;
+  const bool asJson = parsed.has("json");
+  const auto input = parsed.get<std::string>("LOG");
+  const auto plot = parsed.has("plot") ? parsed.get<std::string>("plot") : "";
+  if (parsed.has("plot"))
+    if (Status checked = checkPlot(plot, input); !checked) return reportFailure(checked.error(), asJson, console);
 
-  const Result<OpenedLog> log = openLog(parsed.get<std::string>("LOG"));
-  if (!log) return reportFailure(log.error(), parsed.has("json"), console);
+  const Result<OpenedLog> log = openLog(input);
+  if (!log) return reportFailure(log.error(), asJson, console);
+  if (parsed.has("plot"))
+    if (Status written = writePlot(*log, plot, log->manifest.source); !written) return reportFailure(written.error(), asJson, console);
   const OrderedJson info = infoJson(*log);
-  parsed.has("json") ? printJson(info, console) : printInfo(info, console.out);
+  if (asJson) {
+    printJson(info, console);
+  } else {
+    printHead(info, console.out);
+    console.out << "\n" << levelTable(log->manifest, info["levels"]);
+  }
   return kExitOk;
 }
 

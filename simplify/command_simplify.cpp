@@ -10,6 +10,7 @@
 #include "proto/manifest.h"
 #include "simplify/clean_mesh.h"
 #include "simplify/command_line.h"
+#include "simplify/command_measure.h"
 #include "simplify/progress.h"
 #include "simplify/qtetfusion.h"
 #include "simplify/quantise.h"
@@ -25,6 +26,7 @@ struct Request {
   FieldNames fields;
   QuantiseOptions quantise;
   FusionOptions fusion;
+  std::optional<MeasureOptions> measure;
 };
 
 /// The names between commas; "all" is nullopt, "none" the empty list.
@@ -50,6 +52,7 @@ Request requestOf(const ParsedWords& parsed) {
   request.quantise.fieldBits = parsed.integer("field-bits", kMinFieldBits, kMaxFieldBits);
   request.fusion.targetRatio = parsed.number("target-ratio", 0, 1);
   request.fusion.threads = parsed.integer("threads", 1, kMaxThreads);
+  request.measure = measureOptionsOf(parsed);
   return request;
 }
 
@@ -149,20 +152,35 @@ Result<Prepared> prepare(const Request& request, Progress& progress, Stopwatch& 
   return out;
 }
 
-/// Simplifies, encodes and writes.
+/// The known error of each level; with bounds, the history ends where they would be passed.
+Result<std::vector<LevelError>> measure(const Request& request, FusionHistory& history, Progress& progress, Stopwatch& watch) {
+  if (!request.measure) return {};
+  progress.stage("measuring");
+  MeasureOptions options = *request.measure;
+  options.threads = request.fusion.threads;
+  options.progress = [&](double fraction) { progress.update(fraction); };
+  Result<std::vector<LevelError>> errors = measureLevels(history, options);
+  watch.lap("measure");
+  return errors;
+}
+
+/// Simplifies, measures, encodes and writes.
 Result<EncodedLog> makeLog(const Request& request, const LatticeMesh& mesh, Progress& progress, Stopwatch& watch) {
   progress.stage("simplifying");
   FusionOptions fusion = request.fusion;
   fusion.progress = [&](double fraction) { progress.update(fraction); };
-  const Result<FusionHistory> history = simplify(mesh, fusion);
+  Result<FusionHistory> history = simplify(mesh, fusion);
   if (!history) return std::unexpected(history.error());
   watch.lap("simplify");
+  const Result<std::vector<LevelError>> errors = measure(request, *history, progress, watch);
+  if (!errors) return std::unexpected(errors.error());
 
   progress.stage("encoding");
   LogWriterOptions options;
   options.source = std::filesystem::path(request.input).filename().string();
   options.generator = "qtet " QTET_VERSION;
   options.progress = fusion.progress;
+  options.errors = *errors;
   Result<EncodedLog> log = encodeLog(*history, options);
   if (!log) return log;
   watch.lap("encode");
@@ -190,6 +208,7 @@ Result<OrderedJson> reportOf(const Request& request, const Prepared& prepared, c
                         {"levels", manifest->levels.size() - 1},
                         {"chunks", index->chunks.size()}};
   addSizes(log, prepared.quantised.mesh.fields, full, report);
+  report["error"] = measureReport(request.measure, manifest->levels.front().error);
   report["lattice"] = {{"bits", lattice.bits},
                        {"requestedBits", quantised.requestedBits},
                        {"step", lattice.step},
@@ -221,6 +240,7 @@ void printReport(const OrderedJson& report, std::ostream& out) {
       << report["bytes"] << " bytes, " << std::setprecision(2) << bits["total"].get<double>() << " bits a tetrahedron: connectivity "
       << bits["connectivity"].get<double>() << ", positions " << bits["positions"].get<double>();
   for (const auto& [name, value] : bits["fields"].items()) out << ", " << name << " " << value.get<double>();
+  out << measureSentence(report["error"], report["bitsPerTetrahedron"]["fields"]);
   out << "\nlattice of " << report["lattice"]["bits"] << " bits an axis, step " << report["lattice"]["step"] << "; " << std::setprecision(1)
       << report["seconds"]["total"].get<double>() << " s\n";
 }
@@ -237,6 +257,7 @@ int runSimplify(const Words& words, Console& console) {
       "field-bits", po::value<int>()->default_value(12), "bits of a float field's values, 1 to 28; integer fields are stored exactly")(
       "target-ratio", po::value<double>()->default_value(0.01, "0.01"), "stop when the base mesh has this fraction of the tetrahedra")(
       "threads", po::value<int>()->default_value(1), "threads; the result does not depend on it")("json", "print one JSON object");
+  addMeasureOptions(options);
   const ParsedWords parsed(
       words,
       {"simplify", "simplify IN -o OUT.qtet [options]",

@@ -23,7 +23,4 @@ struct OpenedLog {
 /// Errors: LogFile::open's, manifestFromJson's, bad-value where manifest and chunk table contradict each other.
 [[nodiscard]] Result<OpenedLog> openLog(const std::filesystem::path& path);
 
-/// [{level, tetrahedra, vertices, boundaryTriangles, bytes, cumulativeBytes}], as `GET /v1/meshes/{id}` has it.
-[[nodiscard]] OrderedJson levelsJson(const OpenedLog& log);
-
 }  // namespace qtet

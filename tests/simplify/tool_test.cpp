@@ -185,6 +185,108 @@ TEST_F(Tool, extractChoosesTheLevel) {
   expectFailure("extract box.qtet -o level.vtu --level 9999", 1, "no level 9999");
 }
 
+TEST_F(Tool, knownErrorsAreMeasuredAndTold) {
+  makeBoxLog();
+  const nlohmann::json levels = run("info box.qtet --json").json()["levels"];
+  for (std::size_t i = 1; i < levels.size(); ++i) {
+    const nlohmann::json &coarse = levels[i - 1]["error"], &fine = levels[i]["error"];
+    EXPECT_LE(coarse["volumeKept"], fine["volumeKept"]);
+    EXPECT_EQ(fine["fields"].size(), 1u);
+  }
+  EXPECT_GT(levels[0]["error"]["fields"][0]["rms"], 0);
+  EXPECT_EQ(levels.back()["error"]["fields"][0]["max"], 0);
+  const Ran table = run("info box.qtet");
+  for (const char* words : {"boundary, %", "volume", "Scalar", "rms %", "100.000"}) EXPECT_NE(table.out.find(words), std::string::npos) << words;
+
+  const Ran report = run("simplify box.vtu -o again.qtet --json");
+  EXPECT_EQ(report.json()["error"]["measure"], "levels");
+  EXPECT_EQ(report.json()["error"]["base"], levels[0]["error"]);
+  EXPECT_GT(report.json()["seconds"]["measure"], 0);
+}
+
+TEST_F(Tool, measuringCanBeLeftOut) {
+  ASSERT_EQ(run("sample box -o box.vtu").code, 0);
+  const Ran ran = run("simplify box.vtu -o bare.qtet --measure none --json");
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_EQ(ran.json()["error"], nlohmann::json({{"measure", "none"}}));
+  EXPECT_FALSE(run("info bare.qtet --json").json()["levels"][0].contains("error"));
+  EXPECT_EQ(run("info bare.qtet").out.find("boundary"), std::string::npos);
+  expectFailure("extract bare.qtet -o level.vtu --boundary-error 0.1", 1, "--measure levels");
+  expectFailure("info bare.qtet --plot bare.svg", 1, "--measure levels");
+  EXPECT_FALSE(fs::exists(folder_ / "bare.svg"));
+  expectFailure("simplify box.vtu -o x.qtet --measure some", 2, "none, levels, all");
+  expectFailure("simplify box.vtu -o x.qtet --measure none --max-boundary-error 0.1", 2, "leave out --measure none");
+}
+
+TEST_F(Tool, boundsEndTheSimplification) {
+  makeBoxLog();
+  const nlohmann::json whole = run("info box.qtet --json").json()["levels"];
+  const double bound = whole[whole.size() / 2]["error"]["fields"][0]["rms"];
+  ASSERT_EQ(run("simplify box.vtu -o near.qtet --max-field-error Scalar=" + std::to_string(bound)).code, 0);
+  const nlohmann::json near = run("info near.qtet --json").json()["levels"];
+  EXPECT_LT(near.size(), whole.size());
+  for (const auto& level : near) EXPECT_LE(level["error"]["fields"][0]["rms"], bound + 1e-6);
+  EXPECT_EQ(near.back()["tetrahedra"], 3072);
+  EXPECT_EQ(run("verify near.qtet --against box.vtu").code, 0);
+
+  ASSERT_EQ(run("simplify box.vtu -o tight.qtet --max-boundary-error 0.001").code, 0);
+  for (const auto& level : run("info tight.qtet --json").json()["levels"]) {
+    EXPECT_LE(level["error"]["boundary"]["toLevel"]["max"], 0.001);
+    EXPECT_LE(level["error"]["boundary"]["toOriginal"]["max"], 0.001);
+  }
+  EXPECT_EQ(run("verify tight.qtet --against box.vtu").code, 0);
+  ASSERT_EQ(run("simplify box.vtu -o all.qtet --max-field-error Scalar=0").code, 0);
+  EXPECT_EQ(run("verify all.qtet --against box.vtu").code, 0);
+
+  expectFailure("simplify box.vtu -o x.qtet --max-field-error Warmth=0.1", 1, "Warmth");
+  expectFailure("simplify box.vtu -o x.qtet --max-field-error Scalar", 2, "NAME=E");
+  expectFailure("simplify box.vtu -o x.qtet --max-field-error Scalar=much", 2, "NAME=E");
+  expectFailure("simplify box.vtu -o x.qtet --max-field-error Scalar=-1", 2, "NAME=E");
+}
+
+TEST_F(Tool, extractChoosesByError) {
+  makeBoxLog();
+  const nlohmann::json levels = run("info box.qtet --json").json()["levels"];
+  const auto levelOf = [&](const std::string& option) {
+    const Ran ran = run("extract box.qtet -o level.vtu " + option);
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    const std::string marked = "level ";
+    return std::stoul(ran.out.substr(ran.out.find(": " + marked) + 2 + marked.size()));
+  };
+  EXPECT_EQ(levelOf("--error Scalar=100"), 0u);
+  EXPECT_EQ(levelOf("--boundary-error 1"), 0u);
+  const auto chosen = [&](double bound, const auto& errorOf) {
+    std::size_t level = 0;
+    while (errorOf(levels[level]["error"]) > bound) ++level;
+    return level;
+  };
+  const auto rms = [](const nlohmann::json& error) { return error["fields"][0]["rms"].get<double>(); };
+  const auto distance = [](const nlohmann::json& error) {
+    return std::max(error["boundary"]["toLevel"]["max"].get<double>(), error["boundary"]["toOriginal"]["max"].get<double>());
+  };
+  EXPECT_EQ(levelOf("--error Scalar=0.01"), chosen(0.01, rms));
+  EXPECT_EQ(levelOf("--boundary-error 0.01"), chosen(0.01, distance));
+  EXPECT_EQ(levelOf("--error Scalar=0"), chosen(0, rms));
+  expectFailure("extract box.qtet -o level.vtu --error Warmth=0.1", 1, "it has: Scalar");
+  expectFailure("extract box.qtet -o level.vtu --error 0.1", 2, "NAME=E");
+  expectFailure("extract box.qtet -o level.vtu --error Scalar=0.1 --level 1", 2, "exactly one");
+}
+
+TEST_F(Tool, theErrorsAreDrawn) {
+  makeBoxLog();
+  ASSERT_EQ(run("info box.qtet --plot box.svg").code, 0);
+  const std::string svg = contentOf(folder_ / "box.svg");
+  EXPECT_TRUE(svg.starts_with("<svg ")) << svg.substr(0, 80);
+  EXPECT_TRUE(svg.ends_with("</svg>\n"));
+  for (const char* words : {"boundary, max", "boundary, mean", "Scalar, rms", "box.vtu", "bytes of the log", "prefers-color-scheme: dark", " kB<"})
+    EXPECT_NE(svg.find(words), std::string::npos) << words;
+  EXPECT_EQ(svg.find("nan"), std::string::npos);
+  EXPECT_EQ(svg.find("inf"), std::string::npos);
+  expectFailure("info box.qtet --plot box.png", 2, ".svg only");
+  expectFailure("info box.qtet --plot box.jpg", 2, ".svg");
+  expectFailure("info box.qtet --plot nowhere/box.svg", 1, "nowhere");
+}
+
 TEST_F(Tool, verifyProvesTheMesh) {
   makeBoxLog();
   const Ran ran = run("verify box.qtet --against box.vtu --json");

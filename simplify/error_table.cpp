@@ -1,0 +1,79 @@
+#include "simplify/error_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+namespace qtet {
+namespace {
+
+constexpr int kCountWidth = 12, kPercentWidth = 10;
+/// Below this many per cent, zeros behind the point would hide how small it is.
+constexpr double kLeastPlain = 0.001;
+
+/// Characters of UTF-8 text: bytes that do not continue one.
+std::size_t lengthOf(const std::string& text) {
+  return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+}
+
+/// A heading over two columns of figures, at the right like them.
+void heading(std::ostream& out, const std::string& name, std::size_t width) {
+  out << std::string(width - std::min(width, lengthOf(name)), ' ') << name;
+}
+
+/// Two columns, wider where the field's name needs it.
+std::size_t fieldWidth(const ManifestField& field) { return std::max<std::size_t>(2 * kPercentWidth, lengthOf(field.name) + 2); }
+
+}  // namespace
+
+std::string percentCell(double fraction) {
+  const double percent = 100 * fraction;
+  std::ostringstream out;
+  if (percent != 0 && percent < kLeastPlain) {
+    out << std::scientific << std::setprecision(1) << percent;
+    return out.str();
+  }
+  if (percent == 0) return "0";
+  const int decimals = std::clamp(2 - static_cast<int>(std::floor(std::log10(percent))), 0, 5);
+  out << std::fixed << std::setprecision(decimals) << percent;
+  return out.str();
+}
+
+std::string levelTable(const Manifest& manifest, const nlohmann::ordered_json& levels) {
+  const bool hasErrors = std::ranges::any_of(manifest.levels, [](const ManifestLevel& level) { return level.error.has_value(); });
+  std::ostringstream out;
+  if (hasErrors) {
+    out << std::string(5 + 4 * kCountWidth, ' ');
+    heading(out, "boundary, %", 2 * kPercentWidth);
+    heading(out, "volume", kPercentWidth);
+    for (const ManifestField& field : manifest.fields) heading(out, field.name, fieldWidth(field));
+    out << "\n";
+  }
+  out << "level" << std::setw(kCountWidth) << "tetrahedra" << std::setw(kCountWidth) << "vertices" << std::setw(kCountWidth) << "bytes"
+      << std::setw(kCountWidth) << "cumulative";
+  if (hasErrors) {
+    out << std::setw(kPercentWidth) << "mean" << std::setw(kPercentWidth) << "max" << std::setw(kPercentWidth) << "%";
+    for (const ManifestField& field : manifest.fields)
+      out << std::setw(static_cast<int>(fieldWidth(field)) - kPercentWidth) << "rms %" << std::setw(kPercentWidth) << "max %";
+  }
+  out << "\n";
+  for (const ManifestLevel& level : manifest.levels) {
+    const nlohmann::ordered_json& told = levels[level.level];
+    out << std::setw(5) << level.level << std::setw(kCountWidth) << level.tetrahedra << std::setw(kCountWidth) << level.vertices
+        << std::setw(kCountWidth) << told["bytes"].get<std::uint64_t>() << std::setw(kCountWidth)
+        << told["cumulativeBytes"].get<std::uint64_t>();
+    if (level.error) {
+      out << std::setw(kPercentWidth) << percentCell(level.error->boundaryMean()) << std::setw(kPercentWidth)
+          << percentCell(level.error->boundaryDistance()) << std::setw(kPercentWidth) << std::fixed << std::setprecision(3)
+          << 100 * level.error->volumeKept;
+      for (std::size_t f = 0; f < manifest.fields.size(); ++f)
+        out << std::setw(static_cast<int>(fieldWidth(manifest.fields[f])) - kPercentWidth) << percentCell(level.error->fields[f].rms)
+            << std::setw(kPercentWidth) << percentCell(level.error->fields[f].max);
+    }
+    out << "\n";
+  }
+  return out.str();
+}
+
+}  // namespace qtet

@@ -1,0 +1,113 @@
+#include "simplify/measure_error.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+
+#include "simplify/measure_boundary.h"
+#include "simplify/measure_fields.h"
+
+namespace qtet {
+namespace {
+
+constexpr int kDigits = 4;
+constexpr int kVolumeDigits = 6;  // what matters is the loss, and a good level's is a thousandth
+
+struct Samples {
+  std::uint32_t volume, vertices, surface, levelSurface, grid;
+};
+
+/// Cells that pay for one place in the volume: measured, ALGORITHM.md, "Known error".
+constexpr std::size_t kCellsPerSample = 10;
+constexpr std::size_t kFewest = 3000, kMost = 50000;
+/// On a level's boundary, where nothing is kept from level to level and a search takes the longest.
+constexpr std::uint32_t kFewestOnLevel = 600;
+constexpr Samples kAllSamples{200000, 200000, 200000, 200000, 1000000};
+
+Samples samplesFor(Effort effort, const FusionHistory& history) {
+  if (effort == Effort::kAll) return kAllSamples;
+  const auto isTetrahedron = [](const Tetrahedron& cell) { return cell[3] != kGhost; };
+  const auto cells = static_cast<std::size_t>(std::ranges::partition_point(history.cells, isTetrahedron) - history.cells.begin());
+  const auto volume = static_cast<std::uint32_t>(std::clamp(cells / kCellsPerSample, kFewest, kMost));
+  return {volume, volume / 2, volume / 4, std::max(volume / 12, kFewestOnLevel), 2 * volume};
+}
+
+OneSidedDistance rounded(const OneSidedDistance& d) { return {roundedTo(d.mean, kDigits), roundedTo(d.max, kDigits)}; }
+
+class ErrorMeter {
+ public:
+  ErrorMeter(HistoryLevels& levels, const MeasureOptions& options, const Samples& samples)
+      : mesh_(levels),
+        boundary_(mesh_, {samples.surface, samples.levelSurface, samples.grid, options.seed, options.threads}),
+        fields_(mesh_, {samples.volume, samples.vertices, options.seed ^ kFieldSeed, options.threads}) {}
+
+  void coarsen() {
+    mesh_.coarsen();
+    boundary_.follow();
+    fields_.follow();
+  }
+
+  [[nodiscard]] LevelError measure() {
+    LevelError out{rounded(boundary_.toLevel()), rounded(boundary_.toOriginal()), roundedTo(mesh_.volumeKept(), kVolumeDigits), {}};
+    for (const FieldError& error : fields_.errors()) out.fields.push_back({roundedTo(error.rms, kDigits), roundedTo(error.max, kDigits)});
+    return out;
+  }
+
+ private:
+  static constexpr std::uint64_t kFieldSeed = 0x5EEDF1E1D5u;  // other numbers than the surface's
+
+  MeasuredMesh mesh_;
+  BoundaryMeter boundary_;
+  FieldMeter fields_;
+};
+
+using FieldBound = std::pair<std::size_t, double>;
+
+Result<std::vector<FieldBound>> fieldBounds(const FusionHistory& history, const ErrorBounds& bounds) {
+  std::vector<FieldBound> out;
+  for (const auto& [name, bound] : bounds.fields) {
+    const auto at = std::ranges::find(history.fields, name, &FieldInfo::name);
+    if (at == history.fields.end())
+      return fail(ErrorCode::kNotFound, "no field '" + name + "' to keep an error bound of; name one that the log carries");
+    out.emplace_back(static_cast<std::size_t>(at - history.fields.begin()), bound);
+  }
+  return out;
+}
+
+}  // namespace
+
+double roundedTo(double value, int digits) {
+  std::array<char, 32> text;
+  const auto written = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::scientific, digits - 1);
+  double out = value;
+  std::from_chars(text.data(), written.ptr, out);
+  return out;
+}
+
+Result<std::vector<LevelError>> measureLevels(FusionHistory& history, const MeasureOptions& options) {
+  const Result<std::vector<FieldBound>> bounds = fieldBounds(history, options.bounds);
+  if (!bounds) return std::unexpected(bounds.error());
+  const auto isWithin = [&](const LevelError& error) {
+    const auto keeps = [&](const FieldBound& bound) { return error.fields[bound.first].rms <= bound.second; };
+    return error.boundaryDistance() <= options.bounds.boundary.value_or(error.boundaryDistance()) && std::ranges::all_of(*bounds, keeps);
+  };
+
+  HistoryLevels levels(history);
+  ErrorMeter meter(levels, options, samplesFor(options.effort, history));
+  std::vector<LevelError> out{meter.measure()};
+  while (levels.level() > 0) {
+    meter.coarsen();
+    LevelError error = meter.measure();
+    if (!isWithin(error)) {
+      levels.refine();
+      break;
+    }
+    out.push_back(std::move(error));
+    if (options.progress) options.progress(static_cast<double>(out.size()) / (levels.finest() + 1.0));
+  }
+  levels.forgetCoarser();
+  std::ranges::reverse(out);
+  return out;
+}
+
+}  // namespace qtet

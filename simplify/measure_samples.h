@@ -1,0 +1,47 @@
+// Places that stand for a surface or a volume: uniform, stratified, and the same on every machine.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "codec/mesh.h"
+#include "simplify/measure_geometry.h"
+
+namespace qtet {
+
+/// SplitMix64 (Steele, Lea & Flood 2014): integers alone, so the same numbers everywhere.
+class SplitMix64 {
+ public:
+  explicit SplitMix64(std::uint64_t seed) : state_(seed) {}
+  [[nodiscard]] std::uint64_t next() {
+    std::uint64_t z = state_ += 0x9E3779B97F4A7C15u;
+    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
+    z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
+    return z ^ (z >> 31);
+  }
+  /// In [0, 1), a multiple of 2^-53.
+  [[nodiscard]] double unit() { return static_cast<double>(next() >> 11) * 0x1p-53; }
+
+ private:
+  std::uint64_t state_;
+};
+
+/// A place in a cell, or on the triangle of a ghost cell: there the fourth weight is 0.
+struct Sample {
+  Point3 at;
+  std::uint32_t cell;
+  std::array<double, 4> weights;  ///< barycentric
+};
+
+using CellSpan = std::span<const std::array<VertexId, 4>>;
+
+/// `count` places uniform by area on the triangles `ids` (the first three vertices of these cells), by strata along their order.
+/// None where all triangles are degenerate.
+[[nodiscard]] std::vector<Sample> samplesOnSurface(std::span<const LatticePoint> points, CellSpan cells, std::span<const std::uint32_t> ids,
+                                                   std::size_t count, std::uint64_t seed);
+/// The same by volume in the cells that have no ghost vertex; an inverted cell counts with its volume's magnitude.
+[[nodiscard]] std::vector<Sample> samplesInVolume(std::span<const LatticePoint> points, CellSpan cells, std::size_t count,
+                                                  std::uint64_t seed);
+
+}  // namespace qtet

@@ -1,0 +1,113 @@
+#include "simplify/measure_triangle_tree.h"
+
+#include <algorithm>
+
+namespace qtet {
+namespace {
+
+/// Triangles of a leaf: boxes are cheaper to test than triangles, but each one is a cache line.
+constexpr std::uint32_t kLeafTriangles = 2;
+/// Nodes that wait during a search: one a level of a tree that halves 2^29 triangles, and one more.
+constexpr std::size_t kMaxWaiting = 32;
+
+}  // namespace
+
+TriangleTree::TriangleTree(std::span<const LatticePoint> points, std::span<const Cell> cells, std::vector<std::uint32_t> ids)
+    : points_(points), cells_(cells), ids_(std::move(ids)) {
+  nodes_.reserve(ids_.size());
+  build(0, static_cast<std::uint32_t>(ids_.size()));
+}
+
+void TriangleTree::fit(Node& leaf) const {
+  leaf.low.fill(std::numeric_limits<std::int32_t>::max());
+  leaf.high.fill(std::numeric_limits<std::int32_t>::min());
+  for (const std::uint32_t id : std::span(ids_).subspan(leaf.first, leaf.count))
+    for (std::size_t corner = 0; corner < 3; ++corner)
+      for (std::size_t k = 0; k < 3; ++k) {
+        leaf.low[k] = std::min(leaf.low[k], points_[cells_[id][corner]][k]);
+        leaf.high[k] = std::max(leaf.high[k], points_[cells_[id][corner]][k]);
+      }
+}
+
+void TriangleTree::build(std::uint32_t first, std::uint32_t count) {
+  const auto index = static_cast<std::uint32_t>(nodes_.size());
+  nodes_.push_back({{}, {}, 0, first, count});
+  fit(nodes_[index]);
+  if (count <= kLeafTriangles) return;
+  const Node& box = nodes_[index];
+  std::size_t axis = 0;
+  for (std::size_t k = 1; k < 3; ++k)
+    if (box.high[k] - box.low[k] > box.high[axis] - box.low[axis]) axis = k;
+  const auto place = [&](std::uint32_t id) {  // three times the centroid; the id makes the order total
+    std::int64_t sum = 0;
+    for (std::size_t corner = 0; corner < 3; ++corner) sum += points_[cells_[id][corner]][axis];
+    return std::pair{sum, id};
+  };
+  const std::uint32_t half = count / 2;
+  const auto begin = ids_.begin() + first;
+  std::nth_element(begin, begin + half, begin + count, [&](std::uint32_t a, std::uint32_t b) { return place(a) < place(b); });
+  build(first, half);
+  nodes_[index].right = static_cast<std::uint32_t>(nodes_.size());
+  build(first + half, count - half);
+}
+
+void TriangleTree::refit(std::span<const std::uint8_t> live) {
+  for (std::size_t i = nodes_.size(); i-- > 0;) {  // children stand behind their parent
+    Node& node = nodes_[i];
+    if (node.right == 0) {
+      const auto begin = ids_.begin() + node.first;
+      const auto end = std::partition(begin, begin + node.count, [&](std::uint32_t id) { return live[id] != 0; });
+      node.count = static_cast<std::uint32_t>(end - begin);
+      fit(node);
+      continue;
+    }
+    const Node &left = nodes_[i + 1], &right = nodes_[node.right];
+    for (std::size_t k = 0; k < 3; ++k) {
+      node.low[k] = std::min(left.low[k], right.low[k]);
+      node.high[k] = std::max(left.high[k], right.high[k]);
+    }
+  }
+}
+
+double TriangleTree::squaredDistance(const Point3& p, const Node& node) {
+  double sum = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double below = static_cast<double>(node.low[k]) - p[k], above = p[k] - static_cast<double>(node.high[k]);
+    const double apart = std::max({below, above, 0.0});
+    sum += apart * apart;
+  }
+  return sum;
+}
+
+void TriangleTree::tryTriangle(const Point3& p, std::uint32_t triangle, NearestTriangle& best) const {
+  const Cell& cell = cells_[triangle];
+  const NearestPoint found = nearestOnTriangle(p, {toPoint3(points_[cell[0]]), toPoint3(points_[cell[1]]), toPoint3(points_[cell[2]])});
+  if (found.squared < best.point.squared) best = {triangle, found};
+}
+
+void TriangleTree::nearest(const Point3& p, NearestTriangle& best, double enough) const {
+  struct Waiting {
+    double squared;
+    std::uint32_t node;
+  };
+  std::array<Waiting, kMaxWaiting> waiting;
+  std::size_t size = 0;
+  waiting[size++] = {squaredDistance(p, nodes_[0]), 0};
+  while (size > 0 && best.point.squared > enough) {
+    auto [squared, index] = waiting[--size];
+    while (squared < best.point.squared) {
+      const Node& node = nodes_[index];
+      if (node.right == 0) {
+        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) tryTriangle(p, ids_[i], best);
+        break;
+      }
+      Waiting near{squaredDistance(p, nodes_[index + 1]), index + 1}, far{squaredDistance(p, nodes_[node.right]), node.right};
+      if (far.squared < near.squared) std::swap(near, far);
+      if (far.squared < best.point.squared) waiting[size++] = far;
+      squared = near.squared;
+      index = near.node;
+    }
+  }
+}
+
+}  // namespace qtet
