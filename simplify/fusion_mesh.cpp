@@ -84,6 +84,7 @@ void FusionMesh::blendValues(const Prey& prey, const FusionPoint& where) {
     total += weight[i];
   }
   for (std::size_t f = 0; f < history_.fields.size(); ++f) {
+    if (isCellField(history_.fields[f])) continue;  // cells keep their values for life
     const std::size_t n = history_.fields[f].components;
     std::vector<std::int32_t>& values = history_.values[f];
     for (std::size_t c = 0; c < n; ++c) {

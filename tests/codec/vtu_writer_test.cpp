@@ -66,7 +66,7 @@ TEST(VtuWriter, everyNumberTypeKeepsItsExtremes) {
   const std::vector<Tetrahedron> cells{{0, 1, 2, 3}};
   VtuMesh mesh{points, cells, true, {}};
   const double big = 9007199254740991.0;  // 2^53 - 1
-  mesh.fields = {{"i8", "int8", 1, {-128, 127, 0, 1}},
+  mesh.pointFields = {{"i8", "int8", 1, {-128, 127, 0, 1}},
                  {"u8", "uint8", 1, {0, 255, 1, 2}},
                  {"i16", "int16", 1, {-32768, 32767, 0, 1}},
                  {"u16", "uint16", 1, {0, 65535, 1, 2}},
@@ -77,10 +77,10 @@ TEST(VtuWriter, everyNumberTypeKeepsItsExtremes) {
                  {"f32", "float32", 1, {-1.5, 0.25, 3, 4}},
                  {"f64", "float64", 2, {0.1, 0.2, 0.3, 1e300, -1e-300, 6, 7, 8}}};
   const ReadMesh read = readBack(vtuBytes(mesh), "types");
-  ASSERT_EQ(read.mesh.fields.size(), mesh.fields.size());
-  for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
-    EXPECT_EQ(read.mesh.fields[f].type, mesh.fields[f].type);
-    EXPECT_EQ(read.mesh.fields[f].values, mesh.fields[f].values) << mesh.fields[f].name;
+  ASSERT_EQ(read.mesh.fields.size(), mesh.pointFields.size());
+  for (std::size_t f = 0; f < mesh.pointFields.size(); ++f) {
+    EXPECT_EQ(read.mesh.fields[f].type, mesh.pointFields[f].type);
+    EXPECT_EQ(read.mesh.fields[f].values, mesh.pointFields[f].values) << mesh.pointFields[f].name;
   }
 }
 

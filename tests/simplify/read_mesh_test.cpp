@@ -77,7 +77,7 @@ TEST(ReadMesh, legacyFilesAreRead) {
   EXPECT_EQ(read->mesh.tetrahedra, (std::vector<Tetrahedron>{{0, 1, 2, 3}}));
   EXPECT_EQ(read->report.ignoredCells, 1u);
   ASSERT_EQ(read->mesh.fields.size(), 3u);
-  for (const PointField& field : read->mesh.fields) {
+  for (const MeshField& field : read->mesh.fields) {
     EXPECT_EQ(field.components, field.name == "v" ? 3u : 1u);
     EXPECT_EQ(field.type, field.name == "id" ? "int32" : field.name == "v" ? "float64" : "float32");
   }
