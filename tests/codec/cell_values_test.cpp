@@ -117,7 +117,7 @@ TEST_F(CellFieldLog, aValueBeyondTheLimitIsRefused) {
   Refiner refiner(index_);
   ASSERT_TRUE(apply(refiner, 0));
   std::vector<std::int32_t> large = values(0, kRegionPart);
-  large[3] = (1 << 30) + 1000;
+  large.back() = (1 << 30) + 1000;
   EXPECT_EQ(refiner.applyField(kRegion, 0, large).error().code, ErrorCode::kBadValue);
   EXPECT_EQ(refiner.applyField(kRegion, 0, values(0, kRegionPart)).error().code, ErrorCode::kBadOrder);
 }

@@ -51,6 +51,22 @@ TEST(VtuWriter, vtkReadsTheLatticeBack) {
   }
 }
 
+TEST(VtuWriter, cellFieldsAreCellData) {
+  LatticeMesh mesh = testing::gridMesh(3, 5);
+  testing::addCellFields(mesh);
+  const ReadMesh read = readBack(vtuBytes(mesh), "cells");
+  ASSERT_EQ(read.mesh.fields.size(), 4u);
+  for (std::size_t f = 2; f < 4; ++f) {
+    const FieldInfo& info = mesh.fields[f];
+    EXPECT_EQ(read.mesh.fields[f].name, info.name);
+    EXPECT_EQ(read.mesh.fields[f].association, "cell");
+    EXPECT_EQ(read.mesh.fields[f].type, info.type);
+    ASSERT_EQ(read.mesh.fields[f].values.size(), mesh.values[f].size());
+    for (std::size_t i = 0; i < mesh.values[f].size(); ++i)
+      ASSERT_EQ(read.mesh.fields[f].values[i], info.minimum[i % info.components] + info.step * mesh.values[f][i]);
+  }
+}
+
 TEST(VtuWriter, pointsBecomeDoublesWhereFloatsWouldMergeLatticePoints) {
   LatticeMesh mesh = testing::gridMesh(2, 1);
   mesh.lattice = {16, 1e-3, {100, 200, 300}};
