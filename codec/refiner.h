@@ -52,7 +52,7 @@ class Refiner {
   /// vertex's value and tetrahedra their prediction.
   [[nodiscard]] std::span<const std::int32_t> fieldValues(std::uint32_t field) const;
 
-  /// SHA-256 over points, tetrahedra and boundary in slot order, little-endian (FORMAT.md, "Mesh digest").
+  /// SHA-256 over points, tetrahedra and boundary in slot order, little-endian (FORMAT.md, "Digests").
   [[nodiscard]] std::array<std::uint8_t, 32> digest() const;
 
  private:

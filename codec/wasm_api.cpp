@@ -62,6 +62,9 @@ double qtet_block_offset(std::uint32_t chunk, std::uint32_t part) {
 }
 std::uint32_t qtet_block_size(std::uint32_t chunk, std::uint32_t part) { return hasBlock(chunk, part) ? refiner->index().block(chunk, part).size : 0; }
 std::uint32_t qtet_block_values(std::uint32_t chunk, std::uint32_t part) { return hasBlock(chunk, part) ? refiner->index().tuples(chunk, part) : 0; }
+std::uint32_t qtet_field_association(std::uint32_t field) {
+  return refiner && field < refiner->index().fields.size() ? static_cast<std::uint32_t>(refiner->index().fields[field].association) : 0;
+}
 std::uint32_t qtet_block_codec(std::uint32_t chunk, std::uint32_t part) {
   if (!hasBlock(chunk, part)) return 0;
   const qtet::ChunkEntry& e = refiner->index().chunks[chunk];

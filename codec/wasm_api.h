@@ -24,6 +24,8 @@ double qtet_block_offset(std::uint32_t chunk, std::uint32_t part);
 std::uint32_t qtet_block_size(std::uint32_t chunk, std::uint32_t part);
 /// Tuples in a value block: of the positions and of point fields as many, of cell fields one a tetrahedron that the chunk brings.
 std::uint32_t qtet_block_values(std::uint32_t chunk, std::uint32_t part);
+/// What the values of a field belong to: 0 points, 1 tetrahedra (Association of codec/log_index.h).
+std::uint32_t qtet_field_association(std::uint32_t field);
 /// CodecId of a block.
 std::uint32_t qtet_block_codec(std::uint32_t chunk, std::uint32_t part);
 /// Compares a block's bytes with its CRC-32.
