@@ -63,7 +63,8 @@ void CellAncestry::addRestored(std::span<const CellRef> star, const Link& link, 
   std::sort(sides_.begin(), sides_.end());
   for (std::size_t i = 1; i < sides_.size(); ++i) {
     const CellId cell = atSplit_[sides_[i] & kTetrahedronMask];
-    if (cell >= first && sides_[i] >> kTetrahedronBits == sides_[i - 1] >> kTetrahedronBits) add(cell, atSplit_[sides_[i - 1] & kTetrahedronMask]);
+    if (cell >= first && sides_[i] >> kTetrahedronBits == sides_[i - 1] >> kTetrahedronBits)
+      add(cell, atSplit_[sides_[i - 1] & kTetrahedronMask]);
   }
   for (CellId cell = first; ofStar > 0 && cell < known_.size(); ++cell)
     if (known_[cell][0] == kNone) add(cell, atSplit_.front());

@@ -16,6 +16,7 @@
 namespace qtet {
 
 /// For each tetrahedron the earlier ones that its values are predicted from: those that shared a face with it when it came.
+/// Takes 16 bytes a tetrahedron, whatever the number of fields, so that a field may lag behind the mesh.
 class CellAncestry {
  public:
   /// Adds the base mesh's tetrahedra. REQUIRES: called once and first; four different vertices a cell.
@@ -45,8 +46,8 @@ class CellAncestry {
   void add(CellId cell, CellId earlier);
 
   std::vector<std::array<CellId, 4>> known_;  // slots of earlier tetrahedra, kNone after the last
-  std::vector<Side> sides_;       // of the split in hand
-  std::vector<CellId> atSplit_;   // its tetrahedra, those of the star first
+  std::vector<Side> sides_;                   // of the split in hand
+  std::vector<CellId> atSplit_;               // its tetrahedra, those of the star first
 };
 
 }  // namespace qtet

@@ -188,8 +188,10 @@ Result<LogIndex> LogIndex::parse(ByteView bytes) {
     if (components == 0 || components > kMaxFieldComponents)
       return fail(ErrorCode::kBadValue, "field " + std::to_string(f) + " has a number of components outside 1..16", r.offset() - 4);
     if (association > static_cast<std::uint16_t>(Association::kCell))
-      return fail(ErrorCode::kBadValue, "field " + std::to_string(f) + " belongs to things of kind " + std::to_string(association) +
-                                            "; this build knows points (0) and cells (1): use a newer qtet", r.offset() - 2);
+      return fail(ErrorCode::kBadValue,
+                  "field " + std::to_string(f) + " has the association " + std::to_string(association) +
+                      "; this build knows 0 (points) and 1 (cells): use a newer qtet, or build the log again",
+                  r.offset() - 2);
     index.fields.push_back({components, static_cast<Association>(association)});
   }
   index.chunks.reserve(header->chunks);

@@ -84,7 +84,9 @@ struct LogIndex {
   [[nodiscard]] std::uint32_t parts() const { return kFirstFieldPart + static_cast<std::uint32_t>(fields.size()); }
   /// Tuples in a value block of a chunk, and integers in each of them. REQUIRES: a part that is not the structure.
   [[nodiscard]] std::uint32_t tuples(std::uint32_t chunk, std::uint32_t part) const;
-  [[nodiscard]] std::uint32_t components(std::uint32_t part) const { return part == kPositionsPart ? 3 : fields[part - kFirstFieldPart].components; }
+  [[nodiscard]] std::uint32_t components(std::uint32_t part) const {
+    return part == kPositionsPart ? 3 : fields[part - kFirstFieldPart].components;
+  }
   [[nodiscard]] bool hasCellField() const;
 
   /// Bytes of the header's promise: how much of the file `parse` needs. Errors: truncated (under 64 bytes), bad-magic, bad-version,

@@ -57,6 +57,12 @@ class LogEncoder {
     values_.resize(h_.fields.size());
     open_.fields.resize(h_.fields.size());
     hasCellField_ = std::ranges::any_of(h_.fields, isCellField);
+    const auto ghosts = std::ranges::count_if(h_.cells, [](const auto& c) { return std::ranges::find(c, kGhost) != c.end(); });
+    const std::size_t tetrahedra = h_.cells.size() - static_cast<std::size_t>(ghosts);
+    for (std::size_t f = 0; f < h_.fields.size(); ++f)
+      if (isCellField(h_.fields[f]) && h_.values[f].size() != tetrahedra * h_.fields[f].components)
+        return fail(ErrorCode::kBadValue, "cell field " + h_.fields[f].name + " has " + std::to_string(h_.values[f].size()) + " numbers for " +
+                                              std::to_string(tetrahedra) + " tetrahedra");
     return {};
   }
 

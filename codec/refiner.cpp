@@ -36,7 +36,7 @@ struct Refiner::State {
   std::vector<std::size_t> chunkBirths;  // births before chunk i
   std::vector<std::size_t> chunkCells;   // tetrahedra before chunk i
   bool hasCellField = false;
-  CellAncestry ancestry;                 // kept where there is a cell field
+  CellAncestry ancestry;  // kept where there is a cell field
   std::vector<FieldState> fields;
   std::vector<LevelCounts> levelCounts;
   std::uint32_t chunks = 0;
@@ -209,7 +209,8 @@ void Refiner::State::inheritCells(FieldState& field, std::uint32_t components, s
   field.values.resize(mesh.tetrahedra.size() * n);
   for (std::size_t t = firstCell; t < mesh.tetrahedra.size(); ++t)
     for (std::size_t c = 0; c < n; ++c)
-      field.values[t * n + c] = static_cast<std::int32_t>(ancestry.predict(static_cast<CellId>(t), [&](CellId u) { return field.values[u * n + c]; }));
+      field.values[t * n + c] =
+          static_cast<std::int32_t>(ancestry.predict(static_cast<CellId>(t), [&](CellId u) { return field.values[u * n + c]; }));
 }
 
 void Refiner::State::inheritPoints(FieldState& field, std::uint32_t components, std::size_t firstBirth) const {
@@ -230,7 +231,8 @@ Status Refiner::applyField(std::uint32_t field, std::uint32_t chunk, std::span<c
   if (chunk != f.chunks) return refuse(ErrorCode::kBadOrder, chunk, "the field needs chunk " + std::to_string(f.chunks) + " first");
   if (chunk >= s.chunks) return refuse(ErrorCode::kBadOrder, chunk, "a field cannot run ahead of the mesh");
   const FieldShape shape = s.index.fields[field];
-  if (values.size() != std::size_t{s.index.tuples(chunk, kFirstFieldPart + field)} * shape.components) return refuse(ErrorCode::kBadValue, chunk, "wrong number of field values");
+  if (values.size() != std::size_t{s.index.tuples(chunk, kFirstFieldPart + field)} * shape.components)
+    return refuse(ErrorCode::kBadValue, chunk, "wrong number of field values");
   Residuals residuals(values);
   if (shape.association == Association::kPoint)
     s.codePoints(f, shape.components, chunk, residuals);
@@ -270,7 +272,8 @@ void Refiner::State::codeCells(FieldState& f, std::uint32_t components, std::uin
   f.values.resize(mesh.tetrahedra.size() * n);
   for (std::size_t t = chunkCells[chunk]; t < chunkCells[chunk + 1]; ++t)
     for (std::size_t c = 0; c < n; ++c)
-      f.values[t * n + c] = residuals.code<false>(ancestry.predict(static_cast<CellId>(t), [&](CellId u) { return f.values[u * n + c]; }), 0);
+      f.values[t * n + c] =
+          residuals.code<false>(ancestry.predict(static_cast<CellId>(t), [&](CellId u) { return f.values[u * n + c]; }), 0);
   if (chunk == 0) inheritCells(f, components, chunkCells[1]);
 }
 

@@ -142,7 +142,8 @@ struct Sizes {
 std::string fieldsText(const std::string& tag, const std::vector<VtuField>& fields, Arrays& arrays) {
   const auto scalar = std::find_if(fields.begin(), fields.end(), [](const VtuField& field) { return field.components == 1; });
   std::string text = "      <" + tag + (scalar == fields.end() ? "" : " Scalars=\"" + escaped(scalar->name) + "\"") + ">\n";
-  for (const VtuField& field : fields) text += arrays.declare(numberType(field.type).vtkName, field.name, field.components, Sizes::sizeOf(field));
+  for (const VtuField& field : fields)
+    text += arrays.declare(numberType(field.type).vtkName, field.name, field.components, Sizes::sizeOf(field));
   return text + "      </" + tag + ">\n";
 }
 

@@ -61,7 +61,9 @@ double qtet_block_offset(std::uint32_t chunk, std::uint32_t part) {
   return hasBlock(chunk, part) ? static_cast<double>(refiner->index().block(chunk, part).offset) : 0;
 }
 std::uint32_t qtet_block_size(std::uint32_t chunk, std::uint32_t part) { return hasBlock(chunk, part) ? refiner->index().block(chunk, part).size : 0; }
-std::uint32_t qtet_block_values(std::uint32_t chunk, std::uint32_t part) { return hasBlock(chunk, part) ? refiner->index().tuples(chunk, part) : 0; }
+std::uint32_t qtet_block_values(std::uint32_t chunk, std::uint32_t part) {
+  return hasBlock(chunk, part) ? refiner->index().tuples(chunk, part) : 0;
+}
 std::uint32_t qtet_field_association(std::uint32_t field) {
   return refiner && field < refiner->index().fields.size() ? static_cast<std::uint32_t>(refiner->index().fields[field].association) : 0;
 }

@@ -232,7 +232,8 @@ int runSimplify(const Words& words, Console& console) {
   namespace po = boost::program_options;
   po::options_description options("options");
   options.add_options()("output,o", po::value<std::string>(), "required: the log to write, NAME.qtet")(
-      "fields", po::value<std::string>()->default_value("all"), "all, none, or names between commas; point:NAME or cell:NAME is one of two fields with the same name")(
+      "fields", po::value<std::string>()->default_value("all"),
+      "all, none, or names between commas; point:NAME or cell:NAME is one of two fields with the same name")(
       "position-bits", po::value<int>()->default_value(16),
       "bits of the lattice an axis, 4 to 28; raised where a cell would be flattened or inverted")(
       "field-bits", po::value<int>()->default_value(12), "bits of a float field's values, 1 to 28; integer fields are stored exactly")(

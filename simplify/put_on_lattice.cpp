@@ -78,7 +78,8 @@ Result<OnLattice> putOnLattice(const TetMesh& mesh, const Lattice& lattice, cons
       return candidate.name == info.name && candidate.association == info.association;
     });
     if (field == mesh.fields.end())
-      return fail(ErrorCode::kNotFound, "the input has no " + info.association + " field '" + info.name + "', which the log holds; it is not the log's input");
+      return fail(ErrorCode::kNotFound,
+                  "the input has no " + info.association + " field '" + info.name + "', which the log holds; it is not the log's input");
     if (Status put = putField(*field, info, out); !put) return std::unexpected(put.error());
   }
   out.mesh.tetrahedra = mesh.tetrahedra;

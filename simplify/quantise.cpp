@@ -130,8 +130,8 @@ Status placeFields(const TetMesh& mesh, int bits, QuantisedMesh& out) {
                                  " values are NaN or infinite and are stored as their component's minimum");
     }
     if (!quantised->exact && !isFloatType(field.type)) {
-      out.report.notes.push_back(name + ": its integers span more than " + std::to_string(kMaxFieldBits) +
-                                 " bits and are rounded to " + std::to_string(bits) + " bits");
+      out.report.notes.push_back(name + ": its integers span more than " + std::to_string(kMaxFieldBits) + " bits and are rounded to " +
+                                 std::to_string(bits) + " bits");
     }
     out.mesh.fields.push_back(std::move(quantised->info));
     out.mesh.values.push_back(std::move(quantised->values));

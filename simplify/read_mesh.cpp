@@ -150,11 +150,12 @@ struct Candidate {
 };
 
 /// The field of `rows` (the array's tuples, in the mesh's order); `tuples` is what the array must have.
-Result<MeshField> fieldOf(const Candidate& candidate, const std::vector<vtkIdType>& rows, vtkIdType tuples, const std::filesystem::path& path) {
+Result<MeshField> fieldOf(const Candidate& candidate, const std::vector<vtkIdType>& rows, vtkIdType tuples,
+                          const std::filesystem::path& path) {
   vtkDataArray& array = *candidate.array;
   if (array.GetNumberOfTuples() != tuples) {
-    return bad(path, candidate.association + " field " + candidate.name + " has " + std::to_string(array.GetNumberOfTuples()) + " tuples for " +
-                         std::to_string(tuples) + " " + candidate.association + "s; export it again");
+    return bad(path, candidate.association + " field " + candidate.name + " has " + std::to_string(array.GetNumberOfTuples()) +
+                         " tuples for " + std::to_string(tuples) + " " + candidate.association + "s; export it again");
   }
   MeshField field{candidate.name, static_cast<std::uint32_t>(array.GetNumberOfComponents()), typeName(array), {}, candidate.association};
   const bool wide = field.type == "int64" || field.type == "uint64";
@@ -164,8 +165,9 @@ Result<MeshField> fieldOf(const Candidate& candidate, const std::vector<vtkIdTyp
     array.GetTuple(rows[i], tuple);
     for (std::uint32_t c = 0; wide && c < field.components; ++c) {
       if (std::abs(tuple[c]) < kFirstInexactInteger) continue;
-      return bad(path, candidate.association + " field " + candidate.name + " holds an integer of 2^53 or more at " + candidate.association + " " +
-                           std::to_string(i) + "; leave the field out with --fields, or store it in fewer bits");
+      return bad(path, candidate.association + " field " + candidate.name + " holds an integer of 2^53 or more at " +
+                           candidate.association + " " + std::to_string(i) +
+                           "; leave the field out with --fields, or store it in fewer bits");
     }
   }
   return field;

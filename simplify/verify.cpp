@@ -172,7 +172,8 @@ Status sameShape(const LatticeMesh& decoded, const LatticeMesh& expected) {
       const FieldInfo& field = mesh.fields[f];
       return field.name + " with " + std::to_string(field.components) + " components a " + field.association;
     };
-    if (shape(decoded) != shape(expected)) return different("field " + std::to_string(f) + " is " + shape(decoded) + ", expected " + shape(expected));
+    if (shape(decoded) != shape(expected))
+      return different("field " + std::to_string(f) + " is " + shape(decoded) + ", expected " + shape(expected));
   }
   return {};
 }
@@ -197,7 +198,8 @@ Result<VerifyReport> sameMesh(const LatticeMesh& decoded, const LatticeMesh& exp
   // Cells by what their vertices carry first: that names the cell at fault, which later rounds spread to its surroundings.
   const auto compareCells = [&]() -> Status {
     const std::vector<Hash> mineCells = cellHashes(decoded, mine), theirCells = cellHashes(expected, theirs);
-    if (const auto cell = firstSurplus(mineCells, theirCells)) return different(describeCell(decoded, *cell) + " is not expected, or not in this orientation");
+    if (const auto cell = firstSurplus(mineCells, theirCells))
+      return different(describeCell(decoded, *cell) + " is not expected, or not in this orientation");
     if (const auto cell = firstSurplus(withValues(decoded, mineCells), withValues(expected, theirCells)))
       return different(describeCell(decoded, *cell) + " with its field values is not expected");
     return {};

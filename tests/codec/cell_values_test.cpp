@@ -39,6 +39,16 @@ TEST(CellAncestry, aBaseCellKnowsTheEarlierOnesAcrossItsFaces) {
   EXPECT_EQ(ancestry.predict(3, at), 1);  // a part of its own: the cell before it
 }
 
+TEST(LogWriter, aCellFieldWithoutAValueForEachTetrahedronIsRefused) {
+  LatticeMesh mesh = testing::gridMesh(2, 1);
+  testing::addCellFields(mesh);
+  FusionHistory history = simplify(mesh, {}).value();
+  EXPECT_EQ(history.values[2], mesh.values[2]);  // fusions neither change nor add to them
+  EXPECT_TRUE(encodeLog(history, {}));
+  history.values[2].pop_back();
+  EXPECT_EQ(encodeLog(history, {}).error().code, ErrorCode::kBadValue);
+}
+
 class CellFieldLog : public ::testing::Test {
  protected:
   CellFieldLog() {

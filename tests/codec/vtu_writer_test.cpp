@@ -83,15 +83,15 @@ TEST(VtuWriter, everyNumberTypeKeepsItsExtremes) {
   VtuMesh mesh{points, cells, true, {}};
   const double big = 9007199254740991.0;  // 2^53 - 1
   mesh.pointFields = {{"i8", "int8", 1, {-128, 127, 0, 1}},
-                 {"u8", "uint8", 1, {0, 255, 1, 2}},
-                 {"i16", "int16", 1, {-32768, 32767, 0, 1}},
-                 {"u16", "uint16", 1, {0, 65535, 1, 2}},
-                 {"i32", "int32", 1, {-2147483648.0, 2147483647.0, 0, 1}},
-                 {"u32", "uint32", 1, {0, 4294967295.0, 1, 2}},
-                 {"i64", "int64", 1, {-big, big, 0, 1}},
-                 {"u64", "uint64", 1, {0, big, 1, 2}},
-                 {"f32", "float32", 1, {-1.5, 0.25, 3, 4}},
-                 {"f64", "float64", 2, {0.1, 0.2, 0.3, 1e300, -1e-300, 6, 7, 8}}};
+                      {"u8", "uint8", 1, {0, 255, 1, 2}},
+                      {"i16", "int16", 1, {-32768, 32767, 0, 1}},
+                      {"u16", "uint16", 1, {0, 65535, 1, 2}},
+                      {"i32", "int32", 1, {-2147483648.0, 2147483647.0, 0, 1}},
+                      {"u32", "uint32", 1, {0, 4294967295.0, 1, 2}},
+                      {"i64", "int64", 1, {-big, big, 0, 1}},
+                      {"u64", "uint64", 1, {0, big, 1, 2}},
+                      {"f32", "float32", 1, {-1.5, 0.25, 3, 4}},
+                      {"f64", "float64", 2, {0.1, 0.2, 0.3, 1e300, -1e-300, 6, 7, 8}}};
   const ReadMesh read = readBack(vtuBytes(mesh), "types");
   ASSERT_EQ(read.mesh.fields.size(), mesh.pointFields.size());
   for (std::size_t f = 0; f < mesh.pointFields.size(); ++f) {

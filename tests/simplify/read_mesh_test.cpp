@@ -147,7 +147,8 @@ TEST(ReadMesh, aNameMeansEveryFieldThatHasItUnlessItSaysWhich) {
 
 TEST(ReadMesh, cellIntegersThatADoubleCannotHoldAreRefused) {
   const std::string ids = "<DataArray type=\"Int64\" Name=\"id\" format=\"ascii\">1 9007199254740993 2 3 9007199254740992</DataArray>";
-  EXPECT_EQ(refused("wide-cells.vtu", mixedVtu(ids), "cell 2"), ErrorCode::kBadInput);  // the third tetrahedron; the line's value does not matter
+  EXPECT_EQ(refused("wide-cells.vtu", mixedVtu(ids), "cell 2"),
+            ErrorCode::kBadInput);  // the third tetrahedron; the line's value does not matter
 }
 
 TEST(ReadMesh, fieldsAreChosenByNameInTheOrderAsked) {
