@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <numeric>
 
-#include "codec/boundary.h"
 #include "codec/face_groups.h"
 #include "proto/limits.h"
 
@@ -53,7 +52,6 @@ void CellAncestry::addRestored(std::span<const CellRef> star, const Link& link, 
         addSide(triangles[f].vertex[(i + 1) % 3], triangles[f].vertex[(i + 2) % 3], kPreyBit | triangles[f].label, atSplit_.size());
     atSplit_.push_back(star[f]);
   }
-  const std::size_t ofStar = atSplit_.size();
   for (const LocalCell& c : restored) {
     if (std::ranges::any_of(c, [&](LocalVertex local) { return !(local & kPreyBit) && link.vertices()[local] == kGhost; })) continue;
     for (std::size_t i = 0; i < 4; ++i) addSide(c[(i + 1) % 4], c[(i + 2) % 4], c[(i + 3) % 4], atSplit_.size());
@@ -66,8 +64,6 @@ void CellAncestry::addRestored(std::span<const CellRef> star, const Link& link, 
     if (cell >= first && sides_[i] >> kTetrahedronBits == sides_[i - 1] >> kTetrahedronBits)
       add(cell, atSplit_[sides_[i - 1] & kTetrahedronMask]);
   }
-  for (CellId cell = first; ofStar > 0 && cell < known_.size(); ++cell)
-    if (known_[cell][0] == kNone) add(cell, atSplit_.front());
 }
 
 std::int64_t CellAncestry::predictFrom(std::span<const std::int64_t> values) {
