@@ -8,6 +8,7 @@
 #include <array>
 #include <cassert>
 #include <memory>
+#include <utility>
 
 #include "proto/limits.h"
 
@@ -97,15 +98,17 @@ Result<Bytes> boundaryDrc(const LatticeMesh& mesh) {
   draco::Mesh target;
   target.set_num_points(static_cast<std::uint32_t>(vertices.slots.size()));
   const int positions = addPositions(target, mesh, vertices.slots);
-  std::vector<int> fields;
-  for (std::size_t f = 0; f < mesh.fields.size(); ++f) fields.push_back(addField(target, mesh.fields[f], mesh.values[f], vertices.slots));
+  std::vector<std::pair<int, const FieldInfo*>> fields;
+  for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
+    if (isCellField(mesh.fields[f])) continue;
+    fields.emplace_back(addField(target, mesh.fields[f], mesh.values[f], vertices.slots), &mesh.fields[f]);
+  }
   addTriangles(target, mesh, vertices.numbers);
 
   draco::ExpertEncoder encoder(target);
   quantise(encoder, positions, mesh.lattice.bits, mesh.lattice.step, toFloats(mesh.lattice.origin));
-  for (std::size_t f = 0; f < fields.size(); ++f)
-    if (mesh.fields[f].bits <= kMaxQuantisedFieldBits)
-      quantise(encoder, fields[f], mesh.fields[f].bits, mesh.fields[f].step, toFloats(mesh.fields[f].minimum));
+  for (const auto& [attribute, info] : fields)
+    if (info->bits <= kMaxQuantisedFieldBits) quantise(encoder, attribute, info->bits, info->step, toFloats(info->minimum));
 
   draco::EncoderBuffer buffer;
   if (const draco::Status status = encoder.EncodeToBuffer(&buffer); !status.ok())

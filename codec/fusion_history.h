@@ -27,7 +27,7 @@ struct FusionHistory {
   Lattice lattice;
   std::vector<FieldInfo> fields;
   std::vector<LatticePoint> points;                  ///< of every vertex that ever lived
-  std::vector<std::vector<std::int32_t>> values;     ///< per field, components a vertex
+  std::vector<std::vector<std::int32_t>> values;     ///< per field, components a vertex; of a cell field the input's, a tetrahedron
   std::vector<std::array<VertexId, 4>> cells;        ///< as they are now, or as they were when deleted
   std::vector<std::uint8_t> live;                    ///< one a cell
   std::vector<Fusion> fusions;

@@ -81,9 +81,9 @@ Status checkBlock(const LogFile& log, std::uint32_t chunk, std::uint32_t part) {
               "chunk " + std::to_string(chunk) + ", part " + std::to_string(part) + ": the CRC-32 does not match; fetch the file again", b.offset);
 }
 
-Result<std::vector<std::int32_t>> blockValues(const LogFile& log, std::uint32_t chunk, std::uint32_t part, std::uint32_t components) {
+Result<std::vector<std::int32_t>> blockValues(const LogFile& log, std::uint32_t chunk, std::uint32_t part) {
   if (Status s = checkBlock(log, chunk, part); !s) return std::unexpected(s.error());
-  return decodeDracoBlock(log.block(chunk, part), components, log.index().chunks[chunk].values);
+  return decodeDracoBlock(log.block(chunk, part), log.index().components(part), log.index().tuples(chunk, part));
 }
 
 FieldInfo fieldInfo(const ManifestField& f) { return {f.name, f.components, f.type, f.association, f.bits, f.step, f.minimum, f.range}; }
@@ -100,11 +100,11 @@ Status LogFile::verifyChecksums() const {
 Status applyChunk(const LogFile& log, Refiner& refiner, std::uint32_t chunk, std::span<const std::uint32_t> fields) {
   if (chunk >= log.index().chunks.size()) return fail(ErrorCode::kNotFound, "there is no chunk " + std::to_string(chunk));
   if (Status s = checkBlock(log, chunk, kStructurePart); !s) return s;
-  const auto positions = blockValues(log, chunk, kPositionsPart, 3);
+  const auto positions = blockValues(log, chunk, kPositionsPart);
   if (!positions) return std::unexpected(positions.error());
   if (Status s = refiner.apply(chunk, log.block(chunk, kStructurePart), *positions); !s) return s;
   for (const std::uint32_t f : fields) {
-    const auto values = blockValues(log, chunk, kFirstFieldPart + f, log.index().fieldComponents[f]);
+    const auto values = blockValues(log, chunk, kFirstFieldPart + f);
     if (!values) return std::unexpected(values.error());
     if (Status s = refiner.applyField(f, chunk, *values); !s) return s;
   }

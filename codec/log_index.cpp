@@ -1,5 +1,6 @@
 #include "codec/log_index.h"
 
+#include <algorithm>
 #include <array>
 
 #include "proto/checksum.h"
@@ -148,6 +149,15 @@ std::uint64_t LogIndex::headBytes() const {
   return chunks.empty() ? kHeaderBytes : chunks.front().offset;
 }
 
+std::uint32_t LogIndex::tuples(std::uint32_t chunk, std::uint32_t part) const {
+  const bool ofCells = part >= kFirstFieldPart && fields[part - kFirstFieldPart].association == Association::kCell;
+  return ofCells ? chunks[chunk].newTetrahedra : chunks[chunk].values;
+}
+
+bool LogIndex::hasCellField() const {
+  return std::ranges::any_of(fields, [](const FieldShape& field) { return field.association == Association::kCell; });
+}
+
 Result<std::uint64_t> LogIndex::headBytesOf(ByteView firstBytes) {
   const Result<Header> header = readHeader(firstBytes);
   if (!header) return std::unexpected(header.error());
@@ -173,9 +183,16 @@ Result<LogIndex> LogIndex::parse(ByteView bytes) {
   index.manifest.assign(manifest.begin(), manifest.end());
   ByteReader r(table, kHeaderBytes + std::uint64_t{header->manifestBytes});
   for (std::uint32_t f = 0; f < header->fields; ++f) {
-    index.fieldComponents.push_back(r.read<std::uint32_t>());
-    if (index.fieldComponents.back() == 0 || index.fieldComponents.back() > kMaxFieldComponents)
+    const auto components = r.read<std::uint16_t>();
+    const auto association = r.read<std::uint16_t>();
+    if (components == 0 || components > kMaxFieldComponents)
       return fail(ErrorCode::kBadValue, "field " + std::to_string(f) + " has a number of components outside 1..16", r.offset() - 4);
+    if (association > static_cast<std::uint16_t>(Association::kCell))
+      return fail(ErrorCode::kBadValue,
+                  "field " + std::to_string(f) + " has the association " + std::to_string(association) +
+                      "; this build knows 0 (points) and 1 (cells): use a newer qtet, or build the log again",
+                  r.offset() - 2);
+    index.fields.push_back({components, static_cast<Association>(association)});
   }
   index.chunks.reserve(header->chunks);
   for (std::uint32_t i = 0; i < header->chunks; ++i) index.chunks.push_back(readEntry(r, index.parts()));
@@ -188,7 +205,10 @@ Result<LogIndex> LogIndex::parse(ByteView bytes) {
 
 Bytes LogIndex::encode() const {
   ByteWriter table;
-  for (const std::uint32_t components : fieldComponents) table.write(components);
+  for (const FieldShape& field : fields) {
+    table.write(static_cast<std::uint16_t>(field.components));
+    table.write(static_cast<std::uint16_t>(field.association));
+  }
   for (const ChunkEntry& e : chunks) writeEntry(table, e);
   for (const std::uint32_t d : dependencies) table.write(d);
   const ByteView manifestBytes(reinterpret_cast<const std::uint8_t*>(manifest.data()), manifest.size());
@@ -196,7 +216,7 @@ Bytes LogIndex::encode() const {
   ByteWriter w;
   w.append(kMagic);
   w.write(kVersionMajor);
-  w.write(kVersionMinor);
+  w.write(hasCellField() ? kVersionMinor : std::uint16_t{0});
   w.write(static_cast<std::uint8_t>(layout));
   w.write(positionBits);
   w.write(std::uint16_t{0});
@@ -206,7 +226,7 @@ Bytes LogIndex::encode() const {
   w.write(crc32(manifestBytes));
   w.write(crc32(table.bytes()));
   w.write(static_cast<std::uint32_t>(chunks.size()));
-  w.write(static_cast<std::uint32_t>(fieldComponents.size()));
+  w.write(static_cast<std::uint32_t>(fields.size()));
   w.write(static_cast<std::uint32_t>(dependencies.size()));
   w.write(std::uint64_t{0});
   w.write(crc32(w.bytes()));

@@ -20,6 +20,15 @@ enum class CodecId : std::uint8_t {
   kDraco = 2,      ///< values: one Draco point cloud, sequential, one int32 attribute
 };
 
+/// What the values of a field belong to.
+enum class Association : std::uint8_t { kPoint = 0, kCell = 1 };
+
+/// What decoding needs to know of a field; the manifest has the rest.
+struct FieldShape {
+  std::uint32_t components = 1;  ///< 1..kMaxFieldComponents
+  Association association = Association::kPoint;
+};
+
 struct BlockEntry {
   std::uint64_t offset = 0;  ///< in the file; derived, not stored
   std::uint32_t size = 0;    ///< bytes
@@ -44,7 +53,7 @@ struct ChunkEntry {
   std::uint32_t newVertices = 0;
   std::uint32_t newTetrahedra = 0;
   std::uint32_t newBoundaryTriangles = 0;
-  std::uint32_t values = 0;           ///< tuples in the positions block and in each field's block
+  std::uint32_t values = 0;           ///< tuples in the positions block and in each point field's block
   std::uint32_t firstDependency = 0;  ///< into LogIndex::dependencies
   std::uint32_t dependencyCount = 0;
   CodecId structureCodec = CodecId::kRange;
@@ -59,20 +68,26 @@ struct LogIndex {
   static constexpr std::uint32_t kChunkEntryBytes = 56;
   static constexpr std::uint32_t kBlockEntryBytes = 8;
   static constexpr std::uint16_t kVersionMajor = 1;
-  static constexpr std::uint16_t kVersionMinor = 0;
+  static constexpr std::uint16_t kVersionMinor = 1;  ///< of a log with a cell field; others are written as 0
 
   Layout layout = Layout::kStream;
   std::uint8_t positionBits = 0;
   std::uint64_t fileBytes = 0;
-  std::string manifest;                        ///< JSON, see proto/manifest.h
-  std::vector<std::uint32_t> fieldComponents;  ///< one a field, 1..kMaxFieldComponents
+  std::string manifest;  ///< JSON, see proto/manifest.h
+  std::vector<FieldShape> fields;
   std::vector<ChunkEntry> chunks;
   std::vector<std::uint32_t> dependencies;
 
   /// Bytes of header + manifest + table: where the first block starts.
   [[nodiscard]] std::uint64_t headBytes() const;
   [[nodiscard]] const BlockEntry& block(std::uint32_t chunk, std::uint32_t part) const { return chunks[chunk].blocks[part]; }
-  [[nodiscard]] std::uint32_t parts() const { return kFirstFieldPart + static_cast<std::uint32_t>(fieldComponents.size()); }
+  [[nodiscard]] std::uint32_t parts() const { return kFirstFieldPart + static_cast<std::uint32_t>(fields.size()); }
+  /// Tuples in a value block of a chunk, and integers in each of them. REQUIRES: a part that is not the structure.
+  [[nodiscard]] std::uint32_t tuples(std::uint32_t chunk, std::uint32_t part) const;
+  [[nodiscard]] std::uint32_t components(std::uint32_t part) const {
+    return part == kPositionsPart ? 3 : fields[part - kFirstFieldPart].components;
+  }
+  [[nodiscard]] bool hasCellField() const;
 
   /// Bytes of the header's promise: how much of the file `parse` needs. Errors: truncated (under 64 bytes), bad-magic, bad-version,
   /// bad-checksum, limit-exceeded, bad-value.

@@ -10,9 +10,12 @@ Status agree(const Manifest& manifest, const LogIndex& index) {
     return fail(ErrorCode::kBadValue, "manifest and chunk table contradict each other in " + what + "; build the log again");
   };
   if (manifest.latticeBits != index.positionBits) return contradiction("the bits of the lattice");
-  if (manifest.fields.size() != index.fieldComponents.size()) return contradiction("the number of fields");
-  for (std::size_t f = 0; f < manifest.fields.size(); ++f)
-    if (manifest.fields[f].components != index.fieldComponents[f]) return contradiction("the components of field " + manifest.fields[f].name);
+  if (manifest.fields.size() != index.fields.size()) return contradiction("the number of fields");
+  for (std::size_t f = 0; f < manifest.fields.size(); ++f) {
+    if (manifest.fields[f].components != index.fields[f].components) return contradiction("the components of field " + manifest.fields[f].name);
+    if ((manifest.fields[f].association == "cell") != (index.fields[f].association == Association::kCell))
+      return contradiction("the association of field " + manifest.fields[f].name);
+  }
   if (index.chunks.empty() || manifest.levels.size() != std::size_t{index.chunks.back().lastLevel} + 1) return contradiction("the number of levels");
   for (const ManifestLevel& level : manifest.levels)
     if (level.chunk >= index.chunks.size()) return contradiction("the chunk of level " + std::to_string(level.level));

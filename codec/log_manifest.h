@@ -7,7 +7,7 @@
 namespace qtet {
 
 /// Parses the index's manifest. Errors: manifestFromJson's, and bad-value where it contradicts header or chunk table: the lattice's bits, the
-/// number of fields or a field's components, the number of levels, a level's chunk.
+/// number of fields, a field's components or association, the number of levels, a level's chunk.
 [[nodiscard]] Result<Manifest> manifestOf(const LogIndex& index);
 
 }  // namespace qtet

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "codec/base_coder.h"
+#include "codec/cell_values.h"
 #include "codec/draco_block.h"
 #include "codec/growing_mesh.h"
 #include "codec/log_index.h"
@@ -58,6 +59,13 @@ class LogEncoder {
     labelOf_.assign(h_.cells.size(), kNoLabel);
     values_.resize(h_.fields.size());
     open_.fields.resize(h_.fields.size());
+    hasCellField_ = std::ranges::any_of(h_.fields, isCellField);
+    const auto ghosts = std::ranges::count_if(h_.cells, [](const auto& c) { return std::ranges::find(c, kGhost) != c.end(); });
+    const std::size_t tetrahedra = h_.cells.size() - static_cast<std::size_t>(ghosts);
+    for (std::size_t f = 0; f < h_.fields.size(); ++f)
+      if (isCellField(h_.fields[f]) && h_.values[f].size() != tetrahedra * h_.fields[f].components)
+        return fail(ErrorCode::kBadValue, "cell field " + h_.fields[f].name + " has " + std::to_string(h_.values[f].size()) + " numbers for " +
+                                              std::to_string(tetrahedra) + " tetrahedra");
     return {};
   }
 
@@ -81,6 +89,8 @@ class LogEncoder {
     vertexIds_ = std::move(coder.vertexOrder);
     for (std::uint32_t v = 0; v < vertexIds_.size(); ++v) slotOf_[vertexIds_[v]] = v;
     codeBaseValues(coder.births);
+    if (hasCellField_) ancestry_.addBase(mesh_.tetrahedra);
+    codeCellFields(0);
     mesh_.born.assign(mesh_.points.size(), 0);
     mesh_.boundary = boundaryOf(mesh_.tetrahedra);
     if (Status s = matchBoundary(); !s) return s;
@@ -103,6 +113,7 @@ class LogEncoder {
     const auto point = [&](VertexId u, std::uint32_t c) { return mesh_.points[u][c]; };
     code(open_.positions, point, 3, true, [&](VertexId id, std::uint32_t c) { return h_.points[id][c]; });
     for (std::size_t f = 0; f < h_.fields.size(); ++f) {
+      if (isCellField(h_.fields[f])) continue;
       const std::size_t n = h_.fields[f].components;
       for (const VertexId id : vertexIds_) values_[f].insert(values_[f].end(), fieldAt(f, id), fieldAt(f, id) + static_cast<std::ptrdiff_t>(n));
       const auto value = [&](VertexId u, std::uint32_t c) { return values_[f][u * n + c]; };
@@ -213,7 +224,10 @@ class LogEncoder {
     vertexIds_[v] = fusion.prey[0];
     slotOf_[fusion.prey[0]] = v;
     for (std::size_t i = 1; i < fusion.k; ++i) slotOf_[fusion.prey[i]] = static_cast<std::uint32_t>(vertexIds_.size()), vertexIds_.push_back(fusion.prey[i]);
-    for (std::size_t f = 0; f < h_.fields.size(); ++f) codeField(f, birth, fusion);
+    for (std::size_t f = 0; f < h_.fields.size(); ++f)
+      if (!isCellField(h_.fields[f])) codeField(f, birth, fusion);
+    if (hasCellField_) ancestry_.addRestored(mesh_.star(v), link_, split.deleted);
+    codeCellFields(tetrahedra);
     ++open_.entry.records;
     open_.entry.newVertices += fusion.k - 1u;
     open_.entry.newTetrahedra += static_cast<std::uint32_t>(mesh_.tetrahedra.size() - tetrahedra);
@@ -221,7 +235,8 @@ class LogEncoder {
     const auto values = static_cast<std::uint32_t>(birth.values());
     open_.entry.values += values;
     estimate(open_.positions, values * 3);
-    for (std::size_t f = 0; f < h_.fields.size(); ++f) estimate(open_.fields[f], values * h_.fields[f].components);
+    for (std::size_t f = 0; f < h_.fields.size(); ++f)
+      if (!isCellField(h_.fields[f])) estimate(open_.fields[f], values * h_.fields[f].components);
   }
 
   void codeField(std::size_t f, const Birth& birth, const Fusion& fusion) {
@@ -236,6 +251,22 @@ class LogEncoder {
     for (int i = 0; i < birth.k; ++i)
       for (std::uint32_t c = 0; c < n; ++c) at(i, c) = fieldAt(f, fusion.prey[static_cast<std::size_t>(i)])[c];
     codePreyTuples<true>(open_.fields[f], birth.k, birth.moved, n, [&](std::uint32_t c) { return fused[c]; }, at);
+  }
+
+  // The values of the tetrahedra from slot `first` on, which have just come.
+  void codeCellFields(std::size_t first) {
+    for (std::size_t f = 0; f < h_.fields.size(); ++f) {
+      if (!isCellField(h_.fields[f])) continue;
+      const std::size_t n = h_.fields[f].components;
+      for (std::size_t t = first; t < mesh_.tetrahedra.size(); ++t)
+        for (std::size_t c = 0; c < n; ++c) {
+          const auto at = [&](CellId u) { return h_.values[f][tetrahedronIds_[u] * n + c]; };
+          const auto cell = static_cast<CellId>(t);
+          const std::int64_t predicted = ancestry_.predict(cell, at);
+          open_.fields[f].code<true>(predicted, at(cell));
+          open_.valueBits += static_cast<std::uint64_t>(std::bit_width(static_cast<std::uint64_t>(std::abs(at(cell) - predicted))));
+        }
+    }
   }
 
   // Draco takes about log2 of a residual's magnitude and two bits more.
@@ -301,7 +332,7 @@ class LogEncoder {
     LogIndex index;
     index.positionBits = static_cast<std::uint8_t>(h_.lattice.bits);
     index.manifest = manifest();
-    for (const FieldInfo& f : h_.fields) index.fieldComponents.push_back(f.components);
+    for (const FieldInfo& f : h_.fields) index.fields.push_back({f.components, isCellField(f) ? Association::kCell : Association::kPoint});
     index.chunks = std::move(chunks_);
     index.dependencies = std::move(dependencies_);
     EncodedLog log;
@@ -330,6 +361,8 @@ class LogEncoder {
   RangeEncoder range_;
   RecordModels models_;
   GrowingMesh mesh_;  // what the decoder will have
+  bool hasCellField_ = false;
+  CellAncestry ancestry_;
   Link link_;
   std::vector<std::vector<std::int32_t>> values_;
   std::vector<std::uint32_t> tetrahedronIds_, boundaryIds_;  // decoder's slot -> history's cell

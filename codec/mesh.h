@@ -37,14 +37,17 @@ struct FieldInfo {
   std::string name;
   std::uint32_t components = 1;
   std::string type = "float32";            ///< of the input: float32, float64, int8 ... uint64
-  std::string association = "point";
+  std::string association = "point";       ///< what a value belongs to: point or cell (a tetrahedron)
   int bits = 12;                           ///< integers lie in [0, 2^bits)
   double step = 1;
   std::vector<double> minimum;             ///< one a component
   std::array<double, 2> range{0, 0};       ///< of the values, or of the magnitude where components > 1
 };
 
-/// A mesh on the lattice with quantised fields; `values[f]` holds components * points integers, vertex by vertex.
+/// Whether the field's values belong to tetrahedra instead of points.
+[[nodiscard]] inline bool isCellField(const FieldInfo& field) { return field.association == "cell"; }
+
+/// A mesh on the lattice with quantised fields; `values[f]` holds components integers a point, or a tetrahedron for a cell field.
 struct LatticeMesh {
   Lattice lattice;
   std::vector<LatticePoint> points;

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "codec/base_coder.h"
+#include "codec/cell_values.h"
 #include "codec/growing_mesh.h"
 #include "codec/record_coder.h"
 #include "proto/checksum.h"
@@ -33,6 +34,9 @@ struct Refiner::State {
   std::vector<BaseBirth> baseBirths;
   std::vector<Birth> births;
   std::vector<std::size_t> chunkBirths;  // births before chunk i
+  std::vector<std::size_t> chunkCells;   // tetrahedra before chunk i
+  bool hasCellField = false;
+  CellAncestry ancestry;  // kept where there is a cell field
   std::vector<FieldState> fields;
   std::vector<LevelCounts> levelCounts;
   std::uint32_t chunks = 0;
@@ -50,7 +54,11 @@ struct Refiner::State {
   Status split(std::uint32_t chunk, RecordCoder<RangeDecoder>& coder, VertexId v);
   Status counts(std::uint32_t chunk) const;
   void completeLevel() { levelCounts.push_back({mesh.points.size(), mesh.tetrahedra.size(), mesh.boundary.size()}); }
-  void inherit(FieldState& field, std::uint32_t components, std::size_t firstBirth);
+  void inherit(std::size_t field, std::uint32_t chunk);
+  void inheritPoints(FieldState& field, std::uint32_t components, std::size_t firstBirth) const;
+  void inheritCells(FieldState& field, std::uint32_t components, std::size_t firstCell) const;
+  void codePoints(FieldState& field, std::uint32_t components, std::uint32_t chunk, Residuals& residuals) const;
+  void codeCells(FieldState& field, std::uint32_t components, std::uint32_t chunk, Residuals& residuals) const;
 
   struct Totals {
     std::uint64_t vertices = 0, tetrahedra = 0, triangles = 0, births = 0;
@@ -58,9 +66,11 @@ struct Refiner::State {
 };
 
 Refiner::Refiner(LogIndex index) : state_(std::make_unique<State>()) {
-  state_->fields.resize(index.fieldComponents.size());
+  state_->fields.resize(index.fields.size());
+  state_->hasCellField = index.hasCellField();
   state_->index = std::move(index);
   state_->chunkBirths.push_back(0);
+  state_->chunkCells.push_back(0);
 }
 Refiner::~Refiner() = default;
 Refiner::Refiner(Refiner&&) noexcept = default;
@@ -86,9 +96,10 @@ Status Refiner::apply(std::uint32_t chunk, ByteView structure, std::span<const s
   if (!status) return status;
   if (Status c = s.counts(chunk); !c && !s.stopped) return c;
   if (!residuals.atEnd() && !s.stopped) return refuse(ErrorCode::kBadValue, chunk, "position values are left over");
-  for (std::size_t f = 0; f < s.fields.size(); ++f)
-    if (s.fields[f].chunks > 0) s.inherit(s.fields[f], s.index.fieldComponents[f], s.chunkBirths.back());
   s.chunkBirths.push_back(s.births.size());
+  s.chunkCells.push_back(s.mesh.tetrahedra.size());
+  for (std::size_t f = 0; f < s.fields.size(); ++f)
+    if (s.fields[f].chunks > 0) s.inherit(f, chunk);
   ++s.chunks;
   s.broken = false;
   return {};
@@ -116,6 +127,7 @@ Status Refiner::State::base(const ChunkEntry& entry, ByteView structure, Residua
   mesh.tetrahedra = std::move(coder.tetrahedra);
   mesh.boundary = boundaryOf(mesh.tetrahedra);
   mesh.born.assign(mesh.points.size(), 0);
+  if (hasCellField) ancestry.addBase(mesh.tetrahedra);
   completeLevel();
   return {};
 }
@@ -169,6 +181,7 @@ Status Refiner::State::split(std::uint32_t chunk, RecordCoder<RangeDecoder>& cod
       if (x < 0 || x >= size) return refuse(ErrorCode::kBadValue, chunk, "a vertex lies outside the lattice");
   births.push_back({v, static_cast<VertexId>(mesh.points.size()), static_cast<std::uint8_t>(split.k), split.moved});
   mesh.apply(v, link, split, static_cast<std::uint16_t>(level));
+  if (hasCellField) ancestry.addRestored(mesh.star(v), link, split.deleted);
   if (mesh.points.size() > totals.vertices || mesh.tetrahedra.size() > totals.tetrahedra || mesh.boundary.size() > totals.triangles ||
       births.size() > totals.births)
     return counts(chunk);
@@ -182,8 +195,25 @@ Status Refiner::State::counts(std::uint32_t chunk) const {
   return refuse(ErrorCode::kBadValue, chunk, "vertices, cells, triangles or records do not add up to the chunk table's counts");
 }
 
-// New vertices carry their fused vertex's value until the field's own chunk arrives.
-void Refiner::State::inherit(FieldState& field, std::uint32_t components, std::size_t firstBirth) {
+// What chunk `chunk` brought carries a stand-in until the field's own block arrives: a cell its prediction, a vertex its fused vertex's value.
+void Refiner::State::inherit(std::size_t field, std::uint32_t chunk) {
+  const FieldShape shape = index.fields[field];
+  if (shape.association == Association::kPoint)
+    inheritPoints(fields[field], shape.components, chunkBirths[chunk]);
+  else
+    inheritCells(fields[field], shape.components, chunkCells[chunk]);
+}
+
+void Refiner::State::inheritCells(FieldState& field, std::uint32_t components, std::size_t firstCell) const {
+  const std::size_t n = components;
+  field.values.resize(mesh.tetrahedra.size() * n);
+  for (std::size_t t = firstCell; t < mesh.tetrahedra.size(); ++t)
+    for (std::size_t c = 0; c < n; ++c)
+      field.values[t * n + c] =
+          static_cast<std::int32_t>(ancestry.predict(static_cast<CellId>(t), [&](CellId u) { return field.values[u * n + c]; }));
+}
+
+void Refiner::State::inheritPoints(FieldState& field, std::uint32_t components, std::size_t firstBirth) const {
   const std::size_t n = components;
   field.values.resize(mesh.points.size() * n);
   for (std::size_t i = firstBirth; i < births.size(); ++i) {
@@ -200,19 +230,32 @@ Status Refiner::applyField(std::uint32_t field, std::uint32_t chunk, std::span<c
   if (f.broken) return refuse(ErrorCode::kBadOrder, chunk, "an earlier block of this field failed; start again from chunk 0");
   if (chunk != f.chunks) return refuse(ErrorCode::kBadOrder, chunk, "the field needs chunk " + std::to_string(f.chunks) + " first");
   if (chunk >= s.chunks) return refuse(ErrorCode::kBadOrder, chunk, "a field cannot run ahead of the mesh");
-  const std::uint32_t n = s.index.fieldComponents[field];
-  if (values.size() != std::size_t{s.index.chunks[chunk].values} * n) return refuse(ErrorCode::kBadValue, chunk, "wrong number of field values");
+  const FieldShape shape = s.index.fields[field];
+  if (values.size() != std::size_t{s.index.tuples(chunk, kFirstFieldPart + field)} * shape.components)
+    return refuse(ErrorCode::kBadValue, chunk, "wrong number of field values");
   Residuals residuals(values);
+  if (shape.association == Association::kPoint)
+    s.codePoints(f, shape.components, chunk, residuals);
+  else
+    s.codeCells(f, shape.components, chunk, residuals);
+  const bool whole = residuals.atEnd() || (s.stopped && chunk + 1 == s.chunks);
+  f.broken = residuals.bad() || !whole;
+  if (f.broken) return refuse(ErrorCode::kBadValue, chunk, "field values out of range or left over");
+  ++f.chunks;
+  return {};
+}
+
+void Refiner::State::codePoints(FieldState& f, std::uint32_t n, std::uint32_t chunk, Residuals& residuals) const {
   if (chunk == 0) {
-    f.values.assign(s.mesh.points.size() * n, 0);
+    f.values.assign(mesh.points.size() * n, 0);
     const auto at = [&](VertexId u, std::uint32_t c) { return f.values[std::size_t{u} * n + c]; };
-    for (std::uint32_t v = 0; v < s.baseBirths.size(); ++v)
+    for (std::uint32_t v = 0; v < baseBirths.size(); ++v)
       for (std::uint32_t c = 0; c < n; ++c)
-        f.values[std::size_t{v} * n + c] = residuals.code<false>(predictBase(s.baseBirths[v], v, c, false, at), 0);
-    s.inherit(f, n, 0);
+        f.values[std::size_t{v} * n + c] = residuals.code<false>(predictBase(baseBirths[v], v, c, false, at), 0);
+    inheritPoints(f, n, 0);
   }
-  for (std::size_t i = s.chunkBirths[chunk]; i < s.chunkBirths[chunk + 1]; ++i) {
-    const Birth& b = s.births[i];
+  for (std::size_t i = chunkBirths[chunk]; i < chunkBirths[chunk + 1]; ++i) {
+    const Birth& b = births[i];
     std::array<std::int32_t, kMaxFieldComponents> fused{};
     for (std::uint32_t c = 0; c < n; ++c) fused[c] = f.values[std::size_t{b.slot} * n + c];
     codePreyTuples<false>(
@@ -222,11 +265,16 @@ Status Refiner::applyField(std::uint32_t field, std::uint32_t chunk, std::span<c
           return f.values[vertex * n + c];
         });
   }
-  const bool whole = residuals.atEnd() || (s.stopped && chunk + 1 == s.chunks);
-  f.broken = residuals.bad() || !whole;
-  if (f.broken) return refuse(ErrorCode::kBadValue, chunk, "field values out of range or left over");
-  ++f.chunks;
-  return {};
+}
+
+void Refiner::State::codeCells(FieldState& f, std::uint32_t components, std::uint32_t chunk, Residuals& residuals) const {
+  const std::size_t n = components;
+  f.values.resize(mesh.tetrahedra.size() * n);
+  for (std::size_t t = chunkCells[chunk]; t < chunkCells[chunk + 1]; ++t)
+    for (std::size_t c = 0; c < n; ++c)
+      f.values[t * n + c] =
+          residuals.code<false>(ancestry.predict(static_cast<CellId>(t), [&](CellId u) { return f.values[u * n + c]; }), 0);
+  if (chunk == 0) inheritCells(f, components, chunkCells[1]);
 }
 
 void Refiner::stopAtLevel(std::uint32_t level) { state_->stopLevel = level; }

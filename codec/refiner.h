@@ -28,8 +28,8 @@ class Refiner {
   /// Applies chunk `chunk`: `structure` is its structure block, `positions` the decoded positions block (3 integers a value).
   /// Errors: bad-order (a dependency is missing, or applied already), bad-checksum is the caller's to find, anything else of FORMAT.md.
   Status apply(std::uint32_t chunk, ByteView structure, std::span<const std::int32_t> positions);
-  /// Applies field `field` of chunk `chunk` (components integers a value). A field may lag behind the mesh, never run ahead, and takes
-  /// its chunks in the order in which they were applied to the mesh.
+  /// Applies field `field` of chunk `chunk`: as many tuples as LogIndex::tuples says. A field may lag behind the mesh, never run ahead, and
+  /// takes its chunks in the order in which they were applied to the mesh.
   Status applyField(std::uint32_t field, std::uint32_t chunk, std::span<const std::int32_t> values);
 
   /// Makes the chunk that goes beyond `level` end there: the mesh is then that level's, and later chunks are refused.
@@ -48,10 +48,11 @@ class Refiner {
   [[nodiscard]] std::span<const LatticePoint> points() const;
   [[nodiscard]] std::span<const Tetrahedron> tetrahedra() const;
   [[nodiscard]] std::span<const Triangle> boundary() const;
-  /// components * points integers; vertices of chunks that the field lacks carry their fused vertex's value.
+  /// components * points integers, or components * tetrahedra of a cell field. Of chunks that the field lacks, vertices carry their fused
+  /// vertex's value and tetrahedra their prediction.
   [[nodiscard]] std::span<const std::int32_t> fieldValues(std::uint32_t field) const;
 
-  /// SHA-256 over points, tetrahedra and boundary in slot order, little-endian (FORMAT.md, "Mesh digest").
+  /// SHA-256 over points, tetrahedra and boundary in slot order, little-endian (FORMAT.md, "Digests").
   [[nodiscard]] std::array<std::uint8_t, 32> digest() const;
 
  private:

@@ -128,20 +128,23 @@ struct Sizes {
     offsets = mesh.tetrahedra.size() * (wideIds ? 8u : 4u);
     types = mesh.tetrahedra.size();
     largest = std::max({points, connectivity, offsets, types});
-    for (const VtuField& field : mesh.fields) {
-      fields.push_back(field.values.size() * numberType(field.type).sizeBytes);
-      largest = std::max(largest, fields.back());
-    }
+    for (const auto* fields : {&mesh.pointFields, &mesh.cellFields})
+      for (const VtuField& field : *fields) largest = std::max(largest, sizeOf(field));
   }
+
+  static std::uint64_t sizeOf(const VtuField& field) { return field.values.size() * numberType(field.type).sizeBytes; }
 
   bool wideIds;
   std::uint64_t points, connectivity, offsets, types, largest;
-  std::vector<std::uint64_t> fields;
 };
 
-std::string pointDataTag(const VtuMesh& mesh) {
-  const auto scalar = std::find_if(mesh.fields.begin(), mesh.fields.end(), [](const VtuField& field) { return field.components == 1; });
-  return scalar == mesh.fields.end() ? "      <PointData>\n" : "      <PointData Scalars=\"" + escaped(scalar->name) + "\">\n";
+/// The element `tag` (PointData or CellData) that declares the fields.
+std::string fieldsText(const std::string& tag, const std::vector<VtuField>& fields, Arrays& arrays) {
+  const auto scalar = std::find_if(fields.begin(), fields.end(), [](const VtuField& field) { return field.components == 1; });
+  std::string text = "      <" + tag + (scalar == fields.end() ? "" : " Scalars=\"" + escaped(scalar->name) + "\"") + ">\n";
+  for (const VtuField& field : fields)
+    text += arrays.declare(numberType(field.type).vtkName, field.name, field.components, Sizes::sizeOf(field));
+  return text + "      </" + tag + ">\n";
 }
 
 std::string headerText(const VtuMesh& mesh, const Sizes& sizes, Arrays& arrays) {
@@ -152,11 +155,9 @@ std::string headerText(const VtuMesh& mesh, const Sizes& sizes, Arrays& arrays) 
   text += wideHeader ? "UInt64" : "UInt32";
   text += "\">\n  <UnstructuredGrid>\n    <Piece NumberOfPoints=\"" + std::to_string(mesh.points.size()) + "\" NumberOfCells=\"" +
           std::to_string(mesh.tetrahedra.size()) + "\">\n";
-  text += pointDataTag(mesh);
-  for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
-    text += arrays.declare(numberType(mesh.fields[f].type).vtkName, mesh.fields[f].name, mesh.fields[f].components, sizes.fields[f]);
-  }
-  text += "      </PointData>\n      <Points>\n";
+  text += fieldsText("PointData", mesh.pointFields, arrays);
+  if (!mesh.cellFields.empty()) text += fieldsText("CellData", mesh.cellFields, arrays);
+  text += "      <Points>\n";
   text += arrays.declare(mesh.doublePoints ? "Float64" : "Float32", "Points", 3, sizes.points);
   text += "      </Points>\n      <Cells>\n";
   text += arrays.declare(idType, "connectivity", 1, sizes.connectivity);
@@ -216,9 +217,11 @@ Bytes vtuBytes(const VtuMesh& mesh) {
   Bytes out;
   out.reserve(header.size() + arrays.totalBytes() + kFooter.size());
   out.insert(out.end(), header.begin(), header.end());
-  for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
-    arrays.appendSize(out, sizes.fields[f]);
-    numberType(mesh.fields[f].type).appendAll(out, mesh.fields[f].values);
+  for (const auto* fields : {&mesh.pointFields, &mesh.cellFields}) {
+    for (const VtuField& field : *fields) {
+      arrays.appendSize(out, Sizes::sizeOf(field));
+      numberType(field.type).appendAll(out, field.values);
+    }
   }
   arrays.appendSize(out, sizes.points);
   appendPoints(out, mesh);
@@ -234,10 +237,11 @@ Bytes vtuBytes(const LatticeMesh& mesh) {
   points.reserve(mesh.points.size());
   for (const LatticePoint& p : mesh.points) points.push_back(mesh.lattice.position(p));
 
-  VtuMesh out{points, mesh.tetrahedra, true, {}};
+  VtuMesh out{points, mesh.tetrahedra, true};
   out.doublePoints =
       !std::all_of(mesh.points.begin(), mesh.points.end(), [&](const LatticePoint& p) { return survivesAsFloat(mesh.lattice, p); });
-  for (std::size_t f = 0; f < mesh.fields.size(); ++f) out.fields.push_back(dequantised(mesh.fields[f], mesh.values[f]));
+  for (std::size_t f = 0; f < mesh.fields.size(); ++f)
+    (isCellField(mesh.fields[f]) ? out.cellFields : out.pointFields).push_back(dequantised(mesh.fields[f], mesh.values[f]));
   return vtuBytes(out);
 }
 

@@ -61,7 +61,12 @@ double qtet_block_offset(std::uint32_t chunk, std::uint32_t part) {
   return hasBlock(chunk, part) ? static_cast<double>(refiner->index().block(chunk, part).offset) : 0;
 }
 std::uint32_t qtet_block_size(std::uint32_t chunk, std::uint32_t part) { return hasBlock(chunk, part) ? refiner->index().block(chunk, part).size : 0; }
-std::uint32_t qtet_block_values(std::uint32_t chunk) { return hasBlock(chunk, 0) ? refiner->index().chunks[chunk].values : 0; }
+std::uint32_t qtet_block_values(std::uint32_t chunk, std::uint32_t part) {
+  return hasBlock(chunk, part) ? refiner->index().tuples(chunk, part) : 0;
+}
+std::uint32_t qtet_field_association(std::uint32_t field) {
+  return refiner && field < refiner->index().fields.size() ? static_cast<std::uint32_t>(refiner->index().fields[field].association) : 0;
+}
 std::uint32_t qtet_block_codec(std::uint32_t chunk, std::uint32_t part) {
   if (!hasBlock(chunk, part)) return 0;
   const qtet::ChunkEntry& e = refiner->index().chunks[chunk];
@@ -89,7 +94,7 @@ int qtet_apply_field(std::uint32_t field, std::uint32_t chunk, const std::int32_
 
 std::uint32_t qtet_chunks_applied() { return refiner ? refiner->chunksApplied() : 0; }
 std::uint32_t qtet_field_chunks_applied(std::uint32_t field) {
-  return refiner && field < refiner->index().fieldComponents.size() ? refiner->fieldChunksApplied(field) : 0;
+  return refiner && field < refiner->index().fields.size() ? refiner->fieldChunksApplied(field) : 0;
 }
 std::uint32_t qtet_level() { return refiner ? refiner->level() : 0; }
 std::uint32_t qtet_vertex_count() { return refiner ? static_cast<std::uint32_t>(refiner->points().size()) : 0; }

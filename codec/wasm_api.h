@@ -22,8 +22,10 @@ std::uint32_t qtet_chunk_count();
 /// File offset (a double: exact up to 2^53), size and tuples of a block; part 0 structure, 1 positions, 2 + f field f.
 double qtet_block_offset(std::uint32_t chunk, std::uint32_t part);
 std::uint32_t qtet_block_size(std::uint32_t chunk, std::uint32_t part);
-/// Tuples in the positions block and each field block of a chunk.
-std::uint32_t qtet_block_values(std::uint32_t chunk);
+/// Tuples in a value block: of the positions and of point fields as many, of cell fields one a tetrahedron that the chunk brings.
+std::uint32_t qtet_block_values(std::uint32_t chunk, std::uint32_t part);
+/// What the values of a field belong to: 0 points, 1 tetrahedra (Association of codec/log_index.h).
+std::uint32_t qtet_field_association(std::uint32_t field);
 /// CodecId of a block.
 std::uint32_t qtet_block_codec(std::uint32_t chunk, std::uint32_t part);
 /// Compares a block's bytes with its CRC-32.
@@ -43,7 +45,7 @@ std::uint32_t qtet_boundary_count();
 const std::int32_t* qtet_points();          ///< 3 a vertex, lattice coordinates
 const std::uint32_t* qtet_tetrahedra();     ///< 4 a tetrahedron
 const std::uint32_t* qtet_boundary();       ///< 3 a triangle, counter-clockwise seen from outside
-const std::int32_t* qtet_field(std::uint32_t field);  ///< components a vertex; 0 when the field has no chunk yet
+const std::int32_t* qtet_field(std::uint32_t field);  ///< components a vertex or, of a cell field, a tetrahedron; 0 when it has no chunk yet
 /// Writes the 32 bytes of the mesh digest.
 void qtet_digest(std::uint8_t* out);
 }

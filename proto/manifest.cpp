@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "proto/json_reader.h"
 #include "proto/level_error_json.h"
@@ -53,10 +54,10 @@ ManifestLevel readLevel(const JsonCursor& json, std::uint32_t number, std::uint3
 }
 
 void readFields(const JsonCursor& json, Manifest& out) {
-  std::set<std::string> names;
+  std::set<std::pair<std::string, std::string>> names;
   for (const JsonCursor& item : json.items(0, kMaxFields)) {
-    out.fields.push_back(readField(item));
-    if (!names.insert(out.fields.back().name).second) item["name"].fail("stands twice; a field is asked for by its name");
+    const ManifestField& field = out.fields.emplace_back(readField(item));
+    if (!names.emplace(field.association, field.name).second) item["name"].fail("stands twice; a field is asked for by its name");
   }
 }
 
@@ -69,6 +70,23 @@ void readLevels(const JsonCursor& json, Manifest& out) {
 }
 
 }  // namespace
+
+std::string fieldKey(const Manifest& manifest, std::size_t f) {
+  const ManifestField& field = manifest.fields[f];
+  return fieldOfKey(manifest, field.name) == f ? field.name : field.association + ":" + field.name;
+}
+
+std::optional<std::uint32_t> fieldOfKey(const Manifest& manifest, std::string_view key) {
+  const auto find = [&](std::string_view association, std::string_view name) -> std::optional<std::uint32_t> {
+    for (std::uint32_t f = 0; f < manifest.fields.size(); ++f)
+      if (manifest.fields[f].association == association && manifest.fields[f].name == name) return f;
+    return std::nullopt;
+  };
+  for (const std::string_view association : {"point", "cell"})
+    if (const auto f = find(association, key)) return f;
+  const std::size_t colon = key.find(':');
+  return colon == std::string_view::npos ? std::nullopt : find(key.substr(0, colon), key.substr(colon + 1));
+}
 
 std::string manifestToJson(const Manifest& manifest) {
   Json out;

@@ -17,7 +17,7 @@ struct ManifestField {
   std::string name;
   std::uint32_t components = 1;
   std::string type;                   ///< float32, float64, int8 ... uint64
-  std::string association = "point";
+  std::string association = "point";  ///< point or cell
   int bits = 0;                       ///< integers lie in [0, 2^bits)
   double step = 1;                    ///< value = minimum[c] + step * integer
   std::vector<double> minimum;
@@ -43,6 +43,11 @@ struct Manifest {
   std::vector<ManifestField> fields;
   std::vector<ManifestLevel> levels;  ///< level 0 = base mesh, the last = the input's mesh
 };
+
+/// What names field `f` among the others: its name, or "cell:NAME" for a cell field where a point field has the same name.
+[[nodiscard]] std::string fieldKey(const Manifest& manifest, std::size_t f);
+/// The field that `key` means: the point field of that name, else the cell field of that name, else with "point:" or "cell:" before it.
+[[nodiscard]] std::optional<std::uint32_t> fieldOfKey(const Manifest& manifest, std::string_view key);
 
 [[nodiscard]] std::string manifestToJson(const Manifest& manifest);
 /// Errors: bad-value with the JSON pointer of what is missing or of the wrong type or range.

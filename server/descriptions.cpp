@@ -24,7 +24,7 @@ std::string describeMeshes(const MeshStore& store) {
     entry["tetrahedra"] = finest.tetrahedra;
     entry["vertices"] = finest.vertices;
     entry["fields"] = Json::array();
-    for (const ManifestField& field : mesh.manifest.fields) entry["fields"].push_back(field.name);
+    for (std::size_t f = 0; f < mesh.manifest.fields.size(); ++f) entry["fields"].push_back(fieldKey(mesh.manifest, f));
     entry["links"] = links(mesh);
     meshes.push_back(std::move(entry));
   }

@@ -5,16 +5,6 @@
 #include "server/limits.h"
 
 namespace qtet {
-namespace {
-
-std::optional<std::uint32_t> fieldIndex(const Manifest& manifest, std::string_view name) {
-  const auto it = std::ranges::find(manifest.fields, name, &ManifestField::name);
-  if (it == manifest.fields.end()) return std::nullopt;
-  return static_cast<std::uint32_t>(it - manifest.fields.begin());
-}
-
-}  // namespace
-
 void StreamProtocol::receive(std::string_view json, Clock::time_point now) {
   if (closing_) return;
   if (!countMessage(now)) return;
@@ -71,14 +61,14 @@ std::variant<StreamRequest, ErrorMessage> StreamProtocol::resolve(const OpenMess
     return ErrorMessage{kUnknownField, "'" + message.mesh + "' has no field '" + name + "'"};
   };
   for (const auto& [name, count] : message.haveFields) {
-    const auto field = fieldIndex(mesh.manifest, name);
+    const auto field = fieldOfKey(mesh.manifest, name);
     if (!field) return unknown(name);
     have[*field] = count;
   }
   StreamRequest out;
   out.haveChunks = message.haveChunks;
   for (const std::string& name : message.fields) {
-    const auto field = fieldIndex(mesh.manifest, name);
+    const auto field = fieldOfKey(mesh.manifest, name);
     if (!field) return unknown(name);
     out.fields.push_back(*field);
   }

@@ -26,15 +26,28 @@ std::vector<std::uint64_t> countedUp(std::size_t count) {
   return out;
 }
 
+/// Moves the tuples of the points or cells that are kept to the front.
+void keepTuples(MeshField& field, const std::vector<std::uint64_t>& kept) {
+  const std::size_t components = field.components;
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    for (std::size_t c = 0; c < components; ++c) field.values[i * components + c] = field.values[kept[i] * components + c];
+  }
+  field.values.resize(kept.size() * components);
+}
+
 void dropCells(Cleaning& cleaning, const std::vector<char>& drop) {
-  std::size_t kept = 0;
+  std::vector<std::uint64_t> kept;
   for (std::size_t i = 0; i < cleaning.mesh.tetrahedra.size(); ++i) {
     if (drop[i]) continue;
-    cleaning.mesh.tetrahedra[kept] = cleaning.mesh.tetrahedra[i];
-    cleaning.cellNames[kept++] = cleaning.cellNames[i];
+    cleaning.mesh.tetrahedra[kept.size()] = cleaning.mesh.tetrahedra[i];
+    cleaning.cellNames[kept.size()] = cleaning.cellNames[i];
+    kept.push_back(i);
   }
-  cleaning.mesh.tetrahedra.resize(kept);
-  cleaning.cellNames.resize(kept);
+  cleaning.mesh.tetrahedra.resize(kept.size());
+  cleaning.cellNames.resize(kept.size());
+  for (MeshField& field : cleaning.mesh.fields) {
+    if (isCellField(field)) keepTuples(field, kept);
+  }
 }
 
 bool repeatsAVertex(const Tetrahedron& t) {
@@ -135,15 +148,6 @@ Status orient(Cleaning& cleaning) {
   return {};
 }
 
-/// Moves the tuples of the points that are kept to the front.
-void keepTuples(PointField& field, const std::vector<std::uint64_t>& kept) {
-  const std::size_t components = field.components;
-  for (std::size_t i = 0; i < kept.size(); ++i) {
-    for (std::size_t c = 0; c < components; ++c) field.values[i * components + c] = field.values[kept[i] * components + c];
-  }
-  field.values.resize(kept.size() * components);
-}
-
 void dropUnusedPoints(Cleaning& cleaning) {
   TetMesh& mesh = cleaning.mesh;
   std::vector<VertexId> renumbered(mesh.points.size(), kGhost);
@@ -166,7 +170,9 @@ void dropUnusedPoints(Cleaning& cleaning) {
   }
   for (std::size_t i = 0; i < kept.size(); ++i) mesh.points[i] = mesh.points[kept[i]];
   mesh.points.resize(kept.size());
-  for (PointField& field : mesh.fields) keepTuples(field, kept);
+  for (MeshField& field : mesh.fields) {
+    if (!isCellField(field)) keepTuples(field, kept);
+  }
   cleaning.pointNames = std::move(kept);
 }
 

@@ -40,7 +40,7 @@ struct CleanReport {
   [[nodiscard]] std::vector<std::string> sentences() const;
 };
 
-/// Cleans in place: drops cells and points, orders each cell's vertices; what remains keeps its order.
+/// Cleans in place: drops cells and points with their field values, orders each cell's vertices; what remains keeps its order.
 /// Errors: bad-input (no cell remains; a face of more than two cells; a component that cannot be oriented), cells named as numbered
 /// before. REQUIRES: vertex ids below the number of points, finite coordinates.
 [[nodiscard]] Result<CleanReport> cleanMesh(TetMesh& mesh);

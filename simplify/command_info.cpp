@@ -43,9 +43,9 @@ void printHead(const OrderedJson& info, std::ostream& out) {
       << info["headBytes"] << " are header, manifest and table\nlattice  " << info["lattice"]["bits"] << " bits an axis, step "
       << info["lattice"]["step"] << "\n";
   for (const OrderedJson& field : info["fields"]) {
-    out << "field    " << field["name"].get<std::string>() << ": " << field["type"].get<std::string>() << " x " << field["components"]
-        << ", " << field["range"][0] << " to " << field["range"][1] << ", " << field["bits"] << " bits, step " << field["step"] << ", "
-        << field["bytes"] << " bytes\n";
+    out << (field["association"] == "cell" ? "of cells " : "field    ") << field["name"].get<std::string>() << ": "
+        << field["type"].get<std::string>() << " x " << field["components"] << ", " << field["range"][0] << " to " << field["range"][1]
+        << ", " << field["bits"] << " bits, step " << field["step"] << ", " << field["bytes"] << " bytes\n";
   }
 }
 

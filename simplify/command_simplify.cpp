@@ -94,13 +94,14 @@ OrderedJson toJson(const CleanReport& report) {
 }
 
 /// Bytes and bits a tetrahedron of each stream.
-void addSizes(const EncodedLog& log, const std::vector<FieldInfo>& fields, std::uint64_t tetrahedra, OrderedJson& report) {
+void addSizes(const EncodedLog& log, const Manifest& manifest, OrderedJson& report) {
   const LogStatistics& statistics = log.statistics;
+  const std::uint64_t tetrahedra = manifest.levels.back().tetrahedra;
   const auto bits = [&](std::uint64_t bytes) { return 8.0 * static_cast<double>(bytes) / static_cast<double>(tetrahedra); };
   OrderedJson fieldBytes = OrderedJson::object(), fieldBits = OrderedJson::object();
-  for (std::size_t f = 0; f < fields.size(); ++f) {
-    fieldBytes[fields[f].name] = statistics.fieldBytes[f];
-    fieldBits[fields[f].name] = bits(statistics.fieldBytes[f]);
+  for (std::size_t f = 0; f < manifest.fields.size(); ++f) {
+    fieldBytes[fieldKey(manifest, f)] = statistics.fieldBytes[f];
+    fieldBits[fieldKey(manifest, f)] = bits(statistics.fieldBytes[f]);
   }
   report["bytes"] = log.bytes.size();
   report["bytesOf"] = {{"head", statistics.headBytes},
@@ -207,7 +208,7 @@ Result<OrderedJson> reportOf(const Request& request, const Prepared& prepared, c
                         {"percentRemoved", 100.0 * (1.0 - static_cast<double>(base) / static_cast<double>(full))},
                         {"levels", manifest->levels.size() - 1},
                         {"chunks", index->chunks.size()}};
-  addSizes(log, prepared.quantised.mesh.fields, full, report);
+  addSizes(log, *manifest, report);
   report["error"] = measureReport(request.measure, manifest->levels.front().error);
   report["lattice"] = {{"bits", lattice.bits},
                        {"requestedBits", quantised.requestedBits},
@@ -251,7 +252,8 @@ int runSimplify(const Words& words, Console& console) {
   namespace po = boost::program_options;
   po::options_description options("options");
   options.add_options()("output,o", po::value<std::string>(), "required: the log to write, NAME.qtet")(
-      "fields", po::value<std::string>()->default_value("all"), "all, none, or names of point fields between commas")(
+      "fields", po::value<std::string>()->default_value("all"),
+      "all, none, or names between commas; point:NAME or cell:NAME is one of two fields with the same name")(
       "position-bits", po::value<int>()->default_value(16),
       "bits of the lattice an axis, 4 to 28; raised where a cell would be flattened or inverted")(
       "field-bits", po::value<int>()->default_value(12), "bits of a float field's values, 1 to 28; integer fields are stored exactly")(
@@ -261,7 +263,7 @@ int runSimplify(const Words& words, Console& console) {
   const ParsedWords parsed(
       words,
       {"simplify", "simplify IN -o OUT.qtet [options]",
-       "Reads tetrahedra with their point fields (.vtu, legacy .vtk), cleans them, simplifies them level by level and writes the log,\n"
+       "Reads tetrahedra with their fields (.vtu, legacy .vtk), cleans them, simplifies them level by level and writes the log,\n"
        "from which every level and the whole mesh come back.",
        "  qtet simplify fin.vtu -o fin.qtet\n  qtet simplify fin.vtu -o fin.qtet --fields Density,Velocity --field-bits 10 --json\n"},
       options, {"IN"});

@@ -72,7 +72,7 @@ Status compareWithInput(const OpenedLog& log, const Refiner& refiner, const std:
   progress.stage("reading " + input);
   const LatticeMesh decoded = finestMesh(log, refiner);
   std::vector<std::string> names;
-  for (const FieldInfo& field : decoded.fields) names.push_back(field.name);
+  for (const FieldInfo& field : decoded.fields) names.push_back(field.association + ":" + field.name);
   Result<ReadMesh> read = readMesh(input, names);
   if (!read) return std::unexpected(read.error());
   if (const Result<CleanReport> cleaned = cleanMesh(read->mesh); !cleaned) return std::unexpected(cleaned.error());
@@ -83,7 +83,7 @@ Status compareWithInput(const OpenedLog& log, const Refiner& refiner, const std:
   const Result<VerifyReport> same = sameMesh(decoded, expected->mesh);
   if (!same) return std::unexpected(same.error());
   OrderedJson fieldErrors = OrderedJson::object();
-  for (std::size_t f = 0; f < names.size(); ++f) fieldErrors[names[f]] = expected->largestFieldErrors[f];
+  for (std::size_t f = 0; f < names.size(); ++f) fieldErrors[fieldKey(log.manifest, f)] = expected->largestFieldErrors[f];
   out = {{"input", input},
          {"sameMesh", true},
          {"largestPositionErrorSteps", expected->largestPositionError},

@@ -55,7 +55,7 @@ void FusionCost::chooseParts(const LatticeMesh& lattice, const CostOptions& opti
     const FieldInfo& info = lattice.fields[f];
     const double weight = options.fieldWeights.empty() ? isFloatType(info.type) : options.fieldWeights[f];
     const auto [low, high] = std::ranges::minmax(lattice.values[f]);
-    if (info.association != "point" || weight <= 0 || low == high || components_ + info.components > kMaxCostComponents) continue;
+    if (isCellField(info) || weight <= 0 || low == high || components_ + info.components > kMaxCostComponents) continue;
     parts_.push_back({f, 1});
     weights.push_back(weight);
     components_ += info.components;

@@ -64,7 +64,7 @@ int FusionMesh::preyAt(const Prey& prey, const LatticePoint& point, std::span<co
     std::size_t first = 0;
     bool same = true;
     for (std::size_t f = 0; f < history_.fields.size() && same; ++f) {
-      if (history_.fields[f].association != "point") continue;
+      if (isCellField(history_.fields[f])) continue;
       const auto own = values(f, v);
       same = std::ranges::equal(own, fused.subspan(first, own.size()));
       first += own.size();
@@ -108,7 +108,7 @@ VertexId FusionMesh::fuse(const Prey& prey, const LatticePoint& point, std::span
   history_.points.push_back(point);
   std::size_t first = 0;
   for (std::size_t f = 0; f < history_.fields.size(); ++f) {
-    if (history_.fields[f].association != "point") continue;
+    if (isCellField(history_.fields[f])) continue;
     const auto own = values.subspan(first, history_.fields[f].components);
     history_.values[f].insert(history_.values[f].end(), own.begin(), own.end());
     first += own.size();

@@ -32,7 +32,11 @@ Samples samplesFor(Effort effort, const FusionHistory& history) {
   return {volume, volume / 2, volume / 4, std::max(volume / 12, kFewestOnLevel), 2 * volume};
 }
 
-OneSidedDistance rounded(const OneSidedDistance& d) { return {roundedTo(d.mean, kDigits), roundedTo(d.max, kDigits)}; }
+/// Distances over the diagonal below this are what doubles make of none: a lattice step is a thousand times as much on the finest lattice.
+constexpr double kNoDistance = 1e-12;
+
+double roundedDistance(double d) { return d < kNoDistance ? 0 : roundedTo(d, kDigits); }
+OneSidedDistance rounded(const OneSidedDistance& d) { return {roundedDistance(d.mean), roundedDistance(d.max)}; }
 
 class ErrorMeter {
  public:

@@ -40,7 +40,7 @@ FieldMeter::FieldMeter(const MeasuredMesh& mesh, const FieldOptions& options) : 
     for (const VertexId v : history.cells[id]) isOriginal[v] = 1;
   findRanges(isOriginal);
   for (const Sample& sample : samplesInVolume(history.points, history.cells, options.samples, options.seed))
-    places_.push_back({sample, {}});
+    places_.push_back({sample, {}, sample.cell});
   uniform_ = places_.size();
   addVertices(std::move(isOriginal));
   keepTruth();
@@ -57,7 +57,7 @@ void FieldMeter::addVertices(std::vector<std::uint8_t> isOriginal) {
     for (std::size_t i = 0; i < 4; ++i) {
       const VertexId v = history.cells[id][i];
       if (std::exchange(isOriginal[v], std::uint8_t{0}) == 0 || met++ % step != 0) continue;
-      places_.push_back({{toPoint3(history.points[v]), id, {}}, {}});
+      places_.push_back({{toPoint3(history.points[v]), id, {}}, {}, id});
       places_.back().sample.weights[i] = 1;
     }
 }
@@ -69,10 +69,11 @@ void FieldMeter::findRanges(const std::vector<std::uint8_t>& isOriginal) {
     double squared = 0;
     for (std::size_t c = 0; c < components; ++c) {
       std::int32_t low = std::numeric_limits<std::int32_t>::max(), high = std::numeric_limits<std::int32_t>::min();
-      for (std::size_t v = 0; v < isOriginal.size(); ++v) {
-        if (!isOriginal[v]) continue;
-        low = std::min(low, history.values[f][v * components + c]);
-        high = std::max(high, history.values[f][v * components + c]);
+      const bool ofCells = isCellField(history.fields[f]);
+      for (std::size_t i = 0; i < (ofCells ? history.values[f].size() / components : isOriginal.size()); ++i) {
+        if (!ofCells && !isOriginal[i]) continue;
+        low = std::min(low, history.values[f][i * components + c]);
+        high = std::max(high, history.values[f][i * components + c]);
       }
       const double range = static_cast<double>(high) - static_cast<double>(low);
       squared += range * range;
@@ -88,13 +89,19 @@ void FieldMeter::keepTruth() {
     std::vector<double>& truth = truth_.emplace_back();
     truth.reserve(places_.size() * components);
     for (const Place& place : places_)
-      for (std::size_t c = 0; c < components; ++c) {
-        double value = 0;
-        for (std::size_t i = 0; i < 4; ++i)
-          value += place.sample.weights[i] * history.values[f][history.cells[place.sample.cell][i] * components + c];
-        truth.push_back(value);
-      }
+      for (std::size_t c = 0; c < components; ++c) truth.push_back(valueAt(place, f, c));
   }
+}
+
+double FieldMeter::valueAt(const Place& place, std::size_t field, std::size_t component) const {
+  const FusionHistory& history = mesh_.history();
+  const std::size_t components = history.fields[field].components;
+  if (isCellField(history.fields[field])) return history.values[field][place.tetrahedron * components + component];
+  const auto& cell = history.cells[place.sample.cell];
+  const std::size_t corners = cell[3] == kGhost ? 3 : 4;
+  double value = 0;
+  for (std::size_t i = 0; i < corners; ++i) value += place.sample.weights[i] * history.values[field][cell[i] * components + component];
+  return value;
 }
 
 void FieldMeter::follow() {
@@ -109,7 +116,9 @@ bool FieldMeter::follow(Place& place) const {
   if (fusion == nullptr) return false;
   if (mesh_.isGhost(place.sample.cell)) {
     leave(*fusion, place);
-  } else if (!findIn(*fusion, place)) {
+  } else if (findIn(*fusion, place)) {
+    place.tetrahedron = place.sample.cell;
+  } else {
     leave(*fusion, place);
   }
   return true;
@@ -151,17 +160,12 @@ void FieldMeter::leave(const Fusion& fusion, Place& place) const {
 }
 
 void FieldMeter::measure(std::size_t place) {
-  const FusionHistory& history = mesh_.history();
-  const Sample& sample = places_[place].sample;
-  const auto& cell = history.cells[sample.cell];
-  const std::size_t corners = cell[3] == kGhost ? 3 : 4;
   for (std::size_t f = 0; f < truth_.size(); ++f) {
     if (!(ranges_[f] > 0)) continue;
-    const std::size_t components = history.fields[f].components;
+    const std::size_t components = mesh_.history().fields[f].components;
     double squared = 0;
     for (std::size_t c = 0; c < components; ++c) {
-      double apart = -truth_[f][place * components + c];
-      for (std::size_t i = 0; i < corners; ++i) apart += sample.weights[i] * history.values[f][cell[i] * components + c];
+      const double apart = valueAt(places_[place], f, c) - truth_[f][place * components + c];
       squared += apart * apart;
     }
     squaredErrors_[f][place] = squared / (ranges_[f] * ranges_[f]);

@@ -1,4 +1,4 @@
-// How far the point fields of a level are from the original's, over the original's volume.
+// How far the fields of a level are from the original's, over the original's volume.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ struct FieldOptions {
 
 /// The error of a field at a place is the Euclidean norm of the difference over the diagonal of the box that the original's values fill (for one component:
 /// over their range), 0 for a constant field. Where the level's solid does not cover a place, its value is that at the nearest point of its boundary.
-/// Places are followed from cell to cell through the fusions. A place that the solid has left stays outside: true while each level is a subset of the
+/// A cell field's value there is that of the cell that held the place last. Places are followed from cell to cell through the fusions. A place that the solid has left stays outside: true while each level is a subset of the
 /// one before it, otherwise the value at the boundary differs from the one inside by what the field changes within the tolerance.
 class FieldMeter {
  public:
@@ -35,11 +35,13 @@ class FieldMeter {
   struct Place {
     Sample sample;            // its cell is a ghost cell where the place is not covered: the nearest one
     NearestTriangle nearest;  // of a place that is not covered
+    CellId tetrahedron = 0;   // the last that covered it
   };
 
   void findRanges(const std::vector<std::uint8_t>& isOriginal);
   void addVertices(std::vector<std::uint8_t> isOriginal);
   void keepTruth();
+  [[nodiscard]] double valueAt(const Place& place, std::size_t field, std::size_t component) const;
   /// Whether the place's cell or weights have changed.
   [[nodiscard]] bool follow(Place& place) const;
   [[nodiscard]] bool findIn(const Fusion& fusion, Place& place) const;

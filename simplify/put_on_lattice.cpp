@@ -40,7 +40,7 @@ Status putPoints(const TetMesh& mesh, OnLattice& out) {
   return {};
 }
 
-Status putField(const PointField& field, const FieldInfo& info, OnLattice& out) {
+Status putField(const MeshField& field, const FieldInfo& info, OnLattice& out) {
   if (field.components != info.components) {
     return fail(ErrorCode::kBadValue, "field " + info.name + " has " + std::to_string(info.components) + " components in the log and " +
                                           std::to_string(field.components) + " in the input");
@@ -54,7 +54,7 @@ Status putField(const PointField& field, const FieldInfo& info, OnLattice& out) 
                               ? nearest((field.values[i] - info.minimum[i % info.components]) / info.step, info.bits)
                               : Nearest{0, 0};
     if (!(found.error <= kHalfAStep)) {
-      return fail(ErrorCode::kBadValue, "field " + info.name + " at point " + std::to_string(i / info.components) +
+      return fail(ErrorCode::kBadValue, "field " + info.name + " at " + info.association + " " + std::to_string(i / info.components) +
                                             " of the cleaned input is " + std::to_string(found.error) +
                                             " field steps off what the log can hold; the log was made from another mesh");
     }
@@ -74,10 +74,12 @@ Result<OnLattice> putOnLattice(const TetMesh& mesh, const Lattice& lattice, cons
   out.mesh.lattice = lattice;
   if (Status put = putPoints(mesh, out); !put) return std::unexpected(put.error());
   for (const FieldInfo& info : fields) {
-    const auto field =
-        std::find_if(mesh.fields.begin(), mesh.fields.end(), [&](const PointField& candidate) { return candidate.name == info.name; });
+    const auto field = std::find_if(mesh.fields.begin(), mesh.fields.end(), [&](const MeshField& candidate) {
+      return candidate.name == info.name && candidate.association == info.association;
+    });
     if (field == mesh.fields.end())
-      return fail(ErrorCode::kNotFound, "the input has no field '" + info.name + "', which the log holds; it is not the log's input");
+      return fail(ErrorCode::kNotFound,
+                  "the input has no " + info.association + " field '" + info.name + "', which the log holds; it is not the log's input");
     if (Status put = putField(*field, info, out); !put) return std::unexpected(put.error());
   }
   out.mesh.tetrahedra = mesh.tetrahedra;

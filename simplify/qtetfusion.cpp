@@ -245,7 +245,7 @@ class Simplifier {
     integers_.clear();
     std::size_t part = 0, component = 0;
     for (std::size_t f = 0; f < mesh_.fields().size(); ++f) {
-      if (mesh_.fields()[f].association != "point") continue;
+      if (isCellField(mesh_.fields()[f])) continue;
       if (part < cost_.parts().size() && cost_.parts()[part].field == f) {
         for (std::size_t c = 0; c < mesh_.fields()[f].components; ++c)
           integers_.push_back(static_cast<std::int32_t>(std::floor(values_[component++] / cost_.parts()[part].scale + 0.5)));

@@ -120,17 +120,18 @@ void placePoints(const TetMesh& mesh, const Box& box, QuantisedMesh& out) {
 }
 
 Status placeFields(const TetMesh& mesh, int bits, QuantisedMesh& out) {
-  for (const PointField& field : mesh.fields) {
+  for (const MeshField& field : mesh.fields) {
+    const std::string name = (isCellField(field) ? "cell field " : "field ") + field.name;
     Result<QuantisedField> quantised = quantiseField(field, bits);
     if (!quantised) return std::unexpected(quantised.error());
     if (quantised->nonFinite > 0) {
       out.report.nonFiniteValues += quantised->nonFinite;
-      out.report.notes.push_back("field " + field.name + ": " + std::to_string(quantised->nonFinite) +
+      out.report.notes.push_back(name + ": " + std::to_string(quantised->nonFinite) +
                                  " values are NaN or infinite and are stored as their component's minimum");
     }
     if (!quantised->exact && !isFloatType(field.type)) {
-      out.report.notes.push_back("field " + field.name + ": its integers span more than " + std::to_string(kMaxFieldBits) +
-                                 " bits and are rounded to " + std::to_string(bits) + " bits");
+      out.report.notes.push_back(name + ": its integers span more than " + std::to_string(kMaxFieldBits) + " bits and are rounded to " +
+                                 std::to_string(bits) + " bits");
     }
     out.mesh.fields.push_back(std::move(quantised->info));
     out.mesh.values.push_back(std::move(quantised->values));

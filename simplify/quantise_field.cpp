@@ -16,7 +16,7 @@ struct Extents {
   std::uint64_t nonFinite = 0;
 };
 
-Extents extentsOf(const PointField& field) {
+Extents extentsOf(const MeshField& field) {
   const std::size_t components = field.components;
   Extents out{std::vector<double>(components, std::numeric_limits<double>::infinity()),
               std::vector<double>(components, -std::numeric_limits<double>::infinity()), 0, 0};
@@ -39,7 +39,7 @@ Extents extentsOf(const PointField& field) {
 }
 
 /// The range of the values, or of the vectors' lengths; vectors with a component that is not finite do not count.
-std::array<double, 2> rangeOf(const PointField& field) {
+std::array<double, 2> rangeOf(const MeshField& field) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (std::size_t i = 0; i + field.components <= field.values.size(); i += field.components) {
     double value = field.values[i];
@@ -65,7 +65,7 @@ std::int32_t fieldInteger(const FieldInfo& info, std::uint32_t component, double
   return static_cast<std::int32_t>(std::clamp(std::floor((value - info.minimum[component]) / info.step + 0.5), 0.0, highest));
 }
 
-Result<QuantisedField> quantiseField(const PointField& field, int bits) {
+Result<QuantisedField> quantiseField(const MeshField& field, int bits) {
   const Extents extents = extentsOf(field);
   if (!std::isfinite(extents.largest)) {
     return fail(ErrorCode::kBadInput, "field " + field.name + " spans more than the largest float64; leave it out with --fields");
@@ -76,7 +76,7 @@ Result<QuantisedField> quantiseField(const PointField& field, int bits) {
   out.info = FieldInfo{.name = field.name,
                        .components = field.components,
                        .type = field.type,
-                       .association = "point",
+                       .association = field.association,
                        .bits = out.exact ? bitsFor(extents.largest) : bits,
                        .step = 1,
                        .minimum = extents.minimum,

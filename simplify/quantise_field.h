@@ -22,6 +22,6 @@ struct QuantisedField {
 [[nodiscard]] std::int32_t fieldInteger(const FieldInfo& info, std::uint32_t component, double value);
 
 /// See quantise(). Errors: bad-input (an extent above the largest double).
-[[nodiscard]] Result<QuantisedField> quantiseField(const PointField& field, int bits);
+[[nodiscard]] Result<QuantisedField> quantiseField(const MeshField& field, int bits);
 
 }  // namespace qtet

@@ -11,7 +11,9 @@
 #include <vtkSmartPointer.h>
 #include <vtkUnsignedCharArray.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "proto/limits.h"
 #include "simplify/vtk_grid.h"
@@ -84,14 +86,19 @@ class CellVertices {
   vtkDataArray* ids_;
 };
 
-Result<std::vector<Tetrahedron>> tetrahedraOf(vtkUnstructuredGrid& grid, const std::filesystem::path& path, ReadReport& report) {
+struct Tetrahedra {
+  std::vector<Tetrahedron> cells;
+  std::vector<vtkIdType> rows;  ///< where each of them stands among the file's cells
+};
+
+Result<Tetrahedra> tetrahedraOf(vtkUnstructuredGrid& grid, const std::filesystem::path& path, ReadReport& report) {
   const vtkIdType count = grid.GetNumberOfCells();
   vtkUnsignedCharArray* types = grid.GetCellTypesArray();
   if (count == 0 || !types || !grid.GetCells()) return bad(path, "it holds no cells; export the volume mesh, not only its points");
   if (types->GetNumberOfTuples() < count) return bad(path, "fewer cell types than cells; the file is damaged, export it again");
 
   const CellVertices vertices(*grid.GetCells());
-  std::vector<Tetrahedron> cells;
+  Tetrahedra out;
   for (vtkIdType i = 0; i < count; ++i) {
     const int type = types->GetValue(i);
     if (type == VTK_TETRA) {
@@ -100,7 +107,8 @@ Result<std::vector<Tetrahedron>> tetrahedraOf(vtkUnstructuredGrid& grid, const s
         return bad(path, "cell " + std::to_string(i) + " is a tetrahedron without four vertices among the " +
                              std::to_string(grid.GetNumberOfPoints()) + " points; the file is damaged, export it again");
       }
-      cells.push_back(cell);
+      out.cells.push_back(cell);
+      out.rows.push_back(i);
       continue;
     }
     const CellKind kind = kindOf(type);
@@ -111,15 +119,15 @@ Result<std::vector<Tetrahedron>> tetrahedraOf(vtkUnstructuredGrid& grid, const s
     }
     ++report.ignoredCells;
   }
-  if (cells.empty())
+  if (out.cells.empty())
     return bad(path, "none of its " + std::to_string(count) + " cells is a tetrahedron; export the volume mesh, not its surface");
-  if (cells.size() > kMaxElements) {
-    return fail(ErrorCode::kLimitExceeded, path.string() + ": " + std::to_string(cells.size()) + " tetrahedra; at most " +
+  if (out.cells.size() > kMaxElements) {
+    return fail(ErrorCode::kLimitExceeded, path.string() + ": " + std::to_string(out.cells.size()) + " tetrahedra; at most " +
                                                std::to_string(kMaxElements) + " are allowed");
   }
   if (report.ignoredCells > 0)
     report.notes.push_back(std::to_string(report.ignoredCells) + " points, lines and faces among the cells were ignored");
-  return cells;
+  return out;
 }
 
 /// The type's name, or an empty text for texts and the like.
@@ -131,31 +139,39 @@ std::string typeName(vtkDataArray& array) {
   return (isSigned ? "int" : "uint") + std::to_string(8 * array.GetDataTypeSize());
 }
 
-Result<PointField> fieldOf(vtkDataArray& array, const std::string& name, vtkIdType points, const std::filesystem::path& path) {
-  if (array.GetNumberOfTuples() != points) {
-    return bad(path, "field " + name + " has " + std::to_string(array.GetNumberOfTuples()) + " tuples for " + std::to_string(points) +
-                         " points; export it again");
+/// An array of the file that can be a field, with the name that it gets.
+struct Candidate {
+  std::string association;  ///< point or cell
+  std::string name;
+  vtkDataArray* array;
+
+  /// `asked` is the name, or the name behind "point:" or "cell:".
+  [[nodiscard]] bool isMeantBy(const std::string& asked) const { return asked == name || asked == association + ":" + name; }
+};
+
+/// The field of `rows` (the array's tuples, in the mesh's order); `tuples` is what the array must have.
+Result<MeshField> fieldOf(const Candidate& candidate, const std::vector<vtkIdType>& rows, vtkIdType tuples,
+                          const std::filesystem::path& path) {
+  vtkDataArray& array = *candidate.array;
+  if (array.GetNumberOfTuples() != tuples) {
+    return bad(path, candidate.association + " field " + candidate.name + " has " + std::to_string(array.GetNumberOfTuples()) +
+                         " tuples for " + std::to_string(tuples) + " " + candidate.association + "s; export it again");
   }
-  PointField field{name, static_cast<std::uint32_t>(array.GetNumberOfComponents()), typeName(array), {}};
+  MeshField field{candidate.name, static_cast<std::uint32_t>(array.GetNumberOfComponents()), typeName(array), {}, candidate.association};
   const bool wide = field.type == "int64" || field.type == "uint64";
-  field.values.resize(static_cast<std::size_t>(points) * field.components);
-  for (vtkIdType i = 0; i < points; ++i) {
-    double* tuple = field.values.data() + static_cast<std::size_t>(i) * field.components;
-    array.GetTuple(i, tuple);
+  field.values.resize(rows.size() * field.components);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    double* tuple = field.values.data() + i * field.components;
+    array.GetTuple(rows[i], tuple);
     for (std::uint32_t c = 0; wide && c < field.components; ++c) {
       if (std::abs(tuple[c]) < kFirstInexactInteger) continue;
-      return bad(path, "field " + name + " holds an integer of 2^53 or more at point " + std::to_string(i) +
+      return bad(path, candidate.association + " field " + candidate.name + " holds an integer of 2^53 or more at " +
+                           candidate.association + " " + std::to_string(i) +
                            "; leave the field out with --fields, or store it in fewer bits");
     }
   }
   return field;
 }
-
-/// An array of the file that can be a field, with the name that it gets.
-struct Candidate {
-  std::string name;
-  vtkDataArray* array;
-};
 
 /// Whether `text` is UTF-8 as far as its leading and continuing bytes go.
 bool isUtf8(const std::string& text) {
@@ -173,78 +189,76 @@ bool isUtf8(const std::string& text) {
 }
 
 /// The array's name, or "unnamed-I" where the manifest could not hold it.
-std::string nameOf(vtkAbstractArray& array, int number, ReadReport& report) {
+std::string nameOf(vtkAbstractArray& array, const std::string& association, int number, ReadReport& report) {
   const std::string name = array.GetName() ? array.GetName() : "";
   if (!name.empty() && name.size() <= kMaxNameBytes && isUtf8(name)) return name;
   const std::string substitute = "unnamed-" + std::to_string(number);
-  report.notes.push_back("point field number " + std::to_string(number) + " has no name, or none of at most " +
+  report.notes.push_back(association + " field number " + std::to_string(number) + " has no name, or none of at most " +
                          std::to_string(kMaxNameBytes) + " bytes of UTF-8, and is called " + substitute);
   return substitute;
 }
 
-std::vector<Candidate> candidatesOf(vtkPointData& data, ReadReport& report) {
-  std::vector<Candidate> out;
+void addCandidates(vtkFieldData& data, const std::string& association, ReadReport& report, std::vector<Candidate>& out) {
   for (int i = 0; i < data.GetNumberOfArrays(); ++i) {
     vtkAbstractArray* any = data.GetAbstractArray(i);
-    const std::string name = nameOf(*any, i, report);
+    const std::string name = nameOf(*any, association, i, report);
     vtkDataArray* array = data.GetArray(i);
     const bool fits =
         array && array->GetNumberOfComponents() >= 1 && array->GetNumberOfComponents() <= static_cast<int>(kMaxFieldComponents);
     if (fits) {
-      out.push_back({name, array});
+      out.push_back({association, name, array});
       continue;
     }
     report.ignoredFields.push_back(name);
     report.notes.push_back(
-        "point field " + name + " was ignored: " +
+        association + " field " + name + " was ignored: " +
         (array ? "more than " + std::to_string(kMaxFieldComponents) + " components" : std::string("it holds no numbers")));
   }
-  return out;
 }
 
-/// The candidates that were asked for, in the order asked.
+std::string namesOf(const std::vector<Candidate>& candidates) {
+  std::string out;
+  for (const Candidate& candidate : candidates) out += (out.empty() ? "" : ", ") + candidate.name;
+  return out.empty() ? "none" : out;
+}
+
+/// The candidates that were asked for, in the order asked, each once.
 Result<std::vector<Candidate>> chosen(std::vector<Candidate> candidates, const FieldNames& names, const std::filesystem::path& path) {
   if (!names) return candidates;
   std::vector<Candidate> out;
   for (const std::string& name : *names) {
-    std::string known;
     bool found = false;
     for (const Candidate& candidate : candidates) {
-      known += (known.empty() ? "" : ", ") + candidate.name;
-      if (candidate.name != name || found) continue;
-      out.push_back(candidate);
+      if (!candidate.isMeantBy(name)) continue;
       found = true;
+      if (std::ranges::find(out, candidate.array, &Candidate::array) == out.end()) out.push_back(candidate);
     }
-    if (!found)
-      return fail(ErrorCode::kNotFound, path.string() + " has no point field '" + name + "'; it has: " + (known.empty() ? "none" : known));
+    if (!found) return fail(ErrorCode::kNotFound, path.string() + " has no field '" + name + "'; it has: " + namesOf(candidates));
   }
   return out;
 }
 
-Result<std::vector<PointField>> fieldsOf(vtkUnstructuredGrid& grid, const FieldNames& names, const std::filesystem::path& path,
-                                         ReadReport& report) {
-  Result<std::vector<Candidate>> candidates = chosen(candidatesOf(*grid.GetPointData(), report), names, path);
+Result<std::vector<MeshField>> fieldsOf(vtkUnstructuredGrid& grid, const std::vector<vtkIdType>& tetrahedronRows, const FieldNames& names,
+                                        const std::filesystem::path& path, ReadReport& report) {
+  std::vector<Candidate> all;
+  addCandidates(*grid.GetPointData(), "point", report, all);
+  addCandidates(*grid.GetCellData(), "cell", report, all);
+  Result<std::vector<Candidate>> candidates = chosen(std::move(all), names, path);
   if (!candidates) return std::unexpected(candidates.error());
   if (candidates->size() > kMaxFields) {
-    return fail(ErrorCode::kLimitExceeded, path.string() + ": " + std::to_string(candidates->size()) + " point fields; choose at most " +
+    return fail(ErrorCode::kLimitExceeded, path.string() + ": " + std::to_string(candidates->size()) + " fields; choose at most " +
                                                std::to_string(kMaxFields) + " with --fields");
   }
-  std::vector<PointField> fields;
+  std::vector<vtkIdType> pointRows(static_cast<std::size_t>(grid.GetNumberOfPoints()));
+  std::iota(pointRows.begin(), pointRows.end(), vtkIdType{0});
+  std::vector<MeshField> fields;
   for (const Candidate& candidate : *candidates) {
-    Result<PointField> field = fieldOf(*candidate.array, candidate.name, grid.GetNumberOfPoints(), path);
+    Result<MeshField> field = candidate.association == "point" ? fieldOf(candidate, pointRows, grid.GetNumberOfPoints(), path)
+                                                               : fieldOf(candidate, tetrahedronRows, grid.GetNumberOfCells(), path);
     if (!field) return std::unexpected(field.error());
     fields.push_back(std::move(*field));
   }
   return fields;
-}
-
-void noteCellFields(vtkCellData& data, ReadReport& report) {
-  for (int i = 0; i < data.GetNumberOfArrays(); ++i) {
-    const char* name = data.GetAbstractArray(i)->GetName();
-    report.ignoredFields.push_back(name ? name : "");
-    report.notes.push_back(std::string("cell field ") + (name ? name : "without a name") +
-                           " was ignored: only fields on points are stored (in ParaView: filter Cell Data to Point Data)");
-  }
 }
 
 }  // namespace
@@ -257,11 +271,10 @@ Result<ReadMesh> readMesh(const std::filesystem::path& path, const FieldNames& f
   if (!points) return std::unexpected(points.error());
   auto tetrahedra = tetrahedraOf(**grid, path, out.report);
   if (!tetrahedra) return std::unexpected(tetrahedra.error());
-  auto pointFields = fieldsOf(**grid, fields, path, out.report);
-  if (!pointFields) return std::unexpected(pointFields.error());
-  noteCellFields(*(*grid)->GetCellData(), out.report);
+  auto meshFields = fieldsOf(**grid, tetrahedra->rows, fields, path, out.report);
+  if (!meshFields) return std::unexpected(meshFields.error());
 
-  out.mesh = TetMesh{std::move(*points), std::move(*tetrahedra), std::move(*pointFields)};
+  out.mesh = TetMesh{std::move(*points), std::move(tetrahedra->cells), std::move(*meshFields)};
   return out;
 }
 

@@ -44,7 +44,7 @@ void addCube(VertexId i, VertexId j, VertexId k, std::vector<Tetrahedron>& out) 
 
 TetMesh boxSample() {
   TetMesh mesh;
-  PointField scalar{"Scalar", 1, "float32", {}};
+  MeshField scalar{"Scalar", 1, "float32", {}};
   for (VertexId k = 0; k <= kCells; ++k) {
     for (VertexId j = 0; j <= kCells; ++j) {
       for (VertexId i = 0; i <= kCells; ++i) {

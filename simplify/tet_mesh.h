@@ -1,4 +1,4 @@
-// A tetrahedral mesh as its file has it: positions in floats, fields on points. What is read, cleaned, written; simplifying needs a lattice (quantise.h).
+// A tetrahedral mesh as its file has it: positions in floats, fields on points and cells. What is read, cleaned, written; simplifying needs a lattice (quantise.h).
 #pragma once
 
 #include <array>
@@ -12,21 +12,25 @@ namespace qtet {
 
 using Position = std::array<double, 3>;
 
-/// components * points numbers, point by point, each representable in `type`.
-struct PointField {
+/// components numbers a point, or a tetrahedron for a cell field, in their order, each representable in `type`.
+struct MeshField {
   std::string name;
   std::uint32_t components = 1;
   std::string type = "float32";  ///< float32, float64, int8, uint8 ... int64, uint64 (up to 2^53 in magnitude)
   std::vector<double> values;
+  std::string association = "point";  ///< point or cell
 };
 
 struct TetMesh {
   std::vector<Position> points;
   std::vector<Tetrahedron> tetrahedra;
-  std::vector<PointField> fields;
+  std::vector<MeshField> fields;
 };
 
-/// Whether a PointField's or FieldInfo's type is one of floats.
+/// Whether a MeshField's or FieldInfo's type is one of floats.
 [[nodiscard]] inline bool isFloatType(const std::string& type) { return type == "float32" || type == "float64"; }
+
+/// Whether the field's values belong to tetrahedra instead of points.
+[[nodiscard]] inline bool isCellField(const MeshField& field) { return field.association == "cell"; }
 
 }  // namespace qtet

@@ -43,14 +43,20 @@ class Hasher {
   Hash hash_{0x243f6a8885a308d3u, 0x13198a2e03707344u};
 };
 
+/// Adds the values of a point or, of the cell fields, of a tetrahedron.
+void addValues(const LatticeMesh& mesh, bool ofCells, std::size_t i, Hasher& hasher) {
+  for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
+    if (isCellField(mesh.fields[f]) != ofCells) continue;
+    const std::size_t components = mesh.fields[f].components;
+    for (std::size_t c = 0; c < components; ++c) hasher.add(static_cast<std::uint32_t>(mesh.values[f][i * components + c]));
+  }
+}
+
 /// What a vertex carries by itself.
 Hash ownHash(const LatticeMesh& mesh, std::size_t v) {
   Hasher hasher;
   for (const std::int32_t x : mesh.points[v]) hasher.add(static_cast<std::uint32_t>(x));
-  for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
-    const std::size_t components = mesh.fields[f].components;
-    for (std::size_t c = 0; c < components; ++c) hasher.add(static_cast<std::uint32_t>(mesh.values[f][v * components + c]));
-  }
+  addValues(mesh, false, v, hasher);
   return hasher.take();
 }
 
@@ -69,12 +75,16 @@ Hash rotationHash(Hash a, Hash b, Hash c) {
   return Hasher().add(smallest[0]).add(smallest[1]).add(smallest[2]).take();
 }
 
-/// Every vertex's colour with what its cells show of their other vertices.
+/// Every vertex's colour with what its cells show of their other vertices and of their values.
 std::vector<Hash> refined(const LatticeMesh& mesh, const std::vector<Hash>& colours) {
   std::vector<Hash> sums(colours.size());
-  for (const Tetrahedron& cell : mesh.tetrahedra) {
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+    const Tetrahedron& cell = mesh.tetrahedra[t];
     for (std::size_t i = 0; i < 4; ++i) {
-      sums[cell[i]] += rotationHash(colours[cell[kSeenFrom[i][0]]], colours[cell[kSeenFrom[i][1]]], colours[cell[kSeenFrom[i][2]]]);
+      Hasher hasher;
+      hasher.add(rotationHash(colours[cell[kSeenFrom[i][0]]], colours[cell[kSeenFrom[i][1]]], colours[cell[kSeenFrom[i][2]]]));
+      addValues(mesh, true, t, hasher);
+      sums[cell[i]] += hasher.take();
     }
   }
   std::vector<Hash> out(colours.size());
@@ -104,6 +114,19 @@ std::vector<Hash> cellHashes(const LatticeMesh& mesh, const std::vector<Hash>& c
   return out;
 }
 
+/// `hashes`, each with its cell's values.
+std::vector<Hash> withValues(const LatticeMesh& mesh, const std::vector<Hash>& hashes) {
+  std::vector<Hash> out;
+  out.reserve(hashes.size());
+  for (std::size_t t = 0; t < hashes.size(); ++t) {
+    Hasher hasher;
+    hasher.add(hashes[t]);
+    addValues(mesh, true, t, hasher);
+    out.push_back(hasher.take());
+  }
+  return out;
+}
+
 /// The first element of `mine` that occurs more often there than in `theirs`.
 std::optional<std::size_t> firstSurplus(const std::vector<Hash>& mine, const std::vector<Hash>& theirs) {
   std::vector<Hash> a = mine, b = theirs;
@@ -124,6 +147,12 @@ std::string describe(const LatticeMesh& mesh, std::size_t v) {
          std::to_string(p[2]) + ")";
 }
 
+std::string describeCell(const LatticeMesh& mesh, std::size_t cell) {
+  std::string vertices;
+  for (const VertexId v : mesh.tetrahedra[cell]) vertices += (vertices.empty() ? "" : ", ") + describe(mesh, v);
+  return "cell " + std::to_string(cell) + " of " + vertices;
+}
+
 std::unexpected<Error> different(const std::string& what) {
   return fail(ErrorCode::kBadValue,
               what + "; the log does not hold this mesh: build it again from the input, and report it if it stays so");
@@ -139,11 +168,12 @@ Status sameShape(const LatticeMesh& decoded, const LatticeMesh& expected) {
     return different("decoded are " + counts(decoded) + ", expected " + counts(expected));
   }
   for (std::size_t f = 0; f < decoded.fields.size(); ++f) {
-    if (decoded.fields[f].name != expected.fields[f].name || decoded.fields[f].components != expected.fields[f].components) {
-      return different("field " + std::to_string(f) + " is " + decoded.fields[f].name + " with " +
-                       std::to_string(decoded.fields[f].components) + " components, expected " + expected.fields[f].name + " with " +
-                       std::to_string(expected.fields[f].components));
-    }
+    const auto shape = [f](const LatticeMesh& mesh) {
+      const FieldInfo& field = mesh.fields[f];
+      return field.name + " with " + std::to_string(field.components) + " components a " + field.association;
+    };
+    if (shape(decoded) != shape(expected))
+      return different("field " + std::to_string(f) + " is " + shape(decoded) + ", expected " + shape(expected));
   }
   return {};
 }
@@ -167,11 +197,12 @@ Result<VerifyReport> sameMesh(const LatticeMesh& decoded, const LatticeMesh& exp
 
   // Cells by what their vertices carry first: that names the cell at fault, which later rounds spread to its surroundings.
   const auto compareCells = [&]() -> Status {
-    const auto cell = firstSurplus(cellHashes(decoded, mine), cellHashes(expected, theirs));
-    if (!cell) return {};
-    std::string vertices;
-    for (const VertexId v : decoded.tetrahedra[*cell]) vertices += (vertices.empty() ? "" : ", ") + describe(decoded, v);
-    return different("cell " + std::to_string(*cell) + " of " + vertices + " is not expected, or not in this orientation");
+    const std::vector<Hash> mineCells = cellHashes(decoded, mine), theirCells = cellHashes(expected, theirs);
+    if (const auto cell = firstSurplus(mineCells, theirCells))
+      return different(describeCell(decoded, *cell) + " is not expected, or not in this orientation");
+    if (const auto cell = firstSurplus(withValues(decoded, mineCells), withValues(expected, theirCells)))
+      return different(describeCell(decoded, *cell) + " with its field values is not expected");
+    return {};
   };
   if (Status same = compareCells(); !same) return std::unexpected(same.error());
   for (int round = 0; round < kRounds; ++round) {

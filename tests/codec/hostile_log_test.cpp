@@ -21,7 +21,7 @@ Status decodeAll(const LogFile& log) {
   if (Status s = log.verifyChecksums(); !s) return s;
   Refiner refiner(log.index());
   std::vector<std::uint32_t> fields;
-  for (std::uint32_t f = 0; f < log.index().fieldComponents.size(); ++f) fields.push_back(f);
+  for (std::uint32_t f = 0; f < log.index().fields.size(); ++f) fields.push_back(f);
   for (std::uint32_t c = 0; c < log.index().chunks.size(); ++c)
     if (Status s = applyChunk(log, refiner, c, fields); !s) return s;
   return {};
@@ -138,7 +138,7 @@ TEST_F(HostileLog, aTableThatContradictsItselfIsRefused) {
   expectRefused(ErrorCode::kBadValue, [](LogIndex& i) { i.dependencies[0] = 1; });
   expectRefused(ErrorCode::kBadCodec, [](LogIndex& i) { i.chunks[1].valueCodec = static_cast<CodecId>(9); });
   expectRefused(ErrorCode::kBadCodec, [](LogIndex& i) { i.chunks[1].structureCodec = CodecId::kDraco; });
-  expectRefused(ErrorCode::kBadValue, [](LogIndex& i) { i.fieldComponents[0] = 17; });
+  expectRefused(ErrorCode::kBadValue, [](LogIndex& i) { i.fields[0].components = 17; });
   expectRefused(ErrorCode::kBadValue, [](LogIndex& i) { i.positionBits = 29; });
   expectRefused(ErrorCode::kBadVersion, [](LogIndex& i) { i.layout = Layout::kRegions; });
 }

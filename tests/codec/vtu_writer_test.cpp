@@ -51,6 +51,22 @@ TEST(VtuWriter, vtkReadsTheLatticeBack) {
   }
 }
 
+TEST(VtuWriter, cellFieldsAreCellData) {
+  LatticeMesh mesh = testing::gridMesh(3, 5);
+  testing::addCellFields(mesh);
+  const ReadMesh read = readBack(vtuBytes(mesh), "cells");
+  ASSERT_EQ(read.mesh.fields.size(), 4u);
+  for (std::size_t f = 2; f < 4; ++f) {
+    const FieldInfo& info = mesh.fields[f];
+    EXPECT_EQ(read.mesh.fields[f].name, info.name);
+    EXPECT_EQ(read.mesh.fields[f].association, "cell");
+    EXPECT_EQ(read.mesh.fields[f].type, info.type);
+    ASSERT_EQ(read.mesh.fields[f].values.size(), mesh.values[f].size());
+    for (std::size_t i = 0; i < mesh.values[f].size(); ++i)
+      ASSERT_EQ(read.mesh.fields[f].values[i], info.minimum[i % info.components] + info.step * mesh.values[f][i]);
+  }
+}
+
 TEST(VtuWriter, pointsBecomeDoublesWhereFloatsWouldMergeLatticePoints) {
   LatticeMesh mesh = testing::gridMesh(2, 1);
   mesh.lattice = {16, 1e-3, {100, 200, 300}};
@@ -66,21 +82,21 @@ TEST(VtuWriter, everyNumberTypeKeepsItsExtremes) {
   const std::vector<Tetrahedron> cells{{0, 1, 2, 3}};
   VtuMesh mesh{points, cells, true, {}};
   const double big = 9007199254740991.0;  // 2^53 - 1
-  mesh.fields = {{"i8", "int8", 1, {-128, 127, 0, 1}},
-                 {"u8", "uint8", 1, {0, 255, 1, 2}},
-                 {"i16", "int16", 1, {-32768, 32767, 0, 1}},
-                 {"u16", "uint16", 1, {0, 65535, 1, 2}},
-                 {"i32", "int32", 1, {-2147483648.0, 2147483647.0, 0, 1}},
-                 {"u32", "uint32", 1, {0, 4294967295.0, 1, 2}},
-                 {"i64", "int64", 1, {-big, big, 0, 1}},
-                 {"u64", "uint64", 1, {0, big, 1, 2}},
-                 {"f32", "float32", 1, {-1.5, 0.25, 3, 4}},
-                 {"f64", "float64", 2, {0.1, 0.2, 0.3, 1e300, -1e-300, 6, 7, 8}}};
+  mesh.pointFields = {{"i8", "int8", 1, {-128, 127, 0, 1}},
+                      {"u8", "uint8", 1, {0, 255, 1, 2}},
+                      {"i16", "int16", 1, {-32768, 32767, 0, 1}},
+                      {"u16", "uint16", 1, {0, 65535, 1, 2}},
+                      {"i32", "int32", 1, {-2147483648.0, 2147483647.0, 0, 1}},
+                      {"u32", "uint32", 1, {0, 4294967295.0, 1, 2}},
+                      {"i64", "int64", 1, {-big, big, 0, 1}},
+                      {"u64", "uint64", 1, {0, big, 1, 2}},
+                      {"f32", "float32", 1, {-1.5, 0.25, 3, 4}},
+                      {"f64", "float64", 2, {0.1, 0.2, 0.3, 1e300, -1e-300, 6, 7, 8}}};
   const ReadMesh read = readBack(vtuBytes(mesh), "types");
-  ASSERT_EQ(read.mesh.fields.size(), mesh.fields.size());
-  for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
-    EXPECT_EQ(read.mesh.fields[f].type, mesh.fields[f].type);
-    EXPECT_EQ(read.mesh.fields[f].values, mesh.fields[f].values) << mesh.fields[f].name;
+  ASSERT_EQ(read.mesh.fields.size(), mesh.pointFields.size());
+  for (std::size_t f = 0; f < mesh.pointFields.size(); ++f) {
+    EXPECT_EQ(read.mesh.fields[f].type, mesh.pointFields[f].type);
+    EXPECT_EQ(read.mesh.fields[f].values, mesh.pointFields[f].values) << mesh.pointFields[f].name;
   }
 }
 

@@ -46,7 +46,7 @@ qtet::ChunkEntry entryFrom(Source& in, std::uint32_t chunk, std::uint32_t& level
     e.endSlot = in.next() % 2 ? qtet::kLevelEnd : in.next();
     level = e.lastLevel + (e.endSlot == qtet::kLevelEnd);
   }
-  e.blocks.resize(3);
+  e.blocks.resize(4);
   return e;
 }
 
@@ -56,7 +56,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   Source in{{data, size}};
   qtet::LogIndex index;
   index.positionBits = 10;
-  index.fieldComponents = {2};
+  index.fields = {{2, qtet::Association::kPoint}, {1, qtet::Association::kCell}};
   std::uint32_t level = 1;
   for (std::uint32_t c = 0; c < 4; ++c) index.chunks.push_back(entryFrom(in, c, level));
   index.chunks[0].firstLevel = index.chunks[0].lastLevel = 0;
@@ -68,8 +68,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto status = refiner.apply(c, in.take(structure), positions);
     checkIds(refiner);
     if (!status) break;
-    std::vector<std::int32_t> values(std::size_t{index.chunks[c].values} * 2, in.next());
-    (void)refiner.applyField(0, c, values);
+    for (std::uint32_t f = 0; f < index.fields.size(); ++f) {
+      const std::uint32_t part = qtet::kFirstFieldPart + f;
+      (void)refiner.applyField(f, c, std::vector<std::int32_t>(std::size_t{index.tuples(c, part)} * index.components(part), in.next()));
+    }
   }
   return 0;
 }

@@ -76,7 +76,9 @@ void writeMustFail(const std::filesystem::path& folder, const Bytes& good) {
   write(folder / "bad-checksum.block.qtet", patched(good.size() - 7, static_cast<std::uint8_t>(good[good.size() - 7] ^ 16)));
   write(folder / "bad-value.position-bits.qtet", forged(good, [](LogIndex& i) { i.positionBits = 3; }));
   write(folder / "bad-value.lattice-too-small.qtet", forged(good, [](LogIndex& i) { i.positionBits = 6; }));
-  write(folder / "bad-value.field-components.qtet", forged(good, [](LogIndex& i) { i.fieldComponents[0] = 0; }));
+  write(folder / "bad-value.field-components.qtet", forged(good, [](LogIndex& i) { i.fields[0].components = 0; }));
+  write(folder / "bad-value.field-association.qtet", forged(good, [](LogIndex& i) { i.fields[0].association = static_cast<Association>(2); }));
+  write(folder / "bad-value.points-as-cells.qtet", forged(good, [](LogIndex& i) { i.fields[0].association = Association::kCell; }));
   write(folder / "bad-value.chunk-offset.qtet", entry(1, [](ChunkEntry& e) { e.offset += 8; }));
   write(folder / "bad-value.levels-backwards.qtet", entry(2, [](ChunkEntry& e) { e.firstLevel = 0; }));
   write(folder / "bad-value.depends-on-itself.qtet", forged(good, [](LogIndex& i) { i.dependencies[0] = 1; }));
@@ -105,6 +107,9 @@ int main(int argc, char** argv) {
   qtet::LatticeMesh bare = gridMesh(2, 4);
   bare.fields.clear(), bare.values.clear();
   qtet::write(folder / "valid" / "no-fields.qtet", qtet::logOf(bare, 32768));
+  qtet::LatticeMesh cells = gridMesh(3, 5);
+  qtet::testing::addCellFields(cells);
+  qtet::write(folder / "valid" / "cell-fields.qtet", qtet::logOf(cells, 800));
   qtet::writeMustFail(folder / "must-fail", solid);
   return 0;
 }

@@ -119,6 +119,36 @@ TEST(Manifest, limitsThemselvesAreAllowed) {
   expectRefused(json, "/fields/0/name");
 }
 
+TEST(Manifest, aPointFieldAndACellFieldMayShareAName) {
+  Json json = sampleJson();
+  json["fields"][1]["name"] = "density";
+  expectRefused(json, "/fields/1/name");
+  json["fields"][1]["association"] = "cell";
+  const Result<Manifest> read = manifestFromJson(json.dump());
+  ASSERT_TRUE(read) << read.error().text();
+  EXPECT_EQ(fieldKey(*read, 0), "density");
+  EXPECT_EQ(fieldKey(*read, 1), "cell:density");
+  json["fields"][1]["association"] = "corner";
+  expectRefused(json, "/fields/1/association");
+}
+
+TEST(Manifest, aFieldIsFoundByItsKey) {
+  Manifest m = sample();
+  m.fields[0].association = "cell";
+  m.fields.push_back(m.fields[0]);
+  m.fields[2].association = "point";
+  EXPECT_EQ(fieldOfKey(m, "density"), 2u);
+  EXPECT_EQ(fieldOfKey(m, "point:density"), 2u);
+  EXPECT_EQ(fieldOfKey(m, "cell:density"), 0u);
+  EXPECT_EQ(fieldOfKey(m, "velocity"), 1u);
+  EXPECT_EQ(fieldOfKey(m, "cell:velocity"), std::nullopt);
+  EXPECT_EQ(fieldOfKey(m, "cell:"), std::nullopt);
+  EXPECT_EQ(fieldOfKey(m, ""), std::nullopt);
+  m.fields.pop_back();
+  EXPECT_EQ(fieldOfKey(m, "density"), 0u);
+  for (std::uint32_t f = 0; f < m.fields.size(); ++f) EXPECT_EQ(fieldOfKey(m, fieldKey(m, f)), f);
+}
+
 TEST(Manifest, aLevelThatEndsBeforeTheOneBelowItIsRefused) {
   Json json = sampleJson();
   json["levels"][1]["chunk"] = 4;

@@ -65,7 +65,7 @@ Bytes rewritten(Change change) {
 }
 
 TEST(MeshStore, aManifestThatContradictsTheTableIsRefused) {
-  EXPECT_EQ(refusalOfDamaged(rewritten([](LogIndex& index) { index.fieldComponents[0] = 2; })), ErrorCode::kBadValue);
+  EXPECT_EQ(refusalOfDamaged(rewritten([](LogIndex& index) { index.fields[0].components = 2; })), ErrorCode::kBadValue);
   EXPECT_EQ(refusalOfDamaged(rewritten([](LogIndex& index) { index.manifest = "{}"; })), ErrorCode::kBadValue);
   EXPECT_EQ(refusalOfDamaged(rewritten([](LogIndex& index) {
               Manifest manifest = *manifestFromJson(index.manifest);

@@ -38,7 +38,7 @@ Built build(const SyntheticLog& options) {
   Built out;
   out.index.positionBits = 16;
   out.index.manifest = manifestToJson(manifest);
-  for (const ManifestField& field : manifest.fields) out.index.fieldComponents.push_back(field.components);
+  for (const ManifestField& field : manifest.fields) out.index.fields.push_back({field.components, Association::kPoint});
   for (std::uint32_t k = 0; k < options.chunks; ++k) {
     ChunkEntry chunk;
     chunk.firstLevel = chunk.lastLevel = k;

@@ -108,6 +108,17 @@ TEST(CleanMesh, unusedPointsTakeTheirValuesAlong) {
   EXPECT_EQ(mesh.fields[0].values, (std::vector<double>{0, 0.5, 1, 1.5, 3, 3.5, 4, 4.5}));
 }
 
+TEST(CleanMesh, droppedCellsTakeTheirValuesAlong) {
+  TetMesh mesh = twoCells();
+  mesh.tetrahedra = {{0, 1, 2, 3}, {0, 0, 1, 2}, {3, 2, 1, 0}, {1, 2, 3, 4}};
+  mesh.fields = {{"p", 1, "float32", {0, 1, 2, 3, 4}}, {"c", 2, "int32", {1, 10, 2, 20, 3, 30, 4, 40}, "cell"}};
+  const CleanReport report = cleaned(mesh);
+  EXPECT_EQ(report.repeatedVertexCells.count, 1u);
+  EXPECT_EQ(report.duplicateCells.count, 1u);
+  EXPECT_EQ(mesh.fields[0].values, (std::vector<double>{0, 1, 2, 3, 4}));
+  EXPECT_EQ(mesh.fields[1].values, (std::vector<double>{1, 10, 4, 40}));
+}
+
 TEST(CleanMesh, coincidentPointsAreOnlyReported) {
   TetMesh mesh = oneCell();
   mesh.points.insert(mesh.points.begin(), {7, 7, 7});  // unused: the numbers reported are those before it goes

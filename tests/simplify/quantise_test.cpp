@@ -21,7 +21,7 @@ QuantisedMesh quantised(const TetMesh& mesh, const QuantiseOptions& options = {}
   return out ? std::move(*out) : QuantisedMesh{};
 }
 
-QuantisedField field(const PointField& values, int bits) {
+QuantisedField field(const MeshField& values, int bits) {
   Result<QuantisedField> out = quantiseField(values, bits);
   EXPECT_TRUE(out);
   return out ? std::move(*out) : QuantisedField{};

@@ -77,7 +77,7 @@ TEST(ReadMesh, legacyFilesAreRead) {
   EXPECT_EQ(read->mesh.tetrahedra, (std::vector<Tetrahedron>{{0, 1, 2, 3}}));
   EXPECT_EQ(read->report.ignoredCells, 1u);
   ASSERT_EQ(read->mesh.fields.size(), 3u);
-  for (const PointField& field : read->mesh.fields) {
+  for (const MeshField& field : read->mesh.fields) {
     EXPECT_EQ(field.components, field.name == "v" ? 3u : 1u);
     EXPECT_EQ(field.type, field.name == "id" ? "int32" : field.name == "v" ? "float64" : "float32");
   }
@@ -92,21 +92,63 @@ TEST(ReadMesh, lowerDimensionsAreIgnoredWithACount) {
   ASSERT_EQ(read->report.notes.size(), 1u);
 }
 
-TEST(ReadMesh, cellFieldsAndTextsAreIgnoredWithANote) {
-  const std::string text = oneCellVtu(
-      "<DataArray type=\"Float32\" Name=\"big\" NumberOfComponents=\"17\" format=\"ascii\">" +
-          [] {
-            std::string values;
-            for (int i = 0; i < 68; ++i) values += "1 ";
-            return values;
-          }() +
-          "</DataArray>",
-      "<DataArray type=\"Int32\" Name=\"material\" format=\"ascii\">3</DataArray>");
-  const Result<ReadMesh> read = readMesh(fileWith("cell.vtu", text));
+TEST(ReadMesh, fieldsOfTooManyComponentsAreIgnoredWithANote) {
+  const auto wide = [](const std::string& name, int tuples) {
+    std::string values;
+    for (int i = 0; i < 17 * tuples; ++i) values += "1 ";
+    return "<DataArray type=\"Float32\" Name=\"" + name + "\" NumberOfComponents=\"17\" format=\"ascii\">" + values + "</DataArray>";
+  };
+  const Result<ReadMesh> read = readMesh(fileWith("wide.vtu", oneCellVtu(wide("big", 4), wide("bigger", 1))));
   ASSERT_TRUE(read) << read.error().text();
   EXPECT_TRUE(read->mesh.fields.empty());
-  EXPECT_EQ(read->report.ignoredFields, (std::vector<std::string>{"big", "material"}));
-  EXPECT_EQ(read->report.notes.size(), 2u);
+  EXPECT_EQ(read->report.ignoredFields, (std::vector<std::string>{"big", "bigger"}));
+  ASSERT_EQ(read->report.notes.size(), 2u);
+  EXPECT_NE(read->report.notes[1].find("cell field bigger"), std::string::npos);
+}
+
+/// Three tetrahedra with a line and a triangle between them, and the given cell fields.
+std::string mixedVtu(const std::string& cellData) {
+  return asciiVtu("0 0 0 1 0 0 0 1 0 0 0 1 1 1 1 2 2 2", "0 1 2 3 0 1 1 2 3 4 0 1 2 2 4 3 5", "4 6 10 13 17", "10 3 10 5 10", 6, 5,
+                  "<DataArray type=\"Float32\" Name=\"both\" format=\"ascii\">0 1 2 3 4 5</DataArray>", cellData);
+}
+
+const std::string kCellData =
+    "<DataArray type=\"Int32\" Name=\"material\" format=\"ascii\">10 11 12 13 14</DataArray>"
+    "<DataArray type=\"Float64\" Name=\"both\" NumberOfComponents=\"2\" format=\"ascii\">0 1 10 11 20 21 30 31 40 41</DataArray>";
+
+TEST(ReadMesh, cellFieldsAreThoseOfTheTetrahedra) {
+  const Result<ReadMesh> read = readMesh(fileWith("mixed.vtu", mixedVtu(kCellData)));
+  ASSERT_TRUE(read) << read.error().text();
+  ASSERT_EQ(read->mesh.tetrahedra.size(), 3u);
+  ASSERT_EQ(read->mesh.fields.size(), 3u);
+  EXPECT_FALSE(isCellField(read->mesh.fields[0]));
+  EXPECT_TRUE(isCellField(read->mesh.fields[1]));
+  EXPECT_EQ(read->mesh.fields[1].type, "int32");
+  EXPECT_EQ(read->mesh.fields[1].values, (std::vector<double>{10, 12, 14}));
+  EXPECT_TRUE(isCellField(read->mesh.fields[2]));
+  EXPECT_EQ(read->mesh.fields[2].values, (std::vector<double>{0, 1, 20, 21, 40, 41}));
+}
+
+TEST(ReadMesh, aNameMeansEveryFieldThatHasItUnlessItSaysWhich) {
+  const auto path = fileWith("names.vtu", mixedVtu(kCellData));
+  const auto associations = [&](const std::vector<std::string>& names) {
+    const Result<ReadMesh> read = readMesh(path, names);
+    EXPECT_TRUE(read) << read.error().text();
+    std::string out;
+    for (const MeshField& field : read->mesh.fields) out += field.association + " " + field.name + ", ";
+    return out;
+  };
+  EXPECT_EQ(associations({"both"}), "point both, cell both, ");
+  EXPECT_EQ(associations({"cell:both"}), "cell both, ");
+  EXPECT_EQ(associations({"point:both", "material"}), "point both, cell material, ");
+  EXPECT_EQ(associations({"cell:both", "both"}), "cell both, point both, ");
+  EXPECT_EQ(readMesh(path, std::vector<std::string>{"point:material"}).error().code, ErrorCode::kNotFound);
+}
+
+TEST(ReadMesh, cellIntegersThatADoubleCannotHoldAreRefused) {
+  const std::string ids = "<DataArray type=\"Int64\" Name=\"id\" format=\"ascii\">1 9007199254740993 2 3 9007199254740992</DataArray>";
+  EXPECT_EQ(refused("wide-cells.vtu", mixedVtu(ids), "cell 2"),
+            ErrorCode::kBadInput);  // the third tetrahedron; the line's value does not matter
 }
 
 TEST(ReadMesh, fieldsAreChosenByNameInTheOrderAsked) {

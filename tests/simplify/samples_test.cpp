@@ -78,7 +78,7 @@ TEST(Samples, everyNumberIsAFloat) {
     for (const Position& p : mesh.points) {
       for (const double x : p) ASSERT_TRUE(isFloat(x)) << sample.name << " " << x;
     }
-    for (const PointField& field : mesh.fields) {
+    for (const MeshField& field : mesh.fields) {
       for (const double value : field.values) ASSERT_TRUE(isFloat(value)) << sample.name << " " << field.name << " " << value;
     }
     const Bytes bytes = vtuBytes(mesh);

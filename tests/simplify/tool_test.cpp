@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -338,6 +339,57 @@ TEST_F(Tool, fieldsCanBeLeftOut) {
   EXPECT_TRUE(run("info none.qtet --json").json()["fields"].empty());
   EXPECT_EQ(run("verify none.qtet --against box.vtu").code, 0);
   expectFailure("simplify box.vtu -o x.qtet --fields Speed", 1, "it has: Scalar");
+}
+
+/// The box with a label a cell under the name of its point field, and a float.
+TetMesh boxWithCellFields() {
+  TetMesh mesh = boxSample();
+  MeshField labels{"Scalar", 1, "int32", {}, "cell"}, heights{"Height", 1, "float32", {}, "cell"};
+  for (const Tetrahedron& t : mesh.tetrahedra) {
+    labels.values.push_back(mesh.points[t[0]][0] > 0.5 ? 1000000 : -7);
+    heights.values.push_back(static_cast<float>(mesh.points[t[1]][2]));
+  }
+  mesh.fields.push_back(labels);
+  mesh.fields.push_back(heights);
+  return mesh;
+}
+
+TEST_F(Tool, cellFieldsComeBackCellForCell) {
+  const TetMesh mesh = boxWithCellFields();
+  write("cells.vtu", mesh);
+  const Ran made = run("simplify cells.vtu -o cells.qtet --json");
+  ASSERT_EQ(made.code, 0) << made.err;
+  for (const char* key : {"Scalar", "cell:Scalar", "Height"}) EXPECT_GT(made.json()["bitsPerTetrahedron"]["fields"][key], 0.0) << key;
+  const Ran verified = run("verify cells.qtet --against cells.vtu --json");
+  ASSERT_EQ(verified.code, 0) << verified.err;
+  EXPECT_EQ(verified.json()["against"]["largestFieldErrorSteps"]["cell:Scalar"], 0.0);
+  EXPECT_LE(verified.json()["against"]["largestFieldErrorSteps"]["Height"], 0.5 + 1e-9);
+  const nlohmann::json fields = run("info cells.qtet --json").json()["fields"];
+  EXPECT_EQ(fields[1]["name"], "Scalar");
+  EXPECT_EQ(fields[1]["association"], "cell");
+
+  ASSERT_EQ(run("extract cells.qtet --ratio 1 -o back.vtu").code, 0);
+  const Result<ReadMesh> back = readMesh(folder_ / "back.vtu");
+  ASSERT_TRUE(back) << back.error().text();
+  EXPECT_EQ(std::ranges::count(back->mesh.fields[1].values, 1000000), std::ranges::count(mesh.fields[1].values, 1000000));
+}
+
+TEST_F(Tool, cellFieldsAreChosenByName) {
+  write("cells.vtu", boxWithCellFields());
+  ASSERT_EQ(run("simplify cells.vtu -o cells.qtet --fields cell:Scalar").code, 0);
+  const nlohmann::json fields = run("info cells.qtet --json").json()["fields"];
+  ASSERT_EQ(fields.size(), 1u);
+  EXPECT_EQ(fields[0]["association"], "cell");
+  EXPECT_EQ(run("verify cells.qtet --against cells.vtu").code, 0);
+}
+
+TEST_F(Tool, verifyFindsAnotherCellValue) {
+  TetMesh mesh = boxWithCellFields();
+  write("cells.vtu", mesh);
+  ASSERT_EQ(run("simplify cells.vtu -o cells.qtet").code, 0);
+  mesh.fields[1].values[77] = mesh.fields[1].values[77] > 0 ? -7 : 1000000;
+  write("other.vtu", mesh);
+  expectFailure("verify cells.qtet --against other.vtu", 1, "with its field values is not expected");
 }
 
 TEST_F(Tool, aDirtyMeshIsCleanedReportedAndVerified) {

@@ -12,7 +12,11 @@
 namespace qtet {
 namespace {
 
-LatticeMesh small() { return testing::gridMesh(4, 2); }
+LatticeMesh small() {
+  LatticeMesh mesh = testing::gridMesh(4, 2);
+  testing::addCellFields(mesh);
+  return mesh;
+}
 
 /// The same mesh in another numbering, cells rotated evenly.
 LatticeMesh renumbered(const LatticeMesh& mesh, std::uint32_t seed) {
@@ -24,16 +28,24 @@ LatticeMesh renumbered(const LatticeMesh& mesh, std::uint32_t seed) {
   for (std::size_t v = 0; v < place.size(); ++v) {
     out.points[place[v]] = mesh.points[v];
     for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
+      if (isCellField(mesh.fields[f])) continue;
       for (std::size_t c = 0; c < mesh.fields[f].components; ++c) {
         out.values[f][place[v] * mesh.fields[f].components + c] = mesh.values[f][v * mesh.fields[f].components + c];
       }
     }
   }
-  for (Tetrahedron& cell : out.tetrahedra) {
+  std::vector<std::size_t> order(mesh.tetrahedra.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::shuffle(order.begin(), order.end(), random);
+  for (std::size_t t = 0; t < order.size(); ++t) {
+    Tetrahedron cell = mesh.tetrahedra[order[t]];
     for (VertexId& v : cell) v = place[v];
-    cell = random() % 2 ? Tetrahedron{cell[1], cell[2], cell[0], cell[3]} : Tetrahedron{cell[1], cell[0], cell[3], cell[2]};
+    out.tetrahedra[t] = random() % 2 ? Tetrahedron{cell[1], cell[2], cell[0], cell[3]} : Tetrahedron{cell[1], cell[0], cell[3], cell[2]};
+    for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
+      const std::size_t n = mesh.fields[f].components;
+      for (std::size_t c = 0; isCellField(mesh.fields[f]) && c < n; ++c) out.values[f][t * n + c] = mesh.values[f][order[t] * n + c];
+    }
   }
-  std::shuffle(out.tetrahedra.begin(), out.tetrahedra.end(), random);
   return out;
 }
 
@@ -69,6 +81,22 @@ TEST(SameMesh, anotherFieldIntegerIsFound) {
   expectDifferent(other, small(), "vertex 1 ");
 }
 
+TEST(SameMesh, anotherCellValueIsFound) {
+  LatticeMesh other = small();
+  ++other.values[3][2 * 40 + 1];
+  expectDifferent(other, small(), "cell 40 of vertex");
+}
+
+TEST(SameMesh, twoCellsThatExchangedTheirValuesAreFound) {
+  const LatticeMesh mesh = small();
+  LatticeMesh other = mesh;
+  std::vector<std::int32_t>& regions = other.values[2];
+  const auto at = std::ranges::find_if(regions, [&](std::int32_t region) { return region != regions[0]; });
+  ASSERT_NE(at, regions.end());
+  std::swap(regions[0], *at);
+  expectDifferent(other, mesh, "with its field values");
+}
+
 TEST(SameMesh, anInvertedCellIsFound) {
   const LatticeMesh mesh = small();
   for (std::size_t cell = 0; cell < mesh.tetrahedra.size(); cell += 17) {
@@ -91,6 +119,9 @@ TEST(SameMesh, countsAndFieldsAreCompared) {
   other = small();
   other.fields[0].name = "Depth";
   expectDifferent(other, small(), "field 0 is Depth");
+  other = small();
+  other.fields[3].association = "point";
+  expectDifferent(other, small(), "components a point");
 }
 
 /// A slit: two sheets of points at the same places, each used by the cells of its own side.
@@ -126,6 +157,19 @@ TEST(PutOnLattice, agreesWithTheQuantiser) {
   EXPECT_EQ(put->mesh.points, quantised->mesh.points);
   EXPECT_EQ(put->mesh.values, quantised->mesh.values);
   EXPECT_LE(put->largestPositionError, 0.5 + 1e-9);
+}
+
+TEST(PutOnLattice, fieldsAreFoundByNameAndAssociation) {
+  TetMesh mesh = boxSample();
+  mesh.fields.push_back({mesh.fields[0].name, 1, "int16", {}, "cell"});
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) mesh.fields[1].values.push_back(static_cast<double>(t % 7) - 3);
+  const Result<QuantisedMesh> quantised = quantise(mesh);
+  ASSERT_TRUE(quantised);
+  const Result<OnLattice> put = putOnLattice(mesh, quantised->mesh.lattice, quantised->mesh.fields);
+  ASSERT_TRUE(put) << put.error().text();
+  EXPECT_EQ(put->mesh.values, quantised->mesh.values);
+  EXPECT_EQ(put->largestFieldErrors[1], 0);
+  EXPECT_EQ(quantised->mesh.fields[1].association, "cell");
 }
 
 TEST(PutOnLattice, aLatticeOfAnotherMeshIsRefused) {

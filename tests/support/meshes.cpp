@@ -48,6 +48,7 @@ void dropUnused(LatticeMesh& mesh) {
   mesh.points.clear();
   for (const VertexId v : kept) mesh.points.push_back(old.points[v]);
   for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
+    if (isCellField(mesh.fields[f])) continue;
     const auto n = static_cast<std::ptrdiff_t>(mesh.fields[f].components);
     mesh.values[f].clear();
     for (const VertexId v : kept) mesh.values[f].insert(mesh.values[f].end(), old.values[f].begin() + v * n, old.values[f].begin() + (v + 1) * n);
@@ -85,6 +86,21 @@ LatticeMesh gridMesh(int n, std::uint32_t seed, const std::function<bool(int, in
   return mesh;
 }
 
+void addCellFields(LatticeMesh& mesh) {
+  mesh.fields.push_back({"Region", 1, "uint8", "cell", 4, 1, {1}, {1, 9}});
+  mesh.fields.push_back({"Height", 2, "float32", "cell", 12, 0.5, {-1, 2}, {0, 900}});
+  std::vector<std::int32_t>& regions = mesh.values.emplace_back();
+  std::vector<std::int32_t>& heights = mesh.values.emplace_back();
+  for (const Tetrahedron& t : mesh.tetrahedra) {
+    std::array<std::int32_t, 3> sum{};
+    for (const VertexId v : t)
+      for (std::size_t a = 0; a < 3; ++a) sum[a] += mesh.points[v][a];
+    regions.push_back((sum[0] > 6 * kCube) + 3 * (sum[2] > 9 * kCube));
+    heights.push_back((sum[0] + sum[1]) / 4);
+    heights.push_back((sum[2] * 7 + sum[1]) % 4096);
+  }
+}
+
 LatticeMesh meshOfHistory(const FusionHistory& history, std::uint32_t undone) {
   FusionHistory h = history;
   for (std::size_t i = h.fusions.size(); i-- > 0;) {
@@ -99,11 +115,18 @@ LatticeMesh meshOfHistory(const FusionHistory& history, std::uint32_t undone) {
   mesh.points = h.points;
   mesh.fields = h.fields;
   mesh.values = h.values;
+  for (std::size_t f = 0; f < mesh.fields.size(); ++f)
+    if (isCellField(mesh.fields[f])) mesh.values[f].clear();
   for (std::size_t c = 0; c < h.cells.size(); ++c) {
     if (!h.live[c]) continue;
     const auto ghost = static_cast<std::size_t>(std::ranges::find(h.cells[c], kGhost) - h.cells[c].begin());
     if (ghost == 4) {
       mesh.tetrahedra.push_back(h.cells[c]);
+      for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
+        if (!isCellField(mesh.fields[f])) continue;
+        const std::size_t n = mesh.fields[f].components;
+        for (std::size_t i = 0; i < n; ++i) mesh.values[f].push_back(h.values[f][c * n + i]);
+      }
     } else {
       const auto face = withLast(h.cells[c], ghost);
       mesh.boundary.push_back({face[0], face[1], face[2]});

@@ -16,6 +16,9 @@ namespace qtet::testing {
 /// and "Swirl" (a vector).
 [[nodiscard]] LatticeMesh gridMesh(int n, std::uint32_t seed, const std::function<bool(int, int, int)>& keep = [](int, int, int) { return true; });
 
+/// Adds two cell fields to a gridMesh: "Region" (labels of blocks) and "Height" (two components; a point field has the same name).
+void addCellFields(LatticeMesh& mesh);
+
 /// The mesh that is left of a history after its last `undone` levels have been taken back, in the history's numbering.
 [[nodiscard]] LatticeMesh meshOfHistory(const FusionHistory& history, std::uint32_t undone);
 

@@ -69,7 +69,7 @@ export class Assembler {
   }
 
   private decode(chunk: number, part: number, bytes: Uint8Array, components: number): Int32Array {
-    const count = this.codec.blockValues(chunk);
+    const count = this.codec.blockValues(chunk, part);
     if (count === 0 && bytes.length === 0) return new Int32Array(0);
     const id = this.codec.blockCodec(chunk, part);
     if (id !== kDracoCodec) throw new QtetError('bad-codec', `Chunk ${chunk} uses codec ${id}, which this viewer does not know.`);

@@ -7,7 +7,8 @@ export interface Codec {
   open(head: Uint8Array): void;
   readonly chunkCount: number;
   blockSize(chunk: number, part: number): number;
-  blockValues(chunk: number): number;
+  /** Tuples of a value block. */
+  blockValues(chunk: number, part: number): number;
   blockCodec(chunk: number, part: number): number;
   /** Throws `bad-checksum` when the bytes are not the block's. */
   checkBlock(chunk: number, part: number, bytes: Uint8Array): void;
@@ -23,7 +24,7 @@ export interface Codec {
   points(): Int32Array;
   tetrahedra(): Uint32Array;
   boundary(): Uint32Array;
-  /** Null while the field has no chunk. */
+  /** A tuple a vertex, or a tetrahedron of a cell field; null while the field has no chunk. */
   field(field: number, components: number): Int32Array | null;
   /** SHA-256 of the mesh, lower-case hexadecimal. */
   digest(): string;
@@ -31,6 +32,8 @@ export interface Codec {
 
 /** CodecId of codec/log_index.h. */
 export const kDracoCodec = 2;
+/** Association of codec/log_index.h. */
+const kOfCells = 1;
 
 /** Names by ErrorCode of proto/error.h. */
 const kErrorCodes = [
@@ -47,7 +50,8 @@ interface Exports {
   qtet_error(): number;
   qtet_chunk_count(): number;
   qtet_block_size(chunk: number, part: number): number;
-  qtet_block_values(chunk: number): number;
+  qtet_block_values(chunk: number, part: number): number;
+  qtet_field_association(field: number): number;
   qtet_block_codec(chunk: number, part: number): number;
   qtet_check_block(chunk: number, part: number, bytes: number, size: number): number;
   qtet_apply(chunk: number, structure: number, size: number, positions: number, count: number): number;
@@ -81,7 +85,7 @@ export class WasmCodec implements Codec {
 
   get chunkCount(): number { return this.wasm.qtet_chunk_count() >>> 0; }
   blockSize(chunk: number, part: number): number { return this.wasm.qtet_block_size(chunk, part) >>> 0; }
-  blockValues(chunk: number): number { return this.wasm.qtet_block_values(chunk) >>> 0; }
+  blockValues(chunk: number, part: number): number { return this.wasm.qtet_block_values(chunk, part) >>> 0; }
   blockCodec(chunk: number, part: number): number { return this.wasm.qtet_block_codec(chunk, part) >>> 0; }
 
   checkBlock(chunk: number, part: number, bytes: Uint8Array): void {
@@ -113,7 +117,8 @@ export class WasmCodec implements Codec {
   }
   field(field: number, components: number): Int32Array | null {
     const address = this.wasm.qtet_field(field) >>> 0;
-    return address === 0 ? null : new Int32Array(this.wasm.memory.buffer, address, components * this.vertexCount);
+    const tuples = this.wasm.qtet_field_association(field) === kOfCells ? this.tetrahedronCount : this.vertexCount;
+    return address === 0 ? null : new Int32Array(this.wasm.memory.buffer, address, components * tuples);
   }
 
   digest(): string {

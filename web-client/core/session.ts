@@ -142,7 +142,7 @@ export class Session implements TransportHandlers {
   private chooseField(): void {
     const fields = this.assembler.manifest!.fields;
     const usable = fields.findIndex((field) => field.association === 'point');
-    const named = fields.findIndex((field) => field.name === this.source.field);
+    const named = fields.findIndex((field) => field.association === 'point' && field.name === this.source.field);
     this.field = named >= 0 ? named : usable;
     this.publisher.show(this.field);
   }

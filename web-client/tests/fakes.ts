@@ -38,17 +38,20 @@ export function frame(options: {stream: number; chunk?: number; firstPart?: numb
 
 export interface FakeLog {
   fields: string[];
+  /** Behind the point fields. */
+  cellFields?: string[];
   chunks: number;
 }
 
 /** Every block of a fake log is 10 bytes. */
 export const kFakeBlockBytes = 10;
 
-export function fakeHead({fields, chunks}: FakeLog): Uint8Array {
+export function fakeHead({fields, cellFields = [], chunks}: FakeLog): Uint8Array {
+  const info = (association: string) => (name: string) =>
+    ({name, components: 1, type: 'float32', association, bits: 8, step: 1, minimum: [0], range: [0, 255]});
   const manifest = new TextEncoder().encode(JSON.stringify({
     generator: 'fake', layout: 'stream', source: 'fake.vtu', lattice: {bits: 16, step: 1, origin: [0, 0, 0]},
-    fields: fields.map((name) => (
-      {name, components: 1, type: 'float32', association: 'point', bits: 8, step: 1, minimum: [0], range: [0, 255]})),
+    fields: [...fields.map(info('point')), ...cellFields.map(info('cell'))],
     levels: Array.from({length: chunks}, (_, level) => (
       {level, tetrahedra: level + 1, vertices: level + 4, boundaryTriangles: 4, chunk: level})),
   }));

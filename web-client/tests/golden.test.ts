@@ -1,6 +1,7 @@
 // The golden files, judged by the WebAssembly codec as tests/codec/golden_test.cpp judges them natively. Needs the built codec:
 // QTET_WASM names it (ctest does); without it these tests are skipped.
 
+import {createHash} from 'node:crypto';
 import {readdirSync, readFileSync} from 'node:fs';
 import {createRequire} from 'node:module';
 import {describe, expect, test} from 'vitest';
@@ -18,8 +19,14 @@ const kLengthOnly = ['truncated.last-byte.qtet', 'bad-value.one-byte-too-many.qt
 
 const compile = (path: string): Promise<WebAssembly.Module> => WebAssembly.compile(readFileSync(path));
 
-/** Decodes a whole log block by block, as the worker does; gives the mesh digest or throws. */
-async function decode(log: Uint8Array): Promise<string> {
+/** Digests of the finest mesh (codec/FORMAT.md, "Digests"). */
+interface Digests {
+  mesh: string;
+  fields: string[];
+}
+
+/** Decodes a whole log block by block, as the worker does, or throws. */
+async function decode(log: Uint8Array): Promise<Digests> {
   const codec = await WasmCodec.create(await compile(wasm));
   const draco = await DracoValueDecoder.create(await compile(createRequire(import.meta.url).resolve('draco3d/draco_decoder.wasm')));
   const assembler = new Assembler(codec, draco);
@@ -34,18 +41,25 @@ async function decode(log: Uint8Array): Promise<string> {
     assembler.take({stream: 1, chunk, firstPart: 0, parts, payload: log.subarray(at, end)});
     at = end;
   }
-  return codec.digest();
+  const fields = assembler.manifest!.fields.map(({components}, i) =>
+    createHash('sha256').update(codec.field(i, components)!).digest('hex'));
+  return {mesh: codec.digest(), fields};
 }
+
+/** "DIGEST  NAME" a line, as sha256sum writes. */
+const digestsIn = (file: string): Map<string, string> => new Map(readFileSync(new URL(file, kGolden), 'utf8').trim().split('\n')
+  .map((line) => line.split(/\s+/).reverse() as [string, string]));
 
 const filesIn = (folder: string): string[] => readdirSync(new URL(folder, kGolden)).sort();
 const read = (path: string): Uint8Array => new Uint8Array(readFileSync(new URL(path, kGolden)));
 
 describe.skipIf(wasm === '')('golden files', () => {
-  const digests = new Map(readFileSync(new URL('digests.txt', kGolden), 'utf8').trim().split('\n')
-    .map((line) => line.split(/\s+/).reverse() as [string, string]));
+  const digests = digestsIn('digests.txt'), fieldDigests = digestsIn('field-digests.txt');
 
-  test.each(filesIn('valid'))('valid %s decodesToItsDigest', async (name) => {
-    expect(await decode(read(`valid/${name}`))).toBe(digests.get(name));
+  test.each(filesIn('valid'))('valid %s decodesToItsDigests', async (name) => {
+    const decoded = await decode(read(`valid/${name}`));
+    expect(decoded.mesh).toBe(digests.get(name));
+    decoded.fields.forEach((digest, i) => expect(digest, `field ${i}`).toBe(fieldDigests.get(`${name}/${i}`)));
   });
 
   test.each(filesIn('must-fail').filter((name) => !kLengthOnly.includes(name)))('broken %s failsWithTheCodeInItsName', async (name) => {

@@ -157,6 +157,13 @@ describe('fields', () => {
     expect(opens()[1]).toMatchObject({fields: ['p'], have: {chunks: 0}});
   });
 
+  test('aCellFieldIsNotShownAndTheFirstPointFieldIsAskedForInstead', () => {
+    const socket = start({field: 'tissue'});
+    expect(opens()[0]).toMatchObject({fields: ['tissue']});
+    socket.deliver(headFrame(1, {...kLog, cellFields: ['tissue']}));
+    expect(opens()[1]).toMatchObject({fields: ['p'], have: {chunks: 0}});
+  });
+
   test('anUnknownFieldIsReportedAndTheFirstOneShown', () => {
     const socket = start({field: 'nope'});
     socket.deliver('{"type":"error","code":"unknown-field","detail":"no nope"}');
