@@ -55,7 +55,7 @@ TetMesh meshNamed(const std::string& name) {
 
 std::vector<std::string> defaultNames() {
   const char* folder = std::getenv("QTET_DATA");
-  if (!folder) return {"box", "fin"};
+  if (!folder || *folder == 0) return {"box", "fin"};
   std::vector<std::string> out;
   for (const auto& entry : std::filesystem::directory_iterator(folder))
     if (entry.path().extension() == ".vtu") out.push_back(entry.path().string());
