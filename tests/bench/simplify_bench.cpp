@@ -17,6 +17,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -187,11 +188,14 @@ void growth(const Request& request) {
 }
 
 double numberAfter(const std::vector<std::string>& words, std::size_t& i, double low, double high) {
-  const std::string option = words[i];
+  const std::string& option = words[i];
   char* end = nullptr;
   const double value = i + 1 < words.size() ? std::strtod(words[i + 1].c_str(), &end) : 0;
-  if (!end || *end != '\0' || !(value >= low && value <= high))
-    throw std::runtime_error(option + " needs a number from " + std::to_string(low) + " to " + std::to_string(high));
+  if (!end || *end != '\0' || !(value >= low && value <= high)) {
+    std::ostringstream message;
+    message << option << " needs a number from " << low << " to " << high;
+    throw std::runtime_error(message.str());
+  }
   ++i;
   return value;
 }
