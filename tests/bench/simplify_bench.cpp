@@ -12,7 +12,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -22,7 +21,6 @@
 #include <string>
 #include <vector>
 
-#include "codec/atomic_file.h"
 #include "simplify/clean_mesh.h"
 #include "simplify/qtetfusion.h"
 #include "simplify/quantise.h"
