@@ -3,6 +3,7 @@
 
 MESH ?=
 PORT ?= 8080
+RESULTS ?=
 export MESH PORT
 
 BUILD := build/release
@@ -14,7 +15,7 @@ SHELL := /bin/bash
 .ONESHELL:
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
-.PHONY: help setup build demo demo-port demo-log test bench clean
+.PHONY: help setup build demo demo-port demo-log test bench results clean
 .DEFAULT_GOAL := help
 
 help:
@@ -25,6 +26,7 @@ help:
 	make build                 build only: build/release/bin/qtet and qtet-server
 	make setup                 install the Debian packages of .ci/packages.txt that are missing (asks sudo if not root)
 	make bench                 build and run the benchmarks
+	make results               compare with VTK's decimation: QTET_DATA=folder of .vtu, QTET_JUDGE=program; RESULTS="--jobs 2 --sets a,b"
 	make clean                 remove build/
 	JOBS=N                     compile N files at a time (now $(JOBS))
 	END
@@ -158,6 +160,11 @@ bench: setup build
 	  echo "== $$program"
 	  "$$program"
 	done
+
+# tests/bench/RESULTS.md. What is known already is kept in build/results, so it may be stopped and started again.
+results: TARGETS := --target qtet vtk_decimate
+results: setup build
+	@python3 tests/bench/results.py --cache build/results $(RESULTS)
 
 clean:
 	@rm -rf build
