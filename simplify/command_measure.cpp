@@ -9,11 +9,10 @@
 
 namespace qtet {
 
-std::pair<std::string, double> parseNamedError(const std::string& option, const std::string& text) {
+std::pair<std::string, double> parseNamedNumber(const std::string& option, const std::string& text, const std::string& meaning) {
   const std::size_t equals = text.rfind('=');
   const auto refuse = [&](const std::string& what) -> UsageError {
-    return UsageError("--" + option + " '" + text + "' " + what +
-                      "; write NAME=E, a field's name and a fraction of its range such as Density=0.01");
+    return UsageError("--" + option + " '" + text + "' " + what + "; write " + meaning);
   };
   if (equals == std::string::npos || equals == 0) throw refuse("names no field");
   double error = 0;
@@ -21,6 +20,10 @@ std::pair<std::string, double> parseNamedError(const std::string& option, const 
   const auto read = std::from_chars(text.data() + equals + 1, end, error);
   if (read.ec != std::errc() || read.ptr != end || !std::isfinite(error) || error < 0) throw refuse("has no number of 0 or above");
   return {text.substr(0, equals), error};
+}
+
+std::pair<std::string, double> parseNamedError(const std::string& option, const std::string& text) {
+  return parseNamedNumber(option, text, "NAME=E, a field's name and a fraction of its range such as Density=0.01");
 }
 
 void addMeasureOptions(boost::program_options::options_description& options) {

@@ -11,7 +11,9 @@
 
 namespace qtet {
 
-/// A field's name and a fraction of its range, 0 or above, from "NAME=E"; the last '=' counts. Throws UsageError.
+/// A name and a number of 0 or above from "NAME=E"; the last '=' counts. `meaning` tells what to write instead. Throws UsageError.
+[[nodiscard]] std::pair<std::string, double> parseNamedNumber(const std::string& option, const std::string& text, const std::string& meaning);
+/// The same for a field's name and a fraction of its range.
 [[nodiscard]] std::pair<std::string, double> parseNamedError(const std::string& option, const std::string& text);
 
 void addMeasureOptions(boost::program_options::options_description& options);

@@ -9,23 +9,20 @@
 #include "proto/limits.h"
 #include "proto/manifest.h"
 #include "simplify/clean_mesh.h"
+#include "simplify/command_fusion.h"
 #include "simplify/command_line.h"
 #include "simplify/command_measure.h"
 #include "simplify/progress.h"
-#include "simplify/qtetfusion.h"
-#include "simplify/quantise.h"
 #include "simplify/read_mesh.h"
 
 namespace qtet {
 namespace {
 
-constexpr int kMaxThreads = 1024;
-
 struct Request {
   std::string input, output;
   FieldNames fields;
   QuantiseOptions quantise;
-  FusionOptions fusion;
+  FusionRequest fusion;
   std::optional<MeasureOptions> measure;
 };
 
@@ -50,8 +47,7 @@ Request requestOf(const ParsedWords& parsed) {
   request.fields = parseFields(parsed.get<std::string>("fields"));
   request.quantise.positionBits = parsed.integer("position-bits", kMinPositionBits, kMaxPositionBits);
   request.quantise.fieldBits = parsed.integer("field-bits", kMinFieldBits, kMaxFieldBits);
-  request.fusion.targetRatio = parsed.number("target-ratio", 0, 1);
-  request.fusion.threads = parsed.integer("threads", 1, kMaxThreads);
+  request.fusion = fusionRequestOf(parsed);
   request.measure = measureOptionsOf(parsed);
   return request;
 }
@@ -120,11 +116,13 @@ struct Prepared {
   ReadReport read;
   CleanReport clean;
   QuantisedMesh quantised;
+  std::vector<std::string> fusionNotes;
 
   [[nodiscard]] std::vector<std::string> notes() const {
     std::vector<std::string> out = read.notes;
     for (const std::string& sentence : clean.sentences()) out.push_back(sentence);
     out.insert(out.end(), quantised.report.notes.begin(), quantised.report.notes.end());
+    out.insert(out.end(), fusionNotes.begin(), fusionNotes.end());
     return out;
   }
 };
@@ -158,7 +156,7 @@ Result<std::vector<LevelError>> measure(const Request& request, FusionHistory& h
   if (!request.measure) return {};
   progress.stage("measuring");
   MeasureOptions options = *request.measure;
-  options.threads = request.fusion.threads;
+  options.threads = request.fusion.options.threads;
   options.progress = [&](double fraction) { progress.update(fraction); };
   Result<std::vector<LevelError>> errors = measureLevels(history, options);
   watch.lap("measure");
@@ -166,11 +164,12 @@ Result<std::vector<LevelError>> measure(const Request& request, FusionHistory& h
 }
 
 /// Simplifies, measures, encodes and writes.
-Result<EncodedLog> makeLog(const Request& request, const LatticeMesh& mesh, Progress& progress, Stopwatch& watch) {
+Result<EncodedLog> makeLog(const Request& request, Prepared& prepared, Progress& progress, Stopwatch& watch) {
   progress.stage("simplifying");
-  FusionOptions fusion = request.fusion;
-  fusion.progress = [&](double fraction) { progress.update(fraction); };
-  Result<FusionHistory> history = simplify(mesh, fusion);
+  Result<FusionOptions> fusion = fusionOptionsFor(request.fusion, prepared.quantised, prepared.fusionNotes);
+  if (!fusion) return std::unexpected(fusion.error());
+  fusion->progress = [&](double fraction) { progress.update(fraction); };
+  Result<FusionHistory> history = simplify(prepared.quantised.mesh, *fusion);
   if (!history) return std::unexpected(history.error());
   watch.lap("simplify");
   const Result<std::vector<LevelError>> errors = measure(request, *history, progress, watch);
@@ -180,7 +179,7 @@ Result<EncodedLog> makeLog(const Request& request, const LatticeMesh& mesh, Prog
   LogWriterOptions options;
   options.source = std::filesystem::path(request.input).filename().string();
   options.generator = "qtet " QTET_VERSION;
-  options.progress = fusion.progress;
+  options.progress = fusion->progress;
   options.errors = *errors;
   Result<EncodedLog> log = encodeLog(*history, options);
   if (!log) return log;
@@ -226,9 +225,9 @@ Result<OrderedJson> reportOf(const Request& request, const Prepared& prepared, c
 
 Result<OrderedJson> run(const Request& request, Progress& progress) {
   Stopwatch watch;
-  const Result<Prepared> prepared = prepare(request, progress, watch);
+  Result<Prepared> prepared = prepare(request, progress, watch);
   if (!prepared) return std::unexpected(prepared.error());
-  const Result<EncodedLog> log = makeLog(request, prepared->quantised.mesh, progress, watch);
+  const Result<EncodedLog> log = makeLog(request, *prepared, progress, watch);
   if (!log) return std::unexpected(log.error());
   return reportOf(request, *prepared, *log, watch);
 }
@@ -257,8 +256,8 @@ int runSimplify(const Words& words, Console& console) {
       "position-bits", po::value<int>()->default_value(16),
       "bits of the lattice an axis, 4 to 28; raised where a cell would be flattened or inverted")(
       "field-bits", po::value<int>()->default_value(12), "bits of a float field's values, 1 to 28; integer fields are stored exactly")(
-      "target-ratio", po::value<double>()->default_value(0.01, "0.01"), "stop when the base mesh has this fraction of the tetrahedra")(
-      "threads", po::value<int>()->default_value(1), "threads; the result does not depend on it")("json", "print one JSON object");
+      "json", "print one JSON object");
+  addFusionOptions(options);
   addMeasureOptions(options);
   const ParsedWords parsed(
       words,

@@ -110,10 +110,22 @@ void FusionCost::addFields(const LatticeMesh& lattice) {
   }
 }
 
-// Over each boundary triangle: the hull's distance, and the fields' gradients in the triangle with the weight of a thin layer.
+// Over each boundary triangle: the hull's distance, and the fields' gradients in the triangle with the weight of a thin layer. Interfaces between regions
+// count like the boundary.
 void FusionCost::addSurface(const LatticeMesh& lattice, double hullFactor) {
+  addTriangles(lattice.boundary, hullFactor);
+  if (!mesh_.hasRegions()) return;
+  std::vector<Triangle> interfaces;
+  FaceGroups(lattice.tetrahedra).forEach([&](std::span<const FaceSide> sides) {
+    if (sides.size() == 2 && mesh_.region(cellOf(sides[0])) != mesh_.region(cellOf(sides[1])))
+      interfaces.push_back(cellFace(lattice.tetrahedra[cellOf(sides[0])], oppositeCornerOf(sides[0])));
+  });
+  addTriangles(interfaces, hullFactor);
+}
+
+void FusionCost::addTriangles(std::span<const Triangle> triangles, double hullFactor) {
   std::vector<Vector3> gradients(components_);
-  for (const Triangle& t : lattice.boundary) {
+  for (const Triangle& t : triangles) {
     const Vector3 p = mesh_.position(t[0]);
     const Vector3 e1 = mesh_.position(t[1]) - p, e2 = mesh_.position(t[2]) - p;
     const Vector3 n = cross(e1, e2);

@@ -42,6 +42,8 @@ class FusionCost {
     double scale = 1;  ///< of an integer of the field to the unit that residuals are measured in
   };
   [[nodiscard]] std::span<const Part> parts() const { return parts_; }
+  /// Of the bounding box, in lattice steps.
+  [[nodiscard]] double diagonal() const { return diagonal_; }
   [[nodiscard]] std::size_t components() const { return components_; }
 
   /// The best values at p, within the fields' limits, in the cost's unit (components() numbers), and E there.
@@ -70,6 +72,7 @@ class FusionCost {
   void takeValues(const LatticeMesh& lattice);
   void addFields(const LatticeMesh& lattice);
   void addSurface(const LatticeMesh& lattice, double hullFactor);
+  void addTriangles(std::span<const Triangle> triangles, double hullFactor);
   void addSlopes(std::span<const VertexId> corners, std::span<const Vector3> slopes, double weight, Symmetric3 a);
   void addPlanes(const LatticeMesh& lattice);
   [[nodiscard]] std::size_t at(VertexId v) const { return slot_[v] * stride_; }

@@ -9,7 +9,8 @@
 
 namespace qtet {
 
-FusionMesh::FusionMesh(const LatticeMesh& mesh) : liveTetrahedra_(mesh.tetrahedra.size()) {
+FusionMesh::FusionMesh(const LatticeMesh& mesh, std::size_t regionField)
+    : regionField_(regionField), firstGhost_(static_cast<CellId>(mesh.tetrahedra.size())), liveTetrahedra_(mesh.tetrahedra.size()) {
   history_.lattice = mesh.lattice;
   history_.fields = mesh.fields;
   history_.points = mesh.points;
@@ -25,6 +26,7 @@ FusionMesh::FusionMesh(const LatticeMesh& mesh) : liveTetrahedra_(mesh.tetrahedr
   aliveVertex_.assign(mesh.points.size(), 1);
   buildStars();
   findSingular();
+  if (hasRegions()) findInterfaces();
 }
 
 void FusionMesh::buildStars() {
@@ -54,6 +56,16 @@ void FusionMesh::findSingular() {
     }
     singular_[v] = !link.close() || !link.isSphere();
   }
+}
+
+void FusionMesh::findInterfaces() {
+  onInterface_.assign(history_.points.size(), 0);
+  std::vector<std::int64_t> first(history_.points.size(), kOutside);
+  for (CellId c = 0; c < firstGhost_; ++c)
+    for (const VertexId v : history_.cells[c]) {
+      if (first[v] == kOutside) first[v] = region(c);
+      onInterface_[v] |= first[v] != region(c);
+    }
 }
 
 // The prey vertex that the fused one would equal in place and values, or -1.
@@ -101,21 +113,29 @@ void FusionMesh::removeFromStar(VertexId v, CellId c) {
   --livePool_;
 }
 
-VertexId FusionMesh::fuse(const Prey& prey, const LatticePoint& point, std::span<const std::int32_t> values, const Star& star,
-                          std::uint32_t level) {
-  record(prey, preyAt(prey, point, values), star, level);
+// The boundary triangles that stay get the bound of the whole star.
+void FusionMesh::pushOutside(const Star& star, float outside) {
+  if (outside_.empty()) outside_.assign(history_.cells.size() - firstGhost_, 0);
+  for (const CellId c : star.affected)
+    if (c >= firstGhost_) outside_[c - firstGhost_] = outside;
+}
+
+VertexId FusionMesh::fuse(const Prey& prey, const FusedVertex& what, const Star& star, std::uint32_t level) {
+  record(prey, preyAt(prey, what.point, what.values), star, level);
+  if (what.outside > 0) pushOutside(star, what.outside);
   const VertexId fused = history_.fusions.back().fused;
-  history_.points.push_back(point);
+  history_.points.push_back(what.point);
   std::size_t first = 0;
   for (std::size_t f = 0; f < history_.fields.size(); ++f) {
     if (isCellField(history_.fields[f])) continue;
-    const auto own = values.subspan(first, history_.fields[f].components);
+    const auto own = what.values.subspan(first, history_.fields[f].components);
     history_.values[f].insert(history_.values[f].end(), own.begin(), own.end());
     first += own.size();
   }
-  bool boundary = false;
+  bool boundary = false, interface = false;
   for (const VertexId v : prey.vertices()) {
     boundary |= onBoundary_[v] != 0;
+    interface |= hasRegions() && onInterface_[v];
     aliveVertex_[v] = 0;
     livePool_ -= stars_[v].size;
     stars_[v].size = 0;
@@ -132,6 +152,7 @@ VertexId FusionMesh::fuse(const Prey& prey, const LatticePoint& point, std::span
     if (!ghost) --liveTetrahedra_;
   }
   onBoundary_.push_back(boundary);
+  if (hasRegions()) onInterface_.push_back(interface);
   singular_.push_back(0);
   aliveVertex_.push_back(1);
   stars_.push_back({pool_.size(), static_cast<std::uint32_t>(star.affected.size())});

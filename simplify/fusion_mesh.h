@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -20,10 +21,6 @@ struct Prey {
   [[nodiscard]] std::span<const VertexId> vertices() const { return {vertex.data(), k}; }
 };
 
-[[nodiscard]] inline Vector3 toVector(const LatticePoint& p) {
-  return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
-}
-
 /// The cells of a prey's star and the star's other vertices, kGhost among them where the prey touches the boundary.
 struct Star {
   std::vector<CellId> affected, deleted;
@@ -31,10 +28,22 @@ struct Star {
   std::vector<VertexId> link;
 };
 
+/// What a prey becomes.
+struct FusedVertex {
+  LatticePoint point{};
+  std::span<const std::int32_t> values;  ///< the integers of every point field, one field after the other
+  float outside = 0;                     ///< how far the boundary round it may lie outside the original solid, in lattice steps
+};
+
 class FusionMesh {
  public:
+  static constexpr std::size_t kNoRegions = ~std::size_t{0};
+  /// The region of a ghost cell.
+  static constexpr std::int64_t kOutside = std::numeric_limits<std::int64_t>::min();
+
+  /// `regionField`: the cell field of one component whose values are regions to be kept apart.
   /// REQUIRES: a clean mesh (consistent orientation, no face of three cells) whose boundary is boundaryOf(tetrahedra).
-  explicit FusionMesh(const LatticeMesh& mesh);
+  explicit FusionMesh(const LatticeMesh& mesh, std::size_t regionField = kNoRegions);
 
   [[nodiscard]] std::size_t vertexSlots() const { return history_.points.size(); }
   [[nodiscard]] bool alive(VertexId v) const { return aliveVertex_[v]; }
@@ -50,6 +59,18 @@ class FusionMesh {
     for (const CellId c : star(v)) __builtin_prefetch(&history_.cells[c]);
   }
   void prefetchPoint(VertexId v) const { __builtin_prefetch(&history_.points[v]); }
+  [[nodiscard]] bool hasRegions() const { return regionField_ != kNoRegions; }
+  /// REQUIRES: hasRegions().
+  [[nodiscard]] std::int64_t region(CellId c) const {
+    const auto& values = history_.values[regionField_];
+    return c < values.size() ? values[c] : kOutside;
+  }
+  /// Two regions meet at v. REQUIRES: hasRegions().
+  [[nodiscard]] bool onInterface(VertexId v) const { return onInterface_[v]; }
+  /// On the boundary or, where there are regions, between two of them: what the vertex stands for is a surface.
+  [[nodiscard]] bool onSurface(VertexId v) const { return onBoundary_[v] || (hasRegions() && onInterface_[v]); }
+  /// How far boundary triangle `c` may lie outside the original solid, in lattice steps. REQUIRES: a ghost cell.
+  [[nodiscard]] float outside(CellId c) const { return outside_.empty() ? 0 : outside_[c - firstGhost_]; }
   [[nodiscard]] std::size_t liveTetrahedra() const { return liveTetrahedra_; }
   [[nodiscard]] int latticeBits() const { return history_.lattice.bits; }
   [[nodiscard]] std::span<const FieldInfo> fields() const { return history_.fields; }
@@ -58,9 +79,8 @@ class FusionMesh {
     return std::span(history_.values[field]).subspan(v * n, n);
   }
 
-  /// Fuses the prey at `point` with `values`, the integers of every point field one after the other. REQUIRES: legal (FusionTest), `star`
-  /// the prey's. Returns the fused vertex.
-  VertexId fuse(const Prey& prey, const LatticePoint& point, std::span<const std::int32_t> values, const Star& star, std::uint32_t level);
+  /// Fuses the prey. REQUIRES: legal (FusionTest), `star` the prey's. Returns the fused vertex.
+  VertexId fuse(const Prey& prey, const FusedVertex& fused, const Star& star, std::uint32_t level);
 
   [[nodiscard]] FusionHistory takeHistory(std::uint32_t levels);
 
@@ -78,7 +98,13 @@ class FusionMesh {
   void compactPool();
 
   FusionHistory history_;
-  std::vector<std::uint8_t> aliveVertex_, onBoundary_, singular_;
+  void findInterfaces();
+  void pushOutside(const Star& star, float outside);
+
+  std::size_t regionField_;
+  CellId firstGhost_;
+  std::vector<float> outside_;  // by ghost cell; empty while nothing has left the original solid
+  std::vector<std::uint8_t> aliveVertex_, onBoundary_, onInterface_, singular_;
   std::vector<StarRange> stars_;
   std::vector<CellId> pool_;  // stars back to back, with holes
   std::size_t livePool_ = 0;

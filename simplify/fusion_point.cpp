@@ -21,20 +21,21 @@ LatticePoint rounded(const Vector3& p) {
 
 }  // namespace
 
-// The barycentre of the prey vertices that matter: those on the boundary where there are any. Relative to the first.
-Vector3 FusionPointFinder::centre(const Prey& prey, bool& boundary) const {
-  std::size_t count = 0;
-  for (const VertexId v : prey.vertices()) count += mesh_.onBoundary(v);
-  boundary = count > 0;
-  Vector3 sum{};
-  for (const VertexId v : prey.vertices())
-    if (!boundary || mesh_.onBoundary(v)) sum = sum + (mesh_.position(v) - mesh_.position(prey.vertex[0]));
-  return (1.0 / static_cast<double>(boundary ? count : prey.k)) * sum;
+// The prey vertices that decide: those on the boundary where there are any, else those between regions, else all.
+FusionPointFinder::Deciding FusionPointFinder::deciding(const Prey& prey) const {
+  Deciding out;
+  std::size_t boundary = 0, surface = 0;
+  for (const VertexId v : prey.vertices()) boundary += mesh_.onBoundary(v), surface += mesh_.onSurface(v);
+  out.boundary = boundary > 0;
+  for (std::size_t i = 0; i < prey.k; ++i)
+    if (surface == 0 || (boundary > 0 ? mesh_.onBoundary(prey.vertex[i]) : mesh_.onSurface(prey.vertex[i]))) out.vertex[out.count++] = prey.vertex[i];
+  for (std::size_t i = 0; i < out.count; ++i) out.centre = out.centre + (mesh_.position(out.vertex[i]) - mesh_.position(prey.vertex[0]));
+  out.centre = (1.0 / static_cast<double>(out.count)) * out.centre;
+  return out;
 }
 
 FusionPointFinder::Ideal FusionPointFinder::idealOf(const Prey& prey, const Quadric& quadric) const {
-  bool boundary = false;
-  const Vector3 middle = centre(prey, boundary);
+  const Vector3 middle = deciding(prey).centre;
   if (const auto minimum = quadric.minimum(middle, cost_.pull(quadric, prey))) {
     double radius = 0;
     for (const VertexId v : prey.vertices()) {
@@ -59,15 +60,15 @@ void FusionPointFinder::offerChoices(const Prey& prey, const FusionTest& test) {
   choices_.clear();
   quadric_ = cost_.of(prey);
   origin_ = mesh_.position(prey.vertex[0]);
-  bool boundary = false;
-  const Vector3 middle = origin_ + centre(prey, boundary);
+  const Deciding deciding = this->deciding(prey);
+  const Vector3 middle = origin_ + deciding.centre;
   const Vector3 best = origin_ + idealOf(prey, quadric_).offset;
   for (const Vector3& p : {best, 0.5 * (best + middle), middle}) {
     LatticePoint inside = rounded(p);
-    if (!boundary || test.projectInside(p, inside)) offer(inside);
+    if (!deciding.boundary || test.projectInside(p, inside)) offer(inside);
   }
-  for (const VertexId v : prey.vertices())
-    if (!boundary || (mesh_.onBoundary(v) && test.insideEnvelope(mesh_.point(v)))) offer(mesh_.point(v));
+  for (std::size_t i = 0; i < deciding.count; ++i)
+    if (const LatticePoint& p = mesh_.point(deciding.vertex[i]); !deciding.boundary || test.insideEnvelope(p)) offer(p);
 }
 
 std::optional<FusionPoint> FusionPointFinder::find(const Prey& prey, const FusionTest& test) {
@@ -80,8 +81,9 @@ std::optional<FusionPoint> FusionPointFinder::find(const Prey& prey, const Fusio
     const double shape = test.shapeAt(choice.point);
     if (shape < 0) continue;
     const double cost = choice.cost * (shape < wanted ? 1 + shapeWeight_ * (wanted / std::max(shape, kFlat) - 1) : 1);
-    if (!found || cost < found->cost) found = FusionPoint{choice.point, cost};
+    if (!found || cost < found->cost) found = FusionPoint{choice.point, cost, 0};
   }
+  if (found) found->outside = test.outsideAt(found->point);
   return found;
 }
 

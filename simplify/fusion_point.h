@@ -11,7 +11,8 @@ namespace qtet {
 
 struct FusionPoint {
   LatticePoint point{};
-  double cost = 0;  ///< the shape's share included
+  double cost = 0;    ///< the shape's share included
+  float outside = 0;  ///< FusedVertex::outside
 };
 
 class FusionPointFinder {
@@ -35,7 +36,13 @@ class FusionPointFinder {
     double cost;
   };
 
-  [[nodiscard]] Vector3 centre(const Prey& prey, bool& boundary) const;
+  struct Deciding {
+    std::array<VertexId, 4> vertex{};
+    std::size_t count = 0;
+    bool boundary = false;
+    Vector3 centre{};  // relative to prey.vertex[0]
+  };
+  [[nodiscard]] Deciding deciding(const Prey& prey) const;
   [[nodiscard]] Ideal idealOf(const Prey& prey, const Quadric& quadric) const;
   void offer(const LatticePoint& p);
   void offerChoices(const Prey& prey, const FusionTest& test);

@@ -48,7 +48,8 @@ void FusionProposer::propose(VertexId owner, VertexId partner, std::uint32_t lev
   const double factor = kCostFactor[larger.k];
   if (!place || factor * place->cost >= where->cost || !test_.keepsTopology()) return;
   out.prey = larger;
-  out.where = {place->point, factor * place->cost};
+  out.where = *place;
+  out.where.cost *= factor;
   out.star = test_.star();
 }
 

@@ -6,6 +6,8 @@
 #include "codec/growing_mesh.h"
 #include "codec/predicates.h"
 #include "simplify/full_link_test.h"
+#include "simplify/measure_geometry.h"
+#include "simplify/region_test.h"
 
 namespace qtet {
 namespace {
@@ -14,8 +16,6 @@ namespace {
 constexpr std::size_t kMaxStarCells = 400;
 // A new cell's shape may fall to a fifth of the worst of its star, or to the floor, whichever is lower.
 constexpr double kShapeLoss = 0.2;
-// Cosine of the largest angle that the normal of a boundary triangle may turn by in one fusion.
-constexpr double kNormalCosine = 0.3;
 // Steps of the projection into the envelope; the last ones keep a distance that rounding to the lattice cannot use up.
 constexpr int kProjections = 8;
 constexpr int kExactProjections = 4;
@@ -34,10 +34,10 @@ double shapeSquared(double volume6, double squares) { return kShapeSquared * vol
 
 }  // namespace
 
-FusionTest::FusionTest(const FusionMesh& mesh, double shapeFloor)
-    : mesh_(mesh), shapeFloor_(shapeFloor),
+FusionTest::FusionTest(const FusionMesh& mesh, const FusionLimits& limits)
+    : mesh_(mesh), limits_(limits),
       rounding_(mesh.latticeBits() <= kExactBits ? 0 : std::ldexp(1.0, 3 * mesh.latticeBits() + kRoundingLog)),
-      full_(std::make_unique<FullLinkTest>()) {}
+      full_(std::make_unique<FullLinkTest>()), regions_(std::make_unique<RegionTest>()) {}
 FusionTest::~FusionTest() = default;
 FusionTest::FusionTest(FusionTest&&) noexcept = default;
 
@@ -82,7 +82,7 @@ bool FusionTest::gather(const Prey& prey) {
         star_.affected.push_back(c);
         star_.labels.push_back(static_cast<std::uint8_t>(i));
       }
-      addCell(cell, local, shared, at);
+      addCell(c, local, shared, at);
     }
   if (star_.affected.size() > kMaxStarCells) return false;
   star_.link.assign(vertices_.ids().begin() + prey.k, vertices_.ids().end());
@@ -90,7 +90,8 @@ bool FusionTest::gather(const Prey& prey) {
   return true;
 }
 
-void FusionTest::addCell(const std::array<VertexId, 4>& cell, const std::array<std::uint32_t, 4>& local, int shared, std::size_t at) {
+void FusionTest::addCell(CellId c, const std::array<std::uint32_t, 4>& local, int shared, std::size_t at) {
+  const auto& cell = mesh_.cell(c);
   std::uint8_t side = 0;
   for (const std::uint32_t v : local)
     if (v < prey_.k) side |= static_cast<std::uint8_t>(1u << v);
@@ -108,7 +109,7 @@ void FusionTest::addCell(const std::array<VertexId, 4>& cell, const std::array<s
   else if (prey_.k == 2)
     ring_.push_back({others[0], others[1]});
   if (ghost != kNoGhost)
-    ghosts_.push_back({withLast(local, ghost), shared == 1});
+    ghosts_.push_back({withLast(local, ghost), c, shared == 1});
   else if (shared > 1)
     goingCells_.push_back(local);
 }
@@ -120,7 +121,7 @@ void FusionTest::measure() {
   const std::uint32_t ghost = ghosts_.empty() ? ~0u : ghosts_[0].local[3];
   for (std::size_t i = 0; i < turned_.size(); ++i)
     if (turned_[i][0] != ghost && turned_[i][1] != ghost && turned_[i][2] != ghost) addBase(turned_[i], i);
-  for (const GhostCell& g : ghosts_) addFace(g.local, g.stays);
+  for (const GhostCell& g : ghosts_) addFace(g);
   measureShape();
 }
 
@@ -138,17 +139,16 @@ void FusionTest::addBase(const std::array<std::uint32_t, 4>& local, std::size_t 
   bases_.push_back(base);
 }
 
-void FusionTest::addFace(std::array<std::uint32_t, 4> f, bool stays) {
-  Face face;
-  const Vector3 ab = places_[f[1]] - places_[f[0]];
-  face.normal = cross(ab, places_[f[2]] - places_[f[0]]);
-  face.height = dot(face.normal, places_[f[0]]);
-  for (std::size_t i = 0; i < 3; ++i) face.vertex[i] = vertices_.ids()[f[i]];
-  face.stays = stays;
-  if (face.stays) {
+void FusionTest::addFace(const GhostCell& ghost) {
+  auto f = ghost.local;
+  if (ghost.stays)
     while (f[2] >= prey_.k) f = {f[1], f[2], f[0], f[3]};
-    face.first = places_[f[0]], face.second = places_[f[1]];
-  }
+  Face face;
+  for (std::size_t i = 0; i < 3; ++i) face.vertex[i] = vertices_.ids()[f[i]], face.corner[i] = places_[f[i]];
+  face.normal = cross(face.corner[1] - face.corner[0], face.corner[2] - face.corner[0]);
+  face.height = dot(face.normal, face.corner[0]);
+  face.outside = mesh_.outside(ghost.cell);
+  face.stays = ghost.stays;
   faces_.push_back(face);
 }
 
@@ -168,18 +168,19 @@ void FusionTest::measureShape() {
     worst = std::min(worst, volume > 0 ? shapeSquared(volume, squares) : 0);
   }
   oldShape_ = std::sqrt(worst);
-  const double floor = std::min(shapeFloor_, kShapeLoss * oldShape_);
+  const double floor = std::min(limits_.shapeFloor, kShapeLoss * oldShape_);
   floorSquared_ = floor * floor;
 }
 
 double FusionTest::shapeAt(const LatticePoint& p) const {
   const Vector3 d = toVector(p) - mesh_.position(prey_.vertex[0]);
   for (const Face& face : faces_) {
-    if (!face.stays) continue;
-    const Vector3 normal = cross(face.second - face.first, d - face.first);
+    if (!face.stays || limits_.normalCosine < 0) continue;
+    const Vector3 normal = cross(face.corner[1] - face.corner[0], d - face.corner[0]);
     const double along = dot(normal, face.normal);
     if (dot(face.normal, face.normal) == 0) continue;
-    if (along <= 0 || along * along <= kNormalCosine * kNormalCosine * dot(normal, normal) * dot(face.normal, face.normal)) return -1;
+    const double least = limits_.normalCosine;
+    if (along <= 0 || along * along <= least * least * dot(normal, normal) * dot(face.normal, face.normal)) return -1;
   }
   const double distance = 3 * dot(d, d);
   double worst = 1;
@@ -210,8 +211,24 @@ bool FusionTest::flatAsBefore(const Base& base, const LatticePoint& p) const {
 // `d` = p relative to the first prey vertex.
 bool FusionTest::isOutside(const Face& face, const Vector3& d, const LatticePoint& p) const {
   const double side = dot(face.normal, d) - face.height;
-  if (std::abs(side) > rounding_ || rounding_ == 0) return side > 0;
-  return orientation(mesh_.point(face.vertex[0]), mesh_.point(face.vertex[1]), mesh_.point(face.vertex[2]), p) > 0;
+  const bool beyond = std::abs(side) > rounding_ || rounding_ == 0
+                          ? side > 0
+                          : orientation(mesh_.point(face.vertex[0]), mesh_.point(face.vertex[1]), mesh_.point(face.vertex[2]), p) > 0;
+  return beyond && (limits_.envelopeTolerance == 0 || distance(face, d) + face.outside > limits_.envelopeTolerance);
+}
+
+// From d to the triangle. The convex hull of both is all that the solid gains there, and no point of it is further away.
+double FusionTest::distance(const Face& face, const Vector3& d) { return std::sqrt(nearestOnTriangle(d, face.corner).squared); }
+
+float FusionTest::outsideAt(const LatticePoint& p) const {
+  if (limits_.envelopeTolerance == 0) return 0;
+  const Vector3 d = toVector(p) - mesh_.position(prey_.vertex[0]);
+  double most = 0;
+  for (const Face& face : faces_) {
+    const bool beyond = dot(face.normal, d) - face.height > -rounding_;
+    most = std::max(most, face.outside + (beyond ? distance(face, d) : 0));
+  }
+  return static_cast<float>(most);
 }
 
 bool FusionTest::insideEnvelope(const LatticePoint& p) const {
@@ -229,7 +246,7 @@ bool FusionTest::projectInside(Vector3 p, LatticePoint& inside) const {
     for (const Face& face : faces_) {
       if (!isOutside(face, d, inside)) continue;
       const double length = std::sqrt(dot(face.normal, face.normal));
-      const double outside = (dot(face.normal, p - origin) - face.height) / length;
+      const double outside = (dot(face.normal, p - origin) - face.height) / length - std::max(0.0, limits_.envelopeTolerance - face.outside);
       if (std::abs(outside) > farthest) farthest = std::abs(outside), back = (outside / length) * face.normal;
       if (step >= kExactProjections) back = back + (kRoundingReach / length) * face.normal;
     }
@@ -239,7 +256,10 @@ bool FusionTest::projectInside(Vector3 p, LatticePoint& inside) const {
   return false;
 }
 
-bool FusionTest::keepsTopology() { return prey_.k == 2 ? edgeKeepsTopology() : full_->passes(mesh_, prey_, star_); }
+bool FusionTest::keepsTopology() {
+  if (prey_.k == 2 ? !edgeKeepsTopology() : !full_->passes(mesh_, prey_, star_)) return false;
+  return !mesh_.hasRegions() || regions_->passes(mesh_, prey_, star_);
+}
 
 // The link condition of Dey, Edelsbrunner, Guha and Nekhayev in the complex completed by the ghost: the links of the two vertices meet in the
 // edge's link and nowhere else. That link is one cycle, since neither vertex is singular.

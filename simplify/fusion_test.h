@@ -13,12 +13,21 @@
 namespace qtet {
 
 class FullLinkTest;
+class RegionTest;
+
+struct FusionLimits {
+  /// No new cell may be shaped worse than this or than a fifth of its star's worst, whichever is lower.
+  double shapeFloor = 0;
+  /// How far the boundary may leave the original solid, all fusions together, in lattice steps.
+  double envelopeTolerance = 0;
+  /// Cosine of the largest angle by which a boundary triangle may turn in one fusion; negative: any.
+  double normalCosine = -1;
+};
 
 /// One thread's own; the mesh may be shared while nobody fuses.
 class FusionTest {
  public:
-  /// `shapeFloor`: no new cell may be shaped worse than this or than a fifth of its star's worst, whichever is lower.
-  explicit FusionTest(const FusionMesh& mesh, double shapeFloor = 0);
+  explicit FusionTest(const FusionMesh& mesh, const FusionLimits& limits = {});
   ~FusionTest();
   FusionTest(FusionTest&&) noexcept;
   FusionTest& operator=(FusionTest&&) = delete;
@@ -28,12 +37,14 @@ class FusionTest {
   /// Keeps topology: of the solid, of its boundary, and of every component of either; and the log can describe it. REQUIRES gather.
   [[nodiscard]] bool keepsTopology();
 
-  /// p lies on the inner side of (or on) every boundary face of the star. REQUIRES gather.
+  /// p lies on the inner side of (or on) every boundary face of the star, or within what is left of the tolerance. REQUIRES gather.
   [[nodiscard]] bool insideEnvelope(const LatticePoint& p) const;
   /// Moves p onto the planes of the boundary faces that it lies outside of, one after the other, until its lattice point is inside.
   [[nodiscard]] bool projectInside(Vector3 p, LatticePoint& inside) const;
+  /// How far the star's boundary may lie outside the original solid with the prey at p, in lattice steps. REQUIRES gather, p inside the envelope.
+  [[nodiscard]] float outsideAt(const LatticePoint& p) const;
   /// The worst shape among the affected cells with the prey at p (1 = regular, 0 = flat), or a negative number where p is not legal: a cell
-  /// would flip or be squashed, or a boundary triangle turn by more than a right angle's four fifths. REQUIRES gather.
+  /// would flip or be squashed, or a boundary triangle turn too far. REQUIRES gather.
   [[nodiscard]] double shapeAt(const LatticePoint& p) const;
   /// The worst shape in the star as it is. REQUIRES gather.
   [[nodiscard]] double oldShape() const { return oldShape_; }
@@ -51,29 +62,33 @@ class FusionTest {
   };
   struct GhostCell {
     std::array<std::uint32_t, 4> local;  // the ghost last
-    bool stays;                          // is affected
+    CellId cell;
+    bool stays;  // is affected
   };
   // A boundary triangle of the star, counter-clockwise seen from outside.
   struct Face {
     Vector3 normal;
     double height;
     std::array<VertexId, 3> vertex;
-    Vector3 first, second;  // the edge that stays, of an affected face
+    std::array<Vector3, 3> corner;  // of an affected face the one that moves is the last
+    double outside;                 // FusionMesh::outside
     bool stays = false;
   };
 
-  void addCell(const std::array<VertexId, 4>& cell, const std::array<std::uint32_t, 4>& local, int shared, std::size_t at);
+  void addCell(CellId c, const std::array<std::uint32_t, 4>& local, int shared, std::size_t at);
   void addBase(const std::array<std::uint32_t, 4>& local, std::size_t apex);
-  void addFace(std::array<std::uint32_t, 4> local, bool stays);
+  void addFace(const GhostCell& ghost);
   void measure();
   void measureShape();
   [[nodiscard]] bool edgeKeepsTopology();
   [[nodiscard]] bool hasCommonChord();
   [[nodiscard]] bool isOutside(const Face& face, const Vector3& d, const LatticePoint& p) const;
+  [[nodiscard]] static double distance(const Face& face, const Vector3& d);
   [[nodiscard]] bool flatAsBefore(const Base& base, const LatticePoint& p) const;
 
   const FusionMesh& mesh_;
-  double shapeFloor_, rounding_;
+  FusionLimits limits_;
+  double rounding_;
   Prey prey_;
   Star star_;
   LocalVertices vertices_;
@@ -90,6 +105,7 @@ class FusionTest {
   std::vector<std::array<std::uint32_t, 2>> ringNeighbours_;
   std::vector<std::array<std::uint32_t, 2>> chords_;
   std::unique_ptr<FullLinkTest> full_;
+  std::unique_ptr<RegionTest> regions_;
 };
 
 }  // namespace qtet

@@ -14,7 +14,7 @@ constexpr double kFewestParts = 2, kMostParts = 16;
 
 }  // namespace
 
-void followFusion(const MeasuredMesh& mesh, const Fusion& fusion, const Point3& at, NearestTriangle& nearest) {
+void followFusion(const MeasuredMesh& mesh, const Fusion& fusion, const Vector3& at, NearestTriangle& nearest) {
   nearest = {};
   for (const std::uint32_t cell : mesh.affected(fusion))
     if (mesh.isGhost(cell)) mesh.boundaryTree().tryTriangle(at, cell, nearest);
@@ -22,7 +22,7 @@ void followFusion(const MeasuredMesh& mesh, const Fusion& fusion, const Point3& 
 
 BoundaryMeter::BoundaryMeter(const MeasuredMesh& mesh, const BoundaryOptions& options) : mesh_(mesh), options_(options) {
   const FusionHistory& history = mesh.history();
-  const auto onIt = [](const Point3& at, std::uint32_t ghost) { return Followed{at, {ghost, {0, {}}}}; };
+  const auto onIt = [](const Vector3& at, std::uint32_t ghost) { return Followed{at, {ghost, {0, {}}}}; };
   for (const Sample& s : samplesOnSurface(history.points, history.cells, mesh.originalBoundary(), options.samples, options.seed))
     samples_.push_back(onIt(s.at, s.cell));
   triangleBounds_.assign(mesh.originalBoundary().size(), 0);
@@ -30,7 +30,7 @@ BoundaryMeter::BoundaryMeter(const MeasuredMesh& mesh, const BoundaryOptions& op
   for (const std::uint32_t ghost : mesh.originalBoundary())
     for (std::size_t corner = 0; corner < 3; ++corner) {
       const VertexId v = history.cells[ghost][corner];
-      if (!met[v]) vertices_.push_back(onIt(toPoint3(history.points[v]), ghost));
+      if (!met[v]) vertices_.push_back(onIt(toVector(history.points[v]), ghost));
       met[v] = 1;
     }
 }
@@ -84,19 +84,19 @@ OneSidedDistance BoundaryMeter::toLevel() {
 
 double BoundaryMeter::farthestOnTriangle(std::uint32_t ghost, int parts, double enough) const {
   const FusionHistory& history = mesh_.history();
-  std::array<Point3, 3> corners;
-  for (std::size_t c = 0; c < 3; ++c) corners[c] = toPoint3(history.points[history.cells[ghost][c]]);
+  std::array<Vector3, 3> corners;
+  for (std::size_t c = 0; c < 3; ++c) corners[c] = toVector(history.points[history.cells[ghost][c]]);
   std::uint32_t guess = mesh_.originalTriangle(ghost);  // it lay there once
-  const auto squaredAt = [&](const Point3& at, double limit) {
+  const auto squaredAt = [&](const Vector3& at, double limit) {
     NearestTriangle nearest;
     mesh_.originalTree().tryTriangle(at, guess, nearest);
     mesh_.originalTree().nearest(at, nearest, limit);
     guess = nearest.triangle;
     return nearest.point.squared;
   };
-  const Point3 middle = blend(corners, {1 / 3.0, 1 / 3.0, 1 / 3.0});
+  const Vector3 middle = blend(corners, {1 / 3.0, 1 / 3.0, 1 / 3.0});
   double radius = 0;
-  for (const Point3& corner : corners) radius = std::max(radius, dot(corner - middle, corner - middle));
+  for (const Vector3& corner : corners) radius = std::max(radius, dot(corner - middle, corner - middle));
   radius = std::sqrt(radius);
   // No point of the triangle is further than its middle by more than the radius: small triangles near the original are done with here.
   const double spare = std::sqrt(enough) - radius;

@@ -34,7 +34,7 @@ class BoundaryMeter {
 
  private:
   struct Followed {
-    Point3 at;
+    Vector3 at;
     NearestTriangle nearest;
   };
 
@@ -51,6 +51,6 @@ class BoundaryMeter {
 };
 
 /// `nearest` made the nearest among the triangles that the fusion has put in the place of its own. REQUIRES: the fusion holds nearest's triangle.
-void followFusion(const MeasuredMesh& mesh, const Fusion& fusion, const Point3& at, NearestTriangle& nearest);
+void followFusion(const MeasuredMesh& mesh, const Fusion& fusion, const Vector3& at, NearestTriangle& nearest);
 
 }  // namespace qtet

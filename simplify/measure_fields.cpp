@@ -15,15 +15,15 @@ namespace {
 constexpr double kRounding = 1e-9;
 
 /// Barycentric coordinates of p; false where the cell is flat or where one coordinate is not above `least`.
-bool weightsIn(const std::array<Point3, 4>& corners, const Point3& p, double least, std::array<double, 4>& weights) {
-  const Point3 ab = corners[1] - corners[0], ac = corners[2] - corners[0], ad = corners[3] - corners[0], ap = p - corners[0];
-  const Point3 acad = cross(ac, ad);
+bool weightsIn(const std::array<Vector3, 4>& corners, const Vector3& p, double least, std::array<double, 4>& weights) {
+  const Vector3 ab = corners[1] - corners[0], ac = corners[2] - corners[0], ad = corners[3] - corners[0], ap = p - corners[0];
+  const Vector3 acad = cross(ac, ad);
   const double volume = dot(ab, acad);
   if (volume == 0) return false;
   const double scale = 1 / volume;
   weights[1] = dot(ap, acad) * scale;
   if (!(weights[1] > least)) return false;
-  const Point3 abap = cross(ab, ap);
+  const Vector3 abap = cross(ab, ap);
   weights[2] = dot(abap, ad) * scale;
   weights[3] = dot(abap, ac) * -scale;
   weights[0] = 1 - weights[1] - weights[2] - weights[3];
@@ -57,7 +57,7 @@ void FieldMeter::addVertices(std::vector<std::uint8_t> isOriginal) {
     for (std::size_t i = 0; i < 4; ++i) {
       const VertexId v = history.cells[id][i];
       if (std::exchange(isOriginal[v], std::uint8_t{0}) == 0 || met++ % step != 0) continue;
-      places_.push_back({{toPoint3(history.points[v]), id, {}}, {}, id});
+      places_.push_back({{toVector(history.points[v]), id, {}}, {}, id});
       places_.back().sample.weights[i] = 1;
     }
 }
@@ -136,8 +136,8 @@ bool FieldMeter::findIn(const Fusion& fusion, Place& place) const {
         mayLeave = true;
         continue;
       }
-      std::array<Point3, 4> corners;
-      for (std::size_t i = 0; i < 4; ++i) corners[i] = toPoint3(history.points[cell[i]]);
+      std::array<Vector3, 4> corners;
+      for (std::size_t i = 0; i < 4; ++i) corners[i] = toVector(history.points[cell[i]]);
       if (!weightsIn(corners, place.sample.at, std::max(least, best), weights)) continue;
       best = *std::ranges::min_element(weights);
       place.sample.cell = id;

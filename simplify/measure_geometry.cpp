@@ -3,16 +3,16 @@
 namespace qtet {
 namespace {
 
-NearestPoint at(const Point3& p, const std::array<Point3, 3>& triangle, const std::array<double, 3>& weights) {
-  const Point3 apart = p - blend(triangle, weights);
+NearestPoint at(const Vector3& p, const std::array<Vector3, 3>& triangle, const std::array<double, 3>& weights) {
+  const Vector3 apart = p - blend(triangle, weights);
   return {dot(apart, apart), weights};
 }
 
 }  // namespace
 
-NearestPoint nearestOnTriangle(const Point3& p, const std::array<Point3, 3>& triangle) {
-  const Point3 ab = triangle[1] - triangle[0], ac = triangle[2] - triangle[0];
-  const Point3 ap = p - triangle[0], bp = p - triangle[1], cp = p - triangle[2];
+NearestPoint nearestOnTriangle(const Vector3& p, const std::array<Vector3, 3>& triangle) {
+  const Vector3 ab = triangle[1] - triangle[0], ac = triangle[2] - triangle[0];
+  const Vector3 ap = p - triangle[0], bp = p - triangle[1], cp = p - triangle[2];
   const double abAp = dot(ab, ap), acAp = dot(ac, ap);
   if (abAp <= 0 && acAp <= 0) return at(p, triangle, {1, 0, 0});
   const double abBp = dot(ab, bp), acBp = dot(ac, bp);

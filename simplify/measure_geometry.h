@@ -3,27 +3,15 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 
-#include "codec/mesh.h"
+#include "simplify/vector3.h"
 
 namespace qtet {
 
-/// A place in lattice coordinates, not rounded to the lattice.
-using Point3 = std::array<double, 3>;
-
-[[nodiscard]] inline Point3 toPoint3(const LatticePoint& p) {
-  return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
-}
-[[nodiscard]] inline Point3 operator-(const Point3& a, const Point3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-[[nodiscard]] inline double dot(const Point3& a, const Point3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-[[nodiscard]] inline Point3 cross(const Point3& a, const Point3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 /// sum of weights[i] * corners[i]
 template <std::size_t N>
-[[nodiscard]] Point3 blend(const std::array<Point3, N>& corners, const std::array<double, N>& weights) {
-  Point3 out{};
+[[nodiscard]] Vector3 blend(const std::array<Vector3, N>& corners, const std::array<double, N>& weights) {
+  Vector3 out{};
   for (std::size_t i = 0; i < N; ++i)
     for (std::size_t k = 0; k < 3; ++k) out[k] += weights[i] * corners[i][k];
   return out;
@@ -35,6 +23,6 @@ struct NearestPoint {
 };
 
 /// The point of a triangle that is nearest to p; the triangle may be degenerate (Ericson, Real-Time Collision Detection, 5.1.5).
-[[nodiscard]] NearestPoint nearestOnTriangle(const Point3& p, const std::array<Point3, 3>& triangle);
+[[nodiscard]] NearestPoint nearestOnTriangle(const Vector3& p, const std::array<Vector3, 3>& triangle);
 
 }  // namespace qtet

@@ -8,18 +8,18 @@ namespace qtet {
 namespace {
 
 template <std::size_t N>
-std::array<Point3, N> cornersOf(std::span<const LatticePoint> points, const std::array<VertexId, 4>& cell) {
-  std::array<Point3, N> out;
-  for (std::size_t i = 0; i < N; ++i) out[i] = toPoint3(points[cell[i]]);
+std::array<Vector3, N> cornersOf(std::span<const LatticePoint> points, const std::array<VertexId, 4>& cell) {
+  std::array<Vector3, N> out;
+  for (std::size_t i = 0; i < N; ++i) out[i] = toVector(points[cell[i]]);
   return out;
 }
 
-double areaOf(const std::array<Point3, 3>& t) {
-  const Point3 normal = cross(t[1] - t[0], t[2] - t[0]);
+double areaOf(const std::array<Vector3, 3>& t) {
+  const Vector3 normal = cross(t[1] - t[0], t[2] - t[0]);
   return std::sqrt(dot(normal, normal));
 }
 
-double volumeOf(const std::array<Point3, 4>& t) { return std::abs(dot(cross(t[1] - t[0], t[2] - t[0]), t[3] - t[0])); }
+double volumeOf(const std::array<Vector3, 4>& t) { return std::abs(dot(cross(t[1] - t[0], t[2] - t[0]), t[3] - t[0])); }
 
 /// Uniform in the unit triangle: the square's other half is turned onto it.
 std::array<double, 4> triangleWeights(SplitMix64& random) {

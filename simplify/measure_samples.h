@@ -29,7 +29,7 @@ class SplitMix64 {
 
 /// A place in a cell, or on the triangle of a ghost cell: there the fourth weight is 0.
 struct Sample {
-  Point3 at;
+  Vector3 at;
   std::uint32_t cell;
   std::array<double, 4> weights;  ///< barycentric
 };

@@ -69,7 +69,7 @@ void TriangleTree::refit(std::span<const std::uint8_t> live) {
   }
 }
 
-double TriangleTree::squaredDistance(const Point3& p, const Node& node) {
+double TriangleTree::squaredDistance(const Vector3& p, const Node& node) {
   double sum = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     const double below = static_cast<double>(node.low[k]) - p[k], above = p[k] - static_cast<double>(node.high[k]);
@@ -79,13 +79,13 @@ double TriangleTree::squaredDistance(const Point3& p, const Node& node) {
   return sum;
 }
 
-void TriangleTree::tryTriangle(const Point3& p, std::uint32_t triangle, NearestTriangle& best) const {
+void TriangleTree::tryTriangle(const Vector3& p, std::uint32_t triangle, NearestTriangle& best) const {
   const Cell& cell = cells_[triangle];
-  const NearestPoint found = nearestOnTriangle(p, {toPoint3(points_[cell[0]]), toPoint3(points_[cell[1]]), toPoint3(points_[cell[2]])});
+  const NearestPoint found = nearestOnTriangle(p, {toVector(points_[cell[0]]), toVector(points_[cell[1]]), toVector(points_[cell[2]])});
   if (found.squared < best.point.squared) best = {triangle, found};
 }
 
-void TriangleTree::nearest(const Point3& p, NearestTriangle& best, double enough) const {
+void TriangleTree::nearest(const Vector3& p, NearestTriangle& best, double enough) const {
   struct Waiting {
     double squared;
     std::uint32_t node;

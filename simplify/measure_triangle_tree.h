@@ -31,9 +31,9 @@ class TriangleTree {
 
   /// Puts the nearest triangle into `best` if it is nearer than what stands there: a good guess makes the search short. A search for a maximum may end
   /// at any triangle whose squared distance is not above `enough`.
-  void nearest(const Point3& p, NearestTriangle& best, double enough = 0) const;
+  void nearest(const Vector3& p, NearestTriangle& best, double enough = 0) const;
   /// The same for one triangle.
-  void tryTriangle(const Point3& p, std::uint32_t triangle, NearestTriangle& best) const;
+  void tryTriangle(const Vector3& p, std::uint32_t triangle, NearestTriangle& best) const;
 
  private:
   struct Node {
@@ -44,7 +44,7 @@ class TriangleTree {
 
   void build(std::uint32_t first, std::uint32_t count);
   void fit(Node& leaf) const;
-  [[nodiscard]] static double squaredDistance(const Point3& p, const Node& node);
+  [[nodiscard]] static double squaredDistance(const Vector3& p, const Node& node);
 
   std::span<const LatticePoint> points_;
   std::span<const Cell> cells_;

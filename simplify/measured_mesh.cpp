@@ -20,7 +20,7 @@ double diagonalOf(const std::vector<LatticePoint>& points, std::span<const Trian
         low[k] = std::min(low[k], points[t[corner]][k]);
         high[k] = std::max(high[k], points[t[corner]][k]);
       }
-  const Point3 size = toPoint3(high) - toPoint3(low);
+  const Vector3 size = toVector(high) - toVector(low);
   return std::sqrt(dot(size, size));
 }
 

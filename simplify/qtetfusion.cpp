@@ -27,6 +27,8 @@ constexpr double kWorthAnotherPass = 0.002;
 constexpr float kDearer = 1.25f;
 // No new cell may be shaped worse than this, or than a fifth of its star's worst (1 = regular, 0 = flat).
 constexpr double kShapeFloor = 1e-4;
+// Cosine of the largest angle by which a boundary triangle may turn in one fusion: more, and a fold could hide what the quadric does not see.
+constexpr double kNormalCosine = 0.3;
 
 // Vertices whose candidates are found at once, and how many of them a thread takes at a time.
 constexpr std::size_t kCollected = 4096;
@@ -48,10 +50,9 @@ using Queue = boost::heap::d_ary_heap<Entry, boost::heap::arity<4>>;
 class Simplifier {
  public:
   Simplifier(const LatticeMesh& mesh, const FusionOptions& options)
-      : options_(options), mesh_(mesh), cost_(mesh_, mesh, options.cost), workers_(options.threads), original_(mesh.tetrahedra.size()),
-        target_(static_cast<std::size_t>(std::ceil(options.targetRatio * static_cast<double>(original_)))), values_(cost_.components()) {
-    for (std::size_t i = 0; i < workers_.count(); ++i)
-      proposers_.push_back(std::make_unique<FusionProposer>(mesh_, cost_, touched_, kShapeFloor, options.shapeWeight));
+      : options_(options), mesh_(mesh, options.regionField.value_or(FusionMesh::kNoRegions)), cost_(mesh_, mesh, options.cost), workers_(options.threads), original_(mesh.tetrahedra.size()),
+        target_(static_cast<std::size_t>(options.targetRatio * static_cast<double>(original_))), values_(cost_.components()) {
+    limitBy({kShapeFloor, options.envelopeTolerance * cost_.diagonal(), kNormalCosine});
   }
 
   Result<FusionHistory> run() {
@@ -62,12 +63,21 @@ class Simplifier {
       }
       if (level_ == kMaxLevels && mesh_.liveTetrahedra() > target_)
         return fail(ErrorCode::kLimitExceeded, "4,096 levels do not reach the target; ask for more cells with --target-ratio");
-      if (static_cast<double>(before - mesh_.liveTetrahedra()) < kWorthAnotherPass * static_cast<double>(before)) break;
+      if (static_cast<double>(before - mesh_.liveTetrahedra()) >= kWorthAnotherPass * static_cast<double>(before)) continue;
+      if (relaxed_) break;
+      relaxed_ = true;
+      limitBy({0, options_.envelopeTolerance * cost_.diagonal(), -1});
     }
     return mesh_.takeHistory(level_);
   }
 
  private:
+  void limitBy(const FusionLimits& limits) {
+    proposers_.clear();
+    for (std::size_t i = 0; i < workers_.count(); ++i)
+      proposers_.push_back(std::make_unique<FusionProposer>(mesh_, cost_, touched_, limits, options_.shapeWeight));
+  }
+
   void findCandidates() {
     candidates_.clear();
     makeRoom();
@@ -222,7 +232,7 @@ class Simplifier {
     cost_.valuesAt(prey, point, values_);
     fuseIntegers(prey, point);
     cost_.fuse(prey, point, values_);
-    const VertexId fused = mesh_.fuse(prey, point, integers_, proposal.star, level_);
+    const VertexId fused = mesh_.fuse(prey, {point, integers_, proposal.where.outside}, proposal.star, level_);
     makeRoom();
     touched_.touch(fused, ++fusions_);
     for (const VertexId v : prey.vertices()) touched_.touch(v, fusions_);
@@ -274,6 +284,7 @@ class Simplifier {
   Touched touched_;
   Workers workers_;
   std::vector<std::unique_ptr<FusionProposer>> proposers_;  // one a worker
+  bool relaxed_ = false;                                    // nothing is left that keeps the limits of beauty; those of validity remain
   std::size_t original_, target_;
   std::uint32_t level_ = 0;
   std::uint32_t fusions_ = 0, levelStart_ = 0;
@@ -292,11 +303,32 @@ class Simplifier {
   std::vector<std::int32_t> integers_;
 };
 
+Status checkWeights(const LatticeMesh& mesh, const FusionOptions& options) {
+  const std::vector<double>& weights = options.cost.fieldWeights;
+  if (!weights.empty() && weights.size() != mesh.fields.size()) return fail(ErrorCode::kBadInput, "there must be one field weight a field");
+  const auto bad = [](double w) { return !(w >= 0) || std::isinf(w); };
+  if (std::ranges::any_of(weights, bad) || bad(options.cost.hullWeight) || bad(options.shapeWeight))
+    return fail(ErrorCode::kBadInput, "weights must be finite and not negative");
+  return {};
+}
+
+Status checkRegions(const LatticeMesh& mesh, const FusionOptions& options) {
+  if (!options.regionField) return {};
+  if (*options.regionField >= mesh.fields.size()) return fail(ErrorCode::kBadInput, "there is no such field of regions");
+  const FieldInfo& field = mesh.fields[*options.regionField];
+  if (!isCellField(field) || field.components != 1)
+    return fail(ErrorCode::kBadInput, "field '" + field.name + "' cannot tell regions apart: that takes a cell field of one component");
+  return {};
+}
+
 }  // namespace
 
 Result<FusionHistory> simplify(const LatticeMesh& mesh, const FusionOptions& options) {
   if (mesh.tetrahedra.empty()) return fail(ErrorCode::kBadInput, "the mesh has no tetrahedra");
   if (!(options.targetRatio >= 0 && options.targetRatio <= 1)) return fail(ErrorCode::kBadInput, "the target ratio must lie in 0..1");
+  if (!(options.envelopeTolerance >= 0)) return fail(ErrorCode::kBadInput, "the envelope tolerance must not be negative");
+  if (Status weights = checkWeights(mesh, options); !weights) return std::unexpected(weights.error());
+  if (Status regions = checkRegions(mesh, options); !regions) return std::unexpected(regions.error());
   return Simplifier(mesh, options).run();
 }
 

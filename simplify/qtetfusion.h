@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include "codec/fusion_history.h"
 #include "codec/mesh.h"
@@ -14,6 +15,8 @@ namespace qtet {
 struct FusionOptions {
   double targetRatio = 0.01;                         ///< stop when this fraction of the cells remains, 0..1
   CostOptions cost;
+  double envelopeTolerance = 0;                      ///< how far the boundary may leave the original solid, over the diagonal of its bounding box, >= 0
+  std::optional<std::size_t> regionField;            ///< the cell field of one component whose values are regions that keep their topology
   double shapeWeight = 0.5;                          ///< what badly shaped new cells add to the cost, >= 0 (ALGORITHM.md, "Shape")
   int threads = 1;                                   ///< the result never depends on it
   std::function<void(double fraction)> progress;     ///< 0..1, called at most once a level

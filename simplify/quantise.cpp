@@ -124,6 +124,7 @@ Status placeFields(const TetMesh& mesh, int bits, QuantisedMesh& out) {
     const std::string name = (isCellField(field) ? "cell field " : "field ") + field.name;
     Result<QuantisedField> quantised = quantiseField(field, bits);
     if (!quantised) return std::unexpected(quantised.error());
+    out.report.nonFiniteOf.push_back(quantised->nonFinite);
     if (quantised->nonFinite > 0) {
       out.report.nonFiniteValues += quantised->nonFinite;
       out.report.notes.push_back(name + ": " + std::to_string(quantised->nonFinite) +

@@ -21,6 +21,7 @@ struct QuantiseReport {
   std::uint64_t worseAtRequestedBits = 0;  ///< cells that would have lost their sign at the bits asked for
   Occurrences worseCells;                  ///< cells that lose it at the bits used; none below kMaxPositionBits
   std::uint64_t nonFiniteValues = 0;       ///< field values that were NaN or infinite and became their component's minimum
+  std::vector<std::uint64_t> nonFiniteOf;  ///< the same, one a field
   std::vector<std::string> notes;          ///< the same and more in sentences, empty when there is nothing to say
 };
 

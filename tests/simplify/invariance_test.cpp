@@ -21,6 +21,8 @@ using testing::meshOfHistory;
 // How much figures may differ. Another unit or place rounds a few points otherwise; another numbering turns every tie, which on a small mesh with flat
 // sides are most of its fusions, so that it ends in another mesh of the same cost.
 constexpr double kRounded = 0.01, kRenumbered = 0.04;
+// The last fusion overshoots the target by less than what it removes.
+constexpr double kLastFusion = 12;
 constexpr double kCells = 0.01;  // of the target
 
 /// A block with a tunnel, in a unit of its own, with the fields of gridMesh.
@@ -114,7 +116,7 @@ TEST_P(Invariance, reachesTheSameTargetsWithTheSameBoundaryAndVolume) {
   for (const double ratio : {0.5, 0.1, 0.02}) {
     const Left expected = simplified(original, ratio), got = simplified(changed, ratio);
     EXPECT_LE(got.cells, ratio) << "it stalls";
-    EXPECT_NEAR(got.cells, expected.cells, kCells * ratio);
+    EXPECT_NEAR(got.cells, expected.cells, kCells * ratio + kLastFusion / static_cast<double>(original.tetrahedra.size()));
     EXPECT_NEAR(got.boundary, expected.boundary, GetParam().like);
     EXPECT_NEAR(got.volume, expected.volume, GetParam().like);
   }
@@ -137,7 +139,7 @@ INSTANTIATE_TEST_SUITE_P(Changes, Invariance,
                                            Change{"points", kRenumbered, permutePoints}, Change{"cells", kRenumbered, permuteCells},
                                            Change{"fieldsInAnotherUnit", kRounded,
                                                   [](TetMesh& mesh) {
-                                                    for (PointField& field : mesh.fields)
+                                                    for (MeshField& field : mesh.fields)
                                                       for (double& value : field.values) value = 1e6 * value - 3e7;
                                                   }}),
                          [](const auto& change) { return std::string(change.param.name); });

@@ -11,10 +11,10 @@
 namespace qtet {
 namespace {
 
-constexpr std::array<Point3, 3> kTriangle{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}};
+constexpr std::array<Vector3, 3> kTriangle{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}};
 
 TEST(NearestOnTriangle, everyRegionHasItsPoint) {
-  const auto squared = [](const Point3& p) { return nearestOnTriangle(p, kTriangle).squared; };
+  const auto squared = [](const Vector3& p) { return nearestOnTriangle(p, kTriangle).squared; };
   EXPECT_DOUBLE_EQ(squared({1, 1, 3}), 9);     // above the face
   EXPECT_DOUBLE_EQ(squared({-3, -4, 0}), 25);  // corner a
   EXPECT_DOUBLE_EQ(squared({7, -4, 0}), 25);   // corner b
@@ -27,7 +27,7 @@ TEST(NearestOnTriangle, everyRegionHasItsPoint) {
 
 TEST(NearestOnTriangle, weightsGiveTheNearestPoint) {
   const NearestPoint near = nearestOnTriangle({4, 4, 1}, kTriangle);
-  const Point3 at = blend(kTriangle, near.weights);
+  const Vector3 at = blend(kTriangle, near.weights);
   EXPECT_DOUBLE_EQ(at[0], 2);
   EXPECT_DOUBLE_EQ(at[1], 2);
   EXPECT_DOUBLE_EQ(at[2], 0);
@@ -54,13 +54,13 @@ struct Soup {
   LatticePoint randomPoint() { return {coordinate(), coordinate(), coordinate()}; }
   std::int32_t coordinate() { return static_cast<std::int32_t>(random.next() % 1000); }
   VertexId vertex() { return static_cast<VertexId>(random.next() % points.size()); }
-  [[nodiscard]] double bruteForce(const Point3& p, const std::vector<std::uint8_t>& live) const {
+  [[nodiscard]] double bruteForce(const Vector3& p, const std::vector<std::uint8_t>& live) const {
     double best = HUGE_VAL;
     for (std::size_t i = 0; i < cells.size(); ++i)
       if (live[i])
         best = std::min(
             best,
-            nearestOnTriangle(p, {toPoint3(points[cells[i][0]]), toPoint3(points[cells[i][1]]), toPoint3(points[cells[i][2]])}).squared);
+            nearestOnTriangle(p, {toVector(points[cells[i][0]]), toVector(points[cells[i][1]]), toVector(points[cells[i][2]])}).squared);
     return best;
   }
 };
@@ -72,7 +72,7 @@ TEST(TriangleTree, findsTheNearestAlsoAfterTheSurfaceHasMovedAndShrunk) {
     TriangleTree tree(soup.points, soup.cells, soup.ids);
     for (int round = 0; round < 5; ++round) {
       for (int i = 0; i < 100; ++i) {
-        const Point3 p = toPoint3(soup.randomPoint());
+        const Vector3 p = toVector(soup.randomPoint());
         NearestTriangle best;
         tree.nearest(p, best);
         EXPECT_EQ(best.point.squared, soup.bruteForce(p, live));
@@ -105,12 +105,12 @@ TEST(MeasureSamples, lieInTheirCellsAndFillTheVolume) {
   const LatticeMesh mesh = testing::gridMesh(4, 1);
   const auto samples = samplesInVolume(mesh.points, mesh.tetrahedra, 20000, 5);
   ASSERT_EQ(samples.size(), 20000u);
-  Point3 mean{};
+  Vector3 mean{};
   double squares = 0;
   for (const Sample& s : samples) {
-    std::array<Point3, 4> corners;
-    for (std::size_t i = 0; i < 4; ++i) corners[i] = toPoint3(mesh.points[mesh.tetrahedra[s.cell][i]]);
-    const Point3 apart = s.at - blend(corners, s.weights);
+    std::array<Vector3, 4> corners;
+    for (std::size_t i = 0; i < 4; ++i) corners[i] = toVector(mesh.points[mesh.tetrahedra[s.cell][i]]);
+    const Vector3 apart = s.at - blend(corners, s.weights);
     EXPECT_LT(dot(apart, apart), 1e-18);
     for (const double w : s.weights) EXPECT_GE(w, -1e-12);
     for (std::size_t k = 0; k < 3; ++k) mean[k] += s.at[k] / 20000;

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "codec/boundary.h"
 #include "codec/predicates.h"
 #include "simplify/fusion_mesh.h"
 #include "simplify/quantise.h"
@@ -95,11 +97,103 @@ TEST(Fused, stopsAtTheTarget) {
   }
 }
 
+/// The cells of one region and their boundary.
+LatticeMesh regionOf(const LatticeMesh& mesh, std::size_t field, std::int32_t region) {
+  LatticeMesh out;
+  out.points = mesh.points;
+  for (std::size_t c = 0; c < mesh.tetrahedra.size(); ++c)
+    if (mesh.values[field][c] == region) out.tetrahedra.push_back(mesh.tetrahedra[c]);
+  out.boundary = boundaryOf(out.tetrahedra);
+  return out;
+}
+
+/// A cube whose cells carry one of four regions: a core, a shell round it, and two halves outside.
+LatticeMesh layeredCube(std::uint32_t seed) {
+  LatticeMesh mesh = gridMesh(8, seed);
+  mesh.fields.push_back({"Tissue", 1, "int32", "cell", 3, 1, {0}, {0, 3}});
+  mesh.values.emplace_back();
+  for (const Tetrahedron& t : mesh.tetrahedra) {
+    LatticePoint sum{};
+    for (const VertexId v : t)
+      for (std::size_t a = 0; a < 3; ++a) sum[a] += mesh.points[v][a];
+    std::int32_t farthest = 0;
+    for (const std::int32_t x : sum) farthest = std::max(farthest, std::abs(x / 4 - 256));
+    mesh.values.back().push_back(farthest < 64 ? 0 : farthest < 160 ? 1 : sum[0] < 1024 ? 2 : 3);
+  }
+  return mesh;
+}
+
+TEST(Fused, regionsAndTheirInterfacesKeepTheirTopology) {
+  const LatticeMesh mesh = layeredCube(5);
+  FusionOptions options;
+  options.targetRatio = 0;
+  options.regionField = 2;
+  const auto history = simplify(mesh, options);
+  ASSERT_TRUE(history) << history.error().text();
+  const auto shape = [&](const LatticeMesh& level, std::vector<std::int32_t> regions) {
+    LatticeMesh part;
+    part.points = level.points;
+    for (const std::int32_t r : regions) {
+      const LatticeMesh one = regionOf(level, 2, r);
+      part.tetrahedra.insert(part.tetrahedra.end(), one.tetrahedra.begin(), one.tetrahedra.end());
+    }
+    part.boundary = boundaryOf(part.tetrahedra);
+    return eulerCharacteristics(part);
+  };
+  // Each region alone, and each pair as one: their interface's characteristic is the difference.
+  std::vector<std::vector<std::int32_t>> sets;
+  for (std::int32_t a = 0; a < 4; ++a)
+    for (std::int32_t b = a; b < 4; ++b) sets.push_back(a == b ? std::vector{a} : std::vector{a, b});
+  for (std::uint32_t undone = 0; undone <= history->levels; undone += 3) {
+    const LatticeMesh level = meshOfHistory(*history, undone);
+    ASSERT_EQ(whatIsWrongWith(level), "");
+    for (const auto& set : sets) ASSERT_EQ(shape(level, set), shape(mesh, set)) << "level " << undone << ", region " << set.front() << " with " << set.back();
+  }
+  EXPECT_LT(meshOfHistory(*history, 0).tetrahedra.size(), mesh.tetrahedra.size() / 8) << "regions must not stop the simplification";
+
+  options.regionField.reset();
+  const auto without = simplify(mesh, options);
+  ASSERT_TRUE(without);
+  bool changed = false;
+  for (const auto& set : sets) changed |= shape(meshOfHistory(*without, 0), set) != shape(mesh, set);
+  EXPECT_TRUE(changed) << "this mesh would not show it if regions were ignored";
+}
+
+TEST(Fused, theEnvelopeGivesWayByItsToleranceAndNoMore) {
+  // A cylinder-like notch makes the boundary concave and convex; the outside distance is measured by brute force, which shares nothing with the bound.
+  const LatticeMesh mesh = gridMesh(9, 3, [](int i, int j, int) { return (i - 4) * (i - 4) + (j - 4) * (j - 4) <= 17 && (i != 4 || j != 4); });
+  const double diagonal = std::sqrt(3.0) * 9 * 64;
+  double farthest[2]{};
+  for (const double tolerance : {0.0, 0.01}) {
+    FusionOptions options;
+    options.targetRatio = 0.05;
+    options.envelopeTolerance = tolerance;
+    const auto history = simplify(mesh, options);
+    ASSERT_TRUE(history);
+    const LatticeMesh base = meshOfHistory(*history, 0);
+    ASSERT_EQ(whatIsWrongWith(base), "");
+    EXPECT_EQ(eulerCharacteristics(base), eulerCharacteristics(mesh));
+    double& most = farthest[tolerance > 0];
+    for (const Triangle& t : base.boundary)
+      for (const VertexId v : t) most = std::max(most, testing::distanceOutside(mesh, base.points[v]));
+    EXPECT_LE(most, tolerance * diagonal + 1e-9);
+  }
+  EXPECT_GT(farthest[1], 1) << "the room was used";
+}
+
 TEST(Fused, refusesWhatItCannotDo) {
   EXPECT_EQ(simplify({}, {}).error().code, ErrorCode::kBadInput);
   FusionOptions options;
   options.targetRatio = 1.5;
   EXPECT_EQ(simplify(gridMesh(2, 1), options).error().code, ErrorCode::kBadInput);
+  options = {};
+  options.cost.fieldWeights = {1, -1};
+  EXPECT_EQ(simplify(gridMesh(2, 1), options).error().code, ErrorCode::kBadInput);
+  options.cost.fieldWeights = {1};
+  EXPECT_EQ(simplify(gridMesh(2, 1), options).error().code, ErrorCode::kBadInput) << "one weight for two fields";
+  options = {};
+  options.regionField = 0;
+  EXPECT_EQ(simplify(gridMesh(2, 1), options).error().code, ErrorCode::kBadInput) << "a point field is no field of regions";
 }
 
 TEST(Fused, whatIsSingularStays) {

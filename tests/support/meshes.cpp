@@ -4,6 +4,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <random>
 #include <set>
@@ -13,6 +15,7 @@
 #include "codec/growing_mesh.h"
 #include "codec/log_writer.h"
 #include "codec/predicates.h"
+#include "simplify/measure_geometry.h"
 #include "simplify/qtetfusion.h"
 
 namespace qtet::testing {
@@ -172,6 +175,21 @@ std::string whatIsWrongWith(const LatticeMesh& mesh) {
     return triangles;
   };
   return turned(mesh.boundary) == turned(boundaryOf(mesh.tetrahedra)) ? "" : "the boundary is not that of the cells";
+}
+
+double distanceOutside(const LatticeMesh& solid, const LatticePoint& p) {
+  for (const Tetrahedron& t : solid.tetrahedra) {
+    bool inside = true;
+    for (int i = 0; i < 4 && inside; ++i) {
+      const Triangle f = cellFace(t, i);
+      inside = orientation(solid.points[f[0]], solid.points[f[1]], solid.points[f[2]], p) <= 0;
+    }
+    if (inside) return 0;
+  }
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Triangle& t : solid.boundary)
+    nearest = std::min(nearest, nearestOnTriangle(toVector(p), {toVector(solid.points[t[0]]), toVector(solid.points[t[1]]), toVector(solid.points[t[2]])}).squared);
+  return std::sqrt(nearest);
 }
 
 std::filesystem::path writeSampleLog(const std::filesystem::path& folder, const std::string& name, int n, std::uint32_t seed,

@@ -28,6 +28,9 @@ void addCellFields(LatticeMesh& mesh);
 /// Every cell positive, no face of three cells, and `boundary` = the faces of one cell, with their orientation. The text says what is wrong.
 [[nodiscard]] std::string whatIsWrongWith(const LatticeMesh& mesh);
 
+/// How far p lies outside the solid: 0 inside, else the distance to the nearest boundary triangle. Brute force.
+[[nodiscard]] double distanceOutside(const LatticeMesh& solid, const LatticePoint& p);
+
 /// A small real log (gridMesh simplified and encoded into chunks of about `chunkBytes`) as the file `name`.qtet in `folder`.
 std::filesystem::path writeSampleLog(const std::filesystem::path& folder, const std::string& name = "sample", int n = 6, std::uint32_t seed = 1,
                                      std::uint32_t chunkBytes = 2048);

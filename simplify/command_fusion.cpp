@@ -1,0 +1,93 @@
+#include "simplify/command_fusion.h"
+
+#include <algorithm>
+
+#include "simplify/command_measure.h"
+#include "simplify/tet_mesh.h"
+
+namespace qtet {
+namespace {
+
+constexpr int kMaxThreads = 1024;
+// Weights beyond are words gone wrong: what counts a million times as much as the rest decides alone.
+constexpr double kMaxWeight = 1e6;
+constexpr double kMaxHullWeight = 1e9;
+
+/// Why a field does not count, or nothing.
+std::string whyNot(const QuantisedMesh& quantised, std::size_t f, bool named) {
+  const FieldInfo& info = quantised.mesh.fields[f];
+  if (quantised.report.nonFiniteOf[f] > 0) return "holds values that are NaN or infinite";
+  const auto& values = quantised.mesh.values[f];
+  if (values.empty() || std::ranges::all_of(values, [&](std::int32_t v) { return v == values[0]; })) return "is constant";
+  if (!isFloatType(info.type) && !named) return "is one of integers, which may be labels (--field-weight " + info.name + "=1 makes it count)";
+  return {};
+}
+
+}  // namespace
+
+void addFusionOptions(boost::program_options::options_description& options) {
+  namespace po = boost::program_options;
+  options.add_options()("target-ratio", po::value<double>()->default_value(0.01, "0.01"),
+                        "stop when the base mesh has this fraction of the tetrahedra")(
+      "hull-weight", po::value<double>()->default_value(CostOptions().hullWeight, "200"),
+      "what the boundary's place counts beside the fields: 0 to 40 for the fields first, 4,000 to 40,000 for the shape first")(
+      "field-weight", po::value<std::vector<std::string>>(),
+      "NAME=W: what the field's error over its range counts, 1 without; 0 leaves it out; may be given for several fields")(
+      "shape-weight", po::value<double>()->default_value(FusionOptions().shapeWeight, "0.5"),
+      "what badly shaped new cells cost: 0 for the least error, 1 and more for rounder cells")(
+      "envelope-tolerance", po::value<double>()->default_value(0, "0"),
+      "how far the boundary may leave the original solid, over all fusions, as a fraction of the diagonal; parts of the boundary that are closer to "
+      "each other than twice this may come to touch")(
+      "preserve-regions", po::value<std::string>(),
+      "a cell field of one component whose values are regions such as tissues or materials: they and their interfaces keep their topology")(
+      "threads", po::value<int>()->default_value(1), "threads; the result does not depend on it");
+}
+
+FusionRequest fusionRequestOf(const ParsedWords& parsed) {
+  FusionRequest out;
+  out.options.targetRatio = parsed.number("target-ratio", 0, 1);
+  out.options.cost.hullWeight = parsed.number("hull-weight", 0, kMaxHullWeight);
+  out.options.shapeWeight = parsed.number("shape-weight", 0, kMaxWeight);
+  out.options.envelopeTolerance = parsed.number("envelope-tolerance", 0, 1);
+  out.options.threads = parsed.integer("threads", 1, kMaxThreads);
+  if (parsed.has("field-weight"))
+    for (const std::string& text : parsed.get<std::vector<std::string>>("field-weight")) {
+      out.fieldWeights.push_back(parseNamedNumber("field-weight", text, "a field's name and its weight such as Density=2"));
+      if (out.fieldWeights.back().second > kMaxWeight) throw UsageError("--field-weight '" + text + "' is above 1,000,000");
+    }
+  if (parsed.has("preserve-regions")) out.regions = parsed.get<std::string>("preserve-regions");
+  return out;
+}
+
+Result<FusionOptions> fusionOptionsFor(const FusionRequest& request, const QuantisedMesh& quantised, std::vector<std::string>& notes) {
+  FusionOptions out = request.options;
+  const std::vector<FieldInfo>& fields = quantised.mesh.fields;
+  const auto find = [&](const std::string& name, bool ofCells) {
+    return static_cast<std::size_t>(
+        std::ranges::find_if(fields, [&](const FieldInfo& f) { return f.name == name && isCellField(f) == ofCells; }) - fields.begin());
+  };
+  std::vector<std::optional<double>> named(fields.size());
+  for (const auto& [name, weight] : request.fieldWeights) {
+    const std::size_t f = find(name, false);
+    if (f == fields.size()) return fail(ErrorCode::kNotFound, "--field-weight: the mesh carries no point field '" + name + "'");
+    named[f] = weight;
+  }
+  out.cost.fieldWeights.assign(fields.size(), 0);
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    if (isCellField(fields[f]) || named[f] == 0) continue;
+    const std::string why = whyNot(quantised, f, named[f].has_value());
+    if (why.empty())
+      out.cost.fieldWeights[f] = named[f].value_or(1);
+    else
+      notes.push_back("field " + fields[f].name + " " + why + ": it does not count when cells are fused");
+  }
+  if (request.regions) {
+    const std::size_t f = find(*request.regions, true);
+    if (f == fields.size())
+      return fail(ErrorCode::kNotFound, "--preserve-regions: the mesh carries no cell field '" + *request.regions + "'; see that --fields includes it");
+    out.regionField = f;
+  }
+  return out;
+}
+
+}  // namespace qtet
