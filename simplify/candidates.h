@@ -40,6 +40,12 @@ class Candidates {
     const List& list = lists_[owner];
     return list.next < list.count ? &pool_[list.first + list.next] : nullptr;
   }
+  /// The best one and all after it.
+  [[nodiscard]] std::span<const Candidate> remaining(VertexId owner) const {
+    if (owner >= lists_.size()) return {};
+    const List& list = lists_[owner];
+    return std::span(pool_).subspan(list.first + list.next, list.count - list.next);
+  }
   /// The best one failed: on to the next. REQUIRES: best(owner).
   void advance(VertexId owner) { ++lists_[owner].next; }
   /// All that failed may be tried again.

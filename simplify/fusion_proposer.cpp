@@ -27,54 +27,67 @@ void FusionProposer::candidatesOf(VertexId v, bool onlyLower, std::vector<Candid
   std::sort(found.begin(), found.end());
 }
 
-void FusionProposer::propose(VertexId owner, VertexId partner, std::uint32_t levelStart, std::uint32_t now, Proposal& out) {
-  const Prey edge{2, {owner, partner, 0, 0}};
-  out.owner = owner;
-  out.partner = partner;
-  out.legal = false;
+bool FusionProposer::propose(VertexId owner, std::span<const Candidate> candidates, std::uint32_t levelStart, std::uint32_t now, Proposal& out) {
+  const Prey edge{2, {owner, candidates[0].partner, 0, 0}};
+  const auto where = test_.gather(edge) ? finder_.find(edge, test_) : std::nullopt;
+  if (!where || !test_.keepsTopology()) {
+    out.illegal.push_back(candidates[0].partner);
+    return false;
+  }
+  out.partner = candidates[0].partner;
   out.madeAfter = now;
-  out.ring.clear();
-  if (!test_.gather(edge)) return;
-  const auto where = finder_.find(edge, test_);
-  if (!where || !test_.keepsTopology()) return;
-  out.legal = true;
   out.prey = edge;
   out.where = *where;
   out.star = test_.star();
-  ringOf(edge, out.ring);
-  const Prey larger = largerPrey(edge, out.ring, where->cost, levelStart);
+  takeAlong(candidates.subspan(1), levelStart, out);
+  return true;
+}
+
+void FusionProposer::takeAlong(std::span<const Candidate> others, std::uint32_t levelStart, Proposal& out) {
+  const Prey larger = largerPrey(out.prey, others, out.where.cost, levelStart);
+  out.companions = companions_;
   if (larger.k == 2 || !test_.gather(larger)) return;
   const auto place = finder_.find(larger, test_);
   const double factor = kCostFactor[larger.k];
-  if (!place || factor * place->cost >= where->cost || !test_.keepsTopology()) return;
+  if (!place || factor * place->cost >= out.where.cost || !test_.keepsTopology()) return;
   out.prey = larger;
   out.where = *place;
   out.where.cost *= factor;
   out.star = test_.star();
 }
 
-void FusionProposer::ringOf(const Prey& edge, std::vector<VertexId>& ring) const {
-  for (const CellId c : test_.star().deleted)
-    for (const VertexId v : mesh_.cell(c))
-      if (v != edge.vertex[0] && v != edge.vertex[1] && v != kGhost && std::ranges::find(ring, v) == ring.end()) ring.push_back(v);
+// Vertices round the edge that would not cost too much: a prey costs no less than any edge in it, and those of the owner are known. The ones that are
+// not free are among them at the end, since they may have been touched because of this edge's neighbours.
+void FusionProposer::findCompanions(std::span<const Candidate> others, double cost, std::uint32_t levelStart) {
+  companions_.clear();
+  std::size_t free = 0;
+  for (const Candidate& other : others) {
+    if (kCostFactor[4] * other.key >= cost) break;
+    const auto holds = [&](CellId c) { return std::ranges::find(mesh_.cell(c), other.partner) != mesh_.cell(c).end(); };
+    if (!mesh_.alive(other.partner) || !std::ranges::any_of(test_.star().deleted, holds)) continue;
+    companions_.push_back(other.partner);
+    if (!touched_.since(other.partner, levelStart)) std::swap(companions_[free++], companions_.back());
+  }
+  freeCompanions_ = free;
 }
 
 // The cheapest triangle or tetrahedron round the edge, if cheaper than the edge; its ideal cost decides.
-Prey FusionProposer::largerPrey(const Prey& edge, std::span<const VertexId> ring, double cost, std::uint32_t levelStart) const {
+Prey FusionProposer::largerPrey(const Prey& edge, std::span<const Candidate> others, double cost, std::uint32_t levelStart) {
+  findCompanions(others, cost, levelStart);
   Prey best = edge;
   const auto consider = [&](const Prey& prey) {
     const double c = kCostFactor[prey.k] * finder_.ideal(prey).cost;
     if (c < cost) cost = c, best = prey;
   };
-  const auto free = [&](VertexId v) { return v != kGhost && !mesh_.singular(v) && !touched_.since(v, levelStart); };
-  for (const VertexId v : ring)
-    if (free(v)) consider({3, {edge.vertex[0], edge.vertex[1], v, 0}});
+  const auto [a, b] = std::pair(edge.vertex[0], edge.vertex[1]);
+  const auto free = std::span(companions_).first(freeCompanions_);
+  for (const VertexId v : free) consider({3, {a, b, v, 0}});
   for (const CellId c : test_.star().deleted) {
-    std::array<VertexId, 2> others{};
+    std::array<VertexId, 2> taken{};
     std::size_t n = 0;
     for (const VertexId v : mesh_.cell(c))
-      if (v != edge.vertex[0] && v != edge.vertex[1]) others[n++] = v;
-    if (free(others[0]) && free(others[1])) consider({4, {edge.vertex[0], edge.vertex[1], others[0], others[1]}});
+      if (std::ranges::find(free, v) != free.end()) taken[n++] = v;
+    if (n == 2) consider({4, {a, b, taken[0], taken[1]}});
   }
   return best;
 }

@@ -24,14 +24,15 @@ class Touched {
   std::vector<std::uint32_t> at_;
 };
 
+/// What is known of an owner's candidates: those that are not legal, and what comes of the first that is.
 struct Proposal {
-  VertexId owner = 0, partner = 0;  ///< the edge that it was made for
-  bool legal = false;
+  std::vector<VertexId> illegal;   ///< partners
+  VertexId partner = kGhost;       ///< of the edge that the rest is about; kGhost: none is known to be legal
   Prey prey;
   FusionPoint where;
   Star star;
-  std::vector<VertexId> ring;   ///< round the edge: which of them could be taken along was part of the decision
-  std::uint32_t madeAfter = 0;  ///< fusions done before
+  std::vector<VertexId> companions;  ///< that could be taken along: which of them were free was part of the decision
+  std::uint32_t madeAfter = 0;       ///< fusions done before
 };
 
 class FusionProposer {
@@ -42,13 +43,15 @@ class FusionProposer {
   /// The edges of v, cheapest first; `onlyLower` = those whose highest vertex it is.
   void candidatesOf(VertexId v, bool onlyLower, std::vector<Candidate>& found);
 
-  /// The fusion of the edge (owner, partner), or of a triangle or tetrahedron that holds it where that is cheaper for what it removes.
-  /// No vertex touched since fusion `levelStart` is taken along. REQUIRES: neither end is.
-  void propose(VertexId owner, VertexId partner, std::uint32_t levelStart, std::uint32_t now, Proposal& out);
+  /// The fusion of the first edge of `candidates`, which are `owner`'s, cheapest first; or of a triangle or tetrahedron that holds it where that is
+  /// cheaper for what it removes. False, and noted as illegal, when it cannot be. No vertex touched since fusion `levelStart` is taken along.
+  /// REQUIRES: neither end of the edge is.
+  bool propose(VertexId owner, std::span<const Candidate> candidates, std::uint32_t levelStart, std::uint32_t now, Proposal& out);
 
  private:
-  [[nodiscard]] Prey largerPrey(const Prey& edge, std::span<const VertexId> ring, double cost, std::uint32_t levelStart) const;
-  void ringOf(const Prey& edge, std::vector<VertexId>& ring) const;
+  void takeAlong(std::span<const Candidate> others, std::uint32_t levelStart, Proposal& out);
+  [[nodiscard]] Prey largerPrey(const Prey& edge, std::span<const Candidate> others, double cost, std::uint32_t levelStart);
+  void findCompanions(std::span<const Candidate> others, double cost, std::uint32_t levelStart);
 
   const FusionMesh& mesh_;
   const FusionCost& cost_;
@@ -56,6 +59,8 @@ class FusionProposer {
   FusionTest test_;
   FusionPointFinder finder_;
   LocalVertices neighbours_;
+  std::vector<VertexId> companions_;  // the free ones first
+  std::size_t freeCompanions_ = 0;
 };
 
 }  // namespace qtet

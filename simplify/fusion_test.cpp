@@ -284,9 +284,9 @@ bool FusionTest::hasCommonChord() {
   unsigned filled = 0;
   for (std::size_t i = 0; i < turned_.size(); ++i) {
     const auto& t = turned_[i];
-    int onRing = 0;
+    const int onRing = (sides_[t[0]] == 3) + (sides_[t[1]] == 3) + (sides_[t[2]] == 3);
+    if (onRing < 2) continue;
     for (std::size_t e = 0; e < 3; ++e) {
-      onRing += sides_[t[e]] == 3;
       const std::uint32_t x = std::min(t[e], t[(e + 1) % 3]), y = std::max(t[e], t[(e + 1) % 3]);
       if (sides_[x] != 3 || sides_[y] != 3 || ringNeighbours_[x][0] == y || ringNeighbours_[x][1] == y) continue;
       if (star_.labels[i] == 0)

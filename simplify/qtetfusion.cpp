@@ -32,10 +32,10 @@ constexpr double kNormalCosine = 0.3;
 
 // Vertices whose candidates are found at once, and how many of them a thread takes at a time.
 constexpr std::size_t kCollected = 4096;
-constexpr std::size_t kGrain = 16;
+constexpr std::size_t kGrain = 8;
 // Entries of the queue for which threads make proposals ahead: a share of the level's, since a fusion spoils those of its neighbours.
-constexpr std::size_t kAheadShare = 16;
-constexpr std::size_t kLeastAhead = 64;
+constexpr std::size_t kAheadShare = 64;
+constexpr std::size_t kLeastAhead = 32;
 constexpr std::size_t kMostAhead = 2048;
 
 struct Entry {
@@ -128,10 +128,14 @@ class Simplifier {
     entries_.clear();
     queue_.clear();
     std::erase_if(vertices_, [&](VertexId v) { return !mesh_.alive(v); });
-    for (const VertexId v : vertices_) {
+    entries_.resize(vertices_.size());
+    workers_.forEach(vertices_.size(), kCollected, [&](std::size_t, std::size_t i) {
+      const VertexId v = vertices_[i];
       dropDead(v);
-      if (const Candidate* best = candidates_.best(v)) entries_.push_back({best->key, v});
-    }
+      const Candidate* best = candidates_.best(v);
+      entries_[i] = {best ? best->key : std::numeric_limits<float>::infinity(), v};
+    });
+    std::erase_if(entries_, [](const Entry& e) { return std::isinf(e.key); });
     next_ = proposedTo_ = 0;
     if (entries_.empty()) return;
     const auto cheaper = [](const Entry& a, const Entry& b) { return b < a; };
@@ -185,8 +189,12 @@ class Simplifier {
       if (best && mesh_.alive(best->partner) && !isLocked(best->partner)) jobs_.push_back({owner, &proposalFor(owner)});
     }
     workers_.forEach(jobs_.size(), kGrain, [&](std::size_t worker, std::size_t i) {
-      const VertexId owner = jobs_[i].first;
-      proposers_[worker]->propose(owner, candidates_.best(owner)->partner, levelStart_, fusions_, *jobs_[i].second);
+      const auto [owner, proposal] = jobs_[i];
+      // Where the best is not legal, the next one is wanted soon.
+      for (auto rest = candidates_.remaining(owner); !rest.empty() && rest[0].key <= limit_; rest = rest.subspan(1)) {
+        if (!mesh_.alive(rest[0].partner) || isLocked(rest[0].partner)) break;
+        if (proposers_[worker]->propose(owner, rest, levelStart_, fusions_, *proposal)) break;
+      }
     });
   }
 
@@ -195,35 +203,36 @@ class Simplifier {
       proposalOf_[owner] = static_cast<std::uint32_t>(withProposal_.size());
       withProposal_.push_back(owner);
       if (proposals_.size() < withProposal_.size()) proposals_.emplace_back();
+      proposals_[proposalOf_[owner]].illegal.clear();
+      proposals_[proposalOf_[owner]].partner = kGhost;
     }
     return proposals_[proposalOf_[owner]];
   }
 
-  /// The proposal for the owner's best candidate, made now unless one that was made in this level still holds.
-  const Proposal& propose(VertexId owner, VertexId partner) {
-    const bool known = proposalOf_[owner] != kNone;
+  /// The proposal for the owner's best candidate, made now unless what was found in this level still holds. Null: it is not legal.
+  const Proposal* propose(VertexId owner, VertexId partner) {
     Proposal& proposal = proposalFor(owner);
-    const bool holds = known && proposal.owner == owner && proposal.partner == partner &&
-                       std::ranges::none_of(proposal.ring, [&](VertexId v) { return touched_.since(v, proposal.madeAfter); });
-    if (!holds) proposers_[0]->propose(owner, partner, levelStart_, fusions_, proposal);
-    return proposal;
+    if (std::ranges::find(proposal.illegal, partner) != proposal.illegal.end()) return nullptr;
+    const auto changed = [&](VertexId v) { return touched_.since(v, proposal.madeAfter); };
+    if (proposal.partner == partner && std::ranges::none_of(proposal.companions, changed)) return &proposal;
+    return proposers_[0]->propose(owner, candidates_.remaining(owner), levelStart_, fusions_, proposal) ? &proposal : nullptr;
   }
 
   void process(VertexId owner) {
     const Candidate candidate = *candidates_.best(owner);
     if (!mesh_.alive(candidate.partner)) return requeue(owner);
     if (isLocked(candidate.partner)) return;
-    const Proposal& proposal = propose(owner, candidate.partner);
-    if (!proposal.legal) {
+    const Proposal* proposal = propose(owner, candidate.partner);
+    if (proposal == nullptr) {
       candidates_.advance(owner);
       return requeue(owner);
     }
-    const auto cost = static_cast<float>(proposal.where.cost);
+    const auto cost = static_cast<float>(proposal->where.cost);
     if (cost > limit_ || (cost > kDearer * candidate.key && nextKey() < cost)) {
       candidates_.raise(owner, cost);
       return requeue(owner);
     }
-    fuse(proposal);
+    fuse(*proposal);
   }
 
   void fuse(const Proposal& proposal) {

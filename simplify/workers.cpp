@@ -1,9 +1,20 @@
 #include "simplify/workers.h"
 
 #include <algorithm>
-#include <atomic>
 
 namespace qtet {
+namespace {
+
+// Looks at a counter this often before a worker sleeps, some tens of microseconds: less than it takes to be woken, more than the pause between two jobs.
+constexpr int kSpins = 4000;
+
+inline void pause() {
+#if defined(__x86_64__) || defined(__i386__)
+  __builtin_ia32_pause();
+#endif
+}
+
+}  // namespace
 
 struct Workers::Job {
   std::size_t n, grain;
@@ -36,26 +47,35 @@ void Workers::forEach(std::size_t n, std::size_t grain, const std::function<void
     const std::lock_guard lock(mutex_);
     job_ = &job;
     ++jobs_;
-    busy_ = threads_.size();
   }
   changed_.notify_all();
   take(job, 0);
-  std::unique_lock lock(mutex_);
-  idle_.wait(lock, [&] { return busy_ == 0; });
+  {
+    const std::lock_guard lock(mutex_);
+    job_ = nullptr;  // who has not come by now need not be waited for
+  }
+  for (int spins = 0; busy_ > 0; ++spins) spins < kSpins ? pause() : std::this_thread::yield();
+}
+
+/// The next job after the first `seen`, the caller counted as busy with it; null when there will be none.
+Workers::Job* Workers::next(std::size_t& seen) {
+  for (;;) {
+    for (int spins = 0; spins < kSpins && jobs_ == seen; ++spins) pause();
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return ending_ || jobs_ != seen; });
+    if (ending_) return nullptr;
+    seen = jobs_;
+    if (job_ == nullptr) continue;  // over already
+    ++busy_;
+    return job_;
+  }
 }
 
 void Workers::serve(std::size_t worker) {
   std::size_t seen = 0;
-  std::unique_lock lock(mutex_);
-  for (;;) {
-    changed_.wait(lock, [&] { return ending_ || jobs_ != seen; });
-    if (ending_) return;
-    seen = jobs_;
-    Job& job = *job_;
-    lock.unlock();
-    take(job, worker);
-    lock.lock();
-    if (--busy_ == 0) idle_.notify_one();
+  while (Job* job = next(seen)) {
+    take(*job, worker);
+    --busy_;
   }
 }
 

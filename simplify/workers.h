@@ -1,6 +1,7 @@
 // A few threads that wait for the next piece of work: for loops too short to start threads for.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <cstddef>
 #include <functional>
@@ -27,12 +28,13 @@ class Workers {
  private:
   struct Job;
   void serve(std::size_t worker);
+  [[nodiscard]] Job* next(std::size_t& seen);
   static void take(Job& job, std::size_t worker);
 
   std::mutex mutex_;
-  std::condition_variable changed_, idle_;
+  std::condition_variable changed_;
   Job* job_ = nullptr;
-  std::size_t jobs_ = 0, busy_ = 0;
+  std::atomic<std::size_t> jobs_{0}, busy_{0};
   bool ending_ = false;
   std::vector<std::thread> threads_;
 };

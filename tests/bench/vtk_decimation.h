@@ -24,9 +24,9 @@ namespace qtet::bench {
 /// weight times this are the same problem in a unit in which it gets further on most meshes ("tuned").
 inline constexpr double kTunedScale = 1000;
 
-/// The first field of one component: the filter knows one scalar and drops every other field. Null: there is none.
-[[nodiscard]] inline const PointField* scalarOf(const TetMesh& mesh) {
-  const auto found = std::ranges::find(mesh.fields, 1u, &PointField::components);
+/// The first point field of one component: the filter knows one scalar and drops every other field. Null: there is none.
+[[nodiscard]] inline const MeshField* scalarOf(const TetMesh& mesh) {
+  const auto found = std::ranges::find_if(mesh.fields, [](const MeshField& f) { return f.components == 1 && !isCellField(f); });
   return found == mesh.fields.end() ? nullptr : &*found;
 }
 
@@ -36,7 +36,7 @@ inline constexpr double kTunedScale = 1000;
   points->SetDataTypeToDouble();
   for (const Position& p : mesh.points) points->InsertNextPoint(scale * p[0], scale * p[1], scale * p[2]);
   vtkNew<vtkFloatArray> scalar;
-  const PointField* field = scalarOf(mesh);
+  const MeshField* field = scalarOf(mesh);
   scalar->SetName(field ? field->name.c_str() : "none");
   scalar->SetNumberOfTuples(static_cast<vtkIdType>(mesh.points.size()));
   for (std::size_t v = 0; v < mesh.points.size(); ++v)
@@ -86,7 +86,7 @@ struct Decimated {
     std::ranges::transform(ids, ids + t.size(), t.begin(), [](vtkIdType id) { return static_cast<VertexId>(id); });
   }
   if (vtkDataArray* scalar = grid->GetPointData()->GetScalars()) {
-    PointField& field = mesh.fields.emplace_back(PointField{name, 1, "float64", {}});
+    MeshField& field = mesh.fields.emplace_back(MeshField{name, 1, "float64", {}});
     for (vtkIdType v = 0; v < grid->GetNumberOfPoints(); ++v) field.values.push_back(scalar->GetComponent(v, 0) / scale);
   }
   return mesh;
