@@ -19,6 +19,9 @@
 namespace qtet {
 namespace {
 
+// How many times its area a boundary plane counts: the paper weights them, but does not say by how much. Ten times less loses 0.03 % of the box's
+// volume; ten times more changes little. Chosen by the hull's distance, for the paper claims the box's boundary to be preserved perfectly.
+constexpr double kBoundaryFactor = 1000;
 // Extractions between two reports of progress.
 constexpr std::uint64_t kProgressEvery = 4096;
 
@@ -35,6 +38,7 @@ using Heap = boost::heap::fibonacci_heap<Entry>;
 CostOptions planesOnly(const LatticeMesh& mesh) {
   CostOptions options;
   options.fieldWeights.assign(mesh.fields.size(), 0);
+  options.boundaryFactor = kBoundaryFactor;
   return options;
 }
 
@@ -46,7 +50,8 @@ double secondsSince(std::chrono::steady_clock::time_point start) {
 std::array<double, 4> weightsAt(const std::array<Vector3, 4>& corners, const Vector3& d) {
   const auto volume = [](const Vector3& a, const Vector3& b, const Vector3& c) { return dot(cross(a, b), c); };
   const auto& [a, b, c, e] = corners;
-  std::array<double, 4> weights{volume(b - d, c - d, e - d), volume(a - d, e - d, c - d), volume(a - d, b - d, e - d), volume(a - d, c - d, b - d)};
+  std::array<double, 4> weights{volume(b - d, c - d, e - d), volume(a - d, e - d, c - d), volume(a - d, b - d, e - d),
+                                volume(a - d, c - d, b - d)};
   double sum = 0;
   for (double& w : weights) sum += w = std::max(w, 0.0);
   if (!(sum > 0)) return {0.25, 0.25, 0.25, 0.25};
@@ -57,8 +62,14 @@ std::array<double, 4> weightsAt(const std::array<Vector3, 4>& corners, const Vec
 class PaperSimplifier {
  public:
   PaperSimplifier(const LatticeMesh& mesh, const FusionOptions& options)
-      : options_(options), mesh_(mesh), cost_(mesh_, mesh, planesOnly(mesh)), test_(mesh_), cells_(mesh.tetrahedra.size()),
-        target_(static_cast<std::size_t>(std::ceil(options.targetRatio * static_cast<double>(cells_)))), handles_(cells_), queued_(cells_, 1),
+      : options_(options),
+        mesh_(mesh),
+        cost_(mesh_, mesh, planesOnly(mesh)),
+        test_(mesh_),
+        cells_(mesh.tetrahedra.size()),
+        target_(static_cast<std::size_t>(std::ceil(options.targetRatio * static_cast<double>(cells_)))),
+        handles_(cells_),
+        queued_(cells_, 1),
         nextLevel_(mesh.points.size(), 0) {
     for (CellId c = 0; c < cells_; ++c) handles_[c] = heap_.push({keyOf(c), c});
   }
@@ -70,9 +81,11 @@ class PaperSimplifier {
       const CellId cell = heap_.top().cell;
       heap_.pop();
       queued_[cell] = 0;
-      if (options_.progress && ++extracted_ % kProgressEvery == 0) options_.progress(1 - static_cast<double>(heap_.size()) / static_cast<double>(cells_));
+      if (options_.progress && ++extracted_ % kProgressEvery == 0)
+        options_.progress(1 - static_cast<double>(heap_.size()) / static_cast<double>(cells_));
       if (const auto point = legalPoint(cell)) {
-        if (!fuse(preyOf(cell), *point)) return fail(ErrorCode::kLimitExceeded, "4,096 levels do not reach the target; ask for more cells with --target-ratio");
+        if (!fuse(preyOf(cell), *point))
+          return fail(ErrorCode::kLimitExceeded, "4,096 levels do not reach the target; ask for more cells with --target-ratio");
         updateHeap();
       }
     }
@@ -126,7 +139,8 @@ class PaperSimplifier {
       ++count;
       return std::nullopt;
     };
-    if (std::ranges::any_of(prey.vertices(), [&](VertexId v) { return mesh_.singular(v); }) || !test_.gather(prey)) return no(refused.topology);
+    if (std::ranges::any_of(prey.vertices(), [&](VertexId v) { return mesh_.singular(v); }) || !test_.gather(prey))
+      return no(refused.topology);
     const auto point = pointOf(prey);
     if (!point || !test_.insideEnvelope(*point)) return no(refused.envelope);
     if (test_.shapeAt(*point) < 0) return no(refused.flip);

@@ -11,7 +11,9 @@
 
 namespace qtet {
 
-/// Section 3.2 a: what the fusion of an interior tetrahedron removes at least.
+/// Section 3.2 a: what the fusion of an interior tetrahedron removes at least. It removes the prey, its four face neighbours and, for each of the six edges,
+/// the edge's other cells: 5 + the sum of (cells round the edge - 3), 11 where no edge has but three cells. The paper takes that for granted; where it
+/// does not hold (thirteen cells can do it) the tetrahedron is not fused.
 inline constexpr std::size_t kLeastOfInterior = 11;
 
 /// What the paper's Table 1 states of a run, and why the other tetrahedra stayed.
