@@ -147,13 +147,14 @@ TEST_P(AsThePaper, theSameMeshGivesTheSameLogWhichHoldsTheWholeMesh) {
   EXPECT_EQ(log->bytes, again->bytes);
 }
 
-INSTANTIATE_TEST_SUITE_P(Meshes, AsThePaper,
-                         ::testing::Values(Case{"box", boxMesh}, Case{"random7", [] { return gridMesh(8, 7); }},
-                                           Case{"random8", [] { return gridMesh(8, 8); }}, Case{"random9", [] { return gridMesh(9, 9); }},
-                                           Case{"tunnel",
-                                                [] { return gridMesh(8, 3, [](int i, int j, int) { return i != 4 || j != 3; }); }},
-                                           Case{"twoParts", [] { return gridMesh(9, 4, [](int i, int, int) { return i != 4; }); }}),
-                         [](const auto& shape) { return std::string(shape.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Meshes, AsThePaper,
+    ::testing::Values(Case{"box", boxMesh}, Case{"random7", [] { return gridMesh(8, 7); }}, Case{"random8", [] { return gridMesh(8, 8); }},
+                      Case{"random9", [] { return gridMesh(9, 9); }},
+                      Case{"tunnel", [] { return gridMesh(6, 2, [](int i, int j, int) { return i != 1 || j != 2; }); }},
+                      Case{"hollow", [] { return gridMesh(6, 1, [](int i, int j, int k) { return i != 2 || j != 1 || k != 2; }); }},
+                      Case{"twoParts", [] { return gridMesh(9, 4, [](int i, int, int) { return i != 4; }); }}),
+    [](const auto& shape) { return std::string(shape.param.name); });
 
 /// A tetrahedron, a vertex put into it, and the next ones each into the cell of the last four: the cell of the last four has three edges of three
 /// cells, and its fusion would remove nine cells.
