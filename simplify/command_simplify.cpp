@@ -12,6 +12,7 @@
 #include "simplify/command_fusion.h"
 #include "simplify/command_line.h"
 #include "simplify/command_measure.h"
+#include "simplify/paper_fusion.h"
 #include "simplify/progress.h"
 #include "simplify/read_mesh.h"
 
@@ -20,6 +21,7 @@ namespace {
 
 struct Request {
   std::string input, output;
+  std::string algorithm;
   FieldNames fields;
   QuantiseOptions quantise;
   FusionRequest fusion;
@@ -44,6 +46,9 @@ Request requestOf(const ParsedWords& parsed) {
   Request request;
   request.input = parsed.get<std::string>("IN");
   request.output = parsed.get<std::string>("output");
+  request.algorithm = parsed.get<std::string>("algorithm");
+  if (request.algorithm != "qtet" && request.algorithm != "paper")
+    throw UsageError("--algorithm '" + request.algorithm + "' is not known; give qtet or paper");
   request.fields = parseFields(parsed.get<std::string>("fields"));
   request.quantise.positionBits = parsed.integer("position-bits", kMinPositionBits, kMaxPositionBits);
   request.quantise.fieldBits = parsed.integer("field-bits", kMinFieldBits, kMaxFieldBits);
@@ -163,13 +168,33 @@ Result<std::vector<LevelError>> measure(const Request& request, FusionHistory& h
   return errors;
 }
 
+OrderedJson toJson(const PaperFigures& figures) {
+  const PaperFigures::Refused& refused = figures.refused;
+  const double average = figures.fusions > 0 ? static_cast<double>(figures.removed) / static_cast<double>(figures.fusions) : 0;
+  return {{"fusions", figures.fusions},
+          {"interiorFusions", figures.interiorFusions},
+          {"removed", figures.removed},
+          {"averageRemoved", average},
+          {"seconds", {{"initialise", figures.initialiseSeconds}, {"fuse", figures.fuseSeconds}}},
+          {"refused", {{"flip", refused.flip}, {"envelope", refused.envelope}, {"topology", refused.topology}, {"few", refused.few}}}};
+}
+
+/// Simplifies by the algorithm asked for; the paper's leaves its figures in `paper`.
+Result<FusionHistory> fuseBy(const Request& request, const LatticeMesh& mesh, const FusionOptions& options, OrderedJson& paper) {
+  if (request.algorithm != "paper") return simplify(mesh, options);
+  Result<PaperFusion> fused = simplifyAsThePaper(mesh, options);
+  if (!fused) return std::unexpected(fused.error());
+  paper = toJson(fused->figures);
+  return std::move(fused->history);
+}
+
 /// Simplifies, measures, encodes and writes.
-Result<EncodedLog> makeLog(const Request& request, Prepared& prepared, Progress& progress, Stopwatch& watch) {
+Result<EncodedLog> makeLog(const Request& request, Prepared& prepared, Progress& progress, Stopwatch& watch, OrderedJson& paper) {
   progress.stage("simplifying");
   Result<FusionOptions> fusion = fusionOptionsFor(request.fusion, prepared.quantised, prepared.fusionNotes);
   if (!fusion) return std::unexpected(fusion.error());
   fusion->progress = [&](double fraction) { progress.update(fraction); };
-  Result<FusionHistory> history = simplify(prepared.quantised.mesh, *fusion);
+  Result<FusionHistory> history = fuseBy(request, prepared.quantised.mesh, *fusion, paper);
   if (!history) return std::unexpected(history.error());
   watch.lap("simplify");
   const Result<std::vector<LevelError>> errors = measure(request, *history, progress, watch);
@@ -201,6 +226,7 @@ Result<OrderedJson> reportOf(const Request& request, const Prepared& prepared, c
   const std::uint64_t full = manifest->levels.back().tetrahedra, base = manifest->levels.front().tetrahedra;
   OrderedJson report = {{"input", request.input},
                         {"output", request.output},
+                        {"algorithm", request.algorithm},
                         {"digest", sha256Hex(log.bytes)},
                         {"tetrahedra", {{"input", prepared.cellsIn}, {"full", full}, {"base", base}}},
                         {"vertices", manifest->levels.back().vertices},
@@ -227,9 +253,12 @@ Result<OrderedJson> run(const Request& request, Progress& progress) {
   Stopwatch watch;
   Result<Prepared> prepared = prepare(request, progress, watch);
   if (!prepared) return std::unexpected(prepared.error());
-  const Result<EncodedLog> log = makeLog(request, *prepared, progress, watch);
+  OrderedJson paper;
+  const Result<EncodedLog> log = makeLog(request, *prepared, progress, watch, paper);
   if (!log) return std::unexpected(log.error());
-  return reportOf(request, *prepared, *log, watch);
+  Result<OrderedJson> report = reportOf(request, *prepared, *log, watch);
+  if (report && !paper.is_null()) (*report)["paper"] = paper;
+  return report;
 }
 
 void printReport(const OrderedJson& report, std::ostream& out) {
@@ -251,6 +280,7 @@ int runSimplify(const Words& words, Console& console) {
   namespace po = boost::program_options;
   po::options_description options("options");
   options.add_options()("output,o", po::value<std::string>(), "required: the log to write, NAME.qtet")(
+      "algorithm", po::value<std::string>()->default_value("qtet"), "qtet, or paper: the paper's own loop, tetrahedra only, which ends near half of the cells")(
       "fields", po::value<std::string>()->default_value("all"),
       "all, none, or names between commas; point:NAME or cell:NAME is one of two fields with the same name")(
       "position-bits", po::value<int>()->default_value(16),

@@ -11,8 +11,6 @@
 namespace qtet {
 namespace {
 
-// Without fields: a boundary plane counts this much more than an interior one, the paper's "weighted planar quadric error metrics".
-constexpr double kBoundaryFactor = 10;
 // The boundary's field counts like that of a layer this thick (of the diagonal): the thin cells at a wall have no volume to speak for them, yet
 // there the field is steepest, and it is what a viewer shows.
 constexpr double kWallLayer = 3e-4;
@@ -41,7 +39,7 @@ FusionCost::FusionCost(const FusionMesh& mesh, const LatticeMesh& lattice, const
   quadrics_.assign(lattice.points.size() * stride_, 0);
   takeValues(lattice);
   if (components_ == 0) {
-    addPlanes(lattice);
+    addPlanes(lattice, options.boundaryFactor);
   } else {
     addFields(lattice);
     addSurface(lattice, options.hullWeight / diagonal_);
@@ -143,14 +141,14 @@ void FusionCost::addTriangles(std::span<const Triangle> triangles, double hullFa
 }
 
 // Eq. 1-3: weight a_p^2, so n / 2 as it is.
-void FusionCost::addPlanes(const LatticeMesh& lattice) {
+void FusionCost::addPlanes(const LatticeMesh& lattice, double boundaryFactor) {
   FaceGroups(lattice.tetrahedra).forEach([&](std::span<const FaceSide> sides) {
     const Tetrahedron& cell = lattice.tetrahedra[cellOf(sides[0])];
     const Triangle face = cellFace(cell, oppositeCornerOf(sides[0]));
     const Vector3 p = mesh_.position(face[0]);
     const Vector3 n = cross(mesh_.position(face[1]) - p, mesh_.position(face[2]) - p);
     Symmetric3 a;
-    a.addOuter(n, sides.size() == 1 ? 0.25 * kBoundaryFactor * kBoundaryFactor : 0.25);
+    a.addOuter(n, sides.size() == 1 ? 0.25 * boundaryFactor * boundaryFactor : 0.25);
     addSlopes(face, {}, 0, a);
   });
 }

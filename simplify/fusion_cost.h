@@ -20,6 +20,8 @@ struct CostOptions {
   std::vector<double> fieldWeights;
   /// What the squared distance of the hull counts beside the fields, areas and distances over the mesh's diagonal.
   double hullWeight = 200;
+  /// Without fields: how many times its area a boundary plane counts, the paper's "weighted planar quadric error metrics".
+  double boundaryFactor = 10;
 };
 
 class FusionCost {
@@ -74,7 +76,7 @@ class FusionCost {
   void addSurface(const LatticeMesh& lattice, double hullFactor);
   void addTriangles(std::span<const Triangle> triangles, double hullFactor);
   void addSlopes(std::span<const VertexId> corners, std::span<const Vector3> slopes, double weight, Symmetric3 a);
-  void addPlanes(const LatticeMesh& lattice);
+  void addPlanes(const LatticeMesh& lattice, double boundaryFactor);
   [[nodiscard]] std::size_t at(VertexId v) const { return slot_[v] * stride_; }
   [[nodiscard]] const double* component(VertexId v, std::size_t f) const { return &quadrics_[at(v) + kHead + kPerComponent * f]; }
   [[nodiscard]] double value(VertexId v, std::size_t f) const { return component(v, f)[4]; }

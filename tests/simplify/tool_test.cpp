@@ -81,6 +81,7 @@ TEST_F(Tool, wordsThatAreNotUnderstoodEndWithTwo) {
   expectFailure("simplify in.vtu -o out.qtet --position-bits x", 2, "position-bits");
   expectFailure("simplify in.vtu -o out.qtet --target-ratio 1.5", 2, "0 to 1");
   expectFailure("simplify in.vtu -o out.qtet --threads 0", 2, "threads");
+  expectFailure("simplify in.vtu -o out.qtet --algorithm edges", 2, "give qtet or paper");
   expectFailure("simplify in.vtu -o out.qtet --fields a,,b", 2, "empty name");
   expectFailure("simplify in.vtu -o out.vtu", 2, ".qtet");
   expectFailure("simplify a.vtu b.vtu -o out.qtet", 2, "positional");
@@ -144,6 +145,26 @@ TEST_F(Tool, simplifyReportsWhatItDid) {
   EXPECT_EQ(
       parts["head"].get<int>() + parts["connectivity"].get<int>() + parts["positions"].get<int>() + parts["fields"]["Scalar"].get<int>(),
       report["bytes"].get<int>());
+}
+
+TEST_F(Tool, theAlgorithmOfThePaperMakesAnOrdinaryLogAndTellsItsFigures) {
+  ASSERT_EQ(run("sample box -o box.vtu").code, 0);
+  const Ran ran = run("simplify box.vtu -o paper.qtet --algorithm paper --json");
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const nlohmann::json report = ran.json();
+  EXPECT_EQ(report["algorithm"], "paper");
+  const nlohmann::json& paper = report["paper"];
+  EXPECT_EQ(paper["removed"].get<int>(), 3072 - report["tetrahedra"]["base"].get<int>());
+  EXPECT_DOUBLE_EQ(paper["averageRemoved"].get<double>() * paper["fusions"].get<double>(), paper["removed"].get<double>());
+  EXPECT_GT(paper["interiorFusions"], 0);
+  EXPECT_GT(paper["seconds"]["initialise"], 0);
+  EXPECT_GT(paper["seconds"]["fuse"], 0);
+  for (const char* rule : {"flip", "envelope", "topology", "few"}) EXPECT_TRUE(paper["refused"].contains(rule)) << rule;
+  EXPECT_EQ(run("verify paper.qtet --against box.vtu").code, 0);
+
+  const nlohmann::json own = run("simplify box.vtu -o own.qtet --algorithm qtet --json").json();
+  EXPECT_EQ(own["algorithm"], "qtet");
+  EXPECT_FALSE(own.contains("paper"));
 }
 
 TEST_F(Tool, infoTellsEveryLevel) {
