@@ -46,11 +46,20 @@ class Candidates {
     const List& list = lists_[owner];
     return std::span(pool_).subspan(list.first + list.next, list.count - list.next);
   }
-  /// The best one failed: on to the next. REQUIRES: best(owner).
-  void advance(VertexId owner) { ++lists_[owner].next; }
-  /// All that failed may be tried again.
+  /// The best one is not legal: on to the next. REQUIRES: best(owner).
+  void fail(VertexId owner) {
+    List& list = lists_[owner];
+    pool_[list.first + list.next++].key *= kFailed;
+  }
+  /// The best one is gone: on to the next. REQUIRES: best(owner).
+  void drop(VertexId owner) { ++lists_[owner].next; }
+  /// All that failed may be tried again, in their turn.
   void restart(VertexId owner) {
-    if (owner < lists_.size()) lists_[owner].next = 0;
+    if (owner >= lists_.size() || lists_[owner].next == 0) return;
+    List& list = lists_[owner];
+    list.next = 0;
+    const auto first = pool_.begin() + static_cast<std::ptrdiff_t>(list.first);
+    std::sort(first, first + list.count);
   }
   /// The best one costs `key`, more than was known. REQUIRES: best(owner).
   void raise(VertexId owner, float key) {
@@ -80,6 +89,9 @@ class Candidates {
   }
 
  private:
+  // What was not legal is tried again later than its cost says: what forbade it is seldom gone after one change nearby.
+  static constexpr float kFailed = 4;
+
   struct List {
     std::size_t first = 0;
     std::uint32_t next = 0, count = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "codec/boundary.h"
@@ -180,48 +181,51 @@ void FusionCost::accumulate(VertexId v, const Vector3& origin, const Value& valu
   sum.q.c += c;
 }
 
-void FusionCost::clear(Sum& sum) const {
-  sum.components = components_;
-  std::fill_n(sum.slope.begin(), components_, Vector3{});
-  std::fill_n(sum.offset.begin(), components_, 0.0);
+// The sum begins as v's own quadric, about its own place and values.
+void FusionCost::start(VertexId v, Sum& sum) const {
+  const double* q = &quadrics_[at(v)];
+  sum.q = {{q[0], q[1], q[2], q[3], q[4], q[5]}, {q[6], q[7], q[8]}, q[9]};
+  sum.weight = q[10];
+  for (std::size_t f = 0; f < components_; ++f) {
+    const double* p = q + kHead + kPerComponent * f;
+    sum.slope[f] = {p[0], p[1], p[2]};
+    sum.offset[f] = p[3];
+  }
 }
 
 void FusionCost::sumOf(const Prey& prey, Sum& sum) const {
-  clear(sum);
   const VertexId first = prey.vertex[0];
   const Vector3 origin = mesh_.position(first);
-  for (const VertexId v : prey.vertices()) accumulate(v, origin, [&](std::size_t f) { return value(first, f); }, sum);
+  start(first, sum);
+  for (const VertexId v : prey.vertices().subspan(1)) accumulate(v, origin, [&](std::size_t f) { return value(first, f); }, sum);
 }
 
-Quadric FusionCost::Sum::reduced() const {
+Quadric FusionCost::Sum::reduced(std::size_t components) const {
   Quadric out = q;
   if (!(weight > 0)) return out;
+  const double inverse = 1 / weight;
   for (std::size_t f = 0; f < components; ++f) {
-    const double share = offset[f] / weight;
-    out.a.addOuter(slope[f], -1 / weight);
+    const double share = offset[f] * inverse;
+    out.a.addOuter(slope[f], -inverse);
     out.b = out.b - share * slope[f];
     out.c -= share * offset[f];
   }
   return out;
 }
 
-Quadric FusionCost::of(const Prey& prey) const {
+PreyQuadric FusionCost::of(const Prey& prey) const {
   Sum sum;
   sumOf(prey, sum);
-  return sum.reduced();
-}
-
-double FusionCost::pull(const Quadric& quadric, const Prey& prey) const {
-  double weight = 0;
-  for (const VertexId v : prey.vertices()) weight += quadrics_[at(v) + 10];
-  return kPull * quadric.a.trace() / 3 + kFlatPull * weight / (diagonal_ * diagonal_) + 1e-300;
+  PreyQuadric out{sum.reduced(components_), 0};
+  out.pull = kPull * out.quadric.a.trace() / 3 + kFlatPull * sum.weight / (diagonal_ * diagonal_) + std::numeric_limits<double>::min();
+  return out;
 }
 
 double FusionCost::valuesAt(const Prey& prey, const LatticePoint& p, std::span<double> values) const {
   Sum sum;
   sumOf(prey, sum);
   const Vector3 d = toVector(p) - mesh_.position(prey.vertex[0]);
-  double cost = sum.reduced().at(d);
+  double cost = sum.reduced(components_).at(d);
   for (std::size_t f = 0; f < components_; ++f) {
     const double best = value(prey.vertex[0], f) + (sum.weight > 0 ? (dot(sum.slope[f], d) + sum.offset[f]) / sum.weight : 0);
     values[f] = std::clamp(best, 0.0, limits_[f]);
@@ -232,7 +236,8 @@ double FusionCost::valuesAt(const Prey& prey, const LatticePoint& p, std::span<d
 
 void FusionCost::fuse(const Prey& prey, const LatticePoint& p, std::span<const double> values) {
   Sum sum;
-  clear(sum);
+  std::fill_n(sum.slope.begin(), components_, Vector3{});
+  std::fill_n(sum.offset.begin(), components_, 0.0);
   const Vector3 place = toVector(p);
   for (const VertexId v : prey.vertices()) accumulate(v, place, [&](std::size_t f) { return values[f]; }, sum);
   slot_.push_back(slot_[prey.vertex[0]]);

@@ -24,19 +24,22 @@ struct CostOptions {
   double boundaryFactor = 10;
 };
 
+struct PreyQuadric {
+  Quadric quadric;
+  double pull = 0;  ///< the weight of a pull towards the barycentre that decides where the quadric does not
+};
+
 class FusionCost {
  public:
   /// REQUIRES: `mesh` outlives this and was made of `lattice`.
   FusionCost(const FusionMesh& mesh, const LatticeMesh& lattice, const CostOptions& options);
 
   /// The prey's quadric as a function of the fusion point relative to prey.vertex[0], at the best values for each point.
-  [[nodiscard]] Quadric of(const Prey& prey) const;
+  [[nodiscard]] PreyQuadric of(const Prey& prey) const;
   /// Asks the memory for v's quadric.
   void prefetch(VertexId v) const {
     for (std::size_t i = 0; i < stride_; i += kLineDoubles) __builtin_prefetch(&quadrics_[at(v) + i]);
   }
-  /// The weight of a pull towards the barycentre that decides where the quadric does not.
-  [[nodiscard]] double pull(const Quadric& quadric, const Prey& prey) const;
 
   /// The fields in the cost, in the order of their values.
   struct Part {
@@ -63,11 +66,10 @@ class FusionCost {
   struct Sum {
     Quadric q;
     double weight = 0;
-    std::size_t components = 0;
     std::array<Vector3, kMaxCostComponents> slope;
     std::array<double, kMaxCostComponents> offset;
 
-    [[nodiscard]] Quadric reduced() const;
+    [[nodiscard]] Quadric reduced(std::size_t components) const;
   };
 
   void chooseParts(const LatticeMesh& lattice, const CostOptions& options);
@@ -80,7 +82,7 @@ class FusionCost {
   [[nodiscard]] std::size_t at(VertexId v) const { return slot_[v] * stride_; }
   [[nodiscard]] const double* component(VertexId v, std::size_t f) const { return &quadrics_[at(v) + kHead + kPerComponent * f]; }
   [[nodiscard]] double value(VertexId v, std::size_t f) const { return component(v, f)[4]; }
-  void clear(Sum& sum) const;
+  void start(VertexId v, Sum& sum) const;
   template <class Value>
   void accumulate(VertexId v, const Vector3& origin, const Value& valueOf, Sum& sum) const;
   void sumOf(const Prey& prey, Sum& sum) const;

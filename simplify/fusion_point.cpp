@@ -34,21 +34,21 @@ FusionPointFinder::Deciding FusionPointFinder::deciding(const Prey& prey) const 
   return out;
 }
 
-FusionPointFinder::Ideal FusionPointFinder::idealOf(const Prey& prey, const Quadric& quadric) const {
-  const Vector3 middle = deciding(prey).centre;
-  if (const auto minimum = quadric.minimum(middle, cost_.pull(quadric, prey))) {
+FusionPointFinder::Ideal FusionPointFinder::idealOf(const Prey& prey, const Deciding& deciding, const PreyQuadric& of) const {
+  const auto& [quadric, pull] = of;
+  if (const auto minimum = quadric.minimum(deciding.centre, pull)) {
     double radius = 0;
     for (const VertexId v : prey.vertices()) {
-      const Vector3 d = mesh_.position(v) - mesh_.position(prey.vertex[0]) - middle;
+      const Vector3 d = mesh_.position(v) - mesh_.position(prey.vertex[0]) - deciding.centre;
       radius = std::max(radius, dot(d, d));
     }
-    const Vector3 off = *minimum - middle;
+    const Vector3 off = *minimum - deciding.centre;
     if (dot(off, off) <= kReach * kReach * radius) return {*minimum, quadric.at(*minimum)};
   }
-  return {middle, quadric.at(middle)};
+  return {deciding.centre, quadric.at(deciding.centre)};
 }
 
-FusionPointFinder::Ideal FusionPointFinder::ideal(const Prey& prey) const { return idealOf(prey, cost_.of(prey)); }
+FusionPointFinder::Ideal FusionPointFinder::ideal(const Prey& prey) const { return idealOf(prey, deciding(prey), cost_.of(prey)); }
 
 void FusionPointFinder::offer(const LatticePoint& p) {
   for (const Choice& c : choices_)
@@ -58,11 +58,12 @@ void FusionPointFinder::offer(const LatticePoint& p) {
 
 void FusionPointFinder::offerChoices(const Prey& prey, const FusionTest& test) {
   choices_.clear();
-  quadric_ = cost_.of(prey);
+  const PreyQuadric of = cost_.of(prey);
+  quadric_ = of.quadric;
   origin_ = mesh_.position(prey.vertex[0]);
   const Deciding deciding = this->deciding(prey);
   const Vector3 middle = origin_ + deciding.centre;
-  const Vector3 best = origin_ + idealOf(prey, quadric_).offset;
+  const Vector3 best = origin_ + idealOf(prey, deciding, of).offset;
   for (const Vector3& p : {best, 0.5 * (best + middle), middle}) {
     LatticePoint inside = rounded(p);
     if (!deciding.boundary || test.projectInside(p, inside)) offer(inside);

@@ -31,19 +31,19 @@ class FusionPointFinder {
   [[nodiscard]] std::optional<FusionPoint> find(const Prey& prey, const FusionTest& test);
 
  private:
-  struct Choice {
-    LatticePoint point;
-    double cost;
-  };
-
   struct Deciding {
     std::array<VertexId, 4> vertex{};
     std::size_t count = 0;
     bool boundary = false;
     Vector3 centre{};  // relative to prey.vertex[0]
   };
+  struct Choice {
+    LatticePoint point;
+    double cost;
+  };
+
   [[nodiscard]] Deciding deciding(const Prey& prey) const;
-  [[nodiscard]] Ideal idealOf(const Prey& prey, const Quadric& quadric) const;
+  [[nodiscard]] Ideal idealOf(const Prey& prey, const Deciding& deciding, const PreyQuadric& of) const;
   void offer(const LatticePoint& p);
   void offerChoices(const Prey& prey, const FusionTest& test);
 

@@ -24,6 +24,8 @@ namespace {
 constexpr double kBoundaryFactor = 1000;
 // Extractions between two reports of progress.
 constexpr std::uint64_t kProgressEvery = 4096;
+// Cosine of the largest angle by which a boundary triangle may turn in one fusion; the paper leaves open what keeps its boundary from folding.
+constexpr double kNormalCosine = 0.3;
 
 struct Entry {
   double key = 0;
@@ -65,7 +67,7 @@ class PaperSimplifier {
       : options_(options),
         mesh_(mesh),
         cost_(mesh_, mesh, planesOnly(mesh)),
-        test_(mesh_),
+        test_(mesh_, FusionLimits{0, 0, kNormalCosine}),
         cells_(mesh.tetrahedra.size()),
         target_(static_cast<std::size_t>(std::ceil(options.targetRatio * static_cast<double>(cells_)))),
         handles_(cells_),
@@ -101,17 +103,17 @@ class PaperSimplifier {
   [[nodiscard]] Prey preyOf(CellId c) const { return {4, mesh_.cell(c)}; }
 
   /// Where PQEM(T) is least, the barycentre where that is no one point (Eq. 6-7). Relative to the first prey vertex.
-  [[nodiscard]] Vector3 minimumOf(const Prey& prey, const Quadric& quadric) const {
+  [[nodiscard]] Vector3 minimumOf(const Prey& prey, const PreyQuadric& of) const {
     Vector3 sum{};
     for (const VertexId v : prey.vertices()) sum = sum + (mesh_.position(v) - mesh_.position(prey.vertex[0]));
     const Vector3 barycentre = 0.25 * sum;
-    return quadric.minimum(barycentre, cost_.pull(quadric, prey)).value_or(barycentre);
+    return of.quadric.minimum(barycentre, of.pull).value_or(barycentre);
   }
 
   [[nodiscard]] double keyOf(CellId c) const {
     const Prey prey = preyOf(c);
-    const Quadric quadric = cost_.of(prey);
-    return quadric.at(minimumOf(prey, quadric));
+    const PreyQuadric of = cost_.of(prey);
+    return of.quadric.at(minimumOf(prey, of));
   }
 
   /// The lattice point next to the minimum, where the lattice has one.

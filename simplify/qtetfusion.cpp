@@ -162,7 +162,7 @@ class Simplifier {
   void dropDead(VertexId v) {
     while (const Candidate* best = candidates_.best(v)) {
       if (mesh_.alive(best->partner)) return;
-      candidates_.advance(v);
+      candidates_.drop(v);
     }
   }
 
@@ -224,7 +224,7 @@ class Simplifier {
     if (isLocked(candidate.partner)) return;
     const Proposal* proposal = propose(owner, candidate.partner);
     if (proposal == nullptr) {
-      candidates_.advance(owner);
+      candidates_.fail(owner);
       return requeue(owner);
     }
     const auto cost = static_cast<float>(proposal->where.cost);

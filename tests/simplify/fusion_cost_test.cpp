@@ -58,7 +58,7 @@ TEST(FusionCost, withoutFieldsIsTheAreaWeightedSquaredDistanceOfEquationsOneToFi
   };
   plane({0, 1, 2}, 1);
   for (const Triangle& t : mesh.boundary) plane(t, 10);
-  EXPECT_NEAR(cost.of(prey).at(at - toVector(mesh.points[0])), expected, 1e-9 * expected);
+  EXPECT_NEAR(cost.of(prey).quadric.at(at - toVector(mesh.points[0])), expected, 1e-9 * expected);
 }
 
 TEST(FusionCost, isTheVolumeWeightedSquaredResidualOfTheField) {
@@ -90,7 +90,7 @@ TEST(FusionCost, countsDoNotChangeWithUnits) {
   const FusionMesh live(mesh);
   const FusionCost a(live, mesh, {}), b(live, other, {});
   const Prey prey{2, {mesh.tetrahedra[0][0], mesh.tetrahedra[0][1], 0, 0}};
-  EXPECT_DOUBLE_EQ(a.of(prey).at({3, 2, 1}), b.of(prey).at({3, 2, 1}));
+  EXPECT_DOUBLE_EQ(a.of(prey).quadric.at({3, 2, 1}), b.of(prey).quadric.at({3, 2, 1}));
 }
 
 TEST(FusionCost, leavesOutConstantFieldsAndThoseOfNoWeight) {
