@@ -351,6 +351,7 @@ class LogEncoder {
     index.fileBytes = s.fileBytes = offset;
     s.chunks = static_cast<std::uint32_t>(index.chunks.size());
     s.levels = h_.levels;
+    s.records = h_.fusions.size();
     log.bytes = index.encode();
     log.bytes.insert(log.bytes.end(), body_.begin(), body_.end());
     return log;

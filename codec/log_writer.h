@@ -28,6 +28,7 @@ struct LogStatistics {
   std::vector<std::uint64_t> fieldBytes;
   std::uint64_t baseBytes = 0;       ///< of the above, what chunk 0 takes
   std::uint64_t fileBytes = 0;
+  std::uint64_t records = 0;
   std::uint32_t chunks = 0;
   std::uint32_t levels = 0;          ///< without the base mesh
 };

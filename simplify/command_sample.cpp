@@ -17,15 +17,18 @@ std::string listOfSamples() {
 int runSample(const Words& words, Console& console) {
   namespace po = boost::program_options;
   po::options_description options("options");
-  options.add_options()("output,o", po::value<std::string>(), "required: the .vtu file to write");
+  options.add_options()("output,o", po::value<std::string>(), "required: the .vtu file to write")(
+      "cells", po::value<double>(), "at least so many tetrahedra, for samples that come in sizes (fin: 212,544 to 100,000,000)");
   const ParsedWords parsed(
-      words, {"sample", "sample NAME -o FILE.vtu", listOfSamples(), "  qtet sample box -o box.vtu\n  qtet sample fin -o fin.vtu\n"},
+      words, {"sample", "sample NAME -o FILE.vtu [--cells N]", listOfSamples(), "  qtet sample box -o box.vtu\n  qtet sample fin --cells 1000000 -o fin.vtu\n"},
       options, {"NAME"});
   if (parsed.helped(console)) return kExitOk;
 
   const auto output = parsed.get<std::string>("output");
   if (Status checked = checkOutput(output, ".vtu"); !checked) return reportFailure(checked.error(), false, console);
-  const Result<TetMesh> mesh = makeSample(parsed.get<std::string>("NAME"));
+  std::optional<std::uint64_t> cells;
+  if (parsed.has("cells")) cells = static_cast<std::uint64_t>(parsed.number("cells", 1, 1e12));
+  const Result<TetMesh> mesh = makeSample(parsed.get<std::string>("NAME"), cells);
   if (!mesh) throw UsageError(mesh.error().message);
   const Bytes bytes = vtuBytes(*mesh);
   if (Status written = writeFileAtomically(output, bytes); !written) return reportFailure(written.error(), false, console);

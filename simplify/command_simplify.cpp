@@ -233,6 +233,7 @@ Result<OrderedJson> reportOf(const Request& request, const Prepared& prepared, c
                         {"percentRemoved", 100.0 * (1.0 - static_cast<double>(base) / static_cast<double>(full))},
                         {"levels", manifest->levels.size() - 1},
                         {"chunks", index->chunks.size()}};
+  report["records"] = log.statistics.records;
   addSizes(log, *manifest, report);
   report["error"] = measureReport(request.measure, manifest->levels.front().error);
   report["lattice"] = {{"bits", lattice.bits},

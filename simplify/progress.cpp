@@ -11,6 +11,8 @@ constexpr std::chrono::milliseconds kRedraw{100};
 /// Between two lines where there is no terminal.
 constexpr std::chrono::seconds kLineInterval{2};
 constexpr int kBarCells = 30;
+/// Of a stage, before its end is foretold.
+constexpr double kEnoughToSay = 0.05;
 
 }  // namespace
 
@@ -20,6 +22,7 @@ Progress::~Progress() { clear(); }
 
 void Progress::stage(std::string name) {
   stage_ = std::move(name);
+  stageStart_ = Clock::now();
   if (onTerminal_) lastDrawn_ = {};
   update(0);
 }
@@ -36,7 +39,14 @@ void Progress::update(double fraction) {
   }
   if (now - lastDrawn_ < kLineInterval) return;
   lastDrawn_ = now;
-  out_ << "qtet: " << stage_ << ": " << static_cast<int>(fraction * 100) << " %\n" << std::flush;
+  out_ << "qtet: " << stage_ << ": " << static_cast<int>(fraction * 100) << " %" << timeLeft(fraction) << "\n" << std::flush;
+}
+
+/// What the stage will still take if it goes on as it did; nothing while too little of it is done to say.
+std::string Progress::timeLeft(double fraction) const {
+  const double spent = std::chrono::duration<double>(Clock::now() - stageStart_).count();
+  if (fraction < kEnoughToSay || fraction >= 1) return {};
+  return ", about " + std::to_string(std::lround(spent * (1 - fraction) / fraction + 0.5)) + " s left";
 }
 
 void Progress::drawBar(double fraction) {
@@ -44,7 +54,7 @@ void Progress::drawBar(double fraction) {
   const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(Clock::now() - start_).count();
   std::string line = stage_ + " [" + std::string(static_cast<std::size_t>(full), '#') +
                      std::string(static_cast<std::size_t>(kBarCells - full), '.') + "] " +
-                     std::to_string(static_cast<int>(fraction * 100)) + " %  " + std::to_string(seconds) + " s";
+                     std::to_string(static_cast<int>(fraction * 100)) + " %  " + std::to_string(seconds) + " s" + timeLeft(fraction);
   const std::size_t length = line.size();
   if (length < barLength_) line.append(barLength_ - length, ' ');
   barLength_ = length;

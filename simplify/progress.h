@@ -27,11 +27,12 @@ class Progress {
   using Clock = std::chrono::steady_clock;
 
   void drawBar(double fraction);
+  [[nodiscard]] std::string timeLeft(double fraction) const;
 
   std::ostream& out_;
   bool onTerminal_;
   Clock::time_point start_ = Clock::now();
-  Clock::time_point lastDrawn_{};
+  Clock::time_point lastDrawn_{}, stageStart_{};
   std::string stage_;
   std::size_t barLength_ = 0;
 };

@@ -11,10 +11,15 @@
 namespace qtet {
 namespace {
 
-constexpr VertexId kAcross = 18;  ///< quads along x and y
-constexpr VertexId kUp = 16;      ///< quads along z
-constexpr VertexId kLayers = 24;
-constexpr double kLayerGrowth = 1.17;
+/// How many quads along x and y, along z, and layers; the first size and the shape of all others.
+struct Grid {
+  VertexId across = 18;
+  VertexId up = 16;
+  VertexId layers = 24;
+
+  [[nodiscard]] std::uint64_t cells() const { return 6 * std::uint64_t{layers} * (4 * std::uint64_t{up} * across + std::uint64_t{across} * across); }
+};
+constexpr double kLayerGrowth = 1.17;  ///< from layer to layer of the first size
 constexpr Position kOuterHalfAxes{4.2, 2.6, 3.4};
 /// The outer shell reaches further downstream than upstream; less than the difference of the half axes, or shells would cross.
 constexpr double kOuterShift = 2.7;
@@ -26,12 +31,23 @@ struct CubeSurface {
 
 double fourthPower(double x) { return x * x * x * x; }
 
-Position directionAt(VertexId i, VertexId j, VertexId k) {
-  const auto side = [](VertexId n) {
-    const double s = 2.0 * n / kAcross - 1;
+Grid gridOf(std::uint64_t cells) {
+  constexpr Grid kFirst;
+  Grid grid = kFirst;
+  while (grid.cells() < cells) {
+    ++grid.across;
+    grid.up = (kFirst.up * grid.across + kFirst.across / 2) / kFirst.across;
+    grid.layers = (kFirst.layers * grid.across + kFirst.across / 2) / kFirst.across;
+  }
+  return grid;
+}
+
+Position directionAt(const Grid& grid, VertexId i, VertexId j, VertexId k) {
+  const auto side = [&](VertexId n) {
+    const double s = 2.0 * n / grid.across - 1;
     return s * (0.8 + 0.2 * s * s);  // evens out the angles, as a tangent would
   };
-  const double up = static_cast<double>(k) / kUp;
+  const double up = static_cast<double>(k) / grid.up;
   Position d{side(i), side(j), up * (0.35 + 0.65 * up)};  // finer near the plate
   const double length = std::sqrt(std::sqrt(fourthPower(d[0]) + fourthPower(d[1]) + fourthPower(d[2])));
   for (double& x : d) x /= length;
@@ -41,6 +57,7 @@ Position directionAt(VertexId i, VertexId j, VertexId k) {
 /// Numbers the cube's surface points as they are first named.
 class SurfaceBuilder {
  public:
+  explicit SurfaceBuilder(const Grid& grid) : grid_(grid), ids_(std::size_t{grid.across + 1} * (grid.across + 1) * (grid.up + 1), kGhost) {}
   /// Two triangles for the quad (a, b, c, d) of cube points, in either rotation.
   void addQuad(std::array<std::array<VertexId, 3>, 4> corners) {
     std::array<VertexId, 4> v;
@@ -54,10 +71,10 @@ class SurfaceBuilder {
 
  private:
   VertexId vertex(const std::array<VertexId, 3>& p) {
-    VertexId& id = ids_[(p[2] * (kAcross + 1) + p[1]) * (kAcross + 1) + p[0]];
+    VertexId& id = ids_[(std::size_t{p[2]} * (grid_.across + 1) + p[1]) * (grid_.across + 1) + p[0]];
     if (id == kGhost) {
       id = static_cast<VertexId>(surface_.directions.size());
-      surface_.directions.push_back(directionAt(p[0], p[1], p[2]));
+      surface_.directions.push_back(directionAt(grid_, p[0], p[1], p[2]));
     }
     return id;
   }
@@ -68,31 +85,53 @@ class SurfaceBuilder {
     surface_.triangles.push_back(t);
   }
 
+  Grid grid_;
   CubeSurface surface_;
-  std::vector<VertexId> ids_ = std::vector<VertexId>((kAcross + 1) * (kAcross + 1) * (kUp + 1), kGhost);
+  std::vector<VertexId> ids_;
 };
 
-CubeSurface halfCube() {
-  SurfaceBuilder builder;
-  for (VertexId k = 0; k < kUp; ++k) {
-    for (VertexId n = 0; n < kAcross; ++n) {
-      for (const VertexId wall : {VertexId{0}, kAcross}) {
+CubeSurface halfCube(const Grid& grid) {
+  SurfaceBuilder builder(grid);
+  for (VertexId k = 0; k < grid.up; ++k) {
+    for (VertexId n = 0; n < grid.across; ++n) {
+      for (const VertexId wall : {VertexId{0}, grid.across}) {
         builder.addQuad({{{wall, n, k}, {wall, n + 1, k}, {wall, n + 1, k + 1}, {wall, n, k + 1}}});
         builder.addQuad({{{n, wall, k}, {n + 1, wall, k}, {n + 1, wall, k + 1}, {n, wall, k + 1}}});
       }
     }
   }
-  for (VertexId j = 0; j < kAcross; ++j) {
-    for (VertexId i = 0; i < kAcross; ++i) builder.addQuad({{{i, j, kUp}, {i + 1, j, kUp}, {i + 1, j + 1, kUp}, {i, j + 1, kUp}}});
+  const VertexId top = grid.up;
+  for (VertexId j = 0; j < grid.across; ++j) {
+    for (VertexId i = 0; i < grid.across; ++i) builder.addQuad({{{i, j, top}, {i + 1, j, top}, {i + 1, j + 1, top}, {i, j + 1, top}}});
   }
   return builder.take();
 }
 
-/// 0 at the fin, 1 at the outer shell, growing by kLayerGrowth a layer.
-std::vector<double> layerHeights() {
+double power(double x, VertexId n) {
+  double out = 1;
+  for (VertexId i = 0; i < n; ++i) out *= x;
+  return out;
+}
+
+/// The growth a layer for which the last layer is as much thicker than the first as in the first size, by bisection.
+double layerGrowth(const Grid& grid) {
+  constexpr Grid kFirst;
+  if (grid.layers == kFirst.layers) return kLayerGrowth;
+  const double whole = power(kLayerGrowth, kFirst.layers);
+  double low = 1, high = kLayerGrowth;
+  for (int step = 0; step < 60; ++step) {
+    const double middle = 0.5 * (low + high);
+    (power(middle, grid.layers) < whole ? low : high) = middle;
+  }
+  return low;
+}
+
+/// 0 at the fin, 1 at the outer shell, growing from layer to layer.
+std::vector<double> layerHeights(const Grid& grid) {
   std::vector<double> heights{0};
+  const double growth = layerGrowth(grid);
   double thickness = 1;
-  for (VertexId layer = 0; layer < kLayers; ++layer, thickness *= kLayerGrowth) heights.push_back(heights.back() + thickness);
+  for (VertexId layer = 0; layer < grid.layers; ++layer, thickness *= growth) heights.push_back(heights.back() + thickness);
   for (double& height : heights) height /= heights.back();
   return heights;
 }
@@ -132,13 +171,14 @@ void addPrism(Triangle t, VertexId lower, VertexId upper, std::vector<Tetrahedro
 
 }  // namespace
 
-TetMesh finSample() {
-  const CubeSurface surface = halfCube();
+TetMesh finSample(std::uint64_t cells) {
+  const Grid grid = gridOf(cells);
+  const CubeSurface surface = halfCube(grid);
   const auto perLayer = static_cast<VertexId>(surface.directions.size());
 
   TetMesh mesh;
   mesh.fields = {{"Density", 1, "float32", {}}, {"Pressure", 1, "float32", {}}, {"Velocity", 3, "float32", {}}};
-  for (const double height : layerHeights()) {
+  for (const double height : layerHeights(grid)) {
     for (const Position& direction : surface.directions) {
       const Position p = pointAt(direction, height);
       mesh.points.push_back(p);
@@ -148,7 +188,7 @@ TetMesh finSample() {
       for (const double component : flow.velocity) mesh.fields[2].values.push_back(roundedToFloat(component));
     }
   }
-  for (VertexId layer = 0; layer < kLayers; ++layer) {
+  for (VertexId layer = 0; layer < grid.layers; ++layer) {
     for (const Triangle& t : surface.triangles) addPrism(t, layer * perLayer, (layer + 1) * perLayer, mesh.tetrahedra);
   }
   return mesh;

@@ -7,18 +7,23 @@ namespace qtet {
 namespace {
 
 constexpr std::array<Sample, 2> kSamples{{
-    {"box", "the unit cube, 3,072 tetrahedra, one scalar field", boxSample},
-    {"fin", "supersonic flow round a swept fin, 212,544 tetrahedra, density, pressure and velocity", finSample},
+    {"box", "the unit cube, 3,072 tetrahedra, one scalar field", [](std::uint64_t) { return boxSample(); }, kBoxCells, kBoxCells},
+    {"fin", "supersonic flow round a swept fin, 212,544 tetrahedra or more, density, pressure and velocity", finSample, kFinCells, kMostSampleCells},
 }};
 
 }  // namespace
 
 std::span<const Sample> samples() { return kSamples; }
 
-Result<TetMesh> makeSample(std::string_view name) {
+Result<TetMesh> makeSample(std::string_view name, std::optional<std::uint64_t> cells) {
   std::string known;
   for (const Sample& sample : kSamples) {
-    if (sample.name == name) return sample.make();
+    if (sample.name == name) {
+      const std::uint64_t count = cells.value_or(sample.fewestCells);
+      if (count >= sample.fewestCells && count <= sample.mostCells) return sample.make(count);
+      return fail(ErrorCode::kBadValue, "the sample " + std::string(name) + " has " + std::to_string(sample.fewestCells) +
+                                            (sample.mostCells > sample.fewestCells ? " to " + std::to_string(sample.mostCells) : "") + " cells");
+    }
     known += (known.empty() ? "" : ", ") + std::string(sample.name);
   }
   return fail(ErrorCode::kNotFound, "there is no sample '" + std::string(name) + "'; there are: " + known);

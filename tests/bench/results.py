@@ -25,8 +25,8 @@ import threading
 # What is compared: name in the table, program, and for qtet its options ({field}: the field that is judged; --position-bits here goes before the one below),
 # for VTK the scale (vtk_decimation.h).
 SETTINGS = [
-    ("qtet", "qtet", []),
-    ("qtet, hull 40000", "qtet", ["--hull-weight", "40000"]),
+    ("qtet", "qtet", ["--fields", "{field}", "--field-bits", "16", "--measure", "none"]),
+    ("qtet, shape first", "qtet", ["--fields", "{field}", "--field-bits", "16", "--measure", "none", "--hull-weight", "15000"]),
     ("VTK", "vtk", "1"),
     ("VTK x 1000", "vtk", "1000"),
 ]

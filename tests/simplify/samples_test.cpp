@@ -27,7 +27,7 @@ TEST(Samples, theBoxIsThePapers) {
 
 TEST(Samples, everyCellOfEverySampleIsPositiveAndNothingNeedsRepair) {
   for (const Sample& sample : samples()) {
-    TetMesh mesh = sample.make();
+    TetMesh mesh = sample.make(sample.fewestCells);
     for (const Tetrahedron& t : mesh.tetrahedra)
       ASSERT_EQ(volumeSign(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]), 1) << sample.name;
     const Result<CleanReport> report = cleanMesh(mesh);
@@ -74,7 +74,7 @@ TEST(Samples, everyNumberIsAFloat) {
     return stored.front() == x;
   };
   for (const Sample& sample : samples()) {
-    const TetMesh mesh = sample.make();
+    const TetMesh mesh = sample.make(sample.fewestCells);
     for (const Position& p : mesh.points) {
       for (const double x : p) ASSERT_TRUE(isFloat(x)) << sample.name << " " << x;
     }
@@ -91,6 +91,19 @@ TEST(Samples, everyNumberIsAFloat) {
 TEST(Samples, areTheSameBitsEverywhere) {
   EXPECT_EQ(sha256Hex(vtuBytes(boxSample())), "e4df8ec512417fbb80e7f26c44df7af55fe99949127dd50bb35376d62b5c5bcf");
   EXPECT_EQ(sha256Hex(vtuBytes(finSample())), "0739352e9c6b0468a206b6cd4dbb498cb546b67b18df69897f9c11c5f0e4c7ee");
+}
+
+TEST(Samples, theFinComesInSizes) {
+  const Result<TetMesh> mesh = makeSample("fin", 300000);
+  ASSERT_TRUE(mesh);
+  EXPECT_GE(mesh->tetrahedra.size(), 300000u);
+  EXPECT_LT(mesh->tetrahedra.size(), 400000u);
+  TetMesh cleaned = *mesh;
+  const auto report = cleanMesh(cleaned);
+  ASSERT_TRUE(report);
+  EXPECT_EQ(report->invertedCells.count + report->flatCells.count + report->nonManifoldEdges.count, 0u);
+  EXPECT_EQ(makeSample("fin", 1000).error().code, ErrorCode::kBadValue);
+  EXPECT_EQ(makeSample("box", 4000).error().code, ErrorCode::kBadValue);
 }
 
 TEST(Samples, anUnknownNameIsToldTheKnownOnes) {
