@@ -73,9 +73,13 @@ Result<FusionOptions> fusionOptionsFor(const FusionRequest& request, const Quant
     named[f] = weight;
   }
   out.cost.fieldWeights.assign(fields.size(), 0);
+  std::size_t components = 0;
   for (std::size_t f = 0; f < fields.size(); ++f) {
     if (isCellField(fields[f]) || named[f] == 0) continue;
-    const std::string why = whyNot(quantised, f, named[f].has_value());
+    std::string why = whyNot(quantised, f, named[f].has_value());
+    if (why.empty() && components + fields[f].components > kMaxCostComponents)
+      why = "comes after " + std::to_string(kMaxCostComponents) + " components that count, and more cannot";
+    if (why.empty()) components += fields[f].components;
     if (why.empty())
       out.cost.fieldWeights[f] = named[f].value_or(1);
     else

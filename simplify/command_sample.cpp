@@ -18,7 +18,7 @@ int runSample(const Words& words, Console& console) {
   namespace po = boost::program_options;
   po::options_description options("options");
   options.add_options()("output,o", po::value<std::string>(), "required: the .vtu file to write")(
-      "cells", po::value<double>(), "at least so many tetrahedra, for samples that come in sizes (fin: 212,544 to 100,000,000)");
+      "cells", po::value<double>(), "at least so many tetrahedra, for samples that come in sizes (fin: up to 100,000,000)");
   const ParsedWords parsed(
       words, {"sample", "sample NAME -o FILE.vtu [--cells N]", listOfSamples(), "  qtet sample box -o box.vtu\n  qtet sample fin --cells 1000000 -o fin.vtu\n"},
       options, {"NAME"});

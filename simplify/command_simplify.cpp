@@ -53,6 +53,8 @@ Request requestOf(const ParsedWords& parsed) {
   request.quantise.positionBits = parsed.integer("position-bits", kMinPositionBits, kMaxPositionBits);
   request.quantise.fieldBits = parsed.integer("field-bits", kMinFieldBits, kMaxFieldBits);
   request.fusion = fusionRequestOf(parsed);
+  if (request.algorithm == "paper" && (request.fusion.regions || request.fusion.options.envelopeTolerance > 0 || !request.fusion.fieldWeights.empty()))
+    throw UsageError("--algorithm paper knows no --preserve-regions, --envelope-tolerance or --field-weight; leave them out");
   request.measure = measureOptionsOf(parsed);
   return request;
 }

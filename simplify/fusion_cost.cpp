@@ -62,8 +62,10 @@ void FusionCost::chooseParts(const LatticeMesh& lattice, const CostOptions& opti
   }
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     const FieldInfo& info = lattice.fields[parts_[i].field];
-    const double range = info.range[1] - info.range[0];
-    const double steps = range > 0 ? range / info.step : std::ldexp(1.0, info.bits);
+    // Of a vector the larger of its lengths' range and its components': directions may turn while their lengths stay.
+    const double extent = info.step * (std::ldexp(1.0, info.bits) - 1);
+    const double range = info.components == 1 ? info.range[1] - info.range[0] : std::max(info.range[1] - info.range[0], extent);
+    const double steps = (range > 0 ? range : extent) / info.step;
     parts_[i].scale = std::sqrt(weights[i] / total) / steps;
     for (std::size_t c = 0; c < info.components; ++c) limits_.push_back(parts_[i].scale * (std::ldexp(1.0, info.bits) - 1));
   }
@@ -143,13 +145,15 @@ void FusionCost::addTriangles(std::span<const Triangle> triangles, double hullFa
 
 // Eq. 1-3: weight a_p^2, so n / 2 as it is.
 void FusionCost::addPlanes(const LatticeMesh& lattice, double boundaryFactor) {
+  // A length to the sixth power in lattice steps would pass the largest float on fine lattices; a power of two changes nothing else.
+  const double scale = std::ldexp(0.25, -3 * lattice.lattice.bits);
   FaceGroups(lattice.tetrahedra).forEach([&](std::span<const FaceSide> sides) {
     const Tetrahedron& cell = lattice.tetrahedra[cellOf(sides[0])];
     const Triangle face = cellFace(cell, oppositeCornerOf(sides[0]));
     const Vector3 p = mesh_.position(face[0]);
     const Vector3 n = cross(mesh_.position(face[1]) - p, mesh_.position(face[2]) - p);
     Symmetric3 a;
-    a.addOuter(n, sides.size() == 1 ? 0.25 * boundaryFactor * boundaryFactor : 0.25);
+    a.addOuter(n, scale * (sides.size() == 1 ? boundaryFactor * boundaryFactor : 1));
     addSlopes(face, {}, 0, a);
   });
 }

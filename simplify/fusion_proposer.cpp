@@ -15,6 +15,7 @@ constexpr std::array<double, 5> kCostFactor{0, 0, 1, 0.5, 0.25};
 void FusionProposer::candidatesOf(VertexId v, bool onlyLower, std::vector<Candidate>& found) {
   neighbours_.clear();
   found.clear();
+  if (mesh_.star(v).size() > kMostStarCells) return;
   mesh_.prefetchStar(v);
   for (const CellId c : mesh_.star(v))
     for (const VertexId w : mesh_.cell(c)) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "codec/growing_mesh.h"
 #include "codec/predicates.h"
@@ -12,8 +13,6 @@
 namespace qtet {
 namespace {
 
-// Cells of a star beyond which a fusion is not tried: a hub of a graded mesh would make every later fusion near it expensive.
-constexpr std::size_t kMaxStarCells = 400;
 // A new cell's shape may fall to a fifth of the worst of its star, or to the floor, whichever is lower.
 constexpr double kShapeLoss = 0.2;
 // Steps of the projection into the envelope; the last ones keep a distance that rounding to the lattice cannot use up.
@@ -21,9 +20,9 @@ constexpr int kProjections = 8;
 constexpr int kExactProjections = 4;
 constexpr double kRoundingReach = 0.87;  // sqrt(3) / 2 lattice steps
 
-// On lattices of up to 16 bits every volume below is an integer under 2^53, exact in doubles; on finer ones |error| < 2^(3 bits + 5 - 52).
-constexpr int kExactBits = 16;
-constexpr int kRoundingLog = 5 - 52;
+// In a star whose coordinates stay below 2^16 every volume below is an integer under 2^53, exact in doubles; where they reach r, |error| < 2^5 r^3 2^-52.
+constexpr double kExactReach = 65536;
+constexpr double kRounding = 0x1p-47;
 
 // Shape = 6 sqrt(2) V / l^3, l the root mean square edge. With v = 6 V and s = the sum of the squared edges its square is 432 v^2 / s^3.
 constexpr double kShapeSquared = 432;
@@ -35,16 +34,14 @@ double shapeSquared(double volume6, double squares) { return kShapeSquared * vol
 }  // namespace
 
 FusionTest::FusionTest(const FusionMesh& mesh, const FusionLimits& limits)
-    : mesh_(mesh), limits_(limits),
-      rounding_(mesh.latticeBits() <= kExactBits ? 0 : std::ldexp(1.0, 3 * mesh.latticeBits() + kRoundingLog)),
-      full_(std::make_unique<FullLinkTest>()), regions_(std::make_unique<RegionTest>()) {}
+    : mesh_(mesh), limits_(limits), full_(std::make_unique<FullLinkTest>()), regions_(std::make_unique<RegionTest>()) {}
 FusionTest::~FusionTest() = default;
 FusionTest::FusionTest(FusionTest&&) noexcept = default;
 
 bool FusionTest::gather(const Prey& prey) {
   std::size_t size = 0;
   for (const VertexId v : prey.vertices()) mesh_.prefetchStar(v), size += mesh_.star(v).size();
-  if (size > 2 * kMaxStarCells) return false;
+  if (size > kMostStarCells) return false;
   prey_ = prey;
   star_.affected.clear(), star_.deleted.clear(), star_.labels.clear(), star_.link.clear();
   places_.clear(), sides_.clear(), turned_.clear(), ring_.clear(), goingCells_.clear(), ghosts_.clear(), bases_.clear(), faces_.clear();
@@ -84,7 +81,7 @@ bool FusionTest::gather(const Prey& prey) {
       }
       addCell(c, local, shared, at);
     }
-  if (star_.affected.size() > kMaxStarCells) return false;
+  if (star_.affected.size() > kMostStarCells / 2) return false;
   star_.link.assign(vertices_.ids().begin() + prey.k, vertices_.ids().end());
   measure();
   return true;
@@ -117,7 +114,11 @@ void FusionTest::addCell(CellId c, const std::array<std::uint32_t, 4>& local, in
 // What needs positions, once all of them have been asked for.
 void FusionTest::measure() {
   const Vector3 origin = mesh_.position(prey_.vertex[0]);
-  for (const VertexId v : vertices_.ids()) places_.push_back(v == kGhost ? Vector3{} : mesh_.position(v) - origin);
+  reach_ = 0;
+  for (const VertexId v : vertices_.ids()) {
+    places_.push_back(v == kGhost ? Vector3{} : mesh_.position(v) - origin);
+    for (const double x : places_.back()) reach_ = std::max(reach_, std::abs(x));
+  }
   const std::uint32_t ghost = ghosts_.empty() ? ~0u : ghosts_[0].local[3];
   for (std::size_t i = 0; i < turned_.size(); ++i)
     if (turned_[i][0] != ghost && turned_[i][1] != ghost && turned_[i][2] != ghost) addBase(turned_[i], i);
@@ -182,13 +183,15 @@ double FusionTest::shapeAt(const LatticePoint& p) const {
     const double least = limits_.normalCosine;
     if (along <= 0 || along * along <= least * least * dot(normal, normal) * dot(face.normal, face.normal)) return -1;
   }
-  const double distance = 3 * dot(d, d);
+  const double distance = 3 * dot(d, d), rounding = this->rounding(d);
   double worst = 1;
   for (const Base& base : bases_) {
-    const double volume = dot(base.normal, d) - base.height;
-    if (volume <= rounding_) {
-      if (!flatAsBefore(base, p)) return -1;
-      continue;
+    double volume = dot(base.normal, d) - base.height;
+    if (volume <= rounding) {
+      bool allowed = false;
+      volume = exactVolume6(base, p, allowed);
+      if (!allowed) return -1;
+      if (volume <= 0) continue;
     }
     const double shape = shapeSquared(volume, base.squares + distance - 2 * dot(d, base.corners));
     if (shape < floorSquared_) return -1;
@@ -197,21 +200,36 @@ double FusionTest::shapeAt(const LatticePoint& p) const {
   return std::sqrt(worst);
 }
 
-// Too close to call in doubles, flat or inverted: allowed only where it is positive after all, or the input was no better.
-bool FusionTest::flatAsBefore(const Base& base, const LatticePoint& p) const {
+/// What volumes with an apex at d may be off by.
+double FusionTest::rounding(const Vector3& d) const {
+  const double reach = std::max({reach_, std::abs(d[0]), std::abs(d[1]), std::abs(d[2])});
+  return reach < kExactReach ? 0 : kRounding * reach * reach * reach;
+}
+
+bool FusionTest::onLattice(const LatticePoint& p) const {
+  const auto end = std::int64_t{1} << mesh_.latticeBits();
+  return std::ranges::all_of(p, [&](std::int32_t x) { return x >= 0 && x < end; });
+}
+
+/// For what is too close to call in doubles, flat or inverted. The latter two are allowed only where the cell was no better.
+double FusionTest::exactVolume6(const Base& base, const LatticePoint& p, bool& allowed) const {
   const auto& cell = mesh_.cell(star_.affected[base.cell]);
   const VertexId apex = prey_.vertex[star_.labels[base.cell]];
   const auto t = withLast(cell, static_cast<std::size_t>(std::ranges::find(cell, apex) - cell.begin()));
   const Int128 volume = volume6(mesh_.point(t[0]), mesh_.point(t[1]), mesh_.point(t[2]), p);
-  if (volume > 0) return true;
-  const Int128 old = volume6(mesh_.point(t[0]), mesh_.point(t[1]), mesh_.point(t[2]), mesh_.point(t[3]));
-  return old <= 0 && volume >= old;
+  allowed = volume > 0;
+  if (!allowed) {
+    const Int128 old = volume6(mesh_.point(t[0]), mesh_.point(t[1]), mesh_.point(t[2]), mesh_.point(t[3]));
+    allowed = old <= 0 && volume >= old;
+  }
+  return static_cast<double>(volume);
 }
 
 // `d` = p relative to the first prey vertex.
 bool FusionTest::isOutside(const Face& face, const Vector3& d, const LatticePoint& p) const {
   const double side = dot(face.normal, d) - face.height;
-  const bool beyond = std::abs(side) > rounding_ || rounding_ == 0
+  const double error = rounding(d);
+  const bool beyond = std::abs(side) > error || error == 0
                           ? side > 0
                           : orientation(mesh_.point(face.vertex[0]), mesh_.point(face.vertex[1]), mesh_.point(face.vertex[2]), p) > 0;
   return beyond && (limits_.envelopeTolerance == 0 || distance(face, d) + face.outside > limits_.envelopeTolerance);
@@ -225,27 +243,30 @@ float FusionTest::outsideAt(const LatticePoint& p) const {
   const Vector3 d = toVector(p) - mesh_.position(prey_.vertex[0]);
   double most = 0;
   for (const Face& face : faces_) {
-    const bool beyond = dot(face.normal, d) - face.height > -rounding_;
+    const bool beyond = dot(face.normal, d) - face.height > -rounding(d);
     most = std::max(most, face.outside + (beyond ? distance(face, d) : 0));
   }
-  return static_cast<float>(most);
+  const auto bound = static_cast<float>(most);
+  return bound < most ? std::nextafter(bound, std::numeric_limits<float>::infinity()) : bound;
 }
 
 bool FusionTest::insideEnvelope(const LatticePoint& p) const {
   const Vector3 d = toVector(p) - mesh_.position(prey_.vertex[0]);
-  return std::ranges::none_of(faces_, [&](const Face& face) { return isOutside(face, d, p); });
+  return onLattice(p) && std::ranges::none_of(faces_, [&](const Face& face) { return isOutside(face, d, p); });
 }
 
 bool FusionTest::projectInside(Vector3 p, LatticePoint& inside) const {
   const Vector3 origin = mesh_.position(prey_.vertex[0]);
+  const double end = std::ldexp(1.0, mesh_.latticeBits()) - 1;
   for (int step = 0; step <= kProjections; ++step) {
-    for (std::size_t a = 0; a < 3; ++a) inside[a] = static_cast<std::int32_t>(std::floor(p[a] + 0.5));
+    for (std::size_t a = 0; a < 3; ++a) inside[a] = static_cast<std::int32_t>(std::clamp(std::floor(p[a] + 0.5), 0.0, end));
     const Vector3 d = toVector(inside) - origin;
     double farthest = -1;
     Vector3 back{};
     for (const Face& face : faces_) {
       if (!isOutside(face, d, inside)) continue;
       const double length = std::sqrt(dot(face.normal, face.normal));
+      if (!(length > 0)) return false;  // a sliver whose plane doubles do not know
       const double outside = (dot(face.normal, p - origin) - face.height) / length - std::max(0.0, limits_.envelopeTolerance - face.outside);
       if (std::abs(outside) > farthest) farthest = std::abs(outside), back = (outside / length) * face.normal;
       if (step >= kExactProjections) back = back + (kRoundingReach / length) * face.normal;

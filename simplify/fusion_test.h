@@ -1,5 +1,5 @@
 // Whether a fusion keeps the mesh what it is: topology exactly (the link condition with the ghost vertex), no cell flipped, inside the boundary
-// envelope, and how well shaped the new cells are (ALGORITHM.md, "Legality"). All decisions but shape are exact on lattice integers.
+// envelope, and how well shaped the new cells are (ALGORITHM.md, "Legality"). Topology, flips and the envelope without tolerance are exact.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +14,9 @@ namespace qtet {
 
 class FullLinkTest;
 class RegionTest;
+
+/// Cells in the stars of a prey beyond which a fusion is not tried: a hub of a graded mesh would make every fusion near it expensive.
+inline constexpr std::size_t kMostStarCells = 800;
 
 struct FusionLimits {
   /// No new cell may be shaped worse than this or than a fifth of its star's worst, whichever is lower.
@@ -76,7 +79,7 @@ class FusionTest {
   };
 
   void addCell(CellId c, const std::array<std::uint32_t, 4>& local, int shared, std::size_t at);
-  void addBase(const std::array<std::uint32_t, 4>& local, std::size_t apex);
+  void addBase(const std::array<std::uint32_t, 4>& local, std::size_t cell);
   void addFace(const GhostCell& ghost);
   void measure();
   void measureShape();
@@ -84,11 +87,12 @@ class FusionTest {
   [[nodiscard]] bool hasCommonChord();
   [[nodiscard]] bool isOutside(const Face& face, const Vector3& d, const LatticePoint& p) const;
   [[nodiscard]] static double distance(const Face& face, const Vector3& d);
-  [[nodiscard]] bool flatAsBefore(const Base& base, const LatticePoint& p) const;
+  [[nodiscard]] double rounding(const Vector3& d) const;
+  [[nodiscard]] bool onLattice(const LatticePoint& p) const;
+  [[nodiscard]] double exactVolume6(const Base& base, const LatticePoint& p, bool& allowed) const;
 
   const FusionMesh& mesh_;
   FusionLimits limits_;
-  double rounding_;
   Prey prey_;
   Star star_;
   LocalVertices vertices_;
@@ -100,6 +104,7 @@ class FusionTest {
   std::vector<std::array<std::uint32_t, 4>> goingCells_;  // deleted cells, local
   std::vector<Base> bases_;
   std::vector<Face> faces_;
+  double reach_ = 0;  // the largest coordinate of places_
   double oldShape_ = 1;
   double floorSquared_ = 0;
   std::vector<std::array<std::uint32_t, 2>> ringNeighbours_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -12,7 +13,7 @@ namespace qtet {
 
 class LocalVertices {
  public:
-  /// Vertices that fit: more than any star has that fusion_test.cpp looks at.
+  /// Vertices that fit: more than the stars of a prey have while they have no more than kMostStarCells cells (a star of n cells has n / 2 + 2).
   static constexpr std::size_t kMost = 512;
 
   void clear() {
@@ -29,6 +30,7 @@ class LocalVertices {
       if (slots_[at].id == v) return slots_[at].local;
       at = (at + 1) % kSlots;
     }
+    assert(ids_.size() < kMost);
     slots_[at] = {v, static_cast<std::uint16_t>(ids_.size()), generation_};
     ids_.push_back(v);
     return slots_[at].local;

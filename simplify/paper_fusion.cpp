@@ -191,7 +191,7 @@ class PaperSimplifier {
     integers_.clear();
     for (std::size_t f = 0; f < mesh_.fields().size(); ++f) {
       const FieldInfo& info = mesh_.fields()[f];
-      if (info.association != "point") continue;
+      if (isCellField(info)) continue;
       for (std::size_t c = 0; c < info.components; ++c) {
         double sum = 0;
         for (std::size_t i = 0; i < 4; ++i) sum += weights[i] * mesh_.values(f, prey.vertex[i])[c];

@@ -14,6 +14,7 @@
 #include "simplify/candidates.h"
 #include "simplify/fusion_mesh.h"
 #include "simplify/fusion_proposer.h"
+#include "simplify/tet_mesh.h"
 #include "simplify/workers.h"
 
 namespace qtet {
@@ -327,6 +328,8 @@ Status checkRegions(const LatticeMesh& mesh, const FusionOptions& options) {
   const FieldInfo& field = mesh.fields[*options.regionField];
   if (!isCellField(field) || field.components != 1)
     return fail(ErrorCode::kBadInput, "field '" + field.name + "' cannot tell regions apart: that takes a cell field of one component");
+  if (isFloatType(field.type) || field.step != 1)
+    return fail(ErrorCode::kBadInput, "field '" + field.name + "' cannot tell regions apart: only integers that are stored exactly can");
   return {};
 }
 

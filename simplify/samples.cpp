@@ -19,10 +19,12 @@ Result<TetMesh> makeSample(std::string_view name, std::optional<std::uint64_t> c
   std::string known;
   for (const Sample& sample : kSamples) {
     if (sample.name == name) {
-      const std::uint64_t count = cells.value_or(sample.fewestCells);
-      if (count >= sample.fewestCells && count <= sample.mostCells) return sample.make(count);
-      return fail(ErrorCode::kBadValue, "the sample " + std::string(name) + " has " + std::to_string(sample.fewestCells) +
-                                            (sample.mostCells > sample.fewestCells ? " to " + std::to_string(sample.mostCells) : "") + " cells");
+      const std::uint64_t count = cells.value_or(sample.cells);
+      if (sample.cells == sample.mostCells && count != sample.cells)
+        return fail(ErrorCode::kBadValue, "the sample " + std::string(name) + " comes in one size, " + std::to_string(sample.cells) + " cells");
+      if (count > sample.mostCells)
+        return fail(ErrorCode::kBadValue, "the sample " + std::string(name) + " comes with " + std::to_string(sample.mostCells) + " cells at most");
+      return sample.make(count);
     }
     known += (known.empty() ? "" : ", ") + std::string(sample.name);
   }

@@ -21,7 +21,7 @@ struct Sample {
   std::string_view description;
   /// A mesh of at least so many cells, the next size that there is.
   TetMesh (*make)(std::uint64_t cells);
-  std::uint64_t fewestCells, mostCells;  ///< equal: there is but one size
+  std::uint64_t cells, mostCells;  ///< its own size, which is the smallest, and the largest; equal: there is but one
 };
 
 /// All samples, in the order in which help shows them.

@@ -1,6 +1,8 @@
 #include "simplify/workers.h"
 
 #include <algorithm>
+#include <exception>
+#include <system_error>
 
 namespace qtet {
 namespace {
@@ -20,10 +22,15 @@ struct Workers::Job {
   std::size_t n, grain;
   const std::function<void(std::size_t, std::size_t)>& work;
   std::atomic<std::size_t> next{0};
+  std::exception_ptr failure;  // under the mutex
 };
 
 Workers::Workers(int threads) {
-  for (int i = 1; i < threads; ++i) threads_.emplace_back([this, i] { serve(static_cast<std::size_t>(i)); });
+  try {
+    for (int i = 1; i < threads; ++i) threads_.emplace_back([this, i] { serve(static_cast<std::size_t>(i)); });
+  } catch (const std::system_error&) {
+    // The result does not depend on how many there are.
+  }
 }
 
 Workers::~Workers() {
@@ -36,13 +43,22 @@ Workers::~Workers() {
 }
 
 void Workers::take(Job& job, std::size_t worker) {
-  for (std::size_t first = job.next.fetch_add(job.grain); first < job.n; first = job.next.fetch_add(job.grain))
-    for (std::size_t i = first; i < std::min(job.n, first + job.grain); ++i) job.work(worker, i);
+  try {
+    for (std::size_t first = job.next.fetch_add(job.grain); first < job.n; first = job.next.fetch_add(job.grain))
+      for (std::size_t i = first; i < std::min(job.n, first + job.grain); ++i) job.work(worker, i);
+  } catch (...) {
+    job.next = job.n;
+    const std::lock_guard lock(mutex_);
+    if (!job.failure) job.failure = std::current_exception();
+  }
 }
 
 void Workers::forEach(std::size_t n, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& work) {
-  Job job{n, grain, work};
-  if (threads_.empty() || n <= grain) return take(job, 0);
+  if (threads_.empty() || n <= grain) {
+    for (std::size_t i = 0; i < n; ++i) work(0, i);
+    return;
+  }
+  Job job{n, grain, work, {}, {}};
   {
     const std::lock_guard lock(mutex_);
     job_ = &job;
@@ -55,6 +71,7 @@ void Workers::forEach(std::size_t n, std::size_t grain, const std::function<void
     job_ = nullptr;  // who has not come by now need not be waited for
   }
   for (int spins = 0; busy_ > 0; ++spins) spins < kSpins ? pause() : std::this_thread::yield();
+  if (job.failure) std::rethrow_exception(job.failure);
 }
 
 /// The next job after the first `seen`, the caller counted as busy with it; null when there will be none.

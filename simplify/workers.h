@@ -13,7 +13,7 @@ namespace qtet {
 
 class Workers {
  public:
-  /// `threads` >= 1, the caller's included.
+  /// `threads` >= 1, the caller's included; fewer where the system gives no more.
   explicit Workers(int threads);
   ~Workers();
   Workers(const Workers&) = delete;
@@ -22,14 +22,14 @@ class Workers {
   [[nodiscard]] std::size_t count() const { return threads_.size() + 1; }
 
   /// Calls work(worker, i) for every i below `n`, each once, `grain` neighbours at a time; workers are numbered 0..count()-1. Returns when all are
-  /// done. What work does must not depend on the worker.
+  /// done. What work does must not depend on the worker. An exception of work's is thrown on, after the others have ended.
   void forEach(std::size_t n, std::size_t grain, const std::function<void(std::size_t worker, std::size_t i)>& work);
 
  private:
   struct Job;
   void serve(std::size_t worker);
   [[nodiscard]] Job* next(std::size_t& seen);
-  static void take(Job& job, std::size_t worker);
+  void take(Job& job, std::size_t worker);
 
   std::mutex mutex_;
   std::condition_variable changed_;

@@ -58,6 +58,7 @@ TEST(FusionCost, withoutFieldsIsTheAreaWeightedSquaredDistanceOfEquationsOneToFi
   };
   plane({0, 1, 2}, 1);
   for (const Triangle& t : mesh.boundary) plane(t, 10);
+  expected = std::ldexp(expected, -3 * mesh.lattice.bits);  // in what keys are measured in
   EXPECT_NEAR(cost.of(prey).quadric.at(at - toVector(mesh.points[0])), expected, 1e-9 * expected);
 }
 

@@ -173,12 +173,53 @@ TEST(Fused, theEnvelopeGivesWayByItsToleranceAndNoMore) {
     const LatticeMesh base = meshOfHistory(*history, 0);
     ASSERT_EQ(whatIsWrongWith(base), "");
     EXPECT_EQ(eulerCharacteristics(base), eulerCharacteristics(mesh));
+    for (const LatticePoint& p : history->points)
+      for (const std::int32_t x : p) ASSERT_TRUE(x >= 0 && x < 1 << mesh.lattice.bits) << "off the lattice";
     double& most = farthest[tolerance > 0];
     for (const Triangle& t : base.boundary)
       for (const VertexId v : t) most = std::max(most, testing::distanceOutside(mesh, base.points[v]));
     EXPECT_LE(most, tolerance * diagonal + 1e-9);
   }
   EXPECT_GT(farthest[1], 1) << "the room was used";
+}
+
+// A centre that every surface vertex is joined to, numbered last: more neighbours than any star that is looked at may have.
+TEST(Fused, aHubOfThousandsOfCellsIsLeftAlone) {
+  LatticeMesh mesh;
+  mesh.lattice.bits = 16;
+  constexpr VertexId kRing = 900;
+  const auto spoke = [](VertexId i) {
+    const double x = 2.0 * i / kRing - 1;  // a convex polygon from a parabola's points, closed by a far one
+    return LatticePoint{static_cast<std::int32_t>(30000 + 30000 * x), static_cast<std::int32_t>(60000 * x * x), 0};
+  };
+  for (VertexId i = 0; i < kRing; ++i) {
+    LatticePoint p = spoke(i);
+    p[2] = 100;
+    mesh.points.push_back(p);
+  }
+  const VertexId top = kRing, centre = kRing + 1;
+  mesh.points.push_back({30000, 40000, 3000});
+  mesh.points.push_back({30000, 40000, 200});
+  for (VertexId i = 0; i + 1 < kRing; ++i) mesh.tetrahedra.push_back({i, i + 1, centre, top});
+  for (Tetrahedron& t : mesh.tetrahedra)
+    if (orientation(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]) < 0) std::swap(t[2], t[3]);
+  mesh.boundary = boundaryOf(mesh.tetrahedra);
+  const auto history = simplify(mesh, {});
+  ASSERT_TRUE(history);
+}
+
+TEST(Fused, finestLatticesWithoutFieldsAreFusedAsFar) {
+  LatticeMesh mesh = gridMesh(6, 2);
+  mesh.fields.clear();
+  mesh.values.clear();
+  const auto coarse = simplify(mesh, {});
+  LatticeMesh fine = mesh;
+  fine.lattice.bits = 28;
+  for (LatticePoint& p : fine.points)
+    for (std::int32_t& x : p) x <<= 19;
+  const auto far = simplify(fine, {});
+  ASSERT_TRUE(coarse && far);
+  EXPECT_NEAR(static_cast<double>(meshOfHistory(*far, 0).tetrahedra.size()), static_cast<double>(meshOfHistory(*coarse, 0).tetrahedra.size()), 16);
 }
 
 TEST(Fused, refusesWhatItCannotDo) {

@@ -27,7 +27,7 @@ TEST(Samples, theBoxIsThePapers) {
 
 TEST(Samples, everyCellOfEverySampleIsPositiveAndNothingNeedsRepair) {
   for (const Sample& sample : samples()) {
-    TetMesh mesh = sample.make(sample.fewestCells);
+    TetMesh mesh = sample.make(sample.cells);
     for (const Tetrahedron& t : mesh.tetrahedra)
       ASSERT_EQ(volumeSign(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]), 1) << sample.name;
     const Result<CleanReport> report = cleanMesh(mesh);
@@ -74,7 +74,7 @@ TEST(Samples, everyNumberIsAFloat) {
     return stored.front() == x;
   };
   for (const Sample& sample : samples()) {
-    const TetMesh mesh = sample.make(sample.fewestCells);
+    const TetMesh mesh = sample.make(sample.cells);
     for (const Position& p : mesh.points) {
       for (const double x : p) ASSERT_TRUE(isFloat(x)) << sample.name << " " << x;
     }
@@ -102,7 +102,8 @@ TEST(Samples, theFinComesInSizes) {
   const auto report = cleanMesh(cleaned);
   ASSERT_TRUE(report);
   EXPECT_EQ(report->invertedCells.count + report->flatCells.count + report->nonManifoldEdges.count, 0u);
-  EXPECT_EQ(makeSample("fin", 1000).error().code, ErrorCode::kBadValue);
+  EXPECT_EQ(makeSample("fin", 1000)->tetrahedra.size(), kFinCells) << "at least so many";
+  EXPECT_EQ(makeSample("fin", kMostSampleCells + 1).error().code, ErrorCode::kBadValue);
   EXPECT_EQ(makeSample("box", 4000).error().code, ErrorCode::kBadValue);
 }
 
