@@ -123,6 +123,7 @@ struct Prepared {
   ReadReport read;
   CleanReport clean;
   QuantisedMesh quantised;
+  Lattice lattice;  ///< the quantised mesh's, which the simplifier takes
   std::vector<std::string> fusionNotes;
 
   [[nodiscard]] std::vector<std::string> notes() const {
@@ -155,6 +156,7 @@ Result<Prepared> prepare(const Request& request, Progress& progress, Stopwatch& 
   out.read = std::move(read->report);
   out.clean = std::move(*cleaned);
   out.quantised = std::move(*quantised);
+  out.lattice = out.quantised.mesh.lattice;
   return out;
 }
 
@@ -182,8 +184,8 @@ OrderedJson toJson(const PaperFigures& figures) {
 }
 
 /// Simplifies by the algorithm asked for; the paper's leaves its figures in `paper`.
-Result<FusionHistory> fuseBy(const Request& request, const LatticeMesh& mesh, const FusionOptions& options, OrderedJson& paper) {
-  if (request.algorithm != "paper") return simplify(mesh, options);
+Result<FusionHistory> fuseBy(const Request& request, LatticeMesh&& mesh, const FusionOptions& options, OrderedJson& paper) {
+  if (request.algorithm != "paper") return simplify(std::move(mesh), options);
   Result<PaperFusion> fused = simplifyAsThePaper(mesh, options);
   if (!fused) return std::unexpected(fused.error());
   paper = toJson(fused->figures);
@@ -196,7 +198,7 @@ Result<EncodedLog> makeLog(const Request& request, Prepared& prepared, Progress&
   Result<FusionOptions> fusion = fusionOptionsFor(request.fusion, prepared.quantised, prepared.fusionNotes);
   if (!fusion) return std::unexpected(fusion.error());
   fusion->progress = [&](double fraction) { progress.update(fraction); };
-  Result<FusionHistory> history = fuseBy(request, prepared.quantised.mesh, *fusion, paper);
+  Result<FusionHistory> history = fuseBy(request, std::move(prepared.quantised.mesh), *fusion, paper);
   if (!history) return std::unexpected(history.error());
   watch.lap("simplify");
   const Result<std::vector<LevelError>> errors = measure(request, *history, progress, watch);
@@ -224,7 +226,7 @@ Result<OrderedJson> reportOf(const Request& request, const Prepared& prepared, c
   if (!manifest) return std::unexpected(manifest.error());
 
   const QuantiseReport& quantised = prepared.quantised.report;
-  const Lattice& lattice = prepared.quantised.mesh.lattice;
+  const Lattice& lattice = prepared.lattice;
   const std::uint64_t full = manifest->levels.back().tetrahedra, base = manifest->levels.front().tetrahedra;
   OrderedJson report = {{"input", request.input},
                         {"output", request.output},

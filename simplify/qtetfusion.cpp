@@ -333,15 +333,26 @@ Status checkRegions(const LatticeMesh& mesh, const FusionOptions& options) {
   return {};
 }
 
-}  // namespace
-
-Result<FusionHistory> simplify(const LatticeMesh& mesh, const FusionOptions& options) {
+Status check(const LatticeMesh& mesh, const FusionOptions& options) {
   if (mesh.tetrahedra.empty()) return fail(ErrorCode::kBadInput, "the mesh has no tetrahedra");
   if (!(options.targetRatio >= 0 && options.targetRatio <= 1)) return fail(ErrorCode::kBadInput, "the target ratio must lie in 0..1");
   if (!(options.envelopeTolerance >= 0)) return fail(ErrorCode::kBadInput, "the envelope tolerance must not be negative");
-  if (Status weights = checkWeights(mesh, options); !weights) return std::unexpected(weights.error());
-  if (Status regions = checkRegions(mesh, options); !regions) return std::unexpected(regions.error());
+  if (Status weights = checkWeights(mesh, options); !weights) return weights;
+  return checkRegions(mesh, options);
+}
+
+}  // namespace
+
+Result<FusionHistory> simplify(const LatticeMesh& mesh, const FusionOptions& options) {
+  if (Status checked = check(mesh, options); !checked) return std::unexpected(checked.error());
   return Simplifier(mesh, options).run();
+}
+
+Result<FusionHistory> simplify(LatticeMesh&& mesh, const FusionOptions& options) {
+  if (Status checked = check(mesh, options); !checked) return std::unexpected(checked.error());
+  Simplifier simplifier(mesh, options);
+  mesh = {};
+  return simplifier.run();
 }
 
 }  // namespace qtet

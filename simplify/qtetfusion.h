@@ -25,5 +25,7 @@ struct FusionOptions {
 /// REQUIRES: `mesh` cleaned and quantised (clean_mesh.h, quantise.h). Vertices that no cell uses stay out of the history.
 /// Errors: bad-input (no tetrahedra, a ratio outside 0..1, weights that are negative or not one a field), limit-exceeded (too many levels).
 [[nodiscard]] Result<FusionHistory> simplify(const LatticeMesh& mesh, const FusionOptions& options);
+/// The same for a mesh that is not needed any more: its memory is given back before the first fusion.
+[[nodiscard]] Result<FusionHistory> simplify(LatticeMesh&& mesh, const FusionOptions& options);
 
 }  // namespace qtet
