@@ -82,7 +82,8 @@ class Candidates {
     kept.reserve(live_ + live_ / 4);
     for (List& list : lists_) {
       const std::size_t first = kept.size();
-      kept.insert(kept.end(), pool_.begin() + static_cast<std::ptrdiff_t>(list.first), pool_.begin() + static_cast<std::ptrdiff_t>(list.first + list.count));
+      kept.insert(kept.end(), pool_.begin() + static_cast<std::ptrdiff_t>(list.first),
+                  pool_.begin() + static_cast<std::ptrdiff_t>(list.first + list.count));
       list.first = first;
     }
     pool_ = std::move(kept);

@@ -19,7 +19,8 @@ std::string whyNot(const QuantisedMesh& quantised, std::size_t f, bool named) {
   if (quantised.report.nonFiniteOf[f] > 0) return "holds values that are NaN or infinite";
   const auto& values = quantised.mesh.values[f];
   if (values.empty() || std::ranges::all_of(values, [&](std::int32_t v) { return v == values[0]; })) return "is constant";
-  if (!isFloatType(info.type) && !named) return "is one of integers, which may be labels (--field-weight " + info.name + "=1 makes it count)";
+  if (!isFloatType(info.type) && !named)
+    return "is one of integers, which may be labels (--field-weight " + info.name + "=1 makes it count)";
   return {};
 }
 
@@ -36,7 +37,8 @@ void addFusionOptions(boost::program_options::options_description& options) {
       "shape-weight", po::value<double>()->default_value(FusionOptions().shapeWeight, "0.5"),
       "what badly shaped new cells cost: 0 for the least error, 1 and more for rounder cells")(
       "envelope-tolerance", po::value<double>()->default_value(0, "0"),
-      "how far the boundary may leave the original solid, over all fusions, as a fraction of the diagonal; parts of the boundary that are closer to "
+      "how far the boundary may leave the original solid, over all fusions, as a fraction of the diagonal; parts of the boundary that are "
+      "closer to "
       "each other than twice this may come to touch")(
       "preserve-regions", po::value<std::string>(),
       "a cell field of one component whose values are regions such as tissues or materials: they and their interfaces keep their topology")(
@@ -88,7 +90,8 @@ Result<FusionOptions> fusionOptionsFor(const FusionRequest& request, const Quant
   if (request.regions) {
     const std::size_t f = find(*request.regions, true);
     if (f == fields.size())
-      return fail(ErrorCode::kNotFound, "--preserve-regions: the mesh carries no cell field '" + *request.regions + "'; see that --fields includes it");
+      return fail(ErrorCode::kNotFound,
+                  "--preserve-regions: the mesh carries no cell field '" + *request.regions + "'; see that --fields includes it");
     out.regionField = f;
   }
   return out;

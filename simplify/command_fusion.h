@@ -25,6 +25,7 @@ void addFusionOptions(boost::program_options::options_description& options);
 
 /// The options for this mesh. A point field counts by its weight, 1 where none is given; one of integers counts only where one is. Those that are
 /// constant or hold values that are no numbers do not count; `notes` says which and why. Errors: not-found (a name that is no such field's).
-[[nodiscard]] Result<FusionOptions> fusionOptionsFor(const FusionRequest& request, const QuantisedMesh& quantised, std::vector<std::string>& notes);
+[[nodiscard]] Result<FusionOptions> fusionOptionsFor(const FusionRequest& request, const QuantisedMesh& quantised,
+                                                     std::vector<std::string>& notes);
 
 }  // namespace qtet

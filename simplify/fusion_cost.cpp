@@ -14,12 +14,10 @@ namespace {
 
 // The boundary's field counts like that of a layer this thick (of the diagonal): the thin cells at a wall have no volume to speak for them, yet
 // there the field is steepest, and it is what a viewer shows.
-constexpr double kWallLayer = 3e-4;
+constexpr double kWallLayer = 3e-5;
 // The pull towards the barycentre, relative to the curvature of the quadric and, where it has none, to volume over diagonal squared.
 constexpr double kPull = 1e-6;
 constexpr double kFlatPull = 1e-7;
-
-
 
 double diagonalOf(const LatticeMesh& mesh) {
   LatticePoint low = mesh.points.empty() ? LatticePoint{} : mesh.points[0], high = low;
@@ -201,7 +199,9 @@ void FusionCost::sumOf(const Prey& prey, Sum& sum) const {
   const VertexId first = prey.vertex[0];
   const Vector3 origin = mesh_.position(first);
   start(first, sum);
-  for (const VertexId v : prey.vertices().subspan(1)) accumulate(v, origin, [&](std::size_t f) { return value(first, f); }, sum);
+  for (const VertexId v : prey.vertices().subspan(1))
+    accumulate(
+        v, origin, [&](std::size_t f) { return value(first, f); }, sum);
 }
 
 Quadric FusionCost::Sum::reduced(std::size_t components) const {
@@ -243,7 +243,9 @@ void FusionCost::fuse(const Prey& prey, const LatticePoint& p, std::span<const d
   std::fill_n(sum.slope.begin(), components_, Vector3{});
   std::fill_n(sum.offset.begin(), components_, 0.0);
   const Vector3 place = toVector(p);
-  for (const VertexId v : prey.vertices()) accumulate(v, place, [&](std::size_t f) { return values[f]; }, sum);
+  for (const VertexId v : prey.vertices())
+    accumulate(
+        v, place, [&](std::size_t f) { return values[f]; }, sum);
   slot_.push_back(slot_[prey.vertex[0]]);
   double* q = &quadrics_[slot_.back() * stride_];
   const Symmetric3& a = sum.q.a;

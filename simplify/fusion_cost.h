@@ -90,10 +90,10 @@ class FusionCost {
   const FusionMesh& mesh_;
   std::vector<Part> parts_;
   std::size_t components_ = 0, stride_ = kHead;
-  double diagonal_ = 1;               // lattice steps
-  std::vector<double> limits_;        // a component's largest value; the smallest is 0
-  std::vector<double> quadrics_;      // stride_ a slot
-  std::vector<std::uint32_t> slot_;   // by vertex: a fused vertex takes its first prey vertex's
+  double diagonal_ = 1;              // lattice steps
+  std::vector<double> limits_;       // a component's largest value; the smallest is 0
+  std::vector<double> quadrics_;     // stride_ a slot
+  std::vector<std::uint32_t> slot_;  // by vertex: a fused vertex takes its first prey vertex's
 };
 
 }  // namespace qtet

@@ -28,7 +28,8 @@ FusionPointFinder::Deciding FusionPointFinder::deciding(const Prey& prey) const 
   for (const VertexId v : prey.vertices()) boundary += mesh_.onBoundary(v), surface += mesh_.onSurface(v);
   out.boundary = boundary > 0;
   for (std::size_t i = 0; i < prey.k; ++i)
-    if (surface == 0 || (boundary > 0 ? mesh_.onBoundary(prey.vertex[i]) : mesh_.onSurface(prey.vertex[i]))) out.vertex[out.count++] = prey.vertex[i];
+    if (surface == 0 || (boundary > 0 ? mesh_.onBoundary(prey.vertex[i]) : mesh_.onSurface(prey.vertex[i])))
+      out.vertex[out.count++] = prey.vertex[i];
   for (std::size_t i = 0; i < out.count; ++i) out.centre = out.centre + (mesh_.position(out.vertex[i]) - mesh_.position(prey.vertex[0]));
   out.centre = (1.0 / static_cast<double>(out.count)) * out.centre;
   return out;
@@ -74,7 +75,8 @@ void FusionPointFinder::offerChoices(const Prey& prey, const FusionTest& test) {
 
 std::optional<FusionPoint> FusionPointFinder::find(const Prey& prey, const FusionTest& test) {
   offerChoices(prey, test);
-  std::sort(choices_.begin(), choices_.end(), [](const Choice& a, const Choice& b) { return a.cost != b.cost ? a.cost < b.cost : a.point < b.point; });
+  std::sort(choices_.begin(), choices_.end(),
+            [](const Choice& a, const Choice& b) { return a.cost != b.cost ? a.cost < b.cost : a.point < b.point; });
   std::optional<FusionPoint> found;
   const double wanted = std::min(kGoodShape, test.oldShape());
   for (const Choice& choice : choices_) {

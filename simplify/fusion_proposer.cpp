@@ -28,7 +28,8 @@ void FusionProposer::candidatesOf(VertexId v, bool onlyLower, std::vector<Candid
   std::sort(found.begin(), found.end());
 }
 
-bool FusionProposer::propose(VertexId owner, std::span<const Candidate> candidates, std::uint32_t levelStart, std::uint32_t now, Proposal& out) {
+bool FusionProposer::propose(VertexId owner, std::span<const Candidate> candidates, std::uint32_t levelStart, std::uint32_t now,
+                             Proposal& out) {
   const Prey edge{2, {owner, candidates[0].partner, 0, 0}};
   const auto where = test_.gather(edge) ? finder_.find(edge, test_) : std::nullopt;
   if (!where || !test_.keepsTopology()) {

@@ -26,8 +26,8 @@ class Touched {
 
 /// What is known of an owner's candidates: those that are not legal, and what comes of the first that is.
 struct Proposal {
-  std::vector<VertexId> illegal;   ///< partners
-  VertexId partner = kGhost;       ///< of the edge that the rest is about; kGhost: none is known to be legal
+  std::vector<VertexId> illegal;  ///< partners
+  VertexId partner = kGhost;      ///< of the edge that the rest is about; kGhost: none is known to be legal
   Prey prey;
   FusionPoint where;
   Star star;

@@ -267,7 +267,8 @@ bool FusionTest::projectInside(Vector3 p, LatticePoint& inside) const {
       if (!isOutside(face, d, inside)) continue;
       const double length = std::sqrt(dot(face.normal, face.normal));
       if (!(length > 0)) return false;  // a sliver whose plane doubles do not know
-      const double outside = (dot(face.normal, p - origin) - face.height) / length - std::max(0.0, limits_.envelopeTolerance - face.outside);
+      const double outside =
+          (dot(face.normal, p - origin) - face.height) / length - std::max(0.0, limits_.envelopeTolerance - face.outside);
       if (std::abs(outside) > farthest) farthest = std::abs(outside), back = (outside / length) * face.normal;
       if (step >= kExactProjections) back = back + (kRoundingReach / length) * face.normal;
     }

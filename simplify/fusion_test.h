@@ -96,9 +96,9 @@ class FusionTest {
   Prey prey_;
   Star star_;
   LocalVertices vertices_;
-  std::vector<Vector3> places_;                           // by local vertex, relative to the first prey vertex
-  std::vector<std::uint8_t> sides_;                       // by local vertex: bit i = in the link of prey vertex i
-  std::vector<std::array<std::uint32_t, 4>> turned_;      // affected cells, the prey vertex last, local
+  std::vector<Vector3> places_;                       // by local vertex, relative to the first prey vertex
+  std::vector<std::uint8_t> sides_;                   // by local vertex: bit i = in the link of prey vertex i
+  std::vector<std::array<std::uint32_t, 4>> turned_;  // affected cells, the prey vertex last, local
   std::vector<GhostCell> ghosts_;
   std::vector<std::array<std::uint32_t, 2>> ring_;        // k = 2: the edges opposite the prey in deleted cells
   std::vector<std::array<std::uint32_t, 4>> goingCells_;  // deleted cells, local

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "simplify/measure_parallel.h"
+#include "simplify/workers.h"
 
 namespace qtet {
 namespace {
@@ -37,7 +37,7 @@ BoundaryMeter::BoundaryMeter(const MeasuredMesh& mesh, const BoundaryOptions& op
 
 void BoundaryMeter::follow() {
   const auto followAll = [&](std::vector<Followed>& places, bool searching) {
-    inParallel(places.size(), options_.threads, [&, searching](std::size_t begin, std::size_t end) {
+    options_.workers->forRuns(places.size(), kPlacesPerRun, [&, searching](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         Followed& place = places[i];
         const Fusion* fusion = mesh_.fusionOf(place.nearest.triangle);
@@ -115,7 +115,7 @@ double BoundaryMeter::farthestOfTriangles(double squared) {
   const std::vector<std::uint32_t>& boundary = mesh_.boundary();
   const double affordable = std::sqrt(static_cast<double>(options_.gridPoints) / static_cast<double>(boundary.size()));
   const int parts = static_cast<int>(std::clamp(affordable, kFewestParts, kMostParts));
-  inParallel(boundary.size(), options_.threads, [&](std::size_t begin, std::size_t end) {
+  options_.workers->forRuns(boundary.size(), kPlacesPerRun, [&](std::size_t begin, std::size_t end) {
     double farthest = squared;
     for (std::size_t i = begin; i < end; ++i) {
       double& bound = triangleBounds_[mesh_.originalTriangle(boundary[i])];
@@ -133,7 +133,7 @@ OneSidedDistance BoundaryMeter::toOriginal() {
   const std::vector<Sample> samples =
       samplesOnSurface(history.points, history.cells, mesh_.boundary(), options_.levelSamples, options_.seed + mesh_.level() + 1);
   std::vector<double> squared(samples.size());
-  inParallel(samples.size(), options_.threads, [&](std::size_t begin, std::size_t end) {
+  options_.workers->forRuns(samples.size(), kPlacesPerRun, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       if (mesh_.isOriginal(samples[i].cell)) continue;
       NearestTriangle nearest;

@@ -10,12 +10,14 @@
 
 namespace qtet {
 
+class Workers;
+
 struct BoundaryOptions {
   std::uint32_t samples = 0;       ///< places on the original's boundary, uniform by area
   std::uint32_t levelSamples = 0;  ///< the same on a level's: dearer, because they are searched anew
   std::uint32_t gridPoints = 0;  ///< for the maximum, on all triangles of a level; each has its corners, edge middles and centroid at least
   std::uint64_t seed = 0;
-  int threads = 1;
+  Workers* workers = nullptr;  ///< not null; the result does not depend on how many they are
 };
 
 /// Distances are over the original's diagonal. From the original, the same places are followed from level to level; a place whose nearest triangle

@@ -6,6 +6,7 @@
 
 #include "simplify/measure_boundary.h"
 #include "simplify/measure_fields.h"
+#include "simplify/workers.h"
 
 namespace qtet {
 namespace {
@@ -41,9 +42,10 @@ OneSidedDistance rounded(const OneSidedDistance& d) { return {roundedDistance(d.
 class ErrorMeter {
  public:
   ErrorMeter(HistoryLevels& levels, const MeasureOptions& options, const Samples& samples)
-      : mesh_(levels),
-        boundary_(mesh_, {samples.surface, samples.levelSurface, samples.grid, options.seed, options.threads}),
-        fields_(mesh_, {samples.volume, samples.vertices, options.seed ^ kFieldSeed, options.threads}) {}
+      : workers_(options.threads),
+        mesh_(levels),
+        boundary_(mesh_, {samples.surface, samples.levelSurface, samples.grid, options.seed, &workers_}),
+        fields_(mesh_, {samples.volume, samples.vertices, options.seed ^ kFieldSeed, &workers_}) {}
 
   void coarsen() {
     mesh_.coarsen();
@@ -60,6 +62,7 @@ class ErrorMeter {
  private:
   static constexpr std::uint64_t kFieldSeed = 0x5EEDF1E1D5u;  // other numbers than the surface's
 
+  Workers workers_;
   MeasuredMesh mesh_;
   BoundaryMeter boundary_;
   FieldMeter fields_;

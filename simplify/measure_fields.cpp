@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "simplify/measure_boundary.h"
-#include "simplify/measure_parallel.h"
+#include "simplify/workers.h"
 
 namespace qtet {
 namespace {
@@ -105,7 +105,7 @@ double FieldMeter::valueAt(const Place& place, std::size_t field, std::size_t co
 }
 
 void FieldMeter::follow() {
-  inParallel(places_.size(), options_.threads, [&](std::size_t begin, std::size_t end) {
+  options_.workers->forRuns(places_.size(), kPlacesPerRun, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       if (follow(places_[i])) measure(i);
   });

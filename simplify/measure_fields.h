@@ -10,11 +10,13 @@
 
 namespace qtet {
 
+class Workers;
+
 struct FieldOptions {
   std::uint32_t samples = 0;   ///< places in the original's volume, uniform
   std::uint32_t vertices = 0;  ///< of the original at most, for the maximum: an error is largest at a vertex of one of the meshes
   std::uint64_t seed = 0;
-  int threads = 1;
+  Workers* workers = nullptr;  ///< not null; the result does not depend on how many they are
 };
 
 /// The error of a field at a place is the Euclidean norm of the difference over the diagonal of the box that the original's values fill (for one component:

@@ -10,6 +10,9 @@
 
 namespace qtet {
 
+/// Places that a thread takes at a time: handing them out costs as much as a few searches.
+inline constexpr std::size_t kPlacesPerRun = 256;
+
 /// SplitMix64 (Steele, Lea & Flood 2014): integers alone, so the same numbers everywhere.
 class SplitMix64 {
  public:

@@ -51,8 +51,13 @@ using Queue = boost::heap::d_ary_heap<Entry, boost::heap::arity<4>>;
 class Simplifier {
  public:
   Simplifier(const LatticeMesh& mesh, const FusionOptions& options)
-      : options_(options), mesh_(mesh, options.regionField.value_or(FusionMesh::kNoRegions)), cost_(mesh_, mesh, options.cost), workers_(options.threads), original_(mesh.tetrahedra.size()),
-        target_(static_cast<std::size_t>(options.targetRatio * static_cast<double>(original_))), values_(cost_.components()) {
+      : options_(options),
+        mesh_(mesh, options.regionField.value_or(FusionMesh::kNoRegions)),
+        cost_(mesh_, mesh, options.cost),
+        workers_(options.threads),
+        original_(mesh.tetrahedra.size()),
+        target_(static_cast<std::size_t>(options.targetRatio * static_cast<double>(original_))),
+        values_(cost_.components()) {
     limitBy({kShapeFloor, options.envelopeTolerance * cost_.diagonal(), kNormalCosine});
   }
 
@@ -98,7 +103,8 @@ class Simplifier {
     std::vector<std::vector<Candidate>> found(std::min(vertices.size(), kCollected));
     for (std::size_t first = 0; first < vertices.size(); first += found.size()) {
       const auto part = vertices.subspan(first, std::min(found.size(), vertices.size() - first));
-      workers_.forEach(part.size(), kGrain, [&](std::size_t worker, std::size_t i) { proposers_[worker]->candidatesOf(part[i], onlyLower, found[i]); });
+      workers_.forEach(part.size(), kGrain,
+                       [&](std::size_t worker, std::size_t i) { proposers_[worker]->candidatesOf(part[i], onlyLower, found[i]); });
       for (std::size_t i = 0; i < part.size(); ++i) candidates_.set(part[i], found[i]);
     }
   }
@@ -285,7 +291,6 @@ class Simplifier {
            std::log(static_cast<double>(original_) / static_cast<double>(target_));
   }
 
- private:
   static constexpr std::uint32_t kNone = ~0u;
 
   const FusionOptions& options_;

@@ -23,8 +23,8 @@ class RegionTest {
   struct Simplex {
     std::array<VertexId, 4> vertex;  // sorted, the rest kNoVertex
     std::uint8_t size;
-    Mask regions;      // of the star's cells that hold it
-    Mask ofLink;       // of the link's triangles that hold it, where it lies on the link
+    Mask regions;  // of the star's cells that hold it
+    Mask ofLink;   // of the link's triangles that hold it, where it lies on the link
   };
 
   [[nodiscard]] bool addCell(const FusionMesh& mesh, const Prey& prey, CellId c, bool affected);

@@ -17,7 +17,9 @@ struct Grid {
   VertexId up = 16;
   VertexId layers = 24;
 
-  [[nodiscard]] std::uint64_t cells() const { return 6 * std::uint64_t{layers} * (4 * std::uint64_t{up} * across + std::uint64_t{across} * across); }
+  [[nodiscard]] std::uint64_t cells() const {
+    return 6 * std::uint64_t{layers} * (4 * std::uint64_t{up} * across + std::uint64_t{across} * across);
+  }
 };
 constexpr double kLayerGrowth = 1.17;  ///< from layer to layer of the first size
 constexpr Position kOuterHalfAxes{4.2, 2.6, 3.4};

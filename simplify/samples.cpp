@@ -8,7 +8,8 @@ namespace {
 
 constexpr std::array<Sample, 2> kSamples{{
     {"box", "the unit cube, 3,072 tetrahedra, one scalar field", [](std::uint64_t) { return boxSample(); }, kBoxCells, kBoxCells},
-    {"fin", "supersonic flow round a swept fin, 212,544 tetrahedra or more, density, pressure and velocity", finSample, kFinCells, kMostSampleCells},
+    {"fin", "supersonic flow round a swept fin, 212,544 tetrahedra or more, density, pressure and velocity", finSample, kFinCells,
+     kMostSampleCells},
 }};
 
 }  // namespace
@@ -21,9 +22,11 @@ Result<TetMesh> makeSample(std::string_view name, std::optional<std::uint64_t> c
     if (sample.name == name) {
       const std::uint64_t count = cells.value_or(sample.cells);
       if (sample.cells == sample.mostCells && count != sample.cells)
-        return fail(ErrorCode::kBadValue, "the sample " + std::string(name) + " comes in one size, " + std::to_string(sample.cells) + " cells");
+        return fail(ErrorCode::kBadValue,
+                    "the sample " + std::string(name) + " comes in one size, " + std::to_string(sample.cells) + " cells");
       if (count > sample.mostCells)
-        return fail(ErrorCode::kBadValue, "the sample " + std::string(name) + " comes with " + std::to_string(sample.mostCells) + " cells at most");
+        return fail(ErrorCode::kBadValue,
+                    "the sample " + std::string(name) + " comes with " + std::to_string(sample.mostCells) + " cells at most");
       return sample.make(count);
     }
     known += (known.empty() ? "" : ", ") + std::string(sample.name);

@@ -1,6 +1,7 @@
 // A few threads that wait for the next piece of work: for loops too short to start threads for.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <condition_variable>
 #include <cstddef>
@@ -24,6 +25,11 @@ class Workers {
   /// Calls work(worker, i) for every i below `n`, each once, `grain` neighbours at a time; workers are numbered 0..count()-1. Returns when all are
   /// done. What work does must not depend on the worker. An exception of work's is thrown on, after the others have ended.
   void forEach(std::size_t n, std::size_t grain, const std::function<void(std::size_t worker, std::size_t i)>& work);
+
+  /// The same for runs of at most `grain` neighbours: work(begin, end).
+  void forRuns(std::size_t n, std::size_t grain, const std::function<void(std::size_t begin, std::size_t end)>& work) {
+    forEach((n + grain - 1) / grain, 1, [&](std::size_t, std::size_t run) { work(run * grain, std::min(n, (run + 1) * grain)); });
+  }
 
  private:
   struct Job;

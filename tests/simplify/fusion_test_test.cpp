@@ -23,7 +23,9 @@ TEST(FusionTest, anEdgeBetweenTwoBoundariesIsNotFused) {
   for (const Tetrahedron& t : mesh.tetrahedra)
     for (std::size_t i = 0; i < 4; ++i)
       for (std::size_t j = 0; j < i; ++j) {
-        const auto outer = [&](VertexId v) { return std::ranges::any_of(mesh.points[v], [](std::int32_t x) { return x == 0 || x == 192; }); };
+        const auto outer = [&](VertexId v) {
+          return std::ranges::any_of(mesh.points[v], [](std::int32_t x) { return x == 0 || x == 192; });
+        };
         if (outer(t[i]) == outer(t[j])) continue;
         ++edges;
         EXPECT_FALSE(test.gather({2, {t[i], t[j], 0, 0}}) && test.keepsTopology());
@@ -78,7 +80,8 @@ TEST(FusionTest, theLinkConditionAgreesOnMeshesThatCanHardlyBeFusedFurther) {
   for (std::uint32_t seed = 1; seed <= 4; ++seed) {
     FusionOptions options;
     options.targetRatio = 0;
-    const auto history = simplify(gridMesh(6, seed, [&](int i, int j, int k) { return i != 3 || j != static_cast<int>(seed) || (seed > 2 && k == 3); }), options);
+    const auto history = simplify(
+        gridMesh(6, seed, [&](int i, int j, int k) { return i != 3 || j != static_cast<int>(seed) || (seed > 2 && k == 3); }), options);
     ASSERT_TRUE(history);
     for (const std::uint32_t undone : {0u, 3u, 9u}) (void)legalEdges(meshOfHistory(*history, std::min(undone, history->levels)));
   }

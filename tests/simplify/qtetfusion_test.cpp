@@ -24,7 +24,8 @@ using testing::whatIsWrongWith;
 // Every boundary point of the finer mesh's solid contains the coarser one's: checked on the cells' corners, which suffices for volumes.
 double volumeOf(const LatticeMesh& mesh) {
   double sum = 0;
-  for (const Tetrahedron& t : mesh.tetrahedra) sum += static_cast<double>(volume6(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]));
+  for (const Tetrahedron& t : mesh.tetrahedra)
+    sum += static_cast<double>(volume6(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]));
   return sum / 6;
 }
 
@@ -57,7 +58,8 @@ TEST_P(Fused, everyLevelIsValidInsideTheOneBeforeAndOfTheSameTopology) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, Fused,
-                         ::testing::Values(Case{"solid", [](int, int, int) { return true; }}, Case{"tunnel", [](int i, int j, int) { return i != 3 || j != 2; }},
+                         ::testing::Values(Case{"solid", [](int, int, int) { return true; }},
+                                           Case{"tunnel", [](int i, int j, int) { return i != 3 || j != 2; }},
                                            Case{"void", [](int i, int j, int k) { return i != 2 || j != 3 || k != 2; }},
                                            Case{"twoParts", [](int i, int, int) { return i != 3; }}),
                          [](const auto& shape) { return std::string(shape.param.name); });
@@ -68,7 +70,8 @@ TEST(Fused, levelsAreIndependentSets) {
   std::vector<std::uint32_t> lastLevel(history->cells.size(), ~0u);
   for (const Fusion& f : history->fusions)
     for (std::uint32_t i = 0; i < f.affectedCount + f.deletedCount; ++i) {
-      const std::uint32_t cell = i < f.affectedCount ? history->affectedCells[f.firstAffected + i] : history->deletedCells[f.firstDeleted + i - f.affectedCount];
+      const std::uint32_t cell =
+          i < f.affectedCount ? history->affectedCells[f.firstAffected + i] : history->deletedCells[f.firstDeleted + i - f.affectedCount];
       ASSERT_NE(lastLevel[cell], f.level) << "two fusions of one level share a cell";
       lastLevel[cell] = f.level;
     }
@@ -147,7 +150,8 @@ TEST(Fused, regionsAndTheirInterfacesKeepTheirTopology) {
   for (std::uint32_t undone = 0; undone <= history->levels; undone += 3) {
     const LatticeMesh level = meshOfHistory(*history, undone);
     ASSERT_EQ(whatIsWrongWith(level), "");
-    for (const auto& set : sets) ASSERT_EQ(shape(level, set), shape(mesh, set)) << "level " << undone << ", region " << set.front() << " with " << set.back();
+    for (const auto& set : sets)
+      ASSERT_EQ(shape(level, set), shape(mesh, set)) << "level " << undone << ", region " << set.front() << " with " << set.back();
   }
   EXPECT_LT(meshOfHistory(*history, 0).tetrahedra.size(), mesh.tetrahedra.size() / 8) << "regions must not stop the simplification";
 
@@ -161,7 +165,8 @@ TEST(Fused, regionsAndTheirInterfacesKeepTheirTopology) {
 
 TEST(Fused, theEnvelopeGivesWayByItsToleranceAndNoMore) {
   // A cylinder-like notch makes the boundary concave and convex; the outside distance is measured by brute force, which shares nothing with the bound.
-  const LatticeMesh mesh = gridMesh(9, 3, [](int i, int j, int) { return (i - 4) * (i - 4) + (j - 4) * (j - 4) <= 17 && (i != 4 || j != 4); });
+  const LatticeMesh mesh =
+      gridMesh(9, 3, [](int i, int j, int) { return (i - 4) * (i - 4) + (j - 4) * (j - 4) <= 17 && (i != 4 || j != 4); });
   const double diagonal = std::sqrt(3.0) * 9 * 64;
   double farthest[2]{};
   for (const double tolerance : {0.0, 0.01}) {
@@ -219,7 +224,8 @@ TEST(Fused, finestLatticesWithoutFieldsAreFusedAsFar) {
     for (std::int32_t& x : p) x <<= 19;
   const auto far = simplify(fine, {});
   ASSERT_TRUE(coarse && far);
-  EXPECT_NEAR(static_cast<double>(meshOfHistory(*far, 0).tetrahedra.size()), static_cast<double>(meshOfHistory(*coarse, 0).tetrahedra.size()), 16);
+  EXPECT_NEAR(static_cast<double>(meshOfHistory(*far, 0).tetrahedra.size()),
+              static_cast<double>(meshOfHistory(*coarse, 0).tetrahedra.size()), 16);
 }
 
 TEST(Fused, refusesWhatItCannotDo) {
@@ -282,7 +288,8 @@ TEST(Fused, aFieldThatIsLinearCostsNothingAndStaysWhatItIs) {
   const auto history = simplify(mesh, {});
   ASSERT_TRUE(history);
   ASSERT_LT(meshOfHistory(*history, 0).tetrahedra.size(), mesh.tetrahedra.size() / 20);
-  for (const Fusion& f : history->fusions) EXPECT_NEAR(history->values[0][f.fused], value(history->points[f.fused]), 1) << "of values up to " << high;
+  for (const Fusion& f : history->fusions)
+    EXPECT_NEAR(history->values[0][f.fused], value(history->points[f.fused]), 1) << "of values up to " << high;
 }
 
 TEST(Samples, bothSamplesComeBackFromTheirHistory) {
