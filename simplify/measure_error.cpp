@@ -22,7 +22,7 @@ struct Samples {
 constexpr std::size_t kCellsPerSample = 10;
 constexpr std::size_t kFewest = 3000, kMost = 50000;
 /// On a level's boundary, where nothing is kept from level to level and a search takes the longest.
-constexpr std::uint32_t kFewestOnLevel = 600;
+constexpr std::uint32_t kFewestOnLevel = 300;
 constexpr Samples kAllSamples{200000, 200000, 200000, 200000, 1000000};
 
 Samples samplesFor(Effort effort, const FusionHistory& history) {
@@ -30,7 +30,7 @@ Samples samplesFor(Effort effort, const FusionHistory& history) {
   const auto isTetrahedron = [](const Tetrahedron& cell) { return cell[3] != kGhost; };
   const auto cells = static_cast<std::size_t>(std::ranges::partition_point(history.cells, isTetrahedron) - history.cells.begin());
   const auto volume = static_cast<std::uint32_t>(std::clamp(cells / kCellsPerSample, kFewest, kMost));
-  return {volume, volume / 2, volume / 4, std::max(volume / 12, kFewestOnLevel), 2 * volume};
+  return {volume, volume / 4, volume / 4, std::max(volume / 24, kFewestOnLevel), volume / 4};
 }
 
 /// Distances over the diagonal below this are what doubles make of none: a lattice step is a thousand times as much on the finest lattice.
