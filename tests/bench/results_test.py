@@ -79,7 +79,7 @@ class Results(unittest.TestCase):
             done = self.run_results("--settings", "2", "--reductions", "90")
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertNotIn(": known", done.stderr)
-        self.assertIn("| qtet, hull 40000 | qtet: the hull is too heavy |", (self.folder / "RESULTS.md").read_text())
+        self.assertIn("| qtet, shape first | qtet: the hull is too heavy |", (self.folder / "RESULTS.md").read_text())
 
     def test_a_cache_file_that_is_cut_off_counts_for_nothing(self):
         self.run_results("--settings", "3", "--reductions", "90")

@@ -6,7 +6,7 @@ import {coloredShare, differingShare} from './png.mjs';
 import {PoorLine} from './poor_line.mjs';
 
 /** Bytes after which the coarse picture is taken: some levels of the samples, never all. */
-const kCoarseBytes = 20000;
+const kCoarseBytes = 50000;
 
 async function expectWhole(viewer, log) {
   const {tetrahedra, total, bytes, bytesNeeded} = await viewer.statistics();
