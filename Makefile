@@ -102,7 +102,8 @@ endef
 # The demo waits for nothing that it does not show, the tests least of all.
 demo: TARGETS := --target qtet qtet-server qtet_viewer
 
-# Makes build/demo/NAME.qtet, unless it is there already, newer than the mesh, from this very mesh, and readable by this tool.
+# Makes build/demo/NAME.qtet, unless it is there already, newer than the mesh and the tool, and from this very mesh: what an older tool wrote
+# need not be what this viewer reads, nor as good as what this tool writes.
 # The tool writes its files whole or not at all, so an interrupted run leaves nothing half done.
 demo-log: demo-port setup build
 	@$(demo_name)
@@ -113,7 +114,7 @@ demo-log: demo-port setup build
 	mkdir -p build/demo build/demo-input
 	[[ -n $$MESH || -f $$input ]] || "$$tool" sample fin -o "$$input"
 	path=$$(realpath -- "$$input")
-	if [[ -f $$log && ! $$input -nt $$log && $$(cat "$$origin" 2>/dev/null) == "$$path" ]] && "$$tool" info "$$log" &>/dev/null; then
+	if [[ -f $$log && ! $$input -nt $$log && ! $$tool -nt $$log && $$(cat "$$origin" 2>/dev/null) == "$$path" ]]; then
 	  echo "demo: $$log is up to date"
 	  exit 0
 	fi

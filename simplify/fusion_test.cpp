@@ -36,7 +36,6 @@ double shapeSquared(double volume6, double squares) { return kShapeSquared * vol
 FusionTest::FusionTest(const FusionMesh& mesh, const FusionLimits& limits)
     : mesh_(mesh), limits_(limits), full_(std::make_unique<FullLinkTest>()), regions_(std::make_unique<RegionTest>()) {}
 FusionTest::~FusionTest() = default;
-FusionTest::FusionTest(FusionTest&&) noexcept = default;
 
 bool FusionTest::gather(const Prey& prey) {
   std::size_t size = 0;

@@ -32,8 +32,6 @@ class FusionTest {
  public:
   explicit FusionTest(const FusionMesh& mesh, const FusionLimits& limits = {});
   ~FusionTest();
-  FusionTest(FusionTest&&) noexcept;
-  FusionTest& operator=(FusionTest&&) = delete;
 
   /// Collects the star of the prey. False when it is too large or already rules the fusion out.
   [[nodiscard]] bool gather(const Prey& prey);
