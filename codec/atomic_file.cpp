@@ -1,6 +1,7 @@
 #include "codec/atomic_file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -12,84 +13,128 @@
 namespace qtet {
 namespace {
 
-Status systemError(const std::string& what, const std::filesystem::path& path, int number) {
+namespace fs = std::filesystem;
+
+Status systemError(const std::string& what, const fs::path& path, int number) {
   return fail(ErrorCode::kIo, "cannot " + what + " " + path.string() + ": " + std::strerror(number));
 }
 
 /// Owns a descriptor.
 class Descriptor {
  public:
-  explicit Descriptor(int value) : value_(value) {}
+  Descriptor(FileCalls& calls, int value) : calls_(calls), value_(value) {}
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() { close(); }
-
-  [[nodiscard]] int get() const { return value_; }
-  /// Closes now, so that a late write error is seen (network file systems report it here).
-  int close() {
-    const int result = value_ >= 0 ? ::close(value_) : 0;
-    value_ = -1;
-    return result;
+  // After a flush that succeeded a close has nothing left to report.
+  ~Descriptor() {
+    if (value_ >= 0) calls_.close(value_);
   }
 
+  [[nodiscard]] int get() const { return value_; }
+
  private:
+  FileCalls& calls_;
   int value_;
 };
 
+/// What the temporary files of all writers of `path` begin and end with.
+std::string temporaryPrefix(const fs::path& path) { return "." + path.filename().string() + "."; }
+constexpr std::string_view kTemporarySuffix = ".tmp";
+
 /// Beside the target, hidden, and different for each process and call.
-std::filesystem::path temporaryName(const std::filesystem::path& path) {
+fs::path temporaryName(const fs::path& path) {
   static std::atomic<unsigned> counter{0};
-  const std::string suffix = "." + std::to_string(::getpid()) + "." + std::to_string(counter++) + ".tmp";
-  return path.parent_path() / ("." + path.filename().string() + suffix);
+  const std::string number = std::to_string(::getpid()) + "." + std::to_string(counter++);
+  return path.parent_path() / (temporaryPrefix(path) + number + std::string(kTemporarySuffix));
 }
 
-Status writeAll(int descriptor, ByteView bytes, const std::filesystem::path& path) {
+/// Whether `name` is PREFIX digits.digits SUFFIX, so that no file of somebody else's is taken for ours.
+bool isTemporary(const std::string& name, const std::string& prefix) {
+  if (name.size() <= prefix.size() + kTemporarySuffix.size() || !name.starts_with(prefix) || !name.ends_with(kTemporarySuffix))
+    return false;
+  const std::string_view number = std::string_view(name).substr(prefix.size(), name.size() - prefix.size() - kTemporarySuffix.size());
+  const std::size_t dot = number.find('.');
+  const auto digits = [](std::string_view text) { return !text.empty() && text.find_first_not_of("0123456789") == text.npos; };
+  return dot != number.npos && digits(number.substr(0, dot)) && digits(number.substr(dot + 1));
+}
+
+/// Whether the file has lost its name: somebody removed it between our opening and our locking it.
+bool unlinked(int descriptor) {
+  struct stat info {};
+  return ::fstat(descriptor, &info) == 0 && info.st_nlink == 0;
+}
+
+/// Removes what writers of `path` left that were killed: a temporary file without a lock. What cannot be removed does no harm.
+void removeStale(const fs::path& folder, const fs::path& path, FileCalls& calls) {
+  const std::string prefix = temporaryPrefix(path);
+  std::error_code code;
+  for (fs::directory_iterator at(folder, code), end; !code && at != end; at.increment(code)) {
+    if (!isTemporary(at->path().filename().string(), prefix)) continue;
+    const Descriptor stale(calls, calls.open(at->path().c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0));
+    // Still under its name when the lock is ours: so nobody else removes it now, nor puts a new file there.
+    if (stale.get() >= 0 && calls.lock(stale.get(), LOCK_EX | LOCK_NB) == 0 && !unlinked(stale.get())) calls.unlink(at->path().c_str());
+  }
+}
+
+Status writeAll(int descriptor, ByteView bytes, const fs::path& path, FileCalls& calls) {
   while (!bytes.empty()) {
     // Linux writes at most 2^31 - 4096 bytes a call.
-    const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
+    const ssize_t written = calls.write(descriptor, bytes.data(), bytes.size());
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return systemError("write", path, errno);
+    if (written <= 0) return systemError("write", path, written < 0 ? errno : EIO);
     bytes = bytes.subspan(static_cast<std::size_t>(written));
   }
   return {};
 }
 
-Status writeNew(const std::filesystem::path& path, ByteView bytes) {
-  Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-  if (file.get() < 0) return systemError("create", path, errno);
-  if (Status status = writeAll(file.get(), bytes, path); !status) return status;
-  if (::fsync(file.get()) != 0) return systemError("flush", path, errno);
-  if (file.close() != 0) return systemError("write", path, errno);
-  return {};
+/// Creates a temporary file for `path` and locks it, as far as the file system has locks; -1 and errno after a failure.
+int createLocked(const fs::path& path, fs::path& temporary, FileCalls& calls) {
+  // A name may be taken by a process that had this number before and was killed, or by one on another machine.
+  constexpr int kAttempts = 1000;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    temporary = temporaryName(path);
+    const int file = calls.open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (file < 0 && errno != EEXIST) return -1;
+    if (file < 0) continue;
+    if (calls.lock(file, LOCK_EX) != 0 || !unlinked(file)) return file;
+    calls.close(file);
+  }
+  errno = EEXIST;
+  return -1;
 }
 
-/// Makes the rename itself durable. File systems that cannot flush a folder say EINVAL: there is nothing more to do then.
-Status flushFolder(const std::filesystem::path& folder) {
-  const Descriptor descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (descriptor.get() < 0) return systemError("open the folder", folder, errno);
-  if (::fsync(descriptor.get()) != 0 && errno != EINVAL) return systemError("flush the folder", folder, errno);
-  return {};
+/// The whole of it but the folder's flush. The lock is held until the file has its final name.
+Status writeAndRename(const fs::path& path, ByteView bytes, FileCalls& calls) {
+  fs::path temporary;
+  const Descriptor file(calls, createLocked(path, temporary, calls));
+  if (file.get() < 0) return systemError("create", temporary, errno);
+  Status status = writeAll(file.get(), bytes, path, calls);
+  if (status && calls.sync(file.get()) != 0) status = systemError("write", path, errno);
+  if (status && calls.rename(temporary.c_str(), path.c_str()) != 0) status = systemError("rename a new file to", path, errno);
+  if (!status) calls.unlink(temporary.c_str());
+  return status;
 }
 
 }  // namespace
 
-Status writeFileAtomically(const std::filesystem::path& path, ByteView bytes) {
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+Status writeFileAtomically(const fs::path& path, ByteView bytes, FileCalls& calls) {
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   std::error_code code;
-  if (!std::filesystem::is_directory(folder, code)) {
+  if (!fs::is_directory(folder, code)) {
     return fail(ErrorCode::kNotFound, "the folder " + folder.string() + " does not exist; make it first or choose another output");
   }
-  if (std::filesystem::is_directory(path, code)) {
+  if (fs::is_directory(path, code)) {
     return fail(ErrorCode::kIo, path.string() + " is a folder; give the name of a file");
   }
-  const std::filesystem::path temporary = temporaryName(path);
-  Status status = writeNew(temporary, bytes);
-  if (status && ::rename(temporary.c_str(), path.c_str()) != 0) status = systemError("rename to", path, errno);
-  if (!status) {
-    ::unlink(temporary.c_str());
-    return status;
-  }
-  return flushFolder(folder);
+  // Opened before anything is changed: what cannot be flushed later is better not begun.
+  const Descriptor opened(calls, calls.open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC, 0));
+  if (opened.get() < 0) return systemError("open the folder", folder, errno);
+  removeStale(folder, path, calls);
+  if (Status status = writeAndRename(path, bytes, calls); !status) return status;
+  // Makes the rename itself durable. File systems that cannot flush a folder say EINVAL: there is nothing more to do then.
+  if (calls.sync(opened.get()) == 0 || errno == EINVAL) return {};
+  return fail(ErrorCode::kIo, path.string() + " is written, but a power failure may still undo it: cannot flush the folder " +
+                                  folder.string() + ": " + std::strerror(errno));
 }
 
 }  // namespace qtet

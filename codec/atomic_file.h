@@ -3,13 +3,18 @@
 
 #include <filesystem>
 
+#include "codec/file_calls.h"
 #include "proto/bytes.h"
 #include "proto/error.h"
 
 namespace qtet {
 
 /// Writes a new file beside `path`, flushes it to the disk, renames it over `path` and flushes the folder. After an error `path` is as
-/// it was and nothing is left beside it. Errors: not-found (the folder does not exist), io (with the operating system's reason).
-[[nodiscard]] Status writeFileAtomically(const std::filesystem::path& path, ByteView bytes);
+/// it was and nothing is left beside it; only if the very last step fails, the flush of the folder, `path` is the whole new file, and the
+/// message says so. A process that is killed on its way leaves at most `.NAME.*.tmp`, which the next write of the same `path`
+/// removes (each writer holds a lock on its own, so those of writers at work are let alone). Several processes may write the same
+/// `path`: one of the whole files wins.
+/// Errors: not-found (the folder does not exist), io (with the file and the operating system's reason).
+[[nodiscard]] Status writeFileAtomically(const std::filesystem::path& path, ByteView bytes, FileCalls& calls = systemFileCalls());
 
 }  // namespace qtet
