@@ -13,6 +13,7 @@
 #include "codec/draco_block.h"
 #include "codec/log_manifest.h"
 #include "proto/checksum.h"
+#include "proto/crc32c.h"
 
 namespace qtet {
 
@@ -76,9 +77,9 @@ namespace {
 
 Status checkBlock(const LogFile& log, std::uint32_t chunk, std::uint32_t part) {
   const BlockEntry& b = log.index().block(chunk, part);
-  if (crc32(log.block(chunk, part)) == b.crc) return {};
+  if (crc32c(log.block(chunk, part)) == b.crc) return {};
   return fail(ErrorCode::kBadChecksum,
-              "chunk " + std::to_string(chunk) + ", part " + std::to_string(part) + ": the CRC-32 does not match; fetch the file again", b.offset);
+              "chunk " + std::to_string(chunk) + ", part " + std::to_string(part) + ": the CRC-32C does not match; fetch the file again", b.offset);
 }
 
 Result<std::vector<std::int32_t>> blockValues(const LogFile& log, std::uint32_t chunk, std::uint32_t part) {

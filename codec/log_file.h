@@ -25,7 +25,7 @@ class LogFile {
   /// SHA-256 of the whole file, lower-case hexadecimal; computed once at open.
   [[nodiscard]] const std::string& digest() const { return digest_; }
   [[nodiscard]] ByteView block(std::uint32_t chunk, std::uint32_t part) const;
-  /// Compares every block with its CRC-32; the first that differs is the error (bad-checksum, chunk and part in the message).
+  /// Compares every block with its CRC-32C; the first that differs is the error (bad-checksum, chunk and part in the message).
   [[nodiscard]] Status verifyChecksums() const;
 
  private:

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "proto/checksum.h"
+#include "proto/crc32c.h"
 #include "proto/limits.h"
 
 namespace qtet {
@@ -37,7 +37,10 @@ Result<Header> readHeader(ByteView bytes) {
   const auto major = r.read<std::uint16_t>();
   (void)r.read<std::uint16_t>();  // minor: additions that this reader may ignore
   if (major != LogIndex::kVersionMajor)
-    return fail(ErrorCode::kBadVersion, "version " + std::to_string(major) + " of the format; this build reads version 1", 8);
+    return fail(ErrorCode::kBadVersion,
+                "version " + std::to_string(major) + " of the format; this build reads version " + std::to_string(LogIndex::kVersionMajor) +
+                    (major < LogIndex::kVersionMajor ? ": make the log again from its input with qtet simplify" : ": use a newer qtet"),
+                8);
   Header h;
   const auto layout = r.read<std::uint8_t>();
   h.positionBits = r.read<std::uint8_t>();
@@ -51,8 +54,8 @@ Result<Header> readHeader(ByteView bytes) {
   h.fields = r.read<std::uint32_t>();
   h.dependencies = r.read<std::uint32_t>();
   r.take(8);  // reserved
-  if (r.read<std::uint32_t>() != crc32(bytes.first(LogIndex::kHeaderBytes - 4)))
-    return fail(ErrorCode::kBadChecksum, "the header's CRC-32 does not match; fetch the file again", LogIndex::kHeaderBytes - 4);
+  if (r.read<std::uint32_t>() != crc32c(bytes.first(LogIndex::kHeaderBytes - 4)))
+    return fail(ErrorCode::kBadChecksum, "the header's CRC-32C does not match; fetch the file again", LogIndex::kHeaderBytes - 4);
   if (layout > static_cast<std::uint8_t>(Layout::kRegions)) return fail(ErrorCode::kBadValue, "unknown layout " + std::to_string(layout), 12);
   h.layout = static_cast<Layout>(layout);
   if (h.positionBits < kMinPositionBits || h.positionBits > kMaxPositionBits)
@@ -172,10 +175,10 @@ Result<LogIndex> LogIndex::parse(ByteView bytes) {
                                            std::to_string(bytes.size()), bytes.size());
   const ByteView manifest = bytes.subspan(kHeaderBytes, header->manifestBytes);
   const ByteView table = bytes.subspan(kHeaderBytes + std::size_t{header->manifestBytes}, header->tableBytes);
-  if (crc32(manifest) != header->manifestCrc)
-    return fail(ErrorCode::kBadChecksum, "the manifest's CRC-32 does not match; fetch the file again", kHeaderBytes);
-  if (crc32(table) != header->tableCrc)
-    return fail(ErrorCode::kBadChecksum, "the chunk table's CRC-32 does not match; fetch the file again", kHeaderBytes + std::uint64_t{header->manifestBytes});
+  if (crc32c(manifest) != header->manifestCrc)
+    return fail(ErrorCode::kBadChecksum, "the manifest's CRC-32C does not match; fetch the file again", kHeaderBytes);
+  if (crc32c(table) != header->tableCrc)
+    return fail(ErrorCode::kBadChecksum, "the chunk table's CRC-32C does not match; fetch the file again", kHeaderBytes + std::uint64_t{header->manifestBytes});
   LogIndex index;
   index.layout = header->layout;
   index.positionBits = header->positionBits;
@@ -216,20 +219,20 @@ Bytes LogIndex::encode() const {
   ByteWriter w;
   w.append(kMagic);
   w.write(kVersionMajor);
-  w.write(hasCellField() ? kVersionMinor : std::uint16_t{0});
+  w.write(kVersionMinor);
   w.write(static_cast<std::uint8_t>(layout));
   w.write(positionBits);
   w.write(std::uint16_t{0});
   w.write(fileBytes);
   w.write(static_cast<std::uint32_t>(manifest.size()));
   w.write(static_cast<std::uint32_t>(table.bytes().size()));
-  w.write(crc32(manifestBytes));
-  w.write(crc32(table.bytes()));
+  w.write(crc32c(manifestBytes));
+  w.write(crc32c(table.bytes()));
   w.write(static_cast<std::uint32_t>(chunks.size()));
   w.write(static_cast<std::uint32_t>(fields.size()));
   w.write(static_cast<std::uint32_t>(dependencies.size()));
   w.write(std::uint64_t{0});
-  w.write(crc32(w.bytes()));
+  w.write(crc32c(w.bytes()));
   w.append(manifestBytes);
   w.append(table.bytes());
   return w.take();

@@ -67,8 +67,8 @@ struct LogIndex {
   static constexpr std::uint32_t kHeaderBytes = 64;
   static constexpr std::uint32_t kChunkEntryBytes = 56;
   static constexpr std::uint32_t kBlockEntryBytes = 8;
-  static constexpr std::uint16_t kVersionMajor = 1;
-  static constexpr std::uint16_t kVersionMinor = 1;  ///< of a log with a cell field; others are written as 0
+  static constexpr std::uint16_t kVersionMajor = 2;
+  static constexpr std::uint16_t kVersionMinor = 0;
 
   Layout layout = Layout::kStream;
   std::uint8_t positionBits = 0;

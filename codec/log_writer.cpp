@@ -11,7 +11,7 @@
 #include "codec/growing_mesh.h"
 #include "codec/log_index.h"
 #include "codec/record_coder.h"
-#include "proto/checksum.h"
+#include "proto/crc32c.h"
 #include "proto/limits.h"
 #include "proto/manifest.h"
 
@@ -303,7 +303,7 @@ class LogEncoder {
 
   Status addBlock(Bytes block) {
     if (block.size() > kMaxBlockBytes) return fail(ErrorCode::kLimitExceeded, "a block above 256 MiB; let the simplifier go further (--target-ratio)");
-    open_.entry.blocks.push_back({0, static_cast<std::uint32_t>(block.size()), crc32(block)});
+    open_.entry.blocks.push_back({0, static_cast<std::uint32_t>(block.size()), crc32c(block)});
     body_.insert(body_.end(), block.begin(), block.end());
     return {};
   }

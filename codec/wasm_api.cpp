@@ -6,7 +6,7 @@
 #include <string>
 
 #include "codec/refiner.h"
-#include "proto/checksum.h"
+#include "proto/crc32c.h"
 
 using qtet::ByteView;
 using qtet::Error;
@@ -76,7 +76,7 @@ std::uint32_t qtet_block_codec(std::uint32_t chunk, std::uint32_t part) {
 int qtet_check_block(std::uint32_t chunk, std::uint32_t part, const std::uint8_t* bytes, std::uint32_t size) {
   if (!hasBlock(chunk, part)) return report({ErrorCode::kNotFound, "there is no such block"});
   const qtet::BlockEntry& b = refiner->index().block(chunk, part);
-  if (size == b.size && qtet::crc32(ByteView(bytes, size)) == b.crc) return 0;
+  if (size == b.size && qtet::crc32c(ByteView(bytes, size)) == b.crc) return 0;
   return report({ErrorCode::kBadChecksum, "chunk " + std::to_string(chunk) + ", part " + std::to_string(part) + " arrived damaged", b.offset});
 }
 

@@ -28,7 +28,7 @@ std::uint32_t qtet_block_values(std::uint32_t chunk, std::uint32_t part);
 std::uint32_t qtet_field_association(std::uint32_t field);
 /// CodecId of a block.
 std::uint32_t qtet_block_codec(std::uint32_t chunk, std::uint32_t part);
-/// Compares a block's bytes with its CRC-32.
+/// Compares a block's bytes with its CRC-32C.
 int qtet_check_block(std::uint32_t chunk, std::uint32_t part, const std::uint8_t* bytes, std::uint32_t size);
 
 /// Refiner::apply; `positions` holds `count` integers (3 a tuple), as the Draco decoder gave them.

@@ -6,23 +6,6 @@
 namespace qtet {
 namespace {
 
-constexpr std::size_t kSlices = 8;  // bytes a step: 1.9 GB/s against 0.4 GB/s of the byte-wise loop
-
-constexpr auto kCrcTables = [] {
-  std::array<std::array<std::uint32_t, 256>, kSlices> tables{};
-  for (std::uint32_t i = 0; i < 256; ++i) {
-    std::uint32_t c = i;
-    for (int bit = 0; bit < 8; ++bit) c = (c & 1) ? 0xEDB88320u ^ (c >> 1) : c >> 1;
-    tables[0][i] = c;
-  }
-  for (std::size_t t = 1; t < kSlices; ++t)
-    for (std::size_t i = 0; i < 256; ++i) {
-      const std::uint32_t previous = tables[t - 1][i];
-      tables[t][i] = (previous >> 8) ^ tables[0][previous & 0xFF];
-    }
-  return tables;
-}();
-
 constexpr std::array<std::uint32_t, 64> kRound = {
     0x428a2f98, 0x71374491, 0xb5c0fbcf, 0xe9b5dba5, 0x3956c25b, 0x59f111f1, 0x923f82a4, 0xab1c5ed5, 0xd807aa98, 0x12835b01, 0x243185be,
     0x550c7dc3, 0x72be5d74, 0x80deb1fe, 0x9bdc06a7, 0xc19bf174, 0xe49b69c1, 0xefbe4786, 0x0fc19dc6, 0x240ca1cc, 0x2de92c6f, 0x4a7484aa,
@@ -38,21 +21,6 @@ std::uint32_t loadLittle(const std::uint8_t* p) {
 std::uint32_t loadBig(const std::uint8_t* p) { return std::byteswap(loadLittle(p)); }
 
 }  // namespace
-
-std::uint32_t crc32(ByteView bytes) {
-  const auto& t = kCrcTables;
-  std::uint32_t c = ~0u;
-  const std::uint8_t* p = bytes.data();
-  std::size_t n = bytes.size();
-  for (; n >= kSlices; n -= kSlices, p += kSlices) {
-    const std::uint32_t low = loadLittle(p) ^ c;
-    const std::uint32_t high = loadLittle(p + 4);
-    c = t[7][low & 0xFF] ^ t[6][(low >> 8) & 0xFF] ^ t[5][(low >> 16) & 0xFF] ^ t[4][low >> 24] ^ t[3][high & 0xFF] ^
-        t[2][(high >> 8) & 0xFF] ^ t[1][(high >> 16) & 0xFF] ^ t[0][high >> 24];
-  }
-  for (; n > 0; --n, ++p) c = t[0][(c ^ *p) & 0xFF] ^ (c >> 8);
-  return ~c;
-}
 
 void Sha256::compress(const std::uint8_t* block) {
   std::array<std::uint32_t, 64> w{};

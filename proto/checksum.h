@@ -1,5 +1,4 @@
-// CRC-32 of blocks and SHA-256 of whole logs: the same code natively and in the browser, where neither zlib nor (outside secure
-// contexts) WebCrypto is to be had.
+// SHA-256 of whole logs: the same code natively and in the browser, where outside secure contexts no WebCrypto is to be had.
 #pragma once
 
 #include <array>
@@ -9,9 +8,6 @@
 #include "proto/bytes.h"
 
 namespace qtet {
-
-/// CRC-32 as in zlib and PNG (ISO 3309, polynomial 0xEDB88320, reflected).
-[[nodiscard]] std::uint32_t crc32(ByteView bytes);
 
 /// SHA-256 (FIPS 180-4), fed in pieces.
 class Sha256 {

@@ -13,7 +13,7 @@ enum class ErrorCode : std::uint8_t {
   kTruncated,       ///< the bytes end before what they promise
   kBadMagic,        ///< not a qtet log at all
   kBadVersion,      ///< a log of a version this build cannot read
-  kBadChecksum,     ///< a CRC-32 does not match its bytes
+  kBadChecksum,     ///< a CRC-32C does not match its bytes
   kBadValue,        ///< a value outside its range, or two values that contradict each other
   kLimitExceeded,   ///< a count or size above a limit of proto/limits.h
   kBadCodec,        ///< an unknown codec id, or a codec's own decoder refused the bytes
@@ -34,7 +34,7 @@ struct Error {
   std::string message;
   std::uint64_t offset = kNoOffset;
 
-  /// "bad-checksum at byte 1234: the manifest's CRC-32 is ..."
+  /// "bad-checksum at byte 1234: the manifest's CRC-32C is ..."
   [[nodiscard]] std::string text() const;
 };
 

@@ -24,7 +24,7 @@ struct ServedMesh {
   [[nodiscard]] std::uint64_t prefixBytes(std::uint32_t level) const;
 };
 
-/// Opens a log and checks everything that can be checked without decoding: header, table, manifest, every CRC-32.
+/// Opens a log and checks everything that can be checked without decoding: header, table, manifest, every CRC-32C.
 [[nodiscard]] Result<ServedMesh> openMesh(const std::filesystem::path& path);
 
 /// Safe to read from any thread. Pointers and views stay valid as long as the store.

@@ -8,6 +8,7 @@
 #include "codec/log_file.h"
 #include "codec/log_writer.h"
 #include "proto/checksum.h"
+#include "proto/crc32c.h"
 #include "simplify/qtetfusion.h"
 #include "simplify/quantise.h"
 #include "simplify/samples.h"
@@ -84,7 +85,7 @@ void refineFin(benchmark::State& state) {
 BENCHMARK(refineFin)->Unit(benchmark::kMillisecond);
 
 void crcOfTheLog(benchmark::State& state) {
-  for (auto _ : state) benchmark::DoNotOptimize(crc32(encoded().bytes));
+  for (auto _ : state) benchmark::DoNotOptimize(crc32c(encoded().bytes));
   state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(encoded().bytes.size()));
 }
 BENCHMARK(crcOfTheLog);

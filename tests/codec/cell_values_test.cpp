@@ -88,14 +88,6 @@ TEST_F(CellFieldLog, theTableTellsCellFieldsFromPointFields) {
   }
 }
 
-TEST_F(CellFieldLog, onlyLogsWithACellFieldAreOfMinorVersionOne) {
-  constexpr std::size_t kMinorAt = 10;
-  EXPECT_EQ(bytes_[kMinorAt], 1);
-  LogIndex without = index_;
-  for (FieldShape& field : without.fields) field.association = Association::kPoint;
-  EXPECT_EQ(without.encode()[kMinorAt], 0);
-}
-
 TEST_F(CellFieldLog, anUnknownAssociationIsRefused) {
   index_.fields[1].association = static_cast<Association>(2);
   const auto index = LogIndex::parse(index_.encode());

@@ -1,4 +1,4 @@
-// Golden files: what versions 1.0 and 1.1 wrote must decode to the same mesh and values for ever, and what is broken must fail with the code in its name.
+// Golden files: what version 2.0 wrote must decode to the same mesh and values for ever, and what is broken must fail with the code in its name.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -67,6 +67,19 @@ TEST_F(HostileLog, theUntouchedLogIsFine) {
   ASSERT_GT(index_.chunks.size(), 2u);
 }
 
+TEST_F(HostileLog, aLogOfAnotherVersionIsRefusedWithWhatToDo) {
+  constexpr std::size_t kMajorAt = 8;
+  ASSERT_EQ(bytes_[kMajorAt], LogIndex::kVersionMajor);
+  for (const auto& [major, advice] : {std::pair{LogIndex::kVersionMajor - 1, "make the log again"}, std::pair{LogIndex::kVersionMajor + 1, "use a newer qtet"}}) {
+    Bytes other = bytes_;
+    other[kMajorAt] = static_cast<std::uint8_t>(major);
+    const auto log = open(other);
+    ASSERT_FALSE(log);
+    EXPECT_EQ(log.error().code, ErrorCode::kBadVersion);
+    EXPECT_NE(log.error().message.find(advice), std::string::npos) << log.error().message;
+  }
+}
+
 TEST_F(HostileLog, everyTruncationIsNoticed) {
   for (std::size_t n = 0; n < bytes_.size(); ++n) {
     const auto log = open(ByteView(bytes_).first(n));

@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "codec/log_index.h"
-#include "proto/checksum.h"
+#include "proto/crc32c.h"
 #include "proto/manifest.h"
 
 namespace {
@@ -23,10 +23,10 @@ void mendChecksums(qtet::Bytes& bytes) {
   const std::uint64_t manifest = u32(bytes, 24);
   const std::uint64_t table = u32(bytes, 28);
   if (64 + manifest + table <= bytes.size()) {
-    put(bytes, 32, qtet::crc32(qtet::ByteView(bytes).subspan(64, manifest)));
-    put(bytes, 36, qtet::crc32(qtet::ByteView(bytes).subspan(64 + manifest, table)));
+    put(bytes, 32, qtet::crc32c(qtet::ByteView(bytes).subspan(64, manifest)));
+    put(bytes, 36, qtet::crc32c(qtet::ByteView(bytes).subspan(64 + manifest, table)));
   }
-  put(bytes, 60, qtet::crc32(qtet::ByteView(bytes).first(60)));
+  put(bytes, 60, qtet::crc32c(qtet::ByteView(bytes).first(60)));
 }
 
 }  // namespace

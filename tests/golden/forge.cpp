@@ -6,7 +6,7 @@
 #include "codec/atomic_file.h"
 #include "codec/log_file.h"
 #include "codec/log_writer.h"
-#include "proto/checksum.h"
+#include "proto/crc32c.h"
 #include "simplify/qtetfusion.h"
 #include "tests/support/meshes.h"
 
@@ -35,7 +35,7 @@ Bytes forged(const Bytes& good, const std::function<void(LogIndex&)>& table, con
   for (std::size_t c = 0; c < blocks.size(); ++c) {
     index.chunks[c].offset = offset;
     for (std::size_t p = 0; p < blocks[c].size(); ++p) {
-      index.chunks[c].blocks[p] = {offset, static_cast<std::uint32_t>(blocks[c][p].size()), crc32(blocks[c][p])};
+      index.chunks[c].blocks[p] = {offset, static_cast<std::uint32_t>(blocks[c][p].size()), crc32c(blocks[c][p])};
       offset += blocks[c][p].size();
       tail.insert(tail.end(), blocks[c][p].begin(), blocks[c][p].end());
     }
@@ -64,7 +64,8 @@ void writeMustFail(const std::filesystem::path& folder, const Bytes& good) {
   };
   const LogIndex index = LogIndex::parse(good).value();
   write(folder / "bad-magic.text-mode-copy.qtet", patched(5, 0x0A));
-  write(folder / "bad-version.major-2.qtet", patched(8, 2));
+  write(folder / "bad-version.major-1.qtet", patched(8, 1));
+  write(folder / "bad-version.major-3.qtet", patched(8, 3));
   write(folder / "bad-version.regions.qtet", forged(good, [](LogIndex& i) { i.layout = Layout::kRegions; }));
   write(folder / "truncated.header.qtet", cut(63));
   write(folder / "truncated.manifest.qtet", cut(100));

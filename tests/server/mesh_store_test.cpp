@@ -39,7 +39,7 @@ TEST(MeshStore, aDamagedLogIsRefusedWithItsReason) {
   EXPECT_EQ(refusalOfDamaged({}), ErrorCode::kTruncated);
   EXPECT_EQ(refusalOfDamaged(Bytes(whole.begin(), whole.end() - 1)), ErrorCode::kTruncated);
   Bytes flipped = whole;
-  flipped.back() ^= 1;  // in the last block: only its CRC-32 can tell
+  flipped.back() ^= 1;  // in the last block: only its CRC-32C can tell
   EXPECT_EQ(refusalOfDamaged(flipped), ErrorCode::kBadChecksum);
   flipped = whole;
   flipped[100] ^= 1;  // in the manifest

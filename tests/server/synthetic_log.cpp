@@ -6,7 +6,7 @@
 #include <random>
 #include <stdexcept>
 
-#include "proto/checksum.h"
+#include "proto/crc32c.h"
 #include "proto/manifest.h"
 
 namespace qtet::test {
@@ -48,7 +48,7 @@ Built build(const SyntheticLog& options) {
       block.size = random() % 8 == 0 ? 0 : static_cast<std::uint32_t>(random() % options.largestBlock);
       Bytes noise(block.size);
       for (std::uint8_t& byte : noise) byte = static_cast<std::uint8_t>(random());
-      block.crc = crc32(noise);
+      block.crc = crc32c(noise);
       out.blocks.insert(out.blocks.end(), noise.begin(), noise.end());
       chunk.blocks.push_back(block);
     }
