@@ -44,7 +44,7 @@ Result<Header> readHeader(ByteView bytes) {
   Header h;
   const auto layout = r.read<std::uint8_t>();
   h.positionBits = r.read<std::uint8_t>();
-  (void)r.read<std::uint16_t>();
+  bool reservedAreZero = r.read<std::uint16_t>() == 0;
   h.fileBytes = r.read<std::uint64_t>();
   h.manifestBytes = r.read<std::uint32_t>();
   h.tableBytes = r.read<std::uint32_t>();
@@ -53,9 +53,10 @@ Result<Header> readHeader(ByteView bytes) {
   h.chunks = r.read<std::uint32_t>();
   h.fields = r.read<std::uint32_t>();
   h.dependencies = r.read<std::uint32_t>();
-  r.take(8);  // reserved
+  reservedAreZero &= r.read<std::uint64_t>() == 0;
   if (r.read<std::uint32_t>() != crc32c(bytes.first(LogIndex::kHeaderBytes - 4)))
     return fail(ErrorCode::kBadChecksum, "the header's CRC-32C does not match; fetch the file again", LogIndex::kHeaderBytes - 4);
+  if (!reservedAreZero) return fail(ErrorCode::kBadValue, "a reserved byte of the header (14, 15 or 52 to 59) is not 0; use a newer qtet", 14);
   if (layout > static_cast<std::uint8_t>(Layout::kRegions)) return fail(ErrorCode::kBadValue, "unknown layout " + std::to_string(layout), 12);
   h.layout = static_cast<Layout>(layout);
   if (h.positionBits < kMinPositionBits || h.positionBits > kMaxPositionBits)
@@ -79,8 +80,9 @@ ChunkEntry readEntry(ByteReader& r, std::uint32_t parts) {
     *value = r.read<std::uint32_t>();
   e.structureCodec = static_cast<CodecId>(r.read<std::uint8_t>());
   e.valueCodec = static_cast<CodecId>(r.read<std::uint8_t>());
-  (void)r.read<std::uint16_t>();
-  (void)r.read<std::uint32_t>();
+  std::uint32_t reserved = r.read<std::uint16_t>();
+  reserved |= r.read<std::uint32_t>();
+  if (reserved != 0) r.fail(ErrorCode::kBadValue, "a reserved byte of the chunk table is not 0; use a newer qtet");
   e.blocks.resize(parts);
   std::uint64_t offset = e.offset;
   for (BlockEntry& b : e.blocks) {
@@ -102,6 +104,17 @@ void writeEntry(ByteWriter& w, const ChunkEntry& e) {
   w.write(std::uint16_t{0});
   w.write(std::uint32_t{0});
   for (const BlockEntry& b : e.blocks) w.write(b.size), w.write(b.crc);
+}
+
+// In `stream` a chunk goes on where the one before it ended, and depends on it alone.
+const char* brokenStream(const LogIndex& index, std::uint32_t i) {
+  const ChunkEntry& e = index.chunks[i];
+  if (i == 0) return e.firstDependency != 0 || e.dependencyCount != 0 ? "the base mesh depends on no chunk" : nullptr;
+  if (e.firstDependency != i - 1 || e.dependencyCount != 1 || index.dependencies[i - 1] != i - 1)
+    return "it does not depend on the chunk before it alone";
+  const ChunkEntry& before = index.chunks[i - 1];
+  if (e.firstLevel != before.lastLevel + (before.endSlot == kLevelEnd)) return "its levels do not continue those of the chunk before it";
+  return nullptr;
 }
 
 // What every later step relies on: blocks back to back to the file's end, levels in order, counts within limits, dependencies backwards.
@@ -126,6 +139,8 @@ Status check(const LogIndex& index, const Header& header) {
       return bad(ErrorCode::kLimitExceeded, "more than 2^29 vertices, cells, triangles or values");
     if (e.structureCodec != CodecId::kRange || (e.valueCodec != CodecId::kDraco && e.valueCodec != CodecId::kEmpty))
       return bad(ErrorCode::kBadCodec, "an unknown codec id");
+    if (e.valueCodec == CodecId::kEmpty && e.size() > e.blocks[kStructurePart].size)
+      return bad(ErrorCode::kBadCodec, "value blocks of the codec 'no bytes' that have bytes");
     if (i == 0 ? e.firstLevel != 0 || e.lastLevel != 0 || e.records != 0 || e.endSlot != kLevelEnd || e.values != e.newVertices
                : e.firstLevel < level || e.lastLevel < e.firstLevel || e.firstLevel == 0)
       return bad(ErrorCode::kBadValue, "levels out of order");
@@ -141,7 +156,12 @@ Status check(const LogIndex& index, const Header& header) {
       return bad(ErrorCode::kBadValue, "dependencies beyond the end of their list");
     for (std::uint32_t d = 0; d < e.dependencyCount; ++d)
       if (index.dependencies[e.firstDependency + d] >= i) return bad(ErrorCode::kBadValue, "it depends on itself or on a later chunk");
+    if (const char* what = index.layout == Layout::kStream ? brokenStream(index, i) : nullptr) return bad(ErrorCode::kBadValue, what);
   }
+  if (index.layout == Layout::kStream && index.chunks.back().endSlot != kLevelEnd)
+    return fail(ErrorCode::kBadValue, "the last chunk ends within a level; fetch or build the log again", header.headBytes());
+  if (index.layout == Layout::kStream && index.dependencies.size() + 1 != index.chunks.size())
+    return fail(ErrorCode::kBadValue, "the list of dependencies has another length than the chunks need; fetch or build the log again", header.headBytes());
   if (offset != header.fileBytes) return fail(ErrorCode::kBadValue, "the chunks do not end where the file ends", offset);
   return {};
 }

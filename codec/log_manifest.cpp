@@ -9,6 +9,7 @@ Status agree(const Manifest& manifest, const LogIndex& index) {
   const auto contradiction = [](const std::string& what) {
     return fail(ErrorCode::kBadValue, "manifest and chunk table contradict each other in " + what + "; build the log again");
   };
+  if ((manifest.layout == "regions") != (index.layout == Layout::kRegions)) return contradiction("the layout");
   if (manifest.latticeBits != index.positionBits) return contradiction("the bits of the lattice");
   if (manifest.fields.size() != index.fields.size()) return contradiction("the number of fields");
   for (std::size_t f = 0; f < manifest.fields.size(); ++f) {

@@ -1,56 +1,16 @@
-#include <algorithm>
 #include <iomanip>
 #include <sstream>
 
 #include "proto/checksum.h"
 #include "simplify/clean_mesh.h"
 #include "simplify/command_line.h"
-#include "simplify/opened_log.h"
 #include "simplify/progress.h"
 #include "simplify/read_mesh.h"
 #include "simplify/verify.h"
+#include "simplify/verify_log.h"
 
 namespace qtet {
 namespace {
-
-std::string countsText(std::size_t tetrahedra, std::size_t vertices, std::size_t boundary) {
-  return std::to_string(tetrahedra) + " tetrahedra, " + std::to_string(vertices) + " vertices and " + std::to_string(boundary) +
-         " boundary triangles";
-}
-
-/// Every level's counts as the manifest states them, against those that the refiner met on its way.
-Status checkCounts(const std::vector<ManifestLevel>& levels, std::span<const LevelCounts> met) {
-  if (levels.size() != met.size())
-    return fail(ErrorCode::kBadValue, "the log holds " + std::to_string(met.size()) + " levels, the manifest lists " +
-                                          std::to_string(levels.size()) + "; build the log again");
-  for (std::size_t i = 0; i < levels.size(); ++i) {
-    const ManifestLevel& level = levels[i];
-    if (met[i].tetrahedra != level.tetrahedra || met[i].vertices != level.vertices || met[i].boundaryTriangles != level.boundaryTriangles)
-      return fail(ErrorCode::kBadValue, "level " + std::to_string(level.level) + " decodes to " +
-                                            countsText(met[i].tetrahedra, met[i].vertices, met[i].boundaryTriangles) + ", the manifest says " +
-                                            countsText(level.tetrahedra, level.vertices, level.boundaryTriangles) + "; build the log again");
-  }
-  return {};
-}
-
-std::vector<std::uint32_t> allFields(const Manifest& manifest) {
-  std::vector<std::uint32_t> out(manifest.fields.size());
-  for (std::uint32_t f = 0; f < out.size(); ++f) out[f] = f;
-  return out;
-}
-
-/// Decodes every chunk with every field.
-Result<Refiner> decodeAll(const OpenedLog& log, Progress& progress) {
-  Refiner refiner(log.file.index());
-  const std::vector<std::uint32_t> fields = allFields(log.manifest);
-  const auto chunks = static_cast<std::uint32_t>(log.file.index().chunks.size());
-  for (std::uint32_t chunk = 0; chunk < chunks; ++chunk) {
-    if (Status applied = applyChunk(log.file, refiner, chunk, fields); !applied) return std::unexpected(applied.error());
-    progress.update((chunk + 1.0) / chunks);
-  }
-  if (Status counted = checkCounts(log.manifest.levels, refiner.levelCounts()); !counted) return std::unexpected(counted.error());
-  return refiner;
-}
 
 LatticeMesh finestMesh(const OpenedLog& log, const Refiner& refiner) {
   LatticeMesh mesh;
@@ -96,9 +56,8 @@ Result<OrderedJson> verify(const ParsedWords& parsed, Progress& progress) {
   progress.stage("checking checksums");
   const Result<OpenedLog> log = openLog(parsed.get<std::string>("LOG"));
   if (!log) return std::unexpected(log.error());
-  if (Status checked = log->file.verifyChecksums(); !checked) return std::unexpected(checked.error());
   progress.stage("decoding");
-  const Result<Refiner> refiner = decodeAll(*log, progress);
+  const Result<Refiner> refiner = decodeVerified(*log, [&](double fraction) { progress.update(fraction); });
   if (!refiner) return std::unexpected(refiner.error());
   const ManifestLevel& finest = log->manifest.levels.back();
   OrderedJson report = {{"ok", true},
@@ -140,7 +99,7 @@ int runVerify(const Words& words, Console& console) {
   const ParsedWords parsed(
       words,
       {"verify", "verify LOG.qtet [--against IN] [--json]",
-       "Checks every checksum, decodes every chunk and compares every level's counts with the manifest. With --against the finest level\n"
+       "Checks every checksum, decodes every chunk and compares every level and field with what the manifest says. With --against the finest level\n"
        "must be the input's mesh cell for cell, positions within half a lattice step, fields within half a field step.",
        "  qtet verify fin.qtet\n  qtet verify fin.qtet --against fin.vtu --json\n"},
       options, {"LOG"});

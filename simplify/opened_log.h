@@ -2,15 +2,11 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "codec/log_file.h"
 #include "proto/manifest.h"
 
 namespace qtet {
-
-/// Members keep the order in which they are set, which is the order in which people read them.
-using OrderedJson = nlohmann::ordered_json;
 
 struct OpenedLog {
   LogFile file;

@@ -6,8 +6,9 @@
 #include "codec/atomic_file.h"
 #include "codec/log_file.h"
 #include "codec/log_writer.h"
-#include "proto/crc32c.h"
 #include "simplify/qtetfusion.h"
+#include "proto/checksum.h"
+#include "tests/support/forged_log.h"
 #include "tests/support/meshes.h"
 
 namespace qtet {
@@ -21,29 +22,16 @@ Bytes logOf(const LatticeMesh& mesh, std::uint32_t chunkBytes) {
   return encodeLog(simplify(mesh, {}).value(), options).value().bytes;
 }
 
-/// A log taken apart, changed and put together with every checksum and offset right.
+/// A log taken apart, changed and put together with every checksum right; `table` changes what stands there beside the right offsets.
 Bytes forged(const Bytes& good, const std::function<void(LogIndex&)>& table, const std::function<void(std::vector<std::vector<Bytes>>&)>& body = {}) {
-  LogIndex index = LogIndex::parse(good).value();
-  std::vector<std::vector<Bytes>> blocks;
-  for (const ChunkEntry& e : index.chunks) {
-    blocks.emplace_back();
-    for (const BlockEntry& b : e.blocks) blocks.back().emplace_back(good.begin() + static_cast<std::ptrdiff_t>(b.offset), good.begin() + static_cast<std::ptrdiff_t>(b.offset + b.size));
-  }
-  if (body) body(blocks);
-  std::uint64_t offset = index.encode().size();
-  Bytes tail;
-  for (std::size_t c = 0; c < blocks.size(); ++c) {
-    index.chunks[c].offset = offset;
-    for (std::size_t p = 0; p < blocks[c].size(); ++p) {
-      index.chunks[c].blocks[p] = {offset, static_cast<std::uint32_t>(blocks[c][p].size()), crc32c(blocks[c][p])};
-      offset += blocks[c][p].size();
-      tail.insert(tail.end(), blocks[c][p].begin(), blocks[c][p].end());
-    }
-  }
-  index.fileBytes = offset;
-  if (table) table(index);
-  Bytes out = index.encode();
-  out.insert(out.end(), tail.begin(), tail.end());
+  testing::TakenApart parts = testing::takeApart(good);
+  if (body) body(parts.blocks);
+  Bytes whole = parts.together();
+  if (!table) return whole;
+  const auto tail = static_cast<std::ptrdiff_t>(parts.index.headBytes());
+  table(parts.index);
+  Bytes out = parts.index.encode();
+  out.insert(out.end(), whole.begin() + tail, whole.end());
   return out;
 }
 
@@ -63,6 +51,8 @@ void writeMustFail(const std::filesystem::path& folder, const Bytes& good) {
     return forged(good, [&](LogIndex& i) { change(i.chunks[chunk]); });
   };
   const LogIndex index = LogIndex::parse(good).value();
+  Bytes reserved = patched(15, 1);
+  testing::mendChecksums(reserved);
   write(folder / "bad-magic.text-mode-copy.qtet", patched(5, 0x0A));
   write(folder / "bad-version.major-1.qtet", patched(8, 1));
   write(folder / "bad-version.major-3.qtet", patched(8, 3));
@@ -83,6 +73,9 @@ void writeMustFail(const std::filesystem::path& folder, const Bytes& good) {
   write(folder / "bad-value.chunk-offset.qtet", entry(1, [](ChunkEntry& e) { e.offset += 8; }));
   write(folder / "bad-value.levels-backwards.qtet", entry(2, [](ChunkEntry& e) { e.firstLevel = 0; }));
   write(folder / "bad-value.depends-on-itself.qtet", forged(good, [](LogIndex& i) { i.dependencies[0] = 1; }));
+  write(folder / "bad-value.reserved-bytes.qtet", reserved);
+  write(folder / "bad-value.ends-within-a-level.qtet", entry(index.chunks.size() - 1, [](ChunkEntry& e) { e.endSlot = 1000; }));
+  write(folder / "bad-value.a-level-left-out.qtet", entry(index.chunks.size() - 1, [](ChunkEntry& e) { ++e.firstLevel, ++e.lastLevel; }));
   write(folder / "bad-value.too-few-cells.qtet", entry(1, [](ChunkEntry& e) { --e.newTetrahedra; }));
   write(folder / "bad-value.too-many-values.qtet", entry(1, [](ChunkEntry& e) { ++e.values; }));
   write(folder / "limit-exceeded.levels.qtet", entry(index.chunks.size() - 1, [](ChunkEntry& e) { e.lastLevel = 4097; }));
@@ -92,6 +85,25 @@ void writeMustFail(const std::filesystem::path& folder, const Bytes& good) {
   write(folder / "bad-value.structure-of-noise.qtet", forged(good, {}, [](auto& blocks) { for (auto& b : blocks[1][kStructurePart]) b = static_cast<std::uint8_t>(b * 7 + 3); }));
   write(folder / "bad-value.structure-too-long.qtet", forged(good, {}, [](auto& blocks) { blocks[1][kStructurePart].push_back(0); }));
   write(folder / "truncated.structure.qtet", forged(good, {}, [](auto& blocks) { blocks[2][kStructurePart].resize(blocks[2][kStructurePart].size() / 2); }));
+}
+
+/// What the valid files decode to, in the form that sha256sum writes.
+void writeDigests(const std::filesystem::path& folder) {
+  std::ofstream meshes(folder / "digests.txt"), values(folder / "field-digests.txt");
+  for (const char* name : {"cell-fields", "no-fields", "pinched", "solid", "tunnel"}) {
+    const std::string file = std::string(name) + ".qtet";
+    const LogFile log = LogFile::open(folder / "valid" / file).value();
+    std::vector<std::uint32_t> fields;
+    for (std::uint32_t f = 0; f < log.index().fields.size(); ++f) fields.push_back(f);
+    Refiner refiner(log.index());
+    for (std::uint32_t chunk = 0; chunk < log.index().chunks.size(); ++chunk) applyChunk(log, refiner, chunk, fields).value();
+    meshes << toHex(refiner.digest()) << "  " << file << "\n";
+    for (const std::uint32_t f : fields) {
+      ByteWriter w;
+      for (const std::int32_t value : refiner.fieldValues(f)) w.write(static_cast<std::uint32_t>(value));
+      values << sha256Hex(w.bytes()) << "  " << file << "/" << f << "\n";
+    }
+  }
 }
 
 }  // namespace
@@ -112,5 +124,6 @@ int main(int argc, char** argv) {
   qtet::testing::addCellFields(cells);
   qtet::write(folder / "valid" / "cell-fields.qtet", qtet::logOf(cells, 800));
   qtet::writeMustFail(folder / "must-fail", solid);
+  qtet::writeDigests(folder);
   return 0;
 }

@@ -43,6 +43,9 @@ Built build(const SyntheticLog& options) {
     ChunkEntry chunk;
     chunk.firstLevel = chunk.lastLevel = k;
     chunk.newVertices = chunk.values = 5;
+    chunk.firstDependency = k == 0 ? 0 : k - 1;
+    chunk.dependencyCount = k > 0;
+    if (k > 0) out.index.dependencies.push_back(k - 1);
     for (std::uint32_t part = 0; part < out.index.parts(); ++part) {
       BlockEntry block;
       block.size = random() % 8 == 0 ? 0 : static_cast<std::uint32_t>(random() % options.largestBlock);

@@ -92,8 +92,7 @@ LatticeMesh gridMesh(int n, std::uint32_t seed, const std::function<bool(int, in
 void addCellFields(LatticeMesh& mesh) {
   mesh.fields.push_back({"Region", 1, "uint8", "cell", 4, 1, {1}, {1, 9}});
   mesh.fields.push_back({"Height", 2, "float32", "cell", 12, 0.5, {-1, 2}, {0, 900}});
-  std::vector<std::int32_t>& regions = mesh.values.emplace_back();
-  std::vector<std::int32_t>& heights = mesh.values.emplace_back();
+  std::vector<std::int32_t> regions, heights;
   for (const Tetrahedron& t : mesh.tetrahedra) {
     std::array<std::int32_t, 3> sum{};
     for (const VertexId v : t)
@@ -102,6 +101,8 @@ void addCellFields(LatticeMesh& mesh) {
     heights.push_back((sum[0] + sum[1]) / 4);
     heights.push_back((sum[2] * 7 + sum[1]) % 4096);
   }
+  mesh.values.push_back(std::move(regions));
+  mesh.values.push_back(std::move(heights));
 }
 
 LatticeMesh meshOfHistory(const FusionHistory& history, std::uint32_t undone) {

@@ -1,0 +1,52 @@
+#include "tests/support/allocation_meter.h"
+
+#include <malloc.h>
+
+#include <atomic>
+#include <cstdint>
+#include <cstdlib>
+#include <new>
+
+namespace {
+
+std::atomic<std::int64_t> held{0};
+std::atomic<std::int64_t> peak{0};
+
+void* taken(void* memory) {
+  if (memory == nullptr) throw std::bad_alloc();
+  const auto bytes = static_cast<std::int64_t>(malloc_usable_size(memory));
+  const std::int64_t now = held.fetch_add(bytes) + bytes;
+  for (std::int64_t seen = peak.load(); now > seen && !peak.compare_exchange_weak(seen, now);) {
+  }
+  return memory;
+}
+
+void given(void* memory) {
+  if (memory != nullptr) held.fetch_sub(static_cast<std::int64_t>(malloc_usable_size(memory)));
+  std::free(memory);
+}
+
+std::size_t roundedUp(std::size_t bytes, std::size_t alignment) { return (bytes + alignment - 1) / alignment * alignment; }
+
+}  // namespace
+
+void* operator new(std::size_t bytes) { return taken(std::malloc(bytes == 0 ? 1 : bytes)); }
+void* operator new(std::size_t bytes, std::align_val_t alignment) {
+  const auto step = static_cast<std::size_t>(alignment);
+  return taken(std::aligned_alloc(step, roundedUp(bytes == 0 ? 1 : bytes, step)));
+}
+void operator delete(void* memory) noexcept { given(memory); }
+void operator delete(void* memory, std::size_t) noexcept { given(memory); }
+void operator delete(void* memory, std::align_val_t) noexcept { given(memory); }
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { given(memory); }
+
+namespace qtet::testing {
+
+std::size_t peakBytesOf(const std::function<void()>& work) {
+  const std::int64_t before = held.load();
+  peak.store(before);
+  work();
+  return static_cast<std::size_t>(peak.load() - before);
+}
+
+}  // namespace qtet::testing

@@ -1,0 +1,65 @@
+// Logs that lie: taken apart, changed, and put together with every offset and checksum right, so that only what checks the sense can tell.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "codec/log_index.h"
+#include "proto/crc32c.h"
+
+namespace qtet::testing {
+
+struct TakenApart {
+  LogIndex index;
+  std::vector<std::vector<Bytes>> blocks;  ///< chunk, part
+
+  /// Header, manifest, table, blocks. Offsets, sizes and checksums are those of `blocks`.
+  [[nodiscard]] Bytes together() {
+    std::uint64_t offset = index.encode().size();
+    Bytes tail;
+    for (std::size_t c = 0; c < blocks.size(); ++c) {
+      index.chunks[c].offset = offset;
+      index.chunks[c].blocks.resize(blocks[c].size());
+      for (std::size_t p = 0; p < blocks[c].size(); ++p) {
+        index.chunks[c].blocks[p] = {offset, static_cast<std::uint32_t>(blocks[c][p].size()), crc32c(blocks[c][p])};
+        offset += blocks[c][p].size();
+        tail.insert(tail.end(), blocks[c][p].begin(), blocks[c][p].end());
+      }
+    }
+    index.fileBytes = offset;
+    Bytes out = index.encode();
+    out.insert(out.end(), tail.begin(), tail.end());
+    return out;
+  }
+};
+
+/// REQUIRES a log that LogIndex::parse accepts.
+[[nodiscard]] inline TakenApart takeApart(ByteView log) {
+  TakenApart out{LogIndex::parse(log).value(), {}};
+  for (const ChunkEntry& entry : out.index.chunks) {
+    out.blocks.emplace_back();
+    for (const BlockEntry& block : entry.blocks) {
+      const ByteView bytes = log.subspan(static_cast<std::size_t>(block.offset), block.size);
+      out.blocks.back().emplace_back(bytes.begin(), bytes.end());
+    }
+  }
+  return out;
+}
+
+/// Makes the checksums in the header right, of what it says are manifest and table and of itself, after bytes of them were changed.
+inline void mendChecksums(Bytes& log) {
+  constexpr std::size_t kManifestBytesAt = 24, kTableBytesAt = 28, kManifestCrcAt = 32, kTableCrcAt = 36, kHeaderCrcAt = 60;
+  if (log.size() < LogIndex::kHeaderBytes) return;
+  const auto get = [&](std::size_t at) { return std::uint64_t{ByteReader(ByteView(log).subspan(at, 4)).read<std::uint32_t>()}; };
+  const auto put = [&](std::size_t at, std::uint32_t value) {
+    for (std::size_t i = 0; i < 4; ++i) log[at + i] = static_cast<std::uint8_t>(value >> (8 * i));
+  };
+  const std::uint64_t manifest = get(kManifestBytesAt), table = get(kTableBytesAt);
+  if (LogIndex::kHeaderBytes + manifest + table <= log.size()) {
+    put(kManifestCrcAt, crc32c(ByteView(log).subspan(LogIndex::kHeaderBytes, manifest)));
+    put(kTableCrcAt, crc32c(ByteView(log).subspan(LogIndex::kHeaderBytes + manifest, table)));
+  }
+  put(kHeaderCrcAt, crc32c(ByteView(log).first(kHeaderCrcAt)));
+}
+
+}  // namespace qtet::testing
