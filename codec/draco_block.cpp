@@ -5,6 +5,7 @@
 #include <draco/point_cloud/point_cloud.h>
 
 #include <algorithm>
+#include <array>
 #include <exception>
 #include <string>
 
@@ -36,12 +37,16 @@ Result<Bytes> encode(std::span<const std::int32_t> values, std::uint32_t compone
   return Bytes(buffer.data(), buffer.data() + buffer.size());
 }
 
-// The start of a Draco point cloud: "DRACO", version (2 bytes), geometry type, method, flags (u16), number of points (i32). A constant costs Draco
-// no bits, so only this tells how much a block of any length would allocate.
-bool announces(ByteView bytes, std::uint32_t tuples) {
-  constexpr std::size_t kTypeAt = 7, kMethodAt = 8, kMetadataAt = 10, kPointsAt = 11;
-  return bytes.size() >= kPointsAt + 4 && bytes[kTypeAt] == draco::POINT_CLOUD && bytes[kMethodAt] == draco::POINT_CLOUD_SEQUENTIAL_ENCODING &&
-         (bytes[kMetadataAt] & 0x80) == 0 && ByteReader(bytes.subspan(kPointsAt)).read<std::uint32_t>() == tuples;
+// The start of a Draco point cloud: "DRACO", version (2 bytes), geometry type, method, flags (u16), number of points (i32), then of attribute decoders,
+// of attributes, and the attribute's type, data type and components (u8 each). A constant costs Draco no bits and an attribute a few bytes, so only
+// this tells how much a block of any length would allocate.
+bool announces(ByteView bytes, std::uint32_t components, std::uint32_t tuples) {
+  constexpr std::size_t kMajorAt = 5, kTypeAt = 7, kMethodAt = 8, kMetadataAt = 10, kPointsAt = 11, kAttributesAt = 15;
+  const std::array<std::uint8_t, 5> attributes{1, 1, draco::GeometryAttribute::GENERIC, draco::DT_INT32, static_cast<std::uint8_t>(components)};
+  return bytes.size() >= kAttributesAt + attributes.size() && bytes[kMajorAt] == 2 && bytes[kTypeAt] == draco::POINT_CLOUD &&
+         bytes[kMethodAt] == draco::POINT_CLOUD_SEQUENTIAL_ENCODING && (bytes[kMetadataAt] & 0x80) == 0 &&
+         ByteReader(bytes.subspan(kPointsAt)).read<std::uint32_t>() == tuples &&
+         std::ranges::equal(bytes.subspan(kAttributesAt, attributes.size()), attributes);
 }
 
 Result<std::vector<std::int32_t>> decode(ByteView bytes, std::uint32_t components, std::uint32_t tuples) {
@@ -49,8 +54,8 @@ Result<std::vector<std::int32_t>> decode(ByteView bytes, std::uint32_t component
   buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   const auto type = draco::Decoder::GetEncodedGeometryType(&buffer);
   if (!type.ok() || type.value() != draco::POINT_CLOUD) return fail(ErrorCode::kBadCodec, "the block is not a Draco point cloud");
-  if (!announces(bytes, tuples))
-    return fail(ErrorCode::kBadValue, "a value block is not sequential, or holds another number of tuples than the chunk table says");
+  if (!announces(bytes, components, tuples))
+    return fail(ErrorCode::kBadValue, "a value block is not sequential, or holds another number of tuples or components than the chunk table says");
   draco::Decoder decoder;
   const auto cloud = decoder.DecodePointCloudFromBuffer(&buffer);
   if (!cloud.ok()) return fail(ErrorCode::kBadCodec, "Draco: " + cloud.status().error_msg_string());

@@ -7,6 +7,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "codec/draco_block.h"
 #include "codec/log_file.h"
 #include "codec/log_writer.h"
 #include "proto/checksum.h"
@@ -313,6 +314,28 @@ TEST_F(DamagedLog, absurdSizesAreRefusedBeforeAnythingBigIsAllocated) {
   // The end of a chunk that completes its level is 2^32 - 1 already, or any slot beyond its last.
   EXPECT_LE(accepted, 2 * index_.chunks.size());
   RecordProperty("largestPeakBytes", static_cast<int>(largest));
+}
+
+TEST_F(DamagedLog, aFewBytesOfDracoDoNotAllocateMuch) {
+  // One byte of 255, or two in a row: other numbers of points, attributes, components and symbols, of other types.
+  const std::vector<std::int32_t> values(60'000, 7);
+  const Bytes good = encodeDracoBlock(values, 1).value();
+  std::size_t largest = 0;
+  for (std::size_t at = 0; at < good.size(); ++at)
+    for (const std::size_t width : {1u, 2u}) {
+      Bytes bad = good;
+      for (std::size_t i = at; i < std::min(at + width, bad.size()); ++i) bad[i] = 0xFF;
+      largest = std::max(largest, testing::peakBytesOf([&] { (void)decodeDracoBlock(bad, 1, 60'000); }));
+    }
+  // Many attributes of many components, as many as Draco takes for possible.
+  constexpr std::size_t kAttributesAt = 16;
+  Bytes many(good.begin(), good.begin() + kAttributesAt);
+  many.push_back(50);
+  for (std::uint8_t i = 0; i < 50; ++i)
+    for (const std::uint8_t byte : std::initializer_list<std::uint8_t>{4, 5, 255, 0, i}) many.push_back(byte);
+  many.resize(600, 1);
+  largest = std::max(largest, testing::peakBytesOf([&] { (void)decodeDracoBlock(many, 1, 60'000); }));
+  EXPECT_LT(largest, 4u << 20);  // 240 KB of values, a few times
 }
 
 TEST_F(DamagedLog, versionsAndFlagsOfTheFutureAreRefused) {
