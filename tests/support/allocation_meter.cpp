@@ -30,15 +30,29 @@ std::size_t roundedUp(std::size_t bytes, std::size_t alignment) { return (bytes 
 
 }  // namespace
 
+// All forms: a sanitizer's own do not call one another, and it minds what one form allocates and another gives back.
 void* operator new(std::size_t bytes) { return taken(std::malloc(bytes == 0 ? 1 : bytes)); }
+void* operator new[](std::size_t bytes) { return operator new(bytes); }
+void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
+  void* memory = std::malloc(bytes == 0 ? 1 : bytes);
+  return memory == nullptr ? nullptr : taken(memory);
+}
+void* operator new[](std::size_t bytes, const std::nothrow_t& tag) noexcept { return operator new(bytes, tag); }
 void* operator new(std::size_t bytes, std::align_val_t alignment) {
   const auto step = static_cast<std::size_t>(alignment);
   return taken(std::aligned_alloc(step, roundedUp(bytes == 0 ? 1 : bytes, step)));
 }
+void* operator new[](std::size_t bytes, std::align_val_t alignment) { return operator new(bytes, alignment); }
 void operator delete(void* memory) noexcept { given(memory); }
+void operator delete[](void* memory) noexcept { given(memory); }
 void operator delete(void* memory, std::size_t) noexcept { given(memory); }
+void operator delete[](void* memory, std::size_t) noexcept { given(memory); }
+void operator delete(void* memory, const std::nothrow_t&) noexcept { given(memory); }
+void operator delete[](void* memory, const std::nothrow_t&) noexcept { given(memory); }
 void operator delete(void* memory, std::align_val_t) noexcept { given(memory); }
+void operator delete[](void* memory, std::align_val_t) noexcept { given(memory); }
 void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { given(memory); }
+void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept { given(memory); }
 
 namespace qtet::testing {
 
