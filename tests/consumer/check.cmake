@@ -111,6 +111,7 @@ endforeach()
 
 if(PYTHON)
   run(${PYTHON} ${here}/ctypes_test.py ${library} ${qtet} ${SOURCE}/tests/golden/valid ${OUT})
+  message("${said}")
 else()
   message("no python3: volumes, field ranges and ctypes not compared")
 endif()
