@@ -9,7 +9,6 @@ using qtet::FieldShape;
 using qtet::Lattice;
 using qtet::LatticePoint;
 using qtet::LogFile;
-using qtet::LogIndex;
 using qtet::ManifestField;
 using qtet::Refiner;
 using qtet::Status;

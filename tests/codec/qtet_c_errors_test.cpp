@@ -1,6 +1,9 @@
 // codec/qtet.h: every failure has its number and its text, and leaves nothing half done.
 #include <gtest/gtest.h>
 
+#include <new>
+
+#include "codec/c_api_handle.h"
 #include "tests/codec/c_log.h"
 
 namespace qtet {
@@ -216,6 +219,15 @@ TEST(QtetC, nullsAreRefused) {
   EXPECT_EQ(qtet_log_level(log.get()), 0u);
   EXPECT_EQ(qtet_log_open_memory(log.get(), 64, nullptr), QTET_BAD_ARGUMENT);
   EXPECT_EQ(qtet_log_open_file(log.get(), nullptr), QTET_BAD_ARGUMENT);
+}
+
+TEST(QtetC, noExceptionCrossesTheBorder) {
+  const Handle log = opened(smallChunks());
+  EXPECT_EQ(withLog(log.get(), []() -> qtet_status { throw std::bad_alloc(); }), QTET_OUT_OF_MEMORY);
+  EXPECT_TRUE(errorOf(log).starts_with("out-of-memory: ")) << errorOf(log);
+  EXPECT_EQ(withLog(log.get(), []() -> qtet_status { throw 7; }), QTET_INTERNAL);
+  EXPECT_TRUE(errorOf(log).starts_with("internal: ")) << errorOf(log);
+  EXPECT_EQ(qtet_log_refine(log.get(), 0), QTET_OK) << "the log is as good as before";
 }
 
 TEST(QtetC, aStatusHasANameAndOtherNumbersHaveNone) {
