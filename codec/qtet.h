@@ -11,7 +11,7 @@
  * Structs   The caller passes sizeof his struct first: later versions append members, and fill no more than he has.
  * Sizes     Arrays are packed, without gaps, in slots of codec/FORMAT.md: a slot's number never changes while a mesh is refined.
  *
- * The browser has functions of its own (codec/wasm_api.h in the sources). There a page fetches blocks and Draco decodes them outside, so one
+ * The browser has functions of its own (codec/wasm_api.h in the sources). There a page fetches blocks and Draco decodes them outside, so a
  * module is one refiner that is fed integers; here a log is a file or memory, and everything is decoded inside. No name is in both. */
 #ifndef QTET_H
 #define QTET_H
