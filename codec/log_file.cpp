@@ -20,6 +20,7 @@ namespace qtet {
 struct LogFile::Mapping {
   void* address = nullptr;
   std::size_t bytes = 0;
+  Bytes owned;  // of a log that came as bytes; nothing is mapped then
 
   Mapping() = default;
   Mapping(const Mapping&) = delete;
@@ -38,35 +39,48 @@ Result<LogFile> LogFile::open(const std::filesystem::path& path) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0) return io("cannot be opened");
   struct stat info {};
-  LogFile log;
-  log.mapping_ = std::make_unique<Mapping>();
+  auto mapping = std::make_unique<Mapping>();
   const bool known = fstat(file, &info) == 0;
   if (known && S_ISREG(info.st_mode) && info.st_size > 0) {
     void* address = mmap(nullptr, static_cast<std::size_t>(info.st_size), PROT_READ, MAP_PRIVATE, file, 0);
-    if (address != MAP_FAILED) log.mapping_->address = address, log.mapping_->bytes = static_cast<std::size_t>(info.st_size);
+    if (address != MAP_FAILED) mapping->address = address, mapping->bytes = static_cast<std::size_t>(info.st_size);
   }
   ::close(file);
   if (!known) return io("cannot be read");
   if (!S_ISREG(info.st_mode)) return fail(ErrorCode::kIo, path.string() + ": not a regular file");
   if (info.st_size == 0) return fail(ErrorCode::kTruncated, path.string() + ": the file is empty", 0);
-  if (log.mapping_->address == nullptr) return io("cannot be mapped into memory");
+  if (mapping->address == nullptr) return io("cannot be mapped into memory");
 
+  Result<LogFile> log = checked(std::move(mapping));
+  if (!log) log.error().message = path.string() + ": " + log.error().message;
+  return log;
+}
+
+Result<LogFile> LogFile::fromBytes(Bytes bytes) {
+  auto mapping = std::make_unique<Mapping>();
+  mapping->owned = std::move(bytes);
+  return checked(std::move(mapping));
+}
+
+Result<LogFile> LogFile::checked(std::unique_ptr<Mapping> mapping) {
+  LogFile log;
+  log.mapping_ = std::move(mapping);
   Result<LogIndex> index = LogIndex::parse(log.bytes());
-  if (!index) {
-    index.error().message = path.string() + ": " + index.error().message;
-    return std::unexpected(index.error());
-  }
+  if (!index) return std::unexpected(index.error());
   if (index->fileBytes != log.bytes().size())
     return fail(index->fileBytes > log.bytes().size() ? ErrorCode::kTruncated : ErrorCode::kBadValue,
-                path.string() + ": the file has " + std::to_string(log.bytes().size()) + " bytes, its header says " +
-                    std::to_string(index->fileBytes) + "; copy or fetch it again",
+                "the file has " + std::to_string(log.bytes().size()) + " bytes, its header says " + std::to_string(index->fileBytes) +
+                    "; copy or fetch it again",
                 log.bytes().size());
   log.index_ = std::move(*index);
   log.digest_ = sha256Hex(log.bytes());
   return log;
 }
 
-ByteView LogFile::bytes() const { return {static_cast<const std::uint8_t*>(mapping_->address), mapping_->bytes}; }
+ByteView LogFile::bytes() const {
+  if (mapping_->address == nullptr) return mapping_->owned;
+  return {static_cast<const std::uint8_t*>(mapping_->address), mapping_->bytes};
+}
 
 ByteView LogFile::block(std::uint32_t chunk, std::uint32_t part) const {
   const BlockEntry& b = index_.block(chunk, part);
@@ -104,19 +118,25 @@ Status applyChunk(const LogFile& log, Refiner& refiner, std::uint32_t chunk, std
   const auto positions = blockValues(log, chunk, kPositionsPart);
   if (!positions) return std::unexpected(positions.error());
   if (Status s = refiner.apply(chunk, log.block(chunk, kStructurePart), *positions); !s) return s;
-  for (const std::uint32_t f : fields) {
-    const auto values = blockValues(log, chunk, kFirstFieldPart + f);
-    if (!values) return std::unexpected(values.error());
-    if (Status s = refiner.applyField(f, chunk, *values); !s) return s;
-  }
+  for (const std::uint32_t f : fields)
+    if (Status s = applyFieldBlock(log, refiner, chunk, f); !s) return s;
   return {};
+}
+
+Status applyFieldBlock(const LogFile& log, Refiner& refiner, std::uint32_t chunk, std::uint32_t field) {
+  if (chunk >= log.index().chunks.size()) return fail(ErrorCode::kNotFound, "there is no chunk " + std::to_string(chunk));
+  if (field >= log.index().fields.size()) return fail(ErrorCode::kNotFound, "there is no field " + std::to_string(field));
+  const auto values = blockValues(log, chunk, kFirstFieldPart + field);
+  if (!values) return std::unexpected(values.error());
+  return refiner.applyField(field, chunk, *values);
 }
 
 Result<LatticeMesh> meshAtLevel(const LogFile& log, std::uint32_t level, const std::optional<std::vector<std::uint32_t>>& fields) {
   const Result<Manifest> manifest = manifestOf(log.index());
   if (!manifest) return std::unexpected(manifest.error());
   const std::uint32_t last = log.index().chunks.back().lastLevel;
-  if (level > last) return fail(ErrorCode::kNotFound, "there is no level " + std::to_string(level) + "; the last is " + std::to_string(last));
+  if (level > last)
+    return fail(ErrorCode::kNotFound, "there is no level " + std::to_string(level) + "; the last is " + std::to_string(last));
   std::vector<std::uint32_t> wanted;
   if (fields)
     wanted = *fields;

@@ -11,11 +11,13 @@
 
 namespace qtet {
 
-/// A log mapped read-only into memory. Immutable, so safe to share between threads; views live as long as the object.
+/// A log mapped read-only into memory, or held there. Immutable, so safe to share between threads; views live as long as the object.
 class LogFile {
  public:
   /// Maps the file and checks header, manifest and table, and that the file is as long as it says. Errors: io, and LogIndex::parse's.
   [[nodiscard]] static Result<LogFile> open(const std::filesystem::path& path);
+  /// The same of bytes that were read or fetched elsewhere. Errors: as open, but for io.
+  [[nodiscard]] static Result<LogFile> fromBytes(Bytes bytes);
   LogFile(LogFile&&) noexcept;
   LogFile& operator=(LogFile&&) noexcept;
   ~LogFile();
@@ -31,6 +33,7 @@ class LogFile {
  private:
   struct Mapping;
   LogFile() = default;
+  [[nodiscard]] static Result<LogFile> checked(std::unique_ptr<Mapping> mapping);
   std::unique_ptr<Mapping> mapping_;
   LogIndex index_;
   std::string digest_;
@@ -38,6 +41,9 @@ class LogFile {
 
 /// Decodes one chunk's blocks (checksum, range coder, Draco) into the refiner: the mesh, and the named fields.
 Status applyChunk(const LogFile& log, Refiner& refiner, std::uint32_t chunk, std::span<const std::uint32_t> fields);
+
+/// Decodes one field's block of a chunk that the refiner has. Errors: not-found (no such field), Refiner::applyField's, bad-checksum, bad-codec.
+Status applyFieldBlock(const LogFile& log, Refiner& refiner, std::uint32_t chunk, std::uint32_t field);
 
 /// The mesh after level `level` (0 = base mesh) with the given fields; nullopt fields = all. Errors: not-found (no such level), decoding errors.
 [[nodiscard]] Result<LatticeMesh> meshAtLevel(const LogFile& log, std::uint32_t level,

@@ -2,33 +2,13 @@
 #include <limits>
 
 #include "codec/atomic_file.h"
+#include "codec/level_choice.h"
 #include "codec/vtu_writer.h"
 #include "simplify/command_measure.h"
 #include "simplify/opened_log.h"
 
 namespace qtet {
 namespace {
-
-/// The finest level with at most `most` tetrahedra, at least level 0.
-std::uint32_t levelWithAtMost(const Manifest& manifest, double most) {
-  std::uint32_t found = 0;
-  for (const ManifestLevel& level : manifest.levels) {
-    if (level.tetrahedra <= most) found = level.level;
-  }
-  return found;
-}
-
-/// The coarsest level whose error is at most `bound`.
-template <class ErrorOf>
-Result<std::uint32_t> levelWithin(const Manifest& manifest, double bound, const ErrorOf& errorOf) {
-  for (const ManifestLevel& level : manifest.levels) {
-    if (!level.error)
-      return fail(ErrorCode::kNotFound, "the log does not tell the error of level " + std::to_string(level.level) +
-                                            "; choose by --ratio, or make it again with qtet simplify --measure levels");
-    if (errorOf(*level.error) <= bound) return level.level;
-  }
-  return manifest.levels.back().level;
-}
 
 Result<std::uint32_t> levelWithin(const Manifest& manifest, const std::pair<std::string, double>& fieldBound) {
   const auto field = std::ranges::find(manifest.fields, fieldBound.first, &ManifestField::name);
@@ -38,16 +18,15 @@ Result<std::uint32_t> levelWithin(const Manifest& manifest, const std::pair<std:
     return fail(ErrorCode::kNotFound, "the log has no field '" + fieldBound.first + "'; it has: " + (names.empty() ? "none" : names));
   }
   const auto index = static_cast<std::size_t>(field - manifest.fields.begin());
-  return levelWithin(manifest, fieldBound.second, [index](const LevelError& error) { return error.fields[index].rms; });
+  return levelOfFieldError(manifest, index, fieldBound.second);
 }
 
 Result<std::uint32_t> chosenLevel(const ParsedWords& parsed, const Manifest& manifest) {
   if (parsed.has("error")) return levelWithin(manifest, parseNamedError("error", parsed.get<std::string>("error")));
-  if (parsed.has("boundary-error"))
-    return levelWithin(manifest, parsed.number("boundary-error", 0, 1), [](const LevelError& error) { return error.boundaryDistance(); });
+  if (parsed.has("boundary-error")) return levelOfBoundaryError(manifest, parsed.number("boundary-error", 0, 1));
   if (parsed.has("level")) return static_cast<std::uint32_t>(parsed.integer("level", 0, std::numeric_limits<int>::max()));
-  if (parsed.has("tets")) return levelWithAtMost(manifest, parsed.number("tets", 0, 1e18));
-  return levelWithAtMost(manifest, parsed.number("ratio", 0, 1) * manifest.levels.back().tetrahedra);
+  if (parsed.has("tets")) return levelOfTetrahedra(manifest, parsed.number("tets", 0, 1e18));
+  return levelOfTetrahedra(manifest, parsed.number("ratio", 0, 1) * manifest.levels.back().tetrahedra);
 }
 
 Status extract(const ParsedWords& parsed, Console& console) {
@@ -76,7 +55,8 @@ int runExtract(const Words& words, Console& console) {
       "level", po::value<int>(), "this level; 0 is the base mesh")("tets", po::value<double>(),
                                                                    "the finest level with at most so many tetrahedra")(
       "ratio", po::value<double>(), "the finest level with at most this fraction of all tetrahedra, 0 to 1")(
-      "error", po::value<std::string>(), "NAME=E: the coarsest level at which this field's rms error is at most E, a fraction of its range")(
+      "error", po::value<std::string>(),
+      "NAME=E: the coarsest level at which this field's rms error is at most E, a fraction of its range")(
       "boundary-error", po::value<double>(),
       "the coarsest level whose boundary is nowhere further than this from the original's, as a fraction of the diagonal");
   const ParsedWords parsed(
@@ -87,7 +67,8 @@ int runExtract(const Words& words, Console& console) {
        "  qtet extract fin.qtet --ratio 0.1 -o coarse.vtu\n  qtet extract fin.qtet --error Density=0.01 -o near.vtu\n"},
       options, {"LOG"});
   if (parsed.helped(console)) return kExitOk;
-  const auto given = static_cast<int>(parsed.has("level")) + parsed.has("tets") + parsed.has("ratio") + parsed.has("error") + parsed.has("boundary-error");
+  const auto given =
+      static_cast<int>(parsed.has("level")) + parsed.has("tets") + parsed.has("ratio") + parsed.has("error") + parsed.has("boundary-error");
   if (given != 1) throw UsageError("give exactly one of --level, --tets, --ratio, --error and --boundary-error\nsee 'qtet extract --help'");
 
   const Status done = extract(parsed, console);
