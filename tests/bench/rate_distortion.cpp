@@ -236,7 +236,7 @@ Request requestOf(const std::vector<std::string>& words) {
   }
   if (request.curves.empty()) request.curves.emplace_back("log", "");
   if (request.meshes.empty()) {
-    if (!std::getenv("QTET_DATA"))
+    if (const char* data = std::getenv("QTET_DATA"); !data || *data == 0)
       throw std::runtime_error(
           "QTET_DATA is not set; it names the folder with comb.vtu and bluntfin-welded.vtu. For a sample alone: rate_distortion fin");
     request.meshes = {"fin", "comb", "bluntfin-welded"};
