@@ -15,7 +15,7 @@ SHELL := /bin/bash
 .ONESHELL:
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
-.PHONY: help setup build demo demo-port demo-log test bench results clean
+.PHONY: help setup build demo demo-port demo-log test bench results sizes rate clean
 .DEFAULT_GOAL := help
 
 help:
@@ -27,6 +27,8 @@ help:
 	make setup                 install the Debian packages of .ci/packages.txt that are missing (asks sudo if not root)
 	make bench                 build and run the benchmarks
 	make results               compare with VTK's decimation: QTET_DATA=folder of .vtu, QTET_JUDGE=program; RESULTS="--jobs 2 --sets a,b"
+	make sizes                 tests/bench/SIZES.md made anew, to the byte; QTET_DATA=folder of .vtu for the data sets too
+	make rate                  tests/bench/RATE.md made anew: error against bytes; QTET_DATA as before
 	make clean                 remove build/
 	JOBS=N                     compile N files at a time (now $(JOBS))
 	END
@@ -166,6 +168,16 @@ bench: setup build
 results: TARGETS := --target qtet vtk_decimate
 results: setup build
 	@python3 tests/bench/results.py --cache build/results $(RESULTS)
+
+# tests/bench/SIZES.md, which a test compares with the tool.
+sizes: TARGETS := --target qtet vtu_size
+sizes: setup build
+	@python3 tests/bench/sizes.py
+
+# tests/bench/RATE.md and its pictures.
+rate: TARGETS := --target qtet rate_distortion
+rate: setup build
+	@$(BUILD)/bin/rate_distortion --out tests/bench
 
 clean:
 	@rm -rf build

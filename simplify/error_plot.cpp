@@ -144,7 +144,7 @@ class ErrorPlot {
     }
     out_ << "<rect class=\"frame\" x=\"" << kLeft << "\" y=\"" << kTop << "\" width=\"" << kPlotWidth << "\" height=\"" << kPlotHeight
          << "\"/>\n";
-    text(kLeft + kPlotWidth / 2, kTop + kPlotHeight + 40, "quiet", "middle", "bytes of the log");
+    text(kLeft + kPlotWidth / 2, kTop + kPlotHeight + 40, "quiet", "middle", "bytes read");
   }
 
   /// The boundary in the colour of the text, fields in colours, each with its line in the legend.

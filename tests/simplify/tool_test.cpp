@@ -300,7 +300,7 @@ TEST_F(Tool, theErrorsAreDrawn) {
   const std::string svg = contentOf(folder_ / "box.svg");
   EXPECT_TRUE(svg.starts_with("<svg ")) << svg.substr(0, 80);
   EXPECT_TRUE(svg.ends_with("</svg>\n"));
-  for (const char* words : {"boundary, max", "boundary, mean", "Scalar, rms", "box.vtu", "bytes of the log", "prefers-color-scheme: dark", " kB<"})
+  for (const char* words : {"boundary, max", "boundary, mean", "Scalar, rms", "box.vtu", "bytes read", "prefers-color-scheme: dark", " kB<"})
     EXPECT_NE(svg.find(words), std::string::npos) << words;
   EXPECT_EQ(svg.find("nan"), std::string::npos);
   EXPECT_EQ(svg.find("inf"), std::string::npos);
