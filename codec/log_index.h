@@ -53,7 +53,7 @@ struct ChunkEntry {
   std::uint32_t newVertices = 0;
   std::uint32_t newTetrahedra = 0;
   std::uint32_t newBoundaryTriangles = 0;
-  std::uint32_t values = 0;           ///< tuples in the positions block and in each point field's block
+  std::uint32_t positions = 0;        ///< tuples in the positions block
   std::uint32_t firstDependency = 0;  ///< into LogIndex::dependencies
   std::uint32_t dependencyCount = 0;
   CodecId structureCodec = CodecId::kRange;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 namespace qtet {
 namespace {
@@ -54,7 +55,7 @@ FusionPointFinder::Ideal FusionPointFinder::ideal(const Prey& prey) const { retu
 void FusionPointFinder::offer(const LatticePoint& p) {
   for (const Choice& c : choices_)
     if (c.point == p) return;
-  choices_.push_back({p, quadric_.at(toVector(p) - origin_)});
+  choices_.push_back({p, factor_ * quadric_.at(toVector(p) - origin_), factor_});
 }
 
 void FusionPointFinder::offerChoices(const Prey& prey, const FusionTest& test) {
@@ -65,10 +66,19 @@ void FusionPointFinder::offerChoices(const Prey& prey, const FusionTest& test) {
   const Deciding deciding = this->deciding(prey);
   const Vector3 middle = origin_ + deciding.centre;
   const Vector3 best = origin_ + idealOf(prey, deciding, of).offset;
+  static const int place = std::getenv("PLACE") ? std::atoi(std::getenv("PLACE")) : 3;
+  static const double freeFactor = std::getenv("FREE") ? std::atof(std::getenv("FREE")) : 2;
+  factor_ = 1;
+  if (place && prey.k == 2 && deciding.count == 2) {
+    const LatticePoint a = mesh_.point(prey.vertex[0]), b = mesh_.point(prey.vertex[1]);
+    for (const LatticePoint& p : {qtet::middle(a, b), quarter(a, b), quarter(b, a)}) if (!deciding.boundary || test.insideEnvelope(p)) offer(p);
+  }
+  factor_ = place ? freeFactor : 1;
   for (const Vector3& p : {best, 0.5 * (best + middle), middle}) {
     LatticePoint inside = rounded(p);
     if (!deciding.boundary || test.projectInside(p, inside)) offer(inside);
   }
+  factor_ = 1;
   for (std::size_t i = 0; i < deciding.count; ++i)
     if (const LatticePoint& p = mesh_.point(deciding.vertex[i]); !deciding.boundary || test.insideEnvelope(p)) offer(p);
 }
@@ -77,15 +87,16 @@ std::optional<FusionPoint> FusionPointFinder::find(const Prey& prey, const Fusio
   offerChoices(prey, test);
   std::sort(choices_.begin(), choices_.end(),
             [](const Choice& a, const Choice& b) { return a.cost != b.cost ? a.cost < b.cost : a.point < b.point; });
-  std::optional<FusionPoint> found;
+  std::optional<FusionPoint> found; double foundFactor = 1;
   const double wanted = std::min(kGoodShape, test.oldShape());
   for (const Choice& choice : choices_) {
     if (found && choice.cost >= found->cost) break;
     const double shape = test.shapeAt(choice.point);
     if (shape < 0) continue;
     const double cost = choice.cost * (shape < wanted ? 1 + shapeWeight_ * (wanted / std::max(shape, kFlat) - 1) : 1);
-    if (!found || cost < found->cost) found = FusionPoint{choice.point, cost, 0};
+    if (!found || cost < found->cost) found = FusionPoint{choice.point, cost, 0}, foundFactor = choice.factor;
   }
+  if (found) found->cost /= foundFactor;
   if (found) found->outside = test.outsideAt(found->point);
   return found;
 }

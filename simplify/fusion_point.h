@@ -39,7 +39,7 @@ class FusionPointFinder {
   };
   struct Choice {
     LatticePoint point;
-    double cost;
+    double cost; double factor;
   };
 
   [[nodiscard]] Deciding deciding(const Prey& prey) const;
@@ -49,7 +49,7 @@ class FusionPointFinder {
 
   const FusionMesh& mesh_;
   const FusionCost& cost_;
-  double shapeWeight_;
+  double shapeWeight_; double factor_ = 1;
   Quadric quadric_;
   Vector3 origin_{};
   std::vector<Choice> choices_;
