@@ -10,7 +10,7 @@
 
 namespace qtet {
 
-/// One fusion: k prey vertices became `fused`, which lies as `placement` says of prey[0] and the others.
+/// One fusion: k prey vertices became `fused`, which lies as `placement` says; prey[0] is the near vertex.
 struct Fusion {
   std::uint8_t k = 2;
   Placement placement = Placement::kFree;

@@ -96,7 +96,9 @@ bool GrowingMesh::enter(VertexId v, Link& link) {
   for (const VertexId w : link.vertices())
     if (w != kGhost) states_[w].marked = static_cast<std::uint16_t>(level_);
   states_[v].marked = static_cast<std::uint16_t>(level_);
-  return link.close() && link.isSphere();
+  if (!link.close() || !link.isSphere()) return false;
+  link.place(points, points[v]);
+  return true;
 }
 
 void GrowingMesh::apply(VertexId v, const Link& link, const Split& split) {

@@ -29,7 +29,8 @@ inline constexpr CellRef kBoundaryBit = 0x80000000u;
 struct Split {
   int k = 2;
   Placement placement = Placement::kAtPrey;
-  std::array<LatticePoint, 4> points{};  ///< of the prey vertices; points[0] keeps the slot
+  int near = 0;                          ///< the prey vertex that the placement is about: kAtPrey, kQuarter
+  std::array<LatticePoint, 4> points{};  ///< of the prey vertices; the first keeps the slot
   std::vector<LocalCell> deleted;        ///< the cells that come back, oriented
 };
 
@@ -65,7 +66,7 @@ class GrowingMesh {
   }
   [[nodiscard]] int spreadShift() const { return spreadShift_; }
 
-  /// Builds the link of v into `link` and marks the star: none of its vertices may split in this level. False: not one sphere,
+  /// Builds the link of v into `link`, placed, and marks the star: none of its vertices may split in this level. False: not one sphere,
   /// so that a walk over the link would miss triangles.
   [[nodiscard]] bool enter(VertexId v, Link& link);
   /// Applies a split of v: labels stand in the link's triangles, in star order. REQUIRES: enter(v, link) was true, and nothing was applied since.

@@ -21,29 +21,22 @@ struct LabelModels {
   std::vector<BitModel> model = std::vector<BitModel>(kContexts);
 };
 
+/// Labels come in order of first appearance along the traversal.
 template <class Coder>
 class LabelCoder {
  public:
-  /// `shift`: how many low bits of a difference of coordinates do not count (GrowingMesh::spreadShift). `inOrder`: labels come in order of first appearance.
-  LabelCoder(Coder& coder, LabelModels& models, Link& link, std::span<const LatticePoint> points, const LatticePoint& fused, int shift, int k,
-             bool inOrder)
-      : coder_(coder), models_(models), link_(link), k_(static_cast<std::size_t>(k)), inOrder_(inOrder) {
-    corners_.resize(link.vertices().size());
-    for (std::size_t i = 0; i < corners_.size(); ++i)
-      if (const VertexId v = link.vertices()[i]; v != kGhost)
-        for (std::size_t a = 0; a < 3; ++a) corners_[i][a] = (points[v][a] - fused[a]) >> shift;
-  }
+  LabelCoder(Coder& coder, LabelModels& models, Link& link, int k) : coder_(coder), models_(models), link_(link), k_(static_cast<std::size_t>(k)) {}
 
-  /// Codes every triangle's label; an encoder's are read from `truth` (one a triangle).
+  /// Codes every triangle's label; an encoder's are read from `truth` (one a triangle). REQUIRES link placed.
   void code(std::span<const std::uint8_t> truth) {
     counts_.assign(link_.vertices().size(), {});
     for (const std::uint32_t f : link_.traversal()) {
       LinkTriangle& t = link_.triangles()[f];
-      const Vector place = sixTimesCentroid(t);
+      const Vector place = link_.sixTimesMiddle(t);
       score(t, place);
       t.label = static_cast<std::uint8_t>(choose(truth.empty() ? 0 : truth[f]));
       for (const std::uint32_t v : t.vertex) ++counts_[v][t.label];
-      for (std::size_t a = 0; a < 3; ++a) sum_[t.label][a] += place[a];
+      for (std::size_t a = 0; a < 3; ++a) sum_[t.label][a] += static_cast<double>(place[a]);
       ++seen_[t.label];
     }
   }
@@ -57,15 +50,6 @@ class LabelCoder {
     int distance = 0;    // log of the squared distance to the middle of the triangles that carry it
     int score = 0;
   };
-
-  // From the fused vertex; of the edge where the third corner is the ghost.
-  [[nodiscard]] Vector sixTimesCentroid(const LinkTriangle& t) const {
-    Vector sum{};
-    for (const std::uint32_t v : t.vertex)
-      for (std::size_t a = 0; a < 3; ++a) sum[a] += corners_[v][a];  // the ghost's are 0
-    for (std::size_t a = 0; a < 3; ++a) sum[a] *= t.ghost ? 3 : 2;
-    return sum;
-  }
 
   void score(const LinkTriangle& t, const Vector& place) {
     candidates_.fill({});
@@ -85,8 +69,8 @@ class LabelCoder {
 
   // To the middle of the candidate's triangles; of a candidate without any, to the opposite of all that were labelled.
   [[nodiscard]] int distance(std::size_t c, const Vector& place) const {
-    Vector sum = sum_[c];
-    std::int64_t n = seen_[c];
+    std::array<double, 3> sum = sum_[c];
+    double n = seen_[c];
     if (n == 0) {
       for (std::size_t other = 0; other < k_; ++other) {
         n += seen_[other];
@@ -96,19 +80,16 @@ class LabelCoder {
     }
     double squared = 0;
     for (std::size_t a = 0; a < 3; ++a) {
-      const auto d = static_cast<double>(n * place[a] - sum[a]);
+      const double d = n * static_cast<double>(place[a]) - sum[a];
       squared += d * d;
     }
-    return log2Fixed(squared) - 2 * log2Fixed(static_cast<std::uint64_t>(n));
+    return log2Fixed(squared) - 2 * log2Fixed(n);
   }
 
   std::size_t choose(std::size_t truth) {
-    std::size_t candidates = k_;
-    if (inOrder_) {
-      candidates = 0;
-      while (candidates < k_ && seen_[candidates] > 0) ++candidates;
-      candidates = std::min(candidates + 1, k_);
-    }
+    std::size_t candidates = 0;
+    while (candidates < k_ && seen_[candidates] > 0) ++candidates;
+    candidates = std::min(candidates + 1, k_);
     const auto order = smallOrder(candidates, [&](std::size_t x, std::size_t y) { return candidates_[x].score > candidates_[y].score; });
     for (std::size_t rank = 0; rank + 1 < candidates; ++rank)
       if (coder_.bit(truth == order[rank], context(rank, order[rank], order[rank + 1]))) return order[rank];
@@ -130,11 +111,9 @@ class LabelCoder {
   LabelModels& models_;
   Link& link_;
   std::size_t k_;
-  bool inOrder_;
   std::array<Candidate, 4> candidates_{};
-  std::array<Vector, 4> sum_{};
-  std::array<std::int64_t, 4> seen_{};
-  std::vector<std::array<std::int32_t, 3>> corners_;
+  std::array<std::array<double, 3>, 4> sum_{};  // of the middles, exact: integers below 2^53
+  std::array<int, 4> seen_{};
   std::vector<std::array<int, 4>> counts_;
 };
 

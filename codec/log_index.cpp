@@ -130,7 +130,7 @@ Status check(const LogIndex& index, const Header& header) {
     const std::uint64_t decisions = kMaxDecisionsPerByte * (std::uint64_t{e.blocks[kStructurePart].size} + 4);
     if (e.records > decisions || e.newVertices > 4 * decisions || e.newTetrahedra > 8 * decisions || e.newBoundaryTriangles > 8 * decisions)
       return bad(ErrorCode::kLimitExceeded, "it promises more than its bytes can hold");
-    if (i > 0 && (e.positions < e.newVertices || e.positions > std::uint64_t{e.newVertices} + e.records))
+    if (i > 0 && e.positions != e.newVertices)
       return bad(ErrorCode::kBadValue, "its number of positions does not fit its records");
     if (e.lastLevel > kMaxLevels) return bad(ErrorCode::kLimitExceeded, "more than 4,096 levels");
     level = e.lastLevel;

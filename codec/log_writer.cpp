@@ -174,7 +174,7 @@ class LogEncoder {
     truth.k = fusion.k;
     truth.placement = fusion.placement;
     if (!labels(v, fusion, truth)) return bad("the history's cells are not those of its star");
-    if (labelsInOrder(fusion.placement)) number(fusion, truth);
+    number(fusion, truth);
     for (std::size_t i = 0; i < fusion.k; ++i) truth.points[i] = h_.points[fusion.prey[i]];
     if ( !deleted(fusion, truth)) return bad("the history's cells are not those of its star");
     Split split;
@@ -197,7 +197,7 @@ class LogEncoder {
     return whole;
   }
 
-  // Numbers the prey vertices in order of first appearance.
+  // Numbers the prey vertices in order of first appearance along the link's traversal.
   void number(Fusion& fusion, RecordTruth& truth) {
     std::array<std::uint8_t, 4> now{kNoLabel, kNoLabel, kNoLabel, kNoLabel};
     std::uint8_t next = 0;
@@ -208,6 +208,7 @@ class LogEncoder {
     for (std::uint8_t& label : truth.labels) label = now[label];
     const auto prey = fusion.prey;
     for (std::size_t i = 0; i < fusion.k; ++i) fusion.prey[now[i]] = prey[i];
+    truth.near = now[0];
   }
 
   bool deleted(const Fusion& fusion, RecordTruth& truth) {
@@ -249,7 +250,7 @@ class LogEncoder {
     open_.entry.newVertices += fusion.k - 1u;
     open_.entry.newTetrahedra += static_cast<std::uint32_t>(mesh_.tetrahedra.size() - tetrahedra);
     open_.entry.newBoundaryTriangles += static_cast<std::uint32_t>(mesh_.boundary.size() - triangles);
-    const auto positions = static_cast<std::uint32_t>(positionTuples(fusion.k, fusion.placement));
+    const auto positions = static_cast<std::uint32_t>(fusion.k - 1);
     open_.entry.positions += positions;
     estimate(open_.positions, positions * 3);
     for (std::size_t f = 0; f < h_.fields.size(); ++f)

@@ -35,7 +35,7 @@ void PointAncestry::add(VertexId v, const GrowingMesh& mesh, const Link& link, c
   if (withSlopes_) {
     const LatticePoint& fused = mesh.points[v];
     corners_.clear();
-    for (const VertexId x : link.vertices()) corners_.push_back(x == kGhost ? Vector{} : between(fused, mesh.points[x]));
+    for (const LatticePoint& p : link.offsets()) corners_.push_back(between({}, p));
     if (split.k == 2) {
       const Vector step = between(split.points[0], split.points[1]);
       const double length = dot(step, step);

@@ -22,6 +22,7 @@ namespace qtet {
 struct RecordTruth {
   int k = 2;
   Placement placement = Placement::kAtPrey;
+  int near = 0;
   std::array<LatticePoint, 4> points{};
   std::vector<std::uint8_t> labels;   ///< one a link triangle, in star order
   std::vector<LocalCell> deleted;     ///< sorted list of sorted cells; filled in once the link is known
@@ -31,7 +32,6 @@ struct RecordModels {
   std::array<std::array<std::array<BitModel, 3>, 16>, 16> split;  // star size, extent against the level's, age
   std::array<std::array<BitModel, 2>, 4> tetrahedron;             // star size, touches the boundary
   std::array<std::array<BitModel, 2>, 4> triangle;
-  std::array<std::array<std::array<BitModel, 3>, 2>, 3> placement;  // k, touches the boundary, question
   PositionModels positions;
   LabelModels labels;
   DeletedModels deleted;
@@ -68,12 +68,12 @@ class RecordCoder {
       split.k = 4;
     else
       split.k = coder_.bit(truth.k == 3, models_.triangle[size][edge]) ? 3 : 2;
-    split.placement = placement(split.k, edge, truth.placement);
-    LabelCoder<Coder>(coder_, models_.labels, link_, mesh_.points, mesh_.points[v], mesh_.spreadShift(), split.k, labelsInOrder(split.placement))
-        .code(truth.labels);
+    LabelCoder<Coder>(coder_, models_.labels, link_, split.k).code(truth.labels);
     if (!codeDeletedCells(coder_, models_.deleted, link_, split.k, truth.deleted, split.deleted)) return false;
+    split.placement = truth.placement;
+    split.near = truth.near;
     split.points = truth.points;
-    PositionCoder<Coder>(coder_, models_.positions, positions_, v, mesh_, link_).code(split.k, split.placement, split.points);
+    PositionCoder<Coder>(coder_, models_.positions, positions_, v, mesh_, link_).code(split);
     if (positions_.bad()) return false;
     for (int i = 0; i < split.k; ++i)
       for (const std::int32_t x : split.points[static_cast<std::size_t>(i)])
@@ -82,13 +82,6 @@ class RecordCoder {
   }
 
  private:
-  Placement placement(int k, std::size_t edge, Placement truth) {
-    auto& model = models_.placement[static_cast<std::size_t>(k - 2)][edge];
-    if (coder_.bit(truth == Placement::kAtPrey, model[0])) return Placement::kAtPrey;
-    if (k > 2 || coder_.bit(truth == Placement::kFree, model[1])) return Placement::kFree;
-    return coder_.bit(truth == Placement::kMiddle, model[2]) ? Placement::kMiddle : Placement::kQuarter;
-  }
-
   Coder& coder_;
   RecordModels& models_;
   GrowingMesh& mesh_;

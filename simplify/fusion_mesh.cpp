@@ -70,13 +70,13 @@ void FusionMesh::findInterfaces() {
 
 // The prey vertex that the fused one would equal in place and values, or -1.
 FusionMesh::Placed FusionMesh::placed(const Prey& prey, const LatticePoint& point) const {
-  const auto at = [&](std::size_t i) -> const LatticePoint& { return history_.points[prey.vertex[i]]; };
+  std::array<LatticePoint, 4> at{};
+  for (std::size_t i = 0; i < prey.k; ++i) at[i] = history_.points[prey.vertex[i]];
   for (std::uint8_t i = 0; i < prey.k; ++i)
-    if (at(i) == point) return {Placement::kAtPrey, i};
-  if (prey.k > 2) return {Placement::kFree, 0};
-  if (middle(at(0), at(1)) == point) return {Placement::kMiddle, 0};
-  for (std::uint8_t i = 0; i < 2; ++i)
-    if (quarter(at(i), at(1 - i)) == point) return {Placement::kQuarter, i};
+    if (at[i] == point) return {Placement::kAtPrey, i};
+  if (middle(std::span(at).first(prey.k)) == point) return {Placement::kMiddle, 0};
+  for (std::uint8_t i = 0; i < 2 && prey.k == 2; ++i)
+    if (quarter(at[i], at[1 - i]) == point) return {Placement::kQuarter, i};
   return {Placement::kFree, 0};
 }
 

@@ -8,7 +8,7 @@ namespace {
 
 // Factors on the cost, by k: a triangle's fusion does what two or three of edges do, a tetrahedron's what three to six do, and their quadrics
 // sum more vertices.
-static const std::array<double, 5> kCostFactor{0, 0, 1, getenv("F3") ? atof(getenv("F3")) : 0.5, getenv("F4") ? atof(getenv("F4")) : 0.25};
+constexpr std::array<double, 5> kCostFactor{0, 0, 1, 0.4, 0.15};
 
 }  // namespace
 

@@ -21,7 +21,7 @@ namespace qtet {
 namespace {
 
 // A level ends where the next key passes this quantile of the keys at its start: about 5 % growth a level, as good as strict order.
-static const double kLevelQuantile = getenv("QUANT") ? atof(getenv("QUANT")) : 0.35;
+constexpr double kLevelQuantile = 0.35;
 // A pass over all candidates that removes less than this fraction of the cells is the last.
 constexpr double kWorthAnotherPass = 0.002;
 // A fusion that turns out to cost this much more than its key waits for those that cost less.
@@ -81,7 +81,7 @@ class Simplifier {
   void limitBy(const FusionLimits& limits) {
     proposers_.clear();
     for (std::size_t i = 0; i < workers_.count(); ++i)
-      proposers_.push_back(std::make_unique<FusionProposer>(mesh_, cost_, touched_, limits, options_.shapeWeight));
+      proposers_.push_back(std::make_unique<FusionProposer>(mesh_, cost_, touched_, limits, FusionPointOptions{options_.placement, options_.shapeWeight}));
   }
 
   void findCandidates() {
@@ -246,8 +246,6 @@ class Simplifier {
     const Prey& prey = proposal.prey;
     const LatticePoint& point = proposal.where.point;
     cost_.valuesAt(prey, point, values_);
-    static const int place = getenv("VAL") ? atoi(getenv("VAL")) : 0;
-    if (place) for (const VertexId v : prey.vertices()) if (mesh_.point(v) == point) { std::size_t n = 0; for (const auto& p : cost_.parts()) for (std::size_t c = 0; c < mesh_.fields()[p.field].components; ++c) values_[n++] = p.scale * mesh_.values(p.field, v)[c]; break; }
     fuseIntegers(prey, point);
     cost_.fuse(prey, point, values_);
     const VertexId fused = mesh_.fuse(prey, {point, integers_, proposal.where.outside}, proposal.star, level_);
