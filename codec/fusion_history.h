@@ -6,13 +6,14 @@
 #include <vector>
 
 #include "codec/mesh.h"
+#include "codec/placement.h"
 
 namespace qtet {
 
-/// One fusion: k prey vertices became `fused`. Where !moved, `fused` has prey[0]'s position and values.
+/// One fusion: k prey vertices became `fused`, which lies as `placement` says; prey[0] is the near vertex.
 struct Fusion {
   std::uint8_t k = 2;
-  bool moved = false;
+  Placement placement = Placement::kFree;
   std::uint32_t level = 0;  ///< 0 = the first independent set fused, that is, the finest level
   VertexId fused = 0;
   std::array<VertexId, 4> prey{};

@@ -3,56 +3,141 @@
 #include <algorithm>
 
 namespace qtet {
+namespace {
 
-void GrowingMesh::beginLevel() {
-  marked_.assign(points.size(), 0);
-  starOffsets_.assign(points.size() + 1, 0);
+// Squared differences are kept below 2^(2 * kSpreadBits), so that their sum over any star fits 64 bits.
+constexpr int kSpreadBits = 20;
+// Room for cells that a star gets without being moved: a split brings a vertex of its link one or two.
+constexpr std::uint32_t kSpareCells = 6;
+
+}  // namespace
+
+void GrowingMesh::start(int positionBits) {
+  spreadShift_ = std::max(0, positionBits - kSpreadBits);
+  states_.assign(points.size(), {});
   for (const Tetrahedron& t : tetrahedra)
-    for (const VertexId v : t) ++starOffsets_[v + 1];
+    for (const VertexId v : t) ++states_[v].room;
   for (const Triangle& t : boundary)
-    for (const VertexId v : t) ++starOffsets_[v + 1];
-  for (std::size_t v = 0; v < points.size(); ++v) starOffsets_[v + 1] += starOffsets_[v];
-  starCells_.resize(starOffsets_.back());
-  // Fill by moving each start forward, then shift the starts back: no second array of cursors.
-  for (std::uint32_t i = 0; i < tetrahedra.size(); ++i)
-    for (const VertexId v : tetrahedra[i]) starCells_[starOffsets_[v]++] = i;
-  for (std::uint32_t i = 0; i < boundary.size(); ++i)
-    for (const VertexId v : boundary[i]) starCells_[starOffsets_[v]++] = i | kBoundaryBit;
-  for (std::size_t v = points.size(); v > 0; --v) starOffsets_[v] = starOffsets_[v - 1];
-  starOffsets_[0] = 0;
+    for (const VertexId v : t) ++states_[v].room;
+  std::uint64_t first = 0;
+  for (State& s : states_) s.first = first, first += s.room += kSpareCells;
+  pool_.assign(first, 0);
+  for (std::uint32_t i = 0; i < tetrahedra.size(); ++i) addCell(i);
+  for (std::uint32_t i = 0; i < boundary.size(); ++i) addCell(i | kBoundaryBit);
+}
+
+void GrowingMesh::beginLevel(std::uint32_t level) {
+  level_ = level;
+  levelVertices_ = static_cast<std::uint32_t>(points.size());
+}
+
+// A cell of a high slot goes to the end, boundary triangles last: a step or two from there.
+void GrowingMesh::add(VertexId v, CellRef cell) {
+  if (states_[v].size == states_[v].room) relocate(states_[v], states_[v].size + states_[v].size / 4 + kSpareCells);
+  State& s = states_[v];
+  CellRef* const cells = pool_.data() + s.first;
+  std::uint32_t at = s.size++;
+  for (; at > 0 && cells[at - 1] > cell; --at) cells[at] = cells[at - 1];
+  cells[at] = cell;
+  ++live_;
+}
+
+void GrowingMesh::relocate(State& state, std::uint32_t room) {
+  if (pool_.size() > 2 * (live_ + states_.size() * kSpareCells)) compact();
+  const std::uint64_t first = pool_.size();
+  pool_.resize(first + room);
+  std::copy_n(pool_.data() + state.first, state.size, pool_.data() + first);
+  state.first = first;
+  state.room = room;
+}
+
+void GrowingMesh::compact() {
+  std::vector<CellRef> pool;
+  pool.reserve(live_ + states_.size() * (kSpareCells + 1));
+  for (State& s : states_) {
+    const auto cells = std::span(pool_).subspan(s.first, s.size);
+    s.first = pool.size();
+    s.room = s.size + kSpareCells;
+    pool.insert(pool.end(), cells.begin(), cells.end());
+    pool.resize(pool.size() + kSpareCells);
+  }
+  pool_ = std::move(pool);
+}
+
+void GrowingMesh::measure(VertexId v, const LatticePoint& at, const LatticePoint& other, std::int64_t sign) {
+  State& s = states_[v];
+  for (std::size_t a = 0; a < 3; ++a) {
+    const std::int64_t d = (at[a] - other[a]) >> spreadShift_;
+    s.squares[a] += static_cast<std::uint64_t>(sign * d * d);
+  }
+}
+
+void GrowingMesh::addCell(CellRef ref) {
+  const std::array<VertexId, 4> c = cell(ref);
+  const std::size_t corners = c[3] == kGhost ? 3 : 4;
+  for (std::size_t i = 0; i < corners; ++i) {
+    add(c[i], ref);
+    states_[c[i]].edges += static_cast<std::uint32_t>(corners - 1);
+    for (std::size_t j = 0; j < corners; ++j) measure(c[i], points[c[i]], points[c[j]], 1);
+  }
 }
 
 bool GrowingMesh::enter(VertexId v, Link& link) {
   link.clear(points.size());
-  for (const CellRef ref : star(v)) {
+  const std::span<const CellRef> cells = star(v);
+  entered_.assign(cells.begin(), cells.end());
+  for (const CellRef ref : cells) {
     const std::array<VertexId, 4> vertices = cell(ref);
     const auto index = static_cast<std::size_t>(std::ranges::find(vertices, v) - vertices.begin());
     if (index == 4) return false;
     const std::array<VertexId, 4> turned = withLast(vertices, index);
     link.add(turned[0], turned[1], turned[2]);
-    for (const VertexId w : vertices)
-      if (w != kGhost) marked_[w] = 1;
   }
-  return link.close() && link.isSphere();
+  for (const VertexId w : link.vertices())
+    if (w != kGhost) states_[w].marked = static_cast<std::uint16_t>(level_);
+  states_[v].marked = static_cast<std::uint16_t>(level_);
+  if (!link.close() || !link.isSphere()) return false;
+  link.place(points, points[v]);
+  return true;
 }
 
-void GrowingMesh::apply(VertexId v, const Link& link, const Split& split, std::uint16_t level) {
+void GrowingMesh::apply(VertexId v, const Link& link, const Split& split) {
+  const LatticePoint fused = points[v];
   std::array<VertexId, 4> prey{v};
-  points[v] = split.points[0];
-  born[v] = level;
-  for (int i = 1; i < split.k; ++i) {
-    prey[static_cast<std::size_t>(i)] = static_cast<VertexId>(points.size());
-    points.push_back(split.points[static_cast<std::size_t>(i)]);
-    born.push_back(level);
+  std::array<std::uint32_t, 4> cellsOf{};
+  for (const LinkTriangle& t : link.triangles()) ++cellsOf[t.label];
+  for (std::size_t i = 0; i < static_cast<std::size_t>(split.k); ++i) {
+    if (i > 0) {
+      prey[i] = static_cast<VertexId>(points.size());
+      points.emplace_back();
+      states_.emplace_back();
+      relocate(states_.back(), cellsOf[i] + kSpareCells);
+    }
+    points[prey[i]] = split.points[i];
+    State& s = states_[prey[i]];
+    live_ -= s.size;
+    s.size = s.edges = 0;
+    s.squares = {};
+    s.born = s.marked = static_cast<std::uint16_t>(level_);
   }
-  const std::span<const CellRef> cells = star(v);
-  for (std::size_t f = 0; f < cells.size(); ++f) {
-    const std::uint8_t label = link.triangles()[f].label;
-    if (label == 0) continue;
-    if (cells[f] & kBoundaryBit)
-      std::ranges::replace(boundary[cells[f] & ~kBoundaryBit], v, prey[label]);
-    else
-      std::ranges::replace(tetrahedra[cells[f]], v, prey[label]);
+  for (std::size_t f = 0; f < entered_.size(); ++f) {
+    const LinkTriangle& t = link.triangles()[f];
+    const VertexId w = prey[t.label];
+    if (entered_[f] & kBoundaryBit) {
+      if (w != v) std::ranges::replace(boundary[entered_[f] & ~kBoundaryBit], v, w);
+    } else if (w != v) {
+      std::ranges::replace(tetrahedra[entered_[f]], v, w);
+    }
+    add(w, entered_[f]);
+    const LatticePoint& place = points[w];
+    for (const std::uint32_t local : t.vertex) {
+      const VertexId x = link.vertices()[local];
+      if (x == kGhost) continue;
+      ++states_[w].edges;
+      measure(w, place, points[x], 1);
+      measure(x, points[x], place, 1);
+      measure(x, points[x], fused, -1);
+    }
   }
   for (const LocalCell& local : split.deleted) {
     std::array<VertexId, 4> c{};
@@ -60,9 +145,11 @@ void GrowingMesh::apply(VertexId v, const Link& link, const Split& split, std::u
     const auto ghost = static_cast<std::size_t>(std::ranges::find(c, kGhost) - c.begin());
     if (ghost == 4) {
       tetrahedra.push_back(c);
+      addCell(static_cast<CellRef>(tetrahedra.size() - 1));
     } else {
       c = withLast(c, ghost);
       boundary.push_back({c[0], c[1], c[2]});
+      addCell(static_cast<CellRef>(boundary.size() - 1) | kBoundaryBit);
     }
   }
 }

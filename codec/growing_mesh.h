@@ -1,4 +1,5 @@
-// The mesh of a refiner or of an encoder's mirror of it: grows in place, a record at a time (FORMAT.md, "Refinement").
+// The mesh that grows in place, in the refiner and in the encoder's mirror of it: slots never move, an affected cell changes one index, and the
+// stars of all vertices stay up to date (FORMAT.md, "Refinement").
 #pragma once
 
 #include <array>
@@ -9,6 +10,7 @@
 #include "codec/deleted_cells.h"
 #include "codec/link.h"
 #include "codec/mesh.h"
+#include "codec/placement.h"
 
 namespace qtet {
 
@@ -26,8 +28,9 @@ inline constexpr CellRef kBoundaryBit = 0x80000000u;
 /// One split as both sides see it.
 struct Split {
   int k = 2;
-  bool moved = false;
-  std::array<LatticePoint, 4> points{};  ///< of the prey vertices; points[0] keeps the slot
+  Placement placement = Placement::kAtPrey;
+  int near = 0;                          ///< the prey vertex that the placement is about: kAtPrey, kQuarter
+  std::array<LatticePoint, 4> points{};  ///< of the prey vertices; the first keeps the slot
   std::vector<LocalCell> deleted;        ///< the cells that come back, oriented
 };
 
@@ -36,7 +39,6 @@ class GrowingMesh {
   std::vector<LatticePoint> points;
   std::vector<Tetrahedron> tetrahedra;
   std::vector<Triangle> boundary;
-  std::vector<std::uint16_t> born;  ///< level at which a vertex got its present position
 
   /// The four vertices of a cell; the ghost comes last in a boundary triangle.
   [[nodiscard]] std::array<VertexId, 4> cell(CellRef ref) const {
@@ -45,24 +47,51 @@ class GrowingMesh {
     return {t[0], t[1], t[2], kGhost};
   }
 
-  /// Indexes the stars of all present vertices and frees them for splitting.
-  void beginLevel();
+  /// Takes points, tetrahedra and boundary as the base mesh. REQUIRES: called once, ids in range, coordinates below 2^positionBits.
+  void start(int positionBits);
+  /// Frees all present vertices for splitting. REQUIRES: levels count up from 1.
+  void beginLevel(std::uint32_t level);
   /// Vertices that the level may split: those present at its beginning.
-  [[nodiscard]] std::uint32_t levelVertices() const { return static_cast<std::uint32_t>(starOffsets_.empty() ? 0 : starOffsets_.size() - 1); }
-  [[nodiscard]] bool maysplit(VertexId v) const { return !marked_[v]; }
-  [[nodiscard]] std::span<const CellRef> star(VertexId v) const {
-    return std::span(starCells_).subspan(starOffsets_[v], starOffsets_[v + 1] - starOffsets_[v]);
+  [[nodiscard]] std::uint32_t levelVertices() const { return levelVertices_; }
+  [[nodiscard]] bool maysplit(VertexId v) const { return states_[v].marked != level_; }
+  /// Tetrahedra by slot, then boundary triangles by slot.
+  [[nodiscard]] std::span<const CellRef> star(VertexId v) const { return std::span(pool_).subspan(states_[v].first, states_[v].size); }
+  /// Level at which a vertex got its present position; 0 in the base mesh.
+  [[nodiscard]] std::uint32_t born(VertexId v) const { return states_[v].born; }
+  /// Mean squared length along each axis of the star's edges at v, each edge as often as it is in a cell, in units of 4^spreadShift()
+  /// squared lattice steps. REQUIRES: the star is not empty.
+  [[nodiscard]] std::array<std::uint64_t, 3> spread(VertexId v) const {
+    const State& s = states_[v];
+    return {s.squares[0] / s.edges, s.squares[1] / s.edges, s.squares[2] / s.edges};
   }
-  /// Builds the link of v into `link` and marks the star: none of its vertices may split in this level. False: not one sphere,
+  [[nodiscard]] int spreadShift() const { return spreadShift_; }
+
+  /// Builds the link of v into `link`, placed, and marks the star: none of its vertices may split in this level. False: not one sphere,
   /// so that a walk over the link would miss triangles.
   [[nodiscard]] bool enter(VertexId v, Link& link);
-  /// Applies a split of v: labels stand in the link's triangles, in star order.
-  void apply(VertexId v, const Link& link, const Split& split, std::uint16_t level);
+  /// Applies a split of v: labels stand in the link's triangles, in star order. REQUIRES: enter(v, link) was true, and nothing was applied since.
+  void apply(VertexId v, const Link& link, const Split& split);
 
  private:
-  std::vector<std::uint32_t> starOffsets_;
-  std::vector<CellRef> starCells_;
-  std::vector<std::uint8_t> marked_;
+  struct State {
+    std::array<std::uint64_t, 3> squares{};  // along each axis, over the edges at v of the star's cells
+    std::uint64_t first = 0;                      // of the star in the pool
+    std::uint32_t size = 0, room = 0, edges = 0;
+    std::uint16_t born = 0, marked = 0;           // levels
+  };
+
+  void add(VertexId v, CellRef cell);
+  void addCell(CellRef cell);
+  void measure(VertexId v, const LatticePoint& at, const LatticePoint& other, std::int64_t sign);
+  void relocate(State& state, std::uint32_t room);
+  void compact();
+
+  std::vector<State> states_;
+  std::vector<CellRef> pool_;  // stars, with room to grow and holes
+  std::uint64_t live_ = 0;     // of the pool
+  std::vector<CellRef> entered_;
+  std::uint32_t level_ = 0, levelVertices_ = 0;
+  int spreadShift_ = 0;
 };
 
 }  // namespace qtet

@@ -21,6 +21,7 @@ void Link::clear(std::size_t vertices) {
   vertices_.clear();
   anyTriangle_.clear();
   ghostLocal_ = kNoNeighbour;
+  start_ = 0;
 }
 
 std::uint32_t Link::intern(VertexId vertex) {
@@ -83,12 +84,24 @@ std::uint32_t Link::localOf(VertexId vertex) const {
   return vertex < stamp_.size() && stamp_[vertex] == generation_ ? local_[vertex] : kNoNeighbour;
 }
 
+void Link::place(std::span<const LatticePoint> points, const LatticePoint& centre) {
+  offsets_.clear();
+  for (const VertexId v : vertices_)
+    offsets_.push_back(v == kGhost ? LatticePoint{} : LatticePoint{points[v][0] - centre[0], points[v][1] - centre[1], points[v][2] - centre[2]});
+  double furthest = -1;
+  for (std::uint32_t f = 0; f < triangles_.size(); ++f) {
+    double squared = 0;
+    for (const std::int64_t x : sixTimesMiddle(triangles_[f])) squared += static_cast<double>(x) * static_cast<double>(x);
+    if (squared > furthest) furthest = squared, start_ = f;
+  }
+}
+
 std::span<const std::uint32_t> Link::traversal() {
   order_.clear();
   seen_.assign(triangles_.size(), 0);
   if (triangles_.empty()) return order_;
-  order_.push_back(0);
-  seen_[0] = 1;
+  order_.push_back(start_);
+  seen_[start_] = 1;
   for (std::size_t i = 0; i < order_.size(); ++i)
     for (const std::uint32_t next : triangles_[order_[i]].neighbour)
       if (!seen_[next]) seen_[next] = 1, order_.push_back(next);

@@ -32,8 +32,21 @@ class Link {
   [[nodiscard]] bool close();
   /// True for one sphere: connected, Euler characteristic 2. REQUIRES close() was true.
   [[nodiscard]] bool isSphere();
-  /// Triangles in breadth-first order from the first, neighbours 0, 1, 2. REQUIRES close() was true.
+  /// Triangles in breadth-first order from the start, neighbours 0, 1, 2. REQUIRES close() was true.
   [[nodiscard]] std::span<const std::uint32_t> traversal();
+  /// Notes where the vertices lie with respect to the centre, and makes the triangle that is furthest from it the start of the traversal: the surest
+  /// guess of which way the prey lay. REQUIRES ids below points.size().
+  void place(std::span<const LatticePoint> points, const LatticePoint& centre);
+  /// Local id -> vertex less centre; 0 for the ghost. REQUIRES place().
+  [[nodiscard]] const std::vector<LatticePoint>& offsets() const { return offsets_; }
+  /// Six times the middle of a triangle's corners, or of the two beside the ghost, less the centre. REQUIRES place().
+  [[nodiscard]] std::array<std::int64_t, 3> sixTimesMiddle(const LinkTriangle& t) const {
+    std::array<std::int64_t, 3> sum{};
+    for (const std::uint32_t v : t.vertex)
+      for (std::size_t a = 0; a < 3; ++a) sum[a] += offsets_[v][a];
+    for (std::int64_t& x : sum) x *= t.ghost ? 3 : 2;
+    return sum;
+  }
 
   [[nodiscard]] std::vector<LinkTriangle>& triangles() { return triangles_; }
   [[nodiscard]] const std::vector<LinkTriangle>& triangles() const { return triangles_; }
@@ -52,6 +65,8 @@ class Link {
 
   std::vector<LinkTriangle> triangles_;
   std::vector<VertexId> vertices_;
+  std::vector<LatticePoint> offsets_;
+  std::uint32_t start_ = 0;
   std::vector<std::uint32_t> anyTriangle_;
   std::uint32_t ghostLocal_ = kNoNeighbour;
   std::vector<std::uint32_t> stamp_;  // by vertex: generation in which local_ is valid

@@ -76,7 +76,7 @@ ChunkEntry readEntry(ByteReader& r, std::uint32_t parts) {
   ChunkEntry e;
   e.offset = r.read<std::uint64_t>();
   for (std::uint32_t* value : {&e.firstLevel, &e.lastLevel, &e.endSlot, &e.records, &e.newVertices, &e.newTetrahedra,
-                               &e.newBoundaryTriangles, &e.values, &e.firstDependency, &e.dependencyCount})
+                               &e.newBoundaryTriangles, &e.firstDependency, &e.dependencyCount})
     *value = r.read<std::uint32_t>();
   e.structureCodec = static_cast<CodecId>(r.read<std::uint8_t>());
   e.valueCodec = static_cast<CodecId>(r.read<std::uint8_t>());
@@ -97,7 +97,7 @@ ChunkEntry readEntry(ByteReader& r, std::uint32_t parts) {
 void writeEntry(ByteWriter& w, const ChunkEntry& e) {
   w.write(e.offset);
   for (const std::uint32_t value : {e.firstLevel, e.lastLevel, e.endSlot, e.records, e.newVertices, e.newTetrahedra, e.newBoundaryTriangles,
-                                    e.values, e.firstDependency, e.dependencyCount})
+                                    e.firstDependency, e.dependencyCount})
     w.write(value);
   w.write(static_cast<std::uint8_t>(e.structureCodec));
   w.write(static_cast<std::uint8_t>(e.valueCodec));
@@ -135,21 +135,19 @@ Status check(const LogIndex& index, const Header& header) {
       offset += b.size;
     }
     vertices += e.newVertices, cells += e.newTetrahedra, triangles += e.newBoundaryTriangles;
-    if (vertices > kMaxElements || cells > kMaxElements || triangles > kMaxElements || e.values > kMaxElements)
-      return bad(ErrorCode::kLimitExceeded, "more than 2^29 vertices, cells, triangles or values");
+    if (vertices > kMaxElements || cells > kMaxElements || triangles > kMaxElements)
+      return bad(ErrorCode::kLimitExceeded, "more than 2^29 vertices, cells or triangles");
     if (e.structureCodec != CodecId::kRange || (e.valueCodec != CodecId::kDraco && e.valueCodec != CodecId::kEmpty))
       return bad(ErrorCode::kBadCodec, "an unknown codec id");
     if (e.valueCodec == CodecId::kEmpty && e.size() > e.blocks[kStructurePart].size)
       return bad(ErrorCode::kBadCodec, "value blocks of the codec 'no bytes' that have bytes");
-    if (i == 0 ? e.firstLevel != 0 || e.lastLevel != 0 || e.records != 0 || e.endSlot != kLevelEnd || e.values != e.newVertices
+    if (i == 0 ? e.firstLevel != 0 || e.lastLevel != 0 || e.records != 0 || e.endSlot != kLevelEnd
                : e.firstLevel < level || e.lastLevel < e.firstLevel || e.firstLevel == 0)
       return bad(ErrorCode::kBadValue, "levels out of order");
     // A split costs at least one decision and brings at most four vertices back; a link triangle or a deleted cell one decision each.
     const std::uint64_t decisions = kMaxDecisionsPerByte * (std::uint64_t{e.blocks[kStructurePart].size} + 4);
     if (e.records > decisions || e.newVertices > 4 * decisions || e.newTetrahedra > 8 * decisions || e.newBoundaryTriangles > 8 * decisions)
       return bad(ErrorCode::kLimitExceeded, "it promises more than its bytes can hold");
-    if (i > 0 && (e.values < e.newVertices || e.values > std::uint64_t{e.newVertices} + e.records))
-      return bad(ErrorCode::kBadValue, "its number of values does not fit its records");
     if (e.lastLevel > kMaxLevels) return bad(ErrorCode::kLimitExceeded, "more than 4,096 levels");
     level = e.lastLevel;
     if (std::uint64_t{e.firstDependency} + e.dependencyCount > index.dependencies.size())
@@ -173,8 +171,10 @@ std::uint64_t LogIndex::headBytes() const {
 }
 
 std::uint32_t LogIndex::tuples(std::uint32_t chunk, std::uint32_t part) const {
-  const bool ofCells = part >= kFirstFieldPart && fields[part - kFirstFieldPart].association == Association::kCell;
-  return ofCells ? chunks[chunk].newTetrahedra : chunks[chunk].values;
+  const ChunkEntry& e = chunks[chunk];
+  if (part == kPositionsPart) return e.newVertices;
+  if (fields[part - kFirstFieldPart].association == Association::kCell) return e.newTetrahedra;
+  return e.newVertices + e.records;
 }
 
 bool LogIndex::hasCellField() const {

@@ -53,7 +53,6 @@ struct ChunkEntry {
   std::uint32_t newVertices = 0;
   std::uint32_t newTetrahedra = 0;
   std::uint32_t newBoundaryTriangles = 0;
-  std::uint32_t values = 0;           ///< tuples in the positions block and in each point field's block
   std::uint32_t firstDependency = 0;  ///< into LogIndex::dependencies
   std::uint32_t dependencyCount = 0;
   CodecId structureCodec = CodecId::kRange;
@@ -65,7 +64,7 @@ struct ChunkEntry {
 
 struct LogIndex {
   static constexpr std::uint32_t kHeaderBytes = 64;
-  static constexpr std::uint32_t kChunkEntryBytes = 56;
+  static constexpr std::uint32_t kChunkEntryBytes = 52;
   static constexpr std::uint32_t kBlockEntryBytes = 8;
   static constexpr std::uint16_t kVersionMajor = 2;
   static constexpr std::uint16_t kVersionMinor = 0;

@@ -10,6 +10,7 @@
 #include "codec/draco_block.h"
 #include "codec/growing_mesh.h"
 #include "codec/log_index.h"
+#include "codec/point_values.h"
 #include "codec/record_coder.h"
 #include "proto/crc32c.h"
 #include "proto/limits.h"
@@ -23,8 +24,8 @@ constexpr std::uint32_t kNone = 0xFFFFFFFFu;
 /// A chunk under construction.
 struct OpenChunk {
   ChunkEntry entry;
-  Residuals positions;
-  std::vector<Residuals> fields;
+  Values positions;
+  std::vector<Values> fields;
   std::uint64_t valueBits = 0;  // estimate of what the values will take
 };
 
@@ -60,6 +61,7 @@ class LogEncoder {
     values_.resize(h_.fields.size());
     open_.fields.resize(h_.fields.size());
     hasCellField_ = std::ranges::any_of(h_.fields, isCellField);
+    pointAncestry_ = PointAncestry(!std::ranges::all_of(h_.fields, isCellField));
     const auto ghosts = std::ranges::count_if(h_.cells, [](const auto& c) { return std::ranges::find(c, kGhost) != c.end(); });
     const std::size_t tetrahedra = h_.cells.size() - static_cast<std::size_t>(ghosts);
     for (std::size_t f = 0; f < h_.fields.size(); ++f)
@@ -91,18 +93,17 @@ class LogEncoder {
     codeBaseValues(coder.births);
     if (hasCellField_) ancestry_.addBase(mesh_.tetrahedra);
     codeCellFields(0);
-    mesh_.born.assign(mesh_.points.size(), 0);
     mesh_.boundary = boundaryOf(mesh_.tetrahedra);
+    mesh_.start(h_.lattice.bits);
     if (Status s = matchBoundary(); !s) return s;
     open_.entry.newBoundaryTriangles = static_cast<std::uint32_t>(mesh_.boundary.size());
-    open_.entry.values = static_cast<std::uint32_t>(mesh_.points.size());
     if (Status s = closeChunk(0, kLevelEnd); !s) return s;
     addLevel(0);
     return {};
   }
 
   void codeBaseValues(std::span<const BaseBirth> births) {
-    const auto code = [&](Residuals& out, auto& tuples, std::uint32_t components, bool position, const auto& truth) {
+    const auto code = [&](Values& out, auto& tuples, std::uint32_t components, bool position, const auto& truth) {
       for (VertexId v = 0; v < births.size(); ++v)
         for (std::uint32_t c = 0; c < components; ++c) {
           const auto at = [&](VertexId u, std::uint32_t component) { return tuples(u, component); };
@@ -145,7 +146,7 @@ class LogEncoder {
 
   Status encodeLevel(std::uint32_t level) {
     if (open_.entry.firstLevel == 0) open_.entry.firstLevel = level;
-    mesh_.beginLevel();
+    mesh_.beginLevel(level);
     RecordCoder<RangeEncoder> coder(range_, models_, mesh_, link_, open_.positions);
     for (VertexId v = 0; v < mesh_.levelVertices(); ++v) {
       if (!mesh_.maysplit(v)) continue;
@@ -153,7 +154,7 @@ class LogEncoder {
       const bool splits = fusion != kNone && levelOf(h_.fusions[fusion]) == level;
       coder.splits(v, level, splits);
       if (!splits) continue;
-      if (Status s = record(coder, v, h_.fusions[fusion], level); !s) return s;
+      if (Status s = record(coder, v, h_.fusions[fusion]); !s) return s;
       if (estimatedBytes() < options_.chunkBytes) continue;
       if (Status s = closeChunk(level, v + 1); !s) return s;
       open_.entry.firstLevel = level;
@@ -164,18 +165,20 @@ class LogEncoder {
 
   [[nodiscard]] std::uint64_t estimatedBytes() const { return range_.size() + open_.valueBits / 8; }
 
-  Status record(RecordCoder<RangeEncoder>& coder, VertexId v, const Fusion& fusion, std::uint32_t level) {
+  Status record(RecordCoder<RangeEncoder>& coder, VertexId v, Fusion fusion) {
     const auto bad = [&](const char* what) { return fail(ErrorCode::kBadValue, "fusion of vertex " + std::to_string(fusion.fused) + ": " + what); };
     if (mesh_.star(v).size() > kMaxLinkTriangles) return bad("its star has too many cells");
     if (!mesh_.enter(v, link_)) return bad("its link is not a closed surface");
     RecordTruth truth;
     truth.k = fusion.k;
-    truth.moved = fusion.moved;
+    truth.placement = fusion.placement;
+    if (!labels(v, fusion, truth)) return bad("the history's cells are not those of its star");
+    number(fusion, truth);
     for (std::size_t i = 0; i < fusion.k; ++i) truth.points[i] = h_.points[fusion.prey[i]];
-    if (!labels(v, fusion, truth) || !deleted(fusion, truth)) return bad("the history's cells are not those of its star");
+    if ( !deleted(fusion, truth)) return bad("the history's cells are not those of its star");
     Split split;
     if (!coder.code(v, truth, split)) return bad("its cells cannot be described by labels");
-    apply(v, fusion, split, level);
+    apply(v, fusion, split);
     return {};
   }
 
@@ -191,6 +194,20 @@ class LogEncoder {
       whole &= truth.labels[f] < fusion.k;
     }
     return whole;
+  }
+
+  // Numbers the prey vertices in order of first appearance along the link's traversal.
+  void number(Fusion& fusion, RecordTruth& truth) {
+    std::array<std::uint8_t, 4> now{kNoLabel, kNoLabel, kNoLabel, kNoLabel};
+    std::uint8_t next = 0;
+    for (const std::uint32_t f : link_.traversal())
+      if (std::uint8_t& n = now[truth.labels[f]]; n == kNoLabel) n = next++;
+    for (std::uint8_t& n : now)
+      if (n == kNoLabel) n = next++;
+    for (std::uint8_t& label : truth.labels) label = now[label];
+    const auto prey = fusion.prey;
+    for (std::size_t i = 0; i < fusion.k; ++i) fusion.prey[now[i]] = prey[i];
+    truth.near = now[0];
   }
 
   bool deleted(const Fusion& fusion, RecordTruth& truth) {
@@ -211,11 +228,12 @@ class LogEncoder {
     return true;
   }
 
-  void apply(VertexId v, const Fusion& fusion, const Split& split, std::uint32_t level) {
-    const Birth birth{v, static_cast<VertexId>(mesh_.points.size()), static_cast<std::uint8_t>(split.k), split.moved};
+  void apply(VertexId v, const Fusion& fusion, const Split& split) {
     const std::size_t tetrahedra = mesh_.tetrahedra.size();
     const std::size_t triangles = mesh_.boundary.size();
-    mesh_.apply(v, link_, split, static_cast<std::uint16_t>(level));
+    pointAncestry_.add(v, mesh_, link_, split);
+    if (hasCellField_) ancestry_.addRestored(mesh_.star(v), link_, split.deleted);
+    mesh_.apply(v, link_, split);
     for (const LocalCell& cell : split.deleted) {
       const std::uint32_t id = std::ranges::lower_bound(deletedIds_, std::pair{sorted(cell), 0u})->second;
       const bool ghost = std::ranges::find(h_.cells[id], kGhost) != h_.cells[id].end();
@@ -225,32 +243,24 @@ class LogEncoder {
     slotOf_[fusion.prey[0]] = v;
     for (std::size_t i = 1; i < fusion.k; ++i) slotOf_[fusion.prey[i]] = static_cast<std::uint32_t>(vertexIds_.size()), vertexIds_.push_back(fusion.prey[i]);
     for (std::size_t f = 0; f < h_.fields.size(); ++f)
-      if (!isCellField(h_.fields[f])) codeField(f, birth, fusion);
-    if (hasCellField_) ancestry_.addRestored(mesh_.star(v), link_, split.deleted);
+      if (!isCellField(h_.fields[f])) codeField(f, fusion);
     codeCellFields(tetrahedra);
     ++open_.entry.records;
     open_.entry.newVertices += fusion.k - 1u;
     open_.entry.newTetrahedra += static_cast<std::uint32_t>(mesh_.tetrahedra.size() - tetrahedra);
     open_.entry.newBoundaryTriangles += static_cast<std::uint32_t>(mesh_.boundary.size() - triangles);
-    const auto values = static_cast<std::uint32_t>(birth.values());
-    open_.entry.values += values;
-    estimate(open_.positions, values * 3);
+    estimate(open_.positions, std::size_t{fusion.k - 1u} * 3);
     for (std::size_t f = 0; f < h_.fields.size(); ++f)
-      if (!isCellField(h_.fields[f])) estimate(open_.fields[f], values * h_.fields[f].components);
+      if (!isCellField(h_.fields[f])) estimate(open_.fields[f], fusion.k * h_.fields[f].components);
   }
 
-  void codeField(std::size_t f, const Birth& birth, const Fusion& fusion) {
+  void codeField(std::size_t f, const Fusion& fusion) {
     const std::uint32_t n = h_.fields[f].components;
     std::vector<std::int32_t>& values = values_[f];
-    std::array<std::int32_t, kMaxFieldComponents> fused{};
-    std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(std::size_t{birth.slot} * n), n, fused.begin());
     values.resize(mesh_.points.size() * n);
-    const auto at = [&](int i, std::uint32_t c) -> std::int32_t& {
-      return values[(i == 0 ? birth.slot : birth.firstNew + static_cast<std::size_t>(i) - 1) * n + c];
-    };
-    for (int i = 0; i < birth.k; ++i)
-      for (std::uint32_t c = 0; c < n; ++c) at(i, c) = fieldAt(f, fusion.prey[static_cast<std::size_t>(i)])[c];
-    codePreyTuples<true>(open_.fields[f], birth.k, birth.moved, n, [&](std::uint32_t c) { return fused[c]; }, at);
+    pointAncestry_.code<true>(
+        pointAncestry_.births().back(), open_.fields[f], n, [&](VertexId v, std::uint32_t c) -> std::int32_t& { return values[std::size_t{v} * n + c]; },
+        [&](std::size_t i, std::uint32_t c) { return fieldAt(f, fusion.prey[i])[c]; });
   }
 
   // The values of the tetrahedra from slot `first` on, which have just come.
@@ -270,7 +280,7 @@ class LogEncoder {
   }
 
   // Draco takes about log2 of a residual's magnitude and two bits more.
-  void estimate(Residuals& residuals, std::size_t count) {
+  void estimate(Values& residuals, std::size_t count) {
     const auto& written = residuals.written();
     for (std::size_t i = written.size() - count; i < written.size(); ++i)
       open_.valueBits += 2 + static_cast<std::uint64_t>(std::bit_width(static_cast<std::uint32_t>(std::abs(written[i]))));
@@ -290,7 +300,7 @@ class LogEncoder {
     }
     if (Status s = addBlock(range_.finish()); !s) return s;
     for (std::size_t part = 0; part <= h_.fields.size(); ++part) {
-      Residuals& residuals = part == 0 ? open_.positions : open_.fields[part - 1];
+      Values& residuals = part == 0 ? open_.positions : open_.fields[part - 1];
       Result<Bytes> block = encodeDracoBlock(residuals.written(), part == 0 ? 3 : h_.fields[part - 1].components);
       if (!block) return std::unexpected(block.error());
       if (Status s = addBlock(std::move(*block)); !s) return s;
@@ -364,6 +374,7 @@ class LogEncoder {
   GrowingMesh mesh_;  // what the decoder will have
   bool hasCellField_ = false;
   CellAncestry ancestry_;
+  PointAncestry pointAncestry_;
   Link link_;
   std::vector<std::vector<std::int32_t>> values_;
   std::vector<std::uint32_t> tetrahedronIds_, boundaryIds_;  // decoder's slot -> history's cell

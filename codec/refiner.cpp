@@ -1,10 +1,12 @@
 #include "codec/refiner.h"
 
+#include <algorithm>
 #include <string>
 
 #include "codec/base_coder.h"
 #include "codec/cell_values.h"
 #include "codec/growing_mesh.h"
+#include "codec/point_values.h"
 #include "codec/record_coder.h"
 #include "proto/checksum.h"
 #include "proto/limits.h"
@@ -32,7 +34,7 @@ struct Refiner::State {
   Link link;
   RecordModels models;
   std::vector<BaseBirth> baseBirths;
-  std::vector<Birth> births;
+  PointAncestry births;
   std::vector<std::size_t> chunkBirths;  // births before chunk i
   std::vector<std::size_t> chunkCells;   // tetrahedra before chunk i
   bool hasCellField = false;
@@ -48,17 +50,17 @@ struct Refiner::State {
   std::uint32_t stopLevel = kMaxLevels + 1;
   bool stopped = false;          // inside a chunk, at stopLevel
 
-  Status base(const ChunkEntry& entry, ByteView structure, Residuals& positions);
-  Status records(std::uint32_t chunk, const ChunkEntry& entry, ByteView structure, Residuals& positions);
-  Status run(std::uint32_t chunk, const ChunkEntry& entry, RangeDecoder& decoder, Residuals& positions);
+  Status base(const ChunkEntry& entry, ByteView structure, Values& positions);
+  Status records(std::uint32_t chunk, const ChunkEntry& entry, ByteView structure, Values& positions);
+  Status run(std::uint32_t chunk, const ChunkEntry& entry, RangeDecoder& decoder, Values& positions);
   Status split(std::uint32_t chunk, RecordCoder<RangeDecoder>& coder, VertexId v);
   Status counts(std::uint32_t chunk) const;
   void completeLevel() { levelCounts.push_back({mesh.points.size(), mesh.tetrahedra.size(), mesh.boundary.size()}); }
   void inherit(std::size_t field, std::uint32_t chunk);
   void inheritPoints(FieldState& field, std::uint32_t components, std::size_t firstBirth) const;
   void inheritCells(FieldState& field, std::uint32_t components, std::size_t firstCell) const;
-  void codePoints(FieldState& field, std::uint32_t components, std::uint32_t chunk, Residuals& residuals) const;
-  void codeCells(FieldState& field, std::uint32_t components, std::uint32_t chunk, Residuals& residuals) const;
+  void codePoints(FieldState& field, std::uint32_t components, std::uint32_t chunk, Values& residuals) const;
+  void codeCells(FieldState& field, std::uint32_t components, std::uint32_t chunk, Values& residuals) const;
 
   struct Totals {
     std::uint64_t vertices = 0, tetrahedra = 0, triangles = 0, births = 0;
@@ -68,6 +70,7 @@ struct Refiner::State {
 Refiner::Refiner(LogIndex index) : state_(std::make_unique<State>()) {
   state_->fields.resize(index.fields.size());
   state_->hasCellField = index.hasCellField();
+  state_->births = PointAncestry(std::ranges::any_of(index.fields, [](const FieldShape& f) { return f.association == Association::kPoint; }));
   state_->index = std::move(index);
   state_->chunkBirths.push_back(0);
   state_->chunkCells.push_back(0);
@@ -84,19 +87,19 @@ Status Refiner::apply(std::uint32_t chunk, ByteView structure, std::span<const s
   if (chunk != s.chunks) return refuse(ErrorCode::kBadOrder, chunk, "chunk " + std::to_string(s.chunks) + " has to be applied first");
   if (s.stopped || (chunk > 0 && level() >= s.stopLevel)) return refuse(ErrorCode::kBadOrder, chunk, "the refiner was told to stop at a level before it");
   const ChunkEntry& entry = s.index.chunks[chunk];
-  if (positions.size() != std::size_t{entry.values} * 3) return refuse(ErrorCode::kBadValue, chunk, "wrong number of position values");
+  if (positions.size() != std::size_t{s.index.tuples(chunk, kPositionsPart)} * 3) return refuse(ErrorCode::kBadValue, chunk, "wrong number of position values");
 
   s.broken = true;  // until the chunk has gone in whole
   s.totals.vertices += entry.newVertices;
   s.totals.tetrahedra += entry.newTetrahedra;
   s.totals.triangles += entry.newBoundaryTriangles;
   s.totals.births += entry.records;
-  Residuals residuals(positions);
+  Values residuals(positions);
   const Status status = chunk == 0 ? s.base(entry, structure, residuals) : s.records(chunk, entry, structure, residuals);
   if (!status) return status;
   if (Status c = s.counts(chunk); !c && !s.stopped) return c;
   if (!residuals.atEnd() && !s.stopped) return refuse(ErrorCode::kBadValue, chunk, "position values are left over");
-  s.chunkBirths.push_back(s.births.size());
+  s.chunkBirths.push_back(s.births.births().size());
   s.chunkCells.push_back(s.mesh.tetrahedra.size());
   for (std::size_t f = 0; f < s.fields.size(); ++f)
     if (s.fields[f].chunks > 0) s.inherit(f, chunk);
@@ -105,7 +108,7 @@ Status Refiner::apply(std::uint32_t chunk, ByteView structure, std::span<const s
   return {};
 }
 
-Status Refiner::State::base(const ChunkEntry& entry, ByteView structure, Residuals& positions) {
+Status Refiner::State::base(const ChunkEntry& entry, ByteView structure, Values& positions) {
   RangeDecoder decoder(structure);
   BaseCoder<RangeDecoder> coder(decoder, entry.newVertices, entry.newTetrahedra);
   if (!coder.run(nullptr, [&] { return decoder.overrun(); }) || !decoder.atEnd())
@@ -126,20 +129,20 @@ Status Refiner::State::base(const ChunkEntry& entry, ByteView structure, Residua
   mesh.points = std::move(points);
   mesh.tetrahedra = std::move(coder.tetrahedra);
   mesh.boundary = boundaryOf(mesh.tetrahedra);
-  mesh.born.assign(mesh.points.size(), 0);
+  mesh.start(index.positionBits);
   if (hasCellField) ancestry.addBase(mesh.tetrahedra);
   completeLevel();
   return {};
 }
 
-Status Refiner::State::records(std::uint32_t chunk, const ChunkEntry& entry, ByteView structure, Residuals& positions) {
+Status Refiner::State::records(std::uint32_t chunk, const ChunkEntry& entry, ByteView structure, Values& positions) {
   RangeDecoder decoder(structure);
   if (Status s = run(chunk, entry, decoder, positions); !s) return s;
   if (!decoder.atEnd() && !stopped) return refuse(ErrorCode::kBadValue, chunk, "the structure block is longer or shorter than its records");
   return {};
 }
 
-Status Refiner::State::run(std::uint32_t chunk, const ChunkEntry& entry, RangeDecoder& decoder, Residuals& positions) {
+Status Refiner::State::run(std::uint32_t chunk, const ChunkEntry& entry, RangeDecoder& decoder, Values& positions) {
   RecordCoder<RangeDecoder> coder(decoder, models, mesh, link, positions);
   if (entry.firstLevel != (inLevel ? level : level + 1)) return refuse(ErrorCode::kBadValue, chunk, "it does not continue the level before it");
   for (;;) {
@@ -147,8 +150,8 @@ Status Refiner::State::run(std::uint32_t chunk, const ChunkEntry& entry, RangeDe
       ++level;
       nextSlot = 0;
       inLevel = true;
-      levelBirths = births.size();
-      mesh.beginLevel();
+      levelBirths = births.births().size();
+      mesh.beginLevel(level);
     }
     const std::uint32_t end = level == entry.lastLevel ? std::min(entry.endSlot, mesh.levelVertices()) : mesh.levelVertices();
     for (; nextSlot < end; ++nextSlot) {
@@ -160,7 +163,7 @@ Status Refiner::State::run(std::uint32_t chunk, const ChunkEntry& entry, RangeDe
     }
     if (level == entry.lastLevel && entry.endSlot != kLevelEnd) return {};
     inLevel = false;
-    if (births.size() == levelBirths) return refuse(ErrorCode::kBadValue, chunk, "a level without a record");
+    if (births.births().size() == levelBirths) return refuse(ErrorCode::kBadValue, chunk, "a level without a record");
     completeLevel();
     if (level == entry.lastLevel) return {};
     if (level == stopLevel) {
@@ -179,18 +182,18 @@ Status Refiner::State::split(std::uint32_t chunk, RecordCoder<RangeDecoder>& cod
   for (int i = 0; i < split.k; ++i)
     for (const std::int32_t x : split.points[static_cast<std::size_t>(i)])
       if (x < 0 || x >= size) return refuse(ErrorCode::kBadValue, chunk, "a vertex lies outside the lattice");
-  births.push_back({v, static_cast<VertexId>(mesh.points.size()), static_cast<std::uint8_t>(split.k), split.moved});
-  mesh.apply(v, link, split, static_cast<std::uint16_t>(level));
+  births.add(v, mesh, link, split);
   if (hasCellField) ancestry.addRestored(mesh.star(v), link, split.deleted);
+  mesh.apply(v, link, split);
   if (mesh.points.size() > totals.vertices || mesh.tetrahedra.size() > totals.tetrahedra || mesh.boundary.size() > totals.triangles ||
-      births.size() > totals.births)
+      births.births().size() > totals.births)
     return counts(chunk);
   return {};
 }
 
 Status Refiner::State::counts(std::uint32_t chunk) const {
   if (mesh.points.size() == totals.vertices && mesh.tetrahedra.size() == totals.tetrahedra && mesh.boundary.size() == totals.triangles &&
-      births.size() == totals.births)
+      births.births().size() == totals.births)
     return {};
   return refuse(ErrorCode::kBadValue, chunk, "vertices, cells, triangles or records do not add up to the chunk table's counts");
 }
@@ -216,11 +219,9 @@ void Refiner::State::inheritCells(FieldState& field, std::uint32_t components, s
 void Refiner::State::inheritPoints(FieldState& field, std::uint32_t components, std::size_t firstBirth) const {
   const std::size_t n = components;
   field.values.resize(mesh.points.size() * n);
-  for (std::size_t i = firstBirth; i < births.size(); ++i) {
-    const Birth& b = births[i];
+  for (const Birth& b : births.births().subspan(firstBirth))
     for (std::size_t j = 0; j + 1 < b.k; ++j)
       for (std::size_t c = 0; c < n; ++c) field.values[(b.firstNew + j) * n + c] = field.values[b.slot * n + c];
-  }
 }
 
 Status Refiner::applyField(std::uint32_t field, std::uint32_t chunk, std::span<const std::int32_t> values) {
@@ -233,19 +234,19 @@ Status Refiner::applyField(std::uint32_t field, std::uint32_t chunk, std::span<c
   const FieldShape shape = s.index.fields[field];
   if (values.size() != std::size_t{s.index.tuples(chunk, kFirstFieldPart + field)} * shape.components)
     return refuse(ErrorCode::kBadValue, chunk, "wrong number of field values");
-  Residuals residuals(values);
+  Values coded(values);
   if (shape.association == Association::kPoint)
-    s.codePoints(f, shape.components, chunk, residuals);
+    s.codePoints(f, shape.components, chunk, coded);
   else
-    s.codeCells(f, shape.components, chunk, residuals);
-  const bool whole = residuals.atEnd() || (s.stopped && chunk + 1 == s.chunks);
-  f.broken = residuals.bad() || !whole;
+    s.codeCells(f, shape.components, chunk, coded);
+  const bool whole = coded.atEnd() || (s.stopped && chunk + 1 == s.chunks);
+  f.broken = coded.bad() || !whole;
   if (f.broken) return refuse(ErrorCode::kBadValue, chunk, "field values out of range or left over");
   ++f.chunks;
   return {};
 }
 
-void Refiner::State::codePoints(FieldState& f, std::uint32_t n, std::uint32_t chunk, Residuals& residuals) const {
+void Refiner::State::codePoints(FieldState& f, std::uint32_t n, std::uint32_t chunk, Values& residuals) const {
   if (chunk == 0) {
     f.values.assign(mesh.points.size() * n, 0);
     const auto at = [&](VertexId u, std::uint32_t c) { return f.values[std::size_t{u} * n + c]; };
@@ -254,20 +255,12 @@ void Refiner::State::codePoints(FieldState& f, std::uint32_t n, std::uint32_t ch
         f.values[std::size_t{v} * n + c] = residuals.code<false>(predictBase(baseBirths[v], v, c, false, at), 0);
     inheritPoints(f, n, 0);
   }
-  for (std::size_t i = chunkBirths[chunk]; i < chunkBirths[chunk + 1]; ++i) {
-    const Birth& b = births[i];
-    std::array<std::int32_t, kMaxFieldComponents> fused{};
-    for (std::uint32_t c = 0; c < n; ++c) fused[c] = f.values[std::size_t{b.slot} * n + c];
-    codePreyTuples<false>(
-        residuals, b.k, b.moved, n, [&](std::uint32_t c) { return fused[c]; },
-        [&](int j, std::uint32_t c) -> std::int32_t& {
-          const std::size_t vertex = j == 0 ? b.slot : b.firstNew + static_cast<std::size_t>(j) - 1;
-          return f.values[vertex * n + c];
-        });
-  }
+  const auto at = [&](VertexId v, std::uint32_t c) -> std::int32_t& { return f.values[std::size_t{v} * n + c]; };
+  for (const Birth& b : births.births().subspan(chunkBirths[chunk], chunkBirths[chunk + 1] - chunkBirths[chunk]))
+    births.code<false>(b, residuals, n, at, [](std::size_t, std::uint32_t) { return 0; });
 }
 
-void Refiner::State::codeCells(FieldState& f, std::uint32_t components, std::uint32_t chunk, Residuals& residuals) const {
+void Refiner::State::codeCells(FieldState& f, std::uint32_t components, std::uint32_t chunk, Values& residuals) const {
   const std::size_t n = components;
   f.values.resize(mesh.tetrahedra.size() * n);
   for (std::size_t t = chunkCells[chunk]; t < chunkCells[chunk + 1]; ++t)

@@ -24,6 +24,13 @@ std::string whyNot(const QuantisedMesh& quantised, std::size_t f, bool named) {
   return {};
 }
 
+PlacementRule placementRuleOf(const std::string& name) {
+  if (name == "optimal") return PlacementRule::kOptimal;
+  if (name == "vertex") return PlacementRule::kVertex;
+  if (name == "auto") return PlacementRule::kAuto;
+  throw UsageError("--placement '" + name + "' is not known; give optimal, vertex or auto");
+}
+
 }  // namespace
 
 void addFusionOptions(boost::program_options::options_description& options) {
@@ -36,6 +43,8 @@ void addFusionOptions(boost::program_options::options_description& options) {
       "NAME=W: what the field's error over its range counts, 1 without; 0 leaves it out; may be given for several fields")(
       "shape-weight", po::value<double>()->default_value(FusionOptions().shapeWeight, "0.5"),
       "what badly shaped new cells cost: 0 for the least error, 1 and more for rounder cells")(
+      "placement", po::value<std::string>()->default_value("auto"),
+      "where fused vertices go: optimal (least error a cell), vertex (only where vertices were: fewest bits a cell), or auto (least error a byte)")(
       "envelope-tolerance", po::value<double>()->default_value(0, "0"),
       "how far the boundary may leave the original solid, over all fusions, as a fraction of the diagonal; parts of the boundary that are "
       "closer to "
@@ -50,6 +59,7 @@ FusionRequest fusionRequestOf(const ParsedWords& parsed) {
   out.options.targetRatio = parsed.number("target-ratio", 0, 1);
   out.options.cost.hullWeight = parsed.number("hull-weight", 0, kMaxHullWeight);
   out.options.shapeWeight = parsed.number("shape-weight", 0, kMaxWeight);
+  out.options.placement = placementRuleOf(parsed.get<std::string>("placement"));
   out.options.envelopeTolerance = parsed.number("envelope-tolerance", 0, 1);
   out.options.threads = parsed.integer("threads", 1, kMaxThreads);
   if (parsed.has("field-weight"))

@@ -69,31 +69,25 @@ void FusionMesh::findInterfaces() {
 }
 
 // The prey vertex that the fused one would equal in place and values, or -1.
-int FusionMesh::preyAt(const Prey& prey, const LatticePoint& point, std::span<const std::int32_t> fused) const {
-  for (int i = 0; i < prey.k; ++i) {
-    const VertexId v = prey.vertex[static_cast<std::size_t>(i)];
-    if (history_.points[v] != point) continue;
-    std::size_t first = 0;
-    bool same = true;
-    for (std::size_t f = 0; f < history_.fields.size() && same; ++f) {
-      if (isCellField(history_.fields[f])) continue;
-      const auto own = values(f, v);
-      same = std::ranges::equal(own, fused.subspan(first, own.size()));
-      first += own.size();
-    }
-    if (same) return i;
-  }
-  return -1;
+FusionMesh::Placed FusionMesh::placed(const Prey& prey, const LatticePoint& point) const {
+  std::array<LatticePoint, 4> at{};
+  for (std::size_t i = 0; i < prey.k; ++i) at[i] = history_.points[prey.vertex[i]];
+  for (std::uint8_t i = 0; i < prey.k; ++i)
+    if (at[i] == point) return {Placement::kAtPrey, i};
+  if (middle(std::span(at).first(prey.k)) == point) return {Placement::kMiddle, 0};
+  for (std::uint8_t i = 0; i < 2 && prey.k == 2; ++i)
+    if (quarter(at[i], at[1 - i]) == point) return {Placement::kQuarter, i};
+  return {Placement::kFree, 0};
 }
 
-void FusionMesh::record(const Prey& prey, int stays, const Star& star, std::uint32_t level) {
+void FusionMesh::record(const Prey& prey, const Placed& placed, const Star& star, std::uint32_t level) {
   Fusion record;
   record.k = prey.k;
-  record.moved = stays < 0;
+  record.placement = placed.placement;
   record.level = level;
   record.fused = static_cast<VertexId>(history_.points.size());
   record.prey = prey.vertex;
-  const auto first = static_cast<std::uint8_t>(std::max(stays, 0));
+  const std::uint8_t first = placed.first;
   std::swap(record.prey[0], record.prey[first]);
   record.firstAffected = history_.affectedCells.size();
   record.affectedCount = static_cast<std::uint32_t>(star.affected.size());
@@ -121,7 +115,7 @@ void FusionMesh::pushOutside(const Star& star, float outside) {
 }
 
 VertexId FusionMesh::fuse(const Prey& prey, const FusedVertex& what, const Star& star, std::uint32_t level) {
-  record(prey, preyAt(prey, what.point, what.values), star, level);
+  record(prey, placed(prey, what.point), star, level);
   if (what.outside > 0) pushOutside(star, what.outside);
   const VertexId fused = history_.fusions.back().fused;
   history_.points.push_back(what.point);

@@ -92,8 +92,13 @@ class FusionMesh {
 
   void buildStars();
   void findSingular();
-  [[nodiscard]] int preyAt(const Prey& prey, const LatticePoint& point, std::span<const std::int32_t> values) const;
-  void record(const Prey& prey, int stays, const Star& star, std::uint32_t level);
+  /// How a point lies with respect to the prey, and which prey vertex is to be the first of the record.
+  struct Placed {
+    Placement placement;
+    std::uint8_t first;
+  };
+  [[nodiscard]] Placed placed(const Prey& prey, const LatticePoint& point) const;
+  void record(const Prey& prey, const Placed& placed, const Star& star, std::uint32_t level);
   void removeFromStar(VertexId v, CellId c);
   void compactPool();
 

@@ -15,10 +15,22 @@ struct FusionPoint {
   float outside = 0;  ///< FusedVertex::outside
 };
 
+/// Which points are looked at. A free point takes twice the bits of one that follows from its prey.
+enum class PlacementRule : std::uint8_t {
+  kOptimal,  ///< the quadric's minimum (Eq. 6-7), and what lies between it and the prey's middle
+  kVertex,   ///< the prey vertices alone, which keeps every vertex of every level an original one
+  kAuto,     ///< prey vertices, middle and quarters; a free point only where it costs less than half of theirs
+};
+
+struct FusionPointOptions {
+  PlacementRule rule = PlacementRule::kAuto;
+  double shapeWeight = 0.5;  ///< FusionOptions::shapeWeight
+};
+
 class FusionPointFinder {
  public:
-  FusionPointFinder(const FusionMesh& mesh, const FusionCost& cost, double shapeWeight)
-      : mesh_(mesh), cost_(cost), shapeWeight_(shapeWeight) {}
+  FusionPointFinder(const FusionMesh& mesh, const FusionCost& cost, const FusionPointOptions& options)
+      : mesh_(mesh), cost_(cost), options_(options) {}
 
   /// The unconstrained minimum of the prey's quadric, and the cost there: what the queue is ordered by.
   struct Ideal {
@@ -40,16 +52,18 @@ class FusionPointFinder {
   struct Choice {
     LatticePoint point;
     double cost;
+    double dearness;  // what the cost is multiplied by when choices are compared
   };
 
   [[nodiscard]] Deciding deciding(const Prey& prey) const;
   [[nodiscard]] Ideal idealOf(const Prey& prey, const Deciding& deciding, const PreyQuadric& of) const;
-  void offer(const LatticePoint& p);
+  void offer(const LatticePoint& p, double dearness = 1);
   void offerChoices(const Prey& prey, const FusionTest& test);
+  void offerFree(const Prey& prey, const Deciding& deciding, const PreyQuadric& of, const FusionTest& test);
 
   const FusionMesh& mesh_;
   const FusionCost& cost_;
-  double shapeWeight_;
+  FusionPointOptions options_;
   Quadric quadric_;
   Vector3 origin_{};
   std::vector<Choice> choices_;

@@ -8,7 +8,7 @@ namespace {
 
 // Factors on the cost, by k: a triangle's fusion does what two or three of edges do, a tetrahedron's what three to six do, and their quadrics
 // sum more vertices.
-constexpr std::array<double, 5> kCostFactor{0, 0, 1, 0.5, 0.25};
+constexpr std::array<double, 5> kCostFactor{0, 0, 1, 0.4, 0.15};
 
 }  // namespace
 

@@ -37,8 +37,8 @@ struct Proposal {
 
 class FusionProposer {
  public:
-  FusionProposer(const FusionMesh& mesh, const FusionCost& cost, const Touched& touched, const FusionLimits& limits, double shapeWeight)
-      : mesh_(mesh), cost_(cost), touched_(touched), test_(mesh, limits), finder_(mesh, cost, shapeWeight) {}
+  FusionProposer(const FusionMesh& mesh, const FusionCost& cost, const Touched& touched, const FusionLimits& limits, const FusionPointOptions& options)
+      : mesh_(mesh), cost_(cost), touched_(touched), test_(mesh, limits), finder_(mesh, cost, options) {}
 
   /// The edges of v, cheapest first; `onlyLower` = those whose highest vertex it is.
   void candidatesOf(VertexId v, bool onlyLower, std::vector<Candidate>& found);

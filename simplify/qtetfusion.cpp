@@ -81,7 +81,7 @@ class Simplifier {
   void limitBy(const FusionLimits& limits) {
     proposers_.clear();
     for (std::size_t i = 0; i < workers_.count(); ++i)
-      proposers_.push_back(std::make_unique<FusionProposer>(mesh_, cost_, touched_, limits, options_.shapeWeight));
+      proposers_.push_back(std::make_unique<FusionProposer>(mesh_, cost_, touched_, limits, FusionPointOptions{options_.placement, options_.shapeWeight}));
   }
 
   void findCandidates() {

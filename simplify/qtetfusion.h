@@ -9,6 +9,7 @@
 #include "codec/mesh.h"
 #include "proto/error.h"
 #include "simplify/fusion_cost.h"
+#include "simplify/fusion_point.h"
 
 namespace qtet {
 
@@ -18,6 +19,7 @@ struct FusionOptions {
   double envelopeTolerance = 0;                      ///< how far the boundary may leave the original solid, over the diagonal of its bounding box, >= 0
   std::optional<std::size_t> regionField;            ///< the cell field of one component whose values are regions that keep their topology
   double shapeWeight = 0.5;                          ///< what badly shaped new cells add to the cost, >= 0 (ALGORITHM.md, "Shape")
+  PlacementRule placement = PlacementRule::kAuto;
   int threads = 1;                                   ///< the result never depends on it
   std::function<void(double fraction)> progress;     ///< 0..1, called at most once a level
 };

@@ -1,0 +1,87 @@
+// Point fields: what a record's prey vertices have, predicted from the fused vertex's value and from how the field changes through its star
+// (FORMAT.md, "Point values").
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "codec/growing_mesh.h"
+#include "codec/link.h"
+#include "codec/mesh.h"
+#include "codec/values.h"
+#include "proto/limits.h"
+
+namespace qtet {
+
+/// How much a field changes over a step through a star, as a weighted sum of differences to the fused vertex's value: of the corners of the two
+/// link triangles that the line along the step passes.
+struct Slope {
+  static constexpr int kWeightBits = 12;
+
+  std::array<VertexId, 6> vertex{};        ///< 0 where the weight is 0
+  std::array<std::int16_t, 6> weight{};    ///< in 1 / 2^kWeightBits
+
+  /// `difference(v)` is v's value less the fused vertex's.
+  template <class Difference>
+  [[nodiscard]] std::int64_t change(const Difference& difference) const {
+    std::int64_t sum = 0;
+    for (std::size_t i = 0; i < vertex.size(); ++i)
+      if (weight[i] != 0) sum += weight[i] * difference(vertex[i]);
+    return sum;
+  }
+};
+
+/// What a field needs to follow a record without its connectivity, so that it may come later.
+struct Birth {
+  VertexId slot = 0;             ///< the vertex that split
+  VertexId firstNew = 0;         ///< its k - 1 new vertices start here
+  std::uint32_t firstSlope = 0;  ///< into PointAncestry's; k = 2: one for both prey vertices, else one a prey vertex
+  std::int16_t step = 0;         ///< k = 2: from the fused vertex to prey vertex 0, in 1 / 2^kStepBits of the way from prey 0 to prey 1
+  std::uint8_t k = 2;
+
+  static constexpr int kStepBits = 8;
+};
+
+/// The records so far, as far as point fields depend on them. Takes 16 bytes a record and 36 a slope.
+class PointAncestry {
+ public:
+  /// `withSlopes`: there is a point field.
+  explicit PointAncestry(bool withSlopes = false) : withSlopes_(withSlopes) {}
+
+  /// Notes the split of v. REQUIRES: link built, the split not yet applied.
+  void add(VertexId v, const GrowingMesh& mesh, const Link& link, const Split& split);
+  [[nodiscard]] std::span<const Birth> births() const { return births_; }
+
+  /// Codes the k tuples of a record into `at(vertex, component)`, references to the field's values. REQUIRES components <= kMaxFieldComponents.
+  template <bool kEncoding, class At, class Truth>
+  void code(const Birth& b, Values& values, std::uint32_t components, const At& at, const Truth& truth) const {
+    std::array<std::int32_t, std::size_t{4} * kMaxFieldComponents> prey{};
+    for (std::uint32_t c = 0; c < components; ++c)
+      for (std::size_t i = 0; i < b.k; ++i)
+        prey[i * components + c] = values.code<kEncoding>(predicted(b, i, [&](VertexId v) { return std::int64_t{at(v, c)}; }), truth(i, c));
+    for (std::size_t i = 0; i < b.k; ++i)
+      for (std::uint32_t c = 0; c < components; ++c) at(i == 0 ? b.slot : b.firstNew + static_cast<VertexId>(i) - 1, c) = prey[i * components + c];
+  }
+
+ private:
+  void addSlope(const Link& link, const std::array<double, 3>& step);
+
+  template <class At>
+  [[nodiscard]] std::int64_t predicted(const Birth& b, std::size_t i, const At& at) const {
+    const std::int64_t fused = at(b.slot);
+    const Slope& slope = slopes_[b.firstSlope + (b.k == 2 ? 0 : i)];
+    const std::int64_t change = slope.change([&](VertexId v) { return at(v) - fused; });
+    const std::int64_t steps = b.k == 2 ? b.step + (i == 0 ? 0 : 1 << Birth::kStepBits) : 1 << Birth::kStepBits;
+    constexpr int kBits = Slope::kWeightBits + Birth::kStepBits;
+    return fused + ((change * steps + (std::int64_t{1} << (kBits - 1))) >> kBits);
+  }
+
+  bool withSlopes_;
+  std::vector<Birth> births_;
+  std::vector<Slope> slopes_;
+  std::vector<std::array<double, 3>> corners_, turned_;  // of the link in hand, from the fused vertex
+};
+
+}  // namespace qtet

@@ -1,0 +1,196 @@
+// Where the prey vertices of a record lie (FORMAT.md, "Positions"): the leading digits of each difference go to the positions block, as small
+// integers of one and the same distribution whatever the size of the star; the digits below, which are noise, ride in the structure block.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "codec/growing_mesh.h"
+#include "codec/link.h"
+#include "codec/log2_fixed.h"
+#include "codec/mesh.h"
+#include "codec/placement.h"
+#include "codec/range_coder.h"
+#include "codec/small_order.h"
+#include "codec/values.h"
+
+namespace qtet {
+
+struct PositionModels {
+  static constexpr std::size_t kRatios = 8;
+  // k, touches the boundary, ratio of the distances of the two nearest middles, question
+  std::array<std::array<std::array<std::array<BitModel, 3>, kRatios>, 2>, 3> placement;
+  std::array<std::array<std::array<BitModel, 3>, kRatios>, 2> near;    // quarter or at a prey vertex, ratio, rank
+  std::array<std::array<BitModel, 3>, 4> same;                         // placement, axis
+  std::array<std::array<std::array<BitModel, 4>, 3>, 3> remainder;     // of a mean: k, axis, digits so far
+  std::array<std::array<BitModel, 4>, 3> quarter;                      // axis, digits so far
+  std::array<NumberModel, 3> offset;                                   // axis
+};
+
+template <class Coder>
+class PositionCoder {
+ public:
+  /// Of the record of v, whose link is placed and labelled.
+  PositionCoder(Coder& coder, PositionModels& models, Values& values, VertexId v, const GrowingMesh& mesh, const Link& link)
+      : coder_(coder), models_(models), values_(values), fused_(mesh.points[v]), edge_(link.hasGhost()) {
+    const auto spread = mesh.spread(v);
+    for (std::size_t a = 0; a < 3; ++a) logLength_[a] = log2Fixed(spread[a]) / 128 + mesh.spreadShift();
+    findMiddles(link);
+  }
+
+  /// Codes placement, near and the k points of the split: an encoder's are read, a decoder's written.
+  void code(Split& split) {
+    const auto n = static_cast<std::size_t>(split.k);
+    std::array<LatticePoint, 4>& points = split.points;
+    placement(split);
+    const auto near = static_cast<std::size_t>(split.near);
+    switch (split.placement) {
+      case Placement::kAtPrey:
+        points[near] = fused_;
+        for (std::size_t i = 0; i < n; ++i)
+          if (i != near) point(points[i], predicted({{{i, 28}, {kShared, 8}, {near, -8}}}), Placement::kAtPrey, kWholeEdge);
+        return;
+      case Placement::kQuarter:
+        point(points[near], predicted({{{near, 6}, {1 - near, -6}, {near, 0}}}), Placement::kQuarter, kQuarterEdge);
+        for (std::size_t a = 0; a < 3; ++a) points[1 - near][a] = farEnd(points[near][a], points[1 - near][a], a);
+        return;
+      case Placement::kMiddle:
+      case Placement::kFree:
+        for (std::size_t i = 0; i + 1 < n; ++i)
+          point(points[i], n == 2 ? predicted({{{0, 13}, {1, -13}, {1, 0}}}) : predicted({{{i, 24}, {i, 0}, {i, 0}}}), split.placement, kHalfEdge);
+        for (std::size_t a = 0; a < 3; ++a) {
+          std::int64_t rest = std::int64_t{split.k} * fused_[a];
+          for (std::size_t i = 0; i + 1 < n; ++i) rest -= points[i][a];
+          std::int32_t& last = points[n - 1][a];
+          last = split.placement == Placement::kMiddle ? fromMean(inRange(rest), last, split.k, a) : fromNear(inRange(rest), last, a);
+        }
+    }
+  }
+
+ private:
+  // How many digits of a difference go to the positions block: an edge of the star's mean length along the axis is about 2^kWholeEdge of its units.
+  static constexpr int kWholeEdge = 5, kHalfEdge = 6, kQuarterEdge = 7;
+  static constexpr std::size_t kShared = 4;
+
+  // The middle of the link's vertices that only one prey vertex's triangles hold, for each prey vertex, and of all the others; from the fused vertex.
+  void findMiddles(const Link& link) {
+    owners_.assign(link.vertices().size(), 0);
+    for (const LinkTriangle& t : link.triangles())
+      for (const std::uint32_t x : t.vertex) owners_[x] |= static_cast<std::uint8_t>(1 << t.label);
+    std::array<std::int64_t, 5> count{};
+    for (std::size_t i = 0; i < owners_.size(); ++i) {
+      if (link.vertices()[i] == kGhost) continue;
+      const std::size_t owner = std::has_single_bit(owners_[i]) ? static_cast<std::size_t>(std::countr_zero(owners_[i])) : kShared;
+      ++count[owner];
+      for (std::size_t a = 0; a < 3; ++a) middle_[owner][a] += link.offsets()[i][a];
+    }
+    for (std::size_t owner = 0; owner < count.size(); ++owner)
+      if (count[owner] > 1)
+        for (std::int64_t& x : middle_[owner]) x /= count[owner];
+  }
+
+  // What lies nearer to the fused vertex tells which prey vertex it stands at, and how much nearer whether it stands at one.
+  void placement(Split& split) {
+    const auto n = static_cast<std::size_t>(split.k);
+    std::array<int, 4> distance{};
+    for (std::size_t i = 0; i < n; ++i) {
+      double squared = 1;
+      for (const std::int64_t x : middle_[i]) squared += static_cast<double>(x) * static_cast<double>(x);
+      distance[i] = log2Fixed(squared);
+    }
+    const auto order = smallOrder(n, [&](std::size_t a, std::size_t b) { return distance[a] < distance[b]; });
+    const auto ratio = static_cast<std::size_t>(std::min((distance[order[1]] - distance[order[0]]) / 32, static_cast<int>(PositionModels::kRatios) - 1));
+    auto& model = models_.placement[n - 2][edge_][ratio];
+    if (coder_.bit(split.placement == Placement::kAtPrey, model[0]))
+      split.placement = Placement::kAtPrey;
+    else if (coder_.bit(split.placement == Placement::kFree, model[1]))
+      split.placement = Placement::kFree;
+    else
+      split.placement = n > 2 || coder_.bit(split.placement == Placement::kMiddle, model[2]) ? Placement::kMiddle : Placement::kQuarter;
+    if (split.placement == Placement::kMiddle || split.placement == Placement::kFree) return;
+    auto& nearModel = models_.near[split.placement == Placement::kQuarter][ratio];
+    std::size_t rank = 0;
+    while (rank + 1 < n && !coder_.bit(static_cast<std::size_t>(split.near) == order[rank], nearModel[rank])) ++rank;
+    split.near = static_cast<int>(order[rank]);
+  }
+
+  struct Share {
+    std::size_t owner;
+    std::int64_t weight;  // in 64ths
+  };
+  [[nodiscard]] LatticePoint predicted(const std::array<Share, 3>& shares) {
+    LatticePoint p = fused_;
+    for (std::size_t a = 0; a < 3; ++a) {
+      std::int64_t sum = 32;
+      for (const Share& s : shares) sum += s.weight * middle_[s.owner][a];
+      p[a] = inRange(p[a] + (sum >> 6));
+    }
+    return p;
+  }
+
+  void point(LatticePoint& p, const LatticePoint& predicted, Placement placement, int digits) {
+    for (std::size_t a = 0; a < 3; ++a) p[a] = component(predicted[a], p[a], digits, a, models_.same[static_cast<std::size_t>(placement)][a]);
+  }
+
+  std::int32_t component(std::int32_t predicted, std::int32_t truth, int digits, std::size_t axis, BitModel& same) {
+    const int shift = std::clamp(logLength_[axis] - digits, 0, kMaxPositionBits);
+    const std::int64_t half = (std::int64_t{1} << shift) >> 1;
+    const std::int64_t shifted = std::int64_t{truth} - predicted + half;
+    const std::int64_t high = values_.code<Coder::kEncoding>(shifted >> shift);
+    const std::int64_t least = predicted - half + high * (std::int64_t{1} << shift);
+    if (shift == 0) return inRange(least);
+    // On the fused vertex's lattice plane, as in grids?
+    const std::int64_t plane = fused_[axis] - least;
+    if (plane >= 0 && plane >> shift == 0 && coder_.bit(truth == fused_[axis], same)) return fused_[axis];
+    return inRange(least + coder_.raw(static_cast<std::uint32_t>(truth - least), shift));
+  }
+
+  // fused = sum / k: the last is `least` or up to k - 1 more.
+  std::int32_t fromMean(std::int32_t least, std::int32_t truth, int k, std::size_t axis) {
+    auto& model = models_.remainder[static_cast<std::size_t>(k - 2)][axis];
+    const int rest = truth - least;
+    const int high = k > 2 ? coder_.bit(rest >> 1 & 1, model[1]) : 0;
+    const int low = k == 3 && high == 1 ? 0 : coder_.bit(rest & 1, model[static_cast<std::size_t>(2 + high)]);
+    return inRange(std::int64_t{least} + 2 * high + low);
+  }
+
+  // A free point is most often a projected mean: the difference has a size of its own.
+  std::int32_t fromNear(std::int32_t expected, std::int32_t truth, std::size_t axis) {
+    const std::int64_t difference = std::int64_t{truth} - expected;
+    const std::uint32_t size = models_.offset[axis].code(coder_, static_cast<std::uint32_t>(difference < 0 ? -difference : difference));
+    const bool negative = size != 0 && coder_.raw(difference < 0, 1) != 0;
+    return inRange(negative ? expected - std::int64_t{size} : expected + std::int64_t{size});
+  }
+
+  // Quarter: fused = (3 near + far + 2) >> 2.
+  std::int32_t farEnd(std::int32_t near, std::int32_t far, std::size_t axis) {
+    const std::int64_t least = 4 * std::int64_t{fused_[axis]} - 3 * std::int64_t{near} - 2;
+    const int rest = static_cast<int>(far - least);
+    auto& model = models_.quarter[axis];
+    const int high = coder_.bit(rest >> 1 & 1, model[1]);
+    const int low = coder_.bit(rest & 1, model[static_cast<std::size_t>(2 + high)]);
+    return inRange(least + 2 * high + low);
+  }
+
+  // Noise from a damaged block stays within what the next sum can hold.
+  std::int32_t inRange(std::int64_t x) {
+    if (x >= -kLargest && x <= kLargest) return static_cast<std::int32_t>(x);
+    values_.spoil();
+    return 0;
+  }
+  static constexpr std::int64_t kLargest = std::int64_t{1} << 30;
+
+  Coder& coder_;
+  PositionModels& models_;
+  Values& values_;
+  LatticePoint fused_;
+  std::size_t edge_;
+  std::array<int, 3> logLength_{};
+  std::array<std::array<std::int64_t, 3>, 5> middle_{};
+  std::vector<std::uint8_t> owners_;
+};
+
+}  // namespace qtet
