@@ -10,15 +10,23 @@
 #include "codec/link.h"
 #include "codec/log2_fixed.h"
 #include "codec/mesh.h"
+#include "codec/mixed_bit.h"
 #include "codec/range_coder.h"
 #include "codec/small_order.h"
 
 namespace qtet {
 
 struct LabelModels {
-  // k, rank asked, neighbours that carry this candidate and the next, margin of the distances, margin of the shares round the corners, unseen
-  static constexpr std::size_t kContexts = 3 * 3 * 16 * 12 * 5 * 4;
-  std::vector<BitModel> model = std::vector<BitModel>(kContexts);
+  // Which question it is: k = 2, or the rank asked of three or four candidates.
+  static constexpr std::size_t kQuestions = 4;
+  // Neighbours that carry this candidate and the next one (4 x 4), and then:
+  static constexpr std::size_t kCoarse = 12 * 5 * 4;  // margin of the distances, of the shares round the corners, unseen
+  static constexpr std::size_t kFine = 24 * 16;       // margin of the distances, how many triangles carry each
+  static constexpr std::size_t kCorners = 64;         // which of the two each corner has met
+  std::vector<BitModel> coarse = std::vector<BitModel>(kQuestions * 16 * kCoarse);
+  std::vector<BitModel> fine = std::vector<BitModel>(kQuestions * 16 * kFine);
+  std::vector<BitModel> corners = std::vector<BitModel>(kQuestions * 16 * kCorners);
+  std::array<Mixer<3>, kQuestions * 16> mixer;
 };
 
 /// Labels come in order of first appearance along the traversal.
@@ -34,7 +42,7 @@ class LabelCoder {
       LinkTriangle& t = link_.triangles()[f];
       const Vector place = link_.sixTimesMiddle(t);
       score(t, place);
-      t.label = static_cast<std::uint8_t>(choose(truth.empty() ? 0 : truth[f]));
+      t.label = static_cast<std::uint8_t>(choose(t, truth.empty() ? 0 : truth[f]));
       for (const std::uint32_t v : t.vertex) ++counts_[v][t.label];
       for (std::size_t a = 0; a < 3; ++a) sum_[t.label][a] += static_cast<double>(place[a]);
       ++seen_[t.label];
@@ -86,25 +94,32 @@ class LabelCoder {
     return log2Fixed(squared) - 2 * log2Fixed(n);
   }
 
-  std::size_t choose(std::size_t truth) {
+  std::size_t choose(const LinkTriangle& t, std::size_t truth) {
     std::size_t candidates = 0;
     while (candidates < k_ && seen_[candidates] > 0) ++candidates;
     candidates = std::min(candidates + 1, k_);
     const auto order = smallOrder(candidates, [&](std::size_t x, std::size_t y) { return candidates_[x].score > candidates_[y].score; });
     for (std::size_t rank = 0; rank + 1 < candidates; ++rank)
-      if (coder_.bit(truth == order[rank], context(rank, order[rank], order[rank + 1]))) return order[rank];
+      if (asks(truth == order[rank], t, rank, order[rank], order[rank + 1])) return order[rank];
     return order[candidates - 1];
   }
 
-  BitModel& context(std::size_t rank, std::size_t first, std::size_t second) {
+  bool asks(bool truth, const LinkTriangle& t, std::size_t rank, std::size_t first, std::size_t second) {
     const Candidate& a = candidates_[first];
     const Candidate& b = candidates_[second];
     const auto clampTo = [](int v, int high) { return static_cast<std::size_t>(std::clamp(v, 0, high)); };
-    const std::size_t agreement = static_cast<std::size_t>(a.neighbours) * 4 + static_cast<std::size_t>(b.neighbours);
-    const std::size_t distance = clampTo((b.distance - a.distance + 6 * 32) / 32, 11);
+    const std::size_t question = k_ == 2 ? 0 : 1 + rank;
+    const std::size_t place = question * 16 + static_cast<std::size_t>(a.neighbours) * 4 + static_cast<std::size_t>(b.neighbours);
+    const int margin = b.distance - a.distance;
     const std::size_t shared = clampTo((a.shared - b.shared + 9) / 4, 4);
     const std::size_t unseen = (seen_[first] == 0 ? 2u : 0u) + (seen_[second] == 0 ? 1u : 0u);
-    return models_.model[((((((k_ - 2) * 3 + rank) * 16 + agreement) * 12 + distance) * 5) + shared) * 4 + unseen];
+    const auto many = [](int n) { return static_cast<std::size_t>(n < 2 ? 0 : n < 5 ? 1 : n < 10 ? 2 : 3); };
+    std::size_t met = 0;
+    for (const std::uint32_t v : t.vertex) met = met * 4 + (counts_[v][first] > 0 ? 2u : 0u) + (counts_[v][second] > 0 ? 1u : 0u);
+    const std::array<BitModel*, 3> models{&models_.coarse[place * LabelModels::kCoarse + (clampTo((margin + 6 * 32) / 32, 11) * 5 + shared) * 4 + unseen],
+                                          &models_.fine[place * LabelModels::kFine + clampTo((margin + 12 * 16) / 16, 23) * 16 + many(seen_[first]) * 4 + many(seen_[second])],
+                                          &models_.corners[place * LabelModels::kCorners + met]};
+    return mixedBit(coder_, truth, models, models_.mixer[place]) != 0;
   }
 
   Coder& coder_;

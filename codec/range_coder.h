@@ -52,6 +52,11 @@ class RangeEncoder {
     range::update(model, value);
     return value;
   }
+  /// A decision whose probability of being 1 is known, in 1/65536. REQUIRES kLowest <= probability <= kHighest.
+  int likely(int value, std::uint32_t probability) {
+    encode(value, probability);
+    return value;
+  }
   /// `bits` equiprobable bits, 0..32.
   std::uint32_t raw(std::uint32_t value, int bits) {
     for (int i = bits - 1; i >= 0; --i) encode(static_cast<int>(value >> i & 1), 32768);
@@ -95,6 +100,7 @@ class RangeDecoder {
     range::update(model, value);
     return value;
   }
+  int likely(int /*unknown*/, std::uint32_t probability) { return decode(probability); }
   std::uint32_t raw(std::uint32_t /*unknown*/, int bits) {
     std::uint32_t value = 0;
     for (int i = 0; i < bits; ++i) value = value << 1 | static_cast<std::uint32_t>(decode(32768));
@@ -137,6 +143,7 @@ class EchoCoder {
  public:
   static constexpr bool kEncoding = true;
   static int bit(int value, BitModel&) { return value; }
+  static int likely(int value, std::uint32_t) { return value; }
   static std::uint32_t raw(std::uint32_t value, int) { return value; }
 };
 
