@@ -23,10 +23,12 @@ struct LabelModels {
   static constexpr std::size_t kCoarse = 12 * 5 * 4;  // margin of the distances, of the shares round the corners, unseen
   static constexpr std::size_t kFine = 24 * 16;       // margin of the distances, how many triangles carry each
   static constexpr std::size_t kCorners = 64;         // which of the two each corner has met
+  static constexpr std::size_t kPlane = 16 * 4 * 4;   // side of and angle to the plane between the two through the fused vertex, how many triangles carry each
   std::vector<BitModel> coarse = std::vector<BitModel>(kQuestions * 16 * kCoarse);
   std::vector<BitModel> fine = std::vector<BitModel>(kQuestions * 16 * kFine);
   std::vector<BitModel> corners = std::vector<BitModel>(kQuestions * 16 * kCorners);
-  std::array<Mixer<3>, kQuestions * 16> mixer;
+  std::vector<BitModel> plane = std::vector<BitModel>(kQuestions * 16 * kPlane);
+  std::array<Mixer<4>, kQuestions * 16> mixer;
 };
 
 /// Labels come in order of first appearance along the traversal.
@@ -42,7 +44,7 @@ class LabelCoder {
       LinkTriangle& t = link_.triangles()[f];
       const Vector place = link_.sixTimesMiddle(t);
       score(t, place);
-      t.label = static_cast<std::uint8_t>(choose(t, truth.empty() ? 0 : truth[f]));
+      t.label = static_cast<std::uint8_t>(choose(t, place, truth.empty() ? 0 : truth[f]));
       for (const std::uint32_t v : t.vertex) ++counts_[v][t.label];
       for (std::size_t a = 0; a < 3; ++a) sum_[t.label][a] += static_cast<double>(place[a]);
       ++seen_[t.label];
@@ -94,32 +96,47 @@ class LabelCoder {
     return log2Fixed(squared) - 2 * log2Fixed(n);
   }
 
-  std::size_t choose(const LinkTriangle& t, std::size_t truth) {
+  std::size_t choose(const LinkTriangle& t, const Vector& place, std::size_t truth) {
     std::size_t candidates = 0;
     while (candidates < k_ && seen_[candidates] > 0) ++candidates;
     candidates = std::min(candidates + 1, k_);
     const auto order = smallOrder(candidates, [&](std::size_t x, std::size_t y) { return candidates_[x].score > candidates_[y].score; });
     for (std::size_t rank = 0; rank + 1 < candidates; ++rank)
-      if (asks(truth == order[rank], t, rank, order[rank], order[rank + 1])) return order[rank];
+      if (asks(truth == order[rank], t, place, rank, order[rank], order[rank + 1])) return order[rank];
     return order[candidates - 1];
   }
 
-  bool asks(bool truth, const LinkTriangle& t, std::size_t rank, std::size_t first, std::size_t second) {
+  bool asks(bool truth, const LinkTriangle& t, const Vector& place, std::size_t rank, std::size_t first, std::size_t second) {
     const Candidate& a = candidates_[first];
     const Candidate& b = candidates_[second];
     const auto clampTo = [](int v, int high) { return static_cast<std::size_t>(std::clamp(v, 0, high)); };
     const std::size_t question = k_ == 2 ? 0 : 1 + rank;
-    const std::size_t place = question * 16 + static_cast<std::size_t>(a.neighbours) * 4 + static_cast<std::size_t>(b.neighbours);
+    const std::size_t at = question * 16 + static_cast<std::size_t>(a.neighbours) * 4 + static_cast<std::size_t>(b.neighbours);
     const int margin = b.distance - a.distance;
     const std::size_t shared = clampTo((a.shared - b.shared + 9) / 4, 4);
     const std::size_t unseen = (seen_[first] == 0 ? 2u : 0u) + (seen_[second] == 0 ? 1u : 0u);
     const auto many = [](int n) { return static_cast<std::size_t>(n < 2 ? 0 : n < 5 ? 1 : n < 10 ? 2 : 3); };
     std::size_t met = 0;
     for (const std::uint32_t v : t.vertex) met = met * 4 + (counts_[v][first] > 0 ? 2u : 0u) + (counts_[v][second] > 0 ? 1u : 0u);
-    const std::array<BitModel*, 3> models{&models_.coarse[place * LabelModels::kCoarse + (clampTo((margin + 6 * 32) / 32, 11) * 5 + shared) * 4 + unseen],
-                                          &models_.fine[place * LabelModels::kFine + clampTo((margin + 12 * 16) / 16, 23) * 16 + many(seen_[first]) * 4 + many(seen_[second])],
-                                          &models_.corners[place * LabelModels::kCorners + met]};
-    return mixedBit(coder_, truth, models, models_.mixer[place]) != 0;
+    const std::size_t sizes = many(seen_[first]) * 4 + many(seen_[second]);
+    const std::array<BitModel*, 4> models{&models_.coarse[at * LabelModels::kCoarse + (clampTo((margin + 6 * 32) / 32, 11) * 5 + shared) * 4 + unseen],
+                                          &models_.fine[at * LabelModels::kFine + clampTo((margin + 12 * 16) / 16, 23) * 16 + sizes],
+                                          &models_.corners[at * LabelModels::kCorners + met],
+                                          &models_.plane[at * LabelModels::kPlane + side(place, first, second) * 16 + sizes]};
+    return mixedBit(coder_, truth, models, models_.mixer[at]) != 0;
+  }
+
+  // Eight steps of the cosine either side of the plane.
+  [[nodiscard]] std::size_t side(const Vector& place, std::size_t first, std::size_t second) const {
+    double along = 0, across = 1, length = 1;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double normal = sum_[first][a] - sum_[second][a];
+      const auto x = static_cast<double>(place[a]);
+      along += normal * x, across += normal * normal, length += x * x;
+    }
+    const int cosine = log2Fixed(across) + log2Fixed(length) - log2Fixed(along * along);
+    const auto step = static_cast<std::size_t>(7 - std::clamp(cosine / 40, 0, 7));
+    return along < 0 ? 7 - step : 8 + step;
   }
 
   Coder& coder_;

@@ -7,7 +7,7 @@
 
 #include "codec/base_coder.h"
 #include "codec/cell_values.h"
-#include "codec/draco_block.h"
+#include "codec/value_block.h"
 #include "codec/growing_mesh.h"
 #include "codec/log_index.h"
 #include "codec/point_values.h"
@@ -301,7 +301,7 @@ class LogEncoder {
     if (Status s = addBlock(range_.finish()); !s) return s;
     for (std::size_t part = 0; part <= h_.fields.size(); ++part) {
       Values& residuals = part == 0 ? open_.positions : open_.fields[part - 1];
-      Result<Bytes> block = encodeDracoBlock(residuals.written(), part == 0 ? 3 : h_.fields[part - 1].components);
+      Result<Bytes> block = encodeValueBlock(residuals.written(), part == 0 ? 3 : h_.fields[part - 1].components);
       if (!block) return std::unexpected(block.error());
       if (Status s = addBlock(std::move(*block)); !s) return s;
       residuals.written().clear();

@@ -12,6 +12,7 @@
 #include "codec/growing_mesh.h"
 #include "codec/label_coder.h"
 #include "codec/link.h"
+#include "codec/mixed_bit.h"
 #include "codec/position_coder.h"
 #include "codec/range_coder.h"
 #include "proto/limits.h"
@@ -30,6 +31,11 @@ struct RecordTruth {
 
 struct RecordModels {
   std::array<std::array<std::array<BitModel, 3>, 16>, 16> split;  // star size, extent against the level's, age
+  std::array<std::array<std::array<BitModel, 3>, 2>, 64> splitScale;  // extent, on the boundary, age
+  std::array<std::array<std::array<BitModel, 2>, 32>, 16> splitAge;   // levels since birth, star size, on the boundary
+  std::array<std::array<std::array<BitModel, 8>, 8>, 16> splitRun;    // the last flags, flatness of the star, extent
+  std::array<Mixer<4>, 3> splitMixer;                                 // age
+  std::uint32_t flags = 0;                                            // the last ones, the latest lowest
   std::array<std::array<BitModel, 2>, 4> tetrahedron;             // star size, touches the boundary
   std::array<std::array<BitModel, 2>, 4> triangle;
   PositionModels positions;
@@ -46,15 +52,24 @@ class RecordCoder {
 
   /// The split flag of v at `level`. REQUIRES mesh.maysplit(v).
   bool splits(VertexId v, std::uint32_t level, bool truth) {
-    const std::size_t cells = mesh_.star(v).size();
-    if (cells == 0) return false;  // an unused vertex: nothing to split, nothing coded
+    const std::span<const CellRef> star = mesh_.star(v);
+    if (star.empty()) return false;  // an unused vertex: nothing to split, nothing coded
     const auto spread = mesh_.spread(v);
     const int extent = log2Fixed(spread[0] + spread[1] + spread[2] + 1);
-    const std::size_t size = std::min<std::size_t>(cells / 6, 15);
-    const auto scale = static_cast<std::size_t>(std::clamp((extent - models_.extent / 16) / 16 + 8, 0, 15));
+    const int scale = extent - models_.extent / 16;
+    const auto step = [&](int width, int half) { return static_cast<std::size_t>(std::clamp(scale / width + half, 0, 2 * half - 1)); };
     const std::uint32_t born = mesh_.born(v);
     const std::size_t age = born == 0 ? 0 : level - born <= 1 ? 1 : 2;
-    const bool split = coder_.bit(truth, models_.split[size][scale][age]) != 0;
+    const std::size_t sinceBorn = born == 0 ? 15 : std::min<std::size_t>(level - born, 14);
+    const bool edge = (star.back() & kBoundaryBit) != 0;
+    const auto [least, most] = std::minmax({spread[0], spread[1], spread[2]});
+    const auto flat = static_cast<std::size_t>(std::min((log2Fixed(most + 1) - log2Fixed(least + 1)) / 48, 7));
+    const std::array<BitModel*, 4> models{&models_.split[std::min<std::size_t>(star.size() / 6, 15)][step(16, 8)][age],
+                                          &models_.splitScale[step(8, 32)][edge][age],
+                                          &models_.splitAge[sinceBorn][std::min<std::size_t>(star.size() / 2, 31)][edge],
+                                          &models_.splitRun[models_.flags & 15][flat][step(24, 4)]};
+    const bool split = mixedBit(coder_, truth, models, models_.splitMixer[age]) != 0;
+    models_.flags = models_.flags << 1 | static_cast<std::uint32_t>(split);
     if (split) models_.extent += (extent * 16 - models_.extent) / 64;
     return split;
   }

@@ -1,0 +1,19 @@
+// The bytes of a value block (FORMAT.md, "Value blocks"): a Draco stream of symbols, the digits behind it, and how many bytes of digits there are.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "proto/bytes.h"
+#include "proto/error.h"
+
+namespace qtet {
+
+/// Encodes values.size() / components tuples. No tuples give no bytes. Errors: limit-exceeded (a magnitude of 2^31), bad-codec (Draco refused).
+[[nodiscard]] Result<Bytes> encodeValueBlock(std::span<const std::int32_t> values, std::uint32_t components);
+
+/// The inverse; `tuples` is what the chunk table promises. Errors: bad-codec, bad-value (another number of tuples, components or digits).
+[[nodiscard]] Result<std::vector<std::int32_t>> decodeValueBlock(ByteView bytes, std::uint32_t components, std::uint32_t tuples);
+
+}  // namespace qtet
