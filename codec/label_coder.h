@@ -35,10 +35,13 @@ struct LabelModels {
 template <class Coder>
 class LabelCoder {
  public:
-  LabelCoder(Coder& coder, LabelModels& models, Link& link, int k) : coder_(coder), models_(models), link_(link), k_(static_cast<std::size_t>(k)) {}
+  LabelCoder(Coder& coder, LabelModels& models, Link& link) : coder_(coder), models_(models), link_(link) {}
 
-  /// Codes every triangle's label; an encoder's are read from `truth` (one a triangle). REQUIRES link placed.
-  void code(std::span<const std::uint8_t> truth) {
+  /// Codes every triangle's label below k; an encoder's are read from `truth` (one a triangle). REQUIRES link placed.
+  void code(int k, std::span<const std::uint8_t> truth) {
+    k_ = static_cast<std::size_t>(k);
+    sum_ = {};
+    seen_ = {};
     counts_.assign(link_.vertices().size(), {});
     for (const std::uint32_t f : link_.traversal()) {
       LinkTriangle& t = link_.triangles()[f];
@@ -142,7 +145,7 @@ class LabelCoder {
   Coder& coder_;
   LabelModels& models_;
   Link& link_;
-  std::size_t k_;
+  std::size_t k_ = 2;
   std::array<Candidate, 4> candidates_{};
   std::array<std::array<double, 3>, 4> sum_{};  // of the middles, exact: integers below 2^53
   std::array<int, 4> seen_{};

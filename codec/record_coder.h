@@ -48,21 +48,28 @@ template <class Coder>
 class RecordCoder {
  public:
   RecordCoder(Coder& coder, RecordModels& models, GrowingMesh& mesh, Link& link, Values& positions)
-      : coder_(coder), models_(models), mesh_(mesh), link_(link), positions_(positions) {}
+      : coder_(coder),
+        models_(models),
+        mesh_(mesh),
+        link_(link),
+        values_(positions),
+        labels_(coder, models.labels, link),
+        positions_(coder, models.positions, positions, mesh, link) {}
 
   /// The split flag of v at `level`. REQUIRES mesh.maysplit(v).
   bool splits(VertexId v, std::uint32_t level, bool truth) {
     const std::span<const CellRef> star = mesh_.star(v);
     if (star.empty()) return false;  // an unused vertex: nothing to split, nothing coded
-    const auto spread = mesh_.spread(v);
-    const int extent = log2Fixed(spread[0] + spread[1] + spread[2] + 1);
+    const GrowingMesh::Spread& spread = mesh_.spread(v);
+    const auto& squares = spread.squares;
+    const int extent = spread.logMean(squares[0] + squares[1] + squares[2]);
     const int scale = extent - models_.extent / 16;
     const auto step = [&](int width, int half) { return static_cast<std::size_t>(std::clamp(scale / width + half, 0, 2 * half - 1)); };
     const std::uint32_t born = mesh_.born(v);
     const std::size_t age = born == 0 ? 0 : level - born <= 1 ? 1 : 2;
     const std::size_t sinceBorn = born == 0 ? 15 : std::min<std::size_t>(level - born, 14);
     const bool edge = (star.back() & kBoundaryBit) != 0;
-    const auto [least, most] = std::minmax({spread[0], spread[1], spread[2]});
+    const auto [least, most] = std::minmax({squares[0], squares[1], squares[2]});
     const auto flat = static_cast<std::size_t>(std::min((log2Fixed(most + 1) - log2Fixed(least + 1)) / 48, 7));
     const std::array<BitModel*, 4> models{&models_.split[std::min<std::size_t>(star.size() / 6, 15)][step(16, 8)][age],
                                           &models_.splitScale[step(8, 32)][edge][age],
@@ -83,13 +90,13 @@ class RecordCoder {
       split.k = 4;
     else
       split.k = coder_.bit(truth.k == 3, models_.triangle[size][edge]) ? 3 : 2;
-    LabelCoder<Coder>(coder_, models_.labels, link_, split.k).code(truth.labels);
+    labels_.code(split.k, truth.labels);
     if (!codeDeletedCells(coder_, models_.deleted, link_, split.k, truth.deleted, split.deleted)) return false;
     split.placement = truth.placement;
     split.near = truth.near;
     split.points = truth.points;
-    PositionCoder<Coder>(coder_, models_.positions, positions_, v, mesh_, link_).code(split);
-    if (positions_.bad()) return false;
+    positions_.code(v, split);
+    if (values_.bad()) return false;
     for (int i = 0; i < split.k; ++i)
       for (const std::int32_t x : split.points[static_cast<std::size_t>(i)])
         if (x < 0 || x >> kMaxPositionBits != 0) return false;  // the predicates' range; the lattice's own is the refiner's to check
@@ -101,7 +108,9 @@ class RecordCoder {
   RecordModels& models_;
   GrowingMesh& mesh_;
   Link& link_;
-  Values& positions_;
+  Values& values_;
+  LabelCoder<Coder> labels_;
+  PositionCoder<Coder> positions_;
 };
 
 }  // namespace qtet
