@@ -35,6 +35,15 @@ Bytes forged(const Bytes& good, const std::function<void(LogIndex&)>& table, con
   return out;
 }
 
+/// Header and manifest agree that the layout is one which this build cannot decode.
+Bytes asRegions(const Bytes& good) {
+  testing::TakenApart parts = testing::takeApart(good);
+  const std::string stream = "\"stream\"";
+  parts.index.layout = Layout::kRegions;
+  parts.index.manifest.replace(parts.index.manifest.find(stream), stream.size(), "\"regions\"");
+  return parts.together();
+}
+
 void write(const std::filesystem::path& path, const Bytes& bytes) {
   std::filesystem::create_directories(path.parent_path());
   if (const Status s = writeFileAtomically(path, bytes); !s) std::fprintf(stderr, "%s\n", s.error().text().c_str());
@@ -56,7 +65,7 @@ void writeMustFail(const std::filesystem::path& folder, const Bytes& good) {
   write(folder / "bad-magic.text-mode-copy.qtet", patched(5, 0x0A));
   write(folder / "bad-version.major-1.qtet", patched(8, 1));
   write(folder / "bad-version.major-3.qtet", patched(8, 3));
-  write(folder / "bad-version.regions.qtet", forged(good, [](LogIndex& i) { i.layout = Layout::kRegions; }));
+  write(folder / "bad-version.regions.qtet", asRegions(good));
   write(folder / "truncated.header.qtet", cut(63));
   write(folder / "truncated.manifest.qtet", cut(100));
   write(folder / "truncated.last-byte.qtet", cut(good.size() - 1));
