@@ -175,7 +175,7 @@ class LogEncoder {
     if (!labels(v, fusion, truth)) return bad("the history's cells are not those of its star");
     number(fusion, truth);
     for (std::size_t i = 0; i < fusion.k; ++i) truth.points[i] = h_.points[fusion.prey[i]];
-    if ( !deleted(fusion, truth)) return bad("the history's cells are not those of its star");
+    if (!deleted(fusion, truth)) return bad("the history's cells are not those of its star");
     Split split;
     if (!coder.code(v, truth, split)) return bad("its cells cannot be described by labels");
     apply(v, fusion, split);

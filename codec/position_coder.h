@@ -16,6 +16,7 @@
 #include "codec/range_coder.h"
 #include "codec/small_order.h"
 #include "codec/values.h"
+#include "proto/limits.h"
 
 namespace qtet {
 

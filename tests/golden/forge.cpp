@@ -35,6 +35,15 @@ Bytes forged(const Bytes& good, const std::function<void(LogIndex&)>& table, con
   return out;
 }
 
+/// Header and manifest agree that the layout is one which this build cannot decode.
+Bytes asRegions(const Bytes& good) {
+  testing::TakenApart parts = testing::takeApart(good);
+  const std::string stream = "\"stream\"";
+  parts.index.layout = Layout::kRegions;
+  parts.index.manifest.replace(parts.index.manifest.find(stream), stream.size(), "\"regions\"");
+  return parts.together();
+}
+
 void write(const std::filesystem::path& path, const Bytes& bytes) {
   std::filesystem::create_directories(path.parent_path());
   if (const Status s = writeFileAtomically(path, bytes); !s) std::fprintf(stderr, "%s\n", s.error().text().c_str());
@@ -56,7 +65,7 @@ void writeMustFail(const std::filesystem::path& folder, const Bytes& good) {
   write(folder / "bad-magic.text-mode-copy.qtet", patched(5, 0x0A));
   write(folder / "bad-version.major-1.qtet", patched(8, 1));
   write(folder / "bad-version.major-3.qtet", patched(8, 3));
-  write(folder / "bad-version.regions.qtet", forged(good, [](LogIndex& i) { i.layout = Layout::kRegions; }));
+  write(folder / "bad-version.regions.qtet", asRegions(good));
   write(folder / "truncated.header.qtet", cut(63));
   write(folder / "truncated.manifest.qtet", cut(100));
   write(folder / "truncated.last-byte.qtet", cut(good.size() - 1));
@@ -77,7 +86,7 @@ void writeMustFail(const std::filesystem::path& folder, const Bytes& good) {
   write(folder / "bad-value.ends-within-a-level.qtet", entry(index.chunks.size() - 1, [](ChunkEntry& e) { e.endSlot = 1000; }));
   write(folder / "bad-value.a-level-left-out.qtet", entry(index.chunks.size() - 1, [](ChunkEntry& e) { ++e.firstLevel, ++e.lastLevel; }));
   write(folder / "bad-value.too-few-cells.qtet", entry(1, [](ChunkEntry& e) { --e.newTetrahedra; }));
-  write(folder / "bad-value.too-many-values.qtet", entry(1, [](ChunkEntry& e) { ++e.values; }));
+  write(folder / "bad-value.too-many-records.qtet", entry(1, [](ChunkEntry& e) { ++e.records; }));
   write(folder / "limit-exceeded.levels.qtet", entry(index.chunks.size() - 1, [](ChunkEntry& e) { e.lastLevel = 4097; }));
   write(folder / "limit-exceeded.records.qtet", entry(1, [](ChunkEntry& e) { e.records = 0x40000000; }));
   write(folder / "bad-codec.unknown-id.qtet", entry(1, [](ChunkEntry& e) { e.valueCodec = static_cast<CodecId>(77); }));

@@ -187,7 +187,6 @@ TEST_F(DamagedLog, countsThatAreOffByOneAreFound) {
                                                             {"vertices", &ChunkEntry::newVertices},
                                                             {"tetrahedra", &ChunkEntry::newTetrahedra},
                                                             {"triangles", &ChunkEntry::newBoundaryTriangles},
-                                                            {"values", &ChunkEntry::values},
                                                             {"first level", &ChunkEntry::firstLevel},
                                                             {"last level", &ChunkEntry::lastLevel},
                                                             {"first dependency", &ChunkEntry::firstDependency},
@@ -201,8 +200,7 @@ TEST_F(DamagedLog, countsThatAreOffByOneAreFound) {
 
 TEST_F(DamagedLog, aCountMovedFromOneChunkToTheNextIsFound) {
   // The totals stay right, so only what each chunk brings can tell.
-  for (const auto member :
-       {&ChunkEntry::newVertices, &ChunkEntry::newTetrahedra, &ChunkEntry::newBoundaryTriangles, &ChunkEntry::records, &ChunkEntry::values})
+  for (const auto member : {&ChunkEntry::newVertices, &ChunkEntry::newTetrahedra, &ChunkEntry::newBoundaryTriangles, &ChunkEntry::records})
     for (std::size_t chunk = 0; chunk + 1 < index_.chunks.size(); ++chunk)
       expectTableRefused("", "chunk " + std::to_string(chunk),
                          [&](LogIndex& i) { --(i.chunks[chunk].*member), ++(i.chunks[chunk + 1].*member); });
