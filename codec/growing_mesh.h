@@ -66,6 +66,7 @@ class GrowingMesh {
     std::array<std::uint64_t, 3> squares{};
     std::uint32_t edges = 0;
 
+    bool operator==(const Spread&) const = default;
     /// 64 times log2 of the mean squared length, at least 0.
     [[nodiscard]] int logMean(std::uint64_t sum) const { return std::max(log2Fixed(sum) - log2Fixed(std::uint64_t{edges}), 0); }
   };

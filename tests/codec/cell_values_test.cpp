@@ -5,7 +5,7 @@
 
 #include <functional>
 
-#include "codec/draco_block.h"
+#include "codec/value_block.h"
 #include "codec/log_manifest.h"
 #include "codec/log_writer.h"
 #include "codec/refiner.h"
@@ -62,7 +62,7 @@ class CellFieldLog : public ::testing::Test {
 
   std::vector<std::int32_t> values(std::uint32_t chunk, std::uint32_t part) const {
     const BlockEntry& b = index_.block(chunk, part);
-    return decodeDracoBlock(ByteView(bytes_).subspan(b.offset, b.size), index_.components(part), index_.tuples(chunk, part)).value();
+    return decodeValueBlock(ByteView(bytes_).subspan(b.offset, b.size), index_.components(part), index_.tuples(chunk, part)).value();
   }
   Status apply(Refiner& refiner, std::uint32_t chunk) const {
     const BlockEntry& b = index_.block(chunk, kStructurePart);

@@ -67,7 +67,7 @@ Coded encoded(std::span<const Record> records) {
   for (const Record& r : records) {
     const StarMesh star = starOf(r);
     Split split = r.split;
-    PositionCoder<RangeEncoder>(encoder, models, values, 0, star.mesh, star.link).code(split);
+    PositionCoder<RangeEncoder>(encoder, models, values, star.mesh, star.link).code(0, split);
   }
   EXPECT_FALSE(values.bad());
   return {encoder.finish(), values.written()};
@@ -83,7 +83,7 @@ void expectRoundTrip(std::span<const Record> records) {
     const StarMesh star = starOf(r);
     Split split;
     split.k = r.split.k;
-    PositionCoder<RangeDecoder>(decoder, models, values, 0, star.mesh, star.link).code(split);
+    PositionCoder<RangeDecoder>(decoder, models, values, star.mesh, star.link).code(0, split);
     ASSERT_EQ(split.placement, r.split.placement) << i;
     ASSERT_EQ(split.near, r.split.near) << i;
     for (std::size_t p = 0; p < static_cast<std::size_t>(r.split.k); ++p) ASSERT_EQ(split.points[p], r.split.points[p]) << i << ", prey " << p;
@@ -171,7 +171,7 @@ TEST(PositionCoder, whatEverTheBytesSayPointsStayInRange) {
     Values values(given);
     Split split;
     split.k = r.split.k;
-    PositionCoder<RangeDecoder>(decoder, models, values, 0, star.mesh, star.link).code(split);
+    PositionCoder<RangeDecoder>(decoder, models, values, star.mesh, star.link).code(0, split);
     refused += values.bad();
     for (const LatticePoint& p : split.points)
       for (const std::int32_t x : p) {
@@ -194,7 +194,7 @@ TEST(PositionCoder, aBlockThatEndsTooEarlyIsNoticed) {
     Values values(coded.values);
     Split split;
     split.k = r.split.k;
-    PositionCoder<RangeDecoder>(decoder, models, values, 0, star.mesh, star.link).code(split);
+    PositionCoder<RangeDecoder>(decoder, models, values, star.mesh, star.link).code(0, split);
     EXPECT_TRUE(values.bad());
   }
 }

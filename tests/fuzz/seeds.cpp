@@ -3,7 +3,7 @@
 #include <random>
 
 #include "codec/atomic_file.h"
-#include "codec/draco_block.h"
+#include "codec/value_block.h"
 #include "codec/log_writer.h"
 #include "proto/messages.h"
 #include "simplify/qtetfusion.h"
@@ -56,7 +56,7 @@ Bytes refinerSeed(const testing::TakenApart& log, std::size_t chunks) {
     w.write(static_cast<std::uint16_t>(log.blocks[c][kStructurePart].size()));
     w.append(log.blocks[c][kStructurePart]);
     for (std::uint32_t part = kPositionsPart; part < log.index.parts(); ++part) {
-      const auto values = decodeDracoBlock(log.blocks[c][part], log.index.components(part), log.index.tuples(c, part)).value();
+      const auto values = decodeValueBlock(log.blocks[c][part], log.index.components(part), log.index.tuples(c, part)).value();
       for (const std::int32_t value : values) w.write(static_cast<std::uint16_t>(value));
     }
   }
@@ -70,7 +70,7 @@ Bytes dracoSeed(std::uint32_t components, std::uint32_t tuples, std::int32_t mag
   ByteWriter w;
   w.write(static_cast<std::uint8_t>(components - 1));
   w.write(static_cast<std::uint16_t>(tuples));
-  w.append(encodeDracoBlock(values, components).value());
+  w.append(encodeValueBlock(values, components).value());
   return w.take();
 }
 
