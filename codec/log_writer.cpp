@@ -10,11 +10,11 @@
 #include "codec/draco_block.h"
 #include "codec/growing_mesh.h"
 #include "codec/log_index.h"
+#include "codec/log_manifest.h"
 #include "codec/point_values.h"
 #include "codec/record_coder.h"
 #include "proto/crc32c.h"
 #include "proto/limits.h"
-#include "proto/manifest.h"
 
 namespace qtet {
 namespace {
@@ -319,14 +319,12 @@ class LogEncoder {
   }
 
   void addLevel(std::uint32_t level) {
-    const bool closed = !chunks_.empty() && open_.entry.records == 0 && open_.entry.firstLevel == 0;
-    const auto chunk = static_cast<std::uint32_t>(closed ? chunks_.size() - 1 : chunks_.size());
     levels_.push_back({level, static_cast<std::uint32_t>(mesh_.tetrahedra.size()), static_cast<std::uint32_t>(mesh_.points.size()),
-                       static_cast<std::uint32_t>(mesh_.boundary.size()), chunk, std::nullopt});
+                       static_cast<std::uint32_t>(mesh_.boundary.size()), 0, std::nullopt});  // the table tells the chunk
     if (!options_.errors.empty()) levels_.back().error = options_.errors[level];
   }
 
-  [[nodiscard]] std::string manifest() const {
+  [[nodiscard]] Result<Bytes> manifest() const {
     Manifest m;
     m.generator = options_.generator;
     m.source = options_.source;
@@ -335,13 +333,15 @@ class LogEncoder {
     m.latticeOrigin = h_.lattice.origin;
     for (const FieldInfo& f : h_.fields) m.fields.push_back({f.name, f.components, f.type, f.association, f.bits, f.step, f.minimum, f.range});
     m.levels = levels_;
-    return manifestToJson(m);
+    return manifestBlock(m);
   }
 
   Result<EncodedLog> assemble() {
     LogIndex index;
     index.positionBits = static_cast<std::uint8_t>(h_.lattice.bits);
-    index.manifest = manifest();
+    Result<Bytes> manifestBytes = manifest();
+    if (!manifestBytes) return std::unexpected(manifestBytes.error());
+    index.manifest = std::move(*manifestBytes);
     for (const FieldInfo& f : h_.fields) index.fields.push_back({f.components, isCellField(f) ? Association::kCell : Association::kPoint});
     index.chunks = std::move(chunks_);
     index.dependencies = std::move(dependencies_);
