@@ -13,8 +13,7 @@ std::uint32_t nextLevel(const LogIndex& index, std::size_t chunk) {
 }
 
 void readLevels(ByteReader& r, const LogIndex& index, ChunkEntry& e) {
-  std::uint64_t first = nextLevel(index, index.chunks.size());
-  if (index.layout == Layout::kRegions) first = std::uint64_t{index.chunks.empty() ? 0 : index.chunks.back().lastLevel} + r.readVarint();
+  const std::uint64_t first = index.layout == Layout::kRegions ? r.readVarint() : nextLevel(index, index.chunks.size());
   const std::uint64_t last = first + r.readVarint();
   if (last > kMaxLevels) return r.fail(ErrorCode::kLimitExceeded, "more than 4,096 levels; fetch or build the log again");
   e.firstLevel = static_cast<std::uint32_t>(first);
@@ -64,7 +63,7 @@ void writeChunkRows(ByteWriter& w, const LogIndex& index) {
   for (std::size_t chunk = 0; chunk < index.chunks.size(); ++chunk) {
     const ChunkEntry& e = index.chunks[chunk];
     const bool regions = index.layout == Layout::kRegions;
-    if (regions) w.writeVarint(e.firstLevel - (chunk > 0 ? index.chunks[chunk - 1].lastLevel : 0));
+    if (regions) w.writeVarint(e.firstLevel);
     w.writeVarint(e.lastLevel - (regions ? e.firstLevel : nextLevel(index, chunk)));
     for (const std::uint32_t value : {e.endSlot + 1, e.records, e.newVertices, e.newTetrahedra, e.newBoundaryTriangles}) w.writeVarint(value);
     w.write(static_cast<std::uint8_t>(static_cast<unsigned>(e.structureCodec) | static_cast<unsigned>(e.valueCodec) << 4));

@@ -1,5 +1,8 @@
 #include "codec/level_columns.h"
 
+#include <string>
+
+#include "codec/error_figure.h"
 #include "codec/range_coder.h"
 #include "proto/limits.h"
 
@@ -26,6 +29,15 @@ void code(Coder& coder, LevelColumns& numbers, std::uint32_t levels) {
   }
 }
 
+bool soundLevel(const LevelColumns& numbers, std::uint32_t levels, std::uint32_t level) {
+  const auto at = [&](std::uint32_t column) { return numbers[std::size_t{column} * levels + level]; };
+  for (std::uint32_t c = 0; c < kCountColumns; ++c)
+    if (at(c) > kMaxElements) return false;
+  for (std::uint32_t c = kCountColumns + 1; c + 1 < numbers.size() / levels; c += 2)
+    if (at(c) > at(c + 1) || at(c + 1) > kMaxErrorFigure) return false;
+  return true;
+}
+
 }  // namespace
 
 Bytes encodeLevelColumns(const LevelColumns& numbers, std::uint32_t levels) {
@@ -44,6 +56,10 @@ Result<LevelColumns> decodeLevelColumns(ByteView bytes, std::uint32_t levels, st
   code(coder, numbers, levels);
   if (coder.overrun()) return fail(ErrorCode::kTruncated, "the manifest ends within the figures of its levels; fetch or build the log again");
   if (!coder.atEnd()) return fail(ErrorCode::kBadValue, "bytes behind the manifest's last figure; fetch or build the log again");
+  for (std::uint32_t level = 0; level < levels; ++level)
+    if (!soundLevel(numbers, levels, level))
+      return fail(ErrorCode::kBadValue, "the manifest's figures of level " + std::to_string(level) +
+                                            " are out of range (a count above 2^29, a mean above its maximum); build the log again");
   return numbers;
 }
 

@@ -14,13 +14,14 @@ using LevelColumns = std::vector<std::uint32_t>;
 
 /// Columns of the counts: tetrahedra, vertices, boundary triangles.
 inline constexpr std::uint32_t kCountColumns = 3;
-/// With known errors: the volume kept, then pairs (mean, max): to the level, to the original, and of each field.
-[[nodiscard]] constexpr std::uint32_t errorColumns(std::uint32_t fields) { return 1 + 2 * (2 + fields); }
+/// With known errors: then the volume kept (in 10^-6), then pairs of figures (codec/error_figure.h) mean and max: to the level, to the original, of each field.
+[[nodiscard]] constexpr std::uint32_t levelColumnCount(std::uint32_t fields, bool hasErrors) { return kCountColumns + (hasErrors ? 1 + 2 * (2 + fields) : 0); }
 
-/// REQUIRES: levels * columns numbers, at least one level.
+/// REQUIRES: at least one level, and as many numbers in each column.
 [[nodiscard]] Bytes encodeLevelColumns(const LevelColumns& numbers, std::uint32_t levels);
 
-/// The inverse. Errors: limit-exceeded (more numbers than the bytes can hold, found before anything is allocated), truncated, bad-value (bytes left over).
+/// The inverse. Errors: limit-exceeded (more numbers than the bytes can hold, found before anything is allocated), truncated, bad-value (bytes left
+/// over, a count above kMaxElements, a figure that is none, a mean above the max beside it).
 [[nodiscard]] Result<LevelColumns> decodeLevelColumns(ByteView bytes, std::uint32_t levels, std::uint32_t columns);
 
 }  // namespace qtet

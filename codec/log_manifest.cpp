@@ -96,7 +96,7 @@ LevelColumns columnsOf(const Manifest& manifest) {
   const std::size_t levels = manifest.levels.size();
   const auto fields = static_cast<std::uint32_t>(manifest.fields.size());
   const bool hasErrors = manifest.levels.front().error.has_value();
-  LevelColumns out(levels * (kCountColumns + (hasErrors ? errorColumns(fields) : 0)));
+  LevelColumns out(levels * levelColumnCount(fields, hasErrors));
   for (std::size_t l = 0; l < levels; ++l) {
     const ManifestLevel& level = manifest.levels[l];
     std::size_t at = l;
@@ -114,47 +114,29 @@ class LevelReader {
  public:
   LevelReader(const LevelColumns& columns, std::size_t levels, std::size_t level) : columns_(columns), levels_(levels), at_(level) {}
 
-  std::uint32_t count() {
-    const std::uint32_t count = next();
-    sound_ &= count <= kMaxElements;
-    return count;
-  }
-  double volume() { return next() / kVolumeFigure; }
-  /// A mean or rms, and the maximum beside it.
-  std::pair<double, double> pair() {
-    const std::uint32_t mean = next(), max = next();
-    sound_ &= mean <= max && max <= kMaxErrorFigure;
-    return sound_ ? std::pair{errorOfFigure(mean), errorOfFigure(max)} : std::pair{0.0, 0.0};
-  }
-  [[nodiscard]] bool sound() const { return sound_; }
+  std::uint32_t next() { return columns_[std::exchange(at_, at_ + levels_)]; }
+  double error() { return errorOfFigure(next()); }
 
  private:
-  std::uint32_t next() { return columns_[std::exchange(at_, at_ + levels_)]; }
   const LevelColumns& columns_;
   std::size_t levels_, at_;
-  bool sound_ = true;
 };
 
 LevelError readError(LevelReader& reader, std::size_t fields) {
   LevelError out;
-  out.volumeKept = reader.volume();
-  std::tie(out.toLevel.mean, out.toLevel.max) = reader.pair();
-  std::tie(out.toOriginal.mean, out.toOriginal.max) = reader.pair();
-  for (std::size_t f = 0; f < fields; ++f) {
-    const auto [rms, max] = reader.pair();
-    out.fields.push_back({rms, max});
-  }
+  out.volumeKept = reader.next() / kVolumeFigure;
+  for (OneSidedDistance* side : {&out.toLevel, &out.toOriginal}) side->mean = reader.error(), side->max = reader.error();
+  out.fields.resize(fields);
+  for (FieldError& field : out.fields) field.rms = reader.error(), field.max = reader.error();
   return out;
 }
 
-/// The chunk with which each level is complete.
+/// The chunk with which each level is complete: the last one that begins with this level or a coarser one.
 std::vector<std::uint32_t> completingChunks(const LogIndex& index) {
-  std::vector<std::uint32_t> out;
-  for (std::uint32_t chunk = 0; chunk < index.chunks.size(); ++chunk) {
-    const ChunkEntry& entry = index.chunks[chunk];
-    const std::uint32_t complete = entry.lastLevel + (entry.endSlot == kLevelEnd);
-    while (out.size() < complete) out.push_back(chunk);
-  }
+  std::vector<std::uint32_t> out(std::size_t{index.chunks.back().lastLevel} + 1);
+  for (std::uint32_t chunk = 0; chunk < index.chunks.size(); ++chunk)
+    if (const std::uint32_t first = index.chunks[chunk].firstLevel; first < out.size()) out[first] = chunk;
+  for (std::size_t level = 1; level < out.size(); ++level) out[level] = std::max(out[level], out[level - 1]);
   return out;
 }
 
@@ -165,17 +147,14 @@ Status readLevels(ByteReader& r, const LogIndex& index, Manifest& out) {
   if (r.failed()) return std::unexpected(r.error());
   const std::vector<std::uint32_t> chunks = completingChunks(index);
   const auto levels = static_cast<std::uint32_t>(chunks.size());
-  const std::uint32_t columns = kCountColumns + (hasErrors ? errorColumns(static_cast<std::uint32_t>(index.fields.size())) : 0);
-  const Result<LevelColumns> numbers = decodeLevelColumns(bytes, levels, columns);
+  const auto fields = static_cast<std::uint32_t>(index.fields.size());
+  const Result<LevelColumns> numbers = decodeLevelColumns(bytes, levels, levelColumnCount(fields, hasErrors != 0));
   if (!numbers) return std::unexpected(numbers.error());
   for (std::uint32_t l = 0; l < levels; ++l) {
     LevelReader reader(*numbers, levels, l);
-    const std::uint32_t tetrahedra = reader.count(), vertices = reader.count(), triangles = reader.count();
+    const std::uint32_t tetrahedra = reader.next(), vertices = reader.next(), triangles = reader.next();
     out.levels.push_back({l, tetrahedra, vertices, triangles, chunks[l], std::nullopt});
-    if (hasErrors) out.levels.back().error = readError(reader, index.fields.size());
-    if (!reader.sound())
-      return fail(ErrorCode::kBadValue, "the manifest's figures of level " + std::to_string(l) +
-                                            " are out of range (a count above 2^29, a mean above its maximum); build the log again");
+    if (hasErrors) out.levels.back().error = readError(reader, fields);
   }
   return {};
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "codec/base_coder.h"
@@ -20,6 +21,11 @@ namespace qtet {
 namespace {
 
 constexpr std::uint32_t kNone = 0xFFFFFFFFu;
+
+// A picture sharpens when a chunk is whole, so that each is a share of what a viewer has already waited for, up to LogWriterOptions::chunkBytes. Smaller
+// ones cost more than they give: a row of the table and Draco's fixed bytes are 130 bytes a chunk with one field, 3 % of 4 KB.
+constexpr std::uint64_t kLeastChunkBytes = 4 << 10;
+constexpr std::uint64_t kGrowth = 4;
 
 /// A chunk under construction.
 struct OpenChunk {
@@ -147,6 +153,7 @@ class LogEncoder {
   Status encodeLevel(std::uint32_t level) {
     if (open_.entry.firstLevel == 0) open_.entry.firstLevel = level;
     mesh_.beginLevel(level);
+    std::optional<std::uint64_t> begun = estimatedBytes();  // none once a chunk ended within the level
     RecordCoder<RangeEncoder> coder(range_, models_, mesh_, link_, open_.positions);
     for (VertexId v = 0; v < mesh_.levelVertices(); ++v) {
       if (!mesh_.maysplit(v)) continue;
@@ -155,15 +162,24 @@ class LogEncoder {
       coder.splits(v, level, splits);
       if (!splits) continue;
       if (Status s = record(coder, v, h_.fusions[fusion]); !s) return s;
-      if (estimatedBytes() < options_.chunkBytes) continue;
+      if (estimatedBytes() < chunkTarget()) continue;
       if (Status s = closeChunk(level, v + 1); !s) return s;
       open_.entry.firstLevel = level;
+      begun.reset();
     }
-    if (estimatedBytes() < options_.chunkBytes / 2) return {};
-    return closeChunk(level, kLevelEnd);  // near enough: let the next chunk begin with a level
+    // Near enough, if another level like this one would go further beyond the target than this one stays below it: let the next chunk begin with a level.
+    const std::uint64_t bytes = estimatedBytes(), target = chunkTarget();
+    const std::uint64_t levelBytes = begun ? bytes - *begun : target;
+    if (2 * bytes + levelBytes < 2 * target) return {};
+    return closeChunk(level, kLevelEnd);
   }
 
-  [[nodiscard]] std::uint64_t estimatedBytes() const { return range_.size() + open_.valueBits / 8; }
+  // The estimate of the values, corrected by how far it was off in the chunks before.
+  [[nodiscard]] std::uint64_t estimatedBytes() const { return range_.size() + open_.valueBits / 8 * (1 + valueBytes_) / (1 + valueBits_ / 8); }
+
+  [[nodiscard]] std::uint64_t chunkTarget() const {
+    return std::min<std::uint64_t>(options_.chunkBytes, std::max<std::uint64_t>(kLeastChunkBytes, body_.size() / kGrowth));
+  }
 
   Status record(RecordCoder<RangeEncoder>& coder, VertexId v, Fusion fusion) {
     const auto bad = [&](const char* what) { return fail(ErrorCode::kBadValue, "fusion of vertex " + std::to_string(fusion.fused) + ": " + what); };
@@ -306,6 +322,10 @@ class LogEncoder {
       if (Status s = addBlock(std::move(*block)); !s) return s;
       residuals.written().clear();
     }
+    if (!chunks_.empty()) {
+      for (std::size_t part = kPositionsPart; part < e.blocks.size(); ++part) valueBytes_ += e.blocks[part].size;
+      valueBits_ += open_.valueBits;
+    }
     chunks_.push_back(std::exchange(e, ChunkEntry{}));
     open_.valueBits = 0;
     return {};
@@ -384,6 +404,7 @@ class LogEncoder {
   std::vector<std::uint8_t> labelOf_;
   std::vector<std::pair<LocalCell, std::uint32_t>> deletedIds_;
   OpenChunk open_;
+  std::uint64_t valueBytes_ = 0, valueBits_ = 0;  // of the chunks closed since the base mesh: what the values took, and the estimates
   std::vector<ChunkEntry> chunks_;
   std::vector<std::uint32_t> dependencies_;
   std::vector<ManifestLevel> levels_;

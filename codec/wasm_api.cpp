@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "codec/level_columns.h"
 #include "codec/refiner.h"
 #include "proto/crc32c.h"
 
@@ -19,6 +20,7 @@ namespace {
 // One module instance is one refiner: a page that shows two logs makes two instances.
 std::optional<Refiner> refiner;
 std::string lastError;
+qtet::LevelColumns levelNumbers;
 
 int report(const Error& error) {
   lastError = error.text();
@@ -56,6 +58,17 @@ int qtet_open(const std::uint8_t* head, std::uint32_t bytes) {
 const char* qtet_error() { return lastError.c_str(); }
 
 std::uint32_t qtet_chunk_count() { return refiner ? static_cast<std::uint32_t>(refiner->index().chunks.size()) : 0; }
+
+std::uint32_t qtet_level_count() { return refiner ? refiner->index().chunks.back().lastLevel + 1 : 0; }
+
+int qtet_level_columns(const std::uint8_t* bytes, std::uint32_t size, std::uint32_t columns) {
+  if (!refiner) return noLog();
+  auto numbers = qtet::decodeLevelColumns(ByteView(bytes, size), qtet_level_count(), columns);
+  if (!numbers) return report(numbers.error());
+  levelNumbers = std::move(*numbers);
+  return 0;
+}
+const std::uint32_t* qtet_level_numbers() { return levelNumbers.data(); }
 
 double qtet_block_offset(std::uint32_t chunk, std::uint32_t part) {
   return hasBlock(chunk, part) ? static_cast<double>(refiner->index().block(chunk, part).offset) : 0;

@@ -19,6 +19,10 @@ int qtet_open(const std::uint8_t* head, std::uint32_t bytes);
 const char* qtet_error();
 
 std::uint32_t qtet_chunk_count();
+std::uint32_t qtet_level_count();
+/// Decodes the end of the manifest, the figures of all levels (codec/level_columns.h); qtet_level_numbers() then gives them until the next such call.
+int qtet_level_columns(const std::uint8_t* bytes, std::uint32_t size, std::uint32_t columns);
+const std::uint32_t* qtet_level_numbers();
 /// File offset (a double: exact up to 2^53), size and tuples of a block; part 0 structure, 1 positions, 2 + f field f.
 double qtet_block_offset(std::uint32_t chunk, std::uint32_t part);
 std::uint32_t qtet_block_size(std::uint32_t chunk, std::uint32_t part);

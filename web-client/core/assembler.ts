@@ -3,7 +3,7 @@
 import {kDracoCodec, type Codec} from './codec';
 import type {ValueDecoder} from './draco';
 import {QtetError} from './errors';
-import {manifestText, parseManifest, type Manifest} from './manifest';
+import {readManifest, type Manifest} from './manifest';
 import {kFirstFieldPart, kHeadPart, kPositionsPart, kStructurePart, type Frame} from './protocol';
 import {ByteLedger, kNoStatistics, statisticsOf, type Statistics} from './statistics';
 
@@ -47,7 +47,7 @@ export class Assembler {
 
   private takeHead(head: Uint8Array): void {
     this.codec.open(head);
-    this.manifest = parseManifest(manifestText(head));
+    this.manifest = readManifest(head, (bytes, columns) => this.codec.levelColumns(bytes, columns));
     this.ledger = new ByteLedger(this.codec, head.length);
     this.waiting.clear();
   }

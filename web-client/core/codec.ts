@@ -6,6 +6,8 @@ import {QtetError} from './errors';
 export interface Codec {
   open(head: Uint8Array): void;
   readonly chunkCount: number;
+  /** Numbers of all levels, column by column, from the end of the manifest. Throws `limit-exceeded`, `truncated`, `bad-value`. */
+  levelColumns(bytes: Uint8Array, columns: number): Uint32Array;
   blockSize(chunk: number, part: number): number;
   /** Tuples of a value block. */
   blockValues(chunk: number, part: number): number;
@@ -49,6 +51,9 @@ interface Exports {
   qtet_open(head: number, bytes: number): number;
   qtet_error(): number;
   qtet_chunk_count(): number;
+  qtet_level_count(): number;
+  qtet_level_columns(bytes: number, size: number, columns: number): number;
+  qtet_level_numbers(): number;
   qtet_block_size(chunk: number, part: number): number;
   qtet_block_values(chunk: number, part: number): number;
   qtet_field_association(field: number): number;
@@ -84,6 +89,11 @@ export class WasmCodec implements Codec {
   }
 
   get chunkCount(): number { return this.wasm.qtet_chunk_count() >>> 0; }
+  levelColumns(bytes: Uint8Array, columns: number): Uint32Array {
+    this.with([bytes], ([address]) => this.wasm.qtet_level_columns(address!, bytes.length, columns));
+    const count = columns * (this.wasm.qtet_level_count() >>> 0);
+    return new Uint32Array(this.wasm.memory.buffer, this.wasm.qtet_level_numbers() >>> 0, count).slice();
+  }
   blockSize(chunk: number, part: number): number { return this.wasm.qtet_block_size(chunk, part) >>> 0; }
   blockValues(chunk: number, part: number): number { return this.wasm.qtet_block_values(chunk, part) >>> 0; }
   blockCodec(chunk: number, part: number): number { return this.wasm.qtet_block_codec(chunk, part) >>> 0; }
