@@ -72,7 +72,7 @@ class PositionCoder {
 
  private:
   // How many digits of a difference go to the positions block: an edge of the star's mean length along the axis is about 2^kWholeEdge of its units.
-  static constexpr int kWholeEdge = 3, kHalfEdge = 4, kQuarterEdge = 5;
+  static constexpr int kWholeEdge = 2, kHalfEdge = 3, kQuarterEdge = 4;
   static constexpr std::size_t kShared = 4;
 
   // The middle of the link's vertices that only one prey vertex's triangles hold, for each prey vertex, and of all the others; from the fused vertex.
