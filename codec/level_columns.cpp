@@ -33,6 +33,7 @@ bool soundLevel(const LevelColumns& numbers, std::uint32_t levels, std::uint32_t
   const auto at = [&](std::uint32_t column) { return numbers[std::size_t{column} * levels + level]; };
   for (std::uint32_t c = 0; c < kCountColumns; ++c)
     if (at(c) > kMaxElements) return false;
+  if (numbers.size() / levels > kCountColumns && at(kCountColumns) > kMaxVolumeFigure) return false;
   for (std::uint32_t c = kCountColumns + 1; c + 1 < numbers.size() / levels; c += 2)
     if (at(c) > at(c + 1) || at(c + 1) > kMaxErrorFigure) return false;
   return true;

@@ -86,7 +86,7 @@ Status checkErrors(const Manifest& manifest) {
     if (!level.error) continue;
     if (level.error->fields.size() != manifest.fields.size()) return bad("has another number of fields than the manifest");
     const auto outside = [](double most) { return [most](double number) { return !(number >= 0 && number <= most); }; };
-    if (outside(4096)(level.error->volumeKept) || std::ranges::any_of(pairsOf(*level.error), outside(errorOfFigure(kMaxErrorFigure))))
+    if (outside(kMaxVolumeFigure / kVolumeFigure)(level.error->volumeKept) || std::ranges::any_of(pairsOf(*level.error), outside(errorOfFigure(kMaxErrorFigure))))
       return bad("holds what is no number, below 0 or beyond what a log can tell; measure again");
   }
   return {};
@@ -124,7 +124,7 @@ class LevelReader {
 
 LevelError readError(LevelReader& reader, std::size_t fields) {
   LevelError out;
-  out.volumeKept = reader.next() / kVolumeFigure;
+  out.volumeKept = reader.next() / static_cast<double>(kVolumeFigure);
   for (OneSidedDistance* side : {&out.toLevel, &out.toOriginal}) side->mean = reader.error(), side->max = reader.error();
   out.fields.resize(fields);
   for (FieldError& field : out.fields) field.rms = reader.error(), field.max = reader.error();

@@ -6,9 +6,6 @@
 
 namespace qtet {
 
-/// Of `volumeKept`: six digits behind the point.
-inline constexpr double kVolumeFigure = 1e6;
-
 /// The bytes of LogIndex::manifest. Errors are rounded up to three significant digits (codec/error_figure.h); either no level has one or every level
 /// has. Errors: bad-value (an error that is no number or out of range, a name too long), limit-exceeded (above kMaxManifestBytes).
 [[nodiscard]] Result<Bytes> manifestBlock(const Manifest& manifest);

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "codec/error_figure.h"
-#include "codec/log_manifest.h"
+#include "codec/level_columns.h"
 #include "simplify/measure_boundary.h"
 #include "simplify/measure_fields.h"
 #include "simplify/workers.h"

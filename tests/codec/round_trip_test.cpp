@@ -3,8 +3,8 @@
 
 #include "codec/value_block.h"
 #include "codec/log_file.h"
+#include "codec/log_manifest.h"
 #include "codec/log_writer.h"
-#include "proto/manifest.h"
 #include "simplify/qtetfusion.h"
 #include "simplify/verify.h"
 #include "tests/support/meshes.h"
@@ -190,7 +190,7 @@ TEST(LogWriter, theManifestListsWhatTheRefinerReaches) {
   ASSERT_TRUE(log);
   const auto index = LogIndex::parse(log->bytes);
   ASSERT_TRUE(index);
-  const auto manifest = manifestFromJson(index->manifest);
+  const auto manifest = manifestOf(*index);
   ASSERT_TRUE(manifest) << manifest.error().text();
   ASSERT_EQ(manifest->levels.size(), history->levels + 1u);
   Refiner refiner(*index);

@@ -4,6 +4,7 @@
 
 #include "codec/atomic_file.h"
 #include "codec/value_block.h"
+#include "codec/log_manifest.h"
 #include "codec/log_writer.h"
 #include "proto/messages.h"
 #include "simplify/qtetfusion.h"
@@ -74,6 +75,20 @@ Bytes dracoSeed(std::uint32_t components, std::uint32_t tuples, std::int32_t mag
   return w.take();
 }
 
+/// As manifest_fuzz reads it, with known errors.
+Bytes knownErrorsSeed() {
+  Manifest m;
+  m.generator = "qtet", m.source = "a.vtu";
+  m.fields = {{"p", 2, "float32", "point", 12, 0.5, {0, 1}, {0, 2}}, {"c", 1, "uint8", "cell", 8, 1, {0}, {0, 255}}};
+  for (std::uint32_t l = 0; l < 6; ++l) {
+    const double e = (5 - l) * 0.01;
+    m.levels.push_back({l, 100 + 10 * l * l, 40 + 3 * l, 50 + 2 * l, 0, LevelError{{e / 3, e}, {e / 4, e}, 1 - e, {{e / 9, e}, {0, e / 2}}}});
+  }
+  Bytes out = manifestBlock(m).value();
+  out.insert(out.begin(), 5);
+  return out;
+}
+
 /// Bytes as history_fuzz reads them: the mesh first, then values, options and damage at random.
 Bytes historySeed(std::uint8_t kind, std::uint32_t seed) {
   std::mt19937 random(seed);
@@ -98,7 +113,10 @@ int main(int argc, char** argv) {
   write(folder / "draco" / "large", dracoSeed(2, 30, 1 << 17));
   write(folder / "draco" / "sixteen", dracoSeed(16, 12, 300));
   const auto shortest = refinerLog(1, 1, 32768);
-  write(folder / "manifest" / "two-fields", shortest.index.manifest);
+  Bytes manifest = shortest.index.manifest;
+  manifest.insert(manifest.begin(), static_cast<std::uint8_t>(shortest.index.chunks.back().lastLevel));
+  write(folder / "manifest" / "two-fields", manifest);
+  write(folder / "manifest" / "known-errors", knownErrorsSeed());
   OpenMessage open{"fin", std::string(64, 'a'), {"Velocity", "cell:Region"}, 3, {{"Velocity", 2}}, 1 << 20};
   write(folder / "message" / "open", toJson(ClientMessage(open)));
   write(folder / "message" / "credit", toJson(ClientMessage(CreditMessage{65536})));
