@@ -354,12 +354,12 @@ TEST_F(DamagedLog, versionsAndFlagsOfTheFutureAreRefused) {
   const std::size_t rowsAt = LogIndex::kHeaderBytes + index_.manifest.size() + 4 * index_.fields.size();
   for (std::size_t chunk = 0; chunk < index_.chunks.size(); ++chunk) {
     const std::size_t row = rowsAt + chunk * rowBytes;
-    for (std::size_t reserved = 50; reserved < 56; ++reserved)
+    for (std::size_t reserved = 46; reserved < LogIndex::kChunkEntryBytes; ++reserved)
       expectRefused(patched(row + reserved, 0x40), "reserved", "row " + std::to_string(chunk));
     for (const std::uint8_t codec : std::initializer_list<std::uint8_t>{0, 2, 3, 7, 255})
-      expectRefused(patched(row + 48, codec), "codec", "structure codec " + std::to_string(codec));
+      expectRefused(patched(row + 44, codec), "codec", "structure codec " + std::to_string(codec));
     for (const std::uint8_t codec : std::initializer_list<std::uint8_t>{0, 1, 3, 7, 255})
-      expectRefused(patched(row + 49, codec), "codec", "value codec " + std::to_string(codec));
+      expectRefused(patched(row + 45, codec), "codec", "value codec " + std::to_string(codec));
   }
 }
 
