@@ -89,7 +89,7 @@ Status check(const LogIndex& index, const Header& header) {
     vertices += e.newVertices, cells += e.newTetrahedra, triangles += e.newBoundaryTriangles;
     if (vertices > kMaxElements || cells > kMaxElements || triangles > kMaxElements)
       return bad(ErrorCode::kLimitExceeded, "more than 2^29 vertices, cells or triangles");
-    if (e.structureCodec != CodecId::kRange || (e.valueCodec != CodecId::kDraco && e.valueCodec != CodecId::kEmpty))
+    if (e.structureCodec != CodecId::kRange || (e.valueCodec != CodecId::kDraco && e.valueCodec != CodecId::kAdaptive && e.valueCodec != CodecId::kEmpty))
       return bad(ErrorCode::kBadCodec, "an unknown codec id");
     if (e.valueCodec == CodecId::kEmpty && e.size() > e.blocks[kStructurePart].size)
       return bad(ErrorCode::kBadCodec, "value blocks of the codec 'no bytes' that have bytes");

@@ -16,7 +16,8 @@ enum class Layout : std::uint8_t { kStream = 0, kRegions = 1 };
 enum class CodecId : std::uint8_t {
   kEmpty = 0,      ///< no bytes
   kRange = 1,      ///< structure: the adaptive binary range coder
-  kDraco = 2,      ///< values: one Draco point cloud, sequential, one int32 attribute
+  kDraco = 2,      ///< values: one Draco point cloud, sequential, one int32 attribute, and digits
+  kAdaptive = 3,   ///< values: the adaptive binary range coder
 };
 
 /// What the values of a field belong to.

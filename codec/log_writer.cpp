@@ -306,6 +306,7 @@ class LogEncoder {
     ChunkEntry& e = open_.entry;
     e.lastLevel = level;
     e.endSlot = endSlot;
+    e.valueCodec = options_.valueCodec;
     if (chunks_.empty()) {
       e.newVertices = static_cast<std::uint32_t>(mesh_.points.size());
       e.newTetrahedra = static_cast<std::uint32_t>(mesh_.tetrahedra.size());
@@ -317,7 +318,7 @@ class LogEncoder {
     if (Status s = addBlock(range_.finish()); !s) return s;
     for (std::size_t part = 0; part <= h_.fields.size(); ++part) {
       Values& residuals = part == 0 ? open_.positions : open_.fields[part - 1];
-      Result<Bytes> block = encodeValueBlock(residuals.written(), part == 0 ? 3 : h_.fields[part - 1].components);
+      Result<Bytes> block = encodeValueBlock(residuals.written(), part == 0 ? 3 : h_.fields[part - 1].components, options_.valueCodec);
       if (!block) return std::unexpected(block.error());
       if (Status s = addBlock(std::move(*block)); !s) return s;
       residuals.written().clear();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "codec/adaptive_block.h"
 #include "codec/draco_block.h"
 #include "codec/value_digits.h"
 
@@ -13,10 +14,11 @@ constexpr std::size_t kCountBytes = 4;
 
 }  // namespace
 
-Result<Bytes> encodeValueBlock(std::span<const std::int32_t> values, std::uint32_t components) {
+Result<Bytes> encodeValueBlock(std::span<const std::int32_t> values, std::uint32_t components, CodecId codec) {
   if (values.empty()) return Bytes{};
   if (std::ranges::find(values, std::numeric_limits<std::int32_t>::min()) != values.end())
     return fail(ErrorCode::kLimitExceeded, "a difference of 2^31, which a value block cannot hold; use fewer bits");
+  if (codec == CodecId::kAdaptive) return encodeAdaptiveBlock(values, components);
   const SymbolsAndDigits parts = splitValues(values);
   Result<Bytes> bytes = encodeDracoBlock(parts.symbols, components);
   if (!bytes) return bytes;
@@ -27,7 +29,8 @@ Result<Bytes> encodeValueBlock(std::span<const std::int32_t> values, std::uint32
   return out.take();
 }
 
-Result<std::vector<std::int32_t>> decodeValueBlock(ByteView bytes, std::uint32_t components, std::uint32_t tuples) {
+Result<std::vector<std::int32_t>> decodeValueBlock(ByteView bytes, std::uint32_t components, std::uint32_t tuples, CodecId codec) {
+  if (codec == CodecId::kAdaptive) return decodeAdaptiveBlock(bytes, components, tuples);
   if (tuples == 0) return bytes.empty() ? Result<std::vector<std::int32_t>>{} : fail(ErrorCode::kBadValue, "a value block of no values has bytes");
   if (bytes.size() < kCountBytes) return fail(ErrorCode::kTruncated, "a value block of less than four bytes");
   const auto digits = ByteReader(bytes.last(kCountBytes)).read<std::uint32_t>();

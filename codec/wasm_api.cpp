@@ -6,6 +6,7 @@
 #include <string>
 
 #include "codec/level_columns.h"
+#include "codec/adaptive_block.h"
 #include "codec/refiner.h"
 #include "codec/value_digits.h"
 #include "proto/crc32c.h"
@@ -26,6 +27,13 @@ qtet::LevelColumns levelNumbers;
 int report(const Error& error) {
   lastError = error.text();
   return 1 + static_cast<int>(error.code);
+}
+
+qtet::Result<std::vector<std::int32_t>> blockValues(std::uint32_t chunk, std::uint32_t part, std::span<const std::int32_t> symbols, ByteView digits) {
+  const LogIndex& index = refiner->index();
+  if (chunk < index.chunks.size() && part < index.parts() && index.chunks[chunk].valueCodec == qtet::CodecId::kAdaptive)
+    return qtet::decodeAdaptiveBlock(digits, index.components(part), index.tuples(chunk, part));
+  return qtet::joinValues(symbols, digits);
 }
 
 int noLog() { return report({ErrorCode::kBadOrder, "no log is open: call qtet_open first"}); }
@@ -97,7 +105,7 @@ int qtet_check_block(std::uint32_t chunk, std::uint32_t part, const std::uint8_t
 int qtet_apply(std::uint32_t chunk, const std::uint8_t* structure, std::uint32_t size, const std::int32_t* symbols, std::uint32_t count,
                const std::uint8_t* digits, std::uint32_t digitBytes) {
   if (!refiner) return noLog();
-  const auto positions = qtet::joinValues(std::span(symbols, count), ByteView(digits, digitBytes));
+  const auto positions = blockValues(chunk, qtet::kPositionsPart, std::span(symbols, count), ByteView(digits, digitBytes));
   if (!positions) return report(positions.error());
   const auto status = refiner->apply(chunk, ByteView(structure, size), *positions);
   return status ? 0 : report(status.error());
@@ -106,7 +114,7 @@ int qtet_apply(std::uint32_t chunk, const std::uint8_t* structure, std::uint32_t
 int qtet_apply_field(std::uint32_t field, std::uint32_t chunk, const std::int32_t* symbols, std::uint32_t count, const std::uint8_t* digits,
                      std::uint32_t digitBytes) {
   if (!refiner) return noLog();
-  const auto values = qtet::joinValues(std::span(symbols, count), ByteView(digits, digitBytes));
+  const auto values = blockValues(chunk, qtet::kFirstFieldPart + field, std::span(symbols, count), ByteView(digits, digitBytes));
   if (!values) return report(values.error());
   const auto status = refiner->applyField(field, chunk, *values);
   return status ? 0 : report(status.error());

@@ -36,7 +36,7 @@ std::uint32_t qtet_block_codec(std::uint32_t chunk, std::uint32_t part);
 int qtet_check_block(std::uint32_t chunk, std::uint32_t part, const std::uint8_t* bytes, std::uint32_t size);
 
 /// Refiner::apply; `symbols` are the positions block's `count` integers (3 a tuple) as the Draco decoder gave them, `digits` the `digitBytes` bytes behind
-/// the Draco stream (codec/value_digits.h).
+/// the Draco stream (codec/value_digits.h). Of an adaptive block, no symbols and the whole block as digits.
 int qtet_apply(std::uint32_t chunk, const std::uint8_t* structure, std::uint32_t size, const std::int32_t* symbols, std::uint32_t count,
                const std::uint8_t* digits, std::uint32_t digitBytes);
 /// Refiner::applyField, of a field's block in the same two parts.

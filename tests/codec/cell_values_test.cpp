@@ -55,7 +55,7 @@ class CellFieldLog : public ::testing::Test {
     LatticeMesh mesh = testing::gridMesh(4, 1);
     testing::addCellFields(mesh);
     LogWriterOptions options;
-    options.chunkBytes = 600;
+    options.chunkBytes = 300;
     bytes_ = encodeLog(simplify(mesh, {}).value(), options).value().bytes;
     index_ = LogIndex::parse(bytes_).value();
   }

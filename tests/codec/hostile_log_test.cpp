@@ -7,6 +7,7 @@
 #include "codec/base_coder.h"
 #include "codec/draco_block.h"
 #include "codec/log_file.h"
+#include "tests/support/forged_log.h"
 #include "tests/support/meshes.h"
 
 namespace qtet {
@@ -29,7 +30,7 @@ Status decodeAll(const LogFile& log) {
 
 class HostileLog : public ::testing::Test {
  protected:
-  HostileLog() : folder_(testing::freshFolder("hostile")), bytes_(readFile(testing::writeSampleLog(folder_, "good", 3, 1, 600))) {
+  HostileLog() : folder_(testing::freshFolder("hostile")), bytes_(readFile(testing::writeSampleLog(folder_, "good", 3, 1, 200))) {
     index_ = *LogIndex::parse(bytes_);
   }
 
@@ -43,9 +44,7 @@ class HostileLog : public ::testing::Test {
   Bytes forged(const std::function<void(LogIndex&)>& change) {
     LogIndex index = index_;
     change(index);
-    Bytes out = index.encode();
-    out.insert(out.end(), bytes_.begin() + static_cast<std::ptrdiff_t>(index_.headBytes()), bytes_.end());
-    return out;
+    return testing::withFront(bytes_, index);
   }
 
   void expectRefused(ErrorCode code, const std::function<void(LogIndex&)>& change) {

@@ -32,11 +32,8 @@ Bytes forged(const Bytes& good, const std::function<void(LogIndex&)>& table, con
   if (body) body(parts.blocks);
   Bytes whole = parts.together();
   if (!table) return whole;
-  const auto tail = static_cast<std::ptrdiff_t>(parts.index.headBytes());
   table(parts.index);
-  Bytes out = parts.index.encode();
-  out.insert(out.end(), whole.begin() + tail, whole.end());
-  return out;
+  return testing::withFront(whole, parts.index);
 }
 
 /// Header and manifest agree that the layout is one which this build cannot decode.
@@ -161,7 +158,7 @@ int main(int argc, char** argv) {
   if (argc != 2) return std::fprintf(stderr, "usage: qtet_golden FOLDER\n"), 2;
   const std::filesystem::path folder = argv[1];
   using qtet::testing::gridMesh;
-  const qtet::Bytes solid = qtet::logOf(gridMesh(3, 1), 500);
+  const qtet::Bytes solid = qtet::logOf(gridMesh(3, 1), 150);
   qtet::write(folder / "valid" / "solid.qtet", solid);
   qtet::write(folder / "valid" / "tunnel.qtet", qtet::logOf(gridMesh(3, 2, [](int i, int j, int) { return i != 1 || j != 1; }), 300));
   qtet::write(folder / "valid" / "pinched.qtet", qtet::logOf(gridMesh(4, 3, [](int i, int j, int) { return (i < 2) == (j < 2); }), 700));

@@ -103,11 +103,8 @@ class DamagedLog : public ::testing::Test {
   /// A change of the table alone, which the blocks then contradict.
   void expectTableRefused(const std::string& word, const std::string& what, const std::function<void(LogIndex&)>& change) {
     LogIndex index = LogIndex::parse(goodLog()).value();
-    const std::uint64_t head = index.headBytes();
     change(index);
-    Bytes bytes = index.encode();
-    bytes.insert(bytes.end(), goodLog().begin() + static_cast<std::ptrdiff_t>(head), goodLog().end());
-    expectRefused(bytes, word, what);
+    expectRefused(testing::withFront(goodLog(), index), word, what);
   }
   void expectManifestRefused(const std::string& word, const std::string& what, const std::function<void(Manifest&)>& change) {
     expectRefused(word, what, [&](TakenApart& parts) {

@@ -1,6 +1,6 @@
 // Puts arriving blocks into the codec in the order that it wants: head, structure with positions, then fields behind the mesh.
 
-import {kDracoCodec, type BlockValues, type Codec} from './codec';
+import {kAdaptiveCodec, kDracoCodec, type BlockValues, type Codec} from './codec';
 import type {ValueDecoder} from './draco';
 import {QtetError} from './errors';
 import {readManifest, type Manifest} from './manifest';
@@ -75,6 +75,7 @@ export class Assembler {
     const count = this.codec.blockValues(chunk, part);
     if (count === 0 && bytes.length === 0) return {symbols: new Int32Array(0), digits: bytes};
     const id = this.codec.blockCodec(chunk, part);
+    if (id === kAdaptiveCodec) return {symbols: new Int32Array(0), digits: bytes};
     if (id !== kDracoCodec) throw new QtetError('bad-codec', `Chunk ${chunk} uses codec ${id}, which this viewer does not know.`);
     if (count === 0) throw new QtetError('bad-value', `Chunk ${chunk} has a value block although it has no values.`);
     const end = bytes.length - kDigitCountBytes;

@@ -32,7 +32,7 @@ export interface Codec {
   digest(): string;
 }
 
-/** A value block in its two parts (FORMAT.md, "Value blocks"): what Draco decodes, and the digits behind it. */
+/** A value block in its two parts (FORMAT.md, "Value blocks"): what Draco decodes, and the digits behind it; an adaptive block is all digits. */
 export interface BlockValues {
   symbols: Int32Array;
   digits: Uint8Array;
@@ -40,6 +40,7 @@ export interface BlockValues {
 
 /** CodecId of codec/log_index.h. */
 export const kDracoCodec = 2;
+export const kAdaptiveCodec = 3;
 /** Association of codec/log_index.h. */
 const kOfCells = 1;
 
