@@ -197,6 +197,23 @@ TEST(PositionCoder, whatEverTheBytesSayPointsStayInRange) {
   EXPECT_GT(refused, 1500u);
 }
 
+TEST(PositionCoder, aDifferenceBeyondTheRangeIsRefusedOnBothSides) {
+  std::mt19937 random(7);
+  for (const std::int32_t wild : {std::numeric_limits<std::int32_t>::max(), std::numeric_limits<std::int32_t>::min()}) {
+    const Record r = randomRecord(random, 8, 1, 60);
+    const Coded coded = encoded(std::span(&r, 1));
+    const std::vector<std::int32_t> given(coded.values.size(), wild);
+    const StarMesh star = starOf(r);
+    RangeDecoder decoder(coded.structure);
+    PositionModels models;
+    Values values(given);
+    Split split;
+    split.k = r.split.k;
+    PositionCoder<RangeDecoder>(decoder, models, values, 0, star.mesh, star.link).code(split);
+    EXPECT_TRUE(values.bad()) << wild;
+  }
+}
+
 TEST(PositionCoder, aBlockThatEndsTooEarlyIsNoticed) {
   std::mt19937 random(6);
   for (int i = 0; i < 50; ++i) {
