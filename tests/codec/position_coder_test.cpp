@@ -120,19 +120,34 @@ TEST(PositionCoder, aRecordTakesOneTupleANewVertex) {
   }
 }
 
-TEST(PositionCoder, valuesAreAlikeWhateverTheStarsSize) {
-  std::vector<double> means;
-  for (const std::int32_t scale : {64, 512, 4096}) {
-    std::mt19937 random(3);
-    std::vector<Record> records;
-    for (int i = 0; i < 400; ++i) records.push_back(randomRecord(random, 16, scale, scale));
-    const std::vector<std::int32_t> values = encoded(records).values;
-    double sum = 0;
-    for (const std::int32_t value : values) sum += std::abs(value);
-    means.push_back(sum / static_cast<double>(values.size()));
+/// The same record, all distances from the middle of a lattice of 20 bits times `factor`.
+Record enlarged(Record r, std::int32_t factor) {
+  constexpr std::int32_t kMiddle = 1 << 19;
+  const auto enlarge = [&](LatticePoint& p) {
+    for (std::int32_t& x : p) x = kMiddle + factor * (x - kMiddle);
+  };
+  enlarge(r.fused);
+  for (LatticePoint& p : r.split.points) enlarge(p);
+  for (std::int32_t& x : r.scale) x *= factor;
+  return r;
+}
+
+TEST(PositionCoder, valuesAreThoseOfAStarOfAnySize) {
+  std::mt19937 random(3);
+  std::vector<Record> records;
+  while (records.size() < 300)
+    if (const Record r = randomRecord(random, 20, 256, 256); r.split.placement == Placement::kAtPrey) records.push_back(r);
+  std::vector<std::vector<std::int32_t>> values;
+  for (const std::int32_t factor : {1, 8, 64}) {
+    std::vector<Record> larger;
+    for (const Record& r : records) larger.push_back(enlarged(r, factor));
+    values.push_back(encoded(larger).values);
   }
-  EXPECT_LT(std::ranges::max(means), 128);
-  EXPECT_LT(std::ranges::max(means), 2 * std::ranges::min(means)) << "units are powers of two";
+  for (std::size_t i = 0; i < values[0].size(); ++i) {
+    EXPECT_NEAR(values[0][i], values[1][i], 1) << i;
+    EXPECT_NEAR(values[0][i], values[2][i], 1) << i;
+  }
+  EXPECT_LT(std::ranges::max(values[2]), 256);
 }
 
 TEST(PositionCoder, preyOnTheFusedVertexsPlanesTakeFewerDigits) {
@@ -180,6 +195,23 @@ TEST(PositionCoder, whatEverTheBytesSayPointsStayInRange) {
       }
   }
   EXPECT_GT(refused, 1500u);
+}
+
+TEST(PositionCoder, aDifferenceBeyondTheRangeIsRefusedOnBothSides) {
+  std::mt19937 random(7);
+  for (const std::int32_t wild : {std::numeric_limits<std::int32_t>::max(), std::numeric_limits<std::int32_t>::min()}) {
+    const Record r = randomRecord(random, 8, 1, 60);
+    const Coded coded = encoded(std::span(&r, 1));
+    const std::vector<std::int32_t> given(coded.values.size(), wild);
+    const StarMesh star = starOf(r);
+    RangeDecoder decoder(coded.structure);
+    PositionModels models;
+    Values values(given);
+    Split split;
+    split.k = r.split.k;
+    PositionCoder<RangeDecoder>(decoder, models, values, 0, star.mesh, star.link).code(split);
+    EXPECT_TRUE(values.bad()) << wild;
+  }
 }
 
 TEST(PositionCoder, aBlockThatEndsTooEarlyIsNoticed) {
