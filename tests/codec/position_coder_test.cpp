@@ -209,7 +209,7 @@ TEST(PositionCoder, aDifferenceBeyondTheRangeIsRefusedOnBothSides) {
     Values values(given);
     Split split;
     split.k = r.split.k;
-    PositionCoder<RangeDecoder>(decoder, models, values, 0, star.mesh, star.link).code(split);
+    PositionCoder<RangeDecoder>(decoder, models, values, star.mesh, star.link).code(0, split);
     EXPECT_TRUE(values.bad()) << wild;
   }
 }

@@ -36,15 +36,6 @@ Bytes forged(const Bytes& good, const std::function<void(LogIndex&)>& table, con
   return testing::withFront(whole, parts.index);
 }
 
-/// Header and manifest agree that the layout is one which this build cannot decode.
-Bytes asRegions(const Bytes& good) {
-  testing::TakenApart parts = testing::takeApart(good);
-  const std::string stream = "\"stream\"";
-  parts.index.layout = Layout::kRegions;
-  parts.index.manifest.replace(parts.index.manifest.find(stream), stream.size(), "\"regions\"");
-  return parts.together();
-}
-
 void write(const std::filesystem::path& path, const Bytes& bytes) {
   std::filesystem::create_directories(path.parent_path());
   if (const Status s = writeFileAtomically(path, bytes); !s) std::fprintf(stderr, "%s\n", s.error().text().c_str());
@@ -101,7 +92,7 @@ void writeMustFail(const std::filesystem::path& folder, const Bytes& good) {
   write(folder / "bad-magic.text-mode-copy.qtet", patched(5, 0x0A));
   write(folder / "bad-version.major-1.qtet", patched(8, 1));
   write(folder / "bad-version.major-3.qtet", patched(8, 3));
-  write(folder / "bad-version.regions.qtet", asRegions(good));
+  write(folder / "bad-version.regions.qtet", forged(good, [](LogIndex& i) { i.layout = Layout::kRegions; }));
   write(folder / "truncated.header.qtet", cut(63));
   write(folder / "truncated.manifest.qtet", cut(100));
   write(folder / "truncated.last-byte.qtet", cut(good.size() - 1));
@@ -125,11 +116,11 @@ void writeMustFail(const std::filesystem::path& folder, const Bytes& good) {
   write(folder / "limit-exceeded.levels.qtet", entry(index.chunks.size() - 1, [](ChunkEntry& e) { e.lastLevel = 4097; }));
   write(folder / "limit-exceeded.records.qtet", entry(1, [](ChunkEntry& e) { e.records = 0x40000000; }));
   write(folder / "bad-codec.unknown-id.qtet", entry(1, [](ChunkEntry& e) { e.valueCodec = static_cast<CodecId>(77); }));
-  write(folder / "bad-codec.not-draco.qtet", forged(good, {}, [](auto& blocks) { blocks[1][kPositionsPart] = Bytes(50, 0x5A); }));
+  write(folder / "bad-codec.not-draco.qtet", forged(good, {}, [](auto& blocks) { blocks[1][kPositionsPart] = Bytes(50, 0x5A), std::fill_n(blocks[1][kPositionsPart].end() - 4, 4, 0); }));
   write(folder / "bad-value.structure-of-noise.qtet", forged(good, {}, [](auto& blocks) { for (auto& b : blocks[1][kStructurePart]) b = static_cast<std::uint8_t>(b * 7 + 3); }));
   write(folder / "bad-value.structure-too-long.qtet", forged(good, {}, [](auto& blocks) { blocks[1][kStructurePart].push_back(0); }));
   writeBadHeads(folder, good);
-  write(folder / "truncated.structure.qtet", forged(good, {}, [](auto& blocks) { blocks[2][kStructurePart].resize(blocks[2][kStructurePart].size() / 2); }));
+  write(folder / "bad-value.structure-cut.qtet", forged(good, {}, [](auto& blocks) { blocks[2][kStructurePart].resize(blocks[2][kStructurePart].size() / 2); }));
 }
 
 /// What the valid files decode to, in the form that sha256sum writes.

@@ -344,7 +344,7 @@ TEST_F(DamagedLog, versionsAndFlagsOfTheFutureAreRefused) {
     for (const std::uint8_t codec : std::initializer_list<std::uint8_t>{0, 2, 3, 7, 15})
       expectTableRefused("codec", "structure codec " + std::to_string(codec),
                          [&](LogIndex& i) { i.chunks[chunk].structureCodec = static_cast<CodecId>(codec); });
-    for (const std::uint8_t codec : std::initializer_list<std::uint8_t>{0, 1, 3, 7, 15})
+    for (const std::uint8_t codec : std::initializer_list<std::uint8_t>{0, 1, 4, 7, 15})
       expectTableRefused("codec", "value codec " + std::to_string(codec),
                          [&](LogIndex& i) { i.chunks[chunk].valueCodec = static_cast<CodecId>(codec); });
   }

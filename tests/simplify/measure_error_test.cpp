@@ -86,7 +86,7 @@ TEST(MeasureLevels, aVertexPutIntoItsOwnPlaceChangesNothing) {
   for (const LevelError& error : errors) {
     EXPECT_LT(error.boundaryDistance(), 1e-12);
     EXPECT_EQ(error.volumeKept, 1);
-    EXPECT_LT(error.fields[0].max, 1e-12);
+    EXPECT_LE(error.fields[0].max, 1e-12);
   }
 }
 
@@ -139,8 +139,9 @@ TEST(MeasureLevels, aVectorsErrorIsTheLengthOfTheDifference) {
   displace(h, 7, h.points[7], 120);
   h.values[1].insert(h.values[1].end(), {120 - 30, 120 - 60, 120 - 60});  // off by 90
   const LevelError error = measured(h)[0];
-  EXPECT_NEAR(error.fields[1].max, 90 / kDiagonal, 1e-4);  // the values fill the same box as the points
-  EXPECT_LT(error.fields[0].max, 1e-12);
+  EXPECT_GE(error.fields[1].max, 90 / kDiagonal);  // the values fill the same box as the points
+  EXPECT_LE(error.fields[1].max, 1.01 * 90 / kDiagonal);  // three digits, rounded up
+  EXPECT_LE(error.fields[0].max, 1e-12);
 }
 
 TEST(MeasureLevels, aConstantFieldHasNoErrorAtAll) {
