@@ -26,9 +26,10 @@ import threading
 # for VTK the scale (vtk_decimation.h).
 SETTINGS = [
     ("qtet", "qtet", ["--fields", "{field}", "--field-bits", "16", "--measure", "none"]),
-    ("qtet, shape first", "qtet", ["--fields", "{field}", "--field-bits", "16", "--measure", "none", "--hull-weight", "15000"]),
+    ("qtet, optimal", "qtet", ["--fields", "{field}", "--field-bits", "16", "--measure", "none", "--placement", "optimal"]),
     ("VTK", "vtk", "1"),
     ("VTK x 1000", "vtk", "1000"),
+    ("qtet, optimal, shape first", "qtet", ["--fields", "{field}", "--field-bits", "16", "--measure", "none", "--placement", "optimal", "--hull-weight", "15000"]),
 ]
 REDUCTIONS = [50, 80, 90, 95, 99]  # per cent of the cells
 POSITION_BITS = "16"
