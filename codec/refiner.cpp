@@ -49,6 +49,7 @@ struct Refiner::State {
   bool broken = false;
   std::uint32_t stopLevel = kMaxLevels + 1;
   bool stopped = false;          // inside a chunk, at stopLevel
+  SplitObserver* observer = nullptr;
 
   Status base(const ChunkEntry& entry, ByteView structure, Values& positions);
   Status records(std::uint32_t chunk, const ChunkEntry& entry, ByteView structure, Values& positions);
@@ -182,6 +183,7 @@ Status Refiner::State::split(std::uint32_t chunk, RecordCoder<RangeDecoder>& cod
   for (int i = 0; i < split.k; ++i)
     for (const std::int32_t x : split.points[static_cast<std::size_t>(i)])
       if (x < 0 || x >= size) return refuse(ErrorCode::kBadValue, chunk, "a vertex lies outside the lattice");
+  if (observer != nullptr) observer->beforeSplit(v, mesh, link, split);
   births.add(v, mesh, link, split);
   if (hasCellField) ancestry.addRestored(mesh.star(v), link, split.deleted);
   mesh.apply(v, link, split);
@@ -270,6 +272,7 @@ void Refiner::State::codeCells(FieldState& f, std::uint32_t components, std::uin
   if (chunk == 0) inheritCells(f, components, chunkCells[1]);
 }
 
+void Refiner::observe(SplitObserver* observer) { state_->observer = observer; }
 void Refiner::stopAtLevel(std::uint32_t level) { state_->stopLevel = level; }
 
 const LogIndex& Refiner::index() const { return state_->index; }

@@ -28,20 +28,6 @@ struct Request {
   std::optional<MeasureOptions> measure;
 };
 
-/// The names between commas; "all" is nullopt, "none" the empty list.
-FieldNames parseFields(const std::string& text) {
-  if (text == "all") return std::nullopt;
-  std::vector<std::string> names;
-  if (text == "none") return names;
-  std::istringstream stream(text);
-  for (std::string name; std::getline(stream, name, ',');) {
-    if (name.empty()) throw UsageError("--fields '" + text + "' holds an empty name; give all, none, or names between commas");
-    names.push_back(name);
-  }
-  if (names.empty()) throw UsageError("--fields is empty; give all, none, or names between commas");
-  return names;
-}
-
 Request requestOf(const ParsedWords& parsed) {
   Request request;
   request.input = parsed.get<std::string>("IN");
@@ -49,7 +35,7 @@ Request requestOf(const ParsedWords& parsed) {
   request.algorithm = parsed.get<std::string>("algorithm");
   if (request.algorithm != "qtet" && request.algorithm != "paper")
     throw UsageError("--algorithm '" + request.algorithm + "' is not known; give qtet or paper");
-  request.fields = parseFields(parsed.get<std::string>("fields"));
+  request.fields = parseFieldNames(parsed.get<std::string>("fields"));
   request.quantise.positionBits = parsed.integer("position-bits", kMinPositionBits, kMaxPositionBits);
   request.quantise.fieldBits = parsed.integer("field-bits", kMinFieldBits, kMaxFieldBits);
   request.fusion = fusionRequestOf(parsed);
