@@ -148,6 +148,7 @@ Status check(const LogIndex& index, const Header& header) {
     const std::uint64_t decisions = kMaxDecisionsPerByte * (std::uint64_t{e.blocks[kStructurePart].size} + 4);
     if (e.records > decisions || e.newVertices > 4 * decisions || e.newTetrahedra > 8 * decisions || e.newBoundaryTriangles > 8 * decisions)
       return bad(ErrorCode::kLimitExceeded, "it promises more than its bytes can hold");
+    if (e.records > e.newVertices) return bad(ErrorCode::kBadValue, "more records than vertices");  // so that tuples() fits its type
     if (e.lastLevel > kMaxLevels) return bad(ErrorCode::kLimitExceeded, "more than 4,096 levels");
     level = e.lastLevel;
     if (std::uint64_t{e.firstDependency} + e.dependencyCount > index.dependencies.size())

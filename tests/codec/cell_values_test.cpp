@@ -82,8 +82,8 @@ TEST_F(CellFieldLog, theTableTellsCellFieldsFromPointFields) {
   EXPECT_EQ(index_.fields[3].components, 2u);
   ASSERT_GT(index_.chunks.size(), 2u);
   for (std::uint32_t chunk = 0; chunk < index_.chunks.size(); ++chunk) {
-    EXPECT_EQ(index_.tuples(chunk, kPositionsPart), index_.chunks[chunk].values);
-    EXPECT_EQ(index_.tuples(chunk, kFirstFieldPart), index_.chunks[chunk].values);
+    EXPECT_EQ(index_.tuples(chunk, kPositionsPart), index_.chunks[chunk].newVertices);
+    EXPECT_EQ(index_.tuples(chunk, kFirstFieldPart), index_.chunks[chunk].newVertices + index_.chunks[chunk].records);
     EXPECT_EQ(index_.tuples(chunk, kRegionPart), index_.chunks[chunk].newTetrahedra);
   }
 }

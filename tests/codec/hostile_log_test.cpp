@@ -107,7 +107,7 @@ TEST_F(HostileLog, everyFlippedBitIsNoticed) {
 TEST_F(HostileLog, damageBelowTheChecksumsNeverCrashesTheRefiner) {
   std::vector<std::vector<std::int32_t>> positions;
   for (std::uint32_t c = 0; c < index_.chunks.size(); ++c)
-    positions.push_back(*decodeDracoBlock(ByteView(bytes_).subspan(index_.block(c, 1).offset, index_.block(c, 1).size), 3, index_.chunks[c].values));
+    positions.push_back(*decodeDracoBlock(ByteView(bytes_).subspan(index_.block(c, 1).offset, index_.block(c, 1).size), 3, index_.tuples(c, kPositionsPart)));
   std::size_t refused = 0;
   std::size_t tried = 0;
   for (std::uint32_t bad = 0; bad < index_.chunks.size(); ++bad) {
@@ -129,7 +129,7 @@ TEST_F(HostileLog, damageBelowTheChecksumsNeverCrashesTheRefiner) {
 }
 
 TEST_F(HostileLog, countsThatLieAreNoticed) {
-  for (const auto member : {&ChunkEntry::newVertices, &ChunkEntry::newTetrahedra, &ChunkEntry::newBoundaryTriangles, &ChunkEntry::values})
+  for (const auto member : {&ChunkEntry::newVertices, &ChunkEntry::newTetrahedra, &ChunkEntry::newBoundaryTriangles})
     for (const std::uint32_t chunk : {0u, 1u})
       for (const int by : {-1, 1}) {
         const auto log = open(forged([&](LogIndex& i) { i.chunks[chunk].*member += static_cast<std::uint32_t>(by); }));
@@ -163,7 +163,7 @@ TEST_F(HostileLog, aLatticeTooSmallForItsPointsIsRefused) {
 TEST_F(HostileLog, aBaseMeshWhosePositionsFailLeavesNoCellsBehind) {
   const BlockEntry& block = index_.block(0, kStructurePart);
   Refiner refiner(index_);
-  const std::vector<std::int32_t> far(std::size_t{index_.chunks[0].values} * 3, 1 << 20);
+  const std::vector<std::int32_t> far(std::size_t{index_.tuples(0, kPositionsPart)} * 3, 1 << 20);
   ASSERT_FALSE(refiner.apply(0, ByteView(bytes_).subspan(block.offset, block.size), far));
   EXPECT_TRUE(refiner.tetrahedra().empty());
   EXPECT_TRUE(refiner.boundary().empty());
@@ -192,11 +192,11 @@ TEST(Refiner, aLinkOfTwoSpheresIsRefused) {
   LogIndex index;
   index.positionBits = 10;
   index.chunks.resize(2);
-  index.chunks[0].newVertices = index.chunks[0].values = 7;
+  index.chunks[0].newVertices = 7;
   index.chunks[0].newTetrahedra = 2;
   index.chunks[0].newBoundaryTriangles = 8;
   index.chunks[1].firstLevel = index.chunks[1].lastLevel = 1;
-  index.chunks[1].newVertices = index.chunks[1].values = index.chunks[1].newTetrahedra = index.chunks[1].records = 3;
+  index.chunks[1].newVertices = index.chunks[1].newTetrahedra = index.chunks[1].records = 3;
   for (std::uint8_t seed = 0; seed < 64; ++seed) {
     Refiner refiner(index);
     std::vector<std::int32_t> positions(21);

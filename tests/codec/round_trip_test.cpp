@@ -196,7 +196,7 @@ TEST(LogWriter, theManifestListsWhatTheRefinerReaches) {
   Refiner refiner(*index);
   for (std::uint32_t chunk = 0; chunk < index->chunks.size(); ++chunk) {
     const auto block = [&](std::uint32_t part) { return ByteView(log->bytes).subspan(index->block(chunk, part).offset, index->block(chunk, part).size); };
-    ASSERT_TRUE(refiner.apply(chunk, block(0), *decodeDracoBlock(block(1), 3, index->chunks[chunk].values)));
+    ASSERT_TRUE(refiner.apply(chunk, block(0), *decodeDracoBlock(block(1), 3, index->tuples(chunk, kPositionsPart))));
     const ManifestLevel& level = manifest->levels[refiner.level()];
     EXPECT_LE(level.chunk, chunk);
     if (refiner.level() == index->chunks[chunk].lastLevel) {

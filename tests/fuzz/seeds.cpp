@@ -45,7 +45,7 @@ Bytes refinerSeed(const testing::TakenApart& log, std::size_t chunks) {
   w.write(static_cast<std::uint8_t>(chunks - 1));
   for (std::size_t c = 0; c < chunks; ++c) {
     const ChunkEntry& e = log.index.chunks[c];
-    for (const std::uint32_t count : {e.newVertices, e.newTetrahedra, e.newBoundaryTriangles, e.values, e.records})
+    for (const std::uint32_t count : {e.newVertices, e.newTetrahedra, e.newBoundaryTriangles, e.records})
       w.write(static_cast<std::uint16_t>(count));
     w.write(static_cast<std::uint8_t>(e.firstLevel));
     w.write(static_cast<std::uint8_t>(e.lastLevel - e.firstLevel));

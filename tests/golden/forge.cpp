@@ -77,7 +77,7 @@ void writeMustFail(const std::filesystem::path& folder, const Bytes& good) {
   write(folder / "bad-value.ends-within-a-level.qtet", entry(index.chunks.size() - 1, [](ChunkEntry& e) { e.endSlot = 1000; }));
   write(folder / "bad-value.a-level-left-out.qtet", entry(index.chunks.size() - 1, [](ChunkEntry& e) { ++e.firstLevel, ++e.lastLevel; }));
   write(folder / "bad-value.too-few-cells.qtet", entry(1, [](ChunkEntry& e) { --e.newTetrahedra; }));
-  write(folder / "bad-value.too-many-values.qtet", entry(1, [](ChunkEntry& e) { ++e.values; }));
+  write(folder / "bad-value.too-many-records.qtet", entry(1, [](ChunkEntry& e) { ++e.records; }));
   write(folder / "limit-exceeded.levels.qtet", entry(index.chunks.size() - 1, [](ChunkEntry& e) { e.lastLevel = 4097; }));
   write(folder / "limit-exceeded.records.qtet", entry(1, [](ChunkEntry& e) { e.records = 0x40000000; }));
   write(folder / "bad-codec.unknown-id.qtet", entry(1, [](ChunkEntry& e) { e.valueCodec = static_cast<CodecId>(77); }));

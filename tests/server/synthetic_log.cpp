@@ -42,7 +42,7 @@ Built build(const SyntheticLog& options) {
   for (std::uint32_t k = 0; k < options.chunks; ++k) {
     ChunkEntry chunk;
     chunk.firstLevel = chunk.lastLevel = k;
-    chunk.newVertices = chunk.values = 5;
+    chunk.newVertices = 5;
     chunk.firstDependency = k == 0 ? 0 : k - 1;
     chunk.dependencyCount = k > 0;
     if (k > 0) out.index.dependencies.push_back(k - 1);

@@ -35,7 +35,7 @@ FusionHistory cube() {
 void displace(FusionHistory& h, VertexId vertex, const LatticePoint& point, std::int32_t value) {
   Fusion fusion;
   fusion.k = 1;
-  fusion.moved = true;
+  fusion.placement = Placement::kFree;
   fusion.level = h.levels++;
   fusion.fused = static_cast<VertexId>(h.points.size());
   fusion.prey[0] = vertex;
