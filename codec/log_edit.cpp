@@ -47,7 +47,7 @@ Result<Bytes> withFields(const LogFile& log, const std::vector<std::uint32_t>& k
   }
   for (const NewField& field : added) {
     fields.push_back(field.info);
-    index.fields.push_back({field.info.components, field.info.association == "cell" ? Association::kCell : Association::kPoint});
+    index.fields.push_back({field.info.components, field.info.association == "cell" ? Association::kCell : Association::kPoint, field.info.gaps});
   }
   manifest->fields = std::move(fields);
   for (ManifestLevel& level : manifest->levels)

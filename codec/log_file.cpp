@@ -101,7 +101,7 @@ Result<std::vector<std::int32_t>> blockValues(const LogFile& log, std::uint32_t 
   return decodeDracoBlock(log.block(chunk, part), log.index().components(part), log.index().tuples(chunk, part));
 }
 
-FieldInfo fieldInfo(const ManifestField& f) { return {f.name, f.components, f.type, f.association, f.bits, f.step, f.minimum, f.range}; }
+FieldInfo fieldInfo(const ManifestField& f) { return {f.name, f.components, f.type, f.association, f.bits, f.step, f.minimum, f.range, f.gaps}; }
 
 }  // namespace
 

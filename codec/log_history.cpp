@@ -96,23 +96,25 @@ void fuseAll(FusionHistory& h) {
   }
 }
 
-void codePoints(const LogHistory& log, std::uint32_t chunk, std::uint32_t n, std::span<const std::int32_t> truth, std::vector<std::int32_t>& now,
+void codePoints(const LogHistory& log, std::uint32_t chunk, const FieldInfo& field, std::span<const std::int32_t> truth, std::vector<std::int32_t>& now,
                 Values& out) {
+  const std::uint32_t n = field.components;
   const auto at = [&](VertexId v, std::uint32_t c) -> std::int32_t& { return now[std::size_t{v} * n + c]; };
   if (chunk == 0)
     for (VertexId v = 0; v < log.baseBirths.size(); ++v)
       for (std::uint32_t c = 0; c < n; ++c)
-        at(v, c) = out.code<true>(predictBase(log.baseBirths[v], v, c, false, at), truth[std::size_t{log.baseVertices[v]} * n + c]);
+        at(v, c) = out.codeField<true>(field.gaps, predictBaseField(log.baseBirths[v], v, c, field.gaps, at), truth[std::size_t{log.baseVertices[v]} * n + c]);
   for (std::uint32_t b = log.chunkBirths[chunk]; b < log.chunkBirths[chunk + 1]; ++b)
     log.points.code<true>(log.points.births()[b], out, n, at,
-                          [&](std::size_t i, std::uint32_t c) { return truth[std::size_t{log.prey[b][i]} * n + c]; });
+                          [&](std::size_t i, std::uint32_t c) { return truth[std::size_t{log.prey[b][i]} * n + c]; }, field.gaps);
 }
 
-void codeCells(const LogHistory& log, std::uint32_t chunk, std::uint32_t n, std::span<const std::int32_t> truth, Values& out) {
+void codeCells(const LogHistory& log, std::uint32_t chunk, const FieldInfo& field, std::span<const std::int32_t> truth, Values& out) {
+  const std::uint32_t n = field.components;
   for (CellId t = log.chunkCells[chunk]; t < log.chunkCells[chunk + 1]; ++t)
     for (std::uint32_t c = 0; c < n; ++c) {
       const auto at = [&](CellId u) { return truth[std::size_t{u} * n + c]; };
-      out.code<true>(log.cells.predict(t, at), at(t));
+      out.codeField<true>(field.gaps, log.cells.predict(t, at), at(t));
     }
 }
 
@@ -156,9 +158,9 @@ Result<std::vector<Bytes>> encodeFieldBlocks(const LogHistory& log, const FieldI
   for (std::uint32_t chunk = 0; chunk + 1 < log.chunkBirths.size(); ++chunk) {
     Values coded;
     if (isCellField(field))
-      codeCells(log, chunk, field.components, values, coded);
+      codeCells(log, chunk, field, values, coded);
     else
-      codePoints(log, chunk, field.components, values, now, coded);
+      codePoints(log, chunk, field, values, now, coded);
     Result<Bytes> block = encodeDracoBlock(coded.written(), field.components);
     if (!block) return std::unexpected(block.error());
     out.push_back(std::move(*block));

@@ -12,6 +12,9 @@ namespace {
 // As PNG's: the high bit finds seven-bit transfers, CR LF and LF find text-mode copies, 0x1A stops DOS type.
 constexpr std::array<std::uint8_t, 8> kMagic{0x89, 'Q', 'T', 'E', 'T', '\r', '\n', 0x1A};
 
+// Beside a field's association: its values may be missing.
+constexpr std::uint32_t kGapsFlag = 0x100;
+
 struct Header {
   std::uint32_t manifestBytes = 0, tableBytes = 0, manifestCrc = 0, tableCrc = 0;
   std::uint32_t chunks = 0, fields = 0, dependencies = 0;
@@ -211,12 +214,12 @@ Result<LogIndex> LogIndex::parse(ByteView bytes) {
     const auto association = r.read<std::uint16_t>();
     if (components == 0 || components > kMaxFieldComponents)
       return fail(ErrorCode::kBadValue, "field " + std::to_string(f) + " has a number of components outside 1..16", r.offset() - 4);
-    if (association > static_cast<std::uint16_t>(Association::kCell))
+    if ((association & ~kGapsFlag) > static_cast<std::uint16_t>(Association::kCell))
       return fail(ErrorCode::kBadValue,
                   "field " + std::to_string(f) + " has the association " + std::to_string(association) +
                       "; this build knows 0 (points) and 1 (cells): use a newer qtet, or build the log again",
                   r.offset() - 2);
-    index.fields.push_back({components, static_cast<Association>(association)});
+    index.fields.push_back({components, static_cast<Association>(association & ~kGapsFlag), (association & kGapsFlag) != 0});
   }
   index.chunks.reserve(header->chunks);
   for (std::uint32_t i = 0; i < header->chunks; ++i) index.chunks.push_back(readEntry(r, index.parts()));
@@ -231,7 +234,7 @@ Bytes LogIndex::encode() const {
   ByteWriter table;
   for (const FieldShape& field : fields) {
     table.write(static_cast<std::uint16_t>(field.components));
-    table.write(static_cast<std::uint16_t>(field.association));
+    table.write(static_cast<std::uint16_t>(static_cast<std::uint32_t>(field.association) | (field.gaps ? kGapsFlag : 0)));
   }
   for (const ChunkEntry& e : chunks) writeEntry(table, e);
   for (const std::uint32_t d : dependencies) table.write(d);

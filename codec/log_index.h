@@ -27,6 +27,7 @@ enum class Association : std::uint8_t { kPoint = 0, kCell = 1 };
 struct FieldShape {
   std::uint32_t components = 1;  ///< 1..kMaxFieldComponents
   Association association = Association::kPoint;
+  bool gaps = false;             ///< values may be missing: Values::codeOrGap
 };
 
 struct BlockEntry {

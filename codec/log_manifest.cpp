@@ -16,6 +16,7 @@ Status agree(const Manifest& manifest, const LogIndex& index) {
     if (manifest.fields[f].components != index.fields[f].components) return contradiction("the components of field " + manifest.fields[f].name);
     if ((manifest.fields[f].association == "cell") != (index.fields[f].association == Association::kCell))
       return contradiction("the association of field " + manifest.fields[f].name);
+    if (manifest.fields[f].gaps != index.fields[f].gaps) return contradiction("the gaps of field " + manifest.fields[f].name);
   }
   if (index.chunks.empty() || manifest.levels.size() != std::size_t{index.chunks.back().lastLevel} + 1) return contradiction("the number of levels");
   for (const ManifestLevel& level : manifest.levels)

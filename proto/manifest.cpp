@@ -39,6 +39,7 @@ ManifestField readField(const JsonCursor& json) {
   for (const JsonCursor& value : json["minimum"].items(out.components, out.components)) out.minimum.push_back(value.number());
   const auto range = json["range"].items(2, 2);
   for (std::size_t i = 0; i < range.size(); ++i) out.range[i] = range[i].number();
+  if (const JsonCursor gaps = json.optional("gaps"); gaps.present()) out.gaps = gaps.boolean();
   return out;
 }
 
@@ -104,6 +105,8 @@ std::string manifestToJson(const Manifest& manifest) {
                              {"step", f.step},
                              {"minimum", f.minimum},
                              {"range", f.range}});
+  for (std::size_t f = 0; f < manifest.fields.size(); ++f)
+    if (manifest.fields[f].gaps) out["fields"][f]["gaps"] = true;
   out["levels"] = Json::array();
   for (const ManifestLevel& l : manifest.levels) {
     out["levels"].push_back({{"level", l.level},

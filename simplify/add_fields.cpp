@@ -5,6 +5,7 @@
 
 #include "codec/log_manifest.h"
 #include "codec/predicates.h"
+#include "simplify/gaps.h"
 #include "simplify/history_levels.h"
 #include "simplify/match_mesh.h"
 #include "simplify/quantise_field.h"
@@ -49,8 +50,9 @@ std::array<double, 4> sharesOf(const Fusion& fusion, const FusionHistory& h, con
 }
 
 /// The field of the mesh in the log's order.
-std::vector<std::int32_t> inLogOrder(const std::vector<std::int32_t>& values, std::uint32_t components, const std::vector<std::uint32_t>& logs) {
-  std::vector<std::int32_t> out(values.size());
+template <class T>
+std::vector<T> inLogOrder(const std::vector<T>& values, std::uint32_t components, const std::vector<std::uint32_t>& logs) {
+  std::vector<T> out(values.size());
   for (std::size_t i = 0; i < logs.size(); ++i)
     std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(i * components), components, out.begin() + static_cast<std::ptrdiff_t>(std::size_t{logs[i]} * components));
   return out;
@@ -95,13 +97,16 @@ Result<AddedFields> addFields(const LogFile& log, const TetMesh& mesh, const Add
     Result<QuantisedField> quantised = quantiseField(field, options.fieldBits);
     if (!quantised) return std::unexpected(quantised.error());
     const FieldInfo& info = quantised->info;
-    std::vector<std::int32_t> values = inLogOrder(quantised->values, info.components, isCellField(info) ? match->tetrahedra : match->points);
+    if (quantised->nonFinite > 0) fillGaps(mesh.tetrahedra, info, quantised->gaps, quantised->values);
+    const std::vector<std::uint32_t>& logs = isCellField(info) ? match->tetrahedra : match->points;
+    std::vector<std::int32_t> values = inLogOrder(quantised->values, info.components, logs);
     if (!isCellField(info)) values = fusedValues(*history, std::move(values), info.components);
-    Result<std::vector<Bytes>> blocks = encodeFieldBlocks(*history, info, values);
+    const std::vector<std::int32_t> withGaps = quantised->gaps.empty() ? values : gapsCutOut(h, info, inLogOrder(quantised->gaps, info.components, logs), values);
+    Result<std::vector<Bytes>> blocks = encodeFieldBlocks(*history, info, withGaps);
     if (!blocks) return std::unexpected(blocks.error());
     if (quantised->nonFinite > 0)
-      out.notes.push_back("field " + info.name + ": " + std::to_string(quantised->nonFinite) + " values are NaN or infinite and are stored as their component's minimum");
-    out.fields.push_back({{info.name, info.components, info.type, info.association, info.bits, info.step, info.minimum, info.range}, std::move(*blocks), {}});
+      out.notes.push_back("field " + info.name + ": " + std::to_string(quantised->nonFinite) + " values are NaN or infinite and come back as NaN");
+    out.fields.push_back({{info.name, info.components, info.type, info.association, info.bits, info.step, info.minimum, info.range, info.gaps}, std::move(*blocks), {}});
     h.fields.push_back(info);
     h.values.push_back(std::move(values));
   }

@@ -12,6 +12,7 @@
 #include "simplify/command_fusion.h"
 #include "simplify/command_line.h"
 #include "simplify/command_measure.h"
+#include "simplify/gaps.h"
 #include "simplify/paper_fusion.h"
 #include "simplify/progress.h"
 #include "simplify/read_mesh.h"
@@ -189,6 +190,7 @@ Result<EncodedLog> makeLog(const Request& request, Prepared& prepared, Progress&
   watch.lap("simplify");
   const Result<std::vector<LevelError>> errors = measure(request, *history, progress, watch);
   if (!errors) return std::unexpected(errors.error());
+  cutGapsOut(*history, prepared.quantised.gaps);
 
   progress.stage("encoding");
   LogWriterOptions options;

@@ -20,7 +20,7 @@ LatticeMesh finestMesh(const OpenedLog& log, const Refiner& refiner) {
   for (std::uint32_t f = 0; f < log.manifest.fields.size(); ++f) {
     const ManifestField& field = log.manifest.fields[f];
     mesh.fields.push_back(
-        {field.name, field.components, field.type, field.association, field.bits, field.step, field.minimum, field.range});
+        {field.name, field.components, field.type, field.association, field.bits, field.step, field.minimum, field.range, field.gaps});
     const auto values = refiner.fieldValues(f);
     mesh.values.emplace_back(values.begin(), values.end());
   }
