@@ -1,5 +1,6 @@
 #include "codec/log_edit.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -12,18 +13,30 @@ namespace {
 
 using Blocks = std::vector<std::vector<ByteView>>;  // chunk, part
 
-/// Offsets, sizes and checksums that fit `blocks`. Where the first block starts depends on the table, whose own size may depend on what it says.
-void layOut(LogIndex& index, const Blocks& blocks) {
+/// The file with offsets, sizes and checksums that fit the blocks. Where the first block starts depends on the table, whose own size may depend on what it says.
+Bytes together(LogIndex index, const Blocks& blocks, const std::vector<ByteView>& closing) {
   for (std::size_t chunk = 0; chunk < blocks.size(); ++chunk) {
     index.chunks[chunk].blocks.clear();
     for (const ByteView block : blocks[chunk]) index.chunks[chunk].blocks.push_back({0, static_cast<std::uint32_t>(block.size()), crc32c(block)});
   }
+  for (std::size_t i = 0; i < closing.size(); ++i) index.closing[i].block = {0, static_cast<std::uint32_t>(closing[i].size()), crc32c(closing[i])};
   std::uint64_t offset = index.encode().size();
   for (ChunkEntry& chunk : index.chunks) {
     chunk.offset = offset;
     for (BlockEntry& block : chunk.blocks) block.offset = std::exchange(offset, offset + block.size);
   }
+  for (const ByteView block : closing) offset += block.size();
   index.fileBytes = offset;
+  Bytes out = index.encode();
+  out.reserve(index.fileBytes);
+  for (const auto& chunk : blocks)
+    for (const ByteView block : chunk) out.insert(out.end(), block.begin(), block.end());
+  for (const ByteView block : closing) out.insert(out.end(), block.begin(), block.end());
+  return out;
+}
+
+ByteView viewOf(const LogFile& log, const ClosingBlock& closing) {
+  return log.bytes().subspan(static_cast<std::size_t>(closing.block.offset), closing.block.size);
 }
 
 void keepErrors(LevelError& error, std::size_t level, const std::vector<std::uint32_t>& kept, const std::vector<NewField>& added) {
@@ -62,12 +75,31 @@ Result<Bytes> withFields(const LogFile& log, const std::vector<std::uint32_t>& k
     for (const ByteView block : blocks[chunk])
       if (block.size() > kMaxBlockBytes) return fail(ErrorCode::kLimitExceeded, "a block above 256 MiB; take fewer components or bits");
   }
-  layOut(index, blocks);
-  Bytes out = index.encode();
-  out.reserve(index.fileBytes);
-  for (const auto& chunk : blocks)
-    for (const ByteView block : chunk) out.insert(out.end(), block.begin(), block.end());
-  return out;
+  std::vector<ByteView> closing;
+  index.closing.clear();
+  for (const ClosingBlock& c : log.index().closing) {
+    const auto place = std::ranges::find(kept, std::uint32_t{c.field});
+    if (c.kind == ClosingKind::kExactField && place == kept.end()) continue;
+    index.closing.push_back(c);
+    if (c.kind == ClosingKind::kExactField) index.closing.back().field = static_cast<std::uint16_t>(place - kept.begin());
+    closing.push_back(viewOf(log, c));
+  }
+  return together(std::move(index), blocks, closing);
+}
+
+Result<Bytes> withClosing(const LogFile& log, const std::vector<NewClosing>& added) {
+  LogIndex index = log.index();
+  Blocks blocks(index.chunks.size());
+  for (std::uint32_t chunk = 0; chunk < blocks.size(); ++chunk)
+    for (std::uint32_t part = 0; part < index.parts(); ++part) blocks[chunk].push_back(log.block(chunk, part));
+  std::vector<ByteView> closing;
+  for (const ClosingBlock& c : index.closing) closing.push_back(viewOf(log, c));
+  for (const NewClosing& c : added) {
+    if (c.bytes.size() > kMaxBlockBytes) return fail(ErrorCode::kLimitExceeded, "a closing block above 256 MiB; leave out --lossless or --keep-order");
+    index.closing.push_back({c.kind, static_cast<std::uint16_t>(c.field), {}});
+    closing.push_back(c.bytes);
+  }
+  return together(std::move(index), blocks, closing);
 }
 
 }  // namespace qtet

@@ -17,7 +17,7 @@ constexpr std::uint32_t kGapsFlag = 0x100;
 
 struct Header {
   std::uint32_t manifestBytes = 0, tableBytes = 0, manifestCrc = 0, tableCrc = 0;
-  std::uint32_t chunks = 0, fields = 0, dependencies = 0;
+  std::uint32_t chunks = 0, fields = 0, dependencies = 0, closing = 0;
   std::uint64_t fileBytes = 0;
   Layout layout = Layout::kStream;
   std::uint8_t positionBits = 0;
@@ -25,7 +25,7 @@ struct Header {
   [[nodiscard]] std::uint64_t expectedTableBytes() const {
     return std::uint64_t{fields} * 4 +
            std::uint64_t{chunks} * (LogIndex::kChunkEntryBytes + (kFirstFieldPart + std::uint64_t{fields}) * LogIndex::kBlockEntryBytes) +
-           std::uint64_t{dependencies} * 4;
+           std::uint64_t{dependencies} * 4 + std::uint64_t{closing} * LogIndex::kClosingEntryBytes;
   }
   [[nodiscard]] std::uint64_t headBytes() const { return std::uint64_t{LogIndex::kHeaderBytes} + manifestBytes + tableBytes; }
 };
@@ -56,10 +56,11 @@ Result<Header> readHeader(ByteView bytes) {
   h.chunks = r.read<std::uint32_t>();
   h.fields = r.read<std::uint32_t>();
   h.dependencies = r.read<std::uint32_t>();
-  reservedAreZero &= r.read<std::uint64_t>() == 0;
+  h.closing = r.read<std::uint32_t>();
+  reservedAreZero &= r.read<std::uint32_t>() == 0;
   if (r.read<std::uint32_t>() != crc32c(bytes.first(LogIndex::kHeaderBytes - 4)))
     return fail(ErrorCode::kBadChecksum, "the header's CRC-32C does not match; fetch the file again", LogIndex::kHeaderBytes - 4);
-  if (!reservedAreZero) return fail(ErrorCode::kBadValue, "a reserved byte of the header (14, 15 or 52 to 59) is not 0; use a newer qtet", 14);
+  if (!reservedAreZero) return fail(ErrorCode::kBadValue, "a reserved byte of the header (14, 15 or 56 to 59) is not 0; use a newer qtet", 14);
   if (layout > static_cast<std::uint8_t>(Layout::kRegions)) return fail(ErrorCode::kBadValue, "unknown layout " + std::to_string(layout), 12);
   h.layout = static_cast<Layout>(layout);
   if (h.positionBits < kMinPositionBits || h.positionBits > kMaxPositionBits)
@@ -69,6 +70,7 @@ Result<Header> readHeader(ByteView bytes) {
   if (h.chunks > kMaxChunks) return fail(ErrorCode::kLimitExceeded, "more than 2^20 chunks", 40);
   if (h.fields > kMaxFields) return fail(ErrorCode::kLimitExceeded, "more than 256 fields", 44);
   if (h.dependencies > kMaxDependencies) return fail(ErrorCode::kLimitExceeded, "more than 2^24 dependencies", 48);
+  if (h.closing > kMaxClosingBlocks) return fail(ErrorCode::kLimitExceeded, "more than 1,024 closing blocks", 52);
   if (h.expectedTableBytes() != h.tableBytes)
     return fail(ErrorCode::kBadValue, "the chunk table's size does not fit the counts of chunks, fields and dependencies", 28);
   if (h.headBytes() > h.fileBytes) return fail(ErrorCode::kBadValue, "the file's size is below that of its front", 16);
@@ -120,6 +122,20 @@ const char* brokenStream(const LogIndex& index, std::uint32_t i) {
   return nullptr;
 }
 
+// Blocks back to back from `offset` to the file's end, each kind once.
+Status checkClosing(const LogIndex& index, std::uint64_t offset, std::uint64_t fileBytes) {
+  for (const ClosingBlock& closing : index.closing) {
+    if (closing.block.size > kMaxBlockBytes) return fail(ErrorCode::kLimitExceeded, "a closing block above 256 MiB", offset);
+    if (closing.kind == ClosingKind::kExactField && closing.field >= index.fields.size())
+      return fail(ErrorCode::kBadValue, "a closing block of a field that the log does not have; build the log again", offset);
+    if (index.closingBlock(closing.kind, closing.field) != &closing)
+      return fail(ErrorCode::kBadValue, "two closing blocks of the same kind; build the log again", offset);
+    offset += closing.block.size;
+  }
+  if (offset != fileBytes) return fail(ErrorCode::kBadValue, "the blocks do not end where the file ends", offset);
+  return {};
+}
+
 // What every later step relies on: blocks back to back to the file's end, levels in order, counts within limits, dependencies backwards.
 Status check(const LogIndex& index, const Header& header) {
   std::uint64_t offset = header.headBytes();
@@ -164,14 +180,18 @@ Status check(const LogIndex& index, const Header& header) {
     return fail(ErrorCode::kBadValue, "the last chunk ends within a level; fetch or build the log again", header.headBytes());
   if (index.layout == Layout::kStream && index.dependencies.size() + 1 != index.chunks.size())
     return fail(ErrorCode::kBadValue, "the list of dependencies has another length than the chunks need; fetch or build the log again", header.headBytes());
-  if (offset != header.fileBytes) return fail(ErrorCode::kBadValue, "the chunks do not end where the file ends", offset);
-  return {};
+  return checkClosing(index, offset, header.fileBytes);
 }
 
 }  // namespace
 
 std::uint64_t LogIndex::headBytes() const {
   return chunks.empty() ? kHeaderBytes : chunks.front().offset;
+}
+
+const ClosingBlock* LogIndex::closingBlock(ClosingKind kind, std::uint32_t field) const {
+  const auto at = std::ranges::find_if(closing, [&](const ClosingBlock& c) { return c.kind == kind && c.field == field; });
+  return at == closing.end() ? nullptr : &*at;
 }
 
 std::uint32_t LogIndex::tuples(std::uint32_t chunk, std::uint32_t part) const {
@@ -225,6 +245,17 @@ Result<LogIndex> LogIndex::parse(ByteView bytes) {
   for (std::uint32_t i = 0; i < header->chunks; ++i) index.chunks.push_back(readEntry(r, index.parts()));
   index.dependencies.reserve(header->dependencies);
   for (std::uint32_t i = 0; i < header->dependencies; ++i) index.dependencies.push_back(r.read<std::uint32_t>());
+  std::uint64_t closingOffset = index.chunks.empty() ? 0 : index.chunks.back().offset + index.chunks.back().size();
+  for (std::uint32_t i = 0; i < header->closing; ++i) {
+    ClosingBlock closing;
+    closing.kind = static_cast<ClosingKind>(r.read<std::uint16_t>());
+    closing.field = r.read<std::uint16_t>();
+    closing.block.offset = closingOffset;
+    closing.block.size = r.read<std::uint32_t>();
+    closing.block.crc = r.read<std::uint32_t>();
+    closingOffset += closing.block.size;
+    index.closing.push_back(closing);
+  }
   if (r.failed()) return std::unexpected(r.error());
   if (Status s = check(index, *header); !s) return std::unexpected(s.error());
   return index;
@@ -238,6 +269,12 @@ Bytes LogIndex::encode() const {
   }
   for (const ChunkEntry& e : chunks) writeEntry(table, e);
   for (const std::uint32_t d : dependencies) table.write(d);
+  for (const ClosingBlock& c : closing) {
+    table.write(static_cast<std::uint16_t>(c.kind));
+    table.write(c.field);
+    table.write(c.block.size);
+    table.write(c.block.crc);
+  }
   const ByteView manifestBytes(reinterpret_cast<const std::uint8_t*>(manifest.data()), manifest.size());
 
   ByteWriter w;
@@ -255,7 +292,8 @@ Bytes LogIndex::encode() const {
   w.write(static_cast<std::uint32_t>(chunks.size()));
   w.write(static_cast<std::uint32_t>(fields.size()));
   w.write(static_cast<std::uint32_t>(dependencies.size()));
-  w.write(std::uint64_t{0});
+  w.write(static_cast<std::uint32_t>(closing.size()));
+  w.write(std::uint32_t{0});
   w.write(crc32c(w.bytes()));
   w.append(manifestBytes);
   w.append(table.bytes());

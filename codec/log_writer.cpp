@@ -352,6 +352,8 @@ class LogEncoder {
     index.chunks = std::move(chunks_);
     index.dependencies = std::move(dependencies_);
     EncodedLog log;
+    log.points = std::move(vertexIds_);
+    log.tetrahedra = std::move(tetrahedronIds_);
     LogStatistics& s = log.statistics;
     s.headBytes = index.encode().size();
     s.fieldBytes.resize(h_.fields.size());

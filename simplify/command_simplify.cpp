@@ -12,7 +12,9 @@
 #include "simplify/command_fusion.h"
 #include "simplify/command_line.h"
 #include "simplify/command_measure.h"
+#include "simplify/closing_report.h"
 #include "simplify/gaps.h"
+#include "simplify/kept_input.h"
 #include "simplify/paper_fusion.h"
 #include "simplify/progress.h"
 #include "simplify/read_mesh.h"
@@ -27,6 +29,7 @@ struct Request {
   QuantiseOptions quantise;
   FusionRequest fusion;
   std::optional<MeasureOptions> measure;
+  KeepOptions keep;
 };
 
 Request requestOf(const ParsedWords& parsed) {
@@ -43,6 +46,7 @@ Request requestOf(const ParsedWords& parsed) {
   if (request.algorithm == "paper" && (request.fusion.regions || request.fusion.options.envelopeTolerance > 0 || !request.fusion.fieldWeights.empty()))
     throw UsageError("--algorithm paper knows no --preserve-regions, --envelope-tolerance or --field-weight; leave them out");
   request.measure = measureOptionsOf(parsed);
+  request.keep = {parsed.has("keep-order"), parsed.has("lossless")};
   return request;
 }
 
@@ -111,6 +115,7 @@ struct Prepared {
   CleanReport clean;
   QuantisedMesh quantised;
   Lattice lattice;  ///< the quantised mesh's, which the simplifier takes
+  KeptInput kept;  ///< empty where nothing of the input is kept
   std::vector<std::string> fusionNotes;
 
   [[nodiscard]] std::vector<std::string> notes() const {
@@ -132,6 +137,7 @@ Result<Prepared> prepare(const Request& request, Progress& progress, Stopwatch& 
   out.cellsIn = read->mesh.tetrahedra.size();
 
   progress.stage("cleaning");
+  const std::vector<Tetrahedron> asStored = request.keep.any() ? read->mesh.tetrahedra : std::vector<Tetrahedron>{};
   Result<CleanReport> cleaned = cleanMesh(read->mesh);
   if (!cleaned) return std::unexpected(cleaned.error());
   watch.lap("clean");
@@ -140,6 +146,7 @@ Result<Prepared> prepare(const Request& request, Progress& progress, Stopwatch& 
   Result<QuantisedMesh> quantised = quantise(read->mesh, request.quantise);
   if (!quantised) return std::unexpected(quantised.error());
   watch.lap("quantise");
+  if (request.keep.any()) out.kept = {request.keep, asRead(read->mesh, asStored, *cleaned)};
   out.read = std::move(read->report);
   out.clean = std::move(*cleaned);
   out.quantised = std::move(*quantised);
@@ -201,6 +208,12 @@ Result<EncodedLog> makeLog(const Request& request, Prepared& prepared, Progress&
   Result<EncodedLog> log = encodeLog(*history, options);
   if (!log) return log;
   watch.lap("encode");
+  if (request.keep.any()) {
+    Result<Bytes> whole = withInput(*log, prepared.kept);
+    if (!whole) return std::unexpected(whole.error());
+    log->bytes = std::move(*whole);
+    watch.lap("keep");
+  }
   if (Status written = writeFileAtomically(request.output, log->bytes); !written) return std::unexpected(written.error());
   watch.lap("write");
   return log;
@@ -227,6 +240,7 @@ Result<OrderedJson> reportOf(const Request& request, const Prepared& prepared, c
                         {"chunks", index->chunks.size()}};
   report["records"] = log.statistics.records;
   addSizes(log, *manifest, report);
+  if (!index->closing.empty()) report["kept"] = closingJson(*index, *manifest);
   report["error"] = measureReport(request.measure, manifest->levels.front().error);
   report["lattice"] = {{"bits", lattice.bits},
                        {"requestedBits", quantised.requestedBits},
@@ -279,6 +293,8 @@ int runSimplify(const Words& words, Console& console) {
       "position-bits", po::value<int>()->default_value(16),
       "bits of the lattice an axis, 4 to 28; raised where a cell would be flattened or inverted")(
       "field-bits", po::value<int>()->default_value(12), "bits of a float field's values, 1 to 28; integer fields are stored exactly")(
+      "keep-order", "keep the input's numbering of points, cells and their vertices: extract gives it back at the last level")(
+      "lossless", "keep the input's own coordinates and field values: extract gives them back bit for bit at the last level")(
       "json", "print one JSON object");
   addFusionOptions(options);
   addMeasureOptions(options);

@@ -9,6 +9,7 @@
 #include "codec/draco_block.h"
 #include "codec/log_file.h"
 #include "codec/log_writer.h"
+#include "codec/values.h"
 #include "simplify/gaps.h"
 #include "simplify/qtetfusion.h"
 #include "simplify/verify.h"
@@ -114,10 +115,10 @@ TEST(Values, aGapIsZeroAndDifferencesStepOverIt) {
   const std::vector<std::pair<std::int64_t, std::int32_t>> cases{{5, 5}, {5, 6}, {5, 4}, {5, kGap}, {-7, -7}, {-7, kGap}, {1 << 28, 0}, {0, 1 << 28}};
   for (const auto& [predicted, truth] : cases) EXPECT_EQ(told.codeOrGap<true>(predicted, truth), truth);
   EXPECT_EQ(told.written(), (std::vector<std::int32_t>{1, 2, -1, 0, 1, 0, -(1 << 28), (1 << 28) + 1}));
-  Values read(told.written());
-  for (const auto& [predicted, truth] : cases) EXPECT_EQ(read.codeOrGap<false>(predicted, 0), truth);
-  EXPECT_TRUE(read.atEnd());
-  EXPECT_FALSE(read.bad());
+  Values back(told.written());
+  for (const auto& [predicted, truth] : cases) EXPECT_EQ(back.codeOrGap<false>(predicted, 0), truth);
+  EXPECT_TRUE(back.atEnd());
+  EXPECT_FALSE(back.bad());
 }
 
 TEST(Gaps, anEveryBlockOfNoiseIsDecodedOrRefused) {
