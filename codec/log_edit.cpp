@@ -13,20 +13,17 @@ namespace {
 
 using Blocks = std::vector<std::vector<ByteView>>;  // chunk, part
 
-/// The file with offsets, sizes and checksums that fit the blocks. Where the first block starts depends on the table, whose own size may depend on what it says.
+/// The file with sizes and checksums that fit the blocks.
 Bytes together(LogIndex index, const Blocks& blocks, const std::vector<ByteView>& closing) {
   for (std::size_t chunk = 0; chunk < blocks.size(); ++chunk) {
     index.chunks[chunk].blocks.clear();
     for (const ByteView block : blocks[chunk]) index.chunks[chunk].blocks.push_back({0, static_cast<std::uint32_t>(block.size()), crc32c(block)});
   }
   for (std::size_t i = 0; i < closing.size(); ++i) index.closing[i].block = {0, static_cast<std::uint32_t>(closing[i].size()), crc32c(closing[i])};
-  std::uint64_t offset = index.encode().size();
-  for (ChunkEntry& chunk : index.chunks) {
-    chunk.offset = offset;
-    for (BlockEntry& block : chunk.blocks) block.offset = std::exchange(offset, offset + block.size);
-  }
-  for (const ByteView block : closing) offset += block.size();
-  index.fileBytes = offset;
+  index.fileBytes = index.encode().size();
+  for (const auto& chunk : blocks)
+    for (const ByteView block : chunk) index.fileBytes += block.size();
+  for (const ByteView block : closing) index.fileBytes += block.size();
   Bytes out = index.encode();
   out.reserve(index.fileBytes);
   for (const auto& chunk : blocks)
@@ -65,7 +62,9 @@ Result<Bytes> withFields(const LogFile& log, const std::vector<std::uint32_t>& k
   manifest->fields = std::move(fields);
   for (ManifestLevel& level : manifest->levels)
     if (level.error) keepErrors(*level.error, level.level, kept, added);
-  index.manifest = manifestToJson(*manifest);
+  Result<Bytes> manifestBytes = manifestBlock(*manifest);
+  if (!manifestBytes) return std::unexpected(manifestBytes.error());
+  index.manifest = std::move(*manifestBytes);
 
   Blocks blocks(index.chunks.size());
   for (std::uint32_t chunk = 0; chunk < blocks.size(); ++chunk) {
@@ -78,10 +77,10 @@ Result<Bytes> withFields(const LogFile& log, const std::vector<std::uint32_t>& k
   std::vector<ByteView> closing;
   index.closing.clear();
   for (const ClosingBlock& c : log.index().closing) {
-    const auto place = std::ranges::find(kept, std::uint32_t{c.field});
+    const auto place = std::ranges::find(kept, c.field);
     if (c.kind == ClosingKind::kExactField && place == kept.end()) continue;
     index.closing.push_back(c);
-    if (c.kind == ClosingKind::kExactField) index.closing.back().field = static_cast<std::uint16_t>(place - kept.begin());
+    if (c.kind == ClosingKind::kExactField) index.closing.back().field = static_cast<std::uint32_t>(place - kept.begin());
     closing.push_back(viewOf(log, c));
   }
   return together(std::move(index), blocks, closing);
@@ -96,7 +95,7 @@ Result<Bytes> withClosing(const LogFile& log, const std::vector<NewClosing>& add
   for (const ClosingBlock& c : index.closing) closing.push_back(viewOf(log, c));
   for (const NewClosing& c : added) {
     if (c.bytes.size() > kMaxBlockBytes) return fail(ErrorCode::kLimitExceeded, "a closing block above 256 MiB; leave out --lossless or --keep-order");
-    index.closing.push_back({c.kind, static_cast<std::uint16_t>(c.field), {}});
+    index.closing.push_back({c.kind, c.field, {}});
     closing.push_back(c.bytes);
   }
   return together(std::move(index), blocks, closing);

@@ -4,9 +4,9 @@
 #include <string>
 #include <utility>
 
-#include "codec/draco_block.h"
 #include "codec/log_manifest.h"
 #include "codec/refiner.h"
+#include "codec/value_block.h"
 
 namespace qtet {
 namespace {
@@ -137,6 +137,7 @@ Result<LogHistory> historyOf(const LogFile& log, const std::function<void(double
       if (Status s = decodeBase(log, out); !s) return std::unexpected(s.error());
     out.chunkBirths.push_back(static_cast<std::uint32_t>(out.points.births().size()));
     out.chunkCells.push_back(static_cast<std::uint32_t>(refiner.tetrahedra().size()));
+    out.valueCodecs.push_back(log.index().chunks[chunk].valueCodec);
     if (progress) progress((chunk + 1.0) / chunks);
   }
   FusionHistory& h = out.history;
@@ -161,7 +162,7 @@ Result<std::vector<Bytes>> encodeFieldBlocks(const LogHistory& log, const FieldI
       codeCells(log, chunk, field, values, coded);
     else
       codePoints(log, chunk, field, values, now, coded);
-    Result<Bytes> block = encodeDracoBlock(coded.written(), field.components);
+    Result<Bytes> block = encodeValueBlock(coded.written(), field.components, log.valueCodecs[chunk]);
     if (!block) return std::unexpected(block.error());
     out.push_back(std::move(*block));
   }

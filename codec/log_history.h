@@ -28,6 +28,7 @@ struct LogHistory {
   CellAncestry cells;
   std::vector<std::array<VertexId, 4>> prey;        ///< of each birth, in the order of coding
   std::vector<std::uint32_t> chunkBirths, chunkCells;  ///< births and tetrahedra before chunk i, and of all chunks
+  std::vector<CodecId> valueCodecs;                 ///< of each chunk
 };
 
 /// Errors: not-found and all that decoding gives. `progress` hears the fraction done.

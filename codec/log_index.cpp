@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "codec/chunk_table.h"
 #include "proto/crc32c.h"
 #include "proto/limits.h"
 
@@ -13,7 +14,7 @@ namespace {
 constexpr std::array<std::uint8_t, 8> kMagic{0x89, 'Q', 'T', 'E', 'T', '\r', '\n', 0x1A};
 
 // Beside a field's association: its values may be missing.
-constexpr std::uint32_t kGapsFlag = 0x100;
+constexpr std::uint32_t kGapsFlag = 0x80;
 
 struct Header {
   std::uint32_t manifestBytes = 0, tableBytes = 0, manifestCrc = 0, tableCrc = 0;
@@ -22,10 +23,8 @@ struct Header {
   Layout layout = Layout::kStream;
   std::uint8_t positionBits = 0;
 
-  [[nodiscard]] std::uint64_t expectedTableBytes() const {
-    return std::uint64_t{fields} * 4 +
-           std::uint64_t{chunks} * (LogIndex::kChunkEntryBytes + (kFirstFieldPart + std::uint64_t{fields}) * LogIndex::kBlockEntryBytes) +
-           std::uint64_t{dependencies} * 4 + std::uint64_t{closing} * LogIndex::kClosingEntryBytes;
+  [[nodiscard]] std::uint64_t leastTableBytes() const {
+    return std::uint64_t{fields} * 2 + std::uint64_t{chunks} * leastRowBytes(kFirstFieldPart + fields) + std::uint64_t{closing} * kLeastClosingRowBytes;
   }
   [[nodiscard]] std::uint64_t headBytes() const { return std::uint64_t{LogIndex::kHeaderBytes} + manifestBytes + tableBytes; }
 };
@@ -65,61 +64,16 @@ Result<Header> readHeader(ByteView bytes) {
   h.layout = static_cast<Layout>(layout);
   if (h.positionBits < kMinPositionBits || h.positionBits > kMaxPositionBits)
     return fail(ErrorCode::kBadValue, "a lattice of " + std::to_string(h.positionBits) + " bits; 4 to 28 are allowed", 13);
-  if (h.manifestBytes > kMaxManifestBytes) return fail(ErrorCode::kLimitExceeded, "the manifest is above 16 MiB", 24);
+  if (h.manifestBytes > kMaxManifestBytes) return fail(ErrorCode::kLimitExceeded, "the manifest is above 8 MiB", 24);
   if (h.chunks == 0) return fail(ErrorCode::kBadValue, "a log has at least one chunk, the base mesh", 40);
   if (h.chunks > kMaxChunks) return fail(ErrorCode::kLimitExceeded, "more than 2^20 chunks", 40);
   if (h.fields > kMaxFields) return fail(ErrorCode::kLimitExceeded, "more than 256 fields", 44);
   if (h.dependencies > kMaxDependencies) return fail(ErrorCode::kLimitExceeded, "more than 2^24 dependencies", 48);
   if (h.closing > kMaxClosingBlocks) return fail(ErrorCode::kLimitExceeded, "more than 1,024 closing blocks", 52);
-  if (h.expectedTableBytes() != h.tableBytes)
-    return fail(ErrorCode::kBadValue, "the chunk table's size does not fit the counts of chunks, fields and dependencies", 28);
+  if (h.leastTableBytes() > h.tableBytes)
+    return fail(ErrorCode::kBadValue, "the chunk table is too short for the counts of chunks, fields and closing blocks; fetch the file again", 28);
   if (h.headBytes() > h.fileBytes) return fail(ErrorCode::kBadValue, "the file's size is below that of its front", 16);
   return h;
-}
-
-ChunkEntry readEntry(ByteReader& r, std::uint32_t parts) {
-  ChunkEntry e;
-  e.offset = r.read<std::uint64_t>();
-  for (std::uint32_t* value : {&e.firstLevel, &e.lastLevel, &e.endSlot, &e.records, &e.newVertices, &e.newTetrahedra,
-                               &e.newBoundaryTriangles, &e.firstDependency, &e.dependencyCount})
-    *value = r.read<std::uint32_t>();
-  e.structureCodec = static_cast<CodecId>(r.read<std::uint8_t>());
-  e.valueCodec = static_cast<CodecId>(r.read<std::uint8_t>());
-  std::uint32_t reserved = r.read<std::uint16_t>();
-  reserved |= r.read<std::uint32_t>();
-  if (reserved != 0) r.fail(ErrorCode::kBadValue, "a reserved byte of the chunk table is not 0; use a newer qtet");
-  e.blocks.resize(parts);
-  std::uint64_t offset = e.offset;
-  for (BlockEntry& b : e.blocks) {
-    b.offset = offset;
-    b.size = r.read<std::uint32_t>();
-    b.crc = r.read<std::uint32_t>();
-    offset += b.size;
-  }
-  return e;
-}
-
-void writeEntry(ByteWriter& w, const ChunkEntry& e) {
-  w.write(e.offset);
-  for (const std::uint32_t value : {e.firstLevel, e.lastLevel, e.endSlot, e.records, e.newVertices, e.newTetrahedra, e.newBoundaryTriangles,
-                                    e.firstDependency, e.dependencyCount})
-    w.write(value);
-  w.write(static_cast<std::uint8_t>(e.structureCodec));
-  w.write(static_cast<std::uint8_t>(e.valueCodec));
-  w.write(std::uint16_t{0});
-  w.write(std::uint32_t{0});
-  for (const BlockEntry& b : e.blocks) w.write(b.size), w.write(b.crc);
-}
-
-// In `stream` a chunk goes on where the one before it ended, and depends on it alone.
-const char* brokenStream(const LogIndex& index, std::uint32_t i) {
-  const ChunkEntry& e = index.chunks[i];
-  if (i == 0) return e.firstDependency != 0 || e.dependencyCount != 0 ? "the base mesh depends on no chunk" : nullptr;
-  if (e.firstDependency != i - 1 || e.dependencyCount != 1 || index.dependencies[i - 1] != i - 1)
-    return "it does not depend on the chunk before it alone";
-  const ChunkEntry& before = index.chunks[i - 1];
-  if (e.firstLevel != before.lastLevel + (before.endSlot == kLevelEnd)) return "its levels do not continue those of the chunk before it";
-  return nullptr;
 }
 
 // Blocks back to back from `offset` to the file's end, each kind once.
@@ -136,19 +90,17 @@ Status checkClosing(const LogIndex& index, std::uint64_t offset, std::uint64_t f
   return {};
 }
 
-// What every later step relies on: blocks back to back to the file's end, levels in order, counts within limits, dependencies backwards.
+// What every later step relies on: blocks that end where the file does, levels in order, counts within limits.
 Status check(const LogIndex& index, const Header& header) {
   std::uint64_t offset = header.headBytes();
   std::uint64_t vertices = 0;
   std::uint64_t cells = 0;
   std::uint64_t triangles = 0;
-  std::uint32_t level = 0;
   for (std::uint32_t i = 0; i < index.chunks.size(); ++i) {
     const ChunkEntry& e = index.chunks[i];
     const auto bad = [i](ErrorCode code, const char* what) {
       return fail(code, "chunk table, row " + std::to_string(i) + ": " + what + "; fetch or build the log again");
     };
-    if (e.offset != offset) return bad(ErrorCode::kBadValue, "the chunk does not start where the one before it ends");
     for (const BlockEntry& b : e.blocks) {
       if (b.size > kMaxBlockBytes) return bad(ErrorCode::kLimitExceeded, "a block above 256 MiB");
       offset += b.size;
@@ -156,30 +108,22 @@ Status check(const LogIndex& index, const Header& header) {
     vertices += e.newVertices, cells += e.newTetrahedra, triangles += e.newBoundaryTriangles;
     if (vertices > kMaxElements || cells > kMaxElements || triangles > kMaxElements)
       return bad(ErrorCode::kLimitExceeded, "more than 2^29 vertices, cells or triangles");
-    if (e.structureCodec != CodecId::kRange || (e.valueCodec != CodecId::kDraco && e.valueCodec != CodecId::kEmpty))
+    if (e.structureCodec != CodecId::kRange || (e.valueCodec != CodecId::kDraco && e.valueCodec != CodecId::kAdaptive && e.valueCodec != CodecId::kEmpty))
       return bad(ErrorCode::kBadCodec, "an unknown codec id");
     if (e.valueCodec == CodecId::kEmpty && e.size() > e.blocks[kStructurePart].size)
       return bad(ErrorCode::kBadCodec, "value blocks of the codec 'no bytes' that have bytes");
-    if (i == 0 ? e.firstLevel != 0 || e.lastLevel != 0 || e.records != 0 || e.endSlot != kLevelEnd
-               : e.firstLevel < level || e.lastLevel < e.firstLevel || e.firstLevel == 0)
+    if (i == 0 ? e.firstLevel != 0 || e.lastLevel != 0 || e.records != 0 || e.endSlot != kLevelEnd : e.firstLevel == 0)
       return bad(ErrorCode::kBadValue, "levels out of order");
     // A split costs at least one decision and brings at most four vertices back; a link triangle or a deleted cell one decision each.
     const std::uint64_t decisions = kMaxDecisionsPerByte * (std::uint64_t{e.blocks[kStructurePart].size} + 4);
     if (e.records > decisions || e.newVertices > 4 * decisions || e.newTetrahedra > 8 * decisions || e.newBoundaryTriangles > 8 * decisions)
       return bad(ErrorCode::kLimitExceeded, "it promises more than its bytes can hold");
     if (e.records > e.newVertices) return bad(ErrorCode::kBadValue, "more records than vertices");  // so that tuples() fits its type
-    if (e.lastLevel > kMaxLevels) return bad(ErrorCode::kLimitExceeded, "more than 4,096 levels");
-    level = e.lastLevel;
-    if (std::uint64_t{e.firstDependency} + e.dependencyCount > index.dependencies.size())
-      return bad(ErrorCode::kBadValue, "dependencies beyond the end of their list");
-    for (std::uint32_t d = 0; d < e.dependencyCount; ++d)
-      if (index.dependencies[e.firstDependency + d] >= i) return bad(ErrorCode::kBadValue, "it depends on itself or on a later chunk");
-    if (const char* what = index.layout == Layout::kStream ? brokenStream(index, i) : nullptr) return bad(ErrorCode::kBadValue, what);
   }
   if (index.layout == Layout::kStream && index.chunks.back().endSlot != kLevelEnd)
     return fail(ErrorCode::kBadValue, "the last chunk ends within a level; fetch or build the log again", header.headBytes());
-  if (index.layout == Layout::kStream && index.dependencies.size() + 1 != index.chunks.size())
-    return fail(ErrorCode::kBadValue, "the list of dependencies has another length than the chunks need; fetch or build the log again", header.headBytes());
+  if (index.dependencies.size() != header.dependencies)
+    return fail(ErrorCode::kBadValue, "the table has another number of dependencies than the header says; fetch or build the log again", 48);
   return checkClosing(index, offset, header.fileBytes);
 }
 
@@ -230,32 +174,20 @@ Result<LogIndex> LogIndex::parse(ByteView bytes) {
   index.manifest.assign(manifest.begin(), manifest.end());
   ByteReader r(table, kHeaderBytes + std::uint64_t{header->manifestBytes});
   for (std::uint32_t f = 0; f < header->fields; ++f) {
-    const auto components = r.read<std::uint16_t>();
-    const auto association = r.read<std::uint16_t>();
+    const auto components = r.read<std::uint8_t>();
+    const auto association = r.read<std::uint8_t>();
     if (components == 0 || components > kMaxFieldComponents)
-      return fail(ErrorCode::kBadValue, "field " + std::to_string(f) + " has a number of components outside 1..16", r.offset() - 4);
-    if ((association & ~kGapsFlag) > static_cast<std::uint16_t>(Association::kCell))
+      return fail(ErrorCode::kBadValue, "field " + std::to_string(f) + " has a number of components outside 1..16", r.offset() - 2);
+    if ((association & ~kGapsFlag) > static_cast<std::uint8_t>(Association::kCell))
       return fail(ErrorCode::kBadValue,
                   "field " + std::to_string(f) + " has the association " + std::to_string(association) +
-                      "; this build knows 0 (points) and 1 (cells): use a newer qtet, or build the log again",
-                  r.offset() - 2);
+                      "; this build knows 0 (points) and 1 (cells), and 128 more for gaps: use a newer qtet, or build the log again",
+                  r.offset() - 1);
     index.fields.push_back({components, static_cast<Association>(association & ~kGapsFlag), (association & kGapsFlag) != 0});
   }
-  index.chunks.reserve(header->chunks);
-  for (std::uint32_t i = 0; i < header->chunks; ++i) index.chunks.push_back(readEntry(r, index.parts()));
-  index.dependencies.reserve(header->dependencies);
-  for (std::uint32_t i = 0; i < header->dependencies; ++i) index.dependencies.push_back(r.read<std::uint32_t>());
-  std::uint64_t closingOffset = index.chunks.empty() ? 0 : index.chunks.back().offset + index.chunks.back().size();
-  for (std::uint32_t i = 0; i < header->closing; ++i) {
-    ClosingBlock closing;
-    closing.kind = static_cast<ClosingKind>(r.read<std::uint16_t>());
-    closing.field = r.read<std::uint16_t>();
-    closing.block.offset = closingOffset;
-    closing.block.size = r.read<std::uint32_t>();
-    closing.block.crc = r.read<std::uint32_t>();
-    closingOffset += closing.block.size;
-    index.closing.push_back(closing);
-  }
+  readChunkRows(r, index, header->chunks, header->headBytes());
+  readClosingRows(r, index, header->closing);
+  if (!r.failed() && r.remaining() > 0) r.fail(ErrorCode::kBadValue, "bytes behind the chunk table's last row; fetch or build the log again");
   if (r.failed()) return std::unexpected(r.error());
   if (Status s = check(index, *header); !s) return std::unexpected(s.error());
   return index;
@@ -264,18 +196,11 @@ Result<LogIndex> LogIndex::parse(ByteView bytes) {
 Bytes LogIndex::encode() const {
   ByteWriter table;
   for (const FieldShape& field : fields) {
-    table.write(static_cast<std::uint16_t>(field.components));
-    table.write(static_cast<std::uint16_t>(static_cast<std::uint32_t>(field.association) | (field.gaps ? kGapsFlag : 0)));
+    table.write(static_cast<std::uint8_t>(field.components));
+    table.write(static_cast<std::uint8_t>(static_cast<std::uint32_t>(field.association) | (field.gaps ? kGapsFlag : 0)));
   }
-  for (const ChunkEntry& e : chunks) writeEntry(table, e);
-  for (const std::uint32_t d : dependencies) table.write(d);
-  for (const ClosingBlock& c : closing) {
-    table.write(static_cast<std::uint16_t>(c.kind));
-    table.write(c.field);
-    table.write(c.block.size);
-    table.write(c.block.crc);
-  }
-  const ByteView manifestBytes(reinterpret_cast<const std::uint8_t*>(manifest.data()), manifest.size());
+  writeChunkRows(table, *this);
+  writeClosingRows(table, *this);
 
   ByteWriter w;
   w.append(kMagic);
@@ -287,7 +212,7 @@ Bytes LogIndex::encode() const {
   w.write(fileBytes);
   w.write(static_cast<std::uint32_t>(manifest.size()));
   w.write(static_cast<std::uint32_t>(table.bytes().size()));
-  w.write(crc32c(manifestBytes));
+  w.write(crc32c(manifest));
   w.write(crc32c(table.bytes()));
   w.write(static_cast<std::uint32_t>(chunks.size()));
   w.write(static_cast<std::uint32_t>(fields.size()));
@@ -295,7 +220,7 @@ Bytes LogIndex::encode() const {
   w.write(static_cast<std::uint32_t>(closing.size()));
   w.write(std::uint32_t{0});
   w.write(crc32c(w.bytes()));
-  w.append(manifestBytes);
+  w.append(manifest);
   w.append(table.bytes());
   return w.take();
 }

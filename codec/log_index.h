@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "proto/bytes.h"
@@ -17,7 +16,8 @@ enum class Layout : std::uint8_t { kStream = 0, kRegions = 1 };
 enum class CodecId : std::uint8_t {
   kEmpty = 0,      ///< no bytes
   kRange = 1,      ///< structure: the adaptive binary range coder
-  kDraco = 2,      ///< values: one Draco point cloud, sequential, one int32 attribute
+  kDraco = 2,      ///< values: one Draco point cloud, sequential, one int32 attribute, and digits
+  kAdaptive = 3,   ///< values: the adaptive binary range coder
 };
 
 /// What the values of a field belong to.
@@ -46,15 +46,15 @@ inline constexpr std::uint32_t kLevelEnd = 0xFFFFFFFFu;
 
 /// One row of the chunk table. Chunk 0 is the base mesh (level 0).
 struct ChunkEntry {
-  std::uint64_t offset = 0;           ///< of its first block in the file
-  std::uint32_t firstLevel = 0;       ///< the levels that its records belong to
+  std::uint64_t offset = 0;           ///< of its first block in the file; derived, not stored
+  std::uint32_t firstLevel = 0;       ///< the levels that its records belong to; the first follows from the row before in `stream`
   std::uint32_t lastLevel = 0;
   std::uint32_t endSlot = kLevelEnd;  ///< lastLevel is visited below this vertex slot; kLevelEnd = to its end
   std::uint32_t records = 0;
   std::uint32_t newVertices = 0;
   std::uint32_t newTetrahedra = 0;
   std::uint32_t newBoundaryTriangles = 0;
-  std::uint32_t firstDependency = 0;  ///< into LogIndex::dependencies
+  std::uint32_t firstDependency = 0;  ///< into LogIndex::dependencies; in `stream` derived: the chunk before, alone
   std::uint32_t dependencyCount = 0;
   CodecId structureCodec = CodecId::kRange;
   CodecId valueCodec = CodecId::kDraco;
@@ -64,7 +64,7 @@ struct ChunkEntry {
 };
 
 /// What a closing block holds (FORMAT.md, "Closing blocks").
-enum class ClosingKind : std::uint16_t {
+enum class ClosingKind : std::uint32_t {
   kPointOrder = 1,      ///< the input's numbering of points
   kCellOrder = 2,       ///< the input's numbering of cells and of their vertices; needs the points'
   kExactPositions = 3,  ///< the input's own coordinates
@@ -74,22 +74,19 @@ enum class ClosingKind : std::uint16_t {
 /// A block behind the last chunk. No level needs it: who wants the input itself and not only its mesh on the lattice fetches it.
 struct ClosingBlock {
   ClosingKind kind = ClosingKind::kPointOrder;  ///< or one that this build does not know, to be left alone
-  std::uint16_t field = 0;                      ///< of kExactField; else 0
+  std::uint32_t field = 0;                      ///< of kExactField; else 0
   BlockEntry block;
 };
 
 struct LogIndex {
   static constexpr std::uint32_t kHeaderBytes = 64;
-  static constexpr std::uint32_t kChunkEntryBytes = 52;
-  static constexpr std::uint32_t kBlockEntryBytes = 8;
-  static constexpr std::uint32_t kClosingEntryBytes = 12;
   static constexpr std::uint16_t kVersionMajor = 2;
   static constexpr std::uint16_t kVersionMinor = 0;
 
   Layout layout = Layout::kStream;
   std::uint8_t positionBits = 0;
   std::uint64_t fileBytes = 0;
-  std::string manifest;  ///< JSON, see proto/manifest.h
+  Bytes manifest;  ///< as it stands in the file; codec/log_manifest.h reads it
   std::vector<FieldShape> fields;
   std::vector<ChunkEntry> chunks;
   std::vector<std::uint32_t> dependencies;
@@ -113,7 +110,7 @@ struct LogIndex {
   [[nodiscard]] static Result<std::uint64_t> headBytesOf(ByteView firstBytes);
   /// Reads the front of a log; `bytes` holds at least headBytesOf() bytes, the rest is not looked at.
   [[nodiscard]] static Result<LogIndex> parse(ByteView bytes);
-  /// Header, manifest and table as they stand in the file. REQUIRES: offsets and sizes consistent (LogWriter sees to that).
+  /// Header, manifest and table as they stand in the file. What the rows imply (offsets, in `stream` first levels and dependencies) is not looked at.
   [[nodiscard]] Bytes encode() const;
 };
 

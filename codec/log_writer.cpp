@@ -3,23 +3,29 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "codec/base_coder.h"
 #include "codec/cell_values.h"
-#include "codec/draco_block.h"
+#include "codec/value_block.h"
 #include "codec/growing_mesh.h"
 #include "codec/log_index.h"
+#include "codec/log_manifest.h"
 #include "codec/point_values.h"
 #include "codec/record_coder.h"
 #include "proto/crc32c.h"
 #include "proto/limits.h"
-#include "proto/manifest.h"
 
 namespace qtet {
 namespace {
 
 constexpr std::uint32_t kNone = 0xFFFFFFFFu;
+
+// A picture sharpens when a chunk is whole, so that each is a share of what a viewer has already waited for, up to LogWriterOptions::chunkBytes. Smaller
+// ones cost more than they give: a row of the table and Draco's fixed bytes are 130 bytes a chunk with one field, 3 % of 4 KB.
+constexpr std::uint64_t kLeastChunkBytes = 4 << 10;
+constexpr std::uint64_t kGrowth = 4;
 
 /// A chunk under construction.
 struct OpenChunk {
@@ -153,6 +159,7 @@ class LogEncoder {
   Status encodeLevel(std::uint32_t level) {
     if (open_.entry.firstLevel == 0) open_.entry.firstLevel = level;
     mesh_.beginLevel(level);
+    std::optional<std::uint64_t> begun = estimatedBytes();  // none once a chunk ended within the level
     RecordCoder<RangeEncoder> coder(range_, models_, mesh_, link_, open_.positions);
     for (VertexId v = 0; v < mesh_.levelVertices(); ++v) {
       if (!mesh_.maysplit(v)) continue;
@@ -161,15 +168,24 @@ class LogEncoder {
       coder.splits(v, level, splits);
       if (!splits) continue;
       if (Status s = record(coder, v, h_.fusions[fusion]); !s) return s;
-      if (estimatedBytes() < options_.chunkBytes) continue;
+      if (estimatedBytes() < chunkTarget()) continue;
       if (Status s = closeChunk(level, v + 1); !s) return s;
       open_.entry.firstLevel = level;
+      begun.reset();
     }
-    if (estimatedBytes() < options_.chunkBytes / 2) return {};
-    return closeChunk(level, kLevelEnd);  // near enough: let the next chunk begin with a level
+    // Near enough, if another level like this one would go further beyond the target than this one stays below it: let the next chunk begin with a level.
+    const std::uint64_t bytes = estimatedBytes(), target = chunkTarget();
+    const std::uint64_t levelBytes = begun ? bytes - *begun : target;
+    if (2 * bytes + levelBytes < 2 * target) return {};
+    return closeChunk(level, kLevelEnd);
   }
 
-  [[nodiscard]] std::uint64_t estimatedBytes() const { return range_.size() + open_.valueBits / 8; }
+  // The estimate of the values, corrected by how far it was off in the chunks before.
+  [[nodiscard]] std::uint64_t estimatedBytes() const { return range_.size() + open_.valueBits / 8 * (1 + valueBytes_) / (1 + valueBits_ / 8); }
+
+  [[nodiscard]] std::uint64_t chunkTarget() const {
+    return std::min<std::uint64_t>(options_.chunkBytes, std::max<std::uint64_t>(kLeastChunkBytes, body_.size() / kGrowth));
+  }
 
   Status record(RecordCoder<RangeEncoder>& coder, VertexId v, Fusion fusion) {
     const auto bad = [&](const char* what) { return fail(ErrorCode::kBadValue, "fusion of vertex " + std::to_string(fusion.fused) + ": " + what); };
@@ -181,7 +197,7 @@ class LogEncoder {
     if (!labels(v, fusion, truth)) return bad("the history's cells are not those of its star");
     number(fusion, truth);
     for (std::size_t i = 0; i < fusion.k; ++i) truth.points[i] = h_.points[fusion.prey[i]];
-    if ( !deleted(fusion, truth)) return bad("the history's cells are not those of its star");
+    if (!deleted(fusion, truth)) return bad("the history's cells are not those of its star");
     Split split;
     if (!coder.code(v, truth, split)) return bad("its cells cannot be described by labels");
     apply(v, fusion, split);
@@ -296,6 +312,7 @@ class LogEncoder {
     ChunkEntry& e = open_.entry;
     e.lastLevel = level;
     e.endSlot = endSlot;
+    e.valueCodec = options_.valueCodec;
     if (chunks_.empty()) {
       e.newVertices = static_cast<std::uint32_t>(mesh_.points.size());
       e.newTetrahedra = static_cast<std::uint32_t>(mesh_.tetrahedra.size());
@@ -307,10 +324,14 @@ class LogEncoder {
     if (Status s = addBlock(range_.finish()); !s) return s;
     for (std::size_t part = 0; part <= h_.fields.size(); ++part) {
       Values& residuals = part == 0 ? open_.positions : open_.fields[part - 1];
-      Result<Bytes> block = encodeDracoBlock(residuals.written(), part == 0 ? 3 : h_.fields[part - 1].components);
+      Result<Bytes> block = encodeValueBlock(residuals.written(), part == 0 ? 3 : h_.fields[part - 1].components, options_.valueCodec);
       if (!block) return std::unexpected(block.error());
       if (Status s = addBlock(std::move(*block)); !s) return s;
       residuals.written().clear();
+    }
+    if (!chunks_.empty()) {
+      for (std::size_t part = kPositionsPart; part < e.blocks.size(); ++part) valueBytes_ += e.blocks[part].size;
+      valueBits_ += open_.valueBits;
     }
     chunks_.push_back(std::exchange(e, ChunkEntry{}));
     open_.valueBits = 0;
@@ -325,14 +346,12 @@ class LogEncoder {
   }
 
   void addLevel(std::uint32_t level) {
-    const bool closed = !chunks_.empty() && open_.entry.records == 0 && open_.entry.firstLevel == 0;
-    const auto chunk = static_cast<std::uint32_t>(closed ? chunks_.size() - 1 : chunks_.size());
     levels_.push_back({level, static_cast<std::uint32_t>(mesh_.tetrahedra.size()), static_cast<std::uint32_t>(mesh_.points.size()),
-                       static_cast<std::uint32_t>(mesh_.boundary.size()), chunk, std::nullopt});
+                       static_cast<std::uint32_t>(mesh_.boundary.size()), 0, std::nullopt});  // the table tells the chunk
     if (!options_.errors.empty()) levels_.back().error = options_.errors[level];
   }
 
-  [[nodiscard]] std::string manifest() const {
+  [[nodiscard]] Result<Bytes> manifest() const {
     Manifest m;
     m.generator = options_.generator;
     m.source = options_.source;
@@ -341,13 +360,15 @@ class LogEncoder {
     m.latticeOrigin = h_.lattice.origin;
     for (const FieldInfo& f : h_.fields) m.fields.push_back({f.name, f.components, f.type, f.association, f.bits, f.step, f.minimum, f.range, f.gaps});
     m.levels = levels_;
-    return manifestToJson(m);
+    return manifestBlock(m);
   }
 
   Result<EncodedLog> assemble() {
     LogIndex index;
     index.positionBits = static_cast<std::uint8_t>(h_.lattice.bits);
-    index.manifest = manifest();
+    Result<Bytes> manifestBytes = manifest();
+    if (!manifestBytes) return std::unexpected(manifestBytes.error());
+    index.manifest = std::move(*manifestBytes);
     for (const FieldInfo& f : h_.fields) index.fields.push_back({f.components, isCellField(f) ? Association::kCell : Association::kPoint, f.gaps});
     index.chunks = std::move(chunks_);
     index.dependencies = std::move(dependencies_);
@@ -392,6 +413,7 @@ class LogEncoder {
   std::vector<std::uint8_t> labelOf_;
   std::vector<std::pair<LocalCell, std::uint32_t>> deletedIds_;
   OpenChunk open_;
+  std::uint64_t valueBytes_ = 0, valueBits_ = 0;  // of the chunks closed since the base mesh: what the values took, and the estimates
   std::vector<ChunkEntry> chunks_;
   std::vector<std::uint32_t> dependencies_;
   std::vector<ManifestLevel> levels_;

@@ -72,12 +72,6 @@ class JsonCursor {
     return value_->get<double>();
   }
 
-  [[nodiscard]] bool boolean() const {
-    if (value_ == nullptr) return false;
-    if (!value_->is_boolean()) return fail("must be true or false"), false;
-    return value_->get<bool>();
-  }
-
   /// The elements of an array of minimum..maximum of them.
   [[nodiscard]] std::vector<JsonCursor> items(std::size_t minimum, std::size_t maximum) const {
     std::vector<JsonCursor> out;

@@ -4,6 +4,7 @@
 
 #include "codec/atomic_file.h"
 #include "codec/log_index.h"
+#include "codec/log_manifest.h"
 #include "codec/log_writer.h"
 #include "proto/checksum.h"
 #include "proto/limits.h"
@@ -223,7 +224,7 @@ Result<EncodedLog> makeLog(const Request& request, Prepared& prepared, Progress&
 Result<OrderedJson> reportOf(const Request& request, const Prepared& prepared, const EncodedLog& log, const Stopwatch& watch) {
   const Result<LogIndex> index = LogIndex::parse(log.bytes);
   if (!index) return std::unexpected(index.error());
-  const Result<Manifest> manifest = manifestFromJson(index->manifest);
+  const Result<Manifest> manifest = manifestOf(*index);
   if (!manifest) return std::unexpected(manifest.error());
 
   const QuantiseReport& quantised = prepared.quantised.report;

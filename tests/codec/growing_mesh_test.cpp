@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "codec/boundary.h"
-#include "codec/draco_block.h"
+#include "codec/value_block.h"
 #include "codec/log_writer.h"
 #include "codec/record_coder.h"
 #include "codec/refiner.h"
@@ -80,7 +80,7 @@ class Replay {
     return ByteView(bytes_).subspan(static_cast<std::size_t>(b.offset), b.size);
   }
   [[nodiscard]] std::vector<std::int32_t> positions(std::uint32_t chunk) const {
-    return decodeDracoBlock(block(chunk, kPositionsPart), 3, index_.tuples(chunk, kPositionsPart)).value();
+    return decodeValueBlock(block(chunk, kPositionsPart), 3, index_.tuples(chunk, kPositionsPart)).value();
   }
   void applyNext() {
     const std::uint32_t chunk = refiner->chunksApplied();
@@ -102,20 +102,18 @@ std::vector<std::vector<CellRef>> builtStars(const GrowingMesh& mesh) {
   return stars;
 }
 
-std::array<std::uint64_t, 3> summedSpread(const GrowingMesh& mesh, VertexId v, std::span<const CellRef> star, int shift) {
-  std::array<std::uint64_t, 3> squares{};
-  std::uint64_t edges = 0;
+GrowingMesh::Spread summedSpread(const GrowingMesh& mesh, VertexId v, std::span<const CellRef> star, int shift) {
+  GrowingMesh::Spread out;
   for (const CellRef ref : star)
     for (const VertexId w : mesh.cell(ref)) {
       if (w == kGhost || w == v) continue;
-      ++edges;
+      ++out.edges;
       for (std::size_t a = 0; a < 3; ++a) {
         const std::int64_t d = (mesh.points[v][a] - mesh.points[w][a]) >> shift;
-        squares[a] += static_cast<std::uint64_t>(d * d);
+        out.squares[a] += static_cast<std::uint64_t>(d * d);
       }
     }
-  for (std::uint64_t& x : squares) x /= edges;
-  return squares;
+  return out;
 }
 
 void expectAsBuiltAnew(Replay& replay) {

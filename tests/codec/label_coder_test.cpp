@@ -51,7 +51,7 @@ TEST(LabelCoder, anyLabelsComeBack) {
     stars.push_back(someStar(random));
     k.push_back(2 + i % 3);
     truth.push_back(randomLabels(random, stars.back().link, static_cast<std::size_t>(k.back())));
-    LabelCoder<RangeEncoder>(encoder, models, stars.back().link, k.back()).code(truth.back());
+    LabelCoder<RangeEncoder>(encoder, models, stars.back().link).code(k.back(), truth.back());
     ASSERT_EQ(labelsOf(stars.back().link), truth.back());
   }
   const Bytes bytes = encoder.finish();
@@ -59,7 +59,7 @@ TEST(LabelCoder, anyLabelsComeBack) {
   LabelModels again;
   for (std::size_t i = 0; i < stars.size(); ++i) {
     forget(stars[i].link);
-    LabelCoder<RangeDecoder>(decoder, again, stars[i].link, k[i]).code({});
+    LabelCoder<RangeDecoder>(decoder, again, stars[i].link).code(k[i], {});
     ASSERT_EQ(labelsOf(stars[i].link), truth[i]) << i;
   }
   EXPECT_TRUE(decoder.atEnd());
@@ -78,7 +78,7 @@ TEST(LabelCoder, labelsThatLieWithTheirPreyTakeAFewBitsARecord) {
       if (testing::labelByNearest(star, prey) < 2) continue;
       const std::vector<std::uint8_t> truth = labelsOf(star.link);
       forget(star.link);
-      LabelCoder<RangeEncoder>(encoder, models, star.link, 2).code(truth);
+      LabelCoder<RangeEncoder>(encoder, models, star.link).code(2, truth);
       triangles += truth.size();
     }
   };
@@ -98,7 +98,7 @@ TEST(LabelCoder, anyBytesGiveLabelsBelowKInOrderOfAppearance) {
     RangeDecoder decoder(noise);
     LabelModels models;
     const int k = 2 + i % 3;
-    LabelCoder<RangeDecoder>(decoder, models, star.link, k).code({});
+    LabelCoder<RangeDecoder>(decoder, models, star.link).code(k, {});
     std::uint8_t seen = 0;
     for (const std::uint32_t f : star.link.traversal()) {
       const std::uint8_t label = star.link.triangles()[f].label;
@@ -115,11 +115,11 @@ TEST(LabelCoder, theLargestLatticeIsNoneTooLarge) {
   const std::vector<std::uint8_t> truth = randomLabels(random, star.link, 4);
   RangeEncoder encoder;
   LabelModels models, again;
-  LabelCoder<RangeEncoder>(encoder, models, star.link, 4).code(truth);
+  LabelCoder<RangeEncoder>(encoder, models, star.link).code(4, truth);
   const Bytes bytes = encoder.finish();
   RangeDecoder decoder(bytes);
   forget(star.link);
-  LabelCoder<RangeDecoder>(decoder, again, star.link, 4).code({});
+  LabelCoder<RangeDecoder>(decoder, again, star.link).code(4, {});
   EXPECT_EQ(labelsOf(star.link), truth);
 }
 

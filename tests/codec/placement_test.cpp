@@ -31,7 +31,7 @@ TEST(Placement, theFarCornerOfTheLargestLatticeFits) {
   const LatticePoint far{kFar, kFar, kFar};
   EXPECT_EQ(middle(std::array{far, far, far, far}), far);
   EXPECT_EQ(quarter(far, far), far);
-  EXPECT_EQ(quarter(far, {0, kFar, kFar}), (LatticePoint{kFar - (1 << (kMaxPositionBits - 2)) + 1, kFar, kFar}));
+  EXPECT_EQ(quarter(far, {0, kFar, kFar}), (LatticePoint{kFar - (1 << (kMaxPositionBits - 2)), kFar, kFar}));
 }
 
 }  // namespace

@@ -67,7 +67,7 @@ Coded encoded(std::span<const Record> records) {
   for (const Record& r : records) {
     const StarMesh star = starOf(r);
     Split split = r.split;
-    PositionCoder<RangeEncoder>(encoder, models, values, 0, star.mesh, star.link).code(split);
+    PositionCoder<RangeEncoder>(encoder, models, values, star.mesh, star.link).code(0, split);
   }
   EXPECT_FALSE(values.bad());
   return {encoder.finish(), values.written()};
@@ -83,7 +83,7 @@ void expectRoundTrip(std::span<const Record> records) {
     const StarMesh star = starOf(r);
     Split split;
     split.k = r.split.k;
-    PositionCoder<RangeDecoder>(decoder, models, values, 0, star.mesh, star.link).code(split);
+    PositionCoder<RangeDecoder>(decoder, models, values, star.mesh, star.link).code(0, split);
     ASSERT_EQ(split.placement, r.split.placement) << i;
     ASSERT_EQ(split.near, r.split.near) << i;
     for (std::size_t p = 0; p < static_cast<std::size_t>(r.split.k); ++p) ASSERT_EQ(split.points[p], r.split.points[p]) << i << ", prey " << p;
@@ -120,13 +120,34 @@ TEST(PositionCoder, aRecordTakesOneTupleANewVertex) {
   }
 }
 
-TEST(PositionCoder, valuesStaySmallWhateverTheStarsSize) {
-  for (const std::int32_t scale : {40, 400, 4000}) {
-    std::mt19937 random(3);
-    std::vector<Record> records;
-    for (int i = 0; i < 200; ++i) records.push_back(randomRecord(random, 16, scale, scale));
-    for (const std::int32_t value : encoded(records).values) EXPECT_LE(std::abs(value), 256) << scale;
+/// The same record, all distances from the middle of a lattice of 20 bits times `factor`.
+Record enlarged(Record r, std::int32_t factor) {
+  constexpr std::int32_t kMiddle = 1 << 19;
+  const auto enlarge = [&](LatticePoint& p) {
+    for (std::int32_t& x : p) x = kMiddle + factor * (x - kMiddle);
+  };
+  enlarge(r.fused);
+  for (LatticePoint& p : r.split.points) enlarge(p);
+  for (std::int32_t& x : r.scale) x *= factor;
+  return r;
+}
+
+TEST(PositionCoder, valuesAreThoseOfAStarOfAnySize) {
+  std::mt19937 random(3);
+  std::vector<Record> records;
+  while (records.size() < 300)
+    if (const Record r = randomRecord(random, 20, 256, 256); r.split.placement == Placement::kAtPrey) records.push_back(r);
+  std::vector<std::vector<std::int32_t>> values;
+  for (const std::int32_t factor : {1, 8, 64}) {
+    std::vector<Record> larger;
+    for (const Record& r : records) larger.push_back(enlarged(r, factor));
+    values.push_back(encoded(larger).values);
   }
+  for (std::size_t i = 0; i < values[0].size(); ++i) {
+    EXPECT_NEAR(values[0][i], values[1][i], 1) << i;
+    EXPECT_NEAR(values[0][i], values[2][i], 1) << i;
+  }
+  EXPECT_LT(std::ranges::max(values[2]), 256);
 }
 
 TEST(PositionCoder, preyOnTheFusedVertexsPlanesTakeFewerDigits) {
@@ -165,7 +186,7 @@ TEST(PositionCoder, whatEverTheBytesSayPointsStayInRange) {
     Values values(given);
     Split split;
     split.k = r.split.k;
-    PositionCoder<RangeDecoder>(decoder, models, values, 0, star.mesh, star.link).code(split);
+    PositionCoder<RangeDecoder>(decoder, models, values, star.mesh, star.link).code(0, split);
     refused += values.bad();
     for (const LatticePoint& p : split.points)
       for (const std::int32_t x : p) {
@@ -174,6 +195,23 @@ TEST(PositionCoder, whatEverTheBytesSayPointsStayInRange) {
       }
   }
   EXPECT_GT(refused, 1500u);
+}
+
+TEST(PositionCoder, aDifferenceBeyondTheRangeIsRefusedOnBothSides) {
+  std::mt19937 random(7);
+  for (const std::int32_t wild : {std::numeric_limits<std::int32_t>::max(), std::numeric_limits<std::int32_t>::min()}) {
+    const Record r = randomRecord(random, 8, 1, 60);
+    const Coded coded = encoded(std::span(&r, 1));
+    const std::vector<std::int32_t> given(coded.values.size(), wild);
+    const StarMesh star = starOf(r);
+    RangeDecoder decoder(coded.structure);
+    PositionModels models;
+    Values values(given);
+    Split split;
+    split.k = r.split.k;
+    PositionCoder<RangeDecoder>(decoder, models, values, star.mesh, star.link).code(0, split);
+    EXPECT_TRUE(values.bad()) << wild;
+  }
 }
 
 TEST(PositionCoder, aBlockThatEndsTooEarlyIsNoticed) {
@@ -188,7 +226,7 @@ TEST(PositionCoder, aBlockThatEndsTooEarlyIsNoticed) {
     Values values(coded.values);
     Split split;
     split.k = r.split.k;
-    PositionCoder<RangeDecoder>(decoder, models, values, 0, star.mesh, star.link).code(split);
+    PositionCoder<RangeDecoder>(decoder, models, values, star.mesh, star.link).code(0, split);
     EXPECT_TRUE(values.bad());
   }
 }

@@ -1,13 +1,20 @@
 // Writes the golden files anew: `qtet_golden FOLDER`. Run it only when the format changes; the committed files are the reference.
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <functional>
+#include <limits>
 
 #include "codec/atomic_file.h"
 #include "codec/log_file.h"
+#include "codec/level_columns.h"
+#include "codec/log_manifest.h"
 #include "codec/log_writer.h"
+#include "simplify/gaps.h"
+#include "simplify/kept_input.h"
 #include "simplify/qtetfusion.h"
 #include "proto/checksum.h"
+#include "proto/limits.h"
 #include "tests/support/forged_log.h"
 #include "tests/support/meshes.h"
 
@@ -22,22 +29,110 @@ Bytes logOf(const LatticeMesh& mesh, std::uint32_t chunkBytes) {
   return encodeLog(simplify(mesh, {}).value(), options).value().bytes;
 }
 
+/// A field of points, one of cells, and every third of their values missing, beside a field without gaps.
+Bytes gappyLog() {
+  LatticeMesh mesh = testing::gridMesh(3, 6);
+  testing::addCellFields(mesh);
+  std::vector<std::vector<std::uint8_t>> gaps(mesh.fields.size());
+  for (const std::size_t f : {std::size_t{0}, mesh.fields.size() - 1}) {
+    mesh.fields[f].gaps = true;
+    for (std::size_t i = 0; i < mesh.values[f].size(); ++i) gaps[f].push_back(i / 2 % 3 == 0);
+  }
+  FusionHistory history = simplify(mesh, {}).value();
+  cutGapsOut(history, gaps);
+  LogWriterOptions options;
+  options.source = "golden.vtu";
+  options.generator = "qtet golden";
+  options.chunkBytes = 500;
+  return encodeLog(history, options).value().bytes;
+}
+
+/// With every kind of closing block, and one of a kind that is not known yet.
+Bytes keptLog() {
+  const LatticeMesh mesh = testing::gridMesh(2, 7);
+  TetMesh input;
+  for (const LatticePoint& p : mesh.points) input.points.push_back(mesh.lattice.position(p));
+  input.tetrahedra = mesh.tetrahedra;
+  input.pointType = "float64";
+  for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
+    const FieldInfo& info = mesh.fields[f];
+    MeshField& field = input.fields.emplace_back(MeshField{info.name, info.components, info.type, {}, info.association});
+    for (std::size_t i = 0; i < mesh.values[f].size(); ++i) field.values.push_back(info.value(i % info.components, mesh.values[f][i]) + 0.125 * info.step);
+  }
+  LogWriterOptions options;
+  options.source = "golden.vtu";
+  options.generator = "qtet golden";
+  const EncodedLog log = encodeLog(simplify(mesh, {}).value(), options).value();
+  testing::TakenApart parts = testing::takeApart(withInput(log, {{true, true}, input}).value());
+  parts.index.closing.push_back({static_cast<ClosingKind>(70000), 300, {}});
+  parts.closing.push_back(Bytes(200, 0x5A));
+  return parts.together();
+}
+
 /// A log taken apart, changed and put together with every checksum right; `table` changes what stands there beside the right offsets.
 Bytes forged(const Bytes& good, const std::function<void(LogIndex&)>& table, const std::function<void(std::vector<std::vector<Bytes>>&)>& body = {}) {
   testing::TakenApart parts = testing::takeApart(good);
   if (body) body(parts.blocks);
   Bytes whole = parts.together();
   if (!table) return whole;
-  const auto tail = static_cast<std::ptrdiff_t>(parts.index.headBytes());
   table(parts.index);
-  Bytes out = parts.index.encode();
-  out.insert(out.end(), whole.begin() + tail, whole.end());
-  return out;
+  return testing::withFront(whole, parts.index);
 }
 
 void write(const std::filesystem::path& path, const Bytes& bytes) {
   std::filesystem::create_directories(path.parent_path());
   if (const Status s = writeFileAtomically(path, bytes); !s) std::fprintf(stderr, "%s\n", s.error().text().c_str());
+}
+
+/// What the head says of levels and fields, broken below right checksums.
+void writeBadHeads(const std::filesystem::path& folder, const Bytes& good) {
+  const auto manifest = [&](const std::function<void(Bytes&)>& change) {
+    testing::TakenApart parts = testing::takeApart(good);
+    change(parts.index.manifest);
+    return parts.together();
+  };
+  const auto manifested = [&](const std::function<void(Manifest&)>& change) {
+    testing::TakenApart parts = testing::takeApart(good);
+    Manifest m = manifestOf(parts.index).value();
+    change(m);
+    parts.index.manifest = manifestBlock(m).value();
+    return parts.together();
+  };
+  write(folder / "truncated.manifest-fields.qtet", manifest([](Bytes& b) { b.resize(60); }));
+  write(folder / "truncated.manifest-levels.qtet", manifest([](Bytes& b) { b.resize(b.size() - 3); }));
+  write(folder / "bad-value.manifest-too-long.qtet", manifest([](Bytes& b) { b.push_back(0); }));
+  write(folder / "bad-value.manifest-long-varint.qtet", manifest([](Bytes& b) { b[0] |= 128, b.insert(b.begin() + 1, 0); }));
+  write(folder / "bad-value.manifest-name-length.qtet", manifest([](Bytes& b) { b[0] |= 128, b.insert(b.begin() + 1, 3); }));
+  write(folder / "bad-value.manifest-step.qtet", manifested([](Manifest& m) { m.latticeStep = 0; }));
+  write(folder / "bad-value.manifest-not-finite.qtet", manifested([](Manifest& m) { m.latticeOrigin[1] = std::numeric_limits<double>::quiet_NaN(); }));
+  write(folder / "bad-value.manifest-field-bits.qtet", manifested([](Manifest& m) { m.fields[0].bits = 29; }));
+  write(folder / "bad-value.manifest-field-type.qtet", manifested([](Manifest& m) { m.fields[0].type = "complex64"; }));
+  write(folder / "bad-value.manifest-field-twice.qtet", manifested([](Manifest& m) { m.fields[1].name = m.fields[0].name; }));
+  write(folder / "bad-value.manifest-no-name.qtet", manifested([](Manifest& m) { m.fields[0].name.clear(); }));
+  write(folder / "bad-value.manifest-count.qtet", manifested([](Manifest& m) { m.levels[1].vertices = kMaxElements + 1; }));
+  // The figures of all levels in the bytes of none.
+  const Manifest m = manifestOf(testing::takeApart(good).index).value();
+  LevelColumns columns;
+  for (const auto count : {&ManifestLevel::tetrahedra, &ManifestLevel::vertices, &ManifestLevel::boundaryTriangles})
+    for (const ManifestLevel& level : m.levels) columns.push_back(level.*count);
+  const std::size_t size = encodeLevelColumns(columns, static_cast<std::uint32_t>(m.levels.size())).size();
+  write(folder / "limit-exceeded.manifest-bomb.qtet", manifest([size](Bytes& b) { b.resize(b.size() - size); }));
+}
+
+void writeBadClosing(const std::filesystem::path& folder, const Bytes& kept) {
+  const auto closing = [&](const std::function<void(std::vector<ClosingBlock>&)>& change) {
+    return forged(kept, [&](LogIndex& i) { change(i.closing); });
+  };
+  const auto exact = [](std::vector<ClosingBlock>& c) -> ClosingBlock& { return *std::ranges::find(c, ClosingKind::kExactField, &ClosingBlock::kind); };
+  write(folder / "bad-value.gaps-in-the-table-alone.qtet", forged(kept, [](LogIndex& i) { i.fields[0].gaps = true; }));
+  write(folder / "bad-value.closing-twice.qtet", closing([](auto& c) { c[1].kind = c[0].kind; }));
+  write(folder / "bad-value.closing-field.qtet", closing([&](auto& c) { exact(c).field = 99; }));
+  write(folder / "bad-value.closing-size.qtet", closing([](auto& c) { ++c[0].block.size; }));
+  write(folder / "bad-value.closing-left-out.qtet", closing([](auto& c) { c.pop_back(); }));
+  write(folder / "limit-exceeded.closing-size.qtet", closing([](auto& c) { c[0].block.size = kMaxBlockBytes + 1; }));
+  write(folder / "limit-exceeded.closing-blocks.qtet", closing([](auto& c) {
+    while (c.size() <= kMaxClosingBlocks) c.push_back({static_cast<ClosingKind>(1000 + c.size()), 0, {}});
+  }));
 }
 
 void writeMustFail(const std::filesystem::path& folder, const Bytes& good) {
@@ -70,27 +165,27 @@ void writeMustFail(const std::filesystem::path& folder, const Bytes& good) {
   write(folder / "bad-value.field-components.qtet", forged(good, [](LogIndex& i) { i.fields[0].components = 0; }));
   write(folder / "bad-value.field-association.qtet", forged(good, [](LogIndex& i) { i.fields[0].association = static_cast<Association>(2); }));
   write(folder / "bad-value.points-as-cells.qtet", forged(good, [](LogIndex& i) { i.fields[0].association = Association::kCell; }));
-  write(folder / "bad-value.chunk-offset.qtet", entry(1, [](ChunkEntry& e) { e.offset += 8; }));
-  write(folder / "bad-value.levels-backwards.qtet", entry(2, [](ChunkEntry& e) { e.firstLevel = 0; }));
-  write(folder / "bad-value.depends-on-itself.qtet", forged(good, [](LogIndex& i) { i.dependencies[0] = 1; }));
+  write(folder / "bad-value.block-size.qtet", entry(1, [](ChunkEntry& e) { e.blocks[0].size += 8; }));
+  write(folder / "bad-value.dependencies.qtet", forged(good, [](LogIndex& i) { i.dependencies.push_back(1); }));
   write(folder / "bad-value.reserved-bytes.qtet", reserved);
   write(folder / "bad-value.ends-within-a-level.qtet", entry(index.chunks.size() - 1, [](ChunkEntry& e) { e.endSlot = 1000; }));
-  write(folder / "bad-value.a-level-left-out.qtet", entry(index.chunks.size() - 1, [](ChunkEntry& e) { ++e.firstLevel, ++e.lastLevel; }));
+  write(folder / "bad-value.a-level-too-many.qtet", entry(index.chunks.size() - 1, [](ChunkEntry& e) { ++e.lastLevel; }));
   write(folder / "bad-value.too-few-cells.qtet", entry(1, [](ChunkEntry& e) { --e.newTetrahedra; }));
   write(folder / "bad-value.too-many-records.qtet", entry(1, [](ChunkEntry& e) { ++e.records; }));
   write(folder / "limit-exceeded.levels.qtet", entry(index.chunks.size() - 1, [](ChunkEntry& e) { e.lastLevel = 4097; }));
   write(folder / "limit-exceeded.records.qtet", entry(1, [](ChunkEntry& e) { e.records = 0x40000000; }));
   write(folder / "bad-codec.unknown-id.qtet", entry(1, [](ChunkEntry& e) { e.valueCodec = static_cast<CodecId>(77); }));
-  write(folder / "bad-codec.not-draco.qtet", forged(good, {}, [](auto& blocks) { blocks[1][kPositionsPart] = Bytes(50, 0x5A); }));
+  write(folder / "bad-codec.not-draco.qtet", forged(good, {}, [](auto& blocks) { blocks[1][kPositionsPart] = Bytes(50, 0x5A), std::fill_n(blocks[1][kPositionsPart].end() - 4, 4, 0); }));
   write(folder / "bad-value.structure-of-noise.qtet", forged(good, {}, [](auto& blocks) { for (auto& b : blocks[1][kStructurePart]) b = static_cast<std::uint8_t>(b * 7 + 3); }));
   write(folder / "bad-value.structure-too-long.qtet", forged(good, {}, [](auto& blocks) { blocks[1][kStructurePart].push_back(0); }));
-  write(folder / "truncated.structure.qtet", forged(good, {}, [](auto& blocks) { blocks[2][kStructurePart].resize(blocks[2][kStructurePart].size() / 2); }));
+  writeBadHeads(folder, good);
+  write(folder / "bad-value.structure-cut.qtet", forged(good, {}, [](auto& blocks) { blocks[2][kStructurePart].resize(blocks[2][kStructurePart].size() / 2); }));
 }
 
 /// What the valid files decode to, in the form that sha256sum writes.
 void writeDigests(const std::filesystem::path& folder) {
   std::ofstream meshes(folder / "digests.txt"), values(folder / "field-digests.txt");
-  for (const char* name : {"cell-fields", "no-fields", "pinched", "solid", "tunnel"}) {
+  for (const char* name : {"cell-fields", "gaps", "kept-input", "no-fields", "pinched", "solid", "tunnel"}) {
     const std::string file = std::string(name) + ".qtet";
     const LogFile log = LogFile::open(folder / "valid" / file).value();
     std::vector<std::uint32_t> fields;
@@ -113,7 +208,7 @@ int main(int argc, char** argv) {
   if (argc != 2) return std::fprintf(stderr, "usage: qtet_golden FOLDER\n"), 2;
   const std::filesystem::path folder = argv[1];
   using qtet::testing::gridMesh;
-  const qtet::Bytes solid = qtet::logOf(gridMesh(3, 1), 500);
+  const qtet::Bytes solid = qtet::logOf(gridMesh(3, 1), 150);
   qtet::write(folder / "valid" / "solid.qtet", solid);
   qtet::write(folder / "valid" / "tunnel.qtet", qtet::logOf(gridMesh(3, 2, [](int i, int j, int) { return i != 1 || j != 1; }), 300));
   qtet::write(folder / "valid" / "pinched.qtet", qtet::logOf(gridMesh(4, 3, [](int i, int j, int) { return (i < 2) == (j < 2); }), 700));
@@ -123,7 +218,11 @@ int main(int argc, char** argv) {
   qtet::LatticeMesh cells = gridMesh(3, 5);
   qtet::testing::addCellFields(cells);
   qtet::write(folder / "valid" / "cell-fields.qtet", qtet::logOf(cells, 800));
+  const qtet::Bytes kept = qtet::keptLog();
+  qtet::write(folder / "valid" / "gaps.qtet", qtet::gappyLog());
+  qtet::write(folder / "valid" / "kept-input.qtet", kept);
   qtet::writeMustFail(folder / "must-fail", solid);
+  qtet::writeBadClosing(folder / "must-fail", kept);
   qtet::writeDigests(folder);
   return 0;
 }

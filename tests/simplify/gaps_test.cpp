@@ -6,9 +6,9 @@
 #include <numeric>
 #include <random>
 
-#include "codec/draco_block.h"
 #include "codec/log_file.h"
 #include "codec/log_writer.h"
+#include "codec/value_block.h"
 #include "codec/values.h"
 #include "simplify/gaps.h"
 #include "simplify/qtetfusion.h"
@@ -129,7 +129,7 @@ TEST(Gaps, anEveryBlockOfNoiseIsDecodedOrRefused) {
     for (std::uint32_t part = kFirstFieldPart; part < log.index.parts(); ++part) {
       std::vector<std::int32_t> noise(std::size_t{log.index.tuples(0, part)} * log.index.components(part));
       for (std::int32_t& x : noise) x = static_cast<std::int32_t>(random() % 5) * (round % 2 == 0 ? 1 : 1 << 28) - 2;
-      log.blocks[0][part] = encodeDracoBlock(noise, log.index.components(part)).value();
+      log.blocks[0][part] = encodeValueBlock(noise, log.index.components(part)).value();
     }
     const LogFile file = LogFile::fromBytes(log.together()).value();
     const auto mesh = meshAtLevel(file, file.index().chunks.back().lastLevel);

@@ -1,0 +1,102 @@
+#include "codec/chunk_table.h"
+
+#include "proto/limits.h"
+
+namespace qtet {
+namespace {
+
+/// The level that a row of `stream` begins with: the one that the chunk before it left, or the next one if that was complete.
+std::uint32_t nextLevel(const LogIndex& index, std::size_t chunk) {
+  if (chunk == 0) return 0;
+  const ChunkEntry& before = index.chunks[chunk - 1];
+  return before.lastLevel + (before.endSlot == kLevelEnd);
+}
+
+void readLevels(ByteReader& r, const LogIndex& index, ChunkEntry& e) {
+  const std::uint64_t first = index.layout == Layout::kRegions ? r.readVarint() : nextLevel(index, index.chunks.size());
+  const std::uint64_t last = first + r.readVarint();
+  if (last > kMaxLevels) return r.fail(ErrorCode::kLimitExceeded, "more than 4,096 levels; fetch or build the log again");
+  e.firstLevel = static_cast<std::uint32_t>(first);
+  e.lastLevel = static_cast<std::uint32_t>(last);
+  e.endSlot = r.readVarint() - 1;  // 0 stands for kLevelEnd
+}
+
+// In `stream` a chunk depends on the one before it alone; in `regions` the row tells how far back each dependency is.
+void readDependencies(ByteReader& r, LogIndex& index, ChunkEntry& e) {
+  const auto chunk = static_cast<std::uint32_t>(index.chunks.size());
+  const std::uint32_t count = index.layout == Layout::kRegions ? r.readVarint() : chunk > 0;
+  e.firstDependency = static_cast<std::uint32_t>(index.dependencies.size());
+  e.dependencyCount = count;
+  if (count > kMaxDependencies - index.dependencies.size()) return r.fail(ErrorCode::kLimitExceeded, "more than 2^24 dependencies");
+  for (std::uint32_t i = 0; i < count && !r.failed(); ++i) {
+    const std::uint32_t back = index.layout == Layout::kRegions ? r.readVarint() : 1;
+    if (back == 0 || back > chunk) return r.fail(ErrorCode::kBadValue, "a chunk depends on itself or on none; fetch or build the log again");
+    index.dependencies.push_back(chunk - back);
+  }
+}
+
+}  // namespace
+
+void readChunkRows(ByteReader& r, LogIndex& index, std::uint32_t chunks, std::uint64_t offset) {
+  index.chunks.reserve(chunks);
+  while (index.chunks.size() < chunks && !r.failed()) {
+    ChunkEntry e;
+    e.offset = offset;
+    readLevels(r, index, e);
+    for (std::uint32_t* value : {&e.records, &e.newVertices, &e.newTetrahedra, &e.newBoundaryTriangles}) *value = r.readVarint();
+    const auto codecs = r.read<std::uint8_t>();
+    e.structureCodec = static_cast<CodecId>(codecs & 15u);
+    e.valueCodec = static_cast<CodecId>(codecs >> 4);
+    readDependencies(r, index, e);
+    e.blocks.resize(index.parts());
+    for (BlockEntry& b : e.blocks) {
+      b.offset = offset;
+      b.size = r.readVarint();
+      offset += b.size;
+    }
+    for (BlockEntry& b : e.blocks) b.crc = r.read<std::uint32_t>();
+    index.chunks.push_back(std::move(e));
+  }
+}
+
+void writeChunkRows(ByteWriter& w, const LogIndex& index) {
+  for (std::size_t chunk = 0; chunk < index.chunks.size(); ++chunk) {
+    const ChunkEntry& e = index.chunks[chunk];
+    const bool regions = index.layout == Layout::kRegions;
+    if (regions) w.writeVarint(e.firstLevel);
+    w.writeVarint(e.lastLevel - (regions ? e.firstLevel : nextLevel(index, chunk)));
+    for (const std::uint32_t value : {e.endSlot + 1, e.records, e.newVertices, e.newTetrahedra, e.newBoundaryTriangles}) w.writeVarint(value);
+    w.write(static_cast<std::uint8_t>(static_cast<unsigned>(e.structureCodec) | static_cast<unsigned>(e.valueCodec) << 4));
+    if (regions) {
+      w.writeVarint(e.dependencyCount);
+      for (std::uint32_t d = 0; d < e.dependencyCount; ++d) w.writeVarint(static_cast<std::uint32_t>(chunk) - index.dependencies[e.firstDependency + d]);
+    }
+    for (const BlockEntry& b : e.blocks) w.writeVarint(b.size);
+    for (const BlockEntry& b : e.blocks) w.write(b.crc);
+  }
+}
+
+void readClosingRows(ByteReader& r, LogIndex& index, std::uint32_t count) {
+  if (r.failed()) return;
+  std::uint64_t offset = index.chunks.back().offset + index.chunks.back().size();
+  index.closing.reserve(count);
+  while (index.closing.size() < count && !r.failed()) {
+    ClosingBlock c;
+    c.kind = static_cast<ClosingKind>(r.readVarint());
+    c.field = r.readVarint();
+    c.block.offset = offset;
+    c.block.size = r.readVarint();
+    c.block.crc = r.read<std::uint32_t>();
+    offset += c.block.size;
+    index.closing.push_back(c);
+  }
+}
+
+void writeClosingRows(ByteWriter& w, const LogIndex& index) {
+  for (const ClosingBlock& c : index.closing) {
+    for (const std::uint32_t value : {static_cast<std::uint32_t>(c.kind), c.field, c.block.size}) w.writeVarint(value);
+    w.write(c.block.crc);
+  }
+}
+
+}  // namespace qtet
