@@ -37,7 +37,9 @@ class Ordering {
       }
       case Kind::kInteger: break;
     }
-    return std::isnan(value) ? 0 : static_cast<std::int64_t>(std::clamp(std::floor(value + 0.5), -kIntegerEnd, kIntegerEnd));
+    // Not floor(value + 0.5), which near 2^53 is another number.
+    const double below = std::floor(value);
+    return std::isnan(value) ? 0 : static_cast<std::int64_t>(std::clamp(value - below >= 0.5 ? below + 1 : below, -kIntegerEnd, kIntegerEnd));
   }
   /// False: no number of the type.
   [[nodiscard]] bool number(std::int64_t order, double& out) const {

@@ -136,7 +136,7 @@ Status placeFields(const TetMesh& mesh, int bits, QuantisedMesh& out) {
                                  std::to_string(bits) + " bits");
     }
     out.mesh.fields.push_back(std::move(quantised->info));
-    if (quantised->nonFinite > 0) fillGaps(mesh.tetrahedra, quantised->info, quantised->gaps, quantised->values);
+    if (quantised->nonFinite > 0) fillGaps(mesh.tetrahedra, out.mesh.fields.back(), quantised->gaps, quantised->values);
     out.mesh.values.push_back(std::move(quantised->values));
     out.gaps.push_back(std::move(quantised->gaps));
   }

@@ -217,7 +217,7 @@ TEST(MatchMesh, pointsAtOnePlaceAreToldApartByTheirCells) {
 
   mesh.tetrahedra[0] = {1, 2, 7, 0};  // now a cell of both sides
   EXPECT_FALSE(matchMesh(mesh, log.points, log.tetrahedra));
-  mesh.tetrahedra[0] = {1, 2, 4, 0};  // the right places, but one corner of the other side
+  mesh.tetrahedra[0] = {1, 2, 6, 0};  // the right places, but one corner of the other side
   const auto crossed = matchMesh(mesh, log.points, log.tetrahedra);
   ASSERT_FALSE(crossed);
   EXPECT_NE(crossed.error().message.find("two points of the log"), std::string::npos) << crossed.error().message;

@@ -128,7 +128,7 @@ TEST(Gaps, anEveryBlockOfNoiseIsDecodedOrRefused) {
     testing::TakenApart log = testing::takeApart(sample.bytes);
     for (std::uint32_t part = kFirstFieldPart; part < log.index.parts(); ++part) {
       std::vector<std::int32_t> noise(std::size_t{log.index.tuples(0, part)} * log.index.components(part));
-      for (std::int32_t& x : noise) x = static_cast<std::int32_t>(random() % 5) * (round % 2 == 0 ? 1 : 1 << 28) - 2;
+      for (std::int32_t& x : noise) x = static_cast<std::int32_t>(random() % 5) * (round % 2 == 0 ? 1 : 1 << 18) - 2;
       log.blocks[0][part] = encodeValueBlock(noise, log.index.components(part)).value();
     }
     const LogFile file = LogFile::fromBytes(log.together()).value();

@@ -489,7 +489,8 @@ TetMesh oddMesh() {
 
 TEST_F(Tool, theInputItselfComesBack) {
   write("odd.vtu", oddMesh());
-  ASSERT_EQ(run("simplify odd.vtu -o odd.qtet --keep-order --lossless").code, 0);
+  const Ran made = run("simplify odd.vtu -o odd.qtet --keep-order --lossless");
+  ASSERT_EQ(made.code, 0) << made.err;
   const Ran proof = run("verify odd.qtet --against odd.vtu --json");
   ASSERT_EQ(proof.code, 0) << proof.err;
   EXPECT_EQ(proof.json()["against"]["kept"],
