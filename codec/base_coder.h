@@ -187,4 +187,21 @@ template <class At>
   return position ? (2 * sum + 1) / 3 - at(f[3], c) : (sum + 1) / 3;
 }
 
+/// The same of a field with gaps: the mean of the face's values that are there; of a seed's vertex the one before, if it is there; else 0.
+template <class At>
+[[nodiscard]] std::int64_t predictBaseBesideGaps(const BaseBirth& birth, VertexId v, std::uint32_t c, const At& at) {
+  const auto& f = birth.from;
+  if (f[0] == kGhost) return v == 0 || at(v - 1, c) == kGap ? 0 : at(v - 1, c);
+  std::int64_t sum = 0, count = 0;
+  for (std::size_t i = 0; i < 3; ++i)
+    if (const std::int64_t value = at(f[i], c); value != kGap) sum += value, ++count;
+  return count == 0 ? 0 : (sum + count / 2) / count;
+}
+
+/// The prediction for a field.
+template <class At>
+[[nodiscard]] std::int64_t predictBaseField(const BaseBirth& birth, VertexId v, std::uint32_t c, bool gaps, const At& at) {
+  return gaps ? predictBaseBesideGaps(birth, v, c, at) : predictBase(birth, v, c, false, at);
+}
+
 }  // namespace qtet

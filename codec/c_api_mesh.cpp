@@ -1,11 +1,13 @@
 // codec/qtet.h: refining, and the arrays of the mesh.
 #include <algorithm>
 #include <cstring>
+#include <limits>
 #include <span>
 
 #include "codec/c_api_handle.h"
 
 using qtet::FieldShape;
+using qtet::kGap;
 using qtet::Lattice;
 using qtet::LatticePoint;
 using qtet::LogFile;
@@ -74,7 +76,7 @@ qtet_status copyField(qtet_log* log, std::uint32_t field, std::size_t count, T* 
     const ManifestField& f = log->manifest.fields[field];
     std::size_t component = 0;
     for (const std::int32_t integer : log->refiner->fieldValues(field)) {
-      *out++ = static_cast<T>(f.minimum[component] + f.step * integer);
+      *out++ = integer == kGap ? std::numeric_limits<T>::quiet_NaN() : static_cast<T>(f.minimum[component] + f.step * integer);
       component = component + 1 == f.components ? 0 : component + 1;
     }
     return QTET_OK;

@@ -24,14 +24,23 @@ class CellAncestry {
   /// Adds the tetrahedra among `restored`, what a split whose star and labelled link are given brings. REQUIRES: called for every split.
   void addRestored(std::span<const CellRef> star, const Link& link, std::span<const LocalCell> restored);
 
-  /// The prediction of a value of tetrahedron `cell`; `at(t)` reads that of an earlier tetrahedron t.
+  /// The prediction of a value of tetrahedron `cell`; `at(t)` reads that of an earlier tetrahedron t; gaps do not count.
   template <class At>
   [[nodiscard]] std::int64_t predict(CellId cell, const At& at) const {
     std::array<std::int64_t, 4> values{};
     std::size_t n = 0;
     for (const CellId t : known_[cell])
-      if (t != kNone) values[n++] = at(t);
+      if (t != kNone)
+        if (const std::int64_t value = at(t); value != kGap) values[n++] = value;
     return predictFrom(std::span(values).first(n));
+  }
+  /// Whether all that the prediction rests on are gaps, one of them at least.
+  template <class At>
+  [[nodiscard]] bool onlyGaps(CellId cell, const At& at) const {
+    if (known_[cell][0] == kNone) return false;
+    for (const CellId t : known_[cell])
+      if (t != kNone && at(t) != kGap) return false;
+    return true;
   }
 
   /// The lowest value that two of them have (labels), else their mean rounded towards zero (smooth fields); 0 of none.

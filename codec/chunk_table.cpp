@@ -76,4 +76,27 @@ void writeChunkRows(ByteWriter& w, const LogIndex& index) {
   }
 }
 
+void readClosingRows(ByteReader& r, LogIndex& index, std::uint32_t count) {
+  if (r.failed()) return;
+  std::uint64_t offset = index.chunks.back().offset + index.chunks.back().size();
+  index.closing.reserve(count);
+  while (index.closing.size() < count && !r.failed()) {
+    ClosingBlock c;
+    c.kind = static_cast<ClosingKind>(r.readVarint());
+    c.field = r.readVarint();
+    c.block.offset = offset;
+    c.block.size = r.readVarint();
+    c.block.crc = r.read<std::uint32_t>();
+    offset += c.block.size;
+    index.closing.push_back(c);
+  }
+}
+
+void writeClosingRows(ByteWriter& w, const LogIndex& index) {
+  for (const ClosingBlock& c : index.closing) {
+    for (const std::uint32_t value : {static_cast<std::uint32_t>(c.kind), c.field, c.block.size}) w.writeVarint(value);
+    w.write(c.block.crc);
+  }
+}
+
 }  // namespace qtet

@@ -101,7 +101,7 @@ Result<std::vector<std::int32_t>> blockValues(const LogFile& log, std::uint32_t 
   return decodeValueBlock(log.block(chunk, part), log.index().components(part), log.index().tuples(chunk, part), log.index().chunks[chunk].valueCodec);
 }
 
-FieldInfo fieldInfo(const ManifestField& f) { return {f.name, f.components, f.type, f.association, f.bits, f.step, f.minimum, f.range}; }
+FieldInfo fieldInfo(const ManifestField& f) { return {f.name, f.components, f.type, f.association, f.bits, f.step, f.minimum, f.range, f.gaps}; }
 
 }  // namespace
 
@@ -109,7 +109,19 @@ Status LogFile::verifyChecksums() const {
   for (std::uint32_t chunk = 0; chunk < index_.chunks.size(); ++chunk)
     for (std::uint32_t part = 0; part < index_.parts(); ++part)
       if (Status s = checkBlock(*this, chunk, part); !s) return s;
+  for (const ClosingBlock& c : index_.closing)
+    if (const auto bytes = closing(c.kind, c.field); !bytes) return std::unexpected(bytes.error());
   return {};
+}
+
+Result<ByteView> LogFile::closing(ClosingKind kind, std::uint32_t field) const {
+  const ClosingBlock* c = index_.closingBlock(kind, field);
+  if (c == nullptr) return fail(ErrorCode::kNotFound, "the log has no closing block of kind " + std::to_string(static_cast<int>(kind)));
+  const ByteView view = bytes().subspan(static_cast<std::size_t>(c->block.offset), c->block.size);
+  if (crc32c(view) != c->block.crc)
+    return fail(ErrorCode::kBadChecksum,
+                "closing block of kind " + std::to_string(static_cast<int>(kind)) + ": the CRC-32C does not match; fetch the file again", c->block.offset);
+  return view;
 }
 
 Status applyChunk(const LogFile& log, Refiner& refiner, std::uint32_t chunk, std::span<const std::uint32_t> fields) {

@@ -27,6 +27,8 @@ class LogFile {
   /// SHA-256 of the whole file, lower-case hexadecimal; computed once at open.
   [[nodiscard]] const std::string& digest() const { return digest_; }
   [[nodiscard]] ByteView block(std::uint32_t chunk, std::uint32_t part) const;
+  /// The bytes of a closing block after comparing them with its CRC-32C. Errors: not-found (the log has none of the kind), bad-checksum.
+  [[nodiscard]] Result<ByteView> closing(ClosingKind kind, std::uint32_t field = 0) const;
   /// Compares every block with its CRC-32C; the first that differs is the error (bad-checksum, chunk and part in the message).
   [[nodiscard]] Status verifyChecksums() const;
 

@@ -13,15 +13,18 @@ namespace {
 // As PNG's: the high bit finds seven-bit transfers, CR LF and LF find text-mode copies, 0x1A stops DOS type.
 constexpr std::array<std::uint8_t, 8> kMagic{0x89, 'Q', 'T', 'E', 'T', '\r', '\n', 0x1A};
 
+// Beside a field's association: its values may be missing.
+constexpr std::uint32_t kGapsFlag = 0x80;
+
 struct Header {
   std::uint32_t manifestBytes = 0, tableBytes = 0, manifestCrc = 0, tableCrc = 0;
-  std::uint32_t chunks = 0, fields = 0, dependencies = 0;
+  std::uint32_t chunks = 0, fields = 0, dependencies = 0, closing = 0;
   std::uint64_t fileBytes = 0;
   Layout layout = Layout::kStream;
   std::uint8_t positionBits = 0;
 
   [[nodiscard]] std::uint64_t leastTableBytes() const {
-    return std::uint64_t{fields} * 2 + std::uint64_t{chunks} * leastRowBytes(kFirstFieldPart + fields);
+    return std::uint64_t{fields} * 2 + std::uint64_t{chunks} * leastRowBytes(kFirstFieldPart + fields) + std::uint64_t{closing} * kLeastClosingRowBytes;
   }
   [[nodiscard]] std::uint64_t headBytes() const { return std::uint64_t{LogIndex::kHeaderBytes} + manifestBytes + tableBytes; }
 };
@@ -52,10 +55,11 @@ Result<Header> readHeader(ByteView bytes) {
   h.chunks = r.read<std::uint32_t>();
   h.fields = r.read<std::uint32_t>();
   h.dependencies = r.read<std::uint32_t>();
-  reservedAreZero &= r.read<std::uint64_t>() == 0;
+  h.closing = r.read<std::uint32_t>();
+  reservedAreZero &= r.read<std::uint32_t>() == 0;
   if (r.read<std::uint32_t>() != crc32c(bytes.first(LogIndex::kHeaderBytes - 4)))
     return fail(ErrorCode::kBadChecksum, "the header's CRC-32C does not match; fetch the file again", LogIndex::kHeaderBytes - 4);
-  if (!reservedAreZero) return fail(ErrorCode::kBadValue, "a reserved byte of the header (14, 15 or 52 to 59) is not 0; use a newer qtet", 14);
+  if (!reservedAreZero) return fail(ErrorCode::kBadValue, "a reserved byte of the header (14, 15 or 56 to 59) is not 0; use a newer qtet", 14);
   if (layout > static_cast<std::uint8_t>(Layout::kRegions)) return fail(ErrorCode::kBadValue, "unknown layout " + std::to_string(layout), 12);
   h.layout = static_cast<Layout>(layout);
   if (h.positionBits < kMinPositionBits || h.positionBits > kMaxPositionBits)
@@ -65,10 +69,25 @@ Result<Header> readHeader(ByteView bytes) {
   if (h.chunks > kMaxChunks) return fail(ErrorCode::kLimitExceeded, "more than 2^20 chunks", 40);
   if (h.fields > kMaxFields) return fail(ErrorCode::kLimitExceeded, "more than 256 fields", 44);
   if (h.dependencies > kMaxDependencies) return fail(ErrorCode::kLimitExceeded, "more than 2^24 dependencies", 48);
+  if (h.closing > kMaxClosingBlocks) return fail(ErrorCode::kLimitExceeded, "more than 1,024 closing blocks", 52);
   if (h.leastTableBytes() > h.tableBytes)
-    return fail(ErrorCode::kBadValue, "the chunk table is too short for the counts of chunks and fields; fetch the file again", 28);
+    return fail(ErrorCode::kBadValue, "the chunk table is too short for the counts of chunks, fields and closing blocks; fetch the file again", 28);
   if (h.headBytes() > h.fileBytes) return fail(ErrorCode::kBadValue, "the file's size is below that of its front", 16);
   return h;
+}
+
+// Blocks back to back from `offset` to the file's end, each kind once.
+Status checkClosing(const LogIndex& index, std::uint64_t offset, std::uint64_t fileBytes) {
+  for (const ClosingBlock& closing : index.closing) {
+    if (closing.block.size > kMaxBlockBytes) return fail(ErrorCode::kLimitExceeded, "a closing block above 256 MiB", offset);
+    if (closing.kind == ClosingKind::kExactField && closing.field >= index.fields.size())
+      return fail(ErrorCode::kBadValue, "a closing block of a field that the log does not have; build the log again", offset);
+    if (index.closingBlock(closing.kind, closing.field) != &closing)
+      return fail(ErrorCode::kBadValue, "two closing blocks of the same kind; build the log again", offset);
+    offset += closing.block.size;
+  }
+  if (offset != fileBytes) return fail(ErrorCode::kBadValue, "the blocks do not end where the file ends", offset);
+  return {};
 }
 
 // What every later step relies on: blocks that end where the file does, levels in order, counts within limits.
@@ -105,14 +124,18 @@ Status check(const LogIndex& index, const Header& header) {
     return fail(ErrorCode::kBadValue, "the last chunk ends within a level; fetch or build the log again", header.headBytes());
   if (index.dependencies.size() != header.dependencies)
     return fail(ErrorCode::kBadValue, "the table has another number of dependencies than the header says; fetch or build the log again", 48);
-  if (offset != header.fileBytes) return fail(ErrorCode::kBadValue, "the chunks do not end where the file ends", offset);
-  return {};
+  return checkClosing(index, offset, header.fileBytes);
 }
 
 }  // namespace
 
 std::uint64_t LogIndex::headBytes() const {
   return chunks.empty() ? kHeaderBytes : chunks.front().offset;
+}
+
+const ClosingBlock* LogIndex::closingBlock(ClosingKind kind, std::uint32_t field) const {
+  const auto at = std::ranges::find_if(closing, [&](const ClosingBlock& c) { return c.kind == kind && c.field == field; });
+  return at == closing.end() ? nullptr : &*at;
 }
 
 std::uint32_t LogIndex::tuples(std::uint32_t chunk, std::uint32_t part) const {
@@ -155,14 +178,15 @@ Result<LogIndex> LogIndex::parse(ByteView bytes) {
     const auto association = r.read<std::uint8_t>();
     if (components == 0 || components > kMaxFieldComponents)
       return fail(ErrorCode::kBadValue, "field " + std::to_string(f) + " has a number of components outside 1..16", r.offset() - 2);
-    if (association > static_cast<std::uint8_t>(Association::kCell))
+    if ((association & ~kGapsFlag) > static_cast<std::uint8_t>(Association::kCell))
       return fail(ErrorCode::kBadValue,
                   "field " + std::to_string(f) + " has the association " + std::to_string(association) +
-                      "; this build knows 0 (points) and 1 (cells): use a newer qtet, or build the log again",
+                      "; this build knows 0 (points) and 1 (cells), and 128 more for gaps: use a newer qtet, or build the log again",
                   r.offset() - 1);
-    index.fields.push_back({components, static_cast<Association>(association)});
+    index.fields.push_back({components, static_cast<Association>(association & ~kGapsFlag), (association & kGapsFlag) != 0});
   }
   readChunkRows(r, index, header->chunks, header->headBytes());
+  readClosingRows(r, index, header->closing);
   if (!r.failed() && r.remaining() > 0) r.fail(ErrorCode::kBadValue, "bytes behind the chunk table's last row; fetch or build the log again");
   if (r.failed()) return std::unexpected(r.error());
   if (Status s = check(index, *header); !s) return std::unexpected(s.error());
@@ -173,9 +197,10 @@ Bytes LogIndex::encode() const {
   ByteWriter table;
   for (const FieldShape& field : fields) {
     table.write(static_cast<std::uint8_t>(field.components));
-    table.write(static_cast<std::uint8_t>(field.association));
+    table.write(static_cast<std::uint8_t>(static_cast<std::uint32_t>(field.association) | (field.gaps ? kGapsFlag : 0)));
   }
   writeChunkRows(table, *this);
+  writeClosingRows(table, *this);
 
   ByteWriter w;
   w.append(kMagic);
@@ -192,7 +217,8 @@ Bytes LogIndex::encode() const {
   w.write(static_cast<std::uint32_t>(chunks.size()));
   w.write(static_cast<std::uint32_t>(fields.size()));
   w.write(static_cast<std::uint32_t>(dependencies.size()));
-  w.write(std::uint64_t{0});
+  w.write(static_cast<std::uint32_t>(closing.size()));
+  w.write(std::uint32_t{0});
   w.write(crc32c(w.bytes()));
   w.append(manifest);
   w.append(table.bytes());

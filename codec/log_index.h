@@ -27,6 +27,7 @@ enum class Association : std::uint8_t { kPoint = 0, kCell = 1 };
 struct FieldShape {
   std::uint32_t components = 1;  ///< 1..kMaxFieldComponents
   Association association = Association::kPoint;
+  bool gaps = false;             ///< values may be missing: Values::codeOrGap
 };
 
 struct BlockEntry {
@@ -62,6 +63,21 @@ struct ChunkEntry {
   [[nodiscard]] std::uint64_t size() const { return blocks.empty() ? 0 : blocks.back().offset + blocks.back().size - offset; }
 };
 
+/// What a closing block holds (FORMAT.md, "Closing blocks").
+enum class ClosingKind : std::uint32_t {
+  kPointOrder = 1,      ///< the input's numbering of points
+  kCellOrder = 2,       ///< the input's numbering of cells and of their vertices; needs the points'
+  kExactPositions = 3,  ///< the input's own coordinates
+  kExactField = 4,      ///< the input's own values of one field
+};
+
+/// A block behind the last chunk. No level needs it: who wants the input itself and not only its mesh on the lattice fetches it.
+struct ClosingBlock {
+  ClosingKind kind = ClosingKind::kPointOrder;  ///< or one that this build does not know, to be left alone
+  std::uint32_t field = 0;                      ///< of kExactField; else 0
+  BlockEntry block;
+};
+
 struct LogIndex {
   static constexpr std::uint32_t kHeaderBytes = 64;
   static constexpr std::uint16_t kVersionMajor = 2;
@@ -74,7 +90,10 @@ struct LogIndex {
   std::vector<FieldShape> fields;
   std::vector<ChunkEntry> chunks;
   std::vector<std::uint32_t> dependencies;
+  std::vector<ClosingBlock> closing;  ///< in file order
 
+  /// The closing block of that kind (and field), or nullptr.
+  [[nodiscard]] const ClosingBlock* closingBlock(ClosingKind kind, std::uint32_t field = 0) const;
   /// Bytes of header + manifest + table: where the first block starts.
   [[nodiscard]] std::uint64_t headBytes() const;
   [[nodiscard]] const BlockEntry& block(std::uint32_t chunk, std::uint32_t part) const { return chunks[chunk].blocks[part]; }

@@ -45,9 +45,13 @@ double readStep(ByteReader& r) {
 
 // ---- fields
 
+// Beside a field's type, as beside its association in the chunk table: with one of the two changed, other integers would come out.
+constexpr unsigned kGapsFlag = 0x80;
+
 void writeField(ByteWriter& w, const ManifestField& field) {
   writeText(w, field.name);
-  w.write(static_cast<std::uint8_t>(std::ranges::find(kFieldTypes, field.type) - kFieldTypes.begin()));
+  const auto type = static_cast<unsigned>(std::ranges::find(kFieldTypes, field.type) - kFieldTypes.begin());
+  w.write(static_cast<std::uint8_t>(type | (field.gaps ? kGapsFlag : 0)));
   w.write(static_cast<std::uint8_t>(field.bits));
   writeNumber(w, field.step);
   for (const double value : field.minimum) writeNumber(w, value);
@@ -58,7 +62,11 @@ ManifestField readField(ByteReader& r, const FieldShape& shape) {
   ManifestField out;
   out.name = readText(r);
   if (out.name.empty()) r.fail(ErrorCode::kBadValue, "a field without a name; build the log again");
-  const auto type = r.read<std::uint8_t>();
+  const auto typeAndGaps = r.read<std::uint8_t>();
+  out.gaps = (typeAndGaps & kGapsFlag) != 0;
+  if (out.gaps != shape.gaps)
+    r.fail(ErrorCode::kBadValue, "manifest and chunk table contradict each other in whether a field has gaps; fetch or build the log again");
+  const unsigned type = typeAndGaps & ~kGapsFlag;
   if (type >= kFieldTypes.size()) r.fail(ErrorCode::kBadValue, "a field of an unknown type; use a newer qtet");
   out.type = kFieldTypes[std::min<std::size_t>(type, kFieldTypes.size() - 1)];
   out.bits = r.read<std::uint8_t>();

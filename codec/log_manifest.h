@@ -1,4 +1,5 @@
-// The manifest in a log, both ways (FORMAT.md, "Manifest"). What header and chunk table say already is not stored, so nothing contradicts them.
+// The manifest in a log, both ways (FORMAT.md, "Manifest"). What header and chunk table say already is not stored, so nothing contradicts them;
+// only whether a field has gaps stands in both.
 #pragma once
 
 #include "codec/log_index.h"

@@ -109,22 +109,28 @@ class LogEncoder {
   }
 
   void codeBaseValues(std::span<const BaseBirth> births) {
-    const auto code = [&](Values& out, auto& tuples, std::uint32_t components, bool position, const auto& truth) {
+    const auto code = [&](Values& out, auto& tuples, std::uint32_t components, const auto& truth, const auto& next) {
       for (VertexId v = 0; v < births.size(); ++v)
         for (std::uint32_t c = 0; c < components; ++c) {
           const auto at = [&](VertexId u, std::uint32_t component) { return tuples(u, component); };
-          out.code<true>(predictBase(births[v], v, c, position, at), truth(vertexIds_[v], c));
+          next(out, births[v], v, c, at, truth(vertexIds_[v], c));
         }
     };
     for (const VertexId id : vertexIds_) mesh_.points.push_back(h_.points[id]);
     const auto point = [&](VertexId u, std::uint32_t c) { return mesh_.points[u][c]; };
-    code(open_.positions, point, 3, true, [&](VertexId id, std::uint32_t c) { return h_.points[id][c]; });
+    code(open_.positions, point, 3, [&](VertexId id, std::uint32_t c) { return h_.points[id][c]; },
+         [](Values& out, const BaseBirth& birth, VertexId v, std::uint32_t c, const auto& at, std::int32_t truth) {
+           out.code<true>(predictBase(birth, v, c, true, at), truth);
+         });
     for (std::size_t f = 0; f < h_.fields.size(); ++f) {
       if (isCellField(h_.fields[f])) continue;
       const std::size_t n = h_.fields[f].components;
       for (const VertexId id : vertexIds_) values_[f].insert(values_[f].end(), fieldAt(f, id), fieldAt(f, id) + static_cast<std::ptrdiff_t>(n));
       const auto value = [&](VertexId u, std::uint32_t c) { return values_[f][u * n + c]; };
-      code(open_.fields[f], value, static_cast<std::uint32_t>(n), false, [&](VertexId id, std::uint32_t c) { return fieldAt(f, id)[c]; });
+      code(open_.fields[f], value, static_cast<std::uint32_t>(n), [&](VertexId id, std::uint32_t c) { return fieldAt(f, id)[c]; },
+           [gaps = h_.fields[f].gaps](Values& out, const BaseBirth& birth, VertexId v, std::uint32_t c, const auto& at, std::int32_t truth) {
+             out.codeField<true>(gaps, predictBaseField(birth, v, c, gaps, at), truth);
+           });
     }
   }
 
@@ -276,7 +282,7 @@ class LogEncoder {
     values.resize(mesh_.points.size() * n);
     pointAncestry_.code<true>(
         pointAncestry_.births().back(), open_.fields[f], n, [&](VertexId v, std::uint32_t c) -> std::int32_t& { return values[std::size_t{v} * n + c]; },
-        [&](std::size_t i, std::uint32_t c) { return fieldAt(f, fusion.prey[i])[c]; });
+        [&](std::size_t i, std::uint32_t c) { return fieldAt(f, fusion.prey[i])[c]; }, h_.fields[f].gaps);
   }
 
   // The values of the tetrahedra from slot `first` on, which have just come.
@@ -289,8 +295,8 @@ class LogEncoder {
           const auto at = [&](CellId u) { return h_.values[f][tetrahedronIds_[u] * n + c]; };
           const auto cell = static_cast<CellId>(t);
           const std::int64_t predicted = ancestry_.predict(cell, at);
-          open_.fields[f].code<true>(predicted, at(cell));
-          open_.valueBits += static_cast<std::uint64_t>(std::bit_width(static_cast<std::uint64_t>(std::abs(at(cell) - predicted))));
+          open_.fields[f].codeField<true>(h_.fields[f].gaps, predicted, at(cell));
+          open_.valueBits += static_cast<std::uint64_t>(std::bit_width(static_cast<std::uint32_t>(std::abs(open_.fields[f].written().back()))));
         }
     }
   }
@@ -352,7 +358,7 @@ class LogEncoder {
     m.latticeBits = h_.lattice.bits;
     m.latticeStep = h_.lattice.step;
     m.latticeOrigin = h_.lattice.origin;
-    for (const FieldInfo& f : h_.fields) m.fields.push_back({f.name, f.components, f.type, f.association, f.bits, f.step, f.minimum, f.range});
+    for (const FieldInfo& f : h_.fields) m.fields.push_back({f.name, f.components, f.type, f.association, f.bits, f.step, f.minimum, f.range, f.gaps});
     m.levels = levels_;
     return manifestBlock(m);
   }
@@ -363,10 +369,12 @@ class LogEncoder {
     Result<Bytes> manifestBytes = manifest();
     if (!manifestBytes) return std::unexpected(manifestBytes.error());
     index.manifest = std::move(*manifestBytes);
-    for (const FieldInfo& f : h_.fields) index.fields.push_back({f.components, isCellField(f) ? Association::kCell : Association::kPoint});
+    for (const FieldInfo& f : h_.fields) index.fields.push_back({f.components, isCellField(f) ? Association::kCell : Association::kPoint, f.gaps});
     index.chunks = std::move(chunks_);
     index.dependencies = std::move(dependencies_);
     EncodedLog log;
+    log.points = std::move(vertexIds_);
+    log.tetrahedra = std::move(tetrahedronIds_);
     LogStatistics& s = log.statistics;
     s.headBytes = index.encode().size();
     s.fieldBytes.resize(h_.fields.size());

@@ -38,6 +38,8 @@ struct LogStatistics {
 struct EncodedLog {
   Bytes bytes;
   LogStatistics statistics;
+  std::vector<VertexId> points;     ///< slot of the last level -> the history's vertex
+  std::vector<CellId> tetrahedra;   ///< and its cell
 };
 
 /// Writes the history backwards, coarse-first. Errors: bad-value (the history contradicts itself or holds a fusion that no label coding

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,9 @@ struct Lattice {
   }
 };
 
+/// What stands for a value that is missing (NaN) among the integers of a field with gaps; beyond what any value can be.
+inline constexpr std::int32_t kGap = std::numeric_limits<std::int32_t>::min();
+
 /// What a field's numbers mean: value of component c = minimum[c] + step * integer. Integer fields have step 1 and lose nothing.
 struct FieldInfo {
   std::string name;
@@ -42,6 +46,12 @@ struct FieldInfo {
   double step = 1;
   std::vector<double> minimum;             ///< one a component
   std::array<double, 2> range{0, 0};       ///< of the values, or of the magnitude where components > 1
+  bool gaps = false;                       ///< an integer may be kGap: a value that is NaN
+
+  /// The value of an integer of the component; NaN for a gap.
+  [[nodiscard]] double value(std::size_t component, std::int32_t integer) const {
+    return integer == kGap ? std::numeric_limits<double>::quiet_NaN() : minimum[component] + step * integer;
+  }
 };
 
 /// Whether the field's values belong to tetrahedra instead of points.

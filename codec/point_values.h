@@ -55,13 +55,14 @@ class PointAncestry {
   void add(VertexId v, const GrowingMesh& mesh, const Link& link, const Split& split);
   [[nodiscard]] std::span<const Birth> births() const { return births_; }
 
-  /// Codes the k tuples of a record into `at(vertex, component)`, references to the field's values. REQUIRES components <= kMaxFieldComponents.
+  /// Codes the k tuples of a record into `at(vertex, component)`, references to the field's values. With gaps, neighbours
+  /// that are missing change nothing. REQUIRES components <= kMaxFieldComponents.
   template <bool kEncoding, class At, class Truth>
-  void code(const Birth& b, Values& values, std::uint32_t components, const At& at, const Truth& truth) const {
+  void code(const Birth& b, Values& values, std::uint32_t components, const At& at, const Truth& truth, bool gaps = false) const {
     std::array<std::int32_t, std::size_t{4} * kMaxFieldComponents> prey{};
     for (std::uint32_t c = 0; c < components; ++c)
       for (std::size_t i = 0; i < b.k; ++i)
-        prey[i * components + c] = values.code<kEncoding>(predicted(b, i, [&](VertexId v) { return std::int64_t{at(v, c)}; }), truth(i, c));
+        prey[i * components + c] = values.codeField<kEncoding>(gaps, predicted(b, i, gaps, [&](VertexId v) { return std::int64_t{at(v, c)}; }), truth(i, c));
     for (std::size_t i = 0; i < b.k; ++i)
       for (std::uint32_t c = 0; c < components; ++c) at(i == 0 ? b.slot : b.firstNew + static_cast<VertexId>(i) - 1, c) = prey[i * components + c];
   }
@@ -70,10 +71,11 @@ class PointAncestry {
   void addSlope(const Link& link, const std::array<double, 3>& step);
 
   template <class At>
-  [[nodiscard]] std::int64_t predicted(const Birth& b, std::size_t i, const At& at) const {
+  [[nodiscard]] std::int64_t predicted(const Birth& b, std::size_t i, bool gaps, const At& at) const {
     const std::int64_t fused = at(b.slot);
     const Slope& slope = slopes_[b.firstSlope + (b.k == 2 ? 0 : i)];
-    const std::int64_t change = slope.change([&](VertexId v) { return at(v) - fused; });
+    if (gaps && fused == kGap) return 0;
+    const std::int64_t change = slope.change([&](VertexId v) { return gaps && at(v) == kGap ? 0 : at(v) - fused; });
     const std::int64_t steps = b.k == 2 ? b.step + (i == 0 ? 0 : 1 << Birth::kStepBits) : 1 << Birth::kStepBits;
     constexpr int kBits = Slope::kWeightBits + Birth::kStepBits;
     return std::clamp(fused + ((change * steps + (std::int64_t{1} << (kBits - 1))) >> kBits), -kFurthest, kFurthest);

@@ -176,7 +176,8 @@ QTET_API qtet_status qtet_log_copy_points_float(qtet_log* log, size_t count, flo
 
 /* Numbers in a field at the present level: components times vertices or tetrahedra; 0 without such a field or a mesh. */
 QTET_API size_t qtet_log_field_count(const qtet_log* log, uint32_t field);
-/* Writes a field's values, all components of a vertex or tetrahedron together, to the caller's array of `count` numbers. */
+/* Writes a field's values, all components of a vertex or tetrahedron together, to the caller's array of `count` numbers; NaN where a
+ * value is missing. */
 QTET_API qtet_status qtet_log_copy_field_double(qtet_log* log, uint32_t field, size_t count, double* values);
 QTET_API qtet_status qtet_log_copy_field_float(qtet_log* log, uint32_t field, size_t count, float* values);
 /* The integers themselves, qtet_log_field_count of them; until the next refine, open or destroy. */

@@ -50,6 +50,7 @@ struct Refiner::State {
   bool broken = false;
   std::uint32_t stopLevel = kMaxLevels + 1;
   bool stopped = false;          // inside a chunk, at stopLevel
+  SplitObserver* observer = nullptr;
 
   Status base(const ChunkEntry& entry, ByteView structure, Values& positions);
   Status records(std::uint32_t chunk, const ChunkEntry& entry, ByteView structure, Values& positions);
@@ -59,9 +60,9 @@ struct Refiner::State {
   void completeLevel() { levelCounts.push_back({mesh.points.size(), mesh.tetrahedra.size(), mesh.boundary.size()}); }
   void inherit(std::size_t field, std::uint32_t chunk);
   void inheritPoints(FieldState& field, std::uint32_t components, std::size_t firstBirth) const;
-  void inheritCells(FieldState& field, std::uint32_t components, std::size_t firstCell) const;
-  void codePoints(FieldState& field, std::uint32_t components, std::uint32_t chunk, Values& residuals) const;
-  void codeCells(FieldState& field, std::uint32_t components, std::uint32_t chunk, Values& residuals) const;
+  void inheritCells(FieldState& field, const FieldShape& shape, std::size_t firstCell) const;
+  void codePoints(FieldState& field, const FieldShape& shape, std::uint32_t chunk, Values& residuals) const;
+  void codeCells(FieldState& field, const FieldShape& shape, std::uint32_t chunk, Values& residuals) const;
 
   struct Totals {
     std::uint64_t vertices = 0, tetrahedra = 0, triangles = 0, births = 0;
@@ -183,6 +184,7 @@ Status Refiner::State::split(std::uint32_t chunk, RecordCoder<RangeDecoder>& cod
   for (int i = 0; i < split.k; ++i)
     for (const std::int32_t x : split.points[static_cast<std::size_t>(i)])
       if (x < 0 || x >= size) return refuse(ErrorCode::kBadValue, chunk, "a vertex lies outside the lattice");
+  if (observer != nullptr) observer->beforeSplit(v, mesh, link, split);
   births.add(v, mesh, link, split);
   if (hasCellField) ancestry.addRestored(mesh.star(v), link, split.deleted);
   mesh.apply(v, link, split);
@@ -205,16 +207,18 @@ void Refiner::State::inherit(std::size_t field, std::uint32_t chunk) {
   if (shape.association == Association::kPoint)
     inheritPoints(fields[field], shape.components, chunkBirths[chunk]);
   else
-    inheritCells(fields[field], shape.components, chunkCells[chunk]);
+    inheritCells(fields[field], shape, chunkCells[chunk]);
 }
 
-void Refiner::State::inheritCells(FieldState& field, std::uint32_t components, std::size_t firstCell) const {
-  const std::size_t n = components;
+void Refiner::State::inheritCells(FieldState& field, const FieldShape& shape, std::size_t firstCell) const {
+  const std::size_t n = shape.components;
   field.values.resize(mesh.tetrahedra.size() * n);
   for (std::size_t t = firstCell; t < mesh.tetrahedra.size(); ++t)
-    for (std::size_t c = 0; c < n; ++c)
-      field.values[t * n + c] =
-          static_cast<std::int32_t>(ancestry.predict(static_cast<CellId>(t), [&](CellId u) { return field.values[u * n + c]; }));
+    for (std::size_t c = 0; c < n; ++c) {
+      const auto at = [&](CellId u) { return field.values[u * n + c]; };
+      const auto cell = static_cast<CellId>(t);
+      field.values[t * n + c] = shape.gaps && ancestry.onlyGaps(cell, at) ? kGap : static_cast<std::int32_t>(ancestry.predict(cell, at));
+    }
 }
 
 void Refiner::State::inheritPoints(FieldState& field, std::uint32_t components, std::size_t firstBirth) const {
@@ -237,9 +241,9 @@ Status Refiner::applyField(std::uint32_t field, std::uint32_t chunk, std::span<c
     return refuse(ErrorCode::kBadValue, chunk, "wrong number of field values");
   Values coded(values);
   if (shape.association == Association::kPoint)
-    s.codePoints(f, shape.components, chunk, coded);
+    s.codePoints(f, shape, chunk, coded);
   else
-    s.codeCells(f, shape.components, chunk, coded);
+    s.codeCells(f, shape, chunk, coded);
   const bool whole = coded.atEnd() || (s.stopped && chunk + 1 == s.chunks);
   f.broken = coded.bad() || !whole;
   if (f.broken) return refuse(ErrorCode::kBadValue, chunk, "field values out of range or left over");
@@ -247,30 +251,32 @@ Status Refiner::applyField(std::uint32_t field, std::uint32_t chunk, std::span<c
   return {};
 }
 
-void Refiner::State::codePoints(FieldState& f, std::uint32_t n, std::uint32_t chunk, Values& residuals) const {
+void Refiner::State::codePoints(FieldState& f, const FieldShape& shape, std::uint32_t chunk, Values& residuals) const {
+  const std::uint32_t n = shape.components;
   if (chunk == 0) {
     f.values.assign(mesh.points.size() * n, 0);
     const auto at = [&](VertexId u, std::uint32_t c) { return f.values[std::size_t{u} * n + c]; };
     for (std::uint32_t v = 0; v < baseBirths.size(); ++v)
       for (std::uint32_t c = 0; c < n; ++c)
-        f.values[std::size_t{v} * n + c] = residuals.code<false>(predictBase(baseBirths[v], v, c, false, at), 0);
+        f.values[std::size_t{v} * n + c] = residuals.codeField<false>(shape.gaps, predictBaseField(baseBirths[v], v, c, shape.gaps, at), 0);
     inheritPoints(f, n, 0);
   }
   const auto at = [&](VertexId v, std::uint32_t c) -> std::int32_t& { return f.values[std::size_t{v} * n + c]; };
   for (const Birth& b : births.births().subspan(chunkBirths[chunk], chunkBirths[chunk + 1] - chunkBirths[chunk]))
-    births.code<false>(b, residuals, n, at, [](std::size_t, std::uint32_t) { return 0; });
+    births.code<false>(b, residuals, n, at, [](std::size_t, std::uint32_t) { return 0; }, shape.gaps);
 }
 
-void Refiner::State::codeCells(FieldState& f, std::uint32_t components, std::uint32_t chunk, Values& residuals) const {
-  const std::size_t n = components;
+void Refiner::State::codeCells(FieldState& f, const FieldShape& shape, std::uint32_t chunk, Values& residuals) const {
+  const std::size_t n = shape.components;
   f.values.resize(mesh.tetrahedra.size() * n);
   for (std::size_t t = chunkCells[chunk]; t < chunkCells[chunk + 1]; ++t)
     for (std::size_t c = 0; c < n; ++c)
       f.values[t * n + c] =
-          residuals.code<false>(ancestry.predict(static_cast<CellId>(t), [&](CellId u) { return f.values[u * n + c]; }), 0);
-  if (chunk == 0) inheritCells(f, components, chunkCells[1]);
+          residuals.codeField<false>(shape.gaps, ancestry.predict(static_cast<CellId>(t), [&](CellId u) { return f.values[u * n + c]; }), 0);
+  if (chunk == 0) inheritCells(f, shape, chunkCells[1]);
 }
 
+void Refiner::observe(SplitObserver* observer) { state_->observer = observer; }
 void Refiner::stopAtLevel(std::uint32_t level) { state_->stopLevel = level; }
 
 const LogIndex& Refiner::index() const { return state_->index; }

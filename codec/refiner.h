@@ -11,6 +11,19 @@
 
 namespace qtet {
 
+class GrowingMesh;
+class Link;
+struct Split;
+
+/// Hears of every split just before it is applied: link labelled, ids those of `mesh`.
+class SplitObserver {
+ public:
+  virtual void beforeSplit(VertexId v, const GrowingMesh& mesh, const Link& link, const Split& split) = 0;
+
+ protected:
+  ~SplitObserver() = default;
+};
+
 /// What a mesh held when a level was complete.
 struct LevelCounts {
   std::size_t vertices = 0, tetrahedra = 0, boundaryTriangles = 0;
@@ -34,6 +47,9 @@ class Refiner {
 
   /// Makes the chunk that goes beyond `level` end there: the mesh is then that level's, and later chunks are refused.
   void stopAtLevel(std::uint32_t level);
+
+  /// From now on `observer` hears of every split; nullptr: nobody. It must outlive the chunks applied.
+  void observe(SplitObserver* observer);
 
   [[nodiscard]] const LogIndex& index() const;
   [[nodiscard]] std::uint32_t chunksApplied() const;

@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "codec/mesh.h"
+
 namespace qtet {
 
 /// The integers of a value block: read one after the other by a decoder, collected by an encoder.
@@ -31,6 +33,26 @@ class Values {
     const std::int64_t value = predicted + code<kEncoding>(truth - predicted);
     bad_ |= value < -kLargest || value > kLargest;
     return bad_ ? 0 : static_cast<std::int32_t>(value);
+  }
+  /// The same of a field with gaps: 0 tells that the value is missing, and a difference that is not negative is told as one more.
+  template <bool kEncoding>
+  std::int32_t codeOrGap(std::int64_t predicted, std::int32_t truth) {
+    if constexpr (kEncoding) {
+      const std::int64_t difference = truth - predicted;
+      code<true>(truth == kGap ? 0 : difference < 0 ? difference : difference + 1);
+      return truth;
+    } else {
+      const std::int32_t told = code<false>(0);
+      if (told == 0) return kGap;
+      const std::int64_t value = predicted + (told < 0 ? told : told - 1);
+      bad_ |= value < -kLargest || value > kLargest;
+      return bad_ ? 0 : static_cast<std::int32_t>(value);
+    }
+  }
+  /// One of the two above.
+  template <bool kEncoding>
+  std::int32_t codeField(bool gaps, std::int64_t predicted, std::int32_t truth) {
+    return gaps ? codeOrGap<kEncoding>(predicted, truth) : code<kEncoding>(predicted, truth);
   }
   /// What was made of the values is out of range.
   void spoil() { bad_ = true; }

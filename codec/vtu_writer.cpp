@@ -192,7 +192,7 @@ void appendPoints(Bytes& out, const VtuMesh& mesh) {
 VtuField dequantised(const FieldInfo& info, const std::vector<std::int32_t>& integers) {
   VtuField field{info.name, info.type, info.components, {}};
   field.values.reserve(integers.size());
-  for (std::size_t i = 0; i < integers.size(); ++i) field.values.push_back(info.minimum[i % info.components] + info.step * integers[i]);
+  for (std::size_t i = 0; i < integers.size(); ++i) field.values.push_back(info.value(i % info.components, integers[i]));
   return field;
 }
 

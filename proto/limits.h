@@ -18,6 +18,8 @@ inline constexpr std::uint32_t kMaxNameBytes = 256;
 inline constexpr std::uint32_t kMaxFieldComponents = 16;
 /// Dependencies listed in one log, over all chunks.
 inline constexpr std::uint32_t kMaxDependencies = 1u << 24;
+/// Blocks behind the last chunk of one log: one a field, and what else the input had.
+inline constexpr std::uint32_t kMaxClosingBlocks = 1024;
 /// Levels of one log: 5 % growth a level takes a mesh from 1 to 10^9 cells in 425.
 inline constexpr std::uint32_t kMaxLevels = 4096;
 /// Vertices, tetrahedra or boundary triangles of one mesh: the entries of all stars, 4 a tetrahedron and 3 a triangle, fit 32 bits.

@@ -37,6 +37,8 @@ std::string manifestToJson(const Manifest& manifest) {
                              {"step", f.step},
                              {"minimum", f.minimum},
                              {"range", f.range}});
+  for (std::size_t f = 0; f < manifest.fields.size(); ++f)
+    if (manifest.fields[f].gaps) out["fields"][f]["gaps"] = true;
   out["levels"] = Json::array();
   for (const ManifestLevel& l : manifest.levels) {
     out["levels"].push_back({{"level", l.level},

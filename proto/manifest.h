@@ -26,6 +26,7 @@ struct ManifestField {
   double step = 1;                    ///< value = minimum[c] + step * integer
   std::vector<double> minimum;
   std::array<double, 2> range{};      ///< of the values, or of the magnitude where components > 1
+  bool gaps = false;                  ///< some values are missing: NaN
 };
 
 struct ManifestLevel {

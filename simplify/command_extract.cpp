@@ -5,7 +5,9 @@
 #include "codec/level_choice.h"
 #include "codec/vtu_writer.h"
 #include "simplify/command_measure.h"
+#include "simplify/kept_input.h"
 #include "simplify/opened_log.h"
+#include "simplify/write_mesh.h"
 
 namespace qtet {
 namespace {
@@ -29,6 +31,15 @@ Result<std::uint32_t> chosenLevel(const ParsedWords& parsed, const Manifest& man
   return levelOfTetrahedra(manifest, parsed.number("ratio", 0, 1) * manifest.levels.back().tetrahedra);
 }
 
+/// At the last level the input itself, as far as the log kept it.
+Result<Bytes> fileOf(const OpenedLog& log, std::uint32_t level, const LatticeMesh& mesh) {
+  if (level + 1 < log.manifest.levels.size() || log.file.index().closing.empty()) return vtuBytes(mesh);
+  const Result<RestoredInput> input = restoreInput(log.file, mesh);
+  if (!input) return std::unexpected(input.error());
+  const bool exact = input->exactPositions || std::ranges::find(input->exactFields, true) != input->exactFields.end();
+  return exact ? vtuBytes(input->mesh) : vtuBytes(input->lattice);
+}
+
 Status extract(const ParsedWords& parsed, Console& console) {
   const auto input = parsed.get<std::string>("LOG"), output = parsed.get<std::string>("output");
   if (Status checked = checkOutput(output, ".vtu", input); !checked) return checked;
@@ -39,7 +50,9 @@ Status extract(const ParsedWords& parsed, Console& console) {
   if (!level) return std::unexpected(level.error());
   const Result<LatticeMesh> mesh = meshAtLevel(log->file, *level);
   if (!mesh) return std::unexpected(mesh.error());
-  const Bytes bytes = vtuBytes(*mesh);
+  const Result<Bytes> vtu = fileOf(*log, *level, *mesh);
+  if (!vtu) return std::unexpected(vtu.error());
+  const Bytes& bytes = *vtu;
   if (Status written = writeFileAtomically(output, bytes); !written) return written;
   console.out << output << ": level " << *level << " of " << log->manifest.levels.size() - 1 << ", " << mesh->tetrahedra.size()
               << " tetrahedra, " << mesh->points.size() << " points, " << bytes.size() << " bytes\n";
@@ -63,6 +76,7 @@ int runExtract(const Words& words, Console& console) {
       words,
       {"extract", "extract LOG.qtet (--level K | --tets N | --ratio R | --error NAME=E | --boundary-error E) -o OUT.vtu",
        "Writes one level of a log, with all its fields, as an ordinary mesh. Where no level is small enough it is level 0.\n"
+       "The last level is the input's mesh, with its own numbering and numbers where the log was made with --keep-order and --lossless.\n"
        "Errors are those that the log tells, measured when it was made (qtet info shows them).",
        "  qtet extract fin.qtet --ratio 0.1 -o coarse.vtu\n  qtet extract fin.qtet --error Density=0.01 -o near.vtu\n"},
       options, {"LOG"});

@@ -16,7 +16,6 @@ constexpr double kMaxHullWeight = 1e9;
 /// Why a field does not count, or nothing.
 std::string whyNot(const QuantisedMesh& quantised, std::size_t f, bool named) {
   const FieldInfo& info = quantised.mesh.fields[f];
-  if (quantised.report.nonFiniteOf[f] > 0) return "holds values that are NaN or infinite";
   const auto& values = quantised.mesh.values[f];
   if (values.empty() || std::ranges::all_of(values, [&](std::int32_t v) { return v == values[0]; })) return "is constant";
   if (!isFloatType(info.type) && !named)

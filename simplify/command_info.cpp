@@ -1,5 +1,6 @@
 #include "codec/atomic_file.h"
 #include "codec/log_levels.h"
+#include "simplify/closing_report.h"
 #include "simplify/command_line.h"
 #include "simplify/error_plot.h"
 #include "simplify/error_table.h"
@@ -23,6 +24,7 @@ OrderedJson infoJson(const OpenedLog& log) {
                       {"step", field.step},
                       {"minimum", field.minimum},
                       {"range", field.range},
+                      {"gaps", field.gaps},
                       {"bytes", bytes}});
   }
   return {{"digest", log.file.digest()},
@@ -34,6 +36,7 @@ OrderedJson infoJson(const OpenedLog& log) {
           {"chunks", log.file.index().chunks.size()},
           {"lattice", {{"bits", manifest.latticeBits}, {"step", manifest.latticeStep}, {"origin", manifest.latticeOrigin}}},
           {"fields", fields},
+          {"kept", closingJson(log.file.index(), manifest)},
           {"levels", levelsJson(log.manifest, log.file.index())}};
 }
 
@@ -47,6 +50,10 @@ void printHead(const OrderedJson& info, std::ostream& out) {
         << field["type"].get<std::string>() << " x " << field["components"] << ", " << field["range"][0] << " to " << field["range"][1]
         << ", " << field["bits"] << " bits, step " << field["step"] << ", " << field["bytes"] << " bytes\n";
   }
+}
+
+void printKept(const OrderedJson& kept, std::ostream& out) {
+  for (const auto& [what, bytes] : kept.items()) out << "kept     " << what << ": " << bytes << " bytes\n";
 }
 
 Status checkPlot(const std::string& plot, const std::string& input) {
@@ -95,6 +102,7 @@ int runInfo(const Words& words, Console& console) {
     printJson(info, console);
   } else {
     printHead(info, console.out);
+    printKept(info["kept"], console.out);
     console.out << "\n" << levelTable(log->manifest, info["levels"]);
   }
   return kExitOk;

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 namespace qtet {
 
@@ -64,6 +65,19 @@ int ParsedWords::integer(const std::string& name, int low, int high) const {
   if (value >= low && value <= high) return value;
   throw UsageError("--" + name + " " + std::to_string(value) + " is outside " + std::to_string(low) + " to " + std::to_string(high) +
                    hint(help_));
+}
+
+std::optional<std::vector<std::string>> parseFieldNames(const std::string& text) {
+  if (text == "all") return std::nullopt;
+  std::vector<std::string> names;
+  if (text == "none") return names;
+  std::istringstream stream(text);
+  for (std::string name; std::getline(stream, name, ',');) {
+    if (name.empty()) throw UsageError("--fields '" + text + "' holds an empty name; give all, none, or names between commas");
+    names.push_back(name);
+  }
+  if (names.empty()) throw UsageError("--fields is empty; give all, none, or names between commas");
+  return names;
 }
 
 Status checkOutput(const fs::path& output, const std::string& extension, const std::optional<fs::path>& input) {

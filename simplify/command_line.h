@@ -55,6 +55,9 @@ class ParsedWords {
   boost::program_options::variables_map values_;
 };
 
+/// The names between commas; "all" is nullopt, "none" the empty list. Throws UsageError.
+[[nodiscard]] std::optional<std::vector<std::string>> parseFieldNames(const std::string& text);
+
 /// Refuses an output before the work is done: another ending than `extension` (UsageError), a folder that does not exist or cannot be written, the input itself.
 [[nodiscard]] Status checkOutput(const std::filesystem::path& output, const std::string& extension,
                                  const std::optional<std::filesystem::path>& input = std::nullopt);

@@ -13,6 +13,9 @@
 #include "simplify/command_fusion.h"
 #include "simplify/command_line.h"
 #include "simplify/command_measure.h"
+#include "simplify/closing_report.h"
+#include "simplify/gaps.h"
+#include "simplify/kept_input.h"
 #include "simplify/paper_fusion.h"
 #include "simplify/progress.h"
 #include "simplify/read_mesh.h"
@@ -28,6 +31,7 @@ struct Request {
   FusionRequest fusion;
   std::optional<MeasureOptions> measure;
   CodecId valueCodec = CodecId::kDraco;
+  KeepOptions keep;
 };
 
 /// The names between commas; "all" is nullopt, "none" the empty list.
@@ -57,7 +61,7 @@ Request requestOf(const ParsedWords& parsed) {
   request.algorithm = parsed.get<std::string>("algorithm");
   if (request.algorithm != "qtet" && request.algorithm != "paper")
     throw UsageError("--algorithm '" + request.algorithm + "' is not known; give qtet or paper");
-  request.fields = parseFields(parsed.get<std::string>("fields"));
+  request.fields = parseFieldNames(parsed.get<std::string>("fields"));
   request.quantise.positionBits = parsed.integer("position-bits", kMinPositionBits, kMaxPositionBits);
   request.quantise.fieldBits = parsed.integer("field-bits", kMinFieldBits, kMaxFieldBits);
   request.fusion = fusionRequestOf(parsed);
@@ -65,6 +69,7 @@ Request requestOf(const ParsedWords& parsed) {
     throw UsageError("--algorithm paper knows no --preserve-regions, --envelope-tolerance or --field-weight; leave them out");
   request.measure = measureOptionsOf(parsed);
   request.valueCodec = valueCodecOf(parsed.get<std::string>("geometry-codec"));
+  request.keep = {parsed.has("keep-order"), parsed.has("lossless")};
   return request;
 }
 
@@ -133,6 +138,7 @@ struct Prepared {
   CleanReport clean;
   QuantisedMesh quantised;
   Lattice lattice;  ///< the quantised mesh's, which the simplifier takes
+  KeptInput kept;  ///< empty where nothing of the input is kept
   std::vector<std::string> fusionNotes;
 
   [[nodiscard]] std::vector<std::string> notes() const {
@@ -154,6 +160,7 @@ Result<Prepared> prepare(const Request& request, Progress& progress, Stopwatch& 
   out.cellsIn = read->mesh.tetrahedra.size();
 
   progress.stage("cleaning");
+  const std::vector<Tetrahedron> asStored = request.keep.any() ? read->mesh.tetrahedra : std::vector<Tetrahedron>{};
   Result<CleanReport> cleaned = cleanMesh(read->mesh);
   if (!cleaned) return std::unexpected(cleaned.error());
   watch.lap("clean");
@@ -162,6 +169,7 @@ Result<Prepared> prepare(const Request& request, Progress& progress, Stopwatch& 
   Result<QuantisedMesh> quantised = quantise(read->mesh, request.quantise);
   if (!quantised) return std::unexpected(quantised.error());
   watch.lap("quantise");
+  if (request.keep.any()) out.kept = {request.keep, asRead(read->mesh, asStored, *cleaned)};
   out.read = std::move(read->report);
   out.clean = std::move(*cleaned);
   out.quantised = std::move(*quantised);
@@ -212,6 +220,7 @@ Result<EncodedLog> makeLog(const Request& request, Prepared& prepared, Progress&
   watch.lap("simplify");
   const Result<std::vector<LevelError>> errors = measure(request, *history, progress, watch);
   if (!errors) return std::unexpected(errors.error());
+  cutGapsOut(*history, prepared.quantised.gaps);
 
   progress.stage("encoding");
   LogWriterOptions options;
@@ -223,6 +232,12 @@ Result<EncodedLog> makeLog(const Request& request, Prepared& prepared, Progress&
   Result<EncodedLog> log = encodeLog(*history, options);
   if (!log) return log;
   watch.lap("encode");
+  if (request.keep.any()) {
+    Result<Bytes> whole = withInput(*log, prepared.kept);
+    if (!whole) return std::unexpected(whole.error());
+    log->bytes = std::move(*whole);
+    watch.lap("keep");
+  }
   if (Status written = writeFileAtomically(request.output, log->bytes); !written) return std::unexpected(written.error());
   watch.lap("write");
   return log;
@@ -249,6 +264,7 @@ Result<OrderedJson> reportOf(const Request& request, const Prepared& prepared, c
                         {"chunks", index->chunks.size()}};
   report["records"] = log.statistics.records;
   addSizes(log, *manifest, report);
+  if (!index->closing.empty()) report["kept"] = closingJson(*index, *manifest);
   report["error"] = measureReport(request.measure, manifest->levels.front().error);
   report["lattice"] = {{"bits", lattice.bits},
                        {"requestedBits", quantised.requestedBits},
@@ -303,6 +319,8 @@ int runSimplify(const Words& words, Console& console) {
       "field-bits", po::value<int>()->default_value(12), "bits of a float field's values, 1 to 28; integer fields are stored exactly")(
       "geometry-codec", po::value<std::string>()->default_value("draco"),
       "how positions and fields are coded: draco, or adaptive, which is 1 to 3 % smaller and which only qtet can read")(
+      "keep-order", "keep the input's numbering of points, cells and their vertices: extract gives it back at the last level")(
+      "lossless", "keep the input's own coordinates and field values: extract gives them back bit for bit at the last level")(
       "json", "print one JSON object");
   addFusionOptions(options);
   addMeasureOptions(options);

@@ -3,7 +3,9 @@
 
 #include "proto/checksum.h"
 #include "simplify/clean_mesh.h"
+#include "simplify/closing_report.h"
 #include "simplify/command_line.h"
+#include "simplify/kept_input.h"
 #include "simplify/progress.h"
 #include "simplify/read_mesh.h"
 #include "simplify/verify.h"
@@ -20,7 +22,7 @@ LatticeMesh finestMesh(const OpenedLog& log, const Refiner& refiner) {
   for (std::uint32_t f = 0; f < log.manifest.fields.size(); ++f) {
     const ManifestField& field = log.manifest.fields[f];
     mesh.fields.push_back(
-        {field.name, field.components, field.type, field.association, field.bits, field.step, field.minimum, field.range});
+        {field.name, field.components, field.type, field.association, field.bits, field.step, field.minimum, field.range, field.gaps});
     const auto values = refiner.fieldValues(f);
     mesh.values.emplace_back(values.begin(), values.end());
   }
@@ -35,20 +37,25 @@ Status compareWithInput(const OpenedLog& log, const Refiner& refiner, const std:
   for (const FieldInfo& field : decoded.fields) names.push_back(field.association + ":" + field.name);
   Result<ReadMesh> read = readMesh(input, names);
   if (!read) return std::unexpected(read.error());
-  if (const Result<CleanReport> cleaned = cleanMesh(read->mesh); !cleaned) return std::unexpected(cleaned.error());
+  const std::vector<Tetrahedron> asStored = read->mesh.tetrahedra;
+  const Result<CleanReport> cleaned = cleanMesh(read->mesh);
+  if (!cleaned) return std::unexpected(cleaned.error());
 
   progress.stage("comparing");
   const Result<OnLattice> expected = putOnLattice(read->mesh, decoded.lattice, decoded.fields);
   if (!expected) return std::unexpected(expected.error());
   const Result<VerifyReport> same = sameMesh(decoded, expected->mesh);
   if (!same) return std::unexpected(same.error());
+  const Result<OrderedJson> kept = compareKept(log.file, decoded, expected->mesh, asRead(read->mesh, asStored, *cleaned));
+  if (!kept) return std::unexpected(kept.error());
   OrderedJson fieldErrors = OrderedJson::object();
   for (std::size_t f = 0; f < names.size(); ++f) fieldErrors[fieldKey(log.manifest, f)] = expected->largestFieldErrors[f];
   out = {{"input", input},
          {"sameMesh", true},
          {"largestPositionErrorSteps", expected->largestPositionError},
          {"largestFieldErrorSteps", fieldErrors},
-         {"interchangeableVertices", same->interchangeable}};
+         {"interchangeableVertices", same->interchangeable},
+         {"kept", *kept}};
   return {};
 }
 
@@ -88,6 +95,10 @@ void printReport(const OrderedJson& report, std::ostream& out) {
   for (const auto& [name, error] : against["largestFieldErrorSteps"].items())
     out << ", " << name << " within " << error.get<double>() << " field steps";
   out << "\n";
+  if (against["kept"]["order"].get<bool>()) out << "its points, cells and their vertices are numbered as in the file\n";
+  if (against["kept"]["positions"].get<bool>()) out << "its coordinates are those of the file, bit for bit\n";
+  for (const auto& [name, exact] : against["kept"]["fields"].items())
+    if (exact.get<bool>()) out << "its values of " << name << " are those of the file, bit for bit\n";
 }
 
 }  // namespace
@@ -100,7 +111,8 @@ int runVerify(const Words& words, Console& console) {
       words,
       {"verify", "verify LOG.qtet [--against IN] [--json]",
        "Checks every checksum, decodes every chunk and compares every level and field with what the manifest says. With --against the finest level\n"
-       "must be the input's mesh cell for cell, positions within half a lattice step, fields within half a field step.",
+       "must be the input's mesh cell for cell, positions within half a lattice step, fields within half a field step. Where the log was made with --keep-order or\n"
+       "--lossless, the numbering and the numbers themselves must be those of the file too, and what was proved is said.",
        "  qtet verify fin.qtet\n  qtet verify fin.qtet --against fin.vtu --json\n"},
       options, {"LOG"});
   if (parsed.helped(console)) return kExitOk;

@@ -10,18 +10,20 @@
 namespace qtet {
 namespace {
 
-constexpr std::array<Command, 5> kCommands{{
+constexpr std::array<Command, 7> kCommands{{
     {"sample", "make a mesh to try things with", runSample},
     {"simplify", "turn a tetrahedral mesh into a log", runSimplify},
     {"info", "say what a log holds, level by level", runInfo},
     {"extract", "write one level of a log as an ordinary mesh", runExtract},
+    {"add-field", "add fields of a mesh file to a log", runAddField},
+    {"remove-field", "leave fields of a log out", runRemoveField},
     {"verify", "check a log, also against the mesh that it was made from", runVerify},
 }};
 
 void printHelp(std::ostream& out) {
   out << "usage: qtet COMMAND [options]\n\nTurns tetrahedral simulation meshes into logs that a browser can show coarse-first, and "
          "back.\n\ncommands:\n";
-  for (const Command& command : kCommands) out << "  " << std::left << std::setw(10) << command.name << command.summary << "\n";
+  for (const Command& command : kCommands) out << "  " << std::left << std::setw(13) << command.name << command.summary << "\n";
   out << "\n  qtet COMMAND --help says more about each; qtet --version tells the version.\n"
          "\nexamples:\n"
          "  qtet sample fin -o fin.vtu\n"

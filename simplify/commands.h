@@ -39,6 +39,8 @@ int runSample(const Words& words, Console& console);
 int runSimplify(const Words& words, Console& console);
 int runInfo(const Words& words, Console& console);
 int runExtract(const Words& words, Console& console);
+int runAddField(const Words& words, Console& console);
+int runRemoveField(const Words& words, Console& console);
 int runVerify(const Words& words, Console& console);
 
 }  // namespace qtet

@@ -49,10 +49,12 @@ Status putField(const MeshField& field, const FieldInfo& info, OnLattice& out) {
   integers.reserve(field.values.size());
   double largest = 0;
   for (std::size_t i = 0; i < field.values.size(); ++i) {
-    // What is not finite is stored as the minimum (quantise.h).
+    if (!std::isfinite(field.values[i]) && !info.gaps)
+      return fail(ErrorCode::kBadValue, "field " + info.name + " at " + info.association + " " + std::to_string(i / info.components) +
+                                            " of the cleaned input is not finite, and the log's field has no gaps; the log was made from another mesh");
     const Nearest found = std::isfinite(field.values[i])
                               ? nearest((field.values[i] - info.minimum[i % info.components]) / info.step, info.bits)
-                              : Nearest{0, 0};
+                              : Nearest{kGap, 0};
     if (!(found.error <= kHalfAStep)) {
       return fail(ErrorCode::kBadValue, "field " + info.name + " at " + info.association + " " + std::to_string(i / info.components) +
                                             " of the cleaned input is " + std::to_string(found.error) +

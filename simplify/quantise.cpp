@@ -7,6 +7,7 @@
 #include "codec/boundary.h"
 #include "codec/predicates.h"
 #include "proto/limits.h"
+#include "simplify/gaps.h"
 #include "simplify/quantise_field.h"
 #include "simplify/volume_sign.h"
 
@@ -128,14 +129,16 @@ Status placeFields(const TetMesh& mesh, int bits, QuantisedMesh& out) {
     if (quantised->nonFinite > 0) {
       out.report.nonFiniteValues += quantised->nonFinite;
       out.report.notes.push_back(name + ": " + std::to_string(quantised->nonFinite) +
-                                 " values are NaN or infinite and are stored as their component's minimum");
+                                 " values are NaN or infinite and come back as NaN");
     }
     if (!quantised->exact && !isFloatType(field.type)) {
       out.report.notes.push_back(name + ": its integers span more than " + std::to_string(kMaxFieldBits) + " bits and are rounded to " +
                                  std::to_string(bits) + " bits");
     }
     out.mesh.fields.push_back(std::move(quantised->info));
+    if (quantised->nonFinite > 0) fillGaps(mesh.tetrahedra, out.mesh.fields.back(), quantised->gaps, quantised->values);
     out.mesh.values.push_back(std::move(quantised->values));
+    out.gaps.push_back(std::move(quantised->gaps));
   }
   return {};
 }

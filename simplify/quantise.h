@@ -20,14 +20,15 @@ struct QuantiseReport {
   int requestedBits = 0;
   std::uint64_t worseAtRequestedBits = 0;  ///< cells that would have lost their sign at the bits asked for
   Occurrences worseCells;                  ///< cells that lose it at the bits used; none below kMaxPositionBits
-  std::uint64_t nonFiniteValues = 0;       ///< field values that were NaN or infinite and became their component's minimum
+  std::uint64_t nonFiniteValues = 0;       ///< field values that were NaN or infinite: gaps
   std::vector<std::uint64_t> nonFiniteOf;  ///< the same, one a field
   std::vector<std::string> notes;          ///< the same and more in sentences, empty when there is nothing to say
 };
 
 struct QuantisedMesh {
-  LatticeMesh mesh;
+  LatticeMesh mesh;                                ///< gaps are filled with the nearest value: fillGaps
   QuantiseReport report;
+  std::vector<std::vector<std::uint8_t>> gaps{};   ///< one a field: QuantisedField::gaps
 };
 
 /// Puts `mesh` on a lattice whose step is the largest extent / (2^bits - 1) and whose origin is the lowest corner, with as many bits

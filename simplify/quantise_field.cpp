@@ -80,15 +80,19 @@ Result<QuantisedField> quantiseField(const MeshField& field, int bits) {
                        .bits = out.exact ? bitsFor(extents.largest) : bits,
                        .step = 1,
                        .minimum = extents.minimum,
-                       .range = rangeOf(field)};
+                       .range = rangeOf(field),
+                       .gaps = out.nonFinite > 0};
   if (!out.exact && extents.largest > 0) {
     // A step of no normal number would lose its own digits; such a field is constant for every purpose.
     out.info.step = std::max(extents.largest / (std::ldexp(1.0, bits) - 1), std::numeric_limits<double>::min());
   }
   out.values.reserve(field.values.size());
+  if (out.nonFinite > 0) out.gaps.assign(field.values.size(), 0);
   for (std::size_t i = 0; i < field.values.size(); ++i) {
     const auto component = static_cast<std::uint32_t>(i % field.components);
-    out.values.push_back(std::isfinite(field.values[i]) ? fieldInteger(out.info, component, field.values[i]) : 0);
+    const bool finite = std::isfinite(field.values[i]);
+    if (!finite) out.gaps[i] = 1;
+    out.values.push_back(finite ? fieldInteger(out.info, component, field.values[i]) : 0);
   }
   return out;
 }

@@ -13,8 +13,9 @@ namespace qtet {
 
 struct QuantisedField {
   FieldInfo info;
-  std::vector<std::int32_t> values;
-  std::uint64_t nonFinite = 0;
+  std::vector<std::int32_t> values;     ///< 0 in gaps
+  std::uint64_t nonFinite = 0;          ///< values that are NaN or infinite: gaps
+  std::vector<std::uint8_t> gaps{};     ///< one a value, 1 where it is a gap; empty without gaps
   bool exact = false;  ///< an integer field that loses nothing
 };
 

@@ -8,6 +8,7 @@
 #include <vtkDataArray.h>
 #include <vtkGenericCell.h>
 #include <vtkPointData.h>
+#include <vtkPoints.h>
 #include <vtkSmartPointer.h>
 #include <vtkUnsignedCharArray.h>
 
@@ -274,7 +275,7 @@ Result<ReadMesh> readMesh(const std::filesystem::path& path, const FieldNames& f
   auto meshFields = fieldsOf(**grid, tetrahedra->rows, fields, path, out.report);
   if (!meshFields) return std::unexpected(meshFields.error());
 
-  out.mesh = TetMesh{std::move(*points), std::move(tetrahedra->cells), std::move(*meshFields)};
+  out.mesh = TetMesh{std::move(*points), std::move(tetrahedra->cells), std::move(*meshFields), (*grid)->GetPoints()->GetDataType() == VTK_FLOAT ? "float32" : "float64"};
   return out;
 }
 

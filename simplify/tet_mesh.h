@@ -25,6 +25,7 @@ struct TetMesh {
   std::vector<Position> points;
   std::vector<Tetrahedron> tetrahedra;
   std::vector<MeshField> fields;
+  std::string pointType{};  ///< float32 or float64; empty: unknown, the narrowest that holds the points
 };
 
 /// Whether a MeshField's or FieldInfo's type is one of floats.

@@ -33,7 +33,7 @@ Status checkBits(const Manifest& manifest, const Refiner& finest) {
   for (std::uint32_t f = 0; f < manifest.fields.size(); ++f) {
     const std::int32_t end = std::int32_t{1} << manifest.fields[f].bits;
     const std::span<const std::int32_t> values = finest.fieldValues(f);
-    const auto outside = std::ranges::find_if(values, [end](std::int32_t value) { return value < 0 || value >= end; });
+    const auto outside = std::ranges::find_if(values, [end](std::int32_t value) { return value != kGap && (value < 0 || value >= end); });
     if (outside != values.end())
       return fail(ErrorCode::kBadValue, "field " + fieldKey(manifest, f) + " holds the integer " + std::to_string(*outside) +
                                             ", beyond the " + std::to_string(manifest.fields[f].bits) +

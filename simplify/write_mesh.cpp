@@ -10,7 +10,7 @@ namespace qtet {
 Bytes vtuBytes(const TetMesh& mesh) {
   const auto isFloat = [](double x) { return roundedToFloat(x) == x; };
   VtuMesh out{mesh.points, mesh.tetrahedra, true};
-  out.doublePoints = !std::all_of(mesh.points.begin(), mesh.points.end(),
+  out.doublePoints = mesh.pointType == "float64" || !std::all_of(mesh.points.begin(), mesh.points.end(),
                                   [&](const Position& p) { return isFloat(p[0]) && isFloat(p[1]) && isFloat(p[2]); });
   for (const MeshField& field : mesh.fields)
     (isCellField(field) ? out.cellFields : out.pointFields).push_back({field.name, field.type, field.components, field.values});

@@ -24,7 +24,7 @@ Manifest sample(bool withErrors = true) {
   m.latticeStep = 0.1 + 0.2;
   m.latticeOrigin = {-1.5, 1e-17, 3};
   m.fields.push_back({"density", 1, "float32", "point", 12, 0.00025, {0.1}, {0.1, 0.9}});
-  m.fields.push_back({"density", 3, "uint64", "cell", 28, 1.0 / 3, {-1, -2, -3}, {0, 7}});
+  m.fields.push_back({"density", 3, "uint64", "cell", 28, 1.0 / 3, {-1, -2, -3}, {0, 7}, true});
   for (std::uint32_t l = 0; l < kLevels; ++l) {
     const auto tetrahedra = static_cast<std::uint32_t>(2000 * std::pow(1.06, l));
     m.levels.push_back({l, tetrahedra, tetrahedra / 5, tetrahedra / 2, l < 10 ? 1u : l < kLevels - 1 ? 2u : 3u, std::nullopt});
@@ -39,7 +39,7 @@ Manifest sample(bool withErrors = true) {
 LogIndex indexOf(const Manifest& manifest) {
   LogIndex index;
   index.positionBits = static_cast<std::uint8_t>(manifest.latticeBits);
-  for (const ManifestField& f : manifest.fields) index.fields.push_back({f.components, f.association == "cell" ? Association::kCell : Association::kPoint});
+  for (const ManifestField& f : manifest.fields) index.fields.push_back({f.components, f.association == "cell" ? Association::kCell : Association::kPoint, f.gaps});
   index.chunks.resize(4);
   index.chunks[1].firstLevel = 1, index.chunks[1].lastLevel = 10, index.chunks[1].endSlot = 77;
   index.chunks[2].firstLevel = 10, index.chunks[2].lastLevel = kLevels - 2;

@@ -1,4 +1,5 @@
 // Writes the golden files anew: `qtet_golden FOLDER`. Run it only when the format changes; the committed files are the reference.
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <functional>
@@ -9,6 +10,8 @@
 #include "codec/level_columns.h"
 #include "codec/log_manifest.h"
 #include "codec/log_writer.h"
+#include "simplify/gaps.h"
+#include "simplify/kept_input.h"
 #include "simplify/qtetfusion.h"
 #include "proto/checksum.h"
 #include "proto/limits.h"
@@ -24,6 +27,46 @@ Bytes logOf(const LatticeMesh& mesh, std::uint32_t chunkBytes) {
   options.generator = "qtet golden";
   options.chunkBytes = chunkBytes;
   return encodeLog(simplify(mesh, {}).value(), options).value().bytes;
+}
+
+/// A field of points, one of cells, and every third of their values missing, beside a field without gaps.
+Bytes gappyLog() {
+  LatticeMesh mesh = testing::gridMesh(3, 6);
+  testing::addCellFields(mesh);
+  std::vector<std::vector<std::uint8_t>> gaps(mesh.fields.size());
+  for (const std::size_t f : {std::size_t{0}, mesh.fields.size() - 1}) {
+    mesh.fields[f].gaps = true;
+    for (std::size_t i = 0; i < mesh.values[f].size(); ++i) gaps[f].push_back(i / 2 % 3 == 0);
+  }
+  FusionHistory history = simplify(mesh, {}).value();
+  cutGapsOut(history, gaps);
+  LogWriterOptions options;
+  options.source = "golden.vtu";
+  options.generator = "qtet golden";
+  options.chunkBytes = 500;
+  return encodeLog(history, options).value().bytes;
+}
+
+/// With every kind of closing block, and one of a kind that is not known yet.
+Bytes keptLog() {
+  const LatticeMesh mesh = testing::gridMesh(2, 7);
+  TetMesh input;
+  for (const LatticePoint& p : mesh.points) input.points.push_back(mesh.lattice.position(p));
+  input.tetrahedra = mesh.tetrahedra;
+  input.pointType = "float64";
+  for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
+    const FieldInfo& info = mesh.fields[f];
+    MeshField& field = input.fields.emplace_back(MeshField{info.name, info.components, info.type, {}, info.association});
+    for (std::size_t i = 0; i < mesh.values[f].size(); ++i) field.values.push_back(info.value(i % info.components, mesh.values[f][i]) + 0.125 * info.step);
+  }
+  LogWriterOptions options;
+  options.source = "golden.vtu";
+  options.generator = "qtet golden";
+  const EncodedLog log = encodeLog(simplify(mesh, {}).value(), options).value();
+  testing::TakenApart parts = testing::takeApart(withInput(log, {{true, true}, input}).value());
+  parts.index.closing.push_back({static_cast<ClosingKind>(70000), 300, {}});
+  parts.closing.push_back(Bytes(200, 0x5A));
+  return parts.together();
 }
 
 /// A log taken apart, changed and put together with every checksum right; `table` changes what stands there beside the right offsets.
@@ -76,6 +119,22 @@ void writeBadHeads(const std::filesystem::path& folder, const Bytes& good) {
   write(folder / "limit-exceeded.manifest-bomb.qtet", manifest([size](Bytes& b) { b.resize(b.size() - size); }));
 }
 
+void writeBadClosing(const std::filesystem::path& folder, const Bytes& kept) {
+  const auto closing = [&](const std::function<void(std::vector<ClosingBlock>&)>& change) {
+    return forged(kept, [&](LogIndex& i) { change(i.closing); });
+  };
+  const auto exact = [](std::vector<ClosingBlock>& c) -> ClosingBlock& { return *std::ranges::find(c, ClosingKind::kExactField, &ClosingBlock::kind); };
+  write(folder / "bad-value.gaps-in-the-table-alone.qtet", forged(kept, [](LogIndex& i) { i.fields[0].gaps = true; }));
+  write(folder / "bad-value.closing-twice.qtet", closing([](auto& c) { c[1].kind = c[0].kind; }));
+  write(folder / "bad-value.closing-field.qtet", closing([&](auto& c) { exact(c).field = 99; }));
+  write(folder / "bad-value.closing-size.qtet", closing([](auto& c) { ++c[0].block.size; }));
+  write(folder / "bad-value.closing-left-out.qtet", closing([](auto& c) { c.pop_back(); }));
+  write(folder / "limit-exceeded.closing-size.qtet", closing([](auto& c) { c[0].block.size = kMaxBlockBytes + 1; }));
+  write(folder / "limit-exceeded.closing-blocks.qtet", closing([](auto& c) {
+    while (c.size() <= kMaxClosingBlocks) c.push_back({static_cast<ClosingKind>(1000 + c.size()), 0, {}});
+  }));
+}
+
 void writeMustFail(const std::filesystem::path& folder, const Bytes& good) {
   const auto patched = [&](std::size_t at, std::uint8_t value) {
     Bytes b = good;
@@ -126,7 +185,7 @@ void writeMustFail(const std::filesystem::path& folder, const Bytes& good) {
 /// What the valid files decode to, in the form that sha256sum writes.
 void writeDigests(const std::filesystem::path& folder) {
   std::ofstream meshes(folder / "digests.txt"), values(folder / "field-digests.txt");
-  for (const char* name : {"cell-fields", "no-fields", "pinched", "solid", "tunnel"}) {
+  for (const char* name : {"cell-fields", "gaps", "kept-input", "no-fields", "pinched", "solid", "tunnel"}) {
     const std::string file = std::string(name) + ".qtet";
     const LogFile log = LogFile::open(folder / "valid" / file).value();
     std::vector<std::uint32_t> fields;
@@ -159,7 +218,11 @@ int main(int argc, char** argv) {
   qtet::LatticeMesh cells = gridMesh(3, 5);
   qtet::testing::addCellFields(cells);
   qtet::write(folder / "valid" / "cell-fields.qtet", qtet::logOf(cells, 800));
+  const qtet::Bytes kept = qtet::keptLog();
+  qtet::write(folder / "valid" / "gaps.qtet", qtet::gappyLog());
+  qtet::write(folder / "valid" / "kept-input.qtet", kept);
   qtet::writeMustFail(folder / "must-fail", solid);
+  qtet::writeBadClosing(folder / "must-fail", kept);
   qtet::writeDigests(folder);
   return 0;
 }

@@ -112,10 +112,12 @@ TEST(QuantiseField, aConstantIsExact) {
   EXPECT_EQ(out.values, (std::vector<std::int32_t>{0, 0}));
 }
 
-TEST(QuantiseField, whatIsNotFiniteBecomesTheMinimumAndIsCounted) {
+TEST(QuantiseField, whatIsNotFiniteIsAGap) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   const QuantisedField out = field({"f", 1, "float32", {nan, 2, inf, 4, -inf}}, 8);
   EXPECT_EQ(out.nonFinite, 3u);
+  EXPECT_TRUE(out.info.gaps);
+  EXPECT_EQ(out.gaps, (std::vector<std::uint8_t>{1, 0, 1, 0, 1}));
   EXPECT_EQ(out.values, (std::vector<std::int32_t>{0, 0, 0, 255, 0}));
   EXPECT_EQ(out.info.range, (std::array<double, 2>{2, 4}));
   EXPECT_EQ(field({"f", 1, "float32", {nan, nan}}, 8).info.minimum[0], 0);

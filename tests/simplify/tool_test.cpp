@@ -3,8 +3,11 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "codec/atomic_file.h"
@@ -61,7 +64,7 @@ TEST_F(Tool, helpAndVersionSucceed) {
   EXPECT_EQ(run("--version").out, "qtet " QTET_VERSION "\n");
   const Ran help = run("--help");
   EXPECT_EQ(help.code, 0);
-  for (const char* command : {"sample", "simplify", "info", "extract", "verify"}) {
+  for (const char* command : {"sample", "simplify", "info", "extract", "add-field", "remove-field", "verify"}) {
     EXPECT_NE(help.out.find(command), std::string::npos);
     const Ran own = run(std::string(command) + " --help");
     EXPECT_EQ(own.code, 0);
@@ -430,6 +433,111 @@ TEST_F(Tool, aDirtyMeshIsCleanedReportedAndVerified) {
   EXPECT_EQ(clean["unusedPoints"]["first"][0], 729);
   EXPECT_NE(ran.err.find("qtet: note: "), std::string::npos);
   EXPECT_EQ(run("verify dirty.qtet --against dirty.vtu").code, 0);
+}
+
+TEST_F(Tool, fieldsComeLaterAndGo) {
+  TetMesh mesh = boxSample();
+  write("box.vtu", mesh);
+  MeshField late{"Late", 1, "float64", {}, "point"}, label{"Label", 1, "uint8", {}, "cell"};
+  for (std::size_t i = 0; i < mesh.points.size(); ++i) late.values.push_back(mesh.points[i][0] + 2 * mesh.points[i][1]);
+  for (std::size_t i = 0; i < mesh.tetrahedra.size(); ++i) label.values.push_back(static_cast<double>(i % 3));
+  std::ranges::reverse(mesh.tetrahedra);
+  mesh.fields = {late, label};
+  write("late.vtu", mesh);
+  ASSERT_EQ(run("simplify box.vtu -o box.qtet").code, 0);
+  const std::string before = contentOf(folder_ / "box.qtet");
+
+  const Ran added = run("add-field box.qtet --from late.vtu -o more.qtet");
+  ASSERT_EQ(added.code, 0) << added.err;
+  EXPECT_EQ(contentOf(folder_ / "box.qtet"), before);
+  EXPECT_EQ(run("verify more.qtet").code, 0);
+  const nlohmann::json info = run("info more.qtet --json").json();
+  EXPECT_EQ(info["fields"][info["fields"].size() - 2]["name"], "Late");
+  EXPECT_EQ(info["levels"].back()["error"]["fields"].size(), info["fields"].size());
+
+  expectFailure("add-field more.qtet --from late.vtu", 1, "--replace");
+  EXPECT_EQ(run("add-field more.qtet --from late.vtu --fields Late --replace --field-bits 16").code, 0);
+  EXPECT_EQ(run("info more.qtet --json").json()["fields"].back()["bits"], 16);
+  expectFailure("add-field more.qtet --from late.vtu --fields None", 1, "no field 'None'");
+  mesh.points[3][2] += 1e-3;
+  write("other.vtu", mesh);
+  expectFailure("add-field box.qtet --from other.vtu", 1, "point 3 ");
+
+  expectFailure("remove-field more.qtet --fields Nothing", 1, "no field 'Nothing'");
+  ASSERT_EQ(run("remove-field more.qtet --fields Late,cell:Label -o less.qtet").code, 0);
+  EXPECT_EQ(contentOf(folder_ / "less.qtet"), before);
+}
+
+/// Numbers that no quantisation keeps, in an input whose cells are turned both ways.
+TetMesh oddMesh() {
+  TetMesh mesh = boxSample();
+  mesh.fields.clear();
+  const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  const std::vector<double> odd{nan, inf, -inf, -0.0, 0.0, 5e-324, -1e308, std::bit_cast<double>(0x7FF8000000ABCDEFu)};
+  const std::vector<double> single{nan, inf, -inf, -0.0, 0.0, 1.401298464324817e-45, -3e38f, 0.1f};
+  MeshField wide{"Wide", 2, "float64", {}, "point"}, narrow{"Narrow", 1, "float32", {}, "cell"}, whole{"Whole", 1, "int32", {}, "cell"};
+  for (std::size_t i = 0; i < 2 * mesh.points.size(); ++i) wide.values.push_back(i % 5 == 0 ? odd[i / 5 % odd.size()] : std::sin(static_cast<double>(i)));
+  for (std::size_t i = 0; i < mesh.tetrahedra.size(); ++i)
+    narrow.values.push_back(i % 3 == 0 ? single[i / 3 % single.size()] : static_cast<double>(std::sin(static_cast<float>(i)))), whole.values.push_back(static_cast<double>(i) * 7);
+  for (std::size_t i = 0; i < mesh.tetrahedra.size(); i += 4) std::swap(mesh.tetrahedra[i][0], mesh.tetrahedra[i][1]);
+  for (Position& p : mesh.points) p[0] += p[1] / 3;
+  for (Position& p : mesh.points)
+    if (p[2] == 0) p[2] = -0.0;
+  mesh.fields = {wide, narrow, whole};
+  return mesh;
+}
+
+TEST_F(Tool, theInputItselfComesBack) {
+  write("odd.vtu", oddMesh());
+  const Ran made = run("simplify odd.vtu -o odd.qtet --keep-order --lossless");
+  ASSERT_EQ(made.code, 0) << made.err;
+  const Ran proof = run("verify odd.qtet --against odd.vtu --json");
+  ASSERT_EQ(proof.code, 0) << proof.err;
+  EXPECT_EQ(proof.json()["against"]["kept"],
+            nlohmann::json::parse(R"({"order":true,"positions":true,"fields":{"point:Wide":true,"cell:Narrow":true,"cell:Whole":true}})"));
+  const nlohmann::json info = run("info odd.qtet --json").json();
+  ASSERT_EQ(run("extract odd.qtet --level " + std::to_string(info["levels"].size() - 1) + " -o back.vtu").code, 0);
+  EXPECT_TRUE(contentOf(folder_ / "back.vtu") == contentOf(folder_ / "odd.vtu"));
+  ASSERT_EQ(run("extract odd.qtet --level 0 -o base.vtu").code, 0);
+  EXPECT_EQ(readMesh(folder_ / "base.vtu")->mesh.tetrahedra.size(), info["levels"][0]["tetrahedra"]);
+}
+
+TEST_F(Tool, verifyProvesWhatTheLogKeptAndNoMore) {
+  TetMesh mesh = oddMesh();
+  write("odd.vtu", mesh);
+  ASSERT_EQ(run("simplify odd.vtu -o plain.qtet").code, 0);
+  ASSERT_EQ(run("simplify odd.vtu -o order.qtet --keep-order").code, 0);
+  ASSERT_EQ(run("simplify odd.vtu -o exact.qtet --lossless").code, 0);
+  const auto kept = [&](const std::string& log) { return run("verify " + log + " --against odd.vtu --json").json()["against"]["kept"]; };
+  EXPECT_EQ(kept("plain.qtet")["order"], false);
+  EXPECT_EQ(kept("order.qtet")["order"], true);
+  EXPECT_EQ(kept("order.qtet")["positions"], false);
+  EXPECT_EQ(kept("exact.qtet")["order"], false);
+  EXPECT_EQ(kept("exact.qtet")["positions"], true);
+
+  TetMesh changed = mesh;
+  changed.points[8][0] = std::nextafter(changed.points[8][0], 2.0);
+  write("odd.vtu", changed);
+  EXPECT_EQ(run("verify order.qtet --against odd.vtu").code, 0);
+  expectFailure("verify exact.qtet --against odd.vtu", 1, "point 8 has another coordinate x");
+  changed = mesh;
+  changed.fields[1].values[0] = -changed.fields[1].values[0];  // NaN of the other sign
+  write("odd.vtu", changed);
+  EXPECT_EQ(run("verify plain.qtet --against odd.vtu").code, 0);
+  expectFailure("verify exact.qtet --against odd.vtu", 1, "Narrow has another value at cell 0");
+  changed = mesh;
+  std::swap(changed.tetrahedra[10], changed.tetrahedra[11]);
+  for (MeshField& field : changed.fields)
+    if (isCellField(field)) {
+      for (std::size_t c = 0; c < field.components; ++c) std::swap(field.values[10 * field.components + c], field.values[11 * field.components + c]);
+    }
+  write("odd.vtu", changed);
+  EXPECT_EQ(run("verify exact.qtet --against odd.vtu").code, 0);
+  expectFailure("verify order.qtet --against odd.vtu", 1, "cell 10");
+  changed = mesh;
+  std::rotate(changed.tetrahedra[12].begin(), changed.tetrahedra[12].begin() + 1, changed.tetrahedra[12].begin() + 3);
+  write("odd.vtu", changed);
+  expectFailure("verify order.qtet --against odd.vtu", 1, "cell 12");
 }
 
 }  // namespace

@@ -12,6 +12,7 @@ namespace qtet::testing {
 struct TakenApart {
   LogIndex index;
   std::vector<std::vector<Bytes>> blocks;  ///< chunk, part
+  std::vector<Bytes> closing{};
 
   /// Header, manifest, table, blocks. Offsets, sizes and checksums are those of `blocks`.
   [[nodiscard]] Bytes together() {
@@ -19,6 +20,7 @@ struct TakenApart {
       index.chunks[c].blocks.resize(blocks[c].size());
       for (std::size_t p = 0; p < blocks[c].size(); ++p) index.chunks[c].blocks[p].size = static_cast<std::uint32_t>(blocks[c][p].size());
     }
+    for (std::size_t i = 0; i < closing.size(); ++i) index.closing[i].block.size = static_cast<std::uint32_t>(closing[i].size());
     std::uint64_t offset = index.encode().size();  // which depends on the sizes
     Bytes tail;
     for (std::size_t c = 0; c < blocks.size(); ++c) {
@@ -28,6 +30,11 @@ struct TakenApart {
         offset += blocks[c][p].size();
         tail.insert(tail.end(), blocks[c][p].begin(), blocks[c][p].end());
       }
+    }
+    for (std::size_t i = 0; i < closing.size(); ++i) {
+      index.closing[i].block = {offset, static_cast<std::uint32_t>(closing[i].size()), crc32c(closing[i])};
+      offset += closing[i].size();
+      tail.insert(tail.end(), closing[i].begin(), closing[i].end());
     }
     index.fileBytes = offset;
     Bytes out = index.encode();
@@ -54,6 +61,10 @@ struct TakenApart {
       const ByteView bytes = log.subspan(static_cast<std::size_t>(block.offset), block.size);
       out.blocks.back().emplace_back(bytes.begin(), bytes.end());
     }
+  }
+  for (const ClosingBlock& c : out.index.closing) {
+    const ByteView bytes = log.subspan(static_cast<std::size_t>(c.block.offset), c.block.size);
+    out.closing.emplace_back(bytes.begin(), bytes.end());
   }
   return out;
 }

@@ -2,6 +2,9 @@
 
 import type {FieldInfo} from './manifest';
 
+/** The integer of a value that is missing (codec/mesh.h, kGap). */
+const kGap = -2147483648;
+
 export class FieldScale {
   private readonly low: number;
   private readonly inverseSpan: number;
@@ -19,14 +22,17 @@ export class FieldScale {
     this.minimum = info.minimum;
   }
 
-  /** Relative to the range, so that a small range round a large value keeps its digits in 32-bit floats. */
+  /** NaN where a value is missing. Relative to the range, so that a small range round a large value keeps its digits in 32-bit floats. */
   at(vertex: number): number {
     if (this.components === 1) {
-      return (this.minimum[0]! + this.step * this.values[vertex]! - this.low) * this.inverseSpan;
+      const integer = this.values[vertex]!;
+      return integer === kGap ? NaN : (this.minimum[0]! + this.step * integer - this.low) * this.inverseSpan;
     }
     let sum = 0;
     for (let c = 0; c < this.components; ++c) {
-      const value = this.minimum[c]! + this.step * this.values[vertex * this.components + c]!;
+      const integer = this.values[vertex * this.components + c]!;
+      if (integer === kGap) return NaN;
+      const value = this.minimum[c]! + this.step * integer;
       sum += value * value;
     }
     return (Math.sqrt(sum) - this.low) * this.inverseSpan;

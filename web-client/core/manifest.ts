@@ -48,6 +48,9 @@ const kHeaderBytes = 64;
 const kPositionBitsAt = 13;
 const kManifestBytesAt = 24;
 const kFieldsAt = 44;
+/** Beside a field's association, and beside its type: values may be missing. Which ones, FieldScale tells. */
+const kGapsFlag = 128;
+const kOfCells = 1;
 /** codec/FORMAT.md, "Manifest" and "Level columns". */
 const kMaxNameBytes = 256;
 const kFieldTypes = 10;
@@ -64,7 +67,7 @@ export function readManifest(head: Uint8Array, levelColumns: (bytes: Uint8Array,
   const header = new DataView(head.buffer, head.byteOffset, head.byteLength);
   const tableAt = kHeaderBytes + header.getUint32(kManifestBytesAt, true);
   const shapes = Array.from({length: header.getUint32(kFieldsAt, true)}, (_, f) =>
-    ({components: head[tableAt + 2 * f]!, association: head[tableAt + 2 * f + 1] === 1 ? 'cell' : 'point'} as const));
+    ({components: head[tableAt + 2 * f]!, association: head[tableAt + 2 * f + 1]!}));
   const reader = new ManifestReader(head.subarray(kHeaderBytes, tableAt));
   reader.text();  // which program wrote it
   const source = reader.text();
@@ -77,10 +80,13 @@ export function readManifest(head: Uint8Array, levelColumns: (bytes: Uint8Array,
   return {source, lattice, fields, levels: levelsOf(levelColumns(reader.rest(), columns), columns)};
 }
 
-function readField(reader: ManifestReader, components: number, association: 'point' | 'cell'): FieldInfo {
+function readField(reader: ManifestReader, components: number, associationAndGaps: number): FieldInfo {
+  const association = (associationAndGaps & ~kGapsFlag) === kOfCells ? 'cell' : 'point';
   const name = reader.text();
   if (name === '') throw damaged('has a field without a name');
-  if (reader.byte() >= kFieldTypes) throw damaged('has a field of an unknown type');
+  const type = reader.byte();
+  if ((type & kGapsFlag) !== (associationAndGaps & kGapsFlag)) throw damaged('contradicts itself in whether a field has gaps');
+  if ((type & ~kGapsFlag) >= kFieldTypes) throw damaged('has a field of an unknown type');
   const bits = reader.byte();
   if (bits < 1 || bits > kMaxFieldBits) throw damaged(`has a field of ${bits} bits`);
   return {

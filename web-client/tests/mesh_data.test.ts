@@ -24,6 +24,13 @@ describe('field values', () => {
     expect([...soup.values].map((value) => Number(value.toFixed(5)))).toEqual([0, 0.5, 1]);
   });
 
+  test('thatAreMissingAreNaN', () => {
+    const gap = -(2 ** 31);
+    expect(new FieldScale(Int32Array.from([gap, 4]), info(1, [10], [10, 14])).at(0)).toBeNaN();
+    const vectors = new FieldScale(Int32Array.from([0, gap, 0, 6, 8, 0]), info(3, [0, 0, 0], [0, 10]));
+    expect([0, 1].map((vertex) => vectors.at(vertex))).toEqual([NaN, 0.5]);
+  });
+
   test('ofAConstantFieldAreZero', () => {
     expect(new FieldScale(Int32Array.from([3]), info(1, [1.5], [3, 3])).at(0)).toBe(0);
   });
@@ -50,6 +57,14 @@ describe('a manifest', () => {
       fields: [field('p', 'point'), field('q', 'point'), field('p', 'cell')],
       levels: [{level: 0, tetrahedra: 5, vertices: 4, boundaryTriangles: 3}, {level: 1, tetrahedra: 6, vertices: 7, boundaryTriangles: 8}],
     });
+  });
+
+  test('ofFieldsWithGapsIsTheSameButForTheFlagInBothPlaces', () => {
+    const bytes = head();
+    for (let f = 0; f < 3; ++f) bytes[bytes.length - 1 - 2 * f]! += 128;
+    expect(() => readManifest(bytes, columns)).toThrow('gaps');
+    for (let f = 0; f < 3; ++f) bytes[kTypeAt + 36 * f]! += 128;
+    expect(readManifest(bytes, columns)).toEqual(readManifest(head(), columns));
   });
 
   test('tellsTheErrorsWhereThereAreSome', () => {

@@ -37,7 +37,7 @@ const kFragmentShader = /* glsl */ `
   uniform float pixelRatio;
 
   vec3 surfaceColor() {
-    if (!colored) return plainColor;
+    if (!colored || isnan(vValue)) return plainColor;  // a value that is missing makes its triangle plain
     float t = clamp((vValue - range.x) / max(range.y - range.x, 1e-12), 0.0, 1.0);
     // Entry centres, so that both ends of the range show the table's own ends.
     return texture(colorMap, vec2((t * ${kColorMapEntries - 1}.0 + 0.5) / ${kColorMapEntries}.0, 0.5)).rgb;

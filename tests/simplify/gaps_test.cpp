@@ -1,0 +1,146 @@
+// Values that are missing: a gap is a gap again at the last level, and takes nothing from its neighbours on the way.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+
+#include "codec/log_file.h"
+#include "codec/log_writer.h"
+#include "codec/value_block.h"
+#include "codec/values.h"
+#include "simplify/gaps.h"
+#include "simplify/qtetfusion.h"
+#include "simplify/verify.h"
+#include "tests/support/forged_log.h"
+#include "tests/support/meshes.h"
+
+namespace qtet {
+namespace {
+
+struct Gappy {
+  LatticeMesh mesh;  ///< its fields with gaps, kGap in them
+  FusionHistory history;
+  Bytes bytes;
+};
+
+/// A share of the values of all fields missing, at random or (`blob`) within a ball round the middle.
+Gappy gappy(std::uint32_t seed, double share, bool blob) {
+  Gappy out{testing::gridMesh(5, seed), {}, {}};
+  testing::addCellFields(out.mesh);
+  std::mt19937 random(seed);
+  std::vector<std::vector<std::uint8_t>> gaps;
+  LatticeMesh filled = out.mesh;
+  for (std::size_t f = 0; f < out.mesh.fields.size(); ++f) {
+    FieldInfo& info = out.mesh.fields[f];
+    info.gaps = filled.fields[f].gaps = true;
+    std::vector<std::uint8_t>& gap = gaps.emplace_back(out.mesh.values[f].size());
+    for (std::size_t i = 0; i < gap.size(); ++i) {
+      const std::size_t at = i / info.components;
+      const LatticePoint& p = out.mesh.points[isCellField(info) ? out.mesh.tetrahedra[at][0] : at];
+      const double x = p[0] - 160.0, y = p[1] - 160.0, z = p[2] - 160.0;
+      gap[i] = blob ? std::sqrt(x * x + y * y + z * z) < 320 * share : std::uniform_real_distribution<>(0, 1)(random) < share;
+      if (gap[i] != 0) out.mesh.values[f][i] = kGap, filled.values[f][i] = 0;
+    }
+    fillGaps(filled.tetrahedra, info, gap, filled.values[f]);
+  }
+  out.history = simplify(std::move(filled), {}).value();
+  cutGapsOut(out.history, gaps);
+  LogWriterOptions writer;
+  writer.chunkBytes = 200;
+  out.bytes = encodeLog(out.history, writer).value().bytes;
+  return out;
+}
+
+class Gaps : public ::testing::TestWithParam<std::tuple<std::uint32_t, double, bool>> {};
+
+TEST_P(Gaps, comeBackAtEveryLevelAsTheyWereWritten) {
+  const auto [seed, share, blob] = GetParam();
+  const Gappy sample = gappy(seed, share, blob);
+  const LogFile log = LogFile::fromBytes(sample.bytes).value();
+  for (std::uint32_t level = 0; level <= sample.history.levels; ++level) {
+    const auto mesh = meshAtLevel(log, level);
+    ASSERT_TRUE(mesh) << mesh.error().text();
+    for (const FieldInfo& field : mesh->fields) EXPECT_TRUE(field.gaps);
+    const auto same = sameMesh(*mesh, level == sample.history.levels ? sample.mesh : testing::meshOfHistory(sample.history, level));
+    ASSERT_TRUE(same) << "level " << level << ": " << same.error().text();
+  }
+}
+
+TEST_P(Gaps, aFusedVertexIsAGapOnlyWhereAllThatItStandsForIs) {
+  const auto [seed, share, blob] = GetParam();
+  const Gappy sample = gappy(seed, share, blob);
+  const FusionHistory& h = sample.history;
+  for (std::size_t f = 0; f < h.fields.size(); ++f) {
+    if (isCellField(h.fields[f])) continue;
+    const std::size_t n = h.fields[f].components;
+    for (const Fusion& fusion : h.fusions)
+      for (std::size_t c = 0; c < n; ++c) {
+        std::size_t missing = 0;
+        for (std::size_t i = 0; i < fusion.k; ++i) missing += h.values[f][fusion.prey[i] * n + c] == kGap;
+        ASSERT_EQ(h.values[f][fusion.fused * n + c] == kGap, missing == fusion.k);
+      }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Shares, Gaps,
+                         ::testing::Values(std::tuple{1u, 0.02, false}, std::tuple{2u, 0.5, false}, std::tuple{3u, 0.97, false}, std::tuple{4u, 1.1, false},
+                                           std::tuple{5u, 0.4, true}));
+
+TEST(Gaps, aSmoothFieldWithAHoleTakesFewMoreBytesThanWithout) {
+  const auto fieldBytes = [](const Bytes& bytes) {
+    const LogIndex index = LogIndex::parse(bytes).value();
+    std::uint64_t sum = 0;
+    for (const ChunkEntry& chunk : index.chunks) sum += chunk.blocks[kFirstFieldPart].size;
+    return sum;
+  };
+  const std::uint64_t whole = fieldBytes(gappy(7, 0, true).bytes), hole = fieldBytes(gappy(7, 0.3, true).bytes);
+  EXPECT_LT(static_cast<double>(hole), 1.15 * static_cast<double>(whole));
+}
+
+TEST(Gaps, fillingTakesTheNearestValueAndReachesAllOfThePart) {
+  const LatticeMesh mesh = testing::gridMesh(3, 1);
+  FieldInfo info{.name = "f", .components = 2, .minimum = {0, 0}};
+  std::vector<std::int32_t> values(mesh.points.size() * 2, 0);
+  std::vector<std::uint8_t> gaps(values.size(), 1);
+  gaps[0] = gaps[11] = 0;
+  values[0] = 17, values[11] = 23;
+  fillGaps(mesh.tetrahedra, info, gaps, values);
+  for (std::size_t i = 0; i < values.size(); ++i) ASSERT_EQ(values[i], i % 2 == 0 ? 17 : 23);
+}
+
+TEST(Values, aGapIsZeroAndDifferencesStepOverIt) {
+  Values told;
+  const std::vector<std::pair<std::int64_t, std::int32_t>> cases{{5, 5}, {5, 6}, {5, 4}, {5, kGap}, {-7, -7}, {-7, kGap}, {1 << 28, 0}, {0, 1 << 28}};
+  for (const auto& [predicted, truth] : cases) EXPECT_EQ(told.codeOrGap<true>(predicted, truth), truth);
+  EXPECT_EQ(told.written(), (std::vector<std::int32_t>{1, 2, -1, 0, 1, 0, -(1 << 28), (1 << 28) + 1}));
+  Values back(told.written());
+  for (const auto& [predicted, truth] : cases) EXPECT_EQ(back.codeOrGap<false>(predicted, 0), truth);
+  EXPECT_TRUE(back.atEnd());
+  EXPECT_FALSE(back.bad());
+}
+
+TEST(Gaps, anEveryBlockOfNoiseIsDecodedOrRefused) {
+  const Gappy sample = gappy(9, 0.3, false);
+  std::mt19937 random(9);
+  for (int round = 0; round < 40; ++round) {
+    testing::TakenApart log = testing::takeApart(sample.bytes);
+    for (std::uint32_t part = kFirstFieldPart; part < log.index.parts(); ++part) {
+      std::vector<std::int32_t> noise(std::size_t{log.index.tuples(0, part)} * log.index.components(part));
+      for (std::int32_t& x : noise) x = static_cast<std::int32_t>(random() % 5) * (round % 2 == 0 ? 1 : 1 << 18) - 2;
+      log.blocks[0][part] = encodeValueBlock(noise, log.index.components(part)).value();
+    }
+    const LogFile file = LogFile::fromBytes(log.together()).value();
+    const auto mesh = meshAtLevel(file, file.index().chunks.back().lastLevel);
+    if (!mesh) {
+      EXPECT_EQ(mesh.error().code, ErrorCode::kBadValue);
+      continue;
+    }
+    for (std::size_t f = 0; f < mesh->fields.size(); ++f)
+      for (const std::int32_t value : mesh->values[f]) ASSERT_TRUE(value == kGap || std::abs(value) <= 1 << 30);
+  }
+}
+
+}  // namespace
+}  // namespace qtet
