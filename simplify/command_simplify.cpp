@@ -34,20 +34,6 @@ struct Request {
   KeepOptions keep;
 };
 
-/// The names between commas; "all" is nullopt, "none" the empty list.
-FieldNames parseFields(const std::string& text) {
-  if (text == "all") return std::nullopt;
-  std::vector<std::string> names;
-  if (text == "none") return names;
-  std::istringstream stream(text);
-  for (std::string name; std::getline(stream, name, ',');) {
-    if (name.empty()) throw UsageError("--fields '" + text + "' holds an empty name; give all, none, or names between commas");
-    names.push_back(name);
-  }
-  if (names.empty()) throw UsageError("--fields is empty; give all, none, or names between commas");
-  return names;
-}
-
 CodecId valueCodecOf(const std::string& name) {
   if (name == "draco") return CodecId::kDraco;
   if (name == "adaptive") return CodecId::kAdaptive;
