@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 
 #include "proto/crc32c.h"
 #include "proto/limits.h"
@@ -80,9 +81,8 @@ ChunkEntry readEntry(ByteReader& r, std::uint32_t parts) {
     *value = r.read<std::uint32_t>();
   e.structureCodec = static_cast<CodecId>(r.read<std::uint8_t>());
   e.valueCodec = static_cast<CodecId>(r.read<std::uint8_t>());
-  std::uint32_t reserved = r.read<std::uint16_t>();
-  reserved |= r.read<std::uint32_t>();
-  if (reserved != 0) r.fail(ErrorCode::kBadValue, "a reserved byte of the chunk table is not 0; use a newer qtet");
+  for (std::size_t a = 0; a < 3; ++a) e.box.least[a] = r.read<std::uint8_t>();
+  for (std::size_t a = 0; a < 3; ++a) e.box.most[a] = r.read<std::uint8_t>();
   e.blocks.resize(parts);
   std::uint64_t offset = e.offset;
   for (BlockEntry& b : e.blocks) {
@@ -101,20 +101,71 @@ void writeEntry(ByteWriter& w, const ChunkEntry& e) {
     w.write(value);
   w.write(static_cast<std::uint8_t>(e.structureCodec));
   w.write(static_cast<std::uint8_t>(e.valueCodec));
-  w.write(std::uint16_t{0});
-  w.write(std::uint32_t{0});
+  for (const std::uint8_t x : e.box.least) w.write(x);
+  for (const std::uint8_t x : e.box.most) w.write(x);
   for (const BlockEntry& b : e.blocks) w.write(b.size), w.write(b.crc);
 }
 
-// In `stream` a chunk goes on where the one before it ended, and depends on it alone.
-const char* brokenStream(const LogIndex& index, std::uint32_t i) {
+// A chunk of whole levels or runs of them goes on where the one before it ended, and depends on it alone.
+const char* brokenRun(const LogIndex& index, std::uint32_t i) {
   const ChunkEntry& e = index.chunks[i];
+  if (e.box != PacketBox{}) return "a box, or reserved bytes that are not 0, where there is no packet";
   if (i == 0) return e.firstDependency != 0 || e.dependencyCount != 0 ? "the base mesh depends on no chunk" : nullptr;
   if (e.firstDependency != i - 1 || e.dependencyCount != 1 || index.dependencies[i - 1] != i - 1)
     return "it does not depend on the chunk before it alone";
   const ChunkEntry& before = index.chunks[i - 1];
   if (e.firstLevel != before.lastLevel + (before.endSlot == kLevelEnd)) return "its levels do not continue those of the chunk before it";
   return nullptr;
+}
+
+// Packets come in the order of their nodes, 2^firstDepth to 2^(lastDepth + 1) - 1: each band is whole, and one bit deeper than the one before it.
+const char* brokenPacket(const LogIndex& index, std::uint32_t i, std::uint32_t head, std::uint32_t firstNode) {
+  const ChunkEntry& e = index.chunks[i];
+  const ChunkEntry& before = index.chunks[i - 1];
+  if (e.node != firstNode + (i - head)) return "its node does not follow that of the packet before it";
+  if (e.endSlot != kLevelEnd || before.endSlot != kLevelEnd) return "a packet, or the chunk before the first one, ends within a level";
+  if (std::has_single_bit(e.node) ? e.firstLevel != before.lastLevel + 1 : e.firstLevel != before.firstLevel || e.lastLevel != before.lastLevel)
+    return "its levels are not those of its band";
+  const std::uint32_t parent = e.node < 2 * firstNode ? head - 1 : head + e.node / 2 - firstNode;
+  if (e.firstDependency != i - 1 || e.dependencyCount != 1 || index.dependencies[i - 1] != parent) return "it does not depend on its parent's packet alone";
+  if (parent >= head && !index.chunks[parent].box.contains(e.box)) return "its box is not within its parent's";
+  for (std::size_t a = 0; a < 3; ++a)
+    if (e.box.least[a] > e.box.most[a]) return "its box is inside out";
+  return nullptr;
+}
+
+// The first band is where two chunks in a row hold the same whole levels; its first packet is the first of them.
+void numberPackets(LogIndex& index) {
+  std::vector<ChunkEntry>& chunks = index.chunks;
+  const auto sameLevels = [](const ChunkEntry& a, const ChunkEntry& b) { return a.endSlot == kLevelEnd && a.firstLevel == b.firstLevel && a.lastLevel == b.lastLevel; };
+  const auto first = std::ranges::adjacent_find(chunks, sameLevels);
+  const auto others = std::find_if_not(first, chunks.end(), [&](const ChunkEntry& e) { return sameLevels(e, *first); });
+  auto node = static_cast<std::uint32_t>(others - first);
+  for (auto e = first; e != chunks.end(); ++e) e->node = node++;
+}
+
+Status checkLayout(const LogIndex& index, std::uint64_t tableEnd) {
+  const auto bad = [](std::uint32_t i, const char* what) {
+    return fail(ErrorCode::kBadValue, "chunk table, row " + std::to_string(i) + ": " + what + "; fetch or build the log again");
+  };
+  const auto chunks = static_cast<std::uint32_t>(index.chunks.size());
+  if (index.dependencies.size() + 1 != chunks)
+    return fail(ErrorCode::kBadValue, "the list of dependencies has another length than the chunks need; fetch or build the log again", tableEnd);
+  const std::uint32_t head = index.layout == Layout::kStream ? chunks : index.headChunks();
+  for (std::uint32_t i = 0; i < head; ++i)
+    if (const char* what = brokenRun(index, i)) return bad(i, what);
+  if (head < chunks) {
+    const std::uint32_t firstNode = index.chunks[head].node;
+    if (head == 0 || !std::has_single_bit(firstNode)) return bad(head, "the first band's packets are not a power of two in number");
+    for (std::uint32_t i = head; i < chunks; ++i)
+      if (const char* what = brokenPacket(index, i, head, firstNode)) return bad(i, what);
+    if (!std::has_single_bit(index.chunks.back().node + 1)) return bad(chunks - 1, "the last band is not whole");
+  } else if (index.layout == Layout::kRegions) {
+    return bad(chunks - 1, "a log of regions has packets");
+  }
+  if (index.chunks.back().endSlot != kLevelEnd)
+    return fail(ErrorCode::kBadValue, "the last chunk ends within a level; fetch or build the log again", tableEnd);
+  return {};
 }
 
 // What every later step relies on: blocks back to back to the file's end, levels in order, counts within limits, dependencies backwards.
@@ -142,7 +193,7 @@ Status check(const LogIndex& index, const Header& header) {
     if (e.valueCodec == CodecId::kEmpty && e.size() > e.blocks[kStructurePart].size)
       return bad(ErrorCode::kBadCodec, "value blocks of the codec 'no bytes' that have bytes");
     if (i == 0 ? e.firstLevel != 0 || e.lastLevel != 0 || e.records != 0 || e.endSlot != kLevelEnd
-               : e.firstLevel < level || e.lastLevel < e.firstLevel || e.firstLevel == 0)
+               : (e.firstLevel < level && e.node == 0) || e.lastLevel < e.firstLevel || e.firstLevel == 0)
       return bad(ErrorCode::kBadValue, "levels out of order");
     // A split costs at least one decision and brings at most four vertices back; a link triangle or a deleted cell one decision each.
     const std::uint64_t decisions = kMaxDecisionsPerByte * (std::uint64_t{e.blocks[kStructurePart].size} + 4);
@@ -150,16 +201,15 @@ Status check(const LogIndex& index, const Header& header) {
       return bad(ErrorCode::kLimitExceeded, "it promises more than its bytes can hold");
     if (e.lastLevel > kMaxLevels) return bad(ErrorCode::kLimitExceeded, "more than 4,096 levels");
     level = e.lastLevel;
+    const std::uint64_t elements = kMaxElementsPerPacketByte * (std::uint64_t{e.blocks[kStructurePart].size} + 64);
+    if (e.node != 0 && (e.newVertices > elements || e.newTetrahedra > elements || e.newBoundaryTriangles > elements))
+      return bad(ErrorCode::kLimitExceeded, "a packet that promises more than packets hold");
     if (std::uint64_t{e.firstDependency} + e.dependencyCount > index.dependencies.size())
       return bad(ErrorCode::kBadValue, "dependencies beyond the end of their list");
     for (std::uint32_t d = 0; d < e.dependencyCount; ++d)
       if (index.dependencies[e.firstDependency + d] >= i) return bad(ErrorCode::kBadValue, "it depends on itself or on a later chunk");
-    if (const char* what = index.layout == Layout::kStream ? brokenStream(index, i) : nullptr) return bad(ErrorCode::kBadValue, what);
   }
-  if (index.layout == Layout::kStream && index.chunks.back().endSlot != kLevelEnd)
-    return fail(ErrorCode::kBadValue, "the last chunk ends within a level; fetch or build the log again", header.headBytes());
-  if (index.layout == Layout::kStream && index.dependencies.size() + 1 != index.chunks.size())
-    return fail(ErrorCode::kBadValue, "the list of dependencies has another length than the chunks need; fetch or build the log again", header.headBytes());
+  if (Status layout = checkLayout(index, header.headBytes()); !layout) return layout;
   if (offset != header.fileBytes) return fail(ErrorCode::kBadValue, "the chunks do not end where the file ends", offset);
   return {};
 }
@@ -179,6 +229,26 @@ std::uint32_t LogIndex::tuples(std::uint32_t chunk, std::uint32_t part) const {
 
 bool LogIndex::hasCellField() const {
   return std::ranges::any_of(fields, [](const FieldShape& field) { return field.association == Association::kCell; });
+}
+
+std::uint32_t LogIndex::headChunks() const {
+  return static_cast<std::uint32_t>(std::ranges::find_if(chunks, [](const ChunkEntry& e) { return e.node != 0; }) - chunks.begin());
+}
+
+std::vector<std::uint32_t> LogIndex::chunksOfBox(const PacketBox& box) const {
+  std::vector<std::uint32_t> out;
+  for (std::uint32_t i = 0; i < chunks.size(); ++i)
+    if (chunks[i].node == 0 || chunks[i].box.meets(box)) out.push_back(i);
+  return out;
+}
+
+std::uint32_t LogIndex::firstDepth() const {
+  const std::uint32_t head = headChunks();
+  return head < chunks.size() ? static_cast<std::uint32_t>(std::bit_width(chunks[head].node)) - 1 : 0;
+}
+
+std::uint32_t LogIndex::lastDepth() const {
+  return chunks.empty() || chunks.back().node == 0 ? 0 : static_cast<std::uint32_t>(std::bit_width(chunks.back().node)) - 1;
 }
 
 Result<std::uint64_t> LogIndex::headBytesOf(ByteView firstBytes) {
@@ -222,6 +292,7 @@ Result<LogIndex> LogIndex::parse(ByteView bytes) {
   index.dependencies.reserve(header->dependencies);
   for (std::uint32_t i = 0; i < header->dependencies; ++i) index.dependencies.push_back(r.read<std::uint32_t>());
   if (r.failed()) return std::unexpected(r.error());
+  if (index.layout == Layout::kRegions) numberPackets(index);
   if (Status s = check(index, *header); !s) return std::unexpected(s.error());
   return index;
 }

@@ -1,4 +1,5 @@
-// From a simplifier's history to the bytes of a log in the `stream` layout (FORMAT.md): deterministic, the same input gives the same bytes.
+// From a simplifier's history to the bytes of a log (FORMAT.md), in the layout `regions` where the history has bands, else in `stream`:
+// deterministic, the same input gives the same bytes.
 #pragma once
 
 #include <cstdint>

@@ -55,6 +55,8 @@ Request requestOf(const ParsedWords& parsed) {
   request.fusion = fusionRequestOf(parsed);
   if (request.algorithm == "paper" && (request.fusion.regions || request.fusion.options.envelopeTolerance > 0 || !request.fusion.fieldWeights.empty()))
     throw UsageError("--algorithm paper knows no --preserve-regions, --envelope-tolerance or --field-weight; leave them out");
+  if (request.algorithm == "paper" && request.fusion.options.bands.cellsPerPacket > 0)
+    throw UsageError("--algorithm paper knows no --layout regions; leave it out");
   request.measure = measureOptionsOf(parsed);
   return request;
 }
@@ -201,6 +203,8 @@ Result<EncodedLog> makeLog(const Request& request, Prepared& prepared, Progress&
   Result<FusionHistory> history = fuseBy(request, std::move(prepared.quantised.mesh), *fusion, paper);
   if (!history) return std::unexpected(history.error());
   watch.lap("simplify");
+  if (fusion->bands.cellsPerPacket > 0 && history->bands.ends.empty())
+    prepared.fusionNotes.push_back("the mesh is too small for more than one packet (--cells-per-packet): the log has the layout stream");
   const Result<std::vector<LevelError>> errors = measure(request, *history, progress, watch);
   if (!errors) return std::unexpected(errors.error());
 
@@ -235,6 +239,7 @@ Result<OrderedJson> reportOf(const Request& request, const Prepared& prepared, c
                         {"tetrahedra", {{"input", prepared.cellsIn}, {"full", full}, {"base", base}}},
                         {"vertices", manifest->levels.back().vertices},
                         {"percentRemoved", 100.0 * (1.0 - static_cast<double>(base) / static_cast<double>(full))},
+                        {"layout", manifest->layout},
                         {"levels", manifest->levels.size() - 1},
                         {"chunks", index->chunks.size()}};
   report["records"] = log.statistics.records;

@@ -19,7 +19,7 @@ void FusionProposer::candidatesOf(VertexId v, bool onlyLower, std::vector<Candid
   mesh_.prefetchStar(v);
   for (const CellId c : mesh_.star(v))
     for (const VertexId w : mesh_.cell(c)) {
-      if (w == v || w == kGhost || (onlyLower && w > v) || neighbours_.intern(w) < found.size()) continue;
+      if (w == v || w == kGhost || (onlyLower && w > v) || !band_.allows(v, w) || neighbours_.intern(w) < found.size()) continue;
       found.push_back({0, w});
       cost_.prefetch(w);
     }

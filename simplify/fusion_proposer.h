@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "simplify/band_nodes.h"
 #include "simplify/candidates.h"
 #include "simplify/fusion_cost.h"
 #include "simplify/fusion_mesh.h"
@@ -37,10 +38,11 @@ struct Proposal {
 
 class FusionProposer {
  public:
-  FusionProposer(const FusionMesh& mesh, const FusionCost& cost, const Touched& touched, const FusionLimits& limits, const FusionPointOptions& options)
-      : mesh_(mesh), cost_(cost), touched_(touched), test_(mesh, limits), finder_(mesh, cost, options) {}
+  FusionProposer(const FusionMesh& mesh, const FusionCost& cost, const Touched& touched, const BandNodes& band, const FusionLimits& limits,
+                 const FusionPointOptions& options)
+      : mesh_(mesh), cost_(cost), touched_(touched), band_(band), test_(mesh, limits), finder_(mesh, cost, options) {}
 
-  /// The edges of v, cheapest first; `onlyLower` = those whose highest vertex it is.
+  /// The edges of v that the band allows, cheapest first; `onlyLower` = those whose highest vertex it is.
   void candidatesOf(VertexId v, bool onlyLower, std::vector<Candidate>& found);
 
   /// The fusion of the first edge of `candidates`, which are `owner`'s, cheapest first; or of a triangle or tetrahedron that holds it where that is
@@ -56,6 +58,7 @@ class FusionProposer {
   const FusionMesh& mesh_;
   const FusionCost& cost_;
   const Touched& touched_;
+  const BandNodes& band_;
   FusionTest test_;
   FusionPointFinder finder_;
   LocalVertices neighbours_;

@@ -1,6 +1,7 @@
 #include "simplify/verify_log.h"
 
 #include <algorithm>
+#include <bit>
 #include <numeric>
 #include <string>
 
@@ -17,6 +18,7 @@ std::vector<std::uint32_t> completingChunks(const LogIndex& index) {
   std::vector<std::uint32_t> out;
   for (std::uint32_t chunk = 0; chunk < index.chunks.size(); ++chunk) {
     const ChunkEntry& entry = index.chunks[chunk];
+    if (entry.node != 0 && !std::has_single_bit(entry.node + 1)) continue;  // a band is complete with its last packet
     const std::uint32_t complete = entry.lastLevel + (entry.endSlot == kLevelEnd);
     while (out.size() < complete) out.push_back(chunk);
   }
