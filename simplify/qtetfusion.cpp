@@ -25,6 +25,8 @@ namespace {
 constexpr double kLevelQuantile = 0.35;
 // A pass over all candidates that removes less than this fraction of the cells is the last.
 constexpr double kWorthAnotherPass = 0.002;
+// A level of a band that removes less than this fraction of the cells is its last: what is left is dear, and waits for larger nodes.
+constexpr double kWorthAnotherLevel = 0.015;
 // A fusion that turns out to cost this much more than its key waits for those that cost less.
 constexpr float kDearer = 1.25f;
 // No new cell may be shaped worse than this, or than a fifth of its star's worst (1 = regular, 0 = flat).
@@ -71,7 +73,7 @@ class Simplifier {
       runLevels();
       if (level_ == kMaxLevels && mesh_.liveTetrahedra() > target_)
         return fail(ErrorCode::kLimitExceeded, "4,096 levels do not reach the target; ask for more cells with --target-ratio");
-      if (isWorthAnotherPass(before)) continue;
+      if (isWorth(kWorthAnotherPass, before)) continue;
       if (relaxed_) break;
       relaxed_ = true;
       limitBy({0, options_.envelopeTolerance * cost_.diagonal(), -1});
@@ -90,11 +92,7 @@ class Simplifier {
       findCandidates();
       dearest_ = keyAt(options_.bands.dearest);
       band_.begin(mesh_);
-      for (std::size_t before = 0; mesh_.liveTetrahedra() > goal_;) {
-        before = mesh_.liveTetrahedra();
-        runLevels();
-        if (level_ == kMaxLevels || !isWorthAnotherPass(before)) break;
-      }
+      runLevels();
       dearest_ = std::numeric_limits<float>::infinity();
       if (!band_.end(firstLevel, level_)) break;
     }
@@ -114,12 +112,13 @@ class Simplifier {
   // From all candidates anew to the goal, or until nothing is left to try.
   void runLevels() {
     findCandidates();
-    while (mesh_.liveTetrahedra() > goal_ && level_ < kMaxLevels && runLevel()) {
-    }
+    for (std::size_t before = mesh_.liveTetrahedra(); before > goal_ && level_ < kMaxLevels && runLevel(); before = mesh_.liveTetrahedra())
+      if (std::isfinite(dearest_) && !isWorth(kWorthAnotherLevel, before)) return;
   }
 
-  [[nodiscard]] bool isWorthAnotherPass(std::size_t before) const {
-    return static_cast<double>(before - mesh_.liveTetrahedra()) >= kWorthAnotherPass * static_cast<double>(before);
+  /// At least this fraction of the cells that were there before is gone.
+  [[nodiscard]] bool isWorth(double fraction, std::size_t before) const {
+    return static_cast<double>(before - mesh_.liveTetrahedra()) >= fraction * static_cast<double>(before);
   }
 
   void limitBy(const FusionLimits& limits) {
