@@ -225,18 +225,24 @@ class LogEncoder {
     return {};
   }
 
+  static Status failBeyondNode() {
+    return fail(ErrorCode::kBadValue, "the history's bands: a fusion reaches beyond a node of the tree; simplify the mesh again");
+  }
+
+  [[nodiscard]] std::uint32_t historyCell(CellRef ref) const {
+    return ref & kBoundaryBit ? boundaryIds_[ref & ~kBoundaryBit] : tetrahedronIds_[ref];
+  }
+
   Status codeChildren(std::uint32_t node, const NodeCells& cells) {
     const auto depth = static_cast<std::uint32_t>(std::bit_width(node));  // of the children
     bool inNode = true;
     const auto truth = [&](CellRef ref) {
-      const std::uint32_t id = ref & kBoundaryBit ? boundaryIds_[ref & ~kBoundaryBit] : tetrahedronIds_[ref];
-      const std::uint32_t child = 1u << depth | h_.bands.node(id, depth);
+      const std::uint32_t child = 1u << depth | h_.bands.node(historyCell(ref), depth);
       inNode &= child / 2 == node;
       return static_cast<int>(child & 1u);
     };
     std::array<NodeCells, 2> halves;
-    if (!ChildCoder<RangeEncoder>(range_, childModels_, mesh_, h_.lattice.bits, counts_).code(cells, truth, halves) || !inNode)
-      return fail(ErrorCode::kBadValue, "the history's bands: a fusion reaches beyond a node of the tree; simplify the mesh again");
+    if (!ChildCoder<RangeEncoder>(range_, childModels_, mesh_, h_.lattice.bits, counts_).code(cells, truth, halves) || !inNode) return failBeyondNode();
     for (std::uint32_t i = 0; i < 2; ++i) waiting_[2 * node + i] = std::move(halves[i]);
     return {};
   }
@@ -292,8 +298,13 @@ class LogEncoder {
       for (VertexId v = firstNew; v < mesh_.next().vertices; ++v) inner.push_back(v);
     }
     cells.add(first, mesh_.next());
-    if (band.depth < h_.bands.depth)
+    if (band.depth < h_.bands.depth) {
       if (Status s = codeChildren(node, cells); !s) return s;
+    } else {
+      bool inNode = true;
+      cells.forEach([&](CellRef ref) { inNode &= (1u << band.depth | h_.bands.node(historyCell(ref), band.depth)) == node; });
+      if (!inNode) return failBeyondNode();
+    }
     return closeChunk(band.lastLevel, kLevelEnd);
   }
 
@@ -323,8 +334,7 @@ class LogEncoder {
     truth.labels.resize(star.size());
     bool whole = star.size() == fusion.affectedCount;
     for (std::size_t f = 0; f < star.size(); ++f) {
-      const std::uint32_t id = star[f] & kBoundaryBit ? boundaryIds_[star[f] & ~kBoundaryBit] : tetrahedronIds_[star[f]];
-      truth.labels[f] = std::exchange(labelOf_[id], kNoLabel);
+      truth.labels[f] = std::exchange(labelOf_[historyCell(star[f])], kNoLabel);
       whole &= truth.labels[f] < fusion.k;
     }
     return whole;

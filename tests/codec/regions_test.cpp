@@ -261,6 +261,24 @@ INSTANTIATE_TEST_SUITE_P(Shapes, Regions,
                          ::testing::Values(Shape{"everything", everything}, Shape{"withoutTunnel", withoutTunnel}, Shape{"twoCubesAtAnEdge", twoCubesAtAnEdge}),
                          [](const auto& shape) { return shape.param.name; });
 
+TEST(RegionsHistory, fusionsThatReachBeyondANodeAreRefused) {
+  const LatticeMesh mesh = gridMesh(7, 3);
+  const FusionHistory honest = historyOf(mesh, 250);
+  LogWriterOptions options;
+  ASSERT_TRUE(encodeLog(honest, options));
+  const Fusion& first = honest.fusions.front();
+  for (const std::uint32_t cell : {honest.affectedCells[first.firstAffected], honest.deletedCells[first.firstDeleted]}) {
+    FusionHistory history = honest;
+    history.bands.leaf[cell] ^= 1u << (history.bands.depth - 1);  // across the root's plane
+    const auto log = encodeLog(history, options);
+    ASSERT_FALSE(log);
+    EXPECT_EQ(log.error().code, ErrorCode::kBadValue) << log.error().text();
+  }
+  FusionHistory history = honest;
+  history.bands.leaf.pop_back();
+  EXPECT_FALSE(encodeLog(history, options));
+}
+
 TEST(RegionsOfRandomSolids, areSolidsAfterEveryChunkInEveryOrder) {
   std::size_t withPackets = 0;
   for (std::uint32_t seed = 0; seed < 40; ++seed) {
