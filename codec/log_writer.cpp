@@ -242,7 +242,9 @@ class LogEncoder {
       return static_cast<int>(child & 1u);
     };
     std::array<NodeCells, 2> halves;
+    const std::size_t before = range_.size();
     if (!ChildCoder<RangeEncoder>(range_, childModels_, mesh_, h_.lattice.bits, counts_).code(cells, truth, halves) || !inNode) return failBeyondNode();
+    childBytes_ += range_.size() - before;
     for (std::uint32_t i = 0; i < 2; ++i) waiting_[2 * node + i] = std::move(halves[i]);
     return {};
   }
@@ -520,6 +522,7 @@ class LogEncoder {
     s.chunks = static_cast<std::uint32_t>(index.chunks.size());
     s.levels = h_.levels;
     s.records = h_.fusions.size();
+    s.childBytes = childBytes_;
     log.bytes = index.encode();
     log.bytes.insert(log.bytes.end(), body_.begin(), body_.end());
     return log;
@@ -554,6 +557,7 @@ class LogEncoder {
   std::vector<Slots> added_;           // by level
   std::vector<std::uint32_t> chunkOfLevel_;  // with which it is complete
   std::size_t recordsWritten_ = 0;
+  std::uint64_t childBytes_ = 0;
   Bytes body_;
 };
 

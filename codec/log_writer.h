@@ -25,6 +25,7 @@ struct LogWriterOptions {
 struct LogStatistics {
   std::uint64_t headBytes = 0;       ///< header, manifest, table
   std::uint64_t structureBytes = 0;
+  std::uint64_t childBytes = 0;      ///< of these, what tells cells which node is theirs (layout `regions`), to a byte a node
   std::uint64_t positionBytes = 0;
   std::vector<std::uint64_t> fieldBytes;
   std::uint64_t baseBytes = 0;       ///< of the above, what chunk 0 takes

@@ -111,6 +111,7 @@ void addSizes(const EncodedLog& log, const Manifest& manifest, OrderedJson& repo
   report["bytes"] = log.bytes.size();
   report["bytesOf"] = {{"head", statistics.headBytes},
                        {"connectivity", statistics.structureBytes},
+                       {"childBits", statistics.childBytes},
                        {"positions", statistics.positionBytes},
                        {"fields", fieldBytes}};
   report["bitsPerTetrahedron"] = {{"connectivity", bits(statistics.structureBytes)},
