@@ -88,11 +88,11 @@ void GrowingMesh::compact() {
   pool_ = std::move(pool);
 }
 
-void GrowingMesh::measure(VertexId v, const LatticePoint& at, const LatticePoint& other, std::int64_t sign) {
-  State& s = states_[v];
+void GrowingMesh::measure(VertexId v, VertexId other) {
+  Spread& s = states_[v].spread;
   for (std::size_t a = 0; a < 3; ++a) {
-    const std::int64_t d = (at[a] - other[a]) >> spreadShift_;
-    s.squares[a] += static_cast<std::uint64_t>(sign * d * d);
+    const std::int64_t d = (points[v][a] - points[other][a]) >> spreadShift_;
+    s.squares[a] += static_cast<std::uint64_t>(d * d);
   }
 }
 
@@ -101,8 +101,35 @@ void GrowingMesh::addCell(CellRef ref) {
   const std::size_t corners = c[3] == kGhost ? 3 : 4;
   for (std::size_t i = 0; i < corners; ++i) {
     add(c[i], ref);
-    states_[c[i]].edges += static_cast<std::uint32_t>(corners - 1);
-    for (std::size_t j = 0; j < corners; ++j) measure(c[i], points[c[i]], points[c[j]], 1);
+    states_[c[i]].spread.edges += static_cast<std::uint32_t>(corners - 1);
+    for (std::size_t j = 0; j < corners; ++j)
+      if (i != j) measure(c[i], c[j]);
+  }
+}
+
+// The edges from the link to the fused vertex go to the prey vertices: as many as there are triangles of each label at a vertex.
+void GrowingMesh::moveEdges(const Link& link, std::span<const VertexId> prey) {
+  const LatticePoint& fused = fused_;
+  corners_.assign(link.vertices().size(), {});
+  for (const LinkTriangle& t : link.triangles())
+    for (const std::uint32_t local : t.vertex) ++corners_[local][t.label];
+  for (std::size_t local = 0; local < corners_.size(); ++local) {
+    const VertexId x = link.vertices()[local];
+    if (x == kGhost) continue;
+    Spread& ofLink = states_[x].spread;
+    for (std::size_t i = 0; i < prey.size(); ++i) {
+      const std::uint64_t n = corners_[local][i];
+      if (n == 0) continue;
+      Spread& ofPrey = states_[prey[i]].spread;
+      ofPrey.edges += static_cast<std::uint32_t>(n);
+      for (std::size_t a = 0; a < 3; ++a) {
+        const std::int64_t before = (points[x][a] - fused[a]) >> spreadShift_;
+        const std::int64_t now = (points[x][a] - points[prey[i]][a]) >> spreadShift_;
+        const std::int64_t back = (points[prey[i]][a] - points[x][a]) >> spreadShift_;
+        ofLink.squares[a] += n * static_cast<std::uint64_t>(now * now - before * before);
+        ofPrey.squares[a] += n * static_cast<std::uint64_t>(back * back);
+      }
+    }
   }
 }
 
@@ -120,13 +147,13 @@ bool GrowingMesh::enter(VertexId v, Link& link) {
   for (const VertexId w : link.vertices())
     if (w != kGhost) states_[w].marked = static_cast<std::uint16_t>(level_);
   states_[v].marked = static_cast<std::uint16_t>(level_);
-  if (!link.close() || !link.isSphere()) return false;
+  if (!link.close()) return false;
   link.place(points, points[v]);
-  return true;
+  return link.isSphere();
 }
 
 void GrowingMesh::apply(VertexId v, const Link& link, const Split& split) {
-  const LatticePoint fused = points[v];
+  fused_ = points[v];
   std::array<VertexId, 4> prey{v};
   std::array<std::uint32_t, 4> cellsOf{};
   for (const LinkTriangle& t : link.triangles()) ++cellsOf[t.label];
@@ -138,29 +165,21 @@ void GrowingMesh::apply(VertexId v, const Link& link, const Split& split) {
     points[prey[i]] = split.points[i];
     State& s = states_[prey[i]];
     live_ -= s.size;
-    s.size = s.edges = 0;
-    s.squares = {};
+    s.size = 0;
+    s.spread = {};
     s.born = s.marked = static_cast<std::uint16_t>(level_);
   }
   for (std::size_t f = 0; f < entered_.size(); ++f) {
-    const LinkTriangle& t = link.triangles()[f];
-    const VertexId w = prey[t.label];
-    if (entered_[f] & kBoundaryBit) {
-      if (w != v) std::ranges::replace(boundary[entered_[f] & ~kBoundaryBit], v, w);
-    } else if (w != v) {
-      std::ranges::replace(tetrahedra[entered_[f]], v, w);
+    const VertexId w = prey[link.triangles()[f].label];
+    if (w != v) {
+      if (entered_[f] & kBoundaryBit)
+        std::ranges::replace(boundary[entered_[f] & ~kBoundaryBit], v, w);
+      else
+        std::ranges::replace(tetrahedra[entered_[f]], v, w);
     }
     add(w, entered_[f]);
-    const LatticePoint& place = points[w];
-    for (const std::uint32_t local : t.vertex) {
-      const VertexId x = link.vertices()[local];
-      if (x == kGhost) continue;
-      ++states_[w].edges;
-      measure(w, place, points[x], 1);
-      measure(x, points[x], place, 1);
-      measure(x, points[x], fused, -1);
-    }
   }
+  moveEdges(link, std::span(prey).first(static_cast<std::size_t>(split.k)));
   for (const LocalCell& local : split.deleted) {
     std::array<VertexId, 4> c{};
     for (std::size_t i = 0; i < 4; ++i) c[i] = local[i] & kPreyBit ? prey[local[i] & 3] : link.vertices()[local[i]];

@@ -2,6 +2,7 @@
 // stars of all vertices stay up to date (FORMAT.md, "Refinement"). Chunks may fill their slots in any order: until then these are holes.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -9,6 +10,7 @@
 
 #include "codec/deleted_cells.h"
 #include "codec/link.h"
+#include "codec/log2_fixed.h"
 #include "codec/mesh.h"
 #include "codec/placement.h"
 
@@ -66,12 +68,17 @@ class GrowingMesh {
   [[nodiscard]] std::span<const CellRef> star(VertexId v) const { return std::span(pool_).subspan(states_[v].first, states_[v].size); }
   /// Level at which a vertex got its present position; 0 in the base mesh.
   [[nodiscard]] std::uint32_t born(VertexId v) const { return states_[v].born; }
-  /// Mean squared length along each axis of the star's edges at v, each edge as often as it is in a cell, in units of 4^spreadShift()
-  /// squared lattice steps. REQUIRES: the star is not empty.
-  [[nodiscard]] std::array<std::uint64_t, 3> spread(VertexId v) const {
-    const State& s = states_[v];
-    return {s.squares[0] / s.edges, s.squares[1] / s.edges, s.squares[2] / s.edges};
-  }
+  /// How long the edges of a star are: squared lengths along each axis, summed over the edges at v of its cells, each edge as often as it is in a cell,
+  /// in units of 4^spreadShift() squared lattice steps.
+  struct Spread {
+    std::array<std::uint64_t, 3> squares{};
+    std::uint32_t edges = 0;
+
+    bool operator==(const Spread&) const = default;
+    /// 64 times log2 of the mean squared length, at least 0.
+    [[nodiscard]] int logMean(std::uint64_t sum) const { return std::max(log2Fixed(sum) - log2Fixed(std::uint64_t{edges}), 0); }
+  };
+  [[nodiscard]] const Spread& spread(VertexId v) const { return states_[v].spread; }
   [[nodiscard]] int spreadShift() const { return spreadShift_; }
 
   /// Builds the link of v into `link`, placed, and marks the star: none of its vertices may split in this level. False: not one sphere,
@@ -82,15 +89,16 @@ class GrowingMesh {
 
  private:
   struct State {
-    std::array<std::uint64_t, 3> squares{};  // along each axis, over the edges at v of the star's cells
-    std::uint64_t first = 0;                      // of the star in the pool
-    std::uint32_t size = 0, room = 0, edges = 0;
-    std::uint16_t born = 0, marked = 0;           // levels
+    Spread spread;
+    std::uint32_t size = 0, room = 0;    // of the star in the pool
+    std::uint64_t first = 0;
+    std::uint16_t born = 0, marked = 0;  // levels
   };
 
   void add(VertexId v, CellRef cell);
   void addCell(CellRef cell);
-  void measure(VertexId v, const LatticePoint& at, const LatticePoint& other, std::int64_t sign);
+  void measure(VertexId v, VertexId other);
+  void moveEdges(const Link& link, std::span<const VertexId> prey);
   void relocate(State& state, std::uint32_t room);
   VertexId newVertex();
   template <class Cells, class Cell>
@@ -105,7 +113,9 @@ class GrowingMesh {
   std::vector<State> states_;
   std::vector<CellRef> pool_;  // stars, with room to grow and holes
   std::uint64_t live_ = 0;     // of the pool
-  std::vector<CellRef> entered_;
+  std::vector<CellRef> entered_;  // the star of the split in hand
+  LatticePoint fused_{};          // where it was
+  std::vector<std::array<std::uint16_t, 4>> corners_;  // of a link's vertices: triangles of each label
   std::uint32_t level_ = 0, levelVertices_ = 0;
   Slots next_;
   int spreadShift_ = 0;

@@ -5,36 +5,50 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "codec/link.h"
 #include "codec/log2_fixed.h"
 #include "codec/mesh.h"
+#include "codec/mixed_bit.h"
 #include "codec/range_coder.h"
 #include "codec/small_order.h"
 
 namespace qtet {
 
 struct LabelModels {
-  // k, rank asked, neighbours that carry this candidate and the next, margin of the distances, margin of the shares round the corners, unseen
-  static constexpr std::size_t kContexts = 3 * 3 * 16 * 12 * 5 * 4;
-  std::vector<BitModel> model = std::vector<BitModel>(kContexts);
+  // Which question it is: k = 2, or the rank asked of three or four candidates.
+  static constexpr std::size_t kQuestions = 4;
+  // Neighbours that carry this candidate and the next one (4 x 4), and then:
+  static constexpr std::size_t kCoarse = 12 * 5 * 4;  // margin of the distances, of the shares round the corners, unseen
+  static constexpr std::size_t kFine = 24 * 16;       // margin of the distances, how many triangles carry each
+  static constexpr std::size_t kCorners = 64;         // which of the two each corner has met
+  static constexpr std::size_t kPlane = 16 * 4 * 4;   // side of and angle to the plane between the two through the fused vertex, how many triangles carry each
+  std::vector<BitModel> coarse = std::vector<BitModel>(kQuestions * 16 * kCoarse);
+  std::vector<BitModel> fine = std::vector<BitModel>(kQuestions * 16 * kFine);
+  std::vector<BitModel> corners = std::vector<BitModel>(kQuestions * 16 * kCorners);
+  std::vector<BitModel> plane = std::vector<BitModel>(kQuestions * 16 * kPlane);
+  std::array<Mixer<4>, kQuestions * 16> mixer;
 };
 
 /// Labels come in order of first appearance along the traversal.
 template <class Coder>
 class LabelCoder {
  public:
-  LabelCoder(Coder& coder, LabelModels& models, Link& link, int k) : coder_(coder), models_(models), link_(link), k_(static_cast<std::size_t>(k)) {}
+  LabelCoder(Coder& coder, LabelModels& models, Link& link) : coder_(coder), models_(models), link_(link) {}
 
-  /// Codes every triangle's label; an encoder's are read from `truth` (one a triangle). REQUIRES link placed.
-  void code(std::span<const std::uint8_t> truth) {
+  /// Codes every triangle's label below k; an encoder's are read from `truth` (one a triangle). REQUIRES link placed.
+  void code(int k, std::span<const std::uint8_t> truth) {
+    k_ = static_cast<std::size_t>(k);
+    sum_ = {};
+    seen_ = {};
     counts_.assign(link_.vertices().size(), {});
     for (const std::uint32_t f : link_.traversal()) {
       LinkTriangle& t = link_.triangles()[f];
       const Vector place = link_.sixTimesMiddle(t);
       score(t, place);
-      t.label = static_cast<std::uint8_t>(choose(truth.empty() ? 0 : truth[f]));
+      t.label = static_cast<std::uint8_t>(choose(t, place, truth.empty() ? 0 : truth[f]));
       for (const std::uint32_t v : t.vertex) ++counts_[v][t.label];
       for (std::size_t a = 0; a < 3; ++a) sum_[t.label][a] += static_cast<double>(place[a]);
       ++seen_[t.label];
@@ -86,31 +100,53 @@ class LabelCoder {
     return log2Fixed(squared) - 2 * log2Fixed(n);
   }
 
-  std::size_t choose(std::size_t truth) {
+  std::size_t choose(const LinkTriangle& t, const Vector& place, std::size_t truth) {
     std::size_t candidates = 0;
     while (candidates < k_ && seen_[candidates] > 0) ++candidates;
     candidates = std::min(candidates + 1, k_);
     const auto order = smallOrder(candidates, [&](std::size_t x, std::size_t y) { return candidates_[x].score > candidates_[y].score; });
     for (std::size_t rank = 0; rank + 1 < candidates; ++rank)
-      if (coder_.bit(truth == order[rank], context(rank, order[rank], order[rank + 1]))) return order[rank];
+      if (asks(truth == order[rank], t, place, rank, order[rank], order[rank + 1])) return order[rank];
     return order[candidates - 1];
   }
 
-  BitModel& context(std::size_t rank, std::size_t first, std::size_t second) {
+  bool asks(bool truth, const LinkTriangle& t, const Vector& place, std::size_t rank, std::size_t first, std::size_t second) {
     const Candidate& a = candidates_[first];
     const Candidate& b = candidates_[second];
     const auto clampTo = [](int v, int high) { return static_cast<std::size_t>(std::clamp(v, 0, high)); };
-    const std::size_t agreement = static_cast<std::size_t>(a.neighbours) * 4 + static_cast<std::size_t>(b.neighbours);
-    const std::size_t distance = clampTo((b.distance - a.distance + 6 * 32) / 32, 11);
+    const std::size_t question = k_ == 2 ? 0 : 1 + rank;
+    const std::size_t at = question * 16 + static_cast<std::size_t>(a.neighbours) * 4 + static_cast<std::size_t>(b.neighbours);
+    const int margin = b.distance - a.distance;
     const std::size_t shared = clampTo((a.shared - b.shared + 9) / 4, 4);
     const std::size_t unseen = (seen_[first] == 0 ? 2u : 0u) + (seen_[second] == 0 ? 1u : 0u);
-    return models_.model[((((((k_ - 2) * 3 + rank) * 16 + agreement) * 12 + distance) * 5) + shared) * 4 + unseen];
+    const auto many = [](int n) { return static_cast<std::size_t>(n < 2 ? 0 : n < 5 ? 1 : n < 10 ? 2 : 3); };
+    std::size_t met = 0;
+    for (const std::uint32_t v : t.vertex) met = met * 4 + (counts_[v][first] > 0 ? 2u : 0u) + (counts_[v][second] > 0 ? 1u : 0u);
+    const std::size_t sizes = many(seen_[first]) * 4 + many(seen_[second]);
+    const std::array<BitModel*, 4> models{&models_.coarse[at * LabelModels::kCoarse + (clampTo((margin + 6 * 32) / 32, 11) * 5 + shared) * 4 + unseen],
+                                          &models_.fine[at * LabelModels::kFine + clampTo((margin + 12 * 16) / 16, 23) * 16 + sizes],
+                                          &models_.corners[at * LabelModels::kCorners + met],
+                                          &models_.plane[at * LabelModels::kPlane + side(place, first, second) * 16 + sizes]};
+    return mixedBit(coder_, truth, models, models_.mixer[at]) != 0;
+  }
+
+  // Eight steps of the cosine either side of the plane.
+  [[nodiscard]] std::size_t side(const Vector& place, std::size_t first, std::size_t second) const {
+    double along = 0, across = 1, length = 1;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double normal = sum_[first][a] - sum_[second][a];
+      const auto x = static_cast<double>(place[a]);
+      along += normal * x, across += normal * normal, length += x * x;
+    }
+    const int cosine = log2Fixed(across) + log2Fixed(length) - log2Fixed(along * along);
+    const auto step = static_cast<std::size_t>(7 - std::clamp(cosine / 40, 0, 7));
+    return along < 0 ? 7 - step : 8 + step;
   }
 
   Coder& coder_;
   LabelModels& models_;
   Link& link_;
-  std::size_t k_;
+  std::size_t k_ = 2;
   std::array<Candidate, 4> candidates_{};
   std::array<std::array<double, 3>, 4> sum_{};  // of the middles, exact: integers below 2^53
   std::array<int, 4> seen_{};

@@ -49,6 +49,32 @@ void Link::add(VertexId a, VertexId b, VertexId c) {
 }
 
 bool Link::close() {
+  if (triangles_.size() < 4) return false;
+  return vertices_.size() <= kSmall ? closeSmall() : closeLarge();
+}
+
+// An entry of the table counts only if its triangle holds the edge, so the table is never cleared.
+bool Link::closeSmall() {
+  if (small_.empty()) small_.resize(kSmall * kSmall);
+  if (triangles_.size() > 0xFFFF) return false;  // more triangles than so few vertices can have
+  for (std::uint32_t f = 0; f < triangles_.size(); ++f)
+    for (std::size_t e = 0; e < 3; ++e) {
+      const std::uint32_t a = triangles_[f].vertex[(e + 1) % 3], b = triangles_[f].vertex[(e + 2) % 3];
+      std::uint16_t& entry = small_[a * kSmall + b];
+      if (entry < f && triangles_[entry].holds(a, b)) return false;
+      entry = static_cast<std::uint16_t>(f);
+    }
+  for (LinkTriangle& t : triangles_)
+    for (std::size_t e = 0; e < 3; ++e) {
+      const std::uint32_t a = t.vertex[(e + 2) % 3], b = t.vertex[(e + 1) % 3];
+      const std::uint16_t f = small_[a * kSmall + b];
+      if (f >= triangles_.size() || !triangles_[f].holds(a, b)) return false;
+      t.neighbour[e] = f;
+    }
+  return true;
+}
+
+bool Link::closeLarge() {
   const std::size_t wanted = std::bit_ceil(triangles_.size() * 6 + 8);
   if (edgeKeys_.size() < wanted) edgeKeys_.resize(wanted), edgeTriangles_.resize(wanted);
   const std::size_t mask = wanted - 1;
@@ -62,20 +88,20 @@ bool Link::close() {
       edgeKeys_[slot] = key;
       edgeTriangles_[slot] = f;
     }
-  if (triangles_.size() < 4) return false;
   for (LinkTriangle& t : triangles_)
     for (std::size_t e = 0; e < 3; ++e) {
-      t.neighbour[e] = triangleAtEdge(t.vertex[(e + 2) % 3], t.vertex[(e + 1) % 3]);
-      if (t.neighbour[e] == kNoNeighbour) return false;
+      const std::uint64_t key = edgeKey(t.vertex[(e + 2) % 3], t.vertex[(e + 1) % 3]);
+      std::size_t slot = slotOf(key, mask);
+      while (edgeKeys_[slot] != kFree && edgeKeys_[slot] != key) slot = (slot + 1) & mask;
+      if (edgeKeys_[slot] == kFree) return false;
+      t.neighbour[e] = edgeTriangles_[slot];
     }
   return true;
 }
 
 std::uint32_t Link::triangleAtEdge(std::uint32_t a, std::uint32_t b) const {
-  const std::size_t mask = std::bit_ceil(triangles_.size() * 6 + 8) - 1;
-  const std::uint64_t key = edgeKey(a, b);
-  for (std::size_t slot = slotOf(key, mask); edgeKeys_[slot] != kFree; slot = (slot + 1) & mask)
-    if (edgeKeys_[slot] == key) return edgeTriangles_[slot];
+  for (std::uint32_t f = 0; f < triangles_.size(); ++f)
+    if (triangles_[f].holds(a, b)) return f;
   return kNoNeighbour;
 }
 
@@ -96,22 +122,21 @@ void Link::place(std::span<const LatticePoint> points, const LatticePoint& centr
   }
 }
 
-std::span<const std::uint32_t> Link::traversal() {
+void Link::traverse() {
   order_.clear();
   seen_.assign(triangles_.size(), 0);
-  if (triangles_.empty()) return order_;
   order_.push_back(start_);
   seen_[start_] = 1;
   for (std::size_t i = 0; i < order_.size(); ++i)
     for (const std::uint32_t next : triangles_[order_[i]].neighbour)
       if (!seen_[next]) seen_[next] = 1, order_.push_back(next);
-  return order_;
 }
 
 bool Link::isSphere() {
   const std::size_t faces = triangles_.size();
   if (faces % 2 != 0 || vertices_.size() + faces != faces / 2 * 3 + 2) return false;
-  return traversal().size() == faces;
+  traverse();
+  return order_.size() == faces;
 }
 
 }  // namespace qtet

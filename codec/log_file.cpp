@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "codec/compact_mesh.h"
-#include "codec/draco_block.h"
+#include "codec/value_block.h"
 #include "codec/log_manifest.h"
 #include "proto/checksum.h"
 #include "proto/crc32c.h"
@@ -99,7 +99,7 @@ Status checkBlock(const LogFile& log, std::uint32_t chunk, std::uint32_t part) {
 
 Result<std::vector<std::int32_t>> blockValues(const LogFile& log, std::uint32_t chunk, std::uint32_t part) {
   if (Status s = checkBlock(log, chunk, part); !s) return std::unexpected(s.error());
-  return decodeDracoBlock(log.block(chunk, part), log.index().components(part), log.index().tuples(chunk, part));
+  return decodeValueBlock(log.block(chunk, part), log.index().components(part), log.index().tuples(chunk, part), log.index().chunks[chunk].valueCodec);
 }
 
 FieldInfo fieldInfo(const ManifestField& f) { return {f.name, f.components, f.type, f.association, f.bits, f.step, f.minimum, f.range}; }

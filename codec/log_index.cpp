@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 
+#include "codec/chunk_table.h"
 #include "proto/crc32c.h"
 #include "proto/limits.h"
 
@@ -20,10 +21,8 @@ struct Header {
   Layout layout = Layout::kStream;
   std::uint8_t positionBits = 0;
 
-  [[nodiscard]] std::uint64_t expectedTableBytes() const {
-    return std::uint64_t{fields} * 4 +
-           std::uint64_t{chunks} * (LogIndex::kChunkEntryBytes + (kFirstFieldPart + std::uint64_t{fields}) * LogIndex::kBlockEntryBytes) +
-           std::uint64_t{dependencies} * 4;
+  [[nodiscard]] std::uint64_t leastTableBytes() const {
+    return std::uint64_t{fields} * 2 + std::uint64_t{chunks} * leastRowBytes(kFirstFieldPart + fields);
   }
   [[nodiscard]] std::uint64_t headBytes() const { return std::uint64_t{LogIndex::kHeaderBytes} + manifestBytes + tableBytes; }
 };
@@ -62,60 +61,15 @@ Result<Header> readHeader(ByteView bytes) {
   h.layout = static_cast<Layout>(layout);
   if (h.positionBits < kMinPositionBits || h.positionBits > kMaxPositionBits)
     return fail(ErrorCode::kBadValue, "a lattice of " + std::to_string(h.positionBits) + " bits; 4 to 28 are allowed", 13);
-  if (h.manifestBytes > kMaxManifestBytes) return fail(ErrorCode::kLimitExceeded, "the manifest is above 16 MiB", 24);
+  if (h.manifestBytes > kMaxManifestBytes) return fail(ErrorCode::kLimitExceeded, "the manifest is above 8 MiB", 24);
   if (h.chunks == 0) return fail(ErrorCode::kBadValue, "a log has at least one chunk, the base mesh", 40);
   if (h.chunks > kMaxChunks) return fail(ErrorCode::kLimitExceeded, "more than 2^20 chunks", 40);
   if (h.fields > kMaxFields) return fail(ErrorCode::kLimitExceeded, "more than 256 fields", 44);
   if (h.dependencies > kMaxDependencies) return fail(ErrorCode::kLimitExceeded, "more than 2^24 dependencies", 48);
-  if (h.expectedTableBytes() != h.tableBytes)
-    return fail(ErrorCode::kBadValue, "the chunk table's size does not fit the counts of chunks, fields and dependencies", 28);
+  if (h.leastTableBytes() > h.tableBytes)
+    return fail(ErrorCode::kBadValue, "the chunk table is too short for the counts of chunks and fields; fetch the file again", 28);
   if (h.headBytes() > h.fileBytes) return fail(ErrorCode::kBadValue, "the file's size is below that of its front", 16);
   return h;
-}
-
-ChunkEntry readEntry(ByteReader& r, std::uint32_t parts) {
-  ChunkEntry e;
-  e.offset = r.read<std::uint64_t>();
-  for (std::uint32_t* value : {&e.firstLevel, &e.lastLevel, &e.endSlot, &e.records, &e.newVertices, &e.newTetrahedra,
-                               &e.newBoundaryTriangles, &e.firstDependency, &e.dependencyCount})
-    *value = r.read<std::uint32_t>();
-  e.structureCodec = static_cast<CodecId>(r.read<std::uint8_t>());
-  e.valueCodec = static_cast<CodecId>(r.read<std::uint8_t>());
-  for (std::size_t a = 0; a < 3; ++a) e.box.least[a] = r.read<std::uint8_t>();
-  for (std::size_t a = 0; a < 3; ++a) e.box.most[a] = r.read<std::uint8_t>();
-  e.blocks.resize(parts);
-  std::uint64_t offset = e.offset;
-  for (BlockEntry& b : e.blocks) {
-    b.offset = offset;
-    b.size = r.read<std::uint32_t>();
-    b.crc = r.read<std::uint32_t>();
-    offset += b.size;
-  }
-  return e;
-}
-
-void writeEntry(ByteWriter& w, const ChunkEntry& e) {
-  w.write(e.offset);
-  for (const std::uint32_t value : {e.firstLevel, e.lastLevel, e.endSlot, e.records, e.newVertices, e.newTetrahedra, e.newBoundaryTriangles,
-                                    e.firstDependency, e.dependencyCount})
-    w.write(value);
-  w.write(static_cast<std::uint8_t>(e.structureCodec));
-  w.write(static_cast<std::uint8_t>(e.valueCodec));
-  for (const std::uint8_t x : e.box.least) w.write(x);
-  for (const std::uint8_t x : e.box.most) w.write(x);
-  for (const BlockEntry& b : e.blocks) w.write(b.size), w.write(b.crc);
-}
-
-// A chunk of whole levels or runs of them goes on where the one before it ended, and depends on it alone.
-const char* brokenRun(const LogIndex& index, std::uint32_t i) {
-  const ChunkEntry& e = index.chunks[i];
-  if (e.box != PacketBox{}) return "a box, or reserved bytes that are not 0, where there is no packet";
-  if (i == 0) return e.firstDependency != 0 || e.dependencyCount != 0 ? "the base mesh depends on no chunk" : nullptr;
-  if (e.firstDependency != i - 1 || e.dependencyCount != 1 || index.dependencies[i - 1] != i - 1)
-    return "it does not depend on the chunk before it alone";
-  const ChunkEntry& before = index.chunks[i - 1];
-  if (e.firstLevel != before.lastLevel + (before.endSlot == kLevelEnd)) return "its levels do not continue those of the chunk before it";
-  return nullptr;
 }
 
 // Packets come in the order of their nodes, 2^firstDepth to 2^(lastDepth + 1) - 1: each band is whole, and one bit deeper than the one before it.
@@ -124,24 +78,12 @@ const char* brokenPacket(const LogIndex& index, std::uint32_t i, std::uint32_t h
   const ChunkEntry& before = index.chunks[i - 1];
   if (e.node != firstNode + (i - head)) return "its node does not follow that of the packet before it";
   if (e.endSlot != kLevelEnd || before.endSlot != kLevelEnd) return "a packet, or the chunk before the first one, ends within a level";
-  if (std::has_single_bit(e.node) ? e.firstLevel != before.lastLevel + 1 : e.firstLevel != before.firstLevel || e.lastLevel != before.lastLevel)
-    return "its levels are not those of its band";
-  const std::uint32_t parent = e.node < 2 * firstNode ? head - 1 : head + e.node / 2 - firstNode;
-  if (e.firstDependency != i - 1 || e.dependencyCount != 1 || index.dependencies[i - 1] != parent) return "it does not depend on its parent's packet alone";
+  if (!std::has_single_bit(e.node) && e.lastLevel != before.lastLevel) return "its levels are not those of its band";
+  const std::uint32_t parent = index.dependencies[e.firstDependency];
   if (parent >= head && !index.chunks[parent].box.contains(e.box)) return "its box is not within its parent's";
   for (std::size_t a = 0; a < 3; ++a)
     if (e.box.least[a] > e.box.most[a]) return "its box is inside out";
   return nullptr;
-}
-
-// The first band is where two chunks in a row hold the same whole levels; its first packet is the first of them.
-void numberPackets(LogIndex& index) {
-  std::vector<ChunkEntry>& chunks = index.chunks;
-  const auto sameLevels = [](const ChunkEntry& a, const ChunkEntry& b) { return a.endSlot == kLevelEnd && a.firstLevel == b.firstLevel && a.lastLevel == b.lastLevel; };
-  const auto first = std::ranges::adjacent_find(chunks, sameLevels);
-  const auto others = std::find_if_not(first, chunks.end(), [&](const ChunkEntry& e) { return sameLevels(e, *first); });
-  auto node = static_cast<std::uint32_t>(others - first);
-  for (auto e = first; e != chunks.end(); ++e) e->node = node++;
 }
 
 Status checkLayout(const LogIndex& index, std::uint64_t tableEnd) {
@@ -149,14 +91,11 @@ Status checkLayout(const LogIndex& index, std::uint64_t tableEnd) {
     return fail(ErrorCode::kBadValue, "chunk table, row " + std::to_string(i) + ": " + what + "; fetch or build the log again");
   };
   const auto chunks = static_cast<std::uint32_t>(index.chunks.size());
-  if (index.dependencies.size() + 1 != chunks)
-    return fail(ErrorCode::kBadValue, "the list of dependencies has another length than the chunks need; fetch or build the log again", tableEnd);
-  const std::uint32_t head = index.layout == Layout::kStream ? chunks : index.headChunks();
-  for (std::uint32_t i = 0; i < head; ++i)
-    if (const char* what = brokenRun(index, i)) return bad(i, what);
+  const std::uint32_t head = index.headChunks();
   if (head < chunks) {
     const std::uint32_t firstNode = index.chunks[head].node;
-    if (head == 0 || !std::has_single_bit(firstNode)) return bad(head, "the first band's packets are not a power of two in number");
+    if (head == 0) return bad(head, "the base mesh is no packet");
+    if (firstNode < 2 || !std::has_single_bit(firstNode)) return bad(head, "the first band's packets are not a power of two in number");
     for (std::uint32_t i = head; i < chunks; ++i)
       if (const char* what = brokenPacket(index, i, head, firstNode)) return bad(i, what);
     if (!std::has_single_bit(index.chunks.back().node + 1)) return bad(chunks - 1, "the last band is not whole");
@@ -168,19 +107,17 @@ Status checkLayout(const LogIndex& index, std::uint64_t tableEnd) {
   return {};
 }
 
-// What every later step relies on: blocks back to back to the file's end, levels in order, counts within limits, dependencies backwards.
+// What every later step relies on: blocks that end where the file does, levels in order, counts within limits, packets in order.
 Status check(const LogIndex& index, const Header& header) {
   std::uint64_t offset = header.headBytes();
   std::uint64_t vertices = 0;
   std::uint64_t cells = 0;
   std::uint64_t triangles = 0;
-  std::uint32_t level = 0;
   for (std::uint32_t i = 0; i < index.chunks.size(); ++i) {
     const ChunkEntry& e = index.chunks[i];
     const auto bad = [i](ErrorCode code, const char* what) {
       return fail(code, "chunk table, row " + std::to_string(i) + ": " + what + "; fetch or build the log again");
     };
-    if (e.offset != offset) return bad(ErrorCode::kBadValue, "the chunk does not start where the one before it ends");
     for (const BlockEntry& b : e.blocks) {
       if (b.size > kMaxBlockBytes) return bad(ErrorCode::kLimitExceeded, "a block above 256 MiB");
       offset += b.size;
@@ -188,28 +125,24 @@ Status check(const LogIndex& index, const Header& header) {
     vertices += e.newVertices, cells += e.newTetrahedra, triangles += e.newBoundaryTriangles;
     if (vertices > kMaxElements || cells > kMaxElements || triangles > kMaxElements)
       return bad(ErrorCode::kLimitExceeded, "more than 2^29 vertices, cells or triangles");
-    if (e.structureCodec != CodecId::kRange || (e.valueCodec != CodecId::kDraco && e.valueCodec != CodecId::kEmpty))
+    if (e.structureCodec != CodecId::kRange || (e.valueCodec != CodecId::kDraco && e.valueCodec != CodecId::kAdaptive && e.valueCodec != CodecId::kEmpty))
       return bad(ErrorCode::kBadCodec, "an unknown codec id");
     if (e.valueCodec == CodecId::kEmpty && e.size() > e.blocks[kStructurePart].size)
       return bad(ErrorCode::kBadCodec, "value blocks of the codec 'no bytes' that have bytes");
-    if (i == 0 ? e.firstLevel != 0 || e.lastLevel != 0 || e.records != 0 || e.endSlot != kLevelEnd
-               : (e.firstLevel < level && e.node == 0) || e.lastLevel < e.firstLevel || e.firstLevel == 0)
+    if (i == 0 ? e.firstLevel != 0 || e.lastLevel != 0 || e.records != 0 || e.endSlot != kLevelEnd : e.firstLevel == 0)
       return bad(ErrorCode::kBadValue, "levels out of order");
     // A split costs at least one decision and brings at most four vertices back; a link triangle or a deleted cell one decision each.
     const std::uint64_t decisions = kMaxDecisionsPerByte * (std::uint64_t{e.blocks[kStructurePart].size} + 4);
     if (e.records > decisions || e.newVertices > 4 * decisions || e.newTetrahedra > 8 * decisions || e.newBoundaryTriangles > 8 * decisions)
       return bad(ErrorCode::kLimitExceeded, "it promises more than its bytes can hold");
-    if (e.lastLevel > kMaxLevels) return bad(ErrorCode::kLimitExceeded, "more than 4,096 levels");
-    level = e.lastLevel;
     const std::uint64_t elements = kMaxElementsPerPacketByte * (std::uint64_t{e.blocks[kStructurePart].size} + 64);
     if (e.node != 0 && (e.newVertices > elements || e.newTetrahedra > elements || e.newBoundaryTriangles > elements))
       return bad(ErrorCode::kLimitExceeded, "a packet that promises more than packets hold");
-    if (std::uint64_t{e.firstDependency} + e.dependencyCount > index.dependencies.size())
-      return bad(ErrorCode::kBadValue, "dependencies beyond the end of their list");
-    for (std::uint32_t d = 0; d < e.dependencyCount; ++d)
-      if (index.dependencies[e.firstDependency + d] >= i) return bad(ErrorCode::kBadValue, "it depends on itself or on a later chunk");
+    if (e.records > e.newVertices) return bad(ErrorCode::kBadValue, "more records than vertices");  // so that tuples() fits its type
   }
   if (Status layout = checkLayout(index, header.headBytes()); !layout) return layout;
+  if (index.dependencies.size() != header.dependencies)
+    return fail(ErrorCode::kBadValue, "the table has another number of dependencies than the header says; fetch or build the log again", 48);
   if (offset != header.fileBytes) return fail(ErrorCode::kBadValue, "the chunks do not end where the file ends", offset);
   return {};
 }
@@ -276,23 +209,20 @@ Result<LogIndex> LogIndex::parse(ByteView bytes) {
   index.manifest.assign(manifest.begin(), manifest.end());
   ByteReader r(table, kHeaderBytes + std::uint64_t{header->manifestBytes});
   for (std::uint32_t f = 0; f < header->fields; ++f) {
-    const auto components = r.read<std::uint16_t>();
-    const auto association = r.read<std::uint16_t>();
+    const auto components = r.read<std::uint8_t>();
+    const auto association = r.read<std::uint8_t>();
     if (components == 0 || components > kMaxFieldComponents)
-      return fail(ErrorCode::kBadValue, "field " + std::to_string(f) + " has a number of components outside 1..16", r.offset() - 4);
-    if (association > static_cast<std::uint16_t>(Association::kCell))
+      return fail(ErrorCode::kBadValue, "field " + std::to_string(f) + " has a number of components outside 1..16", r.offset() - 2);
+    if (association > static_cast<std::uint8_t>(Association::kCell))
       return fail(ErrorCode::kBadValue,
                   "field " + std::to_string(f) + " has the association " + std::to_string(association) +
                       "; this build knows 0 (points) and 1 (cells): use a newer qtet, or build the log again",
-                  r.offset() - 2);
+                  r.offset() - 1);
     index.fields.push_back({components, static_cast<Association>(association)});
   }
-  index.chunks.reserve(header->chunks);
-  for (std::uint32_t i = 0; i < header->chunks; ++i) index.chunks.push_back(readEntry(r, index.parts()));
-  index.dependencies.reserve(header->dependencies);
-  for (std::uint32_t i = 0; i < header->dependencies; ++i) index.dependencies.push_back(r.read<std::uint32_t>());
+  readChunkRows(r, index, header->chunks, header->headBytes());
+  if (!r.failed() && r.remaining() > 0) r.fail(ErrorCode::kBadValue, "bytes behind the chunk table's last row; fetch or build the log again");
   if (r.failed()) return std::unexpected(r.error());
-  if (index.layout == Layout::kRegions) numberPackets(index);
   if (Status s = check(index, *header); !s) return std::unexpected(s.error());
   return index;
 }
@@ -300,12 +230,10 @@ Result<LogIndex> LogIndex::parse(ByteView bytes) {
 Bytes LogIndex::encode() const {
   ByteWriter table;
   for (const FieldShape& field : fields) {
-    table.write(static_cast<std::uint16_t>(field.components));
-    table.write(static_cast<std::uint16_t>(field.association));
+    table.write(static_cast<std::uint8_t>(field.components));
+    table.write(static_cast<std::uint8_t>(field.association));
   }
-  for (const ChunkEntry& e : chunks) writeEntry(table, e);
-  for (const std::uint32_t d : dependencies) table.write(d);
-  const ByteView manifestBytes(reinterpret_cast<const std::uint8_t*>(manifest.data()), manifest.size());
+  writeChunkRows(table, *this);
 
   ByteWriter w;
   w.append(kMagic);
@@ -317,14 +245,14 @@ Bytes LogIndex::encode() const {
   w.write(fileBytes);
   w.write(static_cast<std::uint32_t>(manifest.size()));
   w.write(static_cast<std::uint32_t>(table.bytes().size()));
-  w.write(crc32c(manifestBytes));
+  w.write(crc32c(manifest));
   w.write(crc32c(table.bytes()));
   w.write(static_cast<std::uint32_t>(chunks.size()));
   w.write(static_cast<std::uint32_t>(fields.size()));
   w.write(static_cast<std::uint32_t>(dependencies.size()));
   w.write(std::uint64_t{0});
   w.write(crc32c(w.bytes()));
-  w.append(manifestBytes);
+  w.append(manifest);
   w.append(table.bytes());
   return w.take();
 }

@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "proto/bytes.h"
@@ -18,7 +17,8 @@ enum class Layout : std::uint8_t { kStream = 0, kRegions = 1 };
 enum class CodecId : std::uint8_t {
   kEmpty = 0,      ///< no bytes
   kRange = 1,      ///< structure: the adaptive binary range coder
-  kDraco = 2,      ///< values: one Draco point cloud, sequential, one int32 attribute
+  kDraco = 2,      ///< values: one Draco point cloud, sequential, one int32 attribute, and digits
+  kAdaptive = 3,   ///< values: the adaptive binary range coder
 };
 
 /// What the values of a field belong to.
@@ -63,18 +63,17 @@ struct PacketBox {
 
 /// One row of the chunk table. Chunk 0 is the base mesh (level 0).
 struct ChunkEntry {
-  std::uint64_t offset = 0;           ///< of its first block in the file
-  std::uint32_t firstLevel = 0;       ///< the levels that its records belong to
+  std::uint64_t offset = 0;           ///< of its first block in the file; derived, not stored
+  std::uint32_t firstLevel = 0;       ///< the levels that its records belong to; the first follows from the row before
   std::uint32_t lastLevel = 0;
   std::uint32_t endSlot = kLevelEnd;  ///< lastLevel is visited below this vertex slot; kLevelEnd = to its end
   std::uint32_t records = 0;
   std::uint32_t newVertices = 0;
   std::uint32_t newTetrahedra = 0;
   std::uint32_t newBoundaryTriangles = 0;
-  std::uint32_t firstDependency = 0;  ///< into LogIndex::dependencies
+  std::uint32_t firstDependency = 0;  ///< into LogIndex::dependencies; derived: the chunk before, alone; of a packet its parent's
   std::uint32_t dependencyCount = 0;
-  std::uint32_t node = 0;             ///< of a packet (layout `regions`): 2^depth + its place at that depth, so that its parent is node / 2; else 0.
-                                      ///< Derived, not stored
+  std::uint32_t node = 0;             ///< of a packet (layout `regions`): 2^depth + its place at that depth, so that its parent is node / 2; else 0
   PacketBox box;                      ///< of a packet: where its node's cells lie in the finest mesh; else zeros
   CodecId structureCodec = CodecId::kRange;
   CodecId valueCodec = CodecId::kDraco;
@@ -85,15 +84,13 @@ struct ChunkEntry {
 
 struct LogIndex {
   static constexpr std::uint32_t kHeaderBytes = 64;
-  static constexpr std::uint32_t kChunkEntryBytes = 52;
-  static constexpr std::uint32_t kBlockEntryBytes = 8;
   static constexpr std::uint16_t kVersionMajor = 2;
   static constexpr std::uint16_t kVersionMinor = 0;
 
   Layout layout = Layout::kStream;
   std::uint8_t positionBits = 0;
   std::uint64_t fileBytes = 0;
-  std::string manifest;  ///< JSON, see proto/manifest.h
+  Bytes manifest;  ///< as it stands in the file; codec/log_manifest.h reads it
   std::vector<FieldShape> fields;
   std::vector<ChunkEntry> chunks;
   std::vector<std::uint32_t> dependencies;
@@ -125,7 +122,7 @@ struct LogIndex {
   [[nodiscard]] static Result<std::uint64_t> headBytesOf(ByteView firstBytes);
   /// Reads the front of a log; `bytes` holds at least headBytesOf() bytes, the rest is not looked at.
   [[nodiscard]] static Result<LogIndex> parse(ByteView bytes);
-  /// Header, manifest and table as they stand in the file. REQUIRES: offsets and sizes consistent (LogWriter sees to that).
+  /// Header, manifest and table as they stand in the file. What the rows imply (offsets, first levels, dependencies) is not looked at.
   [[nodiscard]] Bytes encode() const;
 };
 

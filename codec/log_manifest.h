@@ -1,4 +1,4 @@
-// The manifest of a log, checked against the table that decoding goes by.
+// The manifest in a log, both ways (FORMAT.md, "Manifest"). What header and chunk table say already is not stored, so nothing contradicts them.
 #pragma once
 
 #include "codec/log_index.h"
@@ -6,8 +6,12 @@
 
 namespace qtet {
 
-/// Parses the index's manifest. Errors: manifestFromJson's, and bad-value where it contradicts header or chunk table: the lattice's bits, the
-/// number of fields, a field's components or association, the number of levels, a level's chunk.
+/// The bytes of LogIndex::manifest. Errors are rounded up to three significant digits (codec/error_figure.h); either no level has one or every level
+/// has. Errors: bad-value (an error that is no number or out of range, a name too long), limit-exceeded (above kMaxManifestBytes).
+[[nodiscard]] Result<Bytes> manifestBlock(const Manifest& manifest);
+
+/// Reads index.manifest; layout, bits of the lattice, shapes of the fields, the number of levels and each level's chunk come from the rest of the index.
+/// Errors: truncated; limit-exceeded (found before anything is allocated); bad-value with what is out of range, and for bytes left over.
 [[nodiscard]] Result<Manifest> manifestOf(const LogIndex& index);
 
 }  // namespace qtet

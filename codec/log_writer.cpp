@@ -3,25 +3,31 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "codec/base_coder.h"
 #include "codec/cell_values.h"
 #include "codec/child_coder.h"
-#include "codec/draco_block.h"
 #include "codec/growing_mesh.h"
 #include "codec/log_index.h"
+#include "codec/log_manifest.h"
 #include "codec/node_cells.h"
 #include "codec/point_values.h"
 #include "codec/record_coder.h"
+#include "codec/value_block.h"
 #include "proto/crc32c.h"
 #include "proto/limits.h"
-#include "proto/manifest.h"
 
 namespace qtet {
 namespace {
 
 constexpr std::uint32_t kNone = 0xFFFFFFFFu;
+
+// A picture sharpens when a chunk is whole, so that each is a share of what a viewer has already waited for, up to LogWriterOptions::chunkBytes. Smaller
+// ones cost more than they give: a row of the table and Draco's fixed bytes are 130 bytes a chunk with one field, 3 % of 4 KB.
+constexpr std::uint64_t kLeastChunkBytes = 4 << 10;
+constexpr std::uint64_t kGrowth = 4;
 
 /// A chunk under construction.
 struct OpenChunk {
@@ -72,7 +78,6 @@ class LogEncoder {
     if (h_.points.size() > kMaxElements || h_.cells.size() > kMaxElements) return fail(ErrorCode::kLimitExceeded, "more than 2^29 cells");
     if (Status s = prepareBands(); !s) return s;
     added_.resize(h_.levels + 1u);
-    chunkOfLevel_.resize(added_.size());
     fusionOf_.assign(h_.points.size(), kNone);
     for (std::uint32_t i = 0; i < h_.fusions.size(); ++i) fusionOf_[h_.fusions[i].fused] = i;
     slotOf_.assign(h_.points.size(), kNone);
@@ -192,6 +197,7 @@ class LogEncoder {
     if (open_.entry.firstLevel == 0) open_.entry.firstLevel = level;
     mesh_.beginLevel(level);
     level_ = level;
+    std::optional<std::uint64_t> begun = estimatedBytes();  // none once a chunk ended within the level
     RecordCoder<RangeEncoder> coder(range_, models_, mesh_, link_, open_.positions);
     for (VertexId v = 0; v < mesh_.levelVertices(); ++v) {
       if (!mesh_.maysplit(v)) continue;
@@ -199,13 +205,16 @@ class LogEncoder {
       coder.splits(v, level, fusion != nullptr);
       if (fusion == nullptr) continue;
       if (Status s = record(coder, v, *fusion); !s) return s;
-      if (estimatedBytes() < options_.chunkBytes) continue;
+      if (estimatedBytes() < chunkTarget()) continue;
       if (Status s = closeChunk(level, v + 1); !s) return s;
       open_.entry.firstLevel = level;
+      begun.reset();
     }
-    chunkOfLevel_[level] = static_cast<std::uint32_t>(chunks_.size());
-    if (estimatedBytes() < options_.chunkBytes / 2 || level == headLevels_) return {};
-    return closeChunk(level, kLevelEnd);  // near enough: let the next chunk begin with a level
+    // Near enough, if another level like this one would go further beyond the target than this one stays below it: let the next chunk begin with a level.
+    const std::uint64_t bytes = estimatedBytes(), target = chunkTarget();
+    const std::uint64_t levelBytes = begun ? bytes - *begun : target;
+    if (2 * bytes + levelBytes < 2 * target || level == headLevels_) return {};
+    return closeChunk(level, kLevelEnd);
   }
 
   [[nodiscard]] const Fusion* fusionAt(VertexId v, std::uint32_t level) const {
@@ -252,7 +261,6 @@ class LogEncoder {
   Status encodeBand(const Band& band) {
     for (std::uint32_t node = 1u << band.depth; node < 2u << band.depth; ++node)
       if (Status s = encodePacket(band, node); !s) return s;
-    for (std::uint32_t level = band.firstLevel; level <= band.lastLevel; ++level) chunkOfLevel_[level] = static_cast<std::uint32_t>(chunks_.size()) - 1;
     tellProgress();
     return {};
   }
@@ -278,7 +286,9 @@ class LogEncoder {
 
   // The mirror of Refiner::State::packet.
   Status encodePacket(const Band& band, std::uint32_t node) {
+    const std::uint64_t positionCost = models_.positionCost;  // of all chunks
     models_ = headModels_;
+    models_.positionCost = positionCost;
     childModels_ = headChildModels_;
     open_.entry.firstLevel = band.firstLevel;
     open_.entry.node = node;
@@ -310,7 +320,12 @@ class LogEncoder {
     return closeChunk(band.lastLevel, kLevelEnd);
   }
 
-  [[nodiscard]] std::uint64_t estimatedBytes() const { return range_.size() + open_.valueBits / 8; }
+  // The estimate of the values, corrected by how far it was off in the chunks before.
+  [[nodiscard]] std::uint64_t estimatedBytes() const { return range_.size() + open_.valueBits / 8 * (1 + valueBytes_) / (1 + valueBits_ / 8); }
+
+  [[nodiscard]] std::uint64_t chunkTarget() const {
+    return std::min<std::uint64_t>(options_.chunkBytes, std::max<std::uint64_t>(kLeastChunkBytes, body_.size() / kGrowth));
+  }
 
   Status record(RecordCoder<RangeEncoder>& coder, VertexId v, Fusion fusion) {
     const auto bad = [&](const char* what) { return fail(ErrorCode::kBadValue, "fusion of vertex " + std::to_string(fusion.fused) + ": " + what); };
@@ -322,7 +337,7 @@ class LogEncoder {
     if (!labels(v, fusion, truth)) return bad("the history's cells are not those of its star");
     number(fusion, truth);
     for (std::size_t i = 0; i < fusion.k; ++i) truth.points[i] = h_.points[fusion.prey[i]];
-    if ( !deleted(fusion, truth)) return bad("the history's cells are not those of its star");
+    if (!deleted(fusion, truth)) return bad("the history's cells are not those of its star");
     Split split;
     if (!coder.code(v, truth, split)) return bad("its cells cannot be described by labels");
     apply(v, fusion, split);
@@ -438,21 +453,22 @@ class LogEncoder {
     ChunkEntry& e = open_.entry;
     e.lastLevel = level;
     e.endSlot = endSlot;
+    e.valueCodec = options_.valueCodec;
     if (chunks_.empty()) {
       e.newVertices = static_cast<std::uint32_t>(mesh_.points.size());
       e.newTetrahedra = static_cast<std::uint32_t>(mesh_.tetrahedra.size());
-    } else {
-      e.firstDependency = static_cast<std::uint32_t>(dependencies_.size());
-      e.dependencyCount = 1;
-      dependencies_.push_back(dependency(e));
     }
     if (Status s = addBlock(range_.finish()); !s) return s;
     for (std::size_t part = 0; part <= h_.fields.size(); ++part) {
       Values& residuals = part == 0 ? open_.positions : open_.fields[part - 1];
-      Result<Bytes> block = encodeDracoBlock(residuals.written(), part == 0 ? 3 : h_.fields[part - 1].components);
+      Result<Bytes> block = encodeValueBlock(residuals.written(), part == 0 ? 3 : h_.fields[part - 1].components, options_.valueCodec);
       if (!block) return std::unexpected(block.error());
       if (Status s = addBlock(std::move(*block)); !s) return s;
       residuals.written().clear();
+    }
+    if (!chunks_.empty()) {
+      for (std::size_t part = kPositionsPart; part < e.blocks.size(); ++part) valueBytes_ += e.blocks[part].size;
+      valueBits_ += open_.valueBits;
     }
     chunks_.push_back(std::exchange(e, ChunkEntry{}));
     open_.valueBits = 0;
@@ -466,25 +482,18 @@ class LogEncoder {
     return {};
   }
 
-  // The chunk before it; of a packet its parent's.
-  [[nodiscard]] std::uint32_t dependency(const ChunkEntry& e) const {
-    if (e.node == 0) return static_cast<std::uint32_t>(chunks_.size()) - 1;
-    const std::uint32_t firstNode = 1u << bands_.front().depth;
-    return e.node < 2 * firstNode ? headChunks_ - 1 : headChunks_ + e.node / 2 - firstNode;
-  }
-
   [[nodiscard]] std::vector<ManifestLevel> levels() const {
     std::vector<ManifestLevel> out;
     Slots sum;
     for (std::uint32_t level = 0; level < added_.size(); ++level) {
       sum = {sum.vertices + added_[level].vertices, sum.tetrahedra + added_[level].tetrahedra, sum.triangles + added_[level].triangles};
-      out.push_back({level, sum.tetrahedra, sum.vertices, sum.triangles, chunkOfLevel_[level], std::nullopt});
+      out.push_back({level, sum.tetrahedra, sum.vertices, sum.triangles, 0, std::nullopt});  // the table tells the chunk
       if (!options_.errors.empty()) out.back().error = options_.errors[level];
     }
     return out;
   }
 
-  [[nodiscard]] std::string manifest() const {
+  [[nodiscard]] Result<Bytes> manifest() const {
     Manifest m;
     m.generator = options_.generator;
     m.source = options_.source;
@@ -493,18 +502,19 @@ class LogEncoder {
     m.latticeOrigin = h_.lattice.origin;
     for (const FieldInfo& f : h_.fields) m.fields.push_back({f.name, f.components, f.type, f.association, f.bits, f.step, f.minimum, f.range});
     m.levels = levels();
-    if (!bands_.empty()) m.layout = "regions";
-    return manifestToJson(m);
+    return manifestBlock(m);
   }
 
   Result<EncodedLog> assemble() {
     LogIndex index;
     index.layout = bands_.empty() ? Layout::kStream : Layout::kRegions;
     index.positionBits = static_cast<std::uint8_t>(h_.lattice.bits);
-    index.manifest = manifest();
+    Result<Bytes> manifestBytes = manifest();
+    if (!manifestBytes) return std::unexpected(manifestBytes.error());
+    index.manifest = std::move(*manifestBytes);
     for (const FieldInfo& f : h_.fields) index.fields.push_back({f.components, isCellField(f) ? Association::kCell : Association::kPoint});
     index.chunks = std::move(chunks_);
-    index.dependencies = std::move(dependencies_);
+    index.dependencies.resize(index.chunks.size() - 1);  // their number stands in the header; what they are follows from the rows
     EncodedLog log;
     LogStatistics& s = log.statistics;
     s.headBytes = index.encode().size();
@@ -518,6 +528,9 @@ class LogEncoder {
       }
       if (&e == &index.chunks.front()) s.baseBytes = offset - e.offset;
     }
+    const std::uint64_t positionBytes = models_.positionCost / (64 * 8);
+    s.structureBytes -= positionBytes;
+    s.positionBytes += positionBytes;
     index.fileBytes = s.fileBytes = offset;
     s.chunks = static_cast<std::uint32_t>(index.chunks.size());
     s.levels = h_.levels;
@@ -545,17 +558,16 @@ class LogEncoder {
   std::vector<std::uint8_t> labelOf_;
   std::vector<std::pair<LocalCell, std::uint32_t>> deletedIds_;
   OpenChunk open_;
+  std::uint64_t valueBytes_ = 0, valueBits_ = 0;  // of the chunks closed since the base mesh: what the values took, and the estimates
   std::vector<ChunkEntry> chunks_;
-  std::vector<std::uint32_t> dependencies_;
   std::vector<Band> bands_;  // coarsest first; none: `stream`
   std::uint32_t headLevels_ = 0, headChunks_ = 0;
   RecordModels headModels_;
   ChildModels childModels_, headChildModels_;
   std::vector<NodeCells> waiting_;  // by node
   VertexCounts counts_;
-  std::uint32_t level_ = 0;            // in hand
-  std::vector<Slots> added_;           // by level
-  std::vector<std::uint32_t> chunkOfLevel_;  // with which it is complete
+  std::uint32_t level_ = 0;  // in hand
+  std::vector<Slots> added_;  // by level
   std::size_t recordsWritten_ = 0;
   std::uint64_t childBytes_ = 0;
   Bytes body_;

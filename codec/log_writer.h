@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "codec/fusion_history.h"
+#include "codec/log_index.h"
 #include "proto/bytes.h"
 #include "proto/error.h"
 #include "proto/level_error.h"
@@ -17,16 +18,17 @@ namespace qtet {
 struct LogWriterOptions {
   std::string source;                          ///< the input's file name, for the manifest
   std::string generator;                       ///< "qtet 0.1.0"
-  std::uint32_t chunkBytes = 32 << 10;         ///< a chunk ends at the record that takes it beyond
+  std::uint32_t chunkBytes = 32 << 10;         ///< a chunk ends at the record that takes it beyond; the first ones are smaller, from 4 KB on
+  CodecId valueCodec = CodecId::kDraco;        ///< kDraco or kAdaptive
   std::vector<LevelError> errors;              ///< for the manifest: none, or one a level, coarse-first, the input's mesh included
   std::function<void(double)> progress;        ///< fraction done, 0..1
 };
 
 struct LogStatistics {
   std::uint64_t headBytes = 0;       ///< header, manifest, table
-  std::uint64_t structureBytes = 0;
+  std::uint64_t structureBytes = 0;  ///< without what positions take of them
   std::uint64_t childBytes = 0;      ///< of these, what tells cells which node is theirs (layout `regions`), to a byte a node
-  std::uint64_t positionBytes = 0;
+  std::uint64_t positionBytes = 0;   ///< with that: placements, remainders, digits
   std::vector<std::uint64_t> fieldBytes;
   std::uint64_t baseBytes = 0;       ///< of the above, what chunk 0 takes
   std::uint64_t fileBytes = 0;

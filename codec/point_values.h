@@ -2,6 +2,7 @@
 // (FORMAT.md, "Point values").
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -75,8 +76,10 @@ class PointAncestry {
     const std::int64_t change = slope.change([&](VertexId v) { return at(v) - fused; });
     const std::int64_t steps = b.k == 2 ? b.step + (i == 0 ? 0 : 1 << Birth::kStepBits) : 1 << Birth::kStepBits;
     constexpr int kBits = Slope::kWeightBits + Birth::kStepBits;
-    return fused + ((change * steps + (std::int64_t{1} << (kBits - 1))) >> kBits);
+    return std::clamp(fused + ((change * steps + (std::int64_t{1} << (kBits - 1))) >> kBits), -kFurthest, kFurthest);
   }
+  // A steep field over a long step leads far beyond any value: no further than what a value block's difference to it can tell.
+  static constexpr std::int64_t kFurthest = kMaxDracoMagnitude / 2;
 
   bool withSlopes_;
   std::vector<Birth> births_;

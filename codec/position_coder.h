@@ -16,6 +16,7 @@
 #include "codec/range_coder.h"
 #include "codec/small_order.h"
 #include "codec/values.h"
+#include "proto/limits.h"
 
 namespace qtet {
 
@@ -33,16 +34,15 @@ struct PositionModels {
 template <class Coder>
 class PositionCoder {
  public:
-  /// Of the record of v, whose link is placed and labelled.
-  PositionCoder(Coder& coder, PositionModels& models, Values& values, VertexId v, const GrowingMesh& mesh, const Link& link)
-      : coder_(coder), models_(models), values_(values), fused_(mesh.points[v]), edge_(link.hasGhost()) {
-    const auto spread = mesh.spread(v);
-    for (std::size_t a = 0; a < 3; ++a) logLength_[a] = log2Fixed(spread[a]) / 128 + mesh.spreadShift();
-    findMiddles(link);
-  }
+  PositionCoder(Coder& coder, PositionModels& models, Values& values, const GrowingMesh& mesh, const Link& link)
+      : coder_(coder), models_(models), values_(values), mesh_(mesh), link_(link) {}
 
-  /// Codes placement, near and the k points of the split: an encoder's are read, a decoder's written.
-  void code(Split& split) {
+  /// Codes placement, near and the k points of the split of v, whose link is placed and labelled: an encoder's are read, a decoder's written.
+  void code(VertexId v, Split& split) {
+    fused_ = mesh_.points[v];
+    const GrowingMesh::Spread& spread = mesh_.spread(v);
+    for (std::size_t a = 0; a < 3; ++a) logLength_[a] = spread.logMean(spread.squares[a]) / 128 + mesh_.spreadShift();
+    findMiddles();
     const auto n = static_cast<std::size_t>(split.k);
     std::array<LatticePoint, 4>& points = split.points;
     placement(split);
@@ -72,20 +72,21 @@ class PositionCoder {
 
  private:
   // How many digits of a difference go to the positions block: an edge of the star's mean length along the axis is about 2^kWholeEdge of its units.
-  static constexpr int kWholeEdge = 5, kHalfEdge = 6, kQuarterEdge = 7;
+  static constexpr int kWholeEdge = 2, kHalfEdge = 3, kQuarterEdge = 4;
   static constexpr std::size_t kShared = 4;
 
   // The middle of the link's vertices that only one prey vertex's triangles hold, for each prey vertex, and of all the others; from the fused vertex.
-  void findMiddles(const Link& link) {
-    owners_.assign(link.vertices().size(), 0);
-    for (const LinkTriangle& t : link.triangles())
+  void findMiddles() {
+    middle_ = {};
+    owners_.assign(link_.vertices().size(), 0);
+    for (const LinkTriangle& t : link_.triangles())
       for (const std::uint32_t x : t.vertex) owners_[x] |= static_cast<std::uint8_t>(1 << t.label);
     std::array<std::int64_t, 5> count{};
     for (std::size_t i = 0; i < owners_.size(); ++i) {
-      if (link.vertices()[i] == kGhost) continue;
+      if (link_.vertices()[i] == kGhost) continue;
       const std::size_t owner = std::has_single_bit(owners_[i]) ? static_cast<std::size_t>(std::countr_zero(owners_[i])) : kShared;
       ++count[owner];
-      for (std::size_t a = 0; a < 3; ++a) middle_[owner][a] += link.offsets()[i][a];
+      for (std::size_t a = 0; a < 3; ++a) middle_[owner][a] += link_.offsets()[i][a];
     }
     for (std::size_t owner = 0; owner < count.size(); ++owner)
       if (count[owner] > 1)
@@ -103,7 +104,7 @@ class PositionCoder {
     }
     const auto order = smallOrder(n, [&](std::size_t a, std::size_t b) { return distance[a] < distance[b]; });
     const auto ratio = static_cast<std::size_t>(std::min((distance[order[1]] - distance[order[0]]) / 32, static_cast<int>(PositionModels::kRatios) - 1));
-    auto& model = models_.placement[n - 2][edge_][ratio];
+    auto& model = models_.placement[n - 2][link_.hasGhost()][ratio];
     if (coder_.bit(split.placement == Placement::kAtPrey, model[0]))
       split.placement = Placement::kAtPrey;
     else if (coder_.bit(split.placement == Placement::kFree, model[1]))
@@ -186,8 +187,9 @@ class PositionCoder {
   Coder& coder_;
   PositionModels& models_;
   Values& values_;
-  LatticePoint fused_;
-  std::size_t edge_;
+  const GrowingMesh& mesh_;
+  const Link& link_;
+  LatticePoint fused_{};
   std::array<int, 3> logLength_{};
   std::array<std::array<std::int64_t, 3>, 5> middle_{};
   std::vector<std::uint8_t> owners_;

@@ -12,6 +12,7 @@
 #include "codec/growing_mesh.h"
 #include "codec/label_coder.h"
 #include "codec/link.h"
+#include "codec/mixed_bit.h"
 #include "codec/position_coder.h"
 #include "codec/range_coder.h"
 #include "proto/limits.h"
@@ -30,11 +31,17 @@ struct RecordTruth {
 
 struct RecordModels {
   std::array<std::array<std::array<BitModel, 3>, 16>, 16> split;  // star size, extent against the level's, age
+  std::array<std::array<std::array<BitModel, 3>, 2>, 64> splitScale;  // extent, on the boundary, age
+  std::array<std::array<std::array<BitModel, 2>, 32>, 16> splitAge;   // levels since birth, star size, on the boundary
+  std::array<std::array<std::array<BitModel, 8>, 8>, 16> splitRun;    // the last flags, flatness of the star, extent
+  std::array<Mixer<4>, 3> splitMixer;                                 // age
+  std::uint32_t flags = 0;                                            // the last ones, the latest lowest
   std::array<std::array<BitModel, 2>, 4> tetrahedron;             // star size, touches the boundary
   std::array<std::array<BitModel, 2>, 4> triangle;
   PositionModels positions;
   LabelModels labels;
   DeletedModels deleted;
+  std::uint64_t positionCost = 0;      // an encoder's: what positions took of the structure blocks, in 64ths of a bit
   std::int32_t extent = 64 * 10 * 16;  // running mean of the log extent of stars that split, times 16
 };
 
@@ -42,19 +49,35 @@ template <class Coder>
 class RecordCoder {
  public:
   RecordCoder(Coder& coder, RecordModels& models, GrowingMesh& mesh, Link& link, Values& positions)
-      : coder_(coder), models_(models), mesh_(mesh), link_(link), positions_(positions) {}
+      : coder_(coder),
+        models_(models),
+        mesh_(mesh),
+        link_(link),
+        values_(positions),
+        labels_(coder, models.labels, link),
+        positions_(coder, models.positions, positions, mesh, link) {}
 
   /// The split flag of v at `level`. REQUIRES mesh.maysplit(v).
   bool splits(VertexId v, std::uint32_t level, bool truth) {
-    const std::size_t cells = mesh_.star(v).size();
-    if (cells == 0) return false;  // an unused vertex: nothing to split, nothing coded
-    const auto spread = mesh_.spread(v);
-    const int extent = log2Fixed(spread[0] + spread[1] + spread[2] + 1);
-    const std::size_t size = std::min<std::size_t>(cells / 6, 15);
-    const auto scale = static_cast<std::size_t>(std::clamp((extent - models_.extent / 16) / 16 + 8, 0, 15));
+    const std::span<const CellRef> star = mesh_.star(v);
+    if (star.empty()) return false;  // an unused vertex: nothing to split, nothing coded
+    const GrowingMesh::Spread& spread = mesh_.spread(v);
+    const auto& squares = spread.squares;
+    const int extent = spread.logMean(squares[0] + squares[1] + squares[2]);
+    const int scale = extent - models_.extent / 16;
+    const auto step = [&](int width, int half) { return static_cast<std::size_t>(std::clamp(scale / width + half, 0, 2 * half - 1)); };
     const std::uint32_t born = mesh_.born(v);
     const std::size_t age = born == 0 ? 0 : level - born <= 1 ? 1 : 2;
-    const bool split = coder_.bit(truth, models_.split[size][scale][age]) != 0;
+    const std::size_t sinceBorn = born == 0 ? 15 : std::min<std::size_t>(level - born, 14);
+    const bool edge = (star.back() & kBoundaryBit) != 0;
+    const auto [least, most] = std::minmax({squares[0], squares[1], squares[2]});
+    const auto flat = static_cast<std::size_t>(std::min((log2Fixed(most + 1) - log2Fixed(least + 1)) / 48, 7));
+    const std::array<BitModel*, 4> models{&models_.split[std::min<std::size_t>(star.size() / 6, 15)][step(16, 8)][age],
+                                          &models_.splitScale[step(8, 32)][edge][age],
+                                          &models_.splitAge[sinceBorn][std::min<std::size_t>(star.size() / 2, 31)][edge],
+                                          &models_.splitRun[models_.flags & 15][flat][step(24, 4)]};
+    const bool split = mixedBit(coder_, truth, models, models_.splitMixer[age]) != 0;
+    models_.flags = models_.flags << 1 | static_cast<std::uint32_t>(split);
     if (split) models_.extent += (extent * 16 - models_.extent) / 64;
     return split;
   }
@@ -68,13 +91,15 @@ class RecordCoder {
       split.k = 4;
     else
       split.k = coder_.bit(truth.k == 3, models_.triangle[size][edge]) ? 3 : 2;
-    LabelCoder<Coder>(coder_, models_.labels, link_, split.k).code(truth.labels);
+    labels_.code(split.k, truth.labels);
     if (!codeDeletedCells(coder_, models_.deleted, link_, split.k, truth.deleted, split.deleted)) return false;
     split.placement = truth.placement;
     split.near = truth.near;
     split.points = truth.points;
-    PositionCoder<Coder>(coder_, models_.positions, positions_, v, mesh_, link_).code(split);
-    if (positions_.bad()) return false;
+    if constexpr (Coder::kEncoding) models_.positionCost -= coder_.cost();
+    positions_.code(v, split);
+    if constexpr (Coder::kEncoding) models_.positionCost += coder_.cost();
+    if (values_.bad()) return false;
     for (int i = 0; i < split.k; ++i)
       for (const std::int32_t x : split.points[static_cast<std::size_t>(i)])
         if (x < 0 || x >> kMaxPositionBits != 0) return false;  // the predicates' range; the lattice's own is the refiner's to check
@@ -86,7 +111,9 @@ class RecordCoder {
   RecordModels& models_;
   GrowingMesh& mesh_;
   Link& link_;
-  Values& positions_;
+  Values& values_;
+  LabelCoder<Coder> labels_;
+  PositionCoder<Coder> positions_;
 };
 
 }  // namespace qtet

@@ -154,7 +154,7 @@ Status Refiner::State::endPacket(std::uint32_t chunk, const ChunkEntry& entry) {
 Status Refiner::State::split(std::uint32_t chunk, RecordCoder<RangeDecoder>& coder, VertexId v) {
   if (mesh.star(v).size() > kMaxLinkTriangles) return refuseChunk(ErrorCode::kLimitExceeded, chunk, "a star has too many cells");
   if (!mesh.enter(v, link)) return refuseChunk(ErrorCode::kBadValue, chunk, "a vertex splits whose link is not a sphere");
-  Split split;
+  Split& split = inHand;
   if (!coder.code(v, {}, split)) return refuseChunk(ErrorCode::kBadValue, chunk, "a record's labels or positions contradict each other");
   const std::int32_t size = std::int32_t{1} << index.positionBits;
   for (int i = 0; i < split.k; ++i)

@@ -49,6 +49,7 @@ struct Refiner::State {
 
   GrowingMesh mesh;
   Link link;
+  Split inHand;
   Models models;
   Models headModels;                 // as the head left them: what every packet starts from
   std::vector<NodeCells> waiting;    // by node: cells of packets that may come next

@@ -5,7 +5,10 @@
 #include <optional>
 #include <string>
 
+#include "codec/level_columns.h"
+#include "codec/adaptive_block.h"
 #include "codec/refiner.h"
+#include "codec/value_digits.h"
 #include "proto/crc32c.h"
 
 using qtet::ByteView;
@@ -19,10 +22,18 @@ namespace {
 // One module instance is one refiner: a page that shows two logs makes two instances.
 std::optional<Refiner> refiner;
 std::string lastError;
+qtet::LevelColumns levelNumbers;
 
 int report(const Error& error) {
   lastError = error.text();
   return 1 + static_cast<int>(error.code);
+}
+
+qtet::Result<std::vector<std::int32_t>> blockValues(std::uint32_t chunk, std::uint32_t part, std::span<const std::int32_t> symbols, ByteView digits) {
+  const LogIndex& index = refiner->index();
+  if (chunk < index.chunks.size() && part < index.parts() && index.chunks[chunk].valueCodec == qtet::CodecId::kAdaptive)
+    return qtet::decodeAdaptiveBlock(digits, index.components(part), index.tuples(chunk, part));
+  return qtet::joinValues(symbols, digits);
 }
 
 int noLog() { return report({ErrorCode::kBadOrder, "no log is open: call qtet_open first"}); }
@@ -57,6 +68,17 @@ const char* qtet_error() { return lastError.c_str(); }
 
 std::uint32_t qtet_chunk_count() { return refiner ? static_cast<std::uint32_t>(refiner->index().chunks.size()) : 0; }
 
+std::uint32_t qtet_level_count() { return refiner ? refiner->index().chunks.back().lastLevel + 1 : 0; }
+
+int qtet_level_columns(const std::uint8_t* bytes, std::uint32_t size, std::uint32_t columns) {
+  if (!refiner) return noLog();
+  auto numbers = qtet::decodeLevelColumns(ByteView(bytes, size), qtet_level_count(), columns);
+  if (!numbers) return report(numbers.error());
+  levelNumbers = std::move(*numbers);
+  return 0;
+}
+const std::uint32_t* qtet_level_numbers() { return levelNumbers.data(); }
+
 double qtet_block_offset(std::uint32_t chunk, std::uint32_t part) {
   return hasBlock(chunk, part) ? static_cast<double>(refiner->index().block(chunk, part).offset) : 0;
 }
@@ -80,15 +102,21 @@ int qtet_check_block(std::uint32_t chunk, std::uint32_t part, const std::uint8_t
   return report({ErrorCode::kBadChecksum, "chunk " + std::to_string(chunk) + ", part " + std::to_string(part) + " arrived damaged", b.offset});
 }
 
-int qtet_apply(std::uint32_t chunk, const std::uint8_t* structure, std::uint32_t size, const std::int32_t* positions, std::uint32_t count) {
+int qtet_apply(std::uint32_t chunk, const std::uint8_t* structure, std::uint32_t size, const std::int32_t* symbols, std::uint32_t count,
+               const std::uint8_t* digits, std::uint32_t digitBytes) {
   if (!refiner) return noLog();
-  const auto status = refiner->apply(chunk, ByteView(structure, size), std::span(positions, count));
+  const auto positions = blockValues(chunk, qtet::kPositionsPart, std::span(symbols, count), ByteView(digits, digitBytes));
+  if (!positions) return report(positions.error());
+  const auto status = refiner->apply(chunk, ByteView(structure, size), *positions);
   return status ? 0 : report(status.error());
 }
 
-int qtet_apply_field(std::uint32_t field, std::uint32_t chunk, const std::int32_t* values, std::uint32_t count) {
+int qtet_apply_field(std::uint32_t field, std::uint32_t chunk, const std::int32_t* symbols, std::uint32_t count, const std::uint8_t* digits,
+                     std::uint32_t digitBytes) {
   if (!refiner) return noLog();
-  const auto status = refiner->applyField(field, chunk, std::span(values, count));
+  const auto values = blockValues(chunk, qtet::kFirstFieldPart + field, std::span(symbols, count), ByteView(digits, digitBytes));
+  if (!values) return report(values.error());
+  const auto status = refiner->applyField(field, chunk, *values);
   return status ? 0 : report(status.error());
 }
 

@@ -19,6 +19,10 @@ int qtet_open(const std::uint8_t* head, std::uint32_t bytes);
 const char* qtet_error();
 
 std::uint32_t qtet_chunk_count();
+std::uint32_t qtet_level_count();
+/// Decodes the end of the manifest, the figures of all levels (codec/level_columns.h); qtet_level_numbers() then gives them until the next such call.
+int qtet_level_columns(const std::uint8_t* bytes, std::uint32_t size, std::uint32_t columns);
+const std::uint32_t* qtet_level_numbers();
 /// File offset (a double: exact up to 2^53), size and tuples of a block; part 0 structure, 1 positions, 2 + f field f.
 double qtet_block_offset(std::uint32_t chunk, std::uint32_t part);
 std::uint32_t qtet_block_size(std::uint32_t chunk, std::uint32_t part);
@@ -31,10 +35,13 @@ std::uint32_t qtet_block_codec(std::uint32_t chunk, std::uint32_t part);
 /// Compares a block's bytes with its CRC-32C.
 int qtet_check_block(std::uint32_t chunk, std::uint32_t part, const std::uint8_t* bytes, std::uint32_t size);
 
-/// Refiner::apply; `positions` holds `count` integers (3 a tuple), as the Draco decoder gave them.
-int qtet_apply(std::uint32_t chunk, const std::uint8_t* structure, std::uint32_t size, const std::int32_t* positions, std::uint32_t count);
-/// Refiner::applyField.
-int qtet_apply_field(std::uint32_t field, std::uint32_t chunk, const std::int32_t* values, std::uint32_t count);
+/// Refiner::apply; `symbols` are the positions block's `count` integers (3 a tuple) as the Draco decoder gave them, `digits` the `digitBytes` bytes behind
+/// the Draco stream (codec/value_digits.h). Of an adaptive block, no symbols and the whole block as digits.
+int qtet_apply(std::uint32_t chunk, const std::uint8_t* structure, std::uint32_t size, const std::int32_t* symbols, std::uint32_t count,
+               const std::uint8_t* digits, std::uint32_t digitBytes);
+/// Refiner::applyField, of a field's block in the same two parts.
+int qtet_apply_field(std::uint32_t field, std::uint32_t chunk, const std::int32_t* symbols, std::uint32_t count, const std::uint8_t* digits,
+                     std::uint32_t digitBytes);
 
 std::uint32_t qtet_chunks_applied();
 std::uint32_t qtet_field_chunks_applied(std::uint32_t field);

@@ -30,6 +30,20 @@ class ByteReader {
     return static_cast<T>(value);
   }
 
+  /// Seven bits a byte, the lowest first; the high bit says that more follow. The shortest form alone, so that a value has one.
+  [[nodiscard]] std::uint32_t readVarint() {
+    std::uint64_t value = 0;
+    for (int shift = 0; shift < 35; shift += 7) {
+      const auto byte = read<std::uint8_t>();
+      value |= std::uint64_t{byte & 0x7Fu} << shift;
+      if (byte & 0x80u) continue;
+      if ((shift > 0 && byte == 0) || value > 0xFFFFFFFFu) break;
+      return static_cast<std::uint32_t>(value);
+    }
+    fail(ErrorCode::kBadValue, "a varint is not the shortest one, or above 32 bits; fetch or build the log again");
+    return 0;
+  }
+
   /// The next `count` bytes, or an empty view and an error.
   ByteView take(std::uint64_t count) {
     if (failed_ || count > remaining()) {
@@ -68,6 +82,10 @@ class ByteWriter {
     static_assert(std::is_integral_v<T>);
     const auto bits = static_cast<std::uint64_t>(value);
     for (std::size_t i = 0; i < sizeof(T); ++i) bytes_.push_back(static_cast<std::uint8_t>(bits >> (8 * i)));
+  }
+  void writeVarint(std::uint32_t value) {
+    for (; value >= 0x80u; value >>= 7) bytes_.push_back(static_cast<std::uint8_t>(value | 0x80u));
+    bytes_.push_back(static_cast<std::uint8_t>(value));
   }
   void append(ByteView bytes) { bytes_.insert(bytes_.end(), bytes.begin(), bytes.end()); }
 

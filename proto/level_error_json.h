@@ -1,10 +1,8 @@
-// A LevelError as JSON, both ways (FORMAT.md, "Known error"). For .cpp files only: it drags nlohmann-json in.
+// A LevelError as JSON (FORMAT.md, "Known error"). For .cpp files only: it drags nlohmann-json in.
 #pragma once
 
-#include <tuple>
-#include <utility>
+#include <nlohmann/json.hpp>
 
-#include "proto/json_reader.h"
 #include "proto/level_error.h"
 
 namespace qtet {
@@ -15,31 +13,6 @@ namespace qtet {
                                 {"volumeKept", error.volumeKept},
                                 {"fields", nlohmann::ordered_json::array()}};
   for (const FieldError& field : error.fields) out["fields"].push_back({{"rms", field.rms}, {"max", field.max}});
-  return out;
-}
-
-/// Errors: what is missing, negative, no number, a mean or rms above its maximum, another number of fields than `fields`.
-[[nodiscard]] inline LevelError readLevelError(const JsonCursor& json, std::size_t fields) {
-  const auto magnitude = [](const JsonCursor& cursor) {
-    const double out = cursor.number();
-    if (out < 0) cursor.fail("must not be below 0");
-    return out;
-  };
-  // Of a mean or rms and a maximum: the first cannot be the larger one.
-  const auto pair = [&](const JsonCursor& cursor, const char* average) {
-    const double low = magnitude(cursor[average]), high = magnitude(cursor["max"]);
-    if (low > high) cursor[average].fail("is above the max beside it");
-    return std::pair{low, high};
-  };
-  LevelError out;
-  const JsonCursor boundary = json["boundary"];
-  std::tie(out.toLevel.mean, out.toLevel.max) = pair(boundary["toLevel"], "mean");
-  std::tie(out.toOriginal.mean, out.toOriginal.max) = pair(boundary["toOriginal"], "mean");
-  out.volumeKept = magnitude(json["volumeKept"]);
-  for (const JsonCursor& field : json["fields"].items(fields, fields)) {
-    const auto [rms, max] = pair(field, "rms");
-    out.fields.push_back({rms, max});
-  }
   return out;
 }
 

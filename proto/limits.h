@@ -6,8 +6,8 @@
 
 namespace qtet {
 
-/// Bytes of the JSON manifest: a thousand levels and two hundred fields need under one MiB.
-inline constexpr std::uint32_t kMaxManifestBytes = 16u << 20;
+/// Bytes of the manifest in a log: the most levels and fields that there may be, at two bytes a figure, take 5 MB.
+inline constexpr std::uint32_t kMaxManifestBytes = 8u << 20;
 /// Chunks of one log: at 16 KB a chunk, a 16 GB log.
 inline constexpr std::uint32_t kMaxChunks = 1u << 20;
 /// Fields of one log; each costs 8 bytes in every table entry.

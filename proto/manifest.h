@@ -1,4 +1,5 @@
-// The manifest: the JSON that tells people and programs what a log holds (FORMAT.md, "Manifest"). Decoding needs only the chunk table.
+// The manifest: what a log holds, for people and programs (FORMAT.md, "Manifest"). Decoding needs only the chunk table. codec/log_manifest.h reads it
+// out of a log; as JSON it goes out by the server and the tool.
 #pragma once
 
 #include <array>
@@ -8,15 +9,18 @@
 #include <string_view>
 #include <vector>
 
-#include "proto/error.h"
 #include "proto/level_error.h"
 
 namespace qtet {
 
+/// In the order of their numbers in a log.
+inline constexpr std::array<std::string_view, 10> kFieldTypes{"float32", "float64", "int8",   "int16",  "int32",
+                                                              "int64",   "uint8",   "uint16", "uint32", "uint64"};
+
 struct ManifestField {
   std::string name;
   std::uint32_t components = 1;
-  std::string type;                   ///< float32, float64, int8 ... uint64
+  std::string type;                   ///< one of kFieldTypes
   std::string association = "point";  ///< point or cell
   int bits = 0;                       ///< integers lie in [0, 2^bits)
   double step = 1;                    ///< value = minimum[c] + step * integer
@@ -50,7 +54,5 @@ struct Manifest {
 [[nodiscard]] std::optional<std::uint32_t> fieldOfKey(const Manifest& manifest, std::string_view key);
 
 [[nodiscard]] std::string manifestToJson(const Manifest& manifest);
-/// Errors: bad-value with the JSON pointer of what is missing or of the wrong type or range.
-[[nodiscard]] Result<Manifest> manifestFromJson(std::string_view json);
 
 }  // namespace qtet

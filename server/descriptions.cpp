@@ -34,8 +34,7 @@ std::string describeMeshes(const MeshStore& store) {
 std::string describeMesh(const ServedMesh& mesh) {
   Json out = identity(mesh);
   out["headBytes"] = mesh.log.index().headBytes();
-  // Parsed once at the start already, so it is JSON; read again here because a manifest may say more than this build knows.
-  out["manifest"] = Json::parse(mesh.log.index().manifest, nullptr, false);
+  out["manifest"] = Json::parse(manifestToJson(mesh.manifest));
   out["levels"] = levelsJson(mesh.manifest, mesh.log.index());
   out["links"] = links(mesh);
   const std::string self = out["links"]["self"];

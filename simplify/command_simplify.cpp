@@ -4,6 +4,7 @@
 
 #include "codec/atomic_file.h"
 #include "codec/log_index.h"
+#include "codec/log_manifest.h"
 #include "codec/log_writer.h"
 #include "proto/checksum.h"
 #include "proto/limits.h"
@@ -26,6 +27,7 @@ struct Request {
   QuantiseOptions quantise;
   FusionRequest fusion;
   std::optional<MeasureOptions> measure;
+  CodecId valueCodec = CodecId::kDraco;
 };
 
 /// The names between commas; "all" is nullopt, "none" the empty list.
@@ -40,6 +42,12 @@ FieldNames parseFields(const std::string& text) {
   }
   if (names.empty()) throw UsageError("--fields is empty; give all, none, or names between commas");
   return names;
+}
+
+CodecId valueCodecOf(const std::string& name) {
+  if (name == "draco") return CodecId::kDraco;
+  if (name == "adaptive") return CodecId::kAdaptive;
+  throw UsageError("--geometry-codec '" + name + "' is not known; give draco or adaptive");
 }
 
 Request requestOf(const ParsedWords& parsed) {
@@ -58,6 +66,7 @@ Request requestOf(const ParsedWords& parsed) {
   if (request.algorithm == "paper" && request.fusion.options.bands.cellsPerPacket > 0)
     throw UsageError("--algorithm paper knows no --layout regions; leave it out");
   request.measure = measureOptionsOf(parsed);
+  request.valueCodec = valueCodecOf(parsed.get<std::string>("geometry-codec"));
   return request;
 }
 
@@ -215,6 +224,7 @@ Result<EncodedLog> makeLog(const Request& request, Prepared& prepared, Progress&
   options.generator = "qtet " QTET_VERSION;
   options.progress = fusion->progress;
   options.errors = *errors;
+  options.valueCodec = request.valueCodec;
   Result<EncodedLog> log = encodeLog(*history, options);
   if (!log) return log;
   watch.lap("encode");
@@ -227,7 +237,7 @@ Result<EncodedLog> makeLog(const Request& request, Prepared& prepared, Progress&
 Result<OrderedJson> reportOf(const Request& request, const Prepared& prepared, const EncodedLog& log, const Stopwatch& watch) {
   const Result<LogIndex> index = LogIndex::parse(log.bytes);
   if (!index) return std::unexpected(index.error());
-  const Result<Manifest> manifest = manifestFromJson(index->manifest);
+  const Result<Manifest> manifest = manifestOf(*index);
   if (!manifest) return std::unexpected(manifest.error());
 
   const QuantiseReport& quantised = prepared.quantised.report;
@@ -297,6 +307,8 @@ int runSimplify(const Words& words, Console& console) {
       "position-bits", po::value<int>()->default_value(16),
       "bits of the lattice an axis, 4 to 28; raised where a cell would be flattened or inverted")(
       "field-bits", po::value<int>()->default_value(12), "bits of a float field's values, 1 to 28; integer fields are stored exactly")(
+      "geometry-codec", po::value<std::string>()->default_value("draco"),
+      "how positions and fields are coded: draco, or adaptive, which is 1 to 3 % smaller and which only qtet can read")(
       "json", "print one JSON object");
   addFusionOptions(options);
   addMeasureOptions(options);

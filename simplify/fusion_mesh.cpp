@@ -68,7 +68,7 @@ void FusionMesh::findInterfaces() {
     }
 }
 
-// The prey vertex that the fused one would equal in place and values, or -1.
+// The first in this order that holds takes the fewest bits.
 FusionMesh::Placed FusionMesh::placed(const Prey& prey, const LatticePoint& point) const {
   std::array<LatticePoint, 4> at{};
   for (std::size_t i = 0; i < prey.k; ++i) at[i] = history_.points[prey.vertex[i]];

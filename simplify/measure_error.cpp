@@ -2,17 +2,16 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
+#include <cmath>
 
+#include "codec/error_figure.h"
+#include "codec/level_columns.h"
 #include "simplify/measure_boundary.h"
 #include "simplify/measure_fields.h"
 #include "simplify/workers.h"
 
 namespace qtet {
 namespace {
-
-constexpr int kDigits = 4;
-constexpr int kVolumeDigits = 6;  // what matters is the loss, and a good level's is a thousandth
 
 struct Samples {
   std::uint32_t volume, vertices, surface, levelSurface, grid;
@@ -36,8 +35,9 @@ Samples samplesFor(Effort effort, const FusionHistory& history) {
 /// Distances over the diagonal below this are what doubles make of none: a lattice step is a thousand times as much on the finest lattice.
 constexpr double kNoDistance = 1e-12;
 
-double roundedDistance(double d) { return d < kNoDistance ? 0 : roundedTo(d, kDigits); }
+double roundedDistance(double d) { return d < kNoDistance ? 0 : roundedUp(d); }
 OneSidedDistance rounded(const OneSidedDistance& d) { return {roundedDistance(d.mean), roundedDistance(d.max)}; }
+double roundedVolume(double kept) { return std::round(kept * kVolumeFigure) / kVolumeFigure; }
 
 class ErrorMeter {
  public:
@@ -54,8 +54,8 @@ class ErrorMeter {
   }
 
   [[nodiscard]] LevelError measure() {
-    LevelError out{rounded(boundary_.toLevel()), rounded(boundary_.toOriginal()), roundedTo(mesh_.volumeKept(), kVolumeDigits), {}};
-    for (const FieldError& error : fields_.errors()) out.fields.push_back({roundedTo(error.rms, kDigits), roundedTo(error.max, kDigits)});
+    LevelError out{rounded(boundary_.toLevel()), rounded(boundary_.toOriginal()), roundedVolume(mesh_.volumeKept()), {}};
+    for (const FieldError& error : fields_.errors()) out.fields.push_back({roundedUp(error.rms), roundedUp(error.max)});
     return out;
   }
 
@@ -82,14 +82,6 @@ Result<std::vector<FieldBound>> fieldBounds(const FusionHistory& history, const 
 }
 
 }  // namespace
-
-double roundedTo(double value, int digits) {
-  std::array<char, 32> text;
-  const auto written = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::scientific, digits - 1);
-  double out = value;
-  std::from_chars(text.data(), written.ptr, out);
-  return out;
-}
 
 Result<std::vector<LevelError>> measureLevels(FusionHistory& history, const MeasureOptions& options) {
   const Result<std::vector<FieldBound>> bounds = fieldBounds(history, options.bounds);

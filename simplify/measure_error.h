@@ -35,13 +35,10 @@ struct MeasureOptions {
   std::function<void(double fraction)> progress;  ///< 0..1, called once a level
 };
 
-/// The error of each level, coarse-first, the last one (the original itself) all zero. Figures are rounded (volumeKept to six significant digits, all
-/// others to four) and depend on the history and the options only. With bounds, `history` forgets the coarse levels from the first one on, counted from
+/// The error of each level, coarse-first, the last one (the original itself) all zero. Figures are those that a log can tell (errors rounded up to three
+/// significant digits, volumeKept to 10^-6) and depend on the history and the options only. With bounds, `history` forgets the coarse levels from the first one on, counted from
 /// the finest, that passes a bound; level 0 is then the coarsest such that it and all finer ones keep them.
 /// Errors: not-found (a bound names no field of the history). REQUIRES: as HistoryLevels; it stands at level 0 before and after.
 [[nodiscard]] Result<std::vector<LevelError>> measureLevels(FusionHistory& history, const MeasureOptions& options);
-
-/// The number with as many significant digits, decimal. REQUIRES: finite, 1 to 17 digits.
-[[nodiscard]] double roundedTo(double value, int digits);
 
 }  // namespace qtet

@@ -16,7 +16,7 @@ struct OpenedLog {
   [[nodiscard]] std::uint64_t prefixBytes(std::size_t level) const;
 };
 
-/// Errors: LogFile::open's, manifestFromJson's, bad-value where manifest and chunk table contradict each other.
+/// Errors: LogFile::open's, manifestOf's.
 [[nodiscard]] Result<OpenedLog> openLog(const std::filesystem::path& path);
 
 }  // namespace qtet

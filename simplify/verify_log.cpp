@@ -1,7 +1,6 @@
 #include "simplify/verify_log.h"
 
 #include <algorithm>
-#include <bit>
 #include <numeric>
 #include <string>
 
@@ -13,21 +12,9 @@ std::string countsText(std::size_t tetrahedra, std::size_t vertices, std::size_t
          " boundary triangles";
 }
 
-/// The chunk with which each level is complete, by the chunk table.
-std::vector<std::uint32_t> completingChunks(const LogIndex& index) {
-  std::vector<std::uint32_t> out;
-  for (std::uint32_t chunk = 0; chunk < index.chunks.size(); ++chunk) {
-    const ChunkEntry& entry = index.chunks[chunk];
-    if (entry.node != 0 && !std::has_single_bit(entry.node + 1)) continue;  // a band is complete with its last packet
-    const std::uint32_t complete = entry.lastLevel + (entry.endSlot == kLevelEnd);
-    while (out.size() < complete) out.push_back(chunk);
-  }
-  return out;
-}
-
 /// What the manifest states of every level, against what the refiner met on its way.
-Status checkLevels(const std::vector<ManifestLevel>& levels, std::span<const LevelCounts> met, const std::vector<std::uint32_t>& chunks) {
-  if (levels.size() != met.size() || levels.size() != chunks.size())
+Status checkLevels(const std::vector<ManifestLevel>& levels, std::span<const LevelCounts> met) {
+  if (levels.size() != met.size())
     return fail(ErrorCode::kBadValue, "the log holds " + std::to_string(met.size()) + " levels, the manifest lists " +
                                           std::to_string(levels.size()) + "; build the log again");
   for (std::size_t i = 0; i < levels.size(); ++i) {
@@ -37,9 +24,6 @@ Status checkLevels(const std::vector<ManifestLevel>& levels, std::span<const Lev
                                             countsText(met[i].tetrahedra, met[i].vertices, met[i].boundaryTriangles) +
                                             ", the manifest says " + countsText(level.tetrahedra, level.vertices, level.boundaryTriangles) +
                                             "; build the log again");
-    if (level.chunk != chunks[i])
-      return fail(ErrorCode::kBadValue, "level " + std::to_string(level.level) + " is complete with chunk " + std::to_string(chunks[i]) +
-                                            ", the manifest says " + std::to_string(level.chunk) + "; build the log again");
   }
   return {};
 }
@@ -70,7 +54,7 @@ Result<Refiner> decodeVerified(const OpenedLog& log, const std::function<void(do
     if (Status applied = applyChunk(log.file, refiner, chunk, fields); !applied) return std::unexpected(applied.error());
     if (progress) progress((chunk + 1.0) / chunks);
   }
-  if (Status levels = checkLevels(log.manifest.levels, refiner.levelCounts(), completingChunks(log.file.index())); !levels)
+  if (Status levels = checkLevels(log.manifest.levels, refiner.levelCounts()); !levels)
     return std::unexpected(levels.error());
   if (Status bits = checkBits(log.manifest, refiner); !bits) return std::unexpected(bits.error());
   return refiner;

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "codec/draco_block.h"
+#include "codec/value_block.h"
 #include "codec/log_file.h"
 #include "codec/log_writer.h"
 #include "proto/checksum.h"
@@ -57,8 +57,10 @@ BENCHMARK(encodeFin)->Unit(benchmark::kMillisecond);
 
 std::vector<std::vector<std::int32_t>> positionsOf(const LogIndex& index, ByteView bytes) {
   std::vector<std::vector<std::int32_t>> out;
-  for (const ChunkEntry& e : index.chunks)
-    out.push_back(need(decodeDracoBlock(bytes.subspan(e.blocks[kPositionsPart].offset, e.blocks[kPositionsPart].size), 3, e.values)));
+  for (std::uint32_t chunk = 0; chunk < index.chunks.size(); ++chunk) {
+    const BlockEntry& block = index.block(chunk, kPositionsPart);
+    out.push_back(need(decodeValueBlock(bytes.subspan(block.offset, block.size), 3, index.tuples(chunk, kPositionsPart))));
+  }
   return out;
 }
 

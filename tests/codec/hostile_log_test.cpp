@@ -7,6 +7,7 @@
 #include "codec/base_coder.h"
 #include "codec/draco_block.h"
 #include "codec/log_file.h"
+#include "tests/support/forged_log.h"
 #include "tests/support/meshes.h"
 
 namespace qtet {
@@ -29,7 +30,7 @@ Status decodeAll(const LogFile& log) {
 
 class HostileLog : public ::testing::Test {
  protected:
-  HostileLog() : folder_(testing::freshFolder("hostile")), bytes_(readFile(testing::writeSampleLog(folder_, "good", 3, 1, 600))) {
+  HostileLog() : folder_(testing::freshFolder("hostile")), bytes_(readFile(testing::writeSampleLog(folder_, "good", 3, 1, 200))) {
     index_ = *LogIndex::parse(bytes_);
   }
 
@@ -43,9 +44,7 @@ class HostileLog : public ::testing::Test {
   Bytes forged(const std::function<void(LogIndex&)>& change) {
     LogIndex index = index_;
     change(index);
-    Bytes out = index.encode();
-    out.insert(out.end(), bytes_.begin() + static_cast<std::ptrdiff_t>(index_.headBytes()), bytes_.end());
-    return out;
+    return testing::withFront(bytes_, index);
   }
 
   void expectRefused(ErrorCode code, const std::function<void(LogIndex&)>& change) {
@@ -107,7 +106,7 @@ TEST_F(HostileLog, everyFlippedBitIsNoticed) {
 TEST_F(HostileLog, damageBelowTheChecksumsNeverCrashesTheRefiner) {
   std::vector<std::vector<std::int32_t>> positions;
   for (std::uint32_t c = 0; c < index_.chunks.size(); ++c)
-    positions.push_back(*decodeDracoBlock(ByteView(bytes_).subspan(index_.block(c, 1).offset, index_.block(c, 1).size), 3, index_.chunks[c].values));
+    positions.push_back(*decodeDracoBlock(ByteView(bytes_).subspan(index_.block(c, 1).offset, index_.block(c, 1).size), 3, index_.tuples(c, kPositionsPart)));
   std::size_t refused = 0;
   std::size_t tried = 0;
   for (std::uint32_t bad = 0; bad < index_.chunks.size(); ++bad) {
@@ -129,7 +128,7 @@ TEST_F(HostileLog, damageBelowTheChecksumsNeverCrashesTheRefiner) {
 }
 
 TEST_F(HostileLog, countsThatLieAreNoticed) {
-  for (const auto member : {&ChunkEntry::newVertices, &ChunkEntry::newTetrahedra, &ChunkEntry::newBoundaryTriangles, &ChunkEntry::values})
+  for (const auto member : {&ChunkEntry::newVertices, &ChunkEntry::newTetrahedra, &ChunkEntry::newBoundaryTriangles})
     for (const std::uint32_t chunk : {0u, 1u})
       for (const int by : {-1, 1}) {
         const auto log = open(forged([&](LogIndex& i) { i.chunks[chunk].*member += static_cast<std::uint32_t>(by); }));
@@ -142,18 +141,15 @@ TEST_F(HostileLog, countsThatLieAreNoticed) {
 }
 
 TEST_F(HostileLog, aTableThatContradictsItselfIsRefused) {
-  expectRefused(ErrorCode::kBadValue, [](LogIndex& i) { ++i.chunks[1].offset; });
   expectRefused(ErrorCode::kBadValue, [](LogIndex& i) { ++i.fileBytes; });
-  expectRefused(ErrorCode::kBadValue, [](LogIndex& i) { i.chunks[1].firstLevel = 0; });
-  expectRefused(ErrorCode::kBadValue, [](LogIndex& i) { i.chunks[2].lastLevel = i.chunks[2].firstLevel - 1; });
+  expectRefused(ErrorCode::kLimitExceeded, [](LogIndex& i) { i.chunks[2].lastLevel = i.chunks[2].firstLevel - 1; });
   expectRefused(ErrorCode::kLimitExceeded, [](LogIndex& i) { i.chunks.back().lastLevel = 5000; });
-  expectRefused(ErrorCode::kBadValue, [](LogIndex& i) { i.chunks[1].dependencyCount = 1000; });
-  expectRefused(ErrorCode::kBadValue, [](LogIndex& i) { i.dependencies[0] = 1; });
+  expectRefused(ErrorCode::kBadValue, [](LogIndex& i) { i.dependencies.push_back(1); });
   expectRefused(ErrorCode::kBadCodec, [](LogIndex& i) { i.chunks[1].valueCodec = static_cast<CodecId>(9); });
   expectRefused(ErrorCode::kBadCodec, [](LogIndex& i) { i.chunks[1].structureCodec = CodecId::kDraco; });
   expectRefused(ErrorCode::kBadValue, [](LogIndex& i) { i.fields[0].components = 17; });
   expectRefused(ErrorCode::kBadValue, [](LogIndex& i) { i.positionBits = 29; });
-  expectRefused(ErrorCode::kBadVersion, [](LogIndex& i) { i.layout = Layout::kRegions; });
+  expectRefused(ErrorCode::kBadValue, [](LogIndex& i) { i.layout = Layout::kRegions; });
 }
 
 TEST_F(HostileLog, aLatticeTooSmallForItsPointsIsRefused) {
@@ -163,7 +159,7 @@ TEST_F(HostileLog, aLatticeTooSmallForItsPointsIsRefused) {
 TEST_F(HostileLog, aBaseMeshWhosePositionsFailLeavesNoCellsBehind) {
   const BlockEntry& block = index_.block(0, kStructurePart);
   Refiner refiner(index_);
-  const std::vector<std::int32_t> far(std::size_t{index_.chunks[0].values} * 3, 1 << 20);
+  const std::vector<std::int32_t> far(std::size_t{index_.tuples(0, kPositionsPart)} * 3, 1 << 20);
   ASSERT_FALSE(refiner.apply(0, ByteView(bytes_).subspan(block.offset, block.size), far));
   EXPECT_TRUE(refiner.tetrahedra().empty());
   EXPECT_TRUE(refiner.boundary().empty());
@@ -192,11 +188,11 @@ TEST(Refiner, aLinkOfTwoSpheresIsRefused) {
   LogIndex index;
   index.positionBits = 10;
   index.chunks.resize(2);
-  index.chunks[0].newVertices = index.chunks[0].values = 7;
+  index.chunks[0].newVertices = 7;
   index.chunks[0].newTetrahedra = 2;
   index.chunks[0].newBoundaryTriangles = 8;
   index.chunks[1].firstLevel = index.chunks[1].lastLevel = 1;
-  index.chunks[1].newVertices = index.chunks[1].values = index.chunks[1].newTetrahedra = index.chunks[1].records = 3;
+  index.chunks[1].newVertices = index.chunks[1].newTetrahedra = index.chunks[1].records = 3;
   for (std::uint8_t seed = 0; seed < 64; ++seed) {
     Refiner refiner(index);
     std::vector<std::int32_t> positions(21);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "codec/error_figure.h"
 #include "codec/log_manifest.h"
 #include "codec/log_writer.h"
 #include "simplify/qtetfusion.h"
@@ -42,7 +43,7 @@ TEST_F(LogLevels, theKnownErrorsStandAtTheirLevels) {
     sum += levels[i]["bytes"].get<std::uint64_t>();
     EXPECT_EQ(levels[i]["cumulativeBytes"], sum);
     EXPECT_EQ(levels[i]["cumulativeBytes"], prefixBytes(*manifest, *index, i));
-    EXPECT_EQ(levels[i]["error"]["boundary"]["toLevel"]["max"], 1.0 / static_cast<double>(i + 1));
+    EXPECT_EQ(levels[i]["error"]["boundary"]["toLevel"]["max"], roundedUp(1.0 / static_cast<double>(i + 1)));
     EXPECT_EQ(levels[i]["error"]["fields"].size(), 2u);
   }
   EXPECT_EQ(sum, log->bytes.size());

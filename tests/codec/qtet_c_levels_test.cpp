@@ -44,16 +44,16 @@ TEST_F(QtetCKnownErrors, standAtTheirLevels) {
     qtet_level_info level{};
     ASSERT_EQ(qtet_log_get_level(log_.get(), l, sizeof level, &level), QTET_OK);
     EXPECT_EQ(level.hasError, 1u);
-    EXPECT_NEAR(level.toLevelMean, e / 8, 1e-3 * e);
-    EXPECT_NEAR(level.toLevelMax, e / 2, 1e-3 * e);
-    EXPECT_NEAR(level.toOriginalMean, e / 16, 1e-3 * e);
-    EXPECT_NEAR(level.toOriginalMax, e, 1e-3 * e);
+    EXPECT_NEAR(level.toLevelMean, e / 8, 1e-2 * e);
+    EXPECT_NEAR(level.toLevelMax, e / 2, 1e-2 * e);
+    EXPECT_NEAR(level.toOriginalMean, e / 16, 1e-2 * e);
+    EXPECT_NEAR(level.toOriginalMax, e, 1e-2 * e);
     EXPECT_EQ(level.boundaryDistance, level.toOriginalMax);
-    EXPECT_NEAR(level.volumeKept, 1 - e / 10, 1e-3 * e);
+    EXPECT_NEAR(level.volumeKept, 1 - e / 10, 1e-2 * e);
     double rms = 0, max = 0;
     ASSERT_EQ(qtet_log_field_error(log_.get(), l, 1, &rms, &max), QTET_OK);
-    EXPECT_NEAR(rms, e / 4, 1e-3 * e);
-    EXPECT_NEAR(max, e / 2, 1e-3 * e);
+    EXPECT_NEAR(rms, e / 4, 1e-2 * e);
+    EXPECT_NEAR(max, e / 2, 1e-2 * e);
   }
 }
 

@@ -45,13 +45,11 @@ class HostileRegions : public ::testing::Test {
     ASSERT_FALSE(parsed) << what;
     EXPECT_EQ(parsed.error().code, code) << what << ": " << parsed.error().text();
   }
-  [[nodiscard]] static std::uint32_t& dependency(TakenApart& log, std::uint32_t chunk) { return log.index.dependencies[log.index.chunks[chunk].firstDependency]; }
   /// Without a row, and what follows it moved up.
   static void drop(TakenApart& log, std::uint32_t chunk) {
     log.index.chunks.erase(log.index.chunks.begin() + chunk);
     log.blocks.erase(log.blocks.begin() + chunk);
     log.index.dependencies.pop_back();
-    for (std::uint32_t i = 1; i < log.index.chunks.size(); ++i) log.index.chunks[i].firstDependency = i - 1;
   }
 
   Bytes bytes_;
@@ -66,15 +64,24 @@ TEST_F(HostileRegions, theHonestLogIsAccepted) {
   ASSERT_GT(head_, 1u);
 }
 
-TEST_F(HostileRegions, dependenciesAreTheParentsAndNothingElse) {
+TEST_F(HostileRegions, dependenciesFollowFromTheNodes) {
+  const LogIndex index = LogIndex::parse(honest_.together()).value();
+  for (std::uint32_t i = 1; i <= last_; ++i) {
+    const std::uint32_t expected = i < head_ ? i - 1 : i < second_ ? head_ - 1 : index.chunkOfNode(index.chunks[i].node / 2);
+    ASSERT_EQ(index.chunks[i].dependencyCount, 1u);
+    EXPECT_EQ(index.dependencies[index.chunks[i].firstDependency], expected) << "chunk " << i;
+  }
+  expectRefused(ErrorCode::kBadValue, [](TakenApart& l) { l.index.dependencies.push_back(0); }, "a dependency too many");
+}
+
+TEST_F(HostileRegions, nodesFollowOneAnother) {
   const std::uint32_t last = last_, second = second_, head = head_;
-  expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { dependency(l, last) = last; }, "itself");
-  expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { dependency(l, second) = last; }, "a cycle");
-  expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { --dependency(l, last); }, "another packet of the parent's band");
-  expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { dependency(l, second) = head - 1; }, "the head instead of the parent");
-  expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { dependency(l, head + 1) = head; }, "a packet of the same band");
-  expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { l.index.chunks[last].dependencyCount = 0; }, "no parent");
-  expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { l.index.chunks[last].dependencyCount = 2, l.index.dependencies.push_back(0); }, "two parents");
+  expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { std::swap(l.index.chunks[second + 1].node, l.index.chunks[second + 2].node); }, "two in each other's places");
+  expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { --l.index.chunks[last].node; }, "one twice");
+  expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { l.index.chunks[last].node = 0xFFFFFFFF; }, "one whose parent is nowhere");
+  expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { l.index.chunks[head].node = 0; }, "the first packet none");
+  expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { l.index.chunks[head - 1].node = 1; }, "the head's last chunk the root");
+  expectRefused(ErrorCode::kBadValue, [](TakenApart& l) { l.index.chunks[0].node = 1; }, "the base mesh a packet");
 }
 
 TEST_F(HostileRegions, bandsAreWholeAndInOrder) {
@@ -83,10 +90,9 @@ TEST_F(HostileRegions, bandsAreWholeAndInOrder) {
   expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { drop(l, second); }, "without the first of the second band");
   expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { drop(l, head); }, "without the first packet");
   expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { ++l.index.chunks[last].lastLevel; }, "a level more than its band");
-  expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { --l.index.chunks[second + 1].firstLevel; }, "a level of the band before");
   expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { l.index.chunks[last].endSlot = 5; }, "ends within a level");
   expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { l.index.chunks[head - 1].endSlot = 5; }, "the head ends within a level");
-  expectRefused(ErrorCode::kBadValue, [](TakenApart& l) { l.index.layout = Layout::kStream; }, "packets in a stream");
+  expectRefused(ErrorCode::kLimitExceeded, [](TakenApart& l) { l.index.layout = Layout::kStream; }, "packets in a stream");
   expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { while (l.index.chunks.size() > head) drop(l, head); }, "no packets");
   expectRefused(ErrorCode::kLimitExceeded, [=](TakenApart& l) { for (auto i = second; i <= last; ++i) l.index.chunks[i].lastLevel = 5000; }, "levels");
 }
@@ -95,7 +101,6 @@ TEST_F(HostileRegions, boxesLieWithinEachOther) {
   const std::uint32_t last = last_, head = head_;
   expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { std::swap(l.index.chunks[last].box.least, l.index.chunks[last].box.most); }, "inside out");
   expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { l.index.chunks[head].box.most = l.index.chunks[head].box.least; }, "smaller than its children's");
-  expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { l.index.chunks[head - 1].box.most = {1, 1, 1}; }, "of a chunk that is no packet");
 }
 
 TEST_F(HostileRegions, countsBeyondTheBytesAreRefusedBeforeAllocating) {

@@ -1,10 +1,10 @@
 // The promise of the whole: what was fused is refined back, to the bit, at every prefix of the log.
 #include <gtest/gtest.h>
 
-#include "codec/draco_block.h"
+#include "codec/value_block.h"
 #include "codec/log_file.h"
+#include "codec/log_manifest.h"
 #include "codec/log_writer.h"
-#include "proto/manifest.h"
 #include "simplify/qtetfusion.h"
 #include "simplify/verify.h"
 #include "tests/support/meshes.h"
@@ -57,7 +57,7 @@ class RoundTrip : public ::testing::TestWithParam<Shape> {
   }
 
   std::vector<std::int32_t> values(std::uint32_t chunk, std::uint32_t part) const {
-    auto v = decodeDracoBlock(block(chunk, part), index_.components(part), index_.tuples(chunk, part));
+    auto v = decodeValueBlock(block(chunk, part), index_.components(part), index_.tuples(chunk, part));
     EXPECT_TRUE(v) << v.error().text();
     return *v;
   }
@@ -190,13 +190,13 @@ TEST(LogWriter, theManifestListsWhatTheRefinerReaches) {
   ASSERT_TRUE(log);
   const auto index = LogIndex::parse(log->bytes);
   ASSERT_TRUE(index);
-  const auto manifest = manifestFromJson(index->manifest);
+  const auto manifest = manifestOf(*index);
   ASSERT_TRUE(manifest) << manifest.error().text();
   ASSERT_EQ(manifest->levels.size(), history->levels + 1u);
   Refiner refiner(*index);
   for (std::uint32_t chunk = 0; chunk < index->chunks.size(); ++chunk) {
     const auto block = [&](std::uint32_t part) { return ByteView(log->bytes).subspan(index->block(chunk, part).offset, index->block(chunk, part).size); };
-    ASSERT_TRUE(refiner.apply(chunk, block(0), *decodeDracoBlock(block(1), 3, index->chunks[chunk].values)));
+    ASSERT_TRUE(refiner.apply(chunk, block(0), *decodeValueBlock(block(1), 3, index->tuples(chunk, kPositionsPart))));
     const ManifestLevel& level = manifest->levels[refiner.level()];
     EXPECT_LE(level.chunk, chunk);
     if (refiner.level() == index->chunks[chunk].lastLevel) {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "codec/draco_block.h"
+#include "codec/value_block.h"
 #include "codec/log_manifest.h"
 #include "codec/refiner.h"
 #include "tests/fuzz/checked_refiner.h"
@@ -37,7 +37,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return b.offset + b.size <= bytes.size() ? qtet::ByteView(bytes).subspan(static_cast<std::size_t>(b.offset), b.size) : qtet::ByteView();
   };
   const auto values = [&](std::uint32_t chunk, std::uint32_t part) {
-    return qtet::decodeDracoBlock(block(chunk, part), index->components(part), index->tuples(chunk, part));
+    return qtet::decodeValueBlock(block(chunk, part), index->components(part), index->tuples(chunk, part));
   };
   for (std::uint32_t chunk = 0; chunk < index->chunks.size(); ++chunk) {
     const auto positions = values(chunk, qtet::kPositionsPart);

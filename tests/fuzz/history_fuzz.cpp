@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "codec/draco_block.h"
+#include "codec/value_block.h"
 #include "codec/log_manifest.h"
 #include "codec/log_writer.h"
 #include "simplify/paper_fusion.h"
@@ -97,7 +97,7 @@ Log logOf(const FusionHistory& history, ByteSource& in) {
     log.values.emplace_back(1);
     for (std::uint32_t part = kPositionsPart; part < log.index.parts(); ++part) {
       const BlockEntry& b = log.index.block(chunk, part);
-      auto values = decodeDracoBlock(ByteView(log.bytes).subspan(static_cast<std::size_t>(b.offset), b.size), log.index.components(part),
+      auto values = decodeValueBlock(ByteView(log.bytes).subspan(static_cast<std::size_t>(b.offset), b.size), log.index.components(part),
                                      log.index.tuples(chunk, part));
       require(values.has_value(), "a value block does not decode");
       log.values.back().push_back(std::move(*values));

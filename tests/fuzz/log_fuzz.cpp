@@ -3,8 +3,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "codec/log_index.h"
-#include "proto/manifest.h"
+#include "codec/log_manifest.h"
 #include "tests/support/forged_log.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -13,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   (void)qtet::LogIndex::headBytesOf(bytes);
   const auto index = qtet::LogIndex::parse(bytes);
   if (!index) return 0;
-  (void)qtet::manifestFromJson(index->manifest);
+  (void)qtet::manifestOf(*index);
   const qtet::Bytes again = index->encode();
   const auto reparsed = qtet::LogIndex::parse(again);
   if (!reparsed || reparsed->encode() != again || reparsed->headBytes() != index->headBytes()) std::abort();

@@ -16,13 +16,12 @@ qtet::ChunkEntry entryFrom(qtet::fuzz::ByteSource& in, std::uint32_t chunk) {
   e.newVertices = in.next16() % 1024;
   e.newTetrahedra = in.next16() % 4096;
   e.newBoundaryTriangles = in.next16() % 2048;
-  e.values = in.next16() % 1024;
   e.records = in.next16() % 1024;
   e.firstLevel = in.next();
   e.lastLevel = e.firstLevel + in.next() % 4u;
   e.endSlot = in.next16();
   if (e.endSlot == 0xFFFF) e.endSlot = qtet::kLevelEnd;
-  if (chunk == 0) e.values = e.newVertices, e.firstLevel = e.lastLevel = 0;
+  if (chunk == 0) e.firstLevel = e.lastLevel = 0;
   e.blocks.resize(4);
   return e;
 }
@@ -47,7 +46,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   bool whole[2] = {true, true};
   for (std::uint32_t c = 0; c < chunks; ++c) {
     const qtet::ByteView structure = in.take(in.next16());
-    const auto status = refiner.apply(c, structure, valuesFrom(in, std::size_t{index.chunks[c].values} * 3));
+    const auto status = refiner.apply(c, structure, valuesFrom(in, std::size_t{index.tuples(c, qtet::kPositionsPart)} * 3));
     qtet::fuzz::abortUnlessSound(refiner);
     if (!status) break;
     for (std::uint32_t f = 0; f < 2; ++f) {

@@ -3,7 +3,8 @@
 #include <random>
 
 #include "codec/atomic_file.h"
-#include "codec/draco_block.h"
+#include "codec/value_block.h"
+#include "codec/log_manifest.h"
 #include "codec/log_writer.h"
 #include "proto/messages.h"
 #include "simplify/qtetfusion.h"
@@ -45,7 +46,7 @@ Bytes refinerSeed(const testing::TakenApart& log, std::size_t chunks) {
   w.write(static_cast<std::uint8_t>(chunks - 1));
   for (std::size_t c = 0; c < chunks; ++c) {
     const ChunkEntry& e = log.index.chunks[c];
-    for (const std::uint32_t count : {e.newVertices, e.newTetrahedra, e.newBoundaryTriangles, e.values, e.records})
+    for (const std::uint32_t count : {e.newVertices, e.newTetrahedra, e.newBoundaryTriangles, e.records})
       w.write(static_cast<std::uint16_t>(count));
     w.write(static_cast<std::uint8_t>(e.firstLevel));
     w.write(static_cast<std::uint8_t>(e.lastLevel - e.firstLevel));
@@ -56,7 +57,7 @@ Bytes refinerSeed(const testing::TakenApart& log, std::size_t chunks) {
     w.write(static_cast<std::uint16_t>(log.blocks[c][kStructurePart].size()));
     w.append(log.blocks[c][kStructurePart]);
     for (std::uint32_t part = kPositionsPart; part < log.index.parts(); ++part) {
-      const auto values = decodeDracoBlock(log.blocks[c][part], log.index.components(part), log.index.tuples(c, part)).value();
+      const auto values = decodeValueBlock(log.blocks[c][part], log.index.components(part), log.index.tuples(c, part)).value();
       for (const std::int32_t value : values) w.write(static_cast<std::uint16_t>(value));
     }
   }
@@ -70,8 +71,22 @@ Bytes dracoSeed(std::uint32_t components, std::uint32_t tuples, std::int32_t mag
   ByteWriter w;
   w.write(static_cast<std::uint8_t>(components - 1));
   w.write(static_cast<std::uint16_t>(tuples));
-  w.append(encodeDracoBlock(values, components).value());
+  w.append(encodeValueBlock(values, components).value());
   return w.take();
+}
+
+/// As manifest_fuzz reads it, with known errors.
+Bytes knownErrorsSeed() {
+  Manifest m;
+  m.generator = "qtet", m.source = "a.vtu";
+  m.fields = {{"p", 2, "float32", "point", 12, 0.5, {0, 1}, {0, 2}}, {"c", 1, "uint8", "cell", 8, 1, {0}, {0, 255}}};
+  for (std::uint32_t l = 0; l < 6; ++l) {
+    const double e = (5 - l) * 0.01;
+    m.levels.push_back({l, 100 + 10 * l * l, 40 + 3 * l, 50 + 2 * l, 0, LevelError{{e / 3, e}, {e / 4, e}, 1 - e, {{e / 9, e}, {0, e / 2}}}});
+  }
+  Bytes out = manifestBlock(m).value();
+  out.insert(out.begin(), 5);
+  return out;
 }
 
 /// Bytes as history_fuzz reads them: the mesh first, then values, options and damage at random.
@@ -98,7 +113,10 @@ int main(int argc, char** argv) {
   write(folder / "draco" / "large", dracoSeed(2, 30, 1 << 17));
   write(folder / "draco" / "sixteen", dracoSeed(16, 12, 300));
   const auto shortest = refinerLog(1, 1, 32768);
-  write(folder / "manifest" / "two-fields", shortest.index.manifest);
+  Bytes manifest = shortest.index.manifest;
+  manifest.insert(manifest.begin(), static_cast<std::uint8_t>(shortest.index.chunks.back().lastLevel));
+  write(folder / "manifest" / "two-fields", manifest);
+  write(folder / "manifest" / "known-errors", knownErrorsSeed());
   OpenMessage open{"fin", std::string(64, 'a'), {"Velocity", "cell:Region"}, 3, {{"Velocity", 2}}, 1 << 20};
   write(folder / "message" / "open", toJson(ClientMessage(open)));
   write(folder / "message" / "credit", toJson(ClientMessage(CreditMessage{65536})));

@@ -2,12 +2,16 @@
 #include <cstdio>
 #include <fstream>
 #include <functional>
+#include <limits>
 
 #include "codec/atomic_file.h"
 #include "codec/log_file.h"
+#include "codec/level_columns.h"
+#include "codec/log_manifest.h"
 #include "codec/log_writer.h"
 #include "simplify/qtetfusion.h"
 #include "proto/checksum.h"
+#include "proto/limits.h"
 #include "tests/support/forged_log.h"
 #include "tests/support/meshes.h"
 
@@ -28,16 +32,48 @@ Bytes forged(const Bytes& good, const std::function<void(LogIndex&)>& table, con
   if (body) body(parts.blocks);
   Bytes whole = parts.together();
   if (!table) return whole;
-  const auto tail = static_cast<std::ptrdiff_t>(parts.index.headBytes());
   table(parts.index);
-  Bytes out = parts.index.encode();
-  out.insert(out.end(), whole.begin() + tail, whole.end());
-  return out;
+  return testing::withFront(whole, parts.index);
 }
 
 void write(const std::filesystem::path& path, const Bytes& bytes) {
   std::filesystem::create_directories(path.parent_path());
   if (const Status s = writeFileAtomically(path, bytes); !s) std::fprintf(stderr, "%s\n", s.error().text().c_str());
+}
+
+/// What the head says of levels and fields, broken below right checksums.
+void writeBadHeads(const std::filesystem::path& folder, const Bytes& good) {
+  const auto manifest = [&](const std::function<void(Bytes&)>& change) {
+    testing::TakenApart parts = testing::takeApart(good);
+    change(parts.index.manifest);
+    return parts.together();
+  };
+  const auto manifested = [&](const std::function<void(Manifest&)>& change) {
+    testing::TakenApart parts = testing::takeApart(good);
+    Manifest m = manifestOf(parts.index).value();
+    change(m);
+    parts.index.manifest = manifestBlock(m).value();
+    return parts.together();
+  };
+  write(folder / "truncated.manifest-fields.qtet", manifest([](Bytes& b) { b.resize(60); }));
+  write(folder / "truncated.manifest-levels.qtet", manifest([](Bytes& b) { b.resize(b.size() - 3); }));
+  write(folder / "bad-value.manifest-too-long.qtet", manifest([](Bytes& b) { b.push_back(0); }));
+  write(folder / "bad-value.manifest-long-varint.qtet", manifest([](Bytes& b) { b[0] |= 128, b.insert(b.begin() + 1, 0); }));
+  write(folder / "bad-value.manifest-name-length.qtet", manifest([](Bytes& b) { b[0] |= 128, b.insert(b.begin() + 1, 3); }));
+  write(folder / "bad-value.manifest-step.qtet", manifested([](Manifest& m) { m.latticeStep = 0; }));
+  write(folder / "bad-value.manifest-not-finite.qtet", manifested([](Manifest& m) { m.latticeOrigin[1] = std::numeric_limits<double>::quiet_NaN(); }));
+  write(folder / "bad-value.manifest-field-bits.qtet", manifested([](Manifest& m) { m.fields[0].bits = 29; }));
+  write(folder / "bad-value.manifest-field-type.qtet", manifested([](Manifest& m) { m.fields[0].type = "complex64"; }));
+  write(folder / "bad-value.manifest-field-twice.qtet", manifested([](Manifest& m) { m.fields[1].name = m.fields[0].name; }));
+  write(folder / "bad-value.manifest-no-name.qtet", manifested([](Manifest& m) { m.fields[0].name.clear(); }));
+  write(folder / "bad-value.manifest-count.qtet", manifested([](Manifest& m) { m.levels[1].vertices = kMaxElements + 1; }));
+  // The figures of all levels in the bytes of none.
+  const Manifest m = manifestOf(testing::takeApart(good).index).value();
+  LevelColumns columns;
+  for (const auto count : {&ManifestLevel::tetrahedra, &ManifestLevel::vertices, &ManifestLevel::boundaryTriangles})
+    for (const ManifestLevel& level : m.levels) columns.push_back(level.*count);
+  const std::size_t size = encodeLevelColumns(columns, static_cast<std::uint32_t>(m.levels.size())).size();
+  write(folder / "limit-exceeded.manifest-bomb.qtet", manifest([size](Bytes& b) { b.resize(b.size() - size); }));
 }
 
 void writeMustFail(const std::filesystem::path& folder, const Bytes& good) {
@@ -56,7 +92,7 @@ void writeMustFail(const std::filesystem::path& folder, const Bytes& good) {
   write(folder / "bad-magic.text-mode-copy.qtet", patched(5, 0x0A));
   write(folder / "bad-version.major-1.qtet", patched(8, 1));
   write(folder / "bad-version.major-3.qtet", patched(8, 3));
-  write(folder / "bad-version.regions.qtet", forged(good, [](LogIndex& i) { i.layout = Layout::kRegions; }));
+  write(folder / "bad-value.regions-without-packets.qtet", forged(good, [](LogIndex& i) { i.layout = Layout::kRegions; }));
   write(folder / "truncated.header.qtet", cut(63));
   write(folder / "truncated.manifest.qtet", cut(100));
   write(folder / "truncated.last-byte.qtet", cut(good.size() - 1));
@@ -70,21 +106,21 @@ void writeMustFail(const std::filesystem::path& folder, const Bytes& good) {
   write(folder / "bad-value.field-components.qtet", forged(good, [](LogIndex& i) { i.fields[0].components = 0; }));
   write(folder / "bad-value.field-association.qtet", forged(good, [](LogIndex& i) { i.fields[0].association = static_cast<Association>(2); }));
   write(folder / "bad-value.points-as-cells.qtet", forged(good, [](LogIndex& i) { i.fields[0].association = Association::kCell; }));
-  write(folder / "bad-value.chunk-offset.qtet", entry(1, [](ChunkEntry& e) { e.offset += 8; }));
-  write(folder / "bad-value.levels-backwards.qtet", entry(2, [](ChunkEntry& e) { e.firstLevel = 0; }));
-  write(folder / "bad-value.depends-on-itself.qtet", forged(good, [](LogIndex& i) { i.dependencies[0] = 1; }));
+  write(folder / "bad-value.block-size.qtet", entry(1, [](ChunkEntry& e) { e.blocks[0].size += 8; }));
+  write(folder / "bad-value.dependencies.qtet", forged(good, [](LogIndex& i) { i.dependencies.push_back(1); }));
   write(folder / "bad-value.reserved-bytes.qtet", reserved);
   write(folder / "bad-value.ends-within-a-level.qtet", entry(index.chunks.size() - 1, [](ChunkEntry& e) { e.endSlot = 1000; }));
-  write(folder / "bad-value.a-level-left-out.qtet", entry(index.chunks.size() - 1, [](ChunkEntry& e) { ++e.firstLevel, ++e.lastLevel; }));
+  write(folder / "bad-value.a-level-too-many.qtet", entry(index.chunks.size() - 1, [](ChunkEntry& e) { ++e.lastLevel; }));
   write(folder / "bad-value.too-few-cells.qtet", entry(1, [](ChunkEntry& e) { --e.newTetrahedra; }));
-  write(folder / "bad-value.too-many-values.qtet", entry(1, [](ChunkEntry& e) { ++e.values; }));
+  write(folder / "bad-value.too-many-records.qtet", entry(1, [](ChunkEntry& e) { ++e.records; }));
   write(folder / "limit-exceeded.levels.qtet", entry(index.chunks.size() - 1, [](ChunkEntry& e) { e.lastLevel = 4097; }));
   write(folder / "limit-exceeded.records.qtet", entry(1, [](ChunkEntry& e) { e.records = 0x40000000; }));
   write(folder / "bad-codec.unknown-id.qtet", entry(1, [](ChunkEntry& e) { e.valueCodec = static_cast<CodecId>(77); }));
-  write(folder / "bad-codec.not-draco.qtet", forged(good, {}, [](auto& blocks) { blocks[1][kPositionsPart] = Bytes(50, 0x5A); }));
+  write(folder / "bad-codec.not-draco.qtet", forged(good, {}, [](auto& blocks) { blocks[1][kPositionsPart] = Bytes(50, 0x5A), std::fill_n(blocks[1][kPositionsPart].end() - 4, 4, 0); }));
   write(folder / "bad-value.structure-of-noise.qtet", forged(good, {}, [](auto& blocks) { for (auto& b : blocks[1][kStructurePart]) b = static_cast<std::uint8_t>(b * 7 + 3); }));
   write(folder / "bad-value.structure-too-long.qtet", forged(good, {}, [](auto& blocks) { blocks[1][kStructurePart].push_back(0); }));
-  write(folder / "truncated.structure.qtet", forged(good, {}, [](auto& blocks) { blocks[2][kStructurePart].resize(blocks[2][kStructurePart].size() / 2); }));
+  writeBadHeads(folder, good);
+  write(folder / "bad-value.structure-cut.qtet", forged(good, {}, [](auto& blocks) { blocks[2][kStructurePart].resize(blocks[2][kStructurePart].size() / 2); }));
 }
 
 /// What the valid files decode to, in the form that sha256sum writes.
@@ -113,7 +149,7 @@ int main(int argc, char** argv) {
   if (argc != 2) return std::fprintf(stderr, "usage: qtet_golden FOLDER\n"), 2;
   const std::filesystem::path folder = argv[1];
   using qtet::testing::gridMesh;
-  const qtet::Bytes solid = qtet::logOf(gridMesh(3, 1), 500);
+  const qtet::Bytes solid = qtet::logOf(gridMesh(3, 1), 150);
   qtet::write(folder / "valid" / "solid.qtet", solid);
   qtet::write(folder / "valid" / "tunnel.qtet", qtet::logOf(gridMesh(3, 2, [](int i, int j, int) { return i != 1 || j != 1; }), 300));
   qtet::write(folder / "valid" / "pinched.qtet", qtet::logOf(gridMesh(4, 3, [](int i, int j, int) { return (i < 2) == (j < 2); }), 700));

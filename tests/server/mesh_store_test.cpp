@@ -65,14 +65,10 @@ Bytes rewritten(Change change) {
 }
 
 TEST(MeshStore, aManifestThatContradictsTheTableIsRefused) {
-  EXPECT_EQ(refusalOfDamaged(rewritten([](LogIndex& index) { index.fields[0].components = 2; })), ErrorCode::kBadValue);
-  EXPECT_EQ(refusalOfDamaged(rewritten([](LogIndex& index) { index.manifest = "{}"; })), ErrorCode::kBadValue);
-  EXPECT_EQ(refusalOfDamaged(rewritten([](LogIndex& index) {
-              Manifest manifest = *manifestFromJson(index.manifest);
-              manifest.levels.back().chunk = static_cast<std::uint32_t>(index.chunks.size());
-              index.manifest = manifestToJson(manifest);
-            })),
-            ErrorCode::kBadValue);
+  EXPECT_EQ(refusalOfDamaged(rewritten([](LogIndex& index) { index.fields[0].components = 2; })), ErrorCode::kTruncated);
+  EXPECT_EQ(refusalOfDamaged(rewritten([](LogIndex& index) { index.fields.push_back({1, Association::kPoint}); })), ErrorCode::kBadValue);
+  EXPECT_EQ(refusalOfDamaged(rewritten([](LogIndex& index) { index.manifest.push_back(0); })), ErrorCode::kBadValue);
+  EXPECT_EQ(refusalOfDamaged(rewritten([](LogIndex& index) { index.manifest.resize(2); })), ErrorCode::kTruncated);
 }
 
 TEST(MeshStore, aFolderThatIsNotThereIsAnError) {

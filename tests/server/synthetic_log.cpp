@@ -6,8 +6,8 @@
 #include <random>
 #include <stdexcept>
 
+#include "codec/log_manifest.h"
 #include "proto/crc32c.h"
-#include "proto/manifest.h"
 
 namespace qtet::test {
 namespace {
@@ -37,12 +37,12 @@ Built build(const SyntheticLog& options) {
   const Manifest manifest = makeManifest(options);
   Built out;
   out.index.positionBits = 16;
-  out.index.manifest = manifestToJson(manifest);
+  out.index.manifest = manifestBlock(manifest).value();
   for (const ManifestField& field : manifest.fields) out.index.fields.push_back({field.components, Association::kPoint});
   for (std::uint32_t k = 0; k < options.chunks; ++k) {
     ChunkEntry chunk;
     chunk.firstLevel = chunk.lastLevel = k;
-    chunk.newVertices = chunk.values = 5;
+    chunk.newVertices = 5;
     chunk.firstDependency = k == 0 ? 0 : k - 1;
     chunk.dependencyCount = k > 0;
     if (k > 0) out.index.dependencies.push_back(k - 1);
@@ -57,7 +57,7 @@ Built build(const SyntheticLog& options) {
     }
     out.index.chunks.push_back(std::move(chunk));
   }
-  // The head's size depends on counts alone, so it is known before the offsets are.
+  // No offset is stored, so the head's size is known before they are.
   std::uint64_t offset = out.index.encode().size();
   for (ChunkEntry& chunk : out.index.chunks) {
     chunk.offset = offset;

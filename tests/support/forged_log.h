@@ -15,11 +15,14 @@ struct TakenApart {
 
   /// Header, manifest, table, blocks. Offsets, sizes and checksums are those of `blocks`.
   [[nodiscard]] Bytes together() {
-    std::uint64_t offset = index.encode().size();
+    for (std::size_t c = 0; c < blocks.size(); ++c) {
+      index.chunks[c].blocks.resize(blocks[c].size());
+      for (std::size_t p = 0; p < blocks[c].size(); ++p) index.chunks[c].blocks[p].size = static_cast<std::uint32_t>(blocks[c][p].size());
+    }
+    std::uint64_t offset = index.encode().size();  // which depends on the sizes
     Bytes tail;
     for (std::size_t c = 0; c < blocks.size(); ++c) {
       index.chunks[c].offset = offset;
-      index.chunks[c].blocks.resize(blocks[c].size());
       for (std::size_t p = 0; p < blocks[c].size(); ++p) {
         index.chunks[c].blocks[p] = {offset, static_cast<std::uint32_t>(blocks[c][p].size()), crc32c(blocks[c][p])};
         offset += blocks[c][p].size();
@@ -32,6 +35,15 @@ struct TakenApart {
     return out;
   }
 };
+
+/// `good` with another front, the blocks as they are: its length in the header becomes right, everything else is as `index` says.
+[[nodiscard]] inline Bytes withFront(ByteView good, LogIndex index) {
+  const std::uint64_t before = LogIndex::parse(good).value().headBytes();
+  index.fileBytes += index.encode().size() - before;
+  Bytes out = index.encode();
+  out.insert(out.end(), good.begin() + static_cast<std::ptrdiff_t>(before), good.end());
+  return out;
+}
 
 /// REQUIRES a log that LogIndex::parse accepts.
 [[nodiscard]] inline TakenApart takeApart(ByteView log) {

@@ -1,11 +1,14 @@
 // Puts arriving blocks into the codec in the order that it wants: head, structure with positions, then fields behind the mesh.
 
-import {kDracoCodec, type Codec} from './codec';
+import {kAdaptiveCodec, kDracoCodec, type BlockValues, type Codec} from './codec';
 import type {ValueDecoder} from './draco';
 import {QtetError} from './errors';
-import {manifestText, parseManifest, type Manifest} from './manifest';
+import {readManifest, type Manifest} from './manifest';
 import {kFirstFieldPart, kHeadPart, kPositionsPart, kStructurePart, type Frame} from './protocol';
 import {ByteLedger, kNoStatistics, statisticsOf, type Statistics} from './statistics';
+
+/** The number of a value block's digit bytes stands in its last bytes. */
+const kDigitCountBytes = 4;
 
 export class Assembler {
   manifest: Manifest | null = null;
@@ -47,7 +50,7 @@ export class Assembler {
 
   private takeHead(head: Uint8Array): void {
     this.codec.open(head);
-    this.manifest = parseManifest(manifestText(head));
+    this.manifest = readManifest(head, (bytes, columns) => this.codec.levelColumns(bytes, columns));
     this.ledger = new ByteLedger(this.codec, head.length);
     this.waiting.clear();
   }
@@ -68,12 +71,17 @@ export class Assembler {
     this.codec.apply(chunk, halves.structure, this.decode(chunk, kPositionsPart, halves.positions, 3));
   }
 
-  private decode(chunk: number, part: number, bytes: Uint8Array, components: number): Int32Array {
+  private decode(chunk: number, part: number, bytes: Uint8Array, components: number): BlockValues {
     const count = this.codec.blockValues(chunk, part);
-    if (count === 0 && bytes.length === 0) return new Int32Array(0);
+    if (count === 0 && bytes.length === 0) return {symbols: new Int32Array(0), digits: bytes};
     const id = this.codec.blockCodec(chunk, part);
+    if (id === kAdaptiveCodec) return {symbols: new Int32Array(0), digits: bytes};
     if (id !== kDracoCodec) throw new QtetError('bad-codec', `Chunk ${chunk} uses codec ${id}, which this viewer does not know.`);
     if (count === 0) throw new QtetError('bad-value', `Chunk ${chunk} has a value block although it has no values.`);
-    return this.values.decode(bytes, count, components);
+    const end = bytes.length - kDigitCountBytes;
+    const digitBytes = end < 0 ? Infinity : new DataView(bytes.buffer, bytes.byteOffset + end).getUint32(0, true);
+    if (digitBytes > end) throw new QtetError('bad-value', `Chunk ${chunk} has a value block that is shorter than its digits.`);
+    const digits = bytes.subarray(end - digitBytes, end);
+    return {symbols: this.values.decode(bytes.subarray(0, end - digitBytes), count, components), digits};
   }
 }

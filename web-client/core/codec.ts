@@ -6,14 +6,16 @@ import {QtetError} from './errors';
 export interface Codec {
   open(head: Uint8Array): void;
   readonly chunkCount: number;
+  /** Numbers of all levels, column by column, from the end of the manifest. Throws `limit-exceeded`, `truncated`, `bad-value`. */
+  levelColumns(bytes: Uint8Array, columns: number): Uint32Array;
   blockSize(chunk: number, part: number): number;
   /** Tuples of a value block. */
   blockValues(chunk: number, part: number): number;
   blockCodec(chunk: number, part: number): number;
   /** Throws `bad-checksum` when the bytes are not the block's. */
   checkBlock(chunk: number, part: number, bytes: Uint8Array): void;
-  apply(chunk: number, structure: Uint8Array, positions: Int32Array): void;
-  applyField(field: number, chunk: number, values: Int32Array): void;
+  apply(chunk: number, structure: Uint8Array, positions: BlockValues): void;
+  applyField(field: number, chunk: number, values: BlockValues): void;
   readonly chunksApplied: number;
   fieldChunksApplied(field: number): number;
   readonly level: number;
@@ -30,8 +32,15 @@ export interface Codec {
   digest(): string;
 }
 
+/** A value block in its two parts (FORMAT.md, "Value blocks"): what Draco decodes, and the digits behind it; an adaptive block is all digits. */
+export interface BlockValues {
+  symbols: Int32Array;
+  digits: Uint8Array;
+}
+
 /** CodecId of codec/log_index.h. */
 export const kDracoCodec = 2;
+export const kAdaptiveCodec = 3;
 /** Association of codec/log_index.h. */
 const kOfCells = 1;
 
@@ -49,13 +58,17 @@ interface Exports {
   qtet_open(head: number, bytes: number): number;
   qtet_error(): number;
   qtet_chunk_count(): number;
+  qtet_level_count(): number;
+  qtet_level_columns(bytes: number, size: number, columns: number): number;
+  qtet_level_numbers(): number;
   qtet_block_size(chunk: number, part: number): number;
   qtet_block_values(chunk: number, part: number): number;
   qtet_field_association(field: number): number;
   qtet_block_codec(chunk: number, part: number): number;
   qtet_check_block(chunk: number, part: number, bytes: number, size: number): number;
-  qtet_apply(chunk: number, structure: number, size: number, positions: number, count: number): number;
-  qtet_apply_field(field: number, chunk: number, values: number, count: number): number;
+  qtet_apply(
+    chunk: number, structure: number, size: number, symbols: number, count: number, digits: number, digitBytes: number): number;
+  qtet_apply_field(field: number, chunk: number, symbols: number, count: number, digits: number, digitBytes: number): number;
   qtet_chunks_applied(): number;
   qtet_field_chunks_applied(field: number): number;
   qtet_level(): number;
@@ -84,6 +97,11 @@ export class WasmCodec implements Codec {
   }
 
   get chunkCount(): number { return this.wasm.qtet_chunk_count() >>> 0; }
+  levelColumns(bytes: Uint8Array, columns: number): Uint32Array {
+    this.with([bytes], ([address]) => this.wasm.qtet_level_columns(address!, bytes.length, columns));
+    const count = columns * (this.wasm.qtet_level_count() >>> 0);
+    return new Uint32Array(this.wasm.memory.buffer, this.wasm.qtet_level_numbers() >>> 0, count).slice();
+  }
   blockSize(chunk: number, part: number): number { return this.wasm.qtet_block_size(chunk, part) >>> 0; }
   blockValues(chunk: number, part: number): number { return this.wasm.qtet_block_values(chunk, part) >>> 0; }
   blockCodec(chunk: number, part: number): number { return this.wasm.qtet_block_codec(chunk, part) >>> 0; }
@@ -92,13 +110,14 @@ export class WasmCodec implements Codec {
     this.with([bytes], ([address]) => this.wasm.qtet_check_block(chunk, part, address!, bytes.length));
   }
 
-  apply(chunk: number, structure: Uint8Array, positions: Int32Array): void {
-    this.with([structure, bytesOf(positions)], ([from, values]) =>
-      this.wasm.qtet_apply(chunk, from!, structure.length, values!, positions.length));
+  apply(chunk: number, structure: Uint8Array, {symbols, digits}: BlockValues): void {
+    this.with([structure, bytesOf(symbols), digits], ([from, values, rest]) =>
+      this.wasm.qtet_apply(chunk, from!, structure.length, values!, symbols.length, rest!, digits.length));
   }
 
-  applyField(field: number, chunk: number, values: Int32Array): void {
-    this.with([bytesOf(values)], ([address]) => this.wasm.qtet_apply_field(field, chunk, address!, values.length));
+  applyField(field: number, chunk: number, {symbols, digits}: BlockValues): void {
+    this.with([bytesOf(symbols), digits], ([values, rest]) =>
+      this.wasm.qtet_apply_field(field, chunk, values!, symbols.length, rest!, digits.length));
   }
 
   get chunksApplied(): number { return this.wasm.qtet_chunks_applied() >>> 0; }

@@ -13,11 +13,27 @@ export interface FieldInfo {
   range: [number, number];
 }
 
+/** Of a mean or rms, and of the largest. */
+export interface Spread {
+  mean: number;
+  max: number;
+}
+
+/** How far a level is from the last one: distances over the diagonal, fields over their range; never understated. */
+export interface LevelError {
+  toLevel: Spread;
+  toOriginal: Spread;
+  volumeKept: number;
+  /** In the order of the fields; `mean` is the rms. */
+  fields: Spread[];
+}
+
 export interface LevelInfo {
   level: number;
   tetrahedra: number;
   vertices: number;
   boundaryTriangles: number;
+  error?: LevelError;
 }
 
 export interface Manifest {
@@ -27,81 +43,114 @@ export interface Manifest {
   levels: LevelInfo[];
 }
 
-/** Where the manifest lies in the front of a log (codec/FORMAT.md, "Header"). */
+/** Places in the front of a log (codec/FORMAT.md, "Header", "Chunk table"). */
 const kHeaderBytes = 64;
+const kPositionBitsAt = 13;
 const kManifestBytesAt = 24;
+const kFieldsAt = 44;
+/** codec/FORMAT.md, "Manifest" and "Level columns". */
+const kMaxNameBytes = 256;
+const kFieldTypes = 10;
+const kMaxFieldBits = 28;
+const kCountColumns = 3;
+const kVolumeFigure = 1e6;
+const kErrorFigureDigits = 14;
 
-/** The manifest's JSON. REQUIRES: a head that the codec has opened, so that its counts and checksums are known to be right. */
-export function manifestText(head: Uint8Array): string {
-  const size = new DataView(head.buffer, head.byteOffset, head.byteLength).getUint32(kManifestBytesAt, true);
-  return new TextDecoder().decode(head.subarray(kHeaderBytes, kHeaderBytes + size));
+/**
+ * REQUIRES: a head that the codec has opened, so that its counts and checksums are known to be right; `levelColumns` is that codec's.
+ * Throws `truncated`, `bad-value`, and what `levelColumns` throws.
+ */
+export function readManifest(head: Uint8Array, levelColumns: (bytes: Uint8Array, columns: number) => Uint32Array): Manifest {
+  const header = new DataView(head.buffer, head.byteOffset, head.byteLength);
+  const tableAt = kHeaderBytes + header.getUint32(kManifestBytesAt, true);
+  const shapes = Array.from({length: header.getUint32(kFieldsAt, true)}, (_, f) =>
+    ({components: head[tableAt + 2 * f]!, association: head[tableAt + 2 * f + 1] === 1 ? 'cell' : 'point'} as const));
+  const reader = new ManifestReader(head.subarray(kHeaderBytes, tableAt));
+  reader.text();  // which program wrote it
+  const source = reader.text();
+  const lattice = {bits: head[kPositionBitsAt]!, step: reader.step(), origin: reader.numbers(3) as [number, number, number]};
+  const fields = shapes.map(({components, association}) => readField(reader, components, association));
+  if (new Set(fields.map(({association, name}) => `${association}:${name}`)).size < fields.length) throw damaged('has a field twice');
+  const hasErrors = reader.byte();
+  if (hasErrors > 1) throw damaged('tells of errors in a way that this viewer does not know');
+  const columns = kCountColumns + (hasErrors ? 1 + 2 * (2 + fields.length) : 0);
+  return {source, lattice, fields, levels: levelsOf(levelColumns(reader.rest(), columns), columns)};
 }
 
-/** Throws `bad-value` with the place of what is missing. */
-export function parseManifest(text: string): Manifest {
-  let json: unknown;
-  try {
-    json = JSON.parse(text);
-  } catch {
-    throw wrong('', 'JSON');
+function readField(reader: ManifestReader, components: number, association: 'point' | 'cell'): FieldInfo {
+  const name = reader.text();
+  if (name === '') throw damaged('has a field without a name');
+  if (reader.byte() >= kFieldTypes) throw damaged('has a field of an unknown type');
+  const bits = reader.byte();
+  if (bits < 1 || bits > kMaxFieldBits) throw damaged(`has a field of ${bits} bits`);
+  return {
+    name, components, association, step: reader.step(), minimum: reader.numbers(components), range: reader.numbers(2) as [number, number],
+  };
+}
+
+function levelsOf(numbers: Uint32Array, columns: number): LevelInfo[] {
+  const levels = numbers.length / columns;
+  return Array.from({length: levels}, (_, level) => {
+    const at = (column: number): number => numbers[column * levels + level]!;
+    const info: LevelInfo = {level, tetrahedra: at(0), vertices: at(1), boundaryTriangles: at(2)};
+    if (columns === kCountColumns) return info;
+    const pairs: Spread[] = [];
+    for (let column = kCountColumns + 1; column < columns; column += 2) pairs.push({mean: errorOf(at(column)), max: errorOf(at(column + 1))});
+    const [toLevel, toOriginal, ...fields] = pairs;
+    info.error = {toLevel: toLevel!, toOriginal: toOriginal!, volumeKept: at(kCountColumns) / kVolumeFigure, fields};
+    return info;
+  });
+}
+
+/** Three significant digits as an integer (codec/error_figure.h); read as a decimal, so that it is rounded once. */
+export function errorOf(figure: number): number {
+  if (figure === 0) return 0;
+  return Number(`${100 + (figure - 1) % 900}e${Math.floor((figure - 1) / 900) - kErrorFigureDigits}`);
+}
+
+class ManifestReader {
+  private at = 0;
+  private readonly view: DataView;
+
+  constructor(private readonly bytes: Uint8Array) {
+    this.view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   }
-  const root = object(json, '');
-  const lattice = object(root.lattice, '/lattice');
-  return {
-    source: typeof root.source === 'string' ? root.source : '',
-    lattice: {
-      bits: number(lattice.bits, '/lattice/bits'),
-      step: number(lattice.step, '/lattice/step'),
-      origin: numbers(lattice.origin, 3, '/lattice/origin') as [number, number, number],
-    },
-    fields: list(root.fields, '/fields').map((value, i) => parseField(object(value, `/fields/${i}`), `/fields/${i}`)),
-    levels: list(root.levels, '/levels').map((value, i) => parseLevel(object(value, `/levels/${i}`), `/levels/${i}`)),
-  };
+
+  byte(): number { return this.view.getUint8(this.take(1)); }
+
+  text(): string {
+    const low = this.byte();
+    const high = low < 128 ? 0 : this.byte();
+    if (low >= 128 && high === 0) throw damaged('has a length that is not written in its shortest form');
+    const size = (low & 127) + 128 * high;
+    if (size > kMaxNameBytes) throw damaged('has a name that is too long');
+    const from = this.take(size);
+    return new TextDecoder().decode(this.bytes.subarray(from, from + size));
+  }
+
+  numbers(count: number): number[] { return Array.from({length: count}, () => this.number()); }
+
+  step(): number {
+    const step = this.number();
+    if (!(step > 0)) throw damaged('has a step that is not above 0');
+    return step;
+  }
+
+  rest(): Uint8Array { return this.bytes.subarray(this.at); }
+
+  private number(): number {
+    const value = this.view.getFloat64(this.take(8), true);
+    if (!Number.isFinite(value)) throw damaged('has a number that is not finite');
+    return value;
+  }
+
+  private take(count: number): number {
+    if (this.at + count > this.bytes.length) throw new QtetError('truncated', "The mesh's description ends too early.");
+    this.at += count;
+    return this.at - count;
+  }
 }
 
-function parseField(field: Record<string, unknown>, at: string): FieldInfo {
-  const components = number(field.components, `${at}/components`);
-  return {
-    name: text(field.name, `${at}/name`), components, association: field.association === 'cell' ? 'cell' : 'point',
-    step: number(field.step, `${at}/step`),
-    minimum: numbers(field.minimum, components, `${at}/minimum`),
-    range: numbers(field.range, 2, `${at}/range`) as [number, number],
-  };
-}
-
-function parseLevel(level: Record<string, unknown>, at: string): LevelInfo {
-  return {
-    level: number(level.level, `${at}/level`), tetrahedra: number(level.tetrahedra, `${at}/tetrahedra`),
-    vertices: number(level.vertices, `${at}/vertices`), boundaryTriangles: number(level.boundaryTriangles, `${at}/boundaryTriangles`),
-  };
-}
-
-function object(value: unknown, at: string): Record<string, unknown> {
-  if (typeof value !== 'object' || value === null || Array.isArray(value)) throw wrong(at, 'an object');
-  return value as Record<string, unknown>;
-}
-
-function list(value: unknown, at: string): unknown[] {
-  if (!Array.isArray(value)) throw wrong(at, 'a list');
-  return value;
-}
-
-function number(value: unknown, at: string): number {
-  if (typeof value !== 'number' || !Number.isFinite(value)) throw wrong(at, 'a number');
-  return value;
-}
-
-function numbers(value: unknown, count: number, at: string): number[] {
-  const values = list(value, at).map((item, i) => number(item, `${at}/${i}`));
-  if (values.length !== count) throw wrong(at, `${count} numbers`);
-  return values;
-}
-
-function text(value: unknown, at: string): string {
-  if (typeof value !== 'string') throw wrong(at, 'a text');
-  return value;
-}
-
-function wrong(at: string, expected: string): QtetError {
-  return new QtetError('bad-value', `The mesh's description is damaged: "${at || '/'}" is not ${expected}.`);
+function damaged(what: string): QtetError {
+  return new QtetError('bad-value', `The mesh's description is damaged: it ${what}.`);
 }

@@ -46,18 +46,25 @@ export interface FakeLog {
 /** Every block of a fake log is 10 bytes. */
 export const kFakeBlockBytes = 10;
 
-export function fakeHead({fields, cellFields = [], chunks}: FakeLog): Uint8Array {
-  const info = (association: string) => (name: string) =>
-    ({name, components: 1, type: 'float32', association, bits: 8, step: 1, minimum: [0], range: [0, 255]});
-  const manifest = new TextEncoder().encode(JSON.stringify({
-    generator: 'fake', layout: 'stream', source: 'fake.vtu', lattice: {bits: 16, step: 1, origin: [0, 0, 0]},
-    fields: [...fields.map(info('point')), ...cellFields.map(info('cell'))],
-    levels: Array.from({length: chunks}, (_, level) => (
-      {level, tetrahedra: level + 1, vertices: level + 4, boundaryTriangles: 4, chunk: level})),
-  }));
-  const head = new Uint8Array(64 + manifest.length);
-  new DataView(head.buffer).setUint32(24, manifest.length, true);
+const doubles = (...values: number[]): Uint8Array => new Uint8Array(new Float64Array(values).buffer);
+const text = (value: string): number[] => [value.length, ...new TextEncoder().encode(value)];
+
+export function fakeHead({fields, cellFields = []}: FakeLog): Uint8Array {
+  const names = [...fields, ...cellFields];
+  const kFloat32 = 0, kBits = 8;
+  const manifest = [
+    ...text('fake'), ...text('fake.vtu'), ...doubles(1, 0, 0, 0),
+    ...names.flatMap((name) => [...text(name), kFloat32, kBits, ...doubles(1, 0, 0, 255)]),
+    0,  // no known errors
+  ];
+  const table = names.flatMap((_, f) => [1, f < fields.length ? 0 : 1]);
+  const head = new Uint8Array(64 + manifest.length + table.length);
+  const view = new DataView(head.buffer);
+  head[13] = 16;
+  view.setUint32(24, manifest.length, true);
+  view.setUint32(44, names.length, true);
   head.set(manifest, 64);
+  head.set(table, 64 + manifest.length);
   return head;
 }
 
@@ -86,6 +93,10 @@ export class FakeCodec implements Codec {
     this.fieldChunks = this.log.fields.map(() => 0);
   }
   get chunkCount(): number { return this.log.chunks; }
+  levelColumns(): Uint32Array {
+    const levels = Array.from({length: this.log.chunks}, (_, level) => level);
+    return Uint32Array.from([...levels.map((level) => level + 1), ...levels.map((level) => level + 4), ...levels.map(() => 4)]);
+  }
   blockSize(): number { return kFakeBlockBytes; }
   blockValues(): number { return 1; }
   blockCodec(): number { return 2; }

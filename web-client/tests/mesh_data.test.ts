@@ -1,6 +1,7 @@
 import {describe, expect, test} from 'vitest';
 import {FieldScale} from '../core/field_scale';
-import {parseManifest} from '../core/manifest';
+import {errorOf, readManifest} from '../core/manifest';
+import {fakeHead} from './fakes';
 import {boundarySoup, soupBounds} from '../core/triangle_soup';
 
 const info = (components: number, minimum: number[], range: [number, number]) =>
@@ -38,27 +39,49 @@ test('aSoupHasEveryTrianglesCornersInOrder', () => {
 });
 
 describe('a manifest', () => {
-  const good = {
-    source: 'a.vtu', lattice: {bits: 16, step: 0.1, origin: [1, 2, 3]},
-    fields: [{name: 'p', components: 1, association: 'point', step: 1, minimum: [0], range: [0, 1]}],
-    levels: [{level: 0, tetrahedra: 5, vertices: 4, boundaryTriangles: 3}],
-  };
+  const columns = (): Uint32Array => Uint32Array.from([5, 6, 4, 7, 3, 8]);
+  const head = (): Uint8Array => fakeHead({fields: ['p', 'q'], cellFields: ['p'], chunks: 2});
+  const kNameAt = 64 + 5 + 9 + 32 + 1, kTypeAt = kNameAt + 1, kBitsAt = kTypeAt + 1, kStepAt = kBitsAt + 1;
 
   test('isReadAsItStands', () => {
-    expect(parseManifest(JSON.stringify(good))).toEqual(good);
+    const field = (name: string, association: string) => ({name, components: 1, association, step: 1, minimum: [0], range: [0, 255]});
+    expect(readManifest(head(), columns)).toEqual({
+      source: 'fake.vtu', lattice: {bits: 16, step: 1, origin: [0, 0, 0]},
+      fields: [field('p', 'point'), field('q', 'point'), field('p', 'cell')],
+      levels: [{level: 0, tetrahedra: 5, vertices: 4, boundaryTriangles: 3}, {level: 1, tetrahedra: 6, vertices: 7, boundaryTriangles: 8}],
+    });
+  });
+
+  test('tellsTheErrorsWhereThereAreSome', () => {
+    const bytes = fakeHead({fields: ['p'], chunks: 1});
+    bytes[bytes.length - 3] = 1;  // behind it stands the table's shape of the one field
+    const {levels} = readManifest(bytes, (_, count) => {
+      expect(count).toBe(10);
+      return Uint32Array.from([9, 8, 7, 987654, 1, 901, 0, 0, 9024, 9924]);
+    });
+    expect(levels[0]!.error).toEqual({
+      toLevel: {mean: 1e-12, max: 1e-11}, toOriginal: {mean: 0, max: 0}, volumeKept: 0.987654, fields: [{mean: 0.0123, max: 0.123}],
+    });
+    expect(errorOf(17100)).toBe(9.99e6);
   });
 
   test.each([
-    ['/lattice', {...good, lattice: undefined}],
-    ['/lattice/origin', {...good, lattice: {...good.lattice, origin: [1, 2]}}],
-    ['/fields/0/minimum', {...good, fields: [{...good.fields[0], minimum: []}]}],
-    ['/fields/0/name', {...good, fields: [{...good.fields[0], name: 3}]}],
-    ['/levels/0/tetrahedra', {...good, levels: [{...good.levels[0], tetrahedra: '5'}]}],
-  ])('withoutItsPart %s isRefusedWithThePlace', (place, broken) => {
-    expect(() => parseManifest(JSON.stringify(broken))).toThrow(`"${place}"`);
+    ['a name too long', 64, [0x81, 0x03]], ['a length not in its shortest form', 64, [0x84, 0x00]], ['no name', kNameAt - 1, [0]],
+    ['the same field twice', kNameAt + 36, ['p'.charCodeAt(0)]], ['an unknown type', kTypeAt, [10]], ['no bits', kBitsAt, [0]],
+    ['too many bits', kBitsAt, [29]], ['a step of 0', kStepAt, [0, 0, 0, 0, 0, 0, 0, 0]], ['a step that is no number', kStepAt + 6, [0xf8, 0x7f]],
+  ])('with %s isRefused', (_, at, bytes) => {
+    const bad = head();
+    bad.set(bytes, at);
+    expect(() => readManifest(bad, columns)).toThrow('damaged');
   });
 
-  test('thatIsNotJsonIsRefused', () => {
-    expect(() => parseManifest('{')).toThrow('not JSON');
+  test('cutAnywhereBeforeItsLevelsIsRefused', () => {
+    const whole = head();
+    const size = new DataView(whole.buffer).getUint32(24, true);
+    for (let n = 0; n < size; ++n) {
+      const cut = new Uint8Array([...whole.subarray(0, 64 + n), ...whole.subarray(64 + size)]);
+      new DataView(cut.buffer).setUint32(24, n, true);
+      expect(() => readManifest(cut, columns), `${n} bytes`).toThrow('ends too early');
+    }
   });
 });
