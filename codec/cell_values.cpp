@@ -39,8 +39,8 @@ void CellAncestry::addSide(LocalVertex a, LocalVertex b, LocalVertex c, std::siz
   sides_.push_back(side << kTetrahedronBits | tetrahedron);
 }
 
-void CellAncestry::addRestored(std::span<const CellRef> star, const Link& link, std::span<const LocalCell> restored) {
-  const auto first = static_cast<CellId>(known_.size());
+void CellAncestry::addRestored(std::span<const CellRef> star, const Link& link, std::span<const LocalCell> restored, CellId first) {
+  CellId next = first;
   sides_.clear();
   atSplit_.clear();
   const std::vector<LinkTriangle>& triangles = link.triangles();
@@ -55,9 +55,9 @@ void CellAncestry::addRestored(std::span<const CellRef> star, const Link& link, 
   for (const LocalCell& c : restored) {
     if (std::ranges::any_of(c, [&](LocalVertex local) { return !(local & kPreyBit) && link.vertices()[local] == kGhost; })) continue;
     for (std::size_t i = 0; i < 4; ++i) addSide(c[(i + 1) % 4], c[(i + 2) % 4], c[(i + 3) % 4], atSplit_.size());
-    atSplit_.push_back(static_cast<CellId>(known_.size()));
-    known_.push_back({kNone, kNone, kNone, kNone});
+    atSplit_.push_back(next++);
   }
+  makeRoom(next);
   std::sort(sides_.begin(), sides_.end());
   for (std::size_t i = 1; i < sides_.size(); ++i) {
     const CellId cell = atSplit_[sides_[i] & kTetrahedronMask];

@@ -21,8 +21,13 @@ class CellAncestry {
  public:
   /// Adds the base mesh's tetrahedra. REQUIRES: called once and first; four different vertices a cell.
   void addBase(std::span<const Tetrahedron> tetrahedra);
-  /// Adds the tetrahedra among `restored`, what a split whose star and labelled link are given brings. REQUIRES: called for every split.
-  void addRestored(std::span<const CellRef> star, const Link& link, std::span<const LocalCell> restored);
+  /// Adds the tetrahedra among `restored`, what a split whose star and labelled link are given brings, from slot `first` on. REQUIRES: called for
+  /// every split.
+  void addRestored(std::span<const CellRef> star, const Link& link, std::span<const LocalCell> restored, CellId first);
+  /// Tetrahedra below `end` exist from now on; those that nothing was added for have no earlier ones.
+  void makeRoom(CellId end) {
+    if (known_.size() < end) known_.resize(end, {kNone, kNone, kNone, kNone});
+  }
 
   /// The prediction of a value of tetrahedron `cell`; `at(t)` reads that of an earlier tetrahedron t; gaps do not count.
   template <class At>

@@ -12,7 +12,7 @@ namespace qtet {
 inline constexpr std::uint64_t kLeastClosingRowBytes = 7;
 
 /// Reads `chunks` rows into index.chunks and index.dependencies; the first block lies at `offset`. REQUIRES: index.layout and index.fields, and that
-/// chunks * leastRowBytes fits what remains in `r`. Errors stay in `r`: truncated, bad-value, bad-codec, limit-exceeded (levels, dependencies).
+/// chunks * leastRowBytes fits what remains in `r`. Errors stay in `r`: truncated, bad-value, bad-codec, limit-exceeded (levels).
 void readChunkRows(ByteReader& r, LogIndex& index, std::uint32_t chunks, std::uint64_t offset);
 
 void writeChunkRows(ByteWriter& w, const LogIndex& index);

@@ -24,6 +24,29 @@ void GrowingMesh::start(int positionBits) {
   pool_.assign(first, 0);
   for (std::uint32_t i = 0; i < tetrahedra.size(); ++i) addCell(i);
   for (std::uint32_t i = 0; i < boundary.size(); ++i) addCell(i | kBoundaryBit);
+  next_ = {static_cast<std::uint32_t>(points.size()), static_cast<std::uint32_t>(tetrahedra.size()), static_cast<std::uint32_t>(boundary.size())};
+}
+
+void GrowingMesh::continueAt(const Slots& first, const Slots& end) {
+  next_ = first;
+  if (points.size() < end.vertices) points.resize(end.vertices, kHolePoint), states_.resize(end.vertices);
+  if (tetrahedra.size() < end.tetrahedra) tetrahedra.resize(end.tetrahedra, kHoleTetrahedron);
+  if (boundary.size() < end.triangles) boundary.resize(end.triangles, kHoleTriangle);
+}
+
+Slots GrowingMesh::slotsAfter(const Split& split, const Link& link) const {
+  Slots after = next_;
+  after.vertices += static_cast<std::uint32_t>(split.k) - 1;
+  for (const LocalCell& cell : split.deleted) {
+    const bool ghost = std::ranges::any_of(cell, [&](LocalVertex v) { return !(v & kPreyBit) && link.vertices()[v] == kGhost; });
+    ++(ghost ? after.triangles : after.tetrahedra);
+  }
+  return after;
+}
+
+VertexId GrowingMesh::newVertex() {
+  if (next_.vertices == points.size()) points.emplace_back(), states_.emplace_back();
+  return next_.vertices++;
 }
 
 void GrowingMesh::beginLevel(std::uint32_t level) {
@@ -55,6 +78,7 @@ void GrowingMesh::compact() {
   std::vector<CellRef> pool;
   pool.reserve(live_ + states_.size() * (kSpareCells + 1));
   for (State& s : states_) {
+    if (s.room == 0) continue;  // a hole
     const auto cells = std::span(pool_).subspan(s.first, s.size);
     s.first = pool.size();
     s.room = s.size + kSpareCells;
@@ -135,10 +159,8 @@ void GrowingMesh::apply(VertexId v, const Link& link, const Split& split) {
   for (const LinkTriangle& t : link.triangles()) ++cellsOf[t.label];
   for (std::size_t i = 0; i < static_cast<std::size_t>(split.k); ++i) {
     if (i > 0) {
-      prey[i] = static_cast<VertexId>(points.size());
-      points.emplace_back();
-      states_.emplace_back();
-      relocate(states_.back(), cellsOf[i] + kSpareCells);
+      prey[i] = newVertex();
+      relocate(states_[prey[i]], cellsOf[i] + kSpareCells);
     }
     points[prey[i]] = split.points[i];
     State& s = states_[prey[i]];
@@ -163,12 +185,12 @@ void GrowingMesh::apply(VertexId v, const Link& link, const Split& split) {
     for (std::size_t i = 0; i < 4; ++i) c[i] = local[i] & kPreyBit ? prey[local[i] & 3] : link.vertices()[local[i]];
     const auto ghost = static_cast<std::size_t>(std::ranges::find(c, kGhost) - c.begin());
     if (ghost == 4) {
-      tetrahedra.push_back(c);
-      addCell(static_cast<CellRef>(tetrahedra.size() - 1));
+      put(tetrahedra, next_.tetrahedra, c);
+      addCell(next_.tetrahedra++);
     } else {
       c = withLast(c, ghost);
-      boundary.push_back({c[0], c[1], c[2]});
-      addCell(static_cast<CellRef>(boundary.size() - 1) | kBoundaryBit);
+      put(boundary, next_.triangles, Triangle{c[0], c[1], c[2]});
+      addCell(next_.triangles++ | kBoundaryBit);
     }
   }
 }

@@ -1,5 +1,5 @@
 // The mesh that grows in place, in the refiner and in the encoder's mirror of it: slots never move, an affected cell changes one index, and the
-// stars of all vertices stay up to date (FORMAT.md, "Refinement").
+// stars of all vertices stay up to date (FORMAT.md, "Refinement"). Chunks may fill their slots in any order: until then these are holes.
 #pragma once
 
 #include <algorithm>
@@ -51,6 +51,14 @@ class GrowingMesh {
 
   /// Takes points, tetrahedra and boundary as the base mesh. REQUIRES: called once, ids in range, coordinates below 2^positionBits.
   void start(int positionBits);
+  /// Where the next split puts what it brings: at the end, or from where continueAt() said.
+  [[nodiscard]] const Slots& next() const { return next_; }
+  /// The next splits fill slots from `first` on; all below `end` exist from now on, holes unless filled. REQUIRES: those from `first` to `end`
+  /// are holes or do not exist, and no split goes beyond `end` (slotsAfter).
+  void continueAt(const Slots& first, const Slots& end);
+  /// next() after this split.
+  [[nodiscard]] Slots slotsAfter(const Split& split, const Link& link) const;
+
   /// Frees all present vertices for splitting. REQUIRES: levels count up from 1.
   void beginLevel(std::uint32_t level);
   /// Vertices that the level may split: those present at its beginning.
@@ -92,6 +100,14 @@ class GrowingMesh {
   void measure(VertexId v, VertexId other);
   void moveEdges(const Link& link, std::span<const VertexId> prey);
   void relocate(State& state, std::uint32_t room);
+  VertexId newVertex();
+  template <class Cells, class Cell>
+  static void put(Cells& cells, std::uint32_t slot, const Cell& cell) {
+    if (slot == cells.size())
+      cells.push_back(cell);
+    else
+      cells[slot] = cell;
+  }
   void compact();
 
   std::vector<State> states_;
@@ -101,6 +117,7 @@ class GrowingMesh {
   LatticePoint fused_{};          // where it was
   std::vector<std::array<std::uint16_t, 4>> corners_;  // of a link's vertices: triangles of each label
   std::uint32_t level_ = 0, levelVertices_ = 0;
+  Slots next_;
   int spreadShift_ = 0;
 };
 

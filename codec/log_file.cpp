@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "codec/compact_mesh.h"
 #include "codec/value_block.h"
 #include "codec/log_manifest.h"
 #include "proto/checksum.h"
@@ -168,6 +169,7 @@ Result<LatticeMesh> meshAtLevel(const LogFile& log, std::uint32_t level, const s
     mesh.fields.push_back(fieldInfo(manifest->fields[f]));
     mesh.values.emplace_back(refiner.fieldValues(f).begin(), refiner.fieldValues(f).end());
   }
+  if (log.index().layout == Layout::kRegions) dropHoles(mesh);  // of packets that had to stop within their band
   return mesh;
 }
 

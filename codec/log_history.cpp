@@ -42,7 +42,7 @@ class SplitRecorder final : public SplitObserver {
     }
     h.fusions.push_back(fusion);
     out_.points.add(v, mesh, link, split);
-    out_.cells.addRestored(mesh.star(v), link, split.deleted);
+    out_.cells.addRestored(mesh.star(v), link, split.deleted, mesh.next().tetrahedra);
   }
 
   std::vector<std::uint8_t> near;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 
 #include "codec/chunk_table.h"
 #include "proto/crc32c.h"
@@ -90,7 +91,42 @@ Status checkClosing(const LogIndex& index, std::uint64_t offset, std::uint64_t f
   return {};
 }
 
-// What every later step relies on: blocks that end where the file does, levels in order, counts within limits.
+// Packets come in the order of their nodes, 2^firstDepth to 2^(lastDepth + 1) - 1: each band is whole, and one bit deeper than the one before it.
+const char* brokenPacket(const LogIndex& index, std::uint32_t i, std::uint32_t head, std::uint32_t firstNode) {
+  const ChunkEntry& e = index.chunks[i];
+  const ChunkEntry& before = index.chunks[i - 1];
+  if (e.node != firstNode + (i - head)) return "its node does not follow that of the packet before it";
+  if (e.endSlot != kLevelEnd || before.endSlot != kLevelEnd) return "a packet, or the chunk before the first one, ends within a level";
+  if (!std::has_single_bit(e.node) && e.lastLevel != before.lastLevel) return "its levels are not those of its band";
+  const std::uint32_t parent = index.dependencies[e.firstDependency];
+  if (parent >= head && !index.chunks[parent].box.contains(e.box)) return "its box is not within its parent's";
+  for (std::size_t a = 0; a < 3; ++a)
+    if (e.box.least[a] > e.box.most[a]) return "its box is inside out";
+  return nullptr;
+}
+
+Status checkLayout(const LogIndex& index, std::uint64_t tableEnd) {
+  const auto bad = [](std::uint32_t i, const char* what) {
+    return fail(ErrorCode::kBadValue, "chunk table, row " + std::to_string(i) + ": " + what + "; fetch or build the log again");
+  };
+  const auto chunks = static_cast<std::uint32_t>(index.chunks.size());
+  const std::uint32_t head = index.headChunks();
+  if (head < chunks) {
+    const std::uint32_t firstNode = index.chunks[head].node;
+    if (head == 0) return bad(head, "the base mesh is no packet");
+    if (firstNode < 2 || !std::has_single_bit(firstNode)) return bad(head, "the first band's packets are not a power of two in number");
+    for (std::uint32_t i = head; i < chunks; ++i)
+      if (const char* what = brokenPacket(index, i, head, firstNode)) return bad(i, what);
+    if (!std::has_single_bit(index.chunks.back().node + 1)) return bad(chunks - 1, "the last band is not whole");
+  } else if (index.layout == Layout::kRegions) {
+    return bad(chunks - 1, "a log of regions has packets");
+  }
+  if (index.chunks.back().endSlot != kLevelEnd)
+    return fail(ErrorCode::kBadValue, "the last chunk ends within a level; fetch or build the log again", tableEnd);
+  return {};
+}
+
+// What every later step relies on: blocks that end where the file does, levels in order, counts within limits, packets in order.
 Status check(const LogIndex& index, const Header& header) {
   std::uint64_t offset = header.headBytes();
   std::uint64_t vertices = 0;
@@ -118,10 +154,12 @@ Status check(const LogIndex& index, const Header& header) {
     const std::uint64_t decisions = kMaxDecisionsPerByte * (std::uint64_t{e.blocks[kStructurePart].size} + 4);
     if (e.records > decisions || e.newVertices > 4 * decisions || e.newTetrahedra > 8 * decisions || e.newBoundaryTriangles > 8 * decisions)
       return bad(ErrorCode::kLimitExceeded, "it promises more than its bytes can hold");
+    const std::uint64_t elements = kMaxElementsPerPacketByte * (std::uint64_t{e.blocks[kStructurePart].size} + 64);
+    if (e.node != 0 && (e.newVertices > elements || e.newTetrahedra > elements || e.newBoundaryTriangles > elements))
+      return bad(ErrorCode::kLimitExceeded, "a packet that promises more than packets hold");
     if (e.records > e.newVertices) return bad(ErrorCode::kBadValue, "more records than vertices");  // so that tuples() fits its type
   }
-  if (index.layout == Layout::kStream && index.chunks.back().endSlot != kLevelEnd)
-    return fail(ErrorCode::kBadValue, "the last chunk ends within a level; fetch or build the log again", header.headBytes());
+  if (Status layout = checkLayout(index, header.headBytes()); !layout) return layout;
   if (index.dependencies.size() != header.dependencies)
     return fail(ErrorCode::kBadValue, "the table has another number of dependencies than the header says; fetch or build the log again", 48);
   return checkClosing(index, offset, header.fileBytes);
@@ -147,6 +185,26 @@ std::uint32_t LogIndex::tuples(std::uint32_t chunk, std::uint32_t part) const {
 
 bool LogIndex::hasCellField() const {
   return std::ranges::any_of(fields, [](const FieldShape& field) { return field.association == Association::kCell; });
+}
+
+std::uint32_t LogIndex::headChunks() const {
+  return static_cast<std::uint32_t>(std::ranges::find_if(chunks, [](const ChunkEntry& e) { return e.node != 0; }) - chunks.begin());
+}
+
+std::vector<std::uint32_t> LogIndex::chunksOfBox(const PacketBox& box) const {
+  std::vector<std::uint32_t> out;
+  for (std::uint32_t i = 0; i < chunks.size(); ++i)
+    if (chunks[i].node == 0 || chunks[i].box.meets(box)) out.push_back(i);
+  return out;
+}
+
+std::uint32_t LogIndex::firstDepth() const {
+  const std::uint32_t head = headChunks();
+  return head < chunks.size() ? static_cast<std::uint32_t>(std::bit_width(chunks[head].node)) - 1 : 0;
+}
+
+std::uint32_t LogIndex::lastDepth() const {
+  return chunks.empty() || chunks.back().node == 0 ? 0 : static_cast<std::uint32_t>(std::bit_width(chunks.back().node)) - 1;
 }
 
 Result<std::uint64_t> LogIndex::headBytesOf(ByteView firstBytes) {

@@ -2,6 +2,7 @@
 // verifier need to know before they touch a block. Trusts nothing: every count is checked against limits and against the bytes.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -44,18 +45,37 @@ inline constexpr std::uint32_t kFirstFieldPart = 2;
 /// `ChunkEntry::endSlot` of a chunk that finishes its last level.
 inline constexpr std::uint32_t kLevelEnd = 0xFFFFFFFFu;
 
+/// A box on the lattice in 256ths of its size, most included: [least / 256, (most + 1) / 256) along each axis.
+struct PacketBox {
+  std::array<std::uint8_t, 3> least{}, most{};
+
+  [[nodiscard]] bool meets(const PacketBox& other) const {
+    for (std::size_t a = 0; a < 3; ++a)
+      if (most[a] < other.least[a] || other.most[a] < least[a]) return false;
+    return true;
+  }
+  [[nodiscard]] bool contains(const PacketBox& other) const {
+    for (std::size_t a = 0; a < 3; ++a)
+      if (other.least[a] < least[a] || most[a] < other.most[a]) return false;
+    return true;
+  }
+  bool operator==(const PacketBox&) const = default;
+};
+
 /// One row of the chunk table. Chunk 0 is the base mesh (level 0).
 struct ChunkEntry {
   std::uint64_t offset = 0;           ///< of its first block in the file; derived, not stored
-  std::uint32_t firstLevel = 0;       ///< the levels that its records belong to; the first follows from the row before in `stream`
+  std::uint32_t firstLevel = 0;       ///< the levels that its records belong to; the first follows from the row before
   std::uint32_t lastLevel = 0;
   std::uint32_t endSlot = kLevelEnd;  ///< lastLevel is visited below this vertex slot; kLevelEnd = to its end
   std::uint32_t records = 0;
   std::uint32_t newVertices = 0;
   std::uint32_t newTetrahedra = 0;
   std::uint32_t newBoundaryTriangles = 0;
-  std::uint32_t firstDependency = 0;  ///< into LogIndex::dependencies; in `stream` derived: the chunk before, alone
+  std::uint32_t firstDependency = 0;  ///< into LogIndex::dependencies; derived: the chunk before, alone; of a packet its parent's
   std::uint32_t dependencyCount = 0;
+  std::uint32_t node = 0;             ///< of a packet (layout `regions`): 2^depth + its place at that depth, so that its parent is node / 2; else 0
+  PacketBox box;                      ///< of a packet: where its node's cells lie in the finest mesh; else zeros
   CodecId structureCodec = CodecId::kRange;
   CodecId valueCodec = CodecId::kDraco;
   std::vector<BlockEntry> blocks;     ///< 2 + fields
@@ -104,13 +124,24 @@ struct LogIndex {
     return part == kPositionsPart ? 3 : fields[part - kFirstFieldPart].components;
   }
   [[nodiscard]] bool hasCellField() const;
+  /// Chunks before the first packet: all of them in `stream`.
+  [[nodiscard]] std::uint32_t headChunks() const;
+  /// Depth of the first packets' nodes: how many bits the head's end tells of each cell. 0 in `stream`.
+  [[nodiscard]] std::uint32_t firstDepth() const;
+  /// Depth of the last packets' nodes. 0 in `stream`.
+  [[nodiscard]] std::uint32_t lastDepth() const;
+  /// The chunks that bring every cell of the finest mesh that meets the box to full resolution, ascending and closed under dependencies: the head, and
+  /// packets whose boxes meet it; in `stream` all. A server or a viewer needs only the chunk table to know them.
+  [[nodiscard]] std::vector<std::uint32_t> chunksOfBox(const PacketBox& box) const;
+  /// The chunk of a node. REQUIRES: 2^firstDepth() <= node < 2^(lastDepth() + 1).
+  [[nodiscard]] std::uint32_t chunkOfNode(std::uint32_t node) const { return headChunks() + node - (1u << firstDepth()); }
 
   /// Bytes of the header's promise: how much of the file `parse` needs. Errors: truncated (under 64 bytes), bad-magic, bad-version,
   /// bad-checksum, limit-exceeded, bad-value.
   [[nodiscard]] static Result<std::uint64_t> headBytesOf(ByteView firstBytes);
   /// Reads the front of a log; `bytes` holds at least headBytesOf() bytes, the rest is not looked at.
   [[nodiscard]] static Result<LogIndex> parse(ByteView bytes);
-  /// Header, manifest and table as they stand in the file. What the rows imply (offsets, in `stream` first levels and dependencies) is not looked at.
+  /// Header, manifest and table as they stand in the file. What the rows imply (offsets, first levels, dependencies) is not looked at.
   [[nodiscard]] Bytes encode() const;
 };
 

@@ -8,12 +8,14 @@
 
 #include "codec/base_coder.h"
 #include "codec/cell_values.h"
-#include "codec/value_block.h"
+#include "codec/child_coder.h"
 #include "codec/growing_mesh.h"
 #include "codec/log_index.h"
 #include "codec/log_manifest.h"
+#include "codec/node_cells.h"
 #include "codec/point_values.h"
 #include "codec/record_coder.h"
+#include "codec/value_block.h"
 #include "proto/crc32c.h"
 #include "proto/limits.h"
 
@@ -35,6 +37,14 @@ struct OpenChunk {
   std::uint64_t valueBits = 0;  // estimate of what the values will take
 };
 
+/// The levels that keep to the nodes at one depth.
+struct Band {
+  std::uint32_t firstLevel = 0, lastLevel = 0, depth = 0;
+};
+
+// Twice as many packets as leaves stay below kMaxChunks.
+constexpr std::uint32_t kMaxDepth = 18;
+
 class LogEncoder {
  public:
   LogEncoder(const FusionHistory& history, const LogWriterOptions& options) : h_(history), options_(options) {}
@@ -42,13 +52,19 @@ class LogEncoder {
   Result<EncodedLog> run() {
     if (Status s = prepare(); !s) return std::unexpected(s.error());
     if (Status s = base(); !s) return std::unexpected(s.error());
-    for (std::uint32_t level = 1; level <= h_.levels; ++level) {
+    for (std::uint32_t level = 1; level <= headLevels_; ++level) {
       if (Status s = encodeLevel(level); !s) return std::unexpected(s.error());
-      addLevel(level);
-      if (options_.progress) options_.progress(static_cast<double>(mesh_.tetrahedra.size()) / static_cast<double>(h_.cells.size()));
+      tellProgress();
     }
-    if (open_.entry.records > 0 || open_.entry.firstLevel != 0)
-      if (Status s = closeChunk(h_.levels, kLevelEnd); !s) return std::unexpected(s.error());
+    if (open_.entry.records > 0 || open_.entry.firstLevel != 0) {
+      if (Status s = endHead(); !s) return std::unexpected(s.error());
+      if (Status s = closeChunk(headLevels_, kLevelEnd); !s) return std::unexpected(s.error());
+    }
+    for (std::uint32_t band = 0; band < bands_.size(); ++band)
+      if (Status s = encodeBand(bands_[band]); !s) return std::unexpected(s.error());
+    if (recordsWritten_ != h_.fusions.size())
+      return fail(ErrorCode::kBadValue, "a fusion of the history belongs to a level or a node of the tree in which its vertex is not; simplify the mesh again");
+    findBoxes();
     return assemble();
   }
 
@@ -60,6 +76,8 @@ class LogEncoder {
                                             std::to_string(h_.levels + 1u) + " levels; measure the history that is encoded");
     if (h_.fields.size() > kMaxFields) return fail(ErrorCode::kLimitExceeded, "more than 256 fields; choose some with --fields");
     if (h_.points.size() > kMaxElements || h_.cells.size() > kMaxElements) return fail(ErrorCode::kLimitExceeded, "more than 2^29 cells");
+    if (Status s = prepareBands(); !s) return s;
+    added_.resize(h_.levels + 1u);
     fusionOf_.assign(h_.points.size(), kNone);
     for (std::uint32_t i = 0; i < h_.fusions.size(); ++i) fusionOf_[h_.fusions[i].fused] = i;
     slotOf_.assign(h_.points.size(), kNone);
@@ -75,6 +93,30 @@ class LogEncoder {
         return fail(ErrorCode::kBadValue, "cell field " + h_.fields[f].name + " has " + std::to_string(h_.values[f].size()) + " numbers for " +
                                               std::to_string(tetrahedra) + " tetrahedra");
     return {};
+  }
+
+  // The history may have lost its coarsest levels since it was made: bands are what is left of them, coarsest first.
+  Status prepareBands() {
+    const Bands& bands = h_.bands;
+    headLevels_ = h_.levels;
+    if (bands.ends.empty()) return {};
+    const auto bad = [](const char* what) { return fail(ErrorCode::kBadValue, std::string("the history's bands: ") + what + "; simplify the mesh again"); };
+    if (bands.depth > kMaxDepth || bands.ends.size() > bands.depth) return bad("more than the tree has depths, or a tree too deep");
+    if (bands.leaf.size() != h_.cells.size()) return bad("not every cell has a leaf");
+    if (std::ranges::any_of(bands.leaf, [&](std::uint32_t leaf) { return leaf >> bands.depth != 0; })) return bad("a leaf that the tree does not have");
+    for (std::uint32_t b = 0, first = 0; b < bands.ends.size() && first < h_.levels; ++b) {
+      if (bands.ends[b] <= first) return bad("one without a level");
+      const std::uint32_t end = std::min(bands.ends[b], h_.levels);
+      bands_.insert(bands_.begin(), {h_.levels - end + 1, h_.levels - first, bands.depth - b});
+      first = end;
+    }
+    if (!bands_.empty()) headLevels_ = bands_.front().firstLevel - 1;
+    waiting_.resize(std::size_t{2} << bands.depth);
+    return {};
+  }
+
+  void tellProgress() const {
+    if (options_.progress) options_.progress(static_cast<double>(mesh_.tetrahedra.size()) / static_cast<double>(h_.cells.size()));
   }
 
   [[nodiscard]] std::uint32_t levelOf(const Fusion& f) const { return h_.levels - f.level; }
@@ -103,9 +145,10 @@ class LogEncoder {
     mesh_.start(h_.lattice.bits);
     if (Status s = matchBoundary(); !s) return s;
     open_.entry.newBoundaryTriangles = static_cast<std::uint32_t>(mesh_.boundary.size());
-    if (Status s = closeChunk(0, kLevelEnd); !s) return s;
-    addLevel(0);
-    return {};
+    added_[0] = mesh_.next();
+    if (headLevels_ == 0)
+      if (Status s = endHead(); !s) return s;
+    return closeChunk(0, kLevelEnd);
   }
 
   void codeBaseValues(std::span<const BaseBirth> births) {
@@ -159,15 +202,15 @@ class LogEncoder {
   Status encodeLevel(std::uint32_t level) {
     if (open_.entry.firstLevel == 0) open_.entry.firstLevel = level;
     mesh_.beginLevel(level);
+    level_ = level;
     std::optional<std::uint64_t> begun = estimatedBytes();  // none once a chunk ended within the level
     RecordCoder<RangeEncoder> coder(range_, models_, mesh_, link_, open_.positions);
     for (VertexId v = 0; v < mesh_.levelVertices(); ++v) {
       if (!mesh_.maysplit(v)) continue;
-      const std::uint32_t fusion = fusionOf_[vertexIds_[v]];
-      const bool splits = fusion != kNone && levelOf(h_.fusions[fusion]) == level;
-      coder.splits(v, level, splits);
-      if (!splits) continue;
-      if (Status s = record(coder, v, h_.fusions[fusion]); !s) return s;
+      const Fusion* fusion = fusionAt(v, level);
+      coder.splits(v, level, fusion != nullptr);
+      if (fusion == nullptr) continue;
+      if (Status s = record(coder, v, *fusion); !s) return s;
       if (estimatedBytes() < chunkTarget()) continue;
       if (Status s = closeChunk(level, v + 1); !s) return s;
       open_.entry.firstLevel = level;
@@ -176,8 +219,111 @@ class LogEncoder {
     // Near enough, if another level like this one would go further beyond the target than this one stays below it: let the next chunk begin with a level.
     const std::uint64_t bytes = estimatedBytes(), target = chunkTarget();
     const std::uint64_t levelBytes = begun ? bytes - *begun : target;
-    if (2 * bytes + levelBytes < 2 * target) return {};
+    if (2 * bytes + levelBytes < 2 * target || level == headLevels_) return {};
     return closeChunk(level, kLevelEnd);
+  }
+
+  [[nodiscard]] const Fusion* fusionAt(VertexId v, std::uint32_t level) const {
+    const std::uint32_t fusion = fusionOf_[vertexIds_[v]];
+    return fusion != kNone && levelOf(h_.fusions[fusion]) == level ? &h_.fusions[fusion] : nullptr;
+  }
+
+  // Before the head's last chunk is closed: to which of the first band's nodes each cell belongs.
+  Status endHead() {
+    if (bands_.empty()) return {};
+    waiting_[1].add({}, mesh_.next());
+    for (std::uint32_t node = 1; node < 1u << bands_.front().depth; ++node)
+      if (Status s = codeChildren(node, std::exchange(waiting_[node], {})); !s) return s;
+    headModels_ = models_;
+    headChildModels_ = childModels_;
+    headChunks_ = static_cast<std::uint32_t>(chunks_.size()) + 1;
+    return {};
+  }
+
+  static Status failBeyondNode() {
+    return fail(ErrorCode::kBadValue, "the history's bands: a fusion reaches beyond a node of the tree; simplify the mesh again");
+  }
+
+  [[nodiscard]] std::uint32_t historyCell(CellRef ref) const {
+    return ref & kBoundaryBit ? boundaryIds_[ref & ~kBoundaryBit] : tetrahedronIds_[ref];
+  }
+
+  Status codeChildren(std::uint32_t node, const NodeCells& cells) {
+    const auto depth = static_cast<std::uint32_t>(std::bit_width(node));  // of the children
+    bool inNode = true;
+    const auto truth = [&](CellRef ref) {
+      const std::uint32_t child = 1u << depth | h_.bands.node(historyCell(ref), depth);
+      inNode &= child / 2 == node;
+      return static_cast<int>(child & 1u);
+    };
+    std::array<NodeCells, 2> halves;
+    const std::size_t before = range_.size();
+    if (!ChildCoder<RangeEncoder>(range_, childModels_, mesh_, h_.lattice.bits, counts_).code(cells, truth, halves) || !inNode) return failBeyondNode();
+    childBytes_ += range_.size() - before;
+    for (std::uint32_t i = 0; i < 2; ++i) waiting_[2 * node + i] = std::move(halves[i]);
+    return {};
+  }
+
+  Status encodeBand(const Band& band) {
+    for (std::uint32_t node = 1u << band.depth; node < 2u << band.depth; ++node)
+      if (Status s = encodePacket(band, node); !s) return s;
+    tellProgress();
+    return {};
+  }
+
+  // Of the leaves the boxes of their cells, which are all there now; of the other nodes the boxes of their children.
+  void findBoxes() {
+    if (bands_.empty()) return;
+    const std::uint32_t firstNode = 1u << bands_.front().depth;
+    for (std::size_t i = headChunks_; i < chunks_.size(); ++i) chunks_[i].box = {{255, 255, 255}, {0, 0, 0}};
+    const auto grow = [](PacketBox& box, const PacketBox& by) {
+      for (std::size_t a = 0; a < 3; ++a) box.least[a] = std::min(box.least[a], by.least[a]), box.most[a] = std::max(box.most[a], by.most[a]);
+    };
+    const auto chunkOf = [&](std::uint32_t node) -> ChunkEntry& { return chunks_[headChunks_ + node - firstNode]; };
+    const std::uint32_t depth = bands_.back().depth;
+    for (CellId t = 0; t < mesh_.tetrahedra.size(); ++t)
+      for (const VertexId v : mesh_.tetrahedra[t]) {
+        std::array<std::uint8_t, 3> at{};
+        for (std::size_t a = 0; a < 3; ++a) at[a] = static_cast<std::uint8_t>((std::int64_t{mesh_.points[v][a]} << 8) >> h_.lattice.bits);
+        grow(chunkOf(1u << depth | h_.bands.node(tetrahedronIds_[t], depth)).box, {at, at});
+      }
+    for (std::uint32_t node = (2u << depth) - 1; node >= 2 * firstNode; --node) grow(chunkOf(node / 2).box, chunkOf(node).box);
+  }
+
+  // The mirror of Refiner::State::packet.
+  Status encodePacket(const Band& band, std::uint32_t node) {
+    const std::uint64_t positionCost = models_.positionCost;  // of all chunks
+    models_ = headModels_;
+    models_.positionCost = positionCost;
+    childModels_ = headChildModels_;
+    open_.entry.firstLevel = band.firstLevel;
+    open_.entry.node = node;
+    NodeCells cells = std::exchange(waiting_[node], {});
+    const Slots first = mesh_.next();
+    std::vector<VertexId> inner = innerVertices(mesh_, cells, counts_);
+    RecordCoder<RangeEncoder> coder(range_, models_, mesh_, link_, open_.positions);
+    for (level_ = band.firstLevel; level_ <= band.lastLevel; ++level_) {
+      mesh_.beginLevel(level_);
+      const VertexId firstNew = mesh_.next().vertices;
+      const std::size_t vertices = inner.size();
+      for (std::size_t i = 0; i < vertices; ++i) {
+        if (!mesh_.maysplit(inner[i])) continue;
+        const Fusion* fusion = fusionAt(inner[i], level_);
+        coder.splits(inner[i], level_, fusion != nullptr);
+        if (fusion == nullptr) continue;
+        if (Status s = record(coder, inner[i], *fusion); !s) return s;
+      }
+      for (VertexId v = firstNew; v < mesh_.next().vertices; ++v) inner.push_back(v);
+    }
+    cells.add(first, mesh_.next());
+    if (band.depth < h_.bands.depth) {
+      if (Status s = codeChildren(node, cells); !s) return s;
+    } else {
+      bool inNode = true;
+      cells.forEach([&](CellRef ref) { inNode &= (1u << band.depth | h_.bands.node(historyCell(ref), band.depth)) == node; });
+      if (!inNode) return failBeyondNode();
+    }
+    return closeChunk(band.lastLevel, kLevelEnd);
   }
 
   // The estimate of the values, corrected by how far it was off in the chunks before.
@@ -211,8 +357,7 @@ class LogEncoder {
     truth.labels.resize(star.size());
     bool whole = star.size() == fusion.affectedCount;
     for (std::size_t f = 0; f < star.size(); ++f) {
-      const std::uint32_t id = star[f] & kBoundaryBit ? boundaryIds_[star[f] & ~kBoundaryBit] : tetrahedronIds_[star[f]];
-      truth.labels[f] = std::exchange(labelOf_[id], kNoLabel);
+      truth.labels[f] = std::exchange(labelOf_[historyCell(star[f])], kNoLabel);
       whole &= truth.labels[f] < fusion.k;
     }
     return whole;
@@ -251,10 +396,9 @@ class LogEncoder {
   }
 
   void apply(VertexId v, const Fusion& fusion, const Split& split) {
-    const std::size_t tetrahedra = mesh_.tetrahedra.size();
-    const std::size_t triangles = mesh_.boundary.size();
+    const Slots before = mesh_.next();
     pointAncestry_.add(v, mesh_, link_, split);
-    if (hasCellField_) ancestry_.addRestored(mesh_.star(v), link_, split.deleted);
+    if (hasCellField_) ancestry_.addRestored(mesh_.star(v), link_, split.deleted, mesh_.next().tetrahedra);
     mesh_.apply(v, link_, split);
     for (const LocalCell& cell : split.deleted) {
       const std::uint32_t id = std::ranges::lower_bound(deletedIds_, std::pair{sorted(cell), 0u})->second;
@@ -266,11 +410,14 @@ class LogEncoder {
     for (std::size_t i = 1; i < fusion.k; ++i) slotOf_[fusion.prey[i]] = static_cast<std::uint32_t>(vertexIds_.size()), vertexIds_.push_back(fusion.prey[i]);
     for (std::size_t f = 0; f < h_.fields.size(); ++f)
       if (!isCellField(h_.fields[f])) codeField(f, fusion);
-    codeCellFields(tetrahedra);
+    codeCellFields(before.tetrahedra);
+    const Slots brought{mesh_.next().vertices - before.vertices, mesh_.next().tetrahedra - before.tetrahedra, mesh_.next().triangles - before.triangles};
+    for (auto [total, more] : {std::pair{&open_.entry.newVertices, brought.vertices}, {&open_.entry.newTetrahedra, brought.tetrahedra},
+                               {&open_.entry.newBoundaryTriangles, brought.triangles}, {&added_[level_].vertices, brought.vertices},
+                               {&added_[level_].tetrahedra, brought.tetrahedra}, {&added_[level_].triangles, brought.triangles}})
+      *total += more;
     ++open_.entry.records;
-    open_.entry.newVertices += fusion.k - 1u;
-    open_.entry.newTetrahedra += static_cast<std::uint32_t>(mesh_.tetrahedra.size() - tetrahedra);
-    open_.entry.newBoundaryTriangles += static_cast<std::uint32_t>(mesh_.boundary.size() - triangles);
+    ++recordsWritten_;
     estimate(open_.positions, std::size_t{fusion.k - 1u} * 3);
     for (std::size_t f = 0; f < h_.fields.size(); ++f)
       if (!isCellField(h_.fields[f])) estimate(open_.fields[f], fusion.k * h_.fields[f].components);
@@ -316,10 +463,6 @@ class LogEncoder {
     if (chunks_.empty()) {
       e.newVertices = static_cast<std::uint32_t>(mesh_.points.size());
       e.newTetrahedra = static_cast<std::uint32_t>(mesh_.tetrahedra.size());
-    } else {
-      e.firstDependency = static_cast<std::uint32_t>(dependencies_.size());
-      e.dependencyCount = 1;
-      dependencies_.push_back(static_cast<std::uint32_t>(chunks_.size()) - 1);
     }
     if (Status s = addBlock(range_.finish()); !s) return s;
     for (std::size_t part = 0; part <= h_.fields.size(); ++part) {
@@ -345,10 +488,15 @@ class LogEncoder {
     return {};
   }
 
-  void addLevel(std::uint32_t level) {
-    levels_.push_back({level, static_cast<std::uint32_t>(mesh_.tetrahedra.size()), static_cast<std::uint32_t>(mesh_.points.size()),
-                       static_cast<std::uint32_t>(mesh_.boundary.size()), 0, std::nullopt});  // the table tells the chunk
-    if (!options_.errors.empty()) levels_.back().error = options_.errors[level];
+  [[nodiscard]] std::vector<ManifestLevel> levels() const {
+    std::vector<ManifestLevel> out;
+    Slots sum;
+    for (std::uint32_t level = 0; level < added_.size(); ++level) {
+      sum = {sum.vertices + added_[level].vertices, sum.tetrahedra + added_[level].tetrahedra, sum.triangles + added_[level].triangles};
+      out.push_back({level, sum.tetrahedra, sum.vertices, sum.triangles, 0, std::nullopt});  // the table tells the chunk
+      if (!options_.errors.empty()) out.back().error = options_.errors[level];
+    }
+    return out;
   }
 
   [[nodiscard]] Result<Bytes> manifest() const {
@@ -359,19 +507,20 @@ class LogEncoder {
     m.latticeStep = h_.lattice.step;
     m.latticeOrigin = h_.lattice.origin;
     for (const FieldInfo& f : h_.fields) m.fields.push_back({f.name, f.components, f.type, f.association, f.bits, f.step, f.minimum, f.range, f.gaps});
-    m.levels = levels_;
+    m.levels = levels();
     return manifestBlock(m);
   }
 
   Result<EncodedLog> assemble() {
     LogIndex index;
+    index.layout = bands_.empty() ? Layout::kStream : Layout::kRegions;
     index.positionBits = static_cast<std::uint8_t>(h_.lattice.bits);
     Result<Bytes> manifestBytes = manifest();
     if (!manifestBytes) return std::unexpected(manifestBytes.error());
     index.manifest = std::move(*manifestBytes);
     for (const FieldInfo& f : h_.fields) index.fields.push_back({f.components, isCellField(f) ? Association::kCell : Association::kPoint, f.gaps});
     index.chunks = std::move(chunks_);
-    index.dependencies = std::move(dependencies_);
+    index.dependencies.resize(index.chunks.size() - 1);  // their number stands in the header; what they are follows from the rows
     EncodedLog log;
     log.points = std::move(vertexIds_);
     log.tetrahedra = std::move(tetrahedronIds_);
@@ -394,6 +543,7 @@ class LogEncoder {
     s.chunks = static_cast<std::uint32_t>(index.chunks.size());
     s.levels = h_.levels;
     s.records = h_.fusions.size();
+    s.childBytes = childBytes_;
     log.bytes = index.encode();
     log.bytes.insert(log.bytes.end(), body_.begin(), body_.end());
     return log;
@@ -418,8 +568,16 @@ class LogEncoder {
   OpenChunk open_;
   std::uint64_t valueBytes_ = 0, valueBits_ = 0;  // of the chunks closed since the base mesh: what the values took, and the estimates
   std::vector<ChunkEntry> chunks_;
-  std::vector<std::uint32_t> dependencies_;
-  std::vector<ManifestLevel> levels_;
+  std::vector<Band> bands_;  // coarsest first; none: `stream`
+  std::uint32_t headLevels_ = 0, headChunks_ = 0;
+  RecordModels headModels_;
+  ChildModels childModels_, headChildModels_;
+  std::vector<NodeCells> waiting_;  // by node
+  VertexCounts counts_;
+  std::uint32_t level_ = 0;  // in hand
+  std::vector<Slots> added_;  // by level
+  std::size_t recordsWritten_ = 0;
+  std::uint64_t childBytes_ = 0;
   Bytes body_;
 };
 

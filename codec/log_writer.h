@@ -1,4 +1,5 @@
-// From a simplifier's history to the bytes of a log in the `stream` layout (FORMAT.md): deterministic, the same input gives the same bytes.
+// From a simplifier's history to the bytes of a log (FORMAT.md), in the layout `regions` where the history has bands, else in `stream`:
+// deterministic, the same input gives the same bytes.
 #pragma once
 
 #include <cstdint>
@@ -26,6 +27,7 @@ struct LogWriterOptions {
 struct LogStatistics {
   std::uint64_t headBytes = 0;       ///< header, manifest, table
   std::uint64_t structureBytes = 0;  ///< without what positions take of them
+  std::uint64_t childBytes = 0;      ///< of these, what tells cells which node is theirs (layout `regions`), to a byte a node
   std::uint64_t positionBytes = 0;   ///< with that: placements, remainders, digits
   std::vector<std::uint64_t> fieldBytes;
   std::uint64_t baseBytes = 0;       ///< of the above, what chunk 0 takes

@@ -22,6 +22,19 @@ using Triangle = std::array<VertexId, 3>;
 /// Lattice coordinates, each in [0, 2^bits).
 using LatticePoint = std::array<std::int32_t, 3>;
 
+/// So many slots of each kind: a place in all three at once, or counts.
+struct Slots {
+  std::uint32_t vertices = 0, tetrahedra = 0, triangles = 0;
+
+  [[nodiscard]] bool within(const Slots& end) const { return vertices <= end.vertices && tetrahedra <= end.tetrahedra && triangles <= end.triangles; }
+  bool operator==(const Slots&) const = default;
+};
+
+/// What fills slots whose chunk has not come: a place off the lattice, and cells of one vertex, which are nothing when drawn.
+inline constexpr LatticePoint kHolePoint{-1, -1, -1};
+inline constexpr Tetrahedron kHoleTetrahedron{0, 0, 0, 0};
+inline constexpr Triangle kHoleTriangle{0, 0, 0};
+
 /// position = origin + step * lattice point, the same step on every axis.
 struct Lattice {
   int bits = 16;

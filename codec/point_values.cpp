@@ -31,7 +31,7 @@ struct Exit {
 }  // namespace
 
 void PointAncestry::add(VertexId v, const GrowingMesh& mesh, const Link& link, const Split& split) {
-  Birth birth{v, static_cast<VertexId>(mesh.points.size()), static_cast<std::uint32_t>(slopes_.size()), 0, static_cast<std::uint8_t>(split.k)};
+  Birth birth{v, mesh.next().vertices, static_cast<std::uint32_t>(slopes_.size()), 0, static_cast<std::uint8_t>(split.k)};
   if (withSlopes_) {
     const LatticePoint& fused = mesh.points[v];
     corners_.clear();

@@ -9,7 +9,9 @@
  * Threads   One thread at a time may use a qtet_log; different ones have nothing in common and need no lock.
  * Pointers  What a function gives back belongs to the qtet_log; each says how long it stays. What is handed in is not kept.
  * Structs   The caller passes sizeof his struct first: later versions append members, and fill no more than he has.
- * Sizes     Arrays are packed, without gaps, in slots of codec/FORMAT.md: a slot's number never changes while a mesh is refined.
+ * Sizes     Arrays are packed in slots of codec/FORMAT.md: a slot's number never changes while a mesh is refined. There are no gaps, but in logs of
+ *           layout `regions` at levels within a band: there a cell of four (a triangle of three) times the same vertex is none, and no cell
+ *           has the vertices that belong to it.
  *
  * The browser has functions of its own (codec/wasm_api.h in the sources). There a page fetches blocks and Draco decodes them outside, so a
  * module is one refiner that is fed integers; here a log is a file or memory, and everything is decoded inside. No name is in both. */

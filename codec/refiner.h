@@ -29,8 +29,11 @@ struct LevelCounts {
   std::size_t vertices = 0, tetrahedra = 0, boundaryTriangles = 0;
 };
 
-/// Applies the chunks of one log. Vertices and cells keep their slots for ever: new ones are appended, an affected cell changes one
-/// index. Not thread-safe. After an error no further chunk is accepted; ids stay in range, but the mesh is a part of a chunk's.
+/// Applies the chunks of one log, each after the chunk that it depends on: in `stream` that is file order, in `regions` packets may come in any order
+/// in which parents come first, and end in the same slots whatever the order. Vertices and cells keep their slots for ever; an affected cell changes
+/// one index. A chunk's slots follow from the chunk table (firstSlots); below the highest chunk applied, those of chunks that have not come are holes:
+/// points kHolePoint, cells of one vertex (mesh.h), field values 0. In file order there are none.
+/// Not thread-safe. After an error no further chunk is accepted; ids stay in range, but the mesh is a part of a chunk's.
 class Refiner {
  public:
   explicit Refiner(LogIndex index);
@@ -42,20 +45,26 @@ class Refiner {
   /// Errors: bad-order (a dependency is missing, or applied already), bad-checksum is the caller's to find, anything else of FORMAT.md.
   Status apply(std::uint32_t chunk, ByteView structure, std::span<const std::int32_t> positions);
   /// Applies field `field` of chunk `chunk`: as many tuples as LogIndex::tuples says. A field may lag behind the mesh, never run ahead, and
-  /// takes its chunks in the order in which they were applied to the mesh.
+  /// takes a chunk after the one that it depends on, like the mesh.
   Status applyField(std::uint32_t field, std::uint32_t chunk, std::span<const std::int32_t> values);
 
-  /// Makes the chunk that goes beyond `level` end there: the mesh is then that level's, and later chunks are refused.
+  /// Makes a chunk that goes beyond `level` end there, and chunks that begin beyond it are refused: once level() is `level`, the mesh is that level's,
+  /// with holes in the slots that packets were not allowed to fill.
   void stopAtLevel(std::uint32_t level);
 
   /// From now on `observer` hears of every split; nullptr: nobody. It must outlive the chunks applied.
   void observe(SplitObserver* observer);
 
   [[nodiscard]] const LogIndex& index() const;
+  /// How many, in file order also which one is next.
   [[nodiscard]] std::uint32_t chunksApplied() const;
+  [[nodiscard]] bool applied(std::uint32_t chunk) const;
+  [[nodiscard]] bool fieldApplied(std::uint32_t field, std::uint32_t chunk) const;
+  /// Where the slots of a chunk begin; those of the next chunk begin where they end. REQUIRES: chunk <= number of chunks.
+  [[nodiscard]] const Slots& firstSlots(std::uint32_t chunk) const;
   /// Chunks of one field that have been applied.
   [[nodiscard]] std::uint32_t fieldChunksApplied(std::uint32_t field) const;
-  /// The last level that is complete.
+  /// The last level that is complete everywhere.
   [[nodiscard]] std::uint32_t level() const;
 
   /// Of the complete levels, 0 first; several may have come with one chunk.

@@ -1,6 +1,7 @@
 #include "simplify/command_fusion.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "simplify/command_measure.h"
 #include "simplify/tet_mesh.h"
@@ -30,6 +31,21 @@ PlacementRule placementRuleOf(const std::string& name) {
   throw UsageError("--placement '" + name + "' is not known; give optimal, vertex or auto");
 }
 
+// 8,000 cells are packets of about 4 KB.
+constexpr int kCellsPerPacket = 8000;
+// Fewer, and most vertices lie between two leaves, where nothing fuses.
+constexpr int kLeastCellsPerPacket = 100;
+
+std::size_t cellsPerPacketOf(const ParsedWords& parsed) {
+  const auto layout = parsed.get<std::string>("layout");
+  if (layout != "stream" && layout != "regions") throw UsageError("--layout '" + layout + "' is not known; give stream or regions");
+  if (layout == "stream" && parsed.has("cells-per-packet")) throw UsageError("--cells-per-packet is for --layout regions; leave it out, or give that");
+  if (layout == "stream") return 0;
+  return parsed.has("cells-per-packet")
+             ? static_cast<std::size_t>(parsed.integer("cells-per-packet", kLeastCellsPerPacket, std::numeric_limits<int>::max()))
+             : kCellsPerPacket;
+}
+
 }  // namespace
 
 void addFusionOptions(boost::program_options::options_description& options) {
@@ -50,6 +66,9 @@ void addFusionOptions(boost::program_options::options_description& options) {
       "each other than twice this may come to touch")(
       "preserve-regions", po::value<std::string>(),
       "a cell field of one component whose values are regions such as tissues or materials: they and their interfaces keep their topology")(
+      "layout", po::value<std::string>()->default_value("stream"),
+      "stream: the smallest log, refined as a whole; regions: packets of places, so that a viewer can refine one place without the rest")(
+      "cells-per-packet", po::value<int>(), "with --layout regions: tetrahedra of the original that share a finest packet, 100 and more; 8000 without")(
       "threads", po::value<int>()->default_value(1), "threads; the result does not depend on it");
 }
 
@@ -61,6 +80,7 @@ FusionRequest fusionRequestOf(const ParsedWords& parsed) {
   out.options.placement = placementRuleOf(parsed.get<std::string>("placement"));
   out.options.envelopeTolerance = parsed.number("envelope-tolerance", 0, 1);
   out.options.threads = parsed.integer("threads", 1, kMaxThreads);
+  out.options.bands.cellsPerPacket = cellsPerPacketOf(parsed);
   if (parsed.has("field-weight"))
     for (const std::string& text : parsed.get<std::vector<std::string>>("field-weight")) {
       out.fieldWeights.push_back(parseNamedNumber("field-weight", text, "a field's name and its weight such as Density=2"));

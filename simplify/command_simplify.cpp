@@ -53,6 +53,8 @@ Request requestOf(const ParsedWords& parsed) {
   request.fusion = fusionRequestOf(parsed);
   if (request.algorithm == "paper" && (request.fusion.regions || request.fusion.options.envelopeTolerance > 0 || !request.fusion.fieldWeights.empty()))
     throw UsageError("--algorithm paper knows no --preserve-regions, --envelope-tolerance or --field-weight; leave them out");
+  if (request.algorithm == "paper" && request.fusion.options.bands.cellsPerPacket > 0)
+    throw UsageError("--algorithm paper knows no --layout regions; leave it out");
   request.measure = measureOptionsOf(parsed);
   request.valueCodec = valueCodecOf(parsed.get<std::string>("geometry-codec"));
   request.keep = {parsed.has("keep-order"), parsed.has("lossless")};
@@ -109,6 +111,7 @@ void addSizes(const EncodedLog& log, const Manifest& manifest, OrderedJson& repo
   report["bytes"] = log.bytes.size();
   report["bytesOf"] = {{"head", statistics.headBytes},
                        {"connectivity", statistics.structureBytes},
+                       {"childBits", statistics.childBytes},
                        {"positions", statistics.positionBytes},
                        {"fields", fieldBytes}};
   report["bitsPerTetrahedron"] = {{"connectivity", bits(statistics.structureBytes)},
@@ -204,6 +207,8 @@ Result<EncodedLog> makeLog(const Request& request, Prepared& prepared, Progress&
   Result<FusionHistory> history = fuseBy(request, std::move(prepared.quantised.mesh), *fusion, paper);
   if (!history) return std::unexpected(history.error());
   watch.lap("simplify");
+  if (fusion->bands.cellsPerPacket > 0 && history->bands.ends.empty())
+    prepared.fusionNotes.push_back("the mesh is too small for more than one packet (--cells-per-packet): the log has the layout stream");
   const Result<std::vector<LevelError>> errors = measure(request, *history, progress, watch);
   if (!errors) return std::unexpected(errors.error());
   cutGapsOut(*history, prepared.quantised.gaps);
@@ -246,6 +251,7 @@ Result<OrderedJson> reportOf(const Request& request, const Prepared& prepared, c
                         {"tetrahedra", {{"input", prepared.cellsIn}, {"full", full}, {"base", base}}},
                         {"vertices", manifest->levels.back().vertices},
                         {"percentRemoved", 100.0 * (1.0 - static_cast<double>(base) / static_cast<double>(full))},
+                        {"layout", manifest->layout},
                         {"levels", manifest->levels.size() - 1},
                         {"chunks", index->chunks.size()}};
   report["records"] = log.statistics.records;

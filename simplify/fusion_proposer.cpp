@@ -12,11 +12,12 @@ constexpr std::array<double, 5> kLeastError{0, 0, 1, 0.5, 0.25}, kLeastBytes{0, 
 
 }  // namespace
 
-FusionProposer::FusionProposer(const FusionMesh& mesh, const FusionCost& cost, const Touched& touched, const FusionLimits& limits,
-                               const FusionPointOptions& options)
+FusionProposer::FusionProposer(const FusionMesh& mesh, const FusionCost& cost, const Touched& touched, const BandNodes& band,
+                               const FusionLimits& limits, const FusionPointOptions& options)
     : mesh_(mesh),
       cost_(cost),
       touched_(touched),
+      band_(band),
       costFactor_(options.rule == PlacementRule::kOptimal ? kLeastError : kLeastBytes),
       test_(mesh, limits),
       finder_(mesh, cost, options) {}
@@ -28,7 +29,7 @@ void FusionProposer::candidatesOf(VertexId v, bool onlyLower, std::vector<Candid
   mesh_.prefetchStar(v);
   for (const CellId c : mesh_.star(v))
     for (const VertexId w : mesh_.cell(c)) {
-      if (w == v || w == kGhost || (onlyLower && w > v) || neighbours_.intern(w) < found.size()) continue;
+      if (w == v || w == kGhost || (onlyLower && w > v) || !band_.allows(v, w) || neighbours_.intern(w) < found.size()) continue;
       found.push_back({0, w});
       cost_.prefetch(w);
     }

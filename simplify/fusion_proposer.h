@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "simplify/band_nodes.h"
 #include "simplify/candidates.h"
 #include "simplify/fusion_cost.h"
 #include "simplify/fusion_mesh.h"
@@ -38,9 +39,10 @@ struct Proposal {
 
 class FusionProposer {
  public:
-  FusionProposer(const FusionMesh& mesh, const FusionCost& cost, const Touched& touched, const FusionLimits& limits, const FusionPointOptions& options);
+  FusionProposer(const FusionMesh& mesh, const FusionCost& cost, const Touched& touched, const BandNodes& band, const FusionLimits& limits,
+                 const FusionPointOptions& options);
 
-  /// The edges of v, cheapest first; `onlyLower` = those whose highest vertex it is.
+  /// The edges of v that the band allows, cheapest first; `onlyLower` = those whose highest vertex it is.
   void candidatesOf(VertexId v, bool onlyLower, std::vector<Candidate>& found);
 
   /// The fusion of the first edge of `candidates`, which are `owner`'s, cheapest first; or of a triangle or tetrahedron that holds it where that is
@@ -56,6 +58,7 @@ class FusionProposer {
   const FusionMesh& mesh_;
   const FusionCost& cost_;
   const Touched& touched_;
+  const BandNodes& band_;
   const std::array<double, 5>& costFactor_;  // by k
   FusionTest test_;
   FusionPointFinder finder_;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "proto/limits.h"
+#include "simplify/band_nodes.h"
 #include "simplify/candidates.h"
 #include "simplify/fusion_mesh.h"
 #include "simplify/fusion_proposer.h"
@@ -24,6 +25,8 @@ namespace {
 constexpr double kLevelQuantile = 0.35;
 // A pass over all candidates that removes less than this fraction of the cells is the last.
 constexpr double kWorthAnotherPass = 0.002;
+// A level of a band that removes less than this fraction of the cells is its last: what is left is dear, and waits for larger nodes.
+constexpr double kWorthAnotherLevel = 0.015;
 // A fusion that turns out to cost this much more than its key waits for those that cost less.
 constexpr float kDearer = 1.25f;
 // No new cell may be shaped worse than this, or than a fifth of its star's worst (1 = regular, 0 = flat).
@@ -54,6 +57,7 @@ class Simplifier {
       : options_(options),
         mesh_(mesh, options.regionField.value_or(FusionMesh::kNoRegions)),
         cost_(mesh_, mesh, options.cost),
+        band_(options.bands.cellsPerPacket == 0 ? BandNodes() : BandNodes(mesh_, mesh, options.bands.cellsPerPacket)),
         workers_(options.threads),
         original_(mesh.tetrahedra.size()),
         target_(static_cast<std::size_t>(options.targetRatio * static_cast<double>(original_))),
@@ -62,26 +66,65 @@ class Simplifier {
   }
 
   Result<FusionHistory> run() {
+    runBands();
+    goal_ = target_;
     while (mesh_.liveTetrahedra() > target_) {
       const std::size_t before = mesh_.liveTetrahedra();
-      findCandidates();
-      while (mesh_.liveTetrahedra() > target_ && level_ < kMaxLevels && runLevel()) {
-      }
+      runLevels();
       if (level_ == kMaxLevels && mesh_.liveTetrahedra() > target_)
         return fail(ErrorCode::kLimitExceeded, "4,096 levels do not reach the target; ask for more cells with --target-ratio");
-      if (static_cast<double>(before - mesh_.liveTetrahedra()) >= kWorthAnotherPass * static_cast<double>(before)) continue;
+      if (isWorth(kWorthAnotherPass, before)) continue;
       if (relaxed_) break;
       relaxed_ = true;
       limitBy({0, options_.envelopeTolerance * cost_.diagonal(), -1});
     }
-    return mesh_.takeHistory(level_);
+    FusionHistory history = mesh_.takeHistory(level_);
+    history.bands = band_.take();
+    return history;
   }
 
  private:
+  // A band halves the mesh, or does what its nodes leave it at a fair price: inside small nodes half would cost far more than it does in the whole.
+  void runBands() {
+    while (mesh_.liveTetrahedra() > target_ && band_.bands() < std::min<std::size_t>(band_.depth(), options_.bands.most)) {
+      const std::uint32_t firstLevel = level_;
+      goal_ = std::max(target_, mesh_.liveTetrahedra() / 2);
+      findCandidates();
+      dearest_ = keyAt(options_.bands.dearest);
+      band_.begin(mesh_);
+      runLevels();
+      dearest_ = std::numeric_limits<float>::infinity();
+      if (!band_.end(firstLevel, level_)) break;
+    }
+  }
+
+  /// The key that this fraction of the vertices' best candidates does not pass.
+  float keyAt(double fraction) {
+    std::vector<float> keys;
+    for (const VertexId v : vertices_)
+      if (const Candidate* best = candidates_.best(v)) keys.push_back(best->key);
+    if (keys.empty()) return 0;
+    const auto at = keys.begin() + static_cast<std::ptrdiff_t>(fraction * static_cast<double>(keys.size() - 1));
+    std::nth_element(keys.begin(), at, keys.end());
+    return *at;
+  }
+
+  // From all candidates anew to the goal, or until nothing is left to try.
+  void runLevels() {
+    findCandidates();
+    for (std::size_t before = mesh_.liveTetrahedra(); before > goal_ && level_ < kMaxLevels && runLevel(); before = mesh_.liveTetrahedra())
+      if (std::isfinite(dearest_) && !isWorth(kWorthAnotherLevel, before)) return;
+  }
+
+  /// At least this fraction of the cells that were there before is gone.
+  [[nodiscard]] bool isWorth(double fraction, std::size_t before) const {
+    return static_cast<double>(before - mesh_.liveTetrahedra()) >= fraction * static_cast<double>(before);
+  }
+
   void limitBy(const FusionLimits& limits) {
     proposers_.clear();
     for (std::size_t i = 0; i < workers_.count(); ++i)
-      proposers_.push_back(std::make_unique<FusionProposer>(mesh_, cost_, touched_, limits, FusionPointOptions{options_.placement, options_.shapeWeight}));
+      proposers_.push_back(std::make_unique<FusionProposer>(mesh_, cost_, touched_, band_, limits, FusionPointOptions{options_.placement, options_.shapeWeight}));
   }
 
   void findCandidates() {
@@ -115,7 +158,7 @@ class Simplifier {
     if (entries_.empty()) return false;
     levelStart_ = fusions_;
     fused_.clear();
-    while (nextKey() <= limit_ && mesh_.liveTetrahedra() > target_) {
+    while (nextKey() <= limit_ && mesh_.liveTetrahedra() > goal_) {
       if (next_ >= proposedTo_) proposeAhead();
       const VertexId owner = pop();
       if (!isLocked(owner)) process(owner);
@@ -142,11 +185,13 @@ class Simplifier {
       const Candidate* best = candidates_.best(v);
       entries_[i] = {best ? best->key : std::numeric_limits<float>::infinity(), v};
     });
-    std::erase_if(entries_, [](const Entry& e) { return std::isinf(e.key); });
+    std::erase_if(entries_, [&](const Entry& e) { return e.key > dearest_ || std::isinf(e.key); });
     next_ = proposedTo_ = 0;
     if (entries_.empty()) return;
     const auto cheaper = [](const Entry& a, const Entry& b) { return b < a; };
-    const auto at = entries_.begin() + static_cast<std::ptrdiff_t>(kLevelQuantile * static_cast<double>(entries_.size() - 1));
+    // What a band can afford it will do, so that the order counts for less there than the number of levels.
+    const double levelQuantile = std::isinf(dearest_) ? kLevelQuantile : options_.bands.levelQuantile;
+    const auto at = entries_.begin() + static_cast<std::ptrdiff_t>(levelQuantile * static_cast<double>(entries_.size() - 1));
     std::nth_element(entries_.begin(), at, entries_.end(), cheaper);
     limit_ = at->key;
     entries_.erase(std::partition(at, entries_.end(), [&](const Entry& e) { return e.key <= limit_; }), entries_.end());
@@ -249,6 +294,7 @@ class Simplifier {
     fuseIntegers(prey, point);
     cost_.fuse(prey, point, values_);
     const VertexId fused = mesh_.fuse(prey, {point, integers_, proposal.where.outside}, proposal.star, level_);
+    band_.fused(prey.vertex[0]);
     makeRoom();
     touched_.touch(fused, ++fusions_);
     for (const VertexId v : prey.vertices()) touched_.touch(v, fusions_);
@@ -297,17 +343,19 @@ class Simplifier {
   FusionMesh mesh_;
   FusionCost cost_;
   Touched touched_;
+  BandNodes band_;
   Workers workers_;
   std::vector<std::unique_ptr<FusionProposer>> proposers_;  // one a worker
   bool relaxed_ = false;                                    // nothing is left that keeps the limits of beauty; those of validity remain
   std::size_t original_, target_;
+  std::size_t goal_ = 0;  // of the levels in hand: target_, or where the band ends
   std::uint32_t level_ = 0;
   std::uint32_t fusions_ = 0, levelStart_ = 0;
   std::vector<VertexId> vertices_;  // alive at the level's start
   Candidates candidates_;
   std::vector<Entry> entries_;
   std::size_t next_ = 0, proposedTo_ = 0, ahead_ = 0;  // into entries_
-  float limit_ = 0;
+  float limit_ = 0, dearest_ = std::numeric_limits<float>::infinity();  // keys: where the level ends, where the band does
   Queue queue_;
   std::vector<VertexId> fused_;  // of this level
   std::deque<Proposal> proposals_;

@@ -13,6 +13,14 @@
 
 namespace qtet {
 
+/// ALGORITHM.md, "Bands".
+struct BandOptions {
+  std::size_t cellsPerPacket = 0;  ///< of the input, a leaf of the tree that bands keep to; 0: no bands
+  std::size_t most = 4;            ///< with each more, small boxes take fewer bytes and coarse levels get worse
+  double dearest = 0.9;            ///< a band ends at the key that this fraction of the vertices' best edges does not pass at its start, 0..1
+  double levelQuantile = 1;        ///< a level of a band ends at this quantile of what the band can afford, 0..1
+};
+
 struct FusionOptions {
   double targetRatio = 0.01;                         ///< stop when this fraction of the cells remains, 0..1
   CostOptions cost;
@@ -20,6 +28,7 @@ struct FusionOptions {
   std::optional<std::size_t> regionField;            ///< the cell field of one component whose values are regions that keep their topology
   double shapeWeight = 0.5;                          ///< what badly shaped new cells add to the cost, >= 0 (ALGORITHM.md, "Shape")
   PlacementRule placement = PlacementRule::kAuto;
+  BandOptions bands;
   int threads = 1;                                   ///< the result never depends on it
   std::function<void(double fraction)> progress;     ///< 0..1, called at most once a level
 };

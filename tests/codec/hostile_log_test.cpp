@@ -149,7 +149,7 @@ TEST_F(HostileLog, aTableThatContradictsItselfIsRefused) {
   expectRefused(ErrorCode::kBadCodec, [](LogIndex& i) { i.chunks[1].structureCodec = CodecId::kDraco; });
   expectRefused(ErrorCode::kBadValue, [](LogIndex& i) { i.fields[0].components = 17; });
   expectRefused(ErrorCode::kBadValue, [](LogIndex& i) { i.positionBits = 29; });
-  expectRefused(ErrorCode::kBadVersion, [](LogIndex& i) { i.layout = Layout::kRegions; });
+  expectRefused(ErrorCode::kBadValue, [](LogIndex& i) { i.layout = Layout::kRegions; });
 }
 
 TEST_F(HostileLog, aLatticeTooSmallForItsPointsIsRefused) {
