@@ -387,6 +387,9 @@ class LogEncoder {
       }
       if (&e == &index.chunks.front()) s.baseBytes = offset - e.offset;
     }
+    const std::uint64_t positionBytes = models_.positionCost / (64 * 8);
+    s.structureBytes -= positionBytes;
+    s.positionBytes += positionBytes;
     index.fileBytes = s.fileBytes = offset;
     s.chunks = static_cast<std::uint32_t>(index.chunks.size());
     s.levels = h_.levels;

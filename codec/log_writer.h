@@ -25,8 +25,8 @@ struct LogWriterOptions {
 
 struct LogStatistics {
   std::uint64_t headBytes = 0;       ///< header, manifest, table
-  std::uint64_t structureBytes = 0;
-  std::uint64_t positionBytes = 0;
+  std::uint64_t structureBytes = 0;  ///< without what positions take of them
+  std::uint64_t positionBytes = 0;   ///< with that: placements, remainders, digits
   std::vector<std::uint64_t> fieldBytes;
   std::uint64_t baseBytes = 0;       ///< of the above, what chunk 0 takes
   std::uint64_t fileBytes = 0;

@@ -7,6 +7,7 @@
 #include <bit>
 #include <cstdint>
 
+#include "codec/log2_fixed.h"
 #include "proto/bytes.h"
 
 namespace qtet {
@@ -62,11 +63,11 @@ class RangeEncoder {
   std::uint32_t raw(std::uint32_t value, int bits) {
     pending_ |= std::uint64_t{value} << pendingBits_;
     for (pendingBits_ += bits; pendingBits_ >= 8; pendingBits_ -= 8, pending_ >>= 8) raw_.push_back(static_cast<std::uint8_t>(pending_));
-    rawBits_ += static_cast<std::uint64_t>(bits);
+    cost_ += 64 * static_cast<std::uint64_t>(bits);
     return value;
   }
-  /// Raw bits so far, of all streams.
-  [[nodiscard]] std::uint64_t rawBits() const { return rawBits_; }
+  /// What all so far took, in 64ths of a bit: about, for statistics.
+  [[nodiscard]] std::uint64_t cost() const { return cost_; }
   [[nodiscard]] std::size_t size() const { return writer_.bytes().size() + raw_.size(); }
   /// Ends the stream and starts afresh.
   [[nodiscard]] Bytes finish() {
@@ -81,6 +82,7 @@ class RangeEncoder {
 
  private:
   void encode(int value, std::uint32_t probability) {
+    cost_ += static_cast<std::uint64_t>(16 * 64 - log2Fixed(std::uint64_t{value ? probability : 65536 - probability}));
     const std::uint32_t middle = low_ + static_cast<std::uint32_t>((std::uint64_t{high_ - low_} * probability) >> 16);
     if (value)
       high_ = middle;
@@ -96,7 +98,7 @@ class RangeEncoder {
   std::uint32_t high_ = ~0u;
   ByteWriter writer_;
   Bytes raw_;  // the last byte first
-  std::uint64_t pending_ = 0, rawBits_ = 0;
+  std::uint64_t pending_ = 0, cost_ = 0;
   int pendingBits_ = 0;
 };
 

@@ -41,6 +41,7 @@ struct RecordModels {
   PositionModels positions;
   LabelModels labels;
   DeletedModels deleted;
+  std::uint64_t positionCost = 0;      // an encoder's: what positions took of the structure blocks, in 64ths of a bit
   std::int32_t extent = 64 * 10 * 16;  // running mean of the log extent of stars that split, times 16
 };
 
@@ -95,7 +96,9 @@ class RecordCoder {
     split.placement = truth.placement;
     split.near = truth.near;
     split.points = truth.points;
+    if constexpr (Coder::kEncoding) models_.positionCost -= coder_.cost();
     positions_.code(v, split);
+    if constexpr (Coder::kEncoding) models_.positionCost += coder_.cost();
     if (values_.bad()) return false;
     for (int i = 0; i < split.k; ++i)
       for (const std::int32_t x : split.points[static_cast<std::size_t>(i)])

@@ -31,7 +31,14 @@ struct Request {
   FusionRequest fusion;
   std::optional<MeasureOptions> measure;
   KeepOptions keep;
+  CodecId valueCodec = CodecId::kDraco;
 };
+
+CodecId valueCodecOf(const std::string& name) {
+  if (name == "draco") return CodecId::kDraco;
+  if (name == "adaptive") return CodecId::kAdaptive;
+  throw UsageError("--geometry-codec '" + name + "' is not known; give draco or adaptive");
+}
 
 Request requestOf(const ParsedWords& parsed) {
   Request request;
@@ -48,6 +55,7 @@ Request requestOf(const ParsedWords& parsed) {
     throw UsageError("--algorithm paper knows no --preserve-regions, --envelope-tolerance or --field-weight; leave them out");
   request.measure = measureOptionsOf(parsed);
   request.keep = {parsed.has("keep-order"), parsed.has("lossless")};
+  request.valueCodec = valueCodecOf(parsed.get<std::string>("geometry-codec"));
   return request;
 }
 
@@ -206,6 +214,7 @@ Result<EncodedLog> makeLog(const Request& request, Prepared& prepared, Progress&
   options.generator = "qtet " QTET_VERSION;
   options.progress = fusion->progress;
   options.errors = *errors;
+  options.valueCodec = request.valueCodec;
   Result<EncodedLog> log = encodeLog(*history, options);
   if (!log) return log;
   watch.lap("encode");
@@ -296,6 +305,8 @@ int runSimplify(const Words& words, Console& console) {
       "field-bits", po::value<int>()->default_value(12), "bits of a float field's values, 1 to 28; integer fields are stored exactly")(
       "keep-order", "keep the input's numbering of points, cells and their vertices: extract gives it back at the last level")(
       "lossless", "keep the input's own coordinates and field values: extract gives them back bit for bit at the last level")(
+      "geometry-codec", po::value<std::string>()->default_value("draco"),
+      "how positions and fields are coded: draco, or adaptive, which is 1 to 3 % smaller and which only qtet can read")(
       "json", "print one JSON object");
   addFusionOptions(options);
   addMeasureOptions(options);

@@ -1,6 +1,7 @@
 // What could be fused: the edges of a vertex with what they would cost, and the proposal that comes of one of them. Reads the mesh, changes nothing.
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -37,8 +38,7 @@ struct Proposal {
 
 class FusionProposer {
  public:
-  FusionProposer(const FusionMesh& mesh, const FusionCost& cost, const Touched& touched, const FusionLimits& limits, const FusionPointOptions& options)
-      : mesh_(mesh), cost_(cost), touched_(touched), test_(mesh, limits), finder_(mesh, cost, options) {}
+  FusionProposer(const FusionMesh& mesh, const FusionCost& cost, const Touched& touched, const FusionLimits& limits, const FusionPointOptions& options);
 
   /// The edges of v, cheapest first; `onlyLower` = those whose highest vertex it is.
   void candidatesOf(VertexId v, bool onlyLower, std::vector<Candidate>& found);
@@ -56,6 +56,7 @@ class FusionProposer {
   const FusionMesh& mesh_;
   const FusionCost& cost_;
   const Touched& touched_;
+  const std::array<double, 5>& costFactor_;  // by k
   FusionTest test_;
   FusionPointFinder finder_;
   LocalVertices neighbours_;

@@ -1,0 +1,57 @@
+// Mixed decisions: tables that are each other's inverse, learning, and the same answers on both sides.
+#include "codec/mixed_bit.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace qtet {
+namespace {
+
+TEST(MixedBit, theTableIsTheLogisticFunction) {
+  for (int x = -mixing::kMost; x <= mixing::kMost; ++x)
+    ASSERT_NEAR(mixing::squash(x), 65536 / (1 + std::exp(-x / 256.0)), 270) << x;
+  for (int x = -mixing::kMost; x < mixing::kMost; ++x) ASSERT_LE(mixing::squash(x), mixing::squash(x + 1)) << x;
+}
+
+TEST(MixedBit, stretchIsTheInverseOfSquash) {
+  for (std::size_t p = 0; p + 1 < mixing::kStretch.size(); ++p) ASSERT_LE(mixing::kStretch[p], mixing::kStretch[p + 1]);
+  for (std::uint32_t p = 2; p < 4094; ++p) {
+    ASSERT_GE(mixing::squash(mixing::kStretch[p]), 16 * p + 8) << p;
+    ASSERT_LT(mixing::squash(mixing::kStretch[p] - 1), 16 * p + 8) << p;
+  }
+}
+
+// One model of three knows, the others see noise.
+TEST(MixedBit, itLearnsWhomToTrust) {
+  std::mt19937 random(5);
+  std::vector<std::array<std::size_t, 3>> contexts;
+  std::vector<int> bits;
+  for (int i = 0; i < 20000; ++i) {
+    const std::size_t knows = random() % 2;
+    contexts.push_back({knows, random() % 8, random() % 8});
+    bits.push_back((knows != 0) != (random() % 50 == 0));
+  }
+  const auto run = [&](auto& coder, const auto& each) {
+    std::array<std::array<BitModel, 8>, 3> models;
+    Mixer<3> mixer;
+    for (std::size_t i = 0; i < bits.size(); ++i) {
+      const std::array<BitModel*, 3> asked{&models[0][contexts[i][0]], &models[1][contexts[i][1]], &models[2][contexts[i][2]]};
+      each(i, mixedBit(coder, bits[i], asked, mixer));
+    }
+  };
+  RangeEncoder encoder;
+  run(encoder, [](std::size_t, int) {});
+  const Bytes bytes = encoder.finish();
+  const double entropy = -(0.02 * std::log2(0.02) + 0.98 * std::log2(0.98)) * static_cast<double>(bits.size()) / 8;
+  EXPECT_LT(static_cast<double>(bytes.size()), 1.1 * entropy);
+  RangeDecoder decoder(bytes);
+  std::size_t wrong = 0;
+  run(decoder, [&](std::size_t i, int bit) { wrong += bit != bits[i]; });
+  EXPECT_EQ(wrong, 0u);
+  EXPECT_TRUE(decoder.atEnd());
+}
+
+}  // namespace
+}  // namespace qtet
