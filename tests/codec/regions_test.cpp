@@ -8,8 +8,8 @@
 
 #include "codec/compact_mesh.h"
 #include "codec/log_file.h"
+#include "codec/log_manifest.h"
 #include "codec/log_writer.h"
-#include "proto/manifest.h"
 #include "simplify/qtetfusion.h"
 #include "simplify/verify.h"
 #include "tests/support/forged_log.h"
@@ -136,7 +136,7 @@ TEST_P(Regions, aLogHasAHeadAndBandsOfPackets) {
 }
 
 TEST_P(Regions, everyLevelIsTheMeshThatTheSimplifierHad) {
-  const auto manifest = manifestFromJson(index().manifest);
+  const auto manifest = manifestOf(index());
   ASSERT_TRUE(manifest);
   EXPECT_EQ(manifest->layout, "regions");
   ASSERT_EQ(manifest->levels.size(), history_.levels + 1u);

@@ -18,12 +18,12 @@
 namespace qtet {
 namespace {
 
-Bytes logOf(const LatticeMesh& mesh, std::uint32_t chunkBytes) {
+Bytes logOf(const LatticeMesh& mesh, std::uint32_t chunkBytes, const FusionOptions& fusion = {}) {
   LogWriterOptions options;
   options.source = "golden.vtu";
   options.generator = "qtet golden";
   options.chunkBytes = chunkBytes;
-  return encodeLog(simplify(mesh, {}).value(), options).value().bytes;
+  return encodeLog(simplify(mesh, fusion).value(), options).value().bytes;
 }
 
 /// A log taken apart, changed and put together with every checksum right; `table` changes what stands there beside the right offsets.
@@ -159,6 +159,10 @@ int main(int argc, char** argv) {
   qtet::LatticeMesh cells = gridMesh(3, 5);
   qtet::testing::addCellFields(cells);
   qtet::write(folder / "valid" / "cell-fields.qtet", qtet::logOf(cells, 800));
+  qtet::FusionOptions bands;
+  bands.targetRatio = 0;
+  bands.bands = {100, 2, 1, 1};
+  qtet::write(folder / "valid" / "regions.qtet", qtet::logOf(gridMesh(4, 6), 800, bands));
   qtet::writeMustFail(folder / "must-fail", solid);
   qtet::writeDigests(folder);
   return 0;
