@@ -126,7 +126,7 @@ void writeMustFail(const std::filesystem::path& folder, const Bytes& good) {
 /// What the valid files decode to, in the form that sha256sum writes.
 void writeDigests(const std::filesystem::path& folder) {
   std::ofstream meshes(folder / "digests.txt"), values(folder / "field-digests.txt");
-  for (const char* name : {"cell-fields", "no-fields", "pinched", "solid", "tunnel"}) {
+  for (const char* name : {"cell-fields", "no-fields", "pinched", "regions", "solid", "tunnel"}) {
     const std::string file = std::string(name) + ".qtet";
     const LogFile log = LogFile::open(folder / "valid" / file).value();
     std::vector<std::uint32_t> fields;
