@@ -188,6 +188,8 @@ TEST(Refiner, aLinkOfTwoSpheresIsRefused) {
   LogIndex index;
   index.positionBits = 10;
   index.chunks.resize(2);
+  index.dependencies = {0};
+  index.chunks[1].dependencyCount = 1;
   index.chunks[0].newVertices = 7;
   index.chunks[0].newTetrahedra = 2;
   index.chunks[0].newBoundaryTriangles = 8;

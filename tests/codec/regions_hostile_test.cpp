@@ -92,7 +92,10 @@ TEST_F(HostileRegions, bandsAreWholeAndInOrder) {
   expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { ++l.index.chunks[last].lastLevel; }, "a level more than its band");
   expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { l.index.chunks[last].endSlot = 5; }, "ends within a level");
   expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { l.index.chunks[head - 1].endSlot = 5; }, "the head ends within a level");
-  expectRefused(ErrorCode::kLimitExceeded, [](TakenApart& l) { l.index.layout = Layout::kStream; }, "packets in a stream");
+  expectRefused(ErrorCode::kLimitExceeded, [](TakenApart& l) {
+    l.index.layout = Layout::kStream;
+    for (ChunkEntry& e : l.index.chunks) e.node = 0;
+  }, "packets in a stream");
   expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { while (l.index.chunks.size() > head) drop(l, head); }, "no packets");
   expectRefused(ErrorCode::kLimitExceeded, [=](TakenApart& l) { for (auto i = second; i <= last; ++i) l.index.chunks[i].lastLevel = 5000; }, "levels");
 }

@@ -8,8 +8,8 @@
 
 #include "codec/compact_mesh.h"
 #include "codec/log_file.h"
-#include "codec/log_writer.h"
 #include "codec/log_manifest.h"
+#include "codec/log_writer.h"
 #include "simplify/qtetfusion.h"
 #include "simplify/verify.h"
 #include "tests/support/forged_log.h"

@@ -21,12 +21,12 @@
 namespace qtet {
 namespace {
 
-Bytes logOf(const LatticeMesh& mesh, std::uint32_t chunkBytes) {
+Bytes logOf(const LatticeMesh& mesh, std::uint32_t chunkBytes, const FusionOptions& fusion = {}) {
   LogWriterOptions options;
   options.source = "golden.vtu";
   options.generator = "qtet golden";
   options.chunkBytes = chunkBytes;
-  return encodeLog(simplify(mesh, {}).value(), options).value().bytes;
+  return encodeLog(simplify(mesh, fusion).value(), options).value().bytes;
 }
 
 /// A field of points, one of cells, and every third of their values missing, beside a field without gaps.
@@ -185,7 +185,7 @@ void writeMustFail(const std::filesystem::path& folder, const Bytes& good) {
 /// What the valid files decode to, in the form that sha256sum writes.
 void writeDigests(const std::filesystem::path& folder) {
   std::ofstream meshes(folder / "digests.txt"), values(folder / "field-digests.txt");
-  for (const char* name : {"cell-fields", "gaps", "kept-input", "no-fields", "pinched", "solid", "tunnel"}) {
+  for (const char* name : {"cell-fields", "gaps", "kept-input", "no-fields", "pinched", "regions", "solid", "tunnel"}) {
     const std::string file = std::string(name) + ".qtet";
     const LogFile log = LogFile::open(folder / "valid" / file).value();
     std::vector<std::uint32_t> fields;
@@ -221,6 +221,10 @@ int main(int argc, char** argv) {
   const qtet::Bytes kept = qtet::keptLog();
   qtet::write(folder / "valid" / "gaps.qtet", qtet::gappyLog());
   qtet::write(folder / "valid" / "kept-input.qtet", kept);
+  qtet::FusionOptions bands;
+  bands.targetRatio = 0;
+  bands.bands = {100, 2, 1, 1};
+  qtet::write(folder / "valid" / "regions.qtet", qtet::logOf(gridMesh(4, 6), 800, bands));
   qtet::writeMustFail(folder / "must-fail", solid);
   qtet::writeBadClosing(folder / "must-fail", kept);
   qtet::writeDigests(folder);

@@ -182,8 +182,11 @@ TEST(Fused, theEnvelopeGivesWayByItsToleranceAndNoMore) {
     for (const LatticePoint& p : history->points)
       for (const std::int32_t x : p) ASSERT_TRUE(x >= 0 && x < 1 << mesh.lattice.bits) << "off the lattice";
     double& most = farthest[tolerance > 0];
-    for (const Triangle& t : base.boundary)
-      for (const VertexId v : t) most = std::max(most, testing::distanceOutside(mesh, base.points[v]));
+    for (std::uint32_t level = 0; level <= history->levels; ++level) {
+      const LatticeMesh coarse = meshOfHistory(*history, level);
+      for (const Triangle& t : coarse.boundary)
+        for (const VertexId v : t) most = std::max(most, testing::distanceOutside(mesh, coarse.points[v]));
+    }
     EXPECT_LE(most, tolerance * diagonal + 1e-9);
   }
   EXPECT_GT(farthest[1], 1) << "the room was used";
