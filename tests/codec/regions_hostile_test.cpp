@@ -14,8 +14,8 @@
 namespace qtet {
 namespace {
 
-using testing::TakenApart;
 using testing::takeApart;
+using testing::TakenApart;
 
 Bytes sampleBytes(std::size_t cellsPerPacket) {
   FusionOptions options;
@@ -45,7 +45,9 @@ class HostileRegions : public ::testing::Test {
     ASSERT_FALSE(parsed) << what;
     EXPECT_EQ(parsed.error().code, code) << what << ": " << parsed.error().text();
   }
-  [[nodiscard]] static std::uint32_t& dependency(TakenApart& log, std::uint32_t chunk) { return log.index.dependencies[log.index.chunks[chunk].firstDependency]; }
+  [[nodiscard]] static std::uint32_t& dependency(TakenApart& log, std::uint32_t chunk) {
+    return log.index.dependencies[log.index.chunks[chunk].firstDependency];
+  }
   /// Without a row, and what follows it moved up.
   static void drop(TakenApart& log, std::uint32_t chunk) {
     log.index.chunks.erase(log.index.chunks.begin() + chunk);
@@ -68,40 +70,75 @@ TEST_F(HostileRegions, theHonestLogIsAccepted) {
 
 TEST_F(HostileRegions, dependenciesAreTheParentsAndNothingElse) {
   const std::uint32_t last = last_, second = second_, head = head_;
-  expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { dependency(l, last) = last; }, "itself");
-  expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { dependency(l, second) = last; }, "a cycle");
-  expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { --dependency(l, last); }, "another packet of the parent's band");
-  expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { dependency(l, second) = head - 1; }, "the head instead of the parent");
-  expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { dependency(l, head + 1) = head; }, "a packet of the same band");
-  expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { l.index.chunks[last].dependencyCount = 0; }, "no parent");
-  expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { l.index.chunks[last].dependencyCount = 2, l.index.dependencies.push_back(0); }, "two parents");
+  expectRefused(
+      ErrorCode::kBadValue, [=](TakenApart& l) { dependency(l, last) = last; }, "itself");
+  expectRefused(
+      ErrorCode::kBadValue, [=](TakenApart& l) { dependency(l, second) = last; }, "a cycle");
+  expectRefused(
+      ErrorCode::kBadValue, [=](TakenApart& l) { --dependency(l, last); }, "another packet of the parent's band");
+  expectRefused(
+      ErrorCode::kBadValue, [=](TakenApart& l) { dependency(l, second) = head - 1; }, "the head instead of the parent");
+  expectRefused(
+      ErrorCode::kBadValue, [=](TakenApart& l) { dependency(l, head + 1) = head; }, "a packet of the same band");
+  expectRefused(
+      ErrorCode::kBadValue, [=](TakenApart& l) { l.index.chunks[last].dependencyCount = 0; }, "no parent");
+  expectRefused(
+      ErrorCode::kBadValue, [=](TakenApart& l) { l.index.chunks[last].dependencyCount = 2, l.index.dependencies.push_back(0); },
+      "two parents");
 }
 
 TEST_F(HostileRegions, bandsAreWholeAndInOrder) {
   const std::uint32_t last = last_, second = second_, head = head_;
-  expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { drop(l, last); }, "without the last packet");
-  expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { drop(l, second); }, "without the first of the second band");
-  expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { drop(l, head); }, "without the first packet");
-  expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { ++l.index.chunks[last].lastLevel; }, "a level more than its band");
-  expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { --l.index.chunks[second + 1].firstLevel; }, "a level of the band before");
-  expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { l.index.chunks[last].endSlot = 5; }, "ends within a level");
-  expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { l.index.chunks[head - 1].endSlot = 5; }, "the head ends within a level");
-  expectRefused(ErrorCode::kBadValue, [](TakenApart& l) { l.index.layout = Layout::kStream; }, "packets in a stream");
-  expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { while (l.index.chunks.size() > head) drop(l, head); }, "no packets");
-  expectRefused(ErrorCode::kLimitExceeded, [=](TakenApart& l) { for (auto i = second; i <= last; ++i) l.index.chunks[i].lastLevel = 5000; }, "levels");
+  expectRefused(
+      ErrorCode::kBadValue, [=](TakenApart& l) { drop(l, last); }, "without the last packet");
+  expectRefused(
+      ErrorCode::kBadValue, [=](TakenApart& l) { drop(l, second); }, "without the first of the second band");
+  expectRefused(
+      ErrorCode::kBadValue, [=](TakenApart& l) { drop(l, head); }, "without the first packet");
+  expectRefused(
+      ErrorCode::kBadValue, [=](TakenApart& l) { ++l.index.chunks[last].lastLevel; }, "a level more than its band");
+  expectRefused(
+      ErrorCode::kBadValue, [=](TakenApart& l) { --l.index.chunks[second + 1].firstLevel; }, "a level of the band before");
+  expectRefused(
+      ErrorCode::kBadValue, [=](TakenApart& l) { l.index.chunks[last].endSlot = 5; }, "ends within a level");
+  expectRefused(
+      ErrorCode::kBadValue, [=](TakenApart& l) { l.index.chunks[head - 1].endSlot = 5; }, "the head ends within a level");
+  expectRefused(
+      ErrorCode::kBadValue, [](TakenApart& l) { l.index.layout = Layout::kStream; }, "packets in a stream");
+  expectRefused(
+      ErrorCode::kBadValue,
+      [=](TakenApart& l) {
+        while (l.index.chunks.size() > head) drop(l, head);
+      },
+      "no packets");
+  expectRefused(
+      ErrorCode::kLimitExceeded,
+      [=](TakenApart& l) {
+        for (auto i = second; i <= last; ++i) l.index.chunks[i].lastLevel = 5000;
+      },
+      "levels");
 }
 
 TEST_F(HostileRegions, boxesLieWithinEachOther) {
   const std::uint32_t last = last_, head = head_;
-  expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { std::swap(l.index.chunks[last].box.least, l.index.chunks[last].box.most); }, "inside out");
-  expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { l.index.chunks[head].box.most = l.index.chunks[head].box.least; }, "smaller than its children's");
-  expectRefused(ErrorCode::kBadValue, [=](TakenApart& l) { l.index.chunks[head - 1].box.most = {1, 1, 1}; }, "of a chunk that is no packet");
+  expectRefused(
+      ErrorCode::kBadValue, [=](TakenApart& l) { std::swap(l.index.chunks[last].box.least, l.index.chunks[last].box.most); }, "inside out");
+  expectRefused(
+      ErrorCode::kBadValue, [=](TakenApart& l) { l.index.chunks[head].box.most = l.index.chunks[head].box.least; },
+      "smaller than its children's");
+  expectRefused(
+      ErrorCode::kBadValue,
+      [=](TakenApart& l) {
+        l.index.chunks[head - 1].box.most = {1, 1, 1};
+      },
+      "of a chunk that is no packet");
 }
 
 TEST_F(HostileRegions, countsBeyondTheBytesAreRefusedBeforeAllocating) {
   const std::uint32_t last = last_;
   for (const auto member : {&ChunkEntry::newVertices, &ChunkEntry::newTetrahedra, &ChunkEntry::newBoundaryTriangles})
-    expectRefused(ErrorCode::kLimitExceeded, [=](TakenApart& l) { l.index.chunks[last].*member = 1u << 24; }, "a count");
+    expectRefused(
+        ErrorCode::kLimitExceeded, [=](TakenApart& l) { l.index.chunks[last].*member = 1u << 24; }, "a count");
 }
 
 /// The status of the first chunk that is refused, all applied in file order.
