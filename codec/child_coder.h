@@ -95,7 +95,8 @@ class ChildCoder {
       });
       std::sort(cells.begin(), cells.end());
       for (std::size_t i = 0; i < cells.size(); ++i) {
-        if ((i == 0 || cells[i].first != cells[i - 1].first) && (fewest < 0 || wrong < fewest)) fewest = wrong, axis_ = axis, plane_ = cells[i].first;
+        if ((i == 0 || cells[i].first != cells[i - 1].first) && (fewest < 0 || wrong < fewest))
+          fewest = wrong, axis_ = axis, plane_ = cells[i].first;
         wrong += cells[i].second == 0 ? -1 : 1;
       }
     }

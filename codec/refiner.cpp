@@ -59,7 +59,7 @@ Status Refiner::apply(std::uint32_t chunk, ByteView structure, std::span<const s
   State::Brought& brought = s.brought[chunk];
   brought.firstBirth = s.births.births().size();
   Values residuals(positions);
-  const Status status = chunk == 0         ? s.base(entry, structure, residuals)
+  const Status status = chunk == 0          ? s.base(entry, structure, residuals)
                         : s.isPacket(chunk) ? s.packet(chunk, entry, structure, residuals)
                                             : s.records(chunk, entry, structure, residuals);
   if (!status) return status;

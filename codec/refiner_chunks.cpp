@@ -9,7 +9,8 @@ namespace qtet {
 Status Refiner::State::base(const ChunkEntry& entry, ByteView structure, Values& positions) {
   RangeDecoder decoder(structure);
   BaseCoder<RangeDecoder> coder(decoder, entry.newVertices, entry.newTetrahedra);
-  if (!coder.run(nullptr, [&] { return decoder.overrun(); })) return refuseChunk(ErrorCode::kBadValue, 0, "the base mesh's structure contradicts itself");
+  if (!coder.run(nullptr, [&] { return decoder.overrun(); }))
+    return refuseChunk(ErrorCode::kBadValue, 0, "the base mesh's structure contradicts itself");
   baseBirths = std::move(coder.births);
   const std::int32_t size = std::int32_t{1} << index.positionBits;
   std::vector<LatticePoint> points;  // the mesh gets its cells once all of their vertices are there
@@ -47,7 +48,8 @@ Status Refiner::State::records(std::uint32_t chunk, const ChunkEntry& entry, Byt
 
 Status Refiner::State::run(std::uint32_t chunk, const ChunkEntry& entry, RangeDecoder& decoder, Values& positions) {
   RecordCoder<RangeDecoder> coder(decoder, models.records, mesh, link, positions);
-  if (entry.firstLevel != (inLevel ? level : level + 1)) return refuseChunk(ErrorCode::kBadValue, chunk, "it does not continue the level before it");
+  if (entry.firstLevel != (inLevel ? level : level + 1))
+    return refuseChunk(ErrorCode::kBadValue, chunk, "it does not continue the level before it");
   for (;;) {
     if (!inLevel) {
       ++level;
@@ -91,7 +93,9 @@ Status Refiner::State::endHead(std::uint32_t chunk, RangeDecoder& decoder) {
 Status Refiner::State::children(std::uint32_t chunk, std::uint32_t node, const NodeCells& cells, RangeDecoder& decoder) {
   ChildCoder<RangeDecoder> coder(decoder, models.children, mesh, index.positionBits, counts);
   std::array<NodeCells, 2> halves;
-  if (!coder.code(cells, [](CellRef) { return 0; }, halves) || decoder.overrun())
+  if (!coder.code(
+          cells, [](CellRef) { return 0; }, halves) ||
+      decoder.overrun())
     return refuseChunk(ErrorCode::kBadValue, chunk, "its child bits end too early or name no axis");
   for (std::uint32_t i = 0; i < 2; ++i) waiting[2 * node + i] = std::move(halves[i]);
   return {};
@@ -146,7 +150,8 @@ Status Refiner::State::endPacket(std::uint32_t chunk, const ChunkEntry& entry) {
     const LevelCounts& more = added[levelCounts.size()];
     const LevelCounts& before = levelCounts.back();
     if (more.vertices == 0) return refuseChunk(ErrorCode::kBadValue, chunk, "a level without a record");
-    levelCounts.push_back({before.vertices + more.vertices, before.tetrahedra + more.tetrahedra, before.boundaryTriangles + more.boundaryTriangles});
+    levelCounts.push_back(
+        {before.vertices + more.vertices, before.tetrahedra + more.tetrahedra, before.boundaryTriangles + more.boundaryTriangles});
   }
   return {};
 }
@@ -160,7 +165,8 @@ Status Refiner::State::split(std::uint32_t chunk, RecordCoder<RangeDecoder>& cod
   for (int i = 0; i < split.k; ++i)
     for (const std::int32_t x : split.points[static_cast<std::size_t>(i)])
       if (x < 0 || x >= size) return refuseChunk(ErrorCode::kBadValue, chunk, "a vertex lies outside the lattice");
-  if (!mesh.slotsAfter(split, link).within(slots[chunk + 1]) || births.births().size() - brought[chunk].firstBirth == index.chunks[chunk].records)
+  if (!mesh.slotsAfter(split, link).within(slots[chunk + 1]) ||
+      births.births().size() - brought[chunk].firstBirth == index.chunks[chunk].records)
     return refuseChunk(ErrorCode::kBadValue, chunk, "it brings more vertices, cells, triangles or records than the chunk table says");
   if (observer != nullptr) observer->beforeSplit(v, mesh, link, split);
   births.add(v, mesh, link, split);

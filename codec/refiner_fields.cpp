@@ -34,7 +34,8 @@ Status Refiner::applyField(std::uint32_t field, std::uint32_t chunk, std::span<c
   if (field >= s.fields.size()) return refuseChunk(ErrorCode::kNotFound, chunk, "there is no such field");
   State::Field& f = s.fields[field];
   if (f.broken) return refuseChunk(ErrorCode::kBadOrder, chunk, "an earlier block of this field failed; start again from chunk 0");
-  if (chunk >= s.brought.size() || !s.brought[chunk].applied) return refuseChunk(ErrorCode::kBadOrder, chunk, "a field cannot run ahead of the mesh");
+  if (chunk >= s.brought.size() || !s.brought[chunk].applied)
+    return refuseChunk(ErrorCode::kBadOrder, chunk, "a field cannot run ahead of the mesh");
   if (f.applied[chunk]) return refuseChunk(ErrorCode::kBadOrder, chunk, "the field has it already");
   if (chunk > 0 && !f.applied[s.dependencyOf(chunk)])
     return refuseChunk(ErrorCode::kBadOrder, chunk, "the field needs chunk " + std::to_string(s.dependencyOf(chunk)) + " first");

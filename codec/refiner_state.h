@@ -51,8 +51,8 @@ struct Refiner::State {
   Link link;
   Split inHand;
   Models models;
-  Models headModels;                 // as the head left them: what every packet starts from
-  std::vector<NodeCells> waiting;    // by node: cells of packets that may come next
+  Models headModels;               // as the head left them: what every packet starts from
+  std::vector<NodeCells> waiting;  // by node: cells of packets that may come next
   VertexCounts counts;
   std::vector<BaseBirth> baseBirths;
   PointAncestry births;
@@ -64,12 +64,12 @@ struct Refiner::State {
   std::vector<LevelCounts> added;        // by level of a band: what its packets have brought so far
   std::vector<std::uint32_t> missing;    // by level of a band: packets that have not come
   std::uint32_t chunks = 0;
-  std::uint32_t level = 0;       // of the head, being refined, or the last complete one
-  std::uint32_t nextSlot = 0;    // of the level being refined
+  std::uint32_t level = 0;     // of the head, being refined, or the last complete one
+  std::uint32_t nextSlot = 0;  // of the level being refined
   bool inLevel = false;
-  std::size_t levelBirths = 0;   // births before the level
+  std::size_t levelBirths = 0;  // births before the level
   bool broken = false;
-  bool stopped = false;          // inside a chunk of the head, at stopLevel
+  bool stopped = false;  // inside a chunk of the head, at stopLevel
   std::uint32_t stopLevel = kMaxLevels + 1;
   SplitObserver* observer = nullptr;
 

@@ -30,7 +30,9 @@ void split(std::span<Item> items, std::uint32_t node, std::uint32_t depth, std::
     return;
   }
   const std::size_t axis = longestAxis(items);
-  const auto before = [axis](const Item& a, const Item& b) { return a.sum[axis] != b.sum[axis] ? a.sum[axis] < b.sum[axis] : a.cell < b.cell; };
+  const auto before = [axis](const Item& a, const Item& b) {
+    return a.sum[axis] != b.sum[axis] ? a.sum[axis] < b.sum[axis] : a.cell < b.cell;
+  };
   const std::size_t half = items.size() / 2;
   std::nth_element(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(half), items.end(), before);
   split(items.first(half), 2 * node, depth - 1, leaf);
@@ -42,7 +44,9 @@ void split(std::span<Item> items, std::uint32_t node, std::uint32_t depth, std::
 std::uint32_t kdDepth(std::size_t cells, std::size_t cellsPerLeaf) {
   std::uint32_t depth = 0;
   // Nearest in proportion: cells / 2^depth lies within a factor sqrt(2) of what was asked for.
-  while (depth < 18 && static_cast<double>(cells) / std::ldexp(1.0, static_cast<int>(depth)) > 1.4142135623730951 * static_cast<double>(cellsPerLeaf)) ++depth;
+  while (depth < 18 &&
+         static_cast<double>(cells) / std::ldexp(1.0, static_cast<int>(depth)) > 1.4142135623730951 * static_cast<double>(cellsPerLeaf))
+    ++depth;
   return depth;
 }
 

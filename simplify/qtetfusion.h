@@ -16,9 +16,11 @@ namespace qtet {
 /// ALGORITHM.md, "Bands".
 struct BandOptions {
   std::size_t cellsPerPacket = 0;  ///< of the input, a leaf of the tree that bands keep to; 0: no bands
-  std::size_t most = 4;            ///< with each more, small boxes take fewer bytes and coarse levels get worse
-  double dearest = 0.9;            ///< a band ends at the key that this fraction of the vertices' best edges does not pass at its start, 0..1
-  double levelQuantile = 1;        ///< a level of a band ends at this quantile of what the band can afford, 0..1
+  std::size_t most = 6;            ///< with each more, small boxes take fewer bytes and coarse levels get worse
+  /// A band ends at the key that this fraction of the vertices' best edges does not pass at its start. 0.9 to 1 trades the error of coarse levels for
+  /// the bytes of a box (tests/bench/REGIONS.md).
+  double dearest = 0.95;
+  double levelQuantile = 0.5;  ///< a level of a band ends at this quantile of what the band can afford, 0..1
 };
 
 struct FusionOptions {

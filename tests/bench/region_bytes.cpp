@@ -70,8 +70,9 @@ int main(int argc, char** argv) {
   for (const Tetrahedron& t : mesh->tetrahedra) middles.push_back(middleOf(*mesh, t));
 
   const auto whole = static_cast<double>(index.fileBytes);
-  std::printf("%zu cells, %llu bytes, %zu chunks; front %.1f %%, head %.1f %%", middles.size(), static_cast<unsigned long long>(index.fileBytes),
-              index.chunks.size(), 100 * static_cast<double>(index.headBytes()) / whole, 100 * static_cast<double>(sizeOf(index, 0, 1)) / whole);
+  std::printf("%zu cells, %llu bytes, %zu chunks; front %.1f %%, head %.1f %%", middles.size(),
+              static_cast<unsigned long long>(index.fileBytes), index.chunks.size(), 100 * static_cast<double>(index.headBytes()) / whole,
+              100 * static_cast<double>(sizeOf(index, 0, 1)) / whole);
   for (std::uint32_t depth = index.firstDepth(); depth > 0 && depth <= index.lastDepth(); ++depth)
     std::printf(", depth %u %.1f %%", depth, 100 * static_cast<double>(sizeOf(index, 1u << depth, 2u << depth)) / whole);
   std::printf("\n");
@@ -79,7 +80,8 @@ int main(int argc, char** argv) {
     double sum = 0, most = 0;
     for (std::size_t i = 0; i < kBoxes; ++i) {
       const LatticePoint& centre = middles[(2 * i + 1) * middles.size() / (2 * kBoxes)];
-      const PacketBox box = boxRound(middles, centre, static_cast<std::size_t>(percent / 100 * static_cast<double>(middles.size())), index.positionBits);
+      const PacketBox box =
+          boxRound(middles, centre, static_cast<std::size_t>(percent / 100 * static_cast<double>(middles.size())), index.positionBits);
       const double part = 100 * static_cast<double>(bytesOf(index, box)) / whole;
       sum += part, most = std::max(most, part);
     }

@@ -53,7 +53,8 @@ LatticeMesh meshOf(const Refiner& refiner, const LatticeMesh& original) {
   out.points.assign(refiner.points().begin(), refiner.points().end());
   out.tetrahedra.assign(refiner.tetrahedra().begin(), refiner.tetrahedra().end());
   out.boundary.assign(refiner.boundary().begin(), refiner.boundary().end());
-  for (std::uint32_t f = 0; f < original.fields.size(); ++f) out.values.emplace_back(refiner.fieldValues(f).begin(), refiner.fieldValues(f).end());
+  for (std::uint32_t f = 0; f < original.fields.size(); ++f)
+    out.values.emplace_back(refiner.fieldValues(f).begin(), refiner.fieldValues(f).end());
   dropHoles(out);
   return out;
 }
@@ -95,7 +96,8 @@ Refiner refined(const LogFile& log, const std::vector<std::uint32_t>& order) {
 std::vector<std::int32_t> outcome(const Refiner& refiner) {
   std::vector<std::int32_t> out;
   for (const std::uint8_t byte : refiner.digest()) out.push_back(byte);
-  for (std::uint32_t f = 0; f < refiner.index().fields.size(); ++f) out.insert(out.end(), refiner.fieldValues(f).begin(), refiner.fieldValues(f).end());
+  for (std::uint32_t f = 0; f < refiner.index().fields.size(); ++f)
+    out.insert(out.end(), refiner.fieldValues(f).begin(), refiner.fieldValues(f).end());
   return out;
 }
 
@@ -216,7 +218,8 @@ TEST_P(Regions, holesAreWhatTheContractSays) {
   EXPECT_EQ(refiner.points().size(), refiner.firstSlots(first + 2).vertices);
   for (std::uint32_t f = 0; f < index().fields.size(); ++f) {
     const bool cells = index().fields[f].association == Association::kCell;
-    EXPECT_EQ(refiner.fieldValues(f).size(), (cells ? refiner.tetrahedra().size() : refiner.points().size()) * index().fields[f].components);
+    EXPECT_EQ(refiner.fieldValues(f).size(),
+              (cells ? refiner.tetrahedra().size() : refiner.points().size()) * index().fields[f].components);
   }
 }
 
@@ -235,7 +238,9 @@ std::vector<Corners> cornersOf(const LatticeMesh& mesh) {
 TEST_P(Regions, aBoxIsAtFullResolutionWithTheChunksThatItNeeds) {
   std::size_t fewest = index().chunks.size();
   for (const std::uint8_t corner : {std::uint8_t{0}, std::uint8_t{100}, std::uint8_t{220}}) {
-    const PacketBox box{{corner, corner, corner}, {static_cast<std::uint8_t>(corner + 35), static_cast<std::uint8_t>(corner + 35), static_cast<std::uint8_t>(corner + 35)}};
+    const PacketBox box{
+        {corner, corner, corner},
+        {static_cast<std::uint8_t>(corner + 35), static_cast<std::uint8_t>(corner + 35), static_cast<std::uint8_t>(corner + 35)}};
     const std::vector<std::uint32_t> chunks = index().chunksOfBox(box);
     fewest = std::min(fewest, chunks.size());
     const Refiner refiner = refined(*log_, chunks);  // ascending and closed: every one is accepted
@@ -258,7 +263,8 @@ TEST_P(Regions, aBoxIsAtFullResolutionWithTheChunksThatItNeeds) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, Regions,
-                         ::testing::Values(Shape{"everything", everything}, Shape{"withoutTunnel", withoutTunnel}, Shape{"twoCubesAtAnEdge", twoCubesAtAnEdge}),
+                         ::testing::Values(Shape{"everything", everything}, Shape{"withoutTunnel", withoutTunnel},
+                                           Shape{"twoCubesAtAnEdge", twoCubesAtAnEdge}),
                          [](const auto& shape) { return shape.param.name; });
 
 TEST(RegionsHistory, fusionsThatReachBeyondANodeAreRefused) {
