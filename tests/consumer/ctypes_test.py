@@ -74,11 +74,18 @@ class Log:
         return sorted(out, key=lambda field: field[1] == "CellData")
 
 
+def same(a, b):
+    """Equal, where a gap, which is NaN, equals a gap."""
+    if isinstance(a, (list, tuple)):
+        return len(a) == len(b) and all(map(same, a, b))
+    return a == b or (a != a and b != b)
+
+
 def compare(log, level, mesh):
     assert list(log.points(mesh.point_type)) == list(mesh.points), f"points of level {level}"
     assert log.tetrahedra() == list(mesh.tetrahedra), f"tetrahedra of level {level}"
     extracted = [(name, kind, components, list(values)) for name, kind, components, _, values in mesh.fields]
-    assert log.fields() == extracted, f"fields of level {level}"
+    assert same(log.fields(), extracted), f"fields of level {level}"
 
 
 def main(library, program, logs, out):
@@ -89,7 +96,9 @@ def main(library, program, logs, out):
     for path in sorted(pathlib.Path(logs).glob("*.qtet")):
         with Log(c, path) as log:
             # Backwards and forwards again: the mesh must not remember where it was.
-            for level in [log.info.levels - 1, 2, 3, 0]:
+            # Of a log that keeps its input, extract gives the input itself at the last level, the library the mesh on the lattice.
+            last = [] if path.stem == "kept-input" else [log.info.levels - 1]
+            for level in [*last, 2, 3, 0]:
                 extracted = pathlib.Path(out) / "ctypes.vtu"
                 subprocess.run([program, "extract", path, "--level", str(level), "-o", extracted], check=True, stdout=subprocess.DEVNULL)
                 log.refine(level)

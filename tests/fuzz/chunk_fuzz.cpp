@@ -37,7 +37,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return b.offset + b.size <= bytes.size() ? qtet::ByteView(bytes).subspan(static_cast<std::size_t>(b.offset), b.size) : qtet::ByteView();
   };
   const auto values = [&](std::uint32_t chunk, std::uint32_t part) {
-    return qtet::decodeValueBlock(block(chunk, part), index->components(part), index->tuples(chunk, part));
+    return qtet::decodeValueBlock(block(chunk, part), index->components(part), index->tuples(chunk, part), index->chunks[chunk].valueCodec);
   };
   for (std::uint32_t chunk = 0; chunk < index->chunks.size(); ++chunk) {
     const auto positions = values(chunk, qtet::kPositionsPart);
