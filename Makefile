@@ -177,7 +177,7 @@ sizes: setup build
 # tests/bench/RATE.md and its pictures.
 rate: TARGETS := --target qtet rate_distortion
 rate: setup build
-	@$(BUILD)/bin/rate_distortion --out tests/bench
+	@$(BUILD)/bin/rate_distortion --out tests/bench --curve "log=" --curve "optimal=--placement optimal" --curve "vertex=--placement vertex"
 
 clean:
 	@rm -rf build
