@@ -21,11 +21,12 @@
 namespace qtet {
 namespace {
 
-Bytes logOf(const LatticeMesh& mesh, std::uint32_t chunkBytes, const FusionOptions& fusion = {}) {
+Bytes logOf(const LatticeMesh& mesh, std::uint32_t chunkBytes, const FusionOptions& fusion = {}, CodecId values = CodecId::kDraco) {
   LogWriterOptions options;
   options.source = "golden.vtu";
   options.generator = "qtet golden";
   options.chunkBytes = chunkBytes;
+  options.valueCodec = values;
   return encodeLog(simplify(mesh, fusion).value(), options).value().bytes;
 }
 
@@ -185,7 +186,7 @@ void writeMustFail(const std::filesystem::path& folder, const Bytes& good) {
 /// What the valid files decode to, in the form that sha256sum writes.
 void writeDigests(const std::filesystem::path& folder) {
   std::ofstream meshes(folder / "digests.txt"), values(folder / "field-digests.txt");
-  for (const char* name : {"cell-fields", "gaps", "kept-input", "no-fields", "pinched", "regions", "solid", "tunnel"}) {
+  for (const char* name : {"adaptive", "cell-fields", "gaps", "kept-input", "no-fields", "pinched", "regions", "solid", "tunnel"}) {
     const std::string file = std::string(name) + ".qtet";
     const LogFile log = LogFile::open(folder / "valid" / file).value();
     std::vector<std::uint32_t> fields;
@@ -218,6 +219,7 @@ int main(int argc, char** argv) {
   qtet::LatticeMesh cells = gridMesh(3, 5);
   qtet::testing::addCellFields(cells);
   qtet::write(folder / "valid" / "cell-fields.qtet", qtet::logOf(cells, 800));
+  qtet::write(folder / "valid" / "adaptive.qtet", qtet::logOf(gridMesh(3, 5), 400, {}, qtet::CodecId::kAdaptive));
   const qtet::Bytes kept = qtet::keptLog();
   qtet::write(folder / "valid" / "gaps.qtet", qtet::gappyLog());
   qtet::write(folder / "valid" / "kept-input.qtet", kept);
