@@ -123,6 +123,9 @@ void codeCells(const LogHistory& log, std::uint32_t chunk, const FieldInfo& fiel
 Result<LogHistory> historyOf(const LogFile& log, const std::function<void(double)>& progress) {
   const Result<Manifest> manifest = manifestOf(log.index());
   if (!manifest) return std::unexpected(manifest.error());
+  // Packets leave holes and come node by node, so that neither slots nor levels count up as they do here.
+  if (log.index().layout != Layout::kStream)
+    return fail(ErrorCode::kBadInput, "the log has the layout 'regions', to which no field can be added; make the log again with the field, or with --layout stream");
   LogHistory out;
   for (const ChunkEntry& e : log.index().chunks) out.tetrahedra += e.newTetrahedra;
   Refiner refiner(log.index());

@@ -202,6 +202,21 @@ TEST(AddFields, aMeshThatIsNotTheLogsIsRefusedByName) {
   EXPECT_NE(refusal(rewired).find("is no cell of the log"), std::string::npos) << refusal(rewired);
 }
 
+TEST(AddFields, aLogOfRegionsIsRefusedAsWhatItIs) {
+  const LatticeMesh mesh = testing::gridMesh(4, 6);
+  FusionOptions options;
+  options.targetRatio = 0;
+  options.bands = {100, 2, 1, 1};
+  LogWriterOptions writer;
+  writer.chunkBytes = 800;
+  const LogFile log = LogFile::fromBytes(encodeLog(simplify(mesh, options).value(), writer).value().bytes).value();
+  ASSERT_EQ(log.index().layout, Layout::kRegions);
+  const auto refused = historyOf(log);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::kBadInput);
+  EXPECT_NE(refused.error().text().find("regions"), std::string::npos);
+}
+
 TEST(MatchMesh, pointsAtOnePlaceAreToldApartByTheirCells) {
   // Two cells on either side of a crack: three pairs of points at the same places.
   LatticeMesh log;
