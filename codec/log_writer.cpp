@@ -216,6 +216,7 @@ class LogEncoder {
       open_.entry.firstLevel = level;
       begun.reset();
     }
+    positionCost_ += coder.positionCost();
     // Near enough, if another level like this one would go further beyond the target than this one stays below it: let the next chunk begin with a level.
     const std::uint64_t bytes = estimatedBytes(), target = chunkTarget();
     const std::uint64_t levelBytes = begun ? bytes - *begun : target;
@@ -292,9 +293,7 @@ class LogEncoder {
 
   // The mirror of Refiner::State::packet.
   Status encodePacket(const Band& band, std::uint32_t node) {
-    const std::uint64_t positionCost = models_.positionCost;  // of all chunks
     models_ = headModels_;
-    models_.positionCost = positionCost;
     childModels_ = headChildModels_;
     open_.entry.firstLevel = band.firstLevel;
     open_.entry.node = node;
@@ -315,6 +314,7 @@ class LogEncoder {
       }
       for (VertexId v = firstNew; v < mesh_.next().vertices; ++v) inner.push_back(v);
     }
+    positionCost_ += coder.positionCost();
     cells.add(first, mesh_.next());
     if (band.depth < h_.bands.depth) {
       if (Status s = codeChildren(node, cells); !s) return s;
@@ -536,7 +536,7 @@ class LogEncoder {
       }
       if (&e == &index.chunks.front()) s.baseBytes = offset - e.offset;
     }
-    const std::uint64_t positionBytes = models_.positionCost / (64 * 8);
+    const std::uint64_t positionBytes = positionCost_ / (64 * 8);
     s.structureBytes -= positionBytes;
     s.positionBytes += positionBytes;
     index.fileBytes = s.fileBytes = offset;
@@ -565,6 +565,7 @@ class LogEncoder {
   std::vector<std::uint32_t> fusionOf_;                      // history's vertex -> the fusion that made it
   std::vector<std::uint8_t> labelOf_;
   std::vector<std::pair<LocalCell, std::uint32_t>> deletedIds_;
+  std::uint64_t positionCost_ = 0;  // what positions took of the structure blocks, in 64ths of a bit
   OpenChunk open_;
   std::uint64_t valueBytes_ = 0, valueBits_ = 0;  // of the chunks closed since the base mesh: what the values took, and the estimates
   std::vector<ChunkEntry> chunks_;

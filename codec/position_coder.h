@@ -55,7 +55,7 @@ class PositionCoder {
         return;
       case Placement::kQuarter:
         point(points[near], predicted({{{near, 6}, {1 - near, -6}, {near, 0}}}), Placement::kQuarter, kQuarterEdge);
-        for (std::size_t a = 0; a < 3; ++a) points[1 - near][a] = farEnd(points[near][a], points[1 - near][a], a);
+        for (std::size_t a = 0; a < 3; ++a) points[1 - near][a] = remainder(4 * std::int64_t{fused_[a]} - 3 * std::int64_t{points[near][a]} - 2, points[1 - near][a], 4, models_.quarter[a]);
         return;
       case Placement::kMiddle:
       case Placement::kFree:
@@ -65,7 +65,7 @@ class PositionCoder {
           std::int64_t rest = std::int64_t{split.k} * fused_[a];
           for (std::size_t i = 0; i + 1 < n; ++i) rest -= points[i][a];
           std::int32_t& last = points[n - 1][a];
-          last = split.placement == Placement::kMiddle ? fromMean(inRange(rest), last, split.k, a) : fromNear(inRange(rest), last, a);
+          last = split.placement == Placement::kMiddle ? remainder(inRange(rest), last, split.k, models_.remainder[n - 2][a]) : fromNear(inRange(rest), last, a);
         }
     }
   }
@@ -149,13 +149,12 @@ class PositionCoder {
     return inRange(least + coder_.raw(static_cast<std::uint32_t>(truth - least), shift));
   }
 
-  // fused = sum / k: the last is `least` or up to k - 1 more.
-  std::int32_t fromMean(std::int32_t least, std::int32_t truth, int k, std::size_t axis) {
-    auto& model = models_.remainder[static_cast<std::size_t>(k - 2)][axis];
-    const int rest = truth - least;
-    const int high = k > 2 ? coder_.bit(rest >> 1 & 1, model[1]) : 0;
-    const int low = k == 3 && high == 1 ? 0 : coder_.bit(rest & 1, model[static_cast<std::size_t>(2 + high)]);
-    return inRange(std::int64_t{least} + 2 * high + low);
+  // One of the `count` integers from `least` on, 2 to 4: what rounding a mean leaves open.
+  std::int32_t remainder(std::int64_t least, std::int32_t truth, int count, std::array<BitModel, 4>& model) {
+    const int rest = static_cast<int>(truth - least);
+    const int high = count > 2 ? coder_.bit(rest >> 1 & 1, model[1]) : 0;
+    const int low = count == 3 && high == 1 ? 0 : coder_.bit(rest & 1, model[static_cast<std::size_t>(2 + high)]);
+    return inRange(least + 2 * high + low);
   }
 
   // A free point is most often a projected mean: the difference has a size of its own.
@@ -164,16 +163,6 @@ class PositionCoder {
     const std::uint32_t size = models_.offset[axis].code(coder_, static_cast<std::uint32_t>(difference < 0 ? -difference : difference));
     const bool negative = size != 0 && coder_.raw(difference < 0, 1) != 0;
     return inRange(negative ? expected - std::int64_t{size} : expected + std::int64_t{size});
-  }
-
-  // Quarter: fused = (3 near + far + 2) >> 2.
-  std::int32_t farEnd(std::int32_t near, std::int32_t far, std::size_t axis) {
-    const std::int64_t least = 4 * std::int64_t{fused_[axis]} - 3 * std::int64_t{near} - 2;
-    const int rest = static_cast<int>(far - least);
-    auto& model = models_.quarter[axis];
-    const int high = coder_.bit(rest >> 1 & 1, model[1]);
-    const int low = coder_.bit(rest & 1, model[static_cast<std::size_t>(2 + high)]);
-    return inRange(least + 2 * high + low);
   }
 
   // Noise from a damaged block stays within what the next sum can hold.

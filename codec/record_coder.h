@@ -1,4 +1,4 @@
-// One record in both directions: split flag, kind, positions, labels, deleted cells (FORMAT.md, "Record"). The encoder runs it on a mirror of
+// One record in both directions: split flag, kind, labels, deleted cells, positions (FORMAT.md, "Record"). The encoder runs it on a mirror of
 // the decoder's mesh, so the two can never disagree about a context.
 #pragma once
 
@@ -41,7 +41,6 @@ struct RecordModels {
   PositionModels positions;
   LabelModels labels;
   DeletedModels deleted;
-  std::uint64_t positionCost = 0;      // an encoder's: what positions took of the structure blocks, in 64ths of a bit
   std::int32_t extent = 64 * 10 * 16;  // running mean of the log extent of stars that split, times 16
 };
 
@@ -96,9 +95,9 @@ class RecordCoder {
     split.placement = truth.placement;
     split.near = truth.near;
     split.points = truth.points;
-    if constexpr (Coder::kEncoding) models_.positionCost -= coder_.cost();
+    if constexpr (Coder::kEncoding) positionCost_ -= coder_.cost();
     positions_.code(v, split);
-    if constexpr (Coder::kEncoding) models_.positionCost += coder_.cost();
+    if constexpr (Coder::kEncoding) positionCost_ += coder_.cost();
     if (values_.bad()) return false;
     for (int i = 0; i < split.k; ++i)
       for (const std::int32_t x : split.points[static_cast<std::size_t>(i)])
@@ -106,12 +105,16 @@ class RecordCoder {
     return true;
   }
 
+  /// An encoder's: what positions took of the structure block so far, in 64ths of a bit.
+  [[nodiscard]] std::uint64_t positionCost() const { return positionCost_; }
+
  private:
   Coder& coder_;
   RecordModels& models_;
   GrowingMesh& mesh_;
   Link& link_;
   Values& values_;
+  std::uint64_t positionCost_ = 0;
   LabelCoder<Coder> labels_;
   PositionCoder<Coder> positions_;
 };
