@@ -63,9 +63,11 @@ class GrowingMesh {
   void beginLevel(std::uint32_t level);
   /// Vertices that the level may split: those present at its beginning.
   [[nodiscard]] std::uint32_t levelVertices() const { return levelVertices_; }
-  [[nodiscard]] bool maysplit(VertexId v) const { return states_[v].marked != level_; }
+  [[nodiscard]] bool maysplit(VertexId v) const { return marked_[v] != level_; }
   /// Tetrahedra by slot, then boundary triangles by slot.
   [[nodiscard]] std::span<const CellRef> star(VertexId v) const { return std::span(pool_).subspan(states_[v].first, states_[v].size); }
+  /// The star holds a boundary triangle.
+  [[nodiscard]] bool onBoundary(VertexId v) const { return states_[v].onBoundary; }
   /// Level at which a vertex got its present position; 0 in the base mesh.
   [[nodiscard]] std::uint32_t born(VertexId v) const { return states_[v].born; }
   /// How long the edges of a star are: squared lengths along each axis, summed over the edges at v of its cells, each edge as often as it is in a cell,
@@ -92,7 +94,8 @@ class GrowingMesh {
     Spread spread;
     std::uint32_t size = 0, room = 0;    // of the star in the pool
     std::uint64_t first = 0;
-    std::uint16_t born = 0, marked = 0;  // levels
+    std::uint16_t born = 0;              // level
+    bool onBoundary = false;
   };
 
   void add(VertexId v, CellRef cell);
@@ -111,9 +114,11 @@ class GrowingMesh {
   void compact();
 
   std::vector<State> states_;
+  std::vector<std::uint16_t> marked_;  // by vertex: the last level in which it was in the star of a split
   std::vector<CellRef> pool_;  // stars, with room to grow and holes
   std::uint64_t live_ = 0;     // of the pool
   std::vector<CellRef> entered_;  // the star of the split in hand
+  std::vector<std::array<VertexId, 4>> cells_;  // its cells
   LatticePoint fused_{};          // where it was
   std::vector<std::array<std::uint16_t, 4>> corners_;  // of a link's vertices: triangles of each label
   std::uint32_t level_ = 0, levelVertices_ = 0;

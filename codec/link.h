@@ -31,9 +31,11 @@ class Link {
  public:
   /// Forgets the triangles; `vertices` is the number of vertex slots that ids stay below.
   void clear(std::size_t vertices);
+  /// A hint: triangles of this vertex are to come. REQUIRES: below the number of slots.
+  void expect(VertexId vertex) const { __builtin_prefetch(&locals_[vertex]); }
   /// Adds the triangle (a, b, c) of the cell (a, b, c, centre).
   void add(VertexId a, VertexId b, VertexId c);
-  /// Finds the neighbours. False unless every edge is met by exactly two triangles, once in each direction.
+  /// Knows every triangle's neighbours. False unless every edge joins two vertices and is met by exactly two triangles, once in each direction.
   [[nodiscard]] bool close();
   /// True for one sphere: connected, Euler characteristic 2. Leaves the traversal ready. REQUIRES close() was true.
   [[nodiscard]] bool isSphere();
@@ -44,14 +46,8 @@ class Link {
   void place(std::span<const LatticePoint> points, const LatticePoint& centre);
   /// Local id -> vertex less centre; 0 for the ghost. REQUIRES place().
   [[nodiscard]] const std::vector<LatticePoint>& offsets() const { return offsets_; }
-  /// Six times the middle of a triangle's corners, or of the two beside the ghost, less the centre. REQUIRES place().
-  [[nodiscard]] std::array<std::int64_t, 3> sixTimesMiddle(const LinkTriangle& t) const {
-    std::array<std::int64_t, 3> sum{};
-    for (const std::uint32_t v : t.vertex)
-      for (std::size_t a = 0; a < 3; ++a) sum[a] += offsets_[v][a];
-    for (std::int64_t& x : sum) x *= t.ghost ? 3 : 2;
-    return sum;
-  }
+  /// By triangle: six times the middle of its corners, or of the two beside the ghost, less the centre. Whole numbers. REQUIRES place().
+  [[nodiscard]] const std::vector<std::array<double, 3>>& sixTimesMiddles() const { return middles_; }
 
   [[nodiscard]] std::vector<LinkTriangle>& triangles() { return triangles_; }
   [[nodiscard]] const std::vector<LinkTriangle>& triangles() const { return triangles_; }
@@ -66,23 +62,34 @@ class Link {
   [[nodiscard]] std::uint32_t triangleAtEdge(std::uint32_t a, std::uint32_t b) const;
 
  private:
+  struct Local {
+    std::uint32_t generation = 0;  // in which `id` is valid
+    std::uint32_t id = 0;
+  };
+
   std::uint32_t intern(VertexId vertex);
-  [[nodiscard]] bool closeSmall();
+  std::uint32_t fresh(VertexId vertex);
+  void meet(std::uint32_t a, std::uint32_t b, std::uint32_t place);
   [[nodiscard]] bool closeLarge();
   void traverse();
 
   std::vector<LinkTriangle> triangles_;
   std::vector<VertexId> vertices_;
   std::vector<LatticePoint> offsets_;
+  std::vector<std::array<double, 3>> middles_;
   std::uint32_t start_ = 0;
   std::vector<std::uint32_t> anyTriangle_;
   std::uint32_t ghostLocal_ = kNoNeighbour;
-  std::vector<std::uint32_t> stamp_;  // by vertex: generation in which local_ is valid
-  std::vector<std::uint32_t> local_;
+  std::vector<Local> locals_;  // by vertex
   std::uint32_t generation_ = 0;
-  // Of a small link, by a * kSmall + b: the triangle that holds the directed edge a -> b, where it really does; else whatever was there before.
+  // While the link is small, by a * kSmall + b: the place (4 * triangle + edge) of the directed edge a -> b, below the turn in which it was noted.
   static constexpr std::size_t kSmall = 64;
-  std::vector<std::uint16_t> small_;
+  static constexpr int kPlaceBits = 16;
+  std::vector<std::uint32_t> small_;
+  std::uint32_t turn_ = 0;     // below 2^16, so that the table is cleared but every 65,535th time
+  std::uint32_t joined_ = 0;   // edges met from both sides
+  bool isSmall_ = true;        // small_ knows every edge
+  bool isBad_ = false;         // an edge met twice from one side, or of one vertex
   std::vector<std::uint64_t> edgeKeys_;  // open-addressed map of directed edges, a power of two long
   std::vector<std::uint32_t> edgeTriangles_;
   std::vector<std::uint32_t> order_;

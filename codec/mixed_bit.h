@@ -50,7 +50,7 @@ struct Mixer {
 
 /// One decision, of which each model has an opinion. All of them learn.
 template <class Coder, std::size_t N>
-int mixedBit(Coder& coder, int value, const std::array<BitModel*, N>& models, Mixer<N>& mixer) {
+[[gnu::always_inline]] inline int mixedBit(Coder& coder, int value, const std::array<BitModel*, N>& models, Mixer<N>& mixer) {
   std::array<std::int32_t, N> opinion;
   std::int64_t sum = 0;
   for (std::size_t i = 0; i < N; ++i) {

@@ -37,10 +37,11 @@ inline std::uint32_t clamped(const BitModel& model) {
 }
 
 inline void update(BitModel& model, int bit) {
-  const std::int32_t target = bit ? 65535 : 0;
-  const std::int64_t delta = std::int64_t{target - model.probability} * kRates[model.count] / 65536;
-  model.probability = static_cast<std::uint16_t>(model.probability + delta);
-  if (model.count < kSlowest) ++model.count;
+  const std::uint32_t ones = 0u - static_cast<std::uint32_t>(bit);  // all bits are the decision's
+  const std::uint32_t way = (model.probability ^ ones) & 0xFFFF;   // to 65535 or 0
+  const std::uint32_t step = way * kRates[model.count] >> 16;
+  model.probability = static_cast<std::uint16_t>(model.probability + ((step ^ ~ones) - ~ones));
+  model.count = static_cast<std::uint16_t>(model.count + (model.count < kSlowest));
 }
 
 }  // namespace range

@@ -58,8 +58,8 @@ class RecordCoder {
 
   /// The split flag of v at `level`. REQUIRES mesh.maysplit(v).
   bool splits(VertexId v, std::uint32_t level, bool truth) {
-    const std::span<const CellRef> star = mesh_.star(v);
-    if (star.empty()) return false;  // an unused vertex: nothing to split, nothing coded
+    const std::size_t size = mesh_.star(v).size();
+    if (size == 0) return false;  // an unused vertex: nothing to split, nothing coded
     const GrowingMesh::Spread& spread = mesh_.spread(v);
     const auto& squares = spread.squares;
     const int extent = spread.logMean(squares[0] + squares[1] + squares[2]);
@@ -68,12 +68,12 @@ class RecordCoder {
     const std::uint32_t born = mesh_.born(v);
     const std::size_t age = born == 0 ? 0 : level - born <= 1 ? 1 : 2;
     const std::size_t sinceBorn = born == 0 ? 15 : std::min<std::size_t>(level - born, 14);
-    const bool edge = (star.back() & kBoundaryBit) != 0;
+    const bool edge = mesh_.onBoundary(v);
     const auto [least, most] = std::minmax({squares[0], squares[1], squares[2]});
     const auto flat = static_cast<std::size_t>(std::min((log2Fixed(most + 1) - log2Fixed(least + 1)) / 48, 7));
-    const std::array<BitModel*, 4> models{&models_.split[std::min<std::size_t>(star.size() / 6, 15)][step(16, 8)][age],
+    const std::array<BitModel*, 4> models{&models_.split[std::min<std::size_t>(size / 6, 15)][step(16, 8)][age],
                                           &models_.splitScale[step(8, 32)][edge][age],
-                                          &models_.splitAge[sinceBorn][std::min<std::size_t>(star.size() / 2, 31)][edge],
+                                          &models_.splitAge[sinceBorn][std::min<std::size_t>(size / 2, 31)][edge],
                                           &models_.splitRun[models_.flags & 15][flat][step(24, 4)]};
     const bool split = mixedBit(coder_, truth, models, models_.splitMixer[age]) != 0;
     models_.flags = models_.flags << 1 | static_cast<std::uint32_t>(split);

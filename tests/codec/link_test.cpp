@@ -35,6 +35,26 @@ TEST(Link, anEdgeMetTwiceInOneDirectionIsRefused) {
   EXPECT_FALSE(link.close());
 }
 
+TEST(Link, aTriangleThatMeetsAVertexTwiceIsRefused) {
+  Link link;
+  link.clear(10);
+  addOctahedron(link, 4, 5);
+  link.add(6, 6, 7), link.add(6, 7, 6);
+  EXPECT_FALSE(link.close());
+}
+
+TEST(Link, edgesOfEarlierLinksAreForgottenHoweverManyThereWere) {
+  Link link;
+  link.clear(10);
+  addOctahedron(link, 4, 5);
+  for (int turn = 0; turn < 65'534; ++turn) link.clear(10);
+  link.clear(10);  // the turns begin anew
+  for (VertexId i = 0; i < 4; ++i) link.add(i, (i + 1) % 4, 4);
+  EXPECT_FALSE(link.close()) << "its lower half is of another link";
+  for (VertexId i = 0; i < 4; ++i) link.add((i + 1) % 4, i, 5);
+  EXPECT_TRUE(link.close());
+}
+
 TEST(Link, twoSpheresAreNotOne) {
   Link link;
   link.clear(20);

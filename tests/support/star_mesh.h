@@ -48,11 +48,11 @@ inline std::size_t labelByNearest(StarMesh& star, std::vector<LatticePoint>& pre
   std::vector<LatticePoint> ordered;
   for (const std::uint32_t f : star.link.traversal()) {
     LinkTriangle& t = star.link.triangles()[f];
-    const auto middle = star.link.sixTimesMiddle(t);
+    const auto& middle = star.link.sixTimesMiddles()[f];
     const auto distance = [&](const LatticePoint& p) {
       double squared = 0;
       for (std::size_t a = 0; a < 3; ++a) {
-        const double d = 6.0 * (p[a] - star.mesh.points[0][a]) - static_cast<double>(middle[a]);
+        const double d = 6.0 * (p[a] - star.mesh.points[0][a]) - middle[a];
         squared += d * d;
       }
       return squared;
