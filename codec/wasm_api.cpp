@@ -7,7 +7,7 @@
 
 #include "codec/level_columns.h"
 #include "codec/adaptive_block.h"
-#include "codec/refiner.h"
+#include "codec/level_refiner.h"
 #include "codec/value_digits.h"
 #include "proto/crc32c.h"
 
@@ -15,12 +15,19 @@ using qtet::ByteView;
 using qtet::Error;
 using qtet::ErrorCode;
 using qtet::LogIndex;
-using qtet::Refiner;
+
+#if defined(__wasm__)
+// What libc++ and libc++abi call when they give up; their own versions bring all of printf.
+extern "C" [[noreturn]] void abort_message(const char*, ...) { __builtin_trap(); }
+_LIBCPP_BEGIN_NAMESPACE_STD
+void __libcpp_verbose_abort(const char*, ...) { __builtin_trap(); }
+_LIBCPP_END_NAMESPACE_STD
+#endif
 
 namespace {
 
 // One module instance is one refiner: a page that shows two logs makes two instances.
-std::optional<Refiner> refiner;
+std::optional<qtet::LevelRefiner> refiner;
 std::string lastError;
 qtet::LevelColumns levelNumbers;
 
@@ -30,7 +37,7 @@ int report(const Error& error) {
 }
 
 qtet::Result<std::vector<std::int32_t>> blockValues(std::uint32_t chunk, std::uint32_t part, std::span<const std::int32_t> symbols, ByteView digits) {
-  const LogIndex& index = refiner->index();
+  const LogIndex& index = refiner->refiner().index();
   if (chunk < index.chunks.size() && part < index.parts() && index.chunks[chunk].valueCodec == qtet::CodecId::kAdaptive)
     return qtet::decodeAdaptiveBlock(digits, index.components(part), index.tuples(chunk, part));
   return qtet::joinValues(symbols, digits);
@@ -39,7 +46,7 @@ qtet::Result<std::vector<std::int32_t>> blockValues(std::uint32_t chunk, std::ui
 int noLog() { return report({ErrorCode::kBadOrder, "no log is open: call qtet_open first"}); }
 
 bool hasBlock(std::uint32_t chunk, std::uint32_t part) {
-  return refiner && chunk < refiner->index().chunks.size() && part < refiner->index().parts();
+  return refiner && chunk < refiner->refiner().index().chunks.size() && part < refiner->refiner().index().parts();
 }
 
 }  // namespace
@@ -66,9 +73,9 @@ int qtet_open(const std::uint8_t* head, std::uint32_t bytes) {
 
 const char* qtet_error() { return lastError.c_str(); }
 
-std::uint32_t qtet_chunk_count() { return refiner ? static_cast<std::uint32_t>(refiner->index().chunks.size()) : 0; }
+std::uint32_t qtet_chunk_count() { return refiner ? static_cast<std::uint32_t>(refiner->refiner().index().chunks.size()) : 0; }
 
-std::uint32_t qtet_level_count() { return refiner ? refiner->index().chunks.back().lastLevel + 1 : 0; }
+std::uint32_t qtet_level_count() { return refiner ? refiner->refiner().index().chunks.back().lastLevel + 1 : 0; }
 
 int qtet_level_columns(const std::uint8_t* bytes, std::uint32_t size, std::uint32_t columns) {
   if (!refiner) return noLog();
@@ -80,24 +87,24 @@ int qtet_level_columns(const std::uint8_t* bytes, std::uint32_t size, std::uint3
 const std::uint32_t* qtet_level_numbers() { return levelNumbers.data(); }
 
 double qtet_block_offset(std::uint32_t chunk, std::uint32_t part) {
-  return hasBlock(chunk, part) ? static_cast<double>(refiner->index().block(chunk, part).offset) : 0;
+  return hasBlock(chunk, part) ? static_cast<double>(refiner->refiner().index().block(chunk, part).offset) : 0;
 }
-std::uint32_t qtet_block_size(std::uint32_t chunk, std::uint32_t part) { return hasBlock(chunk, part) ? refiner->index().block(chunk, part).size : 0; }
+std::uint32_t qtet_block_size(std::uint32_t chunk, std::uint32_t part) { return hasBlock(chunk, part) ? refiner->refiner().index().block(chunk, part).size : 0; }
 std::uint32_t qtet_block_values(std::uint32_t chunk, std::uint32_t part) {
-  return hasBlock(chunk, part) ? refiner->index().tuples(chunk, part) : 0;
+  return hasBlock(chunk, part) ? refiner->refiner().index().tuples(chunk, part) : 0;
 }
 std::uint32_t qtet_field_association(std::uint32_t field) {
-  return refiner && field < refiner->index().fields.size() ? static_cast<std::uint32_t>(refiner->index().fields[field].association) : 0;
+  return refiner && field < refiner->refiner().index().fields.size() ? static_cast<std::uint32_t>(refiner->refiner().index().fields[field].association) : 0;
 }
 std::uint32_t qtet_block_codec(std::uint32_t chunk, std::uint32_t part) {
   if (!hasBlock(chunk, part)) return 0;
-  const qtet::ChunkEntry& e = refiner->index().chunks[chunk];
+  const qtet::ChunkEntry& e = refiner->refiner().index().chunks[chunk];
   return static_cast<std::uint32_t>(part == qtet::kStructurePart ? e.structureCodec : e.valueCodec);
 }
 
 int qtet_check_block(std::uint32_t chunk, std::uint32_t part, const std::uint8_t* bytes, std::uint32_t size) {
   if (!hasBlock(chunk, part)) return report({ErrorCode::kNotFound, "there is no such block"});
-  const qtet::BlockEntry& b = refiner->index().block(chunk, part);
+  const qtet::BlockEntry& b = refiner->refiner().index().block(chunk, part);
   if (size == b.size && qtet::crc32c(ByteView(bytes, size)) == b.crc) return 0;
   return report({ErrorCode::kBadChecksum, "chunk " + std::to_string(chunk) + ", part " + std::to_string(part) + " arrived damaged", b.offset});
 }
@@ -120,24 +127,33 @@ int qtet_apply_field(std::uint32_t field, std::uint32_t chunk, const std::int32_
   return status ? 0 : report(status.error());
 }
 
-std::uint32_t qtet_chunks_applied() { return refiner ? refiner->chunksApplied() : 0; }
-std::uint32_t qtet_field_chunks_applied(std::uint32_t field) {
-  return refiner && field < refiner->index().fields.size() ? refiner->fieldChunksApplied(field) : 0;
+int qtet_go_to_level(std::uint32_t level) {
+  if (!refiner) return noLog();
+  const auto status = refiner->goTo(level);
+  return status ? 0 : report(status.error());
 }
-std::uint32_t qtet_level() { return refiner ? refiner->level() : 0; }
-std::uint32_t qtet_vertex_count() { return refiner ? static_cast<std::uint32_t>(refiner->points().size()) : 0; }
-std::uint32_t qtet_tetrahedron_count() { return refiner ? static_cast<std::uint32_t>(refiner->tetrahedra().size()) : 0; }
-std::uint32_t qtet_boundary_count() { return refiner ? static_cast<std::uint32_t>(refiner->boundary().size()) : 0; }
-const std::int32_t* qtet_points() { return refiner && !refiner->points().empty() ? refiner->points().data()->data() : nullptr; }
-const std::uint32_t* qtet_tetrahedra() { return refiner && !refiner->tetrahedra().empty() ? refiner->tetrahedra().data()->data() : nullptr; }
-const std::uint32_t* qtet_boundary() { return refiner && !refiner->boundary().empty() ? refiner->boundary().data()->data() : nullptr; }
+void qtet_forget_beyond() {
+  if (refiner) refiner->forgetBeyond();
+}
+
+std::uint32_t qtet_chunks_applied() { return refiner ? refiner->refiner().chunksApplied() : 0; }
+std::uint32_t qtet_field_chunks_applied(std::uint32_t field) {
+  return refiner && field < refiner->refiner().index().fields.size() ? refiner->refiner().fieldChunksApplied(field) : 0;
+}
+std::uint32_t qtet_level() { return refiner ? refiner->refiner().level() : 0; }
+std::uint32_t qtet_vertex_count() { return refiner ? static_cast<std::uint32_t>(refiner->refiner().points().size()) : 0; }
+std::uint32_t qtet_tetrahedron_count() { return refiner ? static_cast<std::uint32_t>(refiner->refiner().tetrahedra().size()) : 0; }
+std::uint32_t qtet_boundary_count() { return refiner ? static_cast<std::uint32_t>(refiner->refiner().boundary().size()) : 0; }
+const std::int32_t* qtet_points() { return refiner && !refiner->refiner().points().empty() ? refiner->refiner().points().data()->data() : nullptr; }
+const std::uint32_t* qtet_tetrahedra() { return refiner && !refiner->refiner().tetrahedra().empty() ? refiner->refiner().tetrahedra().data()->data() : nullptr; }
+const std::uint32_t* qtet_boundary() { return refiner && !refiner->refiner().boundary().empty() ? refiner->refiner().boundary().data()->data() : nullptr; }
 const std::int32_t* qtet_field(std::uint32_t field) {
-  return qtet_field_chunks_applied(field) > 0 ? refiner->fieldValues(field).data() : nullptr;
+  return qtet_field_chunks_applied(field) > 0 ? refiner->refiner().fieldValues(field).data() : nullptr;
 }
 
 void qtet_digest(std::uint8_t* out) {
   if (!refiner) return;
-  const auto digest = refiner->digest();
+  const auto digest = refiner->refiner().digest();
   std::memcpy(out, digest.data(), digest.size());
 }
 }

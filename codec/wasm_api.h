@@ -43,6 +43,10 @@ int qtet_apply(std::uint32_t chunk, const std::uint8_t* structure, std::uint32_t
 int qtet_apply_field(std::uint32_t field, std::uint32_t chunk, const std::int32_t* symbols, std::uint32_t count, const std::uint8_t* digits,
                      std::uint32_t digitBytes);
 
+/// LevelRefiner::goTo and LevelRefiner::forgetBeyond: back to a coarser level of what has come, and on again.
+int qtet_go_to_level(std::uint32_t level);
+void qtet_forget_beyond();
+
 std::uint32_t qtet_chunks_applied();
 std::uint32_t qtet_field_chunks_applied(std::uint32_t field);
 std::uint32_t qtet_level();

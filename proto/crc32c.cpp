@@ -18,8 +18,9 @@ namespace {
 constexpr std::uint32_t kPolynomial = 0x82F63B78u;  // reflected
 constexpr std::size_t kSlices = 8;                  // bytes a step: five times as fast as a table of one
 
-constexpr auto kTables = [] {
-  std::array<std::array<std::uint32_t, 256>, kSlices> tables{};
+using Tables = std::array<std::array<std::uint32_t, 256>, kSlices>;
+
+bool fill(Tables& tables) {
   for (std::uint32_t i = 0; i < 256; ++i) {
     std::uint32_t c = i;
     for (int bit = 0; bit < 8; ++bit) c = (c & 1) ? kPolynomial ^ (c >> 1) : c >> 1;
@@ -30,15 +31,22 @@ constexpr auto kTables = [] {
       const std::uint32_t previous = tables[t - 1][i];
       tables[t][i] = (previous >> 8) ^ tables[0][previous & 0xFF];
     }
+  return true;
+}
+
+// Made when first needed: as constants they were a tenth of what a browser fetches of the codec.
+const Tables& tables() {
+  static Tables tables;
+  [[maybe_unused]] static const bool filled = fill(tables);
   return tables;
-}();
+}
 
 std::uint32_t loadLittle(const std::uint8_t* p) {
   return std::uint32_t{p[0]} | std::uint32_t{p[1]} << 8 | std::uint32_t{p[2]} << 16 | std::uint32_t{p[3]} << 24;
 }
 
 std::uint32_t byTables(ByteView bytes) {
-  const auto& t = kTables;
+  const auto& t = tables();
   std::uint32_t c = ~0u;
   const std::uint8_t* p = bytes.data();
   std::size_t n = bytes.size();
