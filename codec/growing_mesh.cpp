@@ -8,7 +8,7 @@ namespace {
 // Squared differences are kept below 2^(2 * kSpreadBits), so that their sum over any star fits 64 bits.
 constexpr int kSpreadBits = 20;
 // Room for cells that a star gets without being moved: a split brings a vertex of its link one or two.
-constexpr std::uint32_t kSpareCells = 6;
+constexpr std::uint32_t kSpareCells = 2;
 
 }  // namespace
 
@@ -16,13 +16,12 @@ void GrowingMesh::start(int positionBits) {
   spreadShift_ = std::max(0, positionBits - kSpreadBits);
   states_.assign(points.size(), {});
   marked_.assign(points.size(), 0);
+  std::vector<std::uint32_t> cells(points.size(), kSpareCells);
   for (const Tetrahedron& t : tetrahedra)
-    for (const VertexId v : t) ++states_[v].room;
+    for (const VertexId v : t) ++cells[v];
   for (const Triangle& t : boundary)
-    for (const VertexId v : t) ++states_[v].room;
-  std::uint64_t first = 0;
-  for (State& s : states_) s.first = first, first += s.room += kSpareCells;
-  pool_.assign(first, 0);
+    for (const VertexId v : t) ++cells[v];
+  for (std::size_t v = 0; v < cells.size(); ++v) makeRoom(states_[v], cells[v]);
   for (std::uint32_t i = 0; i < tetrahedra.size(); ++i) addCell(i);
   for (std::uint32_t i = 0; i < boundary.size(); ++i) addCell(i | kBoundaryBit);
   next_ = {static_cast<std::uint32_t>(points.size()), static_cast<std::uint32_t>(tetrahedra.size()), static_cast<std::uint32_t>(boundary.size())};
@@ -57,37 +56,33 @@ void GrowingMesh::beginLevel(std::uint32_t level) {
 
 // A cell of a high slot goes to the end, boundary triangles last: a step or two from there.
 void GrowingMesh::add(VertexId v, CellRef cell) {
-  if (states_[v].size == states_[v].room) relocate(states_[v], states_[v].size + states_[v].size / 4 + kSpareCells);
   State& s = states_[v];
-  CellRef* const cells = pool_.data() + s.first;
+  if (s.size == s.units * StarPool::kUnit) makeRoom(s, s.size + s.size / 8 + kSpareCells);
+  CellRef* const cells = pool_.at(s.first);
   std::uint32_t at = s.size++;
   for (; at > 0 && cells[at - 1] > cell; --at) cells[at] = cells[at - 1];
   cells[at] = cell;
   s.onBoundary |= (cell & kBoundaryBit) != 0;
-  ++live_;
 }
 
-void GrowingMesh::relocate(State& state, std::uint32_t room) {
-  if (pool_.size() > 2 * (live_ + states_.size() * kSpareCells)) compact();
-  const std::uint64_t first = pool_.size();
-  pool_.resize(first + room);
-  std::copy_n(pool_.data() + state.first, state.size, pool_.data() + first);
+// A run of its own for what the star holds, and for so many cells.
+void GrowingMesh::makeRoom(State& state, std::uint32_t cells) {
+  const std::uint32_t units = StarPool::unitsFor(cells);
+  const std::uint32_t first = pool_.take(units);
+  std::copy_n(pool_.at(state.first), state.size, pool_.at(first));
+  if (state.units > 0) pool_.give(state.first, state.units);
   state.first = first;
-  state.room = room;
+  state.units = units;
 }
 
-void GrowingMesh::compact() {
-  std::vector<CellRef> pool;
-  pool.reserve(live_ + states_.size() * (kSpareCells + 1));
-  for (State& s : states_) {
-    if (s.room == 0) continue;  // a hole
-    const auto cells = std::span(pool_).subspan(s.first, s.size);
-    s.first = pool.size();
-    s.room = s.size + kSpareCells;
-    pool.insert(pool.end(), cells.begin(), cells.end());
-    pool.resize(pool.size() + kSpareCells);
-  }
-  pool_ = std::move(pool);
+void GrowingMesh::reserve(const Slots& total) {
+  points.reserve(total.vertices);
+  states_.reserve(total.vertices);
+  marked_.reserve(total.vertices);
+  tetrahedra.reserve(total.tetrahedra);
+  boundary.reserve(total.triangles);
+  constexpr std::size_t kUnusedCells = 10;  // of a star's last unit, and its share of runs that were given back: 4 to 9 measured
+  pool_.reserve(std::size_t{4} * total.tetrahedra + std::size_t{3} * total.triangles + kUnusedCells * total.vertices);
 }
 
 void GrowingMesh::measure(VertexId v, VertexId other) {
@@ -168,21 +163,18 @@ void GrowingMesh::apply(VertexId v, const Link& link, const Split& split) {
     for (const LocalVertex x : local)
       if (!(x & kPreyBit) && link.vertices()[x] != kGhost) {
         const State& s = states_[link.vertices()[x]];
-        __builtin_prefetch(pool_.data() + s.first + s.size);
+        __builtin_prefetch(pool_.at(s.first) + s.size);
       }
   fused_ = points[v];
   std::array<VertexId, 4> prey{v};
   std::array<std::uint32_t, 4> cellsOf{};
   for (const LinkTriangle& t : link.triangles()) ++cellsOf[t.label];
   for (std::size_t i = 0; i < static_cast<std::size_t>(split.k); ++i) {
-    if (i > 0) {
-      prey[i] = newVertex();
-      relocate(states_[prey[i]], cellsOf[i] + kSpareCells);
-    }
+    if (i > 0) prey[i] = newVertex();
     points[prey[i]] = split.points[i];
     State& s = states_[prey[i]];
-    live_ -= s.size;
     s.size = 0;
+    if (StarPool::unitsFor(cellsOf[i] + kSpareCells) != s.units) makeRoom(s, cellsOf[i] + kSpareCells);
     s.spread = {};
     s.onBoundary = false;
     s.born = marked_[prey[i]] = static_cast<std::uint16_t>(level_);

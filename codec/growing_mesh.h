@@ -13,12 +13,9 @@
 #include "codec/log2_fixed.h"
 #include "codec/mesh.h"
 #include "codec/placement.h"
+#include "codec/star_pool.h"
 
 namespace qtet {
-
-/// A cell of a star: a tetrahedron's slot, or kBoundaryBit | a boundary triangle's slot.
-using CellRef = std::uint32_t;
-inline constexpr CellRef kBoundaryBit = 0x80000000u;
 
 /// The even permutation of `cell` that puts its vertex `index` last: the other three are the triangle of its link.
 [[nodiscard]] inline std::array<VertexId, 4> withLast(const std::array<VertexId, 4>& cell, std::size_t index) {
@@ -51,6 +48,8 @@ class GrowingMesh {
 
   /// Takes points, tetrahedra and boundary as the base mesh. REQUIRES: called once, ids in range, coordinates below 2^positionBits.
   void start(int positionBits);
+  /// A hint: the mesh will have so many slots, of which nothing needs to be moved on the way.
+  void reserve(const Slots& total);
   /// Where the next split puts what it brings: at the end, or from where continueAt() said.
   [[nodiscard]] const Slots& next() const { return next_; }
   /// The next splits fill slots from `first` on; all below `end` exist from now on, holes unless filled. REQUIRES: those from `first` to `end`
@@ -65,7 +64,7 @@ class GrowingMesh {
   [[nodiscard]] std::uint32_t levelVertices() const { return levelVertices_; }
   [[nodiscard]] bool maysplit(VertexId v) const { return marked_[v] != level_; }
   /// Tetrahedra by slot, then boundary triangles by slot.
-  [[nodiscard]] std::span<const CellRef> star(VertexId v) const { return std::span(pool_).subspan(states_[v].first, states_[v].size); }
+  [[nodiscard]] std::span<const CellRef> star(VertexId v) const { return {pool_.at(states_[v].first), states_[v].size}; }
   /// The star holds a boundary triangle.
   [[nodiscard]] bool onBoundary(VertexId v) const { return states_[v].onBoundary; }
   /// Level at which a vertex got its present position; 0 in the base mesh.
@@ -92,9 +91,8 @@ class GrowingMesh {
  private:
   struct State {
     Spread spread;
-    std::uint32_t size = 0, room = 0;    // of the star in the pool
-    std::uint64_t first = 0;
-    std::uint16_t born = 0;              // level
+    std::uint32_t first = 0, units = 0, size = 0;  // of the star in the pool
+    std::uint16_t born = 0;                        // level
     bool onBoundary = false;
   };
 
@@ -102,7 +100,7 @@ class GrowingMesh {
   void addCell(CellRef cell);
   void measure(VertexId v, VertexId other);
   void moveEdges(const Link& link, std::span<const VertexId> prey);
-  void relocate(State& state, std::uint32_t room);
+  void makeRoom(State& state, std::uint32_t cells);
   VertexId newVertex();
   template <class Cells, class Cell>
   static void put(Cells& cells, std::uint32_t slot, const Cell& cell) {
@@ -111,12 +109,10 @@ class GrowingMesh {
     else
       cells[slot] = cell;
   }
-  void compact();
 
   std::vector<State> states_;
   std::vector<std::uint16_t> marked_;  // by vertex: the last level in which it was in the star of a split
-  std::vector<CellRef> pool_;  // stars, with room to grow and holes
-  std::uint64_t live_ = 0;     // of the pool
+  StarPool pool_;
   std::vector<CellRef> entered_;  // the star of the split in hand
   std::vector<std::array<VertexId, 4>> cells_;  // its cells
   LatticePoint fused_{};          // where it was

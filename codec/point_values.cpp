@@ -30,6 +30,12 @@ struct Exit {
 
 }  // namespace
 
+// An edge has one slope and brings one vertex; a triangle three and two, a tetrahedron four and three.
+void PointAncestry::reserve(std::size_t records, std::size_t vertices) {
+  births_.reserve(records);
+  if (withSlopes_) slopes_.reserve(records + 2 * (std::max(vertices, records) - records));
+}
+
 void PointAncestry::add(VertexId v, const GrowingMesh& mesh, const Link& link, const Split& split) {
   Birth birth{v, mesh.next().vertices, static_cast<std::uint32_t>(slopes_.size()), 0, static_cast<std::uint8_t>(split.k)};
   if (withSlopes_) {

@@ -51,6 +51,8 @@ class PointAncestry {
   /// `withSlopes`: there is a point field.
   explicit PointAncestry(bool withSlopes = false) : withSlopes_(withSlopes) {}
 
+  /// A hint: so many records are to come, which bring at most so many vertices.
+  void reserve(std::size_t records, std::size_t vertices);
   /// Notes the split of v. REQUIRES: link built, the split not yet applied.
   void add(VertexId v, const GrowingMesh& mesh, const Link& link, const Split& split);
   [[nodiscard]] std::span<const Birth> births() const { return births_; }

@@ -48,6 +48,19 @@ Status Refiner::State::mayCome(std::uint32_t chunk) const {
   return {};
 }
 
+// Memory for everything at once, as soon as the bytes that came make it credible: growing by doubling would hold up to three times as much.
+void Refiner::State::makeRoom(std::size_t bytes) {
+  structureBytes += bytes;
+  if (roomy || stopLevel < index.chunks.back().lastLevel) return;
+  const Slots& total = slots.back();
+  if (std::max({total.vertices, total.tetrahedra, total.triangles}) > kMaxElementsPerPacketByte * structureBytes) return;
+  roomy = true;
+  mesh.reserve(total);
+  std::uint64_t records = 0;
+  for (const ChunkEntry& e : index.chunks) records += e.records;
+  births.reserve(records, total.vertices);
+}
+
 Status Refiner::apply(std::uint32_t chunk, ByteView structure, std::span<const std::int32_t> positions) {
   State& s = *state_;
   if (Status order = s.mayCome(chunk); !order) return order;
@@ -56,6 +69,7 @@ Status Refiner::apply(std::uint32_t chunk, ByteView structure, std::span<const s
     return refuseChunk(ErrorCode::kBadValue, chunk, "wrong number of position values");
 
   s.broken = true;  // until the chunk has gone in whole
+  s.makeRoom(structure.size());
   State::Brought& brought = s.brought[chunk];
   brought.firstBirth = s.births.births().size();
   Values residuals(positions);

@@ -64,6 +64,8 @@ struct Refiner::State {
   std::vector<LevelCounts> added;        // by level of a band: what its packets have brought so far
   std::vector<std::uint32_t> missing;    // by level of a band: packets that have not come
   std::uint32_t chunks = 0;
+  std::uint64_t structureBytes = 0;  // that have come
+  bool roomy = false;                // there is memory for the whole log
   std::uint32_t level = 0;     // of the head, being refined, or the last complete one
   std::uint32_t nextSlot = 0;  // of the level being refined
   bool inLevel = false;
@@ -73,6 +75,7 @@ struct Refiner::State {
   std::uint32_t stopLevel = kMaxLevels + 1;
   SplitObserver* observer = nullptr;
 
+  void makeRoom(std::size_t bytes);
   [[nodiscard]] Status mayCome(std::uint32_t chunk) const;
   [[nodiscard]] bool isPacket(std::uint32_t chunk) const { return chunk >= headChunks; }
   [[nodiscard]] std::uint32_t dependencyOf(std::uint32_t chunk) const { return index.dependencies[index.chunks[chunk].firstDependency]; }

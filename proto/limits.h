@@ -29,8 +29,8 @@ inline constexpr std::uint32_t kMaxBlockBytes = 256u << 20;
 /// New vertices, cells or triangles of one chunk that holds B structure bytes are at most B times this: the range coder
 /// spends at least 1/1,500 bit on a decision (codec/range_coder.h), so a hostile count cannot outgrow the bytes sent by more.
 inline constexpr std::uint64_t kMaxDecisionsPerByte = 8 * 1500;
-/// The same of a packet of the layout `regions`, whose slots may be made room for before the bytes of those before it are there. Real ones bring one
-/// or two cells a byte.
+/// The same of a packet of the layout `regions`, whose slots may be made room for before the bytes of those before it are there; and of a whole log, before a
+/// refiner makes room for it. Real ones bring one or two cells a byte.
 inline constexpr std::uint64_t kMaxElementsPerPacketByte = 64;
 /// Bits of one lattice axis: differences and products of three then fit the exact predicates, and Draco's 2^30.
 inline constexpr int kMaxPositionBits = 28;
