@@ -10,6 +10,7 @@
 #include "codec/log_file.h"
 #include "codec/log_manifest.h"
 #include "codec/log_writer.h"
+#include "codec/value_block.h"
 #include "simplify/qtetfusion.h"
 #include "simplify/verify.h"
 #include "tests/support/forged_log.h"
@@ -187,6 +188,29 @@ TEST_P(Regions, fieldsThatLagBehindInAnOrderOfTheirOwnEndTheSame) {
       }
     EXPECT_EQ(outcome(refiner), expected);
   }
+}
+
+// The check itself is checked: a decoder that carries something from one packet to the next in order of arrival, as a coder's models would be, is right in
+// file order and is told apart in any other.
+TEST_P(Regions, aPlantedDependenceOnTheOrderOfArrivalIsCaught) {
+  const auto planted = [&](const std::vector<std::uint32_t>& order) {
+    Refiner refiner(index());
+    for (std::uint32_t arrival = 0; arrival < order.size(); ++arrival) {
+      const std::uint32_t chunk = order[arrival];
+      EXPECT_TRUE(applyChunk(*log_, refiner, chunk, {}));
+      auto values = decodeValueBlock(log_->block(chunk, kFirstFieldPart), index().components(kFirstFieldPart), index().tuples(chunk, kFirstFieldPart));
+      EXPECT_TRUE(values);
+      if (!values->empty()) values->front() += static_cast<std::int32_t>(arrival) - static_cast<std::int32_t>(chunk);
+      EXPECT_TRUE(refiner.applyField(0, chunk, *values));
+    }
+    const auto field = refiner.fieldValues(0);
+    return std::vector(field.begin(), field.end());
+  };
+  const auto expected = planted(fileOrder(index()));
+  const Refiner right = refined(*log_, fileOrder(index()));
+  EXPECT_TRUE(std::ranges::equal(expected, right.fieldValues(0)));
+  std::mt19937 random(6);
+  for (int trial = 0; trial < 4; ++trial) EXPECT_NE(planted(randomOrder(index(), random)), expected);
 }
 
 TEST_P(Regions, aChunkWaitsForItsParentAndComesOnce) {
