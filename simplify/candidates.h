@@ -40,6 +40,13 @@ class Candidates {
     const List& list = lists_[owner];
     return list.next < list.count ? &pool_[list.first + list.next] : nullptr;
   }
+  /// Ask the memory for the owner's list, and then for what best() looks at.
+  void prefetch(VertexId owner) const {
+    if (owner < lists_.size()) __builtin_prefetch(&lists_[owner]);
+  }
+  void prefetchBest(VertexId owner) const {
+    if (owner < lists_.size()) __builtin_prefetch(pool_.data() + lists_[owner].first + lists_[owner].next);
+  }
   /// The best one and all after it.
   [[nodiscard]] std::span<const Candidate> remaining(VertexId owner) const {
     if (owner >= lists_.size()) return {};

@@ -3,6 +3,7 @@
 #include "simplify/closing_report.h"
 #include "simplify/command_line.h"
 #include "simplify/error_plot.h"
+#include "simplify/svg_picture.h"
 #include "simplify/error_table.h"
 #include "simplify/opened_log.h"
 
@@ -56,11 +57,10 @@ void printKept(const OrderedJson& kept, std::ostream& out) {
   for (const auto& [what, bytes] : kept.items()) out << "kept     " << what << ": " << bytes << " bytes\n";
 }
 
-Status checkPlot(const std::string& plot, const std::string& input) {
-  if (plot.ends_with(".png"))
-    throw UsageError("--plot draws .svg only, which every browser shows; 'rsvg-convert PLOT.svg -o PLOT.png' makes pixels of it");
-  return checkOutput(plot, ".svg", input);
-}
+// Pixels of a PNG to one of the picture's own: sharp on a screen of today and in print.
+constexpr double kPlotScale = 2;
+
+Status checkPlot(const std::string& plot, const std::string& input) { return checkOutput(plot, plot.ends_with(".png") ? ".png" : ".svg", input); }
 
 Status writePlot(const OpenedLog& log, const std::filesystem::path& file, const std::string& title) {
   std::vector<std::uint64_t> bytes;
@@ -68,7 +68,9 @@ Status writePlot(const OpenedLog& log, const std::filesystem::path& file, const 
   const Result<std::vector<ErrorCurve>> curves = errorCurves(log.manifest, bytes);
   if (!curves) return std::unexpected(curves.error());
   const std::string svg = errorPlotSvg(title, *curves);
-  return writeFileAtomically(file, Bytes(svg.begin(), svg.end()));
+  if (file.extension() != ".png") return writeFileAtomically(file, Bytes(svg.begin(), svg.end()));
+  const Result<Bytes> png = pngOf(svg, kPlotScale);
+  return png ? writeFileAtomically(file, *png) : std::unexpected(png.error());
 }
 
 }  // namespace
@@ -76,10 +78,10 @@ Status writePlot(const OpenedLog& log, const std::filesystem::path& file, const 
 int runInfo(const Words& words, Console& console) {
   namespace po = boost::program_options;
   po::options_description options("options");
-  options.add_options()("json", "print one JSON object")("plot", po::value<std::string>(), "draw error against bytes into this file, NAME.svg");
+  options.add_options()("json", "print one JSON object")("plot", po::value<std::string>(), "draw error against bytes into this file, NAME.svg or NAME.png");
   const ParsedWords parsed(
       words,
-      {"info", "info LOG.qtet [--plot FILE.svg] [--json]",
+      {"info", "info LOG.qtet [--plot FILE.svg|FILE.png] [--json]",
        "Says what a log holds: digest, lattice, fields, and for each level its cells and bytes. Level 0 is the base mesh,\n"
        "the last level the input's mesh; `cumulative` is the length of the file's prefix that holds a level. Where the log tells them,\n"
        "the errors against the original follow: of the boundary in per cent of the diagonal (the worse one of both ways), the volume that is\n"

@@ -36,6 +36,8 @@ class FusionCost {
 
   /// The prey's quadric as a function of the fusion point relative to prey.vertex[0], at the best values for each point.
   [[nodiscard]] PreyQuadric of(const Prey& prey) const;
+  /// Asks the memory for where v's quadric is.
+  void prefetchSlot(VertexId v) const { __builtin_prefetch(&slot_[v]); }
   /// Asks the memory for v's quadric.
   void prefetch(VertexId v) const {
     for (std::size_t i = 0; i < stride_; i += kLineDoubles) __builtin_prefetch(&quadrics_[at(v) + i]);

@@ -115,6 +115,8 @@ void FusionMesh::pushOutside(const Star& star, float outside) {
 }
 
 VertexId FusionMesh::fuse(const Prey& prey, const FusedVertex& what, const Star& star, std::uint32_t level) {
+  for (const VertexId v : star.link)
+    if (v != kGhost) prefetchList(v);
   record(prey, placed(prey, what.point), star, level);
   if (what.outside > 0) pushOutside(star, what.outside);
   const VertexId fused = history_.fusions.back().fused;

@@ -54,6 +54,9 @@ class FusionMesh {
   [[nodiscard]] Vector3 position(VertexId v) const { return toVector(history_.points[v]); }
   [[nodiscard]] const std::array<VertexId, 4>& cell(CellId c) const { return history_.cells[c]; }
   [[nodiscard]] std::span<const CellId> star(VertexId v) const { return std::span(pool_).subspan(stars_[v].first, stars_[v].size); }
+  /// Ask the memory for where v's star is, and then for its list.
+  void prefetchVertex(VertexId v) const { __builtin_prefetch(&stars_[v]); }
+  void prefetchList(VertexId v) const { __builtin_prefetch(pool_.data() + stars_[v].first); }
   /// Asks the memory for the cells of v's star, which lie anywhere: by the time they are read they are near.
   void prefetchStar(VertexId v) const {
     for (const CellId c : star(v)) __builtin_prefetch(&history_.cells[c]);

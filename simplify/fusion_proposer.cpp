@@ -28,6 +28,9 @@ void FusionProposer::candidatesOf(VertexId v, bool onlyLower, std::vector<Candid
   if (mesh_.star(v).size() > kMostStarCells) return;
   mesh_.prefetchStar(v);
   for (const CellId c : mesh_.star(v))
+    for (const VertexId w : mesh_.cell(c))
+      if (w != kGhost) cost_.prefetchSlot(w);
+  for (const CellId c : mesh_.star(v))
     for (const VertexId w : mesh_.cell(c)) {
       if (w == v || w == kGhost || (onlyLower && w > v) || !band_.allows(v, w) || neighbours_.intern(w) < found.size()) continue;
       found.push_back({0, w});

@@ -20,6 +20,7 @@ class Touched {
  public:
   void resize(std::size_t vertices) { at_.resize(vertices, 0); }
   void touch(VertexId v, std::uint32_t fusion) { at_[v] = fusion; }
+  void prefetch(VertexId v) const { __builtin_prefetch(&at_[v]); }
   [[nodiscard]] bool since(VertexId v, std::uint32_t fusion) const { return at_[v] > fusion; }
 
  private:

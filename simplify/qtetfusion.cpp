@@ -160,6 +160,7 @@ class Simplifier {
     fused_.clear();
     while (nextKey() <= limit_ && mesh_.liveTetrahedra() > goal_) {
       if (next_ >= proposedTo_) proposeAhead();
+      lookAhead();
       const VertexId owner = pop();
       if (!isLocked(owner)) process(owner);
     }
@@ -216,6 +217,19 @@ class Simplifier {
       if (mesh_.alive(best->partner)) return;
       candidates_.drop(v);
     }
+  }
+
+  // The queue's order has nothing to do with where things lie: what its next entries need is asked for in three steps, each of which needs the one before.
+  void lookAhead() const {
+    const auto soon = [&](std::size_t steps) { return next_ + steps < entries_.size() ? entries_[next_ + steps].owner : kNone; };
+    if (const VertexId v = soon(12); v != kNone) touched_.prefetch(v), candidates_.prefetch(v), mesh_.prefetchVertex(v);
+    if (const VertexId v = soon(8); v != kNone && !isLocked(v)) candidates_.prefetchBest(v), mesh_.prefetchList(v);
+    if (const VertexId v = soon(4); v != kNone && !isLocked(v)) {
+      mesh_.prefetchStar(v);
+      if (const Candidate* best = candidates_.best(v)) touched_.prefetch(best->partner), mesh_.prefetchVertex(best->partner);
+    }
+    if (const VertexId v = soon(2); v != kNone && !isLocked(v))
+      if (const Candidate* best = candidates_.best(v)) mesh_.prefetchList(best->partner), cost_.prefetchSlot(best->partner), cost_.prefetch(v);
   }
 
   // A vertex that a fusion of this level touched waits for the next one: levels are independent sets.
@@ -290,6 +304,8 @@ class Simplifier {
   void fuse(const Proposal& proposal) {
     const Prey& prey = proposal.prey;
     const LatticePoint& point = proposal.where.point;
+    for (const VertexId v : proposal.star.link)
+      if (v != kGhost) mesh_.prefetchVertex(v), touched_.prefetch(v), candidates_.prefetch(v);
     cost_.valuesAt(prey, point, values_);
     fuseIntegers(prey, point);
     cost_.fuse(prey, point, values_);
