@@ -2,11 +2,13 @@
 #include <benchmark/benchmark.h>
 
 #include <cstdlib>
-#include <fstream>
+#include <cstring>
+#include <numeric>
 
-#include "codec/value_block.h"
+#include "codec/draco_block.h"
 #include "codec/log_file.h"
 #include "codec/log_writer.h"
+#include "codec/value_block.h"
 #include "proto/checksum.h"
 #include "proto/crc32c.h"
 #include "simplify/qtetfusion.h"
@@ -34,8 +36,18 @@ const FusionHistory& history() {
   return h;
 }
 
+EncodedLog encodedBy(CodecId codec) {
+  LogWriterOptions options;
+  options.valueCodec = codec;
+  return need(encodeLog(history(), options));
+}
+
 const EncodedLog& encoded() {
-  static const EncodedLog log = need(encodeLog(history(), {}));
+  static const EncodedLog log = encodedBy(CodecId::kDraco);
+  return log;
+}
+const EncodedLog& encodedAdaptively() {
+  static const EncodedLog log = encodedBy(CodecId::kAdaptive);
   return log;
 }
 
@@ -55,25 +67,60 @@ void encodeFin(benchmark::State& state) {
 }
 BENCHMARK(encodeFin)->Unit(benchmark::kMillisecond);
 
-std::vector<std::vector<std::int32_t>> positionsOf(const LogIndex& index, ByteView bytes) {
+/// The values of one part, chunk by chunk.
+std::vector<std::vector<std::int32_t>> valuesOf(const LogIndex& index, ByteView bytes, std::uint32_t part) {
   std::vector<std::vector<std::int32_t>> out;
   for (std::uint32_t chunk = 0; chunk < index.chunks.size(); ++chunk) {
-    const BlockEntry& block = index.block(chunk, kPositionsPart);
-    out.push_back(need(decodeValueBlock(bytes.subspan(block.offset, block.size), 3, index.tuples(chunk, kPositionsPart))));
+    const BlockEntry& block = index.block(chunk, part);
+    out.push_back(need(decodeValueBlock(bytes.subspan(block.offset, block.size), index.components(part), index.tuples(chunk, part), index.chunks[chunk].valueCodec)));
   }
   return out;
 }
 
-void dracoFin(benchmark::State& state) {
-  const LogIndex index = need(LogIndex::parse(encoded().bytes));
-  for (auto _ : state) benchmark::DoNotOptimize(positionsOf(index, encoded().bytes));
+// All value blocks of the log, positions and fields; rates count the integers' bytes.
+void valueBlocks(benchmark::State& state, const EncodedLog& log) {
+  const LogIndex index = need(LogIndex::parse(log.bytes));
+  std::size_t integers = 0, bytes = 0;
+  for (std::uint32_t chunk = 0; chunk < index.chunks.size(); ++chunk)
+    for (std::uint32_t part = kPositionsPart; part < index.parts(); ++part)
+      integers += std::size_t{index.tuples(chunk, part)} * index.components(part), bytes += index.block(chunk, part).size;
+  for (auto _ : state)
+    for (std::uint32_t part = kPositionsPart; part < index.parts(); ++part) benchmark::DoNotOptimize(valuesOf(index, log.bytes, part));
+  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(integers * sizeof(std::int32_t)));
+  state.counters["bytes"] = static_cast<double>(bytes);
+}
+void dracoBlocksOfFin(benchmark::State& state) { valueBlocks(state, encoded()); }
+BENCHMARK(dracoBlocksOfFin)->Unit(benchmark::kMillisecond);
+void adaptiveBlocksOfFin(benchmark::State& state) { valueBlocks(state, encodedAdaptively()); }
+BENCHMARK(adaptiveBlocksOfFin)->Unit(benchmark::kMillisecond);
+
+// What Draco alone takes for the same points, as one cloud without cells, in the order of the log's slots.
+void dracoPointsOfFin(benchmark::State& state) {
+  std::vector<std::int32_t> points;
+  for (const LatticePoint& p : fin().points) points.insert(points.end(), p.begin(), p.end());
+  const Bytes block = need(encodeDracoBlock(points, 3));
+  for (auto _ : state) benchmark::DoNotOptimize(decodeDracoBlock(block, 3, static_cast<std::uint32_t>(fin().points.size())));
   count(state);
 }
-BENCHMARK(dracoFin)->Unit(benchmark::kMillisecond);
+BENCHMARK(dracoPointsOfFin)->Unit(benchmark::kMillisecond);
 
+void memcpyOfFin(benchmark::State& state) {
+  const LatticeMesh& mesh = fin();
+  std::vector<Tetrahedron> tetrahedra(mesh.tetrahedra.size());
+  std::vector<LatticePoint> points(mesh.points.size());
+  for (auto _ : state) {
+    std::memcpy(tetrahedra.data(), mesh.tetrahedra.data(), tetrahedra.size() * sizeof(Tetrahedron));
+    std::memcpy(points.data(), mesh.points.data(), points.size() * sizeof(LatticePoint));
+    benchmark::ClobberMemory();
+  }
+  count(state);
+}
+BENCHMARK(memcpyOfFin)->Unit(benchmark::kMillisecond);
+
+// Records alone: the positions' values are there.
 void refineFin(benchmark::State& state) {
   const LogIndex index = need(LogIndex::parse(encoded().bytes));
-  const auto positions = positionsOf(index, encoded().bytes);
+  const auto positions = valuesOf(index, encoded().bytes, kPositionsPart);
   for (auto _ : state) {
     Refiner refiner(index);
     for (std::uint32_t c = 0; c < index.chunks.size(); ++c) {
@@ -85,6 +132,21 @@ void refineFin(benchmark::State& state) {
   count(state);
 }
 BENCHMARK(refineFin)->Unit(benchmark::kMillisecond);
+
+// From bytes to the mesh and all fields: checksums, Draco, records, values.
+void decodeFin(benchmark::State& state) {
+  const LogFile log = need(LogFile::fromBytes(encoded().bytes));
+  std::vector<std::uint32_t> fields(log.index().fields.size());
+  std::iota(fields.begin(), fields.end(), 0u);
+  for (auto _ : state) {
+    Refiner refiner(log.index());
+    for (std::uint32_t c = 0; c < log.index().chunks.size(); ++c)
+      if (!applyChunk(log, refiner, c, fields)) state.SkipWithError("a chunk was refused");
+    benchmark::DoNotOptimize(refiner.tetrahedra().data());
+  }
+  count(state);
+}
+BENCHMARK(decodeFin)->Unit(benchmark::kMillisecond);
 
 void crcOfTheLog(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(crc32c(encoded().bytes));
