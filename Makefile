@@ -15,7 +15,7 @@ SHELL := /bin/bash
 .ONESHELL:
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
-.PHONY: help setup build demo demo-port demo-log test bench results sizes rate clean
+.PHONY: help setup build demo demo-port demo-log test fuzz bench results sizes rate clean
 .DEFAULT_GOAL := help
 
 help:
@@ -23,6 +23,7 @@ help:
 	make demo                  build qtet and show its sample mesh at http://127.0.0.1:8080/
 	make demo MESH=file.vtu    the same with a mesh of yours (.vtu or .vtk, tetrahedra); PORT=8081 picks another port
 	make test                  build everything and run every test
+	make fuzz                  build the fuzzers with sanitizers and run each for 20 seconds
 	make build                 build only: build/release/bin/qtet and qtet-server
 	make setup                 install the Debian packages of .ci/packages.txt that are missing (asks sudo if not root)
 	make bench                 build and run the benchmarks
@@ -154,6 +155,12 @@ demo: demo-log
 
 test: setup build
 	@ctest --preset release --parallel $(JOBS)
+
+# A build of its own, with clang, address and undefined-behaviour sanitizers. What is found stays in build/fuzz/fuzz/found.
+fuzz: setup
+	@[[ -f build/fuzz/build.ninja && ! CMakePresets.json -nt build/fuzz/build.ninja ]] || cmake --preset fuzz
+	cmake --build --preset fuzz --parallel $(JOBS) --target qtet_fuzzers
+	ctest --preset fuzz --parallel $(JOBS)
 
 bench: setup build
 	@cmake --build --preset release --parallel $(JOBS) --target qtet_bench
