@@ -1,6 +1,7 @@
-#include "simplify/vtk_file_checks.h"
+#include "simplify/mesh_format.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cerrno>
 #include <cstring>
@@ -46,17 +47,31 @@ std::string attribute(std::string_view text, std::size_t tag, std::string_view n
   return std::string(value.substr(0, value.find(quote)));
 }
 
-Status checkXml(const fs::path& path, const FileEnds& ends) {
+/// The type that an XML file's root names, by format; nothing: no XML.
+std::string_view rootType(MeshFormat format) {
+  switch (format) {
+    case MeshFormat::kVtu: return "UnstructuredGrid";
+    case MeshFormat::kPvtu: return "PUnstructuredGrid";
+    case MeshFormat::kVtm: return "vtkMultiBlockDataSet";
+    case MeshFormat::kPvd: return "Collection";
+    case MeshFormat::kVts: return "StructuredGrid";
+    case MeshFormat::kVtr: return "RectilinearGrid";
+    case MeshFormat::kVti: return "ImageData";
+    default: return {};
+  }
+}
+
+Status checkXml(const fs::path& path, const FileEnds& ends, std::string_view wanted) {
   const std::size_t root = ends.front.find("<VTKFile");
   if (root == std::string::npos) {
     return fail(ErrorCode::kBadInput,
                 path.string() + " is not a VTK XML file: no <VTKFile> in its first bytes; export the mesh as .vtu again", 0);
   }
   const std::string type = attribute(ends.front, root, "type");
-  if (type != "UnstructuredGrid") {
+  if (type != wanted) {
     return fail(ErrorCode::kBadInput,
-                path.string() + " holds a VTK data set of type '" + type +
-                    "', not an UnstructuredGrid; tetrahedralise it (in ParaView: filter Tetrahedralize) and save it as .vtu",
+                path.string() + " holds a VTK data set of type '" + type + "', not " + std::string(wanted) +
+                    " as its name's ending says; rename it, or save a volume mesh as .vtu",
                 root);
   }
   if (ends.back.find("</VTKFile>") == std::string::npos) {
@@ -71,37 +86,56 @@ Status checkLegacy(const fs::path& path, const FileEnds& ends) {
   }
   std::string upper = ends.front.substr(0, 1024);
   std::transform(upper.begin(), upper.end(), upper.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  if (upper.find("UNSTRUCTURED_GRID") == std::string::npos) {
-    return fail(ErrorCode::kBadInput, path.string() +
-                                          " has no 'DATASET UNSTRUCTURED_GRID' in its header; tetrahedralise the data set "
-                                          "(in ParaView: filter Tetrahedralize) and save it as .vtu");
+  for (const char* kind : {"UNSTRUCTURED_GRID", "STRUCTURED_GRID", "RECTILINEAR_GRID", "STRUCTURED_POINTS"}) {
+    if (upper.find(kind) != std::string::npos) return {};
   }
-  return {};
+  return fail(ErrorCode::kBadInput, path.string() +
+                                        " has no 'DATASET UNSTRUCTURED_GRID' or structured one in its header; save the volume mesh as .vtu");
 }
+
+struct Ending {
+  std::string_view text;
+  MeshFormat format;
+};
+
+constexpr std::array<Ending, 27> kEndings{{
+    {".vtu", MeshFormat::kVtu},       {".pvtu", MeshFormat::kPvtu},   {".vtm", MeshFormat::kVtm},     {".vtmu", MeshFormat::kVtm},
+    {".vtmb", MeshFormat::kVtm},      {".pvd", MeshFormat::kPvd},     {".vts", MeshFormat::kVts},     {".vtr", MeshFormat::kVtr},
+    {".vti", MeshFormat::kVti},       {".vtk", MeshFormat::kLegacyVtk}, {".e", MeshFormat::kExodus},  {".ex2", MeshFormat::kExodus},
+    {".exo", MeshFormat::kExodus},    {".exii", MeshFormat::kExodus}, {".g", MeshFormat::kExodus},    {".case", MeshFormat::kEnSight},
+    {".encas", MeshFormat::kEnSight}, {".cgns", MeshFormat::kCgns},   {".inp", MeshFormat::kAvsUcd},  {".foam", MeshFormat::kOpenFoam},
+    {".msh", MeshFormat::kGmsh},      {".mesh", MeshFormat::kMedit},  {".meshb", MeshFormat::kMedit}, {".node", MeshFormat::kTetgen},
+    {".ele", MeshFormat::kTetgen},    {".su2", MeshFormat::kSu2},     {".xyz", MeshFormat::kPlot3d},
+}};
 
 }  // namespace
 
-Result<VtkFormat> checkVtkFile(const fs::path& path) {
+MeshFormat formatOf(const fs::path& path) {
+  std::string ending = path.extension().string();
+  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const auto at = std::ranges::find(kEndings, ending, &Ending::text);
+  return at == kEndings.end() ? MeshFormat::kOther : at->format;
+}
+
+const char* knownEndings() {
+  return ".vtu .pvtu .vtm .pvd .vts .vtr .vti .vtk .e .ex2 .exo .case .cgns .inp .foam .msh .mesh .meshb .node .ele .su2, PLOT3D with --plot3d, and what meshio reads";
+}
+
+Status checkMeshFile(const fs::path& path, MeshFormat format) {
   std::error_code code;
   const fs::file_status status = fs::status(path, code);
   if (status.type() == fs::file_type::not_found)
     return fail(ErrorCode::kNotFound, "there is no file " + path.string() + "; check the name");
-  if (!fs::is_regular_file(status)) return fail(ErrorCode::kIo, path.string() + " is not a readable file; give a .vtu or .vtk file");
-
-  const std::string extension = path.extension().string();
-  if (extension != ".vtu" && extension != ".vtk") {
-    return fail(ErrorCode::kBadInput, path.string() + ": files of type '" + extension +
-                                          "' are not read; save the mesh as .vtu or legacy .vtk (in ParaView: Save Data)");
-  }
+  if (!fs::is_regular_file(status)) return fail(ErrorCode::kIo, path.string() + " is not a readable file; give a mesh file such as .vtu");
+  if (format == MeshFormat::kOpenFoam) return {};  // an empty file that marks the case's folder
   const std::uintmax_t size = fs::file_size(path, code);
   if (code) return fail(ErrorCode::kIo, "cannot read " + path.string() + ": " + code.message());
   if (size == 0) return fail(ErrorCode::kTruncated, path.string() + " is empty (0 bytes); copy or export it again");
 
   const Result<FileEnds> ends = readEnds(path, size);
   if (!ends) return std::unexpected(ends.error());
-  const bool isXml = extension == ".vtu";
-  if (Status checked = isXml ? checkXml(path, *ends) : checkLegacy(path, *ends); !checked) return std::unexpected(checked.error());
-  return isXml ? VtkFormat::kXml : VtkFormat::kLegacy;
+  if (const std::string_view type = rootType(format); !type.empty()) return checkXml(path, *ends, type);
+  return format == MeshFormat::kLegacyVtk ? checkLegacy(path, *ends) : Status{};
 }
 
 }  // namespace qtet
