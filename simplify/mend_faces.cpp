@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "codec/boundary.h"
+#include "simplify/cell_faces.h"
 #include "simplify/vector3.h"
 #include "simplify/volume_sign.h"
 
@@ -20,10 +21,6 @@ using Quad = std::array<VertexId, 4>;  ///< ascending
 
 /// Four points count as one quadrilateral where six times their volume is below this part of the product of their three longest extents.
 constexpr double kFlatQuad = 0.1;
-
-bool repeatsAVertex(const Tetrahedron& t) {
-  return t[0] == t[1] || t[0] == t[2] || t[0] == t[3] || t[1] == t[2] || t[1] == t[3] || t[2] == t[3];
-}
 
 /// The boundary without cells that welding has collapsed.
 std::vector<Triangle> boundaryOfSound(const std::vector<Tetrahedron>& cells) {

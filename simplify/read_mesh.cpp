@@ -1,9 +1,12 @@
 #include "simplify/read_mesh.h"
 
+#include <fstream>
+
 #include "simplify/join_blocks.h"
 #include "simplify/mend_faces.h"
 #include "simplify/mesh_format.h"
 #include "simplify/mesh_readers.h"
+#include "simplify/run_meshio.h"
 #include "simplify/select_fields.h"
 #include "simplify/vtk_grid.h"
 #include "simplify/weld_points.h"
@@ -17,14 +20,35 @@ ReadOptions withThresholdField(ReadOptions options) {
   return options;
 }
 
+/// Abaqus and AVS share the ending .inp; Abaqus' lines begin with stars.
+bool isAbaqus(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  char first = 0;
+  return file >> first && first == '*';
+}
+
+Result<CellMesh> readThroughMeshio(const std::filesystem::path& path, const ReadOptions& options, ReadReport& report) {
+  CellMesh out;
+  const Status done = throughMeshio(path, [&](const std::filesystem::path& vtu) -> Status {
+    Result<std::vector<TimedCells>> steps = readVtk(vtu, MeshFormat::kVtu, options, report);
+    if (!steps) return std::unexpected(steps.error());
+    out = std::move(steps->front().cells);
+    return {};
+  });
+  if (!done) return std::unexpected(done.error());
+  return out;
+}
+
 Result<CellMesh> readFile(const std::filesystem::path& path, const ReadOptions& options, ReadReport& report) {
   const MeshFormat format = options.plot3d ? MeshFormat::kPlot3d : formatOf(path);
+  if (format == MeshFormat::kAvsUcd && isAbaqus(path)) return readThroughMeshio(path, options, report);
   if (Status checked = checkMeshFile(path, format); !checked) return std::unexpected(checked.error());
   switch (format) {
     case MeshFormat::kGmsh: return readGmsh(path, report);
     case MeshFormat::kMedit: return readMedit(path, report);
     case MeshFormat::kTetgen: return readTetgen(path, report);
     case MeshFormat::kSu2: return readSu2(path, report);
+    case MeshFormat::kOther: return readThroughMeshio(path, options, report);
     default: break;
   }
   Result<std::vector<TimedCells>> steps = readVtk(path, format, options, report);
@@ -67,22 +91,28 @@ Result<CellMesh> readCells(const std::filesystem::path& path, const ReadOptions&
   }
   if (options.weld) {
     report.weldedPoints = weldPoints(*cells, *options.weld);
-    report.notes.push_back("points joined with one that lies within " + std::to_string(*options.weld) + ": " + std::to_string(report.weldedPoints));
+    report.notes.push_back("points joined with an earlier one (--weld): " + std::to_string(report.weldedPoints));
   }
   return cells;
+}
+
+Result<TetMesh> tetrahedraOf(CellMesh&& cells, const std::filesystem::path& path, const ReadOptions& options, ReadReport& report) {
+  const std::vector<std::string> otherFields = std::move(cells.otherFields);
+  Result<TetMesh> mesh = splitCells(std::move(cells), options.curved, report.split);
+  if (!mesh) return fail(mesh.error().code, path.string() + ": " + mesh.error().message);
+  noteSplit(report.split, report.notes);
+  if (options.weld) mend(*mesh, report);
+  if (Status selected = selectFields(options.fields, path, otherFields, mesh->fields); !selected) return std::unexpected(selected.error());
+  return mesh;
 }
 
 Result<ReadMesh> readMesh(const std::filesystem::path& path, const ReadOptions& options) {
   ReadMesh out;
   Result<CellMesh> cells = readCells(path, options, out.report);
   if (!cells) return std::unexpected(cells.error());
-  const std::vector<std::string> otherFields = std::move(cells->otherFields);
-  Result<TetMesh> mesh = splitCells(std::move(*cells), options.curved, out.report.split);
-  if (!mesh) return fail(mesh.error().code, path.string() + ": " + mesh.error().message);
+  Result<TetMesh> mesh = tetrahedraOf(std::move(*cells), path, options, out.report);
+  if (!mesh) return std::unexpected(mesh.error());
   out.mesh = std::move(*mesh);
-  noteSplit(out.report.split, out.report.notes);
-  if (options.weld) mend(out.mesh, out.report);
-  if (Status selected = selectFields(options.fields, path, otherFields, out.mesh.fields); !selected) return std::unexpected(selected.error());
   return out;
 }
 

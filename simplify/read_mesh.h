@@ -17,6 +17,9 @@ struct ReadMesh {
 /// The file's cells before they are split, checked, welded and cut by the threshold as the options say. Errors: as readMesh's.
 [[nodiscard]] Result<CellMesh> readCells(const std::filesystem::path& path, const ReadOptions& options, ReadReport& report);
 
+/// Splits what readCells gave, mends it after welding, and leaves the fields asked for.
+[[nodiscard]] Result<TetMesh> tetrahedraOf(CellMesh&& cells, const std::filesystem::path& path, const ReadOptions& options, ReadReport& report);
+
 /// Reads volume cells as tetrahedra (split_cells.h), points and fields, with the file's numbering: of tetrahedra alone `mesh.tetrahedra[i]` is
 /// the i-th of them; cells of lower dimension are skipped, with their values. Vertex ids are checked. Field values keep NaN and infinity;
 /// coordinates must be finite. After welding, faces that two tetrahedra's cells cut differently are cut alike (mend_faces.h).

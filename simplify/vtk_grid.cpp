@@ -1,5 +1,7 @@
 #include "simplify/vtk_grid.h"
 
+#include <fcntl.h>
+#include <unistd.h>
 #include <vtkAVSucdReader.h>
 #include <vtkAlgorithm.h>
 #include <vtkCGNSReader.h>
@@ -32,6 +34,7 @@
 #include <exception>
 #include <functional>
 #include <new>
+#include <optional>
 
 #include "simplify/join_blocks.h"
 #include "simplify/trial_process.h"
@@ -91,6 +94,26 @@ class MessageCapture {
  private:
   vtkSmartPointer<vtkOutputWindow> previous_;
   vtkNew<MessageWindow> window_;
+};
+
+/// Libraries below VTK (Exodus, HDF5) print their errors themselves; what they mean comes as VTK's message too.
+class QuietStandardError {
+ public:
+  QuietStandardError() : kept_(::dup(STDERR_FILENO)) {
+    const int nowhere = ::open("/dev/null", O_WRONLY);
+    if (kept_ >= 0 && nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);
+    if (nowhere >= 0) ::close(nowhere);
+  }
+  QuietStandardError(const QuietStandardError&) = delete;
+  QuietStandardError& operator=(const QuietStandardError&) = delete;
+  ~QuietStandardError() {
+    if (kept_ < 0) return;
+    ::dup2(kept_, STDERR_FILENO);
+    ::close(kept_);
+  }
+
+ private:
+  int kept_;
 };
 
 std::unexpected<Error> bad(const std::filesystem::path& path, const std::string& what) {
@@ -288,6 +311,8 @@ Result<std::vector<TimedCells>> guarded(const std::filesystem::path& path, bool 
     return bad(path,
                "VTK crashes on it: its counts contradict each other, or it is too large for this machine; export the mesh again, best as .vtu");
   }
+  std::optional<QuietStandardError> quiet;
+  if (trial) quiet.emplace();
   Result<std::vector<TimedCells>> steps = std::vector<TimedCells>{};
   try {
     steps = work();
