@@ -23,6 +23,7 @@
 #include <cmath>
 
 #include "proto/limits.h"
+#include "simplify/huge_pages.h"
 #include "simplify/select_fields.h"
 
 namespace qtet {
@@ -51,7 +52,10 @@ void copyValues(vtkDataArray& array, double* out) {
 }
 
 std::vector<Position> pointsOf(vtkDataSet& data) {
-  std::vector<Position> points(static_cast<std::size_t>(std::max<vtkIdType>(0, data.GetNumberOfPoints())));
+  const auto count = static_cast<std::size_t>(std::max<vtkIdType>(0, data.GetNumberOfPoints()));
+  std::vector<Position> points;
+  reserveInHugePages(points, count);
+  points.resize(count);
   auto* set = vtkPointSet::SafeDownCast(&data);
   if (set && set->GetPoints() && !points.empty()) {
     copyValues(*set->GetPoints()->GetData(), points[0].data());
@@ -107,7 +111,7 @@ class GridCells {
       return bad(path_, "fewer cell types or offsets than cells; the file is damaged, export it again");
     out.types.reserve(static_cast<std::size_t>(count));
     out.begins.reserve(static_cast<std::size_t>(count) + 1);
-    out.vertices.reserve(static_cast<std::size_t>(cells->GetNumberOfConnectivityIds()));
+    reserveInHugePages(out.vertices, static_cast<std::size_t>(cells->GetNumberOfConnectivityIds()));
     rows.reserve(static_cast<std::size_t>(count));
     return cells->IsStorage64Bit() ? copy(*cells->GetOffsetsArray64(), *cells->GetConnectivityArray64(), out, rows, report)
                                    : copy(*cells->GetOffsetsArray32(), *cells->GetConnectivityArray32(), out, rows, report);
@@ -252,6 +256,7 @@ class GridFields {
                               std::to_string(tuples) + " " + association + "s; export it again");
       }
       MeshField field{name, static_cast<std::uint32_t>(array->GetNumberOfComponents()), typeName(*array), {}, association};
+      reserveInHugePages(field.values, static_cast<std::size_t>(tuples) * field.components);
       field.values.resize(static_cast<std::size_t>(tuples) * field.components);
       copyValues(*array, field.values.data());
       if (rows) keepRows(field, *rows);
