@@ -104,8 +104,8 @@ TEST(SplitCells, prismsOfFiveAndSixSidesAreFilled) {
 
 TEST(SplitCells, aPolyhedronWithANodeOnItsEdgeHasNoFlatTetrahedron) {
   CellMesh mesh;  // a cube whose edge 0-1 has a node in the middle, as beside two smaller cells
-  mesh.points = {{0.5, 0, 0}, {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
-  mesh.addCell(kPolyhedronCell, std::vector<VertexId>{6, 5, 1, 4, 3, 2, 0, 5, 1, 0, 2, 6, 5, 4, 5, 6, 7, 8, 4, 2, 3, 7, 6, 4, 3, 4, 8, 7, 4, 4, 1, 5, 8});
+  mesh.points = {{0, 0, 0}, {0.5, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+  mesh.addCell(kPolyhedronCell, std::vector<VertexId>{6, 5, 0, 4, 3, 2, 1, 5, 0, 1, 2, 6, 5, 4, 5, 6, 7, 8, 4, 2, 3, 7, 6, 4, 3, 4, 8, 7, 4, 4, 0, 5, 8});
   const Filled filled = filledBy(splitOf(mesh));
   EXPECT_NEAR(filled.volume, 1, 1e-12);
   EXPECT_EQ(filled.notPositive, 0u);
