@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 
 #include "codec/boundary.h"
@@ -144,7 +145,10 @@ CheckReport checkMesh(const std::filesystem::path& path, const ReadOptions& opti
   mesh->fields.clear();
   checking.lookAtFaces(*mesh);
   checking.lookAtSolid(*mesh);
-  std::ranges::stable_sort(report.findings, {}, &Finding::verdict);
+  std::vector<Finding> sorted;
+  for (const Verdict verdict : {Verdict::kRefused, Verdict::kRepaired, Verdict::kKept})
+    std::ranges::copy_if(report.findings, std::back_inserter(sorted), [verdict](const Finding& finding) { return finding.verdict == verdict; });
+  report.findings = std::move(sorted);
   return report;
 }
 

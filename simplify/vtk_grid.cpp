@@ -29,6 +29,7 @@
 #include <vtkXMLUnstructuredGridReader.h>
 #include <vtkXMLUtilities.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <exception>
@@ -332,6 +333,7 @@ Result<std::vector<TimedCells>> guarded(const std::filesystem::path& path, bool 
 /// One <DataSet> of a .pvd file.
 struct SeriesEntry {
   double time = 0;
+  int number = 0;  ///< in the file
   std::filesystem::path file;
 };
 
@@ -345,12 +347,12 @@ Result<std::vector<SeriesEntry>> entriesOf(const std::filesystem::path& path) {
     vtkXMLDataElement* element = collection->GetNestedElement(i);
     const char* file = element->GetAttribute("file");
     if (!file) return bad(path, "its <DataSet> number " + std::to_string(i) + " names no file; save the series again");
-    SeriesEntry entry{0, path.parent_path() / file};
+    SeriesEntry entry{0, i, path.parent_path() / file};
     element->GetScalarAttribute("timestep", entry.time);
     entries.push_back(std::move(entry));
   }
   if (entries.empty()) return bad(path, "its <Collection> is empty; save the series again");
-  std::stable_sort(entries.begin(), entries.end(), [](const SeriesEntry& a, const SeriesEntry& b) { return a.time < b.time; });
+  std::ranges::sort(entries, [](const SeriesEntry& a, const SeriesEntry& b) { return a.time != b.time ? a.time < b.time : a.number < b.number; });
   return entries;
 }
 
