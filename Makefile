@@ -21,7 +21,7 @@ SHELL := /bin/bash
 help:
 	@cat <<'END'
 	make demo                  build qtet and show its sample mesh at http://127.0.0.1:8080/
-	make demo MESH=file.vtu    the same with a mesh of yours (.vtu or .vtk, tetrahedra); PORT=8081 picks another port
+	make demo MESH=file.vtu    the same with a mesh of yours (any volume mesh: README.md); PORT=8081 picks another port
 	make test                  build everything and run every test
 	make fuzz                  build the fuzzers with sanitizers and run each for 20 seconds
 	make build                 build only: build/release/bin/qtet and qtet-server
@@ -87,7 +87,7 @@ demo-port:
 	  exit 1
 	fi
 	if [[ -n $$MESH && ! -r $$MESH ]]; then
-	  echo "demo: MESH=$$MESH cannot be read; give the path of a .vtu or .vtk file, in quotes if it holds spaces" >&2
+	  echo "demo: MESH=$$MESH cannot be read; give the path of a mesh file, in quotes if it holds spaces" >&2
 	  exit 1
 	fi
 

@@ -46,6 +46,15 @@ std::vector<CellId> duplicatesIn(std::span<const Tetrahedron> cells) {
   return duplicates;
 }
 
+std::vector<CellId> crowdedFacesIn(std::span<const Tetrahedron> cells) {
+  std::vector<CellId> crowded;
+  FaceGroups(cells).forEach([&](std::span<const FaceSide> sides) {
+    if (sides.size() > 2) crowded.push_back(cellOf(sides[0]));
+  });
+  std::sort(crowded.begin(), crowded.end());
+  return crowded;
+}
+
 Result<std::vector<CellNeighbours>> neighboursOf(std::span<const Tetrahedron> cells, std::span<const std::uint64_t> names) {
   std::vector<CellNeighbours> out(cells.size());
   std::vector<FaceSide> crowded;

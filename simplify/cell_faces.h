@@ -19,8 +19,15 @@ struct CellNeighbours {
       0;  ///< bit i: the neighbour across i has the face's vertices in the same rotation, so one of the two is inside out
 };
 
+[[nodiscard]] inline bool repeatsAVertex(const Tetrahedron& t) {
+  return t[0] == t[1] || t[0] == t[2] || t[0] == t[3] || t[1] == t[2] || t[1] == t[3] || t[2] == t[3];
+}
+
 /// The later cells of each set of cells with the same four vertices, ascending.
 [[nodiscard]] std::vector<CellId> duplicatesIn(std::span<const Tetrahedron> cells);
+
+/// A cell of each face that more than two cells have, by face. REQUIRES: four different vertices a cell.
+[[nodiscard]] std::vector<CellId> crowdedFacesIn(std::span<const Tetrahedron> cells);
 
 /// Errors: bad-input for a face of more than two cells; `names[i]` is what cell i is called in the message.
 [[nodiscard]] Result<std::vector<CellNeighbours>> neighboursOf(std::span<const Tetrahedron> cells, std::span<const std::uint64_t> names);

@@ -50,10 +50,6 @@ void dropCells(Cleaning& cleaning, const std::vector<char>& drop) {
   }
 }
 
-bool repeatsAVertex(const Tetrahedron& t) {
-  return t[0] == t[1] || t[0] == t[2] || t[0] == t[3] || t[1] == t[2] || t[1] == t[3] || t[2] == t[3];
-}
-
 void dropRepeatedVertexCells(Cleaning& cleaning) {
   const std::vector<Tetrahedron>& cells = cleaning.mesh.tetrahedra;
   std::vector<char> drop(cells.size(), 0);

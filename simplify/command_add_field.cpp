@@ -6,6 +6,7 @@
 #include "simplify/add_fields.h"
 #include "simplify/clean_mesh.h"
 #include "simplify/command_line.h"
+#include "simplify/command_read.h"
 #include "simplify/opened_log.h"
 #include "simplify/progress.h"
 #include "simplify/read_mesh.h"
@@ -53,7 +54,9 @@ Status addField(const ParsedWords& parsed, Progress& progress, Console& console)
   const Result<OpenedLog> log = openLog(parsed.get<std::string>("LOG"));
   if (!log) return std::unexpected(log.error());
   progress.stage("reading " + from);
-  Result<ReadMesh> read = readMesh(from, parseFieldNames(parsed.get<std::string>("fields")));
+  ReadOptions reading = readOptionsOf(parsed);
+  reading.fields = parseFieldNames(parsed.get<std::string>("fields"));
+  Result<ReadMesh> read = readMesh(from, reading);
   if (!read) return std::unexpected(read.error());
   if (read->mesh.fields.empty()) return fail(ErrorCode::kNotFound, from + " holds no field to add");
   if (const Result<CleanReport> cleaned = cleanMesh(read->mesh); !cleaned) return std::unexpected(cleaned.error());
@@ -113,6 +116,7 @@ int runAddField(const Words& words, Console& console) {
       "replace", "fields that the log has already are replaced")(
       "field-bits", po::value<int>()->default_value(12), "bits of a float field's values, 1 to 28; integer fields are stored exactly")(
       "threads", po::value<int>()->default_value(1), "threads for measuring; the result does not depend on it");
+  addReadOptions(options);
   const ParsedWords parsed(
       words,
       {"add-field", "add-field LOG.qtet --from MESH.vtu [--fields NAMES] [-o OUT.qtet] [--replace]",

@@ -13,6 +13,7 @@
 #include "simplify/command_fusion.h"
 #include "simplify/command_line.h"
 #include "simplify/command_measure.h"
+#include "simplify/command_read.h"
 #include "simplify/closing_report.h"
 #include "simplify/gaps.h"
 #include "simplify/kept_input.h"
@@ -26,7 +27,7 @@ namespace {
 struct Request {
   std::string input, output;
   std::string algorithm;
-  FieldNames fields;
+  ReadOptions read;
   QuantiseOptions quantise;
   FusionRequest fusion;
   std::optional<MeasureOptions> measure;
@@ -47,7 +48,8 @@ Request requestOf(const ParsedWords& parsed) {
   request.algorithm = parsed.get<std::string>("algorithm");
   if (request.algorithm != "qtet" && request.algorithm != "paper")
     throw UsageError("--algorithm '" + request.algorithm + "' is not known; give qtet or paper");
-  request.fields = parseFieldNames(parsed.get<std::string>("fields"));
+  request.read = readOptionsOf(parsed);
+  request.read.fields = parseFieldNames(parsed.get<std::string>("fields"));
   request.quantise.positionBits = parsed.integer("position-bits", kMinPositionBits, kMaxPositionBits);
   request.quantise.fieldBits = parsed.integer("field-bits", kMinFieldBits, kMaxFieldBits);
   request.fusion = fusionRequestOf(parsed);
@@ -142,7 +144,7 @@ struct Prepared {
 /// Reads, cleans and quantises. The mesh in floats is gone afterwards: large meshes need the room.
 Result<Prepared> prepare(const Request& request, Progress& progress, Stopwatch& watch) {
   progress.stage("reading " + request.input);
-  Result<ReadMesh> read = readMesh(request.input, request.fields);
+  Result<ReadMesh> read = readMesh(request.input, request.read);
   if (!read) return std::unexpected(read.error());
   watch.lap("read");
   Prepared out;
@@ -264,6 +266,7 @@ Result<OrderedJson> reportOf(const Request& request, const Prepared& prepared, c
                        {"origin", lattice.origin},
                        {"worseCells", toJson(quantised.worseCells)}};
   report["clean"] = toJson(prepared.clean);
+  report["read"] = readReport(prepared.read);
   report["ignoredCells"] = prepared.read.ignoredCells;
   report["ignoredFields"] = prepared.read.ignoredFields;
   report["nonFiniteValues"] = quantised.nonFiniteValues;
@@ -314,14 +317,17 @@ int runSimplify(const Words& words, Console& console) {
       "keep-order", "keep the input's numbering of points, cells and their vertices: extract gives it back at the last level")(
       "lossless", "keep the input's own coordinates and field values: extract gives them back bit for bit at the last level")(
       "json", "print one JSON object");
+  addReadOptions(options);
   addFusionOptions(options);
   addMeasureOptions(options);
   const ParsedWords parsed(
       words,
       {"simplify", "simplify IN -o OUT.qtet [options]",
-       "Reads tetrahedra with their fields (.vtu, legacy .vtk), cleans them, simplifies them level by level and writes the log,\n"
+       "Reads a volume mesh with its fields (.vtu, .vtk, .msh, Exodus, EnSight, CGNS, ...: see README.md), splits its cells into tetrahedra, cleans\n"
+       "them, simplifies them level by level and writes the log,\n"
        "from which every level and the whole mesh come back.",
-       "  qtet simplify fin.vtu -o fin.qtet\n  qtet simplify fin.vtu -o fin.qtet --fields Density,Velocity --field-bits 10 --json\n"},
+       "  qtet simplify fin.vtu -o fin.qtet\n  qtet simplify fin.vtu -o fin.qtet --fields Density,Velocity --field-bits 10 --json\n"
+       "  qtet simplify ogrid.xyz --plot3d ogrid.q --weld 0 -o ogrid.qtet\n  qtet simplify run.pvd --time all -o run.qtet\n"},
       options, {"IN"});
   if (parsed.helped(console)) return kExitOk;
   const Request request = requestOf(parsed);

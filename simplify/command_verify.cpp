@@ -5,6 +5,7 @@
 #include "simplify/clean_mesh.h"
 #include "simplify/closing_report.h"
 #include "simplify/command_line.h"
+#include "simplify/command_read.h"
 #include "simplify/kept_input.h"
 #include "simplify/progress.h"
 #include "simplify/read_mesh.h"
@@ -29,13 +30,20 @@ LatticeMesh finestMesh(const OpenedLog& log, const Refiner& refiner) {
   return mesh;
 }
 
-/// The input read, cleaned and put on the log's lattice, against what was decoded; what was found in `out`.
-Status compareWithInput(const OpenedLog& log, const Refiner& refiner, const std::string& input, Progress& progress, OrderedJson& out) {
-  progress.stage("reading " + input);
+struct Input {
+  std::string path;
+  ReadOptions options;
+};
+
+/// The input read as its options say, cleaned and put on the log's lattice, against what was decoded; what was found in `out`.
+Status compareWithInput(const OpenedLog& log, const Refiner& refiner, const Input& input, Progress& progress, OrderedJson& out) {
+  progress.stage("reading " + input.path);
   const LatticeMesh decoded = finestMesh(log, refiner);
   std::vector<std::string> names;
   for (const FieldInfo& field : decoded.fields) names.push_back(field.association + ":" + field.name);
-  Result<ReadMesh> read = readMesh(input, names);
+  ReadOptions options = input.options;
+  options.fields = names;
+  Result<ReadMesh> read = readMesh(input.path, options);
   if (!read) return std::unexpected(read.error());
   const std::vector<Tetrahedron> asStored = read->mesh.tetrahedra;
   const Result<CleanReport> cleaned = cleanMesh(read->mesh);
@@ -50,7 +58,7 @@ Status compareWithInput(const OpenedLog& log, const Refiner& refiner, const std:
   if (!kept) return std::unexpected(kept.error());
   OrderedJson fieldErrors = OrderedJson::object();
   for (std::size_t f = 0; f < names.size(); ++f) fieldErrors[fieldKey(log.manifest, f)] = expected->largestFieldErrors[f];
-  out = {{"input", input},
+  out = {{"input", input.path},
          {"sameMesh", true},
          {"largestPositionErrorSteps", expected->largestPositionError},
          {"largestFieldErrorSteps", fieldErrors},
@@ -78,7 +86,7 @@ Result<OrderedJson> verify(const ParsedWords& parsed, Progress& progress) {
                         {"boundaryTriangles", finest.boundaryTriangles}};
   if (!parsed.has("against")) return report;
   OrderedJson against;
-  if (Status compared = compareWithInput(*log, *refiner, parsed.get<std::string>("against"), progress, against); !compared)
+  if (Status compared = compareWithInput(*log, *refiner, {parsed.get<std::string>("against"), readOptionsOf(parsed)}, progress, against); !compared)
     return std::unexpected(compared.error());
   report["against"] = against;
   return report;
@@ -107,11 +115,13 @@ int runVerify(const Words& words, Console& console) {
   namespace po = boost::program_options;
   po::options_description options("options");
   options.add_options()("against", po::value<std::string>(), "the mesh that the log was made from")("json", "print one JSON object");
+  addReadOptions(options);
   const ParsedWords parsed(
       words,
       {"verify", "verify LOG.qtet [--against IN] [--json]",
        "Checks every checksum, decodes every chunk and compares every level and field with what the manifest says. With --against the finest level\n"
-       "must be the input's mesh cell for cell, positions within half a lattice step, fields within half a field step. Where the log was made with --keep-order or\n"
+       "must be the input's mesh cell for cell, positions within half a lattice step, fields within half a field step. A mesh that was read with options\n"
+       "(--weld, --curved, ...) has to be read with the same ones. Where the log was made with --keep-order or\n"
        "--lossless, the numbering and the numbers themselves must be those of the file too, and what was proved is said.",
        "  qtet verify fin.qtet\n  qtet verify fin.qtet --against fin.vtu --json\n"},
       options, {"LOG"});

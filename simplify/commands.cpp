@@ -10,9 +10,11 @@
 namespace qtet {
 namespace {
 
-constexpr std::array<Command, 7> kCommands{{
+constexpr std::array<Command, 9> kCommands{{
     {"sample", "make a mesh to try things with", runSample},
-    {"simplify", "turn a tetrahedral mesh into a log", runSimplify},
+    {"check", "say what is wrong with a mesh, and what simplify would do about it", runCheck},
+    {"convert", "write a mesh of any format that is read as .vtu", runConvert},
+    {"simplify", "turn a volume mesh into a log", runSimplify},
     {"info", "say what a log holds, level by level", runInfo},
     {"extract", "write one level of a log as an ordinary mesh", runExtract},
     {"add-field", "add fields of a mesh file to a log", runAddField},
@@ -27,6 +29,7 @@ void printHelp(std::ostream& out) {
   out << "\n  qtet COMMAND --help says more about each; qtet --version tells the version.\n"
          "\nexamples:\n"
          "  qtet sample fin -o fin.vtu\n"
+         "  qtet check fin.vtu\n"
          "  qtet simplify fin.vtu -o fin.qtet\n"
          "  qtet info fin.qtet\n"
          "  qtet extract fin.qtet --ratio 0.1 -o coarse.vtu\n"

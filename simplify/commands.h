@@ -37,6 +37,8 @@ int runTool(const Words& words, Console& console);
 
 int runSample(const Words& words, Console& console);
 int runSimplify(const Words& words, Console& console);
+int runCheck(const Words& words, Console& console);
+int runConvert(const Words& words, Console& console);
 int runInfo(const Words& words, Console& console);
 int runExtract(const Words& words, Console& console);
 int runAddField(const Words& words, Console& console);

@@ -1,38 +1,32 @@
-// Reading meshes through VTK: .vtu (any encoding) and legacy .vtk. Nothing but this file and vtk_grid.cpp uses VTK.
+// Reading meshes of every format that qtet knows as tetrahedra. VTK is used in vtk_grid.cpp and vtk_cells.cpp alone.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "proto/error.h"
+#include "simplify/read_options.h"
 #include "simplify/tet_mesh.h"
 
 namespace qtet {
-
-/// What was in the file and is not in the mesh; `notes` says it in sentences for people.
-struct ReadReport {
-  std::uint64_t ignoredCells = 0;          ///< of dimension 0, 1 or 2
-  std::vector<std::string> ignoredFields;  ///< texts, more than kMaxFieldComponents components
-  std::vector<std::string> notes;          ///< also VTK's warnings
-};
 
 struct ReadMesh {
   TetMesh mesh;
   ReadReport report;
 };
 
-/// Which fields to read: all (nullopt: those of points first), or those of these names, in this order. A name means every field that has
-/// it; "point:NAME" and "cell:NAME" mean one of two that share a name.
-using FieldNames = std::optional<std::vector<std::string>>;
+/// The file's cells before they are split, checked, welded and cut by the threshold as the options say. Errors: as readMesh's.
+[[nodiscard]] Result<CellMesh> readCells(const std::filesystem::path& path, const ReadOptions& options, ReadReport& report);
 
-/// Reads tetrahedra, points and fields, with the file's numbering (`mesh.tetrahedra[i]` is the i-th tetrahedron; cells of lower
-/// dimension are skipped, with their values). Vertex ids are checked. Field values keep NaN and infinity; coordinates must be finite.
-/// Errors: those of checkVtkFile; bad-input (VTK's own message; cells of another kind; no tetrahedra; a coordinate that is not finite;
-/// a vertex id outside the points; an integer above 2^53 in magnitude), not-found (no field of that name), limit-exceeded.
-/// Not thread-safe: VTK's message window is global.
+/// Splits what readCells gave, mends it after welding, and leaves the fields asked for.
+[[nodiscard]] Result<TetMesh> tetrahedraOf(CellMesh&& cells, const std::filesystem::path& path, const ReadOptions& options, ReadReport& report);
+
+/// Reads volume cells as tetrahedra (split_cells.h), points and fields, with the file's numbering: of tetrahedra alone `mesh.tetrahedra[i]` is
+/// the i-th of them; cells of lower dimension are skipped, with their values. Vertex ids are checked. Field values keep NaN and infinity;
+/// coordinates must be finite. After welding, faces that two tetrahedra's cells cut differently are cut alike (mend_faces.h).
+/// Errors: those of checkMeshFile; bad-input (the reader's own message; a kind of cell that is not read; no volume cells; a coordinate that
+/// is not finite; a vertex id outside the points; an integer above 2^53 in magnitude), not-found (no field or time step of that name; a
+/// program that is not installed), limit-exceeded. Not thread-safe: VTK's message window is global.
+[[nodiscard]] Result<ReadMesh> readMesh(const std::filesystem::path& path, const ReadOptions& options);
 [[nodiscard]] Result<ReadMesh> readMesh(const std::filesystem::path& path, const FieldNames& fields = std::nullopt);
 
 }  // namespace qtet

@@ -1,17 +1,45 @@
 #include "simplify/vtk_grid.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+#include <vtkAVSucdReader.h>
+#include <vtkAlgorithm.h>
+#include <vtkCGNSReader.h>
+#include <vtkCompositeDataIterator.h>
+#include <vtkCompositeDataSet.h>
+#include <vtkDataSet.h>
+#include <vtkDataSetReader.h>
+#include <vtkExodusIIReader.h>
+#include <vtkGenericEnSightReader.h>
+#include <vtkInformation.h>
 #include <vtkLogger.h>
+#include <vtkMultiBlockPLOT3DReader.h>
 #include <vtkNew.h>
 #include <vtkObjectFactory.h>
+#include <vtkOpenFOAMReader.h>
 #include <vtkOutputWindow.h>
-#include <vtkUnstructuredGridReader.h>
+#include <vtkSmartPointer.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
+#include <vtkXMLDataElement.h>
+#include <vtkXMLImageDataReader.h>
+#include <vtkXMLMultiBlockDataReader.h>
+#include <vtkXMLPUnstructuredGridReader.h>
+#include <vtkXMLRectilinearGridReader.h>
+#include <vtkXMLStructuredGridReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
+#include <vtkXMLUtilities.h>
 
+#include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <exception>
+#include <functional>
 #include <new>
+#include <optional>
 
+#include "simplify/join_blocks.h"
 #include "simplify/trial_process.h"
-#include "simplify/vtk_file_checks.h"
+#include "simplify/vtk_cells.h"
 
 namespace qtet {
 namespace {
@@ -69,19 +97,39 @@ class MessageCapture {
   vtkNew<MessageWindow> window_;
 };
 
+/// Libraries below VTK (Exodus, HDF5) print their errors themselves; what they mean comes as VTK's message too.
+class QuietStandardError {
+ public:
+  QuietStandardError() : kept_(::dup(STDERR_FILENO)) {
+    const int nowhere = ::open("/dev/null", O_WRONLY);
+    if (kept_ >= 0 && nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);
+    if (nowhere >= 0) ::close(nowhere);
+  }
+  QuietStandardError(const QuietStandardError&) = delete;
+  QuietStandardError& operator=(const QuietStandardError&) = delete;
+  ~QuietStandardError() {
+    if (kept_ < 0) return;
+    ::dup2(kept_, STDERR_FILENO);
+    ::close(kept_);
+  }
+
+ private:
+  int kept_;
+};
+
 std::unexpected<Error> bad(const std::filesystem::path& path, const std::string& what) {
   return fail(ErrorCode::kBadInput, path.string() + ": " + what);
 }
 
-vtkSmartPointer<vtkUnstructuredGrid> readXml(const std::filesystem::path& path) {
-  vtkNew<vtkXMLUnstructuredGridReader> reader;
+template <class Reader>
+vtkSmartPointer<vtkAlgorithm> xmlReader(const std::filesystem::path& path) {
+  const auto reader = vtkSmartPointer<Reader>::New();
   reader->SetFileName(path.c_str());
-  reader->Update();
-  return reader->GetOutput();
+  return reader;
 }
 
-vtkSmartPointer<vtkUnstructuredGrid> readLegacy(const std::filesystem::path& path) {
-  vtkNew<vtkUnstructuredGridReader> reader;
+vtkSmartPointer<vtkAlgorithm> legacyReader(const std::filesystem::path& path) {
+  const auto reader = vtkSmartPointer<vtkDataSetReader>::New();
   reader->SetFileName(path.c_str());
   reader->ReadAllScalarsOn();
   reader->ReadAllVectorsOn();
@@ -89,25 +137,186 @@ vtkSmartPointer<vtkUnstructuredGrid> readLegacy(const std::filesystem::path& pat
   reader->ReadAllTensorsOn();
   reader->ReadAllTCoordsOn();
   reader->ReadAllFieldsOn();
-  reader->Update();
-  return reader->GetOutput();
+  return reader;
 }
 
-}  // namespace
+vtkSmartPointer<vtkAlgorithm> exodusReader(const std::filesystem::path& path) {
+  const auto reader = vtkSmartPointer<vtkExodusIIReader>::New();
+  reader->SetFileName(path.c_str());
+  reader->SetSqueezePoints(false);    // every block has all points, so that blocks hang together
+  reader->ApplyDisplacementsOff();    // the mesh is one over all steps
+  reader->GenerateGlobalElementIdArrayOff();
+  reader->GenerateGlobalNodeIdArrayOff();
+  reader->UpdateInformation();
+  reader->SetAllArrayStatus(vtkExodusIIReader::NODAL, 1);
+  reader->SetAllArrayStatus(vtkExodusIIReader::ELEM_BLOCK, 1);
+  return reader;
+}
 
-Result<vtkSmartPointer<vtkUnstructuredGrid>> readVtkGrid(const std::filesystem::path& path, std::vector<std::string>& notes) {
-  const Result<VtkFormat> format = checkVtkFile(path);
-  if (!format) return std::unexpected(format.error());
-  const MessageCapture capture;
-  // On counts that contradict each other VTK 9.1's legacy reader writes outside its arrays; its XML reader stood every damage that was tried.
-  if (*format == VtkFormat::kLegacy && !survives([&] { readLegacy(path); })) {
-    return bad(
-        path,
-        "VTK crashes on it: its counts contradict each other, or it is too large for this machine; export the mesh again, best as .vtu");
+vtkSmartPointer<vtkAlgorithm> cgnsReader(const std::filesystem::path& path) {
+  const auto reader = vtkSmartPointer<vtkCGNSReader>::New();
+  reader->SetFileName(path.c_str());
+  reader->UpdateInformation();
+  reader->EnableAllBases();
+  reader->EnableAllPointArrays();
+  reader->EnableAllCellArrays();
+  return reader;
+}
+
+vtkSmartPointer<vtkAlgorithm> enSightReader(const std::filesystem::path& path) {
+  const auto reader = vtkSmartPointer<vtkGenericEnSightReader>::New();
+  reader->SetCaseFileName(path.c_str());
+  reader->ReadAllVariablesOn();
+  return reader;
+}
+
+vtkSmartPointer<vtkAlgorithm> foamReader(const std::filesystem::path& path) {
+  const auto reader = vtkSmartPointer<vtkOpenFOAMReader>::New();
+  reader->SetFileName(path.c_str());
+  reader->DecomposePolyhedraOff();
+  reader->UpdateInformation();
+  reader->EnableAllCellArrays();
+  reader->EnableAllPointArrays();
+  return reader;
+}
+
+vtkSmartPointer<vtkAlgorithm> plot3dReader(const std::filesystem::path& path, const std::string& solution) {
+  constexpr int kPressure = 110, kVelocity = 200;  // of vtkMultiBlockPLOT3DReader's functions, beside density, momentum and energy
+  const auto reader = vtkSmartPointer<vtkMultiBlockPLOT3DReader>::New();
+  reader->SetXYZFileName(path.c_str());
+  reader->AutoDetectFormatOn();
+  if (!solution.empty()) {
+    reader->SetQFileName(solution.c_str());
+    reader->AddFunction(kPressure);
+    reader->AddFunction(kVelocity);
   }
-  vtkSmartPointer<vtkUnstructuredGrid> grid;
+  return reader;
+}
+
+vtkSmartPointer<vtkAlgorithm> readerOf(const std::filesystem::path& path, MeshFormat format, const ReadOptions& options) {
+  switch (format) {
+    case MeshFormat::kVtu: return xmlReader<vtkXMLUnstructuredGridReader>(path);
+    case MeshFormat::kPvtu: return xmlReader<vtkXMLPUnstructuredGridReader>(path);
+    case MeshFormat::kVtm: return xmlReader<vtkXMLMultiBlockDataReader>(path);
+    case MeshFormat::kVts: return xmlReader<vtkXMLStructuredGridReader>(path);
+    case MeshFormat::kVtr: return xmlReader<vtkXMLRectilinearGridReader>(path);
+    case MeshFormat::kVti: return xmlReader<vtkXMLImageDataReader>(path);
+    case MeshFormat::kLegacyVtk: return legacyReader(path);
+    case MeshFormat::kExodus: return exodusReader(path);
+    case MeshFormat::kCgns: return cgnsReader(path);
+    case MeshFormat::kEnSight: return enSightReader(path);
+    case MeshFormat::kOpenFoam: return foamReader(path);
+    case MeshFormat::kPlot3d: return plot3dReader(path, options.plot3dSolution);
+    default: {
+      const auto reader = vtkSmartPointer<vtkAVSucdReader>::New();
+      reader->SetFileName(path.c_str());
+      return reader;
+    }
+  }
+}
+
+/// VTK's XML readers stood every damage that was tried; its others write outside their arrays on counts that contradict each other.
+bool standsDamage(MeshFormat format) {
+  return format == MeshFormat::kVtu || format == MeshFormat::kPvtu || format == MeshFormat::kVtm || format == MeshFormat::kVts ||
+         format == MeshFormat::kVtr || format == MeshFormat::kVti;
+}
+
+/// The shortest text that gives the number back.
+std::string textOf(double x) {
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), x).ptr;
+  return {text.data(), end};
+}
+
+/// Which of the steps are meant. Errors: not-found.
+Result<std::vector<std::size_t>> chosenSteps(const std::vector<double>& times, const std::string& asked, const std::filesystem::path& path,
+                                             std::vector<std::string>& notes) {
+  std::vector<std::size_t> all(times.size());
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
+  if (asked == "all" || times.size() <= 1) return all;
+  if (asked == "first") return std::vector<std::size_t>{0};
+  if (asked == "last") {
+    notes.push_back("of its " + std::to_string(times.size()) + " time steps the last is read, " + textOf(times.back()) + "; --time names another, or all");
+    return std::vector<std::size_t>{times.size() - 1};
+  }
+  double wanted = 0;
+  const auto parsed = std::from_chars(asked.data(), asked.data() + asked.size(), wanted);
+  if (parsed.ec == std::errc{} && parsed.ptr == asked.data() + asked.size()) {
+    for (const std::size_t i : all) {
+      if (std::abs(times[i] - wanted) <= 1e-9 * std::max(std::abs(wanted), std::abs(times[i]))) return std::vector<std::size_t>{i};
+    }
+  }
+  constexpr std::size_t kShown = 12;
+  std::string there;
+  for (std::size_t i = 0; i < times.size() && i < kShown; ++i) there += (i ? ", " : "") + textOf(times[i]);
+  return fail(ErrorCode::kNotFound, path.string() + " has no time step " + asked + "; it has " + there + (times.size() > kShown ? ", ..." : "") +
+                                        "; give --time one of them, first, last or all");
+}
+
+/// The volume blocks of what a reader gave, in one mesh.
+Result<CellMesh> cellsOfOutput(vtkDataObject* output, const FieldNames& fields, const std::filesystem::path& path, ReadReport& report) {
+  std::vector<CellMesh> blocks;
+  const auto add = [&](vtkDataObject* object) -> Status {
+    auto* data = vtkDataSet::SafeDownCast(object);
+    if (!data || data->GetNumberOfCells() + data->GetNumberOfPoints() == 0) return {};
+    Result<CellMesh> cells = cellsOf(*data, fields, path, report);
+    if (!cells) return std::unexpected(cells.error());
+    blocks.push_back(std::move(*cells));
+    return {};
+  };
+  auto* composite = vtkCompositeDataSet::SafeDownCast(output);
+  if (!composite) {
+    if (!vtkDataSet::SafeDownCast(output)) return bad(path, "VTK found no mesh in it; export the mesh as .vtu");
+    if (Status done = add(output); !done) return std::unexpected(done.error());
+    return blocks.empty() ? CellMesh{} : std::move(blocks.front());
+  }
+  const auto each = vtkSmartPointer<vtkCompositeDataIterator>::Take(composite->NewIterator());
+  for (each->InitTraversal(); !each->IsDoneWithTraversal(); each->GoToNextItem()) {
+    if (Status done = add(each->GetCurrentDataObject()); !done) return std::unexpected(done.error());
+  }
+  return joinBlocks(std::move(blocks), report.notes);
+}
+
+std::vector<double> timesOf(vtkAlgorithm& reader) {
+  vtkInformation* info = reader.GetOutputInformation(0);
+  if (!info || !info->Has(vtkStreamingDemandDrivenPipeline::TIME_STEPS())) return {};
+  const double* times = info->Get(vtkStreamingDemandDrivenPipeline::TIME_STEPS());
+  return {times, times + info->Length(vtkStreamingDemandDrivenPipeline::TIME_STEPS())};
+}
+
+/// Runs one reader over the steps that are meant.
+Result<std::vector<TimedCells>> runReader(const std::filesystem::path& path, MeshFormat format, const ReadOptions& options, ReadReport& report) {
+  const auto reader = readerOf(path, format, options);
+  reader->UpdateInformation();
+  const std::vector<double> times = timesOf(*reader);
+  const auto steps = chosenSteps(times, options.time, path, report.notes);
+  if (!steps) return std::unexpected(steps.error());
+  std::vector<TimedCells> out;
+  for (std::size_t s = 0; s < std::max<std::size_t>(1, steps->size()); ++s) {
+    const bool timed = !steps->empty();
+    if (timed) reader->UpdateTimeStep(times[(*steps)[s]]);
+    else reader->Update();
+    Result<CellMesh> cells = cellsOfOutput(reader->GetOutputDataObject(0), options.fields, path, report);
+    if (!cells) return std::unexpected(cells.error());
+    out.push_back({timed ? textOf(times[(*steps)[s]]) : "", std::move(*cells)});
+    if (s == 0 && steps->size() > 1) report.ignoredCells = 0, report.ignoredFields.clear();
+  }
+  return out;
+}
+
+/// VTK's readers with their messages caught; `work` is done in a process of its own first unless the format stands damage.
+Result<std::vector<TimedCells>> guarded(const std::filesystem::path& path, bool trial, ReadReport& report,
+                                        const std::function<Result<std::vector<TimedCells>>()>& work) {
+  const MessageCapture capture;
+  if (trial && !survives([&] { (void)work(); })) {
+    return bad(path,
+               "VTK crashes on it: its counts contradict each other, or it is too large for this machine; export the mesh again, best as .vtu");
+  }
+  std::optional<QuietStandardError> quiet;
+  if (trial) quiet.emplace();
+  Result<std::vector<TimedCells>> steps = std::vector<TimedCells>{};
   try {
-    grid = *format == VtkFormat::kXml ? readXml(path) : readLegacy(path);
+    steps = work();
   } catch (const std::bad_alloc&) {
     return bad(path, "an array's stated length does not fit in memory; the file is damaged, or the machine too small for it");
   } catch (const std::exception& error) {
@@ -117,9 +326,78 @@ Result<vtkSmartPointer<vtkUnstructuredGrid>> readVtkGrid(const std::filesystem::
     return bad(path, "VTK could not read it: " + capture.messages().errors.front() +
                          "; export the mesh again or open it in ParaView to see what it holds");
   }
-  if (!grid) return bad(path, "VTK found no unstructured grid in it; export the mesh as .vtu again");
-  for (const std::string& warning : capture.messages().warnings) notes.push_back("VTK: " + warning);
-  return grid;
+  for (const std::string& warning : capture.messages().warnings) report.notes.push_back("VTK: " + warning);
+  return steps;
+}
+
+/// One <DataSet> of a .pvd file.
+struct SeriesEntry {
+  double time = 0;
+  int number = 0;  ///< in the file
+  std::filesystem::path file;
+};
+
+Result<std::vector<SeriesEntry>> entriesOf(const std::filesystem::path& path) {
+  const MessageCapture capture;
+  const auto root = vtkSmartPointer<vtkXMLDataElement>::Take(vtkXMLUtilities::ReadElementFromFile(path.c_str()));
+  vtkXMLDataElement* collection = root ? root->FindNestedElementWithName("Collection") : nullptr;
+  if (!collection) return bad(path, "it holds no <Collection>; save the series again");
+  std::vector<SeriesEntry> entries;
+  for (int i = 0; i < collection->GetNumberOfNestedElements(); ++i) {
+    vtkXMLDataElement* element = collection->GetNestedElement(i);
+    const char* file = element->GetAttribute("file");
+    if (!file) return bad(path, "its <DataSet> number " + std::to_string(i) + " names no file; save the series again");
+    SeriesEntry entry{0, i, path.parent_path() / file};
+    element->GetScalarAttribute("timestep", entry.time);
+    entries.push_back(std::move(entry));
+  }
+  if (entries.empty()) return bad(path, "its <Collection> is empty; save the series again");
+  std::ranges::sort(entries, [](const SeriesEntry& a, const SeriesEntry& b) { return a.time != b.time ? a.time < b.time : a.number < b.number; });
+  return entries;
+}
+
+/// The parts of one step, each a file of its own, in one mesh.
+Result<CellMesh> cellsOfParts(std::span<const SeriesEntry> parts, const ReadOptions& options, ReadReport& report) {
+  std::vector<CellMesh> blocks;
+  for (const SeriesEntry& part : parts) {
+    const MeshFormat format = formatOf(part.file);
+    if (format == MeshFormat::kPvd || format >= MeshFormat::kGmsh)
+      return bad(part.file, "a .pvd file may name VTK's files alone; convert it to .vtu first");
+    if (Status checked = checkMeshFile(part.file, format); !checked) return std::unexpected(checked.error());
+    Result<std::vector<TimedCells>> read = readVtk(part.file, format, options, report);
+    if (!read) return std::unexpected(read.error());
+    blocks.push_back(std::move(read->back().cells));
+  }
+  return joinBlocks(std::move(blocks), report.notes);
+}
+
+Result<std::vector<TimedCells>> readSeries(const std::filesystem::path& path, const ReadOptions& options, ReadReport& report) {
+  const auto entries = entriesOf(path);
+  if (!entries) return std::unexpected(entries.error());
+  std::vector<double> times;
+  std::vector<std::size_t> begins;
+  for (std::size_t i = 0; i < entries->size(); ++i) {
+    if (!times.empty() && times.back() == (*entries)[i].time) continue;
+    times.push_back((*entries)[i].time);
+    begins.push_back(i);
+  }
+  begins.push_back(entries->size());
+  const auto steps = chosenSteps(times, options.time, path, report.notes);
+  if (!steps) return std::unexpected(steps.error());
+  std::vector<TimedCells> out;
+  for (const std::size_t s : *steps) {
+    Result<CellMesh> cells = cellsOfParts(std::span(*entries).subspan(begins[s], begins[s + 1] - begins[s]), options, report);
+    if (!cells) return std::unexpected(cells.error());
+    out.push_back({textOf(times[s]), std::move(*cells)});
+  }
+  return out;
+}
+
+}  // namespace
+
+Result<std::vector<TimedCells>> readVtk(const std::filesystem::path& path, MeshFormat format, const ReadOptions& options, ReadReport& report) {
+  if (format == MeshFormat::kPvd) return readSeries(path, options, report);
+  return guarded(path, !standsDamage(format), report, [&] { return runReader(path, format, options, report); });
 }
 
 }  // namespace qtet

@@ -8,6 +8,7 @@
 #include "simplify/quantise.h"
 #include "simplify/read_mesh.h"
 #include "simplify/verify.h"
+#include "tests/support/meshes.h"
 
 namespace qtet {
 namespace {
@@ -49,6 +50,33 @@ TEST_P(RealData, isCleanedToWhatIsKnown) {
   const Result<OnLattice> put = putOnLattice(read->mesh, quantised->mesh.lattice, quantised->mesh.fields);
   ASSERT_TRUE(put) << put.error().text();
   EXPECT_TRUE(sameMesh(quantised->mesh, put->mesh));
+}
+
+/// An O-grid of 75 cells round, cut into tetrahedra by parity, whose ends coincide: welded it is a solid torus, as other tools made it.
+TEST(RealDataWeld, thePostsSlitClosesToASolidOfGenusOne) {
+  const char* folder = std::getenv("QTET_DATA");
+  if (!folder) GTEST_SKIP() << "QTET_DATA is not set";
+  const std::filesystem::path path = std::filesystem::path(folder) / "post.vtu";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
+  ReadOptions options;
+  options.weld = 0;
+  options.fields = std::vector<std::string>{};
+  Result<ReadMesh> read = readMesh(path, options);
+  ASSERT_TRUE(read) << read.error().text();
+  EXPECT_EQ(read->report.weldedPoints, 1444u);
+  EXPECT_EQ(read->report.mendedFaces, 37u * 37u);
+  const Result<CleanReport> report = cleanMesh(read->mesh);
+  ASSERT_TRUE(report) << report.error().text();
+  EXPECT_EQ(read->mesh.tetrahedra.size(), 514744u);
+  EXPECT_EQ(read->mesh.points.size(), 108300u);
+  EXPECT_EQ(report->flatCells.count + report->invertedCells.count + report->coincidentPoints.count, 0u);
+  EXPECT_EQ(report->nonManifoldEdges.count + report->nonManifoldVertices.count, 0u);
+  EXPECT_EQ(report->components, 1u);
+  const Result<QuantisedMesh> quantised = quantise(read->mesh);
+  ASSERT_TRUE(quantised);
+  EXPECT_EQ(quantised->mesh.boundary.size(), 22200u);
+  // A closed orientable surface of Euler characteristic 0 is a torus.
+  EXPECT_EQ(testing::eulerCharacteristics(quantised->mesh), (std::array<std::int64_t, 2>{0, 0}));
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -64,13 +64,50 @@ TEST_F(Tool, helpAndVersionSucceed) {
   EXPECT_EQ(run("--version").out, "qtet " QTET_VERSION "\n");
   const Ran help = run("--help");
   EXPECT_EQ(help.code, 0);
-  for (const char* command : {"sample", "simplify", "info", "extract", "add-field", "remove-field", "verify"}) {
+  for (const char* command : {"sample", "check", "convert", "simplify", "info", "extract", "add-field", "remove-field", "verify"}) {
     EXPECT_NE(help.out.find(command), std::string::npos);
     const Ran own = run(std::string(command) + " --help");
     EXPECT_EQ(own.code, 0);
     EXPECT_NE(own.out.find("examples:"), std::string::npos);
     EXPECT_TRUE(own.err.empty());
   }
+}
+
+TEST_F(Tool, checkTellsWhatIsWrongAndEndsWithOneWhereSimplifyWouldRefuse) {
+  TetMesh mesh = testing::twoCells();
+  mesh.points.push_back({2, 2, 2});
+  write("kept.vtu", mesh);
+  const Ran kept = run("check kept.vtu --json");
+  EXPECT_EQ(kept.code, 0) << kept.err;
+  EXPECT_EQ(kept.json()["refused"], false);
+  ASSERT_EQ(kept.json()["findings"].size(), 1u);
+  EXPECT_EQ(kept.json()["findings"][0]["kind"], "unusedPoints");
+  EXPECT_EQ(kept.json()["findings"][0]["verdict"], "repaired");
+  EXPECT_EQ(kept.json()["findings"][0]["first"], nlohmann::json::array({5}));
+  mesh.tetrahedra.push_back({1, 2, 3, 5});
+  write("bad.vtu", mesh);
+  const Ran bad = run("check bad.vtu");
+  EXPECT_EQ(bad.code, 1);
+  EXPECT_NE(bad.out.find("refused   faces of more than two cells: the cells overlap: 1 (tetrahedron 0)"), std::string::npos) << bad.out;
+  EXPECT_EQ(run("simplify bad.vtu -o bad.qtet").code, 1);
+  EXPECT_EQ(run("check missing.vtu").code, 1);
+  expectFailure("check bad.vtu --curved round", 2, "give split or linear");
+  expectFailure("check bad.vtu --threshold f=1", 2, "FIELD=LOW:HIGH");
+  expectFailure("check bad.vtu --weld -1", 2, "--weld");
+}
+
+TEST_F(Tool, aWeldedMeshIsVerifiedWithTheSameOptions) {
+  TetMesh mesh = testing::oneCell();
+  for (const VertexId v : {1u, 2u, 3u}) mesh.points.push_back(mesh.points[v]);
+  mesh.points.push_back({1, 1, 1});
+  mesh.tetrahedra.push_back({4, 5, 6, 7});
+  write("slit.vtu", mesh);
+  ASSERT_EQ(run("simplify slit.vtu --weld 0 -o joined.qtet").code, 0);
+  EXPECT_EQ(run("verify joined.qtet --against slit.vtu --weld 0").code, 0);
+  EXPECT_EQ(run("verify joined.qtet --against slit.vtu").code, 1);
+  ASSERT_EQ(run("convert slit.vtu --weld 0 -o joined.vtu").code, 0);
+  EXPECT_EQ(run("verify joined.qtet --against joined.vtu").code, 0);
+  expectFailure("convert slit.vtu -o slit.msh", 2, "must end in .vtu");
 }
 
 TEST_F(Tool, wordsThatAreNotUnderstoodEndWithTwo) {

@@ -1,0 +1,74 @@
+#include <iomanip>
+
+#include "simplify/check_mesh.h"
+#include "simplify/command_line.h"
+#include "simplify/command_read.h"
+#include "simplify/progress.h"
+
+namespace qtet {
+namespace {
+
+OrderedJson toJson(const CheckReport& report, const std::string& input) {
+  OrderedJson findings = OrderedJson::array();
+  for (const Finding& finding : report.findings) {
+    OrderedJson one = {{"kind", finding.kind}, {"verdict", verdictName(finding.verdict)}, {"text", finding.text}};
+    if (finding.found.count > 0) one.update({{"what", finding.what}, {"count", finding.found.count}, {"first", finding.found.first}});
+    if (!finding.advice.empty()) one["advice"] = finding.advice;
+    findings.push_back(std::move(one));
+  }
+  return {{"input", input},           {"refused", report.refused()},       {"points", report.points},     {"tetrahedra", report.tetrahedra},
+          {"fields", report.fields},  {"components", report.components},   {"read", readReport(report.read)}, {"notes", report.read.notes},
+          {"findings", findings}};
+}
+
+void printReport(const CheckReport& report, const std::string& input, std::ostream& out) {
+  if (report.tetrahedra > 0) {
+    out << input << ": " << report.points << " points, " << report.tetrahedra << " tetrahedra";
+    if (!report.read.split.onlyTetrahedra()) out << " of cells that were split";
+    out << ", " << report.fields.size() << " fields\n";
+    for (const std::string& field : report.fields) out << "  " << field << "\n";
+  }
+  for (const Finding& finding : report.findings) {
+    out << std::left << std::setw(10) << verdictName(finding.verdict) << finding.text;
+    if (finding.found.count > 0) {
+      out << ": " << finding.found.count;
+      for (std::size_t i = 0; i < finding.found.first.size(); ++i) out << (i == 0 ? " (" + finding.what + " " : ", ") << finding.found.first[i];
+      if (!finding.found.first.empty()) out << (finding.found.count > finding.found.first.size() ? ", ...)" : ")");
+    }
+    out << "\n";
+    if (!finding.advice.empty()) out << std::setw(10) << "" << "-> " << finding.advice << "\n";
+  }
+  if (report.findings.empty()) out << "nothing is wrong with it\n";
+  out << (report.refused() ? "qtet simplify would refuse it\n" : "qtet simplify takes it\n");
+}
+
+}  // namespace
+
+int runCheck(const Words& words, Console& console) {
+  namespace po = boost::program_options;
+  po::options_description options("options");
+  options.add_options()("json", "print one JSON object");
+  addReadOptions(options);
+  const ParsedWords parsed(
+      words,
+      {"check", "check IN [options]",
+       "Says everything that is wrong or unusual about a mesh: what it is, how often it is there and where first, and whether simplify would refuse it,\n"
+       "repair it or keep it. Ends with 1 if anything would be refused. Tetrahedra are counted after splitting; points and other cells as in the file.",
+       "  qtet check part.vtu\n  qtet check ogrid.vts --weld 1e-6 --json\n"},
+      options, {"IN"});
+  if (parsed.helped(console)) return kExitOk;
+  const auto input = parsed.get<std::string>("IN");
+  Progress progress(console.err, console.errIsTerminal);
+  progress.stage("checking " + input);
+  const CheckReport report = checkMesh(input, readOptionsOf(parsed));
+  progress.clear();
+  if (parsed.has("json")) {
+    printJson(toJson(report, input), console);
+  } else {
+    for (const std::string& note : report.read.notes) console.err << "qtet: note: " << note << "\n";
+    printReport(report, input, console.out);
+  }
+  return report.refused() ? kExitFailed : kExitOk;
+}
+
+}  // namespace qtet

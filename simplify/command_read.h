@@ -1,0 +1,20 @@
+// The options of every command that reads a mesh.
+#pragma once
+
+#include <boost/program_options.hpp>
+
+#include "simplify/command_line.h"
+#include "simplify/read_options.h"
+
+namespace qtet {
+
+/// --curved, --weld, --time, --threshold, --plot3d.
+void addReadOptions(boost::program_options::options_description& options);
+
+/// What was asked for; the fields stay to be set. Throws UsageError.
+[[nodiscard]] ReadOptions readOptionsOf(const ParsedWords& parsed);
+
+/// How many cells of which kind were split, points welded and so on.
+[[nodiscard]] OrderedJson readReport(const ReadReport& report);
+
+}  // namespace qtet

@@ -1,0 +1,102 @@
+#include "simplify/run_meshio.h"
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <string>
+
+namespace qtet {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kNoProgram = 127, kNoMeshio = 77;  ///< what the child ends with
+/// Reads, drops what a .vtu cannot hold, and writes.
+constexpr const char* kScript =
+    "import sys\n"
+    "try:\n"
+    "    import meshio\n"
+    "except ImportError:\n"
+    "    sys.exit(77)\n"
+    "try:\n"
+    "    mesh = meshio.read(sys.argv[1])\n"
+    "    mesh.cell_sets, mesh.point_sets = {}, {}\n"
+    "    meshio.write(sys.argv[2], mesh, file_format='vtu', binary=True)\n"
+    "except BaseException as error:\n"
+    "    sys.stderr.write('\\n' + (str(error) or type(error).__name__).replace('\\n', ' '))\n"
+    "    sys.exit(1)\n";
+
+/// A folder for one conversion, removed with everything in it.
+class Folder {
+ public:
+  Folder() {
+    std::string name = (fs::temp_directory_path() / "qtet-meshio-XXXXXX").string();
+    if (::mkdtemp(name.data())) path_ = name;
+  }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  ~Folder() {
+    std::error_code ignored;
+    if (!path_.empty()) fs::remove_all(path_, ignored);
+  }
+  [[nodiscard]] const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+/// What the program ends with; -1: it was killed, or could not be started.
+int run(const char* python, const fs::path& in, const fs::path& out, const fs::path& words) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const int file = ::open(words.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), nothing = ::open("/dev/null", O_RDWR);
+    ::dup2(nothing, STDIN_FILENO);
+    ::dup2(file, STDOUT_FILENO);
+    ::dup2(file, STDERR_FILENO);
+    ::execlp(python, python, "-c", kScript, in.c_str(), out.c_str(), static_cast<char*>(nullptr));
+    ::_exit(kNoProgram);
+  }
+  if (child < 0) return -1;
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0) {
+    if (errno != EINTR) return -1;
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+std::string lastLineOf(const fs::path& path) {
+  std::ifstream file(path);
+  std::string last;
+  for (std::string line; std::getline(file, line);) {
+    if (line.find_first_not_of(" \t\r") != std::string::npos) last = line;
+  }
+  return last.empty() ? "it ended without a word" : last;
+}
+
+}  // namespace
+
+Status throughMeshio(const fs::path& path, const std::function<Status(const fs::path&)>& use) {
+  const Folder folder;
+  if (folder.path().empty()) return fail(ErrorCode::kIo, "no folder could be made in " + fs::temp_directory_path().string() + ": " + std::strerror(errno));
+  const fs::path out = folder.path() / "mesh.vtu", words = folder.path() / "words.txt";
+  // The first python3 may be one of the user's own; Debian's has Debian's meshio.
+  int ended = kNoProgram;
+  for (const char* python : {"python3", "/usr/bin/python3"}) {
+    ended = run(python, fs::absolute(path), out, words);
+    if (ended != kNoProgram && ended != kNoMeshio) break;
+  }
+  if (ended == kNoProgram || ended == kNoMeshio) {
+    return fail(ErrorCode::kNotFound, path.string() + ": files of type '" + path.extension().string() +
+                                          "' are read through meshio, which is not installed; install it (apt install python3-meshio, or pip install "
+                                          "meshio), or save the mesh as .vtu");
+  }
+  if (ended != 0) return fail(ErrorCode::kBadInput, path.string() + ": meshio could not read it: " + lastLineOf(words) + "; save the mesh as .vtu");
+  return use(out);
+}
+
+}  // namespace qtet

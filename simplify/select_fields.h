@@ -1,0 +1,21 @@
+// Which of a file's fields were asked for, and which of its cells.
+#pragma once
+
+#include <filesystem>
+
+#include "simplify/cell_mesh.h"
+#include "simplify/read_options.h"
+
+namespace qtet {
+
+/// Whether one of the names asked for is `name`, or "point:NAME" or "cell:NAME" with this association.
+[[nodiscard]] bool isMeant(const FieldNames& names, const std::string& association, const std::string& name);
+
+/// Leaves the fields asked for, in the order asked, each once. Errors: not-found (no field of that name; the message lists what there is),
+/// limit-exceeded (more than kMaxFields).
+[[nodiscard]] Status selectFields(const FieldNames& names, const std::filesystem::path& path, const std::vector<std::string>& otherFields, std::vector<MeshField>& fields);
+
+/// Leaves the cells within the threshold. Errors: not-found (no such field among those read), bad-input (no cell is left).
+[[nodiscard]] Status applyThreshold(const Threshold& threshold, const std::filesystem::path& path, CellMesh& mesh);
+
+}  // namespace qtet
