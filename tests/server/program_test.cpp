@@ -112,7 +112,7 @@ TEST(Program, servesAndEndsOnSigtermWithZero) {
     Program program({served.logFolder(), "--port", "0", "--threads", "2", "--viewer", served.viewerFolder()});
     const std::uint16_t port = portOf(program.line());
     ASSERT_NE(port, 0);
-    EXPECT_EQ(test::RawClient(port).get("/v1/meshes/noise/log").body, served.file());
+    EXPECT_EQ(test::RawClient(port).get(served.log()).body, served.file());
     EXPECT_EQ(test::RawClient(port).get("/").status, 200u);
     test::StreamClient stream(port);
     ASSERT_TRUE(stream.send(R"({"type":"open","mesh":"noise","credit":0})"));
