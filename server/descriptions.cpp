@@ -19,7 +19,8 @@ Json links(const ServedMesh& mesh) {
           {"fieldChunk", log + "/fields/{field}/chunks/{n}"},
           {"vtu", log + "/levels/{k}.vtu"},
           {"glb", log + "/levels/{k}.glb"},
-          {"drc", log + "/levels/{k}.drc"}};
+          {"drc", log + "/levels/{k}.drc"},
+          {"preview", log + "/preview.png"}};
 }
 
 Json identity(const ServedMesh& mesh) { return {{"id", mesh.id}, {"digest", mesh.log.digest()}, {"bytes", mesh.log.bytes().size()}}; }

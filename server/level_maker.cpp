@@ -5,6 +5,7 @@
 #include "codec/boundary_drc.h"
 #include "codec/boundary_glb.h"
 #include "codec/vtu_writer.h"
+#include "server/preview.h"
 
 namespace qtet {
 namespace {
@@ -13,6 +14,7 @@ Result<Bytes> written(const LatticeMesh& mesh, LevelForm form) {
   switch (form) {
     case LevelForm::kVtu: return vtuBytes(mesh);
     case LevelForm::kGlb: return boundaryGlb(mesh);
+    case LevelForm::kPng: return previewPng(mesh);
     case LevelForm::kDrc: break;
   }
   return boundaryDrc(mesh);

@@ -9,10 +9,11 @@
 namespace qtet {
 namespace {
 
-constexpr std::array<std::pair<LevelForm, std::string_view>, 3> kForms = {{
+constexpr std::array<std::pair<LevelForm, std::string_view>, 4> kForms = {{
     {LevelForm::kVtu, "vtu"},
     {LevelForm::kGlb, "glb"},
     {LevelForm::kDrc, "drc"},
+    {LevelForm::kPng, "png"},
 }};
 
 }  // namespace

@@ -11,7 +11,7 @@
 
 namespace qtet {
 
-enum class LevelForm : std::uint8_t { kVtu, kGlb, kDrc };
+enum class LevelForm : std::uint8_t { kVtu, kGlb, kDrc, kPng };
 
 struct LevelRequest {
   MeshPointer mesh{};
@@ -24,7 +24,7 @@ struct LevelRequest {
   [[nodiscard]] std::string key() const;
 };
 
-/// "vtu", "glb", "drc".
+/// "vtu", "glb", "drc", "png".
 [[nodiscard]] std::string_view formName(LevelForm form);
 [[nodiscard]] std::optional<LevelForm> formOfName(std::string_view name);
 

@@ -9,6 +9,7 @@
 
 #include "codec/level_choice.h"
 #include "server/http_resource.h"
+#include "server/preview.h"
 
 namespace qtet {
 namespace {
@@ -32,6 +33,7 @@ std::string_view mediaType(LevelForm form) {
   switch (form) {
     case LevelForm::kVtu: return "application/vnd.vtk.vtu+xml";
     case LevelForm::kGlb: return "model/gltf-binary";
+    case LevelForm::kPng: return "image/png";
     case LevelForm::kDrc: break;
   }
   return "application/octet-stream";
@@ -97,34 +99,59 @@ std::string canonicalPath(const LevelRequest& level) {
   return "/v1/logs/" + level.mesh->log.digest() + "/levels/" + std::to_string(level.level) + "." + std::string(formName(level.form));
 }
 
+/// The digest's own bytes decide, so the answer may be kept for ever; the version of this program is part of the tag.
+Resource resourceOf(const LevelRequest& wanted, const std::string& name) {
+  const bool picture = wanted.form == LevelForm::kPng;  // looked at, not saved
+  return {{'"' + wanted.key() + '"', wanted.mesh->modified},
+          std::string(mediaType(wanted.form)),
+          kForEver,
+          {{"Content-Disposition", (picture ? "inline" : "attachment") + std::string("; filename=\"") + name + "." + std::string(formName(wanted.form)) + "\""}}};
+}
+
+Reply toBeMade(const RequestView& request, const Resource& resource, LevelRequest wanted) {
+  if (std::optional<Reply> early = conditionalReply(request, resource)) return std::move(*early);
+  Reply out = beginReply(200, resource);
+  out.headers.emplace_back("Accept-Ranges", "bytes");
+  out.body = std::move(wanted);
+  return out;
+}
+
 }  // namespace
 
 Reply levelReply(const RequestView& request, const RequestTarget& target, const MeshPointer& mesh, std::string_view name) {
   const std::size_t dot = std::min(name.find('.'), name.size());
   const auto form = formOfName(name.substr(std::min(dot + 1, name.size())));
-  if (!form) return problem(404, "not-found", "a level is to be had as {k}.vtu, {k}.glb and {k}.drc");
+  if (!form || form == LevelForm::kPng) return problem(404, "not-found", "a level is to be had as {k}.vtu, {k}.glb and {k}.drc");
   const OrRefusal<std::uint32_t> level = levelOfName(name.substr(0, dot), target, *mesh);
   if (!level) return level.error();
   const OrRefusal<std::vector<std::uint32_t>> fields = wantedFields(target, *mesh);
   if (!fields) return fields.error();
   LevelRequest wanted{mesh, *level, *form, *fields};
 
-  // The digest's own bytes decide, so the answer may be kept for ever; the version of this program is part of the tag.
-  const std::string file = std::to_string(*level) + "." + std::string(formName(*form));
-  Resource resource{{'"' + wanted.key() + '"', mesh->modified},
-                    std::string(mediaType(*form)),
-                    kForEver,
-                    {{"Content-Disposition", "attachment; filename=\"level-" + file + "\""}}};
+  Resource resource = resourceOf(wanted, "level-" + std::to_string(*level));
   if (name.starts_with("fit.")) resource.headers.emplace_back("Content-Location", canonicalPath(wanted));
   if (*form == LevelForm::kVtu) {
     wanted.coding = chooseCoding(request.acceptEncoding.value_or(""), true, true);
     becomeVariant(resource, wanted.coding);
   }
-  if (std::optional<Reply> early = conditionalReply(request, resource)) return std::move(*early);
-  Reply out = beginReply(200, resource);
-  out.headers.emplace_back("Accept-Ranges", "bytes");
-  out.body = std::move(wanted);
-  return out;
+  return toBeMade(request, resource, std::move(wanted));
+}
+
+Reply previewReply(const RequestView& request, const RequestTarget& target, const MeshPointer& mesh) {
+  const Manifest& manifest = mesh->manifest;
+  const auto small = [](const ManifestLevel& level) { return level.boundaryTriangles <= kMaxPreviewTriangles; };
+  const auto finest = std::find_if(manifest.levels.rbegin(), manifest.levels.rend(), small);
+  LevelRequest wanted{mesh, finest == manifest.levels.rend() ? 0 : finest->level, LevelForm::kPng};
+  if (const std::optional<std::string> name = target.parameter("field"); name && !name->empty()) {
+    const auto field = fieldOfKey(manifest, *name);
+    if (!field || manifest.fields[*field].association != "point") return problem(404, "not-found", "this mesh has no field of points '" + *name + "'");
+    wanted.fields = {*field};
+  } else if (!name) {
+    const auto first = std::ranges::find(manifest.fields, "point", &ManifestField::association);
+    if (first != manifest.fields.end()) wanted.fields = {static_cast<std::uint32_t>(first - manifest.fields.begin())};
+  }
+  const Resource resource = resourceOf(wanted, "preview");
+  return toBeMade(request, resource, std::move(wanted));
 }
 
 }  // namespace qtet

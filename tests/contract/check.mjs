@@ -17,7 +17,7 @@ const {values: options} = parseArgs({options: {bin: {type: 'string'}, out: {type
 const source = join(import.meta.dirname ?? new URL('.', import.meta.url).pathname, '../..');
 const description = parse(readFileSync(join(source, 'proto/openapi.yaml'), 'utf8'), {maxAliasCount: -1});
 /** What cannot be had from a healthy server by asking. */
-const kUnasked = new Set(['readLevel 500', 'readLevel 503', 'putMesh 503', 'putMesh 507', 'isReady 503', 'openStream 101', 'readViewer 404']);
+const kUnasked = new Set(['readLevel 500', 'readLevel 503', 'readPreview 500', 'readPreview 503', 'putMesh 503', 'putMesh 507', 'isReady 503', 'openStream 101', 'readViewer 404']);
 
 const complaints = [];
 const seen = new Set();
@@ -112,7 +112,7 @@ async function checkAll(port) {
 
   const documents = ['/v1/meshes', '/v1/meshes/fin', `${log}/manifest`, '/openapi.json', '/'];
   const binaries = [`${log}/log`, `${log}/base`, `${log}/chunks/0`, `${log}/fields/Density/chunks/0`];
-  const levels = ['vtu', 'glb', 'drc'].map((form) => `${log}/levels/1.${form}`);
+  const levels = ['vtu', 'glb', 'drc'].map((form) => `${log}/levels/1.${form}`).concat(`${log}/preview.png`);
   for (const path of [...documents, ...binaries, ...levels]) {
     const whole = await get(200, path);
     await expect(200, 'HEAD', path);
@@ -134,7 +134,7 @@ async function checkAll(port) {
 
   const nobody = '0'.repeat(64);
   for (const path of ['/v1/meshes/none', '/v1/meshes/none/log', `/v1/logs/${nobody}/log`, `/v1/logs/${nobody}/manifest`, `/v1/logs/${nobody}/base`,
-    `${log}/chunks/99999`, `${log}/fields/none/chunks/0`, `${log}/levels/999.vtu`, `${log}/levels/fit.vtu?error=none:1`, '/nothing', '/v2'])
+    `${log}/chunks/99999`, `${log}/fields/none/chunks/0`, `${log}/levels/999.vtu`, `${log}/levels/fit.vtu?error=none:1`, `${log}/preview.png?field=none`, '/nothing', '/v2'])
     await get(404, path);
   for (const path of ['/v1/meshes?limit=0', `${log}/levels/fit.vtu`, '/%', '/v1/stream/%zz']) await get(400, path);
   await get(307, '/v1/meshes/fin/log');
