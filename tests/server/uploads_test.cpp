@@ -123,6 +123,17 @@ TEST_F(UploadTest, conditionsProtectWhatIsThere) {
   EXPECT_EQ(put("/v1/meshes/new", log_, "If-None-Match: *\r\n").status, 201u);
 }
 
+TEST_F(UploadTest, aConditionStillHoldsWhenTheLogGetsItsName) {
+  RawClient slow(server_.port());
+  slow.send(head("PUT", "/v1/meshes/new", log_.size(), "If-None-Match: *\r\n") + log_.substr(0, 100));
+  std::this_thread::sleep_for(test::kQuiet);
+  const std::string other = textOf(test::makeLog({.seed = 78}));
+  EXPECT_EQ(put("/v1/meshes/new", other, "If-None-Match: *\r\n").status, 201u);
+  slow.send(log_.substr(100));
+  EXPECT_EQ(slow.receive().status, 412u);
+  EXPECT_EQ(get("/v1/logs/" + digestOf(other) + "/log").body, other) << "who came first stays";
+}
+
 TEST_F(UploadTest, anUploadThatBrokeOffGoesOnWhereItStopped) {
   const std::string target = "/v1/meshes/new?digest=" + digestOf(log_);
   const std::string ask = "GET /v1/meshes/new/upload?digest=" + digestOf(log_) + " HTTP/1.1\r\nHost: a\r\nAuthorization: Bearer " + kToken + "\r\n\r\n";
