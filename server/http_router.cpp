@@ -45,8 +45,6 @@ Reply methodRefused(std::string_view method, std::string_view allow = kAllow) {
   const std::string detail = "what is to be had here takes " + std::string(allow);
   Reply out = knownMethod(method) ? problem(405, "method-not-allowed", detail) : problem(501, "not-implemented", detail);
   out.headers.emplace_back("Allow", allow);
-  // A body that nobody reads would be taken for the next request.
-  out.close = method == "PUT";
   return out;
 }
 

@@ -50,6 +50,11 @@ Reply busy(unsigned status, std::string_view type, std::string_view detail, unsi
   return out;
 }
 
+/// Whether bytes follow the head. Unless they are read, what comes after them cannot be told from them, and the connection must end.
+bool hasBody(const RequestView& request) {
+  return request.contentLength && request.contentLength->find_first_not_of('0') != std::string_view::npos;
+}
+
 /// The answer to a head that Beast's parser does not take.
 Reply answerToParseError(const error_code& ec) {
   if (ec == http::error::header_limit || ec == http::error::buffer_overflow) return tooLong();
@@ -186,7 +191,7 @@ asio::awaitable<void> HttpSession::run() {
     }
     const bool keepAlive = parser.get().keep_alive();
     if (visitor_ && !visitor_->countRequest()) {
-      const bool again = co_await send(busy(429, "too-many-requests", "this address asks too often; come back in a moment", 1), keepAlive);
+      const bool again = co_await send(busy(429, "too-many-requests", "this address asks too often; come back in a moment", 1), keepAlive && !hasBody(view));
       if (!again) co_return;
       continue;
     }
@@ -220,7 +225,7 @@ asio::awaitable<bool> HttpSession::answer(const RequestHeader& request, bool kee
   } else if (const auto* upload = std::get_if<UploadRequest>(&reply.body)) {
     again = co_await answerUpload(view, *upload, keepAlive);
   } else {
-    again = co_await send(std::move(reply), keepAlive);
+    again = co_await send(std::move(reply), keepAlive && !hasBody(view));
   }
   co_return again;
 }

@@ -5,6 +5,8 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <tuple>
+#include <vector>
 
 #include "proto/checksum.h"
 #include "server/limits.h"
@@ -101,6 +103,25 @@ TEST_F(UploadTest, onlyTheRightTokenOpens) {
   EXPECT_EQ(with("PUT", "/v1/meshes/new%2f..%2fx", good).status, 404u) << "no file name";
   EXPECT_EQ(with("PUT", "/v1/meshes", good).status, 405u);
   EXPECT_EQ(get("/v1/meshes/noise").status, 200u);
+}
+
+TEST_F(UploadTest, theBodyOfARefusedRequestIsNeverTakenForTheNextOne) {
+  const std::string hidden = "GET /v1/meshes HTTP/1.1\r\nHost: a\r\n\r\n";
+  const std::string token = "Authorization: Bearer " + std::string(kToken) + "\r\n";
+  for (const auto& [target, more, status] : std::vector<std::tuple<std::string, std::string, unsigned>>{{"/v1/meshes/new", "", 401},
+                                                                                                       {"/v1/meshes/a%20b", token, 403},
+                                                                                                       {"/v1/meshes/new%2fx", token, 404},
+                                                                                                       {"/v1/meshes", token, 405},
+                                                                                                       {"/v1/meshes/noise", token + "If-None-Match: *\r\n", 412},
+                                                                                                       {"/v1/meshes/new", token + "Content-Encoding: br\r\n", 415},
+                                                                                                       {"/v1/meshes/new?digest=1", token, 400}}) {
+    RawClient client(server_.port());
+    client.send("PUT " + target + " HTTP/1.1\r\nHost: a\r\nContent-Length: " + std::to_string(hidden.size()) + "\r\n" + more + "\r\n" + hidden);
+    const HttpResponse refused = client.receive();
+    EXPECT_EQ(refused.status, status) << target;
+    EXPECT_EQ(refused.header("connection"), "close") << target;
+    EXPECT_TRUE(client.closedByServer()) << target;
+  }
 }
 
 TEST_F(UploadTest, aMeshIsRemovedAndItsDigestWithIt) {
