@@ -144,7 +144,8 @@ Status applyFieldBlock(const LogFile& log, Refiner& refiner, std::uint32_t chunk
   return refiner.applyField(field, chunk, *values);
 }
 
-Result<LatticeMesh> meshAtLevel(const LogFile& log, std::uint32_t level, const std::optional<std::vector<std::uint32_t>>& fields) {
+Result<LatticeMesh> meshAtLevel(const LogFile& log, std::uint32_t level, const std::optional<std::vector<std::uint32_t>>& fields,
+                                const std::stop_token& stop) {
   const Result<Manifest> manifest = manifestOf(log.index());
   if (!manifest) return std::unexpected(manifest.error());
   const std::uint32_t last = log.index().chunks.back().lastLevel;
@@ -158,8 +159,10 @@ Result<LatticeMesh> meshAtLevel(const LogFile& log, std::uint32_t level, const s
 
   Refiner refiner(log.index());
   refiner.stopAtLevel(level);
-  for (std::uint32_t chunk = 0; chunk < log.index().chunks.size() && (chunk == 0 || refiner.level() < level); ++chunk)
+  for (std::uint32_t chunk = 0; chunk < log.index().chunks.size() && (chunk == 0 || refiner.level() < level); ++chunk) {
+    if (stop.stop_requested()) return fail(ErrorCode::kIo, "stopped, because nobody waits for the level any more");
     if (Status s = applyChunk(log, refiner, chunk, wanted); !s) return std::unexpected(s.error());
+  }
   LatticeMesh mesh;
   mesh.lattice = {manifest->latticeBits, manifest->latticeStep, manifest->latticeOrigin};
   mesh.points.assign(refiner.points().begin(), refiner.points().end());

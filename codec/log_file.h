@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <stop_token>
 
 #include "codec/log_index.h"
 #include "codec/mesh.h"
@@ -47,8 +48,10 @@ Status applyChunk(const LogFile& log, Refiner& refiner, std::uint32_t chunk, std
 /// Decodes one field's block of a chunk that the refiner has. Errors: not-found (no such field), Refiner::applyField's, bad-checksum, bad-codec.
 Status applyFieldBlock(const LogFile& log, Refiner& refiner, std::uint32_t chunk, std::uint32_t field);
 
-/// The mesh after level `level` (0 = base mesh) with the given fields; nullopt fields = all. Errors: not-found (no such level), decoding errors.
+/// The mesh after level `level` (0 = base mesh) with the given fields; nullopt fields = all. Errors: not-found (no such level), decoding errors,
+/// io (`stop` was requested; looked at after every chunk).
 [[nodiscard]] Result<LatticeMesh> meshAtLevel(const LogFile& log, std::uint32_t level,
-                                              const std::optional<std::vector<std::uint32_t>>& fields = std::nullopt);
+                                              const std::optional<std::vector<std::uint32_t>>& fields = std::nullopt,
+                                              const std::stop_token& stop = {});
 
 }  // namespace qtet

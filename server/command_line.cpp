@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <boost/program_options.hpp>
+#include <charconv>
+#include <fstream>
 #include <sstream>
 #include <thread>
 
@@ -11,48 +13,160 @@ namespace {
 namespace po = boost::program_options;
 
 constexpr std::size_t kMaxThreads = 256;
-
-po::options_description visibleOptions() {
-  po::options_description out("Options");
-  out.add_options()("host", po::value<std::string>()->default_value("127.0.0.1"), "address to listen on; 0.0.0.0 = every network")(
-      "port", po::value<int>()->default_value(8080), "TCP port; 0 = any free one")(
-      "viewer", po::value<std::string>(), "folder of the built viewer (default: ../share/qtet/viewer beside this program)")(
-      "threads", po::value<int>(), "threads for connections (default: one a core)")("help", "this text")("version", "the version");
-  return out;
-}
+constexpr std::string_view kPrefix = "QTET_SERVER_";
 
 std::size_t defaultThreads() { return std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, kMaxThreads); }
 
+/// What may stand in all three places.
+po::options_description settings() {
+  po::options_description out("Settings, also in the environment (--max-connections as QTET_SERVER_MAX_CONNECTIONS) and in the file of --config");
+  const auto text = [] { return po::value<std::string>(); };
+  out.add_options()("folder", text(), "folder that holds the .qtet files (may stand without its name)")(
+      "host", text(), "address to listen on; 0.0.0.0 = every network (default: 127.0.0.1)")("port", text(), "TCP port; 0 = any free one (default: 8080)")(
+      "admin", text(), "HOST:PORT where alone /livez, /readyz, /metrics and /version are answered (default: beside everything else)")(
+      "viewer", text(), "folder of the built viewer (default: ../share/qtet/viewer beside this program)")(
+      "threads", text(), "threads for connections (default: one a core)")(
+      "watch", text(), "on, off: whether logs that come, change and go are noticed (default: on)")(
+      "cache", text(), "folder for finished levels (default: $CACHE_DIRECTORY, else a temporary one)")(
+      "cache-bytes", text(), "how much it may hold (default: 2 GiB)")("access-log", text(), "file for a line of JSON a request; - = standard output")(
+      "tokens", text(), "file of bearer tokens that may PUT and DELETE meshes (default: nobody may)")(
+      "max-upload-bytes", text(), "the largest log that is taken (default: 16 GiB)")("max-connections", text(), "at a time, in all (default: 4000)")(
+      "max-connections-per-address", text(), "at a time; 0 = no bound, as behind a proxy (default: 256)")(
+      "max-requests-per-second", text(), "of one address; 0 = no bound, as behind a proxy (default: 2000)");
+  return out;
+}
+
+po::options_description commands() {
+  po::options_description out("Commands");
+  out.add_options()("config", po::value<std::string>(), "file of settings, lines NAME = VALUE")("check-config", "print every setting as it holds, and end")(
+      "help", "this text")("version", "the version");
+  return out;
+}
+
+/// The settings of the map as numbers and words; the first that is wrong is the error.
+class Reader {
+ public:
+  explicit Reader(const po::variables_map& values) : values_(values) {}
+
+  [[nodiscard]] std::optional<std::string> text(const char* name) const {
+    if (!values_.contains(name)) return std::nullopt;
+    return values_[name].as<std::string>();
+  }
+  template <class T>
+  void number(const char* name, T& out, std::uint64_t least, std::uint64_t most) {
+    const std::optional<std::string> given = text(name);
+    if (!given) return;
+    std::uint64_t value = 0;
+    const auto [end, ec] = std::from_chars(given->data(), given->data() + given->size(), value);
+    if (ec != std::errc() || end != given->data() + given->size() || value < least || value > most)
+      return refuse("--" + std::string(name) + " " + *given + " is not between " + std::to_string(least) + " and " + std::to_string(most));
+    out = static_cast<T>(value);
+  }
+  void path(const char* name, std::optional<std::filesystem::path>& out) const {
+    if (const auto given = text(name)) out = *given;
+  }
+  void flag(const char* name, bool& out) {
+    const std::optional<std::string> given = text(name);
+    if (!given) return;
+    if (*given != "on" && *given != "off") return refuse("--" + std::string(name) + " is on or off, not " + *given);
+    out = *given == "on";
+  }
+  void refuse(std::string message) {
+    if (!error_) error_ = Error{ErrorCode::kBadValue, std::move(message), Error::kNoOffset};
+  }
+  [[nodiscard]] const std::optional<Error>& error() const { return error_; }
+
+ private:
+  const po::variables_map& values_;
+  std::optional<Error> error_;
+};
+
+void readAdmin(Reader& reader, CommandLine& out) {
+  const std::optional<std::string> given = reader.text("admin");
+  if (!given) return;
+  const std::size_t colon = given->rfind(':');
+  const std::string port = colon == std::string::npos ? "" : given->substr(colon + 1);
+  unsigned value = 0;
+  const auto [end, ec] = std::from_chars(port.data(), port.data() + port.size(), value);
+  if (port.empty() || ec != std::errc() || end != port.data() + port.size() || value > 65535 || colon == 0)
+    return reader.refuse("--admin " + *given + " is not HOST:PORT, like 127.0.0.1:9090");
+  out.adminHost = given->substr(0, colon);
+  if (out.adminHost->starts_with('[') && out.adminHost->ends_with(']')) out.adminHost = out.adminHost->substr(1, out.adminHost->size() - 2);
+  out.adminPort = static_cast<std::uint16_t>(value);
+}
+
 Result<CommandLine> toCommandLine(const po::variables_map& values) {
   CommandLine out;
+  if (values.contains("check-config")) out.wish = CommandLine::Wish::kCheckConfig;
   if (values.contains("help")) out.wish = CommandLine::Wish::kHelp;
   if (values.contains("version")) out.wish = CommandLine::Wish::kVersion;
-  if (out.wish != CommandLine::Wish::kServe) return out;
+  if (out.wish == CommandLine::Wish::kHelp || out.wish == CommandLine::Wish::kVersion) return out;
+  Reader reader(values);
   if (!values.contains("folder")) return fail(ErrorCode::kBadValue, "name the folder that holds the .qtet files");
-  const int port = values["port"].as<int>();
-  if (port < 0 || port > 65535) return fail(ErrorCode::kBadValue, "--port " + std::to_string(port) + " is not between 0 and 65535");
-  const int threads = values.contains("threads") ? values["threads"].as<int>() : static_cast<int>(defaultThreads());
-  if (threads < 1 || threads > static_cast<int>(kMaxThreads))
-    return fail(ErrorCode::kBadValue, "--threads " + std::to_string(threads) + " is not between 1 and " + std::to_string(kMaxThreads));
-  out.folder = values["folder"].as<std::string>();
-  out.host = values["host"].as<std::string>();
-  out.port = static_cast<std::uint16_t>(port);
-  out.threads = static_cast<std::size_t>(threads);
-  if (values.contains("viewer")) out.viewer = values["viewer"].as<std::string>();
+  out.folder = *reader.text("folder");
+  out.host = reader.text("host").value_or(out.host);
+  out.threads = defaultThreads();
+  constexpr std::uint64_t kAny = std::uint64_t{1} << 62;
+  reader.number("port", out.port, 0, 65535);
+  reader.number("threads", out.threads, 1, kMaxThreads);
+  reader.number("cache-bytes", out.cacheBytes, 0, kAny);
+  reader.number("max-upload-bytes", out.maxUploadBytes, 1, kAny);
+  reader.number("max-connections", out.maxConnections, 1, 1'000'000);
+  reader.number("max-connections-per-address", out.maxConnectionsPerAddress, 0, 1'000'000);
+  reader.number("max-requests-per-second", out.maxRequestsPerSecond, 0, 1'000'000'000);
+  reader.flag("watch", out.watch);
+  reader.path("viewer", out.viewer);
+  reader.path("cache", out.cache);
+  reader.path("tokens", out.tokens);
+  out.accessLog = reader.text("access-log");
+  readAdmin(reader, out);
+  if (reader.error()) return std::unexpected(*reader.error());
+  return out;
+}
+
+/// The option that an environment variable means; "" where it is none of ours.
+std::string optionOfVariable(const std::string& variable) {
+  if (!variable.starts_with(kPrefix)) return "";
+  std::string out = variable.substr(kPrefix.size());
+  std::ranges::transform(out, out.begin(), [](unsigned char c) { return c == '_' ? '-' : static_cast<char>(std::tolower(c)); });
+  return out;
+}
+
+/// As boost::program_options would read them, but of a list that is given; an unknown name is an error, for it is a misspelt one.
+po::parsed_options parseEnvironment(const char* const* environment, const po::options_description& known) {
+  po::parsed_options out(&known);
+  for (; environment != nullptr && *environment != nullptr; ++environment) {
+    const std::string entry = *environment;
+    const std::size_t equals = std::min(entry.find('='), entry.size());
+    const std::string name = optionOfVariable(entry.substr(0, equals));
+    if (name.empty()) continue;
+    if (known.find_nothrow(name, false) == nullptr) throw po::error("the environment's " + entry.substr(0, equals) + " is no option");
+    out.options.emplace_back(name, std::vector<std::string>{entry.substr(std::min(equals + 1, entry.size()))});
+  }
   return out;
 }
 
 }  // namespace
 
-Result<CommandLine> parseCommandLine(int argc, const char* const* argv) {
-  po::options_description all = visibleOptions();
-  all.add_options()("folder", po::value<std::string>());
+Result<CommandLine> parseCommandLine(int argc, const char* const* argv, const char* const* environment) {
+  const po::options_description inFile = settings();
+  po::options_description all;
+  all.add(inFile).add(commands());
+  po::options_description inEnvironment;
+  inEnvironment.add(inFile).add_options()("config", po::value<std::string>());
   po::positional_options_description positional;
   positional.add("folder", 1);
   constexpr int kStyle = po::command_line_style::unix_style & ~po::command_line_style::allow_guessing;
   try {
-    po::variables_map values;
+    po::variables_map values;  // what is stored first stays
     po::store(po::command_line_parser(argc, argv).options(all).positional(positional).style(kStyle).run(), values);
+    po::store(parseEnvironment(environment, inEnvironment), values);
+    if (values.contains("config")) {
+      const auto path = values["config"].as<std::string>();
+      std::ifstream file(path);
+      if (!file) return fail(ErrorCode::kIo, "the file " + path + " of --config cannot be read");
+      po::store(po::parse_config_file(file, inFile), values);
+    }
     po::notify(values);
     return toCommandLine(values);
   } catch (const po::error& e) {
@@ -64,7 +178,29 @@ std::string usageText() {
   std::ostringstream out;
   out << "Usage: qtet-server DIR [options]\n\nServes the .qtet files of DIR: levels of detail over HTTP, refinement over a WebSocket, and "
          "the viewer's page.\n\n"
-      << visibleOptions() << "\nExit codes: 0 ended by SIGINT or SIGTERM, 1 cannot serve, 2 wrong usage.\n";
+      << settings() << "\n" << commands() << "\nExit codes: 0 ended by SIGINT or SIGTERM, 1 cannot serve, 2 wrong usage.\n";
+  return out.str();
+}
+
+std::string configText(const CommandLine& options) {
+  std::ostringstream out;
+  const auto path = [&](const char* name, const auto& value) {
+    if (value) out << name << " = " << std::filesystem::path(*value).string() << "\n";
+  };
+  out << "folder = " << options.folder.string() << "\nhost = " << options.host << "\nport = " << options.port << "\n";
+  if (options.adminHost) {
+    const bool v6 = options.adminHost->find(':') != std::string::npos;
+    out << "admin = " << (v6 ? "[" : "") << *options.adminHost << (v6 ? "]:" : ":") << options.adminPort << "\n";
+  }
+  path("viewer", options.viewer);
+  out << "threads = " << options.threads << "\nwatch = " << (options.watch ? "on" : "off") << "\n";
+  path("cache", options.cache);
+  out << "cache-bytes = " << options.cacheBytes << "\n";
+  path("access-log", options.accessLog);
+  path("tokens", options.tokens);
+  out << "max-upload-bytes = " << options.maxUploadBytes << "\nmax-connections = " << options.maxConnections
+      << "\nmax-connections-per-address = " << options.maxConnectionsPerAddress
+      << "\nmax-requests-per-second = " << options.maxRequestsPerSecond << "\n";
   return out.str();
 }
 

@@ -1,27 +1,44 @@
-// The command line of qtet-server.
+// The options of qtet-server, from the command line, the environment and a file, in this order of precedence.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 
 #include "proto/error.h"
+#include "server/limits.h"
 
 namespace qtet {
 
 struct CommandLine {
-  enum class Wish { kServe, kHelp, kVersion };
+  enum class Wish { kServe, kCheckConfig, kHelp, kVersion };
   Wish wish = Wish::kServe;
   std::filesystem::path folder;
   std::string host = "127.0.0.1";
   std::uint16_t port = 8080;
   std::optional<std::filesystem::path> viewer;
   std::size_t threads = 1;
+  bool watch = true;
+  std::optional<std::string> adminHost;
+  std::uint16_t adminPort = 0;
+  std::optional<std::filesystem::path> cache;
+  std::uintmax_t cacheBytes = limits::kMaxCacheBytes;
+  std::optional<std::string> accessLog;
+  std::optional<std::filesystem::path> tokens;
+  std::uintmax_t maxUploadBytes = limits::kMaxUploadBytes;
+  std::size_t maxConnections = limits::kMaxConnections;
+  std::size_t maxConnectionsPerAddress = limits::kMaxConnectionsPerAddress;  ///< 0: no bound
+  unsigned maxRequestsPerSecond = limits::kMaxRequestsPerSecond;             ///< 0: no bound
 };
 
-/// Errors: bad-value with a sentence for the user.
-[[nodiscard]] Result<CommandLine> parseCommandLine(int argc, const char* const* argv);
+/// `environment` is what `environ` points to: NAME=VALUE texts and a nullptr. An option `max-connections` is QTET_SERVER_MAX_CONNECTIONS
+/// there; the file, lines `max-connections = 100`, is the one that --config or QTET_SERVER_CONFIG names.
+/// Errors: bad-value, io (the file) with a sentence for the user.
+[[nodiscard]] Result<CommandLine> parseCommandLine(int argc, const char* const* argv, const char* const* environment = nullptr);
 [[nodiscard]] std::string usageText();
+/// Every option as it holds, in the form of the file.
+[[nodiscard]] std::string configText(const CommandLine& options);
 
 }  // namespace qtet

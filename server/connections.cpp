@@ -26,6 +26,11 @@ std::shared_ptr<Connection> Connections::enter(boost::asio::any_io_executor exec
   return out;
 }
 
+std::size_t Connections::open() const {
+  const std::scoped_lock lock(mutex_);
+  return open_.size();
+}
+
 void Connections::leave(Connection* connection) {
   std::function<void()> whenEmpty;
   {

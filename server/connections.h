@@ -36,6 +36,7 @@ class Connections {
 
   /// nullptr: there are as many as there may be, or the server ends.
   [[nodiscard]] std::shared_ptr<Connection> enter(boost::asio::any_io_executor executor);
+  [[nodiscard]] std::size_t open() const;
   /// Tells every connection to end, lets no other in, and calls `whenEmpty` once when the last has gone (perhaps at once).
   void endAll(std::function<void()> whenEmpty);
 
@@ -43,7 +44,7 @@ class Connections {
   void leave(Connection* connection);
 
   const std::size_t most_;
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::unordered_map<Connection*, std::weak_ptr<Connection>> open_;
   bool ending_ = false;
   std::function<void()> whenEmpty_;

@@ -3,43 +3,67 @@
 #include "codec/log_levels.h"
 #include "proto/json_reader.h"
 #include "server/request_target.h"
+#include "server/served_mesh.h"
 
 namespace qtet {
 namespace {
 
 Json links(const ServedMesh& mesh) {
-  const std::string self = "/v1/meshes/" + percentEncode(mesh.id);
-  return {{"self", self}, {"log", self + "/log?digest=" + mesh.log.digest()}, {"stream", "/v1/stream"}};
+  const std::string log = "/v1/logs/" + mesh.log.digest();
+  return {{"self", "/v1/meshes/" + percentEncode(mesh.id)},
+          {"stream", "/v1/stream"},
+          {"log", log + "/log"},
+          {"manifest", log + "/manifest"},
+          {"base", log + "/base"},
+          {"chunk", log + "/chunks/{n}"},
+          {"fieldChunk", log + "/fields/{field}/chunks/{n}"},
+          {"vtu", log + "/levels/{k}.vtu"},
+          {"glb", log + "/levels/{k}.glb"},
+          {"drc", log + "/levels/{k}.drc"},
+          {"preview", log + "/preview.png"}};
 }
 
 Json identity(const ServedMesh& mesh) { return {{"id", mesh.id}, {"digest", mesh.log.digest()}, {"bytes", mesh.log.bytes().size()}}; }
 
+/// Every field with what it costs.
+Json fields(const ServedMesh& mesh) {
+  Json out = Json::array();
+  for (std::size_t f = 0; f < mesh.manifest.fields.size(); ++f) {
+    const ManifestField& field = mesh.manifest.fields[f];
+    std::uint64_t bytes = 0;
+    for (const ChunkEntry& chunk : mesh.log.index().chunks) bytes += chunk.blocks[kFirstFieldPart + f].size;
+    out.push_back({{"key", fieldKey(mesh.manifest, f)},
+                   {"name", field.name},
+                   {"components", field.components},
+                   {"type", field.type},
+                   {"association", field.association},
+                   {"range", field.range},
+                   {"bytes", bytes}});
+  }
+  return out;
+}
+
 }  // namespace
 
-std::string describeMeshes(const MeshStore& store) {
-  Json meshes = Json::array();
-  for (const auto& [id, mesh] : store.meshes()) {
-    Json entry = identity(mesh);
-    const ManifestLevel& finest = mesh.manifest.levels.back();
-    entry["tetrahedra"] = finest.tetrahedra;
-    entry["vertices"] = finest.vertices;
-    entry["fields"] = Json::array();
-    for (std::size_t f = 0; f < mesh.manifest.fields.size(); ++f) entry["fields"].push_back(fieldKey(mesh.manifest, f));
-    entry["links"] = links(mesh);
-    meshes.push_back(std::move(entry));
-  }
-  return dumpJson({{"meshes", std::move(meshes)}});
+std::string describeEntry(const ServedMesh& mesh) {
+  Json out = identity(mesh);
+  const ManifestLevel& finest = mesh.manifest.levels.back();
+  out["tetrahedra"] = finest.tetrahedra;
+  out["vertices"] = finest.vertices;
+  out["fields"] = Json::array();
+  for (std::size_t f = 0; f < mesh.manifest.fields.size(); ++f) out["fields"].push_back(fieldKey(mesh.manifest, f));
+  out["links"] = links(mesh);
+  return dumpJson(out);
 }
 
 std::string describeMesh(const ServedMesh& mesh) {
   Json out = identity(mesh);
   out["headBytes"] = mesh.log.index().headBytes();
+  out["chunks"] = mesh.log.index().chunks.size();
+  out["fields"] = fields(mesh);
   out["manifest"] = Json::parse(manifestToJson(mesh.manifest));
   out["levels"] = levelsJson(mesh.manifest, mesh.log.index());
   out["links"] = links(mesh);
-  const std::string self = out["links"]["self"];
-  out["links"]["vtu"] = self + "/levels/{k}.vtu";
-  out["links"]["drc"] = self + "/levels/{k}.drc";
   return dumpJson(out);
 }
 

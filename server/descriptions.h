@@ -3,11 +3,12 @@
 
 #include <string>
 
-#include "server/mesh_store.h"
-
 namespace qtet {
 
-[[nodiscard]] std::string describeMeshes(const MeshStore& store);
+struct ServedMesh;
+
+/// The mesh's object in the list. Uses id, log and manifest.
+[[nodiscard]] std::string describeEntry(const ServedMesh& mesh);
 [[nodiscard]] std::string describeMesh(const ServedMesh& mesh);
 
 }  // namespace qtet

@@ -6,6 +6,14 @@
 #include "server/http_conditions.h"
 
 namespace qtet {
+namespace {
+
+/// What a page of another origin may read besides the few headers that it always may.
+constexpr const char* kExposedHeaders =
+    "Accept-Ranges, Allow, Content-Disposition, Content-Encoding, Content-Location, Content-Range, ETag, Link, Location, "
+    "Retry-After, X-Request-Id";
+
+}  // namespace
 
 std::optional<std::uint64_t> Reply::bodyBytes() const {
   if (const auto* text = std::get_if<std::string>(&body)) return text->size();
@@ -13,25 +21,43 @@ std::optional<std::uint64_t> Reply::bodyBytes() const {
   return std::nullopt;
 }
 
+std::string Reply::header(std::string_view name) const {
+  for (const auto& [key, value] : headers)
+    if (key == name) return value;
+  return "";
+}
+
 std::string_view reasonPhrase(unsigned status) {
   switch (status) {
     case 200: return "OK";
+    case 201: return "Created";
+    case 202: return "Accepted";
     case 204: return "No Content";
     case 206: return "Partial Content";
     case 304: return "Not Modified";
+    case 307: return "Temporary Redirect";
     case 400: return "Bad Request";
+    case 401: return "Unauthorized";
+    case 403: return "Forbidden";
     case 404: return "Not Found";
     case 405: return "Method Not Allowed";
     case 408: return "Request Timeout";
+    case 409: return "Conflict";
+    case 411: return "Length Required";
     case 412: return "Precondition Failed";
     case 413: return "Content Too Large";
+    case 415: return "Unsupported Media Type";
     case 416: return "Range Not Satisfiable";
+    case 417: return "Expectation Failed";
+    case 422: return "Unprocessable Content";
     case 426: return "Upgrade Required";
+    case 429: return "Too Many Requests";
     case 431: return "Request Header Fields Too Large";
     case 500: return "Internal Server Error";
     case 501: return "Not Implemented";
     case 503: return "Service Unavailable";
     case 505: return "HTTP Version Not Supported";
+    case 507: return "Insufficient Storage";
     default: return "Unknown";
   }
 }
@@ -63,7 +89,8 @@ void addCommonHeaders(Reply& reply) {
   reply.headers.insert(reply.headers.end(), {{"Server", "qtet-server/" QTET_VERSION},
                                              {"X-Content-Type-Options", "nosniff"},
                                              {"Access-Control-Allow-Origin", "*"},
-                                             {"Access-Control-Expose-Headers", "Content-Range, ETag, Accept-Ranges, Retry-After"},
+                                             {"Access-Control-Expose-Headers", kExposedHeaders},
+                                             {"Timing-Allow-Origin", "*"},
                                              {"Cross-Origin-Resource-Policy", "cross-origin"}});
 }
 

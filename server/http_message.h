@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "proto/bytes.h"
+#include "server/level_request.h"
+#include "server/upload_request.h"
 
 namespace qtet {
-
-struct ServedMesh;
 
 /// What the router looks at. The views belong to the request that was parsed.
 struct RequestView {
@@ -27,27 +27,32 @@ struct RequestView {
   std::optional<std::string_view> ifModifiedSince = std::nullopt;
   std::optional<std::string_view> ifUnmodifiedSince = std::nullopt;
   std::optional<std::string_view> acceptEncoding = std::nullopt;
+  std::optional<std::string_view> authorization = std::nullopt;
+  std::optional<std::string_view> expect = std::nullopt;
+  std::optional<std::string_view> contentLength = std::nullopt;
+  std::optional<std::string_view> contentRange = std::nullopt;
+  std::optional<std::string_view> contentEncoding = std::nullopt;
+  std::optional<std::string_view> requestId = std::nullopt;
+  std::optional<std::string_view> traceparent = std::nullopt;
 };
 
-/// A level that somebody has to make before it can be sent.
-struct LevelRequest {
-  enum class Form { kVtu, kDrc };
-  const ServedMesh* mesh = nullptr;
-  std::uint32_t level = 0;
-  Form form = Form::kVtu;
-};
-
-/// `body` is either text of the reply's own, or bytes that live as long as the store and the router, or a level to be made.
+/// `body` is either text of the reply's own, or bytes that live as long as `owner`, or a level to be made, or an upload to be taken.
 struct Reply {
   unsigned status = 200;
   std::vector<std::pair<std::string, std::string>> headers;  ///< without Content-Length, Date and Connection
-  std::variant<std::string, ByteView, LevelRequest> body;
+  std::variant<std::string, ByteView, LevelRequest, UploadRequest> body;
+  std::shared_ptr<const void> owner{};  ///< of the bytes, where they are not the router's or the viewer's
   bool sendBody = true;  ///< false for HEAD: the headers speak of the body that is left out
   bool close = false;    ///< the connection cannot be used any further
 
+  /// The first header of that name, as it is written here; "" where there is none.
+  [[nodiscard]] std::string header(std::string_view name) const;
   /// Bytes of the body; nullopt for a level that is not made yet.
   [[nodiscard]] std::optional<std::uint64_t> bodyBytes() const;
 };
+
+/// In figures and logs: the client left before its answer was made. nginx's number; never sent.
+inline constexpr unsigned kClientGone = 499;
 
 /// "Not Found" for 404.
 [[nodiscard]] std::string_view reasonPhrase(unsigned status);

@@ -3,6 +3,7 @@
 #include "server/http_request.h"
 
 #include <algorithm>
+#include <boost/beast/core/string.hpp>
 #include <boost/beast/http/rfc7230.hpp>
 
 #include "proto/messages.h"
@@ -15,7 +16,8 @@ namespace http = boost::beast::http;
 
 std::string_view toView(boost::beast::string_view text) { return {text.data(), text.size()}; }
 
-std::optional<std::string_view> headerValue(const RequestHeader& header, http::field name) {
+template <class Name>
+std::optional<std::string_view> headerValue(const RequestHeader& header, const Name& name) {
   const auto it = header.find(name);
   if (it == header.end()) return std::nullopt;
   return toView(it->value());
@@ -38,14 +40,14 @@ std::optional<Reply> bodyRefusal(const RequestHeader& header) {
   if (header.count(http::field::transfer_encoding) > 0) {
     if (lengths > 0 || header.version() == 10)
       return closing(400, "bad-request", "Transfer-Encoding stands beside Content-Length or in HTTP/1.0");
-    return closing(501, "not-implemented", "this server takes no request bodies");
+    return closing(501, "not-implemented", "this server takes request bodies with a Content-Length only");
   }
   if (lengths == 0) return std::nullopt;
   const std::string_view length = *headerValue(header, http::field::content_length);
   if (lengths > 1 || length.empty() || length.find_first_not_of("0123456789") != std::string_view::npos)
     return closing(400, "bad-request", "Content-Length must be one number");
-  if (length.find_first_not_of('0') != std::string_view::npos)
-    return closing(413, "content-too-large", "this server takes no request bodies");
+  if (length.find_first_not_of('0') != std::string_view::npos && header.method() != http::verb::put)
+    return closing(413, "content-too-large", "only PUT has a body here");
   return std::nullopt;
 }
 
@@ -60,7 +62,14 @@ RequestView viewOf(const RequestHeader& header) {
           .ifNoneMatch = headerValue(header, http::field::if_none_match),
           .ifModifiedSince = headerValue(header, http::field::if_modified_since),
           .ifUnmodifiedSince = headerValue(header, http::field::if_unmodified_since),
-          .acceptEncoding = headerValue(header, http::field::accept_encoding)};
+          .acceptEncoding = headerValue(header, http::field::accept_encoding),
+          .authorization = headerValue(header, http::field::authorization),
+          .expect = headerValue(header, http::field::expect),
+          .contentLength = headerValue(header, http::field::content_length),
+          .contentRange = headerValue(header, http::field::content_range),
+          .contentEncoding = headerValue(header, http::field::content_encoding),
+          .requestId = headerValue(header, "X-Request-Id"),
+          .traceparent = headerValue(header, "traceparent")};
 }
 
 std::optional<Reply> refusalOf(const RequestHeader& header) {
@@ -70,6 +79,9 @@ std::optional<Reply> refusalOf(const RequestHeader& header) {
   if (hosts > 1 || (hosts == 0 && header.version() == 11)) return closing(400, "bad-request", "there must be one Host header");
   if (hosts == 1 && !plausibleHost(*headerValue(header, http::field::host)))
     return closing(400, "bad-request", "the Host header is no host");
+  const auto expect = headerValue(header, http::field::expect);
+  if (expect && !boost::beast::iequals({expect->data(), expect->size()}, "100-continue"))
+    return closing(417, "expectation-failed", "the only expectation that is understood is 100-continue");
   return bodyRefusal(header);
 }
 

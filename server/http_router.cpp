@@ -2,91 +2,32 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <chrono>
 
-#include "proto/checksum.h"
-#include "server/content_coding.h"
-#include "server/descriptions.h"
-#include "server/http_conditions.h"
+#include "server/http_resource.h"
+#include "server/log_routes.h"
+#include "server/mesh_list.h"
+#include "server/openapi.h"
 
 namespace qtet {
 namespace {
 
 constexpr std::string_view kAllow = "GET, HEAD, OPTIONS";
-constexpr std::string_view kRevalidate = "no-cache";
-constexpr std::string_view kForEver = "public, max-age=31536000, immutable";
+constexpr std::string_view kAllowWriting = "GET, HEAD, OPTIONS, PUT, DELETE";
 /// The page may compile WebAssembly, start workers from blobs and read logs from other hosts; nothing else comes from elsewhere.
 constexpr std::string_view kPagePolicy =
     "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self' blob:; style-src 'self' 'unsafe-inline'; "
     "img-src 'self' data: blob:; connect-src 'self' http: https: ws: wss: blob: data:; object-src 'none'; base-uri 'none'; form-action "
     "'none'";
 
-/// Something that can be sent: bytes, what they are, and how long they may be kept.
-struct Resource {
-  Validators validators;
-  std::string type;
-  std::string_view cacheControl = kRevalidate;
-  std::vector<std::pair<std::string, std::string>> headers;
-};
-
-Reply begin(unsigned status, const Resource& resource) {
-  Reply out;
-  out.status = status;
-  out.headers = {{"ETag", resource.validators.etag},
-                 {"Last-Modified", httpDate(resource.validators.modified)},
-                 {"Cache-Control", std::string(resource.cacheControl)}};
-  if (status != 304) out.headers.emplace_back("Content-Type", resource.type);
-  out.headers.insert(out.headers.end(), resource.headers.begin(), resource.headers.end());
-  addCommonHeaders(out);
-  return out;
-}
-
-/// 304 and 412; nullopt when the body is to be sent.
-std::optional<Reply> conditional(const RequestView& request, const Resource& resource) {
-  switch (evaluateConditions(request, resource.validators)) {
-    case Verdict::kSend: return std::nullopt;
-    case Verdict::kNotModified: return begin(304, resource);
-    case Verdict::kPreconditionFailed: break;
-  }
-  return problem(412, "precondition-failed", "the resource is another one by now: its ETag is " + resource.validators.etag);
-}
-
-Reply sendBytes(const RequestView& request, const Resource& resource, ByteView bytes) {
-  if (std::optional<Reply> early = conditional(request, resource)) return std::move(*early);
-  const ByteRange range = selectRange(request, resource.validators, bytes.size());
-  const std::string size = std::to_string(bytes.size());
-  if (range.kind == ByteRange::Kind::kUnsatisfiable) {
-    Reply out = problem(416, "range-not-satisfiable", "the range starts behind the end; there are " + size + " bytes");
-    out.headers.emplace_back("Content-Range", "bytes */" + size);
-    return out;
-  }
-  const bool part = range.kind == ByteRange::Kind::kPart;
-  Reply out = begin(part ? 206 : 200, resource);
-  out.headers.emplace_back("Accept-Ranges", "bytes");
-  if (part)
-    out.headers.emplace_back("Content-Range",
-                             "bytes " + std::to_string(range.first) + "-" + std::to_string(range.first + range.size - 1) + "/" + size);
-  out.body = part ? bytes.subspan(range.first, range.size) : bytes;
-  return out;
-}
-
-ByteView viewOf(const std::string& text) { return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}; }
-
-/// "12" of "12.vtu"; no sign, no leading zero.
-std::optional<std::uint32_t> parseLevel(std::string_view text) {
-  std::uint32_t out = 0;
-  const auto [end, ec] = std::from_chars(text.data(), text.data() + text.size(), out);
-  if (ec != std::errc() || end != text.data() + text.size() || (text.size() > 1 && text[0] == '0')) return std::nullopt;
-  return out;
-}
-
-Reply optionsReply() {
+Reply optionsReply(std::string_view allow = kAllow) {
   Reply out;
   out.status = 204;
-  out.headers = {{"Allow", std::string(kAllow)},
-                 {"Access-Control-Allow-Methods", std::string(kAllow)},
-                 {"Access-Control-Allow-Headers", "Range, If-Range, If-Match, If-None-Match, If-Modified-Since, If-Unmodified-Since"},
+  out.headers = {{"Allow", std::string(allow)},
+                 {"Access-Control-Allow-Methods", std::string(allow)},
+                 {"Access-Control-Allow-Headers",
+                  "Authorization, Content-Range, Content-Type, Range, If-Range, If-Match, If-None-Match, If-Modified-Since, If-Unmodified-Since, "
+                  "traceparent, X-Request-Id"},
                  {"Access-Control-Max-Age", "7200"}};
   addCommonHeaders(out);
   return out;
@@ -94,16 +35,16 @@ Reply optionsReply() {
 
 Reply notFound(std::string_view detail) { return problem(404, "not-found", detail); }
 
-/// Methods of RFC 9110 that no path here takes; anything else was never heard of.
+/// Methods of RFC 9110 besides those that every path takes; anything else was never heard of.
 bool knownMethod(std::string_view method) {
   constexpr std::array<std::string_view, 6> kKnown = {"POST", "PUT", "DELETE", "PATCH", "TRACE", "CONNECT"};
   return std::ranges::find(kKnown, method) != kKnown.end();
 }
 
-Reply methodRefused(std::string_view method) {
-  Reply out = knownMethod(method) ? problem(405, "method-not-allowed", "this server can only be read: " + std::string(kAllow))
-                                  : problem(501, "not-implemented", "this server can only be read: " + std::string(kAllow));
-  out.headers.emplace_back("Allow", kAllow);
+Reply methodRefused(std::string_view method, std::string_view allow = kAllow) {
+  const std::string detail = "what is to be had here takes " + std::string(allow);
+  Reply out = knownMethod(method) ? problem(405, "method-not-allowed", detail) : problem(501, "not-implemented", detail);
+  out.headers.emplace_back("Allow", allow);
   return out;
 }
 
@@ -118,83 +59,92 @@ std::optional<std::string> relativePath(const std::vector<std::string>& segments
   return out;
 }
 
-}  // namespace
-
-Router::Document Router::makeDocument(std::string text) {
-  std::string etag = '"' + sha256Hex(viewOf(text)) + '"';
-  return {std::move(text), std::move(etag)};
+/// `/v1/meshes/{id}/...` leads to what the name stands for now; everything there is to be had for ever under the digest.
+Reply toLog(const RequestTarget& target, const ServedMesh& mesh) {
+  std::string location = "/v1/logs/" + mesh.log.digest();
+  for (std::size_t i = 3; i < target.segments.size(); ++i) location += "/" + percentEncode(target.segments[i]);
+  if (!target.query.empty()) location += "?" + target.query;
+  Reply out;
+  out.status = 307;
+  out.headers = {{"Location", std::move(location)}, {"Cache-Control", std::string(kRevalidate)}};
+  addCommonHeaders(out);
+  return out;
 }
 
-Router::Router(const MeshStore& store, const ViewerFiles& viewer)
-    : store_(store),
-      viewer_(viewer),
-      started_(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())),
-      list_(makeDocument(describeMeshes(store))) {
-  for (const auto& [id, mesh] : store.meshes()) meshes_.emplace(id, makeDocument(describeMesh(mesh)));
-}
-
-Reply Router::route(const RequestView& request) const {
+/// What is the same for every path: methods, and targets that are none.
+template <class Find>
+Reply answer(const RequestView& request, Find find) {
   if (request.method == "OPTIONS") return optionsReply();
   if (request.method != "GET" && request.method != "HEAD") return methodRefused(request.method);
   const std::optional<RequestTarget> target = parseTarget(request.target);
-  Reply out = target ? find(request, *target)
-                     : problem(400, "bad-request", "the request's target is no path: a percent code or a byte in it is wrong");
+  Reply out = target ? find(*target) : problem(400, "bad-request", "the request's target is no path: a percent code or a byte in it is wrong");
   out.sendBody = request.method != "HEAD";
   return out;
 }
 
+}  // namespace
+
+Router::Router(const MeshStore& store, const ViewerFiles& viewer, const AdminRoutes* admin, std::optional<Writing> writing)
+    : store_(store),
+      viewer_(viewer),
+      admin_(admin),
+      writing_(std::move(writing)),
+      started_(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())),
+      openApi_(openApiJson()) {}
+
+Reply Router::route(const RequestView& request) const {
+  if (writing_) {
+    const std::optional<RequestTarget> target = parseTarget(request.target);
+    if (target && isMeshPath(*target)) {
+      if (request.method == "PUT" || request.method == "DELETE") return writeReply(request, *target, writing_->tokens);
+      if (request.method == "OPTIONS") return optionsReply(kAllowWriting);
+      if (request.method != "GET" && request.method != "HEAD") return methodRefused(request.method, kAllowWriting);
+    }
+  }
+  return answer(request, [&](const RequestTarget& target) { return find(request, target); });
+}
+
+Reply routeAdmin(const AdminRoutes& admin, const RequestView& request) {
+  return answer(request, [&](const RequestTarget& target) {
+    return admin.route(target).value_or(notFound("this address has livez, readyz, metrics and version"));
+  });
+}
+
 Reply Router::find(const RequestView& request, const RequestTarget& target) const {
   const auto& path = target.segments;
-  if (path[0] != "v1") return viewerReply(request, target);
+  if (path[0] == "v1") return api(request, target);
+  if (path.size() == 1 && path[0] == "openapi.json")
+    return variantReply(request, {{openApi_.etag, started_}, "application/json", kRevalidate, {}},
+                        {viewOf(openApi_.text), openApi_.gzip, openApi_.zstd}, nullptr);
+  if (admin_ != nullptr)
+    if (std::optional<Reply> reply = admin_->route(target)) return std::move(*reply);
+  return viewerReply(request, target);
+}
+
+Reply Router::api(const RequestView& request, const RequestTarget& target) const {
+  const auto& path = target.segments;
   if (path.size() == 2 && path[1] == "stream") {
     Reply out = problem(426, "upgrade-required", "this is a WebSocket, subprotocol qtet.v1");
     out.headers.emplace_back("Upgrade", "websocket");
     return out;
   }
-  if (path.size() < 2 || path[1] != "meshes") return notFound("there is nothing of that path; the list of meshes is at /v1/meshes");
-  return path.size() == 2 ? documentReply(request, list_) : meshReply(request, target);
+  if (path.size() >= 2 && path[1] == "meshes") return meshes(request, target);
+  if (path.size() < 4 || path[1] != "logs") return notFound("there is nothing of that path; the list of meshes is at /v1/meshes");
+  const MeshPointer mesh = store_.findLog(path[2]);
+  if (!mesh) return problem(404, "log-changed", "no mesh has that digest, or not any more; the list is at /v1/meshes");
+  return logReply(request, target, mesh);
 }
 
-Reply Router::meshReply(const RequestView& request, const RequestTarget& target) const {
+Reply Router::meshes(const RequestView& request, const RequestTarget& target) const {
   const auto& path = target.segments;
-  const ServedMesh* mesh = store_.find(path[2]);
-  if (mesh == nullptr) return notFound("there is no mesh of that name; the list is at /v1/meshes");
-  if (path.size() == 3) return documentReply(request, meshes_.find(path[2])->second);
-  if (path.size() == 4 && path[3] == "log") return logReply(request, target, *mesh);
-  if (path.size() == 5 && path[3] == "levels") return levelReply(request, *mesh, path[4]);
-  return notFound("a mesh has log, levels/{k}.vtu and levels/{k}.drc");
-}
-
-Reply Router::documentReply(const RequestView& request, const Document& document) const {
-  return sendBytes(request, {{document.etag, started_}, "application/json", kRevalidate, {}}, viewOf(document.text));
-}
-
-Reply Router::logReply(const RequestView& request, const RequestTarget& target, const ServedMesh& mesh) {
-  const std::optional<std::string> digest = target.parameter("digest");
-  if (digest && *digest != mesh.log.digest())
-    return problem(404, "log-changed", "the mesh of that name has the digest " + mesh.log.digest() + " by now");
-  return sendBytes(request,
-                   {{'"' + mesh.log.digest() + '"', mesh.modified}, "application/octet-stream", digest ? kForEver : kRevalidate, {}},
-                   mesh.log.bytes());
-}
-
-Reply Router::levelReply(const RequestView& request, const ServedMesh& mesh, std::string_view name) {
-  const bool vtu = name.ends_with(".vtu");
-  if (!vtu && !name.ends_with(".drc")) return notFound("a level is to be had as {k}.vtu and {k}.drc");
-  const std::optional<std::uint32_t> level = parseLevel(name.substr(0, name.size() - 4));
-  if (!level || *level >= mesh.manifest.levels.size())
-    return notFound("there is no such level; this mesh has the levels 0 to " + std::to_string(mesh.manifest.levels.size() - 1));
-
-  // The same log gives the same level, with one version of this program.
-  const std::string etag = '"' + mesh.log.digest() + "-" + std::string(name) + "-" QTET_VERSION "\"";
-  const Resource resource{{etag, mesh.modified},
-                          "application/octet-stream",
-                          kRevalidate,
-                          {{"Content-Disposition", "attachment; filename=\"level-" + std::string(name) + "\""}, {"Accept-Ranges", "none"}}};
-  if (std::optional<Reply> early = conditional(request, resource)) return std::move(*early);
-  Reply out = begin(200, resource);
-  out.body = LevelRequest{&mesh, *level, vtu ? LevelRequest::Form::kVtu : LevelRequest::Form::kDrc};
-  return out;
+  if (path.size() == 2) return meshListReply(request, target, store_.catalogue());
+  if (writing_ && path.size() == 4 && path[3] == "upload") return partialReply(request, target, *writing_);
+  const MeshPointer mesh = store_.find(path[2]);
+  if (!mesh) return notFound("there is no mesh of that name; the list is at /v1/meshes");
+  if (path.size() > 3) return toLog(target, *mesh);
+  const Document& text = mesh->description;
+  return variantReply(request, {{text.etag, mesh->modified}, "application/json", kRevalidate, {}}, {viewOf(text.text), text.gzip, text.zstd},
+                      mesh);
 }
 
 Reply Router::viewerReply(const RequestView& request, const RequestTarget& target) const {
@@ -204,12 +154,7 @@ Reply Router::viewerReply(const RequestView& request, const RequestTarget& targe
   if (file == nullptr) return notFound("the viewer has no file of that name; its page is at /");
   Resource resource{{file->etag, file->modified}, file->type, file->immutable ? kForEver : kRevalidate, {}};
   if (file->type.starts_with("text/html")) resource.headers.emplace_back("Content-Security-Policy", kPagePolicy);
-  if (file->gzip.empty()) return sendBytes(request, resource, file->bytes);
-  resource.headers.emplace_back("Vary", "Accept-Encoding");
-  if (!request.acceptEncoding || !acceptsGzip(*request.acceptEncoding)) return sendBytes(request, resource, file->bytes);
-  resource.validators.etag.insert(resource.validators.etag.size() - 1, "-gzip");  // other bytes, another strong tag
-  resource.headers.emplace_back("Content-Encoding", "gzip");
-  return sendBytes(request, resource, file->gzip);
+  return variantReply(request, std::move(resource), {file->bytes, file->gzip, file->zstd}, nullptr);
 }
 
 }  // namespace qtet

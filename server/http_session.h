@@ -7,20 +7,14 @@
 #include <boost/beast/core/tcp_stream.hpp>
 #include <memory>
 
+#include "server/address_limits.h"
 #include "server/connections.h"
-#include "server/http_router.h"
-#include "server/level_jobs.h"
+#include "server/services.h"
 
 namespace qtet {
 
-/// What every connection needs; outlives them all.
-struct Services {
-  const MeshStore& store;
-  const Router& router;
-  LevelJobs& jobs;
-};
-
 /// Serves until the connection ends. Runs on the stream's executor, which must be a single thread or a strand.
-boost::asio::awaitable<void> serveHttp(boost::beast::tcp_stream stream, const Services& services, std::shared_ptr<Connection> connection);
+boost::asio::awaitable<void> serveHttp(boost::beast::tcp_stream stream, const Services& services, std::shared_ptr<Connection> connection,
+                                       std::unique_ptr<AddressLimits::Visitor> visitor);
 
 }  // namespace qtet

@@ -1,45 +1,66 @@
-// Levels are decoded and written on threads of their own, a few at a time, so that a hundred requests for one cannot stop the
-// streams or fill the memory.
+// Levels are made on threads of their own, a few at a time: one job for all who want the same one, ended when nobody wants it any more.
 #pragma once
 
-#include <atomic>
-#include <boost/asio/thread_pool.hpp>
-#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <stop_token>
+#include <utility>
 
-#include "proto/bytes.h"
-#include "server/http_message.h"
+#include "server/level_cache.h"
+#include "server/level_request.h"
 
 namespace qtet {
 
-/// The file of a level, whole. Errors: those of meshAtLevel and of the writers; io when there is not enough memory.
-[[nodiscard]] Result<Bytes> makeLevel(const LevelRequest& request);
+struct LevelJobCounts {
+  std::size_t waiting = 0;  ///< jobs that have not begun
+  std::size_t running = 0;
+  std::uint64_t made = 0, found = 0, cancelled = 0, refused = 0, failed = 0;  ///< since the start
+};
 
 class LevelJobs {
  public:
-  /// A place in the queue, kept until the level was sent: it bounds the memory, not only the work.
-  using Place = std::shared_ptr<void>;
-  using Done = std::move_only_function<void(Result<Bytes>)>;
-  using Maker = std::function<Result<Bytes>(const LevelRequest&)>;
+  using Done = std::move_only_function<void(Result<LevelFile>)>;
+  using Maker = std::function<Result<Bytes>(const LevelRequest&, const std::stop_token&)>;
 
-  /// `places` levels waiting, being made or being sent at a time.
-  LevelJobs(std::size_t threads, std::size_t places, Maker maker = makeLevel);
-  /// Drops what waits (its `done` is destroyed uncalled) and waits for what runs.
+  struct Options {
+    std::size_t threads = 1;
+    std::size_t most = 1;         ///< jobs waiting or running; each may hold a whole mesh in memory
+    LevelCache* cache = nullptr;  ///< nullptr: nothing is kept; else it outlives the jobs
+    Maker maker{};
+  };
+
+  explicit LevelJobs(Options options);
+  /// Drops what waits (its `done` is destroyed uncalled) and waits for what runs, which is told to stop.
   ~LevelJobs();
   LevelJobs(const LevelJobs&) = delete;
   LevelJobs& operator=(const LevelJobs&) = delete;
 
-  /// nullptr: all places are taken. Thread-safe.
-  [[nodiscard]] Place reserve();
-  /// Makes the level and calls `done` once, on a thread of the pool. REQUIRES: a place is held meanwhile. Thread-safe.
-  void submit(LevelRequest request, Done done);
+  /// Somebody's wish for a level. When it goes before `done` was called, `done` is destroyed uncalled, and with the last wish the job
+  /// ends. May outlive the jobs.
+  class Wish {
+   public:
+    Wish() = default;
+    Wish(Wish&& other) noexcept : withdraw_(std::exchange(other.withdraw_, nullptr)) {}
+    Wish& operator=(Wish&& other) noexcept;
+    ~Wish();
+
+   private:
+    friend class LevelJobs;
+    explicit Wish(std::move_only_function<void()> withdraw) : withdraw_(std::move(withdraw)) {}
+    std::move_only_function<void()> withdraw_;
+  };
+
+  /// The level if it was kept. Thread-safe, as all that follow.
+  [[nodiscard]] std::optional<LevelFile> find(const LevelRequest& request);
+  /// Has the level made and calls `done` once, on a thread of the pool. nullopt: there are as many jobs as there may be.
+  [[nodiscard]] std::optional<Wish> submit(const LevelRequest& request, Done done);
+  [[nodiscard]] LevelJobCounts counts() const;
 
  private:
-  Maker maker_;
-  std::size_t places_;
-  std::shared_ptr<std::atomic<std::size_t>> taken_ = std::make_shared<std::atomic<std::size_t>>(0);
-  boost::asio::thread_pool pool_;
+  struct State;
+  std::shared_ptr<State> state_;
 };
 
 }  // namespace qtet

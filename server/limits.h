@@ -14,6 +14,12 @@ using namespace std::chrono_literals;
 /// Connections at a time, HTTP and WebSocket together: 12 KB each when idle (measured), 48 MB in all, and below the usual hard limit
 /// of 4,096 or more open files once some are set aside for the logs.
 inline constexpr std::size_t kMaxConnections = 4000;
+/// Connections at a time of one address: browsers open 6 and one WebSocket a page; a company behind one address has some pages open.
+inline constexpr std::size_t kMaxConnectionsPerAddress = 256;
+/// Requests a second of one address: somebody who reads a log chunk by chunk (16 KB and more) comes to 30 MB/s.
+inline constexpr unsigned kMaxRequestsPerSecond = 2000;
+/// Addresses remembered before those that do nothing are forgotten: 150 bytes each.
+inline constexpr std::size_t kMaxRememberedAddresses = 100'000;
 /// Seconds after which a client that was turned away (503) is asked to come back.
 inline constexpr unsigned kRetryAfterSeconds = 2;
 /// How long `accept` rests when the system has no file or memory left for one more connection.
@@ -23,8 +29,13 @@ inline constexpr auto kAcceptRest = 100ms;
 
 /// Bytes of a request's line and headers: browsers send under 2 KB, proxies add some.
 inline constexpr std::uint32_t kMaxHeaderBytes = 16u << 10;
+/// Lines of a request's head: browsers send 15 to 20, proxies add some.
+inline constexpr std::size_t kMaxHeaderLines = 100;
 /// From a request's first byte to the end of its headers; ends what a slow sender (deliberately or not) can hold.
 inline constexpr auto kHeaderTime = 10s;
+/// Bytes of a request's body that must arrive within kBodyTime each: so a slow line is served (2 KB/s suffice), a dead one is not.
+inline constexpr std::size_t kBodyPiece = 64u << 10;
+inline constexpr auto kBodyTime = 30s;
 /// A kept-alive connection without a request: above the 60 s that common proxies keep theirs, so that they close first.
 inline constexpr auto kIdleTime = 75s;
 /// Bytes given to one write, each of which must be taken within kWriteTime: so a slow line is served (9 KB/s suffice), a dead one is not.
@@ -34,12 +45,39 @@ inline constexpr auto kWriteTime = 30s;
 inline constexpr auto kLingerTime = 1s;
 inline constexpr std::size_t kLingerBytes = 1u << 20;
 
+// ---- the store
+
+/// Meshes of one page of the list: about 1 KB each.
+inline constexpr std::size_t kMaxListPage = 1000;
+/// Bytes of a mesh's name: with `.qtet` and what an upload appends, below the 255 that file systems allow.
+inline constexpr std::size_t kMaxIdBytes = 150;
+/// How long, and how many, replaced logs are still to be had under their digests, for those who are reading them piece by piece.
+inline constexpr auto kReplacedLogTime = 10min;
+inline constexpr std::size_t kMaxReplacedLogs = 16;
+/// How long the folder must be quiet before it is read again: a copy tells of itself many times.
+inline constexpr auto kFolderRest = 200ms;
+/// It is read this often in any case, for folders on a network that tell nothing, and to let replaced logs go.
+inline constexpr auto kFolderInterval = 60s;
+
 // ---- levels
 
-/// Levels being made, waiting or being sent at a time; each may hold a whole mesh in memory.
+/// Levels being made or waiting at a time; each may hold a whole mesh in memory.
 inline constexpr std::size_t kMaxLevelJobs = 8;
 /// Threads that make them, beside the I/O threads.
 inline constexpr std::size_t kLevelThreads = 1;
+/// Bytes of finished levels kept on disk: some hundred of a mesh of a million cells.
+inline constexpr std::uintmax_t kMaxCacheBytes = std::uintmax_t{2} << 30;
+
+// ---- uploads
+
+/// Bytes of one log that is taken: the format's own end is at 16 GB or so (proto/limits.h, kMaxChunks).
+inline constexpr std::uintmax_t kMaxUploadBytes = std::uintmax_t{16} << 30;
+/// Uploads at a time: each holds a file open, and its check reads the whole of it.
+inline constexpr std::size_t kMaxUploads = 4;
+/// What came of an upload that broke off is kept so long for going on with it.
+inline constexpr auto kPartialUploadTime = 24h;
+/// Bytes and lines of the file of tokens.
+inline constexpr std::size_t kMaxTokenFileBytes = 1u << 20;
 
 // ---- the viewer's files, held in memory
 

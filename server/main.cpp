@@ -2,13 +2,16 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <iostream>
 
 #include "server/command_line.h"
+#include "server/folder_watch.h"
 #include "server/server.h"
 
 namespace {
@@ -41,29 +44,116 @@ int cannotServe(const Error& error) {
   return kCannotServe;
 }
 
+/// Finished levels lie where --cache says, in systemd's cache folder, or in a temporary folder that goes with the object.
+class CacheFolder {
+ public:
+  explicit CacheFolder(const std::optional<fs::path>& given) {
+    const char* ofSystemd = std::getenv("CACHE_DIRECTORY");
+    if (given || ofSystemd != nullptr) {
+      path_ = given ? *given : fs::path(ofSystemd);
+      return;
+    }
+    std::string name = (fs::temp_directory_path() / "qtet-server-XXXXXX").string();
+    if (::mkdtemp(name.data()) != nullptr) path_ = name, temporary_ = true;
+  }
+  ~CacheFolder() {
+    std::error_code ec;
+    if (temporary_) fs::remove_all(path_, ec);
+  }
+  CacheFolder(const CacheFolder&) = delete;
+  CacheFolder& operator=(const CacheFolder&) = delete;
+  [[nodiscard]] const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+  bool temporary_ = false;
+};
+
+void logRefused(const std::vector<Catalogue::Refused>& refused) {
+  for (const Catalogue::Refused& file : refused) spdlog::error("{} is not served: {}", file.path.string(), file.error.text());
+}
+
+void logChange(const FolderChange& change) {
+  for (const MeshPointer& mesh : change.added)
+    spdlog::info("{}: {} tetrahedra in {} levels, {} bytes", mesh->id, mesh->manifest.levels.back().tetrahedra,
+                 mesh->manifest.levels.size(), mesh->log.bytes().size());
+  for (const std::string& id : change.removed) spdlog::info("{}: removed", id);
+  logRefused(change.refused);
+}
+
+void lookAgain(const MeshStore& store) {
+  const Result<FolderChange> change = store.rescan();
+  if (!change) return spdlog::error("{}; what was served is served on", change.error().message);
+  logChange(*change);
+}
+
+Result<std::optional<FolderWatch>> watchFolder(const CommandLine& wishes, const MeshStore& store) {
+  if (!wishes.watch) return std::optional<FolderWatch>();
+  Result<FolderWatch> watch = FolderWatch::start(wishes.folder, [&store] { lookAgain(store); });
+  if (!watch) return std::unexpected(watch.error());
+  return std::optional<FolderWatch>(std::move(*watch));
+}
+
+ServerOptions serverOptions(const CommandLine& wishes, LevelCache* cache, AccessLog* accessLog, const Tokens& tokens) {
+  return {.host = wishes.host,
+          .port = wishes.port,
+          .threads = wishes.threads,
+          .maxConnections = wishes.maxConnections,
+          .maxConnectionsPerAddress = wishes.maxConnectionsPerAddress,
+          .maxRequestsPerSecond = wishes.maxRequestsPerSecond,
+          .adminHost = wishes.adminHost,
+          .adminPort = wishes.adminPort,
+          .endOnSignals = true,
+          .cache = cache,
+          .accessLog = accessLog,
+          .tokens = tokens.empty() ? nullptr : &tokens,
+          .maxUploadBytes = wishes.maxUploadBytes};
+}
+
 int serve(const CommandLine& wishes) {
   raiseFileLimit();
   const Result<MeshStore> store = MeshStore::open(wishes.folder);
   if (!store) return cannotServe(store.error());
-  for (const MeshStore::Refused& refused : store->refused())
-    spdlog::error("{} is not served: {}", refused.path.string(), refused.error.text());
-  for (const auto& [id, mesh] : store->meshes())
-    spdlog::info("{}: {} tetrahedra in {} levels, {} bytes", id, mesh.manifest.levels.back().tetrahedra, mesh.manifest.levels.size(),
-                 mesh.log.bytes().size());
+  const CataloguePointer catalogue = store->catalogue();
+  logRefused(catalogue->refused);
   const Result<ViewerFiles> viewer = loadViewer(wishes);
   if (!viewer) return cannotServe(viewer.error());
   if (viewer->empty()) spdlog::info("no viewer found; build it or name it with --viewer DIR, the API works without");
+  const CacheFolder cacheFolder(wishes.cache);
+  const Result<std::unique_ptr<LevelCache>> cache = LevelCache::open(cacheFolder.path(), wishes.cacheBytes);
+  if (!cache) return cannotServe(cache.error());
+  Result<std::unique_ptr<AccessLog>> accessLog = nullptr;
+  if (wishes.accessLog) accessLog = AccessLog::open(*wishes.accessLog);
+  if (!accessLog) return cannotServe(accessLog.error());
 
-  Server server(*store, *viewer, {.host = wishes.host, .port = wishes.port, .threads = wishes.threads, .endOnSignals = true});
+  const Result<Tokens> tokens = wishes.tokens ? Tokens::load(*wishes.tokens) : Tokens();
+  if (!tokens) return cannotServe(tokens.error());
+
+  Server server(*store, *viewer, serverOptions(wishes, cache->get(), accessLog->get(), *tokens));
   if (const Status listening = server.listen(); !listening) return cannotServe(listening.error());
-  const std::size_t count = store->meshes().size();
+  const Result<std::optional<FolderWatch>> watch = watchFolder(wishes, *store);
+  if (!watch) return cannotServe(watch.error());
+  const std::size_t count = catalogue->meshes.size();
   std::cout << "qtet-server: listening on " << server.url() << " (" << count << (count == 1 ? " mesh)" : " meshes)") << std::endl;
+  if (wishes.adminHost) std::cout << "qtet-server: operators' address is " << *wishes.adminHost << ":" << server.adminPort() << std::endl;
   server.run();
   return 0;
 }
 
+/// What serve() would stumble over, without serving.
+int checkConfig(const CommandLine& wishes) {
+  std::cout << configText(wishes);
+  std::error_code ec;
+  if (!fs::is_directory(wishes.folder, ec))
+    return cannotServe({ErrorCode::kIo, wishes.folder.string() + " is no folder; name one that holds .qtet files", Error::kNoOffset});
+  if (const Result<ViewerFiles> viewer = loadViewer(wishes); !viewer) return cannotServe(viewer.error());
+  if (wishes.tokens)
+    if (const Result<Tokens> tokens = Tokens::load(*wishes.tokens); !tokens) return cannotServe(tokens.error());
+  return 0;
+}
+
 int run(int argc, char** argv) {
-  const Result<CommandLine> wishes = parseCommandLine(argc, argv);
+  const Result<CommandLine> wishes = parseCommandLine(argc, argv, environ);
   if (!wishes) {
     std::cerr << "qtet-server: " << wishes.error().message << "\n\n" << usageText();
     return kWrongUsage;
@@ -71,6 +161,7 @@ int run(int argc, char** argv) {
   switch (wishes->wish) {
     case CommandLine::Wish::kHelp: std::cout << usageText(); return 0;
     case CommandLine::Wish::kVersion: std::cout << "qtet-server " QTET_VERSION "\n"; return 0;
+    case CommandLine::Wish::kCheckConfig: return checkConfig(*wishes);
     case CommandLine::Wish::kServe: break;
   }
   spdlog::set_default_logger(spdlog::stderr_color_mt("qtet-server"));

@@ -7,6 +7,7 @@
 #include <sys/socket.h>
 
 #include <algorithm>
+#include <atomic>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/io_context.hpp>
@@ -23,6 +24,7 @@
 #include <thread>
 #include <vector>
 
+#include "server/http_router.h"
 #include "server/http_session.h"
 
 namespace qtet {
@@ -49,8 +51,8 @@ void configure(tcp::socket& socket) {
 }
 
 /// Answers a connection for which there is no place; what does not fit into an empty socket's buffer is not waited for.
-void turnAway(tcp::socket socket) {
-  Reply busy = problem(503, "busy", "too many connections; try again");
+void turnAway(tcp::socket socket, unsigned status, std::string_view type, std::string_view detail) {
+  Reply busy = problem(status, type, detail);
   busy.headers.emplace_back("Retry-After", std::to_string(limits::kRetryAfterSeconds));
   const std::string text = headerText(busy, false) + std::get<std::string>(busy.body);
   error_code ec;
@@ -73,10 +75,17 @@ void logEnd(const std::exception_ptr& thrown) {
 // whose last handler may still be on its way into a lane, end first.
 struct Server::State {
   State(const MeshStore& meshes, const ViewerFiles& viewer, ServerOptions given)
-      : store(meshes), options(std::move(given)), router(meshes, viewer), lanes(std::max<std::size_t>(options.threads, 1)) {}
+      : store(meshes),
+        options(std::move(given)),
+        uploads(meshes, options.maxUploadBytes),
+        router(meshes, viewer, options.adminHost ? nullptr : &admin,
+               options.tokens != nullptr ? std::optional<Writing>({*options.tokens, uploads}) : std::nullopt),
+        lanes(std::max<std::size_t>(options.threads, 1)) {}
 
-  asio::awaitable<void> acceptConnections();
-  void handOver(tcp::socket socket, asio::io_context& context);
+  asio::awaitable<void> acceptConnections(tcp::acceptor& acceptor, const Services& services);
+  void handOver(tcp::socket socket, asio::io_context& context, const Services& services);
+  [[nodiscard]] Status listen(tcp::acceptor& acceptor, const std::string& host, std::uint16_t port);
+  [[nodiscard]] std::vector<Metrics::Figure> figures() const;
   void end();
   void stopLanes() {
     for (Lane& lane : lanes) lane.context.stop();
@@ -86,26 +95,35 @@ struct Server::State {
 
   const MeshStore& store;
   ServerOptions options;
+  Metrics metrics;
+  std::atomic<bool> ending = false;
+  AdminRoutes admin{metrics, [this] { return !ending; }, [this] { return figures(); }};
+  Uploads uploads;
   Router router;
   Connections connections{options.maxConnections};
+  AddressLimits addresses{options.maxConnectionsPerAddress, options.maxRequestsPerSecond};
   std::vector<Lane> lanes;
   tcp::acceptor acceptor{mainContext()};
+  tcp::acceptor adminAcceptor{mainContext()};
   asio::steady_timer grace{mainContext()};
-  asio::steady_timer rest{mainContext()};
   asio::signal_set signals{mainContext()};
-  bool ending = false;  // main lane's own
-  LevelJobs jobs{limits::kLevelThreads, limits::kMaxLevelJobs, options.makeLevel};
-  Services services{store, router, jobs};
+  LevelJobs jobs{{limits::kLevelThreads, limits::kMaxLevelJobs, options.cache, options.makeLevel}};
+  asio::thread_pool verifiers{1};
+  Services services{store, [this](const RequestView& request) { return router.route(request); }, true, jobs, metrics, options.accessLog,
+                    options.timeouts, &uploads, &verifiers};
+  Services adminServices{store, [this](const RequestView& request) { return routeAdmin(admin, request); }, false, jobs, metrics,
+                         options.accessLog, options.timeouts, nullptr, nullptr};
 };
 
-asio::awaitable<void> Server::State::acceptConnections() {
+asio::awaitable<void> Server::State::acceptConnections(tcp::acceptor& from, const Services& whose) {
+  asio::steady_timer rest(mainContext());
   for (std::size_t next = 0; !ending; next = (next + 1) % lanes.size()) {
     asio::io_context& context = lanes[next].context;
     tcp::socket socket(context);
     error_code ec;
-    co_await acceptor.async_accept(socket, asio::redirect_error(asio::use_awaitable, ec));
+    co_await from.async_accept(socket, asio::redirect_error(asio::use_awaitable, ec));
     if (!ec) {
-      handOver(std::move(socket), context);
+      handOver(std::move(socket), context, whose);
     } else if (!ending && ec != asio::error::operation_aborted) {
       spdlog::warn("a connection cannot be accepted: {}", ec.message());
       rest.expires_after(limits::kAcceptRest);
@@ -114,14 +132,48 @@ asio::awaitable<void> Server::State::acceptConnections() {
   }
 }
 
-void Server::State::handOver(tcp::socket socket, asio::io_context& context) {
-  std::shared_ptr<Connection> connection = connections.enter(context.get_executor());
-  if (!connection) return turnAway(std::move(socket));
+void Server::State::handOver(tcp::socket socket, asio::io_context& context, const Services& whose) {
+  error_code ec;
+  const tcp::endpoint peer = socket.remote_endpoint(ec);
+  if (ec) return;  // gone already
+  const bool ofOperators = &whose == &adminServices;
+  std::unique_ptr<AddressLimits::Visitor> visitor = ofOperators ? nullptr : addresses.enter(peer.address());
+  std::shared_ptr<Connection> connection = visitor || ofOperators ? connections.enter(context.get_executor()) : nullptr;
+  if (!connection) {
+    metrics.countRefusedConnection();
+    if (!visitor && !ofOperators)
+      return turnAway(std::move(socket), 429, "too-many-requests", "too many connections from this address; close some");
+    return turnAway(std::move(socket), 503, "busy", "too many connections; try again");
+  }
+  metrics.countConnection();
   configure(socket);
   // Posted first: co_spawn would begin the coroutine on this thread.
-  asio::post(context, [this, socket = std::move(socket), connection = std::move(connection), &context]() mutable {
-    asio::co_spawn(context, serveHttp(beast::tcp_stream(std::move(socket)), services, std::move(connection)), logEnd);
+  asio::post(context, [&whose, socket = std::move(socket), connection = std::move(connection), visitor = std::move(visitor), &context]() mutable {
+    asio::co_spawn(context, serveHttp(beast::tcp_stream(std::move(socket)), whose, std::move(connection), std::move(visitor)), logEnd);
   });
+}
+
+std::vector<Metrics::Figure> Server::State::figures() const {
+  const LevelJobCounts levels = jobs.counts();
+  const CataloguePointer catalogue = store.catalogue();
+  const auto gauge = [](const char* name, const char* help, auto value) {
+    return Metrics::Figure{name, help, false, static_cast<double>(value)};
+  };
+  const auto counter = [](const char* name, const char* help, auto value) {
+    return Metrics::Figure{name, help, true, static_cast<double>(value)};
+  };
+  return {gauge("uploads_open", "Uploads under way.", uploads.active()),
+          counter("uploads_published_total", "Logs that were uploaded and published.", uploads.published()),
+          gauge("connections_open", "Connections that are open, HTTP and WebSocket.", connections.open()),
+          gauge("meshes", "Meshes that are served.", catalogue->meshes.size()),
+          gauge("meshes_refused", "Files that are not served because they are damaged.", catalogue->refused.size()),
+          gauge("levels_waiting", "Levels that wait for being made.", levels.waiting),
+          gauge("levels_running", "Levels that are being made.", levels.running),
+          counter("levels_made_total", "Levels made.", levels.made),
+          counter("levels_found_total", "Levels that were kept from before.", levels.found),
+          counter("levels_cancelled_total", "Levels that nobody waited for any more.", levels.cancelled),
+          counter("levels_refused_total", "Levels refused because there were too many.", levels.refused),
+          counter("levels_failed_total", "Levels that could not be made.", levels.failed)};
 }
 
 void Server::State::end() {
@@ -130,6 +182,7 @@ void Server::State::end() {
   spdlog::info("ending; responses under way have {} s", std::chrono::duration_cast<std::chrono::seconds>(limits::kGraceTime).count());
   error_code ec;
   acceptor.close(ec);
+  adminAcceptor.close(ec);
   grace.expires_after(limits::kGraceTime);
   grace.async_wait([this](error_code cancelled) {
     if (cancelled) return;
@@ -158,24 +211,31 @@ Server::Server(const MeshStore& store, const ViewerFiles& viewer, ServerOptions 
 /// Connections that outlived the grace time go with the lanes; the last of them must not call into what is half gone.
 Server::~Server() { state_->connections.endAll({}); }
 
-Status Server::listen() {
-  const auto refused = [this](const error_code& ec) {
-    return fail(ErrorCode::kIo, "cannot listen on " + state_->options.host + ":" + std::to_string(state_->options.port) + ": " +
-                                    ec.message() + "; choose another --host or --port");
+Status Server::State::listen(tcp::acceptor& on, const std::string& host, std::uint16_t port) {
+  const auto refused = [&](const error_code& ec) {
+    return fail(ErrorCode::kIo,
+                "cannot listen on " + host + ":" + std::to_string(port) + ": " + ec.message() + "; choose another --host or --port");
   };
   error_code ec;
-  tcp::resolver resolver(state_->mainContext());
-  const auto found = resolver.resolve(state_->options.host, std::to_string(state_->options.port), tcp::resolver::passive, ec);
+  tcp::resolver resolver(mainContext());
+  const auto found = resolver.resolve(host, std::to_string(port), tcp::resolver::passive, ec);
   if (ec) return refused(ec);
   const tcp::endpoint endpoint = *found.begin();
-  tcp::acceptor& acceptor = state_->acceptor;
-  acceptor.open(endpoint.protocol(), ec);
-  if (!ec) acceptor.set_option(tcp::acceptor::reuse_address(true), ec);
-  if (!ec) acceptor.bind(endpoint, ec);
-  if (!ec) acceptor.listen(tcp::acceptor::max_listen_connections, ec);
+  on.open(endpoint.protocol(), ec);
+  if (!ec) on.set_option(tcp::acceptor::reuse_address(true), ec);
+  if (!ec) on.bind(endpoint, ec);
+  if (!ec) on.listen(tcp::acceptor::max_listen_connections, ec);
   if (ec) return refused(ec);
   return {};
 }
+
+Status Server::listen() {
+  const ServerOptions& options = state_->options;
+  if (Status status = state_->listen(state_->acceptor, options.host, options.port); !status) return status;
+  return options.adminHost ? state_->listen(state_->adminAcceptor, *options.adminHost, options.adminPort) : Status();
+}
+
+std::uint16_t Server::adminPort() const { return state_->adminAcceptor.local_endpoint().port(); }
 
 std::uint16_t Server::port() const { return state_->acceptor.local_endpoint().port(); }
 
@@ -186,8 +246,11 @@ std::string Server::url() const {
 }
 
 void Server::run() {
+  if (state_->options.tokens != nullptr) state_->uploads.sweep();
   if (state_->options.endOnSignals) state_->watchSignals();
-  asio::co_spawn(state_->mainContext(), state_->acceptConnections(), logEnd);
+  asio::co_spawn(state_->mainContext(), state_->acceptConnections(state_->acceptor, state_->services), logEnd);
+  if (state_->options.adminHost)
+    asio::co_spawn(state_->mainContext(), state_->acceptConnections(state_->adminAcceptor, state_->adminServices), logEnd);
   std::vector<std::jthread> others;
   for (std::size_t i = 1; i < state_->lanes.size(); ++i) others.emplace_back([&lane = state_->lanes[i]] { lane.context.run(); });
   state_->mainContext().run();

@@ -4,11 +4,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
-#include "server/level_jobs.h"
-#include "server/limits.h"
-#include "server/mesh_store.h"
+#include "server/level_maker.h"
+#include "server/services.h"
+#include "server/tokens.h"
 #include "server/viewer_files.h"
 
 namespace qtet {
@@ -18,11 +19,20 @@ struct ServerOptions {
   std::uint16_t port = 8080;  ///< 0: any free one
   std::size_t threads = 1;    ///< for connections; at least 1
   std::size_t maxConnections = limits::kMaxConnections;
-  bool endOnSignals = false;  ///< SIGINT and SIGTERM do what stop() does
+  std::size_t maxConnectionsPerAddress = limits::kMaxConnectionsPerAddress;  ///< 0: no bound
+  unsigned maxRequestsPerSecond = limits::kMaxRequestsPerSecond;             ///< of one address; 0: no bound
+  Timeouts timeouts{};
+  std::optional<std::string> adminHost{};  ///< operators' paths are answered here and nowhere else
+  std::uint16_t adminPort = 0;
+  bool endOnSignals = false;        ///< SIGINT and SIGTERM do what stop() does
+  LevelCache* cache = nullptr;      ///< finished levels; nullptr: none is kept
+  AccessLog* accessLog = nullptr;
+  const Tokens* tokens = nullptr;   ///< who may change meshes; nullptr: nobody
+  std::uintmax_t maxUploadBytes = limits::kMaxUploadBytes;
   LevelJobs::Maker makeLevel = qtet::makeLevel;
 };
 
-/// Store and viewer must outlive it.
+/// Store, viewer, cache, access log and tokens must outlive it.
 class Server {
  public:
   Server(const MeshStore& store, const ViewerFiles& viewer, ServerOptions options);
@@ -34,6 +44,8 @@ class Server {
   [[nodiscard]] Status listen();
   /// The port taken. REQUIRES: listen() succeeded.
   [[nodiscard]] std::uint16_t port() const;
+  /// That of the operators' address. REQUIRES: likewise, and that there is one.
+  [[nodiscard]] std::uint16_t adminPort() const;
   /// "http://127.0.0.1:8080/". REQUIRES: listen() succeeded.
   [[nodiscard]] std::string url() const;
 

@@ -42,13 +42,13 @@ void StreamProtocol::handle(const OpenMessage& message) {
   active_ = false;
   ++stream_;
   if (!countOpen()) return;
-  const ServedMesh* mesh = store_.find(message.mesh);
-  if (mesh == nullptr) return refuse(kNotFound, "there is no mesh '" + message.mesh + "'; the list is at /v1/meshes");
+  const MeshPointer mesh = store_.find(message.mesh);
+  if (!mesh) return refuse(kNotFound, "there is no mesh '" + message.mesh + "'; the list is at /v1/meshes");
   if (!message.digest.empty() && message.digest != mesh->log.digest())
     return refuse(kLogChanged, "the mesh '" + message.mesh + "' has the digest " + mesh->log.digest() + " by now");
   const auto request = resolve(message, *mesh);
   if (const auto* error = std::get_if<ErrorMessage>(&request)) return answers_.push_back(toJson(*error));
-  start(message, *mesh, std::get<StreamRequest>(request));
+  start(message, mesh, std::get<StreamRequest>(request));
 }
 
 std::variant<StreamRequest, ErrorMessage> StreamProtocol::resolve(const OpenMessage& message, const ServedMesh& mesh) const {
@@ -79,16 +79,16 @@ std::variant<StreamRequest, ErrorMessage> StreamProtocol::resolve(const OpenMess
   return out;
 }
 
-void StreamProtocol::start(const OpenMessage& message, const ServedMesh& mesh, const StreamRequest& request) {
-  const LogIndex& index = mesh.log.index();
-  mesh_ = &mesh;
+void StreamProtocol::start(const OpenMessage& message, const MeshPointer& mesh, const StreamRequest& request) {
+  const LogIndex& index = mesh->log.index();
+  mesh_ = mesh;
   plan_ = planStream(index, request, limits::kFramePayload);
   nextRun_ = 0;
   credit_ = static_cast<std::int64_t>(message.credit);
   active_ = true;
   std::uint64_t planned = 0;
   for (const BlockRun& run : plan_) planned += sliceOf(index, run).size;
-  answers_.push_back(toJson(OpenedMessage{stream_, mesh.id, mesh.log.digest(), mesh.log.bytes().size(), planned}));
+  answers_.push_back(toJson(OpenedMessage{stream_, mesh->id, mesh->log.digest(), mesh->log.bytes().size(), planned}));
 }
 
 void StreamProtocol::handle(const CreditMessage& message) {
@@ -122,7 +122,8 @@ std::optional<Outgoing> StreamProtocol::next() {
   const BlockRun& run = plan_[nextRun_++];
   const FileSlice slice = sliceOf(mesh_->log.index(), run);
   credit_ -= slice.size;
-  return OutgoingFrame{{stream_, run.chunk, run.firstPart, run.parts, slice.size}, mesh_->log.bytes().subspan(slice.offset, slice.size)};
+  return OutgoingFrame{{stream_, run.chunk, run.firstPart, run.parts, slice.size}, mesh_->log.bytes().subspan(slice.offset, slice.size),
+                       mesh_};
 }
 
 }  // namespace qtet

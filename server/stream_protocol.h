@@ -19,10 +19,11 @@ namespace qtet {
 /// Close codes of RFC 6455, 7.4.1, that this server uses by its own decision.
 enum class CloseCode : std::uint16_t { kGoingAway = 1001, kPolicy = 1008, kInternal = 1011 };
 
-/// A binary frame; the payload lies in the store's mapping.
+/// A binary frame; the payload lies in the mapping of the log, which lives at least as long as the frame.
 struct OutgoingFrame {
   FrameHeader header;
   ByteView payload;
+  MeshPointer mesh;
 };
 using Outgoing = std::variant<std::string, OutgoingFrame, CloseCode>;
 
@@ -44,7 +45,7 @@ class StreamProtocol {
   void handle(const StopMessage& message);
   /// The plan's request, or the error message that answers the `open`.
   std::variant<StreamRequest, ErrorMessage> resolve(const OpenMessage& message, const ServedMesh& mesh) const;
-  void start(const OpenMessage& message, const ServedMesh& mesh, const StreamRequest& request);
+  void start(const OpenMessage& message, const MeshPointer& mesh, const StreamRequest& request);
   void refuse(const char* code, std::string detail);
   bool countMessage(Clock::time_point now);
   bool countOpen();
@@ -55,7 +56,7 @@ class StreamProtocol {
 
   std::uint32_t stream_ = 0;  ///< `open`s so far
   bool active_ = false;       ///< the plan is not finished
-  const ServedMesh* mesh_ = nullptr;
+  MeshPointer mesh_;  ///< a stream finishes on the log that it began with
   std::vector<BlockRun> plan_;
   std::size_t nextRun_ = 0;
   std::int64_t credit_ = 0;  ///< bytes; below zero by one frame at most

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "proto/checksum.h"
+#include "server/content_coding.h"
 #include "server/limits.h"
 
 namespace qtet {
@@ -62,7 +63,7 @@ Result<ViewerFile> readFile(const fs::path& path, const std::string& name, std::
   struct stat info {};
   const std::time_t modified = ::stat(path.c_str(), &info) == 0 ? info.st_mtime : 0;
   std::string etag = '"' + sha256Hex(*bytes) + '"';
-  return ViewerFile{std::move(*bytes), {}, std::string(typeOf(path)), std::move(etag), modified, name.starts_with("assets/")};
+  return ViewerFile{std::move(*bytes), {}, {}, std::string(typeOf(path)), std::move(etag), modified, name.starts_with("assets/")};
 }
 
 bool hidden(const fs::path& path) { return path.filename().native().starts_with('.'); }
@@ -94,6 +95,7 @@ Result<ViewerFiles> ViewerFiles::load(const fs::path& folder) {
     out.files_.emplace(name, std::move(*file));
   }
   out.attachCompressed();
+  out.compressText();
   if (ec) return fail(ErrorCode::kIo, folder.string() + ": " + ec.message() + "; name the built viewer's folder");
   if (!out.files_.contains("index.html"))
     return fail(ErrorCode::kIo, folder.string() + " holds no index.html; name the built viewer's folder");
@@ -111,6 +113,16 @@ void ViewerFiles::attachCompressed() {
       original->second.gzip = std::move(it->second.bytes);
       it = files_.erase(it);
     }
+  }
+}
+
+void ViewerFiles::compressText() {
+  for (auto& [name, file] : files_) {
+    const bool text = file.type.starts_with("text/") || file.type == "application/json" || file.type == "image/svg+xml" ||
+                      file.type == "application/wasm" || file.type == "application/manifest+json";
+    if (!text || file.bytes.size() < kLeastCompressedBytes) continue;
+    if (file.gzip.empty()) file.gzip = compressed(file.bytes, ContentCoding::kGzip);
+    file.zstd = compressed(file.bytes, ContentCoding::kZstd);
   }
 }
 

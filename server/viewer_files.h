@@ -14,7 +14,8 @@ namespace qtet {
 
 struct ViewerFile {
   Bytes bytes;
-  Bytes gzip;            ///< the same compressed, from NAME.gz beside it; empty: there is none
+  Bytes gzip;            ///< the same compressed, from NAME.gz beside it, or by ourselves; empty: it does not pay
+  Bytes zstd;            ///< likewise
   std::string type;      ///< media type
   std::string etag;      ///< strong, with its quotes
   std::time_t modified;  ///< seconds since 1970
@@ -37,6 +38,7 @@ class ViewerFiles {
 
  private:
   void attachCompressed();
+  void compressText();
 
   std::map<std::string, ViewerFile, std::less<>> files_;
 };

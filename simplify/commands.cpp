@@ -10,7 +10,7 @@
 namespace qtet {
 namespace {
 
-constexpr std::array<Command, 9> kCommands{{
+constexpr std::array<Command, 10> kCommands{{
     {"sample", "make a mesh to try things with", runSample},
     {"check", "say what is wrong with a mesh, and what simplify would do about it", runCheck},
     {"convert", "write a mesh of any format that is read as .vtu", runConvert},
@@ -20,6 +20,7 @@ constexpr std::array<Command, 9> kCommands{{
     {"add-field", "add fields of a mesh file to a log", runAddField},
     {"remove-field", "leave fields of a log out", runRemoveField},
     {"verify", "check a log, also against the mesh that it was made from", runVerify},
+    {"push", "send a log to a server", runPush},
 }};
 
 void printHelp(std::ostream& out) {
@@ -34,6 +35,7 @@ void printHelp(std::ostream& out) {
          "  qtet info fin.qtet\n"
          "  qtet extract fin.qtet --ratio 0.1 -o coarse.vtu\n"
          "  qtet verify fin.qtet --against fin.vtu\n"
+         "  QTET_TOKEN=... qtet push fin.qtet http://127.0.0.1:8080/\n"
          "\nexit codes: 0 done, 1 an input or a file is at fault, 2 the command line is\n";
 }
 

@@ -43,6 +43,7 @@ int runInfo(const Words& words, Console& console);
 int runExtract(const Words& words, Console& console);
 int runAddField(const Words& words, Console& console);
 int runRemoveField(const Words& words, Console& console);
+int runPush(const Words& words, Console& console);
 int runVerify(const Words& words, Console& console);
 
 }  // namespace qtet

@@ -4,12 +4,17 @@
 
 #include <vector>
 
+#include "tests/server/synthetic_log.h"
+
 namespace qtet {
 namespace {
 
-Result<CommandLine> parse(std::vector<const char*> arguments) {
+using Words = std::vector<const char*>;
+
+Result<CommandLine> parse(Words arguments, Words environment = {}) {
   arguments.insert(arguments.begin(), "qtet-server");
-  return parseCommandLine(static_cast<int>(arguments.size()), arguments.data());
+  environment.push_back(nullptr);
+  return parseCommandLine(static_cast<int>(arguments.size()), arguments.data(), environment.data());
 }
 
 TEST(CommandLine, aFolderIsEnough) {
@@ -19,17 +24,56 @@ TEST(CommandLine, aFolderIsEnough) {
   EXPECT_EQ(line->host, "127.0.0.1");
   EXPECT_EQ(line->port, 8080);
   EXPECT_GE(line->threads, 1u);
-  EXPECT_FALSE(line->viewer);
+  EXPECT_TRUE(line->watch);
+  EXPECT_EQ(line->maxConnections, limits::kMaxConnections);
+  EXPECT_FALSE(line->viewer || line->tokens || line->cache || line->accessLog || line->adminHost);
 }
 
 TEST(CommandLine, everyOptionIsUnderstood) {
-  const auto line = parse({"--port", "0", "--host=::1", "logs", "--viewer", "page", "--threads", "3"});
-  ASSERT_TRUE(line);
+  const auto line = parse({"--port", "0", "--host=::1", "logs", "--viewer", "page", "--threads", "3", "--watch", "off", "--admin", "[::1]:9090",
+                           "--cache", "c", "--cache-bytes", "0", "--access-log", "-", "--tokens", "t", "--max-upload-bytes", "1",
+                           "--max-connections", "7", "--max-connections-per-address", "0", "--max-requests-per-second", "9"});
+  ASSERT_TRUE(line) << line.error().message;
   EXPECT_EQ(line->folder, "logs");
   EXPECT_EQ(line->host, "::1");
   EXPECT_EQ(line->port, 0);
   EXPECT_EQ(line->viewer, "page");
   EXPECT_EQ(line->threads, 3u);
+  EXPECT_FALSE(line->watch);
+  EXPECT_EQ(line->adminHost, "::1");
+  EXPECT_EQ(line->adminPort, 9090);
+  EXPECT_EQ(line->cache, "c");
+  EXPECT_EQ(line->cacheBytes, 0u);
+  EXPECT_EQ(line->accessLog, "-");
+  EXPECT_EQ(line->tokens, "t");
+  EXPECT_EQ(line->maxUploadBytes, 1u);
+  EXPECT_EQ(line->maxConnections, 7u);
+  EXPECT_EQ(line->maxConnectionsPerAddress, 0u);
+  EXPECT_EQ(line->maxRequestsPerSecond, 9u);
+}
+
+TEST(CommandLine, optionsComeBeforeTheEnvironmentAndThatBeforeTheFile) {
+  const test::TempFolder folder;
+  folder.write("conf", std::string_view("# settings\nfolder = from-file\nport = 1\nhost = h\nthreads = 2\n"));
+  const std::string config = "QTET_SERVER_CONFIG=" + (folder.path() / "conf").string();
+  const auto line = parse({"--port", "3"}, {config.c_str(), "QTET_SERVER_PORT=2", "QTET_SERVER_HOST=e", "QTETSERVER=x", "PATH=/bin"});
+  ASSERT_TRUE(line) << line.error().message;
+  EXPECT_EQ(line->folder, "from-file");
+  EXPECT_EQ(line->port, 3);
+  EXPECT_EQ(line->host, "e");
+  EXPECT_EQ(line->threads, 2u);
+}
+
+TEST(CommandLine, whatIsPrintedIsAFileThatSaysTheSame) {
+  const auto line = parse({"logs", "--port", "5", "--admin", "[::1]:9090", "--watch", "off", "--tokens", "t", "--check-config"});
+  ASSERT_TRUE(line);
+  EXPECT_EQ(line->wish, CommandLine::Wish::kCheckConfig);
+  const test::TempFolder folder;
+  folder.write("conf", std::string_view(configText(*line)));
+  const std::string config = (folder.path() / "conf").string();
+  const auto again = parse({"--config", config.c_str()});
+  ASSERT_TRUE(again) << again.error().message;
+  EXPECT_EQ(configText(*again), configText(*line));
 }
 
 TEST(CommandLine, helpAndVersionNeedNoFolder) {
@@ -38,21 +82,33 @@ TEST(CommandLine, helpAndVersionNeedNoFolder) {
 }
 
 TEST(CommandLine, wrongUsageIsExplained) {
-  for (const std::vector<const char*>& arguments : std::vector<std::vector<const char*>>{{},
-                                                                                         {"a", "b"},
-                                                                                         {"a", "--prot", "1"},
-                                                                                         {"a", "--por", "1"},
-                                                                                         {"a", "--port"},
-                                                                                         {"a", "--port", "x"},
-                                                                                         {"a", "--port", "-1"},
-                                                                                         {"a", "--port", "65536"},
-                                                                                         {"a", "--threads", "0"},
-                                                                                         {"a", "--threads", "257"}}) {
+  for (const Words& arguments : std::vector<Words>{{},
+                                                   {"a", "b"},
+                                                   {"a", "--prot", "1"},
+                                                   {"a", "--por", "1"},
+                                                   {"a", "--port"},
+                                                   {"a", "--port", "x"},
+                                                   {"a", "--port", "-1"},
+                                                   {"a", "--port", "65536"},
+                                                   {"a", "--threads", "0"},
+                                                   {"a", "--threads", "257"},
+                                                   {"a", "--watch", "perhaps"},
+                                                   {"a", "--admin", "9090"},
+                                                   {"a", "--admin", ":9090"},
+                                                   {"a", "--admin", "h:65536"},
+                                                   {"a", "--max-connections", "0"},
+                                                   {"a", "--cache-bytes", "99999999999999999999"}}) {
     const auto line = parse(arguments);
     ASSERT_FALSE(line);
     EXPECT_EQ(line.error().code, ErrorCode::kBadValue);
     EXPECT_FALSE(line.error().message.empty());
   }
+  EXPECT_NE(parse({"a"}, {"QTET_SERVER_PROT=1"}).error().message.find("QTET_SERVER_PROT"), std::string::npos);
+  EXPECT_EQ(parse({"a", "--config", "/nonexistent"}).error().code, ErrorCode::kIo);
+  const test::TempFolder folder;
+  folder.write("conf", std::string_view("prot = 1\n"));
+  const std::string config = (folder.path() / "conf").string();
+  EXPECT_NE(parse({"a", "--config", config.c_str()}).error().message.find("prot"), std::string::npos);
 }
 
 }  // namespace

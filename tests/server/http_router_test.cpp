@@ -77,43 +77,118 @@ TEST_F(RouterTest, everyLinkLeadsSomewhere) {
   const Json links = json(get("/v1/meshes/a%20b"))["links"];
   EXPECT_EQ(get(links["self"].get<std::string>()).status, 200u);
   EXPECT_EQ(get(links["log"].get<std::string>()).status, 200u);
-  for (const char* name : {"vtu", "drc"}) {
+  for (const char* name : {"log", "manifest", "base", "vtu", "glb", "drc", "chunk"}) {
     std::string link = links[name];
-    link.replace(link.find("{k}"), 3, "1");
+    if (const auto at = link.find('{'); at != std::string::npos) link.replace(at, 3, "1");
     EXPECT_EQ(get(link).status, 200u) << link;
   }
   EXPECT_EQ(get(links["stream"].get<std::string>()).status, 426u);
 }
 
 TEST_F(RouterTest, theLogIsAViewOfTheMapping) {
-  const Reply reply = get("/v1/meshes/noise/log");
+  const Reply reply = get(folder_.log());
   EXPECT_EQ(reply.status, 200u);
   EXPECT_EQ(std::get<ByteView>(reply.body).data(), folder_.mesh().log.bytes().data());
   EXPECT_EQ(header(reply, "ETag"), '"' + folder_.mesh().log.digest() + '"');
   EXPECT_EQ(header(reply, "Accept-Ranges"), "bytes");
+}
+
+TEST_F(RouterTest, whatStandsUnderADigestMayBeKeptForEver) {
+  for (const char* rest : {"log", "manifest", "base", "chunks/3", "fields/velocity/chunks/11", "levels/2.glb", "levels/fit.vtu?tets=50"}) {
+    const Reply reply = get(folder_.log(rest));
+    EXPECT_EQ(reply.status, 200u) << rest;
+    EXPECT_NE(header(reply, "Cache-Control").find("immutable"), std::string::npos) << rest;
+  }
+  expectProblem(get("/v1/logs/" + std::string(64, '0') + "/log"), 404, "log-changed");
+}
+
+TEST_F(RouterTest, baseAndChunksInOrderAreTheWholeLog) {
+  const LogIndex& index = folder_.mesh().log.index();
+  const std::string file = folder_.file();
+  const std::string base = body(get(folder_.log("base")));
+  EXPECT_EQ(base, file.substr(0, base.size()));
+  std::string all = file.substr(0, index.headBytes());
+  for (std::uint32_t chunk = 0; chunk < index.chunks.size(); ++chunk) {
+    const std::string number = std::to_string(chunk);
+    all += body(get(folder_.log("chunks/" + number)));
+    if (chunk == 0) {
+      EXPECT_EQ(all, base);
+    }
+    for (const char* field : {"density", "velocity"}) all += body(get(folder_.log("fields/" + std::string(field) + "/chunks/" + number)));
+  }
+  EXPECT_EQ(all, file);
+}
+
+TEST_F(RouterTest, anAddressUnderTheNameLeadsToTheDigest) {
+  const std::string name = "/v1/meshes/noise/";
+  const Reply reply = get(name + "levels/3.vtu?fields=density");
+  EXPECT_EQ(reply.status, 307u);
+  EXPECT_EQ(header(reply, "Location"), folder_.log("levels/3.vtu?fields=density"));
   EXPECT_EQ(header(reply, "Cache-Control"), "no-cache");
 }
 
-TEST_F(RouterTest, aLogUnderItsDigestMayBeKeptForEver) {
-  const Reply same = get("/v1/meshes/noise/log?digest=" + folder_.mesh().log.digest());
-  EXPECT_EQ(same.status, 200u);
-  EXPECT_NE(header(same, "Cache-Control").find("immutable"), std::string::npos);
-  expectProblem(get("/v1/meshes/noise/log?digest=" + std::string(64, '0')), 404, "log-changed");
+TEST_F(RouterTest, theListComesInPages) {
+  const Json first = json(get("/v1/meshes?limit=1"));
+  ASSERT_EQ(first["meshes"].size(), 1u);
+  EXPECT_EQ(first["meshes"][0]["id"], "a b");
+  const Json second = json(get(first["next"].get<std::string>()));
+  ASSERT_EQ(second["meshes"].size(), 1u);
+  EXPECT_EQ(second["meshes"][0]["id"], "noise");
+  EXPECT_FALSE(second.contains("next"));
+  EXPECT_NE(header(get("/v1/meshes?limit=1"), "ETag"), header(get("/v1/meshes"), "ETag"));
+  EXPECT_EQ(json(get("/v1/meshes?limit=1000"))["meshes"].size(), 2u);
+  for (const char* wrong : {"0", "1001", "-1", "", "x", "99999999999999999999"})
+    expectProblem(get("/v1/meshes?limit=" + std::string(wrong)), 400, "bad-request");
+}
+
+TEST_F(RouterTest, aLevelIsChosenBySizeAndByFields) {
+  const auto wanted = [&](const std::string& rest) { return std::get<LevelRequest>(get(folder_.log(rest)).body); };
+  const Manifest& manifest = folder_.mesh().manifest;
+  const std::string cells = std::to_string(manifest.levels[5].tetrahedra);
+  EXPECT_EQ(wanted("levels/fit.vtu?tets=" + cells).level, 5u);
+  EXPECT_EQ(wanted("levels/fit.vtu?bytes=" + std::to_string(folder_.mesh().prefixBytes(7))).level, 7u);
+  EXPECT_EQ(header(get(folder_.log("levels/fit.drc?tets=" + cells)), "Content-Location"), folder_.log("levels/5.drc"));
+  EXPECT_EQ(wanted("levels/3.vtu").fields, (std::vector<std::uint32_t>{0, 1}));
+  EXPECT_EQ(wanted("levels/3.vtu?fields=velocity,velocity").fields, (std::vector<std::uint32_t>{1}));
+  EXPECT_EQ(wanted("levels/3.vtu?fields=").fields, (std::vector<std::uint32_t>{}));
+  EXPECT_NE(wanted("levels/3.vtu").key(), wanted("levels/3.vtu?fields=velocity").key());
+  expectProblem(get(folder_.log("levels/3.vtu?fields=nothing")), 404, "not-found");
+  for (const char* wrong : {"levels/fit.vtu", "levels/fit.vtu?tets=1&bytes=2", "levels/fit.vtu?tets=x", "levels/fit.vtu?error=density",
+                            "levels/fit.vtu?error=density:-1", "levels/fit.vtu?error=density:nan"})
+    expectProblem(get(folder_.log(wrong)), 400, "bad-request");
+  expectProblem(get(folder_.log("levels/fit.vtu?error=nothing:0.1")), 404, "not-found");
+}
+
+TEST_F(RouterTest, jsonAndVtuAreCompressedForWhoTakesIt) {
+  for (const std::string& target : {std::string("/v1/meshes"), std::string("/v1/meshes/noise"), folder_.log("manifest"), std::string("/openapi.json")}) {
+    const Reply plain = get(target);
+    for (const char* coding : {"gzip", "zstd"}) {
+      const Reply small = router_.route({.method = "GET", .target = target, .acceptEncoding = coding});
+      EXPECT_EQ(header(small, "Content-Encoding"), coding) << target;
+      EXPECT_LT(*small.bodyBytes(), *plain.bodyBytes()) << target;
+      EXPECT_NE(header(small, "ETag"), header(plain, "ETag")) << target;
+    }
+  }
+  EXPECT_EQ(header(router_.route({.method = "GET", .target = folder_.log(), .acceptEncoding = "gzip, zstd"}), "Content-Encoding"), "")
+      << "a log's blocks are compressed already";
+  const Reply vtu = router_.route({.method = "GET", .target = folder_.log("levels/1.vtu"), .acceptEncoding = "zstd"});
+  EXPECT_EQ(header(vtu, "Content-Encoding"), "zstd");
+  EXPECT_EQ(std::get<LevelRequest>(vtu.body).coding, ContentCoding::kZstd);
 }
 
 TEST_F(RouterTest, rangesAreCutFromTheMapping) {
-  const Reply part = router_.route({.method = "GET", .target = "/v1/meshes/noise/log", .range = "bytes=10-19"});
+  const Reply part = router_.route({.method = "GET", .target = folder_.log(), .range = "bytes=10-19"});
   EXPECT_EQ(part.status, 206u);
   EXPECT_EQ(header(part, "Content-Range"), "bytes 10-19/" + std::to_string(folder_.file().size()));
   EXPECT_EQ(body(part), folder_.file().substr(10, 10));
-  const Reply behind = router_.route({.method = "GET", .target = "/v1/meshes/noise/log", .range = "bytes=99999999-"});
+  const Reply behind = router_.route({.method = "GET", .target = folder_.log(), .range = "bytes=99999999-"});
   expectProblem(behind, 416, "range-not-satisfiable");
   EXPECT_EQ(header(behind, "Content-Range"), "bytes */" + std::to_string(folder_.file().size()));
 }
 
 TEST_F(RouterTest, conditionsAreHonouredOnEveryResource) {
-  for (const char* target :
-       {"/v1/meshes", "/v1/meshes/noise", "/v1/meshes/noise/log", "/v1/meshes/noise/levels/1.vtu", "/", "/assets/app-1a2b.js"}) {
+  for (const std::string& target : {std::string("/v1/meshes"), std::string("/v1/meshes/noise"), folder_.log(), folder_.log("levels/1.vtu"),
+                                    folder_.log("chunks/1"), std::string("/"), std::string("/assets/app-1a2b.js")}) {
     const std::string etag = header(get(target), "ETag");
     ASSERT_FALSE(etag.empty()) << target;
     const Reply same = router_.route({.method = "GET", .target = target, .ifNoneMatch = etag});
@@ -125,42 +200,26 @@ TEST_F(RouterTest, conditionsAreHonouredOnEveryResource) {
 }
 
 TEST_F(RouterTest, levelsAreToBeMade) {
-  const Reply reply = get("/v1/meshes/noise/levels/11.drc");
+  const Reply reply = get(folder_.log("levels/11.drc"));
   EXPECT_EQ(reply.status, 200u);
   const auto& level = std::get<LevelRequest>(reply.body);
-  EXPECT_EQ(level.mesh, &folder_.mesh());
+  EXPECT_EQ(level.mesh.get(), &folder_.mesh());
   EXPECT_EQ(level.level, 11u);
-  EXPECT_EQ(level.form, LevelRequest::Form::kDrc);
-  EXPECT_NE(header(reply, "ETag"), header(get("/v1/meshes/noise/levels/11.vtu"), "ETag"));
-  EXPECT_NE(header(reply, "ETag"), header(get("/v1/meshes/noise/levels/10.drc"), "ETag"));
-  EXPECT_EQ(ask("HEAD", "/v1/meshes/noise/levels/11.drc").bodyBytes(), std::nullopt);
+  EXPECT_EQ(level.form, LevelForm::kDrc);
+  EXPECT_NE(header(reply, "ETag"), header(get(folder_.log("levels/11.vtu")), "ETag"));
+  EXPECT_NE(header(reply, "ETag"), header(get(folder_.log("levels/10.drc")), "ETag"));
+  EXPECT_EQ(ask("HEAD", folder_.log("levels/11.drc")).bodyBytes(), std::nullopt);
 }
 
 TEST_F(RouterTest, whatDoesNotExistIsNotFound) {
-  for (const char* target : {"/v1",
-                             "/v1/",
-                             "/v2/meshes",
-                             "/v1/meshes/",
-                             "/v1/meshes/nothing",
-                             "/v1/meshes/noise/",
-                             "/v1/meshes/noise/log/",
-                             "/v1/meshes/noise/logs",
-                             "/v1/meshes/noise/levels",
-                             "/v1/meshes/noise/levels/",
-                             "/v1/meshes/noise/levels/12.vtu",
-                             "/v1/meshes/noise/levels/-1.vtu",
-                             "/v1/meshes/noise/levels/01.vtu",
-                             "/v1/meshes/noise/levels/+1.vtu",
-                             "/v1/meshes/noise/levels/1",
-                             "/v1/meshes/noise/levels/.vtu",
-                             "/v1/meshes/noise/levels/1.VTU",
-                             "/v1/meshes/noise/levels/4294967296.vtu",
-                             "/v1/meshes/noise/levels/1.vtu/x",
-                             "/v1/meshes/noise.qtet",
-                             "/v1/meshes/..%2Fnoise",
-                             "/V1/meshes",
-                             "/v1/meshes/noise/levels/1e0.vtu"})
+  for (const char* target : {"/v1", "/v1/", "/v2/meshes", "/v1/meshes/", "/v1/meshes/nothing", "/v1/meshes/nothing/log", "/v1/logs",
+                             "/v1/logs/", "/v1/meshes/noise.qtet", "/v1/meshes/..%2Fnoise", "/V1/meshes"})
     expectProblem(get(target), 404, "not-found");
+  for (const char* rest : {"", "log/", "logs", "levels", "levels/", "levels/12.vtu", "levels/-1.vtu", "levels/01.vtu", "levels/+1.vtu",
+                           "levels/1", "levels/.vtu", "levels/1.VTU", "levels/4294967296.vtu", "levels/1.vtu/x", "levels/1e0.vtu", "chunks",
+                           "chunks/12", "chunks/00", "chunks/x", "fields", "fields/density", "fields/density/chunks/12", "fields/x/chunks/0",
+                           "fields/density/chunk/1"})
+    expectProblem(get(folder_.log(rest)), 404, "not-found");
 }
 
 TEST_F(RouterTest, theViewerAndNothingElseOfItsFolderIsServed) {
@@ -218,7 +277,7 @@ TEST_F(RouterTest, onlyReadingIsAllowed) {
 }
 
 TEST_F(RouterTest, headIsGetWithoutTheBody) {
-  for (const char* target : {"/v1/meshes", "/v1/meshes/noise/log", "/", "/nothing"}) {
+  for (const std::string& target : {std::string("/v1/meshes"), folder_.log(), std::string("/"), std::string("/nothing")}) {
     const Reply head = ask("HEAD", target);
     const Reply whole = get(target);
     EXPECT_FALSE(head.sendBody);
@@ -229,7 +288,7 @@ TEST_F(RouterTest, headIsGetWithoutTheBody) {
 }
 
 TEST_F(RouterTest, optionsAnswersAPreflight) {
-  for (const char* target : {"*", "/v1/meshes/noise/log"}) {
+  for (const std::string& target : {std::string("*"), folder_.log()}) {
     const Reply reply = ask("OPTIONS", target);
     EXPECT_EQ(reply.status, 204u);
     EXPECT_NE(header(reply, "Access-Control-Allow-Headers").find("Range"), std::string::npos);
@@ -237,7 +296,7 @@ TEST_F(RouterTest, optionsAnswersAPreflight) {
 }
 
 TEST_F(RouterTest, everyAnswerMayBeReadFromAnywhereAndIsNotSniffed) {
-  for (const char* target : {"/v1/meshes", "/v1/meshes/noise/log", "/", "/nothing", "/%"}) {
+  for (const std::string& target : {std::string("/v1/meshes"), folder_.log(), std::string("/"), std::string("/nothing"), std::string("/%")}) {
     const Reply reply = get(target);
     EXPECT_EQ(header(reply, "Access-Control-Allow-Origin"), "*") << target;
     EXPECT_EQ(header(reply, "X-Content-Type-Options"), "nosniff") << target;

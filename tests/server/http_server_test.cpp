@@ -1,6 +1,7 @@
 // HTTP over a real socket: what the router's tests cannot see.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <condition_variable>
 #include <functional>
@@ -26,7 +27,7 @@ class HttpServerTest : public testing::Test {
 
 TEST_F(HttpServerTest, theWholeLogArrivesAsItLiesOnDisk) {
   RawClient client(server_.port());
-  const HttpResponse response = client.get("/v1/meshes/noise/log");
+  const HttpResponse response = client.get(folder_.log());
   EXPECT_EQ(response.status, 200u);
   EXPECT_EQ(response.body, folder_.file());
   EXPECT_FALSE(response.header("date").empty());
@@ -39,7 +40,7 @@ TEST_F(HttpServerTest, rangesOnOneConnectionMakeTheWholeFile) {
   while (all.size() < file.size()) {
     const std::size_t last = std::min(all.size() + 7777, file.size()) - 1;
     const HttpResponse part =
-        client.get("/v1/meshes/noise/log", "Range: bytes=" + std::to_string(all.size()) + "-" + std::to_string(last) + "\r\n");
+        client.get(folder_.log(), "Range: bytes=" + std::to_string(all.size()) + "-" + std::to_string(last) + "\r\n");
     ASSERT_EQ(part.status, 206u);
     all += part.body;
   }
@@ -48,14 +49,14 @@ TEST_F(HttpServerTest, rangesOnOneConnectionMakeTheWholeFile) {
 
 TEST_F(HttpServerTest, severalRangesAreAnsweredByTheWhole) {
   RawClient client(server_.port());
-  const HttpResponse response = client.get("/v1/meshes/noise/log", "Range: bytes=0-1,4-5\r\n");
+  const HttpResponse response = client.get(folder_.log(), "Range: bytes=0-1,4-5\r\n");
   EXPECT_EQ(response.status, 200u);
   EXPECT_EQ(response.body, folder_.file());
 }
 
 TEST_F(HttpServerTest, headHasTheLengthAndNoBody) {
   RawClient client(server_.port());
-  client.send("HEAD /v1/meshes/noise/log HTTP/1.1\r\nHost: a\r\n\r\n");
+  client.send("HEAD " + folder_.log() + " HTTP/1.1\r\nHost: a\r\n\r\n");
   const HttpResponse head = client.receive(true);
   EXPECT_EQ(head.status, 200u);
   EXPECT_EQ(head.header("content-length"), std::to_string(folder_.file().size()));
@@ -81,7 +82,7 @@ TEST_F(HttpServerTest, aRequestMayComeByteByByte) {
 }
 
 TEST_F(HttpServerTest, aRequestCutAtEveryByteIsSurvived) {
-  const std::string request = "GET /v1/meshes/noise/log HTTP/1.1\r\nHost: a\r\nRange: bytes=0-99\r\n\r\n";
+  const std::string request = "GET " + folder_.log() + " HTTP/1.1\r\nHost: a\r\nRange: bytes=0-99\r\n\r\n";
   for (std::size_t n = 0; n < request.size(); ++n) {
     RawClient client(server_.port());
     ASSERT_TRUE(client.send(request.substr(0, n)));
@@ -126,6 +127,8 @@ TEST_F(HttpServerTest, whatCanBeReadInTwoWaysIsRefusedAndNothingAfterItIsAnswere
       {"chunks in 1.0", "POST / HTTP/1.0\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n\r\n", 400},
       {"space in a name", "GET / HTTP/1.1\r\nHost: a\r\nX A: 1\r\n\r\n", 400},
       {"NUL in a value", std::string("GET / HTTP/1.1\r\nHost: a\r\nX: 1\0002\r\n\r\n", 35), 400},
+      {"a folded line", "GET / HTTP/1.1\r\nHost: a\r\nX: 1\r\n 2\r\n\r\n", 400},
+      {"bare line ends", "GET / HTTP/1.1\nHost: a\n\n", 400},
       {"a long head", "GET / HTTP/1.1\r\nHost: a\r\nX: " + std::string(limits::kMaxHeaderBytes, 'x') + "\r\n\r\n", 431},
       {"a long target", "GET /" + std::string(1 << 16, 'a') + " HTTP/1.1\r\nHost: a\r\n\r\n", 431},
   };
@@ -165,7 +168,8 @@ TEST_F(HttpServerTest, traversalLeadsNowhere) {
 TEST_F(HttpServerTest, aClientThatVanishesAmidAResponseHarmsNobody) {
   for (int i = 0; i < 20; ++i) {
     RawClient client(server_.port());
-    client.send("GET /v1/meshes/noise/log HTTP/1.1\r\nHost: a\r\n\r\nGET /v1/meshes/noise/log HTTP/1.1\r\nHost: a\r\n\r\n");
+    const std::string request = "GET " + folder_.log() + " HTTP/1.1\r\nHost: a\r\n\r\n";
+    client.send(request + request);
   }
   EXPECT_EQ(RawClient(server_.port()).get("/v1/meshes").status, 200u);
 }
@@ -176,11 +180,13 @@ struct SlowMaker {
   std::condition_variable changed;
   bool go = false;
   std::atomic<int> begun = 0;
+  std::atomic<int> stopped = 0;
 
-  Result<Bytes> operator()(const LevelRequest& request) {
+  Result<Bytes> operator()(const LevelRequest& request, const std::stop_token& stop) {
+    const std::stop_callback wake(stop, [this] { ++stopped, changed.notify_all(); });
     ++begun;
     std::unique_lock lock(mutex);
-    changed.wait(lock, [&] { return go; });
+    changed.wait(lock, [&] { return go || stop.stop_requested(); });
     if (request.level == 11) return fail(ErrorCode::kBadCodec, "broken on purpose");
     return Bytes(request.level + 1, 'v');
   }
@@ -201,9 +207,9 @@ class LevelsTest : public testing::Test {
 
 TEST_F(LevelsTest, whileALevelIsMadeOthersAreServed) {
   RawClient slow(server_.port());
-  slow.send("GET /v1/meshes/noise/levels/4.vtu HTTP/1.1\r\nHost: a\r\n\r\n");
+  slow.send("GET " + folder_.log("levels/4.vtu") + " HTTP/1.1\r\nHost: a\r\n\r\n");
   RawClient other(server_.port());
-  EXPECT_EQ(other.get("/v1/meshes/noise/log").status, 200u);
+  EXPECT_EQ(other.get(folder_.log()).status, 200u);
   maker_.release();
   const HttpResponse level = slow.receive();
   EXPECT_EQ(level.status, 200u);
@@ -215,42 +221,42 @@ TEST_F(LevelsTest, beyondTheBoundTheAnswerIsToComeBack) {
   std::vector<std::unique_ptr<RawClient>> waiting;
   for (std::size_t i = 0; i < limits::kMaxLevelJobs; ++i) {
     waiting.push_back(std::make_unique<RawClient>(server_.port()));
-    waiting.back()->send("GET /v1/meshes/noise/levels/1.drc HTTP/1.1\r\nHost: a\r\n\r\n");
+    waiting.back()->send("GET " + folder_.log("levels/" + std::to_string(i) + ".drc") + " HTTP/1.1\r\nHost: a\r\n\r\n");
   }
   const auto deadline = std::chrono::steady_clock::now() + test::kPatience;
   RawClient late(server_.port());
   // The requests before it lie on other connections, so which comes first is the machine's choice.
   while (maker_.begun < 1 && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
   std::this_thread::sleep_for(test::kQuiet);
-  const HttpResponse refused = late.get("/v1/meshes/noise/levels/2.drc");
+  const HttpResponse refused = late.get(folder_.log("levels/10.drc"));
   EXPECT_EQ(refused.status, 503u);
   EXPECT_EQ(refused.header("retry-after"), "2");
   maker_.release();
   for (auto& client : waiting) EXPECT_EQ(client->receive().status, 200u);
-  EXPECT_EQ(late.get("/v1/meshes/noise/levels/2.drc").status, 200u);
+  EXPECT_EQ(late.get(folder_.log("levels/10.drc")).status, 200u);
 }
 
 TEST_F(LevelsTest, aLevelThatCannotBeMadeIsTheServersFault) {
   maker_.release();
   RawClient client(server_.port());
-  const HttpResponse response = client.get("/v1/meshes/noise/levels/11.vtu");
+  const HttpResponse response = client.get(folder_.log("levels/11.vtu"));
   EXPECT_EQ(response.status, 500u);
   EXPECT_NE(response.body.find("broken on purpose"), std::string::npos);
-  EXPECT_EQ(client.get("/v1/meshes/noise/levels/0.vtu").body, "v");
+  EXPECT_EQ(client.get(folder_.log("levels/0.vtu")).body, "v");
 }
 
 TEST_F(LevelsTest, headAndConditionsMakeNothing) {
   RawClient client(server_.port());
-  client.send("HEAD /v1/meshes/noise/levels/3.vtu HTTP/1.1\r\nHost: a\r\n\r\n");
+  client.send("HEAD " + folder_.log("levels/3.vtu") + " HTTP/1.1\r\nHost: a\r\n\r\n");
   const HttpResponse head = client.receive(true);
   EXPECT_EQ(head.status, 200u);
-  EXPECT_EQ(client.get("/v1/meshes/noise/levels/3.vtu", "If-None-Match: " + head.header("etag") + "\r\n").status, 304u);
+  EXPECT_EQ(client.get(folder_.log("levels/3.vtu"), "If-None-Match: " + head.header("etag") + "\r\n").status, 304u);
   EXPECT_EQ(maker_.begun, 0);
 }
 
 TEST_F(LevelsTest, aResponseUnderWayIsFinishedWhenTheServerEnds) {
   RawClient client(server_.port());
-  client.send("GET /v1/meshes/noise/levels/4.vtu HTTP/1.1\r\nHost: a\r\n\r\n");
+  client.send("GET " + folder_.log("levels/4.vtu") + " HTTP/1.1\r\nHost: a\r\n\r\n");
   while (maker_.begun == 0) std::this_thread::yield();
   server_.stop();
   std::this_thread::sleep_for(test::kQuiet);
@@ -266,7 +272,7 @@ TEST_F(LevelsTest, aResponseUnderWayIsFinishedWhenTheServerEnds) {
 
 TEST_F(LevelsTest, aServerThatGoesWhileALevelIsMadeWaitsForNobodyElse) {
   auto client = std::make_unique<RawClient>(server_.port());
-  client->send("GET /v1/meshes/noise/levels/4.vtu HTTP/1.1\r\nHost: a\r\n\r\n");
+  client->send("GET " + folder_.log("levels/4.vtu") + " HTTP/1.1\r\nHost: a\r\n\r\n");
   while (maker_.begun == 0) std::this_thread::yield();
   client.reset();
   server_.stop();
@@ -304,6 +310,92 @@ TEST(ServerLimits, oneConnectionTooManyIsTurnedAwayAndALaterOneIsServed) {
   unsigned status = 503;
   while (status != 200 && std::chrono::steady_clock::now() < deadline) status = RawClient(server.port()).get("/v1/meshes").status;
   EXPECT_EQ(status, 200u);
+}
+
+TEST_F(LevelsTest, whenTheClientGoesTheJobEnds) {
+  auto client = std::make_unique<RawClient>(server_.port());
+  client->send("GET " + folder_.log("levels/4.vtu") + " HTTP/1.1\r\nHost: a\r\n\r\n");
+  while (maker_.begun == 0) std::this_thread::yield();
+  client.reset();
+  const auto deadline = std::chrono::steady_clock::now() + test::kPatience;
+  while (maker_.stopped == 0 && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
+  EXPECT_EQ(maker_.stopped, 1);
+}
+
+TEST_F(LevelsTest, aLevelComesInRangesToo) {
+  maker_.release();
+  RawClient client(server_.port());
+  const HttpResponse part = client.get(folder_.log("levels/9.drc"), "Range: bytes=2-4\r\n");
+  EXPECT_EQ(part.status, 206u);
+  EXPECT_EQ(part.header("content-range"), "bytes 2-4/10");
+  EXPECT_EQ(part.body, "vvv");
+  EXPECT_EQ(client.get(folder_.log("levels/9.drc"), "Range: bytes=10-\r\n").status, 416u);
+}
+
+TEST_F(LevelsTest, manyWhoWantTheSameLevelCostOneJob) {
+  std::vector<std::unique_ptr<RawClient>> clients;
+  for (std::size_t i = 0; i < 2 * limits::kMaxLevelJobs; ++i) {
+    clients.push_back(std::make_unique<RawClient>(server_.port()));
+    clients.back()->send("GET " + folder_.log("levels/4.vtu") + " HTTP/1.1\r\nHost: a\r\n\r\n");
+  }
+  std::this_thread::sleep_for(test::kQuiet);
+  maker_.release();
+  for (auto& client : clients) EXPECT_EQ(client->receive().body, "vvvvv");
+  EXPECT_EQ(maker_.begun, 1);
+}
+
+TEST(ServerLimits, oneAddressMayHaveSoManyConnections) {
+  const test::ServedFolder folder;
+  test::RunningServer server(folder.store(), folder.viewer(), {.maxConnectionsPerAddress = 2});
+  RawClient first(server.port()), second(server.port());
+  EXPECT_EQ(first.get("/v1/meshes").status, 200u);
+  EXPECT_EQ(second.get("/v1/meshes").status, 200u);
+  RawClient third(server.port());
+  const HttpResponse refused = third.receive();
+  EXPECT_EQ(refused.status, 429u);
+  EXPECT_EQ(refused.header("retry-after"), "2");
+  EXPECT_TRUE(third.closedByServer());
+}
+
+TEST(ServerLimits, oneAddressMayAskSoOften) {
+  const test::ServedFolder folder;
+  test::RunningServer server(folder.store(), folder.viewer(), {.maxRequestsPerSecond = 5});
+  RawClient client(server.port());
+  std::vector<unsigned> answers;
+  for (int i = 0; i < 12; ++i) answers.push_back(client.get("/v1/meshes").status);
+  EXPECT_EQ(std::count(answers.begin(), answers.begin() + 10, 200u), 10);
+  const HttpResponse refused = client.get("/v1/meshes");
+  EXPECT_TRUE(std::ranges::count(answers, 429u) > 0 || refused.status == 429u);
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  EXPECT_EQ(client.get("/v1/meshes").status, 200u) << "the connection stays, and time heals";
+}
+
+TEST(ServerLimits, aHeadAndASilenceEndInTime) {
+  const test::ServedFolder folder;
+  using namespace std::chrono_literals;
+  test::RunningServer server(folder.store(), folder.viewer(), {.timeouts = {.header = 300ms, .idle = 300ms}});
+  RawClient silent(server.port()), slow(server.port()), good(server.port());
+  slow.send("GET /v1/meshes HTTP/1.1\r\nHost:");
+  EXPECT_EQ(slow.receive().status, 408u);
+  EXPECT_TRUE(slow.closedByServer());
+  EXPECT_TRUE(silent.closedByServer()) << "without a word: nothing was asked";
+  RawClient late(server.port());
+  late.send("GET /v1/meshes HTTP/1.1\r\n");
+  std::this_thread::sleep_for(100ms);
+  late.send("Host: a\r\n\r\n");
+  EXPECT_EQ(late.receive().status, 200u) << "slow, but in time";
+}
+
+TEST(ServerLimits, aHeadOfTheLargestSizeIsReadAndNoLargerOne) {
+  const test::ServedFolder folder;
+  test::RunningServer server(folder.store(), folder.viewer());
+  const std::string before = "GET /v1/meshes HTTP/1.1\r\nHost: a\r\nX: ", after = "\r\n\r\n";
+  const std::size_t room = limits::kMaxHeaderBytes - before.size() - after.size();
+  for (const int more : {-1, 0, 1}) {
+    RawClient client(server.port());
+    client.send(before + std::string(room + static_cast<std::size_t>(more), 'x') + after);
+    EXPECT_EQ(client.receive().status, more <= 0 ? 200u : 431u) << more;
+  }
 }
 
 TEST(ServerStart, aPortInUseIsAnErrorThatSaysSo) {

@@ -5,78 +5,170 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <chrono>
+#include <condition_variable>
 #include <future>
 #include <thread>
 #include <vector>
 
+#include "tests/server/served_folder.h"
+
 namespace qtet {
 namespace {
 
-TEST(LevelJobs, aLevelIsMadeElsewhere) {
-  LevelJobs jobs(1, 1, [](const LevelRequest& request) { return Result<Bytes>(Bytes(request.level, 0x42)); });
-  const auto place = jobs.reserve();
-  ASSERT_TRUE(place);
-  std::promise<std::pair<Result<Bytes>, std::thread::id>> promise;
-  jobs.submit({nullptr, 3}, [&](Result<Bytes> bytes) { promise.set_value({std::move(bytes), std::this_thread::get_id()}); });
+/// Makes levels when it is told to, and hears of being stopped.
+class HeldMaker {
+ public:
+  Result<Bytes> operator()(const LevelRequest& request, const std::stop_token& stop) {
+    const std::stop_callback wake(stop, [this] { changed_.notify_all(); });
+    std::unique_lock lock(mutex_);
+    ++begun_;
+    changed_.notify_all();
+    changed_.wait(lock, [&] { return free_ || stop.stop_requested(); });
+    if (stop.stop_requested()) ++stopped_;
+    changed_.notify_all();
+    return Bytes(request.level + 1, 0x42);
+  }
+  void release() {
+    const std::scoped_lock lock(mutex_);
+    free_ = true;
+    changed_.notify_all();
+  }
+  void waitForBegun(int count) { wait([&] { return begun_ >= count; }); }
+  void waitForStopped(int count) { wait([&] { return stopped_ >= count; }); }
+  [[nodiscard]] int begun() {
+    const std::scoped_lock lock(mutex_);
+    return begun_;
+  }
+
+ private:
+  template <class Condition>
+  void wait(Condition condition) {
+    std::unique_lock lock(mutex_);
+    ASSERT_TRUE(changed_.wait_for(lock, std::chrono::seconds(10), condition));
+  }
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool free_ = false;
+  int begun_ = 0, stopped_ = 0;
+};
+
+class LevelJobsTest : public testing::Test {
+ protected:
+  ~LevelJobsTest() override { maker_.release(); }
+  LevelRequest level(std::uint32_t k) { return {folder_.store().find("noise"), k}; }
+  LevelJobs::Options options(std::size_t most) { return {1, most, nullptr, std::ref(maker_)}; }
+
+  test::ServedFolder folder_;
+  HeldMaker maker_;
+};
+
+TEST_F(LevelJobsTest, aLevelIsMadeElsewhere) {
+  maker_.release();
+  LevelJobs jobs(options(1));
+  std::promise<std::pair<std::size_t, std::thread::id>> promise;
+  const auto wish = jobs.submit(level(3), [&](Result<LevelFile> file) { promise.set_value({file->bytes.size(), std::this_thread::get_id()}); });
+  ASSERT_TRUE(wish);
   const auto [bytes, thread] = promise.get_future().get();
-  EXPECT_EQ(*bytes, Bytes(3, 0x42));
+  EXPECT_EQ(bytes, 4u);
   EXPECT_NE(thread, std::this_thread::get_id());
 }
 
-TEST(LevelJobs, thereAreAsManyPlacesAsItWasTold) {
-  LevelJobs jobs(1, 2, {});
-  auto first = jobs.reserve();
-  const auto second = jobs.reserve();
-  EXPECT_TRUE(first);
-  EXPECT_TRUE(second);
-  EXPECT_FALSE(jobs.reserve());
-  first.reset();
-  EXPECT_TRUE(jobs.reserve());
-}
-
-TEST(LevelJobs, placesNeverOverflowUnderManyThreads) {
-  LevelJobs jobs(1, 3, {});
-  std::atomic<int> held = 0;
-  std::atomic<bool> tooMany = false;
-  std::vector<std::jthread> threads;
-  for (int t = 0; t < 4; ++t)
-    threads.emplace_back([&] {
-      for (int i = 0; i < 2000; ++i)
-        if (const auto place = jobs.reserve()) {
-          if (++held > 3) tooMany = true;
-          --held;
-        }
-    });
-  threads.clear();
-  EXPECT_FALSE(tooMany);
-}
-
-TEST(LevelJobs, aPlaceMayOutliveTheJobs) {
-  LevelJobs::Place place;
-  {
-    LevelJobs jobs(1, 1, {});
-    place = jobs.reserve();
-  }
-  EXPECT_TRUE(place);
-}
-
-TEST(LevelJobs, waitingJobsAreDroppedAtTheEndAndARunningOneIsWaitedFor) {
-  std::promise<void> started;
-  std::promise<void> go;
-  auto goes = go.get_future().share();
+TEST_F(LevelJobsTest, whoWantsTheSameSharesTheJob) {
+  LevelJobs jobs(options(1));
   std::atomic<int> done = 0;
-  auto jobs = std::make_unique<LevelJobs>(1, 8, [&, goes](const LevelRequest& request) {
-    if (request.level == 0) started.set_value(), goes.wait();
-    return Result<Bytes>(Bytes());
-  });
-  for (std::uint32_t i = 0; i < 5; ++i) jobs->submit({nullptr, i}, [&](const Result<Bytes>&) { ++done; });
-  started.get_future().wait();
-  std::jthread ending([&] { jobs.reset(); });
-  std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  go.set_value();
-  ending.join();
-  EXPECT_GE(done, 1);
+  std::vector<LevelJobs::Wish> wishes;
+  std::promise<void> last;
+  for (int i = 0; i < 5; ++i) {
+    auto wish = jobs.submit(level(3), [&](const Result<LevelFile>& file) {
+      EXPECT_EQ(file->bytes.size(), 4u);
+      if (++done == 5) last.set_value();
+    });
+    ASSERT_TRUE(wish);
+    wishes.push_back(std::move(*wish));
+  }
+  maker_.release();
+  last.get_future().wait();
+  EXPECT_EQ(maker_.begun(), 1);
+  EXPECT_EQ(jobs.counts().made, 1u);
+}
+
+TEST_F(LevelJobsTest, thereAreAsManyJobsAsItWasTold) {
+  LevelJobs jobs(options(2));
+  const auto first = jobs.submit(level(0), [](const Result<LevelFile>&) {});
+  maker_.waitForBegun(1);
+  auto second = jobs.submit(level(1), [](const Result<LevelFile>&) {});
+  EXPECT_TRUE(first && second);
+  EXPECT_FALSE(jobs.submit(level(2), [](const Result<LevelFile>&) {}));
+  EXPECT_TRUE(jobs.submit(level(1), [](const Result<LevelFile>&) {})) << "a wish for a job that is there needs no place";
+  EXPECT_EQ(jobs.counts().refused, 1u);
+  second.reset();
+  EXPECT_TRUE(jobs.submit(level(2), [](const Result<LevelFile>&) {})) << "a job that waits and nobody wants gives its place back";
+}
+
+TEST_F(LevelJobsTest, withTheLastWishTheJobEnds) {
+  LevelJobs jobs(options(1));
+  auto first = jobs.submit(level(0), [](const Result<LevelFile>&) { ADD_FAILURE() << "nobody waits"; });
+  auto second = jobs.submit(level(0), [](const Result<LevelFile>&) { ADD_FAILURE() << "nobody waits"; });
+  maker_.waitForBegun(1);
+  first.reset();
+  EXPECT_EQ(jobs.counts().cancelled, 0u);
+  second.reset();
+  maker_.waitForStopped(1);
+  EXPECT_EQ(jobs.counts().cancelled, 1u);
+}
+
+TEST_F(LevelJobsTest, aWishMayOutliveTheJobs) {
+  std::optional<LevelJobs::Wish> wish;
+  {
+    LevelJobs jobs(options(1));
+    wish = jobs.submit(level(0), [](const Result<LevelFile>&) {});
+    EXPECT_TRUE(wish);
+  }
+  wish.reset();
+}
+
+TEST_F(LevelJobsTest, atTheEndWhatWaitsIsDroppedAndWhatRunsIsStopped) {
+  std::vector<LevelJobs::Wish> wishes;
+  {
+    LevelJobs jobs(options(8));
+    for (std::uint32_t i = 0; i < 5; ++i) wishes.push_back(std::move(*jobs.submit(level(i), [](const Result<LevelFile>&) {})));
+    maker_.waitForBegun(1);
+  }
+  EXPECT_EQ(maker_.begun(), 1);
+}
+
+TEST_F(LevelJobsTest, finishedLevelsAreKeptOnDiskUpToALimit) {
+  maker_.release();
+  test::TempFolder folder;
+  {
+    const auto cache = LevelCache::open(folder.path() / "levels", 10);
+    ASSERT_TRUE(cache);
+    LevelJobs jobs({1, 8, cache->get(), std::ref(maker_)});
+    for (const std::uint32_t k : {3u, 4u, 5u, 11u}) {  // 4, 5, 6 and 12 bytes
+      std::promise<std::size_t> bytes;
+      const auto wish = jobs.submit(level(k), [&](Result<LevelFile> file) { bytes.set_value(file->bytes.size()); });
+      EXPECT_EQ(bytes.get_future().get(), k + 1);
+      if (k == 4) {
+        EXPECT_TRUE(jobs.find(level(3))) << "used again, so 4 is the older one";
+      }
+    }
+    EXPECT_TRUE(jobs.find(level(3)));
+    EXPECT_FALSE(jobs.find(level(4)));
+    EXPECT_TRUE(jobs.find(level(5)));
+    EXPECT_FALSE(jobs.find(level(11))) << "alone above the limit";
+    EXPECT_EQ((*cache)->bytes(), 10u);
+  }
+  const auto again = LevelCache::open(folder.path() / "levels", 10);
+  ASSERT_TRUE(again);
+  const auto found = (*again)->find(level(5).key());
+  ASSERT_TRUE(found) << "a later run finds them";
+  EXPECT_EQ(found->bytes.size(), 6u);
+  std::filesystem::resize_file(folder.path() / "levels" / (level(3).key() + ".level"), 1);
+  EXPECT_FALSE((*again)->find(level(3).key())) << "not the file that was put there";
+}
+
+TEST(LevelCache, aFolderThatCannotBeIsAnError) {
+  EXPECT_EQ(LevelCache::open("/proc/nothing", 1).error().code, ErrorCode::kIo);
 }
 
 }  // namespace

@@ -19,12 +19,13 @@ class SampleServer : public ::testing::Test {
 
 TEST_F(SampleServer, everyLevelIsServedAsVtkAndAsDraco) {
   ASSERT_TRUE(store_) << store_.error().message;
-  ASSERT_EQ(store_->meshes().size(), 1u);
-  const ServedMesh& mesh = store_->meshes().begin()->second;
+  const CataloguePointer catalogue = store_->catalogue();
+  ASSERT_EQ(catalogue->meshes.size(), 1u);
+  const ServedMesh& mesh = *catalogue->meshes.begin()->second;
   test::RunningServer server(*store_, viewer_);
   test::RawClient client(server.port());
   for (const ManifestLevel& level : mesh.manifest.levels) {
-    const std::string path = "/v1/meshes/" + mesh.id + "/levels/" + std::to_string(level.level);
+    const std::string path = "/v1/logs/" + mesh.log.digest() + "/levels/" + std::to_string(level.level);
     const auto vtu = client.get(path + ".vtu");
     ASSERT_EQ(vtu.status, 200u) << vtu.body;
     EXPECT_NE(vtu.body.find("NumberOfPoints=\"" + std::to_string(level.vertices) + "\""), std::string::npos);
@@ -39,6 +40,11 @@ TEST_F(SampleServer, everyLevelIsServedAsVtkAndAsDraco) {
     ASSERT_TRUE(decoded.ok()) << decoded.status().error_msg();
     EXPECT_EQ(decoded.value()->num_faces(), level.boundaryTriangles);
     EXPECT_EQ(decoded.value()->num_attributes(), 1 + static_cast<int>(mesh.manifest.fields.size()));
+
+    const auto glb = client.get(path + ".glb?fields=");
+    ASSERT_EQ(glb.status, 200u) << glb.body;
+    EXPECT_TRUE(glb.body.starts_with("glTF"));
+    EXPECT_NE(glb.body.find(R"("count":)" + std::to_string(3 * level.boundaryTriangles)), std::string::npos);
   }
 }
 

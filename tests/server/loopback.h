@@ -27,6 +27,7 @@ class RunningServer {
   ~RunningServer();
 
   [[nodiscard]] std::uint16_t port() const { return server_.port(); }
+  [[nodiscard]] std::uint16_t adminPort() const { return server_.adminPort(); }
   void stop() { server_.stop(); }
   /// Waits for run() to return.
   void join();

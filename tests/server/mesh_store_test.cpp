@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "server/limits.h"
 #include "tests/server/synthetic_log.h"
 
 namespace qtet {
@@ -15,9 +16,9 @@ TEST(MeshStore, servesTheSoundLogsInTheOrderOfTheirNames) {
   folder.write("sub/d.qtet", test::makeLog({.seed = 3}));
   const auto store = MeshStore::open(folder.path());
   ASSERT_TRUE(store);
-  ASSERT_EQ(store->meshes().size(), 2u);
-  EXPECT_EQ(store->meshes().begin()->first, "a");
-  EXPECT_TRUE(store->refused().empty());
+  ASSERT_EQ(store->catalogue()->meshes.size(), 2u);
+  EXPECT_EQ(store->catalogue()->meshes.begin()->first, "a");
+  EXPECT_TRUE(store->catalogue()->refused.empty());
   EXPECT_NE(store->find("b"), nullptr);
   EXPECT_EQ(store->find("c"), nullptr);
   EXPECT_EQ(store->find("../b"), nullptr);
@@ -29,9 +30,10 @@ ErrorCode refusalOfDamaged(const Bytes& bytes) {
   folder.write("bad.qtet", bytes);
   const auto store = MeshStore::open(folder.path());
   EXPECT_TRUE(store);
-  EXPECT_EQ(store->meshes().size(), 1u) << "the sound one is served all the same";
-  EXPECT_EQ(store->refused().size(), 1u);
-  return store->refused().empty() ? ErrorCode::kIo : store->refused()[0].error.code;
+  const CataloguePointer catalogue = store->catalogue();
+  EXPECT_EQ(catalogue->meshes.size(), 1u) << "the sound one is served all the same";
+  EXPECT_EQ(catalogue->refused.size(), 1u);
+  return catalogue->refused.empty() ? ErrorCode::kIo : catalogue->refused[0].error.code;
 }
 
 TEST(MeshStore, aDamagedLogIsRefusedWithItsReason) {
@@ -78,12 +80,75 @@ TEST(MeshStore, aFolderThatIsNotThereIsAnError) {
   EXPECT_NE(store.error().message.find("/nonexistent/folder"), std::string::npos);
 }
 
+TEST(MeshStore, newReplacedAndRemovedLogsAreNoticed) {
+  test::TempFolder folder;
+  folder.write("a.qtet", test::makeLog({.seed = 1}));
+  folder.write("b.qtet", test::makeLog({.seed = 2}));
+  const auto store = MeshStore::open(folder.path());
+  ASSERT_TRUE(store);
+  const MeshPointer old = store->find("a");
+  const std::string tag = store->catalogue()->etag;
+  EXPECT_FALSE(store->rescan()->any());
+  EXPECT_EQ(store->find("a"), old) << "what has not changed is not opened again";
+
+  folder.write("new.tmp", test::makeLog({.seed = 3}));
+  std::filesystem::rename(folder.path() / "new.tmp", folder.path() / "a.qtet");
+  folder.write("c.qtet", test::makeLog({.seed = 4}));
+  std::filesystem::remove(folder.path() / "b.qtet");
+  const auto change = store->rescan();
+  ASSERT_TRUE(change);
+  EXPECT_EQ(change->added.size(), 2u);
+  EXPECT_EQ(change->removed, std::vector<std::string>{"b"});
+  EXPECT_NE(store->find("a")->log.digest(), old->log.digest());
+  EXPECT_EQ(store->findLog(old->log.digest()), old) << "who reads it piece by piece may finish";
+  EXPECT_EQ(store->find("b"), nullptr);
+  EXPECT_NE(store->catalogue()->etag, tag);
+  EXPECT_TRUE(old->log.verifyChecksums()) << "the old file's mapping is untouched";
+}
+
+TEST(MeshStore, aDamagedReplacementLeavesTheSoundLogServed) {
+  test::TempFolder folder;
+  folder.write("a.qtet", test::makeLog({.seed = 1}));
+  const auto store = MeshStore::open(folder.path());
+  ASSERT_TRUE(store);
+  const MeshPointer old = store->find("a");
+  folder.write("new.tmp", "nonsense");
+  std::filesystem::rename(folder.path() / "new.tmp", folder.path() / "a.qtet");
+  EXPECT_EQ(store->rescan()->refused.size(), 1u);
+  EXPECT_EQ(store->find("a"), old);
+  EXPECT_TRUE(store->rescan()->refused.empty()) << "it is told of once";
+  EXPECT_EQ(store->catalogue()->refused.size(), 1u);
+  EXPECT_EQ(store->find("a"), old);
+}
+
+TEST(MeshStore, linksOutOfTheFolderAreNotFollowed) {
+  test::TempFolder folder, elsewhere;
+  elsewhere.write("a.qtet", test::makeLog({.seed = 1}));
+  folder.write("real.qtet", test::makeLog({.seed = 2}));
+  std::filesystem::create_symlink(elsewhere.path() / "a.qtet", folder.path() / "a.qtet");
+  std::filesystem::create_symlink("real.qtet", folder.path() / "alias.qtet");
+  const auto store = MeshStore::open(folder.path());
+  ASSERT_TRUE(store);
+  EXPECT_EQ(store->find("a"), nullptr);
+  EXPECT_NE(store->find("alias"), nullptr);
+}
+
+TEST(MeshStore, onlyNamesOfFilesAreMeshes) {
+  EXPECT_EQ(pathOfMesh("/d", "a b"), "/d/a b.qtet");
+  EXPECT_EQ(pathOfMesh("/d", "\xc3\xa4"), "/d/\xc3\xa4.qtet");
+  EXPECT_TRUE(pathOfMesh("/d", std::string(limits::kMaxIdBytes, 'a')));
+  for (const std::string& id : {std::string(), std::string("a/b"), std::string(".."), std::string(".a"), std::string("a\n"), std::string("a\0b", 3),
+                                std::string("\xc0\xae"), std::string("\xff"), std::string("a\\b"), std::string(limits::kMaxIdBytes + 1, 'a')})
+    EXPECT_FALSE(pathOfMesh("/d", id)) << id;
+}
+
 TEST(MeshStore, aLevelsPrefixEndsWithItsChunk) {
   test::TempFolder folder;
   folder.write("a.qtet", test::makeLog(test::SyntheticLog()));
   const auto store = MeshStore::open(folder.path());
   ASSERT_TRUE(store);
-  const ServedMesh& mesh = *store->find("a");
+  const MeshPointer found = store->find("a");
+  const ServedMesh& mesh = *found;
   EXPECT_EQ(mesh.prefixBytes(11), mesh.log.bytes().size());
   EXPECT_EQ(mesh.prefixBytes(0), mesh.log.index().chunks[1].offset);
 }

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "proto/checksum.h"
 #include "tests/server/loopback.h"
 #include "tests/server/served_folder.h"
 
@@ -106,13 +107,65 @@ TEST(Program, whatCannotBeServedIsExitCode1) {
   EXPECT_EQ(viewer.exitCode(), 1);
 }
 
+TEST(Program, aConfigurationCanBeCheckedWithoutServing) {
+  const test::ServedFolder served;
+  Program sound({served.logFolder(), "--check-config", "--viewer", served.viewerFolder(), "--port", "1"});
+  EXPECT_NE(sound.output().find("port = 1\n"), std::string::npos);
+  EXPECT_EQ(sound.exitCode(), 0);
+  test::TempFolder folder;
+  folder.write("tokens", std::string_view("write * short\n"));
+  Program wrong({served.logFolder(), "--check-config", "--viewer", served.viewerFolder(), "--tokens", folder.path() / "tokens"});
+  EXPECT_NE(wrong.errors().find("line 1"), std::string::npos);
+  EXPECT_EQ(wrong.exitCode(), 1);
+}
+
+TEST(Program, anUploadThatIsKilledLeavesNothingVisibleAndCanBeGoneOnWith) {
+  const std::string token = "aSecretOfTwentyTwoChars";
+  const test::ServedFolder served;
+  test::TempFolder folder;
+  folder.write("tokens", std::string_view("write * " + token + "\n"));
+  const Bytes bytes = test::makeLog({.chunks = 40, .largestBlock = 60000, .seed = 55});
+  const std::string log(bytes.begin(), bytes.end()), digest = sha256Hex(bytes);
+  const std::vector<std::string> words = {served.logFolder(), "--port", "0", "--tokens", folder.path() / "tokens", "--viewer", served.viewerFolder()};
+  const auto head = [&](std::size_t first, const std::string& target) {
+    return "PUT " + target + " HTTP/1.1\r\nHost: a\r\nAuthorization: Bearer " + token + "\r\nContent-Length: " + std::to_string(log.size() - first) +
+           "\r\n" + (first == 0 ? "" : "Content-Range: bytes " + std::to_string(first) + "-" + std::to_string(log.size() - 1) + "/" + std::to_string(log.size()) + "\r\n") + "\r\n";
+  };
+  const auto part = served.logFolder() / (".upload-" + digest + ".part");
+  {
+    Program program(words);
+    const std::uint16_t port = portOf(program.line());
+    ASSERT_NE(port, 0);
+    test::RawClient named(port), nameless(port);
+    named.send(head(0, "/v1/meshes/new?digest=" + digest) + log.substr(0, log.size() / 2));
+    nameless.send(head(0, "/v1/meshes/new") + log.substr(0, 10));
+    const auto deadline = std::chrono::steady_clock::now() + test::kPatience;
+    std::error_code ec;
+    while (!std::filesystem::exists(part, ec) && std::chrono::steady_clock::now() < deadline)
+      std::this_thread::yield();
+    program.signal(SIGKILL);
+    EXPECT_EQ(program.exitCode(), 128 + SIGKILL);
+  }
+  Program program(words);
+  const std::uint16_t port = portOf(program.line());
+  ASSERT_NE(port, 0) << "two meshes, as before";
+  std::error_code ec;
+  const auto there = std::filesystem::file_size(part, ec);
+  ASSERT_FALSE(ec);
+  test::RawClient client(port);
+  client.send(head(there, "/v1/meshes/new?digest=" + digest) + log.substr(there));
+  EXPECT_EQ(client.receive().status, 201u);
+  EXPECT_EQ(client.get("/v1/logs/" + digest + "/log").body, log);
+  for (const auto& entry : std::filesystem::directory_iterator(served.logFolder())) EXPECT_NE(entry.path().extension(), ".part") << entry.path();
+}
+
 TEST(Program, servesAndEndsOnSigtermWithZero) {
   for (const int number : {SIGTERM, SIGINT}) {
     const test::ServedFolder served;
     Program program({served.logFolder(), "--port", "0", "--threads", "2", "--viewer", served.viewerFolder()});
     const std::uint16_t port = portOf(program.line());
     ASSERT_NE(port, 0);
-    EXPECT_EQ(test::RawClient(port).get("/v1/meshes/noise/log").body, served.file());
+    EXPECT_EQ(test::RawClient(port).get(served.log()).body, served.file());
     EXPECT_EQ(test::RawClient(port).get("/").status, 200u);
     test::StreamClient stream(port);
     ASSERT_TRUE(stream.send(R"({"type":"open","mesh":"noise","credit":0})"));

@@ -33,6 +33,8 @@ class ServedFolder {
   [[nodiscard]] const MeshStore& store() const { return store_; }
   [[nodiscard]] const ViewerFiles& viewer() const { return files_; }
   [[nodiscard]] const ServedMesh& mesh() const { return *store_.find("noise"); }
+  /// An address under the digest of `noise`.
+  [[nodiscard]] std::string log(const std::string& rest = "log") const { return "/v1/logs/" + mesh().log.digest() + "/" + rest; }
   [[nodiscard]] std::string file() const { return {mesh().log.bytes().begin(), mesh().log.bytes().end()}; }
   [[nodiscard]] const std::filesystem::path& logFolder() const { return logs_.path(); }
   [[nodiscard]] const std::filesystem::path& viewerFolder() const { return viewer_.path(); }

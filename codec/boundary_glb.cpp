@@ -1,0 +1,114 @@
+#include "codec/boundary_glb.h"
+
+#include <draco/compression/decode.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "codec/boundary_drc.h"
+
+namespace qtet {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// glTF 2.0, 3.6.2.2 and 4.4
+constexpr int kUnsignedInt = 5125;
+constexpr int kFloat = 5126;
+constexpr std::uint32_t kGlbMagic = 0x46546C67;
+constexpr std::uint32_t kGlbVersion = 2;
+constexpr std::uint32_t kJsonChunk = 0x4E4F534A;
+constexpr std::uint32_t kBinaryChunk = 0x004E4942;
+constexpr std::array<const char*, 4> kTypes = {"SCALAR", "VEC2", "VEC3", "VEC4"};
+constexpr const char* kExtension = "KHR_draco_mesh_compression";
+
+void putU32(Bytes& out, std::uint32_t value) {
+  for (int shift = 0; shift < 32; shift += 8) out.push_back(static_cast<std::uint8_t>(value >> shift));
+}
+
+void putChunk(Bytes& out, std::uint32_t type, ByteView content, std::uint8_t padding) {
+  const std::size_t padded = (content.size() + 3) / 4 * 4;
+  putU32(out, static_cast<std::uint32_t>(padded));
+  putU32(out, type);
+  out.insert(out.end(), content.begin(), content.end());
+  out.insert(out.end(), padded - content.size(), padding);
+}
+
+/// POSITION must tell its bounds (glTF 2.0, 3.7.2.1): of what a reader decodes, not of what was put in.
+Json positionAccessor(const draco::PointAttribute& attribute, std::uint32_t points) {
+  std::array<float, 3> least{}, most{};
+  least.fill(std::numeric_limits<float>::max());
+  most.fill(std::numeric_limits<float>::lowest());
+  for (std::uint32_t i = 0; i < attribute.size(); ++i) {
+    std::array<float, 3> p{};
+    attribute.GetValue(draco::AttributeValueIndex(i), p.data());
+    for (std::size_t a = 0; a < 3; ++a) least[a] = std::min(least[a], p[a]), most[a] = std::max(most[a], p[a]);
+  }
+  return {{"componentType", kFloat}, {"count", points}, {"type", "VEC3"}, {"min", least}, {"max", most}};
+}
+
+/// What the Draco bytes hold, in glTF's words. Draco may split vertices where the surface is not manifold, so it is asked for its counts.
+Json describe(const draco::Mesh& mesh, std::size_t bytes) {
+  Json accessors = {{{"componentType", kUnsignedInt}, {"count", mesh.num_faces() * 3}, {"type", "SCALAR"}}};
+  Json attributes = Json::object(), ids = Json::object();
+  const auto add = [&](const std::string& name, int attribute, Json accessor) {
+    attributes[name] = accessors.size();
+    ids[name] = mesh.attribute(attribute)->unique_id();
+    accessors.push_back(std::move(accessor));
+  };
+  for (int i = 0; i < mesh.num_attributes(); ++i) {
+    const draco::PointAttribute& attribute = *mesh.attribute(i);
+    if (attribute.attribute_type() == draco::GeometryAttribute::POSITION) {
+      add("POSITION", i, positionAccessor(attribute, mesh.num_points()));
+      continue;
+    }
+    const auto components = static_cast<std::size_t>(attribute.num_components());
+    std::string name;
+    const draco::AttributeMetadata* metadata = mesh.GetAttributeMetadataByAttributeId(i);
+    if (components > kTypes.size() || metadata == nullptr || !metadata->GetEntryString("name", &name)) continue;
+    add("_" + name, i, {{"componentType", kFloat}, {"count", mesh.num_points()}, {"type", kTypes[components - 1]}});
+  }
+  const Json primitive = {{"attributes", attributes},
+                          {"indices", 0},
+                          {"material", 0},
+                          {"mode", 4},
+                          {"extensions", {{kExtension, {{"bufferView", 0}, {"attributes", ids}}}}}};
+  return {{"asset", {{"version", "2.0"}, {"generator", "qtet " QTET_VERSION}}},
+          {"extensionsUsed", {kExtension}},
+          {"extensionsRequired", {kExtension}},
+          {"scene", 0},
+          {"scenes", {{{"nodes", {0}}}}},
+          {"nodes", {{{"mesh", 0}}}},
+          {"meshes", {{{"primitives", {primitive}}}}},
+          {"materials", {{{"doubleSided", true}, {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0.8}}}}}},
+          {"accessors", accessors},
+          {"bufferViews", {{{"buffer", 0}, {"byteLength", bytes}}}},
+          {"buffers", {{{"byteLength", bytes}}}}};
+}
+
+}  // namespace
+
+Result<Bytes> boundaryGlb(const LatticeMesh& mesh) {
+  const Result<Bytes> drc = boundaryDrc(mesh);
+  if (!drc) return drc;
+  draco::DecoderBuffer buffer;
+  buffer.Init(reinterpret_cast<const char*>(drc->data()), drc->size());
+  draco::Decoder decoder;
+  const auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
+  if (!decoded.ok())
+    return fail(ErrorCode::kBadCodec, std::string("Draco cannot read what it wrote: ") + decoded.status().error_msg());
+
+  const std::string json = describe(*decoded.value(), drc->size()).dump(-1, ' ', false, Json::error_handler_t::replace);
+  Bytes out;
+  putU32(out, kGlbMagic);
+  putU32(out, kGlbVersion);
+  putU32(out, 0);  // the length, below
+  putChunk(out, kJsonChunk, {reinterpret_cast<const std::uint8_t*>(json.data()), json.size()}, ' ');
+  putChunk(out, kBinaryChunk, *drc, 0);
+  for (std::size_t i = 0; i < 4; ++i) out[8 + i] = static_cast<std::uint8_t>(out.size() >> (8 * i));
+  return out;
+}
+
+}  // namespace qtet

@@ -1,0 +1,80 @@
+#include <utility>  // before any Asio header: 1.74 uses std::exchange without it
+
+#include "server/address_limits.h"
+
+#include <algorithm>
+
+#include "server/limits.h"
+
+namespace qtet {
+namespace {
+
+/// A second's requests may come at once this many times over.
+constexpr double kBurstSeconds = 2;
+constexpr std::size_t kPrefixBytes = 8;  // of an IPv6 address: its /64
+
+AddressLimits::Key keyOf(const boost::asio::ip::address& address) {
+  AddressLimits::Key out{};
+  if (address.is_v4()) {
+    const auto bytes = address.to_v4().to_bytes();
+    std::ranges::copy(bytes, out.end() - bytes.size());
+  } else {
+    const auto bytes = address.to_v6().to_bytes();
+    std::copy_n(bytes.begin(), address.to_v6().is_v4_mapped() ? bytes.size() : kPrefixBytes, out.begin());
+    if (address.to_v6().is_v4_mapped()) std::fill_n(out.begin(), 12, std::uint8_t{0});
+  }
+  return out;
+}
+
+}  // namespace
+
+struct AddressLimits::Visitor::Host {
+  std::mutex mutex;
+  std::size_t connections = 0;
+  double spent = 0;  ///< requests that have not been forgiven yet
+  Clock::time_point last{};
+
+  /// What a second allows is forgiven every second.
+  void forgive(Clock::time_point now, unsigned requestsPerSecond) {
+    const std::chrono::duration<double> passed = now - last;
+    spent = std::max(0.0, spent - passed.count() * requestsPerSecond);
+    last = now;
+  }
+};
+
+AddressLimits::Visitor::~Visitor() {
+  const std::scoped_lock lock(host_->mutex);
+  --host_->connections;
+}
+
+bool AddressLimits::Visitor::countRequest(Clock::time_point now) {
+  if (requestsPerSecond_ == 0) return true;
+  const std::scoped_lock lock(host_->mutex);
+  host_->forgive(now, requestsPerSecond_);
+  if (host_->spent + 1 > requestsPerSecond_ * kBurstSeconds) return false;
+  ++host_->spent;
+  return true;
+}
+
+std::unique_ptr<AddressLimits::Visitor> AddressLimits::enter(const boost::asio::ip::address& address) {
+  const std::scoped_lock lock(state_->mutex);
+  if (state_->hosts.size() >= limits::kMaxRememberedAddresses) forgetQuietHosts();
+  auto& host = state_->hosts[keyOf(address)];
+  if (!host) host = std::make_shared<Visitor::Host>();
+  const std::scoped_lock one(host->mutex);
+  if (mostConnections_ != 0 && host->connections >= mostConnections_) return nullptr;
+  ++host->connections;
+  return std::unique_ptr<Visitor>(new Visitor(host, requestsPerSecond_));
+}
+
+/// Those without a connection whose requests are all forgiven are as good as new ones.
+void AddressLimits::forgetQuietHosts() {
+  const auto now = Clock::now();
+  std::erase_if(state_->hosts, [&](const auto& entry) {
+    const std::scoped_lock lock(entry.second->mutex);
+    entry.second->forgive(now, requestsPerSecond_);
+    return entry.second->connections == 0 && entry.second->spent == 0;
+  });
+}
+
+}  // namespace qtet

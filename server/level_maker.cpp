@@ -1,0 +1,37 @@
+#include "server/level_maker.h"
+
+#include <new>
+
+#include "codec/boundary_drc.h"
+#include "codec/boundary_glb.h"
+#include "codec/vtu_writer.h"
+#include "server/preview.h"
+
+namespace qtet {
+namespace {
+
+Result<Bytes> written(const LatticeMesh& mesh, LevelForm form) {
+  switch (form) {
+    case LevelForm::kVtu: return vtuBytes(mesh);
+    case LevelForm::kGlb: return boundaryGlb(mesh);
+    case LevelForm::kPng: return previewPng(mesh);
+    case LevelForm::kDrc: break;
+  }
+  return boundaryDrc(mesh);
+}
+
+}  // namespace
+
+Result<Bytes> makeLevel(const LevelRequest& request, const std::stop_token& stop) {
+  try {
+    const Result<LatticeMesh> mesh = meshAtLevel(request.mesh->log, request.level, request.fields, stop);
+    if (!mesh) return std::unexpected(mesh.error());
+    Result<Bytes> file = written(*mesh, request.form);
+    if (!file || stop.stop_requested()) return file;
+    return encoded(std::move(*file), request.coding);
+  } catch (const std::bad_alloc&) {
+    return fail(ErrorCode::kIo, "there is not enough memory for this level; ask for a coarser one");
+  }
+}
+
+}  // namespace qtet

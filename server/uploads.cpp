@@ -1,0 +1,184 @@
+#include "server/uploads.h"
+
+#include <fcntl.h>
+#include <spdlog/spdlog.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "proto/json_reader.h"
+#include "server/http_resource.h"
+#include "server/limits.h"
+#include "server/request_target.h"
+
+namespace qtet {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Hidden, so that no scan of the folder takes one for a mesh. Those of a digest may be gone on with.
+constexpr std::string_view kPrefix = ".upload-";
+constexpr std::string_view kSuffix = ".part";
+
+Reply diskTrouble(const std::string& what, int number) {
+  if (number == ENOSPC || number == EDQUOT)
+    return problem(507, "insufficient-storage", "the server's disk is full; nothing was changed");
+  spdlog::error("an upload: {}: {}", what, std::strerror(number));
+  return problem(500, "internal", what + ": " + std::strerror(number));
+}
+
+Reply busyUploads(std::string_view detail) {
+  Reply out = problem(503, "busy", detail);
+  out.headers.emplace_back("Retry-After", std::to_string(limits::kRetryAfterSeconds));
+  return out;
+}
+
+bool isDigest(std::string_view text) { return text.size() == 64 && text.find_first_not_of("0123456789abcdef") == std::string_view::npos; }
+
+Status syncFolder(const fs::path& folder) {
+  const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const bool done = file >= 0 && ::fsync(file) == 0;
+  const int number = errno;
+  if (file >= 0) ::close(file);
+  return done ? Status() : fail(ErrorCode::kIo, folder.string() + ": " + std::strerror(number));
+}
+
+}  // namespace
+
+Upload::~Upload() {
+  if (file_ >= 0) ::close(file_);
+  if (!keep_ && !request_.digest) ::unlink(part_.c_str());
+  const std::scoped_lock lock(uploads_.mutex_);
+  uploads_.active_.erase(part_);
+}
+
+std::optional<Reply> Upload::append(ByteView bytes) {
+  while (!bytes.empty()) {
+    const ssize_t n = ::write(file_, bytes.data(), bytes.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return diskTrouble("the upload cannot be written", errno);
+    bytes = bytes.subspan(static_cast<std::size_t>(n));
+  }
+  return std::nullopt;
+}
+
+Reply Upload::finish() {
+  struct stat info {};
+  if (::fstat(file_, &info) != 0) return diskTrouble("the upload cannot be read", errno);
+  if (static_cast<std::uint64_t>(info.st_size) < request_.totalBytes) {
+    Reply out;
+    out.status = 202;
+    out.headers = {{"Content-Type", "application/json"}, {"Cache-Control", "no-store"}};
+    out.body = dumpJson({{"digest", *request_.digest}, {"bytes", info.st_size}});
+    addCommonHeaders(out);
+    return out;
+  }
+  if (::fsync(file_) != 0) return diskTrouble("the upload cannot be kept", errno);
+  Result<MeshPointer> mesh = openMesh(part_, request_.id);
+  const auto refuse = [this](std::string_view type, const std::string& detail) {
+    ::unlink(part_.c_str());  // going on with it would not make it better
+    return problem(422, type, detail);
+  };
+  if (!mesh) return refuse("bad-log", "this is no sound log: " + mesh.error().text());
+  if (request_.digest && (*mesh)->log.digest() != *request_.digest)
+    return refuse("bad-log", "the log has the digest " + (*mesh)->log.digest() + ", not the one that the request names");
+  return publish();
+}
+
+Reply Upload::publish() {
+  const std::scoped_lock lock(uploads_.publishing_);
+  if (std::optional<Reply> refusal = uploads_.precondition(request_)) return std::move(*refusal);
+  const bool replaced = uploads_.store_.find(request_.id) != nullptr;
+  const fs::path target = *pathOfMesh(uploads_.store_.folder(), request_.id);
+  if (::rename(part_.c_str(), target.c_str()) != 0) return diskTrouble("the upload cannot be published", errno);
+  keep_ = true;
+  if (const Status synced = syncFolder(uploads_.store_.folder()); !synced) spdlog::warn("after an upload: {}", synced.error().message);
+  ++uploads_.published_;
+  const Result<FolderChange> change = uploads_.store_.rescan();
+  const MeshPointer mesh = uploads_.store_.find(request_.id);
+  if (!change || !mesh) return problem(500, "internal", "the log was published but cannot be served");
+  spdlog::info("{}: uploaded, {} bytes", mesh->id, mesh->log.bytes().size());
+  Reply out = beginReply(replaced ? 200 : 201, {{mesh->description.etag, mesh->modified}, "application/json", "no-store", {}});
+  out.headers.emplace_back("Location", "/v1/meshes/" + percentEncode(mesh->id));
+  out.body = mesh->description.text;
+  return out;
+}
+
+std::optional<Reply> Uploads::precondition(const UploadRequest& request) const {
+  const MeshPointer mesh = store_.find(request.id);
+  RequestView view{.method = "PUT", .target = ""};
+  if (request.ifMatch) view.ifMatch = *request.ifMatch;
+  if (request.ifNoneMatch) view.ifNoneMatch = *request.ifNoneMatch;
+  // What is not there has no tag at all: If-Match fails and If-None-Match holds.
+  const bool fails = mesh ? evaluateConditions(view, {mesh->description.etag, mesh->modified}) != Verdict::kSend : request.ifMatch.has_value();
+  if (!fails) return std::nullopt;
+  return problem(412, "precondition-failed", mesh ? "the mesh's ETag is " + mesh->description.etag : "there is no mesh of that name");
+}
+
+fs::path Uploads::partOf(const UploadRequest& request) {
+  const std::string name = request.digest ? *request.digest : std::to_string(::getpid()) + "." + std::to_string(next_++);
+  return store_.folder() / (std::string(kPrefix) + name + std::string(kSuffix));
+}
+
+std::expected<std::unique_ptr<Upload>, Reply> Uploads::begin(const UploadRequest& request) {
+  const auto refuse = [](Reply reply) { return std::unexpected(std::move(reply)); };
+  if (request.totalBytes > mostBytes_)
+    return refuse(problem(413, "content-too-large", "a log has at most " + std::to_string(mostBytes_) + " bytes here"));
+  if (std::optional<Reply> refusal = precondition(request)) return refuse(std::move(*refusal));
+
+  const std::scoped_lock lock(mutex_);
+  const fs::path part = partOf(request);
+  if (active_.contains(part)) return refuse(problem(409, "upload-conflict", "somebody is sending this log at the moment"));
+  if (active_.size() >= limits::kMaxUploads) return refuse(busyUploads("too many uploads; try again"));
+  const int flags = O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | O_NOFOLLOW | (request.first == 0 ? O_TRUNC : 0);
+  const int file = ::open(part.c_str(), flags, 0644);
+  if (file < 0) return refuse(diskTrouble("the upload cannot be written", errno));
+  struct stat info {};
+  if (::fstat(file, &info) != 0 || static_cast<std::uint64_t>(info.st_size) != request.first) {
+    ::close(file);
+    return refuse(problem(409, "upload-conflict", "there are " + std::to_string(info.st_size) + " bytes of this log; go on from there"));
+  }
+  active_.insert(part);
+  return std::unique_ptr<Upload>(new Upload(*this, request, part, file));
+}
+
+std::optional<std::uint64_t> Uploads::partialBytes(const std::string& digest) const {
+  if (!isDigest(digest)) return std::nullopt;
+  const auto file = identityOf(store_.folder() / (std::string(kPrefix) + digest + std::string(kSuffix)));
+  return file ? std::optional(static_cast<std::uint64_t>(file->bytes)) : std::nullopt;
+}
+
+Reply Uploads::remove(const UploadRequest& request) {
+  const std::scoped_lock lock(publishing_);
+  if (std::optional<Reply> refusal = precondition(request)) return std::move(*refusal);
+  if (!store_.find(request.id)) return problem(404, "not-found", "there is no mesh of that name; the list is at /v1/meshes");
+  if (::unlink(pathOfMesh(store_.folder(), request.id)->c_str()) != 0 && errno != ENOENT)
+    return diskTrouble("the mesh cannot be removed", errno);
+  if (const Result<FolderChange> change = store_.rescan(); !change) return problem(500, "internal", change.error().message);
+  spdlog::info("{}: removed by request", request.id);
+  Reply out;
+  out.status = 204;
+  addCommonHeaders(out);
+  return out;
+}
+
+void Uploads::sweep() const {
+  std::error_code ec;
+  for (fs::directory_iterator it(store_.folder(), ec), end; !ec && it != end; it.increment(ec)) {
+    const std::string name = it->path().filename().string();
+    if (!name.starts_with(kPrefix) || !name.ends_with(kSuffix)) continue;
+    const std::string_view middle = std::string_view(name).substr(kPrefix.size(), name.size() - kPrefix.size() - kSuffix.size());
+    std::error_code gone;
+    const auto age = fs::file_time_type::clock::now() - it->last_write_time(gone);
+    if (!gone && (!isDigest(middle) || age > limits::kPartialUploadTime)) fs::remove(it->path(), gone);
+  }
+}
+
+std::size_t Uploads::active() const {
+  const std::scoped_lock lock(mutex_);
+  return active_.size();
+}
+
+}  // namespace qtet

@@ -1,0 +1,85 @@
+// PUT and DELETE of meshes: a log comes into a hidden file beside the others, is verified whole, and gets its name by a rename; so it is
+// there as a whole or not at all, whatever happens on the way (PROTOCOL.md, "Uploads").
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <expected>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "server/http_message.h"
+#include "server/mesh_store.h"
+#include "server/upload_request.h"
+
+namespace qtet {
+
+class Uploads;
+
+/// One upload under way. Not thread-safe; `uploads` must outlive it.
+class Upload {
+ public:
+  Upload(const Upload&) = delete;
+  Upload& operator=(const Upload&) = delete;
+  /// What came stays for going on with it if the request named its digest; else it goes.
+  ~Upload();
+
+  /// nullopt: the bytes are written; else the answer that ends the upload: 507 (disk full) or 500.
+  [[nodiscard]] std::optional<Reply> append(ByteView bytes);
+  /// After the last byte: verifies and publishes. Reads the whole file, so not for a thread that serves others.
+  /// 201 (new), 200 (replaced), or 409, 412, 422, 500, 507. An incomplete range gives 202.
+  [[nodiscard]] Reply finish();
+
+ private:
+  friend class Uploads;
+  Upload(Uploads& uploads, UploadRequest request, std::filesystem::path part, int file)
+      : uploads_(uploads), request_(std::move(request)), part_(std::move(part)), file_(file) {}
+  Reply publish();
+
+  Uploads& uploads_;
+  const UploadRequest request_;
+  const std::filesystem::path part_;
+  int file_;
+  bool keep_ = false;
+};
+
+/// Thread-safe.
+class Uploads {
+ public:
+  /// `store` must outlive it.
+  Uploads(const MeshStore& store, std::uintmax_t mostBytes) : store_(store), mostBytes_(mostBytes) {}
+
+  /// Opens the place where the bytes go; or the answer: 404 (no such name), 409 (the range does not go on where it stopped, or somebody
+  /// is sending the same), 412, 413, 500, 503, 507.
+  [[nodiscard]] std::expected<std::unique_ptr<Upload>, Reply> begin(const UploadRequest& request);
+  /// Bytes that are there of an upload that broke off; nullopt: none.
+  [[nodiscard]] std::optional<std::uint64_t> partialBytes(const std::string& digest) const;
+  /// 204, 404 or 412.
+  [[nodiscard]] Reply remove(const UploadRequest& request);
+  /// Removes what uploads left behind: those that cannot be gone on with, and those that nobody went on with for limits::kPartialUploadTime.
+  /// REQUIRES: no upload is under way.
+  void sweep() const;
+
+  [[nodiscard]] std::size_t active() const;
+  [[nodiscard]] std::uint64_t published() const { return published_; }
+
+ private:
+  friend class Upload;
+  /// nullopt, or the 412 that If-Match and If-None-Match demand as things stand.
+  [[nodiscard]] std::optional<Reply> precondition(const UploadRequest& request) const;
+  [[nodiscard]] std::filesystem::path partOf(const UploadRequest& request);
+
+  const MeshStore& store_;
+  const std::uintmax_t mostBytes_;
+  std::mutex publishing_;  // between the check of a condition and the rename nothing changes
+  mutable std::mutex mutex_;
+  std::set<std::filesystem::path> active_;
+  std::uint64_t next_ = 0;
+  std::atomic<std::uint64_t> published_ = 0;
+};
+
+}  // namespace qtet

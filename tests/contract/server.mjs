@@ -1,0 +1,36 @@
+// A folder with a small mesh, and a qtet-server over it, for the scripts of this folder.
+
+import {spawn, spawnSync} from 'node:child_process';
+import {mkdirSync, rmSync, writeFileSync} from 'node:fs';
+import {join} from 'node:path';
+
+/** May write meshes whose names begin with "up". */
+export const kToken = 'aSecretOfTwentyTwoChars';
+
+function run(program, words) {
+  const done = spawnSync(program, words, {encoding: 'utf8'});
+  if (done.status !== 0) throw new Error(`${program} ${words.join(' ')}: ${done.stderr}`);
+}
+
+/** Makes the folder `out` anew: logs/fin.qtet, other.qtet, tokens, viewer/. `bin` holds the programs. */
+export function prepare({bin, out}) {
+  rmSync(out, {recursive: true, force: true});
+  for (const folder of ['logs', 'viewer']) mkdirSync(join(out, folder), {recursive: true});
+  const mesh = join(out, 'fin.vtu');
+  run(join(bin, 'qtet'), ['sample', 'fin', '--cells', '3000', '-o', mesh]);
+  run(join(bin, 'qtet'), ['simplify', mesh, '-o', join(out, 'logs/fin.qtet')]);
+  run(join(bin, 'qtet'), ['simplify', mesh, '-o', join(out, 'other.qtet'), '--field-bits', '8']);
+  writeFileSync(join(out, 'tokens'), `write up* ${kToken}\n`);
+  writeFileSync(join(out, 'viewer/index.html'), '<!doctype html><title>viewer</title>');
+}
+
+/** The process, and the port that it listens on. */
+export function startServer({bin, out}) {
+  const words = [join(out, 'logs'), '--port', '0', '--viewer', join(out, 'viewer'), '--tokens', join(out, 'tokens'), '--max-upload-bytes', '1000000',
+    '--cache', join(out, 'cache')];
+  const child = spawn(join(bin, 'qtet-server'), words, {stdio: ['ignore', 'pipe', 'inherit']});
+  return new Promise((ready, failed) => {
+    child.stdout.once('data', (line) => ready({child, port: Number(/:(\d+)\//.exec(line)?.[1])}));
+    child.once('exit', (code) => failed(new Error(`qtet-server ended with ${code}`)));
+  });
+}

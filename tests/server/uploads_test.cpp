@@ -1,0 +1,269 @@
+// PUT and DELETE over a real socket: a log is there whole or not at all.
+#include "server/uploads.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <tuple>
+#include <vector>
+
+#include "proto/checksum.h"
+#include "server/limits.h"
+#include "tests/server/loopback.h"
+#include "tests/server/served_folder.h"
+
+namespace qtet {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+using test::HttpResponse;
+using test::RawClient;
+
+constexpr const char* kToken = "aSecretOfTwentyTwoChars";
+
+class UploadTest : public testing::Test {
+ protected:
+  static std::string textOf(const Bytes& bytes) { return {bytes.begin(), bytes.end()}; }
+  static std::string digestOf(const std::string& text) { return sha256Hex({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}); }
+  static std::string head(const std::string& method, const std::string& target, std::size_t bytes, const std::string& more = "") {
+    return method + " " + target + " HTTP/1.1\r\nHost: a\r\nAuthorization: Bearer " + kToken + "\r\nContent-Length: " + std::to_string(bytes) + "\r\n" +
+           more + "\r\n";
+  }
+  HttpResponse put(const std::string& target, const std::string& body, const std::string& more = "") {
+    RawClient client(server_.port());
+    client.send(head("PUT", target, body.size(), more) + body);
+    return client.receive();
+  }
+  HttpResponse get(const std::string& target) { return RawClient(server_.port()).get(target); }
+  /// Files of the folder that are no mesh.
+  std::size_t leftovers() const {
+    std::size_t out = 0;
+    for (const auto& entry : fs::directory_iterator(folder_.logFolder())) out += entry.path().filename().string().starts_with('.');
+    return out;
+  }
+
+  test::ServedFolder folder_;
+  const Tokens tokens_ = *Tokens::parse(std::string("write new* ") + kToken + "\nwrite noise " + kToken + "\n# nobody\n");
+  std::unique_ptr<MeshStore> store_ = std::make_unique<MeshStore>(*MeshStore::open(folder_.logFolder()));
+  const std::string log_ = textOf(test::makeLog({.seed = 77}));
+  test::RunningServer server_{
+      *store_, folder_.viewer(), {.threads = 2, .timeouts = {.body = std::chrono::milliseconds(400)}, .tokens = &tokens_, .maxUploadBytes = 1 << 20}};
+};
+
+TEST_F(UploadTest, aSoundLogIsServedOnceItIsWhole) {
+  RawClient client(server_.port());
+  client.send(head("PUT", "/v1/meshes/new%20one", log_.size()) + log_.substr(0, 1000));
+  std::this_thread::sleep_for(test::kQuiet);
+  EXPECT_EQ(get("/v1/meshes/new%20one").status, 404u);
+  client.send(log_.substr(1000));
+  const HttpResponse created = client.receive();
+  EXPECT_EQ(created.status, 201u) << created.body;
+  EXPECT_EQ(created.header("location"), "/v1/meshes/new%20one");
+  EXPECT_EQ(Json::parse(created.body)["digest"], digestOf(log_));
+  EXPECT_EQ(client.get("/v1/logs/" + digestOf(log_) + "/log").body, log_) << "on the same connection";
+  EXPECT_EQ(get("/v1/meshes/new%20one").header("etag"), created.header("etag"));
+  EXPECT_EQ(leftovers(), 0u);
+
+  EXPECT_EQ(put("/v1/meshes/new%20one", log_).status, 200u) << "replaced";
+}
+
+TEST_F(UploadTest, whatIsNoSoundLogIsNeverServed) {
+  std::string flipped = log_;
+  flipped.back() = static_cast<char>(flipped.back() ^ 1);
+  for (const std::string& body : {std::string(), std::string("nonsense"), log_.substr(0, log_.size() - 1), flipped}) {
+    const HttpResponse refused = put("/v1/meshes/new", body);
+    EXPECT_EQ(refused.status, 422u);
+    EXPECT_EQ(Json::parse(refused.body)["type"], "/problems/bad-log");
+    EXPECT_EQ(get("/v1/meshes/new").status, 404u);
+  }
+  EXPECT_EQ(put("/v1/meshes/new?digest=" + std::string(64, '0'), log_).status, 422u) << "sound, but another one";
+  EXPECT_EQ(put("/v1/meshes/noise", "nonsense").status, 422u);
+  EXPECT_EQ(get(folder_.log()).body, folder_.file()) << "the one that was there stays";
+  EXPECT_EQ(leftovers(), 0u);
+}
+
+TEST_F(UploadTest, onlyTheRightTokenOpens) {
+  const auto with = [&](const char* method, const std::string& target, const std::string& authorization) {
+    RawClient client(server_.port());
+    client.send(std::string(method) + " " + target + " HTTP/1.1\r\nHost: a\r\nContent-Length: 0\r\n" + authorization + "\r\n");
+    return client.receive();
+  };
+  const std::string good = "Authorization: bearer " + std::string(kToken) + "\r\n";
+  for (const char* method : {"PUT", "DELETE"}) {
+    for (const std::string& wrong : {std::string(), std::string("Authorization: Bearer x\r\n"), std::string("Authorization: Basic abc\r\n"),
+                                     std::string("Authorization: Bearer \r\n")}) {
+      const HttpResponse refused = with(method, "/v1/meshes/noise", wrong);
+      EXPECT_EQ(refused.status, 401u) << wrong;
+      EXPECT_TRUE(refused.header("www-authenticate").starts_with("Bearer"));
+    }
+    EXPECT_EQ(with(method, "/v1/meshes/a%20b", good).status, 403u) << "a token for other meshes";
+  }
+  EXPECT_EQ(with("PUT", "/v1/meshes/new%2f..%2fx", good).status, 404u) << "no file name";
+  EXPECT_EQ(with("PUT", "/v1/meshes", good).status, 405u);
+  EXPECT_EQ(get("/v1/meshes/noise").status, 200u);
+}
+
+TEST_F(UploadTest, theBodyOfARefusedRequestIsNeverTakenForTheNextOne) {
+  const std::string hidden = "GET /v1/meshes HTTP/1.1\r\nHost: a\r\n\r\n";
+  const std::string token = "Authorization: Bearer " + std::string(kToken) + "\r\n";
+  for (const auto& [target, more, status] : std::vector<std::tuple<std::string, std::string, unsigned>>{{"/v1/meshes/new", "", 401},
+                                                                                                       {"/v1/meshes/a%20b", token, 403},
+                                                                                                       {"/v1/meshes/new%2fx", token, 404},
+                                                                                                       {"/v1/meshes", token, 405},
+                                                                                                       {"/v1/meshes/noise", token + "If-None-Match: *\r\n", 412},
+                                                                                                       {"/v1/meshes/new", token + "Content-Encoding: br\r\n", 415},
+                                                                                                       {"/v1/meshes/new?digest=1", token, 400}}) {
+    RawClient client(server_.port());
+    client.send("PUT " + target + " HTTP/1.1\r\nHost: a\r\nContent-Length: " + std::to_string(hidden.size()) + "\r\n" + more + "\r\n" + hidden);
+    const HttpResponse refused = client.receive();
+    EXPECT_EQ(refused.status, status) << target;
+    EXPECT_EQ(refused.header("connection"), "close") << target;
+    EXPECT_TRUE(client.closedByServer()) << target;
+  }
+}
+
+TEST_F(UploadTest, aMeshIsRemovedAndItsDigestWithIt) {
+  RawClient client(server_.port());
+  client.send(head("DELETE", "/v1/meshes/noise", 0, "If-Match: \"other\"\r\n"));
+  EXPECT_EQ(client.receive().status, 412u);
+  client.send(head("DELETE", "/v1/meshes/noise", 0));
+  EXPECT_EQ(client.receive().status, 204u);
+  EXPECT_EQ(get("/v1/meshes/noise").status, 404u);
+  EXPECT_EQ(get(folder_.log()).status, 404u);
+  client.send(head("DELETE", "/v1/meshes/noise", 0));
+  EXPECT_EQ(client.receive().status, 404u);
+}
+
+TEST_F(UploadTest, conditionsProtectWhatIsThere) {
+  EXPECT_EQ(put("/v1/meshes/noise", log_, "If-None-Match: *\r\n").status, 412u);
+  EXPECT_EQ(put("/v1/meshes/noise", log_, "If-Match: \"other\"\r\n").status, 412u);
+  EXPECT_EQ(put("/v1/meshes/new", log_, "If-Match: *\r\n").status, 412u);
+  EXPECT_EQ(put("/v1/meshes/noise", log_, "If-Match: " + get("/v1/meshes/noise").header("etag") + "\r\n").status, 200u);
+  EXPECT_EQ(put("/v1/meshes/new", log_, "If-None-Match: *\r\n").status, 201u);
+}
+
+TEST_F(UploadTest, aConditionStillHoldsWhenTheLogGetsItsName) {
+  RawClient slow(server_.port());
+  slow.send(head("PUT", "/v1/meshes/new", log_.size(), "If-None-Match: *\r\n") + log_.substr(0, 100));
+  std::this_thread::sleep_for(test::kQuiet);
+  const std::string other = textOf(test::makeLog({.seed = 78}));
+  EXPECT_EQ(put("/v1/meshes/new", other, "If-None-Match: *\r\n").status, 201u);
+  slow.send(log_.substr(100));
+  EXPECT_EQ(slow.receive().status, 412u);
+  EXPECT_EQ(get("/v1/logs/" + digestOf(other) + "/log").body, other) << "who came first stays";
+}
+
+TEST_F(UploadTest, anUploadThatBrokeOffGoesOnWhereItStopped) {
+  const std::string target = "/v1/meshes/new?digest=" + digestOf(log_);
+  const std::string ask = "GET /v1/meshes/new/upload?digest=" + digestOf(log_) + " HTTP/1.1\r\nHost: a\r\nAuthorization: Bearer " + kToken + "\r\n\r\n";
+  {
+    RawClient client(server_.port());
+    client.send(head("PUT", target, log_.size()) + log_.substr(0, 3000));
+    client.finishSending();
+    (void)client.readToEnd();
+  }
+  RawClient client(server_.port());
+  client.send(ask);
+  const HttpResponse there = client.receive();
+  ASSERT_EQ(there.status, 200u) << there.body;
+  EXPECT_EQ(Json::parse(there.body)["bytes"], 3000);
+  const auto range = [&](std::size_t first) {
+    return "Content-Range: bytes " + std::to_string(first) + "-" + std::to_string(log_.size() - 1) + "/" + std::to_string(log_.size()) + "\r\n";
+  };
+  EXPECT_EQ(put(target, log_.substr(2999), range(2999)).status, 409u);
+  EXPECT_EQ(put(target, log_.substr(3000, 5), "Content-Range: bytes 3000-3004/" + std::to_string(log_.size()) + "\r\n").status, 202u);
+  EXPECT_EQ(put(target, log_.substr(3005), range(3005)).status, 201u);
+  EXPECT_EQ(get("/v1/logs/" + digestOf(log_) + "/log").body, log_);
+  client.send(ask);
+  EXPECT_EQ(client.receive().status, 404u);
+  for (const char* wrong : {"bytes 1-2/3", "bytes 5-2/9", "items 0-1/2", "bytes */9", "bytes 0-18446744073709551616/9"})
+    EXPECT_EQ(put(target, "abc", "Content-Range: " + std::string(wrong) + "\r\n").status, 400u) << wrong;
+}
+
+TEST_F(UploadTest, whatIsTooLargeOrWithoutALengthIsRefusedBeforeItIsSent) {
+  RawClient large(server_.port());
+  large.send(head("PUT", "/v1/meshes/new", (1 << 20) + 1, "Expect: 100-continue\r\n"));
+  EXPECT_EQ(large.receive().status, 413u);
+  RawClient overflowing(server_.port());
+  overflowing.send("PUT /v1/meshes/new HTTP/1.1\r\nHost: a\r\nAuthorization: Bearer " + std::string(kToken) + "\r\nContent-Length: 99999999999999999999\r\n\r\n");
+  EXPECT_GE(overflowing.receive().status, 400u);
+  RawClient none(server_.port());
+  none.send("PUT /v1/meshes/new HTTP/1.1\r\nHost: a\r\nAuthorization: Bearer " + std::string(kToken) + "\r\n\r\n");
+  EXPECT_EQ(none.receive().status, 411u);
+  EXPECT_EQ(put("/v1/meshes/new", log_, "Content-Encoding: gzip\r\n").status, 415u);
+  EXPECT_EQ(put("/v1/meshes/new", std::string(1 << 20, 'x')).status, 422u) << "as large as it may be, and no log";
+}
+
+TEST_F(UploadTest, aClientThatAsksFirstIsToldToGoOn) {
+  RawClient client(server_.port());
+  client.send(head("PUT", "/v1/meshes/new", log_.size(), "Expect: 100-continue\r\n"));
+  EXPECT_EQ(client.receive().status, 100u);
+  client.send(log_);
+  EXPECT_EQ(client.receive().status, 201u);
+}
+
+TEST_F(UploadTest, aBodyThatDoesNotComeEndsInTime) {
+  RawClient client(server_.port());
+  client.send(head("PUT", "/v1/meshes/new", log_.size()) + "abc");
+  EXPECT_EQ(client.receive().status, 408u);
+  EXPECT_TRUE(client.closedByServer());
+  EXPECT_EQ(leftovers(), 0u);
+}
+
+TEST_F(UploadTest, thereAreAsManyUploadsAsTheLimitAllowsAndOneOfADigest) {
+  std::vector<std::unique_ptr<RawClient>> clients;
+  for (std::size_t i = 0; i < limits::kMaxUploads; ++i) {
+    clients.push_back(std::make_unique<RawClient>(server_.port()));
+    const std::string digest = i == 0 ? "?digest=" + digestOf(log_) : "";
+    clients.back()->send(head("PUT", "/v1/meshes/new" + std::to_string(i) + digest, log_.size()) + log_.substr(0, 10));
+  }
+  std::this_thread::sleep_for(test::kQuiet);
+  EXPECT_EQ(put("/v1/meshes/new9?digest=" + digestOf(log_), log_).status, 409u);
+  const HttpResponse refused = put("/v1/meshes/new9", log_);
+  EXPECT_EQ(refused.status, 503u);
+  EXPECT_EQ(refused.header("retry-after"), "2");
+  for (auto& client : clients) {
+    client->send(log_.substr(10));
+    EXPECT_EQ(client->receive().status, 201u);
+  }
+}
+
+TEST(Uploads, whatAKilledServerLeftIsSweptUnlessItCanBeGoneOnWith) {
+  const test::ServedFolder folder;
+  const std::string digest(64, 'a');
+  const fs::path resumable = folder.logFolder() / (".upload-" + digest + ".part"), lost = folder.logFolder() / ".upload-12.0.part";
+  for (const fs::path& path : {resumable, lost}) std::ofstream(path) << "half";
+  Uploads uploads(folder.store(), 100);
+  uploads.sweep();
+  EXPECT_TRUE(fs::exists(resumable));
+  EXPECT_FALSE(fs::exists(lost));
+  EXPECT_EQ(uploads.partialBytes(digest), 4u);
+  EXPECT_EQ(uploads.partialBytes("../../etc/passwd"), std::nullopt);
+  fs::last_write_time(resumable, fs::file_time_type::clock::now() - limits::kPartialUploadTime - std::chrono::minutes(1));
+  uploads.sweep();
+  EXPECT_FALSE(fs::exists(resumable));
+}
+
+TEST(Tokens, linesAreReadAndWrongOnesNamed) {
+  const std::string token(22, 't');
+  const auto tokens = Tokens::parse("# who\n\nwrite lab-* " + token + "\nwrite x sha256:" + sha256Hex(ByteView()) + "\n");
+  ASSERT_TRUE(tokens) << tokens.error().message;
+  EXPECT_EQ(tokens->mayWrite("Bearer " + token, "lab-1"), Tokens::Verdict::kAllowed);
+  EXPECT_EQ(tokens->mayWrite("Bearer " + token, "other"), Tokens::Verdict::kForbidden);
+  EXPECT_EQ(tokens->mayWrite("Bearer " + token + "x", "lab-1"), Tokens::Verdict::kUnknown);
+  EXPECT_EQ(tokens->mayWrite(std::nullopt, "lab-1"), Tokens::Verdict::kUnknown);
+  EXPECT_EQ(tokens->mayWrite("Bearer ", "x"), Tokens::Verdict::kUnknown) << "the empty token is none, even if its digest stands there";
+  for (const std::string& wrong : {"read * " + token, std::string("write *"), "write * " + std::string(21, 't'), std::string("write * sha256:12"),
+                                   "write * " + token + " more"}) {
+    const auto refused = Tokens::parse("# first\n" + wrong);
+    ASSERT_FALSE(refused) << wrong;
+    EXPECT_EQ(refused.error().code, ErrorCode::kBadValue);
+    EXPECT_NE(refused.error().message.find("line 2"), std::string::npos);
+    EXPECT_EQ(refused.error().message.find(token), std::string::npos) << "no token in a log";
+  }
+}
+
+}  // namespace
+}  // namespace qtet
