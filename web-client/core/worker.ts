@@ -1,10 +1,9 @@
 // The worker: network, decoding and cutting happen here, so that the page only draws.
 
 import codecUrl from 'qtet-codec.wasm?url';
-import dracoUrl from 'draco3d/draco_decoder.wasm?url';
 import {Assembler} from './assembler';
 import {WasmCodec} from './codec';
-import {DracoValueDecoder} from './draco';
+import {kDraco} from './draco';
 import {errorText} from './errors';
 import {Publisher} from './publisher';
 import {retry} from './retry';
@@ -29,9 +28,8 @@ self.onmessage = (event: MessageEvent<ToWorker>) => {
 };
 
 async function start(): Promise<Parts> {
-  const [codecModule, dracoModule] = await Promise.all([retry(() => compile(codecUrl)), retry(() => compile(dracoUrl))]);
-  const [codec, draco] = await Promise.all([WasmCodec.create(codecModule), DracoValueDecoder.create(dracoModule)]);
-  const assembler = new Assembler(codec, draco);
+  const codec = await WasmCodec.create(await retry(() => compile(codecUrl)));
+  const assembler = new Assembler(codec, kDraco);
   const publisher = new Publisher(assembler, postSnapshot);
   return {codec, publisher, session: new Session(assembler, publisher, post)};
 }
