@@ -26,5 +26,7 @@ export async function takeWholeLog(log: Uint8Array, values: ValueDecoder): Promi
     assembler.take({stream: 1, chunk, firstPart: 0, parts, payload: log.subarray(at, end)});
     at = end;
   }
+  const fields = assembler.manifest!.fields.map((_, field) => field);
+  while (assembler.step(fields, true)) continue;
   return assembler;
 }

@@ -1,6 +1,8 @@
-// The demo page: the viewer over the whole window, told by the address what to show.
+// The demo page: the viewer over the whole window. The address tells what to show, and follows what is shown: a link is a picture.
 
 import {QtetViewer} from './qtet_viewer';
+import {kViewAttributes} from './settings';
+import {linkTo} from './share';
 
 declare global {
   interface Window {
@@ -8,15 +10,19 @@ declare global {
   }
 }
 
-/** Query parameter -> attribute of the viewer. */
-const kParameters: Record<string, string> = {mesh: 'mesh', field: 'field', colormap: 'colormap', edges: 'edges', clip: 'clip', pauseAfter: 'pause-after'};
-
 customElements.define('qtet-viewer', QtetViewer);
 const viewer = document.createElement('qtet-viewer') as QtetViewer;
 const query = new URLSearchParams(location.search);
-for (const [parameter, attribute] of Object.entries(kParameters)) {
-  const value = query.get(parameter);
-  if (value !== null && value !== '') viewer.setAttribute(attribute, value);
+for (const name of ['src', ...kViewAttributes]) {
+  const value = query.get(name);
+  if (value !== null && value !== '') viewer.setAttribute(name, value);
 }
+const remember = (): void => {
+  const view = viewer.view;
+  const src = query.get('src');
+  history.replaceState(null, '', linkTo(location.href, src ? new Map([['src', src], ...view]) : view));
+};
+viewer.addEventListener('camera-change', remember);
+viewer.addEventListener('view-change', remember);
 window.qtetViewer = viewer;
 document.body.append(viewer);
