@@ -8,7 +8,7 @@ const {chromium} = createRequire(new URL('../../web-client/package.json', import
 
 export const kDesktop = {viewport: {width: 1280, height: 800}};
 export const kPhone = {viewport: {width: 390, height: 844}, deviceScaleFactor: 2, isMobile: true, hasTouch: true};
-const kTimeoutMs = 60000;
+export const kTimeoutMs = 60000;
 
 export class Browser {
   #browser;
@@ -35,6 +35,15 @@ export class Browser {
     await page.waitForFunction(() => window.qtetViewer !== undefined, null, {timeout: kTimeoutMs});
     return viewer;
   }
+
+  /** A page that is none of ours. */
+  async page(url) {
+    const page = await (await this.#browser.newContext(kDesktop)).newPage();
+    await page.goto(url);
+    return page;
+  }
+
+  async picture(page, name) { return readPng(await page.screenshot({path: join(this.#out, `${name}.png`)})); }
 
   async saveFailure(name) {
     for (const viewer of this.#pages) await viewer.page.screenshot({path: join(this.#out, `failed-${name}.png`)}).catch(() => undefined);

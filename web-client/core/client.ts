@@ -1,5 +1,6 @@
 // The page's side of the worker: commands out, messages in. Holds no mesh.
 
+import codecUrl from 'qtet-codec.wasm?url';
 import type {Ray, Vector} from './cell_ray';
 import type {Display} from './display';
 import type {Pick, Probe} from './inspector';
@@ -14,6 +15,8 @@ export class Client {
   private nextId = 0;
 
   constructor(listen: Listener) {
+    // The page knows where its build put the codec; the worker's own file may have been moved without what it refers to.
+    this.post({type: 'load', codecUrl: new URL(codecUrl, import.meta.url).href});
     this.worker.onmessage = (event: MessageEvent<FromWorker>) => {
       const message = event.data;
       if (message.type !== 'answer') {

@@ -1,6 +1,5 @@
 // The worker: network, decoding and cutting happen here, so that the page only draws.
 
-import codecUrl from 'qtet-codec.wasm?url';
 import {Assembler} from './assembler';
 import {WasmCodec} from './codec';
 import {kDraco} from './draco';
@@ -19,18 +18,23 @@ interface Parts {
   inspector: Inspector;
 }
 
-const parts = start();
-parts.catch((thrown: unknown) => {
-  post({type: 'error', code: 'internal', message: `The decoder could not be loaded (${errorText(thrown)}). Reload the page.`});
-  post({type: 'state', state: 'failed', attempt: 0, delayMs: 0});
-});
+let parts: Promise<Parts>;
 
 self.onmessage = (event: MessageEvent<ToWorker>) => {
+  if (event.data.type === 'load') {
+    parts = start(event.data.codecUrl);
+    parts.catch((thrown: unknown) => {
+      post({type: 'error', code: 'internal', message: `The decoder could not be loaded (${errorText(thrown)}). Reload the page.`});
+      post({type: 'state', state: 'failed', attempt: 0, delayMs: 0});
+    });
+    return;
+  }
   // Commands keep their order: each waits for the same promise.
-  parts.then((ready) => obey(ready, event.data)).catch(() => undefined);
+  const message = event.data;
+  parts.then((ready) => obey(ready, message)).catch(() => undefined);
 };
 
-async function start(): Promise<Parts> {
+async function start(codecUrl: string): Promise<Parts> {
   const codec = await WasmCodec.create(await retry(() => compile(codecUrl)));
   const assembler = new Assembler(codec, kDraco);
   const publisher = new Publisher(assembler, postSnapshot);
@@ -45,7 +49,7 @@ async function compile(url: string): Promise<WebAssembly.Module> {
   return WebAssembly.compile(await response.arrayBuffer());
 }
 
-function obey({session, publisher, codec, inspector}: Parts, message: ToWorker): void {
+function obey({session, publisher, codec, inspector}: Parts, message: Exclude<ToWorker, {type: 'load'}>): void {
   switch (message.type) {
     case 'start': return session.start(message.source);
     case 'display':

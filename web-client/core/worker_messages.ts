@@ -23,6 +23,8 @@ export interface Source {
 }
 
 export type ToWorker =
+  /** First of all: where the codec's WebAssembly lies. */
+  | {type: 'load'; codecUrl: string}
   | {type: 'start'; source: Source}
   | {type: 'display'; display: Display}
   | {type: 'limit'; limit: Limit}

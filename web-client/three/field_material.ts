@@ -34,6 +34,7 @@ const kFragmentShader = /* glsl */ `
   uniform bool colored;
   uniform vec3 plainColor;
   uniform bool lit;
+  uniform bool twoSided;
   uniform vec4 clipPlanes[3];
   uniform float opacity;
   uniform float edgeStrength;
@@ -69,7 +70,7 @@ const kFragmentShader = /* glsl */ `
       vec3 light = normalize(vec3(0.25, 0.45, 1.0));
       float facing = abs(dot(normal, light));
       color *= 0.64 + 0.40 * facing;
-      if (!gl_FrontFacing) color = mix(color, vec3(0.24, 0.26, 0.30), 0.55);
+      if (!gl_FrontFacing && !twoSided) color = mix(color, vec3(0.24, 0.26, 0.30), 0.55);
     }
     color = mix(color, color * 0.22, edgeStrength * edge());
     gl_FragColor = vec4(min(color, 1.0), opacity);
@@ -81,15 +82,15 @@ const kNoPlane = new Vector4(0, 0, 0, 1);
 export class FieldMaterial extends ShaderMaterial {
   private table = '';
 
-  /** `lit`: shaded as a surface; else flat, as a cut. */
-  constructor(lit: boolean) {
+  /** `lit`: shaded as a surface, `twoSided` with no inside that is greyed; else flat, as a cut. */
+  constructor(lit: boolean, twoSided = false) {
     super({
       vertexShader: `uniform int firstHalf;\n${kVertexShader}`,
       fragmentShader: kFragmentShader,
       side: DoubleSide,
       uniforms: {
         firstHalf: {value: 0}, colorMap: {value: emptyTexture()}, range: {value: [0, 1]}, colored: {value: false},
-        plainColor: {value: new Vector3(0.72, 0.74, 0.78)}, lit: {value: lit}, clipPlanes: {value: [kNoPlane.clone(), kNoPlane.clone(), kNoPlane.clone()]},
+        plainColor: {value: new Vector3(0.72, 0.74, 0.78)}, lit: {value: lit}, twoSided: {value: twoSided}, clipPlanes: {value: [kNoPlane.clone(), kNoPlane.clone(), kNoPlane.clone()]},
         scaleRange: {value: [0, 1]}, logarithmic: {value: false}, opacity: {value: 1},
         edgeStrength: {value: 0.6}, pixelRatio: {value: 1},
       },

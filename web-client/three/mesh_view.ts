@@ -45,7 +45,7 @@ export class MeshView {
   /** From lattice coordinates to a ball of radius 1 round the origin. */
   private readonly lattice = new Group();
   private readonly surface = new SoupMesh(true);
-  private readonly isosurface = new SoupMesh(true);
+  private readonly isosurface = new SoupMesh(true, true);
   private readonly cuts = Array.from({length: kMostPlanes}, () => new SoupMesh(false));
   private readonly resizes: ResizeObserver;
   private bounds: number[] = [];
@@ -98,7 +98,8 @@ export class MeshView {
   setLook({map, reversed, edges, opacity}: Look): void {
     for (const mesh of this.meshes()) {
       mesh.material.setColorMap(map, reversed);
-      mesh.material.setEdges(edges ? kEdgeStrength : 0);
+      // An isosurface's polygons are the cells' sections, not the mesh: their edges would hide its shape.
+      mesh.material.setEdges(edges && mesh !== this.isosurface ? kEdgeStrength : 0);
     }
     this.surface.material.setOpacity(opacity);
     this.invalidate();

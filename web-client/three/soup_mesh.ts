@@ -5,8 +5,8 @@ import type {TriangleSoup} from '../core/triangle_soup';
 import {FieldMaterial} from './field_material';
 
 export class SoupMesh extends Mesh<BufferGeometry, FieldMaterial> {
-  constructor(lit: boolean) {
-    super(new BufferGeometry(), new FieldMaterial(lit));
+  constructor(lit: boolean, twoSided = false) {
+    super(new BufferGeometry(), new FieldMaterial(lit, twoSided));
     this.frustumCulled = false;  // the view knows the bounds; computing them again for every picture costs more than it saves
     this.visible = false;
   }

@@ -5,7 +5,7 @@ import type {Client} from '../core/client';
 import type {Pick, Probe} from '../core/inspector';
 import type {Manifest} from '../core/manifest';
 import type {MeshView} from '../three/mesh_view';
-import {formatCount, formatValue} from './format';
+import {formatCoordinate, formatCount, formatValue} from './format';
 
 export type Tool = 'none' | 'point' | 'line';
 
@@ -45,7 +45,7 @@ export class Inspect {
   use(tool: Tool): void {
     this.tool = tool;
     this.root.querySelector<HTMLInputElement>(`.tools input[value=${tool}]`)!.checked = true;
-    this.root.querySelector<HTMLElement>('canvas')!.classList.toggle('pointing', tool !== 'none');
+    this.root.querySelector<HTMLElement>('.scene')!.classList.toggle('pointing', tool !== 'none');
     this.clear();
   }
 
@@ -88,12 +88,12 @@ export class Inspect {
     this.place();
     if (this.tool === 'point') this.showPick(pick);
     else if (this.points.length === 2) await this.showLine(this.points[0]!, pick);
-    else this.showText('Line', [['Start', vectorText(pick.position)]], 'Now point at the other end.');
+    else this.showText('Line', [['Start', this.placeText(pick.position)]], 'Now point at the other end.');
   }
 
   private showPick(pick: Pick): void {
     const fields = this.host.manifest!.fields;
-    const rows: [string, string][] = [['Position', vectorText(pick.position)]];
+    const rows: [string, string][] = [['Position', this.placeText(pick.position)]];
     for (const {field, values} of pick.fields) {
       rows.push([fields[field]!.name, values.map(formatValue).join(', ')]);
       if (values.length > 1) rows.push([`${fields[field]!.name}, magnitude`, formatValue(Math.hypot(...values))]);
@@ -106,8 +106,14 @@ export class Inspect {
     const probe = await this.host.client!.probe(from.lattice, to.lattice);
     if (!probe) return;
     const delta = to.position.map((x, axis) => x - from.position[axis]!) as Vector;
-    this.showText('Line', [['Distance', formatValue(probe.length)], ['Difference', vectorText(delta)]]);
+    this.showText('Line', [['Distance', formatValue(probe.length)], ['Difference', this.placeText(delta)]]);
     if (probe.values.length > 1) await this.drawPlot(probe);
+  }
+
+  /** To a ten-thousandth of what the lattice spans. */
+  private placeText(place: Vector): string {
+    const {bits, step} = this.host.manifest!.lattice;
+    return place.map((x) => formatCoordinate(x, step * 2 ** bits / 10)).join(', ');
   }
 
   /** uPlot comes over the network with the first plot only. */
@@ -131,8 +137,6 @@ export class Inspect {
     this.host.announce([title, ...rows.map((row) => row.join(' ')), hint].join('. '));
   }
 }
-
-function vectorText(vector: Vector): string { return vector.map(formatValue).join(', '); }
 
 function shape(name: string, attributes: Record<string, number>): SVGElement {
   const element = document.createElementNS('http://www.w3.org/2000/svg', name);

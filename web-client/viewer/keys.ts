@@ -1,9 +1,9 @@
 // The keyboard on the canvas; kKeyHelp is what the help shows.
 
 export const kKeyHelp: readonly (readonly [string, string])[] = [
-  ['← → ↑ ↓', 'turn'], ['+ −', 'nearer, farther'], ['Home', 'first view'], ['1 … 6', 'from ±x, ±y, ±z'], ['O', 'parallel or perspective'],
+  ['← → ↑ ↓', 'turn'], ['+ −', 'nearer, farther'], ['Home', 'first view'], ['1 … 6', 'from ±x ±y ±z'], ['O', 'parallel or perspective'],
   ['E', 'cell edges'], ['C', 'clip on or off'], ['[ ]', 'move the clip plane'], ['Space', 'pause, continue'], ['I', 'what lies in the middle'],
-  ['P', 'save the picture'], ['F', 'whole screen'], ['?', 'this list'], ['Esc', 'end a tool'],
+  ['P', 'save the picture'], ['F', 'full screen'], ['?', 'this list'], ['Esc', 'end a tool'],
 ];
 
 const kTurn = Math.PI / 24;

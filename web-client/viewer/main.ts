@@ -1,6 +1,7 @@
 // The demo page: the viewer over the whole window. The address tells what to show, and follows what is shown: a link is a picture.
 
-import {QtetViewer} from './qtet_viewer';
+import './element';
+import type {QtetViewer} from './qtet_viewer';
 import {kViewAttributes} from './settings';
 import {linkTo} from './share';
 
@@ -10,8 +11,7 @@ declare global {
   }
 }
 
-customElements.define('qtet-viewer', QtetViewer);
-const viewer = document.createElement('qtet-viewer') as QtetViewer;
+const viewer = document.createElement('qtet-viewer');
 const query = new URLSearchParams(location.search);
 for (const name of ['src', ...kViewAttributes]) {
   const value = query.get(name);

@@ -50,7 +50,8 @@ import {kTemplate} from './template';
 import {Triad} from './triad';
 import {ValuePanel} from './value_panel';
 
-const kPhone = '(max-width: 640px)';
+/** Narrower than this, the panel is a sheet at the foot (style.css says the same). */
+const kSheetPixels = 640;
 /** The camera is told of once it rests. */
 const kRestMs = 250;
 const kNoRetry = ['unknown-field', 'no-view', 'no-fullscreen'];
@@ -150,11 +151,11 @@ export class QtetViewer extends HTMLElement implements Host {
       level: new LevelPanel(this.root, (quality) => this.write('quality', quality),
         () => ({statistics: this.figures, manifest: this.manifest, fields: this.color ? [this.color.field] : []})),
       handles: new ClipHandles(this.find('.layer'), kMostPlanes, (i, share) => clip.move(i, share)),
-      inspect: new Inspect(this.root, this.find<HTMLCanvasElement>('canvas'), inspectHost(this)),
+      inspect: new Inspect(this.root, this.find<HTMLCanvasElement>('.scene'), inspectHost(this)),
       resizes: new ResizeObserver(() => this.arrange()),
     };
     this.bindControls();
-    this.fold(matchMedia(kPhone).matches);
+    this.fold(this.isNarrow);
     this.parts.resizes.observe(this.find('.panel'));
     this.parts.resizes.observe(this);
     this.apply();
@@ -208,7 +209,7 @@ export class QtetViewer extends HTMLElement implements Host {
       const {MeshView} = await retry(() => import('../three/mesh_view'));
       if (!this.client || this.meshView) return;
       const triad = new Triad(this.find<SVGSVGElement>('.triad'));
-      this.meshView = new MeshView(this.find<HTMLCanvasElement>('canvas'), {
+      this.meshView = new MeshView(this.find<HTMLCanvasElement>('.scene'), {
         drawn: (rotation) => {
           triad.turn(rotation);
           this.parts?.handles.place();
@@ -255,7 +256,7 @@ export class QtetViewer extends HTMLElement implements Host {
   private openMesh(mesh: string): void {
     this.forget();
     this.find('.mesh-name').textContent = mesh;
-    this.find('canvas').setAttribute('aria-label', `3D view of ${mesh}. Arrow keys turn it, plus and minus zoom; the question mark lists all keys.`);
+    this.find('.scene').setAttribute('aria-label', `3D view of ${mesh}. Arrow keys turn it, plus and minus zoom; the question mark lists all keys.`);
     const fields = this.catalog.find(({id}) => id === mesh)?.fields ?? [];
     const named = [this.getAttribute('field'), ...['iso', 'threshold'].map((name) => this.getAttribute(name)?.replace(/=[^=]*$/, '') ?? null)]
       .filter((text) => text !== null).map((text) => (fields.includes(text) ? text : scalarKey(text)));
@@ -483,6 +484,8 @@ export class QtetViewer extends HTMLElement implements Host {
     }, kRestMs);
   }
 
+  private get isNarrow(): boolean { return this.clientWidth <= kSheetPixels; }
+
   private fold(folded: boolean): void {
     this.find('.panel').classList.toggle('folded', folded);
     this.find('.fold').setAttribute('aria-expanded', String(!folded));
@@ -491,7 +494,7 @@ export class QtetViewer extends HTMLElement implements Host {
   /** Tells the view what the cards cover. */
   private arrange(): void {
     if (!this.parts) return;
-    const sheet = matchMedia(kPhone).matches;
+    const sheet = this.isNarrow;
     const insets = insetsOf(this, this.find('.panel'), this.find('.legend'), sheet);
     this.style.setProperty('--sheet', `${Math.round(insets.bottom * this.clientHeight)}px`);
     this.meshView?.setInsets(insets);

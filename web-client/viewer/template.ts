@@ -29,7 +29,7 @@ const closeIcon = '<svg viewBox="0 0 20 20" aria-hidden="true"><path d="M5 5l10 
 
 export const kTemplate = `
 <slot name="poster"></slot>
-<canvas part="canvas" tabindex="0" role="application" aria-label="3D view"></canvas>
+<canvas class="scene" part="canvas" tabindex="0" role="application" aria-label="3D view"></canvas>
 <div class="layer" aria-hidden="true"><svg class="marks"></svg></div>
 <svg class="triad" viewBox="-30 -30 60 60" aria-hidden="true"></svg>
 <div class="visually-hidden live" role="status" aria-live="polite"></div>
@@ -120,7 +120,8 @@ export const kTemplate = `
     </section>
 
     <section>
-      <fieldset class="segments tools"><legend class="name">Pointer</legend>${segments('tool', kToolTitles)}</fieldset>
+      <span class="name" aria-hidden="true">Pointer</span>
+      <fieldset class="segments tools"><legend class="visually-hidden">Pointer</legend>${segments('tool', kToolTitles)}</fieldset>
     </section>
 
     <details>
@@ -139,7 +140,7 @@ export const kTemplate = `
         <div class="looks" role="group" aria-label="Standard views">${directions}</div>
         ${toggle('parallel', 'Parallel projection')}
         <div class="buttons">
-          <button type="button" class="picture">Save picture</button><button type="button" class="fullscreen">Whole screen</button>
+          <button type="button" class="picture">Save picture</button><button type="button" class="fullscreen">Full screen</button>
           <button type="button" class="share">Share</button><button type="button" class="help">Keys</button>
         </div>
       </div>
