@@ -4,11 +4,13 @@ import {createRequire} from 'node:module';
 import {join} from 'node:path';
 import {readPng} from './png.mjs';
 
-const {chromium} = createRequire(new URL('../../web-client/package.json', import.meta.url))('playwright-core');
+const require = createRequire(new URL('../../web-client/package.json', import.meta.url));
+const {chromium} = require('playwright-core');
 
 export const kDesktop = {viewport: {width: 1280, height: 800}};
 export const kPhone = {viewport: {width: 390, height: 844}, deviceScaleFactor: 2, isMobile: true, hasTouch: true};
 export const kTimeoutMs = 60000;
+const kSettleMs = 900;
 
 export class Browser {
   #browser;
@@ -81,6 +83,18 @@ export class ViewerPage {
   async waitForPicture() {
     await this.page.waitForFunction(() => window.qtetSeen.pictures > 0, null, {timeout: kTimeoutMs});
     await this.page.waitForTimeout(600);
+  }
+
+  /** Waits until what was just changed has been computed and drawn. */
+  settle() { return this.page.waitForTimeout(kSettleMs); }
+
+  /** What axe-core finds against WCAG 2.2 AA, shadow roots included: "rule: element" each. */
+  async accessibilityViolations() {
+    await this.page.addScriptTag({path: require.resolve('axe-core/axe.min.js')});
+    return this.page.evaluate(async () => {
+      const {violations} = await window.axe.run(document, {runOnly: ['wcag2a', 'wcag2aa', 'wcag21aa', 'wcag22aa', 'best-practice']});
+      return violations.flatMap(({id, nodes}) => nodes.map(({target, failureSummary}) => `${id}: ${target.join(' ')} ${failureSummary}`));
+    });
   }
 
   statistics() { return this.page.evaluate(() => window.qtetViewer.statistics); }

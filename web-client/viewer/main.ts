@@ -25,4 +25,4 @@ const remember = (): void => {
 viewer.addEventListener('camera-change', remember);
 viewer.addEventListener('view-change', remember);
 window.qtetViewer = viewer;
-document.body.append(viewer);
+document.querySelector('main')!.append(viewer);

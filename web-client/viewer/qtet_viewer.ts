@@ -350,7 +350,7 @@ export class QtetViewer extends HTMLElement implements Host {
     const threshold = parseFieldValues(this.getAttribute('threshold'), fields);
     const ends = threshold && sharesOf(threshold, fields);
     const display: Display = {
-      color: this.color, body: settings.surface, mode: settings.mode,
+      color: this.color, body: settings.surface, mode: settings.planes.length > 0 ? settings.mode : 'cut',
       planes: this.bounds.length > 0 ? settings.planes.map((plane) => planeOf(plane, this.bounds)) : [],
       isosurfaces: iso && {scalar: iso.scalar, values: sharesOf(iso, fields)},
       threshold: threshold && ends!.length === 2 ? {scalar: threshold.scalar, low: ends![0]!, high: ends![1]!} : null,

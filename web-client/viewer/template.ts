@@ -94,7 +94,7 @@ export const kTemplate = `
     <section>
       ${toggle('edges', 'Cell edges', true)}
       ${toggle('surface', 'Surface', true)}
-      <label class="field"><span class="row"><span class="name">Opacity</span><output class="opacity-text"></output></span><input type="range" name="opacity" min="5" max="100" step="5" value="100"></label>
+      <div class="field"><span class="row"><span class="name" id="opacity-name">Opacity</span><output class="opacity-text"></output></span><input type="range" name="opacity" min="5" max="100" step="5" value="100" aria-labelledby="opacity-name"></div>
     </section>
 
     <section>
