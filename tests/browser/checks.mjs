@@ -281,7 +281,7 @@ async function showsTheSamePictureFromItsLink({server, browser}) {
   await viewer.page.locator('qtet-viewer summary', {hasText: 'View'}).click();
   await viewer.page.getByRole('button', {name: 'Share'}).click();
   assert.equal(await viewer.page.getByLabel('Link to this picture').inputValue(), viewer.page.url());
-  assert.match(await viewer.page.getByLabel('For a page of yours').inputValue(), /<qtet-viewer src="http.*clip="x:0.4 -z:0.6"/s);
+  assert.match(await viewer.page.getByLabel('Lines for another page').inputValue(), /<iframe src="http.*clip=x%3A0.4\+-z%3A0.6/s);
 }
 
 async function comesBackFromLostGraphics({server, browser}) {

@@ -434,8 +434,9 @@ export class QtetViewer extends HTMLElement implements Host {
   }
 
   private share(): void {
-    this.find<HTMLInputElement>('input[name=link]').value = linkTo(location.href, this.view);
-    this.find<HTMLTextAreaElement>('textarea').value = embedSnippet(new URL('viewer.js', this.base).href, this.base.href, this.view);
+    const link = linkTo(location.href, this.view);
+    this.find<HTMLInputElement>('input[name=link]').value = link;
+    this.find<HTMLTextAreaElement>('textarea').value = embedSnippet(link, `3D view of ${this.find('.mesh-name').textContent}`);
     this.find<HTMLDialogElement>('.share-dialog').showModal();
   }
 

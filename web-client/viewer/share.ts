@@ -8,8 +8,8 @@ export function linkTo(page: string, view: ReadonlyMap<string, string>): string 
   return url.href;
 }
 
-/** HTML for a page on any host: the element, its script, and every attribute of the view. */
-export function embedSnippet(script: string, server: string, view: ReadonlyMap<string, string>): string {
-  const attributes = [...view].map(([name, value]) => `\n  ${name}="${value.replaceAll('&', '&amp;').replaceAll('"', '&quot;')}"`).join('');
-  return `<script type="module" src="${script}"></script>\n<qtet-viewer src="${server}"${attributes}\n  style="height: 600px"></qtet-viewer>`;
+/** HTML for a page on any host: this page in a frame, which brings its own worker and WebAssembly from where they lie. */
+export function embedSnippet(link: string, title: string): string {
+  const quoted = (text: string): string => text.replaceAll('&', '&amp;').replaceAll('"', '&quot;').replaceAll('<', '&lt;');
+  return `<iframe src="${quoted(link)}"\n  title="${quoted(title)}" allow="fullscreen"\n  style="width: 100%; height: 600px; border: 0"></iframe>`;
 }

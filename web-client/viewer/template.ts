@@ -174,5 +174,5 @@ export const kTemplate = `
   <p class="hint">They work while the picture has the focus. Drag turns, the wheel or two fingers zoom, the right button or two fingers move.</p></dialog>
 <dialog class="share-dialog" aria-label="Share"><form method="dialog" class="row"><h2>Share</h2><button class="icon" aria-label="Close">${closeIcon}</button></form>
   <label class="field"><span class="name">Link to this picture</span><input type="text" name="link" readonly></label>
-  <label class="field"><span class="name">For a page of yours</span><textarea name="snippet" rows="6" readonly></textarea></label>
+  <label class="field"><span class="name">Lines for another page</span><textarea name="snippet" rows="6" readonly></textarea></label>
   <div class="buttons"><button type="button" class="copy-link">Copy link</button><button type="button" class="copy-snippet">Copy lines</button></div></dialog>`;
