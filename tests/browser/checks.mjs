@@ -351,6 +351,26 @@ async function fitsAPhone({server, browser, logs}) {
   await expectWhole(viewer, logs.fin);
 }
 
+async function showsWhatIsSoundOfADamagedFile({server, browser, logs}) {
+  const line = await PoorLine.open(server.port, {bytesPerSecond: 200000, streamsOnly: true, damageAt: 150000});
+  try {
+    const viewer = await browser.open(`${line.url}?mesh=fin`);
+    await viewer.waitForState('failed');
+    const said = await viewer.page.getByRole('alert').innerText();
+    assert.match(said, /chunk \d+, part \d+ arrived damaged.*What came before is sound and stays on the screen/s);
+    await viewer.settle();
+    const {tetrahedra, total} = await viewer.statistics();
+    assert.ok(tetrahedra > 10000 && tetrahedra < total.tetrahedra, `${tetrahedra} cells are shown`);
+    assert.ok(coloredShare(await viewer.screenshot('damaged')) > 0.05, 'nothing is shown');
+    await viewer.page.getByRole('button', {name: 'Try again'}).click();
+    await viewer.page.waitForFunction(() => window.qtetViewer.state === 'complete', null, {polling: 50});
+    await expectWhole(viewer, logs.fin);
+    return said.split('\n')[0];
+  } finally {
+    line.close();
+  }
+}
+
 async function saysWhatIsWrong({server, browser}) {
   const viewer = await browser.open(`${server.url}?mesh=nowhere`);
   await viewer.waitForState('failed');
@@ -364,5 +384,5 @@ export const checks = {
   refinesToTheOriginal, showsACoarsePictureFirst, survivesAKilledServer,
   survivesAServerThatIsAwayWhenItIsAsked, showsAPictureSoonOnAPoorLine,
   keepsThePageResponsive, switchesFieldsAndMaps, clipsWithACap, showsIsosurfacesAndThresholds, pointsAndProbes, goesCoarserAndStopsAtAnError,
-  showsTheSamePictureFromItsLink, comesBackFromLostGraphics, isAccessible, obeysTheKeyboard, fitsAPhone, saysWhatIsWrong,
+  showsTheSamePictureFromItsLink, comesBackFromLostGraphics, isAccessible, obeysTheKeyboard, fitsAPhone, showsWhatIsSoundOfADamagedFile, saysWhatIsWrong,
 };

@@ -14,6 +14,12 @@ const kWindowBytes = 1 << 20;
 /** Decoding pauses this often for commands from the page. */
 const kSliceMs = 25;
 
+/** What the codec's sentences leave open: what one sees now, and what to do. */
+const kWaysOut: Record<string, string> = {
+  'bad-checksum': '. What came before is sound and stays on the screen. Try again to fetch the rest anew; if it fails at the same chunk, the file itself is damaged: "qtet verify" says where.',
+  'limit-exceeded': ' The mesh stays at the level that fits. Close other tabs, or choose a limit under "Level of detail" and try again.',
+};
+
 export type TransportFactory = (url: string, handlers: TransportHandlers) => Transport;
 
 export class Session implements TransportHandlers {
@@ -204,7 +210,8 @@ export class Session implements TransportHandlers {
     try {
       action();
     } catch (thrown) {
-      this.failed(new QtetError(errorCode(thrown), errorText(thrown)));
+      const code = errorCode(thrown);
+      this.failed(new QtetError(code, `${errorText(thrown)}${kWaysOut[code] ?? ''}`));
     }
   }
 

@@ -109,6 +109,7 @@ describe('a stream', () => {
     socket.deliver(headFrame(1, kLog));
     sendAll(socket, 1, 0);
     expect(errors()).toEqual(['bad-checksum']);
+    expect(heard.find(({type}) => type === 'error')).toMatchObject({message: expect.stringMatching(/chunk 1 is damaged\. What came before is sound and stays/)});
     expect(states().at(-1)).toBe('failed');
     expect(socket.closed).toBe(true);
   });

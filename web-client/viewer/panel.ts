@@ -46,8 +46,3 @@ export function fillScalars(select: HTMLSelectElement, fields: readonly FieldInf
     chosen ? scalarText(chosen, fields) : '');
   select.disabled = options.length < 2;
 }
-
-/** The text between the last brackets of a field's name: "Temperature [K]", "Druck (Pa)". */
-export function unitOf(name: string): string {
-  return /[[(]([^\])]{1,12})[\])]\s*$/.exec(name)?.[1] ?? '';
-}
