@@ -112,6 +112,8 @@ export class MeshView {
   }
 
   setInsets(insets: Insets): void {
+    const {left, right, top, bottom} = this.insets;
+    if (left === insets.left && right === insets.right && top === insets.top && bottom === insets.bottom) return;  // resizing empties the canvas
     this.insets = insets;
     this.resize();
   }

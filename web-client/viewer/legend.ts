@@ -17,6 +17,7 @@ export interface ShownRange {
 
 export class Legend {
   private readonly figure: HTMLElement;
+  private shown = '';
 
   constructor(root: ParentNode) {
     this.figure = root.querySelector('.legend')!;
@@ -26,6 +27,9 @@ export class Legend {
 
   show(scalar: Scalar, fields: readonly FieldInfo[], range: ShownRange, {map, reversed}: Settings): void {
     this.figure.hidden = false;
+    const wanted = JSON.stringify([scalar, range, map, reversed, scalarTitle(scalar, fields)]);
+    if (wanted === this.shown) return;  // every picture asks, few change it
+    this.shown = wanted;
     const {ticks, factor} = range.logarithmic ? logTicks(range.low, range.high, kMostTicks) : niceTicks(range.low, range.high, kMostTicks);
     this.part('.legend-name').textContent = scalarTitle(scalar, fields);
     this.part('.legend-factor').textContent = range.logarithmic ? 'logarithmic' : factor;
