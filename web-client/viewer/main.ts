@@ -17,12 +17,19 @@ for (const name of ['src', ...kViewAttributes]) {
   const value = query.get(name);
   if (value !== null && value !== '') viewer.setAttribute(name, value);
 }
+/** Browsers allow some hundred changes of the address in half a minute; a slider makes more. */
+const kRestMs = 300;
+let timer: ReturnType<typeof setTimeout> | undefined;
 const remember = (): void => {
   const view = viewer.view;
   const src = query.get('src');
   history.replaceState(null, '', linkTo(location.href, src ? new Map([['src', src], ...view]) : view));
 };
-viewer.addEventListener('camera-change', remember);
-viewer.addEventListener('view-change', remember);
+for (const type of ['camera-change', 'view-change']) {
+  viewer.addEventListener(type, () => {
+    clearTimeout(timer);
+    timer = setTimeout(remember, kRestMs);
+  });
+}
 window.qtetViewer = viewer;
 document.querySelector('main')!.append(viewer);
