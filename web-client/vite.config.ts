@@ -1,18 +1,13 @@
 // Builds the demo page. QTET_WASM names the codec's WebAssembly (CMake builds it), QTET_VIEWER_OUT the folder to write.
 
-import {fileURLToPath} from 'node:url';
 import {defineConfig} from 'vitest/config';
 
 const wasm = process.env.QTET_WASM ?? 'qtet-codec.wasm';
-const noNode = fileURLToPath(new URL('core/no_node.ts', import.meta.url));
 
-export default defineConfig(({mode}) => ({
+export default defineConfig({
   base: './',
   resolve: {
-    alias: [
-      {find: /^qtet-codec\.wasm/, replacement: wasm},
-      ...(mode === 'test' ? [] : [{find: 'node:fs', replacement: noNode}]),
-    ],
+    alias: [{find: /^qtet-codec\.wasm/, replacement: wasm}],
   },
   worker: {format: 'es'},
   build: {
@@ -24,4 +19,4 @@ export default defineConfig(({mode}) => ({
     reportCompressedSize: false,
   },
   test: {environment: 'node', include: ['tests/**/*.test.ts']},
-}));
+});

@@ -4,11 +4,13 @@ import {createRequire} from 'node:module';
 import {join} from 'node:path';
 import {readPng} from './png.mjs';
 
-const {chromium} = createRequire(new URL('../../web-client/package.json', import.meta.url))('playwright-core');
+const require = createRequire(new URL('../../web-client/package.json', import.meta.url));
+const {chromium} = require('playwright-core');
 
 export const kDesktop = {viewport: {width: 1280, height: 800}};
 export const kPhone = {viewport: {width: 390, height: 844}, deviceScaleFactor: 2, isMobile: true, hasTouch: true};
-const kTimeoutMs = 60000;
+export const kTimeoutMs = 60000;
+const kSettleMs = 900;
 
 export class Browser {
   #browser;
@@ -35,6 +37,15 @@ export class Browser {
     await page.waitForFunction(() => window.qtetViewer !== undefined, null, {timeout: kTimeoutMs});
     return viewer;
   }
+
+  /** A page that is none of ours. */
+  async page(url) {
+    const page = await (await this.#browser.newContext(kDesktop)).newPage();
+    await page.goto(url);
+    return page;
+  }
+
+  async picture(page, name) { return readPng(await page.screenshot({path: join(this.#out, `${name}.png`)})); }
 
   async saveFailure(name) {
     for (const viewer of this.#pages) await viewer.page.screenshot({path: join(this.#out, `failed-${name}.png`)}).catch(() => undefined);
@@ -72,6 +83,18 @@ export class ViewerPage {
   async waitForPicture() {
     await this.page.waitForFunction(() => window.qtetSeen.pictures > 0, null, {timeout: kTimeoutMs});
     await this.page.waitForTimeout(600);
+  }
+
+  /** Waits until what was just changed has been computed and drawn. */
+  settle() { return this.page.waitForTimeout(kSettleMs); }
+
+  /** What axe-core finds against WCAG 2.2 AA, shadow roots included: "rule: element" each. */
+  async accessibilityViolations() {
+    await this.page.addScriptTag({path: require.resolve('axe-core/axe.min.js')});
+    return this.page.evaluate(async () => {
+      const {violations} = await window.axe.run(document, {runOnly: ['wcag2a', 'wcag2aa', 'wcag21aa', 'wcag22aa', 'best-practice']});
+      return violations.flatMap(({id, nodes}) => nodes.map(({target, failureSummary}) => `${id}: ${target.join(' ')} ${failureSummary}`));
+    });
   }
 
   statistics() { return this.page.evaluate(() => window.qtetViewer.statistics); }

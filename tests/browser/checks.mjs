@@ -32,8 +32,8 @@ async function refinesToTheOriginal({server, browser, logs}) {
 }
 
 async function showsACoarsePictureFirst({server, browser}) {
-  const viewer = await browser.open(`${server.url}?mesh=fin&pauseAfter=${kCoarseBytes}`);
-  await viewer.waitForState('paused');
+  const viewer = await browser.open(`${server.url}?mesh=fin&quality=bytes:${kCoarseBytes}`);
+  await viewer.waitForState('held');
   await viewer.waitForPicture();
   const {tetrahedra, total} = await viewer.statistics();
   assert.ok(tetrahedra > 0 && tetrahedra < total.tetrahedra / 2, `${tetrahedra} of ${total.tetrahedra} cells are not coarse`);
@@ -75,12 +75,13 @@ async function survivesAKilledServer({server, browser, logs}) {
 }
 
 async function survivesAServerThatIsAwayWhenItIsAsked({server, browser, logs}) {
-  const viewer = await browser.open(`${server.url}?mesh=fin&pauseAfter=${kCoarseBytes}`);
-  await viewer.waitForState('paused');
+  const viewer = await browser.open(`${server.url}?mesh=fin`);
+  await viewer.waitForState('complete');
   server.kill();
   await viewer.page.waitForTimeout(300);
-  await viewer.page.getByRole('button', {name: 'Continue'}).click();
+  await viewer.page.locator('qtet-viewer select[name=field]').selectOption('Pressure');
   await viewer.waitForState('reconnecting');
+  assert.match(await viewer.text('.state-note'), /trying again in \d+/);
   await server.start();
   await viewer.waitForState('complete');
   await expectWhole(viewer, logs.fin);
@@ -114,19 +115,39 @@ async function switchesFieldsAndMaps({server, browser, logs}) {
   const viewer = await browser.open(`${server.url}?mesh=fin`);
   await viewer.waitForState('complete');
   await viewer.waitForPicture();
-  const before = await viewer.screenshot('field-first');
-  const fields = viewer.page.getByLabel('Field');
+  let before = await viewer.screenshot('field-first');
+  const fields = viewer.page.locator('qtet-viewer select[name=field]');
   const names = await fields.locator('option').evaluateAll((options) => options.map(({value}) => value));
-  assert.ok(names.length > 1, 'the sample has one field only');
-  await fields.selectOption(names.at(-1));
+  assert.deepEqual(names, ['Density', 'Pressure', 'Velocity', 'Velocity[0]', 'Velocity[1]', 'Velocity[2]']);
+  const expectChange = async (name, what) => {
+    await viewer.settle();
+    const now = await viewer.screenshot(name);
+    assert.ok(differingShare(before, now) > 0.05, `${what} changes only ${differingShare(before, now)} of the picture`);
+    before = now;
+  };
+  await fields.selectOption('Velocity[2]');
   await viewer.waitForState('complete');
   await viewer.page.getByRole('radio', {name: 'Cool-warm'}).check({force: true});
-  await viewer.page.waitForTimeout(1200);
-  assert.ok((await viewer.text('.legend-name')).startsWith(names.at(-1)));
-  const differing = differingShare(before, await viewer.screenshot('field-last'));
-  assert.ok(differing > 0.05, `another field changes only ${differing} of the picture`);
+  await expectChange('field-last', 'another field');
+  assert.equal(await viewer.text('.legend-name'), 'Velocity, z');
+  await viewer.page.getByLabel('Reversed').check({force: true});
+  await expectChange('map-reversed', 'the reversed map');
+  await viewer.page.getByLabel('Range of the colours').selectOption('symmetric');
+  await viewer.settle();
+  const ticks = await viewer.page.locator('qtet-viewer .legend-ticks span').allInnerTexts();
+  assert.equal(ticks[0].replace('\u2212', ''), ticks.at(-1), `not symmetric: ${ticks}`);
+  await viewer.page.getByRole('radio', {name: 'Turbo'}).check({force: true});
+  await expectChange('map-turbo', 'turbo');
+  await fields.selectOption('Pressure');
+  await viewer.waitForState('complete');
+  await viewer.page.getByLabel('Range of the colours').selectOption('fixed');
+  await viewer.page.getByLabel('Start of the range').fill('0.5');
+  await viewer.page.getByLabel('End of the range').fill('2');
+  await viewer.page.keyboard.press('Enter');
+  await viewer.page.getByLabel('Log scale').check({force: true});
+  await expectChange('range-fixed-log', 'a fixed logarithmic range');
+  assert.equal(await viewer.text('.legend-factor'), 'logarithmic');
   await expectWhole(viewer, logs.fin);
-  return names.join(', ');
 }
 
 async function clipsWithACap({server, browser}) {
@@ -134,20 +155,169 @@ async function clipsWithACap({server, browser}) {
   await viewer.waitForState('complete');
   await viewer.waitForPicture();
   const whole = await viewer.screenshot('unclipped');
-  await viewer.page.getByRole('switch', {name: 'Clip'}).check();
-  await viewer.page.waitForTimeout(1200);
+  const {page} = viewer;
+  await page.getByRole('switch', {name: 'Clip'}).check();
+  await viewer.settle();
   const clipped = await viewer.screenshot('clipped');
   assert.ok(differingShare(whole, clipped) > 0.02, 'clipping changes nothing');
-  const position = viewer.page.getByLabel('Position of the clip plane');
-  const text = await viewer.text('.position');
-  await position.focus();
-  for (let i = 0; i < 100; ++i) await viewer.page.keyboard.press('ArrowRight');
-  await viewer.page.waitForTimeout(1200);
-  assert.notEqual(await viewer.text('.position'), text);
-  assert.ok(differingShare(clipped, await viewer.screenshot('clipped-further')) > 0.005, 'the slider moves nothing');
-  await viewer.page.getByRole('switch', {name: 'Clip'}).uncheck();
-  await viewer.page.waitForTimeout(1200);
+  const text = await viewer.text('.plane:first-child .position');
+  await page.getByLabel('Position of clip plane 1').focus();
+  for (let i = 0; i < 100; ++i) await page.keyboard.press('ArrowRight');
+  await viewer.settle();
+  assert.notEqual(await viewer.text('.plane:first-child .position'), text);
+  const further = await viewer.screenshot('clipped-further');
+  assert.ok(differingShare(clipped, further) > 0.005, 'the slider moves nothing');
+  const {x, y, width} = await page.locator('qtet-viewer .handle').first().boundingBox();
+  await page.mouse.move(x + width / 2, y + width / 2);
+  await page.mouse.down();
+  await page.mouse.move(x - 80, y, {steps: 4});
+  await page.mouse.up();
+  await viewer.settle();
+  assert.ok(differingShare(further, await viewer.screenshot('clip-dragged')) > 0.005, 'the handle moves nothing');
+  let before = await viewer.screenshot('clip-flat');
+  for (const mode of ['Cells', 'Slice']) {
+    await page.getByRole('radio', {name: mode}).check({force: true});
+    await viewer.settle();
+    const now = await viewer.screenshot(`clip-${mode.toLowerCase()}`);
+    assert.ok(differingShare(before, now) > 0.005, `${mode} looks like what was before`);
+    before = now;
+  }
+  await page.getByRole('button', {name: 'Add a plane'}).click();
+  await viewer.settle();
+  assert.ok(differingShare(before, await viewer.screenshot('clip-two')) > 0.005, 'the second plane shows nothing');
+  await page.getByRole('switch', {name: 'Clip'}).uncheck();
+  await viewer.settle();
   assert.ok(differingShare(whole, await viewer.screenshot('unclipped-again')) < 0.005, 'the whole mesh does not come back');
+}
+
+async function showsIsosurfacesAndThresholds({server, browser}) {
+  const viewer = await browser.open(`${server.url}?mesh=fin`);
+  await viewer.waitForState('complete');
+  await viewer.waitForPicture();
+  const whole = await viewer.screenshot('solid');
+  const {page} = viewer;
+  await page.getByRole('switch', {name: 'Threshold'}).check();
+  await viewer.settle();
+  const within = await viewer.screenshot('threshold');
+  assert.ok(differingShare(whole, within) > 0.05, 'the threshold hides nothing');
+  await page.getByRole('switch', {name: 'Threshold'}).uncheck();
+  await page.getByRole('switch', {name: 'Isosurfaces'}).check();
+  await page.getByLabel('Field of the isosurfaces').selectOption('Pressure');
+  await viewer.waitForState('complete');
+  await page.getByRole('textbox', {name: 'Values', exact: true}).fill('1, 2.5');
+  await page.keyboard.press('Enter');
+  await page.getByLabel('Opacity').fill('20');
+  await viewer.settle();
+  const inside = await viewer.screenshot('isosurfaces');
+  assert.ok(differingShare(whole, inside) > 0.05, 'nothing shines through');
+  await page.getByRole('switch', {name: 'Surface', exact: true}).uncheck();
+  await viewer.settle();
+  assert.ok(coloredShare(await viewer.screenshot('isosurfaces-alone')) > 0.005, 'there are no isosurfaces');
+  assert.equal(new URL(page.url()).searchParams.get('iso'), 'Pressure=1,2.5');
+  assert.deepEqual(viewer.problems, []);
+}
+
+async function pointsAndProbes({server, browser}) {
+  const viewer = await browser.open(`${server.url}?mesh=fin&clip=y:0.5`);
+  await viewer.waitForState('complete');
+  await viewer.waitForPicture();
+  const {page} = viewer;
+  await page.getByText('Point', {exact: true}).click();
+  await page.mouse.click(560, 400);
+  await page.locator('qtet-viewer .result').waitFor();
+  const said = await viewer.text('.result');
+  const [, cell, density] = /Cell ([\d\u202f]+).*Density\s+([\d.]+)/s.exec(said) ?? [];
+  assert.ok(Number(cell?.replaceAll('\u202f', '')) < 212544 && Number(density) > 0.5 && Number(density) < 4, said);
+  await page.getByText('Line', {exact: true}).click();
+  await page.mouse.click(420, 350);
+  await page.getByText('Now point at the other end.', {exact: true}).waitFor();
+  await page.mouse.click(700, 400);
+  await page.locator('qtet-viewer .plot canvas').waitFor();
+  await page.mouse.move(700, 700);
+  assert.match(await viewer.text('.result'), /Distance\s+[\d.]+/);
+  const drawn = await page.evaluate(() => {
+    const canvas = window.qtetViewer.shadowRoot.querySelector('.plot canvas');
+    return canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data.filter((value, i) => i % 4 === 3 && value > 0).length;
+  });
+  assert.ok(drawn > 500, `the plot has ${drawn} pixels`);
+  await viewer.screenshot('probe');
+  assert.deepEqual(viewer.problems, []);
+  return said.replaceAll('\n', ' ');
+}
+
+async function goesCoarserAndStopsAtAnError({server, browser, logs}) {
+  const viewer = await browser.open(`${server.url}?mesh=fin&quality=1%`);
+  await viewer.waitForState('held');
+  await viewer.waitForPicture();
+  const {tetrahedra, total} = await viewer.statistics();
+  assert.ok(tetrahedra < total.tetrahedra / 5, `1 % takes ${tetrahedra} cells`);
+  const left = Number.parseFloat(await viewer.text('.error-left'));
+  assert.ok(left > 0 && left <= 1, `the error that is left is ${left} %`);
+  await viewer.page.getByText('Level of detail').click();
+  await viewer.page.getByRole('button', {name: 'Coarser'}).click();
+  await viewer.page.waitForFunction((before) => window.qtetViewer.statistics.tetrahedra < before, tetrahedra);
+  await viewer.settle();
+  await viewer.screenshot('coarser');
+  await viewer.page.getByRole('button', {name: 'Continue'}).click();
+  await viewer.waitForState('complete');
+  await expectWhole(viewer, logs.fin);
+  return `1 % of error with ${tetrahedra} of ${total.tetrahedra} cells`;
+}
+
+async function showsTheSamePictureFromItsLink({server, browser}) {
+  const viewer = await browser.open(`${server.url}?mesh=fin&clip=x:0.4 -z:0.6&field=Pressure&colormap=cividis`);
+  await viewer.waitForState('complete');
+  await viewer.waitForPicture();
+  await viewer.page.locator('qtet-viewer .scene').focus();
+  for (const key of ['ArrowLeft', 'ArrowLeft', 'ArrowUp', '+', 'o']) await viewer.page.keyboard.press(key);
+  await viewer.settle();
+  const first = await viewer.screenshot('link-from');
+  const again = await browser.open(viewer.page.url());
+  await again.waitForState('complete');
+  await again.waitForPicture();
+  await again.settle();
+  const differing = differingShare(first, await again.screenshot('link-to'));
+  assert.ok(differing < 0.005, `${differing} of the picture is another`);
+  await viewer.page.locator('qtet-viewer summary', {hasText: 'View'}).click();
+  await viewer.page.getByRole('button', {name: 'Share'}).click();
+  assert.equal(await viewer.page.getByLabel('Link to this picture').inputValue(), viewer.page.url());
+  assert.match(await viewer.page.getByLabel('Lines for another page').inputValue(), /<iframe src="http.*clip=x%3A0.4\+-z%3A0.6/s);
+}
+
+async function comesBackFromLostGraphics({server, browser}) {
+  const viewer = await browser.open(`${server.url}?mesh=fin&clip=y`);
+  await viewer.waitForState('complete');
+  await viewer.waitForPicture();
+  const before = await viewer.screenshot('graphics-before');
+  await viewer.page.evaluate(() => {
+    const context = window.qtetViewer.shadowRoot.querySelector('.scene').getContext('webgl2');
+    window.qtetLoss = context.getExtension('WEBGL_lose_context');
+    window.qtetLoss.loseContext();
+  });
+  await viewer.page.getByText('The browser took the graphics away').waitFor();
+  await viewer.page.evaluate(() => window.qtetLoss.restoreContext());
+  await viewer.page.locator('qtet-viewer .notice').waitFor({state: 'hidden'});
+  await viewer.settle();
+  assert.ok(differingShare(before, await viewer.screenshot('graphics-after')) < 0.005, 'the picture does not come back');
+}
+
+async function isAccessible({server, browser}) {
+  const notes = [];
+  for (const colorScheme of ['light', 'dark']) {
+    const viewer = await browser.open(`${server.url}?mesh=fin&clip=x&iso=Density=2&threshold=Density=1,4`, {...kDesktop, colorScheme, bypassCSP: true});
+    await viewer.waitForState('complete');
+    await viewer.waitForPicture();
+    for (const summary of await viewer.page.locator('qtet-viewer summary').all()) await summary.click();
+    const violations = await viewer.accessibilityViolations();
+    assert.deepEqual(violations, [], colorScheme);
+    const announced = await viewer.page.locator('qtet-viewer .live').innerText();
+    notes.push(announced);
+    // The focus goes through the panel from top to bottom.
+    await viewer.page.locator('qtet-viewer .scene').focus();
+    await viewer.page.keyboard.press('Tab');
+    assert.equal(await viewer.page.evaluate(() => window.qtetViewer.shadowRoot.activeElement.name), 'mesh');
+  }
+  assert.deepEqual(notes, ['Complete', 'Complete']);
 }
 
 async function obeysTheKeyboard({server, browser}) {
@@ -155,7 +325,7 @@ async function obeysTheKeyboard({server, browser}) {
   await viewer.waitForState('complete');
   await viewer.waitForPicture();
   const before = await viewer.screenshot('keys-before');
-  await viewer.page.locator('qtet-viewer canvas').focus();
+  await viewer.page.locator('qtet-viewer .scene').focus();
   for (let i = 0; i < 6; ++i) await viewer.page.keyboard.press('ArrowLeft');
   await viewer.page.waitForTimeout(500);
   assert.ok(differingShare(before, await viewer.screenshot('keys-turned')) > 0.01, 'arrows turn nothing');
@@ -181,6 +351,26 @@ async function fitsAPhone({server, browser, logs}) {
   await expectWhole(viewer, logs.fin);
 }
 
+async function showsWhatIsSoundOfADamagedFile({server, browser, logs}) {
+  const line = await PoorLine.open(server.port, {bytesPerSecond: 200000, streamsOnly: true, damageAt: 150000});
+  try {
+    const viewer = await browser.open(`${line.url}?mesh=fin`);
+    await viewer.waitForState('failed');
+    const said = await viewer.page.getByRole('alert').innerText();
+    assert.match(said, /chunk \d+, part \d+ arrived damaged.*What came before is sound and stays on the screen/s);
+    await viewer.settle();
+    const {tetrahedra, total} = await viewer.statistics();
+    assert.ok(tetrahedra > 10000 && tetrahedra < total.tetrahedra, `${tetrahedra} cells are shown`);
+    assert.ok(coloredShare(await viewer.screenshot('damaged')) > 0.05, 'nothing is shown');
+    await viewer.page.getByRole('button', {name: 'Try again'}).click();
+    await viewer.page.waitForFunction(() => window.qtetViewer.state === 'complete', null, {polling: 50});
+    await expectWhole(viewer, logs.fin);
+    return said.split('\n')[0];
+  } finally {
+    line.close();
+  }
+}
+
 async function saysWhatIsWrong({server, browser}) {
   const viewer = await browser.open(`${server.url}?mesh=nowhere`);
   await viewer.waitForState('failed');
@@ -193,5 +383,6 @@ async function saysWhatIsWrong({server, browser}) {
 export const checks = {
   refinesToTheOriginal, showsACoarsePictureFirst, survivesAKilledServer,
   survivesAServerThatIsAwayWhenItIsAsked, showsAPictureSoonOnAPoorLine,
-  keepsThePageResponsive, switchesFieldsAndMaps, clipsWithACap, obeysTheKeyboard, fitsAPhone, saysWhatIsWrong,
+  keepsThePageResponsive, switchesFieldsAndMaps, clipsWithACap, showsIsosurfacesAndThresholds, pointsAndProbes, goesCoarserAndStopsAtAnError,
+  showsTheSamePictureFromItsLink, comesBackFromLostGraphics, isAccessible, obeysTheKeyboard, fitsAPhone, showsWhatIsSoundOfADamagedFile, saysWhatIsWrong,
 };

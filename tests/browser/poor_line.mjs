@@ -8,8 +8,9 @@ export class PoorLine {
   #relay;
   #connections = new Set();
 
-  /** `bytesPerSecond` towards the browser on each connection, or on those of /v1/stream only; `delayMs` is added each way. */
-  static async open(targetPort, {bytesPerSecond, delayMs = 0, streamsOnly = false}) {
+  /** `bytesPerSecond` towards the browser on each connection, or on those of /v1/stream only; `delayMs` is added each way. Of the first connection of
+   *  /v1/stream byte `damageAt` arrives changed. */
+  static async open(targetPort, {bytesPerSecond, delayMs = 0, streamsOnly = false, damageAt = -1}) {
     const line = new PoorLine();
     line.#relay = createServer((browser) => {
       const server = connect(targetPort, '127.0.0.1');
@@ -21,11 +22,17 @@ export class PoorLine {
       line.#connections.add(end);
       for (const socket of [browser, server]) socket.on('error', end).on('close', end).setNoDelay(true);
       let slow = !streamsOnly;
+      let damage = -1;
       browser.on('data', (bytes) => {
-        slow ||= bytes.includes('GET /v1/stream');
+        const stream = bytes.includes('GET /v1/stream');
+        slow ||= stream;
+        if (stream) [damage, damageAt] = [damageAt, -1];
         setTimeout(() => server.writable && server.write(bytes), delayMs);
       });
-      relaySlowly(server, browser, () => (slow ? (bytesPerSecond * kTickMs) / 1000 : Infinity), delayMs);
+      relaySlowly(server, browser, () => (slow ? (bytesPerSecond * kTickMs) / 1000 : Infinity), delayMs, (bytes) => {
+        if (damage >= 0 && damage < bytes.length) bytes[damage] ^= 1;
+        damage -= bytes.length;
+      });
     });
     await new Promise((resolve) => void line.#relay.listen(0, '127.0.0.1', resolve));
     return line;
@@ -41,9 +48,10 @@ export class PoorLine {
 }
 
 /** Passes on `portion()` bytes a tick, and reads no further ahead, so that the server feels the line. */
-function relaySlowly(from, to, portion, delayMs) {
+function relaySlowly(from, to, portion, delayMs, spoil) {
   const timer = setInterval(() => {
     const bytes = from.read(Math.min(portion(), from.readableLength));
+    if (bytes) spoil(bytes);
     if (bytes) setTimeout(() => to.writable && to.write(bytes), delayMs);
   }, kTickMs);
   from.on('close', () => clearInterval(timer));

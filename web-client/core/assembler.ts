@@ -1,4 +1,5 @@
-// Puts arriving blocks into the codec in the order that it wants: head, structure with positions, then fields behind the mesh.
+// Keeps the blocks that arrive and puts them into the codec in the order that it wants: structure with positions, then fields behind the mesh. The
+// blocks stay (two or three bytes a cell), so that the mesh can be made coarser and finer again without the network.
 
 import {kAdaptiveCodec, kDracoCodec, type BlockValues, type Codec} from './codec';
 import type {ValueDecoder} from './draco';
@@ -13,22 +14,45 @@ const kDigitCountBytes = 4;
 export class Assembler {
   manifest: Manifest | null = null;
   private ledger: ByteLedger | null = null;
-  /** Structure and positions of a chunk whose other half is still on its way. */
-  private readonly waiting = new Map<number, {structure?: Uint8Array; positions?: Uint8Array}>();
+  private head: Uint8Array | null = null;
+  /** By chunk and part. */
+  private blocks: (Uint8Array | undefined)[][] = [];
+  private received: number[] = [];
 
   constructor(readonly codec: Codec, private readonly values: ValueDecoder) {}
 
-  /** Forgets blocks of an interrupted stream that could not be applied yet: the next stream sends them again. */
-  dropWaiting(): void {
-    this.waiting.clear();
+  forget(): void {
+    this.manifest = this.ledger = this.head = null;
+    this.blocks = [];
+    this.received = [];
   }
 
-  /** Figures of the mesh with field `field` (-1: none). */
-  statistics(field: number): Statistics {
-    return this.manifest && this.ledger ? statisticsOf(this.codec, this.manifest, this.ledger, field) : kNoStatistics;
+  /** Leading chunks that are here: of the mesh, and of one field. */
+  get receivedChunks(): number { return Math.min(this.leading(kStructurePart), this.leading(kPositionsPart)); }
+  receivedOfField(field: number): number { return Math.min(this.leading(kFirstFieldPart + field), this.receivedChunks); }
+
+  /** Figures of the mesh with these fields. */
+  statistics(fields: readonly number[]): Statistics {
+    return this.manifest && this.ledger ? statisticsOf(this.codec, this.manifest, this.ledger, fields) : kNoStatistics;
   }
 
-  /** Applies what the frame completes. Throws bad-checksum, bad-codec and what the codec refuses. */
+  /** Applies the next block of the fields, or else the next chunk of the mesh if `refine`; false when neither is here. Throws what the codec refuses. */
+  step(fields: readonly number[], refine: boolean): boolean {
+    for (const field of fields) if (this.stepField(field)) return true;
+    const chunk = this.codec.chunksApplied;
+    const structure = this.blocks[chunk]?.[kStructurePart];
+    const positions = this.blocks[chunk]?.[kPositionsPart];
+    if (!refine || !structure || !positions) return false;
+    this.codec.apply(chunk, structure, this.decode(chunk, kPositionsPart, positions, 3));
+    return true;
+  }
+
+  /** Back to the empty mesh; the blocks stay. */
+  rewind(): void {
+    if (this.head) this.codec.open(this.head);
+  }
+
+  /** Keeps what the frame holds. Throws bad-order, bad-message, bad-checksum and what the codec says of a head. */
   take(frame: Frame): void {
     if (frame.firstPart === kHeadPart) {
       this.takeHead(frame.payload);
@@ -43,7 +67,7 @@ export class Assembler {
       if (at + size > frame.payload.length) {
         throw new QtetError('bad-message', `Chunk ${frame.chunk} arrived in a size that differs from the chunk table's.`);
       }
-      this.takeBlock(frame.chunk, part, frame.payload.subarray(at, at + size));
+      this.keep(frame.chunk, part, frame.payload.subarray(at, at + size));
       at += size;
     }
   }
@@ -52,23 +76,29 @@ export class Assembler {
     this.codec.open(head);
     this.manifest = readManifest(head, (bytes, columns) => this.codec.levelColumns(bytes, columns));
     this.ledger = new ByteLedger(this.codec, head.length);
-    this.waiting.clear();
+    this.head = head.slice();
+    this.blocks = Array.from({length: this.codec.chunkCount}, () => []);
+    this.received = Array<number>(kFirstFieldPart + this.manifest.fields.length).fill(0);
   }
 
-  private takeBlock(chunk: number, part: number, bytes: Uint8Array): void {
+  private keep(chunk: number, part: number, bytes: Uint8Array): void {
     this.codec.checkBlock(chunk, part, bytes);
-    if (part >= kFirstFieldPart) {
-      const field = part - kFirstFieldPart;
-      this.codec.applyField(field, chunk, this.decode(chunk, part, bytes, this.manifest!.fields[field]!.components));
-      return;
-    }
-    const halves = this.waiting.get(chunk) ?? {};
-    if (part === kStructurePart) halves.structure = bytes;
-    if (part === kPositionsPart) halves.positions = bytes;
-    this.waiting.set(chunk, halves);
-    if (!halves.structure || !halves.positions) return;
-    this.waiting.delete(chunk);
-    this.codec.apply(chunk, halves.structure, this.decode(chunk, kPositionsPart, halves.positions, 3));
+    this.blocks[chunk]![part] = bytes;
+  }
+
+  private leading(part: number): number {
+    let count = this.received[part] ?? 0;
+    while (this.blocks[count]?.[part]) ++count;
+    return (this.received[part] = count);
+  }
+
+  private stepField(field: number): boolean {
+    const chunk = this.codec.fieldChunksApplied(field);
+    const part = kFirstFieldPart + field;
+    const bytes = this.blocks[chunk]?.[part];
+    if (!bytes || chunk >= this.codec.chunksApplied) return false;
+    this.codec.applyField(field, chunk, this.decode(chunk, part, bytes, this.manifest!.fields[field]!.components));
+    return true;
   }
 
   private decode(chunk: number, part: number, bytes: Uint8Array, components: number): BlockValues {

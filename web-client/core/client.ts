@@ -1,25 +1,30 @@
 // The page's side of the worker: commands out, messages in. Holds no mesh.
 
-import type {Plane} from './slice';
-import type {FromWorker, Source, ToWorker} from './worker_messages';
+import codecUrl from 'qtet-codec.wasm?url';
+import type {Ray, Vector} from './cell_ray';
+import type {Display} from './display';
+import type {Pick, Probe} from './inspector';
+import type {Limit} from './limit';
+import type {FromWorker, Question, Source, ToWorker} from './worker_messages';
 
-export type Listener = (message: FromWorker) => void;
+export type Listener = (message: Exclude<FromWorker, {type: 'answer'}>) => void;
 
 export class Client {
   private readonly worker = new Worker(new URL('./worker.ts', import.meta.url), {type: 'module', name: 'qtet'});
-  private readonly digests = new Map<number, (hex: string) => void>();
-  private nextDigest = 0;
+  private readonly asked = new Map<number, (answer: never) => void>();
+  private nextId = 0;
 
-  /** `listen` hears everything but the answers to `digest`. */
   constructor(listen: Listener) {
+    // The page knows where its build put the codec; the worker's own file may have been moved without what it refers to.
+    this.post({type: 'load', codecUrl: new URL(codecUrl, import.meta.url).href});
     this.worker.onmessage = (event: MessageEvent<FromWorker>) => {
       const message = event.data;
-      if (message.type !== 'digest') {
+      if (message.type !== 'answer') {
         listen(message);
         return;
       }
-      this.digests.get(message.id)?.(message.hex);
-      this.digests.delete(message.id);
+      this.asked.get(message.id)?.(message.answer as never);
+      this.asked.delete(message.id);
     };
     this.worker.onerror = (event) => {
       listen({type: 'error', code: 'internal', message: `The decoder stopped: ${event.message || 'unknown cause'}. Reload the page.`});
@@ -28,23 +33,30 @@ export class Client {
   }
 
   start(source: Source): void { this.post({type: 'start', source}); }
-  showField(name: string): void { this.post({type: 'field', name}); }
-  clip(plane: Plane | null): void { this.post({type: 'clip', plane}); }
+  /** REQUIRES: fields of the last `manifest` message. Its fields are fetched if they are not here. */
+  show(display: Display): void { this.post({type: 'display', display}); }
+  setLimit(limit: Limit): void { this.post({type: 'limit', limit}); }
   pause(): void { this.post({type: 'pause'}); }
   resume(): void { this.post({type: 'resume'}); }
   /** To be called once a snapshot is on the screen; the next one waits for it. */
   shown(): void { this.post({type: 'shown'}); }
 
   /** SHA-256 over the mesh as it stands in the worker, lower-case hexadecimal; empty before there is one. */
-  digest(): Promise<string> {
-    const id = this.nextDigest++;
-    return new Promise((resolve) => {
-      this.digests.set(id, resolve);
-      this.post({type: 'digest', id});
-    });
-  }
+  digest(): Promise<string> { return this.ask({type: 'digest'}); }
+  pick(ray: Ray): Promise<Pick | null> { return this.ask({type: 'pick', ray}); }
+  probe(from: Vector, to: Vector): Promise<Probe | null> { return this.ask({type: 'probe', from, to}); }
 
   dispose(): void { this.worker.terminate(); }
 
-  private post(message: ToWorker): void { this.worker.postMessage(message); }
+  private ask<Answer>(question: Question): Promise<Answer> {
+    const id = this.nextId++;
+    return new Promise((resolve) => {
+      this.asked.set(id, resolve as (answer: never) => void);
+      this.post({...question, id});
+    });
+  }
+
+  private post(message: ToWorker): void {
+    this.worker.postMessage(message);
+  }
 }

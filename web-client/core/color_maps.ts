@@ -1,14 +1,14 @@
 // Colour maps as tables of 256 RGB entries, base64 of 768 bytes each.
 // viridis (Smith, van der Walt, Firing 2015) and cividis (Nunez, Anderton, Renslow 2018): the published tables, dedicated to the
 // public domain (CC0). cool-warm: computed from the published definition (Moreland 2009, "Diverging Color Maps for Scientific
-// Visualization": Msh interpolation from (59, 76, 192) to (180, 4, 38) over white).
+// Visualization": Msh interpolation from (59, 76, 192) to (180, 4, 38) over white). turbo: the published polynomials (Mikhailov and Du 2019).
 
-export type ColorMapName = 'viridis' | 'cividis' | 'cool-warm';
+export type ColorMapName = 'viridis' | 'cividis' | 'cool-warm' | 'turbo' | 'grey';
 
-export const kColorMapNames: readonly ColorMapName[] = ['viridis', 'cividis', 'cool-warm'];
+export const kColorMapNames: readonly ColorMapName[] = ['viridis', 'cividis', 'cool-warm', 'turbo', 'grey'];
 export const kColorMapEntries = 256;
 
-const kTables: Record<ColorMapName, string> = {
+const kTables: Record<'viridis' | 'cividis' | 'cool-warm', string> = {
   viridis:
     'RAFURAJWRQRXRQVZRgdaRghcRgpdRgteRw1gRw5hRxBjRxFkRxNlSBRnSBZoSBdpSBhqSBpsSBttSBxuSB1vSB9wSCBxSCFzSCN0SCR1SCV2SCZ3SCh4' +
     'SCl5Ryp6Ryx6Ry17Ry58Ry99RjB+RjJ+RjN/RjSARTWBRTeBRTiCRDmDRDqDRDuEQz2EQz6FQj+FQkCGQkGGQUKHQUSHQEWIQEaIP0eIP0iJPkmJPkqJ' +
@@ -45,19 +45,43 @@ export function isColorMapName(name: string | null): name is ColorMapName {
   return name !== null && (kColorMapNames as readonly string[]).includes(name);
 }
 
-/** The table as 256 RGBA entries, opaque, in sRGB. */
-export function colorTable(name: ColorMapName): Uint8Array {
-  const packed = atob(kTables[name]);
+/** Of x from 0 to 1, lowest power first: red, green, blue. */
+const kTurbo = [
+  [0.13572138, 4.6153926, -42.66032258, 132.13108234, -152.94239396, 59.28637943],
+  [0.09140261, 2.19418839, 4.84296658, -14.18503333, 4.27729857, 2.82956604],
+  [0.1066733, 12.64194608, -60.58204836, 110.36276771, -89.90310912, 27.34824973],
+];
+/** Neither end is the colour of a background. */
+const kGreyFrom = 26;
+const kGreyTo = 236;
+
+/** The table as 256 RGBA entries, opaque, in sRGB; `reversed`: from the last to the first. */
+export function colorTable(name: ColorMapName, reversed = false): Uint8Array {
   const table = new Uint8Array(4 * kColorMapEntries).fill(255);
+  const entry = entriesOf(name);
   for (let i = 0; i < kColorMapEntries; ++i) {
-    for (let c = 0; c < 3; ++c) table[4 * i + c] = packed.charCodeAt(3 * i + c);
+    table.set(entry(reversed ? kColorMapEntries - 1 - i : i), 4 * i);
   }
   return table;
 }
 
+function entriesOf(name: ColorMapName): (i: number) => number[] {
+  if (name === 'grey') {
+    return (i) => Array<number>(3).fill(Math.round(kGreyFrom + (i * (kGreyTo - kGreyFrom)) / (kColorMapEntries - 1)));
+  }
+  if (name === 'turbo') {
+    return (i) => kTurbo.map((powers) => {
+      const value = powers.reduceRight((sum, factor) => sum * (i / (kColorMapEntries - 1)) + factor, 0);
+      return Math.round(255 * Math.min(1, Math.max(0, value)));
+    });
+  }
+  const packed = atob(kTables[name]);
+  return (i) => [0, 1, 2].map((c) => packed.charCodeAt(3 * i + c));
+}
+
 /** CSS gradient through `stops` evenly spaced entries, from left to right. */
-export function colorGradient(name: ColorMapName, stops = 17): string {
-  const table = colorTable(name);
+export function colorGradient(name: ColorMapName, reversed = false, stops = 17): string {
+  const table = colorTable(name, reversed);
   const colors = Array.from({length: stops}, (_, i) => {
     const at = 4 * Math.round((i * (kColorMapEntries - 1)) / (stops - 1));
     return `rgb(${table[at]} ${table[at + 1]} ${table[at + 2]})`;

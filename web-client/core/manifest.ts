@@ -43,6 +43,12 @@ export interface Manifest {
   levels: LevelInfo[];
 }
 
+/** What a server calls each field: its name; of two with one name, `cell:NAME` is that of the cells (proto/PROTOCOL.md). */
+export function fieldKeys(fields: readonly FieldInfo[]): string[] {
+  const points = new Set(fields.filter(({association}) => association === 'point').map(({name}) => name));
+  return fields.map(({association, name}) => (association === 'cell' && points.has(name) ? `cell:${name}` : name));
+}
+
 /** Places in the front of a log (codec/FORMAT.md, "Header", "Chunk table"). */
 const kHeaderBytes = 64;
 const kPositionBitsAt = 13;

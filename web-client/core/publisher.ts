@@ -1,9 +1,10 @@
 // Turns the growing mesh into pictures for the page, no faster than the page shows them and than decoding can spare.
 
 import type {Assembler} from './assembler';
-import {FieldScale} from './field_scale';
-import {slice, type Plane} from './slice';
-import {boundarySoup, soupBounds} from './triangle_soup';
+import {cutsOf, cuttingPlanes, fieldsOf, isosurfacesOf, keptCells, kPlainDisplay, surfaceOf, type Display, type MeshNow} from './display';
+import {scalarRange} from './field_scale';
+import {meshNow} from './mesh_now';
+import {noSoup, pointBounds} from './triangle_soup';
 import type {Snapshot} from './worker_messages';
 
 /** Pictures a second at most, so that decoding has the worker and the page its frames. */
@@ -14,10 +15,11 @@ const kCostFactor = 3;
 const kCutPauseMs = 8;
 
 export class Publisher {
-  private surfaceChanged = false;
+  display: Display = kPlainDisplay;
+  private meshChanged = false;
   private cutChanged = false;
-  private plane: Plane | null = null;
-  private field = -1;
+  /** Nothing is drawn before the page has said what. */
+  private wanted = false;
   private bounds: number[] = [];
   private onScreen = true;
   private nextAt = 0;
@@ -28,19 +30,17 @@ export class Publisher {
 
   /** The mesh or the shown field's values changed. */
   changed(): void {
-    this.surfaceChanged = true;
+    this.meshChanged = true;
     this.schedule();
   }
 
-  /** Show field `field` of the manifest from now on (-1: none). */
-  show(field: number): void {
-    this.field = field;
-    this.changed();
-  }
-
-  clip(plane: Plane | null): void {
-    this.plane = plane;
-    this.cutChanged = true;
+  show(display: Display): void {
+    const before = this.display;
+    this.display = display;
+    const whole = display.mode === 'cells' || before.mode !== display.mode || before.body !== display.body ||
+      JSON.stringify([before.color, before.threshold, before.isosurfaces]) !== JSON.stringify([display.color, display.threshold, display.isosurfaces]);
+    if (whole || !this.wanted) this.meshChanged = true;
+    this.wanted = this.cutChanged = true;
     this.schedule();
   }
 
@@ -50,17 +50,17 @@ export class Publisher {
     this.schedule();
   }
 
-  /** Starts with an empty mesh. */
+  /** Starts with an empty mesh, and waits for a display. */
   reset(): void {
-    this.surfaceChanged = this.cutChanged = false;
+    this.meshChanged = this.cutChanged = this.wanted = false;
     this.bounds = [];
-    this.field = -1;
+    this.display = kPlainDisplay;
     clearTimeout(this.timer);
     this.timer = undefined;
   }
 
   private schedule(): void {
-    if (!this.onScreen || !(this.surfaceChanged || this.cutChanged)) return;
+    if (!this.onScreen || !this.wanted || !(this.meshChanged || this.cutChanged)) return;
     const now = performance.now();
     const due = this.cutChanged ? Math.min(this.nextAt, now + kCutPauseMs) : this.nextAt;
     if (this.timer !== undefined && this.dueAt <= due) return;
@@ -71,25 +71,33 @@ export class Publisher {
 
   private publish(): void {
     this.timer = undefined;
-    const {codec, manifest} = this.assembler;
-    if (!manifest || codec.chunksApplied === 0) return;
+    const mesh = meshNow(this.assembler);
+    if (!mesh) return;
     const start = performance.now();
-    const info = manifest.fields[this.field];
-    const values = info ? codec.field(this.field, info.components) : null;
-    const scale = info && values ? new FieldScale(values, info) : null;
-    const snapshot: Snapshot = {
-      bounds: this.bounds, field: scale ? this.field : -1, statistics: this.assembler.statistics(this.field),
-    };
-    const points = codec.points();
-    if (this.surfaceChanged) {
-      snapshot.surface = boundarySoup(points, codec.boundary(), scale);
-      snapshot.bounds = this.bounds = soupBounds(snapshot.surface);
-    }
+    const {display} = this;
+    const kept = keptCells(mesh, display);
     // A finer mesh has another cut: both travel together, so that they always fit.
-    if (this.plane) snapshot.cut = {plane: this.plane, cap: slice(points, codec.tetrahedra(), scale, this.plane)};
-    else if (this.cutChanged) snapshot.cut = null;
-    this.surfaceChanged = this.cutChanged = this.onScreen = false;
-    this.nextAt = start + Math.max(kShortestPauseMs, kCostFactor * (performance.now() - start));
+    const snapshot: Snapshot = {...this.frame(mesh), cuts: cutsOf(mesh, display, kept), planes: cuttingPlanes(display)};
+    if (this.meshChanged) {
+      snapshot.surface = display.body && display.mode !== 'slice' ? surfaceOf(mesh, display, kept) : noSoup();
+      snapshot.isosurface = isosurfacesOf(mesh, display, kept) ?? noSoup();
+    }
+    this.meshChanged = this.cutChanged = this.onScreen = false;
+    snapshot.costMs = performance.now() - start;
+    this.nextAt = start + Math.max(kShortestPauseMs, kCostFactor * snapshot.costMs);
     this.send(snapshot);
+  }
+
+  private frame(mesh: MeshNow): Omit<Snapshot, 'cuts' | 'planes'> {
+    const {color} = this.display;
+    const scale = color && mesh.scale(color);
+    const info = color && this.assembler.manifest!.fields[color.field];
+    if (this.meshChanged || this.bounds.length === 0) this.bounds = pointBounds(mesh.points, mesh.boundary);
+    return {
+      bounds: this.bounds, color: scale ? color : null, statistics: this.assembler.statistics(fieldsOf(this.display)), costMs: 0,
+      // Of a component nobody knows the range but the values themselves.
+      extent: scale && info && info.components > 1 && color.component >= 0 ? scale.extent() : [0, 1],
+      scaleRange: scale && info ? scalarRange(info, color.component) : [0, 1],
+    };
   }
 }

@@ -1,7 +1,9 @@
-// One mesh on its way into the page: opens the stream, keeps it going over lost connections, and says how it stands.
+// One mesh on its way into the page: opens the stream, keeps it going over lost connections, refines as far as is wished, and says how it stands.
 
 import type {Assembler} from './assembler';
 import {errorCode, errorText, QtetError} from './errors';
+import {errorOfLevel, kFull, limitReached, type Limit} from './limit';
+import {fieldKeys} from './manifest';
 import type {Frame, ServerMessage} from './protocol';
 import type {Publisher} from './publisher';
 import {Transport, type TransportHandlers} from './transport';
@@ -9,22 +11,32 @@ import type {FromWorker, Source, StreamState} from './worker_messages';
 
 /** Payload bytes under way: enough for 80 Mbit/s at 100 ms, and some ten chunks of decoding that a click has to wait for at most. */
 const kWindowBytes = 1 << 20;
+/** Decoding pauses this often for commands from the page. */
+const kSliceMs = 25;
+
+/** What the codec's sentences leave open: what one sees now, and what to do. */
+const kWaysOut: Record<string, string> = {
+  'bad-checksum': '. What came before is sound and stays on the screen. Try again to fetch the rest anew; if it fails at the same chunk, the file itself is damaged: "qtet verify" says where.',
+  'limit-exceeded': ' The mesh stays at the level that fits. Close other tabs, or choose a limit under "Level of detail" and try again.',
+};
 
 export type TransportFactory = (url: string, handlers: TransportHandlers) => Transport;
 
 export class Session implements TransportHandlers {
   private transport: Transport | null = null;
-  private source: Source = {url: '', mesh: '', field: null, pauseAfter: 0};
+  private source: Source = {url: '', mesh: '', fields: null, limit: kFull};
   private state: StreamState = 'connecting';
   private digest = '';
-  /** The field to show: an index into the manifest, -1 none. */
-  private field = -1;
+  /** The fields to bring: indexes into the manifest. */
+  private fields: number[] = [];
   /** Fields that the current `open` asks for. */
   private requested: string[] = [];
-  /** Bytes of credit that may still be granted, and that may still arrive, before the pause; Infinity without one. */
-  private grantable = Infinity;
-  private untilPause = Infinity;
+  private limit: Limit = kFull;
   private paused = false;
+  private receivedBytes = 0;
+  /** Bytes that arrived and whose credit waits until they are applied. */
+  private unapplied = 0;
+  private timer: ReturnType<typeof setTimeout> | undefined;
 
   constructor(
     private readonly assembler: Assembler, private readonly publisher: Publisher, private readonly send: (message: FromWorker) => void,
@@ -33,7 +45,7 @@ export class Session implements TransportHandlers {
   start(source: Source): void {
     this.transport?.disconnect();
     this.source = source;
-    this.grantable = this.untilPause = source.pauseAfter > 0 ? source.pauseAfter : Infinity;
+    this.limit = source.limit;
     this.paused = false;
     this.forget();
     this.transport = this.makeTransport(source.url, this);
@@ -41,14 +53,29 @@ export class Session implements TransportHandlers {
     this.transport.connect();
   }
 
-  showField(name: string): void {
-    this.source.field = name;
-    if (!this.assembler.manifest) return;
-    this.chooseField();
-    this.send({type: 'progress', statistics: this.statistics()});
-    if (this.paused || this.state === 'failed') return;
-    if (this.isComplete()) this.finish();
-    else this.reopen();
+  /** Bring these fields (indexes into the manifest), whatever was wanted before. */
+  want(fields: number[]): void {
+    if (!this.assembler.manifest || (fields.length === this.fields.length && fields.every((field) => this.fields.includes(field)))) return;
+    this.fields = fields;
+    this.source.fields = this.keys();
+    this.tellProgress();
+    if (this.state === 'failed') return;
+    this.advance();
+    if (this.paused || this.isComplete()) return;
+    if (!this.isReceived()) this.reopen();
+  }
+
+  /** Refine so far, and no farther; coarser than now goes back. */
+  setLimit(limit: Limit): void {
+    this.limit = this.source.limit = limit;
+    if (!this.assembler.manifest || this.state === 'failed') return;
+    this.guarded(() => {
+      if (this.isHeld()) this.goBack();
+      this.publisher.changed();
+      if (!this.isHeld()) this.goOn();
+      else this.hold();
+      this.tellProgress();
+    });
   }
 
   pause(): void {
@@ -61,13 +88,12 @@ export class Session implements TransportHandlers {
   /** Goes on after a pause, or tries again after an error. */
   resume(): void {
     if (this.state === 'failed') {
-      this.start({...this.source, pauseAfter: 0});
+      this.start(this.source);
       return;
     }
     if (!this.paused) return;
     this.paused = false;
-    this.grantable = this.untilPause = Infinity;
-    this.reopen();
+    this.goOn();
   }
 
   // ---- TransportHandlers
@@ -78,7 +104,13 @@ export class Session implements TransportHandlers {
 
   message(message: ServerMessage): void {
     if (message.type === 'opened') this.digest = message.digest;
-    if (message.type === 'done') this.finish();
+    if (message.type === 'done') {
+      if (!this.isReceived()) {
+        this.failed(new QtetError('incomplete', 'The server says that everything was sent, but parts of the mesh are missing. Try again.'));
+        return;
+      }
+      this.advance();
+    }
     if (message.type !== 'error') return;
     // Another mesh stands under this name now: what was decoded is of no use, so start anew with the new one.
     if (message.code === 'log-changed' && this.digest) {
@@ -88,7 +120,7 @@ export class Session implements TransportHandlers {
     }
     if (message.code === 'unknown-field' && !this.assembler.manifest) {
       this.send({type: 'error', code: message.code, message: `${message.detail} The first field is shown instead.`});
-      this.source.field = null;
+      this.source.fields = null;
       this.open();
       return;
     }
@@ -96,26 +128,19 @@ export class Session implements TransportHandlers {
   }
 
   frame(frame: Frame): void {
-    try {
+    this.guarded(() => {
       const first = !this.assembler.manifest;
       this.assembler.take(frame);
-      if (first) {
-        this.send({type: 'manifest', manifest: this.assembler.manifest!, digest: this.digest});
-        if (this.openFirstField()) return;
-      } else {
-        this.publisher.changed();
-      }
-      if (this.state !== 'streaming' && !this.paused) this.setState('streaming');
-      this.send({type: 'progress', statistics: this.statistics()});
-      this.giveBack(frame.payload.length);
-    } catch (thrown) {
-      this.failed(new QtetError(errorCode(thrown), errorText(thrown)));
-    }
+      this.receivedBytes += frame.payload.length;
+      this.unapplied += frame.payload.length;
+      if (first && this.takeManifest()) return;
+      if (this.state !== 'streaming' && !this.paused && !this.isHeld()) this.setState('streaming');
+      this.advance();
+    });
   }
 
   down(attempt: number, delayMs: number): void {
-    this.assembler.dropWaiting();
-    if (this.state === 'complete' || this.paused) {
+    if (this.state === 'complete' || this.state === 'held' || this.paused) {
       this.transport?.disconnect();  // nothing is missing; a wish for more connects again
       return;
     }
@@ -123,53 +148,112 @@ export class Session implements TransportHandlers {
   }
 
   failed(error: QtetError): void {
+    clearTimeout(this.timer);
     this.transport?.disconnect();
     this.send({type: 'error', code: error.code, message: error.message});
     this.setState('failed');
   }
 
+  // ---- decoding
+
+  /** Applies what is here, in slices, so that the page's commands come between. */
+  private advance(): void {
+    clearTimeout(this.timer);
+    this.guarded(() => {
+      const until = performance.now() + kSliceMs;
+      let applied = false;
+      while (this.assembler.step(this.fields, !this.isHeld())) {
+        applied = true;
+        if (performance.now() < until) continue;
+        this.timer = setTimeout(() => this.advance(), 0);
+        break;
+      }
+      if (applied) this.publisher.changed();
+      this.tellProgress();
+      if (this.isComplete()) this.complete();
+      else if (this.isHeld()) this.hold();
+      else this.giveCredit();
+    });
+  }
+
+  /** From the empty mesh to the limit, at once: no picture of the way is shown. */
+  private goBack(): void {
+    this.assembler.rewind();
+    while (this.assembler.step(this.fields, !this.isHeld())) continue;
+  }
+
+  private isHeld(): boolean {
+    const {codec, manifest} = this.assembler;
+    if (this.limit.kind === 'full' || !manifest || codec.chunksApplied === 0) return false;
+    const statistics = this.assembler.statistics(this.fields);
+    return limitReached(this.limit, statistics, errorOfLevel(manifest.levels[statistics.level], this.fields));
+  }
+
+  private hold(): void {
+    if (this.state === 'held' || this.paused) return;
+    this.publisher.changed();
+    this.setState('held');
+  }
+
+  /** After a pause or a limit: what is here first, then the network. */
+  private goOn(): void {
+    this.state = 'streaming';
+    this.advance();
+    if (this.isComplete() || this.isHeld()) return;
+    if (this.isReceived()) this.setState('streaming');
+    else this.reopen();
+  }
+
   // ---- helpers
 
+  private guarded(action: () => void): void {
+    try {
+      action();
+    } catch (thrown) {
+      const code = errorCode(thrown);
+      this.failed(new QtetError(code, `${errorText(thrown)}${kWaysOut[code] ?? ''}`));
+    }
+  }
+
   private forget(): void {
+    clearTimeout(this.timer);
     this.digest = '';
-    this.field = -1;
+    this.fields = [];
     this.requested = [];
-    this.assembler.manifest = null;
-    this.assembler.dropWaiting();
+    this.receivedBytes = this.unapplied = 0;
+    this.assembler.forget();
     this.publisher.reset();
   }
 
-  private chooseField(): void {
-    const fields = this.assembler.manifest!.fields;
-    const usable = fields.findIndex((field) => field.association === 'point');
-    const named = fields.findIndex((field) => field.association === 'point' && field.name === this.source.field);
-    this.field = named >= 0 ? named : usable;
-    this.publisher.show(this.field);
+  private keys(): string[] {
+    const keys = fieldKeys(this.assembler.manifest!.fields);
+    return this.fields.map((field) => keys[field]!);
   }
 
-  /** Only the head tells which fields there are: when the right one was not asked for, ask again. True when it did. */
-  private openFirstField(): boolean {
-    this.chooseField();
-    const name = this.assembler.manifest!.fields[this.field]?.name;
-    if (this.source.field !== null && (name === undefined || this.requested.includes(name))) return false;
+  /** Only the head tells which fields there are: when the right ones were not asked for, ask again. True when it did. */
+  private takeManifest(): boolean {
+    const manifest = this.assembler.manifest!;
+    const keys = fieldKeys(manifest.fields);
+    this.fields = (this.source.fields ?? []).map((name) => keys.indexOf(name)).filter((field) => field >= 0);
+    if (this.fields.length === 0 && keys.length > 0) this.fields = [0];
+    this.send({type: 'manifest', manifest, digest: this.digest, fields: this.fields});
+    if (this.source.fields !== null && this.keys().every((key) => this.requested.includes(key))) return false;
     this.open();
     return true;
   }
 
   private open(): void {
-    const {codec, manifest} = this.assembler;
-    const name = manifest ? manifest.fields[this.field]?.name : undefined;
+    const {manifest} = this.assembler;
+    const asked = manifest ? this.keys() : this.source.fields ?? [];
     // While it is unknown which fields there are, one byte of credit buys the head and nothing that another `open` would waste.
-    const probing = !manifest && this.source.field === null;
-    this.requested = name !== undefined ? [name] : !manifest && this.source.field ? [this.source.field] : [];
-    this.assembler.dropWaiting();
-    const credit = probing ? 1 : Math.min(kWindowBytes, this.grantable);
-    this.grantable -= credit;
+    const probing = !manifest && this.source.fields === null;
+    this.requested = asked.filter((name) => name !== '');
+    this.unapplied = 0;
     this.transport?.open({
-      mesh: this.source.mesh, fields: this.requested, credit,
+      mesh: this.source.mesh, fields: this.requested, credit: probing ? 1 : kWindowBytes,
       have: {
-        chunks: manifest ? codec.chunksApplied : 0,
-        fields: name === undefined ? {} : {[name]: codec.fieldChunksApplied(this.field)},
+        chunks: manifest ? this.assembler.receivedChunks : 0,
+        fields: manifest ? Object.fromEntries(this.fields.map((field, i) => [asked[i]!, this.assembler.receivedOfField(field)])) : {},
       },
       ...(this.digest ? {digest: this.digest} : {}),
     });
@@ -182,32 +266,30 @@ export class Session implements TransportHandlers {
     else this.transport?.connect();
   }
 
-  private giveBack(bytes: number): void {
-    const granted = Math.min(bytes, this.grantable);
-    this.grantable -= granted;
-    this.untilPause -= bytes;
-    if (granted > 0) this.transport?.applied(granted);
-    if (this.untilPause <= 0 && !this.isComplete()) this.pause();
+  private giveCredit(): void {
+    if (this.unapplied > 0 && !this.paused) this.transport?.applied(this.unapplied);
+    this.unapplied = 0;
   }
 
-  private finish(): void {
-    if (!this.isComplete()) {
-      this.failed(new QtetError('incomplete', 'The server says that everything was sent, but parts of the mesh are missing.'));
-      return;
-    }
-    this.publisher.changed();
-    this.send({type: 'progress', statistics: this.statistics()});
-    this.setState('complete');
+  private isReceived(): boolean {
+    const {codec, manifest} = this.assembler;
+    if (!manifest || this.assembler.receivedChunks < codec.chunkCount) return false;
+    return this.fields.every((field) => this.assembler.receivedOfField(field) === codec.chunkCount);
   }
 
   private isComplete(): boolean {
     const {codec, manifest} = this.assembler;
     if (!manifest || codec.chunksApplied < codec.chunkCount) return false;
-    return this.field < 0 || codec.fieldChunksApplied(this.field) === codec.chunkCount;
+    return this.fields.every((field) => codec.fieldChunksApplied(field) === codec.chunkCount);
   }
 
-  private statistics() {
-    return this.assembler.statistics(this.field);
+  private complete(): void {
+    this.paused = false;
+    if (this.state !== 'complete') this.setState('complete');
+  }
+
+  private tellProgress(): void {
+    this.send({type: 'progress', statistics: this.assembler.statistics(this.fields), received: this.receivedBytes});
   }
 
   private setState(state: StreamState, attempt = 0, delayMs = 0): void {

@@ -17,7 +17,7 @@ export interface Statistics extends Counts {
   lastLevel: number;
   chunks: number;
   chunkCount: number;
-  /** Bytes applied and needed to show the whole mesh with the chosen field. */
+  /** Bytes applied and needed to show the whole mesh with the chosen fields. */
   bytes: number;
   bytesNeeded: number;
 }
@@ -36,14 +36,21 @@ export class ByteLedger {
     this.mesh = this.sums([kStructurePart, kPositionsPart]);
   }
 
-  /** Bytes applied and bytes needed of the mesh with field `field` (-1: none). */
-  bytes(field: number): {applied: number; needed: number} {
-    const applied = this.headBytes + this.mesh[this.codec.chunksApplied]!;
-    const needed = this.headBytes + this.mesh[this.mesh.length - 1]!;
-    if (field < 0) return {applied, needed};
+  /** Bytes applied and bytes needed of the mesh with these fields. */
+  bytes(fields: readonly number[]): {applied: number; needed: number} {
+    const sum = {applied: this.headBytes + this.mesh[this.codec.chunksApplied]!, needed: this.headBytes + this.mesh[this.mesh.length - 1]!};
+    for (const field of fields) {
+      const sums = this.sumsOf(field);
+      sum.applied += sums[this.codec.fieldChunksApplied(field)]!;
+      sum.needed += sums[sums.length - 1]!;
+    }
+    return sum;
+  }
+
+  private sumsOf(field: number): Float64Array {
     let sums = this.fields.get(field);
     if (!sums) this.fields.set(field, (sums = this.sums([kFirstFieldPart + field])));
-    return {applied: applied + sums[this.codec.fieldChunksApplied(field)]!, needed: needed + sums[sums.length - 1]!};
+    return sums;
   }
 
   private sums(parts: number[]): Float64Array {
@@ -55,10 +62,10 @@ export class ByteLedger {
   }
 }
 
-/** `field` is an index into the manifest's fields, or -1. */
-export function statisticsOf(codec: Codec, manifest: Manifest, ledger: ByteLedger, field: number): Statistics {
+/** `fields` are indexes into the manifest's. */
+export function statisticsOf(codec: Codec, manifest: Manifest, ledger: ByteLedger, fields: readonly number[]): Statistics {
   const last = manifest.levels[manifest.levels.length - 1];
-  const {applied, needed} = ledger.bytes(field);
+  const {applied, needed} = ledger.bytes(fields);
   return {
     tetrahedra: codec.tetrahedronCount, vertices: codec.vertexCount, boundaryTriangles: codec.boundaryCount,
     total: {tetrahedra: last?.tetrahedra ?? 0, vertices: last?.vertices ?? 0, boundaryTriangles: last?.boundaryTriangles ?? 0},

@@ -36,6 +36,39 @@ export function niceTicks(low: number, high: number, most: number): Ticks {
   return {ticks, factor};
 }
 
+/** The same on a logarithmic bar: powers of ten, and 2 and 5 times them where these are few. REQUIRES: 0 < low < high. */
+export function logTicks(low: number, high: number, most: number): Ticks {
+  const from = Math.floor(Math.log10(low) - 1e-9);
+  const to = Math.ceil(Math.log10(high) + 1e-9);
+  const at = (value: number): number => Math.log(value / low) / Math.log(high / low);
+  if (high < 10 * low) {  // hardly curved: the numbers of an even bar, where they belong
+    const {ticks, factor} = niceTicks(low, high, most);
+    return {ticks: ticks.map((tick) => ({...tick, at: at(low + tick.at * (high - low))})), factor};
+  }
+  const choose = (factors: number[], every: number): Tick[] => {
+    const ticks: Tick[] = [];
+    for (let power = from; power <= to; ++power) {
+      if (power % every !== 0) continue;
+      for (const factor of factors) {
+        const value = factor * 10 ** power;
+        if (value >= low * (1 - 1e-9) && value <= high * (1 + 1e-9)) ticks.push({at: Math.min(1, Math.max(0, at(value))), label: powerLabel(factor, power)});
+      }
+    }
+    return ticks;
+  };
+  const fine = choose([1, 2, 5], 1);
+  if (fine.length <= most && fine.length > 0) return {ticks: fine, factor: ''};
+  for (let every = 1; ; ++every) {
+    const ticks = choose([1], every);
+    if (ticks.length <= most) return {ticks: ticks.length > 0 ? ticks : choose([1], 1).slice(0, most), factor: ''};
+  }
+}
+
+function powerLabel(factor: number, power: number): string {
+  if (power >= kPlainFrom && power < kPlainBelow) return label(factor * 10 ** power, Math.max(0, -power), false);
+  return factor === 1 ? `10${superscript(power)}` : `${factor}·10${superscript(power)}`;
+}
+
 /** The smallest step of 1, 2 or 5 times a power of ten that puts at most `most` ticks inside [low, high]. */
 function niceStep(low: number, high: number, most: number): number {
   const power = 10 ** (Math.floor(Math.log10((high - low) / most)) - 1);

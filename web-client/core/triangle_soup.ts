@@ -26,14 +26,38 @@ export function boundarySoup(points: Int32Array, triangles: Uint32Array, scale: 
   return {positions, values, firstHalf: triangles.length / 3};
 }
 
-/** Smallest and largest lattice coordinates: [x0, y0, z0, x1, y1, z1]. REQUIRES: at least one triangle. */
-export function soupBounds(soup: TriangleSoup): number[] {
+/** Nothing; new each time, because soups are given away. */
+export function noSoup(): TriangleSoup {
+  return {positions: new Float32Array(0), values: new Float32Array(0), firstHalf: 0};
+}
+
+/** Smallest and largest lattice coordinates of the triangles' vertices: [x0, y0, z0, x1, y1, z1]. REQUIRES: at least one triangle. */
+export function pointBounds(points: Int32Array, triangles: Uint32Array): number[] {
   const bounds = [Infinity, Infinity, Infinity, -Infinity, -Infinity, -Infinity];
-  for (let i = 0; i < soup.positions.length; ++i) {
-    const axis = i % 3;
-    const value = soup.positions[i]!;
-    if (value < bounds[axis]!) bounds[axis] = value;
-    if (value > bounds[axis + 3]!) bounds[axis + 3] = value;
+  for (const vertex of triangles) {
+    for (let axis = 0; axis < 3; ++axis) {
+      const value = points[3 * vertex + axis]!;
+      if (value < bounds[axis]!) bounds[axis] = value;
+      if (value > bounds[axis + 3]!) bounds[axis + 3] = value;
+    }
   }
   return bounds;
+}
+
+/** Several in one: whole triangles first, then the halves of quads. */
+export function joinSoups(soups: TriangleSoup[]): TriangleSoup {
+  const sum = (size: (soup: TriangleSoup) => number): number => soups.reduce((all, soup) => all + size(soup), 0);
+  const joined: TriangleSoup = {
+    positions: new Float32Array(sum(({positions}) => positions.length)), values: new Float32Array(sum(({values}) => values.length)),
+    firstHalf: sum(({firstHalf}) => firstHalf),
+  };
+  let at = 0;
+  const append = ({positions, values}: TriangleSoup, from: number, to: number): void => {
+    joined.positions.set(positions.subarray(9 * from, 9 * to), 9 * at);
+    if (values.length > 0) joined.values.set(values.subarray(3 * from, 3 * to), 3 * at);
+    at += to - from;
+  };
+  for (const soup of soups) append(soup, 0, soup.firstHalf);
+  for (const soup of soups) append(soup, soup.firstHalf, soup.positions.length / 9);
+  return joined;
 }

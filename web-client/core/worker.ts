@@ -1,11 +1,11 @@
 // The worker: network, decoding and cutting happen here, so that the page only draws.
 
-import codecUrl from 'qtet-codec.wasm?url';
-import dracoUrl from 'draco3d/draco_decoder.wasm?url';
 import {Assembler} from './assembler';
 import {WasmCodec} from './codec';
-import {DracoValueDecoder} from './draco';
+import {kDraco} from './draco';
+import {fieldsOf} from './display';
 import {errorText} from './errors';
+import {Inspector} from './inspector';
 import {Publisher} from './publisher';
 import {retry} from './retry';
 import {Session} from './session';
@@ -15,25 +15,30 @@ interface Parts {
   session: Session;
   publisher: Publisher;
   codec: WasmCodec;
+  inspector: Inspector;
 }
 
-const parts = start();
-parts.catch((thrown: unknown) => {
-  post({type: 'error', code: 'internal', message: `The decoder could not be loaded (${errorText(thrown)}). Reload the page.`});
-  post({type: 'state', state: 'failed', attempt: 0, delayMs: 0});
-});
+let parts: Promise<Parts>;
 
 self.onmessage = (event: MessageEvent<ToWorker>) => {
+  if (event.data.type === 'load') {
+    parts = start(event.data.codecUrl);
+    parts.catch((thrown: unknown) => {
+      post({type: 'error', code: 'internal', message: `The decoder could not be loaded (${errorText(thrown)}). Reload the page.`});
+      post({type: 'state', state: 'failed', attempt: 0, delayMs: 0});
+    });
+    return;
+  }
   // Commands keep their order: each waits for the same promise.
-  parts.then((ready) => obey(ready, event.data)).catch(() => undefined);
+  const message = event.data;
+  parts.then((ready) => obey(ready, message)).catch(() => undefined);
 };
 
-async function start(): Promise<Parts> {
-  const [codecModule, dracoModule] = await Promise.all([retry(() => compile(codecUrl)), retry(() => compile(dracoUrl))]);
-  const [codec, draco] = await Promise.all([WasmCodec.create(codecModule), DracoValueDecoder.create(dracoModule)]);
-  const assembler = new Assembler(codec, draco);
+async function start(codecUrl: string): Promise<Parts> {
+  const codec = await WasmCodec.create(await retry(() => compile(codecUrl)));
+  const assembler = new Assembler(codec, kDraco);
   const publisher = new Publisher(assembler, postSnapshot);
-  return {codec, publisher, session: new Session(assembler, publisher, post)};
+  return {codec, publisher, inspector: new Inspector(assembler), session: new Session(assembler, publisher, post)};
 }
 
 /** Compiles while it downloads; a host that serves .wasm under another type costs only that. */
@@ -44,15 +49,19 @@ async function compile(url: string): Promise<WebAssembly.Module> {
   return WebAssembly.compile(await response.arrayBuffer());
 }
 
-function obey({session, publisher, codec}: Parts, message: ToWorker): void {
+function obey({session, publisher, codec, inspector}: Parts, message: Exclude<ToWorker, {type: 'load'}>): void {
   switch (message.type) {
     case 'start': return session.start(message.source);
-    case 'field': return session.showField(message.name);
-    case 'clip': return publisher.clip(message.plane);
+    case 'display':
+      publisher.show(message.display);
+      return session.want(fieldsOf(message.display));
+    case 'limit': return session.setLimit(message.limit);
     case 'pause': return session.pause();
     case 'resume': return session.resume();
     case 'shown': return publisher.shown();
-    case 'digest': return post({type: 'digest', id: message.id, hex: codec.chunkCount > 0 ? codec.digest() : ''});
+    case 'digest': return post({type: 'answer', id: message.id, answer: codec.chunkCount > 0 ? codec.digest() : ''});
+    case 'pick': return post({type: 'answer', id: message.id, answer: inspector.pick(message.ray, publisher.display)});
+    case 'probe': return post({type: 'answer', id: message.id, answer: inspector.probe(message.from, message.to, publisher.display)});
   }
 }
 
@@ -61,7 +70,7 @@ function post(message: FromWorker): void {
 }
 
 function postSnapshot(snapshot: Snapshot): void {
-  const soups = [snapshot.surface, snapshot.cut?.cap].filter((soup) => soup !== undefined);
+  const soups = [snapshot.surface, ...(snapshot.cuts ?? []), snapshot.isosurface].filter((soup) => soup !== undefined);
   const buffers = soups.flatMap((soup) => [soup.positions.buffer, soup.values.buffer]) as ArrayBuffer[];
   const message: FromWorker = {type: 'snapshot', snapshot};
   self.postMessage(message, {transfer: buffers});

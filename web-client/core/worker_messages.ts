@@ -1,49 +1,68 @@
 // What passes between the page and the worker that decodes. Typed arrays travel by transfer, never by copy.
 
+import type {Ray, Vector} from './cell_ray';
+import type {Display} from './display';
+import type {Scalar} from './field_scale';
+import type {Pick, Probe} from './inspector';
+import type {Limit} from './limit';
 import type {Manifest} from './manifest';
 import type {Plane} from './slice';
 import type {Statistics} from './statistics';
 import type {TriangleSoup} from './triangle_soup';
 
-/** Where the stream stands. `paused`: by the user, or because the page's budget of bytes is spent. */
-export type StreamState = 'connecting' | 'streaming' | 'complete' | 'reconnecting' | 'paused' | 'failed';
+/** Where the stream stands. `paused`: by the user; `held`: the level that was asked for is here. */
+export type StreamState = 'connecting' | 'streaming' | 'complete' | 'reconnecting' | 'paused' | 'held' | 'failed';
 
 export interface Source {
   /** ws: or wss: address of /v1/stream */
   url: string;
   mesh: string;
-  /** Name of the field to show; null: the first one, whichever that is; empty: the mesh has none. */
-  field: string | null;
-  /** Payload bytes after which to pause; 0: never. */
-  pauseAfter: number;
+  /** Names of the fields to begin with, as the server calls them; null: the first one, whichever that is; empty: none. */
+  fields: string[] | null;
+  limit: Limit;
 }
 
 export type ToWorker =
+  /** First of all: where the codec's WebAssembly lies. */
+  | {type: 'load'; codecUrl: string}
   | {type: 'start'; source: Source}
-  | {type: 'field'; name: string}
-  | {type: 'clip'; plane: Plane | null}
+  | {type: 'display'; display: Display}
+  | {type: 'limit'; limit: Limit}
   | {type: 'pause'}
   | {type: 'resume'}
   /** The last snapshot is on the screen: the next may come. */
   | {type: 'shown'}
-  | {type: 'digest'; id: number};
+  | ({id: number} & Question);
+
+/** Each is answered by an `answer` of the same id. */
+export type Question =
+  | {type: 'digest'}
+  | {type: 'pick'; ray: Ray}
+  | {type: 'probe'; from: Vector; to: Vector};
 
 /** One consistent picture; what did not change since the last one is absent. */
 export interface Snapshot {
   surface?: TriangleSoup;
-  /** The cut along `plane`; null: nothing is clipped. */
-  cut?: {plane: Plane; cap: TriangleSoup} | null;
+  isosurface?: TriangleSoup;
+  /** One a plane; of each, and of the surface, nothing is to be seen above the (other) planes. */
+  cuts: TriangleSoup[];
+  planes: Plane[];
   /** Bounds of the surface in lattice coordinates: [x0, y0, z0, x1, y1, z1]. */
   bounds: number[];
-  /** Index of the field that the values belong to, -1: none. */
-  field: number;
+  /** What the soups' values are of; null: there are none yet. */
+  color: Scalar | null;
+  /** What 0 and 1 of them mean, and which of them occur. */
+  scaleRange: [number, number];
+  extent: [number, number];
   statistics: Statistics;
+  /** What making it took in the worker. */
+  costMs: number;
 }
 
 export type FromWorker =
-  | {type: 'manifest'; manifest: Manifest; digest: string}
+  | {type: 'manifest'; manifest: Manifest; digest: string; fields: number[]}
   | {type: 'snapshot'; snapshot: Snapshot}
-  | {type: 'progress'; statistics: Statistics}
+  | {type: 'progress'; statistics: Statistics; received: number}
   | {type: 'state'; state: StreamState; attempt: number; delayMs: number}
   | {type: 'error'; code: string; message: string}
-  | {type: 'digest'; id: number; hex: string};
+  | {type: 'answer'; id: number; answer: string | Pick | Probe | null};

@@ -1,14 +1,25 @@
-import {describe, expect, it} from 'vitest';
-import {parseClip} from '../viewer/clip_panel';
+import {describe, expect, test} from 'vitest';
+import {extentAlong, planeOf} from '../viewer/clip_panel';
+import {axisNormal} from '../viewer/settings';
 
-describe('parseClip', () => {
-  it('reads an axis, a share and a side', () => {
-    expect(parseClip('y')).toEqual({axis: 1, share: 0.5, flipped: false});
-    expect(parseClip('x:0.25')).toEqual({axis: 0, share: 0.25, flipped: false});
-    expect(parseClip('-z:1')).toEqual({axis: 2, share: 1, flipped: true});
+const kBounds = [0, 0, 0, 100, 200, 50];
+
+describe('a clip plane in the lattice', () => {
+  test('standsAtItsShareOfTheExtentWhicheverSideIsCutAway', () => {
+    for (const flipped of [false, true]) {
+      const {normal, offset} = planeOf({normal: axisNormal(0, flipped), share: 0.25}, kBounds);
+      expect(Math.abs(normal[0]! * offset - 25)).toBe(0.5);
+    }
+    expect(Math.abs(planeOf({normal: axisNormal(1, false), share: 0.25}, kBounds).offset + 50)).toBe(0.5);
   });
 
-  it('takes anything else for no clip', () => {
-    for (const text of [null, '', 'w', 'y:', 'y:2', 'y:-1', 'y:0.5x', 'yy', '--y']) expect(parseClip(text)).toBeNull();
+  test('liesBetweenTwoLatticePlanes', () => {
+    for (let i = 0; i <= 10; ++i) expect(planeOf({normal: axisNormal(2, false), share: i / 10}, kBounds).offset % 1).toBe(0.5);
+  });
+
+  test('acrossAnyDirectionCountsAlongIt', () => {
+    expect(extentAlong(kBounds, [0.6, -0.8, 0])).toEqual([-160, 60]);
+    expect(planeOf({normal: [0.6, -0.8, 0], share: 0}, kBounds).offset).toBe(-159.5);
+    expect(planeOf({normal: [0.6, -0.8, 0], share: 1}, kBounds).offset).toBe(60.5);
   });
 });

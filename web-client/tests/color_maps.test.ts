@@ -21,7 +21,7 @@ test('neighbouringEntriesAreNearlyTheSame', () => {
   for (const name of kColorMapNames) {
     for (let i = 1; i < 256; ++i) {
       const before = entry(name, i - 1);
-      for (const [c, value] of entry(name, i).entries()) expect(Math.abs(value - before[c]!)).toBeLessThanOrEqual(8);
+      for (const [c, value] of entry(name, i).entries()) expect(Math.abs(value - before[c]!)).toBeLessThanOrEqual(name === 'turbo' ? 14 : 8);
     }
   }
 });
@@ -34,7 +34,7 @@ test('viridisAndCividisGrowLighterAllTheWay', () => {
 });
 
 test('gradientsRunFromTheFirstToTheLastEntry', () => {
-  const gradient = colorGradient('viridis', 5);
+  const gradient = colorGradient('viridis', false, 5);
   expect(gradient).toMatch(/^linear-gradient\(90deg, rgb\(68 1 84\), .*rgb\(253 231 37\)\)$/);
   expect(gradient.split('rgb(')).toHaveLength(6);
 });

@@ -1,8 +1,8 @@
 import {describe, expect, test} from 'vitest';
 import {FieldScale} from '../core/field_scale';
-import {errorOf, readManifest} from '../core/manifest';
+import {errorOf, fieldKeys, readManifest} from '../core/manifest';
 import {fakeHead} from './fakes';
-import {boundarySoup, soupBounds} from '../core/triangle_soup';
+import {boundarySoup, pointBounds} from '../core/triangle_soup';
 
 const info = (components: number, minimum: number[], range: [number, number]) =>
   ({name: 'f', components, association: 'point' as const, step: 0.5, minimum, range});
@@ -42,7 +42,7 @@ test('aSoupHasEveryTrianglesCornersInOrder', () => {
   expect([...soup.positions]).toEqual([0, 0, 7, 5, 0, 0, 0, 0, 0, 0, 6, 0, 5, 0, 0, 0, 0, 7]);
   expect(soup.values).toHaveLength(0);
   expect(soup.firstHalf).toBe(2);
-  expect(soupBounds(soup)).toEqual([0, 0, 0, 5, 6, 7]);
+  expect(pointBounds(points, Uint32Array.from([3, 1, 0, 2, 1, 3]))).toEqual([0, 0, 0, 5, 6, 7]);
 });
 
 describe('a manifest', () => {
@@ -57,6 +57,10 @@ describe('a manifest', () => {
       fields: [field('p', 'point'), field('q', 'point'), field('p', 'cell')],
       levels: [{level: 0, tetrahedra: 5, vertices: 4, boundaryTriangles: 3}, {level: 1, tetrahedra: 6, vertices: 7, boundaryTriangles: 8}],
     });
+  });
+
+  test('tellsFieldsOfOneNameApart', () => {
+    expect(fieldKeys(readManifest(head(), columns).fields)).toEqual(['p', 'q', 'cell:p']);
   });
 
   test('ofFieldsWithGapsIsTheSameButForTheFlagInBothPlaces', () => {

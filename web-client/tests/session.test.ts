@@ -1,6 +1,7 @@
 import {afterEach, beforeEach, describe, expect, test, vi} from 'vitest';
 import {Assembler} from '../core/assembler';
 import {kLongestDelayMs} from '../core/backoff';
+import {kFull} from '../core/limit';
 import {Publisher} from '../core/publisher';
 import {Session} from '../core/session';
 import {Transport} from '../core/transport';
@@ -32,7 +33,7 @@ beforeEach(() => {
 afterEach(() => void vi.useRealTimers());
 
 function start(source: Partial<Source> = {}): FakeSocket {
-  session.start({url: 'ws://x', mesh: 'm', field: 'p', pauseAfter: 0, ...source});
+  session.start({url: 'ws://x', mesh: 'm', fields: ['p'], limit: kFull, ...source});
   sockets.at(-1)!.accept();
   return sockets.at(-1)!;
 }
@@ -108,6 +109,7 @@ describe('a stream', () => {
     socket.deliver(headFrame(1, kLog));
     sendAll(socket, 1, 0);
     expect(errors()).toEqual(['bad-checksum']);
+    expect(heard.find(({type}) => type === 'error')).toMatchObject({message: expect.stringMatching(/chunk 1 is damaged\. What came before is sound and stays/)});
     expect(states().at(-1)).toBe('failed');
     expect(socket.closed).toBe(true);
   });
@@ -140,32 +142,42 @@ describe('fields', () => {
     const socket = start();
     socket.deliver(headFrame(1, kLog));
     sendAll(socket, 1, 0);
-    session.showField('v');
+    session.want([1]);
     expect(opens().at(-1)).toMatchObject({fields: ['v'], have: {chunks: 3, fields: {v: 0}}});
     for (let chunk = 0; chunk < 3; ++chunk) socket.deliver(fieldFrame(2, chunk, 1));
     socket.deliver('{"type":"done","stream":2}');
     expect(states().slice(-2)).toEqual(['streaming', 'complete']);
-    session.showField('p');
+    session.want([0]);
     expect(opens()).toHaveLength(2);
     expect(states().at(-1)).toBe('complete');
   });
 
   test('withoutANameOneByteOfCreditBuysTheHeadAndTheFirstFieldIsAskedFor', () => {
-    const socket = start({field: null});
+    const socket = start({fields: null});
     expect(opens()[0]).toMatchObject({fields: [], credit: 1});
     socket.deliver(headFrame(1, kLog));
     expect(opens()[1]).toMatchObject({fields: ['p'], have: {chunks: 0}});
   });
 
-  test('aCellFieldIsNotShownAndTheFirstPointFieldIsAskedForInstead', () => {
-    const socket = start({field: 'tissue'});
-    expect(opens()[0]).toMatchObject({fields: ['tissue']});
-    socket.deliver(headFrame(1, {...kLog, cellFields: ['tissue']}));
-    expect(opens()[1]).toMatchObject({fields: ['p'], have: {chunks: 0}});
+  test('ofCellsAreAskedForByTheirKey', () => {
+    const socket = start({fields: ['cell:p']});
+    socket.deliver(headFrame(1, {...kLog, cellFields: ['p']}));
+    expect(opens()).toHaveLength(1);
+    expect(heard.find(({type}) => type === 'manifest')).toMatchObject({fields: [2]});
+  });
+
+  test('ofWhichSeveralAreWantedAllCome', () => {
+    const socket = start({fields: ['p', 'v']});
+    expect(opens()[0]).toMatchObject({fields: ['p', 'v']});
+    socket.deliver(headFrame(1, kLog));
+    for (let chunk = 0; chunk < 3; ++chunk) socket.deliver(fieldFrame(1, chunk, 1));
+    sendAll(socket, 1, 0);
+    expect(states().at(-1)).toBe('complete');
+    expect([codec.fieldChunksApplied(0), codec.fieldChunksApplied(1)]).toEqual([3, 3]);
   });
 
   test('anUnknownFieldIsReportedAndTheFirstOneShown', () => {
-    const socket = start({field: 'nope'});
+    const socket = start({fields: ['nope']});
     socket.deliver('{"type":"error","code":"unknown-field","detail":"no nope"}');
     socket.deliver(headFrame(2, kLog));
     socket.deliver(headFrame(3, kLog));
@@ -175,18 +187,50 @@ describe('fields', () => {
   });
 });
 
-describe('pausing', () => {
-  test('theBudgetIsNeverExceededByCreditAndPausesTheStream', () => {
-    const head = fakeHead(kLog).length;
-    const socket = start({pauseAfter: head + 30});
-    expect(opens()[0]).toMatchObject({credit: head + 30});
+describe('a limit', () => {
+  test('holdsTheMeshAndTheCreditAndGoesOnFromWhatIsHere', () => {
+    const socket = start({limit: {kind: 'cells', value: 2}});
     socket.deliver(headFrame(1, kLog));
-    expect(states().at(-1)).toBe('streaming');
+    sendAll(socket, 1, 0);
+    expect([codec.chunksApplied, states().at(-1)]).toEqual([2, 'held']);
+    session.setLimit(kFull);
+    expect([codec.chunksApplied, states().at(-1)]).toEqual([3, 'complete']);
+    expect(opens()).toHaveLength(1);
+  });
+
+  test('coarserThanNowGoesBackWithoutTheNetwork', () => {
+    const socket = start();
+    socket.deliver(headFrame(1, kLog));
+    sendAll(socket, 1, 0);
+    session.setLimit({kind: 'cells', value: 1});
+    expect([codec.chunksApplied, codec.fieldChunksApplied(0), states().at(-1)]).toEqual([1, 1, 'held']);
+    expect(opens()).toHaveLength(1);
+    session.setLimit({kind: 'bytes', value: fakeHead(kLog).length + 50});
+    expect([codec.chunksApplied, states().at(-1)]).toEqual([2, 'held']);
+  });
+
+  test('ofWhichTheRestIsNotHereAsksTheServerForIt', () => {
+    const socket = start({limit: {kind: 'cells', value: 1}});
+    socket.deliver(headFrame(1, kLog));
     socket.deliver(meshFrame(1, 0));
     socket.deliver(fieldFrame(1, 0, 0));
-    expect(states().at(-1)).toBe('paused');
-    expect(socket.sentOf('credit')).toEqual([]);
-    expect(socket.sentOf('stop')).toHaveLength(1);
+    socket.lose(1006);
+    vi.advanceTimersByTime(10 * kLongestDelayMs);
+    expect([sockets.length, states().at(-1)]).toEqual([1, 'held']);
+    session.setLimit(kFull);
+    sockets.at(-1)!.accept();
+    expect(opens().at(-1)).toMatchObject({have: {chunks: 1, fields: {p: 1}}});
+  });
+});
+
+describe('pausing', () => {
+  test('stopsTheServerAndGoesOnBehindWhatIsHere', () => {
+    const socket = start();
+    socket.deliver(headFrame(1, kLog));
+    socket.deliver(meshFrame(1, 0));
+    socket.deliver(fieldFrame(1, 0, 0));
+    session.pause();
+    expect([socket.sentOf('stop').length, states().at(-1)]).toEqual([1, 'paused']);
     session.resume();
     expect(opens().at(-1)).toMatchObject({have: {chunks: 1, fields: {p: 1}}});
     sendAll(socket, 2, 0, 1);

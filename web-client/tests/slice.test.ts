@@ -2,34 +2,10 @@ import {describe, expect, test} from 'vitest';
 import {FieldScale} from '../core/field_scale';
 import {slice, type Plane} from '../core/slice';
 import type {TriangleSoup} from '../core/triangle_soup';
-
-/** The six tetrahedra round a cube's diagonal; vertex i stands at the bits of i. */
-const kCube = [[1, 3], [3, 2], [2, 6], [6, 4], [4, 5], [5, 1]].flatMap(([p, q]) => [0, p!, q!, 7]);
-
-function cubes(n: number, size: number): {points: Int32Array; tetrahedra: Uint32Array} {
-  const id = (x: number, y: number, z: number): number => (x * (n + 1) + y) * (n + 1) + z;
-  const points: number[] = [];
-  const tetrahedra: number[] = [];
-  for (let x = 0; x <= n; ++x) for (let y = 0; y <= n; ++y) for (let z = 0; z <= n; ++z) points.push(size * x, size * y, size * z);
-  for (let x = 0; x < n; ++x) for (let y = 0; y < n; ++y) for (let z = 0; z < n; ++z) {
-    tetrahedra.push(...kCube.map((corner) => id(x + (corner & 1), y + ((corner >> 1) & 1), z + (corner >> 2))));
-  }
-  return {points: Int32Array.from(points), tetrahedra: Uint32Array.from(tetrahedra)};
-}
+import {cubes, soupArea} from './cubes';
 
 type Point = [number, number, number];
 const corner = (soup: TriangleSoup, i: number): Point => [...soup.positions.subarray(3 * i, 3 * i + 3)] as Point;
-
-function area(soup: TriangleSoup): number {
-  let sum = 0;
-  for (let i = 0; i < soup.positions.length / 3; i += 3) {
-    const [a, b, c] = [corner(soup, i), corner(soup, i + 1), corner(soup, i + 2)];
-    const u = b.map((value, k) => value - a[k]!);
-    const v = c.map((value, k) => value - a[k]!);
-    sum += Math.hypot(u[1]! * v[2]! - u[2]! * v[1]!, u[2]! * v[0]! - u[0]! * v[2]!, u[0]! * v[1]! - u[1]! * v[0]!) / 2;
-  }
-  return sum;
-}
 
 const plane = (normal: Point, offset: number): Plane => ({normal, offset});
 
@@ -38,23 +14,23 @@ describe('a cut', () => {
 
   test.each([[0.5], [4.5], [9.5], [10.5], [29.5]])('acrossACubeAt %d coversItsSectionOnce', (at) => {
     for (const normal of [[1, 0, 0], [0, -1, 0], [0, 0, 1]] as Point[]) {
-      const soup = slice(points, tetrahedra, null, plane(normal, at * (normal[0] + normal[1] + normal[2])));
-      expect(area(soup)).toBeCloseTo(900, 3);
+      const soup = slice({points, tetrahedra}, null, plane(normal, at * (normal[0] + normal[1] + normal[2])));
+      expect(soupArea(soup)).toBeCloseTo(900, 3);
     }
   });
 
   test('throughVerticesStillCoversTheSectionOnce', () => {
-    expect(area(slice(points, tetrahedra, null, plane([1, 0, 0], 10)))).toBeCloseTo(900, 3);
+    expect(soupArea(slice({points, tetrahedra}, null, plane([1, 0, 0], 10)))).toBeCloseTo(900, 3);
   });
 
   test('outsideTheMeshIsEmpty', () => {
-    expect(slice(points, tetrahedra, null, plane([1, 0, 0], 30.5)).positions).toHaveLength(0);
-    expect(slice(points, tetrahedra, null, plane([1, 0, 0], -0.5)).positions).toHaveLength(0);
+    expect(slice({points, tetrahedra}, null, plane([1, 0, 0], 30.5)).positions).toHaveLength(0);
+    expect(slice({points, tetrahedra}, null, plane([1, 0, 0], -0.5)).positions).toHaveLength(0);
   });
 
   test('obliqueLiesOnItsPlane', () => {
     const normal: Point = [1, 2, 3];
-    const soup = slice(points, tetrahedra, null, plane(normal, 77.25));
+    const soup = slice({points, tetrahedra}, null, plane(normal, 77.25));
     expect(soup.positions.length).toBeGreaterThan(0);
     for (let i = 0; i < soup.positions.length / 3; ++i) {
       expect(corner(soup, i).reduce((sum, value, k) => sum + value * normal[k]!, 0)).toBeCloseTo(77.25, 3);
@@ -64,7 +40,7 @@ describe('a cut', () => {
   test('interpolatesALinearFieldExactly', () => {
     const values = Int32Array.from({length: points.length / 3}, (_, v) => 2 * points[3 * v]! + 3 * points[3 * v + 1]! + 5 * points[3 * v + 2]!);
     const scale = new FieldScale(values, {name: 'f', components: 1, association: 'point', step: 1, minimum: [0], range: [0, 300]});
-    const soup = slice(points, tetrahedra, scale, plane([1, 1, 1], 41.5));
+    const soup = slice({points, tetrahedra}, scale, plane([1, 1, 1], 41.5));
     for (let i = 0; i < soup.values.length; ++i) {
       const [x, y, z] = corner(soup, i);
       expect(300 * soup.values[i]!).toBeCloseTo(2 * x + 3 * y + 5 * z, 3);
@@ -77,12 +53,12 @@ describe('one tetrahedron', () => {
   const tetrahedra = Uint32Array.from([0, 1, 2, 3]);
 
   test('withOneCornerCutOffGivesATriangle', () => {
-    const soup = slice(points, tetrahedra, null, plane([1, 0, 0], 3));
+    const soup = slice({points, tetrahedra}, null, plane([1, 0, 0], 3));
     expect([soup.positions.length, soup.firstHalf]).toEqual([9, 1]);
   });
 
   test('cutInPairsGivesAQuadWhoseDiagonalIsOppositeToTheFirstCorners', () => {
-    const soup = slice(points, tetrahedra, null, plane([1, 1, 0], 2));
+    const soup = slice({points, tetrahedra}, null, plane([1, 1, 0], 2));
     expect([soup.positions.length, soup.firstHalf]).toEqual([18, 0]);
     const shared = (first: number): string => [corner(soup, first + 1), corner(soup, first + 2)].map(String).sort().join(' ');
     expect(shared(3)).toBe(shared(0));
@@ -91,10 +67,10 @@ describe('one tetrahedron', () => {
 
   test('givesTheSameCutWhicheverSideIsAbove', () => {
     for (const normal of [[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 0], [1, 0, 1], [0, 1, 1]] as Point[]) {
-      const there = slice(points, tetrahedra, null, plane(normal, 1.5));
-      const back = slice(points, tetrahedra, null, plane(normal.map((value) => -value) as Point, -1.5));
+      const there = slice({points, tetrahedra}, null, plane(normal, 1.5));
+      const back = slice({points, tetrahedra}, null, plane(normal.map((value) => -value) as Point, -1.5));
       expect(back.positions.length).toBe(there.positions.length);
-      expect(area(back)).toBeCloseTo(area(there), 6);
+      expect(soupArea(back)).toBeCloseTo(soupArea(there), 6);
     }
   });
 });

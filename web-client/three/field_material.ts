@@ -1,4 +1,4 @@
-// The one material: a colour map over field values, cell edges, and a clip plane by discarding. Colours go out as they stand in the
+// The one material: a colour map over field values, cell edges, and up to three clip planes by discarding. Colours go out as they stand in the
 // table (sRGB, no tone mapping), so that a flat cut shows exactly what the legend shows.
 
 import {DataTexture, DoubleSide, LinearFilter, RGBAFormat, ShaderMaterial, Vector3, Vector4, type ColorRepresentation, Color} from 'three';
@@ -28,17 +28,26 @@ const kFragmentShader = /* glsl */ `
   in vec3 vView;
   in vec3 vCorner;
   uniform sampler2D colorMap;
-  uniform vec2 range;
+  uniform vec2 range;      // what the map spans, of vValue; with logarithmic, of the value itself
+  uniform vec2 scaleRange; // what 0 and 1 of vValue mean
+  uniform bool logarithmic;
   uniform bool colored;
   uniform vec3 plainColor;
   uniform bool lit;
-  uniform vec4 clipPlane;
+  uniform bool twoSided;
+  uniform vec4 clipPlanes[3];
+  uniform float opacity;
   uniform float edgeStrength;
   uniform float pixelRatio;
 
   vec3 surfaceColor() {
     if (!colored || isnan(vValue)) return plainColor;  // a value that is missing makes its triangle plain
-    float t = clamp((vValue - range.x) / max(range.y - range.x, 1e-12), 0.0, 1.0);
+    float t = (vValue - range.x) / max(range.y - range.x, 1e-12);
+    if (logarithmic) {
+      float value = mix(scaleRange.x, scaleRange.y, vValue);
+      t = value > 0.0 ? log(value / range.x) / log(range.y / range.x) : 0.0;
+    }
+    t = clamp(t, 0.0, 1.0);
     // Entry centres, so that both ends of the range show the table's own ends.
     return texture(colorMap, vec2((t * ${kColorMapEntries - 1}.0 + 0.5) / ${kColorMapEntries}.0, 0.5)).rgb;
   }
@@ -53,7 +62,7 @@ const kFragmentShader = /* glsl */ `
   }
 
   void main() {
-    if (dot(clipPlane.xyz, vLattice) > clipPlane.w) discard;
+    for (int i = 0; i < 3; ++i) if (dot(clipPlanes[i].xyz, vLattice) > clipPlanes[i].w) discard;
     vec3 color = surfaceColor();
     if (lit) {
       // Flat shading from the screen's derivatives: cells look like cells. The light sits a little above the eye.
@@ -61,42 +70,55 @@ const kFragmentShader = /* glsl */ `
       vec3 light = normalize(vec3(0.25, 0.45, 1.0));
       float facing = abs(dot(normal, light));
       color *= 0.64 + 0.40 * facing;
-      if (!gl_FrontFacing) color = mix(color, vec3(0.24, 0.26, 0.30), 0.55);
+      if (!gl_FrontFacing && !twoSided) color = mix(color, vec3(0.24, 0.26, 0.30), 0.55);
     }
     color = mix(color, color * 0.22, edgeStrength * edge());
-    gl_FragColor = vec4(min(color, 1.0), 1.0);
+    gl_FragColor = vec4(min(color, 1.0), opacity);
   }`;
 
 /** No point is above this plane. */
 const kNoPlane = new Vector4(0, 0, 0, 1);
 
 export class FieldMaterial extends ShaderMaterial {
-  private table: ColorMapName | null = null;
+  private table = '';
 
-  /** `lit`: shaded as a surface; else flat, as a cut. */
-  constructor(lit: boolean) {
+  /** `lit`: shaded as a surface, `twoSided` with no inside that is greyed; else flat, as a cut. */
+  constructor(lit: boolean, twoSided = false) {
     super({
       vertexShader: `uniform int firstHalf;\n${kVertexShader}`,
       fragmentShader: kFragmentShader,
       side: DoubleSide,
       uniforms: {
         firstHalf: {value: 0}, colorMap: {value: emptyTexture()}, range: {value: [0, 1]}, colored: {value: false},
-        plainColor: {value: new Vector3(0.72, 0.74, 0.78)}, lit: {value: lit}, clipPlane: {value: kNoPlane.clone()},
+        plainColor: {value: new Vector3(0.72, 0.74, 0.78)}, lit: {value: lit}, twoSided: {value: twoSided}, clipPlanes: {value: [kNoPlane.clone(), kNoPlane.clone(), kNoPlane.clone()]},
+        scaleRange: {value: [0, 1]}, logarithmic: {value: false}, opacity: {value: 1},
         edgeStrength: {value: 0.6}, pixelRatio: {value: 1},
       },
     });
   }
 
-  setColorMap(name: ColorMapName): void {
-    if (name === this.table) return;
-    this.table = name;
+  setColorMap(name: ColorMapName, reversed: boolean): void {
+    if (`${name} ${reversed}` === this.table) return;
+    this.table = `${name} ${reversed}`;
     const texture = this.uniforms.colorMap!.value as DataTexture;
-    (texture.image.data as Uint8Array).set(colorTable(name));
+    (texture.image.data as Uint8Array).set(colorTable(name, reversed));
     texture.needsUpdate = true;
   }
 
-  /** Values from `low` to `high`, in the soup's units (0 to 1 over the field's range), span the colour map. */
-  setRange(low: number, high: number): void { this.uniforms.range!.value = [low, high]; }
+  /** The map spans `low` to `high`, values of the field; `scaleRange` is what 0 and 1 in the soups mean. Logarithmic: 0 < low. */
+  setRange(low: number, high: number, scaleRange: [number, number], logarithmic: boolean): void {
+    const span = scaleRange[1] - scaleRange[0] || 1;
+    const share = (value: number): number => (value - scaleRange[0]) / span;
+    this.uniforms.range!.value = logarithmic ? [low, high] : [share(low), share(high)];
+    this.uniforms.scaleRange!.value = scaleRange;
+    this.uniforms.logarithmic!.value = logarithmic;
+  }
+  /** Below 1 the back shows through the front. */
+  setOpacity(opacity: number): void {
+    this.uniforms.opacity!.value = opacity;
+    this.transparent = opacity < 1;
+    this.depthWrite = opacity >= 1;
+  }
   setColored(colored: boolean): void { this.uniforms.colored!.value = colored; }
   setFirstHalf(triangle: number): void { this.uniforms.firstHalf!.value = triangle; }
   /** 0 hides the edges, 1 draws them at full strength. */
@@ -107,11 +129,13 @@ export class FieldMaterial extends ShaderMaterial {
     (this.uniforms.plainColor!.value as Vector3).set(r, g, b);
   }
 
-  /** Hides what lies above normal . p = offset (lattice coordinates); null hides nothing. */
-  setClip(plane: {normal: [number, number, number]; offset: number} | null): void {
-    const clip = this.uniforms.clipPlane!.value as Vector4;
-    if (plane) clip.set(...plane.normal, plane.offset);
-    else clip.copy(kNoPlane);
+  /** Hides what lies above any of at most three planes normal . p = offset (lattice coordinates). */
+  setClip(planes: readonly {normal: [number, number, number]; offset: number}[]): void {
+    (this.uniforms.clipPlanes!.value as Vector4[]).forEach((clip, i) => {
+      const plane = planes[i];
+      if (plane) clip.set(...plane.normal, plane.offset);
+      else clip.copy(kNoPlane);
+    });
   }
 
   override dispose(): void {

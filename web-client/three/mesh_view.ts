@@ -1,19 +1,16 @@
-// A canvas that shows a progressive mesh: camera, orbit controls, surface and cut. Draws only when something changed.
+// A canvas that shows a progressive mesh: surface, cuts and isosurfaces. Draws only when something changed.
 
-import {Group, MathUtils, PerspectiveCamera, Quaternion, Scene, Spherical, Vector3, WebGLRenderer} from 'three';
-import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
+import {Group, Quaternion, Raycaster, Scene, Vector2, Vector3, WebGLRenderer} from 'three';
+import type {Ray, Vector} from '../core/cell_ray';
 import type {ColorMapName} from '../core/color_maps';
+import {kMostPlanes} from '../core/display';
 import type {Snapshot} from '../core/worker_messages';
+import {OrbitCamera, type CameraState} from './camera';
+import type {Direction} from './directions';
 import {SoupMesh} from './soup_mesh';
 
-const kFieldOfViewDegrees = 32;
-/** From where a mesh is first seen: front right, from above; z is up. */
-const kFirstDirection = new Vector3(0.62, -1, 0.55).normalize();
-const kUp = new Vector3(0, 0, 1);
 /** How dark cell edges are: enough to follow, not enough to change what a colour says. */
 const kEdgeStrength = 0.52;
-/** Air round a mesh that has just been fitted. */
-const kMargin = 1.16;
 /** Pixels beyond two a point cost more than they show. */
 const kMostPixelRatio = 2;
 
@@ -25,35 +22,47 @@ export interface Insets {
   bottom: number;
 }
 
+export interface Look {
+  map: ColorMapName;
+  reversed: boolean;
+  edges: boolean;
+  /** Of the surface; cuts and isosurfaces stay solid. */
+  opacity: number;
+}
+
+/** `drawn`: after each frame, with the camera's rotation. `lost`: the browser took the graphics away, or gave them back. */
+export interface ViewListeners {
+  drawn?(rotation: Quaternion): void;
+  lost?(lost: boolean): void;
+}
+
 export class MeshView {
+  readonly orbit: OrbitCamera;
+  /** What the last frame took on this thread. */
+  frameMs = 0;
   private readonly renderer: WebGLRenderer;
   private readonly scene = new Scene();
-  private readonly camera = new PerspectiveCamera(kFieldOfViewDegrees, 1, 0.01, 100);
-  private readonly controls: OrbitControls;
   /** From lattice coordinates to a ball of radius 1 round the origin. */
   private readonly lattice = new Group();
   private readonly surface = new SoupMesh(true);
-  private readonly cap = new SoupMesh(false);
+  private readonly isosurface = new SoupMesh(true, true);
+  private readonly cuts = Array.from({length: kMostPlanes}, () => new SoupMesh(false));
   private readonly resizes: ResizeObserver;
   private bounds: number[] = [];
   private insets: Insets = {left: 0, right: 0, top: 0, bottom: 0};
-  /** Until somebody turns or zooms, the mesh stays fitted to the space that there is. */
-  private fitted = true;
+  private startState: CameraState | null = null;
   private frame = 0;
   private afterFrame: (() => void)[] = [];
 
-  /** Throws when the browser has no WebGL 2. `turned` is called with the camera's rotation whenever it changes. */
-  constructor(readonly canvas: HTMLCanvasElement, private readonly turned: (rotation: Quaternion) => void = () => undefined) {
+  /** Throws when the browser has no WebGL 2. */
+  constructor(readonly canvas: HTMLCanvasElement, private readonly listeners: ViewListeners = {}) {
     this.renderer = new WebGLRenderer({canvas, antialias: true, alpha: true, powerPreference: 'high-performance'});
     this.renderer.setClearColor(0, 0);
-    this.camera.up.copy(kUp);
-    this.camera.position.copy(kFirstDirection).multiplyScalar(4);
-    this.controls = new OrbitControls(this.camera, canvas);
-    this.controls.zoomToCursor = true;
-    this.controls.addEventListener('change', () => this.invalidate());
-    this.controls.addEventListener('start', () => void (this.fitted = false));
-    this.lattice.add(this.surface, this.cap);
+    this.orbit = new OrbitCamera(canvas, () => this.invalidate());
+    this.lattice.add(this.surface, this.isosurface, ...this.cuts);
     this.scene.add(this.lattice);
+    canvas.addEventListener('webglcontextlost', this.onLost);
+    canvas.addEventListener('webglcontextrestored', this.onRestored);
     this.resizes = new ResizeObserver(() => this.resize());
     this.resizes.observe(canvas);
     this.resize();
@@ -62,14 +71,18 @@ export class MeshView {
   /** Shows the picture; `drawn` is called after the frame that holds it. */
   show(snapshot: Snapshot, drawn: () => void): void {
     if (snapshot.surface) this.surface.show(snapshot.surface);
-    if (snapshot.cut !== undefined) {
-      this.cap.show(snapshot.cut?.cap ?? null);
-      this.surface.material.setClip(snapshot.cut?.plane ?? null);
-    }
+    if (snapshot.isosurface) this.isosurface.show(snapshot.isosurface);
+    for (const mesh of [this.surface, this.isosurface]) mesh.material.setClip(snapshot.planes);
+    this.cuts.forEach((mesh, i) => {
+      mesh.show(snapshot.cuts[i] ?? null);
+      mesh.material.setClip(snapshot.planes.filter((_, k) => k !== i));
+    });
     if (this.bounds.length === 0 && snapshot.bounds.length > 0) {
       this.bounds = snapshot.bounds;
       this.placeLattice();
-      this.resetCamera();
+      if (this.startState) this.orbit.state = this.startState;
+      else this.look(null);
+      this.startState = null;
     }
     this.afterFrame.push(drawn);
     this.invalidate();
@@ -78,96 +91,134 @@ export class MeshView {
   /** Forgets the mesh; the next one is fitted anew. */
   clear(): void {
     this.bounds = [];
-    this.surface.show(null);
-    this.cap.show(null);
-    this.surface.material.setClip(null);
+    for (const mesh of this.meshes()) mesh.show(null);
     this.invalidate();
   }
 
-  setColorMap(name: ColorMapName): void {
-    for (const mesh of [this.surface, this.cap]) mesh.material.setColorMap(name);
+  setLook({map, reversed, edges, opacity}: Look): void {
+    for (const mesh of this.meshes()) {
+      mesh.material.setColorMap(map, reversed);
+      // An isosurface's polygons are the cells' sections, not the mesh: their edges would hide its shape.
+      mesh.material.setEdges(edges && mesh !== this.isosurface ? kEdgeStrength : 0);
+    }
+    this.surface.material.setOpacity(opacity);
     this.invalidate();
   }
 
-  setEdges(on: boolean): void {
-    for (const mesh of [this.surface, this.cap]) mesh.material.setEdges(on ? kEdgeStrength : 0);
+  /** FieldMaterial.setRange for all. */
+  setRange(low: number, high: number, scaleRange: [number, number], logarithmic: boolean): void {
+    for (const mesh of this.meshes()) mesh.material.setRange(low, high, scaleRange, logarithmic);
     this.invalidate();
   }
 
   setInsets(insets: Insets): void {
+    const {left, right, top, bottom} = this.insets;
+    if (left === insets.left && right === insets.right && top === insets.top && bottom === insets.bottom) return;  // resizing empties the canvas
     this.insets = insets;
     this.resize();
   }
 
-  /** The view that a mesh is first seen in: as near as its bounding box allows. */
-  resetCamera(): void {
-    this.fitted = true;
+  // ---- camera
+
+  /** A standard view, or the one that a mesh is first seen in (null): as near as its bounding box allows. */
+  look(direction: Direction | null): void {
     if (this.bounds.length === 0) return;
-    this.controls.target.set(0, 0, 0);
-    this.camera.position.copy(kFirstDirection);
-    this.camera.lookAt(0, 0, 0);
-    this.camera.position.multiplyScalar(this.fittingDistance());
-    this.controls.update();
+    this.orbit.look(direction, () => this.fittingDistance());
+    this.invalidate();
+  }
+
+  setParallel(parallel: boolean): void {
+    this.orbit.parallel = parallel;
+    this.invalidate();
+  }
+
+  get cameraState(): CameraState { return this.orbit.state; }
+  /** Before there is a mesh it waits for one. */
+  set cameraState(state: CameraState) {
+    if (this.bounds.length === 0) this.startState = state;
+    else this.orbit.state = state;
     this.invalidate();
   }
 
   /** Turns the camera round its target, in radians. */
-  orbit(horizontal: number, vertical: number): void {
-    this.fitted = false;
-    const toYUp = new Quaternion().setFromUnitVectors(kUp, new Vector3(0, 1, 0));
-    const offset = this.camera.position.clone().sub(this.controls.target).applyQuaternion(toYUp);
-    const spherical = new Spherical().setFromVector3(offset);
-    spherical.theta += horizontal;
-    spherical.phi += vertical;
-    spherical.makeSafe();
-    offset.setFromSpherical(spherical).applyQuaternion(toYUp.invert());
-    this.camera.position.copy(this.controls.target).add(offset);
-    this.controls.update();
+  turn(horizontal: number, vertical: number): void {
+    this.orbit.orbit(horizontal, vertical);
     this.invalidate();
   }
 
   /** Moves the camera: below 1 nearer, above 1 farther. */
   zoom(factor: number): void {
-    this.fitted = false;
-    this.camera.position.sub(this.controls.target).multiplyScalar(factor).add(this.controls.target);
-    this.controls.update();
+    this.orbit.zoom(factor);
     this.invalidate();
+  }
+
+  /** Where the camera looks, as a unit normal in lattice coordinates. */
+  get viewDirection(): Vector { return this.orbit.camera.getWorldDirection(new Vector3()).toArray(); }
+
+  // ---- between the picture and the lattice
+
+  /** The line of sight through a point of the canvas, in CSS pixels from its corner. */
+  rayAt(x: number, y: number): Ray {
+    const pointer = new Vector2((2 * x) / this.canvas.clientWidth - 1, 1 - (2 * y) / this.canvas.clientHeight);
+    const caster = new Raycaster();
+    caster.setFromCamera(pointer, this.orbit.camera);
+    const scale = this.lattice.scale.x;
+    const origin = caster.ray.origin.sub(this.lattice.position).divideScalar(scale);
+    return {origin: origin.toArray(), direction: caster.ray.direction.toArray()};
+  }
+
+  /** Where a point of the lattice is on the canvas, in CSS pixels. */
+  project(point: Vector): {x: number; y: number} {
+    const {x, y} = new Vector3(...point).multiply(this.lattice.scale).add(this.lattice.position).project(this.orbit.camera);
+    return {x: (x + 1) / 2 * this.canvas.clientWidth, y: (1 - y) / 2 * this.canvas.clientHeight};
+  }
+
+  /** The picture as it stands, on `background` (CSS colour). */
+  async picture(background: string): Promise<Blob> {
+    this.draw();
+    const copy = new OffscreenCanvas(this.canvas.width, this.canvas.height);
+    const context = copy.getContext('2d')!;
+    context.fillStyle = background;
+    context.fillRect(0, 0, copy.width, copy.height);
+    context.drawImage(this.canvas, 0, 0);
+    return copy.convertToBlob({type: 'image/png'});
   }
 
   dispose(): void {
     cancelAnimationFrame(this.frame);
     this.resizes.disconnect();
-    this.controls.dispose();
-    this.surface.dispose();
-    this.cap.dispose();
+    this.canvas.removeEventListener('webglcontextlost', this.onLost);
+    this.canvas.removeEventListener('webglcontextrestored', this.onRestored);
+    this.orbit.dispose();
+    for (const mesh of this.meshes()) mesh.dispose();
     this.renderer.dispose();
   }
 
+  // ---- helpers
+
+  private readonly onLost = (event: Event): void => {
+    event.preventDefault();  // else it never comes back
+    this.listeners.lost?.(true);
+  };
+  private readonly onRestored = (): void => {
+    this.listeners.lost?.(false);
+    this.invalidate();
+  };
+
+  private meshes(): SoupMesh[] { return [this.surface, this.isosurface, ...this.cuts]; }
+
   private placeLattice(): void {
-    const low = new Vector3(...this.bounds.slice(0, 3) as [number, number, number]);
-    const high = new Vector3(...this.bounds.slice(3, 6) as [number, number, number]);
+    const low = new Vector3(...this.bounds.slice(0, 3) as Vector);
+    const high = new Vector3(...this.bounds.slice(3, 6) as Vector);
     const scale = 2 / Math.max(low.distanceTo(high), 1);
     this.lattice.scale.setScalar(scale);
     this.lattice.position.copy(low.add(high)).multiplyScalar(-0.5 * scale);
   }
 
-  /** How far the turned camera must stand for every corner of the bounds to fall into what the panels leave free. */
   private fittingDistance(): number {
-    const tanHeight = Math.tan(MathUtils.degToRad(kFieldOfViewDegrees) / 2) * (1 - this.insets.top - this.insets.bottom);
-    const tanWidth = Math.tan(MathUtils.degToRad(kFieldOfViewDegrees) / 2) * this.camera.aspect * (1 - this.insets.left - this.insets.right);
-    const right = new Vector3();
-    const up = new Vector3();
-    const near = new Vector3();
-    this.camera.updateMatrixWorld();
-    this.camera.matrixWorld.extractBasis(right, up, near);
-    let distance = 1;
-    for (let i = 0; i < 8; ++i) {
-      const corner = new Vector3(this.bounds[i & 1 ? 3 : 0], this.bounds[i & 2 ? 4 : 1], this.bounds[i & 4 ? 5 : 2]);
-      corner.multiply(this.lattice.scale).add(this.lattice.position);
-      const across = Math.max(Math.abs(corner.dot(right)) / tanWidth, Math.abs(corner.dot(up)) / tanHeight);
-      distance = Math.max(distance, across * kMargin + corner.dot(near));
-    }
-    return distance;
+    const corners = Array.from({length: 8}, (_, i) =>
+      new Vector3(this.bounds[i & 1 ? 3 : 0], this.bounds[i & 2 ? 4 : 1], this.bounds[i & 4 ? 5 : 2]).multiply(this.lattice.scale).add(this.lattice.position));
+    return this.orbit.fittingDistance(corners, 1 - this.insets.left - this.insets.right, 1 - this.insets.top - this.insets.bottom);
   }
 
   private resize(): void {
@@ -176,14 +227,14 @@ export class MeshView {
     const ratio = Math.min(window.devicePixelRatio, kMostPixelRatio);
     this.renderer.setPixelRatio(ratio);
     this.renderer.setSize(width, height, false);
-    for (const mesh of [this.surface, this.cap]) mesh.material.setPixelRatio(ratio);
-    this.camera.aspect = width / height;
+    for (const mesh of this.meshes()) mesh.material.setPixelRatio(ratio);
+    const {camera} = this.orbit;
+    camera.aspect = width / height;
     // Shifts the picture's centre into the middle of what the panels leave free.
     const right = (this.insets.right - this.insets.left) / 2 * width;
     const down = (this.insets.bottom - this.insets.top) / 2 * height;
-    this.camera.setViewOffset(width, height, right, down, width, height);
-    this.camera.updateProjectionMatrix();
-    if (this.fitted) this.resetCamera();
+    camera.setViewOffset(width, height, right, down, width, height);
+    if (this.orbit.fitted && this.bounds.length > 0) this.orbit.fit(() => this.fittingDistance());
     this.draw();  // at once: a resized canvas is empty until it is drawn
   }
 
@@ -194,8 +245,11 @@ export class MeshView {
   private draw(): void {
     cancelAnimationFrame(this.frame);
     this.frame = 0;
-    this.renderer.render(this.scene, this.camera);
-    this.turned(this.camera.quaternion);
+    const start = performance.now();
+    this.orbit.setDepths();
+    this.renderer.render(this.scene, this.orbit.camera);
+    this.frameMs = performance.now() - start;
+    this.listeners.drawn?.(this.orbit.camera.quaternion);
     const done = this.afterFrame;
     this.afterFrame = [];
     for (const drawn of done) drawn();

@@ -1,27 +1,33 @@
-// A triangle soup as a three.js object whose content is replaced as a whole.
+// A triangle soup as a three.js object. Its buffers stay and grow; of a new soup only the stretches that differ are uploaded.
 
-import {BufferAttribute, BufferGeometry, Mesh, Sphere, Vector3} from 'three';
+import {BufferAttribute, BufferGeometry, DynamicDrawUsage, Mesh, Sphere, Vector3} from 'three';
 import type {TriangleSoup} from '../core/triangle_soup';
+import {copyChanged} from './changed_ranges';
 import {FieldMaterial} from './field_material';
 
+/** Room that a buffer gets beyond what it needs, for the levels to come. */
+const kGrowth = 1.5;
+
 export class SoupMesh extends Mesh<BufferGeometry, FieldMaterial> {
-  constructor(lit: boolean) {
-    super(new BufferGeometry(), new FieldMaterial(lit));
+  /** Corners that the buffers hold. */
+  private capacity = 0;
+
+  constructor(lit: boolean, twoSided = false) {
+    super(new BufferGeometry(), new FieldMaterial(lit, twoSided));
     this.frustumCulled = false;  // the view knows the bounds; computing them again for every picture costs more than it saves
     this.visible = false;
   }
 
-  /** Takes the soup's arrays; null shows nothing. */
+  /** Shows the soup, whose arrays are free afterwards; null shows nothing. */
   show(soup: TriangleSoup | null): void {
-    // Frees the GPU's buffers: the next picture has other sizes, so there is nothing to reuse.
-    this.geometry.dispose();
     this.visible = soup !== null && soup.positions.length > 0;
-    if (!soup) return;
+    if (!soup || !this.visible) return;
+    const corners = soup.positions.length / 3;
+    if (corners > this.capacity) this.grow(corners);
+    this.update('position', soup.positions);
     const colored = soup.values.length > 0;
-    const values = colored ? soup.values : new Float32Array(soup.positions.length / 3);
-    this.geometry.setAttribute('position', new BufferAttribute(soup.positions, 3));
-    this.geometry.setAttribute('value', new BufferAttribute(values, 1));
-    this.geometry.boundingSphere = new Sphere(new Vector3(), Infinity);
+    if (colored) this.update('value', soup.values);
+    this.geometry.setDrawRange(0, corners);
     this.material.setColored(colored);
     this.material.setFirstHalf(soup.firstHalf);
   }
@@ -29,5 +35,22 @@ export class SoupMesh extends Mesh<BufferGeometry, FieldMaterial> {
   override dispose(): void {
     this.geometry.dispose();
     this.material.dispose();
+  }
+
+  private grow(corners: number): void {
+    this.geometry.dispose();
+    this.capacity = this.capacity === 0 ? corners : Math.ceil(corners * kGrowth);
+    for (const [name, size] of [['position', 3], ['value', 1]] as const) {
+      this.geometry.setAttribute(name, new BufferAttribute(new Float32Array(size * this.capacity), size).setUsage(DynamicDrawUsage));
+    }
+    this.geometry.boundingSphere = new Sphere(new Vector3(), Infinity);
+  }
+
+  private update(name: string, values: Float32Array): void {
+    const attribute = this.geometry.getAttribute(name) as BufferAttribute;
+    const ranges = copyChanged(attribute.array as Float32Array, values);
+    if (ranges.length === 0) return;
+    for (const {start, count} of ranges) attribute.addUpdateRange(start, count);
+    attribute.needsUpdate = true;
   }
 }

@@ -1,85 +1,126 @@
-// The clip plane's controls: across one axis, at a share of the mesh's extent, from either side.
+// Up to three clip planes: across an axis or as the camera looks, moved by a slider here and by a handle in the picture.
 
-import type {Manifest} from '../core/manifest';
+import {kMostPlanes} from '../core/display';
 import type {Plane} from '../core/slice';
 import {formatCoordinate} from './format';
+import type {Host, Panel, Scene} from './panel';
+import {axisNormal, axisOf, clipText, type ClipSetting, type Settings} from './settings';
 
-type Axis = 0 | 1 | 2;
-
-/** The side that is cut away first faces the first camera: front, right and top. */
-const kFirstSides: [number, number, number] = [1, -1, 1];
-
-/** A clip as an attribute tells it: "y", "y:0.3" (share of the extent), "-y:0.3" (from the other side); null for anything else. */
-export function parseClip(text: string | null): {axis: Axis; share: number; flipped: boolean} | null {
-  const match = /^(-?)([xyz])(?::(0(?:\.\d+)?|1(?:\.0+)?))?$/.exec(text ?? '');
-  if (!match) return null;
-  return {axis: 'xyz'.indexOf(match[2]!) as Axis, share: Number(match[3] ?? 0.5), flipped: match[1] === '-'};
+/** How far the bounds reach along a normal, in lattice units. */
+export function extentAlong(bounds: number[], normal: readonly number[]): [number, number] {
+  let low = 0;
+  let high = 0;
+  for (let axis = 0; axis < 3; ++axis) {
+    const a = normal[axis]! * bounds[axis]!, b = normal[axis]! * bounds[axis + 3]!;
+    low += Math.min(a, b);
+    high += Math.max(a, b);
+  }
+  return [low, high];
 }
 
-export class ClipPanel {
-  private readonly form: HTMLElement;
-  private readonly on: HTMLInputElement;
-  private readonly position: HTMLInputElement;
-  private readonly flip: HTMLInputElement;
-  private bounds: number[] = [];
-  private manifest: Manifest | null = null;
+/** The plane in lattice coordinates. A share counts along the axis upwards, whichever side is cut away; along a free normal, along it. */
+export function planeOf({normal, share}: ClipSetting, bounds: number[]): Plane {
+  const [low, high] = extentAlong(bounds, normal);
+  const {axis} = axisOf({normal, share});
+  const upwards = axis < 0 || normal[axis]! > 0;
+  // Between two lattice planes: no vertex lies on the cut, and no cell's section is a single point.
+  return {normal, offset: Math.floor(low + (upwards ? share : 1 - share) * (high - low)) + 0.5};
+}
 
-  /** `changed` gets the plane in lattice coordinates, or null for none. */
-  constructor(root: ParentNode, private readonly changed: (plane: Plane | null) => void) {
-    this.form = root.querySelector('.clip')!;
-    this.on = root.querySelector('input[name=clip]')!;
-    this.position = root.querySelector('input[name=position]')!;
-    this.flip = root.querySelector('input[name=flip]')!;
-    this.on.addEventListener('change', () => this.update());
-    this.form.addEventListener('input', () => this.update());
+export class ClipPanel implements Panel {
+  private planes: ClipSetting[] = [];
+
+  /** `viewNormal`: from the mesh to the camera, in lattice coordinates. */
+  constructor(private readonly root: ParentNode, private readonly host: Host, private readonly viewNormal: () => [number, number, number]) {
+    this.find<HTMLInputElement>('input[name=clip]').addEventListener('change', (event) => {
+      this.write((event.target as HTMLInputElement).checked ? [{normal: axisNormal(0, false), share: 0.5}] : []);
+    });
+    this.find('.clip-modes').addEventListener('change', (event) => {
+      const mode = (event.target as HTMLInputElement).value;
+      host.write('clip-mode', mode === 'cut' ? null : mode);
+    });
+    this.find('.add-plane').addEventListener('click', () => this.add());
+    const rows = this.find('.planes');
+    rows.replaceChildren(...Array.from({length: kMostPlanes}, (_, i) => this.row(i)));
   }
 
-  /** The mesh's bounds in lattice coordinates and where the lattice lies. */
-  place(bounds: number[], manifest: Manifest): void {
-    const first = this.bounds.length === 0;
-    this.bounds = bounds;
-    this.manifest = manifest;
-    if (first) this.update();
+  update({planes, mode}: Settings, scene: Scene | null): void {
+    this.planes = planes;
+    this.find<HTMLInputElement>('input[name=clip]').checked = planes.length > 0;
+    this.find('.clip').hidden = planes.length === 0;
+    this.find<HTMLInputElement>(`.clip-modes input[value=${mode}]`).checked = true;
+    this.find('.add-plane').hidden = planes.length >= kMostPlanes;
+    [...this.find('.planes').children].forEach((row, i) => this.updateRow(row as HTMLElement, planes[i], scene));
   }
 
-  clear(): void {
-    this.bounds = [];
-    this.manifest = null;
+  /** Moves plane `i` to a share of the extent. */
+  move(i: number, share: number): void {
+    this.write(this.planes.map((plane, k) => (k === i ? {...plane, share: Math.min(1, Math.max(0, share))} : plane)));
   }
 
-  /** Clips at `share` of the extent along axis 0 to 2, from the side that faces the first camera, or from the other. */
-  set(axis: Axis | null, share: number, flipped: boolean): void {
-    this.on.checked = axis !== null;
-    this.flip.checked = flipped;
-    this.position.value = String(Math.round(1000 * share));
-    if (axis !== null) this.form.querySelectorAll<HTMLInputElement>('input[name=axis]')[axis]!.checked = true;
-    this.update();
+  private row(i: number): HTMLElement {
+    const row = document.createElement('fieldset');
+    row.className = 'plane';
+    row.innerHTML = `<legend class="visually-hidden">Clip plane ${i + 1}</legend>
+      <div class="row">
+        <select name="axis" aria-label="Direction of clip plane ${i + 1}">
+          <option value="x">X</option><option value="y">Y</option><option value="z">Z</option><option value="view">As I look</option><option value="free" hidden>Free</option>
+        </select>
+        <label class="toggle"><input type="checkbox" name="flip"><span>Flip</span></label>
+        <output class="position"></output>
+        <button type="button" class="icon remove" aria-label="Remove clip plane ${i + 1}"><svg viewBox="0 0 20 20" aria-hidden="true"><path d="M5 5l10 10M15 5 5 15"/></svg></button>
+      </div>
+      <input type="range" name="position" min="0" max="1000" aria-label="Position of clip plane ${i + 1}">`;
+    row.querySelector('select')!.addEventListener('change', (event) => this.turn(i, (event.target as HTMLSelectElement).value));
+    row.querySelector('[name=flip]')!.addEventListener('change', () => this.flip(i));
+    row.querySelector('.remove')!.addEventListener('click', () => this.write(this.planes.filter((_, k) => k !== i)));
+    row.querySelector('[name=position]')!.addEventListener('input', (event) => this.move(i, Number((event.target as HTMLInputElement).value) / 1000));
+    return row;
   }
 
-  private update(): void {
-    this.form.hidden = !this.on.checked;
-    if (this.bounds.length === 0 || !this.manifest) return;
-    if (!this.on.checked) {
-      this.changed(null);
-      return;
-    }
-    const axis = this.axis();
-    const low = this.bounds[axis]!;
-    const high = this.bounds[axis + 3]!;
-    // Between two lattice planes: no vertex lies on the cut, and no cell's section is a single point.
-    const at = Math.floor(low + (Number(this.position.value) / 1000) * (high - low)) + 0.5;
-    const side = kFirstSides[axis]! * (this.flip.checked ? -1 : 1);
-    const normal: [number, number, number] = [0, 0, 0];
-    normal[axis] = side;
-    const {origin, step} = this.manifest.lattice;
-    const coordinate = formatCoordinate(origin[axis]! + step * at, step * (high - low));
-    this.form.querySelector('.position')!.textContent = coordinate;
-    this.position.setAttribute('aria-valuetext', coordinate);
-    this.changed({normal, offset: side * at});
+  private updateRow(row: HTMLElement, plane: ClipSetting | undefined, scene: Scene | null): void {
+    row.hidden = !plane;
+    if (!plane) return;
+    const {axis, flipped} = axisOf(plane);
+    row.querySelector('select')!.value = axis >= 0 ? 'xyz'[axis]! : 'free';
+    row.querySelector<HTMLInputElement>('[name=flip]')!.checked = flipped;
+    const slider = row.querySelector<HTMLInputElement>('[name=position]')!;
+    slider.value = String(Math.round(1000 * plane.share));
+    if (!scene) return;
+    const text = positionText(plane, scene);
+    row.querySelector('.position')!.textContent = text;
+    slider.setAttribute('aria-valuetext', text);
   }
 
-  private axis(): Axis {
-    const checked = this.form.querySelector<HTMLInputElement>('input[name=axis]:checked')!;
-    return 'xyz'.indexOf(checked.value) as Axis;
+  private add(): void {
+    const used = this.planes.map((plane) => axisOf(plane).axis);
+    const axis = [0, 1, 2].find((candidate) => !used.includes(candidate)) ?? 0;
+    this.write([...this.planes, {normal: axisNormal(axis, false), share: 0.5}]);
   }
+
+  private turn(i: number, direction: string): void {
+    const axis = 'xyz'.indexOf(direction);
+    const normal = axis >= 0 ? axisNormal(axis, false) : this.viewNormal();
+    this.write(this.planes.map((plane, k) => (k === i ? {normal, share: 0.5} : plane)));
+  }
+
+  private flip(i: number): void {
+    this.write(this.planes.map((plane, k) => {
+      if (k !== i) return plane;
+      const normal = plane.normal.map((x) => (x === 0 ? 0 : -x)) as ClipSetting['normal'];
+      return {normal, share: axisOf(plane).axis >= 0 ? plane.share : 1 - plane.share};
+    }));
+  }
+
+  private write(planes: ClipSetting[]): void { this.host.write('clip', planes.length > 0 ? clipText(planes) : null); }
+  private find<T extends HTMLElement = HTMLElement>(selector: string): T { return this.root.querySelector<T>(selector)!; }
+}
+
+/** The coordinate across an axis; of a free plane, how far along. */
+function positionText(plane: ClipSetting, {bounds, manifest}: Scene): string {
+  const {axis} = axisOf(plane);
+  if (axis < 0) return `${Math.round(100 * plane.share)}\u202f%`;
+  const {origin, step} = manifest.lattice;
+  const low = bounds[axis]!, high = bounds[axis + 3]!;
+  return formatCoordinate(origin[axis]! + step * (low + plane.share * (high - low)), step * (high - low));
 }

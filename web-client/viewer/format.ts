@@ -25,6 +25,28 @@ export function percentOf(part: number, whole: number): number {
   return whole > 0 ? Math.min(100, Math.floor((100 * part) / whole)) : 0;
 }
 
+/** A relative error: "1.2 %", "0.034 %"; three digits are what a log knows. */
+export function formatError(error: number): string {
+  if (error === 0) return '0\u202f%';
+  const percent = 100 * error;
+  return `${percent >= 0.001 ? Number(percent.toPrecision(2)) : percent.toExponential(1).replaceAll('-', '\u2212')}\u202f%`;
+}
+
+/** "4 s", "2 min", "1.5 h". */
+export function formatDuration(seconds: number): string {
+  if (seconds < 90) return `${Math.max(1, Math.round(seconds))}\u202fs`;
+  if (seconds < 5400) return `${Math.round(seconds / 60)}\u202fmin`;
+  return `${(seconds / 3600).toFixed(1)}\u202fh`;
+}
+
+/** A value of a field or a position, to five digits. */
+export function formatValue(value: number): string {
+  if (Number.isNaN(value)) return 'missing';
+  const magnitude = Math.abs(value);
+  const text = magnitude !== 0 && (magnitude >= 1e5 || magnitude < 1e-3) ? value.toExponential(4) : String(Number(value.toPrecision(5)));
+  return text.replaceAll('-', '\u2212');
+}
+
 /** A coordinate on an axis of length `span`, to a thousandth of that: next to zero is zero. */
 export function formatCoordinate(value: number, span: number): string {
   const magnitude = Math.max(Math.abs(value), span);

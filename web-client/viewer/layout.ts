@@ -11,6 +11,7 @@ export function insetsOf(host: HTMLElement, panel: HTMLElement, legend: HTMLElem
   const bar = legend.getBoundingClientRect();
   const width = Math.max(whole.width, 1);
   const height = Math.max(whole.height, 1);
+  if (card.width === 0) return {left: 0, right: 0, top: 0, bottom: 0};  // a page may hide the panel
   if (sheet) {
     return {
       left: 0, right: 0, top: legend.hidden ? 0 : Math.min(kMostCovered, (bar.bottom - whole.top) / height),

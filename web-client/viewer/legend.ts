@@ -1,27 +1,39 @@
 // The colour bar with its numbers.
 
-import {colorGradient, type ColorMapName} from '../core/color_maps';
+import {colorGradient} from '../core/color_maps';
+import type {Scalar} from '../core/field_scale';
 import type {FieldInfo} from '../core/manifest';
-import {niceTicks} from '../core/ticks';
+import {logTicks, niceTicks} from '../core/ticks';
+import {scalarTitle} from './panel';
+import type {Settings} from './settings';
 
 const kMostTicks = 6;
 
+export interface ShownRange {
+  low: number;
+  high: number;
+  logarithmic: boolean;
+}
+
 export class Legend {
   private readonly figure: HTMLElement;
+  private shown = '';
 
   constructor(root: ParentNode) {
     this.figure = root.querySelector('.legend')!;
   }
 
-  /** Null hides the legend. */
-  show(field: FieldInfo | null, map: ColorMapName): void {
-    this.figure.hidden = field === null;
-    if (!field) return;
-    const [low, high] = field.range;
-    const {ticks, factor} = niceTicks(low, high, kMostTicks);
-    this.part('.legend-name').textContent = fieldTitle(field);
-    this.part('.legend-factor').textContent = factor;
-    this.part('.legend-bar').style.background = colorGradient(map, 33);
+  hide(): void { this.figure.hidden = true; }
+
+  show(scalar: Scalar, fields: readonly FieldInfo[], range: ShownRange, {map, reversed}: Settings): void {
+    this.figure.hidden = false;
+    const wanted = JSON.stringify([scalar, range, map, reversed, scalarTitle(scalar, fields)]);
+    if (wanted === this.shown) return;  // every picture asks, few change it
+    this.shown = wanted;
+    const {ticks, factor} = range.logarithmic ? logTicks(range.low, range.high, kMostTicks) : niceTicks(range.low, range.high, kMostTicks);
+    this.part('.legend-name').textContent = scalarTitle(scalar, fields);
+    this.part('.legend-factor').textContent = range.logarithmic ? 'logarithmic' : factor;
+    this.part('.legend-bar').style.background = colorGradient(map, reversed, 33);
     this.part('.legend-ticks').replaceChildren(...ticks.map(({at, label}) => {
       const tick = document.createElement('span');
       tick.style.left = `${100 * at}%`;
@@ -33,9 +45,4 @@ export class Legend {
   private part(selector: string): HTMLElement {
     return this.figure.querySelector<HTMLElement>(selector)!;
   }
-}
-
-/** The field's name; vectors are shown by magnitude, and say so. */
-export function fieldTitle(field: FieldInfo): string {
-  return field.components > 1 ? `${field.name} (magnitude)` : field.name;
 }

@@ -1,6 +1,9 @@
-// The demo page: the viewer over the whole window, told by the address what to show.
+// The demo page: the viewer over the whole window. The address tells what to show, and follows what is shown: a link is a picture.
 
-import {QtetViewer} from './qtet_viewer';
+import './element';
+import type {QtetViewer} from './qtet_viewer';
+import {kViewAttributes} from './settings';
+import {linkTo} from './share';
 
 declare global {
   interface Window {
@@ -8,15 +11,25 @@ declare global {
   }
 }
 
-/** Query parameter -> attribute of the viewer. */
-const kParameters: Record<string, string> = {mesh: 'mesh', field: 'field', colormap: 'colormap', edges: 'edges', clip: 'clip', pauseAfter: 'pause-after'};
-
-customElements.define('qtet-viewer', QtetViewer);
-const viewer = document.createElement('qtet-viewer') as QtetViewer;
+const viewer = document.createElement('qtet-viewer');
 const query = new URLSearchParams(location.search);
-for (const [parameter, attribute] of Object.entries(kParameters)) {
-  const value = query.get(parameter);
-  if (value !== null && value !== '') viewer.setAttribute(attribute, value);
+for (const name of ['src', ...kViewAttributes]) {
+  const value = query.get(name);
+  if (value !== null && value !== '') viewer.setAttribute(name, value);
+}
+/** Browsers allow some hundred changes of the address in half a minute; a slider makes more. */
+const kRestMs = 300;
+let timer: ReturnType<typeof setTimeout> | undefined;
+const remember = (): void => {
+  const view = viewer.view;
+  const src = query.get('src');
+  history.replaceState(null, '', linkTo(location.href, src ? new Map([['src', src], ...view]) : view));
+};
+for (const type of ['camera-change', 'view-change']) {
+  viewer.addEventListener(type, () => {
+    clearTimeout(timer);
+    timer = setTimeout(remember, kRestMs);
+  });
 }
 window.qtetViewer = viewer;
-document.body.append(viewer);
+document.querySelector('main')!.append(viewer);

@@ -2,51 +2,95 @@
 //
 // Attributes  src          address of the server; by default the page's own
 //             mesh         id of the mesh; without it the viewer offers a menu and starts with the first
-//             field        name of the field; by default the first
-//             colormap     viridis (default), cividis or cool-warm
-//             edges        "off" hides the cells' edges
-//             clip         axis x, y or z, a share of the extent after a colon, "-" before it for the other side: "y", "-x:0.3"
-//             pause-after  payload bytes after which to pause until resume()
-// Events      load (first picture), progress, refine (a finer picture), complete (the whole mesh is on the screen), error;
-//             `detail` holds the figures or the error
-// Methods     digest(), pause(), resume(), clip(), resetView(); property `counts`, `statistics`, `state`
+//             field        name of the field, "NAME[0]" for a component; by default the first
+//             colormap     viridis (default), cividis, cool-warm, turbo or grey; "turbo reversed"
+//             range, scale "auto" (default), "symmetric" or "LOW,HIGH"; "log"
+//             edges, surface  "off" hides them; opacity of the surface: above 0, at most 1
+//             clip         up to three planes: axis x, y or z or a direction "1,0,1", a share of the extent after a colon, "-" before an axis for the
+//                          other side: "y", "-x:0.3 z:0.5"; clip-mode: cut (default), cells, slice
+//             iso, threshold  "FIELD=VALUE,VALUE..."; "FIELD=LOW,HIGH"
+//             quality      full (default), "error:0.01" or "1%", "cells:N", "bytes:N": how far to refine
+//             projection, camera  "parallel"; six numbers, as the property `cameraState` gives them
+// Events      load (first picture), progress, refine (a finer picture), complete (the whole mesh is on the screen), error, camera-change,
+//             view-change (an attribute of the view); `detail` holds the figures, the error, the camera or the attribute
+// Slots       poster (shown until the first picture), progress (instead of the viewer's own)
+// Parts       canvas, panel, progress, legend, result, notice
+// Methods     digest(), pause(), resume(), resetView(), look(direction), picture(); properties `counts`, `statistics`, `state`, `view`, `cameraState`
 
 import {Client} from '../core/client';
-import {isColorMapName, type ColorMapName} from '../core/color_maps';
+import {kMostPlanes, type Display} from '../core/display';
 import {errorCode, errorText, QtetError} from '../core/errors';
+import {kMagnitude, type Scalar} from '../core/field_scale';
 import type {Manifest} from '../core/manifest';
 import {retry} from '../core/retry';
 import {kNoStatistics, type Counts, type Statistics} from '../core/statistics';
 import type {FromWorker, Snapshot, StreamState} from '../core/worker_messages';
+import type {CameraState} from '../three/camera';
+import {kDirections, type Direction} from '../three/directions';
 import type {MeshView} from '../three/mesh_view';
 import {fetchCatalog, streamUrl, type MeshEntry} from './catalog';
-import {ClipPanel, parseClip} from './clip_panel';
-import {fieldTitle, Legend} from './legend';
+import {ClipHandles} from './clip_handles';
+import {ClipPanel, planeOf} from './clip_panel';
+import {ColorPanel} from './color_panel';
+import {formatCount} from './format';
+import {Inspect} from './inspect';
 import {bindKeys} from './keys';
 import {insetsOf} from './layout';
+import {Legend} from './legend';
+import {LevelPanel} from './level_panel';
+import {scalarTitle, type Host, type Scene} from './panel';
 import {ProgressPanel} from './progress_panel';
-import styles from './style.css?inline';
 import {fillSelect} from './select';
+import {
+  kViewAttributes, parseFieldValues, parseScalar, readSettings, scalarKey, sharesOf, shownRange, type Settings, type ViewAttribute,
+} from './settings';
+import {embedSnippet, linkTo} from './share';
+import styles from './style.css?inline';
 import {kTemplate} from './template';
 import {Triad} from './triad';
+import {ValuePanel} from './value_panel';
 
-const kPhone = '(max-width: 640px)';
+/** Narrower than this, the panel is a sheet at the foot (style.css says the same). */
+const kSheetPixels = 640;
+/** The camera is told of once it rests. */
+const kRestMs = 250;
+const kNoRetry = ['unknown-field', 'no-view', 'no-fullscreen'];
 
-export class QtetViewer extends HTMLElement {
-  static readonly observedAttributes = ['src', 'mesh', 'field', 'colormap', 'edges', 'clip'];
+interface Parts {
+  progress: ProgressPanel;
+  legend: Legend;
+  color: ColorPanel;
+  clip: ClipPanel;
+  iso: ValuePanel;
+  threshold: ValuePanel;
+  level: LevelPanel;
+  handles: ClipHandles;
+  inspect: Inspect;
+  resizes: ResizeObserver;
+}
 
+export class QtetViewer extends HTMLElement implements Host {
+  static readonly observedAttributes = ['src', ...kViewAttributes];
+
+  client: Client | null = null;
+  meshView: MeshView | null = null;
+  manifest: Manifest | null = null;
   private readonly root = this.attachShadow({mode: 'open'});
-  private client: Client | null = null;
-  private view: MeshView | null = null;
-  private parts: {progress: ProgressPanel; legend: Legend; clip: ClipPanel; resizes: ResizeObserver} | null = null;
+  private parts: Parts | null = null;
   private catalog: MeshEntry[] = [];
-  private manifest: Manifest | null = null;
   private pending: Snapshot | null = null;
-  private shownField = -1;
+  private snapshot: Snapshot | null = null;
+  private settings: Settings = readSettings(() => null);
+  private bounds: number[] = [];
+  private sentDisplay = '';
   private loaded = false;
   private completionTold = false;
   private streamState: StreamState = 'connecting';
   private figures: Statistics = kNoStatistics;
+  private writing = false;
+  private cameraTimer: ReturnType<typeof setTimeout> | undefined;
+  private toldCamera = '';
+  private lastCells: {at: number; cells: number} = {at: 0, cells: 0};
 
   // ---- for the page
 
@@ -56,18 +100,43 @@ export class QtetViewer extends HTMLElement {
     const {tetrahedra, vertices, boundaryTriangles} = this.figures;
     return {tetrahedra, vertices, boundaryTriangles};
   }
-  get colormap(): ColorMapName {
-    const name = this.getAttribute('colormap');
-    return isColorMapName(name) ? name : 'viridis';
+  /** Attributes that show the same picture again, with the camera as it stands. */
+  get view(): Map<string, string> {
+    const view = new Map<string, string>();
+    for (const name of kViewAttributes) {
+      const value = this.getAttribute(name);
+      if (value !== null && name !== 'camera') view.set(name, value);
+    }
+    if (!view.has('mesh') && this.catalog.length > 0) view.set('mesh', this.select('mesh').value);
+    if (this.meshView && !this.meshView.orbit.fitted) view.set('camera', this.meshView.cameraState.join(','));
+    return view;
   }
+  get cameraState(): CameraState | null { return this.meshView?.cameraState ?? null; }
+  set cameraState(state: CameraState | null) { if (state && this.meshView) this.meshView.cameraState = state; }
 
   /** SHA-256 of the decoded mesh (codec/FORMAT.md, "Mesh digest"); empty before there is one. */
   async digest(): Promise<string> { return this.client?.digest() ?? ''; }
   pause(): void { this.client?.pause(); }
   resume(): void { this.client?.resume(); }
-  resetView(): void { this.view?.resetCamera(); }
-  /** Clips across axis 0 to 2 at `share` (0 to 1) of the extent; null ends clipping. */
-  clip(axis: 0 | 1 | 2 | null, share = 0.5, flipped = false): void { this.parts?.clip.set(axis, share, flipped); }
+  resetView(): void { this.meshView?.look(null); }
+  look(direction: Direction): void { this.meshView?.look(direction); }
+  /** The scene as a PNG; null before there is one. */
+  async picture(): Promise<Blob | null> {
+    return this.meshView?.picture(matchMedia('(prefers-color-scheme: dark)').matches ? '#1a2029' : '#ffffff') ?? null;
+  }
+
+  // ---- Host, InspectHost
+
+  write(name: ViewAttribute, value: string | null): void {
+    if (value === null) this.removeAttribute(name);
+    else this.setAttribute(name, value);
+  }
+  read(name: ViewAttribute): string | null { return this.getAttribute(name); }
+  get fieldTitle(): string { return this.manifest && this.color ? scalarTitle(this.color, this.manifest.fields) : ''; }
+  announce(text: string): void {
+    const live = this.root.querySelector('.live');
+    if (live) live.textContent = text;
+  }
 
   // ---- custom element
 
@@ -75,40 +144,62 @@ export class QtetViewer extends HTMLElement {
     this.root.innerHTML = `<style>${styles}</style>${kTemplate}`;
     // The worker fetches its WebAssembly while three.js is on its way.
     this.client = new Client((message) => this.receive(message));
+    const clip = new ClipPanel(this.root, this, () => (this.meshView?.viewDirection ?? [0, -1, 0]).map((x) => -x) as [number, number, number]);
     this.parts = {
-      progress: new ProgressPanel(this.root), legend: new Legend(this.root),
-      clip: new ClipPanel(this.root, (plane) => this.client?.clip(plane)),
+      progress: new ProgressPanel(this.root, (text) => this.announce(text)), legend: new Legend(this.root), color: new ColorPanel(this.root, this), clip,
+      iso: new ValuePanel(this.root, this, 'iso'), threshold: new ValuePanel(this.root, this, 'threshold'),
+      level: new LevelPanel(this.root, (quality) => this.write('quality', quality),
+        () => ({statistics: this.figures, manifest: this.manifest, fields: this.color ? [this.color.field] : []})),
+      handles: new ClipHandles(this.find('.layer'), kMostPlanes, (i, share) => clip.move(i, share)),
+      inspect: new Inspect(this.root, this.find<HTMLCanvasElement>('.scene'), inspectHost(this)),
       resizes: new ResizeObserver(() => this.arrange()),
     };
     this.bindControls();
-    this.fold(matchMedia(kPhone).matches);
+    this.fold(this.isNarrow);
     this.parts.resizes.observe(this.find('.panel'));
     this.parts.resizes.observe(this);
-    this.applyLook();
-    this.applyClip();
+    this.apply();
     void this.prepareView();
     void this.open();
   }
 
   disconnectedCallback(): void {
+    clearTimeout(this.cameraTimer);
     this.client?.dispose();
-    this.view?.dispose();
+    this.meshView?.dispose();
     this.parts?.resizes.disconnect();
-    this.client = this.view = this.parts = null;
+    this.client = this.meshView = this.parts = null;
     this.forget();
   }
 
   attributeChangedCallback(name: string, before: string | null, after: string | null): void {
     if (!this.client || before === after) return;
-    if (name === 'src' || name === 'mesh') void this.open();
-    else if (name === 'field' && after) this.chooseField(after);
-    else if (name === 'clip') this.applyClip();
-    else this.applyLook();
+    if (name === 'src' || (name === 'mesh' && !this.writing)) void this.open();
+    else this.apply();
+    if (name === 'camera' && this.settings.camera && this.meshView) this.meshView.cameraState = this.settings.camera;
+    if (name !== 'src') this.tell('view-change', {name, value: after});
   }
 
-  private applyClip(): void {
-    const clip = parseClip(this.getAttribute('clip'));
-    this.clip(clip?.axis ?? null, clip?.share, clip?.flipped);
+  /** Brings everything in line with the attributes. */
+  private apply(): void {
+    if (!this.parts) return;
+    const before = this.settings;
+    this.settings = readSettings((name) => this.getAttribute(name));
+    const {parts, settings} = this;
+    const scene: Scene | null = this.manifest && this.bounds.length > 0 ? {manifest: this.manifest, bounds: this.bounds} : null;
+    const known: Scene | null = this.manifest && {manifest: this.manifest, bounds: this.bounds};
+    for (const panel of [parts.color, parts.iso, parts.threshold]) panel.update(settings, known);
+    parts.clip.update(settings, scene);
+    parts.level.update(settings);
+    parts.handles.update(settings.planes, this.bounds);
+    this.input('parallel').checked = settings.parallel;
+    if (this.meshView) {
+      this.meshView.setLook(settings);
+      this.meshView.setParallel(settings.parallel);
+    }
+    if (this.manifest && JSON.stringify(before.limit) !== JSON.stringify(settings.limit)) this.client?.setLimit(settings.limit);
+    this.showDisplay();
+    this.showLegend();
   }
 
   // ---- start
@@ -116,11 +207,21 @@ export class QtetViewer extends HTMLElement {
   private async prepareView(): Promise<void> {
     try {
       const {MeshView} = await retry(() => import('../three/mesh_view'));
-      if (!this.client || this.view) return;
+      if (!this.client || this.meshView) return;
       const triad = new Triad(this.find<SVGSVGElement>('.triad'));
-      this.view = new MeshView(this.find<HTMLCanvasElement>('canvas'), (rotation) => triad.turn(rotation));
-      bindKeys(this.view);
-      this.applyLook();
+      this.meshView = new MeshView(this.find<HTMLCanvasElement>('.scene'), {
+        drawn: (rotation) => {
+          triad.turn(rotation);
+          this.parts?.handles.place();
+          this.parts?.inspect.place();
+          this.restCamera();
+        },
+        lost: (lost) => this.graphicsLost(lost),
+      });
+      this.parts!.handles.attach(this.meshView);
+      if (this.settings.camera) this.meshView.cameraState = this.settings.camera;
+      this.bindKeys();
+      this.apply();
       this.arrange();
       if (this.pending) this.draw(this.pending);
       this.pending = null;
@@ -135,16 +236,17 @@ export class QtetViewer extends HTMLElement {
     try {
       this.setState('connecting');
       this.catalog = await fetchCatalog(this.base);
+      if (!this.client) return;
       const wanted = this.getAttribute('mesh');
       const mesh = wanted ?? this.catalog[0]?.id;
       if (mesh === undefined) throw new QtetError('not-found', 'The server has no meshes yet. Put .qtet files into its folder.');
       if (!this.catalog.some(({id}) => id === mesh)) {
         throw new QtetError('not-found', `There is no mesh "${mesh}" on this server. It has: ${this.catalog.map(({id}) => id).join(', ') || 'none'}.`);
       }
-      const menu = wanted === null && this.catalog.length > 1;
+      const menu = this.catalog.length > 1;
       fillSelect(this.select('mesh'), this.catalog.map(({id}) => ({value: id, title: id})), mesh);
       this.find('.mesh-menu').hidden = !menu;
-      this.find('.mesh-name').hidden = menu;
+      this.find('.mesh-name').classList.toggle('visually-hidden', menu);
       this.openMesh(mesh);
     } catch (thrown) {
       this.fail(thrown);
@@ -154,45 +256,46 @@ export class QtetViewer extends HTMLElement {
   private openMesh(mesh: string): void {
     this.forget();
     this.find('.mesh-name').textContent = mesh;
-    this.find('canvas').setAttribute('aria-label', `3D view of ${mesh}. Arrow keys turn it, plus and minus zoom, Home resets.`);
+    this.find('.scene').setAttribute('aria-label', `3D view of ${mesh}. Arrow keys turn it, plus and minus zoom; the question mark lists all keys.`);
     const fields = this.catalog.find(({id}) => id === mesh)?.fields ?? [];
-    this.client?.start({
-      url: streamUrl(this.base), mesh, field: this.getAttribute('field') ?? fields[0] ?? '',
-      pauseAfter: Number(this.getAttribute('pause-after') ?? 0),
-    });
+    const named = [this.getAttribute('field'), ...['iso', 'threshold'].map((name) => this.getAttribute(name)?.replace(/=[^=]*$/, '') ?? null)]
+      .filter((text) => text !== null).map((text) => (fields.includes(text) ? text : scalarKey(text)));
+    const first = named.length > 0 ? [...new Set(named)] : fields.slice(0, 1);
+    this.client?.start({url: streamUrl(this.base), mesh, fields: first, limit: this.settings.limit});
   }
 
   private forget(): void {
-    this.manifest = this.pending = null;
-    this.shownField = -1;
+    this.manifest = this.pending = this.snapshot = null;
+    this.bounds = [];
+    this.sentDisplay = '';
     this.loaded = false;
     this.figures = kNoStatistics;
-    this.view?.clear();
-    this.parts?.clip.clear();
-    this.parts?.legend.show(null, this.colormap);
-    if (this.parts) this.find('.notice').hidden = true;
+    this.lastCells = {at: 0, cells: 0};
+    this.meshView?.clear();
+    if (!this.parts) return;
+    this.parts.progress.begin(null);
+    this.parts.inspect.clear();
+    this.parts.legend.hide();
+    this.parts.handles.update([], []);
+    this.find('.notice').hidden = true;
   }
 
   // ---- from the worker
 
-  private receive(message: FromWorker): void {
+  private receive(message: Exclude<FromWorker, {type: 'answer'}>): void {
     switch (message.type) {
       case 'manifest': return this.takeManifest(message.manifest);
-      case 'snapshot': return this.view ? this.draw(message.snapshot) : void (this.pending = message.snapshot);
+      case 'snapshot': return this.meshView ? this.draw(message.snapshot) : void (this.pending = message.snapshot);
       case 'progress': return this.takeProgress(message.statistics);
-      case 'state': return this.setState(message.state);
+      case 'state': return this.setState(message.state, message.attempt, message.delayMs);
       case 'error': return this.notify(message.code, message.message);
     }
   }
 
   private takeManifest(manifest: Manifest): void {
     this.manifest = manifest;
-    const fields = manifest.fields.filter((field) => field.association === 'point');
-    const wanted = this.getAttribute('field');
-    const shown = fields.some(({name}) => name === wanted) ? wanted : fields[0]?.name;
-    const options = fields.map((field) => ({value: field.name, title: fieldTitle(field)}));
-    fillSelect(this.select('field'), options.length > 0 ? options : [{value: '', title: 'No fields'}], shown ?? '');
-    this.select('field').disabled = fields.length < 2;
+    this.parts?.progress.begin(manifest);
+    this.apply();
   }
 
   private takeProgress(statistics: Statistics): void {
@@ -203,65 +306,186 @@ export class QtetViewer extends HTMLElement {
 
   private draw(snapshot: Snapshot): void {
     this.figures = snapshot.statistics;
-    this.view!.show(snapshot, () => {
+    this.snapshot = snapshot;
+    this.meshView!.show(snapshot, () => {
       this.client?.shown();
       this.tell(this.loaded ? 'refine' : 'load', snapshot.statistics);
       this.loaded = true;
+      this.classList.add('loaded');
       if (this.streamState !== 'complete' || this.completionTold) return;
       this.completionTold = true;
       this.tell('complete', snapshot.statistics);
     });
-    if (this.manifest && snapshot.bounds.length > 0) this.parts?.clip.place(snapshot.bounds, this.manifest);
-    if (snapshot.field === this.shownField) return;
-    this.shownField = snapshot.field;
+    if (this.bounds.length === 0) {
+      this.bounds = snapshot.bounds;
+      this.apply();
+    }
+    this.showStatistics(snapshot);
     this.showLegend();
   }
 
-  private setState(state: StreamState): void {
+  private setState(state: StreamState, attempt = 0, delayMs = 0): void {
     this.streamState = state;
-    this.parts?.progress.showState(state);
+    if (!this.parts) return;
+    this.parts.progress.showState(state, attempt, delayMs);
     const pause = this.find<HTMLButtonElement>('.pause');
     pause.hidden = state === 'complete' || state === 'failed';
-    pause.textContent = state === 'paused' ? 'Continue' : 'Pause';
+    pause.textContent = state === 'paused' || state === 'held' ? 'Continue' : 'Pause';
     if (state === 'streaming' || state === 'complete') this.find('.notice').hidden ||= this.find('.notice').dataset.code !== 'unknown-field';
     this.completionTold &&= state === 'complete';
+  }
+
+  // ---- to the worker
+
+  /** What colours: the attribute's field, or the first. */
+  private get color(): Scalar | null {
+    const fields = this.manifest?.fields ?? [];
+    return parseScalar(this.getAttribute('field'), fields) ?? (fields.length > 0 ? {field: 0, component: kMagnitude} : null);
+  }
+
+  private showDisplay(): void {
+    if (!this.manifest) return;
+    const {settings, manifest: {fields}} = this;
+    const iso = this.parts!.iso.value();
+    const threshold = parseFieldValues(this.getAttribute('threshold'), fields);
+    const ends = threshold && sharesOf(threshold, fields);
+    const display: Display = {
+      color: this.color, body: settings.surface, mode: settings.planes.length > 0 ? settings.mode : 'cut',
+      planes: this.bounds.length > 0 ? settings.planes.map((plane) => planeOf(plane, this.bounds)) : [],
+      isosurfaces: iso && {scalar: iso.scalar, values: sharesOf(iso, fields)},
+      threshold: threshold && ends!.length === 2 ? {scalar: threshold.scalar, low: ends![0]!, high: ends![1]!} : null,
+    };
+    const text = JSON.stringify(display);
+    if (text === this.sentDisplay) return;
+    this.sentDisplay = text;
+    this.parts!.progress.follow(display.color ? [display.color.field] : [], settings.limit);
+    this.client?.show(display);
   }
 
   // ---- controls
 
   private bindControls(): void {
-    this.select('mesh').addEventListener('change', (event) => this.openMesh((event.target as HTMLSelectElement).value));
-    this.select('field').addEventListener('change', (event) => this.setAttribute('field', (event.target as HTMLSelectElement).value));
-    this.find('.swatches').addEventListener('change', (event) => this.setAttribute('colormap', (event.target as HTMLInputElement).value));
-    this.input('edges').addEventListener('change', (event) => {
-      this.setAttribute('edges', (event.target as HTMLInputElement).checked ? 'on' : 'off');
+    this.select('mesh').addEventListener('change', (event) => this.chooseMesh((event.target as HTMLSelectElement).value));
+    this.input('parallel').addEventListener('change', () => this.write('projection', this.input('parallel').checked ? 'parallel' : null));
+    this.on('.fold', () => this.fold(!this.find('.panel').classList.contains('folded')));
+    this.on('.reset', () => this.resetView());
+    this.on('.pause', () => this.togglePause());
+    this.on('.dismiss', () => void (this.find('.notice').hidden = true));
+    this.on('.retry', () => void this.open());
+    this.on('.picture', () => void this.savePicture());
+    this.on('.fullscreen', () => this.toggleFullscreen());
+    this.on('.share', () => this.share());
+    this.on('.help', () => this.find<HTMLDialogElement>('.help-dialog').showModal());
+    this.on('.copy-link', () => void this.copy('input[name=link]'));
+    this.on('.copy-snippet', () => void this.copy('textarea'));
+    for (const button of this.root.querySelectorAll<HTMLButtonElement>('.look')) button.addEventListener('click', () => this.look(button.value as Direction));
+  }
+
+  private bindKeys(): void {
+    const view = this.meshView!;
+    bindKeys(view.canvas, {
+      turn: (horizontal, vertical) => view.turn(horizontal, vertical), zoom: (factor) => view.zoom(factor),
+      look: (direction) => view.look(direction === null ? null : kDirections[direction]!),
+      toggle: (what) => this.toggle(what),
+      moveClip: (step) => { if (this.settings.planes[0]) this.parts?.clip.move(0, this.settings.planes[0].share + step); },
+      inspect: () => this.parts?.inspect.pickMiddle(), picture: () => void this.savePicture(),
+      help: () => this.find<HTMLDialogElement>('.help-dialog').showModal(), escape: () => this.parts?.inspect.use('none'),
     });
-    this.find('.fold').addEventListener('click', () => this.fold(!this.find('.panel').classList.contains('folded')));
-    this.find('.reset').addEventListener('click', () => this.resetView());
-    this.find('.pause').addEventListener('click', () => (this.streamState === 'paused' ? this.resume() : this.pause()));
-    this.find('.dismiss').addEventListener('click', () => void (this.find('.notice').hidden = true));
-    this.find('.retry').addEventListener('click', () => void this.open());
   }
 
-  private chooseField(name: string): void {
-    if (!this.manifest?.fields.some((field) => field.name === name)) return;
-    this.select('field').value = name;
-    this.client?.showField(name);
+  private toggle(what: 'parallel' | 'edges' | 'clip' | 'pause' | 'fullscreen'): void {
+    switch (what) {
+      case 'parallel': return this.write('projection', this.settings.parallel ? null : 'parallel');
+      case 'edges': return this.write('edges', this.settings.edges ? 'off' : null);
+      case 'clip': return this.write('clip', this.settings.planes.length > 0 ? null : 'x:0.5');
+      case 'pause': return this.togglePause();
+      case 'fullscreen': return this.toggleFullscreen();
+    }
   }
 
-  private applyLook(): void {
-    const edges = this.getAttribute('edges') !== 'off';
-    this.input('edges').checked = edges;
-    this.find<HTMLInputElement>(`input[name=colormap][value=${this.colormap}]`).checked = true;
-    this.view?.setColorMap(this.colormap);
-    this.view?.setEdges(edges);
-    this.showLegend();
+  private togglePause(): void {
+    if (this.streamState === 'held') this.write('quality', null);
+    else if (this.streamState === 'paused') this.resume();
+    else this.pause();
+  }
+
+  /** Another mesh has other fields, places and values; what does not depend on them stays. */
+  private chooseMesh(mesh: string): void {
+    this.writing = true;
+    for (const name of ['field', 'range', 'iso', 'threshold', 'camera', 'quality'] as const) this.write(name, null);
+    this.write('mesh', mesh);
+    this.writing = false;
+    this.openMesh(mesh);
+  }
+
+  private async savePicture(): Promise<void> {
+    const picture = await this.picture();
+    if (!picture) return;
+    const link = Object.assign(document.createElement('a'), {href: URL.createObjectURL(picture), download: `${this.find('.mesh-name').textContent}.png`});
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+  }
+
+  private toggleFullscreen(): void {
+    if (document.fullscreenElement) void document.exitFullscreen();
+    else {
+      this.requestFullscreen().catch(() => this.notify('no-fullscreen', 'The browser does not give the whole screen to this page. Its own menu may.'));
+    }
+  }
+
+  private share(): void {
+    const link = linkTo(location.href, this.view);
+    this.find<HTMLInputElement>('input[name=link]').value = link;
+    this.find<HTMLTextAreaElement>('textarea').value = embedSnippet(link, `3D view of ${this.find('.mesh-name').textContent}`);
+    this.find<HTMLDialogElement>('.share-dialog').showModal();
+  }
+
+  private async copy(selector: string): Promise<void> {
+    const box = this.find<HTMLInputElement | HTMLTextAreaElement>(selector);
+    box.select();
+    await navigator.clipboard?.writeText(box.value).then(() => this.announce('Copied'), () => undefined);
   }
 
   private showLegend(): void {
-    this.parts?.legend.show(this.manifest?.fields[this.shownField] ?? null, this.colormap);
+    if (!this.parts) return;
+    const {snapshot, manifest, settings} = this;
+    if (!snapshot?.color || !manifest) {
+      this.parts.legend.hide();
+    } else {
+      const [low, high] = snapshot.scaleRange;
+      const occurring = snapshot.extent.map((share) => low + share * (high - low)) as [number, number];
+      const range = shownRange(settings, occurring);
+      this.meshView?.setRange(range.low, range.high, snapshot.scaleRange, range.logarithmic);
+      this.parts.legend.show(snapshot.color, manifest.fields, range, settings);
+      this.parts.color.showRange(range.low, range.high);
+    }
     this.arrange();
   }
+
+  private showStatistics({costMs, statistics}: Snapshot): void {
+    const now = performance.now();
+    const {at, cells} = this.lastCells;
+    const text = (selector: string, value: string): void => void (this.find(selector).textContent = value);
+    if (at > 0 && statistics.tetrahedra > cells) text('.cell-rate', `${formatCount(Math.round((statistics.tetrahedra - cells) / (now - at) * 1000))} cells/s`);
+    this.lastCells = {at: now, cells: statistics.tetrahedra};
+    text('.frame-ms', `${this.meshView!.frameMs.toFixed(1)} ms`);
+    text('.cost-ms', `${costMs.toFixed(1)} ms`);
+    text('.level', `${statistics.level} of ${statistics.lastLevel}`);
+    text('.vertices', formatCount(statistics.vertices));
+    text('.triangles', formatCount(statistics.boundaryTriangles));
+  }
+
+  private restCamera(): void {
+    clearTimeout(this.cameraTimer);
+    this.cameraTimer = setTimeout(() => {
+      const state = this.meshView?.cameraState;
+      if (!state || this.bounds.length === 0 || state.join() === this.toldCamera) return;
+      this.toldCamera = state.join();
+      this.tell('camera-change', state);
+    }, kRestMs);
+  }
+
+  private get isNarrow(): boolean { return this.clientWidth <= kSheetPixels; }
 
   private fold(folded: boolean): void {
     this.find('.panel').classList.toggle('folded', folded);
@@ -271,13 +495,18 @@ export class QtetViewer extends HTMLElement {
   /** Tells the view what the cards cover. */
   private arrange(): void {
     if (!this.parts) return;
-    const sheet = matchMedia(kPhone).matches;
+    const sheet = this.isNarrow;
     const insets = insetsOf(this, this.find('.panel'), this.find('.legend'), sheet);
     this.style.setProperty('--sheet', `${Math.round(insets.bottom * this.clientHeight)}px`);
-    this.view?.setInsets(insets);
+    this.meshView?.setInsets(insets);
   }
 
   // ---- errors
+
+  private graphicsLost(lost: boolean): void {
+    if (lost) this.notify('graphics-lost', 'The browser took the graphics away, as it does when memory is short. The picture comes back when it returns them; closing other tabs helps.');
+    else if (this.find('.notice').dataset.code === 'graphics-lost') this.find('.notice').hidden = true;
+  }
 
   private fail(thrown: unknown): void {
     this.notify(errorCode(thrown), errorText(thrown));
@@ -285,10 +514,11 @@ export class QtetViewer extends HTMLElement {
   }
 
   private notify(code: string, message: string): void {
+    if (!this.parts) return;
     const notice = this.find('.notice');
     notice.dataset.code = code;
     notice.querySelector('p')!.textContent = message;
-    notice.querySelector<HTMLElement>('.retry')!.hidden = code === 'unknown-field' || code === 'no-view';
+    notice.querySelector<HTMLElement>('.retry')!.hidden = kNoRetry.includes(code);
     notice.hidden = false;
     this.tell('error', {code, message});
   }
@@ -297,7 +527,19 @@ export class QtetViewer extends HTMLElement {
     this.dispatchEvent(new CustomEvent(type, {detail}));
   }
 
+  private on(selector: string, action: () => void): void { this.find(selector).addEventListener('click', action); }
   private find<T extends Element = HTMLElement>(selector: string): T { return this.root.querySelector<T>(selector)!; }
   private select(name: string): HTMLSelectElement { return this.find(`select[name=${name}]`); }
   private input(name: string): HTMLInputElement { return this.find(`input[name=${name}]`); }
+}
+
+/** The viewer as Inspect sees it. */
+function inspectHost(viewer: QtetViewer): ConstructorParameters<typeof Inspect>[2] {
+  return {
+    get client() { return viewer.client; },
+    get view() { return viewer.meshView; },
+    get manifest() { return viewer.manifest; },
+    get fieldTitle() { return viewer.fieldTitle; },
+    announce: (text) => viewer.announce(text),
+  };
 }

@@ -1,0 +1,79 @@
+// What the page wants to see, and its making from the mesh: plain data in, triangles out.
+
+import {keepBelow, keepWithin} from './cell_choice';
+import {facesSoup, surfaceFaces} from './cell_surface';
+import type {FieldScale, Scalar} from './field_scale';
+import type {Cells} from './section';
+import {isosurface, slice, type Plane} from './slice';
+import {boundarySoup, joinSoups, type TriangleSoup} from './triangle_soup';
+
+/** cut: what lies above a plane is gone, flat caps close the hole; cells: whole cells stay or go; slice: the cuts alone, each whole. */
+export type ClipMode = 'cut' | 'cells' | 'slice';
+export const kClipModes: readonly ClipMode[] = ['cut', 'cells', 'slice'];
+export const kMostPlanes = 3;
+
+export interface Display {
+  color: Scalar | null;
+  /** False: only cuts and isosurfaces are drawn. */
+  body: boolean;
+  mode: ClipMode;
+  /** What lies above any of them is cut away. */
+  planes: Plane[];
+  /** Values of a point field in [0, 1] over its scalarRange. */
+  isosurfaces: {scalar: Scalar; values: number[]} | null;
+  /** Cells outside [low, high], in [0, 1] over the scalarRange, are hidden. */
+  threshold: {scalar: Scalar; low: number; high: number} | null;
+}
+
+export const kPlainDisplay: Display = {color: null, body: true, mode: 'cut', planes: [], isosurfaces: null, threshold: null};
+
+/** The fields that a display needs, each once. */
+export function fieldsOf(display: Display): number[] {
+  const scalars = [display.color, display.isosurfaces?.scalar, display.threshold?.scalar];
+  return [...new Set(scalars.filter((scalar) => scalar != null).map(({field}) => field))];
+}
+
+/** The mesh as it stands, and its fields: null while a field has no values. */
+export interface MeshNow {
+  points: Int32Array;
+  tetrahedra: Uint32Array;
+  boundary: Uint32Array;
+  scale(scalar: Scalar): FieldScale | null;
+}
+
+/** The cells that threshold and whole-cell planes leave; null: all. */
+export function keptCells(mesh: MeshNow, display: Display): Uint8Array | null {
+  const scale = display.threshold && mesh.scale(display.threshold.scalar);
+  const planes = display.mode === 'cells' ? display.planes : [];
+  if (!scale && planes.length === 0) return null;
+  const kept = new Uint8Array(mesh.tetrahedra.length / 4).fill(1);
+  if (scale) keepWithin(kept, mesh.tetrahedra, scale, display.threshold!.low, display.threshold!.high);
+  for (const plane of planes) keepBelow(kept, mesh.points, mesh.tetrahedra, plane);
+  return kept;
+}
+
+/** Planes that a renderer has to cut by: the cells mode has cut already, and slices cut nothing. */
+export function cuttingPlanes(display: Display): Plane[] {
+  return display.mode === 'cut' ? display.planes : [];
+}
+
+export function surfaceOf(mesh: MeshNow, display: Display, kept: Uint8Array | null): TriangleSoup {
+  const scale = display.color && mesh.scale(display.color);
+  if (!kept && !scale?.ofCells) return boundarySoup(mesh.points, mesh.boundary, scale);
+  const cells: Cells = {...mesh, kept};
+  return facesSoup(cells, surfaceFaces(cells, mesh.boundary), scale);
+}
+
+/** One soup a plane; a renderer hides of each what lies above the other cutting planes. */
+export function cutsOf(mesh: MeshNow, display: Display, kept: Uint8Array | null): TriangleSoup[] {
+  const scale = display.color && mesh.scale(display.color);
+  const planes = display.mode === 'cells' ? [] : display.planes;
+  return planes.map((plane) => slice({...mesh, kept}, scale, plane));
+}
+
+export function isosurfacesOf(mesh: MeshNow, display: Display, kept: Uint8Array | null): TriangleSoup | null {
+  const levels = display.isosurfaces && mesh.scale(display.isosurfaces.scalar);
+  if (!levels || levels.ofCells) return null;
+  const scale = display.color && mesh.scale(display.color);
+  return joinSoups(display.isosurfaces!.values.map((value) => isosurface({...mesh, kept}, levels, value, scale)));
+}

@@ -1,0 +1,32 @@
+// A whole log through the assembler, block by block, as the worker does it. Needs the built codec: QTET_WASM names it (ctest does).
+
+import {readFileSync} from 'node:fs';
+import {Assembler} from '../core/assembler';
+import {WasmCodec} from '../core/codec';
+import type {ValueDecoder} from '../core/draco';
+import {QtetError} from '../core/errors';
+import {kFirstFieldPart, kHeadPart} from '../core/protocol';
+
+/** Empty: tests that need it are skipped. */
+export const kTestWasm = process.env.QTET_WASM ?? '';
+const kHeaderBytes = 64;
+
+/** Throws what the assembler and the codec throw, and `truncated`. */
+export async function takeWholeLog(log: Uint8Array, values: ValueDecoder): Promise<Assembler> {
+  const codec = await WasmCodec.create(await WebAssembly.compile(readFileSync(kTestWasm)));
+  const assembler = new Assembler(codec, values);
+  const header = new DataView(log.buffer, log.byteOffset, log.byteLength);
+  const headBytes = log.length < kHeaderBytes ? log.length : kHeaderBytes + header.getUint32(24, true) + header.getUint32(28, true);
+  assembler.take({stream: 1, chunk: 0, firstPart: kHeadPart, parts: 0, payload: log.subarray(0, headBytes)});
+  const parts = kFirstFieldPart + assembler.manifest!.fields.length;
+  for (let chunk = 0, at = headBytes; chunk < codec.chunkCount; ++chunk) {
+    const sizes = Array.from({length: parts}, (_, part) => codec.blockSize(chunk, part));
+    const end = at + sizes.reduce((sum, size) => sum + size, 0);
+    if (end > log.length) throw new QtetError('truncated', `chunk ${chunk} ends at ${end} of ${log.length} bytes`);
+    assembler.take({stream: 1, chunk, firstPart: 0, parts, payload: log.subarray(at, end)});
+    at = end;
+  }
+  const fields = assembler.manifest!.fields.map((_, field) => field);
+  while (assembler.step(fields, true)) continue;
+  return assembler;
+}

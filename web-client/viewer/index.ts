@@ -1,0 +1,5 @@
+// qtet: the viewer's class; qtet/element also defines <qtet-viewer>.
+
+export {QtetViewer} from './qtet_viewer';
+export {kViewAttributes, type ViewAttribute} from './settings';
+export {embedSnippet, linkTo} from './share';

@@ -1,0 +1,145 @@
+// Pointing at the mesh: a cell with its values, or two points with their distance and the field between them.
+
+import type {Vector} from '../core/cell_ray';
+import type {Client} from '../core/client';
+import type {Pick, Probe} from '../core/inspector';
+import type {Manifest} from '../core/manifest';
+import type {MeshView} from '../three/mesh_view';
+import {formatCoordinate, formatCount, formatValue} from './format';
+
+export type Tool = 'none' | 'point' | 'line';
+
+/** A press that moves farther than this turns the mesh instead. */
+const kClickPixels = 5;
+
+export interface InspectHost {
+  readonly client: Client | null;
+  readonly view: MeshView | null;
+  readonly manifest: Manifest | null;
+  /** Title of the field that colours, for the plot. */
+  readonly fieldTitle: string;
+  announce(text: string): void;
+}
+
+export class Inspect {
+  private tool: Tool = 'none';
+  private points: Pick[] = [];
+  private pressed: {x: number; y: number} | null = null;
+  private readonly card: HTMLElement;
+  private readonly marks: SVGSVGElement;
+  private plot: {destroy(): void} | null = null;
+
+  constructor(private readonly root: ShadowRoot, canvas: HTMLCanvasElement, private readonly host: InspectHost) {
+    this.card = root.querySelector('.result')!;
+    this.marks = root.querySelector('.marks')!;
+    canvas.addEventListener('pointerdown', (event) => void (this.pressed = {x: event.clientX, y: event.clientY}));
+    canvas.addEventListener('pointerup', (event) => {
+      const moved = this.pressed ? Math.hypot(event.clientX - this.pressed.x, event.clientY - this.pressed.y) : Infinity;
+      this.pressed = null;
+      if (moved <= kClickPixels && this.tool !== 'none') void this.click(event.offsetX, event.offsetY);
+    });
+    root.querySelector('.tools')!.addEventListener('change', (event) => this.use((event.target as HTMLInputElement).value as Tool));
+    root.querySelector('.close-result')!.addEventListener('click', () => this.clear());
+  }
+
+  use(tool: Tool): void {
+    this.tool = tool;
+    this.root.querySelector<HTMLInputElement>(`.tools input[value=${tool}]`)!.checked = true;
+    this.root.querySelector<HTMLElement>('.scene')!.classList.toggle('pointing', tool !== 'none');
+    this.clear();
+  }
+
+  /** What is under the middle of the picture: the keyboard's way. */
+  pickMiddle(): void {
+    const {view} = this.host;
+    if (!view) return;
+    if (this.tool === 'none') this.use('point');
+    void this.click(view.canvas.clientWidth / 2, view.canvas.clientHeight / 2);
+  }
+
+  clear(): void {
+    this.points = [];
+    this.plot?.destroy();
+    this.plot = null;
+    this.card.hidden = true;
+    this.place();
+  }
+
+  /** To be called after every frame: the marks follow their points. */
+  place(): void {
+    const {view} = this.host;
+    this.marks.replaceChildren();
+    if (!view) return;
+    const at = this.points.map(({lattice}) => view.project(lattice));
+    if (at.length === 2) this.marks.append(shape('line', {x1: at[0]!.x, y1: at[0]!.y, x2: at[1]!.x, y2: at[1]!.y}));
+    for (const {x, y} of at) this.marks.append(shape('circle', {cx: x, cy: y, r: 5}));
+  }
+
+  private async click(x: number, y: number): Promise<void> {
+    const {client, view} = this.host;
+    if (!client || !view) return;
+    const pick = await client.pick(view.rayAt(x, y));
+    if (!pick) {
+      this.host.announce('Nothing there');
+      if (this.tool === 'point') this.clear();
+      return;
+    }
+    this.points = this.tool === 'line' && this.points.length === 1 ? [this.points[0]!, pick] : [pick];
+    this.place();
+    if (this.tool === 'point') this.showPick(pick);
+    else if (this.points.length === 2) await this.showLine(this.points[0]!, pick);
+    else this.showText('Line', [['Start', this.placeText(pick.position)]], 'Now point at the other end.');
+  }
+
+  private showPick(pick: Pick): void {
+    const fields = this.host.manifest!.fields;
+    const rows: [string, string][] = [['Position', this.placeText(pick.position)]];
+    for (const {field, values} of pick.fields) {
+      rows.push([fields[field]!.name, values.map(formatValue).join(', ')]);
+      if (values.length > 1) rows.push([`${fields[field]!.name}, magnitude`, formatValue(Math.hypot(...values))]);
+    }
+    rows.push(['Vertices', pick.corners.map(formatCount).join(', ')]);
+    this.showText(`Cell ${formatCount(pick.cell)}`, rows);
+  }
+
+  private async showLine(from: Pick, to: Pick): Promise<void> {
+    const probe = await this.host.client!.probe(from.lattice, to.lattice);
+    if (!probe) return;
+    const delta = to.position.map((x, axis) => x - from.position[axis]!) as Vector;
+    this.showText('Line', [['Distance', formatValue(probe.length)], ['Difference', this.placeText(delta)]]);
+    if (probe.values.length > 1) await this.drawPlot(probe);
+  }
+
+  /** To a ten-thousandth of what the lattice spans. */
+  private placeText(place: Vector): string {
+    const {bits, step} = this.host.manifest!.lattice;
+    return place.map((x) => formatCoordinate(x, step * 2 ** bits / 10)).join(', ');
+  }
+
+  /** uPlot comes over the network with the first plot only. */
+  private async drawPlot(probe: Probe): Promise<void> {
+    const {drawProbe} = await import('./probe_plot');
+    this.plot?.destroy();
+    this.plot = drawProbe(this.root, this.card.querySelector('.plot')!, probe, this.host.fieldTitle);
+  }
+
+  private showText(title: string, rows: [string, string][], hint = ''): void {
+    this.plot?.destroy();
+    this.plot = null;
+    this.card.hidden = false;
+    this.card.querySelector('h2')!.textContent = title;
+    this.card.querySelector('.hint')!.textContent = hint;
+    this.card.querySelector('dl')!.replaceChildren(...rows.map(([name, value]) => {
+      const row = document.createElement('div');
+      row.append(Object.assign(document.createElement('dt'), {textContent: name}), Object.assign(document.createElement('dd'), {textContent: value}));
+      return row;
+    }));
+    this.host.announce([title, ...rows.map((row) => row.join(' ')), hint].join('. '));
+  }
+}
+
+function shape(name: string, attributes: Record<string, number>): SVGElement {
+  const element = document.createElementNS('http://www.w3.org/2000/svg', name);
+  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value.toFixed(1));
+  return element;
+}

@@ -1,0 +1,169 @@
+// What the viewer shows, as its attributes tell it: every control writes an attribute, every attribute can stand in a link. Texts in, plain data out.
+
+import {isColorMapName, type ColorMapName} from '../core/color_maps';
+import {kClipModes, kMostPlanes, type ClipMode} from '../core/display';
+import {kMagnitude, scalarRange, type Scalar} from '../core/field_scale';
+import {kFull, parseLimit, type Limit} from '../core/limit';
+import {fieldKeys, type FieldInfo} from '../core/manifest';
+import type {CameraState} from '../three/camera';
+
+/** Attributes that make up a view, in the order of a link. */
+export const kViewAttributes = [
+  'mesh', 'field', 'colormap', 'range', 'scale', 'edges', 'surface', 'opacity', 'clip', 'clip-mode', 'iso', 'threshold', 'quality', 'projection', 'camera',
+] as const;
+export type ViewAttribute = (typeof kViewAttributes)[number];
+
+/** Across an axis, or across any direction of the lattice; at a share of the mesh's extent that way. */
+export interface ClipSetting {
+  normal: [number, number, number];
+  share: number;
+}
+
+export interface Settings {
+  map: ColorMapName;
+  reversed: boolean;
+  range: 'auto' | 'symmetric' | [number, number];
+  logarithmic: boolean;
+  edges: boolean;
+  surface: boolean;
+  opacity: number;
+  planes: ClipSetting[];
+  mode: ClipMode;
+  limit: Limit;
+  parallel: boolean;
+  camera: CameraState | null;
+}
+
+export function readSettings(get: (name: ViewAttribute) => string | null): Settings {
+  const [map = '', reversed] = (get('colormap') ?? '').split(/[\s+]+/);
+  const mode = get('clip-mode') as ClipMode;
+  const opacity = Number(get('opacity') ?? 1);
+  return {
+    map: isColorMapName(map) ? map : 'viridis', reversed: reversed === 'reversed',
+    range: parseRange(get('range')), logarithmic: get('scale') === 'log',
+    edges: get('edges') !== 'off', surface: get('surface') !== 'off', opacity: opacity > 0 && opacity <= 1 ? opacity : 1,
+    planes: parseClip(get('clip')), mode: kClipModes.includes(mode) ? mode : 'cut', limit: parseLimit(get('quality')) ?? kFull,
+    parallel: get('projection') === 'parallel', camera: parseCamera(get('camera')),
+  };
+}
+
+function parseRange(text: string | null): Settings['range'] {
+  if (text === 'symmetric') return 'symmetric';
+  const numbers = parseNumbers(text ?? '');
+  return numbers.length === 2 && numbers[0]! < numbers[1]! ? [numbers[0]!, numbers[1]!] : 'auto';
+}
+
+function parseCamera(text: string | null): CameraState | null {
+  const numbers = parseNumbers(text ?? '');
+  return numbers.length === 6 ? numbers as CameraState : null;
+}
+
+/** "1, 2.5 3e-4" as numbers; empty when anything in it is none. */
+export function parseNumbers(text: string): number[] {
+  const numbers = text.replaceAll('\u2212', '-').split(/[\s,;]+/).filter((word) => word !== '').map(Number);
+  return numbers.every(Number.isFinite) ? numbers : [];
+}
+
+// ---- clip planes: "x", "-y:0.3", "0.6,-0.8,0:0.4", several with spaces between them
+
+/** The side that is cut away first faces the first camera: front, right and top. */
+const kFirstSides = [1, -1, 1];
+
+export function parseClip(text: string | null): ClipSetting[] {
+  const planes = (text ?? '').trim().split(/\s+/).map(parsePlane).filter((plane) => plane !== null);
+  return planes.slice(0, kMostPlanes);
+}
+
+function parsePlane(word: string): ClipSetting | null {
+  const [direction = '', at = '0.5'] = word.split(':');
+  const share = Number(at);
+  if (at === '' || !(share >= 0 && share <= 1)) return null;
+  const axis = /^(-?)([xyz])$/.exec(direction);
+  if (axis) return {normal: axisNormal('xyz'.indexOf(axis[2]!), axis[1] === '-'), share};
+  const normal = parseNumbers(direction);
+  if (normal.length !== 3 || Math.hypot(...normal) === 0) return null;
+  const length = Math.hypot(...normal);
+  return {normal: normal.map((x) => x / length) as ClipSetting['normal'], share};
+}
+
+/** `flipped`: the side away from the first camera is cut away. */
+export function axisNormal(axis: number, flipped: boolean): [number, number, number] {
+  const normal: [number, number, number] = [0, 0, 0];
+  normal[axis] = kFirstSides[axis]! * (flipped ? -1 : 1);
+  return normal;
+}
+
+/** Across which axis a plane lies, and from which side; -1: none of them. */
+export function axisOf({normal}: ClipSetting): {axis: number; flipped: boolean} {
+  const axis = normal.findIndex((x) => Math.abs(x) === 1);
+  return {axis, flipped: axis >= 0 && normal[axis] !== kFirstSides[axis]};
+}
+
+export function clipText(planes: ClipSetting[]): string {
+  return planes.map((plane) => {
+    const {axis, flipped} = axisOf(plane);
+    const direction = axis >= 0 ? `${flipped ? '-' : ''}${'xyz'[axis]}` : plane.normal.map((x) => Number(x.toFixed(4))).join(',');
+    return `${direction}:${Number(plane.share.toFixed(4))}`;
+  }).join(' ');
+}
+
+// ---- fields: "Velocity" (its magnitude), "Velocity[0]" (a component)
+
+export function parseScalar(text: string | null, fields: readonly FieldInfo[]): Scalar | null {
+  if (text === null) return null;
+  const keys = fieldKeys(fields);
+  const whole = keys.indexOf(text);
+  if (whole >= 0) return {field: whole, component: kMagnitude};
+  const match = /^(.*)\[(\d+)\]$/s.exec(text);
+  const field = match ? keys.indexOf(match[1]!) : -1;
+  if (field < 0) return null;
+  const component = Number(match![2]);
+  return {field, component: component < fields[field]!.components ? component : kMagnitude};
+}
+
+/** The key of the field alone, for asking a server before its fields are known. */
+export function scalarKey(text: string): string {
+  return text.replace(/\[\d+\]$/, '');
+}
+
+export function scalarText(scalar: Scalar, fields: readonly FieldInfo[]): string {
+  const key = fieldKeys(fields)[scalar.field] ?? '';
+  return scalar.component === kMagnitude ? key : `${key}[${scalar.component}]`;
+}
+
+// ---- values of a field: "Density=0.5,0.7"
+
+export interface FieldValues {
+  scalar: Scalar;
+  values: number[];
+}
+
+export function parseFieldValues(text: string | null, fields: readonly FieldInfo[]): FieldValues | null {
+  const at = text?.lastIndexOf('=') ?? -1;
+  if (at < 0) return null;
+  const scalar = parseScalar(text!.slice(0, at), fields);
+  const values = parseNumbers(text!.slice(at + 1));
+  return scalar && values.length > 0 ? {scalar, values} : null;
+}
+
+export function fieldValuesText({scalar, values}: FieldValues, fields: readonly FieldInfo[]): string {
+  return `${scalarText(scalar, fields)}=${values.map((value) => Number(value.toPrecision(6))).join(',')}`;
+}
+
+/** Values of the field as shares of its scalarRange. */
+export function sharesOf({scalar, values}: FieldValues, fields: readonly FieldInfo[]): number[] {
+  const [low, high] = scalarRange(fields[scalar.field]!, scalar.component);
+  return values.map((value) => (high > low ? (value - low) / (high - low) : 0));
+}
+
+// ---- the range that the colours span
+
+/** `extent`: what occurs, in the field's values. Logarithmic ranges begin above 0, at a ten-thousandth of their end if they have to. */
+export function shownRange({range, logarithmic}: Settings, extent: [number, number]): {low: number; high: number; logarithmic: boolean} {
+  const most = Math.max(Math.abs(extent[0]), Math.abs(extent[1]));
+  const [low, high] = range === 'auto' ? extent : range === 'symmetric' ? [-most, most] : range;
+  if (!logarithmic || high <= 0) return {low, high, logarithmic: false};
+  const kDecades = 1e-4;
+  const from = low > 0 ? low : high * kDecades;
+  return from < high ? {low: from, high, logarithmic: true} : {low, high, logarithmic: false};
+}
