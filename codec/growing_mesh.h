@@ -60,6 +60,8 @@ class GrowingMesh {
 
   /// Frees all present vertices for splitting. REQUIRES: levels count up from 1.
   void beginLevel(std::uint32_t level);
+  /// The level in hand.
+  [[nodiscard]] std::uint32_t level() const { return level_; }
   /// Vertices that the level may split: those present at its beginning.
   [[nodiscard]] std::uint32_t levelVertices() const { return levelVertices_; }
   [[nodiscard]] bool maysplit(VertexId v) const { return marked_[v] != level_; }

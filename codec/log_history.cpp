@@ -1,6 +1,7 @@
 #include "codec/log_history.h"
 
 #include <algorithm>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -14,14 +15,14 @@ namespace {
 /// Writes down every split of a log on its way to the last level, with slots in place of the history's vertices.
 class SplitRecorder final : public SplitObserver {
  public:
-  SplitRecorder(const Refiner& refiner, LogHistory& out) : refiner_(refiner), out_(out) {}
+  explicit SplitRecorder(LogHistory& out) : out_(out) {}
 
   void beforeSplit(VertexId v, const GrowingMesh& mesh, const Link& link, const Split& split) override {
     FusionHistory& h = out_.history;
     Fusion fusion;
     fusion.k = static_cast<std::uint8_t>(split.k);
     fusion.placement = split.placement;
-    fusion.level = refiner_.level() + 1;
+    fusion.level = mesh.level();
     fusion.fused = v;
     fusion.firstAffected = h.affectedCells.size();
     fusion.firstDeleted = h.deletedCells.size();
@@ -34,8 +35,7 @@ class SplitRecorder final : public SplitObserver {
       h.affectedCells.push_back(cell & kBoundaryBit ? out_.tetrahedra + (cell & ~kBoundaryBit) : cell);
       h.affectedLabels.push_back(link.triangles()[f].label);
     }
-    auto tetrahedron = static_cast<std::uint32_t>(mesh.tetrahedra.size());
-    auto triangle = out_.tetrahedra + static_cast<std::uint32_t>(mesh.boundary.size());
+    std::uint32_t tetrahedron = mesh.next().tetrahedra, triangle = out_.tetrahedra + mesh.next().triangles;
     for (const LocalCell& cell : split.deleted) {
       const bool ghost = std::ranges::any_of(cell, [&](LocalVertex x) { return !(x & kPreyBit) && link.vertices()[x] == kGhost; });
       h.deletedCells.push_back(ghost ? triangle++ : tetrahedron++);
@@ -49,7 +49,6 @@ class SplitRecorder final : public SplitObserver {
   std::vector<LatticePoint> fusedPoints;
 
  private:
-  const Refiner& refiner_;
   LogHistory& out_;
 };
 
@@ -63,13 +62,17 @@ Status decodeBase(const LogFile& log, LogHistory& out) {
   return {};
 }
 
-/// Gives every split's vertices their numbers in the history, from the last split to the first, and leaves the fusions in the order of doing.
+/// Gives every split's vertices their numbers in the history and leaves the fusions in the order of doing: level by level, from the last split to the first.
+/// (Packets come node by node, each with all of its levels; those of one level have nothing to do with one another.)
 void number(const SplitRecorder& recorder, LogHistory& out) {
   FusionHistory& h = out.history;
+  std::vector<std::uint32_t> order(h.fusions.size());
+  std::iota(order.rbegin(), order.rend(), 0u);
+  std::ranges::stable_sort(order, [&](std::uint32_t a, std::uint32_t b) { return h.fusions[a].level > h.fusions[b].level; });
   std::vector<VertexId> vertexOf(out.vertices);  // slot -> the vertex that is there
   for (VertexId v = 0; v < out.vertices; ++v) vertexOf[v] = v;
   out.prey.resize(h.fusions.size());
-  for (std::size_t b = h.fusions.size(); b-- > 0;) {
+  for (const std::uint32_t b : order) {
     Fusion& fusion = h.fusions[b];
     const Birth& birth = out.points.births()[b];
     std::array<VertexId, 4>& prey = out.prey[b];
@@ -84,7 +87,10 @@ void number(const SplitRecorder& recorder, LogHistory& out) {
     h.points.push_back(recorder.fusedPoints[b]);
   }
   out.baseVertices.assign(vertexOf.begin(), vertexOf.begin() + static_cast<std::ptrdiff_t>(out.baseBirths.size()));
-  std::ranges::reverse(h.fusions);
+  std::vector<Fusion> fusions;
+  fusions.reserve(order.size());
+  for (const std::uint32_t b : order) fusions.push_back(h.fusions[b]);
+  h.fusions = std::move(fusions);
 }
 
 /// From the last level's cells to those of the base mesh.
@@ -123,13 +129,10 @@ void codeCells(const LogHistory& log, std::uint32_t chunk, const FieldInfo& fiel
 Result<LogHistory> historyOf(const LogFile& log, const std::function<void(double)>& progress) {
   const Result<Manifest> manifest = manifestOf(log.index());
   if (!manifest) return std::unexpected(manifest.error());
-  // Packets leave holes and come node by node, so that neither slots nor levels count up as they do here.
-  if (log.index().layout != Layout::kStream)
-    return fail(ErrorCode::kBadInput, "the log has the layout 'regions', to which no field can be added; make the log again with the field, or with --layout stream");
   LogHistory out;
   for (const ChunkEntry& e : log.index().chunks) out.tetrahedra += e.newTetrahedra;
   Refiner refiner(log.index());
-  SplitRecorder recorder(refiner, out);
+  SplitRecorder recorder(out);
   refiner.observe(&recorder);
   out.chunkBirths.push_back(0);
   out.chunkCells.push_back(0);
@@ -139,7 +142,7 @@ Result<LogHistory> historyOf(const LogFile& log, const std::function<void(double
     if (chunk == 0)
       if (Status s = decodeBase(log, out); !s) return std::unexpected(s.error());
     out.chunkBirths.push_back(static_cast<std::uint32_t>(out.points.births().size()));
-    out.chunkCells.push_back(static_cast<std::uint32_t>(refiner.tetrahedra().size()));
+    out.chunkCells.push_back(refiner.firstSlots(chunk + 1).tetrahedra);
     out.valueCodecs.push_back(log.index().chunks[chunk].valueCodec);
     if (progress) progress((chunk + 1.0) / chunks);
   }

@@ -31,7 +31,7 @@ struct LogHistory {
   std::vector<CodecId> valueCodecs;                 ///< of each chunk
 };
 
-/// Errors: bad-input (a log of layout regions), not-found and all that decoding gives. `progress` hears the fraction done.
+/// Of the layout `regions`, too, but for its bands. Errors: all that decoding gives. `progress` hears the fraction done.
 [[nodiscard]] Result<LogHistory> historyOf(const LogFile& log, const std::function<void(double)>& progress = {});
 
 /// One field's block of every chunk, as a log's writer would have made them. `values` holds components integers for each of the history's

@@ -23,17 +23,26 @@ struct Sample {
   FusionHistory history;
   Bytes bytes;
 
-  explicit Sample(std::uint32_t seed, std::size_t fields, bool measured = false, CodecId codec = CodecId::kDraco) : mesh(testing::gridMesh(5, seed)) {
+  explicit Sample(std::uint32_t seed, std::size_t fields, bool measured = false, CodecId codec = CodecId::kDraco, BandOptions bands = {})
+      : mesh(testing::gridMesh(5, seed)) {
     testing::addCellFields(mesh);
     LatticeMesh carried = mesh;
     carried.fields.resize(fields);
     carried.values.resize(fields);
-    history = simplify(std::move(carried), {}).value();
+    FusionOptions options;
+    options.bands = bands;
+    history = simplify(std::move(carried), options).value();
     LogWriterOptions writer;
     writer.chunkBytes = 200;
     writer.valueCodec = codec;
     if (measured) writer.errors = measureLevels(history, {}).value();
     bytes = encodeLog(history, writer).value().bytes;
+  }
+  /// A log of the layout `regions`.
+  static Sample ofRegions(std::uint32_t seed, std::size_t fields, bool measured = false) {
+    Sample sample(seed, fields, measured, CodecId::kDraco, {100, 2, 1, 1});
+    EXPECT_EQ(sample.log().index().layout, Layout::kRegions);
+    return sample;
   }
   [[nodiscard]] LogFile log() const { return LogFile::fromBytes(bytes).value(); }
 };
@@ -78,14 +87,15 @@ Bytes withAdded(const LogFile& log, const TetMesh& mesh) {
 }
 
 TEST(LogHistory, holdsEveryLevelOfTheLog) {
-  const Sample sample(1, 0);
-  const LogFile log = sample.log();
-  auto decoded = historyOf(log);
-  ASSERT_TRUE(decoded) << decoded.error().text();
-  for (std::uint32_t undone = 0; undone <= sample.history.levels; ++undone) {
-    LatticeMesh expected = meshAtLevel(log, undone).value();
-    const auto same = sameMesh(testing::meshOfHistory(decoded->history, undone), expected);
-    ASSERT_TRUE(same) << "level " << undone << ": " << same.error().text();
+  for (const Sample& sample : {Sample(1, 0), Sample::ofRegions(1, 0)}) {
+    const LogFile log = sample.log();
+    auto decoded = historyOf(log);
+    ASSERT_TRUE(decoded) << decoded.error().text();
+    for (std::uint32_t undone = 0; undone <= sample.history.levels; ++undone) {
+      LatticeMesh expected = meshAtLevel(log, undone).value();
+      const auto same = sameMesh(testing::meshOfHistory(decoded->history, undone), expected);
+      ASSERT_TRUE(same) << "level " << undone << ": " << same.error().text();
+    }
   }
 }
 
@@ -104,7 +114,7 @@ TEST(LogHistory, isWrittenAsALogOfTheSameLevelsAgain) {
 class AddFields : public ::testing::TestWithParam<std::uint32_t> {};
 
 TEST_P(AddFields, theLastLevelHasThemAndTheGeometryStaysByteForByte) {
-  const Sample sample(GetParam(), 1, false, GetParam() == 3 ? CodecId::kAdaptive : CodecId::kDraco);
+  const Sample sample = GetParam() == 4 ? Sample::ofRegions(4, 1) : Sample(GetParam(), 1, false, GetParam() == 3 ? CodecId::kAdaptive : CodecId::kDraco);
   const LogFile before = sample.log();
   const LogFile after = LogFile::fromBytes(withAdded(before, shuffled(sample.mesh, 1, GetParam()))).value();
   ASSERT_TRUE(after.verifyChecksums());
@@ -125,7 +135,7 @@ TEST_P(AddFields, theLastLevelHasThemAndTheGeometryStaysByteForByte) {
 }
 
 TEST_P(AddFields, fusedVerticesLieBetweenTheirPrey) {
-  const Sample sample(GetParam(), 0);
+  const Sample sample = GetParam() == 4 ? Sample::ofRegions(4, 0) : Sample(GetParam(), 0);
   const auto decoded = historyOf(sample.log());
   ASSERT_TRUE(decoded);
   std::vector<std::int32_t> values;
@@ -149,7 +159,7 @@ TEST_P(AddFields, fusedVerticesLieBetweenTheirPrey) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, AddFields, ::testing::Values(1u, 2u, 3u));
+INSTANTIATE_TEST_SUITE_P(Seeds, AddFields, ::testing::Values(1u, 2u, 3u, 4u));
 
 TEST(AddFields, errorsAreMeasuredWhereTheLogKnowsThemAndAbsentElsewhere) {
   for (const bool measured : {false, true}) {
@@ -202,19 +212,22 @@ TEST(AddFields, aMeshThatIsNotTheLogsIsRefusedByName) {
   EXPECT_NE(refusal(rewired).find("is no cell of the log"), std::string::npos) << refusal(rewired);
 }
 
-TEST(AddFields, aLogOfRegionsIsRefusedAsWhatItIs) {
-  const LatticeMesh mesh = testing::gridMesh(4, 6);
-  FusionOptions options;
-  options.targetRatio = 0;
-  options.bands = {100, 2, 1, 1};
-  LogWriterOptions writer;
-  writer.chunkBytes = 800;
-  const LogFile log = LogFile::fromBytes(encodeLog(simplify(mesh, options).value(), writer).value().bytes).value();
-  ASSERT_EQ(log.index().layout, Layout::kRegions);
-  const auto refused = historyOf(log);
-  ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().code, ErrorCode::kBadInput);
-  EXPECT_NE(refused.error().text().find("regions"), std::string::npos);
+TEST(AddFields, aFieldOfALogOfRegionsComesInAnyOrderOfPackets) {
+  const Sample sample = Sample::ofRegions(7, 1, true);
+  const LogFile after = LogFile::fromBytes(withAdded(sample.log(), shuffled(sample.mesh, 1, 7))).value();
+  const LatticeMesh whole = meshAtLevel(after, sample.history.levels).value();
+  Refiner refiner(after.index());
+  const auto chunks = static_cast<std::uint32_t>(after.index().chunks.size());
+  std::vector<std::uint32_t> waiting(chunks);
+  std::iota(waiting.rbegin(), waiting.rend(), 0u);
+  while (!waiting.empty()) {  // the last of those that may come
+    const auto next = std::ranges::find_if(waiting, [&](std::uint32_t chunk) {
+      return chunk == 0 || refiner.applied(after.index().dependencies[after.index().chunks[chunk].firstDependency]);
+    });
+    ASSERT_TRUE(applyChunk(after, refiner, *next, allFields(after)));
+    waiting.erase(next);
+  }
+  for (std::uint32_t f = 0; f < whole.fields.size(); ++f) EXPECT_TRUE(std::ranges::equal(refiner.fieldValues(f), whole.values[f])) << whole.fields[f].name;
 }
 
 TEST(MatchMesh, pointsAtOnePlaceAreToldApartByTheirCells) {
