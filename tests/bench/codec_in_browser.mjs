@@ -1,0 +1,88 @@
+// Decoding in Chromium, one thread: value blocks of both coders, and everything from bytes to mesh and fields, of one mesh's logs.
+//   node tests/bench/codec_in_browser.mjs --wasm build/release/web-client/qtet-codec.wasm LOG.qtet...
+// Network and drawing are left out. Every figure is the best of kRuns, since whatever disturbs only adds.
+import {createRequire} from 'node:module';
+import {readFileSync} from 'node:fs';
+import {basename} from 'node:path';
+import {fileURLToPath} from 'node:url';
+
+const kRuns = 7;
+const core = new URL('../../web-client/core/', import.meta.url);
+const require = createRequire(new URL('../package.json', core));
+const {chromium} = require('playwright-core');
+
+const args = process.argv.slice(2);
+const wasm = args[args.indexOf('--wasm') + 1];
+const logs = args.filter((arg) => arg.endsWith('.qtet'));
+if (!args.includes('--wasm') || logs.length === 0) {
+  console.error('usage: codec_in_browser.mjs --wasm MODULE.wasm LOG.qtet...');
+  process.exit(2);
+}
+
+const page = `
+import {kDraco} from './draco';
+import {WasmCodec, kDracoCodec} from './codec';
+const bytesOf = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+
+globalThis.measure = async (module, log, runs) => {
+  const file = bytesOf(log);
+  const compiled = await WebAssembly.compile(bytesOf(module));
+  let best = {values: Infinity, all: Infinity};
+  for (let run = 0; run < runs; ++run) {
+    const codec = await WasmCodec.create(compiled);
+    const raw = codec.wasm;
+    codec.open(file.subarray(0, headBytes(file)));
+    const chunks = codec.chunkCount;
+    const components = [0, 3, ...fieldComponents(file)];
+    const fields = components.length - 2;
+    let values = 0, integers = 0, valueBytes = 0;
+    const begin = performance.now();
+    for (let chunk = 0; chunk < chunks; ++chunk) {
+      const block = (part) => file.subarray(raw.qtet_block_offset(chunk, part), raw.qtet_block_offset(chunk, part) + codec.blockSize(chunk, part));
+      const valuesOf = (part) => {
+        const bytes = block(part);
+        integers += codec.blockValues(chunk, part) * components[part];
+        valueBytes += bytes.length;
+        if (bytes.length === 0 || codec.blockCodec(chunk, part) !== kDracoCodec) return {symbols: new Int32Array(0), digits: bytes};
+        const from = performance.now();
+        const digits = new DataView(bytes.buffer, bytes.byteOffset + bytes.length - 4).getUint32(0, true);
+        const end = bytes.length - 4 - digits;
+        const out = {symbols: kDraco.decode(bytes.subarray(0, end), codec.blockValues(chunk, part), components[part]), digits: bytes.subarray(end, end + digits)};
+        values += performance.now() - from;
+        return out;
+      };
+      for (let part = 0; part < components.length; ++part) codec.checkBlock(chunk, part, block(part));
+      codec.apply(chunk, block(0), valuesOf(1));
+      for (let f = 0; f < fields; ++f) codec.applyField(f, chunk, valuesOf(2 + f));
+    }
+    const all = performance.now() - begin;
+    best = {values: Math.min(best.values, values), all: Math.min(best.all, all), cells: codec.tetrahedronCount, integers, valueBytes, memory: raw.memory.buffer.byteLength, digest: codec.digest()};
+  }
+  return best;
+};
+function headBytes(file) {
+  const view = new DataView(file.buffer);
+  return 64 + view.getUint32(24, true) + view.getUint32(28, true);
+}
+// The first bytes of the chunk table, behind header and manifest: components, association.
+function fieldComponents(file) {
+  const view = new DataView(file.buffer);
+  const fields = view.getUint32(44, true), table = 64 + view.getUint32(24, true);
+  return Array.from({length: fields}, (_, f) => file[table + 2 * f]);
+}
+`;
+
+const {build} = require('esbuild');
+const bundled = await build({stdin: {contents: page, resolveDir: fileURLToPath(core), loader: 'ts'}, bundle: true, write: false, format: 'iife', target: 'es2022'});
+const launch = [];
+if (process.getuid?.() === 0) launch.push('--no-sandbox');
+const browser = await chromium.launch({executablePath: process.env.QTET_CHROMIUM ?? '/usr/bin/chromium', headless: true, args: launch});
+const tab = await browser.newPage();
+await tab.addScriptTag({content: bundled.outputFiles[0].text});
+console.log('| log | value blocks | Draco alone | everything | tetrahedra a second | memory of the module |\n|---|---|---|---|---|---|');
+for (const log of logs) {
+  const m = await tab.evaluate(([module, file, runs]) => globalThis.measure(module, file, runs), [readFileSync(wasm).toString('base64'), readFileSync(log).toString('base64'), kRuns]);
+  const rate = m.values > 0 ? `${m.values.toFixed(1)} ms, ${(m.integers * 4 / m.values / 1e3).toFixed(0)} MB/s` : '-';
+  console.log(`| ${basename(log)} | ${(m.valueBytes / 1e3).toFixed(0)} kB, ${m.integers} integers | ${rate} | ${m.all.toFixed(0)} ms | ${(m.cells / m.all).toFixed(0)} k | ${(m.memory / m.cells).toFixed(0)} B a tetrahedron |`);
+}
+await browser.close();
