@@ -133,6 +133,34 @@ TEST(BoundaryDrc, theSameMeshGivesTheSameBytes) {
   EXPECT_EQ(*boundaryDrc(mesh), *boundaryDrc(mesh));
 }
 
+TEST(BoundaryDrc, valuesThatLeaveTheFieldsBitsAsThoseOfCoarseLevelsDoComeBack) {
+  LatticeMesh mesh = wavySquare(8, 12, 1, {0, 0, 0});
+  const std::int32_t above = 1 << mesh.fields[0].bits;
+  for (std::size_t i = 0; i < mesh.values[0].size(); i += 3) mesh.values[0][i] = i % 2 == 0 ? -5 : above + 7;
+  const auto decoded = decode(*boundaryDrc(mesh));
+  ASSERT_TRUE(decoded);
+  EXPECT_EQ(trianglesOf(*decoded, mesh), trianglesOf(mesh));
+}
+
+TEST(BoundaryDrc, gapsAreNaN) {
+  LatticeMesh mesh = wavySquare(8, 12, 1, {0, 0, 0});
+  mesh.fields.resize(1);
+  mesh.values.resize(1);
+  ASSERT_EQ(mesh.fields[0].components, 1u);
+  mesh.values[0][3] = kGap;
+  const auto decoded = decode(*boundaryDrc(mesh));
+  ASSERT_TRUE(decoded);
+  const auto* attribute = decoded->GetNamedAttribute(draco::GeometryAttribute::GENERIC);
+  std::size_t gaps = 0;
+  for (std::uint32_t p = 0; p < decoded->num_points(); ++p) {
+    float value = 0;
+    attribute->GetMappedValue(draco::PointIndex(p), &value);
+    gaps += std::isnan(value);
+    EXPECT_TRUE(std::isnan(value) || std::fabs(value) < 1e6f) << value;
+  }
+  EXPECT_EQ(gaps, 1u);
+}
+
 TEST(BoundaryDrc, aFieldOfMoreBitsThanAFloatHasIsStoredAsItsNearestFloat) {
   LatticeMesh mesh = wavySquare(8, 12, 1, {0, 0, 0});
   mesh.fields.resize(1);
