@@ -15,7 +15,8 @@ namespace {
 /// Gmsh's own numbers of nodes and elements, which may have gaps, to ours.
 class Numbers {
  public:
-  void add(std::uint64_t tag) { places_.emplace(tag, places_.size()); }
+  /// False: the number is taken, and stays with the one that has it.
+  bool add(std::uint64_t tag, std::size_t place) { return places_.emplace(tag, place).second; }
   void reserve(std::size_t count) { places_.reserve(count); }
   [[nodiscard]] VertexId operator[](std::uint64_t tag) const {
     const auto at = places_.find(tag);
@@ -134,7 +135,7 @@ class Gmsh {
       const bool parametric = integer("0 or 1") != 0;
       const std::uint64_t inBlock = size("the number of nodes of a block");
       if (!fits(inBlock, 8, 32, "nodes")) return;
-      for (std::uint64_t i = 0; i < inBlock && !in_.failed(); ++i) nodes_.add(size("a node's number"));
+      for (std::uint64_t i = 0; i < inBlock && !in_.failed(); ++i) addNode(size("a node's number"));
       for (std::uint64_t i = 0; i < inBlock && !in_.failed(); ++i) {
         readPoint();
         for (std::int64_t k = 0; parametric && k < std::min<std::int64_t>(dimension, 3); ++k) real("a parameter");
@@ -148,9 +149,13 @@ class Gmsh {
     if (!fits(count, 8, 28, "nodes")) return;
     nodes_.reserve(count);
     for (std::uint64_t i = 0; i < count && !in_.failed(); ++i) {
-      nodes_.add(static_cast<std::uint64_t>(integer("a node's number")));
+      addNode(static_cast<std::uint64_t>(integer("a node's number")));
       readPoint();
     }
+  }
+
+  void addNode(std::uint64_t tag) {
+    if (!in_.failed() && !nodes_.add(tag, nodeCount_++)) in_.fail(ErrorCode::kBadInput, "two nodes have the number " + std::to_string(tag) + "; the file is damaged, export it again");
   }
 
   void readPoint() {
@@ -226,7 +231,7 @@ class Gmsh {
     }
     ordered_ = ids_;
     for (std::size_t k = 0; k < kind.nodeOf.size(); ++k) ordered_[k] = ids_[kind.nodeOf[k]];
-    elements_.add(tag);
+    elements_.add(tag, out_.cells());
     out_.addCell(kind.type, ordered_);
     groups_.push_back(static_cast<double>(group));
   }
@@ -286,6 +291,7 @@ class Gmsh {
   bool bytes_ = false;
   CellMesh out_;
   Numbers nodes_, elements_;
+  std::size_t nodeCount_ = 0;
   std::unordered_map<std::int64_t, std::int64_t> groupOf_;  ///< of a volume
   std::vector<double> groups_;                              ///< one a cell
   std::vector<VertexId> ids_, ordered_;

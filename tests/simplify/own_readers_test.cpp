@@ -296,7 +296,22 @@ TEST(ReadGmsh, whatIsWrongIsSaidWithItsLine) {
   refused(gmsh22(false), "1000 2 2", "1000 94 2", ErrorCode::kBadInput, "elements of type 94");
   refused(gmsh22(false), "$MeshFormat", "$Mesh", ErrorCode::kBadInput, "does not begin with $MeshFormat");
   refused(gmsh22(false), "9 4 5 8 17", "9 4 6 8 17", ErrorCode::kBadInput, "cell 0 is a hexahedron without 8 vertices among the 15 points");
+  refused(gmsh22(false), "\n11 2 0 0.1", "\n8 2 0 0.1", ErrorCode::kBadInput, "line 8: two nodes have the number 8");
   refused(gmsh41(true), std::string("\1\0\0\0\n", 5), std::string("\0\0\0\1\n", 5), ErrorCode::kBadInput, "big-endian");
+}
+
+TEST(ReadGmsh, elementsOfOneNumberLeaveTheDataOfTheOthersWhereTheyBelong) {
+  std::string text = gmsh22(false);
+  const std::size_t second = text.find("\n93 ");
+  ASSERT_NE(second, std::string::npos);
+  const Result<CellMesh> read = cellsIn(fileWith("same.msh", text.replace(second, 4, "\n100 ")));
+  expectTheSample(read);
+  ASSERT_EQ(read->fields[1].name, "v");
+  const std::vector<double>& values = read->fields[1].values;
+  EXPECT_EQ(values[0], 0);
+  EXPECT_TRUE(std::isnan(values[3]));
+  EXPECT_EQ(values[6], 2);
+  EXPECT_EQ(values[9], 3);
 }
 
 TEST(ReadMedit, textAndBytesOfEveryVersionGiveOneMesh) {
