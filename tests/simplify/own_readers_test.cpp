@@ -429,6 +429,13 @@ TEST(MeshScanner, theFirstErrorStays) {
   MeshScanner range("300", "f.txt");
   EXPECT_EQ(range.number<std::uint8_t>("a byte"), 0);
   EXPECT_TRUE(range.failed());
+  MeshScanner reals("1e400 -1e400 1e-400 0.5 1e-310", "f.txt");
+  EXPECT_TRUE(std::isinf(reals.number<double>("a number")));
+  EXPECT_TRUE(std::isinf(reals.number<double>("a number")));
+  EXPECT_EQ(reals.number<double>("a number"), 0);
+  EXPECT_EQ(reals.number<double>("a number"), 0.5);
+  EXPECT_EQ(reals.number<double>("a number"), 1e-310);
+  EXPECT_FALSE(reals.failed());
   MeshScanner counts("12345678", "f.txt");
   EXPECT_TRUE(counts.fits(4, 2, "things"));
   EXPECT_FALSE(counts.fits(5, 2, "things"));
