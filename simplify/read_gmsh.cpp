@@ -1,7 +1,8 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <charconv>
 #include <limits>
+#include <map>
 #include <unordered_map>
 
 #include "proto/limits.h"
@@ -248,7 +249,11 @@ class Gmsh {
     }
     std::erase(name, '"');
     const auto reals = in_.number<std::uint64_t>("the number of numbers");
-    for (std::uint64_t i = 0; i < reals && !in_.failed(); ++i) in_.number<double>("a number such as the time");
+    double time = 0;
+    for (std::uint64_t i = 0; i < reals && !in_.failed(); ++i) {
+      const auto value = in_.number<double>("a number such as the time");
+      if (i == 0) time = value;
+    }
     const auto integers = in_.number<std::uint64_t>("the number of integers");
     std::array<std::uint64_t, 3> head{};  // step, components, tuples
     for (std::uint64_t i = 0; i < integers && !in_.failed(); ++i) {
@@ -259,7 +264,9 @@ class Gmsh {
     if (head[1] < 1 || head[1] > kMaxFieldComponents)
       return in_.fail(ErrorCode::kBadInput, "the field " + name + " has " + std::to_string(head[1]) + " components; 1 to " + std::to_string(kMaxFieldComponents) + " are read");
     if (!fits(head[2], 2 * (head[1] + 1), 4 + 8 * head[1], "values")) return;
+    const std::size_t before = out_.fields.size();
     readTuples(ofElements, name, head[1], head[2]);
+    if (out_.fields.size() > before) times_.push_back(time);
   }
 
   void readTuples(bool ofElements, const std::string& name, std::uint64_t components, std::uint64_t tuples) {
@@ -280,7 +287,20 @@ class Gmsh {
     if (any) out_.fields.push_back(std::move(field));
   }
 
+  /// A field that the file has at several times is called NAME@TIME, as those of a series.
+  void nameSteps() {
+    std::map<std::pair<std::string, std::string>, std::size_t> count;
+    for (const MeshField& field : out_.fields) ++count[{field.association, field.name}];
+    for (std::size_t f = 0; f < times_.size(); ++f) {
+      MeshField& field = out_.fields[f];
+      if (count[{field.association, field.name}] < 2) continue;
+      std::array<char, 32> text{};
+      field.name.append("@").append(text.data(), std::to_chars(text.data(), text.data() + text.size(), times_[f]).ptr);
+    }
+  }
+
   CellMesh finish() {
+    nameSteps();
     if (std::ranges::any_of(groups_, [](double g) { return g != 0; })) out_.fields.push_back({"gmsh:physical", 1, "int32", std::move(groups_), "cell"});
     return std::move(out_);
   }
@@ -293,6 +313,7 @@ class Gmsh {
   Numbers nodes_, elements_;
   std::size_t nodeCount_ = 0;
   std::unordered_map<std::int64_t, std::int64_t> groupOf_;  ///< of a volume
+  std::vector<double> times_;                               ///< one a field
   std::vector<double> groups_;                              ///< one a cell
   std::vector<VertexId> ids_, ordered_;
 };

@@ -314,6 +314,30 @@ TEST(ReadGmsh, elementsOfOneNumberLeaveTheDataOfTheOthersWhereTheyBelong) {
   EXPECT_EQ(values[9], 3);
 }
 
+TEST(ReadGmsh, stepsOfOneFieldAreCalledByTheirTimes) {
+  const std::string text = gmsh22(false), from = "$NodeData\n1\n\"p\"\n1\n0.5";
+  const std::size_t at = text.find(from);
+  ASSERT_NE(at, std::string::npos);
+  std::string later = text.substr(at);
+  later.replace(0, from.size(), "$NodeData\n1\n\"p\"\n1\n12.25");
+  const Result<CellMesh> read = cellsIn(fileWith("steps.msh", text + later));
+  expectTheSample(read);
+  std::vector<std::string> names;
+  for (const MeshField& field : read->fields) names.push_back(field.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"p@0.5", "v@0.5", "p@12.25", "v@0.5-2", "gmsh:physical"}));
+}
+
+TEST(ReadGmsh, namesThatALogCannotHoldAreReplaced) {
+  for (const std::string& name : {std::string("p\xff\xfe"), std::string(257, 'p'), std::string()}) {
+    std::string text = gmsh22(false);
+    text.replace(text.find("\"p\""), 3, "\"" + name + "\"");
+    ReadReport report;
+    const Result<CellMesh> read = readCells(fileWith("names.msh", text), {}, report);
+    expectTheSample(read);
+    EXPECT_EQ(read->fields[0].name, "unnamed-0");
+  }
+}
+
 TEST(ReadMedit, textAndBytesOfEveryVersionGiveOneMesh) {
   expectTheSample(cellsIn(fileWith("sample.mesh", medit(false, 2))));
   for (const std::int32_t version : {1, 2, 3, 4}) {
