@@ -60,7 +60,7 @@ int addField(draco::Mesh& target, const FieldInfo& field, const std::vector<std:
   values.reserve(slots.size() * field.components);
   for (const VertexId v : slots)
     for (std::uint32_t c = 0; c < field.components; ++c)
-      values.push_back(static_cast<float>(field.minimum[c] + field.step * integers[std::size_t{v} * field.components + c]));
+      values.push_back(static_cast<float>(field.value(c, integers[std::size_t{v} * field.components + c])));
   const int id = addFloats(target, draco::GeometryAttribute::GENERIC, field.components, values);
   auto metadata = std::make_unique<draco::AttributeMetadata>();
   metadata->AddEntryString("name", field.name);
@@ -108,7 +108,7 @@ Result<Bytes> boundaryDrc(const LatticeMesh& mesh) {
   draco::ExpertEncoder encoder(target);
   quantise(encoder, positions, mesh.lattice.bits, mesh.lattice.step, toFloats(mesh.lattice.origin));
   for (const auto& [attribute, info] : fields)
-    if (info->bits <= kMaxQuantisedFieldBits) quantise(encoder, attribute, info->bits, info->step, toFloats(info->minimum));
+    if (info->bits <= kMaxQuantisedFieldBits && !info->gaps) quantise(encoder, attribute, info->bits, info->step, toFloats(info->minimum));
 
   draco::EncoderBuffer buffer;
   if (const draco::Status status = encoder.EncodeToBuffer(&buffer); !status.ok())
