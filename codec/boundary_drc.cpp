@@ -5,7 +5,6 @@
 #include <draco/core/encoder_buffer.h>
 #include <draco/mesh/mesh.h>
 
-#include <algorithm>
 #include <array>
 #include <cassert>
 #include <memory>
@@ -89,11 +88,6 @@ std::vector<float> toFloats(std::span<const double> values) { return {values.beg
 /// Above this many bits a float's 24 cannot hold a value's grid point, and rounding again would only lose more.
 constexpr int kMaxQuantisedFieldBits = 20;
 
-/// A grid has no place for NaN.
-bool isOnGrid(const FieldInfo& field, const std::vector<std::int32_t>& integers) {
-  return field.bits <= kMaxQuantisedFieldBits && std::ranges::find(integers, kGap) == integers.end();
-}
-
 }  // namespace
 
 Result<Bytes> boundaryDrc(const LatticeMesh& mesh) {
@@ -104,17 +98,17 @@ Result<Bytes> boundaryDrc(const LatticeMesh& mesh) {
   draco::Mesh target;
   target.set_num_points(static_cast<std::uint32_t>(vertices.slots.size()));
   const int positions = addPositions(target, mesh, vertices.slots);
-  std::vector<std::pair<int, std::size_t>> fields;
+  std::vector<std::pair<int, const FieldInfo*>> fields;
   for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
     if (isCellField(mesh.fields[f])) continue;
-    fields.emplace_back(addField(target, mesh.fields[f], mesh.values[f], vertices.slots), f);
+    fields.emplace_back(addField(target, mesh.fields[f], mesh.values[f], vertices.slots), &mesh.fields[f]);
   }
   addTriangles(target, mesh, vertices.numbers);
 
   draco::ExpertEncoder encoder(target);
   quantise(encoder, positions, mesh.lattice.bits, mesh.lattice.step, toFloats(mesh.lattice.origin));
-  for (const auto& [attribute, f] : fields)
-    if (const FieldInfo& info = mesh.fields[f]; isOnGrid(info, mesh.values[f])) quantise(encoder, attribute, info.bits, info.step, toFloats(info.minimum));
+  for (const auto& [attribute, info] : fields)
+    if (info->bits <= kMaxQuantisedFieldBits && !info->gaps) quantise(encoder, attribute, info->bits, info->step, toFloats(info->minimum));
 
   draco::EncoderBuffer buffer;
   if (const draco::Status status = encoder.EncodeToBuffer(&buffer); !status.ok())

@@ -6,6 +6,7 @@
 #include <array>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "codec/boundary_drc.h"
 
@@ -50,7 +51,7 @@ Json positionAccessor(const draco::PointAttribute& attribute, std::uint32_t poin
 }
 
 /// What the Draco bytes hold, in glTF's words. Draco may split vertices where the surface is not manifold, so it is asked for its counts.
-Json describe(const draco::Mesh& mesh, std::size_t bytes) {
+Json describe(const draco::Mesh& mesh, std::span<const FieldInfo> fields, std::size_t bytes) {
   Json accessors = {{{"componentType", kUnsignedInt}, {"count", mesh.num_faces() * 3}, {"type", "SCALAR"}}};
   Json attributes = Json::object(), ids = Json::object();
   const auto add = [&](const std::string& name, int attribute, Json accessor) {
@@ -68,6 +69,7 @@ Json describe(const draco::Mesh& mesh, std::size_t bytes) {
     std::string name;
     const draco::AttributeMetadata* metadata = mesh.GetAttributeMetadataByAttributeId(i);
     if (components > kTypes.size() || metadata == nullptr || !metadata->GetEntryString("name", &name)) continue;
+    if (std::ranges::any_of(fields, [&](const FieldInfo& f) { return f.gaps && !isCellField(f) && f.name == name; })) continue;  // glTF has no NaN
     add("_" + name, i, {{"componentType", kFloat}, {"count", mesh.num_points()}, {"type", kTypes[components - 1]}});
   }
   const Json primitive = {{"attributes", attributes},
@@ -100,7 +102,7 @@ Result<Bytes> boundaryGlb(const LatticeMesh& mesh) {
   if (!decoded.ok())
     return fail(ErrorCode::kBadCodec, std::string("Draco cannot read what it wrote: ") + decoded.status().error_msg());
 
-  const std::string json = describe(*decoded.value(), drc->size()).dump(-1, ' ', false, Json::error_handler_t::replace);
+  const std::string json = describe(*decoded.value(), mesh.fields, drc->size()).dump(-1, ' ', false, Json::error_handler_t::replace);
   Bytes out;
   putU32(out, kGlbMagic);
   putU32(out, kGlbVersion);

@@ -7,8 +7,8 @@
 
 namespace qtet {
 
-/// One mesh of one primitive: the bytes of boundaryDrc, and accessors that say what is in them. A point field of 1 to 4 components is the
-/// attribute "_NAME" (glTF wants the underscore); others are in the Draco bytes and not named. Axes and units are the mesh's own.
+/// One mesh of one primitive: the bytes of boundaryDrc, and accessors that say what is in them. A point field of 1 to 4 components
+/// without gaps is the attribute "_NAME" (glTF wants the underscore); others are in the Draco bytes and not named. Axes and units are the mesh's own.
 /// REQUIRES and errors: those of boundaryDrc.
 [[nodiscard]] Result<Bytes> boundaryGlb(const LatticeMesh& mesh);
 

@@ -9,8 +9,8 @@
 
 namespace qtet {
 
-/// Gmsh 2.2 and 4.1, text and binary (little-endian): nodes, elements, NodeData and ElementData; the first physical group of a volume is the
-/// cell field gmsh:physical. Nodes keep the file's order, cells that of the volume elements. https://gmsh.info/doc/texinfo/gmsh.html#File-formats
+/// Gmsh 2.2 and 4.1, text and binary (little-endian): nodes, elements, NodeData and ElementData; a field given at several times is NAME@TIME;
+/// the first physical group of a volume is the cell field gmsh:physical. Nodes keep the file's order, cells that of the volume elements. https://gmsh.info/doc/texinfo/gmsh.html#File-formats
 [[nodiscard]] Result<CellMesh> readGmsh(const std::filesystem::path& path, ReadReport& report);
 
 /// Medit .mesh, and .meshb of versions 1 to 4: vertices, tetrahedra, hexahedra, prisms, pyramids, second-degree tetrahedra; references other

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <fstream>
+#include <limits>
 
 namespace qtet {
 namespace {
@@ -72,6 +73,13 @@ void MeshScanner::fail(ErrorCode code, const std::string& what) {
   const auto lineNumber = 1 + std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(place_), '\n');
   const std::string where = bytes_ ? "byte " + std::to_string(place_) : "line " + std::to_string(lineNumber);
   error_ = Error{code, path_.string() + ", " + where + ": " + what, Error::kNoOffset};
+}
+
+/// Of a number that no double comes near: too large, unless its exponent is negative, or it has none and begins with 0.
+double MeshScanner::beyondRange(std::string_view number) {
+  const std::size_t exponent = number.find_first_of("eE"), digit = number.find_first_not_of("+-");
+  const bool small = exponent != std::string_view::npos ? number.substr(exponent + 1).starts_with('-') : number[digit] == '0' || number[digit] == '.';
+  return small ? 0 : std::numeric_limits<double>::infinity();
 }
 
 void MeshScanner::refuse(std::size_t place, std::string_view found, const char* what) {

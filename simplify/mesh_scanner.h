@@ -26,7 +26,7 @@ class MeshScanner {
   std::string_view line();
   [[nodiscard]] bool atEnd();
 
-  /// The next word as a number. `what` is what it should be: "a coordinate".
+  /// The next word as a number. `what` is what it should be: "a coordinate". A real number beyond what T holds is infinite or 0.
   template <class T>
   T number(const char* what) {
     const std::size_t before = place_;
@@ -38,7 +38,10 @@ class MeshScanner {
       refuse(before, text, what);
       return T{};
     }
-    if (read.ec == std::errc::result_out_of_range && std::integral<T>) refuse(before, text, what);
+    if (read.ec == std::errc::result_out_of_range) {
+      if constexpr (std::floating_point<T>) value = beyondRange(text);
+      else refuse(before, text, what);
+    }
     return failed() ? T{} : value;
   }
 
@@ -72,6 +75,7 @@ class MeshScanner {
   [[nodiscard]] Status status() const { return error_ ? Status(std::unexpected(*error_)) : Status{}; }
 
  private:
+  static double beyondRange(std::string_view number);
   void refuse(std::size_t place, std::string_view found, const char* what);
   void endsWithin(const char* what);
   void skipBlanks();

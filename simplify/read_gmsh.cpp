@@ -1,7 +1,8 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <charconv>
 #include <limits>
+#include <map>
 #include <unordered_map>
 
 #include "proto/limits.h"
@@ -15,7 +16,8 @@ namespace {
 /// Gmsh's own numbers of nodes and elements, which may have gaps, to ours.
 class Numbers {
  public:
-  void add(std::uint64_t tag) { places_.emplace(tag, places_.size()); }
+  /// False: the number is taken, and stays with the one that has it.
+  bool add(std::uint64_t tag, std::size_t place) { return places_.emplace(tag, place).second; }
   void reserve(std::size_t count) { places_.reserve(count); }
   [[nodiscard]] VertexId operator[](std::uint64_t tag) const {
     const auto at = places_.find(tag);
@@ -134,7 +136,7 @@ class Gmsh {
       const bool parametric = integer("0 or 1") != 0;
       const std::uint64_t inBlock = size("the number of nodes of a block");
       if (!fits(inBlock, 8, 32, "nodes")) return;
-      for (std::uint64_t i = 0; i < inBlock && !in_.failed(); ++i) nodes_.add(size("a node's number"));
+      for (std::uint64_t i = 0; i < inBlock && !in_.failed(); ++i) addNode(size("a node's number"));
       for (std::uint64_t i = 0; i < inBlock && !in_.failed(); ++i) {
         readPoint();
         for (std::int64_t k = 0; parametric && k < std::min<std::int64_t>(dimension, 3); ++k) real("a parameter");
@@ -148,9 +150,13 @@ class Gmsh {
     if (!fits(count, 8, 28, "nodes")) return;
     nodes_.reserve(count);
     for (std::uint64_t i = 0; i < count && !in_.failed(); ++i) {
-      nodes_.add(static_cast<std::uint64_t>(integer("a node's number")));
+      addNode(static_cast<std::uint64_t>(integer("a node's number")));
       readPoint();
     }
+  }
+
+  void addNode(std::uint64_t tag) {
+    if (!in_.failed() && !nodes_.add(tag, nodeCount_++)) in_.fail(ErrorCode::kBadInput, "two nodes have the number " + std::to_string(tag) + "; the file is damaged, export it again");
   }
 
   void readPoint() {
@@ -226,7 +232,7 @@ class Gmsh {
     }
     ordered_ = ids_;
     for (std::size_t k = 0; k < kind.nodeOf.size(); ++k) ordered_[k] = ids_[kind.nodeOf[k]];
-    elements_.add(tag);
+    elements_.add(tag, out_.cells());
     out_.addCell(kind.type, ordered_);
     groups_.push_back(static_cast<double>(group));
   }
@@ -243,7 +249,11 @@ class Gmsh {
     }
     std::erase(name, '"');
     const auto reals = in_.number<std::uint64_t>("the number of numbers");
-    for (std::uint64_t i = 0; i < reals && !in_.failed(); ++i) in_.number<double>("a number such as the time");
+    double time = 0;
+    for (std::uint64_t i = 0; i < reals && !in_.failed(); ++i) {
+      const auto value = in_.number<double>("a number such as the time");
+      if (i == 0) time = value;
+    }
     const auto integers = in_.number<std::uint64_t>("the number of integers");
     std::array<std::uint64_t, 3> head{};  // step, components, tuples
     for (std::uint64_t i = 0; i < integers && !in_.failed(); ++i) {
@@ -254,7 +264,9 @@ class Gmsh {
     if (head[1] < 1 || head[1] > kMaxFieldComponents)
       return in_.fail(ErrorCode::kBadInput, "the field " + name + " has " + std::to_string(head[1]) + " components; 1 to " + std::to_string(kMaxFieldComponents) + " are read");
     if (!fits(head[2], 2 * (head[1] + 1), 4 + 8 * head[1], "values")) return;
+    const std::size_t before = out_.fields.size();
     readTuples(ofElements, name, head[1], head[2]);
+    if (out_.fields.size() > before) times_.push_back(time);
   }
 
   void readTuples(bool ofElements, const std::string& name, std::uint64_t components, std::uint64_t tuples) {
@@ -275,7 +287,20 @@ class Gmsh {
     if (any) out_.fields.push_back(std::move(field));
   }
 
+  /// A field that the file has at several times is called NAME@TIME, as those of a series.
+  void nameSteps() {
+    std::map<std::pair<std::string, std::string>, std::size_t> count;
+    for (const MeshField& field : out_.fields) ++count[{field.association, field.name}];
+    for (std::size_t f = 0; f < times_.size(); ++f) {
+      MeshField& field = out_.fields[f];
+      if (count[{field.association, field.name}] < 2) continue;
+      std::array<char, 32> text{};
+      field.name.append("@").append(text.data(), std::to_chars(text.data(), text.data() + text.size(), times_[f]).ptr);
+    }
+  }
+
   CellMesh finish() {
+    nameSteps();
     if (std::ranges::any_of(groups_, [](double g) { return g != 0; })) out_.fields.push_back({"gmsh:physical", 1, "int32", std::move(groups_), "cell"});
     return std::move(out_);
   }
@@ -286,7 +311,9 @@ class Gmsh {
   bool bytes_ = false;
   CellMesh out_;
   Numbers nodes_, elements_;
+  std::size_t nodeCount_ = 0;
   std::unordered_map<std::int64_t, std::int64_t> groupOf_;  ///< of a volume
+  std::vector<double> times_;                               ///< one a field
   std::vector<double> groups_;                              ///< one a cell
   std::vector<VertexId> ids_, ordered_;
 };

@@ -83,6 +83,7 @@ void mend(TetMesh& mesh, ReadReport& report) {
 Result<CellMesh> readCells(const std::filesystem::path& path, const ReadOptions& options, ReadReport& report) {
   Result<CellMesh> cells = readFile(path, withThresholdField(options), report);
   if (!cells) return cells;
+  nameFields(cells->fields, report.notes);
   if (report.ignoredCells > 0 && cells->cells() > 0)
     report.notes.push_back(std::to_string(report.ignoredCells) + " points, lines and faces among the cells were ignored");
   if (Status checked = checkCellMesh(*cells, path); !checked) return std::unexpected(checked.error());

@@ -6,9 +6,9 @@
 
 #include <array>
 #include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <string>
+#include <system_error>
 
 namespace qtet {
 namespace {
@@ -16,9 +16,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kNoProgram = 127, kNoMeshio = 77;  ///< what the child ends with
-/// Reads, drops what a .vtu cannot hold, and writes.
+/// Reads, drops what a .vtu cannot hold, and writes. Python would look for meshio in the working folder first, where a mesh's sender may have put one.
 constexpr const char* kScript =
     "import sys\n"
+    "sys.path[:] = [folder for folder in sys.path if folder]\n"
     "try:\n"
     "    import meshio\n"
     "except ImportError:\n"
@@ -35,8 +36,11 @@ constexpr const char* kScript =
 class Folder {
  public:
   Folder() {
-    std::string name = (fs::temp_directory_path() / "qtet-meshio-XXXXXX").string();
+    const fs::path parent = fs::temp_directory_path(failure_);
+    if (failure_) return;
+    std::string name = (parent / "qtet-meshio-XXXXXX").string();
     if (::mkdtemp(name.data())) path_ = name;
+    else failure_.assign(errno, std::generic_category());
   }
   Folder(const Folder&) = delete;
   Folder& operator=(const Folder&) = delete;
@@ -45,9 +49,11 @@ class Folder {
     if (!path_.empty()) fs::remove_all(path_, ignored);
   }
   [[nodiscard]] const fs::path& path() const { return path_; }
+  [[nodiscard]] const std::error_code& failure() const { return failure_; }
 
  private:
   fs::path path_;
+  std::error_code failure_;
 };
 
 /// What the program ends with; -1: it was killed, or could not be started.
@@ -82,7 +88,7 @@ std::string lastLineOf(const fs::path& path) {
 
 Status throughMeshio(const fs::path& path, const std::function<Status(const fs::path&)>& use) {
   const Folder folder;
-  if (folder.path().empty()) return fail(ErrorCode::kIo, "no folder could be made in " + fs::temp_directory_path().string() + ": " + std::strerror(errno));
+  if (folder.failure()) return fail(ErrorCode::kIo, "no temporary folder could be made (" + folder.failure().message() + "); let TMPDIR name one with room");
   const fs::path out = folder.path() / "mesh.vtu", words = folder.path() / "words.txt";
   // The first python3 may be one of the user's own; Debian's has Debian's meshio.
   int ended = kNoProgram;

@@ -11,6 +11,21 @@ bool isCalled(const std::string& asked, const std::string& association, const st
   return asked == name || asked == association + ":" + name;
 }
 
+/// Whether `text` is UTF-8 as far as its leading and continuing bytes go.
+bool isUtf8(const std::string& text) {
+  int pending = 0;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool continues = (byte & 0xC0) == 0x80;
+    if (continues != (pending > 0) || byte >= 0xF8) return false;
+    if (continues)
+      --pending;
+    else if (byte >= 0xC0)
+      pending = byte >= 0xF0 ? 3 : byte >= 0xE0 ? 2 : 1;
+  }
+  return pending == 0;
+}
+
 std::string namesOf(const std::vector<MeshField>& fields, const std::vector<std::string>& others) {
   std::string out;
   for (const MeshField& field : fields) out += (out.empty() ? "" : ", ") + field.name;
@@ -87,6 +102,27 @@ Status applyThreshold(const Threshold& threshold, const std::filesystem::path& p
   mesh.vertices = std::move(out.vertices);
   mesh.cellIds = std::move(out.cellIds);
   return {};
+}
+
+bool isStorableName(const std::string& name) { return !name.empty() && name.size() <= kMaxNameBytes && isUtf8(name); }
+
+void nameFields(std::vector<MeshField>& fields, std::vector<std::string>& notes) {
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    MeshField& field = fields[f];
+    const auto isTaken = [&] {
+      return std::any_of(fields.begin(), fields.begin() + static_cast<std::ptrdiff_t>(f),
+                         [&](const MeshField& other) { return other.name == field.name && other.association == field.association; });
+    };
+    const bool storable = isStorableName(field.name);
+    if (storable && !isTaken()) continue;
+    constexpr std::size_t kLongestEnding = 8;
+    const std::string before = field.name;
+    const std::string stem = storable && before.size() + kLongestEnding <= kMaxNameBytes ? before : "unnamed-" + std::to_string(f);
+    field.name = stem;
+    for (int again = 2; isTaken(); ++again) field.name = stem + "-" + std::to_string(again);
+    notes.push_back(field.association + " field number " + std::to_string(f) + " is called " + field.name + ": " +
+                    (storable ? "an earlier one has its name, " + before : "it has no name of at most " + std::to_string(kMaxNameBytes) + " bytes of UTF-8"));
+  }
 }
 
 }  // namespace qtet

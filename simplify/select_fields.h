@@ -18,4 +18,10 @@ namespace qtet {
 /// Leaves the cells within the threshold. Errors: not-found (no such field among those read), bad-input (no cell is left).
 [[nodiscard]] Status applyThreshold(const Threshold& threshold, const std::filesystem::path& path, CellMesh& mesh);
 
+/// Whether a log can hold the name: not empty, at most kMaxNameBytes bytes, UTF-8 (FORMAT.md, "Manifest").
+[[nodiscard]] bool isStorableName(const std::string& name);
+
+/// Gives a field that has no such name, or that of an earlier field of its association, one of its own, and notes it.
+void nameFields(std::vector<MeshField>& fields, std::vector<std::string>& notes);
+
 }  // namespace qtet

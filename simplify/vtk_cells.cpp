@@ -208,25 +208,10 @@ void keepRows(MeshField& field, const std::vector<vtkIdType>& rows) {
   field.values.resize(rows.size() * n);
 }
 
-/// Whether `text` is UTF-8 as far as its leading and continuing bytes go.
-bool isUtf8(const std::string& text) {
-  int pending = 0;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    const bool continues = (byte & 0xC0) == 0x80;
-    if (continues != (pending > 0) || byte >= 0xF8) return false;
-    if (continues)
-      --pending;
-    else if (byte >= 0xC0)
-      pending = byte >= 0xF0 ? 3 : byte >= 0xE0 ? 2 : 1;
-  }
-  return pending == 0;
-}
-
 /// The array's name, or "unnamed-I" where the manifest could not hold it.
 std::string nameOf(vtkAbstractArray& array, const std::string& association, int number, ReadReport& report) {
   const std::string name = array.GetName() ? array.GetName() : "";
-  if (!name.empty() && name.size() <= kMaxNameBytes && isUtf8(name)) return name;
+  if (isStorableName(name)) return name;
   const std::string substitute = "unnamed-" + std::to_string(number);
   report.notes.push_back(association + " field number " + std::to_string(number) + " has no name, or none of at most " +
                          std::to_string(kMaxNameBytes) + " bytes of UTF-8, and is called " + substitute);

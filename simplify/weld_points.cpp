@@ -11,6 +11,8 @@ namespace {
 
 using Box = std::array<double, 3>;
 
+constexpr double kFirstInexactInteger = 9007199254740992.0;  // 2^53
+
 struct BoxHash {
   std::size_t operator()(const Box& box) const {
     std::uint64_t hash = 0;
@@ -19,8 +21,13 @@ struct BoxHash {
   }
 };
 
-/// The points that stay, by boxes of twice the distance (by their place itself where that is 0), so that a ball meets at most eight boxes.
+/// The points that stay, by boxes of twice the distance (by their place itself where that is 0), so that a ball meets eight boxes.
 class KeptPoints {
+  struct Boxes {
+    std::array<double, 3> box{};
+    std::size_t count = 0;
+  };
+
  public:
   KeptPoints(const std::vector<Position>& points, double distance) : points_(points), distance_(distance), next_(points.size(), kGhost) {
     first_.reserve(points.size());
@@ -30,10 +37,10 @@ class KeptPoints {
   [[nodiscard]] VertexId near(const Position& p) const {
     if (distance_ == 0) return nearIn(boxOf(p), p);
     VertexId found = kGhost;
-    const Box low = boxOf({p[0] - distance_, p[1] - distance_, p[2] - distance_}), high = boxOf({p[0] + distance_, p[1] + distance_, p[2] + distance_});
-    for (double x = low[0]; x <= high[0]; x += 1) {
-      for (double y = low[1]; y <= high[1]; y += 1) {
-        for (double z = low[2]; z <= high[2]; z += 1) found = std::min(found, nearIn({x, y, z}, p));
+    const std::array<Boxes, 3> boxes{boxesRound(p[0]), boxesRound(p[1]), boxesRound(p[2])};
+    for (std::size_t i = 0; i < boxes[0].count; ++i) {
+      for (std::size_t j = 0; j < boxes[1].count; ++j) {
+        for (std::size_t k = 0; k < boxes[2].count; ++k) found = std::min(found, nearIn({boxes[0].box[i], boxes[1].box[j], boxes[2].box[k]}, p));
       }
     }
     return found;
@@ -46,9 +53,20 @@ class KeptPoints {
   }
 
  private:
-  [[nodiscard]] Box boxOf(const Position& p) const {
-    if (distance_ == 0) return {p[0] + 0.0, p[1] + 0.0, p[2] + 0.0};  // -0 and 0 are one place
-    return {std::floor(p[0] / (2 * distance_)) + 0.0, std::floor(p[1] / (2 * distance_)) + 0.0, std::floor(p[2] / (2 * distance_)) + 0.0};
+  [[nodiscard]] Box boxOf(const Position& p) const { return {boxOf(p[0]), boxOf(p[1]), boxOf(p[2])}; }
+  /// Where boxes are narrower than doubles are apart, two places within the distance are one, and that is the box. (+ 0.0: -0 and 0 are one place.)
+  [[nodiscard]] double boxOf(double x) const {
+    const double box = distance_ == 0 ? x : std::floor(x / (2 * distance_));
+    return (std::abs(box) < kFirstInexactInteger ? box : x) + 0.0;
+  }
+  /// Along one axis those that a ball at x meets: two, or three where rounding puts an end into the next one.
+  [[nodiscard]] Boxes boxesRound(double x) const {
+    Boxes out;
+    for (const double place : {x - distance_, x, x + distance_}) {
+      const double box = boxOf(place);
+      if (out.count == 0 || out.box[out.count - 1] != box) out.box[out.count++] = box;
+    }
+    return out;
   }
   [[nodiscard]] VertexId nearIn(const Box& box, const Position& p) const {
     const auto at = first_.find(box);

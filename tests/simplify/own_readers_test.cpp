@@ -296,7 +296,46 @@ TEST(ReadGmsh, whatIsWrongIsSaidWithItsLine) {
   refused(gmsh22(false), "1000 2 2", "1000 94 2", ErrorCode::kBadInput, "elements of type 94");
   refused(gmsh22(false), "$MeshFormat", "$Mesh", ErrorCode::kBadInput, "does not begin with $MeshFormat");
   refused(gmsh22(false), "9 4 5 8 17", "9 4 6 8 17", ErrorCode::kBadInput, "cell 0 is a hexahedron without 8 vertices among the 15 points");
+  refused(gmsh22(false), "\n11 2 0 0.1", "\n8 2 0 0.1", ErrorCode::kBadInput, "line 8: two nodes have the number 8");
   refused(gmsh41(true), std::string("\1\0\0\0\n", 5), std::string("\0\0\0\1\n", 5), ErrorCode::kBadInput, "big-endian");
+}
+
+TEST(ReadGmsh, elementsOfOneNumberLeaveTheDataOfTheOthersWhereTheyBelong) {
+  std::string text = gmsh22(false);
+  const std::size_t second = text.find("\n93 ");
+  ASSERT_NE(second, std::string::npos);
+  const Result<CellMesh> read = cellsIn(fileWith("same.msh", text.replace(second, 4, "\n100 ")));
+  expectTheSample(read);
+  ASSERT_EQ(read->fields[1].name, "v");
+  const std::vector<double>& values = read->fields[1].values;
+  EXPECT_EQ(values[0], 0);
+  EXPECT_TRUE(std::isnan(values[3]));
+  EXPECT_EQ(values[6], 2);
+  EXPECT_EQ(values[9], 3);
+}
+
+TEST(ReadGmsh, stepsOfOneFieldAreCalledByTheirTimes) {
+  const std::string text = gmsh22(false), from = "$NodeData\n1\n\"p\"\n1\n0.5";
+  const std::size_t at = text.find(from);
+  ASSERT_NE(at, std::string::npos);
+  std::string later = text.substr(at);
+  later.replace(0, from.size(), "$NodeData\n1\n\"p\"\n1\n12.25");
+  const Result<CellMesh> read = cellsIn(fileWith("steps.msh", text + later));
+  expectTheSample(read);
+  std::vector<std::string> names;
+  for (const MeshField& field : read->fields) names.push_back(field.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"p@0.5", "v@0.5", "p@12.25", "v@0.5-2", "gmsh:physical"}));
+}
+
+TEST(ReadGmsh, namesThatALogCannotHoldAreReplaced) {
+  for (const std::string& name : {std::string("p\xff\xfe"), std::string(257, 'p'), std::string()}) {
+    std::string text = gmsh22(false);
+    text.replace(text.find("\"p\""), 3, "\"" + name + "\"");
+    ReadReport report;
+    const Result<CellMesh> read = readCells(fileWith("names.msh", text), {}, report);
+    expectTheSample(read);
+    EXPECT_EQ(read->fields[0].name, "unnamed-0");
+  }
 }
 
 TEST(ReadMedit, textAndBytesOfEveryVersionGiveOneMesh) {
@@ -414,6 +453,13 @@ TEST(MeshScanner, theFirstErrorStays) {
   MeshScanner range("300", "f.txt");
   EXPECT_EQ(range.number<std::uint8_t>("a byte"), 0);
   EXPECT_TRUE(range.failed());
+  MeshScanner reals("1e400 -1e400 1e-400 0.5 1e-310", "f.txt");
+  EXPECT_TRUE(std::isinf(reals.number<double>("a number")));
+  EXPECT_TRUE(std::isinf(reals.number<double>("a number")));
+  EXPECT_EQ(reals.number<double>("a number"), 0);
+  EXPECT_EQ(reals.number<double>("a number"), 0.5);
+  EXPECT_EQ(reals.number<double>("a number"), 1e-310);
+  EXPECT_FALSE(reals.failed());
   MeshScanner counts("12345678", "f.txt");
   EXPECT_TRUE(counts.fits(4, 2, "things"));
   EXPECT_FALSE(counts.fits(5, 2, "things"));

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "simplify/clean_mesh.h"
 #include "simplify/mend_faces.h"
 #include "simplify/weld_points.h"
@@ -320,6 +322,14 @@ TEST(Weld, pointsFurtherApartThanTheDistanceStay) {
   CellMesh other = ring;
   EXPECT_EQ(weldPoints(ring, 1.99e-3), 0u);
   EXPECT_EQ(weldPoints(other, 2.01e-3), 9u);
+}
+
+TEST(Weld, distancesBelowTheSpacingOfNumbersJoinWhatLiesAtOnePlace) {
+  for (const double distance : {1e-12, 1e-17, 1e-310, std::numeric_limits<double>::denorm_min()}) {
+    CellMesh ring = openRing(7);
+    for (Position& p : ring.points) p[0] += 1e6;  // where numbers are 1e-10 apart
+    EXPECT_EQ(weldPoints(ring, distance), 9u) << distance;
+  }
 }
 
 /// The ring with each hexahedron cut into five tetrahedra by parity, as one cuts structured grids: an odd ring's ends do not fit.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstdlib>
 #include <fstream>
 
 #include "simplify/clean_mesh.h"
@@ -229,6 +230,29 @@ TEST(VtkFormats, abaqusIsReadThroughMeshioOrRefusedWithAdvice) {
     EXPECT_EQ(read.error().code, ErrorCode::kNotFound) << read.error().text();
     EXPECT_NE(read.error().message.find("apt install python3-meshio"), std::string::npos);
   }
+}
+
+/// A mesh often comes in an archive with other files, and qtet is called where they lie.
+TEST(VtkFormats, aModuleInTheWorkingFolderIsNotTakenForMeshio) {
+  const fs::path mesh = fs::absolute(fileWith("any.med", "nothing")), before = fs::current_path();
+  std::ofstream(mesh.parent_path() / "meshio.py") << "open('ran', 'w')\n";
+  fs::current_path(mesh.parent_path());
+  EXPECT_FALSE(readMesh(mesh));
+  EXPECT_FALSE(fs::exists("ran"));
+  fs::remove("meshio.py");
+  fs::current_path(before);
+}
+
+TEST(VtkFormats, aTemporaryFolderThatIsNotThereIsAnError) {
+  const fs::path mesh = fileWith("any.med", "nothing");
+  const char* before = std::getenv("TMPDIR");
+  const std::string kept = before ? before : "";
+  ::setenv("TMPDIR", "/nonexistent", 1);
+  const Result<ReadMesh> read = readMesh(mesh);
+  before ? ::setenv("TMPDIR", kept.c_str(), 1) : ::unsetenv("TMPDIR");
+  ASSERT_FALSE(read);
+  EXPECT_EQ(read.error().code, ErrorCode::kIo) << read.error().text();
+  EXPECT_NE(read.error().message.find("TMPDIR"), std::string::npos) << read.error().text();
 }
 
 }  // namespace
