@@ -10,6 +10,7 @@
 
 #include "codec/link.h"
 #include "codec/range_coder.h"
+#include "proto/limits.h"
 
 namespace qtet {
 
@@ -31,7 +32,7 @@ struct DeletedModels {
 };
 
 /// Derives the deleted cells of one record, each oriented as a positive cell, in a fixed order. `Truth` is the sorted list of sorted cells
-/// for an encoder, empty for a decoder. REQUIRES link closed and every triangle labelled below k.
+/// for an encoder, empty for a decoder. REQUIRES link closed, of at most kMaxLinkTriangles, and every triangle labelled below k.
 template <class Coder>
 class DeletedCells {
  public:
@@ -51,6 +52,9 @@ class DeletedCells {
   }
 
  private:
+  // Letters met round a vertex: in each triangle of its fan a label, and behind it at most two prey vertices of a detour; one triangle more before a walk
+  // that does not end is noticed.
+  static constexpr std::size_t kLongestWord = std::size_t{3} * (kMaxLinkTriangles + 1);
   using Detour = std::array<std::array<std::uint8_t, 2>, 3>;  // by edge: prey vertices between the two labels, 0 = none, else 1 + prey
 
   static LocalVertex prey(int label) { return kPreyBit | static_cast<LocalVertex>(label); }
@@ -114,35 +118,36 @@ class DeletedCells {
   bool cellsAtVertex(std::uint32_t x) {
     const auto& triangles = link_.triangles();
     const std::uint32_t start = link_.triangleOf(x);
-    std::vector<int> word;
+    std::array<std::uint8_t, kLongestWord> word;
+    std::size_t letters = 0;
     std::uint32_t f = start;
     std::size_t steps = 0;
     do {
       const LinkTriangle& t = triangles[f];
-      if (word.empty() || word.back() != t.label) word.push_back(t.label);
+      if (letters == 0 || word[letters - 1] != t.label) word[letters++] = t.label;
       const std::size_t i = t.vertex[0] == x ? 0 : t.vertex[1] == x ? 1 : 2;
       const std::size_t e = (i + 1) % 3;  // cross the edge that misses the vertex after x
       if (escape_)
         for (const std::uint8_t inner : between_[f][e])
-          if (inner) word.push_back(inner - 1);
+          if (inner) word[letters++] = static_cast<std::uint8_t>(inner - 1);
       f = t.neighbour[e];
       if (++steps > triangles.size()) return false;
     } while (f != start);
-    if (word.size() >= 3) triangulate(std::move(word), x);
+    if (letters >= 3) triangulate(std::span(word).first(letters), x);
     return true;
   }
 
   // A word pinched at a prey vertex is two words: the inner one is done first, by a call that is at most four deep (it holds its first letter
   // once), the outer one by going on, since a hostile word has thousands of pinches.
-  void triangulate(std::vector<int> word, std::uint32_t x) {
+  void triangulate(std::span<std::uint8_t> word, std::uint32_t x) {
     for (;;) {
-      while (word.size() > 1 && word.front() == word.back()) word.pop_back();
+      while (word.size() > 1 && word.front() == word.back()) word = word.first(word.size() - 1);
       if (word.size() < 3) return;
       const auto [first, second] = pinch(word);
       if (first == second) break;
-      triangulate({word.begin() + first, word.begin() + second}, x);
-      std::rotate(word.begin(), word.begin() + second, word.end());  // [second, end) and then [0, first)
-      word.resize(word.size() - static_cast<std::size_t>(second - first));
+      triangulate(word.subspan(first, second - first), x);
+      std::ranges::rotate(word, word.begin() + static_cast<std::ptrdiff_t>(second));  // [second, end) and then [0, first)
+      word = word.first(word.size() - (second - first));
     }
     if (word.size() == 3)
       fillTriangle(word, x);
@@ -151,13 +156,14 @@ class DeletedCells {
   }
 
   /// The lowest place whose letter comes again, and for it the next such place; equal places: none.
-  static std::pair<std::ptrdiff_t, std::ptrdiff_t> pinch(const std::vector<int>& word) {
-    for (auto i = word.begin(); i != word.end(); ++i)
-      if (const auto j = std::find(i + 1, word.end(), *i); j != word.end()) return {i - word.begin(), j - word.begin()};
+  static std::pair<std::size_t, std::size_t> pinch(std::span<const std::uint8_t> word) {
+    for (std::size_t i = 0; i < word.size(); ++i)
+      for (std::size_t j = i + 1; j < word.size(); ++j)
+        if (word[i] == word[j]) return {i, j};
     return {0, 0};
   }
 
-  void fillTriangle(const std::vector<int>& w, std::uint32_t x) {
+  void fillTriangle(std::span<const std::uint8_t> w, std::uint32_t x) {
     const LocalVertex a = prey(w[0]);
     const LocalVertex b = prey(w[1]);
     const LocalVertex c = prey(w[2]);
@@ -169,7 +175,7 @@ class DeletedCells {
     }
   }
 
-  void fillQuadrilateral(std::vector<int>& w, std::uint32_t x) {
+  void fillQuadrilateral(std::span<std::uint8_t> w, std::uint32_t x) {
     std::ranges::rotate(w, std::ranges::min_element(w));
     const std::array<LocalVertex, 4> p{prey(w[0]), prey(w[1]), prey(w[2]), prey(w[3])};
     if (coder_.bit(isTrue(x, p[0], p[1], p[2]), models_.diagonal[K()]))
