@@ -5,9 +5,13 @@
 #include <draco/core/encoder_buffer.h>
 #include <draco/mesh/mesh.h>
 
+#include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
+#include <limits>
 #include <memory>
+#include <span>
 #include <utility>
 
 #include "proto/limits.h"
@@ -22,6 +26,13 @@ struct BoundaryVertices {
   std::vector<VertexId> slots;
   std::vector<std::uint32_t> numbers;  ///< by slot
 };
+
+// Draco crashes on what float32 cannot hold, and on quantised values far outside their range.
+constexpr double kLargestFloat = std::numeric_limits<float>::max();
+constexpr int kMostQuantisedBits = 20;  // a float's 24 bits hold the grid point of an integer of so many, and rounding again would only lose more
+constexpr std::int32_t kLargestQuantised = 1 << kMostQuantisedBits;
+
+float toFloat(double x) { return static_cast<float>(std::clamp(x, -kLargestFloat, kLargestFloat)); }  // NaN stays
 
 BoundaryVertices collectVertices(const LatticeMesh& mesh) {
   BoundaryVertices out;
@@ -51,7 +62,7 @@ int addPositions(draco::Mesh& target, const LatticeMesh& mesh, const std::vector
   std::vector<float> values;
   values.reserve(slots.size() * 3);
   for (const VertexId v : slots)
-    for (const double x : mesh.lattice.position(mesh.points[v])) values.push_back(static_cast<float>(x));
+    for (const double x : mesh.lattice.position(mesh.points[v])) values.push_back(toFloat(x));
   return addFloats(target, draco::GeometryAttribute::POSITION, 3, values);
 }
 
@@ -60,7 +71,7 @@ int addField(draco::Mesh& target, const FieldInfo& field, const std::vector<std:
   values.reserve(slots.size() * field.components);
   for (const VertexId v : slots)
     for (std::uint32_t c = 0; c < field.components; ++c)
-      values.push_back(static_cast<float>(field.value(c, integers[std::size_t{v} * field.components + c])));
+      values.push_back(toFloat(field.value(c, integers[std::size_t{v} * field.components + c])));
   const int id = addFloats(target, draco::GeometryAttribute::GENERIC, field.components, values);
   auto metadata = std::make_unique<draco::AttributeMetadata>();
   metadata->AddEntryString("name", field.name);
@@ -83,32 +94,47 @@ void quantise(draco::ExpertEncoder& encoder, int attribute, int bits, double ste
   encoder.SetAttributeExplicitQuantization(attribute, bits, static_cast<int>(origin.size()), origin.data(), range);
 }
 
-std::vector<float> toFloats(std::span<const double> values) { return {values.begin(), values.end()}; }
+std::vector<float> toFloats(std::span<const double> values) {
+  std::vector<float> out;
+  for (const double x : values) out.push_back(toFloat(x));
+  return out;
+}
 
-/// Above this many bits a float's 24 cannot hold a value's grid point, and rounding again would only lose more.
-constexpr int kMaxQuantisedFieldBits = 20;
+/// Whether Draco's grid of `bits` from each origin on lies within float32, and its differences, too.
+bool fitsFloats(std::span<const double> origin, int bits, double step) {
+  const double range = step * ((1 << bits) - 1);
+  return range < kLargestFloat / 4 && std::ranges::all_of(origin, [](double x) { return std::abs(x) < kLargestFloat / 4; });
+}
+
+/// A coarse level's integers may leave the field's range.
+bool isQuantisable(const FieldInfo& field, std::span<const std::int32_t> integers) {
+  return !field.gaps && field.bits <= kMostQuantisedBits && fitsFloats(field.minimum, kMostQuantisedBits, field.step) &&
+         std::ranges::all_of(integers, [](std::int32_t x) { return x >= -kLargestQuantised && x <= kLargestQuantised; });
+}
 
 }  // namespace
 
 Result<Bytes> boundaryDrc(const LatticeMesh& mesh) {
   if (mesh.boundary.empty()) return fail(ErrorCode::kBadInput, "the mesh has no boundary triangle to encode");
+  if (!fitsFloats(mesh.lattice.origin, mesh.lattice.bits, mesh.lattice.step))
+    return fail(ErrorCode::kBadInput, "the mesh's coordinates are beyond what float32 holds, and Draco knows no other; take the level as .vtu");
   assert(mesh.fields.size() == mesh.values.size());
   const BoundaryVertices vertices = collectVertices(mesh);
 
   draco::Mesh target;
   target.set_num_points(static_cast<std::uint32_t>(vertices.slots.size()));
   const int positions = addPositions(target, mesh, vertices.slots);
-  std::vector<std::pair<int, const FieldInfo*>> fields;
+  std::vector<std::pair<int, std::size_t>> fields;
   for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
     if (isCellField(mesh.fields[f])) continue;
-    fields.emplace_back(addField(target, mesh.fields[f], mesh.values[f], vertices.slots), &mesh.fields[f]);
+    fields.emplace_back(addField(target, mesh.fields[f], mesh.values[f], vertices.slots), f);
   }
   addTriangles(target, mesh, vertices.numbers);
 
   draco::ExpertEncoder encoder(target);
   quantise(encoder, positions, mesh.lattice.bits, mesh.lattice.step, toFloats(mesh.lattice.origin));
-  for (const auto& [attribute, info] : fields)
-    if (info->bits <= kMaxQuantisedFieldBits && !info->gaps) quantise(encoder, attribute, info->bits, info->step, toFloats(info->minimum));
+  for (const auto& [attribute, f] : fields)
+    if (const FieldInfo& info = mesh.fields[f]; isQuantisable(info, mesh.values[f])) quantise(encoder, attribute, info.bits, info.step, toFloats(info.minimum));
 
   draco::EncoderBuffer buffer;
   if (const draco::Status status = encoder.EncodeToBuffer(&buffer); !status.ok())

@@ -15,9 +15,10 @@ inline constexpr double kMaxExactDracoSteps = 1 << 19;
 /// GENERIC float32 attribute a point field, its name in the attribute's metadata under "name", quantised on the field's own steps.
 /// Cell fields are left out. The decoder orders vertices and triangles anew. Lattice points survive (round((x - origin) / step) gives them back) while
 /// |origin / step| + 2^bits <= kMaxExactDracoSteps; further out float32 itself cannot tell them apart, and positions are the nearest
-/// floats. The same for fields, with minimum and step; a field of more bits, or with gaps (NaN), is stored as raw floats.
+/// floats. The same for fields, with minimum and step; a field of more bits, with gaps (NaN), or with
+/// integers beyond 2^20, is stored as raw floats.
 /// REQUIRES: indices within range, as many values as the fields' components say, lattice.bits and field bits within proto/limits.h.
-/// Errors: bad-input (no boundary), bad-codec (Draco refused, with its message).
+/// Errors: bad-input (no boundary; coordinates of 1e38 and more), bad-codec (Draco refused, with its message).
 [[nodiscard]] Result<Bytes> boundaryDrc(const LatticeMesh& mesh);
 
 }  // namespace qtet

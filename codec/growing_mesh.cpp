@@ -81,8 +81,18 @@ void GrowingMesh::reserve(const Slots& total) {
   marked_.reserve(total.vertices);
   tetrahedra.reserve(total.tetrahedra);
   boundary.reserve(total.triangles);
-  constexpr std::size_t kUnusedCells = 10;  // of a star's last unit, and its share of runs that were given back: 4 to 9 measured
-  pool_.reserve(std::size_t{4} * total.tetrahedra + std::size_t{3} * total.triangles + kUnusedCells * total.vertices);
+  pool_.reserve(static_cast<std::size_t>(starCells(total)));
+}
+
+std::uint64_t GrowingMesh::starCells(const Slots& total) {
+  constexpr std::uint64_t kUnusedCells = 10;  // of a star's last unit, and its share of runs that were given back: 4 to 9 measured
+  return std::uint64_t{4} * total.tetrahedra + std::uint64_t{3} * total.triangles + kUnusedCells * total.vertices;
+}
+
+std::uint64_t GrowingMesh::roomFor(const Slots& total) {
+  constexpr std::uint64_t kVertex = sizeof(LatticePoint) + sizeof(State) + sizeof(std::uint16_t);
+  return kVertex * total.vertices + sizeof(Tetrahedron) * std::uint64_t{total.tetrahedra} + sizeof(Triangle) * std::uint64_t{total.triangles} +
+         sizeof(CellRef) * starCells(total);
 }
 
 void GrowingMesh::measure(VertexId v, VertexId other) {

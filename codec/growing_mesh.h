@@ -48,8 +48,10 @@ class GrowingMesh {
 
   /// Takes points, tetrahedra and boundary as the base mesh. REQUIRES: called once, ids in range, coordinates below 2^positionBits.
   void start(int positionBits);
-  /// A hint: the mesh will have so many slots, of which nothing needs to be moved on the way.
+  /// A hint: the mesh will have so many slots, of which nothing needs to be moved on the way. REQUIRES: there is memory for it (roomFor).
   void reserve(const Slots& total);
+  /// Bytes that reserve() takes.
+  [[nodiscard]] static std::uint64_t roomFor(const Slots& total);
   /// Where the next split puts what it brings: at the end, or from where continueAt() said.
   [[nodiscard]] const Slots& next() const { return next_; }
   /// The next splits fill slots from `first` on; all below `end` exist from now on, holes unless filled. REQUIRES: those from `first` to `end`
@@ -103,6 +105,7 @@ class GrowingMesh {
   void measure(VertexId v, VertexId other);
   void moveEdges(const Link& link, std::span<const VertexId> prey);
   void makeRoom(State& state, std::uint32_t cells);
+  static std::uint64_t starCells(const Slots& total);
   VertexId newVertex();
   template <class Cells, class Cell>
   static void put(Cells& cells, std::uint32_t slot, const Cell& cell) {

@@ -30,10 +30,9 @@ struct Exit {
 
 }  // namespace
 
-// An edge has one slope and brings one vertex; a triangle three and two, a tetrahedron four and three.
-void PointAncestry::reserve(std::size_t records, std::size_t vertices) {
-  births_.reserve(records);
-  if (withSlopes_) slopes_.reserve(records + 2 * (std::max(vertices, records) - records));
+void PointAncestry::reserve(std::uint64_t records, std::uint64_t vertices) {
+  births_.reserve(static_cast<std::size_t>(records));
+  slopes_.reserve(static_cast<std::size_t>(slopesOf(records, vertices)));
 }
 
 void PointAncestry::add(VertexId v, const GrowingMesh& mesh, const Link& link, const Split& split) {

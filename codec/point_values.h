@@ -51,8 +51,10 @@ class PointAncestry {
   /// `withSlopes`: there is a point field.
   explicit PointAncestry(bool withSlopes = false) : withSlopes_(withSlopes) {}
 
-  /// A hint: so many records are to come, which bring at most so many vertices.
-  void reserve(std::size_t records, std::size_t vertices);
+  /// A hint: so many records are to come, which bring at most so many vertices. REQUIRES: there is memory for it (roomFor).
+  void reserve(std::uint64_t records, std::uint64_t vertices);
+  /// Bytes that reserve() takes.
+  [[nodiscard]] std::uint64_t roomFor(std::uint64_t records, std::uint64_t vertices) const { return records * sizeof(Birth) + slopesOf(records, vertices) * sizeof(Slope); }
   /// Notes the split of v. REQUIRES: link built, the split not yet applied.
   void add(VertexId v, const GrowingMesh& mesh, const Link& link, const Split& split);
   [[nodiscard]] std::span<const Birth> births() const { return births_; }
@@ -70,6 +72,10 @@ class PointAncestry {
   }
 
  private:
+  // An edge has one slope and brings one vertex; a triangle three and two, a tetrahedron four and three.
+  [[nodiscard]] std::uint64_t slopesOf(std::uint64_t records, std::uint64_t vertices) const {
+    return withSlopes_ ? records + 2 * (std::max(vertices, records) - records) : 0;
+  }
   void addSlope(const Link& link, const std::array<double, 3>& step);
 
   template <class At>

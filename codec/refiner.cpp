@@ -1,11 +1,25 @@
 #include "codec/refiner.h"
 
 #include <algorithm>
+#include <cstdlib>
+#include <limits>
 
 #include "codec/refiner_state.h"
 #include "proto/checksum.h"
 
 namespace qtet {
+
+namespace {
+
+// Whether so much can be had at once.
+bool hasMemory(std::uint64_t bytes) {
+  if (bytes > std::numeric_limits<std::size_t>::max() / 2) return false;
+  void* volatile trial = std::malloc(static_cast<std::size_t>(bytes));  // volatile: else compilers leave the call out
+  std::free(trial);
+  return trial != nullptr;
+}
+
+}  // namespace
 
 std::unexpected<Error> refuseChunk(ErrorCode code, std::uint32_t chunk, const std::string& what) {
   constexpr const char* kCorrupt = "; the log is damaged or was not written by qtet: fetch or build it again";
@@ -48,16 +62,18 @@ Status Refiner::State::mayCome(std::uint32_t chunk) const {
   return {};
 }
 
-// Memory for everything at once, as soon as the bytes that came make it credible: growing by doubling would hold up to three times as much.
+// Memory for everything at once, as soon as the bytes that came make it credible: growing by doubling would hold up to three times as much. Where that
+// cannot be had, the mesh still grows as far as it goes: a reader may stop long before the end, and without exceptions a failed reserve() is the end.
 void Refiner::State::makeRoom(std::size_t bytes) {
   structureBytes += bytes;
   if (roomy || stopLevel < index.chunks.back().lastLevel) return;
   const Slots& total = slots.back();
   if (std::max({total.vertices, total.tetrahedra, total.triangles}) > kMaxElementsPerPacketByte * structureBytes) return;
   roomy = true;
-  mesh.reserve(total);
   std::uint64_t records = 0;
   for (const ChunkEntry& e : index.chunks) records += e.records;
+  if (!hasMemory(GrowingMesh::roomFor(total) + births.roomFor(records, total.vertices))) return;
+  mesh.reserve(total);
   births.reserve(records, total.vertices);
 }
 

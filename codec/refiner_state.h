@@ -65,7 +65,7 @@ struct Refiner::State {
   std::vector<std::uint32_t> missing;    // by level of a band: packets that have not come
   std::uint32_t chunks = 0;
   std::uint64_t structureBytes = 0;  // that have come
-  bool roomy = false;                // there is memory for the whole log
+  bool roomy = false;                // memory for the whole log was asked for
   std::uint32_t level = 0;     // of the head, being refined, or the last complete one
   std::uint32_t nextSlot = 0;  // of the level being refined
   bool inLevel = false;

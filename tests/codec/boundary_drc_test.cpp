@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -188,6 +189,47 @@ TEST(BoundaryDrc, aGapIsNotANumberAndTheValuesRoundItStay) {
     else
       EXPECT_EQ(value, mesh.fields[0].value(0, wanted));
   }
+}
+
+/// The values of the first field that were stored, ascending.
+std::vector<float> storedValues(const Bytes& bytes) {
+  const auto decoded = decode(bytes);
+  std::vector<float> stored;
+  for (std::uint32_t p = 0; decoded && p < decoded->num_points(); ++p) {
+    float value = 0;
+    decoded->GetNamedAttribute(draco::GeometryAttribute::GENERIC)->GetMappedValue(draco::PointIndex(p), &value);
+    stored.push_back(value);
+  }
+  std::ranges::sort(stored);
+  return stored;
+}
+
+/// A log may say anything of its fields, and the integers of a coarse level may lie anywhere.
+TEST(BoundaryDrc, valuesFarOutsideAFieldsRangeAreStoredAsTheirNearestFloats) {
+  for (const double step : {0.25, 1e36, 1e300})
+    for (const std::int32_t far : {1 << 13, 1 << 20, 1 << 29, 1 << 30}) {
+      LatticeMesh mesh = wavySquare(8, 12, 1, {0, 0, 0});
+      mesh.fields.resize(1);
+      mesh.values.resize(1);
+      mesh.fields[0].step = step;
+      for (std::size_t i = 0; i < mesh.values[0].size(); ++i) mesh.values[0][i] = i % 3 == 0 ? far : i % 3 == 1 ? -far : 5;
+      std::vector<float> wanted;
+      for (std::size_t i = 0; i + 1 < mesh.points.size(); ++i)
+        wanted.push_back(static_cast<float>(std::clamp<double>(mesh.fields[0].value(0, mesh.values[0][i]), std::numeric_limits<float>::lowest(), std::numeric_limits<float>::max())));
+      std::ranges::sort(wanted);
+      const auto bytes = boundaryDrc(mesh);
+      ASSERT_TRUE(bytes) << bytes.error().text();
+      EXPECT_EQ(storedValues(*bytes), wanted) << step << " " << far;
+    }
+}
+
+TEST(BoundaryDrc, coordinatesBeyondFloatsAreRefused) {
+  for (const auto& [step, origin] : {std::pair{1e300, 0.0}, {1.0, 1e300}, {1.0, -1e300}, {1e35, 3e37}}) {
+    const auto bytes = boundaryDrc(wavySquare(8, 12, step, {0, origin, 0}));
+    ASSERT_FALSE(bytes) << step << " " << origin;
+    EXPECT_EQ(bytes.error().code, ErrorCode::kBadInput);
+  }
+  EXPECT_TRUE(boundaryDrc(wavySquare(8, 12, 1e33, {0, 5e37, 0})));
 }
 
 TEST(BoundaryGlb, namesFieldsWithoutGapsAlone) {

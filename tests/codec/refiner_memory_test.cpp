@@ -1,9 +1,11 @@
 // What a refiner needs beyond the mesh that it makes, which on a phone decides how large that may be.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include "codec/log_file.h"
 #include "codec/log_writer.h"
 #include "codec/value_block.h"
+#include "proto/limits.h"
 #include "simplify/qtetfusion.h"
 #include "tests/support/allocation_meter.h"
 #include "tests/support/meshes.h"
@@ -37,6 +39,43 @@ TEST(Refiner, holdsLittleBesideTheMesh) {
   constexpr double kModels = 2 * 400e3;
   EXPECT_LE(static_cast<double>(peak) - mesh - kModels, kMostBytesATetrahedron * tetrahedra);
   EXPECT_EQ(tetrahedra, 6.0 * 20 * 20 * 20);
+}
+
+/// No more than so many bytes of addresses while this lives; a sanitizer needs more for itself and is left alone.
+class AddressLimit {
+ public:
+  explicit AddressLimit(rlim_t bytes) {
+    ::getrlimit(RLIMIT_AS, &before_);
+#if !defined(__SANITIZE_ADDRESS__)
+    const rlimit limit{bytes, before_.rlim_max};
+    ::setrlimit(RLIMIT_AS, &limit);
+#endif
+  }
+  AddressLimit(const AddressLimit&) = delete;
+  AddressLimit& operator=(const AddressLimit&) = delete;
+  ~AddressLimit() { ::setrlimit(RLIMIT_AS, &before_); }
+
+ private:
+  rlimit before_{};
+};
+
+// The whole may be more than there is memory for, and the beginning still be worth a look.
+TEST(Refiner, takesInTheBeginningOfALogThatNoMemoryHolds) {
+  const auto history = simplify(testing::gridMesh(3, 1), {});
+  ASSERT_TRUE(history) << history.error().text();
+  auto log = encodeLog(*history, {});
+  ASSERT_TRUE(log) << log.error().text();
+  const auto file = LogFile::fromBytes(std::move(log->bytes));
+  ASSERT_TRUE(file) << file.error().text();
+  LogIndex index = file->index();
+  ChunkEntry& last = index.chunks.back();
+  last.newVertices = last.newTetrahedra = last.newBoundaryTriangles = kMaxElements / 2;
+  ASSERT_GT(index.chunks.size(), 1u);
+  Refiner refiner(std::move(index));
+  const auto positions = decodeValueBlock(file->block(0, kPositionsPart), 3, file->index().tuples(0, kPositionsPart));
+  const Bytes credible(kMaxElements / kMaxElementsPerPacketByte + 1);  // so many bytes that such a log may be true, though they hold nothing
+  const AddressLimit limit(rlim_t{4} << 30);
+  EXPECT_NO_THROW(EXPECT_FALSE(refiner.apply(0, credible, *positions)));
 }
 
 }  // namespace
