@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "proto/error.h"
@@ -18,6 +19,24 @@ using Json = nlohmann::json;
 /// Dumps JSON; bytes that are not UTF-8 (file and field names may hold them) become U+FFFD instead of an exception.
 [[nodiscard]] inline std::string dumpJson(const Json& value) { return value.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
+/// Levels of arrays and objects in a document from outside: what is legal has seven; a destructor or a dump of 100,000 overflows the stack.
+inline constexpr std::size_t kMaxJsonDepth = 32;
+
+/// Whether no value of the text lies deeper than kMaxJsonDepth. Looks at brackets outside of strings; of what is no JSON it says anything.
+[[nodiscard]] inline bool isShallowJson(std::string_view text) {
+  std::size_t depth = 0;
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '"') quoted = !quoted;
+    if (quoted && c == '\\') ++i;
+    if (quoted) continue;
+    if ((c == '[' || c == '{') && ++depth > kMaxJsonDepth) return false;
+    if ((c == ']' || c == '}') && depth > 0) --depth;
+  }
+  return true;
+}
+
 /// One value of a document. A value that is missing or wrong reads as an empty default and sets the error.
 /// The document and the error slot must outlive the cursor.
 class JsonCursor {
@@ -26,6 +45,8 @@ class JsonCursor {
       : value_(value), pointer_(std::move(pointer)), error_(error) {}
 
   [[nodiscard]] bool present() const { return value_ != nullptr; }
+  [[nodiscard]] bool isNull() const { return value_ != nullptr && value_->is_null(); }
+  [[nodiscard]] bool isObject() const { return value_ != nullptr && value_->is_object(); }
 
   /// A member that must be there.
   [[nodiscard]] JsonCursor operator[](const std::string& key) const {

@@ -2,6 +2,7 @@
 
 #include "proto/json_reader.h"
 #include "proto/limits.h"
+#include "proto/wish_json.h"
 
 namespace qtet {
 namespace {
@@ -30,12 +31,9 @@ OpenMessage readOpen(const JsonCursor& json) {
   out.mesh = readName(json["mesh"]);
   out.digest = readDigest(json.optional("digest"));
   for (const JsonCursor& name : json.optional("fields").items(0, kMaxFields)) out.fields.push_back(readName(name));
-  const JsonCursor have = json.optional("have");
-  out.haveChunks = have.optional("chunks").count32(0, kMaxChunks);
-  for (const auto& [name, chunks] : have.optional("fields").members(kMaxFields)) {
-    out.haveFields.emplace_back(name, chunks.count32(0, kMaxChunks));
-    if (out.haveFields.back().second > out.haveChunks) chunks.fail("is above have.chunks; a field never runs ahead of its mesh");
-  }
+  out.have = readHave(json.optional("have"));
+  out.target = readTarget(json.optional("target"));
+  out.view = readView(json.optional("view"));
   out.credit = json["credit"].count(0, kMaxCredit);
   return out;
 }
@@ -43,6 +41,10 @@ OpenMessage readOpen(const JsonCursor& json) {
 Json parseDocument(std::string_view json, std::optional<Error>& error) {
   if (json.size() > kMaxMessageBytes) {
     error = Error{ErrorCode::kLimitExceeded, "the message is longer than " + std::to_string(kMaxMessageBytes) + " bytes", Error::kNoOffset};
+    return Json::object();
+  }
+  if (!isShallowJson(json)) {
+    error = Error{ErrorCode::kBadValue, "the message nests deeper than " + std::to_string(kMaxJsonDepth) + " levels", Error::kNoOffset};
     return Json::object();
   }
   Json document = Json::parse(json, nullptr, false);
@@ -61,17 +63,30 @@ Result<Message> checked(Message message, const std::optional<Error>& error) {
 Json openToJson(const OpenMessage& m) {
   Json out = {{"type", "open"}, {"mesh", m.mesh}, {"fields", m.fields}, {"credit", m.credit}};
   if (!m.digest.empty()) out["digest"] = m.digest;
-  out["have"] = {{"chunks", m.haveChunks}, {"fields", Json::object()}};
-  for (const auto& [name, chunks] : m.haveFields) out["have"]["fields"][name] = chunks;
+  out["have"] = toJson(m.have);
+  if (!std::holds_alternative<EverythingTarget>(m.target)) out["target"] = toJson(m.target);
+  if (Json view = toJson(m.view); !view.is_null()) out["view"] = std::move(view);
   return out;
 }
 
 struct ToJson {
   Json operator()(const OpenMessage& m) const { return openToJson(m); }
   Json operator()(const CreditMessage& m) const { return {{"type", "credit"}, {"bytes", m.bytes}}; }
-  Json operator()(const StopMessage&) const { return {{"type", "stop"}}; }
+  Json operator()(const ViewMessage& m) const { return {{"type", "view"}, {"view", toJson(m.view)}}; }
+  Json operator()(const TargetMessage& m) const { return {{"type", "target"}, {"target", toJson(m.target)}}; }
+  Json operator()(const PauseMessage&) const { return {{"type", "pause"}}; }
+  Json operator()(const ResumeMessage& m) const {
+    Json out = {{"type", "resume"}};
+    if (m.have) out["have"] = toJson(*m.have);
+    return out;
+  }
+  Json operator()(const CancelMessage&) const { return {{"type", "cancel"}}; }
   Json operator()(const OpenedMessage& m) const {
-    return {{"type", "opened"}, {"stream", m.stream}, {"mesh", m.mesh}, {"digest", m.digest}, {"bytes", m.bytes}, {"planned", m.planned}};
+    return {{"type", "opened"}, {"stream", m.stream},   {"mesh", m.mesh},    {"digest", m.digest},
+            {"bytes", m.bytes}, {"planned", m.planned}, {"layout", m.layout}};
+  }
+  Json operator()(const PlannedMessage& m) const {
+    return {{"type", "planned"}, {"stream", m.stream}, {"planned", m.planned}, {"view", m.view}};
   }
   Json operator()(const DoneMessage& m) const { return {{"type", "done"}, {"stream", m.stream}}; }
   Json operator()(const StoppedMessage& m) const { return {{"type", "stopped"}, {"stream", m.stream}}; }
@@ -91,10 +106,19 @@ Result<ClientMessage> parseClientMessage(std::string_view json) {
     out = readOpen(root);
   } else if (type == "credit") {
     out = CreditMessage{root["bytes"].count(0, kMaxCredit)};
-  } else if (type == "stop") {
-    out = StopMessage{};
+  } else if (type == "view") {
+    out = ViewMessage{readView(root["view"])};
+  } else if (type == "target") {
+    out = TargetMessage{readTarget(root["target"])};
+  } else if (type == "pause") {
+    out = PauseMessage{};
+  } else if (type == "resume") {
+    const JsonCursor have = root.optional("have");
+    out = ResumeMessage{have.present() ? std::optional(readHave(have)) : std::nullopt};
+  } else if (type == "cancel" || type == "stop") {
+    out = CancelMessage{};
   } else {
-    root["type"].fail("must be 'open', 'credit' or 'stop'");
+    root["type"].fail("must be 'open', 'credit', 'view', 'target', 'pause', 'resume' or 'cancel'");
   }
   return checked(std::move(out), error);
 }
@@ -108,7 +132,9 @@ Result<ServerMessage> parseServerMessage(std::string_view json) {
   ServerMessage out;
   if (type == "opened") {
     out = OpenedMessage{readStream(root), readName(root["mesh"]), readDigest(root["digest"]), root["bytes"].count(0, kMaxCredit),
-                        root["planned"].count(0, kMaxCredit)};
+                        root["planned"].count(0, kMaxCredit), readName(root["layout"])};
+  } else if (type == "planned") {
+    out = PlannedMessage{readStream(root), root["planned"].count(0, kMaxCredit), root["view"].count32(0, 0xFFFFFFFFu)};
   } else if (type == "done") {
     out = DoneMessage{readStream(root)};
   } else if (type == "stopped") {
@@ -116,7 +142,7 @@ Result<ServerMessage> parseServerMessage(std::string_view json) {
   } else if (type == "error") {
     out = ErrorMessage{readName(root["code"]), root["detail"].text(kMaxTextBytes)};
   } else {
-    root["type"].fail("must be 'opened', 'done', 'stopped' or 'error'");
+    root["type"].fail("must be 'opened', 'planned', 'done', 'stopped' or 'error'");
   }
   return checked(std::move(out), error);
 }

@@ -4,14 +4,15 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <variant>
 #include <vector>
 
 #include "proto/bytes.h"
 #include "proto/error.h"
+#include "proto/stream_wishes.h"
 
 namespace qtet {
 
@@ -26,17 +27,29 @@ inline constexpr std::uint64_t kMaxCredit = (std::uint64_t{1} << 53) - 1;
 
 struct OpenMessage {
   std::string mesh;
-  std::string digest;                                             ///< empty: any
-  std::vector<std::string> fields;                                ///< to send, in any order
-  std::uint32_t haveChunks = 0;                                   ///< leading chunks of the mesh already applied
-  std::vector<std::pair<std::string, std::uint32_t>> haveFields;  ///< the same for each field; absent = 0
-  std::uint64_t credit = 0;                                       ///< bytes
+  std::string digest;               ///< empty: any
+  std::vector<std::string> fields;  ///< to send, in any order
+  Have have;
+  Target target;
+  View view;
+  std::uint64_t credit = 0;  ///< bytes
 };
 struct CreditMessage {
   std::uint64_t bytes = 0;
 };
-struct StopMessage {};
-using ClientMessage = std::variant<OpenMessage, CreditMessage, StopMessage>;
+struct ViewMessage {
+  View view;
+};
+struct TargetMessage {
+  Target target;
+};
+struct PauseMessage {};
+struct ResumeMessage {
+  std::optional<Have> have;  ///< nullopt: as the server knows it
+};
+/// `cancel`, or `stop`, its older name.
+struct CancelMessage {};
+using ClientMessage = std::variant<OpenMessage, CreditMessage, ViewMessage, TargetMessage, PauseMessage, ResumeMessage, CancelMessage>;
 
 /// Errors: limit-exceeded (above kMaxMessageBytes), bad-value with the JSON pointer of what is wrong. Unknown members are ignored.
 [[nodiscard]] Result<ClientMessage> parseClientMessage(std::string_view json);
@@ -50,6 +63,13 @@ struct OpenedMessage {
   std::string digest;
   std::uint64_t bytes = 0;    ///< of the whole log
   std::uint64_t planned = 0;  ///< payload bytes that will follow
+  std::string layout = "stream";
+};
+/// Answers `view` and `target`.
+struct PlannedMessage {
+  std::uint32_t stream = 0;
+  std::uint64_t planned = 0;  ///< payload bytes that will follow, in the new order
+  std::uint32_t view = 0;     ///< the last of the stream's `view`s that the order regards, counted from 1; 0: that of `open`
 };
 struct DoneMessage {
   std::uint32_t stream = 0;
@@ -67,7 +87,7 @@ struct ErrorMessage {
   std::string code;
   std::string detail;
 };
-using ServerMessage = std::variant<OpenedMessage, DoneMessage, StoppedMessage, ErrorMessage>;
+using ServerMessage = std::variant<OpenedMessage, PlannedMessage, DoneMessage, StoppedMessage, ErrorMessage>;
 
 /// Errors: as parseClientMessage.
 [[nodiscard]] Result<ServerMessage> parseServerMessage(std::string_view json);

@@ -8,6 +8,7 @@
 
 #include "proto/messages.h"
 #include "server/http_router.h"
+#include "server/web_socket_reader.h"
 
 namespace qtet {
 namespace {
@@ -93,6 +94,13 @@ bool isStreamHandshake(const RequestHeader& header) {
 }
 
 std::optional<Reply> handshakeRefusal(const RequestHeader& header) {
+  if (header[http::field::sec_websocket_version] != "13") {
+    Reply out = closing(426, "upgrade-required", "this server speaks version 13 of the WebSocket protocol");
+    out.headers.emplace_back("Sec-WebSocket-Version", "13");
+    return out;
+  }
+  if (header.count(http::field::sec_websocket_key) != 1 || !isWebSocketKey(toView(header[http::field::sec_websocket_key])))
+    return closing(400, "bad-request", "Sec-WebSocket-Key must be 16 bytes in base64");
   http::token_list offered{header[http::field::sec_websocket_protocol]};
   if (offered.exists({kStreamSubprotocol.data(), kStreamSubprotocol.size()})) return std::nullopt;
   return closing(400, "bad-request", "offer the subprotocol " + std::string(kStreamSubprotocol));

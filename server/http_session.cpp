@@ -210,8 +210,10 @@ asio::awaitable<bool> HttpSession::becomeStream(Parser& parser) {
     co_return false;
   }
   connection_->onEnd({});
-  stream_.expires_never();  // a WebSocket keeps its own time
-  co_await serveStream(std::move(stream_), parser.release(), services_.store, connection_);
+  const auto key = parser.get()[http::field::sec_websocket_key];
+  StreamHandshake handshake{std::string(key.data(), key.size()), std::string(buffered())};
+  buffer_ = beast::flat_buffer();  // a WebSocket has its own
+  co_await serveStream(stream_.release_socket(), std::move(handshake), services_.store, connection_);
   co_return true;
 }
 

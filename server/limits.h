@@ -51,6 +51,10 @@ inline constexpr std::size_t kLingerBytes = 1u << 20;
 inline constexpr std::size_t kMaxListPage = 1000;
 /// Bytes of a mesh's name: with `.qtet` and what an upload appends, below the 255 that file systems allow.
 inline constexpr std::size_t kMaxIdBytes = 150;
+/// Bytes of one log that is held in memory instead of mapped, and of all of them: people copy files over others in place, which changes a mapping under
+/// its digest. Most logs are smaller; larger ones are replaced by renaming (`qtet`, uploads).
+inline constexpr std::uintmax_t kMaxCopiedLogBytes = 64u << 20;
+inline constexpr std::uintmax_t kMaxCopiedBytes = 1u << 30;
 /// How long, and how many, replaced logs are still to be had under their digests, for those who are reading them piece by piece.
 inline constexpr auto kReplacedLogTime = 10min;
 inline constexpr std::size_t kMaxReplacedLogs = 16;
@@ -92,13 +96,23 @@ inline constexpr std::uintmax_t kMaxViewerBytes = 64u << 20;
 inline constexpr unsigned kMaxMessagesPerSecond = 2000;
 /// `open`s a second: each makes a plan over the whole chunk table; a person cannot choose fields as fast.
 inline constexpr unsigned kMaxOpensPerSecond = 50;
+/// `view`s, `target`s and `resume`s with `have` a second: each makes a plan, too; nobody turns a picture faster than a screen of 240 Hz shows it.
+inline constexpr unsigned kMaxWishesPerSecond = 250;
 /// Answers waiting for a client that sends but does not read.
 inline constexpr std::size_t kMaxQueuedAnswers = 256;
+/// Fragments of one message: nobody needs more than one for 64 KiB.
+inline constexpr std::size_t kMaxFragments = 256;
+/// Pings a second: browsers send none.
+inline constexpr unsigned kMaxPingsPerSecond = 20;
+/// Frames of one write, and payload bytes behind which no further frame joins it: a system call a chunk costs as much as the chunk; what has been
+/// given away belongs to the old order when a view changes.
+inline constexpr std::size_t kFramesPerWrite = 16;
+inline constexpr std::size_t kBytesPerWrite = 128u << 10;
 /// Bytes of a frame's payload beyond which no further block is put into it: frequent enough for progress on a slow line (2 s at
 /// 1 Mbit/s), large enough that the cost of a frame vanishes.
 inline constexpr std::uint32_t kFramePayload = 256u << 10;
-/// The handshake, and the closing one.
-inline constexpr auto kHandshakeTime = 10s;
+/// How long a client may take to close behind the server's closing: within the grace time of the server's end.
+inline constexpr auto kClosingTime = 5s;
 /// Silence after which a client is given up; a ping goes out at half of it.
 inline constexpr auto kSilenceTime = 30s;
 

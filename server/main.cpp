@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <iostream>
 
+#include "server/bus_guard.h"
 #include "server/command_line.h"
 #include "server/folder_watch.h"
 #include "server/server.h"
@@ -112,6 +113,7 @@ ServerOptions serverOptions(const CommandLine& wishes, LevelCache* cache, Access
 
 int serve(const CommandLine& wishes) {
   raiseFileLimit();
+  guardAgainstBusErrors();
   const Result<MeshStore> store = MeshStore::open(wishes.folder);
   if (!store) return cannotServe(store.error());
   const CataloguePointer catalogue = store->catalogue();

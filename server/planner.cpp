@@ -1,9 +1,7 @@
 #include "server/planner.h"
 
-#include <algorithm>
-#include <cassert>
-
 #include "proto/messages.h"
+#include "server/chunk_order.h"
 
 namespace qtet {
 namespace {
@@ -24,7 +22,6 @@ class Runs {
     out_.push_back({chunk, static_cast<std::uint16_t>(part), 1});
     bytes_ = size;
   }
-  void addHead() { out_.push_back({0, FrameHeader::kHead, 0}); }
 
   [[nodiscard]] std::vector<BlockRun> take() { return std::move(out_); }
 
@@ -37,23 +34,22 @@ class Runs {
 
 }  // namespace
 
-std::vector<BlockRun> planStream(const LogIndex& index, const StreamRequest& request, std::uint32_t payloadBytes) {
-  assert(request.fields.size() == request.haveFields.size());
-  assert(std::ranges::adjacent_find(request.fields, std::greater_equal<>()) == request.fields.end() &&
-         request.haveChunks <= index.chunks.size());
-  Runs runs(index, payloadBytes);
-  if (request.haveChunks == 0) runs.addHead();
+std::vector<BlockRun> planStream(const LogFront& log, const ClientBlocks& blocks, const View& view, const StopAt& stop, std::uint32_t payloadBytes) {
+  const LogIndex& index = log.index;
+  std::uint64_t payload = index.headBytes(), tetrahedra = 0;
+  const bool bounded = stop.payload != StopAt().payload || stop.tetrahedra != StopAt().tetrahedra;
+  for (std::uint32_t chunk = 0; bounded && chunk < index.chunks.size(); ++chunk) {
+    payload += blocks.heldBytes(chunk);
+    if (blocks.hasMesh(chunk)) tetrahedra += index.chunks[chunk].newTetrahedra;
+  }
 
-  const auto chunks = static_cast<std::uint32_t>(index.chunks.size());
-  std::uint32_t first = request.haveChunks;
-  for (const std::uint32_t have : request.haveFields) first = std::min(first, have);
-  for (std::uint32_t chunk = first; chunk < chunks; ++chunk) {
-    if (chunk >= request.haveChunks) {
-      runs.add(chunk, kStructurePart);
-      runs.add(chunk, kPositionsPart);
-    }
-    for (std::size_t f = 0; f < request.fields.size(); ++f)
-      if (chunk >= request.haveFields[f]) runs.add(chunk, kFirstFieldPart + request.fields[f]);
+  Runs runs(index, payloadBytes);
+  for (const std::uint32_t chunk : chunkOrder(index, log.manifest, blocks, view, stop)) {
+    payload += blocks.missingBytes(chunk);
+    if (!blocks.hasMesh(chunk)) tetrahedra += index.chunks[chunk].newTetrahedra;
+    if (chunk > 0 && (payload > stop.payload || tetrahedra > stop.tetrahedra)) break;
+    for (std::size_t column = 0; column < blocks.columns(); ++column)
+      if (!blocks.has(chunk, column)) runs.add(chunk, blocks.partOf(column));
   }
   return runs.take();
 }

@@ -1,19 +1,16 @@
-// Which blocks a client gets, and in which order: a pure function of the chunk table (PROTOCOL.md, "Binary frame").
+// Which blocks a client gets, and in which order: a pure function of the log's front, of what the client has and of what it wants
+// (PROTOCOL.md, "Binary frame", "Order").
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
 #include "codec/log_index.h"
+#include "proto/manifest.h"
+#include "server/client_blocks.h"
+#include "server/stream_target.h"
 
 namespace qtet {
-
-/// What is to be sent. Fields are indices into the log's fields.
-struct StreamRequest {
-  std::vector<std::uint32_t> fields;      ///< wanted, ascending, each once
-  std::uint32_t haveChunks = 0;           ///< leading chunks of the mesh that the client has
-  std::vector<std::uint32_t> haveFields;  ///< the same for each entry of `fields`
-};
 
 /// Consecutive blocks of one chunk, one binary frame; or the head.
 struct BlockRun {
@@ -24,10 +21,15 @@ struct BlockRun {
   bool operator==(const BlockRun&) const = default;
 };
 
-/// The runs that a client lacks. A run takes neighbouring blocks until it would exceed `payloadBytes`, and one block at least.
-/// REQUIRES: fields ascending, distinct and below the log's fields; haveFields of the same size, none above haveChunks;
-/// haveChunks at most the log's chunks.
-[[nodiscard]] std::vector<BlockRun> planStream(const LogIndex& index, const StreamRequest& request, std::uint32_t payloadBytes);
+/// A log's front. Both outlive the call.
+struct LogFront {
+  const LogIndex& index;
+  const Manifest& manifest;
+};
+
+/// The runs that a client lacks, the head left out. A run takes neighbouring blocks until it would exceed `payloadBytes`, and one block at least.
+[[nodiscard]] std::vector<BlockRun> planStream(const LogFront& log, const ClientBlocks& blocks, const View& view, const StopAt& stop,
+                                               std::uint32_t payloadBytes);
 
 /// Where a run lies in the file: one contiguous piece.
 struct FileSlice {

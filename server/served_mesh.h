@@ -36,6 +36,7 @@ struct ServedMesh {
   std::string listEntry{};    ///< its object in the list of meshes
   Document description{};     ///< `GET /v1/meshes/{id}`
   Document manifestText{};    ///< `GET /v1/logs/{sha256}/manifest`
+  std::shared_ptr<void> copied{};  ///< its part of limits::kMaxCopiedBytes; nullptr: the file is mapped
 
   /// Length of the file's prefix that holds level `level`. REQUIRES: such a level.
   [[nodiscard]] std::uint64_t prefixBytes(std::uint32_t level) const;
@@ -44,6 +45,8 @@ struct ServedMesh {
 /// Whoever holds one keeps the log mapped, also after the file was replaced or removed.
 using MeshPointer = std::shared_ptr<const ServedMesh>;
 
+/// A log of at most limits::kMaxCopiedLogBytes is held in memory as long as all of them together stay within limits::kMaxCopiedBytes, so that whatever happens
+/// to its file (copied over, truncated) changes nothing of what stands under its digest. Others are mapped.
 /// Opens a log as mesh `id` and checks everything that can be checked without decoding: header, table, manifest, every CRC-32C.
 /// Reads the whole file. Errors: those of LogFile::open, verifyChecksums and manifestOf.
 [[nodiscard]] Result<MeshPointer> openMesh(const std::filesystem::path& path, std::string id);

@@ -13,11 +13,9 @@
 #include "proto/messages.h"
 #include "server/mesh_store.h"
 #include "server/planner.h"
+#include "server/web_socket_reader.h"
 
 namespace qtet {
-
-/// Close codes of RFC 6455, 7.4.1, that this server uses by its own decision.
-enum class CloseCode : std::uint16_t { kGoingAway = 1001, kPolicy = 1008, kInternal = 1011 };
 
 /// A binary frame; the payload lies in the mapping of the log, which lives at least as long as the frame.
 struct OutgoingFrame {
@@ -42,28 +40,50 @@ class StreamProtocol {
  private:
   void handle(const OpenMessage& message);
   void handle(const CreditMessage& message);
-  void handle(const StopMessage& message);
-  /// The plan's request, or the error message that answers the `open`.
-  std::variant<StreamRequest, ErrorMessage> resolve(const OpenMessage& message, const ServedMesh& mesh) const;
-  void start(const OpenMessage& message, const MeshPointer& mesh, const StreamRequest& request);
+  void handle(const ViewMessage& message);
+  void handle(const TargetMessage& message);
+  void handle(const PauseMessage& message);
+  void handle(const ResumeMessage& message);
+  void handle(const CancelMessage& message);
+
+  /// What an `open` that was understood has begun. It stays, also when everything was sent, until the next `open` or `cancel`: wishes may change.
+  struct Stream {
+    MeshPointer mesh;  ///< a stream finishes on the log that it began with
+    ClientBlocks blocks;
+    bool hasHead = false;
+    View view{};
+    StopAt stop{};
+    std::int64_t credit = 0;  ///< bytes; below zero by one frame at most
+    std::uint32_t views = 0;  ///< `view` messages so far
+    bool paused = false;
+    bool stale = false;       ///< wishes have changed since the plan was made
+    bool told = false;        ///< `done` was said of this plan
+    std::vector<BlockRun> plan{};
+    std::size_t nextRun = 0;
+  };
+  /// Returns the payload bytes to come.
+  static std::uint64_t plan(Stream& stream);
+  /// Plans anew where wishes have changed, and says so.
+  void catchUp();
+  OutgoingFrame nextFrame(Stream& stream) const;
+  /// Ends the stream, or leaves it as it is.
   void refuse(const char* code, std::string detail);
+  void answerError(const char* code, std::string detail);
   bool countMessage(Clock::time_point now);
-  bool countOpen();
+  bool countWish();
+  bool count(unsigned& counter, unsigned most, const char* what);
 
   const MeshStore& store_;
   std::deque<std::string> answers_;
   bool closing_ = false;
 
-  std::uint32_t stream_ = 0;  ///< `open`s so far
-  bool active_ = false;       ///< the plan is not finished
-  MeshPointer mesh_;  ///< a stream finishes on the log that it began with
-  std::vector<BlockRun> plan_;
-  std::size_t nextRun_ = 0;
-  std::int64_t credit_ = 0;  ///< bytes; below zero by one frame at most
+  std::uint32_t opens_ = 0;  ///< so far: the number of the stream
+  std::optional<Stream> stream_;
 
-  Clock::time_point second_{};  ///< the window that the two counters belong to
-  unsigned messages_ = 0;
-  unsigned opens_ = 0;
+  Clock::time_point second_{};  ///< the window that the counters belong to
+  unsigned messagesOfSecond_ = 0;
+  unsigned opensOfSecond_ = 0;
+  unsigned wishesOfSecond_ = 0;
 };
 
 }  // namespace qtet

@@ -5,154 +5,259 @@
 #include <boost/asio/redirect_error.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
-#include <boost/beast/core/flat_buffer.hpp>
-#include <boost/beast/websocket/stream.hpp>
 #include <exception>
+#include <optional>
 
+#include "server/frame_gather.h"
 #include "server/limits.h"
 #include "server/stream_protocol.h"
+#include "server/web_socket_reader.h"
 
 namespace qtet {
 namespace {
 
 namespace asio = boost::asio;
-namespace beast = boost::beast;
-namespace http = beast::http;
-namespace websocket = beast::websocket;
 using asio::redirect_error;
 using asio::use_awaitable;
-using beast::error_code;
+using asio::ip::tcp;
+using boost::system::error_code;
+using Clock = std::chrono::steady_clock;
+using Event = WebSocketReader::Event;
 
-/// A reader and a writer on one executor. The writer alone writes and closes; the reader wakes it when a message has changed what is to
-/// be said. Both hold the session, so it ends with the later of the two.
+/// On the stack of whoever reads, so that a silent client has no buffer.
+constexpr std::size_t kReadBytes = 4096;
+/// Before other connections of the thread have their turn.
+constexpr int kReadsInARow = 8;
+
+/// A reader, a writer and a clock on one executor. The writer alone writes, also pongs and closes, so that nothing comes between the parts of a
+/// frame; the reader wakes it when there is something to say. All hold the session, so it ends with the last of them.
 class StreamSession : public std::enable_shared_from_this<StreamSession> {
  public:
-  StreamSession(beast::tcp_stream stream, const MeshStore& store, std::shared_ptr<Connection> connection)
-      : socket_(std::move(stream)), wake_(socket_.get_executor()), protocol_(store), connection_(std::move(connection)) {}
+  StreamSession(tcp::socket socket, const MeshStore& store, std::shared_ptr<Connection> connection)
+      : socket_(std::move(socket)), wake_(socket_.get_executor()), clock_(socket_.get_executor()), protocol_(store), connection_(std::move(connection)) {}
 
-  asio::awaitable<bool> accept(const http::request<http::empty_body>& request);
-  asio::awaitable<void> read();
-  asio::awaitable<void> write();
+  asio::awaitable<void> run(StreamHandshake handshake);
   /// Ends the session by the server's own fault.
   void fail() {
-    failed_ = true;
+    close(CloseCode::kInternal);
     wake_.cancel();
   }
 
  private:
+  enum class Reading : std::uint8_t { kWaits, kEnded };
+  Reading readSome();
+  asio::awaitable<void> read();
+  asio::awaitable<void> write();
+  asio::awaitable<void> keepTime();
   asio::awaitable<void> waitForNews();
-  asio::awaitable<void> send(Outgoing outgoing);
-  void configure();
-
-  websocket::stream<beast::tcp_stream> socket_;
-  asio::steady_timer wake_;
-  StreamProtocol protocol_;
-  std::shared_ptr<Connection> connection_;
-  bool ended_ = false;    // nothing can be written any more
-  bool closing_ = false;  // the writer closes the socket
-  bool failed_ = false;   // the reader threw
-};
-
-void StreamSession::configure() {
-  socket_.set_option(websocket::stream_base::timeout{limits::kHandshakeTime, limits::kSilenceTime, true});
-  socket_.set_option(websocket::stream_base::decorator([](websocket::response_type& response) {
-    response.set(http::field::sec_websocket_protocol, beast::string_view(kStreamSubprotocol.data(), kStreamSubprotocol.size()));
-    response.set(http::field::server, "qtet-server/" QTET_VERSION);
-  }));
-  socket_.read_message_max(kMaxMessageBytes);
-  socket_.auto_fragment(false);  // a frame is one piece of the mapping; splitting it would copy it
-}
-
-asio::awaitable<bool> StreamSession::accept(const http::request<http::empty_body>& request) {
-  configure();
-  error_code ec;
-  co_await socket_.async_accept(request, redirect_error(use_awaitable, ec));
-  co_return !ec;
-}
-
-asio::awaitable<void> StreamSession::read() {
-  beast::flat_buffer buffer;
-  for (;;) {
+  asio::awaitable<void> flush(FrameGather& gather);
+  /// Whether the session goes on.
+  bool take(std::string_view bytes);
+  bool handle(Event event);
+  void collect(FrameGather& gather);
+  void close(CloseCode code);
+  /// Ends reading and writing at once.
+  void cut() {
     error_code ec;
-    co_await socket_.async_read(buffer, redirect_error(use_awaitable, ec));
-    if (ec) break;
-    if (socket_.got_binary()) {
-      protocol_.receiveBinary();
-    } else {
-      protocol_.receive({static_cast<const char*>(buffer.data().data()), buffer.size()}, StreamProtocol::Clock::now());
-    }
-    buffer.consume(buffer.size());
+    ended_ = true;
+    socket_.close(ec);
+    clock_.cancel();
     wake_.cancel();
   }
-  ended_ = true;
-  // A write may wait for a client that has gone; a closing handshake ends by itself.
-  if (!closing_) beast::get_lowest_layer(socket_).close();
-  wake_.cancel();
+
+  tcp::socket socket_;
+  asio::steady_timer wake_, clock_;
+  StreamProtocol protocol_;
+  WebSocketReader reader_;
+  std::shared_ptr<Connection> connection_;
+
+  std::optional<std::string> pong_;   // the payload of the last ping that is not answered yet
+  bool ping_ = false;                 // one is due
+  std::optional<std::string> close_;  // the payload of the close frame to send
+  bool closeSent_ = false;
+  bool deaf_ = false;                 // what still comes is read and thrown away
+  std::size_t drained_ = 0;           // bytes of it
+  bool ended_ = false;                // nothing can be written any more
+
+  Clock::time_point heard_ = Clock::now();    // when bytes last came
+  bool writing_ = false;
+  Clock::time_point written_{};               // when the client last took some of what is being written
+  Clock::time_point second_{};                // the window that pings_ belongs to
+  unsigned pings_ = 0;
+};
+
+
+std::string closePayload(CloseCode code) {
+  const auto number = static_cast<std::uint16_t>(code);
+  return {static_cast<char>(number >> 8), static_cast<char>(number & 0xFF)};
+}
+
+std::string handshakeAnswer(const std::string& key) {
+  return "HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Accept: " + webSocketAccept(key) +
+         "\r\nSec-WebSocket-Protocol: " + std::string(kStreamSubprotocol) + "\r\nServer: qtet-server/" QTET_VERSION "\r\n\r\n";
+}
+
+void StreamSession::close(CloseCode code) {
+  if (!close_ && !closeSent_) close_ = closePayload(code);
+}
+
+bool StreamSession::handle(Event event) {
+  switch (event.kind) {
+    case Event::Kind::kText: protocol_.receive(event.payload, Clock::now()); break;
+    case Event::Kind::kBinary: protocol_.receiveBinary(); break;
+    case Event::Kind::kPong: break;
+    case Event::Kind::kPing:
+      if (heard_ - second_ >= std::chrono::seconds(1)) second_ = heard_, pings_ = 0;
+      if (++pings_ > limits::kMaxPingsPerSecond) return close(CloseCode::kPolicy), false;
+      pong_ = std::move(event.payload);
+      break;
+    case Event::Kind::kClose:
+      if (!closeSent_) close_ = event.payload.substr(0, 2);  // the client's own code, as RFC 6455 suggests
+      return false;
+  }
+  return true;
+}
+
+bool StreamSession::take(std::string_view bytes) {
+  heard_ = Clock::now();
+  reader_.feed(bytes);
+  for (;;) {
+    auto event = reader_.next();
+    if (!event) return close(event.error()), false;
+    if (!*event) return true;
+    if (!handle(std::move(**event))) return false;
+  }
+}
+
+/// A plain function: a buffer in a coroutine would be held by every silent client.
+StreamSession::Reading StreamSession::readSome() {
+  std::array<char, kReadBytes> bytes;
+  for (int i = 0; i < kReadsInARow; ++i) {
+    error_code ec;
+    const std::size_t count = socket_.read_some(asio::buffer(bytes), ec);
+    if (ec == asio::error::would_block) return Reading::kWaits;
+    if (ec) return Reading::kEnded;
+    drained_ += deaf_ ? count : 0;
+    if (drained_ > limits::kLingerBytes) return Reading::kEnded;
+    deaf_ = deaf_ || !take({bytes.data(), count});
+    wake_.cancel();
+  }
+  return Reading::kWaits;  // others' turn
+}
+
+/// Also behind the last word that counts: closing while bytes of the client's lie unread would reset the connection, and ours might be lost.
+asio::awaitable<void> StreamSession::read() {
+  for (;;) {
+    if (ended_ || readSome() == Reading::kEnded) break;
+    error_code ec;
+    co_await socket_.async_wait(tcp::socket::wait_read, redirect_error(use_awaitable, ec));
+  }
+  cut();
+}
+
+void StreamSession::collect(FrameGather& gather) {
+  if (pong_) gather.add(WebSocketHeader::kPong, *std::exchange(pong_, std::nullopt));
+  if (std::exchange(ping_, false)) gather.add(WebSocketHeader::kPing, {});
+  while (!gather.full() && !close_) {
+    std::optional<Outgoing> outgoing = protocol_.next();
+    if (!outgoing) {
+      // What the credit allows is still sent; the rest comes elsewhere, after an `open` with `have`.
+      if (connection_->ending()) close(CloseCode::kGoingAway);
+      break;
+    }
+    if (auto* text = std::get_if<std::string>(&*outgoing)) {
+      gather.add(WebSocketHeader::kText, std::move(*text));
+    } else if (auto* frame = std::get_if<OutgoingFrame>(&*outgoing)) {
+      gather.add(std::move(*frame));
+    } else {
+      close(std::get<CloseCode>(*outgoing));
+    }
+  }
+  if (close_ && !gather.full()) {
+    gather.add(WebSocketHeader::kClose, *std::exchange(close_, std::nullopt));
+    closeSent_ = true;
+  }
 }
 
 asio::awaitable<void> StreamSession::write() {
   connection_->onEnd([this] { wake_.cancel(); });
-  while (!ended_ && !closing_) {
-    std::optional<Outgoing> outgoing;
-    if (failed_) {
-      outgoing = CloseCode::kInternal;
-    } else if (connection_->ending()) {
-      outgoing = CloseCode::kGoingAway;
-    } else {
-      outgoing = protocol_.next();
-    }
-    if (outgoing) {
-      co_await send(std::move(*outgoing));
-    } else {
+  while (!ended_ && !closeSent_) {
+    FrameGather gather;
+    collect(gather);
+    if (gather.empty()) {
       co_await waitForNews();
+    } else {
+      co_await flush(gather);
     }
   }
   connection_->onEnd({});
 }
 
-/// One executor runs reader, writer and the server's end, so nothing can happen between the writer's last look and this wait.
+asio::awaitable<void> StreamSession::flush(FrameGather& gather) {
+  writing_ = true;
+  written_ = Clock::now();
+  while (!ended_ && !gather.parts().empty()) {
+    error_code ec;
+    const std::size_t count = socket_.write_some(gather.parts(), ec);
+    if (count > 0) written_ = Clock::now();
+    gather.consume(count);
+    if (ec == asio::error::would_block) co_await socket_.async_wait(tcp::socket::wait_write, redirect_error(use_awaitable, ec));
+    if (ec) cut();
+  }
+  writing_ = false;
+}
+
+/// One executor runs reader, writer, clock and the server's end, so nothing can happen between the writer's last look and this wait.
 asio::awaitable<void> StreamSession::waitForNews() {
   error_code ec;
   wake_.expires_at(asio::steady_timer::time_point::max());
   co_await wake_.async_wait(redirect_error(use_awaitable, ec));
 }
 
-asio::awaitable<void> StreamSession::send(Outgoing outgoing) {
+/// Pings a silent client, gives up one that stays so, takes nothing that waits for it, or does not close.
+asio::awaitable<void> StreamSession::keepTime() {
+  while (!ended_) {
+    error_code ec;
+    const bool closing = closeSent_;
+    clock_.expires_after(closing ? limits::kClosingTime : limits::kSilenceTime / 2);
+    co_await clock_.async_wait(redirect_error(use_awaitable, ec));
+    if (ended_) break;
+    const auto now = Clock::now();
+    if (ec) continue;  // the writer has closed
+    if (closing || now - heard_ >= limits::kSilenceTime || (writing_ && now - written_ >= limits::kWriteTime)) {
+      cut();
+    } else if (now - heard_ >= limits::kSilenceTime / 2) {
+      ping_ = true;
+      wake_.cancel();
+    }
+  }
+}
+
+asio::awaitable<void> StreamSession::run(StreamHandshake handshake) {
   error_code ec;
-  if (const auto* text = std::get_if<std::string>(&outgoing)) {
-    socket_.text(true);
-    co_await socket_.async_write(asio::buffer(*text), redirect_error(use_awaitable, ec));
-  } else if (const auto* frame = std::get_if<OutgoingFrame>(&outgoing)) {
-    const auto header = frame->header.encode();
-    const std::array<asio::const_buffer, 2> buffers = {asio::buffer(header),
-                                                       asio::const_buffer(frame->payload.data(), frame->payload.size())};
-    socket_.binary(true);
-    co_await socket_.async_write(buffers, redirect_error(use_awaitable, ec));
-  } else {
-    closing_ = true;
-    const auto code = static_cast<std::uint16_t>(std::get<CloseCode>(outgoing));
-    co_await socket_.async_close(websocket::close_reason(code), redirect_error(use_awaitable, ec));
-  }
-  if (ec && !closing_) {
-    ended_ = true;
-    beast::get_lowest_layer(socket_).close();  // the reader ends, too
-  }
+  socket_.non_blocking(true, ec);
+  const std::string answer = handshakeAnswer(handshake.key);
+  socket_.write_some(asio::buffer(answer), ec);  // an empty socket takes it at once
+  if (ec) co_return;
+  const auto ended = [self = shared_from_this()](const std::exception_ptr& thrown) {
+    if (thrown) self->fail();
+  };
+  const auto executor = socket_.get_executor();
+  deaf_ = !take(handshake.firstBytes);
+  asio::co_spawn(
+      executor, [self = shared_from_this()] { return self->read(); }, ended);
+  asio::co_spawn(
+      executor, [self = shared_from_this()] { return self->keepTime(); }, ended);
+  co_await write();
+  clock_.cancel();
+  if (!ended_) socket_.shutdown(tcp::socket::shutdown_send, ec);
 }
 
 }  // namespace
 
-asio::awaitable<void> serveStream(beast::tcp_stream stream, http::request<http::empty_body> request, const MeshStore& store,
-                                  std::shared_ptr<Connection> connection) {
-  const auto session = std::make_shared<StreamSession>(std::move(stream), store, std::move(connection));
-  const bool accepted = co_await session->accept(request);
-  if (!accepted) co_return;
-  const auto executor = co_await asio::this_coro::executor;
-  const auto readerEnded = [session](const std::exception_ptr& thrown) {
-    if (thrown) session->fail();
-  };
-  asio::co_spawn(
-      executor, [session]() -> asio::awaitable<void> { return session->read(); }, readerEnded);
-  co_await session->write();
+asio::awaitable<void> serveStream(tcp::socket socket, StreamHandshake handshake, const MeshStore& store, std::shared_ptr<Connection> connection) {
+  const auto session = std::make_shared<StreamSession>(std::move(socket), store, std::move(connection));
+  co_await session->run(std::move(handshake));
 }
 
 }  // namespace qtet

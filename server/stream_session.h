@@ -4,20 +4,23 @@
 #include <utility>  // before any Asio header: 1.74 uses std::exchange without it
 
 #include <boost/asio/awaitable.hpp>
-#include <boost/beast/core/tcp_stream.hpp>
-#include <boost/beast/http/empty_body.hpp>
-#include <boost/beast/http/message.hpp>
+#include <boost/asio/ip/tcp.hpp>
 #include <memory>
+#include <string>
 
 #include "server/connections.h"
 #include "server/mesh_store.h"
 
 namespace qtet {
 
-/// Answers the handshake `request`, which offers the subprotocol, and serves until the socket ends. Runs on the stream's executor, which
-/// must be a single thread or a strand. REQUIRES: the stream has no time-out of its own (expires_never).
-boost::asio::awaitable<void> serveStream(boost::beast::tcp_stream stream,
-                                         boost::beast::http::request<boost::beast::http::empty_body> request, const MeshStore& store,
+/// A handshake that was found good.
+struct StreamHandshake {
+  std::string key;         ///< Sec-WebSocket-Key
+  std::string firstBytes;  ///< what came behind its head already
+};
+
+/// Answers the handshake and serves until the socket ends. Runs on the socket's executor, which must be a single thread or a strand.
+boost::asio::awaitable<void> serveStream(boost::asio::ip::tcp::socket socket, StreamHandshake handshake, const MeshStore& store,
                                          std::shared_ptr<Connection> connection);
 
 }  // namespace qtet

@@ -1,21 +1,27 @@
 // What a place costs: the bytes of a log of layout `regions` that bring a box with 10, 1 and 0.1 % of the cells to full resolution, and the whole file
-// beside the same mesh's `stream`. Boxes are cubes round cells taken at even steps through the finest mesh, as large as it takes; the chunks are
-// those that LogIndex::chunksOfBox names.
+// beside the same mesh's `stream`. Boxes are cubes round cells taken at even steps through the finest mesh, as large as it takes; slabs lie round planes
+// through the same cells across each axis in turn. The bytes are those that the server plans for such a view up to the last level.
 //
 //   region_bytes REGIONS.qtet [STREAM.qtet]
 
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <numeric>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "codec/log_file.h"
+#include "codec/log_manifest.h"
+#include "server/planner.h"
 
 namespace {
 
 using namespace qtet;
 
 constexpr std::size_t kBoxes = 32;
+constexpr double kSlab = 0.02;  // of the mesh's extent across it
 
 /// Four times the barycentre.
 LatticePoint middleOf(const LatticeMesh& mesh, const Tetrahedron& t) {
@@ -25,8 +31,8 @@ LatticePoint middleOf(const LatticeMesh& mesh, const Tetrahedron& t) {
   return sum;
 }
 
-/// The smallest cube round `centre` that holds the barycentres of so many cells, as a box of 256ths.
-PacketBox boxRound(const std::vector<LatticePoint>& middles, const LatticePoint& centre, std::size_t cells, int bits) {
+/// The smallest cube round `centre` that holds the barycentres of so many cells.
+View boxRound(const Manifest& manifest, const std::vector<LatticePoint>& middles, const LatticePoint& centre, std::size_t cells) {
   std::vector<std::int32_t> reach;
   for (const LatticePoint& m : middles) {
     std::int32_t most = 0;
@@ -35,20 +41,42 @@ PacketBox boxRound(const std::vector<LatticePoint>& middles, const LatticePoint&
   }
   const auto at = reach.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(cells, 1) - 1);
   std::nth_element(reach.begin(), at, reach.end());
-  PacketBox box;
-  const std::int64_t end = std::int64_t{4} << bits;
+  std::array<double, 6> box{};
   for (std::size_t a = 0; a < 3; ++a) {
-    box.least[a] = static_cast<std::uint8_t>(256 * std::clamp<std::int64_t>(std::int64_t{centre[a]} - *at, 0, end - 1) / end);
-    box.most[a] = static_cast<std::uint8_t>(256 * std::clamp<std::int64_t>(std::int64_t{centre[a]} + *at, 0, end - 1) / end);
+    box[a] = manifest.latticeOrigin[a] + manifest.latticeStep * (centre[a] - *at) / 4;
+    box[a + 3] = manifest.latticeOrigin[a] + manifest.latticeStep * (centre[a] + *at) / 4;
   }
-  return box;
+  return {.box = box};
 }
 
-std::uint64_t bytesOf(const LogIndex& index, const PacketBox& box) {
+/// What lies within half of `thickness` from the plane through `centre` across an axis.
+View slabRound(const Manifest& manifest, const LatticePoint& centre, std::size_t axis, double thickness) {
+  const double at = manifest.latticeOrigin[axis] + manifest.latticeStep * centre[axis] / 4;
+  Plane above{0, 0, 0, thickness / 2 - at}, below{0, 0, 0, thickness / 2 + at};
+  above[axis] = 1, below[axis] = -1;
+  return {.frustum = {above, below}};
+}
+
+/// The mesh's extent along an axis, in its own units.
+double extentOf(const Manifest& manifest, const LatticeMesh& mesh, std::size_t axis) {
+  std::int32_t least = mesh.points.front()[axis], most = least;
+  for (const LatticePoint& p : mesh.points) least = std::min(least, p[axis]), most = std::max(most, p[axis]);
+  return manifest.latticeStep * (most - least);
+}
+
+std::uint64_t bytesOf(const LogIndex& index, const Manifest& manifest, const View& view, const std::vector<std::uint32_t>& fields) {
   std::uint64_t bytes = index.headBytes();
-  for (const std::uint32_t chunk : index.chunksOfBox(box)) bytes += index.chunks[chunk].size();
+  const StopAt stop = stopAt(index, manifest, LevelTarget{manifest.levels.back().level}, 0);
+  for (const BlockRun& run : planStream({index, manifest}, ClientBlocks(index, fields), view, stop, 1u << 18)) bytes += sliceOf(index, run).size;
   return bytes;
 }
+
+struct Share {
+  double sum = 0, most = 0;
+
+  void add(double part) { sum += part, most = std::max(most, part); }
+  void print(const char* what) const { std::printf("%s: %5.1f %% of the bytes, at most %5.1f %%\n", what, sum / kBoxes, most); }
+};
 
 std::uint64_t sizeOf(const LogIndex& index, std::uint32_t firstNode, std::uint32_t endNode) {
   std::uint64_t bytes = 0;
@@ -66,6 +94,8 @@ int main(int argc, char** argv) {
   const LogIndex& index = log->index();
   const auto mesh = meshAtLevel(*log, index.chunks.back().lastLevel, std::vector<std::uint32_t>{});
   if (!mesh) return std::fprintf(stderr, "%s\n", mesh.error().text().c_str()), 1;
+  const auto manifest = manifestOf(index);
+  if (!manifest) return std::fprintf(stderr, "%s\n", manifest.error().text().c_str()), 1;
   std::vector<LatticePoint> middles;
   for (const Tetrahedron& t : mesh->tetrahedra) middles.push_back(middleOf(*mesh, t));
 
@@ -76,16 +106,22 @@ int main(int argc, char** argv) {
   for (std::uint32_t depth = index.firstDepth(); depth > 0 && depth <= index.lastDepth(); ++depth)
     std::printf(", depth %u %.1f %%", depth, 100 * static_cast<double>(sizeOf(index, 1u << depth, 2u << depth)) / whole);
   std::printf("\n");
-  for (const double percent : {10.0, 1.0, 0.1}) {
-    double sum = 0, most = 0;
-    for (std::size_t i = 0; i < kBoxes; ++i) {
-      const LatticePoint& centre = middles[(2 * i + 1) * middles.size() / (2 * kBoxes)];
-      const PacketBox box =
-          boxRound(middles, centre, static_cast<std::size_t>(percent / 100 * static_cast<double>(middles.size())), index.positionBits);
-      const double part = 100 * static_cast<double>(bytesOf(index, box)) / whole;
-      sum += part, most = std::max(most, part);
+  std::vector<std::uint32_t> all(index.fields.size());
+  std::iota(all.begin(), all.end(), 0u);
+  const std::vector<std::uint32_t> one(all.begin(), all.begin() + std::min<std::ptrdiff_t>(1, std::ssize(all)));
+  for (const auto& [fields, name] : {std::pair(all, "all fields"), std::pair(one, "the first field")}) {
+    std::printf("%s:\n", name);
+    const auto part = [&](const View& view) { return 100 * static_cast<double>(bytesOf(index, *manifest, view, fields)) / whole; };
+    for (const double percent : {10.0, 1.0, 0.1}) {
+      Share share;
+      const auto cells = static_cast<std::size_t>(percent / 100 * static_cast<double>(middles.size()));
+      for (std::size_t i = 0; i < kBoxes; ++i) share.add(part(boxRound(*manifest, middles, middles[(2 * i + 1) * middles.size() / (2 * kBoxes)], cells)));
+      share.print(("  box of " + std::to_string(percent) + " % of the cells").c_str());
     }
-    std::printf("box of %4.1f %% of the cells: %5.1f %% of the bytes, at most %5.1f %%\n", percent, sum / kBoxes, most);
+    Share share;
+    for (std::size_t i = 0; i < kBoxes; ++i)
+      share.add(part(slabRound(*manifest, middles[(2 * i + 1) * middles.size() / (2 * kBoxes)], i % 3, kSlab * extentOf(*manifest, *mesh, i % 3))));
+    share.print("  slab of 2 % of the extent");
   }
   if (argc == 3) {
     const auto stream = LogFile::open(argv[2]);

@@ -13,8 +13,9 @@ OpenMessage sampleOpen() {
   return {.mesh = "comb",
           .digest = std::string(64, 'a'),
           .fields = {"density", "velocity"},
-          .haveChunks = 7,
-          .haveFields = {{"density", 3}},
+          .have = {{7, {{9, 12}, {20, 21}}}, {{"density", {3}}, {"velocity", {7, {{10, 12}}}}}},
+          .target = FieldErrorTarget{0.01, "density"},
+          .view = {{{1, 0, 0, 2}}, {{0, 1, 0, 3}}, std::array<double, 6>{0, 0, 0, 1, 2, 3}, Isovalue{"density", {0.5}}, std::array<double, 3>{4, 5, 6}},
           .credit = 1 << 20};
 }
 
@@ -31,9 +32,19 @@ TEST(Messages, openIsReadBack) {
   EXPECT_EQ(open.mesh, "comb");
   EXPECT_EQ(open.digest, std::string(64, 'a'));
   EXPECT_EQ(open.fields, (std::vector<std::string>{"density", "velocity"}));
-  EXPECT_EQ(open.haveChunks, 7u);
-  ASSERT_EQ(open.haveFields.size(), 1u);
-  EXPECT_EQ(open.haveFields[0], (std::pair<std::string, std::uint32_t>("density", 3)));
+  EXPECT_EQ(open.have.mesh.leading, 7u);
+  EXPECT_EQ(open.have.mesh.ranges, (std::vector<ChunkRange>{{9, 12}, {20, 21}}));
+  ASSERT_EQ(open.have.fields.size(), 2u);
+  EXPECT_EQ(open.have.fields[0].first, "density");
+  EXPECT_EQ(open.have.fields[0].second.leading, 3u);
+  EXPECT_EQ(open.have.fields[1].second.ranges, (std::vector<ChunkRange>{{10, 12}}));
+  EXPECT_EQ(std::get<FieldErrorTarget>(open.target).field, "density");
+  EXPECT_EQ(std::get<FieldErrorTarget>(open.target).error, 0.01);
+  EXPECT_EQ(open.view.frustum, (std::vector<Plane>{{1, 0, 0, 2}}));
+  EXPECT_EQ(open.view.planes, (std::vector<Plane>{{0, 1, 0, 3}}));
+  EXPECT_EQ((*open.view.box)[5], 3);
+  EXPECT_EQ(open.view.isovalue->values, (std::vector<double>{0.5}));
+  EXPECT_EQ((*open.view.point)[2], 6);
   EXPECT_EQ(open.credit, 1u << 20);
 }
 
@@ -45,7 +56,37 @@ TEST(Messages, theProtocolDocumentsExamplesAreUnderstood) {
   EXPECT_EQ(std::get<CreditMessage>(*credit).bytes, 12345u);
   const auto stop = parseClientMessage(R"({"type":"stop"})");
   ASSERT_TRUE(stop);
-  EXPECT_TRUE(std::holds_alternative<StopMessage>(*stop));
+  EXPECT_TRUE(std::holds_alternative<CancelMessage>(*stop));
+}
+
+TEST(Messages, wishesAreReadBack) {
+  const auto again = [](const std::string& json) {
+    const auto message = parseClientMessage(json);
+    return message ? toJson(*message) : message.error().message;
+  };
+  for (const std::string json :
+       {R"({"target":{"level":3},"type":"target"})", R"({"target":{"bytes":5000000000},"type":"target"})", R"({"target":{"tetrahedra":9},"type":"target"})",
+        R"({"target":{"error":0.5,"field":"a"},"type":"target"})", R"({"target":{"boundaryError":0.25},"type":"target"})",
+        R"({"target":null,"type":"target"})", R"({"type":"view","view":null})", R"({"type":"view","view":{"point":[1.0,2.0,3.0]}})", R"({"type":"pause"})",
+        R"({"type":"resume"})", R"({"have":{"chunks":1,"fields":{"a":1},"ranges":[[3,4]]},"type":"resume"})", R"({"type":"cancel"})"})
+    EXPECT_EQ(again(json), json);
+}
+
+TEST(Messages, neighbouringRangesBecomeOne) {
+  const auto message = parseClientMessage(R"({"type":"resume","have":{"chunks":1,"ranges":[[3,4],[4,9]]}})");
+  ASSERT_TRUE(message);
+  EXPECT_EQ(std::get<ResumeMessage>(*message).have->mesh.ranges, (std::vector<ChunkRange>{{3, 9}}));
+}
+
+/// At the last legal nesting a message is only strange, past it it is refused before anything is built of it.
+TEST(Messages, deepNestingIsRefusedUnread) {
+  const auto nested = [](int depth) {
+    return R"({"type":"stop","why":)" + std::string(static_cast<std::size_t>(depth), '[') + std::string(static_cast<std::size_t>(depth), ']') + "}";
+  };
+  EXPECT_TRUE(parseClientMessage(nested(31)));
+  EXPECT_EQ(refusal(nested(32)), ErrorCode::kBadValue);
+  EXPECT_EQ(refusal(nested(30000)), ErrorCode::kBadValue);
+  EXPECT_TRUE(parseClientMessage(R"({"type":"stop","why":"\"[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[["})"));
 }
 
 TEST(Messages, membersOfLaterVersionsAreIgnored) { EXPECT_TRUE(parseClientMessage(R"({"type":"stop","why":"lunch"})")); }
@@ -77,6 +118,25 @@ TEST(Messages, wrongShapesAreBadValues) {
                            R"({"type":"open","mesh":"a","have":{"chunks":1,"fields":{"x":2}},"credit":1})",
                            R"({"type":"open","mesh":"a","have":{"fields":[]},"credit":1})",
                            R"({"type":"open","mesh":"a","digest":"abc","credit":1})",
+                           R"({"type":"open","mesh":"a","have":{"chunks":3,"ranges":[[3,5]]},"credit":1})",
+                           R"({"type":"open","mesh":"a","have":{"chunks":3,"ranges":[[5,5]]},"credit":1})",
+                           R"({"type":"open","mesh":"a","have":{"chunks":3,"ranges":[[6,8],[5,6]]},"credit":1})",
+                           R"({"type":"open","mesh":"a","have":{"chunks":3,"ranges":[[5]]},"credit":1})",
+                           R"({"type":"open","mesh":"a","have":{"chunks":3,"ranges":[[5,8]],"fields":{"x":{"chunks":3,"ranges":[[7,9]]}}},"credit":1})",
+                           R"({"type":"view"})",
+                           R"({"type":"view","view":[]})",
+                           R"({"type":"view","view":{"frustum":[[1,2,3]]}})",
+                           R"({"type":"view","view":{"frustum":[[1,2,3,4],[1,2,3,4],[1,2,3,4],[1,2,3,4],[1,2,3,4],[1,2,3,4],[1,2,3,4]]}})",
+                           R"({"type":"view","view":{"planes":[[1,2,3,4],[1,2,3,4],[1,2,3,4],[1,2,3,4]]}})",
+                           R"({"type":"view","view":{"box":[0,0,0,1,1]}})",
+                           R"({"type":"view","view":{"box":[0,0,2,1,1,1]}})",
+                           R"({"type":"view","view":{"isovalue":{"field":"a","values":[1,2,3,4,5,6,7,8,9]}}})",
+                           R"({"type":"view","view":{"point":[1,2,null]}})",
+                           R"({"type":"target"})",
+                           R"({"type":"target","target":{}})",
+                           R"({"type":"target","target":{"level":1,"bytes":2}})",
+                           R"({"type":"target","target":{"error":0.1}})",
+                           R"({"type":"target","target":{"boundaryError":-1}})",
                            R"({"type":"stop"} {"type":"stop"})",
                            "{\"type\":\"stop\xFF\"}"})
     EXPECT_EQ(refusal(json), ErrorCode::kBadValue) << json;
@@ -108,11 +168,16 @@ TEST(Messages, everyTruncationIsRefused) {
 }
 
 TEST(Messages, theServersWordsAreReadBack) {
-  const auto opened = parseServerMessage(toJson(OpenedMessage{3, "comb", std::string(64, '0'), 5000000000ull, 77}));
+  const auto opened = parseServerMessage(toJson(OpenedMessage{3, "comb", std::string(64, '0'), 5000000000ull, 77, "regions"}));
   ASSERT_TRUE(opened) << opened.error().message;
   EXPECT_EQ(std::get<OpenedMessage>(*opened).bytes, 5000000000ull);
   EXPECT_EQ(std::get<OpenedMessage>(*opened).stream, 3u);
   EXPECT_EQ(std::get<OpenedMessage>(*opened).planned, 77u);
+  EXPECT_EQ(std::get<OpenedMessage>(*opened).layout, "regions");
+  const auto planned = parseServerMessage(toJson(PlannedMessage{3, 5000000000ull, 2}));
+  ASSERT_TRUE(planned);
+  EXPECT_EQ(std::get<PlannedMessage>(*planned).planned, 5000000000ull);
+  EXPECT_EQ(std::get<PlannedMessage>(*planned).view, 2u);
   EXPECT_EQ(std::get<DoneMessage>(*parseServerMessage(toJson(DoneMessage{4}))).stream, 4u);
   EXPECT_EQ(std::get<StoppedMessage>(*parseServerMessage(toJson(StoppedMessage{5}))).stream, 5u);
   EXPECT_EQ(std::get<ErrorMessage>(*parseServerMessage(toJson(ErrorMessage{kNotFound, "no \"such\" mesh"}))).detail, "no \"such\" mesh");

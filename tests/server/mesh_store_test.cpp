@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <filesystem>
+
+#include "server/bus_guard.h"
 #include "server/limits.h"
 #include "tests/server/synthetic_log.h"
 
@@ -151,6 +155,32 @@ TEST(MeshStore, aLevelsPrefixEndsWithItsChunk) {
   const ServedMesh& mesh = *found;
   EXPECT_EQ(mesh.prefixBytes(11), mesh.log.bytes().size());
   EXPECT_EQ(mesh.prefixBytes(0), mesh.log.index().chunks[1].offset);
+}
+
+/// As `cp` does it, which many people replace files with.
+TEST(ServedMesh, aFileThatIsChangedInPlaceStaysWhatItsDigestSays) {
+  const test::TempFolder folder;
+  const Bytes log = test::makeLog({.chunks = 20});
+  folder.write("noise.qtet", log);
+  const Result<MeshPointer> mesh = openMesh(folder.path() / "noise.qtet", "noise");
+  ASSERT_TRUE(mesh);
+  folder.write("noise.qtet", test::makeLog({.chunks = 3, .seed = 9}));
+  EXPECT_TRUE(std::ranges::equal((*mesh)->log.bytes(), log));
+  EXPECT_TRUE((*mesh)->log.verifyChecksums());
+}
+
+TEST(BusGuard, whatIsLostOfAMappedFileReadsAsZeros) {
+  guardAgainstBusErrors();
+  const test::TempFolder folder;
+  folder.write("noise.qtet", test::makeLog({.chunks = 20}));
+  const Result<LogFile> log = LogFile::open(folder.path() / "noise.qtet");
+  ASSERT_TRUE(log);
+  ASSERT_GT(log->bytes().size(), 3u * 4096);
+  const std::uint64_t before = lostPages();
+  std::filesystem::resize_file(folder.path() / "noise.qtet", 4096);
+  EXPECT_EQ(log->bytes().back(), 0);
+  EXPECT_GT(lostPages(), before);
+  EXPECT_FALSE(log->verifyChecksums());
 }
 
 }  // namespace

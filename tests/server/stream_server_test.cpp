@@ -6,6 +6,7 @@
 #include <thread>
 #include <vector>
 
+#include "server/limits.h"
 #include "tests/server/loopback.h"
 #include "tests/server/served_folder.h"
 
@@ -252,6 +253,71 @@ TEST_F(StreamServerTest, theServersEndClosesWith1001) {
   EXPECT_EQ(waiting.closeCode(), 1001u);
   EXPECT_EQ(silent.closeCode(), 1001u);
   server_.join();
+}
+
+/// A connection after its handshake, to send what no library sends.
+class RawStream : public test::RawClient {
+ public:
+  explicit RawStream(std::uint16_t port) : RawClient(port) {
+    send("GET /v1/stream HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
+         "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Protocol: qtet.v1\r\n\r\n");
+    accepted = receive(true).status == 101;
+  }
+  /// A frame masked with zeros.
+  static std::string frame(char first, const std::string& payload) {
+    return std::string{first, static_cast<char>(0x80 | static_cast<int>(payload.size())), 0, 0, 0, 0} + payload;
+  }
+  bool accepted = false;
+};
+
+TEST_F(StreamServerTest, pingsAreAnsweredAndACloseIsEchoed) {
+  RawStream client(server_.port());
+  ASSERT_TRUE(client.accepted);
+  ASSERT_TRUE(client.send(RawStream::frame('\x89', "hi") + RawStream::frame('\x88', "\x03\xE8 bye")));
+  EXPECT_EQ(client.readToEnd(), "\x8A\x02hi\x88\x02\x03\xE8");
+}
+
+TEST_F(StreamServerTest, unmaskedFramesCloseWith1002AndFloodsOfPingsWith1008) {
+  RawStream unmasked(server_.port());
+  ASSERT_TRUE(unmasked.send(std::string("\x81\x05hello")));
+  EXPECT_EQ(unmasked.readToEnd(), "\x88\x02\x03\xEA");
+  RawStream flood(server_.port());
+  std::string pings;
+  for (unsigned i = 0; i <= limits::kMaxPingsPerSecond; ++i) pings += RawStream::frame('\x89', "");
+  ASSERT_TRUE(flood.send(pings));
+  EXPECT_TRUE(flood.readToEnd().ends_with("\x88\x02\x03\xF0"));
+}
+
+TEST_F(StreamServerTest, aHandshakeOfAnotherVersionOrWithABadKeyIsRefused) {
+  const std::string start = "GET /v1/stream HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Protocol: qtet.v1\r\n";
+  test::RawClient old(server_.port());
+  ASSERT_TRUE(old.send(start + "Sec-WebSocket-Version: 8\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n"));
+  const auto answer = old.receive();
+  EXPECT_EQ(answer.status, 426u);
+  EXPECT_EQ(answer.header("sec-websocket-version"), "13");
+  test::RawClient bad(server_.port());
+  ASSERT_TRUE(bad.send(start + "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: hello\r\n\r\n"));
+  EXPECT_EQ(bad.receive().status, 400u);
+}
+
+TEST_F(StreamServerTest, theServersEndSendsWhatTheCreditAllows) {
+  StreamClient client(server_.port());
+  ASSERT_TRUE(client.send(open(1 << 30, R"(,"fields":["density","velocity"])")));
+  ASSERT_EQ(openedStream(client), 1u);
+  server_.stop();
+  std::string all;
+  for (auto message = client.receive(); message && message->binary; message = client.receive())
+    all.append(message->bytes.begin() + FrameHeader::kBytes, message->bytes.end());
+  EXPECT_EQ(all, folder_.file());
+  EXPECT_EQ(client.closeCode(), 1001u);
+  server_.join();
+}
+
+TEST_F(StreamServerTest, aFrameComesWhileMessagesGoOut) {
+  RawStream client(server_.port());
+  ASSERT_TRUE(client.send(RawStream::frame('\x81', open(1)) + RawStream::frame('\x89', "x") + RawStream::frame('\x88', "")));
+  const std::string all = client.readToEnd();
+  EXPECT_TRUE(all.ends_with(std::string("\x88\0", 2)));
 }
 
 TEST_F(StreamServerTest, manyClientsAtOnceEachGetTheirFile) {

@@ -2,6 +2,9 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <bit>
+#include <cmath>
 #include <fstream>
 #include <random>
 #include <stdexcept>
@@ -24,7 +27,32 @@ Manifest makeManifest(const SyntheticLog& options) {
     out.fields.push_back({options.fields[f], components, "float32", "point", 12, 0.5, std::vector<double>(components, 0.0), {0, 1}});
   }
   for (std::uint32_t k = 0; k < options.chunks; ++k) out.levels.push_back({k, 100 + 10 * k, 50 + 5 * k, 60 + k, k});
+  for (std::uint32_t b = 0; b < options.bands; ++b) {
+    const std::uint32_t k = options.chunks + b;
+    out.levels.push_back({k, 100 + 10 * k, 50 + 5 * k, 60 + k, options.chunks + (4u << b) - 3});
+  }
+  if (options.errors)
+    for (ManifestLevel& level : out.levels) {
+      const double error = level.level + 1 == out.levels.size() ? 0 : std::ldexp(0.5, -static_cast<int>(level.level));
+      level.error = LevelError{{error, error}, {error, error}, 1, std::vector<FieldError>(out.fields.size(), {error, error})};
+    }
   return out;
+}
+
+/// That of a node: the lattice halved at each step down from the root.
+PacketBox boxOf(std::uint32_t node) {
+  PacketBox box{{0, 0, 0}, {255, 255, 255}};
+  const int depth = std::bit_width(node) - 1;
+  for (int d = 0; d < depth; ++d) {
+    const auto axis = static_cast<std::size_t>(d % 3);
+    const auto half = static_cast<std::uint8_t>((box.least[axis] + box.most[axis]) / 2);
+    if ((node >> (depth - 1 - d) & 1) != 0) {
+      box.least[axis] = static_cast<std::uint8_t>(half + 1);
+    } else {
+      box.most[axis] = half;
+    }
+  }
+  return box;
 }
 
 struct Built {
@@ -39,16 +67,26 @@ Built build(const SyntheticLog& options) {
   out.index.positionBits = 16;
   out.index.manifest = manifestBlock(manifest).value();
   for (const ManifestField& field : manifest.fields) out.index.fields.push_back({field.components, Association::kPoint});
-  for (std::uint32_t k = 0; k < options.chunks; ++k) {
+  if (options.bands > 0) out.index.layout = Layout::kRegions;
+  const std::uint32_t packets = options.bands > 0 ? (2u << options.bands) - 2 : 0;
+  for (std::uint32_t k = 0; k < options.chunks + packets; ++k) {
     ChunkEntry chunk;
-    chunk.firstLevel = chunk.lastLevel = k;
+    if (k >= options.chunks) {
+      chunk.node = k - options.chunks + 2;
+      chunk.box = boxOf(chunk.node);
+    }
+    chunk.firstLevel = chunk.lastLevel = k < options.chunks ? k : options.chunks + static_cast<std::uint32_t>(std::bit_width(chunk.node)) - 2;
     chunk.newVertices = 5;
+    chunk.newTetrahedra = 10;
+    chunk.records = k == 0 ? 0 : 5;
     chunk.firstDependency = k == 0 ? 0 : k - 1;
     chunk.dependencyCount = k > 0;
-    if (k > 0) out.index.dependencies.push_back(k - 1);
+    const std::uint32_t parent = chunk.node >= 4 ? options.chunks + chunk.node / 2 - 2 : std::min(k, options.chunks) - 1;
+    if (k > 0) out.index.dependencies.push_back(parent);
     for (std::uint32_t part = 0; part < out.index.parts(); ++part) {
       BlockEntry block;
       block.size = random() % 8 == 0 ? 0 : static_cast<std::uint32_t>(random() % options.largestBlock);
+      if (part == kStructurePart) block.size = std::max(block.size, 1u);  // records without bytes would be refused
       Bytes noise(block.size);
       for (std::uint8_t& byte : noise) byte = static_cast<std::uint8_t>(random());
       block.crc = crc32c(noise);

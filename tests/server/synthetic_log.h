@@ -13,11 +13,14 @@ namespace qtet::test {
 struct SyntheticLog {
   std::uint32_t chunks = 12;
   std::vector<std::string> fields = {"density", "velocity"};  ///< the second has three components
-  std::uint32_t largestBlock = 5000;                          ///< bytes; some blocks are empty
+  std::uint32_t largestBlock = 5000;                          ///< bytes; some blocks of values are empty, none of structure
   std::uint32_t seed = 1;
+  /// Layout `regions`: `chunks` become the head, then follow so many bands of packets, 2, 4, 8, ... of them. Boxes halve the lattice's x, then y, z, x, ...
+  std::uint32_t bands = 0;
+  bool errors = false;  ///< levels tell errors, halved from each to the next; the last level's are 0
 };
 
-/// The whole file. Level k ends in chunk k.
+/// The whole file. Level k ends in chunk k; in `regions` each band is one level.
 [[nodiscard]] Bytes makeLog(const SyntheticLog& options);
 /// Its front alone, for tests of what only looks at the table.
 [[nodiscard]] LogIndex makeIndex(const SyntheticLog& options);

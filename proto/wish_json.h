@@ -1,0 +1,22 @@
+// Wishes of a client as JSON, both ways. For the .cpp files of this room only, like json_reader.h.
+#pragma once
+
+#include "proto/json_reader.h"
+#include "proto/stream_wishes.h"
+
+namespace qtet {
+
+/// Each reads an absent value as an empty one; errors go to the cursor's.
+[[nodiscard]] Have readHave(const JsonCursor& json);
+/// Absent and null: everything.
+[[nodiscard]] Target readTarget(const JsonCursor& json);
+/// Absent and null: no wishes.
+[[nodiscard]] View readView(const JsonCursor& json);
+
+[[nodiscard]] Json toJson(const Have& have);
+/// null: everything.
+[[nodiscard]] Json toJson(const Target& target);
+/// null: no wishes.
+[[nodiscard]] Json toJson(const View& view);
+
+}  // namespace qtet
