@@ -4,14 +4,15 @@
 import {kAdaptiveCodec, kDracoCodec, type BlockValues, type Codec} from './codec';
 import type {ValueDecoder} from './draco';
 import {QtetError} from './errors';
-import {readManifest, type Manifest} from './manifest';
+import {fieldKeys, readManifest, type Manifest} from './manifest';
 import {kFirstFieldPart, kHeadPart, kPositionsPart, kStructurePart, type Frame} from './protocol';
 import {ByteLedger, kNoStatistics, statisticsOf, type Statistics} from './statistics';
+import type {LogTable} from './transport';
 
 /** The number of a value block's digit bytes stands in its last bytes. */
 const kDigitCountBytes = 4;
 
-export class Assembler {
+export class Assembler implements LogTable {
   manifest: Manifest | null = null;
   private ledger: ByteLedger | null = null;
   private head: Uint8Array | null = null;
@@ -26,6 +27,16 @@ export class Assembler {
     this.blocks = [];
     this.received = [];
   }
+
+  // ---- LogTable
+
+  get isKnown(): boolean { return this.manifest !== null; }
+  get chunkCount(): number { return this.codec.chunkCount; }
+  get fieldKeys(): string[] { return fieldKeys(this.manifest?.fields ?? []); }
+  blockOffset(chunk: number, part: number): number { return this.codec.blockOffset(chunk, part); }
+  blockSize(chunk: number, part: number): number { return this.codec.blockSize(chunk, part); }
+
+  // ---- blocks
 
   /** Leading chunks that are here: of the mesh, and of one field. */
   get receivedChunks(): number { return Math.min(this.leading(kStructurePart), this.leading(kPositionsPart)); }

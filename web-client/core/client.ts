@@ -5,6 +5,7 @@ import type {Ray, Vector} from './cell_ray';
 import type {Display} from './display';
 import type {Pick, Probe} from './inspector';
 import type {Limit} from './limit';
+import type {CellOrder} from './volume';
 import type {FromWorker, Question, Source, ToWorker} from './worker_messages';
 
 export type Listener = (message: Exclude<FromWorker, {type: 'answer'}>) => void;
@@ -45,6 +46,9 @@ export class Client {
   digest(): Promise<string> { return this.ask({type: 'digest'}); }
   pick(ray: Ray): Promise<Pick | null> { return this.ask({type: 'pick', ray}); }
   probe(from: Vector, to: Vector): Promise<Probe | null> { return this.ask({type: 'probe', from, to}); }
+
+  /** The cells of the last snapshot's volume from back to front. */
+  order(eye: Vector): Promise<CellOrder> { return this.ask({type: 'order', eye}); }
 
   dispose(): void { this.worker.terminate(); }
 

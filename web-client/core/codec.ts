@@ -8,6 +8,8 @@ export interface Codec {
   readonly chunkCount: number;
   /** Numbers of all levels, column by column, from the end of the manifest. Throws `limit-exceeded`, `truncated`, `bad-value`. */
   levelColumns(bytes: Uint8Array, columns: number): Uint32Array;
+  /** In the file. */
+  blockOffset(chunk: number, part: number): number;
   blockSize(chunk: number, part: number): number;
   /** Tuples of a value block. */
   blockValues(chunk: number, part: number): number;
@@ -61,6 +63,7 @@ interface Exports {
   qtet_level_count(): number;
   qtet_level_columns(bytes: number, size: number, columns: number): number;
   qtet_level_numbers(): number;
+  qtet_block_offset(chunk: number, part: number): number;
   qtet_block_size(chunk: number, part: number): number;
   qtet_block_values(chunk: number, part: number): number;
   qtet_field_association(field: number): number;
@@ -102,6 +105,7 @@ export class WasmCodec implements Codec {
     const count = columns * (this.wasm.qtet_level_count() >>> 0);
     return new Uint32Array(this.wasm.memory.buffer, this.wasm.qtet_level_numbers() >>> 0, count).slice();
   }
+  blockOffset(chunk: number, part: number): number { return this.wasm.qtet_block_offset(chunk, part); }
   blockSize(chunk: number, part: number): number { return this.wasm.qtet_block_size(chunk, part) >>> 0; }
   blockValues(chunk: number, part: number): number { return this.wasm.qtet_block_values(chunk, part) >>> 0; }
   blockCodec(chunk: number, part: number): number { return this.wasm.qtet_block_codec(chunk, part) >>> 0; }

@@ -6,7 +6,8 @@ import {errorOfLevel, kFull, limitReached, type Limit} from './limit';
 import {fieldKeys} from './manifest';
 import type {Frame, ServerMessage} from './protocol';
 import type {Publisher} from './publisher';
-import {Transport, type TransportHandlers} from './transport';
+import type {LogTable, Transport, TransportHandlers} from './transport';
+import {makeTransport} from './transports';
 import type {FromWorker, Source, StreamState} from './worker_messages';
 
 /** Payload bytes under way: enough for 80 Mbit/s at 100 ms, and some ten chunks of decoding that a click has to wait for at most. */
@@ -20,11 +21,11 @@ const kWaysOut: Record<string, string> = {
   'limit-exceeded': ' The mesh stays at the level that fits. Close other tabs, or choose a limit under "Level of detail" and try again.',
 };
 
-export type TransportFactory = (url: string, handlers: TransportHandlers) => Transport;
+export type TransportFactory = (source: Source, table: LogTable, handlers: TransportHandlers) => Transport;
 
 export class Session implements TransportHandlers {
   private transport: Transport | null = null;
-  private source: Source = {url: '', mesh: '', fields: null, limit: kFull};
+  private source: Source = {url: '', log: '', mesh: '', fields: null, limit: kFull, transport: 'auto'};
   private state: StreamState = 'connecting';
   private digest = '';
   /** The fields to bring: indexes into the manifest. */
@@ -40,7 +41,7 @@ export class Session implements TransportHandlers {
 
   constructor(
     private readonly assembler: Assembler, private readonly publisher: Publisher, private readonly send: (message: FromWorker) => void,
-    private readonly makeTransport: TransportFactory = (url, handlers) => new Transport(url, handlers)) {}
+    private readonly newTransport: TransportFactory = makeTransport) {}
 
   start(source: Source): void {
     this.transport?.disconnect();
@@ -48,7 +49,7 @@ export class Session implements TransportHandlers {
     this.limit = source.limit;
     this.paused = false;
     this.forget();
-    this.transport = this.makeTransport(source.url, this);
+    this.transport = this.newTransport(source, this.assembler, this);
     this.setState('connecting');
     this.transport.connect();
   }
@@ -235,7 +236,9 @@ export class Session implements TransportHandlers {
     const manifest = this.assembler.manifest!;
     const keys = fieldKeys(manifest.fields);
     this.fields = (this.source.fields ?? []).map((name) => keys.indexOf(name)).filter((field) => field >= 0);
-    if (this.fields.length === 0 && keys.length > 0) this.fields = [0];
+    const unknown = this.source.fields?.find((name) => !keys.includes(name));
+    if (unknown !== undefined) this.send({type: 'error', code: 'unknown-field', message: `The mesh has no field "${unknown}". The first one is shown instead.`});
+    if (this.fields.length === 0 && keys.length > 0 && (this.source.fields === null || unknown !== undefined)) this.fields = [0];
     this.send({type: 'manifest', manifest, digest: this.digest, fields: this.fields});
     if (this.source.fields !== null && this.keys().every((key) => this.requested.includes(key))) return false;
     this.open();

@@ -62,6 +62,10 @@ function obey({session, publisher, codec, inspector}: Parts, message: Exclude<To
     case 'digest': return post({type: 'answer', id: message.id, answer: codec.chunkCount > 0 ? codec.digest() : ''});
     case 'pick': return post({type: 'answer', id: message.id, answer: inspector.pick(message.ray, publisher.display)});
     case 'probe': return post({type: 'answer', id: message.id, answer: inspector.probe(message.from, message.to, publisher.display)});
+    case 'order': {
+      const answer = publisher.volume.order(message.eye);
+      return self.postMessage({type: 'answer', id: message.id, answer} satisfies FromWorker, {transfer: [answer.order.buffer as ArrayBuffer]});
+    }
   }
 }
 
@@ -72,6 +76,8 @@ function post(message: FromWorker): void {
 function postSnapshot(snapshot: Snapshot): void {
   const soups = [snapshot.surface, ...(snapshot.cuts ?? []), snapshot.isosurface].filter((soup) => soup !== undefined);
   const buffers = soups.flatMap((soup) => [soup.positions.buffer, soup.values.buffer]) as ArrayBuffer[];
+  const {volume} = snapshot;
+  if (volume) buffers.push(...[volume.vertices.buffer, volume.cells.buffer, ...(volume.cellValues ? [volume.cellValues.buffer] : [])] as ArrayBuffer[]);
   const message: FromWorker = {type: 'snapshot', snapshot};
   self.postMessage(message, {transfer: buffers});
 }

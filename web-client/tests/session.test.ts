@@ -4,7 +4,7 @@ import {kLongestDelayMs} from '../core/backoff';
 import {kFull} from '../core/limit';
 import {Publisher} from '../core/publisher';
 import {Session} from '../core/session';
-import {Transport} from '../core/transport';
+import {SocketTransport} from '../core/socket_transport';
 import type {FromWorker, Source} from '../core/worker_messages';
 import {FakeCodec, FakeSocket, fakeHead, fieldFrame, headFrame, kFakeBlockBytes, kFakeValues, meshFrame, type FakeLog} from './fakes';
 
@@ -26,14 +26,14 @@ beforeEach(() => {
     sockets.push(new FakeSocket());
     return sockets.at(-1)!;
   };
-  session = new Session(assembler, publisher, (message) => heard.push(message), (url, handlers) =>
-    new Transport(url, handlers, makeSocket, () => 0));
+  session = new Session(assembler, publisher, (message) => heard.push(message), ({url}, _, handlers) =>
+    new SocketTransport(url, handlers, makeSocket, () => 0));
 });
 
 afterEach(() => void vi.useRealTimers());
 
 function start(source: Partial<Source> = {}): FakeSocket {
-  session.start({url: 'ws://x', mesh: 'm', fields: ['p'], limit: kFull, ...source});
+  session.start({url: 'ws://x', log: '', transport: 'auto', mesh: 'm', fields: ['p'], limit: kFull, ...source});
   sockets.at(-1)!.accept();
   return sockets.at(-1)!;
 }

@@ -4,10 +4,14 @@ import {Group, Quaternion, Raycaster, Scene, Vector2, Vector3, WebGLRenderer} fr
 import type {Ray, Vector} from '../core/cell_ray';
 import type {ColorMapName} from '../core/color_maps';
 import {kMostPlanes} from '../core/display';
+import {transferTables} from '../core/transfer';
+import type {CellOrder, VolumeCells} from '../core/volume';
 import type {Snapshot} from '../core/worker_messages';
 import {OrbitCamera, type CameraState} from './camera';
 import type {Direction} from './directions';
+import {DeepTarget} from './deep_target';
 import {SoupMesh} from './soup_mesh';
+import {VolumeMesh} from './volume_mesh';
 
 /** How dark cell edges are: enough to follow, not enough to change what a colour says. */
 const kEdgeStrength = 0.52;
@@ -28,12 +32,16 @@ export interface Look {
   edges: boolean;
   /** Of the surface; cuts and isosurfaces stay solid. */
   opacity: number;
+  /** Of the volume, at even shares of the range; null: it is not shown. */
+  volume?: number[] | null;
 }
 
 /** `drawn`: after each frame, with the camera's rotation. `lost`: the browser took the graphics away, or gave them back. */
 export interface ViewListeners {
   drawn?(rotation: Quaternion): void;
   lost?(lost: boolean): void;
+  /** Client.order: without it no volume is shown. */
+  order?(eye: Vector): Promise<CellOrder>;
 }
 
 export class MeshView {
@@ -47,6 +55,12 @@ export class MeshView {
   private readonly surface = new SoupMesh(true);
   private readonly isosurface = new SoupMesh(true, true);
   private readonly cuts = Array.from({length: kMostPlanes}, () => new SoupMesh(false));
+  private readonly volume = new VolumeMesh();
+  private readonly deep = new DeepTarget();
+  private cells: VolumeCells | null = null;
+  /** Where the cells were last sorted for; null: an order is under way or none is needed. */
+  private sortedFor: string | null = '';
+  private transfer = '';
   private readonly resizes: ResizeObserver;
   private bounds: number[] = [];
   private insets: Insets = {left: 0, right: 0, top: 0, bottom: 0};
@@ -59,7 +73,7 @@ export class MeshView {
     this.renderer = new WebGLRenderer({canvas, antialias: true, alpha: true, powerPreference: 'high-performance'});
     this.renderer.setClearColor(0, 0);
     this.orbit = new OrbitCamera(canvas, () => this.invalidate());
-    this.lattice.add(this.surface, this.isosurface, ...this.cuts);
+    this.lattice.add(this.surface, this.isosurface, ...this.cuts, this.volume);
     this.scene.add(this.lattice);
     canvas.addEventListener('webglcontextlost', this.onLost);
     canvas.addEventListener('webglcontextrestored', this.onRestored);
@@ -73,8 +87,11 @@ export class MeshView {
     if (snapshot.surface) this.surface.show(snapshot.surface);
     if (snapshot.isosurface) this.isosurface.show(snapshot.isosurface);
     for (const mesh of [this.surface, this.isosurface]) mesh.material.setClip(snapshot.planes);
+    if (snapshot.volume !== undefined) this.takeCells(snapshot.volume);
+    this.volume.setClip(snapshot.planes);
     this.cuts.forEach((mesh, i) => {
-      mesh.show(snapshot.cuts[i] ?? null);
+      // A cap would hide the volume behind it; a slice stands in it.
+      mesh.show(this.cells && snapshot.planes.length > 0 ? null : snapshot.cuts[i] ?? null);
       mesh.material.setClip(snapshot.planes.filter((_, k) => k !== i));
     });
     if (this.bounds.length === 0 && snapshot.bounds.length > 0) {
@@ -92,22 +109,28 @@ export class MeshView {
   clear(): void {
     this.bounds = [];
     for (const mesh of this.meshes()) mesh.show(null);
+    this.takeCells(null);
     this.invalidate();
   }
 
-  setLook({map, reversed, edges, opacity}: Look): void {
+  setLook({map, reversed, edges, opacity, volume}: Look): void {
     for (const mesh of this.meshes()) {
       mesh.material.setColorMap(map, reversed);
       // An isosurface's polygons are the cells' sections, not the mesh: their edges would hide its shape.
       mesh.material.setEdges(edges && mesh !== this.isosurface ? kEdgeStrength : 0);
     }
     this.surface.material.setOpacity(opacity);
+    const transfer = volume ? `${map} ${reversed} ${volume.join()}` : '';
+    if (volume && transfer !== this.transfer) this.volume.setTransfer(transferTables(volume, map, reversed));
+    this.transfer = transfer;
     this.invalidate();
   }
 
   /** FieldMaterial.setRange for all. */
   setRange(low: number, high: number, scaleRange: [number, number], logarithmic: boolean): void {
     for (const mesh of this.meshes()) mesh.material.setRange(low, high, scaleRange, logarithmic);
+    const {range, logarithmic: log} = this.surface.material.uniforms;
+    this.volume.setRange(range!.value as [number, number], scaleRange, log!.value as boolean);
     this.invalidate();
   }
 
@@ -191,6 +214,8 @@ export class MeshView {
     this.canvas.removeEventListener('webglcontextrestored', this.onRestored);
     this.orbit.dispose();
     for (const mesh of this.meshes()) mesh.dispose();
+    this.volume.dispose();
+    this.deep.dispose();
     this.renderer.dispose();
   }
 
@@ -206,6 +231,30 @@ export class MeshView {
   };
 
   private meshes(): SoupMesh[] { return [this.surface, this.isosurface, ...this.cuts]; }
+
+  private takeCells(cells: VolumeCells | null): void {
+    this.cells = cells;
+    if (cells) this.sortedFor = '';
+    else this.volume.show(null, new Uint32Array(0));
+    this.invalidate();
+  }
+
+  /** Asks for the cells' order as the camera stands; the last one serves until it comes. */
+  private sort(): void {
+    if (!this.cells || !this.listeners.order || this.bounds.length === 0) return;
+    const eye = this.orbit.camera.position.clone().sub(this.lattice.position).divide(this.lattice.scale);
+    const low = new Vector3(...this.bounds.slice(0, 3) as Vector);
+    this.volume.setEye(eye, low.distanceTo(new Vector3(...this.bounds.slice(3, 6) as Vector)));
+    const where = eye.toArray().map((x) => Math.round(x)).join();
+    if (this.sortedFor === null || this.sortedFor === where) return;
+    this.sortedFor = null;
+    this.listeners.order(eye.toArray()).then(({version, order}) => {
+      const fits = this.cells?.version === version;
+      this.sortedFor = fits ? where : '';
+      if (fits) this.volume.show(this.cells, order);
+      this.invalidate();
+    }, () => void (this.sortedFor = where));
+  }
 
   private placeLattice(): void {
     const low = new Vector3(...this.bounds.slice(0, 3) as Vector);
@@ -247,7 +296,9 @@ export class MeshView {
     this.frame = 0;
     const start = performance.now();
     this.orbit.setDepths();
-    this.renderer.render(this.scene, this.orbit.camera);
+    this.sort();
+    if (this.volume.visible) this.deep.render(this.renderer, this.scene, this.orbit.camera, 1);
+    else this.renderer.render(this.scene, this.orbit.camera);
     this.frameMs = performance.now() - start;
     this.listeners.drawn?.(this.orbit.camera.quaternion);
     const done = this.afterFrame;
