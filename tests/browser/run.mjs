@@ -7,6 +7,7 @@ import {parseArgs} from 'node:util';
 import {Browser} from './browser.mjs';
 import {checks} from './checks.mjs';
 import {transportChecks} from './transport_checks.mjs';
+import {volumeChecks} from './volume_checks.mjs';
 import {makeLog, Server} from './programs.mjs';
 
 const {values: options} = parseArgs({
@@ -23,7 +24,7 @@ const server = new Server(options.bin, logs.fin.folder, options.viewer);
 const browser = await Browser.launch(options.out);
 let failures = 0;
 try {
-  for (const [name, check] of Object.entries({...checks, ...transportChecks})) {
+  for (const [name, check] of Object.entries({...checks, ...transportChecks, ...volumeChecks})) {
     if (!name.includes(options.only)) continue;
     const start = Date.now();
     try {

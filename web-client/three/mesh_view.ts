@@ -10,11 +10,16 @@ import type {Snapshot} from '../core/worker_messages';
 import {OrbitCamera, type CameraState} from './camera';
 import type {Direction} from './directions';
 import {DeepTarget} from './deep_target';
+import {FrameBudget} from './frame_budget';
 import {SoupMesh} from './soup_mesh';
 import {VolumeMesh} from './volume_mesh';
 
 /** How dark cell edges are: enough to follow, not enough to change what a colour says. */
 const kEdgeStrength = 0.52;
+/** How much time a costly picture gets. */
+type Pace = 'moving' | 'resting' | 'whole';
+/** A picture is at rest so long after its last change. */
+const kRestMs = 150;
 /** Pixels beyond two a point cost more than they show. */
 const kMostPixelRatio = 2;
 
@@ -57,6 +62,10 @@ export class MeshView {
   private readonly cuts = Array.from({length: kMostPlanes}, () => new SoupMesh(false));
   private readonly volume = new VolumeMesh();
   private readonly deep = new DeepTarget();
+  private readonly budget = new FrameBudget();
+  /** Until a picture of few pixels is drawn again with all. */
+  private restTimer: ReturnType<typeof setTimeout> | undefined;
+  private waiting = false;
   private cells: VolumeCells | null = null;
   /** Where the cells were last sorted for; null: an order is under way or none is needed. */
   private sortedFor: string | null = '';
@@ -198,7 +207,7 @@ export class MeshView {
 
   /** The picture as it stands, on `background` (CSS colour). */
   async picture(background: string): Promise<Blob> {
-    this.draw();
+    this.draw('whole');
     const copy = new OffscreenCanvas(this.canvas.width, this.canvas.height);
     const context = copy.getContext('2d')!;
     context.fillStyle = background;
@@ -209,6 +218,7 @@ export class MeshView {
 
   dispose(): void {
     cancelAnimationFrame(this.frame);
+    clearTimeout(this.restTimer);
     this.resizes.disconnect();
     this.canvas.removeEventListener('webglcontextlost', this.onLost);
     this.canvas.removeEventListener('webglcontextrestored', this.onRestored);
@@ -287,17 +297,31 @@ export class MeshView {
     this.draw();  // at once: a resized canvas is empty until it is drawn
   }
 
-  private invalidate(): void {
-    if (this.frame === 0) this.frame = requestAnimationFrame(() => this.draw());
+  /** The volume, as fine as there is time for: coarse while something changes, then once more at rest. */
+  private drawDeep(pace: Pace): void {
+    const share = pace === 'whole' ? 1 : this.budget.share(pace === 'moving');
+    this.deep.render(this.renderer, this.scene, this.orbit.camera, share);
+    this.budget.measure(this.renderer.getContext() as WebGL2RenderingContext, share, () => {
+      if (this.waiting) this.invalidate();
+      else if (pace === 'moving' && share < 1) this.restTimer = setTimeout(() => this.draw('resting'), kRestMs);
+    });
   }
 
-  private draw(): void {
+  private invalidate(): void {
+    clearTimeout(this.restTimer);
+    this.waiting = true;
+    // The graphics have one picture in hand at a time; when it is done, the next comes as things stand then.
+    if (this.frame === 0 && !this.budget.busy) this.frame = requestAnimationFrame(() => this.draw());
+  }
+
+  private draw(pace: Pace = 'moving'): void {
     cancelAnimationFrame(this.frame);
     this.frame = 0;
+    this.waiting = false;
     const start = performance.now();
     this.orbit.setDepths();
     this.sort();
-    if (this.volume.visible) this.deep.render(this.renderer, this.scene, this.orbit.camera, 1);
+    if (this.volume.visible) this.drawDeep(pace);
     else this.renderer.render(this.scene, this.orbit.camera);
     this.frameMs = performance.now() - start;
     this.listeners.drawn?.(this.orbit.camera.quaternion);

@@ -2,8 +2,8 @@
 // what lies between. Projected tetrahedra (Shirley and Tuchman 1990) with the exact length and values inside each cell; nothing is resampled.
 
 import {
-  CustomBlending, DataTexture, DynamicDrawUsage, FloatType, FrontSide, GLSL3, InstancedBufferAttribute, InstancedBufferGeometry, Mesh, NearestFilter, OneFactor,
-  OneMinusSrcAlphaFactor, RGBAFormat, RGBAIntegerFormat, RawShaderMaterial, RedFormat, UnsignedIntType, Vector3, Vector4, type PixelFormat, type TextureDataType,
+  BufferAttribute, BufferGeometry, CustomBlending, DataTexture, FloatType, FrontSide, GLSL3, Mesh, NearestFilter, OneFactor, OneMinusSrcAlphaFactor, RGBAFormat,
+  RGBAIntegerFormat, RawShaderMaterial, RedFormat, RedIntegerFormat, UnsignedIntType, Vector3, Vector4, type PixelFormat, type TextureDataType,
 } from 'three';
 import {kTransferSteps, type TransferTables} from '../core/transfer';
 import type {VolumeCells} from '../core/volume';
@@ -16,9 +16,9 @@ const kVertexShader = /* glsl */ `
   precision highp float;
   precision highp sampler2D;
   precision highp usampler2D;
-  in uint cell;
   uniform mat4 projectionMatrix;
   uniform mat4 modelViewMatrix;
+  uniform usampler2D order;
   uniform sampler2D vertices;
   uniform usampler2D cells;
   uniform sampler2D cellValues;
@@ -33,10 +33,11 @@ const kVertexShader = /* glsl */ `
   ivec2 texel(uint i) { return ivec2(i & ${kRow - 1}u, i >> ${kRowBits}u); }
 
   void main() {
+    uint cell = texelFetch(order, texel(uint(gl_VertexID) >> 2), 0).r;
     uvec4 ids = texelFetch(cells, texel(cell), 0);
     vec4 a = texelFetch(vertices, texel(ids.x), 0), b = texelFetch(vertices, texel(ids.y), 0);
     vec4 c = texelFetch(vertices, texel(ids.z), 0), d = texelFetch(vertices, texel(ids.w), 0);
-    int corner = gl_VertexID;
+    int corner = gl_VertexID & 3;
     vAt = (corner == 0 ? a : corner == 1 ? b : corner == 2 ? c : d).xyz;
     vShares = vec4(corner == 0, corner == 1, corner == 2, corner == 3);
     vSight = vAt - eye;
@@ -95,29 +96,34 @@ const kFragmentShader = /* glsl */ `
     if (leave <= enter || leave > 1e29) discard;
     float from = shareOf(vValue.x + enter * vValue.y);
     float to = shareOf(vValue.x + leave * vValue.y);
-    vec4 mean = abs(to - from) < 1.0 / ${kTransferSteps}.0 ? between(density, 0.5 * (from + to)) : (integralTo(to) - integralTo(from)) / (to - from);
+    vec4 mean;
+    if (abs(to - from) < 2.0 / ${kTransferSteps}.0) mean = between(density, 0.5 * (from + to));
+    else mean = (integralTo(to) - integralTo(from)) / (to - from);
     float opacity = 1.0 - exp(-mean.a * (leave - enter) * length(vSight) * perDiagonal);
     color = mean.a > 0.0 ? vec4(mean.rgb / mean.a * opacity, opacity) : vec4(0.0);
   }`;
 
+/** Room beyond what is needed, for the levels to come. */
+const kGrowth = 1.5;
 const kNoPlane = new Vector4(0, 0, 0, 1);
 /** Corners of the faces opposite to corners 0 to 3, outward in a cell of positive volume. */
 const kFaceCorners = [1, 2, 3, 0, 3, 2, 0, 1, 3, 0, 2, 1];
 
-export class VolumeMesh extends Mesh<InstancedBufferGeometry, RawShaderMaterial> {
+export class VolumeMesh extends Mesh<BufferGeometry, RawShaderMaterial> {
   private version = -1;
+  /** Cells that the index has room for. */
+  private capacity = 0;
 
   constructor() {
-    super(new InstancedBufferGeometry(), new RawShaderMaterial({
+    super(new BufferGeometry(), new RawShaderMaterial({
       glslVersion: GLSL3, vertexShader: kVertexShader, fragmentShader: kFragmentShader, side: FrontSide, transparent: true, depthWrite: false,
       blending: CustomBlending, blendSrc: OneFactor, blendDst: OneMinusSrcAlphaFactor, blendSrcAlpha: OneFactor, blendDstAlpha: OneMinusSrcAlphaFactor,
       uniforms: {
-        vertices: {value: null}, cells: {value: null}, cellValues: {value: null}, ofCells: {value: false}, eye: {value: new Vector3()},
+        order: {value: null}, vertices: {value: null}, cells: {value: null}, cellValues: {value: null}, ofCells: {value: false}, eye: {value: new Vector3()},
         clipPlanes: {value: [kNoPlane.clone(), kNoPlane.clone(), kNoPlane.clone()]}, density: {value: null}, integral: {value: null},
         range: {value: [0, 1]}, scaleRange: {value: [0, 1]}, logarithmic: {value: false}, perDiagonal: {value: 1},
       },
     }));
-    this.geometry.setIndex(kFaceCorners);
     this.frustumCulled = false;
     this.visible = false;
   }
@@ -128,15 +134,9 @@ export class VolumeMesh extends Mesh<InstancedBufferGeometry, RawShaderMaterial>
     if (!cells || !this.visible) return;
     if (cells.version !== this.version) this.upload(cells);
     this.version = cells.version;
-    const attribute = this.geometry.getAttribute('cell') as InstancedBufferAttribute | undefined;
-    if (!attribute || attribute.array.length < order.length) {
-      this.geometry.dispose();
-      this.geometry.setAttribute('cell', new InstancedBufferAttribute(order, 1).setUsage(DynamicDrawUsage));
-    } else {
-      (attribute.array as Uint32Array).set(order);
-      attribute.needsUpdate = true;
-    }
-    this.geometry.instanceCount = order.length;
+    if (order.length > this.capacity) this.grow(Math.ceil(order.length * kGrowth));
+    this.setTexture('order', rows(order, 1, RedIntegerFormat, UnsignedIntType));
+    this.geometry.setDrawRange(0, 12 * order.length);
   }
 
   setTransfer({density, integral}: TransferTables): void {
@@ -164,12 +164,21 @@ export class VolumeMesh extends Mesh<InstancedBufferGeometry, RawShaderMaterial>
   }
 
   override dispose(): void {
-    for (const name of ['vertices', 'cells', 'cellValues', 'density', 'integral']) this.setTexture(name, null);
+    for (const name of ['order', 'vertices', 'cells', 'cellValues', 'density', 'integral']) this.setTexture(name, null);
     this.geometry.dispose();
     this.material.dispose();
   }
 
   private get uniforms(): RawShaderMaterial['uniforms'] { return this.material.uniforms; }
+
+  /** Four vertices and four faces a cell, whichever cell that is: an instance a cell would be the shorter way, and ten times as slow without a GPU. */
+  private grow(cells: number): void {
+    this.capacity = cells;
+    this.geometry.dispose();
+    const index = new Uint32Array(12 * cells);
+    for (let i = 0; i < index.length; ++i) index[i] = 4 * Math.floor(i / 12) + kFaceCorners[i % 12]!;
+    this.geometry.setIndex(new BufferAttribute(index, 1));
+  }
 
   private upload({vertices, cells, cellValues}: VolumeCells): void {
     this.setTexture('vertices', rows(vertices, 4, RGBAFormat, FloatType));
@@ -195,7 +204,7 @@ function table(values: Float32Array): DataTexture { return dataTexture(values, v
 
 function dataTexture(values: Float32Array | Uint32Array, width: number, height: number, format: PixelFormat, type: TextureDataType): DataTexture {
   const texture = new DataTexture(values, width, height, format, type);
-  if (type === UnsignedIntType) texture.internalFormat = 'RGBA32UI';
+  if (type === UnsignedIntType) texture.internalFormat = format === RedIntegerFormat ? 'R32UI' : 'RGBA32UI';
   texture.minFilter = texture.magFilter = NearestFilter;
   texture.needsUpdate = true;
   return texture;
