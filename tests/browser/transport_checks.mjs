@@ -5,6 +5,7 @@ import {join} from 'node:path';
 import {kDesktop} from './browser.mjs';
 import {expectWhole} from './expect.mjs';
 import {PoorLine} from './poor_line.mjs';
+import {makeLog} from './programs.mjs';
 import {hostFolder, makeSite} from './static_host.mjs';
 
 async function readsALogFromAPlainWebServer({browser, logs, viewer: files, out}) {
@@ -74,6 +75,38 @@ async function goesOnOverHttpWhereTheSocketIsBlocked({server, browser, logs}) {
   }
 }
 
+/** A log of regions refines where it is cut before it refines elsewhere; whatever the order, it ends as the same mesh. */
+async function refinesWhatIsLookedAtFirst({server, browser, out, bin}) {
+  const log = makeLog(bin, 'regions', out, 'fin', ['--layout', 'regions', '--cells-per-packet', '1500']);
+  server.kill();
+  await server.start();
+  const shares = async (query) => {
+    const viewer = await browser.open(`${server.url}?mesh=regions&${query}`);
+    const now = () => viewer.page.evaluate(() => ({cut: window.qtetViewer.snapshot.cuts[0].positions.length, cells: window.qtetViewer.statistics.tetrahedra}));
+    await viewer.waitForState('held');
+    await viewer.waitForPicture();
+    await viewer.settle();  // the picture has told where the mesh is, and so where the plane lies in it
+    await viewer.page.evaluate(() => window.qtetViewer.setAttribute('quality', 'cells:100000'));
+    await viewer.page.waitForFunction(() => window.qtetViewer.state === 'held' && window.qtetViewer.statistics.tetrahedra >= 100000, null, {polling: 50});
+    await viewer.settle();
+    const held = await now();
+    await viewer.screenshot('regions-held');
+    await viewer.page.getByRole('button', {name: 'Continue'}).click();
+    await viewer.waitForState('complete');
+    await viewer.settle();
+    await expectWhole(viewer, log);
+    const whole = await now();
+    return {cut: held.cut / whole.cut, cells: held.cells / whole.cells};
+  };
+  const {cut, cells} = await shares('transport=range&clip=x:0.8&quality=cells:30000');
+  assert.ok(cut > 0.9 && cells < 0.6, `the cut has ${cut} of its cells when the mesh has ${cells}`);
+  const viewer = await browser.open(`${server.url}?mesh=regions&clip=y:0.3`);
+  await viewer.waitForState('complete');
+  await expectWhole(viewer, log);
+  return `${Math.round(100 * cut)} % of the cut is there with ${Math.round(100 * cells)} % of the cells`;
+}
+
 export const transportChecks = {
+  refinesWhatIsLookedAtFirst,
   readsALogFromAPlainWebServer, saysThatAFileIsMissing, takesRangesAndChunksFromAServer, goesOnOverHttpWhereTheSocketIsBlocked,
 };

@@ -4,6 +4,7 @@
 import type {QtetError} from './errors';
 import type {Frame, OpenRequest, ServerMessage} from './protocol';
 import type {Transport, TransportHandlers} from './transport';
+import type {Wishes} from './wishes';
 
 export type TransportKind = 'websocket' | 'range' | 'chunks';
 export const kTransportKinds: readonly TransportKind[] = ['websocket', 'range', 'chunks'];
@@ -32,6 +33,7 @@ export class AutoTransport implements Transport, TransportHandlers {
   open(request: OpenRequest): void { this.current.open(request); }
   stop(): void { this.current.stop(); }
   applied(bytes: number): void { this.current.applied(bytes); }
+  look(wishes: Wishes): void { this.current.look(wishes); }
   disconnect(): void {
     clearTimeout(this.timer);
     this.current.disconnect();

@@ -1,6 +1,8 @@
 // The WebAssembly codec (codec/wasm_api.h) with types: bytes in, views of the growing mesh out. One log a codec.
 
 import {QtetError} from './errors';
+import type {Counts} from './statistics';
+import type {PacketBox} from './wishes';
 
 /** What the session needs of a codec; tests bring their own. */
 export interface Codec {
@@ -18,6 +20,14 @@ export interface Codec {
   checkBlock(chunk: number, part: number, bytes: Uint8Array): void;
   apply(chunk: number, structure: Uint8Array, positions: BlockValues): void;
   applyField(field: number, chunk: number, values: BlockValues): void;
+  /** Chunks before the first packet: all of them in the layout `stream`. */
+  readonly headChunks: number;
+  /** The chunk that this one waits for; of chunk 0 itself. */
+  dependency(chunk: number): number;
+  packetBox(chunk: number): PacketBox;
+  brings(chunk: number): Counts;
+  applied(chunk: number): boolean;
+  fieldApplied(field: number, chunk: number): boolean;
   readonly chunksApplied: number;
   fieldChunksApplied(field: number): number;
   readonly level: number;
@@ -72,6 +82,12 @@ interface Exports {
   qtet_apply(
     chunk: number, structure: number, size: number, symbols: number, count: number, digits: number, digitBytes: number): number;
   qtet_apply_field(field: number, chunk: number, symbols: number, count: number, digits: number, digitBytes: number): number;
+  qtet_head_chunks(): number;
+  qtet_dependency(chunk: number): number;
+  qtet_packet_box(chunk: number): number;
+  qtet_chunk_brings(chunk: number): number;
+  qtet_applied(chunk: number): number;
+  qtet_field_applied(field: number, chunk: number): number;
   qtet_chunks_applied(): number;
   qtet_field_chunks_applied(field: number): number;
   qtet_level(): number;
@@ -124,6 +140,15 @@ export class WasmCodec implements Codec {
       this.wasm.qtet_apply_field(field, chunk, values!, symbols.length, rest!, digits.length));
   }
 
+  get headChunks(): number { return this.wasm.qtet_head_chunks() >>> 0; }
+  dependency(chunk: number): number { return this.wasm.qtet_dependency(chunk) >>> 0; }
+  packetBox(chunk: number): PacketBox { return new Uint8Array(this.wasm.memory.buffer, this.wasm.qtet_packet_box(chunk) >>> 0, 6).slice(); }
+  brings(chunk: number): Counts {
+    const [tetrahedra, vertices, boundaryTriangles] = new Uint32Array(this.wasm.memory.buffer, this.wasm.qtet_chunk_brings(chunk) >>> 0, 3);
+    return {tetrahedra: tetrahedra!, vertices: vertices!, boundaryTriangles: boundaryTriangles!};
+  }
+  applied(chunk: number): boolean { return this.wasm.qtet_applied(chunk) !== 0; }
+  fieldApplied(field: number, chunk: number): boolean { return this.wasm.qtet_field_applied(field, chunk) !== 0; }
   get chunksApplied(): number { return this.wasm.qtet_chunks_applied() >>> 0; }
   fieldChunksApplied(field: number): number { return this.wasm.qtet_field_chunks_applied(field) >>> 0; }
   get level(): number { return this.wasm.qtet_level() >>> 0; }

@@ -3,7 +3,8 @@
 import {reconnectDelayMs} from './backoff';
 import type {BlockSource, Piece} from './block_source';
 import {errorCode, errorText, QtetError} from './errors';
-import {kFirstFieldPart, kHeadPart, kStructurePart, type OpenRequest} from './protocol';
+import {kFirstFieldPart, kHeadPart, kStructurePart, type ChunkRange, type OpenRequest} from './protocol';
+import {inOrder, kNoWishes, type Wishes} from './wishes';
 import type {LogTable, Transport, TransportHandlers} from './transport';
 
 /** Under way at a time: browsers give a host six connections over HTTP/1.1, and others want some. */
@@ -17,6 +18,8 @@ export class HttpTransport implements Transport {
   isConnected = false;
   private stream = 0;
   private credit = 0;
+  /** What is still to be asked for, in that order. */
+  private pieces: Piece[] = [];
   private attempt = 0;
   private source: BlockSource;
   private abort = new AbortController();
@@ -56,6 +59,13 @@ export class HttpTransport implements Transport {
     this.creditCame();
   }
 
+  /** What is under way comes first all the same. */
+  look(wishes: Wishes): void {
+    if (!this.table.isKnown || this.table.packets.length === 0) return;
+    const rank = new Map(chunkOrder(this.table, wishes).map((chunk, i) => [chunk, i]));
+    this.pieces.sort((a, b) => rank.get(a.chunk)! - rank.get(b.chunk)! || a.firstPart - b.firstPart);
+  }
+
   disconnect(): void {
     clearTimeout(this.timer);
     this.stop();
@@ -76,27 +86,25 @@ export class HttpTransport implements Transport {
     this.handlers.message({type: 'opened', stream, mesh: request.mesh, digest, bytes: 0, planned: 0});
     if (!this.table.isKnown) deliver({chunk: 0, firstPart: kHeadPart, parts: 0}, head);
     if (signal.aborted) return;  // the manifest told the session to ask for something else
-    await this.fetchAll(piecesOf(this.table, request), deliver, signal);
+    this.pieces = piecesOf(this.table, request);
+    await this.fetchAll(deliver, signal);
     if (!signal.aborted) this.handlers.message({type: 'done', stream});
   }
 
-  private async fetchAll(pieces: Piece[], deliver: (piece: Piece, payload: Uint8Array) => void, signal: AbortSignal): Promise<void> {
+  private async fetchAll(deliver: (piece: Piece, payload: Uint8Array) => void, signal: AbortSignal): Promise<void> {
     const ahead: {pieces: Piece[]; size: number; payloads: Promise<Uint8Array[]>}[] = [];
-    let at = 0;
     let underWay = 0;
     for (;;) {
-      while (at < pieces.length && ahead.length < kAhead && underWay < this.credit) {
-        const rest = pieces.slice(at, at + kMostPieces);
-        const wanted = rest.slice(0, this.source.together(rest, this.requestBytes));
+      while (this.pieces.length > 0 && ahead.length < kAhead && underWay < this.credit) {
+        const wanted = this.pieces.splice(0, this.source.together(this.pieces.slice(0, kMostPieces), this.requestBytes));
         const payloads = this.source.fetch(wanted, signal);
         payloads.catch(() => undefined);  // it is awaited below, in its turn
         const size = wanted.reduce((sum, piece) => sum + sizeOf(this.table, piece), 0);
         ahead.push({pieces: wanted, size, payloads});
         underWay += size;
-        at += wanted.length;
       }
       const next = ahead.shift();
-      if (!next && at >= pieces.length) return;
+      if (!next && this.pieces.length === 0) return;
       if (!next) await new Promise<void>((resolve) => void (this.creditCame = resolve));
       if (signal.aborted) return;
       if (!next) continue;
@@ -144,15 +152,26 @@ export class HttpTransport implements Transport {
 /** More are never asked for by one request. */
 const kMostPieces = 256;
 
-/** What `request` lacks, in the order of proto/PROTOCOL.md: blocks that fields lag behind by, then chunk by chunk. */
-export function piecesOf(table: LogTable, {fields, have}: Pick<OpenRequest, 'fields' | 'have'>): Piece[] {
-  const wanted = fields.map((key) => ({field: table.fieldKeys.indexOf(key), from: have.fields[key] ?? 0})).filter(({field}) => field >= 0);
+/** What `request` lacks, in the order of proto/PROTOCOL.md: blocks that fields lag behind by, then chunk by chunk; of regions the head, then the packets
+ *  as they are wished for. */
+export function piecesOf(table: LogTable, {fields, have, wishes}: Pick<OpenRequest, 'fields' | 'have' | 'wishes'>): Piece[] {
+  const wanted = fields.map((key) => ({field: table.fieldKeys.indexOf(key), here: have.fields[key] ?? 0})).filter(({field}) => field >= 0);
   const pieces: Piece[] = [];
-  for (let chunk = 0; chunk < table.chunkCount; ++chunk) {
-    if (chunk >= have.chunks) pieces.push({chunk, firstPart: kStructurePart, parts: 2});
-    for (const {field, from} of wanted) if (chunk >= from) pieces.push({chunk, firstPart: kFirstFieldPart + field, parts: 1});
+  for (const chunk of chunkOrder(table, wishes)) {
+    if (!isHere(have, chunk)) pieces.push({chunk, firstPart: kStructurePart, parts: 2});
+    for (const {field, here} of wanted) if (!isHere(here, chunk)) pieces.push({chunk, firstPart: kFirstFieldPart + field, parts: 1});
   }
   return pieces;
+}
+
+function chunkOrder({chunkCount, packets, lattice}: LogTable, wishes = kNoWishes): number[] {
+  const order = Array.from({length: chunkCount - packets.length}, (_, chunk) => chunk);
+  return packets.length > 0 ? [...order, ...inOrder(packets, wishes, lattice!.size).map(({chunk}) => chunk)] : order;
+}
+
+function isHere(have: number | {chunks: number; ranges?: ChunkRange[]}, chunk: number): boolean {
+  if (typeof have === 'number') return chunk < have;
+  return chunk < have.chunks || (have.ranges ?? []).some(([first, end]) => first <= chunk && chunk < end);
 }
 
 function sizeOf(table: LogTable, {chunk, firstPart, parts}: Piece): number {

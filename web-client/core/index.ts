@@ -15,4 +15,5 @@ export {logTicks, niceTicks, type Tick, type Ticks} from './ticks';
 export {kOpacityPath, transferTables, type TransferTables} from './transfer';
 export type {TriangleSoup} from './triangle_soup';
 export type {CellOrder, VolumeCells} from './volume';
+export {kNoWishes, type Wishes} from './wishes';
 export type {FromWorker, Snapshot, Source, StreamState} from './worker_messages';

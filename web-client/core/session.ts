@@ -4,10 +4,11 @@ import type {Assembler} from './assembler';
 import {errorCode, errorText, QtetError} from './errors';
 import {errorOfLevel, kFull, limitReached, type Limit} from './limit';
 import {fieldKeys} from './manifest';
-import type {Frame, ServerMessage} from './protocol';
+import {kFirstFieldPart, kStructurePart, type Frame, type OpenRequest, type ServerMessage} from './protocol';
 import type {Publisher} from './publisher';
 import type {LogTable, Transport, TransportHandlers} from './transport';
 import {makeTransport} from './transports';
+import {kNoWishes, type Wishes} from './wishes';
 import type {FromWorker, Source, StreamState} from './worker_messages';
 
 /** Payload bytes under way: enough for 80 Mbit/s at 100 ms, and some ten chunks of decoding that a click has to wait for at most. */
@@ -34,6 +35,7 @@ export class Session implements TransportHandlers {
   private requested: string[] = [];
   private limit: Limit = kFull;
   private paused = false;
+  private wishes: Wishes = kNoWishes;
   private receivedBytes = 0;
   /** Bytes that arrived and whose credit waits until they are applied. */
   private unapplied = 0;
@@ -77,6 +79,14 @@ export class Session implements TransportHandlers {
       else this.hold();
       this.tellProgress();
     });
+  }
+
+  /** What the user looks at. */
+  look(wishes: Wishes): void {
+    this.wishes = wishes;
+    if (this.assembler.packets.length === 0) return;
+    this.assembler.look(wishes);
+    if (!this.paused) this.transport?.look(wishes);
   }
 
   pause(): void {
@@ -239,6 +249,7 @@ export class Session implements TransportHandlers {
     const unknown = this.source.fields?.find((name) => !keys.includes(name));
     if (unknown !== undefined) this.send({type: 'error', code: 'unknown-field', message: `The mesh has no field "${unknown}". The first one is shown instead.`});
     if (this.fields.length === 0 && keys.length > 0 && (this.source.fields === null || unknown !== undefined)) this.fields = [0];
+    this.assembler.look(this.wishes);
     this.send({type: 'manifest', manifest, digest: this.digest, fields: this.fields});
     if (this.source.fields !== null && this.keys().every((key) => this.requested.includes(key))) return false;
     this.open();
@@ -254,12 +265,22 @@ export class Session implements TransportHandlers {
     this.unapplied = 0;
     this.transport?.open({
       mesh: this.source.mesh, fields: this.requested, credit: probing ? 1 : kWindowBytes,
-      have: {
-        chunks: manifest ? this.assembler.receivedChunks : 0,
-        fields: manifest ? Object.fromEntries(this.fields.map((field, i) => [asked[i]!, this.assembler.receivedOfField(field)])) : {},
-      },
+      have: this.have(asked), wishes: this.wishes,
       ...(this.digest ? {digest: this.digest} : {}),
     });
+  }
+
+  private have(keys: string[]): OpenRequest['have'] {
+    const {assembler} = this;
+    if (!assembler.manifest) return {chunks: 0, fields: {}};
+    const chunks = assembler.receivedChunks;
+    const fields = this.fields.map((field, i) => {
+      const count = assembler.receivedOfField(field);
+      const ranges = assembler.packets.length > 0 ? assembler.rangesBeyond(count, kFirstFieldPart + field) : [];
+      return [keys[i]!, ranges.length > 0 ? {chunks: count, ranges} : count] as const;
+    });
+    const ranges = assembler.packets.length > 0 ? assembler.rangesBeyond(chunks, kStructurePart) : [];
+    return {chunks, ...(ranges.length > 0 ? {ranges} : {}), fields: Object.fromEntries(fields)};
   }
 
   /** Opens on the connection there is, or makes one. */

@@ -3,10 +3,11 @@
 import {reconnectDelayMs} from './backoff';
 import {errorText, QtetError} from './errors';
 import {
-  creditMessage, kSubprotocol, openMessage, parseFrame, parseServerMessage, stopMessage,
+  creditMessage, kSubprotocol, openMessage, parseFrame, parseServerMessage, stopMessage, viewMessage,
   type OpenRequest,
 } from './protocol';
-import type {Transport, TransportHandlers} from './transport';
+import type {LogTable, Transport, TransportHandlers} from './transport';
+import {kNoWishes, wireView, type Wishes} from './wishes';
 
 /** Credit is returned in portions of this share of the window: few messages, and the server never waits for one. */
 const kCreditShare = 8;
@@ -33,11 +34,13 @@ export class SocketTransport implements Transport {
   private timer: ReturnType<typeof setTimeout> | undefined;
   private window = 0;
   private owed = 0;
+  private layout = '';
+  private wishes: Wishes = kNoWishes;
 
   constructor(
     private readonly url: string, private readonly handlers: TransportHandlers,
     private readonly makeSocket: SocketFactory = (address, protocol) => new WebSocket(address, protocol) as unknown as Socket,
-    private readonly random: () => number = Math.random) {}
+    private readonly random: () => number = Math.random, private readonly table: Pick<LogTable, 'lattice'> | null = null) {}
 
   get isConnected(): boolean { return this.connected; }
 
@@ -61,7 +64,15 @@ export class SocketTransport implements Transport {
     ++this.stream;
     this.window = request.credit;
     this.owed = 0;
-    this.socket?.send(openMessage(request));
+    this.layout = '';
+    this.wishes = request.wishes ?? this.wishes;
+    this.socket?.send(openMessage(request, this.view()));
+  }
+
+  look(wishes: Wishes): void {
+    this.wishes = wishes;
+    // A server that does not say which layout the log has does not know this message.
+    if (this.connected && this.layout === 'regions') this.socket?.send(viewMessage(this.view()));
   }
 
   stop(): void {
@@ -85,6 +96,11 @@ export class SocketTransport implements Transport {
     socket.close(1000);
   }
 
+  private view(): Record<string, unknown> | null {
+    const lattice = this.table?.lattice;
+    return lattice ? wireView(this.wishes, lattice) : null;
+  }
+
   private grant(): void {
     if (!this.connected || this.owed <= 0) return;
     this.socket?.send(creditMessage(this.owed));
@@ -95,6 +111,7 @@ export class SocketTransport implements Transport {
     try {
       if (typeof data === 'string') {
         const message = parseServerMessage(data);
+        if (message?.type === 'opened') this.layout = message.layout ?? '';
         // Replies to a superseded open say nothing about the current one.
         if (message && (message.type === 'error' || message.stream === this.stream)) this.handlers.message(message);
         return;

@@ -2,6 +2,7 @@
 // messages of proto/PROTOCOL.md, and each goes on where another one ended.
 
 import type {QtetError} from './errors';
+import type {Packet, WireLattice, Wishes} from './wishes';
 import type {Frame, OpenRequest, ServerMessage} from './protocol';
 
 export interface TransportHandlers {
@@ -24,6 +25,8 @@ export interface Transport {
   stop(): void;
   /** Gives the credit of `bytes` applied payload bytes back. */
   applied(bytes: number): void;
+  /** What is looked at: of a log of regions, packets come in another order from now on. */
+  look(wishes: Wishes): void;
   /** Ends the connection for good; `connect` may be called again. */
   disconnect(): void;
 }
@@ -33,6 +36,10 @@ export interface LogTable {
   readonly isKnown: boolean;
   readonly chunkCount: number;
   readonly fieldKeys: string[];
+  /** Empty in the layout `stream`, whose order is the file's. */
+  readonly packets: readonly Packet[];
+  /** Null before the head is here. */
+  readonly lattice: (WireLattice & {size: number}) | null;
   /** In the file. */
   blockOffset(chunk: number, part: number): number;
   blockSize(chunk: number, part: number): number;

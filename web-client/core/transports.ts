@@ -17,7 +17,7 @@ export function makeTransport(source: Source, table: LogTable, handlers: Transpo
   const {url, log} = source;
   return new AutoTransport(kindsOf(source), (kind, its) => {
     switch (kind) {
-      case 'websocket': return new SocketTransport(url, its);
+      case 'websocket': return new SocketTransport(url, its, undefined, undefined, table);
       case 'range': return new HttpTransport(() => new RangeSource(log, table), table, its);
       case 'chunks': return new HttpTransport(() => new ChunkSource(log, table), table, its);
     }

@@ -56,6 +56,7 @@ function obey({session, publisher, codec, inspector}: Parts, message: Exclude<To
       publisher.show(message.display);
       return session.want(fieldsOf(message.display));
     case 'limit': return session.setLimit(message.limit);
+    case 'look': return session.look(message.wishes);
     case 'pause': return session.pause();
     case 'resume': return session.resume();
     case 'shown': return publisher.shown();

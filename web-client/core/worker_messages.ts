@@ -11,6 +11,7 @@ import type {Plane} from './slice';
 import type {Statistics} from './statistics';
 import type {TriangleSoup} from './triangle_soup';
 import type {CellOrder, VolumeCells} from './volume';
+import type {Wishes} from './wishes';
 
 /** Where the stream stands. `paused`: by the user; `held`: the level that was asked for is here. */
 export type StreamState = 'connecting' | 'streaming' | 'complete' | 'reconnecting' | 'paused' | 'held' | 'failed';
@@ -34,6 +35,7 @@ export type ToWorker =
   | {type: 'start'; source: Source}
   | {type: 'display'; display: Display}
   | {type: 'limit'; limit: Limit}
+  | {type: 'look'; wishes: Wishes}
   | {type: 'pause'}
   | {type: 'resume'}
   /** The last snapshot is on the screen: the next may come. */

@@ -1,11 +1,12 @@
 // A canvas that shows a progressive mesh: surface, cuts and isosurfaces. Draws only when something changed.
 
-import {Group, Quaternion, Raycaster, Scene, Vector2, Vector3, WebGLRenderer} from 'three';
+import {Frustum, Group, Matrix4, Quaternion, Raycaster, Scene, Vector2, Vector3, WebGLRenderer} from 'three';
 import type {Ray, Vector} from '../core/cell_ray';
 import type {ColorMapName} from '../core/color_maps';
 import {kMostPlanes} from '../core/display';
 import {transferTables} from '../core/transfer';
 import type {CellOrder, VolumeCells} from '../core/volume';
+import type {Plane} from '../core/slice';
 import type {Snapshot} from '../core/worker_messages';
 import {OrbitCamera, type CameraState} from './camera';
 import type {Direction} from './directions';
@@ -186,6 +187,17 @@ export class MeshView {
 
   /** Where the camera looks, as a unit normal in lattice coordinates. */
   get viewDirection(): Vector { return this.orbit.camera.getWorldDirection(new Vector3()).toArray(); }
+
+  /** What is in sight, as planes in lattice coordinates with the inside above; none while all of the mesh is fitted into the picture. */
+  get frustum(): Plane[] {
+    if (this.orbit.fitted || this.bounds.length === 0) return [];
+    const {camera} = this.orbit;
+    camera.updateMatrixWorld();
+    const seen = new Frustum().setFromProjectionMatrix(new Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse));
+    const scale = this.lattice.scale.x;
+    // normal . (scale p + position) + constant >= 0
+    return seen.planes.map(({normal, constant}) => ({normal: normal.toArray(), offset: -(constant + normal.dot(this.lattice.position)) / scale}));
+  }
 
   // ---- between the picture and the lattice
 

@@ -27,6 +27,7 @@ import {kMagnitude, type Scalar} from '../core/field_scale';
 import type {Manifest} from '../core/manifest';
 import {retry} from '../core/retry';
 import {kNoStatistics, type Counts, type Statistics} from '../core/statistics';
+import type {Wishes} from '../core/wishes';
 import type {FromWorker, Snapshot, StreamState} from '../core/worker_messages';
 import type {CameraState} from '../three/camera';
 import {kDirections, type Direction} from '../three/directions';
@@ -95,6 +96,7 @@ export class QtetViewer extends HTMLElement implements Host {
   private writing = false;
   private cameraTimer: ReturnType<typeof setTimeout> | undefined;
   private toldCamera = '';
+  private toldWishes = '';
   private lastCells: {at: number; cells: number} = {at: 0, cells: 0};
 
   // ---- for the page
@@ -279,7 +281,7 @@ export class QtetViewer extends HTMLElement implements Host {
   private forget(): void {
     this.manifest = this.pending = this.snapshot = null;
     this.bounds = [];
-    this.sentDisplay = '';
+    this.sentDisplay = this.toldWishes = '';
     this.loaded = false;
     this.figures = kNoStatistics;
     this.lastCells = {at: 0, cells: 0};
@@ -373,6 +375,16 @@ export class QtetViewer extends HTMLElement implements Host {
     this.sentDisplay = text;
     this.parts!.progress.follow(display.color ? [display.color.field] : [], settings.limit);
     this.client?.show(display);
+    this.lookAt();
+  }
+
+  /** Tells a log of regions what to refine first. */
+  private lookAt(): void {
+    const planes = this.bounds.length > 0 ? this.settings.planes.map((plane) => planeOf(plane, this.bounds)) : [];
+    const wishes: Wishes = {frustum: this.meshView?.frustum ?? [], planes, point: null};
+    const text = JSON.stringify(wishes);
+    if (text !== this.toldWishes) this.client?.look(wishes);
+    this.toldWishes = text;
   }
 
   // ---- controls
@@ -494,6 +506,7 @@ export class QtetViewer extends HTMLElement implements Host {
       const state = this.meshView?.cameraState;
       if (!state || this.bounds.length === 0 || state.join() === this.toldCamera) return;
       this.toldCamera = state.join();
+      this.lookAt();
       this.tell('camera-change', state);
     }, kRestMs);
   }
