@@ -7,6 +7,8 @@ import type {PacketBox} from './wishes';
 /** What the session needs of a codec; tests bring their own. */
 export interface Codec {
   open(head: Uint8Array): void;
+  /** After `out-of-memory`: an empty codec, whose memory is the browser's again. */
+  restart(): void;
   readonly chunkCount: number;
   /** Numbers of all levels, column by column, from the end of the manifest. Throws `limit-exceeded`, `truncated`, `bad-value`. */
   levelColumns(bytes: Uint8Array, columns: number): Uint32Array;
@@ -102,14 +104,13 @@ interface Exports {
 }
 
 export class WasmCodec implements Codec {
-  private constructor(private readonly wasm: Exports) {}
+  private constructor(private readonly module: WebAssembly.Module, private wasm: Exports) {}
 
   static async create(module: WebAssembly.Module): Promise<WasmCodec> {
-    const instance = await WebAssembly.instantiate(module, stubbedImports(module));
-    const wasm = instance.exports as unknown as Exports;
-    wasm._initialize?.();
-    return new WasmCodec(wasm);
+    return new WasmCodec(module, begin(await WebAssembly.instantiate(module, stubbedImports(module))));
   }
+
+  restart(): void { this.wasm = begin(new WebAssembly.Instance(this.module, stubbedImports(this.module))); }
 
   open(head: Uint8Array): void {
     this.with([head], ([address]) => this.wasm.qtet_open(address!, head.length));
@@ -181,11 +182,11 @@ export class WasmCodec implements Codec {
   private with(blocks: Uint8Array[], use: (addresses: number[]) => number): void {
     const addresses = blocks.map((bytes) => {
       const address = this.wasm.qtet_alloc(Math.max(bytes.length, 1)) >>> 0;
-      if (address === 0) throw new QtetError('limit-exceeded', 'This mesh needs more memory than the browser gives to a page.');
+      if (address === 0) throw outOfMemory();
       new Uint8Array(this.wasm.memory.buffer, address, bytes.length).set(bytes);
       return address;
     });
-    const result = use(addresses);
+    const result = guarded(() => use(addresses));
     for (const address of addresses) this.wasm.qtet_free(address);
     if (result !== 0) throw new QtetError(kErrorCodes[result - 1] ?? 'internal', this.lastError());
   }
@@ -196,6 +197,24 @@ export class WasmCodec implements Codec {
     return new TextDecoder().decode(memory.slice(from, memory.indexOf(0, from)));
   }
 }
+
+function begin({exports}: WebAssembly.Instance): Exports {
+  const wasm = exports as unknown as Exports;
+  wasm._initialize?.();
+  return wasm;
+}
+
+/** The module has no exceptions: where memory ends, it stops for good. */
+function guarded(call: () => number): number {
+  try {
+    return call();
+  } catch (thrown) {
+    if (thrown instanceof WebAssembly.RuntimeError) throw outOfMemory();
+    throw thrown;
+  }
+}
+
+function outOfMemory(): QtetError { return new QtetError('out-of-memory', 'The whole mesh needs more memory than the browser gives to a page.'); }
 
 function bytesOf(values: Int32Array): Uint8Array {
   return new Uint8Array(values.buffer, values.byteOffset, values.byteLength);

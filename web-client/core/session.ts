@@ -16,10 +16,13 @@ const kWindowBytes = 1 << 20;
 /** Decoding pauses this often for commands from the page. */
 const kSliceMs = 25;
 
+/** Of the cells at which memory ended: their pictures need some, too. */
+const kFittingShare = 0.7;
+
 /** What the codec's sentences leave open: what one sees now, and what to do. */
 const kWaysOut: Record<string, string> = {
   'bad-checksum': '. What came before is sound and stays on the screen. Try again to fetch the rest anew; if it fails at the same chunk, the file itself is damaged: "qtet verify" says where.',
-  'limit-exceeded': ' The mesh stays at the level that fits. Close other tabs, or choose a limit under "Level of detail" and try again.',
+  'out-of-memory': ' It stays at a level that fits. Close other tabs and try again for more.',
 };
 
 export type TransportFactory = (source: Source, table: LogTable, handlers: TransportHandlers) => Transport;
@@ -222,8 +225,26 @@ export class Session implements TransportHandlers {
       action();
     } catch (thrown) {
       const code = errorCode(thrown);
+      if (code === 'out-of-memory' && this.stayAtWhatFits()) return;
       this.failed(new QtetError(code, `${errorText(thrown)}${kWaysOut[code] ?? ''}`));
     }
+  }
+
+  /** Begins anew in a fresh codec and ends with room to spare. False when not even the base mesh fits. */
+  private stayAtWhatFits(): boolean {
+    const {tetrahedra} = this.assembler.statistics(this.fields);
+    if (tetrahedra === 0) return false;
+    clearTimeout(this.timer);
+    this.transport?.disconnect();
+    this.limit = this.source.limit = {kind: 'cells', value: Math.max(1, Math.floor(kFittingShare * tetrahedra))};
+    this.guarded(() => {
+      this.assembler.codec.restart();
+      this.goBack();
+      this.send({type: 'error', code: 'out-of-memory', message: `The whole mesh needs more memory than the browser gives to a page.${kWaysOut['out-of-memory']}`});
+      this.tellProgress();
+      this.hold();
+    });
+    return true;
   }
 
   private forget(): void {

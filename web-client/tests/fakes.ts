@@ -91,6 +91,13 @@ export class FakeCodec implements Codec {
 
   constructor(private readonly log: FakeLog) { this.headBytes = fakeHead(log).length; }
 
+  /** Chunks that fit into memory. */
+  room = Infinity;
+  restarts = 0;
+  restart(): void {
+    ++this.restarts;
+    this.chunksApplied = 0;
+  }
   open(): void {
     this.chunksApplied = 0;
     this.fieldChunks = this.log.fields.map(() => 0);
@@ -111,6 +118,7 @@ export class FakeCodec implements Codec {
     if (chunk === this.corrupt) throw new QtetError('bad-checksum', `chunk ${chunk} is damaged`);
   }
   apply(chunk: number): void {
+    if (chunk >= this.room) throw new QtetError('out-of-memory', 'no room');
     if (chunk !== this.chunksApplied) throw new QtetError('bad-order', `chunk ${chunk} after ${this.chunksApplied} chunks`);
     ++this.chunksApplied;
   }

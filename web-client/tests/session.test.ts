@@ -248,3 +248,27 @@ describe('pausing', () => {
     expect(sockets).toHaveLength(2);
   });
 });
+
+describe('memory', () => {
+  test('whereItEndsTheMeshStaysAtALevelThatFits', () => {
+    codec.room = 2;
+    const socket = start();
+    opened(socket, 1);
+    socket.deliver(headFrame(1, kLog));
+    sendAll(socket, 1, 0);
+    expect(errors()).toEqual(['out-of-memory']);
+    expect(codec.restarts).toBe(1);
+    expect(states().at(-1)).toBe('held');
+    expect(codec.chunksApplied).toBe(1);
+  });
+
+  test('whereNotEvenTheFirstChunkFitsItFails', () => {
+    codec.room = 0;
+    const socket = start();
+    opened(socket, 1);
+    socket.deliver(headFrame(1, kLog));
+    sendAll(socket, 1, 0);
+    expect(errors()).toEqual(['out-of-memory']);
+    expect(states().at(-1)).toBe('failed');
+  });
+});
