@@ -102,6 +102,27 @@ std::uint32_t qtet_block_codec(std::uint32_t chunk, std::uint32_t part) {
   return static_cast<std::uint32_t>(part == qtet::kStructurePart ? e.structureCodec : e.valueCodec);
 }
 
+std::uint32_t qtet_head_chunks() { return refiner ? refiner->refiner().index().headChunks() : 0; }
+std::uint32_t qtet_dependency(std::uint32_t chunk) {
+  if (!hasBlock(chunk, qtet::kStructurePart)) return 0;
+  const LogIndex& index = refiner->refiner().index();
+  const qtet::ChunkEntry& e = index.chunks[chunk];
+  return e.dependencyCount == 0 ? chunk : index.dependencies[e.firstDependency];
+}
+const std::uint8_t* qtet_packet_box(std::uint32_t chunk) {
+  static_assert(sizeof(qtet::PacketBox) == 6);
+  return hasBlock(chunk, qtet::kStructurePart) ? refiner->refiner().index().chunks[chunk].box.least.data() : nullptr;
+}
+const std::uint32_t* qtet_chunk_brings(std::uint32_t chunk) {
+  static std::uint32_t counts[3];
+  if (!hasBlock(chunk, qtet::kStructurePart)) return nullptr;
+  const qtet::ChunkEntry& e = refiner->refiner().index().chunks[chunk];
+  counts[0] = e.newTetrahedra;
+  counts[1] = e.newVertices;
+  counts[2] = e.newBoundaryTriangles;
+  return counts;
+}
+
 int qtet_check_block(std::uint32_t chunk, std::uint32_t part, const std::uint8_t* bytes, std::uint32_t size) {
   if (!hasBlock(chunk, part)) return report({ErrorCode::kNotFound, "there is no such block"});
   const qtet::BlockEntry& b = refiner->refiner().index().block(chunk, part);
@@ -137,6 +158,10 @@ void qtet_forget_beyond() {
 }
 
 std::uint32_t qtet_chunks_applied() { return refiner ? refiner->refiner().chunksApplied() : 0; }
+bool qtet_applied(std::uint32_t chunk) { return hasBlock(chunk, qtet::kStructurePart) && refiner->refiner().applied(chunk); }
+bool qtet_field_applied(std::uint32_t field, std::uint32_t chunk) {
+  return hasBlock(chunk, qtet::kFirstFieldPart + field) && refiner->refiner().fieldApplied(field, chunk);
+}
 std::uint32_t qtet_field_chunks_applied(std::uint32_t field) {
   return refiner && field < refiner->refiner().index().fields.size() ? refiner->refiner().fieldChunksApplied(field) : 0;
 }

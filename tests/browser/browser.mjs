@@ -120,10 +120,10 @@ function watchTasksAndEvents() {
   document.addEventListener('DOMContentLoaded', () => {
     const viewer = document.querySelector('qtet-viewer');
     for (const type of ['load', 'refine', 'progress', 'complete', 'error']) {
-      viewer.addEventListener(type, () => {
+      viewer.addEventListener(type, (event) => {
         if (type === 'load' || type === 'refine') ++seen.pictures;
         if (type === 'load') seen.loadedAt = performance.now();
-        if (type !== 'progress') seen.events.push({type, at: performance.now()});
+        if (type !== 'progress') seen.events.push({type, at: performance.now(), bytes: event.detail?.bytes});
       });
     }
   });

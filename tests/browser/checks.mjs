@@ -2,19 +2,12 @@
 
 import assert from 'node:assert/strict';
 import {kDesktop, kPhone} from './browser.mjs';
+import {expectWhole} from './expect.mjs';
 import {coloredShare, differingShare} from './png.mjs';
 import {PoorLine} from './poor_line.mjs';
 
 /** Bytes after which the coarse picture is taken: some levels of the samples, never all. */
 const kCoarseBytes = 50000;
-
-async function expectWhole(viewer, log) {
-  const {tetrahedra, total, bytes, bytesNeeded} = await viewer.statistics();
-  assert.equal(tetrahedra, total.tetrahedra);
-  assert.equal(bytes, bytesNeeded);
-  assert.equal(await viewer.digest(), log.meshDigest);
-  assert.deepEqual(viewer.problems, []);
-}
 
 async function refinesToTheOriginal({server, browser, logs}) {
   const notes = [];

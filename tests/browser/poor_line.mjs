@@ -7,6 +7,8 @@ const kTickMs = 20;
 export class PoorLine {
   #relay;
   #connections = new Set();
+  /** From now on no WebSocket gets through, as behind some companies' proxies. */
+  refuseStreams = false;
 
   /** `bytesPerSecond` towards the browser on each connection, or on those of /v1/stream only; `delayMs` is added each way. Of the first connection of
    *  /v1/stream byte `damageAt` arrives changed. */
@@ -25,6 +27,7 @@ export class PoorLine {
       let damage = -1;
       browser.on('data', (bytes) => {
         const stream = bytes.includes('GET /v1/stream');
+        if (stream && line.refuseStreams) return void end();
         slow ||= stream;
         if (stream) [damage, damageAt] = [damageAt, -1];
         setTimeout(() => server.writable && server.write(bytes), delayMs);

@@ -6,16 +6,16 @@ import {join} from 'node:path';
 
 const kStartTimeoutMs = 20000;
 
-/** Makes OUT/logs/NAME.qtet from the sample NAME and asks the tool for the digest of the whole mesh. */
-export function makeLog(bin, name, out) {
+/** Makes OUT/logs/NAME.qtet from a sample and asks the tool for the digest of the whole mesh. `options`: further words for `qtet simplify`. */
+export function makeLog(bin, name, out, sample = name, options = []) {
   const folder = join(out, 'logs');
   const mesh = join(out, `${name}.vtu`);
   const log = join(folder, `${name}.qtet`);
   const tool = join(bin, 'qtet');
   mkdirSync(folder, {recursive: true});
   const run = (...words) => execFileSync(tool, words, {encoding: 'utf8', stdio: ['ignore', 'pipe', 'pipe']});
-  run('sample', name, '-o', mesh);
-  run('simplify', mesh, '-o', log);
+  run('sample', sample, '-o', mesh);
+  run('simplify', mesh, '-o', log, ...options);
   const report = JSON.parse(run('verify', log, '--json'));
   return {name, folder, meshDigest: report.meshDigest};
 }

@@ -6,6 +6,8 @@ import {mkdirSync} from 'node:fs';
 import {parseArgs} from 'node:util';
 import {Browser} from './browser.mjs';
 import {checks} from './checks.mjs';
+import {transportChecks} from './transport_checks.mjs';
+import {volumeChecks} from './volume_checks.mjs';
 import {makeLog, Server} from './programs.mjs';
 
 const {values: options} = parseArgs({
@@ -22,12 +24,12 @@ const server = new Server(options.bin, logs.fin.folder, options.viewer);
 const browser = await Browser.launch(options.out);
 let failures = 0;
 try {
-  for (const [name, check] of Object.entries(checks)) {
+  for (const [name, check] of Object.entries({...checks, ...transportChecks, ...volumeChecks})) {
     if (!name.includes(options.only)) continue;
     const start = Date.now();
     try {
       await server.start();
-      const note = await check({server, browser, logs});
+      const note = await check({server, browser, logs, viewer: options.viewer, out: options.out, bin: options.bin});
       console.log(`ok    ${name} (${Date.now() - start} ms)${note ? `: ${note}` : ''}`);
     } catch (thrown) {
       ++failures;

@@ -4,20 +4,26 @@
 import {kAdaptiveCodec, kDracoCodec, type BlockValues, type Codec} from './codec';
 import type {ValueDecoder} from './draco';
 import {QtetError} from './errors';
-import {readManifest, type Manifest} from './manifest';
+import {fieldKeys, readManifest, type Manifest} from './manifest';
 import {kFirstFieldPart, kHeadPart, kPositionsPart, kStructurePart, type Frame} from './protocol';
-import {ByteLedger, kNoStatistics, statisticsOf, type Statistics} from './statistics';
+import {Ledger, kNoStatistics, statisticsOf, type Statistics} from './statistics';
+import type {LogTable} from './transport';
+import {inOrder, kNoWishes, type Packet, type WireLattice, type Wishes} from './wishes';
 
 /** The number of a value block's digit bytes stands in its last bytes. */
 const kDigitCountBytes = 4;
 
-export class Assembler {
+export class Assembler implements LogTable {
   manifest: Manifest | null = null;
-  private ledger: ByteLedger | null = null;
+  private ledger: Ledger | null = null;
   private head: Uint8Array | null = null;
   /** By chunk and part. */
   private blocks: (Uint8Array | undefined)[][] = [];
   private received: number[] = [];
+  private packetList: Packet[] = [];
+  private rank = new Map<number, number>();
+  /** Chunks whose structure and positions are here and not applied, in the order of their coming. */
+  private readonly ready = new Set<number>();
 
   constructor(readonly codec: Codec, private readonly values: ValueDecoder) {}
 
@@ -25,7 +31,25 @@ export class Assembler {
     this.manifest = this.ledger = this.head = null;
     this.blocks = [];
     this.received = [];
+    this.packetList = [];
+    this.ready.clear();
   }
+
+  // ---- LogTable
+
+  get isKnown(): boolean { return this.manifest !== null; }
+  get chunkCount(): number { return this.codec.chunkCount; }
+  get fieldKeys(): string[] { return fieldKeys(this.manifest?.fields ?? []); }
+  blockOffset(chunk: number, part: number): number { return this.codec.blockOffset(chunk, part); }
+  blockSize(chunk: number, part: number): number { return this.codec.blockSize(chunk, part); }
+
+  get packets(): readonly Packet[] { return this.packetList; }
+  get lattice(): (WireLattice & {size: number}) | null {
+    const lattice = this.manifest?.lattice;
+    return lattice ? {origin: lattice.origin, step: lattice.step, size: 2 ** lattice.bits} : null;
+  }
+
+  // ---- blocks
 
   /** Leading chunks that are here: of the mesh, and of one field. */
   get receivedChunks(): number { return Math.min(this.leading(kStructurePart), this.leading(kPositionsPart)); }
@@ -39,17 +63,56 @@ export class Assembler {
   /** Applies the next block of the fields, or else the next chunk of the mesh if `refine`; false when neither is here. Throws what the codec refuses. */
   step(fields: readonly number[], refine: boolean): boolean {
     for (const field of fields) if (this.stepField(field)) return true;
-    const chunk = this.codec.chunksApplied;
-    const structure = this.blocks[chunk]?.[kStructurePart];
-    const positions = this.blocks[chunk]?.[kPositionsPart];
-    if (!refine || !structure || !positions) return false;
+    const chunk = refine ? this.nextChunk() : -1;
+    if (chunk < 0) return false;
+    const [structure, positions] = this.blocks[chunk] as [Uint8Array, Uint8Array];
     this.codec.apply(chunk, structure, this.decode(chunk, kPositionsPart, positions, 3));
+    this.ready.delete(chunk);
+    this.ledger!.addChunk(chunk);
     return true;
   }
 
   /** Back to the empty mesh; the blocks stay. */
   rewind(): void {
-    if (this.head) this.codec.open(this.head);
+    if (!this.head) return;
+    this.codec.open(this.head);
+    this.ledger!.clear();
+    this.blocks.forEach((parts, chunk) => {
+      if (parts[kStructurePart] && parts[kPositionsPart]) this.ready.add(chunk);
+    });
+  }
+
+  /** Chunks from the last leading one on that are here, as [first, end) each. */
+  rangesBeyond(count: number, part: number): [number, number][] {
+    const ranges: [number, number][] = [];
+    for (let chunk = count; chunk < this.blocks.length; ++chunk) {
+      if (!this.blocks[chunk]![part] || !this.blocks[chunk]![kPositionsPart]) continue;
+      const last = ranges.at(-1);
+      if (last?.[1] === chunk) ++last[1];
+      else ranges.push([chunk, chunk + 1]);
+    }
+    return ranges;
+  }
+
+  /** What is looked at is also decoded first. */
+  look(wishes: Wishes): void {
+    const {lattice, packets} = this;
+    this.rank = new Map(lattice ? inOrder(packets, wishes, lattice.size).map(({chunk}, i) => [chunk, i]) : []);
+  }
+
+  /** Of the head before every packet. */
+  private rankOf(chunk: number): number { return this.rank.get(chunk) ?? chunk - this.codec.chunkCount; }
+
+  /** The most urgent of those that are here and whose parent is applied; -1: none. */
+  private nextChunk(): number {
+    const {codec} = this;
+    if (codec.headChunks === codec.chunkCount) return this.ready.has(codec.chunksApplied) ? codec.chunksApplied : -1;
+    let best = -1;
+    for (const chunk of this.ready) {
+      if (chunk > 0 && !codec.applied(codec.dependency(chunk))) continue;
+      if (best < 0 || this.rankOf(chunk) < this.rankOf(best)) best = chunk;
+    }
+    return best;
   }
 
   /** Keeps what the frame holds. Throws bad-order, bad-message, bad-checksum and what the codec says of a head. */
@@ -75,15 +138,20 @@ export class Assembler {
   private takeHead(head: Uint8Array): void {
     this.codec.open(head);
     this.manifest = readManifest(head, (bytes, columns) => this.codec.levelColumns(bytes, columns));
-    this.ledger = new ByteLedger(this.codec, head.length);
+    this.ledger = new Ledger(this.codec, head.length);
     this.head = head.slice();
+    this.packetList = packetsOf(this.codec);
+    this.look(kNoWishes);
+    this.ready.clear();
     this.blocks = Array.from({length: this.codec.chunkCount}, () => []);
     this.received = Array<number>(kFirstFieldPart + this.manifest.fields.length).fill(0);
   }
 
   private keep(chunk: number, part: number, bytes: Uint8Array): void {
     this.codec.checkBlock(chunk, part, bytes);
-    this.blocks[chunk]![part] = bytes;
+    const parts = this.blocks[chunk]!;
+    parts[part] = bytes;
+    if (part < kFirstFieldPart && parts[kStructurePart] && parts[kPositionsPart] && !this.codec.applied(chunk)) this.ready.add(chunk);
   }
 
   private leading(part: number): number {
@@ -93,12 +161,24 @@ export class Assembler {
   }
 
   private stepField(field: number): boolean {
-    const chunk = this.codec.fieldChunksApplied(field);
+    const chunk = this.nextOfField(field);
+    if (chunk < 0) return false;
     const part = kFirstFieldPart + field;
-    const bytes = this.blocks[chunk]?.[part];
-    if (!bytes || chunk >= this.codec.chunksApplied) return false;
-    this.codec.applyField(field, chunk, this.decode(chunk, part, bytes, this.manifest!.fields[field]!.components));
+    this.codec.applyField(field, chunk, this.decode(chunk, part, this.blocks[chunk]![part]!, this.manifest!.fields[field]!.components));
+    this.ledger!.addField(field, chunk);
     return true;
+  }
+
+  private nextOfField(field: number): number {
+    const {codec} = this;
+    const part = kFirstFieldPart + field;
+    const count = codec.fieldChunksApplied(field);
+    if (count < codec.headChunks) return count < codec.chunksApplied && this.blocks[count]?.[part] ? count : -1;
+    if (count === codec.chunksApplied) return -1;
+    for (let chunk = codec.headChunks; chunk < codec.chunkCount; ++chunk) {
+      if (this.blocks[chunk]![part] && codec.applied(chunk) && !codec.fieldApplied(field, chunk) && codec.fieldApplied(field, codec.dependency(chunk))) return chunk;
+    }
+    return -1;
   }
 
   private decode(chunk: number, part: number, bytes: Uint8Array, components: number): BlockValues {
@@ -114,4 +194,13 @@ export class Assembler {
     const digits = bytes.subarray(end - digitBytes, end);
     return {symbols: this.values.decode(bytes.subarray(0, end - digitBytes), count, components), digits};
   }
+}
+
+function packetsOf(codec: Codec): Packet[] {
+  const packets: Packet[] = [];
+  for (let chunk = codec.headChunks; chunk < codec.chunkCount; ++chunk) {
+    const parent = packets[codec.dependency(chunk) - codec.headChunks];
+    packets.push({chunk, depth: parent ? parent.depth + 1 : 0, box: codec.packetBox(chunk)});
+  }
+  return packets;
 }

@@ -5,6 +5,8 @@ import type {Ray, Vector} from './cell_ray';
 import type {Display} from './display';
 import type {Pick, Probe} from './inspector';
 import type {Limit} from './limit';
+import type {CellOrder} from './volume';
+import type {Wishes} from './wishes';
 import type {FromWorker, Question, Source, ToWorker} from './worker_messages';
 
 export type Listener = (message: Exclude<FromWorker, {type: 'answer'}>) => void;
@@ -36,6 +38,8 @@ export class Client {
   /** REQUIRES: fields of the last `manifest` message. Its fields are fetched if they are not here. */
   show(display: Display): void { this.post({type: 'display', display}); }
   setLimit(limit: Limit): void { this.post({type: 'limit', limit}); }
+  /** What the user looks at, which logs of regions refine first. */
+  look(wishes: Wishes): void { this.post({type: 'look', wishes}); }
   pause(): void { this.post({type: 'pause'}); }
   resume(): void { this.post({type: 'resume'}); }
   /** To be called once a snapshot is on the screen; the next one waits for it. */
@@ -45,6 +49,9 @@ export class Client {
   digest(): Promise<string> { return this.ask({type: 'digest'}); }
   pick(ray: Ray): Promise<Pick | null> { return this.ask({type: 'pick', ray}); }
   probe(from: Vector, to: Vector): Promise<Probe | null> { return this.ask({type: 'probe', from, to}); }
+
+  /** The cells of the last snapshot's volume from back to front. */
+  order(eye: Vector): Promise<CellOrder> { return this.ask({type: 'order', eye}); }
 
   dispose(): void { this.worker.terminate(); }
 

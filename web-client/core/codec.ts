@@ -1,13 +1,19 @@
 // The WebAssembly codec (codec/wasm_api.h) with types: bytes in, views of the growing mesh out. One log a codec.
 
 import {QtetError} from './errors';
+import type {Counts} from './statistics';
+import type {PacketBox} from './wishes';
 
 /** What the session needs of a codec; tests bring their own. */
 export interface Codec {
   open(head: Uint8Array): void;
+  /** After `out-of-memory`: an empty codec, whose memory is the browser's again. */
+  restart(): void;
   readonly chunkCount: number;
   /** Numbers of all levels, column by column, from the end of the manifest. Throws `limit-exceeded`, `truncated`, `bad-value`. */
   levelColumns(bytes: Uint8Array, columns: number): Uint32Array;
+  /** In the file. */
+  blockOffset(chunk: number, part: number): number;
   blockSize(chunk: number, part: number): number;
   /** Tuples of a value block. */
   blockValues(chunk: number, part: number): number;
@@ -16,6 +22,14 @@ export interface Codec {
   checkBlock(chunk: number, part: number, bytes: Uint8Array): void;
   apply(chunk: number, structure: Uint8Array, positions: BlockValues): void;
   applyField(field: number, chunk: number, values: BlockValues): void;
+  /** Chunks before the first packet: all of them in the layout `stream`. */
+  readonly headChunks: number;
+  /** The chunk that this one waits for; of chunk 0 itself. */
+  dependency(chunk: number): number;
+  packetBox(chunk: number): PacketBox;
+  brings(chunk: number): Counts;
+  applied(chunk: number): boolean;
+  fieldApplied(field: number, chunk: number): boolean;
   readonly chunksApplied: number;
   fieldChunksApplied(field: number): number;
   readonly level: number;
@@ -61,6 +75,7 @@ interface Exports {
   qtet_level_count(): number;
   qtet_level_columns(bytes: number, size: number, columns: number): number;
   qtet_level_numbers(): number;
+  qtet_block_offset(chunk: number, part: number): number;
   qtet_block_size(chunk: number, part: number): number;
   qtet_block_values(chunk: number, part: number): number;
   qtet_field_association(field: number): number;
@@ -69,6 +84,12 @@ interface Exports {
   qtet_apply(
     chunk: number, structure: number, size: number, symbols: number, count: number, digits: number, digitBytes: number): number;
   qtet_apply_field(field: number, chunk: number, symbols: number, count: number, digits: number, digitBytes: number): number;
+  qtet_head_chunks(): number;
+  qtet_dependency(chunk: number): number;
+  qtet_packet_box(chunk: number): number;
+  qtet_chunk_brings(chunk: number): number;
+  qtet_applied(chunk: number): number;
+  qtet_field_applied(field: number, chunk: number): number;
   qtet_chunks_applied(): number;
   qtet_field_chunks_applied(field: number): number;
   qtet_level(): number;
@@ -83,14 +104,13 @@ interface Exports {
 }
 
 export class WasmCodec implements Codec {
-  private constructor(private readonly wasm: Exports) {}
+  private constructor(private readonly module: WebAssembly.Module, private wasm: Exports) {}
 
   static async create(module: WebAssembly.Module): Promise<WasmCodec> {
-    const instance = await WebAssembly.instantiate(module, stubbedImports(module));
-    const wasm = instance.exports as unknown as Exports;
-    wasm._initialize?.();
-    return new WasmCodec(wasm);
+    return new WasmCodec(module, begin(await WebAssembly.instantiate(module, stubbedImports(module))));
   }
+
+  restart(): void { this.wasm = begin(new WebAssembly.Instance(this.module, stubbedImports(this.module))); }
 
   open(head: Uint8Array): void {
     this.with([head], ([address]) => this.wasm.qtet_open(address!, head.length));
@@ -102,6 +122,7 @@ export class WasmCodec implements Codec {
     const count = columns * (this.wasm.qtet_level_count() >>> 0);
     return new Uint32Array(this.wasm.memory.buffer, this.wasm.qtet_level_numbers() >>> 0, count).slice();
   }
+  blockOffset(chunk: number, part: number): number { return this.wasm.qtet_block_offset(chunk, part); }
   blockSize(chunk: number, part: number): number { return this.wasm.qtet_block_size(chunk, part) >>> 0; }
   blockValues(chunk: number, part: number): number { return this.wasm.qtet_block_values(chunk, part) >>> 0; }
   blockCodec(chunk: number, part: number): number { return this.wasm.qtet_block_codec(chunk, part) >>> 0; }
@@ -120,6 +141,15 @@ export class WasmCodec implements Codec {
       this.wasm.qtet_apply_field(field, chunk, values!, symbols.length, rest!, digits.length));
   }
 
+  get headChunks(): number { return this.wasm.qtet_head_chunks() >>> 0; }
+  dependency(chunk: number): number { return this.wasm.qtet_dependency(chunk) >>> 0; }
+  packetBox(chunk: number): PacketBox { return new Uint8Array(this.wasm.memory.buffer, this.wasm.qtet_packet_box(chunk) >>> 0, 6).slice(); }
+  brings(chunk: number): Counts {
+    const [tetrahedra, vertices, boundaryTriangles] = new Uint32Array(this.wasm.memory.buffer, this.wasm.qtet_chunk_brings(chunk) >>> 0, 3);
+    return {tetrahedra: tetrahedra!, vertices: vertices!, boundaryTriangles: boundaryTriangles!};
+  }
+  applied(chunk: number): boolean { return this.wasm.qtet_applied(chunk) !== 0; }
+  fieldApplied(field: number, chunk: number): boolean { return this.wasm.qtet_field_applied(field, chunk) !== 0; }
   get chunksApplied(): number { return this.wasm.qtet_chunks_applied() >>> 0; }
   fieldChunksApplied(field: number): number { return this.wasm.qtet_field_chunks_applied(field) >>> 0; }
   get level(): number { return this.wasm.qtet_level() >>> 0; }
@@ -152,11 +182,11 @@ export class WasmCodec implements Codec {
   private with(blocks: Uint8Array[], use: (addresses: number[]) => number): void {
     const addresses = blocks.map((bytes) => {
       const address = this.wasm.qtet_alloc(Math.max(bytes.length, 1)) >>> 0;
-      if (address === 0) throw new QtetError('limit-exceeded', 'This mesh needs more memory than the browser gives to a page.');
+      if (address === 0) throw outOfMemory();
       new Uint8Array(this.wasm.memory.buffer, address, bytes.length).set(bytes);
       return address;
     });
-    const result = use(addresses);
+    const result = guarded(() => use(addresses));
     for (const address of addresses) this.wasm.qtet_free(address);
     if (result !== 0) throw new QtetError(kErrorCodes[result - 1] ?? 'internal', this.lastError());
   }
@@ -167,6 +197,24 @@ export class WasmCodec implements Codec {
     return new TextDecoder().decode(memory.slice(from, memory.indexOf(0, from)));
   }
 }
+
+function begin({exports}: WebAssembly.Instance): Exports {
+  const wasm = exports as unknown as Exports;
+  wasm._initialize?.();
+  return wasm;
+}
+
+/** The module has no exceptions: where memory ends, it stops for good. */
+function guarded(call: () => number): number {
+  try {
+    return call();
+  } catch (thrown) {
+    if (thrown instanceof WebAssembly.RuntimeError) throw outOfMemory();
+    throw thrown;
+  }
+}
+
+function outOfMemory(): QtetError { return new QtetError('out-of-memory', 'The whole mesh needs more memory than the browser gives to a page.'); }
 
 function bytesOf(values: Int32Array): Uint8Array {
   return new Uint8Array(values.buffer, values.byteOffset, values.byteLength);

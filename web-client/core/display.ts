@@ -23,9 +23,11 @@ export interface Display {
   isosurfaces: {scalar: Scalar; values: number[]} | null;
   /** Cells outside [low, high], in [0, 1] over the scalarRange, are hidden. */
   threshold: {scalar: Scalar; low: number; high: number} | null;
+  /** The cells themselves are wanted, to be seen through, coloured by `color`. */
+  volume: boolean;
 }
 
-export const kPlainDisplay: Display = {color: null, body: true, mode: 'cut', planes: [], isosurfaces: null, threshold: null};
+export const kPlainDisplay: Display = {color: null, body: true, mode: 'cut', planes: [], isosurfaces: null, threshold: null, volume: false};
 
 /** The fields that a display needs, each once. */
 export function fieldsOf(display: Display): number[] {

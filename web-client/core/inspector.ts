@@ -93,7 +93,7 @@ function firstSeen(mesh: MeshNow, ray: Ray, stretch: Stretch, display: Display):
   const planes = cuttingPlanes(display);
   const visible = below(planes, ray, stretch);
   let t = Infinity;
-  if (display.body && display.mode !== 'slice' && visible) t = visible.from;
+  if (visible && (display.volume || (display.body && display.mode !== 'slice'))) t = visible.from;
   if (display.mode === 'slice') {
     for (const {normal, offset} of display.planes) {
       const at = (offset - dot(normal, ray.origin)) / dot(normal, ray.direction);

@@ -1,6 +1,7 @@
 // The wire in TypeScript: messages and the binary frame of proto/PROTOCOL.md, read with every count checked.
 
 import {QtetError} from './errors';
+import type {Wishes} from './wishes';
 
 export const kSubprotocol = 'qtet.v1';
 export const kFrameHeaderBytes = 16;
@@ -11,16 +12,25 @@ export const kStructurePart = 0;
 export const kPositionsPart = 1;
 export const kFirstFieldPart = 2;
 
+/** [first, end) of chunks */
+export type ChunkRange = [number, number];
+/** Leading chunks that are here, and, of packets that came out of order, which beyond them. */
+export interface HaveChunks {
+  chunks: number;
+  ranges: ChunkRange[];
+}
+
 export interface OpenRequest {
   mesh: string;
   fields: string[];
-  have: {chunks: number; fields: Record<string, number>};
+  have: {chunks: number; ranges?: ChunkRange[]; fields: Record<string, number | HaveChunks>};
   credit: number;
   digest?: string;
+  wishes?: Wishes;
 }
 
 export type ServerMessage =
-  | {type: 'opened'; stream: number; mesh: string; digest: string; bytes: number; planned: number}
+  | {type: 'opened'; stream: number; mesh: string; digest: string; bytes: number; planned: number; layout?: string}
   | {type: 'done'; stream: number}
   | {type: 'stopped'; stream: number}
   | {type: 'error'; code: string; detail: string};
@@ -33,8 +43,13 @@ export interface Frame {
   payload: Uint8Array;
 }
 
-export function openMessage(request: OpenRequest): string {
-  return JSON.stringify({type: 'open', ...request});
+export function openMessage(request: OpenRequest, view: Record<string, unknown> | null = null): string {
+  const {wishes: _, ...rest} = request;
+  return JSON.stringify({type: 'open', ...rest, ...(view ? {view} : {})});
+}
+
+export function viewMessage(view: Record<string, unknown> | null): string {
+  return JSON.stringify({type: 'view', view});
 }
 
 export function creditMessage(bytes: number): string {
@@ -79,6 +94,7 @@ export function parseServerMessage(text: string): ServerMessage | null {
       return {
         type: 'opened', stream: numberOf(message, 'stream'), mesh: textOf(message, 'mesh'), digest: textOf(message, 'digest'),
         bytes: numberOf(message, 'bytes'), planned: numberOf(message, 'planned'),
+        ...(typeof message.layout === 'string' ? {layout: message.layout} : {}),
       };
     case 'done':
     case 'stopped':

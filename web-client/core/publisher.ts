@@ -5,6 +5,7 @@ import {cutsOf, cuttingPlanes, fieldsOf, isosurfacesOf, keptCells, kPlainDisplay
 import {scalarRange} from './field_scale';
 import {meshNow} from './mesh_now';
 import {noSoup, pointBounds} from './triangle_soup';
+import {Volume, type VolumeCells} from './volume';
 import type {Snapshot} from './worker_messages';
 
 /** Pictures a second at most, so that decoding has the worker and the page its frames. */
@@ -16,6 +17,7 @@ const kCutPauseMs = 8;
 
 export class Publisher {
   display: Display = kPlainDisplay;
+  readonly volume = new Volume();
   private meshChanged = false;
   private cutChanged = false;
   /** Nothing is drawn before the page has said what. */
@@ -37,7 +39,7 @@ export class Publisher {
   show(display: Display): void {
     const before = this.display;
     this.display = display;
-    const whole = display.mode === 'cells' || before.mode !== display.mode || before.body !== display.body ||
+    const whole = display.mode === 'cells' || before.mode !== display.mode || before.body !== display.body || before.volume !== display.volume ||
       JSON.stringify([before.color, before.threshold, before.isosurfaces]) !== JSON.stringify([display.color, display.threshold, display.isosurfaces]);
     if (whole || !this.wanted) this.meshChanged = true;
     this.wanted = this.cutChanged = true;
@@ -54,6 +56,7 @@ export class Publisher {
   reset(): void {
     this.meshChanged = this.cutChanged = this.wanted = false;
     this.bounds = [];
+    this.volume.forget();
     this.display = kPlainDisplay;
     clearTimeout(this.timer);
     this.timer = undefined;
@@ -81,11 +84,20 @@ export class Publisher {
     if (this.meshChanged) {
       snapshot.surface = display.body && display.mode !== 'slice' ? surfaceOf(mesh, display, kept) : noSoup();
       snapshot.isosurface = isosurfacesOf(mesh, display, kept) ?? noSoup();
+      snapshot.volume = this.volumeOf(mesh, kept);
     }
     this.meshChanged = this.cutChanged = this.onScreen = false;
     snapshot.costMs = performance.now() - start;
     this.nextAt = start + Math.max(kShortestPauseMs, kCostFactor * snapshot.costMs);
     this.send(snapshot);
+  }
+
+  private volumeOf(mesh: MeshNow, kept: Uint8Array | null): VolumeCells | null {
+    const {color, volume} = this.display;
+    const scale = volume && color && mesh.scale(color);
+    if (scale) return this.volume.take(mesh, scale, kept);
+    this.volume.forget();
+    return null;
   }
 
   private frame(mesh: MeshNow): Omit<Snapshot, 'cuts' | 'planes'> {

@@ -4,9 +4,11 @@ import type {Assembler} from './assembler';
 import {errorCode, errorText, QtetError} from './errors';
 import {errorOfLevel, kFull, limitReached, type Limit} from './limit';
 import {fieldKeys} from './manifest';
-import type {Frame, ServerMessage} from './protocol';
+import {kFirstFieldPart, kStructurePart, type Frame, type OpenRequest, type ServerMessage} from './protocol';
 import type {Publisher} from './publisher';
-import {Transport, type TransportHandlers} from './transport';
+import type {LogTable, Transport, TransportHandlers} from './transport';
+import {makeTransport} from './transports';
+import {kNoWishes, type Wishes} from './wishes';
 import type {FromWorker, Source, StreamState} from './worker_messages';
 
 /** Payload bytes under way: enough for 80 Mbit/s at 100 ms, and some ten chunks of decoding that a click has to wait for at most. */
@@ -14,17 +16,20 @@ const kWindowBytes = 1 << 20;
 /** Decoding pauses this often for commands from the page. */
 const kSliceMs = 25;
 
+/** Of the cells at which memory ended: their pictures need some, too. */
+const kFittingShare = 0.7;
+
 /** What the codec's sentences leave open: what one sees now, and what to do. */
 const kWaysOut: Record<string, string> = {
   'bad-checksum': '. What came before is sound and stays on the screen. Try again to fetch the rest anew; if it fails at the same chunk, the file itself is damaged: "qtet verify" says where.',
-  'limit-exceeded': ' The mesh stays at the level that fits. Close other tabs, or choose a limit under "Level of detail" and try again.',
+  'out-of-memory': ' It stays at a level that fits. Close other tabs and try again for more.',
 };
 
-export type TransportFactory = (url: string, handlers: TransportHandlers) => Transport;
+export type TransportFactory = (source: Source, table: LogTable, handlers: TransportHandlers) => Transport;
 
 export class Session implements TransportHandlers {
   private transport: Transport | null = null;
-  private source: Source = {url: '', mesh: '', fields: null, limit: kFull};
+  private source: Source = {url: '', log: '', mesh: '', fields: null, limit: kFull, transport: 'auto'};
   private state: StreamState = 'connecting';
   private digest = '';
   /** The fields to bring: indexes into the manifest. */
@@ -33,6 +38,7 @@ export class Session implements TransportHandlers {
   private requested: string[] = [];
   private limit: Limit = kFull;
   private paused = false;
+  private wishes: Wishes = kNoWishes;
   private receivedBytes = 0;
   /** Bytes that arrived and whose credit waits until they are applied. */
   private unapplied = 0;
@@ -40,7 +46,7 @@ export class Session implements TransportHandlers {
 
   constructor(
     private readonly assembler: Assembler, private readonly publisher: Publisher, private readonly send: (message: FromWorker) => void,
-    private readonly makeTransport: TransportFactory = (url, handlers) => new Transport(url, handlers)) {}
+    private readonly newTransport: TransportFactory = makeTransport) {}
 
   start(source: Source): void {
     this.transport?.disconnect();
@@ -48,7 +54,7 @@ export class Session implements TransportHandlers {
     this.limit = source.limit;
     this.paused = false;
     this.forget();
-    this.transport = this.makeTransport(source.url, this);
+    this.transport = this.newTransport(source, this.assembler, this);
     this.setState('connecting');
     this.transport.connect();
   }
@@ -76,6 +82,14 @@ export class Session implements TransportHandlers {
       else this.hold();
       this.tellProgress();
     });
+  }
+
+  /** What the user looks at. */
+  look(wishes: Wishes): void {
+    this.wishes = wishes;
+    if (this.assembler.packets.length === 0) return;
+    this.assembler.look(wishes);
+    if (!this.paused) this.transport?.look(wishes);
   }
 
   pause(): void {
@@ -211,8 +225,26 @@ export class Session implements TransportHandlers {
       action();
     } catch (thrown) {
       const code = errorCode(thrown);
+      if (code === 'out-of-memory' && this.stayAtWhatFits()) return;
       this.failed(new QtetError(code, `${errorText(thrown)}${kWaysOut[code] ?? ''}`));
     }
+  }
+
+  /** Begins anew in a fresh codec and ends with room to spare. False when not even the base mesh fits. */
+  private stayAtWhatFits(): boolean {
+    const {tetrahedra} = this.assembler.statistics(this.fields);
+    if (tetrahedra === 0) return false;
+    clearTimeout(this.timer);
+    this.transport?.disconnect();
+    this.limit = this.source.limit = {kind: 'cells', value: Math.max(1, Math.floor(kFittingShare * tetrahedra))};
+    this.guarded(() => {
+      this.assembler.codec.restart();
+      this.goBack();
+      this.send({type: 'error', code: 'out-of-memory', message: `The whole mesh needs more memory than the browser gives to a page.${kWaysOut['out-of-memory']}`});
+      this.tellProgress();
+      this.hold();
+    });
+    return true;
   }
 
   private forget(): void {
@@ -235,7 +267,10 @@ export class Session implements TransportHandlers {
     const manifest = this.assembler.manifest!;
     const keys = fieldKeys(manifest.fields);
     this.fields = (this.source.fields ?? []).map((name) => keys.indexOf(name)).filter((field) => field >= 0);
-    if (this.fields.length === 0 && keys.length > 0) this.fields = [0];
+    const unknown = this.source.fields?.find((name) => !keys.includes(name));
+    if (unknown !== undefined) this.send({type: 'error', code: 'unknown-field', message: `The mesh has no field "${unknown}". The first one is shown instead.`});
+    if (this.fields.length === 0 && keys.length > 0 && (this.source.fields === null || unknown !== undefined)) this.fields = [0];
+    this.assembler.look(this.wishes);
     this.send({type: 'manifest', manifest, digest: this.digest, fields: this.fields});
     if (this.source.fields !== null && this.keys().every((key) => this.requested.includes(key))) return false;
     this.open();
@@ -251,12 +286,22 @@ export class Session implements TransportHandlers {
     this.unapplied = 0;
     this.transport?.open({
       mesh: this.source.mesh, fields: this.requested, credit: probing ? 1 : kWindowBytes,
-      have: {
-        chunks: manifest ? this.assembler.receivedChunks : 0,
-        fields: manifest ? Object.fromEntries(this.fields.map((field, i) => [asked[i]!, this.assembler.receivedOfField(field)])) : {},
-      },
+      have: this.have(asked), wishes: this.wishes,
       ...(this.digest ? {digest: this.digest} : {}),
     });
+  }
+
+  private have(keys: string[]): OpenRequest['have'] {
+    const {assembler} = this;
+    if (!assembler.manifest) return {chunks: 0, fields: {}};
+    const chunks = assembler.receivedChunks;
+    const fields = this.fields.map((field, i) => {
+      const count = assembler.receivedOfField(field);
+      const ranges = assembler.packets.length > 0 ? assembler.rangesBeyond(count, kFirstFieldPart + field) : [];
+      return [keys[i]!, ranges.length > 0 ? {chunks: count, ranges} : count] as const;
+    });
+    const ranges = assembler.packets.length > 0 ? assembler.rangesBeyond(chunks, kStructurePart) : [];
+    return {chunks, ...(ranges.length > 0 ? {ranges} : {}), fields: Object.fromEntries(fields)};
   }
 
   /** Opens on the connection there is, or makes one. */

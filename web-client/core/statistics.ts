@@ -27,47 +27,63 @@ export const kNoStatistics: Statistics = {
   level: 0, lastLevel: 0, chunks: 0, chunkCount: 0, bytes: 0, bytesNeeded: 0,
 };
 
-/** Bytes of a log's front by chunks: prefix sums, so that a figure costs nothing however many chunks there are. */
-export class ByteLedger {
-  private readonly mesh: Float64Array;
-  private readonly fields = new Map<number, Float64Array>();
+/** What is applied, counted as it comes: packets come in any order, and in the codec's arrays are holes until all are here. */
+export class Ledger {
+  counts: Counts = {tetrahedra: 0, vertices: 0, boundaryTriangles: 0};
+  private meshBytes = 0;
+  private readonly meshNeeded: number;
+  /** By field: bytes applied, and needed in all. */
+  private readonly fields = new Map<number, {applied: number; needed: number}>();
 
   constructor(private readonly codec: Codec, private readonly headBytes: number) {
-    this.mesh = this.sums([kStructurePart, kPositionsPart]);
+    this.meshNeeded = this.needed([kStructurePart, kPositionsPart]);
+  }
+
+  addChunk(chunk: number): void {
+    this.meshBytes += this.codec.blockSize(chunk, kStructurePart) + this.codec.blockSize(chunk, kPositionsPart);
+    const {tetrahedra, vertices, boundaryTriangles} = this.codec.brings(chunk);
+    this.counts.tetrahedra += tetrahedra;
+    this.counts.vertices += vertices;
+    this.counts.boundaryTriangles += boundaryTriangles;
+  }
+  addField(field: number, chunk: number): void { this.ofField(field).applied += this.codec.blockSize(chunk, kFirstFieldPart + field); }
+
+  clear(): void {
+    this.counts = {tetrahedra: 0, vertices: 0, boundaryTriangles: 0};
+    this.meshBytes = 0;
+    for (const sums of this.fields.values()) sums.applied = 0;
   }
 
   /** Bytes applied and bytes needed of the mesh with these fields. */
   bytes(fields: readonly number[]): {applied: number; needed: number} {
-    const sum = {applied: this.headBytes + this.mesh[this.codec.chunksApplied]!, needed: this.headBytes + this.mesh[this.mesh.length - 1]!};
+    const sum = {applied: this.headBytes + this.meshBytes, needed: this.headBytes + this.meshNeeded};
     for (const field of fields) {
-      const sums = this.sumsOf(field);
-      sum.applied += sums[this.codec.fieldChunksApplied(field)]!;
-      sum.needed += sums[sums.length - 1]!;
+      const {applied, needed} = this.ofField(field);
+      sum.applied += applied;
+      sum.needed += needed;
     }
     return sum;
   }
 
-  private sumsOf(field: number): Float64Array {
+  private ofField(field: number): {applied: number; needed: number} {
     let sums = this.fields.get(field);
-    if (!sums) this.fields.set(field, (sums = this.sums([kFirstFieldPart + field])));
+    if (!sums) this.fields.set(field, (sums = {applied: 0, needed: this.needed([kFirstFieldPart + field])}));
     return sums;
   }
 
-  private sums(parts: number[]): Float64Array {
-    const sums = new Float64Array(this.codec.chunkCount + 1);
-    for (let chunk = 0; chunk < this.codec.chunkCount; ++chunk) {
-      sums[chunk + 1] = sums[chunk]! + parts.reduce((sum, part) => sum + this.codec.blockSize(chunk, part), 0);
-    }
-    return sums;
+  private needed(parts: number[]): number {
+    let sum = 0;
+    for (let chunk = 0; chunk < this.codec.chunkCount; ++chunk) for (const part of parts) sum += this.codec.blockSize(chunk, part);
+    return sum;
   }
 }
 
 /** `fields` are indexes into the manifest's. */
-export function statisticsOf(codec: Codec, manifest: Manifest, ledger: ByteLedger, fields: readonly number[]): Statistics {
+export function statisticsOf(codec: Codec, manifest: Manifest, ledger: Ledger, fields: readonly number[]): Statistics {
   const last = manifest.levels[manifest.levels.length - 1];
   const {applied, needed} = ledger.bytes(fields);
   return {
-    tetrahedra: codec.tetrahedronCount, vertices: codec.vertexCount, boundaryTriangles: codec.boundaryCount,
+    ...ledger.counts,
     total: {tetrahedra: last?.tetrahedra ?? 0, vertices: last?.vertices ?? 0, boundaryTriangles: last?.boundaryTriangles ?? 0},
     level: codec.level, lastLevel: last?.level ?? 0, chunks: codec.chunksApplied, chunkCount: codec.chunkCount,
     bytes: applied, bytesNeeded: needed,

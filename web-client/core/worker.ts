@@ -56,12 +56,17 @@ function obey({session, publisher, codec, inspector}: Parts, message: Exclude<To
       publisher.show(message.display);
       return session.want(fieldsOf(message.display));
     case 'limit': return session.setLimit(message.limit);
+    case 'look': return session.look(message.wishes);
     case 'pause': return session.pause();
     case 'resume': return session.resume();
     case 'shown': return publisher.shown();
     case 'digest': return post({type: 'answer', id: message.id, answer: codec.chunkCount > 0 ? codec.digest() : ''});
     case 'pick': return post({type: 'answer', id: message.id, answer: inspector.pick(message.ray, publisher.display)});
     case 'probe': return post({type: 'answer', id: message.id, answer: inspector.probe(message.from, message.to, publisher.display)});
+    case 'order': {
+      const answer = publisher.volume.order(message.eye);
+      return self.postMessage({type: 'answer', id: message.id, answer} satisfies FromWorker, {transfer: [answer.order.buffer as ArrayBuffer]});
+    }
   }
 }
 
@@ -72,6 +77,8 @@ function post(message: FromWorker): void {
 function postSnapshot(snapshot: Snapshot): void {
   const soups = [snapshot.surface, ...(snapshot.cuts ?? []), snapshot.isosurface].filter((soup) => soup !== undefined);
   const buffers = soups.flatMap((soup) => [soup.positions.buffer, soup.values.buffer]) as ArrayBuffer[];
+  const {volume} = snapshot;
+  if (volume) buffers.push(...[volume.vertices.buffer, volume.cells.buffer, ...(volume.cellValues ? [volume.cellValues.buffer] : [])] as ArrayBuffer[]);
   const message: FromWorker = {type: 'snapshot', snapshot};
   self.postMessage(message, {transfer: buffers});
 }

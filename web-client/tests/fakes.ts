@@ -4,7 +4,7 @@ import type {Codec} from '../core/codec';
 import type {ValueDecoder} from '../core/draco';
 import {QtetError} from '../core/errors';
 import {kFirstFieldPart, kFrameHeaderBytes, kHeadPart} from '../core/protocol';
-import type {Socket} from '../core/transport';
+import type {Socket} from '../core/socket_transport';
 
 export class FakeSocket implements Socket {
   binaryType = '';
@@ -60,8 +60,10 @@ export function fakeHead({fields, cellFields = []}: FakeLog): Uint8Array {
   const table = names.flatMap((_, f) => [1, f < fields.length ? 0 : 1]);
   const head = new Uint8Array(64 + manifest.length + table.length);
   const view = new DataView(head.buffer);
+  head.set([0x89, 0x51, 0x54, 0x45, 0x54, 0x0d, 0x0a, 0x1a]);
   head[13] = 16;
   view.setUint32(24, manifest.length, true);
+  view.setUint32(28, table.length, true);
   view.setUint32(44, names.length, true);
   head.set(manifest, 64);
   head.set(table, 64 + manifest.length);
@@ -85,9 +87,17 @@ export class FakeCodec implements Codec {
   chunksApplied = 0;
   corrupt = -1;
   private fieldChunks: number[] = [];
+  private readonly headBytes: number;
 
-  constructor(private readonly log: FakeLog) {}
+  constructor(private readonly log: FakeLog) { this.headBytes = fakeHead(log).length; }
 
+  /** Chunks that fit into memory. */
+  room = Infinity;
+  restarts = 0;
+  restart(): void {
+    ++this.restarts;
+    this.chunksApplied = 0;
+  }
   open(): void {
     this.chunksApplied = 0;
     this.fieldChunks = this.log.fields.map(() => 0);
@@ -97,6 +107,10 @@ export class FakeCodec implements Codec {
     const levels = Array.from({length: this.log.chunks}, (_, level) => level);
     return Uint32Array.from([...levels.map((level) => level + 1), ...levels.map((level) => level + 4), ...levels.map(() => 4)]);
   }
+  blockOffset(chunk: number, part: number): number {
+    const parts = 2 + this.log.fields.length + (this.log.cellFields?.length ?? 0);
+    return this.headBytes + kFakeBlockBytes * (chunk * parts + part);
+  }
   blockSize(): number { return kFakeBlockBytes; }
   blockValues(): number { return 1; }
   blockCodec(): number { return 2; }
@@ -104,6 +118,7 @@ export class FakeCodec implements Codec {
     if (chunk === this.corrupt) throw new QtetError('bad-checksum', `chunk ${chunk} is damaged`);
   }
   apply(chunk: number): void {
+    if (chunk >= this.room) throw new QtetError('out-of-memory', 'no room');
     if (chunk !== this.chunksApplied) throw new QtetError('bad-order', `chunk ${chunk} after ${this.chunksApplied} chunks`);
     ++this.chunksApplied;
   }
@@ -112,6 +127,12 @@ export class FakeCodec implements Codec {
     ++this.fieldChunks[field]!;
   }
   fieldChunksApplied(field: number): number { return this.fieldChunks[field]!; }
+  get headChunks(): number { return this.log.chunks; }
+  dependency(chunk: number): number { return Math.max(0, chunk - 1); }
+  packetBox(): number[] { return [0, 0, 0, 255, 255, 255]; }
+  brings(): {tetrahedra: number; vertices: number; boundaryTriangles: number} { return {tetrahedra: 1, vertices: 0, boundaryTriangles: 0}; }
+  applied(chunk: number): boolean { return chunk < this.chunksApplied; }
+  fieldApplied(field: number, chunk: number): boolean { return chunk < this.fieldChunks[field]!; }
   get level(): number { return Math.max(0, this.chunksApplied - 1); }
   get vertexCount(): number { return 0; }
   get tetrahedronCount(): number { return this.chunksApplied; }

@@ -4,7 +4,7 @@ import {kLongestDelayMs} from '../core/backoff';
 import {kFull} from '../core/limit';
 import {Publisher} from '../core/publisher';
 import {Session} from '../core/session';
-import {Transport} from '../core/transport';
+import {SocketTransport} from '../core/socket_transport';
 import type {FromWorker, Source} from '../core/worker_messages';
 import {FakeCodec, FakeSocket, fakeHead, fieldFrame, headFrame, kFakeBlockBytes, kFakeValues, meshFrame, type FakeLog} from './fakes';
 
@@ -26,14 +26,14 @@ beforeEach(() => {
     sockets.push(new FakeSocket());
     return sockets.at(-1)!;
   };
-  session = new Session(assembler, publisher, (message) => heard.push(message), (url, handlers) =>
-    new Transport(url, handlers, makeSocket, () => 0));
+  session = new Session(assembler, publisher, (message) => heard.push(message), ({url}, _, handlers) =>
+    new SocketTransport(url, handlers, makeSocket, () => 0));
 });
 
 afterEach(() => void vi.useRealTimers());
 
 function start(source: Partial<Source> = {}): FakeSocket {
-  session.start({url: 'ws://x', mesh: 'm', fields: ['p'], limit: kFull, ...source});
+  session.start({url: 'ws://x', log: '', transport: 'auto', mesh: 'm', fields: ['p'], limit: kFull, ...source});
   sockets.at(-1)!.accept();
   return sockets.at(-1)!;
 }
@@ -246,5 +246,29 @@ describe('pausing', () => {
     expect(sockets).toHaveLength(1);
     session.resume();
     expect(sockets).toHaveLength(2);
+  });
+});
+
+describe('memory', () => {
+  test('whereItEndsTheMeshStaysAtALevelThatFits', () => {
+    codec.room = 2;
+    const socket = start();
+    opened(socket, 1);
+    socket.deliver(headFrame(1, kLog));
+    sendAll(socket, 1, 0);
+    expect(errors()).toEqual(['out-of-memory']);
+    expect(codec.restarts).toBe(1);
+    expect(states().at(-1)).toBe('held');
+    expect(codec.chunksApplied).toBe(1);
+  });
+
+  test('whereNotEvenTheFirstChunkFitsItFails', () => {
+    codec.room = 0;
+    const socket = start();
+    opened(socket, 1);
+    socket.deliver(headFrame(1, kLog));
+    sendAll(socket, 1, 0);
+    expect(errors()).toEqual(['out-of-memory']);
+    expect(states().at(-1)).toBe('failed');
   });
 });

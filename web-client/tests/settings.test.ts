@@ -41,8 +41,12 @@ describe('settings', () => {
   test('withoutAttributesAreThePlainOnes', () => {
     expect(of({})).toEqual({
       map: 'viridis', reversed: false, range: 'auto', logarithmic: false, edges: true, surface: true, opacity: 1, planes: [], mode: 'cut',
-      limit: {kind: 'full'}, parallel: false, camera: null,
+      limit: {kind: 'full'}, parallel: false, camera: null, volume: null,
     });
+  });
+  test('aVolumeIsOpacitiesOrTheFirstOnes', () => {
+    expect(of({volume: '0,0.5,1'}).volume).toEqual([0, 0.5, 1]);
+    for (const text of ['', 'on', '0.5', '0,2']) expect(of({volume: text}).volume).toHaveLength(9);
   });
   test('areReadFromTheirAttributes', () => {
     expect(of({colormap: 'turbo reversed', range: '1,5', scale: 'log', edges: 'off', surface: 'off', opacity: '0.4', 'clip-mode': 'cells',

@@ -7,7 +7,7 @@ import {colorTable, kColorMapEntries, type ColorMapName} from '../core/color_map
 const kVertexShader = /* glsl */ `
   in float value;
   out float vValue;
-  out vec3 vLattice;
+  centroid out vec3 vLattice;  // never outside of its triangle, or slivers above a plane would leave pixels
   out vec3 vView;
   out vec3 vCorner;
   void main() {
@@ -24,7 +24,7 @@ const kVertexShader = /* glsl */ `
 
 const kFragmentShader = /* glsl */ `
   in float vValue;
-  in vec3 vLattice;
+  centroid in vec3 vLattice;
   in vec3 vView;
   in vec3 vCorner;
   uniform sampler2D colorMap;

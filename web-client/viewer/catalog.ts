@@ -17,13 +17,22 @@ export async function fetchCatalog(base: URL): Promise<MeshEntry[]> {
   } catch {
     throw new QtetError('offline', `The server at ${base.host} does not answer. Check the connection and try again.`);
   }
-  if (!response.ok) throw new QtetError('http', `The server at ${base.host} answers "${response.status} ${response.statusText}" instead of its meshes.`);
+  if (!response.ok) throw new QtetError('http', `The server at ${base.host} answers "${response.status} ${response.statusText}" instead of its meshes. For a .qtet file on a plain web server, give its address: ?src=FILE.qtet`);
   const body = (await response.json().catch(() => null)) as {meshes?: unknown} | null;
-  if (!Array.isArray(body?.meshes)) throw new QtetError('bad-message', `${url.href} is not a list of meshes. Is this a qtet server?`);
+  if (!Array.isArray(body?.meshes)) throw new QtetError('bad-message', `${url.href} is not a list of meshes. Is this a qtet server? For a .qtet file on another one, give its address: ?src=FILE.qtet`);
   return (body.meshes as Partial<MeshEntry>[]).map((mesh) => ({
     id: String(mesh.id), tetrahedra: Number(mesh.tetrahedra ?? 0), fields: Array.isArray(mesh.fields) ? mesh.fields.map(String) : [],
   }));
 }
+
+/** A log that lies on any web server: its address names the file. */
+export function isLogFile(base: URL): boolean { return base.pathname.endsWith('.qtet'); }
+
+/** The file's name as a mesh's id. */
+export function meshOfLog(base: URL): string { return decodeURIComponent(base.pathname.replace(/^.*\//, '').replace(/\.qtet$/, '')); }
+
+/** Address of a server's log as a file. */
+export function logUrl(base: URL, mesh: string): string { return new URL(`v1/meshes/${encodeURIComponent(mesh)}/log`, base).href; }
 
 /** Address of the stream beside the HTTP address. */
 export function streamUrl(base: URL): string {

@@ -13,7 +13,7 @@ declare global {
 
 const viewer = document.createElement('qtet-viewer');
 const query = new URLSearchParams(location.search);
-for (const name of ['src', ...kViewAttributes]) {
+for (const name of ['src', 'transport', ...kViewAttributes]) {
   const value = query.get(name);
   if (value !== null && value !== '') viewer.setAttribute(name, value);
 }
@@ -22,8 +22,8 @@ const kRestMs = 300;
 let timer: ReturnType<typeof setTimeout> | undefined;
 const remember = (): void => {
   const view = viewer.view;
-  const src = query.get('src');
-  history.replaceState(null, '', linkTo(location.href, src ? new Map([['src', src], ...view]) : view));
+  const origin = ['src', 'transport'].flatMap((name) => (query.get(name) ? [[name, query.get(name)!] as const] : []));
+  history.replaceState(null, '', linkTo(location.href, new Map([...origin, ...view])));
 };
 for (const type of ['camera-change', 'view-change']) {
   viewer.addEventListener(type, () => {

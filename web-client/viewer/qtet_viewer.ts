@@ -1,6 +1,7 @@
 // <qtet-viewer>: a progressive tetrahedral mesh in a web page.
 //
-// Attributes  src          address of the server; by default the page's own
+// Attributes  src          address of the server, by default the page's own; or of a .qtet file on any web server
+//             transport    auto (default), websocket, range or chunks: how a server's logs come
 //             mesh         id of the mesh; without it the viewer offers a menu and starts with the first
 //             field        name of the field, "NAME[0]" for a component; by default the first
 //             colormap     viridis (default), cividis, cool-warm, turbo or grey; "turbo reversed"
@@ -9,6 +10,7 @@
 //             clip         up to three planes: axis x, y or z or a direction "1,0,1", a share of the extent after a colon, "-" before an axis for the
 //                          other side: "y", "-x:0.3 z:0.5"; clip-mode: cut (default), cells, slice
 //             iso, threshold  "FIELD=VALUE,VALUE..."; "FIELD=LOW,HIGH"
+//             volume       opacities at even shares of the colours' range, "0,0.1,0.5": the cells are seen through instead of the surface
 //             quality      full (default), "error:0.01" or "1%", "cells:N", "bytes:N": how far to refine
 //             projection, camera  "parallel"; six numbers, as the property `cameraState` gives them
 // Events      load (first picture), progress, refine (a finer picture), complete (the whole mesh is on the screen), error, camera-change,
@@ -17,6 +19,7 @@
 // Parts       canvas, panel, progress, legend, result, notice
 // Methods     digest(), pause(), resume(), resetView(), look(direction), picture(); properties `counts`, `statistics`, `state`, `view`, `cameraState`
 
+import {kTransportKinds} from '../core/auto_transport';
 import {Client} from '../core/client';
 import {kMostPlanes, type Display} from '../core/display';
 import {errorCode, errorText, QtetError} from '../core/errors';
@@ -24,11 +27,12 @@ import {kMagnitude, type Scalar} from '../core/field_scale';
 import type {Manifest} from '../core/manifest';
 import {retry} from '../core/retry';
 import {kNoStatistics, type Counts, type Statistics} from '../core/statistics';
+import type {Wishes} from '../core/wishes';
 import type {FromWorker, Snapshot, StreamState} from '../core/worker_messages';
 import type {CameraState} from '../three/camera';
 import {kDirections, type Direction} from '../three/directions';
 import type {MeshView} from '../three/mesh_view';
-import {fetchCatalog, streamUrl, type MeshEntry} from './catalog';
+import {fetchCatalog, isLogFile, logUrl, meshOfLog, streamUrl, type MeshEntry} from './catalog';
 import {ClipHandles} from './clip_handles';
 import {ClipPanel, planeOf} from './clip_panel';
 import {ColorPanel} from './color_panel';
@@ -49,6 +53,7 @@ import styles from './style.css?inline';
 import {kTemplate} from './template';
 import {Triad} from './triad';
 import {ValuePanel} from './value_panel';
+import {VolumePanel} from './volume_panel';
 
 /** Narrower than this, the panel is a sheet at the foot (style.css says the same). */
 const kSheetPixels = 640;
@@ -62,6 +67,7 @@ interface Parts {
   color: ColorPanel;
   clip: ClipPanel;
   iso: ValuePanel;
+  volume: VolumePanel;
   threshold: ValuePanel;
   level: LevelPanel;
   handles: ClipHandles;
@@ -70,7 +76,7 @@ interface Parts {
 }
 
 export class QtetViewer extends HTMLElement implements Host {
-  static readonly observedAttributes = ['src', ...kViewAttributes];
+  static readonly observedAttributes = ['src', 'transport', ...kViewAttributes];
 
   client: Client | null = null;
   meshView: MeshView | null = null;
@@ -90,6 +96,7 @@ export class QtetViewer extends HTMLElement implements Host {
   private writing = false;
   private cameraTimer: ReturnType<typeof setTimeout> | undefined;
   private toldCamera = '';
+  private toldWishes = '';
   private lastCells: {at: number; cells: number} = {at: 0, cells: 0};
 
   // ---- for the page
@@ -147,7 +154,7 @@ export class QtetViewer extends HTMLElement implements Host {
     const clip = new ClipPanel(this.root, this, () => (this.meshView?.viewDirection ?? [0, -1, 0]).map((x) => -x) as [number, number, number]);
     this.parts = {
       progress: new ProgressPanel(this.root, (text) => this.announce(text)), legend: new Legend(this.root), color: new ColorPanel(this.root, this), clip,
-      iso: new ValuePanel(this.root, this, 'iso'), threshold: new ValuePanel(this.root, this, 'threshold'),
+      iso: new ValuePanel(this.root, this, 'iso'), threshold: new ValuePanel(this.root, this, 'threshold'), volume: new VolumePanel(this.root, this),
       level: new LevelPanel(this.root, (quality) => this.write('quality', quality),
         () => ({statistics: this.figures, manifest: this.manifest, fields: this.color ? [this.color.field] : []})),
       handles: new ClipHandles(this.find('.layer'), kMostPlanes, (i, share) => clip.move(i, share)),
@@ -174,10 +181,10 @@ export class QtetViewer extends HTMLElement implements Host {
 
   attributeChangedCallback(name: string, before: string | null, after: string | null): void {
     if (!this.client || before === after) return;
-    if (name === 'src' || (name === 'mesh' && !this.writing)) void this.open();
+    if (name === 'src' || name === 'transport' || (name === 'mesh' && !this.writing)) void this.open();
     else this.apply();
     if (name === 'camera' && this.settings.camera && this.meshView) this.meshView.cameraState = this.settings.camera;
-    if (name !== 'src') this.tell('view-change', {name, value: after});
+    if (name !== 'src' && name !== 'transport') this.tell('view-change', {name, value: after});
   }
 
   /** Brings everything in line with the attributes. */
@@ -188,7 +195,7 @@ export class QtetViewer extends HTMLElement implements Host {
     const {parts, settings} = this;
     const scene: Scene | null = this.manifest && this.bounds.length > 0 ? {manifest: this.manifest, bounds: this.bounds} : null;
     const known: Scene | null = this.manifest && {manifest: this.manifest, bounds: this.bounds};
-    for (const panel of [parts.color, parts.iso, parts.threshold]) panel.update(settings, known);
+    for (const panel of [parts.color, parts.iso, parts.threshold, parts.volume]) panel.update(settings, known);
     parts.clip.update(settings, scene);
     parts.level.update(settings);
     parts.handles.update(settings.planes, this.bounds);
@@ -217,6 +224,7 @@ export class QtetViewer extends HTMLElement implements Host {
           this.restCamera();
         },
         lost: (lost) => this.graphicsLost(lost),
+        order: (eye) => this.client?.order(eye) ?? Promise.reject(new Error('closed')),
       });
       this.parts!.handles.attach(this.meshView);
       if (this.settings.camera) this.meshView.cameraState = this.settings.camera;
@@ -235,9 +243,10 @@ export class QtetViewer extends HTMLElement implements Host {
   private async open(): Promise<void> {
     try {
       this.setState('connecting');
-      this.catalog = await fetchCatalog(this.base);
+      const file = isLogFile(this.base);
+      this.catalog = file ? [{id: meshOfLog(this.base), tetrahedra: 0, fields: []}] : await fetchCatalog(this.base);
       if (!this.client) return;
-      const wanted = this.getAttribute('mesh');
+      const wanted = file ? null : this.getAttribute('mesh');
       const mesh = wanted ?? this.catalog[0]?.id;
       if (mesh === undefined) throw new QtetError('not-found', 'The server has no meshes yet. Put .qtet files into its folder.');
       if (!this.catalog.some(({id}) => id === mesh)) {
@@ -260,14 +269,19 @@ export class QtetViewer extends HTMLElement implements Host {
     const fields = this.catalog.find(({id}) => id === mesh)?.fields ?? [];
     const named = [this.getAttribute('field'), ...['iso', 'threshold'].map((name) => this.getAttribute(name)?.replace(/=[^=]*$/, '') ?? null)]
       .filter((text) => text !== null).map((text) => (fields.includes(text) ? text : scalarKey(text)));
-    const first = named.length > 0 ? [...new Set(named)] : fields.slice(0, 1);
-    this.client?.start({url: streamUrl(this.base), mesh, fields: first, limit: this.settings.limit});
+    const file = isLogFile(this.base);
+    // Of a file nobody knows the fields before its head is here.
+    const first = named.length > 0 ? [...new Set(named)] : file ? null : fields.slice(0, 1);
+    const transport = kTransportKinds.find((kind) => kind === this.getAttribute('transport')) ?? 'auto';
+    this.client?.start({
+      url: file ? '' : streamUrl(this.base), log: file ? this.base.href : logUrl(this.base, mesh), transport, mesh, fields: first, limit: this.settings.limit,
+    });
   }
 
   private forget(): void {
     this.manifest = this.pending = this.snapshot = null;
     this.bounds = [];
-    this.sentDisplay = '';
+    this.sentDisplay = this.toldWishes = '';
     this.loaded = false;
     this.figures = kNoStatistics;
     this.lastCells = {at: 0, cells: 0};
@@ -350,9 +364,10 @@ export class QtetViewer extends HTMLElement implements Host {
     const threshold = parseFieldValues(this.getAttribute('threshold'), fields);
     const ends = threshold && sharesOf(threshold, fields);
     const display: Display = {
-      color: this.color, body: settings.surface, mode: settings.planes.length > 0 ? settings.mode : 'cut',
+      color: this.color, body: settings.surface && settings.volume === null, mode: settings.planes.length > 0 ? settings.mode : 'cut',
       planes: this.bounds.length > 0 ? settings.planes.map((plane) => planeOf(plane, this.bounds)) : [],
       isosurfaces: iso && {scalar: iso.scalar, values: sharesOf(iso, fields)},
+      volume: settings.volume !== null,
       threshold: threshold && ends!.length === 2 ? {scalar: threshold.scalar, low: ends![0]!, high: ends![1]!} : null,
     };
     const text = JSON.stringify(display);
@@ -360,6 +375,16 @@ export class QtetViewer extends HTMLElement implements Host {
     this.sentDisplay = text;
     this.parts!.progress.follow(display.color ? [display.color.field] : [], settings.limit);
     this.client?.show(display);
+    this.lookAt();
+  }
+
+  /** Tells a log of regions what to refine first. */
+  private lookAt(): void {
+    const planes = this.bounds.length > 0 ? this.settings.planes.map((plane) => planeOf(plane, this.bounds)) : [];
+    const wishes: Wishes = {frustum: this.meshView?.frustum ?? [], planes, point: null};
+    const text = JSON.stringify(wishes);
+    if (text !== this.toldWishes) this.client?.look(wishes);
+    this.toldWishes = text;
   }
 
   // ---- controls
@@ -481,6 +506,7 @@ export class QtetViewer extends HTMLElement implements Host {
       const state = this.meshView?.cameraState;
       if (!state || this.bounds.length === 0 || state.join() === this.toldCamera) return;
       this.toldCamera = state.join();
+      this.lookAt();
       this.tell('camera-change', state);
     }, kRestMs);
   }

@@ -9,7 +9,7 @@ import type {CameraState} from '../three/camera';
 
 /** Attributes that make up a view, in the order of a link. */
 export const kViewAttributes = [
-  'mesh', 'field', 'colormap', 'range', 'scale', 'edges', 'surface', 'opacity', 'clip', 'clip-mode', 'iso', 'threshold', 'quality', 'projection', 'camera',
+  'mesh', 'field', 'colormap', 'range', 'scale', 'edges', 'surface', 'opacity', 'clip', 'clip-mode', 'iso', 'threshold', 'volume', 'quality', 'projection', 'camera',
 ] as const;
 export type ViewAttribute = (typeof kViewAttributes)[number];
 
@@ -27,6 +27,8 @@ export interface Settings {
   edges: boolean;
   surface: boolean;
   opacity: number;
+  /** Opacities at even shares of the shown range; null: the volume is not shown. */
+  volume: number[] | null;
   planes: ClipSetting[];
   mode: ClipMode;
   limit: Limit;
@@ -42,6 +44,7 @@ export function readSettings(get: (name: ViewAttribute) => string | null): Setti
     map: isColorMapName(map) ? map : 'viridis', reversed: reversed === 'reversed',
     range: parseRange(get('range')), logarithmic: get('scale') === 'log',
     edges: get('edges') !== 'off', surface: get('surface') !== 'off', opacity: opacity > 0 && opacity <= 1 ? opacity : 1,
+    volume: parseVolume(get('volume')),
     planes: parseClip(get('clip')), mode: kClipModes.includes(mode) ? mode : 'cut', limit: parseLimit(get('quality')) ?? kFull,
     parallel: get('projection') === 'parallel', camera: parseCamera(get('camera')),
   };
@@ -51,6 +54,15 @@ function parseRange(text: string | null): Settings['range'] {
   if (text === 'symmetric') return 'symmetric';
   const numbers = parseNumbers(text ?? '');
   return numbers.length === 2 && numbers[0]! < numbers[1]! ? [numbers[0]!, numbers[1]!] : 'auto';
+}
+
+/** What the volume begins with: low values are faint, high ones dense. */
+export const kFirstOpacities: readonly number[] = [0, 0.02, 0.05, 0.1, 0.2, 0.35, 0.5, 0.7, 0.9];
+
+function parseVolume(text: string | null): number[] | null {
+  if (text === null) return null;
+  const numbers = parseNumbers(text);
+  return numbers.length >= 2 && numbers.length <= 33 && numbers.every((value) => value >= 0 && value <= 1) ? numbers : [...kFirstOpacities];
 }
 
 function parseCamera(text: string | null): CameraState | null {

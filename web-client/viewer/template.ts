@@ -110,6 +110,11 @@ export const kTemplate = `
         <input type="range" min="0" max="1000" aria-label="First isovalue">
         <label class="row"><span class="name">Values</span><input type="text" name="iso-values" autocomplete="off"></label>
       </div>
+      ${toggle('volume', 'Volume')}
+      <div class="volume sub" hidden>
+        <div class="bars" role="group" aria-label="Opacity by value"></div>
+        <div class="row buttons"><button type="button" class="fainter">Fainter</button><button type="button" class="denser">Denser</button></div>
+      </div>
       ${toggle('threshold', 'Threshold')}
       <div class="threshold sub" hidden>
         <select name="threshold-field" aria-label="Field of the threshold"></select>

@@ -1,14 +1,15 @@
 import {afterEach, beforeEach, expect, test, vi} from 'vitest';
 import {kFirstDelayMs, kLongestDelayMs, reconnectDelayMs} from '../core/backoff';
 import type {OpenRequest} from '../core/protocol';
-import {Transport, type TransportHandlers} from '../core/transport';
+import {SocketTransport} from '../core/socket_transport';
+import type {TransportHandlers} from '../core/transport';
 import {FakeSocket, frame} from './fakes';
 
 const kOpen: OpenRequest = {mesh: 'm', fields: [], have: {chunks: 0, fields: {}}, credit: 80};
 
 let sockets: FakeSocket[];
 let heard: string[];
-let transport: Transport;
+let transport: SocketTransport;
 
 beforeEach(() => {
   vi.useFakeTimers();
@@ -25,7 +26,7 @@ beforeEach(() => {
     sockets.push(new FakeSocket());
     return sockets.at(-1)!;
   };
-  transport = new Transport('ws://x/v1/stream', handlers, makeSocket, () => 0.5);
+  transport = new SocketTransport('ws://x/v1/stream', handlers, makeSocket, () => 0.5);
   transport.connect();
 });
 

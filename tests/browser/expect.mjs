@@ -1,0 +1,11 @@
+// What every check asks of a mesh that is said to be whole.
+
+import assert from 'node:assert/strict';
+
+export async function expectWhole(viewer, log) {
+  const {tetrahedra, total, bytes, bytesNeeded} = await viewer.statistics();
+  assert.equal(tetrahedra, total.tetrahedra);
+  assert.equal(bytes, bytesNeeded);
+  assert.equal(await viewer.digest(), log.meshDigest);
+  assert.deepEqual(viewer.problems, []);
+}

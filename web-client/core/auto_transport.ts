@@ -1,0 +1,70 @@
+// The transport that works: a WebSocket where one can be had, else byte ranges, else numbered chunks; and the next one as soon as one fails for good.
+// They are interchangeable because each goes on behind what the last one brought.
+
+import type {QtetError} from './errors';
+import type {Frame, OpenRequest, ServerMessage} from './protocol';
+import type {Transport, TransportHandlers} from './transport';
+import type {Wishes} from './wishes';
+
+export type TransportKind = 'websocket' | 'range' | 'chunks';
+export const kTransportKinds: readonly TransportKind[] = ['websocket', 'range', 'chunks'];
+
+/** Failures in a row, without a byte between them, after which another way is tried. */
+const kPatience = 2;
+
+export class AutoTransport implements Transport, TransportHandlers {
+  private current: Transport;
+  private at = 0;
+  private failures = 0;
+  private timer: ReturnType<typeof setTimeout> | undefined;
+
+  /** REQUIRES: at least one kind. `make` makes a transport of a kind with these handlers. */
+  constructor(private readonly kinds: readonly TransportKind[], private readonly make: (kind: TransportKind, handlers: TransportHandlers) => Transport,
+              private readonly handlers: TransportHandlers) {
+    this.current = make(kinds[0]!, this);
+  }
+
+  get kind(): TransportKind { return this.kinds[this.at]!; }
+  get isConnected(): boolean { return this.current.isConnected; }
+  connect(): void {
+    clearTimeout(this.timer);
+    this.current.connect();
+  }
+  open(request: OpenRequest): void { this.current.open(request); }
+  stop(): void { this.current.stop(); }
+  applied(bytes: number): void { this.current.applied(bytes); }
+  look(wishes: Wishes): void { this.current.look(wishes); }
+  disconnect(): void {
+    clearTimeout(this.timer);
+    this.current.disconnect();
+  }
+
+  // ---- TransportHandlers
+
+  connected(): void { this.handlers.connected(); }
+  message(message: ServerMessage): void { this.handlers.message(message); }
+  frame(frame: Frame): void {
+    this.failures = 0;
+    this.handlers.frame(frame);
+  }
+  down(attempt: number, delayMs: number): void {
+    if (++this.failures >= kPatience && this.kinds.length > 1) this.change(delayMs);
+    this.handlers.down(attempt, delayMs);
+  }
+  failed(error: QtetError): void {
+    // What this way cannot do another may; when all have failed without a byte between them, the last one's word counts.
+    if (error.code === 'http' && ++this.failures < kPatience + this.kinds.length) {
+      this.change(0);
+      return;
+    }
+    this.handlers.failed(error);
+  }
+
+  private change(delayMs: number): void {
+    this.current.disconnect();
+    this.at = (this.at + 1) % this.kinds.length;
+    this.failures = Math.max(0, this.failures - 1);  // the new way gets one try before the one after it
+    this.current = this.make(this.kind, this);
+    this.timer = setTimeout(() => this.current.connect(), delayMs);
+  }
+}

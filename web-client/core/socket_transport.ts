@@ -1,0 +1,140 @@
+// One WebSocket to /v1/stream that comes back by itself. Counts streams and credit; knows nothing of what the bytes mean.
+
+import {reconnectDelayMs} from './backoff';
+import {errorText, QtetError} from './errors';
+import {
+  creditMessage, kSubprotocol, openMessage, parseFrame, parseServerMessage, stopMessage, viewMessage,
+  type OpenRequest,
+} from './protocol';
+import type {LogTable, Transport, TransportHandlers} from './transport';
+import {kNoWishes, wireView, type Wishes} from './wishes';
+
+/** Credit is returned in portions of this share of the window: few messages, and the server never waits for one. */
+const kCreditShare = 8;
+/** The server closes with this code after a message that it does not understand: trying again would not help. */
+const kPolicyViolation = 1008;
+
+/** The part of WebSocket that is used; tests bring their own. */
+export interface Socket {
+  binaryType: string;
+  onopen: ((event: never) => void) | null;
+  onmessage: ((event: {data: unknown}) => void) | null;
+  onclose: ((event: {code: number; reason: string}) => void) | null;
+  send(data: string): void;
+  close(code?: number): void;
+}
+
+export type SocketFactory = (url: string, subprotocol: string) => Socket;
+
+export class SocketTransport implements Transport {
+  private socket: Socket | null = null;
+  private connected = false;
+  private stream = 0;
+  private attempt = 0;
+  private timer: ReturnType<typeof setTimeout> | undefined;
+  private window = 0;
+  private owed = 0;
+  private layout = '';
+  private wishes: Wishes = kNoWishes;
+
+  constructor(
+    private readonly url: string, private readonly handlers: TransportHandlers,
+    private readonly makeSocket: SocketFactory = (address, protocol) => new WebSocket(address, protocol) as unknown as Socket,
+    private readonly random: () => number = Math.random, private readonly table: Pick<LogTable, 'lattice'> | null = null) {}
+
+  get isConnected(): boolean { return this.connected; }
+
+  connect(): void {
+    this.disconnect();
+    const socket = this.makeSocket(this.url, kSubprotocol);
+    socket.binaryType = 'arraybuffer';
+    this.socket = socket;
+    socket.onopen = () => {
+      this.connected = true;
+      this.stream = 0;
+      this.handlers.connected();
+    };
+    socket.onmessage = (event) => this.receive(event.data);
+    socket.onclose = (event) => this.lost(event.code, event.reason);
+  }
+
+  /** Starts a stream; what still arrives of the one before is dropped. */
+  open(request: OpenRequest): void {
+    if (!this.connected) return;
+    ++this.stream;
+    this.window = request.credit;
+    this.owed = 0;
+    this.layout = '';
+    this.wishes = request.wishes ?? this.wishes;
+    this.socket?.send(openMessage(request, this.view()));
+  }
+
+  look(wishes: Wishes): void {
+    this.wishes = wishes;
+    // A server that does not say which layout the log has does not know this message.
+    if (this.connected && this.layout === 'regions') this.socket?.send(viewMessage(this.view()));
+  }
+
+  stop(): void {
+    if (this.connected) this.socket?.send(stopMessage());
+  }
+
+  /** Gives the credit of `bytes` applied payload bytes back; it travels once a share of the window has come together. */
+  applied(bytes: number): void {
+    this.owed += bytes;
+    if (this.owed * kCreditShare >= this.window) this.grant();
+  }
+
+  /** Ends the connection for good; `connect` may be called again. */
+  disconnect(): void {
+    clearTimeout(this.timer);
+    const socket = this.socket;
+    this.socket = null;
+    this.connected = false;
+    if (!socket) return;
+    socket.onopen = socket.onmessage = socket.onclose = null;
+    socket.close(1000);
+  }
+
+  private view(): Record<string, unknown> | null {
+    const lattice = this.table?.lattice;
+    return lattice ? wireView(this.wishes, lattice) : null;
+  }
+
+  private grant(): void {
+    if (!this.connected || this.owed <= 0) return;
+    this.socket?.send(creditMessage(this.owed));
+    this.owed = 0;
+  }
+
+  private receive(data: unknown): void {
+    try {
+      if (typeof data === 'string') {
+        const message = parseServerMessage(data);
+        if (message?.type === 'opened') this.layout = message.layout ?? '';
+        // Replies to a superseded open say nothing about the current one.
+        if (message && (message.type === 'error' || message.stream === this.stream)) this.handlers.message(message);
+        return;
+      }
+      const frame = parseFrame(data as ArrayBuffer);
+      if (frame.stream !== this.stream) return;
+      this.attempt = 0;  // only bytes prove that the connection is worth something
+      this.handlers.frame(frame);
+    } catch (thrown) {
+      this.disconnect();
+      this.handlers.failed(thrown instanceof QtetError ? thrown : new QtetError('internal', errorText(thrown)));
+    }
+  }
+
+  private lost(code: number, reason: string): void {
+    this.disconnect();
+    if (code === kPolicyViolation) {
+      this.handlers.failed(new QtetError('bad-message', `The server ended the stream: ${reason || 'a message was not understood'}.`));
+      return;
+    }
+    const delayMs = reconnectDelayMs(this.attempt, this.random());
+    ++this.attempt;
+    this.timer = setTimeout(() => this.connect(), delayMs);
+    this.handlers.down(this.attempt, delayMs);
+  }
+}

@@ -1,0 +1,41 @@
+// What a value looks like inside the volume: its colour from the map, its extinction from opacities that stand at even shares of the shown range.
+
+import {colorTable, kColorMapEntries, type ColorMapName} from './color_maps';
+
+/** An opacity is that of a path of this share of the mesh's diagonal. */
+export const kOpacityPath = 0.1;
+/** Above this a path would have to be infinitely dense. */
+const kMostOpacity = 0.99;
+export const kTransferSteps = kColorMapEntries - 1;
+
+export interface TransferTables {
+  /** RGBA at the steps 0..kTransferSteps: colour times extinction, and extinction (a diagonal). */
+  density: Float32Array;
+  /** The same integrated over shares from 0 to each step. */
+  integral: Float32Array;
+}
+
+/** Extinction in 1/diagonal of an opacity. */
+export function extinctionOf(opacity: number): number {
+  return -Math.log(1 - Math.min(kMostOpacity, Math.max(0, opacity))) / kOpacityPath;
+}
+
+/** REQUIRES: at least two opacities. Between them extinction is linear. */
+export function transferTables(opacities: readonly number[], map: ColorMapName, reversed: boolean): TransferTables {
+  const colors = colorTable(map, reversed);
+  const extinctions = opacities.map(extinctionOf);
+  const density = new Float32Array(4 * (kTransferSteps + 1));
+  const integral = new Float32Array(density.length);
+  for (let i = 0; i <= kTransferSteps; ++i) {
+    const at = (i / kTransferSteps) * (extinctions.length - 1);
+    const k = Math.min(Math.floor(at), extinctions.length - 2);
+    const extinction = extinctions[k]! + (at - k) * (extinctions[k + 1]! - extinctions[k]!);
+    for (let c = 0; c < 3; ++c) density[4 * i + c] = extinction * colors[4 * i + c]! / 255;
+    density[4 * i + 3] = extinction;
+    if (i === 0) continue;
+    for (let c = 0; c < 4; ++c) {
+      integral[4 * i + c] = integral[4 * i - 4 + c]! + (density[4 * i + c]! + density[4 * i - 4 + c]!) / 2 / kTransferSteps;
+    }
+  }
+  return {density, integral};
+}

@@ -1,0 +1,25 @@
+// Which transports a source can be read by, and their making.
+
+import {AutoTransport, kTransportKinds, type TransportKind} from './auto_transport';
+import {ChunkSource, RangeSource} from './block_source';
+import {HttpTransport} from './http_transport';
+import {SocketTransport} from './socket_transport';
+import type {LogTable, Transport, TransportHandlers} from './transport';
+import type {Source} from './worker_messages';
+
+/** A server offers all, a file on any other host its ranges alone. */
+export function kindsOf({url, transport}: Pick<Source, 'url' | 'transport'>): TransportKind[] {
+  if (url === '') return ['range'];
+  return transport === 'auto' ? [...kTransportKinds] : [transport];
+}
+
+export function makeTransport(source: Source, table: LogTable, handlers: TransportHandlers): Transport {
+  const {url, log} = source;
+  return new AutoTransport(kindsOf(source), (kind, its) => {
+    switch (kind) {
+      case 'websocket': return new SocketTransport(url, its, undefined, undefined, table);
+      case 'range': return new HttpTransport(() => new RangeSource(log, table), table, its);
+      case 'chunks': return new HttpTransport(() => new ChunkSource(log, table), table, its);
+    }
+  }, handlers);
+}

@@ -1,0 +1,86 @@
+// What the viewer looks at, and which packets of a log of regions to fetch first for it. In lattice coordinates; a box is a packet's, in 256ths of the lattice.
+
+import type {Vector} from './cell_ray';
+import type {Plane} from './slice';
+
+export interface Wishes {
+  /** Up to 6: inside are the points with normal . p >= offset. Empty: everything is in sight. */
+  frustum: Plane[];
+  /** What lies on them is wanted. */
+  planes: Plane[];
+  /** What is near it comes first. */
+  point: Vector | null;
+}
+
+export const kNoWishes: Wishes = {frustum: [], planes: [], point: null};
+
+/** [least x, y, z, largest x, y, z], included. */
+export type PacketBox = ArrayLike<number>;
+
+export interface Packet {
+  chunk: number;
+  /** Coarse packets have smaller levels. */
+  depth: number;
+  box: PacketBox;
+}
+
+const kBoxSteps = 256;
+
+/** Least and largest of normal . p over the box. */
+function reach(box: PacketBox, size: number, normal: readonly number[]): [number, number] {
+  let low = 0;
+  let high = 0;
+  for (let axis = 0; axis < 3; ++axis) {
+    const from = normal[axis]! * box[axis]! * size / kBoxSteps, to = normal[axis]! * (box[axis + 3]! + 1) * size / kBoxSteps;
+    low += Math.min(from, to);
+    high += Math.max(from, to);
+  }
+  return [low, high];
+}
+
+/** 0 for what is in sight and on a plane, 3 for what is neither. Never above that of a box within this one, so that parents come before children. */
+export function urgency({frustum, planes}: Wishes, box: PacketBox, size: number): number {
+  const inSight = frustum.every(({normal, offset}) => reach(box, size, normal)[1] >= offset);
+  const onPlane = planes.length === 0 || planes.some(({normal, offset}) => {
+    const [low, high] = reach(box, size, normal);
+    return low <= offset && offset <= high;
+  });
+  return (inSight ? 0 : 2) + (onPlane ? 0 : 1);
+}
+
+/** Squared, from the point to the nearest of the box. */
+function distance(point: Vector, box: PacketBox, size: number): number {
+  return point.reduce((sum, x, axis) => {
+    const outside = Math.max(0, box[axis]! * size / kBoxSteps - x, x - (box[axis + 3]! + 1) * size / kBoxSteps);
+    return sum + outside * outside;
+  }, 0);
+}
+
+/** The packets as they should come: the urgent before the others, of these coarse before fine, near before far. `size`: of the lattice along an axis. */
+export function inOrder(packets: readonly Packet[], wishes: Wishes, size: number): Packet[] {
+  const keys = new Map(packets.map((packet) => [packet, [
+    urgency(wishes, packet.box, size), packet.depth, wishes.point ? distance(wishes.point, packet.box, size) : 0, packet.chunk,
+  ]]));
+  return [...packets].sort((a, b) => {
+    const [ka, kb] = [keys.get(a)!, keys.get(b)!];
+    const i = ka.findIndex((value, k) => value !== kb[k]);
+    return i < 0 ? 0 : ka[i]! - kb[i]!;
+  });
+}
+
+export interface WireLattice {
+  origin: readonly number[];
+  step: number;
+}
+
+/** As proto/PROTOCOL.md has it, in the mesh's own unit; null: no wishes. */
+export function wireView({frustum, planes, point}: Wishes, {origin, step}: WireLattice): Record<string, unknown> | null {
+  const shift = (normal: readonly number[]): number => normal.reduce((sum, x, axis) => sum + x * origin[axis]!, 0);
+  // normal . (p - origin) / step = offset
+  const plane = ({normal, offset}: Plane): number[] => [...normal, -(offset * step + shift(normal))];
+  const view: Record<string, unknown> = {};
+  if (frustum.length > 0) view.frustum = frustum.map(plane);
+  if (planes.length > 0) view.planes = planes.map(plane);
+  if (point) view.point = point.map((x, axis) => origin[axis]! + step * x);
+  return Object.keys(view).length > 0 ? view : null;
+}

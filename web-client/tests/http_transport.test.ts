@@ -1,0 +1,246 @@
+// Ranges and numbered chunks against a web server of a few lines: its files are arrays, its wishes functions.
+
+import {afterEach, beforeEach, describe, expect, test, vi} from 'vitest';
+import {Assembler} from '../core/assembler';
+import {AutoTransport, type TransportKind} from '../core/auto_transport';
+import {kLongestDelayMs} from '../core/backoff';
+import {ChunkSource, RangeSource} from '../core/block_source';
+import {HttpTransport, piecesOf} from '../core/http_transport';
+import {kFull} from '../core/limit';
+import {Publisher} from '../core/publisher';
+import type {Fetch} from '../core/ranged_file';
+import {Session} from '../core/session';
+import {SocketTransport} from '../core/socket_transport';
+import {kindsOf} from '../core/transports';
+import type {FromWorker} from '../core/worker_messages';
+import {FakeCodec, FakeSocket, fakeHead, headFrame, kFakeBlockBytes, kFakeValues, meshFrame, type FakeLog} from './fakes';
+
+const kLog: FakeLog = {fields: ['p', 'v'], chunks: 40};
+const kParts = 4;
+const kSha = 'a'.repeat(64);
+
+/** A log as a file; its blocks are zeros. */
+function file(log: FakeLog): Uint8Array {
+  const head = fakeHead(log);
+  const bytes = new Uint8Array(head.length + log.chunks * kParts * kFakeBlockBytes);
+  bytes.set(head);
+  return bytes;
+}
+
+interface Host {
+  fetch: Fetch;
+  asked: string[];
+  tag: string;
+  ranges: boolean;
+  /** Answers that fail from now on. */
+  broken: number;
+}
+
+function host(bytes: () => Uint8Array): Host {
+  const it: Host = {asked: [], tag: '"t1"', ranges: true, broken: 0, fetch: async (url, init) => {
+    const range = new Headers(init.headers).get('range');
+    it.asked.push(range ?? url);
+    if (it.broken > 0 && it.broken-- > 0) throw new TypeError('network');
+    const all = bytes();
+    const [, from, to] = /bytes=(\d+)-(\d+)/.exec(range ?? '') ?? [];
+    const headers = {etag: it.tag, 'content-range': `bytes ${from}-${to}/${all.length}`};
+    if (range && it.ranges) return new Response(all.slice(Number(from), Number(to) + 1), {status: 206, headers});
+    const chunk = /(?:fields\/(\w+)\/)?chunks\/(\d+)$/.exec(url);
+    if (!chunk) return new Response(all.slice(0, url.endsWith('base') ? fakeHead(kLog).length + 2 * kFakeBlockBytes : undefined), {headers: {etag: it.tag}});
+    const part = chunk[1] ? 2 + kLog.fields.indexOf(chunk[1]) : 0;
+    const at = fakeHead(kLog).length + (kParts * Number(chunk[2]) + part) * kFakeBlockBytes;
+    return new Response(all.slice(at, at + (part === 0 ? 2 : 1) * kFakeBlockBytes), {headers: {etag: it.tag}});
+  }};
+  return it;
+}
+
+let codec: FakeCodec;
+let assembler: Assembler;
+let heard: FromWorker[];
+
+beforeEach(() => {
+  vi.useFakeTimers();
+  heard = [];
+  codec = new FakeCodec(kLog);
+  assembler = new Assembler(codec, kFakeValues);
+});
+afterEach(() => void vi.useRealTimers());
+
+function session(it: Host, kind: 'range' | 'chunks', fields: string[] | null = ['p']): Session {
+  const made = new Session(assembler, new Publisher(assembler, () => undefined), (message) => heard.push(message), ({log}, table, handlers) =>
+    new HttpTransport(() => (kind === 'range' ? new RangeSource(log, table, it.fetch) : new ChunkSource(log, table, it.fetch)), table, handlers, () => 0));
+  made.start({url: '', log: 'https://x/v1/meshes/m/log', transport: 'auto', mesh: 'm', fields, limit: kFull});
+  return made;
+}
+
+const settle = (ms = 200): Promise<unknown> => vi.advanceTimersByTimeAsync(ms);
+const states = (): string[] => heard.flatMap((message) => (message.type === 'state' ? [message.state] : []));
+const errors = (): string[] => heard.flatMap((message) => (message.type === 'error' ? [message.code] : []));
+
+describe('ranges', () => {
+  test('aFileOnAnyWebServerComesWholeInFewRequests', async () => {
+    const it = host(() => file(kLog));
+    session(it, 'range', null);
+    await settle();
+    expect(states().at(-1)).toBe('complete');
+    expect(codec.chunksApplied).toBe(kLog.chunks);
+    expect(it.asked).toEqual(['bytes=0-65535']);
+  });
+
+  test('aServerThatKnowsNoRangesGivesTheWhole', async () => {
+    const it = host(() => file(kLog));
+    it.ranges = false;
+    session(it, 'range');
+    await settle();
+    expect(states().at(-1)).toBe('complete');
+    expect(it.asked).toHaveLength(1);
+  });
+
+  test('whatComesBehindTheFirstAnswerIsAskedForByItsPlace', async () => {
+    const log = {...kLog, chunks: 3000};
+    codec = new FakeCodec(log);
+    assembler = new Assembler(codec, kFakeValues);
+    const bytes = file(log);
+    const it = host(() => bytes);
+    session(it, 'range');
+    await settle(1000);
+    expect(states().at(-1)).toBe('complete');
+    expect(it.asked[1]).toMatch(/^bytes=65536-/);
+    const last = Number(/-(\d+)$/.exec(it.asked.at(-1)!)![1]);
+    expect(last).toBe(bytes.length - kFakeBlockBytes - 1);  // the other field's last block is nobody's wish
+  });
+
+  test('aLostLineIsTriedAgainAndGoesOnWhereItWas', async () => {
+    const it = host(() => file(kLog));
+    it.broken = 1;
+    session(it, 'range');
+    await settle(50);
+    expect(states()).toContain('reconnecting');
+    await settle(kLongestDelayMs);
+    expect(states().at(-1)).toBe('complete');
+  });
+
+  test('anotherFileInItsPlaceIsNoticedAndReadFromTheStart', async () => {
+    const log = {...kLog, chunks: 3000};
+    codec = new FakeCodec(log);
+    assembler = new Assembler(codec, kFakeValues);
+    const it = host(() => file(log));
+    const inner = it.fetch;
+    it.fetch = (url, init) => {
+      if (it.asked.length === 1) it.tag = '"t2"';
+      return inner(url, init);
+    };
+    session(it, 'range');
+    await settle(1000);
+    expect(it.asked.filter((range) => range === 'bytes=0-65535')).toHaveLength(2);
+    expect(states().at(-1)).toBe('complete');
+  });
+
+  test('aPageInsteadOfALogIsSaidToBeNone', async () => {
+    session(host(() => new TextEncoder().encode(`<html>${' '.repeat(100)}`)), 'range');
+    await settle();
+    expect(errors()).toEqual(['bad-magic']);
+    expect(states().at(-1)).toBe('failed');
+  });
+
+  test('aFileThatIsTooShortSaysSo', async () => {
+    session(host(() => file(kLog).slice(0, -200)), 'range');
+    await settle();
+    expect(errors()).toEqual(['truncated']);
+  });
+
+  test('noMoreIsAskedForThanTheCreditAllows', async () => {
+    const log = {...kLog, chunks: 5000};
+    codec = new FakeCodec(log);
+    assembler = new Assembler(codec, kFakeValues);
+    const bytes = file(log);
+    const it = host(() => bytes);
+    let payload = 0;
+    const transport: HttpTransport = new HttpTransport(() => new RangeSource('https://x/f.qtet', assembler, it.fetch), assembler, {
+      connected: () => transport.open({mesh: 'm', fields: ['p', 'v'], have: {chunks: 0, fields: {}}, credit: 50_000}),
+      message: () => undefined, down: () => undefined, failed: () => undefined,
+      frame: (frame) => {
+        assembler.take(frame);
+        payload += frame.payload.length;
+      },
+    });
+    transport.connect();
+    await settle(1000);
+    expect(payload).toBeGreaterThan(49_000);
+    expect(payload).toBeLessThan(50_000 + 3 * 32 * 1024);
+    const before = payload;
+    transport.applied(100_000);
+    await settle(1000);
+    expect(payload).toBeGreaterThan(before);
+    transport.disconnect();
+  });
+});
+
+test('numberedChunksGiveTheSame', async () => {
+  const it = host(() => file(kLog));
+  it.ranges = false;
+  session(it, 'chunks', ['v']);
+  await settle(500);
+  expect(states().at(-1)).toBe('complete');
+  expect(it.asked[0]).toBe('https://x/v1/meshes/m/base');
+  expect(it.asked).toContain('https://x/v1/meshes/m/chunks/39');
+  expect(it.asked).toContain('https://x/v1/meshes/m/fields/v/chunks/39');
+});
+
+test('whatIsHereIsNotAskedForAgainAndLaggingFieldsComeInTheirChunk', () => {
+  assembler.take({stream: 1, chunk: 0, firstPart: 0xffff, parts: 0, payload: fakeHead({...kLog, chunks: 3})});
+  const few = new FakeCodec({...kLog, chunks: 3});
+  const table = new Assembler(few, kFakeValues);
+  table.take({stream: 1, chunk: 0, firstPart: 0xffff, parts: 0, payload: fakeHead(kLog)});
+  const pieces = piecesOf(table, {fields: ['v'], have: {chunks: 2, fields: {v: 1}}});
+  expect(pieces.map(({chunk, firstPart}) => [chunk, firstPart])).toEqual([[1, 3], [2, 0], [2, 3]]);
+});
+
+describe('the choice among transports', () => {
+  test('aSocketThatNeverOpensGivesWayToRangesWhichGoOnBehindIt', async () => {
+    const it = host(() => file(kLog));
+    const sockets: FakeSocket[] = [];
+    const kinds: TransportKind[] = [];
+    const made = new Session(assembler, new Publisher(assembler, () => undefined), (message) => heard.push(message), ({url, log}, table, handlers) =>
+      new AutoTransport(['websocket', 'range'], (kind, its) => {
+        kinds.push(kind);
+        if (kind === 'range') return new HttpTransport(() => new RangeSource(log, table, it.fetch), table, its, () => 0);
+        return new SocketTransport(url, its, () => {
+          sockets.push(new FakeSocket());
+          return sockets.at(-1)!;
+        }, () => 0);
+      }, handlers));
+    made.start({url: 'ws://x', log: 'https://x/f.qtet', transport: 'auto', mesh: 'm', fields: ['p'], limit: kFull});
+    sockets[0]!.accept();
+    sockets[0]!.deliver(JSON.stringify({type: 'opened', stream: 1, mesh: 'm', digest: 't1', bytes: 1000, planned: 100}));
+    sockets[0]!.deliver(headFrame(1, kLog));
+    for (let chunk = 0; chunk < 5; ++chunk) sockets[0]!.deliver(meshFrame(1, chunk));
+    for (let lost = 0; lost < 2; ++lost) {
+      sockets.at(-1)!.lose(1006);
+      await settle(kLongestDelayMs);
+    }
+    expect(kinds).toEqual(['websocket', 'range']);
+    expect(states().at(-1)).toBe('complete');
+    expect(codec.chunksApplied).toBe(kLog.chunks);
+  });
+
+  test('aFileHasNoSocketAndAForcedWayIsTheOnlyOne', () => {
+    expect(kindsOf({url: '', transport: 'auto'})).toEqual(['range']);
+    expect(kindsOf({url: 'ws://x', transport: 'chunks'})).toEqual(['chunks']);
+    expect(kindsOf({url: 'ws://x', transport: 'auto'})).toEqual(['websocket', 'range', 'chunks']);
+  });
+});
+
+test('aDigestOfAnotherLogStartsAnew', async () => {
+  const it = host(() => file(kLog));
+  it.tag = `"${kSha}"`;
+  const messages: string[] = [];
+  const transport: HttpTransport = new HttpTransport(() => new RangeSource('https://x/f.qtet', assembler, it.fetch), assembler, {
+    connected: () => transport.open({mesh: 'm', fields: [], have: {chunks: 0, fields: {}}, credit: 1000, digest: 'b'.repeat(64)}),
+    message: (message) => messages.push(message.type === 'error' ? message.code : message.type), down: () => undefined, failed: () => undefined,
+    frame: () => undefined,
+  });
+  transport.connect();
+  await settle();
+  expect(messages).toEqual(['log-changed']);
+});
