@@ -108,6 +108,10 @@ Status checkCellMesh(const CellMesh& mesh, const std::filesystem::path& path) {
       return bad(path, "cell " + std::to_string(mesh.cellId(i)) + " is of VTK type " + std::to_string(type) +
                            ", which is not read; turn it into tetrahedra first (in ParaView: filter Tetrahedralize)");
     }
+    if (type == kPolyhedronCell && mesh.cell(i).size() > kMaxPolyhedronNumbers) {
+      return fail(ErrorCode::kLimitExceeded, path.string() + ": cell " + std::to_string(mesh.cellId(i)) + " is a polyhedron whose faces take " + std::to_string(mesh.cell(i).size()) +
+                                                 " numbers; at most " + std::to_string(kMaxPolyhedronNumbers) + " are split: divide the cell before exporting");
+    }
     if (hasItsVertices(type, mesh.cell(i), mesh.points.size())) continue;
     const std::uint32_t wanted = verticesOf(type);
     return bad(path, "cell " + std::to_string(mesh.cellId(i)) + " is a " + cellTypeName(type) + " without " +

@@ -39,6 +39,9 @@ enum CellType : std::uint8_t {
   kBiquadraticPyramidCell = 250,  ///< not VTK's: a quadratic pyramid with a node at the centre of its base
 };
 
+/// Numbers that name a polyhedron's faces: real ones have some hundred, and splitting one takes time in proportion to the square.
+inline constexpr std::size_t kMaxPolyhedronNumbers = 16384;
+
 /// Cells of three dimensions only. `vertices` of a polyhedron: the number of its faces, then each face's number of vertices and its vertices.
 struct CellMesh {
   std::vector<Position> points;
@@ -69,7 +72,8 @@ struct CellMesh {
 [[nodiscard]] std::uint32_t verticesOf(std::uint8_t type);
 
 /// Errors: bad-input naming the first cell of a kind that is not read, with too few or too many vertices, or with an id outside the points;
-/// no points; no cells; a coordinate that is not finite; a field of a wrong length. limit-exceeded.
+/// no points; no cells; a coordinate that is not finite; a field of a wrong length. limit-exceeded
+/// (points, the faces of a polyhedron).
 [[nodiscard]] Status checkCellMesh(const CellMesh& mesh, const std::filesystem::path& path);
 
 }  // namespace qtet

@@ -270,6 +270,31 @@ TEST(CheckCellMesh, whatIsWrongIsNamedWithItsCell) {
   refused(mesh, "point field f has 3 tuples for 8 points");
 }
 
+TEST(CheckCellMesh, polyhedraOfManyFacesAreRefusedBeforeTheyTakeHours) {
+  for (const VertexId n : {VertexId{2047}, VertexId{2048}}) {  // corners of a double pyramid's base
+    CellMesh mesh;
+    std::vector<VertexId> stream{2 * n};
+    for (VertexId i = 0; i < n; ++i) {
+      const double angle = 2 * 3.14159265358979323846 * i / n;
+      mesh.points.push_back({std::cos(angle), std::sin(angle), 0});
+      const VertexId next = (i + 1) % n;
+      stream.insert(stream.end(), {3, i, next, n, 3, next, i, n + 1});
+    }
+    mesh.points.push_back({0, 0, 1});
+    mesh.points.push_back({0, 0, -1});
+    mesh.addCell(kPolyhedronCell, stream);
+    const Status checked = checkCellMesh(mesh, "file.vtu");
+    if (stream.size() <= kMaxPolyhedronNumbers) {
+      ASSERT_TRUE(checked) << checked.error().text();
+      EXPECT_NEAR(filledBy(splitOf(mesh)).volume, 2 * 3.14159265358979323846 / 3, 1e-5);
+    } else {
+      ASSERT_FALSE(checked);
+      EXPECT_EQ(checked.error().code, ErrorCode::kLimitExceeded);
+      EXPECT_NE(checked.error().message.find("cell 0 is a polyhedron whose faces take 16385 numbers"), std::string::npos) << checked.error().message;
+    }
+  }
+}
+
 /// A ring of `n` hexahedra round an axis, two layers high and two thick, whose ends coincide but have points of their own.
 CellMesh openRing(std::size_t n) {
   CellMesh mesh;
