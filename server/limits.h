@@ -54,7 +54,7 @@ inline constexpr std::size_t kLingerBytes = 1u << 20;
 inline constexpr std::size_t kMaxListPage = 1000;
 /// Bytes of a mesh's name: with `.qtet` and what an upload appends, below the 255 that file systems allow.
 inline constexpr std::size_t kMaxIdBytes = 150;
-/// Bytes of one log that is held in memory instead of mapped, and of all of them: people copy files over others in place, which changes a mapping under
+/// Bytes of one log that is served from a nameless copy, and of all of them: people copy files over others in place, which changes a mapping under
 /// its digest. Most logs are smaller; larger ones are replaced by renaming (`qtet`, uploads).
 inline constexpr std::uintmax_t kMaxCopiedLogBytes = 64u << 20;
 inline constexpr std::uintmax_t kMaxCopiedBytes = 1u << 30;

@@ -56,8 +56,8 @@ struct ServedMesh {
 /// Whoever holds one keeps the log mapped, also after the file was replaced or removed.
 using MeshPointer = std::shared_ptr<const ServedMesh>;
 
-/// A log of at most limits::kMaxCopiedLogBytes is held in memory as long as all of them together stay within limits::kMaxCopiedBytes, so that whatever happens
-/// to its file (copied over, truncated) changes nothing of what stands under its digest. Others are mapped.
+/// A log of at most limits::kMaxCopiedLogBytes is served from a copy of its own, without a name, as long as all of them together stay within
+/// limits::kMaxCopiedBytes: whatever happens to its file (copied over, truncated) changes nothing of what stands under its digest. Others are mapped.
 /// Opens a log as mesh `id` and checks everything that can be checked without decoding: header, table, manifest, every CRC-32C.
 /// Reads the whole file. Errors: those of LogFile::open, verifyChecksums and manifestOf.
 [[nodiscard]] Result<MeshPointer> openMesh(const std::filesystem::path& path, std::string id);
