@@ -382,7 +382,7 @@ asio::awaitable<bool> HttpSession::writeFile(const std::string& head, FilePart f
   auto offset = static_cast<off_t>(file.offset);
   std::size_t headSent = 0;
   error_code ec;
-  stream_.socket().native_non_blocking(true, ec);
+  if (!stream_.socket().native_non_blocking()) stream_.socket().native_non_blocking(true, ec);
   stream_.expires_never();
   while (!ec && (headSent < head.size() || sent_ < bytes)) {
     const bool inHead = headSent < head.size();

@@ -36,7 +36,7 @@ def start(command, ready=None):
 
 
 def start_qtet(args, folder):
-    process, port = start([args.bin / "qtet-server", folder, "--port", 0, "--max-connections", 12000, "--max-connections-per-address", 0,
+    process, port = start([args.bin / "qtet-server", folder, "--threads", 1, "--port", 0, "--max-connections", 12000, "--max-connections-per-address", 0,
                            "--max-requests-per-second", 0], r":(\d+)/")
     return process, int(port)
 
