@@ -32,7 +32,8 @@ po::options_description settings() {
       "tokens", text(), "file of bearer tokens that may PUT and DELETE meshes (default: nobody may)")(
       "max-upload-bytes", text(), "the largest log that is taken (default: 16 GiB)")("max-connections", text(), "at a time, in all (default: 4000)")(
       "max-connections-per-address", text(), "at a time; 0 = no bound, as behind a proxy (default: 256)")(
-      "max-requests-per-second", text(), "of one address; 0 = no bound, as behind a proxy (default: 2000)");
+      "max-requests-per-second", text(), "of one address; 0 = no bound, as behind a proxy (default: 2000)")(
+      "allow-origins", text(), "origins between commas, like https://viewer.example, whose pages may open streams (default: any)");
   return out;
 }
 
@@ -95,6 +96,17 @@ void readAdmin(Reader& reader, CommandLine& out) {
   out.adminPort = static_cast<std::uint16_t>(value);
 }
 
+void readOrigins(Reader& reader, CommandLine& out) {
+  std::istringstream list(reader.text("allow-origins").value_or(""));
+  for (std::string origin; std::getline(list, origin, ',');) {
+    const std::size_t host = origin.find("://");
+    if (host == std::string::npos || host == 0 || host + 3 == origin.size() || origin.find('/', host + 3) != std::string::npos ||
+        origin.find(' ') != std::string::npos)
+      return reader.refuse("--allow-origins: '" + origin + "' is not SCHEME://HOST or SCHEME://HOST:PORT, without a path");
+    out.allowedOrigins.push_back(std::move(origin));
+  }
+}
+
 Result<CommandLine> toCommandLine(const po::variables_map& values) {
   CommandLine out;
   if (values.contains("check-config")) out.wish = CommandLine::Wish::kCheckConfig;
@@ -120,6 +132,7 @@ Result<CommandLine> toCommandLine(const po::variables_map& values) {
   reader.path("tokens", out.tokens);
   out.accessLog = reader.text("access-log");
   readAdmin(reader, out);
+  readOrigins(reader, out);
   if (reader.error()) return std::unexpected(*reader.error());
   return out;
 }
@@ -201,6 +214,8 @@ std::string configText(const CommandLine& options) {
   out << "max-upload-bytes = " << options.maxUploadBytes << "\nmax-connections = " << options.maxConnections
       << "\nmax-connections-per-address = " << options.maxConnectionsPerAddress
       << "\nmax-requests-per-second = " << options.maxRequestsPerSecond << "\n";
+  for (std::size_t i = 0; i < options.allowedOrigins.size(); ++i) out << (i == 0 ? "allow-origins = " : ",") << options.allowedOrigins[i];
+  if (!options.allowedOrigins.empty()) out << "\n";
   return out.str();
 }
 

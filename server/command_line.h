@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "proto/error.h"
 #include "server/limits.h"
@@ -31,6 +32,7 @@ struct CommandLine {
   std::size_t maxConnections = limits::kMaxConnections;
   std::size_t maxConnectionsPerAddress = limits::kMaxConnectionsPerAddress;  ///< 0: no bound
   unsigned maxRequestsPerSecond = limits::kMaxRequestsPerSecond;             ///< 0: no bound
+  std::vector<std::string> allowedOrigins;                                   ///< of pages that may open streams; empty: any
 };
 
 /// `environment` is what `environ` points to: NAME=VALUE texts and a nullptr. An option `max-connections` is QTET_SERVER_MAX_CONNECTIONS

@@ -1,4 +1,4 @@
-// WebSocket frames put together for one write: heads of our own, payloads where they lie.
+// WebSocket frames put together for as few system calls as they take: heads of our own, payloads where they lie.
 #pragma once
 
 #include <utility>  // before any Asio header: 1.74 uses std::exchange without it
@@ -6,10 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <boost/asio/buffer.hpp>
+#include <boost/asio/ip/tcp.hpp>
 #include <cstdint>
+#include <deque>
 #include <string>
 #include <vector>
 
+#include "server/http_message.h"
 #include "server/limits.h"
 #include "server/stream_protocol.h"
 #include "server/web_socket_reader.h"
@@ -20,7 +23,6 @@ class FrameGather {
  public:
   FrameGather() {
     items_.reserve(limits::kFramesPerWrite);
-    parts_.reserve(2 * limits::kFramesPerWrite);
   }
 
   /// REQUIRES: not full(). A text, or what a control frame carries.
@@ -41,19 +43,16 @@ class FrameGather {
     std::copy_n(header.bytes, header.size, item.head.begin());
     std::ranges::copy(inner, item.head.begin() + header.size);
     item.headBytes = header.size + inner.size();
-    append(item, boost::asio::const_buffer(frame.payload.data(), frame.payload.size()));
+    const int file = item.mesh->descriptor->number;
+    const auto offset = static_cast<std::uint64_t>(frame.payload.data() - item.mesh->log.bytes().data());
+    append(item, boost::asio::const_buffer(frame.payload.data(), frame.payload.size()), {file, offset});
   }
 
   [[nodiscard]] bool full() const { return items_.size() == limits::kFramesPerWrite || bytes_ >= limits::kBytesPerWrite; }
   [[nodiscard]] bool empty() const { return items_.empty(); }
-  /// Of what is still to be written; consume() shortens it.
-  [[nodiscard]] const std::vector<boost::asio::const_buffer>& parts() const { return parts_; }
-  void consume(std::size_t bytes) {
-    std::size_t gone = 0;
-    while (gone < parts_.size() && bytes >= parts_[gone].size()) bytes -= parts_[gone++].size();
-    parts_.erase(parts_.begin(), parts_.begin() + static_cast<std::ptrdiff_t>(gone));
-    if (!parts_.empty()) parts_.front() += bytes;
-  }
+  [[nodiscard]] bool written() const { return parts_.empty(); }
+  /// Gives the socket what it takes by one call: parts in memory up to the next that lies in a file, or such a one. Bytes taken; would_block, or another error.
+  std::size_t write(boost::asio::ip::tcp::socket& socket, boost::system::error_code& ec);
 
  private:
   struct Item {
@@ -62,14 +61,21 @@ class FrameGather {
     std::string text;
     MeshPointer mesh;  ///< keeps the payload mapped
   };
-  void append(const Item& item, boost::asio::const_buffer payload) {
-    parts_.push_back(boost::asio::buffer(item.head.data(), item.headBytes));
-    if (payload.size() > 0) parts_.push_back(payload);
+  struct Part {
+    boost::asio::const_buffer bytes;
+    FilePart file{};  ///< where the bytes lie as well, if it pays to have the kernel take them from there
+
+    [[nodiscard]] bool inFile() const { return file.descriptor >= 0; }
+  };
+  void append(const Item& item, boost::asio::const_buffer payload, FilePart file = {}) {
+    parts_.push_back({boost::asio::buffer(item.head.data(), item.headBytes)});
+    if (payload.size() > 0) parts_.push_back({payload, payload.size() >= limits::kLeastFromFile ? file : FilePart()});
     bytes_ += payload.size();
   }
+  void consume(std::size_t bytes);
 
   std::vector<Item> items_;  // reserved, so that nothing in it moves
-  std::vector<boost::asio::const_buffer> parts_;
+  std::deque<Part> parts_;
   std::size_t bytes_ = 0;
 };
 

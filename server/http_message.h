@@ -36,12 +36,19 @@ struct RequestView {
   std::optional<std::string_view> traceparent = std::nullopt;
 };
 
+/// A place in a file that the reply's owner holds open.
+struct FilePart {
+  int descriptor = -1;
+  std::uint64_t offset = 0;
+};
+
 /// `body` is either text of the reply's own, or bytes that live as long as `owner`, or a level to be made, or an upload to be taken.
 struct Reply {
   unsigned status = 200;
   std::vector<std::pair<std::string, std::string>> headers;  ///< without Content-Length, Date and Connection
   std::variant<std::string, ByteView, LevelRequest, UploadRequest> body;
   std::shared_ptr<const void> owner{};  ///< of the bytes, where they are not the router's or the viewer's
+  std::optional<FilePart> file{};  ///< where the bytes of the body, a view, stand in an open file as well
   bool sendBody = true;  ///< false for HEAD: the headers speak of the body that is left out
   bool close = false;    ///< the connection cannot be used any further
 

@@ -3,6 +3,8 @@
 
 #include <boost/beast/http/message.hpp>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "server/http_message.h"
 
@@ -19,7 +21,8 @@ using RequestHeader = boost::beast::http::request_header<>;
 
 /// Whether the request is a WebSocket handshake on the stream's path.
 [[nodiscard]] bool isStreamHandshake(const RequestHeader& header);
-/// The answer to a handshake that does not offer the subprotocol, or nullopt.
-[[nodiscard]] std::optional<Reply> handshakeRefusal(const RequestHeader& header);
+/// The answer to a handshake that is not answered by 101: another version, no key, no subprotocol, or of a page whose origin is not among `origins`
+/// (unless that is nullptr or empty; whoever names no origin is no browser, and whoever is none may name any).
+[[nodiscard]] std::optional<Reply> handshakeRefusal(const RequestHeader& header, const std::vector<std::string>* origins);
 
 }  // namespace qtet

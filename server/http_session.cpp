@@ -1,10 +1,13 @@
 #include "server/http_session.h"
 
 #include <spdlog/spdlog.h>
+#include <sys/sendfile.h>
+#include <sys/socket.h>
 
 #include <algorithm>
 #include <array>
 #include <boost/asio/async_result.hpp>
+#include <boost/asio/co_spawn.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/read.hpp>
 #include <boost/asio/redirect_error.hpp>
@@ -13,6 +16,7 @@
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/parser.hpp>
+#include <cerrno>
 #include <limits>
 #include <optional>
 
@@ -85,6 +89,7 @@ class HttpSession {
 
  private:
   asio::awaitable<bool> waitForBytes();
+  void readSome(error_code& ec);
   /// The whole head parsed; nullopt: the connection has ended, or was refused.
   asio::awaitable<bool> readHead(Parser& parser);
   asio::awaitable<bool> becomeStream(Parser& parser);
@@ -97,6 +102,7 @@ class HttpSession {
   asio::awaitable<Reply> elsewhere(std::move_only_function<Reply()> work);
   asio::awaitable<bool> send(Reply reply, bool keepAlive);
   asio::awaitable<bool> write(const std::string& head, ByteView body);
+  asio::awaitable<bool> writeFile(const std::string& head, FilePart file, std::size_t bytes);
   asio::awaitable<void> refuse(Reply reply);
   asio::awaitable<void> linger();
   [[nodiscard]] std::string_view buffered() const { return {static_cast<const char*>(buffer_.data().data()), buffer_.size()}; }
@@ -116,17 +122,29 @@ class HttpSession {
   std::uint64_t sent_ = 0;
 };
 
+/// What has come, without waiting.
+void HttpSession::readSome(error_code& ec) {
+  if (!stream_.socket().non_blocking()) stream_.socket().non_blocking(true, ec);
+  std::array<char, kReadBytes> bytes;
+  const std::size_t count = stream_.socket().read_some(asio::buffer(bytes), ec);
+  buffer_.commit(asio::buffer_copy(buffer_.prepare(count), asio::buffer(bytes, count)));
+}
+
 asio::awaitable<bool> HttpSession::waitForBytes() {
   buffer_.consume(emptyLinesBefore(buffered()));
   while (buffer_.size() == 0) {
     if (connection_->ending()) co_return false;
     error_code ec;
-    stream_.expires_after(services_.timeouts.idle);
-    idle_ = true;
-    const std::size_t n = co_await stream_.async_read_some(buffer_.prepare(kReadBytes), redirect_error(use_awaitable, ec));
-    idle_ = false;
+    readSome(ec);
+    if (ec == asio::error::would_block) {
+      buffer_ = beast::flat_buffer(limits::kMaxHeaderBytes);  // a silent client has none
+      stream_.expires_never();
+      const Deadline deadline(stream_, services_.timeouts.idle);
+      idle_ = true;
+      co_await stream_.socket().async_wait(asio::ip::tcp::socket::wait_read, redirect_error(use_awaitable, ec));
+      idle_ = false;
+    }
     if (ec) co_return false;
-    buffer_.commit(n);
     buffer_.consume(emptyLinesBefore(buffered()));
   }
   co_return true;
@@ -205,15 +223,19 @@ asio::awaitable<void> HttpSession::run() {
 }
 
 asio::awaitable<bool> HttpSession::becomeStream(Parser& parser) {
-  if (std::optional<Reply> refusal = handshakeRefusal(parser.get())) {
+  if (std::optional<Reply> refusal = handshakeRefusal(parser.get(), services_.allowedOrigins)) {
     co_await refuse(std::move(*refusal));
     co_return false;
   }
   connection_->onEnd({});
   const auto key = parser.get()[http::field::sec_websocket_key];
   StreamHandshake handshake{std::string(key.data(), key.size()), std::string(buffered())};
-  buffer_ = beast::flat_buffer();  // a WebSocket has its own
-  co_await serveStream(stream_.release_socket(), std::move(handshake), services_.store, connection_);
+  // A coroutine of its own, so that what a request needed goes.
+  const auto executor = stream_.get_executor();
+  asio::co_spawn(executor, serveStream(stream_.release_socket(), std::move(handshake), services_.store, std::move(connection_), std::move(visitor_)),
+                 [](const std::exception_ptr& thrown) {
+                   if (thrown) spdlog::error("a stream ended by an exception");
+                 });
   co_return true;
 }
 
@@ -324,7 +346,12 @@ asio::awaitable<bool> HttpSession::send(Reply reply, bool keepAlive) {
   ByteView body;
   if (const auto* text = std::get_if<std::string>(&reply.body)) body = viewOf(*text);
   if (const auto* view = std::get_if<ByteView>(&reply.body)) body = *view;
-  const bool sent = co_await write(head, reply.sendBody ? body : ByteView());
+  bool sent = false;
+  if (reply.file && reply.sendBody && body.size() >= limits::kLeastFromFile) {
+    sent = co_await writeFile(head, *reply.file, body.size());
+  } else {
+    sent = co_await write(head, reply.sendBody ? body : ByteView());
+  }
   report(reply, sent);
   if (!sent) co_return false;
   if (!keepAlive) co_await linger();
@@ -346,6 +373,28 @@ asio::awaitable<bool> HttpSession::write(const std::string& head, ByteView body)
     first = {};
   } while (!body.empty());
   co_return true;
+}
+
+/// The head and then the file's pages, which the kernel sends without copying them.
+asio::awaitable<bool> HttpSession::writeFile(const std::string& head, FilePart file, std::size_t bytes) {
+  sent_ = 0;
+  const int socket = stream_.socket().native_handle();
+  auto offset = static_cast<off_t>(file.offset);
+  std::size_t headSent = 0;
+  error_code ec;
+  if (!stream_.socket().native_non_blocking()) stream_.socket().native_non_blocking(true, ec);
+  stream_.expires_never();
+  while (!ec && (headSent < head.size() || sent_ < bytes)) {
+    const bool inHead = headSent < head.size();
+    const ssize_t count = inHead ? ::send(socket, head.data() + headSent, head.size() - headSent, MSG_MORE | MSG_NOSIGNAL)
+                                 : ::sendfile(socket, file.descriptor, &offset, std::min<std::size_t>(bytes - sent_, limits::kMostFromFile));
+    if (count > 0) (inHead ? headSent : sent_) += static_cast<std::size_t>(count);
+    if (count > 0 || (count < 0 && errno == EINTR)) continue;
+    if (count == 0 || errno != EAGAIN) co_return false;  // the file has become shorter, or the client has gone
+    const Deadline deadline(stream_, services_.timeouts.write);
+    co_await stream_.socket().async_wait(asio::ip::tcp::socket::wait_write, redirect_error(use_awaitable, ec));
+  }
+  co_return !ec;
 }
 
 void HttpSession::report(const Reply& reply, bool whole) {

@@ -41,6 +41,9 @@ inline constexpr auto kIdleTime = 75s;
 /// Bytes given to one write, each of which must be taken within kWriteTime: so a slow line is served (9 KB/s suffice), a dead one is not.
 inline constexpr std::size_t kWritePiece = 256u << 10;
 inline constexpr auto kWriteTime = 30s;
+/// Bytes of a log from which on the kernel sends them out of the file, and how many at once before other connections have their turn.
+inline constexpr std::size_t kLeastFromFile = 16u << 10;
+inline constexpr std::size_t kMostFromFile = 1u << 20;
 /// After a refusal that closes, how long and how much is still read, so that the answer is not lost to a reset.
 inline constexpr auto kLingerTime = 1s;
 inline constexpr std::size_t kLingerBytes = 1u << 20;
@@ -51,7 +54,7 @@ inline constexpr std::size_t kLingerBytes = 1u << 20;
 inline constexpr std::size_t kMaxListPage = 1000;
 /// Bytes of a mesh's name: with `.qtet` and what an upload appends, below the 255 that file systems allow.
 inline constexpr std::size_t kMaxIdBytes = 150;
-/// Bytes of one log that is held in memory instead of mapped, and of all of them: people copy files over others in place, which changes a mapping under
+/// Bytes of one log that is served from a nameless copy, and of all of them: people copy files over others in place, which changes a mapping under
 /// its digest. Most logs are smaller; larger ones are replaced by renaming (`qtet`, uploads).
 inline constexpr std::uintmax_t kMaxCopiedLogBytes = 64u << 20;
 inline constexpr std::uintmax_t kMaxCopiedBytes = 1u << 30;

@@ -24,8 +24,10 @@ std::optional<std::uint32_t> parseIndex(std::string_view text) {
 /// Bytes [first, end) of the log. `name` tells the part from the others in the tag; "" is the whole.
 Reply part(const RequestView& request, const MeshPointer& mesh, const std::string& name, std::uint64_t first, std::uint64_t end) {
   const std::string tag = '"' + mesh->log.digest() + (name.empty() ? "" : "-" + name) + '"';
-  return bytesReply(request, {{tag, mesh->modified}, "application/octet-stream", kForEver, {}}, mesh->log.bytes().subspan(first, end - first),
-                    mesh);
+  Reply out = bytesReply(request, {{tag, mesh->modified}, "application/octet-stream", kForEver, {}}, mesh->log.bytes().subspan(first, end - first), mesh);
+  if (const auto* body = std::get_if<ByteView>(&out.body))
+    out.file = FilePart{mesh->descriptor->number, static_cast<std::uint64_t>(body->data() - mesh->log.bytes().data())};
+  return out;
 }
 
 std::uint64_t endOf(const BlockEntry& block) { return block.offset + block.size; }

@@ -108,7 +108,8 @@ ServerOptions serverOptions(const CommandLine& wishes, LevelCache* cache, Access
           .cache = cache,
           .accessLog = accessLog,
           .tokens = tokens.empty() ? nullptr : &tokens,
-          .maxUploadBytes = wishes.maxUploadBytes};
+          .maxUploadBytes = wishes.maxUploadBytes,
+          .allowedOrigins = wishes.allowedOrigins};
 }
 
 int serve(const CommandLine& wishes) {

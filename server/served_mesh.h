@@ -27,6 +27,16 @@ struct FileIdentity {
   }
 };
 
+/// A file that is open as long as the object lives.
+struct Descriptor {
+  explicit Descriptor(int opened) : number(opened) {}
+  ~Descriptor();
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+
+  const int number;  ///< -1: it could not be opened
+};
+
 struct ServedMesh {
   std::string id;  ///< the file's name without `.qtet`
   LogFile log;
@@ -36,6 +46,7 @@ struct ServedMesh {
   std::string listEntry{};    ///< its object in the list of meshes
   Document description{};     ///< `GET /v1/meshes/{id}`
   Document manifestText{};    ///< `GET /v1/logs/{sha256}/manifest`
+  std::unique_ptr<Descriptor> descriptor{};  ///< of the bytes of `log`, for the kernel to send them from
   std::shared_ptr<void> copied{};  ///< its part of limits::kMaxCopiedBytes; nullptr: the file is mapped
 
   /// Length of the file's prefix that holds level `level`. REQUIRES: such a level.
@@ -45,8 +56,8 @@ struct ServedMesh {
 /// Whoever holds one keeps the log mapped, also after the file was replaced or removed.
 using MeshPointer = std::shared_ptr<const ServedMesh>;
 
-/// A log of at most limits::kMaxCopiedLogBytes is held in memory as long as all of them together stay within limits::kMaxCopiedBytes, so that whatever happens
-/// to its file (copied over, truncated) changes nothing of what stands under its digest. Others are mapped.
+/// A log of at most limits::kMaxCopiedLogBytes is served from a copy of its own, without a name, as long as all of them together stay within
+/// limits::kMaxCopiedBytes: whatever happens to its file (copied over, truncated) changes nothing of what stands under its digest. Others are mapped.
 /// Opens a log as mesh `id` and checks everything that can be checked without decoding: header, table, manifest, every CRC-32C.
 /// Reads the whole file. Errors: those of LogFile::open, verifyChecksums and manifestOf.
 [[nodiscard]] Result<MeshPointer> openMesh(const std::filesystem::path& path, std::string id);

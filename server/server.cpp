@@ -2,9 +2,7 @@
 
 #include "server/server.h"
 
-#include <netinet/tcp.h>
 #include <spdlog/spdlog.h>
-#include <sys/socket.h>
 
 #include <algorithm>
 #include <atomic>
@@ -41,13 +39,9 @@ struct Lane {
   asio::executor_work_guard<asio::io_context::executor_type> work = asio::make_work_guard(context);
 };
 
-/// Bytes that the kernel may hold unsent: so a superseded stream stops soon, and a stalled client costs 178 KB instead of megabytes.
-constexpr int kUnsentBytes = 128 << 10;
-
 void configure(tcp::socket& socket) {
   error_code ec;
   socket.set_option(tcp::no_delay(true), ec);
-  (void)::setsockopt(socket.native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &kUnsentBytes, sizeof(kUnsentBytes));
 }
 
 /// Answers a connection for which there is no place; what does not fit into an empty socket's buffer is not waited for.
@@ -110,9 +104,9 @@ struct Server::State {
   LevelJobs jobs{{limits::kLevelThreads, limits::kMaxLevelJobs, options.cache, options.makeLevel}};
   asio::thread_pool verifiers{1};
   Services services{store, [this](const RequestView& request) { return router.route(request); }, true, jobs, metrics, options.accessLog,
-                    options.timeouts, &uploads, &verifiers};
+                    options.timeouts, &uploads, &verifiers, &options.allowedOrigins};
   Services adminServices{store, [this](const RequestView& request) { return routeAdmin(admin, request); }, false, jobs, metrics,
-                         options.accessLog, options.timeouts, nullptr, nullptr};
+                         options.accessLog, options.timeouts, nullptr, nullptr, nullptr};
 };
 
 asio::awaitable<void> Server::State::acceptConnections(tcp::acceptor& from, const Services& whose) {
@@ -246,6 +240,7 @@ std::string Server::url() const {
 }
 
 void Server::run() {
+  std::signal(SIGPIPE, SIG_IGN);  // sendfile knows no MSG_NOSIGNAL
   if (state_->options.tokens != nullptr) state_->uploads.sweep();
   if (state_->options.endOnSignals) state_->watchSignals();
   asio::co_spawn(state_->mainContext(), state_->acceptConnections(state_->acceptor, state_->services), logEnd);

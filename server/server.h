@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "server/level_maker.h"
 #include "server/services.h"
@@ -29,6 +30,7 @@ struct ServerOptions {
   AccessLog* accessLog = nullptr;
   const Tokens* tokens = nullptr;   ///< who may change meshes; nullptr: nobody
   std::uintmax_t maxUploadBytes = limits::kMaxUploadBytes;
+  std::vector<std::string> allowedOrigins{};  ///< of pages that may open streams, as browsers write them; empty: any
   LevelJobs::Maker makeLevel = qtet::makeLevel;
 };
 

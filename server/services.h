@@ -6,6 +6,8 @@
 #include <boost/asio/thread_pool.hpp>
 #include <chrono>
 #include <functional>
+#include <string>
+#include <vector>
 
 #include "server/access_log.h"
 #include "server/http_message.h"
@@ -35,6 +37,7 @@ struct Services {
   Timeouts timeouts{};
   Uploads* uploads = nullptr;                         ///< where the router knows of uploads
   boost::asio::thread_pool* verifiers = nullptr;      ///< where they are checked
+  const std::vector<std::string>* allowedOrigins = nullptr;  ///< of pages that may open streams; nullptr or empty: any
 };
 
 }  // namespace qtet

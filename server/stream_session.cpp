@@ -1,5 +1,8 @@
 #include "server/stream_session.h"
 
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+
 #include <array>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/redirect_error.hpp>
@@ -26,6 +29,8 @@ using Event = WebSocketReader::Event;
 
 /// On the stack of whoever reads, so that a silent client has no buffer.
 constexpr std::size_t kReadBytes = 4096;
+/// Bytes that the kernel may hold unsent: so a superseded order stops soon, and a stalled client costs little.
+constexpr int kUnsentBytes = 96 << 10;
 /// Before other connections of the thread have their turn.
 constexpr int kReadsInARow = 8;
 
@@ -33,8 +38,13 @@ constexpr int kReadsInARow = 8;
 /// frame; the reader wakes it when there is something to say. All hold the session, so it ends with the last of them.
 class StreamSession : public std::enable_shared_from_this<StreamSession> {
  public:
-  StreamSession(tcp::socket socket, const MeshStore& store, std::shared_ptr<Connection> connection)
-      : socket_(std::move(socket)), wake_(socket_.get_executor()), clock_(socket_.get_executor()), protocol_(store), connection_(std::move(connection)) {}
+  StreamSession(tcp::socket socket, const MeshStore& store, std::shared_ptr<Connection> connection, std::unique_ptr<AddressLimits::Visitor> visitor)
+      : socket_(std::move(socket)),
+        wake_(socket_.get_executor()),
+        clock_(socket_.get_executor()),
+        protocol_(store),
+        connection_(std::move(connection)),
+        visitor_(std::move(visitor)) {}
 
   asio::awaitable<void> run(StreamHandshake handshake);
   /// Ends the session by the server's own fault.
@@ -70,6 +80,7 @@ class StreamSession : public std::enable_shared_from_this<StreamSession> {
   StreamProtocol protocol_;
   WebSocketReader reader_;
   std::shared_ptr<Connection> connection_;
+  std::unique_ptr<AddressLimits::Visitor> visitor_;
 
   std::optional<std::string> pong_;   // the payload of the last ping that is not answered yet
   bool ping_ = false;                 // one is due
@@ -196,11 +207,10 @@ asio::awaitable<void> StreamSession::write() {
 asio::awaitable<void> StreamSession::flush(FrameGather& gather) {
   writing_ = true;
   written_ = Clock::now();
-  while (!ended_ && !gather.parts().empty()) {
+  while (!ended_ && !gather.written()) {
     error_code ec;
-    const std::size_t count = socket_.write_some(gather.parts(), ec);
+    const std::size_t count = gather.write(socket_, ec);
     if (count > 0) written_ = Clock::now();
-    gather.consume(count);
     if (ec == asio::error::would_block) co_await socket_.async_wait(tcp::socket::wait_write, redirect_error(use_awaitable, ec));
     if (ec) cut();
   }
@@ -236,6 +246,7 @@ asio::awaitable<void> StreamSession::keepTime() {
 asio::awaitable<void> StreamSession::run(StreamHandshake handshake) {
   error_code ec;
   socket_.non_blocking(true, ec);
+  (void)::setsockopt(socket_.native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &kUnsentBytes, sizeof(kUnsentBytes));
   const std::string answer = handshakeAnswer(handshake.key);
   socket_.write_some(asio::buffer(answer), ec);  // an empty socket takes it at once
   if (ec) co_return;
@@ -255,8 +266,9 @@ asio::awaitable<void> StreamSession::run(StreamHandshake handshake) {
 
 }  // namespace
 
-asio::awaitable<void> serveStream(tcp::socket socket, StreamHandshake handshake, const MeshStore& store, std::shared_ptr<Connection> connection) {
-  const auto session = std::make_shared<StreamSession>(std::move(socket), store, std::move(connection));
+asio::awaitable<void> serveStream(tcp::socket socket, StreamHandshake handshake, const MeshStore& store, std::shared_ptr<Connection> connection,
+                                  std::unique_ptr<AddressLimits::Visitor> visitor) {
+  const auto session = std::make_shared<StreamSession>(std::move(socket), store, std::move(connection), std::move(visitor));
   co_await session->run(std::move(handshake));
 }
 

@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 
+#include "server/address_limits.h"
 #include "server/connections.h"
 #include "server/mesh_store.h"
 
@@ -21,6 +22,6 @@ struct StreamHandshake {
 
 /// Answers the handshake and serves until the socket ends. Runs on the socket's executor, which must be a single thread or a strand.
 boost::asio::awaitable<void> serveStream(boost::asio::ip::tcp::socket socket, StreamHandshake handshake, const MeshStore& store,
-                                         std::shared_ptr<Connection> connection);
+                                         std::shared_ptr<Connection> connection, std::unique_ptr<AddressLimits::Visitor> visitor);
 
 }  // namespace qtet

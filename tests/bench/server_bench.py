@@ -6,7 +6,7 @@ machine does hits them alike. Needs nginx, wrk, taskset and, for the last peer, 
 
   server_bench.py --bin build/release/bin --log LOG.qtet [--ws FOLDER] [--rounds 5] [--seconds 2]
 """
-import argparse, json, os, pathlib, re, resource, selectors, signal, socket, statistics, subprocess, sys, tempfile, time
+import argparse, atexit, json, os, pathlib, re, resource, selectors, signal, socket, statistics, subprocess, sys, tempfile, time
 
 TICK = os.sysconf("SC_CLK_TCK")
 HERE = pathlib.Path(__file__).resolve().parent
@@ -32,11 +32,12 @@ def kernel_tcp_bytes():
 
 def start(command, ready=None):
     process = subprocess.Popen(["taskset", "-c", "0"] + [str(c) for c in command], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+    atexit.register(process.terminate)
     return process, (re.search(ready, process.stdout.readline())[1] if ready else None)
 
 
 def start_qtet(args, folder):
-    process, port = start([args.bin / "qtet-server", folder, "--port", 0, "--max-connections", 12000, "--max-connections-per-address", 0,
+    process, port = start([args.bin / "qtet-server", folder, "--threads", 1, "--port", 0, "--max-connections", 12000, "--max-connections-per-address", 0,
                            "--max-requests-per-second", 0], r":(\d+)/")
     return process, int(port)
 
@@ -185,7 +186,6 @@ def main():
     folder.mkdir()
     (folder / "bench.qtet").write_bytes(args.log.read_bytes())
     qtet, port = start_qtet(args, folder)
-    processes = [qtet]
 
     def get(path):
         with socket.create_connection(("127.0.0.1", port)) as s:
@@ -197,7 +197,6 @@ def main():
     bench = "bench", json.loads(listing)["meshes"][0]["fields"]
     (folder / "meshes.json").write_bytes(listing)
     nginx, other = start_nginx(folder, scratch)
-    processes.append(nginx)
     log, size = f"/v1/logs/{digest}/log", args.log.stat().st_size
     print(f"log of {size} bytes, JSON of {len(listing)} bytes; {args.rounds} rounds of {args.seconds} s\n")
     print("| | qtet-server | peer | ratio |\n|---|---|---|---|")
@@ -219,7 +218,6 @@ def main():
         row(name + " (nginx)", ours, theirs, unit, scale)
     if args.ws:
         ws, ws_port = start(["node", HERE / "server_peer.mjs", args.ws.resolve(), args.log, CHUNK], r"(\d+)")
-        processes.append(ws)
         for clients in (1, 64):
             ours, theirs = [], []
             for _ in range(args.rounds):
@@ -235,10 +233,7 @@ def main():
         qtet.send_signal(signal.SIGTERM)
         qtet.wait()
         qtet, port = start_qtet(args, folder)
-        processes.append(qtet)
         print(f"| {args.idle} idle connections, {name} | {idle_bytes(qtet, connect, args.idle) / 1024:.1f} KB each |", flush=True)
-    for process in processes:
-        process.terminate()
 
 
 main()

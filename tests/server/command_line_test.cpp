@@ -32,8 +32,10 @@ TEST(CommandLine, aFolderIsEnough) {
 TEST(CommandLine, everyOptionIsUnderstood) {
   const auto line = parse({"--port", "0", "--host=::1", "logs", "--viewer", "page", "--threads", "3", "--watch", "off", "--admin", "[::1]:9090",
                            "--cache", "c", "--cache-bytes", "0", "--access-log", "-", "--tokens", "t", "--max-upload-bytes", "1",
-                           "--max-connections", "7", "--max-connections-per-address", "0", "--max-requests-per-second", "9"});
+                           "--max-connections", "7", "--max-connections-per-address", "0", "--max-requests-per-second", "9",
+                           "--allow-origins", "https://a.example,http://localhost:3000"});
   ASSERT_TRUE(line) << line.error().message;
+  EXPECT_EQ(line->allowedOrigins, (std::vector<std::string>{"https://a.example", "http://localhost:3000"}));
   EXPECT_EQ(line->folder, "logs");
   EXPECT_EQ(line->host, "::1");
   EXPECT_EQ(line->port, 0);
@@ -50,6 +52,13 @@ TEST(CommandLine, everyOptionIsUnderstood) {
   EXPECT_EQ(line->maxConnections, 7u);
   EXPECT_EQ(line->maxConnectionsPerAddress, 0u);
   EXPECT_EQ(line->maxRequestsPerSecond, 9u);
+}
+
+TEST(CommandLine, whatIsNoOriginIsRefused) {
+  for (const char* bad : {"a.example", "https://", "://a", "https://a.example/", "https://a.example,", "https://a, https://b"}) {
+    const bool taken = parse({"logs", "--allow-origins", bad}).has_value();
+    EXPECT_EQ(taken, std::string(bad) == "https://a.example,") << bad;  // a comma at the end is nobody's fault
+  }
 }
 
 TEST(CommandLine, optionsComeBeforeTheEnvironmentAndThatBeforeTheFile) {

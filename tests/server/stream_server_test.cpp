@@ -300,6 +300,21 @@ TEST_F(StreamServerTest, aHandshakeOfAnotherVersionOrWithABadKeyIsRefused) {
   EXPECT_EQ(bad.receive().status, 400u);
 }
 
+TEST_F(StreamServerTest, pagesOfOtherOriginsMayBeKeptOut) {
+  const auto status = [](std::uint16_t port, const std::string& origin) {
+    test::RawClient client(port);
+    client.send("GET /v1/stream HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
+                "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Protocol: qtet.v1\r\n" + origin + "\r\n");
+    return client.receive(true).status;
+  };
+  test::RunningServer server(folder_.store(), folder_.viewer(), {.allowedOrigins = {"https://a.example", "https://b.example"}});
+  EXPECT_EQ(status(server.port(), "Origin: https://b.example\r\n"), 101u);
+  EXPECT_EQ(status(server.port(), "Origin: https://b.example.evil\r\n"), 403u);
+  EXPECT_EQ(status(server.port(), "Origin: null\r\n"), 403u);
+  EXPECT_EQ(status(server.port(), ""), 101u);
+  EXPECT_EQ(status(server_.port(), "Origin: https://c.example\r\n"), 101u);
+}
+
 TEST_F(StreamServerTest, theServersEndSendsWhatTheCreditAllows) {
   StreamClient client(server_.port());
   ASSERT_TRUE(client.send(open(1 << 30, R"(,"fields":["density","velocity"])")));
