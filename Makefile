@@ -15,7 +15,7 @@ SHELL := /bin/bash
 .ONESHELL:
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
-.PHONY: help setup build demo demo-port demo-log test fuzz bench results sizes rate clean
+.PHONY: help setup build demo demo-port demo-log test fuzz bench results sizes rate deb test-deb clean
 .DEFAULT_GOAL := help
 
 help:
@@ -24,6 +24,8 @@ help:
 	make demo MESH=file.vtu    the same with a mesh of yours (any volume mesh: README.md); PORT=8081 picks another port
 	make test                  build everything and run every test
 	make fuzz                  build the fuzzers with sanitizers and run each for 20 seconds
+	make deb                   Debian packages: build/release/packages/*.deb
+	make test-deb              install, start, use and remove them in a Debian of their own (needs root and debootstrap)
 	make build                 build only: build/release/bin/qtet and qtet-server
 	make setup                 install the Debian packages of .ci/packages.txt that are missing (asks sudo if not root)
 	make bench                 build and run the benchmarks
@@ -161,6 +163,17 @@ fuzz: setup
 	@[[ -f build/fuzz/build.ninja && ! CMakePresets.json -nt build/fuzz/build.ninja ]] || cmake --preset fuzz
 	cmake --build --preset fuzz --parallel $(JOBS) --target qtet_fuzzers
 	ctest --preset fuzz --parallel $(JOBS)
+
+deb: TARGETS := --target qtet qtet-server qtet_shared qtet_viewer qtet_manners
+deb: setup build
+	@rm -rf $(BUILD)/packages
+	cd $(BUILD) && cpack -G DEB
+	ls -l packages/*.deb
+
+test-deb: deb
+	@status=0
+	packaging/test.sh $(BUILD)/packages build/deb-test || status=$$?
+	[[ $$status == 77 ]] || exit $$status
 
 bench: setup build
 	@cmake --build --preset release --parallel $(JOBS) --target qtet_bench

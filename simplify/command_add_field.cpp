@@ -74,7 +74,7 @@ Status addField(const ParsedWords& parsed, Progress& progress, Console& console)
   if (!bytes) return std::unexpected(bytes.error());
   if (Status written = writeFileAtomically(outputOf(parsed), *bytes); !written) return written;
   progress.clear();
-  for (const std::string& note : added->notes) console.err << "qtet: note: " << note << "\n";
+  for (const std::string& note : added->notes) console.note(note);
   for (const NewField& field : added->fields) {
     const auto size = std::accumulate(field.blocks.begin(), field.blocks.end(), std::size_t{0}, [](std::size_t sum, const Bytes& b) { return sum + b.size(); });
     console.out << field.info.association << " field " << field.info.name << ": " << size << " bytes, " << field.info.bits << " bits, step " << field.info.step;
@@ -125,7 +125,7 @@ int runAddField(const Words& words, Console& console) {
        "  qtet add-field fin.qtet --from later.vtu --fields Pressure\n  qtet add-field fin.qtet --from fin.vtu --replace --field-bits 16 -o fine.qtet\n"},
       options, {"LOG"});
   if (parsed.helped(console)) return kExitOk;
-  Progress progress(console.err, console.errIsTerminal);
+  Progress progress(console);
   const Status done = addField(parsed, progress, console);
   progress.clear();
   return done ? kExitOk : reportFailure(done.error(), false, console);

@@ -58,14 +58,14 @@ int runCheck(const Words& words, Console& console) {
       options, {"IN"});
   if (parsed.helped(console)) return kExitOk;
   const auto input = parsed.get<std::string>("IN");
-  Progress progress(console.err, console.errIsTerminal);
+  Progress progress(console);
   progress.stage("checking " + input);
   const CheckReport report = checkMesh(input, readOptionsOf(parsed));
   progress.clear();
   if (parsed.has("json")) {
     printJson(toJson(report, input), console);
   } else {
-    for (const std::string& note : report.read.notes) console.err << "qtet: note: " << note << "\n";
+    for (const std::string& note : report.read.notes) console.note(note);
     printReport(report, input, console.out);
   }
   return report.refused() ? kExitFailed : kExitOk;

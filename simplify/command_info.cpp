@@ -1,3 +1,7 @@
+#include <algorithm>
+#include <iomanip>
+#include <sstream>
+
 #include "codec/atomic_file.h"
 #include "codec/log_levels.h"
 #include "simplify/closing_report.h"
@@ -41,20 +45,58 @@ OrderedJson infoJson(const OpenedLog& log) {
           {"levels", levelsJson(log.manifest, log.file.index())}};
 }
 
-void printHead(const OrderedJson& info, std::ostream& out) {
-  out << "digest   " << info["digest"].get<std::string>() << "\nsource   " << info["source"].get<std::string>() << "  ("
-      << info["generator"].get<std::string>() << ")\nbytes    " << info["bytes"] << " in " << info["chunks"] << " chunks, the first "
-      << info["headBytes"] << " are header, manifest and table\nlattice  " << info["lattice"]["bits"] << " bits an axis, step "
-      << info["lattice"]["step"] << "\n";
-  for (const OrderedJson& field : info["fields"]) {
-    out << (field["association"] == "cell" ? "of cells " : "field    ") << field["name"].get<std::string>() << ": "
-        << field["type"].get<std::string>() << " x " << field["components"] << ", " << field["range"][0] << " to " << field["range"][1]
-        << ", " << field["bits"] << " bits, step " << field["step"] << ", " << field["bytes"] << " bytes\n";
+constexpr std::size_t kShownLevels = 20;  ///< without --all
+
+/// A number with six significant digits: for people, --json has them all.
+std::string brief(double number) {
+  std::ostringstream out;
+  out << std::setprecision(6) << number;
+  return out.str();
+}
+
+/// A line of the head: what it is, bright where colours are allowed, and what there is to say.
+void line(const Console& console, const std::string& what, const std::string& said) {
+  constexpr std::size_t kWidth = 10;
+  console.out << (console.colours ? "\033[1m" : "") << what << (console.colours ? "\033[0m" : "") << std::string(kWidth - std::min(what.size(), kWidth - 1), ' ') << said
+              << "\n";
+}
+
+/// Columns as wide as their widest cell; the first stands at the left, the others at the right.
+void printColumns(const std::vector<std::vector<std::string>>& rows, const Console& console) {
+  std::vector<std::size_t> widths;
+  for (const auto& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()));
+    for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
+  }
+  for (const auto& row : rows) {
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      const std::string space(widths[c] - row[c].size(), ' ');
+      console.out << (c == 0 ? row[c] + space : "  " + space + row[c]);
+    }
+    console.out << "\n";
   }
 }
 
-void printKept(const OrderedJson& kept, std::ostream& out) {
-  for (const auto& [what, bytes] : kept.items()) out << "kept     " << what << ": " << bytes << " bytes\n";
+void printHead(const OpenedLog& log, const OrderedJson& info, const Console& console) {
+  const ManifestLevel& last = log.manifest.levels.back();
+  const std::uint64_t bytes = info["bytes"];
+  line(console, "source", log.manifest.source + "  (" + log.manifest.generator + ")");
+  line(console, "mesh", grouped(last.tetrahedra) + " tetrahedra, " + grouped(last.vertices) + " vertices, " + grouped(last.boundaryTriangles) +
+                            " boundary triangles, " + std::to_string(log.manifest.levels.size()) + " levels");
+  line(console, "bytes", grouped(bytes) + " in " + grouped(info["chunks"]) + " chunks, " + brief(8.0 * static_cast<double>(bytes) / std::max(1u, last.tetrahedra)) +
+                             " bits a tetrahedron; the first " + grouped(info["headBytes"]) + " are header, manifest and table");
+  line(console, "lattice", std::to_string(log.manifest.latticeBits) + " bits an axis, step " + brief(log.manifest.latticeStep) + ", layout " + log.manifest.layout);
+  line(console, "digest", info["digest"]);
+  for (const auto& [what, size] : info["kept"].items()) line(console, "kept", what + ": " + grouped(size) + " bytes");
+  if (info["fields"].empty()) return;
+  console.out << "\n";
+  std::vector<std::vector<std::string>> rows{{"field", "of", "type", "least", "most", "bits", "step", "bytes"}};
+  for (const OrderedJson& field : info["fields"]) {
+    const auto components = field["components"].get<std::uint32_t>();
+    rows.push_back({field["name"], field["association"] == "cell" ? "cells" : "points", field["type"].get<std::string>() + (components > 1 ? " x " + std::to_string(components) : ""),
+                    brief(field["range"][0]), brief(field["range"][1]), std::to_string(field["bits"].get<int>()), brief(field["step"]), grouped(field["bytes"])});
+  }
+  printColumns(rows, console);
 }
 
 // Pixels of a PNG to one of the picture's own: sharp on a screen of today and in print.
@@ -78,14 +120,17 @@ Status writePlot(const OpenedLog& log, const std::filesystem::path& file, const 
 int runInfo(const Words& words, Console& console) {
   namespace po = boost::program_options;
   po::options_description options("options");
-  options.add_options()("json", "print one JSON object")("plot", po::value<std::string>(), "draw error against bytes into this file, NAME.svg or NAME.png");
+  options.add_options()("json", "print one JSON object")("all", "show every level, not 20 of them")("plot", po::value<std::string>(), "draw error against bytes into this file, NAME.svg or NAME.png");
   const ParsedWords parsed(
       words,
-      {"info", "info LOG.qtet [--plot FILE.svg|FILE.png] [--json]",
+      {"info", "info LOG.qtet [--all] [--plot FILE.svg|FILE.png] [--json]",
        "Says what a log holds: digest, lattice, fields, and for each level its cells and bytes. Level 0 is the base mesh,\n"
        "the last level the input's mesh; `cumulative` is the length of the file's prefix that holds a level. Where the log tells them,\n"
        "the errors against the original follow: of the boundary in per cent of the diagonal (the worse one of both ways), the volume that is\n"
-       "left, and of each field in per cent of its range.",
+       "left, and of each field in per cent of its range.\n"
+       "--json: digest, generator, source, layout, bytes, headBytes, chunks, lattice {bits, step, origin}, fields [{name, components, type, association, bits,\n"
+       "step, minimum, range, gaps, bytes}], kept, and levels [{level, tetrahedra, vertices, boundaryTriangles, bytes, cumulativeBytes, error}]; error, as\n"
+       "fractions: toLevel and toOriginal {mean, max}, volumeKept, fields [{name, rms, max}].",
        "  qtet info fin.qtet\n  qtet info fin.qtet --plot fin.svg\n  qtet info fin.qtet --json | jq '.levels[0]'\n"},
       options, {"LOG"});
   if (parsed.helped(console)) return kExitOk;
@@ -103,9 +148,10 @@ int runInfo(const Words& words, Console& console) {
   if (asJson) {
     printJson(info, console);
   } else {
-    printHead(info, console.out);
-    printKept(info["kept"], console.out);
-    console.out << "\n" << levelTable(log->manifest, info["levels"]);
+    printHead(*log, info, console);
+    const std::size_t most = parsed.has("all") ? log->manifest.levels.size() : kShownLevels;
+    console.out << "\n" << levelTable(log->manifest, info["levels"], most);
+    if (log->manifest.levels.size() > most) console.out << "\n--all shows all " << log->manifest.levels.size() << " levels\n";
   }
   return kExitOk;
 }

@@ -2,7 +2,9 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <sstream>
 
@@ -19,7 +21,9 @@ std::string hint(const CommandHelp& help) { return "\nusage: qtet " + help.usage
 
 ParsedWords::ParsedWords(const Words& words, CommandHelp help, po::options_description options, const std::vector<std::string>& positional)
     : help_(std::move(help)), positional_(positional) {
-  options.add_options()("help,h", "show this and stop");
+  // What runTool takes away before, named here for help.
+  options.add_options()("quiet,q", "print nothing but errors and what was asked for")("verbose,v", "tell how long each stage takes, and the memory at most")(
+      "help,h", "show this and stop");
   options_.add(options);
 
   po::options_description all, hidden;
@@ -28,6 +32,7 @@ ParsedWords::ParsedWords(const Words& words, CommandHelp help, po::options_descr
     hidden.add_options()(name.c_str(), po::value<std::string>());
     places.add(name.c_str(), 1);
   }
+  hidden.add_options()("help-json", "help for programs");
   all.add(options_).add(hidden);
   try {
     const auto style = po::command_line_style::unix_style & ~po::command_line_style::allow_guessing;
@@ -36,7 +41,7 @@ ParsedWords::ParsedWords(const Words& words, CommandHelp help, po::options_descr
   } catch (const po::error& error) {
     throw UsageError(error.what() + hint(help_));
   }
-  if (has("help")) return;
+  if (has("help") || has("help-json")) return;
   for (const std::string& name : positional_) {
     if (!has(name)) throw UsageError(name + " is missing" + hint(help_));
   }
@@ -47,6 +52,20 @@ ParsedWords::ParsedWords(const Words& words, CommandHelp help, po::options_descr
 }
 
 bool ParsedWords::helped(Console& console) const {
+  if (has("help-json")) {
+    OrderedJson options = OrderedJson::array();
+    for (const auto& option : options_.options()) {
+      const std::string brief = option->format_name();  // "-o [ --output ]" or "--output"
+      options.push_back({{"name", option->long_name()},
+                         {"letter", brief.size() > 1 && brief[1] != '-' ? brief.substr(1, 1) : ""},
+                         {"takesValue", option->semantic()->max_tokens() > 0},
+                         {"parameter", option->format_parameter()},
+                         {"text", option->description()}});
+    }
+    printJson({{"name", help_.name}, {"usage", help_.usage}, {"text", help_.text}, {"examples", help_.examples}, {"words", positional_}, {"options", options}},
+              console);
+    return true;
+  }
   if (!has("help")) return false;
   console.out << "usage: qtet " << help_.usage << "\n\n" << help_.text << "\n\n" << options_ << "\nexamples:\n" << help_.examples;
   return true;
@@ -80,8 +99,10 @@ std::optional<std::vector<std::string>> parseFieldNames(const std::string& text)
   return names;
 }
 
-Status checkOutput(const fs::path& output, const std::string& extension, const std::optional<fs::path>& input) {
-  if (output.extension() != extension) throw UsageError("the output " + output.string() + " must end in " + extension);
+Status checkOutput(const fs::path& output, const std::string& extensions, const std::optional<fs::path>& input) {
+  std::istringstream known(extensions);
+  if (std::find(std::istream_iterator<std::string>(known), {}, output.extension().string()) == std::istream_iterator<std::string>())
+    throw UsageError("the output " + output.string() + " must end in " + (extensions.find(' ') == std::string::npos ? "" : "one of ") + extensions);
   std::error_code code;
   const fs::path folder = output.has_parent_path() ? output.parent_path() : fs::path(".");
   if (!fs::is_directory(folder, code)) {

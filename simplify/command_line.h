@@ -37,7 +37,7 @@ class ParsedWords {
   ParsedWords(const Words& words, CommandHelp help, boost::program_options::options_description options,
               const std::vector<std::string>& positional);
 
-  /// Whether --help was asked for; it is printed then.
+  /// Whether --help was asked for (or --help-json, for the manual and completions); it is printed then.
   [[nodiscard]] bool helped(Console& console) const;
   [[nodiscard]] bool has(const std::string& name) const { return values_.count(name) > 0; }
   template <class T>
@@ -58,8 +58,8 @@ class ParsedWords {
 /// The names between commas; "all" is nullopt, "none" the empty list. Throws UsageError.
 [[nodiscard]] std::optional<std::vector<std::string>> parseFieldNames(const std::string& text);
 
-/// Refuses an output before the work is done: another ending than `extension` (UsageError), a folder that does not exist or cannot be written, the input itself.
-[[nodiscard]] Status checkOutput(const std::filesystem::path& output, const std::string& extension,
+/// Refuses an output before the work is done: an ending that is none of `extensions`, between blanks (UsageError), a folder that does not exist or cannot be written, the input itself.
+[[nodiscard]] Status checkOutput(const std::filesystem::path& output, const std::string& extensions,
                                  const std::optional<std::filesystem::path>& input = std::nullopt);
 
 /// Prints the failure, also as {"error":{"code","message"}} on `out` where JSON was asked for; returns kExitFailed.

@@ -83,7 +83,7 @@ bool worthAnother(const HttpAnswer& answer) { return answer.status == 408 || ans
 
 /// The answer to the log, sent as often as it takes.
 Result<HttpAnswer> pushLog(const Push& push, Console& console) {
-  Progress progress(console.err, console.errIsTerminal);
+  Progress progress(console);
   Result<HttpAnswer> out = fail(ErrorCode::kIo, "");
   for (int attempt = 1; attempt <= kMaxAttempts; ++attempt) {
     const Result<std::uint64_t> first = bytesThere(push);

@@ -335,11 +335,11 @@ int runSimplify(const Words& words, Console& console) {
   if (Status checked = checkOutput(request.output, ".qtet", request.input); !checked)
     return reportFailure(checked.error(), asJson, console);
 
-  Progress progress(console.err, console.errIsTerminal);
+  Progress progress(console);
   const Result<OrderedJson> report = run(request, progress);
   progress.clear();
   if (!report) return reportFailure(report.error(), asJson, console);
-  for (const OrderedJson& note : (*report)["notes"]) console.err << "qtet: note: " << note.get<std::string>() << "\n";
+  for (const OrderedJson& note : (*report)["notes"]) console.note(note.get<std::string>());
   asJson ? printJson(*report, console) : printReport(*report, console.out);
   return kExitOk;
 }

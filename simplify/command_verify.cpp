@@ -127,7 +127,7 @@ int runVerify(const Words& words, Console& console) {
       options, {"LOG"});
   if (parsed.helped(console)) return kExitOk;
   const bool asJson = parsed.has("json");
-  Progress progress(console.err, console.errIsTerminal);
+  Progress progress(console);
   const Result<OrderedJson> report = verify(parsed, progress);
   progress.clear();
   if (!report) return reportFailure(report.error(), asJson, console);

@@ -1,5 +1,7 @@
 #include "simplify/commands.h"
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <array>
 #include <iomanip>
@@ -10,17 +12,20 @@
 namespace qtet {
 namespace {
 
-constexpr std::array<Command, 10> kCommands{{
-    {"sample", "make a mesh to try things with", runSample},
+constexpr std::array<Command, 13> kCommands{{
+    {"sample", "make a mesh to try things with", runSample, true},
     {"check", "say what is wrong with a mesh, and what simplify would do about it", runCheck},
-    {"convert", "write a mesh of any format that is read as .vtu", runConvert},
-    {"simplify", "turn a volume mesh into a log", runSimplify},
+    {"convert", "write a mesh of any format that is read as another one", runConvert, true},
+    {"simplify", "turn a volume mesh into a log", runSimplify, true},
     {"info", "say what a log holds, level by level", runInfo},
-    {"extract", "write one level of a log as an ordinary mesh", runExtract},
-    {"add-field", "add fields of a mesh file to a log", runAddField},
-    {"remove-field", "leave fields of a log out", runRemoveField},
+    {"extract", "write one level of a log as an ordinary mesh", runExtract, true},
+    {"add-field", "add fields of a mesh file to a log", runAddField, true},
+    {"remove-field", "leave fields of a log out", runRemoveField, true},
     {"verify", "check a log, also against the mesh that it was made from", runVerify},
-    {"push", "send a log to a server", runPush},
+    {"push", "send a log to a server", runPush, true},
+    {"view", "show a mesh or a log in the browser", runView},
+    {"completion", "print what makes a shell complete qtet's words", runCompletion},
+    {"manual", "write the manual pages", runManual, true},
 }};
 
 void printHelp(std::ostream& out) {
@@ -28,9 +33,11 @@ void printHelp(std::ostream& out) {
          "back.\n\ncommands:\n";
   for (const Command& command : kCommands) out << "  " << std::left << std::setw(13) << command.name << command.summary << "\n";
   out << "\n  qtet COMMAND --help says more about each; qtet --version tells the version.\n"
+         "  Every command knows --quiet and --verbose. NO_COLOR in the environment keeps colours away.\n"
          "\nexamples:\n"
          "  qtet sample fin -o fin.vtu\n"
          "  qtet check fin.vtu\n"
+         "  qtet view fin.vtu\n"
          "  qtet simplify fin.vtu -o fin.qtet\n"
          "  qtet info fin.qtet\n"
          "  qtet extract fin.qtet --ratio 0.1 -o coarse.vtu\n"
@@ -45,9 +52,31 @@ void printLines(std::ostream& err, const std::string& text) {
   for (std::string line; std::getline(lines, line);) err << "qtet: " << line << "\n";
 }
 
-int runCommand(const Command& command, const Words& words, Console& console) {
+/// Takes --quiet and --verbose out of the words, wherever they stand.
+Words withoutManners(Words words, Console& console) {
+  std::erase_if(words, [&](const std::string& word) {
+    const bool quiet = word == "--quiet" || word == "-q", verbose = word == "--verbose" || word == "-v";
+    console.quiet |= quiet;
+    console.verbose |= verbose;
+    return quiet || verbose;
+  });
+  return words;
+}
+
+void tellMemory(const Console& console) {
+  rusage used{};
+  if (console.verbose && ::getrusage(RUSAGE_SELF, &used) == 0) console.err << "qtet: " << used.ru_maxrss / 1024 << " MB of memory at most\n";
+}
+
+int runCommand(const Command& command, const Words& given, Console& console) {
+  const Words words = withoutManners(given, console);
+  const bool isAsked = std::ranges::any_of(words, [](const std::string& word) { return word == "--json" || word.starts_with("--help") || word == "-h"; });
+  std::ostream nowhere(nullptr);
+  Console silent{nowhere, console.err, console.errIsTerminal, false, true, console.verbose};
   try {
-    const int code = command.run(words, console);
+    const bool silenced = console.quiet && command.makesFile && !isAsked;
+    const int code = command.run(words, silenced ? silent : console);
+    tellMemory(console);
     if (console.out.flush()) return code;
     console.err << "qtet: the result could not be written to the standard output; is the disk full?\n";
     return kExitFailed;

@@ -19,6 +19,13 @@ struct Console {
   std::ostream& out;
   std::ostream& err;
   bool errIsTerminal = false;
+  bool colours = false;  ///< whether `out` may be coloured: a terminal, and nobody said NO_COLOR (https://no-color.org)
+  bool quiet = false;    ///< --quiet: errors alone
+  bool verbose = false;  ///< --verbose: how long each stage takes, and the memory at most
+
+  void note(std::string_view text) const {
+    if (!quiet) err << "qtet: note: " << text << "\n";
+  }
 };
 
 using Words = std::vector<std::string>;
@@ -27,6 +34,7 @@ struct Command {
   std::string_view name;
   std::string_view summary;
   int (*run)(const Words& words, Console& console);
+  bool makesFile = false;  ///< what it prints is no more than that the file was made: nothing with --quiet
 };
 
 /// In the order in which help shows them.
@@ -44,6 +52,9 @@ int runExtract(const Words& words, Console& console);
 int runAddField(const Words& words, Console& console);
 int runRemoveField(const Words& words, Console& console);
 int runPush(const Words& words, Console& console);
+int runView(const Words& words, Console& console);
+int runCompletion(const Words& words, Console& console);
+int runManual(const Words& words, Console& console);
 int runVerify(const Words& words, Console& console);
 
 }  // namespace qtet

@@ -25,6 +25,17 @@ void heading(std::ostream& out, const std::string& name, std::size_t width) {
 /// Two columns, wider where the field's name needs it.
 std::size_t fieldWidth(const ManifestField& field) { return std::max<std::size_t>(2 * kPercentWidth, lengthOf(field.name) + 2); }
 
+/// Numbers of the levels to show, ascending.
+std::vector<std::size_t> shownLevels(const Manifest& manifest, std::size_t most) {
+  std::vector<std::size_t> out;
+  const std::size_t count = manifest.levels.size();
+  const auto scale = [&](std::size_t level) { return std::log2(1.0 + manifest.levels[level].tetrahedra); };
+  const double low = scale(0), step = most > 1 ? (scale(count - 1) - low) / static_cast<double>(most - 1) : 0;
+  for (std::size_t level = 0; level < count; ++level)
+    if (count <= most || level + 1 == count || scale(level) >= low + step * static_cast<double>(out.size())) out.push_back(level);
+  return out;
+}
+
 }  // namespace
 
 std::string percentCell(double fraction) {
@@ -40,7 +51,13 @@ std::string percentCell(double fraction) {
   return out.str();
 }
 
-std::string levelTable(const Manifest& manifest, const nlohmann::ordered_json& levels) {
+std::string grouped(std::uint64_t number) {
+  std::string text = std::to_string(number);
+  for (std::size_t at = text.size(); at > 3;) text.insert(at -= 3, 1, ',');
+  return text;
+}
+
+std::string levelTable(const Manifest& manifest, const nlohmann::ordered_json& levels, std::size_t most) {
   const bool hasErrors = std::ranges::any_of(manifest.levels, [](const ManifestLevel& level) { return level.error.has_value(); });
   std::ostringstream out;
   if (hasErrors) {
@@ -58,11 +75,12 @@ std::string levelTable(const Manifest& manifest, const nlohmann::ordered_json& l
       out << std::setw(static_cast<int>(fieldWidth(field)) - kPercentWidth) << "rms %" << std::setw(kPercentWidth) << "max %";
   }
   out << "\n";
-  for (const ManifestLevel& level : manifest.levels) {
+  for (const std::size_t shown : shownLevels(manifest, most)) {
+    const ManifestLevel& level = manifest.levels[shown];
     const nlohmann::ordered_json& told = levels[level.level];
-    out << std::setw(5) << level.level << std::setw(kCountWidth) << level.tetrahedra << std::setw(kCountWidth) << level.vertices
-        << std::setw(kCountWidth) << told["bytes"].get<std::uint64_t>() << std::setw(kCountWidth)
-        << told["cumulativeBytes"].get<std::uint64_t>();
+    out << std::setw(5) << level.level << std::setw(kCountWidth) << grouped(level.tetrahedra) << std::setw(kCountWidth)
+        << grouped(level.vertices) << std::setw(kCountWidth) << grouped(told["bytes"].get<std::uint64_t>()) << std::setw(kCountWidth)
+        << grouped(told["cumulativeBytes"].get<std::uint64_t>());
     if (level.error) {
       out << std::setw(kPercentWidth) << percentCell(level.error->boundaryMean()) << std::setw(kPercentWidth)
           << percentCell(level.error->boundaryDistance()) << std::setw(kPercentWidth) << std::fixed << std::setprecision(3)

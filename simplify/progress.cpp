@@ -16,11 +16,23 @@ constexpr double kEnoughToSay = 0.05;
 
 }  // namespace
 
-Progress::Progress(std::ostream& out, bool onTerminal) : out_(out), onTerminal_(onTerminal) {}
+Progress::Progress(const Console& console)
+    : out_(console.err), onTerminal_(console.errIsTerminal), quiet_(console.quiet), verbose_(console.verbose) {}
 
-Progress::~Progress() { clear(); }
+Progress::~Progress() {
+  clear();
+  endStage();
+}
+
+void Progress::endStage() {
+  if (!verbose_ || stage_.empty()) return;
+  clear();
+  const auto spent = std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - stageStart_);
+  out_ << "qtet: " << stage_ << ": " << static_cast<double>(spent.count()) / 1000 << " s\n" << std::flush;
+}
 
 void Progress::stage(std::string name) {
+  endStage();
   stage_ = std::move(name);
   stageStart_ = Clock::now();
   if (onTerminal_) lastDrawn_ = {};
@@ -29,7 +41,7 @@ void Progress::stage(std::string name) {
 
 void Progress::update(double fraction) {
   const Clock::time_point now = Clock::now();
-  if (now - start_ < kSilence) return;
+  if (quiet_ || now - start_ < kSilence) return;
   fraction = std::clamp(fraction, 0.0, 1.0);
   if (onTerminal_) {
     if (now - lastDrawn_ < kRedraw) return;

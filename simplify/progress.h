@@ -5,13 +5,15 @@
 #include <ostream>
 #include <string>
 
+#include "simplify/commands.h"
+
 namespace qtet {
 
 /// Writes to `out` only, and nothing at all in the first second: quick commands stay silent.
 class Progress {
  public:
-  /// `onTerminal`: whether `out` understands carriage returns.
-  Progress(std::ostream& out, bool onTerminal);
+  /// Draws a bar where the console's `err` is a terminal, nothing if it is quiet, and tells how long each stage took if it is verbose.
+  explicit Progress(const Console& console);
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
   ~Progress();
@@ -29,8 +31,10 @@ class Progress {
   void drawBar(double fraction);
   [[nodiscard]] std::string timeLeft(double fraction) const;
 
+  void endStage();
+
   std::ostream& out_;
-  bool onTerminal_;
+  bool onTerminal_, quiet_, verbose_;
   Clock::time_point start_ = Clock::now();
   Clock::time_point lastDrawn_{}, stageStart_{};
   std::string stage_;

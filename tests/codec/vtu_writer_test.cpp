@@ -80,7 +80,7 @@ TEST(VtuWriter, pointsBecomeDoublesWhereFloatsWouldMergeLatticePoints) {
 TEST(VtuWriter, everyNumberTypeKeepsItsExtremes) {
   const std::vector<std::array<double, 3>> points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   const std::vector<Tetrahedron> cells{{0, 1, 2, 3}};
-  VtuMesh mesh{points, cells, true, {}};
+  FileMesh mesh{points, cells, true, {}};
   const double big = 9007199254740991.0;  // 2^53 - 1
   mesh.pointFields = {{"i8", "int8", 1, {-128, 127, 0, 1}},
                       {"u8", "uint8", 1, {0, 255, 1, 2}},
@@ -103,7 +103,7 @@ TEST(VtuWriter, everyNumberTypeKeepsItsExtremes) {
 TEST(VtuWriter, valuesOutsideAnIntegerTypeAreRoundedAndClamped) {
   const std::vector<std::array<double, 3>> points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   const std::vector<Tetrahedron> cells{{0, 1, 2, 3}};
-  const VtuMesh mesh{points, cells, true, {{"u8", "uint8", 1, {-3, 256, 1.6, std::nan("")}}}};
+  const FileMesh mesh{points, cells, true, {{"u8", "uint8", 1, {-3, 256, 1.6, std::nan("")}}}};
   EXPECT_EQ(readBack(vtuBytes(mesh), "clamp").mesh.fields.at(0).values, (std::vector<double>{0, 255, 2, 0}));
 }
 
@@ -111,7 +111,7 @@ TEST(VtuWriter, namesAreEscaped) {
   const std::vector<std::array<double, 3>> points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   const std::vector<Tetrahedron> cells{{0, 1, 2, 3}};
   const std::string name = "p <\"a\"> & 'b'\ttab \xc3\xa9";
-  const VtuMesh mesh{points, cells, true, {{name, "float32", 1, {1, 2, 3, 4}}}};
+  const FileMesh mesh{points, cells, true, {{name, "float32", 1, {1, 2, 3, 4}}}};
   EXPECT_EQ(readBack(vtuBytes(mesh), "names").mesh.fields.at(0).name, name);
 }
 

@@ -23,7 +23,7 @@ endfunction()
 
 # ---- what is installed, and what the library shows
 
-foreach(component IN ITEMS library programs)
+foreach(component IN ITEMS library development tool)
   run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix} --component ${component})
 endforeach()
 file(GLOB_RECURSE library ${prefix}/libqtet.so)

@@ -64,12 +64,63 @@ TEST_F(Tool, helpAndVersionSucceed) {
   EXPECT_EQ(run("--version").out, "qtet " QTET_VERSION "\n");
   const Ran help = run("--help");
   EXPECT_EQ(help.code, 0);
-  for (const char* command : {"sample", "check", "convert", "simplify", "info", "extract", "add-field", "remove-field", "verify"}) {
+  for (const char* command : {"sample", "check", "convert", "simplify", "info", "extract", "add-field", "remove-field", "verify", "push", "view", "completion", "manual"}) {
     EXPECT_NE(help.out.find(command), std::string::npos);
     const Ran own = run(std::string(command) + " --help");
     EXPECT_EQ(own.code, 0);
     EXPECT_NE(own.out.find("examples:"), std::string::npos);
     EXPECT_TRUE(own.err.empty());
+  }
+}
+
+TEST_F(Tool, completionsAndManualPagesSayWhatHelpSays) {
+  for (const char* shell : {"bash", "zsh", "fish"}) {
+    const Ran ran = run(std::string("completion ") + shell);
+    EXPECT_EQ(ran.code, 0);
+    for (const char* word : {"extract", "boundary-error", "remove-field"}) EXPECT_NE(ran.out.find(word), std::string::npos) << shell;
+  }
+  run("completion bash");
+  const std::string ask = "cd '" + folder_.string() + "' && bash -c 'set -eu; source out.txt; COMP_WORDS=(qtet extract --bou); COMP_CWORD=2; _qtet; echo \"${COMPREPLY[@]}\"' >said.txt";
+  ASSERT_EQ(std::system(ask.c_str()), 0);
+  EXPECT_EQ(contentOf(folder_ / "said.txt"), "--boundary-error\n");
+  expectFailure("completion csh", 2, "bash, zsh or fish");
+
+  ASSERT_EQ(run("manual .").code, 0);
+  EXPECT_NE(contentOf(folder_ / "qtet.1").find("qtet\\-extract"), std::string::npos);
+  const std::string page = contentOf(folder_ / "qtet-extract.1");
+  for (const char* words : {".TH QTET-EXTRACT 1", "\\-\\-boundary\\-error", ".SH EXAMPLES\n.nf\n  qtet extract"}) EXPECT_NE(page.find(words), std::string::npos) << words;
+  expectFailure("manual nowhere", 1, "does not exist");
+}
+
+TEST_F(Tool, quietSaysErrorsAloneAndVerboseHowLongItTook) {
+  ASSERT_EQ(run("sample box -o box.vtu").code, 0);
+  const Ran quiet = run("simplify box.vtu -o box.qtet --quiet");
+  EXPECT_EQ(quiet.code, 0);
+  EXPECT_EQ(quiet.out + quiet.err, "");
+  EXPECT_NE(run("info -q box.qtet").out.find("3,072 tetrahedra"), std::string::npos);
+  EXPECT_EQ(run("simplify box.vtu -o box.qtet -q --json").json()["tetrahedra"]["input"], 3072);
+  expectFailure("extract no.qtet --level 0 -o a.vtu -q", 1, "no.qtet");
+  const Ran verbose = run("simplify box.vtu -o box.qtet --verbose");
+  for (const char* words : {"qtet: simplifying: ", " s\n", " MB of memory at most"}) EXPECT_NE(verbose.err.find(words), std::string::npos) << verbose.err;
+}
+
+TEST_F(Tool, infoShowsTwentyLevelsOrAll) {
+  makeBoxLog();
+  const auto lines = [](const std::string& text) { return std::ranges::count(text, '\n'); };
+  const auto levels = static_cast<std::ptrdiff_t>(run("info box.qtet --json").json()["levels"].size());
+  ASSERT_GT(levels, 24);
+  const Ran few = run("info box.qtet"), all = run("info box.qtet --all");
+  EXPECT_EQ(lines(all.out) - lines(few.out), levels - 20 - 2);
+  for (const Ran& ran : {few, all})
+    for (const char* words : {"    0  ", "     3,072 ", "\nScalar"}) EXPECT_NE(ran.out.find(words), std::string::npos) << ran.out;
+  EXPECT_EQ(few.out.find('\033'), std::string::npos) << "colours where there is no terminal";
+  const std::string onTerminal = "cd '" + folder_.string() + "' && TERM=xterm %s script -qec \"'" QTET_TOOL "' info box.qtet\" tty.txt >out.txt </dev/null";
+  for (const auto& [word, coloured] : {std::pair{std::string("NO_COLOR="), true}, {std::string("NO_COLOR=1"), false}}) {
+    if (std::system("command -v script >/dev/null") != 0) GTEST_SKIP() << "no script(1) to make a terminal";
+    std::string command = onTerminal;
+    command.replace(command.find("%s"), 2, word);
+    ASSERT_EQ(std::system(command.c_str()), 0);
+    EXPECT_EQ(contentOf(folder_ / "out.txt").find("\033[1m") != std::string::npos, coloured) << word;
   }
 }
 
@@ -107,7 +158,7 @@ TEST_F(Tool, aWeldedMeshIsVerifiedWithTheSameOptions) {
   EXPECT_EQ(run("verify joined.qtet --against slit.vtu").code, 1);
   ASSERT_EQ(run("convert slit.vtu --weld 0 -o joined.vtu").code, 0);
   EXPECT_EQ(run("verify joined.qtet --against joined.vtu").code, 0);
-  expectFailure("convert slit.vtu -o slit.msh", 2, "must end in .vtu");
+  expectFailure("convert slit.vtu -o slit.step", 2, "must end in one of .vtu .vtk");
 }
 
 TEST_F(Tool, wordsThatAreNotUnderstoodEndWithTwo) {
@@ -127,7 +178,7 @@ TEST_F(Tool, wordsThatAreNotUnderstoodEndWithTwo) {
   expectFailure("simplify a.vtu b.vtu -o out.qtet", 2, "positional");
   expectFailure("extract a.qtet -o a.vtu", 2, "exactly one");
   expectFailure("extract a.qtet -o a.vtu --level 1 --tets 5", 2, "exactly one");
-  expectFailure("extract a.qtet -o a.stl --level 1", 2, ".vtu");
+  expectFailure("extract a.qtet -o a.step --level 1", 2, ".vtu");
   expectFailure("sample pyramid -o a.vtu", 2, "box, fin");
 }
 
@@ -272,7 +323,7 @@ TEST_F(Tool, measuringCanBeLeftOut) {
   ASSERT_EQ(ran.code, 0) << ran.err;
   EXPECT_EQ(ran.json()["error"], nlohmann::json({{"measure", "none"}}));
   EXPECT_FALSE(run("info bare.qtet --json").json()["levels"][0].contains("error"));
-  EXPECT_EQ(run("info bare.qtet").out.find("boundary"), std::string::npos);
+  EXPECT_EQ(run("info bare.qtet").out.find("boundary, %"), std::string::npos);
   expectFailure("extract bare.qtet -o level.vtu --boundary-error 0.1", 1, "--measure levels");
   expectFailure("info bare.qtet --plot bare.svg", 1, "--measure levels");
   EXPECT_FALSE(fs::exists(folder_ / "bare.svg"));

@@ -1,0 +1,69 @@
+#include "codec/file_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "codec/boundary.h"
+#include "codec/float_rounding.h"
+
+namespace qtet {
+namespace {
+
+FileField dequantised(const FieldInfo& info, const std::vector<std::int32_t>& integers) {
+  FileField field{info.name, info.type, info.components, {}};
+  field.values.reserve(integers.size());
+  for (std::size_t i = 0; i < integers.size(); ++i) field.values.push_back(info.value(i % info.components, integers[i]));
+  return field;
+}
+
+bool survivesAsFloat(const Lattice& lattice, const LatticePoint& point) {
+  const std::array<double, 3> exact = lattice.position(point);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double stored = roundedToFloat(exact[k]);
+    // An eighth of a step more than rounding needs: readers' own arithmetic is not ours.
+    if (!(std::abs((stored - lattice.origin[k]) / lattice.step - point[k]) < 0.375)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+LatticeFileMesh fileMesh(const LatticeMesh& mesh) {
+  LatticeFileMesh out;
+  out.points.reserve(mesh.points.size());
+  for (const LatticePoint& p : mesh.points) out.points.push_back(mesh.lattice.position(p));
+  out.mesh.points = out.points;
+  out.mesh.tetrahedra = mesh.tetrahedra;
+  out.mesh.doublePoints =
+      !std::all_of(mesh.points.begin(), mesh.points.end(), [&](const LatticePoint& p) { return survivesAsFloat(mesh.lattice, p); });
+  for (std::size_t f = 0; f < mesh.fields.size(); ++f)
+    (isCellField(mesh.fields[f]) ? out.mesh.cellFields : out.mesh.pointFields).push_back(dequantised(mesh.fields[f], mesh.values[f]));
+  return out;
+}
+
+FileSurface surfaceOf(const FileMesh& mesh) {
+  constexpr VertexId kAbsent = 0xFFFFFFFFu;
+  FileSurface out;
+  out.triangles = boundaryOf(mesh.tetrahedra);
+  std::vector<VertexId> numbers(mesh.points.size(), kAbsent), used;
+  for (const Triangle& triangle : out.triangles)
+    for (const VertexId v : triangle) numbers[v] = 0;
+  for (VertexId v = 0; v < numbers.size(); ++v) {
+    if (numbers[v] == kAbsent) continue;
+    numbers[v] = static_cast<VertexId>(used.size());
+    used.push_back(v);
+  }
+  for (Triangle& triangle : out.triangles)
+    for (VertexId& v : triangle) v = numbers[v];
+  for (const VertexId v : used) out.points.push_back(mesh.points[v]);
+  for (const FileField& field : mesh.pointFields) {
+    FileField kept{field.name, field.type, field.components, {}};
+    kept.values.reserve(used.size() * field.components);
+    for (const VertexId v : used)
+      for (std::uint32_t c = 0; c < field.components; ++c) kept.values.push_back(field.values[std::size_t{v} * field.components + c]);
+    out.fields.push_back(std::move(kept));
+  }
+  return out;
+}
+
+}  // namespace qtet

@@ -1,0 +1,33 @@
+// Meshes as files of the kinds that other programs read. .vtu has a header of its own (vtu_writer.h), .drc and .glb, too, because they need a lattice
+// (boundary_drc.h, boundary_glb.h).
+#pragma once
+
+#include "codec/file_mesh.h"
+#include "proto/bytes.h"
+#include "proto/error.h"
+
+namespace qtet {
+
+/// VTK's legacy format 3.0, binary: an unstructured grid with every field, as VTK, ParaView, meshio and VisIt read it.
+[[nodiscard]] Bytes legacyVtkBytes(const FileMesh& mesh);
+
+/// Gmsh's MSH 2.2, binary: nodes and tetrahedra numbered from 1 in their order, fields as $NodeData and $ElementData. Gmsh knows 1, 3 and 9 components: others
+/// are filled up with zeros to the next of them. Errors: bad-input (a field of more than 9 components; more than 2^31 - 1 nodes or cells).
+[[nodiscard]] Result<Bytes> gmshBytes(const FileMesh& mesh);
+
+/// The boundary's triangles. STL has neither fields nor shared vertices, and floats; PLY, binary and little-endian, has point fields as properties of
+/// the vertices (NAME, or NAME_0, NAME_1, ... of vectors; letters, digits and _ stay, everything else becomes _); OBJ is text without fields.
+/// Errors: bad-input (more triangles than the format's 32 bits can count).
+[[nodiscard]] Result<Bytes> stlBytes(const FileSurface& surface);
+[[nodiscard]] Result<Bytes> plyBytes(const FileSurface& surface, bool doublePoints);
+[[nodiscard]] Bytes objBytes(const FileSurface& surface);
+
+/// OpenUSD text: a TetMesh prim with its surface faces; fields are primvars, of points `vertex`, of cells `uniform`. Names become USD identifiers as
+/// in PLY, and are told in full as displayName.
+[[nodiscard]] Bytes usdaBytes(const FileMesh& mesh);
+
+/// numpy's archive: `points` (n, 3), `tetrahedra` (m, 4), `boundary` (k, 3) and each field as `point_NAME` or `cell_NAME`, (n) or (n, components), in its own
+/// type. Not compressed, so that numpy maps it into memory. Errors: bad-input (4 GiB or more in all: ZIP without extensions).
+[[nodiscard]] Result<Bytes> npzBytes(const FileMesh& mesh);
+
+}  // namespace qtet

@@ -1,0 +1,234 @@
+"""qtet logs from Python: what a log holds, and which bytes of it a level needs. Standard library alone; libqtet.so decodes (codec/qtet.h).
+
+    with Log("part.qtet") as log:
+        log.refine(log.level_of_error("Density", 0.01))
+        print(log.counts())
+
+A source is a file, a log's URL on any host, `http://host/v1/meshes/NAME` of a qtet-server, or the address of its viewer (`http://host/?mesh=NAME`).
+Of a URL only the bytes that a level needs are fetched, where the host answers Range requests."""
+import ctypes
+import ctypes.util
+import os
+import pathlib
+import struct
+import tempfile
+import urllib.error
+import urllib.parse
+import urllib.request
+
+_u32, _u64, _f64, _text = ctypes.c_uint32, ctypes.c_uint64, ctypes.c_double, ctypes.c_char_p
+_HEADER_BYTES = 64  # FORMAT.md, "Header"
+_MAGIC = b"\x89QTET\r\n\x1a"
+_TIMEOUT_S = 60
+_PIECE_BYTES = 1 << 20  # read from the network at a time
+POINT, CELL = 0, 1
+
+
+class QtetError(RuntimeError):
+    """What went wrong, where, and what to do, in the words of the library."""
+
+
+class LogInfo(ctypes.Structure):
+    _fields_ = [("versionMajor", _u32), ("versionMinor", _u32), ("bytes", _u64), ("chunks", _u32), ("levels", _u32), ("fields", _u32),
+                ("latticeBits", _u32), ("latticeStep", _f64), ("latticeOrigin", _f64 * 3), ("digest", _text), ("source", _text),
+                ("generator", _text)]
+
+
+class FieldInfo(ctypes.Structure):
+    _fields_ = [("components", _u32), ("association", _u32), ("bits", _u32), ("reserved", _u32), ("step", _f64), ("minimum", _f64 * 16),
+                ("range", _f64 * 2), ("bytes", _u64), ("name", _text), ("type", _text)]
+
+
+class LevelInfo(ctypes.Structure):
+    _fields_ = [("tetrahedra", _u32), ("vertices", _u32), ("boundaryTriangles", _u32), ("hasError", _u32), ("prefixBytes", _u64),
+                ("boundaryDistance", _f64), ("toLevelMean", _f64), ("toLevelMax", _f64), ("toOriginalMean", _f64),
+                ("toOriginalMax", _f64), ("volumeKept", _f64)]
+
+
+def _candidates():
+    """Where libqtet.so may be: QTET_LIBRARY, beside an installed copy of this file, where the system's linker looks."""
+    if os.environ.get("QTET_LIBRARY"):
+        return [os.environ["QTET_LIBRARY"]]
+    here = pathlib.Path(__file__).resolve().parent
+    installed = [str(found) for up in list(here.parents)[:3] for below in ("lib", "lib64", "lib/*-linux-gnu") for found in up.glob(below + "/libqtet.so.0")]
+    return [*installed, "libqtet.so.0", ctypes.util.find_library("qtet") or "libqtet.so"]
+
+
+_loaded = None
+
+
+def library():
+    """libqtet.so, loaded once."""
+    global _loaded
+    if _loaded is not None:
+        return _loaded
+    tried = []
+    for name in _candidates():
+        try:
+            c = ctypes.CDLL(name)
+        except OSError as error:
+            tried.append(str(error))
+            continue
+        for function, result in (("create", ctypes.c_void_p), ("error", _text), ("tetrahedra", ctypes.c_void_p), ("boundary", ctypes.c_void_p), ("lattice_points", ctypes.c_void_p),
+                                 ("field_count", ctypes.c_size_t)):
+            getattr(c, "qtet_log_" + function).restype = result
+        _loaded = c
+        return c
+    raise QtetError("libqtet.so is not found (" + "; ".join(tried) + "); install libqtet0, or set QTET_LIBRARY to its path")
+
+
+class _Remote:
+    """A log behind a URL as a sparse file of which only the front is filled."""
+
+    def __init__(self, url):
+        self.url, self.tag, self.have = url, None, 0
+        self.file = tempfile.NamedTemporaryFile(prefix="qtet-", suffix=".qtet")
+        head = self._get(0, _HEADER_BYTES)
+        if len(head) < _HEADER_BYTES or not head.startswith(_MAGIC):
+            raise QtetError(f"{url} is no qtet log; give the URL of a .qtet file, or http://host/v1/meshes/NAME of a qtet-server")
+        self.bytes, manifest, table = struct.unpack_from("<QII", head, 16)
+        self.file.truncate(max(self.bytes, self.have))
+        self.need(_HEADER_BYTES + manifest + table)
+
+    def need(self, end):
+        """Whether bytes came: the front up to `end` is there afterwards."""
+        end = min(end, self.bytes)
+        if end <= self.have:
+            return False
+        self._get(self.have, end)
+        return True
+
+    def _get(self, first, end):
+        """Writes the bytes [first, end) of the log to the file; the first ones of them are the answer."""
+        request = urllib.request.Request(self.url, headers={"Range": f"bytes={first}-{end - 1}", "Accept-Encoding": "identity"})
+        try:
+            with urllib.request.urlopen(request, timeout=_TIMEOUT_S) as answer:
+                self._same_log(answer)
+                return self._store(answer, first if answer.status == 206 else 0, end)
+        except (urllib.error.URLError, OSError, ValueError) as error:
+            raise QtetError(f"{self.url} cannot be fetched: {error}; is the server running, and the name right?") from error
+
+    def _same_log(self, answer):
+        tag = answer.headers.get("ETag")
+        if self.tag is not None and tag != self.tag:
+            raise QtetError(f"{self.url} was replaced by another log meanwhile; open it again")
+        self.tag, self.url = tag, answer.geturl()  # behind a redirection lies one log for ever
+
+    def _store(self, answer, at, end):
+        start = b""
+        self.file.seek(at)
+        while piece := answer.read(_PIECE_BYTES):
+            start = start or piece
+            self.file.write(piece)
+            at += len(piece)
+        self.file.flush()
+        if self.have and at < end:
+            raise QtetError(f"{self.url} ended after {at} bytes, {end} were asked for; fetch it again")
+        self.have = max(self.have, at)
+        return start
+
+
+def _log_url(source):
+    """The URL of the log's bytes, or None for a file."""
+    parts = urllib.parse.urlsplit(str(source))
+    if parts.scheme not in ("http", "https"):
+        return None
+    mesh = urllib.parse.parse_qs(parts.query).get("mesh")
+    if mesh and not parts.path.startswith("/v1/"):
+        folder = parts.path[: parts.path.rfind("/") + 1] or "/"
+        parts = parts._replace(path=folder + "v1/meshes/" + urllib.parse.quote(mesh[0], safe=""), query="", fragment="")
+    if "/v1/meshes/" in parts.path and parts.path.rpartition("/v1/meshes/")[2].strip("/").count("/") == 0:
+        parts = parts._replace(path=parts.path.rstrip("/") + "/log")
+    return urllib.parse.urlunsplit(parts)
+
+
+class Log:
+    """One log, opened; close() or `with` gives its memory back. One thread at a time."""
+
+    def __init__(self, source):
+        self.c = library()
+        self.handle = None
+        url = _log_url(source)
+        self.remote = _Remote(url) if url else None
+        self._open(self.remote.file.name if self.remote else source)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def __del__(self):
+        self.close()
+
+    def close(self):
+        if getattr(self, "handle", None):
+            self.c.qtet_log_destroy(self.handle)
+            self.handle = None
+
+    def _open(self, path):
+        self.close()
+        self.handle = ctypes.c_void_p(self.c.qtet_log_create())
+        if not self.handle:
+            raise MemoryError("no memory for a log")
+        self.check(self.c.qtet_log_open_file(self.handle, os.fsencode(path)))
+        self.info = self._struct(LogInfo, self.c.qtet_log_get_info)
+        self.fields = [self._struct(FieldInfo, self.c.qtet_log_get_field, _u32(f)) for f in range(self.info.fields)]
+
+    def check(self, status):
+        if status != 0:
+            raise QtetError(self.c.qtet_log_error(self.handle).decode(errors="replace"))
+
+    def _struct(self, kind, function, *arguments):
+        out = kind()
+        self.check(function(self.handle, *arguments, ctypes.c_size_t(ctypes.sizeof(kind)), ctypes.byref(out)))
+        return out
+
+    def _level(self, function, *arguments):
+        level = _u32()
+        self.check(function(self.handle, *arguments, ctypes.byref(level)))
+        return level.value
+
+    @property
+    def last_level(self):
+        return self.info.levels - 1
+
+    def level_info(self, level):
+        return self._struct(LevelInfo, self.c.qtet_log_get_level, _u32(level))
+
+    def level_of_tetrahedra(self, most):
+        """The finest level of at most so many tetrahedra; 0 if there is none."""
+        return self._level(self.c.qtet_log_level_of_tetrahedra, _u64(int(most)))
+
+    def level_of_error(self, field, bound):
+        """The coarsest level at which a field's rms error is at most `bound` of its range; field "boundary": the distance, of the diagonal."""
+        if field == "boundary":
+            return self._level(self.c.qtet_log_level_of_boundary_error, _f64(bound))
+        number = self._level(self.c.qtet_log_find_field, field.encode())
+        return self._level(self.c.qtet_log_level_of_field_error, _u32(number), _f64(bound))
+
+    def refine(self, level):
+        """Makes the mesh that of a level (the last one if there is none so fine), after fetching what is missing of it."""
+        level = min(level, self.last_level)
+        if self.remote and self.remote.need(self.level_info(level).prefixBytes):
+            self._open(self.remote.file.name)  # anew: the library must not see a file change that it has open
+        self.check(self.c.qtet_log_refine(self.handle, _u32(level)))
+        return level
+
+    def counts(self):
+        """(vertices, tetrahedra, boundary triangles) of the mesh."""
+        c = self.c
+        return c.qtet_log_vertex_count(self.handle), c.qtet_log_tetrahedron_count(self.handle), c.qtet_log_boundary_count(self.handle)
+
+    def copy_points(self, target, count, is_double):
+        """Writes 3 numbers a vertex to ctypes' `target`."""
+        function = self.c.qtet_log_copy_points_double if is_double else self.c.qtet_log_copy_points_float
+        self.check(function(self.handle, ctypes.c_size_t(count), target))
+
+    def field_count(self, field):
+        return self.c.qtet_log_field_count(self.handle, _u32(field))
+
+    def copy_field(self, field, target, count, is_double):
+        """Writes a field's values to ctypes' `target`; NaN where one is missing."""
+        function = self.c.qtet_log_copy_field_double if is_double else self.c.qtet_log_copy_field_float
+        self.check(function(self.handle, _u32(field), ctypes.c_size_t(count), target))

@@ -1,0 +1,167 @@
+"""qtet logs as VTK's grids, for VTK, PyVista and ParaView.
+
+    grid = qtet_vtk.read("part.qtet", tetrahedra=100_000)       # a vtkUnstructuredGrid
+    mesh = pyvista.wrap(qtet_vtk.read("http://localhost:8080/v1/meshes/part", error=("Density", 0.01)))
+
+libqtet.so decodes straight into VTK's own arrays; numpy is not needed."""
+import array
+import ctypes
+
+try:
+    from vtkmodules import vtkCommonCore as core
+    from vtkmodules import vtkCommonDataModel as model
+except ImportError as error:
+    raise ImportError("VTK's Python modules are needed (Debian: python3-vtk9; or pip install vtk)") from error
+
+from qtet_log import CELL, POINT, Log, QtetError
+
+__all__ = ["Log", "QtetError", "grid_of", "read", "surface_of"]
+
+# A float keeps a lattice of this many bits apart where the origin is not far off.
+_FLOAT_BITS = 20
+# What stands in a slot whose chunk has not come (qtet.h, "Sizes").
+_NO_POINT, _NO_TETRAHEDRON, _NO_TRIANGLE = b"\xff" * 12, bytes(16), bytes(12)
+_ARRAYS = {"float32": core.vtkFloatArray, "float64": core.vtkDoubleArray, "int8": core.vtkTypeInt8Array, "uint8": core.vtkTypeUInt8Array,
+           "int16": core.vtkTypeInt16Array, "uint16": core.vtkTypeUInt16Array, "int32": core.vtkTypeInt32Array,
+           "uint32": core.vtkTypeUInt32Array, "int64": core.vtkTypeInt64Array, "uint64": core.vtkTypeUInt64Array}
+
+
+def _sized(values, components, tuples):
+    values.SetNumberOfComponents(components)
+    values.SetNumberOfTuples(tuples)
+    return values
+
+
+def _memory(values):
+    """An array's memory for ctypes."""
+    return ctypes.cast((ctypes.c_char * (values.GetDataTypeSize() * values.GetNumberOfValues())).from_buffer(values), ctypes.c_void_p)
+
+
+class _Kept:
+    """Which slots of one kind hold something, in logs of layout `regions` between bands; everywhere else all do, and nothing is looked at one by one."""
+
+    def __init__(self, address, count, width, hole):
+        self.ids = None  # all
+        packed = ctypes.string_at(address, 4 * width * count) if count else b""
+        if hole in packed:
+            words = array.array("i", packed)
+            holes = array.array("i", hole)
+            self.ids = [i for i in range(count) if words[width * i : width * i + width] != holes]
+        self.count = count if self.ids is None else len(self.ids)
+
+    def of(self, values):
+        """The tuples of a VTK array that stay."""
+        if self.ids is None:
+            return values
+        wanted = core.vtkIdList()
+        for i in self.ids:
+            wanted.InsertNextId(i)
+        kept = _sized(values.NewInstance(), values.GetNumberOfComponents(), self.count)
+        values.GetTuples(wanted, kept)
+        return kept
+
+
+def _points(log, kept):
+    info, vertices = log.info, log.counts()[0]
+    far = max(abs(x) for x in info.latticeOrigin) > info.latticeStep * 2**_FLOAT_BITS
+    is_double = info.latticeBits > _FLOAT_BITS or far
+    values = _sized(core.vtkDoubleArray() if is_double else core.vtkFloatArray(), 3, vertices)
+    if vertices:
+        log.copy_points(_memory(values), 3 * vertices, is_double)
+    points = core.vtkPoints()
+    points.SetData(kept.of(values))
+    return points
+
+
+def _cells(source, kept, corners, count, vertices):
+    """vtkCellArray of the kept ones of `count` cells, from the library's own indices; `vertices` are those kept."""
+    connectivity = _sized(core.vtkTypeInt32Array(), corners, count)
+    if count:
+        ctypes.memmove(_memory(connectivity), source, 4 * corners * count)
+    connectivity = kept.of(connectivity)
+    if vertices.ids is not None:
+        numbers = {slot: i for i, slot in enumerate(vertices.ids)}
+        for i in range(corners * kept.count):
+            connectivity.SetValue(i, numbers[connectivity.GetValue(i)])
+    connectivity.SetNumberOfComponents(1)
+    offsets = _sized(core.vtkTypeInt32Array(), 1, kept.count + 1)
+    starts = array.array("i", range(0, corners * kept.count + 1, corners))
+    ctypes.memmove(_memory(offsets), starts.buffer_info()[0], 4 * len(starts))
+    cells = model.vtkCellArray()
+    cells.SetData(offsets, connectivity)
+    return cells
+
+
+def _field(log, number):
+    info = log.fields[number]
+    kind = info.type.decode()
+    tuples = log.field_count(number) // info.components
+    is_double = kind != "float32"
+    values = _sized(core.vtkDoubleArray() if is_double else core.vtkFloatArray(), info.components, tuples)
+    if tuples:
+        log.copy_field(number, _memory(values), tuples * info.components, is_double)
+    if kind not in ("float32", "float64") and kind in _ARRAYS:
+        integers = _ARRAYS[kind]()
+        integers.DeepCopy(values)
+        values = integers
+    return values
+
+
+def _add_fields(log, grid, fields, kept):
+    """`kept` by association: what of its slots stays."""
+    known = {info.name.decode(errors="replace") for info in log.fields}
+    if fields is not None and not set(fields) <= known:
+        raise QtetError(f"the log has no field {sorted(set(fields) - known)}; it has {sorted(known)}")
+    for number, info in enumerate(log.fields):
+        if info.association not in kept or (fields is not None and info.name.decode(errors="replace") not in fields):
+            continue
+        data = grid.GetCellData() if info.association == CELL else grid.GetPointData()
+        values = kept[info.association].of(_field(log, number))
+        values.SetName(info.name.decode(errors="replace"))
+        data.AddArray(values)
+        if info.components == 1 and data.GetScalars() is None:
+            data.SetActiveScalars(values.GetName())
+
+
+def _vertices(log):
+    return _Kept(log.c.qtet_log_lattice_points(log.handle), log.counts()[0], 3, _NO_POINT)
+
+
+def grid_of(log, fields=None):
+    """The log's present mesh as a vtkUnstructuredGrid of tetrahedra, with the named fields (None: all)."""
+    source, count = log.c.qtet_log_tetrahedra(log.handle), log.counts()[1]
+    vertices, cells = _vertices(log), _Kept(source, count, 4, _NO_TETRAHEDRON)
+    grid = model.vtkUnstructuredGrid()
+    grid.SetPoints(_points(log, vertices))
+    grid.SetCells(model.VTK_TETRA, _cells(source, cells, 4, count, vertices))
+    _add_fields(log, grid, fields, {POINT: vertices, CELL: cells})
+    return grid
+
+
+def surface_of(log, fields=None):
+    """The log's present boundary as a vtkPolyData of triangles, with the points of the whole mesh and its point fields."""
+    source, count = log.c.qtet_log_boundary(log.handle), log.counts()[2]
+    vertices, triangles = _vertices(log), _Kept(source, count, 3, _NO_TRIANGLE)
+    surface = model.vtkPolyData()
+    surface.SetPoints(_points(log, vertices))
+    surface.SetPolys(_cells(source, triangles, 3, count, vertices))
+    _add_fields(log, surface, fields, {POINT: vertices})
+    return surface
+
+
+def read(source, level=None, tetrahedra=None, error=None, fields=None):
+    """A level of a log (a file or a URL) as a vtkUnstructuredGrid.
+
+    level       its number, 0 the coarsest; without anything: the whole mesh
+    tetrahedra  or the finest level of at most so many
+    error       or ("NAME", E): the coarsest at which the field's rms error is at most E of its range, or the distance ("boundary", E)
+    fields      names; None: all"""
+    if sum(choice is not None for choice in (level, tetrahedra, error)) > 1:
+        raise ValueError("give one of level, tetrahedra and error")
+    with Log(source) as log:
+        if tetrahedra is not None:
+            level = log.level_of_tetrahedra(tetrahedra)
+        elif error is not None:
+            level = log.level_of_error(*error)
+        log.refine(log.last_level if level is None else level)
+        return grid_of(log, fields)

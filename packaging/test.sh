@@ -1,0 +1,103 @@
+#!/usr/bin/env bash
+# The Debian packages in a Debian of their own: installed, started, used, removed. Needs root, debootstrap and a Debian mirror.
+#   test.sh FOLDER-OF-PACKAGES FOLDER-TO-WORK-IN      77 = skipped
+set -euo pipefail
+packages=$(realpath "$1")
+mkdir -p "$2"
+work=$(realpath "$2")
+source=$(realpath "$(dirname "${BASH_SOURCE[0]}")/..")
+mirror=${QTET_DEBIAN_MIRROR:-http://deb.debian.org/debian}
+port=${QTET_TEST_PORT:-18087}
+
+skip() { echo "skipped: $1"; exit 77; }
+[[ $(id -u) == 0 ]] || skip "a chroot needs root"
+command -v debootstrap >/dev/null || skip "debootstrap is not installed"
+[[ -n $(compgen -G "$packages/*.deb") ]] || { echo "there are no packages in $packages; make deb first" >&2; exit 1; }
+
+root=$work/root
+server=
+cleanUp() {
+  [[ -z $server ]] || kill "$server" 2>/dev/null || true
+  umount -q "$root/proc" "$root/dev" 2>/dev/null || true
+}
+trap cleanUp EXIT
+fail() { echo "test-deb: $1" >&2; exit 1; }
+step() { printf 'test-deb: %s\n' "$1"; }
+inside() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive "$@"; }
+get() { inside curl -fsS --max-time 20 "http://127.0.0.1:$port$1"; }
+deb() { (cd "$packages" && printf '/packages/%s' "$1"_*.deb); }
+install() { inside apt-get install -y --no-install-recommends -qq "$@" >"$work/apt.log" 2>&1 || { tail -20 "$work/apt.log" >&2; fail "apt-get install $*"; }; }
+
+# ---- a bare Debian 12; the first run downloads it, later ones copy it
+
+if [[ ! -d $work/base ]]; then
+  step "making a Debian 12"
+  rm -rf "$work/base.part"
+  debootstrap --variant=minbase bookworm "$work/base.part" "$mirror" >"$work/debootstrap.log" 2>&1 || { tail -5 "$work/debootstrap.log" >&2; skip "debootstrap could not fetch Debian from $mirror"; }
+  mv "$work/base.part" "$work/base"
+fi
+cleanUp
+rm -rf --one-file-system "$root"
+cp -a "$work/base" "$root"
+cp /etc/resolv.conf "$root/etc/resolv.conf"
+mount -t proc proc "$root/proc"
+mount --bind /dev "$root/dev"
+mkdir "$root/packages"
+cp "$packages"/*.deb "$root/packages"
+inside apt-get update -qq
+install curl
+
+# ---- the server: alone, lean, as its own user
+
+step "qtet-server"
+install "$(deb qtet-server)"
+inside dpkg -l | grep -E >/dev/null 'libvtk|libgl1' && fail "qtet-server draws VTK or OpenGL in"
+[[ $(stat -c %U:%a "$root/var/lib/qtet" 2>/dev/null || true) != root:* ]] || fail "/var/lib/qtet belongs to root"
+inside qtet-server --config /etc/qtet/server.conf --check-config | grep >/dev/null /var/lib/qtet || fail "the settings do not hold"
+install systemd
+inside systemd-analyze verify qtet-server.service 2>"$work/unit.log" || { cat "$work/unit.log" >&2; fail "the unit is not sound"; }
+[[ ! -s $work/unit.log ]] || { cat "$work/unit.log" >&2; fail "systemd complains of the unit"; }
+# exec, so that what is killed at the end is the server and not a shell before it.
+(exec chroot "$root" env -i PATH=/usr/sbin:/usr/bin LC_ALL=C.UTF-8 setpriv --reuid=qtet --regid=qtet --clear-groups \
+  qtet-server --config /etc/qtet/server.conf --port "$port" --admin 127.0.0.1:$((port + 1)) >"$work/server.log" 2>&1) &
+server=$!
+for _ in {1..50}; do get /v1/meshes >/dev/null 2>&1 && break; kill -0 $server || { cat "$work/server.log" >&2; fail "the server ended"; }; sleep 0.1; done
+[[ $(get /v1/meshes) == *'"meshes":[]'* ]] || fail "an empty folder is not an empty list"
+get / | grep >/dev/null '<qtet-viewer\|<script' || fail "the viewer is missing"
+
+# ---- the tool: makes a log, which the running server takes up
+
+step "qtet"
+install "$(deb qtet)"
+inside qtet sample fin -o /tmp/fin.vtu >/dev/null
+inside qtet simplify /tmp/fin.vtu -o /tmp/fin.qtet >/dev/null 2>&1
+inside qtet verify /tmp/fin.qtet --against /tmp/fin.vtu --quiet >/dev/null
+inside qtet extract /tmp/fin.qtet --ratio 1 -o /tmp/skin.glb >/dev/null
+inside install -o qtet -g qtet -m 0644 /tmp/fin.qtet /var/lib/qtet/.fin.part
+inside mv /var/lib/qtet/.fin.part /var/lib/qtet/fin.qtet
+for _ in {1..50}; do [[ $(get /v1/meshes) != *'"id":"fin"'* ]] || break; sleep 0.1; done
+[[ $(get /v1/meshes/fin) == *'"digest"'* ]] || fail "the server does not see a new log"
+inside curl -fsSL --max-time 20 "http://127.0.0.1:$port/v1/meshes/fin/log" | cmp - "$root/tmp/fin.qtet" || fail "the log arrives changed"
+for page in qtet qtet-simplify; do [[ -n $(compgen -G "$root/usr/share/man/man1/$page.1*") ]] || fail "there is no man page $page(1)"; done
+
+# ---- the library: a program of somebody else's, and Python
+
+step "libqtet-dev, python3-qtet"
+install "$(deb libqtet0)" "$(deb libqtet-dev)" "$(deb python3-qtet)" gcc libc6-dev pkgconf
+cp "$source/tests/consumer/levels.c" "$root/tmp/"
+inside sh -c 'cc -std=c99 /tmp/levels.c $(pkg-config --cflags --libs qtet) -o /tmp/levels && /tmp/levels /tmp/fin.qtet full' | grep >/dev/null '^level 0:' || fail "levels.c"
+inside python3 -c 'import qtet_log; log = qtet_log.Log("/tmp/fin.qtet"); print(log.refine(log.last_level), log.counts())' >/dev/null || fail "qtet_log"
+inside python3 -c "import qtet_log; qtet_log.Log('http://127.0.0.1:$port/?mesh=fin').refine(0)" || fail "qtet_log over HTTP"
+
+# ---- and away again
+
+step "removing"
+kill $server; wait $server || true
+server=
+# The proper end of a service whose package goes: logs stay, everything else does not.
+mapfile -t files < <(for p in qtet qtet-server libqtet0 libqtet-dev python3-qtet; do inside dpkg -L $p; done | sort -u)
+inside apt-get purge -y -qq qtet qtet-server libqtet0 libqtet-dev python3-qtet >"$work/apt.log" 2>&1 || { tail -20 "$work/apt.log" >&2; fail "apt-get purge"; }
+for file in "${files[@]}"; do [[ ! -f $root$file ]] || fail "$file is left behind"; done
+[[ ! -e $root/etc/qtet ]] || fail "/etc/qtet is left behind"
+[[ -f $root/var/lib/qtet/fin.qtet ]] || fail "a purge took somebody's log"
+step "installed, started, used and removed"
