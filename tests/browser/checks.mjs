@@ -44,7 +44,7 @@ async function showsACoarsePictureFirst({server, browser}) {
 }
 
 async function survivesAKilledServer({server, browser, logs}) {
-  const line = await PoorLine.open(server.port, {bytesPerSecond: 60000, streamsOnly: true});
+  const line = await PoorLine.open(server.port, {bytesPerSecond: 30000, streamsOnly: true});
   try {
     const viewer = await browser.open(`${line.url}?mesh=fin`);
     await viewer.page.waitForFunction(() => {

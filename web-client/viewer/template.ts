@@ -112,7 +112,7 @@ export const kTemplate = `
       </div>
       ${toggle('volume', 'Volume')}
       <div class="volume sub" hidden>
-        <div class="bars" role="group" aria-label="Opacity by value"></div>
+        <div class="bars" role="group" aria-label="Transfer function"></div>
         <div class="row buttons"><button type="button" class="fainter">Fainter</button><button type="button" class="denser">Denser</button></div>
       </div>
       ${toggle('threshold', 'Threshold')}
