@@ -172,7 +172,7 @@ deb: setup build
 
 test-deb: deb
 	@status=0
-	packaging/test.sh $(BUILD)/packages build/deb-test || status=$$?
+	.packaging/test.sh $(BUILD)/packages build/deb-test || status=$$?
 	[[ $$status == 77 ]] || exit $$status
 
 bench: setup build

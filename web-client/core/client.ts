@@ -4,12 +4,14 @@ import codecUrl from 'qtet-codec.wasm?url';
 import type {Ray, Vector} from './cell_ray';
 import type {Display} from './display';
 import type {Pick, Probe} from './inspector';
-import type {Limit} from './limit';
+import {kFull, type Limit} from './limit';
 import type {CellOrder} from './volume';
 import type {Wishes} from './wishes';
 import type {FromWorker, Question, Source, ToWorker} from './worker_messages';
 
 export type Listener = (message: Exclude<FromWorker, {type: 'answer'}>) => void;
+
+const kAnySource: Source = {url: '', log: '', mesh: '', fields: null, limit: kFull, transport: 'auto'};
 
 export class Client {
   private readonly worker = new Worker(new URL('./worker.ts', import.meta.url), {type: 'module', name: 'qtet'});
@@ -34,7 +36,8 @@ export class Client {
     };
   }
 
-  start(source: Source): void { this.post({type: 'start', source}); }
+  /** `url` and `mesh`, or `log` alone; what else is left out is chosen: the first field, everything, whatever transport works. */
+  start(source: Partial<Source>): void { this.post({type: 'start', source: {...kAnySource, ...source}}); }
   /** REQUIRES: fields of the last `manifest` message. Its fields are fetched if they are not here. */
   show(display: Display): void { this.post({type: 'display', display}); }
   setLimit(limit: Limit): void { this.post({type: 'limit', limit}); }

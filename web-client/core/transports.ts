@@ -8,8 +8,9 @@ import type {LogTable, Transport, TransportHandlers} from './transport';
 import type {Source} from './worker_messages';
 
 /** A server offers all, a file on any other host its ranges alone. */
-export function kindsOf({url, transport}: Pick<Source, 'url' | 'transport'>): TransportKind[] {
+export function kindsOf({url, log, transport}: Pick<Source, 'url' | 'log' | 'transport'>): TransportKind[] {
   if (url === '') return ['range'];
+  if (log === '') return ['websocket'];
   return transport === 'auto' ? [...kTransportKinds] : [transport];
 }
 

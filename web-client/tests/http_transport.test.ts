@@ -225,9 +225,10 @@ describe('the choice among transports', () => {
   });
 
   test('aFileHasNoSocketAndAForcedWayIsTheOnlyOne', () => {
-    expect(kindsOf({url: '', transport: 'auto'})).toEqual(['range']);
-    expect(kindsOf({url: 'ws://x', transport: 'chunks'})).toEqual(['chunks']);
-    expect(kindsOf({url: 'ws://x', transport: 'auto'})).toEqual(['websocket', 'range', 'chunks']);
+    expect(kindsOf({url: '', log: 'x', transport: 'auto'})).toEqual(['range']);
+    expect(kindsOf({url: 'ws://x', log: 'x', transport: 'chunks'})).toEqual(['chunks']);
+    expect(kindsOf({url: 'ws://x', log: '', transport: 'auto'})).toEqual(['websocket']);
+    expect(kindsOf({url: 'ws://x', log: 'x', transport: 'auto'})).toEqual(['websocket', 'range', 'chunks']);
   });
 });
 
