@@ -90,7 +90,7 @@ void readAdmin(Reader& reader, CommandLine& out) {
   unsigned value = 0;
   const auto [end, ec] = std::from_chars(port.data(), port.data() + port.size(), value);
   if (port.empty() || ec != std::errc() || end != port.data() + port.size() || value > 65535 || colon == 0)
-    return reader.refuse("--admin " + *given + " is not HOST:PORT, like 127.0.0.1:9090");
+    return reader.refuse("--admin " + *given + " is not HOST:PORT, like 127.0.0.1:9180");
   out.adminHost = given->substr(0, colon);
   if (out.adminHost->starts_with('[') && out.adminHost->ends_with(']')) out.adminHost = out.adminHost->substr(1, out.adminHost->size() - 2);
   out.adminPort = static_cast<std::uint16_t>(value);

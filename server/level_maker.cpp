@@ -1,6 +1,8 @@
 #include "server/level_maker.h"
 
+#include <exception>
 #include <new>
+#include <string>
 
 #include "codec/boundary_drc.h"
 #include "codec/boundary_glb.h"
@@ -31,6 +33,8 @@ Result<Bytes> makeLevel(const LevelRequest& request, const std::stop_token& stop
     return encoded(std::move(*file), request.coding);
   } catch (const std::bad_alloc&) {
     return fail(ErrorCode::kIo, "there is not enough memory for this level; ask for a coarser one");
+  } catch (const std::exception& error) {  // of a library: it ends one job, not the server
+    return fail(ErrorCode::kBadCodec, std::string("this level cannot be written: ") + error.what());
   }
 }
 
