@@ -1,6 +1,7 @@
 #include "codec/log_history.h"
 
 #include <algorithm>
+#include <functional>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -67,8 +68,8 @@ Status decodeBase(const LogFile& log, LogHistory& out) {
 void number(const SplitRecorder& recorder, LogHistory& out) {
   FusionHistory& h = out.history;
   std::vector<std::uint32_t> order(h.fusions.size());
-  std::iota(order.rbegin(), order.rend(), 0u);
-  std::ranges::stable_sort(order, [&](std::uint32_t a, std::uint32_t b) { return h.fusions[a].level > h.fusions[b].level; });
+  std::iota(order.begin(), order.end(), 0u);
+  std::ranges::sort(order, std::greater(), [&](std::uint32_t b) { return std::pair(h.fusions[b].level, b); });
   std::vector<VertexId> vertexOf(out.vertices);  // slot -> the vertex that is there
   for (VertexId v = 0; v < out.vertices; ++v) vertexOf[v] = v;
   out.prey.resize(h.fusions.size());
