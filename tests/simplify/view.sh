@@ -7,6 +7,7 @@ cd "$2"
 export TMPDIR=$PWD/temporary
 fail() { echo "view: $1" >&2; cat err.txt >&2; exit 1; }
 "$1" sample box -o "a box.vtu" >/dev/null
+rm -f url.txt  # of an earlier run
 env -u DISPLAY -u WAYLAND_DISPLAY "$1" view "a box.vtu" >url.txt 2>err.txt &
 view=$!
 trap 'kill $view 2>/dev/null || true' EXIT
