@@ -133,13 +133,15 @@ void followServer(int words, const std::string& name, bool open, Console& consol
   }
 }
 
-/// Puts the log of `input` into the folder: a link to it, or one made of a mesh.
+/// Puts the log of `input` into the folder: the file itself under another name, a copy where the folder is on another disk, or a log made of a mesh. (A symbolic
+/// link would not do: the server follows none out of its folder.)
 int provideLog(const fs::path& input, const fs::path& log, Console& console) {
   if (input.extension() == ".qtet") {
     std::error_code code;
-    fs::create_symlink(fs::absolute(input), log, code);
+    fs::create_hard_link(fs::canonical(input, code), log, code);
+    if (code) fs::copy_file(input, log, code);
     if (!code) return kExitOk;
-    return reportFailure({ErrorCode::kIo, "cannot link " + input.string() + " into " + log.parent_path().string() + ": " + code.message(), Error::kNoOffset}, false, console);
+    return reportFailure({ErrorCode::kIo, "cannot put " + input.string() + " into " + log.parent_path().string() + ": " + code.message(), Error::kNoOffset}, false, console);
   }
   std::ostream nowhere(nullptr);
   Console quiet = {nowhere, console.err, console.errIsTerminal, false, console.quiet, console.verbose};
