@@ -9,7 +9,9 @@
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <optional>
 
+#include "codec/temporary_folder.h"
 #include "server/bus_guard.h"
 #include "server/command_line.h"
 #include "server/folder_watch.h"
@@ -45,30 +47,11 @@ int cannotServe(const Error& error) {
   return kCannotServe;
 }
 
-/// Finished levels lie where --cache says, in systemd's cache folder, or in a temporary folder that goes with the object.
-class CacheFolder {
- public:
-  explicit CacheFolder(const std::optional<fs::path>& given) {
-    const char* ofSystemd = std::getenv("CACHE_DIRECTORY");
-    if (given || ofSystemd != nullptr) {
-      path_ = given ? *given : fs::path(ofSystemd);
-      return;
-    }
-    std::string name = (fs::temp_directory_path() / "qtet-server-XXXXXX").string();
-    if (::mkdtemp(name.data()) != nullptr) path_ = name, temporary_ = true;
-  }
-  ~CacheFolder() {
-    std::error_code ec;
-    if (temporary_) fs::remove_all(path_, ec);
-  }
-  CacheFolder(const CacheFolder&) = delete;
-  CacheFolder& operator=(const CacheFolder&) = delete;
-  [[nodiscard]] const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-  bool temporary_ = false;
-};
+/// Where finished levels lie: where --cache says, or in systemd's cache folder; nullopt: in a temporary one.
+std::optional<fs::path> wantedCache(const CommandLine& wishes) {
+  const char* ofSystemd = std::getenv("CACHE_DIRECTORY");
+  return wishes.cache || ofSystemd == nullptr ? wishes.cache : std::optional(fs::path(ofSystemd));
+}
 
 void logRefused(const std::vector<Catalogue::Refused>& refused) {
   for (const Catalogue::Refused& file : refused) spdlog::error("{} is not served: {}", file.path.string(), file.error.text());
@@ -122,8 +105,10 @@ int serve(const CommandLine& wishes) {
   const Result<ViewerFiles> viewer = loadViewer(wishes);
   if (!viewer) return cannotServe(viewer.error());
   if (viewer->empty()) spdlog::info("no viewer found; build it or name it with --viewer DIR, the API works without");
-  const CacheFolder cacheFolder(wishes.cache);
-  const Result<std::unique_ptr<LevelCache>> cache = LevelCache::open(cacheFolder.path(), wishes.cacheBytes);
+  std::optional<TemporaryFolder> temporary;
+  const std::optional<fs::path> cacheFolder = wantedCache(wishes);
+  if (!cacheFolder) temporary.emplace("server");
+  const Result<std::unique_ptr<LevelCache>> cache = LevelCache::open(cacheFolder.value_or(temporary ? temporary->path() : fs::path()), wishes.cacheBytes);
   if (!cache) return cannotServe(cache.error());
   Result<std::unique_ptr<AccessLog>> accessLog = nullptr;
   if (wishes.accessLog) accessLog = AccessLog::open(*wishes.accessLog);

@@ -7,31 +7,13 @@
 #include <csignal>
 #include <cstdlib>
 
+#include "codec/temporary_folder.h"
 #include "simplify/command_line.h"
 
 namespace qtet {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A folder that goes with everything in it.
-class ServedFolder {
- public:
-  ServedFolder() {
-    std::string name = (fs::temp_directory_path() / "qtet-view-XXXXXX").string();
-    if (::mkdtemp(name.data()) != nullptr) path_ = name;
-  }
-  ~ServedFolder() {
-    std::error_code ignored;
-    if (!path_.empty()) fs::remove_all(path_, ignored);
-  }
-  ServedFolder(const ServedFolder&) = delete;
-  ServedFolder& operator=(const ServedFolder&) = delete;
-  [[nodiscard]] const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 /// The mesh's name in the URL: letters that need no quoting there.
 std::string meshName(const fs::path& file) {
@@ -166,8 +148,9 @@ int runView(const Words& words, Console& console) {
   std::error_code code;
   if (!fs::is_regular_file(input, code))
     return reportFailure({ErrorCode::kNotFound, "there is no file " + input.string() + "; give a mesh or a log", Error::kNoOffset}, false, console);
-  const ServedFolder folder;
-  if (folder.path().empty()) return reportFailure({ErrorCode::kIo, "no temporary folder can be made; is the disk full?", Error::kNoOffset}, false, console);
+  const TemporaryFolder folder("view");
+  if (folder.failure())
+    return reportFailure({ErrorCode::kIo, "no temporary folder can be made (" + folder.failure().message() + "); let TMPDIR name one with room", Error::kNoOffset}, false, console);
   const std::string name = meshName(input);
   if (const int made = provideLog(input, folder.path() / (name + ".qtet"), console); made != kExitOk) return made;
 

@@ -8,7 +8,8 @@
 #include <cerrno>
 #include <fstream>
 #include <string>
-#include <system_error>
+
+#include "codec/temporary_folder.h"
 
 namespace qtet {
 namespace {
@@ -31,30 +32,6 @@ constexpr const char* kScript =
     "except BaseException as error:\n"
     "    sys.stderr.write('\\n' + (str(error) or type(error).__name__).replace('\\n', ' '))\n"
     "    sys.exit(1)\n";
-
-/// A folder for one conversion, removed with everything in it.
-class Folder {
- public:
-  Folder() {
-    const fs::path parent = fs::temp_directory_path(failure_);
-    if (failure_) return;
-    std::string name = (parent / "qtet-meshio-XXXXXX").string();
-    if (::mkdtemp(name.data())) path_ = name;
-    else failure_.assign(errno, std::generic_category());
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  ~Folder() {
-    std::error_code ignored;
-    if (!path_.empty()) fs::remove_all(path_, ignored);
-  }
-  [[nodiscard]] const fs::path& path() const { return path_; }
-  [[nodiscard]] const std::error_code& failure() const { return failure_; }
-
- private:
-  fs::path path_;
-  std::error_code failure_;
-};
 
 /// What the program ends with; -1: it was killed, or could not be started.
 int run(const char* python, const fs::path& in, const fs::path& out, const fs::path& words) {
@@ -87,7 +64,7 @@ std::string lastLineOf(const fs::path& path) {
 }  // namespace
 
 Status throughMeshio(const fs::path& path, const std::function<Status(const fs::path&)>& use) {
-  const Folder folder;
+  const TemporaryFolder folder("meshio");
   if (folder.failure()) return fail(ErrorCode::kIo, "no temporary folder could be made (" + folder.failure().message() + "); let TMPDIR name one with room");
   const fs::path out = folder.path() / "mesh.vtu", words = folder.path() / "words.txt";
   // The first python3 may be one of the user's own; Debian's has Debian's meshio.
