@@ -8,7 +8,10 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <optional>
 #include <string>
+
+#include "proto/crc32c.h"
 
 namespace qtet {
 namespace {
@@ -37,8 +40,13 @@ class Descriptor {
   int value_;
 };
 
-/// What the temporary files of all writers of `path` begin and end with.
-std::string temporaryPrefix(const fs::path& path) { return "." + path.filename().string() + "."; }
+/// What the temporary files of all writers of `path` begin and end with. A name that leaves no room for the rest gives its hash.
+std::string temporaryPrefix(const fs::path& path) {
+  constexpr std::size_t kMostOfName = 200;  // bytes of the 255 that a file's name may have
+  std::string name = path.filename().string();
+  if (name.size() > kMostOfName) name = name.substr(0, kMostOfName - 10) + "~" + std::to_string(crc32c(ByteView(reinterpret_cast<const std::uint8_t*>(name.data()), name.size())));
+  return "." + name + ".";
+}
 constexpr std::string_view kTemporarySuffix = ".tmp";
 
 /// Beside the target, hidden, and different for each process and call.
@@ -103,12 +111,14 @@ int createLocked(const fs::path& path, fs::path& temporary, FileCalls& calls) {
   return -1;
 }
 
-/// The whole of it but the folder's flush. The lock is held until the file has its final name.
-Status writeAndRename(const fs::path& path, ByteView bytes, FileCalls& calls) {
+/// The whole of it but the folder's flush. The lock is held until the file has its final name. `mode`: of the file that it takes the place of.
+Status writeAndRename(const fs::path& path, std::optional<mode_t> mode, ByteView bytes, FileCalls& calls) {
   fs::path temporary;
   const Descriptor file(calls, createLocked(path, temporary, calls));
   if (file.get() < 0) return systemError("create", temporary, errno);
-  Status status = writeAll(file.get(), bytes, path, calls);
+  Status status;
+  if (mode && ::fchmod(file.get(), *mode) != 0) status = systemError("keep the permissions of", path, errno);
+  if (status) status = writeAll(file.get(), bytes, path, calls);
   if (status && calls.sync(file.get()) != 0) status = systemError("write", path, errno);
   if (status && calls.rename(temporary.c_str(), path.c_str()) != 0) status = systemError("rename a new file to", path, errno);
   if (!status) calls.unlink(temporary.c_str());
@@ -117,7 +127,10 @@ Status writeAndRename(const fs::path& path, ByteView bytes, FileCalls& calls) {
 
 }  // namespace
 
-Status writeFileAtomically(const fs::path& path, ByteView bytes, FileCalls& calls) {
+Status writeFileAtomically(const fs::path& asked, ByteView bytes, FileCalls& calls) {
+  std::error_code none, links;
+  const fs::path path = fs::is_symlink(asked, none) ? fs::weakly_canonical(asked, links) : asked;  // the file that it leads to
+  if (links) return fail(ErrorCode::kIo, asked.string() + " leads nowhere: " + links.message() + "; remove the link or choose another output");
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   std::error_code code;
   if (!fs::is_directory(folder, code)) {
@@ -126,11 +139,14 @@ Status writeFileAtomically(const fs::path& path, ByteView bytes, FileCalls& call
   if (fs::is_directory(path, code)) {
     return fail(ErrorCode::kIo, path.string() + " is a folder; give the name of a file");
   }
+  struct stat old {};
+  const bool replaces = ::stat(path.c_str(), &old) == 0;
+  if (replaces && !S_ISREG(old.st_mode)) return fail(ErrorCode::kIo, path.string() + " is a pipe or a device; give the name of a file");
   // Opened before anything is changed: what cannot be flushed later is better not begun.
   const Descriptor opened(calls, calls.open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC, 0));
   if (opened.get() < 0) return systemError("open the folder", folder, errno);
   removeStale(folder, path, calls);
-  if (Status status = writeAndRename(path, bytes, calls); !status) return status;
+  if (Status status = writeAndRename(path, replaces ? std::optional(old.st_mode & 07777) : std::nullopt, bytes, calls); !status) return status;
   // Makes the rename itself durable. File systems that cannot flush a folder say EINVAL: there is nothing more to do then.
   if (calls.sync(opened.get()) == 0 || errno == EINVAL) return {};
   return fail(ErrorCode::kIo, path.string() + " is written, but a power failure may still undo it: cannot flush the folder " +

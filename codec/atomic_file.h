@@ -13,8 +13,8 @@ namespace qtet {
 /// it was and nothing is left beside it; only if the very last step fails, the flush of the folder, `path` is the whole new file, and the
 /// message says so. A process that is killed on its way leaves at most `.NAME.*.tmp`, which the next write of the same `path`
 /// removes (each writer holds a lock on its own, so those of writers at work are let alone). Several processes may write the same
-/// `path`: one of the whole files wins.
-/// Errors: not-found (the folder does not exist), io (with the file and the operating system's reason).
+/// `path`: one of the whole files wins. A file that is replaced hands on its permissions; a symbolic link stays, and the file that it leads to is replaced.
+/// Errors: not-found (the folder does not exist), io (no regular file is there; with the file and the operating system's reason).
 [[nodiscard]] Status writeFileAtomically(const std::filesystem::path& path, ByteView bytes, FileCalls& calls = systemFileCalls());
 
 }  // namespace qtet

@@ -21,4 +21,20 @@ std::vector<Triangle> boundaryOf(std::span<const Tetrahedron> tetrahedra) {
   return boundary;
 }
 
+CompactTriangles compactTriangles(std::span<const Triangle> triangles, std::size_t vertexCount) {
+  constexpr VertexId kAbsent = 0xFFFFFFFFu;
+  CompactTriangles out{{}, {triangles.begin(), triangles.end()}};
+  std::vector<VertexId> numbers(vertexCount, kAbsent);
+  for (const Triangle& triangle : triangles)
+    for (const VertexId v : triangle) numbers[v] = 0;
+  for (VertexId v = 0; v < numbers.size(); ++v) {
+    if (numbers[v] == kAbsent) continue;
+    numbers[v] = static_cast<VertexId>(out.vertices.size());
+    out.vertices.push_back(v);
+  }
+  for (Triangle& triangle : out.triangles)
+    for (VertexId& v : triangle) v = numbers[v];
+  return out;
+}
+
 }  // namespace qtet

@@ -22,4 +22,12 @@ inline constexpr std::array<std::array<int, 3>, 4> kCellFaces{{{1, 2, 3}, {0, 3,
 /// REQUIRES: no kGhost among the vertices, four different vertices a cell.
 [[nodiscard]] std::vector<Triangle> boundaryOf(std::span<const Tetrahedron> tetrahedra);
 
+/// A surface as a mesh of its own: the vertices that it uses, in their order, and its triangles as indices into them.
+struct CompactTriangles {
+  std::vector<VertexId> vertices;
+  std::vector<Triangle> triangles;
+};
+/// REQUIRES: ids below `vertexCount`.
+[[nodiscard]] CompactTriangles compactTriangles(std::span<const Triangle> triangles, std::size_t vertexCount);
+
 }  // namespace qtet

@@ -14,18 +14,11 @@
 #include <span>
 #include <utility>
 
+#include "codec/boundary.h"
 #include "proto/limits.h"
 
 namespace qtet {
 namespace {
-
-constexpr std::uint32_t kAbsent = 0xFFFFFFFFu;
-
-/// The vertices that the boundary uses, numbered in slot order.
-struct BoundaryVertices {
-  std::vector<VertexId> slots;
-  std::vector<std::uint32_t> numbers;  ///< by slot
-};
 
 // Draco crashes on what float32 cannot hold, and on quantised values far outside their range.
 constexpr double kLargestFloat = std::numeric_limits<float>::max();
@@ -33,19 +26,6 @@ constexpr int kMostQuantisedBits = 20;  // a float's 24 bits hold the grid point
 constexpr std::int32_t kLargestQuantised = 1 << kMostQuantisedBits;
 
 float toFloat(double x) { return static_cast<float>(std::clamp(x, -kLargestFloat, kLargestFloat)); }  // NaN stays
-
-BoundaryVertices collectVertices(const LatticeMesh& mesh) {
-  BoundaryVertices out;
-  out.numbers.assign(mesh.points.size(), kAbsent);
-  for (const Triangle& triangle : mesh.boundary)
-    for (const VertexId v : triangle) out.numbers[v] = 0;
-  for (VertexId v = 0; v < out.numbers.size(); ++v) {
-    if (out.numbers[v] == kAbsent) continue;
-    out.numbers[v] = static_cast<std::uint32_t>(out.slots.size());
-    out.slots.push_back(v);
-  }
-  return out;
-}
 
 int addFloats(draco::Mesh& target, draco::GeometryAttribute::Type type, std::uint32_t components, const std::vector<float>& values) {
   const auto count = static_cast<std::uint32_t>(values.size() / components);
@@ -56,6 +36,13 @@ int addFloats(draco::Mesh& target, draco::GeometryAttribute::Type type, std::uin
   for (std::uint32_t i = 0; i < count; ++i)
     target.attribute(id)->SetAttributeValue(draco::AttributeValueIndex(i), values.data() + std::size_t{i} * components);
   return id;
+}
+
+void addColours(draco::Mesh& target, std::span<const std::array<std::uint8_t, 3>> colours, const std::vector<VertexId>& slots) {
+  draco::GeometryAttribute description;
+  description.Init(draco::GeometryAttribute::COLOR, nullptr, 3, draco::DT_UINT8, true, 3, 0);
+  const int id = target.AddAttribute(description, true, static_cast<std::uint32_t>(slots.size()));
+  for (std::uint32_t i = 0; i < slots.size(); ++i) target.attribute(id)->SetAttributeValue(draco::AttributeValueIndex(i), colours[slots[i]].data());
 }
 
 int addPositions(draco::Mesh& target, const LatticeMesh& mesh, const std::vector<VertexId>& slots) {
@@ -79,11 +66,11 @@ int addField(draco::Mesh& target, const FieldInfo& field, const std::vector<std:
   return id;
 }
 
-void addTriangles(draco::Mesh& target, const LatticeMesh& mesh, const std::vector<std::uint32_t>& numbers) {
-  target.SetNumFaces(mesh.boundary.size());
-  for (std::size_t i = 0; i < mesh.boundary.size(); ++i) {
+void addTriangles(draco::Mesh& target, const std::vector<Triangle>& triangles) {
+  target.SetNumFaces(triangles.size());
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
     draco::Mesh::Face face;
-    for (std::size_t k = 0; k < 3; ++k) face[k] = draco::PointIndex(numbers[mesh.boundary[i][k]]);
+    for (std::size_t k = 0; k < 3; ++k) face[k] = draco::PointIndex(triangles[i][k]);
     target.SetFace(draco::FaceIndex(static_cast<std::uint32_t>(i)), face);
   }
 }
@@ -114,22 +101,23 @@ bool isQuantisable(const FieldInfo& field, std::span<const std::int32_t> integer
 
 }  // namespace
 
-Result<Bytes> boundaryDrc(const LatticeMesh& mesh) {
+Result<Bytes> boundaryDrc(const LatticeMesh& mesh, std::span<const std::array<std::uint8_t, 3>> colours) {
   if (mesh.boundary.empty()) return fail(ErrorCode::kBadInput, "the mesh has no boundary triangle to encode");
   if (!fitsFloats(mesh.lattice.origin, mesh.lattice.bits, mesh.lattice.step))
     return fail(ErrorCode::kBadInput, "the mesh's coordinates are beyond what float32 holds, and Draco knows no other; take the level as .vtu");
   assert(mesh.fields.size() == mesh.values.size());
-  const BoundaryVertices vertices = collectVertices(mesh);
+  const CompactTriangles surface = compactTriangles(mesh.boundary, mesh.points.size());
 
   draco::Mesh target;
-  target.set_num_points(static_cast<std::uint32_t>(vertices.slots.size()));
-  const int positions = addPositions(target, mesh, vertices.slots);
+  target.set_num_points(static_cast<std::uint32_t>(surface.vertices.size()));
+  const int positions = addPositions(target, mesh, surface.vertices);
   std::vector<std::pair<int, std::size_t>> fields;
   for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
     if (isCellField(mesh.fields[f])) continue;
-    fields.emplace_back(addField(target, mesh.fields[f], mesh.values[f], vertices.slots), f);
+    fields.emplace_back(addField(target, mesh.fields[f], mesh.values[f], surface.vertices), f);
   }
-  addTriangles(target, mesh, vertices.numbers);
+  if (!colours.empty()) addColours(target, colours, surface.vertices);
+  addTriangles(target, surface.triangles);
 
   draco::ExpertEncoder encoder(target);
   quantise(encoder, positions, mesh.lattice.bits, mesh.lattice.step, toFloats(mesh.lattice.origin));

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <span>
 
 #include "codec/boundary_drc.h"
+#include "codec/field_colours.h"
 
 namespace qtet {
 namespace {
@@ -16,6 +18,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // glTF 2.0, 3.6.2.2 and 4.4
+constexpr int kUnsignedByte = 5121;
 constexpr int kUnsignedInt = 5125;
 constexpr int kFloat = 5126;
 constexpr std::uint32_t kGlbMagic = 0x46546C67;
@@ -50,6 +53,25 @@ Json positionAccessor(const draco::PointAttribute& attribute, std::uint32_t poin
   return {{"componentType", kFloat}, {"count", points}, {"type", "VEC3"}, {"min", least}, {"max", most}};
 }
 
+/// glTF's colours are linear (glTF 2.0, 3.9.2), sRGB's are not (IEC 61966-2-1).
+std::uint8_t linearByte(double srgb) {
+  const double linear = srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
+  return static_cast<std::uint8_t>(std::lround(255 * linear));
+}
+
+/// By the first point field; none without one.
+std::vector<std::array<std::uint8_t, 3>> coloursOf(const LatticeMesh& mesh) {
+  const auto field = std::ranges::find_if(mesh.fields, [](const FieldInfo& f) { return !isCellField(f); });
+  if (field == mesh.fields.end()) return {};
+  const RangeFractions fractions(mesh, static_cast<std::size_t>(field - mesh.fields.begin()));
+  std::vector<std::array<std::uint8_t, 3>> out(mesh.points.size());
+  for (VertexId v = 0; v < out.size(); ++v) {
+    const Colour colour = viridis(fractions[v]);
+    out[v] = {linearByte(colour[0]), linearByte(colour[1]), linearByte(colour[2])};
+  }
+  return out;
+}
+
 /// What the Draco bytes hold, in glTF's words. Draco may split vertices where the surface is not manifold, so it is asked for its counts.
 Json describe(const draco::Mesh& mesh, std::span<const FieldInfo> fields, std::size_t bytes) {
   Json accessors = {{{"componentType", kUnsignedInt}, {"count", mesh.num_faces() * 3}, {"type", "SCALAR"}}};
@@ -63,6 +85,10 @@ Json describe(const draco::Mesh& mesh, std::span<const FieldInfo> fields, std::s
     const draco::PointAttribute& attribute = *mesh.attribute(i);
     if (attribute.attribute_type() == draco::GeometryAttribute::POSITION) {
       add("POSITION", i, positionAccessor(attribute, mesh.num_points()));
+      continue;
+    }
+    if (attribute.attribute_type() == draco::GeometryAttribute::COLOR) {
+      add("COLOR_0", i, {{"componentType", kUnsignedByte}, {"normalized", true}, {"count", mesh.num_points()}, {"type", "VEC3"}});
       continue;
     }
     const auto components = static_cast<std::size_t>(attribute.num_components());
@@ -93,7 +119,7 @@ Json describe(const draco::Mesh& mesh, std::span<const FieldInfo> fields, std::s
 }  // namespace
 
 Result<Bytes> boundaryGlb(const LatticeMesh& mesh) {
-  const Result<Bytes> drc = boundaryDrc(mesh);
+  const Result<Bytes> drc = boundaryDrc(mesh, coloursOf(mesh));
   if (!drc) return drc;
   draco::DecoderBuffer buffer;
   buffer.Init(reinterpret_cast<const char*>(drc->data()), drc->size());

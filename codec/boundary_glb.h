@@ -8,7 +8,8 @@
 namespace qtet {
 
 /// One mesh of one primitive: the bytes of boundaryDrc, and accessors that say what is in them. A point field of 1 to 4 components
-/// without gaps is the attribute "_NAME" (glTF wants the underscore); others are in the Draco bytes and not named. Axes and units are the mesh's own.
+/// without gaps is the attribute "_NAME" (glTF wants the underscore); others are in the Draco bytes and not named. The first point
+/// field is the colours, too: COLOR_0, viridis over the field's range, grey where it has gaps. Axes and units are the mesh's own.
 /// REQUIRES and errors: those of boundaryDrc.
 [[nodiscard]] Result<Bytes> boundaryGlb(const LatticeMesh& mesh);
 

@@ -1,4 +1,6 @@
 // codec/qtet.h: opening a log, and what it holds.
+#include <algorithm>
+#include <cstddef>
 #include <cstring>
 
 #include "codec/c_api_handle.h"
@@ -56,15 +58,25 @@ void close(qtet_log* log) {
   log->manifest = {};
 }
 
-/// A caller of a later version has a longer struct: what this library does not know of it is 0.
+/// Bytes of the structs of 0.1: to the end of the member that was its last. No caller has fewer.
+template <class Info>
+constexpr std::size_t kFirstBytes = 0;
+template <>
+constexpr std::size_t kFirstBytes<qtet_log_info> = offsetof(qtet_log_info, generator) + sizeof(qtet_log_info::generator);
+template <>
+constexpr std::size_t kFirstBytes<qtet_field_info> = offsetof(qtet_field_info, type) + sizeof(qtet_field_info::type);
+template <>
+constexpr std::size_t kFirstBytes<qtet_level_info> = offsetof(qtet_level_info, volumeKept) + sizeof(qtet_level_info::volumeKept);
+
+/// A caller of an earlier version has a shorter struct and gets no more than that; one of a later version a longer one: what this library does not know is 0.
 template <class Info>
 qtet_status give(qtet_log* log, const Info& info, std::size_t infoBytes, Info* out) {
   if (out == nullptr) return log->refuse(QTET_BAD_ARGUMENT, "info is null");
-  if (infoBytes < sizeof(Info))
+  if (infoBytes < kFirstBytes<Info>)
     return log->refuse(QTET_BAD_ARGUMENT,
                        "info has " + std::to_string(infoBytes) + " bytes, it needs " + std::to_string(sizeof(Info)) + "; pass sizeof");
   std::memset(static_cast<void*>(out), 0, infoBytes);
-  std::memcpy(out, &info, sizeof(Info));
+  std::memcpy(out, &info, std::min(infoBytes, sizeof(Info)));
   return QTET_OK;
 }
 

@@ -43,7 +43,7 @@ void CellAncestry::addRestored(std::span<const CellRef> star, const Link& link, 
   CellId next = first;
   sides_.clear();
   atSplit_.clear();
-  const std::vector<LinkTriangle>& triangles = link.triangles();
+  const std::span<const LinkTriangle> triangles = link.triangles();
   for (std::size_t f = 0; f < star.size(); ++f) {
     if (star[f] & kBoundaryBit) continue;
     // A restored cell lies between two of the star only where their labels differ.

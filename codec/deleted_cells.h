@@ -48,7 +48,7 @@ class DeletedCells {
     if (k_ >= 3)
       for (std::uint32_t x = 0; x < link_.vertices().size(); ++x)
         if (!cellsAtVertex(x)) return false;
-    return k_ < 4 || preyTetrahedron();
+    return (k_ < 4 || preyTetrahedron()) && everyPreyHasCells();
   }
 
  private:
@@ -63,20 +63,42 @@ class DeletedCells {
   }
   [[nodiscard]] std::size_t K() const { return static_cast<std::size_t>(k_); }
 
+  /// A vertex of no cell costs no bits later on, but the time to look at it in every level: no mesh has one, and a log of a kilobyte could bring millions.
+  [[nodiscard]] bool everyPreyHasCells() const {
+    const unsigned all = (1u << k_) - 1;
+    unsigned seen = 0;
+    for (const LinkTriangle& t : link_.triangles()) seen |= 1u << t.label;
+    if (seen == all) return true;
+    for (const LocalCell& cell : out_)
+      for (const LocalVertex v : cell)
+        if (v & kPreyBit) seen |= 1u << (v & 3);
+    return seen == all;
+  }
+
+  // First the edges between two labels, without branches on which they are: one in three is, in no order that a processor could guess.
   void cellsAtEdges() {
-    const auto& triangles = link_.triangles();
-    std::size_t detours = 0;
+    const auto triangles = link_.triangles();
+    std::array<std::uint32_t, kMaxLinkTriangles / 2 * 3 + 1> edges;  // 4 * triangle + edge; each is met from one side
+    std::size_t count = 0;
     for (std::uint32_t f = 0; f < triangles.size(); ++f)
-      for (std::size_t e = 0; e < 3; ++e) {
+      for (std::uint32_t e = 0; e < 3; ++e) {
         const std::uint32_t g = triangles[f].neighbour[e];
-        if (g < f || triangles[g].label == triangles[f].label) continue;
-        const std::uint32_t x = triangles[f].vertex[(e + 1) % 3];
-        const std::uint32_t y = triangles[f].vertex[(e + 2) % 3];
-        std::array<int, 4> path{triangles[f].label, triangles[g].label};
-        const std::size_t length = escape_ && k_ >= 3 ? detour(x, y, path, detours) : 2;
-        for (std::size_t i = 0; i + 1 < length; ++i) out_.push_back({x, y, prey(path[i]), prey(path[i + 1])});
-        if (length > 2) remember(f, e, g, {x, y}, std::span(path).subspan(1, length - 2));
+        edges[count] = 4 * f + e;
+        count += static_cast<unsigned>(g > f) & static_cast<unsigned>(triangles[g].label != triangles[f].label);
       }
+    std::size_t detours = 0;
+    out_.reserve(count);
+    for (const std::uint32_t edge : std::span(edges).first(count)) {
+      const std::uint32_t f = edge / 4;
+      const std::size_t e = edge % 4;
+      const std::uint32_t g = triangles[f].neighbour[e];
+      const std::uint32_t x = triangles[f].vertex[(e + 1) % 3];
+      const std::uint32_t y = triangles[f].vertex[(e + 2) % 3];
+      std::array<int, 4> path{triangles[f].label, triangles[g].label};
+      const std::size_t length = escape_ && k_ >= 3 ? detour(x, y, path, detours) : 2;
+      for (std::size_t i = 0; i + 1 < length; ++i) out_.push_back({x, y, prey(path[i]), prey(path[i + 1])});
+      if (length > 2) remember(f, e, g, {x, y}, std::span(path).subspan(1, length - 2));
+    }
   }
 
   // The prey vertices round the link edge (x, y): p .. q straight, or through one or two others.
@@ -116,7 +138,7 @@ class DeletedCells {
 
   // Walks the fan of x; the word of labels that it meets bounds the triangles of prey vertices that x sees.
   bool cellsAtVertex(std::uint32_t x) {
-    const auto& triangles = link_.triangles();
+    const auto triangles = link_.triangles();
     const std::uint32_t start = link_.triangleOf(x);
     std::array<std::uint8_t, kLongestWord> word;
     std::size_t letters = 0;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <string>
 
 #include "codec/boundary.h"
 #include "codec/float_rounding.h"
@@ -41,20 +43,17 @@ LatticeFileMesh fileMesh(const LatticeMesh& mesh) {
   return out;
 }
 
+Status fitsFloats(std::span<const std::array<double, 3>> points, const char* format) {
+  constexpr double kMost = std::numeric_limits<float>::max();
+  const auto fits = [](const std::array<double, 3>& p) { return std::ranges::all_of(p, [](double x) { return std::abs(x) <= kMost; }); };
+  if (std::ranges::all_of(points, fits)) return {};
+  return fail(ErrorCode::kBadInput, std::string("the mesh's coordinates are beyond what float32 holds, and a ") + format + " file knows no other; take the level as .vtu");
+}
+
 FileSurface surfaceOf(const FileMesh& mesh) {
-  constexpr VertexId kAbsent = 0xFFFFFFFFu;
+  auto [used, triangles] = compactTriangles(boundaryOf(mesh.tetrahedra), mesh.points.size());
   FileSurface out;
-  out.triangles = boundaryOf(mesh.tetrahedra);
-  std::vector<VertexId> numbers(mesh.points.size(), kAbsent), used;
-  for (const Triangle& triangle : out.triangles)
-    for (const VertexId v : triangle) numbers[v] = 0;
-  for (VertexId v = 0; v < numbers.size(); ++v) {
-    if (numbers[v] == kAbsent) continue;
-    numbers[v] = static_cast<VertexId>(used.size());
-    used.push_back(v);
-  }
-  for (Triangle& triangle : out.triangles)
-    for (VertexId& v : triangle) v = numbers[v];
+  out.triangles = std::move(triangles);
   for (const VertexId v : used) out.points.push_back(mesh.points[v]);
   for (const FileField& field : mesh.pointFields) {
     FileField kept{field.name, field.type, field.components, {}};

@@ -22,6 +22,24 @@ template <class Names>
   return out;
 }
 
+/// A text inside an attribute's double quotes, or between tags. XML 1.0 has no way to write other control characters, so these become '?'.
+[[nodiscard]] inline std::string xmlText(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '&': out += "&amp;"; break;
+      case '<': out += "&lt;"; break;
+      case '>': out += "&gt;"; break;
+      case '"': out += "&quot;"; break;
+      case '\t': out += "&#9;"; break;
+      case '\n': out += "&#10;"; break;
+      case '\r': out += "&#13;"; break;
+      default: out += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
+    }
+  }
+  return out;
+}
+
 /// Appends the shortest text that reads as the same number.
 template <class T>
 void appendShortest(std::string& out, T value) {

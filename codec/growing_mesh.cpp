@@ -95,49 +95,64 @@ std::uint64_t GrowingMesh::roomFor(const Slots& total) {
          sizeof(CellRef) * starCells(total);
 }
 
-void GrowingMesh::measure(VertexId v, VertexId other) {
-  Spread& s = states_[v].spread;
-  for (std::size_t a = 0; a < 3; ++a) {
-    const std::int64_t d = (points[v][a] - points[other][a]) >> spreadShift_;
-    s.squares[a] += static_cast<std::uint64_t>(d * d);
+// Adds the edges of one cell to the spreads of its corners, of which a boundary triangle has three.
+template <bool kShifted, std::size_t kCorners>
+void GrowingMesh::measure(std::span<const VertexId, kCorners> corners) {
+  std::array<std::array<std::uint64_t, 3>, kCorners> sums{};
+  for (std::size_t i = 1; i < kCorners; ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      for (std::size_t a = 0; a < 3; ++a) {
+        const std::int32_t here = points[corners[i]][a], there = points[corners[j]][a];
+        const std::uint64_t to = squared<kShifted>(here - there);
+        sums[i][a] += to;
+        sums[j][a] += kShifted ? squared<kShifted>(there - here) : to;  // a shift rounds down
+      }
+  for (std::size_t i = 0; i < kCorners; ++i) {
+    Spread& s = states_[corners[i]].spread;
+    s.edges += kCorners - 1;
+    for (std::size_t a = 0; a < 3; ++a) s.squares[a] += sums[i][a];
   }
 }
 
 void GrowingMesh::addCell(CellRef ref) {
-  const std::array<VertexId, 4> c = cell(ref);
-  const std::size_t corners = c[3] == kGhost ? 3 : 4;
-  for (std::size_t i = 0; i < corners; ++i) {
-    add(c[i], ref);
-    states_[c[i]].spread.edges += static_cast<std::uint32_t>(corners - 1);
-    for (std::size_t j = 0; j < corners; ++j)
-      if (i != j) measure(c[i], c[j]);
-  }
+  const auto addTo = [&](auto corners) {
+    for (const VertexId v : corners) add(v, ref);
+    spreadShift_ == 0 ? measure<false>(corners) : measure<true>(corners);
+  };
+  if (ref & kBoundaryBit)
+    addTo(std::span<const VertexId, 3>(boundary[ref & ~kBoundaryBit]));
+  else
+    addTo(std::span<const VertexId, 4>(tetrahedra[ref]));
 }
 
-// The edges from the link to the fused vertex go to the prey vertices: as many as there are triangles of each label at a vertex.
+// The edges from the link to the fused vertex go to the prey vertices: as many as there are triangles of each label at a vertex. Labels that are not there count
+// 0 times: to ask would cost more.
+template <bool kShifted>
 void GrowingMesh::moveEdges(const Link& link, std::span<const VertexId> prey) {
-  const LatticePoint& fused = fused_;
-  corners_.assign(link.vertices().size(), {});
-  for (const LinkTriangle& t : link.triangles())
-    for (const std::uint32_t local : t.vertex) ++corners_[local][t.label];
-  for (std::size_t local = 0; local < corners_.size(); ++local) {
+  std::array<Spread, 4> ofPrey{};
+  std::array<LatticePoint, 4> places{};
+  for (std::size_t i = 0; i < prey.size(); ++i) places[i] = points[prey[i]];
+  for (std::uint32_t local = 0; local < link.vertices().size(); ++local) {
     const VertexId x = link.vertices()[local];
     if (x == kGhost) continue;
-    Spread& ofLink = states_[x].spread;
+    const Link::LabelCounts counts = link.labelsRound(local);
+    const LatticePoint place = points[x];
+    std::array<std::uint64_t, 3> now{};
+    std::uint64_t all = 0;
     for (std::size_t i = 0; i < prey.size(); ++i) {
-      const std::uint64_t n = corners_[local][i];
-      if (n == 0) continue;
-      Spread& ofPrey = states_[prey[i]].spread;
-      ofPrey.edges += static_cast<std::uint32_t>(n);
+      const std::uint64_t n = Link::countOf(counts, i);
+      all += n;
       for (std::size_t a = 0; a < 3; ++a) {
-        const std::int64_t before = (points[x][a] - fused[a]) >> spreadShift_;
-        const std::int64_t now = (points[x][a] - points[prey[i]][a]) >> spreadShift_;
-        const std::int64_t back = (points[prey[i]][a] - points[x][a]) >> spreadShift_;
-        ofLink.squares[a] += n * static_cast<std::uint64_t>(now * now - before * before);
-        ofPrey.squares[a] += n * static_cast<std::uint64_t>(back * back);
+        const std::uint64_t edges = n * squared<kShifted>(place[a] - places[i][a]);
+        now[a] += edges;
+        ofPrey[i].squares[a] += kShifted ? n * squared<kShifted>(places[i][a] - place[a]) : edges;
       }
+      ofPrey[i].edges += static_cast<std::uint32_t>(n);
     }
+    Spread& ofLink = states_[x].spread;
+    for (std::size_t a = 0; a < 3; ++a) ofLink.squares[a] += now[a] - all * squared<kShifted>(place[a] - fused_[a]);
   }
+  for (std::size_t i = 0; i < prey.size(); ++i) states_[prey[i]].spread = ofPrey[i];
 }
 
 // A star's cells and vertices lie anywhere in memory: all are asked for before the first is waited for, which halves the time of a refinement.
@@ -145,61 +160,77 @@ bool GrowingMesh::enter(VertexId v, Link& link) {
   link.clear(points.size());
   const std::span<const CellRef> star = this->star(v);
   entered_.assign(star.begin(), star.end());
-  cells_.resize(star.size());
-  for (std::size_t i = 0; i < star.size(); ++i) cells_[i] = cell(star[i]);
-  for (const auto& c : cells_)
-    for (const VertexId w : c)
-      if (w != kGhost) link.expect(w);
-  for (const auto& c : cells_) {
-    const std::size_t index = (c[1] == v ? 1u : 0u) + (c[2] == v ? 2u : 0u) + (c[3] == v ? 3u : 0u);
-    if (index > 3 || c[index] != v) return false;
+  for (const CellRef ref : star) fetch(ref & kBoundaryBit ? boundary[ref & ~kBoundaryBit].data() : tetrahedra[ref].data());
+  places_.resize(star.size());
+  turned_.resize(star.size());
+  bool whole = true;
+  for (std::size_t i = 0; i < star.size(); ++i) {
+    const std::array<VertexId, 4> c = cell(star[i]);
+    const auto is = [&](std::size_t at) { return static_cast<std::size_t>(c[at] == v); };
+    const std::size_t index = (is(1) | is(3)) + 2 * (is(2) | is(3));
+    whole &= is(0) + is(1) + is(2) + is(3) == 1;
+    places_[i] = static_cast<std::uint8_t>(index);
     const std::array<VertexId, 4> turned = withLast(c, index);
-    link.add(turned[0], turned[1], turned[2]);
+    turned_[i] = {turned[0], turned[1], turned[2]};
   }
+  if (!whole) return false;
+  for (const Triangle& t : turned_)
+    for (const VertexId w : t) link.expect(w);
+  link.add(turned_);
   for (const VertexId w : link.vertices())
     if (w != kGhost) {
-      __builtin_prefetch(&points[w]);
-      __builtin_prefetch(&states_[w]);
+      fetch(&points[w]);
+      fetch(&states_[w].spread);
+      fetch(&states_[w].first);  // in every second state on another cache line
       marked_[w] = static_cast<std::uint16_t>(level_);
     }
   marked_[v] = static_cast<std::uint16_t>(level_);
   if (!link.close()) return false;
+  for (const VertexId w : link.vertices())  // where apply() will add cells
+    if (w != kGhost) fetch(pool_.at(states_[w].first) + states_[w].size - 1);
   link.place(points, points[v]);
   return link.isSphere();
 }
 
-void GrowingMesh::apply(VertexId v, const Link& link, const Split& split) {
-  for (const LocalCell& local : split.deleted)
-    for (const LocalVertex x : local)
-      if (!(x & kPreyBit) && link.vertices()[x] != kGhost) {
-        const State& s = states_[link.vertices()[x]];
-        __builtin_prefetch(pool_.at(s.first) + s.size);
-      }
-  fused_ = points[v];
-  std::array<VertexId, 4> prey{v};
+// Deals the cells of the star out to the prey vertices, in order.
+void GrowingMesh::moveStar(const Link& link, std::span<const VertexId> prey) {
   std::array<std::uint32_t, 4> cellsOf{};
-  for (const LinkTriangle& t : link.triangles()) ++cellsOf[t.label];
-  for (std::size_t i = 0; i < static_cast<std::size_t>(split.k); ++i) {
-    if (i > 0) prey[i] = newVertex();
-    points[prey[i]] = split.points[i];
+  for (const LinkTriangle& t : link.triangles()) ++cellsOf[t.label & 3];
+  for (std::size_t i = 0; i < prey.size(); ++i) {
     State& s = states_[prey[i]];
     s.size = 0;
     if (StarPool::unitsFor(cellsOf[i] + kSpareCells) != s.units) makeRoom(s, cellsOf[i] + kSpareCells);
-    s.spread = {};
-    s.onBoundary = false;
-    s.born = marked_[prey[i]] = static_cast<std::uint16_t>(level_);
   }
+  std::array<CellRef*, 4> end{};
+  for (std::size_t i = 0; i < prey.size(); ++i) end[i] = pool_.at(states_[prey[i]].first);
+  std::array<CellRef, 4> any{};
   for (std::size_t f = 0; f < entered_.size(); ++f) {
-    const VertexId w = prey[link.triangles()[f].label];
-    if (w != v) {
-      if (entered_[f] & kBoundaryBit)
-        std::ranges::replace(boundary[entered_[f] & ~kBoundaryBit], v, w);
-      else
-        std::ranges::replace(tetrahedra[entered_[f]], v, w);
-    }
-    add(w, entered_[f]);
+    const std::size_t label = link.triangles()[f].label & 3;
+    const CellRef ref = entered_[f];
+    any[label] |= ref;
+    *end[label]++ = ref;
+    if (ref & kBoundaryBit)
+      boundary[ref & ~kBoundaryBit][places_[f]] = prey[label];
+    else
+      tetrahedra[ref][places_[f]] = prey[label];
   }
-  moveEdges(link, std::span(prey).first(static_cast<std::size_t>(split.k)));
+  for (std::size_t i = 0; i < prey.size(); ++i) {
+    states_[prey[i]].size = cellsOf[i];
+    states_[prey[i]].onBoundary = (any[i] & kBoundaryBit) != 0;
+  }
+}
+
+void GrowingMesh::apply(VertexId v, const Link& link, const Split& split) {
+  fused_ = points[v];
+  std::array<VertexId, 4> all{v};
+  const auto prey = std::span(all).first(static_cast<std::size_t>(split.k));
+  for (std::size_t i = 0; i < prey.size(); ++i) {
+    if (i > 0) prey[i] = newVertex();
+    points[prey[i]] = split.points[i];
+    states_[prey[i]].born = marked_[prey[i]] = static_cast<std::uint16_t>(level_);
+  }
+  moveStar(link, prey);
+  spreadShift_ == 0 ? moveEdges<false>(link, prey) : moveEdges<true>(link, prey);
   for (const LocalCell& local : split.deleted) {
     std::array<VertexId, 4> c{};
     for (std::size_t i = 0; i < 4; ++i) c[i] = local[i] & kPreyBit ? prey[local[i] & 3] : link.vertices()[local[i]];

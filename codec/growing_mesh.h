@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "codec/deleted_cells.h"
+#include "codec/fetch.h"
 #include "codec/link.h"
 #include "codec/log2_fixed.h"
 #include "codec/mesh.h"
@@ -67,6 +68,13 @@ class GrowingMesh {
   /// Vertices that the level may split: those present at its beginning.
   [[nodiscard]] std::uint32_t levelVertices() const { return levelVertices_; }
   [[nodiscard]] bool maysplit(VertexId v) const { return marked_[v] != level_; }
+  /// A hint: v is one of the next to be asked for.
+  void expect(VertexId v) const {
+    if (!kFetchIsFree || v >= states_.size()) return;
+    const State& s = states_[v];
+    fetch(pool_.at(s.first));
+    fetch(pool_.at(s.first) + s.size - static_cast<std::uint32_t>(s.size != 0));  // most stars are longer than a cache line
+  }
   /// Tetrahedra by slot, then boundary triangles by slot.
   [[nodiscard]] std::span<const CellRef> star(VertexId v) const { return {pool_.at(states_[v].first), states_[v].size}; }
   /// The star holds a boundary triangle.
@@ -102,8 +110,16 @@ class GrowingMesh {
 
   void add(VertexId v, CellRef cell);
   void addCell(CellRef cell);
-  void measure(VertexId v, VertexId other);
+  template <bool kShifted, std::size_t kCorners>
+  void measure(std::span<const VertexId, kCorners> corners);
+  template <bool kShifted>
   void moveEdges(const Link& link, std::span<const VertexId> prey);
+  void moveStar(const Link& link, std::span<const VertexId> prey);
+  template <bool kShifted>
+  [[nodiscard]] std::uint64_t squared(std::int32_t difference) const {
+    const std::int64_t d = kShifted ? difference >> spreadShift_ : difference;
+    return static_cast<std::uint64_t>(d * d);
+  }
   void makeRoom(State& state, std::uint32_t cells);
   static std::uint64_t starCells(const Slots& total);
   VertexId newVertex();
@@ -118,10 +134,11 @@ class GrowingMesh {
   std::vector<State> states_;
   std::vector<std::uint16_t> marked_;  // by vertex: the last level in which it was in the star of a split
   StarPool pool_;
-  std::vector<CellRef> entered_;  // the star of the split in hand
-  std::vector<std::array<VertexId, 4>> cells_;  // its cells
-  LatticePoint fused_{};          // where it was
-  std::vector<std::array<std::uint16_t, 4>> corners_;  // of a link's vertices: triangles of each label
+  // The split in hand: the star, which corner of each of its cells the fused vertex is, the triangles opposite, and where it was.
+  std::vector<CellRef> entered_;
+  std::vector<std::uint8_t> places_;
+  std::vector<Triangle> turned_;
+  LatticePoint fused_{};
   std::uint32_t level_ = 0, levelVertices_ = 0;
   Slots next_;
   int spreadShift_ = 0;

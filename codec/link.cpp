@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <bit>
 
+#include "codec/log2_fixed.h"
+#include "codec/pair.h"
+
 namespace qtet {
 namespace {
 
@@ -15,83 +18,111 @@ std::size_t slotOf(std::uint64_t key, std::size_t mask) { return static_cast<std
 }  // namespace
 
 void Link::clear(std::size_t vertices) {
-  if (locals_.size() < vertices) locals_.resize(vertices + vertices / 2);
+  if (locals_.size() <= vertices) locals_.resize(vertices + vertices / 2 + 1);
   if (++generation_ == 0) std::ranges::fill(locals_, Local{}), generation_ = 1;
-  if (++turn_ >> (32 - kPlaceBits) != 0 || small_.empty()) small_.assign(kSmall * kSmall, 0), turn_ = 1;
-  triangles_.clear();
-  vertices_.clear();
-  anyTriangle_.clear();
-  ghostLocal_ = kNoNeighbour;
+  triangleCount_ = vertexCount_ = 0;
   start_ = 0;
-  joined_ = 0;
-  isSmall_ = true, isBad_ = false;
 }
 
-inline std::uint32_t Link::fresh(VertexId vertex) {
-  vertices_.push_back(vertex);
-  anyTriangle_.push_back(static_cast<std::uint32_t>(triangles_.size()));
-  return static_cast<std::uint32_t>(vertices_.size() - 1);
+void Link::makeRoom(std::size_t triangles) {
+  if (triangles < triangles_.size()) return;
+  const std::size_t room = triangles + triangles / 2 + 1;
+  triangles_.resize(room);
+  vertices_.resize(3 * room);
+  anyTriangle_.resize(3 * room);
+  offsets_.resize(3 * room);
+  labelsRound_.resize(3 * room);
+  middles_.resize(room);
+  order_.resize(room);
 }
 
-inline std::uint32_t Link::intern(VertexId vertex) {
-  if (vertex == kGhost) {
-    if (ghostLocal_ == kNoNeighbour) ghostLocal_ = fresh(vertex);
-    return ghostLocal_;
+// Without branches on whether a vertex is new: half of them are, in no order that a processor could guess. What is written for one that is not is overwritten by the next.
+void Link::add(std::span<const Triangle> triangles) {
+  makeRoom(triangleCount_ + triangles.size());
+  std::uint32_t count = vertexCount_, f = triangleCount_;
+  const std::uint32_t generation = generation_;
+  Local* const locals = locals_.data();
+  VertexId* const vertices = vertices_.data();
+  std::uint32_t* const anyTriangle = anyTriangle_.data();
+  LabelCounts* const labelsRound = labelsRound_.data();
+  const auto intern = [&](VertexId vertex) {
+    Local& local = locals[localSlot(vertex)];
+    const auto fresh = static_cast<std::uint32_t>(local.generation != generation);
+    const std::uint32_t id = local.id ^ ((local.id ^ count) & (0 - fresh));
+    local = {generation, id};
+    vertices[count] = vertex;
+    anyTriangle[count] = f;
+    labelsRound[count] = 0;
+    count += fresh;
+    return id;
+  };
+  for (const Triangle& given : triangles) {
+    LinkTriangle& t = triangles_[f];
+    t.vertex = {intern(given[0]), intern(given[1]), intern(given[2])};
+    t.label = kNoLabel;
+    t.ghost = static_cast<unsigned>(given[0] == kGhost) | static_cast<unsigned>(given[1] == kGhost) | static_cast<unsigned>(given[2] == kGhost);
+    ++f;
   }
-  Local& local = locals_[vertex];
-  if (local.generation != generation_) local = {generation_, fresh(vertex)};
-  return local.id;
-}
-
-// Notes the directed edge a -> b, and makes neighbours if b -> a is known. Below kSmall vertices places fit, or some edge was met twice before.
-inline void Link::meet(std::uint32_t a, std::uint32_t b, std::uint32_t place) {
-  constexpr std::uint32_t kPlaces = (1u << kPlaceBits) - 1;
-  std::uint32_t& here = small_[a * kSmall + b];
-  isBad_ |= here >> kPlaceBits == turn_;
-  here = turn_ << kPlaceBits | (place & kPlaces);
-  const std::uint32_t there = small_[b * kSmall + a];
-  if (there >> kPlaceBits != turn_ || isBad_) return;
-  const std::uint32_t other = there & kPlaces;
-  triangles_[place / 4].neighbour[place % 4] = other / 4;
-  triangles_[other / 4].neighbour[other % 4] = place / 4;
-  ++joined_;
-}
-
-void Link::add(VertexId a, VertexId b, VertexId c) {
-  const auto f = static_cast<std::uint32_t>(triangles_.size());
-  const std::array<std::uint32_t, 3> v{intern(a), intern(b), intern(c)};
-  LinkTriangle& t = triangles_.emplace_back();
-  t.vertex = v;
-  t.neighbour.fill(kNoNeighbour);
-  t.ghost = a == kGhost || b == kGhost || c == kGhost;
-  isBad_ |= v[0] == v[1] || v[1] == v[2] || v[2] == v[0];
-  isSmall_ &= vertices_.size() <= kSmall;
-  if (isBad_ || !isSmall_) return;
-  meet(v[1], v[2], 4 * f);
-  meet(v[2], v[0], 4 * f + 1);
-  meet(v[0], v[1], 4 * f + 2);
+  triangleCount_ = f, vertexCount_ = count;
 }
 
 bool Link::close() {
-  if (triangles_.size() < 4 || isBad_) return false;
-  return isSmall_ ? 2 * std::size_t{joined_} == 3 * triangles_.size() : closeLarge();
+  if (triangleCount_ < 4) return false;
+  return vertexCount_ <= kSmall ? closeSmall() : closeLarge();
+}
+
+// An entry of this turn is not below `first` and less than 2^kPlaceBits above it, one of an earlier turn is below: the sign of the difference tells.
+bool Link::closeSmall() {
+  constexpr std::int32_t kPlaces = 1 << kPlaceBits;
+  static_assert(4 * kSmall * kSmall / 3 < kPlaces);
+  if (triangleCount_ > kSmall * kSmall / 3) return false;  // some edge is there twice
+  if (++turn_ == kTurns || small_.empty()) small_.assign(kSmall * kSmall, 0), turn_ = 1;
+  const std::int32_t first = turn_ << kPlaceBits;
+  std::int32_t* const small = small_.data();
+  std::int32_t old = -1, fresh = 0;  // negative: every edge that was met had not been met before, every edge that is looked for was met
+  std::int32_t place = first;
+  const auto meet = [&](std::uint32_t a, std::uint32_t b, std::int32_t at) {
+    std::int32_t& here = small[a * kSmall + b];
+    old &= here - first;
+    here = at;
+  };
+  const std::span<LinkTriangle> all(triangles_.data(), triangleCount_);
+  for (const LinkTriangle& t : all) {
+    const auto [a, b, c] = t.vertex;
+    meet(b, c, place), meet(c, a, place + 1), meet(a, b, place + 2);
+    place += 4;
+  }
+  const auto across = [&](std::uint32_t a, std::uint32_t b) {
+    const std::int32_t there = small[b * kSmall + a] - first;
+    fresh |= there;
+    return static_cast<std::uint32_t>(there) / 4;
+  };
+  for (LinkTriangle& t : all) {
+    const auto [a, b, c] = t.vertex;
+    t.neighbour = {across(b, c), across(c, a), across(a, b)};
+  }
+  for (std::uint32_t v = 0; v < vertexCount_; ++v) old &= small[v * (kSmall + 1)] - first;  // of an edge from a vertex to itself
+  return old < 0 && fresh >= 0;
 }
 
 bool Link::closeLarge() {
-  const std::size_t wanted = std::bit_ceil(triangles_.size() * 6 + 8);
+  const std::span<LinkTriangle> triangles(triangles_.data(), triangleCount_);
+  const std::size_t wanted = std::bit_ceil(triangles.size() * 6 + 8);
   if (edgeKeys_.size() < wanted) edgeKeys_.resize(wanted), edgeTriangles_.resize(wanted);
   const std::size_t mask = wanted - 1;
   std::fill_n(edgeKeys_.begin(), wanted, kFree);
-  for (std::uint32_t f = 0; f < triangles_.size(); ++f)
+  for (std::uint32_t f = 0; f < triangles.size(); ++f)
     for (std::size_t e = 0; e < 3; ++e) {
-      const std::uint64_t key = edgeKey(triangles_[f].vertex[(e + 1) % 3], triangles_[f].vertex[(e + 2) % 3]);
+      const std::uint32_t a = triangles[f].vertex[(e + 1) % 3], b = triangles[f].vertex[(e + 2) % 3];
+      if (a == b) return false;
+      const std::uint64_t key = edgeKey(a, b);
       std::size_t slot = slotOf(key, mask);
       for (; edgeKeys_[slot] != kFree; slot = (slot + 1) & mask)
         if (edgeKeys_[slot] == key) return false;
       edgeKeys_[slot] = key;
       edgeTriangles_[slot] = f;
     }
-  for (LinkTriangle& t : triangles_)
+  for (LinkTriangle& t : triangles)
     for (std::size_t e = 0; e < 3; ++e) {
       const std::uint64_t key = edgeKey(t.vertex[(e + 2) % 3], t.vertex[(e + 1) % 3]);
       std::size_t slot = slotOf(key, mask);
@@ -103,53 +134,63 @@ bool Link::closeLarge() {
 }
 
 std::uint32_t Link::triangleAtEdge(std::uint32_t a, std::uint32_t b) const {
-  for (std::uint32_t f = 0; f < triangles_.size(); ++f)
+  for (std::uint32_t f = 0; f < triangleCount_; ++f)
     if (triangles_[f].holds(a, b)) return f;
   return kNoNeighbour;
 }
 
 std::uint32_t Link::localOf(VertexId vertex) const {
-  if (vertex == kGhost) return ghostLocal_;
-  return vertex < locals_.size() && locals_[vertex].generation == generation_ ? locals_[vertex].id : kNoNeighbour;
+  const std::size_t slot = localSlot(vertex);
+  return slot < locals_.size() && locals_[slot].generation == generation_ ? locals_[slot].id : kNoNeighbour;
 }
 
 void Link::place(std::span<const LatticePoint> points, const LatticePoint& centre) {
-  offsets_.resize(vertices_.size());
-  for (std::size_t i = 0; i < vertices_.size(); ++i) {
+  for (std::size_t i = 0; i < vertexCount_; ++i) {
     const VertexId v = vertices_[i];
-    offsets_[i] = v == kGhost ? LatticePoint{} : LatticePoint{points[v][0] - centre[0], points[v][1] - centre[1], points[v][2] - centre[2]};
+    const LatticePoint& p = v == kGhost ? centre : points[v];
+    const auto along = [&](std::size_t a) { return static_cast<double>(p[a] - centre[a]); };
+    putPair(&offsets_[i][0], Pair{along(0), along(1)});
+    putPair(&offsets_[i][2], Pair{along(2), 0});
   }
-  middles_.resize(triangles_.size());
   double furthest = -1;
-  for (std::uint32_t f = 0; f < triangles_.size(); ++f) {
+  for (std::uint32_t f = 0; f < triangleCount_; ++f) {
     const LinkTriangle& t = triangles_[f];
-    double squared = 0;
-    for (std::size_t a = 0; a < 3; ++a) {
-      const double sum = static_cast<double>(offsets_[t.vertex[0]][a] + offsets_[t.vertex[1]][a] + offsets_[t.vertex[2]][a]) * (t.ghost ? 3 : 2);
-      middles_[f][a] = sum;
-      squared += sum * sum;
-    }
+    const Offset& i = offsets_[t.vertex[0]];
+    const Offset& j = offsets_[t.vertex[1]];
+    const Offset& k = offsets_[t.vertex[2]];
+    const double times = t.ghost ? 3 : 2;
+    const Pair flat = (pairAt(&i[0]) + pairAt(&j[0]) + pairAt(&k[0])) * times;
+    const double up = (i[2] + j[2] + k[2]) * times;
+    const Pair flatSquares = flat * flat;
+    const double upSquare = up * up;
+    const double squared = flatSquares[0] + flatSquares[1] + upSquare;
+    const double oneMore = 1 + flatSquares[0] + flatSquares[1] + upSquare;  // summed apart: each rounds in its own way
+    middles_[f] = {{flat[0], flat[1], up}, log2Fixed(oneMore)};
     if (squared > furthest) furthest = squared, start_ = f;
   }
 }
 
+// Without branches on whether a triangle was seen: every third one was not.
 void Link::traverse() {
-  order_.resize(triangles_.size());
-  seen_.assign(triangles_.size(), 0);
-  std::size_t end = 0;
-  order_[end++] = start_;
+  seen_.assign(triangleCount_, 0);
+  std::uint32_t* const order = order_.data();
+  std::uint32_t end = 0;
+  order[end++] = start_;
   seen_[start_] = 1;
-  for (std::size_t i = 0; i < end; ++i)
-    for (const std::uint32_t next : triangles_[order_[i]].neighbour)
-      if (!seen_[next]) seen_[next] = 1, order_[end++] = next;
-  order_.resize(end);
+  for (std::uint32_t i = 0; i < end; ++i)
+    for (const std::uint32_t next : triangles_[order[i]].neighbour) {
+      order[end] = next;
+      end += seen_[next] == 0;
+      seen_[next] = 1;
+    }
+  reached_ = end;
 }
 
 bool Link::isSphere() {
-  const std::size_t faces = triangles_.size();
-  if (faces % 2 != 0 || vertices_.size() + faces != faces / 2 * 3 + 2) return false;
+  const std::size_t faces = triangleCount_;
+  if (faces % 2 != 0 || vertexCount_ + faces != faces / 2 * 3 + 2) return false;
   traverse();
-  return order_.size() == faces;
+  return reached_ == faces;
 }
 
 }  // namespace qtet

@@ -37,7 +37,7 @@ LogFile::~LogFile() = default;
 
 Result<LogFile> LogFile::open(const std::filesystem::path& path) {
   const auto io = [&](const char* what) { return fail(ErrorCode::kIo, path.string() + ": " + what + ": " + std::strerror(errno)); };
-  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // of a pipe, without waiting for who writes
   if (file < 0) return io("cannot be opened");
   struct stat info {};
   auto mapping = std::make_unique<Mapping>();
@@ -144,6 +144,19 @@ Status applyFieldBlock(const LogFile& log, Refiner& refiner, std::uint32_t chunk
   return refiner.applyField(field, chunk, *values);
 }
 
+LatticeMesh latticeMesh(const Manifest& manifest, const Refiner& refiner, std::span<const std::uint32_t> fields) {
+  LatticeMesh mesh;
+  mesh.lattice = {manifest.latticeBits, manifest.latticeStep, manifest.latticeOrigin};
+  mesh.points.assign(refiner.points().begin(), refiner.points().end());
+  mesh.tetrahedra.assign(refiner.tetrahedra().begin(), refiner.tetrahedra().end());
+  mesh.boundary.assign(refiner.boundary().begin(), refiner.boundary().end());
+  for (const std::uint32_t f : fields) {
+    mesh.fields.push_back(fieldInfo(manifest.fields[f]));
+    mesh.values.emplace_back(refiner.fieldValues(f).begin(), refiner.fieldValues(f).end());
+  }
+  return mesh;
+}
+
 Result<LatticeMesh> meshAtLevel(const LogFile& log, std::uint32_t level, const std::optional<std::vector<std::uint32_t>>& fields,
                                 const std::stop_token& stop) {
   const Result<Manifest> manifest = manifestOf(log.index());
@@ -163,15 +176,7 @@ Result<LatticeMesh> meshAtLevel(const LogFile& log, std::uint32_t level, const s
     if (stop.stop_requested()) return fail(ErrorCode::kIo, "stopped, because nobody waits for the level any more");
     if (Status s = applyChunk(log, refiner, chunk, wanted); !s) return std::unexpected(s.error());
   }
-  LatticeMesh mesh;
-  mesh.lattice = {manifest->latticeBits, manifest->latticeStep, manifest->latticeOrigin};
-  mesh.points.assign(refiner.points().begin(), refiner.points().end());
-  mesh.tetrahedra.assign(refiner.tetrahedra().begin(), refiner.tetrahedra().end());
-  mesh.boundary.assign(refiner.boundary().begin(), refiner.boundary().end());
-  for (const std::uint32_t f : wanted) {
-    mesh.fields.push_back(fieldInfo(manifest->fields[f]));
-    mesh.values.emplace_back(refiner.fieldValues(f).begin(), refiner.fieldValues(f).end());
-  }
+  LatticeMesh mesh = latticeMesh(*manifest, refiner, wanted);
   if (log.index().layout == Layout::kRegions) dropHoles(mesh);  // of packets that had to stop within their band
   return mesh;
 }

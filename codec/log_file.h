@@ -4,11 +4,13 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stop_token>
 
 #include "codec/log_index.h"
 #include "codec/mesh.h"
 #include "codec/refiner.h"
+#include "proto/manifest.h"
 
 namespace qtet {
 
@@ -47,6 +49,9 @@ Status applyChunk(const LogFile& log, Refiner& refiner, std::uint32_t chunk, std
 
 /// Decodes one field's block of a chunk that the refiner has. Errors: not-found (no such field), Refiner::applyField's, bad-checksum, bad-codec.
 Status applyFieldBlock(const LogFile& log, Refiner& refiner, std::uint32_t chunk, std::uint32_t field);
+
+/// The mesh that `refiner` holds, with the fields of these numbers.
+[[nodiscard]] LatticeMesh latticeMesh(const Manifest& manifest, const Refiner& refiner, std::span<const std::uint32_t> fields);
 
 /// The mesh after level `level` (0 = base mesh) with the given fields; nullopt fields = all. Errors: not-found (no such level), decoding errors,
 /// io (`stop` was requested; looked at after every chunk).

@@ -69,7 +69,6 @@ Result<Header> readHeader(ByteView bytes) {
   if (h.chunks == 0) return fail(ErrorCode::kBadValue, "a log has at least one chunk, the base mesh", 40);
   if (h.chunks > kMaxChunks) return fail(ErrorCode::kLimitExceeded, "more than 2^20 chunks", 40);
   if (h.fields > kMaxFields) return fail(ErrorCode::kLimitExceeded, "more than 256 fields", 44);
-  if (h.dependencies > kMaxDependencies) return fail(ErrorCode::kLimitExceeded, "more than 2^24 dependencies", 48);
   if (h.closing > kMaxClosingBlocks) return fail(ErrorCode::kLimitExceeded, "more than 1,024 closing blocks", 52);
   if (h.leastTableBytes() > h.tableBytes)
     return fail(ErrorCode::kBadValue, "the chunk table is too short for the counts of chunks, fields and closing blocks; fetch the file again", 28);
@@ -189,13 +188,6 @@ bool LogIndex::hasCellField() const {
 
 std::uint32_t LogIndex::headChunks() const {
   return static_cast<std::uint32_t>(std::ranges::find_if(chunks, [](const ChunkEntry& e) { return e.node != 0; }) - chunks.begin());
-}
-
-std::vector<std::uint32_t> LogIndex::chunksOfBox(const PacketBox& box) const {
-  std::vector<std::uint32_t> out;
-  for (std::uint32_t i = 0; i < chunks.size(); ++i)
-    if (chunks[i].node == 0 || chunks[i].box.meets(box)) out.push_back(i);
-  return out;
 }
 
 std::uint32_t LogIndex::firstDepth() const {

@@ -49,11 +49,6 @@ inline constexpr std::uint32_t kLevelEnd = 0xFFFFFFFFu;
 struct PacketBox {
   std::array<std::uint8_t, 3> least{}, most{};
 
-  [[nodiscard]] bool meets(const PacketBox& other) const {
-    for (std::size_t a = 0; a < 3; ++a)
-      if (most[a] < other.least[a] || other.most[a] < least[a]) return false;
-    return true;
-  }
   [[nodiscard]] bool contains(const PacketBox& other) const {
     for (std::size_t a = 0; a < 3; ++a)
       if (other.least[a] < least[a] || most[a] < other.most[a]) return false;
@@ -130,11 +125,6 @@ struct LogIndex {
   [[nodiscard]] std::uint32_t firstDepth() const;
   /// Depth of the last packets' nodes. 0 in `stream`.
   [[nodiscard]] std::uint32_t lastDepth() const;
-  /// The chunks that bring every cell of the finest mesh that meets the box to full resolution, ascending and closed under dependencies: the head, and
-  /// packets whose boxes meet it; in `stream` all. A server or a viewer needs only the chunk table to know them.
-  [[nodiscard]] std::vector<std::uint32_t> chunksOfBox(const PacketBox& box) const;
-  /// The chunk of a node. REQUIRES: 2^firstDepth() <= node < 2^(lastDepth() + 1).
-  [[nodiscard]] std::uint32_t chunkOfNode(std::uint32_t node) const { return headChunks() + node - (1u << firstDepth()); }
 
   /// Bytes of the header's promise: how much of the file `parse` needs. Errors: truncated (under 64 bytes), bad-magic, bad-version,
   /// bad-checksum, limit-exceeded, bad-value.

@@ -10,6 +10,7 @@
 #include "codec/error_figure.h"
 #include "codec/level_columns.h"
 #include "proto/limits.h"
+#include "proto/utf8.h"
 
 namespace qtet {
 namespace {
@@ -25,7 +26,9 @@ std::string readText(ByteReader& r) {
   const std::uint32_t size = r.readVarint();
   if (size > kMaxNameBytes) return r.fail(ErrorCode::kBadValue, "a name in the manifest is longer than 256 bytes; build the log again"), std::string();
   const ByteView bytes = r.take(size);
-  return {bytes.begin(), bytes.end()};
+  std::string text(bytes.begin(), bytes.end());
+  if (!isUtf8(text)) return r.fail(ErrorCode::kBadValue, "a text in the manifest is not UTF-8; build the log again"), std::string();
+  return text;
 }
 
 void writeNumber(ByteWriter& w, double number) { w.write(std::bit_cast<std::uint64_t>(number)); }
@@ -173,7 +176,7 @@ Result<Bytes> manifestBlock(const Manifest& manifest) {
   if (Status s = checkErrors(manifest); !s) return std::unexpected(s.error());
   ByteWriter w;
   writeText(w, manifest.generator);
-  writeText(w, manifest.source);
+  writeText(w, soundUtf8(manifest.source));
   writeNumber(w, manifest.latticeStep);
   for (const double value : manifest.latticeOrigin) writeNumber(w, value);
   for (const ManifestField& field : manifest.fields) writeField(w, field);

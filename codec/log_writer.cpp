@@ -27,7 +27,7 @@ constexpr std::uint32_t kNone = 0xFFFFFFFFu;
 // A picture sharpens when a chunk is whole, so that each is a share of what a viewer has already waited for, up to LogWriterOptions::chunkBytes. Smaller
 // ones cost more than they give: a row of the table and Draco's fixed bytes are 130 bytes a chunk with one field, 3 % of 4 KB.
 constexpr std::uint64_t kLeastChunkBytes = 4 << 10;
-constexpr std::uint64_t kGrowth = 4;
+constexpr std::uint64_t kGrowth = 3;
 
 /// A chunk under construction.
 struct OpenChunk {

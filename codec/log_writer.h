@@ -18,7 +18,7 @@ namespace qtet {
 struct LogWriterOptions {
   std::string source;                          ///< the input's file name, for the manifest
   std::string generator;                       ///< "qtet 0.1.0"
-  std::uint32_t chunkBytes = 32 << 10;         ///< a chunk ends at the record that takes it beyond; the first ones are smaller, from 4 KB on
+  std::uint32_t chunkBytes = 64 << 10;         ///< a chunk ends at the record that takes it beyond; the first ones are smaller, from 4 KB on
   CodecId valueCodec = CodecId::kDraco;        ///< kDraco or kAdaptive
   std::vector<LevelError> errors;              ///< for the manifest: none, or one a level, coarse-first, the input's mesh included
   std::function<void(double)> progress;        ///< fraction done, 0..1

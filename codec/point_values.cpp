@@ -1,5 +1,6 @@
 #include "codec/point_values.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -9,8 +10,14 @@ namespace {
 using Vector = std::array<double, 3>;
 
 // Only + - * / and comparisons, so that every machine finds the same weights.
-Vector cross(const Vector& a, const Vector& b) { return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}; }
-double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+template <class B>
+Vector cross(const Vector& a, const B& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+template <class B>
+double dot(const Vector& a, const B& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 Vector between(const LatticePoint& from, const LatticePoint& to) {
   return {static_cast<double>(to[0] - from[0]), static_cast<double>(to[1] - from[1]), static_cast<double>(to[2] - from[2])};
 }
@@ -39,8 +46,6 @@ void PointAncestry::add(VertexId v, const GrowingMesh& mesh, const Link& link, c
   Birth birth{v, mesh.next().vertices, static_cast<std::uint32_t>(slopes_.size()), 0, static_cast<std::uint8_t>(split.k)};
   if (withSlopes_) {
     const LatticePoint& fused = mesh.points[v];
-    corners_.clear();
-    for (const LatticePoint& p : link.offsets()) corners_.push_back(between({}, p));
     if (split.k == 2) {
       const Vector step = between(split.points[0], split.points[1]);
       const double length = dot(step, step);
@@ -55,18 +60,20 @@ void PointAncestry::add(VertexId v, const GrowingMesh& mesh, const Link& link, c
 }
 
 void PointAncestry::addSlope(const Link& link, const std::array<double, 3>& step) {
-  turned_.clear();
-  for (const Vector& corner : corners_) turned_.push_back(cross(step, corner));
+  const std::span<const Link::Offset> corners = link.offsets();
+  if (turned_.size() < corners.size()) turned_.resize(corners.size());
+  for (std::size_t i = 0; i < corners.size(); ++i) turned_[i] = cross(step, corners[i]);
   std::array<Exit, 2> exits;  // against the step, along it
   for (const LinkTriangle& t : link.triangles()) {
     if (t.ghost) continue;
     const auto [i, j, k] = t.vertex;
     // Volumes of (step, corner, corner): all of one sign where the line passes the triangle.
-    const double a = dot(turned_[j], corners_[k]), b = dot(turned_[k], corners_[i]), c = dot(turned_[i], corners_[j]);
-    const bool passes = (a >= 0 && b >= 0 && c >= 0) || (a <= 0 && b <= 0 && c <= 0);
+    const double a = dot(turned_[j], corners[k]), b = dot(turned_[k], corners[i]), c = dot(turned_[i], corners[j]);
     const double sum = a + b + c;
-    if (!passes || sum == 0) continue;
-    const double reach = dot(corners_[i], cross(corners_[j], corners_[k])) / sum;
+    const bool negative = (static_cast<unsigned>(a < 0) | static_cast<unsigned>(b < 0) | static_cast<unsigned>(c < 0)) != 0;
+    const bool positive = (static_cast<unsigned>(a > 0) | static_cast<unsigned>(b > 0) | static_cast<unsigned>(c > 0)) != 0;
+    if (negative == positive || sum == 0) continue;
+    const double reach = dot(Vector{corners[i][0], corners[i][1], corners[i][2]}, cross(Vector{corners[j][0], corners[j][1], corners[j][2]}, corners[k])) / sum;
     Exit& exit = exits[reach > 0];
     if (std::fabs(reach) <= std::fabs(exit.reach)) continue;
     exit = {reach, t.vertex, {a / sum, b / sum, c / sum}};

@@ -28,8 +28,7 @@ struct Slope {
   template <class Difference>
   [[nodiscard]] std::int64_t change(const Difference& difference) const {
     std::int64_t sum = 0;
-    for (std::size_t i = 0; i < vertex.size(); ++i)
-      if (weight[i] != 0) sum += weight[i] * difference(vertex[i]);
+    for (std::size_t i = 0; i < vertex.size(); ++i) sum += weight[i] * difference(vertex[i]);
     return sum;
   }
 };
@@ -63,7 +62,7 @@ class PointAncestry {
   /// that are missing change nothing. REQUIRES components <= kMaxFieldComponents.
   template <bool kEncoding, class At, class Truth>
   void code(const Birth& b, Values& values, std::uint32_t components, const At& at, const Truth& truth, bool gaps = false) const {
-    std::array<std::int32_t, std::size_t{4} * kMaxFieldComponents> prey{};
+    std::array<std::int32_t, std::size_t{4} * kMaxFieldComponents> prey;  // not cleared: that would take as long as the rest
     for (std::uint32_t c = 0; c < components; ++c)
       for (std::size_t i = 0; i < b.k; ++i)
         prey[i * components + c] = values.codeField<kEncoding>(gaps, predicted(b, i, gaps, [&](VertexId v) { return std::int64_t{at(v, c)}; }), truth(i, c));
@@ -94,7 +93,7 @@ class PointAncestry {
   bool withSlopes_;
   std::vector<Birth> births_;
   std::vector<Slope> slopes_;
-  std::vector<std::array<double, 3>> corners_, turned_;  // of the link in hand, from the fused vertex
+  std::vector<std::array<double, 3>> turned_;  // of the link in hand
 };
 
 }  // namespace qtet

@@ -12,6 +12,7 @@
 #include "codec/link.h"
 #include "codec/log2_fixed.h"
 #include "codec/mesh.h"
+#include "codec/pair.h"
 #include "codec/placement.h"
 #include "codec/range_coder.h"
 #include "codec/small_order.h"
@@ -77,20 +78,22 @@ class PositionCoder {
 
   // The middle of the link's vertices that only one prey vertex's triangles hold, for each prey vertex, and of all the others; from the fused vertex.
   void findMiddles() {
-    middle_ = {};
-    owners_.assign(link_.vertices().size(), 0);
-    for (const LinkTriangle& t : link_.triangles())
-      for (const std::uint32_t x : t.vertex) owners_[x] |= static_cast<std::uint8_t>(1 << t.label);
+    std::array<Link::Offset, 5> sum{};
     std::array<std::int64_t, 5> count{};
-    for (std::size_t i = 0; i < owners_.size(); ++i) {
+    for (std::uint32_t i = 0; i < link_.vertices().size(); ++i) {
       if (link_.vertices()[i] == kGhost) continue;
-      const std::size_t owner = std::has_single_bit(owners_[i]) ? static_cast<std::size_t>(std::countr_zero(owners_[i])) : kShared;
+      const Link::LabelCounts labels = link_.labelsRound(i);
+      const auto lowest = static_cast<std::size_t>(std::countr_zero(labels)) / 16;
+      const auto alone = static_cast<std::size_t>(labels >> (16 * lowest) < 1 << 16);
+      const std::size_t owner = kShared ^ ((kShared ^ lowest) & (0 - alone));  // without a branch: one in three is shared
       ++count[owner];
-      for (std::size_t a = 0; a < 3; ++a) middle_[owner][a] += link_.offsets()[i][a];
+      for (std::size_t a = 0; a < 4; a += 2) putPair(&sum[owner][a], pairAt(&sum[owner][a]) + pairAt(&link_.offsets()[i][a]));
     }
     for (std::size_t owner = 0; owner < count.size(); ++owner)
-      if (count[owner] > 1)
-        for (std::int64_t& x : middle_[owner]) x /= count[owner];
+      for (std::size_t a = 0; a < 3; ++a) {
+        middle_[owner][a] = static_cast<std::int64_t>(sum[owner][a]);
+        if (count[owner] > 1) middle_[owner][a] /= count[owner];
+      }
   }
 
   // What lies nearer to the fused vertex tells which prey vertex it stands at, and how much nearer whether it stands at one.
@@ -181,7 +184,6 @@ class PositionCoder {
   LatticePoint fused_{};
   std::array<int, 3> logLength_{};
   std::array<std::array<std::int64_t, 3>, 5> middle_{};
-  std::vector<std::uint8_t> owners_;
 };
 
 }  // namespace qtet

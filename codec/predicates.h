@@ -46,11 +46,6 @@ static_assert(kMaxPositionBits <= 30, "the cross product's components must fit 6
   return detail::determinant<Int128>(u, v, w);
 }
 
-/// The same in 64 bits. REQUIRES: coordinates in [0, 2^kShortBits).
-[[nodiscard]] inline std::int64_t shortVolume6(const LatticePoint& a, const LatticePoint& b, const LatticePoint& c, const LatticePoint& d) {
-  return detail::determinant<std::int64_t>(detail::difference(a, b), detail::difference(a, c), detail::difference(a, d));
-}
-
 /// The sign of volume6: +1 for a cell as VTK orients it, 0 for a flat one, -1 for an inverted one. REQUIRES: as volume6.
 [[nodiscard]] inline int orientation(const LatticePoint& a, const LatticePoint& b, const LatticePoint& c, const LatticePoint& d) {
   const detail::Difference u = detail::difference(a, b), v = detail::difference(a, c), w = detail::difference(a, d);

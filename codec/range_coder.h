@@ -12,10 +12,12 @@
 
 namespace qtet {
 
-/// Probability that the next decision is 1, in 1/65536, and how often it was asked: young models learn fast.
+/// Probability that the next decision is 1, in 1/65536, and how often it was asked: young models learn fast. In one word, the probability above, since a
+/// decoder spends a third of its time on them.
 struct BitModel {
-  std::uint16_t probability = 32768;
-  std::uint16_t count = 0;
+  std::uint32_t state = std::uint32_t{32768} << 16;
+
+  [[nodiscard]] std::uint32_t probability() const { return state >> 16; }
 };
 
 namespace range {
@@ -25,23 +27,26 @@ inline constexpr std::uint32_t kLowest = 32;
 inline constexpr std::uint32_t kHighest = 65536 - kLowest;
 inline constexpr std::uint32_t kSlowest = 90;  // a model's memory in decisions; 60 to 160 measured within 0.3 %
 
+/// By count: how fast the model learns, and whether the count grows.
+struct Rate {
+  std::uint16_t rate = 0, more = 0;
+};
 inline constexpr auto kRates = [] {
-  std::array<std::uint16_t, kSlowest + 1> rates{};
-  for (std::uint32_t n = 0; n <= kSlowest; ++n) rates[n] = static_cast<std::uint16_t>(655360u / (10 * n + 16));
+  std::array<Rate, kSlowest + 1> rates{};
+  for (std::uint32_t n = 0; n <= kSlowest; ++n) rates[n] = {static_cast<std::uint16_t>(655360u / (10 * n + 16)), n < kSlowest};
   return rates;
 }();
 
 inline std::uint32_t clamped(const BitModel& model) {
-  const std::uint32_t p = model.probability;
+  const std::uint32_t p = model.probability();
   return p < kLowest ? kLowest : p > kHighest ? kHighest : p;
 }
 
 inline void update(BitModel& model, int bit) {
-  const std::uint32_t ones = 0u - static_cast<std::uint32_t>(bit);  // all bits are the decision's
-  const std::uint32_t way = (model.probability ^ ones) & 0xFFFF;   // to 65535 or 0
-  const std::uint32_t step = way * kRates[model.count] >> 16;
-  model.probability = static_cast<std::uint16_t>(model.probability + ((step ^ ~ones) - ~ones));
-  model.count = static_cast<std::uint16_t>(model.count + (model.count < kSlowest));
+  const std::uint32_t s = model.state;
+  const auto [rate, more] = kRates[s & 0xFFFF];
+  constexpr std::uint32_t kProbability = 0xFFFF0000u;  // of a product of 16 bits by 16, what >> 16 leaves, in its place
+  model.state = (bit ? s + ((~s >> 16) * rate & kProbability) : s - ((s >> 16) * rate & kProbability)) + more;
 }
 
 }  // namespace range

@@ -59,7 +59,6 @@ class RecordCoder {
   /// The split flag of v at `level`. REQUIRES mesh.maysplit(v).
   bool splits(VertexId v, std::uint32_t level, bool truth) {
     const std::size_t size = mesh_.star(v).size();
-    if (size == 0) return false;  // an unused vertex: nothing to split, nothing coded
     const GrowingMesh::Spread& spread = mesh_.spread(v);
     const auto& squares = spread.squares;
     const int extent = spread.logMean(squares[0] + squares[1] + squares[2]);
@@ -69,7 +68,7 @@ class RecordCoder {
     const std::size_t age = born == 0 ? 0 : level - born <= 1 ? 1 : 2;
     const std::size_t sinceBorn = born == 0 ? 15 : std::min<std::size_t>(level - born, 14);
     const bool edge = mesh_.onBoundary(v);
-    const auto [least, most] = std::minmax({squares[0], squares[1], squares[2]});
+    const std::uint64_t least = std::min(std::min(squares[0], squares[1]), squares[2]), most = std::max(std::max(squares[0], squares[1]), squares[2]);
     const auto flat = static_cast<std::size_t>(std::min((log2Fixed(most + 1) - log2Fixed(least + 1)) / 48, 7));
     const std::array<BitModel*, 4> models{&models_.split[std::min<std::size_t>(size / 6, 15)][step(16, 8)][age],
                                           &models_.splitScale[step(8, 32)][edge][age],

@@ -42,6 +42,7 @@ const NumberType& plyNumbers(const std::string& type) { return numberType(std::s
 
 Result<Bytes> stlBytes(const FileSurface& surface) {
   if (Status checked = countable(surface, ".stl"); !checked) return std::unexpected(checked.error());
+  if (Status checked = fitsFloats(surface.points, ".stl"); !checked) return std::unexpected(checked.error());
   Bytes out;
   out.reserve(kStlHeaderBytes + 4 + 50 * surface.triangles.size());
   appendText(out, "boundary of a tetrahedral mesh, written by qtet");  // must not begin with "solid", which text files do

@@ -70,7 +70,8 @@ std::string extentText(const FileMesh& mesh) {
 
 }  // namespace
 
-Bytes usdaBytes(const FileMesh& mesh) {
+Result<Bytes> usdaBytes(const FileMesh& mesh) {
+  if (Status checked = fitsFloats(mesh.points, ".usda"); !checked) return std::unexpected(checked.error());
   // Its faces [123] [032] [013] [021] of a right-handed tetrahedron are those of codec/boundary.h.
   std::string text = "#usda 1.0\n(\n    defaultPrim = \"mesh\"\n    doc = \"written by qtet\"\n    metersPerUnit = 1\n    upAxis = \"Z\"\n)\n\n"
                      "def TetMesh \"mesh\"\n{\n    uniform token orientation = \"rightHanded\"\n" +
@@ -80,7 +81,7 @@ Bytes usdaBytes(const FileMesh& mesh) {
   for (const FileField& field : mesh.pointFields) text += primvarText(field, "vertex", names);
   for (const FileField& field : mesh.cellFields) text += primvarText(field, "uniform", names);
   text += "}\n";
-  return {text.begin(), text.end()};
+  return Bytes(text.begin(), text.end());
 }
 
 }  // namespace qtet

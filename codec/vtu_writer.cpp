@@ -4,6 +4,7 @@
 #include <limits>
 #include <string_view>
 
+#include "codec/file_names.h"
 #include "codec/number_type.h"
 
 namespace qtet {
@@ -11,31 +12,13 @@ namespace {
 
 constexpr std::uint8_t kVtkTetra = 10;
 
-/// A text inside an attribute's double quotes. XML 1.0 has no way to write other control characters, so these become '?'.
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      case '\t': out += "&#9;"; break;
-      case '\n': out += "&#10;"; break;
-      case '\r': out += "&#13;"; break;
-      default: out += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
-    }
-  }
-  return out;
-}
-
 /// Header lines that name arrays, and the offsets that follow from the arrays' sizes.
 class Arrays {
  public:
   explicit Arrays(bool wideHeader) : headerBytes_(wideHeader ? 8 : 4) {}
 
   [[nodiscard]] std::string declare(std::string_view vtkType, std::string_view name, std::uint32_t components, std::uint64_t sizeBytes) {
-    std::string line = "        <DataArray type=\"" + std::string(vtkType) + "\" Name=\"" + escaped(name) + "\" NumberOfComponents=\"" +
+    std::string line = "        <DataArray type=\"" + std::string(vtkType) + "\" Name=\"" + xmlText(name) + "\" NumberOfComponents=\"" +
                        std::to_string(components) + "\" format=\"appended\" offset=\"" + std::to_string(offset_) + "\"/>\n";
     offset_ += headerBytes_ + sizeBytes;
     return line;
@@ -78,7 +61,7 @@ struct Sizes {
 /// The element `tag` (PointData or CellData) that declares the fields.
 std::string fieldsText(const std::string& tag, const std::vector<FileField>& fields, Arrays& arrays) {
   const auto scalar = std::find_if(fields.begin(), fields.end(), [](const FileField& field) { return field.components == 1; });
-  std::string text = "      <" + tag + (scalar == fields.end() ? "" : " Scalars=\"" + escaped(scalar->name) + "\"") + ">\n";
+  std::string text = "      <" + tag + (scalar == fields.end() ? "" : " Scalars=\"" + xmlText(scalar->name) + "\"") + ">\n";
   for (const FileField& field : fields)
     text += arrays.declare(numberType(field.type).xmlName, field.name, field.components, Sizes::sizeOf(field));
   return text + "      </" + tag + ">\n";

@@ -5,9 +5,9 @@
 #include <optional>
 #include <string>
 
-#include "codec/level_columns.h"
 #include "codec/adaptive_block.h"
-#include "codec/level_refiner.h"
+#include "codec/level_columns.h"
+#include "codec/refiner.h"
 #include "codec/value_digits.h"
 #include "proto/crc32c.h"
 
@@ -27,7 +27,7 @@ _LIBCPP_END_NAMESPACE_STD
 namespace {
 
 // One module instance is one refiner: a page that shows two logs makes two instances.
-std::optional<qtet::LevelRefiner> refiner;
+std::optional<qtet::Refiner> refiner;
 std::string lastError;
 qtet::LevelColumns levelNumbers;
 
@@ -37,7 +37,7 @@ int report(const Error& error) {
 }
 
 qtet::Result<std::vector<std::int32_t>> blockValues(std::uint32_t chunk, std::uint32_t part, std::span<const std::int32_t> symbols, ByteView digits) {
-  const LogIndex& index = refiner->refiner().index();
+  const LogIndex& index = refiner->index();
   if (chunk < index.chunks.size() && part < index.parts() && index.chunks[chunk].valueCodec == qtet::CodecId::kAdaptive)
     return qtet::decodeAdaptiveBlock(digits, index.components(part), index.tuples(chunk, part));
   return qtet::joinValues(symbols, digits);
@@ -46,8 +46,9 @@ qtet::Result<std::vector<std::int32_t>> blockValues(std::uint32_t chunk, std::ui
 int noLog() { return report({ErrorCode::kBadOrder, "no log is open: call qtet_open first"}); }
 
 bool hasBlock(std::uint32_t chunk, std::uint32_t part) {
-  return refiner && chunk < refiner->refiner().index().chunks.size() && part < refiner->refiner().index().parts();
+  return refiner && chunk < refiner->index().chunks.size() && part < refiner->index().parts();
 }
+bool hasField(std::uint32_t field) { return refiner && field < refiner->index().fields.size(); }
 
 }  // namespace
 
@@ -55,13 +56,6 @@ extern "C" {
 
 void* qtet_alloc(std::uint32_t bytes) { return std::malloc(bytes); }
 void qtet_free(void* memory) { std::free(memory); }
-
-std::uint32_t qtet_head_bytes(const std::uint8_t* first64) {
-  const auto bytes = LogIndex::headBytesOf(ByteView(first64, LogIndex::kHeaderBytes));
-  if (bytes && *bytes <= 0x7FFFFFFF) return static_cast<std::uint32_t>(*bytes);
-  report(bytes ? Error{ErrorCode::kLimitExceeded, "the log's front is above 2 GiB: too large for a browser"} : bytes.error());
-  return 0;
-}
 
 int qtet_open(const std::uint8_t* head, std::uint32_t bytes) {
   refiner.reset();
@@ -73,12 +67,15 @@ int qtet_open(const std::uint8_t* head, std::uint32_t bytes) {
 
 const char* qtet_error() { return lastError.c_str(); }
 
-std::uint32_t qtet_chunk_count() { return refiner ? static_cast<std::uint32_t>(refiner->refiner().index().chunks.size()) : 0; }
+std::uint32_t qtet_chunk_count() { return refiner ? static_cast<std::uint32_t>(refiner->index().chunks.size()) : 0; }
 
-std::uint32_t qtet_level_count() { return refiner ? refiner->refiner().index().chunks.back().lastLevel + 1 : 0; }
+std::uint32_t qtet_level_count() { return refiner ? refiner->index().chunks.back().lastLevel + 1 : 0; }
 
 int qtet_level_columns(const std::uint8_t* bytes, std::uint32_t size, std::uint32_t columns) {
   if (!refiner) return noLog();
+  const auto fields = static_cast<std::uint32_t>(refiner->index().fields.size());
+  if (columns != qtet::levelColumnCount(fields, false) && columns != qtet::levelColumnCount(fields, true))
+    return report({ErrorCode::kBadValue, std::to_string(columns) + " level columns are none of this log's"});
   auto numbers = qtet::decodeLevelColumns(ByteView(bytes, size), qtet_level_count(), columns);
   if (!numbers) return report(numbers.error());
   levelNumbers = std::move(*numbers);
@@ -87,36 +84,36 @@ int qtet_level_columns(const std::uint8_t* bytes, std::uint32_t size, std::uint3
 const std::uint32_t* qtet_level_numbers() { return levelNumbers.data(); }
 
 double qtet_block_offset(std::uint32_t chunk, std::uint32_t part) {
-  return hasBlock(chunk, part) ? static_cast<double>(refiner->refiner().index().block(chunk, part).offset) : 0;
+  return hasBlock(chunk, part) ? static_cast<double>(refiner->index().block(chunk, part).offset) : 0;
 }
-std::uint32_t qtet_block_size(std::uint32_t chunk, std::uint32_t part) { return hasBlock(chunk, part) ? refiner->refiner().index().block(chunk, part).size : 0; }
+std::uint32_t qtet_block_size(std::uint32_t chunk, std::uint32_t part) { return hasBlock(chunk, part) ? refiner->index().block(chunk, part).size : 0; }
 std::uint32_t qtet_block_values(std::uint32_t chunk, std::uint32_t part) {
-  return hasBlock(chunk, part) ? refiner->refiner().index().tuples(chunk, part) : 0;
+  return hasBlock(chunk, part) ? refiner->index().tuples(chunk, part) : 0;
 }
 std::uint32_t qtet_field_association(std::uint32_t field) {
-  return refiner && field < refiner->refiner().index().fields.size() ? static_cast<std::uint32_t>(refiner->refiner().index().fields[field].association) : 0;
+  return hasField(field) ? static_cast<std::uint32_t>(refiner->index().fields[field].association) : 0;
 }
 std::uint32_t qtet_block_codec(std::uint32_t chunk, std::uint32_t part) {
   if (!hasBlock(chunk, part)) return 0;
-  const qtet::ChunkEntry& e = refiner->refiner().index().chunks[chunk];
+  const qtet::ChunkEntry& e = refiner->index().chunks[chunk];
   return static_cast<std::uint32_t>(part == qtet::kStructurePart ? e.structureCodec : e.valueCodec);
 }
 
-std::uint32_t qtet_head_chunks() { return refiner ? refiner->refiner().index().headChunks() : 0; }
+std::uint32_t qtet_head_chunks() { return refiner ? refiner->index().headChunks() : 0; }
 std::uint32_t qtet_dependency(std::uint32_t chunk) {
   if (!hasBlock(chunk, qtet::kStructurePart)) return 0;
-  const LogIndex& index = refiner->refiner().index();
+  const LogIndex& index = refiner->index();
   const qtet::ChunkEntry& e = index.chunks[chunk];
   return e.dependencyCount == 0 ? chunk : index.dependencies[e.firstDependency];
 }
 const std::uint8_t* qtet_packet_box(std::uint32_t chunk) {
   static_assert(sizeof(qtet::PacketBox) == 6);
-  return hasBlock(chunk, qtet::kStructurePart) ? refiner->refiner().index().chunks[chunk].box.least.data() : nullptr;
+  return hasBlock(chunk, qtet::kStructurePart) ? refiner->index().chunks[chunk].box.least.data() : nullptr;
 }
 const std::uint32_t* qtet_chunk_brings(std::uint32_t chunk) {
   static std::uint32_t counts[3];
   if (!hasBlock(chunk, qtet::kStructurePart)) return nullptr;
-  const qtet::ChunkEntry& e = refiner->refiner().index().chunks[chunk];
+  const qtet::ChunkEntry& e = refiner->index().chunks[chunk];
   counts[0] = e.newTetrahedra;
   counts[1] = e.newVertices;
   counts[2] = e.newBoundaryTriangles;
@@ -125,7 +122,7 @@ const std::uint32_t* qtet_chunk_brings(std::uint32_t chunk) {
 
 int qtet_check_block(std::uint32_t chunk, std::uint32_t part, const std::uint8_t* bytes, std::uint32_t size) {
   if (!hasBlock(chunk, part)) return report({ErrorCode::kNotFound, "there is no such block"});
-  const qtet::BlockEntry& b = refiner->refiner().index().block(chunk, part);
+  const qtet::BlockEntry& b = refiner->index().block(chunk, part);
   if (size == b.size && qtet::crc32c(ByteView(bytes, size)) == b.crc) return 0;
   return report({ErrorCode::kBadChecksum, "chunk " + std::to_string(chunk) + ", part " + std::to_string(part) + " arrived damaged", b.offset});
 }
@@ -142,43 +139,35 @@ int qtet_apply(std::uint32_t chunk, const std::uint8_t* structure, std::uint32_t
 int qtet_apply_field(std::uint32_t field, std::uint32_t chunk, const std::int32_t* symbols, std::uint32_t count, const std::uint8_t* digits,
                      std::uint32_t digitBytes) {
   if (!refiner) return noLog();
+  if (!hasField(field)) return report({ErrorCode::kNotFound, "there is no field " + std::to_string(field)});
   const auto values = blockValues(chunk, qtet::kFirstFieldPart + field, std::span(symbols, count), ByteView(digits, digitBytes));
   if (!values) return report(values.error());
   const auto status = refiner->applyField(field, chunk, *values);
   return status ? 0 : report(status.error());
 }
 
-int qtet_go_to_level(std::uint32_t level) {
-  if (!refiner) return noLog();
-  const auto status = refiner->goTo(level);
-  return status ? 0 : report(status.error());
-}
-void qtet_forget_beyond() {
-  if (refiner) refiner->forgetBeyond();
-}
-
-std::uint32_t qtet_chunks_applied() { return refiner ? refiner->refiner().chunksApplied() : 0; }
-bool qtet_applied(std::uint32_t chunk) { return hasBlock(chunk, qtet::kStructurePart) && refiner->refiner().applied(chunk); }
+std::uint32_t qtet_chunks_applied() { return refiner ? refiner->chunksApplied() : 0; }
+bool qtet_applied(std::uint32_t chunk) { return hasBlock(chunk, qtet::kStructurePart) && refiner->applied(chunk); }
 bool qtet_field_applied(std::uint32_t field, std::uint32_t chunk) {
-  return hasBlock(chunk, qtet::kFirstFieldPart + field) && refiner->refiner().fieldApplied(field, chunk);
+  return hasField(field) && hasBlock(chunk, qtet::kFirstFieldPart + field) && refiner->fieldApplied(field, chunk);
 }
 std::uint32_t qtet_field_chunks_applied(std::uint32_t field) {
-  return refiner && field < refiner->refiner().index().fields.size() ? refiner->refiner().fieldChunksApplied(field) : 0;
+  return hasField(field) ? refiner->fieldChunksApplied(field) : 0;
 }
-std::uint32_t qtet_level() { return refiner ? refiner->refiner().level() : 0; }
-std::uint32_t qtet_vertex_count() { return refiner ? static_cast<std::uint32_t>(refiner->refiner().points().size()) : 0; }
-std::uint32_t qtet_tetrahedron_count() { return refiner ? static_cast<std::uint32_t>(refiner->refiner().tetrahedra().size()) : 0; }
-std::uint32_t qtet_boundary_count() { return refiner ? static_cast<std::uint32_t>(refiner->refiner().boundary().size()) : 0; }
-const std::int32_t* qtet_points() { return refiner && !refiner->refiner().points().empty() ? refiner->refiner().points().data()->data() : nullptr; }
-const std::uint32_t* qtet_tetrahedra() { return refiner && !refiner->refiner().tetrahedra().empty() ? refiner->refiner().tetrahedra().data()->data() : nullptr; }
-const std::uint32_t* qtet_boundary() { return refiner && !refiner->refiner().boundary().empty() ? refiner->refiner().boundary().data()->data() : nullptr; }
+std::uint32_t qtet_level() { return refiner ? refiner->level() : 0; }
+std::uint32_t qtet_vertex_count() { return refiner ? static_cast<std::uint32_t>(refiner->points().size()) : 0; }
+std::uint32_t qtet_tetrahedron_count() { return refiner ? static_cast<std::uint32_t>(refiner->tetrahedra().size()) : 0; }
+std::uint32_t qtet_boundary_count() { return refiner ? static_cast<std::uint32_t>(refiner->boundary().size()) : 0; }
+const std::int32_t* qtet_points() { return refiner && !refiner->points().empty() ? refiner->points().data()->data() : nullptr; }
+const std::uint32_t* qtet_tetrahedra() { return refiner && !refiner->tetrahedra().empty() ? refiner->tetrahedra().data()->data() : nullptr; }
+const std::uint32_t* qtet_boundary() { return refiner && !refiner->boundary().empty() ? refiner->boundary().data()->data() : nullptr; }
 const std::int32_t* qtet_field(std::uint32_t field) {
-  return qtet_field_chunks_applied(field) > 0 ? refiner->refiner().fieldValues(field).data() : nullptr;
+  return qtet_field_chunks_applied(field) > 0 ? refiner->fieldValues(field).data() : nullptr;
 }
 
 void qtet_digest(std::uint8_t* out) {
   if (!refiner) return;
-  const auto digest = refiner->refiner().digest();
+  const auto digest = refiner->digest();
   std::memcpy(out, digest.data(), digest.size());
 }
 }

@@ -11,9 +11,8 @@ extern "C" {
 void* qtet_alloc(std::uint32_t bytes);
 void qtet_free(void* memory);
 
-/// How many bytes of the log's front qtet_open needs, told from its first 64; 0 when these are not a log's (see qtet_error).
-std::uint32_t qtet_head_bytes(const std::uint8_t* first64);
-/// Starts (again) with the log whose header, manifest and table are `head`.
+/// Starts with the log whose header, manifest and table are `head` (LogIndex::headBytesOf tells how many bytes that is). A coarser level is made by a new
+/// instance that is given the same blocks up to it: an instance's memory never shrinks.
 int qtet_open(const std::uint8_t* head, std::uint32_t bytes);
 /// NUL-terminated text of the last failure.
 const char* qtet_error();
@@ -50,10 +49,6 @@ int qtet_apply(std::uint32_t chunk, const std::uint8_t* structure, std::uint32_t
 /// Refiner::applyField, of a field's block in the same two parts.
 int qtet_apply_field(std::uint32_t field, std::uint32_t chunk, const std::int32_t* symbols, std::uint32_t count, const std::uint8_t* digits,
                      std::uint32_t digitBytes);
-
-/// LevelRefiner::goTo and LevelRefiner::forgetBeyond: back to a coarser level of what has come, and on again.
-int qtet_go_to_level(std::uint32_t level);
-void qtet_forget_beyond();
 
 std::uint32_t qtet_chunks_applied();
 /// Whether this one is applied, of the mesh and of a field: of packets the count does not tell.

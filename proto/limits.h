@@ -16,8 +16,6 @@ inline constexpr std::uint32_t kMaxFields = 256;
 inline constexpr std::uint32_t kMaxNameBytes = 256;
 /// Components of one field: a 3x3 tensor has 9; 16 leaves room for a 4x4 matrix.
 inline constexpr std::uint32_t kMaxFieldComponents = 16;
-/// Dependencies listed in one log, over all chunks.
-inline constexpr std::uint32_t kMaxDependencies = 1u << 24;
 /// Blocks behind the last chunk of one log: one a field, and what else the input had.
 inline constexpr std::uint32_t kMaxClosingBlocks = 1024;
 /// Levels of one log: 5 % growth a level takes a mesh from 1 to 10^9 cells in 425.

@@ -1,25 +1,17 @@
 #include "proto/manifest.h"
 
+#include "proto/field_key.h"
 #include "proto/json_reader.h"
 #include "proto/level_error_json.h"
 
 namespace qtet {
+
 std::string fieldKey(const Manifest& manifest, std::size_t f) {
   const ManifestField& field = manifest.fields[f];
   return fieldOfKey(manifest, field.name) == f ? field.name : field.association + ":" + field.name;
 }
 
-std::optional<std::uint32_t> fieldOfKey(const Manifest& manifest, std::string_view key) {
-  const auto find = [&](std::string_view association, std::string_view name) -> std::optional<std::uint32_t> {
-    for (std::uint32_t f = 0; f < manifest.fields.size(); ++f)
-      if (manifest.fields[f].association == association && manifest.fields[f].name == name) return f;
-    return std::nullopt;
-  };
-  for (const std::string_view association : {"point", "cell"})
-    if (const auto f = find(association, key)) return f;
-  const std::size_t colon = key.find(':');
-  return colon == std::string_view::npos ? std::nullopt : find(key.substr(0, colon), key.substr(colon + 1));
-}
+std::optional<std::uint32_t> fieldOfKey(const Manifest& manifest, std::string_view key) { return fieldOfKey(manifest.fields, key); }
 
 std::string manifestToJson(const Manifest& manifest) {
   Json out;

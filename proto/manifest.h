@@ -51,7 +51,7 @@ struct Manifest {
 
 /// What names field `f` among the others: its name, or "cell:NAME" for a cell field where a point field has the same name.
 [[nodiscard]] std::string fieldKey(const Manifest& manifest, std::size_t f);
-/// The field that `key` means: the point field of that name, else the cell field of that name, else with "point:" or "cell:" before it.
+/// The one field that `key` means (field_key.h).
 [[nodiscard]] std::optional<std::uint32_t> fieldOfKey(const Manifest& manifest, std::string_view key);
 
 [[nodiscard]] std::string manifestToJson(const Manifest& manifest);

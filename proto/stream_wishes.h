@@ -76,6 +76,7 @@ using Plane = std::array<double, 4>;
 
 struct Isovalue {
   std::string field{};
+  std::optional<std::uint32_t> component{};  ///< none: the value itself, or of several components their length
   std::vector<double> values{};
 };
 

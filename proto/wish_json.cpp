@@ -118,6 +118,7 @@ View readView(const JsonCursor& json) {
   }
   if (const JsonCursor isovalue = json.optional("isovalue"); isovalue.present()) {
     Isovalue wish{readName(isovalue["field"])};
+    if (const JsonCursor component = isovalue.optional("component"); component.present()) wish.component = component.count32(0, kMaxFieldComponents - 1);
     for (const JsonCursor& value : isovalue["values"].items(0, kMaxIsovalues)) wish.values.push_back(value.number());
     out.isovalue = std::move(wish);
   }
@@ -139,7 +140,10 @@ Json toJson(const View& view) {
   if (!view.frustum.empty()) out["frustum"] = view.frustum;
   if (!view.planes.empty()) out["planes"] = view.planes;
   if (view.box) out["box"] = *view.box;
-  if (view.isovalue) out["isovalue"] = {{"field", view.isovalue->field}, {"values", view.isovalue->values}};
+  if (view.isovalue) {
+    out["isovalue"] = {{"field", view.isovalue->field}, {"values", view.isovalue->values}};
+    if (view.isovalue->component) out["isovalue"]["component"] = *view.isovalue->component;
+  }
   if (view.point) out["point"] = *view.point;
   return out;
 }

@@ -29,6 +29,8 @@ class AddressLimits {
     Visitor& operator=(const Visitor&) = delete;
     /// false: the address has asked too often.
     [[nodiscard]] bool countRequest(Clock::time_point now = Clock::now());
+    /// The same for all visitors of one address, and another for each other one; lives as long as one of them.
+    [[nodiscard]] const void* address() const { return host_.get(); }
 
    private:
     friend class AddressLimits;

@@ -43,9 +43,9 @@ struct Candidate {
 
 class PacketOrder {
  public:
-  PacketOrder(const LogIndex& index, const Manifest& manifest, const ClientBlocks& blocks, const View& view, const StopAt& stop)
-      : index_(index), blocks_(blocks), wishes_(view, manifest), stop_(stop), error_(squaredErrors(manifest, blocks.fields())) {
-    for (const ChunkEntry& packet : index.chunks)
+  PacketOrder(const LogFront& log, const ClientBlocks& blocks, const View& view, const StopAt& stop)
+      : index_(log.index), blocks_(blocks), wishes_(view, log), stop_(stop), error_(squaredErrors(log.manifest, blocks.fields())) {
+    for (const ChunkEntry& packet : index_.chunks)
       if (packet.node != 0) {
         records_.resize(packet.lastLevel + std::size_t{1});
         records_[packet.lastLevel] += packet.records;
@@ -70,7 +70,7 @@ class PacketOrder {
     const std::uint32_t chunk = head_ + node - firstNode_;
     if (chunk > stop_.lastChunk) return;
     const ChunkEntry& packet = index_.chunks[chunk];
-    const Tier tier = wishes_.tierOf(packet.box);
+    const Tier tier = wishes_.tierOf(chunk);
     if (stop_.ofWantedOnly && tier != Tier::kWanted) return;
     waiting_.push({tier, !blocks_.hasMesh(chunk), gainOf(packet, chunk), chunk});
   }
@@ -94,13 +94,12 @@ class PacketOrder {
 
 }  // namespace
 
-std::vector<std::uint32_t> chunkOrder(const LogIndex& index, const Manifest& manifest, const ClientBlocks& blocks, const View& view,
-                                      const StopAt& stop) {
+std::vector<std::uint32_t> chunkOrder(const LogFront& log, const ClientBlocks& blocks, const View& view, const StopAt& stop) {
   std::vector<std::uint32_t> out;
-  const std::uint32_t head = index.headChunks();
+  const std::uint32_t head = log.index.headChunks();
   for (std::uint32_t chunk = 0; chunk < head && chunk <= stop.lastChunk; ++chunk)
     if (!blocks.hasAll(chunk)) out.push_back(chunk);
-  if (head < index.chunks.size()) PacketOrder(index, manifest, blocks, view, stop).append(out);
+  if (head < log.index.chunks.size()) PacketOrder(log, blocks, view, stop).append(out);
   return out;
 }
 

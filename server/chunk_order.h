@@ -5,15 +5,13 @@
 #include <vector>
 
 #include "server/client_blocks.h"
+#include "server/log_front.h"
 #include "server/stream_target.h"
-#include "proto/manifest.h"
 
 namespace qtet {
 
-
 /// In `stream`, and for the head of `regions`: the file's order. Packets: what the view wants, then what is seen, then the rest; in each of them the blocks of
 /// meshes that are there already first, then by error per byte. A packet waits for its parent.
-[[nodiscard]] std::vector<std::uint32_t> chunkOrder(const LogIndex& index, const Manifest& manifest, const ClientBlocks& blocks, const View& view,
-                                                    const StopAt& stop);
+[[nodiscard]] std::vector<std::uint32_t> chunkOrder(const LogFront& log, const ClientBlocks& blocks, const View& view, const StopAt& stop);
 
 }  // namespace qtet

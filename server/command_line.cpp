@@ -7,6 +7,8 @@
 #include <sstream>
 #include <thread>
 
+#include "proto/option_error.h"
+
 namespace qtet {
 namespace {
 
@@ -29,9 +31,11 @@ po::options_description settings() {
       "watch", text(), "on, off: whether logs that come, change and go are noticed (default: on)")(
       "cache", text(), "folder for finished levels (default: $CACHE_DIRECTORY, else a temporary one)")(
       "cache-bytes", text(), "how much it may hold (default: 2 GiB)")("access-log", text(), "file for a line of JSON a request; - = standard output")(
-      "tokens", text(), "file of bearer tokens that may PUT and DELETE meshes (default: nobody may)")(
+      "tokens", text(), "file of bearer tokens that may read, PUT and DELETE meshes (default: everybody may read, nobody change)")(
+      "tls-certificate", text(), "PEM file, its own certificate first: HTTPS instead of HTTP (default: none)")("tls-key", text(), "PEM file of its key")(
       "max-upload-bytes", text(), "the largest log that is taken (default: 16 GiB)")("max-connections", text(), "at a time, in all (default: 4000)")(
       "max-connections-per-address", text(), "at a time; 0 = no bound, as behind a proxy (default: 256)")(
+      "max-levels-per-address", text(), "made or waiting at a time; 0 = no bound, as behind a proxy (default: 6)")(
       "max-requests-per-second", text(), "of one address; 0 = no bound, as behind a proxy (default: 2000)")(
       "allow-origins", text(), "origins between commas, like https://viewer.example, whose pages may open streams (default: any)");
   return out;
@@ -125,11 +129,15 @@ Result<CommandLine> toCommandLine(const po::variables_map& values) {
   reader.number("max-upload-bytes", out.maxUploadBytes, 1, kAny);
   reader.number("max-connections", out.maxConnections, 1, 1'000'000);
   reader.number("max-connections-per-address", out.maxConnectionsPerAddress, 0, 1'000'000);
+  reader.number("max-levels-per-address", out.maxLevelsPerAddress, 0, 1'000'000);
   reader.number("max-requests-per-second", out.maxRequestsPerSecond, 0, 1'000'000'000);
   reader.flag("watch", out.watch);
   reader.path("viewer", out.viewer);
   reader.path("cache", out.cache);
   reader.path("tokens", out.tokens);
+  reader.path("tls-certificate", out.tlsCertificate);
+  reader.path("tls-key", out.tlsKey);
+  if (out.tlsCertificate.has_value() != out.tlsKey.has_value()) reader.refuse("--tls-certificate and --tls-key are given together, or neither");
   out.accessLog = reader.text("access-log");
   readAdmin(reader, out);
   readOrigins(reader, out);
@@ -182,8 +190,8 @@ Result<CommandLine> parseCommandLine(int argc, const char* const* argv, const ch
     }
     po::notify(values);
     return toCommandLine(values);
-  } catch (const po::error& e) {
-    return fail(ErrorCode::kBadValue, e.what());
+  } catch (po::error& e) {
+    return fail(ErrorCode::kBadValue, optionErrorText<po::error_with_option_name>(e));
   }
 }
 
@@ -211,8 +219,10 @@ std::string configText(const CommandLine& options) {
   out << "cache-bytes = " << options.cacheBytes << "\n";
   path("access-log", options.accessLog);
   path("tokens", options.tokens);
+  path("tls-certificate", options.tlsCertificate);
+  path("tls-key", options.tlsKey);
   out << "max-upload-bytes = " << options.maxUploadBytes << "\nmax-connections = " << options.maxConnections
-      << "\nmax-connections-per-address = " << options.maxConnectionsPerAddress
+      << "\nmax-connections-per-address = " << options.maxConnectionsPerAddress << "\nmax-levels-per-address = " << options.maxLevelsPerAddress
       << "\nmax-requests-per-second = " << options.maxRequestsPerSecond << "\n";
   for (std::size_t i = 0; i < options.allowedOrigins.size(); ++i) out << (i == 0 ? "allow-origins = " : ",") << options.allowedOrigins[i];
   if (!options.allowedOrigins.empty()) out << "\n";

@@ -28,9 +28,12 @@ struct CommandLine {
   std::uintmax_t cacheBytes = limits::kMaxCacheBytes;
   std::optional<std::string> accessLog;
   std::optional<std::filesystem::path> tokens;
+  std::optional<std::filesystem::path> tlsCertificate;  ///< with tlsKey, or neither
+  std::optional<std::filesystem::path> tlsKey;
   std::uintmax_t maxUploadBytes = limits::kMaxUploadBytes;
   std::size_t maxConnections = limits::kMaxConnections;
   std::size_t maxConnectionsPerAddress = limits::kMaxConnectionsPerAddress;  ///< 0: no bound
+  std::size_t maxLevelsPerAddress = limits::kMaxLevelJobsPerAddress;         ///< 0: no bound
   unsigned maxRequestsPerSecond = limits::kMaxRequestsPerSecond;             ///< 0: no bound
   std::vector<std::string> allowedOrigins;                                   ///< of pages that may open streams; empty: any
 };

@@ -1,28 +1,28 @@
-// An end to waiting that leaves the socket open: Beast's own time-out closes it, and then nobody could be told.
+// An end to waiting that leaves the socket open, so that the client can be told.
 #pragma once
 
 #include <utility>  // before any Asio header: 1.74 uses std::exchange without it
 
 #include <boost/asio/steady_timer.hpp>
-#include <boost/beast/core/tcp_stream.hpp>
 #include <chrono>
 #include <memory>
 
+#include "server/client_socket.h"
+
 namespace qtet {
 
-/// From its making on: after `time` what waits on the stream is cancelled. For the stream's executor alone; the stream must outlive it, and
-/// have no time-out of its own (expires_never).
+/// From its making on: after `time` what waits on the socket is cancelled. For the socket's executor alone; the socket must outlive it.
 class Deadline {
  public:
-  Deadline(boost::beast::tcp_stream& stream, std::chrono::milliseconds time)
-      : timer_(stream.get_executor(), time), state_(std::make_shared<State>(State{&stream})) {
+  Deadline(ClientSocket& socket, std::chrono::milliseconds time)
+      : timer_(socket.get_executor(), time), state_(std::make_shared<State>(State{&socket})) {
     timer_.async_wait([state = state_](const boost::system::error_code& cancelled) {
-      if (cancelled || state->stream == nullptr) return;
+      if (cancelled || state->socket == nullptr) return;
       state->passed = true;
-      state->stream->cancel();
+      state->socket->cancel();
     });
   }
-  ~Deadline() { state_->stream = nullptr; }
+  ~Deadline() { state_->socket = nullptr; }
   Deadline(const Deadline&) = delete;
   Deadline& operator=(const Deadline&) = delete;
 
@@ -30,7 +30,7 @@ class Deadline {
 
  private:
   struct State {
-    boost::beast::tcp_stream* stream;
+    ClientSocket* socket;
     bool passed = false;
   };
   boost::asio::steady_timer timer_;

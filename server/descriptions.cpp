@@ -17,6 +17,7 @@ Json links(const ServedMesh& mesh) {
           {"base", log + "/base"},
           {"chunk", log + "/chunks/{n}"},
           {"fieldChunk", log + "/fields/{field}/chunks/{n}"},
+          {"level", log + "/levels/{k}.{form}"},
           {"vtu", log + "/levels/{k}.vtu"},
           {"glb", log + "/levels/{k}.glb"},
           {"drc", log + "/levels/{k}.drc"},

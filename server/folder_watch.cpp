@@ -43,7 +43,7 @@ struct FolderWatch::State {
   void run() const {
     for (bool news = false; wait(limits::kFolderInterval, news);) {
       // A copy brings many events; it is over once nothing comes for a while.
-      while (news) {
+      for (int rests = 0; news && rests < limits::kMostFolderRests; ++rests) {
         forgetEvents();
         if (!wait(limits::kFolderRest, news)) return;
       }

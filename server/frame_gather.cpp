@@ -1,10 +1,6 @@
 #include "server/frame_gather.h"
 
-#include <sys/sendfile.h>
-#include <sys/socket.h>
-#include <sys/uio.h>
-
-#include <cerrno>
+#include <span>
 
 namespace qtet {
 
@@ -18,33 +14,22 @@ void FrameGather::consume(std::size_t bytes) {
   parts_.front().file.offset += bytes;
 }
 
-std::size_t FrameGather::write(boost::asio::ip::tcp::socket& socket, boost::system::error_code& ec) {
+std::size_t FrameGather::write(ClientSocket& socket, boost::system::error_code& ec) {
   const Part& first = parts_.front();
-  ssize_t count = 0;
-  if (first.inFile()) {
-    auto offset = static_cast<off_t>(first.file.offset);
-    count = ::sendfile(socket.native_handle(), first.file.descriptor, &offset, first.bytes.size());
+  std::size_t count = 0;
+  if (first.inFile() && !socket.isTls()) {
+    count = socket.writeFile(first.file, {static_cast<const std::uint8_t*>(first.bytes.data()), first.bytes.size()}, ec);
   } else {
     std::array<iovec, 2 * limits::kFramesPerWrite> vectors;
     std::size_t used = 0;
     for (const Part& part : parts_) {
-      if (part.inFile()) break;
+      if (part.inFile() && !socket.isTls()) break;
       vectors[used++] = {const_cast<void*>(part.bytes.data()), part.bytes.size()};
     }
-    msghdr message{};
-    message.msg_iov = vectors.data();
-    message.msg_iovlen = used;
-    count = ::sendmsg(socket.native_handle(), &message, MSG_NOSIGNAL | (used < parts_.size() ? MSG_MORE : 0));
+    count = socket.write(std::span(vectors).first(used), used < parts_.size(), ec);
   }
-  if (count > 0) return consume(static_cast<std::size_t>(count)), static_cast<std::size_t>(count);
-  // Nothing at all: the file has become shorter.
-  const int why = count == 0 ? EIO : errno;
-  if (why == EAGAIN) {
-    ec = boost::asio::error::would_block;
-  } else if (why != EINTR) {
-    ec = {why, boost::system::system_category()};
-  }
-  return 0;
+  consume(count);
+  return count;
 }
 
 }  // namespace qtet

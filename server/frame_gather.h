@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <array>
 #include <boost/asio/buffer.hpp>
-#include <boost/asio/ip/tcp.hpp>
 #include <cstdint>
 #include <deque>
 #include <string>
 #include <vector>
 
+#include "server/client_socket.h"
 #include "server/http_message.h"
 #include "server/limits.h"
 #include "server/stream_protocol.h"
@@ -50,9 +50,10 @@ class FrameGather {
 
   [[nodiscard]] bool full() const { return items_.size() == limits::kFramesPerWrite || bytes_ >= limits::kBytesPerWrite; }
   [[nodiscard]] bool empty() const { return items_.empty(); }
+  [[nodiscard]] bool several() const { return items_.size() > 1; }
   [[nodiscard]] bool written() const { return parts_.empty(); }
-  /// Gives the socket what it takes by one call: parts in memory up to the next that lies in a file, or such a one. Bytes taken; would_block, or another error.
-  std::size_t write(boost::asio::ip::tcp::socket& socket, boost::system::error_code& ec);
+  /// Gives the socket what it takes by one call: parts in memory up to the next that lies in a file, or such a one; with TLS all from memory. Bytes taken; would_block, or another error.
+  std::size_t write(ClientSocket& socket, boost::system::error_code& ec);
 
  private:
   struct Item {

@@ -35,7 +35,7 @@ bool listHolds(std::string_view list, std::string_view etag, bool weak) {
     const std::size_t comma = std::min(list.find(','), list.size());  // our own tags hold no comma
     std::string_view tag = trim(list.substr(0, comma));
     if (weak && tag.starts_with("W/")) tag.remove_prefix(2);
-    if (tag == etag) return true;
+    if (tag == etag || (weak && tag == "*")) return true;  // a star among others is none of the grammar's: read so that nothing is overwritten
     list.remove_prefix(std::min(comma + 1, list.size()));
   }
   return false;

@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "proto/json_reader.h"
+#include "proto/sentence.h"
 #include "server/http_conditions.h"
 
 namespace qtet {
@@ -11,7 +12,7 @@ namespace {
 /// What a page of another origin may read besides the few headers that it always may.
 constexpr const char* kExposedHeaders =
     "Accept-Ranges, Allow, Content-Disposition, Content-Encoding, Content-Location, Content-Range, ETag, Link, Location, "
-    "Retry-After, X-Request-Id";
+    "Retry-After, traceparent, WWW-Authenticate, X-Request-Id";
 
 }  // namespace
 
@@ -75,7 +76,7 @@ std::string headerText(const Reply& reply, bool keepAlive) {
 }
 
 Reply problem(unsigned status, std::string_view type, std::string_view detail) {
-  const Json json = {{"type", "/problems/" + std::string(type)}, {"title", reasonPhrase(status)}, {"status", status}, {"detail", detail}};
+  const Json json = {{"type", "/problems/" + std::string(type)}, {"title", reasonPhrase(status)}, {"status", status}, {"detail", sentence(detail)}};
   Reply out;
   out.status = status;
   out.headers = {{"Content-Type", "application/problem+json"}, {"Cache-Control", "no-store"}};

@@ -3,8 +3,10 @@
 #include "server/http_request.h"
 
 #include <algorithm>
+#include <array>
 #include <boost/beast/core/string.hpp>
 #include <boost/beast/http/rfc7230.hpp>
+#include <iterator>
 
 #include "proto/messages.h"
 #include "server/http_router.h"
@@ -36,6 +38,20 @@ Reply closing(unsigned status, std::string_view type, std::string_view detail) {
   return out;
 }
 
+/// Of these a proxy may take another line than we do, and so let through another token, another part of a log, or an answer to another question.
+constexpr std::array kSingles = {http::field::authorization,      http::field::content_range,         http::field::if_range, http::field::if_modified_since,
+                                 http::field::if_unmodified_since, http::field::sec_websocket_version, http::field::origin};
+constexpr std::array kLists = {http::field::if_match,         http::field::if_none_match, http::field::accept_encoding, http::field::expect,
+                               http::field::content_encoding, http::field::upgrade,       http::field::connection,      http::field::sec_websocket_protocol};
+
+/// A list of `100-continue`, mostly of one.
+bool understood(std::string_view expectations) {
+  for (const auto& expectation : http::token_list({expectations.data(), expectations.size()}))
+    if (!boost::beast::iequals(expectation, "100-continue")) return false;
+  const auto equals = expectations.find_first_of("=;\"");
+  return equals == std::string_view::npos && !expectations.empty();
+}
+
 std::optional<Reply> bodyRefusal(const RequestHeader& header) {
   const std::size_t lengths = header.count(http::field::content_length);
   if (header.count(http::field::transfer_encoding) > 0) {
@@ -54,10 +70,20 @@ std::optional<Reply> bodyRefusal(const RequestHeader& header) {
 
 }  // namespace
 
+void joinLists(RequestHeader& header) {
+  for (const http::field name : kLists) {
+    const auto [first, last] = header.equal_range(name);
+    if (first == last || std::next(first) == last) continue;
+    std::string all;
+    for (auto line = first; line != last; ++line) all += (all.empty() ? "" : ", ") + std::string(toView(line->value()));
+    header.set(name, all);
+  }
+}
+
 RequestView viewOf(const RequestHeader& header) {
   return {.method = toView(header.method_string()),
           .target = toView(header.target()),
-          .range = headerValue(header, http::field::range),
+          .range = header.count(http::field::range) == 1 ? headerValue(header, http::field::range) : std::nullopt,
           .ifRange = headerValue(header, http::field::if_range),
           .ifMatch = headerValue(header, http::field::if_match),
           .ifNoneMatch = headerValue(header, http::field::if_none_match),
@@ -65,7 +91,7 @@ RequestView viewOf(const RequestHeader& header) {
           .ifUnmodifiedSince = headerValue(header, http::field::if_unmodified_since),
           .acceptEncoding = headerValue(header, http::field::accept_encoding),
           .authorization = headerValue(header, http::field::authorization),
-          .expect = headerValue(header, http::field::expect),
+          .expect = header.version() == 11 ? headerValue(header, http::field::expect) : std::nullopt,  // RFC 9110, 10.1.1: HTTP/1.0 knows none
           .contentLength = headerValue(header, http::field::content_length),
           .contentRange = headerValue(header, http::field::content_range),
           .contentEncoding = headerValue(header, http::field::content_encoding),
@@ -80,15 +106,18 @@ std::optional<Reply> refusalOf(const RequestHeader& header) {
   if (hosts > 1 || (hosts == 0 && header.version() == 11)) return closing(400, "bad-request", "there must be one Host header");
   if (hosts == 1 && !plausibleHost(*headerValue(header, http::field::host)))
     return closing(400, "bad-request", "the Host header is no host");
-  const auto expect = headerValue(header, http::field::expect);
-  if (expect && !boost::beast::iequals({expect->data(), expect->size()}, "100-continue"))
+  for (const http::field name : kSingles)
+    if (header.count(name) > 1) return closing(400, "bad-request", std::string(toView(http::to_string(name))) + " may stand there once");
+  const auto expect = viewOf(header).expect;
+  if (expect && !understood(*expect))
     return closing(417, "expectation-failed", "the only expectation that is understood is 100-continue");
   return bodyRefusal(header);
 }
 
 bool isStreamHandshake(const RequestHeader& header) {
   const std::string_view target = toView(header.target());
-  if (target.substr(0, target.find('?')) != kStreamPath || header.method() != http::verb::get) return false;
+  // HTTP/1.0 knows no Upgrade (RFC 9110, 7.8).
+  if (target.substr(0, target.find('?')) != kStreamPath || header.method() != http::verb::get || header.version() != 11) return false;
   return http::token_list{header[http::field::upgrade]}.exists("websocket") &&
          http::token_list{header[http::field::connection]}.exists("upgrade");
 }

@@ -12,10 +12,13 @@ namespace qtet {
 
 using RequestHeader = boost::beast::http::request_header<>;
 
-/// The views live as long as `header`.
+/// Lists that stand on several lines on one, as RFC 9110, 5.3 reads them: else whoever looks at a header sees its first line alone.
+void joinLists(RequestHeader& header);
+
+/// The views live as long as `header`. A `Range` that stands there twice is none, as one that makes no sense is none.
 [[nodiscard]] RequestView viewOf(const RequestHeader& header);
 
-/// The answer to a request that must not be understood: no or several hosts, an odd version, a body (nothing here takes one).
+/// The answer to a request that must not be understood: no or several hosts, twice what may stand there once, an odd version, a body where none is taken.
 /// Such an answer closes the connection, since where the next request would begin is in doubt.
 [[nodiscard]] std::optional<Reply> refusalOf(const RequestHeader& header);
 

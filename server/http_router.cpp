@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 
+#include "server/access_routes.h"
 #include "server/http_resource.h"
 #include "server/log_routes.h"
 #include "server/mesh_list.h"
@@ -13,6 +14,7 @@ namespace qtet {
 namespace {
 
 constexpr std::string_view kAllow = "GET, HEAD, OPTIONS";
+constexpr std::string_view kAllowTickets = "POST, OPTIONS";
 constexpr std::string_view kAllowWriting = "GET, HEAD, OPTIONS, PUT, DELETE";
 /// The page may compile WebAssembly, start workers from blobs and read logs from other hosts; nothing else comes from elsewhere.
 constexpr std::string_view kPagePolicy =
@@ -35,9 +37,9 @@ Reply optionsReply(std::string_view allow = kAllow) {
 
 Reply notFound(std::string_view detail) { return problem(404, "not-found", detail); }
 
-/// Methods of RFC 9110 besides those that every path takes; anything else was never heard of.
+/// Methods of RFC 9110; anything else was never heard of.
 bool knownMethod(std::string_view method) {
-  constexpr std::array<std::string_view, 6> kKnown = {"POST", "PUT", "DELETE", "PATCH", "TRACE", "CONNECT"};
+  constexpr std::array<std::string_view, 8> kKnown = {"GET", "HEAD", "POST", "PUT", "DELETE", "PATCH", "TRACE", "CONNECT"};
   return std::ranges::find(kKnown, method) != kKnown.end();
 }
 
@@ -71,6 +73,21 @@ Reply toLog(const RequestTarget& target, const ServedMesh& mesh) {
   return out;
 }
 
+/// 401 and 403 of a mesh, also of one that does not exist; of the list (nullptr) only for a token that nobody has.
+std::optional<Reply> readingRefusal(const RequestView& request, const std::string* mesh, const Tokens& tokens) {
+  if (!tokens.guardReading()) return std::nullopt;
+  constexpr auto kScope = Tokens::Scope::kRead;
+  const std::optional<SecretDigest> bearer = bearerDigest(request.authorization);
+  if (mesh != nullptr) return refusalOf(tokens.may(kScope, bearer, *mesh), kScope);
+  return bearer && !tokens.knows(bearer) ? refusalOf(Tokens::Verdict::kUnknown, kScope) : std::nullopt;
+}
+
+/// Several names may stand for the same bytes.
+bool mayReadUnderSomeName(const MayRead& mayRead, const ServedMesh& mesh, const Catalogue& catalogue) {
+  const auto may = [&](const auto& entry) { return entry.second->log.digest() == mesh.log.digest() && mayRead(entry.first); };
+  return mayRead(mesh.id) || std::ranges::any_of(catalogue.meshes, may);
+}
+
 /// What is the same for every path: methods, and targets that are none.
 template <class Find>
 Reply answer(const RequestView& request, Find find) {
@@ -92,14 +109,22 @@ Router::Router(const MeshStore& store, const ViewerFiles& viewer, const AdminRou
       started_(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())),
       openApi_(openApiJson()) {}
 
+/// What only a server with tokens answers: changes, and tickets.
+std::optional<Reply> Router::tokenReply(const RequestView& request, const RequestTarget& target) const {
+  const bool ofTickets = target.segments.size() == 2 && target.segments[0] == "v1" && target.segments[1] == "tickets";
+  const bool reads = request.method == "GET" || request.method == "HEAD";
+  if (!ofTickets && (!isMeshPath(target) || reads)) return std::nullopt;
+  const std::string_view allow = ofTickets ? kAllowTickets : kAllowWriting;
+  if (request.method == "OPTIONS") return optionsReply(allow);
+  if (ofTickets && request.method == "POST") return ticketReply(request, writing_->access);
+  if (!ofTickets && (request.method == "PUT" || request.method == "DELETE")) return writeReply(request, target, writing_->access);
+  return methodRefused(request.method, allow);
+}
+
 Reply Router::route(const RequestView& request) const {
   if (writing_) {
     const std::optional<RequestTarget> target = parseTarget(request.target);
-    if (target && isMeshPath(*target)) {
-      if (request.method == "PUT" || request.method == "DELETE") return writeReply(request, *target, writing_->tokens);
-      if (request.method == "OPTIONS") return optionsReply(kAllowWriting);
-      if (request.method != "GET" && request.method != "HEAD") return methodRefused(request.method, kAllowWriting);
-    }
+    if (std::optional<Reply> reply = target ? tokenReply(request, *target) : std::nullopt) return std::move(*reply);
   }
   return answer(request, [&](const RequestTarget& target) { return find(request, target); });
 }
@@ -130,15 +155,32 @@ Reply Router::api(const RequestView& request, const RequestTarget& target) const
   }
   if (path.size() >= 2 && path[1] == "meshes") return meshes(request, target);
   if (path.size() < 4 || path[1] != "logs") return notFound("there is nothing of that path; the list of meshes is at /v1/meshes");
-  const MeshPointer mesh = store_.findLog(path[2]);
-  if (!mesh) return problem(404, "log-changed", "no mesh has that digest, or not any more; the list is at /v1/meshes");
-  return logReply(request, target, mesh);
+  return logs(request, target);
+}
+
+/// To whoever may not read it a log is not there: its digest alone tells nobody whether somebody has it.
+Reply Router::logs(const RequestView& request, const RequestTarget& target) const {
+  MeshPointer mesh = store_.findLog(target.segments[2]);
+  bool open = true;
+  if (mesh && writing_) {
+    const CataloguePointer catalogue = store_.catalogue();
+    open = mayReadUnderSomeName(writing_->access.readerOf(std::nullopt), *mesh, *catalogue);
+    if (!open && !mayReadUnderSomeName(writing_->access.readerOf(bearerDigest(request.authorization)), *mesh, *catalogue)) mesh = nullptr;
+  }
+  if (!mesh)
+    return problem(404, "log-changed", "no mesh has that digest, or not any more, or it is for those who have a token; the list is at /v1/meshes");
+  Reply out = logReply(request, target, mesh);
+  if (!open) keepPrivate(out);
+  return out;
 }
 
 Reply Router::meshes(const RequestView& request, const RequestTarget& target) const {
   const auto& path = target.segments;
-  if (path.size() == 2) return meshListReply(request, target, store_.catalogue());
   if (writing_ && path.size() == 4 && path[3] == "upload") return partialReply(request, target, *writing_);
+  if (writing_)
+    if (std::optional<Reply> refusal = readingRefusal(request, path.size() > 2 ? &path[2] : nullptr, *writing_->access.tokens())) return std::move(*refusal);
+  if (path.size() == 2)
+    return meshListReply(request, target, store_.catalogue(), writing_ ? writing_->access.readerOf(bearerDigest(request.authorization)) : MayRead());
   const MeshPointer mesh = store_.find(path[2]);
   if (!mesh) return notFound("there is no mesh of that name; the list is at /v1/meshes");
   if (path.size() > 3) return toLog(target, *mesh);

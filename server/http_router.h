@@ -21,8 +21,8 @@ inline constexpr std::string_view kStreamPath = "/v1/stream";
 /// that they are about.
 class Router {
  public:
-  /// With `admin`, which must outlive it, the operators' paths are answered too; with `writing`, whose parts must, meshes may be changed by
-  /// those who have a token.
+  /// With `admin`, which must outlive it, the operators' paths are answered too; with `writing`, whose parts must, meshes may be changed and read
+  /// by those who have a token for it.
   Router(const MeshStore& store, const ViewerFiles& viewer, const AdminRoutes* admin = nullptr, std::optional<Writing> writing = std::nullopt);
 
   [[nodiscard]] Reply route(const RequestView& request) const;
@@ -30,6 +30,8 @@ class Router {
  private:
   [[nodiscard]] Reply find(const RequestView& request, const RequestTarget& target) const;
   [[nodiscard]] Reply api(const RequestView& request, const RequestTarget& target) const;
+  [[nodiscard]] Reply logs(const RequestView& request, const RequestTarget& target) const;
+  [[nodiscard]] std::optional<Reply> tokenReply(const RequestView& request, const RequestTarget& target) const;
   [[nodiscard]] Reply meshes(const RequestView& request, const RequestTarget& target) const;
   [[nodiscard]] Reply viewerReply(const RequestView& request, const RequestTarget& target) const;
 

@@ -1,29 +1,26 @@
 #include "server/http_session.h"
 
 #include <spdlog/spdlog.h>
-#include <sys/sendfile.h>
-#include <sys/socket.h>
 
 #include <algorithm>
 #include <array>
 #include <boost/asio/async_result.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/post.hpp>
-#include <boost/asio/read.hpp>
-#include <boost/asio/redirect_error.hpp>
 #include <boost/asio/use_awaitable.hpp>
-#include <boost/asio/write.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/parser.hpp>
-#include <cerrno>
 #include <limits>
 #include <optional>
+#include <span>
 
+#include "server/access_routes.h"
 #include "server/deadline.h"
 #include "server/http_gate.h"
 #include "server/http_request.h"
 #include "server/http_resource.h"
+#include "server/http_router.h"
 #include "server/level_wait.h"
 #include "server/stream_session.h"
 
@@ -33,7 +30,6 @@ namespace {
 namespace asio = boost::asio;
 namespace beast = boost::beast;
 namespace http = beast::http;
-using asio::redirect_error;
 using asio::use_awaitable;
 using beast::error_code;
 using Parser = http::request_parser<http::empty_body>;
@@ -54,6 +50,18 @@ Reply busy(unsigned status, std::string_view type, std::string_view detail, unsi
   return out;
 }
 
+Reply refusedLevel(LevelRefusal refusal) {
+  if (refusal == LevelRefusal::kAddress)
+    return busy(429, "too-many-requests", "as many levels are being made for this address as may be; try again", limits::kRetryAfterSeconds);
+  return busy(503, "busy", "too many levels are being made; try again", limits::kRetryAfterSeconds);
+}
+
+Reply failedLevel(const Error& error) {
+  const std::string why = error.code == ErrorCode::kIo ? "the level cannot be made: "
+                                                       : "this log cannot be decoded, though its checksums hold; qtet verify says the same, and it has to be written anew: ";
+  return problem(500, "internal", why + error.text());
+}
+
 /// Whether bytes follow the head. Unless they are read, what comes after them cannot be told from them, and the connection must end.
 bool hasBody(const RequestView& request) {
   return request.contentLength && request.contentLength->find_first_not_of('0') != std::string_view::npos;
@@ -68,15 +76,15 @@ Reply answerToParseError(const error_code& ec) {
 
 class HttpSession {
  public:
-  HttpSession(beast::tcp_stream stream, const Services& services, std::shared_ptr<Connection> connection,
+  HttpSession(ClientSocket socket, const Services& services, std::shared_ptr<Connection> connection,
               std::unique_ptr<AddressLimits::Visitor> visitor)
-      : stream_(std::move(stream)),
+      : socket_(std::move(socket)),
         services_(services),
         connection_(std::move(connection)),
         visitor_(std::move(visitor)),
         buffer_(limits::kMaxHeaderBytes) {
     connection_->onEnd([this] {
-      if (idle_) stream_.cancel();
+      if (idle_) socket_.cancel();
     });
   }
   ~HttpSession() {
@@ -88,10 +96,17 @@ class HttpSession {
   asio::awaitable<void> run();
 
  private:
+  asio::awaitable<bool> shakeHands();
+  /// False: no place came free in the time for a handshake, or the connection ends.
+  asio::awaitable<bool> waitForPlace(Handshakes::Guest& guest, const Deadline& deadline);
   asio::awaitable<bool> waitForBytes();
-  void readSome(error_code& ec);
+  void readSome(error_code& ec, std::size_t most = kReadBytes);
   /// The whole head parsed; nullopt: the connection has ended, or was refused.
   asio::awaitable<bool> readHead(Parser& parser);
+  /// Reads a request and answers it; false: the connection is not to be used further. A coroutine of its own, so that a silent client holds none of what a request needs.
+  asio::awaitable<bool> serveRequest();
+  /// Notes what figures and log tell of a request; the answer to it if nothing of what it asks for matters.
+  std::optional<Reply> begin(const RequestHeader& header);
   asio::awaitable<bool> becomeStream(Parser& parser);
   /// Answers one request; false: the connection is not to be used further.
   asio::awaitable<bool> answer(const RequestHeader& request, bool keepAlive);
@@ -101,32 +116,59 @@ class HttpSession {
   asio::awaitable<std::optional<Reply>> receiveBody(Upload& upload, std::uint64_t bytes);
   asio::awaitable<Reply> elsewhere(std::move_only_function<Reply()> work);
   asio::awaitable<bool> send(Reply reply, bool keepAlive);
-  asio::awaitable<bool> write(const std::string& head, ByteView body);
-  asio::awaitable<bool> writeFile(const std::string& head, FilePart file, std::size_t bytes);
+  /// The body out of its file, where there is one.
+  asio::awaitable<bool> write(std::string_view head, ByteView body, std::optional<FilePart> file = {});
   asio::awaitable<void> refuse(Reply reply);
   asio::awaitable<void> linger();
   [[nodiscard]] std::string_view buffered() const { return {static_cast<const char*>(buffer_.data().data()), buffer_.size()}; }
   void report(const Reply& reply, bool whole);
 
-  beast::tcp_stream stream_;
+  ClientSocket socket_;
   const Services& services_;
   std::shared_ptr<Connection> connection_;
   std::unique_ptr<AddressLimits::Visitor> visitor_;
   beast::flat_buffer buffer_;
-  bool idle_ = false;  // waits for a request that has not begun
+  bool idle_ = false;  // waits for a request, or a handshake, that nothing is lost by giving up
 
   // Of the request under way, for its answer's headers, the figures and the log.
   RequestTrace trace_;
   std::string method_, target_;
-  Clock::time_point begun_{};
+  Clock::time_point begun_ = Clock::now();
+  const std::string peer_ = services_.accessLog != nullptr ? socket_.peer() : "";  // asked now: who leaves at once has no address afterwards
   std::uint64_t sent_ = 0;
 };
 
+asio::awaitable<bool> HttpSession::shakeHands() {
+  if (!socket_.isTls()) co_return true;
+  {
+    const Deadline deadline(socket_, services_.timeouts.header);
+    idle_ = true;
+    bool done = co_await socket_.announcesSoundHello();
+    Handshakes::Guest guest(*services_.handshakes, socket_.get_executor(), [this] { socket_.cancel(); });
+    if (done) done = co_await waitForPlace(guest, deadline);
+    if (done) done = co_await socket_.shakeHands();
+    idle_ = false;
+    if (done) co_return true;
+  }
+  if (socket_.becomePlainForPlainHttp()) co_await refuse(problem(400, "bad-request", "this port speaks TLS; the address begins with https://"));
+  co_return false;
+}
+
+/// What the client has sent stays in the kernel meanwhile.
+asio::awaitable<bool> HttpSession::waitForPlace(Handshakes::Guest& guest, const Deadline& deadline) {
+  while (const auto again = guest.enter()) {
+    std::optional<Deadline> retry;
+    if (*again != Handshakes::Clock::time_point::max()) retry.emplace(socket_, std::chrono::ceil<std::chrono::milliseconds>(*again - Clock::now()));
+    const bool woken = co_await socket_.waitForCancel();
+    if (!woken || deadline.passed() || connection_->ending()) co_return false;
+  }
+  co_return true;
+}
+
 /// What has come, without waiting.
-void HttpSession::readSome(error_code& ec) {
-  if (!stream_.socket().non_blocking()) stream_.socket().non_blocking(true, ec);
+void HttpSession::readSome(error_code& ec, std::size_t most) {
   std::array<char, kReadBytes> bytes;
-  const std::size_t count = stream_.socket().read_some(asio::buffer(bytes), ec);
+  const std::size_t count = socket_.read(std::span(bytes).first(std::min(most, bytes.size())), ec);
   buffer_.commit(asio::buffer_copy(buffer_.prepare(count), asio::buffer(bytes, count)));
 }
 
@@ -138,10 +180,9 @@ asio::awaitable<bool> HttpSession::waitForBytes() {
     readSome(ec);
     if (ec == asio::error::would_block) {
       buffer_ = beast::flat_buffer(limits::kMaxHeaderBytes);  // a silent client has none
-      stream_.expires_never();
-      const Deadline deadline(stream_, services_.timeouts.idle);
+      const Deadline deadline(socket_, services_.timeouts.idle);
       idle_ = true;
-      co_await stream_.socket().async_wait(asio::ip::tcp::socket::wait_read, redirect_error(use_awaitable, ec));
+      ec = co_await socket_.waitToRead();
       idle_ = false;
     }
     if (ec) co_return false;
@@ -165,13 +206,10 @@ asio::awaitable<bool> HttpSession::readHead(Parser& parser) {
       refusal = problem(400, "bad-request", "this is not HTTP/1.1: a bare line end, a control byte, a folded line or no method");
     if (verdict == HttpGate::Verdict::kTooLong || buffer_.size() >= limits::kMaxHeaderBytes) refusal = tooLong();
     error_code ec;
-    if (!deadline) {
-      stream_.expires_never();
-      deadline.emplace(stream_, services_.timeouts.header);
-    }
+    if (!deadline) deadline.emplace(socket_, services_.timeouts.header);
     if (!refusal && !deadline->passed()) {
-      const std::size_t room = std::min(kReadBytes, limits::kMaxHeaderBytes - buffer_.size());
-      buffer_.commit(co_await stream_.async_read_some(buffer_.prepare(room), redirect_error(use_awaitable, ec)));
+      readSome(ec, limits::kMaxHeaderBytes - buffer_.size());
+      if (ec == asio::error::would_block) ec = co_await socket_.waitToRead();
     }
     if (!refusal && deadline->passed()) refusal = problem(408, "request-timeout", "the request's head did not arrive in time");
     if (refusal) {
@@ -192,34 +230,49 @@ asio::awaitable<bool> HttpSession::readHead(Parser& parser) {
 }
 
 asio::awaitable<void> HttpSession::run() {
-  for (;;) {
+  trace_ = traceOf(std::nullopt, std::nullopt);
+  const bool greeted = co_await shakeHands();
+  while (greeted) {
     const bool begun = co_await waitForBytes();
     if (!begun) co_return;
-    Parser parser;
-    const bool whole = co_await readHead(parser);
-    if (!whole) co_return;
-    const RequestHeader& header = parser.get();
-    const RequestView view = viewOf(header);
-    trace_ = traceOf(view.requestId, view.traceparent);
-    method_ = view.method;
-    target_ = view.target;
-    if (std::optional<Reply> refusal = refusalOf(header)) {
-      co_await refuse(std::move(*refusal));
-      co_return;
-    }
-    const bool keepAlive = parser.get().keep_alive();
-    if (visitor_ && !visitor_->countRequest()) {
-      const bool again = co_await send(busy(429, "too-many-requests", "this address asks too often; come back in a moment", 1), keepAlive && !hasBody(view));
-      if (!again) co_return;
-      continue;
-    }
-    if (services_.streams && isStreamHandshake(header)) {
-      co_await becomeStream(parser);
-      co_return;
-    }
-    const bool again = co_await answer(header, keepAlive);
+    const bool again = co_await serveRequest();
     if (!again) co_return;
   }
+}
+
+asio::awaitable<bool> HttpSession::serveRequest() {
+  Parser parser;
+  const bool whole = co_await readHead(parser);
+  if (!whole) co_return false;
+  joinLists(parser.get());
+  const bool keepAlive = parser.get().keep_alive();
+  bool again = false;
+  if (std::optional<Reply> early = begin(parser.get())) {
+    const bool closes = early->close;
+    again = co_await send(std::move(*early), keepAlive && !closes);
+  } else if (services_.streams && isStreamHandshake(parser.get())) {
+    co_await becomeStream(parser);
+  } else {
+    again = co_await answer(parser.get(), keepAlive);
+  }
+  co_return again;
+}
+
+std::optional<Reply> HttpSession::begin(const RequestHeader& header) {
+  const RequestView view = viewOf(header);
+  trace_ = traceOf(view.requestId, view.traceparent);
+  method_ = view.method;
+  target_ = view.target;
+  if (const std::size_t query = target_.find('?'); target_.find("ticket", std::min(query, target_.size())) != std::string::npos)
+    target_.erase(query);  // a ticket that is perhaps still good, wherever it was sent
+  if (std::optional<Reply> refusal = refusalOf(header)) {
+    refusal->close = true;
+    return refusal;
+  }
+  if (!visitor_ || visitor_->countRequest()) return std::nullopt;
+  Reply out = busy(429, "too-many-requests", "this address asks too often; come back in a moment", 1);
+  out.close = hasBody(view);
+  return out;
 }
 
 asio::awaitable<bool> HttpSession::becomeStream(Parser& parser) {
@@ -227,12 +280,18 @@ asio::awaitable<bool> HttpSession::becomeStream(Parser& parser) {
     co_await refuse(std::move(*refusal));
     co_return false;
   }
+  std::expected<MayRead, Reply> mayRead = admitStream(viewOf(parser.get()), services_.access);
+  if (!mayRead) {
+    co_await refuse(std::move(mayRead.error()));
+    co_return false;
+  }
   connection_->onEnd({});
   const auto key = parser.get()[http::field::sec_websocket_key];
-  StreamHandshake handshake{std::string(key.data(), key.size()), std::string(buffered())};
+  StreamHandshake handshake{std::string(key.data(), key.size()), std::string(buffered()), std::move(*mayRead), services_.timeouts.silence, services_.timeouts.write, &services_.jobs,
+                            services_.unpaced};
   // A coroutine of its own, so that what a request needed goes.
-  const auto executor = stream_.get_executor();
-  asio::co_spawn(executor, serveStream(stream_.release_socket(), std::move(handshake), services_.store, std::move(connection_), std::move(visitor_)),
+  const auto executor = socket_.get_executor();
+  asio::co_spawn(executor, serveStream(std::move(socket_), std::move(handshake), services_.store, std::move(connection_), std::move(visitor_)),
                  [](const std::exception_ptr& thrown) {
                    if (thrown) spdlog::error("a stream ended by an exception");
                  });
@@ -258,20 +317,19 @@ asio::awaitable<bool> HttpSession::answerLevel(const RequestView& request, Reply
   LevelRequest level = std::get<LevelRequest>(reply.body);
   std::optional<LevelFile> file = services_.jobs.find(level);
   if (!file && reply.sendBody) {
-    stream_.expires_never();
-    LevelAnswer answered = co_await waitForLevel(stream_.socket(), services_.jobs, level);
+    LevelAnswer answered = co_await waitForLevel(socket_, services_.jobs, level, visitor_ ? visitor_->address() : nullptr);
     if (const auto* refusal = std::get_if<LevelRefusal>(&answered)) {
       if (*refusal == LevelRefusal::kGone) {
         reply.status = kClientGone;
         report(reply, false);
         co_return false;
       }
-      co_return co_await send(busy(503, "busy", "too many levels are being made; try again", limits::kRetryAfterSeconds), keepAlive);
+      co_return co_await send(refusedLevel(*refusal), keepAlive);
     }
     Result<LevelFile>& made = std::get<Result<LevelFile>>(answered);
     if (!made) {
       spdlog::error("{}: level {} cannot be made: {}", level.mesh->id, level.level, made.error().text());
-      co_return co_await send(problem(500, "internal", "the level cannot be made: " + made.error().text()), keepAlive);
+      co_return co_await send(failedLevel(made.error()), keepAlive);
     }
     file = std::move(*made);
   }
@@ -294,9 +352,8 @@ asio::awaitable<bool> HttpSession::answerUpload(const RequestView& request, cons
     co_return co_await send(std::move(begun.error()), false);
   }
   if (request.expect) {
-    error_code ec;
-    stream_.expires_after(services_.timeouts.write);
-    co_await asio::async_write(stream_, asio::buffer(kContinue), redirect_error(use_awaitable, ec));
+    const bool sent = co_await write(kContinue, {});
+    if (!sent) co_return false;
   }
   std::optional<Reply> refusal = co_await receiveBody(**begun, upload.bodyBytes);
   if (refusal) {
@@ -311,25 +368,26 @@ asio::awaitable<bool> HttpSession::answerUpload(const RequestView& request, cons
 
 asio::awaitable<std::optional<Reply>> HttpSession::receiveBody(Upload& upload, std::uint64_t bytes) {
   Bytes piece(limits::kBodyPiece);
-  stream_.expires_never();
   while (bytes > 0) {
     std::size_t have = std::min<std::uint64_t>({buffer_.size(), bytes, piece.size()});
     std::copy_n(buffered().data(), have, piece.begin());
     buffer_.consume(have);
     const std::size_t wanted = std::min<std::uint64_t>(bytes, piece.size());
     error_code ec;
-    Deadline deadline(stream_, services_.timeouts.body);
-    if (have < wanted)
-      have += co_await asio::async_read(stream_, asio::buffer(piece.data() + have, wanted - have), redirect_error(use_awaitable, ec));
+    const Deadline deadline(socket_, services_.timeouts.body);
+    while (have < wanted && !ec && !deadline.passed()) {
+      have += socket_.read({reinterpret_cast<char*>(piece.data()) + have, wanted - have}, ec);
+      if (ec == asio::error::would_block) ec = co_await socket_.waitToRead();
+    }
     if (std::optional<Reply> trouble = upload.append(ByteView(piece).first(have))) co_return trouble;
-    if (ec) co_return problem(408, "request-timeout", "the request's body did not arrive, or not in time");
+    if (have < wanted) co_return problem(408, "request-timeout", "the request's body did not arrive, or not in time");
     bytes -= have;
   }
   co_return std::nullopt;
 }
 
 asio::awaitable<Reply> HttpSession::elsewhere(std::move_only_function<Reply()> work) {
-  auto start = [this, executor = stream_.get_executor(), work = std::move(work)](auto handler) mutable {
+  auto start = [this, executor = socket_.get_executor(), work = std::move(work)](auto handler) mutable {
     asio::post(*services_.verifiers, [executor, work = std::move(work), handler = std::move(handler)]() mutable {
       Reply reply = work();
       asio::post(executor, [handler = std::move(handler), reply = std::move(reply)]() mutable { handler(std::move(reply)); });
@@ -346,65 +404,49 @@ asio::awaitable<bool> HttpSession::send(Reply reply, bool keepAlive) {
   ByteView body;
   if (const auto* text = std::get_if<std::string>(&reply.body)) body = viewOf(*text);
   if (const auto* view = std::get_if<ByteView>(&reply.body)) body = *view;
-  bool sent = false;
-  if (reply.file && reply.sendBody && body.size() >= limits::kLeastFromFile) {
-    sent = co_await writeFile(head, *reply.file, body.size());
-  } else {
-    sent = co_await write(head, reply.sendBody ? body : ByteView());
-  }
+  if (!reply.sendBody) body = {};
+  const bool sent = co_await write(head, body, body.size() >= limits::kLeastFromFile ? reply.file : std::nullopt);
   report(reply, sent);
   if (!sent) co_return false;
   if (!keepAlive) co_await linger();
   co_return keepAlive;
 }
 
-asio::awaitable<bool> HttpSession::write(const std::string& head, ByteView body) {
+asio::awaitable<bool> HttpSession::write(std::string_view head, ByteView body, std::optional<FilePart> file) {
   sent_ = 0;
-  asio::const_buffer first = asio::buffer(head);
-  do {
-    const ByteView piece = body.first(std::min(body.size(), limits::kWritePiece));
-    body = body.subspan(piece.size());
-    const std::array<asio::const_buffer, 2> buffers = {first, asio::const_buffer(piece.data(), piece.size())};
+  // The head goes with the first bytes, but for much to somebody on this machine: its own packet costs less than what follows lying across all of them.
+  const bool headWaits = file && !(services_.unpaced && body.size() >= limits::kMostFromFile);
+  std::optional<Deadline> deadline;  // for a piece; most answers are taken at once
+  for (std::size_t taken = 0; !head.empty() || sent_ < body.size();) {
     error_code ec;
-    stream_.expires_after(services_.timeouts.write);
-    co_await asio::async_write(stream_, buffers, redirect_error(use_awaitable, ec));
+    const ByteView rest = body.subspan(sent_);
+    std::size_t count = 0;
+    if (!head.empty() || !file) {
+      const std::array<iovec, 2> parts = {iovec{const_cast<char*>(head.data()), head.size()},
+                                          iovec{const_cast<std::uint8_t*>(rest.data()), std::min(rest.size(), limits::kWritePiece)}};
+      count = socket_.write(std::span(parts).subspan(head.empty() ? 1 : 0, file || head.empty() ? 1 : 2), headWaits, ec);
+    } else {
+      count = socket_.writeFile({file->descriptor, file->offset + sent_}, rest.first(std::min(rest.size(), limits::kMostFromFile)), ec);
+    }
+    const std::size_t ofHead = std::min(count, head.size());
+    head.remove_prefix(ofHead);
+    sent_ += count - ofHead;
+    taken += count;
+    if (deadline && taken >= limits::kWritePiece) deadline.reset(), taken = 0;
+    if (ec == asio::error::would_block) {
+      if (!deadline) deadline.emplace(socket_, services_.timeouts.write), taken = 0;
+      ec = deadline->passed() ? asio::error::timed_out : co_await socket_.waitToWrite();
+    }
     if (ec) co_return false;
-    sent_ += piece.size();
-    first = {};
-  } while (!body.empty());
-  co_return true;
-}
-
-/// The head and then the file's pages, which the kernel sends without copying them.
-asio::awaitable<bool> HttpSession::writeFile(const std::string& head, FilePart file, std::size_t bytes) {
-  sent_ = 0;
-  const int socket = stream_.socket().native_handle();
-  auto offset = static_cast<off_t>(file.offset);
-  std::size_t headSent = 0;
-  error_code ec;
-  if (!stream_.socket().native_non_blocking()) stream_.socket().native_non_blocking(true, ec);
-  stream_.expires_never();
-  while (!ec && (headSent < head.size() || sent_ < bytes)) {
-    const bool inHead = headSent < head.size();
-    const ssize_t count = inHead ? ::send(socket, head.data() + headSent, head.size() - headSent, MSG_MORE | MSG_NOSIGNAL)
-                                 : ::sendfile(socket, file.descriptor, &offset, std::min<std::size_t>(bytes - sent_, limits::kMostFromFile));
-    if (count > 0) (inHead ? headSent : sent_) += static_cast<std::size_t>(count);
-    if (count > 0 || (count < 0 && errno == EINTR)) continue;
-    if (count == 0 || errno != EAGAIN) co_return false;  // the file has become shorter, or the client has gone
-    const Deadline deadline(stream_, services_.timeouts.write);
-    co_await stream_.socket().async_wait(asio::ip::tcp::socket::wait_write, redirect_error(use_awaitable, ec));
   }
-  co_return !ec;
+  co_return true;
 }
 
 void HttpSession::report(const Reply& reply, bool whole) {
   const auto time = Clock::now() - begun_;
   services_.metrics.countRequest(reply.status, sent_, time);
   if (services_.accessLog == nullptr) return;
-  error_code ec;
-  const auto peer = stream_.socket().remote_endpoint(ec);
-  const std::string client = ec ? "" : peer.address().to_string();
-  services_.accessLog->write({client, method_, target_, reply.status, sent_, time, whole}, trace_);
+  services_.accessLog->write({peer_, method_, target_, reply.status, sent_, time, whole}, trace_);
 }
 
 asio::awaitable<void> HttpSession::refuse(Reply reply) {
@@ -414,19 +456,22 @@ asio::awaitable<void> HttpSession::refuse(Reply reply) {
 
 /// Closing while bytes of the client's lie unread would reset the connection, and the answer might be lost on its way.
 asio::awaitable<void> HttpSession::linger() {
+  socket_.finishSending();
+  const Deadline deadline(socket_, limits::kLingerTime);
   error_code ec;
-  stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, ec);
-  stream_.expires_after(limits::kLingerTime);
-  std::array<char, kReadBytes> scrap;
-  for (std::size_t read = 0; !ec && read < limits::kLingerBytes;)
-    read += co_await stream_.async_read_some(asio::buffer(scrap), redirect_error(use_awaitable, ec));
+  for (std::size_t read = 0; !ec && read < limits::kLingerBytes && !deadline.passed();) {
+    buffer_.clear();
+    readSome(ec);
+    read += buffer_.size();
+    if (ec == asio::error::would_block) ec = co_await socket_.waitToRead();
+  }
 }
 
 }  // namespace
 
-asio::awaitable<void> serveHttp(beast::tcp_stream stream, const Services& services, std::shared_ptr<Connection> connection,
-                                std::unique_ptr<AddressLimits::Visitor> visitor) {
-  HttpSession session(std::move(stream), services, std::move(connection), std::move(visitor));
+asio::awaitable<void> serveHttp(asio::ip::tcp::socket socket, std::shared_ptr<const TlsContext> tls, const Services& services,
+                                std::shared_ptr<Connection> connection, std::unique_ptr<AddressLimits::Visitor> visitor) {
+  HttpSession session(ClientSocket(std::move(socket), tls.get()), services, std::move(connection), std::move(visitor));
   co_await session.run();
 }
 

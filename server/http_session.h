@@ -4,17 +4,17 @@
 #include <utility>  // before any Asio header: 1.74 uses std::exchange without it
 
 #include <boost/asio/awaitable.hpp>
-#include <boost/beast/core/tcp_stream.hpp>
 #include <memory>
 
 #include "server/address_limits.h"
+#include "server/client_socket.h"
 #include "server/connections.h"
 #include "server/services.h"
 
 namespace qtet {
 
-/// Serves until the connection ends. Runs on the stream's executor, which must be a single thread or a strand.
-boost::asio::awaitable<void> serveHttp(boost::beast::tcp_stream stream, const Services& services, std::shared_ptr<Connection> connection,
-                                       std::unique_ptr<AddressLimits::Visitor> visitor);
+/// Serves until the connection ends, over TLS where there is a context. Runs on the socket's executor, which must be a single thread or a strand.
+boost::asio::awaitable<void> serveHttp(boost::asio::ip::tcp::socket socket, std::shared_ptr<const TlsContext> tls, const Services& services,
+                                       std::shared_ptr<Connection> connection, std::unique_ptr<AddressLimits::Visitor> visitor);
 
 }  // namespace qtet

@@ -90,7 +90,9 @@ std::optional<LevelFile> LevelCache::find(const std::string& key) {
   if (it == byKey_.end()) return std::nullopt;
   entries_.splice(entries_.begin(), entries_, it->second);
   std::optional<LevelFile> out = mapFile(pathOf(key));
-  if (!out || out->bytes.size() != it->second->bytes) {
+  if (!out || out->bytes.size() != it->second->bytes) {  // also where no file can be opened now: what is not counted any more may not lie there
+    std::error_code ec;
+    fs::remove(pathOf(key), ec);
     forget(key);
     return std::nullopt;
   }

@@ -11,11 +11,17 @@
 namespace qtet {
 namespace {
 
+struct Wanted {
+  LevelJobs::Done done;
+  LevelJobs::Address from = nullptr;
+};
+using Wishes = std::map<std::uint64_t, Wanted>;
+
 struct Job {
   LevelRequest request;
   std::string key;
   std::stop_source stop;
-  std::map<std::uint64_t, LevelJobs::Done> wishes;
+  Wishes wishes;
 };
 using JobPointer = std::shared_ptr<Job>;
 
@@ -39,6 +45,8 @@ struct LevelJobs::State {
   void work();
   void finish(const JobPointer& job, Result<Bytes> bytes);
   void withdraw(const JobPointer& job, std::uint64_t wish);
+  /// Why there is no place for another job. REQUIRES: mutex is held.
+  [[nodiscard]] std::optional<LevelRefusal> refusalOf(Address from) const;
 };
 
 void LevelJobs::State::work() {
@@ -66,7 +74,7 @@ void LevelJobs::State::finish(const JobPointer& job, Result<Bytes> bytes) {
     const auto owner = std::make_shared<const Bytes>(std::move(*bytes));
     file = LevelFile{*owner, owner};
   }
-  std::map<std::uint64_t, Done> wishes;
+  Wishes wishes;
   {
     const std::scoped_lock lock(mutex);
     std::erase(running, job);
@@ -74,7 +82,7 @@ void LevelJobs::State::finish(const JobPointer& job, Result<Bytes> bytes) {
     if (!job->stop.stop_requested()) ++(file ? counts.made : counts.failed);
     if (!ending) wishes = std::exchange(job->wishes, {});
   }
-  for (auto& [number, done] : wishes) done(file);
+  for (auto& [number, wish] : wishes) wish.done(file);
 }
 
 void LevelJobs::State::withdraw(const JobPointer& job, std::uint64_t wish) {
@@ -82,13 +90,21 @@ void LevelJobs::State::withdraw(const JobPointer& job, std::uint64_t wish) {
   const std::scoped_lock lock(mutex);
   const auto it = job->wishes.find(wish);
   if (it == job->wishes.end()) return;  // answered
-  gone = std::move(it->second);
+  gone = std::move(it->second.done);
   job->wishes.erase(it);
   if (!job->wishes.empty()) return;
   ++counts.cancelled;
   job->stop.request_stop();
   jobs.erase(job->key);
   std::erase(waiting, job);
+}
+
+std::optional<LevelRefusal> LevelJobs::State::refusalOf(Address from) const {
+  if (waiting.size() + running.size() >= options.most) return LevelRefusal::kBusy;
+  if (from == nullptr || options.mostOfAddress == 0) return std::nullopt;
+  const auto wants = [from](const auto& entry) { return std::ranges::any_of(entry.second->wishes, [from](const auto& wish) { return wish.second.from == from; }); };
+  if (static_cast<std::size_t>(std::ranges::count_if(jobs, wants)) >= options.mostOfAddress) return LevelRefusal::kAddress;
+  return std::nullopt;
 }
 
 LevelJobs::Wish& LevelJobs::Wish::operator=(Wish&& other) noexcept {
@@ -116,7 +132,7 @@ LevelJobs::~LevelJobs() {
   state_->news.notify_all();
   state_->threads.clear();
   for (const auto& [key, job] : dropped) {
-    std::map<std::uint64_t, Done> wishes;
+    Wishes wishes;
     const std::scoped_lock lock(state_->mutex);
     wishes = std::exchange(job->wishes, {});
   }
@@ -132,22 +148,23 @@ std::optional<LevelFile> LevelJobs::find(const LevelRequest& request) {
   return out;
 }
 
-std::optional<LevelJobs::Wish> LevelJobs::submit(const LevelRequest& request, Done done) {
+std::expected<LevelJobs::Wish, LevelRefusal> LevelJobs::submit(const LevelRequest& request, Done done, Address from) {
   std::string key = request.key();
   const std::scoped_lock lock(state_->mutex);
+  if (!state_->jobs.contains(key)) {
+    if (const std::optional<LevelRefusal> refusal = state_->refusalOf(from)) {
+      ++state_->counts.refused;
+      return std::unexpected(*refusal);
+    }
+  }
   JobPointer& job = state_->jobs[key];
   if (!job) {
-    if (state_->waiting.size() + state_->running.size() >= state_->options.most) {
-      ++state_->counts.refused;
-      state_->jobs.erase(key);
-      return std::nullopt;
-    }
     job = std::make_shared<Job>(Job{request, std::move(key), {}, {}});
     state_->waiting.push_back(job);
     state_->news.notify_one();
   }
   const std::uint64_t wish = state_->nextWish++;
-  job->wishes.emplace(wish, std::move(done));
+  job->wishes.emplace(wish, Wanted{std::move(done), from});
   return Wish([weak = std::weak_ptr(state_), job, wish] {
     if (const auto state = weak.lock()) state->withdraw(job, wish);
   });
@@ -158,6 +175,7 @@ LevelJobCounts LevelJobs::counts() const {
   LevelJobCounts out = state_->counts;
   out.waiting = state_->waiting.size();
   out.running = state_->running.size();
+  for (const auto& [key, job] : state_->jobs) out.wanted += job->wishes.size();
   return out;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <expected>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -16,11 +17,20 @@ namespace qtet {
 struct LevelJobCounts {
   std::size_t waiting = 0;  ///< jobs that have not begun
   std::size_t running = 0;
+  std::size_t wanted = 0;  ///< wishes that are not answered
   std::uint64_t made = 0, found = 0, cancelled = 0, refused = 0, failed = 0;  ///< since the start
+};
+
+enum class LevelRefusal : std::uint8_t {
+  kBusy,     ///< there are as many jobs as there may be
+  kAddress,  ///< the address wants as many as it may
+  kGone,     ///< the client closed; the job ends if nobody else wants it. A client that only closes its sending half counts as gone.
 };
 
 class LevelJobs {
  public:
+  /// Where a wish comes from, told from others by where the object lies; nullptr: from nowhere that is bounded.
+  using Address = const void*;
   using Done = std::move_only_function<void(Result<LevelFile>)>;
   using Maker = std::function<Result<Bytes>(const LevelRequest&, const std::stop_token&)>;
 
@@ -29,6 +39,7 @@ class LevelJobs {
     std::size_t most = 1;         ///< jobs waiting or running; each may hold a whole mesh in memory
     LevelCache* cache = nullptr;  ///< nullptr: nothing is kept; else it outlives the jobs
     Maker maker{};
+    std::size_t mostOfAddress = 0;  ///< of these jobs, that one address may want; 0: no bound
   };
 
   explicit LevelJobs(Options options);
@@ -54,8 +65,8 @@ class LevelJobs {
 
   /// The level if it was kept. Thread-safe, as all that follow.
   [[nodiscard]] std::optional<LevelFile> find(const LevelRequest& request);
-  /// Has the level made and calls `done` once, on a thread of the pool. nullopt: there are as many jobs as there may be.
-  [[nodiscard]] std::optional<Wish> submit(const LevelRequest& request, Done done);
+  /// Has the level made and calls `done` once, on a thread of the pool. A wish for a job that is there already is never refused. REQUIRES: `from` outlives the wish.
+  [[nodiscard]] std::expected<Wish, LevelRefusal> submit(const LevelRequest& request, Done done, Address from = nullptr);
   [[nodiscard]] LevelJobCounts counts() const;
 
  private:

@@ -4,28 +4,25 @@
 #include <new>
 #include <string>
 
-#include "codec/boundary_drc.h"
-#include "codec/boundary_glb.h"
-#include "codec/vtu_writer.h"
+#include "codec/mesh_file.h"
 #include "server/preview.h"
 
 namespace qtet {
 namespace {
 
 Result<Bytes> written(const LatticeMesh& mesh, LevelForm form) {
-  switch (form) {
-    case LevelForm::kVtu: return vtuBytes(mesh);
-    case LevelForm::kGlb: return boundaryGlb(mesh);
-    case LevelForm::kPng: return previewPng(mesh);
-    case LevelForm::kDrc: break;
-  }
-  return boundaryDrc(mesh);
+  return form == LevelForm::kPng ? previewPng(mesh) : meshFileBytes(mesh, "." + std::string(formName(form)));
 }
 
 }  // namespace
 
 Result<Bytes> makeLevel(const LevelRequest& request, const std::stop_token& stop) {
   try {
+    if (request.form == LevelForm::kIntervals) {
+      const Result<PacketIntervals> table = packetIntervals(request.mesh->log, request.mesh->manifest, stop);
+      if (!table) return std::unexpected(table.error());
+      return table->encode();
+    }
     const Result<LatticeMesh> mesh = meshAtLevel(request.mesh->log, request.level, request.fields, stop);
     if (!mesh) return std::unexpected(mesh.error());
     Result<Bytes> file = written(*mesh, request.form);

@@ -11,7 +11,8 @@
 
 namespace qtet {
 
-enum class LevelForm : std::uint8_t { kVtu, kGlb, kDrc, kPng };
+/// The kinds of file of codec/mesh_file.h, the preview, and the table of server/packet_intervals.h, which nobody fetches.
+enum class LevelForm : std::uint8_t { kVtu, kVtk, kMsh, kStl, kPly, kObj, kGlb, kDrc, kUsda, kNpz, kPng, kIntervals };
 
 struct LevelRequest {
   MeshPointer mesh{};
@@ -24,7 +25,7 @@ struct LevelRequest {
   [[nodiscard]] std::string key() const;
 };
 
-/// "vtu", "glb", "drc", "png".
+/// The ending without its dot.
 [[nodiscard]] std::string_view formName(LevelForm form);
 [[nodiscard]] std::optional<LevelForm> formOfName(std::string_view name);
 

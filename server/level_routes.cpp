@@ -33,11 +33,16 @@ std::string_view mediaType(LevelForm form) {
   switch (form) {
     case LevelForm::kVtu: return "application/vnd.vtk.vtu+xml";
     case LevelForm::kGlb: return "model/gltf-binary";
+    case LevelForm::kStl: return "model/stl";
+    case LevelForm::kObj: return "model/obj";
+    case LevelForm::kUsda: return "model/vnd.usda";
     case LevelForm::kPng: return "image/png";
-    case LevelForm::kDrc: break;
+    default: return "application/octet-stream";
   }
-  return "application/octet-stream";
 }
+
+/// What is small already is sent as it stands.
+bool isCompressed(LevelForm form) { return form == LevelForm::kGlb || form == LevelForm::kDrc || form == LevelForm::kPng; }
 
 /// "NAME:E" as the coarsest level at which the field's rms error (or that of "boundary", its distance) is at most E.
 OrRefusal<std::uint32_t> levelOfError(const ServedMesh& mesh, const std::string& text) {
@@ -121,7 +126,7 @@ Reply toBeMade(const RequestView& request, const Resource& resource, LevelReques
 Reply levelReply(const RequestView& request, const RequestTarget& target, const MeshPointer& mesh, std::string_view name) {
   const std::size_t dot = std::min(name.find('.'), name.size());
   const auto form = formOfName(name.substr(std::min(dot + 1, name.size())));
-  if (!form || form == LevelForm::kPng) return problem(404, "not-found", "a level is to be had as {k}.vtu, {k}.glb and {k}.drc");
+  if (!form || form == LevelForm::kPng || form == LevelForm::kIntervals) return problem(404, "not-found", "a level is to be had as {k}.vtu, .vtk, .msh, .usda, .npz, and its boundary as {k}.glb, .drc, .stl, .ply, .obj");
   const OrRefusal<std::uint32_t> level = levelOfName(name.substr(0, dot), target, *mesh);
   if (!level) return level.error();
   const OrRefusal<std::vector<std::uint32_t>> fields = wantedFields(target, *mesh);
@@ -130,7 +135,7 @@ Reply levelReply(const RequestView& request, const RequestTarget& target, const 
 
   Resource resource = resourceOf(wanted, "level-" + std::to_string(*level));
   if (name.starts_with("fit.")) resource.headers.emplace_back("Content-Location", canonicalPath(wanted));
-  if (*form == LevelForm::kVtu) {
+  if (!isCompressed(*form)) {
     wanted.coding = chooseCoding(request.acceptEncoding.value_or(""), true, true);
     becomeVariant(resource, wanted.coding);
   }

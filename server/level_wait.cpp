@@ -2,12 +2,10 @@
 
 #include "server/level_wait.h"
 
-#include <sys/socket.h>
-
 #include <boost/asio/async_result.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/use_awaitable.hpp>
-#include <cerrno>
+#include <expected>
 #include <memory>
 #include <optional>
 
@@ -35,39 +33,38 @@ class FirstAnswer {
   std::optional<Handler> handler_;
 };
 
-/// Whether a socket that became readable has ended; bytes of a next request are left where they are.
-bool hasEnded(int socket) {
-  char byte = 0;
-  const ssize_t n = ::recv(socket, &byte, 1, MSG_PEEK | MSG_DONTWAIT);
-  return n == 0 || (n < 0 && errno != EAGAIN && errno != EINTR);
+/// Ends the wait when the client has gone. One that sends its next request meanwhile is not watched any further: the end lies behind those bytes.
+template <class Handler>
+void watch(ClientSocket& socket, const std::shared_ptr<FirstAnswer<Handler>>& first) {
+  socket.whenReadable([first, &socket](const error_code& ec) {
+    if (!first->pending()) return;  // while the answer is pending the coroutine, and with it the socket, waits here
+    const Arrived arrived = ec ? Arrived::kEnd : socket.arrived();
+    if (arrived == Arrived::kNothing) watch(socket, first);
+    if (arrived != Arrived::kEnd) return;
+    first->wish = {};
+    first->give(LevelRefusal::kGone);
+  });
 }
 
 }  // namespace
 
-asio::awaitable<LevelAnswer> waitForLevel(asio::ip::tcp::socket& socket, LevelJobs& jobs, LevelRequest request) {
-  auto start = [&socket, &jobs, request = std::move(request)](auto handler) {
+asio::awaitable<LevelAnswer> waitForLevel(ClientSocket& socket, LevelJobs& jobs, LevelRequest request, LevelJobs::Address from) {
+  auto start = [&socket, &jobs, request = std::move(request), from](auto handler) {
     const auto first = std::make_shared<FirstAnswer<decltype(handler)>>(std::move(handler));
     const auto executor = socket.get_executor();
-    std::optional<LevelJobs::Wish> wish = jobs.submit(request, [executor, first](Result<LevelFile> file) {
+    std::expected<LevelJobs::Wish, LevelRefusal> wish = jobs.submit(request, [executor, first](Result<LevelFile> file) {
       // Back to the connection's own executor: a coroutine must not go on in the pool.
       asio::post(executor, [first, file = std::move(file)]() mutable { first->give(std::move(file)); });
-    });
+    }, from);
     if (!wish) {
-      asio::post(executor, [first] { first->give(LevelRefusal::kBusy); });
+      asio::post(executor, [first, refusal = wish.error()] { first->give(refusal); });
       return;
     }
     first->wish = std::move(*wish);
-    socket.async_wait(asio::socket_base::wait_read, [first, &socket](const error_code& ec) {
-      // While the answer is pending the coroutine, and with it the socket, waits here.
-      if (first->pending() && (ec || hasEnded(socket.native_handle()))) {
-        first->wish = {};
-        first->give(LevelRefusal::kGone);
-      }
-    });
+    watch(socket, first);
   };
   LevelAnswer out = co_await asio::async_initiate<const asio::use_awaitable_t<>, void(LevelAnswer)>(std::move(start), asio::use_awaitable);
-  error_code ec;
-  socket.cancel(ec);  // the watch, if it still stands
+  socket.cancel();  // the watch, if it still stands
   co_return out;
 }
 

@@ -11,8 +11,8 @@ using namespace std::chrono_literals;
 
 // ---- connections
 
-/// Connections at a time, HTTP and WebSocket together: 12 KB each when idle (measured), 48 MB in all, and below the usual hard limit
-/// of 4,096 or more open files once some are set aside for the logs.
+/// Connections at a time, HTTP and WebSocket together: 3 KB (HTTP) or 7 KB (WebSocket) each when idle (measured), 28 MB in all, more with TLS; and below the
+/// usual hard limit of 4,096 or more open files once some are set aside for the logs.
 inline constexpr std::size_t kMaxConnections = 4000;
 /// Connections at a time of one address: browsers open 6 and one WebSocket a page; a company behind one address has some pages open.
 inline constexpr std::size_t kMaxConnectionsPerAddress = 256;
@@ -22,8 +22,19 @@ inline constexpr unsigned kMaxRequestsPerSecond = 2000;
 inline constexpr std::size_t kMaxRememberedAddresses = 100'000;
 /// Seconds after which a client that was turned away (503) is asked to come back.
 inline constexpr unsigned kRetryAfterSeconds = 2;
-/// How long `accept` rests when the system has no file or memory left for one more connection.
+/// How long `accept` rests when the system has no file or memory left for one more connection: after the first failure, and while they go on.
+inline constexpr auto kFirstAcceptRest = 1ms;
 inline constexpr auto kAcceptRest = 100ms;
+/// How often that is told.
+inline constexpr auto kAcceptWarningInterval = 10s;
+
+// ---- TLS
+
+/// Handshakes under way, from the server's answer to the hello until the client's last word: 43 KB each (measured), 22 MB in all; who comes later waits in line, which
+/// holds nothing but the connection.
+inline constexpr std::size_t kMaxHandshakes = 512;
+/// How long a handshake keeps its place when others want it: a round trip of a poor line with a packet lost and sent again.
+inline constexpr auto kHandshakePatience = 3s;
 
 // ---- HTTP
 
@@ -63,6 +74,8 @@ inline constexpr auto kReplacedLogTime = 10min;
 inline constexpr std::size_t kMaxReplacedLogs = 16;
 /// How long the folder must be quiet before it is read again: a copy tells of itself many times.
 inline constexpr auto kFolderRest = 200ms;
+/// Of them at most before a folder that never rests is read all the same.
+inline constexpr int kMostFolderRests = 25;
 /// It is read this often in any case, for folders on a network that tell nothing, and to let replaced logs go.
 inline constexpr auto kFolderInterval = 60s;
 
@@ -70,10 +83,15 @@ inline constexpr auto kFolderInterval = 60s;
 
 /// Levels being made or waiting at a time; each may hold a whole mesh in memory.
 inline constexpr std::size_t kMaxLevelJobs = 8;
+/// Of them that one address may want: a browser's connections to one server are six, so that no page is refused, and other addresses find places all the same.
+inline constexpr std::size_t kMaxLevelJobsPerAddress = 6;
 /// Threads that make them, beside the I/O threads.
 inline constexpr std::size_t kLevelThreads = 1;
 /// Bytes of finished levels kept on disk: some hundred of a mesh of a million cells.
 inline constexpr std::uintmax_t kMaxCacheBytes = std::uintmax_t{2} << 30;
+
+/// Tetrahedra of a log whose packets' values are looked at for a view with an isovalue: its finest mesh takes 100 to 150 bytes each, 3 GB in all.
+inline constexpr std::uint32_t kMostIntervalTetrahedra = 20'000'000;
 
 // ---- uploads
 
@@ -83,8 +101,15 @@ inline constexpr std::uintmax_t kMaxUploadBytes = std::uintmax_t{16} << 30;
 inline constexpr std::size_t kMaxUploads = 4;
 /// What came of an upload that broke off is kept so long for going on with it.
 inline constexpr auto kPartialUploadTime = 24h;
-/// Bytes and lines of the file of tokens.
+
+// ---- tokens
+
+/// Bytes of the file of tokens.
 inline constexpr std::size_t kMaxTokenFileBytes = 1u << 20;
+/// From asking for a ticket to the handshake that uses it: one round trip, also of a slow line.
+inline constexpr auto kTicketTime = 30s;
+/// Unused tickets of one token: a page needs one at a time.
+inline constexpr std::size_t kMaxTickets = 256;
 
 // ---- the viewer's files, held in memory
 

@@ -67,7 +67,7 @@ Reply logReply(const RequestView& request, const RequestTarget& target, const Me
   if (path.size() == 2 && what == "chunks") return chunkReply(request, mesh, path[1], std::nullopt);
   if (path.size() == 2 && what == "levels") return levelReply(request, target, mesh, path[1]);
   if (path.size() > 1 && what == "fields") return fieldReply(request, mesh, path.subspan(1));
-  return notFound("a log has log, manifest, base, chunks/{n}, fields/{name}/chunks/{n}, levels/{k}.vtu, .glb and .drc, and preview.png");
+  return notFound("a log has log, manifest, base, chunks/{n}, fields/{name}/chunks/{n}, levels/{k}.vtu and in other forms, and preview.png");
 }
 
 }  // namespace qtet

@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -78,19 +79,56 @@ Result<std::optional<FolderWatch>> watchFolder(const CommandLine& wishes, const 
   return std::optional<FolderWatch>(std::move(*watch));
 }
 
-ServerOptions serverOptions(const CommandLine& wishes, LevelCache* cache, AccessLog* accessLog, const Tokens& tokens) {
+/// What SIGHUP reads again; nullptr: there is none.
+struct Secrets {
+  std::unique_ptr<Access> access{};
+  std::unique_ptr<CurrentTls> tls{};
+};
+
+Result<Secrets> loadSecrets(const CommandLine& wishes) {
+  Secrets out;
+  if (wishes.tokens) {
+    Result<Tokens> tokens = Tokens::load(*wishes.tokens);
+    if (!tokens) return std::unexpected(tokens.error());
+    out.access = std::make_unique<Access>(std::move(*tokens));
+  }
+  if (wishes.tlsCertificate) {
+    auto context = TlsContext::load(*wishes.tlsCertificate, *wishes.tlsKey);
+    if (!context) return std::unexpected(context.error());
+    out.tls = std::make_unique<CurrentTls>(std::move(*context));
+  }
+  return out;
+}
+
+/// SIGHUP. What is wrong is told, and then all that held holds on.
+void reload(const CommandLine& wishes, const Secrets& secrets) {
+  if (!secrets.access && !secrets.tls) return spdlog::info("SIGHUP: there are no tokens and no certificate to read again");
+  Result<Secrets> read = loadSecrets(wishes);
+  if (!read) return spdlog::error("SIGHUP: {}; the tokens and the certificate that were read before hold on", read.error().message);
+  if (secrets.access && secrets.access->tokens()->guardReading() && !read->access->tokens()->guardReading())
+    return spdlog::error("SIGHUP: {} has no line that begins with read any more, which would open every mesh; if that is meant, write 'read * anyone'. The tokens that were read before hold on",
+                         wishes.tokens->string());
+  if (secrets.access) secrets.access->replace(*read->access->tokens());
+  if (secrets.tls) secrets.tls->replace(read->tls->now());
+  spdlog::info("SIGHUP: the tokens and the certificate were read again");
+}
+
+ServerOptions serverOptions(const CommandLine& wishes, LevelCache* cache, AccessLog* accessLog, const Secrets& secrets) {
   return {.host = wishes.host,
           .port = wishes.port,
           .threads = wishes.threads,
           .maxConnections = wishes.maxConnections,
           .maxConnectionsPerAddress = wishes.maxConnectionsPerAddress,
           .maxRequestsPerSecond = wishes.maxRequestsPerSecond,
+          .maxLevelsPerAddress = wishes.maxLevelsPerAddress,
           .adminHost = wishes.adminHost,
           .adminPort = wishes.adminPort,
           .endOnSignals = true,
           .cache = cache,
           .accessLog = accessLog,
-          .tokens = tokens.empty() ? nullptr : &tokens,
+          .tls = secrets.tls.get(),
+          .access = secrets.access.get(),
+          .reload = [&wishes, &secrets] { reload(wishes, secrets); },
           .maxUploadBytes = wishes.maxUploadBytes,
           .allowedOrigins = wishes.allowedOrigins};
 }
@@ -114,10 +152,10 @@ int serve(const CommandLine& wishes) {
   if (wishes.accessLog) accessLog = AccessLog::open(*wishes.accessLog);
   if (!accessLog) return cannotServe(accessLog.error());
 
-  const Result<Tokens> tokens = wishes.tokens ? Tokens::load(*wishes.tokens) : Tokens();
-  if (!tokens) return cannotServe(tokens.error());
+  const Result<Secrets> secrets = loadSecrets(wishes);
+  if (!secrets) return cannotServe(secrets.error());
 
-  Server server(*store, *viewer, serverOptions(wishes, cache->get(), accessLog->get(), *tokens));
+  Server server(*store, *viewer, serverOptions(wishes, cache->get(), accessLog->get(), *secrets));
   if (const Status listening = server.listen(); !listening) return cannotServe(listening.error());
   const Result<std::optional<FolderWatch>> watch = watchFolder(wishes, *store);
   if (!watch) return cannotServe(watch.error());
@@ -135,8 +173,7 @@ int checkConfig(const CommandLine& wishes) {
   if (!fs::is_directory(wishes.folder, ec))
     return cannotServe({ErrorCode::kIo, wishes.folder.string() + " is no folder; name one that holds .qtet files", Error::kNoOffset});
   if (const Result<ViewerFiles> viewer = loadViewer(wishes); !viewer) return cannotServe(viewer.error());
-  if (wishes.tokens)
-    if (const Result<Tokens> tokens = Tokens::load(*wishes.tokens); !tokens) return cannotServe(tokens.error());
+  if (const Result<Secrets> secrets = loadSecrets(wishes); !secrets) return cannotServe(secrets.error());
   return 0;
 }
 
@@ -159,6 +196,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::signal(SIGHUP, SIG_IGN);  // until the server listens to it: a reload meant for a running one must not end it
   try {
     return run(argc, argv);
   } catch (const std::exception& e) {

@@ -1,13 +1,15 @@
 // The list of meshes, page by page (PROTOCOL.md, "HTTP").
 #pragma once
 
+#include "server/access.h"
 #include "server/http_message.h"
 #include "server/mesh_store.h"
 #include "server/request_target.h"
 
 namespace qtet {
 
-/// `/v1/meshes?limit=N&after=ID`: N meshes at most, those whose ids come after ID. 200, 304, 400 or 412.
-[[nodiscard]] Reply meshListReply(const RequestView& request, const RequestTarget& target, const CataloguePointer& catalogue);
+/// `/v1/meshes?limit=N&after=ID`: N meshes at most, those whose ids come after ID and that may be read. 200, 304, 400 or 412.
+[[nodiscard]] Reply meshListReply(const RequestView& request, const RequestTarget& target, const CataloguePointer& catalogue,
+                                  const MayRead& mayRead = {});
 
 }  // namespace qtet

@@ -56,7 +56,9 @@ class Scan {
     const auto known = before_.meshes.find(id);
     const MeshPointer old = known == before_.meshes.end() ? nullptr : known->second;
     if (old && old->file == *file) return keep(old);
-    const auto refused = std::ranges::find_if(before_.refused, [&](const auto& r) { return r.path == path && r.file == *file; });
+    // What could not be read may be readable now; what is damaged stays so.
+    const auto refused = std::ranges::find_if(
+        before_.refused, [&](const auto& r) { return r.path == path && r.file == *file && r.error.code != ErrorCode::kIo; });
     if (refused != before_.refused.end()) {
       next_->refused.push_back(*refused);
       return keepSound(old, *file);

@@ -44,10 +44,12 @@ std::vector<BlockRun> planStream(const LogFront& log, const ClientBlocks& blocks
   }
 
   Runs runs(index, payloadBytes);
-  for (const std::uint32_t chunk : chunkOrder(index, log.manifest, blocks, view, stop)) {
-    payload += blocks.missingBytes(chunk);
-    if (!blocks.hasMesh(chunk)) tetrahedra += index.chunks[chunk].newTetrahedra;
-    if (chunk > 0 && (payload > stop.payload || tetrahedra > stop.tetrahedra)) break;
+  for (const std::uint32_t chunk : chunkOrder(log, blocks, view, stop)) {
+    if (bounded) {
+      payload += blocks.missingBytes(chunk);
+      if (!blocks.hasMesh(chunk)) tetrahedra += index.chunks[chunk].newTetrahedra;
+      if (chunk > 0 && (payload > stop.payload || tetrahedra > stop.tetrahedra)) break;
+    }
     for (std::size_t column = 0; column < blocks.columns(); ++column)
       if (!blocks.has(chunk, column)) runs.add(chunk, blocks.partOf(column));
   }

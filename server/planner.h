@@ -8,6 +8,7 @@
 #include "codec/log_index.h"
 #include "proto/manifest.h"
 #include "server/client_blocks.h"
+#include "server/log_front.h"
 #include "server/stream_target.h"
 
 namespace qtet {
@@ -21,11 +22,6 @@ struct BlockRun {
   bool operator==(const BlockRun&) const = default;
 };
 
-/// A log's front. Both outlive the call.
-struct LogFront {
-  const LogIndex& index;
-  const Manifest& manifest;
-};
 
 /// The runs that a client lacks, the head left out. A run takes neighbouring blocks until it would exceed `payloadBytes`, and one block at least.
 [[nodiscard]] std::vector<BlockRun> planStream(const LogFront& log, const ClientBlocks& blocks, const View& view, const StopAt& stop,

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "codec/field_colours.h"
+
 namespace qtet {
 namespace {
 
@@ -21,17 +23,6 @@ constexpr double kFill = 0.92;
 constexpr Vector kEye = {1, -1.3, 0.8};
 /// What a face that turns away from the light still has.
 constexpr double kAmbient = 0.35;
-constexpr Vector kGrey = {0.75, 0.75, 0.75};
-/// Viridis (van der Walt and Smith, 2015) at every eighth.
-constexpr std::array<Vector, 9> kColours = {{{0.267, 0.005, 0.329},
-                                             {0.278, 0.176, 0.483},
-                                             {0.231, 0.319, 0.545},
-                                             {0.173, 0.449, 0.558},
-                                             {0.128, 0.567, 0.551},
-                                             {0.158, 0.684, 0.502},
-                                             {0.369, 0.789, 0.383},
-                                             {0.678, 0.864, 0.190},
-                                             {0.993, 0.906, 0.144}}};
 
 double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 Vector cross(const Vector& a, const Vector& b) {
@@ -42,38 +33,6 @@ Vector unit(const Vector& a) {
   const double length = std::sqrt(dot(a, a));
   return length > 0 ? Vector{a[0] / length, a[1] / length, a[2] / length} : a;
 }
-
-Vector colourOf(double fraction) {
-  if (std::isnan(fraction)) return kGrey;
-  const double at = std::clamp(fraction, 0.0, 1.0) * (kColours.size() - 1);
-  const auto i = std::min<std::size_t>(static_cast<std::size_t>(at), kColours.size() - 2);
-  Vector out{};
-  for (std::size_t c = 0; c < 3; ++c) out[c] = kColours[i][c] + (at - static_cast<double>(i)) * (kColours[i + 1][c] - kColours[i][c]);
-  return out;
-}
-
-/// Of a vertex, in [0, 1] over the field's range; NaN without a field or a value.
-class Values {
- public:
-  explicit Values(const LatticeMesh& mesh) : mesh_(mesh), usable_(!mesh.fields.empty() && !isCellField(mesh.fields[0])) {}
-
-  [[nodiscard]] double operator[](VertexId v) const {
-    if (!usable_) return std::numeric_limits<double>::quiet_NaN();
-    const FieldInfo& field = mesh_.fields[0];
-    double value = 0;
-    for (std::uint32_t c = 0; c < field.components; ++c) {
-      const double x = field.value(c, mesh_.values[0][std::size_t{v} * field.components + c]);
-      value = field.components == 1 ? x : value + x * x;
-    }
-    if (field.components > 1) value = std::sqrt(value);
-    const double span = field.range[1] - field.range[0];
-    return span > 0 ? (value - field.range[0]) / span : std::isnan(value) ? value : 0.5;
-  }
-
- private:
-  const LatticeMesh& mesh_;
-  bool usable_;
-};
 
 /// Turns lattice points into columns, rows (downwards) and depth (towards the eye), all in samples.
 class Camera {
@@ -144,7 +103,7 @@ void drawTriangle(Canvas& canvas, const std::array<Corner, 3>& corners, double l
       const std::size_t at = static_cast<std::size_t>(row) * kColumns + static_cast<std::size_t>(column);
       if (depth <= canvas.depth[at]) continue;
       canvas.depth[at] = depth;
-      const Vector colour = colourOf(u * a.value + v * b.value + w * c.value);
+      const Vector colour = viridis(u * a.value + v * b.value + w * c.value);
       for (std::size_t i = 0; i < 3; ++i) canvas.colour[at][i] = static_cast<float>(light * colour[i]);
     }
 }
@@ -184,7 +143,7 @@ Result<Bytes> encodePng(const Bytes& pixels) {
 Result<Bytes> previewPng(const LatticeMesh& mesh) {
   if (mesh.boundary.empty()) return fail(ErrorCode::kBadInput, "the mesh has no boundary triangle to draw");
   const Camera camera(mesh);
-  const Values values(mesh);
+  const RangeFractions values(mesh, 0);
   Canvas canvas;
   for (const Triangle& triangle : mesh.boundary) {
     std::array<Corner, 3> corners{};

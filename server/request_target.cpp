@@ -1,6 +1,7 @@
 #include "server/request_target.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cstdint>
 
 namespace qtet {
@@ -37,10 +38,13 @@ bool printable(std::string_view text) {
 
 /// "http://host:1/path" becomes "/path" (RFC 9112, 3.2.2).
 std::string_view stripAuthority(std::string_view target) {
-  constexpr std::string_view kScheme = "http://";
-  if (!target.starts_with(kScheme)) return target;
-  const std::size_t path = target.find('/', kScheme.size());
-  return path == std::string_view::npos ? "/" : target.substr(path);
+  for (const std::string_view scheme : {"http://", "https://"}) {
+    const auto same = [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; };
+    if (!std::ranges::equal(target.substr(0, scheme.size()), scheme, same)) continue;
+    const std::size_t path = target.find('/', scheme.size());
+    return path == std::string_view::npos ? "/" : target.substr(path);
+  }
+  return target;
 }
 
 }  // namespace

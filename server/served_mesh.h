@@ -1,4 +1,4 @@
-// A log under its name, opened and checked, with everything that is said about it made ready. Immutable.
+// A log under its name, opened and checked, with everything that is said about it made ready. Immutable, but for what is found out of it later.
 #pragma once
 
 #include <sys/types.h>
@@ -11,6 +11,7 @@
 #include "codec/log_file.h"
 #include "proto/manifest.h"
 #include "server/document.h"
+#include "server/packet_intervals.h"
 
 namespace qtet {
 
@@ -47,6 +48,7 @@ struct ServedMesh {
   Document description{};     ///< `GET /v1/meshes/{id}`
   Document manifestText{};    ///< `GET /v1/logs/{sha256}/manifest`
   std::unique_ptr<Descriptor> descriptor{};  ///< of the bytes of `log`, for the kernel to send them from
+  std::shared_ptr<KnownIntervals> intervals = std::make_shared<KnownIntervals>();  ///< of its packets, once a view has asked for them
   std::shared_ptr<void> copied{};  ///< its part of limits::kMaxCopiedBytes; nullptr: the file is mapped
 
   /// Length of the file's prefix that holds level `level`. REQUIRES: such a level.

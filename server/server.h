@@ -3,14 +3,16 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "server/access.h"
 #include "server/level_maker.h"
 #include "server/services.h"
-#include "server/tokens.h"
+#include "server/tls_context.h"
 #include "server/viewer_files.h"
 
 namespace qtet {
@@ -22,19 +24,23 @@ struct ServerOptions {
   std::size_t maxConnections = limits::kMaxConnections;
   std::size_t maxConnectionsPerAddress = limits::kMaxConnectionsPerAddress;  ///< 0: no bound
   unsigned maxRequestsPerSecond = limits::kMaxRequestsPerSecond;             ///< of one address; 0: no bound
+  std::size_t maxLevelsPerAddress = limits::kMaxLevelJobsPerAddress;         ///< made or waiting; 0: no bound
+  std::size_t maxHandshakes = limits::kMaxHandshakes;
   Timeouts timeouts{};
   std::optional<std::string> adminHost{};  ///< operators' paths are answered here and nowhere else
   std::uint16_t adminPort = 0;
   bool endOnSignals = false;        ///< SIGINT and SIGTERM do what stop() does
   LevelCache* cache = nullptr;      ///< finished levels; nullptr: none is kept
   AccessLog* accessLog = nullptr;
-  const Tokens* tokens = nullptr;   ///< who may change meshes; nullptr: nobody
+  CurrentTls* tls = nullptr;        ///< for everything but the operators' address; nullptr: plain HTTP
+  Access* access = nullptr;         ///< who may read and change meshes; nullptr: everybody may read, nobody change
+  std::function<void()> reload{};   ///< with endOnSignals what SIGHUP does; empty: it ends the process, as usual
   std::uintmax_t maxUploadBytes = limits::kMaxUploadBytes;
   std::vector<std::string> allowedOrigins{};  ///< of pages that may open streams, as browsers write them; empty: any
   LevelJobs::Maker makeLevel = qtet::makeLevel;
 };
 
-/// Store, viewer, cache, access log and tokens must outlive it.
+/// Store, viewer, cache, access log, TLS and access must outlive it.
 class Server {
  public:
   Server(const MeshStore& store, const ViewerFiles& viewer, ServerOptions options);
@@ -48,10 +54,10 @@ class Server {
   [[nodiscard]] std::uint16_t port() const;
   /// That of the operators' address. REQUIRES: likewise, and that there is one.
   [[nodiscard]] std::uint16_t adminPort() const;
-  /// "http://127.0.0.1:8080/". REQUIRES: listen() succeeded.
+  /// "http://127.0.0.1:8080/", or https. REQUIRES: listen() succeeded.
   [[nodiscard]] std::string url() const;
 
-  /// Serves until stop() or a signal, then as long as responses under way need, at most limits::kGraceTime. REQUIRES: listen() succeeded.
+  /// Serves until stop() or a signal, then as long as responses under way need, at most the time of grace. REQUIRES: listen() succeeded.
   void run();
   /// Accepts nothing new, closes WebSockets with 1001, lets responses finish. Thread-safe; returns at once.
   void stop();

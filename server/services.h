@@ -9,7 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "server/access.h"
 #include "server/access_log.h"
+#include "server/handshakes.h"
 #include "server/http_message.h"
 #include "server/level_jobs.h"
 #include "server/limits.h"
@@ -21,10 +23,13 @@ namespace qtet {
 
 /// How long a client may take.
 struct Timeouts {
-  std::chrono::milliseconds header = limits::kHeaderTime;
+  std::chrono::milliseconds header = limits::kHeaderTime;  ///< of a request, or of a handshake with its wait for a place
+  std::chrono::milliseconds handshake = limits::kHandshakePatience;
   std::chrono::milliseconds idle = limits::kIdleTime;
   std::chrono::milliseconds write = limits::kWriteTime;
   std::chrono::milliseconds body = limits::kBodyTime;
+  std::chrono::milliseconds silence = limits::kSilenceTime;  ///< of a WebSocket
+  std::chrono::milliseconds grace = limits::kGraceTime;      ///< of all, once the server ends
 };
 
 struct Services {
@@ -37,7 +42,10 @@ struct Services {
   Timeouts timeouts{};
   Uploads* uploads = nullptr;                         ///< where the router knows of uploads
   boost::asio::thread_pool* verifiers = nullptr;      ///< where they are checked
+  Access* access = nullptr;                           ///< who may read what; nullptr: everybody everything
   const std::vector<std::string>* allowedOrigins = nullptr;  ///< of pages that may open streams; nullptr or empty: any
+  Handshakes* handshakes = nullptr;                   ///< where there is TLS
+  bool unpaced = false;                               ///< all clients are on this machine, and what is sent to them waits for no timer
 };
 
 }  // namespace qtet

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "proto/sentence.h"
 #include "server/limits.h"
 
 namespace qtet {
@@ -93,8 +94,9 @@ void StreamProtocol::handle(const OpenMessage& message) {
   stream_.reset();
   ++opens_;
   if (!count(opensOfSecond_, limits::kMaxOpensPerSecond, "too many open messages a second")) return;
-  const MeshPointer mesh = store_.find(message.mesh);
-  if (!mesh) return refuse(kNotFound, "there is no mesh '" + message.mesh + "'; the list is at /v1/meshes");
+  const bool open = !mayRead_ || mayRead_(message.mesh);
+  const MeshPointer mesh = open ? store_.find(message.mesh) : nullptr;
+  if (!mesh) return refuse(kNotFound, "there is no mesh '" + message.mesh + (mayRead_ ? "', or it is for other tokens" : "'") + "; the list is at /v1/meshes");
   if (!message.digest.empty() && message.digest != mesh->log.digest())
     return refuse(kLogChanged, "the mesh '" + message.mesh + "' has the digest " + mesh->log.digest() + " by now");
   auto fields = fieldsOf(message.fields, *mesh);
@@ -111,7 +113,8 @@ void StreamProtocol::handle(const OpenMessage& message) {
 std::uint64_t StreamProtocol::plan(Stream& stream) {
   const ServedMesh& mesh = *stream.mesh;
   const LogIndex& index = mesh.log.index();
-  stream.plan = planStream({index, mesh.manifest}, stream.blocks, stream.view, stream.stop, limits::kFramePayload);
+  const auto intervals = mesh.intervals->now();
+  stream.plan = planStream({index, mesh.manifest, intervals.get()}, stream.blocks, stream.view, stream.stop, limits::kFramePayload);
   if (!stream.hasHead) stream.plan.insert(stream.plan.begin(), {0, FrameHeader::kHead, 0});
   stream.nextRun = 0;
   stream.stale = stream.told = false;
@@ -168,13 +171,24 @@ void StreamProtocol::handle(const CancelMessage&) {
   answers_.push_back(toJson(StoppedMessage{opens_}));
 }
 
+MeshPointer StreamProtocol::lacksIntervals() const {
+  if (!stream_ || !stream_->view.isovalue || stream_->mesh->intervals->now()) return nullptr;
+  const ServedMesh& mesh = *stream_->mesh;
+  const bool sorted = mesh.log.index().layout == Layout::kRegions && mesh.manifest.levels.back().tetrahedra <= limits::kMostIntervalTetrahedra;
+  return sorted ? stream_->mesh : nullptr;
+}
+
+void StreamProtocol::intervalsCame(const MeshPointer& mesh) {
+  if (stream_ && stream_->mesh == mesh && stream_->view.isovalue) stream_->stale = true;
+}
+
 bool StreamProtocol::countWish() {
   return count(wishesOfSecond_, limits::kMaxWishesPerSecond, "too many views, targets and resumes with have a second");
 }
 
 void StreamProtocol::answerError(const char* code, std::string detail) {
   catchUp();  // answers keep the order of their messages
-  answers_.push_back(toJson(ErrorMessage{code, std::move(detail)}));
+  answers_.push_back(toJson(ErrorMessage{code, sentence(detail)}));
 }
 
 void StreamProtocol::refuse(const char* code, std::string detail) {

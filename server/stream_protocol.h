@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "proto/messages.h"
+#include "server/access.h"
 #include "server/mesh_store.h"
 #include "server/planner.h"
 #include "server/web_socket_reader.h"
@@ -29,13 +30,19 @@ using Outgoing = std::variant<std::string, OutgoingFrame, CloseCode>;
 class StreamProtocol {
  public:
   using Clock = std::chrono::steady_clock;
-  explicit StreamProtocol(const MeshStore& store) : store_(store) {}
+  /// With `mayRead` other meshes are not there.
+  explicit StreamProtocol(const MeshStore& store, MayRead mayRead = {}) : store_(store), mayRead_(std::move(mayRead)) {}
 
   void receive(std::string_view json, Clock::time_point now);
   /// Clients send no binary messages.
   void receiveBinary();
   /// The next thing to send; nullopt: nothing before the next message arrives. After a CloseCode nothing follows.
   [[nodiscard]] std::optional<Outgoing> next();
+
+  /// The mesh whose packets' intervals the view asks for and nobody knows yet; nullptr: none. Until they are there an isovalue is no wish.
+  [[nodiscard]] MeshPointer lacksIntervals() const;
+  /// They are known now: what has not been sent is ordered by them.
+  void intervalsCame(const MeshPointer& mesh);
 
  private:
   void handle(const OpenMessage& message);
@@ -74,6 +81,7 @@ class StreamProtocol {
   bool count(unsigned& counter, unsigned most, const char* what);
 
   const MeshStore& store_;
+  MayRead mayRead_;
   std::deque<std::string> answers_;
   bool closing_ = false;
 

@@ -3,8 +3,11 @@
 #include <netinet/tcp.h>
 #include <sys/socket.h>
 
+#include <spdlog/spdlog.h>
+
 #include <array>
 #include <boost/asio/co_spawn.hpp>
+#include <boost/asio/post.hpp>
 #include <boost/asio/redirect_error.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
@@ -22,7 +25,6 @@ namespace {
 namespace asio = boost::asio;
 using asio::redirect_error;
 using asio::use_awaitable;
-using asio::ip::tcp;
 using boost::system::error_code;
 using Clock = std::chrono::steady_clock;
 using Event = WebSocketReader::Event;
@@ -30,7 +32,7 @@ using Event = WebSocketReader::Event;
 /// On the stack of whoever reads, so that a silent client has no buffer.
 constexpr std::size_t kReadBytes = 4096;
 /// Bytes that the kernel may hold unsent: so a superseded order stops soon, and a stalled client costs little.
-constexpr int kUnsentBytes = 96 << 10;
+constexpr int kUnsentBytes = 80 << 10;
 /// Before other connections of the thread have their turn.
 constexpr int kReadsInARow = 8;
 
@@ -38,11 +40,11 @@ constexpr int kReadsInARow = 8;
 /// frame; the reader wakes it when there is something to say. All hold the session, so it ends with the last of them.
 class StreamSession : public std::enable_shared_from_this<StreamSession> {
  public:
-  StreamSession(tcp::socket socket, const MeshStore& store, std::shared_ptr<Connection> connection, std::unique_ptr<AddressLimits::Visitor> visitor)
+  StreamSession(ClientSocket socket, StreamProtocol protocol, std::shared_ptr<Connection> connection, std::unique_ptr<AddressLimits::Visitor> visitor)
       : socket_(std::move(socket)),
         wake_(socket_.get_executor()),
         clock_(socket_.get_executor()),
-        protocol_(store),
+        protocol_(std::move(protocol)),
         connection_(std::move(connection)),
         visitor_(std::move(visitor)) {}
 
@@ -64,23 +66,33 @@ class StreamSession : public std::enable_shared_from_this<StreamSession> {
   /// Whether the session goes on.
   bool take(std::string_view bytes);
   bool handle(Event event);
+  void hear(std::string_view bytes);
+  /// Has the intervals found that the view wants; ends with its wish.
+  void findIntervals();
   void collect(FrameGather& gather);
   void close(CloseCode code);
+  void holdBack(bool hold) {
+    if (held_ != hold) socket_.holdBack(hold);
+    held_ = hold;
+  }
   /// Ends reading and writing at once.
   void cut() {
-    error_code ec;
     ended_ = true;
-    socket_.close(ec);
+    socket_.close();
     clock_.cancel();
     wake_.cancel();
   }
 
-  tcp::socket socket_;
+  ClientSocket socket_;
   asio::steady_timer wake_, clock_;
   StreamProtocol protocol_;
   WebSocketReader reader_;
   std::shared_ptr<Connection> connection_;
   std::unique_ptr<AddressLimits::Visitor> visitor_;
+
+  LevelJobs* jobs_ = nullptr;
+  LevelJobs::Wish intervals_;         // of `intervalsOf_`
+  MeshPointer intervalsOf_;           // are being found
 
   std::optional<std::string> pong_;   // the payload of the last ping that is not answered yet
   bool ping_ = false;                 // one is due
@@ -90,7 +102,10 @@ class StreamSession : public std::enable_shared_from_this<StreamSession> {
   std::size_t drained_ = 0;           // bytes of it
   bool ended_ = false;                // nothing can be written any more
 
+  Clock::duration silence_{}, writeTime_{};   // as the handshake says
   Clock::time_point heard_ = Clock::now();    // when bytes last came
+  bool unpaced_ = false;
+  bool held_ = false;                         // until nothing more is to be written: else each frame would end a packet
   bool writing_ = false;
   Clock::time_point written_{};               // when the client last took some of what is being written
   Clock::time_point second_{};                // the window that pings_ belongs to
@@ -140,17 +155,51 @@ bool StreamSession::take(std::string_view bytes) {
   }
 }
 
+void StreamSession::hear(std::string_view bytes) {
+  deaf_ = deaf_ || !take(bytes);
+  if (jobs_ != nullptr && !deaf_) findIntervals();
+}
+
+void StreamSession::findIntervals() {
+  MeshPointer mesh = protocol_.lacksIntervals();
+  if (mesh == intervalsOf_) return;
+  intervals_ = {};
+  intervalsOf_ = nullptr;
+  if (!mesh) return;
+  const LevelRequest request{mesh, 0, LevelForm::kIntervals};
+  const auto keep = [mesh](const LevelFile& table) { mesh->intervals->put(PacketIntervals::decode(table.bytes, mesh->log.index(), mesh->manifest)); };
+  if (const std::optional<LevelFile> kept = jobs_->find(request)) {
+    keep(*kept);
+    return protocol_.intervalsCame(mesh);
+  }
+  auto done = [keep, mesh, weak = weak_from_this(), executor = socket_.get_executor()](Result<LevelFile> table) {
+    if (table) keep(*table);
+    else spdlog::error("{}: the values of its packets cannot be found: {}", mesh->id, table.error().text());
+    if (!table && table.error().code != ErrorCode::kIo) mesh->intervals->put({});  // nor by trying again
+    asio::post(executor, [mesh, weak] {
+      const auto self = weak.lock();
+      if (!self) return;
+      self->protocol_.intervalsCame(mesh);
+      self->wake_.cancel();
+    });
+  };
+  auto wish = jobs_->submit(request, std::move(done), visitor_ ? visitor_->address() : nullptr);
+  if (!wish) return;  // too many jobs; the next view tries again
+  intervals_ = std::move(*wish);
+  intervalsOf_ = std::move(mesh);
+}
+
 /// A plain function: a buffer in a coroutine would be held by every silent client.
 StreamSession::Reading StreamSession::readSome() {
   std::array<char, kReadBytes> bytes;
   for (int i = 0; i < kReadsInARow; ++i) {
     error_code ec;
-    const std::size_t count = socket_.read_some(asio::buffer(bytes), ec);
+    const std::size_t count = socket_.read(bytes, ec);
     if (ec == asio::error::would_block) return Reading::kWaits;
     if (ec) return Reading::kEnded;
     drained_ += deaf_ ? count : 0;
     if (drained_ > limits::kLingerBytes) return Reading::kEnded;
-    deaf_ = deaf_ || !take({bytes.data(), count});
+    hear({bytes.data(), count});
     wake_.cancel();
   }
   return Reading::kWaits;  // others' turn
@@ -160,8 +209,7 @@ StreamSession::Reading StreamSession::readSome() {
 asio::awaitable<void> StreamSession::read() {
   for (;;) {
     if (ended_ || readSome() == Reading::kEnded) break;
-    error_code ec;
-    co_await socket_.async_wait(tcp::socket::wait_read, redirect_error(use_awaitable, ec));
+    co_await socket_.waitToRead();
   }
   cut();
 }
@@ -193,14 +241,17 @@ void StreamSession::collect(FrameGather& gather) {
 asio::awaitable<void> StreamSession::write() {
   connection_->onEnd([this] { wake_.cancel(); });
   while (!ended_ && !closeSent_) {
-    FrameGather gather;
-    collect(gather);
-    if (gather.empty()) {
-      co_await waitForNews();
-    } else {
-      co_await flush(gather);
+    bool idle = false;
+    {  // an idle session holds no gather
+      FrameGather gather;
+      collect(gather);
+      idle = gather.empty();
+      if (idle ? held_ : unpaced_ && gather.several()) holdBack(!idle);
+      if (!idle) co_await flush(gather);
     }
+    if (idle) co_await waitForNews();
   }
+  if (!ended_) holdBack(false);
   connection_->onEnd({});
 }
 
@@ -211,7 +262,7 @@ asio::awaitable<void> StreamSession::flush(FrameGather& gather) {
     error_code ec;
     const std::size_t count = gather.write(socket_, ec);
     if (count > 0) written_ = Clock::now();
-    if (ec == asio::error::would_block) co_await socket_.async_wait(tcp::socket::wait_write, redirect_error(use_awaitable, ec));
+    if (ec == asio::error::would_block) ec = co_await socket_.waitToWrite();
     if (ec) cut();
   }
   writing_ = false;
@@ -229,14 +280,14 @@ asio::awaitable<void> StreamSession::keepTime() {
   while (!ended_) {
     error_code ec;
     const bool closing = closeSent_;
-    clock_.expires_after(closing ? limits::kClosingTime : limits::kSilenceTime / 2);
+    clock_.expires_after(closing ? Clock::duration(limits::kClosingTime) : silence_ / 2);
     co_await clock_.async_wait(redirect_error(use_awaitable, ec));
     if (ended_) break;
     const auto now = Clock::now();
     if (ec) continue;  // the writer has closed
-    if (closing || now - heard_ >= limits::kSilenceTime || (writing_ && now - written_ >= limits::kWriteTime)) {
+    if (closing || now - heard_ >= silence_ || (writing_ && now - written_ >= writeTime_)) {
       cut();
-    } else if (now - heard_ >= limits::kSilenceTime / 2) {
+    } else if (now - heard_ >= silence_ / 2) {
       ping_ = true;
       wake_.cancel();
     }
@@ -244,31 +295,35 @@ asio::awaitable<void> StreamSession::keepTime() {
 }
 
 asio::awaitable<void> StreamSession::run(StreamHandshake handshake) {
-  error_code ec;
-  socket_.non_blocking(true, ec);
-  (void)::setsockopt(socket_.native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &kUnsentBytes, sizeof(kUnsentBytes));
+  (void)::setsockopt(socket_.number(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &kUnsentBytes, sizeof(kUnsentBytes));
+  silence_ = handshake.silence;
+  writeTime_ = handshake.write;
+  unpaced_ = handshake.unpaced;
   const std::string answer = handshakeAnswer(handshake.key);
-  socket_.write_some(asio::buffer(answer), ec);  // an empty socket takes it at once
-  if (ec) co_return;
+  const iovec part{const_cast<char*>(answer.data()), answer.size()};
+  error_code ec;
+  const std::size_t taken = socket_.write({&part, 1}, false, ec);
+  if (taken < answer.size()) co_return;  // an empty socket takes it at once
   const auto ended = [self = shared_from_this()](const std::exception_ptr& thrown) {
     if (thrown) self->fail();
   };
   const auto executor = socket_.get_executor();
-  deaf_ = !take(handshake.firstBytes);
+  jobs_ = handshake.jobs;
+  hear(handshake.firstBytes);
   asio::co_spawn(
       executor, [self = shared_from_this()] { return self->read(); }, ended);
   asio::co_spawn(
       executor, [self = shared_from_this()] { return self->keepTime(); }, ended);
   co_await write();
   clock_.cancel();
-  if (!ended_) socket_.shutdown(tcp::socket::shutdown_send, ec);
+  if (!ended_) socket_.finishSending();
 }
 
 }  // namespace
 
-asio::awaitable<void> serveStream(tcp::socket socket, StreamHandshake handshake, const MeshStore& store, std::shared_ptr<Connection> connection,
+asio::awaitable<void> serveStream(ClientSocket socket, StreamHandshake handshake, const MeshStore& store, std::shared_ptr<Connection> connection,
                                   std::unique_ptr<AddressLimits::Visitor> visitor) {
-  const auto session = std::make_shared<StreamSession>(std::move(socket), store, std::move(connection), std::move(visitor));
+  const auto session = std::make_shared<StreamSession>(std::move(socket), StreamProtocol(store, std::move(handshake.mayRead)), std::move(connection), std::move(visitor));
   co_await session->run(std::move(handshake));
 }
 

@@ -4,12 +4,16 @@
 #include <utility>  // before any Asio header: 1.74 uses std::exchange without it
 
 #include <boost/asio/awaitable.hpp>
-#include <boost/asio/ip/tcp.hpp>
+#include <chrono>
 #include <memory>
 #include <string>
 
+#include "server/access.h"
 #include "server/address_limits.h"
+#include "server/client_socket.h"
 #include "server/connections.h"
+#include "server/level_jobs.h"
+#include "server/limits.h"
 #include "server/mesh_store.h"
 
 namespace qtet {
@@ -18,10 +22,14 @@ namespace qtet {
 struct StreamHandshake {
   std::string key;         ///< Sec-WebSocket-Key
   std::string firstBytes;  ///< what came behind its head already
+  MayRead mayRead{};       ///< which meshes it may open; empty: all
+  std::chrono::milliseconds silence = limits::kSilenceTime, write = limits::kWriteTime;  ///< after which it is given up
+  LevelJobs* jobs = nullptr;  ///< where the intervals of packets are found; nullptr: they stay unknown
+  bool unpaced = false;       ///< as Services has it
 };
 
 /// Answers the handshake and serves until the socket ends. Runs on the socket's executor, which must be a single thread or a strand.
-boost::asio::awaitable<void> serveStream(boost::asio::ip::tcp::socket socket, StreamHandshake handshake, const MeshStore& store,
+boost::asio::awaitable<void> serveStream(ClientSocket socket, StreamHandshake handshake, const MeshStore& store,
                                          std::shared_ptr<Connection> connection, std::unique_ptr<AddressLimits::Visitor> visitor);
 
 }  // namespace qtet

@@ -14,24 +14,18 @@ namespace {
 /// Characters of a token that is given as it is: as many as 16 random bytes in base64, below which it could be guessed.
 constexpr std::size_t kLeastTokenCharacters = 22;
 constexpr std::string_view kDigestMark = "sha256:";
+constexpr std::string_view kAnyone = "anyone";
 constexpr std::string_view kScheme = "bearer ";
 
-std::array<std::uint8_t, 32> digestOf(std::string_view token) {
-  Sha256 hash;
-  hash.update({reinterpret_cast<const std::uint8_t*>(token.data()), token.size()});
-  return hash.finish();
-}
-
-std::optional<std::array<std::uint8_t, 32>> digestOfHex(std::string_view hex) {
-  std::array<std::uint8_t, 32> out{};
+std::optional<SecretDigest> digestOfHex(std::string_view hex) {
+  SecretDigest out{};
   if (hex.size() != 2 * out.size() || hex.find_first_not_of("0123456789abcdef") != std::string_view::npos) return std::nullopt;
   const auto nibble = [](char c) { return c <= '9' ? c - '0' : c - 'a' + 10; };
   for (std::size_t i = 0; i < out.size(); ++i) out[i] = static_cast<std::uint8_t>(nibble(hex[2 * i]) * 16 + nibble(hex[2 * i + 1]));
   return out;
 }
 
-template <class A>
-bool equalInConstantTime(const A& a, const A& b) {
+bool equalInConstantTime(const SecretDigest& a, const SecretDigest& b) {
   unsigned difference = 0;
   for (std::size_t i = 0; i < a.size(); ++i) difference |= static_cast<unsigned>(a[i] ^ b[i]);
   return difference == 0;
@@ -46,7 +40,20 @@ std::string_view tokenOf(std::string_view authorization) {
   return out;
 }
 
+bool matches(const std::string& pattern, const std::string& mesh) { return ::fnmatch(pattern.c_str(), mesh.c_str(), 0) == 0; }
+
 }  // namespace
+
+SecretDigest secretDigest(std::string_view secret) {
+  Sha256 hash;
+  hash.update({reinterpret_cast<const std::uint8_t*>(secret.data()), secret.size()});
+  return hash.finish();
+}
+
+std::optional<SecretDigest> bearerDigest(std::optional<std::string_view> authorization) {
+  const std::string_view token = tokenOf(authorization.value_or(""));
+  return token.empty() ? std::nullopt : std::optional(secretDigest(token));
+}
 
 Result<Tokens> Tokens::load(const std::filesystem::path& path) {
   std::error_code ec;
@@ -73,32 +80,42 @@ Result<Tokens> Tokens::parse(std::string_view text) {
     if (!(words >> scope) || scope.starts_with('#')) continue;
     words >> pattern >> token;
     const auto wrong = [&](const std::string& what) { return fail(ErrorCode::kBadValue, "line " + std::to_string(number) + ": " + what); };
-    if (scope != "write" || token.empty() || words >> more) return wrong("a line is: write PATTERN TOKEN, or write PATTERN sha256:HEX");
+    if ((scope != "write" && scope != "read") || token.empty() || words >> more)
+      return wrong("a line is: read or write, a PATTERN of mesh names, and a TOKEN or sha256:HEX; or read PATTERN anyone");
+    Rule rule{scope == "read" ? Scope::kRead : Scope::kWrite, pattern};
     if (token.starts_with(kDigestMark)) {
-      const auto digest = digestOfHex(std::string_view(token).substr(kDigestMark.size()));
-      if (!digest) return wrong("sha256: is followed by 64 hexadecimal digits in lower case");
-      out.rules_.push_back({pattern, *digest});
+      rule.digest = digestOfHex(std::string_view(token).substr(kDigestMark.size()));
+      if (!rule.digest) return wrong("sha256: is followed by 64 hexadecimal digits in lower case");
+    } else if (token == kAnyone) {
+      if (rule.scope == Scope::kWrite) return wrong("anyone may read, but not write");
     } else {
       if (token.size() < kLeastTokenCharacters)
         return wrong("the token has fewer than " + std::to_string(kLeastTokenCharacters) + " characters; 'openssl rand -base64 24' makes a good one");
-      out.rules_.push_back({pattern, digestOf(token)});
+      rule.digest = secretDigest(token);
     }
+    out.guardReading_ |= rule.scope == Scope::kRead;
+    out.rules_.push_back(std::move(rule));
   }
+  // As a file is that was cut off while it was written; taken at its word it would open everything.
+  if (out.rules_.empty()) return fail(ErrorCode::kBadValue, "line 1: there is no line of a token; leave --tokens out where there is to be none");
   return out;
 }
 
-Tokens::Verdict Tokens::mayWrite(std::optional<std::string_view> authorization, const std::string& mesh) const {
-  const std::string_view token = tokenOf(authorization.value_or(""));
-  if (token.empty()) return Verdict::kUnknown;
-  const Digest digest = digestOf(token);
-  bool known = false, allowed = false;
+Tokens::Verdict Tokens::may(Scope scope, const std::optional<SecretDigest>& bearer, const std::string& mesh) const {
+  bool known = false, allowed = scope == Scope::kRead && !guardReading_;
   for (const Rule& rule : rules_) {
-    const bool same = equalInConstantTime(digest, rule.digest);
-    const bool matches = ::fnmatch(rule.pattern.c_str(), mesh.c_str(), 0) == 0;
+    const bool same = bearer && rule.digest && equalInConstantTime(*bearer, *rule.digest);
+    const bool enough = scope == Scope::kRead || rule.scope == Scope::kWrite;
     known |= same;
-    allowed |= same && matches;
+    allowed |= (same || !rule.digest) && enough && matches(rule.pattern, mesh);
   }
   return allowed ? Verdict::kAllowed : known ? Verdict::kForbidden : Verdict::kUnknown;
+}
+
+bool Tokens::knows(const std::optional<SecretDigest>& bearer) const {
+  bool known = false;
+  for (const Rule& rule : rules_) known |= bearer && rule.digest && equalInConstantTime(*bearer, *rule.digest);
+  return known;
 }
 
 }  // namespace qtet

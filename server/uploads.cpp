@@ -77,17 +77,19 @@ Reply Upload::finish() {
   }
   if (::fsync(file_) != 0) return diskTrouble("the upload cannot be kept", errno);
   Result<MeshPointer> mesh = openMesh(part_, request_.id);
+  if (!mesh && mesh.error().message.starts_with(part_.string() + ": ")) mesh.error().message.erase(0, part_.string().size() + 2);  // where it lies is nobody's business
   const auto refuse = [this](std::string_view type, const std::string& detail) {
     ::unlink(part_.c_str());  // going on with it would not make it better
     return problem(422, type, detail);
   };
+  if (!mesh && mesh.error().code == ErrorCode::kIo) return busyUploads("the log is here but cannot be verified now: " + mesh.error().text());
   if (!mesh) return refuse("bad-log", "this is no sound log: " + mesh.error().text());
   if (request_.digest && (*mesh)->log.digest() != *request_.digest)
     return refuse("bad-log", "the log has the digest " + (*mesh)->log.digest() + ", not the one that the request names");
-  return publish();
+  return publish((*mesh)->log.digest());
 }
 
-Reply Upload::publish() {
+Reply Upload::publish(const std::string& digest) {
   const std::scoped_lock lock(uploads_.publishing_);
   if (std::optional<Reply> refusal = uploads_.precondition(request_)) return std::move(*refusal);
   const bool replaced = uploads_.store_.find(request_.id) != nullptr;
@@ -98,7 +100,7 @@ Reply Upload::publish() {
   ++uploads_.published_;
   const Result<FolderChange> change = uploads_.store_.rescan();
   const MeshPointer mesh = uploads_.store_.find(request_.id);
-  if (!change || !mesh) return problem(500, "internal", "the log was published but cannot be served");
+  if (!change || !mesh || mesh->log.digest() != digest) return problem(500, "internal", "the log was published but cannot be served now");
   spdlog::info("{}: uploaded, {} bytes", mesh->id, mesh->log.bytes().size());
   Reply out = beginReply(replaced ? 200 : 201, {{mesh->description.etag, mesh->modified}, "application/json", "no-store", {}});
   out.headers.emplace_back("Location", "/v1/meshes/" + percentEncode(mesh->id));
@@ -118,8 +120,13 @@ std::optional<Reply> Uploads::precondition(const UploadRequest& request) const {
 }
 
 fs::path Uploads::partOf(const UploadRequest& request) {
-  const std::string name = request.digest ? *request.digest : std::to_string(::getpid()) + "." + std::to_string(next_++);
-  return store_.folder() / (std::string(kPrefix) + name + std::string(kSuffix));
+  if (request.digest) return resumablePart(request.id, *request.digest);
+  return store_.folder() / (std::string(kPrefix) + std::to_string(::getpid()) + "." + std::to_string(next_++) + std::string(kSuffix));
+}
+
+// The mesh's name is a part of it: who may write one mesh neither sees nor touches what is sent for another.
+fs::path Uploads::resumablePart(const std::string& id, const std::string& digest) const {
+  return store_.folder() / (std::string(kPrefix) + digest + "-" + id + std::string(kSuffix));
 }
 
 std::expected<std::unique_ptr<Upload>, Reply> Uploads::begin(const UploadRequest& request) {
@@ -132,21 +139,22 @@ std::expected<std::unique_ptr<Upload>, Reply> Uploads::begin(const UploadRequest
   const fs::path part = partOf(request);
   if (active_.contains(part)) return refuse(problem(409, "upload-conflict", "somebody is sending this log at the moment"));
   if (active_.size() >= limits::kMaxUploads) return refuse(busyUploads("too many uploads; try again"));
-  const int flags = O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | O_NOFOLLOW | (request.first == 0 ? O_TRUNC : 0);
+  removeOldParts(limits::kPartialUploadTime);
+  const int flags = O_WRONLY | O_APPEND | O_CLOEXEC | O_NOFOLLOW | (request.first == 0 ? O_CREAT | O_TRUNC : 0);
   const int file = ::open(part.c_str(), flags, 0644);
-  if (file < 0) return refuse(diskTrouble("the upload cannot be written", errno));
+  if (file < 0 && (request.first == 0 || errno != ENOENT)) return refuse(diskTrouble("the upload cannot be written", errno));
   struct stat info {};
-  if (::fstat(file, &info) != 0 || static_cast<std::uint64_t>(info.st_size) != request.first) {
-    ::close(file);
+  if (file < 0 || ::fstat(file, &info) != 0 || static_cast<std::uint64_t>(info.st_size) != request.first) {
+    if (file >= 0) ::close(file);
     return refuse(problem(409, "upload-conflict", "there are " + std::to_string(info.st_size) + " bytes of this log; go on from there"));
   }
   active_.insert(part);
   return std::unique_ptr<Upload>(new Upload(*this, request, part, file));
 }
 
-std::optional<std::uint64_t> Uploads::partialBytes(const std::string& digest) const {
+std::optional<std::uint64_t> Uploads::partialBytes(const std::string& id, const std::string& digest) const {
   if (!isDigest(digest)) return std::nullopt;
-  const auto file = identityOf(store_.folder() / (std::string(kPrefix) + digest + std::string(kSuffix)));
+  const auto file = identityOf(resumablePart(id, digest));
   return file ? std::optional(static_cast<std::uint64_t>(file->bytes)) : std::nullopt;
 }
 
@@ -165,6 +173,11 @@ Reply Uploads::remove(const UploadRequest& request) {
 }
 
 void Uploads::sweep() const {
+  const std::scoped_lock lock(mutex_);
+  removeOldParts(-limits::kPartialUploadTime);  // of any age, and whatever the clock was set to
+}
+
+void Uploads::removeOldParts(std::chrono::seconds ofNoDigest) const {
   std::error_code ec;
   for (fs::directory_iterator it(store_.folder(), ec), end; !ec && it != end; it.increment(ec)) {
     const std::string name = it->path().filename().string();
@@ -172,7 +185,8 @@ void Uploads::sweep() const {
     const std::string_view middle = std::string_view(name).substr(kPrefix.size(), name.size() - kPrefix.size() - kSuffix.size());
     std::error_code gone;
     const auto age = fs::file_time_type::clock::now() - it->last_write_time(gone);
-    if (!gone && (!isDigest(middle) || age > limits::kPartialUploadTime)) fs::remove(it->path(), gone);
+    const std::chrono::seconds most = isDigest(middle.substr(0, middle.find('-'))) ? limits::kPartialUploadTime : ofNoDigest;
+    if (!gone && age > most && !active_.contains(store_.folder() / name)) fs::remove(it->path(), gone);
   }
 }
 

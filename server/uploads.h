@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <expected>
 #include <filesystem>
@@ -38,7 +39,7 @@ class Upload {
   friend class Uploads;
   Upload(Uploads& uploads, UploadRequest request, std::filesystem::path part, int file)
       : uploads_(uploads), request_(std::move(request)), part_(std::move(part)), file_(file) {}
-  Reply publish();
+  Reply publish(const std::string& digest);
 
   Uploads& uploads_;
   const UploadRequest request_;
@@ -56,8 +57,8 @@ class Uploads {
   /// Opens the place where the bytes go; or the answer: 404 (no such name), 409 (the range does not go on where it stopped, or somebody
   /// is sending the same), 412, 413, 500, 503, 507.
   [[nodiscard]] std::expected<std::unique_ptr<Upload>, Reply> begin(const UploadRequest& request);
-  /// Bytes that are there of an upload that broke off; nullopt: none.
-  [[nodiscard]] std::optional<std::uint64_t> partialBytes(const std::string& digest) const;
+  /// Bytes that are there of an upload of this log under this name that broke off; nullopt: none. REQUIRES: a name that a mesh may have.
+  [[nodiscard]] std::optional<std::uint64_t> partialBytes(const std::string& id, const std::string& digest) const;
   /// 204, 404 or 412.
   [[nodiscard]] Reply remove(const UploadRequest& request);
   /// Removes what uploads left behind: those that cannot be gone on with, and those that nobody went on with for limits::kPartialUploadTime.
@@ -69,9 +70,12 @@ class Uploads {
 
  private:
   friend class Upload;
+  /// Parts of no upload under way that nobody wrote to for kPartialUploadTime, or where they cannot be gone on with for so long. REQUIRES: mutex_ is held.
+  void removeOldParts(std::chrono::seconds ofNoDigest) const;
   /// nullopt, or the 412 that If-Match and If-None-Match demand as things stand.
   [[nodiscard]] std::optional<Reply> precondition(const UploadRequest& request) const;
   [[nodiscard]] std::filesystem::path partOf(const UploadRequest& request);
+  [[nodiscard]] std::filesystem::path resumablePart(const std::string& id, const std::string& digest) const;
 
   const MeshStore& store_;
   const std::uintmax_t mostBytes_;

@@ -12,8 +12,10 @@ constexpr double kNear = 1.0 / 32;
 
 }  // namespace
 
-ViewWishes::ViewWishes(const View& view, const Manifest& manifest)
-    : view_(view), origin_(manifest.latticeOrigin), size_(std::ldexp(manifest.latticeStep, manifest.latticeBits)) {}
+ViewWishes::ViewWishes(const View& view, const LogFront& log)
+    : view_(view), log_(log), origin_(log.manifest.latticeOrigin), size_(std::ldexp(log.manifest.latticeStep, log.manifest.latticeBits)) {
+  if (view_.isovalue && log_.intervals != nullptr) column_ = log_.intervals->columnOf(log_.manifest, *view_.isovalue);
+}
 
 ViewWishes::Box ViewWishes::inSpace(const PacketBox& box) const {
   Box out{};
@@ -43,7 +45,6 @@ bool ViewWishes::isSeen(const Box& box) const {
 }
 
 bool ViewWishes::isAtAPlace(const Box& box) const {
-  if (view_.planes.empty() && !view_.box) return true;
   const auto cuts = [&](const Plane& plane) {
     const auto [low, high] = valuesOf(plane, box.least, box.most);
     return low <= 0 && high >= 0;
@@ -55,10 +56,17 @@ bool ViewWishes::isAtAPlace(const Box& box) const {
   return true;
 }
 
-Tier ViewWishes::tierOf(const PacketBox& packet) const {
-  const Box box = inSpace(packet);
+bool ViewWishes::isMet(std::uint32_t packet) const {
+  if (!column_) return false;
+  const ValueInterval& interval = log_.intervals->of(packet, *column_);
+  return std::ranges::any_of(view_.isovalue->values, [&](double value) { return interval.holds(value); });
+}
+
+Tier ViewWishes::tierOf(std::uint32_t packet) const {
+  const Box box = inSpace(log_.index.chunks[packet].box);
   if (!isSeen(box)) return Tier::kRest;
-  return isAtAPlace(box) ? Tier::kWanted : Tier::kSeen;
+  const bool anywhere = view_.planes.empty() && !view_.box && !column_;
+  return anywhere || isAtAPlace(box) || isMet(packet) ? Tier::kWanted : Tier::kSeen;
 }
 
 double ViewWishes::weightOf(const PacketBox& packet) const {

@@ -1,29 +1,30 @@
-// What a view wants of a packet, from its box alone (PROTOCOL.md, "View").
+// What a view wants of a packet, from its box and its values (PROTOCOL.md, "View").
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 
-#include "codec/log_index.h"
-#include "proto/manifest.h"
 #include "proto/stream_wishes.h"
+#include "server/log_front.h"
 
 namespace qtet {
 
 /// How near to what the view wants, in the order of sending.
 enum class Tier : std::uint8_t {
-  kWanted,  ///< seen, and on a clip plane or in the box where there are any
-  kSeen,    ///< in the frustum, but on no plane and not in the box
+  kWanted,  ///< seen, and on a clip plane, in the box or met by an isosurface where there are any
+  kSeen,    ///< in the frustum, but on no plane, not in the box and met by none
   kRest,    ///< behind the camera
 };
 
-/// Monotone: a box within another one is in the same tier or a later one, so that what is wanted is closed under dependencies.
+/// Monotone: a packet is in the same tier as its parent or in a later one, so that what is wanted is closed under dependencies.
 class ViewWishes {
  public:
-  /// The box's 256ths become lengths by the manifest's lattice. Values of packets are not in the file, so an isovalue chooses nothing.
-  ViewWishes(const View& view, const Manifest& manifest);
+  /// A box's 256ths become lengths by the manifest's lattice. An isovalue of what no interval is known of is no wish. The log outlives the object.
+  ViewWishes(const View& view, const LogFront& log);
 
-  [[nodiscard]] Tier tierOf(const PacketBox& box) const;
+  [[nodiscard]] Tier tierOf(std::uint32_t packet) const;
   /// What error in the box counts: 1 at the view's point and without one, falling with the square of the distance like what is seen of it.
   [[nodiscard]] double weightOf(const PacketBox& box) const;
 
@@ -34,8 +35,11 @@ class ViewWishes {
   [[nodiscard]] Box inSpace(const PacketBox& box) const;
   [[nodiscard]] bool isSeen(const Box& box) const;
   [[nodiscard]] bool isAtAPlace(const Box& box) const;
+  [[nodiscard]] bool isMet(std::uint32_t packet) const;
 
   View view_;
+  LogFront log_;
+  std::optional<std::size_t> column_;  ///< of the isovalue's intervals
   std::array<double, 3> origin_;
   double size_;  ///< of the lattice along each axis
 };

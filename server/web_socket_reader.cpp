@@ -5,6 +5,7 @@
 #include <boost/uuid/detail/sha1.hpp>
 
 #include "proto/messages.h"
+#include "proto/utf8.h"
 #include "server/limits.h"
 
 namespace qtet {
@@ -24,32 +25,7 @@ std::string base64(const std::array<std::uint8_t, 20>& bytes) {
   return out;
 }
 
-bool isContinuation(char c) { return (static_cast<std::uint8_t>(c) & 0xC0) == 0x80; }
-
-/// Bytes of the sound character at the front; 0: there is none.
-std::size_t characterBytes(std::string_view text) {
-  const auto first = static_cast<std::uint8_t>(text[0]);
-  if (first < 0x80) return 1;
-  const std::size_t size = first < 0xC2 ? 0 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : first < 0xF5 ? 4 : 0;
-  if (size == 0 || text.size() < size) return 0;
-  for (std::size_t i = 1; i < size; ++i)
-    if (!isContinuation(text[i])) return 0;
-  const auto second = static_cast<std::uint8_t>(text[1]);
-  const bool overlong = (first == 0xE0 && second < 0xA0) || (first == 0xF0 && second < 0x90);
-  const bool beyond = (first == 0xED && second > 0x9F) || (first == 0xF4 && second > 0x8F);  // surrogates, above U+10FFFF
-  return overlong || beyond ? 0 : size;
-}
-
 }  // namespace
-
-bool isUtf8(std::string_view text) {
-  while (!text.empty()) {
-    const std::size_t size = characterBytes(text);
-    if (size == 0) return false;
-    text.remove_prefix(size);
-  }
-  return true;
-}
 
 bool isCloseCode(std::uint16_t code) {
   return (code >= 1000 && code <= 1003) || (code >= 1007 && code <= 1014) || (code >= 3000 && code <= 4999);

@@ -15,8 +15,6 @@ namespace qtet {
 /// Close codes of RFC 6455, 7.4.1, that this server uses by its own decision.
 enum class CloseCode : std::uint16_t { kGoingAway = 1001, kProtocol = 1002, kBadText = 1007, kPolicy = 1008, kTooBig = 1009, kInternal = 1011 };
 
-/// UTF-8 as RFC 3629 has it: no overlong forms, no surrogates, nothing above U+10FFFF, nothing cut off.
-[[nodiscard]] bool isUtf8(std::string_view text);
 /// Whether a close frame may carry it (RFC 6455, 7.4, and what IANA has registered since).
 [[nodiscard]] bool isCloseCode(std::uint16_t code);
 

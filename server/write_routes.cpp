@@ -3,6 +3,7 @@
 #include <charconv>
 
 #include "proto/json_reader.h"
+#include "server/access_routes.h"
 
 namespace qtet {
 namespace {
@@ -30,15 +31,9 @@ bool readContentRange(std::string_view text, UploadRequest& out) {
 }
 
 /// 401 and 403; nullopt: the request may go on.
-std::optional<Reply> authorise(const RequestView& request, const std::string& mesh, const Tokens& tokens) {
-  switch (tokens.mayWrite(request.authorization, mesh)) {
-    case Tokens::Verdict::kAllowed: return std::nullopt;
-    case Tokens::Verdict::kForbidden: return problem(403, "forbidden", "this token is for other meshes");
-    case Tokens::Verdict::kUnknown: break;
-  }
-  Reply out = problem(401, "unauthorized", "send a token that may write this mesh, as Authorization: Bearer TOKEN");
-  out.headers.emplace_back("WWW-Authenticate", "Bearer realm=\"qtet\"");
-  return out;
+std::optional<Reply> authorise(const RequestView& request, const std::string& mesh, const Access& access) {
+  constexpr auto kScope = Tokens::Scope::kWrite;
+  return refusalOf(access.tokens()->may(kScope, bearerDigest(request.authorization), mesh), kScope);
 }
 
 bool isDigest(std::string_view text) { return text.size() == 64 && text.find_first_not_of("0123456789abcdef") == std::string_view::npos; }
@@ -67,9 +62,9 @@ bool isMeshPath(const RequestTarget& target) {
   return path.size() == 3 && path[0] == "v1" && path[1] == "meshes";
 }
 
-Reply writeReply(const RequestView& request, const RequestTarget& target, const Tokens& tokens) {
+Reply writeReply(const RequestView& request, const RequestTarget& target, const Access& access) {
   const std::string& id = target.segments[2];
-  if (std::optional<Reply> refusal = authorise(request, id, tokens)) return std::move(*refusal);
+  if (std::optional<Reply> refusal = authorise(request, id, access)) return std::move(*refusal);
   if (!pathOfMesh("", id)) return problem(404, "not-found", "this cannot be the name of a mesh: a file name, not hidden, in UTF-8");
   UploadRequest out{.id = id};
   if (request.ifMatch) out.ifMatch = *request.ifMatch;
@@ -82,10 +77,12 @@ Reply writeReply(const RequestView& request, const RequestTarget& target, const 
 }
 
 Reply partialReply(const RequestView& request, const RequestTarget& target, const Writing& writing) {
-  if (std::optional<Reply> refusal = authorise(request, target.segments[2], writing.tokens)) return std::move(*refusal);
+  if (std::optional<Reply> refusal = authorise(request, target.segments[2], writing.access)) return std::move(*refusal);
   const std::optional<std::string> digest = target.parameter("digest");
   if (!digest || !isDigest(*digest)) return badRequest("digest is the log's SHA-256, 64 hexadecimal digits in lower case");
-  const std::optional<std::uint64_t> bytes = writing.uploads.partialBytes(*digest);
+  const std::string& id = target.segments[2];
+  if (!pathOfMesh("", id)) return problem(404, "not-found", "this cannot be the name of a mesh");
+  const std::optional<std::uint64_t> bytes = writing.uploads.partialBytes(id, *digest);
   if (!bytes) return problem(404, "not-found", "nothing is there of an upload of that log");
   Reply out;
   out.headers = {{"Content-Type", "application/json"}, {"Cache-Control", "no-store"}};

@@ -1,16 +1,16 @@
 // PUT and DELETE of /v1/meshes/{id}, and what is there of an upload that broke off: who may, and what is asked for.
 #pragma once
 
+#include "server/access.h"
 #include "server/http_message.h"
 #include "server/request_target.h"
-#include "server/tokens.h"
 #include "server/uploads.h"
 
 namespace qtet {
 
 /// What the router needs for writing; both outlive it.
 struct Writing {
-  const Tokens& tokens;
+  Access& access;
   Uploads& uploads;
 };
 
@@ -18,7 +18,7 @@ struct Writing {
 [[nodiscard]] bool isMeshPath(const RequestTarget& target);
 
 /// The answer to a PUT or DELETE on a mesh's path: a reply whose body is an UploadRequest, or 400, 401, 403, 404, 411, 415.
-[[nodiscard]] Reply writeReply(const RequestView& request, const RequestTarget& target, const Tokens& tokens);
+[[nodiscard]] Reply writeReply(const RequestView& request, const RequestTarget& target, const Access& access);
 
 /// `/v1/meshes/{id}/upload?digest=HEX` to whoever may write the mesh: {"digest","bytes"}, 400, 401, 403 or 404.
 [[nodiscard]] Reply partialReply(const RequestView& request, const RequestTarget& target, const Writing& writing);

@@ -10,11 +10,12 @@ BandNodes::BandNodes(const FusionMesh& mesh, const LatticeMesh& lattice, std::si
   bands_.depth = kdDepth(lattice.tetrahedra.size(), cellsPerPacket);
   if (bands_.depth == 0) return;
   bands_.leaf = kdLeaves(lattice.points, lattice.tetrahedra, bands_.depth);
-  // A boundary triangle goes with the tetrahedron behind it.
+  // A boundary triangle goes with the tetrahedron behind it, which is round each of its vertices: one of them may be the hub of a wheel.
   for (const Triangle& t : lattice.boundary) {
-    const auto behind = std::ranges::find_if(mesh.star(t[0]), [&](CellId c) {
+    const VertexId least = *std::ranges::min_element(t, {}, [&](VertexId v) { return mesh.star(v).size(); });
+    const auto behind = std::ranges::find_if(mesh.star(least), [&](CellId c) {
       const auto has = [&](VertexId v) { return std::ranges::find(mesh.cell(c), v) != mesh.cell(c).end(); };
-      return c < lattice.tetrahedra.size() && has(t[1]) && has(t[2]);
+      return c < lattice.tetrahedra.size() && std::ranges::all_of(t, has);
     });
     bands_.leaf.push_back(bands_.leaf[*behind]);
   }

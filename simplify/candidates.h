@@ -25,9 +25,8 @@ class Candidates {
     live_ = 0;
   }
 
-  /// The candidates of `owner`, which are sorted.
-  void set(VertexId owner, std::span<Candidate> found) {
-    std::sort(found.begin(), found.end());
+  /// The candidates of `owner`. REQUIRES: sorted.
+  void set(VertexId owner, std::span<const Candidate> found) {
     if (lists_.size() <= owner) lists_.resize(std::size_t{owner} + 1);
     live_ += found.size() - lists_[owner].count;
     lists_[owner] = {pool_.size(), 0, static_cast<std::uint32_t>(found.size())};
@@ -58,8 +57,12 @@ class Candidates {
     List& list = lists_[owner];
     pool_[list.first + list.next++].key *= kFailed;
   }
-  /// The best one is gone: on to the next. REQUIRES: best(owner).
-  void drop(VertexId owner) { ++lists_[owner].next; }
+  /// The best one is gone for good: on to the next. REQUIRES: best(owner).
+  void drop(VertexId owner) {
+    List& list = lists_[owner];
+    pool_[list.first + list.next] = pool_[list.first];  // of those that failed the order does not count
+    ++list.first, --list.count, --live_;
+  }
   /// All that failed may be tried again, in their turn.
   void restart(VertexId owner) {
     if (owner >= lists_.size() || lists_[owner].next == 0) return;
@@ -76,14 +79,15 @@ class Candidates {
     for (; i + 1 < list.first + list.count && pool_[i + 1] < pool_[i]; ++i) std::swap(pool_[i], pool_[i + 1]);
   }
 
-  /// Gives back the room of owners that are dead, when it is half of all.
-  template <class Alive>
-  void compact(const Alive& alive) {
-    for (VertexId v = 0; v < lists_.size(); ++v)
-      if (lists_[v].count > 0 && !alive(v)) {
-        live_ -= lists_[v].count;
-        lists_[v] = {};
-      }
+  /// The owner is dead: all of its candidates are gone.
+  void forget(VertexId owner) {
+    if (owner >= lists_.size()) return;
+    live_ -= lists_[owner].count;
+    lists_[owner] = {};
+  }
+
+  /// Gives back the room of what is gone, when it is half of all.
+  void compact() {
     if (pool_.size() < 2 * live_ + 4096) return;
     std::vector<Candidate> kept;
     kept.reserve(live_ + live_ / 4);

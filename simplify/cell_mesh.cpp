@@ -5,6 +5,7 @@
 
 #include "proto/limits.h"
 #include "simplify/cell_shapes.h"
+#include "simplify/higher_cells.h"
 
 namespace qtet {
 namespace {
@@ -13,9 +14,8 @@ std::unexpected<Error> bad(const std::filesystem::path& path, const std::string&
   return fail(ErrorCode::kBadInput, path.string() + ": " + what);
 }
 
-bool isAnyDegree(std::uint8_t type) {
-  return (type >= kLagrangeTetrahedronCell && type <= kLagrangeWedgeCell) || (type >= kBezierTetrahedronCell && type <= kBezierWedgeCell);
-}
+/// VTK's numbers of two kinds that it does not have itself.
+constexpr std::uint8_t kVtkLagrangePyramid = 74, kVtkBezierPyramid = 81;
 
 bool isRead(std::uint8_t type) { return type == kPolyhedronCell || shapeOf(type).corners > 0; }
 
@@ -79,6 +79,7 @@ std::string cellTypeName(std::uint8_t type) {
     case kQuadraticLinearWedgeCell: return "quadratic-linear wedge";
     case kBiquadraticQuadraticWedgeCell: return "biquadratic wedge";
     case kBiquadraticQuadraticHexahedronCell: return "biquadratic hexahedron";
+    case kTriquadraticPyramidCell: return "triquadratic pyramid";
     case kPolyhedronCell: return "polyhedron";
     case kLagrangeTetrahedronCell: return "Lagrange tetrahedron";
     case kLagrangeHexahedronCell: return "Lagrange hexahedron";
@@ -87,12 +88,13 @@ std::string cellTypeName(std::uint8_t type) {
     case kBezierHexahedronCell: return "Bezier hexahedron";
     case kBezierWedgeCell: return "Bezier wedge";
     case kBiquadraticPyramidCell: return "biquadratic pyramid";
+    case kLagrangePyramidCell: return "Lagrange pyramid";
     default: return "cell of VTK type " + std::to_string(type);
   }
 }
 
 std::uint32_t verticesOf(std::uint8_t type) {
-  if (isAnyDegree(type)) return 0;
+  if (isHigherCell(type)) return 0;
   const CurvedNodes nodes = curvedNodesOf(type);
   std::uint32_t count = shapeOf(type).corners + static_cast<std::uint32_t>(nodes.edges.size());
   for (const std::uint8_t node : nodes.faceCentre) count += node != kNoNode ? 1 : 0;
@@ -104,6 +106,9 @@ Status checkCellMesh(const CellMesh& mesh, const std::filesystem::path& path) {
   if (mesh.cells() == 0) return bad(path, "it holds no volume cells; export the volume mesh, not its surface");
   for (std::size_t i = 0; i < mesh.cells(); ++i) {
     const std::uint8_t type = mesh.types[i];
+    if (type == kVtkLagrangePyramid || type == kVtkBezierPyramid) {
+      return bad(path, "cell " + std::to_string(mesh.cellId(i)) + " is of VTK type " + std::to_string(type) + ", a pyramid of higher degree, for whose nodes VTK defines no order; save such cells with Gmsh (.msh), or as quadratic pyramids");
+    }
     if (!isRead(type)) {
       return bad(path, "cell " + std::to_string(mesh.cellId(i)) + " is of VTK type " + std::to_string(type) +
                            ", which is not read; turn it into tetrahedra first (in ParaView: filter Tetrahedralize)");

@@ -12,7 +12,7 @@
 
 namespace qtet {
 
-/// VTK's numbers for kinds of cells (but for the last), with VTK's order of vertices, whatever the file was.
+/// VTK's numbers for kinds of cells (but for the last two), with VTK's order of vertices, whatever the file was.
 enum CellType : std::uint8_t {
   kTetrahedronCell = 10,
   kVoxelCell = 11,
@@ -29,6 +29,7 @@ enum CellType : std::uint8_t {
   kQuadraticLinearWedgeCell = 31,
   kBiquadraticQuadraticWedgeCell = 32,
   kBiquadraticQuadraticHexahedronCell = 33,
+  kTriquadraticPyramidCell = 37,
   kPolyhedronCell = 42,
   kLagrangeTetrahedronCell = 71,
   kLagrangeHexahedronCell = 72,
@@ -37,6 +38,7 @@ enum CellType : std::uint8_t {
   kBezierHexahedronCell = 79,
   kBezierWedgeCell = 80,
   kBiquadraticPyramidCell = 250,  ///< not VTK's: a quadratic pyramid with a node at the centre of its base
+  kLagrangePyramidCell = 251,     ///< not VTK's, which has a number for it (74) and no order of its nodes: that of higherCell
 };
 
 /// Numbers that name a polyhedron's faces: real ones have some hundred, and splitting one takes time in proportion to the square.

@@ -49,7 +49,9 @@ CellShape shapeOf(std::uint8_t type) {
     case kBezierWedgeCell: return {6, kWedgeFaces, kWedgeEdges};
     case kPyramidCell:
     case kQuadraticPyramidCell:
-    case kBiquadraticPyramidCell: return {5, kPyramidFaces, kPyramidEdges};
+    case kBiquadraticPyramidCell:
+    case kTriquadraticPyramidCell:
+    case kLagrangePyramidCell: return {5, kPyramidFaces, kPyramidEdges};
     case kPentagonalPrismCell: return {10, kPentagonalPrismFaces, {}};
     case kHexagonalPrismCell: return {12, kHexagonalPrismFaces, {}};
     default: return {};
@@ -67,6 +69,7 @@ CurvedNodes curvedNodesOf(std::uint8_t type) {
     case kQuadraticLinearWedgeCell: return {true, std::span(kWedgeEdges).first(6)};
     case kQuadraticPyramidCell: return {true, kPyramidEdges};
     case kBiquadraticPyramidCell: return {true, kPyramidEdges, {13, kNo, kNo, kNo, kNo, kNo}};
+    case kTriquadraticPyramidCell: return {true, kPyramidEdges, {13, 14, 15, 16, 17, kNo}, 18};
     default: return {};
   }
 }

@@ -2,6 +2,7 @@
 #include <numeric>
 
 #include "codec/atomic_file.h"
+#include "proto/field_key.h"
 #include "proto/limits.h"
 #include "simplify/add_fields.h"
 #include "simplify/clean_mesh.h"
@@ -10,6 +11,7 @@
 #include "simplify/opened_log.h"
 #include "simplify/progress.h"
 #include "simplify/read_mesh.h"
+#include "simplify/workers.h"
 
 namespace qtet {
 namespace {
@@ -66,7 +68,7 @@ Status addField(const ParsedWords& parsed, Progress& progress, Console& console)
   progress.stage("adding fields");
   AddFieldsOptions options;
   options.fieldBits = parsed.integer("field-bits", kMinFieldBits, kMaxFieldBits);
-  options.threads = parsed.integer("threads", 1, kMostThreads);
+  options.threads = threadsAtOnce(parsed.integer("threads", 1, kMostThreads));
   options.progress = [&](double fraction) { progress.update(fraction); };
   const Result<AddedFields> added = addFields(log->file, read->mesh, options);
   if (!added) return std::unexpected(added.error());
@@ -77,7 +79,7 @@ Status addField(const ParsedWords& parsed, Progress& progress, Console& console)
   for (const std::string& note : added->notes) console.note(note);
   for (const NewField& field : added->fields) {
     const auto size = std::accumulate(field.blocks.begin(), field.blocks.end(), std::size_t{0}, [](std::size_t sum, const Bytes& b) { return sum + b.size(); });
-    console.out << field.info.association << " field " << field.info.name << ": " << size << " bytes, " << field.info.bits << " bits, step " << field.info.step;
+    console.out << field.info.association << " field " << printable(field.info.name) << ": " << size << " bytes, " << field.info.bits << " bits, step " << field.info.step;
     if (!field.errors.empty()) console.out << "; base mesh rms " << 100 * field.errors.front().rms << " %";
     console.out << "\n";
   }
@@ -94,9 +96,9 @@ Status removeField(const ParsedWords& parsed, Console& console) {
   const auto names = parseFieldNames(parsed.get<std::string>("fields"));
   if (!names) kept.clear();
   for (const std::string& name : names.value_or(std::vector<std::string>{})) {
-    const auto field = fieldOfKey(log->manifest, name);
-    if (!field) return fail(ErrorCode::kNotFound, "the log has no field '" + name + "'; it has: " + namesOf(log->manifest));
-    std::erase(kept, *field);
+    const std::vector<std::uint32_t> meant = fieldsOfKey(log->manifest.fields, name);
+    if (meant.empty()) return fail(ErrorCode::kNotFound, "the log has no field '" + name + "'; it has: " + namesOf(log->manifest));
+    for (const std::uint32_t f : meant) std::erase(kept, f);
   }
   const Result<Bytes> bytes = withFields(log->file, kept, {});
   if (!bytes) return std::unexpected(bytes.error());
@@ -111,11 +113,11 @@ int runAddField(const Words& words, Console& console) {
   namespace po = boost::program_options;
   po::options_description options("options");
   options.add_options()("from", po::value<std::string>(), "required: the mesh file whose fields are added; its mesh is the log's input")(
-      "fields", po::value<std::string>()->default_value("all"), "all, or names between commas; point:NAME or cell:NAME is one of two fields with the same name")(
+      "fields", po::value<std::string>()->default_value("all"), kFieldsHelp)(
       "output,o", po::value<std::string>(), "the log to write, NAME.qtet; without it the log itself is replaced once the new one is whole")(
       "replace", "fields that the log has already are replaced")(
       "field-bits", po::value<int>()->default_value(12), "bits of a float field's values, 1 to 28; integer fields are stored exactly")(
-      "threads", po::value<int>()->default_value(1), "threads for measuring; the result does not depend on it");
+      "threads", po::value<int>()->default_value(1), "threads for measuring, as many as there are processors at most; the result does not depend on it");
   addReadOptions(options);
   const ParsedWords parsed(
       words,
@@ -134,7 +136,7 @@ int runAddField(const Words& words, Console& console) {
 int runRemoveField(const Words& words, Console& console) {
   namespace po = boost::program_options;
   po::options_description options("options");
-  options.add_options()("fields", po::value<std::string>(), "required: the fields to leave out: all, or names between commas; cell:NAME where a point field has the same name")(
+  options.add_options()("fields", po::value<std::string>(), "required: the fields to leave out: all, or names as `qtet extract --fields` takes them")(
       "output,o", po::value<std::string>(), "the log to write, NAME.qtet; without it the log itself is replaced once the new one is whole");
   const ParsedWords parsed(words,
                            {"remove-field", "remove-field LOG.qtet --fields NAMES [-o OUT.qtet]",

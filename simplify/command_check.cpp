@@ -1,3 +1,4 @@
+#include <filesystem>
 #include <iomanip>
 
 #include "simplify/check_mesh.h"
@@ -8,35 +9,36 @@
 namespace qtet {
 namespace {
 
-OrderedJson toJson(const CheckReport& report, const std::string& input) {
+OrderedJson toJson(const CheckReport& report, const std::string& input, const Console& console) {
   OrderedJson findings = OrderedJson::array();
   for (const Finding& finding : report.findings) {
-    OrderedJson one = {{"kind", finding.kind}, {"verdict", verdictName(finding.verdict)}, {"text", finding.text}};
+    OrderedJson one = {{"kind", finding.kind}, {"verdict", verdictName(finding.verdict)}, {"text", console.named(finding.text)}};
     if (finding.found.count > 0) one.update({{"what", finding.what}, {"count", finding.found.count}, {"first", finding.found.first}});
     if (!finding.advice.empty()) one["advice"] = finding.advice;
     findings.push_back(std::move(one));
   }
-  return {{"input", input},           {"refused", report.refused()},       {"points", report.points},     {"tetrahedra", report.tetrahedra},
+  return {{"input", console.named(input)},           {"refused", report.refused()},       {"points", report.points},     {"tetrahedra", report.tetrahedra},
           {"fields", report.fields},  {"components", report.components},   {"read", readReport(report.read)}, {"notes", report.read.notes},
           {"findings", findings}};
 }
 
-void printReport(const CheckReport& report, const std::string& input, std::ostream& out) {
+void printReport(const CheckReport& report, const std::string& input, const Console& console) {
+  std::ostream& out = console.out;
   if (report.tetrahedra > 0) {
-    out << input << ": " << report.points << " points, " << report.tetrahedra << " tetrahedra";
+    out << console.shown(input) << ": " << counted(report.points, "point", "points") << ", " << counted(report.tetrahedra, "tetrahedron", "tetrahedra");
     if (!report.read.split.onlyTetrahedra()) out << " of cells that were split";
-    out << ", " << report.fields.size() << " fields\n";
-    for (const std::string& field : report.fields) out << "  " << field << "\n";
+    out << ", " << counted(report.fields.size(), "field", "fields") << "\n";
+    for (const std::string& field : report.fields) out << "  " << printable(field) << "\n";
   }
   for (const Finding& finding : report.findings) {
-    out << std::left << std::setw(10) << verdictName(finding.verdict) << finding.text;
+    out << std::left << std::setw(10) << verdictName(finding.verdict) << console.shown(finding.text);
     if (finding.found.count > 0) {
       out << ": " << finding.found.count;
       for (std::size_t i = 0; i < finding.found.first.size(); ++i) out << (i == 0 ? " (" + finding.what + " " : ", ") << finding.found.first[i];
       if (!finding.found.first.empty()) out << (finding.found.count > finding.found.first.size() ? ", ...)" : ")");
     }
     out << "\n";
-    if (!finding.advice.empty()) out << std::setw(10) << "" << "-> " << finding.advice << "\n";
+    if (!finding.advice.empty()) out << std::setw(10) << "" << "-> " << console.shown(finding.advice) << "\n";
   }
   if (report.findings.empty()) out << "nothing is wrong with it\n";
   out << (report.refused() ? "qtet simplify would refuse it\n" : "qtet simplify takes it\n");
@@ -63,10 +65,10 @@ int runCheck(const Words& words, Console& console) {
   const CheckReport report = checkMesh(input, readOptionsOf(parsed));
   progress.clear();
   if (parsed.has("json")) {
-    printJson(toJson(report, input), console);
+    printJson(toJson(report, input, console), console);
   } else {
     for (const std::string& note : report.read.notes) console.note(note);
-    printReport(report, input, console.out);
+    printReport(report, input, console);
   }
   return report.refused() ? kExitFailed : kExitOk;
 }

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <limits>
 
+#include "proto/field_key.h"
 #include "simplify/command_measure.h"
+#include "simplify/hull_weight.h"
 #include "simplify/tet_mesh.h"
+#include "simplify/workers.h"
 
 namespace qtet {
 namespace {
@@ -52,8 +55,9 @@ void addFusionOptions(boost::program_options::options_description& options) {
   namespace po = boost::program_options;
   options.add_options()("target-ratio", po::value<double>()->default_value(0.01, "0.01"),
                         "stop when the base mesh has this fraction of the tetrahedra")(
-      "hull-weight", po::value<double>()->default_value(CostOptions().hullWeight, "200"),
-      "what the boundary's place counts beside the fields: 0 to 40 for the fields first, 4,000 to 40,000 for the shape first")(
+      "hull-weight", po::value<double>(),
+      "what the boundary's place counts beside the fields: 0 to 1 for the fields first, 4,000 to 40,000 for the shape first; without, a weight from 0.5 to 200 by how much the "
+      "fields change at the boundary, which the report tells")(
       "field-weight", po::value<std::vector<std::string>>(),
       "NAME=W: what the field's error over its range counts, 1 without; 0 leaves it out; may be given for several fields")(
       "shape-weight", po::value<double>()->default_value(FusionOptions().shapeWeight, "0.5"),
@@ -69,17 +73,17 @@ void addFusionOptions(boost::program_options::options_description& options) {
       "layout", po::value<std::string>()->default_value("stream"),
       "stream: the smallest log, refined as a whole; regions: packets of places, so that a viewer can refine one place without the rest")(
       "cells-per-packet", po::value<int>(), "with --layout regions: tetrahedra of the original that share a finest packet, 100 and more; 8000 without")(
-      "threads", po::value<int>()->default_value(1), "threads; the result does not depend on it");
+      "threads", po::value<int>()->default_value(1), "threads, as many as there are processors at most; the result does not depend on it");
 }
 
 FusionRequest fusionRequestOf(const ParsedWords& parsed) {
   FusionRequest out;
   out.options.targetRatio = parsed.number("target-ratio", 0, 1);
-  out.options.cost.hullWeight = parsed.number("hull-weight", 0, kMaxHullWeight);
+  if (parsed.has("hull-weight")) out.options.cost.hullWeight = parsed.number("hull-weight", 0, kMaxHullWeight);
   out.options.shapeWeight = parsed.number("shape-weight", 0, kMaxWeight);
   out.options.placement = placementRuleOf(parsed.get<std::string>("placement"));
   out.options.envelopeTolerance = parsed.number("envelope-tolerance", 0, 1);
-  out.options.threads = parsed.integer("threads", 1, kMaxThreads);
+  out.options.threads = threadsAtOnce(parsed.integer("threads", 1, kMaxThreads));
   out.options.bands.cellsPerPacket = cellsPerPacketOf(parsed);
   if (parsed.has("field-weight"))
     for (const std::string& text : parsed.get<std::vector<std::string>>("field-weight")) {
@@ -93,15 +97,16 @@ FusionRequest fusionRequestOf(const ParsedWords& parsed) {
 Result<FusionOptions> fusionOptionsFor(const FusionRequest& request, const QuantisedMesh& quantised, std::vector<std::string>& notes) {
   FusionOptions out = request.options;
   const std::vector<FieldInfo>& fields = quantised.mesh.fields;
-  const auto find = [&](const std::string& name, bool ofCells) {
-    return static_cast<std::size_t>(
-        std::ranges::find_if(fields, [&](const FieldInfo& f) { return f.name == name && isCellField(f) == ofCells; }) - fields.begin());
+  const auto meantBy = [&](const std::string& name, bool ofCells) {
+    std::vector<std::uint32_t> meant = fieldsOfKey(fields, name);
+    std::erase_if(meant, [&](std::uint32_t f) { return isCellField(fields[f]) != ofCells; });
+    return meant;
   };
   std::vector<std::optional<double>> named(fields.size());
   for (const auto& [name, weight] : request.fieldWeights) {
-    const std::size_t f = find(name, false);
-    if (f == fields.size()) return fail(ErrorCode::kNotFound, "--field-weight: the mesh carries no point field '" + name + "'");
-    named[f] = weight;
+    const std::vector<std::uint32_t> meant = meantBy(name, false);
+    if (meant.empty()) return fail(ErrorCode::kNotFound, "--field-weight: the mesh carries no point field '" + name + "'");
+    for (const std::uint32_t f : meant) named[f] = weight;
   }
   out.cost.fieldWeights.assign(fields.size(), 0);
   std::size_t components = 0;
@@ -116,12 +121,14 @@ Result<FusionOptions> fusionOptionsFor(const FusionRequest& request, const Quant
     else
       notes.push_back("field " + fields[f].name + " " + why + ": it does not count when cells are fused");
   }
+  if (!out.cost.hullWeight) out.cost.hullWeight = balancedHullWeight(quantised.mesh, costPartsOf(quantised.mesh, out.cost.fieldWeights));
   if (request.regions) {
-    const std::size_t f = find(*request.regions, true);
-    if (f == fields.size())
-      return fail(ErrorCode::kNotFound,
-                  "--preserve-regions: the mesh carries no cell field '" + *request.regions + "'; see that --fields includes it");
-    out.regionField = f;
+    const std::vector<std::uint32_t> meant = meantBy(*request.regions, true);
+    if (meant.size() != 1) {
+      return fail(ErrorCode::kNotFound, "--preserve-regions: the mesh carries " + std::string(meant.empty() ? "no cell field '" : "several steps of the cell field '") + *request.regions +
+                                            (meant.empty() ? "'; see that --fields includes it" : "'; name one, NAME@TIME"));
+    }
+    out.regionField = meant.front();
   }
   return out;
 }

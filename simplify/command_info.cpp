@@ -57,7 +57,7 @@ std::string brief(double number) {
 /// A line of the head: what it is, bright where colours are allowed, and what there is to say.
 void line(const Console& console, const std::string& what, const std::string& said) {
   constexpr std::size_t kWidth = 10;
-  console.out << (console.colours ? "\033[1m" : "") << what << (console.colours ? "\033[0m" : "") << std::string(kWidth - std::min(what.size(), kWidth - 1), ' ') << said
+  console.out << (console.colours ? "\033[1m" : "") << what << (console.colours ? "\033[0m" : "") << std::string(kWidth - std::min(what.size(), kWidth - 1), ' ') << printable(said)
               << "\n";
 }
 
@@ -66,11 +66,11 @@ void printColumns(const std::vector<std::vector<std::string>>& rows, const Conso
   std::vector<std::size_t> widths;
   for (const auto& row : rows) {
     widths.resize(std::max(widths.size(), row.size()));
-    for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
+    for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], textWidth(row[c]));
   }
   for (const auto& row : rows) {
     for (std::size_t c = 0; c < row.size(); ++c) {
-      const std::string space(widths[c] - row[c].size(), ' ');
+      const std::string space(widths[c] - textWidth(row[c]), ' ');
       console.out << (c == 0 ? row[c] + space : "  " + space + row[c]);
     }
     console.out << "\n";
@@ -81,9 +81,9 @@ void printHead(const OpenedLog& log, const OrderedJson& info, const Console& con
   const ManifestLevel& last = log.manifest.levels.back();
   const std::uint64_t bytes = info["bytes"];
   line(console, "source", log.manifest.source + "  (" + log.manifest.generator + ")");
-  line(console, "mesh", grouped(last.tetrahedra) + " tetrahedra, " + grouped(last.vertices) + " vertices, " + grouped(last.boundaryTriangles) +
-                            " boundary triangles, " + std::to_string(log.manifest.levels.size()) + " levels");
-  line(console, "bytes", grouped(bytes) + " in " + grouped(info["chunks"]) + " chunks, " + brief(8.0 * static_cast<double>(bytes) / std::max(1u, last.tetrahedra)) +
+  line(console, "mesh", counted(last.tetrahedra, "tetrahedron", "tetrahedra") + ", " + counted(last.vertices, "vertex", "vertices") + ", " +
+                            counted(last.boundaryTriangles, "boundary triangle", "boundary triangles") + ", levels 0 to " + std::to_string(log.manifest.levels.size() - 1));
+  line(console, "bytes", grouped(bytes) + " in " + counted(info["chunks"], "chunk", "chunks") + ", " + brief(8.0 * static_cast<double>(bytes) / std::max(1u, last.tetrahedra)) +
                              " bits a tetrahedron; the first " + grouped(info["headBytes"]) + " are header, manifest and table");
   line(console, "lattice", std::to_string(log.manifest.latticeBits) + " bits an axis, step " + brief(log.manifest.latticeStep) + ", layout " + log.manifest.layout);
   line(console, "digest", info["digest"]);
@@ -93,7 +93,7 @@ void printHead(const OpenedLog& log, const OrderedJson& info, const Console& con
   std::vector<std::vector<std::string>> rows{{"field", "of", "type", "least", "most", "bits", "step", "bytes"}};
   for (const OrderedJson& field : info["fields"]) {
     const auto components = field["components"].get<std::uint32_t>();
-    rows.push_back({field["name"], field["association"] == "cell" ? "cells" : "points", field["type"].get<std::string>() + (components > 1 ? " x " + std::to_string(components) : ""),
+    rows.push_back({printable(field["name"].get<std::string>()), field["association"] == "cell" ? "cells" : "points", field["type"].get<std::string>() + (components > 1 ? " x " + std::to_string(components) : ""),
                     brief(field["range"][0]), brief(field["range"][1]), std::to_string(field["bits"].get<int>()), brief(field["step"]), grouped(field["bytes"])});
   }
   printColumns(rows, console);
@@ -125,12 +125,12 @@ int runInfo(const Words& words, Console& console) {
       words,
       {"info", "info LOG.qtet [--all] [--plot FILE.svg|FILE.png] [--json]",
        "Says what a log holds: digest, lattice, fields, and for each level its cells and bytes. Level 0 is the base mesh,\n"
-       "the last level the input's mesh; `cumulative` is the length of the file's prefix that holds a level. Where the log tells them,\n"
+       "the last level the input's mesh; `cumulative` is the length of the file's prefix that holds a level, `bytes` what it is above that of the row before. Where the log tells them,\n"
        "the errors against the original follow: of the boundary in per cent of the diagonal (the worse one of both ways), the volume that is\n"
        "left, and of each field in per cent of its range.\n"
        "--json: digest, generator, source, layout, bytes, headBytes, chunks, lattice {bits, step, origin}, fields [{name, components, type, association, bits,\n"
        "step, minimum, range, gaps, bytes}], kept, and levels [{level, tetrahedra, vertices, boundaryTriangles, bytes, cumulativeBytes, error}]; error, as\n"
-       "fractions: toLevel and toOriginal {mean, max}, volumeKept, fields [{name, rms, max}].",
+       "fractions: boundary {toLevel {mean, max}, toOriginal {mean, max}}, volumeKept, fields [{rms, max}] in the order of the fields above.",
        "  qtet info fin.qtet\n  qtet info fin.qtet --plot fin.svg\n  qtet info fin.qtet --json | jq '.levels[0]'\n"},
       options, {"LOG"});
   if (parsed.helped(console)) return kExitOk;

@@ -7,6 +7,9 @@
 #include <iterator>
 #include <limits>
 #include <sstream>
+#include <utility>
+
+#include "proto/option_error.h"
 
 namespace qtet {
 
@@ -38,8 +41,8 @@ ParsedWords::ParsedWords(const Words& words, CommandHelp help, po::options_descr
     const auto style = po::command_line_style::unix_style & ~po::command_line_style::allow_guessing;
     po::store(po::command_line_parser(words).options(all).positional(places).style(style).run(), values_);
     po::notify(values_);
-  } catch (const po::error& error) {
-    throw UsageError(error.what() + hint(help_));
+  } catch (po::error& error) {
+    throw UsageError(optionErrorText<po::error_with_option_name>(error) + hint(help_));
   }
   if (has("help") || has("help-json")) return;
   for (const std::string& name : positional_) {
@@ -90,11 +93,17 @@ std::optional<std::vector<std::string>> parseFieldNames(const std::string& text)
   if (text == "all") return std::nullopt;
   std::vector<std::string> names;
   if (text == "none") return names;
-  std::istringstream stream(text);
-  for (std::string name; std::getline(stream, name, ',');) {
+  std::string name;
+  const auto take = [&] {
     if (name.empty()) throw UsageError("--fields '" + text + "' holds an empty name; give all, none, or names between commas");
-    names.push_back(name);
+    names.push_back(std::exchange(name, {}));
+  };
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool isEscape = text[i] == '\\' && i + 1 < text.size() && (text[i + 1] == ',' || text[i + 1] == '\\');
+    if (text[i] == ',') take();
+    else name += text[isEscape ? ++i : i];
   }
+  if (!name.empty()) take();
   if (names.empty()) throw UsageError("--fields is empty; give all, none, or names between commas");
   return names;
 }
@@ -121,8 +130,8 @@ Status checkOutput(const fs::path& output, const std::string& extensions, const 
 }
 
 int reportFailure(const Error& error, bool asJson, Console& console) {
-  console.err << "qtet: " << error.text() << "\n";
-  if (asJson) printJson({{"error", {{"code", errorCodeName(error.code)}, {"message", error.message}}}}, console);
+  console.err << "qtet: " << console.shown(error.text(), true) << "\n";
+  if (asJson) printJson({{"error", {{"code", errorCodeName(error.code)}, {"message", console.named(error.message)}}}}, console);
   return kExitFailed;
 }
 

@@ -55,12 +55,32 @@ class ParsedWords {
   boost::program_options::variables_map values_;
 };
 
-/// The names between commas; "all" is nullopt, "none" the empty list. Throws UsageError.
+/// What every option --fields of a mesh or a log takes (proto/field_key.h).
+inline constexpr const char* kFieldsHelp =
+    "all, none, or names between commas: NAME means every field of that name, of a series (--time all) every step's, NAME@TIME; point:NAME or cell:NAME is one of two with the same name; \\, is a comma in a name";
+
+/// The names between commas, of which "\\," is one in a name, and "\\\\" a backslash before it; "all" is nullopt, "none" the empty list. Throws UsageError.
 [[nodiscard]] std::optional<std::vector<std::string>> parseFieldNames(const std::string& text);
 
 /// Refuses an output before the work is done: an ending that is none of `extensions`, between blanks (UsageError), a folder that does not exist or cannot be written, the input itself.
 [[nodiscard]] Status checkOutput(const std::filesystem::path& output, const std::string& extensions,
                                  const std::optional<std::filesystem::path>& input = std::nullopt);
+
+/// A mesh file to write: its kind, and its name or the standard output ("-" with --to).
+struct MeshOutput {
+  std::filesystem::path file;
+  std::string ending;  ///< with its dot
+  bool isStandardOutput = false;
+};
+
+/// -o and --to for meshOutputOf.
+void addMeshOutputOptions(boost::program_options::options_description& options);
+
+/// Of -o and --to, checked as checkOutput does. Throws UsageError.
+[[nodiscard]] Result<MeshOutput> meshOutputOf(const ParsedWords& parsed, const std::string& input);
+
+/// Writes the file whole or not at all, and says `what` became of it: on the standard output, or as a note where that is the file.
+[[nodiscard]] Status writeMeshOutput(const MeshOutput& output, std::span<const std::uint8_t> bytes, const std::string& what, Console& console);
 
 /// Prints the failure, also as {"error":{"code","message"}} on `out` where JSON was asked for; returns kExitFailed.
 int reportFailure(const Error& error, bool asJson, Console& console);

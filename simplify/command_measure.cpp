@@ -72,7 +72,7 @@ std::string measureSentence(const OrderedJson& report, const OrderedJson& fields
   std::string out = "\nbase mesh: boundary within " + percentText(std::max(farthest("toLevel"), farthest("toOriginal"))) +
                     " of the diagonal, " + percentText(base["volumeKept"].get<double>()) + " of the volume";
   std::size_t f = 0;
-  for (const auto& [name, ignored] : fields.items()) out += ", " + name + " rms " + percentText(base["fields"][f++]["rms"].get<double>());
+  for (const auto& [name, ignored] : fields.items()) out += ", " + printable(name) + " rms " + percentText(base["fields"][f++]["rms"].get<double>());
   return out;
 }
 

@@ -91,7 +91,7 @@ Result<HttpAnswer> pushLog(const Push& push, Console& console) {
     progress.clear();
     const bool again = out ? worthAnother(*out) : out.error().code == ErrorCode::kIo;
     if (!again || attempt == kMaxAttempts) break;
-    console.err << "qtet: " << (out ? reasonOf(*out) : out.error().message) << "; trying again\n";
+    console.err << "qtet: " << printable(out ? reasonOf(*out) : out.error().message) << "; trying again\n";
     std::this_thread::sleep_for(kFirstPause * (1 << (attempt - 1)));
   }
   return out;

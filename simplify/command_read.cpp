@@ -1,7 +1,9 @@
 #include "simplify/command_read.h"
 
 #include <charconv>
+#include <iomanip>
 #include <limits>
+#include <sstream>
 
 namespace qtet {
 namespace {
@@ -28,11 +30,12 @@ Threshold thresholdOf(const std::string& text) {
 void addReadOptions(boost::program_options::options_description& options) {
   namespace po = boost::program_options;
   options.add_options()("curved", po::value<std::string>()->default_value("split"),
-                        "quadratic cells: split at all of their nodes, or linear: their corners alone, also for cells of higher degree")(
+                        "quadratic cells and those of higher degree: split at all of their nodes, or linear: their corners alone")(
       "weld", po::value<double>(), "join points that lie within this distance (0: at the same place), as where an O-grid closes")(
       "time", po::value<std::string>()->default_value("last"), "of a series: a step's time, first, last, or all: every step's fields, as NAME@TIME")(
       "threshold", po::value<std::string>(), "only cells where a field lies within bounds: FIELD=LOW:HIGH, either side may be empty")(
-      "plot3d", po::value<std::string>(), "the input is a PLOT3D grid; its solution file, or none");
+      "plot3d", po::value<std::string>(), "the input is a PLOT3D grid; its solution file, or none")(
+      "format", po::value<std::string>(), "the kind of file, where the name does not say it or is - (the standard input): vtu, msh, ...");
 }
 
 ReadOptions readOptionsOf(const ParsedWords& parsed) {
@@ -41,11 +44,28 @@ ReadOptions readOptionsOf(const ParsedWords& parsed) {
   if (curved != "split" && curved != "linear") throw UsageError("--curved '" + curved + "' is not known; give split or linear");
   options.curved = curved == "split" ? CurvedCells::kSplit : CurvedCells::kLinear;
   if (parsed.has("weld")) options.weld = parsed.number("weld", 0, std::numeric_limits<double>::max());
+  if (parsed.has("format")) {
+    options.format = parsed.get<std::string>("format");
+    if (options.format.starts_with('.')) options.format.erase(0, 1);
+  }
   options.time = parsed.get<std::string>("time");
   if (parsed.has("threshold")) options.threshold = thresholdOf(parsed.get<std::string>("threshold"));
   options.plot3d = parsed.has("plot3d");
   if (options.plot3d && parsed.get<std::string>("plot3d") != "none") options.plot3dSolution = parsed.get<std::string>("plot3d");
   return options;
+}
+
+Words readWordsOf(const ParsedWords& parsed) {
+  Words out;
+  for (const char* name : {"curved", "time", "threshold", "plot3d", "format"}) {
+    if (parsed.has(name)) out.insert(out.end(), {"--" + std::string(name), parsed.get<std::string>(name)});
+  }
+  if (parsed.has("weld")) {
+    std::ostringstream exact;
+    exact << std::setprecision(std::numeric_limits<double>::max_digits10) << parsed.get<double>("weld");
+    out.insert(out.end(), {"--weld", exact.str()});
+  }
+  return out;
 }
 
 OrderedJson readReport(const ReadReport& report) {

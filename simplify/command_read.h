@@ -8,8 +8,11 @@
 
 namespace qtet {
 
-/// --curved, --weld, --time, --threshold, --plot3d.
+/// --curved, --weld, --time, --threshold, --plot3d, --format.
 void addReadOptions(boost::program_options::options_description& options);
+
+/// The words that say the same once more, for another command.
+[[nodiscard]] Words readWordsOf(const ParsedWords& parsed);
 
 /// What was asked for; the fields stay to be set. Throws UsageError.
 [[nodiscard]] ReadOptions readOptionsOf(const ParsedWords& parsed);

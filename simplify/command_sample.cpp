@@ -32,8 +32,8 @@ int runSample(const Words& words, Console& console) {
   if (!mesh) throw UsageError(mesh.error().message);
   const Bytes bytes = vtuBytes(*mesh);
   if (Status written = writeFileAtomically(output, bytes); !written) return reportFailure(written.error(), false, console);
-  console.out << output << ": " << mesh->tetrahedra.size() << " tetrahedra, " << mesh->points.size() << " points, " << mesh->fields.size()
-              << " fields, " << bytes.size() << " bytes\n";
+  console.out << output << ": " << counted(mesh->tetrahedra.size(), "tetrahedron", "tetrahedra") << ", " << counted(mesh->points.size(), "point", "points") << ", "
+              << counted(mesh->fields.size(), "field", "fields") << ", " << grouped(bytes.size()) << " bytes\n";
   return kExitOk;
 }
 

@@ -10,6 +10,7 @@
 #include "proto/limits.h"
 #include "proto/manifest.h"
 #include "simplify/clean_mesh.h"
+#include "simplify/cost_parts.h"
 #include "simplify/command_fusion.h"
 #include "simplify/command_line.h"
 #include "simplify/command_measure.h"
@@ -131,6 +132,7 @@ struct Prepared {
   Lattice lattice;  ///< the quantised mesh's, which the simplifier takes
   KeptInput kept;  ///< empty where nothing of the input is kept
   std::vector<std::string> fusionNotes;
+  std::optional<double> hullWeight;  ///< that the fusions were ordered by, where there were fields to weigh it against
 
   [[nodiscard]] std::vector<std::string> notes() const {
     std::vector<std::string> out = read.notes;
@@ -205,6 +207,7 @@ Result<EncodedLog> makeLog(const Request& request, Prepared& prepared, Progress&
   progress.stage("simplifying");
   Result<FusionOptions> fusion = fusionOptionsFor(request.fusion, prepared.quantised, prepared.fusionNotes);
   if (!fusion) return std::unexpected(fusion.error());
+  if (request.algorithm != "paper" && !costPartsOf(prepared.quantised.mesh, fusion->cost.fieldWeights).empty()) prepared.hullWeight = fusion->cost.hullWeight;
   fusion->progress = [&](double fraction) { progress.update(fraction); };
   Result<FusionHistory> history = fuseBy(request, std::move(prepared.quantised.mesh), *fusion, paper);
   if (!history) return std::unexpected(history.error());
@@ -257,6 +260,7 @@ Result<OrderedJson> reportOf(const Request& request, const Prepared& prepared, c
                         {"levels", manifest->levels.size() - 1},
                         {"chunks", index->chunks.size()}};
   report["records"] = log.statistics.records;
+  if (prepared.hullWeight) report["hullWeight"] = *prepared.hullWeight;
   addSizes(log, *manifest, report);
   if (!index->closing.empty()) report["kept"] = closingJson(*index, *manifest);
   report["error"] = measureReport(request.measure, manifest->levels.front().error);
@@ -289,14 +293,16 @@ Result<OrderedJson> run(const Request& request, Progress& progress) {
 
 void printReport(const OrderedJson& report, std::ostream& out) {
   const OrderedJson& bits = report["bitsPerTetrahedron"];
-  out << std::fixed << std::setprecision(1) << report["output"].get<std::string>() << ": " << report["tetrahedra"]["full"]
-      << " tetrahedra, of which the base mesh keeps " << report["tetrahedra"]["base"] << " (" << report["percentRemoved"].get<double>()
-      << " % removed), " << report["levels"] << " levels\n"
-      << report["bytes"] << " bytes, " << std::setprecision(2) << bits["total"].get<double>() << " bits a tetrahedron: connectivity "
+  out << std::fixed << std::setprecision(1) << printable(report["output"].get<std::string>()) << ": " << counted(report["tetrahedra"]["full"], "tetrahedron", "tetrahedra")
+      << ", of which the base mesh keeps " << grouped(report["tetrahedra"]["base"]) << " (" << report["percentRemoved"].get<double>()
+      << " % removed), refined in " << counted(report["levels"], "level", "levels") << "\n"
+      << grouped(report["bytes"]) << " bytes, " << std::setprecision(2) << bits["total"].get<double>() << " bits a tetrahedron: connectivity "
       << bits["connectivity"].get<double>() << ", positions " << bits["positions"].get<double>();
-  for (const auto& [name, value] : bits["fields"].items()) out << ", " << name << " " << value.get<double>();
+  for (const auto& [name, value] : bits["fields"].items()) out << ", " << printable(name) << " " << value.get<double>();
   out << measureSentence(report["error"], report["bitsPerTetrahedron"]["fields"]);
-  out << "\nlattice of " << report["lattice"]["bits"] << " bits an axis, step " << report["lattice"]["step"] << "; " << std::setprecision(1)
+  out << "\nlattice of " << report["lattice"]["bits"] << " bits an axis, step " << report["lattice"]["step"] << "; ";
+  if (report.contains("hullWeight")) out << "hull weight " << report["hullWeight"].get<double>() << "; ";
+  out << std::setprecision(1)
       << report["seconds"]["total"].get<double>() << " s\n";
 }
 
@@ -308,7 +314,7 @@ int runSimplify(const Words& words, Console& console) {
   options.add_options()("output,o", po::value<std::string>(), "required: the log to write, NAME.qtet")(
       "algorithm", po::value<std::string>()->default_value("qtet"), "qtet, or paper: the paper's own loop, tetrahedra only, which ends near half of the cells")(
       "fields", po::value<std::string>()->default_value("all"),
-      "all, none, or names between commas; point:NAME or cell:NAME is one of two fields with the same name")(
+      kFieldsHelp)(
       "position-bits", po::value<int>()->default_value(16),
       "bits of the lattice an axis, 4 to 28; raised where a cell would be flattened or inverted")(
       "field-bits", po::value<int>()->default_value(12), "bits of a float field's values, 1 to 28; integer fields are stored exactly")(

@@ -1,4 +1,5 @@
 #include <iomanip>
+#include <numeric>
 #include <sstream>
 
 #include "proto/checksum.h"
@@ -15,21 +16,6 @@
 namespace qtet {
 namespace {
 
-LatticeMesh finestMesh(const OpenedLog& log, const Refiner& refiner) {
-  LatticeMesh mesh;
-  mesh.lattice = {log.manifest.latticeBits, log.manifest.latticeStep, log.manifest.latticeOrigin};
-  mesh.points.assign(refiner.points().begin(), refiner.points().end());
-  mesh.tetrahedra.assign(refiner.tetrahedra().begin(), refiner.tetrahedra().end());
-  for (std::uint32_t f = 0; f < log.manifest.fields.size(); ++f) {
-    const ManifestField& field = log.manifest.fields[f];
-    mesh.fields.push_back(
-        {field.name, field.components, field.type, field.association, field.bits, field.step, field.minimum, field.range, field.gaps});
-    const auto values = refiner.fieldValues(f);
-    mesh.values.emplace_back(values.begin(), values.end());
-  }
-  return mesh;
-}
-
 struct Input {
   std::string path;
   ReadOptions options;
@@ -38,7 +24,9 @@ struct Input {
 /// The input read as its options say, cleaned and put on the log's lattice, against what was decoded; what was found in `out`.
 Status compareWithInput(const OpenedLog& log, const Refiner& refiner, const Input& input, Progress& progress, OrderedJson& out) {
   progress.stage("reading " + input.path);
-  const LatticeMesh decoded = finestMesh(log, refiner);
+  std::vector<std::uint32_t> all(log.manifest.fields.size());
+  std::iota(all.begin(), all.end(), 0u);
+  const LatticeMesh decoded = latticeMesh(log.manifest, refiner, all);
   std::vector<std::string> names;
   for (const FieldInfo& field : decoded.fields) names.push_back(field.association + ":" + field.name);
   ReadOptions options = input.options;
@@ -94,19 +82,20 @@ Result<OrderedJson> verify(const ParsedWords& parsed, Progress& progress) {
 
 void printReport(const OrderedJson& report, std::ostream& out) {
   out << "digest      " << report["digest"].get<std::string>() << "\nmeshDigest  " << report["meshDigest"].get<std::string>()
-      << "\nevery checksum and count is right: " << report["bytes"] << " bytes, " << report["chunks"] << " chunks, " << report["levels"]
-      << " levels, " << report["tetrahedra"] << " tetrahedra, " << report["vertices"] << " vertices\n";
+      << "\nevery checksum and count is right: " << grouped(report["bytes"]) << " bytes, " << counted(report["chunks"], "chunk", "chunks") << ", "
+      << counted(report["levels"].get<std::size_t>() - 1, "level", "levels") << " above the base mesh, " << counted(report["tetrahedra"], "tetrahedron", "tetrahedra") << ", "
+      << counted(report["vertices"], "vertex", "vertices") << "\n";
   if (!report.contains("against")) return;
   const OrderedJson& against = report["against"];
-  out << std::setprecision(3) << "the finest level is the mesh of " << against["input"].get<std::string>()
+  out << std::setprecision(3) << "the finest level is the mesh of " << printable(against["input"].get<std::string>())
       << ", cell for cell; positions are within " << against["largestPositionErrorSteps"].get<double>() << " lattice steps";
   for (const auto& [name, error] : against["largestFieldErrorSteps"].items())
-    out << ", " << name << " within " << error.get<double>() << " field steps";
+    out << ", " << printable(name) << " within " << error.get<double>() << " field steps";
   out << "\n";
   if (against["kept"]["order"].get<bool>()) out << "its points, cells and their vertices are numbered as in the file\n";
   if (against["kept"]["positions"].get<bool>()) out << "its coordinates are those of the file, bit for bit\n";
   for (const auto& [name, exact] : against["kept"]["fields"].items())
-    if (exact.get<bool>()) out << "its values of " << name << " are those of the file, bit for bit\n";
+    if (exact.get<bool>()) out << "its values of " << printable(name) << " are those of the file, bit for bit\n";
 }
 
 }  // namespace

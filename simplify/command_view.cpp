@@ -7,8 +7,9 @@
 #include <csignal>
 #include <cstdlib>
 
-#include "codec/temporary_folder.h"
 #include "simplify/command_line.h"
+#include "simplify/command_read.h"
+#include "simplify/guarded_folder.h"
 
 namespace qtet {
 namespace {
@@ -108,7 +109,7 @@ void followServer(int words, const std::string& name, bool open, Console& consol
         console.err << "qtet: Ctrl-C stops\n";
         if (open) openBrowser(url + "?mesh=" + name);
       } else if (console.verbose) {
-        console.err << line << "\n";
+        console.err << printable(line) << "\n";
       }
       line.clear();
     }
@@ -117,7 +118,7 @@ void followServer(int words, const std::string& name, bool open, Console& consol
 
 /// Puts the log of `input` into the folder: the file itself under another name, a copy where the folder is on another disk, or a log made of a mesh. (A symbolic
 /// link would not do: the server follows none out of its folder.)
-int provideLog(const fs::path& input, const fs::path& log, Console& console) {
+int provideLog(const fs::path& input, const fs::path& log, const ParsedWords& parsed, Console& console) {
   if (input.extension() == ".qtet") {
     std::error_code code;
     fs::create_hard_link(fs::canonical(input, code), log, code);
@@ -127,7 +128,9 @@ int provideLog(const fs::path& input, const fs::path& log, Console& console) {
   }
   std::ostream nowhere(nullptr);
   Console quiet = {nowhere, console.err, console.errIsTerminal, false, console.quiet, console.verbose};
-  return runSimplify({input.string(), "-o", log.string()}, quiet);
+  Words words = readWordsOf(parsed);
+  words.insert(words.end(), {input.string(), "-o", log.string(), "--fields", parsed.get<std::string>("fields")});
+  return runSimplify(words, quiet);
 }
 
 }  // namespace
@@ -135,12 +138,14 @@ int provideLog(const fs::path& input, const fs::path& log, Console& console) {
 int runView(const Words& words, Console& console) {
   namespace po = boost::program_options;
   po::options_description options("options");
-  options.add_options()("port", po::value<int>()->default_value(0), "TCP port on 127.0.0.1; 0 = any free one")("no-open", "only print the URL, also on a desktop");
+  options.add_options()("port", po::value<int>()->default_value(0), "TCP port on 127.0.0.1; 0 = any free one")("no-open", "only print the URL, also on a desktop")(
+      "fields", po::value<std::string>()->default_value("all"), "of a mesh: all, none, or names between commas, as `qtet simplify --fields` takes them");
+  addReadOptions(options);
   const ParsedWords parsed(words,
                            {"view", "view FILE [options]",
                             "Shows a log in the browser, or a mesh after simplifying it with the usual settings into a temporary log. Serves it on this machine alone\n"
                             "until Ctrl-C, prints the URL, and opens it where there is a desktop. To keep the log: qtet simplify, then qtet-server.",
-                            "  qtet view part.vtu\n  qtet view part.qtet --port 8080 --no-open\n"},
+                            "  qtet view part.vtu\n  qtet view part.qtet --port 8080 --no-open\n  qtet view run.pvd --time 0.5 --fields p,U\n"},
                            options, {"FILE"});
   if (parsed.helped(console)) return kExitOk;
   const fs::path input = parsed.get<std::string>("FILE");
@@ -148,11 +153,11 @@ int runView(const Words& words, Console& console) {
   std::error_code code;
   if (!fs::is_regular_file(input, code))
     return reportFailure({ErrorCode::kNotFound, "there is no file " + input.string() + "; give a mesh or a log", Error::kNoOffset}, false, console);
-  const TemporaryFolder folder("view");
+  const GuardedFolder folder("view");
   if (folder.failure())
     return reportFailure({ErrorCode::kIo, "no temporary folder can be made (" + folder.failure().message() + "); let TMPDIR name one with room", Error::kNoOffset}, false, console);
   const std::string name = meshName(input);
-  if (const int made = provideLog(input, folder.path() / (name + ".qtet"), console); made != kExitOk) return made;
+  if (const int made = provideLog(input, folder.path() / (name + ".qtet"), parsed, console); made != kExitOk) return made;
 
   const int said = startServer(folder.path(), port);
   if (said < 0) return reportFailure({ErrorCode::kIo, "the server cannot be started; are there too many processes?", Error::kNoOffset}, false, console);

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "simplify/printable.h"
+
 namespace qtet {
 
 /// What a process ends with.
@@ -22,9 +24,17 @@ struct Console {
   bool colours = false;  ///< whether `out` may be coloured: a terminal, and nobody said NO_COLOR (https://no-color.org)
   bool quiet = false;    ///< --quiet: errors alone
   bool verbose = false;  ///< --verbose: how long each stage takes, and the memory at most
+  std::string piped{};   ///< the temporary file that holds the standard input, where a word was "-"
 
-  void note(std::string_view text) const {
-    if (!quiet) err << "qtet: note: " << text << "\n";
+  /// The text, in which what came through a pipe is called so and not by its temporary name.
+  [[nodiscard]] std::string named(std::string text) const {
+    for (std::size_t at = 0; !piped.empty() && (at = text.find(piped)) != std::string::npos;) text.replace(at, piped.size(), "the standard input");
+    return text;
+  }
+  /// named() for a terminal.
+  [[nodiscard]] std::string shown(const std::string& text, bool keepLines = false) const { return printable(named(text), keepLines); }
+  void note(const std::string& text) const {
+    if (!quiet) err << "qtet: note: " << shown(text) << "\n";
   }
 };
 
@@ -35,6 +45,7 @@ struct Command {
   std::string_view summary;
   int (*run)(const Words& words, Console& console);
   bool makesFile = false;  ///< what it prints is no more than that the file was made: nothing with --quiet
+  enum class Pipe { kNone, kMesh, kLog } pipe = Pipe::kNone;  ///< whether "-" among its words is the standard input, and what that holds
 };
 
 /// In the order in which help shows them.

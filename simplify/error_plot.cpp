@@ -6,6 +6,8 @@
 #include <iomanip>
 #include <sstream>
 
+#include "codec/file_names.h"
+
 namespace qtet {
 namespace {
 
@@ -61,20 +63,6 @@ std::string bytesText(double bytes) {
   return number(bytes / 1e9) + " GB";
 }
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      default: out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    }
-  }
-  return out;
-}
-
 class ErrorPlot {
  public:
   explicit ErrorPlot(const std::vector<ErrorCurve>& curves) : curves_(curves) {
@@ -95,7 +83,7 @@ class ErrorPlot {
                  height = std::max(plotBottom, legendBottom) + kBelow;
     out_ << R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 )" << width << " " << height << R"(" width=")" << width
          << R"(" height=")" << height << R"(" role="img">
-<title>)" << escaped(title)
+<title>)" << xmlText(title)
          << R"(</title>
 <style>
   svg { color: #24292f; font: 12px system-ui, "DejaVu Sans", sans-serif; }
@@ -126,7 +114,7 @@ class ErrorPlot {
 
   void text(double x, double y, const char* kind, const char* anchor, const std::string& words) {
     out_ << "<text class=\"" << kind << "\" x=\"" << number(x) << "\" y=\"" << number(y) << "\" text-anchor=\"" << anchor << "\">"
-         << escaped(words) << "</text>\n";
+         << xmlText(words) << "</text>\n";
   }
 
   void line(double x1, double y1, double x2, double y2) {

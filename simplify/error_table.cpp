@@ -4,6 +4,9 @@
 #include <cmath>
 #include <iomanip>
 #include <sstream>
+#include <utility>
+
+#include "simplify/printable.h"
 
 namespace qtet {
 namespace {
@@ -12,18 +15,14 @@ constexpr int kCountWidth = 12, kPercentWidth = 10;
 /// Below this many per cent, zeros behind the point would hide how small it is.
 constexpr double kLeastPlain = 0.001;
 
-/// Characters of UTF-8 text: bytes that do not continue one.
-std::size_t lengthOf(const std::string& text) {
-  return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
-}
-
 /// A heading over two columns of figures, at the right like them.
-void heading(std::ostream& out, const std::string& name, std::size_t width) {
-  out << std::string(width - std::min(width, lengthOf(name)), ' ') << name;
+void heading(std::ostream& out, const std::string& text, std::size_t width) {
+  const std::string name = printable(text);
+  out << std::string(width - std::min(width, textWidth(name)), ' ') << name;
 }
 
 /// Two columns, wider where the field's name needs it.
-std::size_t fieldWidth(const ManifestField& field) { return std::max<std::size_t>(2 * kPercentWidth, lengthOf(field.name) + 2); }
+std::size_t fieldWidth(const ManifestField& field) { return std::max<std::size_t>(2 * kPercentWidth, textWidth(printable(field.name)) + 2); }
 
 /// Numbers of the levels to show, ascending.
 std::vector<std::size_t> shownLevels(const Manifest& manifest, std::size_t most) {
@@ -51,12 +50,6 @@ std::string percentCell(double fraction) {
   return out.str();
 }
 
-std::string grouped(std::uint64_t number) {
-  std::string text = std::to_string(number);
-  for (std::size_t at = text.size(); at > 3;) text.insert(at -= 3, 1, ',');
-  return text;
-}
-
 std::string levelTable(const Manifest& manifest, const nlohmann::ordered_json& levels, std::size_t most) {
   const bool hasErrors = std::ranges::any_of(manifest.levels, [](const ManifestLevel& level) { return level.error.has_value(); });
   std::ostringstream out;
@@ -75,12 +68,13 @@ std::string levelTable(const Manifest& manifest, const nlohmann::ordered_json& l
       out << std::setw(static_cast<int>(fieldWidth(field)) - kPercentWidth) << "rms %" << std::setw(kPercentWidth) << "max %";
   }
   out << "\n";
+  std::uint64_t before = 0;
   for (const std::size_t shown : shownLevels(manifest, most)) {
     const ManifestLevel& level = manifest.levels[shown];
-    const nlohmann::ordered_json& told = levels[level.level];
+    const auto cumulative = levels[level.level]["cumulativeBytes"].get<std::uint64_t>();
     out << std::setw(5) << level.level << std::setw(kCountWidth) << grouped(level.tetrahedra) << std::setw(kCountWidth)
-        << grouped(level.vertices) << std::setw(kCountWidth) << grouped(told["bytes"].get<std::uint64_t>()) << std::setw(kCountWidth)
-        << grouped(told["cumulativeBytes"].get<std::uint64_t>());
+        << grouped(level.vertices) << std::setw(kCountWidth) << grouped(cumulative - std::exchange(before, cumulative)) << std::setw(kCountWidth)
+        << grouped(cumulative);
     if (level.error) {
       out << std::setw(kPercentWidth) << percentCell(level.error->boundaryMean()) << std::setw(kPercentWidth)
           << percentCell(level.error->boundaryDistance()) << std::setw(kPercentWidth) << std::fixed << std::setprecision(3)

@@ -12,9 +12,6 @@ namespace qtet {
 /// `most`: of more levels only so many are shown, the first, the last and those whose counts of cells are evenly apart on a scale of ratios.
 [[nodiscard]] std::string levelTable(const Manifest& manifest, const nlohmann::ordered_json& levels, std::size_t most);
 
-/// 1234567 as "1,234,567".
-[[nodiscard]] std::string grouped(std::uint64_t number);
-
 /// 100 * fraction with three significant digits, for a column: "12.3", "0.0456", "7.8e-05", "0".
 [[nodiscard]] std::string percentCell(double fraction);
 

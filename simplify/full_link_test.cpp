@@ -56,7 +56,7 @@ bool FullLinkTest::patchIsDisc(const Star& star) const {
 }
 
 bool FullLinkTest::describable(const Star& star) {
-  for (std::size_t i = 0; i < star.labels.size(); ++i) link_.triangles()[i].label = star.labels[i];
+  for (std::uint32_t i = 0; i < star.labels.size(); ++i) link_.label(i, star.labels[i]);
   truth_.clear();
   for (const CellId c : star.deleted) {
     LocalCell local{};

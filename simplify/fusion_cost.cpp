@@ -7,7 +7,7 @@
 
 #include "codec/boundary.h"
 #include "codec/face_groups.h"
-#include "simplify/tet_mesh.h"
+#include "simplify/hull_weight.h"
 
 namespace qtet {
 namespace {
@@ -19,19 +19,11 @@ constexpr double kWallLayer = 3e-5;
 constexpr double kPull = 1e-6;
 constexpr double kFlatPull = 1e-7;
 
-double diagonalOf(const LatticeMesh& mesh) {
-  LatticePoint low = mesh.points.empty() ? LatticePoint{} : mesh.points[0], high = low;
-  for (const LatticePoint& p : mesh.points)
-    for (std::size_t a = 0; a < 3; ++a) low[a] = std::min(low[a], p[a]), high[a] = std::max(high[a], p[a]);
-  const Vector3 d = toVector(high) - toVector(low);
-  return std::max(1.0, std::sqrt(dot(d, d)));
-}
-
 }  // namespace
 
 FusionCost::FusionCost(const FusionMesh& mesh, const LatticeMesh& lattice, const CostOptions& options)
-    : mesh_(mesh), diagonal_(diagonalOf(lattice)) {
-  chooseParts(lattice, options);
+    : mesh_(mesh), parts_(costPartsOf(lattice, options.fieldWeights)), diagonal_(diagonalOf(lattice)) {
+  takeLimits(lattice);
   stride_ = kHead + kPerComponent * components_;
   slot_.resize(lattice.points.size());
   std::iota(slot_.begin(), slot_.end(), 0u);
@@ -41,41 +33,26 @@ FusionCost::FusionCost(const FusionMesh& mesh, const LatticeMesh& lattice, const
     addPlanes(lattice, options.boundaryFactor);
   } else {
     addFields(lattice);
-    addSurface(lattice, options.hullWeight / diagonal_);
+    const double hullWeight = options.hullWeight ? *options.hullWeight : balancedHullWeight(lattice, parts_);
+    addSurface(lattice, hullWeight / diagonal_);
   }
 }
 
-void FusionCost::chooseParts(const LatticeMesh& lattice, const CostOptions& options) {
-  double total = 0;
-  std::vector<double> weights;
-  for (std::size_t f = 0; f < lattice.fields.size(); ++f) {
-    const FieldInfo& info = lattice.fields[f];
-    const double weight = options.fieldWeights.empty() ? isFloatType(info.type) : options.fieldWeights[f];
-    const auto [low, high] = std::ranges::minmax(lattice.values[f]);
-    if (isCellField(info) || weight <= 0 || low == high || components_ + info.components > kMaxCostComponents) continue;
-    parts_.push_back({f, 1});
-    weights.push_back(weight);
-    components_ += info.components;
-    total += weight;
+void FusionCost::takeLimits(const LatticeMesh& lattice) {
+  for (const CostPart& part : parts_) {
+    const FieldInfo& info = lattice.fields[part.field];
+    limits_.insert(limits_.end(), info.components, part.scale * (std::ldexp(1.0, info.bits) - 1));
   }
-  for (std::size_t i = 0; i < parts_.size(); ++i) {
-    const FieldInfo& info = lattice.fields[parts_[i].field];
-    // Of a vector the larger of its lengths' range and its components': directions may turn while their lengths stay.
-    const double extent = info.step * (std::ldexp(1.0, info.bits) - 1);
-    const double range = info.components == 1 ? info.range[1] - info.range[0] : std::max(info.range[1] - info.range[0], extent);
-    const double steps = (range > 0 ? range : extent) / info.step;
-    parts_[i].scale = std::sqrt(weights[i] / total) / steps;
-    for (std::size_t c = 0; c < info.components; ++c) limits_.push_back(parts_[i].scale * (std::ldexp(1.0, info.bits) - 1));
-  }
+  components_ = limits_.size();
 }
 
 void FusionCost::takeValues(const LatticeMesh& lattice) {
   std::size_t first = 0;
-  for (const Part& part : parts_) {
+  for (const CostPart& part : parts_) {
     const std::size_t n = lattice.fields[part.field].components;
     for (VertexId v = 0; v < lattice.points.size(); ++v)
       for (std::size_t c = 0; c < n; ++c)
-        quadrics_[at(v) + kHead + kPerComponent * (first + c) + 4] = part.scale * lattice.values[part.field][v * n + c];
+        quadrics_[at(v) + placeOf(kValue, first + c)] = part.scale * lattice.values[part.field][v * n + c];
     first += n;
   }
 }
@@ -83,12 +60,19 @@ void FusionCost::takeValues(const LatticeMesh& lattice) {
 // Adds weight (s - s_v - g.(x - x_v))^2 and x^T a x for each corner v: no b, c or h, since the plane passes through the corner.
 void FusionCost::addSlopes(std::span<const VertexId> corners, std::span<const Vector3> slopes, double weight, Symmetric3 a) {
   for (const Vector3& g : slopes) a.addOuter(g, weight);
+  const std::array<double, 6> matrix{a.xx, a.xy, a.xz, a.yy, a.yz, a.zz};
+  // W and the slopes lie side by side.
+  std::array<double, 1 + 3 * kMaxCostComponents> weighted;
+  weighted[0] = weight;
+  for (std::size_t f = 0; f < slopes.size(); ++f)
+    for (std::size_t i = 0; i < 3; ++i) weighted[1 + i * slopes.size() + f] = weight * slopes[f][i];
+  const std::size_t count = 1 + 3 * slopes.size();
   for (const VertexId v : corners) {
-    double* q = &quadrics_[at(v)];
-    q[0] += a.xx, q[1] += a.xy, q[2] += a.xz, q[3] += a.yy, q[4] += a.yz, q[5] += a.zz;
-    q[10] += weight;
-    for (std::size_t f = 0; f < slopes.size(); ++f)
-      for (std::size_t i = 0; i < 3; ++i) q[kHead + kPerComponent * f + i] += weight * slopes[f][i];
+    double* const q = &quadrics_[at(v)];
+    for (std::size_t i = 0; i < matrix.size(); i += 2) putPair(q + i, pairAt(q + i) + pairAt(&matrix[i]));
+    std::size_t i = 0;
+    for (; i + 1 < count; i += 2) putPair(q + kWeight + i, pairAt(q + kWeight + i) + pairAt(&weighted[i]));
+    if (i < count) q[kWeight + i] += weighted[i];
   }
 }
 
@@ -170,10 +154,9 @@ void FusionCost::accumulate(VertexId v, const Vector3& origin, const Value& valu
   double c = dot(d, ad) + 2 * dot(b, d) + q[9];
   sum.weight += w;
   for (std::size_t f = 0; f < components_; ++f) {
-    const double* p = q + kHead + kPerComponent * f;
-    const Vector3 slope{p[0], p[1], p[2]};
-    const double e = valueOf(f) - p[4];
-    const double along = dot(slope, d) + p[3];
+    const Vector3 slope = this->slope(q, f);
+    const double e = valueOf(f) - q[placeOf(kValue, f)];
+    const double along = dot(slope, d) + q[placeOf(kOffset, f)];
     newB = newB - e * slope;
     c += e * (w * e - 2 * along);
     sum.slope[f] = sum.slope[f] + slope;
@@ -189,9 +172,8 @@ void FusionCost::start(VertexId v, Sum& sum) const {
   sum.q = {{q[0], q[1], q[2], q[3], q[4], q[5]}, {q[6], q[7], q[8]}, q[9]};
   sum.weight = q[10];
   for (std::size_t f = 0; f < components_; ++f) {
-    const double* p = q + kHead + kPerComponent * f;
-    sum.slope[f] = {p[0], p[1], p[2]};
-    sum.offset[f] = p[3];
+    sum.slope[f] = slope(q, f);
+    sum.offset[f] = q[placeOf(kOffset, f)];
   }
 }
 
@@ -218,10 +200,40 @@ Quadric FusionCost::Sum::reduced(std::size_t components) const {
 }
 
 PreyQuadric FusionCost::of(const Prey& prey) const {
+  if (prey.k == 2) return ofEdge(prey.vertex[0], prey.vertex[1]);
   Sum sum;
   sumOf(prey, sum);
-  PreyQuadric out{sum.reduced(components_), 0};
-  out.pull = kPull * out.quadric.a.trace() / 3 + kFlatPull * sum.weight / (diagonal_ * diagonal_) + std::numeric_limits<double>::min();
+  const Quadric quadric = sum.reduced(components_);
+  return {quadric, pullOf(quadric.a.trace(), sum.weight)};
+}
+
+template <class T>
+T FusionCost::pullOf(const T& trace, const T& weight) const {
+  return kPull * trace / 3 + kFlatPull * weight / (diagonal_ * diagonal_) + std::numeric_limits<double>::min();
+}
+
+// sumOf and reduced in one.
+PreyQuadric FusionCost::ofEdge(VertexId v, VertexId w) const {
+  const double* const other = &quadrics_[at(w)];
+  const auto [a, b, c, weight] = edgeQuadric<double>(
+      &quadrics_[at(v)], [&](std::size_t i) { return other[i]; }, mesh_.position(v) - mesh_.position(w), components_);
+  return {{{a[0], a[1], a[2], a[3], a[4], a[5]}, b, c}, pullOf(a[0] + a[3] + a[5], weight)};
+}
+
+FusionCost::TwoEdges FusionCost::ofEdges(VertexId v, std::array<VertexId, 2> w) const {
+  const double *const first = &quadrics_[at(w[0])], *const second = &quadrics_[at(w[1])];
+  const Vector3 from = mesh_.position(v);
+  const TwoVectors along = both(mesh_.position(w[0]) - from, mesh_.position(w[1]) - from);
+  TwoEdges out{edgeQuadric<Pair>(
+                   &quadrics_[at(v)],
+                   [&](std::size_t i) {
+                     return Pair{first[i], second[i]};
+                   },
+                   {-along[0], -along[1], -along[2]}, components_),
+               {},
+               along};
+  const auto& a = out.quadric.a;
+  out.pull = pullOf(a[0] + a[3] + a[5], out.quadric.weight);
   return out;
 }
 
@@ -252,10 +264,9 @@ void FusionCost::fuse(const Prey& prey, const LatticePoint& p, std::span<const d
   const std::array<double, kHead> head{a.xx, a.xy, a.xz, a.yy, a.yz, a.zz, sum.q.b[0], sum.q.b[1], sum.q.b[2], sum.q.c, sum.weight};
   std::ranges::copy(head, q);
   for (std::size_t f = 0; f < components_; ++f) {
-    double* at = q + kHead + kPerComponent * f;
-    std::ranges::copy(sum.slope[f], at);
-    at[3] = sum.offset[f];
-    at[4] = values[f];
+    for (std::size_t i = 0; i < 3; ++i) q[placeOf(kSlope + i, f)] = sum.slope[f][i];
+    q[placeOf(kOffset, f)] = sum.offset[f];
+    q[placeOf(kValue, f)] = values[f];
   }
 }
 

@@ -3,23 +3,24 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "codec/mesh.h"
+#include "simplify/cost_parts.h"
+#include "simplify/edge_quadric.h"
 #include "simplify/fusion_mesh.h"
 #include "simplify/quadric.h"
+#include "simplify/two_vectors.h"
 
 namespace qtet {
-
-/// Components of fields that the cost can hold; each adds 40 bytes a vertex.
-inline constexpr std::size_t kMaxCostComponents = 32;
 
 struct CostOptions {
   /// One a field: what its squared error, over its range, counts. 0 leaves it out; so does a constant field. Empty: 1 for each point field of floats.
   std::vector<double> fieldWeights;
-  /// What the squared distance of the hull counts beside the fields, areas and distances over the mesh's diagonal.
-  double hullWeight = 200;
+  /// What the squared distance of the hull counts beside the fields, areas and distances over the mesh's diagonal. Without: balancedHullWeight (hull_weight.h).
+  std::optional<double> hullWeight;
   /// Without fields: how many times its area a boundary plane counts, the paper's "weighted planar quadric error metrics".
   double boundaryFactor = 10;
 };
@@ -36,6 +37,15 @@ class FusionCost {
 
   /// The prey's quadric as a function of the fusion point relative to prey.vertex[0], at the best values for each point.
   [[nodiscard]] PreyQuadric of(const Prey& prey) const;
+  /// The same of two edges v-w at once, relative to v.
+  struct TwoEdges {
+    EdgeQuadric<Pair> quadric;
+    Pair pull;
+    TwoVectors along;  // from v
+  };
+  [[nodiscard]] TwoEdges ofEdges(VertexId v, std::array<VertexId, 2> w) const;
+  /// What v itself is off by already: its quadric at its own place and values.
+  [[nodiscard]] double of(VertexId v) const { return quadrics_[at(v) + kConstant]; }
   /// Asks the memory for where v's quadric is.
   void prefetchSlot(VertexId v) const { __builtin_prefetch(&slot_[v]); }
   /// Asks the memory for v's quadric.
@@ -44,11 +54,7 @@ class FusionCost {
   }
 
   /// The fields in the cost, in the order of their values.
-  struct Part {
-    std::size_t field = 0;
-    double scale = 1;  ///< of an integer of the field to the unit that residuals are measured in
-  };
-  [[nodiscard]] std::span<const Part> parts() const { return parts_; }
+  [[nodiscard]] std::span<const CostPart> parts() const { return parts_; }
   /// Of the bounding box, in lattice steps.
   [[nodiscard]] double diagonal() const { return diagonal_; }
   [[nodiscard]] std::size_t components() const { return components_; }
@@ -59,9 +65,11 @@ class FusionCost {
   void fuse(const Prey& prey, const LatticePoint& p, std::span<const double> values);
 
  private:
-  // Of one vertex, relative to its place and values: A (6), b (3), c, W, then for each component G (3), h and its value:
+  // Of one vertex, relative to its place and values: A (6), b (3), c, W, then the G of each component, x, y and z apart, each one's h and each one's value:
   // E(d, e) = d^T A d + 2 b.d + c + sum_f (W e_f^2 - 2 e_f (G_f.d + h_f)).
-  static constexpr std::size_t kHead = 11;
+  static constexpr std::size_t kConstant = 9;
+  static constexpr std::size_t kWeight = 10;
+  static constexpr std::size_t kHead = kWeight + 1;
   static constexpr std::size_t kPerComponent = 5;
   static constexpr std::size_t kLineDoubles = 8;  // of a cache line
 
@@ -74,7 +82,7 @@ class FusionCost {
     [[nodiscard]] Quadric reduced(std::size_t components) const;
   };
 
-  void chooseParts(const LatticeMesh& lattice, const CostOptions& options);
+  void takeLimits(const LatticeMesh& lattice);
   void takeValues(const LatticeMesh& lattice);
   void addFields(const LatticeMesh& lattice);
   void addSurface(const LatticeMesh& lattice, double hullFactor);
@@ -82,15 +90,20 @@ class FusionCost {
   void addSlopes(std::span<const VertexId> corners, std::span<const Vector3> slopes, double weight, Symmetric3 a);
   void addPlanes(const LatticeMesh& lattice, double boundaryFactor);
   [[nodiscard]] std::size_t at(VertexId v) const { return slot_[v] * stride_; }
-  [[nodiscard]] const double* component(VertexId v, std::size_t f) const { return &quadrics_[at(v) + kHead + kPerComponent * f]; }
-  [[nodiscard]] double value(VertexId v, std::size_t f) const { return component(v, f)[4]; }
+  enum Part : std::size_t { kSlope = 0, kOffset = 3, kValue = 4 };
+  [[nodiscard]] std::size_t placeOf(std::size_t part, std::size_t f) const { return kHead + part * components_ + f; }
+  [[nodiscard]] Vector3 slope(const double* q, std::size_t f) const { return {q[placeOf(0, f)], q[placeOf(1, f)], q[placeOf(2, f)]}; }
+  [[nodiscard]] double value(VertexId v, std::size_t f) const { return quadrics_[at(v) + placeOf(kValue, f)]; }
+  [[nodiscard]] PreyQuadric ofEdge(VertexId v, VertexId w) const;
+  template <class T>
+  [[nodiscard]] T pullOf(const T& trace, const T& weight) const;
   void start(VertexId v, Sum& sum) const;
   template <class Value>
   void accumulate(VertexId v, const Vector3& origin, const Value& valueOf, Sum& sum) const;
   void sumOf(const Prey& prey, Sum& sum) const;
 
   const FusionMesh& mesh_;
-  std::vector<Part> parts_;
+  std::vector<CostPart> parts_;
   std::size_t components_ = 0, stride_ = kHead;
   double diagonal_ = 1;              // lattice steps
   std::vector<double> limits_;       // a component's largest value; the smallest is 0

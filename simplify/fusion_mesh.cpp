@@ -4,8 +4,7 @@
 #include <cmath>
 
 #include "codec/boundary.h"
-#include "codec/growing_mesh.h"
-#include "codec/link.h"
+#include "simplify/sphere_test.h"
 
 namespace qtet {
 
@@ -24,6 +23,8 @@ FusionMesh::FusionMesh(const LatticeMesh& mesh, std::size_t regionField)
   }
   history_.live.assign(history_.cells.size(), 1);
   aliveVertex_.assign(mesh.points.size(), 1);
+  planes_.resize(mesh.boundary.size());
+  for (CellId c = firstGhost_; c < history_.cells.size(); ++c) findPlane(c);
   buildStars();
   findSingular();
   if (hasRegions()) findInterfaces();
@@ -40,22 +41,19 @@ void FusionMesh::buildStars() {
     s.size = 0;
   }
   pool_.resize(livePool_);
-  for (CellId c = 0; c < history_.cells.size(); ++c)
+  const auto add = [&](CellId c) {
     for (const VertexId v : history_.cells[c])
       if (v != kGhost) pool_[stars_[v].first + stars_[v].size++] = c;
+  };
+  for (CellId c = firstGhost_; c < history_.cells.size(); ++c) add(c);
+  for (StarRange& s : stars_) s.ghosts = s.size;
+  for (CellId c = 0; c < firstGhost_; ++c) add(c);
 }
 
 void FusionMesh::findSingular() {
   singular_.assign(history_.points.size(), 0);
-  Link link;
-  for (VertexId v = 0; v < history_.points.size(); ++v) {
-    link.clear(history_.points.size());
-    for (const CellId c : star(v)) {
-      const auto turned = withLast(cell(c), static_cast<std::size_t>(std::ranges::find(cell(c), v) - cell(c).begin()));
-      link.add(turned[0], turned[1], turned[2]);
-    }
-    singular_[v] = !link.close() || !link.isSphere();
-  }
+  SphereTest test(history_.points.size());
+  for (VertexId v = 0; v < history_.points.size(); ++v) singular_[v] = !test.isLinkSphere(v, star(v), history_.cells);
 }
 
 void FusionMesh::findInterfaces() {
@@ -100,11 +98,40 @@ void FusionMesh::record(const Prey& prey, const Placed& placed, const Star& star
   history_.deletedCells.insert(history_.deletedCells.end(), star.deleted.begin(), star.deleted.end());
 }
 
+// The last ghost takes a ghost's place, and the last cell takes that of what is now the hole.
 void FusionMesh::removeFromStar(VertexId v, CellId c) {
-  const auto cells = std::span(pool_).subspan(stars_[v].first, stars_[v].size);
-  *std::ranges::find(cells, c) = cells.back();
-  --stars_[v].size;
+  StarRange& range = stars_[v];
+  std::uint32_t hole = placeInStar(v, c);
+  if (isGhost(c)) {
+    moveInStar(v, --range.ghosts, hole);
+    hole = range.ghosts;
+  }
+  moveInStar(v, --range.size, hole);
   --livePool_;
+}
+
+std::uint32_t FusionMesh::placeInStar(VertexId v, CellId c) {
+  const auto cells = star(v);
+  if (cells.size() <= kHubCells) return static_cast<std::uint32_t>(std::ranges::find(cells, c) - cells.begin());
+  const auto [hub, isNew] = placesInHub_.try_emplace(v);
+  auto& places = hub->second;
+  for (std::uint32_t i = 0; isNew && i < cells.size(); ++i) places[cells[i]] = i;
+  return places.extract(c).mapped();
+}
+
+void FusionMesh::moveInStar(VertexId v, std::uint32_t from, std::uint32_t to) {
+  if (from == to) return;
+  CellId* cells = &pool_[stars_[v].first];
+  cells[to] = cells[from];
+  if (stars_[v].size < kHubCells) return;
+  if (const auto hub = placesInHub_.find(v); hub != placesInHub_.end()) hub->second[cells[to]] = to;
+}
+
+void FusionMesh::findPlane(CellId ghost) {
+  const auto& cell = history_.cells[ghost];
+  const Vector3 a = position(cell[0]), normal = cross(position(cell[1]) - a, position(cell[2]) - a);
+  const double squared = dot(normal, normal);
+  planes_[ghost - firstGhost_] = {normal, squared > 0 ? 1 / std::sqrt(squared) : 0};
 }
 
 // The boundary triangles that stay get the bound of the whole star.
@@ -134,10 +161,13 @@ VertexId FusionMesh::fuse(const Prey& prey, const FusedVertex& what, const Star&
     interface |= hasRegions() && onInterface_[v];
     aliveVertex_[v] = 0;
     livePool_ -= stars_[v].size;
-    stars_[v].size = 0;
+    stars_[v].size = stars_[v].ghosts = 0;
   }
-  for (std::size_t i = 0; i < star.affected.size(); ++i)
-    std::ranges::replace(history_.cells[star.affected[i]], prey.vertex[star.labels[i]], fused);
+  for (std::size_t i = 0; i < star.affected.size(); ++i) {
+    const CellId c = star.affected[i];
+    std::ranges::replace(history_.cells[c], prey.vertex[star.labels[i]], fused);
+    if (isGhost(c)) findPlane(c);
+  }
   for (const CellId c : star.deleted) {
     history_.live[c] = 0;
     bool ghost = false;
@@ -151,11 +181,19 @@ VertexId FusionMesh::fuse(const Prey& prey, const FusedVertex& what, const Star&
   if (hasRegions()) onInterface_.push_back(interface);
   singular_.push_back(0);
   aliveVertex_.push_back(1);
-  stars_.push_back({pool_.size(), static_cast<std::uint32_t>(star.affected.size())});
-  pool_.insert(pool_.end(), star.affected.begin(), star.affected.end());
-  livePool_ += star.affected.size();
+  addStar(star.affected);
   if (pool_.size() > 2 * livePool_ + 4096) compactPool();
   return fused;
+}
+
+// The fused vertex's, ghosts first.
+void FusionMesh::addStar(std::span<const CellId> cells) {
+  const std::size_t first = pool_.size();
+  pool_.resize(first + cells.size());
+  std::size_t ghosts = 0, at = cells.size();
+  for (const CellId c : cells) pool_[first + (isGhost(c) ? ghosts++ : --at)] = c;
+  stars_.push_back({first, static_cast<std::uint32_t>(cells.size()), static_cast<std::uint32_t>(ghosts)});
+  livePool_ += cells.size();
 }
 
 void FusionMesh::compactPool() {

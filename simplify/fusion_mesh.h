@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "codec/fusion_history.h"
@@ -26,6 +27,12 @@ struct Star {
   std::vector<CellId> affected, deleted;
   std::vector<std::uint8_t> labels;  ///< by affected cell: the index of its prey vertex
   std::vector<VertexId> link;
+};
+
+/// The plane of a boundary triangle. Up to 16 bits of lattice the normal is exact.
+struct BoundaryPlane {
+  Vector3 normal;        ///< outward, as long as twice the area
+  double inverseLength;  ///< 1 over that, 0 for a triangle without area
 };
 
 /// What a prey becomes.
@@ -54,6 +61,23 @@ class FusionMesh {
   [[nodiscard]] Vector3 position(VertexId v) const { return toVector(history_.points[v]); }
   [[nodiscard]] const std::array<VertexId, 4>& cell(CellId c) const { return history_.cells[c]; }
   [[nodiscard]] std::span<const CellId> star(VertexId v) const { return std::span(pool_).subspan(stars_[v].first, stars_[v].size); }
+  /// The ghost cells of v's star, one a boundary triangle; the ghost is their last vertex.
+  [[nodiscard]] std::span<const CellId> boundaryStar(VertexId v) const {
+    return std::span(pool_).subspan(stars_[v].first, stars_[v].ghosts);
+  }
+  /// The others.
+  [[nodiscard]] std::span<const CellId> innerStar(VertexId v) const { return star(v).subspan(stars_[v].ghosts); }
+  [[nodiscard]] bool isGhost(CellId c) const { return c >= firstGhost_; }
+  [[nodiscard]] bool holds(CellId c, VertexId v) const {
+    const auto& cell = history_.cells[c];
+    return (int{cell[0] == v} | int{cell[1] == v} | int{cell[2] == v} | int{cell[3] == v}) != 0;  // without branches
+  }
+  /// The cells that hold both, boundary triangles among them.
+  [[nodiscard]] std::size_t cellsRound(VertexId v, VertexId w) const {
+    std::size_t count = 0;
+    for (const CellId c : star(v)) count += holds(c, w);
+    return count;
+  }
   /// Ask the memory for where v's star is, and then for its list.
   void prefetchVertex(VertexId v) const { __builtin_prefetch(&stars_[v]); }
   void prefetchList(VertexId v) const { __builtin_prefetch(pool_.data() + stars_[v].first); }
@@ -72,6 +96,8 @@ class FusionMesh {
   [[nodiscard]] bool onInterface(VertexId v) const { return onInterface_[v]; }
   /// On the boundary or, where there are regions, between two of them: what the vertex stands for is a surface.
   [[nodiscard]] bool onSurface(VertexId v) const { return onBoundary_[v] || (hasRegions() && onInterface_[v]); }
+  /// REQUIRES: a ghost cell.
+  [[nodiscard]] const BoundaryPlane& plane(CellId c) const { return planes_[c - firstGhost_]; }
   /// How far boundary triangle `c` may lie outside the original solid, in lattice steps. REQUIRES: a ghost cell.
   [[nodiscard]] float outside(CellId c) const { return outside_.empty() ? 0 : outside_[c - firstGhost_]; }
   [[nodiscard]] std::size_t liveTetrahedra() const { return liveTetrahedra_; }
@@ -91,6 +117,7 @@ class FusionMesh {
   struct StarRange {
     std::uint64_t first = 0;
     std::uint32_t size = 0;
+    std::uint32_t ghosts = 0;  // come first
   };
 
   void buildStars();
@@ -102,17 +129,25 @@ class FusionMesh {
   };
   [[nodiscard]] Placed placed(const Prey& prey, const LatticePoint& point) const;
   void record(const Prey& prey, const Placed& placed, const Star& star, std::uint32_t level);
+  void addStar(std::span<const CellId> cells);
   void removeFromStar(VertexId v, CellId c);
+  [[nodiscard]] std::uint32_t placeInStar(VertexId v, CellId c);
+  void moveInStar(VertexId v, std::uint32_t from, std::uint32_t to);
   void compactPool();
 
   FusionHistory history_;
   void findInterfaces();
+  void findPlane(CellId ghost);
   void pushOutside(const Star& star, float outside);
 
   std::size_t regionField_;
   CellId firstGhost_;
+  std::vector<BoundaryPlane> planes_;  // by ghost cell, kept up to date: asked for a hundred times as often as one changes
   std::vector<float> outside_;  // by ghost cell; empty while nothing has left the original solid
   std::vector<std::uint8_t> aliveVertex_, onBoundary_, onInterface_, singular_;
+  /// A vertex with more cells keeps where each one stands: looking through all of them for every cell that goes took time in proportion to the square.
+  static constexpr std::size_t kHubCells = 1024;
+  std::unordered_map<VertexId, std::unordered_map<CellId, std::uint32_t>> placesInHub_;  // no longer kept once a star, which only shrinks, is smaller
   std::vector<StarRange> stars_;
   std::vector<CellId> pool_;  // stars back to back, with holes
   std::size_t livePool_ = 0;

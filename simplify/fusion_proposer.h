@@ -1,7 +1,9 @@
 // What could be fused: the edges of a vertex with what they would cost, and the proposal that comes of one of them. Reads the mesh, changes nothing.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -29,13 +31,30 @@ class Touched {
 
 /// What is known of an owner's candidates: those that are not legal, and what comes of the first that is.
 struct Proposal {
-  std::vector<VertexId> illegal;  ///< partners
-  VertexId partner = kGhost;      ///< of the edge that the rest is about; kGhost: none is known to be legal
+  struct Illegal {
+    VertexId partner;
+    float price;  ///< below it nobody needed to know
+  };
+  std::vector<Illegal> illegal;
+  VertexId partner = kGhost;  ///< of the edge that the rest is about; kGhost: none is known to be legal
+  float price = 0;            ///< FusionPointFinder::price
+  bool isPriceAll = false;    ///< it was too dear, so that nobody looked further
   Prey prey;
   FusionPoint where;
+  float edgeCost = 0, most = 0;  ///< of the edge alone; what it was asked for: nothing dearer was looked for in larger prey
   Star star;
   std::vector<VertexId> companions;  ///< that could be taken along: which of them were free was part of the decision
   std::uint32_t madeAfter = 0;       ///< fusions done before
+};
+
+/// By the cells that a fusion removes, boundary triangles among them: what its cost is multiplied by (ALGORITHM.md, "Cost a cell").
+class CellShares {
+ public:
+  CellShares();
+  [[nodiscard]] double of(std::size_t cells) const { return shares_[std::min(cells, shares_.size() - 1)]; }
+
+ private:
+  std::array<double, kMostStarCells + 1> shares_{};
 };
 
 class FusionProposer {
@@ -43,26 +62,36 @@ class FusionProposer {
   FusionProposer(const FusionMesh& mesh, const FusionCost& cost, const Touched& touched, const BandNodes& band, const FusionLimits& limits,
                  const FusionPointOptions& options);
 
-  /// The edges of v that the band allows, cheapest first; `onlyLower` = those whose highest vertex it is.
-  void candidatesOf(VertexId v, bool onlyLower, std::vector<Candidate>& found);
+  /// The edges of v that the band allows and whose highest vertex it is, cheapest first.
+  void candidatesOf(VertexId v, std::vector<Candidate>& found);
+  /// The same of a vertex that is higher than all of its neighbours, which are `link`, the ghost perhaps among them.
+  void candidatesOf(VertexId v, std::span<const VertexId> link, std::vector<Candidate>& found);
 
+  struct Moment {
+    std::uint32_t levelStart, now;  ///< fusions done
+  };
   /// The fusion of the first edge of `candidates`, which are `owner`'s, cheapest first; or of a triangle or tetrahedron that holds it where that is
-  /// cheaper for what it removes. False, and noted as illegal, when it cannot be. No vertex touched since fusion `levelStart` is taken along.
-  /// REQUIRES: neither end of the edge is.
-  bool propose(VertexId owner, std::span<const Candidate> candidates, std::uint32_t levelStart, std::uint32_t now, Proposal& out);
+  /// cheaper for what it removes. Of an edge whose price is above `most`, the price. False, and noted as illegal, when it cannot be. No vertex touched
+  /// since the level's start is taken along. REQUIRES: neither end of the edge is.
+  [[nodiscard]] bool propose(VertexId owner, std::span<const Candidate> candidates, float most, const Moment& moment, Proposal& out);
 
  private:
-  void takeAlong(std::span<const Candidate> others, std::uint32_t levelStart, Proposal& out);
-  [[nodiscard]] Prey largerPrey(const Prey& edge, std::span<const Candidate> others, double cost, std::uint32_t levelStart);
-  void findCompanions(std::span<const Candidate> others, double cost, std::uint32_t levelStart);
+  void price(VertexId v, std::vector<Candidate>& found) const;
+  void takeAlong(std::span<const Candidate> others, float most, std::uint32_t levelStart, Proposal& out);
+  struct Larger {
+    Prey prey;
+    double share;  // of its cost
+  };
+  void findCompanions(const Proposal& edge, std::span<const Candidate> others, double below, std::uint32_t levelStart);
+  [[nodiscard]] std::optional<Larger> largerPrey(const Proposal& edge, double below) const;
 
   const FusionMesh& mesh_;
   const FusionCost& cost_;
   const Touched& touched_;
   const BandNodes& band_;
-  const std::array<double, 5>& costFactor_;  // by k
   FusionTest test_;
   FusionPointFinder finder_;
+  CellShares shares_;
   LocalVertices neighbours_;
   std::vector<VertexId> companions_;  // the free ones first
   std::size_t freeCompanions_ = 0;

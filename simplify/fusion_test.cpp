@@ -1,6 +1,7 @@
 #include "simplify/fusion_test.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -21,15 +22,17 @@ constexpr int kExactProjections = 4;
 constexpr double kRoundingReach = 0.87;  // sqrt(3) / 2 lattice steps
 
 // In a star whose coordinates stay below 2^16 every volume below is an integer under 2^53, exact in doubles; where they reach r, |error| < 2^5 r^3 2^-52.
-constexpr double kExactReach = 65536;
+constexpr int kExactBits = 16;
+constexpr double kExactReach = 1 << kExactBits;
 constexpr double kRounding = 0x1p-47;
 
 // Shape = 6 sqrt(2) V / l^3, l the root mean square edge. With v = 6 V and s = the sum of the squared edges its square is 432 v^2 / s^3.
 constexpr double kShapeSquared = 432;
 
-constexpr std::size_t kNoGhost = 4;
-
-double shapeSquared(double volume6, double squares) { return kShapeSquared * volume6 * volume6 / (squares * squares * squares); }
+template <class T>
+T shapeSquared(const T& volume6, const T& squares) {
+  return kShapeSquared * volume6 * volume6 / (squares * squares * squares);
+}
 
 }  // namespace
 
@@ -37,171 +40,232 @@ FusionTest::FusionTest(const FusionMesh& mesh, const FusionLimits& limits)
     : mesh_(mesh), limits_(limits), full_(std::make_unique<FullLinkTest>()), regions_(std::make_unique<RegionTest>()) {}
 FusionTest::~FusionTest() = default;
 
-bool FusionTest::gather(const Prey& prey) {
+bool FusionTest::gatherBoundary(const Prey& prey) {
   std::size_t size = 0;
-  for (const VertexId v : prey.vertices()) mesh_.prefetchStar(v), size += mesh_.star(v).size();
+  for (const VertexId v : prey.vertices()) size += mesh_.star(v).size();
   if (size > kMostStarCells) return false;
   prey_ = prey;
-  star_.affected.clear(), star_.deleted.clear(), star_.labels.clear(), star_.link.clear();
-  places_.clear(), sides_.clear(), turned_.clear(), ring_.clear(), goingCells_.clear(), ghosts_.clear(), bases_.clear(), faces_.clear();
-  vertices_.clear();
-  const auto intern = [&](VertexId v) {
-    const std::uint32_t local = vertices_.intern(v);
-    if (local == sides_.size()) {
-      sides_.push_back(0);
-      if (v != kGhost) mesh_.prefetchPoint(v);
-    }
-    return local;
-  };
-  for (const VertexId v : prey.vertices()) (void)intern(v);
+  origin_ = mesh_.position(prey.vertex[0]);
+  faceCount_ = 0;
+  faceReach_ = 0;
   for (std::uint32_t i = 0; i < prey.k; ++i)
-    for (const CellId c : mesh_.star(prey.vertex[i])) {
-      const auto& cell = mesh_.cell(c);
-      std::array<std::uint32_t, 4> local{};
-      std::uint32_t lowest = prey.k;
+    for (const CellId c : mesh_.boundaryStar(prey.vertex[i])) {
+      std::uint32_t shared = 0, first = prey.k;
       std::size_t at = 0;
-      int shared = 0;
-      int singular = 0;
-      for (std::size_t j = 0; j < 4; ++j) {
-        local[j] = intern(cell[j]);
-        if (local[j] < prey.k) {
-          ++shared, at = j;
-          lowest = std::min(lowest, local[j]);
-        }
-      }
-      if (lowest < i) continue;  // met before
-      if (shared > 1) {
-        for (std::size_t j = 0; j < 4; ++j) singular += cell[j] != kGhost && local[j] >= prey.k && mesh_.singular(cell[j]);
-        if (singular > 1) return false;  // an edge that is not a manifold's could be fused away unseen
-        star_.deleted.push_back(c);
-      } else {
-        star_.affected.push_back(c);
-        star_.labels.push_back(static_cast<std::uint8_t>(i));
-      }
-      addCell(c, local, shared, at);
+      for (std::size_t corner = 0; corner < 3; ++corner)
+        for (std::uint32_t j = 0; j < prey.k; ++j)
+          if (mesh_.cell(c)[corner] == prey.vertex[j]) ++shared, first = std::min(first, j), at = corner;
+      if (first == i) addFace(c, shared == 1, at);
     }
+  return true;
+}
+
+bool FusionTest::gatherRest() {
+  for (const VertexId v : prey_.vertices()) mesh_.prefetchStar(v);
+  star_.affected.clear(), star_.deleted.clear(), star_.labels.clear(), star_.link.clear();
+  ring_.clear(), goingCells_.clear();
+  baseCount_ = 0;
+  vertices_.clear();
+  for (const VertexId v : prey_.vertices()) (void)vertices_.intern(v);
+  if (prey_.k == 2 ? !addStars<2>() : prey_.k == 3 ? !addStars<3>() : !addStars<4>()) return false;
   if (star_.affected.size() > kMostStarCells / 2) return false;
-  star_.link.assign(vertices_.ids().begin() + prey.k, vertices_.ids().end());
+  star_.link.assign(vertices_.ids().begin() + prey_.k, vertices_.ids().end());
   measure();
   return true;
 }
 
-void FusionTest::addCell(CellId c, const std::array<std::uint32_t, 4>& local, int shared, std::size_t at) {
+template <std::uint32_t k>
+bool FusionTest::addStars() {
+  for (std::uint32_t i = 0; i < k; ++i)
+    for (const CellId c : mesh_.star(prey_.vertex[i]))
+      if (!addCell<k>(c, i)) return false;
+  return true;
+}
+
+// A cell of the star of prey vertex `from`, unless an earlier one's star had it. False: it rules the fusion out.
+template <std::uint32_t k>
+inline bool FusionTest::addCell(CellId c, std::uint32_t from) {
   const auto& cell = mesh_.cell(c);
-  std::uint8_t side = 0;
-  for (const std::uint32_t v : local)
-    if (v < prey_.k) side |= static_cast<std::uint8_t>(1u << v);
-  std::array<std::uint32_t, 4> others{};
-  std::size_t n = 0;
-  std::size_t ghost = kNoGhost;
-  for (std::size_t j = 0; j < 4; ++j) {
-    if (cell[j] == kGhost) ghost = j;
-    if (local[j] < prey_.k) continue;
-    sides_[local[j]] |= side;
-    others[n++] = local[j];
+  const auto is = [&](std::size_t corner, VertexId v) { return static_cast<std::uint32_t>(cell[corner] == v); };
+  std::uint32_t side = 0;
+  for (std::uint32_t i = 0; i < k; ++i) {
+    const VertexId v = prey_.vertex[i];
+    side |= (is(0, v) | is(1, v) | is(2, v) | is(3, v)) << i;
   }
-  if (shared == 1)
-    turned_.push_back(withLast(local, at));
-  else if (prey_.k == 2)
-    ring_.push_back({others[0], others[1]});
-  if (ghost != kNoGhost)
-    ghosts_.push_back({withLast(local, ghost), c, shared == 1});
-  else if (shared > 1)
-    goingCells_.push_back(local);
+  const std::uint32_t own = 1u << from;
+  if ((side & (own - 1)) != 0) return true;
+  if (side != own) return addGoing(c, side);
+  const VertexId v = prey_.vertex[from];
+  const auto turned = withLast(cell, is(1, v) + 2 * is(2, v) + 3 * is(3, v));
+  auto& local = turned_[star_.affected.size()];
+  for (std::size_t j = 0; j < 3; ++j) {
+    local[j] = intern(turned[j]);
+    sides_[local[j]] |= static_cast<std::uint8_t>(own);
+  }
+  local[3] = from;
+  star_.affected.push_back(c);
+  star_.labels.push_back(static_cast<std::uint8_t>(from));
+  return true;
+}
+
+// One that goes: more than one of its vertices is prey.
+bool FusionTest::addGoing(CellId c, std::uint32_t side) {
+  const auto& cell = mesh_.cell(c);
+  std::array<std::uint32_t, 4> local{}, others{};
+  std::size_t n = 0, singular = 0;
+  for (std::size_t j = 0; j < 4; ++j) {
+    const auto prey = prey_.vertices();
+    const auto at = static_cast<std::size_t>(std::ranges::find(prey, cell[j]) - prey.begin());
+    local[j] = static_cast<std::uint32_t>(at);
+    if (at < prey.size()) continue;
+    local[j] = others[n++] = intern(cell[j]);
+    sides_[local[j]] |= static_cast<std::uint8_t>(side);
+    singular += cell[j] != kGhost && mesh_.singular(cell[j]);
+  }
+  star_.deleted.push_back(c);
+  if (prey_.k == 2) ring_.push_back({others[0], others[1]});
+  if (!mesh_.isGhost(c)) goingCells_.push_back(local);
+  return singular <= 1;  // else an edge that is not a manifold's could be fused away unseen
+}
+
+inline std::uint32_t FusionTest::intern(VertexId v) {
+  const std::size_t known = vertices_.ids().size();
+  const std::uint32_t local = vertices_.intern(v);
+  if (local == known) {
+    sides_[local] = 0;
+    if (v != kGhost) mesh_.prefetchPoint(v);
+  }
+  return local;
 }
 
 // What needs positions, once all of them have been asked for.
 void FusionTest::measure() {
-  const Vector3 origin = mesh_.position(prey_.vertex[0]);
+  const std::span<const VertexId> ids = vertices_.ids();
+  for (std::size_t i = 0; i < ids.size(); ++i) places_[i] = ids[i] == kGhost ? Vector3{} : mesh_.position(ids[i]) - origin_;
   reach_ = 0;
-  for (const VertexId v : vertices_.ids()) {
-    places_.push_back(v == kGhost ? Vector3{} : mesh_.position(v) - origin);
-    for (const double x : places_.back()) reach_ = std::max(reach_, std::abs(x));
+  if (mesh_.latticeBits() > kExactBits)
+    for (const Vector3& p : std::span(places_).first(ids.size()))
+      for (const double x : p) reach_ = std::max(reach_, std::abs(x));
+  worst_ = 1;
+  constexpr auto kNone = ~std::uint32_t{0};
+  std::uint32_t waiting = kNone;
+  for (std::uint32_t i = 0; i < star_.affected.size(); ++i) {
+    if (mesh_.isGhost(star_.affected[i])) continue;
+    if (waiting != kNone) addBases(waiting, i);
+    waiting = waiting == kNone ? i : kNone;
   }
-  const std::uint32_t ghost = ghosts_.empty() ? ~0u : ghosts_[0].local[3];
-  for (std::size_t i = 0; i < turned_.size(); ++i)
-    if (turned_[i][0] != ghost && turned_[i][1] != ghost && turned_[i][2] != ghost) addBase(turned_[i], i);
-  for (const GhostCell& g : ghosts_) addFace(g);
-  measureShape();
-}
-
-void FusionTest::addBase(const std::array<std::uint32_t, 4>& local, std::size_t index) {
-  const Vector3& a = places_[local[0]];
-  const Vector3& b = places_[local[1]];
-  const Vector3& c = places_[local[2]];
-  const Vector3 ab = b - a, ac = c - a, bc = c - b;
-  Base base;
-  base.normal = cross(ab, ac);
-  base.height = dot(base.normal, a);
-  base.corners = a + b + c;
-  base.squares = dot(ab, ab) + dot(ac, ac) + dot(bc, bc) + dot(a, a) + dot(b, b) + dot(c, c);
-  base.cell = static_cast<std::uint32_t>(index);
-  bases_.push_back(base);
-}
-
-void FusionTest::addFace(const GhostCell& ghost) {
-  auto f = ghost.local;
-  if (ghost.stays)
-    while (f[2] >= prey_.k) f = {f[1], f[2], f[0], f[3]};
-  Face face;
-  for (std::size_t i = 0; i < 3; ++i) face.vertex[i] = vertices_.ids()[f[i]], face.corner[i] = places_[f[i]];
-  face.normal = cross(face.corner[1] - face.corner[0], face.corner[2] - face.corner[0]);
-  face.height = dot(face.normal, face.corner[0]);
-  face.outside = mesh_.outside(ghost.cell);
-  face.stays = ghost.stays;
-  faces_.push_back(face);
-}
-
-void FusionTest::measureShape() {
-  double worst = 1;
-  for (const Base& base : bases_) {
-    const Vector3& apex = places_[star_.labels[base.cell]];
-    const double volume = dot(base.normal, apex) - base.height;
-    const double squares = base.squares + 3 * dot(apex, apex) - 2 * dot(apex, base.corners);
-    worst = std::min(worst, volume > 0 ? shapeSquared(volume, squares) : 0);
-  }
-  for (const auto& c : goingCells_) {
-    const Vector3 ab = places_[c[1]] - places_[c[0]], ac = places_[c[2]] - places_[c[0]], ad = places_[c[3]] - places_[c[0]];
-    const Vector3 bc = ac - ab, bd = ad - ab, cd = ad - ac;
-    const double volume = dot(cross(ab, ac), ad);
-    const double squares = dot(ab, ab) + dot(ac, ac) + dot(ad, ad) + dot(bc, bc) + dot(bd, bd) + dot(cd, cd);
-    worst = std::min(worst, volume > 0 ? shapeSquared(volume, squares) : 0);
-  }
-  oldShape_ = std::sqrt(worst);
+  if (waiting != kNone) addBases(waiting, waiting);
+  for (std::size_t i = 0; i < goingCells_.size(); i += 2) measureGoing(i, std::min(i + 1, goingCells_.size() - 1));
+  oldShape_ = std::sqrt(worst_);
   const double floor = std::min(limits_.shapeFloor, kShapeLoss * oldShape_);
   floorSquared_ = floor * floor;
 }
 
-double FusionTest::shapeAt(const LatticePoint& p) const {
-  const Vector3 d = toVector(p) - mesh_.position(prey_.vertex[0]);
-  for (const Face& face : faces_) {
-    if (!face.stays || limits_.normalCosine < 0) continue;
-    const Vector3 normal = cross(face.corner[1] - face.corner[0], d - face.corner[0]);
-    const double along = dot(normal, face.normal);
-    if (dot(face.normal, face.normal) == 0) continue;
-    const double least = limits_.normalCosine;
-    if (along <= 0 || along * along <= least * least * dot(normal, normal) * dot(face.normal, face.normal)) return -1;
+// Two cells of the star as it is.
+inline void FusionTest::see(const Pair& volume, const Pair& squares) {
+  const Pair shape = shapeSquared(volume, squares);
+  for (int lane = 0; lane < 2; ++lane) worst_ = std::min(worst_, volume[lane] > 0 ? shape[lane] : 0);
+}
+
+void FusionTest::addBases(std::uint32_t i, std::uint32_t j) {
+  const auto& s = turned_[i];
+  const auto& t = turned_[j];
+  const TwoVectors a = both(places_[s[0]], places_[t[0]]), b = both(places_[s[1]], places_[t[1]]), c = both(places_[s[2]], places_[t[2]]);
+  const TwoVectors ab = b - a, ac = c - a, bc = c - b;
+  Bases& bases = bases_[baseCount_++];
+  bases.normal = cross(ab, ac);
+  bases.height = dot(bases.normal, a);
+  bases.corners = a + b + c;
+  bases.squares = dot(ab, ab) + dot(ac, ac) + dot(bc, bc) + dot(a, a) + dot(b, b) + dot(c, c);
+  bases.cell = {i, j};
+  const TwoVectors apex = both(places_[s[3]], places_[t[3]]);
+  see(dot(bases.normal, apex) - bases.height, bases.squares + 3 * dot(apex, apex) - 2 * dot(apex, bases.corners));
+}
+
+void FusionTest::measureGoing(std::size_t i, std::size_t j) {
+  const auto& s = goingCells_[i];
+  const auto& t = goingCells_[j];
+  const TwoVectors a = both(places_[s[0]], places_[t[0]]);
+  const TwoVectors ab = both(places_[s[1]], places_[t[1]]) - a, ac = both(places_[s[2]], places_[t[2]]) - a, ad = both(places_[s[3]], places_[t[3]]) - a;
+  const TwoVectors bc = ac - ab, bd = ad - ab, cd = ad - ac;
+  see(dot(cross(ab, ac), ad), dot(ab, ab) + dot(ac, ac) + dot(ad, ad) + dot(bc, bc) + dot(bd, bd) + dot(cd, cd));
+}
+
+// `moving`: of a face that stays, the corner that is prey.
+void FusionTest::addFace(CellId ghost, bool stays, std::size_t moving) {
+  const Vector3& normal = mesh_.plane(ghost).normal;
+  const auto cornerAt = [&](std::size_t i) { return mesh_.position(mesh_.cell(ghost)[i]) - origin_; };
+  if (mesh_.latticeBits() > kExactBits)
+    for (std::size_t i = 0; i < 3; ++i)
+      for (const double x : cornerAt(i)) faceReach_ = std::max(faceReach_, std::abs(x));
+  const double height = dot(normal, cornerAt(0));
+  faces_[faceCount_] = {ghost, stays, static_cast<std::uint8_t>(moving)};
+  Planes& planes = planes_[faceCount_ / 2];
+  if (faceCount_++ % 2 == 0) {
+    planes = {both(normal, {}), Pair{height, std::numeric_limits<double>::infinity()}};
+  } else {
+    for (std::size_t k = 0; k < 3; ++k) planes.normal[k][1] = normal[k];
+    planes.height[1] = height;
   }
-  const double distance = 3 * dot(d, d), rounding = this->rounding(d);
+}
+
+bool FusionTest::flipsAt(VertexId v, const LatticePoint& p) const {
+  const Vector3 place = toVector(p), before = mesh_.position(v);
+  // Coordinates reach as far as the lattice; what is too close to call is not called.
+  const double error = mesh_.latticeBits() <= kExactBits ? 0 : kRounding * std::ldexp(1.0, 3 * mesh_.latticeBits());
+  for (const CellId c : mesh_.innerStar(v)) {
+    const auto& cell = mesh_.cell(c);
+    std::size_t at = 0, prey = 0;
+    for (const VertexId w : prey_.vertices())
+      for (std::size_t i = 0; i < 4; ++i) prey += cell[i] == w;
+    if (prey > 1) continue;
+    while (cell[at] != v) ++at;
+    const auto t = withLast(cell, at);
+    const Vector3 corner = mesh_.position(t[0]), normal = cross(mesh_.position(t[1]) - corner, mesh_.position(t[2]) - corner);
+    if (dot(normal, place - corner) <= -error && dot(normal, before - corner) > error) return true;
+  }
+  return false;
+}
+
+double FusionTest::shapeAt(const LatticePoint& p, double least) const {
+  const Vector3 d = toVector(p) - origin_;
+  if (limits_.normalCosine >= 0)
+    for (const Face& face : faces())
+      if (face.stays && turnsTooFar(face, p)) return -1;
+  const double distance = 3 * dot(d, d), rounding = this->rounding(d, reach_);
+  const TwoVectors twice = both(d, d);
+  const double floorSquared = std::max(floorSquared_, least * least);
   double worst = 1;
-  for (const Base& base : bases_) {
-    double volume = dot(base.normal, d) - base.height;
-    if (volume <= rounding) {
+  for (const Bases& bases : std::span(bases_).first(baseCount_)) {
+    Pair volume = dot(bases.normal, twice) - bases.height;
+    Pair squares = bases.squares + distance - 2 * dot(twice, bases.corners);
+    for (int lane = 0; lane < 2; ++lane) {
+      if (volume[lane] > rounding) continue;
       bool allowed = false;
-      volume = exactVolume6(base, p, allowed);
+      volume[lane] = exactVolume6(bases.cell[static_cast<std::size_t>(lane)], p, allowed);
       if (!allowed) return -1;
-      if (volume <= 0) continue;
+      if (volume[lane] <= 0) volume[lane] = squares[lane] = 1;  // flat, as it was: its shape does not count
     }
-    const double shape = shapeSquared(volume, base.squares + distance - 2 * dot(d, base.corners));
-    if (shape < floorSquared_) return -1;
-    worst = std::min(worst, shape);
+    const Pair shape = shapeSquared(volume, squares);
+    worst = std::min(worst, std::min(shape[0], shape[1]));
+    if (worst < floorSquared) return -1;
   }
   return std::sqrt(worst);
 }
 
-/// What volumes with an apex at d may be off by.
-double FusionTest::rounding(const Vector3& d) const {
-  const double reach = std::max({reach_, std::abs(d[0]), std::abs(d[1]), std::abs(d[2])});
+bool FusionTest::turnsTooFar(const Face& face, const LatticePoint& p) const {
+  const auto& cell = mesh_.cell(face.ghost);
+  const Vector3& old = mesh_.plane(face.ghost).normal;
+  const Vector3 from = mesh_.position(cell[(face.moving + 1) % 3]);
+  const Vector3 normal = cross(mesh_.position(cell[(face.moving + 2) % 3]) - from, toVector(p) - from);
+  const double along = dot(normal, old), squared = dot(old, old), least = limits_.normalCosine;
+  return squared > 0 && (along <= 0 || along * along <= least * least * dot(normal, normal) * squared);
+}
+
+/// What volumes with an apex at d over triangles of this reach may be off by.
+double FusionTest::rounding(const Vector3& d, double placesReach) const {
+  if (mesh_.latticeBits() <= kExactBits) return 0;
+  const double reach = std::max({placesReach, std::abs(d[0]), std::abs(d[1]), std::abs(d[2])});
   return reach < kExactReach ? 0 : kRounding * reach * reach * reach;
 }
 
@@ -211,9 +275,9 @@ bool FusionTest::onLattice(const LatticePoint& p) const {
 }
 
 /// For what is too close to call in doubles, flat or inverted. The latter two are allowed only where the cell was no better.
-double FusionTest::exactVolume6(const Base& base, const LatticePoint& p, bool& allowed) const {
-  const auto& cell = mesh_.cell(star_.affected[base.cell]);
-  const VertexId apex = prey_.vertex[star_.labels[base.cell]];
+double FusionTest::exactVolume6(std::uint32_t affected, const LatticePoint& p, bool& allowed) const {
+  const auto& cell = mesh_.cell(star_.affected[affected]);
+  const VertexId apex = prey_.vertex[star_.labels[affected]];
   const auto t = withLast(cell, static_cast<std::size_t>(std::ranges::find(cell, apex) - cell.begin()));
   const Int128 volume = volume6(mesh_.point(t[0]), mesh_.point(t[1]), mesh_.point(t[2]), p);
   allowed = volume > 0;
@@ -224,53 +288,72 @@ double FusionTest::exactVolume6(const Base& base, const LatticePoint& p, bool& a
   return static_cast<double>(volume);
 }
 
-// `d` = p relative to the first prey vertex.
-bool FusionTest::isOutside(const Face& face, const Vector3& d, const LatticePoint& p) const {
-  const double side = dot(face.normal, d) - face.height;
-  const double error = rounding(d);
-  const bool beyond = std::abs(side) > error || error == 0
-                          ? side > 0
-                          : orientation(mesh_.point(face.vertex[0]), mesh_.point(face.vertex[1]), mesh_.point(face.vertex[2]), p) > 0;
-  return beyond && (limits_.envelopeTolerance == 0 || distance(face, d) + face.outside > limits_.envelopeTolerance);
+// `side`: how high p lies above the face's plane, times the normal's length, within `error`.
+inline bool FusionTest::isOutside(const Face& face, double side, const LatticePoint& p, double error) const {
+  const auto& t = mesh_.cell(face.ghost);
+  const bool isSure = std::abs(side) > error || error == 0;
+  const bool beyond = isSure ? side > 0 : orientation(mesh_.point(t[0]), mesh_.point(t[1]), mesh_.point(t[2]), p) > 0;
+  return beyond && (limits_.envelopeTolerance == 0 || distance(face, p) + mesh_.outside(face.ghost) > limits_.envelopeTolerance);
 }
 
-// From d to the triangle. The convex hull of both is all that the solid gains there, and no point of it is further away.
-double FusionTest::distance(const Face& face, const Vector3& d) { return std::sqrt(nearestOnTriangle(d, face.corner).squared); }
+// From p to the triangle. The convex hull of both is all that the solid gains there, and no point of it is further away.
+double FusionTest::distance(const Face& face, const LatticePoint& p) const {
+  const auto& t = mesh_.cell(face.ghost);
+  const Vector3 place = toVector(p);
+  return std::sqrt(nearestOnTriangle({}, {mesh_.position(t[0]) - place, mesh_.position(t[1]) - place, mesh_.position(t[2]) - place}).squared);
+}
 
 float FusionTest::outsideAt(const LatticePoint& p) const {
   if (limits_.envelopeTolerance == 0) return 0;
-  const Vector3 d = toVector(p) - mesh_.position(prey_.vertex[0]);
+  const Vector3 d = toVector(p) - origin_;
   double most = 0;
-  for (const Face& face : faces_) {
-    const bool beyond = dot(face.normal, d) - face.height > -rounding(d);
-    most = std::max(most, face.outside + (beyond ? distance(face, d) : 0));
+  for (std::size_t i = 0; i < faceCount_; ++i) {
+    const Pair side = dot(planes_[i / 2].normal, both(d, d)) - planes_[i / 2].height;
+    const bool beyond = side[i % 2] > -rounding(d, faceReach_);
+    most = std::max(most, mesh_.outside(faces_[i].ghost) + (beyond ? distance(faces_[i], p) : 0));
   }
   const auto bound = static_cast<float>(most);
   return bound < most ? std::nextafter(bound, std::numeric_limits<float>::infinity()) : bound;
 }
 
+// Calls visit(face, side) for the faces that d may lie outside of, in their order; true as soon as it says so.
+template <class Visit>
+inline bool FusionTest::anyFacing(const Vector3& d, double error, const Visit& visit) const {
+  const double least = error > 0 ? -error : std::numeric_limits<double>::denorm_min();
+  const TwoVectors twice = both(d, d);
+  for (std::size_t i = 0; 2 * i < faceCount_; ++i) {
+    const Pair side = dot(planes_[i].normal, twice) - planes_[i].height;
+    if ((side[0] >= least && visit(faces_[2 * i], side[0])) || (side[1] >= least && visit(faces_[2 * i + 1], side[1]))) return true;
+  }
+  return false;
+}
+
 bool FusionTest::insideEnvelope(const LatticePoint& p) const {
-  const Vector3 d = toVector(p) - mesh_.position(prey_.vertex[0]);
-  return onLattice(p) && std::ranges::none_of(faces_, [&](const Face& face) { return isOutside(face, d, p); });
+  const Vector3 d = toVector(p) - origin_;
+  const double error = rounding(d, faceReach_);
+  return onLattice(p) && !anyFacing(d, error, [&](const Face& face, double side) { return isOutside(face, side, p, error); });
 }
 
 bool FusionTest::projectInside(Vector3 p, LatticePoint& inside) const {
-  const Vector3 origin = mesh_.position(prey_.vertex[0]);
-  const double end = std::ldexp(1.0, mesh_.latticeBits()) - 1;
+  const auto end = static_cast<double>((std::int64_t{1} << mesh_.latticeBits()) - 1);
   for (int step = 0; step <= kProjections; ++step) {
-    for (std::size_t a = 0; a < 3; ++a) inside[a] = static_cast<std::int32_t>(std::clamp(std::floor(p[a] + 0.5), 0.0, end));
-    const Vector3 d = toVector(inside) - origin;
+    for (std::size_t a = 0; a < 3; ++a) inside[a] = static_cast<std::int32_t>(std::clamp(p[a] + 0.5, 0.0, end));
+    const Vector3 d = toVector(inside) - origin_;
+    const double error = rounding(d, faceReach_);
     double farthest = -1;
     Vector3 back{};
-    for (const Face& face : faces_) {
-      if (!isOutside(face, d, inside)) continue;
-      const double length = std::sqrt(dot(face.normal, face.normal));
-      if (!(length > 0)) return false;  // a sliver whose plane doubles do not know
-      const double outside =
-          (dot(face.normal, p - origin) - face.height) / length - std::max(0.0, limits_.envelopeTolerance - face.outside);
-      if (std::abs(outside) > farthest) farthest = std::abs(outside), back = (outside / length) * face.normal;
-      if (step >= kExactProjections) back = back + (kRoundingReach / length) * face.normal;
-    }
+    const Vector3 past = p - toVector(inside);  // rounding's share
+    const bool isLost = anyFacing(d, error, [&](const Face& face, double side) {
+      if (!isOutside(face, side, inside, error)) return false;
+      const auto& [normal, inverseLength] = mesh_.plane(face.ghost);
+      if (!(inverseLength > 0)) return true;  // a sliver whose plane doubles do not know
+      const double allowed = limits_.envelopeTolerance == 0 ? 0 : std::max(0.0, limits_.envelopeTolerance - mesh_.outside(face.ghost));
+      const double outside = (side + dot(normal, past)) * inverseLength - allowed;
+      if (std::abs(outside) > farthest) farthest = std::abs(outside), back = (outside * inverseLength) * normal;
+      if (step >= kExactProjections) back = back + (kRoundingReach * inverseLength) * normal;
+      return false;
+    });
+    if (isLost) return false;
     if (farthest < 0) return true;
     p = p - back;
   }
@@ -286,9 +369,9 @@ bool FusionTest::keepsTopology() {
 // edge's link and nowhere else. That link is one cycle, since neither vertex is singular.
 bool FusionTest::edgeKeepsTopology() {
   std::size_t common = 0;
-  for (std::size_t v = 2; v < sides_.size(); ++v) common += sides_[v] == 3;
+  for (std::size_t v = 2; v < vertices_.ids().size(); ++v) common += sides_[v] == 3;
   if (common != ring_.size()) return false;
-  ringNeighbours_.assign(sides_.size(), {0, 0});
+  std::fill_n(ringNeighbours_.begin(), vertices_.ids().size(), std::array<std::uint32_t, 2>{});
   for (const auto& [x, y] : ring_) {
     for (const auto& [at, other] : {std::pair{x, y}, std::pair{y, x}}) {
       auto& pair = ringNeighbours_[at];
@@ -303,7 +386,7 @@ bool FusionTest::edgeKeepsTopology() {
 bool FusionTest::hasCommonChord() {
   chords_.clear();
   unsigned filled = 0;
-  for (std::size_t i = 0; i < turned_.size(); ++i) {
+  for (std::size_t i = 0; i < star_.affected.size(); ++i) {
     const auto& t = turned_[i];
     const int onRing = (sides_[t[0]] == 3) + (sides_[t[1]] == 3) + (sides_[t[2]] == 3);
     if (onRing < 2) continue;

@@ -5,10 +5,12 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "simplify/fusion_mesh.h"
 #include "simplify/local_vertices.h"
+#include "simplify/two_vectors.h"
 
 namespace qtet {
 
@@ -33,79 +35,102 @@ class FusionTest {
   explicit FusionTest(const FusionMesh& mesh, const FusionLimits& limits = {});
   ~FusionTest();
 
-  /// Collects the star of the prey. False when it is too large or already rules the fusion out.
-  [[nodiscard]] bool gather(const Prey& prey);
+  /// Collects the boundary triangles of the prey's star, which is all that the envelope asks for. False when the star is too large.
+  [[nodiscard]] bool gatherBoundary(const Prey& prey);
+  /// Collects the rest of the star. False when that already rules the fusion out. REQUIRES gatherBoundary.
+  [[nodiscard]] bool gatherRest();
+  /// Both.
+  [[nodiscard]] bool gather(const Prey& prey) { return gatherBoundary(prey) && gatherRest(); }
   /// Keeps topology: of the solid, of its boundary, and of every component of either; and the log can describe it. REQUIRES gather.
   [[nodiscard]] bool keepsTopology();
 
-  /// p lies on the inner side of (or on) every boundary face of the star, or within what is left of the tolerance. REQUIRES gather.
+  /// p lies on the inner side of (or on) every boundary face of the star, or within what is left of the tolerance. REQUIRES gatherBoundary.
   [[nodiscard]] bool insideEnvelope(const LatticePoint& p) const;
   /// Moves p onto the planes of the boundary faces that it lies outside of, one after the other, until its lattice point is inside.
+  /// REQUIRES gatherBoundary.
   [[nodiscard]] bool projectInside(Vector3 p, LatticePoint& inside) const;
-  /// How far the star's boundary may lie outside the original solid with the prey at p, in lattice steps. REQUIRES gather, p inside the envelope.
+  /// With prey vertex v at p one of its cells would flip or go flat, as far as doubles can tell. REQUIRES gatherBoundary.
+  [[nodiscard]] bool flipsAt(VertexId v, const LatticePoint& p) const;
+  /// How far the star's boundary may lie outside the original solid with the prey at p, in lattice steps. REQUIRES gatherBoundary, p inside the envelope.
   [[nodiscard]] float outsideAt(const LatticePoint& p) const;
   /// The worst shape among the affected cells with the prey at p (1 = regular, 0 = flat), or a negative number where p is not legal: a cell
-  /// would flip or be squashed, or a boundary triangle turn too far. REQUIRES gather.
-  [[nodiscard]] double shapeAt(const LatticePoint& p) const;
+  /// would flip or be squashed, or a boundary triangle turn too far; or where the shape is worse than `least`. REQUIRES gather.
+  [[nodiscard]] double shapeAt(const LatticePoint& p, double least = 0) const;
   /// The worst shape in the star as it is. REQUIRES gather.
   [[nodiscard]] double oldShape() const { return oldShape_; }
 
   [[nodiscard]] const Star& star() const { return star_; }
+  /// The same for good: until the next gather there is none here.
+  void takeStar(Star& star) { std::swap(star_, star); }
 
  private:
-  // The base of an affected cell: volume and shape with an apex d, both relative to the first prey vertex.
-  struct Base {
-    Vector3 normal;      // of twice the area, towards the apex
-    double height;       // normal . a corner
-    Vector3 corners;     // sum of the corners
-    double squares;      // of the three edges and the corners' distances from the origin
-    std::uint32_t cell;  // index into star_.affected
+  // The bases of two affected cells: volume and shape with an apex d, both relative to the first prey vertex. The last may be one cell's twice.
+  struct Bases {
+    TwoVectors normal;                  // of twice the area, towards the apex
+    Pair height;                        // normal . a corner
+    TwoVectors corners;                 // sum of the corners
+    Pair squares;                       // of the three edges and the corners' distances from the origin
+    std::array<std::uint32_t, 2> cell;  // indices into star_.affected
   };
-  struct GhostCell {
-    std::array<std::uint32_t, 4> local;  // the ghost last
-    CellId cell;
-    bool stays;  // is affected
-  };
-  // A boundary triangle of the star, counter-clockwise seen from outside.
+  // A boundary triangle of the star.
   struct Face {
-    Vector3 normal;
-    double height;
-    std::array<VertexId, 3> vertex;
-    std::array<Vector3, 3> corner;  // of an affected face the one that moves is the last
-    double outside;                 // FusionMesh::outside
-    bool stays = false;
+    CellId ghost;
+    bool stays;               // one of its vertices is prey
+    std::uint8_t moving;      // of a face that stays: which
+  };
+  // Of two faces, relative to the first prey vertex; where there is no second one, nothing is beyond it.
+  struct Planes {
+    TwoVectors normal;
+    Pair height;
   };
 
-  void addCell(CellId c, const std::array<std::uint32_t, 4>& local, int shared, std::size_t at);
-  void addBase(const std::array<std::uint32_t, 4>& local, std::size_t cell);
-  void addFace(const GhostCell& ghost);
+  template <std::uint32_t k>
+  [[nodiscard]] bool addStars();
+  template <std::uint32_t k>
+  [[nodiscard]] bool addCell(CellId c, std::uint32_t from);
+  [[nodiscard]] bool addGoing(CellId c, std::uint32_t side);
+  [[nodiscard]] std::uint32_t intern(VertexId v);
+  void addFace(CellId ghost, bool stays, std::size_t moving);
   void measure();
-  void measureShape();
+  void addBases(std::uint32_t i, std::uint32_t j);
+  void measureGoing(std::size_t i, std::size_t j);
+  void see(const Pair& volume, const Pair& squares);
   [[nodiscard]] bool edgeKeepsTopology();
   [[nodiscard]] bool hasCommonChord();
-  [[nodiscard]] bool isOutside(const Face& face, const Vector3& d, const LatticePoint& p) const;
-  [[nodiscard]] static double distance(const Face& face, const Vector3& d);
-  [[nodiscard]] double rounding(const Vector3& d) const;
+  [[nodiscard]] std::span<const Face> faces() const { return std::span(faces_).first(faceCount_); }
+  template <class Visit>
+  [[nodiscard]] bool anyFacing(const Vector3& d, double error, const Visit& visit) const;
+  [[nodiscard]] bool isOutside(const Face& face, double side, const LatticePoint& p, double error) const;
+  [[nodiscard]] double distance(const Face& face, const LatticePoint& p) const;
+  [[nodiscard]] bool turnsTooFar(const Face& face, const LatticePoint& p) const;
+  [[nodiscard]] double rounding(const Vector3& d, double placesReach) const;
   [[nodiscard]] bool onLattice(const LatticePoint& p) const;
-  [[nodiscard]] double exactVolume6(const Base& base, const LatticePoint& p, bool& allowed) const;
+  [[nodiscard]] double exactVolume6(std::uint32_t affected, const LatticePoint& p, bool& allowed) const;
 
   const FusionMesh& mesh_;
   FusionLimits limits_;
   Prey prey_;
   Star star_;
   LocalVertices vertices_;
-  std::vector<Vector3> places_;                       // by local vertex, relative to the first prey vertex
-  std::vector<std::uint8_t> sides_;                   // by local vertex: bit i = in the link of prey vertex i
-  std::vector<std::array<std::uint32_t, 4>> turned_;  // affected cells, the prey vertex last, local
-  std::vector<GhostCell> ghosts_;
+  template <class T>
+  using ByLocal = std::array<T, LocalVertices::kMost>;
+  ByLocal<Vector3> places_;                               // relative to the first prey vertex
+  ByLocal<std::uint8_t> sides_;                           // bit i = in the link of prey vertex i
+  template <class T, std::size_t share>
+  using ByCell = std::array<T, kMostStarCells / share>;  // no vectors, which would clear what is written anyway
+  ByCell<std::array<std::uint32_t, 4>, 1> turned_;        // affected cells, the prey vertex last, local
   std::vector<std::array<std::uint32_t, 2>> ring_;        // k = 2: the edges opposite the prey in deleted cells
   std::vector<std::array<std::uint32_t, 4>> goingCells_;  // deleted cells, local
-  std::vector<Base> bases_;
-  std::vector<Face> faces_;
-  double reach_ = 0;  // the largest coordinate of places_
+  ByCell<Bases, 4> bases_;
+  ByCell<Face, 1> faces_;
+  ByCell<Planes, 2> planes_;
+  std::size_t baseCount_ = 0, faceCount_ = 0;  // of bases_, of faces_
+  Vector3 origin_{};                  // the first prey vertex
+  double faceReach_ = 0, reach_ = 0;  // the largest coordinate of the faces, of all places_
+  double worst_ = 1;  // oldShape_ squared, as far as it is known
   double oldShape_ = 1;
   double floorSquared_ = 0;
-  std::vector<std::array<std::uint32_t, 2>> ringNeighbours_;
+  ByLocal<std::array<std::uint32_t, 2>> ringNeighbours_;
   std::vector<std::array<std::uint32_t, 2>> chords_;
   std::unique_ptr<FullLinkTest> full_;
   std::unique_ptr<RegionTest> regions_;

@@ -21,6 +21,7 @@ class CellsOfPoints {
     for (CellId c = 0; c < cells.size(); ++c)
       for (const VertexId v : cells[c]) cells_[next[v]++] = c;
   }
+  [[nodiscard]] std::size_t points() const { return first_.size() - 1; }
   [[nodiscard]] std::span<const CellId> of(VertexId v) const { return std::span(cells_).subspan(first_[v], first_[v + 1] - first_[v]); }
 
  private:
@@ -33,10 +34,12 @@ class CellsOfPoints {
 void fillGaps(std::span<const Tetrahedron> cells, const FieldInfo& field, std::span<const std::uint8_t> gaps, std::vector<std::int32_t>& values) {
   const CellsOfPoints around(cells);
   const std::size_t n = field.components;
+  std::vector<std::uint8_t> crossed;  // points whose cells are all known: once is enough, however many cells meet there
   const auto forNeighbours = [&](std::uint32_t i, const auto& visit) {
     if (isCellField(field)) {
       for (const VertexId v : cells[i])
-        for (const CellId c : around.of(v)) visit(c);
+        if (std::exchange(crossed[v], std::uint8_t{1}) == 0)
+          for (const CellId c : around.of(v)) visit(c);
     } else {
       for (const CellId c : around.of(i))
         for (const VertexId v : cells[c]) visit(v);
@@ -44,6 +47,7 @@ void fillGaps(std::span<const Tetrahedron> cells, const FieldInfo& field, std::s
   };
   for (std::size_t c = 0; c < n; ++c) {
     std::vector<std::uint8_t> known(values.size() / n);
+    crossed.assign(around.points(), 0);
     std::vector<std::uint32_t> queue;
     for (std::uint32_t i = 0; i < known.size(); ++i)
       if (gaps[i * n + c] == 0) known[i] = 1, queue.push_back(i);

@@ -9,7 +9,7 @@ namespace qtet {
 struct GmshElement {
   std::uint32_t nodes = 0;                  ///< 0: a kind that is not known
   std::uint8_t type = 0;                    ///< CellType; 0: of lower dimension
-  std::span<const std::uint8_t> nodeOf{};   ///< the place among Gmsh's nodes of each of VTK's; empty: the same order
+  std::span<const std::uint16_t> nodeOf{};   ///< the place among Gmsh's nodes of each of VTK's; empty: the same order
 };
 
 [[nodiscard]] GmshElement gmshElement(std::int64_t number);

@@ -5,7 +5,7 @@
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
+#include <span>
 
 #include "codec/mesh.h"
 
@@ -17,7 +17,7 @@ class LocalVertices {
   static constexpr std::size_t kMost = 512;
 
   void clear() {
-    ids_.clear();
+    count_ = 0;
     if (++generation_ == 0) {
       slots_.fill({});
       generation_ = 1;
@@ -30,12 +30,12 @@ class LocalVertices {
       if (slots_[at].id == v) return slots_[at].local;
       at = (at + 1) % kSlots;
     }
-    assert(ids_.size() < kMost);
-    slots_[at] = {v, static_cast<std::uint16_t>(ids_.size()), generation_};
-    ids_.push_back(v);
-    return slots_[at].local;
+    assert(count_ < kMost);
+    slots_[at] = {v, count_, generation_};
+    ids_[count_] = v;
+    return count_++;
   }
-  [[nodiscard]] const std::vector<VertexId>& ids() const { return ids_; }
+  [[nodiscard]] std::span<const VertexId> ids() const { return std::span(ids_).first(count_); }
 
  private:
   static constexpr int kLogSlots = 10;
@@ -47,8 +47,8 @@ class LocalVertices {
     std::uint16_t local = 0, generation = 0;
   };
   std::array<Slot, kSlots> slots_{};
-  std::vector<VertexId> ids_;
-  std::uint16_t generation_ = 0;
+  std::array<VertexId, kMost> ids_{};
+  std::uint16_t count_ = 0, generation_ = 0;
 };
 
 }  // namespace qtet

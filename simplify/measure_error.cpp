@@ -6,6 +6,7 @@
 
 #include "codec/error_figure.h"
 #include "codec/level_columns.h"
+#include "proto/field_key.h"
 #include "simplify/measure_boundary.h"
 #include "simplify/measure_fields.h"
 #include "simplify/workers.h"
@@ -73,10 +74,9 @@ using FieldBound = std::pair<std::size_t, double>;
 Result<std::vector<FieldBound>> fieldBounds(const FusionHistory& history, const ErrorBounds& bounds) {
   std::vector<FieldBound> out;
   for (const auto& [name, bound] : bounds.fields) {
-    const auto at = std::ranges::find(history.fields, name, &FieldInfo::name);
-    if (at == history.fields.end())
-      return fail(ErrorCode::kNotFound, "no field '" + name + "' to keep an error bound of; name one that the log carries");
-    out.emplace_back(static_cast<std::size_t>(at - history.fields.begin()), bound);
+    const auto field = fieldOfKey(history.fields, name);
+    if (!field) return fail(ErrorCode::kNotFound, "no field '" + name + "' to keep an error bound of; name one that the log carries");
+    out.emplace_back(*field, bound);
   }
   return out;
 }

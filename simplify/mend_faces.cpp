@@ -30,44 +30,59 @@ std::vector<Triangle> boundaryOfSound(const std::vector<Tetrahedron>& cells) {
   return boundaryOf(sound);
 }
 
-/// Two boundary triangles with a common edge: their four vertices.
-std::optional<Quad> quadOf(const Triangle& a, const Triangle& b) {
-  Quad out{a[0], a[1], a[2], kGhost};
-  for (const VertexId v : b) {
-    if (v != a[0] && v != a[1] && v != a[2]) out[3] = v;
+/// The boundary's triangles, looked up by their vertices and by their edges.
+class Sides {
+ public:
+  explicit Sides(std::vector<Triangle> boundary) : triangles_(std::move(boundary)) {
+    for (Triangle& t : triangles_) std::ranges::sort(t);
+    std::ranges::sort(triangles_);
+    edges_.reserve(3 * triangles_.size());
+    for (const auto& [a, b, c] : triangles_) {
+      edges_.push_back({{a, b}, c});
+      edges_.push_back({{a, c}, b});
+      edges_.push_back({{b, c}, a});
+    }
+    std::ranges::sort(edges_, {}, [](const Opposite& o) { return std::pair(o.edge, o.vertex); });
   }
-  if (out[3] == kGhost) return std::nullopt;
-  std::ranges::sort(out);
-  return out;
-}
 
-/// The sets of four vertices all of whose four triangles are boundary.
-std::vector<Quad> closedQuads(const std::vector<Triangle>& boundary) {
-  struct EdgeOf {
-    Edge edge;
-    std::uint32_t triangle;
+  struct Opposite {
+    Edge edge;        ///< ascending
+    VertexId vertex;  ///< the triangle's third
   };
-  std::vector<EdgeOf> edges;
-  edges.reserve(3 * boundary.size());
-  for (std::uint32_t t = 0; t < boundary.size(); ++t) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const VertexId a = boundary[t][k], b = boundary[t][(k + 1) % 3];
-      edges.push_back({{std::min(a, b), std::max(a, b)}, t});
+  [[nodiscard]] const std::vector<Triangle>& triangles() const { return triangles_; }
+  [[nodiscard]] bool has(const Quad& quad) const {
+    for (std::size_t left = 0; left < 4; ++left) {
+      Triangle t{};
+      std::ranges::copy_if(quad, t.begin(), [&](VertexId v) { return v != quad[left]; });
+      if (!std::ranges::binary_search(triangles_, t)) return false;
+    }
+    return true;
+  }
+  [[nodiscard]] std::span<const Opposite> at(const Edge& edge) const {
+    const auto range = std::ranges::equal_range(edges_, edge, {}, &Opposite::edge);
+    return {range.begin(), range.end()};
+  }
+
+ private:
+  std::vector<Triangle> triangles_;  ///< ascending in themselves and among each other
+  std::vector<Opposite> edges_;
+};
+
+/// The sets of four vertices all of whose four triangles are boundary. Each triangle looks round the edge of the fewest triangles, so that an edge of many costs no more than it has.
+std::vector<Quad> closedQuads(const std::vector<Triangle>& boundary) {
+  const Sides sides(boundary);
+  std::vector<Quad> closed;
+  for (const auto& [a, b, c] : sides.triangles()) {
+    const std::array round{sides.at({a, b}), sides.at({a, c}), sides.at({b, c})};
+    for (const auto& [edge, vertex] : *std::ranges::min_element(round, {}, [](const auto& some) { return some.size(); })) {
+      Quad quad{a, b, c, vertex};
+      if (vertex == a || vertex == b || vertex == c) continue;
+      std::ranges::sort(quad);
+      if (sides.has(quad)) closed.push_back(quad);
     }
   }
-  std::ranges::sort(edges, [](const EdgeOf& a, const EdgeOf& b) { return a.edge != b.edge ? a.edge < b.edge : a.triangle < b.triangle; });
-  std::vector<Quad> quads;
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    for (std::size_t j = i + 1; j < edges.size() && edges[j].edge == edges[i].edge; ++j) {
-      if (const auto quad = quadOf(boundary[edges[i].triangle], boundary[edges[j].triangle])) quads.push_back(*quad);
-    }
-  }
-  std::ranges::sort(quads);
-  std::vector<Quad> closed;  // four triangles meet in six edges
-  for (std::size_t i = 0; i + 6 <= quads.size(); ++i) {
-    if (quads[i + 5] != quads[i] || (i > 0 && quads[i - 1] == quads[i])) continue;
-    closed.push_back(quads[i]);
-  }
+  std::ranges::sort(closed);
+  closed.erase(std::unique(closed.begin(), closed.end()), closed.end());
   return closed;
 }
 

@@ -37,15 +37,20 @@ Result<FileEnds> readEnds(const fs::path& path, std::uintmax_t size) {
   return ends;
 }
 
-/// The value of `name="..."` (or '...') in the tag that starts at `tag`, or an empty text.
+/// The value of the attribute `name`, in quotes of either kind, in the tag that starts at `tag`, or an empty text.
 std::string attribute(std::string_view text, std::size_t tag, std::string_view name) {
-  const std::size_t end = text.find('>', tag);
-  const std::string_view element = text.substr(tag, end == std::string_view::npos ? end : end - tag);
-  const std::size_t at = element.find(std::string(name) + "=");
-  if (at == std::string_view::npos || at + name.size() + 2 > element.size()) return {};
-  const char quote = element[at + name.size() + 1];
-  const std::string_view value = element.substr(at + name.size() + 2);
-  return std::string(value.substr(0, value.find(quote)));
+  constexpr std::string_view kBlanks = " \t\r\n", kNameEnds = " \t\r\n=/>";
+  for (std::size_t at = text.find_first_of(kBlanks, tag);;) {
+    at = text.find_first_not_of(kBlanks, at);
+    const std::size_t end = text.find_first_of(kNameEnds, at), equals = text.find_first_not_of(kBlanks, end);
+    if (equals == std::string_view::npos || text[equals] != '=') return {};  // the tag is at its end
+    const std::size_t quote = text.find_first_not_of(kBlanks, equals + 1);
+    if (quote == std::string_view::npos || (text[quote] != '"' && text[quote] != '\'')) return {};
+    const std::size_t close = text.find(text[quote], quote + 1);
+    if (close == std::string_view::npos) return {};
+    if (text.substr(at, end - at) == name) return std::string(text.substr(quote + 1, close - quote - 1));
+    at = close + 1;
+  }
 }
 
 /// The type that an XML file's root names, by format; nothing: no XML.
@@ -138,10 +143,6 @@ MeshFormat formatOf(const fs::path& path) {
   std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   const auto at = std::ranges::find(kEndings, ending, &Ending::text);
   return at == kEndings.end() ? MeshFormat::kOther : at->format;
-}
-
-const char* knownEndings() {
-  return ".vtu .pvtu .vtm .pvd .vts .vtr .vti .vtk .e .ex2 .exo .case .cgns .inp .foam .msh .mesh .meshb .node .ele .su2, PLOT3D with --plot3d, and what meshio reads";
 }
 
 Status checkMeshFile(const fs::path& path, MeshFormat format) {

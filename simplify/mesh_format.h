@@ -17,9 +17,6 @@ enum class MeshFormat {
 /// By the name's ending, in small or capital letters.
 [[nodiscard]] MeshFormat formatOf(const std::filesystem::path& path);
 
-/// "`.vtu .pvtu ...`", for messages.
-[[nodiscard]] const char* knownEndings();
-
 /// Looks at existence, size, first and last bytes. Errors: not-found (no such file), io (not readable, a folder), truncated (empty, or the
 /// XML's closing tag is missing), bad-input (not what the ending promises).
 [[nodiscard]] Status checkMeshFile(const std::filesystem::path& path, MeshFormat format);

@@ -9,9 +9,10 @@
 
 namespace qtet {
 
-/// Gmsh 2.2 and 4.1, text and binary (little-endian): nodes, elements, NodeData and ElementData; a field given at several times is NAME@TIME;
+/// Gmsh 2.2 and 4.1, text and binary (little-endian): nodes, elements, NodeData and ElementData; of a field given at several times
+/// the steps that `time` means (time_steps.h);
 /// the first physical group of a volume is the cell field gmsh:physical. Nodes keep the file's order, cells that of the volume elements. https://gmsh.info/doc/texinfo/gmsh.html#File-formats
-[[nodiscard]] Result<CellMesh> readGmsh(const std::filesystem::path& path, ReadReport& report);
+[[nodiscard]] Result<CellMesh> readGmsh(const std::filesystem::path& path, const std::string& time, ReadReport& report);
 
 /// Medit .mesh, and .meshb of versions 1 to 4: vertices, tetrahedra, hexahedra, prisms, pyramids, second-degree tetrahedra; references other
 /// than 0 are the fields medit:ref. https://www.ljll.fr/frey/publications/RT-0253.pdf, and libMeshb's keywords.

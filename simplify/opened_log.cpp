@@ -11,7 +11,10 @@ std::uint64_t OpenedLog::prefixBytes(std::size_t level) const {
 
 Result<OpenedLog> openLog(const std::filesystem::path& path) {
   Result<LogFile> file = LogFile::open(path);
-  if (!file) return std::unexpected(file.error());
+  if (!file) {
+    if (file.error().code == ErrorCode::kBadMagic) file.error().message += "; 'qtet check' tells what a mesh holds, 'qtet simplify' makes a log of it";
+    return std::unexpected(file.error());
+  }
   Result<Manifest> manifest = manifestOf(file->index());
   if (!manifest) {
     manifest.error().message = path.string() + ": " + manifest.error().message;

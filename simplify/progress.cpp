@@ -31,9 +31,9 @@ void Progress::endStage() {
   out_ << "qtet: " << stage_ << ": " << static_cast<double>(spent.count()) / 1000 << " s\n" << std::flush;
 }
 
-void Progress::stage(std::string name) {
+void Progress::stage(std::string_view name) {
   endStage();
-  stage_ = std::move(name);
+  stage_ = printable(name);
   stageStart_ = Clock::now();
   if (onTerminal_) lastDrawn_ = {};
   update(0);

@@ -19,7 +19,7 @@ class Progress {
   ~Progress();
 
   /// Starts a stage such as "simplifying"; the one before it is over.
-  void stage(std::string name);
+  void stage(std::string_view name);
   /// 0..1 of the stage; cheap enough to be called often.
   void update(double fraction);
   /// Takes the bar away, so that other lines can follow.

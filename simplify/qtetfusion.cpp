@@ -51,6 +51,12 @@ struct Entry {
 
 using Queue = boost::heap::d_ary_heap<Entry, boost::heap::arity<4>>;
 
+/// Null where the fusion is not legal; that, too, is known only of what costs no more than it may.
+struct Outcome {
+  const Proposal* proposal;
+  float cost;
+};
+
 class Simplifier {
  public:
   Simplifier(const LatticeMesh& mesh, const FusionOptions& options)
@@ -133,7 +139,8 @@ class Simplifier {
     vertices_.clear();
     for (VertexId v = 0; v < mesh_.vertexSlots(); ++v)
       if (mesh_.alive(v) && !mesh_.singular(v)) vertices_.push_back(v);
-    collect(vertices_, true);
+    collect(vertices_,
+            [&](FusionProposer& proposer, std::size_t i, std::vector<Candidate>& found) { proposer.candidatesOf(vertices_[i], found); });
   }
 
   void makeRoom() {
@@ -141,14 +148,14 @@ class Simplifier {
     proposalOf_.resize(mesh_.vertexSlots(), kNone);
   }
 
-  /// The candidates of these vertices, found in parallel, kept in order.
-  void collect(std::span<const VertexId> vertices, bool onlyLower) {
-    std::vector<std::vector<Candidate>> found(std::min(vertices.size(), kCollected));
-    for (std::size_t first = 0; first < vertices.size(); first += found.size()) {
-      const auto part = vertices.subspan(first, std::min(found.size(), vertices.size() - first));
-      workers_.forEach(part.size(), kGrain,
-                       [&](std::size_t worker, std::size_t i) { proposers_[worker]->candidatesOf(part[i], onlyLower, found[i]); });
-      for (std::size_t i = 0; i < part.size(); ++i) candidates_.set(part[i], found[i]);
+  /// The candidates of these vertices, found in parallel, kept in order: find(proposer, index, found).
+  template <class Find>
+  void collect(std::span<const VertexId> vertices, const Find& find) {
+    found_.resize(std::max(found_.size(), std::min(vertices.size(), kCollected)));
+    for (std::size_t first = 0; first < vertices.size(); first += kCollected) {
+      const auto part = vertices.subspan(first, std::min(kCollected, vertices.size() - first));
+      workers_.forEach(part.size(), kGrain, [&](std::size_t worker, std::size_t i) { find(*proposers_[worker], first + i, found_[i]); });
+      for (std::size_t i = 0; i < part.size(); ++i) candidates_.set(part[i], found_[i]);
     }
   }
 
@@ -158,6 +165,7 @@ class Simplifier {
     if (entries_.empty()) return false;
     levelStart_ = fusions_;
     fused_.clear();
+    links_.clear(), linkEnds_.clear();
     while (nextKey() <= limit_ && mesh_.liveTetrahedra() > goal_) {
       if (next_ >= proposedTo_) proposeAhead();
       lookAhead();
@@ -168,8 +176,10 @@ class Simplifier {
     withProposal_.clear();
     if (fusions_ > levelStart_) ++level_;
     vertices_.insert(vertices_.end(), fused_.begin(), fused_.end());
-    collect(fused_, false);
-    candidates_.compact([&](VertexId v) { return mesh_.alive(v); });
+    collect(fused_, [&](FusionProposer& proposer, std::size_t i, std::vector<Candidate>& found) {
+      proposer.candidatesOf(fused_[i], linkOf(i), found);
+    });
+    candidates_.compact();
     if (options_.progress) options_.progress(progress());
     return true;
   }
@@ -180,11 +190,13 @@ class Simplifier {
     queue_.clear();
     std::erase_if(vertices_, [&](VertexId v) { return !mesh_.alive(v); });
     entries_.resize(vertices_.size());
-    workers_.forEach(vertices_.size(), kCollected, [&](std::size_t, std::size_t i) {
-      const VertexId v = vertices_[i];
-      dropDead(v);
-      const Candidate* best = candidates_.best(v);
-      entries_[i] = {best ? best->key : std::numeric_limits<float>::infinity(), v};
+    workers_.forRuns(vertices_.size(), kCollected, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const VertexId v = vertices_[i];
+        dropDead(v);
+        const Candidate* best = candidates_.best(v);
+        entries_[i] = {best ? best->key : std::numeric_limits<float>::infinity(), v};
+      }
     });
     std::erase_if(entries_, [&](const Entry& e) { return e.key > dearest_ || std::isinf(e.key); });
     next_ = proposedTo_ = 0;
@@ -259,7 +271,9 @@ class Simplifier {
       // Where the best is not legal, the next one is wanted soon.
       for (auto rest = candidates_.remaining(owner); !rest.empty() && rest[0].key <= limit_; rest = rest.subspan(1)) {
         if (!mesh_.alive(rest[0].partner) || isLocked(rest[0].partner)) break;
-        if (proposers_[worker]->propose(owner, rest, levelStart_, fusions_, *proposal)) break;
+        // No dearer than the one thread would go on with at once: later the owner's other candidates are not what they are now.
+        const float most = std::min(limit_, kDearer * rest[0].key);
+        if (proposers_[worker]->propose(owner, rest, most, {levelStart_, fusions_}, *proposal)) break;
       }
     });
   }
@@ -275,30 +289,30 @@ class Simplifier {
     return proposals_[proposalOf_[owner]];
   }
 
-  /// The proposal for the owner's best candidate, made now unless what was found in this level still holds. Null: it is not legal.
-  const Proposal* propose(VertexId owner, VertexId partner) {
+  /// What comes of the owner's best candidate, made now unless what was found in this level still holds.
+  Outcome propose(VertexId owner, VertexId partner, float most) {
     Proposal& proposal = proposalFor(owner);
-    if (std::ranges::find(proposal.illegal, partner) != proposal.illegal.end()) return nullptr;
+    if (const auto illegal = std::ranges::find(proposal.illegal, partner, &Proposal::Illegal::partner); illegal != proposal.illegal.end())
+      return {nullptr, illegal->price};
     const auto changed = [&](VertexId v) { return touched_.since(v, proposal.madeAfter); };
-    if (proposal.partner == partner && std::ranges::none_of(proposal.companions, changed)) return &proposal;
-    return proposers_[0]->propose(owner, candidates_.remaining(owner), levelStart_, fusions_, proposal) ? &proposal : nullptr;
+    const auto isWhole = [&] { return std::min(proposal.edgeCost, most) <= proposal.most; };
+    const bool holds = proposal.partner == partner &&
+                       (proposal.isPriceAll ? proposal.price > most : isWhole() && std::ranges::none_of(proposal.companions, changed));
+    if (!holds && !proposers_[0]->propose(owner, candidates_.remaining(owner), most, {levelStart_, fusions_}, proposal))
+      return {nullptr, proposal.illegal.back().price};
+    return {&proposal, proposal.price > most ? proposal.price : static_cast<float>(proposal.where.cost)};
   }
 
   void process(VertexId owner) {
     const Candidate candidate = *candidates_.best(owner);
     if (!mesh_.alive(candidate.partner)) return requeue(owner);
     if (isLocked(candidate.partner)) return;
-    const Proposal* proposal = propose(owner, candidate.partner);
-    if (proposal == nullptr) {
-      candidates_.fail(owner);
-      return requeue(owner);
-    }
-    const auto cost = static_cast<float>(proposal->where.cost);
-    if (cost > limit_ || (cost > kDearer * candidate.key && nextKey() < cost)) {
-      candidates_.raise(owner, cost);
-      return requeue(owner);
-    }
-    fuse(*proposal);
+    // Dearer than this, it waits for what costs less.
+    const float most = std::min(limit_, std::max(kDearer * candidate.key, nextKey()));
+    const Outcome outcome = propose(owner, candidate.partner, most);
+    if (outcome.cost <= most && outcome.proposal) return fuse(*outcome.proposal);
+    outcome.cost > most ? candidates_.raise(owner, outcome.cost) : candidates_.fail(owner);
+    requeue(owner);
   }
 
   void fuse(const Proposal& proposal) {
@@ -313,13 +327,21 @@ class Simplifier {
     band_.fused(prey.vertex[0]);
     makeRoom();
     touched_.touch(fused, ++fusions_);
-    for (const VertexId v : prey.vertices()) touched_.touch(v, fusions_);
+    for (const VertexId v : prey.vertices()) touched_.touch(v, fusions_), candidates_.forget(v);
     for (const VertexId v : proposal.star.link) {
       if (v == kGhost) continue;
       touched_.touch(v, fusions_);
       candidates_.restart(v);  // what its old neighbours forbade its new ones may allow
     }
     fused_.push_back(fused);
+    links_.insert(links_.end(), proposal.star.link.begin(), proposal.star.link.end());
+    linkEnds_.push_back(links_.size());
+  }
+
+  /// The link of fused_[i], in which nothing changes until the level ends.
+  [[nodiscard]] std::span<const VertexId> linkOf(std::size_t i) const {
+    const std::size_t first = i == 0 ? 0 : linkEnds_[i - 1];
+    return std::span(links_).subspan(first, linkEnds_[i] - first);
   }
 
   // The fused vertex's integers: of a field in the cost what the cost says, of the others the nearest prey vertex's.
@@ -369,11 +391,14 @@ class Simplifier {
   std::uint32_t fusions_ = 0, levelStart_ = 0;
   std::vector<VertexId> vertices_;  // alive at the level's start
   Candidates candidates_;
+  std::vector<std::vector<Candidate>> found_;  // collect's own
   std::vector<Entry> entries_;
   std::size_t next_ = 0, proposedTo_ = 0, ahead_ = 0;  // into entries_
   float limit_ = 0, dearest_ = std::numeric_limits<float>::infinity();  // keys: where the level ends, where the band does
   Queue queue_;
   std::vector<VertexId> fused_;  // of this level
+  std::vector<VertexId> links_;  // theirs, back to back
+  std::vector<std::size_t> linkEnds_;
   std::deque<Proposal> proposals_;
   std::vector<std::uint32_t> proposalOf_;  // by vertex, into proposals_
   std::vector<VertexId> withProposal_;
@@ -386,7 +411,7 @@ Status checkWeights(const LatticeMesh& mesh, const FusionOptions& options) {
   const std::vector<double>& weights = options.cost.fieldWeights;
   if (!weights.empty() && weights.size() != mesh.fields.size()) return fail(ErrorCode::kBadInput, "there must be one field weight a field");
   const auto bad = [](double w) { return !(w >= 0) || std::isinf(w); };
-  if (std::ranges::any_of(weights, bad) || bad(options.cost.hullWeight) || bad(options.shapeWeight))
+  if (std::ranges::any_of(weights, bad) || bad(options.cost.hullWeight.value_or(0)) || bad(options.shapeWeight))
     return fail(ErrorCode::kBadInput, "weights must be finite and not negative");
   return {};
 }

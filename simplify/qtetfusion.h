@@ -19,7 +19,7 @@ struct BandOptions {
   std::size_t most = 6;            ///< with each more, small boxes take fewer bytes and coarse levels get worse
   /// A band ends at the key that this fraction of the vertices' best edges does not pass at its start. 0.9 to 1 trades the error of coarse levels for
   /// the bytes of a box (tests/bench/REGIONS.md).
-  double dearest = 0.95;
+  double dearest = 0.93;
   double levelQuantile = 0.5;  ///< a level of a band ends at this quantile of what the band can afford, 0..1
 };
 

@@ -1,17 +1,24 @@
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <limits>
 #include <map>
 #include <unordered_map>
 
 #include "proto/limits.h"
 #include "simplify/gmsh_elements.h"
+#include "simplify/measure_samples.h"
 #include "simplify/mesh_readers.h"
 #include "simplify/mesh_scanner.h"
+#include "simplify/select_fields.h"
+#include "simplify/time_steps.h"
 
 namespace qtet {
 namespace {
+
+/// Numbers in a file may be any, also multiples of the size of the library's table, whose own hash of an integer is the integer: all would lie in one bucket.
+struct MixedHash {
+  std::size_t operator()(std::uint64_t tag) const { return SplitMix64(tag).next(); }
+};
 
 /// Gmsh's own numbers of nodes and elements, which may have gaps, to ours.
 class Numbers {
@@ -25,13 +32,13 @@ class Numbers {
   }
 
  private:
-  std::unordered_map<std::uint64_t, std::size_t> places_;
+  std::unordered_map<std::uint64_t, std::size_t, MixedHash> places_;
 };
 
 /// One file. Text and bytes differ in how a number is read, versions 2.2 and 4.1 in what stands where.
 class Gmsh {
  public:
-  Gmsh(std::string_view text, const std::filesystem::path& path, ReadReport& report) : in_(text, path), report_(report) {}
+  Gmsh(std::string_view text, const std::filesystem::path& path, const std::string& time, ReadReport& report) : in_(text, path), path_(path), time_(time), report_(report) {}
 
   Result<CellMesh> read() {
     while (!in_.atEnd()) {
@@ -168,7 +175,7 @@ class Gmsh {
   GmshElement kindOf(std::int64_t number) {
     const GmshElement kind = gmshElement(number);
     if (kind.nodes == 0 && !in_.failed()) {
-      in_.fail(ErrorCode::kBadInput, "elements of type " + std::to_string(number) + " are not read; save the mesh with elements of a lower order (gmsh FILE -order 2)");
+      in_.fail(ErrorCode::kBadInput, "elements of type " + std::to_string(number) + " are not read; complete ones of order 1 to 9 are: save the mesh with Mesh.SecondOrderIncomplete = 0, or of a lower order (gmsh FILE -order 2)");
     }
     return kind;
   }
@@ -287,43 +294,62 @@ class Gmsh {
     if (any) out_.fields.push_back(std::move(field));
   }
 
-  /// A field that the file has at several times is called NAME@TIME, as those of a series.
-  void nameSteps() {
+  /// Of fields that the file has at several times those of the steps that are meant stay; of all steps they are called NAME@TIME, as those of other series.
+  Status chooseSteps() {
     std::map<std::pair<std::string, std::string>, std::size_t> count;
     for (const MeshField& field : out_.fields) ++count[{field.association, field.name}];
+    const auto isSeries = [&](std::size_t f) { return count[{out_.fields[f].association, out_.fields[f].name}] > 1; };
+    std::vector<double> times;
     for (std::size_t f = 0; f < times_.size(); ++f) {
-      MeshField& field = out_.fields[f];
-      if (count[{field.association, field.name}] < 2) continue;
-      std::array<char, 32> text{};
-      field.name.append("@").append(text.data(), std::to_chars(text.data(), text.data() + text.size(), times_[f]).ptr);
+      if (isSeries(f)) times.push_back(times_[f]);
     }
+    const bool any = !times.empty();
+    if (!any) times = times_;  // each field has one time: nothing to choose, but --time must name one of them
+    std::ranges::sort(times);
+    times.erase(std::unique(times.begin(), times.end()), times.end());
+    std::vector<std::string> unsaid;
+    const auto steps = chosenSteps(times, time_, path_, any ? report_.notes : unsaid);
+    if (!steps) return std::unexpected(steps.error());
+    if (!any) return {};
+    std::vector<MeshField> kept;
+    for (std::size_t f = 0; f < times_.size(); ++f) {
+      const bool series = isSeries(f);
+      if (series && std::ranges::none_of(*steps, [&](std::size_t step) { return times[step] == times_[f]; })) continue;
+      kept.push_back(out_.fields[f]);
+      if (series && steps->size() > 1) kept.back().name += "@" + timeText(times_[f]);
+    }
+    out_.fields = std::move(kept);
+    return {};
   }
 
-  CellMesh finish() {
-    nameSteps();
-    if (std::ranges::any_of(groups_, [](double g) { return g != 0; })) out_.fields.push_back({"gmsh:physical", 1, "int32", std::move(groups_), "cell"});
+  Result<CellMesh> finish() {
+    if (Status chosen = chooseSteps(); !chosen) return std::unexpected(chosen.error());
+    const char* type = integerTypeOf(groups_);
+    if (std::ranges::any_of(groups_, [](double g) { return g != 0; })) out_.fields.push_back({"gmsh:physical", 1, type, std::move(groups_), "cell"});
     return std::move(out_);
   }
 
   MeshScanner in_;
+  const std::filesystem::path& path_;
+  const std::string& time_;
   ReadReport& report_;
   double version_ = 0;
   bool bytes_ = false;
   CellMesh out_;
   Numbers nodes_, elements_;
   std::size_t nodeCount_ = 0;
-  std::unordered_map<std::int64_t, std::int64_t> groupOf_;  ///< of a volume
-  std::vector<double> times_;                               ///< one a field
-  std::vector<double> groups_;                              ///< one a cell
+  std::unordered_map<std::int64_t, std::int64_t, MixedHash> groupOf_;  ///< of a volume
+  std::vector<double> times_;                                          ///< one a field
+  std::vector<double> groups_;                                         ///< one a cell
   std::vector<VertexId> ids_, ordered_;
 };
 
 }  // namespace
 
-Result<CellMesh> readGmsh(const std::filesystem::path& path, ReadReport& report) {
+Result<CellMesh> readGmsh(const std::filesystem::path& path, const std::string& time, ReadReport& report) {
   const Result<std::string> text = wholeFile(path);
   if (!text) return std::unexpected(text.error());
-  return Gmsh(*text, path, report).read();
+  return Gmsh(*text, path, time, report).read();
 }
 
 }  // namespace qtet

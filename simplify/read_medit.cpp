@@ -4,6 +4,7 @@
 
 #include "simplify/mesh_readers.h"
 #include "simplify/mesh_scanner.h"
+#include "simplify/select_fields.h"
 
 namespace qtet {
 namespace {
@@ -139,7 +140,8 @@ class Medit {
 
   void addReferences(const char* association, std::vector<double>& references) {
     if (std::ranges::all_of(references, [](double r) { return r == 0; })) return;
-    out_.fields.push_back({"medit:ref", 1, version_ >= kWideIds ? "int64" : "int32", std::move(references), association});
+    const char* type = version_ >= kWideIds ? "int64" : integerTypeOf(references);  // text may hold any number, whatever its version
+    out_.fields.push_back({"medit:ref", 1, type, std::move(references), association});
   }
 
   MeshScanner in_;

@@ -8,6 +8,7 @@
 #include "simplify/mesh_readers.h"
 #include "simplify/run_meshio.h"
 #include "simplify/select_fields.h"
+#include "simplify/time_steps.h"
 #include "simplify/vtk_grid.h"
 #include "simplify/weld_points.h"
 
@@ -22,6 +23,8 @@ ReadOptions withThresholdField(ReadOptions options) {
 
 /// Abaqus and AVS share the ending .inp; Abaqus' lines begin with stars.
 bool isAbaqus(const std::filesystem::path& path) {
+  std::error_code code;
+  if (!std::filesystem::is_regular_file(path, code)) return false;  // opening a pipe would wait for who writes
   std::ifstream file(path);
   char first = 0;
   return file >> first && first == '*';
@@ -40,11 +43,16 @@ Result<CellMesh> readThroughMeshio(const std::filesystem::path& path, const Read
 }
 
 Result<CellMesh> readFile(const std::filesystem::path& path, const ReadOptions& options, ReadReport& report) {
-  const MeshFormat format = options.plot3d ? MeshFormat::kPlot3d : formatOf(path);
+  const MeshFormat format = options.plot3d ? MeshFormat::kPlot3d : formatOf(options.format.empty() ? path : std::filesystem::path("mesh." + options.format));
   if (format == MeshFormat::kAvsUcd && isAbaqus(path)) return readThroughMeshio(path, options, report);
   if (Status checked = checkMeshFile(path, format); !checked) return std::unexpected(checked.error());
+  if (format == MeshFormat::kMedit || format == MeshFormat::kTetgen || format == MeshFormat::kSu2) {  // they have no steps
+    if (const auto steps = chosenSteps({}, options.time, path, report.notes); !steps) return std::unexpected(steps.error());
+  }
+  if (path.extension() == ".qtet")
+    return fail(ErrorCode::kBadInput, path.string() + " is a log, which holds a mesh that is simplified already: qtet info tells of it, qtet convert gives the mesh back");
   switch (format) {
-    case MeshFormat::kGmsh: return readGmsh(path, report);
+    case MeshFormat::kGmsh: return readGmsh(path, options.time, report);
     case MeshFormat::kMedit: return readMedit(path, report);
     case MeshFormat::kTetgen: return readTetgen(path, report);
     case MeshFormat::kSu2: return readSu2(path, report);
@@ -87,6 +95,7 @@ Result<CellMesh> readCells(const std::filesystem::path& path, const ReadOptions&
   if (report.ignoredCells > 0 && cells->cells() > 0)
     report.notes.push_back(std::to_string(report.ignoredCells) + " points, lines and faces among the cells were ignored");
   if (Status checked = checkCellMesh(*cells, path); !checked) return std::unexpected(checked.error());
+  if (Status checked = checkIntegers(withThresholdField(options).fields, path, cells->fields); !checked) return std::unexpected(checked.error());
   if (options.threshold) {
     if (Status done = applyThreshold(*options.threshold, path, *cells); !done) return std::unexpected(done.error());
   }

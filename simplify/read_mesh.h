@@ -1,4 +1,4 @@
-// Reading meshes of every format that qtet knows as tetrahedra. VTK is used in vtk_grid.cpp and vtk_cells.cpp alone.
+// Reading meshes of every format that qtet knows as tetrahedra. VTK is used in fast_xml_parser.cpp, higher_cells.cpp, vtk_cells.cpp and vtk_grid.cpp alone.
 #pragma once
 
 #include <filesystem>

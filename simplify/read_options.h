@@ -10,8 +10,7 @@
 
 namespace qtet {
 
-/// Which fields to read: all (nullopt: those of points first), or those of these names, in this order. A name means every field that has
-/// it; "point:NAME" and "cell:NAME" mean one of two that share a name.
+/// Which fields to read: all (nullopt: those of points first), or those that these names mean (proto/field_key.h), in this order.
 using FieldNames = std::optional<std::vector<std::string>>;
 
 /// Only cells where the field lies within [low, high]: of a cell field its own value, of a point field those of all of its vertices.
@@ -26,6 +25,7 @@ struct ReadOptions {
   std::optional<double> weld;         ///< points within this distance become one (weld_points.h)
   std::optional<Threshold> threshold;
   std::string time = "last";          ///< of a series: "first", "last", "all", or the step's time
+  std::string format;                 ///< the file's kind as an ending without dot; empty: as its name says
   std::string plot3dSolution;         ///< the Q file beside a PLOT3D grid; empty: the file is no PLOT3D grid
   bool plot3d = false;
 };

@@ -1,15 +1,17 @@
 #include "simplify/run_meshio.h"
 
 #include <fcntl.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <fstream>
 #include <string>
 
-#include "codec/temporary_folder.h"
+#include "simplify/guarded_folder.h"
 
 namespace qtet {
 namespace {
@@ -37,6 +39,7 @@ constexpr const char* kScript =
 int run(const char* python, const fs::path& in, const fs::path& out, const fs::path& words) {
   const pid_t child = ::fork();
   if (child == 0) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody would wait for it
     const int file = ::open(words.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), nothing = ::open("/dev/null", O_RDWR);
     ::dup2(nothing, STDIN_FILENO);
     ::dup2(file, STDOUT_FILENO);
@@ -64,7 +67,7 @@ std::string lastLineOf(const fs::path& path) {
 }  // namespace
 
 Status throughMeshio(const fs::path& path, const std::function<Status(const fs::path&)>& use) {
-  const TemporaryFolder folder("meshio");
+  const GuardedFolder folder("meshio");
   if (folder.failure()) return fail(ErrorCode::kIo, "no temporary folder could be made (" + folder.failure().message() + "); let TMPDIR name one with room");
   const fs::path out = folder.path() / "mesh.vtu", words = folder.path() / "words.txt";
   // The first python3 may be one of the user's own; Debian's has Debian's meshio.

@@ -1,30 +1,18 @@
 #include "simplify/select_fields.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <utility>
 
+#include "proto/field_key.h"
 #include "proto/limits.h"
+#include "proto/utf8.h"
 
 namespace qtet {
 namespace {
-
-bool isCalled(const std::string& asked, const std::string& association, const std::string& name) {
-  return asked == name || asked == association + ":" + name;
-}
-
-/// Whether `text` is UTF-8 as far as its leading and continuing bytes go.
-bool isUtf8(const std::string& text) {
-  int pending = 0;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    const bool continues = (byte & 0xC0) == 0x80;
-    if (continues != (pending > 0) || byte >= 0xF8) return false;
-    if (continues)
-      --pending;
-    else if (byte >= 0xC0)
-      pending = byte >= 0xF0 ? 3 : byte >= 0xE0 ? 2 : 1;
-  }
-  return pending == 0;
-}
 
 std::string namesOf(const std::vector<MeshField>& fields, const std::vector<std::string>& others) {
   std::string out;
@@ -53,20 +41,21 @@ bool allWithin(const Threshold& threshold, const MeshField& field, const CellMes
 }  // namespace
 
 bool isMeant(const FieldNames& names, const std::string& association, const std::string& name) {
-  return !names || std::ranges::any_of(*names, [&](const std::string& asked) { return isCalled(asked, association, name); });
+  const std::string_view stem = nameWithoutStep(name).value_or(name);
+  return !names || std::ranges::any_of(*names, [&](const std::string& asked) {
+    return isCalled(association, name, asked) || isCalled(association, stem, asked) || isCalled(association, name, nameWithoutStep(asked).value_or(asked));
+  });
 }
 
 Status selectFields(const FieldNames& names, const std::filesystem::path& path, const std::vector<std::string>& otherFields, std::vector<MeshField>& fields) {
   if (names) {
     std::vector<std::size_t> order;
     for (const std::string& asked : *names) {
-      bool found = false;
-      for (std::size_t f = 0; f < fields.size(); ++f) {
-        if (!isCalled(asked, fields[f].association, fields[f].name)) continue;
-        found = true;
+      const std::vector<std::uint32_t> meant = fieldsOfKey(fields, asked);
+      for (const std::uint32_t f : meant) {
         if (std::ranges::find(order, f) == order.end()) order.push_back(f);
       }
-      if (!found) return fail(ErrorCode::kNotFound, path.string() + " has no field '" + asked + "'; it has: " + namesOf(fields, otherFields));
+      if (meant.empty()) return fail(ErrorCode::kNotFound, path.string() + " has no field '" + asked + "'; it has: " + namesOf(fields, otherFields));
     }
     std::vector<MeshField> chosen;
     for (const std::size_t f : order) chosen.push_back(std::move(fields[f]));
@@ -78,14 +67,15 @@ Status selectFields(const FieldNames& names, const std::filesystem::path& path, 
 }
 
 Status applyThreshold(const Threshold& threshold, const std::filesystem::path& path, CellMesh& mesh) {
-  const auto field = std::ranges::find_if(mesh.fields, [&](const MeshField& f) { return isCalled(threshold.field, f.association, f.name); });
-  if (field == mesh.fields.end()) {
+  const auto place = fieldOfKey(mesh.fields, threshold.field);
+  if (!place) {
     return fail(ErrorCode::kNotFound, path.string() + " has no field '" + threshold.field + "' for --threshold; it has: " + namesOf(mesh.fields, mesh.otherFields));
   }
+  const MeshField& field = mesh.fields[*place];
   CellMesh out;
   std::vector<std::size_t> kept;
   for (std::size_t i = 0; i < mesh.cells(); ++i) {
-    if (!allWithin(threshold, *field, mesh, i)) continue;
+    if (!allWithin(threshold, field, mesh, i)) continue;
     out.addCell(mesh.types[i], mesh.cell(i));
     out.cellIds.push_back(mesh.cellId(i));
     kept.push_back(i);
@@ -104,22 +94,40 @@ Status applyThreshold(const Threshold& threshold, const std::filesystem::path& p
   return {};
 }
 
+Status checkIntegers(const FieldNames& names, const std::filesystem::path& path, const std::vector<MeshField>& fields) {
+  constexpr double kFirstInexactInteger = 0x1p53;
+  for (const MeshField& field : fields) {
+    if ((field.type != "int64" && field.type != "uint64") || !isMeant(names, field.association, field.name)) continue;
+    for (std::size_t i = 0; i < field.values.size(); ++i) {
+      if (std::abs(field.values[i]) < kFirstInexactInteger) continue;
+      return fail(ErrorCode::kBadInput, path.string() + ": " + field.association + " field " + field.name + " holds an integer of 2^53 or more at " + field.association + " " +
+                                            std::to_string(i / field.components) + "; leave the field out with --fields, or store it in fewer bits");
+    }
+  }
+  return {};
+}
+
+const char* integerTypeOf(std::span<const double> values) {
+  using Narrow = std::numeric_limits<std::int32_t>;
+  return std::ranges::all_of(values, [](double v) { return v >= Narrow::min() && v <= Narrow::max(); }) ? "int32" : "int64";
+}
+
 bool isStorableName(const std::string& name) { return !name.empty() && name.size() <= kMaxNameBytes && isUtf8(name); }
 
 void nameFields(std::vector<MeshField>& fields, std::vector<std::string>& notes) {
+  using Called = std::pair<std::string, std::string>;  // association and name
+  std::set<Called> taken;
+  std::map<Called, int> next;  // of a stem the first number that may be free
   for (std::size_t f = 0; f < fields.size(); ++f) {
     MeshField& field = fields[f];
-    const auto isTaken = [&] {
-      return std::any_of(fields.begin(), fields.begin() + static_cast<std::ptrdiff_t>(f),
-                         [&](const MeshField& other) { return other.name == field.name && other.association == field.association; });
-    };
     const bool storable = isStorableName(field.name);
-    if (storable && !isTaken()) continue;
+    if (storable && taken.emplace(field.association, field.name).second) continue;
     constexpr std::size_t kLongestEnding = 8;
     const std::string before = field.name;
     const std::string stem = storable && before.size() + kLongestEnding <= kMaxNameBytes ? before : "unnamed-" + std::to_string(f);
     field.name = stem;
-    for (int again = 2; isTaken(); ++again) field.name = stem + "-" + std::to_string(again);
+    int& again = next.try_emplace({field.association, stem}, 2).first->second;
+    while (!taken.emplace(field.association, field.name).second) field.name = stem + "-" + std::to_string(again++);
     notes.push_back(field.association + " field number " + std::to_string(f) + " is called " + field.name + ": " +
                     (storable ? "an earlier one has its name, " + before : "it has no name of at most " + std::to_string(kMaxNameBytes) + " bytes of UTF-8"));
   }

@@ -4,8 +4,9 @@
 #include <cmath>
 
 #include "proto/limits.h"
+#include "simplify/bezier_nodes.h"
 #include "simplify/cell_shapes.h"
-#include "simplify/huge_pages.h"
+#include "simplify/higher_cells.h"
 #include "simplify/vector3.h"
 #include "simplify/volume_sign.h"
 
@@ -18,8 +19,8 @@ constexpr double kFlatTriangle = 1e-9;
 /// How well a set of tetrahedra fills its cell.
 enum Fit { kAllPositive, kSomeFlat, kSomeInverted };
 
-/// The three ways of cutting the octahedron in a quadratic tetrahedron: an axis of edge nodes and the ring round it.
-constexpr std::array<std::array<std::uint8_t, 6>, 3> kOctahedronCuts{{{4, 9, 5, 6, 7, 8}, {5, 7, 6, 4, 8, 9}, {6, 8, 4, 5, 9, 7}}};
+/// The three ways of cutting the octahedron between a quadratic tetrahedron's edge nodes: an axis of two, and the ring of the others.
+constexpr std::array<std::array<std::uint8_t, 6>, 3> kOctahedronCuts{{{0, 5, 1, 2, 3, 4}, {1, 3, 2, 0, 4, 5}, {2, 4, 0, 1, 5, 3}}};
 constexpr std::array<Tetrahedron, 4> kCornerTetrahedra{{{0, 4, 6, 7}, {4, 1, 5, 8}, {6, 5, 2, 9}, {7, 8, 9, 3}}};
 
 /// Of a hexahedron: the places of the three faces (kHexahedronFaces) that do not have corner i.
@@ -36,12 +37,17 @@ std::size_t expectedTetrahedra(const std::vector<std::uint8_t>& types) {
   return sum;
 }
 
+/// What belongs to the shape of cells of higher degree, and means nothing of tetrahedra.
+bool isShapeField(const MeshField& field) { return field.name == (isCellField(field) ? kDegreesField : kWeightsField); }
+
 class Splitter {
  public:
   Splitter(CellMesh& mesh, CurvedCells curved, SplitReport& report) : mesh_(mesh), curved_(curved), report_(report) {
     out_.points = std::move(mesh.points);
+    const auto degrees = std::ranges::find_if(mesh.fields, [](const MeshField& field) { return isCellField(field) && field.name == kDegreesField && field.components == 3; });
+    degrees_ = degrees == mesh.fields.end() ? nullptr : &*degrees;
     const std::size_t expected = std::min<std::size_t>(expectedTetrahedra(mesh.types), kMaxElements);
-    reserveInHugePages(out_.tetrahedra, expected);
+    out_.tetrahedra.reserve(expected);
     ends_.reserve(mesh.cells());
   }
 
@@ -63,6 +69,7 @@ class Splitter {
   TetMesh finish() {
     out_.pointType = mesh_.pointType;
     for (MeshField& field : mesh_.fields) {
+      if (isShapeField(field)) continue;
       if (isCellField(field)) inherit(field);
       else extend(field);
       out_.fields.push_back(std::move(field));
@@ -87,11 +94,8 @@ class Splitter {
     if (type == kHexahedronCell && addUsualHexahedron(ids)) return {};
     const CurvedNodes nodes = curvedNodesOf(type);
     const CellShape shape = shapeOf(type);
-    const bool isHigher = shape.corners > 0 && verticesOf(type) == 0;
-    if (isHigher && curved_ == CurvedCells::kSplit) {
-      return fail(ErrorCode::kBadInput, "cell " + std::to_string(mesh_.cellId(cell)) + " is a " + cellTypeName(type) + " of " + std::to_string(ids.size()) +
-                                            " nodes, which cannot be split at its inner nodes; --curved linear takes its corners alone");
-    }
+    const bool isHigher = isHigherCell(type);
+    if (isHigher && curved_ == CurvedCells::kSplit) return addHigher(type, ids, cell);
     if ((nodes.curved || isHigher) && curved_ == CurvedCells::kLinear) return addLinear(shape, ids.first(shape.corners)), Status{};
     if (type == kQuadraticTetrahedronCell) return addQuadraticTetrahedron(ids), Status{};
     if (nodes.curved) return addCurved(shape, nodes, ids), Status{};
@@ -165,21 +169,57 @@ class Splitter {
     addCone();
   }
 
-  /// Files store a polyhedron's faces in either sense: carries the first triangle's on over the edges.
+  /// Files store a polyhedron's faces in either sense: carries one triangle's on over the edges of each shell. The shell of the largest volume is the outside, every other one the wall of a
+  /// hole in it.
   void orientTriangles() {
-    std::vector<char> seen(triangles_.size(), 0);
-    std::vector<std::size_t> next;
-    if (!triangles_.empty()) next.push_back(0), seen[0] = 1;
-    while (!next.empty()) {
-      const Triangle t = triangles_[next.back()];
-      next.pop_back();
-      for (std::size_t k = 0; k < triangles_.size(); ++k) {
-        const int sense = seen[k] ? 0 : senseAcross(t, triangles_[k]);
-        if (sense == 0) continue;
-        if (sense < 0) std::swap(triangles_[k][1], triangles_[k][2]);
-        seen[k] = 1;
-        next.push_back(k);
+    struct Side {
+      std::array<VertexId, 2> edge;
+      std::size_t triangle;
+    };
+    std::vector<Side> sides;
+    for (std::size_t t = 0; t < triangles_.size(); ++t) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const VertexId a = triangles_[t][k], b = triangles_[t][(k + 1) % 3];
+        sides.push_back({{std::min(a, b), std::max(a, b)}, t});
       }
+    }
+    std::ranges::sort(sides, {}, [](const Side& side) { return std::pair(side.edge, side.triangle); });
+    std::vector<char> seen(triangles_.size(), 0);
+    std::vector<std::vector<std::size_t>> shells;
+    for (std::size_t first = 0; first < triangles_.size(); ++first) {
+      if (seen[first]) continue;
+      std::vector<std::size_t>& shell = shells.emplace_back(1, first);
+      seen[first] = 1;
+      for (std::size_t at = 0; at < shell.size(); ++at) {
+        const Triangle t = triangles_[shell[at]];
+        for (std::size_t k = 0; k < 3; ++k) {
+          const std::array edge{std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3])};
+          for (const Side& side : std::ranges::equal_range(sides, edge, {}, &Side::edge)) {
+            if (seen[side.triangle]) continue;
+            if (senseAcross(t, triangles_[side.triangle]) < 0) std::swap(triangles_[side.triangle][1], triangles_[side.triangle][2]);
+            seen[side.triangle] = 1;
+            shell.push_back(side.triangle);
+          }
+        }
+      }
+    }
+    if (shells.size() > 1) turnShells(shells);
+  }
+
+  void turnShells(const std::vector<std::vector<std::size_t>>& shells) {
+    std::vector<double> volumes;
+    for (const std::vector<std::size_t>& shell : shells) {
+      const VertexId apex = triangles_[shell[0]][0];
+      double volume = 0;
+      for (const std::size_t t : shell)
+        volume += roundedVolume6(out_.points[apex], out_.points[triangles_[t][0]], out_.points[triangles_[t][1]], out_.points[triangles_[t][2]]);
+      volumes.push_back(volume);
+    }
+    const auto outside = std::ranges::max_element(volumes, {}, [](double x) { return std::abs(x); }) - volumes.begin();
+    for (std::size_t s = 0; s < shells.size(); ++s) {
+      const bool isOutside = static_cast<std::ptrdiff_t>(s) == outside;
+      if (isOutside ? volumes[s] >= 0 : volumes[s] <= 0) continue;
+      for (const std::size_t t : shells[s]) std::swap(triangles_[t][1], triangles_[t][2]);
     }
   }
 
@@ -196,16 +236,66 @@ class Splitter {
 
   /// Four corner tetrahedra and the octahedron between them, which is the cell's own to cut.
   void addQuadraticTetrahedron(std::span<const VertexId> ids) {
+    cutOctahedron(ids.subspan(4, 6));
+    for (const Tetrahedron& t : kCornerTetrahedra) best_.push_back({ids[t[0]], ids[t[1]], ids[t[2]], ids[t[3]]});
+    takeBest();
+  }
+
+  /// The best of the three cuts, into best_.
+  void cutOctahedron(std::span<const VertexId> ids) {
     best_.clear();
     Fit bestFit = kSomeInverted;
     for (const auto& cut : kOctahedronCuts) {
       tried_.clear();
-      for (const Tetrahedron& t : kCornerTetrahedra) tried_.push_back({ids[t[0]], ids[t[1]], ids[t[2]], ids[t[3]]});
       for (std::size_t k = 0; k < 4; ++k) tried_.push_back({ids[cut[0]], ids[cut[1]], ids[cut[2 + k]], ids[cut[2 + (k + 1) % 4]]});
       keepIfBetter(bestFit);
       if (bestFit == kAllPositive) break;
     }
-    takeBest();
+  }
+
+  /// VTK's quadratic kinds with a node in the middle of each triangle and in the cell: those nodes are left out, on both sides of a face.
+  bool addSevenNodeFaces(std::uint8_t type, std::span<const VertexId> ids) {
+    if (type == kLagrangeTetrahedronCell && ids.size() == 15) return addQuadraticTetrahedron(ids.first(10)), true;
+    if (type != kLagrangeWedgeCell || ids.size() != 21) return false;
+    std::array<VertexId, 18> kept{};
+    std::ranges::copy(ids.first(15), kept.begin());
+    std::ranges::copy(ids.subspan(17, 3), kept.begin() + 15);
+    addCurved(shapeOf(type), curvedNodesOf(kBiquadraticQuadraticWedgeCell), kept);
+    return true;
+  }
+
+  /// Linear cells between all nodes (higher_cells.h). Faces are cut at their own nodes, so that neighbours of the same degree there agree.
+  Status addHigher(std::uint8_t type, std::span<const VertexId> ids, std::size_t cell) {
+    if (addSevenNodeFaces(type, ids)) return {};
+    const auto stated = degrees_ ? std::span<const double>(degrees_->values).subspan(3 * cell, 3) : std::span<const double>();
+    const auto degrees = degreesOf(type, ids.size(), stated);
+    if (!degrees) {
+      return fail(ErrorCode::kBadInput, "cell " + std::to_string(mesh_.cellId(cell)) + " is a " + cellTypeName(type) + " of " + std::to_string(ids.size()) +
+                                            " nodes, which no degree up to " + std::to_string(kMaxDegree) + " has; --curved linear takes its corners alone");
+    }
+    const HigherCell& higher = higherCell(type, *degrees);
+    const std::uint64_t insideOut = report_.insideOut;
+    simplices_.clear();
+    for (const LinearPart& part : higher.parts) {
+      std::array<VertexId, 8> own{};
+      for (std::size_t k = 0; k < part.size(); ++k) own[k] = ids[part.nodes[k]];
+      addPart(part, std::span(own).first(part.size()));
+    }
+    best_ = simplices_;
+    if (!best_.empty()) takeBest();
+    // VTK's own wedges are turned against its hexahedra; of what a cell's parts are the cell counts once.
+    if (report_.insideOut > insideOut) report_.insideOut = insideOut + (shapeOf(type).corners == 6 ? 0 : 1);
+    return {};
+  }
+
+  /// Tetrahedra into simplices_, so that the cell is turned as one; other parts are turned by themselves.
+  void addPart(const LinearPart& part, std::span<const VertexId> ids) {
+    if (part.kind == LinearPart::kHexahedron) return addLinear(shapeOf(kHexahedronCell), ids);
+    if (part.kind == LinearPart::kWedge) return addLinear(shapeOf(kWedgeCell), ids);
+    if (part.kind == LinearPart::kPyramid) return addLinear(shapeOf(kPyramidCell), ids);
+    if (part.kind == LinearPart::kTetrahedron) return simplices_.push_back({ids[0], ids[1], ids[2], ids[3]});
+    cutOctahedron(ids);
+    simplices_.insert(simplices_.end(), best_.begin(), best_.end());
   }
 
   /// Faces cut at their nodes, joined to the centre: the cell's own, or a new one at the mean of the edges' nodes.
@@ -402,7 +492,7 @@ class Splitter {
   void inherit(MeshField& field) const {
     const std::size_t n = field.components;
     std::vector<double> values;
-    reserveInHugePages(values, (ends_.empty() ? 0 : ends_.back()) * n);
+    values.reserve((ends_.empty() ? 0 : ends_.back()) * n);
     std::size_t next = 0;
     for (std::size_t cell = 0; cell < ends_.size(); ++cell) {
       const auto own = field.values.begin() + static_cast<std::ptrdiff_t>(cell * n);
@@ -439,13 +529,13 @@ class Splitter {
   std::vector<std::size_t> centreEnds_;
   std::vector<Face> faces_;
   std::vector<Triangle> triangles_;
-  std::vector<Tetrahedron> tried_, best_;
+  std::vector<Tetrahedron> tried_, best_, simplices_;
+  const MeshField* degrees_;
 };
 
 /// Nothing to split: the vertices are the tetrahedra.
 TetMesh asTheyAre(CellMesh&& mesh) {
   TetMesh out{std::move(mesh.points), {}, std::move(mesh.fields), std::move(mesh.pointType)};
-  reserveInHugePages(out.tetrahedra, mesh.cells());
   out.tetrahedra.resize(mesh.cells());
   for (std::size_t i = 0; i < out.tetrahedra.size(); ++i) std::copy_n(mesh.vertices.data() + 4 * i, 4, out.tetrahedra[i].data());
   return out;
@@ -457,7 +547,7 @@ void addOriginalCellIds(const CellMesh& mesh, const std::vector<CellId>& ends, T
   }
   std::uint64_t largest = 0;
   MeshField ids{kOriginalCellField, 1, "int32", {}, "cell"};
-  reserveInHugePages(ids.values, out.tetrahedra.size());
+  ids.values.reserve(out.tetrahedra.size());
   for (std::size_t cell = 0; cell < ends.size(); ++cell) {
     largest = std::max(largest, mesh.cellId(cell));
     ids.values.resize(ends[cell], static_cast<double>(mesh.cellId(cell)));
@@ -481,6 +571,9 @@ Result<TetMesh> splitCells(CellMesh&& mesh, CurvedCells curved, SplitReport& rep
       return fail(ErrorCode::kLimitExceeded, std::to_string(mesh.cells()) + " tetrahedra; at most " + std::to_string(kMaxElements) + " are allowed");
     report.cells[kTetrahedronCell] = mesh.cells();
     return asTheyAre(std::move(mesh));
+  }
+  if (curved == CurvedCells::kSplit) {
+    if (Status done = placeBezierNodes(mesh); !done) return std::unexpected(done.error());
   }
   Splitter splitter(mesh, curved, report);
   if (Status done = splitter.run(); !done) return std::unexpected(done.error());

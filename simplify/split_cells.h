@@ -27,7 +27,7 @@ inline constexpr const char* kOriginalCellField = "OriginalCellId";
 /// rule of the face alone, so that both its cells follow it. A cell is then a cone from its smallest vertex that fits the faces' cuts, else
 /// from a new point at the mean of its vertices. Tetrahedra stay as they are. Points keep their numbers, new ones follow. Cell fields are
 /// inherited; point fields take the mean at new points, integers the value of one of its vertices.
-/// Errors: limit-exceeded; bad-input (a cell of higher degree with kSplit). REQUIRES: a mesh that checkCellMesh has passed.
+/// Errors: limit-exceeded; bad-input (with kSplit, a number of nodes that no degree has). REQUIRES: a mesh that checkCellMesh has passed.
 [[nodiscard]] Result<TetMesh> splitCells(CellMesh&& mesh, CurvedCells curved, SplitReport& report);
 
 }  // namespace qtet

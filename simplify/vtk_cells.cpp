@@ -23,13 +23,12 @@
 #include <cmath>
 
 #include "proto/limits.h"
-#include "simplify/huge_pages.h"
+#include "simplify/higher_cells.h"
 #include "simplify/select_fields.h"
 
 namespace qtet {
 namespace {
 
-constexpr double kFirstInexactInteger = 9007199254740992.0;  // 2^53
 
 std::unexpected<Error> bad(const std::filesystem::path& path, const std::string& what) {
   return fail(ErrorCode::kBadInput, path.string() + ": " + what);
@@ -53,9 +52,7 @@ void copyValues(vtkDataArray& array, double* out) {
 
 std::vector<Position> pointsOf(vtkDataSet& data) {
   const auto count = static_cast<std::size_t>(std::max<vtkIdType>(0, data.GetNumberOfPoints()));
-  std::vector<Position> points;
-  reserveInHugePages(points, count);
-  points.resize(count);
+  std::vector<Position> points(count);
   auto* set = vtkPointSet::SafeDownCast(&data);
   if (set && set->GetPoints() && !points.empty()) {
     copyValues(*set->GetPoints()->GetData(), points[0].data());
@@ -111,7 +108,7 @@ class GridCells {
       return bad(path_, "fewer cell types or offsets than cells; the file is damaged, export it again");
     out.types.reserve(static_cast<std::size_t>(count));
     out.begins.reserve(static_cast<std::size_t>(count) + 1);
-    reserveInHugePages(out.vertices, static_cast<std::size_t>(cells->GetNumberOfConnectivityIds()));
+    out.vertices.reserve(static_cast<std::size_t>(cells->GetNumberOfConnectivityIds()));
     rows.reserve(static_cast<std::size_t>(count));
     return cells->IsStorage64Bit() ? copy(*cells->GetOffsetsArray64(), *cells->GetConnectivityArray64(), out, rows, report)
                                    : copy(*cells->GetOffsetsArray32(), *cells->GetConnectivityArray32(), out, rows, report);
@@ -232,7 +229,7 @@ class GridFields {
         ignore(association, name, array != nullptr);
         continue;
       }
-      if (!isMeant(wanted_, association, name)) {
+      if (!isOfTheShape(data, array, name) && !isMeant(wanted_, association, name)) {
         out.otherFields.push_back(name);
         continue;
       }
@@ -241,31 +238,25 @@ class GridFields {
                               std::to_string(tuples) + " " + association + "s; export it again");
       }
       MeshField field{name, static_cast<std::uint32_t>(array->GetNumberOfComponents()), typeName(*array), {}, association};
-      reserveInHugePages(field.values, static_cast<std::size_t>(tuples) * field.components);
       field.values.resize(static_cast<std::size_t>(tuples) * field.components);
       copyValues(*array, field.values.data());
       if (rows) keepRows(field, *rows);
-      if (Status checked = checkIntegers(field); !checked) return checked;
       out.fields.push_back(std::move(field));
     }
     return {};
   }
 
  private:
+  /// Cells of higher degree are not understood without them (higher_cells.h).
+  static bool isOfTheShape(vtkFieldData& data, vtkDataArray* array, const std::string& name) {
+    auto* attributes = vtkDataSetAttributes::SafeDownCast(&data);
+    return attributes && ((array == attributes->GetHigherOrderDegrees() && name == kDegreesField) || (array == attributes->GetRationalWeights() && name == kWeightsField));
+  }
+
   void ignore(const std::string& association, const std::string& name, bool hasNumbers) {
     report_.ignoredFields.push_back(name);
     report_.notes.push_back(association + " field " + name + " was ignored: " +
                             (hasNumbers ? "more than " + std::to_string(kMaxFieldComponents) + " components" : std::string("it holds no numbers")));
-  }
-
-  Status checkIntegers(const MeshField& field) const {
-    if (field.type != "int64" && field.type != "uint64") return {};
-    for (std::size_t i = 0; i < field.values.size(); ++i) {
-      if (std::abs(field.values[i]) < kFirstInexactInteger) continue;
-      return bad(path_, field.association + " field " + field.name + " holds an integer of 2^53 or more at " + field.association + " " +
-                            std::to_string(i / field.components) + "; leave the field out with --fields, or store it in fewer bits");
-    }
-    return {};
   }
 
   const FieldNames& wanted_;

@@ -30,14 +30,16 @@
 #include <vtkXMLUtilities.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <exception>
 #include <functional>
 #include <new>
 #include <optional>
 
+#include "simplify/fast_xml_parser.h"
 #include "simplify/join_blocks.h"
+#include "simplify/mesh_format.h"
+#include "simplify/time_steps.h"
 #include "simplify/trial_process.h"
 #include "simplify/vtk_cells.h"
 
@@ -53,7 +55,7 @@ std::string messageOf(const char* text) {
   for (char& c : out) {
     if (c == '\n' || c == '\r' || c == '\t') c = ' ';
   }
-  out.erase(out.find_last_not_of(' ') + 1);
+  out.erase(out.find_last_not_of(" .") + 1);  // a sentence of ours goes on behind it
   return out;
 }
 
@@ -123,10 +125,23 @@ std::unexpected<Error> bad(const std::filesystem::path& path, const std::string&
 
 template <class Reader>
 vtkSmartPointer<vtkAlgorithm> xmlReader(const std::filesystem::path& path) {
-  const auto reader = vtkSmartPointer<Reader>::New();
+  const auto reader = vtkSmartPointer<FastXmlReader<Reader>>::New();
   reader->SetFileName(path.c_str());
   return reader;
 }
+
+/// Of a file that names others, whose pieces are .vtu files.
+class PiecesReader : public vtkXMLPUnstructuredGridReader {
+ public:
+  static PiecesReader* New();
+  vtkTypeMacro(PiecesReader, vtkXMLPUnstructuredGridReader) PiecesReader(const PiecesReader&) = delete;
+  PiecesReader& operator=(const PiecesReader&) = delete;
+
+ protected:
+  PiecesReader() = default;
+  vtkXMLDataReader* CreatePieceReader() override { return FastXmlReader<vtkXMLUnstructuredGridReader>::New(); }
+};
+vtkStandardNewMacro(PiecesReader);
 
 vtkSmartPointer<vtkAlgorithm> legacyReader(const std::filesystem::path& path) {
   const auto reader = vtkSmartPointer<vtkDataSetReader>::New();
@@ -196,7 +211,7 @@ vtkSmartPointer<vtkAlgorithm> plot3dReader(const std::filesystem::path& path, co
 vtkSmartPointer<vtkAlgorithm> readerOf(const std::filesystem::path& path, MeshFormat format, const ReadOptions& options) {
   switch (format) {
     case MeshFormat::kVtu: return xmlReader<vtkXMLUnstructuredGridReader>(path);
-    case MeshFormat::kPvtu: return xmlReader<vtkXMLPUnstructuredGridReader>(path);
+    case MeshFormat::kPvtu: return xmlReader<PiecesReader>(path);
     case MeshFormat::kVtm: return xmlReader<vtkXMLMultiBlockDataReader>(path);
     case MeshFormat::kVts: return xmlReader<vtkXMLStructuredGridReader>(path);
     case MeshFormat::kVtr: return xmlReader<vtkXMLRectilinearGridReader>(path);
@@ -219,38 +234,6 @@ vtkSmartPointer<vtkAlgorithm> readerOf(const std::filesystem::path& path, MeshFo
 bool standsDamage(MeshFormat format) {
   return format == MeshFormat::kVtu || format == MeshFormat::kPvtu || format == MeshFormat::kVtm || format == MeshFormat::kVts ||
          format == MeshFormat::kVtr || format == MeshFormat::kVti;
-}
-
-/// The shortest text that gives the number back.
-std::string textOf(double x) {
-  std::array<char, 32> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), x).ptr;
-  return {text.data(), end};
-}
-
-/// Which of the steps are meant. Errors: not-found.
-Result<std::vector<std::size_t>> chosenSteps(const std::vector<double>& times, const std::string& asked, const std::filesystem::path& path,
-                                             std::vector<std::string>& notes) {
-  std::vector<std::size_t> all(times.size());
-  for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
-  if (asked == "all" || times.size() <= 1) return all;
-  if (asked == "first") return std::vector<std::size_t>{0};
-  if (asked == "last") {
-    notes.push_back("of its " + std::to_string(times.size()) + " time steps the last is read, " + textOf(times.back()) + "; --time names another, or all");
-    return std::vector<std::size_t>{times.size() - 1};
-  }
-  double wanted = 0;
-  const auto parsed = std::from_chars(asked.data(), asked.data() + asked.size(), wanted);
-  if (parsed.ec == std::errc{} && parsed.ptr == asked.data() + asked.size()) {
-    for (const std::size_t i : all) {
-      if (std::abs(times[i] - wanted) <= 1e-9 * std::max(std::abs(wanted), std::abs(times[i]))) return std::vector<std::size_t>{i};
-    }
-  }
-  constexpr std::size_t kShown = 12;
-  std::string there;
-  for (std::size_t i = 0; i < times.size() && i < kShown; ++i) there += (i ? ", " : "") + textOf(times[i]);
-  return fail(ErrorCode::kNotFound, path.string() + " has no time step " + asked + "; it has " + there + (times.size() > kShown ? ", ..." : "") +
-                                        "; give --time one of them, first, last or all");
 }
 
 /// The volume blocks of what a reader gave, in one mesh.
@@ -284,6 +267,17 @@ std::vector<double> timesOf(vtkAlgorithm& reader) {
   return {times, times + info->Length(vtkStreamingDemandDrivenPipeline::TIME_STEPS())};
 }
 
+/// What reading one step more has told: every step has the same mesh, so that counts are those of one, and what was said before need not be said again.
+void addStep(ReadReport&& step, bool isFirst, ReadReport& report) {
+  if (isFirst) {
+    report.ignoredCells += step.ignoredCells;
+    report.ignoredFields.insert(report.ignoredFields.end(), step.ignoredFields.begin(), step.ignoredFields.end());
+  }
+  for (std::string& note : step.notes) {
+    if (isFirst || std::ranges::find(report.notes, note) == report.notes.end()) report.notes.push_back(std::move(note));
+  }
+}
+
 /// Runs one reader over the steps that are meant.
 Result<std::vector<TimedCells>> runReader(const std::filesystem::path& path, MeshFormat format, const ReadOptions& options, ReadReport& report) {
   const auto reader = readerOf(path, format, options);
@@ -296,10 +290,11 @@ Result<std::vector<TimedCells>> runReader(const std::filesystem::path& path, Mes
     const bool timed = !steps->empty();
     if (timed) reader->UpdateTimeStep(times[(*steps)[s]]);
     else reader->Update();
-    Result<CellMesh> cells = cellsOfOutput(reader->GetOutputDataObject(0), options.fields, path, report);
+    ReadReport step;
+    Result<CellMesh> cells = cellsOfOutput(reader->GetOutputDataObject(0), options.fields, path, step);
     if (!cells) return std::unexpected(cells.error());
-    out.push_back({timed ? textOf(times[(*steps)[s]]) : "", std::move(*cells)});
-    if (s == 0 && steps->size() > 1) report.ignoredCells = 0, report.ignoredFields.clear();
+    addStep(std::move(step), s == 0, report);
+    out.push_back({timed ? timeText(times[(*steps)[s]]) : "", std::move(*cells)});
   }
   return out;
 }
@@ -356,15 +351,31 @@ Result<std::vector<SeriesEntry>> entriesOf(const std::filesystem::path& path) {
   return entries;
 }
 
+/// The pieces that a .pvtu file names, of which VTK says only a number. What else is wrong with the file VTK tells.
+Status checkPieces(const std::filesystem::path& path) {
+  const MessageCapture capture;
+  const auto root = vtkSmartPointer<vtkXMLDataElement>::Take(vtkXMLUtilities::ReadElementFromFile(path.c_str()));
+  vtkXMLDataElement* grid = root ? root->FindNestedElementWithName("PUnstructuredGrid") : nullptr;
+  for (int i = 0; grid && i < grid->GetNumberOfNestedElements(); ++i) {
+    const char* file = grid->GetNestedElement(i)->GetAttribute("Source");
+    if (!file) continue;
+    if (Status checked = checkMeshFile(path.parent_path() / file, MeshFormat::kVtu); !checked)
+      return fail(checked.error().code, path.string() + " names it: " + checked.error().message);
+  }
+  return {};
+}
+
 /// The parts of one step, each a file of its own, in one mesh.
-Result<CellMesh> cellsOfParts(std::span<const SeriesEntry> parts, const ReadOptions& options, ReadReport& report) {
+Result<CellMesh> cellsOfParts(std::span<const SeriesEntry> parts, const std::filesystem::path& path, const ReadOptions& options, ReadReport& report) {
   std::vector<CellMesh> blocks;
+  ReadOptions ofPart = options;
+  ofPart.time = "last";  // the step is chosen already, and a part knows no times
   for (const SeriesEntry& part : parts) {
     const MeshFormat format = formatOf(part.file);
     if (format == MeshFormat::kPvd || format >= MeshFormat::kGmsh)
       return bad(part.file, "a .pvd file may name VTK's files alone; convert it to .vtu first");
-    if (Status checked = checkMeshFile(part.file, format); !checked) return std::unexpected(checked.error());
-    Result<std::vector<TimedCells>> read = readVtk(part.file, format, options, report);
+    if (Status checked = checkMeshFile(part.file, format); !checked) return fail(checked.error().code, path.string() + " names it: " + checked.error().message);
+    Result<std::vector<TimedCells>> read = readVtk(part.file, format, ofPart, report);
     if (!read) return std::unexpected(read.error());
     blocks.push_back(std::move(read->back().cells));
   }
@@ -386,9 +397,11 @@ Result<std::vector<TimedCells>> readSeries(const std::filesystem::path& path, co
   if (!steps) return std::unexpected(steps.error());
   std::vector<TimedCells> out;
   for (const std::size_t s : *steps) {
-    Result<CellMesh> cells = cellsOfParts(std::span(*entries).subspan(begins[s], begins[s + 1] - begins[s]), options, report);
+    ReadReport step;
+    Result<CellMesh> cells = cellsOfParts(std::span(*entries).subspan(begins[s], begins[s + 1] - begins[s]), path, options, step);
     if (!cells) return std::unexpected(cells.error());
-    out.push_back({textOf(times[s]), std::move(*cells)});
+    addStep(std::move(step), s == steps->front(), report);
+    out.push_back({timeText(times[s]), std::move(*cells)});
   }
   return out;
 }
@@ -397,6 +410,9 @@ Result<std::vector<TimedCells>> readSeries(const std::filesystem::path& path, co
 
 Result<std::vector<TimedCells>> readVtk(const std::filesystem::path& path, MeshFormat format, const ReadOptions& options, ReadReport& report) {
   if (format == MeshFormat::kPvd) return readSeries(path, options, report);
+  if (format == MeshFormat::kPvtu) {
+    if (Status checked = checkPieces(path); !checked) return std::unexpected(checked.error());
+  }
   return guarded(path, !standsDamage(format), report, [&] { return runReader(path, format, options, report); });
 }
 

@@ -18,6 +18,8 @@ inline void pause() {
 
 }  // namespace
 
+int threadsAtOnce(int asked) { return std::min(asked, std::max(1, static_cast<int>(std::thread::hardware_concurrency()))); }
+
 struct Workers::Job {
   std::size_t n, grain;
   const std::function<void(std::size_t, std::size_t)>& work;

@@ -12,6 +12,9 @@
 
 namespace qtet {
 
+/// Of the threads that were asked for as many as the machine runs at once: more would wait for one another, ten times as long with 256 on two cores.
+[[nodiscard]] int threadsAtOnce(int asked);
+
 class Workers {
  public:
   /// `threads` >= 1, the caller's included; fewer where the system gives no more.

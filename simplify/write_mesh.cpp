@@ -1,12 +1,8 @@
 #include "simplify/write_mesh.h"
 
 #include <algorithm>
-#include <cassert>
 
-#include "codec/boundary_drc.h"
-#include "codec/boundary_glb.h"
 #include "codec/float_rounding.h"
-#include "codec/mesh_file.h"
 #include "codec/vtu_writer.h"
 #include "simplify/clean_mesh.h"
 #include "simplify/quantise.h"
@@ -16,25 +12,6 @@ namespace {
 
 /// Of positions and fields where a format needs a lattice and the mesh has none.
 constexpr int kExportBits = 16;
-
-bool onLattice(const std::filesystem::path& output) { return output.extension() == ".glb" || output.extension() == ".drc"; }
-
-Result<Bytes> latticeFileBytes(const LatticeMesh& mesh, const std::filesystem::path& output) {
-  return output.extension() == ".glb" ? boundaryGlb(mesh) : boundaryDrc(mesh);
-}
-
-Result<Bytes> floatFileBytes(const FileMesh& mesh, const std::filesystem::path& output) {
-  const std::string kind = output.extension();
-  if (kind == ".vtu") return vtuBytes(mesh);
-  if (kind == ".vtk") return legacyVtkBytes(mesh);
-  if (kind == ".msh") return gmshBytes(mesh);
-  if (kind == ".stl") return stlBytes(surfaceOf(mesh));
-  if (kind == ".ply") return plyBytes(surfaceOf(mesh), mesh.doublePoints);
-  if (kind == ".obj") return objBytes(surfaceOf(mesh));
-  if (kind == ".usda") return usdaBytes(mesh);
-  assert(kind == ".npz");
-  return npzBytes(mesh);
-}
 
 }  // namespace
 
@@ -51,17 +28,14 @@ FileMesh fileMesh(const TetMesh& mesh) {
 Bytes vtuBytes(const TetMesh& mesh) { return vtuBytes(fileMesh(mesh)); }
 
 Result<Bytes> meshFileBytes(const TetMesh& mesh, const std::filesystem::path& output) {
-  if (!onLattice(output)) return floatFileBytes(fileMesh(mesh), output);
+  const std::string ending = output.extension().string();
+  if (!needsLattice(ending)) return meshFileBytes(fileMesh(mesh), ending);
   TetMesh cleaned = mesh;
   if (const Result<CleanReport> report = cleanMesh(cleaned); !report) return std::unexpected(report.error());
   QuantiseOptions options;
   options.positionBits = options.fieldBits = kExportBits;
   const Result<QuantisedMesh> quantised = quantise(cleaned, options);
-  return quantised ? latticeFileBytes(quantised->mesh, output) : std::unexpected(quantised.error());
-}
-
-Result<Bytes> meshFileBytes(const LatticeMesh& mesh, const std::filesystem::path& output) {
-  return onLattice(output) ? latticeFileBytes(mesh, output) : floatFileBytes(fileMesh(mesh).mesh, output);
+  return quantised ? meshFileBytes(quantised->mesh, ending) : std::unexpected(quantised.error());
 }
 
 }  // namespace qtet

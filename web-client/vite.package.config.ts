@@ -1,11 +1,26 @@
 // Builds the npm package's modules: QTET_WASM names the codec's WebAssembly, QTET_PACKAGE_OUT the folder to write (pack.mjs sets both).
 
-import {defineConfig} from 'vite';
+import {defineConfig, type Plugin, transformWithEsbuild} from 'vite';
+
+/** Vite would wrap import() in its own preloading, which the Vite of the page that uses the package then takes for its own and calls without an address. */
+const plainDynamicImports: Plugin = {
+  name: 'plain-dynamic-imports',
+  configResolved({plugins}) {
+    const at = plugins.findIndex(({name}) => name === 'vite:build-import-analysis');
+    if (at < 0) throw new Error('vite:build-import-analysis has another name: see that no chunk of the package holds __vitePreload');
+    (plugins as Plugin[]).splice(at, 1);
+  },
+};
 
 export default defineConfig({
   base: './',
+  plugins: [plainDynamicImports],
   resolve: {alias: [{find: /^qtet-codec\.wasm/, replacement: process.env.QTET_WASM!}]},
-  worker: {format: 'es', rollupOptions: {output: {entryFileNames: 'worker.js'}}},
+  // Bundlers take workers' files as they are: these hold all that they need, three too, and nobody else would minify them.
+  worker: {
+    format: 'es', rollupOptions: {output: {entryFileNames: '[name].js'}},
+    plugins: () => [{name: 'minify', renderChunk: (code: string) => transformWithEsbuild(code, 'worker.js', {minify: true, target: 'es2022'})}],
+  },
   build: {
     target: 'es2022',
     outDir: process.env.QTET_PACKAGE_OUT!,

@@ -20,8 +20,11 @@ if (!args.includes('--wasm') || logs.length === 0) {
 }
 
 const page = `
-import {kDraco} from './draco';
+import {headBytesOf} from './block_source';
 import {WasmCodec, kDracoCodec} from './codec';
+import {kDraco} from './draco';
+import {readManifest} from './manifest';
+import {readValueBlock} from './value_block';
 const bytesOf = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
 
 globalThis.measure = async (module, log, runs) => {
@@ -31,24 +34,22 @@ globalThis.measure = async (module, log, runs) => {
   for (let run = 0; run < runs; ++run) {
     const codec = await WasmCodec.create(compiled);
     const raw = codec.wasm;
-    codec.open(file.subarray(0, headBytes(file)));
+    const head = file.subarray(0, headBytesOf(file));
+    codec.open(head);
     const chunks = codec.chunkCount;
-    const components = [0, 3, ...fieldComponents(file)];
+    const components = [0, 3, ...readManifest(head, (bytes, columns) => codec.levelColumns(bytes, columns)).fields.map((field) => field.components)];
     const fields = components.length - 2;
     let values = 0, integers = 0, valueBytes = 0;
     const begin = performance.now();
     for (let chunk = 0; chunk < chunks; ++chunk) {
-      const block = (part) => file.subarray(raw.qtet_block_offset(chunk, part), raw.qtet_block_offset(chunk, part) + codec.blockSize(chunk, part));
+      const block = (part) => file.subarray(codec.blockOffset(chunk, part), codec.blockOffset(chunk, part) + codec.blockSize(chunk, part));
       const valuesOf = (part) => {
         const bytes = block(part);
         integers += codec.blockValues(chunk, part) * components[part];
         valueBytes += bytes.length;
-        if (bytes.length === 0 || codec.blockCodec(chunk, part) !== kDracoCodec) return {symbols: new Int32Array(0), digits: bytes};
         const from = performance.now();
-        const digits = new DataView(bytes.buffer, bytes.byteOffset + bytes.length - 4).getUint32(0, true);
-        const end = bytes.length - 4 - digits;
-        const out = {symbols: kDraco.decode(bytes.subarray(0, end), codec.blockValues(chunk, part), components[part]), digits: bytes.subarray(end, end + digits)};
-        values += performance.now() - from;
+        const out = readValueBlock(codec, kDraco, {chunk, part, components: components[part]}, bytes);
+        if (codec.blockCodec(chunk, part) === kDracoCodec) values += performance.now() - from;
         return out;
       };
       for (let part = 0; part < components.length; ++part) codec.checkBlock(chunk, part, block(part));
@@ -60,16 +61,6 @@ globalThis.measure = async (module, log, runs) => {
   }
   return best;
 };
-function headBytes(file) {
-  const view = new DataView(file.buffer);
-  return 64 + view.getUint32(24, true) + view.getUint32(28, true);
-}
-// The first bytes of the chunk table, behind header and manifest: components, association.
-function fieldComponents(file) {
-  const view = new DataView(file.buffer);
-  const fields = view.getUint32(44, true), table = 64 + view.getUint32(24, true);
-  return Array.from({length: fields}, (_, f) => file[table + 2 * f]);
-}
 `;
 
 const {build} = require('esbuild');

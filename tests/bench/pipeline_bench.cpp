@@ -1,7 +1,6 @@
 // The stages between a mesh on the lattice and a refined mesh, on the sample `fin`; results in TABLE.md. Rates count input tetrahedra.
 #include <benchmark/benchmark.h>
 
-#include <cstdlib>
 #include <cstring>
 #include <numeric>
 
@@ -14,17 +13,13 @@
 #include "simplify/qtetfusion.h"
 #include "simplify/quantise.h"
 #include "simplify/samples.h"
+#include "tests/bench/need.h"
 #include "tests/support/meshes.h"
 
 namespace qtet {
 namespace {
 
-template <class T>
-T need(Result<T> result) {
-  if (result) return std::move(*result);
-  std::fprintf(stderr, "%s\n", result.error().text().c_str());
-  std::exit(1);
-}
+using bench::need;
 
 const LatticeMesh& fin() {
   static const LatticeMesh mesh = need(quantise(finSample())).mesh;

@@ -1,10 +1,11 @@
 // What a place costs: the bytes of a log of layout `regions` that bring a box with 10, 1 and 0.1 % of the cells to full resolution, and the whole file
 // beside the same mesh's `stream`. Boxes are cubes round cells taken at even steps through the finest mesh, as large as it takes; slabs lie round planes
-// through the same cells across each axis in turn. The bytes are those that the server plans for such a view up to the last level.
+// through the same cells across each axis in turn; isosurfaces have values of vertices at even steps through their order. The bytes are those that the server plans for such a view up to the last level.
 //
 //   region_bytes REGIONS.qtet [STREAM.qtet]
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <numeric>
@@ -64,11 +65,25 @@ double extentOf(const Manifest& manifest, const LatticeMesh& mesh, std::size_t a
   return manifest.latticeStep * (most - least);
 }
 
-std::uint64_t bytesOf(const LogIndex& index, const Manifest& manifest, const View& view, const std::vector<std::uint32_t>& fields) {
+std::uint64_t bytesOf(const LogFront& log, const View& view, const std::vector<std::uint32_t>& fields) {
+  const auto& [index, manifest, intervals] = log;
   std::uint64_t bytes = index.headBytes();
   const StopAt stop = stopAt(index, manifest, LevelTarget{manifest.levels.back().level}, 0);
-  for (const BlockRun& run : planStream({index, manifest}, ClientBlocks(index, fields), view, stop, 1u << 18)) bytes += sliceOf(index, run).size;
+  for (const BlockRun& run : planStream(log, ClientBlocks(index, fields), view, stop, 1u << 18)) bytes += sliceOf(index, run).size;
   return bytes;
+}
+
+/// Of the first field's vertices; of several components their length.
+std::vector<double> sortedValues(const LatticeMesh& mesh) {
+  const FieldInfo& field = mesh.fields[0];
+  std::vector<double> out;
+  for (std::size_t i = 0; i < mesh.values[0].size(); i += field.components) {
+    double square = 0;
+    for (std::uint32_t c = 0; c < field.components; ++c) square += std::pow(field.value(c, mesh.values[0][i + c]), 2);
+    out.push_back(field.components > 1 ? std::sqrt(square) : field.value(0, mesh.values[0][i]));
+  }
+  std::ranges::sort(out);
+  return out;
 }
 
 struct Share {
@@ -92,10 +107,12 @@ int main(int argc, char** argv) {
   const auto log = LogFile::open(argv[1]);
   if (!log) return std::fprintf(stderr, "%s\n", log.error().text().c_str()), 1;
   const LogIndex& index = log->index();
-  const auto mesh = meshAtLevel(*log, index.chunks.back().lastLevel, std::vector<std::uint32_t>{});
+  const auto mesh = meshAtLevel(*log, index.chunks.back().lastLevel, std::vector<std::uint32_t>(index.fields.empty() ? 0 : 1));
   if (!mesh) return std::fprintf(stderr, "%s\n", mesh.error().text().c_str()), 1;
   const auto manifest = manifestOf(index);
   if (!manifest) return std::fprintf(stderr, "%s\n", manifest.error().text().c_str()), 1;
+  const auto intervals = packetIntervals(*log, *manifest);
+  if (!intervals) return std::fprintf(stderr, "%s\n", intervals.error().text().c_str()), 1;
   std::vector<LatticePoint> middles;
   for (const Tetrahedron& t : mesh->tetrahedra) middles.push_back(middleOf(*mesh, t));
 
@@ -109,9 +126,10 @@ int main(int argc, char** argv) {
   std::vector<std::uint32_t> all(index.fields.size());
   std::iota(all.begin(), all.end(), 0u);
   const std::vector<std::uint32_t> one(all.begin(), all.begin() + std::min<std::ptrdiff_t>(1, std::ssize(all)));
+  const std::vector<double> values = one.empty() ? std::vector<double>() : sortedValues(*mesh);
   for (const auto& [fields, name] : {std::pair(all, "all fields"), std::pair(one, "the first field")}) {
     std::printf("%s:\n", name);
-    const auto part = [&](const View& view) { return 100 * static_cast<double>(bytesOf(index, *manifest, view, fields)) / whole; };
+    const auto part = [&](const View& view) { return 100 * static_cast<double>(bytesOf({index, *manifest, &*intervals}, view, fields)) / whole; };
     for (const double percent : {10.0, 1.0, 0.1}) {
       Share share;
       const auto cells = static_cast<std::size_t>(percent / 100 * static_cast<double>(middles.size()));
@@ -122,6 +140,10 @@ int main(int argc, char** argv) {
     for (std::size_t i = 0; i < kBoxes; ++i)
       share.add(part(slabRound(*manifest, middles[(2 * i + 1) * middles.size() / (2 * kBoxes)], i % 3, kSlab * extentOf(*manifest, *mesh, i % 3))));
     share.print("  slab of 2 % of the extent");
+    if (one.empty()) continue;
+    Share surfaces;
+    for (std::size_t i = 0; i < kBoxes; ++i) surfaces.add(part({.isovalue = Isovalue{manifest->fields[0].name, {}, {values[(2 * i + 1) * values.size() / (2 * kBoxes)]}}}));
+    surfaces.print("  isosurface of the first field");
   }
   if (argc == 3) {
     const auto stream = LogFile::open(argv[2]);

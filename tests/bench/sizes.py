@@ -34,7 +34,7 @@ DATA = {
     "wing-potential": (None, 5.5),
 }
 BAR = 1.33  # what streaming coarse-first may cost beside the single-rate coder
-EXACT = ["tetrahedra", "levels", "chunks", "bytes", "head", "connectivity", "positions", "field"]
+EXACT = ["tetrahedra", "levels", "chunks", "bytes", "head", "connectivity", "positions", "field", "vertex"]
 COLUMNS = ["mesh", "field name", *EXACT, ".vtu"]
 SKIPPED = 77
 OLD = " (old)"  # behind the name of a mesh whose row comes from an earlier run
@@ -50,7 +50,7 @@ Logs with the default options of `qtet simplify` (16-bit lattice, 12-bit fields)
 
 *Head*: header, manifest (with the known errors) and chunk table. *.vtu*: as VTK writes it by default, with the same field (`vtu_size`). Two figures for the same meshes were measured
 elsewhere and are not recomputed here: *zstd*, Hilbert order, differences and zstd -19; *single-rate*, a geometry-guided coder without levels. *Ratio*: the log's total over the
-latter; the bar is {BAR}.
+latter; the bar is {BAR}. *Vertex*: the same with `--placement vertex`, fused vertices only where vertices were, whose levels have larger errors (RATE.md); the whole mesh is the same.
 """
 EXACT_HEAD = """
 ## Bytes
@@ -69,13 +69,18 @@ def run(words):
     return json.loads(done.stdout)
 
 
+def simplified(tool, mesh, field, *options):
+    with tempfile.TemporaryDirectory(prefix="qtet-sizes-") as folder:
+        return run([tool, "simplify", mesh, "-o", pathlib.Path(folder) / "out.qtet", "--fields", f"point:{field}", *OPTIONS, *options, "--json"])
+
+
 def measured(tool, mesh, field):
     """The row of a mesh but for its .vtu column."""
-    with tempfile.TemporaryDirectory(prefix="qtet-sizes-") as folder:
-        report = run([tool, "simplify", mesh, "-o", pathlib.Path(folder) / "out.qtet", "--fields", f"point:{field}", *OPTIONS, "--json"])
+    report = simplified(tool, mesh, field)
     of = report["bytesOf"]
     return {"mesh": mesh.stem, "field name": field, "tetrahedra": report["tetrahedra"]["full"], "levels": report["levels"], "chunks": report["chunks"],
-            "bytes": report["bytes"], "head": of["head"], "connectivity": of["connectivity"], "positions": of["positions"], "field": sum(of["fields"].values())}
+            "bytes": report["bytes"], "head": of["head"], "connectivity": of["connectivity"], "positions": of["positions"], "field": sum(of["fields"].values()),
+            "vertex": simplified(tool, mesh, field, "--placement", "vertex")["bytes"]}
 
 
 def table(columns, rows):
@@ -105,13 +110,14 @@ def bits_row(name, row):
     zstd, single_rate = DATA.get(row["mesh"], (None, None))
     return [name, *(f"{bits(row[key]):.2f}" for key in ("bytes", "connectivity", "positions", "field", "head")), f"{bits(row['.vtu']):.0f}",
             "" if zstd is None else str(zstd), "" if single_rate is None else f"{single_rate:.1f}",
-            "" if single_rate is None else f"{bits(row['bytes']) / single_rate:.2f}"]
+            "" if single_rate is None else f"{bits(row['bytes']) / single_rate:.2f}", f"{bits(row['vertex']):.2f}",
+            "" if single_rate is None else f"{bits(row['vertex']) / single_rate:.2f}"]
 
 
 def document(rows, old):
     names = [row["mesh"] + OLD * (row["mesh"] in old) for row in rows]
     note = "\n*(old)*: not measured again when this table was made, because `QTET_DATA` was not set.\n" if old else ""
-    columns = ["mesh", "total", "connectivity", "positions", "field", "head", ".vtu", "zstd", "single-rate", "ratio"]
+    columns = ["mesh", "total", "connectivity", "positions", "field", "head", ".vtu", "zstd", "single-rate", "ratio", "vertex", "its ratio"]
     exact = [[name, *(str(row[key]) for key in COLUMNS[1:])] for name, row in zip(names, rows)]
     return (HEAD + note + "\n" + table(columns, [bits_row(name, row) for name, row in zip(names, rows)]) + EXACT_HEAD
             + table(COLUMNS, exact))

@@ -9,8 +9,13 @@ const {chromium} = require('playwright-core');
 
 export const kDesktop = {viewport: {width: 1280, height: 800}};
 export const kPhone = {viewport: {width: 390, height: 844}, deviceScaleFactor: 2, isMobile: true, hasTouch: true};
-export const kTimeoutMs = 60000;
+/** Patience only: a machine under load needs a minute for what takes seconds otherwise. */
+export const kTimeoutMs = 180000;
 const kSettleMs = 900;
+/** A decoder that cannot be loaded answers nothing. */
+const kHearingMs = 10000;
+/** Set before the page's scripts run. */
+const kOpenedMark = 'qtet-opened';
 
 export class Browser {
   #browser;
@@ -26,16 +31,33 @@ export class Browser {
     return launched;
   }
 
-  /** Opens the viewer at `url`; `device` is kDesktop, kPhone, or either with Playwright's other context options. */
-  async open(url, device = kDesktop) {
+  /** Opens the viewer at `url`; `device` is kDesktop, kPhone, or either with Playwright's other context options; `before` runs before the page's scripts. */
+  async open(url, device = kDesktop, before = () => undefined) {
     const context = await this.#browser.newContext(device);
     const page = await context.newPage();
+    page.setDefaultTimeout(kTimeoutMs);
     const viewer = new ViewerPage(page, this.#out);
     this.#pages.push(viewer);
-    await page.addInitScript(watchTasksAndEvents);
+    await page.addInitScript(watchEvents, kOpenedMark);
+    await page.addInitScript(before);
     await page.goto(url);
     await page.waitForFunction(() => window.qtetViewer !== undefined, null, {timeout: kTimeoutMs});
     return viewer;
+  }
+
+  /** Begins to watch; `end()` gives the tasks of the one page with workers, on its own thread, since it was opened: {ms, cpuMs} each. */
+  async trace() {
+    await this.#browser.startTracing(undefined, {categories: ['-*', 'toplevel', 'blink.user_timing', '__metadata']});
+    return {end: async () => {
+      const {traceEvents} = JSON.parse(String(await this.#browser.stopTracing()));
+      const threads = traceEvents.filter(({name}) => name === 'thread_name');
+      const {pid} = threads.find(({args}) => args.name.startsWith('DedicatedWorker'));
+      const {tid} = threads.find((thread) => thread.pid === pid && thread.args.name === 'CrRendererMain');
+      const page = traceEvents.filter((event) => event.pid === pid && event.tid === tid);
+      const opened = page.find(({name}) => name === kOpenedMark).ts;
+      return page.filter(({ph, name, ts}) => ph === 'X' && name.endsWith('RunTask') && ts >= opened)
+        .map(({dur, tdur = 0}) => ({ms: dur / 1000, cpuMs: tdur / 1000}));
+    }};
   }
 
   /** A page that is none of ours. */
@@ -72,8 +94,9 @@ export class ViewerPage {
     });
   }
 
-  /** Throws what the viewer says when it fails instead. */
+  /** Of what was asked for before: a state that is about to change does not count. Throws what the viewer says when it fails instead. */
   async waitForState(wanted) {
+    await this.#hearDecoder();
     await this.page.waitForFunction((state) => [state, 'failed'].includes(window.qtetViewer.state), wanted, {timeout: kTimeoutMs, polling: 50});
     const state = await this.page.evaluate(() => window.qtetViewer.state);
     if (state === 'failed' && wanted !== 'failed') throw new Error(`the viewer failed: ${await this.text('.notice p')}`);
@@ -82,11 +105,34 @@ export class ViewerPage {
   /** Waits until the picture of the figures' moment has been drawn, and one frame more. */
   async waitForPicture() {
     await this.page.waitForFunction(() => window.qtetSeen.pictures > 0, null, {timeout: kTimeoutMs});
-    await this.page.waitForTimeout(600);
+    await this.settle();
   }
 
-  /** Waits until what was just changed has been computed and drawn. */
-  settle() { return this.page.waitForTimeout(kSettleMs); }
+  /** Waits until what was just changed has been computed and drawn: for a while, for whoever decodes, and for frames of the page and of whoever draws; all of them come late under load. */
+  async settle() {
+    await this.page.waitForTimeout(kSettleMs);
+    await this.#hearDecoder();
+    await this.#waitForDecoder();
+    const frame = () => new Promise((drawn) => { requestAnimationFrame(drawn); });
+    for (let i = 0; i < 2; ++i) {
+      await this.page.evaluate(frame);
+      await this.inView(frame);
+    }
+  }
+
+  /** Waits until the decoder has heard what the page has told it so far, and the page what that changed at once; not for one that never began. */
+  async #hearDecoder() {
+    await this.page.evaluate((ms) => Promise.race([window.qtetViewer.digest(), new Promise((resolve) => { setTimeout(resolve, ms); })]), kHearingMs);
+  }
+
+  /** Waits until no picture is due or on its way. */
+  async #waitForDecoder() {
+    for (const end = Date.now() + kTimeoutMs; Date.now() < end; await this.page.waitForTimeout(20)) {
+      const busy = this.page.workers().filter((worker) => /\/worker\b/.test(worker.url())).map((worker) => worker.evaluate(() => globalThis.qtetPublisher?.isBusy === true));
+      if (!(await Promise.all(busy)).includes(true)) return;
+    }
+    throw new Error('pictures have been under way for minutes');
+  }
 
   /** What axe-core finds against WCAG 2.2 AA, shadow roots included: "rule: element" each. */
   async accessibilityViolations() {
@@ -97,10 +143,30 @@ export class ViewerPage {
     });
   }
 
+  /** Calls `look` with the MeshView, in the worker that draws or, where there is none, on the page. */
+  inView(look, ...words) {
+    const thread = this.page.workers().find((worker) => worker.url().includes('view_worker')) ?? this.page;
+    return thread.evaluate(([text, its]) => (0, eval)(`(${text})`)(globalThis.qtetView ?? globalThis.qtetViewer.meshView, ...its), [String(look), words]);
+  }
+
+  async waitInView(isSo) {
+    for (const end = Date.now() + kTimeoutMs; Date.now() < end; await this.page.waitForTimeout(50)) if (await this.inView(isSo)) return;
+    throw new Error(`the view does not become so: ${isSo}`);
+  }
+
+  /** Waits for a volume with all its cells and pixels, seen from where the camera is. */
+  async restVolume() {
+    // Twice: what was just asked for may not have reached the worker that draws.
+    for (let i = 0; i < 2; ++i) {
+      await this.settle();
+      await this.waitInView(({volume, frame, moved}) => volume.hasCells && volume.atRest && frame === 0 && !moved);
+    }
+  }
+
   statistics() { return this.page.evaluate(() => window.qtetViewer.statistics); }
   counts() { return this.page.evaluate(() => window.qtetViewer.counts); }
   digest() { return this.page.evaluate(() => window.qtetViewer.digest()); }
-  /** What init scripts saw: pictures, events by name, long tasks. */
+  /** What init scripts saw: pictures, events by name. */
   seen() { return this.page.evaluate(() => window.qtetSeen); }
   text(selector) { return this.page.locator(`qtet-viewer ${selector}`).innerText(); }
 
@@ -111,18 +177,15 @@ export class ViewerPage {
 }
 
 /** Runs in the page before its scripts. */
-function watchTasksAndEvents() {
-  const seen = {pictures: 0, events: [], longTasks: [], loadedAt: 0};
+function watchEvents(mark) {
+  performance.mark(mark);
+  const seen = {pictures: 0, events: []};
   window.qtetSeen = seen;
-  new PerformanceObserver((list) => {
-    for (const entry of list.getEntries()) seen.longTasks.push({start: entry.startTime, ms: entry.duration});
-  }).observe({type: 'longtask', buffered: true});
   document.addEventListener('DOMContentLoaded', () => {
     const viewer = document.querySelector('qtet-viewer');
     for (const type of ['load', 'refine', 'progress', 'complete', 'error']) {
       viewer.addEventListener(type, (event) => {
         if (type === 'load' || type === 'refine') ++seen.pictures;
-        if (type === 'load') seen.loadedAt = performance.now();
         if (type !== 'progress') seen.events.push({type, at: performance.now(), bytes: event.detail?.bytes});
       });
     }

@@ -44,13 +44,10 @@ async function showsACoarsePictureFirst({server, browser}) {
 }
 
 async function survivesAKilledServer({server, browser, logs}) {
-  const line = await PoorLine.open(server.port, {bytesPerSecond: 30000, streamsOnly: true});
+  const line = await PoorLine.open(server.port, {holdAt: kCoarseBytes});
   try {
     const viewer = await browser.open(`${line.url}?mesh=fin`);
-    await viewer.page.waitForFunction(() => {
-      const {chunks, chunkCount} = window.qtetViewer.statistics;
-      return chunks > 2 && chunks < chunkCount;
-    }, null, {polling: 50});
+    await viewer.page.waitForFunction(() => window.qtetViewer.statistics.chunks > 2, null, {polling: 50});
     server.kill();
     line.cut();
     await viewer.waitForState('reconnecting');
@@ -71,7 +68,6 @@ async function survivesAServerThatIsAwayWhenItIsAsked({server, browser, logs}) {
   const viewer = await browser.open(`${server.url}?mesh=fin`);
   await viewer.waitForState('complete');
   server.kill();
-  await viewer.page.waitForTimeout(300);
   await viewer.page.locator('qtet-viewer select[name=field]').selectOption('Pressure');
   await viewer.waitForState('reconnecting');
   assert.match(await viewer.text('.state-note'), /trying again in \d+/);
@@ -94,14 +90,16 @@ async function showsAPictureSoonOnAPoorLine({server, browser}) {
 }
 
 async function keepsThePageResponsive({server, browser}) {
+  const trace = await browser.trace();
   const viewer = await browser.open(`${server.url}?mesh=fin`);
   await viewer.waitForState('complete');
   await viewer.waitForPicture();
-  const {longTasks, loadedAt} = await viewer.seen();
-  const during = longTasks.filter(({start}) => start > loadedAt).map(({ms}) => Math.round(ms));
-  // Software rendering shares this machine's cores with everything else: the bound only catches work that belongs in the worker.
-  assert.ok(Math.max(0, ...during) < 400, `the page was blocked for ${Math.max(...during)} ms`);
-  return `${during.length} tasks above 50 ms while refining${during.length > 0 ? ` (${during.join(', ')} ms)` : ''}, ${longTasks.length - during.length} before`;
+  const tasks = await trace.end();
+  const longest = (key) => Math.round(Math.max(...tasks.map((task) => task[key])));
+  assert.ok(tasks.length > 50, `only ${tasks.length} tasks were seen`);
+  // Of processor time, for others have their share of the clock: the bound only catches work that belongs in a worker.
+  assert.ok(longest('cpuMs') < 200, `the page was busy for ${longest('cpuMs')} ms`);
+  return `of ${tasks.length} tasks the longest takes ${longest('cpuMs')} ms of processor time, on the clock ${longest('ms')} ms`;
 }
 
 async function switchesFieldsAndMaps({server, browser, logs}) {
@@ -265,6 +263,8 @@ async function showsTheSamePictureFromItsLink({server, browser}) {
   for (const key of ['ArrowLeft', 'ArrowLeft', 'ArrowUp', '+', 'o']) await viewer.page.keyboard.press(key);
   await viewer.settle();
   const first = await viewer.screenshot('link-from');
+  // A link's camera is relative to the whole mesh, which is as long as its lattice of 16 bits, not to the coarse one that was seen first.
+  assert.equal(await viewer.inView(({bounds}) => bounds[3] - bounds[0]), 65535);
   const again = await browser.open(viewer.page.url());
   await again.waitForState('complete');
   await again.waitForPicture();
@@ -282,29 +282,102 @@ async function comesBackFromLostGraphics({server, browser}) {
   await viewer.waitForState('complete');
   await viewer.waitForPicture();
   const before = await viewer.screenshot('graphics-before');
-  await viewer.page.evaluate(() => {
-    const context = window.qtetViewer.shadowRoot.querySelector('.scene').getContext('webgl2');
-    window.qtetLoss = context.getExtension('WEBGL_lose_context');
-    window.qtetLoss.loseContext();
+  await viewer.inView(({renderer}) => {
+    globalThis.qtetLoss = renderer.getContext().getExtension('WEBGL_lose_context');
+    globalThis.qtetLoss.loseContext();
   });
   await viewer.page.getByText('The browser took the graphics away').waitFor();
-  await viewer.page.evaluate(() => window.qtetLoss.restoreContext());
+  await viewer.inView(() => globalThis.qtetLoss.restoreContext());
   await viewer.page.locator('qtet-viewer .notice').waitFor({state: 'hidden'});
   await viewer.settle();
   assert.ok(differingShare(before, await viewer.screenshot('graphics-after')) < 0.005, 'the picture does not come back');
 }
 
+/** Older browsers have no canvas that a worker draws into: the page draws itself, with the same script. */
+async function drawsWithoutAWorker({server, browser}) {
+  const viewer = await browser.open(`${server.url}?mesh=fin&clip=y`, kDesktop, () => delete HTMLCanvasElement.prototype.transferControlToOffscreen);
+  await viewer.waitForState('complete');
+  await viewer.waitForPicture();
+  const before = await viewer.screenshot('own-thread');
+  assert.ok(coloredShare(before) > 0.05, 'nothing is shown');
+  assert.equal(viewer.page.workers().length, 1);
+  await viewer.page.mouse.move(500, 400);
+  await viewer.page.mouse.down();
+  await viewer.page.mouse.move(650, 380, {steps: 4});
+  await viewer.page.mouse.up();
+  await viewer.settle();
+  const turned = await viewer.screenshot('own-thread-turned');
+  assert.ok(differingShare(before, turned) > 0.05, 'dragging turns nothing');
+  // The worker's way to the same picture.
+  const again = await browser.open(viewer.page.url());
+  await again.waitForState('complete');
+  await again.waitForPicture();
+  await again.settle();
+  const differing = differingShare(turned, await again.screenshot('worker-turned'));
+  assert.ok(differing < 0.005, `${differing} of the picture is another than the worker's`);
+  assert.deepEqual(viewer.problems, []);
+}
+
+/** Left button, right button, wheel: each moves the camera that the worker has, and the page knows of it. */
+async function turnsByPointer({server, browser}) {
+  const viewer = await browser.open(`${server.url}?mesh=box`);
+  await viewer.waitForState('complete');
+  await viewer.waitForPicture();
+  const {page} = viewer;
+  const camera = () => page.evaluate(() => window.qtetViewer.cameraState);
+  let before = await camera();
+  const expectMoved = async (what, same, other) => {
+    await viewer.settle();
+    const now = await camera();
+    const moved = (from, to) => Math.hypot(...[0, 1, 2].map((i) => now[from + i] - before[to + i])) > 1e-3;
+    assert.equal(moved(3, 3), other, `${what}: the target is at ${now.slice(3)} after ${before.slice(3)}`);
+    assert.equal(Math.abs(Math.hypot(...now.slice(0, 3)) - Math.hypot(...before.slice(0, 3))) < 1e-2, same, `${what}: the distance`);
+    assert.notDeepEqual(now, before, what);
+    before = now;
+  };
+  const drag = async (button) => {
+    await page.mouse.move(500, 400);
+    await page.mouse.down({button});
+    await page.mouse.move(620, 430, {steps: 4});
+    await page.mouse.up({button});
+  };
+  await drag('left');
+  await expectMoved('turned', true, false);
+  await drag('right');
+  await expectMoved('shifted', true, true);
+  await page.mouse.move(300, 300);
+  await page.mouse.wheel(0, -400);
+  await expectMoved('nearer', false, true);
+  await page.mouse.move(700, 500);
+  await page.waitForTimeout(300);
+  assert.deepEqual(await camera(), before, 'a move without a button turns');
+}
+
 async function isAccessible({server, browser}) {
   const notes = [];
   for (const colorScheme of ['light', 'dark']) {
-    const viewer = await browser.open(`${server.url}?mesh=fin&clip=x&iso=Density=2&threshold=Density=1,4`, {...kDesktop, colorScheme, bypassCSP: true});
+    const viewer = await browser.open(`${server.url}?mesh=fin&clip=x&iso=Density=2&threshold=Density=1,4&volume=0,0.1,0.4`, {...kDesktop, colorScheme, bypassCSP: true});
     await viewer.waitForState('complete');
     await viewer.waitForPicture();
+    notes.push(await viewer.page.locator('qtet-viewer .live').innerText());
     for (const summary of await viewer.page.locator('qtet-viewer summary').all()) await summary.click();
-    const violations = await viewer.accessibilityViolations();
-    assert.deepEqual(violations, [], colorScheme);
-    const announced = await viewer.page.locator('qtet-viewer .live').innerText();
-    notes.push(announced);
+    const expectNone = async (what) => assert.deepEqual(await viewer.accessibilityViolations(), [], `${colorScheme}, ${what}`);
+    await expectNone('every panel open');
+    await viewer.page.evaluate(() => ['volume', 'clip', 'iso', 'threshold'].forEach((name) => window.qtetViewer.removeAttribute(name)));
+    await viewer.page.getByText('Line', {exact: true}).click();
+    for (const x of [420, 640]) {
+      await viewer.settle();
+      await viewer.page.mouse.click(x, 400);
+    }
+    await viewer.page.locator('qtet-viewer .plot canvas').waitFor();
+    await expectNone('a line with its plot');
+    for (const [button, dialog] of [['Share', '.share-dialog'], ['Keys', '.help-dialog']]) {
+      await viewer.page.getByRole('button', {name: button}).click();
+      await viewer.page.locator(`qtet-viewer ${dialog}[open]`).waitFor();
+      await expectNone(button);
+      await viewer.page.keyboard.press('Escape');
+    }
+    await viewer.page.locator('qtet-viewer .close-result').click();
     // The focus goes through the panel from top to bottom.
     await viewer.page.locator('qtet-viewer .scene').focus();
     await viewer.page.keyboard.press('Tab');
@@ -320,10 +393,10 @@ async function obeysTheKeyboard({server, browser}) {
   const before = await viewer.screenshot('keys-before');
   await viewer.page.locator('qtet-viewer .scene').focus();
   for (let i = 0; i < 6; ++i) await viewer.page.keyboard.press('ArrowLeft');
-  await viewer.page.waitForTimeout(500);
+  await viewer.settle();
   assert.ok(differingShare(before, await viewer.screenshot('keys-turned')) > 0.01, 'arrows turn nothing');
   await viewer.page.keyboard.press('Home');
-  await viewer.page.waitForTimeout(500);
+  await viewer.settle();
   assert.ok(differingShare(before, await viewer.screenshot('keys-home')) < 0.005, 'Home does not bring the first view back');
 }
 
@@ -336,10 +409,9 @@ async function fitsAPhone({server, browser, logs}) {
   const wide = await viewer.page.evaluate(() => document.documentElement.scrollWidth > document.documentElement.clientWidth);
   assert.equal(wide, false, 'the page scrolls sideways');
   await viewer.page.getByRole('button', {name: 'Controls'}).tap();
-  await viewer.page.waitForTimeout(400);
+  await viewer.settle();
   await viewer.screenshot('phone-controls');
   await viewer.page.locator('qtet-viewer select[name=mesh]').selectOption('fin');
-  await viewer.page.waitForFunction(() => window.qtetViewer.state !== 'complete');
   await viewer.waitForState('complete');
   await expectWhole(viewer, logs.fin);
 }
@@ -351,6 +423,7 @@ async function showsWhatIsSoundOfADamagedFile({server, browser, logs}) {
     await viewer.waitForState('failed');
     const said = await viewer.page.getByRole('alert').innerText();
     assert.match(said, /chunk \d+, part \d+ arrived damaged.*What came before is sound and stays on the screen/s);
+    await viewer.waitForPicture();
     await viewer.settle();
     const {tetrahedra, total} = await viewer.statistics();
     assert.ok(tetrahedra > 10000 && tetrahedra < total.tetrahedra, `${tetrahedra} cells are shown`);
@@ -377,5 +450,5 @@ export const checks = {
   refinesToTheOriginal, showsACoarsePictureFirst, survivesAKilledServer,
   survivesAServerThatIsAwayWhenItIsAsked, showsAPictureSoonOnAPoorLine,
   keepsThePageResponsive, switchesFieldsAndMaps, clipsWithACap, showsIsosurfacesAndThresholds, pointsAndProbes, goesCoarserAndStopsAtAnError,
-  showsTheSamePictureFromItsLink, comesBackFromLostGraphics, isAccessible, obeysTheKeyboard, fitsAPhone, showsWhatIsSoundOfADamagedFile, saysWhatIsWrong,
+  showsTheSamePictureFromItsLink, comesBackFromLostGraphics, drawsWithoutAWorker, turnsByPointer, isAccessible, obeysTheKeyboard, fitsAPhone, showsWhatIsSoundOfADamagedFile, saysWhatIsWrong,
 };

@@ -3,6 +3,11 @@
 import assert from 'node:assert/strict';
 
 export async function expectWhole(viewer, log) {
+  // The figures are those of the last picture, which comes a moment after the last byte.
+  await viewer.page.waitForFunction(() => {
+    const {tetrahedra, total} = window.qtetViewer.statistics;
+    return tetrahedra === total.tetrahedra;
+  });
   const {tetrahedra, total, bytes, bytesNeeded} = await viewer.statistics();
   assert.equal(tetrahedra, total.tetrahedra);
   assert.equal(bytes, bytesNeeded);

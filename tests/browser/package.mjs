@@ -1,5 +1,5 @@
 // The npm package as a stranger uses it: packed, installed into an empty Vite project, type-checked, built, and looked at in Chromium with two
-// viewers on one page. Usage: node package.mjs --bin DIR --wasm FILE --out DIR
+// viewers on one page; and the examples in the same project. Usage: node package.mjs --bin DIR --wasm FILE --out DIR
 
 import assert from 'node:assert/strict';
 import {execFileSync} from 'node:child_process';
@@ -8,7 +8,7 @@ import {join, resolve} from 'node:path';
 import {fileURLToPath} from 'node:url';
 import {parseArgs} from 'node:util';
 import {Browser, kTimeoutMs} from './browser.mjs';
-import {coloredShare} from './png.mjs';
+import {addExamples, checkExamples, waitForColor} from './examples.mjs';
 import {makeLog, Server} from './programs.mjs';
 
 const {values: options} = parseArgs({options: {bin: {type: 'string'}, wasm: {type: 'string'}, out: {type: 'string'}}});
@@ -58,6 +58,7 @@ function makeProject() {
   }));
   writeFileSync(join(project, 'index.html'), kPage);
   writeFileSync(join(project, 'main.ts'), kScript);
+  addExamples(project);
 }
 
 const run = (folder, command, ...words) => execFileSync(command, words, {cwd: folder, encoding: 'utf8', stdio: ['ignore', 'pipe', 'inherit']});
@@ -68,7 +69,7 @@ assert.ok(files.length > 40 && !files.some(({path}) => path.endsWith('.ts') && !
 makeProject();
 run(project, 'npm', 'install', join(built, filename), '--omit=peer', '--no-audit', '--no-fund', '--prefer-offline', '--loglevel=error');
 // What every such project has is here already: nothing is downloaded twice.
-for (const name of ['three', 'vite', 'typescript', '@types']) symlinkSync(join(client, 'node_modules', name), join(project, 'node_modules', name));
+for (const name of ['three', '@kitware', 'vite', 'typescript', '@types']) symlinkSync(join(client, 'node_modules', name), join(project, 'node_modules', name));
 run(project, process.execPath, 'node_modules/typescript/bin/tsc');
 run(project, process.execPath, 'node_modules/vite/bin/vite.js', 'build', '--logLevel', 'error');
 
@@ -78,15 +79,15 @@ const browser = await Browser.launch(options.out);
 try {
   await server.start();
   const page = await browser.page(server.url);
-  await page.waitForFunction(() => window.viewers?.every((viewer) => viewer.state === 'complete') && window.triangles() > 0, null, {timeout: kTimeoutMs});
-  await page.waitForTimeout(800);
+  await page.waitForFunction(() => window.viewers?.every((viewer) => viewer.state === 'complete' && viewer.matches('.loaded')) && window.triangles() > 0, null, {timeout: kTimeoutMs});
   const digests = await page.evaluate(() => Promise.all(window.viewers.map((viewer) => viewer.digest())));
   assert.deepEqual(digests, logs.map(({meshDigest}) => meshDigest));
-  const picture = await browser.picture(page, 'package');
-  assert.ok(coloredShare(picture) > 0.05, 'the picture is blank');
+  await waitForColor(browser, page, 'package');
   await page.evaluate(() => window.viewers.forEach((viewer) => viewer.remove()));
   assert.equal(await page.evaluate(() => window.viewers[0].statistics.tetrahedra), 0);
   console.log(`ok    ${filename}: installed, type-checked, built, two viewers and a client on one page`);
+  await page.context().close();
+  await checkExamples(browser, server);
 } finally {
   await browser.close();
   server.kill();

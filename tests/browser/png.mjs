@@ -68,3 +68,40 @@ export function differingShare(a, b) {
   }
   return differing / all;
 }
+
+/** The largest step, of 255, between two pictures in the middle. */
+export function largestDifference(a, b) {
+  let most = 0;
+  for (const [x, y] of middle(a)) {
+    const other = b.at(x, y);
+    a.at(x, y).forEach((value, c) => void (most = Math.max(most, Math.abs(value - other[c]))));
+  }
+  return most;
+}
+
+const kBlockPixels = 4;
+/** Of 255, between the means of two blocks: what antialiasing moves about within a block does not count. */
+const kVisibleStep = 10;
+
+/** Share of the blocks of 4 x 4 pixels whose means differ visibly; 1 for pictures of different sizes. */
+export function differingBlocks(a, b) {
+  if (a.width !== b.width || a.height !== b.height) return 1;
+  let differing = 0;
+  let all = 0;
+  for (let y = 0; y + kBlockPixels <= a.height; y += kBlockPixels) {
+    for (let x = 0; x + kBlockPixels <= a.width; x += kBlockPixels) {
+      const [mine, other] = [a, b].map((picture) => blockMean(picture, x, y));
+      ++all;
+      if (mine.some((value, c) => Math.abs(value - other[c]) > kVisibleStep)) ++differing;
+    }
+  }
+  return differing / all;
+}
+
+function blockMean(picture, left, top) {
+  const sums = [0, 0, 0];
+  for (let y = top; y < top + kBlockPixels; ++y) {
+    for (let x = left; x < left + kBlockPixels; ++x) picture.at(x, y).forEach((value, c) => void (sums[c] += value / kBlockPixels ** 2));
+  }
+  return sums;
+}

@@ -7,13 +7,16 @@ const kTickMs = 20;
 export class PoorLine {
   #relay;
   #connections = new Set();
+  /** Towards the browser, on each connection that is slow; may change. */
+  bytesPerSecond;
   /** From now on no WebSocket gets through, as behind some companies' proxies. */
   refuseStreams = false;
 
   /** `bytesPerSecond` towards the browser on each connection, or on those of /v1/stream only; `delayMs` is added each way. Of the first connection of
-   *  /v1/stream byte `damageAt` arrives changed. */
-  static async open(targetPort, {bytesPerSecond, delayMs = 0, streamsOnly = false, damageAt = -1}) {
+   *  /v1/stream byte `damageAt` arrives changed, or nothing at all behind the first `holdAt` bytes, however slow this machine is. */
+  static async open(targetPort, {bytesPerSecond = Infinity, delayMs = 0, streamsOnly = false, damageAt = -1, holdAt = Infinity}) {
     const line = new PoorLine();
+    line.bytesPerSecond = bytesPerSecond;
     line.#relay = createServer((browser) => {
       const server = connect(targetPort, '127.0.0.1');
       const end = () => {
@@ -25,14 +28,16 @@ export class PoorLine {
       for (const socket of [browser, server]) socket.on('error', end).on('close', end).setNoDelay(true);
       let slow = !streamsOnly;
       let damage = -1;
+      let room = Infinity;
       browser.on('data', (bytes) => {
         const stream = bytes.includes('GET /v1/stream');
         if (stream && line.refuseStreams) return void end();
         slow ||= stream;
-        if (stream) [damage, damageAt] = [damageAt, -1];
+        if (stream) [damage, damageAt, room, holdAt] = [damageAt, -1, holdAt, Infinity];
         setTimeout(() => server.writable && server.write(bytes), delayMs);
       });
-      relaySlowly(server, browser, () => (slow ? (bytesPerSecond * kTickMs) / 1000 : Infinity), delayMs, (bytes) => {
+      relaySlowly(server, browser, () => Math.min(room, slow ? (line.bytesPerSecond * kTickMs) / 1000 : Infinity), delayMs, (bytes) => {
+        room -= bytes.length;
         if (damage >= 0 && damage < bytes.length) bytes[damage] ^= 1;
         damage -= bytes.length;
       });

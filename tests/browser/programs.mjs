@@ -22,11 +22,13 @@ export function makeLog(bin, name, out, sample = name, options = []) {
 
 export class Server {
   #process = null;
+  /** That the one before has left its port. */
+  #gone = Promise.resolve();
   port = 0;
 
-  constructor(bin, folder, viewer) {
+  constructor(bin, folder, viewer, options = []) {
     this.command = join(bin, 'qtet-server');
-    this.arguments = [folder, '--viewer', viewer];
+    this.arguments = [folder, '--viewer', viewer, ...options];
   }
 
   get url() { return `http://127.0.0.1:${this.port}/`; }
@@ -34,6 +36,7 @@ export class Server {
   /** Starts it, on the port that it had before; nothing when it runs. */
   async start() {
     if (this.#process) return;
+    await this.#gone;
     const started = spawn(this.command, [...this.arguments, '--port', String(this.port)], {stdio: ['ignore', 'pipe', 'pipe']});
     this.#process = started;
     let said = '';
@@ -54,8 +57,11 @@ export class Server {
 
   /** Ends it without a chance to say goodbye. */
   kill() {
-    this.#process?.removeAllListeners('exit');
-    this.#process?.kill('SIGKILL');
+    const ending = this.#process;
+    if (!ending) return;
+    ending.removeAllListeners('exit');
+    if (ending.exitCode === null) this.#gone = new Promise((resolve) => void ending.once('exit', resolve));
+    ending.kill('SIGKILL');
     this.#process = null;
   }
 }

@@ -1,11 +1,12 @@
 // The ways a log can take into the page, each by itself and one after the other.
 
 import assert from 'node:assert/strict';
+import {writeFileSync} from 'node:fs';
 import {join} from 'node:path';
-import {kDesktop} from './browser.mjs';
+import {kDesktop, kTimeoutMs} from './browser.mjs';
 import {expectWhole} from './expect.mjs';
 import {PoorLine} from './poor_line.mjs';
-import {makeLog} from './programs.mjs';
+import {makeLog, Server} from './programs.mjs';
 import {hostFolder, makeSite} from './static_host.mjs';
 
 async function readsALogFromAPlainWebServer({browser, logs, viewer: files, out}) {
@@ -48,6 +49,18 @@ async function saysThatAFileIsMissing({browser, logs, viewer: files, out}) {
   }
 }
 
+async function readsAFileOnlySoFar({browser, logs, viewer: files, out}) {
+  const host = await hostFolder(makeSite(join(out, 'site'), files, logs.fin), {nginx: false});
+  try {
+    const viewer = await browser.open(`${host.url}?src=fin.qtet&quality=cells:20000`);
+    await viewer.waitForState('held');
+    const {tetrahedra} = await viewer.statistics();
+    assert.ok(tetrahedra > 2000 && tetrahedra < 50000, `${tetrahedra} cells`);  // whole chunks
+  } finally {
+    host.close();
+  }
+}
+
 async function takesRangesAndChunksFromAServer({server, browser, logs}) {
   for (const kind of ['range', 'chunks']) {
     const viewer = await browser.open(`${server.url}?mesh=fin&transport=${kind}`);
@@ -59,7 +72,7 @@ async function takesRangesAndChunksFromAServer({server, browser, logs}) {
 }
 
 async function goesOnOverHttpWhereTheSocketIsBlocked({server, browser, logs}) {
-  const line = await PoorLine.open(server.port, {bytesPerSecond: 60000, streamsOnly: true});
+  const line = await PoorLine.open(server.port, {holdAt: 50000});
   try {
     const viewer = await browser.open(`${line.url}?mesh=fin`);
     await viewer.page.waitForFunction(() => window.qtetViewer.statistics.chunks > 2, null, {polling: 50});
@@ -75,38 +88,74 @@ async function goesOnOverHttpWhereTheSocketIsBlocked({server, browser, logs}) {
   }
 }
 
-/** A log of regions refines where it is cut before it refines elsewhere; whatever the order, it ends as the same mesh. */
+/**
+ * A log of regions refines where it is cut, and where an isosurface goes through it, before it refines elsewhere; whatever the order, it ends as the same mesh.
+ * Everything has come before the mesh is made anew from nothing to 100,000 cells: what it has then is a matter of order, not of what the network and the processors were doing.
+ */
 async function refinesWhatIsLookedAtFirst({server, browser, out, bin}) {
   const log = makeLog(bin, 'regions', out, 'fin', ['--layout', 'regions', '--cells-per-packet', '1500']);
   server.kill();
   await server.start();
-  const shares = async (query) => {
+  const lookedAt = (viewer) => viewer.inView(({cuts, isosurface}) => [cuts[0], isosurface].reduce((sum, mesh) => sum + (mesh.visible ? mesh.geometry.drawRange.count : 0), 0));
+  const open = async (query) => {
     const viewer = await browser.open(`${server.url}?mesh=regions&${query}`);
-    const now = () => viewer.page.evaluate(() => ({cut: window.qtetViewer.snapshot.cuts[0].positions.length, cells: window.qtetViewer.statistics.tetrahedra}));
-    await viewer.waitForState('held');
-    await viewer.waitForPicture();
-    await viewer.settle();  // the picture has told where the mesh is, and so where the plane lies in it
-    await viewer.page.evaluate(() => window.qtetViewer.setAttribute('quality', 'cells:100000'));
-    await viewer.page.waitForFunction(() => window.qtetViewer.state === 'held' && window.qtetViewer.statistics.tetrahedra >= 100000, null, {polling: 50});
-    await viewer.settle();
-    const held = await now();
-    await viewer.screenshot('regions-held');
-    await viewer.page.getByRole('button', {name: 'Continue'}).click();
     await viewer.waitForState('complete');
-    await viewer.settle();
-    await expectWhole(viewer, log);
-    const whole = await now();
-    return {cut: held.cut / whole.cut, cells: held.cells / whole.cells};
+    await viewer.waitForPicture();
+    return viewer;
   };
-  const {cut, cells} = await shares('transport=range&clip=x:0.8&quality=cells:30000');
-  assert.ok(cut > 0.9 && cells < 0.6, `the cut has ${cut} of its cells when the mesh has ${cells}`);
+  /** What is to be seen of the cut and the isosurface with 100,000 cells, and how many cells that took. */
+  const coarser = async (viewer, late = null) => {
+    await viewer.page.evaluate(() => window.qtetViewer.setAttribute('quality', 'cells:100000'));
+    await viewer.waitForState('held');
+    if (late) await viewer.page.evaluate((words) => window.qtetViewer.setAttribute(...words), late);
+    await viewer.settle();
+    await viewer.screenshot('regions-held');
+    return {looked: await lookedAt(viewer), cells: (await viewer.counts()).tetrahedra};
+  };
+  const cutting = await open('clip=x:0.8');
+  const whole = {looked: await lookedAt(cutting), cells: (await cutting.counts()).tetrahedra};
+  const cut = await coarser(cutting);
+  const share = cut.looked / whole.looked;
+  const cells = cut.cells / whole.cells;
+  assert.ok(share > 0.9 && cells < 0.6, `the cut has ${share} of its cells when the mesh has ${cells}`);
+  await cutting.page.getByRole('button', {name: 'Continue'}).click();
+  await cutting.waitForState('complete');
+  await cutting.settle();
+  await expectWhole(cutting, log);
+  assert.equal(await lookedAt(cutting), whole.looked);
+  // An isosurface goes through more cells than there are: some more of it has come than where nobody asked for it before.
+  const iso = await coarser(await open('surface=off&iso=Density=2.5'));
+  const unasked = await coarser(await open('surface=off'), ['iso', 'Density=2.5']);
+  const more = iso.looked / unasked.looked;
+  assert.ok(more > 1.08 && iso.cells < 1.02 * unasked.cells, `the isosurface has ${more} times the triangles with ${iso.cells} instead of ${unasked.cells} cells`);
   const viewer = await browser.open(`${server.url}?mesh=regions&clip=y:0.3`);
   await viewer.waitForState('complete');
   await expectWhole(viewer, log);
-  return `${Math.round(100 * cut)} % of the cut is there with ${Math.round(100 * cells)} % of the cells`;
+  return `${Math.round(100 * share)} % of the cut is there with ${Math.round(100 * cells)} % of the cells, of an isosurface ${more.toFixed(2)} times as much as unasked`;
+}
+
+/** Guarded meshes: the page says that they are, and shows them once it sets the token, by every way. */
+async function showsWhatATokenOpens({browser, logs, viewer: files, out, bin}) {
+  const token = 'mq3Vt0pCk8Jx1yQ2b7nS5uEw';
+  writeFileSync(join(out, 'tokens'), `read fin ${token}\n`);
+  const guarded = new Server(bin, logs.fin.folder, files, ['--tokens', join(out, 'tokens')]);
+  await guarded.start();
+  try {
+    for (const transport of ['websocket', 'range', 'chunks']) {
+      const viewer = await browser.open(`${guarded.url}?mesh=fin&transport=${transport}`);
+      await viewer.waitForState('failed');
+      assert.match(await viewer.page.getByRole('alert').innerText(), /token/);
+      await viewer.page.evaluate((text) => void (window.qtetViewer.token = text), token);
+      await viewer.waitForState('complete');
+      await expectWhole(viewer, logs.fin);
+    }
+  } finally {
+    guarded.kill();
+  }
 }
 
 export const transportChecks = {
+  showsWhatATokenOpens, readsAFileOnlySoFar,
   refinesWhatIsLookedAtFirst,
   readsALogFromAPlainWebServer, saysThatAFileIsMissing, takesRangesAndChunksFromAServer, goesOnOverHttpWhereTheSocketIsBlocked,
 };

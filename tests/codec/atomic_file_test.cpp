@@ -1,6 +1,7 @@
 #include "codec/atomic_file.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <fstream>
 
@@ -47,6 +48,42 @@ TEST(AtomicFile, aFolderInTheFilesPlaceIsRefusedAndNothingIsLeft) {
   ASSERT_FALSE(status);
   EXPECT_EQ(status.error().code, ErrorCode::kIo);
   EXPECT_EQ(filesIn(folder), 1u);
+}
+
+TEST(AtomicFile, keepsThePermissionsOfTheOldFile) {
+  const fs::path path = testing::freshFolder("atomic-mode") / "a";
+  ASSERT_TRUE(writeFileAtomically(path, Bytes{1}));
+  fs::permissions(path, fs::perms::owner_read | fs::perms::owner_write);
+  ASSERT_TRUE(writeFileAtomically(path, Bytes{2}));
+  EXPECT_EQ(fs::status(path).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+}
+
+TEST(AtomicFile, followsALink) {
+  const fs::path folder = testing::freshFolder("atomic-link");
+  fs::create_directory(folder / "real");
+  ASSERT_TRUE(writeFileAtomically(folder / "real" / "a", Bytes{'o', 'l', 'd'}));
+  fs::create_symlink("real/a", folder / "link");
+  ASSERT_TRUE(writeFileAtomically(folder / "link", Bytes{'n', 'e', 'w'}));
+  EXPECT_TRUE(fs::is_symlink(folder / "link"));
+  EXPECT_EQ(contentOf(folder / "real" / "a"), "new");
+  EXPECT_EQ(filesIn(folder / "real"), 1u);
+  fs::create_symlink("loop", folder / "loop");
+  EXPECT_FALSE(writeFileAtomically(folder / "loop", Bytes{1}));
+}
+
+TEST(AtomicFile, aPipeIsLeftAlone) {
+  const fs::path path = testing::freshFolder("atomic-pipe") / "p";
+  ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+  const Status status = writeFileAtomically(path, Bytes{1});
+  ASSERT_FALSE(status);
+  EXPECT_NE(status.error().message.find("pipe"), std::string::npos) << status.error().message;
+  EXPECT_TRUE(fs::is_fifo(path));
+}
+
+TEST(AtomicFile, aNameMayBeAsLongAsTheFileSystemTakesIt) {
+  const fs::path folder = testing::freshFolder("atomic-long");
+  for (const char last : {'a', 'b'}) ASSERT_TRUE(writeFileAtomically(folder / (std::string(254, 'n') + last), Bytes{1}));
+  EXPECT_EQ(filesIn(folder), 2u);
 }
 
 }  // namespace

@@ -246,8 +246,50 @@ TEST(BoundaryGlb, namesFieldsWithoutGapsAlone) {
   mesh.values[0][3] = kGap;
   EXPECT_FALSE(primitive()["attributes"].contains("_density"));
   EXPECT_TRUE(primitive()["attributes"].contains("_velocity"));
-  EXPECT_EQ(json()["accessors"].size(), 3u);
+  EXPECT_EQ(json()["accessors"].size(), 4u);  // indices, positions, velocity, colours
   for (const auto& accessor : json()["accessors"]) EXPECT_GT(accessor["count"], 0);
+}
+
+/// The Draco mesh in a .glb whose JSON chunk and its padding come first.
+std::unique_ptr<draco::Mesh> decodeGlb(const Bytes& glb) {
+  const std::size_t json = ByteReader(ByteView(glb).subspan(12)).read<std::uint32_t>();
+  return decode(Bytes(glb.begin() + static_cast<std::ptrdiff_t>(28 + json), glb.end()));
+}
+
+TEST(BoundaryGlb, theFirstPointFieldIsTheColoursInLinearLight) {
+  LatticeMesh mesh = wavySquare(8, 12, 1, {0, 0, 0});
+  mesh.fields[0].range = {-7, -7 + 0.25 * 4095};
+  mesh.values[0][0] = 0;     // the lowest value at lattice point (0, 0, 0)
+  mesh.values[0][1] = 4095;  // the highest at the opposite corner
+  const auto glb = boundaryGlb(mesh);
+  ASSERT_TRUE(glb);
+  const auto decoded = decodeGlb(*glb);
+  ASSERT_TRUE(decoded);
+  const auto* colours = decoded->GetNamedAttribute(draco::GeometryAttribute::COLOR);
+  const auto* positions = decoded->GetNamedAttribute(draco::GeometryAttribute::POSITION);
+  ASSERT_NE(colours, nullptr);
+  EXPECT_TRUE(colours->normalized());
+  int ends = 0;
+  for (draco::PointIndex p(0); p < decoded->num_points(); ++p) {
+    std::array<float, 3> at{};
+    std::array<std::uint8_t, 3> colour{};
+    positions->GetMappedValue(p, at.data());
+    colours->GetMappedValue(p, colour.data());
+    // viridis' ends, (0.267, 0.005, 0.329) and (0.993, 0.906, 0.144) in sRGB
+    if (at[0] < 0.5f && at[1] < 0.5f) {
+      ++ends;
+      EXPECT_EQ(colour, (std::array<std::uint8_t, 3>{15, 0, 23}));
+    } else if (at[0] > 4094.5f && at[1] > 4094.5f) {
+      ++ends;
+      EXPECT_EQ(colour, (std::array<std::uint8_t, 3>{251, 204, 5}));
+    }
+  }
+  EXPECT_EQ(ends, 2);
+  mesh.fields.clear();
+  mesh.values.clear();
+  const auto plain = boundaryGlb(mesh);
+  ASSERT_TRUE(plain);
+  EXPECT_EQ(decodeGlb(*plain)->GetNamedAttribute(draco::GeometryAttribute::COLOR), nullptr);
 }
 
 TEST(BoundaryDrc, aMeshWithoutABoundaryIsRefused) {

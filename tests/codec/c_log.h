@@ -8,6 +8,7 @@
 #include <cstring>
 #include <fstream>
 #include <memory>
+#include <numeric>
 
 #include "codec/log_file.h"
 #include "codec/qtet.h"
@@ -60,12 +61,18 @@ inline qtet_status wholly(qtet_log* log, qtet_status opened) {
   return QTET_OK;
 }
 
-/// The digest of a level by a Refiner that knows nothing of other levels.
-inline std::string digestAt(const LogFile& file, std::uint32_t level) {
+/// A level, all fields with it, by a Refiner that knows nothing of other levels.
+inline Refiner refinedTo(const LogFile& file, std::uint32_t level) {
+  std::vector<std::uint32_t> fields(file.index().fields.size());
+  std::iota(fields.begin(), fields.end(), 0u);
   Refiner refiner(file.index());
   refiner.stopAtLevel(level);
-  for (std::uint32_t c = 0; c == 0 || refiner.level() < level; ++c) EXPECT_TRUE(applyChunk(file, refiner, c, {}));
-  const auto digest = refiner.digest();
+  for (std::uint32_t c = 0; c == 0 || refiner.level() < level; ++c) EXPECT_TRUE(applyChunk(file, refiner, c, fields));
+  return refiner;
+}
+
+inline std::string digestAt(const LogFile& file, std::uint32_t level) {
+  const auto digest = refinedTo(file, level).digest();
   return {digest.begin(), digest.end()};
 }
 

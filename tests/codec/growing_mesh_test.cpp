@@ -189,7 +189,7 @@ TEST(GrowingMesh, aHubThatGrowsForLongKeepsItsStar) {
     Split split;
     split.points = {mesh.points[2], mesh.points[2]};
     const std::uint32_t top = link.localOf(1), bottom = link.localOf(0), kept = link.localOf(5);
-    for (LinkTriangle& t : link.triangles()) t.label = std::ranges::find(t.vertex, kept) == t.vertex.end();
+    for (std::uint32_t f = 0; f < link.triangles().size(); ++f) link.label(f, std::ranges::find(link.triangles()[f].vertex, kept) == link.triangles()[f].vertex.end());
     const LocalVertex v = kPreyBit, w = kPreyBit | 1, ghost = link.localOf(kGhost);
     split.deleted = {{bottom, v, w, top}, {bottom, w, v, ghost}, {v, w, top, ghost}};
     mesh.apply(2, link, split);

@@ -9,6 +9,7 @@
 namespace qtet {
 namespace {
 
+using testing::labelsOf;
 using testing::StarMesh;
 
 constexpr LatticePoint kCentre{30000, 30000, 30000};
@@ -18,18 +19,8 @@ StarMesh someStar(std::mt19937& random) {
   return testing::starMesh(kCentre, {length(), length(), length()}, 16, random() % 2 == 0);
 }
 
-std::vector<std::uint8_t> labelsOf(const Link& link) {
-  std::vector<std::uint8_t> out;
-  for (const LinkTriangle& t : link.triangles()) out.push_back(t.label);
-  return out;
-}
-
-void forget(Link& link) {
-  for (LinkTriangle& t : link.triangles()) t.label = kNoLabel;
-}
-
 /// Labels in order of first appearance along the traversal, all alike likely.
-std::vector<std::uint8_t> randomLabels(std::mt19937& random, Link& link, std::size_t k) {
+std::vector<std::uint8_t> randomLabels(std::mt19937& random, const Link& link, std::size_t k) {
   std::vector<std::uint8_t> out(link.triangles().size());
   std::size_t seen = 0;
   for (const std::uint32_t f : link.traversal()) {
@@ -58,7 +49,7 @@ TEST(LabelCoder, anyLabelsComeBack) {
   RangeDecoder decoder(bytes);
   LabelModels again;
   for (std::size_t i = 0; i < stars.size(); ++i) {
-    forget(stars[i].link);
+    testing::labelAs(stars[i], {});
     LabelCoder<RangeDecoder>(decoder, again, stars[i].link).code(k[i], {});
     ASSERT_EQ(labelsOf(stars[i].link), truth[i]) << i;
   }
@@ -77,7 +68,7 @@ TEST(LabelCoder, labelsThatLieWithTheirPreyTakeAFewBitsARecord) {
       for (std::int32_t& x : prey[1]) x += static_cast<std::int32_t>(random() % 2001) - 1000;
       if (testing::labelByNearest(star, prey) < 2) continue;
       const std::vector<std::uint8_t> truth = labelsOf(star.link);
-      forget(star.link);
+      testing::labelAs(star, {});
       LabelCoder<RangeEncoder>(encoder, models, star.link).code(2, truth);
       triangles += truth.size();
     }
@@ -118,7 +109,7 @@ TEST(LabelCoder, theLargestLatticeIsNoneTooLarge) {
   LabelCoder<RangeEncoder>(encoder, models, star.link).code(4, truth);
   const Bytes bytes = encoder.finish();
   RangeDecoder decoder(bytes);
-  forget(star.link);
+  testing::labelAs(star, {});
   LabelCoder<RangeDecoder>(decoder, again, star.link).code(4, {});
   EXPECT_EQ(labelsOf(star.link), truth);
 }

@@ -43,11 +43,31 @@ TEST(Link, aTriangleThatMeetsAVertexTwiceIsRefused) {
   EXPECT_FALSE(link.close());
 }
 
+TEST(Link, anEdgeFromAVertexToItselfIsRefusedThoughItHasANeighbour) {
+  Link link;
+  link.clear(10);
+  addOctahedron(link, 4, 5);
+  link.add(6, 6, 7);
+  EXPECT_FALSE(link.close());
+}
+
+TEST(Link, aSphereThatIsThereTwiceIsRefused) {
+  Link link;
+  link.clear(10);
+  addOctahedron(link, 4, 5), addOctahedron(link, 4, 5);
+  EXPECT_FALSE(link.close());
+}
+
 TEST(Link, edgesOfEarlierLinksAreForgottenHoweverManyThereWere) {
   Link link;
   link.clear(10);
   addOctahedron(link, 4, 5);
-  for (int turn = 0; turn < 65'534; ++turn) link.clear(10);
+  ASSERT_TRUE(link.close());
+  for (int turn = 0; turn < 32'766; ++turn) {
+    link.clear(10);
+    link.add(6, 7, 8), link.add(6, 8, 7), link.add(6, 9, 8), link.add(7, 8, 9);
+    ASSERT_FALSE(link.close()) << turn;
+  }
   link.clear(10);  // the turns begin anew
   for (VertexId i = 0; i < 4; ++i) link.add(i, (i + 1) % 4, 4);
   EXPECT_FALSE(link.close()) << "its lower half is of another link";

@@ -10,6 +10,7 @@
 #include "codec/level_columns.h"
 #include "proto/limits.h"
 #include "tests/support/allocation_meter.h"
+#include "tests/support/sample_manifest.h"
 
 namespace qtet {
 namespace {
@@ -17,13 +18,7 @@ namespace {
 constexpr std::uint32_t kLevels = 40;
 
 Manifest sample(bool withErrors = true) {
-  Manifest m;
-  m.generator = "qtet 0.1.0";
-  m.source = "comb.vtu";
-  m.latticeBits = 16;
-  m.latticeStep = 0.1 + 0.2;
-  m.latticeOrigin = {-1.5, 1e-17, 3};
-  m.fields.push_back({"density", 1, "float32", "point", 12, 0.00025, {0.1}, {0.1, 0.9}});
+  Manifest m = testing::manifestWithoutLevels();
   m.fields.push_back({"density", 3, "uint64", "cell", 28, 1.0 / 3, {-1, -2, -3}, {0, 7}, true});
   for (std::uint32_t l = 0; l < kLevels; ++l) {
     const auto tetrahedra = static_cast<std::uint32_t>(2000 * std::pow(1.06, l));
@@ -93,6 +88,7 @@ TEST(LogManifest, anErrorIsNeverUnderstated) {
 TEST(LogManifest, whatIsOutOfRangeIsRefused) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   expectRefused(ErrorCode::kBadValue, "longer than", [](Manifest& m) { m.source = std::string(kMaxNameBytes + 1, 'n'); });
+  expectRefused(ErrorCode::kBadValue, "not UTF-8", [](Manifest& m) { m.fields[1].name = "caf\xE9"; });
   expectRefused(ErrorCode::kBadValue, "step", [](Manifest& m) { m.latticeStep = 0; });
   expectRefused(ErrorCode::kBadValue, "step", [](Manifest& m) { m.fields[1].step = -1; });
   expectRefused(ErrorCode::kBadValue, "finite", [](Manifest& m) { m.latticeOrigin[2] = kNan; });

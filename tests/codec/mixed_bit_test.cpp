@@ -53,5 +53,27 @@ TEST(MixedBit, itLearnsWhomToTrust) {
   EXPECT_TRUE(decoder.atEnd());
 }
 
+#ifdef __SSE2__
+TEST(MixedBit, fourModelsAtOnceLearnWhatOneByOneLearns) {
+  std::mt19937 random(11);
+  for (int round = 0; round < 100'000; ++round) {
+    std::array<BitModel, 4> some, same;
+    Mixer<4> mixer, twin;
+    std::array<std::int32_t, 4> opinion{};
+    for (std::size_t i = 0; i < 4; ++i) {
+      some[i].state = same[i].state = static_cast<std::uint32_t>(random()) << 16 | static_cast<std::uint32_t>(random()) % (range::kSlowest + 1);
+      mixer.weight[i] = twin.weight[i] = static_cast<std::int32_t>(random() % (1u << 28)) - (1 << 27);
+      opinion[i] = static_cast<std::int32_t>(random() % (2 * mixing::kMost + 1)) - mixing::kMost;
+    }
+    const int bit = static_cast<int>(random() % 2);
+    const auto p = static_cast<std::int32_t>(range::kLowest + random() % (range::kHighest - range::kLowest + 1));
+    mixing::learn(mixer, {&some[0], &some[1], &some[2], &some[3]}, opinion, (bit << 16) - p, bit);
+    mixing::learnFour(twin, {&same[0], &same[1], &same[2], &same[3]}, opinion, (bit << 16) - p, bit);
+    ASSERT_EQ(mixer.weight, twin.weight);
+    for (std::size_t i = 0; i < 4; ++i) ASSERT_EQ(some[i].state, same[i].state);
+  }
+}
+#endif
+
 }  // namespace
 }  // namespace qtet

@@ -26,8 +26,10 @@ StarMesh starOf(const Record& r) {
   StarMesh star = testing::starMesh(r.fused, r.scale, r.bits, r.half);
   std::vector<LatticePoint> prey(r.split.points.begin(), r.split.points.begin() + r.split.k);
   (void)testing::labelByNearest(star, prey);
-  for (LinkTriangle& t : star.link.triangles())  // the record's own numbers: the coder asks for labels below k, not for their order
-    t.label = static_cast<std::uint8_t>(std::ranges::find(r.split.points, prey[t.label]) - r.split.points.begin());
+  std::vector<std::uint8_t> labels = testing::labelsOf(star.link);
+  for (std::uint8_t& label : labels)  // the record's own numbers: the coder asks for labels below k, not for their order
+    label = static_cast<std::uint8_t>(std::ranges::find(r.split.points, prey[label]) - r.split.points.begin());
+  testing::labelAs(star, labels);
   return star;
 }
 

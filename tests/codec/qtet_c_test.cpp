@@ -89,18 +89,27 @@ TEST(QtetC, everyLevelForwardIsTheRefinersMesh) {
 }
 
 TEST(QtetC, levelsMayBeAskedForInAnyOrder) {
-  const Handle log = opened(smallChunks());
-  const Result<LogFile> file = LogFile::open(smallChunks());
-  ASSERT_TRUE(file);
-  const std::uint32_t levels = levelCount(log);
-  ASSERT_GT(levels, 5u);
-  std::vector<std::uint32_t> order;
-  for (std::uint32_t level = levels; level-- > 0;) order.push_back(level);
-  for (std::uint32_t i = 0; i < 2 * levels; ++i) order.push_back(i * 7 % levels);
-  for (const std::uint32_t level : order) {
-    ASSERT_EQ(qtet_log_refine(log.get(), level), QTET_OK) << errorOf(log);
-    EXPECT_EQ(qtet_log_level(log.get()), level);
-    EXPECT_EQ(digestOf(log.get()), digestAt(*file, level)) << level;
+  for (const auto& path : {smallChunks(), golden("valid/regions.qtet")}) {
+    const Handle log = opened(path);
+    const Result<LogFile> file = LogFile::open(path);
+    ASSERT_TRUE(file);
+    const std::uint32_t levels = levelCount(log);
+    ASSERT_GT(levels, 5u);
+    std::vector<std::uint32_t> order;
+    for (std::uint32_t level = levels; level-- > 0;) order.push_back(level);
+    for (std::uint32_t i = 0; i < 2 * levels; ++i) order.push_back(i * 7 % levels);
+    for (const std::uint32_t level : order) {
+      ASSERT_EQ(qtet_log_refine(log.get(), level), QTET_OK) << errorOf(log);
+      EXPECT_EQ(qtet_log_level(log.get()), level);
+      EXPECT_EQ(digestOf(log.get()), digestAt(*file, level)) << level;
+      const Refiner expected = refinedTo(*file, level);
+      for (std::uint32_t f = 0; f < file->index().fields.size(); ++f) {
+        const std::int32_t* integers = nullptr;
+        ASSERT_EQ(qtet_log_field_integers(log.get(), f, &integers), QTET_OK) << errorOf(log);
+        ASSERT_EQ(qtet_log_field_count(log.get(), f), expected.fieldValues(f).size());
+        EXPECT_TRUE(std::ranges::equal(expected.fieldValues(f), std::span(integers, expected.fieldValues(f).size()))) << "field " << f << ", level " << level;
+      }
+    }
   }
 }
 

@@ -67,7 +67,7 @@ TEST_F(HostileRegions, theHonestLogIsAccepted) {
 TEST_F(HostileRegions, dependenciesFollowFromTheNodes) {
   const LogIndex index = LogIndex::parse(honest_.together()).value();
   for (std::uint32_t i = 1; i <= last_; ++i) {
-    const std::uint32_t expected = i < head_ ? i - 1 : i < second_ ? head_ - 1 : index.chunkOfNode(index.chunks[i].node / 2);
+    const std::uint32_t expected = i < head_ ? i - 1 : i < second_ ? head_ - 1 : index.headChunks() + index.chunks[i].node / 2 - (1u << index.firstDepth());
     ASSERT_EQ(index.chunks[i].dependencyCount, 1u);
     EXPECT_EQ(index.dependencies[index.chunks[i].firstDependency], expected) << "chunk " << i;
   }

@@ -2,6 +2,7 @@
 //   node check.mjs --bin build/release/bin --out FOLDER      FOLDER is made anew
 // Asks for everything that the description names, validates status, type, headers and JSON, and fails if an answer that it names was never seen.
 
+import {spawnSync} from 'node:child_process';
 import {createHash} from 'node:crypto';
 import {readFileSync} from 'node:fs';
 import http from 'node:http';
@@ -18,6 +19,8 @@ const source = join(import.meta.dirname ?? new URL('.', import.meta.url).pathnam
 const description = parse(readFileSync(join(source, 'proto/openapi.yaml'), 'utf8'), {maxAliasCount: -1});
 /** What cannot be had from a healthy server by asking. */
 const kUnasked = new Set(['readLevel 500', 'readLevel 503', 'readPreview 500', 'readPreview 503', 'putMesh 503', 'putMesh 507', 'isReady 503', 'openStream 101', 'readViewer 404']);
+
+const kForms = ['vtu', 'vtk', 'msh', 'usda', 'npz', 'glb', 'drc', 'stl', 'ply', 'obj'];
 
 const complaints = [];
 const seen = new Set();
@@ -36,7 +39,7 @@ function resolve(parts) {
   return object?.$ref ? resolve(object.$ref.slice(2).split('/').map((part) => part.replaceAll('~1', '/').replaceAll('~0', '~'))) : {object, parts};
 }
 const patterns = Object.keys(description.paths).map((template) => {
-  const escaped = template.replace(/[.*+?^$()|[\]\\]/g, '\\$&').replaceAll('{rest}', '.+').replaceAll('{level}', '[^/.]+').replaceAll('{form}', 'vtu|glb|drc'.replace(/^(.*)$/, '(?:$1)'));
+  const escaped = template.replace(/[.*+?^$()|[\]\\]/g, '\\$&').replaceAll('{rest}', '.+').replaceAll('{level}', '[^/.]+').replaceAll('{form}', `(?:${kForms.join('|')})`);
   return {template, pattern: new RegExp('^' + escaped.replace(/\{[^}]+\}/g, '[^/]+') + '$')};
 });
 /** The most exact template: the one with the fewest braces. */
@@ -112,7 +115,7 @@ async function checkAll(port) {
 
   const documents = ['/v1/meshes', '/v1/meshes/fin', `${log}/manifest`, '/openapi.json', '/'];
   const binaries = [`${log}/log`, `${log}/base`, `${log}/chunks/0`, `${log}/fields/Density/chunks/0`];
-  const levels = ['vtu', 'glb', 'drc'].map((form) => `${log}/levels/1.${form}`).concat(`${log}/preview.png`);
+  const levels = kForms.map((form) => `${log}/levels/1.${form}`).concat(`${log}/preview.png`);
   for (const path of [...documents, ...binaries, ...levels]) {
     const whole = await get(200, path);
     await expect(200, 'HEAD', path);
@@ -123,6 +126,11 @@ async function checkAll(port) {
     const part = await get(206, path, {range: 'bytes=1-3'});
     if (!part.body.equals(whole.body.subarray(1, 4))) complain(path, 'the range is not that of the whole');
     await get(416, path, {range: `bytes=${whole.body.length}-`});
+  }
+  for (const form of kForms) {  // as the tool writes them
+    const file = join(options.out, `level.${form}`);
+    const done = spawnSync(join(options.bin, 'qtet'), ['extract', join(options.out, 'logs/fin.qtet'), '--level', '1', '-o', file], {encoding: 'utf8'});
+    if (done.status !== 0 || !(await get(200, `${log}/levels/1.${form}`)).body.equals(readFileSync(file))) complain(form, `is not what the tool writes ${done.stderr}`);
   }
   const glb = await get(200, `${log}/levels/fit.glb?error=Density:0.02`);
   const verdict = await validator.validateBytes(new Uint8Array(glb.body), {ignoredIssues: ['UNSUPPORTED_EXTENSION']});
@@ -146,6 +154,25 @@ async function checkAll(port) {
   await get(431, '/', Object.fromEntries(Array.from({length: 100}, (_, i) => [`x-${i}`, '1'])));
   await get(417, '/', {expect: 'wonders'});
   await checkWriting(expect, mesh);
+  await checkReading(expect);
+}
+
+async function checkReading(expect) {
+  const token = {authorization: `Bearer ${kToken}`};
+  const nobody = {authorization: 'Bearer of-whom-nobody-has-heard'};
+  await expect(401, 'GET', '/v1/meshes/secret');
+  await expect(403, 'GET', '/v1/meshes/secret', token);
+  await expect(401, 'GET', '/v1/meshes', nobody);
+  await expect(200, 'GET', '/v1/meshes', token);
+  await expect(401, 'POST', '/v1/tickets', {'content-length': 0});
+  await expect(201, 'POST', '/v1/tickets', {'content-length': 0, ...token});
+  await expect(405, 'GET', '/v1/tickets', token);
+  await expect(405, 'PUT', '/v1/tickets', token);
+  await expect(204, 'OPTIONS', '/v1/tickets');
+  for (let i = 1; i < 256; ++i) await expect(201, 'POST', '/v1/tickets', token);
+  await expect(429, 'POST', '/v1/tickets', token);
+  const handshake = {connection: 'Upgrade', upgrade: 'websocket', 'sec-websocket-version': '13', 'sec-websocket-key': 'dGhlIHNhbXBsZSBub25jZQ==', 'sec-websocket-protocol': 'qtet.v1'};
+  await expect(401, 'GET', '/v1/stream?ticket=none', handshake);
 }
 
 async function checkWriting(expect, mesh) {

@@ -29,7 +29,7 @@ for (const words of made) {
   const { min, max } = json.accessors[json.meshes[0].primitives[0].attributes.POSITION];
   if (!min.every((low, axis) => low < max[axis])) throw new Error(`qtet ${words.join(' ')}: bounds ${min} to ${max}`);
   const names = Object.keys(json.meshes[0].primitives[0].attributes);
-  const wanted = words.includes('--fields') ? ['POSITION', '_Scalar'] : names;
+  const wanted = words.includes('--fields') ? ['POSITION', '_Scalar', 'COLOR_0'] : names;
   if (names.length < 2 || names.join() !== wanted.join()) throw new Error(`qtet ${words.join(' ')}: attributes ${names}`);
   console.log(`qtet ${words[0]}: ${report.info.totalTriangleCount} triangles, ${names}`);
 }

@@ -93,7 +93,7 @@ mkdirSync(folder, {recursive: true});
 configure(folder, server.port, port);
 const nginx = spawn(kNginx, ['-e', join(folder, 'error.log'), '-p', folder, '-c', join(folder, 'nginx.conf')], {stdio: 'inherit'});
 try {
-  for (let i = 0; i < 100; ++i) {
+  for (let i = 0; i < 1200; ++i) {
     const up = await new Promise((done) => net.connect(port, '127.0.0.1', () => done(true)).on('error', () => done(false)));
     if (up) break;
     await sleep(50);

@@ -4,7 +4,7 @@ import {spawn, spawnSync} from 'node:child_process';
 import {mkdirSync, rmSync, writeFileSync} from 'node:fs';
 import {join} from 'node:path';
 
-/** May write meshes whose names begin with "up". */
+/** May write meshes whose names begin with "up"; those that begin with "s" nobody may read, all others everybody. */
 export const kToken = 'aSecretOfTwentyTwoChars';
 
 function run(program, words) {
@@ -20,7 +20,7 @@ export function prepare({bin, out}) {
   run(join(bin, 'qtet'), ['sample', 'fin', '--cells', '3000', '-o', mesh]);
   run(join(bin, 'qtet'), ['simplify', mesh, '-o', join(out, 'logs/fin.qtet')]);
   run(join(bin, 'qtet'), ['simplify', mesh, '-o', join(out, 'other.qtet'), '--field-bits', '8']);
-  writeFileSync(join(out, 'tokens'), `write up* ${kToken}\n`);
+  writeFileSync(join(out, 'tokens'), `write up* ${kToken}\nread [!s]* anyone\n`);
   writeFileSync(join(out, 'viewer/index.html'), '<!doctype html><title>viewer</title>');
 }
 

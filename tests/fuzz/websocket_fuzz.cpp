@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "proto/messages.h"
+#include "proto/utf8.h"
 #include "server/web_socket_reader.h"
 
 namespace {

@@ -4,19 +4,15 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tests/support/sample_manifest.h"
+
 namespace qtet {
 namespace {
 
 using Json = nlohmann::json;
 
 Manifest sample() {
-  Manifest m;
-  m.generator = "qtet 0.1.0";
-  m.source = "comb.vtu";
-  m.latticeBits = 16;
-  m.latticeStep = 0.1 + 0.2;
-  m.latticeOrigin = {-1.5, 1e-17, 3};
-  m.fields.push_back({"density", 1, "float32", "point", 12, 0.00025, {0.1}, {0.1, 0.9}});
+  Manifest m = testing::manifestWithoutLevels();
   m.fields.push_back({"velocity", 3, "float64", "point", 14, 1.0 / 3, {-1, -2, -3}, {0, 7}});
   m.levels = {{0, 100, 40, 60, 0}, {1, 105, 42, 62, 0}, {2, 230, 80, 90, 3}};
   return m;

@@ -15,7 +15,7 @@ OpenMessage sampleOpen() {
           .fields = {"density", "velocity"},
           .have = {{7, {{9, 12}, {20, 21}}}, {{"density", {3}}, {"velocity", {7, {{10, 12}}}}}},
           .target = FieldErrorTarget{0.01, "density"},
-          .view = {{{1, 0, 0, 2}}, {{0, 1, 0, 3}}, std::array<double, 6>{0, 0, 0, 1, 2, 3}, Isovalue{"density", {0.5}}, std::array<double, 3>{4, 5, 6}},
+          .view = {{{1, 0, 0, 2}}, {{0, 1, 0, 3}}, std::array<double, 6>{0, 0, 0, 1, 2, 3}, Isovalue{"density", {}, {0.5}}, std::array<double, 3>{4, 5, 6}},
           .credit = 1 << 20};
 }
 
@@ -67,7 +67,8 @@ TEST(Messages, wishesAreReadBack) {
   for (const std::string json :
        {R"({"target":{"level":3},"type":"target"})", R"({"target":{"bytes":5000000000},"type":"target"})", R"({"target":{"tetrahedra":9},"type":"target"})",
         R"({"target":{"error":0.5,"field":"a"},"type":"target"})", R"({"target":{"boundaryError":0.25},"type":"target"})",
-        R"({"target":null,"type":"target"})", R"({"type":"view","view":null})", R"({"type":"view","view":{"point":[1.0,2.0,3.0]}})", R"({"type":"pause"})",
+        R"({"target":null,"type":"target"})", R"({"type":"view","view":null})", R"({"type":"view","view":{"point":[1.0,2.0,3.0]}})",
+        R"({"type":"view","view":{"isovalue":{"component":2,"field":"a","values":[0.5,1.0]}}})", R"({"type":"pause"})",
         R"({"type":"resume"})", R"({"have":{"chunks":1,"fields":{"a":1},"ranges":[[3,4]]},"type":"resume"})", R"({"type":"cancel"})"})
     EXPECT_EQ(again(json), json);
 }
@@ -131,6 +132,8 @@ TEST(Messages, wrongShapesAreBadValues) {
                            R"({"type":"view","view":{"box":[0,0,0,1,1]}})",
                            R"({"type":"view","view":{"box":[0,0,2,1,1,1]}})",
                            R"({"type":"view","view":{"isovalue":{"field":"a","values":[1,2,3,4,5,6,7,8,9]}}})",
+                           R"({"type":"view","view":{"isovalue":{"field":"a","component":16,"values":[1]}}})",
+                           R"({"type":"view","view":{"isovalue":{"field":"a","component":-1,"values":[1]}}})",
                            R"({"type":"view","view":{"point":[1,2,null]}})",
                            R"({"type":"target"})",
                            R"({"type":"target","target":{}})",

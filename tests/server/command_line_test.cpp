@@ -32,7 +32,7 @@ TEST(CommandLine, aFolderIsEnough) {
 TEST(CommandLine, everyOptionIsUnderstood) {
   const auto line = parse({"--port", "0", "--host=::1", "logs", "--viewer", "page", "--threads", "3", "--watch", "off", "--admin", "[::1]:9090",
                            "--cache", "c", "--cache-bytes", "0", "--access-log", "-", "--tokens", "t", "--max-upload-bytes", "1",
-                           "--max-connections", "7", "--max-connections-per-address", "0", "--max-requests-per-second", "9",
+                           "--max-connections", "7", "--max-connections-per-address", "0", "--max-levels-per-address", "3", "--max-requests-per-second", "9",
                            "--allow-origins", "https://a.example,http://localhost:3000"});
   ASSERT_TRUE(line) << line.error().message;
   EXPECT_EQ(line->allowedOrigins, (std::vector<std::string>{"https://a.example", "http://localhost:3000"}));
@@ -51,6 +51,7 @@ TEST(CommandLine, everyOptionIsUnderstood) {
   EXPECT_EQ(line->maxUploadBytes, 1u);
   EXPECT_EQ(line->maxConnections, 7u);
   EXPECT_EQ(line->maxConnectionsPerAddress, 0u);
+  EXPECT_EQ(line->maxLevelsPerAddress, 3u);
   EXPECT_EQ(line->maxRequestsPerSecond, 9u);
 }
 
@@ -118,6 +119,18 @@ TEST(CommandLine, wrongUsageIsExplained) {
   folder.write("conf", std::string_view("prot = 1\n"));
   const std::string config = (folder.path() / "conf").string();
   EXPECT_NE(parse({"a", "--config", config.c_str()}).error().message.find("prot"), std::string::npos);
+}
+
+TEST(CommandLine, aWordThatHoldsThePlaceholderOfAnErrorsTextIsQuotedLikeAnyOther) {
+  for (const char* word : {"--x%original_token%", "--%canonical_option%%prefix%", "--%option%", "--port%value%=1"}) {
+    const auto line = parse({"a", word});
+    ASSERT_FALSE(line) << word;
+    EXPECT_NE(line.error().message.find(word), std::string::npos) << line.error().message;
+  }
+  const test::TempFolder folder;
+  folder.write("conf", std::string_view("%original_token% = 1\n"));
+  const std::string config = (folder.path() / "conf").string();
+  EXPECT_NE(parse({"a", "--config", config.c_str()}).error().message.find("%original_token%"), std::string::npos);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <condition_variable>
 #include <mutex>
 
@@ -12,16 +13,7 @@
 namespace qtet {
 namespace {
 
-/// Waits until `condition` holds; false: it did not within kPatience.
-template <class Condition>
-bool eventually(Condition condition) {
-  const auto deadline = std::chrono::steady_clock::now() + test::kPatience;
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > deadline) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-  return true;
-}
+using test::eventually;
 
 TEST(FolderWatch, newReplacedAndRemovedLogsAppearWithoutARestart) {
   test::TempFolder folder;
@@ -52,6 +44,17 @@ TEST(FolderWatch, newReplacedAndRemovedLogsAppearWithoutARestart) {
   for (auto message = stream.receive(); message && message->binary; message = stream.receive()) bytes += message->bytes.size() - FrameHeader::kBytes;
   EXPECT_NE(opened.find(old->log.digest()), std::string::npos);
   EXPECT_NE(opened.find("\"planned\":" + std::to_string(bytes)), std::string::npos) << "the stream finishes on the old file";
+}
+
+TEST(FolderWatch, aFolderThatNeverRestsIsReadAllTheSame) {
+  test::TempFolder folder;
+  std::atomic<bool> read = false;
+  const auto watch = FolderWatch::start(folder.path(), [&] { read = true; });
+  ASSERT_TRUE(watch);
+  EXPECT_TRUE(eventually([&] {
+    folder.write("busy", std::string_view("again"));
+    return read.load();
+  }));
 }
 
 TEST(FolderWatch, aFolderThatIsNotThereIsAnError) {

@@ -33,7 +33,7 @@ TEST(HttpGate, whatAProxyMayReadInAnotherWayIsBroken) {
   for (const std::string& bytes :
        {std::string("GET / HTTP/1.1\nHost: a\n\n"), std::string("GET / HTTP/1.1\r\nX: 1\r\n 2\r\n\r\n"), std::string("GET / HTTP/1.1\r\nX: 1\r\n\t2\r\n\r\n"),
         std::string("GET / HTTP/1.1\r\n Host: a\r\n\r\n"), std::string("GET / HTTP/1.1\r\nX: 1\r2\r\n\r\n"), std::string("GET / HTTP/1.1\r\nX: 1\n\r\n\r\n"),
-        std::string("GET / HTTP/1.1\r\nX: 1\0002\r\n\r\n", 28), std::string("GET / HTTP/1.1\r\nX: \x0b\r\n\r\n"), std::string("GET / HTTP/1.1\r\nX: \x7f\r\n\r\n"),
+        std::string("GET / HTTP/1.1\r\nX: 1\0002\r\n\r\n", 26), std::string("GET / HTTP/1.1\r\nX: \x0b\r\n\r\n"), std::string("GET / HTTP/1.1\r\nX: \x7f\r\n\r\n"),
         std::string("\x16\x03\x01\x02"), std::string(" GET / HTTP/1.1\r\n\r\n"), std::string("\r\n\r\n")}) {
     EXPECT_EQ(lookAtOnce(bytes), Verdict::kBroken) << bytes;
     EXPECT_EQ(lookByteByByte(bytes), Verdict::kBroken) << bytes;

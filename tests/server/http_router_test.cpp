@@ -34,7 +34,7 @@ class RouterTest : public testing::Test {
     EXPECT_EQ(problem["type"], "/problems/" + type);
     EXPECT_EQ(problem["status"], status);
     EXPECT_EQ(problem["title"], std::string(reasonPhrase(status)));
-    EXPECT_FALSE(problem["detail"].get<std::string>().empty());
+    EXPECT_TRUE(problem["detail"].get<std::string>().ends_with('.')) << "a sentence: " << problem["detail"];
   }
 
   test::ServedFolder folder_;

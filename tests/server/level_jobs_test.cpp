@@ -4,12 +4,19 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/write.hpp>
 #include <condition_variable>
 #include <future>
 #include <thread>
 #include <vector>
 
+#include "server/level_wait.h"
+#include "tests/server/loopback.h"
 #include "tests/server/served_folder.h"
 
 namespace qtet {
@@ -44,7 +51,7 @@ class HeldMaker {
   template <class Condition>
   void wait(Condition condition) {
     std::unique_lock lock(mutex_);
-    ASSERT_TRUE(changed_.wait_for(lock, std::chrono::seconds(10), condition));
+    ASSERT_TRUE(changed_.wait_for(lock, test::kPatience, condition));
   }
   std::mutex mutex_;
   std::condition_variable changed_;
@@ -96,19 +103,37 @@ TEST_F(LevelJobsTest, thereAreAsManyJobsAsItWasTold) {
   LevelJobs jobs(options(2));
   const auto first = jobs.submit(level(0), [](const Result<LevelFile>&) {});
   maker_.waitForBegun(1);
-  auto second = jobs.submit(level(1), [](const Result<LevelFile>&) {});
-  EXPECT_TRUE(first && second);
-  EXPECT_FALSE(jobs.submit(level(2), [](const Result<LevelFile>&) {}));
+  std::optional second = jobs.submit(level(1), [](const Result<LevelFile>&) {});
+  EXPECT_TRUE(first && *second);
+  EXPECT_EQ(jobs.submit(level(2), [](const Result<LevelFile>&) {}).error(), LevelRefusal::kBusy);
   EXPECT_TRUE(jobs.submit(level(1), [](const Result<LevelFile>&) {})) << "a wish for a job that is there needs no place";
   EXPECT_EQ(jobs.counts().refused, 1u);
   second.reset();
   EXPECT_TRUE(jobs.submit(level(2), [](const Result<LevelFile>&) {})) << "a job that waits and nobody wants gives its place back";
 }
 
+TEST_F(LevelJobsTest, anAddressHasAsManyAsItMayHaveAndOthersHaveTheirs) {
+  const int one = 0, other = 0;
+  LevelJobs::Options few = options(4);
+  few.mostOfAddress = 2;
+  LevelJobs jobs(few);
+  const auto submit = [&](std::uint32_t k, LevelJobs::Address from) { return jobs.submit(level(k), [](const Result<LevelFile>&) {}, from); };
+  auto first = submit(0, &one), again = submit(0, &one), second = submit(1, &one);
+  EXPECT_TRUE(first && again && second) << "twice the same is one job";
+  EXPECT_EQ(submit(2, &one).error(), LevelRefusal::kAddress);
+  const auto theirs = submit(2, &other);
+  ASSERT_TRUE(theirs);
+  EXPECT_TRUE(submit(2, &one)) << "somebody else's job takes no place of this address's";
+  { const LevelJobs::Wish gone = std::move(*second); }
+  EXPECT_TRUE(submit(3, &one)) << "a wish that has gone gives its place back";
+  EXPECT_TRUE(submit(3, nullptr)) << "who is from nowhere is not bounded";
+  EXPECT_EQ(jobs.counts().refused, 1u);
+}
+
 TEST_F(LevelJobsTest, withTheLastWishTheJobEnds) {
   LevelJobs jobs(options(1));
-  auto first = jobs.submit(level(0), [](const Result<LevelFile>&) { ADD_FAILURE() << "nobody waits"; });
-  auto second = jobs.submit(level(0), [](const Result<LevelFile>&) { ADD_FAILURE() << "nobody waits"; });
+  std::optional first = jobs.submit(level(0), [](const Result<LevelFile>&) { ADD_FAILURE() << "nobody waits"; });
+  std::optional second = jobs.submit(level(0), [](const Result<LevelFile>&) { ADD_FAILURE() << "nobody waits"; });
   maker_.waitForBegun(1);
   first.reset();
   EXPECT_EQ(jobs.counts().cancelled, 0u);
@@ -117,12 +142,44 @@ TEST_F(LevelJobsTest, withTheLastWishTheJobEnds) {
   EXPECT_EQ(jobs.counts().cancelled, 1u);
 }
 
+// Asio's reactor hands readiness on later than it hears of it; bytes that were read between the two wake the watch up for nothing.
+TEST_F(LevelJobsTest, aWakeUpForNothingLeavesTheClientWatched) {
+  namespace asio = boost::asio;
+  using asio::ip::tcp;
+  LevelJobs jobs(options(1));
+  asio::io_context context;
+  tcp::acceptor acceptor(context, {asio::ip::address_v4::loopback(), 0});
+  std::optional<tcp::socket> client(context);
+  client->connect(acceptor.local_endpoint());
+  ClientSocket socket(acceptor.accept());
+  asio::write(*client, asio::buffer("request", 7));
+  while (socket.arrived() == Arrived::kNothing) std::this_thread::yield();
+  std::optional<LevelAnswer> answer;
+  asio::co_spawn(
+      context,
+      [&]() -> asio::awaitable<void> {
+        std::array<char, 16> bytes;
+        boost::system::error_code ec;
+        EXPECT_EQ(socket.read(bytes, ec), 7u);
+        answer = co_await waitForLevel(socket, jobs, level(2));
+      },
+      asio::detached);
+  while (maker_.begun() == 0) context.run_one_for(std::chrono::milliseconds(10));
+  while (context.run_one_for(test::kQuiet) != 0) continue;  // the wake-up
+  EXPECT_FALSE(answer);
+  client.reset();
+  ASSERT_TRUE(test::eventually([&] { return context.poll(), answer.has_value(); })) << "the client's end was not seen";
+  EXPECT_TRUE(std::holds_alternative<LevelRefusal>(*answer) && std::get<LevelRefusal>(*answer) == LevelRefusal::kGone);
+  maker_.waitForStopped(1);
+}
+
 TEST_F(LevelJobsTest, aWishMayOutliveTheJobs) {
   std::optional<LevelJobs::Wish> wish;
   {
     LevelJobs jobs(options(1));
-    wish = jobs.submit(level(0), [](const Result<LevelFile>&) {});
-    EXPECT_TRUE(wish);
+    auto submitted = jobs.submit(level(0), [](const Result<LevelFile>&) {});
+    ASSERT_TRUE(submitted);
+    wish = std::move(*submitted);
   }
   wish.reset();
 }
@@ -165,6 +222,7 @@ TEST_F(LevelJobsTest, finishedLevelsAreKeptOnDiskUpToALimit) {
   EXPECT_EQ(found->bytes.size(), 6u);
   std::filesystem::resize_file(folder.path() / "levels" / (level(3).key() + ".level"), 1);
   EXPECT_FALSE((*again)->find(level(3).key())) << "not the file that was put there";
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "levels" / (level(3).key() + ".level"))) << "what is not counted does not lie there";
 }
 
 TEST(LevelCache, aFolderThatCannotBeIsAnError) {

@@ -4,6 +4,7 @@
 #include <draco/compression/decode.h>
 #include <gtest/gtest.h>
 
+#include "codec/mesh_file.h"
 #include "tests/server/loopback.h"
 
 namespace qtet {
@@ -17,7 +18,7 @@ class SampleServer : public ::testing::Test {
   ViewerFiles viewer_;
 };
 
-TEST_F(SampleServer, everyLevelIsServedAsVtkAndAsDraco) {
+TEST_F(SampleServer, everyLevelIsServedAsEveryKindOfFile) {
   ASSERT_TRUE(store_) << store_.error().message;
   const CataloguePointer catalogue = store_->catalogue();
   ASSERT_EQ(catalogue->meshes.size(), 1u);
@@ -44,6 +45,15 @@ TEST_F(SampleServer, everyLevelIsServedAsVtkAndAsDraco) {
     const auto glb = client.get(path + ".glb?fields=");
     ASSERT_EQ(glb.status, 200u) << glb.body;
     EXPECT_TRUE(glb.body.starts_with("glTF"));
+    for (const std::string ending : {".vtk", ".msh", ".stl", ".ply", ".obj", ".usda", ".npz"}) {
+      const Result<LatticeMesh> bare = meshAtLevel(mesh.log, level.level, std::vector<std::uint32_t>{});
+      ASSERT_TRUE(bare);
+      const Result<Bytes> wanted = meshFileBytes(*bare, ending);
+      ASSERT_TRUE(wanted);
+      const auto served = client.get(path + ending + "?fields=");
+      ASSERT_EQ(served.status, 200u) << ending << served.body;
+      EXPECT_TRUE(std::ranges::equal(served.body, *wanted, {}, [](char c) { return static_cast<std::uint8_t>(c); })) << ending;
+    }
     EXPECT_NE(glb.body.find(R"("count":)" + std::to_string(3 * level.boundaryTriangles)), std::string::npos);
   }
 }

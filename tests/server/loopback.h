@@ -16,9 +16,25 @@
 
 namespace qtet::test {
 
-/// How long a test waits for what must come, and for what must not.
-inline constexpr auto kPatience = std::chrono::seconds(10);
+/// How long a test waits for what must come: only one that fails does, on whatever machine; below limits::kFolderInterval, in which a folder is read in any case.
+/// And for what must not.
+inline constexpr auto kPatience = std::chrono::seconds(50);
 inline constexpr auto kQuiet = std::chrono::milliseconds(150);
+/// A server's time-out that a test waits for. A machine may stall for longer than this, so nothing that has to be in time may be under it.
+inline constexpr auto kShort = std::chrono::milliseconds(300);
+/// A server's time-out that no test lives to see, where it must be something else that ends the wait.
+inline constexpr auto kNever = std::chrono::hours(1);
+
+/// Waits until `condition` holds; false: it did not within kPatience.
+template <class Condition>
+bool eventually(Condition condition) {
+  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > deadline) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  return true;
+}
 
 /// Runs a server in a thread until the object goes.
 class RunningServer {
@@ -31,6 +47,8 @@ class RunningServer {
   void stop() { server_.stop(); }
   /// Waits for run() to return.
   void join();
+  /// Whether the figure of /metrics, named without "qtet_", comes to `value` within kPatience.
+  [[nodiscard]] bool comesTo(std::string_view figure, std::size_t value) const;
 
  private:
   Server server_;
@@ -44,6 +62,9 @@ struct HttpResponse {
 
   [[nodiscard]] std::string header(const std::string& name) const;
 };
+
+/// Takes one response out of `buffer`, which `fill` appends to (false: nothing more comes); `head`: it answers a HEAD and has no body.
+HttpResponse readResponse(std::string& buffer, const std::function<bool()>& fill, bool head = false);
 
 /// A TCP connection with a time-out of kPatience on every read.
 class RawClient {
@@ -62,6 +83,12 @@ class RawClient {
   std::string readToEnd();
   /// Whether the server closes within kPatience (having sent nothing more).
   bool closedByServer();
+  /// The same, or that it cuts the connection, which a client with bytes of its own on the way sees.
+  bool cutByServer();
+  /// Waits for the first byte of an answer, and leaves it to be read; false: none came.
+  bool answerBegins();
+  /// Whether something has come already, the end included.
+  [[nodiscard]] bool hasAnswer() const;
   /// Ends the client's half.
   void finishSending();
 

@@ -37,14 +37,19 @@ TEST(RequestTrace, aTraceGoesOnUnderASpanOfItsOwn) {
     EXPECT_EQ(traceOf(std::nullopt, wrong).traceparent(), "") << wrong;
 }
 
+/// What a server needs to serve a folder and to write its access log.
+struct Logged {
+  test::ServedFolder folder;
+  test::TempFolder out;
+  std::filesystem::path path = out.path() / "access.json";
+  Result<std::unique_ptr<AccessLog>> log = AccessLog::open(path.string());
+};
+
 TEST(AccessLog, aLineOfJsonForEveryRequest) {
-  const test::ServedFolder folder;
-  const test::TempFolder out;
-  const auto path = out.path() / "access.json";
-  auto log = AccessLog::open(path.string());
-  ASSERT_TRUE(log);
+  const Logged logged;
+  ASSERT_TRUE(logged.log);
   {
-    test::RunningServer server(folder.store(), folder.viewer(), {.accessLog = log->get()});
+    test::RunningServer server(logged.folder.store(), logged.folder.viewer(), {.accessLog = logged.log->get()});
     test::RawClient client(server.port());
     const auto response = client.get("/v1/meshes?x=\"%s", "X-Request-Id: mine\r\ntraceparent: 00-4bf92f3577b34da6a3ce929d0e0e4736-00f067aa0ba902b7-01\r\n");
     EXPECT_EQ(response.header("x-request-id"), "mine");
@@ -52,7 +57,7 @@ TEST(AccessLog, aLineOfJsonForEveryRequest) {
     EXPECT_EQ(client.get("/nothing").status, 404u);
     test::RawClient(server.port()).send("\x16\x03");
   }
-  std::ifstream in(path);
+  std::ifstream in(logged.path);
   std::vector<Json> lines;
   for (std::string line; std::getline(in, line);) lines.push_back(Json::parse(line));
   ASSERT_GE(lines.size(), 2u);
@@ -66,6 +71,20 @@ TEST(AccessLog, aLineOfJsonForEveryRequest) {
   EXPECT_TRUE(lines[0]["whole"]);
   EXPECT_EQ(lines[0]["time"].get<std::string>().size(), std::string("2026-01-01T00:00:00.000Z").size());
   EXPECT_EQ(lines[1]["status"], 404);
+}
+
+TEST(AccessLog, noTicketIsWrittenDownHoweverItWasSent) {
+  const Logged logged;
+  ASSERT_TRUE(logged.log);
+  {
+    test::RunningServer server(logged.folder.store(), logged.folder.viewer(), {.accessLog = logged.log->get()});
+    for (const char* target : {"/v1/stream?ticket=5ecret", "http://a/v1/stream?ticket=5ecret", "/v1/%73tream?x&ticket=5ecret", "/v1/stream/?ticket=5ecret", "/?ticket=5ecret"})
+      EXPECT_NE(test::RawClient(server.port()).get(target).status, 0u) << target;
+  }
+  std::stringstream text;
+  text << std::ifstream(logged.path).rdbuf();
+  EXPECT_NE(text.str().find("http://a/v1/stream"), std::string::npos) << text.str();
+  EXPECT_EQ(text.str().find("5ecret"), std::string::npos) << text.str();
 }
 
 TEST(AccessLog, aFileThatCannotBeWrittenIsAnError) { EXPECT_EQ(AccessLog::open("/proc/nothing/log").error().code, ErrorCode::kIo); }

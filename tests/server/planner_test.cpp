@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 
 #include "codec/log_manifest.h"
 #include "proto/messages.h"
@@ -26,7 +27,7 @@ struct Planned {
   }
   [[nodiscard]] std::vector<BlockRun> plan(const ClientBlocks& blocks, std::uint32_t payload = kEverything, const View& view = {},
                                            const Target& target = {}) const {
-    return planStream({index, manifest}, blocks, view, stopAt(index, manifest, target, 0), payload);
+    return planStream({index, manifest, intervals ? &*intervals : nullptr}, blocks, view, stopAt(index, manifest, target, 0), payload);
   }
   [[nodiscard]] std::vector<std::uint32_t> chunks(const View& view, const Target& target = {}) const {
     return chunks(blocks({0}, 0, {0}), view, target);
@@ -40,6 +41,7 @@ struct Planned {
 
   LogIndex index;
   Manifest manifest;
+  std::optional<PacketIntervals> intervals{};
 };
 
 std::vector<std::uint32_t> sorted(std::vector<std::uint32_t> chunks) {
@@ -189,6 +191,57 @@ TEST(Planner, fieldsOfWhatIsThereComeBeforeNewPacketsOfTheSameTier) {
   for (const std::uint32_t c : {1u, 3u}) blocks.add(c, kStructurePart), blocks.add(c, kPositionsPart);
   const auto order = log.chunks(blocks, {});
   EXPECT_EQ(std::vector(order.begin(), order.begin() + 3), (std::vector<std::uint32_t>{0, 1, 3}));
+}
+
+/// Nodes 8..15 of the last band hold the values 8..8.9, 9..9.9 and so on of "density", their parents what they hold.
+Planned withValues() {
+  Planned out({.chunks = 2, .bands = 3, .errors = true});
+  const std::size_t columns = PacketIntervals::columnsOf(out.manifest);
+  std::vector<ValueInterval> values(out.index.chunks.size() * columns);
+  for (std::uint32_t node = 15; node > 1; --node) {
+    if (node >= 8) values[node * columns].add({double(node), node + 0.9});
+    if (node >= 4) values[node / 2 * columns].add(values[node * columns]);
+  }
+  out.intervals.emplace(out.manifest, std::move(values));
+  return out;
+}
+
+TEST(Planner, anIsovalueBringsThePacketsThatItsSurfaceMeetsFirst) {
+  const Planned log = withValues();
+  const View view{.isovalue = Isovalue{"density", {}, {12.5}}};
+  const auto order = log.chunks(view);
+  EXPECT_EQ(order.size(), 16u);
+  EXPECT_EQ(std::vector(order.begin(), order.begin() + 5), (std::vector<std::uint32_t>{0, 1, 3, 6, 12}));
+  EXPECT_EQ(log.chunks(view, LevelTarget{4}), (std::vector<std::uint32_t>{0, 1, 3, 6, 12}));
+  EXPECT_EQ(sorted(log.chunks({.isovalue = Isovalue{"density", {}, {8, 15.9}}}, LevelTarget{4})), (std::vector<std::uint32_t>{0, 1, 2, 3, 4, 7, 8, 15}));
+  EXPECT_EQ(log.chunks({.isovalue = Isovalue{"density", {}, {8.95, 16}}}, LevelTarget{4}), (std::vector<std::uint32_t>{0, 1, 2, 4}))
+      << "between two packets, and beyond the last";
+}
+
+TEST(Planner, aPlaneOrAnIsosurfaceWillDoButOnlyWhereItIsSeen) {
+  const Planned log = withValues();
+  const Isovalue eight{"density", {}, {8.5}};
+  const View both{.planes = {{1, 0, 0, -60000}, {0, 1, 0, -60000}}, .isovalue = eight};
+  const View planes{.planes = both.planes};
+  auto expected = log.chunks(planes, LevelTarget{4});
+  ASSERT_EQ(std::ranges::count(expected, 8u), 0);
+  for (const std::uint32_t packet : {2u, 4u, 8u})
+    if (std::ranges::count(expected, packet) == 0) expected.push_back(packet);
+  EXPECT_EQ(sorted(log.chunks(both, LevelTarget{4})), sorted(expected));
+  const View away{.frustum = {{1, 0, 0, -40000}}, .isovalue = eight};  // x >= 40000: node 3
+  EXPECT_EQ(log.chunks(away, LevelTarget{4}), upTo(2));
+}
+
+TEST(Planner, anIsovalueOfWhatIsNotKnownIsNoWish) {
+  Planned log = withValues();
+  for (const Isovalue& unknown : {Isovalue{"pressure", {}, {12.5}}, Isovalue{"density", 1, {12.5}}, Isovalue{"velocity", 3, {0}}})
+    EXPECT_EQ(log.chunks({.isovalue = unknown}), log.chunks({})) << unknown.field;
+  EXPECT_EQ(log.chunks({.isovalue = Isovalue{"density", 0, {12.5}}}, LevelTarget{4}).size(), 5u) << "the only component";
+  EXPECT_EQ(log.chunks({.isovalue = Isovalue{"velocity", 2, {0}}}, LevelTarget{4}), upTo(2)) << "known to be nowhere";
+  log.intervals.emplace();
+  EXPECT_EQ(log.chunks({.isovalue = Isovalue{"density", {}, {12.5}}}), log.chunks({}));
+  log.intervals.reset();
+  EXPECT_EQ(log.chunks({.isovalue = Isovalue{"density", {}, {12.5}}}), log.chunks({}));
 }
 
 TEST(Planner, inAStreamTheViewChoosesNothing) {

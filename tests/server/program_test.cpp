@@ -1,86 +1,19 @@
 // The program itself: what it prints, its exit codes, and how it ends on a signal.
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <array>
 #include <csignal>
-#include <regex>
 #include <string>
 #include <vector>
 
 #include "proto/checksum.h"
 #include "tests/server/loopback.h"
+#include "tests/server/program.h"
 #include "tests/server/served_folder.h"
 
 namespace qtet {
 namespace {
 
-/// The program as a child, its standard output and error in pipes.
-class Program {
- public:
-  explicit Program(std::vector<std::string> arguments) {
-    std::array<int, 2> out{}, err{};
-    if (::pipe2(out.data(), O_CLOEXEC) != 0 || ::pipe2(err.data(), O_CLOEXEC) != 0) throw std::runtime_error("no pipe");
-    arguments.insert(arguments.begin(), QTET_SERVER);
-    std::vector<char*> argv;
-    for (std::string& argument : arguments) argv.push_back(argument.data());
-    argv.push_back(nullptr);
-    child_ = ::fork();
-    if (child_ == 0) {
-      ::dup2(out[1], STDOUT_FILENO);
-      ::dup2(err[1], STDERR_FILENO);
-      ::execv(argv[0], argv.data());
-      ::_exit(127);
-    }
-    ::close(out[1]);
-    ::close(err[1]);
-    out_ = out[0];
-    err_ = err[0];
-  }
-  ~Program() {
-    if (child_ > 0) ::kill(child_, SIGKILL), (void)exitCode();
-    ::close(out_);
-    ::close(err_);
-  }
-  Program(const Program&) = delete;
-  Program& operator=(const Program&) = delete;
-
-  std::string line() {
-    std::string out;
-    for (char c = 0; ::read(out_, &c, 1) == 1 && c != '\n';) out += c;
-    return out;
-  }
-  std::string output() { return rest(out_); }
-  std::string errors() { return rest(err_); }
-  void signal(int number) const { ::kill(child_, number); }
-  /// Waits for the end; 128 + n for a signal n.
-  int exitCode() {
-    int status = 0;
-    ::waitpid(std::exchange(child_, -1), &status, 0);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  }
-
- private:
-  static std::string rest(int file) {
-    std::string out;
-    std::array<char, 4096> piece;
-    for (ssize_t n = 0; (n = ::read(file, piece.data(), piece.size())) > 0;) out.append(piece.data(), static_cast<std::size_t>(n));
-    return out;
-  }
-
-  pid_t child_ = -1;
-  int out_ = -1;
-  int err_ = -1;
-};
-
-std::uint16_t portOf(const std::string& line) {
-  std::smatch match;
-  return std::regex_match(line, match, std::regex(R"(qtet-server: listening on http://127\.0\.0\.1:(\d+)/ \(2 meshes\))"))
-             ? static_cast<std::uint16_t>(std::stoi(match[1]))
-             : std::uint16_t{0};
-}
+using test::Program;
 
 TEST(Program, helpAndVersionGoToStandardOutput) {
   Program help({"--help"});
@@ -131,23 +64,20 @@ TEST(Program, anUploadThatIsKilledLeavesNothingVisibleAndCanBeGoneOnWith) {
     return "PUT " + target + " HTTP/1.1\r\nHost: a\r\nAuthorization: Bearer " + token + "\r\nContent-Length: " + std::to_string(log.size() - first) +
            "\r\n" + (first == 0 ? "" : "Content-Range: bytes " + std::to_string(first) + "-" + std::to_string(log.size() - 1) + "/" + std::to_string(log.size()) + "\r\n") + "\r\n";
   };
-  const auto part = served.logFolder() / (".upload-" + digest + ".part");
+  const auto part = served.logFolder() / (".upload-" + digest + "-new.part");
   {
     Program program(words);
-    const std::uint16_t port = portOf(program.line());
+    const std::uint16_t port = program.port();
     ASSERT_NE(port, 0);
     test::RawClient named(port), nameless(port);
     named.send(head(0, "/v1/meshes/new?digest=" + digest) + log.substr(0, log.size() / 2));
     nameless.send(head(0, "/v1/meshes/new") + log.substr(0, 10));
-    const auto deadline = std::chrono::steady_clock::now() + test::kPatience;
-    std::error_code ec;
-    while (!std::filesystem::exists(part, ec) && std::chrono::steady_clock::now() < deadline)
-      std::this_thread::yield();
+    EXPECT_TRUE(test::eventually([&] { return std::filesystem::exists(part); }));
     program.signal(SIGKILL);
     EXPECT_EQ(program.exitCode(), 128 + SIGKILL);
   }
   Program program(words);
-  const std::uint16_t port = portOf(program.line());
+  const std::uint16_t port = program.port();
   ASSERT_NE(port, 0) << "two meshes, as before";
   std::error_code ec;
   const auto there = std::filesystem::file_size(part, ec);
@@ -159,11 +89,53 @@ TEST(Program, anUploadThatIsKilledLeavesNothingVisibleAndCanBeGoneOnWith) {
   for (const auto& entry : std::filesystem::directory_iterator(served.logFolder())) EXPECT_NE(entry.path().extension(), ".part") << entry.path();
 }
 
+TEST(Program, readsTokensAgainOnSighupAndKeepsThemWhereTheFileIsWrong) {
+  const std::string first = "firstSecretOfManyChars", second = "secondSecretOfManyChars";
+  const test::ServedFolder served;
+  test::TempFolder folder;
+  const std::string file = folder.path() / "tokens";
+  folder.write("tokens", std::string_view("read * " + first + "\n"));
+  Program program({served.logFolder(), "--port", "0", "--tokens", file, "--viewer", served.viewerFolder()});
+  const std::uint16_t port = program.port();
+  ASSERT_NE(port, 0);
+  const auto status = [&](const std::string& token) { return test::RawClient(port).get("/v1/meshes/noise", "Authorization: Bearer " + token + "\r\n").status; };
+  EXPECT_EQ(status(first), 200u);
+  EXPECT_EQ(status(second), 401u);
+  folder.write("tokens", std::string_view("read * " + second + "\n"));
+  program.signal(SIGHUP);
+  EXPECT_TRUE(test::eventually([&] { return status(second) == 200; }));
+  EXPECT_EQ(status(first), 401u);
+  // Wrong, cut off, and without the lines that guard reading: none of them opens what was guarded.
+  std::size_t told = 0;
+  for (const std::string_view text : {"read * short\n", "", "write * secretOfManyCharacters\n"}) {
+    folder.write("tokens", text);
+    program.signal(SIGHUP);
+    ++told;
+    EXPECT_TRUE(test::eventually([&] { return program.complaints("hold on") == told; })) << text;
+    EXPECT_EQ(status(second), 200u) << text;
+    EXPECT_EQ(status("anotherSecretOfManyChars"), 401u) << text;
+  }
+  program.signal(SIGTERM);
+  EXPECT_EQ(program.exitCode(), 0);
+}
+
+TEST(Program, withoutTokensOrCertificateOutlivesSighup) {
+  const test::ServedFolder served;
+  Program program({served.logFolder(), "--port", "0", "--viewer", served.viewerFolder()});
+  const std::uint16_t port = program.port();
+  ASSERT_NE(port, 0);
+  program.signal(SIGHUP);
+  EXPECT_TRUE(test::eventually([&] { return program.complaints("no tokens and no certificate") == 1; }));
+  EXPECT_EQ(test::RawClient(port).get("/livez").status, 200u);
+  program.signal(SIGTERM);
+  EXPECT_EQ(program.exitCode(), 0);
+}
+
 TEST(Program, servesAndEndsOnSigtermWithZero) {
   for (const int number : {SIGTERM, SIGINT}) {
     const test::ServedFolder served;
     Program program({served.logFolder(), "--port", "0", "--threads", "2", "--viewer", served.viewerFolder()});
-    const std::uint16_t port = portOf(program.line());
+    const std::uint16_t port = program.port();
     ASSERT_NE(port, 0);
     EXPECT_EQ(test::RawClient(port).get(served.log()).body, served.file());
     EXPECT_EQ(test::RawClient(port).get("/").status, 200u);
@@ -182,7 +154,7 @@ TEST(Program, aDamagedLogIsNamedAndTheOthersAreServed) {
   folder.write("also.qtet", test::makeLog({.seed = 5}));
   folder.write("bad.qtet", "nonsense");
   Program program({folder.path(), "--port", "0"});
-  const std::uint16_t port = portOf(program.line());
+  const std::uint16_t port = program.port();
   ASSERT_NE(port, 0);
   EXPECT_EQ(test::RawClient(port).get("/v1/meshes/good").status, 200u);
   EXPECT_EQ(test::RawClient(port).get("/v1/meshes/bad").status, 404u);

@@ -40,9 +40,9 @@ class PushTest : public testing::Test {
   const Bytes log_ = test::makeLog({.chunks = 40, .largestBlock = 60000, .seed = 99});
   const std::filesystem::path file_ = mine_.path() / "my wing.qtet";
   const std::string digest_ = (mine_.write("my wing.qtet", log_), sha256Hex(log_));
-  const Tokens tokens_ = *Tokens::parse(std::string("write * ") + kToken);
+  Access access_{*Tokens::parse(std::string("write * ") + kToken)};
   std::unique_ptr<MeshStore> store_ = std::make_unique<MeshStore>(*MeshStore::open(folder_.logFolder()));
-  test::RunningServer server_{*store_, folder_.viewer(), {.tokens = &tokens_}};
+  test::RunningServer server_{*store_, folder_.viewer(), {.access = &access_}};
 };
 
 TEST_F(PushTest, aLogIsServedUnderItsNameOrTheOneGiven) {
@@ -58,7 +58,7 @@ TEST_F(PushTest, aLogIsServedUnderItsNameOrTheOneGiven) {
 }
 
 TEST_F(PushTest, itGoesOnWhereAnEarlierOneStopped) {
-  const std::string part = (folder_.logFolder() / (".upload-" + digest_ + ".part")).string();
+  const std::string part = (folder_.logFolder() / (".upload-" + digest_ + "-my wing.part")).string();
   std::ofstream(part, std::ios::binary).write(reinterpret_cast<const char*>(log_.data()), static_cast<std::streamsize>(log_.size() / 2));
   const Outcome rest = push(url());
   EXPECT_EQ(rest.code, 0) << rest.text;

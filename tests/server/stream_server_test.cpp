@@ -213,12 +213,6 @@ TEST_F(StreamServerTest, aMessageTooLongClosesWith1009AndBadUtf8With1007) {
   EXPECT_EQ(bad.closeCode(), 1007u);
 }
 
-TEST_F(StreamServerTest, tooManyMessagesCloseWith1008) {
-  StreamClient client(server_.port());
-  for (int i = 0; i < 60; ++i) client.send(open(0));
-  EXPECT_EQ(client.closeCode(), 1008u);
-}
-
 TEST_F(StreamServerTest, oneBadClientEndsOneSessionOnly) {
   StreamClient good(server_.port());
   ASSERT_TRUE(good.send(open(1)));
@@ -277,13 +271,23 @@ TEST_F(StreamServerTest, pingsAreAnsweredAndACloseIsEchoed) {
   EXPECT_EQ(client.readToEnd(), "\x8A\x02hi\x88\x02\x03\xE8");
 }
 
+// Floods are sent at once, several times what a second allows: so also a machine that stalls among them has more in one second.
+TEST_F(StreamServerTest, tooManyMessagesCloseWith1008) {
+  RawStream flood(server_.port());
+  ASSERT_TRUE(flood.accepted);
+  std::string opens;
+  for (unsigned i = 0; i < 8 * limits::kMaxOpensPerSecond; ++i) opens += RawStream::frame('\x81', open(0));
+  ASSERT_TRUE(flood.send(opens));
+  EXPECT_TRUE(flood.readToEnd().ends_with("\x88\x02\x03\xF0"));
+}
+
 TEST_F(StreamServerTest, unmaskedFramesCloseWith1002AndFloodsOfPingsWith1008) {
   RawStream unmasked(server_.port());
   ASSERT_TRUE(unmasked.send(std::string("\x81\x05hello")));
   EXPECT_EQ(unmasked.readToEnd(), "\x88\x02\x03\xEA");
   RawStream flood(server_.port());
   std::string pings;
-  for (unsigned i = 0; i <= limits::kMaxPingsPerSecond; ++i) pings += RawStream::frame('\x89', "");
+  for (unsigned i = 0; i < 8 * limits::kMaxPingsPerSecond; ++i) pings += RawStream::frame('\x89', "");
   ASSERT_TRUE(flood.send(pings));
   EXPECT_TRUE(flood.readToEnd().ends_with("\x88\x02\x03\xF0"));
 }
@@ -298,6 +302,28 @@ TEST_F(StreamServerTest, aHandshakeOfAnotherVersionOrWithABadKeyIsRefused) {
   test::RawClient bad(server_.port());
   ASSERT_TRUE(bad.send(start + "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: hello\r\n\r\n"));
   EXPECT_EQ(bad.receive().status, 400u);
+}
+
+TEST_F(StreamServerTest, aHandshakeOfHttp10IsNone) {
+  test::RawClient client(server_.port());
+  client.send("GET /v1/stream HTTP/1.0\r\nHost: a\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
+              "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Protocol: qtet.v1\r\n\r\n");
+  EXPECT_EQ(client.receive().status, 426u);
+}
+
+TEST_F(StreamServerTest, aStreamMayFollowOtherRequestsAndBeFollowedByItsFirstWordsAtOnce) {
+  test::RawClient client(server_.port());
+  client.send("GET /livez HTTP/1.1\r\nHost: a\r\n\r\n"
+              "GET /v1/stream HTTP/1.1\r\nHost: a\r\nUpgrade: other\r\nUpgrade: websocket\r\nConnection: keep-alive\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
+              "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Protocol: other\r\nSec-WebSocket-Protocol: qtet.v1\r\n\r\n" +
+              RawStream::frame('\x81', open(0)));
+  EXPECT_EQ(client.receive().status, 200u);
+  EXPECT_EQ(client.receive(true).status, 101u);
+  ASSERT_TRUE(client.answerBegins());
+  client.send(RawStream::frame('\x88', ""));
+  const std::string rest = client.readToEnd();
+  EXPECT_NE(rest.find("\"opened\""), std::string::npos);
+  EXPECT_TRUE(rest.ends_with(std::string("\x88\0", 2)));
 }
 
 TEST_F(StreamServerTest, pagesOfOtherOriginsMayBeKeptOut) {

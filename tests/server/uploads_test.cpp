@@ -45,17 +45,17 @@ class UploadTest : public testing::Test {
   }
 
   test::ServedFolder folder_;
-  const Tokens tokens_ = *Tokens::parse(std::string("write new* ") + kToken + "\nwrite noise " + kToken + "\n# nobody\n");
+  Access access_{*Tokens::parse(std::string("write new* ") + kToken + "\nwrite noise " + kToken + "\n# nobody\n")};
   std::unique_ptr<MeshStore> store_ = std::make_unique<MeshStore>(*MeshStore::open(folder_.logFolder()));
   const std::string log_ = textOf(test::makeLog({.seed = 77}));
   test::RunningServer server_{
-      *store_, folder_.viewer(), {.threads = 2, .timeouts = {.body = std::chrono::milliseconds(400)}, .tokens = &tokens_, .maxUploadBytes = 1 << 20}};
+      *store_, folder_.viewer(), {.threads = 2, .timeouts = {.body = test::kNever}, .access = &access_, .maxUploadBytes = 1 << 20}};
 };
 
 TEST_F(UploadTest, aSoundLogIsServedOnceItIsWhole) {
   RawClient client(server_.port());
   client.send(head("PUT", "/v1/meshes/new%20one", log_.size()) + log_.substr(0, 1000));
-  std::this_thread::sleep_for(test::kQuiet);
+  EXPECT_TRUE(server_.comesTo("uploads_open", 1));
   EXPECT_EQ(get("/v1/meshes/new%20one").status, 404u);
   client.send(log_.substr(1000));
   const HttpResponse created = client.receive();
@@ -76,6 +76,7 @@ TEST_F(UploadTest, whatIsNoSoundLogIsNeverServed) {
     const HttpResponse refused = put("/v1/meshes/new", body);
     EXPECT_EQ(refused.status, 422u);
     EXPECT_EQ(Json::parse(refused.body)["type"], "/problems/bad-log");
+    EXPECT_EQ(refused.body.find(".upload-"), std::string::npos) << "where it lay: " << refused.body;
     EXPECT_EQ(get("/v1/meshes/new").status, 404u);
   }
   EXPECT_EQ(put("/v1/meshes/new?digest=" + std::string(64, '0'), log_).status, 422u) << "sound, but another one";
@@ -147,7 +148,7 @@ TEST_F(UploadTest, conditionsProtectWhatIsThere) {
 TEST_F(UploadTest, aConditionStillHoldsWhenTheLogGetsItsName) {
   RawClient slow(server_.port());
   slow.send(head("PUT", "/v1/meshes/new", log_.size(), "If-None-Match: *\r\n") + log_.substr(0, 100));
-  std::this_thread::sleep_for(test::kQuiet);
+  EXPECT_TRUE(server_.comesTo("uploads_open", 1));
   const std::string other = textOf(test::makeLog({.seed = 78}));
   EXPECT_EQ(put("/v1/meshes/new", other, "If-None-Match: *\r\n").status, 201u);
   slow.send(log_.substr(100));
@@ -182,6 +183,14 @@ TEST_F(UploadTest, anUploadThatBrokeOffGoesOnWhereItStopped) {
     EXPECT_EQ(put(target, "abc", "Content-Range: " + std::string(wrong) + "\r\n").status, 400u) << wrong;
 }
 
+TEST_F(UploadTest, goingOnWithWhatIsNotThereLeavesNothing) {
+  const std::string digest = digestOf(log_), more = "Content-Range: bytes 10-14/100\r\n";
+  const HttpResponse refused = put("/v1/meshes/new?digest=" + digest, "abcde", more);
+  EXPECT_EQ(refused.status, 409u);
+  EXPECT_NE(refused.body.find("there are 0 bytes"), std::string::npos) << refused.body;
+  EXPECT_EQ(leftovers(), 0u);
+}
+
 TEST_F(UploadTest, whatIsTooLargeOrWithoutALengthIsRefusedBeforeItIsSent) {
   RawClient large(server_.port());
   large.send(head("PUT", "/v1/meshes/new", (1 << 20) + 1, "Expect: 100-continue\r\n"));
@@ -204,23 +213,35 @@ TEST_F(UploadTest, aClientThatAsksFirstIsToldToGoOn) {
   EXPECT_EQ(client.receive().status, 201u);
 }
 
-TEST_F(UploadTest, aBodyThatDoesNotComeEndsInTime) {
+TEST_F(UploadTest, aClientOfHttp10IsToldNothingBeforehand) {
   RawClient client(server_.port());
+  client.send("PUT /v1/meshes/new HTTP/1.0\r\nAuthorization: Bearer " + std::string(kToken) + "\r\nContent-Length: " + std::to_string(log_.size()) +
+              "\r\nExpect: 100-continue\r\n\r\n" + log_);
+  EXPECT_EQ(client.receive().status, 201u);
+}
+
+TEST_F(UploadTest, aConditionOnASecondLineCounts) {
+  EXPECT_EQ(put("/v1/meshes/noise", log_, "If-None-Match: \"other\"\r\nIf-None-Match: *\r\n").status, 412u);
+}
+
+TEST_F(UploadTest, aBodyThatDoesNotComeEndsInTime) {
+  test::RunningServer hasty(*store_, folder_.viewer(), {.timeouts = {.body = test::kShort}, .access = &access_});
+  RawClient client(hasty.port());
   client.send(head("PUT", "/v1/meshes/new", log_.size()) + "abc");
   EXPECT_EQ(client.receive().status, 408u);
   EXPECT_TRUE(client.closedByServer());
   EXPECT_EQ(leftovers(), 0u);
 }
 
-TEST_F(UploadTest, thereAreAsManyUploadsAsTheLimitAllowsAndOneOfADigest) {
+TEST_F(UploadTest, thereAreAsManyUploadsAsTheLimitAllowsAndOneOfANameAndDigest) {
   std::vector<std::unique_ptr<RawClient>> clients;
   for (std::size_t i = 0; i < limits::kMaxUploads; ++i) {
     clients.push_back(std::make_unique<RawClient>(server_.port()));
     const std::string digest = i == 0 ? "?digest=" + digestOf(log_) : "";
     clients.back()->send(head("PUT", "/v1/meshes/new" + std::to_string(i) + digest, log_.size()) + log_.substr(0, 10));
   }
-  std::this_thread::sleep_for(test::kQuiet);
-  EXPECT_EQ(put("/v1/meshes/new9?digest=" + digestOf(log_), log_).status, 409u);
+  EXPECT_TRUE(server_.comesTo("uploads_open", limits::kMaxUploads));
+  EXPECT_EQ(put("/v1/meshes/new0?digest=" + digestOf(log_), log_).status, 409u);
   const HttpResponse refused = put("/v1/meshes/new9", log_);
   EXPECT_EQ(refused.status, 503u);
   EXPECT_EQ(refused.header("retry-after"), "2");
@@ -233,36 +254,37 @@ TEST_F(UploadTest, thereAreAsManyUploadsAsTheLimitAllowsAndOneOfADigest) {
 TEST(Uploads, whatAKilledServerLeftIsSweptUnlessItCanBeGoneOnWith) {
   const test::ServedFolder folder;
   const std::string digest(64, 'a');
-  const fs::path resumable = folder.logFolder() / (".upload-" + digest + ".part"), lost = folder.logFolder() / ".upload-12.0.part";
+  const fs::path resumable = folder.logFolder() / (".upload-" + digest + "-wing.part"), lost = folder.logFolder() / ".upload-12.0.part";
   for (const fs::path& path : {resumable, lost}) std::ofstream(path) << "half";
   Uploads uploads(folder.store(), 100);
   uploads.sweep();
   EXPECT_TRUE(fs::exists(resumable));
   EXPECT_FALSE(fs::exists(lost));
-  EXPECT_EQ(uploads.partialBytes(digest), 4u);
-  EXPECT_EQ(uploads.partialBytes("../../etc/passwd"), std::nullopt);
+  EXPECT_EQ(uploads.partialBytes("wing", digest), 4u);
+  EXPECT_EQ(uploads.partialBytes("other", digest), std::nullopt);
+  EXPECT_EQ(uploads.partialBytes("wing", "../../etc/passwd"), std::nullopt);
   fs::last_write_time(resumable, fs::file_time_type::clock::now() - limits::kPartialUploadTime - std::chrono::minutes(1));
   uploads.sweep();
   EXPECT_FALSE(fs::exists(resumable));
 }
 
-TEST(Tokens, linesAreReadAndWrongOnesNamed) {
-  const std::string token(22, 't');
-  const auto tokens = Tokens::parse("# who\n\nwrite lab-* " + token + "\nwrite x sha256:" + sha256Hex(ByteView()) + "\n");
-  ASSERT_TRUE(tokens) << tokens.error().message;
-  EXPECT_EQ(tokens->mayWrite("Bearer " + token, "lab-1"), Tokens::Verdict::kAllowed);
-  EXPECT_EQ(tokens->mayWrite("Bearer " + token, "other"), Tokens::Verdict::kForbidden);
-  EXPECT_EQ(tokens->mayWrite("Bearer " + token + "x", "lab-1"), Tokens::Verdict::kUnknown);
-  EXPECT_EQ(tokens->mayWrite(std::nullopt, "lab-1"), Tokens::Verdict::kUnknown);
-  EXPECT_EQ(tokens->mayWrite("Bearer ", "x"), Tokens::Verdict::kUnknown) << "the empty token is none, even if its digest stands there";
-  for (const std::string& wrong : {"read * " + token, std::string("write *"), "write * " + std::string(21, 't'), std::string("write * sha256:12"),
-                                   "write * " + token + " more"}) {
-    const auto refused = Tokens::parse("# first\n" + wrong);
-    ASSERT_FALSE(refused) << wrong;
-    EXPECT_EQ(refused.error().code, ErrorCode::kBadValue);
-    EXPECT_NE(refused.error().message.find("line 2"), std::string::npos);
-    EXPECT_EQ(refused.error().message.find(token), std::string::npos) << "no token in a log";
-  }
+TEST(Uploads, aServerThatRunsForYearsKeepsNoOldParts) {
+  const test::ServedFolder folder;
+  const auto old = fs::file_time_type::clock::now() - limits::kPartialUploadTime - std::chrono::minutes(1);
+  const fs::path lost = folder.logFolder() / ".upload-12.0.part", resumable = folder.logFolder() / (".upload-" + std::string(64, 'a') + "-wing.part");
+  const fs::path others = folder.logFolder() / ".upload-13.0.part", young = folder.logFolder() / (".upload-" + std::string(64, 'b') + "-wing.part");
+  for (const fs::path& path : {lost, resumable, others, young}) std::ofstream(path) << "half";
+  for (const fs::path& path : {lost, resumable}) fs::last_write_time(path, old);
+  Uploads uploads(folder.store(), 100);
+  const auto begin = [&](char digit) { return uploads.begin({.id = "wing", .digest = std::string(64, digit), .bodyBytes = 4, .totalBytes = 4}); };
+  const auto first = begin('c');
+  ASSERT_TRUE(first);
+  for (const fs::path& path : {lost, resumable}) EXPECT_FALSE(fs::exists(path)) << path;
+  for (const fs::path& path : {others, young}) EXPECT_TRUE(fs::exists(path)) << path;
+  const fs::path underWay = folder.logFolder() / (".upload-" + std::string(64, 'c') + "-wing.part");
+  fs::last_write_time(underWay, old);
+  ASSERT_TRUE(begin('d'));
+  EXPECT_TRUE(fs::exists(underWay)) << "somebody is sending it";
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "codec/log_writer.h"
+#include "simplify/band_nodes.h"
 #include "simplify/kd_tree.h"
 #include "simplify/qtetfusion.h"
 #include "tests/support/meshes.h"
@@ -103,6 +104,23 @@ TEST_F(BandsOfAGrid, aMeshOfOneLeafHasNoBands) {
   const auto stream = simplify(mesh_, options_);
   ASSERT_TRUE(stream);
   EXPECT_EQ(encodeLog(*history, {})->bytes, encodeLog(*stream, {})->bytes);
+}
+
+TEST(BandNodes, aBoundaryTriangleFindsItsCellAlsoAtAHubOfAMillionCells) {
+  const LatticeMesh mesh = testing::fanMesh(500'000);
+  const FusionMesh live(mesh);
+  BandNodes nodes(live, mesh, 1000);
+  nodes.begin(live);
+  EXPECT_FALSE(nodes.allows(0, 1)) << "the axis belongs to every node";
+  const Bands bands = nodes.take();
+  ASSERT_EQ(bands.leaf.size(), mesh.tetrahedra.size() + mesh.boundary.size());
+  for (std::size_t b = 0; b < mesh.boundary.size(); b += 997) {
+    const auto isBehind = [&](const Tetrahedron& t) {
+      return std::ranges::all_of(mesh.boundary[b], [&](VertexId v) { return std::ranges::find(t, v) != t.end(); });
+    };
+    const auto behind = std::ranges::find_if(mesh.tetrahedra, isBehind);
+    EXPECT_EQ(bands.leaf[mesh.tetrahedra.size() + b], bands.leaf[static_cast<std::size_t>(behind - mesh.tetrahedra.begin())]);
+  }
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 
 #include "simplify/cell_mesh.h"
 #include "simplify/cell_shapes.h"
+#include "simplify/higher_cells.h"
 #include "simplify/tet_mesh.h"
 #include "simplify/volume_sign.h"
 
@@ -138,6 +139,57 @@ inline CellMesh curved(const CellMesh& linear, std::uint8_t type) {
     }
     if (places.centre != kNoNode) ids[places.centre] = addCentre(out, c);
     out.addCell(type, ids);
+  }
+  return out;
+}
+
+/// The Lagrange cell with a linear one's corners.
+inline std::uint8_t lagrangeOf(std::uint8_t linear) {
+  return linear == kTetrahedronCell ? kLagrangeTetrahedronCell : linear == kWedgeCell ? kLagrangeWedgeCell : linear == kPyramidCell ? kLagrangePyramidCell : kLagrangeHexahedronCell;
+}
+
+/// Linear cells with the nodes of a Lagrange or Bezier cell of `degree`, evenly spaced; neighbours share them. Without a type: Lagrange cells, each of its own kind.
+inline CellMesh higher(const CellMesh& linear, int degree, std::uint8_t type = 0) {
+  CellMesh out = pointsOf(linear);
+  std::map<std::map<VertexId, int>, VertexId> nodes;  // by how often each corner counts
+  const auto nodeOf = [&](std::map<VertexId, int> weights) {
+    if (weights.size() == 1) return weights.begin()->first;
+    int divisor = 0;
+    for (const auto& [corner, weight] : weights) divisor = std::gcd(divisor, weight);
+    for (auto& [corner, weight] : weights) weight /= divisor;
+    const auto [at, isNew] = nodes.try_emplace(weights, static_cast<VertexId>(out.points.size()));
+    if (!isNew) return at->second;
+    Position p{};
+    double sum = 0;
+    for (const auto& [corner, weight] : weights) sum += weight;
+    for (const auto& [corner, weight] : weights)
+      for (std::size_t c = 0; c < 3; ++c) p[c] += weight / sum * out.points[corner][c];
+    out.points.push_back(p);
+    return at->second;
+  };
+  for (std::size_t cell = 0; cell < linear.cells(); ++cell) {
+    const auto c = linear.cell(cell);
+    const std::uint8_t own = type != 0 ? type : lagrangeOf(linear.types[cell]);
+    const std::size_t corners = shapeOf(own).corners;
+    const HigherCell& shape = higherCell(own, {degree, degree, degree});
+    std::vector<VertexId> ids;
+    for (const auto& [i, j, k] : shape.places) {
+      std::map<VertexId, int> weights;
+      const auto add = [&](std::size_t corner, int weight) {
+        if (weight > 0) weights[c[corner]] += weight;
+      };
+      const std::array<int, 3> across{degree - i - j, i, j};
+      for (std::size_t v = 0; v < corners; ++v) {
+        const bool right = v % 4 == 1 || v % 4 == 2, back = v % 4 >= 2;
+        if (corners == 4) add(v, v == 0 ? degree - i - j - k : v == 1 ? i : v == 2 ? j : k);
+        else if (corners == 5 && v == 4) add(v, k == degree ? 1 : k * (degree - k));
+        else if (corners == 5) add(v, (right ? i : degree - k - i) * (back ? j : degree - k - j));
+        else if (corners == 6) add(v, across[v % 3] * (v < 3 ? degree - k : k));
+        else add(v, (right ? i : degree - i) * (back ? j : degree - j) * (v >= 4 ? k : degree - k));
+      }
+      ids.push_back(nodeOf(weights));
+    }
+    out.addCell(own, ids);
   }
   return out;
 }

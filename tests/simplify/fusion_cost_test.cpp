@@ -108,6 +108,28 @@ TEST(FusionCost, leavesOutConstantFieldsAndThoseOfNoWeight) {
   EXPECT_EQ(FusionCost(live, mesh, {}).components(), 3u) << "a constant field says nothing";
 }
 
+// Edges have a kernel of their own, which takes components two at a time; valuesAt sums one vertex after the other.
+TEST(FusionCost, anEdgesQuadricIsTheSumOfItsVertices) {
+  const LatticeMesh mesh = gridMesh(4, 5);
+  const FusionMesh live(mesh);
+  for (const std::vector<double>& weights : {std::vector<double>{1, 0}, {0, 1}, {1, 1}, {0, 0}}) {
+    CostOptions options;
+    options.fieldWeights = weights;
+    const FusionCost cost(live, mesh, options);
+    std::vector<double> values(cost.components());
+    std::size_t same = 0;
+    for (const Tetrahedron& t : mesh.tetrahedra) {
+      const Prey edge{2, {t[0], t[1], 0, 0}};
+      const LatticePoint p = middle(std::array{mesh.points[t[0]], mesh.points[t[1]]});
+      const double whole = cost.valuesAt(edge, p, values);
+      const double ofEdge = cost.of(edge).quadric.at(toVector(p) - toVector(mesh.points[t[0]]));
+      ASSERT_LE(ofEdge, whole * (1 + 1e-9)) << "values that the fields cannot hold cost more";
+      same += std::abs(ofEdge - whole) <= 1e-9 * whole;
+    }
+    EXPECT_GT(10 * same, 7 * mesh.tetrahedra.size()) << cost.components() << " components";
+  }
+}
+
 // Whatever the order in which quadrics are moved and summed, they are those of the union (Eq. 4).
 TEST(FusionCost, aFusedVertexCarriesThePreysQuadrics) {
   const LatticeMesh mesh = gridMesh(4, 3);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "simplify/full_link_test.h"
 #include "simplify/qtetfusion.h"
@@ -100,7 +101,12 @@ TEST(FusionTest, measuresShapeAndRefusesFlips) {
     ++inner;
     EXPECT_GT(test.oldShape(), 0.1);
     EXPECT_LE(test.oldShape(), 1);
-    EXPECT_LE(test.shapeAt(mesh.points[v]), 1);
+    const double shape = test.shapeAt(mesh.points[v]);
+    EXPECT_LE(shape, 1);
+    EXPECT_EQ(test.shapeAt(mesh.points[v], 0.99 * shape), shape);
+    EXPECT_LT(test.shapeAt(mesh.points[v], 1.01 * std::abs(shape) + 0.01), 0) << "worse than what was asked for";
+    EXPECT_FALSE(test.flipsAt(v, mesh.points[v]));
+    EXPECT_TRUE(test.flipsAt(v, {-1000, -1000, -1000}));
     EXPECT_LT(test.shapeAt({-1000, -1000, -1000}), 0) << "far outside the star every cell on this side flips";
   }
   EXPECT_GT(inner, 0u);

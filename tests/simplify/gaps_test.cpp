@@ -142,5 +142,22 @@ TEST(Gaps, anEveryBlockOfNoiseIsDecodedOrRefused) {
   }
 }
 
+// A cell after the other would look at all of them: a thousand thousand million looks.
+TEST(FillGaps, aCellFieldIsFilledInLinearTimeWhereAMillionCellsMeet) {
+  constexpr std::uint32_t kCells = 1'000'000;
+  std::vector<Tetrahedron> cells;
+  for (std::uint32_t i = 0; i < kCells; ++i) cells.push_back({0, 3 * i + 1, 3 * i + 2, 3 * i + 3});
+  cells.push_back({3, 3 * kCells + 1, 3 * kCells + 2, 3 * kCells + 3});  // behind the first of them
+  FieldInfo field;
+  field.association = "cell";
+  std::vector<std::int32_t> values(cells.size(), 7);
+  std::vector<std::uint8_t> gaps(cells.size());
+  for (const std::size_t gap : {std::size_t{5}, std::size_t{kCells}}) gaps[gap] = 1, values[gap] = 0;
+  values[0] = 9;
+  fillGaps(cells, field, gaps, values);
+  EXPECT_EQ(values[5], 9) << "the first cell round the point they share";
+  EXPECT_EQ(values[kCells], 9);
+}
+
 }  // namespace
 }  // namespace qtet

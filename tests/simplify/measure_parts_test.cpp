@@ -87,6 +87,40 @@ TEST(TriangleTree, findsTheNearestAlsoAfterTheSurfaceHasMovedAndShrunk) {
   }
 }
 
+/// The boundary of a fan of `n` tetrahedra: two cones of long thin triangles with one rim.
+Soup fan(std::uint32_t n) {
+  const LatticeMesh mesh = testing::fanMesh(n);
+  Soup out(0);
+  out.points = mesh.points;
+  for (const Triangle& t : mesh.boundary) out.cells.push_back({t[0], t[1], t[2], kGhost});
+  out.ids.resize(out.cells.size());
+  std::iota(out.ids.begin(), out.ids.end(), 0u);
+  return out;
+}
+
+TEST(TriangleTree, aFanOfThinTrianglesIsSearchedInPart) {
+  Soup soup = fan(20000);
+  std::vector<std::uint8_t> live(soup.cells.size(), 1);
+  TriangleTree tree(soup.points, soup.cells, soup.ids);
+  for (int round = 0; round < 2; ++round) {
+    const std::vector<Sample> places = samplesOnSurface(soup.points, soup.cells, soup.ids, 200, 3);
+    std::size_t looked = 0;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const Vector3 p = places[i].at + Vector3{0, 0, i % 2 == 0 ? 0.0 : 2000.0};
+      NearestTriangle best;
+      looked += tree.nearest(p, best);
+      if (i % 10 == 0) {
+        EXPECT_EQ(best.point.squared, soup.bruteForce(p, live));
+      }
+    }
+    EXPECT_LT(looked / places.size(), 300u) << "nodes a search";
+    for (std::size_t i = 0; i < live.size(); i += 3) live[i] = 0;
+    for (LatticePoint& point : soup.points) point[0] += point[1] / 4;
+    tree.refit(live);
+    std::erase_if(soup.ids, [&](std::uint32_t id) { return live[id] == 0; });
+  }
+}
+
 TEST(TriangleTree, aBetterGuessStays) {
   Soup soup(50);
   const TriangleTree tree(soup.points, soup.cells, soup.ids);

@@ -1,12 +1,16 @@
 // Gmsh, Medit, TetGen and SU2: what other programs write, what these tests write, and what damage makes of it.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <bit>
 #include <cmath>
 #include <cstring>
 #include <functional>
+#include <unordered_map>
 
 #include "simplify/clean_mesh.h"
+#include "simplify/gmsh_elements.h"
+#include "simplify/higher_cells.h"
 #include "simplify/mesh_scanner.h"
 #include "simplify/read_mesh.h"
 #include "tests/simplify/cell_grids.h"
@@ -235,6 +239,14 @@ void expectTheSample(const Result<CellMesh>& read, double precision = 0) {
   EXPECT_EQ(read->begins, wanted.begins);
 }
 
+/// One tetrahedron with a reference, as Medit writes it and as Gmsh does.
+std::string meditText(const std::string& reference) {
+  return "MeshVersionFormatted 2\nDimension 3\nVertices\n4\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 " + reference + "\nTetrahedra\n1\n1 2 3 4 " + reference + "\nEnd\n";
+}
+std::string gmshText(const std::string& group) {
+  return "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$EndNodes\n$Elements\n1\n1 4 2 " + group + " 1 1 2 3 4\n$EndElements\n";
+}
+
 TEST(ReadGmsh, textAndBytesOfBothVersionsGiveOneMesh) {
   for (const bool bytes : {false, true}) {
     for (const std::string& text : {gmsh41(bytes), gmsh22(bytes)}) {
@@ -279,6 +291,65 @@ TEST(ReadGmsh, gmshsOwnSecondOrderNodesLieWhereVtkHasThem) {
   }
 }
 
+/// A node's place in a straight cell, from its corners.
+Position placedIn(const CellMesh& mesh, std::size_t cell, int n, const NodePlace& place) {
+  const auto c = mesh.cell(cell);
+  const double x = place[0], y = place[1], z = place[2], side = n - z;
+  std::vector<double> weights;
+  if (mesh.types[cell] == kLagrangeTetrahedronCell) weights = {n - x - y - z, x, y, z};
+  else if (mesh.types[cell] == kLagrangeWedgeCell) weights = {(n - x - y) * (n - z), x * (n - z), y * (n - z), (n - x - y) * z, x * z, y * z};
+  else if (mesh.types[cell] == kLagrangePyramidCell) weights = {(side - x) * (side - y), x * (side - y), x * y, (side - x) * y, side > 0 ? z * side : 1};
+  else weights = {(n - x) * (n - y) * side, x * (n - y) * side, x * y * side, (n - x) * y * side, (n - x) * (n - y) * z, x * (n - y) * z, x * y * z, (n - x) * y * z};
+  Position out{};
+  double sum = 0;
+  for (const double weight : weights) sum += weight;
+  for (std::size_t v = 0; v < weights.size(); ++v)
+    for (std::size_t k = 0; k < 3; ++k) out[k] += weights[v] / sum * mesh.points[c[v]][k];
+  return out;
+}
+
+// A hexahedron, a pyramid on it, a tetrahedron on each of its sides, and a prism beside the hexahedron, which Gmsh gave its nodes (SetOrder).
+TEST(ReadGmsh, gmshsOwnNodesOfHigherDegreesLieWhereTheyBelong) {
+  for (const int degree : {3, 4}) {
+    const fs::path path = fs::path(QTET_SOURCE_DIR) / "tests/simplify/meshes" / ("gmsh-mixed" + std::to_string(degree) + ".msh");
+    const Result<CellMesh> read = cellsIn(path);
+    ASSERT_TRUE(read) << read.error().text();
+    ASSERT_EQ(read->cells(), 7u);
+    for (std::size_t i = 0; i < read->cells(); ++i) {
+      const HigherCell& shape = higherCell(read->types[i], {degree, degree, degree});
+      ASSERT_EQ(read->cell(i).size(), shape.places.size());
+      for (std::size_t node = 0; node < shape.places.size(); ++node) {
+        const Position expected = placedIn(*read, i, degree, shape.places[node]);
+        for (std::size_t k = 0; k < 3; ++k)
+          EXPECT_NEAR(read->points[read->cell(i)[node]][k], expected[k], 1e-9) << cellTypeName(read->types[i]) << " of degree " << degree << ", node " << node;
+      }
+    }
+    const Result<ReadMesh> mesh = readMesh(path);
+    ASSERT_TRUE(mesh);
+    const auto filled = filledBy(mesh->mesh);
+    EXPECT_EQ(mesh->mesh.tetrahedra.size(), static_cast<std::size_t>((6 + 2 + 4 + 3) * degree * degree * degree));
+    EXPECT_EQ(filled.notPositive + filled.openEdges + filled.facesOfMore, 0u);
+  }
+}
+
+TEST(ReadGmsh, everyCompleteElementOfHigherDegreeIsKnown) {
+  for (const auto& [first, type, lowest, highest] : {std::tuple{29, kLagrangeTetrahedronCell, 3, 5}, std::tuple{71, kLagrangeTetrahedronCell, 6, 10}, std::tuple{90, kLagrangeWedgeCell, 3, 4},
+                                                     std::tuple{106, kLagrangeWedgeCell, 5, 9}, std::tuple{92, kLagrangeHexahedronCell, 3, 9}, std::tuple{118, kLagrangePyramidCell, 3, 9}}) {
+    for (int degree = lowest; degree <= highest; ++degree) {
+      const GmshElement element = gmshElement(first + degree - lowest);
+      EXPECT_EQ(element.type, type);
+      ASSERT_EQ(element.nodes, higherCell(type, {degree, degree, degree}).places.size());
+      std::vector<std::uint16_t> nodes(element.nodeOf.begin(), element.nodeOf.end());
+      std::ranges::sort(nodes);
+      for (std::size_t i = 0; i < nodes.size(); ++i) ASSERT_EQ(nodes[i], i) << "type " << first + degree - lowest;
+    }
+  }
+  EXPECT_EQ(gmshElement(42).nodes, 28u);   // a triangle
+  EXPECT_EQ(gmshElement(51).nodes, 121u);  // a quadrilateral
+  EXPECT_EQ(gmshElement(66).nodes, 11u);   // a line
+  for (const int number : {0, 32, 52, 99, 105, 111, 117, 125, 131, 132, 140}) EXPECT_EQ(gmshElement(number).nodes, 0u) << number;
+}
+
 TEST(ReadGmsh, whatIsWrongIsSaidWithItsLine) {
   const auto refused = [](std::string text, const std::string& from, const std::string& to, ErrorCode code, const std::string& word) {
     const std::size_t at = text.find(from);
@@ -293,7 +364,7 @@ TEST(ReadGmsh, whatIsWrongIsSaidWithItsLine) {
   refused(gmsh22(false), "$Nodes\n15", "$Nodes\n99999999999", ErrorCode::kTruncated, "99999999999 nodes are announced, but only");
   refused(gmsh22(false), "$Nodes\n15", "$Nodes\n14", ErrorCode::kBadInput, "$EndNodes should stand here");
   refused(gmsh22(false), "$Nodes\n15", "$Nodes\nfifteen", ErrorCode::kBadInput, "line 5: 'fifteen' stands where the number of nodes should");
-  refused(gmsh22(false), "1000 2 2", "1000 94 2", ErrorCode::kBadInput, "elements of type 94");
+  refused(gmsh22(false), "1000 2 2", "1000 99 2", ErrorCode::kBadInput, "elements of type 99");
   refused(gmsh22(false), "$MeshFormat", "$Mesh", ErrorCode::kBadInput, "does not begin with $MeshFormat");
   refused(gmsh22(false), "9 4 5 8 17", "9 4 6 8 17", ErrorCode::kBadInput, "cell 0 is a hexahedron without 8 vertices among the 15 points");
   refused(gmsh22(false), "\n11 2 0 0.1", "\n8 2 0 0.1", ErrorCode::kBadInput, "line 8: two nodes have the number 8");
@@ -320,11 +391,41 @@ TEST(ReadGmsh, stepsOfOneFieldAreCalledByTheirTimes) {
   ASSERT_NE(at, std::string::npos);
   std::string later = text.substr(at);
   later.replace(0, from.size(), "$NodeData\n1\n\"p\"\n1\n12.25");
-  const Result<CellMesh> read = cellsIn(fileWith("steps.msh", text + later));
-  expectTheSample(read);
-  std::vector<std::string> names;
-  for (const MeshField& field : read->fields) names.push_back(field.name);
-  EXPECT_EQ(names, (std::vector<std::string>{"p@0.5", "v@0.5", "p@12.25", "v@0.5-2", "gmsh:physical"}));
+  const fs::path file = fileWith("steps.msh", text + later);
+  const auto names = [&](const std::string& time) {
+    ReadOptions options;
+    options.time = time;
+    ReadReport report;
+    const Result<CellMesh> read = readCells(file, options, report);
+    const bool told = std::ranges::any_of(report.notes, [](const std::string& note) { return note.find("of its 2 time steps the last is read, 12.25") != std::string::npos; });
+    EXPECT_EQ(told, time == "last") << time;
+    std::vector<std::string> out;
+    if (!read) return std::vector<std::string>{errorCodeName(read.error().code)};
+    for (const MeshField& field : read->fields) out.push_back(field.name);
+    return out;
+  };
+  expectTheSample(cellsIn(file));
+  EXPECT_EQ(names("all"), (std::vector<std::string>{"p@0.5", "v@0.5", "p@12.25", "v@0.5-2", "gmsh:physical"}));
+  EXPECT_EQ(names("last"), (std::vector<std::string>{"p", "gmsh:physical"}));
+  EXPECT_EQ(names("12.25"), names("last"));
+  EXPECT_EQ(names("first"), (std::vector<std::string>{"p", "v", "v-2", "gmsh:physical"}));
+  EXPECT_EQ(names("3"), (std::vector<std::string>{"not-found"}));
+}
+
+TEST(ReadGmsh, ofFieldsOfOneTimeNoOtherCanBeAskedFor) {
+  const fs::path path = fileWith("once.msh", gmshText("0") + "$NodeData\n1\n\"T\"\n1\n0.5\n3\n0\n1\n1\n1 7\n$EndNodeData\n");
+  ReadOptions options;
+  for (const char* time : {"0.5", "first", "last", "all"}) {
+    options.time = time;
+    const auto mesh = readMesh(path, options);
+    ASSERT_TRUE(mesh) << time << mesh.error().message;
+    EXPECT_EQ(mesh->mesh.fields.front().name, "T");
+    EXPECT_TRUE(mesh->report.notes.empty()) << time;
+  }
+  options.time = "99";
+  const auto none = readMesh(path, options);
+  ASSERT_FALSE(none);
+  EXPECT_NE(none.error().message.find("it has 0.5"), std::string::npos) << none.error().message;
 }
 
 TEST(ReadGmsh, namesThatALogCannotHoldAreReplaced) {
@@ -338,6 +439,20 @@ TEST(ReadGmsh, namesThatALogCannotHoldAreReplaced) {
   }
 }
 
+TEST(ReadGmsh, numbersMayBeMultiplesOfWhatever) {
+  constexpr std::size_t kNodes = 500'000;
+  std::unordered_map<std::uint64_t, std::size_t> table;
+  table.reserve(kNodes);
+  const std::uint64_t step = table.bucket_count();  // all would lie in one bucket, each looked at for each
+  std::string text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" + std::to_string(kNodes) + "\n";
+  for (std::size_t i = 0; i < kNodes; ++i)
+    text += std::to_string((i + 1) * step) + (i == 1 ? " 1 0 0\n" : i == 2 ? " 0 1 0\n" : i == 3 ? " 0 0 1\n" : " 0 0 0\n");
+  text += "$EndNodes\n$Elements\n1\n1 4 0 " + std::to_string(step) + " " + std::to_string(2 * step) + " " + std::to_string(3 * step) + " " + std::to_string(4 * step) + "\n$EndElements\n";
+  const auto mesh = readMesh(fileWith("multiples.msh", text), std::nullopt);
+  ASSERT_TRUE(mesh) << mesh.error().message;
+  EXPECT_EQ(mesh->mesh.tetrahedra, (std::vector<Tetrahedron>{{0, 1, 2, 3}}));
+}
+
 TEST(ReadMedit, textAndBytesOfEveryVersionGiveOneMesh) {
   expectTheSample(cellsIn(fileWith("sample.mesh", medit(false, 2))));
   for (const std::int32_t version : {1, 2, 3, 4}) {
@@ -348,6 +463,36 @@ TEST(ReadMedit, textAndBytesOfEveryVersionGiveOneMesh) {
     EXPECT_EQ(read->fields[0].name, "medit:ref");
     EXPECT_EQ(read->fields[0].values, (std::vector<double>{10, 11, 12, 13}));
   }
+}
+
+TEST(OwnReaders, labelsHaveATypeThatHoldsThem) {
+  for (const auto& [name, text] : {std::pair{"wide.mesh", &meditText}, std::pair{"wide.msh", &gmshText}})
+    for (const auto& [label, type] : {std::pair{2147483647.0, "int32"}, std::pair{-2147483648.0, "int32"}, std::pair{2147483648.0, "int64"}, std::pair{5e9, "int64"}, std::pair{-0x1p53 + 1, "int64"}}) {
+      const auto mesh = readMesh(fileWith(name, text(std::to_string(static_cast<std::int64_t>(label)))), std::nullopt);
+      ASSERT_TRUE(mesh) << mesh.error().message;
+      const MeshField& field = mesh->mesh.fields.back();
+      EXPECT_EQ(field.type, type) << name << label;
+      EXPECT_EQ(field.values, std::vector{label}) << name;
+    }
+}
+
+TEST(OwnReaders, labelsThatADoubleCannotHoldAreRefusedWhereTheyAreAskedFor) {
+  for (const auto& [name, text] : {std::pair{"widest.mesh", &meditText}, std::pair{"widest.msh", &gmshText}}) {
+    const fs::path path = fileWith(name, text("9007199254740993"));
+    const auto mesh = readMesh(path, std::nullopt);
+    ASSERT_FALSE(mesh) << name;
+    EXPECT_EQ(mesh.error().code, ErrorCode::kBadInput);
+    EXPECT_NE(mesh.error().message.find("2^53"), std::string::npos) << mesh.error().message;
+    EXPECT_TRUE(readMesh(path, std::vector<std::string>{})) << name;
+  }
+}
+
+TEST(ReadMesh, aPipeIsNotWaitedFor) {
+  const fs::path pipe = testing::freshFolder("pipe") / "pipe.inp";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const auto mesh = readMesh(pipe, std::nullopt);
+  ASSERT_FALSE(mesh);
+  EXPECT_EQ(mesh.error().code, ErrorCode::kIo);
 }
 
 TEST(ReadSu2, volumeElementsAreRead) {

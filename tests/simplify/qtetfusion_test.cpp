@@ -263,8 +263,7 @@ TEST(Fused, whatIsSingularStays) {
   EXPECT_EQ(eulerCharacteristics(meshOfHistory(*history, 0)), eulerCharacteristics(mesh));
 }
 
-TEST(Fused, theNumberOfThreadsDecidesNothing) {
-  const LatticeMesh mesh = gridMesh(10, 4, [](int i, int j, int) { return i != 3 || j != 4; });
+void expectTheSameOfAnyNumberOfThreads(const LatticeMesh& mesh) {
   const auto one = simplify(mesh, {});
   ASSERT_TRUE(one);
   for (const int threads : {2, 5}) {
@@ -278,6 +277,18 @@ TEST(Fused, theNumberOfThreadsDecidesNothing) {
     EXPECT_EQ(several->affectedCells, one->affectedCells);
     EXPECT_EQ(several->affectedLabels, one->affectedLabels);
     EXPECT_EQ(several->levels, one->levels);
+  }
+}
+
+TEST(Fused, theNumberOfThreadsDecidesNothing) {
+  expectTheSameOfAnyNumberOfThreads(gridMesh(10, 4, [](int i, int j, int) { return i != 3 || j != 4; }));
+}
+
+// Where nearly all is boundary the envelope makes most fusions dearer than their keys, so that owners come back to the queue.
+TEST(Fused, theNumberOfThreadsDecidesNothingWhereAllIsBoundary) {
+  for (std::uint32_t seed = 1; seed <= 2; ++seed) {
+    expectTheSameOfAnyNumberOfThreads(gridMesh(40, seed, [](int, int, int k) { return k < 1; }));
+    expectTheSameOfAnyNumberOfThreads(gridMesh(24, seed, [](int i, int j, int k) { return i % 4 < 3 && j % 4 < 3 && k < 4; }));
   }
 }
 

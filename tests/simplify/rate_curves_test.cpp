@@ -109,7 +109,7 @@ TEST(RateCurves, aStepOfTheLadderIsTheMeshAlone) {
   const FusionHistory history = simplify(quantise(boxSample()).value().mesh, nothing).value();
   const auto alone = static_cast<double>(encodeLog(history, {}).value().bytes.size());
   const RateCurve ladder = ladderCurve(boxLog()).value();
-  EXPECT_NEAR(ladder[3].bytes - ladder[2].bytes, alone, 0.05 * alone);  // the same cells in another order
+  EXPECT_NEAR(ladder[3].bytes - ladder[2].bytes, alone, 0.1 * alone);  // the same cells in another order
 }
 
 TEST(RateCurves, aLogWithoutKnownErrorsIsRefused) {

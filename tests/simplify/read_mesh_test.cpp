@@ -215,6 +215,7 @@ TEST(ReadMesh, cellsWithTooFewVerticesAreRefused) {
 
 TEST(ReadMesh, unknownCellTypesAreRefused) {
   EXPECT_EQ(refused("type.vtu", asciiVtu(kFourPoints, "0 1 2 3", "4", "200", 4, 1), "type 200"), ErrorCode::kBadInput);
+  EXPECT_EQ(refused("pyramid.vtu", asciiVtu(kFourPoints, "0 1 2 3", "4", "74", 4, 1), "VTK defines no order"), ErrorCode::kBadInput);
 }
 
 TEST(ReadMesh, aMeshWithoutTetrahedraIsRefused) {
@@ -263,6 +264,21 @@ TEST(ReadMesh, whatIsNoVtkFileIsRefused) {
   EXPECT_EQ(refused("image.vtu", "<VTKFile type=\"ImageData\"></VTKFile>", "'ImageData'"), ErrorCode::kBadInput);
   EXPECT_EQ(refused("image.vtk", "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\n", "UNSTRUCTURED_GRID"),
             ErrorCode::kBadInput);
+}
+
+TEST(ReadMesh, theRootsTypeIsFoundWhereverItStands) {
+  const std::string whole = oneCellVtu("");
+  const std::string before = "<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" byte_order=\"LittleEndian\">";
+  const std::size_t at = whole.find(before);
+  ASSERT_NE(at, std::string::npos);
+  for (const char* root : {"<VTKFile byte_order=\"LittleEndian\" header_type=\"UInt32\" type=\"UnstructuredGrid\" version=\"0.1\">",
+                           "<VTKFile type = \"UnstructuredGrid\" version='0.1' byte_order=\"LittleEndian\">",
+                           "<VTKFile\n  version='0.1'\n  type='UnstructuredGrid'\tbyte_order=\"LittleEndian\" >"}) {
+    const auto read = readMesh(fileWith("root.vtu", std::string(whole).replace(at, before.size(), root)));
+    EXPECT_TRUE(read) << root << read.error().message;
+  }
+  for (const char* root : {"<VTKFile header_type=\"UnstructuredGrid\">", "<VTKFile", "<VTKFile type", "<VTKFile type=", "<VTKFile type=\"UnstructuredGrid", "<VTKFile comment=\" type='UnstructuredGrid'\">"})
+    EXPECT_EQ(refused("root.vtu", std::string(root) + "</VTKFile>", "type ''"), ErrorCode::kBadInput) << root;
 }
 
 TEST(ReadMesh, aVtuCutAnywhereIsRefused) {

@@ -19,6 +19,7 @@ using testing::curved;
 using testing::Filled;
 using testing::filledBy;
 using testing::hexGrid;
+using testing::higher;
 using testing::mixed;
 
 TetMesh splitOf(CellMesh mesh, SplitReport& report, CurvedCells how = CurvedCells::kSplit) {
@@ -72,6 +73,30 @@ TEST(SplitCells, hexahedraAndPolyhedraAgreeOnTheFacesBetweenThem) {
     CellMesh both = testing::pointsOf(hexes);
     for (std::size_t i = 0; i < hexes.cells(); ++i) i % 2 ? both.addCell(kHexahedronCell, hexes.cell(i)) : both.addCell(kPolyhedronCell, polyhedra.cell(i));
     expectACube(splitOf(both), 6 * 9 * 2);
+  }
+}
+
+TEST(SplitCells, theShellsOfAPolyhedronWithAHoleAreTurnedEachByItself) {
+  // A cube of side 4 with a hole of side 1: whatever senses the faces are stored in, what is left is 64 - 1.
+  for (std::uint32_t turned = 0; turned < 4096; turned += 273) {
+    CellMesh mesh;
+    mesh.pointType = "float64";
+    std::vector<VertexId> stream{12};
+    std::uint32_t face = 0;
+    for (const double side : {1.0, 4.0}) {
+      const auto first = static_cast<VertexId>(mesh.points.size());
+      for (const Position& p : hexGrid(1, 1, 0).points) mesh.points.push_back({side * (p[0] - 0.5), side * (p[1] - 0.5), side * (p[2] - 0.5)});
+      const CellMesh cube = hexGrid(1, 1, 0);
+      for (const ShapeFace& shape : shapeOf(kHexahedronCell).faces) {
+        std::vector<VertexId> loop;
+        for (std::size_t k = 0; k < 4; ++k) loop.push_back(first + cube.cell(0)[shape.corner[k]]);
+        if (turned >> face++ & 1) std::ranges::reverse(loop);
+        stream.push_back(4);
+        stream.insert(stream.end(), loop.begin(), loop.end());
+      }
+    }
+    mesh.addCell(kPolyhedronCell, stream);
+    EXPECT_NEAR(filledBy(splitOf(mesh)).volume, 63, 1e-9) << turned;
   }
 }
 
@@ -153,19 +178,151 @@ TEST(SplitCells, linearisedCurvedCellsKeepTheirCornersAlone) {
   EXPECT_EQ(mesh.points.size(), 64 + report.centrePoints);
 }
 
-TEST(SplitCells, cellsOfHigherDegreeAreLinearisedOnRequestAlone) {
+TEST(SplitCells, lagrangeAndBezierCellsAreSplitAtAllOfTheirNodes) {
+  const CellMesh hexes = hexGrid(2, 3), wedges = asWedges(hexes), straight = hexGrid(2, 3, 0);
+  CellMesh tets = testing::pointsOf(straight);
+  for (const Tetrahedron& t : splitOf(straight).tetrahedra) tets.addCell(kTetrahedronCell, t);
+  for (const int degree : {1, 2, 3, 4}) {
+    const auto triangles = static_cast<std::size_t>(6 * 4 * 2 * degree * degree);
+    for (const bool bezier : {false, true}) {
+      SplitReport report;
+      expectACube(splitOf(higher(hexes, degree, bezier ? kBezierHexahedronCell : kLagrangeHexahedronCell), report), triangles);
+      expectACube(splitOf(higher(wedges, degree, bezier ? kBezierWedgeCell : kLagrangeWedgeCell), report), triangles);
+      const TetMesh split = splitOf(higher(tets, degree, bezier ? kBezierTetrahedronCell : kLagrangeTetrahedronCell), report);
+      expectACube(split, triangles);
+      EXPECT_EQ(split.tetrahedra.size(), tets.cells() * static_cast<std::size_t>(degree * degree * degree));
+      EXPECT_EQ(report.insideOut, 0u);
+    }
+  }
+}
+
+TEST(SplitCells, lagrangePyramidsMeetHexahedraAndTetrahedraOfTheirDegree) {
+  const CellMesh hexes = hexGrid(2, 3), both = mixed(hexes);
+  // A cube of six pyramids, of which every second is two tetrahedra.
+  const CellMesh one = hexGrid(1, 4);
+  CellMesh halved = testing::pointsOf(one);
+  const VertexId apex = testing::addCentre(halved, one.cell(0));
+  for (const ShapeFace& face : shapeOf(kHexahedronCell).faces) {
+    const std::array c{one.cell(0)[face.corner[3]], one.cell(0)[face.corner[2]], one.cell(0)[face.corner[1]], one.cell(0)[face.corner[0]]};
+    if (halved.cells() % 3 == 0) {
+      halved.addCell(kPyramidCell, std::array{c[0], c[1], c[2], c[3], apex});
+    } else {
+      halved.addCell(kTetrahedronCell, std::array{c[0], c[1], c[2], apex});
+      halved.addCell(kTetrahedronCell, std::array{c[0], c[2], c[3], apex});
+    }
+  }
+  for (const int degree : {1, 2, 3, 4, 7}) {
+    SplitReport report;
+    expectACube(splitOf(higher(both, degree), report), static_cast<std::size_t>(6 * 4 * 2 * degree * degree));
+    EXPECT_EQ(report.insideOut, 0u);
+    EXPECT_GT(report.cells[kLagrangePyramidCell], 0u);
+    expectACube(splitOf(higher(halved, degree)), static_cast<std::size_t>(6 * 2 * degree * degree));
+    expectACube(splitOf(higher(both, degree), report, CurvedCells::kLinear), 6 * 4 * 2);
+  }
+}
+
+TEST(SplitCells, triquadraticPyramidsMeetTriquadraticHexahedra) {
+  const CellMesh linear = mixed(hexGrid(2, 5));
+  const auto only = [&](std::uint8_t type) {
+    CellMesh out = testing::pointsOf(linear);
+    for (std::size_t i = 0; i < linear.cells(); ++i) {
+      if (linear.types[i] == type) out.addCell(type, linear.cell(i));
+    }
+    return out;
+  };
+  TetMesh hexes = splitOf(curved(only(kHexahedronCell), kTriquadraticHexahedronCell)), pyramids = splitOf(curved(only(kPyramidCell), kTriquadraticPyramidCell));
+  EXPECT_NEAR(filledBy(hexes).volume + filledBy(pyramids).volume, 1, 1e-12);
+  EXPECT_EQ(filledBy(hexes).notPositive + filledBy(pyramids).notPositive, 0u);
+  // The two have the hull of the cube and the faces between them, in the same triangles: each other's points lie at one place.
+  const auto trianglesOf = [](const TetMesh& mesh) {
+    std::map<std::array<Position, 3>, int> out;
+    for (const Tetrahedron& t : mesh.tetrahedra) {
+      for (std::size_t k = 0; k < 4; ++k) {
+        std::array<Position, 3> face{mesh.points[t[(k + 1) % 4]], mesh.points[t[(k + 2) % 4]], mesh.points[t[(k + 3) % 4]]};
+        std::ranges::sort(face);
+        ++out[face];
+      }
+    }
+    std::erase_if(out, [](const auto& entry) { return entry.second != 1; });
+    return out;
+  };
+  const auto a = trianglesOf(hexes), b = trianglesOf(pyramids);
+  const auto shared = std::ranges::count_if(a, [&](const auto& entry) { return b.contains(entry.first); });
+  EXPECT_EQ(static_cast<std::size_t>(shared), (a.size() + b.size() - 6 * 4 * 8) / 2);
+  EXPECT_GT(shared, 0);
+}
+
+TEST(SplitCells, cellsOfSevenNodeTrianglesLeaveTheMiddlesOut) {
+  const CellMesh straight = hexGrid(1, 3, 0), wedges = asWedges(straight);
+  CellMesh tets = testing::pointsOf(straight);
+  for (const Tetrahedron& t : splitOf(straight).tetrahedra) tets.addCell(kTetrahedronCell, t);
+  // A 10-node tetrahedron and an 18-node wedge, with 5 and 3 nodes more among and behind theirs.
+  CellMesh fifteen = testing::curved(tets, kQuadraticTetrahedronCell), twentyOne = testing::curved(wedges, kBiquadraticQuadraticWedgeCell);
+  const auto withMiddles = [](const CellMesh& from, std::uint8_t type, std::size_t first, std::size_t count) {
+    CellMesh out = testing::pointsOf(from);
+    for (std::size_t i = 0; i < from.cells(); ++i) {
+      std::vector<VertexId> ids(from.cell(i).begin(), from.cell(i).end());
+      const VertexId middle = testing::addCentre(out, from.cell(i).first(4));
+      ids.insert(ids.begin() + static_cast<std::ptrdiff_t>(first), count, middle);
+      while (ids.size() < (type == kLagrangeWedgeCell ? 21u : 15u)) ids.push_back(middle);
+      out.addCell(type, ids);
+    }
+    return out;
+  };
+  expectACube(splitOf(withMiddles(fifteen, kLagrangeTetrahedronCell, 10, 5)), 6 * 2 * 4);
+  expectACube(splitOf(withMiddles(twentyOne, kLagrangeWedgeCell, 15, 2)), 4 * 8 + 2 * 8);
+}
+
+TEST(SplitCells, aRationalBezierCellComesToLieOnItsCircles) {
   CellMesh mesh;
-  mesh.points.assign(20, {0, 0, 0});
-  mesh.points[1] = {1, 0, 0}, mesh.points[2] = {0, 1, 0}, mesh.points[3] = {0, 0, 1};
-  std::vector<VertexId> ids(20);
-  std::iota(ids.begin(), ids.end(), 0u);
-  mesh.addCell(kLagrangeTetrahedronCell, ids);
+  mesh.pointType = "float64";
+  const HigherCell& shape = higherCell(kBezierHexahedronCell, {2, 1, 1});  // along a quarter of a ring, across, and up
+  std::vector<VertexId> ids;
+  MeshField degrees{kDegreesField, 3, "uint8", {2, 1, 1}, "cell"}, weights{kWeightsField, 1, "float64", {}, "point"}, x{"x", 1, "float64", {}, "point"};
+  for (const auto& [i, j, k] : shape.places) {
+    const double radius = 2.0 - j;  // so that the cell is not inside out
+    mesh.points.push_back({i < 2 ? radius : 0, i > 0 ? radius : 0, static_cast<double>(k)});
+    weights.values.push_back(i == 1 ? std::sqrt(0.5) : 1);
+    x.values.push_back(mesh.points.back()[0]);
+    ids.push_back(static_cast<VertexId>(ids.size()));
+  }
+  mesh.addCell(kBezierHexahedronCell, ids);
+  mesh.fields = {degrees, weights, x};
   SplitReport report;
+  const TetMesh split = splitOf(mesh, report);
+  ASSERT_EQ(split.points.size(), 12u);
+  for (std::size_t v = 0; v < 12; ++v) {
+    const double radius = std::hypot(split.points[v][0], split.points[v][1]);
+    EXPECT_NEAR(radius, radius > 1.5 ? 2 : 1, 1e-12);
+    EXPECT_NEAR(split.fields[0].values[v], split.points[v][0], 1e-12);
+  }
+  EXPECT_EQ(split.tetrahedra.size(), 12u);
+  EXPECT_EQ(filledBy(split).notPositive, 0u);
+  ASSERT_EQ(split.fields.size(), 2u) << "x and the cells' numbers; the shape's own fields mean nothing of tetrahedra";
+  EXPECT_EQ(split.fields[0].name, "x");
+
+  mesh.fields[1].values[3] = 0;
   const Result<TetMesh> refused = splitCells(CellMesh(mesh), CurvedCells::kSplit, report);
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().code, ErrorCode::kBadInput);
-  EXPECT_NE(refused.error().message.find("--curved linear"), std::string::npos);
-  EXPECT_EQ(splitOf(mesh, report, CurvedCells::kLinear).tetrahedra, (std::vector<Tetrahedron>{{0, 1, 2, 3}}));
+  EXPECT_NE(refused.error().message.find("weight"), std::string::npos);
+}
+
+TEST(SplitCells, aNumberOfNodesThatNoDegreeHasIsLinearisedOnRequestAlone) {
+  CellMesh mesh;
+  mesh.points.assign(19, {0, 0, 0});
+  mesh.points[1] = {1, 0, 0}, mesh.points[2] = {0, 1, 0}, mesh.points[3] = {0, 0, 1};
+  std::vector<VertexId> ids(19);
+  std::iota(ids.begin(), ids.end(), 0u);
+  for (const std::uint8_t type : {kLagrangeTetrahedronCell, kBezierTetrahedronCell}) {
+    CellMesh one = mesh;
+    one.addCell(type, ids);
+    SplitReport report;
+    const Result<TetMesh> refused = splitCells(CellMesh(one), CurvedCells::kSplit, report);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ErrorCode::kBadInput);
+    EXPECT_NE(refused.error().message.find("19 nodes"), std::string::npos);
+    EXPECT_EQ(splitOf(one, report, CurvedCells::kLinear).tetrahedra, (std::vector<Tetrahedron>{{0, 1, 2, 3}}));
+  }
 }
 
 TEST(SplitCells, cellFieldsAreInheritedAndTheCellsNumberIsKept) {
@@ -391,6 +548,19 @@ TEST(MendFaces, anOddRingCutByParityClosesWithoutACrossedFace) {
     }
     expectARing(std::move(mesh), n);
   }
+}
+
+TEST(MendFaces, thousandsOfCellsRoundOneEdgeAreLookedThroughAtOnce) {
+  constexpr VertexId kCells = 20000;
+  TetMesh mesh;
+  mesh.points = {{0, 0, 0}, {0, 0, 1}};
+  for (VertexId i = 0; i < kCells; ++i) {
+    for (const double turn : {0.0, 0.5}) mesh.points.push_back({std::cos((i + turn) * 1e-4), std::sin((i + turn) * 1e-4), 0.5});
+    mesh.tetrahedra.push_back({0, 1, 2 * i + 2, 2 * i + 3});
+  }
+  const std::vector<Tetrahedron> before = mesh.tetrahedra;
+  EXPECT_EQ(mendCrossedFaces(mesh).mended, 0u);
+  EXPECT_EQ(mesh.tetrahedra, before);
 }
 
 TEST(MendFaces, aCavityOfOneTetrahedronStays) {

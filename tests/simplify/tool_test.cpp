@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "codec/atomic_file.h"
+#include "simplify/printable.h"
 #include "simplify/read_mesh.h"
 #include "simplify/write_mesh.h"
 #include "tests/simplify/tet_meshes.h"
@@ -124,6 +125,25 @@ TEST_F(Tool, infoShowsTwentyLevelsOrAll) {
   }
 }
 
+TEST_F(Tool, whatStrangersNamedReachesNoTerminal) {
+  makeBoxLog();
+  std::string text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$EndNodes\n$Elements\n1\n1 4 0 1 2 3 4\n$EndElements\n";
+  for (const char* section : {"NodeData", "ElementData"})
+    text += "$" + std::string(section) + "\n1\n\"\033[31m\302\2335m" + section + "\"\n0\n3\n0\n1\n1\n1 7\n$End" + section + "\n";
+  const std::string name = "\033]0;title\007.msh";
+  std::ofstream(folder_ / name, std::ios::binary) << text;
+  for (const char* words : {"check *.msh", "simplify *.msh -o named.qtet", "simplify *.msh -o named.qtet --lossless --verbose", "info named.qtet", "verify named.qtet --against *.msh",
+                                   "simplify *.msh -o named.qtet --fields nobody", "add-field box.qtet --from *.msh -o more.qtet"}) {
+    const Ran ran = run(words);
+    for (const std::string& said : {ran.out, ran.err}) {
+      EXPECT_EQ(said.find_first_of("\033\007\r"), std::string::npos) << words << "\n" << said;
+      EXPECT_EQ(said.find("\302\233"), std::string::npos) << words << "\n" << said;
+    }
+  }
+  EXPECT_NE(run("info named.qtet").out.find("\uFFFD[31m\uFFFD5mNodeData"), std::string::npos);
+  EXPECT_EQ(run("info named.qtet --json").json()["fields"][0]["name"], "\033[31m\302\2335mNodeData") << "programs get the name itself";
+}
+
 TEST_F(Tool, checkTellsWhatIsWrongAndEndsWithOneWhereSimplifyWouldRefuse) {
   TetMesh mesh = testing::twoCells();
   mesh.points.push_back({2, 2, 2});
@@ -165,6 +185,7 @@ TEST_F(Tool, wordsThatAreNotUnderstoodEndWithTwo) {
   expectFailure("", 2, "a command is missing");
   expectFailure("squash box.vtu", 2, "no command 'squash'");
   expectFailure("info", 2, "LOG is missing");
+  expectFailure("info --x%original_token%", 2, "--x%original_token%");  // the parser's own word, in which its error's text would be sought for ever
   expectFailure("simplify in.vtu", 2, "--output is missing");
   expectFailure("simplify in.vtu -o out.qtet --colour red", 2, "--colour");
   expectFailure("simplify in.vtu -o out.qtet --field 3", 2, "--field");
@@ -256,6 +277,17 @@ TEST_F(Tool, theAlgorithmOfThePaperMakesAnOrdinaryLogAndTellsItsFigures) {
   const nlohmann::json own = run("simplify box.vtu -o own.qtet --algorithm qtet --json").json();
   EXPECT_EQ(own["algorithm"], "qtet");
   EXPECT_FALSE(own.contains("paper"));
+  EXPECT_FALSE(report.contains("hullWeight")) << "the paper's cost has none";
+}
+
+TEST_F(Tool, tellsTheHullsWeightItTookOrChose) {
+  ASSERT_EQ(run("sample box -o box.vtu").code, 0);
+  const double chosen = run("simplify box.vtu -o chosen.qtet --json").json()["hullWeight"];
+  EXPECT_GT(chosen, 0.5);
+  EXPECT_LT(chosen, 200);
+  const nlohmann::json taken = run("simplify box.vtu -o taken.qtet --hull-weight 15000 --json").json();
+  EXPECT_EQ(taken["hullWeight"], 15000);
+  EXPECT_FALSE(run("simplify box.vtu -o plain.qtet --fields none --json").json().contains("hullWeight")) << "nothing to weigh it against";
 }
 
 TEST_F(Tool, infoTellsEveryLevel) {
@@ -383,6 +415,26 @@ TEST_F(Tool, extractChoosesByError) {
   expectFailure("extract box.qtet -o level.vtu --error Warmth=0.1", 1, "it has: Scalar");
   expectFailure("extract box.qtet -o level.vtu --error 0.1", 2, "NAME=E");
   expectFailure("extract box.qtet -o level.vtu --error Scalar=0.1 --level 1", 2, "exactly one");
+}
+
+TEST_F(Tool, aFieldsKeyTellsTwoOfOneNameApart) {
+  std::ofstream(folder_ / "two.vtk") << "# vtk DataFile Version 3.0\n\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 float\n0 0 0 1 0 0 0 1 0 0 0 1 1 1 1\n"
+                                        "CELLS 2 10\n4 0 1 2 3\n4 1 4 2 3\nCELL_TYPES 2\n10 10\nCELL_DATA 2\nSCALARS s float 1\nLOOKUP_TABLE default\n1 2\n"
+                                        "POINT_DATA 5\nSCALARS s float 1\nLOOKUP_TABLE default\n1 2 3 4 5\n";
+  ASSERT_EQ(run("simplify two.vtk -o two.qtet --target-ratio 0 --max-field-error cell:s=9 --max-field-error point:s=9").code, 0);
+  for (const char* key : {"s", "point:s", "cell:s"}) EXPECT_EQ(run("extract two.qtet -o two.vtu --error " + std::string(key) + "=9").code, 0) << key;
+  expectFailure("extract two.qtet -o two.vtu --error cell:t=9", 1, "it has: s, cell:s");
+  expectFailure("simplify two.vtk -o x.qtet --max-field-error cell:t=9", 1, "cell:t");
+}
+
+TEST_F(Tool, extractDecodesTheFieldsThatAreAskedForAlone) {
+  makeBoxLog();
+  std::string log = contentOf(folder_ / "box.qtet");
+  log.back() = static_cast<char>(log.back() ^ 1);  // in the last block of the field
+  std::ofstream(folder_ / "damaged.qtet", std::ios::binary) << log;
+  expectFailure("extract damaged.qtet --ratio 1 -o level.vtu", 1, "CRC-32C");
+  const Ran ran = run("extract damaged.qtet --ratio 1 --fields none -o level.vtu");
+  EXPECT_EQ(ran.code, 0) << ran.err;
 }
 
 TEST_F(Tool, theErrorsAreDrawn) {
@@ -527,6 +579,69 @@ TEST_F(Tool, aDirtyMeshIsCleanedReportedAndVerified) {
   EXPECT_EQ(clean["unusedPoints"]["first"][0], 729);
   EXPECT_NE(ran.err.find("qtet: note: "), std::string::npos);
   EXPECT_EQ(run("verify dirty.qtet --against dirty.vtu").code, 0);
+}
+
+TEST_F(Tool, aCommaInAFieldsNameIsWrittenWithABackslash) {
+  TetMesh mesh = boxSample();
+  MeshField odd{"a,b", 1, "float64", std::vector<double>(mesh.points.size(), 1), "point"}, plain = odd;
+  plain.name = "c\\d";
+  mesh.fields = {odd, plain};
+  write("odd.vtu", mesh);
+  ASSERT_EQ(run("simplify odd.vtu -o odd.qtet --fields 'c\\d,a\\,b'").code, 0);
+  EXPECT_EQ(run("info odd.qtet --json").json()["fields"].size(), 2u);
+  EXPECT_EQ(run("extract odd.qtet --ratio 1 -o a.vtu --fields 'a\\,b'").code, 0);
+  const nlohmann::json left = run("check a.vtu --json").json()["fields"];
+  ASSERT_EQ(left.size(), 1u);
+  EXPECT_NE(left[0].get<std::string>().find("a,b"), std::string::npos);
+  expectFailure("extract odd.qtet --ratio 1 -o b.vtu --fields 'a,b'", 1, "no field 'a'");
+  expectFailure("extract odd.qtet --ratio 1 -o b.vtu --fields 'a,,b'", 2, "empty name");
+}
+
+TEST_F(Tool, aLogWhereAMeshIsWantedIsToldSoAndTheOtherWayRound) {
+  makeBoxLog();
+  expectFailure("info box.vtu", 1, "'qtet check' tells what a mesh holds");
+  expectFailure("simplify box.qtet -o again.qtet", 1, "is a log");
+  const Ran checked = run("check box.qtet");
+  EXPECT_EQ(checked.code, 1);
+  EXPECT_NE(checked.out.find("is a log"), std::string::npos) << checked.out;
+}
+
+TEST_F(Tool, aPipeIsNotCalledByATemporaryName) {
+  ASSERT_TRUE(writeFileAtomically(folder_ / "other.txt", Bytes{'n', 'o'}));
+  ASSERT_EQ(run("sample box -o box.vtu").code, 0);
+  const Ran checked = run("check - --format vtu <box.vtu");
+  EXPECT_EQ(checked.code, 0) << checked.err;
+  EXPECT_TRUE(checked.out.starts_with("the standard input: ")) << checked.out;
+  expectFailure("convert - --format vtu -o x.msh <other.txt", 1, "the standard input is not a VTK XML file");
+  EXPECT_EQ(run("check - --format vtu --json <box.vtu").json()["input"], "the standard input");
+  const Ran broken = run("info - <box.vtu");
+  EXPECT_EQ(broken.code, 1);
+  EXPECT_NE(broken.err.find("the standard input: this is not a qtet log"), std::string::npos) << broken.err;
+}
+
+TEST_F(Tool, columnsStandUnderEachOtherWhateverALetterTakesInBytes) {
+  TetMesh mesh = boxSample();
+  mesh.fields = {{"Wärmefluß", 1, "float64", {}, "point"}, {"T", 1, "float64", {}, "point"}};
+  for (MeshField& field : mesh.fields)
+    for (const auto& point : mesh.points) field.values.push_back(point[0]);
+  write("named.vtu", mesh);
+  ASSERT_EQ(run("simplify named.vtu -o named.qtet").code, 0);
+  std::istringstream lines(run("info named.qtet").out);
+  std::vector<std::size_t> widths;
+  for (std::string line; std::getline(lines, line);)
+    if (line.starts_with("field ") || line.starts_with("Wärme") || line.starts_with("T  ")) widths.push_back(textWidth(line));
+  ASSERT_EQ(widths.size(), 3u);
+  EXPECT_EQ(widths, std::vector<std::size_t>(3, widths[0]));
+}
+
+TEST_F(Tool, ofASeriesFieldsAreChosenByTheNameOfEveryStep) {
+  ASSERT_EQ(run("simplify '" QTET_SOURCE_DIR "/tests/simplify/meshes/run.pvd' -o run.qtet --time all --fields T").code, 0);
+  EXPECT_EQ(run("info run.qtet --json").json()["fields"].size(), 2u);
+  ASSERT_EQ(run("extract run.qtet --ratio 1 -o all.vtu --fields T").code, 0);
+  EXPECT_EQ(run("check all.vtu --json").json()["fields"].size(), 2u);
+  expectFailure("extract run.qtet --error T=0.1 -o none.vtu", 1, "no field 'T'; it has: T@");
+  EXPECT_EQ(run("remove-field run.qtet --fields T -o bare.qtet").code, 0);
+  EXPECT_EQ(run("info bare.qtet --json").json()["fields"].size(), 0u);
 }
 
 TEST_F(Tool, fieldsComeLaterAndGo) {

@@ -95,6 +95,101 @@ TEST(VtkFormats, ofASeriesTheLastStepTheOneAskedForOrAllAreRead) {
   EXPECT_NE(none.error().message.find("it has 0, 0.25"), std::string::npos);
 }
 
+TEST(VtkFormats, ofASeriesANameMeansEveryStepAndAStepsNameOne) {
+  ReadOptions options;
+  options.time = "all";
+  const auto namesOf = [&](std::vector<std::string> asked) {
+    options.fields = std::move(asked);
+    const Result<ReadMesh> read = readMesh(given("run.pvd"), options);
+    EXPECT_TRUE(read) << read.error().text();
+    std::vector<std::string> out;
+    for (const MeshField& field : read ? read->mesh.fields : std::vector<MeshField>{}) out.push_back(field.association + ":" + field.name);
+    return out;
+  };
+  const std::vector<std::string> both = namesOf({"T"});
+  ASSERT_EQ(both.size(), 2u);
+  EXPECT_TRUE(both[0].starts_with("point:T@") && both[1].starts_with("point:T@"));
+  EXPECT_EQ(namesOf({"point:T"}), both);
+  EXPECT_EQ(namesOf({both[1].substr(6)}), (std::vector<std::string>{both[1]}));
+  EXPECT_EQ(namesOf({both[1], "T"}), (std::vector<std::string>{both[1], both[0]}));
+  options.fields = std::vector<std::string>{"cell:T"};
+  EXPECT_EQ(readMesh(given("run.pvd"), options).error().code, ErrorCode::kNotFound);
+  options.fields = std::vector<std::string>{"T@7"};
+  EXPECT_EQ(readMesh(given("run.pvd"), options).error().code, ErrorCode::kNotFound);
+}
+
+TEST(VtkFormats, aFileThatAnotherNamesInVainIsToldWithBoth) {
+  const std::string pieces = "<VTKFile type=\"PUnstructuredGrid\" version=\"0.1\"><PUnstructuredGrid><PPoints><PDataArray type=\"Float64\" NumberOfComponents=\"3\"/></PPoints><Piece "
+                             "Source=\"gone.vtu\"/></PUnstructuredGrid></VTKFile>\n",
+                    series = "<VTKFile type=\"Collection\" version=\"0.1\"><Collection><DataSet timestep=\"0\" file=\"gone.vtu\"/></Collection></VTKFile>\n";
+  for (const auto& [name, text] : {std::pair{"in-vain.pvtu", pieces}, std::pair{"in-vain.pvd", series}}) {
+    const Result<ReadMesh> read = readMesh(fileWith(name, text));
+    ASSERT_FALSE(read);
+    EXPECT_EQ(read.error().code, ErrorCode::kNotFound) << read.error().text();
+    EXPECT_NE(read.error().message.find(name), std::string::npos) << read.error().text();
+    EXPECT_NE(read.error().message.find("there is no file"), std::string::npos) << read.error().text();
+    EXPECT_NE(read.error().message.find("gone.vtu"), std::string::npos) << read.error().text();
+  }
+}
+
+TEST(VtkFormats, ghostCellsOfPiecesAreLeftOutAndTheirMarksAreNoField) {
+  const auto array = [](const std::string& type, const std::string& name, const std::string& values) {
+    return "<DataArray type=\"" + type + "\" Name=\"" + name + "\" format=\"ascii\">" + values + "</DataArray>";
+  };
+  const fs::path piece = fileWith("ghosts.vtu", "<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" byte_order=\"LittleEndian\"><UnstructuredGrid><Piece NumberOfPoints=\"5\" NumberOfCells=\"2\"><PointData>" +
+                                                    array("UInt8", "vtkGhostType", "0 0 0 0 1") + "</PointData><CellData>" + array("UInt8", "vtkGhostType", "0 1") + array("Int32", "part", "7 8") +
+                                                    "</CellData><Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 0 1 0 0 0 1 1 1 1</DataArray></Points><Cells>" +
+                                                    array("Int64", "connectivity", "0 1 2 3 1 2 3 4") + array("Int64", "offsets", "4 8") + array("UInt8", "types", "10 10") +
+                                                    "</Cells></Piece></UnstructuredGrid></VTKFile>\n");
+  const fs::path whole = piece.parent_path() / "ghosts.pvtu";
+  std::ofstream(whole) << "<VTKFile type=\"PUnstructuredGrid\" version=\"0.1\" byte_order=\"LittleEndian\"><PUnstructuredGrid GhostLevel=\"1\"><PPointData><PDataArray type=\"UInt8\" "
+                          "Name=\"vtkGhostType\"/></PPointData><PCellData><PDataArray type=\"UInt8\" Name=\"vtkGhostType\"/><PDataArray type=\"Int32\" Name=\"part\"/></PCellData><PPoints><PDataArray "
+                          "type=\"Float64\" NumberOfComponents=\"3\"/></PPoints><Piece Source=\"ghosts.vtu\"/></PUnstructuredGrid></VTKFile>\n";
+  for (const fs::path& path : {piece, whole}) {
+    const Result<ReadMesh> read = readMesh(path);
+    ASSERT_TRUE(read) << read.error().text();
+    EXPECT_EQ(read->mesh.tetrahedra, (std::vector<Tetrahedron>{{0, 1, 2, 3}})) << path;
+    ASSERT_EQ(read->mesh.fields.size(), 1u);
+    EXPECT_EQ(read->mesh.fields[0].name, "part");
+    EXPECT_EQ(read->mesh.fields[0].values, std::vector<double>{7});
+  }
+}
+
+TEST(VtkFormats, aTimeThatAFileWithoutStepsDoesNotHaveIsRefused) {
+  ReadOptions options;
+  const std::string medit = "MeshVersionFormatted 2\nDimension 3\nVertices\n4\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\nTetrahedra\n1\n1 2 3 4 0\nEnd\n";
+  for (const fs::path& path : {given("step0.vtu"), fileWith("timeless.mesh", medit)}) {
+    for (const char* word : {"first", "last", "all"}) {
+      options.time = word;
+      EXPECT_TRUE(readMesh(path, options)) << path << word;
+    }
+    for (const char* word : {"foo", "0", ""}) {
+      options.time = word;
+      const Result<ReadMesh> read = readMesh(path, options);
+      ASSERT_FALSE(read) << path << word;
+      EXPECT_EQ(read.error().code, ErrorCode::kNotFound);
+      EXPECT_NE(read.error().message.find("--time"), std::string::npos) << read.error().message;
+    }
+  }
+}
+
+TEST(VtkFormats, whatEveryStepHasIsCountedAndToldOnce) {
+  const fs::path path = fileWith("surfaced.pvd", "<VTKFile type=\"Collection\"><Collection><DataSet timestep=\"1\" file=\"a.vtk\"/><DataSet timestep=\"2\" file=\"b.vtk\"/>"
+                                                 "<DataSet timestep=\"3\" file=\"c.vtk\"/></Collection></VTKFile>");
+  for (const char* step : {"a.vtk", "b.vtk", "c.vtk"})
+    std::ofstream(path.parent_path() / step) << "# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n0 0 0 1 0 0 0 1 0 0 0 1\nCELLS 2 9\n"
+                                                "4 0 1 2 3\n3 0 1 2\nCELL_TYPES 2\n10\n5\nPOINT_DATA 4\nFIELD f 2\nbig 20 4 double\n"
+                                             << [] { std::string zeros; for (int i = 0; i < 80; ++i) zeros += "0 "; return zeros; }() << "\ns 1 4 double\n1 2 3 4\n";
+  ReadOptions options;
+  options.time = "all";
+  const Result<ReadMesh> read = readMesh(path, options);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->mesh.fields.size(), 3u);
+  EXPECT_EQ(read->report.ignoredCells, 1u);
+  EXPECT_EQ(read->report.ignoredFields, std::vector<std::string>{"big"});
+  EXPECT_EQ(std::ranges::count_if(read->report.notes, [](const std::string& note) { return note.find("big was ignored") != std::string::npos; }), 1);
+}
+
 TEST(VtkFormats, aSeriesWhoseMeshChangesCannotBeOneLog) {
   const fs::path path = fileWith("moving.pvd", "<VTKFile type=\"Collection\"><Collection><DataSet timestep=\"1\" file=\"a.vtu\"/><DataSet timestep=\"2\" file=\"b.vtu\"/></Collection></VTKFile>");
   fs::copy_file(given("step0.vtu"), path.parent_path() / "a.vtu");
@@ -116,6 +211,13 @@ TEST(VtkFormats, exodusBlocksHaveTheirFieldsAndNumbers) {
 }
 
 TEST(VtkFormats, enSightIsRead) { expectABar(given("ens.0.case"), 2, "T_n"); }
+
+TEST(VtkFormats, cgnsZonesAreReadWithTheirSolution) {  // two files that the CGNS library wrote
+  const ReadMesh mixed = expectABar(given("unstructured.cgns"), 1);
+  EXPECT_EQ(mixed.report.split.cells[kHexahedronCell], 4u);
+  EXPECT_EQ(mixed.report.split.cells[kWedgeCell], 8u);
+  EXPECT_EQ(expectABar(given("structured.cgns"), 1).mesh.points.size(), 27u);
+}
 
 TEST(VtkFormats, avsUcdIsRead) {
   const std::string text = "12 2 1 0 0\n1 0 0 0\n2 1 0 0\n3 2 0 0\n4 0 1 0\n5 1 1 0\n6 2 1 0\n7 0 0 1\n8 1 0 1\n9 2 0 1\n10 0 1 1\n11 1 1 1\n12 2 1 1\n"

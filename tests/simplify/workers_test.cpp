@@ -4,9 +4,18 @@
 
 #include <atomic>
 #include <stdexcept>
+#include <thread>
 
 namespace qtet {
 namespace {
+
+TEST(ThreadsAtOnce, areNoMoreThanTheMachineRuns) {
+  EXPECT_EQ(threadsAtOnce(1), 1);
+  const int all = threadsAtOnce(1 << 20);
+  EXPECT_GE(all, 1);
+  EXPECT_LE(all, std::max(1u, std::thread::hardware_concurrency()));
+  EXPECT_EQ(threadsAtOnce(all), all);
+}
 
 class OfThreads : public ::testing::TestWithParam<int> {};
 

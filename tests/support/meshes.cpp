@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <random>
 #include <set>
 
@@ -17,6 +18,7 @@
 #include "codec/predicates.h"
 #include "simplify/measure_geometry.h"
 #include "simplify/qtetfusion.h"
+#include "tests/support/written_log.h"
 
 namespace qtet::testing {
 namespace {
@@ -86,6 +88,21 @@ LatticeMesh gridMesh(int n, std::uint32_t seed, const std::function<bool(int, in
     mesh.values[0].push_back((p[0] * p[0] + 3 * p[2]) % 4096);
     for (const std::int32_t x : {p[1], p[2] - p[0] + 500, p[0] / 2}) mesh.values[1].push_back(x);
   }
+  return mesh;
+}
+
+LatticeMesh fanMesh(std::uint32_t n) {
+  constexpr std::int32_t kRadius = 1 << 27;
+  LatticeMesh mesh;
+  mesh.lattice = {28, 1, {0, 0, 0}};
+  mesh.points = {{kRadius, kRadius, kRadius / 2}, {kRadius, kRadius, kRadius / 2 * 3}};
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const double angle = 2 * std::numbers::pi * i / n;
+    const auto at = [](double x) { return kRadius + static_cast<std::int32_t>(std::floor((kRadius - 1) * x)); };
+    mesh.points.push_back({at(std::cos(angle)), at(std::sin(angle)), kRadius});
+    mesh.tetrahedra.push_back({0, 1, 2 + i, 2 + (i + 1) % n});
+  }
+  mesh.boundary = boundaryOf(mesh.tetrahedra);
   return mesh;
 }
 
@@ -195,17 +212,21 @@ double distanceOutside(const LatticeMesh& solid, const LatticePoint& p) {
 
 std::filesystem::path writeSampleLog(const std::filesystem::path& folder, const std::string& name, int n, std::uint32_t seed,
                                      std::uint32_t chunkBytes) {
-  const auto history = simplify(gridMesh(n, seed), {});
+  const std::filesystem::path path = folder / (name + ".qtet");
+  writeLog(path, gridMesh(n, seed), {}, chunkBytes);
+  return path;
+}
+
+void writeLog(const std::filesystem::path& path, const LatticeMesh& mesh, const FusionOptions& fusion, std::uint32_t chunkBytes) {
+  const auto history = simplify(mesh, fusion);
   if (!history) throw std::runtime_error(history.error().text());
   LogWriterOptions options;
-  options.source = name + ".vtu";
+  options.source = path.stem().string() + ".vtu";
   options.generator = "qtet test";
   options.chunkBytes = chunkBytes;
   const auto log = encodeLog(*history, options);
   if (!log) throw std::runtime_error(log.error().text());
-  const std::filesystem::path path = folder / (name + ".qtet");
   if (const auto written = writeFileAtomically(path, log->bytes); !written) throw std::runtime_error(written.error().text());
-  return path;
 }
 
 std::filesystem::path freshFolder(const std::string& name) {

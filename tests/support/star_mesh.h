@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <span>
 #include <stdexcept>
 #include <vector>
 
@@ -42,13 +43,25 @@ struct StarMesh {
   return out;
 }
 
+/// Gives the link's triangles these labels and no others; without any, takes theirs away.
+inline void labelAs(StarMesh& star, std::span<const std::uint8_t> labels) {
+  if (!star.mesh.enter(0, star.link)) throw std::logic_error("the star's link is no sphere");
+  for (std::uint32_t f = 0; f < labels.size(); ++f) star.link.label(f, labels[f]);
+}
+
+[[nodiscard]] inline std::vector<std::uint8_t> labelsOf(const Link& link) {
+  std::vector<std::uint8_t> out;
+  for (const LinkTriangle& t : link.triangles()) out.push_back(t.label);
+  return out;
+}
+
 /// Gives each triangle of the link the nearest of `prey`, and numbers these anew in order of first appearance along the traversal, as records do. Returns how many
 /// have triangles: the first of `prey`, which is put into the same order.
 inline std::size_t labelByNearest(StarMesh& star, std::vector<LatticePoint>& prey) {
   std::vector<LatticePoint> ordered;
+  std::vector<std::uint8_t> labels(star.link.triangles().size());
   for (const std::uint32_t f : star.link.traversal()) {
-    LinkTriangle& t = star.link.triangles()[f];
-    const auto& middle = star.link.sixTimesMiddles()[f];
+    const auto& middle = star.link.middles()[f].place;
     const auto distance = [&](const LatticePoint& p) {
       double squared = 0;
       for (std::size_t a = 0; a < 3; ++a) {
@@ -63,8 +76,9 @@ inline std::size_t labelByNearest(StarMesh& star, std::vector<LatticePoint>& pre
     std::size_t label = 0;
     while (label < ordered.size() && ordered[label] != prey[nearest]) ++label;
     if (label == ordered.size()) ordered.push_back(prey[nearest]);
-    t.label = static_cast<std::uint8_t>(label);
+    labels[f] = static_cast<std::uint8_t>(label);
   }
+  labelAs(star, labels);
   const std::size_t seen = ordered.size();
   for (const LatticePoint& p : prey) {
     bool known = false;

@@ -1,17 +1,17 @@
 // Keeps the blocks that arrive and puts them into the codec in the order that it wants: structure with positions, then fields behind the mesh. The
 // blocks stay (two or three bytes a cell), so that the mesh can be made coarser and finer again without the network.
 
-import {kAdaptiveCodec, kDracoCodec, type BlockValues, type Codec} from './codec';
+import type {BlockValues, Codec} from './codec';
 import type {ValueDecoder} from './draco';
 import {QtetError} from './errors';
+import {goalOf, planOf, type Goal, type LevelBytes} from './goal';
+import type {Limit} from './limit';
 import {fieldKeys, readManifest, type Manifest} from './manifest';
 import {kFirstFieldPart, kHeadPart, kPositionsPart, kStructurePart, type Frame} from './protocol';
 import {Ledger, kNoStatistics, statisticsOf, type Statistics} from './statistics';
 import type {LogTable} from './transport';
+import {readValueBlock} from './value_block';
 import {inOrder, kNoWishes, type Packet, type WireLattice, type Wishes} from './wishes';
-
-/** The number of a value block's digit bytes stands in its last bytes. */
-const kDigitCountBytes = 4;
 
 export class Assembler implements LogTable {
   manifest: Manifest | null = null;
@@ -44,7 +44,7 @@ export class Assembler implements LogTable {
   blockSize(chunk: number, part: number): number { return this.codec.blockSize(chunk, part); }
 
   get packets(): readonly Packet[] { return this.packetList; }
-  get lattice(): (WireLattice & {size: number}) | null {
+  get lattice(): WireLattice | null {
     const lattice = this.manifest?.lattice;
     return lattice ? {origin: lattice.origin, step: lattice.step, size: 2 ** lattice.bits} : null;
   }
@@ -58,6 +58,16 @@ export class Assembler implements LogTable {
   /** Figures of the mesh with these fields. */
   statistics(fields: readonly number[]): Statistics {
     return this.manifest && this.ledger ? statisticsOf(this.codec, this.manifest, this.ledger, fields) : kNoStatistics;
+  }
+
+  /** Where `limit` lies with these fields; null: at the end. */
+  goal(limit: Limit, fields: readonly number[]): Goal | null {
+    return this.manifest && this.head ? goalOf(limit, this.codec, this.manifest, fields, this.head.length) : null;
+  }
+
+  /** planOf this log. */
+  plan(fields: readonly number[]): LevelBytes[] {
+    return this.manifest && this.head ? planOf(this.codec, this.manifest, fields, this.head.length) : [];
   }
 
   /** Applies the next block of the fields, or else the next chunk of the mesh if `refine`; false when neither is here. Throws what the codec refuses. */
@@ -169,6 +179,10 @@ export class Assembler implements LogTable {
     return true;
   }
 
+  private decode(chunk: number, part: number, bytes: Uint8Array, components: number): BlockValues {
+    return readValueBlock(this.codec, this.values, {chunk, part, components}, bytes);
+  }
+
   private nextOfField(field: number): number {
     const {codec} = this;
     const part = kFirstFieldPart + field;
@@ -179,20 +193,6 @@ export class Assembler implements LogTable {
       if (this.blocks[chunk]![part] && codec.applied(chunk) && !codec.fieldApplied(field, chunk) && codec.fieldApplied(field, codec.dependency(chunk))) return chunk;
     }
     return -1;
-  }
-
-  private decode(chunk: number, part: number, bytes: Uint8Array, components: number): BlockValues {
-    const count = this.codec.blockValues(chunk, part);
-    if (count === 0 && bytes.length === 0) return {symbols: new Int32Array(0), digits: bytes};
-    const id = this.codec.blockCodec(chunk, part);
-    if (id === kAdaptiveCodec) return {symbols: new Int32Array(0), digits: bytes};
-    if (id !== kDracoCodec) throw new QtetError('bad-codec', `Chunk ${chunk} uses codec ${id}, which this viewer does not know.`);
-    if (count === 0) throw new QtetError('bad-value', `Chunk ${chunk} has a value block although it has no values.`);
-    const end = bytes.length - kDigitCountBytes;
-    const digitBytes = end < 0 ? Infinity : new DataView(bytes.buffer, bytes.byteOffset + end).getUint32(0, true);
-    if (digitBytes > end) throw new QtetError('bad-value', `Chunk ${chunk} has a value block that is shorter than its digits.`);
-    const digits = bytes.subarray(end - digitBytes, end);
-    return {symbols: this.values.decode(bytes.subarray(0, end - digitBytes), count, components), digits};
   }
 }
 

@@ -2,6 +2,7 @@
 // They are interchangeable because each goes on behind what the last one brought.
 
 import type {QtetError} from './errors';
+import type {Goal} from './goal';
 import type {Frame, OpenRequest, ServerMessage} from './protocol';
 import type {Transport, TransportHandlers} from './transport';
 import type {Wishes} from './wishes';
@@ -32,6 +33,9 @@ export class AutoTransport implements Transport, TransportHandlers {
   }
   open(request: OpenRequest): void { this.current.open(request); }
   stop(): void { this.current.stop(); }
+  pause(): void { this.current.pause(); }
+  resume(): boolean { return this.current.resume(); }
+  aim(goal: Goal | null): void { this.current.aim(goal); }
   applied(bytes: number): void { this.current.applied(bytes); }
   look(wishes: Wishes): void { this.current.look(wishes); }
   disconnect(): void {

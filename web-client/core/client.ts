@@ -5,9 +5,9 @@ import type {Ray, Vector} from './cell_ray';
 import type {Display} from './display';
 import type {Pick, Probe} from './inspector';
 import {kFull, type Limit} from './limit';
-import type {CellOrder} from './volume';
+import type {CoarseCells} from './volume';
 import type {Wishes} from './wishes';
-import type {FromWorker, Question, Source, ToWorker} from './worker_messages';
+import type {FromWorker, Posted, Question, Source, ToWorker} from './worker_messages';
 
 export type Listener = (message: Exclude<FromWorker, {type: 'answer'}>) => void;
 
@@ -17,14 +17,15 @@ export class Client {
   private readonly worker = new Worker(new URL('./worker.ts', import.meta.url), {type: 'module', name: 'qtet'});
   private readonly asked = new Map<number, (answer: never) => void>();
   private nextId = 0;
+  private run = 0;
 
   constructor(listen: Listener) {
     // The page knows where its build put the codec; the worker's own file may have been moved without what it refers to.
     this.post({type: 'load', codecUrl: new URL(codecUrl, import.meta.url).href});
-    this.worker.onmessage = (event: MessageEvent<FromWorker>) => {
+    this.worker.onmessage = (event: MessageEvent<Posted>) => {
       const message = event.data;
       if (message.type !== 'answer') {
-        listen(message);
+        if (message.run === undefined || message.run === this.run) listen(message);
         return;
       }
       this.asked.get(message.id)?.(message.answer as never);
@@ -36,8 +37,8 @@ export class Client {
     };
   }
 
-  /** `url` and `mesh`, or `log` alone; what else is left out is chosen: the first field, everything, whatever transport works. */
-  start(source: Partial<Source>): void { this.post({type: 'start', source: {...kAnySource, ...source}}); }
+  /** `url` and `mesh`, or `log` alone; what else is left out is chosen: the first field, everything, whatever transport works. Nothing of an earlier start is heard any more. */
+  start(source: Partial<Source>): void { this.post({type: 'start', source: {...kAnySource, ...source}, run: ++this.run}); }
   /** REQUIRES: fields of the last `manifest` message. Its fields are fetched if they are not here. */
   show(display: Display): void { this.post({type: 'display', display}); }
   setLimit(limit: Limit): void { this.post({type: 'limit', limit}); }
@@ -45,16 +46,22 @@ export class Client {
   look(wishes: Wishes): void { this.post({type: 'look', wishes}); }
   pause(): void { this.post({type: 'pause'}); }
   resume(): void { this.post({type: 'resume'}); }
-  /** To be called once a snapshot is on the screen; the next one waits for it. */
-  shown(): void { this.post({type: 'shown'}); }
+  /** To be called once a snapshot is on the screen; the next one waits for it. `drawingMs`: what drawing it took, for who knows. */
+  shown(drawingMs?: number): void { this.post({type: 'shown', drawingMs}); }
+  /** The picture once more, whole: whoever drew it is gone. */
+  repeat(): void { this.post({type: 'repeat'}); }
 
   /** SHA-256 over the mesh as it stands in the worker, lower-case hexadecimal; empty before there is one. */
   digest(): Promise<string> { return this.ask({type: 'digest'}); }
   pick(ray: Ray): Promise<Pick | null> { return this.ask({type: 'pick', ray}); }
   probe(from: Vector, to: Vector): Promise<Probe | null> { return this.ask({type: 'probe', from, to}); }
 
-  /** The cells of the last snapshot's volume from back to front. */
-  order(eye: Vector): Promise<CellOrder> { return this.ask({type: 'order', eye}); }
+  /** The last snapshot's volume with few cells, unless the asker has them: those of version `have`. Refused where there are none. */
+  async coarse(have: number): Promise<CoarseCells> {
+    const answer = await this.ask<CoarseCells | null>({type: 'coarse', have});
+    if (!answer) throw new Error('there are no coarse cells');
+    return answer;
+  }
 
   dispose(): void { this.worker.terminate(); }
 

@@ -59,11 +59,18 @@ export class FieldScale {
     return (Math.sqrt(sum) - this.low) * this.inverseSpan;
   }
 
-  /** Smallest and largest that occurs, in [0, 1]; [0, 1] where nothing does. */
-  extent(): [number, number] {
+  /** Smallest and largest that occurs in these cells, in [0, 1]; [0, 1] where nothing does. Holes, cells of one vertex, hold what is no value. */
+  extent(tetrahedra: Uint32Array): [number, number] {
+    const occurs = new Uint8Array(this.size);
+    for (let cell = 0, at = 0; at < tetrahedra.length; ++cell, at += 4) {
+      if (tetrahedra[at] === tetrahedra[at + 1]) continue;
+      if (this.ofCells) occurs[cell] = 1;
+      else for (let i = at; i < at + 4; ++i) occurs[tetrahedra[i]!] = 1;
+    }
     let low = Infinity;
     let high = -Infinity;
-    for (let i = 0; i < this.size; ++i) {
+    for (let i = 0; i < occurs.length; ++i) {
+      if (occurs[i] === 0) continue;
       const value = this.at(i);
       if (value < low) low = value;
       if (value > high) high = value;

@@ -3,6 +3,7 @@
 import {reconnectDelayMs} from './backoff';
 import type {BlockSource, Piece} from './block_source';
 import {errorCode, errorText, QtetError} from './errors';
+import type {Goal} from './goal';
 import {kFirstFieldPart, kHeadPart, kStructurePart, type ChunkRange, type OpenRequest} from './protocol';
 import {inOrder, kNoWishes, type Wishes} from './wishes';
 import type {LogTable, Transport, TransportHandlers} from './transport';
@@ -18,6 +19,7 @@ export class HttpTransport implements Transport {
   isConnected = false;
   private stream = 0;
   private credit = 0;
+  private goal: Goal | null = null;
   /** What is still to be asked for, in that order. */
   private pieces: Piece[] = [];
   private attempt = 0;
@@ -47,12 +49,20 @@ export class HttpTransport implements Transport {
     this.stop();
     this.abort = new AbortController();
     this.credit = request.credit;
+    this.goal = request.goal ?? null;
     this.run(++this.stream, request, this.abort.signal).catch((thrown: unknown) => {
       if (!this.abort.signal.aborted) this.lost(thrown);
     });
   }
 
   stop(): void { this.abort.abort(); }
+  pause(): void { this.stop(); }
+  resume(): boolean { return false; }
+
+  aim(goal: Goal | null): void {
+    this.goal = goal;
+    this.creditCame();
+  }
 
   applied(bytes: number): void {
     this.credit += bytes;
@@ -95,8 +105,8 @@ export class HttpTransport implements Transport {
     const ahead: {pieces: Piece[]; size: number; payloads: Promise<Uint8Array[]>}[] = [];
     let underWay = 0;
     for (;;) {
-      while (this.pieces.length > 0 && ahead.length < kAhead && underWay < this.credit) {
-        const wanted = this.pieces.splice(0, this.source.together(this.pieces.slice(0, kMostPieces), this.requestBytes));
+      for (let near = this.wantedNext(); near.length > 0 && ahead.length < kAhead && underWay < this.credit; near = this.wantedNext()) {
+        const wanted = this.pieces.splice(0, this.source.together(near, this.requestBytes));
         const payloads = this.source.fetch(wanted, signal);
         payloads.catch(() => undefined);  // it is awaited below, in its turn
         const size = wanted.reduce((sum, piece) => sum + sizeOf(this.table, piece), 0);
@@ -116,6 +126,13 @@ export class HttpTransport implements Transport {
         deliver(piece, payloads[i]!);
       }
     }
+  }
+
+  /** The next pieces on this side of the goal. */
+  private wantedNext(): Piece[] {
+    const near = this.pieces.slice(0, kMostPieces);
+    const {goal} = this;
+    return goal ? near.filter(({chunk}) => chunk < goal.chunks) : near;
   }
 
   /** Fits the size of requests to the line. */

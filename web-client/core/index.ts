@@ -14,6 +14,6 @@ export type {Counts, Statistics} from './statistics';
 export {logTicks, niceTicks, type Tick, type Ticks} from './ticks';
 export {kOpacityPath, transferTables, type TransferTables} from './transfer';
 export type {TriangleSoup} from './triangle_soup';
-export type {CellOrder, VolumeCells} from './volume';
+export type {CoarseCells, VolumeCells} from './volume';
 export {kNoWishes, type Wishes} from './wishes';
 export type {FromWorker, Snapshot, Source, StreamState} from './worker_messages';

@@ -17,7 +17,7 @@ export function errorOfLevel(level: LevelInfo | undefined, fields: readonly numb
   return Math.max(...fields.map((field) => level.error!.fields[field]?.mean ?? 0));
 }
 
-export function limitReached(limit: Limit, statistics: Statistics, error: number | null): boolean {
+export function limitReached(limit: Limit, statistics: Pick<Statistics, 'tetrahedra' | 'bytes'>, error: number | null): boolean {
   switch (limit.kind) {
     case 'full': return false;
     case 'cells': return statistics.tetrahedra >= limit.value;

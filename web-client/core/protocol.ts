@@ -1,6 +1,7 @@
 // The wire in TypeScript: messages and the binary frame of proto/PROTOCOL.md, read with every count checked.
 
 import {QtetError} from './errors';
+import type {Goal} from './goal';
 import type {Wishes} from './wishes';
 
 export const kSubprotocol = 'qtet.v1';
@@ -27,6 +28,8 @@ export interface OpenRequest {
   credit: number;
   digest?: string;
   wishes?: Wishes;
+  /** Where the stream may stop; null: nowhere before its end. */
+  goal?: Goal | null;
 }
 
 export type ServerMessage =
@@ -44,9 +47,20 @@ export interface Frame {
 }
 
 export function openMessage(request: OpenRequest, view: Record<string, unknown> | null = null): string {
-  const {wishes: _, ...rest} = request;
-  return JSON.stringify({type: 'open', ...rest, ...(view ? {view} : {})});
+  const {wishes: _, goal, ...rest} = request;
+  return JSON.stringify({type: 'open', ...rest, ...(goal ? {target: targetOf(goal)} : {}), ...(view ? {view} : {})});
 }
+
+export function targetMessage(goal: Goal | null): string {
+  return JSON.stringify({type: 'target', target: goal && targetOf(goal)});
+}
+
+function targetOf({level}: Goal): {level: number} { return {level}; }
+
+export function pauseMessage(): string { return JSON.stringify({type: 'pause'}); }
+
+/** Without saying anew what is here: what was sent is, or is on its way. */
+export function resumeMessage(): string { return JSON.stringify({type: 'resume'}); }
 
 export function viewMessage(view: Record<string, unknown> | null): string {
   return JSON.stringify({type: 'view', view});

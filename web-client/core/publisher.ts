@@ -5,34 +5,63 @@ import {cutsOf, cuttingPlanes, fieldsOf, isosurfacesOf, keptCells, kPlainDisplay
 import {scalarRange} from './field_scale';
 import {meshNow} from './mesh_now';
 import {noSoup, pointBounds} from './triangle_soup';
-import {Volume, type VolumeCells} from './volume';
+import {volumeCells, type VolumeCells} from './volume';
 import type {Snapshot} from './worker_messages';
 
-/** Pictures a second at most, so that decoding has the worker and the page its frames. */
+/** From one picture to the next, so that decoding has the worker and the page its frames. */
 const kShortestPauseMs = 100;
-/** Time between pictures is at least this many times what the last one cost. */
-const kCostFactor = 3;
+/** Between pictures there is this many times what the last one cost: in the worker, and on its way to the screen, where graphics without a GPU take the processors from decoding. */
+const kCostFactor = 4;
+/** A page that is out of sight draws nothing: what it took then says nothing of pictures. */
+const kLongestPauseMs = 1000;
+/** Below this share of new bytes a picture hardly differs from the last one, and waits for more, but not for longer than this. */
+const kGrowth = 0.1;
+/** The same where a picture takes so long that decoding feels it. */
+const kSlowMs = 100;
+const kSlowGrowth = 1;
+const kSmallGrowthMs = 500;
+/** A picture stands at least this many times as long as it takes to the screen, or the last one comes instead, which is sooner there without it. */
+const kWorthMaking = 2;
 /** A cut that the user drags comes at once; this only keeps it from starving the decoder. */
 const kCutPauseMs = 8;
 
 export class Publisher {
   display: Display = kPlainDisplay;
-  readonly volume = new Volume();
+  /** Since the last reset. */
+  hasPublished = false;
+  /** Called after the first picture of a mesh has gone out. */
+  onFirst: () => void = () => undefined;
+  /** Called with the corners of each new isosurface; empty: there is none. */
+  onIsosurface: (positions: Float32Array) => void = () => undefined;
+  /** When all that is wanted will have been decoded, in ms from now; Infinity: nobody knows. */
+  untilLast: () => number = () => Infinity;
   private meshChanged = false;
   private cutChanged = false;
+  /** Nothing finer follows by itself. */
+  private isLast = false;
   /** Nothing is drawn before the page has said what. */
   private wanted = false;
   private bounds: number[] = [];
   private onScreen = true;
+  /** Of the last picture. */
+  private sentAt = 0;
+  private bytes = 0;
+  private isFirst = true;
+  /** What the last one took to the screen, the first one without its waiting for the graphics to start; 0: nobody knows. */
+  private tookMs = 0;
+  /** Since then the mesh is another than that of the last one. */
+  private changedAt = 0;
   private nextAt = 0;
   private dueAt = 0;
   private timer: ReturnType<typeof setTimeout> | undefined;
 
   constructor(private readonly assembler: Assembler, private readonly send: (snapshot: Snapshot) => void) {}
 
-  /** The mesh or the shown field's values changed. */
-  changed(): void {
+  /** The mesh or the shown field's values changed; the last of such pictures need not leave time for decoding. */
+  changed(isLast = false): void {
+    if (!this.meshChanged) this.changedAt = performance.now();
     this.meshChanged = true;
+    this.isLast = isLast;
     this.schedule();
   }
 
@@ -46,17 +75,32 @@ export class Publisher {
     this.schedule();
   }
 
-  /** The page has drawn the last picture. */
-  shown(): void {
+  /** The page has drawn the last picture, which took so long; 0: nobody knows. */
+  shown(drawingMs = 0): void {
+    const now = performance.now();
+    if (!this.onScreen) {
+      this.nextAt = Math.max(this.nextAt, now + Math.min(kLongestPauseMs, kCostFactor * (now - this.sentAt)));
+      this.tookMs = Math.min(kLongestPauseMs, this.isFirst ? drawingMs : now - this.sentAt);
+    }
     this.onScreen = true;
     this.schedule();
   }
 
+  /** The picture once more, for who has none; the last one is not waited for. */
+  repeat(): void {
+    this.onScreen = true;
+    this.changed(true);
+  }
+
+  /** A picture is due, or on its way to the screen. */
+  get isBusy(): boolean { return this.timer !== undefined || !this.onScreen; }
+
   /** Starts with an empty mesh, and waits for a display. */
   reset(): void {
-    this.meshChanged = this.cutChanged = this.wanted = false;
+    this.meshChanged = this.cutChanged = this.wanted = this.hasPublished = this.isLast = false;
+    this.onScreen = true;  // nobody waits for the picture of the mesh before
     this.bounds = [];
-    this.volume.forget();
+    this.bytes = this.tookMs = 0;
     this.display = kPlainDisplay;
     clearTimeout(this.timer);
     this.timer = undefined;
@@ -65,15 +109,36 @@ export class Publisher {
   private schedule(): void {
     if (!this.onScreen || !this.wanted || !(this.meshChanged || this.cutChanged)) return;
     const now = performance.now();
-    const due = this.cutChanged ? Math.min(this.nextAt, now + kCutPauseMs) : this.nextAt;
+    const due = this.dueFrom(now);
     if (this.timer !== undefined && this.dueAt <= due) return;
     clearTimeout(this.timer);
     this.dueAt = due;
-    this.timer = setTimeout(() => this.publish(), due - now);
+    this.timer = setTimeout(() => this.publishIfDue(), due - now);
+  }
+
+  /** By now a better moment may be known. */
+  private publishIfDue(): void {
+    this.timer = undefined;
+    const now = performance.now();
+    if (!this.isLast && !this.cutChanged && this.lastAt(now) > now) this.schedule();
+    else this.publish();
+  }
+
+  private dueFrom(now: number): number {
+    if (this.isLast) return now;
+    if (this.cutChanged) return Math.min(this.nextAt, now + kCutPauseMs);
+    const {bytes} = this.assembler.statistics(fieldsOf(this.display));
+    const isSmall = bytes >= this.bytes && bytes < (1 + (this.tookMs < kSlowMs ? kGrowth : kSlowGrowth)) * this.bytes;
+    return Math.max(this.nextAt, isSmall ? this.changedAt + kSmallGrowthMs : 0, this.lastAt(now));
+  }
+
+  /** When the last picture is due, where one before it is not worth making; else 0. */
+  private lastAt(now: number): number {
+    const left = this.tookMs > 0 ? this.untilLast() : Infinity;
+    return left < kWorthMaking * this.tookMs ? now + left : 0;
   }
 
   private publish(): void {
-    this.timer = undefined;
     const mesh = meshNow(this.assembler);
     if (!mesh) return;
     const start = performance.now();
@@ -84,20 +149,25 @@ export class Publisher {
     if (this.meshChanged) {
       snapshot.surface = display.body && display.mode !== 'slice' ? surfaceOf(mesh, display, kept) : noSoup();
       snapshot.isosurface = isosurfacesOf(mesh, display, kept) ?? noSoup();
+      this.onIsosurface(snapshot.isosurface.positions);
       snapshot.volume = this.volumeOf(mesh, kept);
     }
-    this.meshChanged = this.cutChanged = this.onScreen = false;
-    snapshot.costMs = performance.now() - start;
+    this.meshChanged = this.cutChanged = this.onScreen = this.isLast = false;
+    this.bytes = snapshot.statistics.bytes;
+    this.sentAt = performance.now();
+    snapshot.costMs = this.sentAt - start;
     this.nextAt = start + Math.max(kShortestPauseMs, kCostFactor * snapshot.costMs);
     this.send(snapshot);
+    this.isFirst = !this.hasPublished;
+    if (!this.isFirst) return;
+    this.hasPublished = true;
+    this.onFirst();
   }
 
   private volumeOf(mesh: MeshNow, kept: Uint8Array | null): VolumeCells | null {
     const {color, volume} = this.display;
     const scale = volume && color && mesh.scale(color);
-    if (scale) return this.volume.take(mesh, scale, kept);
-    this.volume.forget();
-    return null;
+    return scale ? volumeCells(mesh, scale, kept) : null;
   }
 
   private frame(mesh: MeshNow): Omit<Snapshot, 'cuts' | 'planes'> {
@@ -108,7 +178,7 @@ export class Publisher {
     return {
       bounds: this.bounds, color: scale ? color : null, statistics: this.assembler.statistics(fieldsOf(this.display)), costMs: 0,
       // Of a component nobody knows the range but the values themselves.
-      extent: scale && info && info.components > 1 && color.component >= 0 ? scale.extent() : [0, 1],
+      extent: scale && info && info.components > 1 && color.component >= 0 ? scale.extent(mesh.tetrahedra) : [0, 1],
       scaleRange: scale && info ? scalarRange(info, color.component) : [0, 1],
     };
   }

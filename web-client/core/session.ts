@@ -1,20 +1,32 @@
 // One mesh on its way into the page: opens the stream, keeps it going over lost connections, refines as far as is wished, and says how it stands.
 
 import type {Assembler} from './assembler';
+import type {CoarseVolume} from './coarse_volume';
 import {errorCode, errorText, QtetError} from './errors';
+import {scalarRange} from './field_scale';
 import {errorOfLevel, kFull, limitReached, type Limit} from './limit';
 import {fieldKeys} from './manifest';
+import {marksOf} from './marks';
 import {kFirstFieldPart, kStructurePart, type Frame, type OpenRequest, type ServerMessage} from './protocol';
 import type {Publisher} from './publisher';
 import type {LogTable, Transport, TransportHandlers} from './transport';
 import {makeTransport} from './transports';
-import {kNoWishes, type Wishes} from './wishes';
+import {kNoWishes, type Isovalue, type Wishes} from './wishes';
 import type {FromWorker, Source, StreamState} from './worker_messages';
 
 /** Payload bytes under way: enough for 80 Mbit/s at 100 ms, and some ten chunks of decoding that a click has to wait for at most. */
 const kWindowBytes = 1 << 20;
 /** Decoding pauses this often for commands from the page. */
 const kSliceMs = 25;
+
+/** Decoding waits so long for the first picture: who shows pictures says of what sooner. */
+const kFirstPictureMs = 500;
+
+/** Blocks may come by the hundred a second: telling of each costs both threads more than it shows. */
+const kProgressMs = 100;
+
+/** A view of the protocol has no more (proto/PROTOCOL.md, "View"). */
+const kMostIsovalues = 8;
 
 /** Of the cells at which memory ended: their pictures need some, too. */
 const kFittingShare = 0.7;
@@ -28,6 +40,8 @@ const kWaysOut: Record<string, string> = {
 export type TransportFactory = (source: Source, table: LogTable, handlers: TransportHandlers) => Transport;
 
 export class Session implements TransportHandlers {
+  /** Hears of every part of the log. */
+  coarse: Pick<CoarseVolume, 'note' | 'forget'> | null = null;
   private transport: Transport | null = null;
   private source: Source = {url: '', log: '', mesh: '', fields: null, limit: kFull, transport: 'auto'};
   private state: StreamState = 'connecting';
@@ -36,25 +50,43 @@ export class Session implements TransportHandlers {
   private fields: number[] = [];
   /** Fields that the current `open` asks for. */
   private requested: string[] = [];
+  /** It asks for the head alone. */
+  private probing = false;
   private limit: Limit = kFull;
   private paused = false;
+  /** Another target was sent since the stream was opened. */
+  private aimed = false;
   private wishes: Wishes = kNoWishes;
   private receivedBytes = 0;
   /** Bytes that arrived and whose credit waits until they are applied. */
   private unapplied = 0;
-  private timer: ReturnType<typeof setTimeout> | undefined;
+  /** Carries a word of this session to itself: the next slice, behind the page's commands. A timer would wait 4 ms each time. */
+  private slices: MessageChannel | undefined;
+  private sliceIsDue = false;
+  private sliceIsCalled = false;
+  private progressTimer: ReturnType<typeof setTimeout> | undefined;
+  private progressAt = -kProgressMs;
+  /** When decoding goes on without a first picture; 0: it does not wait yet. */
+  private pictureBy = 0;
+  private decodedBytes = 0;
+  private decodedMs = 0;
 
   constructor(
     private readonly assembler: Assembler, private readonly publisher: Publisher, private readonly send: (message: FromWorker) => void,
-    private readonly newTransport: TransportFactory = makeTransport) {}
+    private readonly newTransport: TransportFactory = makeTransport) {
+    publisher.onFirst = () => this.advance();
+    publisher.untilLast = () => this.untilDecoded();
+    publisher.onIsosurface = (positions) => this.lookAtSurface(positions);
+  }
 
   start(source: Source): void {
     this.transport?.disconnect();
     this.source = source;
     this.limit = source.limit;
-    this.paused = false;
+    this.paused = source.paused === true;
     this.forget();
     this.transport = this.newTransport(source, this.assembler, this);
+    if (this.paused) return this.setState('paused');
     this.setState('connecting');
     this.transport.connect();
   }
@@ -64,6 +96,7 @@ export class Session implements TransportHandlers {
     if (!this.assembler.manifest || (fields.length === this.fields.length && fields.every((field) => this.fields.includes(field)))) return;
     this.fields = fields;
     this.source.fields = this.keys();
+    this.tellPlan();
     this.tellProgress();
     if (this.state === 'failed') return;
     this.advance();
@@ -75,39 +108,68 @@ export class Session implements TransportHandlers {
   setLimit(limit: Limit): void {
     this.limit = this.source.limit = limit;
     if (!this.assembler.manifest || this.state === 'failed') return;
+    const wasPaused = this.paused;
+    this.paused = false;
     this.guarded(() => {
       if (this.isHeld()) this.goBack();
-      this.publisher.changed();
-      if (!this.isHeld()) this.goOn();
-      else this.hold();
+      if (this.isHeld()) this.hold();
+      else this.goOn(wasPaused);
       this.tellProgress();
     });
   }
 
   /** What the user looks at. */
   look(wishes: Wishes): void {
-    this.wishes = wishes;
+    const {marks = null, isovalue = null} = this.wishes;
+    this.wishes = {...wishes, marks, isovalue};
+    this.follow();
+  }
+
+  /** A log of regions refines isosurfaces where they are now, as coarse as they may be. */
+  private lookAtSurface(positions: Float32Array): void {
+    const {lattice, packets} = this.assembler;
+    if (packets.length === 0 || !lattice) return;
+    const marks = marksOf(positions, lattice.size);
+    const isovalue = this.isovalue();
+    if (String(marks) === String(this.wishes.marks ?? null) && JSON.stringify(isovalue) === JSON.stringify(this.wishes.isovalue ?? null)) return;
+    this.wishes = {...this.wishes, marks, isovalue};
+    this.follow();
+  }
+
+  /** Of the isosurfaces that are shown, for the server; null: it would not understand them. */
+  private isovalue(): Isovalue | null {
+    const {isosurfaces} = this.publisher.display;
+    const fields = this.assembler.manifest?.fields ?? [];
+    const info = isosurfaces && fields[isosurfaces.scalar.field];
+    if (!info || info.association === 'cell' || isosurfaces.values.length > kMostIsovalues) return null;
+    const {field, component} = isosurfaces.scalar;
+    const [low, high] = scalarRange(info, component);
+    const values = isosurfaces.values.map((share) => low + share * (high - low));
+    return {field: fieldKeys(fields)[field]!, ...(component >= 0 && {component}), values};
+  }
+
+  private follow(): void {
     if (this.assembler.packets.length === 0) return;
-    this.assembler.look(wishes);
-    if (!this.paused) this.transport?.look(wishes);
+    this.assembler.look(this.wishes);
+    if (!this.paused) this.transport?.look(this.wishes);
   }
 
   pause(): void {
-    if (this.state === 'complete' || this.state === 'failed' || this.paused) return;
+    if (!this.transport || this.state === 'complete' || this.state === 'failed' || this.paused) return;
     this.paused = true;
-    this.transport?.stop();
+    this.transport?.pause();
     this.setState('paused');
   }
 
   /** Goes on after a pause, or tries again after an error. */
   resume(): void {
     if (this.state === 'failed') {
-      this.start(this.source);
+      this.start({...this.source, paused: false});
       return;
     }
     if (!this.paused) return;
     this.paused = false;
-    this.goOn();
+    this.goOn(true);
   }
 
   // ---- TransportHandlers
@@ -119,11 +181,12 @@ export class Session implements TransportHandlers {
   message(message: ServerMessage): void {
     if (message.type === 'opened') this.digest = message.digest;
     if (message.type === 'done') {
-      if (!this.isReceived()) {
+      if (!this.isReceived(this.assembler.goal(this.limit, this.fields)?.chunks)) {
+        if (this.aimed) return this.open();  // it may be of the target before, sent as the new one was on its way
         this.failed(new QtetError('incomplete', 'The server says that everything was sent, but parts of the mesh are missing. Try again.'));
         return;
       }
-      this.advance();
+      this.advanceSoon();
     }
     if (message.type !== 'error') return;
     // Another mesh stands under this name now: what was decoded is of no use, so start anew with the new one.
@@ -133,7 +196,7 @@ export class Session implements TransportHandlers {
       return;
     }
     if (message.code === 'unknown-field' && !this.assembler.manifest) {
-      this.send({type: 'error', code: message.code, message: `${message.detail} The first field is shown instead.`});
+      this.send({type: 'error', code: message.code, message: `${message.detail.replace(/\.?$/, '.')} The first field is shown instead.`});
       this.source.fields = null;
       this.open();
       return;
@@ -145,11 +208,12 @@ export class Session implements TransportHandlers {
     this.guarded(() => {
       const first = !this.assembler.manifest;
       this.assembler.take(frame);
+      this.coarse?.note(frame);
       this.receivedBytes += frame.payload.length;
       this.unapplied += frame.payload.length;
       if (first && this.takeManifest()) return;
       if (this.state !== 'streaming' && !this.paused && !this.isHeld()) this.setState('streaming');
-      this.advance();
+      this.advanceSoon();
     });
   }
 
@@ -162,7 +226,7 @@ export class Session implements TransportHandlers {
   }
 
   failed(error: QtetError): void {
-    clearTimeout(this.timer);
+    this.sliceIsDue = false;
     this.transport?.disconnect();
     this.send({type: 'error', code: error.code, message: error.message});
     this.setState('failed');
@@ -172,17 +236,23 @@ export class Session implements TransportHandlers {
 
   /** Applies what is here, in slices, so that the page's commands come between. */
   private advance(): void {
-    clearTimeout(this.timer);
+    this.sliceIsDue = false;
     this.guarded(() => {
-      const until = performance.now() + kSliceMs;
+      const start = performance.now();
+      const until = start + kSliceMs;
+      const {bytes} = this.assembler.statistics(this.fields);
       let applied = false;
-      while (this.assembler.step(this.fields, !this.isHeld())) {
+      while (!this.awaitsPicture() && this.assembler.step(this.fields, !this.isHeld())) {
         applied = true;
         if (performance.now() < until) continue;
-        this.timer = setTimeout(() => this.advance(), 0);
+        this.callSlice();
         break;
       }
-      if (applied) this.publisher.changed();
+      if (applied) {
+        this.decodedMs += performance.now() - start;
+        this.decodedBytes += this.assembler.statistics(this.fields).bytes - bytes;
+        this.publisher.changed(this.isComplete());
+      }
       this.tellProgress();
       if (this.isComplete()) this.complete();
       else if (this.isHeld()) this.hold();
@@ -190,10 +260,49 @@ export class Session implements TransportHandlers {
     });
   }
 
+  /** At the pace so far, once everything is here; Infinity before. */
+  private untilDecoded(): number {
+    if (this.limit.kind !== 'full' || this.decodedBytes === 0 || !this.isReceived()) return Infinity;
+    const {bytes, bytesNeeded} = this.assembler.statistics(this.fields);
+    return (bytesNeeded - bytes) * this.decodedMs / this.decodedBytes;
+  }
+
+  /** Frames come in crowds: were each to take a slice, the page's commands and the pictures would wait for all of them. */
+  private advanceSoon(): void {
+    if (!this.sliceIsDue) this.advance();
+  }
+
+  private callSlice(): void {
+    this.sliceIsDue = true;
+    if (!this.slices) {
+      this.slices = new MessageChannel();
+      this.slices.port1.onmessage = () => {
+        this.sliceIsCalled = false;
+        if (this.sliceIsDue) this.advance();
+      };
+    }
+    if (!this.sliceIsCalled) this.slices.port2.postMessage(null);
+    this.sliceIsCalled = true;
+  }
+
+  /** The first mesh that there is goes to the page before anything finer is decoded. */
+  private awaitsPicture(): boolean {
+    const {codec} = this.assembler;
+    if (!this.source.pictureFirst || this.publisher.hasPublished || codec.chunksApplied === 0) return false;
+    if (this.fields.some((field) => codec.fieldChunksApplied(field) === 0)) return false;
+    const now = performance.now();
+    if (this.pictureBy === 0) {
+      this.pictureBy = now + kFirstPictureMs;
+      setTimeout(() => this.advance(), kFirstPictureMs);
+    }
+    return now < this.pictureBy;
+  }
+
   /** From the empty mesh to the limit, at once: no picture of the way is shown. */
   private goBack(): void {
     this.assembler.rewind();
     while (this.assembler.step(this.fields, !this.isHeld())) continue;
+    this.publisher.changed(true);
   }
 
   private isHeld(): boolean {
@@ -205,17 +314,23 @@ export class Session implements TransportHandlers {
 
   private hold(): void {
     if (this.state === 'held' || this.paused) return;
-    this.publisher.changed();
+    this.publisher.changed(true);
     this.setState('held');
   }
 
   /** After a pause or a limit: what is here first, then the network. */
-  private goOn(): void {
+  private goOn(wasPaused: boolean): void {
     this.state = 'streaming';
     this.advance();
     if (this.isComplete() || this.isHeld()) return;
-    if (this.isReceived()) this.setState('streaming');
-    else this.reopen();
+    if (this.isReceived()) return this.setState('streaming');
+    const {transport} = this;
+    // The stream of before serves as long as it brings the fields of now.
+    if (!transport?.isConnected || !this.keys().every((key) => this.requested.includes(key))) return this.reopen();
+    this.setState('streaming');
+    this.aimed = true;
+    transport.aim(this.assembler.goal(this.limit, this.fields));
+    if (wasPaused && !transport.resume()) this.open();
   }
 
   // ---- helpers
@@ -234,7 +349,7 @@ export class Session implements TransportHandlers {
   private stayAtWhatFits(): boolean {
     const {tetrahedra} = this.assembler.statistics(this.fields);
     if (tetrahedra === 0) return false;
-    clearTimeout(this.timer);
+    this.sliceIsDue = false;
     this.transport?.disconnect();
     this.limit = this.source.limit = {kind: 'cells', value: Math.max(1, Math.floor(kFittingShare * tetrahedra))};
     this.guarded(() => {
@@ -248,17 +363,22 @@ export class Session implements TransportHandlers {
   }
 
   private forget(): void {
-    clearTimeout(this.timer);
+    this.sliceIsDue = false;
     this.digest = '';
+    this.wishes = {...this.wishes, marks: null, isovalue: null};
     this.fields = [];
     this.requested = [];
-    this.receivedBytes = this.unapplied = 0;
+    this.receivedBytes = this.unapplied = this.pictureBy = this.decodedBytes = this.decodedMs = 0;
     this.assembler.forget();
+    this.coarse?.forget();
     this.publisher.reset();
   }
 
+  /** Before the head is here nobody knows more than the names that were given. */
   private keys(): string[] {
-    const keys = fieldKeys(this.assembler.manifest!.fields);
+    const {manifest} = this.assembler;
+    if (!manifest) return this.source.fields ?? [];
+    const keys = fieldKeys(manifest.fields);
     return this.fields.map((field) => keys[field]!);
   }
 
@@ -272,21 +392,23 @@ export class Session implements TransportHandlers {
     if (this.fields.length === 0 && keys.length > 0 && (this.source.fields === null || unknown !== undefined)) this.fields = [0];
     this.assembler.look(this.wishes);
     this.send({type: 'manifest', manifest, digest: this.digest, fields: this.fields});
-    if (this.source.fields !== null && this.keys().every((key) => this.requested.includes(key))) return false;
+    this.tellPlan();
+    if (!this.probing && this.keys().every((key) => this.requested.includes(key))) return false;
     this.open();
     return true;
   }
 
   private open(): void {
     const {manifest} = this.assembler;
-    const asked = manifest ? this.keys() : this.source.fields ?? [];
-    // While it is unknown which fields there are, one byte of credit buys the head and nothing that another `open` would waste.
-    const probing = !manifest && this.source.fields === null;
+    const asked = this.keys();
+    // While it is unknown which fields there are, or where a limit lies, one byte of credit buys the head and nothing that another `open` would waste.
+    this.probing = !manifest && (this.source.fields === null || this.limit.kind !== 'full');
     this.requested = asked.filter((name) => name !== '');
     this.unapplied = 0;
+    this.aimed = false;
     this.transport?.open({
-      mesh: this.source.mesh, fields: this.requested, credit: probing ? 1 : kWindowBytes,
-      have: this.have(asked), wishes: this.wishes,
+      mesh: this.source.mesh, fields: this.requested, credit: this.probing ? 1 : kWindowBytes,
+      have: this.have(asked), wishes: this.wishes, goal: this.assembler.goal(this.limit, this.fields),
       ...(this.digest ? {digest: this.digest} : {}),
     });
   }
@@ -312,14 +434,15 @@ export class Session implements TransportHandlers {
   }
 
   private giveCredit(): void {
-    if (this.unapplied > 0 && !this.paused) this.transport?.applied(this.unapplied);
+    if (this.paused) return;
+    if (this.unapplied > 0) this.transport?.applied(this.unapplied);
     this.unapplied = 0;
   }
 
-  private isReceived(): boolean {
-    const {codec, manifest} = this.assembler;
-    if (!manifest || this.assembler.receivedChunks < codec.chunkCount) return false;
-    return this.fields.every((field) => this.assembler.receivedOfField(field) === codec.chunkCount);
+  /** The leading chunks, all by default, with the fields. */
+  private isReceived(chunks = this.assembler.codec.chunkCount): boolean {
+    const {assembler} = this;
+    return assembler.manifest !== null && assembler.receivedChunks >= chunks && this.fields.every((field) => assembler.receivedOfField(field) >= chunks);
   }
 
   private isComplete(): boolean {
@@ -333,12 +456,23 @@ export class Session implements TransportHandlers {
     if (this.state !== 'complete') this.setState('complete');
   }
 
+  private tellPlan(): void { this.send({type: 'plan', plan: this.assembler.plan(this.fields)}); }
+
+  /** As often as a page can show it; the last word of a burst comes late, and before any other state. */
   private tellProgress(): void {
+    this.progressTimer ??= setTimeout(() => this.sendProgress(), Math.max(0, this.progressAt + kProgressMs - performance.now()));
+  }
+
+  private sendProgress(): void {
+    clearTimeout(this.progressTimer);
+    this.progressTimer = undefined;
+    this.progressAt = performance.now();
     this.send({type: 'progress', statistics: this.assembler.statistics(this.fields), received: this.receivedBytes});
   }
 
   private setState(state: StreamState, attempt = 0, delayMs = 0): void {
     this.state = state;
+    if (this.progressTimer !== undefined) this.sendProgress();
     this.send({type: 'state', state, attempt, delayMs});
   }
 }

@@ -1,9 +1,10 @@
 // One WebSocket to /v1/stream that comes back by itself. Counts streams and credit; knows nothing of what the bytes mean.
 
 import {reconnectDelayMs} from './backoff';
-import {errorText, QtetError} from './errors';
+import {errorCode, errorText, QtetError} from './errors';
+import type {Goal} from './goal';
 import {
-  creditMessage, kSubprotocol, openMessage, parseFrame, parseServerMessage, stopMessage, viewMessage,
+  creditMessage, kSubprotocol, openMessage, parseFrame, parseServerMessage, pauseMessage, resumeMessage, stopMessage, targetMessage, viewMessage,
   type OpenRequest,
 } from './protocol';
 import type {LogTable, Transport, TransportHandlers} from './transport';
@@ -31,14 +32,21 @@ export class SocketTransport implements Transport {
   private connected = false;
   private stream = 0;
   private attempt = 0;
+  /** Counts ends, so that an address that comes too late is not used. */
+  private turn = 0;
   private timer: ReturnType<typeof setTimeout> | undefined;
   private window = 0;
   private owed = 0;
+  /** Empty: the server has not said, and then knows nothing of views, targets and pauses. */
   private layout = '';
+  private isPaused = false;
   private wishes: Wishes = kNoWishes;
+  /** The view that the server was told last. */
+  private told = '';
 
+  /** `url` is asked for before every connection where it is good for one alone. */
   constructor(
-    private readonly url: string, private readonly handlers: TransportHandlers,
+    private readonly url: string | (() => Promise<string>), private readonly handlers: TransportHandlers,
     private readonly makeSocket: SocketFactory = (address, protocol) => new WebSocket(address, protocol) as unknown as Socket,
     private readonly random: () => number = Math.random, private readonly table: Pick<LogTable, 'lattice'> | null = null) {}
 
@@ -46,7 +54,22 @@ export class SocketTransport implements Transport {
 
   connect(): void {
     this.disconnect();
-    const socket = this.makeSocket(this.url, kSubprotocol);
+    if (typeof this.url === 'string') {
+      this.connectTo(this.url);
+      return;
+    }
+    const {turn} = this;
+    this.url().then((url) => {
+      if (turn === this.turn) this.connectTo(url);
+    }, (thrown: unknown) => {
+      if (turn !== this.turn) return;
+      if (errorCode(thrown) === 'network') this.lost(0, '');
+      else this.fail(thrown);
+    });
+  }
+
+  private connectTo(url: string): void {
+    const socket = this.makeSocket(url, kSubprotocol);
     socket.binaryType = 'arraybuffer';
     this.socket = socket;
     socket.onopen = () => {
@@ -65,18 +88,40 @@ export class SocketTransport implements Transport {
     this.window = request.credit;
     this.owed = 0;
     this.layout = '';
+    this.isPaused = false;
     this.wishes = request.wishes ?? this.wishes;
-    this.socket?.send(openMessage(request, this.view()));
+    const view = this.view();
+    this.told = viewMessage(view);
+    this.socket?.send(openMessage(request, view));
   }
 
   look(wishes: Wishes): void {
     this.wishes = wishes;
-    // A server that does not say which layout the log has does not know this message.
-    if (this.connected && this.layout === 'regions') this.socket?.send(viewMessage(this.view()));
+    const text = viewMessage(this.view());
+    if (!this.connected || this.layout !== 'regions' || text === this.told) return;
+    this.told = text;
+    this.socket?.send(text);
   }
 
   stop(): void {
     if (this.connected) this.socket?.send(stopMessage());
+  }
+
+  pause(): void {
+    if (!this.connected || this.layout === '') return this.stop();
+    this.isPaused = true;
+    this.socket?.send(pauseMessage());
+  }
+
+  resume(): boolean {
+    if (!this.connected || !this.isPaused) return false;
+    this.isPaused = false;
+    this.socket?.send(resumeMessage());
+    return true;
+  }
+
+  aim(goal: Goal | null): void {
+    if (this.connected && this.layout !== '') this.socket?.send(targetMessage(goal));
   }
 
   /** Gives the credit of `bytes` applied payload bytes back; it travels once a share of the window has come together. */
@@ -88,9 +133,10 @@ export class SocketTransport implements Transport {
   /** Ends the connection for good; `connect` may be called again. */
   disconnect(): void {
     clearTimeout(this.timer);
+    ++this.turn;
     const socket = this.socket;
     this.socket = null;
-    this.connected = false;
+    this.connected = this.isPaused = false;
     if (!socket) return;
     socket.onopen = socket.onmessage = socket.onclose = null;
     socket.close(1000);
@@ -121,9 +167,13 @@ export class SocketTransport implements Transport {
       this.attempt = 0;  // only bytes prove that the connection is worth something
       this.handlers.frame(frame);
     } catch (thrown) {
-      this.disconnect();
-      this.handlers.failed(thrown instanceof QtetError ? thrown : new QtetError('internal', errorText(thrown)));
+      this.fail(thrown);
     }
+  }
+
+  private fail(thrown: unknown): void {
+    this.disconnect();
+    this.handlers.failed(thrown instanceof QtetError ? thrown : new QtetError('internal', errorText(thrown)));
   }
 
   private lost(code: number, reason: string): void {

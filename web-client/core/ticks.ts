@@ -8,7 +8,7 @@ export interface Tick {
 
 export interface Ticks {
   ticks: Tick[];
-  /** What the labels are multiplied by, as text ("× 10⁵"); empty for one. */
+  /** What the labels are multiplied by, and what is added to them then, as text ("× 10⁵", "+ 101325"); empty for neither. */
   factor: string;
 }
 
@@ -18,16 +18,27 @@ const kPlainFrom = -3;
 const kPlainBelow = 5;
 const kMinus = '\u2212';
 
-/** At most `most` (2 or more) ticks inside [low, high]. A range without width gives one tick, in the middle. */
+/** Labels have no more digits: what they have in common is told once instead. */
+const kMostDigits = 5;
+
+/** At most `most` (2 or more) ticks inside [low, high]. A range without width gives one tick, where its colour is: at the beginning. */
 export function niceTicks(low: number, high: number, most: number): Ticks {
   const largest = Math.max(Math.abs(low), Math.abs(high));
   const exponent = largest > 0 ? Math.floor(Math.log10(largest) + 1e-9) : 0;
   const power = exponent < kPlainFrom || exponent >= kPlainBelow ? exponent : 0;
   const unit = 10 ** power;
   const factor = power === 0 ? '' : `× 10${superscript(power)}`;
-  if (!(high > low)) return {ticks: [{at: 0.5, label: label(low / unit, 3, true)}], factor};
+  if (!(high > low)) return {ticks: [{at: 0, label: label(low / unit, 3, true)}], factor};
   const step = niceStep(low / unit, high / unit, most);
   const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+  const digits = Math.floor(Math.log10(Math.max(largest / unit, 1))) + 1 + decimals;
+  if (digits > kMostDigits) {
+    const base = firstTick(low / unit, step) * step * unit;
+    const {ticks, factor: small} = niceTicks(low - base, high - base, most);
+    const sign = base < 0 ? kMinus : '+';
+    const common = label(Math.abs(base), Math.max(0, Math.min(decimals - power, 20)), true);
+    if (base !== 0) return {ticks, factor: `${small} ${sign} ${common}`.trim()};
+  }
   const ticks: Tick[] = [];
   for (let i = firstTick(low / unit, step); i <= lastTick(high / unit, step); ++i) {
     const at = (i * step * unit - low) / (high - low);

@@ -6,7 +6,8 @@ import {colorTable, kColorMapEntries, type ColorMapName} from './color_maps';
 export const kOpacityPath = 0.1;
 /** Above this a path would have to be infinitely dense. */
 const kMostOpacity = 0.99;
-export const kTransferSteps = kColorMapEntries - 1;
+/** So fine that the nearest step is good enough. */
+export const kTransferSteps = 1023;
 
 export interface TransferTables {
   /** RGBA at the steps 0..kTransferSteps: colour times extinction, and extinction (a diagonal). */
@@ -30,7 +31,12 @@ export function transferTables(opacities: readonly number[], map: ColorMapName, 
     const at = (i / kTransferSteps) * (extinctions.length - 1);
     const k = Math.min(Math.floor(at), extinctions.length - 2);
     const extinction = extinctions[k]! + (at - k) * (extinctions[k + 1]! - extinctions[k]!);
-    for (let c = 0; c < 3; ++c) density[4 * i + c] = extinction * colors[4 * i + c]! / 255;
+    const color = (i / kTransferSteps) * (kColorMapEntries - 1);
+    const below = 4 * Math.floor(color);
+    for (let c = 0; c < 3; ++c) {
+      const [from, to] = [colors[below + c]!, colors[Math.min(below + 4, 4 * kColorMapEntries - 4) + c]!];
+      density[4 * i + c] = extinction * (from + (color % 1) * (to - from)) / 255;
+    }
     density[4 * i + 3] = extinction;
     if (i === 0) continue;
     for (let c = 0; c < 4; ++c) {

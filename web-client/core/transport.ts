@@ -2,6 +2,7 @@
 // messages of proto/PROTOCOL.md, and each goes on where another one ended.
 
 import type {QtetError} from './errors';
+import type {Goal} from './goal';
 import type {Packet, WireLattice, Wishes} from './wishes';
 import type {Frame, OpenRequest, ServerMessage} from './protocol';
 
@@ -23,6 +24,12 @@ export interface Transport {
   /** Starts a stream; what still arrives of the one before is dropped. */
   open(request: OpenRequest): void;
   stop(): void;
+  /** Nothing more comes until `resume` or `open`. */
+  pause(): void;
+  /** False: this transport cannot go on where it paused; `open` does. */
+  resume(): boolean;
+  /** Another place to stop at; null: nowhere before the end. */
+  aim(goal: Goal | null): void;
   /** Gives the credit of `bytes` applied payload bytes back. */
   applied(bytes: number): void;
   /** What is looked at: of a log of regions, packets come in another order from now on. */
@@ -39,7 +46,7 @@ export interface LogTable {
   /** Empty in the layout `stream`, whose order is the file's. */
   readonly packets: readonly Packet[];
   /** Null before the head is here. */
-  readonly lattice: (WireLattice & {size: number}) | null;
+  readonly lattice: WireLattice | null;
   /** In the file. */
   blockOffset(chunk: number, part: number): number;
   blockSize(chunk: number, part: number): number;

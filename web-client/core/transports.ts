@@ -4,6 +4,7 @@ import {AutoTransport, kTransportKinds, type TransportKind} from './auto_transpo
 import {ChunkSource, RangeSource} from './block_source';
 import {HttpTransport} from './http_transport';
 import {SocketTransport} from './socket_transport';
+import {fetchWith, ticketUrl} from './token';
 import type {LogTable, Transport, TransportHandlers} from './transport';
 import type {Source} from './worker_messages';
 
@@ -15,12 +16,13 @@ export function kindsOf({url, log, transport}: Pick<Source, 'url' | 'log' | 'tra
 }
 
 export function makeTransport(source: Source, table: LogTable, handlers: TransportHandlers): Transport {
-  const {url, log} = source;
+  const {url, log, token} = source;
+  const fetch = fetchWith(token);
   return new AutoTransport(kindsOf(source), (kind, its) => {
     switch (kind) {
-      case 'websocket': return new SocketTransport(url, its, undefined, undefined, table);
-      case 'range': return new HttpTransport(() => new RangeSource(log, table), table, its);
-      case 'chunks': return new HttpTransport(() => new ChunkSource(log, table), table, its);
+      case 'websocket': return new SocketTransport(token ? () => ticketUrl(url, token) : url, its, undefined, undefined, table);
+      case 'range': return new HttpTransport(() => new RangeSource(log, table, fetch), table, its);
+      case 'chunks': return new HttpTransport(() => new ChunkSource(log, table, fetch), table, its);
     }
   }, handlers);
 }

@@ -33,15 +33,16 @@ export function noSoup(): TriangleSoup {
 
 /** Smallest and largest lattice coordinates of the triangles' vertices: [x0, y0, z0, x1, y1, z1]. REQUIRES: at least one triangle. */
 export function pointBounds(points: Int32Array, triangles: Uint32Array): number[] {
-  const bounds = [Infinity, Infinity, Infinity, -Infinity, -Infinity, -Infinity];
-  for (const vertex of triangles) {
-    for (let axis = 0; axis < 3; ++axis) {
-      const value = points[3 * vertex + axis]!;
-      if (value < bounds[axis]!) bounds[axis] = value;
-      if (value > bounds[axis + 3]!) bounds[axis + 3] = value;
+  const bounds = [0, 1, 2].map((axis) => {
+    let low = Infinity, high = -Infinity;
+    for (let i = 0; i < triangles.length; ++i) {
+      const value = points[3 * triangles[i]! + axis]!;
+      if (value < low) low = value;
+      if (value > high) high = value;
     }
-  }
-  return bounds;
+    return [low, high] as const;
+  });
+  return [...bounds.map(([low]) => low), ...bounds.map(([, high]) => high)];
 }
 
 /** Several in one: whole triangles first, then the halves of quads. */

@@ -1,65 +1,83 @@
-// The cells themselves for a renderer that looks through them, and their order from back to front for any eye.
+// The cells themselves for a renderer that looks through them.
 
-import type {Vector} from './cell_ray';
-import {backToFront, neighboursOf} from './cell_order';
+import {entryFaces} from './cell_entry';
 import type {MeshNow} from './display';
 import type {FieldScale} from './field_scale';
-import type {Cells} from './section';
+import {isHole, neighboursOf} from './neighbours';
 
 export interface VolumeCells {
-  /** Counts meshes and fields: an order belongs to the cells of its version. */
-  version: number;
   /** 4 a vertex: place on the lattice and value in [0, 1]; values of a field of cells stand in `cellValues` instead. */
   vertices: Float32Array;
-  /** 4 vertices a cell */
+  /** 4 vertices a cell, in ascending order. */
   cells: Uint32Array;
+  /** 1 + the cell, with kHiddenCell added where nothing of it is to be seen. */
+  tags: Uint32Array;
+  /** Through the faces opposite to a cell's four corners, 2 numbers each: the tag of the cell beyond, and its vertex that is not of the face; 0, 0: the boundary. */
+  links: Uint32Array;
+  /** As entryFaces gives them. */
+  entries: Uint32Array;
   cellValues: Float32Array | null;
 }
 
-export interface CellOrder {
+/** A mesh with few cells instead of one with many. */
+export interface CoarseCells {
+  /** Counts such meshes. */
   version: number;
-  /** Farthest first. */
-  order: Uint32Array;
+  /** Absent where the asker has them. */
+  cells?: VolumeCells;
 }
 
-const kNoCells: Cells = {points: new Int32Array(0), tetrahedra: new Uint32Array(0)};
+export const kHiddenCell = 0x80000000;
+/** A mesh of more cells has a coarse one beside it, of no more. */
+export const kCoarseCells = 8000;
 
-/** Copies of the mesh as it was, because the codec's memory moves on. */
-export class Volume {
-  private version = 0;
-  private cells: Cells = kNoCells;
-  private neighbours: Int32Array = new Int32Array(0);
-
-  /** Takes over the mesh and gives the renderer its own copy. Cells with a corner whose value is missing are left out. */
-  take(mesh: MeshNow, scale: FieldScale, kept: Uint8Array | null): VolumeCells {
-    const tetrahedra = mesh.tetrahedra.slice();
-    const vertices = new Float32Array((4 * mesh.points.length) / 3);
-    for (let v = 0; 4 * v < vertices.length; ++v) {
-      for (let axis = 0; axis < 3; ++axis) vertices[4 * v + axis] = mesh.points[3 * v + axis]!;
-      if (!scale.ofCells) vertices[4 * v + 3] = scale.at(v);
-    }
-    const cellValues = scale.ofCells ? Float32Array.from({length: tetrahedra.length / 4}, (_, cell) => scale.at(cell)) : null;
-    this.cells = {points: mesh.points.slice(), tetrahedra, kept: withValues(tetrahedra, vertices, cellValues, kept)};
-    this.neighbours = neighboursOf(this.cells);
-    return {version: ++this.version, vertices, cells: tetrahedra.slice(), cellValues};
+/** Copies of the mesh as it is, because the codec's memory moves on. Hidden are cells that are not `kept` (null: all are), and those with a corner whose value is missing. */
+export function volumeCells(mesh: MeshNow, scale: FieldScale, kept: Uint8Array | null): VolumeCells {
+  const cells = sortedCells(mesh.tetrahedra);
+  const vertices = new Float32Array((4 * mesh.points.length) / 3);
+  for (let v = 0; 4 * v < vertices.length; ++v) {
+    for (let axis = 0; axis < 3; ++axis) vertices[4 * v + axis] = mesh.points[3 * v + axis]!;
+    if (!scale.ofCells) vertices[4 * v + 3] = scale.at(v);
   }
-
-  forget(): void {
-    this.cells = kNoCells;
-    this.neighbours = new Int32Array(0);
-  }
-
-  order(eye: Vector): CellOrder { return {version: this.version, order: backToFront(this.cells, this.neighbours, eye).slice()}; }
-}
-
-function withValues(tetrahedra: Uint32Array, vertices: Float32Array, cellValues: Float32Array | null, kept: Uint8Array | null): Uint8Array | null {
-  let some: Uint8Array | null = kept;
-  for (let cell = 0; 4 * cell < tetrahedra.length; ++cell) {
+  const cellValues = scale.ofCells ? Float32Array.from({length: cells.length / 4}, (_, cell) => scale.at(cell)) : null;
+  const isHidden = (cell: number): boolean => {
     let value = cellValues ? cellValues[cell]! : 0;
-    if (!cellValues) for (let i = 4 * cell; i < 4 * cell + 4; ++i) value += vertices[4 * tetrahedra[i]! + 3]!;
-    if (!Number.isNaN(value)) continue;
-    some ??= new Uint8Array(tetrahedra.length / 4).fill(1);
-    some[cell] = 0;
+    if (!cellValues) for (let i = 4 * cell; i < 4 * cell + 4; ++i) value += vertices[4 * cells[i]! + 3]!;
+    return kept?.[cell] === 0 || Number.isNaN(value);
+  };
+  const tags = new Uint32Array(cells.length / 4);
+  for (let cell = 0; cell < tags.length; ++cell) tags[cell] = 1 + cell + (isHidden(cell) ? kHiddenCell : 0);
+  const neighbours = neighboursOf(cells);
+  return {vertices, cells, tags, links: linksOf(cells, neighbours, tags), entries: entryFaces(vertices, cells, neighbours, tags), cellValues};
+}
+
+export function buffersOfVolume({vertices, cells, tags, links, entries, cellValues}: VolumeCells): ArrayBuffer[] {
+  return [vertices, cells, tags, links, entries, ...(cellValues ? [cellValues] : [])].map(({buffer}) => buffer as ArrayBuffer);
+}
+
+function sortedCells(tetrahedra: Uint32Array): Uint32Array {
+  const cells = tetrahedra.slice();
+  for (let at = 0; at < cells.length; at += 4) {
+    if (isHole(cells, at >> 2)) continue;
+    for (let i = at + 1; i < at + 4; ++i) {
+      const id = cells[i]!;
+      let to = i;
+      for (; to > at && cells[to - 1]! > id; --to) cells[to] = cells[to - 1]!;
+      cells[to] = id;
+    }
   }
-  return some;
+  return cells;
+}
+
+function linksOf(cells: Uint32Array, neighbours: Int32Array, tags: Uint32Array): Uint32Array {
+  const links = new Uint32Array(2 * neighbours.length);
+  for (let face = 0; face < neighbours.length; ++face) {
+    const other = neighbours[face]!;
+    if (other < 0) continue;
+    let back = 4 * other;
+    while (neighbours[back] !== face >> 2) ++back;
+    links[2 * face] = tags[other]!;
+    links[2 * face + 1] = cells[back]!;
+  }
+  return links;
 }

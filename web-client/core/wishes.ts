@@ -1,6 +1,7 @@
 // What the viewer looks at, and which packets of a log of regions to fetch first for it. In lattice coordinates; a box is a packet's, in 256ths of the lattice.
 
 import type {Vector} from './cell_ray';
+import {boundsOfMarks, meets} from './marks';
 import type {Plane} from './slice';
 
 export interface Wishes {
@@ -10,6 +11,17 @@ export interface Wishes {
   planes: Plane[];
   /** What is near it comes first. */
   point: Vector | null;
+  /** What meets them is wanted, too (marks.ts): isosurfaces, of which the worker knows where they are. */
+  marks?: Uint8Array | null;
+  /** The same for a server, which knows better where they will be. */
+  isovalue?: Isovalue | null;
+}
+
+/** As proto/PROTOCOL.md has it. */
+export interface Isovalue {
+  field: string;
+  component?: number;
+  values: number[];
 }
 
 export const kNoWishes: Wishes = {frustum: [], planes: [], point: null};
@@ -38,10 +50,10 @@ function reach(box: PacketBox, size: number, normal: readonly number[]): [number
   return [low, high];
 }
 
-/** 0 for what is in sight and on a plane, 3 for what is neither. Never above that of a box within this one, so that parents come before children. */
-export function urgency({frustum, planes}: Wishes, box: PacketBox, size: number): number {
+/** 0 for what is in sight and on a plane or marked, 3 for what is neither. Never above that of a box within this one, so that parents come before children. */
+export function urgency({frustum, planes, marks}: Wishes, box: PacketBox, size: number): number {
   const inSight = frustum.every(({normal, offset}) => reach(box, size, normal)[1] >= offset);
-  const onPlane = planes.length === 0 || planes.some(({normal, offset}) => {
+  const onPlane = (planes.length === 0 && !marks) || (marks && meets(marks, box)) || planes.some(({normal, offset}) => {
     const [low, high] = reach(box, size, normal);
     return low <= offset && offset <= high;
   });
@@ -71,16 +83,21 @@ export function inOrder(packets: readonly Packet[], wishes: Wishes, size: number
 export interface WireLattice {
   origin: readonly number[];
   step: number;
+  /** Along an axis. */
+  size: number;
 }
 
 /** As proto/PROTOCOL.md has it, in the mesh's own unit; null: no wishes. */
-export function wireView({frustum, planes, point}: Wishes, {origin, step}: WireLattice): Record<string, unknown> | null {
+export function wireView({frustum, planes, point, marks, isovalue}: Wishes, {origin, step, size}: WireLattice): Record<string, unknown> | null {
   const shift = (normal: readonly number[]): number => normal.reduce((sum, x, axis) => sum + x * origin[axis]!, 0);
   // normal . (p - origin) / step = offset
   const plane = ({normal, offset}: Plane): number[] => [...normal, -(offset * step + shift(normal))];
   const view: Record<string, unknown> = {};
   if (frustum.length > 0) view.frustum = frustum.map(plane);
   if (planes.length > 0) view.planes = planes.map(plane);
+  // Any of both would do, and the box is the larger wish.
+  if (isovalue) view.isovalue = isovalue;
+  else if (marks) view.box = boundsOfMarks(marks).map((share, i) => origin[i % 3]! + step * size * share);
   if (point) view.point = point.map((x, axis) => origin[axis]! + step * x);
   return Object.keys(view).length > 0 ? view : null;
 }

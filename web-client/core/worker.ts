@@ -1,6 +1,7 @@
 // The worker: network, decoding and cutting happen here, so that the page only draws.
 
 import {Assembler} from './assembler';
+import {CoarseVolume} from './coarse_volume';
 import {WasmCodec} from './codec';
 import {kDraco} from './draco';
 import {fieldsOf} from './display';
@@ -9,16 +10,25 @@ import {Inspector} from './inspector';
 import {Publisher} from './publisher';
 import {retry} from './retry';
 import {Session} from './session';
-import type {FromWorker, Snapshot, ToWorker} from './worker_messages';
+import {buffersOf} from './snapshot_buffers';
+import {buffersOfVolume, type CoarseCells} from './volume';
+import type {FromWorker, Posted, Snapshot, ToWorker} from './worker_messages';
 
 interface Parts {
   session: Session;
   publisher: Publisher;
+  coarse: CoarseVolume;
   codec: WasmCodec;
   inspector: Inspector;
 }
 
+declare global {
+  /** To look at. */
+  var qtetPublisher: Publisher | undefined;
+}
+
 let parts: Promise<Parts>;
+let run: number | undefined;
 
 self.onmessage = (event: MessageEvent<ToWorker>) => {
   if (event.data.type === 'load') {
@@ -35,10 +45,14 @@ self.onmessage = (event: MessageEvent<ToWorker>) => {
 };
 
 async function start(codecUrl: string): Promise<Parts> {
-  const codec = await WasmCodec.create(await retry(() => compile(codecUrl)));
+  const module = await retry(() => compile(codecUrl));
+  const codec = await WasmCodec.create(module);
   const assembler = new Assembler(codec, kDraco);
-  const publisher = new Publisher(assembler, postSnapshot);
-  return {codec, publisher, inspector: new Inspector(assembler), session: new Session(assembler, publisher, post)};
+  const publisher = globalThis.qtetPublisher = new Publisher(assembler, postSnapshot);
+  const coarse = new CoarseVolume(async () => new Assembler(await WasmCodec.create(module), kDraco));
+  const session = new Session(assembler, publisher, post);
+  session.coarse = coarse;
+  return {codec, publisher, coarse, inspector: new Inspector(assembler), session};
 }
 
 /** Compiles while it downloads; a host that serves .wasm under another type costs only that. */
@@ -49,9 +63,11 @@ async function compile(url: string): Promise<WebAssembly.Module> {
   return WebAssembly.compile(await response.arrayBuffer());
 }
 
-function obey({session, publisher, codec, inspector}: Parts, message: Exclude<ToWorker, {type: 'load'}>): void {
+function obey({session, publisher, coarse, codec, inspector}: Parts, message: Exclude<ToWorker, {type: 'load'}>): void {
   switch (message.type) {
-    case 'start': return session.start(message.source);
+    case 'start':
+      run = message.run;
+      return session.start(message.source);
     case 'display':
       publisher.show(message.display);
       return session.want(fieldsOf(message.display));
@@ -59,26 +75,25 @@ function obey({session, publisher, codec, inspector}: Parts, message: Exclude<To
     case 'look': return session.look(message.wishes);
     case 'pause': return session.pause();
     case 'resume': return session.resume();
-    case 'shown': return publisher.shown();
+    case 'shown': return publisher.shown(message.drawingMs);
+    case 'repeat': return publisher.repeat();
     case 'digest': return post({type: 'answer', id: message.id, answer: codec.chunkCount > 0 ? codec.digest() : ''});
     case 'pick': return post({type: 'answer', id: message.id, answer: inspector.pick(message.ray, publisher.display)});
     case 'probe': return post({type: 'answer', id: message.id, answer: inspector.probe(message.from, message.to, publisher.display)});
-    case 'order': {
-      const answer = publisher.volume.order(message.eye);
-      return self.postMessage({type: 'answer', id: message.id, answer} satisfies FromWorker, {transfer: [answer.order.buffer as ArrayBuffer]});
+    case 'coarse': {
+      const {id, have} = message;
+      const tell = (answer: CoarseCells | null): void =>
+        self.postMessage({type: 'answer', id, answer} satisfies FromWorker, {transfer: answer?.cells ? buffersOfVolume(answer.cells) : []});
+      return void coarse.cells(have, publisher.display).then(tell, () => tell(null));
     }
   }
 }
 
 function post(message: FromWorker): void {
-  self.postMessage(message);
+  self.postMessage({...message, run} as Posted);
 }
 
 function postSnapshot(snapshot: Snapshot): void {
-  const soups = [snapshot.surface, ...(snapshot.cuts ?? []), snapshot.isosurface].filter((soup) => soup !== undefined);
-  const buffers = soups.flatMap((soup) => [soup.positions.buffer, soup.values.buffer]) as ArrayBuffer[];
-  const {volume} = snapshot;
-  if (volume) buffers.push(...[volume.vertices.buffer, volume.cells.buffer, ...(volume.cellValues ? [volume.cellValues.buffer] : [])] as ArrayBuffer[]);
-  const message: FromWorker = {type: 'snapshot', snapshot};
-  self.postMessage(message, {transfer: buffers});
+  const message: Posted = {type: 'snapshot', snapshot, run: run!};
+  self.postMessage(message, {transfer: buffersOf(snapshot)});
 }

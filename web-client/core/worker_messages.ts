@@ -4,13 +4,14 @@ import type {TransportKind} from './auto_transport';
 import type {Ray, Vector} from './cell_ray';
 import type {Display} from './display';
 import type {Scalar} from './field_scale';
+import type {LevelBytes} from './goal';
 import type {Pick, Probe} from './inspector';
 import type {Limit} from './limit';
 import type {Manifest} from './manifest';
 import type {Plane} from './slice';
 import type {Statistics} from './statistics';
 import type {TriangleSoup} from './triangle_soup';
-import type {CellOrder, VolumeCells} from './volume';
+import type {CoarseCells, VolumeCells} from './volume';
 import type {Wishes} from './wishes';
 
 /** Where the stream stands. `paused`: by the user; `held`: the level that was asked for is here. */
@@ -23,23 +24,32 @@ export interface Source {
   log: string;
   /** `auto`: whatever works. */
   transport: 'auto' | TransportKind;
+  /** Where the server wants one for reading: sent with requests, and traded for a ticket before a WebSocket. */
+  token?: string;
   mesh: string;
   /** Names of the fields to begin with, as the server calls them; null: the first one, whichever that is; empty: none. */
   fields: string[] | null;
   limit: Limit;
+  /** Nothing is asked of the network before `resume`. */
+  paused?: boolean;
+  /** A display follows soon: decoding lets its first picture go before what is finer. */
+  pictureFirst?: boolean;
 }
 
 export type ToWorker =
   /** First of all: where the codec's WebAssembly lies. */
   | {type: 'load'; codecUrl: string}
-  | {type: 'start'; source: Source}
+  /** `run` counts the starts: what the worker says of an earlier one is of another mesh. */
+  | {type: 'start'; source: Source; run: number}
   | {type: 'display'; display: Display}
   | {type: 'limit'; limit: Limit}
   | {type: 'look'; wishes: Wishes}
   | {type: 'pause'}
   | {type: 'resume'}
   /** The last snapshot is on the screen: the next may come. */
-  | {type: 'shown'}
+  | {type: 'shown'; drawingMs?: number | undefined}
+  /** What was sent is lost: the picture once more. */
+  | {type: 'repeat'}
   | ({id: number} & Question);
 
 /** Each is answered by an `answer` of the same id. */
@@ -47,8 +57,8 @@ export type Question =
   | {type: 'digest'}
   | {type: 'pick'; ray: Ray}
   | {type: 'probe'; from: Vector; to: Vector}
-  /** Of the last snapshot's volume, as seen from `eye` (lattice coordinates). */
-  | {type: 'order'; eye: Vector};
+  /** A volume with few cells, of which the page has version `have`; null: there is none. */
+  | {type: 'coarse'; have: number};
 
 /** One consistent picture; what did not change since the last one is absent. */
 export interface Snapshot {
@@ -71,10 +81,15 @@ export interface Snapshot {
   costMs: number;
 }
 
+/** As it travels; without a run it comes from before the first start. */
+export type Posted = FromWorker & {run?: number};
+
 export type FromWorker =
   | {type: 'manifest'; manifest: Manifest; digest: string; fields: number[]}
+  /** What the fields of now will take, chunk by chunk: after `manifest`, and whenever other fields are wanted; empty: nobody knows. */
+  | {type: 'plan'; plan: LevelBytes[]}
   | {type: 'snapshot'; snapshot: Snapshot}
   | {type: 'progress'; statistics: Statistics; received: number}
   | {type: 'state'; state: StreamState; attempt: number; delayMs: number}
   | {type: 'error'; code: string; message: string}
-  | {type: 'answer'; id: number; answer: string | Pick | Probe | CellOrder | null};
+  | {type: 'answer'; id: number; answer: string | Pick | Probe | CoarseCells | null};

@@ -5,6 +5,11 @@ import type {ValueDecoder} from '../core/draco';
 import {QtetError} from '../core/errors';
 import {kFirstFieldPart, kFrameHeaderBytes, kHeadPart} from '../core/protocol';
 import type {Socket} from '../core/socket_transport';
+import type {FromWorker} from '../core/worker_messages';
+
+/** What a session has said. */
+export const statesOf = (heard: FromWorker[]): string[] => heard.flatMap((message) => (message.type === 'state' ? [message.state] : []));
+export const errorsOf = (heard: FromWorker[]): string[] => heard.flatMap((message) => (message.type === 'error' ? [message.code] : []));
 
 export class FakeSocket implements Socket {
   binaryType = '';

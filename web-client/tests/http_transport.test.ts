@@ -13,7 +13,7 @@ import {Session} from '../core/session';
 import {SocketTransport} from '../core/socket_transport';
 import {kindsOf} from '../core/transports';
 import type {FromWorker} from '../core/worker_messages';
-import {FakeCodec, FakeSocket, fakeHead, headFrame, kFakeBlockBytes, kFakeValues, meshFrame, type FakeLog} from './fakes';
+import {errorsOf, FakeCodec, FakeSocket, fakeHead, headFrame, kFakeBlockBytes, kFakeValues, meshFrame, statesOf, type FakeLog} from './fakes';
 
 const kLog: FakeLog = {fields: ['p', 'v'], chunks: 40};
 const kParts = 4;
@@ -61,10 +61,14 @@ let heard: FromWorker[];
 beforeEach(() => {
   vi.useFakeTimers();
   heard = [];
-  codec = new FakeCodec(kLog);
-  assembler = new Assembler(codec, kFakeValues);
+  expectLog(kLog);
 });
 afterEach(() => void vi.useRealTimers());
+
+function expectLog(log: FakeLog): void {
+  codec = new FakeCodec(log);
+  assembler = new Assembler(codec, kFakeValues);
+}
 
 function session(it: Host, kind: 'range' | 'chunks', fields: string[] | null = ['p']): Session {
   const made = new Session(assembler, new Publisher(assembler, () => undefined), (message) => heard.push(message), ({log}, table, handlers) =>
@@ -74,8 +78,8 @@ function session(it: Host, kind: 'range' | 'chunks', fields: string[] | null = [
 }
 
 const settle = (ms = 200): Promise<unknown> => vi.advanceTimersByTimeAsync(ms);
-const states = (): string[] => heard.flatMap((message) => (message.type === 'state' ? [message.state] : []));
-const errors = (): string[] => heard.flatMap((message) => (message.type === 'error' ? [message.code] : []));
+const states = (): string[] => statesOf(heard);
+const errors = (): string[] => errorsOf(heard);
 
 describe('ranges', () => {
   test('aFileOnAnyWebServerComesWholeInFewRequests', async () => {
@@ -98,8 +102,7 @@ describe('ranges', () => {
 
   test('whatComesBehindTheFirstAnswerIsAskedForByItsPlace', async () => {
     const log = {...kLog, chunks: 3000};
-    codec = new FakeCodec(log);
-    assembler = new Assembler(codec, kFakeValues);
+    expectLog(log);
     const bytes = file(log);
     const it = host(() => bytes);
     session(it, 'range');
@@ -108,6 +111,24 @@ describe('ranges', () => {
     expect(it.asked[1]).toMatch(/^bytes=65536-/);
     const last = Number(/-(\d+)$/.exec(it.asked.at(-1)!)![1]);
     expect(last).toBe(bytes.length - kFakeBlockBytes - 1);  // the other field's last block is nobody's wish
+  });
+
+  test('whatLiesBehindTheGoalIsNotFetchedBeforeItIsWanted', async () => {
+    const log = {...kLog, chunks: 9000};
+    expectLog(log);
+    const bytes = file(log);
+    const it = host(() => bytes);
+    const made = session(it, 'range');
+    made.setLimit({kind: 'cells', value: 4000});
+    await settle(1000);
+    expect(states().at(-1)).toBe('held');
+    const end = fakeHead(log).length + 4000 * kParts * kFakeBlockBytes;
+    const fetched = (): number => Math.max(...it.asked.map((range) => Number(/-(\d+)$/.exec(range)![1])));
+    expect(fetched()).toBeLessThan(end);
+    made.setLimit(kFull);
+    await settle(1000);
+    expect(states().at(-1)).toBe('complete');
+    expect(fetched()).toBeGreaterThan(bytes.length - 2 * kParts * kFakeBlockBytes);
   });
 
   test('aLostLineIsTriedAgainAndGoesOnWhereItWas', async () => {
@@ -122,8 +143,7 @@ describe('ranges', () => {
 
   test('anotherFileInItsPlaceIsNoticedAndReadFromTheStart', async () => {
     const log = {...kLog, chunks: 3000};
-    codec = new FakeCodec(log);
-    assembler = new Assembler(codec, kFakeValues);
+    expectLog(log);
     const it = host(() => file(log));
     const inner = it.fetch;
     it.fetch = (url, init) => {
@@ -134,6 +154,26 @@ describe('ranges', () => {
     await settle(1000);
     expect(it.asked.filter((range) => range === 'bytes=0-65535')).toHaveLength(2);
     expect(states().at(-1)).toBe('complete');
+  });
+
+  test('aFileThatTookItsPlaceDuringAPauseIsReadFromTheStart', async () => {
+    const it = host(() => file(kLog));
+    it.tag = `"${kSha}"`;
+    const inner = it.fetch;
+    it.fetch = (url, init) => {
+      if (it.asked.length === 10 && it.tag.includes(kSha)) made.pause();
+      return inner(url, init);
+    };
+    const made = session(it, 'chunks');
+    await settle();
+    expect([codec.chunksApplied > 0, codec.chunksApplied < 10, states().at(-1)]).toEqual([true, true, 'paused']);
+    it.tag = `"${'b'.repeat(64)}"`;
+    it.asked = [];
+    made.resume();
+    await settle(5000);
+    expect(it.asked.slice(0, 3).map((url) => url.replace(/.*\/m\//, ''))).toEqual(['base', 'base', 'chunks/0']);  // which log it is, and all of it anew
+    await settle(5000);
+    expect([codec.chunksApplied, errors(), states().at(-1)]).toEqual([40, [], 'complete']);
   });
 
   test('aPageInsteadOfALogIsSaidToBeNone', async () => {
@@ -151,8 +191,7 @@ describe('ranges', () => {
 
   test('noMoreIsAskedForThanTheCreditAllows', async () => {
     const log = {...kLog, chunks: 5000};
-    codec = new FakeCodec(log);
-    assembler = new Assembler(codec, kFakeValues);
+    expectLog(log);
     const bytes = file(log);
     const it = host(() => bytes);
     let payload = 0;
@@ -230,18 +269,4 @@ describe('the choice among transports', () => {
     expect(kindsOf({url: 'ws://x', log: '', transport: 'auto'})).toEqual(['websocket']);
     expect(kindsOf({url: 'ws://x', log: 'x', transport: 'auto'})).toEqual(['websocket', 'range', 'chunks']);
   });
-});
-
-test('aDigestOfAnotherLogStartsAnew', async () => {
-  const it = host(() => file(kLog));
-  it.tag = `"${kSha}"`;
-  const messages: string[] = [];
-  const transport: HttpTransport = new HttpTransport(() => new RangeSource('https://x/f.qtet', assembler, it.fetch), assembler, {
-    connected: () => transport.open({mesh: 'm', fields: [], have: {chunks: 0, fields: {}}, credit: 1000, digest: 'b'.repeat(64)}),
-    message: (message) => messages.push(message.type === 'error' ? message.code : message.type), down: () => undefined, failed: () => undefined,
-    frame: () => undefined,
-  });
-  transport.connect();
-  await settle();
-  expect(messages).toEqual(['log-changed']);
 });

@@ -7,6 +7,7 @@ import {ChunkSource} from '../core/block_source';
 import {WasmCodec} from '../core/codec';
 import {kDraco} from '../core/draco';
 import {HttpTransport, piecesOf} from '../core/http_transport';
+import {marksOf} from '../core/marks';
 import {kFirstFieldPart, kHeadPart, kStructurePart, type OpenRequest} from '../core/protocol';
 import {inOrder, kNoWishes, urgency, wireView, type Packet, type Wishes} from '../core/wishes';
 import {kTestWasm} from './whole_log';
@@ -150,7 +151,11 @@ test('boxesInSightComeBeforeBoxesBehindAndParentsBeforeChildren', () => {
 });
 
 test('wishesTravelInTheMeshsOwnUnits', () => {
-  const view = wireView({frustum: [{normal: [0, 0, 1], offset: 10}], planes: [{normal: [1, 0, 0], offset: 4}], point: [2, 0, 0]}, {origin: [100, 0, 0], step: 0.5});
+  const view = wireView({frustum: [{normal: [0, 0, 1], offset: 10}], planes: [{normal: [1, 0, 0], offset: 4}], point: [2, 0, 0]}, {origin: [100, 0, 0], step: 0.5, size: 256});
   expect(view).toEqual({frustum: [[0, 0, 1, -5]], planes: [[1, 0, 0, -102]], point: [101, 0, 0]});
-  expect(wireView(kNoWishes, {origin: [0, 0, 0], step: 1})).toBeNull();
+  expect(wireView(kNoWishes, {origin: [0, 0, 0], step: 1, size: 256})).toBeNull();
+  const marks = marksOf(Float32Array.of(8, 8, 8), 256);
+  expect(wireView({...kNoWishes, marks}, {origin: [0, 0, 0], step: 1, size: 256})).toEqual({box: [0, 0, 0, 32, 32, 32]});
+  // A box beside it would be a wish of its own.
+  expect(wireView({...kNoWishes, marks, isovalue: {field: 'p', values: [2]}}, {origin: [0, 0, 0], step: 1, size: 256})).toEqual({isovalue: {field: 'p', values: [2]}});
 });

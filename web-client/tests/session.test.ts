@@ -1,12 +1,16 @@
 import {afterEach, beforeEach, describe, expect, test, vi} from 'vitest';
 import {Assembler} from '../core/assembler';
 import {kLongestDelayMs} from '../core/backoff';
+import {kPlainDisplay} from '../core/display';
 import {kFull} from '../core/limit';
 import {Publisher} from '../core/publisher';
+import {parseFrame} from '../core/protocol';
 import {Session} from '../core/session';
 import {SocketTransport} from '../core/socket_transport';
-import type {FromWorker, Source} from '../core/worker_messages';
-import {FakeCodec, FakeSocket, fakeHead, fieldFrame, headFrame, kFakeBlockBytes, kFakeValues, meshFrame, type FakeLog} from './fakes';
+import type {Transport} from '../core/transport';
+import type {Wishes} from '../core/wishes';
+import type {FromWorker, Snapshot, Source} from '../core/worker_messages';
+import {errorsOf, FakeCodec, FakeSocket, fakeHead, fieldFrame, headFrame, kFakeBlockBytes, kFakeValues, meshFrame, statesOf, type FakeLog} from './fakes';
 
 const kLog: FakeLog = {fields: ['p', 'v'], chunks: 3};
 
@@ -14,6 +18,8 @@ let codec: FakeCodec;
 let session: Session;
 let sockets: FakeSocket[];
 let heard: FromWorker[];
+let publisher: Publisher;
+let pictures: Snapshot[];
 
 beforeEach(() => {
   vi.useFakeTimers();
@@ -21,7 +27,8 @@ beforeEach(() => {
   heard = [];
   codec = new FakeCodec(kLog);
   const assembler = new Assembler(codec, kFakeValues);
-  const publisher = new Publisher(assembler, () => undefined);
+  pictures = [];
+  publisher = new Publisher(assembler, (snapshot) => void pictures.push(snapshot));
   const makeSocket = (): FakeSocket => {
     sockets.push(new FakeSocket());
     return sockets.at(-1)!;
@@ -38,13 +45,14 @@ function start(source: Partial<Source> = {}): FakeSocket {
   return sockets.at(-1)!;
 }
 
-function opened(socket: FakeSocket, stream: number, digest = 'd1'): void {
-  socket.deliver(JSON.stringify({type: 'opened', stream, mesh: 'm', digest, bytes: 1000, planned: 100}));
+/** Servers that know of targets and pauses say the layout. */
+function opened(socket: FakeSocket, stream: number, layout?: string): void {
+  socket.deliver(JSON.stringify({type: 'opened', stream, mesh: 'm', digest: 'd1', bytes: 1000, planned: 100, layout}));
 }
 
-const states = (): string[] => heard.flatMap((message) => (message.type === 'state' ? [message.state] : []));
+const states = (): string[] => statesOf(heard);
 const opens = (): Record<string, unknown>[] => sockets.flatMap((socket) => socket.sentOf('open'));
-const errors = (): string[] => heard.flatMap((message) => (message.type === 'error' ? [message.code] : []));
+const errors = (): string[] => errorsOf(heard);
 
 function sendAll(socket: FakeSocket, stream: number, field: number, from = 0): void {
   for (let chunk = from; chunk < kLog.chunks; ++chunk) {
@@ -54,15 +62,74 @@ function sendAll(socket: FakeSocket, stream: number, field: number, from = 0): v
   socket.deliver(JSON.stringify({type: 'done', stream}));
 }
 
+describe('the first picture', () => {
+  test('goesOutBeforeAnythingFinerIsDecoded', () => {
+    const socket = start({pictureFirst: true});
+    opened(socket, 1);
+    socket.deliver(headFrame(1, kLog));
+    sendAll(socket, 1, 0);
+    expect(codec.chunksApplied).toBe(1);
+    publisher.show({...kPlainDisplay, color: {field: 0, component: -1}});
+    vi.advanceTimersByTime(20);
+    expect(pictures.map(({statistics}) => statistics.chunks)).toEqual([1]);
+    expect(codec.chunksApplied).toBe(kLog.chunks);
+    expect(states().at(-1)).toBe('complete');
+  });
+
+  test('isNotWaitedForWithoutEnd', () => {
+    const socket = start({pictureFirst: true});
+    opened(socket, 1);
+    socket.deliver(headFrame(1, kLog));
+    sendAll(socket, 1, 0);
+    vi.advanceTimersByTime(499);
+    expect(codec.chunksApplied).toBe(1);
+    vi.advanceTimersByTime(1);
+    expect(codec.chunksApplied).toBe(kLog.chunks);
+  });
+});
+
+describe('decoding', () => {
+  test('takesOneSliceHoweverManyFramesComeAtOnce', async () => {
+    const apply = codec.apply.bind(codec);
+    let elapsedMs = 0;
+    vi.spyOn(performance, 'now').mockImplementation(() => elapsedMs);
+    codec.apply = (chunk) => {
+      elapsedMs += 1000;
+      apply(chunk);
+    };
+    const socket = start();
+    opened(socket, 1);
+    socket.deliver(headFrame(1, kLog));
+    sendAll(socket, 1, 0);
+    expect(codec.chunksApplied).toBe(1);
+    vi.useRealTimers();
+    while (states().at(-1) !== 'complete') await new Promise((resolve) => void setTimeout(resolve));
+    expect(codec.chunksApplied).toBe(kLog.chunks);
+    vi.restoreAllMocks();
+  });
+});
+
+test('whatLiesAheadIsToldWithTheHeadAndAnewForOtherFields', () => {
+  const socket = start();
+  opened(socket, 1);
+  socket.deliver(headFrame(1, kLog));
+  session.want([0, 1]);
+  const plans = heard.flatMap((message) => (message.type === 'plan' ? [message.plan] : []));
+  const head = fakeHead(kLog).length;
+  expect(plans).toEqual([3, 4].map((blocks) => [1, 2, 3].map((chunks) => ({bytes: head + chunks * blocks * kFakeBlockBytes, level: chunks - 1}))));
+});
+
 describe('a stream', () => {
   test('goesFromConnectingToCompleteAndCountsItsBytes', () => {
     const socket = start();
     opened(socket, 1);
     socket.deliver(headFrame(1, kLog));
+    vi.advanceTimersByTime(0);
     sendAll(socket, 1, 0);
     expect(states()).toEqual(['connecting', 'streaming', 'complete']);
     const progress = heard.flatMap((message) => (message.type === 'progress' ? [message.statistics] : []));
     const needed = fakeHead(kLog).length + 9 * kFakeBlockBytes;
+    expect(progress).toHaveLength(2);  // of the head, and of everything before the state that says so
     expect(progress[0]).toMatchObject({bytes: fakeHead(kLog).length, bytesNeeded: needed, total: {tetrahedra: 3}});
     expect(progress.at(-1)).toMatchObject({bytes: needed, bytesNeeded: needed, tetrahedra: 3, chunks: 3});
   });
@@ -191,11 +258,11 @@ describe('a limit', () => {
   test('holdsTheMeshAndTheCreditAndGoesOnFromWhatIsHere', () => {
     const socket = start({limit: {kind: 'cells', value: 2}});
     socket.deliver(headFrame(1, kLog));
-    sendAll(socket, 1, 0);
+    sendAll(socket, 2, 0);
     expect([codec.chunksApplied, states().at(-1)]).toEqual([2, 'held']);
     session.setLimit(kFull);
     expect([codec.chunksApplied, states().at(-1)]).toEqual([3, 'complete']);
-    expect(opens()).toHaveLength(1);
+    expect(opens()).toHaveLength(2);
   });
 
   test('coarserThanNowGoesBackWithoutTheNetwork', () => {
@@ -212,14 +279,106 @@ describe('a limit', () => {
   test('ofWhichTheRestIsNotHereAsksTheServerForIt', () => {
     const socket = start({limit: {kind: 'cells', value: 1}});
     socket.deliver(headFrame(1, kLog));
-    socket.deliver(meshFrame(1, 0));
-    socket.deliver(fieldFrame(1, 0, 0));
+    socket.deliver(meshFrame(2, 0));
+    socket.deliver(fieldFrame(2, 0, 0));
     socket.lose(1006);
     vi.advanceTimersByTime(10 * kLongestDelayMs);
     expect([sockets.length, states().at(-1)]).toEqual([1, 'held']);
     session.setLimit(kFull);
     sockets.at(-1)!.accept();
     expect(opens().at(-1)).toMatchObject({have: {chunks: 1, fields: {p: 1}}});
+  });
+});
+
+describe('a target', () => {
+  test('stopsTheServerAtTheLevelThatTheLimitReaches', () => {
+    const socket = start({limit: {kind: 'cells', value: 2}});
+    opened(socket, 1, 'stream');
+    socket.deliver(headFrame(1, kLog));
+    expect(opens()).toMatchObject([{credit: 1}, {target: {level: 1}}]);
+    opened(socket, 2, 'stream');
+    for (const chunk of [0, 1]) {
+      socket.deliver(meshFrame(2, chunk));
+      socket.deliver(fieldFrame(2, chunk, 0));
+    }
+    socket.deliver(JSON.stringify({type: 'done', stream: 2}));
+    expect([errors(), states().at(-1)]).toEqual([[], 'held']);
+    session.setLimit(kFull);
+    expect(socket.sentOf('target')).toEqual([{type: 'target', target: null}]);
+    sendAll(socket, 2, 0, 2);
+    expect([opens().length, states().at(-1)]).toEqual([2, 'complete']);
+  });
+
+  test('thatWasNotReachedIsAnError', () => {
+    const socket = start({limit: {kind: 'bytes', value: fakeHead(kLog).length + 50}});
+    opened(socket, 1, 'stream');
+    socket.deliver(headFrame(1, kLog));
+    socket.deliver(meshFrame(2, 0));
+    socket.deliver(JSON.stringify({type: 'done', stream: 2}));
+    expect(errors()).toEqual(['incomplete']);
+  });
+
+  test('ofBeforeMayBeDoneWhileTheNewOneIsOnItsWay', () => {
+    const socket = start({limit: {kind: 'cells', value: 1}});
+    opened(socket, 1, 'stream');
+    socket.deliver(headFrame(1, kLog));
+    opened(socket, 2, 'stream');
+    session.setLimit({kind: 'cells', value: 2});
+    socket.deliver(meshFrame(2, 0));
+    socket.deliver(fieldFrame(2, 0, 0));
+    socket.deliver(JSON.stringify({type: 'done', stream: 2}));
+    expect(errors()).toEqual([]);
+    expect(opens().at(-1)).toMatchObject({target: {level: 1}, have: {chunks: 1, fields: {p: 1}}});
+    opened(socket, 3, 'stream');
+    socket.deliver(JSON.stringify({type: 'done', stream: 3}));  // the one that was asked for now
+    expect(errors()).toEqual(['incomplete']);
+  });
+
+  test('standsInTheOpenOfAConnectionThatComesBack', () => {
+    const socket = start({limit: {kind: 'cells', value: 3}});
+    opened(socket, 1, 'stream');
+    socket.deliver(headFrame(1, kLog));
+    socket.lose(1006);
+    vi.advanceTimersByTime(kLongestDelayMs);
+    sockets.at(-1)!.accept();
+    expect(opens().at(-1)).toMatchObject({target: {level: 2}, have: {chunks: 0}});
+  });
+
+  test('aPauseKeepsTheStreamAndTheCreditOfWhatCameMeanwhile', () => {
+    const socket = start();
+    opened(socket, 1, 'stream');
+    socket.deliver(headFrame(1, kLog));
+    session.pause();
+    expect(socket.sentOf('pause')).toHaveLength(1);
+    for (const chunk of [0, 1]) {
+      socket.deliver(meshFrame(1, chunk));
+      socket.deliver(fieldFrame(1, chunk, 0));
+    }
+    expect(socket.sentOf('credit')).toEqual([]);
+    session.resume();
+    expect([opens().length, socket.sentOf('resume').length]).toEqual([1, 1]);
+    sendAll(socket, 1, 0, 2);
+    expect(states().at(-1)).toBe('complete');
+  });
+
+  test('aPauseInWhichAnotherFieldWasWishedForEndsWithAnOpen', () => {
+    const socket = start();
+    opened(socket, 1, 'stream');
+    socket.deliver(headFrame(1, kLog));
+    session.pause();
+    session.want([1]);
+    session.resume();
+    expect([opens().at(-1)!.fields, socket.sentOf('resume').length]).toEqual([['v'], 0]);
+  });
+
+  test('aLimitThatIsSetDuringAPauseEndsIt', () => {
+    const socket = start();
+    opened(socket, 1, 'stream');
+    socket.deliver(headFrame(1, kLog));
+    session.pause();
+    session.setLimit({kind: 'cells', value: 1});
+    expect(states().at(-1)).toBe('streaming');
+    expect([socket.sentOf('target').at(-1)!.target, socket.sentOf('resume').length]).toEqual([{level: 0}, 1]);
   });
 });
 
@@ -235,6 +394,44 @@ describe('pausing', () => {
     expect(opens().at(-1)).toMatchObject({have: {chunks: 1, fields: {p: 1}}});
     sendAll(socket, 2, 0, 1);
     expect(states().at(-1)).toBe('complete');
+  });
+
+  test('beforeTheHeadEndsWithAnOpen', () => {
+    session.start({url: 'ws://x', log: '', transport: 'auto', mesh: 'm', fields: null, limit: kFull});
+    session.pause();
+    sockets[0]!.accept();
+    expect([opens(), states().at(-1)]).toEqual([[], 'paused']);
+    session.resume();
+    expect(opens()).toMatchObject([{fields: [], credit: 1}]);
+    sockets[0]!.deliver(headFrame(1, kLog));
+    session.pause();
+    session.resume();
+    sendAll(sockets[0]!, 3, 0);
+    expect(states().at(-1)).toBe('complete');
+  });
+
+  test('fromTheStartAsksNothingBeforeItEnds', () => {
+    session.pause();
+    expect(heard).toEqual([]);  // of what is not there yet
+    session.start({url: 'ws://x', log: '', transport: 'auto', mesh: 'm', fields: ['p'], limit: kFull, paused: true});
+    expect([sockets.length, states()]).toEqual([0, ['paused']]);
+    session.resume();
+    sockets[0]!.accept();
+    sockets[0]!.deliver(headFrame(1, kLog));
+    sendAll(sockets[0]!, 1, 0);
+    expect(states().at(-1)).toBe('complete');
+  });
+
+  test('fromTheStartIsOverWhenAFailureIsTriedAgain', () => {
+    codec.corrupt = 0;
+    session.start({url: 'ws://x', log: '', transport: 'auto', mesh: 'm', fields: ['p'], limit: kFull, paused: true});
+    session.resume();
+    sockets[0]!.accept();
+    sockets[0]!.deliver(headFrame(1, kLog));
+    sockets[0]!.deliver(meshFrame(1, 0));
+    expect(states().at(-1)).toBe('failed');
+    session.resume();
+    expect([sockets.length, states().at(-1)]).toEqual([2, 'connecting']);
   });
 
   test('aLostConnectionDuringAPauseWaitsForTheUser', () => {
@@ -262,6 +459,19 @@ describe('memory', () => {
     expect(codec.chunksApplied).toBe(1);
   });
 
+  test('whereThereIsMoreOfItByNowTheMeshGoesOn', () => {
+    codec.room = 2;
+    const socket = start();
+    opened(socket, 1);
+    socket.deliver(headFrame(1, kLog));
+    sendAll(socket, 1, 0);
+    codec.room = Infinity;
+    session.setLimit(kFull);
+    sockets.at(-1)!.accept();
+    sockets.at(-1)!.deliver(fieldFrame(1, 2, 0));  // it came when the connection was given up
+    expect([codec.chunksApplied, states().at(-1)]).toEqual([kLog.chunks, 'complete']);
+  });
+
   test('whereNotEvenTheFirstChunkFitsItFails', () => {
     codec.room = 0;
     const socket = start();
@@ -271,4 +481,32 @@ describe('memory', () => {
     expect(errors()).toEqual(['out-of-memory']);
     expect(states().at(-1)).toBe('failed');
   });
+});
+
+/** Head chunk 0, and packets; who carries them only hears the wishes. */
+test('whatIsosurfacesAreShownIsToldByFieldAndValue', () => {
+  const log: FakeLog = {fields: ['p'], cellFields: ['p'], chunks: 3};
+  const parts = new FakeCodec(log);
+  Object.defineProperty(parts, 'headChunks', {value: 1});
+  const assembler = new Assembler(parts, kFakeValues);
+  const publishing = new Publisher(assembler, () => undefined);
+  const wishes: Wishes[] = [];
+  const silent = {isConnected: true, connect: () => undefined, open: () => undefined, disconnect: () => undefined, applied: () => undefined, look: (its: Wishes) => wishes.push(its)};
+  const telling = new Session(assembler, publishing, () => undefined, () => silent as unknown as Transport);
+  telling.start({url: 'ws://x', log: '', transport: 'auto', mesh: 'm', fields: ['p'], limit: kFull});
+  telling.frame(parseFrame(headFrame(1, log)));
+  const show = (field: number, values: number[]): void => {
+    publishing.show({...kPlainDisplay, isosurfaces: {scalar: {field, component: -1}, values}});
+    publishing.onIsosurface(Float32Array.of(1, 1, 1));
+  };
+  show(0, [0, 0.5]);
+  expect(wishes.at(-1)!.isovalue).toEqual({field: 'p', values: [0, 127.5]});  // the field's range is 0 to 255
+  show(0, [0, 0.5]);
+  expect(wishes).toHaveLength(1);
+  show(0, [0.2]);
+  expect(wishes.at(-1)!.isovalue).toEqual({field: 'p', values: [51]});
+  show(0, Array.from({length: 9}, (_, i) => i / 9));  // more than a view may have: the box has to do
+  expect(wishes.at(-1)!.isovalue).toBeNull();
+  show(1, [0.5]);  // of cells
+  expect(wishes.at(-1)!).toMatchObject({isovalue: null, marks: expect.any(Uint8Array)});
 });

@@ -2,6 +2,7 @@
 
 import {readFileSync} from 'node:fs';
 import {Assembler} from '../core/assembler';
+import {headBytesOf} from '../core/block_source';
 import {WasmCodec} from '../core/codec';
 import type {ValueDecoder} from '../core/draco';
 import {QtetError} from '../core/errors';
@@ -9,14 +10,12 @@ import {kFirstFieldPart, kHeadPart} from '../core/protocol';
 
 /** Empty: tests that need it are skipped. */
 export const kTestWasm = process.env.QTET_WASM ?? '';
-const kHeaderBytes = 64;
 
 /** Throws what the assembler and the codec throw, and `truncated`. */
 export async function takeWholeLog(log: Uint8Array, values: ValueDecoder): Promise<Assembler> {
   const codec = await WasmCodec.create(await WebAssembly.compile(readFileSync(kTestWasm)));
   const assembler = new Assembler(codec, values);
-  const header = new DataView(log.buffer, log.byteOffset, log.byteLength);
-  const headBytes = log.length < kHeaderBytes ? log.length : kHeaderBytes + header.getUint32(24, true) + header.getUint32(28, true);
+  const headBytes = headBytesOf(log);
   assembler.take({stream: 1, chunk: 0, firstPart: kHeadPart, parts: 0, payload: log.subarray(0, headBytes)});
   const parts = kFirstFieldPart + assembler.manifest!.fields.length;
   for (let chunk = 0, at = headBytes; chunk < codec.chunkCount; ++chunk) {

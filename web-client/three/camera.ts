@@ -12,6 +12,8 @@ const kFirstDirection = new Vector3(0.62, -1, 0.55).normalize();
 const kUp = new Vector3(0, 0, 1);
 /** Air round a mesh that has just been fitted. */
 const kMargin = 1.16;
+/** The near plane comes no nearer to the eye than this, in radii. */
+export const kLeastNear = 0.01;
 /** Nothing is farther from the middle than this, in radii. */
 const kDepth = 2.5;
 
@@ -19,7 +21,7 @@ const kDepth = 2.5;
 export type CameraState = [number, number, number, number, number, number];
 
 export class OrbitCamera {
-  readonly camera = new PerspectiveCamera(kFieldOfViewDegrees, 1, 0.01, 100);
+  readonly camera = new PerspectiveCamera(kFieldOfViewDegrees, 1, kLeastNear, 100);
   readonly controls: OrbitControls;
   /** Until somebody turns or zooms, the mesh stays fitted to the space that there is. */
   fitted = true;
@@ -31,8 +33,13 @@ export class OrbitCamera {
     this.camera.position.copy(kFirstDirection).multiplyScalar(4);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.zoomToCursor = true;
-    this.controls.addEventListener('change', changed);
-    this.controls.addEventListener('start', () => void (this.fitted = false));
+    let held = false;
+    this.controls.addEventListener('start', () => void (held = true));
+    this.controls.addEventListener('end', () => void (held = false));
+    this.controls.addEventListener('change', () => {
+      if (held) this.fitted = false;  // a tap alone moves nothing
+      changed();
+    });
   }
 
   get parallel(): boolean { return this.camera.fov === kParallelDegrees; }
@@ -105,7 +112,7 @@ export class OrbitCamera {
   /** To be called before every frame: the depths that there are, and no more, so that the parallel view keeps its digits. */
   setDepths(): void {
     const distance = this.camera.position.length();
-    this.camera.near = Math.max(0.01, distance - kDepth);
+    this.camera.near = Math.max(kLeastNear, distance - kDepth);
     this.camera.far = distance + kDepth;
     this.camera.updateProjectionMatrix();
   }

@@ -1,52 +1,57 @@
-// How fine a costly picture may be drawn: coarse while something moves, fine once it rests, by what the last ones took on the graphics' side.
+// What pictures take on the graphics' side, and how many pixels one may have that is drawn while something moves.
 
-/** A moving picture takes at most so long, and one at rest. */
-const kMovingMs = 60;
-const kRestingMs = 1200;
+/** A moving picture takes at most so long. */
+export const kMovingMs = 60;
 /** Shares of the canvas's pixels each way: below this one sees nothing. */
 const kLeastShare = 0.2;
+/** Asking takes time from whoever works: the longer a picture takes, the rarer. */
 const kPollMs = 4;
+const kPollShare = 0.125;
+
+const pause = (start: number): Promise<void> => new Promise((resolve) => setTimeout(resolve, Math.max(kPollMs, kPollShare * (performance.now() - start))));
+
+/** Waits until the graphics have drawn what they were told so far; gives the time since `start`. */
+export async function whenDrawn(gl: WebGL2RenderingContext, start: number): Promise<number> {
+  const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+  gl.flush();
+  do await pause(start); while (fence && !gl.isContextLost() && gl.clientWaitSync(fence, 0, 0) === gl.TIMEOUT_EXPIRED);
+  gl.deleteSync(fence);
+  return performance.now() - start;
+}
+
+/** Calls `draw`, and gives whether any pixel of it passes the tests of depth and shader. */
+export async function reachesPixels(gl: WebGL2RenderingContext, draw: () => void): Promise<boolean> {
+  const query = gl.isContextLost() ? null : gl.createQuery();
+  if (query) gl.beginQuery(gl.ANY_SAMPLES_PASSED, query);
+  const start = performance.now();
+  draw();
+  if (!query) return false;
+  gl.endQuery(gl.ANY_SAMPLES_PASSED);
+  gl.flush();
+  do await pause(start); while (!gl.isContextLost() && !gl.getQueryParameter(query, gl.QUERY_RESULT_AVAILABLE));
+  const reaches = Boolean(gl.getQueryParameter(query, gl.QUERY_RESULT));
+  gl.deleteQuery(query);
+  return reaches;
+}
 
 export class FrameBudget {
-  /** What the cells take, and all pixels, in ms. */
+  /** What the cells take, and all pixels, in ms; who needs a budget is slow. */
   private fixed = 0;
-  private perPicture = 0;
+  private perPicture = 10 * kMovingMs;
   private last: {share: number; ms: number} | null = null;
-  private pending = false;
 
-  get busy(): boolean { return this.pending; }
-
-  share(moving: boolean): number {
-    const most = moving ? kMovingMs : kRestingMs;
-    if (this.fixed + this.perPicture <= most) return 1;
-    return Math.max(kLeastShare, Math.sqrt(Math.max(0, most - this.fixed) / this.perPicture));
+  share(): number {
+    if (this.fixed + this.perPicture <= kMovingMs) return 1;
+    return Math.max(kLeastShare, Math.min(1, Math.sqrt(Math.max(0, kMovingMs - this.fixed) / this.perPicture)));
   }
 
   /** Two pictures of different sizes tell what goes by pixels; until then all of it does. */
-  private learn(share: number, ms: number): void {
+  learn(share: number, ms: number): void {
     const {last} = this;
     const difference = last ? share * share - last.share * last.share : 0;
     const slope = last && Math.abs(difference) > 0.02 ? (ms - last.ms) / difference : 0;
     this.perPicture = slope > 0 ? slope : Math.max(1, ms - this.fixed) / (share * share);
     if (slope > 0) this.fixed = Math.max(0, ms - slope * share * share);
     this.last = {share, ms};
-  }
-
-  /** To be called after the picture's commands; `done` once the graphics have drawn it. */
-  measure(gl: WebGL2RenderingContext, share: number, done: () => void): void {
-    const start = performance.now();
-    const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
-    if (!fence) return;
-    gl.flush();
-    this.pending = true;
-    const poll = (): void => {
-      const status = gl.isContextLost() ? gl.WAIT_FAILED : gl.clientWaitSync(fence, 0, 0);
-      if (status === gl.TIMEOUT_EXPIRED) return void setTimeout(poll, kPollMs);
-      gl.deleteSync(fence);
-      this.pending = false;
-      this.learn(share, performance.now() - start);
-      done();
-    };
-    setTimeout(poll, kPollMs);
   }
 }

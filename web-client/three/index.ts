@@ -3,5 +3,8 @@
 export {OrbitCamera, type CameraState} from './camera';
 export {kDirections, type Direction} from './directions';
 export {FieldMaterial} from './field_material';
-export {MeshView, type Insets, type Look, type ViewListeners} from './mesh_view';
+export {openView} from './far_view';
+export {MeshView} from './mesh_view';
+export type {Pose} from './pose';
 export {SoupMesh} from './soup_mesh';
+export type {Insets, Look, View, ViewListeners} from './view';

@@ -1,59 +1,29 @@
 // A canvas that shows a progressive mesh: surface, cuts and isosurfaces. Draws only when something changed.
 
-import {Frustum, Group, Matrix4, Quaternion, Raycaster, Scene, Vector2, Vector3, WebGLRenderer} from 'three';
+import {Frustum, Group, Matrix4, Scene, Vector3, WebGLRenderer} from 'three';
 import type {Ray, Vector} from '../core/cell_ray';
-import type {ColorMapName} from '../core/color_maps';
 import {kMostPlanes} from '../core/display';
 import {transferTables} from '../core/transfer';
-import type {CellOrder, VolumeCells} from '../core/volume';
-import type {Plane} from '../core/slice';
+import type {VolumeCells} from '../core/volume';
 import type {Snapshot} from '../core/worker_messages';
+import {kRow, mostRows} from './cell_textures';
 import {OrbitCamera, type CameraState} from './camera';
-import type {Direction} from './directions';
-import {DeepTarget} from './deep_target';
-import {FrameBudget} from './frame_budget';
+import {checkedDirection, type Direction} from './directions';
+import {pixelRatioOf, surfaceOf, watchSize, type ViewCanvas} from './far_canvas';
+import {whenDrawn} from './frame_budget';
+import {checkedCamera, project, rayAt, type Pose} from './pose';
 import {SoupMesh} from './soup_mesh';
-import {VolumeMesh} from './volume_mesh';
+import type {Insets, Look, View, ViewListeners} from './view';
+import {VolumeView, type Picture} from './volume_view';
 
 /** How dark cell edges are: enough to follow, not enough to change what a colour says. */
 const kEdgeStrength = 0.52;
-/** How much time a costly picture gets. */
-type Pace = 'moving' | 'resting' | 'whole';
-/** A picture is at rest so long after its last change. */
-const kRestMs = 150;
 /** Pixels beyond two a point cost more than they show. */
 const kMostPixelRatio = 2;
 
-/** Shares of the canvas that panels cover, each in [0, 1); the mesh is centred in what remains. */
-export interface Insets {
-  left: number;
-  right: number;
-  top: number;
-  bottom: number;
-}
-
-export interface Look {
-  map: ColorMapName;
-  reversed: boolean;
-  edges: boolean;
-  /** Of the surface; cuts and isosurfaces stay solid. */
-  opacity: number;
-  /** Of the volume, at even shares of the range; null: it is not shown. */
-  volume?: number[] | null;
-}
-
-/** `drawn`: after each frame, with the camera's rotation. `lost`: the browser took the graphics away, or gave them back. */
-export interface ViewListeners {
-  drawn?(rotation: Quaternion): void;
-  lost?(lost: boolean): void;
-  /** Client.order: without it no volume is shown. */
-  order?(eye: Vector): Promise<CellOrder>;
-}
-
-export class MeshView {
+export class MeshView implements View {
   readonly orbit: OrbitCamera;
-  /** What the last frame took on this thread. */
-  frameMs = 0;
+  private frameMs = 0;
   private readonly renderer: WebGLRenderer;
   private readonly scene = new Scene();
   /** From lattice coordinates to a ball of radius 1 round the origin. */
@@ -61,69 +31,84 @@ export class MeshView {
   private readonly surface = new SoupMesh(true);
   private readonly isosurface = new SoupMesh(true, true);
   private readonly cuts = Array.from({length: kMostPlanes}, () => new SoupMesh(false));
-  private readonly volume = new VolumeMesh();
-  private readonly deep = new DeepTarget();
-  private readonly budget = new FrameBudget();
-  /** Until a picture of few pixels is drawn again with all. */
-  private restTimer: ReturnType<typeof setTimeout> | undefined;
-  private waiting = false;
-  private cells: VolumeCells | null = null;
-  /** Where the cells were last sorted for; null: an order is under way or none is needed. */
-  private sortedFor: string | null = '';
+  private readonly volume: VolumeView;
+  /** Since the last picture something changed that people change, not the mesh alone. */
+  private moved = false;
+  private shownLook = '';
   private transfer = '';
-  private readonly resizes: ResizeObserver;
+  private range = '';
+  private readonly endWatch: () => void;
+  private readonly surfaceCanvas: HTMLCanvasElement | OffscreenCanvas;
   private bounds: number[] = [];
   private insets: Insets = {left: 0, right: 0, top: 0, bottom: 0};
   private startState: CameraState | null = null;
   private frame = 0;
-  private afterFrame: (() => void)[] = [];
+  private afterFrame: ((ms: number) => void)[] = [];
 
   /** Throws when the browser has no WebGL 2. */
-  constructor(readonly canvas: HTMLCanvasElement, private readonly listeners: ViewListeners = {}) {
-    this.renderer = new WebGLRenderer({canvas, antialias: true, alpha: true, powerPreference: 'high-performance'});
+  constructor(readonly canvas: ViewCanvas, private readonly listeners: ViewListeners = {}) {
+    this.surfaceCanvas = surfaceOf(canvas);
+    this.renderer = new WebGLRenderer({canvas: this.surfaceCanvas, antialias: true, alpha: true, powerPreference: 'high-performance'});
     this.renderer.setClearColor(0, 0);
-    this.orbit = new OrbitCamera(canvas, () => this.invalidate());
-    this.lattice.add(this.surface, this.isosurface, ...this.cuts, this.volume);
+    this.volume = new VolumeView((moved) => this.invalidate(moved), listeners.coarse?.bind(listeners));
+    this.orbit = new OrbitCamera(canvas as HTMLCanvasElement, () => this.invalidate());
+    this.lattice.add(this.surface, this.isosurface, ...this.cuts);
     this.scene.add(this.lattice);
-    canvas.addEventListener('webglcontextlost', this.onLost);
-    canvas.addEventListener('webglcontextrestored', this.onRestored);
-    this.resizes = new ResizeObserver(() => this.resize());
-    this.resizes.observe(canvas);
+    this.surfaceCanvas.addEventListener('webglcontextlost', this.onLost);
+    this.surfaceCanvas.addEventListener('webglcontextrestored', this.onRestored);
+    this.endWatch = watchSize(canvas, () => this.resize());
     this.resize();
   }
 
   /** Shows the picture; `drawn` is called after the frame that holds it. */
-  show(snapshot: Snapshot, drawn: () => void): void {
+  show(snapshot: Snapshot, drawn: (ms: number) => void): void {
+    this.afterFrame.push(drawn);
+    this.invalidate(snapshot.volume == null);
     if (snapshot.surface) this.surface.show(snapshot.surface);
     if (snapshot.isosurface) this.isosurface.show(snapshot.isosurface);
     for (const mesh of [this.surface, this.isosurface]) mesh.material.setClip(snapshot.planes);
-    if (snapshot.volume !== undefined) this.takeCells(snapshot.volume);
+    if (snapshot.volume !== undefined) this.volume.take(this.fitting(snapshot.volume));
     this.volume.setClip(snapshot.planes);
     this.cuts.forEach((mesh, i) => {
       // A cap would hide the volume behind it; a slice stands in it.
-      mesh.show(this.cells && snapshot.planes.length > 0 ? null : snapshot.cuts[i] ?? null);
+      mesh.show(this.volume.hasCells && snapshot.planes.length > 0 ? null : snapshot.cuts[i] ?? null);
       mesh.material.setClip(snapshot.planes.filter((_, k) => k !== i));
     });
-    if (this.bounds.length === 0 && snapshot.bounds.length > 0) {
-      this.bounds = snapshot.bounds;
-      this.placeLattice();
-      if (this.startState) this.orbit.state = this.startState;
-      else this.look(null);
-      this.startState = null;
+    if (snapshot.bounds.length > 0) this.growTo(snapshot.bounds);
+  }
+
+  /**
+   * A camera's state is relative to the largest mesh that was seen: a coarse one is a little smaller, and which one comes first is the line's choice, so that
+   * the whole mesh alone gives a state, or a link, the same picture everywhere.
+   */
+  private growTo(seen: number[]): void {
+    const isFirst = this.bounds.length === 0;
+    const bounds = isFirst ? seen : this.bounds.map((end, i) => (i < 3 ? Math.min : Math.max)(end, seen[i]!));
+    if (!isFirst && bounds.every((end, i) => end === this.bounds[i])) return;
+    this.bounds = bounds;
+    this.placeLattice();
+    if (!isFirst) {
+      if (this.orbit.fitted) this.orbit.fit(() => this.fittingDistance());
+      return;
     }
-    this.afterFrame.push(drawn);
-    this.invalidate();
+    if (this.startState) this.orbit.state = this.startState;
+    else this.look(null);
+    this.startState = null;
   }
 
   /** Forgets the mesh; the next one is fitted anew. */
   clear(): void {
     this.bounds = [];
     for (const mesh of this.meshes()) mesh.show(null);
-    this.takeCells(null);
+    this.volume.take(null);
     this.invalidate();
   }
 
-  setLook({map, reversed, edges, opacity, volume}: Look): void {
+  setLook(wanted: Look): void {
+    const {map, reversed, edges, opacity, volume} = wanted;
+    const look = JSON.stringify([map, reversed, edges, opacity, volume]);
+    if (look === this.shownLook) return;  // it is said with every change of an attribute, and a picture costs more than a comparison
+    this.shownLook = look;
     for (const mesh of this.meshes()) {
       mesh.material.setColorMap(map, reversed);
       // An isosurface's polygons are the cells' sections, not the mesh: their edges would hide its shape.
@@ -138,6 +123,9 @@ export class MeshView {
 
   /** FieldMaterial.setRange for all. */
   setRange(low: number, high: number, scaleRange: [number, number], logarithmic: boolean): void {
+    const text = [low, high, scaleRange, logarithmic].join();
+    if (text === this.range) return;  // it is said with every picture
+    this.range = text;
     for (const mesh of this.meshes()) mesh.material.setRange(low, high, scaleRange, logarithmic);
     const {range, logarithmic: log} = this.surface.material.uniforms;
     this.volume.setRange(range!.value as [number, number], scaleRange, log!.value as boolean);
@@ -155,12 +143,14 @@ export class MeshView {
 
   /** A standard view, or the one that a mesh is first seen in (null): as near as its bounding box allows. */
   look(direction: Direction | null): void {
+    checkedDirection(direction);
     if (this.bounds.length === 0) return;
     this.orbit.look(direction, () => this.fittingDistance());
     this.invalidate();
   }
 
   setParallel(parallel: boolean): void {
+    if (parallel === this.orbit.parallel) return;
     this.orbit.parallel = parallel;
     this.invalidate();
   }
@@ -168,6 +158,7 @@ export class MeshView {
   get cameraState(): CameraState { return this.orbit.state; }
   /** Before there is a mesh it waits for one. */
   set cameraState(state: CameraState) {
+    checkedCamera(state);
     if (this.bounds.length === 0) this.startState = state;
     else this.orbit.state = state;
     this.invalidate();
@@ -185,59 +176,49 @@ export class MeshView {
     this.invalidate();
   }
 
-  /** Where the camera looks, as a unit normal in lattice coordinates. */
-  get viewDirection(): Vector { return this.orbit.camera.getWorldDirection(new Vector3()).toArray(); }
-
-  /** What is in sight, as planes in lattice coordinates with the inside above; none while all of the mesh is fitted into the picture. */
-  get frustum(): Plane[] {
-    if (this.orbit.fitted || this.bounds.length === 0) return [];
-    const {camera} = this.orbit;
+  /** As of now, the last frame drawn or not. */
+  get pose(): Pose {
+    const {camera, fitted} = this.orbit;
     camera.updateMatrixWorld();
-    const seen = new Frustum().setFromProjectionMatrix(new Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse));
+    this.lattice.updateMatrixWorld();
+    const toCanvas = new Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
+    // In sight is where normal . (scale p + position) + constant >= 0.
     const scale = this.lattice.scale.x;
-    // normal . (scale p + position) + constant >= 0
-    return seen.planes.map(({normal, constant}) => ({normal: normal.toArray(), offset: -(constant + normal.dot(this.lattice.position)) / scale}));
+    const frustum = fitted || this.bounds.length === 0 ? [] : new Frustum().setFromProjectionMatrix(toCanvas).planes.map(({normal, constant}) =>
+      ({normal: normal.toArray(), offset: -(constant + normal.dot(this.lattice.position)) / scale}));
+    toCanvas.multiply(this.lattice.matrixWorld);
+    const {x, y, z, w} = camera.quaternion;
+    return {
+      toCanvas: toCanvas.toArray(), fromCanvas: toCanvas.clone().invert().toArray(), rotation: {x, y, z, w}, camera: this.orbit.state, fitted,
+      direction: camera.getWorldDirection(new Vector3()).toArray(), frustum, frameMs: this.frameMs,
+    };
   }
 
-  // ---- between the picture and the lattice
-
-  /** The line of sight through a point of the canvas, in CSS pixels from its corner. */
-  rayAt(x: number, y: number): Ray {
-    const pointer = new Vector2((2 * x) / this.canvas.clientWidth - 1, 1 - (2 * y) / this.canvas.clientHeight);
-    const caster = new Raycaster();
-    caster.setFromCamera(pointer, this.orbit.camera);
-    const scale = this.lattice.scale.x;
-    const origin = caster.ray.origin.sub(this.lattice.position).divideScalar(scale);
-    return {origin: origin.toArray(), direction: caster.ray.direction.toArray()};
-  }
-
-  /** Where a point of the lattice is on the canvas, in CSS pixels. */
-  project(point: Vector): {x: number; y: number} {
-    const {x, y} = new Vector3(...point).multiply(this.lattice.scale).add(this.lattice.position).project(this.orbit.camera);
-    return {x: (x + 1) / 2 * this.canvas.clientWidth, y: (1 - y) / 2 * this.canvas.clientHeight};
-  }
+  rayAt(x: number, y: number): Ray { return rayAt(this.pose, this.canvas, x, y); }
+  project(point: Vector): {x: number; y: number} { return project(this.pose, this.canvas, point); }
 
   /** The picture as it stands, on `background` (CSS colour). */
   async picture(background: string): Promise<Blob> {
-    this.draw('whole');
-    const copy = new OffscreenCanvas(this.canvas.width, this.canvas.height);
+    if (this.volume.hasCells && this.bounds.length > 0) await this.volume.drawWhole(this.volumePicture);
+    // In one task with the copy: a canvas that has been shown is empty.
+    if (this.volume.hasCells) this.volume.present(this.renderer);
+    else this.draw();
+    const copy = new OffscreenCanvas(this.surfaceCanvas.width, this.surfaceCanvas.height);
     const context = copy.getContext('2d')!;
     context.fillStyle = background;
     context.fillRect(0, 0, copy.width, copy.height);
-    context.drawImage(this.canvas, 0, 0);
+    context.drawImage(this.surfaceCanvas, 0, 0);
     return copy.convertToBlob({type: 'image/png'});
   }
 
   dispose(): void {
     cancelAnimationFrame(this.frame);
-    clearTimeout(this.restTimer);
-    this.resizes.disconnect();
-    this.canvas.removeEventListener('webglcontextlost', this.onLost);
-    this.canvas.removeEventListener('webglcontextrestored', this.onRestored);
+    this.endWatch();
+    this.surfaceCanvas.removeEventListener('webglcontextlost', this.onLost);
+    this.surfaceCanvas.removeEventListener('webglcontextrestored', this.onRestored);
     this.orbit.dispose();
     for (const mesh of this.meshes()) mesh.dispose();
     this.volume.dispose();
-    this.deep.dispose();
     this.renderer.dispose();
   }
 
@@ -253,30 +234,6 @@ export class MeshView {
   };
 
   private meshes(): SoupMesh[] { return [this.surface, this.isosurface, ...this.cuts]; }
-
-  private takeCells(cells: VolumeCells | null): void {
-    this.cells = cells;
-    if (cells) this.sortedFor = '';
-    else this.volume.show(null, new Uint32Array(0));
-    this.invalidate();
-  }
-
-  /** Asks for the cells' order as the camera stands; the last one serves until it comes. */
-  private sort(): void {
-    if (!this.cells || !this.listeners.order || this.bounds.length === 0) return;
-    const eye = this.orbit.camera.position.clone().sub(this.lattice.position).divide(this.lattice.scale);
-    const low = new Vector3(...this.bounds.slice(0, 3) as Vector);
-    this.volume.setEye(eye, low.distanceTo(new Vector3(...this.bounds.slice(3, 6) as Vector)));
-    const where = eye.toArray().map((x) => Math.round(x)).join();
-    if (this.sortedFor === null || this.sortedFor === where) return;
-    this.sortedFor = null;
-    this.listeners.order(eye.toArray()).then(({version, order}) => {
-      const fits = this.cells?.version === version;
-      this.sortedFor = fits ? where : '';
-      if (fits) this.volume.show(this.cells, order);
-      this.invalidate();
-    }, () => void (this.sortedFor = where));
-  }
 
   private placeLattice(): void {
     const low = new Vector3(...this.bounds.slice(0, 3) as Vector);
@@ -295,7 +252,7 @@ export class MeshView {
   private resize(): void {
     const width = Math.max(this.canvas.clientWidth, 1);
     const height = Math.max(this.canvas.clientHeight, 1);
-    const ratio = Math.min(window.devicePixelRatio, kMostPixelRatio);
+    const ratio = Math.min(pixelRatioOf(this.canvas), kMostPixelRatio);
     this.renderer.setPixelRatio(ratio);
     this.renderer.setSize(width, height, false);
     for (const mesh of this.meshes()) mesh.material.setPixelRatio(ratio);
@@ -306,39 +263,55 @@ export class MeshView {
     const down = (this.insets.bottom - this.insets.top) / 2 * height;
     camera.setViewOffset(width, height, right, down, width, height);
     if (this.orbit.fitted && this.bounds.length > 0) this.orbit.fit(() => this.fittingDistance());
-    this.draw();  // at once: a resized canvas is empty until it is drawn
+    // At once: a resized canvas is empty until it is drawn.
+    if (!this.volume.hasCells) return this.draw();
+    this.volume.present(this.renderer);
+    this.invalidate();
   }
 
-  /** The volume, as fine as there is time for: coarse while something changes, then once more at rest. */
-  private drawDeep(pace: Pace): void {
-    const share = pace === 'whole' ? 1 : this.budget.share(pace === 'moving');
-    this.deep.render(this.renderer, this.scene, this.orbit.camera, share);
-    this.budget.measure(this.renderer.getContext() as WebGL2RenderingContext, share, () => {
-      if (this.waiting) this.invalidate();
-      else if (pace === 'moving' && share < 1) this.restTimer = setTimeout(() => this.draw('resting'), kRestMs);
-    });
-  }
-
-  private invalidate(): void {
-    clearTimeout(this.restTimer);
-    this.waiting = true;
+  /** `moved`: by people, who should see something at once. */
+  private invalidate(moved = true): void {
+    if (moved) this.volume.interrupt();
+    this.moved ||= moved;
     // The graphics have one picture in hand at a time; when it is done, the next comes as things stand then.
-    if (this.frame === 0 && !this.budget.busy) this.frame = requestAnimationFrame(() => this.draw());
+    if (this.volume.busy) this.volume.waiting = true;
+    else if (this.frame === 0) this.frame = requestAnimationFrame(() => this.draw());
   }
 
-  private draw(pace: Pace = 'moving'): void {
+  /** Of the volume. */
+  private get volumePicture(): Picture {
+    this.orbit.setDepths();
+    const {toCanvas, fromCanvas} = this.pose;
+    const {renderer, scene, orbit: {camera}, lattice: {position, scale}} = this;
+    return {renderer, scene, camera, toCanvas, fromCanvas, eye: camera.position.clone().sub(position).divide(scale).toArray(), diagonal: 2 / scale.x};
+  }
+
+  /** Null, and an error that says so, where the graphics' textures end before the cells do. */
+  private fitting(cells: VolumeCells | null): VolumeCells | null {
+    const most = this.renderer.capabilities.maxTextureSize;
+    if (!cells || mostRows(cells) <= most) return cells;
+    reportError(new Error(`the graphics take no volume of more than ${((most * kRow) / 4e6).toFixed(1)} million cells; set Refine to fewer`));
+    return null;
+  }
+
+  private draw(): void {
     cancelAnimationFrame(this.frame);
     this.frame = 0;
-    this.waiting = false;
+    if (this.volume.busy) return void (this.volume.waiting = true);
     const start = performance.now();
-    this.orbit.setDepths();
-    this.sort();
-    if (this.volume.visible) this.drawDeep(pace);
-    else this.renderer.render(this.scene, this.orbit.camera);
-    this.frameMs = performance.now() - start;
-    this.listeners.drawn?.(this.orbit.camera.quaternion);
     const done = this.afterFrame;
     this.afterFrame = [];
-    for (const drawn of done) drawn();
+    // Graphics without a GPU draw long after they were told to; and whoever waits for a picture that failed would wait for ever.
+    const tell = (ms: number): void => done.forEach((drawn) => drawn(ms));
+    try {
+      this.orbit.setDepths();
+      if (this.volume.hasCells && this.bounds.length > 0) this.volume.draw(this.volumePicture, this.moved);
+      else this.renderer.render(this.scene, this.orbit.camera);
+      this.moved = false;
+      this.frameMs = performance.now() - start;
+      this.listeners.drawn?.(this.pose);
+    } finally {
+      if (done.length > 0) void whenDrawn(this.renderer.getContext() as WebGL2RenderingContext, start).then(tell);
+    }
   }
 }

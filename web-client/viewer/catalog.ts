@@ -1,6 +1,7 @@
 // What a server has: GET /v1/meshes of proto/PROTOCOL.md.
 
 import {QtetError} from '../core/errors';
+import {fetchWith} from '../core/token';
 
 export interface MeshEntry {
   id: string;
@@ -8,12 +9,12 @@ export interface MeshEntry {
   fields: string[];
 }
 
-/** Throws a QtetError whose text tells what to do. */
-export async function fetchCatalog(base: URL): Promise<MeshEntry[]> {
+/** Throws a QtetError whose text tells what to do. `token`: empty where the server asks for none. */
+export async function fetchCatalog(base: URL, token = ''): Promise<MeshEntry[]> {
   const url = new URL('v1/meshes', base);
   let response: Response;
   try {
-    response = await fetch(url);
+    response = await (fetchWith(token) ?? fetch)(url.href, {});
   } catch {
     throw new QtetError('offline', `The server at ${base.host} does not answer. Check the connection and try again.`);
   }

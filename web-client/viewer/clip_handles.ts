@@ -1,6 +1,6 @@
 // A handle in the picture for each clip plane: a dot in its middle that is dragged along its normal.
 
-import type {MeshView} from '../three/mesh_view';
+import type {View} from '../three/view';
 import {extentAlong, planeOf} from './clip_panel';
 import {axisOf, type ClipSetting} from './settings';
 
@@ -9,7 +9,7 @@ const kArrowPixels = 34;
 export class ClipHandles {
   private planes: ClipSetting[] = [];
   private bounds: number[] = [];
-  private view: MeshView | null = null;
+  private view: View | null = null;
   private readonly handles: HTMLElement[];
 
   /** `move` gets the plane's number and its new share. */
@@ -17,6 +17,7 @@ export class ClipHandles {
     this.handles = Array.from({length: count}, (_, i) => {
       const handle = document.createElement('div');
       handle.className = 'handle';
+      handle.append(document.createElement('i'));  // more room for fingers
       handle.title = 'Drag to move the clip plane';
       handle.addEventListener('pointerdown', (event) => this.drag(event, i));
       layer.append(handle);
@@ -24,7 +25,7 @@ export class ClipHandles {
     });
   }
 
-  attach(view: MeshView): void { this.view = view; }
+  attach(view: View): void { this.view = view; }
 
   update(planes: ClipSetting[], bounds: number[]): void {
     this.planes = planes;

@@ -4,7 +4,7 @@ import type {Vector} from '../core/cell_ray';
 import type {Client} from '../core/client';
 import type {Pick, Probe} from '../core/inspector';
 import type {Manifest} from '../core/manifest';
-import type {MeshView} from '../three/mesh_view';
+import type {View} from '../three/view';
 import {formatCoordinate, formatCount, formatValue} from './format';
 
 export type Tool = 'none' | 'point' | 'line';
@@ -14,11 +14,13 @@ const kClickPixels = 5;
 
 export interface InspectHost {
   readonly client: Client | null;
-  readonly view: MeshView | null;
+  readonly view: View | null;
   readonly manifest: Manifest | null;
   /** Title of the field that colours, for the plot. */
   readonly fieldTitle: string;
   announce(text: string): void;
+  /** What is pointed at, of lattice coordinates, is wanted first; null: nothing is. */
+  pointAt(point: Vector | null): void;
 }
 
 export class Inspect {
@@ -29,11 +31,15 @@ export class Inspect {
   private readonly marks: SVGSVGElement;
   private plot: {destroy(): void} | null = null;
 
-  constructor(private readonly root: ShadowRoot, canvas: HTMLCanvasElement, private readonly host: InspectHost) {
+  /** Hears the canvas through its root: another may take its place. */
+  constructor(private readonly root: ShadowRoot, private readonly host: InspectHost) {
     this.card = root.querySelector('.result')!;
     this.marks = root.querySelector('.marks')!;
-    canvas.addEventListener('pointerdown', (event) => void (this.pressed = {x: event.clientX, y: event.clientY}));
-    canvas.addEventListener('pointerup', (event) => {
+    const onCanvas = (type: 'pointerdown' | 'pointerup', heard: (event: PointerEvent) => void): void => root.addEventListener(type, (event) => {
+      if ((event.target as Element).matches('.scene')) heard(event as PointerEvent);
+    });
+    onCanvas('pointerdown', (event) => void (this.pressed = {x: event.clientX, y: event.clientY}));
+    onCanvas('pointerup', (event) => {
       const moved = this.pressed ? Math.hypot(event.clientX - this.pressed.x, event.clientY - this.pressed.y) : Infinity;
       this.pressed = null;
       if (moved <= kClickPixels && this.tool !== 'none') void this.click(event.offsetX, event.offsetY);
@@ -63,6 +69,7 @@ export class Inspect {
     this.plot = null;
     this.card.hidden = true;
     this.place();
+    this.host.pointAt(null);
   }
 
   /** To be called after every frame: the marks follow their points. */
@@ -77,7 +84,7 @@ export class Inspect {
 
   private async click(x: number, y: number): Promise<void> {
     const {client, view} = this.host;
-    if (!client || !view) return;
+    if (!client || !view || view.canvas.clientWidth === 0) return;  // a page may hide the viewer
     const pick = await client.pick(view.rayAt(x, y));
     if (!pick) {
       this.host.announce('Nothing there');
@@ -86,6 +93,7 @@ export class Inspect {
     }
     this.points = this.tool === 'line' && this.points.length === 1 ? [this.points[0]!, pick] : [pick];
     this.place();
+    this.host.pointAt(pick.lattice);
     if (this.tool === 'point') this.showPick(pick);
     else if (this.points.length === 2) await this.showLine(this.points[0]!, pick);
     else this.showText('Line', [['Start', this.placeText(pick.position)]], 'Now point at the other end.');

@@ -13,6 +13,8 @@ export interface ShownRange {
   low: number;
   high: number;
   logarithmic: boolean;
+  /** Somewhere there is no value: that colour is told, too. */
+  hasGaps: boolean;
 }
 
 export class Legend {
@@ -31,7 +33,9 @@ export class Legend {
     if (wanted === this.shown) return;  // every picture asks, few change it
     this.shown = wanted;
     const {ticks, factor} = range.logarithmic ? logTicks(range.low, range.high, kMostTicks) : niceTicks(range.low, range.high, kMostTicks);
-    this.part('.legend-name').textContent = scalarTitle(scalar, fields);
+    const name = this.part('.legend-name');
+    name.textContent = name.title = scalarTitle(scalar, fields);
+    this.part('.legend-gap').hidden = !range.hasGaps;
     this.part('.legend-factor').textContent = range.logarithmic ? 'logarithmic' : factor;
     this.part('.legend-bar').style.background = colorGradient(map, reversed, 33);
     this.part('.legend-ticks').replaceChildren(...ticks.map(({at, label}) => {

@@ -1,6 +1,7 @@
 // State, bar and figures: bytes, cells, the known error that is left, and how long it will take. The bar counts bytes: the share of what the whole
-// mesh with the shown fields needs. Below it, how far to refine, and error against bytes so far.
+// mesh with the shown fields needs. Below it, how far to refine, and the known error against bytes, with the place that is reached.
 
+import type {LevelBytes} from '../core/goal';
 import {errorOfLevel, type Limit} from '../core/limit';
 import type {Manifest} from '../core/manifest';
 import type {Statistics} from '../core/statistics';
@@ -13,13 +14,19 @@ const kStateTexts: Record<StreamState, string> = {
 };
 /** Screen readers hear of every so many per cent. */
 const kAnnouncedPercent = 25;
+/** Figures that change faster nobody reads, and each change makes the browser draw the page anew. */
+const kFiguresMs = 250;
 /** The rate is that of the last so many milliseconds: short enough to follow the line, long enough to be calm. */
 const kRateWindowMs = 4000;
+
+/** The plot shows errors down to this share of the first one at least. */
+const kLeastSpan = 10;
 
 export class ProgressPanel {
   private readonly root: HTMLElement;
   private readonly curveFigure: HTMLElement;
-  private frame = 0;
+  private timer: ReturnType<typeof setTimeout> | undefined;
+  private drawnAt = -kFiguresMs;
   private statistics: Statistics | null = null;
   private manifest: Manifest | null = null;
   private fields: number[] = [];
@@ -27,7 +34,8 @@ export class ProgressPanel {
   private state: StreamState = 'connecting';
   private announced = -1;
   private arrivals: {at: number; bytes: number}[] = [];
-  /** [bytes, error] by level reached. */
+  private plan: LevelBytes[] = [];
+  /** [bytes, error] by level reached: what is drawn where there is no plan. */
   private curve: [number, number][] = [];
 
   constructor(root: ParentNode, private readonly announce: (text: string) => void) {
@@ -39,9 +47,13 @@ export class ProgressPanel {
     this.manifest = manifest;
     this.statistics = null;
     this.curve = [];
+    this.plan = [];
     this.arrivals = [];
     this.announced = -1;
   }
+
+  /** What lies ahead, with these fields. */
+  takePlan(plan: LevelBytes[]): void { this.plan = plan; }
 
   follow(fields: number[], limit: Limit): void {
     if (fields.join() !== this.fields.join()) this.curve = [];
@@ -49,7 +61,7 @@ export class ProgressPanel {
     this.limit = limit;
   }
 
-  /** Draws the figures with the next frame, however often they change before it. */
+  /** Draws the figures soon, however often they change before that. */
   show(statistics: Statistics): void {
     this.statistics = statistics;
     this.arrivals.push({at: performance.now(), bytes: statistics.bytes});
@@ -59,7 +71,7 @@ export class ProgressPanel {
       if (last && last[0] > statistics.bytes) this.curve = [];
       if (last?.[1] !== error) this.curve.push([statistics.bytes, error]);
     }
-    if (this.frame === 0) this.frame = requestAnimationFrame(() => this.draw());
+    this.timer ??= setTimeout(() => this.draw(), Math.max(0, this.drawnAt + kFiguresMs - performance.now()));
   }
 
   showState(state: StreamState, attempt = 0, delayMs = 0): void {
@@ -78,7 +90,9 @@ export class ProgressPanel {
   }
 
   private draw(): void {
-    this.frame = 0;
+    clearTimeout(this.timer);
+    this.timer = undefined;
+    this.drawnAt = performance.now();
     if (!this.statistics) return;
     const {bytes, bytesNeeded, tetrahedra, total} = this.statistics;
     const percent = percentOf(bytes, bytesNeeded);
@@ -112,21 +126,36 @@ export class ProgressPanel {
     return (goal - bytes) / rate;
   }
 
-  /** Logarithmic both ways: from the first level's error to a thousandth of it. */
+  /** [bytes, error] of all levels ahead, or else of those that were reached. */
+  private known(): [number, number][] {
+    const {levels = []} = this.manifest ?? {};
+    const ahead = this.plan.map(({bytes, level}): [number, number | null] => [bytes, errorOfLevel(levels[level], this.fields)]);
+    return ahead.length > 1 && ahead.every(([, error]) => error !== null) ? ahead as [number, number][] : this.curve;
+  }
+
+  /** Logarithmic both ways, from the first level's error to the last one's that is not 0; behind that the line goes to the ground. */
   private drawCurve(): void {
     const figure = this.curveFigure;
-    const points = this.curve.filter(([, error]) => error > 0);
-    figure.hidden = points.length < 2;
+    const points = this.known();
+    const [firstBytes, firstError] = points[0] ?? [0, 0];
+    figure.hidden = points.length < 2 || firstError === 0;
     if (figure.hidden) return;
-    const {bytesNeeded} = this.statistics!;
-    const [firstBytes, firstError] = points[0]!;
-    const kDecades = 3;
-    const x = (bytes: number): number => 100 * Math.log(bytes / firstBytes) / Math.log(Math.max(bytesNeeded / firstBytes, 1.01));
-    const y = (error: number): number => 40 * Math.min(1, Math.log10(firstError / error) / kDecades);
-    const path = points.map(([bytes, error], i) => `${i === 0 ? 'M' : 'L'}${x(bytes).toFixed(2)} ${Math.max(0, y(error)).toFixed(2)}`).join('');
-    figure.querySelector('path')!.setAttribute('d', path);
-    const [bytes, error] = points.at(-1)!;
-    figure.querySelector('figcaption')!.textContent = `Error against bytes: ${formatError(firstError)} at ${formatBytes(firstBytes)}, ${formatError(error)} at ${formatBytes(bytes)}`;
+    const {bytes} = this.statistics!;
+    const [lastBytes, lastError] = points.at(-1)!;
+    const least = Math.min(...points.map(([, error]) => error || Infinity), firstError / kLeastSpan);
+    const place = ([at, error]: [number, number]): string => {
+      const x = Math.log(at / firstBytes) / Math.log(Math.max(lastBytes / firstBytes, 1.01));
+      const y = error > 0 ? 0.9 * Math.log(firstError / error) / Math.log(firstError / least) : 1;
+      return `${(100 * Math.min(1, Math.max(0, x))).toFixed(2)} ${(40 * y).toFixed(2)}`;
+    };
+    const reached = points.filter(([at]) => at <= bytes);
+    const here = reached.at(-1) ?? points[0]!;
+    for (const [name, line] of [['ahead', points], ['reached', reached]] as const) {
+      figure.querySelector(`.${name}`)!.setAttribute('d', line.length > 0 ? `M${line.map(place).join('L')}` : '');
+    }
+    figure.querySelector('.here')!.setAttribute('d', `M${place(here)}h0`);
+    const ends = [points[0]!, ...(here[0] > firstBytes && here[0] < lastBytes ? [here] : []), [lastBytes, lastError] as const];
+    figure.querySelector('figcaption')!.textContent = `Error against bytes: ${ends.map(([at, error]) => `${formatError(error)} at ${formatBytes(at)}`).join(', ')}`;
   }
 
   private part(selector: string): HTMLElement {

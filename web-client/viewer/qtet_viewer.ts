@@ -20,18 +20,21 @@
 // Methods     digest(), pause(), resume(), resetView(), look(direction), picture(); properties `counts`, `statistics`, `state`, `view`, `cameraState`
 
 import {kTransportKinds} from '../core/auto_transport';
+import type {Vector} from '../core/cell_ray';
 import {Client} from '../core/client';
 import {kMostPlanes, type Display} from '../core/display';
 import {errorCode, errorText, QtetError} from '../core/errors';
 import {kMagnitude, type Scalar} from '../core/field_scale';
+import type {LevelBytes} from '../core/goal';
+import {kFull} from '../core/limit';
 import type {Manifest} from '../core/manifest';
-import {retry} from '../core/retry';
 import {kNoStatistics, type Counts, type Statistics} from '../core/statistics';
 import type {Wishes} from '../core/wishes';
 import type {FromWorker, Snapshot, StreamState} from '../core/worker_messages';
 import type {CameraState} from '../three/camera';
 import {kDirections, type Direction} from '../three/directions';
-import type {MeshView} from '../three/mesh_view';
+import {openView} from '../three/far_view';
+import type {View} from '../three/view';
 import {fetchCatalog, isLogFile, logUrl, meshOfLog, streamUrl, type MeshEntry} from './catalog';
 import {ClipHandles} from './clip_handles';
 import {ClipPanel, planeOf} from './clip_panel';
@@ -59,7 +62,12 @@ import {VolumePanel} from './volume_panel';
 const kSheetPixels = 640;
 /** The camera is told of once it rests. */
 const kRestMs = 250;
-const kNoRetry = ['unknown-field', 'no-view', 'no-fullscreen'];
+/** Notices that the stream has nothing to do with: opening it anew does not help, and its going on ends none of them. */
+const kNotOfStream = ['unknown-field', 'no-fullscreen', 'no-picture'];
+/** Notices of the graphics: their way out is to begin drawing anew. */
+const kOfGraphics = ['no-view', 'slow-view', 'silent-view', 'drawing', 'graphics-lost'];
+/** Graphics may take long to start where software draws; after this the user may begin anew, or go on waiting. */
+const kStartPatienceMs = 30000;
 
 interface Parts {
   progress: ProgressPanel;
@@ -79,7 +87,7 @@ export class QtetViewer extends HTMLElement implements Host {
   static readonly observedAttributes = ['src', 'transport', ...kViewAttributes];
 
   client: Client | null = null;
-  meshView: MeshView | null = null;
+  meshView: View | null = null;
   manifest: Manifest | null = null;
   private readonly root = this.attachShadow({mode: 'open'});
   private parts: Parts | null = null;
@@ -89,17 +97,42 @@ export class QtetViewer extends HTMLElement implements Host {
   private settings: Settings = readSettings(() => null);
   private bounds: number[] = [];
   private sentDisplay = '';
+  private plan: LevelBytes[] = [];
+  /** Of what is shown some has no value. */
+  private hasGaps = false;
+  /** The server and the mesh that were opened last. */
+  private opened = '';
+  /** What users have not been freed of: the last one is shown. */
+  private notices: {code: string; message: string}[] = [];
   private loaded = false;
   private completionTold = false;
+  /** Of the picture on the screen. */
+  private drawn: Statistics | null = null;
   private streamState: StreamState = 'connecting';
   private figures: Statistics = kNoStatistics;
   private writing = false;
   private cameraTimer: ReturnType<typeof setTimeout> | undefined;
+  private point: Vector | null = null;
   private toldCamera = '';
   private toldWishes = '';
   private lastCells: {at: number; cells: number} = {at: 0, cells: 0};
+  private bearer = '';
+  private openings = 0;
+  private earlyCamera: CameraState | null = null;  // asked for before there was a view
+  private pausedEarly = false;  // before there was a stream
+  /** There is a stream of the mesh that was opened last. */
+  private started = false;
+  /** Since the first step: before it there is nothing in the shadow root. */
+  private begun = false;
 
   // ---- for the page
+
+  /** What a server whose meshes are guarded asks for (proto/PROTOCOL.md, "Tokens"); a property, so that it stands in no page's text. */
+  get token(): string { return this.bearer; }
+  set token(token: string) {
+    this.bearer = token;
+    if (this.begun) void this.open();
+  }
 
   get state(): StreamState { return this.streamState; }
   get statistics(): Statistics { return this.figures; }
@@ -115,16 +148,25 @@ export class QtetViewer extends HTMLElement implements Host {
       if (value !== null && name !== 'camera') view.set(name, value);
     }
     if (!view.has('mesh') && this.catalog.length > 0) view.set('mesh', this.select('mesh').value);
-    if (this.meshView && !this.meshView.orbit.fitted) view.set('camera', this.meshView.cameraState.join(','));
+    if (this.meshView && !this.meshView.pose.fitted) view.set('camera', this.meshView.cameraState.join(','));
     return view;
   }
   get cameraState(): CameraState | null { return this.meshView?.cameraState ?? null; }
-  set cameraState(state: CameraState | null) { if (state && this.meshView) this.meshView.cameraState = state; }
+  set cameraState(state: CameraState | null) {
+    if (state && this.meshView) this.meshView.cameraState = state;
+    this.earlyCamera = this.meshView ? null : state;
+  }
 
   /** SHA-256 of the decoded mesh (codec/FORMAT.md, "Mesh digest"); empty before there is one. */
   async digest(): Promise<string> { return this.client?.digest() ?? ''; }
-  pause(): void { this.client?.pause(); }
-  resume(): void { this.client?.resume(); }
+  pause(): void {
+    if (this.started) this.client?.pause();
+    else this.pausedEarly = this.streamState !== 'failed';
+  }
+  resume(): void {
+    this.pausedEarly = false;
+    if (this.started) this.client?.resume();
+  }
   resetView(): void { this.meshView?.look(null); }
   look(direction: Direction): void { this.meshView?.look(direction); }
   /** The scene as a PNG; null before there is one. */
@@ -140,6 +182,10 @@ export class QtetViewer extends HTMLElement implements Host {
   }
   read(name: ViewAttribute): string | null { return this.getAttribute(name); }
   get fieldTitle(): string { return this.manifest && this.color ? scalarTitle(this.color, this.manifest.fields) : ''; }
+  pointAt(point: Vector | null): void {
+    this.point = point;
+    this.lookAt();
+  }
   announce(text: string): void {
     const live = this.root.querySelector('.live');
     if (live) live.textContent = text;
@@ -147,27 +193,47 @@ export class QtetViewer extends HTMLElement implements Host {
 
   // ---- custom element
 
+  /** In steps, each a task of its own: a page stands still for the longest of them, not for their sum. */
   connectedCallback(): void {
-    this.root.innerHTML = `<style>${styles}</style>${kTemplate}`;
-    // The worker fetches its WebAssembly while three.js is on its way.
-    this.client = new Client((message) => this.receive(message));
-    const clip = new ClipPanel(this.root, this, () => (this.meshView?.viewDirection ?? [0, -1, 0]).map((x) => -x) as [number, number, number]);
+    const client = this.client = new Client((message) => this.receive(message));
+    const steps = [
+      (): void => {
+        this.root.innerHTML = `<style>${styles}</style>${kTemplate}`;
+        this.begun = true;
+        this.settings = readSettings((name) => this.getAttribute(name));  // a file's stream begins at once, and only so far
+        void this.prepareView(client, this.settings.camera);
+        void this.open();
+      },
+      (): void => this.build(),
+    ];
+    const step = (): void => {
+      if (this.client !== client) return;
+      steps.shift()?.();
+      if (steps.length > 0) setTimeout(step);
+    };
+    setTimeout(step);
+  }
+
+  private build(): void {
+    const clip = new ClipPanel(this.root, this, () => (this.meshView?.pose.direction ?? [0, -1, 0]).map((x) => -x) as [number, number, number]);
     this.parts = {
       progress: new ProgressPanel(this.root, (text) => this.announce(text)), legend: new Legend(this.root), color: new ColorPanel(this.root, this), clip,
       iso: new ValuePanel(this.root, this, 'iso'), threshold: new ValuePanel(this.root, this, 'threshold'), volume: new VolumePanel(this.root, this),
       level: new LevelPanel(this.root, (quality) => this.write('quality', quality),
         () => ({statistics: this.figures, manifest: this.manifest, fields: this.color ? [this.color.field] : []})),
       handles: new ClipHandles(this.find('.layer'), kMostPlanes, (i, share) => clip.move(i, share)),
-      inspect: new Inspect(this.root, this.find<HTMLCanvasElement>('.scene'), inspectHost(this)),
+      inspect: new Inspect(this.root, inspectHost(this)),
       resizes: new ResizeObserver(() => this.arrange()),
     };
     this.bindControls();
     this.fold(this.isNarrow);
-    this.parts.resizes.observe(this.find('.panel'));
+    for (const card of ['.panel', '.result']) this.parts.resizes.observe(this.find(card));
     this.parts.resizes.observe(this);
+    this.parts.progress.begin(this.manifest);
+    this.parts.progress.takePlan(this.plan);
+    this.setState(this.streamState);
+    if (this.meshView) this.parts.handles.attach(this.meshView);
     this.apply();
-    void this.prepareView();
-    void this.open();
   }
 
   disconnectedCallback(): void {
@@ -176,11 +242,14 @@ export class QtetViewer extends HTMLElement implements Host {
     this.meshView?.dispose();
     this.parts?.resizes.disconnect();
     this.client = this.meshView = this.parts = null;
+    this.begun = this.started = false;
+    this.notices = [];
+    this.streamState = 'connecting';
     this.forget();
   }
 
   attributeChangedCallback(name: string, before: string | null, after: string | null): void {
-    if (!this.client || before === after) return;
+    if (!this.begun || before === after) return;  // the first step reads them all
     if (name === 'src' || name === 'transport' || (name === 'mesh' && !this.writing)) void this.open();
     else this.apply();
     if (name === 'camera' && this.settings.camera && this.meshView) this.meshView.cameraState = this.settings.camera;
@@ -204,53 +273,81 @@ export class QtetViewer extends HTMLElement implements Host {
       this.meshView.setLook(settings);
       this.meshView.setParallel(settings.parallel);
     }
-    if (this.manifest && JSON.stringify(before.limit) !== JSON.stringify(settings.limit)) this.client?.setLimit(settings.limit);
+    if (this.started && JSON.stringify(before.limit) !== JSON.stringify(settings.limit)) this.client?.setLimit(settings.limit);
     this.showDisplay();
     this.showLegend();
   }
 
   // ---- start
 
-  private async prepareView(): Promise<void> {
+  private async prepareView(client: Client, start: CameraState | null): Promise<void> {
+    const canvas = this.find<HTMLCanvasElement>('.scene');
+    const patience = setTimeout(() => this.addNotice('slow-view', 'The graphics have not started yet. They may only be slow; beginning anew helps if they hang.'), kStartPatienceMs);
     try {
-      const {MeshView} = await retry(() => import('../three/mesh_view'));
-      if (!this.client || this.meshView) return;
       const triad = new Triad(this.find<SVGSVGElement>('.triad'));
-      this.meshView = new MeshView(this.find<HTMLCanvasElement>('.scene'), {
-        drawn: (rotation) => {
+      const view = await openView(canvas, {
+        drawn: ({rotation}) => {
           triad.turn(rotation);
           this.parts?.handles.place();
           this.parts?.inspect.place();
           this.restCamera();
         },
         lost: (lost) => this.graphicsLost(lost),
-        order: (eye) => this.client?.order(eye) ?? Promise.reject(new Error('closed')),
+        failed: (why) => this.notify('drawing', `Something went wrong while drawing: ${why}. If the picture is not right, try again.`),
+        silent: (silent) => {
+          if (silent) this.addNotice('silent-view', 'The part that draws does not answer: it hangs, or the browser has ended it. Try again to start it anew; the view stays as it is.');
+          else this.endNotices((code) => code === 'silent-view');
+        },
+        coarse: (have) => this.client?.coarse(have) ?? Promise.reject(new Error('closed')),
       });
-      this.parts!.handles.attach(this.meshView);
-      if (this.settings.camera) this.meshView.cameraState = this.settings.camera;
-      this.bindKeys();
+      if (this.client !== client || !canvas.isConnected) return view.dispose();
+      this.meshView = view;
+      this.endNotices((code) => code === 'slow-view');
+      this.parts?.handles.attach(view);
+      const camera = this.earlyCamera ?? start;
+      if (camera) view.cameraState = camera;
+      this.bindKeys(canvas, view);
       this.apply();
       this.arrange();
       if (this.pending) this.draw(this.pending);
       this.pending = null;
     } catch (thrown) {
-      this.fail(new QtetError('no-view', `The 3D view cannot start: ${errorText(thrown)}. It needs a browser with WebGL 2; reloading the page may help.`));
+      if (canvas.isConnected) this.notify('no-view', `The 3D view cannot start: ${errorText(thrown)}. It needs a browser with WebGL 2; trying again may help.`);
+    } finally {
+      clearTimeout(patience);
     }
+  }
+
+  /** Another worker and another canvas, for a canvas is given away once; the camera stays, and the mesh comes again from the worker that decodes. */
+  private restartView(): void {
+    const {client, meshView} = this;
+    if (!client) return;
+    this.endNotices((code) => kOfGraphics.includes(code));
+    const camera = !meshView ? this.settings.camera : meshView.pose.fitted ? null : meshView.cameraState;
+    meshView?.dispose();
+    this.meshView = null;
+    const canvas = this.find('.scene');
+    canvas.replaceWith(canvas.cloneNode());
+    client.repeat();
+    void this.prepareView(client, camera);
   }
 
   private get base(): URL { return new URL(this.getAttribute('src') ?? '.', document.baseURI); }
 
   private async open(): Promise<void> {
+    const opening = ++this.openings;  // a later one counts, whichever list comes first
+    this.started = false;
     try {
       this.setState('connecting');
       const file = isLogFile(this.base);
-      this.catalog = file ? [{id: meshOfLog(this.base), tetrahedra: 0, fields: []}] : await fetchCatalog(this.base);
-      if (!this.client) return;
+      const catalog = file ? [{id: meshOfLog(this.base), tetrahedra: 0, fields: []}] : await fetchCatalog(this.base, this.bearer);
+      if (!this.client || opening !== this.openings) return;
+      this.catalog = catalog;
       const wanted = file ? null : this.getAttribute('mesh');
       const mesh = wanted ?? this.catalog[0]?.id;
-      if (mesh === undefined) throw new QtetError('not-found', 'The server has no meshes yet. Put .qtet files into its folder.');
+      if (mesh === undefined) throw new QtetError('not-found', `The server shows no meshes. Put .qtet files into its folder; for guarded ones set the viewer's property "token".`);
       if (!this.catalog.some(({id}) => id === mesh)) {
-        throw new QtetError('not-found', `There is no mesh "${mesh}" on this server. It has: ${this.catalog.map(({id}) => id).join(', ') || 'none'}.`);
+        throw new QtetError('not-found', `There is no mesh "${mesh}" on this server. It has: ${this.catalog.map(({id}) => id).join(', ') || 'none that may be seen without a token'}.`);
       }
       const menu = this.catalog.length > 1;
       fillSelect(this.select('mesh'), this.catalog.map(({id}) => ({value: id, title: id})), mesh);
@@ -258,13 +355,16 @@ export class QtetViewer extends HTMLElement implements Host {
       this.find('.mesh-name').classList.toggle('visually-hidden', menu);
       this.openMesh(mesh);
     } catch (thrown) {
-      this.fail(thrown);
+      if (opening === this.openings) this.fail(thrown);
     }
   }
 
   private openMesh(mesh: string): void {
-    this.forget();
-    this.find('.mesh-name').textContent = mesh;
+    const opened = `${this.base.href} ${mesh}`;
+    this.forget(opened === this.opened);
+    this.opened = opened;
+    this.endNotices((code) => !kOfGraphics.includes(code));
+    this.find('.mesh-name').textContent = this.find('.title').title = mesh;
     this.find('.scene').setAttribute('aria-label', `3D view of ${mesh}. Arrow keys turn it, plus and minus zoom; the question mark lists all keys.`);
     const fields = this.catalog.find(({id}) => id === mesh)?.fields ?? [];
     const named = [this.getAttribute('field'), ...['iso', 'threshold'].map((name) => this.getAttribute(name)?.replace(/=[^=]*$/, '') ?? null)]
@@ -275,23 +375,30 @@ export class QtetViewer extends HTMLElement implements Host {
     const transport = kTransportKinds.find((kind) => kind === this.getAttribute('transport')) ?? 'auto';
     this.client?.start({
       url: file ? '' : streamUrl(this.base), log: file ? this.base.href : logUrl(this.base, mesh), transport, mesh, fields: first, limit: this.settings.limit,
+      pictureFirst: true, paused: this.pausedEarly, ...(this.bearer && {token: this.bearer}),
     });
+    this.started = true;
+    this.pausedEarly = false;
   }
 
-  private forget(): void {
-    this.manifest = this.pending = this.snapshot = null;
-    this.bounds = [];
+  /** With `sameMesh` the camera stays where people have moved it. */
+  private forget(sameMesh = false): void {
+    this.manifest = this.pending = this.snapshot = this.drawn = null;
+    this.bounds = this.plan = [];
     this.sentDisplay = this.toldWishes = '';
     this.loaded = false;
     this.figures = kNoStatistics;
     this.lastCells = {at: 0, cells: 0};
-    this.meshView?.clear();
+    if (this.meshView) {
+      const {pose: {fitted}, cameraState} = this.meshView;
+      this.meshView.clear();
+      if (sameMesh && !fitted) this.meshView.cameraState = cameraState;
+    }
     if (!this.parts) return;
     this.parts.progress.begin(null);
     this.parts.inspect.clear();
     this.parts.legend.hide();
     this.parts.handles.update([], []);
-    this.find('.notice').hidden = true;
   }
 
   // ---- from the worker
@@ -299,6 +406,9 @@ export class QtetViewer extends HTMLElement implements Host {
   private receive(message: Exclude<FromWorker, {type: 'answer'}>): void {
     switch (message.type) {
       case 'manifest': return this.takeManifest(message.manifest);
+      case 'plan':
+        this.plan = message.plan;
+        return this.parts?.progress.takePlan(this.plan);
       case 'snapshot': return this.meshView ? this.draw(message.snapshot) : void (this.pending = message.snapshot);
       case 'progress': return this.takeProgress(message.statistics);
       case 'state': return this.setState(message.state, message.attempt, message.delayMs);
@@ -307,6 +417,7 @@ export class QtetViewer extends HTMLElement implements Host {
   }
 
   private takeManifest(manifest: Manifest): void {
+    if (this.manifest) this.forget(true);  // another log stands under its name now
     this.manifest = manifest;
     this.parts?.progress.begin(manifest);
     this.apply();
@@ -321,14 +432,16 @@ export class QtetViewer extends HTMLElement implements Host {
   private draw(snapshot: Snapshot): void {
     this.figures = snapshot.statistics;
     this.snapshot = snapshot;
-    this.meshView!.show(snapshot, () => {
-      this.client?.shown();
+    if (snapshot.surface) this.hasGaps = [snapshot.surface, ...snapshot.cuts].some(({values}) => values.some(Number.isNaN));
+    const {manifest} = this;
+    this.meshView!.show(snapshot, (drawingMs) => {
+      if (manifest !== this.manifest) return;  // of the mesh before
+      this.client?.shown(drawingMs);
       this.tell(this.loaded ? 'refine' : 'load', snapshot.statistics);
       this.loaded = true;
       this.classList.add('loaded');
-      if (this.streamState !== 'complete' || this.completionTold) return;
-      this.completionTold = true;
-      this.tell('complete', snapshot.statistics);
+      this.drawn = snapshot.statistics;
+      this.tellComplete();
     });
     if (this.bounds.length === 0) {
       this.bounds = snapshot.bounds;
@@ -338,15 +451,24 @@ export class QtetViewer extends HTMLElement implements Host {
     this.showLegend();
   }
 
+  /** The decoder may be done long before the picture is: both have to be. */
+  private tellComplete(): void {
+    const {drawn} = this;
+    if (this.streamState !== 'complete' || this.completionTold || !drawn || drawn.bytes < this.figures.bytesNeeded) return;
+    this.completionTold = true;
+    this.tell('complete', drawn);
+  }
+
   private setState(state: StreamState, attempt = 0, delayMs = 0): void {
     this.streamState = state;
+    this.completionTold &&= state === 'complete';
+    this.tellComplete();
     if (!this.parts) return;
     this.parts.progress.showState(state, attempt, delayMs);
     const pause = this.find<HTMLButtonElement>('.pause');
     pause.hidden = state === 'complete' || state === 'failed';
     pause.textContent = state === 'paused' || state === 'held' ? 'Continue' : 'Pause';
-    if (state === 'streaming' || state === 'complete') this.find('.notice').hidden ||= this.find('.notice').dataset.code !== 'unknown-field';
-    this.completionTold &&= state === 'complete';
+    if (state === 'streaming' || state === 'complete') this.endNotices((code) => ![...kNotOfStream, ...kOfGraphics].includes(code));
   }
 
   // ---- to the worker
@@ -381,7 +503,7 @@ export class QtetViewer extends HTMLElement implements Host {
   /** Tells a log of regions what to refine first. */
   private lookAt(): void {
     const planes = this.bounds.length > 0 ? this.settings.planes.map((plane) => planeOf(plane, this.bounds)) : [];
-    const wishes: Wishes = {frustum: this.meshView?.frustum ?? [], planes, point: null};
+    const wishes: Wishes = {frustum: this.meshView?.pose.frustum ?? [], planes, point: this.point};
     const text = JSON.stringify(wishes);
     if (text !== this.toldWishes) this.client?.look(wishes);
     this.toldWishes = text;
@@ -395,8 +517,8 @@ export class QtetViewer extends HTMLElement implements Host {
     this.on('.fold', () => this.fold(!this.find('.panel').classList.contains('folded')));
     this.on('.reset', () => this.resetView());
     this.on('.pause', () => this.togglePause());
-    this.on('.dismiss', () => void (this.find('.notice').hidden = true));
-    this.on('.retry', () => void this.open());
+    this.on('.dismiss', () => this.endNotices((code) => code === this.find('.notice').dataset.code));
+    this.on('.retry', () => (kOfGraphics.includes(this.find('.notice').dataset.code ?? '') ? this.restartView() : void this.open()));
     this.on('.picture', () => void this.savePicture());
     this.on('.fullscreen', () => this.toggleFullscreen());
     this.on('.share', () => this.share());
@@ -406,9 +528,8 @@ export class QtetViewer extends HTMLElement implements Host {
     for (const button of this.root.querySelectorAll<HTMLButtonElement>('.look')) button.addEventListener('click', () => this.look(button.value as Direction));
   }
 
-  private bindKeys(): void {
-    const view = this.meshView!;
-    bindKeys(view.canvas, {
+  private bindKeys(canvas: HTMLCanvasElement, view: View): void {
+    bindKeys(canvas, {
       turn: (horizontal, vertical) => view.turn(horizontal, vertical), zoom: (factor) => view.zoom(factor),
       look: (direction) => view.look(direction === null ? null : kDirections[direction]!),
       toggle: (what) => this.toggle(what),
@@ -429,9 +550,15 @@ export class QtetViewer extends HTMLElement implements Host {
   }
 
   private togglePause(): void {
-    if (this.streamState === 'held') this.write('quality', null);
+    if (this.streamState === 'held') this.refineFully();
     else if (this.streamState === 'paused') this.resume();
     else this.pause();
+  }
+
+  /** What memory stopped has no `quality` to take away: it is tried once more. */
+  private refineFully(): void {
+    if (this.hasAttribute('quality')) this.write('quality', null);
+    else this.client?.setLimit(kFull);
   }
 
   /** Another mesh has other fields, places and values; what does not depend on them stays. */
@@ -444,7 +571,7 @@ export class QtetViewer extends HTMLElement implements Host {
   }
 
   private async savePicture(): Promise<void> {
-    const picture = await this.picture();
+    const picture = await this.picture().catch((thrown: unknown) => this.notify('no-picture', `The picture cannot be taken: ${errorText(thrown)}.`));
     if (!picture) return;
     const link = Object.assign(document.createElement('a'), {href: URL.createObjectURL(picture), download: `${this.find('.mesh-name').textContent}.png`});
     link.click();
@@ -481,7 +608,7 @@ export class QtetViewer extends HTMLElement implements Host {
       const occurring = snapshot.extent.map((share) => low + share * (high - low)) as [number, number];
       const range = shownRange(settings, occurring);
       this.meshView?.setRange(range.low, range.high, snapshot.scaleRange, range.logarithmic);
-      this.parts.legend.show(snapshot.color, manifest.fields, range, settings);
+      this.parts.legend.show(snapshot.color, manifest.fields, {...range, hasGaps: this.hasGaps}, settings);
       this.parts.color.showRange(range.low, range.high);
     }
     this.arrange();
@@ -493,7 +620,7 @@ export class QtetViewer extends HTMLElement implements Host {
     const text = (selector: string, value: string): void => void (this.find(selector).textContent = value);
     if (at > 0 && statistics.tetrahedra > cells) text('.cell-rate', `${formatCount(Math.round((statistics.tetrahedra - cells) / (now - at) * 1000))} cells/s`);
     this.lastCells = {at: now, cells: statistics.tetrahedra};
-    text('.frame-ms', `${this.meshView!.frameMs.toFixed(1)} ms`);
+    text('.frame-ms', `${this.meshView!.pose.frameMs.toFixed(1)} ms`);
     text('.cost-ms', `${costMs.toFixed(1)} ms`);
     text('.level', `${statistics.level} of ${statistics.lastLevel}`);
     text('.vertices', formatCount(statistics.vertices));
@@ -522,8 +649,9 @@ export class QtetViewer extends HTMLElement implements Host {
   private arrange(): void {
     if (!this.parts) return;
     const sheet = this.isNarrow;
-    const insets = insetsOf(this, this.find('.panel'), this.find('.legend'), sheet);
-    this.style.setProperty('--sheet', `${Math.round(insets.bottom * this.clientHeight)}px`);
+    const panel = this.find('.panel');
+    const insets = insetsOf(this, {panel, legend: this.find('.legend'), result: this.find('.result')}, sheet);
+    this.style.setProperty('--sheet', `${sheet ? panel.offsetHeight : 0}px`);
     this.meshView?.setInsets(insets);
   }
 
@@ -531,7 +659,24 @@ export class QtetViewer extends HTMLElement implements Host {
 
   private graphicsLost(lost: boolean): void {
     if (lost) this.notify('graphics-lost', 'The browser took the graphics away, as it does when memory is short. The picture comes back when it returns them; closing other tabs helps.');
-    else if (this.find('.notice').dataset.code === 'graphics-lost') this.find('.notice').hidden = true;
+    else this.endNotices((code) => code === 'graphics-lost');
+  }
+
+  private endNotices(ended: (code: string) => boolean): void {
+    const {notices} = this;
+    this.notices = notices.filter(({code}) => !ended(code));
+    if (notices.length !== this.notices.length) this.showNotice();
+  }
+
+  /** The last one that has not ended. */
+  private showNotice(): void {
+    const notice = this.find('.notice');
+    const {code, message} = this.notices.at(-1) ?? {code: '', message: ''};
+    notice.hidden = code === '';
+    if (notice.hidden) return;
+    notice.dataset.code = code;
+    notice.querySelector('p')!.textContent = message;
+    notice.querySelector<HTMLElement>('.retry')!.hidden = kNotOfStream.includes(code);
   }
 
   private fail(thrown: unknown): void {
@@ -539,13 +684,14 @@ export class QtetViewer extends HTMLElement implements Host {
     this.setState('failed');
   }
 
+  private addNotice(code: string, message: string): void {
+    this.notices = [...this.notices.filter((notice) => notice.code !== code), {code, message}];
+    this.showNotice();
+  }
+
   private notify(code: string, message: string): void {
-    if (!this.parts) return;
-    const notice = this.find('.notice');
-    notice.dataset.code = code;
-    notice.querySelector('p')!.textContent = message;
-    notice.querySelector<HTMLElement>('.retry')!.hidden = kNoRetry.includes(code);
-    notice.hidden = false;
+    if (!this.client) return;
+    this.addNotice(code, message);
     this.tell('error', {code, message});
   }
 
@@ -560,12 +706,13 @@ export class QtetViewer extends HTMLElement implements Host {
 }
 
 /** The viewer as Inspect sees it. */
-function inspectHost(viewer: QtetViewer): ConstructorParameters<typeof Inspect>[2] {
+function inspectHost(viewer: QtetViewer): ConstructorParameters<typeof Inspect>[1] {
   return {
     get client() { return viewer.client; },
     get view() { return viewer.meshView; },
     get manifest() { return viewer.manifest; },
     get fieldTitle() { return viewer.fieldTitle; },
     announce: (text) => viewer.announce(text),
+    pointAt: (point) => viewer.pointAt(point),
   };
 }

@@ -38,6 +38,7 @@ export const kTemplate = `
   <figcaption><span class="legend-name"></span><span class="legend-factor"></span></figcaption>
   <div class="legend-bar"></div>
   <div class="legend-ticks"></div>
+  <div class="legend-gap" hidden><i></i>No value</div>
 </figure>
 
 <section class="card result" part="result" aria-label="What was pointed at" hidden>
@@ -58,6 +59,7 @@ export const kTemplate = `
     </button>
   </header>
 
+  <div class="body">
   <slot name="progress"><section class="progress" part="progress" aria-label="Progress">
     <div class="row">
       <span class="state"><i class="dot"></i><span class="state-text">Connecting</span></span>
@@ -135,7 +137,7 @@ export const kTemplate = `
         <label class="field"><span class="name">Refine</span><select name="limit"><option value="full">all of it</option><option value="error">until the error is</option><option value="cells">until there are</option><option value="bytes">until it took</option></select></label>
         <label class="row limit-value" hidden><input type="text" inputmode="decimal" name="limit-value" aria-label="Limit"><span class="limit-unit name"></span></label>
         <div class="row buttons"><button type="button" class="coarser">Coarser</button><button type="button" class="finer">Finer</button></div>
-        <figure class="curve" hidden><svg viewBox="0 -1 100 42" preserveAspectRatio="none" aria-hidden="true"><path vector-effect="non-scaling-stroke"/></svg><figcaption></figcaption></figure>
+        <figure class="curve" hidden><svg viewBox="0 -1 100 42" preserveAspectRatio="none" aria-hidden="true">${['ahead', 'reached', 'here'].map((name) => `<path class="${name}" vector-effect="non-scaling-stroke"/>`).join('')}</svg><figcaption></figcaption></figure>
       </div>
     </details>
 
@@ -167,6 +169,7 @@ export const kTemplate = `
       <button type="button" class="reset">Reset view</button>
       <button type="button" class="pause" hidden>Pause</button>
     </footer>
+  </div>
   </div>
 </aside>
 

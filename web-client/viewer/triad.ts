@@ -7,6 +7,7 @@ export class Triad {
   private readonly axes: {line: SVGLineElement; text: SVGTextElement}[];
 
   constructor(private readonly svg: SVGSVGElement) {
+    svg.replaceChildren();  // of a view before this one
     this.axes = kNames.map((name) => {
       const line = document.createElementNS(svg.namespaceURI, 'line') as SVGLineElement;
       const text = document.createElementNS(svg.namespaceURI, 'text') as SVGTextElement;

@@ -1,0 +1,57 @@
+// Which field a name means: one rule for options, URLs, messages and the C library, over any list of things with a name and an association.
+#pragma once
+
+#include <charconv>
+#include <cstdint>
+#include <optional>
+#include <ranges>
+#include <string_view>
+#include <vector>
+
+namespace qtet {
+
+/// "T" of "T@0.5", the name of a field in a step of a series (simplify/join_blocks.h); nothing of a name that does not end in a number.
+[[nodiscard]] inline std::optional<std::string_view> nameWithoutStep(std::string_view name) {
+  const std::size_t at = name.rfind('@');
+  if (at == std::string_view::npos || at == 0) return std::nullopt;
+  double time = 0;
+  const char* const end = name.data() + name.size();
+  const auto [stop, code] = std::from_chars(name.data() + at + 1, end, time);
+  return code == std::errc() && stop == end ? std::optional(name.substr(0, at)) : std::nullopt;
+}
+
+/// Whether `key` is the name or "point:NAME" or "cell:NAME", as the association is.
+[[nodiscard]] inline bool isCalled(std::string_view association, std::string_view name, std::string_view key) {
+  return key == name || (key.size() == association.size() + 1 + name.size() && key.starts_with(association) && key[association.size()] == ':' && key.ends_with(name));
+}
+
+/// The fields that `key` means where several may be meant, ascending: those of that name; else with "point:" or "cell:" before it the one; else of a series' fields every step's, NAME@TIME.
+template <std::ranges::random_access_range Fields>
+[[nodiscard]] std::vector<std::uint32_t> fieldsOfKey(const Fields& fields, std::string_view key) {
+  std::vector<std::uint32_t> out;
+  const auto all = [&](const auto& isMeant) {
+    for (std::uint32_t f = 0; f < fields.size(); ++f)
+      if (isMeant(fields[f])) out.push_back(f);
+    return !out.empty();
+  };
+  if (all([&](const auto& field) { return field.name == key; })) return out;
+  if (all([&](const auto& field) { return isCalled(field.association, field.name, key); })) return out;
+  all([&](const auto& field) {
+    const auto name = nameWithoutStep(field.name);
+    return name && isCalled(field.association, *name, key);
+  });
+  return out;
+}
+
+/// The one field that `key` means: the point field of that name, else the cell field of that name, else with "point:" or "cell:" before it; of a series a step's whole name.
+template <std::ranges::random_access_range Fields>
+[[nodiscard]] std::optional<std::uint32_t> fieldOfKey(const Fields& fields, std::string_view key) {
+  std::optional<std::uint32_t> out;
+  for (const std::uint32_t f : fieldsOfKey(fields, key)) {
+    if (fields[f].name != key && !isCalled(fields[f].association, fields[f].name, key)) continue;
+    if (!out || (fields[f].association == "point" && fields[*out].association != "point")) out = f;
+  }
+  return out;
+}
+
+}  // namespace qtet

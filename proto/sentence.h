@@ -1,0 +1,16 @@
+// How what went wrong is told to people: as a whole sentence, whoever wrote it.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace qtet {
+
+/// `text` with a full stop behind it, unless a sentence ends there already.
+[[nodiscard]] inline std::string sentence(std::string_view text) {
+  std::string out(text);
+  if (!out.empty() && out.find_last_of(".!?") != out.size() - 1) out += '.';
+  return out;
+}
+
+}  // namespace qtet

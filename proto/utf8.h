@@ -1,0 +1,14 @@
+// Texts from outside: whether they are UTF-8, and what is shown where they are not.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace qtet {
+
+/// UTF-8 as RFC 3629 has it: no overlong forms, no surrogates, nothing above U+10FFFF, nothing cut off.
+[[nodiscard]] bool isUtf8(std::string_view text);
+/// `text` with a question mark for each byte that belongs to no sound character: as long as it was.
+[[nodiscard]] std::string soundUtf8(std::string_view text);
+
+}  // namespace qtet

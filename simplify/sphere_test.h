@@ -1,0 +1,46 @@
+// Whether the link of a vertex is a sphere, asked of every vertex of a mesh: what codec/link.h would say, in a third of the time.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "codec/link.h"
+#include "codec/mesh.h"
+
+namespace qtet {
+
+class SphereTest {
+ public:
+  /// `vertices`: how many there are; ids are below, or kGhost.
+  explicit SphereTest(std::size_t vertices) : locals_(vertices + 1) {}
+
+  /// The triangles that `star`'s cells have opposite v form one sphere: every edge is met once in each direction, all hang together by edges, the Euler characteristic is 2.
+  /// REQUIRES: v is in each cell of the star, and none names a vertex twice.
+  [[nodiscard]] bool isLinkSphere(VertexId v, std::span<const CellId> star, std::span<const Tetrahedron> cells);
+
+ private:
+  using Small = std::uint8_t;    // a vertex of the link
+  using Mask = std::uint64_t;    // bit i: vertex i
+  static constexpr std::size_t kMost = 64;
+
+  struct Local {
+    std::uint32_t asked = 0;  // the question for which the number holds
+    std::uint32_t number = 0;
+  };
+
+  [[nodiscard]] bool isClosed(std::uint32_t vertices, std::size_t triangles) const;
+  [[nodiscard]] bool isConnected(std::size_t triangles);
+  [[nodiscard]] bool askLink(VertexId v, std::span<const CellId> star, std::span<const Tetrahedron> cells);
+
+  std::vector<Local> locals_;  // by vertex, the ghost's the last
+  std::uint32_t asked_ = 0;  // less often than there are ids
+  // By vertex of the link: the ends of the edges from it, the starts of those to it, and which of the former were walked.
+  std::array<Mask, kMost> to_{}, from_{}, walked_{};
+  std::array<Small, kMost * kMost> third_{};  // by edge, 64 a + b: the triangle's other vertex
+  std::array<std::array<Small, 2>, 4 * kMost> walk_{};  // edges whose triangles are to come; a sphere of n vertices has 2 n - 4 triangles, each adds two
+  Link link_;                                 // for what is larger
+};
+
+}  // namespace qtet

@@ -1,0 +1,99 @@
+// The volume's rays beside edges of the mesh: every pixel, against what is known of cubes.
+
+import assert from 'node:assert/strict';
+import {execFileSync} from 'node:child_process';
+import {writeFileSync} from 'node:fs';
+import {join} from 'node:path';
+import {linearBox} from './volume_checks.mjs';
+
+/** Cubes along the shortest side, and which of them are there. */
+const kSponge = 3;
+const isInSponge = (x, y, z) => (x + y + z) % 2 === 0 || (7 * x + 3 * y + 5 * z) % 3 === 0;
+
+/** In the worker that draws, the opacity being the same everywhere: of all pixels those that show anything, and those where it is not what the box's cubes on the line of sight add up to. */
+function compareWithCubes(view, sizes, cubes) {
+  const {volume: {deep, caster: {ray: {material: {uniforms}}}, fine: {of: {vertices}}}, renderer, pose: {fromCanvas: m}} = view;
+  const {width, height} = deep.volume;
+  const gl = renderer.getContext();
+  renderer.setRenderTarget(deep.volume);
+  const drawn = new Float32Array(4 * width * height);
+  gl.readPixels(0, 0, width, height, gl.RGBA, gl.FLOAT, drawn);
+  renderer.setRenderTarget(null);
+  const edges = [0, 1, 2].map((axis) => {
+    const all = vertices.filter((_, i) => i % 4 === axis);
+    const low = all.reduce((a, b) => Math.min(a, b)), high = all.reduce((a, b) => Math.max(a, b));
+    return Array.from({length: sizes[axis] + 1}, (_, i) => low + (i / sizes[axis]) * (high - low));
+  });
+  const point = (x, y, z) => [0, 1, 2].map((i) => (m[i] * x + m[i + 4] * y + m[i + 8] * z + m[i + 12]) / (m[3] * x + m[7] * y + m[11] * z + m[15]));
+  const extinction = uniforms.density.value.image.data[3] * uniforms.perDiagonal.value;
+  const found = {shown: 0, less: 0, more: 0};
+  for (let pixel = 0; pixel < width * height; ++pixel) {
+    const [from, to] = [-1, 1].map((z) => point((2 * (pixel % width) + 1) / width - 1, (2 * Math.floor(pixel / width) + 1) / height - 1, z));
+    const along = to.map((value, axis) => value - from[axis]);
+    const at = edges.map((all, axis) => all.map((place) => (place - from[axis]) / along[axis]));
+    let shares = 0;
+    for (const cube of cubes) {
+      let enter = 0, leave = Infinity;
+      for (let axis = 0; axis < 3; ++axis) {
+        const a = at[axis][cube[axis]], b = at[axis][cube[axis] + 1];
+        enter = Math.max(enter, Math.min(a, b));
+        leave = Math.min(leave, Math.max(a, b));
+      }
+      shares += Math.max(0, leave - enter);
+    }
+    const wanted = 1 - Math.exp(-extinction * shares * Math.hypot(...along));
+    const off = 255 * (drawn[4 * pixel + 3] - wanted);
+    if (wanted > 0.02) ++found.shown;
+    if (off < -2) ++found.less;
+    if (off > 2) ++found.more;
+  }
+  return found;
+}
+
+/** The box of cubes as a volume that is as opaque everywhere, without cards. */
+async function openSponge({server, browser, logs, out, bin}) {
+  const sizes = [kSponge, 2 * kSponge, 3 * kSponge];
+  const cubes = [];
+  for (let z = 0; z < sizes[2]; ++z) for (let y = 0; y < sizes[1]; ++y) for (let x = 0; x < sizes[0]; ++x) if (isInSponge(x, y, z)) cubes.push([x, y, z]);
+  const mesh = join(out, 'sponge.vtu');
+  writeFileSync(mesh, linearBox(kSponge, {}, isInSponge));
+  execFileSync(join(bin, 'qtet'), ['simplify', mesh, '-o', join(logs.fin.folder, 'sponge.qtet')], {stdio: 'pipe'});
+  server.kill();
+  await server.start();
+  const viewer = await browser.open(`${server.url}?mesh=sponge&field=x&volume=0.3,0.3`, {viewport: {width: 480, height: 320}, deviceScaleFactor: 1.5});
+  await viewer.page.addStyleTag({content: 'qtet-viewer::part(panel), qtet-viewer::part(legend) { display: none }'});
+  await viewer.waitForState('complete');
+  await viewer.waitForPicture();
+  return {viewer, compare: (camera) => comparedFrom(viewer, camera, sizes, cubes)};
+}
+
+async function comparedFrom(viewer, camera, sizes, cubes) {
+  await viewer.page.evaluate((place) => window.qtetViewer.setAttribute('camera', place), camera);
+  await viewer.restVolume();
+  const {shown, less, more} = await viewer.inView(compareWithCubes, sizes, cubes);
+  return {shown, wrong: less + more, note: `of ${shown} pixels ${less} show too little, ${more} too much`};
+}
+
+/** From each of the cameras the whole picture is right. */
+async function looksRightFrom(cameras, tools, picture) {
+  const {viewer, compare} = await openSponge(tools);
+  const notes = [];
+  for (const camera of cameras) {
+    const {shown, wrong, note} = await compare(camera);
+    notes.push(note);
+    assert.ok(shown > 20000, note);
+    assert.ok(wrong <= 2, notes.join('; '));
+  }
+  await viewer.screenshot(picture);
+  assert.deepEqual(viewer.problems, []);
+  return notes.join('; ');
+}
+
+/** Many edges at which rays leave the mesh on one side and stay in it on the other: none comes in again too rarely, or too often. */
+const castsRaysBesideEdges = (tools) => looksRightFrom(['2.6,3.2,1.7,0,0,0', '-1.9,2.7,2.4,0,0.1,0'], tools, 'volume-sponge');
+
+/** From just outside of the mesh, nearer to a face than the canvas's near plane: its rays begin at that plane. */
+const castsRaysFromCloseToAFace = (tools) =>
+  looksRightFrom(['0.2703,0.1,0.1,0,0.05,0', '0.2693,-0.3,0.5,0.2,0.3,-0.2', '0.05,-0.5375,0.15,0,0,0'], tools, 'volume-close');
+
+export const edgeChecks = {castsRaysBesideEdges, castsRaysFromCloseToAFace};

@@ -1,0 +1,222 @@
+// The element when it is used at awkward moments.
+
+import assert from 'node:assert/strict';
+import {copyFileSync, rmSync} from 'node:fs';
+import {join} from 'node:path';
+import {kTimeoutMs} from './browser.mjs';
+import {expectWhole} from './expect.mjs';
+import {coloredShare, differingShare} from './png.mjs';
+import {PoorLine} from './poor_line.mjs';
+
+/** A picture of the mesh before is already on its way when another one is chosen. */
+async function showsNothingOfTheMeshBefore({server, browser}) {
+  const viewer = await browser.open(`${server.url}?mesh=fin`, undefined, () => {
+    const seen = window.qtetSwitch = {before: 0, loads: []};
+    window.Worker = class extends window.Worker {
+      constructor(url, options) {
+        super(url, options);
+        if (options?.name !== 'qtet') return;
+        this.addEventListener('message', ({data}) => {  // hears of it before the viewer does
+          if (data.type !== 'snapshot' || seen.before > 0) return;
+          seen.before = data.snapshot.statistics.total.tetrahedra;
+          const viewer = document.querySelector('qtet-viewer');
+          viewer.addEventListener('load', ({detail}) => seen.loads.push(detail.total.tetrahedra));
+          const menu = viewer.shadowRoot.querySelector('select[name=mesh]');
+          menu.value = 'box';
+          menu.dispatchEvent(new Event('change'));
+        });
+      }
+    };
+  });
+  await viewer.page.waitForFunction(() => window.qtetSwitch.loads.length > 0, null, {timeout: kTimeoutMs});
+  await viewer.waitForState('complete');
+  const {before, loads} = await viewer.page.evaluate(() => window.qtetSwitch);
+  const {total} = await viewer.statistics();
+  assert.notEqual(before, total.tetrahedra);
+  assert.deepEqual(loads, [total.tetrahedra]);
+}
+
+/** The graphics are so slow that the whole mesh is decoded before the first picture is on the screen. */
+async function tellsOfTheWholeMeshOnceItIsDrawn({server, browser}) {
+  const viewer = await browser.open(`${server.url}?mesh=fin`, undefined, () => {
+    const told = window.qtetTold = {complete: [], last: null};
+    document.addEventListener('DOMContentLoaded', () => {
+      const viewer = document.querySelector('qtet-viewer');
+      viewer.addEventListener('complete', ({detail}) => told.complete.push(detail.tetrahedra));
+      viewer.addEventListener('refine', ({detail}) => void (told.last = detail));
+    });
+    window.Worker = class extends window.Worker {
+      constructor(url, options) {
+        super(url, options);
+        this.isView = options?.name === 'qtet-view';
+      }
+      set onmessage(hear) {
+        const held = [];
+        super.onmessage = !this.isView ? hear : (event) => {
+          const viewer = document.querySelector('qtet-viewer');
+          if (event.data.type !== 'shown' || viewer.state === 'complete') return hear(event);
+          if (held.push(event) > 1) return undefined;
+          const wait = setInterval(() => {
+            if (viewer.state !== 'complete') return;
+            clearInterval(wait);
+            for (const event of held) hear(event);
+          }, 5);
+          return undefined;
+        };
+      }
+    };
+  });
+  await viewer.page.waitForFunction(() => window.qtetTold.last?.tetrahedra === window.qtetTold.last?.total.tetrahedra && window.qtetTold.last,
+    null, {timeout: kTimeoutMs});
+  const {complete, last} = await viewer.page.evaluate(() => window.qtetTold);
+  assert.deepEqual(complete, [last.total.tetrahedra]);
+}
+
+/** A page that does not wait between putting the element into its place and saying what it shows. */
+async function takesItsAttributesInTheTaskThatAppendsIt({server, browser}) {
+  const viewer = await browser.open(`${server.url}?mesh=box`);
+  await viewer.page.evaluate(() => {
+    const late = window.qtetViewer = document.createElement('qtet-viewer');
+    document.querySelector('qtet-viewer').replaceWith(late);
+    late.setAttribute('src', '/nowhere.qtet');
+    late.token = 'any';
+  });
+  await viewer.waitForState('failed');
+  assert.match(await viewer.text('.notice p'), /nowhere\.qtet/);
+  assert.deepEqual(viewer.problems.filter((problem) => problem.includes('TypeError')), []);
+}
+
+/** A pause that comes before there is anything to pause: nothing is asked for until it ends. */
+async function pausesInTheTaskThatAppendsIt({server, browser}) {
+  const viewer = await browser.open(`${server.url}?mesh=box`);
+  await viewer.waitForState('complete');
+  await viewer.page.evaluate(() => {
+    const late = window.qtetViewer = document.createElement('qtet-viewer');
+    late.setAttribute('mesh', 'fin');
+    document.querySelector('qtet-viewer').replaceWith(late);
+    late.pause();
+  });
+  await viewer.waitForState('paused');
+  await viewer.settle();
+  assert.equal((await viewer.statistics()).bytes, 0);
+  assert.equal(await viewer.page.evaluate(() => window.qtetViewer.state), 'paused');
+  await viewer.page.getByRole('button', {name: 'Continue'}).click();
+  await viewer.waitForState('complete');
+  assert.deepEqual(viewer.problems, []);
+}
+
+/** Whatever goes wrong in one picture, the ones after it come. */
+async function drawsOnAfterAPictureThatFailed({server, browser}) {
+  for (const breakOnce of [
+    ({surface}) => void (surface.show = () => {
+      delete surface.show;
+      throw new Error('broken on purpose');
+    }),
+    ({renderer}) => {
+      const {render} = renderer;
+      renderer.render = () => {
+        renderer.render = render;
+        throw new Error('broken on purpose');
+      };
+    },
+  ]) {
+    const viewer = await browser.open(`${server.url}?mesh=box`);
+    await viewer.waitForState('complete');
+    await viewer.waitForPicture();
+    const whole = await viewer.screenshot('broken-not');
+    await viewer.inView(breakOnce);
+    await viewer.page.evaluate(() => window.qtetViewer.setAttribute('surface', 'off'));
+    await viewer.page.getByText('Something went wrong while drawing: Uncaught Error: broken on purpose').waitFor();
+    await viewer.page.evaluate(() => {
+      const viewer = window.qtetViewer;
+      viewer.removeAttribute('surface');
+      viewer.setAttribute('clip', 'x:0.3');
+      viewer.look('-y');
+    });
+    await viewer.waitInView(({cuts}) => cuts[0].visible);
+    await viewer.settle();
+    const other = await viewer.screenshot('broken-after');
+    assert.ok(coloredShare(other) > 0.02 && differingShare(whole, other) > 0.02, 'no other picture comes');
+    assert.ok(await viewer.page.locator('qtet-viewer .notice').isVisible(), 'the notice is gone');
+    assert.ok(await viewer.page.getByRole('button', {name: 'Try again'}).isVisible(), 'there is no way out');
+  }
+}
+
+/** What the worker was started with counts no more, although it has not told of any mesh yet. */
+async function heedsAQualityThatChangesBeforeTheHeadHasCome({server, browser, logs}) {
+  const viewer = await browser.open(`${server.url}?mesh=fin&quality=cells:1000`, undefined, () => {
+    const {postMessage} = Worker.prototype;
+    Worker.prototype.postMessage = function (message, ...rest) {
+      postMessage.call(this, message, ...rest);
+      if (message.type === 'start') queueMicrotask(() => window.qtetViewer.removeAttribute('quality'));
+    };
+  });
+  await viewer.waitForState('complete');
+  await expectWhole(viewer, logs.fin);
+}
+
+/** In mid-stream another log takes the name: the page begins anew, with the places and values of the new one. */
+async function showsTheLogThatTookTheName({server, browser, logs}) {
+  const path = join(logs.fin.folder, 'changing.qtet');
+  copyFileSync(join(logs.fin.folder, 'fin.qtet'), path);
+  server.kill();
+  await server.start();
+  const line = await PoorLine.open(server.port, {holdAt: 50000});
+  try {
+    const viewer = await browser.open(`${line.url}?mesh=changing&clip=x:0.4`);
+    await viewer.page.waitForFunction(() => window.qtetViewer.statistics.chunks > 2 && window.qtetSeen.pictures > 0, null, {timeout: kTimeoutMs, polling: 50});
+    const {chunks, chunkCount} = await viewer.statistics();
+    assert.ok(chunks < chunkCount, 'everything had come before the log was replaced');
+    server.kill();
+    line.cut();
+    copyFileSync(join(logs.box.folder, 'box.qtet'), path);
+    await server.start();
+    await viewer.waitForState('complete');
+    await viewer.page.waitForFunction(() => window.qtetSeen.events.some(({type}) => type === 'complete'), null, {timeout: kTimeoutMs});
+    await expectWhole(viewer, logs.box);
+    await viewer.settle();
+    const again = await browser.open(viewer.page.url());
+    await again.waitForState('complete');
+    await again.waitForPicture();
+    await again.settle();
+    const differing = differingShare(await again.screenshot('changed-fresh'), await viewer.screenshot('changed'));
+    assert.ok(differing < 0.005, `${differing} of the picture is another than a fresh page's`);
+    const loads = (await viewer.seen()).events.filter(({type}) => type === 'load').length;
+    assert.equal(loads, 2);
+    return `after ${chunks} of ${chunkCount} chunks`;
+  } finally {
+    line.close();
+    rmSync(path);
+  }
+}
+
+/** Every attribute brings all settings along: only what changes the picture draws it anew, which takes graphics without a GPU a fifth of a second. */
+async function drawsOnlyWhatChanges({server, browser}) {
+  const viewer = await browser.open(`${server.url}?mesh=fin`);
+  await viewer.waitForState('complete');
+  await viewer.waitForPicture();
+  await viewer.inView((view) => {
+    const {renderer} = view;
+    const render = renderer.render.bind(renderer);
+    view.drawnByCheck = 0;
+    renderer.render = (...words) => {
+      ++view.drawnByCheck;
+      render(...words);
+    };
+  });
+  const drawnAfter = async (name, value) => {
+    const before = await viewer.inView((view) => view.drawnByCheck);
+    await viewer.page.evaluate((words) => window.qtetViewer.setAttribute(...words), [name, value]);
+    await viewer.settle();
+    return await viewer.inView((view) => view.drawnByCheck) - before;
+  };
+  assert.equal(await drawnAfter('quality', 'cells:100000000'), 0);
+  assert.ok(await drawnAfter('edges', 'off') > 0);
+  assert.ok(await drawnAfter('projection', 'parallel') > 0);
+}
+
+export const elementChecks = {
+  drawsOnlyWhatChanges,
+  showsNothingOfTheMeshBefore, tellsOfTheWholeMeshOnceItIsDrawn, takesItsAttributesInTheTaskThatAppendsIt, pausesInTheTaskThatAppendsIt,
+  drawsOnAfterAPictureThatFailed, heedsAQualityThatChangesBeforeTheHeadHasCome, showsTheLogThatTookTheName,
+};

@@ -1,0 +1,155 @@
+import {afterEach, beforeEach, expect, test, vi} from 'vitest';
+import type {Assembler} from '../core/assembler';
+import {kPlainDisplay} from '../core/display';
+import {Publisher} from '../core/publisher';
+import {kNoStatistics} from '../core/statistics';
+import type {Snapshot} from '../core/worker_messages';
+import {FakeCodec} from './fakes';
+
+let bytes: number;
+let pictures: Snapshot[];
+let publisher: Publisher;
+
+/** A mesh whose bytes are told by the test, and which has sent its first picture, shown at once. */
+beforeEach(() => {
+  vi.useFakeTimers();
+  bytes = 1000;
+  pictures = [];
+  const codec = new FakeCodec({fields: [], chunks: 1});
+  codec.chunksApplied = 1;
+  const assembler = {codec, manifest: {fields: []}, statistics: () => ({...kNoStatistics, bytes})};
+  publisher = new Publisher(assembler as unknown as Assembler, (snapshot) => void pictures.push(snapshot));
+  publisher.show(kPlainDisplay);
+  grow(1000);
+  vi.advanceTimersByTime(1);
+  publisher.shown();
+});
+afterEach(() => void vi.useRealTimers());
+
+function grow(to: number, isLast = false): void {
+  bytes = to;
+  publisher.changed(isLast);
+}
+
+/** Milliseconds until the next picture. */
+function untilNext(most = 10000): number {
+  const before = pictures.length;
+  for (let ms = 0; ms <= most; ++ms) {
+    if (pictures.length > before) return ms;
+    vi.advanceTimersByTime(1);
+  }
+  return Infinity;
+}
+
+test('aMeshThatGrowsFastIsShownTenTimesASecond', () => {
+  for (let i = 1; i <= 3; ++i) {
+    grow(1000 * 2 ** i);
+    const ms = untilNext();
+    expect(ms).toBeGreaterThan(80);
+    expect(ms).toBeLessThanOrEqual(101);
+    publisher.shown();
+  }
+});
+
+test('aPictureThatTookLongOnItsWayIsFollowedByALongerPause', () => {
+  grow(2000);
+  untilNext();
+  vi.advanceTimersByTime(60);
+  grow(4000);
+  expect(untilNext(100)).toBe(Infinity);  // the last one is not yet on the screen
+  publisher.shown();
+  expect(untilNext()).toBeGreaterThan(500);
+});
+
+test('whatTheUserChangesComesAtOnceAllTheSame', () => {
+  grow(2000);
+  untilNext();
+  vi.advanceTimersByTime(100);
+  publisher.shown();
+  publisher.show({...kPlainDisplay, planes: [{normal: [1, 0, 0], offset: 3}]});
+  expect(untilNext()).toBeLessThan(12);
+});
+
+test('aPageThatWasOutOfSightWaitsNoLongerThanASecond', () => {
+  grow(2000);
+  untilNext();
+  vi.advanceTimersByTime(600000);
+  grow(4000);
+  publisher.shown();
+  expect(untilNext()).toBeLessThanOrEqual(1001);
+});
+
+test('aMeshThatHasHardlyGrownWaitsForMoreButNotForEver', () => {
+  grow(1050);
+  vi.advanceTimersByTime(200);
+  expect(pictures).toHaveLength(1);
+  grow(1110);
+  expect(untilNext()).toBeLessThanOrEqual(1);
+  publisher.shown();
+  grow(1120);
+  expect(untilNext()).toBeLessThanOrEqual(501);
+});
+
+/** The picture of so many bytes takes so long to the screen. */
+function shownAfter(ms: number, to: number): void {
+  grow(to);
+  untilNext();
+  vi.advanceTimersByTime(ms);
+  publisher.shown();
+}
+
+test('wherePicturesAreDearTheMeshHasToDouble', () => {
+  shownAfter(150, 2000);
+  vi.advanceTimersByTime(2000);
+  grow(3900);
+  vi.advanceTimersByTime(400);
+  expect(pictures).toHaveLength(2);
+  grow(4000);
+  expect(untilNext()).toBeLessThanOrEqual(1);
+});
+
+test('aPictureThatWouldHardlyBeSeenBeforeTheLastOneIsLeftOut', () => {
+  shownAfter(150, 2000);
+  vi.advanceTimersByTime(2000);
+  let end = performance.now() + 310;
+  publisher.untilLast = () => Math.max(0, end - performance.now());
+  grow(5000);
+  expect(untilNext()).toBeLessThanOrEqual(1);  // it will be seen for as long as it takes
+  publisher.shown();
+  shownAfter(150, 10000);
+  vi.advanceTimersByTime(2000);
+  end = performance.now() + 290;
+  grow(30000);
+  vi.advanceTimersByTime(100);
+  grow(50000);
+  vi.advanceTimersByTime(100);
+  expect(pictures).toHaveLength(4);
+  grow(60000, true);
+  expect(untilNext()).toBeLessThanOrEqual(1);
+});
+
+test('whatDrawingTookTellsOfTheFirstPictureWhichWaitedForTheGraphics', () => {
+  publisher.reset();
+  publisher.show(kPlainDisplay);
+  grow(1000);
+  untilNext();
+  vi.advanceTimersByTime(900);
+  publisher.shown(20);
+  publisher.untilLast = () => 50;
+  vi.advanceTimersByTime(4000);
+  grow(2000);
+  expect(untilNext()).toBeLessThanOrEqual(1);
+});
+
+test('theLastPictureComesAtOnce', () => {
+  grow(1001, true);
+  expect(untilNext()).toBeLessThanOrEqual(1);
+});
+
+test('aPictureThatIsLostComesAgainWholeWithoutWaitingForTheLostOne', () => {
+  grow(2000);
+  untilNext();
+  publisher.repeat();
+  expect(untilNext()).toBeLessThanOrEqual(1);
+  expect(pictures.at(-1)!.surface).toBeDefined();
+});

@@ -1,0 +1,71 @@
+// Draws for a page: a MeshView in a worker, so that the page never waits for the graphics, which may take seconds to start and to compile.
+// Loaded by a page itself, where workers cannot draw, this script gives it the MeshView (far_view.ts).
+
+import {errorText} from '../core/errors';
+import type {CoarseCells} from '../core/volume';
+import {FarCanvas} from './far_canvas';
+import {MeshView} from './mesh_view';
+import type {FromView, ToView} from './view_messages';
+
+declare global {
+  /** On a page: the class. In the worker: the view itself, to look at. */
+  var qtetMeshView: typeof MeshView | undefined;
+  var qtetView: MeshView | undefined;
+}
+
+let canvas: FarCanvas | null = null;
+let view: MeshView | null = null;
+let nextId = 0;
+const asked = new Map<number, {resolve(cells: CoarseCells): void; reject(why: Error): void}>();
+
+function post(message: FromView): void { self.postMessage(message); }
+
+/** Asked of the page. */
+function coarse(have: number): Promise<CoarseCells> {
+  const id = nextId++;
+  post({type: 'coarse', id, have});
+  return new Promise((resolve, reject) => asked.set(id, {resolve, reject}));
+}
+
+function begin({canvas: surface, size, answers}: Extract<ToView, {type: 'begin'}>): void {
+  canvas = new FarCanvas(surface);
+  canvas.resize(size);
+  try {
+    view = globalThis.qtetView = new MeshView(canvas, {
+      drawn: (pose) => post({type: 'drawn', pose}), lost: (lost) => post({type: 'lost', lost}), ...(answers ? {coarse} : {}),
+    });
+    post({type: 'drawn', pose: view.pose});
+  } catch (thrown) {
+    post({type: 'failed', message: errorText(thrown)});
+  }
+}
+
+function obey(message: Exclude<ToView, {type: 'begin' | 'ping'}>, its: MeshView): void {
+  switch (message.type) {
+    case 'command': return (its[message.name] as (...words: unknown[]) => void)(...message.words);
+    case 'camera': return void (its.cameraState = message.state);
+    case 'size': return canvas?.resize(message.size);
+    case 'event': return canvas?.receive(message.event);
+    case 'show': return its.show(message.snapshot, (drawingMs) => post({type: 'shown', id: message.id, drawingMs}));
+    case 'picture': return void its.picture(message.background).then(
+      (blob) => post({type: 'pictured', id: message.id, blob}), (thrown: unknown) => post({type: 'failed', id: message.id, message: errorText(thrown)}));
+    case 'coarse': {
+      const waiting = asked.get(message.id);
+      asked.delete(message.id);
+      if (message.answer) waiting?.resolve(message.answer);
+      else waiting?.reject(new Error('there are no coarse cells'));
+    }
+  }
+}
+
+if (typeof document !== 'undefined') {
+  globalThis.qtetMeshView = MeshView;
+} else {
+  self.onmessage = (event: MessageEvent<ToView>) => {
+    if (event.data.type === 'ping') post({type: 'pong'});
+    else if (event.data.type === 'begin') begin(event.data);
+    else if (view) obey(event.data, view);
+  };
+  const draws = typeof OffscreenCanvas !== 'undefined' && typeof WebGL2RenderingContext !== 'undefined' && typeof requestAnimationFrame !== 'undefined';
+  post({type: 'hello', url: self.location.href, draws});
+}

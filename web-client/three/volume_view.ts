@@ -1,0 +1,224 @@
+// The volume on the canvas. Graphics that are fast draw all of it at once. Slow ones draw few cells with few pixels while something moves, and all cells with
+// all pixels once it rests: in strips of pixels, so that the next movement waits for a strip and not for the picture.
+
+import type {PerspectiveCamera, Scene, WebGLRenderer} from 'three';
+import type {TransferTables} from '../core/transfer';
+import {kCoarseCells, type CoarseCells, type VolumeCells} from '../core/volume';
+import {CellTextures} from './cell_textures';
+import {DeepTarget} from './deep_target';
+import {FrameBudget, kMovingMs, reachesPixels, whenDrawn} from './frame_budget';
+import {RayCaster, type Sight} from './ray_caster';
+
+/** A strip takes about so long. */
+const kStripMs = 120;
+/** Pixels of the first strip, of which nobody knows what they take: some tenth of that without a GPU. */
+const kFirstPixels = 1 << 14;
+/** A strip has at most so many times the pixels of the one before. */
+const kStripGrowth = 2;
+/** A picture is at rest so long after its last change. */
+const kRestMs = 150;
+/** Times that a line of sight comes into the mesh at most: what is behind hundreds of walls is not to be told apart, and every layer takes its passes. */
+const kMostLayers = 256;
+
+/** A mesh of cells. */
+interface Layered {
+  /** Not yet `shown`: a picture that is being drawn keeps its own. */
+  wanted: VolumeCells | null;
+  of: VolumeCells | null;
+  shown: CellTextures | null;
+  /** How many layers a picture that is drawn at once has: as many as the one before needed, and often one more. */
+  layers: number;
+}
+
+/** What a picture is made of. */
+export interface Picture extends Sight {
+  renderer: WebGLRenderer;
+  scene: Scene;
+  camera: PerspectiveCamera;
+}
+
+const layered = (): Layered => ({wanted: null, of: null, shown: null, layers: 1});
+
+export class VolumeView {
+  private readonly fine = layered();
+  private readonly coarse = layered();
+  private readonly caster = new RayCaster();
+  private readonly deep = new DeepTarget();
+  private readonly budget = new FrameBudget();
+  private coarseVersion = -1;
+  private coarseState: 'stale' | 'asked' | 'here' | 'none' = 'stale';
+  /** What all of it with all pixels took last, and pixels in a millisecond in its slowest strip; 0: nobody knows yet. */
+  private wholeMs = 0;
+  private rate = 0;
+  private inHand: Promise<void> | null = null;
+  /** Another picture is due after the one in hand. */
+  waiting = false;
+  private interrupted = false;
+  private whole = false;
+  private timer: ReturnType<typeof setTimeout> | undefined;
+
+  /** `changed`: another picture is due. `askCoarse`: ViewListeners.coarse. */
+  constructor(private readonly changed: (moved: boolean) => void, private readonly askCoarse?: (have: number) => Promise<CoarseCells>) {}
+
+  get hasCells(): boolean { return this.fine.wanted !== null; }
+  /** The graphics have something in hand. */
+  get busy(): boolean { return this.inHand !== null; }
+  /** Nothing moves, and all of it is on the canvas. */
+  get atRest(): boolean { return this.whole && !this.busy && this.timer === undefined; }
+
+  take(cells: VolumeCells | null): void {
+    this.fine.wanted = cells;
+    this.whole = false;
+    this.coarseState = 'stale';  // it may be of another field by now: its next answer tells
+    if (cells) return;
+    this.coarse.wanted = null;
+    this.coarseVersion = -1;
+    this.interrupt();
+    if (!this.busy) this.update();
+  }
+
+  setTransfer(tables: TransferTables): void { this.caster.setTransfer(tables); }
+  setRange(...words: Parameters<RayCaster['setRange']>): void { this.caster.setRange(...words); }
+  setClip(...words: Parameters<RayCaster['setClip']>): void { this.caster.setClip(...words); }
+
+  /** What is being drawn is of no use any more. */
+  interrupt(): void {
+    this.interrupted = true;
+    this.whole = false;
+    clearTimeout(this.timer);
+    this.timer = undefined;
+  }
+
+  /** Draws what there is time for; the rest follows by itself. REQUIRES: not busy, hasCells. */
+  draw(picture: Picture, moved: boolean): void {
+    clearTimeout(this.timer);
+    this.timer = undefined;
+    this.interrupted = this.waiting = this.whole = false;
+    this.update();
+    const isSlow = this.wholeMs === 0 || this.wholeMs > kMovingMs;
+    const isSmall = this.fine.shown!.count <= kCoarseCells;
+    if (moved && isSlow && !isSmall) this.refreshCoarse();
+    if (!isSlow) this.start(this.drawAtOnce(picture, this.fine, 1));
+    else if (moved && isSmall) this.start(this.drawAtOnce(picture, this.fine, this.budget.share()));
+    else if (moved && this.coarseState === 'here') this.start(this.drawAtOnce(picture, this.coarse, this.budget.share()));
+    else if (!moved || this.coarseState === 'none') this.start(this.drawStrips(picture, () => this.interrupted));
+    // Else the coarse mesh is under way, and the picture before stands.
+  }
+
+  /** All of it, whatever moves. REQUIRES: hasCells. */
+  async drawWhole(picture: Picture): Promise<void> {
+    this.interrupt();
+    while (this.inHand) await this.inHand;
+    if (!this.hasCells) return;
+    this.update();
+    this.interrupted = false;
+    this.start(this.drawStrips(picture, () => false));
+    await this.inHand;
+  }
+
+  /** What was drawn last, on a canvas that has become empty. */
+  present(renderer: WebGLRenderer): void { this.deep.present(renderer); }
+
+  dispose(): void {
+    this.interrupt();
+    this.fine.wanted = this.coarse.wanted = null;
+    this.update();
+    this.deep.dispose();
+    this.caster.dispose();
+  }
+
+  /** Between pictures. */
+  private update(): void {
+    for (const its of [this.fine, this.coarse]) {
+      if (its.wanted === its.of) continue;
+      its.shown?.dispose();
+      its.of = its.wanted;
+      its.shown = its.of && new CellTextures(its.of);
+    }
+  }
+
+  private refreshCoarse(): void {
+    if (this.coarseState !== 'stale') return;
+    this.coarseState = 'asked';
+    const end = (state: 'here' | 'none'): void => {
+      if (this.coarseState === 'asked') this.coarseState = state;
+      if (this.hasCells) this.changed(true);
+    };
+    if (!this.askCoarse) return end('none');
+    this.askCoarse(this.coarseVersion).then(({version, cells}) => {
+      if (cells) this.coarse.wanted = cells;
+      this.coarseVersion = version;
+      end(this.coarse.wanted ? 'here' : 'none');
+    }, () => end('none'));
+  }
+
+  private start(drawing: Promise<void>): void {
+    this.inHand = drawing.catch(reportError).finally(() => {
+      this.inHand = null;
+      if (!this.hasCells) this.update();
+      if (this.interrupted || this.waiting) this.changed(this.interrupted);
+    });
+  }
+
+  /** True when the eye is in a cell: RayCaster.begin. */
+  private begin({renderer, scene, camera, ...sight}: Picture, its: Layered, share: number): boolean {
+    this.deep.begin(renderer, share, scene, camera);
+    return this.caster.begin(its.shown!, sight, this.deep);
+  }
+
+  private async drawAtOnce(picture: Picture, its: Layered, share: number): Promise<void> {
+    const {caster, deep} = this;
+    const {renderer} = picture;
+    const gl = renderer.getContext() as WebGL2RenderingContext;
+    const start = performance.now();
+    if (this.begin(picture, its, share)) caster.cast(renderer, deep, 0, deep.height);
+    const reached: Promise<boolean>[] = [];
+    while (reached.length < its.layers) {
+      reached.push(reachesPixels(gl, () => caster.enter(renderer)));
+      caster.cast(renderer, deep, 0, deep.height);
+    }
+    deep.present(renderer);
+    const ms = await whenDrawn(gl, start);
+    const needed = (await Promise.all(reached)).filter(Boolean).length;
+    const isCut = needed === its.layers && needed < kMostLayers;
+    its.layers = Math.min(needed + 1, kMostLayers);
+    const isWhole = its === this.fine && share === 1;
+    if (isWhole) this.wholeMs = ms;
+    else this.budget.learn(share, ms);
+    if (this.interrupted) return;
+    this.whole = isWhole && !isCut;
+    if (this.whole) return;
+    this.timer = setTimeout(() => {
+      this.timer = undefined;
+      this.changed(false);
+    }, isWhole ? 0 : kRestMs);
+  }
+
+  private async drawStrips(picture: Picture, ends: () => boolean): Promise<void> {
+    const {caster, deep} = this;
+    const {renderer} = picture;
+    const gl = renderer.getContext() as WebGL2RenderingContext;
+    const begun = performance.now();
+    let last = this.rate > 0 ? Infinity : 0;  // pixels of the strip before
+    let rate = this.rate;
+    this.rate = 0;
+    const isInside = this.begin(picture, this.fine, 1);
+    for (let layer = isInside ? -1 : 0; layer < kMostLayers; ++layer) {
+      const reaches = layer < 0 || reachesPixels(gl, () => caster.enter(renderer));
+      if (layer > 0 && !await reaches) break;
+      for (let row = 0, rows = 0; row < deep.height; row += rows) {
+        const most = rate > 0 ? Math.min(rate * kStripMs, kStripGrowth * last) : kFirstPixels;
+        rows = Math.min(deep.height - row, Math.ceil(most / deep.width));
+        last = rows * deep.width;
+        const start = performance.now();
+        caster.cast(renderer, deep, row, rows);
+        rate = last / await whenDrawn(gl, start);
+        this.rate = this.rate > 0 ? Math.min(this.rate, rate) : rate;
+        if (ends()) return;
+      }
+    }
+    deep.present(renderer);
+    this.wholeMs = performance.now() - begun;
+    this.whole = !this.interrupted;
+  }
+}
