@@ -8,6 +8,7 @@
 #include "codec/boundary.h"
 #include "codec/face_groups.h"
 #include "simplify/hull_weight.h"
+#include "simplify/workers.h"
 
 namespace qtet {
 namespace {
@@ -21,7 +22,7 @@ constexpr double kFlatPull = 1e-7;
 
 }  // namespace
 
-FusionCost::FusionCost(const FusionMesh& mesh, const LatticeMesh& lattice, const CostOptions& options)
+FusionCost::FusionCost(const FusionMesh& mesh, const LatticeMesh& lattice, const CostOptions& options, Workers* workers)
     : mesh_(mesh), parts_(costPartsOf(lattice, options.fieldWeights)), diagonal_(diagonalOf(lattice)) {
   takeLimits(lattice);
   stride_ = kHead + kPerComponent * components_;
@@ -32,10 +33,23 @@ FusionCost::FusionCost(const FusionMesh& mesh, const LatticeMesh& lattice, const
   if (components_ == 0) {
     addPlanes(lattice, options.boundaryFactor);
   } else {
-    addFields(lattice);
     const double hullWeight = options.hullWeight ? *options.hullWeight : balancedHullWeight(lattice, parts_);
-    addSurface(lattice, hullWeight / diagonal_);
+    addSlopes(lattice, hullWeight / diagonal_, workers);
   }
+}
+
+// Each worker adds to vertices of its own, in the order of the cells, so that every sum is that of one worker. Ids that lie near one another mostly lie near one
+// another in the mesh, too, and few cells are looked into by two.
+void FusionCost::addSlopes(const LatticeMesh& lattice, double hullFactor, Workers* workers) {
+  const std::vector<Triangle> interfaces = interfacesOf(lattice);
+  const std::size_t runs = workers ? workers->count() : 1, count = lattice.points.size();
+  const auto add = [&](std::size_t, std::size_t run) {
+    const Vertices own{static_cast<VertexId>(run * count / runs), static_cast<VertexId>((run + 1) * count / runs)};
+    addFields(lattice, own);
+    addTriangles(lattice.boundary, hullFactor, own);
+    addTriangles(interfaces, hullFactor, own);
+  };
+  workers ? workers->forEach(runs, 1, add) : add(0, 0);
 }
 
 void FusionCost::takeLimits(const LatticeMesh& lattice) {
@@ -58,7 +72,7 @@ void FusionCost::takeValues(const LatticeMesh& lattice) {
 }
 
 // Adds weight (s - s_v - g.(x - x_v))^2 and x^T a x for each corner v: no b, c or h, since the plane passes through the corner.
-void FusionCost::addSlopes(std::span<const VertexId> corners, std::span<const Vector3> slopes, double weight, Symmetric3 a) {
+void FusionCost::addSlope(std::span<const VertexId> corners, std::span<const Vector3> slopes, double weight, Symmetric3 a, const Vertices& own) {
   for (const Vector3& g : slopes) a.addOuter(g, weight);
   const std::array<double, 6> matrix{a.xx, a.xy, a.xz, a.yy, a.yz, a.zz};
   // W and the slopes lie side by side.
@@ -68,6 +82,7 @@ void FusionCost::addSlopes(std::span<const VertexId> corners, std::span<const Ve
     for (std::size_t i = 0; i < 3; ++i) weighted[1 + i * slopes.size() + f] = weight * slopes[f][i];
   const std::size_t count = 1 + 3 * slopes.size();
   for (const VertexId v : corners) {
+    if (!own.holds(v)) continue;
     double* const q = &quadrics_[at(v)];
     for (std::size_t i = 0; i < matrix.size(); i += 2) putPair(q + i, pairAt(q + i) + pairAt(&matrix[i]));
     std::size_t i = 0;
@@ -77,9 +92,10 @@ void FusionCost::addSlopes(std::span<const VertexId> corners, std::span<const Ve
 }
 
 // Over each cell: its volume, the fields' gradients in it.
-void FusionCost::addFields(const LatticeMesh& lattice) {
+void FusionCost::addFields(const LatticeMesh& lattice, const Vertices& own) {
   std::vector<Vector3> gradients(components_);
   for (const Tetrahedron& t : lattice.tetrahedra) {
+    if (!own.holdOne(t)) continue;
     const Vector3 p = mesh_.position(t[0]);
     const Vector3 e1 = mesh_.position(t[1]) - p, e2 = mesh_.position(t[2]) - p, e3 = mesh_.position(t[3]) - p;
     const Vector3 c23 = cross(e2, e3), c31 = cross(e3, e1), c12 = cross(e1, e2);
@@ -89,26 +105,26 @@ void FusionCost::addFields(const LatticeMesh& lattice) {
       const double s = value(t[0], f);
       gradients[f] = (1 / volume6) * ((value(t[1], f) - s) * c23 + (value(t[2], f) - s) * c31 + (value(t[3], f) - s) * c12);
     }
-    addSlopes(t, gradients, volume6 / 6, {});
+    addSlope(t, gradients, volume6 / 6, {}, own);
   }
 }
 
-// Over each boundary triangle: the hull's distance, and the fields' gradients in the triangle with the weight of a thin layer. Interfaces between regions
-// count like the boundary.
-void FusionCost::addSurface(const LatticeMesh& lattice, double hullFactor) {
-  addTriangles(lattice.boundary, hullFactor);
-  if (!mesh_.hasRegions()) return;
+// Between regions, which count like the boundary.
+std::vector<Triangle> FusionCost::interfacesOf(const LatticeMesh& lattice) const {
   std::vector<Triangle> interfaces;
+  if (!mesh_.hasRegions()) return interfaces;
   FaceGroups(lattice.tetrahedra).forEach([&](std::span<const FaceSide> sides) {
     if (sides.size() == 2 && mesh_.region(cellOf(sides[0])) != mesh_.region(cellOf(sides[1])))
       interfaces.push_back(cellFace(lattice.tetrahedra[cellOf(sides[0])], oppositeCornerOf(sides[0])));
   });
-  addTriangles(interfaces, hullFactor);
+  return interfaces;
 }
 
-void FusionCost::addTriangles(std::span<const Triangle> triangles, double hullFactor) {
+// Over each triangle of the boundary: the hull's distance, and the fields' gradients in the triangle with the weight of a thin layer.
+void FusionCost::addTriangles(std::span<const Triangle> triangles, double hullFactor, const Vertices& own) {
   std::vector<Vector3> gradients(components_);
   for (const Triangle& t : triangles) {
+    if (!own.holdOne(t)) continue;
     const Vector3 p = mesh_.position(t[0]);
     const Vector3 e1 = mesh_.position(t[1]) - p, e2 = mesh_.position(t[2]) - p;
     const Vector3 n = cross(e1, e2);
@@ -121,7 +137,7 @@ void FusionCost::addTriangles(std::span<const Triangle> triangles, double hullFa
     const double area = 0.5 * std::sqrt(squared);
     Symmetric3 a;
     a.addOuter(n, hullFactor * area / squared);
-    addSlopes(t, gradients, kWallLayer * diagonal_ * area, a);
+    addSlope(t, gradients, kWallLayer * diagonal_ * area, a, own);
   }
 }
 
@@ -136,7 +152,7 @@ void FusionCost::addPlanes(const LatticeMesh& lattice, double boundaryFactor) {
     const Vector3 n = cross(mesh_.position(face[1]) - p, mesh_.position(face[2]) - p);
     Symmetric3 a;
     a.addOuter(n, scale * (sides.size() == 1 ? boundaryFactor * boundaryFactor : 1));
-    addSlopes(face, {}, 0, a);
+    addSlope(face, {}, 0, a, Vertices{});
   });
 }
 

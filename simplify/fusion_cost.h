@@ -2,6 +2,7 @@
 // point and its values; without fields the paper's planar quadric error (Eq. 1-7).
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -32,8 +33,8 @@ struct PreyQuadric {
 
 class FusionCost {
  public:
-  /// REQUIRES: `mesh` outlives this and was made of `lattice`.
-  FusionCost(const FusionMesh& mesh, const LatticeMesh& lattice, const CostOptions& options);
+  /// `workers` share the work and change nothing of its outcome. REQUIRES: `mesh` outlives this and was made of `lattice`.
+  FusionCost(const FusionMesh& mesh, const LatticeMesh& lattice, const CostOptions& options, Workers* workers = nullptr);
 
   /// The prey's quadric as a function of the fusion point relative to prey.vertex[0], at the best values for each point.
   [[nodiscard]] PreyQuadric of(const Prey& prey) const;
@@ -82,12 +83,22 @@ class FusionCost {
     [[nodiscard]] Quadric reduced(std::size_t components) const;
   };
 
+  /// Those whose quadrics are added to; unless told otherwise all.
+  struct Vertices {
+    VertexId begin = 0, end = kGhost;
+    [[nodiscard]] bool holds(VertexId v) const { return v - begin < end - begin; }
+    [[nodiscard]] bool holdOne(std::span<const VertexId> corners) const {
+      return std::ranges::any_of(corners, [this](VertexId v) { return holds(v); });
+    }
+  };
+
   void takeLimits(const LatticeMesh& lattice);
   void takeValues(const LatticeMesh& lattice);
-  void addFields(const LatticeMesh& lattice);
-  void addSurface(const LatticeMesh& lattice, double hullFactor);
-  void addTriangles(std::span<const Triangle> triangles, double hullFactor);
-  void addSlopes(std::span<const VertexId> corners, std::span<const Vector3> slopes, double weight, Symmetric3 a);
+  void addSlopes(const LatticeMesh& lattice, double hullFactor, Workers* workers);
+  void addFields(const LatticeMesh& lattice, const Vertices& own);
+  [[nodiscard]] std::vector<Triangle> interfacesOf(const LatticeMesh& lattice) const;
+  void addTriangles(std::span<const Triangle> triangles, double hullFactor, const Vertices& own);
+  void addSlope(std::span<const VertexId> corners, std::span<const Vector3> slopes, double weight, Symmetric3 a, const Vertices& own);
   void addPlanes(const LatticeMesh& lattice, double boundaryFactor);
   [[nodiscard]] std::size_t at(VertexId v) const { return slot_[v] * stride_; }
   enum Part : std::size_t { kSlope = 0, kOffset = 3, kValue = 4 };

@@ -5,10 +5,11 @@
 
 #include "codec/boundary.h"
 #include "simplify/sphere_test.h"
+#include "simplify/workers.h"
 
 namespace qtet {
 
-FusionMesh::FusionMesh(const LatticeMesh& mesh, std::size_t regionField)
+FusionMesh::FusionMesh(const LatticeMesh& mesh, std::size_t regionField, Workers* workers)
     : regionField_(regionField), firstGhost_(static_cast<CellId>(mesh.tetrahedra.size())), liveTetrahedra_(mesh.tetrahedra.size()) {
   history_.lattice = mesh.lattice;
   history_.fields = mesh.fields;
@@ -26,7 +27,7 @@ FusionMesh::FusionMesh(const LatticeMesh& mesh, std::size_t regionField)
   planes_.resize(mesh.boundary.size());
   for (CellId c = firstGhost_; c < history_.cells.size(); ++c) findPlane(c);
   buildStars();
-  findSingular();
+  findSingular(workers);
   if (hasRegions()) findInterfaces();
 }
 
@@ -50,10 +51,15 @@ void FusionMesh::buildStars() {
   for (CellId c = 0; c < firstGhost_; ++c) add(c);
 }
 
-void FusionMesh::findSingular() {
+void FusionMesh::findSingular(Workers* workers) {
+  constexpr std::size_t kGrain = 1024;
   singular_.assign(history_.points.size(), 0);
-  SphereTest test(history_.points.size());
-  for (VertexId v = 0; v < history_.points.size(); ++v) singular_[v] = !test.isLinkSphere(v, star(v), history_.cells);
+  std::vector<SphereTest> tests(workers ? workers->count() : 1, SphereTest(history_.points.size()));
+  const auto ask = [&](std::size_t worker, std::size_t v) {
+    singular_[v] = !tests[worker].isLinkSphere(static_cast<VertexId>(v), star(static_cast<VertexId>(v)), history_.cells);
+  };
+  if (workers) return workers->forEach(singular_.size(), kGrain, ask);
+  for (std::size_t v = 0; v < singular_.size(); ++v) ask(0, v);
 }
 
 void FusionMesh::findInterfaces() {

@@ -14,6 +14,8 @@
 
 namespace qtet {
 
+class Workers;
+
 /// The prey of a fusion: k = 4 a tetrahedron, 3 a triangle, 2 an edge.
 struct Prey {
   std::uint8_t k = 2;
@@ -48,9 +50,9 @@ class FusionMesh {
   /// The region of a ghost cell.
   static constexpr std::int64_t kOutside = std::numeric_limits<std::int64_t>::min();
 
-  /// `regionField`: the cell field of one component whose values are regions to be kept apart.
+  /// `regionField`: the cell field of one component whose values are regions to be kept apart. `workers` share the work and change nothing of its outcome.
   /// REQUIRES: a clean mesh (consistent orientation, no face of three cells) whose boundary is boundaryOf(tetrahedra).
-  explicit FusionMesh(const LatticeMesh& mesh, std::size_t regionField = kNoRegions);
+  explicit FusionMesh(const LatticeMesh& mesh, std::size_t regionField = kNoRegions, Workers* workers = nullptr);
 
   [[nodiscard]] std::size_t vertexSlots() const { return history_.points.size(); }
   [[nodiscard]] bool alive(VertexId v) const { return aliveVertex_[v]; }
@@ -121,7 +123,7 @@ class FusionMesh {
   };
 
   void buildStars();
-  void findSingular();
+  void findSingular(Workers* workers);
   /// How a point lies with respect to the prey, and which prey vertex is to be the first of the record.
   struct Placed {
     Placement placement;

@@ -61,10 +61,10 @@ class Simplifier {
  public:
   Simplifier(const LatticeMesh& mesh, const FusionOptions& options)
       : options_(options),
-        mesh_(mesh, options.regionField.value_or(FusionMesh::kNoRegions)),
-        cost_(mesh_, mesh, options.cost),
-        band_(options.bands.cellsPerPacket == 0 ? BandNodes() : BandNodes(mesh_, mesh, options.bands.cellsPerPacket)),
         workers_(options.threads),
+        mesh_(mesh, options.regionField.value_or(FusionMesh::kNoRegions), &workers_),
+        cost_(mesh_, mesh, options.cost, &workers_),
+        band_(options.bands.cellsPerPacket == 0 ? BandNodes() : BandNodes(mesh_, mesh, options.bands.cellsPerPacket)),
         original_(mesh.tetrahedra.size()),
         target_(static_cast<std::size_t>(options.targetRatio * static_cast<double>(original_))),
         values_(cost_.components()) {
@@ -378,11 +378,11 @@ class Simplifier {
   static constexpr std::uint32_t kNone = ~0u;
 
   const FusionOptions& options_;
+  Workers workers_;
   FusionMesh mesh_;
   FusionCost cost_;
   Touched touched_;
   BandNodes band_;
-  Workers workers_;
   std::vector<std::unique_ptr<FusionProposer>> proposers_;  // one a worker
   bool relaxed_ = false;                                    // nothing is left that keeps the limits of beauty; those of validity remain
   std::size_t original_, target_;
