@@ -91,6 +91,23 @@ describe.skipIf(kTestWasm === '')('regions', () => {
     expect(unlike).toBeGreaterThan(0);  // there were holes, and nobody counted them
   });
 
+  test('thePlanTellsOfEachChunkOfTheHeadAndOfEachBandWithItsLevel', async () => {
+    const {assembler, bytes} = await opened();
+    const {codec, packets} = assembler;
+    const fields = assembler.manifest!.fields.map((_, field) => field);
+    const plan = assembler.plan(fields);
+    const seen = Array.from({length: assembler.chunkCount}, (_, chunk) => {
+      takeChunk(assembler, bytes, chunk);
+      while (assembler.step(fields, true)) continue;
+      const {bytes: here, level} = assembler.statistics(fields);
+      return {bytes: here, level};
+    });
+    const depthOf = (chunk: number): number => packets[chunk - codec.headChunks]?.depth ?? -1;
+    expect(depthOf(codec.chunkCount - 1)).toBeGreaterThan(0);
+    expect(plan).toEqual(seen.filter((_, chunk) => chunk < codec.headChunks || depthOf(chunk) !== depthOf(chunk + 1)));
+    expect(plan.at(-1)!.level).toBe(assembler.manifest!.levels.at(-1)!.level);
+  });
+
   test('whatIsLookedAtComesFirstAndOnlyWhatIsMissing', async () => {
     const {assembler, bytes} = await opened();
     const size = assembler.lattice!.size;
