@@ -171,7 +171,7 @@ export class QtetViewer extends HTMLElement implements Host {
   look(direction: Direction): void { this.meshView?.look(direction); }
   /** The scene as a PNG; null before there is one. */
   async picture(): Promise<Blob | null> {
-    return this.meshView?.picture(matchMedia('(prefers-color-scheme: dark)').matches ? '#1a2029' : '#ffffff') ?? null;
+    return this.meshView?.picture(getComputedStyle(this).getPropertyValue('--ground')) ?? null;
   }
 
   // ---- Host, InspectHost
