@@ -441,6 +441,9 @@ async function saysWhatIsWrong({server, browser}) {
   const viewer = await browser.open(`${server.url}?mesh=nowhere`);
   await viewer.waitForState('failed');
   assert.match(await viewer.page.getByRole('alert').innerText(), /no mesh "nowhere".*box, fin/s);
+  await viewer.page.locator('qtet-viewer select[name=mesh]').selectOption('box');
+  await viewer.waitForState('complete');
+  assert.equal(await viewer.page.getByRole('alert').count(), 0, 'the notice stays');
   const other = await browser.open(`${server.url}?mesh=box&field=nothing`);
   await other.waitForState('complete');
   assert.match(await other.page.getByRole('alert').innerText(), /nothing.*first field/s);

@@ -346,13 +346,14 @@ export class QtetViewer extends HTMLElement implements Host {
       const wanted = file ? null : this.getAttribute('mesh');
       const mesh = wanted ?? this.catalog[0]?.id;
       if (mesh === undefined) throw new QtetError('not-found', `The server shows no meshes. Put .qtet files into its folder; for guarded ones set the viewer's property "token".`);
-      if (!this.catalog.some(({id}) => id === mesh)) {
-        throw new QtetError('not-found', `There is no mesh "${mesh}" on this server. It has: ${this.catalog.map(({id}) => id).join(', ') || 'none that may be seen without a token'}.`);
-      }
-      const menu = this.catalog.length > 1;
+      const isThere = this.catalog.some(({id}) => id === mesh);
+      const menu = this.catalog.length > (isThere ? 1 : 0);
       fillSelect(this.select('mesh'), this.catalog.map(({id}) => ({value: id, title: id})), mesh);
       this.find('.mesh-menu').hidden = !menu;
       this.find('.mesh-name').classList.toggle('visually-hidden', menu);
+      if (!isThere) {
+        throw new QtetError('not-found', `There is no mesh "${mesh}" on this server. It has: ${this.catalog.map(({id}) => id).join(', ') || 'none that may be seen without a token'}.`);
+      }
       this.openMesh(mesh);
     } catch (thrown) {
       if (opening === this.openings) this.fail(thrown);
@@ -430,7 +431,7 @@ export class QtetViewer extends HTMLElement implements Host {
   }
 
   private draw(snapshot: Snapshot): void {
-    this.figures = snapshot.statistics;
+    if (this.figures === kNoStatistics) this.figures = snapshot.statistics;  // else they are newer: a picture may have waited for a view
     this.snapshot = snapshot;
     if (snapshot.surface) this.hasGaps = [snapshot.surface, ...snapshot.cuts].some(({values}) => values.some(Number.isNaN));
     const {manifest} = this;
