@@ -398,6 +398,16 @@ async function obeysTheKeyboard({server, browser}) {
   await viewer.page.keyboard.press('Home');
   await viewer.settle();
   assert.ok(differingShare(before, await viewer.screenshot('keys-home')) < 0.005, 'Home does not bring the first view back');
+  // What lies in the middle is that of the picture, not of what the panel covers of it.
+  await viewer.page.keyboard.press('i');
+  await viewer.page.locator('qtet-viewer .result').waitFor();
+  const off = await viewer.page.evaluate(() => {
+    const {meshView, bounds, shadowRoot} = window.qtetViewer;
+    const {x, y} = meshView.project([0, 1, 2].map((axis) => (bounds[axis] + bounds[axis + 3]) / 2));
+    const mark = shadowRoot.querySelector('.marks circle');
+    return Math.hypot(mark.getAttribute('cx') - x, mark.getAttribute('cy') - y);
+  });
+  assert.ok(off < 2, `the middle is ${off} pixels off`);
 }
 
 async function fitsAPhone({server, browser, logs}) {

@@ -113,6 +113,8 @@ export class QtetViewer extends HTMLElement implements Host {
   private writing = false;
   private cameraTimer: ReturnType<typeof setTimeout> | undefined;
   private point: Vector | null = null;
+  /** As Inspect's host. */
+  middle: [number, number] = [0.5, 0.5];
   private toldCamera = '';
   private toldWishes = '';
   private lastCells: {at: number; cells: number} = {at: 0, cells: 0};
@@ -653,6 +655,7 @@ export class QtetViewer extends HTMLElement implements Host {
     const panel = this.find('.panel');
     const insets = insetsOf(this, {panel, legend: this.find('.legend'), result: this.find('.result')}, sheet);
     this.style.setProperty('--sheet', `${sheet ? panel.offsetHeight : 0}px`);
+    this.middle = [(1 + insets.left - insets.right) / 2, (1 + insets.top - insets.bottom) / 2];
     this.meshView?.setInsets(insets);
   }
 
@@ -712,6 +715,7 @@ function inspectHost(viewer: QtetViewer): ConstructorParameters<typeof Inspect>[
     get client() { return viewer.client; },
     get view() { return viewer.meshView; },
     get manifest() { return viewer.manifest; },
+    get middle() { return viewer.middle; },
     get fieldTitle() { return viewer.fieldTitle; },
     announce: (text) => viewer.announce(text),
     pointAt: (point) => viewer.pointAt(point),
