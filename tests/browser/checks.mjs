@@ -398,6 +398,16 @@ async function obeysTheKeyboard({server, browser}) {
   await viewer.page.keyboard.press('Home');
   await viewer.settle();
   assert.ok(differingShare(before, await viewer.screenshot('keys-home')) < 0.005, 'Home does not bring the first view back');
+  // What lies in the middle is that of the picture, not of what the panel covers of it.
+  await viewer.page.keyboard.press('i');
+  await viewer.page.locator('qtet-viewer .result').waitFor();
+  const off = await viewer.page.evaluate(() => {
+    const {meshView, bounds, shadowRoot} = window.qtetViewer;
+    const {x, y} = meshView.project([0, 1, 2].map((axis) => (bounds[axis] + bounds[axis + 3]) / 2));
+    const mark = shadowRoot.querySelector('.marks circle');
+    return Math.hypot(mark.getAttribute('cx') - x, mark.getAttribute('cy') - y);
+  });
+  assert.ok(off < 2, `the middle is ${off} pixels off`);
 }
 
 async function fitsAPhone({server, browser, logs}) {
@@ -441,6 +451,9 @@ async function saysWhatIsWrong({server, browser}) {
   const viewer = await browser.open(`${server.url}?mesh=nowhere`);
   await viewer.waitForState('failed');
   assert.match(await viewer.page.getByRole('alert').innerText(), /no mesh "nowhere".*box, fin/s);
+  await viewer.page.locator('qtet-viewer select[name=mesh]').selectOption('box');
+  await viewer.waitForState('complete');
+  assert.equal(await viewer.page.getByRole('alert').count(), 0, 'the notice stays');
   const other = await browser.open(`${server.url}?mesh=box&field=nothing`);
   await other.waitForState('complete');
   assert.match(await other.page.getByRole('alert').innerText(), /nothing.*first field/s);

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import {copyFileSync, rmSync} from 'node:fs';
 import {join} from 'node:path';
-import {kTimeoutMs} from './browser.mjs';
+import {kPhone, kTimeoutMs} from './browser.mjs';
 import {expectWhole} from './expect.mjs';
 import {coloredShare, differingShare} from './png.mjs';
 import {PoorLine} from './poor_line.mjs';
@@ -70,6 +70,41 @@ async function tellsOfTheWholeMeshOnceItIsDrawn({server, browser}) {
     null, {timeout: kTimeoutMs});
   const {complete, last} = await viewer.page.evaluate(() => window.qtetTold);
   assert.deepEqual(complete, [last.total.tetrahedra]);
+}
+
+/** The whole mesh is decoded before there is anything to draw with: the picture that waited for it is old, the figures are not. */
+async function tellsTheNewestFiguresWithAnOldPicture({server, browser, logs}) {
+  const viewer = await browser.open(`${server.url}?mesh=fin`, undefined, () => {
+    document.addEventListener('DOMContentLoaded', () => {
+      const viewer = document.querySelector('qtet-viewer');
+      viewer.addEventListener('load', ({detail}) => void (window.qtetLoad = [detail.tetrahedra, viewer.statistics.tetrahedra]));
+    });
+    window.Worker = class extends window.Worker {
+      constructor(url, options) {
+        super(url, options);
+        if (options?.name === 'qtet-view') this.wait = [];
+      }
+      set onmessage(hear) {
+        super.onmessage = (event) => {
+          if (!this.wait || document.querySelector('qtet-viewer').state === 'complete') return hear(event);
+          if (this.wait.push(event) > 1) return undefined;
+          const timer = setInterval(() => {
+            if (document.querySelector('qtet-viewer').state !== 'complete') return;
+            clearInterval(timer);
+            for (const held of this.wait) hear(held);
+          }, 5);
+          return undefined;
+        };
+      }
+    };
+  });
+  await viewer.page.waitForFunction(() => window.qtetLoad, null, {timeout: kTimeoutMs});
+  const [shown, told] = await viewer.page.evaluate(() => window.qtetLoad);
+  const {total} = await viewer.statistics();
+  assert.ok(shown < total.tetrahedra, 'the first picture is no old one');
+  assert.equal(told, total.tetrahedra);
+  await viewer.waitForState('complete');
+  await expectWhole(viewer, logs.fin);
 }
 
 /** A page that does not wait between putting the element into its place and saying what it shows. */
@@ -215,8 +250,39 @@ async function drawsOnlyWhatChanges({server, browser}) {
   assert.ok(await drawnAfter('projection', 'parallel') > 0);
 }
 
+/** Whatever is touched or reached by Tab is to be seen then, and the panel's own head stays where it is. */
+async function showsWhatHasTheFocus({server, browser}) {
+  for (const device of [{...kPhone, deviceScaleFactor: 1}, {viewport: {width: 1000, height: 420}}]) {
+    const viewer = await browser.open(`${server.url}?mesh=box&clip=x&iso=Scalar=0.5&threshold=Scalar=0,1&volume`, device);
+    await viewer.waitForState('complete');
+    await viewer.waitForPicture();
+    const {page} = viewer;
+    if (device.isMobile) await page.getByRole('button', {name: 'Controls'}).tap();
+    for (const text of ['Slice', 'Line', 'Reversed']) await page.getByText(text, {exact: true})[device.isMobile ? 'tap' : 'click']();
+    const place = () => page.evaluate(() => {
+      const {shadowRoot} = window.qtetViewer;
+      const focused = shadowRoot.activeElement;
+      const panel = shadowRoot.querySelector('.panel');
+      const shown = shadowRoot.querySelector('.body').getBoundingClientRect();
+      const {top, bottom} = (focused?.closest('label') ?? focused ?? panel).getBoundingClientRect();
+      return {name: focused?.name || focused?.className, scrolled: panel.scrollTop, inPanel: panel.contains(focused), inHead: focused?.closest('header') != null, seen: top >= shown.top - 1 && bottom <= shown.bottom + 1};
+    });
+    assert.equal((await place()).scrolled, 0, 'a touch scrolls the panel away');
+    await page.locator('qtet-viewer .fold').focus();
+    let tabs = 0;
+    for (let now = await place(); now.inPanel; now = await place()) {
+      assert.ok(now.scrolled === 0 && (now.inHead || now.seen), JSON.stringify(now));
+      await page.keyboard.press('Tab');
+      ++tabs;
+    }
+    assert.ok(tabs > 25, `only ${tabs} stops`);
+    assert.deepEqual(viewer.problems, []);
+  }
+}
+
 export const elementChecks = {
+  showsWhatHasTheFocus,
   drawsOnlyWhatChanges,
-  showsNothingOfTheMeshBefore, tellsOfTheWholeMeshOnceItIsDrawn, takesItsAttributesInTheTaskThatAppendsIt, pausesInTheTaskThatAppendsIt,
+  showsNothingOfTheMeshBefore, tellsOfTheWholeMeshOnceItIsDrawn, tellsTheNewestFiguresWithAnOldPicture, takesItsAttributesInTheTaskThatAppendsIt, pausesInTheTaskThatAppendsIt,
   drawsOnAfterAPictureThatFailed, heedsAQualityThatChangesBeforeTheHeadHasCome, showsTheLogThatTookTheName,
 };

@@ -118,6 +118,11 @@ async function refinesWhatIsLookedAtFirst({server, browser, out, bin}) {
   const share = cut.looked / whole.looked;
   const cells = cut.cells / whole.cells;
   assert.ok(share > 0.9 && cells < 0.6, `the cut has ${share} of its cells when the mesh has ${cells}`);
+  // What the log knows of the error is drawn to its end, and what is here of it.
+  await cutting.page.getByText('Level of detail').click();
+  assert.match(await cutting.text('.curve figcaption'), /^Error against bytes: [\d.]+\u202f% at .*, [\d.]+\u202f% at .*, 0\u202f% at /);
+  const [ahead, reached] = await cutting.page.locator('qtet-viewer .curve path').evaluateAll((paths) => paths.map((path) => path.getAttribute('d').split('L').length));
+  assert.ok(reached > 2 && reached < ahead, `${reached} of ${ahead} points are reached`);
   await cutting.page.getByRole('button', {name: 'Continue'}).click();
   await cutting.waitForState('complete');
   await cutting.settle();

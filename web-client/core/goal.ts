@@ -29,10 +29,17 @@ export function goalOf(limit: Limit, codec: Codec, {levels}: Manifest, fields: r
   return null;
 }
 
-/** The bytes with which each level is there that a chunk ends, ascending; none of logs of regions, whose order is not known beforehand. */
+/**
+ * The least bytes with which each level is there that a chunk ends, ascending. In a log of regions the packets end it that do not depend on one another: what is
+ * looked at may come before them, so that a level is there later than this, and never sooner.
+ */
 export function planOf(codec: Codec, {levels}: Manifest, fields: readonly number[], headBytes: number): LevelBytes[] {
-  if (codec.headChunks < codec.chunkCount) return [];
-  return [...stepsOf(codec, levels, fields, headBytes)].map(({bytes, level}) => ({bytes, level}));
+  let first = 0;  // of those that end the level together
+  return [...stepsOf(codec, levels, fields, headBytes)].filter(({chunks}) => {
+    const ends = chunks === codec.chunkCount || codec.dependency(chunks) >= first;
+    if (ends) first = chunks;
+    return ends;
+  }).map(({bytes, level}) => ({bytes, level}));
 }
 
 interface Step extends LevelBytes {

@@ -86,7 +86,7 @@ export type Posted = FromWorker & {run?: number};
 
 export type FromWorker =
   | {type: 'manifest'; manifest: Manifest; digest: string; fields: number[]}
-  /** What the fields of now will take, chunk by chunk: after `manifest`, and whenever other fields are wanted; empty: nobody knows. */
+  /** What the fields of now will take, as planOf tells it: after `manifest`, and whenever other fields are wanted. */
   | {type: 'plan'; plan: LevelBytes[]}
   | {type: 'snapshot'; snapshot: Snapshot}
   | {type: 'progress'; statistics: Statistics; received: number}

@@ -16,6 +16,8 @@ export interface InspectHost {
   readonly client: Client | null;
   readonly view: View | null;
   readonly manifest: Manifest | null;
+  /** Of what the cards leave free, in shares of the canvas. */
+  readonly middle: [number, number];
   /** Title of the field that colours, for the plot. */
   readonly fieldTitle: string;
   announce(text: string): void;
@@ -57,10 +59,10 @@ export class Inspect {
 
   /** What is under the middle of the picture: the keyboard's way. */
   pickMiddle(): void {
-    const {view} = this.host;
+    const {view, middle: [x, y]} = this.host;
     if (!view) return;
     if (this.tool === 'none') this.use('point');
-    void this.click(view.canvas.clientWidth / 2, view.canvas.clientHeight / 2);
+    void this.click(x * view.canvas.clientWidth, y * view.canvas.clientHeight);
   }
 
   clear(): void {

@@ -22,6 +22,9 @@ const kRateWindowMs = 4000;
 /** The plot shows errors down to this share of the first one at least. */
 const kLeastSpan = 10;
 
+/** Bytes and the error that is left with them. */
+type Point = [number, number];
+
 export class ProgressPanel {
   private readonly root: HTMLElement;
   private readonly curveFigure: HTMLElement;
@@ -35,8 +38,6 @@ export class ProgressPanel {
   private announced = -1;
   private arrivals: {at: number; bytes: number}[] = [];
   private plan: LevelBytes[] = [];
-  /** [bytes, error] by level reached: what is drawn where there is no plan. */
-  private curve: [number, number][] = [];
 
   constructor(root: ParentNode, private readonly announce: (text: string) => void) {
     this.root = root.querySelector('.progress')!;
@@ -46,7 +47,6 @@ export class ProgressPanel {
   begin(manifest: Manifest | null): void {
     this.manifest = manifest;
     this.statistics = null;
-    this.curve = [];
     this.plan = [];
     this.arrivals = [];
     this.announced = -1;
@@ -56,7 +56,6 @@ export class ProgressPanel {
   takePlan(plan: LevelBytes[]): void { this.plan = plan; }
 
   follow(fields: number[], limit: Limit): void {
-    if (fields.join() !== this.fields.join()) this.curve = [];
     this.fields = fields;
     this.limit = limit;
   }
@@ -65,12 +64,6 @@ export class ProgressPanel {
   show(statistics: Statistics): void {
     this.statistics = statistics;
     this.arrivals.push({at: performance.now(), bytes: statistics.bytes});
-    const error = this.errorLeft();
-    if (error !== null && statistics.bytes > 0) {
-      const last = this.curve.at(-1);
-      if (last && last[0] > statistics.bytes) this.curve = [];
-      if (last?.[1] !== error) this.curve.push([statistics.bytes, error]);
-    }
     this.timer ??= setTimeout(() => this.draw(), Math.max(0, this.drawnAt + kFiguresMs - performance.now()));
   }
 
@@ -126,35 +119,33 @@ export class ProgressPanel {
     return (goal - bytes) / rate;
   }
 
-  /** [bytes, error] of all levels ahead, or else of those that were reached. */
-  private known(): [number, number][] {
-    const {levels = []} = this.manifest ?? {};
-    const ahead = this.plan.map(({bytes, level}): [number, number | null] => [bytes, errorOfLevel(levels[level], this.fields)]);
-    return ahead.length > 1 && ahead.every(([, error]) => error !== null) ? ahead as [number, number][] : this.curve;
-  }
-
-  /** Logarithmic both ways, from the first level's error to the last one's that is not 0; behind that the line goes to the ground. */
+  /**
+   * Logarithmic both ways, from the first level's error to the last one's that is not 0; behind that the line goes to the ground. Where one is has the bytes that
+   * are here: of a log of regions these may be more than the level needs, for what is looked at comes first.
+   */
   private drawCurve(): void {
     const figure = this.curveFigure;
-    const points = this.known();
-    const [firstBytes, firstError] = points[0] ?? [0, 0];
-    figure.hidden = points.length < 2 || firstError === 0;
+    const {bytes, level: now} = this.statistics!;
+    const points = this.plan.map(({bytes, level}) => ({level, point: [bytes, errorOfLevel(this.manifest?.levels[level], this.fields) ?? 0] as Point}));
+    const line = points.map(({point}) => point);
+    const [firstBytes, firstError] = line[0] ?? [0, 0];
+    figure.hidden = line.length < 2 || firstError === 0;
     if (figure.hidden) return;
-    const {bytes} = this.statistics!;
-    const [lastBytes, lastError] = points.at(-1)!;
-    const least = Math.min(...points.map(([, error]) => error || Infinity), firstError / kLeastSpan);
-    const place = ([at, error]: [number, number]): string => {
+    const [lastBytes] = line.at(-1)!;
+    const least = Math.min(...line.map(([, error]) => error || Infinity), firstError / kLeastSpan);
+    const place = ([at, error]: Point): string => {
       const x = Math.log(at / firstBytes) / Math.log(Math.max(lastBytes / firstBytes, 1.01));
       const y = error > 0 ? 0.9 * Math.log(firstError / error) / Math.log(firstError / least) : 1;
       return `${(100 * Math.min(1, Math.max(0, x))).toFixed(2)} ${(40 * y).toFixed(2)}`;
     };
-    const reached = points.filter(([at]) => at <= bytes);
-    const here = reached.at(-1) ?? points[0]!;
-    for (const [name, line] of [['ahead', points], ['reached', reached]] as const) {
-      figure.querySelector(`.${name}`)!.setAttribute('d', line.length > 0 ? `M${line.map(place).join('L')}` : '');
+    const reached = points.filter(({level, point: [at]}) => at <= bytes && level <= now).map(({point}) => point);
+    const here: Point = [bytes, reached.at(-1)?.[1] ?? firstError];
+    if (reached.length > 0) reached.push(here);
+    for (const [name, drawn] of [['ahead', line], ['reached', reached]] as const) {
+      figure.querySelector(`.${name}`)!.setAttribute('d', drawn.length > 0 ? `M${drawn.map(place).join('L')}` : '');
     }
     figure.querySelector('.here')!.setAttribute('d', `M${place(here)}h0`);
-    const ends = [points[0]!, ...(here[0] > firstBytes && here[0] < lastBytes ? [here] : []), [lastBytes, lastError] as const];
+    const ends = [line[0]!, ...(bytes > firstBytes && bytes < lastBytes ? [here] : []), line.at(-1)!];
     figure.querySelector('figcaption')!.textContent = `Error against bytes: ${ends.map(([at, error]) => `${formatError(error)} at ${formatBytes(at)}`).join(', ')}`;
   }
 

@@ -113,6 +113,8 @@ export class QtetViewer extends HTMLElement implements Host {
   private writing = false;
   private cameraTimer: ReturnType<typeof setTimeout> | undefined;
   private point: Vector | null = null;
+  /** As Inspect's host. */
+  middle: [number, number] = [0.5, 0.5];
   private toldCamera = '';
   private toldWishes = '';
   private lastCells: {at: number; cells: number} = {at: 0, cells: 0};
@@ -171,7 +173,7 @@ export class QtetViewer extends HTMLElement implements Host {
   look(direction: Direction): void { this.meshView?.look(direction); }
   /** The scene as a PNG; null before there is one. */
   async picture(): Promise<Blob | null> {
-    return this.meshView?.picture(matchMedia('(prefers-color-scheme: dark)').matches ? '#1a2029' : '#ffffff') ?? null;
+    return this.meshView?.picture(getComputedStyle(this).getPropertyValue('--ground')) ?? null;
   }
 
   // ---- Host, InspectHost
@@ -346,13 +348,14 @@ export class QtetViewer extends HTMLElement implements Host {
       const wanted = file ? null : this.getAttribute('mesh');
       const mesh = wanted ?? this.catalog[0]?.id;
       if (mesh === undefined) throw new QtetError('not-found', `The server shows no meshes. Put .qtet files into its folder; for guarded ones set the viewer's property "token".`);
-      if (!this.catalog.some(({id}) => id === mesh)) {
-        throw new QtetError('not-found', `There is no mesh "${mesh}" on this server. It has: ${this.catalog.map(({id}) => id).join(', ') || 'none that may be seen without a token'}.`);
-      }
-      const menu = this.catalog.length > 1;
+      const isThere = this.catalog.some(({id}) => id === mesh);
+      const menu = this.catalog.length > (isThere ? 1 : 0);
       fillSelect(this.select('mesh'), this.catalog.map(({id}) => ({value: id, title: id})), mesh);
       this.find('.mesh-menu').hidden = !menu;
       this.find('.mesh-name').classList.toggle('visually-hidden', menu);
+      if (!isThere) {
+        throw new QtetError('not-found', `There is no mesh "${mesh}" on this server. It has: ${this.catalog.map(({id}) => id).join(', ') || 'none that may be seen without a token'}.`);
+      }
       this.openMesh(mesh);
     } catch (thrown) {
       if (opening === this.openings) this.fail(thrown);
@@ -430,7 +433,7 @@ export class QtetViewer extends HTMLElement implements Host {
   }
 
   private draw(snapshot: Snapshot): void {
-    this.figures = snapshot.statistics;
+    if (this.figures === kNoStatistics) this.figures = snapshot.statistics;  // else they are newer: a picture may have waited for a view
     this.snapshot = snapshot;
     if (snapshot.surface) this.hasGaps = [snapshot.surface, ...snapshot.cuts].some(({values}) => values.some(Number.isNaN));
     const {manifest} = this;
@@ -652,6 +655,7 @@ export class QtetViewer extends HTMLElement implements Host {
     const panel = this.find('.panel');
     const insets = insetsOf(this, {panel, legend: this.find('.legend'), result: this.find('.result')}, sheet);
     this.style.setProperty('--sheet', `${sheet ? panel.offsetHeight : 0}px`);
+    this.middle = [(1 + insets.left - insets.right) / 2, (1 + insets.top - insets.bottom) / 2];
     this.meshView?.setInsets(insets);
   }
 
@@ -711,6 +715,7 @@ function inspectHost(viewer: QtetViewer): ConstructorParameters<typeof Inspect>[
     get client() { return viewer.client; },
     get view() { return viewer.meshView; },
     get manifest() { return viewer.manifest; },
+    get middle() { return viewer.middle; },
     get fieldTitle() { return viewer.fieldTitle; },
     announce: (text) => viewer.announce(text),
     pointAt: (point) => viewer.pointAt(point),

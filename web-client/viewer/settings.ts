@@ -56,8 +56,8 @@ function parseRange(text: string | null): Settings['range'] {
   return numbers.length === 2 && numbers[0]! < numbers[1]! ? [numbers[0]!, numbers[1]!] : 'auto';
 }
 
-/** What the volume begins with: low values are faint, high ones dense. */
-export const kFirstOpacities: readonly number[] = [0, 0.02, 0.05, 0.1, 0.2, 0.35, 0.5, 0.7, 0.9];
+/** What the volume begins with: low values are faint, so that the shape of all of it is still to be seen, high ones dense. */
+export const kFirstOpacities: readonly number[] = [0.03, 0.04, 0.06, 0.1, 0.2, 0.35, 0.5, 0.7, 0.9];
 
 function parseVolume(text: string | null): number[] | null {
   if (text === null) return null;
