@@ -8,6 +8,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <new>
 
 #include "proto/json_reader.h"
 #include "server/http_resource.h"
@@ -103,12 +104,15 @@ Reply Upload::finish(const std::stop_token& stop) {
   std::stop_source either;
   const auto end = [&either] { either.request_stop(); };
   const std::stop_callback whenGone(stop, end), whenEnding(uploads_.ending_.get_token(), end);
-  MeshPointer mesh;
-  if (std::optional<Reply> refusal = verify(either.get_token(), mesh)) {
+  try {
+    MeshPointer mesh;
+    std::optional<Reply> refusal = verify(either.get_token(), mesh);
+    if (!refusal) return publish(mesh->log.digest());
     if (refusal->status == 413 || refusal->status == 422) ::unlink(part_.c_str());  // going on with it would not make it better
     return std::move(*refusal);
+  } catch (const std::bad_alloc&) {  // it ends one upload, not the server
+    return busyReply("there is not enough memory for this log now; try again");
   }
-  return publish(mesh->log.digest());
 }
 
 Reply Upload::publish(const std::string& digest) {
