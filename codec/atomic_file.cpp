@@ -40,12 +40,12 @@ class Descriptor {
   int value_;
 };
 
-/// What the temporary files of all writers of `path` begin and end with. A name that leaves no room for the rest gives its hash.
-std::string temporaryPrefix(const fs::path& path) {
+/// How the temporary files of all writers of `path` name it. A name that leaves no room for the rest gives its hash.
+std::string nameWithin(const fs::path& path) {
   constexpr std::size_t kMostOfName = 200;  // bytes of the 255 that a file's name may have
   std::string name = path.filename().string();
   if (name.size() > kMostOfName) name = name.substr(0, kMostOfName - 10) + "~" + std::to_string(crc32c(ByteView(reinterpret_cast<const std::uint8_t*>(name.data()), name.size())));
-  return "." + name + ".";
+  return name;
 }
 constexpr std::string_view kTemporarySuffix = ".tmp";
 
@@ -53,35 +53,25 @@ constexpr std::string_view kTemporarySuffix = ".tmp";
 fs::path temporaryName(const fs::path& path) {
   static std::atomic<unsigned> counter{0};
   const std::string number = std::to_string(::getpid()) + "." + std::to_string(counter++);
-  return path.parent_path() / (temporaryPrefix(path) + number + std::string(kTemporarySuffix));
+  return path.parent_path() / ("." + nameWithin(path) + "." + number + std::string(kTemporarySuffix));
 }
 
-/// Whether `name` is PREFIX digits.digits SUFFIX, so that no file of somebody else's is taken for ours.
-bool isTemporary(const std::string& name, const std::string& prefix) {
-  if (name.size() <= prefix.size() + kTemporarySuffix.size() || !name.starts_with(prefix) || !name.ends_with(kTemporarySuffix))
-    return false;
-  const std::string_view number = std::string_view(name).substr(prefix.size(), name.size() - prefix.size() - kTemporarySuffix.size());
-  const std::size_t dot = number.find('.');
-  const auto digits = [](std::string_view text) { return !text.empty() && text.find_first_not_of("0123456789") == text.npos; };
-  return dot != number.npos && digits(number.substr(0, dot)) && digits(number.substr(dot + 1));
+/// The NAME of .NAME.digits.digits.tmp; "" of anything else, so that no file of somebody else's is taken for ours.
+std::string_view nameOf(std::string_view temporary) {
+  if (!temporary.starts_with('.') || !temporary.ends_with(kTemporarySuffix)) return "";
+  std::string_view name = temporary.substr(1, temporary.size() - 1 - kTemporarySuffix.size());
+  for (int number = 0; number < 2; ++number) {
+    const std::size_t dot = name.rfind('.');
+    if (dot == name.npos || dot + 1 == name.size() || name.find_first_not_of("0123456789", dot + 1) != name.npos) return "";
+    name = name.substr(0, dot);
+  }
+  return name;
 }
 
 /// Whether the file has lost its name: somebody removed it between our opening and our locking it.
 bool unlinked(int descriptor) {
   struct stat info {};
   return ::fstat(descriptor, &info) == 0 && info.st_nlink == 0;
-}
-
-/// Removes what writers of `path` left that were killed: a temporary file without a lock. What cannot be removed does no harm.
-void removeStale(const fs::path& folder, const fs::path& path, FileCalls& calls) {
-  const std::string prefix = temporaryPrefix(path);
-  std::error_code code;
-  for (fs::directory_iterator at(folder, code), end; !code && at != end; at.increment(code)) {
-    if (!isTemporary(at->path().filename().string(), prefix)) continue;
-    const Descriptor stale(calls, calls.open(at->path().c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0));
-    // Still under its name when the lock is ours: so nobody else removes it now, nor puts a new file there.
-    if (stale.get() >= 0 && calls.lock(stale.get(), LOCK_EX | LOCK_NB) == 0 && !unlinked(stale.get())) calls.unlink(at->path().c_str());
-  }
 }
 
 Status writeAll(int descriptor, ByteView bytes, const fs::path& path, FileCalls& calls) {
@@ -127,6 +117,17 @@ Status writeAndRename(const fs::path& path, std::optional<mode_t> mode, ByteView
 
 }  // namespace
 
+void removeUnfinished(const fs::path& folder, const std::function<bool(std::string_view name)>& isOurs, FileCalls& calls) {
+  std::error_code code;
+  for (fs::directory_iterator at(folder, code), end; !code && at != end; at.increment(code)) {
+    const std::string temporary = at->path().filename().string();
+    if (const std::string_view name = nameOf(temporary); name.empty() || !isOurs(name)) continue;
+    const Descriptor stale(calls, calls.open(at->path().c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0));
+    // Still under its name when the lock is ours: so nobody else removes it now, nor puts a new file there.
+    if (stale.get() >= 0 && calls.lock(stale.get(), LOCK_EX | LOCK_NB) == 0 && !unlinked(stale.get())) calls.unlink(at->path().c_str());
+  }
+}
+
 Status writeFileAtomically(const fs::path& asked, ByteView bytes, FileCalls& calls) {
   std::error_code none, links;
   const fs::path path = fs::is_symlink(asked, none) ? fs::weakly_canonical(asked, links) : asked;  // the file that it leads to
@@ -145,7 +146,7 @@ Status writeFileAtomically(const fs::path& asked, ByteView bytes, FileCalls& cal
   // Opened before anything is changed: what cannot be flushed later is better not begun.
   const Descriptor opened(calls, calls.open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC, 0));
   if (opened.get() < 0) return systemError("open the folder", folder, errno);
-  removeStale(folder, path, calls);
+  removeUnfinished(folder, [own = nameWithin(path)](std::string_view name) { return name == own; }, calls);
   if (Status status = writeAndRename(path, replaces ? std::optional(old.st_mode & 07777) : std::nullopt, bytes, calls); !status) return status;
   // Makes the rename itself durable. File systems that cannot flush a folder say EINVAL: there is nothing more to do then.
   if (calls.sync(opened.get()) == 0 || errno == EINVAL) return {};

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <string_view>
 
 #include "codec/file_calls.h"
 #include "proto/bytes.h"
@@ -16,5 +18,9 @@ namespace qtet {
 /// `path`: one of the whole files wins. A file that is replaced hands on its permissions; a symbolic link stays, and the file that it leads to is replaced.
 /// Errors: not-found (the folder does not exist), io (no regular file is there; with the file and the operating system's reason).
 [[nodiscard]] Status writeFileAtomically(const std::filesystem::path& path, ByteView bytes, FileCalls& calls = systemFileCalls());
+
+/// Removes what writers that were killed left in `folder` of the files whose names `isOurs` accepts, of at most 190 bytes. Those of writers at work are let alone, whichever process
+/// they belong to: each holds a lock on its own. What cannot be removed does no harm.
+void removeUnfinished(const std::filesystem::path& folder, const std::function<bool(std::string_view name)>& isOurs, FileCalls& calls = systemFileCalls());
 
 }  // namespace qtet

@@ -106,6 +106,7 @@ Status Refiner::apply(std::uint32_t chunk, ByteView structure, std::span<const s
 }
 
 void Refiner::observe(SplitObserver* observer) { state_->observer = observer; }
+void Refiner::askBeforeLevels(LevelGate* gate) { state_->gate = gate; }
 void Refiner::stopAtLevel(std::uint32_t level) { state_->stopLevel = level; }
 
 const LogIndex& Refiner::index() const { return state_->index; }

@@ -24,6 +24,15 @@ class SplitObserver {
   ~SplitObserver() = default;
 };
 
+/// Asked whether decoding goes on: whoever checks a log that a stranger sent does not wait for the end of a chunk, which may be the whole of it.
+class LevelGate {
+ public:
+  virtual bool goOn() = 0;
+
+ protected:
+  ~LevelGate() = default;
+};
+
 /// What a mesh held when a level was complete.
 struct LevelCounts {
   std::size_t vertices = 0, tetrahedra = 0, boundaryTriangles = 0;
@@ -54,6 +63,9 @@ class Refiner {
 
   /// From now on `observer` hears of every split; nullptr: nobody. It must outlive the chunks applied.
   void observe(SplitObserver* observer);
+
+  /// From now on `gate` is asked before every level, of a packet as well; nullptr: nobody. False ends the chunk in hand with the error io. It must outlive the chunks applied.
+  void askBeforeLevels(LevelGate* gate);
 
   [[nodiscard]] const LogIndex& index() const;
   /// How many, in file order also which one is next.

@@ -58,6 +58,7 @@ Status Refiner::State::run(std::uint32_t chunk, const ChunkEntry& entry, RangeDe
     return refuseChunk(ErrorCode::kBadValue, chunk, "it does not continue the level before it");
   for (;;) {
     if (!inLevel) {
+      if (Status s = mayGoOn(); !s) return s;
       ++level;
       nextSlot = 0;
       inLevel = true;
@@ -132,6 +133,7 @@ Status Refiner::State::packet(std::uint32_t chunk, const ChunkEntry& entry, Byte
 
 Status Refiner::State::packetLevel(std::uint32_t chunk, std::uint32_t atLevel, RecordCoder<RangeDecoder>& coder, RangeDecoder& decoder,
                                    std::vector<VertexId>& inner) {
+  if (Status s = mayGoOn(); !s) return s;
   mesh.beginLevel(atLevel);
   const Slots before = mesh.next();
   const std::size_t vertices = inner.size();

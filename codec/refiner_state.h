@@ -74,6 +74,7 @@ struct Refiner::State {
   bool stopped = false;  // inside a chunk of the head, at stopLevel
   std::uint32_t stopLevel = kMaxLevels + 1;
   SplitObserver* observer = nullptr;
+  LevelGate* gate = nullptr;
 
   void makeRoom(std::size_t bytes);
   [[nodiscard]] Status mayCome(std::uint32_t chunk) const;
@@ -93,6 +94,7 @@ struct Refiner::State {
   Status endPacket(std::uint32_t chunk, const ChunkEntry& entry);
   Status split(std::uint32_t chunk, RecordCoder<RangeDecoder>& coder, VertexId v);
   Status checkCounts(std::uint32_t chunk) const;
+  [[nodiscard]] Status mayGoOn() const { return gate == nullptr || gate->goOn() ? Status{} : fail(ErrorCode::kIo, "stopped, as was asked for"); }
   void completeLevel() { levelCounts.push_back({mesh.points.size(), mesh.tetrahedra.size(), mesh.boundary.size()}); }
 
   // refiner_fields.cpp

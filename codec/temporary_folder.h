@@ -7,7 +7,8 @@
 
 namespace qtet {
 
-/// Made where TMPDIR says (else /tmp), readable by nobody else, removed with everything in it.
+/// Made where TMPDIR says (else /tmp), readable by nobody else, removed with everything in it. What a process that was killed left there is removed by the next one
+/// of the same user and purpose: each holds a lock on its folder as long as it lives.
 class TemporaryFolder {
  public:
   /// `purpose` stands in its name: qtet-PURPOSE-XXXXXX. After a failure path() is empty.
@@ -23,6 +24,7 @@ class TemporaryFolder {
  private:
   std::filesystem::path path_;
   std::error_code failure_;
+  int lock_ = -1;  // the folder itself, open
 };
 
 }  // namespace qtet

@@ -33,7 +33,9 @@ po::options_description settings() {
       "cache-bytes", text(), "how much it may hold (default: 2 GiB)")("access-log", text(), "file for a line of JSON a request; - = standard output")(
       "tokens", text(), "file of bearer tokens that may read, PUT and DELETE meshes (default: everybody may read, nobody change)")(
       "tls-certificate", text(), "PEM file, its own certificate first: HTTPS instead of HTTP (default: none)")("tls-key", text(), "PEM file of its key")(
-      "max-upload-bytes", text(), "the largest log that is taken (default: 16 GiB)")("max-connections", text(), "at a time, in all (default: 4000)")(
+      "max-upload-bytes", text(), "the largest log that is taken (default: 16 GiB)")(
+      "max-check-bytes", text(), "memory that checking an upload may take; more is 413 (default: 4 GiB)")(
+      "max-check-seconds", text(), "time that it may take (default: 600)")("max-connections", text(), "at a time, in all (default: 4000)")(
       "max-connections-per-address", text(), "at a time; 0 = no bound, as behind a proxy (default: 256)")(
       "max-levels-per-address", text(), "made or waiting at a time; 0 = no bound, as behind a proxy (default: 6)")(
       "max-requests-per-second", text(), "of one address; 0 = no bound, as behind a proxy (default: 2000)")(
@@ -66,6 +68,11 @@ class Reader {
     if (ec != std::errc() || end != given->data() + given->size() || value < least || value > most)
       return refuse("--" + std::string(name) + " " + *given + " is not between " + std::to_string(least) + " and " + std::to_string(most));
     out = static_cast<T>(value);
+  }
+  void seconds(const char* name, std::chrono::seconds& out, std::uint64_t least, std::uint64_t most) {
+    auto count = out.count();
+    number(name, count, least, most);
+    out = std::chrono::seconds(count);
   }
   void path(const char* name, std::optional<std::filesystem::path>& out) const {
     if (const auto given = text(name)) out = *given;
@@ -127,6 +134,8 @@ Result<CommandLine> toCommandLine(const po::variables_map& values) {
   reader.number("threads", out.threads, 1, kMaxThreads);
   reader.number("cache-bytes", out.cacheBytes, 0, kAny);
   reader.number("max-upload-bytes", out.maxUploadBytes, 1, kAny);
+  reader.number("max-check-bytes", out.maxCheckBytes, 1, kAny);
+  reader.seconds("max-check-seconds", out.maxCheckTime, 1, 1'000'000);
   reader.number("max-connections", out.maxConnections, 1, 1'000'000);
   reader.number("max-connections-per-address", out.maxConnectionsPerAddress, 0, 1'000'000);
   reader.number("max-levels-per-address", out.maxLevelsPerAddress, 0, 1'000'000);
@@ -221,7 +230,8 @@ std::string configText(const CommandLine& options) {
   path("tokens", options.tokens);
   path("tls-certificate", options.tlsCertificate);
   path("tls-key", options.tlsKey);
-  out << "max-upload-bytes = " << options.maxUploadBytes << "\nmax-connections = " << options.maxConnections
+  out << "max-upload-bytes = " << options.maxUploadBytes << "\nmax-check-bytes = " << options.maxCheckBytes
+      << "\nmax-check-seconds = " << options.maxCheckTime.count() << "\nmax-connections = " << options.maxConnections
       << "\nmax-connections-per-address = " << options.maxConnectionsPerAddress << "\nmax-levels-per-address = " << options.maxLevelsPerAddress
       << "\nmax-requests-per-second = " << options.maxRequestsPerSecond << "\n";
   for (std::size_t i = 0; i < options.allowedOrigins.size(); ++i) out << (i == 0 ? "allow-origins = " : ",") << options.allowedOrigins[i];

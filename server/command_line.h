@@ -31,6 +31,8 @@ struct CommandLine {
   std::optional<std::filesystem::path> tlsCertificate;  ///< with tlsKey, or neither
   std::optional<std::filesystem::path> tlsKey;
   std::uintmax_t maxUploadBytes = limits::kMaxUploadBytes;
+  std::uintmax_t maxCheckBytes = limits::kMaxCheckBytes;
+  std::chrono::seconds maxCheckTime = limits::kCheckTime;
   std::size_t maxConnections = limits::kMaxConnections;
   std::size_t maxConnectionsPerAddress = limits::kMaxConnectionsPerAddress;  ///< 0: no bound
   std::size_t maxLevelsPerAddress = limits::kMaxLevelJobsPerAddress;         ///< 0: no bound

@@ -5,6 +5,7 @@
 #include "proto/json_reader.h"
 #include "proto/sentence.h"
 #include "server/http_conditions.h"
+#include "server/limits.h"
 
 namespace qtet {
 namespace {
@@ -82,6 +83,12 @@ Reply problem(unsigned status, std::string_view type, std::string_view detail) {
   out.headers = {{"Content-Type", "application/problem+json"}, {"Cache-Control", "no-store"}};
   out.body = dumpJson(json);
   addCommonHeaders(out);
+  return out;
+}
+
+Reply busyReply(std::string_view detail) {
+  Reply out = problem(503, "busy", detail);
+  out.headers.emplace_back("Retry-After", std::to_string(limits::kRetryAfterSeconds));
   return out;
 }
 

@@ -70,6 +70,9 @@ inline constexpr unsigned kClientGone = 499;
 /// An error as RFC 9457 has it; `type` is the last part of a path under /problems/.
 [[nodiscard]] Reply problem(unsigned status, std::string_view type, std::string_view detail);
 
+/// 503, to be asked for again in limits::kRetryAfterSeconds.
+[[nodiscard]] Reply busyReply(std::string_view detail);
+
 /// Headers that every answer of this server carries.
 void addCommonHeaders(Reply& reply);
 

@@ -16,6 +16,7 @@
 #include <span>
 
 #include "server/access_routes.h"
+#include "server/client_watch.h"
 #include "server/deadline.h"
 #include "server/http_gate.h"
 #include "server/http_request.h"
@@ -114,7 +115,9 @@ class HttpSession {
   asio::awaitable<bool> answerUpload(const RequestView& request, const UploadRequest& upload, bool keepAlive);
   /// Reads the body into the upload; the answer, if it ends before its time. A connection that is lost has none to send.
   asio::awaitable<std::optional<Reply>> receiveBody(Upload& upload, std::uint64_t bytes);
-  asio::awaitable<Reply> elsewhere(std::move_only_function<Reply()> work);
+  asio::awaitable<Reply> remove(const UploadRequest& upload);
+  /// Has the log checked and published; nullopt: the client has gone, and the check was broken off.
+  asio::awaitable<std::optional<Reply>> finish(Upload& upload);
   asio::awaitable<bool> send(Reply reply, bool keepAlive);
   /// The body out of its file, where there is one.
   asio::awaitable<bool> write(std::string_view head, ByteView body, std::optional<FilePart> file = {});
@@ -343,7 +346,7 @@ asio::awaitable<bool> HttpSession::answerLevel(const RequestView& request, Reply
 
 asio::awaitable<bool> HttpSession::answerUpload(const RequestView& request, const UploadRequest& upload, bool keepAlive) {
   if (upload.kind == UploadRequest::Kind::kDelete) {
-    Reply removed = co_await elsewhere([this, &upload] { return services_.uploads->remove(upload); });
+    Reply removed = co_await remove(upload);
     co_return co_await send(std::move(removed), keepAlive);
   }
   auto begun = services_.uploads->begin(upload);
@@ -361,9 +364,14 @@ asio::awaitable<bool> HttpSession::answerUpload(const RequestView& request, cons
     refusal->close = true;
     co_return co_await send(std::move(*refusal), false);
   }
-  Reply done = co_await elsewhere([&begun] { return (*begun)->finish(); });
+  std::optional<Reply> done = (*begun)->partial();
+  if (!done) done = co_await finish(**begun);
   begun->reset();  // its place is free before the client hears of the end
-  co_return co_await send(std::move(done), keepAlive);
+  if (done) co_return co_await send(std::move(*done), keepAlive);
+  Reply gone;
+  gone.status = kClientGone;
+  report(gone, false);
+  co_return false;
 }
 
 asio::awaitable<std::optional<Reply>> HttpSession::receiveBody(Upload& upload, std::uint64_t bytes) {
@@ -386,14 +394,33 @@ asio::awaitable<std::optional<Reply>> HttpSession::receiveBody(Upload& upload, s
   co_return std::nullopt;
 }
 
-asio::awaitable<Reply> HttpSession::elsewhere(std::move_only_function<Reply()> work) {
-  auto start = [this, executor = socket_.get_executor(), work = std::move(work)](auto handler) mutable {
-    asio::post(*services_.verifiers, [executor, work = std::move(work), handler = std::move(handler)]() mutable {
-      Reply reply = work();
+asio::awaitable<Reply> HttpSession::remove(const UploadRequest& upload) {
+  auto start = [this, &upload, executor = socket_.get_executor()](auto handler) {
+    asio::post(*services_.writers, [this, &upload, executor, handler = std::move(handler)]() mutable {
+      Reply reply = services_.uploads->remove(upload);
       asio::post(executor, [handler = std::move(handler), reply = std::move(reply)]() mutable { handler(std::move(reply)); });
     });
   };
   co_return co_await asio::async_initiate<const asio::use_awaitable_t<>, void(Reply)>(std::move(start), use_awaitable);
+}
+
+asio::awaitable<std::optional<Reply>> HttpSession::finish(Upload& upload) {
+  std::stop_source stop;
+  auto start = [this, &upload, &stop, executor = socket_.get_executor()](auto handler) {
+    const auto pending = std::make_shared<bool>(true);  // while it is, the coroutine waits here, and with it the socket
+    watchForEnd(socket_, [pending] { return *pending; }, [&stop] { stop.request_stop(); });
+    asio::post(*services_.checkers, [&upload, token = stop.get_token(), pending, executor, handler = std::move(handler)]() mutable {
+      Reply reply = upload.finish(token);
+      asio::post(executor, [pending, handler = std::move(handler), reply = std::move(reply)]() mutable {
+        *pending = false;
+        handler(std::move(reply));
+      });
+    });
+  };
+  Reply out = co_await asio::async_initiate<const asio::use_awaitable_t<>, void(Reply)>(std::move(start), use_awaitable);
+  socket_.cancel();  // the watch, if it still stands
+  if (stop.stop_requested()) co_return std::nullopt;
+  co_return out;
 }
 
 asio::awaitable<bool> HttpSession::send(Reply reply, bool keepAlive) {

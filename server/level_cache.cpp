@@ -55,6 +55,8 @@ Result<std::unique_ptr<LevelCache>> LevelCache::open(const fs::path& folder, std
   }
   if (ec || ::access(folder.c_str(), W_OK | X_OK) != 0)
     return fail(ErrorCode::kIo, folder.string() + " cannot keep levels; name a folder that may be written with --cache");
+  // Another server may keep its levels here, too: what it is writing it has locked.
+  removeUnfinished(folder, [](std::string_view name) { return name.ends_with(kSuffix) && isKey(name.substr(0, name.size() - kSuffix.size())); });
   std::ranges::sort(found);
   std::unique_ptr<LevelCache> out(new LevelCache(folder, mostBytes));
   for (const auto& [time, key, bytes] : found) out->add(key, bytes);

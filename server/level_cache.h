@@ -17,7 +17,7 @@ namespace qtet {
 /// Thread-safe. The folder is this object's alone: nobody else may write into its files.
 class LevelCache {
  public:
-  /// Makes the folder if it is not there, and takes over what an earlier run left in it. Errors: io.
+  /// Makes the folder if it is not there, takes over what an earlier run left in it, and removes what one that was killed did not finish. Errors: io.
   [[nodiscard]] static Result<std::unique_ptr<LevelCache>> open(const std::filesystem::path& folder, std::uintmax_t mostBytes);
 
   /// `key` is hexadecimal.

@@ -9,11 +9,12 @@
 #include <memory>
 #include <optional>
 
+#include "server/client_watch.h"
+
 namespace qtet {
 namespace {
 
 namespace asio = boost::asio;
-using boost::system::error_code;
 
 /// A coroutine's continuation, called by whoever comes first; only on the connection's executor.
 template <class Handler>
@@ -33,19 +34,6 @@ class FirstAnswer {
   std::optional<Handler> handler_;
 };
 
-/// Ends the wait when the client has gone. One that sends its next request meanwhile is not watched any further: the end lies behind those bytes.
-template <class Handler>
-void watch(ClientSocket& socket, const std::shared_ptr<FirstAnswer<Handler>>& first) {
-  socket.whenReadable([first, &socket](const error_code& ec) {
-    if (!first->pending()) return;  // while the answer is pending the coroutine, and with it the socket, waits here
-    const Arrived arrived = ec ? Arrived::kEnd : socket.arrived();
-    if (arrived == Arrived::kNothing) watch(socket, first);
-    if (arrived != Arrived::kEnd) return;
-    first->wish = {};
-    first->give(LevelRefusal::kGone);
-  });
-}
-
 }  // namespace
 
 asio::awaitable<LevelAnswer> waitForLevel(ClientSocket& socket, LevelJobs& jobs, LevelRequest request, LevelJobs::Address from) {
@@ -61,7 +49,10 @@ asio::awaitable<LevelAnswer> waitForLevel(ClientSocket& socket, LevelJobs& jobs,
       return;
     }
     first->wish = std::move(*wish);
-    watch(socket, first);
+    watchForEnd(socket, [first] { return first->pending(); }, [first] {
+      first->wish = {};
+      first->give(LevelRefusal::kGone);
+    });
   };
   LevelAnswer out = co_await asio::async_initiate<const asio::use_awaitable_t<>, void(LevelAnswer)>(std::move(start), asio::use_awaitable);
   socket.cancel();  // the watch, if it still stands

@@ -97,8 +97,14 @@ inline constexpr std::uint32_t kMostIntervalTetrahedra = 20'000'000;
 
 /// Bytes of one log that is taken: the format's own end is at 16 GB or so (proto/limits.h, kMaxChunks).
 inline constexpr std::uintmax_t kMaxUploadBytes = std::uintmax_t{16} << 30;
-/// Uploads at a time: each holds a file open, and its check reads the whole of it.
+/// Uploads at a time, those that wait for their check included: each holds a file open.
 inline constexpr std::size_t kMaxUploads = 4;
+/// Threads that check what came, decoding it whole, beside those that make levels.
+inline constexpr std::size_t kCheckThreads = 1;
+/// Bytes of memory that one check may take, as codec/decoding_memory.h foretells them: 80 each for a log of 50 million tetrahedra with a field.
+inline constexpr std::uintmax_t kMaxCheckBytes = std::uintmax_t{4} << 30;
+/// From a check's beginning to its end: so many tetrahedra take a minute.
+inline constexpr auto kCheckTime = 10min;
 /// What came of an upload that broke off is kept so long for going on with it.
 inline constexpr auto kPartialUploadTime = 24h;
 

@@ -129,8 +129,8 @@ ServerOptions serverOptions(const CommandLine& wishes, LevelCache* cache, Access
           .tls = secrets.tls.get(),
           .access = secrets.access.get(),
           .reload = [&wishes, &secrets] { reload(wishes, secrets); },
-          .maxUploadBytes = wishes.maxUploadBytes,
-          .allowedOrigins = wishes.allowedOrigins};
+          .allowedOrigins = wishes.allowedOrigins,
+          .uploads = {.mostBytes = wishes.maxUploadBytes, .checkLimits = {wishes.maxCheckBytes, wishes.maxCheckTime}}};
 }
 
 int serve(const CommandLine& wishes) {

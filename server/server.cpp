@@ -74,7 +74,7 @@ struct Server::State {
   State(const MeshStore& meshes, const ViewerFiles& viewer, ServerOptions given)
       : store(meshes),
         options(std::move(given)),
-        uploads(meshes, options.maxUploadBytes),
+        uploads(meshes, options.uploads),
         router(meshes, viewer, options.adminHost ? nullptr : &admin,
                options.access != nullptr ? std::optional<Writing>({*options.access, uploads}) : std::nullopt),
         lanes(std::max<std::size_t>(options.threads, 1)) {}
@@ -107,11 +107,11 @@ struct Server::State {
   asio::steady_timer grace{mainContext()};
   asio::signal_set signals{mainContext()};
   LevelJobs jobs{{limits::kLevelThreads, limits::kMaxLevelJobs, options.cache, options.makeLevel, options.maxLevelsPerAddress}};
-  asio::thread_pool verifiers{1};
+  asio::thread_pool writers{1}, checkers{limits::kCheckThreads};
   Services services{store, [this](const RequestView& request) { return router.route(request); }, true, jobs, metrics, options.accessLog,
-                    options.timeouts, &uploads, &verifiers, options.access, &options.allowedOrigins, &handshakes};
+                    options.timeouts, &uploads, &writers, &checkers, options.access, &options.allowedOrigins, &handshakes};
   Services adminServices{store, [this](const RequestView& request) { return routeAdmin(admin, request); }, false, jobs, metrics,
-                         options.accessLog, options.timeouts, nullptr, nullptr, nullptr, nullptr, nullptr};
+                         options.accessLog, options.timeouts, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr};
 };
 
 asio::awaitable<void> Server::State::acceptConnections(tcp::acceptor& from, const Services& whose) {
@@ -169,6 +169,7 @@ std::vector<Metrics::Figure> Server::State::figures() const {
     return Metrics::Figure{name, help, true, static_cast<double>(value)};
   };
   return {gauge("uploads_open", "Uploads under way.", uploads.active()),
+          gauge("uploads_checking", "Uploads whose logs are being decoded.", uploads.checking()),
           counter("uploads_published_total", "Logs that were uploaded and published.", uploads.published()),
           gauge("connections_open", "Connections that are open, HTTP and WebSocket.", connections.open()),
           gauge("tls_handshakes_open", "TLS handshakes under way.", hands.open),
@@ -220,8 +221,11 @@ void Server::State::watchSignals() {
 Server::Server(const MeshStore& store, const ViewerFiles& viewer, ServerOptions options)
     : state_(std::make_unique<State>(store, viewer, std::move(options))) {}
 
-/// Connections that outlived the grace time go with the lanes; the last of them must not call into what is half gone.
-Server::~Server() { state_->connections.endAll({}); }
+/// Connections that outlived the grace time go with the lanes; the last of them must not call into what is half gone. Their checks end first: a pool waits for what runs in it.
+Server::~Server() {
+  state_->connections.endAll({});
+  state_->uploads.stopChecks();
+}
 
 Status Server::State::listen(tcp::acceptor& on, Services& whose, const std::string& host, std::uint16_t port) {
   const auto refused = [&](const error_code& ec) {

@@ -35,9 +35,9 @@ struct ServerOptions {
   CurrentTls* tls = nullptr;        ///< for everything but the operators' address; nullptr: plain HTTP
   Access* access = nullptr;         ///< who may read and change meshes; nullptr: everybody may read, nobody change
   std::function<void()> reload{};   ///< with endOnSignals what SIGHUP does; empty: it ends the process, as usual
-  std::uintmax_t maxUploadBytes = limits::kMaxUploadBytes;
   std::vector<std::string> allowedOrigins{};  ///< of pages that may open streams, as browsers write them; empty: any
   LevelJobs::Maker makeLevel = qtet::makeLevel;
+  UploadOptions uploads{};
 };
 
 /// Store, viewer, cache, access log, TLS and access must outlive it.

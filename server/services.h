@@ -41,7 +41,8 @@ struct Services {
   AccessLog* accessLog = nullptr;
   Timeouts timeouts{};
   Uploads* uploads = nullptr;                         ///< where the router knows of uploads
-  boost::asio::thread_pool* verifiers = nullptr;      ///< where they are checked
+  boost::asio::thread_pool* writers = nullptr;        ///< where meshes are removed
+  boost::asio::thread_pool* checkers = nullptr;       ///< where uploads are checked and published, one after the other
   Access* access = nullptr;                           ///< who may read what; nullptr: everybody everything
   const std::vector<std::string>* allowedOrigins = nullptr;  ///< of pages that may open streams; nullptr or empty: any
   Handshakes* handshakes = nullptr;                   ///< where there is TLS

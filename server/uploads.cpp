@@ -2,11 +2,13 @@
 
 #include <fcntl.h>
 #include <spdlog/spdlog.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
+#include <new>
 
 #include "proto/json_reader.h"
 #include "server/http_resource.h"
@@ -29,13 +31,19 @@ Reply diskTrouble(const std::string& what, int number) {
   return problem(500, "internal", what + ": " + std::strerror(number));
 }
 
-Reply busyUploads(std::string_view detail) {
-  Reply out = problem(503, "busy", detail);
-  out.headers.emplace_back("Retry-After", std::to_string(limits::kRetryAfterSeconds));
-  return out;
-}
-
 bool isDigest(std::string_view text) { return text.size() == 64 && text.find_first_not_of("0123456789abcdef") == std::string_view::npos; }
+
+constexpr std::string_view kSomebodySends = "somebody is sending this log at the moment";
+
+/// Whether somebody else has the file locked; else it is now, until it is closed. Where the file system has no locks nobody has.
+bool isLocked(int file) { return ::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK; }
+
+/// Unless an upload under way has it, of this server or another one.
+void removePart(const fs::path& path) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+  if (file >= 0 && !isLocked(file)) ::unlink(path.c_str());
+  if (file >= 0) ::close(file);
+}
 
 Status syncFolder(const fs::path& folder) {
   const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -64,29 +72,47 @@ std::optional<Reply> Upload::append(ByteView bytes) {
   return std::nullopt;
 }
 
-Reply Upload::finish() {
+std::optional<Reply> Upload::partial() {
   struct stat info {};
   if (::fstat(file_, &info) != 0) return diskTrouble("the upload cannot be read", errno);
-  if (static_cast<std::uint64_t>(info.st_size) < request_.totalBytes) {
-    Reply out;
-    out.status = 202;
-    out.headers = {{"Content-Type", "application/json"}, {"Cache-Control", "no-store"}};
-    out.body = dumpJson({{"digest", *request_.digest}, {"bytes", info.st_size}});
-    addCommonHeaders(out);
-    return out;
-  }
+  if (static_cast<std::uint64_t>(info.st_size) >= request_.totalBytes) return std::nullopt;
+  Reply out;
+  out.status = 202;
+  out.headers = {{"Content-Type", "application/json"}, {"Cache-Control", "no-store"}};
+  out.body = dumpJson({{"digest", *request_.digest}, {"bytes", info.st_size}});
+  addCommonHeaders(out);
+  return out;
+}
+
+std::optional<Reply> Upload::verify(const std::stop_token& stop, MeshPointer& mesh) {
+  if (stop.stop_requested()) return busyReply("the check was broken off");
   if (::fsync(file_) != 0) return diskTrouble("the upload cannot be kept", errno);
-  Result<MeshPointer> mesh = openMesh(part_, request_.id);
-  if (!mesh && mesh.error().message.starts_with(part_.string() + ": ")) mesh.error().message.erase(0, part_.string().size() + 2);  // where it lies is nobody's business
-  const auto refuse = [this](std::string_view type, const std::string& detail) {
-    ::unlink(part_.c_str());  // going on with it would not make it better
-    return problem(422, type, detail);
-  };
-  if (!mesh && mesh.error().code == ErrorCode::kIo) return busyUploads("the log is here but cannot be verified now: " + mesh.error().text());
-  if (!mesh) return refuse("bad-log", "this is no sound log: " + mesh.error().text());
-  if (request_.digest && (*mesh)->log.digest() != *request_.digest)
-    return refuse("bad-log", "the log has the digest " + (*mesh)->log.digest() + ", not the one that the request names");
-  return publish((*mesh)->log.digest());
+  Result<MeshPointer> opened = openMesh(part_, request_.id);
+  if (!opened && opened.error().message.starts_with(part_.string() + ": ")) opened.error().message.erase(0, part_.string().size() + 2);  // where it lies is nobody's business
+  if (!opened && opened.error().code == ErrorCode::kIo) return busyReply("the log is here but cannot be verified now: " + opened.error().text());
+  if (!opened) return problem(422, "bad-log", "this is no sound log: " + opened.error().text());
+  mesh = std::move(*opened);
+  if (request_.digest && mesh->log.digest() != *request_.digest)
+    return problem(422, "bad-log", "the log has the digest " + mesh->log.digest() + ", not the one that the request names");
+  ++uploads_.checking_;
+  std::optional<Reply> refusal = uploads_.options_.check(*mesh, uploads_.options_.checkLimits, stop);
+  --uploads_.checking_;
+  return refusal;
+}
+
+Reply Upload::finish(const std::stop_token& stop) {
+  std::stop_source either;
+  const auto end = [&either] { either.request_stop(); };
+  const std::stop_callback whenGone(stop, end), whenEnding(uploads_.ending_.get_token(), end);
+  try {
+    MeshPointer mesh;
+    std::optional<Reply> refusal = verify(either.get_token(), mesh);
+    if (!refusal) return publish(mesh->log.digest());
+    if (refusal->status == 413 || refusal->status == 422) ::unlink(part_.c_str());  // going on with it would not make it better
+    return std::move(*refusal);
+  } catch (const std::bad_alloc&) {  // it ends one upload, not the server
+    return busyReply("there is not enough memory for this log now; try again");
+  }
 }
 
 Reply Upload::publish(const std::string& digest) {
@@ -131,23 +157,27 @@ fs::path Uploads::resumablePart(const std::string& id, const std::string& digest
 
 std::expected<std::unique_ptr<Upload>, Reply> Uploads::begin(const UploadRequest& request) {
   const auto refuse = [](Reply reply) { return std::unexpected(std::move(reply)); };
-  if (request.totalBytes > mostBytes_)
-    return refuse(problem(413, "content-too-large", "a log has at most " + std::to_string(mostBytes_) + " bytes here"));
+  if (request.totalBytes > options_.mostBytes)
+    return refuse(problem(413, "content-too-large", "a log has at most " + std::to_string(options_.mostBytes) + " bytes here"));
   if (std::optional<Reply> refusal = precondition(request)) return refuse(std::move(*refusal));
 
   const std::scoped_lock lock(mutex_);
   const fs::path part = partOf(request);
-  if (active_.contains(part)) return refuse(problem(409, "upload-conflict", "somebody is sending this log at the moment"));
-  if (active_.size() >= limits::kMaxUploads) return refuse(busyUploads("too many uploads; try again"));
+  if (active_.contains(part)) return refuse(problem(409, "upload-conflict", kSomebodySends));
+  if (active_.size() >= limits::kMaxUploads) return refuse(busyReply("too many uploads; try again"));
   removeOldParts(limits::kPartialUploadTime);
-  const int flags = O_WRONLY | O_APPEND | O_CLOEXEC | O_NOFOLLOW | (request.first == 0 ? O_CREAT | O_TRUNC : 0);
+  const int flags = O_WRONLY | O_APPEND | O_CLOEXEC | O_NOFOLLOW | (request.first == 0 ? O_CREAT : 0);
   const int file = ::open(part.c_str(), flags, 0644);
   if (file < 0 && (request.first == 0 || errno != ENOENT)) return refuse(diskTrouble("the upload cannot be written", errno));
-  struct stat info {};
-  if (file < 0 || ::fstat(file, &info) != 0 || static_cast<std::uint64_t>(info.st_size) != request.first) {
+  const auto refuseOpened = [&](Reply reply) {
     if (file >= 0) ::close(file);
-    return refuse(problem(409, "upload-conflict", "there are " + std::to_string(info.st_size) + " bytes of this log; go on from there"));
-  }
+    return refuse(std::move(reply));
+  };
+  struct stat info {};
+  if (file >= 0 && isLocked(file)) return refuseOpened(problem(409, "upload-conflict", kSomebodySends));
+  if (file >= 0 && request.first == 0 && ::ftruncate(file, 0) != 0) return refuseOpened(diskTrouble("the upload cannot be written", errno));
+  if (file < 0 || ::fstat(file, &info) != 0 || info.st_nlink == 0 || static_cast<std::uint64_t>(info.st_size) != request.first)
+    return refuseOpened(problem(409, "upload-conflict", "there are " + std::to_string(info.st_size) + " bytes of this log; go on from there"));
   active_.insert(part);
   return std::unique_ptr<Upload>(new Upload(*this, request, part, file));
 }
@@ -186,7 +216,7 @@ void Uploads::removeOldParts(std::chrono::seconds ofNoDigest) const {
     std::error_code gone;
     const auto age = fs::file_time_type::clock::now() - it->last_write_time(gone);
     const std::chrono::seconds most = isDigest(middle.substr(0, middle.find('-'))) ? limits::kPartialUploadTime : ofNoDigest;
-    if (!gone && age > most && !active_.contains(store_.folder() / name)) fs::remove(it->path(), gone);
+    if (!gone && age > most && !active_.contains(store_.folder() / name)) removePart(it->path());
   }
 }
 

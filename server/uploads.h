@@ -1,4 +1,4 @@
-// PUT and DELETE of meshes: a log comes into a hidden file beside the others, is verified whole, and gets its name by a rename; so it is
+// PUT and DELETE of meshes: a log comes into a hidden file beside the others, is verified and decoded whole, and gets its name by a rename; so it is
 // there as a whole or not at all, whatever happens on the way (PROTOCOL.md, "Uploads").
 #pragma once
 
@@ -11,9 +11,11 @@
 #include <mutex>
 #include <optional>
 #include <set>
+#include <stop_token>
 #include <string>
 
 #include "server/http_message.h"
+#include "server/log_check.h"
 #include "server/mesh_store.h"
 #include "server/upload_request.h"
 
@@ -31,14 +33,18 @@ class Upload {
 
   /// nullopt: the bytes are written; else the answer that ends the upload: 507 (disk full) or 500.
   [[nodiscard]] std::optional<Reply> append(ByteView bytes);
-  /// After the last byte: verifies and publishes. Reads the whole file, so not for a thread that serves others.
-  /// 201 (new), 200 (replaced), or 409, 412, 422, 500, 507. An incomplete range gives 202.
-  [[nodiscard]] Reply finish();
+  /// 202: this part is kept, and more is missing; nullopt: all bytes are there. Or 500.
+  [[nodiscard]] std::optional<Reply> partial();
+  /// After the last byte: verifies, decodes and publishes. Reads the whole file and takes as long as its check may, so not for a thread that serves others.
+  /// 201 (new), 200 (replaced), or 412, 413, 422, 500, 503 (`stop` was requested, among others), 507. What is refused by 413 or 422 cannot be gone on with.
+  [[nodiscard]] Reply finish(const std::stop_token& stop);
 
  private:
   friend class Uploads;
   Upload(Uploads& uploads, UploadRequest request, std::filesystem::path part, int file)
       : uploads_(uploads), request_(std::move(request)), part_(std::move(part)), file_(file) {}
+  /// nullopt: the log is sound, and `mesh` it; else the answer.
+  std::optional<Reply> verify(const std::stop_token& stop, MeshPointer& mesh);
   Reply publish(const std::string& digest);
 
   Uploads& uploads_;
@@ -48,11 +54,17 @@ class Upload {
   bool keep_ = false;
 };
 
-/// Thread-safe.
+struct UploadOptions {
+  std::uintmax_t mostBytes = limits::kMaxUploadBytes;  ///< of a log
+  CheckLimits checkLimits{};
+  LogCheck check = checkLog;
+};
+
+/// Thread-safe. Several servers may share the folder: each lets the parts of the others' uploads under way alone, by their locks.
 class Uploads {
  public:
   /// `store` must outlive it.
-  Uploads(const MeshStore& store, std::uintmax_t mostBytes) : store_(store), mostBytes_(mostBytes) {}
+  Uploads(const MeshStore& store, UploadOptions options) : store_(store), options_(std::move(options)) {}
 
   /// Opens the place where the bytes go; or the answer: 404 (no such name), 409 (the range does not go on where it stopped, or somebody
   /// is sending the same), 412, 413, 500, 503, 507.
@@ -62,10 +74,13 @@ class Uploads {
   /// 204, 404 or 412.
   [[nodiscard]] Reply remove(const UploadRequest& request);
   /// Removes what uploads left behind: those that cannot be gone on with, and those that nobody went on with for limits::kPartialUploadTime.
-  /// REQUIRES: no upload is under way.
   void sweep() const;
+  /// From now on checks break off, those under way as well.
+  void stopChecks() { ending_.request_stop(); }
 
   [[nodiscard]] std::size_t active() const;
+  /// Of them, those whose logs are being decoded.
+  [[nodiscard]] std::size_t checking() const { return checking_; }
   [[nodiscard]] std::uint64_t published() const { return published_; }
 
  private:
@@ -78,11 +93,13 @@ class Uploads {
   [[nodiscard]] std::filesystem::path resumablePart(const std::string& id, const std::string& digest) const;
 
   const MeshStore& store_;
-  const std::uintmax_t mostBytes_;
+  const UploadOptions options_;
+  std::stop_source ending_;
   std::mutex publishing_;  // between the check of a condition and the rename nothing changes
   mutable std::mutex mutex_;
   std::set<std::filesystem::path> active_;
   std::uint64_t next_ = 0;
+  std::atomic<std::size_t> checking_ = 0;
   std::atomic<std::uint64_t> published_ = 0;
 };
 

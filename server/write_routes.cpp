@@ -15,11 +15,16 @@ std::optional<std::uint64_t> parseNumber(std::string_view text) {
   return out;
 }
 
-/// "bytes 100-199/200" into first and total; false where it is nothing of that kind or speaks of another number of bytes.
+/// "bytes 100-199/200" into first and total, and, of an empty body, "bytes */200": all of them are there. False where it is nothing of that kind or speaks of
+/// another number of bytes.
 bool readContentRange(std::string_view text, UploadRequest& out) {
   constexpr std::string_view kUnit = "bytes ";
   if (!text.starts_with(kUnit)) return false;
   text.remove_prefix(kUnit.size());
+  if (const auto all = text.starts_with("*/") && out.bodyBytes == 0 ? parseNumber(text.substr(2)) : std::nullopt) {
+    out.first = out.totalBytes = *all;
+    return true;
+  }
   const std::size_t dash = text.find('-'), slash = text.find('/');
   if (dash == std::string_view::npos || slash == std::string_view::npos || dash > slash) return false;
   const auto first = parseNumber(text.substr(0, dash)), last = parseNumber(text.substr(dash + 1, slash - dash - 1)),
@@ -49,7 +54,7 @@ Reply putReply(const RequestView& request, const RequestTarget& target, UploadRe
   if (out.digest && !isDigest(*out.digest)) return badRequest("digest is the log's SHA-256, 64 hexadecimal digits in lower case");
   if (request.contentRange && !out.digest) return badRequest("a part of a log is sent with ?digest= of the whole");
   if (request.contentRange && !readContentRange(*request.contentRange, out))
-    return badRequest("Content-Range is bytes FIRST-LAST/SIZE, and the body has as many bytes");
+    return badRequest("Content-Range is bytes FIRST-LAST/SIZE, and the body has as many bytes; or bytes */SIZE, and it has none");
   Reply reply;
   reply.body = std::move(out);
   return reply;

@@ -52,7 +52,7 @@ std::string reasonOf(const HttpAnswer& answer) {
   return std::to_string(answer.status) + ": " + (told ? json["detail"].get<std::string>() : answer.body.substr(0, 200));
 }
 
-/// Bytes that the server has of an upload that broke off. Errors: exchange's.
+/// Bytes that the server has of an upload that broke off, perhaps all of them. Errors: exchange's.
 Result<std::uint64_t> bytesThere(const Push& push) {
   const std::string query = push.target + "/upload?digest=" + push.log.digest();
   const Result<HttpAnswer> answer = exchange(push.server, {.method = "GET", .target = query, .headers = push.headers});
@@ -60,22 +60,25 @@ Result<std::uint64_t> bytesThere(const Push& push) {
   const auto json = OrderedJson::parse(answer->body, nullptr, false);
   const bool told = answer->status == 200 && json.is_object() && json.contains("bytes") && json["bytes"].is_number_unsigned();
   const std::uint64_t bytes = told ? json["bytes"].get<std::uint64_t>() : 0;
-  return bytes < push.log.bytes().size() ? bytes : 0;
+  return bytes <= push.log.bytes().size() ? bytes : 0;
 }
 
 Result<HttpAnswer> sendFrom(const Push& push, std::uint64_t first, Progress& progress) {
   const std::uint64_t size = push.log.bytes().size();
   std::string headers = push.headers;
   if (first > 0)
-    headers += "Content-Range: bytes " + std::to_string(first) + "-" + std::to_string(size - 1) + "/" + std::to_string(size) + "\r\n";
-  progress.stage(first > 0 ? "sending the rest" : "sending");
+    headers += "Content-Range: bytes " + (first < size ? std::to_string(first) + "-" + std::to_string(size - 1) : "*") + "/" + std::to_string(size) + "\r\n";
+  constexpr std::string_view kChecking = "the server checks the log";
+  progress.stage(first == size ? kChecking : first > 0 ? "sending the rest" : "sending");
   return exchange(push.server, {.method = "PUT",
                                 .target = push.target + "?digest=" + push.log.digest(),
                                 .headers = headers,
                                 .body = push.log.bytes().subspan(first),
                                 .progress = [&](std::uint64_t sent) {
                                   progress.update(static_cast<double>(first + sent) / static_cast<double>(size));
-                                }});
+                                  if (first + sent == size) progress.stage(kChecking);
+                                },
+                                .waiting = [&] { progress.working(); }});
 }
 
 /// Whether another attempt may go better: the server had no time or no place, or disagreed about what is there.
@@ -107,8 +110,9 @@ int runPush(const Words& words, Console& console) {
   const ParsedWords parsed(words,
                            {"push", "push LOG.qtet URL [--token-file FILE] [--json]",
                             "Sends a log to a qtet-server that takes uploads (qtet-server --tokens). URL is http://HOST:PORT/, for a mesh of the\n"
-                            "file's name, or http://HOST:PORT/v1/meshes/NAME. The server verifies the log before anybody sees it. A connection that\n"
-                            "breaks is taken up again where it broke, also by a later push of the same log.",
+                            "file's name, or http://HOST:PORT/v1/meshes/NAME. The server checks the log before anybody sees it, as qtet verify does,\n"
+                            "which takes a while for a large one. A connection that breaks is taken up again where it\n"
+                            "broke, also by a later push of the same log.",
                             "  QTET_TOKEN=... qtet push fin.qtet http://127.0.0.1:8080/\n"
                             "  qtet push fin.qtet http://127.0.0.1:8080/v1/meshes/wing --token-file ~/.qtet-token\n"},
                            options, {"LOG", "URL"});

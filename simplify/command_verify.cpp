@@ -2,16 +2,17 @@
 #include <numeric>
 #include <sstream>
 
+#include "codec/verify_log.h"
 #include "proto/checksum.h"
 #include "simplify/clean_mesh.h"
 #include "simplify/closing_report.h"
 #include "simplify/command_line.h"
 #include "simplify/command_read.h"
 #include "simplify/kept_input.h"
+#include "simplify/opened_log.h"
 #include "simplify/progress.h"
 #include "simplify/read_mesh.h"
 #include "simplify/verify.h"
-#include "simplify/verify_log.h"
 
 namespace qtet {
 namespace {
@@ -60,7 +61,7 @@ Result<OrderedJson> verify(const ParsedWords& parsed, Progress& progress) {
   const Result<OpenedLog> log = openLog(parsed.get<std::string>("LOG"));
   if (!log) return std::unexpected(log.error());
   progress.stage("decoding");
-  const Result<Refiner> refiner = decodeVerified(*log, [&](double fraction) { progress.update(fraction); });
+  const Result<Refiner> refiner = decodeVerified(log->file, log->manifest, [&](double fraction) { return progress.update(fraction), true; });
   if (!refiner) return std::unexpected(refiner.error());
   const ManifestLevel& finest = log->manifest.levels.back();
   OrderedJson report = {{"ok", true},

@@ -1,6 +1,7 @@
 #include "simplify/http_client.h"
 
 #include <netdb.h>
+#include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -21,9 +22,13 @@ using namespace std::chrono_literals;
 
 /// Of an answer: a mesh's description with thousands of levels takes some 100 KB.
 constexpr std::size_t kMaxAnswerBytes = 4u << 20;
-/// For connecting, and for each piece sent or read. The last one is long: the server verifies the log before it answers.
+/// For connecting, and for each piece sent or read. The last one is long: the server decodes the log before it answers, and others before it; a server
+/// that is gone for good is noticed sooner, by asking its system now and then.
 constexpr auto kStepTime = 30s;
-constexpr auto kAnswerTime = 300s;
+constexpr auto kAnswerTime = 3600s;
+constexpr int kKeepAliveSeconds = 30;
+/// How often whoever waits for the answer is told that there is none yet.
+constexpr auto kWaitingTime = 1s;
 constexpr std::size_t kPiece = 256u << 10;
 
 class Socket {
@@ -59,6 +64,9 @@ Result<Socket> connectTo(const addrinfo& address, const std::string& name) {
     ::getsockopt(socket.get(), SOL_SOCKET, SO_ERROR, &trouble, &size);
   }
   if (trouble != 0) return lost(name, trouble);
+  const int on = 1;
+  ::setsockopt(socket.get(), SOL_SOCKET, SO_KEEPALIVE, &on, sizeof(on));
+  for (const int option : {TCP_KEEPIDLE, TCP_KEEPINTVL}) ::setsockopt(socket.get(), IPPROTO_TCP, option, &kKeepAliveSeconds, sizeof(kKeepAliveSeconds));
   return socket;
 }
 
@@ -93,11 +101,15 @@ Result<bool> sendAll(const Socket& socket, ByteView bytes, const std::function<v
 }
 
 /// Reads until the server closes: every request asks it to.
-Result<std::string> readAll(const Socket& socket) {
+Result<std::string> readAll(const Socket& socket, const std::function<void()>& waiting) {
   std::string out;
   std::array<char, 16384> piece;
+  const auto end = std::chrono::steady_clock::now() + kAnswerTime;
   for (;;) {
-    if (socket.wait(POLLIN, kAnswerTime) == 0) return lost("the server does not answer");
+    while (socket.wait(POLLIN, kWaitingTime) == 0) {
+      if (std::chrono::steady_clock::now() >= end) return lost("the server does not answer");
+      if (waiting) waiting();
+    }
     const ssize_t n = ::recv(socket.get(), piece.data(), piece.size(), 0);
     if (n == 0) return out;
     if (n < 0 && errno != EAGAIN && errno != EINTR) return out.empty() ? Result<std::string>(lost("the connection was lost", errno)) : out;
@@ -164,7 +176,7 @@ Result<HttpAnswer> exchange(const HttpUrl& server, const HttpRequest& request) {
   Result<bool> sent = sendAll(*socket, {reinterpret_cast<const std::uint8_t*>(head.data()), head.size()}, {});
   if (sent && *sent) sent = sendAll(*socket, request.body, request.progress);
   if (!sent) return std::unexpected(sent.error());
-  const Result<std::string> answer = readAll(*socket);
+  const Result<std::string> answer = readAll(*socket, request.waiting);
   if (!answer) return std::unexpected(answer.error());
   return parseAnswer(*answer);
 }

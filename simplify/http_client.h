@@ -30,6 +30,7 @@ struct HttpRequest {
   std::string headers;  ///< whole lines, without Host and Content-Length
   ByteView body{};
   std::function<void(std::uint64_t sentBytes)> progress{};
+  std::function<void()> waiting{};  ///< called once a second while all is sent and nothing has come
 };
 
 struct HttpAnswer {
@@ -37,7 +38,7 @@ struct HttpAnswer {
   std::string body;
 };
 
-/// Sends and reads the answer, at most kMaxAnswerBytes of it; each step has kStepTime. An answer that comes before the body was sent ends the
+/// Sends and reads the answer, at most kMaxAnswerBytes of it; each step has kStepTime, the answer as a whole kAnswerTime. An answer that comes before the body was sent ends the
 /// sending. Errors: io (no such host, refused, lost, too slow), bad-value (no HTTP).
 [[nodiscard]] Result<HttpAnswer> exchange(const HttpUrl& server, const HttpRequest& request);
 

@@ -39,19 +39,26 @@ void Progress::stage(std::string_view name) {
   update(0);
 }
 
-void Progress::update(double fraction) {
+bool Progress::isDue() {
   const Clock::time_point now = Clock::now();
-  if (quiet_ || now - start_ < kSilence) return;
-  fraction = std::clamp(fraction, 0.0, 1.0);
-  if (onTerminal_) {
-    if (now - lastDrawn_ < kRedraw) return;
-    lastDrawn_ = now;
-    drawBar(fraction);
-    return;
-  }
-  if (now - lastDrawn_ < kLineInterval) return;
+  if (quiet_ || now - start_ < kSilence) return false;
+  if (now - lastDrawn_ < (onTerminal_ ? Clock::duration(kRedraw) : Clock::duration(kLineInterval))) return false;
   lastDrawn_ = now;
+  return true;
+}
+
+void Progress::update(double fraction) {
+  if (!isDue()) return;
+  fraction = std::clamp(fraction, 0.0, 1.0);
+  if (onTerminal_) return drawBar(fraction);
   out_ << "qtet: " << stage_ << ": " << static_cast<int>(fraction * 100) << " %" << timeLeft(fraction) << "\n" << std::flush;
+}
+
+void Progress::working() {
+  if (!isDue()) return;
+  const std::string line = stage_ + ": " + std::to_string(std::chrono::duration_cast<std::chrono::seconds>(Clock::now() - stageStart_).count()) + " s";
+  if (onTerminal_) return draw(line);
+  out_ << "qtet: " << line << "\n" << std::flush;
 }
 
 /// What the stage will still take if it goes on as it did; nothing while too little of it is done to say.
@@ -67,6 +74,10 @@ void Progress::drawBar(double fraction) {
   std::string line = stage_ + " [" + std::string(static_cast<std::size_t>(full), '#') +
                      std::string(static_cast<std::size_t>(kBarCells - full), '.') + "] " +
                      std::to_string(static_cast<int>(fraction * 100)) + " %  " + std::to_string(seconds) + " s" + timeLeft(fraction);
+  draw(std::move(line));
+}
+
+void Progress::draw(std::string line) {
   const std::size_t length = line.size();
   if (length < barLength_) line.append(barLength_ - length, ' ');
   barLength_ = length;

@@ -22,12 +22,17 @@ class Progress {
   void stage(std::string_view name);
   /// 0..1 of the stage; cheap enough to be called often.
   void update(double fraction);
+  /// The same where nobody knows how much of the stage is done.
+  void working();
   /// Takes the bar away, so that other lines can follow.
   void clear();
 
  private:
   using Clock = std::chrono::steady_clock;
 
+  /// Whether it is time for something to be seen.
+  bool isDue();
+  void draw(std::string line);
   void drawBar(double fraction);
   [[nodiscard]] std::string timeLeft(double fraction) const;
 

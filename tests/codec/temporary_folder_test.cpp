@@ -1,7 +1,12 @@
 #include <gtest/gtest.h>
 #include <stdlib.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <array>
+#include <csignal>
 #include <fstream>
+#include <iterator>
 #include <optional>
 #include <string>
 
@@ -48,6 +53,38 @@ TEST(TemporaryFolder, isOnesOwnAndGoesWithEverythingInIt) {
   }
   EXPECT_FALSE(fs::exists(first));
   EXPECT_TRUE(fs::is_empty(parent));
+}
+
+TEST(TemporaryFolder, takesAwayWhatAKilledProcessLeftAndNothingElse) {
+  const fs::path parent = testing::freshFolder("temporary-folder");
+  const TmpDir where(parent);
+  std::array<int, 2> told{};
+  ASSERT_EQ(::pipe(told.data()), 0);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const TemporaryFolder folder("test");
+    std::ofstream(folder.path() / "file") << "something";
+    (void)!::write(told[1], "x", 1);
+    for (;;) ::pause();
+  }
+  char byte = 0;
+  ASSERT_EQ(::read(told[0], &byte, 1), 1);
+  const auto count = [&] { return std::distance(fs::directory_iterator(parent), fs::directory_iterator()); };
+  for (const char* name : {"qtet-test-12345", "qtet-test-1234567", "qtet-other-123456"}) fs::create_directory(parent / name);
+  std::ofstream(parent / "qtet-test-123456") << "a file";
+  fs::create_directory_symlink(parent, parent / "qtet-test-abcdef");
+  const auto others = count();  // that of the process, and what is none
+  {
+    const TemporaryFolder mine("test");
+    EXPECT_EQ(count(), others + 1) << "who lives keeps what is his";
+  }
+  ::kill(child, SIGKILL);
+  ASSERT_EQ(::waitpid(child, nullptr, 0), child);
+  EXPECT_EQ(count(), others);
+  const TemporaryFolder mine("test");
+  EXPECT_EQ(count(), others) << "one went, one came";
+  ::close(told[0]);
+  ::close(told[1]);
 }
 
 TEST(TemporaryFolder, saysWhyThereIsNone) {

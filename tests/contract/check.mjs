@@ -188,6 +188,7 @@ async function checkWriting(expect, mesh) {
   await put(415, '/v1/meshes/up', {...token, 'content-encoding': 'gzip'});
   await put(413, '/v1/meshes/up', token, Buffer.alloc(1000001));
   await put(422, '/v1/meshes/up', token, Buffer.from('nonsense'));
+  await put(422, '/v1/meshes/up', token, readFileSync(new URL('../golden/must-fail/bad-value.structure-of-noise.qtet', import.meta.url)));
   await put(412, '/v1/meshes/up', {...token, 'if-match': '*'});
   await put(400, '/v1/meshes/up?digest=1', token);
   await put(202, `/v1/meshes/up?digest=${digest}`, range(0, half - 1), other.subarray(0, half));
@@ -199,6 +200,7 @@ async function checkWriting(expect, mesh) {
   await expect(400, 'GET', '/v1/meshes/up/upload', token);
   await put(201, `/v1/meshes/up?digest=${digest}`, range(half, other.length - 1), other.subarray(half));
   await expect(404, 'GET', partial, token);
+  await put(409, `/v1/meshes/up?digest=${digest}`, {...token, 'content-range': `bytes */${other.length}`}, Buffer.alloc(0));
   await put(200, '/v1/meshes/up', token);
   await expect(411, 'PUT', '/v1/meshes/up', token);
   await expect(412, 'DELETE', '/v1/meshes/up', {...token, 'if-match': `"${mesh.digest}"`});

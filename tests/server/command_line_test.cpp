@@ -31,7 +31,7 @@ TEST(CommandLine, aFolderIsEnough) {
 
 TEST(CommandLine, everyOptionIsUnderstood) {
   const auto line = parse({"--port", "0", "--host=::1", "logs", "--viewer", "page", "--threads", "3", "--watch", "off", "--admin", "[::1]:9090",
-                           "--cache", "c", "--cache-bytes", "0", "--access-log", "-", "--tokens", "t", "--max-upload-bytes", "1",
+                           "--cache", "c", "--cache-bytes", "0", "--access-log", "-", "--tokens", "t", "--max-upload-bytes", "1", "--max-check-bytes", "5", "--max-check-seconds", "8",
                            "--max-connections", "7", "--max-connections-per-address", "0", "--max-levels-per-address", "3", "--max-requests-per-second", "9",
                            "--allow-origins", "https://a.example,http://localhost:3000"});
   ASSERT_TRUE(line) << line.error().message;
@@ -49,6 +49,8 @@ TEST(CommandLine, everyOptionIsUnderstood) {
   EXPECT_EQ(line->accessLog, "-");
   EXPECT_EQ(line->tokens, "t");
   EXPECT_EQ(line->maxUploadBytes, 1u);
+  EXPECT_EQ(line->maxCheckBytes, 5u);
+  EXPECT_EQ(line->maxCheckTime, std::chrono::seconds(8));
   EXPECT_EQ(line->maxConnections, 7u);
   EXPECT_EQ(line->maxConnectionsPerAddress, 0u);
   EXPECT_EQ(line->maxLevelsPerAddress, 3u);
@@ -107,6 +109,9 @@ TEST(CommandLine, wrongUsageIsExplained) {
                                                    {"a", "--admin", ":9090"},
                                                    {"a", "--admin", "h:65536"},
                                                    {"a", "--max-connections", "0"},
+                                                   {"a", "--max-check-bytes", "0"},
+                                                   {"a", "--max-check-seconds", "0"},
+                                                   {"a", "--max-check-seconds", "1000001"},
                                                    {"a", "--cache-bytes", "99999999999999999999"}}) {
     const auto line = parse(arguments);
     ASSERT_FALSE(line);

@@ -18,6 +18,7 @@
 #include "tests/server/tls_client.h"
 #include "tests/support/faults/fault_plan.h"
 #include "tests/support/sample_log.h"
+#include "tests/support/written_log.h"
 
 namespace qtet {
 namespace {
@@ -56,6 +57,11 @@ class FaultsTest : public ::testing::Test {
   }
   ~FaultsTest() override { ::munmap(plan_, sizeof(FaultPlan)); }
 
+  /// One that may be uploaded.
+  [[nodiscard]] static std::string soundLog(std::uint32_t seed) {
+    const Bytes bytes = testing::logBytes(testing::soundMesh(6, seed));
+    return {bytes.begin(), bytes.end()};
+  }
   [[nodiscard]] std::filesystem::path logs() const { return folder_.path() / "logs"; }
   [[nodiscard]] std::filesystem::path certificate() const { return folder_.path() / "a.crt"; }
   void fail(Fault fault, std::uint32_t every, int error = 0) {
@@ -106,7 +112,7 @@ class FaultsTest : public ::testing::Test {
       expectRightOrTold(get("/v1/meshes/large"), description_, "description");
       expectRightOrTold(get(level_), vtu_, "level");
       stream();
-      const HttpResponse uploaded = put("up" + std::to_string(round % 3), log_);
+      const HttpResponse uploaded = put("up" + std::to_string(round % 3), sound_);
       // 408: its body did not come, as far as the server could tell.
       EXPECT_TRUE(uploaded.status == 0 || uploaded.status == 200 || uploaded.status == 201 || uploaded.status == 408 || uploaded.status >= 500)
           << uploaded.status << uploaded.body;
@@ -130,7 +136,7 @@ class FaultsTest : public ::testing::Test {
     EXPECT_TRUE(get("/v1/logs/" + digest_ + "/log").body == log_);
     EXPECT_EQ(get("/v1/meshes/large").body, description_);
     EXPECT_TRUE(get(level_).body == vtu_);
-    EXPECT_EQ(put("up-after", log_).status, 201u);
+    EXPECT_EQ(put("up-after", sound_).status, 201u);
     EXPECT_TRUE(get("/v1/meshes/up-after").status == 200);
     if (tls_) {
       EXPECT_TRUE(TlsClient(port_, certificate()).stream("large") == log_);
@@ -160,6 +166,7 @@ class FaultsTest : public ::testing::Test {
   std::unique_ptr<Program> program_;
   std::uint16_t port_ = 0;
   std::string log_, digest_, description_, level_, vtu_;
+  const std::string sound_ = soundLog(6);
   std::size_t whole_ = 0;  ///< answers that came whole
 };
 
@@ -195,13 +202,10 @@ TEST_F(FaultsTest, everythingFailsNowAndThenAtOnce) {
 }
 
 TEST_F(FaultsTest, aFullDiskRefusesAnUploadAndLeavesWhatWasThere) {
-  EXPECT_EQ(put("kept", log_).status, 201u);
+  EXPECT_EQ(put("kept", sound_).status, 201u);
   const std::string before = get("/v1/meshes/kept").header("etag");
   fail(Fault::kWriteFile, 1, ENOSPC);
-  const std::string other = [] {
-    const auto bytes = test::makeLog({.chunks = 40, .largestBlock = 60'000, .seed = 5});
-    return std::string(bytes.begin(), bytes.end());
-  }();
+  const std::string other = soundLog(5);
   const HttpResponse refused = put("kept", other);
   EXPECT_EQ(refused.status, 507u) << refused.body;
   EXPECT_EQ(get("/v1/meshes/kept").header("etag"), before);
@@ -227,7 +231,7 @@ TEST_F(FaultsTest, theSystemsClockMayJumpAndEndsNothingAndHoldsNothing) {
     const HttpResponse reply = kept.get("/livez");
     EXPECT_EQ(reply.status, 200u) << "an idle connection stays";
     EXPECT_EQ(reply.header("date").substr(12, 4) == today.substr(12, 4), shift == 0) << "the clock has jumped: " << reply.header("date");
-    EXPECT_EQ(put("up", log_).status < 300, true);
+    EXPECT_EQ(put("up", sound_).status < 300, true);
     std::this_thread::sleep_for(50ms);
   }
   plan_->clockShift = kYears;

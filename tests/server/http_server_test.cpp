@@ -231,7 +231,7 @@ class LevelsTest : public testing::Test {
   ~LevelsTest() override { maker_.release(); }
   test::ServedFolder folder_;
   SlowMaker maker_;
-  test::RunningServer server_{folder_.store(), folder_.viewer(), {.maxLevelsPerAddress = 0, .makeLevel = std::ref(maker_)}};
+  test::RunningServer server_{folder_.store(), folder_.viewer(), {.maxLevelsPerAddress = 0, .timeouts = {.grace = test::kNever}, .makeLevel = std::ref(maker_)}};
 };
 
 TEST_F(LevelsTest, whileALevelIsMadeOthersAreServed) {

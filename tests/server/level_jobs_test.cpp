@@ -2,7 +2,10 @@
 
 #include "server/level_jobs.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <array>
 #include <atomic>
@@ -223,6 +226,21 @@ TEST_F(LevelJobsTest, finishedLevelsAreKeptOnDiskUpToALimit) {
   std::filesystem::resize_file(folder.path() / "levels" / (level(3).key() + ".level"), 1);
   EXPECT_FALSE((*again)->find(level(3).key())) << "not the file that was put there";
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "levels" / (level(3).key() + ".level"))) << "what is not counted does not lie there";
+}
+
+TEST(LevelCache, whatAKilledServerDidNotFinishGoesAndWhatAnotherOneWritesStays) {
+  const test::TempFolder folder;
+  const std::string key(64, 'a'), unfinished = "." + key + ".level.12.0.tmp", written = "." + key + ".level.13.0.tmp";
+  const std::vector<std::string> others = {".a.level.12.0.tmp", "." + key + ".level.12.tmp", "." + key + ".12.0.tmp", key + ".level.12.0.tmp"};
+  for (const std::string& name : others) folder.write(name, std::string_view("somebody's"));
+  for (const std::string& name : {unfinished, written}) folder.write(name, std::string_view("half"));
+  const int lock = ::open((folder.path() / written).c_str(), O_RDONLY | O_CLOEXEC);
+  ASSERT_EQ(::flock(lock, LOCK_EX), 0);
+  ASSERT_TRUE(LevelCache::open(folder.path(), 10));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / unfinished));
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / written));
+  for (const std::string& name : others) EXPECT_TRUE(std::filesystem::exists(folder.path() / name)) << name;
+  ::close(lock);
 }
 
 TEST(LevelCache, aFolderThatCannotBeIsAnError) {

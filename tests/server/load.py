@@ -269,15 +269,15 @@ def uploads(life, rng):
     elif what == 2:
         status, _, _ = life.ask("PUT", path, log, token=rng.choice([None, READER]))
         assert status in (401, 403), status
-    elif what == 3:  # breaks off
+    elif what == 3:  # breaks off, or leaves while the log is checked
         socket = life.connect()
-        socket.sendall(f"PUT {path}?digest={digest} HTTP/1.1\r\nHost: a\r\nAuthorization: Bearer {WRITER}\r\nContent-Length: {len(log)}\r\n\r\n".encode() + log[:rng.randrange(len(log))])
+        socket.sendall(f"PUT {path}?digest={digest} HTTP/1.1\r\nHost: a\r\nAuthorization: Bearer {WRITER}\r\nContent-Length: {len(log)}\r\n\r\n".encode() + log[:rng.choice([len(log), rng.randrange(len(log))])])
         socket.close()
     else:
         status, _, body = life.ask("GET", f"{path}/upload?digest={digest}", token=WRITER)
         have = json.loads(body)["bytes"] if status == 200 else 0
-        part = {"Content_Range": f"bytes {have}-{len(log) - 1}/{len(log)}"} if 0 < have < len(log) else {}
-        status, _, _ = life.ask("PUT", f"{path}?digest={digest}", log[have:] if part else log, token=WRITER, **part)
+        part = {"Content_Range": f"bytes {f'{have}-{len(log) - 1}' if have < len(log) else '*'}/{len(log)}"} if have > 0 else {}
+        status, _, _ = life.ask("PUT", f"{path}?digest={digest}", log[have:], token=WRITER, **part)
         assert status in (200, 201, 409, 503), status
 
 

@@ -48,8 +48,8 @@ Program::Program(std::vector<std::string> arguments, const std::vector<std::stri
   for (std::string& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
   std::vector<std::string> added = environment;
+  for (std::string& entry : added) more.push_back(entry.data());  // first, so that they count
   for (char** given = environ; *given != nullptr; ++given) more.push_back(*given);
-  for (std::string& entry : added) more.push_back(entry.data());
   more.push_back(nullptr);
   child_ = ::fork();
   if (child_ == 0) {

@@ -1,7 +1,10 @@
 // The program itself: what it prints, its exit codes, and how it ends on a signal.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <csignal>
+#include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -9,6 +12,9 @@
 #include "tests/server/loopback.h"
 #include "tests/server/program.h"
 #include "tests/server/served_folder.h"
+#include "tests/support/meshes.h"
+#include "tests/support/sample_log.h"
+#include "tests/support/written_log.h"
 
 namespace qtet {
 namespace {
@@ -57,7 +63,7 @@ TEST(Program, anUploadThatIsKilledLeavesNothingVisibleAndCanBeGoneOnWith) {
   const test::ServedFolder served;
   test::TempFolder folder;
   folder.write("tokens", std::string_view("write * " + token + "\n"));
-  const Bytes bytes = test::makeLog({.chunks = 40, .largestBlock = 60000, .seed = 55});
+  const Bytes bytes = testing::logBytes(testing::soundMesh(8, 55));
   const std::string log(bytes.begin(), bytes.end()), digest = sha256Hex(bytes);
   const std::vector<std::string> words = {served.logFolder(), "--port", "0", "--tokens", folder.path() / "tokens", "--viewer", served.viewerFolder()};
   const auto head = [&](std::size_t first, const std::string& target) {
@@ -87,6 +93,65 @@ TEST(Program, anUploadThatIsKilledLeavesNothingVisibleAndCanBeGoneOnWith) {
   EXPECT_EQ(client.receive().status, 201u);
   EXPECT_EQ(client.get("/v1/logs/" + digest + "/log").body, log);
   for (const auto& entry : std::filesystem::directory_iterator(served.logFolder())) EXPECT_NE(entry.path().extension(), ".part") << entry.path();
+}
+
+/// Names of a folder that begin so.
+std::vector<std::string> namesIn(const std::filesystem::path& folder, std::string_view prefix) {
+  std::vector<std::string> out;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    if (const std::string name = entry.path().filename(); name.starts_with(prefix)) out.push_back(name);
+  return out;
+}
+
+TEST(Program, whatOneThatWasKilledInTheMidstOfALevelLeftIsGoneAfterTheNextStart) {
+  const std::filesystem::path log = testing::sampleLog();
+  test::TempFolder folder;
+  const std::filesystem::path cache = folder.path() / "cache";
+  const std::vector<std::string> words = {log.parent_path(), "--port", "0", "--cache", cache};
+  const std::string level = "/v1/meshes/" + log.stem().string() + "/levels/1.vtu";
+  const auto fetch = [&](std::uint16_t port) {
+    test::RawClient client(port);
+    return client.get(client.get(level).header("location")).status;
+  };
+  {
+    Program program(words);
+    const std::uint16_t port = program.port();
+    ASSERT_NE(port, 0);
+    const rlimit few{1000, 1000};  // bytes of a file; the write that goes beyond them is the process's last
+    ASSERT_EQ(::prlimit(program.id(), RLIMIT_FSIZE, &few, nullptr), 0);
+    EXPECT_EQ(fetch(port), 0u);
+    EXPECT_EQ(program.exitCode(), 128 + SIGXFSZ);
+  }
+  ASSERT_EQ(namesIn(cache, ".").size(), 1u) << "the half of a level";
+  Program program(words);
+  const std::uint16_t port = program.port();
+  ASSERT_NE(port, 0);
+  EXPECT_TRUE(namesIn(cache, ".").empty());
+  EXPECT_EQ(fetch(port), 200u);
+  EXPECT_EQ(namesIn(cache, "").size(), 1u);
+}
+
+TEST(Program, theTemporaryFolderOfOneThatWasKilledGoesAndThatOfOneThatRunsStays) {
+  const test::ServedFolder served;
+  test::TempFolder folder;
+  const std::vector<std::string> words = {served.logFolder(), "--port", "0", "--viewer", served.viewerFolder()},
+                                 where = {"TMPDIR=" + folder.path().string()};
+  Program living(words, where), killed(words, where);
+  ASSERT_NE(living.port(), 0);
+  ASSERT_NE(killed.port(), 0);
+  ASSERT_EQ(namesIn(folder.path(), "qtet-server-").size(), 2u);
+  killed.signal(SIGKILL);
+  EXPECT_EQ(killed.exitCode(), 128 + SIGKILL);
+  const std::vector<std::string> left = namesIn(folder.path(), "qtet-server-");
+  ASSERT_EQ(left.size(), 2u);
+  Program next(words, where);
+  ASSERT_NE(next.port(), 0);
+  const std::vector<std::string> now = namesIn(folder.path(), "qtet-server-");
+  EXPECT_EQ(now.size(), 2u);
+  EXPECT_NE(std::set(now.begin(), now.end()), std::set(left.begin(), left.end()));
+  living.signal(SIGTERM);
+  EXPECT_EQ(living.exitCode(), 0);
+  EXPECT_EQ(namesIn(folder.path(), "qtet-server-").size(), 1u);
 }
 
 TEST(Program, readsTokensAgainOnSighupAndKeepsThemWhereTheFileIsWrong) {

@@ -1,14 +1,19 @@
 // `qtet push` against a real server: the whole way from a file to a served mesh.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <array>
 #include <cstdio>
 #include <fstream>
+#include <functional>
 
 #include "proto/checksum.h"
+#include "tests/server/held_check.h"
 #include "tests/server/loopback.h"
 #include "tests/server/served_folder.h"
+#include "tests/support/meshes.h"
+#include "tests/support/written_log.h"
 
 namespace qtet {
 namespace {
@@ -20,14 +25,18 @@ struct Outcome {
   std::string text;  ///< standard output and error
 };
 
-class PushTest : public testing::Test {
+class PushTest : public ::testing::Test {
  protected:
-  Outcome push(const std::string& words, const std::string& token = kToken) {
+  /// `hear` is called with what the program has said so far.
+  Outcome push(const std::string& words, const std::string& token = kToken, const std::function<void(const std::string&)>& hear = {}) {
     const std::string command = "QTET_TOKEN='" + token + "' " + QTET_TOOL + " push '" + file_.string() + "' " + words + " 2>&1";
     Outcome out;
     FILE* pipe = ::popen(command.c_str(), "r");
     std::array<char, 4096> piece;
-    for (std::size_t n = 0; (n = std::fread(piece.data(), 1, piece.size(), pipe)) > 0;) out.text.append(piece.data(), n);
+    for (ssize_t n = 0; (n = ::read(::fileno(pipe), piece.data(), piece.size())) > 0;) {
+      out.text.append(piece.data(), static_cast<std::size_t>(n));
+      if (hear) hear(out.text);
+    }
     const int status = ::pclose(pipe);
     out.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     return out;
@@ -37,12 +46,13 @@ class PushTest : public testing::Test {
 
   test::ServedFolder folder_;
   test::TempFolder mine_;
-  const Bytes log_ = test::makeLog({.chunks = 40, .largestBlock = 60000, .seed = 99});
+  const Bytes log_ = testing::logBytes(testing::soundMesh(8, 99));
   const std::filesystem::path file_ = mine_.path() / "my wing.qtet";
   const std::string digest_ = (mine_.write("my wing.qtet", log_), sha256Hex(log_));
+  test::HeldCheck check_;
   Access access_{*Tokens::parse(std::string("write * ") + kToken)};
   std::unique_ptr<MeshStore> store_ = std::make_unique<MeshStore>(*MeshStore::open(folder_.logFolder()));
-  test::RunningServer server_{*store_, folder_.viewer(), {.access = &access_}};
+  test::RunningServer server_{*store_, folder_.viewer(), {.access = &access_, .uploads = {.check = std::ref(check_)}}};
 };
 
 TEST_F(PushTest, aLogIsServedUnderItsNameOrTheOneGiven) {
@@ -71,6 +81,25 @@ TEST_F(PushTest, itGoesOnWhereAnEarlierOneStopped) {
   EXPECT_EQ(refused.code, 1);
   EXPECT_NE(refused.text.find("422"), std::string::npos) << refused.text;
   EXPECT_EQ(push(url()).code, 0) << "what was wrong is gone";
+}
+
+TEST_F(PushTest, whatTheServerHasWholeIsNotSentAgain) {
+  const std::string part = (folder_.logFolder() / (".upload-" + digest_ + "-my wing.part")).string();
+  Bytes wrong = log_;
+  wrong[100] ^= 1;
+  std::ofstream(part, std::ios::binary).write(reinterpret_cast<const char*>(wrong.data()), static_cast<std::streamsize>(wrong.size()));
+  EXPECT_NE(push(url()).text.find("422"), std::string::npos) << "it was checked as it lay there";
+  std::ofstream(part, std::ios::binary).write(reinterpret_cast<const char*>(log_.data()), static_cast<std::streamsize>(log_.size()));
+  EXPECT_EQ(push(url()).code, 0);
+  EXPECT_EQ(served("/v1/logs/" + digest_ + "/log"), std::string(log_.begin(), log_.end()));
+}
+
+TEST_F(PushTest, itSaysThatTheServerChecks) {
+  check_.hold(true);
+  const Outcome pushed = push(url(), kToken, [this](const std::string& said) {
+    if (said.find("the server checks the log") != std::string::npos) check_.hold(false);
+  });
+  EXPECT_EQ(pushed.code, 0) << pushed.text;
 }
 
 TEST_F(PushTest, whatGoesWrongIsSaid) {

@@ -4,14 +4,20 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <tuple>
 #include <vector>
 
+#include "codec/decoding_memory.h"
 #include "proto/checksum.h"
 #include "server/limits.h"
+#include "tests/server/held_check.h"
 #include "tests/server/loopback.h"
 #include "tests/server/served_folder.h"
+#include "tests/support/forged_log.h"
+#include "tests/support/meshes.h"
+#include "tests/support/written_log.h"
 
 namespace qtet {
 namespace {
@@ -23,7 +29,7 @@ using test::RawClient;
 
 constexpr const char* kToken = "aSecretOfTwentyTwoChars";
 
-class UploadTest : public testing::Test {
+class UploadTest : public ::testing::Test {
  protected:
   static std::string textOf(const Bytes& bytes) { return {bytes.begin(), bytes.end()}; }
   static std::string digestOf(const std::string& text) { return sha256Hex({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}); }
@@ -44,12 +50,17 @@ class UploadTest : public testing::Test {
     return out;
   }
 
+  std::string wholeUpload(const std::string& target) const { return head("PUT", target, log_.size()) + log_; }
+  std::string digested(const std::string& id) const { return "/v1/meshes/" + id + "?digest=" + digestOf(log_); }
+  std::string allIsThere() const { return "Content-Range: bytes */" + std::to_string(log_.size()) + "\r\n"; }
+
   test::ServedFolder folder_;
+  test::HeldCheck check_;
   Access access_{*Tokens::parse(std::string("write new* ") + kToken + "\nwrite noise " + kToken + "\n# nobody\n")};
   std::unique_ptr<MeshStore> store_ = std::make_unique<MeshStore>(*MeshStore::open(folder_.logFolder()));
-  const std::string log_ = textOf(test::makeLog({.seed = 77}));
+  const std::string log_ = textOf(testing::logBytes(testing::soundMesh(8, 77)));
   test::RunningServer server_{
-      *store_, folder_.viewer(), {.threads = 2, .timeouts = {.body = test::kNever}, .access = &access_, .maxUploadBytes = 1 << 20}};
+      *store_, folder_.viewer(), {.threads = 2, .timeouts = {.body = test::kNever}, .access = &access_, .uploads = {.mostBytes = 1 << 20, .check = std::ref(check_)}}};
 };
 
 TEST_F(UploadTest, aSoundLogIsServedOnceItIsWhole) {
@@ -83,6 +94,117 @@ TEST_F(UploadTest, whatIsNoSoundLogIsNeverServed) {
   EXPECT_EQ(put("/v1/meshes/noise", "nonsense").status, 422u);
   EXPECT_EQ(get(folder_.log()).body, folder_.file()) << "the one that was there stays";
   EXPECT_EQ(leftovers(), 0u);
+}
+
+TEST_F(UploadTest, whatDoesNotDecodeIsNeverServedThoughItsChecksumsAreRight) {
+  const Bytes sound(log_.begin(), log_.end());
+  const auto forged = [&](std::size_t part) {
+    testing::TakenApart log = testing::takeApart(sound);
+    Bytes& block = log.blocks.back()[part];
+    EXPECT_GT(block.size(), 8u);
+    for (std::size_t i = 0; i < block.size(); ++i) block[i] = static_cast<std::uint8_t>(i * 131 + 7);
+    return textOf(log.together());
+  };
+  EXPECT_EQ(put("/v1/meshes/new", log_).status, 201u);
+  for (const std::size_t part : {0u, 1u, 2u, 3u}) {  // structure, positions, two fields
+    const std::string bad = forged(part);
+    ASSERT_NE(bad, log_);
+    for (const char* target : {"/v1/meshes/new", "/v1/meshes/newer"}) {
+      const HttpResponse refused = put(target, bad);
+      EXPECT_EQ(refused.status, 422u) << part << refused.body;
+      EXPECT_EQ(refused.header("content-type"), "application/problem+json");
+      EXPECT_EQ(Json::parse(refused.body)["type"], "/problems/bad-log");
+    }
+    EXPECT_EQ(get("/v1/logs/" + digestOf(bad) + "/log").status, 404u);
+    EXPECT_EQ(put("/v1/meshes/newer?digest=" + digestOf(bad), bad).status, 422u);
+  }
+  EXPECT_NE(put("/v1/meshes/newer", forged(0)).body.find("chunk " + std::to_string(testing::takeApart(sound).blocks.size() - 1)), std::string::npos) << "where";
+  EXPECT_EQ(get("/v1/meshes/newer").status, 404u);
+  EXPECT_EQ(get("/v1/logs/" + digestOf(log_) + "/log").body, log_) << "the one that was there stays";
+  EXPECT_EQ(Json::parse(get("/v1/meshes/new").body)["digest"], digestOf(log_));
+  EXPECT_EQ(leftovers(), 0u);
+}
+
+TEST_F(UploadTest, whatChecksBeyondALimitIsToldTheFigure) {
+  const std::uint64_t needed = decodingBytes(LogIndex::parse(Bytes(log_.begin(), log_.end())).value());
+  const auto answer = [&](CheckLimits limits) {
+    test::RunningServer server(*store_, folder_.viewer(), {.access = &access_, .uploads = {.checkLimits = limits}});
+    RawClient client(server.port());
+    client.send(wholeUpload(digested("new")));
+    return client.receive();
+  };
+  const HttpResponse large = answer({.bytes = needed - 1});
+  EXPECT_EQ(large.status, 413u);
+  EXPECT_EQ(Json::parse(large.body)["type"], "/problems/content-too-large");
+  for (const std::string& figure : {std::to_string(needed), std::to_string(needed - 1), std::string("--max-check-bytes")})
+    EXPECT_NE(large.body.find(figure), std::string::npos) << large.body;
+  const HttpResponse slow = answer({.time = std::chrono::milliseconds(0)});
+  EXPECT_EQ(slow.status, 413u);
+  EXPECT_NE(slow.body.find("--max-check-seconds"), std::string::npos) << slow.body;
+  EXPECT_EQ(get("/v1/meshes/new").status, 404u);
+  EXPECT_EQ(leftovers(), 0u) << "it would not be taken another time either";
+  EXPECT_EQ(answer({.bytes = needed, .time = test::kNever}).status, 201u);
+}
+
+TEST_F(UploadTest, aClientThatGoesEndsTheCheckAndMayAskForItAgain) {
+  check_.hold(true);
+  {
+    RawClient client(server_.port());
+    client.send(wholeUpload(digested("new")));
+    EXPECT_TRUE(server_.comesTo("uploads_checking", 1));
+    EXPECT_EQ(get("/v1/meshes/new").status, 404u);
+  }
+  EXPECT_TRUE(server_.comesTo("uploads_open", 0)) << "nobody waits for it any more";
+  EXPECT_EQ(check_.stopped(), 1);
+  EXPECT_EQ(get("/v1/meshes/new").status, 404u);
+  check_.hold(false);
+  EXPECT_EQ(put(digested("new"), "", "Content-Range: bytes */" + std::to_string(log_.size() + 1) + "\r\n").status, 409u) << "not all of them";
+  EXPECT_EQ(put(digested("new"), "", allIsThere()).status, 201u) << "without a byte sent twice";
+  EXPECT_EQ(get("/v1/logs/" + digestOf(log_) + "/log").body, log_);
+  EXPECT_EQ(put(digested("newer"), "", allIsThere()).status, 409u) << "nothing is there";
+}
+
+TEST_F(UploadTest, othersAreServedWhileALogIsChecked) {
+  check_.hold(true);
+  std::vector<std::unique_ptr<RawClient>> clients;
+  for (std::size_t i = 0; i + 1 < limits::kMaxUploads; ++i) {
+    clients.push_back(std::make_unique<RawClient>(server_.port()));
+    clients.back()->send(wholeUpload("/v1/meshes/new" + std::to_string(i)));
+  }
+  EXPECT_TRUE(server_.comesTo("uploads_checking", limits::kCheckThreads)) << "the others wait";
+  EXPECT_EQ(get("/v1/meshes/noise").status, 200u);
+  EXPECT_EQ(put(digested("new"), log_.substr(0, 5), "Content-Range: bytes 0-4/" + std::to_string(log_.size()) + "\r\n").status, 202u) << "what is not whole waits for nobody";
+  RawClient remover(server_.port());
+  remover.send(head("DELETE", "/v1/meshes/noise", 0));
+  EXPECT_EQ(remover.receive().status, 204u);
+  clients.push_back(std::make_unique<RawClient>(server_.port()));
+  clients.back()->send(wholeUpload("/v1/meshes/new9"));
+  EXPECT_TRUE(server_.comesTo("uploads_open", limits::kMaxUploads));
+  const HttpResponse refused = put("/v1/meshes/new99", log_);
+  EXPECT_EQ(refused.status, 503u) << "those that wait have their places";
+  EXPECT_EQ(refused.header("retry-after"), "2");
+  check_.hold(false);
+  for (auto& client : clients) EXPECT_EQ(client->receive().status, 201u);
+}
+
+TEST_F(UploadTest, aServerThatEndsBreaksTheCheckOffAndKeepsWhatCanBeGoneOnWith) {
+  test::HeldCheck check;
+  check.hold(true);
+  {
+    test::RunningServer server(*store_, folder_.viewer(),
+                               {.timeouts = {.grace = test::kShort}, .access = &access_, .uploads = {.check = std::ref(check)}});
+    RawClient running(server.port()), waiting(server.port());
+    running.send(wholeUpload(digested("new")));
+    EXPECT_TRUE(server.comesTo("uploads_checking", 1));
+    waiting.send(wholeUpload("/v1/meshes/newer"));
+    EXPECT_TRUE(server.comesTo("uploads_open", 2));
+    server.stop();
+    server.join();
+  }
+  EXPECT_EQ(check.stopped(), 1);
+  for (const char* mesh : {"new", "newer"}) EXPECT_EQ(get(std::string("/v1/meshes/") + mesh).status, 404u);
+  EXPECT_EQ(leftovers(), 1u) << "the part of the one that is named by its digest";
+  EXPECT_EQ(put(digested("new"), "", allIsThere()).status, 201u);
 }
 
 TEST_F(UploadTest, onlyTheRightTokenOpens) {
@@ -149,7 +271,7 @@ TEST_F(UploadTest, aConditionStillHoldsWhenTheLogGetsItsName) {
   RawClient slow(server_.port());
   slow.send(head("PUT", "/v1/meshes/new", log_.size(), "If-None-Match: *\r\n") + log_.substr(0, 100));
   EXPECT_TRUE(server_.comesTo("uploads_open", 1));
-  const std::string other = textOf(test::makeLog({.seed = 78}));
+  const std::string other = textOf(testing::logBytes(testing::soundMesh(6, 78)));
   EXPECT_EQ(put("/v1/meshes/new", other, "If-None-Match: *\r\n").status, 201u);
   slow.send(log_.substr(100));
   EXPECT_EQ(slow.receive().status, 412u);
@@ -251,12 +373,34 @@ TEST_F(UploadTest, thereAreAsManyUploadsAsTheLimitAllowsAndOneOfANameAndDigest) 
   }
 }
 
+TEST(Uploads, anotherServersPartsAreLetAlone) {
+  const test::ServedFolder folder;
+  const auto old = fs::file_time_type::clock::now() - limits::kPartialUploadTime - std::chrono::minutes(1);
+  const std::string digest(64, 'a');
+  const UploadRequest named{.id = "wing", .digest = digest, .bodyBytes = 4, .totalBytes = 4}, nameless{.id = "wing", .bodyBytes = 4, .totalBytes = 4};
+  Uploads first(folder.store(), {.mostBytes = 100}), second(folder.store(), {.mostBytes = 100});
+  auto one = first.begin(named), other = first.begin(nameless);
+  ASSERT_TRUE(one && other);
+  EXPECT_FALSE((*one)->append(ByteView(Bytes{1, 2})));
+  for (const auto& entry : fs::directory_iterator(folder.logFolder()))
+    if (entry.path().extension() == ".part") fs::last_write_time(entry.path(), old);
+  second.sweep();
+  const auto refused = second.begin(named);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().status, 409u);
+  EXPECT_EQ(first.partialBytes("wing", digest), 2u) << "neither swept nor begun anew";
+  EXPECT_FALSE((*other)->append(ByteView(Bytes{1, 2, 3, 4})));
+  EXPECT_FALSE((*other)->partial()) << "all is there";
+  one->reset();
+  EXPECT_TRUE(second.begin(named)) << "its sender has gone";
+}
+
 TEST(Uploads, whatAKilledServerLeftIsSweptUnlessItCanBeGoneOnWith) {
   const test::ServedFolder folder;
   const std::string digest(64, 'a');
   const fs::path resumable = folder.logFolder() / (".upload-" + digest + "-wing.part"), lost = folder.logFolder() / ".upload-12.0.part";
   for (const fs::path& path : {resumable, lost}) std::ofstream(path) << "half";
-  Uploads uploads(folder.store(), 100);
+  Uploads uploads(folder.store(), {.mostBytes = 100});
   uploads.sweep();
   EXPECT_TRUE(fs::exists(resumable));
   EXPECT_FALSE(fs::exists(lost));
@@ -275,7 +419,7 @@ TEST(Uploads, aServerThatRunsForYearsKeepsNoOldParts) {
   const fs::path others = folder.logFolder() / ".upload-13.0.part", young = folder.logFolder() / (".upload-" + std::string(64, 'b') + "-wing.part");
   for (const fs::path& path : {lost, resumable, others, young}) std::ofstream(path) << "half";
   for (const fs::path& path : {lost, resumable}) fs::last_write_time(path, old);
-  Uploads uploads(folder.store(), 100);
+  Uploads uploads(folder.store(), {.mostBytes = 100});
   const auto begin = [&](char digit) { return uploads.begin({.id = "wing", .digest = std::string(64, digit), .bodyBytes = 4, .totalBytes = 4}); };
   const auto first = begin('c');
   ASSERT_TRUE(first);

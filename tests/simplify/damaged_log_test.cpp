@@ -10,10 +10,10 @@
 #include "codec/log_file.h"
 #include "codec/log_manifest.h"
 #include "codec/log_writer.h"
+#include "codec/verify_log.h"
 #include "proto/checksum.h"
 #include "simplify/opened_log.h"
 #include "simplify/qtetfusion.h"
-#include "simplify/verify_log.h"
 #include "tests/support/allocation_meter.h"
 #include "tests/support/forged_log.h"
 #include "tests/support/meshes.h"
@@ -28,7 +28,7 @@ using testing::TakenApart;
 Status verify(const fs::path& path) {
   const Result<OpenedLog> log = openLog(path);
   if (!log) return std::unexpected(log.error());
-  const Result<Refiner> decoded = decodeVerified(*log);
+  const Result<Refiner> decoded = decodeVerified(log->file, log->manifest);
   return decoded ? Status() : Status(std::unexpected(decoded.error()));
 }
 

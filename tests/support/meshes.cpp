@@ -91,6 +91,13 @@ LatticeMesh gridMesh(int n, std::uint32_t seed, const std::function<bool(int, in
   return mesh;
 }
 
+LatticeMesh soundMesh(int n, std::uint32_t seed) {
+  LatticeMesh mesh = gridMesh(n, seed);
+  for (std::size_t f = 0; f < mesh.fields.size(); ++f)
+    for (std::int32_t& value : mesh.values[f]) value &= (1 << mesh.fields[f].bits) - 1;
+  return mesh;
+}
+
 LatticeMesh fanMesh(std::uint32_t n) {
   constexpr std::int32_t kRadius = 1 << 27;
   LatticeMesh mesh;
@@ -217,16 +224,21 @@ std::filesystem::path writeSampleLog(const std::filesystem::path& folder, const 
   return path;
 }
 
-void writeLog(const std::filesystem::path& path, const LatticeMesh& mesh, const FusionOptions& fusion, std::uint32_t chunkBytes) {
+Bytes logBytes(const LatticeMesh& mesh, const FusionOptions& fusion, std::uint32_t chunkBytes, const std::string& source) {
   const auto history = simplify(mesh, fusion);
   if (!history) throw std::runtime_error(history.error().text());
   LogWriterOptions options;
-  options.source = path.stem().string() + ".vtu";
+  options.source = source;
   options.generator = "qtet test";
   options.chunkBytes = chunkBytes;
-  const auto log = encodeLog(*history, options);
+  auto log = encodeLog(*history, options);
   if (!log) throw std::runtime_error(log.error().text());
-  if (const auto written = writeFileAtomically(path, log->bytes); !written) throw std::runtime_error(written.error().text());
+  return std::move(log->bytes);
+}
+
+void writeLog(const std::filesystem::path& path, const LatticeMesh& mesh, const FusionOptions& fusion, std::uint32_t chunkBytes) {
+  const Bytes log = logBytes(mesh, fusion, chunkBytes, path.stem().string() + ".vtu");
+  if (const auto written = writeFileAtomically(path, log); !written) throw std::runtime_error(written.error().text());
 }
 
 std::filesystem::path freshFolder(const std::string& name) {

@@ -16,6 +16,9 @@ namespace qtet::testing {
 /// and "Swirl" (a vector).
 [[nodiscard]] LatticeMesh gridMesh(int n, std::uint32_t seed, const std::function<bool(int, int, int)>& keep = [](int, int, int) { return true; });
 
+/// The same with every value within the bits of its field, as in a log that is verified whole.
+[[nodiscard]] LatticeMesh soundMesh(int n, std::uint32_t seed);
+
 /// `n` cells round one axis, vertices 0 and 1; cell i has rim vertices 2 + i and 2 + (i + 1) % n too. Everything at the axis is long, thin and askew. No fields.
 [[nodiscard]] LatticeMesh fanMesh(std::uint32_t n);
 

@@ -1,4 +1,4 @@
-#include "simplify/verify_log.h"
+#include "codec/verify_log.h"
 
 #include <algorithm>
 #include <numeric>
@@ -42,21 +42,37 @@ Status checkBits(const Manifest& manifest, const Refiner& finest) {
   return {};
 }
 
+class Gate final : public LevelGate {
+ public:
+  Gate(const std::function<bool(double)>& ask, std::size_t chunks) : ask_(ask), chunks_(static_cast<double>(chunks)) {}
+  bool goOn() override { return !ask_ || ask_(done_ / chunks_); }
+  bool chunkIsDone() {
+    ++done_;
+    return goOn();
+  }
+
+ private:
+  const std::function<bool(double)>& ask_;
+  double chunks_, done_ = 0;
+};
+
 }  // namespace
 
-Result<Refiner> decodeVerified(const OpenedLog& log, const std::function<void(double fraction)>& progress) {
-  if (Status checked = log.file.verifyChecksums(); !checked) return std::unexpected(checked.error());
-  Refiner refiner(log.file.index());
-  std::vector<std::uint32_t> fields(log.manifest.fields.size());
+Result<Refiner> decodeVerified(const LogFile& log, const Manifest& manifest, const std::function<bool(double fraction)>& goOn) {
+  if (Status checked = log.verifyChecksums(); !checked) return std::unexpected(checked.error());
+  Refiner refiner(log.index());
+  Gate gate(goOn, log.index().chunks.size());
+  refiner.askBeforeLevels(&gate);
+  std::vector<std::uint32_t> fields(manifest.fields.size());
   std::iota(fields.begin(), fields.end(), 0u);
-  const auto chunks = static_cast<std::uint32_t>(log.file.index().chunks.size());
+  const auto chunks = static_cast<std::uint32_t>(log.index().chunks.size());
   for (std::uint32_t chunk = 0; chunk < chunks; ++chunk) {
-    if (Status applied = applyChunk(log.file, refiner, chunk, fields); !applied) return std::unexpected(applied.error());
-    if (progress) progress((chunk + 1.0) / chunks);
+    if (Status applied = applyChunk(log, refiner, chunk, fields); !applied) return std::unexpected(applied.error());
+    if (!gate.chunkIsDone()) return fail(ErrorCode::kIo, "stopped, as was asked for");
   }
-  if (Status levels = checkLevels(log.manifest.levels, refiner.levelCounts()); !levels)
-    return std::unexpected(levels.error());
-  if (Status bits = checkBits(log.manifest, refiner); !bits) return std::unexpected(bits.error());
+  refiner.askBeforeLevels(nullptr);
+  if (Status levels = checkLevels(manifest.levels, refiner.levelCounts()); !levels) return std::unexpected(levels.error());
+  if (Status bits = checkBits(manifest, refiner); !bits) return std::unexpected(bits.error());
   return refiner;
 }
 
