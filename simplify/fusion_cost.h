@@ -7,10 +7,12 @@
 #include <span>
 #include <vector>
 
+#include "codec/fetch.h"
 #include "codec/mesh.h"
 #include "simplify/cost_parts.h"
 #include "simplify/edge_quadric.h"
 #include "simplify/fusion_mesh.h"
+#include "simplify/line_allocator.h"
 #include "simplify/quadric.h"
 #include "simplify/two_vectors.h"
 
@@ -47,10 +49,10 @@ class FusionCost {
   /// What v itself is off by already: its quadric at its own place and values.
   [[nodiscard]] double of(VertexId v) const { return quadrics_[at(v) + kConstant]; }
   /// Asks the memory for where v's quadric is.
-  void prefetchSlot(VertexId v) const { __builtin_prefetch(&slot_[v]); }
+  void prefetchSlot(VertexId v) const { fetch(&slot_[v]); }
   /// Asks the memory for v's quadric.
   void prefetch(VertexId v) const {
-    for (std::size_t i = 0; i < stride_; i += kLineDoubles) __builtin_prefetch(&quadrics_[at(v) + i]);
+    for (std::size_t i = 0; i < stride_; i += kLineDoubles) fetch(&quadrics_[at(v) + i]);
   }
 
   /// The fields in the cost, in the order of their values.
@@ -107,7 +109,7 @@ class FusionCost {
   std::size_t components_ = 0, stride_ = kHead;
   double diagonal_ = 1;              // lattice steps
   std::vector<double> limits_;       // a component's largest value; the smallest is 0
-  std::vector<double> quadrics_;     // stride_ a slot
+  std::vector<double, LineAllocator<double>> quadrics_;  // stride_ a slot
   std::vector<std::uint32_t> slot_;  // by vertex: a fused vertex takes its first prey vertex's
 };
 

@@ -52,8 +52,13 @@ void FusionMesh::buildStars() {
 
 void FusionMesh::findSingular() {
   singular_.assign(history_.points.size(), 0);
+  constexpr VertexId kAhead = 4;
   SphereTest test(history_.points.size());
-  for (VertexId v = 0; v < history_.points.size(); ++v) singular_[v] = !test.isLinkSphere(v, star(v), history_.cells);
+  for (VertexId v = 0; v < history_.points.size(); ++v) {
+    if (v + kAhead < history_.points.size()) prefetchStar(v + kAhead);
+    singular_[v] = !test.isLinkSphere(v, star(v), history_.cells);
+    hasSingular_ |= singular_[v] != 0;
+  }
 }
 
 void FusionMesh::findInterfaces() {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "codec/fusion_history.h"
+#include "codec/fetch.h"
 #include "codec/mesh.h"
 #include "simplify/vector3.h"
 
@@ -30,7 +31,7 @@ struct Star {
 };
 
 /// The plane of a boundary triangle. Up to 16 bits of lattice the normal is exact.
-struct BoundaryPlane {
+struct alignas(32) BoundaryPlane {
   Vector3 normal;        ///< outward, as long as twice the area
   double inverseLength;  ///< 1 over that, 0 for a triangle without area
 };
@@ -79,13 +80,23 @@ class FusionMesh {
     return count;
   }
   /// Ask the memory for where v's star is, and then for its list.
-  void prefetchVertex(VertexId v) const { __builtin_prefetch(&stars_[v]); }
-  void prefetchList(VertexId v) const { __builtin_prefetch(pool_.data() + stars_[v].first); }
+  void prefetchVertex(VertexId v) const { fetch(&stars_[v]); }
+  void prefetchList(VertexId v) const {
+    const auto cells = star(v);
+    fetch(cells.data()), fetch(cells.data() + cells.size());  // mostly two lines
+  }
   /// Asks the memory for the cells of v's star, which lie anywhere: by the time they are read they are near.
   void prefetchStar(VertexId v) const {
-    for (const CellId c : star(v)) __builtin_prefetch(&history_.cells[c]);
+    for (const CellId c : star(v)) fetch(&history_.cells[c]);
   }
-  void prefetchPoint(VertexId v) const { __builtin_prefetch(&history_.points[v]); }
+  /// And for the planes of its boundary triangles, and then for their first corners.
+  void prefetchPlanes(VertexId v) const {
+    for (const CellId c : boundaryStar(v)) fetch(&planes_[c - firstGhost_]);
+  }
+  void prefetchCorners(VertexId v) const {
+    for (const CellId c : boundaryStar(v)) prefetchPoint(history_.cells[c][0]);
+  }
+  void prefetchPoint(VertexId v) const { fetch(&history_.points[v]); }
   [[nodiscard]] bool hasRegions() const { return regionField_ != kNoRegions; }
   /// REQUIRES: hasRegions().
   [[nodiscard]] std::int64_t region(CellId c) const {
@@ -151,6 +162,7 @@ class FusionMesh {
   std::vector<StarRange> stars_;
   std::vector<CellId> pool_;  // stars back to back, with holes
   std::size_t livePool_ = 0;
+  bool hasSingular_ = false;  // hardly a mesh does
   std::size_t liveTetrahedra_ = 0;
 };
 

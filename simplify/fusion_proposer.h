@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "codec/fetch.h"
 #include "simplify/band_nodes.h"
 #include "simplify/candidates.h"
 #include "simplify/fusion_cost.h"
@@ -22,7 +23,7 @@ class Touched {
  public:
   void resize(std::size_t vertices) { at_.resize(vertices, 0); }
   void touch(VertexId v, std::uint32_t fusion) { at_[v] = fusion; }
-  void prefetch(VertexId v) const { __builtin_prefetch(&at_[v]); }
+  void prefetch(VertexId v) const { fetch(&at_[v]); }
   [[nodiscard]] bool since(VertexId v, std::uint32_t fusion) const { return at_[v] > fusion; }
 
  private:

@@ -37,6 +37,8 @@ constexpr double kNormalCosine = 0.3;
 // Vertices whose candidates are found at once, and how many of them a thread takes at a time.
 constexpr std::size_t kCollected = 4096;
 constexpr std::size_t kGrain = 8;
+// How far ahead the memory is asked for the lists of candidates.
+constexpr std::size_t kListsAhead = 8;
 // Entries of the queue for which threads make proposals ahead: a share of the level's, since a fusion spoils those of its neighbours.
 constexpr std::size_t kAheadShare = 64;
 constexpr std::size_t kLeastAhead = 32;
@@ -174,6 +176,7 @@ class Simplifier {
     }
     for (const VertexId v : withProposal_) proposalOf_[v] = kNone;
     withProposal_.clear();
+    proposalsUsed_ = 0, spareProposals_.clear();
     if (fusions_ > levelStart_) ++level_;
     vertices_.insert(vertices_.end(), fused_.begin(), fused_.end());
     collect(fused_, [&](FusionProposer& proposer, std::size_t i, std::vector<Candidate>& found) {
@@ -193,6 +196,7 @@ class Simplifier {
     workers_.forRuns(vertices_.size(), kCollected, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const VertexId v = vertices_[i];
+        if (i + kListsAhead < end) candidates_.prefetchBest(vertices_[i + kListsAhead]);
         dropDead(v);
         const Candidate* best = candidates_.best(v);
         entries_[i] = {best ? best->key : std::numeric_limits<float>::infinity(), v};
@@ -231,17 +235,26 @@ class Simplifier {
     }
   }
 
-  // The queue's order has nothing to do with where things lie: what its next entries need is asked for in three steps, each of which needs the one before.
+  // The queue's order has nothing to do with where things lie: what its next entries need is asked for in steps, each of which needs the one before.
   void lookAhead() const {
     const auto soon = [&](std::size_t steps) { return next_ + steps < entries_.size() ? entries_[next_ + steps].owner : kNone; };
-    if (const VertexId v = soon(12); v != kNone) touched_.prefetch(v), candidates_.prefetch(v), mesh_.prefetchVertex(v);
-    if (const VertexId v = soon(8); v != kNone && !isLocked(v)) candidates_.prefetchBest(v), mesh_.prefetchList(v);
-    if (const VertexId v = soon(4); v != kNone && !isLocked(v)) {
-      mesh_.prefetchStar(v);
-      if (const Candidate* best = candidates_.best(v)) touched_.prefetch(best->partner), mesh_.prefetchVertex(best->partner);
+    if (const VertexId v = soon(16); v != kNone) touched_.prefetch(v), candidates_.prefetch(v), mesh_.prefetchVertex(v);
+    if (const VertexId v = soon(12); v != kNone && !isLocked(v))
+      candidates_.prefetchBest(v), mesh_.prefetchList(v), cost_.prefetchSlot(v), mesh_.prefetchPoint(v);
+    if (const VertexId v = soon(8); v != kNone && !isLocked(v)) {
+      mesh_.prefetchStar(v), mesh_.prefetchPlanes(v), cost_.prefetch(v);
+      if (const Candidate* best = candidates_.best(v))
+        touched_.prefetch(best->partner), mesh_.prefetchVertex(best->partner), cost_.prefetchSlot(best->partner), mesh_.prefetchPoint(best->partner);
     }
-    if (const VertexId v = soon(2); v != kNone && !isLocked(v))
-      if (const Candidate* best = candidates_.best(v)) mesh_.prefetchList(best->partner), cost_.prefetchSlot(best->partner), cost_.prefetch(v);
+    const auto partnerSoon = [&](std::size_t steps) {
+      const VertexId v = soon(steps);
+      if (v == kNone || isLocked(v)) return kNone;
+      const Candidate* best = candidates_.best(v);
+      return best && mesh_.alive(best->partner) && !isLocked(best->partner) ? best->partner : kNone;
+    };
+    if (const VertexId v = partnerSoon(6); v != kNone) mesh_.prefetchList(v), cost_.prefetch(v), mesh_.prefetchCorners(entries_[next_ + 6].owner);
+    if (const VertexId v = partnerSoon(4); v != kNone) mesh_.prefetchStar(v), mesh_.prefetchPlanes(v);
+    if (const VertexId v = partnerSoon(2); v != kNone) mesh_.prefetchCorners(v);
   }
 
   // A vertex that a fusion of this level touched waits for the next one: levels are independent sets.
@@ -251,7 +264,10 @@ class Simplifier {
   void requeue(VertexId owner) {
     dropDead(owner);
     const Candidate* best = candidates_.best(owner);
-    if (best && best->key <= limit_) queue_.push({best->key, owner});
+    if (best && best->key <= limit_)
+      queue_.push({best->key, owner});
+    else
+      giveBack(owner);
   }
 
   // With threads: proposals for the next entries, made in parallel. They are used as long as nothing they rely on is touched, so that the
@@ -280,13 +296,30 @@ class Simplifier {
 
   Proposal& proposalFor(VertexId owner) {
     if (proposalOf_[owner] == kNone) {
-      proposalOf_[owner] = static_cast<std::uint32_t>(withProposal_.size());
+      proposalOf_[owner] = spareProposal();
       withProposal_.push_back(owner);
-      if (proposals_.size() < withProposal_.size()) proposals_.emplace_back();
       proposals_[proposalOf_[owner]].illegal.clear();
       proposals_[proposalOf_[owner]].partner = kGhost;
     }
     return proposals_[proposalOf_[owner]];
+  }
+
+  // The one that was given back last, since the processor has it near.
+  std::uint32_t spareProposal() {
+    if (!spareProposals_.empty()) {
+      const std::uint32_t last = spareProposals_.back();
+      spareProposals_.pop_back();
+      return last;
+    }
+    if (proposals_.size() == proposalsUsed_) proposals_.emplace_back();
+    return proposalsUsed_++;
+  }
+
+  // Nobody asks for it again in this level.
+  void giveBack(VertexId owner) {
+    if (proposalOf_[owner] == kNone) return;
+    spareProposals_.push_back(proposalOf_[owner]);
+    proposalOf_[owner] = kNone;
   }
 
   /// What comes of the owner's best candidate, made now unless what was found in this level still holds.
@@ -310,7 +343,10 @@ class Simplifier {
     // Dearer than this, it waits for what costs less.
     const float most = std::min(limit_, std::max(kDearer * candidate.key, nextKey()));
     const Outcome outcome = propose(owner, candidate.partner, most);
-    if (outcome.cost <= most && outcome.proposal) return fuse(*outcome.proposal);
+    if (outcome.cost <= most && outcome.proposal) {
+      fuse(*outcome.proposal);
+      return giveBack(owner);
+    }
     outcome.cost > most ? candidates_.raise(owner, outcome.cost) : candidates_.fail(owner);
     requeue(owner);
   }
@@ -402,6 +438,8 @@ class Simplifier {
   std::deque<Proposal> proposals_;
   std::vector<std::uint32_t> proposalOf_;  // by vertex, into proposals_
   std::vector<VertexId> withProposal_;
+  std::uint32_t proposalsUsed_ = 0;
+  std::vector<std::uint32_t> spareProposals_;  // of those
   std::vector<std::pair<VertexId, Proposal*>> jobs_;
   std::vector<double> values_;
   std::vector<std::int32_t> integers_;
