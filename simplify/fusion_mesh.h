@@ -11,6 +11,7 @@
 #include "codec/fusion_history.h"
 #include "codec/fetch.h"
 #include "codec/mesh.h"
+#include "simplify/cell_corners.h"
 #include "simplify/vector3.h"
 
 namespace qtet {
@@ -57,7 +58,7 @@ class FusionMesh {
   [[nodiscard]] bool alive(VertexId v) const { return aliveVertex_[v]; }
   [[nodiscard]] bool onBoundary(VertexId v) const { return onBoundary_[v]; }
   /// The link of v is no sphere: the mesh is not a manifold there, and v is never prey.
-  [[nodiscard]] bool singular(VertexId v) const { return singular_[v]; }
+  [[nodiscard]] bool singular(VertexId v) const { return hasSingular_ && singular_[v]; }
   [[nodiscard]] const LatticePoint& point(VertexId v) const { return history_.points[v]; }
   [[nodiscard]] Vector3 position(VertexId v) const { return toVector(history_.points[v]); }
   [[nodiscard]] const std::array<VertexId, 4>& cell(CellId c) const { return history_.cells[c]; }
@@ -69,10 +70,7 @@ class FusionMesh {
   /// The others.
   [[nodiscard]] std::span<const CellId> innerStar(VertexId v) const { return star(v).subspan(stars_[v].ghosts); }
   [[nodiscard]] bool isGhost(CellId c) const { return c >= firstGhost_; }
-  [[nodiscard]] bool holds(CellId c, VertexId v) const {
-    const auto& cell = history_.cells[c];
-    return (int{cell[0] == v} | int{cell[1] == v} | int{cell[2] == v} | int{cell[3] == v}) != 0;  // without branches
-  }
+  [[nodiscard]] bool holds(CellId c, VertexId v) const { return cornersThatAre(history_.cells[c], v) != 0; }
   /// The cells that hold both, boundary triangles among them.
   [[nodiscard]] std::size_t cellsRound(VertexId v, VertexId w) const {
     std::size_t count = 0;
@@ -89,12 +87,9 @@ class FusionMesh {
   void prefetchStar(VertexId v) const {
     for (const CellId c : star(v)) fetch(&history_.cells[c]);
   }
-  /// And for the planes of its boundary triangles, and then for their first corners.
+  /// And for the planes of its boundary triangles.
   void prefetchPlanes(VertexId v) const {
     for (const CellId c : boundaryStar(v)) fetch(&planes_[c - firstGhost_]);
-  }
-  void prefetchCorners(VertexId v) const {
-    for (const CellId c : boundaryStar(v)) prefetchPoint(history_.cells[c][0]);
   }
   void prefetchPoint(VertexId v) const { fetch(&history_.points[v]); }
   [[nodiscard]] bool hasRegions() const { return regionField_ != kNoRegions; }

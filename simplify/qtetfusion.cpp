@@ -1,6 +1,7 @@
 #include "simplify/qtetfusion.h"
 
 #include <algorithm>
+#include <array>
 #include <boost/heap/d_ary_heap.hpp>
 #include <cmath>
 #include <deque>
@@ -37,8 +38,9 @@ constexpr double kNormalCosine = 0.3;
 // Vertices whose candidates are found at once, and how many of them a thread takes at a time.
 constexpr std::size_t kCollected = 4096;
 constexpr std::size_t kGrain = 8;
-// How far ahead the memory is asked for the lists of candidates.
+// How many entries ahead the memory is asked for lists of candidates, and for what comes of them at most.
 constexpr std::size_t kListsAhead = 8;
+constexpr std::size_t kMostLooked = 32;
 // Entries of the queue for which threads make proposals ahead: a share of the level's, since a fusion spoils those of its neighbours.
 constexpr std::size_t kAheadShare = 64;
 constexpr std::size_t kLeastAhead = 32;
@@ -170,9 +172,10 @@ class Simplifier {
     links_.clear(), linkEnds_.clear();
     while (nextKey() <= limit_ && mesh_.liveTetrahedra() > goal_) {
       if (next_ >= proposedTo_) proposeAhead();
-      lookAhead();
       const VertexId owner = pop();
-      if (!isLocked(owner)) process(owner);
+      if (isLocked(owner)) continue;
+      lookAhead();
+      process(owner);
     }
     for (const VertexId v : withProposal_) proposalOf_[v] = kNone;
     withProposal_.clear();
@@ -203,7 +206,8 @@ class Simplifier {
       }
     });
     std::erase_if(entries_, [&](const Entry& e) { return e.key > dearest_ || std::isinf(e.key); });
-    next_ = proposedTo_ = 0;
+    next_ = proposedTo_ = looked_ = 0;
+    soon_.fill({});
     if (entries_.empty()) return;
     const auto cheaper = [](const Entry& a, const Entry& b) { return b < a; };
     // What a band can afford it will do, so that the order counts for less there than the number of levels.
@@ -235,26 +239,32 @@ class Simplifier {
     }
   }
 
-  // The queue's order has nothing to do with where things lie: what its next entries need is asked for in steps, each of which needs the one before.
-  void lookAhead() const {
-    const auto soon = [&](std::size_t steps) { return next_ + steps < entries_.size() ? entries_[next_ + steps].owner : kNone; };
-    if (const VertexId v = soon(16); v != kNone) touched_.prefetch(v), candidates_.prefetch(v), mesh_.prefetchVertex(v);
-    if (const VertexId v = soon(12); v != kNone && !isLocked(v))
-      candidates_.prefetchBest(v), mesh_.prefetchList(v), cost_.prefetchSlot(v), mesh_.prefetchPoint(v);
-    if (const VertexId v = soon(8); v != kNone && !isLocked(v)) {
-      mesh_.prefetchStar(v), mesh_.prefetchPlanes(v), cost_.prefetch(v);
-      if (const Candidate* best = candidates_.best(v))
-        touched_.prefetch(best->partner), mesh_.prefetchVertex(best->partner), cost_.prefetchSlot(best->partner), mesh_.prefetchPoint(best->partner);
+  // The queue's order has nothing to do with where things lie: what its next proposals need is asked for in steps, each of which needs the one before.
+  // Entries that are locked already are passed over, so that a step is a proposal.
+  void lookAhead() {
+    if (looked_ >= next_ + kMostLooked) return;
+    VertexId owner = kNone;
+    while (owner == kNone && looked_ < entries_.size()) {
+      if (looked_ + kListsAhead < entries_.size()) {
+        const VertexId v = entries_[looked_ + kListsAhead].owner;
+        touched_.prefetch(v), candidates_.prefetch(v), mesh_.prefetchVertex(v);
+      }
+      const VertexId v = entries_[looked_++].owner;
+      if (!isLocked(v)) owner = v;
     }
-    const auto partnerSoon = [&](std::size_t steps) {
-      const VertexId v = soon(steps);
-      if (v == kNone || isLocked(v)) return kNone;
-      const Candidate* best = candidates_.best(v);
-      return best && mesh_.alive(best->partner) && !isLocked(best->partner) ? best->partner : kNone;
-    };
-    if (const VertexId v = partnerSoon(6); v != kNone) mesh_.prefetchList(v), cost_.prefetch(v), mesh_.prefetchCorners(entries_[next_ + 6].owner);
-    if (const VertexId v = partnerSoon(4); v != kNone) mesh_.prefetchStar(v), mesh_.prefetchPlanes(v);
-    if (const VertexId v = partnerSoon(2); v != kNone) mesh_.prefetchCorners(v);
+    const auto stepsAgo = [this](std::size_t steps) -> Soon& { return soon_[(soonAt_ - steps) % soon_.size()]; };
+    ++soonAt_;
+    stepsAgo(0) = {owner, kNone};
+    if (owner != kNone) candidates_.prefetchBest(owner), mesh_.prefetchList(owner), cost_.prefetchSlot(owner), mesh_.prefetchPoint(owner);
+    if (Soon& soon = stepsAgo(2); soon.owner != kNone) {
+      mesh_.prefetchStar(soon.owner), mesh_.prefetchPlanes(soon.owner), cost_.prefetch(soon.owner);
+      if (const Candidate* best = candidates_.best(soon.owner)) {
+        soon.partner = best->partner;
+        touched_.prefetch(soon.partner), mesh_.prefetchVertex(soon.partner), cost_.prefetchSlot(soon.partner), mesh_.prefetchPoint(soon.partner);
+      }
+    }
+    if (const VertexId v = stepsAgo(4).partner; v != kNone) mesh_.prefetchList(v), cost_.prefetch(v);
+    if (const VertexId v = stepsAgo(5).partner; v != kNone) mesh_.prefetchStar(v), mesh_.prefetchPlanes(v);
   }
 
   // A vertex that a fusion of this level touched waits for the next one: levels are independent sets.
@@ -430,6 +440,11 @@ class Simplifier {
   std::vector<std::vector<Candidate>> found_;  // collect's own
   std::vector<Entry> entries_;
   std::size_t next_ = 0, proposedTo_ = 0, ahead_ = 0;  // into entries_
+  struct Soon {
+    VertexId owner = kNone, partner = kNone;  // of a proposal
+  };
+  std::array<Soon, 8> soon_;                  // those that were looked at last
+  std::size_t looked_ = 0, soonAt_ = 0;       // into entries_, into soon_
   float limit_ = 0, dearest_ = std::numeric_limits<float>::infinity();  // keys: where the level ends, where the band does
   Queue queue_;
   std::vector<VertexId> fused_;  // of this level
