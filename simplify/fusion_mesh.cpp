@@ -170,17 +170,19 @@ VertexId FusionMesh::fuse(const Prey& prey, const FusedVertex& what, const Star&
   }
   for (std::size_t i = 0; i < star.affected.size(); ++i) {
     const CellId c = star.affected[i];
-    std::ranges::replace(history_.cells[c], prey.vertex[star.labels[i]], fused);
+    auto& cell = history_.cells[c];
+    cell[onlyCorner(cornersThatAre(cell, prey.vertex[star.labels[i]]))] = fused;
     if (isGhost(c)) findPlane(c);
   }
   for (const CellId c : star.deleted) {
     history_.live[c] = 0;
-    bool ghost = false;
-    for (const VertexId v : history_.cells[c]) {
-      ghost |= v == kGhost;
-      if (v != kGhost && aliveVertex_[v]) removeFromStar(v, c);
-    }
-    if (!ghost) --liveTetrahedra_;
+    liveTetrahedra_ -= !isGhost(c);
+    const auto& cell = history_.cells[c];
+    unsigned gone = 0;
+    for (const VertexId v : prey.vertices()) gone |= cornersThatAre(cell, v);
+    const OtherCorners& others = kOtherCorners[gone];
+    for (std::size_t i = 0; i < others.count; ++i)
+      if (const VertexId v = cell[others.corner[i]]; v != kGhost) removeFromStar(v, c);
   }
   onBoundary_.push_back(boundary);
   if (hasRegions()) onInterface_.push_back(interface);
