@@ -141,6 +141,7 @@ void FusionProposer::findCompanions(const Proposal& edge, std::span<const Candid
     const auto holds = [&](CellId c) { return std::ranges::find(mesh_.cell(c), other.partner) != mesh_.cell(c).end(); };
     if (!mesh_.alive(other.partner) || !std::ranges::any_of(edge.star.deleted, holds)) continue;
     companions_.push_back(other.partner);
+    cost_.prefetch(other.partner);
     if (!touched_.since(other.partner, levelStart)) std::swap(companions_[free++], companions_.back());
   }
   freeCompanions_ = free;

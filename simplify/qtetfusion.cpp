@@ -16,6 +16,7 @@
 #include "simplify/candidates.h"
 #include "simplify/fusion_mesh.h"
 #include "simplify/fusion_proposer.h"
+#include "simplify/queue_entries.h"
 #include "simplify/tet_mesh.h"
 #include "simplify/workers.h"
 
@@ -41,19 +42,14 @@ constexpr std::size_t kGrain = 8;
 // How many entries ahead the memory is asked for lists of candidates, and for what comes of them at most.
 constexpr std::size_t kListsAhead = 8;
 constexpr std::size_t kMostLooked = 32;
+// The same for the candidates of fused vertices.
+constexpr std::size_t kFusedAhead = 2;
 // Entries of the queue for which threads make proposals ahead: a share of the level's, since a fusion spoils those of its neighbours.
 constexpr std::size_t kAheadShare = 64;
 constexpr std::size_t kLeastAhead = 32;
 constexpr std::size_t kMostAhead = 2048;
 
-struct Entry {
-  float key = 0;
-  VertexId owner = 0;
-  // The heap keeps the largest on top; equal keys in order of the owner, so that the outcome is one and the same everywhere.
-  bool operator<(const Entry& other) const { return key != other.key ? key > other.key : owner > other.owner; }
-};
-
-using Queue = boost::heap::d_ary_heap<Entry, boost::heap::arity<4>>;
+using Queue = boost::heap::d_ary_heap<QueueEntry, boost::heap::arity<4>>;
 
 /// Null where the fusion is not legal; that, too, is known only of what costs no more than it may.
 struct Outcome {
@@ -183,11 +179,19 @@ class Simplifier {
     if (fusions_ > levelStart_) ++level_;
     vertices_.insert(vertices_.end(), fused_.begin(), fused_.end());
     collect(fused_, [&](FusionProposer& proposer, std::size_t i, std::vector<Candidate>& found) {
+      if (i + kFusedAhead < fused_.size()) prefetchFused(i + kFusedAhead);
       proposer.candidatesOf(fused_[i], linkOf(i), found);
     });
     candidates_.compact();
     if (options_.progress) options_.progress(progress());
     return true;
+  }
+
+  // Asks the memory for what the candidates of a fused vertex are found from.
+  void prefetchFused(std::size_t i) const {
+    mesh_.prefetchStar(fused_[i]), cost_.prefetch(fused_[i]);
+    for (const VertexId v : linkOf(i))
+      if (v != kGhost) cost_.prefetch(v), mesh_.prefetchPoint(v);
   }
 
   // The vertices whose best candidate is within the level's limit, cheapest first.
@@ -205,18 +209,12 @@ class Simplifier {
         entries_[i] = {best ? best->key : std::numeric_limits<float>::infinity(), v};
       }
     });
-    std::erase_if(entries_, [&](const Entry& e) { return e.key > dearest_ || std::isinf(e.key); });
+    std::erase_if(entries_, [&](const QueueEntry& e) { return e.key > dearest_ || std::isinf(e.key); });
     next_ = proposedTo_ = looked_ = 0;
     soon_.fill({});
     if (entries_.empty()) return;
-    const auto cheaper = [](const Entry& a, const Entry& b) { return b < a; };
     // What a band can afford it will do, so that the order counts for less there than the number of levels.
-    const double levelQuantile = std::isinf(dearest_) ? kLevelQuantile : options_.bands.levelQuantile;
-    const auto at = entries_.begin() + static_cast<std::ptrdiff_t>(levelQuantile * static_cast<double>(entries_.size() - 1));
-    std::nth_element(entries_.begin(), at, entries_.end(), cheaper);
-    limit_ = at->key;
-    entries_.erase(std::partition(at, entries_.end(), [&](const Entry& e) { return e.key <= limit_; }), entries_.end());
-    std::sort(entries_.begin(), entries_.end(), cheaper);
+    limit_ = sorter_.keepCheapest(entries_, std::isinf(dearest_) ? kLevelQuantile : options_.bands.levelQuantile);
     ahead_ = std::clamp(entries_.size() / kAheadShare, kLeastAhead, kMostAhead);
   }
 
@@ -438,7 +436,8 @@ class Simplifier {
   std::vector<VertexId> vertices_;  // alive at the level's start
   Candidates candidates_;
   std::vector<std::vector<Candidate>> found_;  // collect's own
-  std::vector<Entry> entries_;
+  std::vector<QueueEntry> entries_;
+  EntrySorter sorter_;
   std::size_t next_ = 0, proposedTo_ = 0, ahead_ = 0;  // into entries_
   struct Soon {
     VertexId owner = kNone, partner = kNone;  // of a proposal
