@@ -43,9 +43,11 @@ FusionPointFinder::Deciding FusionPointFinder::deciding(const Prey& prey) const 
   std::size_t boundary = 0, surface = 0;
   for (const VertexId v : prey.vertices()) boundary += mesh_.onBoundary(v), surface += mesh_.onSurface(v);
   out.boundary = boundary > 0;
-  for (std::size_t i = 0; i < prey.k; ++i)
-    if (surface == 0 || (boundary > 0 ? mesh_.onBoundary(prey.vertex[i]) : mesh_.onSurface(prey.vertex[i])))
-      out.vertex[out.count++] = prey.vertex[i];
+  for (std::size_t i = 0; i < prey.k; ++i) {
+    const bool decides = surface == 0 || (boundary > 0 ? mesh_.onBoundary(prey.vertex[i]) : mesh_.onSurface(prey.vertex[i]));
+    out.vertex[out.count] = prey.vertex[i];  // written in any case: what decides is a branch that no processor foresees
+    out.count += decides;
+  }
   for (std::size_t i = 0; i < out.count; ++i) out.centre = out.centre + (mesh_.position(out.vertex[i]) - mesh_.position(prey.vertex[0]));
   out.isAll = out.count == prey.k;
   out.centre = (1.0 / static_cast<double>(out.count)) * out.centre;

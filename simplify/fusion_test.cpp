@@ -102,7 +102,10 @@ bool FusionTest::addStars() {
     }
     star_.affected.insert(star_.affected.end(), staying_.begin(), staying_.begin() + static_cast<std::ptrdiff_t>(staying));
     star_.labels.resize(before + staying, static_cast<std::uint8_t>(i));
-    addStaying<k>(before, i);
+    std::size_t ghosts = 0;  // come first in every star
+    while (ghosts < staying && mesh_.isGhost(staying_[ghosts])) ++ghosts;
+    for (std::size_t at = before + ghosts; at < before + staying; ++at) innerCells_[innerCount_++] = static_cast<std::uint32_t>(at);
+    addStaying(before, i);
     if (!addGoing<k>(going)) return false;
     for (const VertexId v : vertices_.ids().subspan(known))
       if (v != kGhost) mesh_.prefetchPoint(v);
@@ -111,17 +114,15 @@ bool FusionTest::addStars() {
 }
 
 // The affected cells of prey vertex `from`, which begin at `before`.
-template <std::uint32_t k>
 inline void FusionTest::addStaying(std::size_t before, std::uint32_t from) {
   const VertexId v = prey_.vertex[from];
   LocalVertices::Adding adding(vertices_);
-  for (std::size_t at = before; at < star_.affected.size(); ++at) {
-    const CellId c = star_.affected[at];
+  auto* local = &turned_[before];
+  for (const CellId c : std::span(star_.affected).subspan(before)) {
     const auto& cell = mesh_.cell(c);
     const auto turned = withLast(cell, onlyCorner(cornersThatAre(cell, v)));
-    turned_[at] = {adding.intern(turned[0]), adding.intern(turned[1]), adding.intern(turned[2]), from};
-    innerCells_[innerCount_] = static_cast<std::uint32_t>(at);
-    innerCount_ += !mesh_.isGhost(c);
+    const std::uint32_t x = adding.intern(turned[0]), y = adding.intern(turned[1]), z = adding.intern(turned[2]);
+    *local++ = {x, y, z, from};
   }
 }
 
@@ -229,12 +230,11 @@ bool FusionTest::flipsAt(VertexId v, const LatticePoint& p) const {
   const double error = mesh_.latticeBits() <= kExactBits ? 0 : kRounding * std::ldexp(1.0, 3 * mesh_.latticeBits());
   for (const CellId c : mesh_.innerStar(v)) {
     const auto& cell = mesh_.cell(c);
-    std::size_t at = 0, prey = 0;
-    for (const VertexId w : prey_.vertices())
-      for (std::size_t i = 0; i < 4; ++i) prey += cell[i] == w;
-    if (prey > 1) continue;
-    while (cell[at] != v) ++at;
-    const auto t = withLast(cell, at);
+    const unsigned at = cornersThatAre(cell, v);
+    unsigned prey = 0;
+    for (const VertexId w : prey_.vertices()) prey |= cornersThatAre(cell, w);
+    if (prey != at) continue;
+    const auto t = withLast(cell, onlyCorner(at));
     const Vector3 corner = mesh_.position(t[0]), normal = cross(mesh_.position(t[1]) - corner, mesh_.position(t[2]) - corner);
     if (dot(normal, place - corner) <= -error && dot(normal, before - corner) > error) return true;
   }
@@ -400,23 +400,24 @@ inline FusionTest::WayBack FusionTest::wayBackExactly(const Vector3& p, const La
   const Vector3 d = toVector(inside) - origin_, past = p - toVector(inside);
   const TwoVectors twice = both(d, d), twicePast = both(past, past);
   using Lanes = decltype(Pair{} > Pair{});
-  Pair farthest = Pair{} - 1, outsideThere{};
+  constexpr Lanes kAllButSign = ~(Lanes{} + std::numeric_limits<std::int64_t>::min());
+  const auto outsideOf = [&](const Planes& planes, const Pair& side) { return (side + dot(planes.normal, twicePast)) * planes.inverseLength; };
+  Pair farthest = Pair{} - 1;
   Lanes at{}, where{};
   for (const Planes& planes : std::span(planes_).first((faceCount_ + 1) / 2)) {
     const Pair side = dot(planes.normal, twice) - planes.height;
-    const Pair outside = (side + dot(planes.normal, twicePast)) * planes.inverseLength;
-    const Pair distance = outside < 0 ? -outside : outside;
+    const Pair distance = std::bit_cast<Pair>(std::bit_cast<Lanes>(outsideOf(planes, side)) & kAllButSign);
     const Lanes isFarther = (side > 0) & (distance > farthest);
     farthest = isFarther ? distance : farthest;
-    outsideThere = isFarther ? outside : outsideThere;
     where = isFarther ? at : where;
     at += 1;
   }
   if (farthest[0] < 0 && farthest[1] < 0) return WayBack::kInside;
   const bool isSecond = farthest[1] != farthest[0] ? farthest[1] > farthest[0] : where[1] < where[0];
   const Planes& planes = planes_[static_cast<std::size_t>(where[isSecond])];
+  const Pair outside = outsideOf(planes, dot(planes.normal, twice) - planes.height);
   const Vector3 normal{planes.normal[0][isSecond], planes.normal[1][isSecond], planes.normal[2][isSecond]};
-  back = (outsideThere[isSecond] * planes.inverseLength[isSecond]) * normal;
+  back = (outside[isSecond] * planes.inverseLength[isSecond]) * normal;
   return WayBack::kOutside;
 }
 

@@ -90,7 +90,6 @@ class FusionTest {
   [[nodiscard]] bool addStars();
   template <std::uint32_t k>
   [[nodiscard]] std::uint32_t sideOf(CellId c) const;
-  template <std::uint32_t k>
   void addStaying(std::size_t before, std::uint32_t from);
   template <std::uint32_t k>
   [[nodiscard]] bool addGoing(std::size_t count);
