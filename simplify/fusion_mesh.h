@@ -32,7 +32,7 @@ struct Star {
 };
 
 /// The plane of a boundary triangle. Up to 16 bits of lattice the normal is exact.
-struct alignas(32) BoundaryPlane {
+struct alignas(32) BoundaryPlane {  // in one cache line
   Vector3 normal;        ///< outward, as long as twice the area
   double inverseLength;  ///< 1 over that, 0 for a triangle without area
 };

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <random>
 
+#include "codec/boundary.h"
 #include "simplify/full_link_test.h"
 #include "simplify/qtetfusion.h"
 #include "tests/support/meshes.h"
@@ -75,6 +78,62 @@ TEST(FusionTest, theLinkConditionOfAnEdgeAgreesWithTheWholeLink) {
   EXPECT_GT(legalEdges(gridMesh(5, 2, [](int i, int j, int k) { return i != 2 || j != 2 || k != 2; })), 0u);
   EXPECT_GT(legalEdges(gridMesh(6, 3, [](int i, int j, int) { return i < 2 || j < 2 || i > 3; })), 0u);
   EXPECT_GT(legalEdges(gridMesh(5, 4, [](int i, int j, int k) { return (i + j + k) % 4 != 0; })), 0u) << "pinched in edges and points";
+}
+
+/// A spool: four vertices on its axis, `ring` round it, so that the edge in the middle of the axis has `ring` cells.
+LatticeMesh spool(VertexId ring) {
+  LatticeMesh mesh;
+  mesh.lattice.bits = 16;
+  for (const std::int32_t z : {0, 10000, 20000, 30000}) mesh.points.push_back({30000, 30000, z});
+  for (VertexId i = 0; i < ring; ++i) {
+    const double angle = 2 * std::numbers::pi * i / ring;
+    mesh.points.push_back({static_cast<std::int32_t>(30000 + 20000 * std::cos(angle)), static_cast<std::int32_t>(30000 + 20000 * std::sin(angle)), 15000});
+  }
+  for (VertexId z = 0; z < 3; ++z)
+    for (VertexId i = 0; i < ring; ++i) mesh.tetrahedra.push_back({4 + i, 4 + (i + 1) % ring, z, z + 1});
+  mesh.boundary = boundaryOf(mesh.tetrahedra);
+  return mesh;
+}
+
+TEST(FusionTest, theLinkConditionAgreesWhereAnEdgeHasMoreCellsThanAWordHasBits) {
+  for (const VertexId ring : {3u, 4u, 63u, 64u, 65u, 120u}) {
+    const LatticeMesh mesh = spool(ring);
+    EXPECT_GT(legalEdges(mesh), 0u) << ring;
+    const FusionMesh live(mesh);
+    FusionTest test(live);
+    ASSERT_TRUE(test.gather({2, {1, 2, 0, 0}}));
+    EXPECT_TRUE(test.keepsTopology()) << ring;
+  }
+}
+
+TEST(FusionTest, theEnvelopeOfSmallNumbersIsThatOfLargeOnes) {
+  LatticeMesh mesh = gridMesh(4, 5, [](int i, int j, int k) { return (i + j + k) % 4 != 0; });
+  const FusionMesh small(mesh);
+  mesh.lattice.bits = 17;  // more than doubles are sure to hold; these points they do
+  const FusionMesh large(mesh);
+  FusionTest one(small), other(large);
+  std::mt19937 random(5);
+  const auto coordinate = [&] { return 1 + 0.001 * static_cast<double>(random() % 255000); };
+  std::size_t inside = 0, projected = 0;
+  for (const Tetrahedron& t : mesh.tetrahedra) {
+    const Prey edge{2, {t[0], t[1], 0, 0}};
+    if (!one.gatherBoundary(edge) || !other.gatherBoundary(edge)) continue;
+    for (int trial = 0; trial < 5; ++trial) {
+      const Vector3 p{coordinate(), coordinate(), coordinate()};
+      const LatticePoint rounded{static_cast<std::int32_t>(p[0]), static_cast<std::int32_t>(p[1]), static_cast<std::int32_t>(p[2])};
+      ASSERT_EQ(one.insideEnvelope(rounded), other.insideEnvelope(rounded));
+      inside += one.insideEnvelope(rounded);
+      LatticePoint here{}, there{};
+      const bool isProjected = one.projectInside(p, here);
+      ASSERT_EQ(isProjected, other.projectInside(p, there));
+      if (isProjected) {
+        ASSERT_EQ(here, there);
+      }
+      projected += isProjected;
+    }
+  }
+  EXPECT_GT(inside, 10u);
+  EXPECT_GT(projected, 2 * inside);
 }
 
 TEST(FusionTest, theLinkConditionAgreesOnMeshesThatCanHardlyBeFusedFurther) {
