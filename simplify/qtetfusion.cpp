@@ -1,9 +1,11 @@
 #include "simplify/qtetfusion.h"
 
 #include <algorithm>
+#include <bit>
 #include <boost/heap/d_ary_heap.hpp>
 #include <cmath>
 #include <deque>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <span>
@@ -42,14 +44,20 @@ constexpr std::size_t kAheadShare = 64;
 constexpr std::size_t kLeastAhead = 32;
 constexpr std::size_t kMostAhead = 2048;
 
-struct Entry {
-  float key = 0;
-  VertexId owner = 0;
-  // The heap keeps the largest on top; equal keys in order of the owner, so that the outcome is one and the same everywhere.
-  bool operator<(const Entry& other) const { return key != other.key ? key > other.key : owner > other.owner; }
-};
+// An entry of the queue as one number, the cheapest first: its key, then its owner, so that the outcome is one and the same everywhere.
+using Entry = std::uint64_t;
 
-using Queue = boost::heap::d_ary_heap<Entry, boost::heap::arity<4>>;
+Entry entryOf(float key, VertexId owner) {
+  const auto bits = std::bit_cast<std::uint32_t>(key + 0.0f);  // -0 is 0
+  return std::uint64_t{(bits >> 31) != 0 ? ~bits : bits | 0x80000000u} << 32 | owner;
+}
+float keyOf(Entry entry) {
+  const auto bits = static_cast<std::uint32_t>(entry >> 32);
+  return std::bit_cast<float>((bits >> 31) != 0 ? bits & 0x7FFFFFFFu : ~bits);
+}
+VertexId ownerOf(Entry entry) { return static_cast<VertexId>(entry); }
+
+using Queue = boost::heap::d_ary_heap<Entry, boost::heap::arity<4>, boost::heap::compare<std::greater<Entry>>>;
 
 /// Null where the fusion is not legal; that, too, is known only of what costs no more than it may.
 struct Outcome {
@@ -195,31 +203,31 @@ class Simplifier {
         const VertexId v = vertices_[i];
         dropDead(v);
         const Candidate* best = candidates_.best(v);
-        entries_[i] = {best ? best->key : std::numeric_limits<float>::infinity(), v};
+        entries_[i] = entryOf(best ? best->key : std::numeric_limits<float>::infinity(), v);
       }
     });
-    std::erase_if(entries_, [&](const Entry& e) { return e.key > dearest_ || std::isinf(e.key); });
+    const Entry end = std::isinf(dearest_) ? entryOf(dearest_, 0) : entryOf(dearest_, ~0u) + 1;
+    std::erase_if(entries_, [&](Entry e) { return e >= end; });
     next_ = proposedTo_ = 0;
     if (entries_.empty()) return;
-    const auto cheaper = [](const Entry& a, const Entry& b) { return b < a; };
     // What a band can afford it will do, so that the order counts for less there than the number of levels.
     const double levelQuantile = std::isinf(dearest_) ? kLevelQuantile : options_.bands.levelQuantile;
     const auto at = entries_.begin() + static_cast<std::ptrdiff_t>(levelQuantile * static_cast<double>(entries_.size() - 1));
-    std::nth_element(entries_.begin(), at, entries_.end(), cheaper);
-    limit_ = at->key;
-    entries_.erase(std::partition(at, entries_.end(), [&](const Entry& e) { return e.key <= limit_; }), entries_.end());
-    std::sort(entries_.begin(), entries_.end(), cheaper);
+    std::nth_element(entries_.begin(), at, entries_.end());
+    limit_ = keyOf(*at);
+    entries_.erase(std::partition(at, entries_.end(), [&](Entry e) { return e <= entryOf(limit_, ~0u); }), entries_.end());
+    std::sort(entries_.begin(), entries_.end());
     ahead_ = std::clamp(entries_.size() / kAheadShare, kLeastAhead, kMostAhead);
   }
 
   // The queue is the sorted entries and a heap of those that came back.
   [[nodiscard]] float nextKey() const {
-    const float key = next_ < entries_.size() ? entries_[next_].key : std::numeric_limits<float>::infinity();
-    return queue_.empty() ? key : std::min(key, queue_.top().key);
+    const float key = next_ < entries_.size() ? keyOf(entries_[next_]) : std::numeric_limits<float>::infinity();
+    return queue_.empty() ? key : std::min(key, keyOf(queue_.top()));
   }
   VertexId pop() {
-    if (next_ < entries_.size() && (queue_.empty() || queue_.top() < entries_[next_])) return entries_[next_++].owner;
-    const VertexId owner = queue_.top().owner;
+    if (next_ < entries_.size() && (queue_.empty() || entries_[next_] < queue_.top())) return ownerOf(entries_[next_++]);
+    const VertexId owner = ownerOf(queue_.top());
     queue_.pop();
     return owner;
   }
@@ -233,7 +241,7 @@ class Simplifier {
 
   // The queue's order has nothing to do with where things lie: what its next entries need is asked for in three steps, each of which needs the one before.
   void lookAhead() const {
-    const auto soon = [&](std::size_t steps) { return next_ + steps < entries_.size() ? entries_[next_ + steps].owner : kNone; };
+    const auto soon = [&](std::size_t steps) { return next_ + steps < entries_.size() ? ownerOf(entries_[next_ + steps]) : kNone; };
     if (const VertexId v = soon(12); v != kNone) touched_.prefetch(v), candidates_.prefetch(v), mesh_.prefetchVertex(v);
     if (const VertexId v = soon(8); v != kNone && !isLocked(v)) candidates_.prefetchBest(v), mesh_.prefetchList(v);
     if (const VertexId v = soon(4); v != kNone && !isLocked(v)) {
@@ -251,7 +259,7 @@ class Simplifier {
   void requeue(VertexId owner) {
     dropDead(owner);
     const Candidate* best = candidates_.best(owner);
-    if (best && best->key <= limit_) queue_.push({best->key, owner});
+    if (best && best->key <= limit_) queue_.push(entryOf(best->key, owner));
   }
 
   // With threads: proposals for the next entries, made in parallel. They are used as long as nothing they rely on is touched, so that the
@@ -261,7 +269,7 @@ class Simplifier {
     if (workers_.count() == 1) return;
     jobs_.clear();
     for (std::size_t i = next_; i < proposedTo_; ++i) {
-      const VertexId owner = entries_[i].owner;
+      const VertexId owner = ownerOf(entries_[i]);
       if (isLocked(owner) || !mesh_.alive(owner)) continue;
       const Candidate* best = candidates_.best(owner);
       if (best && mesh_.alive(best->partner) && !isLocked(best->partner)) jobs_.push_back({owner, &proposalFor(owner)});
