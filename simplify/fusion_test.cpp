@@ -48,16 +48,28 @@ bool FusionTest::gatherBoundary(const Prey& prey) {
   origin_ = mesh_.position(prey.vertex[0]);
   faceCount_ = 0;
   faceReach_ = 0;
-  for (std::uint32_t i = 0; i < prey.k; ++i)
-    for (const CellId c : mesh_.boundaryStar(prey.vertex[i])) {
-      std::uint32_t shared = 0, first = prey.k;
-      std::size_t at = 0;
-      for (std::size_t corner = 0; corner < 3; ++corner)
-        for (std::uint32_t j = 0; j < prey.k; ++j)
-          if (mesh_.cell(c)[corner] == prey.vertex[j]) ++shared, first = std::min(first, j), at = corner;
-      if (first == i) addFace(c, shared == 1, at);
-    }
+  flipped_.fill(kNoCell);
+  prey.k == 2 ? addFaces<2>() : prey.k == 3 ? addFaces<3>() : addFaces<4>();
   return true;
+}
+
+// The boundary triangles of each prey vertex that no earlier one has.
+template <std::uint32_t k>
+void FusionTest::addFaces() {
+  for (std::uint32_t i = 0; i < k; ++i) {
+    const VertexId v = prey_.vertex[i];
+    const Vector3 from = mesh_.position(v) - origin_;
+    for (const CellId c : mesh_.boundaryStar(v)) {
+      const auto& cell = mesh_.cell(c);
+      std::uint32_t side = 0;
+      for (std::uint32_t j = 0; j < k; ++j) {
+        const VertexId w = prey_.vertex[j];
+        side |= (std::uint32_t{cell[0] == w} | std::uint32_t{cell[1] == w} | std::uint32_t{cell[2] == w}) << j;
+      }
+      const std::uint32_t own = 1u << i;
+      if ((side & (own - 1)) == 0) addFace({c, side == own, static_cast<std::uint8_t>((cell[1] == v) + 2 * (cell[2] == v))}, from);
+    }
+  }
 }
 
 bool FusionTest::gatherRest() {
@@ -147,6 +159,7 @@ void FusionTest::measure() {
     for (const Vector3& p : std::span(places_).first(ids.size()))
       for (const double x : p) reach_ = std::max(reach_, std::abs(x));
   worst_ = 1;
+  suspect_ = 0;
   constexpr auto kNone = ~std::uint32_t{0};
   std::uint32_t waiting = kNone;
   for (std::uint32_t i = 0; i < star_.affected.size(); ++i) {
@@ -191,15 +204,17 @@ void FusionTest::measureGoing(std::size_t i, std::size_t j) {
   see(dot(cross(ab, ac), ad), dot(ab, ab) + dot(ac, ac) + dot(ad, ad) + dot(bc, bc) + dot(bd, bd) + dot(cd, cd));
 }
 
-// `moving`: of a face that stays, the corner that is prey.
-void FusionTest::addFace(CellId ghost, bool stays, std::size_t moving) {
-  const Vector3& normal = mesh_.plane(ghost).normal;
-  const auto cornerAt = [&](std::size_t i) { return mesh_.position(mesh_.cell(ghost)[i]) - origin_; };
-  if (mesh_.latticeBits() > kExactBits)
+// `from`: one of its corners, relative to the first prey vertex. Where doubles are exact each gives the same plane.
+inline void FusionTest::addFace(const Face& face, const Vector3& from) {
+  const Vector3& normal = mesh_.plane(face.ghost).normal;
+  double height = dot(normal, from);
+  if (mesh_.latticeBits() > kExactBits) {
+    const auto cornerAt = [&](std::size_t i) { return mesh_.position(mesh_.cell(face.ghost)[i]) - origin_; };
     for (std::size_t i = 0; i < 3; ++i)
       for (const double x : cornerAt(i)) faceReach_ = std::max(faceReach_, std::abs(x));
-  const double height = dot(normal, cornerAt(0));
-  faces_[faceCount_] = {ghost, stays, static_cast<std::uint8_t>(moving)};
+    height = dot(normal, cornerAt(0));
+  }
+  faces_[faceCount_] = face;
   Planes& planes = planes_[faceCount_ / 2];
   if (faceCount_++ % 2 == 0) {
     planes = {both(normal, {}), Pair{height, std::numeric_limits<double>::infinity()}};
@@ -209,47 +224,65 @@ void FusionTest::addFace(CellId ghost, bool stays, std::size_t moving) {
   }
 }
 
-bool FusionTest::flipsAt(VertexId v, const LatticePoint& p) const {
-  const Vector3 place = toVector(p), before = mesh_.position(v);
+// The cell of prey vertex i turns from positive to flat or inverted, further than `error`. Nothing is said of one that goes.
+inline bool FusionTest::flips(std::uint32_t i, CellId c, const Vector3& place, double error) const {
+  const auto& cell = mesh_.cell(c);
+  for (std::uint32_t j = 0; j < prey_.k; ++j)
+    if (j != i && mesh_.holds(c, prey_.vertex[j])) return false;
+  const VertexId v = prey_.vertex[i];
+  const auto t = withLast(cell, (cell[1] == v) + 2 * (cell[2] == v) + 3 * (cell[3] == v));
+  const Vector3 corner = mesh_.position(t[0]), normal = cross(mesh_.position(t[1]) - corner, mesh_.position(t[2]) - corner);
+  return dot(normal, place - corner) <= -error && dot(normal, mesh_.position(v) - corner) > error;
+}
+
+bool FusionTest::flipsAt(const LatticePoint& p, std::uint32_t moving) const {
+  const Vector3 place = toVector(p);
   // Coordinates reach as far as the lattice; what is too close to call is not called.
   const double error = mesh_.latticeBits() <= kExactBits ? 0 : kRounding * std::ldexp(1.0, 3 * mesh_.latticeBits());
-  for (const CellId c : mesh_.innerStar(v)) {
-    const auto& cell = mesh_.cell(c);
-    std::size_t at = 0, prey = 0;
-    for (const VertexId w : prey_.vertices())
-      for (std::size_t i = 0; i < 4; ++i) prey += cell[i] == w;
-    if (prey > 1) continue;
-    while (cell[at] != v) ++at;
-    const auto t = withLast(cell, at);
-    const Vector3 corner = mesh_.position(t[0]), normal = cross(mesh_.position(t[1]) - corner, mesh_.position(t[2]) - corner);
-    if (dot(normal, place - corner) <= -error && dot(normal, before - corner) > error) return true;
+  for (std::uint32_t i = 0; i < prey_.k; ++i)
+    if ((moving >> i & 1) != 0 && flipped_[i] != kNoCell && flips(i, flipped_[i], place, error)) return true;
+  for (std::uint32_t i = 0; i < prey_.k; ++i) {
+    if ((moving >> i & 1) == 0 || mesh_.point(prey_.vertex[i]) == p) continue;
+    const auto cells = mesh_.innerStar(prey_.vertex[i]);
+    const auto flipped = std::ranges::find_if(cells, [&](CellId c) { return flips(i, c, place, error); });
+    if (flipped == cells.end()) continue;
+    flipped_[i] = *flipped;
+    return true;
   }
   return false;
 }
 
 double FusionTest::shapeAt(const LatticePoint& p, double least) const {
   const Vector3 d = toVector(p) - origin_;
-  if (limits_.normalCosine >= 0)
-    for (const Face& face : faces())
-      if (face.stays && turnsTooFar(face, p)) return -1;
   const double distance = 3 * dot(d, d), rounding = this->rounding(d, reach_);
   const TwoVectors twice = both(d, d);
   const double floorSquared = std::max(floorSquared_, least * least);
   double worst = 1;
-  for (const Bases& bases : std::span(bases_).first(baseCount_)) {
+  for (std::size_t n = 0; n < baseCount_; ++n) {
+    const std::size_t i = n == 0 ? suspect_ : n == suspect_ ? 0 : n;
+    const Bases& bases = bases_[i];
     Pair volume = dot(bases.normal, twice) - bases.height;
     Pair squares = bases.squares + distance - 2 * dot(twice, bases.corners);
     for (int lane = 0; lane < 2; ++lane) {
       if (volume[lane] > rounding) continue;
       bool allowed = false;
       volume[lane] = exactVolume6(bases.cell[static_cast<std::size_t>(lane)], p, allowed);
-      if (!allowed) return -1;
+      if (!allowed) {
+        suspect_ = i;
+        return -1;
+      }
       if (volume[lane] <= 0) volume[lane] = squares[lane] = 1;  // flat, as it was: its shape does not count
     }
     const Pair shape = shapeSquared(volume, squares);
     worst = std::min(worst, std::min(shape[0], shape[1]));
-    if (worst < floorSquared) return -1;
+    if (worst < floorSquared) {
+      suspect_ = i;
+      return -1;
+    }
   }
+  if (limits_.normalCosine >= 0)
+    for (const Face& face : faces())
+      if (face.stays && turnsTooFar(face, p)) return -1;
   return std::sqrt(worst);
 }
 

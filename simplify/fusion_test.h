@@ -49,8 +49,8 @@ class FusionTest {
   /// Moves p onto the planes of the boundary faces that it lies outside of, one after the other, until its lattice point is inside.
   /// REQUIRES gatherBoundary.
   [[nodiscard]] bool projectInside(Vector3 p, LatticePoint& inside) const;
-  /// With prey vertex v at p one of its cells would flip or go flat, as far as doubles can tell. REQUIRES gatherBoundary.
-  [[nodiscard]] bool flipsAt(VertexId v, const LatticePoint& p) const;
+  /// With the prey at p a cell of one of these prey vertices, one bit each, would flip or go flat, as far as doubles can tell. REQUIRES gatherBoundary.
+  [[nodiscard]] bool flipsAt(const LatticePoint& p, std::uint32_t moving) const;
   /// How far the star's boundary may lie outside the original solid with the prey at p, in lattice steps. REQUIRES gatherBoundary, p inside the envelope.
   [[nodiscard]] float outsideAt(const LatticePoint& p) const;
   /// The worst shape among the affected cells with the prey at p (1 = regular, 0 = flat), or a negative number where p is not legal: a cell
@@ -90,7 +90,9 @@ class FusionTest {
   [[nodiscard]] bool addCell(CellId c, std::uint32_t from);
   [[nodiscard]] bool addGoing(CellId c, std::uint32_t side);
   [[nodiscard]] std::uint32_t intern(VertexId v);
-  void addFace(CellId ghost, bool stays, std::size_t moving);
+  template <std::uint32_t k>
+  void addFaces();
+  void addFace(const Face& face, const Vector3& from);
   void measure();
   void addBases(std::uint32_t i, std::uint32_t j);
   void measureGoing(std::size_t i, std::size_t j);
@@ -102,6 +104,7 @@ class FusionTest {
   [[nodiscard]] bool anyFacing(const Vector3& d, double error, const Visit& visit) const;
   [[nodiscard]] bool isOutside(const Face& face, double side, const LatticePoint& p, double error) const;
   [[nodiscard]] double distance(const Face& face, const LatticePoint& p) const;
+  [[nodiscard]] bool flips(std::uint32_t i, CellId c, const Vector3& place, double error) const;
   [[nodiscard]] bool turnsTooFar(const Face& face, const LatticePoint& p) const;
   [[nodiscard]] double rounding(const Vector3& d, double placesReach) const;
   [[nodiscard]] bool onLattice(const LatticePoint& p) const;
@@ -125,6 +128,10 @@ class FusionTest {
   ByCell<Face, 1> faces_;
   ByCell<Planes, 2> planes_;
   std::size_t baseCount_ = 0, faceCount_ = 0;  // of bases_, of faces_
+  // What forbade the last point is asked first about the next: of bases_, and a cell of each prey vertex.
+  mutable std::size_t suspect_ = 0;
+  static constexpr CellId kNoCell = ~CellId{0};
+  mutable std::array<CellId, 4> flipped_{};
   Vector3 origin_{};                  // the first prey vertex
   double faceReach_ = 0, reach_ = 0;  // the largest coordinate of the faces, of all places_
   double worst_ = 1;  // oldShape_ squared, as far as it is known
