@@ -1,8 +1,10 @@
 #include "simplify/fusion_point.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace qtet {
 namespace {
@@ -125,7 +127,9 @@ void FusionPointFinder::offerCheap(const Prey& prey, const FusionTest& test) {
 void FusionPointFinder::offerFree(const FusionTest& test) {
   const Vector3 middle = origin_ + deciding_.centre;
   const Vector3 best = origin_ + ideal_;
-  for (const Vector3& p : {best, 0.5 * (best + middle), middle}) {
+  const std::array<Vector3, 3> points{best, 0.5 * (best + middle), middle};
+  // The middle of one vertex is its place, which is known to be inside.
+  for (const Vector3& p : std::span(points).first(best == middle ? 1 : deciding_.count == 1 ? 2 : 3)) {
     LatticePoint inside = rounded(p);
     if (!deciding_.boundary || test.projectInside(p, inside)) offer(inside, dearnessOfFree(options_.rule));
   }
