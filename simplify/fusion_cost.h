@@ -2,7 +2,9 @@
 // point and its values; without fields the paper's planar quadric error (Eq. 1-7).
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -74,6 +76,9 @@ class FusionCost {
   static constexpr std::size_t kHead = kWeight + 1;
   static constexpr std::size_t kPerComponent = 5;
   static constexpr std::size_t kLineDoubles = 8;  // of a cache line
+  // The pull towards the barycentre, relative to the curvature of the quadric and, where it has none, to volume over diagonal squared.
+  static constexpr double kPull = 1e-6;
+  static constexpr double kFlatPull = 1e-7;
 
   struct Sum {
     Quadric q;
@@ -112,5 +117,27 @@ class FusionCost {
   std::vector<double, LineAllocator<double>> quadrics_;  // stride_ a slot
   std::vector<std::uint32_t> slot_;  // by vertex: a fused vertex takes its first prey vertex's
 };
+
+template <class T>
+inline T FusionCost::pullOf(const T& trace, const T& weight) const {
+  return kPull * trace / 3 + kFlatPull * weight / (diagonal_ * diagonal_) + std::numeric_limits<double>::min();
+}
+
+[[gnu::always_inline]] inline FusionCost::TwoEdges FusionCost::ofEdges(VertexId v, std::array<VertexId, 2> w) const {  // a call would pass all of it through memory
+  const double *const first = &quadrics_[at(w[0])], *const second = &quadrics_[at(w[1])];
+  const Vector3 from = mesh_.position(v);
+  const TwoVectors along = both(mesh_.position(w[0]) - from, mesh_.position(w[1]) - from);
+  TwoEdges out{edgeQuadric<Pair>(
+                   &quadrics_[at(v)],
+                   [&](std::size_t i) {
+                     return Pair{first[i], second[i]};
+                   },
+                   {-along[0], -along[1], -along[2]}, components_),
+               {},
+               along};
+  const auto& a = out.quadric.a;
+  out.pull = pullOf(a[0] + a[3] + a[5], out.quadric.weight);
+  return out;
+}
 
 }  // namespace qtet

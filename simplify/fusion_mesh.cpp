@@ -117,7 +117,10 @@ void FusionMesh::removeFromStar(VertexId v, CellId c) {
 
 std::uint32_t FusionMesh::placeInStar(VertexId v, CellId c) {
   const auto cells = star(v);
-  if (cells.size() <= kHubCells) return static_cast<std::uint32_t>(std::ranges::find(cells, c) - cells.begin());
+  if (cells.size() <= kHubCells) {
+    const auto first = cells.begin() + (isGhost(c) ? 0 : stars_[v].ghosts);
+    return static_cast<std::uint32_t>(std::find(first, cells.end(), c) - cells.begin());
+  }
   const auto [hub, isNew] = placesInHub_.try_emplace(v);
   auto& places = hub->second;
   for (std::uint32_t i = 0; isNew && i < cells.size(); ++i) places[cells[i]] = i;

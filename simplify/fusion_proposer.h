@@ -14,7 +14,7 @@
 #include "simplify/fusion_mesh.h"
 #include "simplify/fusion_point.h"
 #include "simplify/fusion_test.h"
-#include "simplify/local_vertices.h"
+#include "simplify/vertex_counts.h"
 
 namespace qtet {
 
@@ -93,7 +93,7 @@ class FusionProposer {
   FusionTest test_;
   FusionPointFinder finder_;
   CellShares shares_;
-  LocalVertices neighbours_;
+  VertexCounts counts_;
   std::vector<VertexId> companions_;  // the free ones first
   std::size_t freeCompanions_ = 0;
 };

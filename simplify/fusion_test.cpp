@@ -48,6 +48,7 @@ bool FusionTest::gatherBoundary(const Prey& prey) {
   origin_ = mesh_.position(prey.vertex[0]);
   faceCount_ = 0;
   faceReach_ = 0;
+  flipped_.fill(kNoCell);
   prey.k == 2 ? addFaces<2>() : prey.k == 3 ? addFaces<3>() : addFaces<4>();
   return true;
 }
@@ -166,6 +167,7 @@ void FusionTest::measure() {
     for (const Vector3& p : std::span(places_).first(ids.size()))
       for (const double x : p) reach_ = std::max(reach_, std::abs(x));
   worst_ = 1;
+  suspect_ = 0;
   for (std::size_t i = 0; i < innerCount_; i += 2) addBases(innerCells_[i], innerCells_[std::min(i + 1, innerCount_ - 1)]);
   for (std::size_t i = 0; i < goingCount_; i += 2) measureGoing(i, std::min(i + 1, goingCount_ - 1));
   oldShape_ = std::sqrt(worst_);
@@ -224,46 +226,65 @@ inline void FusionTest::addFace(const Face& face, const Vector3& from) {
   }
 }
 
-bool FusionTest::flipsAt(VertexId v, const LatticePoint& p) const {
-  const Vector3 place = toVector(p), before = mesh_.position(v);
+// The cell of prey vertex i turns from positive to flat or inverted, further than `error`. Nothing is said of one that goes.
+inline bool FusionTest::flips(std::uint32_t i, CellId c, const Vector3& place, double error) const {
+  const auto& cell = mesh_.cell(c);
+  for (std::uint32_t j = 0; j < prey_.k; ++j)
+    if (j != i && mesh_.holds(c, prey_.vertex[j])) return false;
+  const VertexId v = prey_.vertex[i];
+  const auto t = withLast(cell, (cell[1] == v) + 2 * (cell[2] == v) + 3 * (cell[3] == v));
+  const Vector3 corner = mesh_.position(t[0]), normal = cross(mesh_.position(t[1]) - corner, mesh_.position(t[2]) - corner);
+  return dot(normal, place - corner) <= -error && dot(normal, mesh_.position(v) - corner) > error;
+}
+
+bool FusionTest::flipsAt(const LatticePoint& p, std::uint32_t moving) const {
+  const Vector3 place = toVector(p);
   // Coordinates reach as far as the lattice; what is too close to call is not called.
   const double error = mesh_.latticeBits() <= kExactBits ? 0 : kRounding * std::ldexp(1.0, 3 * mesh_.latticeBits());
-  for (const CellId c : mesh_.innerStar(v)) {
-    const auto& cell = mesh_.cell(c);
-    const unsigned at = cornersThatAre(cell, v);
-    unsigned prey = 0;
-    for (const VertexId w : prey_.vertices()) prey |= cornersThatAre(cell, w);
-    if (prey != at) continue;
-    const auto t = withLast(cell, onlyCorner(at));
-    const Vector3 corner = mesh_.position(t[0]), normal = cross(mesh_.position(t[1]) - corner, mesh_.position(t[2]) - corner);
-    if (dot(normal, place - corner) <= -error && dot(normal, before - corner) > error) return true;
+  for (std::uint32_t i = 0; i < prey_.k; ++i)
+    if ((moving >> i & 1) != 0 && flipped_[i] != kNoCell && flips(i, flipped_[i], place, error)) return true;
+  for (std::uint32_t i = 0; i < prey_.k; ++i) {
+    if ((moving >> i & 1) == 0 || mesh_.point(prey_.vertex[i]) == p) continue;
+    const auto cells = mesh_.innerStar(prey_.vertex[i]);
+    const auto flipped = std::ranges::find_if(cells, [&](CellId c) { return flips(i, c, place, error); });
+    if (flipped == cells.end()) continue;
+    flipped_[i] = *flipped;
+    return true;
   }
   return false;
 }
 
 double FusionTest::shapeAt(const LatticePoint& p, double least) const {
   const Vector3 d = toVector(p) - origin_;
-  if (limits_.normalCosine >= 0)
-    for (const Face& face : faces())
-      if (face.stays && turnsTooFar(face, p)) return -1;
   const double distance = 3 * dot(d, d), rounding = this->rounding(d, reach_);
   const TwoVectors twice = both(d, d);
   const double floorSquared = std::max(floorSquared_, least * least);
   double worst = 1;
-  for (const Bases& bases : std::span(bases_).first(baseCount_)) {
+  for (std::size_t n = 0; n < baseCount_; ++n) {
+    const std::size_t i = n == 0 ? suspect_ : n == suspect_ ? 0 : n;
+    const Bases& bases = bases_[i];
     Pair volume = dot(bases.normal, twice) - bases.height;
     Pair squares = bases.squares + distance - 2 * dot(twice, bases.corners);
     for (int lane = 0; lane < 2; ++lane) {
       if (volume[lane] > rounding) continue;
       bool allowed = false;
       volume[lane] = exactVolume6(bases.cell[static_cast<std::size_t>(lane)], p, allowed);
-      if (!allowed) return -1;
+      if (!allowed) {
+        suspect_ = i;
+        return -1;
+      }
       if (volume[lane] <= 0) volume[lane] = squares[lane] = 1;  // flat, as it was: its shape does not count
     }
     const Pair shape = shapeSquared(volume, squares);
     worst = std::min(worst, std::min(shape[0], shape[1]));
-    if (worst < floorSquared) return -1;
+    if (worst < floorSquared) {
+      suspect_ = i;
+      return -1;
+    }
   }
+  if (limits_.normalCosine >= 0)
+    for (const Face& face : faces())
+      if (face.stays && turnsTooFar(face, p)) return -1;
   return std::sqrt(worst);
 }
 

@@ -49,8 +49,8 @@ class FusionTest {
   /// Moves p onto the planes of the boundary faces that it lies outside of, one after the other, until its lattice point is inside.
   /// REQUIRES gatherBoundary.
   [[nodiscard]] bool projectInside(Vector3 p, LatticePoint& inside) const;
-  /// With prey vertex v at p one of its cells would flip or go flat, as far as doubles can tell. REQUIRES gatherBoundary.
-  [[nodiscard]] bool flipsAt(VertexId v, const LatticePoint& p) const;
+  /// With the prey at p a cell of one of these prey vertices, one bit each, would flip or go flat, as far as doubles can tell. REQUIRES gatherBoundary.
+  [[nodiscard]] bool flipsAt(const LatticePoint& p, std::uint32_t moving) const;
   /// How far the star's boundary may lie outside the original solid with the prey at p, in lattice steps. REQUIRES gatherBoundary, p inside the envelope.
   [[nodiscard]] float outsideAt(const LatticePoint& p) const;
   /// The worst shape among the affected cells with the prey at p (1 = regular, 0 = flat), or a negative number where p is not legal: a cell
@@ -107,6 +107,7 @@ class FusionTest {
   [[nodiscard]] bool anyFacing(const Vector3& d, double error, const Visit& visit) const;
   [[nodiscard]] bool isOutside(const Face& face, double side, const LatticePoint& p, double error) const;
   [[nodiscard]] double distance(const Face& face, const LatticePoint& p) const;
+  [[nodiscard]] bool flips(std::uint32_t i, CellId c, const Vector3& place, double error) const;
   [[nodiscard]] bool turnsTooFar(const Face& face, const LatticePoint& p) const;
   /// A point lies outside if and only if doubles say so.
   [[nodiscard]] bool isEnvelopeExact() const;
@@ -138,6 +139,10 @@ class FusionTest {
   ByCell<Planes, 2> planes_;
   std::size_t firstVertices_ = 0, firstAffected_ = 0;  // k = 2: local vertices and affected cells of the first prey vertex; the second's come after them
   std::size_t baseCount_ = 0, faceCount_ = 0, innerCount_ = 0, goingCount_ = 0;  // of bases_, of faces_, of innerCells_, of goingCells_
+  // What forbade the last point is asked first about the next: of bases_, and a cell of each prey vertex.
+  mutable std::size_t suspect_ = 0;
+  static constexpr CellId kNoCell = ~CellId{0};
+  mutable std::array<CellId, 4> flipped_{};
   Vector3 origin_{};                  // the first prey vertex
   double faceReach_ = 0, reach_ = 0;  // the largest coordinate of the faces, of all places_
   double worst_ = 1;  // oldShape_ squared, as far as it is known

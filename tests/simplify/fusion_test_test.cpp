@@ -8,6 +8,7 @@
 #include <random>
 
 #include "codec/boundary.h"
+#include "codec/placement.h"
 #include "simplify/full_link_test.h"
 #include "simplify/qtetfusion.h"
 #include "tests/support/meshes.h"
@@ -164,11 +165,38 @@ TEST(FusionTest, measuresShapeAndRefusesFlips) {
     EXPECT_LE(shape, 1);
     EXPECT_EQ(test.shapeAt(mesh.points[v], 0.99 * shape), shape);
     EXPECT_LT(test.shapeAt(mesh.points[v], 1.01 * std::abs(shape) + 0.01), 0) << "worse than what was asked for";
-    EXPECT_FALSE(test.flipsAt(v, mesh.points[v]));
-    EXPECT_TRUE(test.flipsAt(v, {-1000, -1000, -1000}));
+    EXPECT_FALSE(test.flipsAt(mesh.points[v], 1));
+    EXPECT_TRUE(test.flipsAt({-1000, -1000, -1000}, 1));
     EXPECT_LT(test.shapeAt({-1000, -1000, -1000}), 0) << "far outside the star every cell on this side flips";
   }
   EXPECT_GT(inner, 0u);
+}
+
+TEST(FusionTest, whatWasAskedBeforeHasNoSay) {
+  const LatticeMesh mesh = gridMesh(4, 2);
+  const FusionMesh live(mesh);
+  FusionTest test(live), fresh(live);
+  std::size_t flipped = 0, legal = 0;
+  for (VertexId v = 0; v < mesh.points.size(); ++v) {
+    const auto& cell = live.cell(live.star(v)[0]);
+    const Prey prey{2, {v, cell[0] == v ? cell[1] : cell[0], 0, 0}};
+    if (!test.gather(prey)) continue;
+    std::vector<LatticePoint> points;
+    for (const VertexId at : test.star().link)
+      if (at != kGhost) points.insert(points.end(), {mesh.points[at], quarter(mesh.points[v], mesh.points[at])});
+    for (const LatticePoint& p : points) {
+      ASSERT_TRUE(fresh.gather(prey));
+      const bool flips = fresh.flipsAt(p, 3);
+      EXPECT_EQ(test.flipsAt(p, 3), flips);
+      EXPECT_EQ(flips, fresh.flipsAt(p, 1) || fresh.flipsAt(p, 2));
+      const double shape = fresh.shapeAt(p);
+      EXPECT_EQ(test.shapeAt(p), shape);
+      EXPECT_TRUE(!flips || shape < 0);
+      flipped += flips, legal += shape > 0;
+    }
+  }
+  EXPECT_GT(flipped, 0u);
+  EXPECT_GT(legal, 0u);
 }
 
 }  // namespace
