@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "codec/fetch.h"
 #include "codec/mesh.h"
 
 namespace qtet {
@@ -41,10 +42,10 @@ class Candidates {
   }
   /// Ask the memory for the owner's list, and then for what best() looks at.
   void prefetch(VertexId owner) const {
-    if (owner < lists_.size()) __builtin_prefetch(&lists_[owner]);
+    if (owner < lists_.size()) fetch(&lists_[owner]);
   }
   void prefetchBest(VertexId owner) const {
-    if (owner < lists_.size()) __builtin_prefetch(pool_.data() + lists_[owner].first + lists_[owner].next);
+    if (owner < lists_.size()) fetch(pool_.data() + lists_[owner].first + lists_[owner].next);
   }
   /// The best one and all after it.
   [[nodiscard]] std::span<const Candidate> remaining(VertexId owner) const {

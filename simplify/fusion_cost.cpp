@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "codec/boundary.h"
@@ -16,9 +15,6 @@ namespace {
 // The boundary's field counts like that of a layer this thick (of the diagonal): the thin cells at a wall have no volume to speak for them, yet
 // there the field is steepest, and it is what a viewer shows.
 constexpr double kWallLayer = 3e-5;
-// The pull towards the barycentre, relative to the curvature of the quadric and, where it has none, to volume over diagonal squared.
-constexpr double kPull = 1e-6;
-constexpr double kFlatPull = 1e-7;
 
 }  // namespace
 
@@ -223,34 +219,12 @@ PreyQuadric FusionCost::of(const Prey& prey) const {
   return {quadric, pullOf(quadric.a.trace(), sum.weight)};
 }
 
-template <class T>
-T FusionCost::pullOf(const T& trace, const T& weight) const {
-  return kPull * trace / 3 + kFlatPull * weight / (diagonal_ * diagonal_) + std::numeric_limits<double>::min();
-}
-
 // sumOf and reduced in one.
 PreyQuadric FusionCost::ofEdge(VertexId v, VertexId w) const {
   const double* const other = &quadrics_[at(w)];
   const auto [a, b, c, weight] = edgeQuadric<double>(
       &quadrics_[at(v)], [&](std::size_t i) { return other[i]; }, mesh_.position(v) - mesh_.position(w), components_);
   return {{{a[0], a[1], a[2], a[3], a[4], a[5]}, b, c}, pullOf(a[0] + a[3] + a[5], weight)};
-}
-
-FusionCost::TwoEdges FusionCost::ofEdges(VertexId v, std::array<VertexId, 2> w) const {
-  const double *const first = &quadrics_[at(w[0])], *const second = &quadrics_[at(w[1])];
-  const Vector3 from = mesh_.position(v);
-  const TwoVectors along = both(mesh_.position(w[0]) - from, mesh_.position(w[1]) - from);
-  TwoEdges out{edgeQuadric<Pair>(
-                   &quadrics_[at(v)],
-                   [&](std::size_t i) {
-                     return Pair{first[i], second[i]};
-                   },
-                   {-along[0], -along[1], -along[2]}, components_),
-               {},
-               along};
-  const auto& a = out.quadric.a;
-  out.pull = pullOf(a[0] + a[3] + a[5], out.quadric.weight);
-  return out;
 }
 
 double FusionCost::valuesAt(const Prey& prey, const LatticePoint& p, std::span<double> values) const {

@@ -3,15 +3,19 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "codec/fetch.h"
 #include "codec/mesh.h"
 #include "simplify/cost_parts.h"
 #include "simplify/edge_quadric.h"
 #include "simplify/fusion_mesh.h"
+#include "simplify/line_allocator.h"
 #include "simplify/quadric.h"
 #include "simplify/two_vectors.h"
 
@@ -48,10 +52,10 @@ class FusionCost {
   /// What v itself is off by already: its quadric at its own place and values.
   [[nodiscard]] double of(VertexId v) const { return quadrics_[at(v) + kConstant]; }
   /// Asks the memory for where v's quadric is.
-  void prefetchSlot(VertexId v) const { __builtin_prefetch(&slot_[v]); }
+  void prefetchSlot(VertexId v) const { fetch(&slot_[v]); }
   /// Asks the memory for v's quadric.
   void prefetch(VertexId v) const {
-    for (std::size_t i = 0; i < stride_; i += kLineDoubles) __builtin_prefetch(&quadrics_[at(v) + i]);
+    for (std::size_t i = 0; i < stride_; i += kLineDoubles) fetch(&quadrics_[at(v) + i]);
   }
 
   /// The fields in the cost, in the order of their values.
@@ -73,6 +77,9 @@ class FusionCost {
   static constexpr std::size_t kHead = kWeight + 1;
   static constexpr std::size_t kPerComponent = 5;
   static constexpr std::size_t kLineDoubles = 8;  // of a cache line
+  // The pull towards the barycentre, relative to the curvature of the quadric and, where it has none, to volume over diagonal squared.
+  static constexpr double kPull = 1e-6;
+  static constexpr double kFlatPull = 1e-7;
 
   struct Sum {
     Quadric q;
@@ -118,8 +125,30 @@ class FusionCost {
   std::size_t components_ = 0, stride_ = kHead;
   double diagonal_ = 1;              // lattice steps
   std::vector<double> limits_;       // a component's largest value; the smallest is 0
-  std::vector<double> quadrics_;     // stride_ a slot
+  std::vector<double, LineAllocator<double>> quadrics_;  // stride_ a slot
   std::vector<std::uint32_t> slot_;  // by vertex: a fused vertex takes its first prey vertex's
 };
+
+template <class T>
+inline T FusionCost::pullOf(const T& trace, const T& weight) const {
+  return kPull * trace / 3 + kFlatPull * weight / (diagonal_ * diagonal_) + std::numeric_limits<double>::min();
+}
+
+[[gnu::always_inline]] inline FusionCost::TwoEdges FusionCost::ofEdges(VertexId v, std::array<VertexId, 2> w) const {  // a call would pass all of it through memory
+  const double *const first = &quadrics_[at(w[0])], *const second = &quadrics_[at(w[1])];
+  const Vector3 from = mesh_.position(v);
+  const TwoVectors along = both(mesh_.position(w[0]) - from, mesh_.position(w[1]) - from);
+  TwoEdges out{edgeQuadric<Pair>(
+                   &quadrics_[at(v)],
+                   [&](std::size_t i) {
+                     return Pair{first[i], second[i]};
+                   },
+                   {-along[0], -along[1], -along[2]}, components_),
+               {},
+               along};
+  const auto& a = out.quadric.a;
+  out.pull = pullOf(a[0] + a[3] + a[5], out.quadric.weight);
+  return out;
+}
 
 }  // namespace qtet

@@ -53,13 +53,17 @@ void FusionMesh::buildStars() {
 
 void FusionMesh::findSingular(Workers* workers) {
   constexpr std::size_t kGrain = 1024;
+  constexpr VertexId kAhead = 4;
   singular_.assign(history_.points.size(), 0);
   std::vector<SphereTest> tests(workers ? workers->count() : 1, SphereTest(history_.points.size()));
-  const auto ask = [&](std::size_t worker, std::size_t v) {
-    singular_[v] = !tests[worker].isLinkSphere(static_cast<VertexId>(v), star(static_cast<VertexId>(v)), history_.cells);
+  const auto ask = [&](std::size_t worker, std::size_t i) {
+    const auto v = static_cast<VertexId>(i);
+    if (i + kAhead < singular_.size()) prefetchStar(v + kAhead);
+    singular_[i] = !tests[worker].isLinkSphere(v, star(v), history_.cells);
   };
-  if (workers) return workers->forEach(singular_.size(), kGrain, ask);
-  for (std::size_t v = 0; v < singular_.size(); ++v) ask(0, v);
+  if (workers) workers->forEach(singular_.size(), kGrain, ask);
+  for (std::size_t i = 0; workers == nullptr && i < singular_.size(); ++i) ask(0, i);
+  hasSingular_ = std::ranges::find(singular_, 1) != singular_.end();
 }
 
 void FusionMesh::findInterfaces() {
@@ -118,7 +122,10 @@ void FusionMesh::removeFromStar(VertexId v, CellId c) {
 
 std::uint32_t FusionMesh::placeInStar(VertexId v, CellId c) {
   const auto cells = star(v);
-  if (cells.size() <= kHubCells) return static_cast<std::uint32_t>(std::ranges::find(cells, c) - cells.begin());
+  if (cells.size() <= kHubCells) {
+    const auto first = cells.begin() + (isGhost(c) ? 0 : stars_[v].ghosts);
+    return static_cast<std::uint32_t>(std::find(first, cells.end(), c) - cells.begin());
+  }
   const auto [hub, isNew] = placesInHub_.try_emplace(v);
   auto& places = hub->second;
   for (std::uint32_t i = 0; isNew && i < cells.size(); ++i) places[cells[i]] = i;
@@ -171,17 +178,19 @@ VertexId FusionMesh::fuse(const Prey& prey, const FusedVertex& what, const Star&
   }
   for (std::size_t i = 0; i < star.affected.size(); ++i) {
     const CellId c = star.affected[i];
-    std::ranges::replace(history_.cells[c], prey.vertex[star.labels[i]], fused);
+    auto& cell = history_.cells[c];
+    cell[onlyCorner(cornersThatAre(cell, prey.vertex[star.labels[i]]))] = fused;
     if (isGhost(c)) findPlane(c);
   }
   for (const CellId c : star.deleted) {
     history_.live[c] = 0;
-    bool ghost = false;
-    for (const VertexId v : history_.cells[c]) {
-      ghost |= v == kGhost;
-      if (v != kGhost && aliveVertex_[v]) removeFromStar(v, c);
-    }
-    if (!ghost) --liveTetrahedra_;
+    liveTetrahedra_ -= !isGhost(c);
+    const auto& cell = history_.cells[c];
+    unsigned gone = 0;
+    for (const VertexId v : prey.vertices()) gone |= cornersThatAre(cell, v);
+    const OtherCorners& others = kOtherCorners[gone];
+    for (std::size_t i = 0; i < others.count; ++i)
+      if (const VertexId v = cell[others.corner[i]]; v != kGhost) removeFromStar(v, c);
   }
   onBoundary_.push_back(boundary);
   if (hasRegions()) onInterface_.push_back(interface);

@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "codec/fusion_history.h"
+#include "codec/fetch.h"
 #include "codec/mesh.h"
+#include "simplify/cell_corners.h"
 #include "simplify/vector3.h"
 
 namespace qtet {
@@ -32,7 +34,7 @@ struct Star {
 };
 
 /// The plane of a boundary triangle. Up to 16 bits of lattice the normal is exact.
-struct BoundaryPlane {
+struct alignas(32) BoundaryPlane {  // in one cache line
   Vector3 normal;        ///< outward, as long as twice the area
   double inverseLength;  ///< 1 over that, 0 for a triangle without area
 };
@@ -58,7 +60,7 @@ class FusionMesh {
   [[nodiscard]] bool alive(VertexId v) const { return aliveVertex_[v]; }
   [[nodiscard]] bool onBoundary(VertexId v) const { return onBoundary_[v]; }
   /// The link of v is no sphere: the mesh is not a manifold there, and v is never prey.
-  [[nodiscard]] bool singular(VertexId v) const { return singular_[v]; }
+  [[nodiscard]] bool singular(VertexId v) const { return hasSingular_ && singular_[v]; }
   [[nodiscard]] const LatticePoint& point(VertexId v) const { return history_.points[v]; }
   [[nodiscard]] Vector3 position(VertexId v) const { return toVector(history_.points[v]); }
   [[nodiscard]] const std::array<VertexId, 4>& cell(CellId c) const { return history_.cells[c]; }
@@ -70,10 +72,7 @@ class FusionMesh {
   /// The others.
   [[nodiscard]] std::span<const CellId> innerStar(VertexId v) const { return star(v).subspan(stars_[v].ghosts); }
   [[nodiscard]] bool isGhost(CellId c) const { return c >= firstGhost_; }
-  [[nodiscard]] bool holds(CellId c, VertexId v) const {
-    const auto& cell = history_.cells[c];
-    return (int{cell[0] == v} | int{cell[1] == v} | int{cell[2] == v} | int{cell[3] == v}) != 0;  // without branches
-  }
+  [[nodiscard]] bool holds(CellId c, VertexId v) const { return cornersThatAre(history_.cells[c], v) != 0; }
   /// The cells that hold both, boundary triangles among them.
   [[nodiscard]] std::size_t cellsRound(VertexId v, VertexId w) const {
     std::size_t count = 0;
@@ -81,13 +80,20 @@ class FusionMesh {
     return count;
   }
   /// Ask the memory for where v's star is, and then for its list.
-  void prefetchVertex(VertexId v) const { __builtin_prefetch(&stars_[v]); }
-  void prefetchList(VertexId v) const { __builtin_prefetch(pool_.data() + stars_[v].first); }
+  void prefetchVertex(VertexId v) const { fetch(&stars_[v]); }
+  void prefetchList(VertexId v) const {
+    const auto cells = star(v);
+    fetch(cells.data()), fetch(cells.data() + cells.size());  // mostly two lines
+  }
   /// Asks the memory for the cells of v's star, which lie anywhere: by the time they are read they are near.
   void prefetchStar(VertexId v) const {
-    for (const CellId c : star(v)) __builtin_prefetch(&history_.cells[c]);
+    for (const CellId c : star(v)) fetch(&history_.cells[c]);
   }
-  void prefetchPoint(VertexId v) const { __builtin_prefetch(&history_.points[v]); }
+  /// And for the planes of its boundary triangles.
+  void prefetchPlanes(VertexId v) const {
+    for (const CellId c : boundaryStar(v)) fetch(&planes_[c - firstGhost_]);
+  }
+  void prefetchPoint(VertexId v) const { fetch(&history_.points[v]); }
   [[nodiscard]] bool hasRegions() const { return regionField_ != kNoRegions; }
   /// REQUIRES: hasRegions().
   [[nodiscard]] std::int64_t region(CellId c) const {
@@ -153,6 +159,7 @@ class FusionMesh {
   std::vector<StarRange> stars_;
   std::vector<CellId> pool_;  // stars back to back, with holes
   std::size_t livePool_ = 0;
+  bool hasSingular_ = false;  // hardly a mesh does
   std::size_t liveTetrahedra_ = 0;
 };
 

@@ -1,8 +1,10 @@
 #include "simplify/fusion_point.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace qtet {
 namespace {
@@ -16,6 +18,10 @@ constexpr double kSurelyWorse = 1 - 1e-9;
 // An edge of the boundary costs more than its quadric says, since the envelope leaves it less room: by 1.5 nearly half of the proposals that come to
 // nothing are spared, by 2 the hull begins to suffer, for what is flat costs no more and waits too long.
 constexpr double kEnvelopeFactor = 1.5;
+// Where so large a share of what got as far as its star had no legal point there, it pays to ask for flips before.
+constexpr double kOftenRefused = 0.125;
+// Of the last one: what happens in a part of the mesh decides there.
+constexpr double kLastShare = 1.0 / 64;
 // Flat cells that were flat before cost no more than this shape does.
 constexpr double kFlat = 1e-6;
 
@@ -43,9 +49,11 @@ FusionPointFinder::Deciding FusionPointFinder::deciding(const Prey& prey) const 
   std::size_t boundary = 0, surface = 0;
   for (const VertexId v : prey.vertices()) boundary += mesh_.onBoundary(v), surface += mesh_.onSurface(v);
   out.boundary = boundary > 0;
-  for (std::size_t i = 0; i < prey.k; ++i)
-    if (surface == 0 || (boundary > 0 ? mesh_.onBoundary(prey.vertex[i]) : mesh_.onSurface(prey.vertex[i])))
-      out.vertex[out.count++] = prey.vertex[i];
+  for (std::size_t i = 0; i < prey.k; ++i) {
+    const bool decides = surface == 0 || (boundary > 0 ? mesh_.onBoundary(prey.vertex[i]) : mesh_.onSurface(prey.vertex[i]));
+    out.vertex[out.count] = prey.vertex[i];  // written in any case: what decides is a branch that no processor foresees
+    out.count += decides;
+  }
   for (std::size_t i = 0; i < out.count; ++i) out.centre = out.centre + (mesh_.position(out.vertex[i]) - mesh_.position(prey.vertex[0]));
   out.isAll = out.count == prey.k;
   out.centre = (1.0 / static_cast<double>(out.count)) * out.centre;
@@ -121,7 +129,9 @@ void FusionPointFinder::offerCheap(const Prey& prey, const FusionTest& test) {
 void FusionPointFinder::offerFree(const FusionTest& test) {
   const Vector3 middle = origin_ + deciding_.centre;
   const Vector3 best = origin_ + ideal_;
-  for (const Vector3& p : {best, 0.5 * (best + middle), middle}) {
+  const std::array<Vector3, 3> points{best, 0.5 * (best + middle), middle};
+  // The middle of one vertex is its place, which is known to be inside.
+  for (const Vector3& p : std::span(points).first(best == middle ? 1 : deciding_.count == 1 ? 2 : 3)) {
     LatticePoint inside = rounded(p);
     if (!deciding_.boundary || test.projectInside(p, inside)) offer(inside, dearnessOfFree(options_.rule));
   }
@@ -149,16 +159,20 @@ std::optional<double> FusionPointFinder::price(const Prey& prey, const FusionTes
 }
 
 bool FusionPointFinder::isHopeless(const FusionTest& test) {
-  if (!deciding_.boundary || deciding_.isAll) return false;
-  const auto flips = [&](const Choice& choice) {
-    return std::ranges::any_of(prey_.vertices(), [&](VertexId v) { return !mesh_.onBoundary(v) && test.flipsAt(v, choice.point); });
-  };
+  const bool isDrawnOut = deciding_.boundary && !deciding_.isAll;
+  if (!isDrawnOut && refused_ < kOftenRefused) return false;
+  std::uint32_t moving = 0;
+  for (std::uint32_t i = 0; i < prey_.k; ++i) moving |= std::uint32_t{!isDrawnOut || !mesh_.onBoundary(prey_.vertex[i])} << i;
+  const auto flips = [&](const Choice& choice) { return test.flipsAt(choice.point, moving); };
   if (!std::ranges::all_of(choices_, flips)) return false;
-  if (!isFreeToCome()) return true;
-  const std::size_t cheap = choices_.size();
-  offerFree(test);
-  const bool isHopeless = std::ranges::all_of(std::span(choices_).subspan(cheap), flips);
-  std::ranges::sort(choices_, comesFirst);
+  bool isHopeless = true;
+  if (isFreeToCome()) {
+    const std::size_t cheap = choices_.size();
+    offerFree(test);
+    isHopeless = std::ranges::all_of(std::span(choices_).subspan(cheap), flips);
+    std::ranges::sort(choices_, comesFirst);
+  }
+  if (isHopeless && !isDrawnOut) count(true);
   return isHopeless;
 }
 
@@ -173,8 +187,11 @@ std::optional<FusionPoint> FusionPointFinder::choose(const FusionTest& test) {
     choose(free, test);
   }
   if (found_) found_->outside = test.outsideAt(found_->point);
+  count(!found_);
   return found_;
 }
+
+void FusionPointFinder::count(bool isRefused) { refused_ += kLastShare * ((isRefused ? 1 : 0) - refused_); }
 
 void FusionPointFinder::choose(std::span<const Choice> choices, const FusionTest& test) {
   const double wanted = std::min(kGoodShape, test.oldShape());

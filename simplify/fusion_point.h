@@ -45,8 +45,8 @@ class FusionPointFinder {
   /// What the fusion would cost if flips, shapes and topology had no say: the envelope alone, which is known long before them. Nothing: it leaves no
   /// point. REQUIRES: test.gatherBoundary(prey) was true.
   [[nodiscard]] std::optional<double> price(const Prey& prey, const FusionTest& test);
-  /// An inner vertex would go to the boundary, and flips a cell at every point there: cheaper to ask than the star is to collect, and what most such
-  /// edges come to. REQUIRES: price(prey, test).
+  /// A cell flips at every point: asked where that is likely, since it is cheaper to ask than the star is to collect. So it is where an inner vertex would
+  /// go to the boundary, and where many of the last fusions had no legal point. REQUIRES: price(prey, test).
   [[nodiscard]] bool isHopeless(const FusionTest& test);
   /// The fusion point. REQUIRES: price(prey, test), then test.gatherRest(), was true.
   [[nodiscard]] std::optional<FusionPoint> choose(const FusionTest& test);
@@ -79,6 +79,7 @@ class FusionPointFinder {
   void offerFree(const FusionTest& test);
   [[nodiscard]] bool isFreeToCome() const { return std::isfinite(leastFree_); }
   void choose(std::span<const Choice> choices, const FusionTest& test);
+  void count(bool isRefused);
 
   const FusionMesh& mesh_;
   const FusionCost& cost_;
@@ -91,7 +92,8 @@ class FusionPointFinder {
   double leastFree_ = 0;         // what a free point compares as at best; infinity once they are among the choices
   std::vector<Choice> choices_;  // those inside the envelope, cheapest first as compared
   std::optional<FusionPoint> found_;
-  double least_ = 0;  // found_ as compared, shape included
+  double least_ = 0;    // found_ as compared, shape included
+  double refused_ = 0;  // the share of the last fusions that had no legal point, but for inner vertices that would go to the boundary
 };
 
 }  // namespace qtet

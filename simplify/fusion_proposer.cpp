@@ -59,25 +59,20 @@ void FusionProposer::candidatesOf(VertexId v, std::span<const VertexId> link, st
   mesh_.prefetchStar(v);
   for (const VertexId w : link)
     if (w != kGhost) cost_.prefetchSlot(w), mesh_.prefetchPoint(w);
-  neighbours_.clear();
   for (const CellId c : mesh_.star(v))
-    for (const VertexId w : mesh_.cell(c)) {
-      if (w >= v || !band_.allows(v, w)) continue;
-      const std::uint32_t i = neighbours_.intern(w);
-      if (i < found.size()) {
-        found[i].key += 1;
-        continue;
-      }
-      found.push_back({1, w});
-      if (link.empty()) cost_.prefetchSlot(w);
-    }
-  for (const Candidate& c : found) cost_.prefetch(c.partner);
+    for (const VertexId w : mesh_.cell(c))
+      if (w < v && counts_.add(w) && link.empty()) cost_.prefetchSlot(w);
+  found.reserve(counts_.size());
+  counts_.take([&](VertexId w, std::uint32_t cells) {
+    if (!band_.allows(v, w) || mesh_.singular(w)) return;
+    found.push_back({static_cast<float>(cells), w});
+    cost_.prefetch(w);
+  });
   price(v, found);
 }
 
 // The keys, which are the numbers of cells round the edges, become costs.
 void FusionProposer::price(VertexId v, std::vector<Candidate>& found) const {
-  std::erase_if(found, [&](const Candidate& c) { return mesh_.singular(c.partner); });
   const auto share = [this](const Candidate& c) { return shares_.of(static_cast<std::size_t>(c.key)); };
   for (std::size_t i = 0; i < found.size(); i += 2) {
     Candidate &one = found[i], &other = found[std::min(i + 1, found.size() - 1)];
@@ -141,6 +136,7 @@ void FusionProposer::findCompanions(const Proposal& edge, std::span<const Candid
     const auto holds = [&](CellId c) { return std::ranges::find(mesh_.cell(c), other.partner) != mesh_.cell(c).end(); };
     if (!mesh_.alive(other.partner) || !std::ranges::any_of(edge.star.deleted, holds)) continue;
     companions_.push_back(other.partner);
+    cost_.prefetch(other.partner);
     if (!touched_.since(other.partner, levelStart)) std::swap(companions_[free++], companions_.back());
   }
   freeCompanions_ = free;

@@ -7,13 +7,14 @@
 #include <span>
 #include <vector>
 
+#include "codec/fetch.h"
 #include "simplify/band_nodes.h"
 #include "simplify/candidates.h"
 #include "simplify/fusion_cost.h"
 #include "simplify/fusion_mesh.h"
 #include "simplify/fusion_point.h"
 #include "simplify/fusion_test.h"
-#include "simplify/local_vertices.h"
+#include "simplify/vertex_counts.h"
 
 namespace qtet {
 
@@ -22,7 +23,7 @@ class Touched {
  public:
   void resize(std::size_t vertices) { at_.resize(vertices, 0); }
   void touch(VertexId v, std::uint32_t fusion) { at_[v] = fusion; }
-  void prefetch(VertexId v) const { __builtin_prefetch(&at_[v]); }
+  void prefetch(VertexId v) const { fetch(&at_[v]); }
   [[nodiscard]] bool since(VertexId v, std::uint32_t fusion) const { return at_[v] > fusion; }
 
  private:
@@ -92,7 +93,7 @@ class FusionProposer {
   FusionTest test_;
   FusionPointFinder finder_;
   CellShares shares_;
-  LocalVertices neighbours_;
+  VertexCounts counts_;
   std::vector<VertexId> companions_;  // the free ones first
   std::size_t freeCompanions_ = 0;
 };

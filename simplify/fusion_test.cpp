@@ -48,23 +48,36 @@ bool FusionTest::gatherBoundary(const Prey& prey) {
   origin_ = mesh_.position(prey.vertex[0]);
   faceCount_ = 0;
   faceReach_ = 0;
-  for (std::uint32_t i = 0; i < prey.k; ++i)
-    for (const CellId c : mesh_.boundaryStar(prey.vertex[i])) {
-      std::uint32_t shared = 0, first = prey.k;
-      std::size_t at = 0;
-      for (std::size_t corner = 0; corner < 3; ++corner)
-        for (std::uint32_t j = 0; j < prey.k; ++j)
-          if (mesh_.cell(c)[corner] == prey.vertex[j]) ++shared, first = std::min(first, j), at = corner;
-      if (first == i) addFace(c, shared == 1, at);
-    }
+  flipped_.fill(kNoCell);
+  prey.k == 2 ? addFaces<2>() : prey.k == 3 ? addFaces<3>() : addFaces<4>();
   return true;
+}
+
+// Which of the prey's vertices cell `c` has.
+template <std::uint32_t k>
+inline std::uint32_t FusionTest::sideOf(CellId c) const {
+  std::uint32_t side = 0;
+  for (std::uint32_t i = 0; i < k; ++i) side |= std::uint32_t{mesh_.holds(c, prey_.vertex[i])} << i;
+  return side;
+}
+
+// The boundary triangles of each prey vertex that no earlier one has.
+template <std::uint32_t k>
+void FusionTest::addFaces() {
+  for (std::uint32_t i = 0; i < k; ++i) {
+    const VertexId v = prey_.vertex[i];
+    const Vector3 from = mesh_.position(v) - origin_;
+    for (const CellId c : mesh_.boundaryStar(v)) {
+      const std::uint32_t side = sideOf<k>(c), own = 1u << i;
+      if ((side & (own - 1)) == 0) addFace({c, side == own, static_cast<std::uint8_t>(onlyCorner(cornersThatAre(mesh_.cell(c), v)))}, from);
+    }
+  }
 }
 
 bool FusionTest::gatherRest() {
   for (const VertexId v : prey_.vertices()) mesh_.prefetchStar(v);
   star_.affected.clear(), star_.deleted.clear(), star_.labels.clear(), star_.link.clear();
-  ring_.clear(), goingCells_.clear();
-  baseCount_ = 0;
+  baseCount_ = innerCount_ = goingCount_ = 0;
   vertices_.clear();
   for (const VertexId v : prey_.vertices()) (void)vertices_.intern(v);
   if (prey_.k == 2 ? !addStars<2>() : prey_.k == 3 ? !addStars<3>() : !addStars<4>()) return false;
@@ -74,68 +87,75 @@ bool FusionTest::gatherRest() {
   return true;
 }
 
+// The cells of each prey vertex' star, unless an earlier one's had it. False: one of them rules the fusion out.
 template <std::uint32_t k>
 bool FusionTest::addStars() {
-  for (std::uint32_t i = 0; i < k; ++i)
-    for (const CellId c : mesh_.star(prey_.vertex[i]))
-      if (!addCell<k>(c, i)) return false;
-  return true;
-}
-
-// A cell of the star of prey vertex `from`, unless an earlier one's star had it. False: it rules the fusion out.
-template <std::uint32_t k>
-inline bool FusionTest::addCell(CellId c, std::uint32_t from) {
-  const auto& cell = mesh_.cell(c);
-  const auto is = [&](std::size_t corner, VertexId v) { return static_cast<std::uint32_t>(cell[corner] == v); };
-  std::uint32_t side = 0;
   for (std::uint32_t i = 0; i < k; ++i) {
-    const VertexId v = prey_.vertex[i];
-    side |= (is(0, v) | is(1, v) | is(2, v) | is(3, v)) << i;
+    const std::uint32_t own = 1u << i;
+    const std::size_t before = star_.affected.size(), known = vertices_.ids().size();
+    if (k == 2 && i == 1) firstVertices_ = known, firstAffected_ = before;
+    std::size_t staying = 0, going = 0;
+    for (const CellId c : mesh_.star(prey_.vertex[i])) {  // parted first, since a processor cannot foresee which it is
+      const std::uint32_t side = sideOf<k>(c);
+      staying_[staying] = going_[going] = c;
+      staying += side == own;
+      going += unsigned{side > own} & unsigned{(side & (own - 1)) == 0};
+    }
+    star_.affected.insert(star_.affected.end(), staying_.begin(), staying_.begin() + static_cast<std::ptrdiff_t>(staying));
+    star_.labels.resize(before + staying, static_cast<std::uint8_t>(i));
+    std::size_t ghosts = 0;  // come first in every star
+    while (ghosts < staying && mesh_.isGhost(staying_[ghosts])) ++ghosts;
+    for (std::size_t at = before + ghosts; at < before + staying; ++at) innerCells_[innerCount_++] = static_cast<std::uint32_t>(at);
+    addStaying(before, i);
+    if (!addGoing<k>(going)) return false;
+    for (const VertexId v : vertices_.ids().subspan(known))
+      if (v != kGhost) mesh_.prefetchPoint(v);
   }
-  const std::uint32_t own = 1u << from;
-  if ((side & (own - 1)) != 0) return true;
-  if (side != own) return addGoing(c, side);
-  const VertexId v = prey_.vertex[from];
-  const auto turned = withLast(cell, is(1, v) + 2 * is(2, v) + 3 * is(3, v));
-  auto& local = turned_[star_.affected.size()];
-  for (std::size_t j = 0; j < 3; ++j) {
-    local[j] = intern(turned[j]);
-    sides_[local[j]] |= static_cast<std::uint8_t>(own);
-  }
-  local[3] = from;
-  star_.affected.push_back(c);
-  star_.labels.push_back(static_cast<std::uint8_t>(from));
   return true;
 }
 
-// One that goes: more than one of its vertices is prey.
-bool FusionTest::addGoing(CellId c, std::uint32_t side) {
-  const auto& cell = mesh_.cell(c);
-  std::array<std::uint32_t, 4> local{}, others{};
-  std::size_t n = 0, singular = 0;
-  for (std::size_t j = 0; j < 4; ++j) {
-    const auto prey = prey_.vertices();
-    const auto at = static_cast<std::size_t>(std::ranges::find(prey, cell[j]) - prey.begin());
-    local[j] = static_cast<std::uint32_t>(at);
-    if (at < prey.size()) continue;
-    local[j] = others[n++] = intern(cell[j]);
-    sides_[local[j]] |= static_cast<std::uint8_t>(side);
-    singular += cell[j] != kGhost && mesh_.singular(cell[j]);
+// The affected cells of prey vertex `from`, which begin at `before`.
+inline void FusionTest::addStaying(std::size_t before, std::uint32_t from) {
+  const VertexId v = prey_.vertex[from];
+  LocalVertices::Adding adding(vertices_);
+  auto* local = &turned_[before];
+  for (const CellId c : std::span(star_.affected).subspan(before)) {
+    const auto& cell = mesh_.cell(c);
+    const auto turned = withLast(cell, onlyCorner(cornersThatAre(cell, v)));
+    const std::uint32_t x = adding.intern(turned[0]), y = adding.intern(turned[1]), z = adding.intern(turned[2]);
+    *local++ = {x, y, z, from};
   }
-  star_.deleted.push_back(c);
-  if (prey_.k == 2) ring_.push_back({others[0], others[1]});
-  if (!mesh_.isGhost(c)) goingCells_.push_back(local);
-  return singular <= 1;  // else an edge that is not a manifold's could be fused away unseen
 }
 
-inline std::uint32_t FusionTest::intern(VertexId v) {
-  const std::size_t known = vertices_.ids().size();
-  const std::uint32_t local = vertices_.intern(v);
-  if (local == known) {
-    sides_[local] = 0;
-    if (v != kGhost) mesh_.prefetchPoint(v);
+// Those that go, in going_: more than one of their vertices is prey.
+template <std::uint32_t k>
+inline bool FusionTest::addGoing(std::size_t going) {
+  std::size_t mostSingular = 0;
+  LocalVertices::Adding adding(vertices_);
+  for (std::size_t at = 0; at < going; ++at) {
+    const auto& cell = mesh_.cell(going_[at]);
+    std::array<std::uint32_t, 5> local{};  // by corner, and one place for prey vertices that the cell does not have
+    unsigned prey = 0;
+    for (std::uint32_t i = 0; i < k; ++i) {
+      const unsigned corner = cornersThatAre(cell, prey_.vertex[i]);
+      local[corner == 0 ? 4 : onlyCorner(corner)] = i;
+      prey |= corner;
+    }
+    const OtherCorners& others = kOtherCorners[prey];
+    std::array<std::uint32_t, 2> other{};
+    std::size_t singular = 0;
+    for (std::size_t i = 0; i < (k == 2 ? 2 : others.count); ++i) {
+      const std::size_t j = others.corner[i];
+      local[j] = other[i] = adding.intern(cell[j]);
+      singular += cell[j] != kGhost && mesh_.singular(cell[j]);
+    }
+    mostSingular = std::max(mostSingular, singular);
+    if (k == 2) ring_[at] = other;
+    goingCells_[goingCount_] = {local[0], local[1], local[2], local[3]};
+    goingCount_ += !mesh_.isGhost(going_[at]);
   }
-  return local;
+  star_.deleted.insert(star_.deleted.end(), going_.begin(), going_.begin() + static_cast<std::ptrdiff_t>(going));
+  return mostSingular <= 1;  // else an edge that is not a manifold's could be fused away unseen
 }
 
 // What needs positions, once all of them have been asked for.
@@ -147,15 +167,9 @@ void FusionTest::measure() {
     for (const Vector3& p : std::span(places_).first(ids.size()))
       for (const double x : p) reach_ = std::max(reach_, std::abs(x));
   worst_ = 1;
-  constexpr auto kNone = ~std::uint32_t{0};
-  std::uint32_t waiting = kNone;
-  for (std::uint32_t i = 0; i < star_.affected.size(); ++i) {
-    if (mesh_.isGhost(star_.affected[i])) continue;
-    if (waiting != kNone) addBases(waiting, i);
-    waiting = waiting == kNone ? i : kNone;
-  }
-  if (waiting != kNone) addBases(waiting, waiting);
-  for (std::size_t i = 0; i < goingCells_.size(); i += 2) measureGoing(i, std::min(i + 1, goingCells_.size() - 1));
+  suspect_ = 0;
+  for (std::size_t i = 0; i < innerCount_; i += 2) addBases(innerCells_[i], innerCells_[std::min(i + 1, innerCount_ - 1)]);
+  for (std::size_t i = 0; i < goingCount_; i += 2) measureGoing(i, std::min(i + 1, goingCount_ - 1));
   oldShape_ = std::sqrt(worst_);
   const double floor = std::min(limits_.shapeFloor, kShapeLoss * oldShape_);
   floorSquared_ = floor * floor;
@@ -191,65 +205,86 @@ void FusionTest::measureGoing(std::size_t i, std::size_t j) {
   see(dot(cross(ab, ac), ad), dot(ab, ab) + dot(ac, ac) + dot(ad, ad) + dot(bc, bc) + dot(bd, bd) + dot(cd, cd));
 }
 
-// `moving`: of a face that stays, the corner that is prey.
-void FusionTest::addFace(CellId ghost, bool stays, std::size_t moving) {
-  const Vector3& normal = mesh_.plane(ghost).normal;
-  const auto cornerAt = [&](std::size_t i) { return mesh_.position(mesh_.cell(ghost)[i]) - origin_; };
-  if (mesh_.latticeBits() > kExactBits)
+// `from`: one of its corners, relative to the first prey vertex. Where doubles are exact each gives the same plane.
+inline void FusionTest::addFace(const Face& face, const Vector3& from) {
+  const BoundaryPlane& plane = mesh_.plane(face.ghost);
+  double height = dot(plane.normal, from);
+  if (mesh_.latticeBits() > kExactBits) {
+    const auto cornerAt = [&](std::size_t i) { return mesh_.position(mesh_.cell(face.ghost)[i]) - origin_; };
     for (std::size_t i = 0; i < 3; ++i)
       for (const double x : cornerAt(i)) faceReach_ = std::max(faceReach_, std::abs(x));
-  const double height = dot(normal, cornerAt(0));
-  faces_[faceCount_] = {ghost, stays, static_cast<std::uint8_t>(moving)};
+    height = dot(plane.normal, cornerAt(0));
+  }
+  faces_[faceCount_] = face;
   Planes& planes = planes_[faceCount_ / 2];
   if (faceCount_++ % 2 == 0) {
-    planes = {both(normal, {}), Pair{height, std::numeric_limits<double>::infinity()}};
+    planes = {both(plane.normal, {}), Pair{height, std::numeric_limits<double>::infinity()}, Pair{plane.inverseLength, 0}};
   } else {
-    for (std::size_t k = 0; k < 3; ++k) planes.normal[k][1] = normal[k];
+    for (std::size_t k = 0; k < 3; ++k) planes.normal[k][1] = plane.normal[k];
     planes.height[1] = height;
+    planes.inverseLength[1] = plane.inverseLength;
   }
 }
 
-bool FusionTest::flipsAt(VertexId v, const LatticePoint& p) const {
-  const Vector3 place = toVector(p), before = mesh_.position(v);
+// The cell of prey vertex i turns from positive to flat or inverted, further than `error`. Nothing is said of one that goes.
+inline bool FusionTest::flips(std::uint32_t i, CellId c, const Vector3& place, double error) const {
+  const auto& cell = mesh_.cell(c);
+  for (std::uint32_t j = 0; j < prey_.k; ++j)
+    if (j != i && mesh_.holds(c, prey_.vertex[j])) return false;
+  const VertexId v = prey_.vertex[i];
+  const auto t = withLast(cell, (cell[1] == v) + 2 * (cell[2] == v) + 3 * (cell[3] == v));
+  const Vector3 corner = mesh_.position(t[0]), normal = cross(mesh_.position(t[1]) - corner, mesh_.position(t[2]) - corner);
+  return dot(normal, place - corner) <= -error && dot(normal, mesh_.position(v) - corner) > error;
+}
+
+bool FusionTest::flipsAt(const LatticePoint& p, std::uint32_t moving) const {
+  const Vector3 place = toVector(p);
   // Coordinates reach as far as the lattice; what is too close to call is not called.
   const double error = mesh_.latticeBits() <= kExactBits ? 0 : kRounding * std::ldexp(1.0, 3 * mesh_.latticeBits());
-  for (const CellId c : mesh_.innerStar(v)) {
-    const auto& cell = mesh_.cell(c);
-    std::size_t at = 0, prey = 0;
-    for (const VertexId w : prey_.vertices())
-      for (std::size_t i = 0; i < 4; ++i) prey += cell[i] == w;
-    if (prey > 1) continue;
-    while (cell[at] != v) ++at;
-    const auto t = withLast(cell, at);
-    const Vector3 corner = mesh_.position(t[0]), normal = cross(mesh_.position(t[1]) - corner, mesh_.position(t[2]) - corner);
-    if (dot(normal, place - corner) <= -error && dot(normal, before - corner) > error) return true;
+  for (std::uint32_t i = 0; i < prey_.k; ++i)
+    if ((moving >> i & 1) != 0 && flipped_[i] != kNoCell && flips(i, flipped_[i], place, error)) return true;
+  for (std::uint32_t i = 0; i < prey_.k; ++i) {
+    if ((moving >> i & 1) == 0 || mesh_.point(prey_.vertex[i]) == p) continue;
+    const auto cells = mesh_.innerStar(prey_.vertex[i]);
+    const auto flipped = std::ranges::find_if(cells, [&](CellId c) { return flips(i, c, place, error); });
+    if (flipped == cells.end()) continue;
+    flipped_[i] = *flipped;
+    return true;
   }
   return false;
 }
 
 double FusionTest::shapeAt(const LatticePoint& p, double least) const {
   const Vector3 d = toVector(p) - origin_;
-  if (limits_.normalCosine >= 0)
-    for (const Face& face : faces())
-      if (face.stays && turnsTooFar(face, p)) return -1;
   const double distance = 3 * dot(d, d), rounding = this->rounding(d, reach_);
   const TwoVectors twice = both(d, d);
   const double floorSquared = std::max(floorSquared_, least * least);
   double worst = 1;
-  for (const Bases& bases : std::span(bases_).first(baseCount_)) {
+  for (std::size_t n = 0; n < baseCount_; ++n) {
+    const std::size_t i = n == 0 ? suspect_ : n == suspect_ ? 0 : n;
+    const Bases& bases = bases_[i];
     Pair volume = dot(bases.normal, twice) - bases.height;
     Pair squares = bases.squares + distance - 2 * dot(twice, bases.corners);
     for (int lane = 0; lane < 2; ++lane) {
       if (volume[lane] > rounding) continue;
       bool allowed = false;
       volume[lane] = exactVolume6(bases.cell[static_cast<std::size_t>(lane)], p, allowed);
-      if (!allowed) return -1;
+      if (!allowed) {
+        suspect_ = i;
+        return -1;
+      }
       if (volume[lane] <= 0) volume[lane] = squares[lane] = 1;  // flat, as it was: its shape does not count
     }
     const Pair shape = shapeSquared(volume, squares);
     worst = std::min(worst, std::min(shape[0], shape[1]));
-    if (worst < floorSquared) return -1;
+    if (worst < floorSquared) {
+      suspect_ = i;
+      return -1;
+    }
   }
+  if (limits_.normalCosine >= 0)
+    for (const Face& face : faces())
+      if (face.stays && turnsTooFar(face, p)) return -1;
   return std::sqrt(worst);
 }
 
@@ -328,36 +363,83 @@ inline bool FusionTest::anyFacing(const Vector3& d, double error, const Visit& v
   return false;
 }
 
+inline bool FusionTest::isEnvelopeExact() const { return mesh_.latticeBits() <= kExactBits && limits_.envelopeTolerance == 0; }
+
 bool FusionTest::insideEnvelope(const LatticePoint& p) const {
   const Vector3 d = toVector(p) - origin_;
+  if (isEnvelopeExact()) return onLattice(p) && !isAnyFacing(d);
   const double error = rounding(d, faceReach_);
   return onLattice(p) && !anyFacing(d, error, [&](const Face& face, double side) { return isOutside(face, side, p, error); });
+}
+
+// The same of a plane that is passed, which is nearly always all that is asked: two faces at a time, without a branch.
+inline bool FusionTest::isAnyFacing(const Vector3& d) const {
+  const TwoVectors twice = both(d, d);
+  Pair farthest = Pair{} - 1;
+  for (const Planes& planes : std::span(planes_).first((faceCount_ + 1) / 2)) {
+    const Pair side = dot(planes.normal, twice) - planes.height;
+    farthest = side > farthest ? side : farthest;
+  }
+  return farthest[0] > 0 || farthest[1] > 0;
 }
 
 bool FusionTest::projectInside(Vector3 p, LatticePoint& inside) const {
   const auto end = static_cast<double>((std::int64_t{1} << mesh_.latticeBits()) - 1);
   for (int step = 0; step <= kProjections; ++step) {
     for (std::size_t a = 0; a < 3; ++a) inside[a] = static_cast<std::int32_t>(std::clamp(p[a] + 0.5, 0.0, end));
-    const Vector3 d = toVector(inside) - origin_;
-    const double error = rounding(d, faceReach_);
-    double farthest = -1;
     Vector3 back{};
-    const Vector3 past = p - toVector(inside);  // rounding's share
-    const bool isLost = anyFacing(d, error, [&](const Face& face, double side) {
-      if (!isOutside(face, side, inside, error)) return false;
-      const auto& [normal, inverseLength] = mesh_.plane(face.ghost);
-      if (!(inverseLength > 0)) return true;  // a sliver whose plane doubles do not know
-      const double allowed = limits_.envelopeTolerance == 0 ? 0 : std::max(0.0, limits_.envelopeTolerance - mesh_.outside(face.ghost));
-      const double outside = (side + dot(normal, past)) * inverseLength - allowed;
-      if (std::abs(outside) > farthest) farthest = std::abs(outside), back = (outside * inverseLength) * normal;
-      if (step >= kExactProjections) back = back + (kRoundingReach * inverseLength) * normal;
-      return false;
-    });
-    if (isLost) return false;
-    if (farthest < 0) return true;
-    p = p - back;
+    switch (isEnvelopeExact() && step < kExactProjections ? wayBackExactly(p, inside, back) : wayBack(p, inside, step, back)) {
+      case WayBack::kInside: return true;
+      case WayBack::kLost: return false;
+      case WayBack::kOutside: p = p - back;
+    }
   }
   return false;
+}
+
+// How far p, whose lattice point is `inside`, lies outside of the face that it is farthest outside of.
+FusionTest::WayBack FusionTest::wayBack(const Vector3& p, const LatticePoint& inside, int step, Vector3& back) const {
+  const Vector3 d = toVector(inside) - origin_;
+  const double error = rounding(d, faceReach_);
+  double farthest = -1;
+  const Vector3 past = p - toVector(inside);  // rounding's share
+  const bool isLost = anyFacing(d, error, [&](const Face& face, double side) {
+    if (!isOutside(face, side, inside, error)) return false;
+    const auto& [normal, inverseLength] = mesh_.plane(face.ghost);
+    if (!(inverseLength > 0)) return true;  // a sliver whose plane doubles do not know
+    const double allowed = limits_.envelopeTolerance == 0 ? 0 : std::max(0.0, limits_.envelopeTolerance - mesh_.outside(face.ghost));
+    const double outside = (side + dot(normal, past)) * inverseLength - allowed;
+    if (std::abs(outside) > farthest) farthest = std::abs(outside), back = (outside * inverseLength) * normal;
+    if (step >= kExactProjections) back = back + (kRoundingReach * inverseLength) * normal;
+    return false;
+  });
+  return isLost ? WayBack::kLost : farthest < 0 ? WayBack::kInside : WayBack::kOutside;
+}
+
+// The same of the steps that keep no distance, two faces at a time, without a branch: no sliver is passed where doubles are exact, and of equally far faces the first one counts.
+inline FusionTest::WayBack FusionTest::wayBackExactly(const Vector3& p, const LatticePoint& inside, Vector3& back) const {
+  const Vector3 d = toVector(inside) - origin_, past = p - toVector(inside);
+  const TwoVectors twice = both(d, d), twicePast = both(past, past);
+  using Lanes = decltype(Pair{} > Pair{});
+  constexpr Lanes kAllButSign = ~(Lanes{} + std::numeric_limits<std::int64_t>::min());
+  const auto outsideOf = [&](const Planes& planes, const Pair& side) { return (side + dot(planes.normal, twicePast)) * planes.inverseLength; };
+  Pair farthest = Pair{} - 1;
+  Lanes at{}, where{};
+  for (const Planes& planes : std::span(planes_).first((faceCount_ + 1) / 2)) {
+    const Pair side = dot(planes.normal, twice) - planes.height;
+    const Pair distance = std::bit_cast<Pair>(std::bit_cast<Lanes>(outsideOf(planes, side)) & kAllButSign);
+    const Lanes isFarther = (side > 0) & (distance > farthest);
+    farthest = isFarther ? distance : farthest;
+    where = isFarther ? at : where;
+    at += 1;
+  }
+  if (farthest[0] < 0 && farthest[1] < 0) return WayBack::kInside;
+  const bool isSecond = farthest[1] != farthest[0] ? farthest[1] > farthest[0] : where[1] < where[0];
+  const Planes& planes = planes_[static_cast<std::size_t>(where[isSecond])];
+  const Pair outside = outsideOf(planes, dot(planes.normal, twice) - planes.height);
+  const Vector3 normal{planes.normal[0][isSecond], planes.normal[1][isSecond], planes.normal[2][isSecond]};
+  back = (outside[isSecond] * planes.inverseLength[isSecond]) * normal;
+  return WayBack::kOutside;
 }
 
 bool FusionTest::keepsTopology() {
@@ -368,37 +450,54 @@ bool FusionTest::keepsTopology() {
 // The link condition of Dey, Edelsbrunner, Guha and Nekhayev in the complex completed by the ghost: the links of the two vertices meet in the
 // edge's link and nowhere else. That link is one cycle, since neither vertex is singular.
 bool FusionTest::edgeKeepsTopology() {
+  const std::span<RingVertex> vertices = std::span(ringVertices_).first(vertices_.ids().size());
+  std::ranges::fill(vertices, RingVertex{});
+  for (std::size_t i = firstAffected_; i < star_.affected.size(); ++i)
+    for (std::size_t j = 0; j < 3; ++j) vertices[turned_[i][j]].own = 1;
+  for (const auto& [x, y] : ring()) vertices[x].own = vertices[y].own = 1;
   std::size_t common = 0;
-  for (std::size_t v = 2; v < vertices_.ids().size(); ++v) common += sides_[v] == 3;
-  if (common != ring_.size()) return false;
-  std::fill_n(ringNeighbours_.begin(), vertices_.ids().size(), std::array<std::uint32_t, 2>{});
-  for (const auto& [x, y] : ring_) {
-    for (const auto& [at, other] : {std::pair{x, y}, std::pair{y, x}}) {
-      auto& pair = ringNeighbours_[at];
-      if (pair[1] != 0) return false;
-      pair[pair[0] == 0 ? 0 : 1] = other;
-    }
+  for (RingVertex& v : vertices.first(firstVertices_)) {
+    const Mask isCommon = v.own;
+    v.own = isCommon << (common % kMostRing);
+    common += isCommon;
   }
-  return !hasCommonChord();
+  for (RingVertex& v : vertices.subspan(firstVertices_)) v.own = 0;
+  if (common != ring().size()) return false;
+  if (common > kMostRing) return full_->passes(mesh_, prey_, star_);
+  for (const auto& [x, y] : ring()) {
+    vertices[x].joined |= vertices[y].own;
+    vertices[y].joined |= vertices[x].own;
+  }
+  const auto hasTwo = [](Mask mask) {
+    const Mask allButOne = mask & (mask - 1);
+    return allButOne != 0 && (allButOne & (allButOne - 1)) == 0;
+  };
+  for (const auto& [x, y] : ring())
+    if (!hasTwo(vertices[x].joined) || !hasTwo(vertices[y].joined)) return false;
+  return !hasCommonChord() && !(common == 3 && hasCommonTriangle());
 }
 
-// An edge between two vertices of the ring that is in both links but not in the ring, or a triangle that fills a ring of three in both.
+// An edge between two vertices of the ring that is in both links but not in the ring. Each link is closed, so that it has every edge in both directions.
 bool FusionTest::hasCommonChord() {
-  chords_.clear();
+  for (std::size_t i = 0; i < star_.affected.size(); ++i) {
+    const auto& t = turned_[i];
+    for (std::size_t e = 0; e < 3; ++e) {
+      RingVertex& from = ringVertices_[t[e]];
+      from.chords[t[3]] |= ringVertices_[t[(e + 1) % 3]].own & ~from.joined;
+    }
+  }
+  Mask inBoth = 0;
+  for (const RingVertex& v : std::span(ringVertices_).first(vertices_.ids().size())) inBoth |= v.chords[0] & v.chords[1];
+  return inBoth != 0;
+}
+
+// A triangle that fills a ring of three in both.
+bool FusionTest::hasCommonTriangle() const {
   unsigned filled = 0;
   for (std::size_t i = 0; i < star_.affected.size(); ++i) {
     const auto& t = turned_[i];
-    const int onRing = (sides_[t[0]] == 3) + (sides_[t[1]] == 3) + (sides_[t[2]] == 3);
-    if (onRing < 2) continue;
-    for (std::size_t e = 0; e < 3; ++e) {
-      const std::uint32_t x = std::min(t[e], t[(e + 1) % 3]), y = std::max(t[e], t[(e + 1) % 3]);
-      if (sides_[x] != 3 || sides_[y] != 3 || ringNeighbours_[x][0] == y || ringNeighbours_[x][1] == y) continue;
-      if (star_.labels[i] == 0)
-        chords_.push_back({x, y});
-      else if (std::find(chords_.begin(), chords_.end(), std::array{x, y}) != chords_.end())
-        return true;
-    }
-    if (onRing == 3 && ring_.size() == 3) filled |= 1u << star_.labels[i];
+    const Mask corners = ringVertices_[t[0]].own | ringVertices_[t[1]].own | ringVertices_[t[2]].own;
+    filled |= unsigned{corners == 7} << t[3];
   }
   return filled == 3;
 }

@@ -49,8 +49,8 @@ class FusionTest {
   /// Moves p onto the planes of the boundary faces that it lies outside of, one after the other, until its lattice point is inside.
   /// REQUIRES gatherBoundary.
   [[nodiscard]] bool projectInside(Vector3 p, LatticePoint& inside) const;
-  /// With prey vertex v at p one of its cells would flip or go flat, as far as doubles can tell. REQUIRES gatherBoundary.
-  [[nodiscard]] bool flipsAt(VertexId v, const LatticePoint& p) const;
+  /// With the prey at p a cell of one of these prey vertices, one bit each, would flip or go flat, as far as doubles can tell. REQUIRES gatherBoundary.
+  [[nodiscard]] bool flipsAt(const LatticePoint& p, std::uint32_t moving) const;
   /// How far the star's boundary may lie outside the original solid with the prey at p, in lattice steps. REQUIRES gatherBoundary, p inside the envelope.
   [[nodiscard]] float outsideAt(const LatticePoint& p) const;
   /// The worst shape among the affected cells with the prey at p (1 = regular, 0 = flat), or a negative number where p is not legal: a cell
@@ -81,28 +81,40 @@ class FusionTest {
   // Of two faces, relative to the first prey vertex; where there is no second one, nothing is beyond it.
   struct Planes {
     TwoVectors normal;
-    Pair height;
+    Pair height, inverseLength;
   };
 
   template <std::uint32_t k>
+  void addFaces();
+  template <std::uint32_t k>
   [[nodiscard]] bool addStars();
   template <std::uint32_t k>
-  [[nodiscard]] bool addCell(CellId c, std::uint32_t from);
-  [[nodiscard]] bool addGoing(CellId c, std::uint32_t side);
-  [[nodiscard]] std::uint32_t intern(VertexId v);
-  void addFace(CellId ghost, bool stays, std::size_t moving);
+  [[nodiscard]] std::uint32_t sideOf(CellId c) const;
+  void addStaying(std::size_t before, std::uint32_t from);
+  template <std::uint32_t k>
+  [[nodiscard]] bool addGoing(std::size_t count);
+  void addFace(const Face& face, const Vector3& from);
   void measure();
   void addBases(std::uint32_t i, std::uint32_t j);
   void measureGoing(std::size_t i, std::size_t j);
   void see(const Pair& volume, const Pair& squares);
   [[nodiscard]] bool edgeKeepsTopology();
   [[nodiscard]] bool hasCommonChord();
+  [[nodiscard]] bool hasCommonTriangle() const;
+  [[nodiscard]] std::span<const std::array<std::uint32_t, 2>> ring() const { return std::span(ring_).first(star_.deleted.size()); }
   [[nodiscard]] std::span<const Face> faces() const { return std::span(faces_).first(faceCount_); }
   template <class Visit>
   [[nodiscard]] bool anyFacing(const Vector3& d, double error, const Visit& visit) const;
   [[nodiscard]] bool isOutside(const Face& face, double side, const LatticePoint& p, double error) const;
   [[nodiscard]] double distance(const Face& face, const LatticePoint& p) const;
+  [[nodiscard]] bool flips(std::uint32_t i, CellId c, const Vector3& place, double error) const;
   [[nodiscard]] bool turnsTooFar(const Face& face, const LatticePoint& p) const;
+  /// A point lies outside if and only if doubles say so.
+  [[nodiscard]] bool isEnvelopeExact() const;
+  [[nodiscard]] bool isAnyFacing(const Vector3& d) const;
+  enum class WayBack : std::uint8_t { kInside, kOutside, kLost };
+  [[nodiscard]] WayBack wayBack(const Vector3& p, const LatticePoint& inside, int step, Vector3& back) const;
+  [[nodiscard]] WayBack wayBackExactly(const Vector3& p, const LatticePoint& inside, Vector3& back) const;
   [[nodiscard]] double rounding(const Vector3& d, double placesReach) const;
   [[nodiscard]] bool onLattice(const LatticePoint& p) const;
   [[nodiscard]] double exactVolume6(std::uint32_t affected, const LatticePoint& p, bool& allowed) const;
@@ -115,23 +127,35 @@ class FusionTest {
   template <class T>
   using ByLocal = std::array<T, LocalVertices::kMost>;
   ByLocal<Vector3> places_;                               // relative to the first prey vertex
-  ByLocal<std::uint8_t> sides_;                           // bit i = in the link of prey vertex i
   template <class T, std::size_t share>
   using ByCell = std::array<T, kMostStarCells / share>;  // no vectors, which would clear what is written anyway
   ByCell<std::array<std::uint32_t, 4>, 1> turned_;        // affected cells, the prey vertex last, local
-  std::vector<std::array<std::uint32_t, 2>> ring_;        // k = 2: the edges opposite the prey in deleted cells
-  std::vector<std::array<std::uint32_t, 4>> goingCells_;  // deleted cells, local
+  ByCell<std::array<std::uint32_t, 2>, 1> ring_;          // k = 2: the edges opposite the prey in deleted cells
+  ByCell<CellId, 1> staying_, going_;                     // of one prey vertex' star
+  ByCell<std::uint32_t, 1> innerCells_;                   // affected cells that are no ghosts: indices into star_.affected
+  ByCell<std::array<std::uint32_t, 4>, 1> goingCells_;    // deleted cells but ghosts, local
   ByCell<Bases, 4> bases_;
   ByCell<Face, 1> faces_;
   ByCell<Planes, 2> planes_;
-  std::size_t baseCount_ = 0, faceCount_ = 0;  // of bases_, of faces_
+  std::size_t firstVertices_ = 0, firstAffected_ = 0;  // k = 2: local vertices and affected cells of the first prey vertex; the second's come after them
+  std::size_t baseCount_ = 0, faceCount_ = 0, innerCount_ = 0, goingCount_ = 0;  // of bases_, of faces_, of innerCells_, of goingCells_
+  // What forbade the last point is asked first about the next: of bases_, and a cell of each prey vertex.
+  mutable std::size_t suspect_ = 0;
+  static constexpr CellId kNoCell = ~CellId{0};
+  mutable std::array<CellId, 4> flipped_{};
   Vector3 origin_{};                  // the first prey vertex
   double faceReach_ = 0, reach_ = 0;  // the largest coordinate of the faces, of all places_
   double worst_ = 1;  // oldShape_ squared, as far as it is known
   double oldShape_ = 1;
   double floorSquared_ = 0;
-  ByLocal<std::array<std::uint32_t, 2>> ringNeighbours_;
-  std::vector<std::array<std::uint32_t, 2>> chords_;
+  using Mask = std::uint64_t;  // of vertices of the ring
+  static constexpr std::size_t kMostRing = 64;
+  struct RingVertex {
+    Mask own = 0;                   // its bit; none where it is not on the ring
+    Mask joined = 0;                // its neighbours on the ring
+    std::array<Mask, 2> chords{};   // the ring's other vertices that it has an edge to in the link of either prey vertex
+  };
+  ByLocal<RingVertex> ringVertices_;
   std::unique_ptr<FullLinkTest> full_;
   std::unique_ptr<RegionTest> regions_;
 };

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "codec/boundary.h"
+#include "simplify/cell_corners.h"
 #include "simplify/vector3.h"
 
 namespace qtet {
@@ -57,6 +58,7 @@ double areaOf(const LatticeMesh& mesh, const Triangle& t) {
 }
 
 bool isFaceOf(const Tetrahedron& t, const Triangle& face) {
+  if (cornersThatAre(t, face[0]) == 0 || cornersThatAre(t, face[1]) == 0) return false;  // seldom goes on in vain
   for (int i = 0; i < 4; ++i)
     if (cellFace(t, i) == face) return true;
   return false;

@@ -1,6 +1,7 @@
 #include "simplify/qtetfusion.h"
 
 #include <algorithm>
+#include <array>
 #include <boost/heap/d_ary_heap.hpp>
 #include <cmath>
 #include <deque>
@@ -15,6 +16,7 @@
 #include "simplify/candidates.h"
 #include "simplify/fusion_mesh.h"
 #include "simplify/fusion_proposer.h"
+#include "simplify/queue_entries.h"
 #include "simplify/tet_mesh.h"
 #include "simplify/workers.h"
 
@@ -37,19 +39,17 @@ constexpr double kNormalCosine = 0.3;
 // Vertices whose candidates are found at once, and how many of them a thread takes at a time.
 constexpr std::size_t kCollected = 4096;
 constexpr std::size_t kGrain = 8;
+// How many entries ahead the memory is asked for lists of candidates, and for what comes of them at most.
+constexpr std::size_t kListsAhead = 8;
+constexpr std::size_t kMostLooked = 32;
+// The same for the candidates of fused vertices.
+constexpr std::size_t kFusedAhead = 2;
 // Entries of the queue for which threads make proposals ahead: a share of the level's, since a fusion spoils those of its neighbours.
 constexpr std::size_t kAheadShare = 64;
 constexpr std::size_t kLeastAhead = 32;
 constexpr std::size_t kMostAhead = 2048;
 
-struct Entry {
-  float key = 0;
-  VertexId owner = 0;
-  // The heap keeps the largest on top; equal keys in order of the owner, so that the outcome is one and the same everywhere.
-  bool operator<(const Entry& other) const { return key != other.key ? key > other.key : owner > other.owner; }
-};
-
-using Queue = boost::heap::d_ary_heap<Entry, boost::heap::arity<4>>;
+using Queue = boost::heap::d_ary_heap<QueueEntry, boost::heap::arity<4>>;
 
 /// Null where the fusion is not legal; that, too, is known only of what costs no more than it may.
 struct Outcome {
@@ -168,20 +168,30 @@ class Simplifier {
     links_.clear(), linkEnds_.clear();
     while (nextKey() <= limit_ && mesh_.liveTetrahedra() > goal_) {
       if (next_ >= proposedTo_) proposeAhead();
-      lookAhead();
       const VertexId owner = pop();
-      if (!isLocked(owner)) process(owner);
+      if (isLocked(owner)) continue;
+      lookAhead();
+      process(owner);
     }
     for (const VertexId v : withProposal_) proposalOf_[v] = kNone;
     withProposal_.clear();
+    proposalsUsed_ = 0, spareProposals_.clear();
     if (fusions_ > levelStart_) ++level_;
     vertices_.insert(vertices_.end(), fused_.begin(), fused_.end());
     collect(fused_, [&](FusionProposer& proposer, std::size_t i, std::vector<Candidate>& found) {
+      if (i + kFusedAhead < fused_.size()) prefetchFused(i + kFusedAhead);
       proposer.candidatesOf(fused_[i], linkOf(i), found);
     });
     candidates_.compact();
     if (options_.progress) options_.progress(progress());
     return true;
+  }
+
+  // Asks the memory for what the candidates of a fused vertex are found from.
+  void prefetchFused(std::size_t i) const {
+    mesh_.prefetchStar(fused_[i]), cost_.prefetch(fused_[i]);
+    for (const VertexId v : linkOf(i))
+      if (v != kGhost) cost_.prefetch(v), mesh_.prefetchPoint(v);
   }
 
   // The vertices whose best candidate is within the level's limit, cheapest first.
@@ -193,22 +203,18 @@ class Simplifier {
     workers_.forRuns(vertices_.size(), kCollected, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const VertexId v = vertices_[i];
+        if (i + kListsAhead < end) candidates_.prefetchBest(vertices_[i + kListsAhead]);
         dropDead(v);
         const Candidate* best = candidates_.best(v);
         entries_[i] = {best ? best->key : std::numeric_limits<float>::infinity(), v};
       }
     });
-    std::erase_if(entries_, [&](const Entry& e) { return e.key > dearest_ || std::isinf(e.key); });
-    next_ = proposedTo_ = 0;
+    std::erase_if(entries_, [&](const QueueEntry& e) { return e.key > dearest_ || std::isinf(e.key); });
+    next_ = proposedTo_ = looked_ = 0;
+    soon_.fill({});
     if (entries_.empty()) return;
-    const auto cheaper = [](const Entry& a, const Entry& b) { return b < a; };
     // What a band can afford it will do, so that the order counts for less there than the number of levels.
-    const double levelQuantile = std::isinf(dearest_) ? kLevelQuantile : options_.bands.levelQuantile;
-    const auto at = entries_.begin() + static_cast<std::ptrdiff_t>(levelQuantile * static_cast<double>(entries_.size() - 1));
-    std::nth_element(entries_.begin(), at, entries_.end(), cheaper);
-    limit_ = at->key;
-    entries_.erase(std::partition(at, entries_.end(), [&](const Entry& e) { return e.key <= limit_; }), entries_.end());
-    std::sort(entries_.begin(), entries_.end(), cheaper);
+    limit_ = sorter_.keepCheapest(entries_, std::isinf(dearest_) ? kLevelQuantile : options_.bands.levelQuantile);
     ahead_ = std::clamp(entries_.size() / kAheadShare, kLeastAhead, kMostAhead);
   }
 
@@ -231,17 +237,32 @@ class Simplifier {
     }
   }
 
-  // The queue's order has nothing to do with where things lie: what its next entries need is asked for in three steps, each of which needs the one before.
-  void lookAhead() const {
-    const auto soon = [&](std::size_t steps) { return next_ + steps < entries_.size() ? entries_[next_ + steps].owner : kNone; };
-    if (const VertexId v = soon(12); v != kNone) touched_.prefetch(v), candidates_.prefetch(v), mesh_.prefetchVertex(v);
-    if (const VertexId v = soon(8); v != kNone && !isLocked(v)) candidates_.prefetchBest(v), mesh_.prefetchList(v);
-    if (const VertexId v = soon(4); v != kNone && !isLocked(v)) {
-      mesh_.prefetchStar(v);
-      if (const Candidate* best = candidates_.best(v)) touched_.prefetch(best->partner), mesh_.prefetchVertex(best->partner);
+  // The queue's order has nothing to do with where things lie: what its next proposals need is asked for in steps, each of which needs the one before.
+  // Entries that are locked already are passed over, so that a step is a proposal.
+  void lookAhead() {
+    if (looked_ >= next_ + kMostLooked) return;
+    VertexId owner = kNone;
+    while (owner == kNone && looked_ < entries_.size()) {
+      if (looked_ + kListsAhead < entries_.size()) {
+        const VertexId v = entries_[looked_ + kListsAhead].owner;
+        touched_.prefetch(v), candidates_.prefetch(v), mesh_.prefetchVertex(v);
+      }
+      const VertexId v = entries_[looked_++].owner;
+      if (!isLocked(v)) owner = v;
     }
-    if (const VertexId v = soon(2); v != kNone && !isLocked(v))
-      if (const Candidate* best = candidates_.best(v)) mesh_.prefetchList(best->partner), cost_.prefetchSlot(best->partner), cost_.prefetch(v);
+    const auto stepsAgo = [this](std::size_t steps) -> Soon& { return soon_[(soonAt_ - steps) % soon_.size()]; };
+    ++soonAt_;
+    stepsAgo(0) = {owner, kNone};
+    if (owner != kNone) candidates_.prefetchBest(owner), mesh_.prefetchList(owner), cost_.prefetchSlot(owner), mesh_.prefetchPoint(owner);
+    if (Soon& soon = stepsAgo(2); soon.owner != kNone) {
+      mesh_.prefetchStar(soon.owner), mesh_.prefetchPlanes(soon.owner), cost_.prefetch(soon.owner);
+      if (const Candidate* best = candidates_.best(soon.owner)) {
+        soon.partner = best->partner;
+        touched_.prefetch(soon.partner), mesh_.prefetchVertex(soon.partner), cost_.prefetchSlot(soon.partner), mesh_.prefetchPoint(soon.partner);
+      }
+    }
+    if (const VertexId v = stepsAgo(4).partner; v != kNone) mesh_.prefetchList(v), cost_.prefetch(v);
+    if (const VertexId v = stepsAgo(5).partner; v != kNone) mesh_.prefetchStar(v), mesh_.prefetchPlanes(v);
   }
 
   // A vertex that a fusion of this level touched waits for the next one: levels are independent sets.
@@ -251,7 +272,10 @@ class Simplifier {
   void requeue(VertexId owner) {
     dropDead(owner);
     const Candidate* best = candidates_.best(owner);
-    if (best && best->key <= limit_) queue_.push({best->key, owner});
+    if (best && best->key <= limit_)
+      queue_.push({best->key, owner});
+    else
+      giveBack(owner);
   }
 
   // With threads: proposals for the next entries, made in parallel. They are used as long as nothing they rely on is touched, so that the
@@ -280,13 +304,30 @@ class Simplifier {
 
   Proposal& proposalFor(VertexId owner) {
     if (proposalOf_[owner] == kNone) {
-      proposalOf_[owner] = static_cast<std::uint32_t>(withProposal_.size());
+      proposalOf_[owner] = spareProposal();
       withProposal_.push_back(owner);
-      if (proposals_.size() < withProposal_.size()) proposals_.emplace_back();
       proposals_[proposalOf_[owner]].illegal.clear();
       proposals_[proposalOf_[owner]].partner = kGhost;
     }
     return proposals_[proposalOf_[owner]];
+  }
+
+  // The one that was given back last, since the processor has it near.
+  std::uint32_t spareProposal() {
+    if (!spareProposals_.empty()) {
+      const std::uint32_t last = spareProposals_.back();
+      spareProposals_.pop_back();
+      return last;
+    }
+    if (proposals_.size() == proposalsUsed_) proposals_.emplace_back();
+    return proposalsUsed_++;
+  }
+
+  // Nobody asks for it again in this level.
+  void giveBack(VertexId owner) {
+    if (proposalOf_[owner] == kNone) return;
+    spareProposals_.push_back(proposalOf_[owner]);
+    proposalOf_[owner] = kNone;
   }
 
   /// What comes of the owner's best candidate, made now unless what was found in this level still holds.
@@ -310,7 +351,10 @@ class Simplifier {
     // Dearer than this, it waits for what costs less.
     const float most = std::min(limit_, std::max(kDearer * candidate.key, nextKey()));
     const Outcome outcome = propose(owner, candidate.partner, most);
-    if (outcome.cost <= most && outcome.proposal) return fuse(*outcome.proposal);
+    if (outcome.cost <= most && outcome.proposal) {
+      fuse(*outcome.proposal);
+      return giveBack(owner);
+    }
     outcome.cost > most ? candidates_.raise(owner, outcome.cost) : candidates_.fail(owner);
     requeue(owner);
   }
@@ -392,8 +436,14 @@ class Simplifier {
   std::vector<VertexId> vertices_;  // alive at the level's start
   Candidates candidates_;
   std::vector<std::vector<Candidate>> found_;  // collect's own
-  std::vector<Entry> entries_;
+  std::vector<QueueEntry> entries_;
+  EntrySorter sorter_;
   std::size_t next_ = 0, proposedTo_ = 0, ahead_ = 0;  // into entries_
+  struct Soon {
+    VertexId owner = kNone, partner = kNone;  // of a proposal
+  };
+  std::array<Soon, 8> soon_;                  // those that were looked at last
+  std::size_t looked_ = 0, soonAt_ = 0;       // into entries_, into soon_
   float limit_ = 0, dearest_ = std::numeric_limits<float>::infinity();  // keys: where the level ends, where the band does
   Queue queue_;
   std::vector<VertexId> fused_;  // of this level
@@ -402,6 +452,8 @@ class Simplifier {
   std::deque<Proposal> proposals_;
   std::vector<std::uint32_t> proposalOf_;  // by vertex, into proposals_
   std::vector<VertexId> withProposal_;
+  std::uint32_t proposalsUsed_ = 0;
+  std::vector<std::uint32_t> spareProposals_;  // of those
   std::vector<std::pair<VertexId, Proposal*>> jobs_;
   std::vector<double> values_;
   std::vector<std::int32_t> integers_;

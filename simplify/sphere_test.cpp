@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 
 #include "codec/boundary.h"
+#include "simplify/cell_corners.h"
 
 namespace qtet {
 
@@ -12,23 +14,25 @@ bool SphereTest::isLinkSphere(VertexId v, std::span<const CellId> star, std::spa
   // A sphere has two vertices more than half its triangles.
   if (triangles < 4 || triangles % 2 != 0) return false;
   if (triangles / 2 + 2 > kMost) return askLink(v, star, cells);
-  ++asked_;
+  const std::size_t vertices = triangles / 2 + 2;
+  std::fill_n(to_.begin(), vertices, 0), std::fill_n(from_.begin(), vertices, 0);
+  if (base_ > std::numeric_limits<std::uint32_t>::max() - 2 * kMostNumbers) std::ranges::fill(numbers_, base_ = 0);
+  base_ += kMostNumbers;
   std::uint32_t count = 0;
+  // Whether the vertex is new is no branch: a processor could not foresee it.
   const auto number = [&](VertexId w) {
-    Local& local = locals_[w == kGhost ? locals_.size() - 1 : w];
-    if (local.asked != asked_) {
-      local = {asked_, count};
-      if (count < kMost) to_[count] = from_[count] = walked_[count] = 0;
-      ++count;
-    }
-    return local.number;
+    std::uint32_t& known = numbers_[w == kGhost ? numbers_.size() - 1 : w];
+    const std::uint32_t local = std::min(known - base_, count);
+    known = base_ + local;
+    count += local == count;
+    return local;
   };
   for (const CellId c : star) {
     const Tetrahedron& cell = cells[c];
-    const auto& corner = kCellFaces[cell[0] == v ? 0 : cell[1] == v ? 1 : cell[2] == v ? 2 : 3];
+    const auto& corner = kCellFaces[onlyCorner(cornersThatAre(cell, v))];
     std::array<std::uint32_t, 3> t{};
     for (std::size_t i = 0; i < 3; ++i) t[i] = number(cell[static_cast<std::size_t>(corner[i])]);
-    if (count > triangles / 2 + 2) return false;
+    if (count > vertices) return false;
     for (std::size_t i = 0; i < 3; ++i) {
       const std::uint32_t a = t[i], b = t[(i + 1) % 3];
       to_[a] |= Mask{1} << b;
@@ -36,21 +40,39 @@ bool SphereTest::isLinkSphere(VertexId v, std::span<const CellId> star, std::spa
       third_[kMost * a + b] = static_cast<Small>(t[(i + 2) % 3]);
     }
   }
-  return count == triangles / 2 + 2 && isClosed(count, triangles) && isConnected(triangles);
+  return count == vertices && isClosed(count, triangles) && (isSurelyConnected(count) || isConnected(triangles));
 }
 
 // An edge that is there twice in one direction leaves too few.
-bool SphereTest::isClosed(std::uint32_t vertices, std::size_t triangles) const {
+bool SphereTest::isClosed(std::uint32_t vertices, std::size_t triangles) {
   std::size_t edges = 0;
+  Mask open = 0;
+  simple_ = 0;
   for (std::uint32_t a = 0; a < vertices; ++a) {
-    if (to_[a] != from_[a]) return false;
-    edges += static_cast<std::size_t>(std::popcount(to_[a]));
+    const auto own = static_cast<std::size_t>(std::popcount(to_[a]));
+    open |= to_[a] ^ from_[a];
+    edges += own;
+    simple_ |= Mask{own < 6} << a;
   }
-  return edges == 3 * triangles;
+  return open == 0 && edges == 3 * triangles;
+}
+
+// From vertex to vertex, but on from those alone whose triangles are one fan, for two would be six triangles. So this stays within triangles that hang together
+// by edges. Were there others, m parts of V_i and F_i <= 2 V_i - 4 in all: since V = F / 2 + 2 the parts have no more than 2 m - 2 vertices in common, counted as often
+// as they are too many, which leaves each of the others, of four vertices and more, some that are not reached. REQUIRES: closed, V = F / 2 + 2.
+bool SphereTest::isSurelyConnected(std::uint32_t vertices) const {
+  Mask reached = simple_ & (~simple_ + 1), waiting = reached;
+  while (waiting != 0) {
+    const Mask more = to_[static_cast<std::size_t>(std::countr_zero(waiting))] & ~reached;
+    reached |= more;
+    waiting = (waiting & (waiting - 1)) | (more & simple_);
+  }
+  return static_cast<std::uint32_t>(std::popcount(reached)) == vertices;
 }
 
 // From triangle to triangle across edges. REQUIRES: closed.
 bool SphereTest::isConnected(std::size_t triangles) {
+  walked_.fill(0);
   std::size_t waiting = 0, reached = 0;
   const auto push = [&](Small a, Small b) { walk_[waiting++] = {a, b}; };
   const auto first = static_cast<Small>(std::countr_zero(to_[0]));
@@ -67,7 +89,7 @@ bool SphereTest::isConnected(std::size_t triangles) {
 }
 
 bool SphereTest::askLink(VertexId v, std::span<const CellId> star, std::span<const Tetrahedron> cells) {
-  link_.clear(locals_.size() - 1);
+  link_.clear(numbers_.size() - 1);
   for (const CellId c : star) {
     const auto at = static_cast<std::size_t>(std::ranges::find(cells[c], v) - cells[c].begin());
     const auto& corner = kCellFaces[at];

@@ -14,10 +14,10 @@ namespace qtet {
 class SphereTest {
  public:
   /// `vertices`: how many there are; ids are below, or kGhost.
-  explicit SphereTest(std::size_t vertices) : locals_(vertices + 1) {}
+  explicit SphereTest(std::size_t vertices) : numbers_(vertices + 1) {}
 
   /// The triangles that `star`'s cells have opposite v form one sphere: every edge is met once in each direction, all hang together by edges, the Euler characteristic is 2.
-  /// REQUIRES: v is in each cell of the star, and none names a vertex twice.
+  /// REQUIRES: v is in each cell of the star, none names a vertex twice, and no two have the same vertices.
   [[nodiscard]] bool isLinkSphere(VertexId v, std::span<const CellId> star, std::span<const Tetrahedron> cells);
 
  private:
@@ -25,19 +25,18 @@ class SphereTest {
   using Mask = std::uint64_t;    // bit i: vertex i
   static constexpr std::size_t kMost = 64;
 
-  struct Local {
-    std::uint32_t asked = 0;  // the question for which the number holds
-    std::uint32_t number = 0;
-  };
+  static constexpr std::uint32_t kMostNumbers = kMost + 3;  // that one question gives away
 
-  [[nodiscard]] bool isClosed(std::uint32_t vertices, std::size_t triangles) const;
+  [[nodiscard]] bool isClosed(std::uint32_t vertices, std::size_t triangles);
+  [[nodiscard]] bool isSurelyConnected(std::uint32_t vertices) const;
   [[nodiscard]] bool isConnected(std::size_t triangles);
   [[nodiscard]] bool askLink(VertexId v, std::span<const CellId> star, std::span<const Tetrahedron> cells);
 
-  std::vector<Local> locals_;  // by vertex, the ghost's the last
-  std::uint32_t asked_ = 0;  // less often than there are ids
+  std::vector<std::uint32_t> numbers_;  // by vertex, the ghost's the last: base_ and its number in the last link that it was in
+  std::uint32_t base_ = 0;
   // By vertex of the link: the ends of the edges from it, the starts of those to it, and which of the former were walked.
   std::array<Mask, kMost> to_{}, from_{}, walked_{};
+  Mask simple_ = 0;  // vertices with too few edges for two fans
   std::array<Small, kMost * kMost> third_{};  // by edge, 64 a + b: the triangle's other vertex
   std::array<std::array<Small, 2>, 4 * kMost> walk_{};  // edges whose triangles are to come; a sphere of n vertices has 2 n - 4 triangles, each adds two
   Link link_;                                 // for what is larger
