@@ -36,16 +36,17 @@ constexpr double kShapeFloor = 1e-4;
 // Cosine of the largest angle by which a boundary triangle may turn in one fusion: more, and a fold could hide what the quadric does not see.
 constexpr double kNormalCosine = 0.3;
 
-// Vertices whose candidates are found at once, and how many of them a thread takes at a time.
+// Vertices whose candidates are found at once, and how many of them a thread takes at a time; of proposals, each dearer and few at once, one.
 constexpr std::size_t kCollected = 4096;
 constexpr std::size_t kGrain = 8;
+constexpr std::size_t kProposalGrain = 1;
 // How many entries ahead the memory is asked for lists of candidates, and for what comes of them at most.
 constexpr std::size_t kListsAhead = 8;
 constexpr std::size_t kMostLooked = 32;
 // The same for the candidates of fused vertices.
 constexpr std::size_t kFusedAhead = 2;
 // Entries of the queue for which threads make proposals ahead: a share of the level's, since a fusion spoils those of its neighbours.
-constexpr std::size_t kAheadShare = 64;
+constexpr std::size_t kAheadShare = 128;
 constexpr std::size_t kLeastAhead = 32;
 constexpr std::size_t kMostAhead = 2048;
 
@@ -290,7 +291,7 @@ class Simplifier {
       const Candidate* best = candidates_.best(owner);
       if (best && mesh_.alive(best->partner) && !isLocked(best->partner)) jobs_.push_back({owner, &proposalFor(owner)});
     }
-    workers_.forEach(jobs_.size(), kGrain, [&](std::size_t worker, std::size_t i) {
+    workers_.forEach(jobs_.size(), kProposalGrain, [&](std::size_t worker, std::size_t i) {
       const auto [owner, proposal] = jobs_[i];
       // Where the best is not legal, the next one is wanted soon.
       for (auto rest = candidates_.remaining(owner); !rest.empty() && rest[0].key <= limit_; rest = rest.subspan(1)) {
