@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -58,11 +59,12 @@ class Candidates {
     List& list = lists_[owner];
     pool_[list.first + list.next++].key *= kFailed;
   }
-  /// The best one is gone for good: on to the next. REQUIRES: best(owner).
+  /// The best one is gone for good: on to the next. Threads may do so at once, each for owners of its own. REQUIRES: best(owner).
   void drop(VertexId owner) {
     List& list = lists_[owner];
     pool_[list.first + list.next] = pool_[list.first];  // of those that failed the order does not count
-    ++list.first, --list.count, --live_;
+    ++list.first, --list.count;
+    std::atomic_ref(live_).fetch_sub(1, std::memory_order_relaxed);
   }
   /// All that failed may be tried again, in their turn.
   void restart(VertexId owner) {

@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <vector>
+
+#include "simplify/workers.h"
 
 namespace qtet {
 namespace {
@@ -46,6 +49,22 @@ TEST(Candidates, compactingLosesNoneThatIsAlive) {
   EXPECT_EQ(candidates.remaining(kOwner).size(), 2u);
   EXPECT_EQ(candidates.best(109)->partner, 110u);
   EXPECT_EQ(candidates.best(110), nullptr);
+}
+
+TEST(Candidates, noneThatIsDroppedIsMiscountedWhereThreadsDropThoseOfTheirOwnOwners) {
+  constexpr VertexId kOwners = 4096;
+  constexpr std::size_t kDropped = 100, kEach = 2 * kDropped - 1;  // with one more alive than that nothing would be compacted
+  const std::vector<Candidate> each(kEach, Candidate{1, 0});
+  Candidates candidates;
+  for (VertexId v = 0; v < kOwners; ++v) candidates.set(v, each);
+  Workers workers(4);
+  workers.forEach(kOwners, 1, [&](std::size_t, std::size_t v) {
+    for (std::size_t i = 0; i < kDropped; ++i) candidates.drop(static_cast<VertexId>(v));
+  });
+  const Candidate* const before = candidates.best(0);
+  candidates.compact();
+  EXPECT_NE(candidates.best(0), before);
+  EXPECT_EQ(candidates.remaining(kOwners - 1).size(), kEach - kDropped);
 }
 
 }  // namespace
