@@ -11,7 +11,7 @@ inline constexpr bool kFetchIsFree = true;
 #endif
 
 /// A hint that `*at` is read soon. Where it is not free a byte is read: nothing uses it, but a processor looks only some hundred instructions beyond a load that it waits for, so
-/// this pays for what is read in any case and close behind. REQUIRES: at points to an object.
+/// this pays for what is read in any case and close behind. REQUIRES: at points to an object or, where it is free, behind the last one of an array.
 template <class T>
 [[gnu::always_inline]] inline void fetch(const T* at) {
 #if defined(__wasm__)

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <bit>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 
@@ -23,8 +25,11 @@ namespace qtet {
 #endif
 }
 
-/// The corner of a single bit.
-[[nodiscard]] constexpr std::size_t onlyCorner(unsigned bit) { return (bit >> 1) - (bit >> 3); }
+/// The corner of a single bit. REQUIRES: 1, 2, 4 or 8.
+[[nodiscard]] constexpr std::size_t onlyCorner(unsigned bit) {
+  assert(std::has_single_bit(bit) && bit <= 8);
+  return (bit >> 1) - (bit >> 3);
+}
 
 /// Corners that are not among those given by bit, two at most.
 struct OtherCorners {

@@ -58,8 +58,8 @@ bool SphereTest::isClosed(std::uint32_t vertices, std::size_t triangles) {
 }
 
 // From vertex to vertex, but on from those alone whose triangles are one fan, for two would be six triangles. So this stays within triangles that hang together
-// by edges. Were there others, m parts of V_i and F_i <= 2 V_i - 4 in all: since V = F / 2 + 2 the parts have no more than 2 m - 2 vertices in common, counted as often
-// as they are too many, which leaves each of the others, of four vertices and more, some that are not reached. REQUIRES: closed, V = F / 2 + 2.
+// by edges. Where it reaches all V vertices these are 2 V - 4 triangles at least, by Euler, for their characteristic is at most 2 and a vertex where several
+// fans of theirs meet only adds to them; since F = 2 V - 4 there are no others. False says nothing. REQUIRES: closed, V = F / 2 + 2.
 bool SphereTest::isSurelyConnected(std::uint32_t vertices) const {
   Mask reached = simple_ & (~simple_ + 1), waiting = reached;
   while (waiting != 0) {
