@@ -8,6 +8,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <exception>
 #include <new>
 
 #include "proto/json_reader.h"
@@ -38,12 +39,29 @@ constexpr std::string_view kSomebodySends = "somebody is sending this log at the
 /// Whether somebody else has the file locked; else it is now, until it is closed. Where the file system has no locks nobody has.
 bool isLocked(int file) { return ::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK; }
 
+/// Whether the file has its name still: between our opening and our locking it another server may have published or removed it.
+bool isAt(const fs::path& path, int file) {
+  struct stat opened {}, named {};
+  return ::fstat(file, &opened) == 0 && ::lstat(path.c_str(), &named) == 0 && opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
+}
+
 /// Unless an upload under way has it, of this server or another one.
 void removePart(const fs::path& path) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
-  if (file >= 0 && !isLocked(file)) ::unlink(path.c_str());
+  if (file >= 0 && !isLocked(file) && isAt(path, file)) ::unlink(path.c_str());
   if (file >= 0) ::close(file);
 }
+
+class Counted {
+ public:
+  explicit Counted(std::atomic<std::size_t>& count) : count_(count) { ++count_; }
+  Counted(const Counted&) = delete;
+  Counted& operator=(const Counted&) = delete;
+  ~Counted() { --count_; }
+
+ private:
+  std::atomic<std::size_t>& count_;
+};
 
 Status syncFolder(const fs::path& folder) {
   const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -56,8 +74,8 @@ Status syncFolder(const fs::path& folder) {
 }  // namespace
 
 Upload::~Upload() {
-  if (file_ >= 0) ::close(file_);
-  if (!keep_ && !request_.digest) ::unlink(part_.c_str());
+  if (remove_) ::unlink(part_.c_str());  // before the lock goes: behind it the name may be another server's
+  ::close(file_);
   const std::scoped_lock lock(uploads_.mutex_);
   uploads_.active_.erase(part_);
 }
@@ -94,10 +112,8 @@ std::optional<Reply> Upload::verify(const std::stop_token& stop, MeshPointer& me
   mesh = std::move(*opened);
   if (request_.digest && mesh->log.digest() != *request_.digest)
     return problem(422, "bad-log", "the log has the digest " + mesh->log.digest() + ", not the one that the request names");
-  ++uploads_.checking_;
-  std::optional<Reply> refusal = uploads_.options_.check(*mesh, uploads_.options_.checkLimits, stop);
-  --uploads_.checking_;
-  return refusal;
+  const Counted counted(uploads_.checking_);
+  return uploads_.options_.check(*mesh, uploads_.options_.checkLimits, stop);
 }
 
 Reply Upload::finish(const std::stop_token& stop) {
@@ -108,10 +124,13 @@ Reply Upload::finish(const std::stop_token& stop) {
     MeshPointer mesh;
     std::optional<Reply> refusal = verify(either.get_token(), mesh);
     if (!refusal) return publish(mesh->log.digest());
-    if (refusal->status == 413 || refusal->status == 422) ::unlink(part_.c_str());  // going on with it would not make it better
+    if (refusal->status == 413 || refusal->status == 422) remove_ = true;  // going on with it would not make it better
     return std::move(*refusal);
   } catch (const std::bad_alloc&) {  // it ends one upload, not the server
     return busyReply("there is not enough memory for this log now; try again");
+  } catch (const std::exception& error) {
+    spdlog::error("an upload ended by an exception: {}", error.what());
+    return problem(500, "internal", "the log could not be checked or published");
   }
 }
 
@@ -121,7 +140,7 @@ Reply Upload::publish(const std::string& digest) {
   const bool replaced = uploads_.store_.find(request_.id) != nullptr;
   const fs::path target = *pathOfMesh(uploads_.store_.folder(), request_.id);
   if (::rename(part_.c_str(), target.c_str()) != 0) return diskTrouble("the upload cannot be published", errno);
-  keep_ = true;
+  remove_ = false;
   if (const Status synced = syncFolder(uploads_.store_.folder()); !synced) spdlog::warn("after an upload: {}", synced.error().message);
   ++uploads_.published_;
   const Result<FolderChange> change = uploads_.store_.rescan();
@@ -166,7 +185,7 @@ std::expected<std::unique_ptr<Upload>, Reply> Uploads::begin(const UploadRequest
   if (active_.contains(part)) return refuse(problem(409, "upload-conflict", kSomebodySends));
   if (active_.size() >= limits::kMaxUploads) return refuse(busyReply("too many uploads; try again"));
   removeOldParts(limits::kPartialUploadTime);
-  const int flags = O_WRONLY | O_APPEND | O_CLOEXEC | O_NOFOLLOW | (request.first == 0 ? O_CREAT : 0);
+  const int flags = O_WRONLY | O_APPEND | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK | (request.first == 0 ? O_CREAT : 0);
   const int file = ::open(part.c_str(), flags, 0644);
   if (file < 0 && (request.first == 0 || errno != ENOENT)) return refuse(diskTrouble("the upload cannot be written", errno));
   const auto refuseOpened = [&](Reply reply) {
@@ -174,9 +193,9 @@ std::expected<std::unique_ptr<Upload>, Reply> Uploads::begin(const UploadRequest
     return refuse(std::move(reply));
   };
   struct stat info {};
-  if (file >= 0 && isLocked(file)) return refuseOpened(problem(409, "upload-conflict", kSomebodySends));
+  if (file >= 0 && (isLocked(file) || !isAt(part, file))) return refuseOpened(problem(409, "upload-conflict", kSomebodySends));
   if (file >= 0 && request.first == 0 && ::ftruncate(file, 0) != 0) return refuseOpened(diskTrouble("the upload cannot be written", errno));
-  if (file < 0 || ::fstat(file, &info) != 0 || info.st_nlink == 0 || static_cast<std::uint64_t>(info.st_size) != request.first)
+  if (file < 0 || ::fstat(file, &info) != 0 || static_cast<std::uint64_t>(info.st_size) != request.first)
     return refuseOpened(problem(409, "upload-conflict", "there are " + std::to_string(info.st_size) + " bytes of this log; go on from there"));
   active_.insert(part);
   return std::unique_ptr<Upload>(new Upload(*this, request, part, file));

@@ -36,13 +36,13 @@ class Upload {
   /// 202: this part is kept, and more is missing; nullopt: all bytes are there. Or 500.
   [[nodiscard]] std::optional<Reply> partial();
   /// After the last byte: verifies, decodes and publishes. Reads the whole file and takes as long as its check may, so not for a thread that serves others.
-  /// 201 (new), 200 (replaced), or 412, 413, 422, 500, 503 (`stop` was requested, among others), 507. What is refused by 413 or 422 cannot be gone on with.
+  /// 201 (new), 200 (replaced), or 412, 413, 422, 500, 503 (`stop` was requested, or there is no memory, among others), 507. What is refused by 413 or 422 cannot be gone on with.
   [[nodiscard]] Reply finish(const std::stop_token& stop);
 
  private:
   friend class Uploads;
   Upload(Uploads& uploads, UploadRequest request, std::filesystem::path part, int file)
-      : uploads_(uploads), request_(std::move(request)), part_(std::move(part)), file_(file) {}
+      : uploads_(uploads), request_(std::move(request)), part_(std::move(part)), file_(file), remove_(!request_.digest) {}
   /// nullopt: the log is sound, and `mesh` it; else the answer.
   std::optional<Reply> verify(const std::stop_token& stop, MeshPointer& mesh);
   Reply publish(const std::string& digest);
@@ -51,7 +51,7 @@ class Upload {
   const UploadRequest request_;
   const std::filesystem::path part_;
   int file_;
-  bool keep_ = false;
+  bool remove_;  // the part, at the end
 };
 
 struct UploadOptions {

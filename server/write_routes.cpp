@@ -23,7 +23,7 @@ bool readContentRange(std::string_view text, UploadRequest& out) {
   text.remove_prefix(kUnit.size());
   if (const auto all = text.starts_with("*/") && out.bodyBytes == 0 ? parseNumber(text.substr(2)) : std::nullopt) {
     out.first = out.totalBytes = *all;
-    return true;
+    return *all > 0;  // from 0 on the upload would begin anew
   }
   const std::size_t dash = text.find('-'), slash = text.find('/');
   if (dash == std::string_view::npos || slash == std::string_view::npos || dash > slash) return false;

@@ -2,10 +2,16 @@
 #include "server/uploads.h"
 
 #include <gtest/gtest.h>
+#include <sys/file.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
+#include <atomic>
 #include <fstream>
 #include <functional>
+#include <new>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <tuple>
 #include <vector>
 
@@ -18,6 +24,19 @@
 #include "tests/support/forged_log.h"
 #include "tests/support/meshes.h"
 #include "tests/support/written_log.h"
+
+namespace {
+
+/// Happens once, just before the next lock is asked for: what another server may do between the opening of a file and its locking.
+std::atomic<const std::function<void()>*> beforeLocking = nullptr;
+
+}  // namespace
+
+/// Takes the C library's place in this program.
+extern "C" int flock(int file, int how) noexcept {
+  if (const auto* meanwhile = beforeLocking.exchange(nullptr)) (*meanwhile)();
+  return static_cast<int>(::syscall(SYS_flock, file, how));
+}
 
 namespace qtet {
 namespace {
@@ -301,8 +320,17 @@ TEST_F(UploadTest, anUploadThatBrokeOffGoesOnWhereItStopped) {
   EXPECT_EQ(get("/v1/logs/" + digestOf(log_) + "/log").body, log_);
   client.send(ask);
   EXPECT_EQ(client.receive().status, 404u);
-  for (const char* wrong : {"bytes 1-2/3", "bytes 5-2/9", "items 0-1/2", "bytes */9", "bytes 0-18446744073709551616/9"})
+  for (const char* wrong : {"bytes 1-2/3", "bytes 5-2/9", "items 0-1/2", "bytes */9", "bytes */0", "bytes 0-18446744073709551616/9"})
     EXPECT_EQ(put(target, "abc", "Content-Range: " + std::string(wrong) + "\r\n").status, 400u) << wrong;
+}
+
+TEST_F(UploadTest, askingForTheCheckOfNothingTakesNothingAway) {
+  const auto request = [&](const std::string& range) { return put(digested("new"), "", "Content-Range: " + range + "\r\n"); };
+  EXPECT_EQ(put(digested("new"), log_.substr(0, 10), "Content-Range: bytes 0-9/" + std::to_string(log_.size()) + "\r\n").status, 202u);
+  EXPECT_EQ(request("bytes */0").status, 400u);
+  EXPECT_EQ(request("bytes */" + std::to_string(log_.size())).status, 409u) << "the rest is missing";
+  EXPECT_EQ(put(digested("new"), log_.substr(10), "Content-Range: bytes 10-" + std::to_string(log_.size() - 1) + "/" + std::to_string(log_.size()) + "\r\n").status, 201u);
+  EXPECT_EQ(request("bytes */" + std::to_string(log_.size())).status, 409u) << "it is published, and no part any more";
 }
 
 TEST_F(UploadTest, goingOnWithWhatIsNotThereLeavesNothing) {
@@ -429,6 +457,59 @@ TEST(Uploads, aServerThatRunsForYearsKeepsNoOldParts) {
   fs::last_write_time(underWay, old);
   ASSERT_TRUE(begin('d'));
   EXPECT_TRUE(fs::exists(underWay)) << "somebody is sending it";
+}
+
+TEST(Uploads, whatAnotherServerPublishesMeanwhileIsNotWrittenInto) {
+  const test::ServedFolder folder;
+  const Bytes log = testing::logBytes(testing::soundMesh(8, 77));
+  const UploadRequest request{.id = "wing", .digest = sha256Hex(log), .bodyBytes = log.size(), .totalBytes = log.size()};
+  const MeshStore others = *MeshStore::open(folder.logFolder());
+  Uploads first(folder.store(), {}), second(others, {});
+  auto one = first.begin(request);
+  ASSERT_TRUE(one);
+  EXPECT_FALSE((*one)->append(log));
+  const std::function<void()> publish = [&] {
+    EXPECT_EQ((*one)->finish({}).status, 201u);
+    one->reset();
+  };
+  beforeLocking = &publish;
+  const auto late = second.begin(request);
+  ASSERT_FALSE(late);
+  EXPECT_EQ(late.error().status, 409u);
+  EXPECT_EQ(fs::file_size(folder.logFolder() / "wing.qtet"), log.size());
+  EXPECT_TRUE(second.begin(request)) << "the next one begins anew";
+}
+
+TEST(Uploads, aPartThatTookTheNameOfAnOldOneIsNotSweptInItsPlace) {
+  const test::ServedFolder folder;
+  const fs::path part = folder.logFolder() / ".upload-1.0.part";  // in two containers the processes may have the same number
+  std::ofstream(part) << "old";
+  const std::function<void()> replace = [&] {
+    fs::remove(part);
+    std::ofstream(part) << "another one";
+  };
+  beforeLocking = &replace;
+  Uploads(folder.store(), {}).sweep();
+  EXPECT_TRUE(fs::exists(part));
+}
+
+TEST(Uploads, aCheckThatThrowsEndsOneUploadAndIsNotCountedForEver) {
+  const test::ServedFolder folder;
+  const Bytes log = testing::logBytes(testing::soundMesh(8, 77));
+  const UploadRequest request{.id = "wing", .digest = sha256Hex(log), .bodyBytes = log.size(), .totalBytes = log.size()};
+  for (const bool memory : {true, false}) {
+    Uploads uploads(folder.store(), {.check = [memory](const ServedMesh&, const CheckLimits&, const std::stop_token&) -> std::optional<Reply> {
+                      if (memory) throw std::bad_alloc();
+                      throw std::length_error("too long");
+                    }});
+    auto upload = uploads.begin(request);
+    ASSERT_TRUE(upload);
+    EXPECT_FALSE((*upload)->append(log));
+    EXPECT_EQ((*upload)->finish({}).status, memory ? 503u : 500u);
+    EXPECT_EQ(uploads.checking(), 0u);
+    upload->reset();
+    EXPECT_EQ(uploads.partialBytes("wing", *request.digest), log.size()) << "may be asked for again";
+  }
 }
 
 }  // namespace
