@@ -61,8 +61,10 @@ void FusionMesh::findSingular(Workers* workers) {
     if (i + kAhead < singular_.size()) prefetchStar(v + kAhead);
     singular_[i] = !tests[worker].isLinkSphere(v, star(v), history_.cells);
   };
-  if (workers) workers->forEach(singular_.size(), kGrain, ask);
-  for (std::size_t i = 0; workers == nullptr && i < singular_.size(); ++i) ask(0, i);
+  if (workers)
+    workers->forEach(singular_.size(), kGrain, ask);
+  else
+    for (std::size_t i = 0; i < singular_.size(); ++i) ask(0, i);
   hasSingular_ = std::ranges::find(singular_, 1) != singular_.end();
 }
 
