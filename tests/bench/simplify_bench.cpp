@@ -2,6 +2,8 @@
 // medians of five. Prints Markdown tables.
 //   simplify_bench [--threads N] [--repeats N] [--reduction R] [--fields all|one] [NAME...]
 //     NAME: a mesh file, or a sample's name; without any, every .vtu of the folder QTET_DATA, and where that is not set the samples box and fin
+//   simplify_bench --speedup [--threads N] [--repeats N] [--reduction R] [NAME...]
+//     ours alone, with one thread and with N (two unless given) in turns: wall seconds, and their ratio
 //   simplify_bench --growth [CELLS|FILE...]
 //     the whole tool on `qtet sample fin --cells CELLS` (200,000 and 10,000,000 unless given) or on files: seconds and peak memory a cell
 // On the clock: for ours simplify(), from a cleaned mesh on the lattice to the history of fusions, every field optimised and carried along, or with
@@ -37,7 +39,7 @@ struct Request {
   int repeats = 5;
   double reduction = 0.9;
   bool isOneField = false;  // ours keeps no more than VTK's filter
-  bool growth = false;
+  bool growth = false, speedup = false;
   std::vector<std::string> names;
 };
 
@@ -81,10 +83,10 @@ std::size_t tetrahedraLeft(const FusionHistory& history, std::size_t original) {
   return static_cast<std::size_t>(std::count(history.live.begin(), history.live.begin() + static_cast<std::ptrdiff_t>(original), 1));
 }
 
-void addOurs(const LatticeMesh& mesh, const Request& request, Runs& runs) {
+void addOurs(const LatticeMesh& mesh, const Request& request, int threads, Runs& runs) {
   FusionOptions options;
   options.targetRatio = 1 - request.reduction;
-  options.threads = request.threads;
+  options.threads = threads;
   std::optional<Result<FusionHistory>> history;
   const Seconds seconds = timeOf([&] { history.emplace(simplify(mesh, options)); });
   runs.add(mesh.tetrahedra.size() - tetrahedraLeft(need(std::move(*history)), mesh.tetrahedra.size()), seconds);
@@ -109,7 +111,7 @@ void compare(const std::string& name, const Request& request) {
   const auto plain = gridOf(mesh, 1), scaled = gridOf(mesh, kTunedScale);
   Runs ours, vtk, tuned;
   for (int i = 0; i < request.repeats; ++i) {
-    addOurs(lattice->mesh, request, ours);
+    addOurs(lattice->mesh, request, request.threads, ours);
     addVtk(plain, 1, request, vtk);
     addVtk(scaled, kTunedScale, request, tuned);
   }
@@ -134,6 +136,20 @@ void compareAll(const Request& request) {
       "VTK x 1000 | quantise u |");
   std::puts("|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|");
   for (const std::string& name : request.names.empty() ? defaultNames() : request.names) compare(name, request);
+}
+
+void speedup(const Request& request) {
+  std::printf("%g %% asked for, all fields, wall seconds of simplify(), medians of %d (least in brackets)\n\n", 100 * request.reduction, request.repeats);
+  std::printf("| mesh | cells | one thread | %d threads | ratio |\n|---|---|---|---|---|\n", request.threads);
+  for (const std::string& name : request.names.empty() ? defaultNames() : request.names) {
+    const LatticeMesh mesh = need(quantise(meshNamed(name))).mesh;
+    Runs one, many;
+    for (int i = 0; i < request.repeats; ++i) addOurs(mesh, request, 1, one), addOurs(mesh, request, request.threads, many);
+    const double alone = medianOf(one.wall), together = medianOf(many.wall);
+    std::printf("| %s | %zu | %.4f (%.4f) | %.4f (%.4f) | %.3f |\n", std::filesystem::path(name).stem().c_str(), mesh.tetrahedra.size(), alone,
+                std::ranges::min(one.wall), together, std::ranges::min(many.wall), together / alone);
+    std::fflush(stdout);
+  }
 }
 
 struct Finished {
@@ -186,7 +202,7 @@ void growth(const Request& request) {
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const LatticeMesh mesh = need(quantise(meshNamed(inputs[i]))).mesh;
     Runs ours;
-    addOurs(mesh, request, ours);
+    addOurs(mesh, request, request.threads, ours);
     const auto cells = static_cast<double>(mesh.tetrahedra.size());
     std::printf("| %s | %.0f | %.2f | %.2f | %.2f | %.2f | %.0f MB | %.0f |\n", std::filesystem::path(inputs[i]).stem().c_str(), cells,
                 tools[i].userSeconds, 1e6 * tools[i].userSeconds / cells, ours.user[0], 1e6 * ours.user[0] / cells,
@@ -216,9 +232,11 @@ double numberAfter(const std::vector<std::string>& words, std::size_t& i, double
 
 Request requestOf(const std::vector<std::string>& words) {
   Request request;
+  bool isThreadsGiven = false;
   for (std::size_t i = 0; i < words.size(); ++i) {
     if (words[i] == "--threads") {
       request.threads = static_cast<int>(numberAfter(words, i, 1, 1024));
+      isThreadsGiven = true;
     } else if (words[i] == "--repeats") {
       request.repeats = static_cast<int>(numberAfter(words, i, 1, 1000));
     } else if (words[i] == "--reduction") {
@@ -227,12 +245,15 @@ Request requestOf(const std::vector<std::string>& words) {
       request.isOneField = isOneAfter(words, i);
     } else if (words[i] == "--growth") {
       request.growth = true;
+    } else if (words[i] == "--speedup") {
+      request.speedup = true;
     } else if (words[i].starts_with("--")) {
-      throw std::runtime_error("unknown option " + words[i] + "; there are --threads, --repeats, --reduction, --fields and --growth");
+      throw std::runtime_error("unknown option " + words[i] + "; there are --threads, --repeats, --reduction, --fields, --speedup and --growth");
     } else {
       request.names.push_back(words[i]);
     }
   }
+  if (request.speedup && !isThreadsGiven) request.threads = 2;
   return request;
 }
 
@@ -243,7 +264,7 @@ int main(int argc, char** argv) {
   try {
     const auto request = qtet::bench::requestOf({argv + 1, argv + argc});
     if (!qtet::bench::pinToCores(request.threads)) std::fputs("simplify_bench: the system refuses to pin the process to cores\n", stderr);
-    request.growth ? qtet::bench::growth(request) : qtet::bench::compareAll(request);
+    request.growth ? qtet::bench::growth(request) : request.speedup ? qtet::bench::speedup(request) : qtet::bench::compareAll(request);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "simplify_bench: %s\n", error.what());
     return EXIT_FAILURE;
