@@ -1,6 +1,9 @@
 // Asking for memory before it is needed: a mesh's cells and vertices lie anywhere in it, and waiting for them one after the other would take a third of a decoder's time.
 #pragma once
 
+#include <cstddef>
+#include <span>
+
 namespace qtet {
 
 /// Whether fetch() is an instruction that nothing waits for. WebAssembly has none.
@@ -20,6 +23,15 @@ template <class T>
   __builtin_prefetch(at);
   asm volatile("");  // else g++ takes a function that does nothing but this for one without effect, and leaves its calls out
 #endif
+}
+
+/// The same of all that a span has.
+template <class T>
+[[gnu::always_inline]] inline void fetchAll(std::span<const T> some) {
+  constexpr std::size_t kLine = 64;
+  const auto bytes = std::as_bytes(some);
+  for (std::size_t i = 0; i < bytes.size(); i += kLine) fetch(&bytes[i]);
+  if (!bytes.empty()) fetch(&bytes.back());
 }
 
 }  // namespace qtet

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -10,6 +11,8 @@
 
 #include "codec/fetch.h"
 #include "codec/mesh.h"
+#include "simplify/large_pages.h"
+#include "simplify/workers.h"
 
 namespace qtet {
 
@@ -27,15 +30,31 @@ class Candidates {
     live_ = 0;
   }
 
-  /// The candidates of `owner`. REQUIRES: sorted.
-  void set(VertexId owner, std::span<const Candidate> found) {
-    if (lists_.size() <= owner) lists_.resize(std::size_t{owner} + 1);
-    live_ += found.size() - lists_[owner].count;
-    lists_[owner] = {pool_.size(), 0, static_cast<std::uint32_t>(found.size())};
-    pool_.insert(pool_.end(), found.begin(), found.end());
+  /// Room for so many, so that they seldom move.
+  void reserve(std::size_t candidates) {
+    pool_.reserve(candidates);
+    useLargePages(pool_);
   }
 
-  /// The cheapest that has not failed, or none. Valid until set or compact.
+  /// The candidates of owners, one after the other. REQUIRES: each sorted; owners ascend, and from every one before.
+  void set(std::span<const VertexId> owners, std::span<const std::vector<Candidate>> found, Workers& workers) {
+    if (owners.empty()) return;
+    assert(lists_.size() <= owners.front());
+    lists_.resize(std::size_t{owners.back()} + 1);
+    const std::size_t before = pool_.size();
+    std::size_t end = before;
+    for (std::size_t i = 0; i < owners.size(); ++i) {
+      lists_[owners[i]] = {end, 0, static_cast<std::uint32_t>(found[i].size())};
+      end += found[i].size();
+    }
+    live_ += end - before;
+    pool_.resize(end);
+    workers.forRuns(owners.size(), kSetAtOnce, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) std::ranges::copy(found[i], pool_.begin() + static_cast<std::ptrdiff_t>(lists_[owners[i]].first));
+    });
+  }
+
+  /// The cheapest that has not failed, or none. Valid until something changes.
   [[nodiscard]] const Candidate* best(VertexId owner) const {
     if (owner >= lists_.size()) return nullptr;
     const List& list = lists_[owner];
@@ -48,6 +67,10 @@ class Candidates {
   void prefetchBest(VertexId owner) const {
     if (owner < lists_.size()) fetch(pool_.data() + lists_[owner].first + lists_[owner].next);
   }
+  /// It has none, nor will have.
+  [[nodiscard]] bool isEmpty(VertexId owner) const { return owner >= lists_.size() || lists_[owner].count == 0; }
+  /// Some have failed since they were set or restarted.
+  [[nodiscard]] bool hasFailed(VertexId owner) const { return owner < lists_.size() && lists_[owner].next > 0; }
   /// The best one and all after it.
   [[nodiscard]] std::span<const Candidate> remaining(VertexId owner) const {
     if (owner >= lists_.size()) return {};
@@ -68,7 +91,7 @@ class Candidates {
   }
   /// All that failed may be tried again, in their turn.
   void restart(VertexId owner) {
-    if (owner >= lists_.size() || lists_[owner].next == 0) return;
+    if (!hasFailed(owner)) return;
     List& list = lists_[owner];
     list.next = 0;
     const auto first = pool_.begin() + static_cast<std::ptrdiff_t>(list.first);
@@ -82,35 +105,37 @@ class Candidates {
     for (; i + 1 < list.first + list.count && pool_[i + 1] < pool_[i]; ++i) std::swap(pool_[i], pool_[i + 1]);
   }
 
-  /// The owner is dead: all of its candidates are gone.
+  /// The owner is dead: all of its candidates are gone. Threads may do so at once.
   void forget(VertexId owner) {
     if (owner >= lists_.size()) return;
-    live_ -= lists_[owner].count;
+    std::atomic_ref(live_).fetch_sub(lists_[owner].count, std::memory_order_relaxed);
     lists_[owner] = {};
   }
 
-  /// Gives back the room of what is gone, when it is half of all.
+  /// Closes the gaps of what is gone, when it is half of all: in place, since lists lie in the order of their owners.
   void compact() {
     if (pool_.size() < 2 * live_ + 4096) return;
-    std::vector<Candidate> kept;
-    kept.reserve(live_ + live_ / 4);
+    std::size_t end = 0;
     for (List& list : lists_) {
-      const std::size_t first = kept.size();
-      kept.insert(kept.end(), pool_.begin() + static_cast<std::ptrdiff_t>(list.first),
-                  pool_.begin() + static_cast<std::ptrdiff_t>(list.first + list.count));
-      list.first = first;
+      if (list.first != end) std::copy_n(pool_.begin() + static_cast<std::ptrdiff_t>(list.first), list.count, pool_.begin() + static_cast<std::ptrdiff_t>(end));
+      list.first = end;
+      end += list.count;
     }
-    pool_ = std::move(kept);
+    pool_.resize(end);
+    giveBackRoom(pool_);
   }
 
  private:
   // What was not legal is tried again later than its cost says: what forbade it is seldom gone after one change nearby.
   static constexpr float kFailed = 4;
+  // Owners whose candidates a thread takes over at a time.
+  static constexpr std::size_t kSetAtOnce = 256;
 
   struct List {
     std::size_t first = 0;
     std::uint32_t next = 0, count = 0;
   };
+
   std::vector<Candidate> pool_;
   std::vector<List> lists_;
   std::size_t live_ = 0;

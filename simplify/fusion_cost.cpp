@@ -7,6 +7,7 @@
 #include "codec/boundary.h"
 #include "codec/face_groups.h"
 #include "simplify/hull_weight.h"
+#include "simplify/large_pages.h"
 #include "simplify/workers.h"
 
 namespace qtet {
@@ -16,6 +17,18 @@ namespace {
 // there the field is steepest, and it is what a viewer shows.
 constexpr double kWallLayer = 3e-5;
 
+// Most cells, of some, have all of their vertices in one run of so many ids.
+bool areNear(std::span<const Tetrahedron> cells, std::size_t run) {
+  constexpr std::size_t kAsked = 1024;
+  const std::size_t step = cells.size() / kAsked + 1;
+  std::size_t asked = 0, near = 0;
+  for (std::size_t i = 0; i < cells.size(); i += step, ++asked) {
+    const auto [least, most] = std::ranges::minmax(cells[i]);
+    near += least / std::max<std::size_t>(run, 1) == most / std::max<std::size_t>(run, 1);
+  }
+  return 2 * near > asked;
+}
+
 }  // namespace
 
 FusionCost::FusionCost(const FusionMesh& mesh, const LatticeMesh& lattice, const CostOptions& options, Workers* workers)
@@ -24,28 +37,30 @@ FusionCost::FusionCost(const FusionMesh& mesh, const LatticeMesh& lattice, const
   stride_ = kHead + kPerComponent * components_;
   slot_.resize(lattice.points.size());
   std::iota(slot_.begin(), slot_.end(), 0u);
-  quadrics_.assign(lattice.points.size() * stride_, 0);
+  quadrics_.reserve(lattice.points.size() * stride_);
+  useLargePages(quadrics_);
+  quadrics_.resize(lattice.points.size() * stride_, 0);
   takeValues(lattice);
-  if (components_ == 0) {
-    addPlanes(lattice, options.boundaryFactor);
-  } else {
-    const double hullWeight = options.hullWeight ? *options.hullWeight : balancedHullWeight(lattice, parts_);
-    addSlopes(lattice, hullWeight / diagonal_, workers);
-  }
+  components_ == 0 ? addPlanes(lattice, options.boundaryFactor) : addSlopes(lattice, options.hullWeight, workers);
 }
 
 // Each worker adds to vertices of its own, in the order of the cells, so that every sum is that of one worker. Ids that lie near one another mostly lie near one
-// another in the mesh, too, and few cells are looked into by two.
-void FusionCost::addSlopes(const LatticeMesh& lattice, double hullFactor, Workers* workers) {
+// another in the mesh, too, and few cells are looked into by two; where that is not so, one worker alone is quicker. What the hull weighs is found meanwhile.
+void FusionCost::addSlopes(const LatticeMesh& lattice, std::optional<double> hullWeight, Workers* workers) {
   const std::vector<Triangle> interfaces = interfacesOf(lattice);
-  const std::size_t runs = workers ? workers->count() : 1, count = lattice.points.size();
-  const auto add = [&](std::size_t, std::size_t run) {
-    const Vertices own{static_cast<VertexId>(run * count / runs), static_cast<VertexId>((run + 1) * count / runs)};
-    addFields(lattice, own);
-    addTriangles(lattice.boundary, hullFactor, own);
-    addTriangles(interfaces, hullFactor, own);
+  const std::size_t vertices = lattice.points.size();
+  const std::size_t runs = workers && areNear(lattice.tetrahedra, vertices / workers->count()) ? workers->count() : 1;
+  const auto run = [&](std::size_t i) { return Vertices{static_cast<VertexId>(i * vertices / runs), static_cast<VertexId>((i + 1) * vertices / runs)}; };
+  const auto each = [&](std::size_t tasks, const auto& task) {
+    if (workers) return workers->forEach(tasks, 1, [&](std::size_t, std::size_t i) { task(i); });
+    for (std::size_t i = 0; i < tasks; ++i) task(i);
   };
-  workers ? workers->forEach(runs, 1, add) : add(0, 0);
+  each(runs + 1, [&](std::size_t i) {
+    if (i < runs) return addFields(lattice, run(i));
+    if (!hullWeight) hullWeight = balancedHullWeight(lattice, parts_);
+  });
+  const double hullFactor = *hullWeight / diagonal_;
+  each(runs, [&](std::size_t i) { addTriangles(lattice.boundary, hullFactor, run(i)), addTriangles(interfaces, hullFactor, run(i)); });
 }
 
 void FusionCost::takeLimits(const LatticeMesh& lattice) {
@@ -240,7 +255,7 @@ double FusionCost::valuesAt(const Prey& prey, const LatticePoint& p, std::span<d
   return cost;
 }
 
-void FusionCost::fuse(const Prey& prey, const LatticePoint& p, std::span<const double> values) {
+void FusionCost::fuse(const Prey& prey, VertexId fused, const LatticePoint& p, std::span<const double> values) {
   Sum sum;
   std::fill_n(sum.slope.begin(), components_, Vector3{});
   std::fill_n(sum.offset.begin(), components_, 0.0);
@@ -248,8 +263,8 @@ void FusionCost::fuse(const Prey& prey, const LatticePoint& p, std::span<const d
   for (const VertexId v : prey.vertices())
     accumulate(
         v, place, [&](std::size_t f) { return values[f]; }, sum);
-  slot_.push_back(slot_[prey.vertex[0]]);
-  double* q = &quadrics_[slot_.back() * stride_];
+  slot_[fused] = slot_[prey.vertex[0]];
+  double* q = &quadrics_[at(fused)];
   const Symmetric3& a = sum.q.a;
   const std::array<double, kHead> head{a.xx, a.xy, a.xz, a.yy, a.yz, a.zz, sum.q.b[0], sum.q.b[1], sum.q.b[2], sum.q.c, sum.weight};
   std::ranges::copy(head, q);

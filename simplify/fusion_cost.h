@@ -66,8 +66,11 @@ class FusionCost {
 
   /// The best values at p, within the fields' limits, in the cost's unit (components() numbers), and E there.
   double valuesAt(const Prey& prey, const LatticePoint& p, std::span<double> values) const;
-  /// The prey's quadrics become the fused vertex's. REQUIRES: called before or after FusionMesh::fuse, once each fusion, in order.
-  void fuse(const Prey& prey, const LatticePoint& p, std::span<const double> values);
+  /// The prey's quadrics become the fused vertex's. Threads may do so at once, each for prey of its own. REQUIRES: room for it; called before or after
+  /// FusionMesh::fuse, once each fusion.
+  void fuse(const Prey& prey, VertexId fused, const LatticePoint& p, std::span<const double> values);
+  /// Room for so many vertices in all.
+  void makeRoom(std::size_t vertices) { slot_.resize(vertices); }
 
  private:
   // Of one vertex, relative to its place and values: A (6), b (3), c, W, then the G of each component, x, y and z apart, each one's h and each one's value:
@@ -101,7 +104,7 @@ class FusionCost {
 
   void takeLimits(const LatticeMesh& lattice);
   void takeValues(const LatticeMesh& lattice);
-  void addSlopes(const LatticeMesh& lattice, double hullFactor, Workers* workers);
+  void addSlopes(const LatticeMesh& lattice, std::optional<double> hullWeight, Workers* workers);
   void addFields(const LatticeMesh& lattice, const Vertices& own);
   [[nodiscard]] std::vector<Triangle> interfacesOf(const LatticeMesh& lattice) const;
   void addTriangles(std::span<const Triangle> triangles, double hullFactor, const Vertices& own);

@@ -1,21 +1,30 @@
 #include "simplify/fusion_mesh.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "codec/boundary.h"
+#include "simplify/large_pages.h"
 #include "simplify/sphere_test.h"
 #include "simplify/workers.h"
 
 namespace qtet {
+namespace {
+
+// By cells of the input, boundary triangles among them: of what fusions affect until 1 % is left, and of the stars with their gaps. Seen were 3 and 5.6; with more the arrays move.
+constexpr std::size_t kAffectedACell = 4;
+constexpr std::size_t kPoolACell = 6;
+
+}  // namespace
 
 FusionMesh::FusionMesh(const LatticeMesh& mesh, std::size_t regionField, Workers* workers)
     : regionField_(regionField), firstGhost_(static_cast<CellId>(mesh.tetrahedra.size())), liveTetrahedra_(mesh.tetrahedra.size()) {
   history_.lattice = mesh.lattice;
   history_.fields = mesh.fields;
-  history_.points = mesh.points;
-  history_.values = mesh.values;
-  history_.cells.reserve(mesh.tetrahedra.size() + mesh.boundary.size());
+  reserve(mesh);
+  history_.points.assign(mesh.points.begin(), mesh.points.end());
+  for (std::size_t f = 0; f < mesh.values.size(); ++f) history_.values[f].assign(mesh.values[f].begin(), mesh.values[f].end());
   history_.cells.assign(mesh.tetrahedra.begin(), mesh.tetrahedra.end());
   onBoundary_.assign(mesh.points.size(), 0);
   for (const Triangle& t : mesh.boundary) {
@@ -29,6 +38,26 @@ FusionMesh::FusionMesh(const LatticeMesh& mesh, std::size_t regionField, Workers
   buildStars();
   findSingular(workers);
   if (hasRegions()) findInterfaces();
+}
+
+// For all that will ever be where a bound is known, else for what is likely: arrays do not move while they grow, and what stays unused the system never hands out.
+void FusionMesh::reserve(const LatticeMesh& mesh) {
+  const std::size_t fusions = mesh.points.size(), vertices = mesh.points.size() + fusions;  // each fusion leaves a vertex less
+  const std::size_t cells = mesh.tetrahedra.size() + mesh.boundary.size();
+  history_.points.reserve(vertices);
+  history_.values.resize(mesh.values.size());
+  for (std::size_t f = 0; f < mesh.fields.size(); ++f) history_.values[f].reserve(isCellField(mesh.fields[f]) ? 0 : vertices * mesh.fields[f].components);
+  history_.fusions.reserve(fusions);
+  history_.deletedCells.reserve(cells);
+  history_.affectedCells.reserve(kAffectedACell * cells), history_.affectedLabels.reserve(kAffectedACell * cells);
+  for (auto* flags : {&aliveVertex_, &onBoundary_, &singular_}) flags->reserve(vertices);
+  if (hasRegions()) onInterface_.reserve(vertices);
+  stars_.reserve(vertices);
+  pool_.reserve(kPoolACell * cells);
+  history_.cells.reserve(cells), history_.live.reserve(cells);
+  useLargePages(history_.points), useLargePages(history_.fusions), useLargePages(history_.deletedCells), useLargePages(history_.affectedCells);
+  for (const auto& values : history_.values) useLargePages(values);
+  useLargePages(stars_), useLargePages(pool_), useLargePages(history_.cells);
 }
 
 void FusionMesh::buildStars() {
@@ -90,24 +119,17 @@ FusionMesh::Placed FusionMesh::placed(const Prey& prey, const LatticePoint& poin
   return {Placement::kFree, 0};
 }
 
-void FusionMesh::record(const Prey& prey, const Placed& placed, const Star& star, std::uint32_t level) {
-  Fusion record;
+// Everything of a record but where its cells begin.
+void FusionMesh::record(Fusion& record, const Prey& prey, const Placed& placed, const Star& star) {
   record.k = prey.k;
   record.placement = placed.placement;
-  record.level = level;
-  record.fused = static_cast<VertexId>(history_.points.size());
   record.prey = prey.vertex;
   const std::uint8_t first = placed.first;
   std::swap(record.prey[0], record.prey[first]);
-  record.firstAffected = history_.affectedCells.size();
-  record.affectedCount = static_cast<std::uint32_t>(star.affected.size());
-  record.firstDeleted = history_.deletedCells.size();
-  record.deletedCount = static_cast<std::uint32_t>(star.deleted.size());
-  history_.fusions.push_back(record);
-  history_.affectedCells.insert(history_.affectedCells.end(), star.affected.begin(), star.affected.end());
-  for (const std::uint8_t label : star.labels)
-    history_.affectedLabels.push_back(label == first ? std::uint8_t{0} : label == 0 ? first : label);
-  history_.deletedCells.insert(history_.deletedCells.end(), star.deleted.begin(), star.deleted.end());
+  std::ranges::copy(star.affected, &history_.affectedCells[record.firstAffected]);
+  std::ranges::transform(star.labels, &history_.affectedLabels[record.firstAffected],
+                         [&](std::uint8_t label) { return label == first ? std::uint8_t{0} : label == 0 ? first : label; });
+  std::ranges::copy(star.deleted, history_.deletedCells.begin() + static_cast<std::ptrdiff_t>(record.firstDeleted));
 }
 
 // The last ghost takes a ghost's place, and the last cell takes that of what is now the hole.
@@ -119,7 +141,6 @@ void FusionMesh::removeFromStar(VertexId v, CellId c) {
     hole = range.ghosts;
   }
   moveInStar(v, --range.size, hole);
-  --livePool_;
 }
 
 std::uint32_t FusionMesh::placeInStar(VertexId v, CellId c) {
@@ -128,10 +149,18 @@ std::uint32_t FusionMesh::placeInStar(VertexId v, CellId c) {
     const auto first = cells.begin() + (isGhost(c) ? 0 : stars_[v].ghosts);
     return static_cast<std::uint32_t>(std::find(first, cells.end(), c) - cells.begin());
   }
-  const auto [hub, isNew] = placesInHub_.try_emplace(v);
-  auto& places = hub->second;
-  for (std::uint32_t i = 0; isNew && i < cells.size(); ++i) places[cells[i]] = i;
+  Places& places = *placesInHub(v, true);
+  if (places.empty())
+    for (std::uint32_t i = 0; i < cells.size(); ++i) places[cells[i]] = i;
   return places.extract(c).mapped();
+}
+
+/// Those of a hub, null where they are not kept and not wanted.
+FusionMesh::Places* FusionMesh::placesInHub(VertexId v, bool wanted) {
+  const std::lock_guard lock(hubMutex_);
+  if (wanted) return &placesInHub_[v];
+  const auto hub = placesInHub_.find(v);
+  return hub == placesInHub_.end() ? nullptr : &hub->second;
 }
 
 void FusionMesh::moveInStar(VertexId v, std::uint32_t from, std::uint32_t to) {
@@ -139,7 +168,7 @@ void FusionMesh::moveInStar(VertexId v, std::uint32_t from, std::uint32_t to) {
   CellId* cells = &pool_[stars_[v].first];
   cells[to] = cells[from];
   if (stars_[v].size < kHubCells) return;
-  if (const auto hub = placesInHub_.find(v); hub != placesInHub_.end()) hub->second[cells[to]] = to;
+  if (Places* places = placesInHub(v, false)) (*places)[cells[to]] = to;
 }
 
 void FusionMesh::findPlane(CellId ghost) {
@@ -151,31 +180,128 @@ void FusionMesh::findPlane(CellId ghost) {
 
 // The boundary triangles that stay get the bound of the whole star.
 void FusionMesh::pushOutside(const Star& star, float outside) {
-  if (outside_.empty()) outside_.assign(history_.cells.size() - firstGhost_, 0);
   for (const CellId c : star.affected)
     if (c >= firstGhost_) outside_[c - firstGhost_] = outside;
 }
 
 VertexId FusionMesh::fuse(const Prey& prey, const FusedVertex& what, const Star& star, std::uint32_t level) {
-  for (const VertexId v : star.link)
-    if (v != kGhost) prefetchList(v);
-  record(prey, placed(prey, what.point), star, level);
-  if (what.outside > 0) pushOutside(star, what.outside);
-  const VertexId fused = history_.fusions.back().fused;
-  history_.points.push_back(what.point);
-  std::size_t first = 0;
-  for (std::size_t f = 0; f < history_.fields.size(); ++f) {
-    if (isCellField(history_.fields[f])) continue;
-    const auto own = what.values.subspan(first, history_.fields[f].components);
-    history_.values[f].insert(history_.values[f].end(), own.begin(), own.end());
-    first += own.size();
+  const PlannedFusion planned{prey, what.point, what.outside, &star};
+  fuse(std::span(&planned, 1), level, [&](std::size_t, VertexId) { return what.values; });
+  return history_.fusions.back().fused;
+}
+
+void FusionMesh::fuse(std::span<const PlannedFusion> planned, std::uint32_t level, const ValuesOf& valuesOf, Workers* workers) {
+  const std::uint64_t toPool = pool_.size() - history_.affectedCells.size();  // modulo 2^64
+  makeRoom(planned, level);
+  if (workers && workers->count() > 1) {
+    fuseByThreads(planned, toPool, valuesOf, *workers);
+  } else {
+    const auto records = std::span(history_.fusions).last(planned.size());
+    for (std::size_t i = 0; i < planned.size(); ++i) {
+      const std::vector<VertexId>& link = planned[i].star->link;
+      for (const VertexId v : link)
+        if (v != kGhost) prefetchVertex(v);
+      setValues(records[i].fused, valuesOf(i, records[i].fused));
+      for (const VertexId v : link)
+        if (v != kGhost) prefetchList(v);
+      count(fuse(records[i], planned[i], toPool, [this](VertexId v, CellId c) { removeFromStar(v, c); }));
+    }
   }
-  bool boundary = false, interface = false;
+  if (pool_.size() > 2 * livePool_ + 4096) compactPool();
+}
+
+// Records that say where their cells begin, and whatever grows with each fusion as long as it will be.
+void FusionMesh::makeRoom(std::span<const PlannedFusion> planned, std::uint32_t level) {
+  std::uint64_t affected = history_.affectedCells.size(), deleted = history_.deletedCells.size();
+  std::size_t vertices = history_.points.size();
+  bool isOutside = false;
+  for (const PlannedFusion& p : planned) {
+    Fusion& record = history_.fusions.emplace_back();
+    record.level = level;
+    record.fused = static_cast<VertexId>(vertices++);
+    record.firstAffected = affected, record.affectedCount = static_cast<std::uint32_t>(p.star->affected.size());
+    record.firstDeleted = deleted, record.deletedCount = static_cast<std::uint32_t>(p.star->deleted.size());
+    affected += record.affectedCount, deleted += record.deletedCount;
+    isOutside |= p.outside > 0;
+  }
+  pool_.resize(pool_.size() + (affected - history_.affectedCells.size()));
+  livePool_ += affected - history_.affectedCells.size();
+  history_.affectedCells.resize(affected), history_.affectedLabels.resize(affected), history_.deletedCells.resize(deleted);
+  history_.points.resize(vertices);
+  for (std::size_t f = 0; f < history_.fields.size(); ++f)
+    if (!isCellField(history_.fields[f])) history_.values[f].resize(vertices * history_.fields[f].components);
+  onBoundary_.resize(vertices), singular_.resize(vertices), aliveVertex_.resize(vertices), stars_.resize(vertices);
+  if (hasRegions()) onInterface_.resize(vertices);
+  if (isOutside && outside_.empty()) outside_.assign(history_.cells.size() - firstGhost_, 0);
+}
+
+void FusionMesh::prefetchLists(const Star& star) {
+  fetchAll(std::span<const CellId>(star.affected)), fetchAll(std::span<const std::uint8_t>(star.labels));
+  fetchAll(std::span<const CellId>(star.deleted)), fetchAll(std::span<const VertexId>(star.link));
+}
+
+// Asks the memory for what the fusion changes.
+void FusionMesh::prefetch(const PlannedFusion& planned) const {
+  for (const VertexId v : planned.prey.vertices()) prefetchVertex(v), prefetchPoint(v);
+  for (const CellId c : planned.star->affected) {
+    fetch(&history_.cells[c]);
+    if (isGhost(c)) fetch(&planes_[c - firstGhost_]);
+  }
+  for (const CellId c : planned.star->deleted) fetch(&history_.cells[c]), fetch(&history_.live[c]);
+}
+
+// Cells, prey and what is fused are one fusion's own; the stars round them are not, and change after all of that, each by one thread.
+void FusionMesh::fuseByThreads(std::span<const PlannedFusion> planned, std::uint64_t toPool, const ValuesOf& valuesOf, Workers& workers) {
+  constexpr std::size_t kRun = 32, kAhead = 2, kLossesAhead = 4;
+  const auto records = std::span(history_.fusions).last(planned.size());
+  const std::size_t runs = (planned.size() + kRun - 1) / kRun;
+  if (losses_.size() < runs) losses_.resize(runs);
+  workers.forRuns(planned.size(), kRun, [&](std::size_t begin, std::size_t end) {
+    Losses& losses = losses_[begin / kRun];
+    for (auto& some : losses) some.clear();
+    Gone gone;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (i + 3 * kAhead < end) fetchAll(std::span(planned[i + 3 * kAhead].star, 1));
+      if (i + 2 * kAhead < end) prefetchLists(*planned[i + 2 * kAhead].star);
+      if (i + kAhead < end) prefetch(planned[i + kAhead]);
+      setValues(records[i].fused, valuesOf(i, records[i].fused));
+      const Gone more = fuse(records[i], planned[i], toPool, [&](VertexId v, CellId c) { losses[losers(v)].push_back({v, c}); });
+      gone.tetrahedra += more.tetrahedra, gone.fromStars += more.fromStars;
+    }
+    count(gone);
+  });
+  workers.forEach(kLosers, 1, [&](std::size_t, std::size_t some) {
+    for (const Losses& of : std::span(losses_).first(runs)) {
+      const std::vector<Loss>& losses = of[some];
+      for (std::size_t i = 0; i < losses.size(); ++i) {
+        if (i + 2 * kLossesAhead < losses.size()) prefetchVertex(losses[i + 2 * kLossesAhead].vertex);
+        if (i + kLossesAhead < losses.size()) prefetchList(losses[i + kLossesAhead].vertex);
+        removeFromStar(losses[i].vertex, losses[i].cell);
+      }
+    }
+  });
+}
+
+void FusionMesh::count(const Gone& gone) {
+  std::atomic_ref(liveTetrahedra_).fetch_sub(gone.tetrahedra, std::memory_order_relaxed);
+  std::atomic_ref(livePool_).fetch_sub(gone.fromStars, std::memory_order_relaxed);
+}
+
+// Calls lose(vertex, cell) for each cell that goes from the star of a vertex which stays.
+template <class Lose>
+FusionMesh::Gone FusionMesh::fuse(Fusion& fusion, const PlannedFusion& planned, std::uint64_t toPool, const Lose& lose) {
+  const Prey& prey = planned.prey;
+  const Star& star = *planned.star;
+  const VertexId fused = fusion.fused;
+  Gone gone;
+  record(fusion, prey, placed(prey, planned.point), star);
+  if (planned.outside > 0) pushOutside(star, planned.outside);
+  history_.points[fused] = planned.point;
   for (const VertexId v : prey.vertices()) {
-    boundary |= onBoundary_[v] != 0;
-    interface |= hasRegions() && onInterface_[v];
+    onBoundary_[fused] |= onBoundary_[v];
+    if (hasRegions()) onInterface_[fused] |= onInterface_[v];
     aliveVertex_[v] = 0;
-    livePool_ -= stars_[v].size;
+    gone.fromStars += stars_[v].size;
     stars_[v].size = stars_[v].ghosts = 0;
   }
   for (std::size_t i = 0; i < star.affected.size(); ++i) {
@@ -186,42 +312,45 @@ VertexId FusionMesh::fuse(const Prey& prey, const FusedVertex& what, const Star&
   }
   for (const CellId c : star.deleted) {
     history_.live[c] = 0;
-    liveTetrahedra_ -= !isGhost(c);
+    gone.tetrahedra += !isGhost(c);
     const auto& cell = history_.cells[c];
-    unsigned gone = 0;
-    for (const VertexId v : prey.vertices()) gone |= cornersThatAre(cell, v);
-    const OtherCorners& others = kOtherCorners[gone];
+    unsigned fusing = 0;
+    for (const VertexId v : prey.vertices()) fusing |= cornersThatAre(cell, v);
+    const OtherCorners& others = kOtherCorners[fusing];
     for (std::size_t i = 0; i < others.count; ++i)
-      if (const VertexId v = cell[others.corner[i]]; v != kGhost) removeFromStar(v, c);
+      if (const VertexId v = cell[others.corner[i]]; v != kGhost) lose(v, c), ++gone.fromStars;
   }
-  onBoundary_.push_back(boundary);
-  if (hasRegions()) onInterface_.push_back(interface);
-  singular_.push_back(0);
-  aliveVertex_.push_back(1);
-  addStar(star.affected);
-  if (pool_.size() > 2 * livePool_ + 4096) compactPool();
-  return fused;
+  aliveVertex_[fused] = 1;
+  stars_[fused] = addStar(fusion.firstAffected + toPool, star.affected);
+  return gone;
+}
+
+void FusionMesh::setValues(VertexId fused, std::span<const std::int32_t> values) {
+  for (std::size_t f = 0; f < history_.fields.size(); ++f) {
+    if (isCellField(history_.fields[f])) continue;
+    const std::size_t n = history_.fields[f].components;
+    std::ranges::copy(values.first(n), &history_.values[f][fused * n]);
+    values = values.subspan(n);
+  }
 }
 
 // The fused vertex's, ghosts first.
-void FusionMesh::addStar(std::span<const CellId> cells) {
-  const std::size_t first = pool_.size();
-  pool_.resize(first + cells.size());
+FusionMesh::StarRange FusionMesh::addStar(std::uint64_t first, std::span<const CellId> cells) {
   std::size_t ghosts = 0, at = cells.size();
   for (const CellId c : cells) pool_[first + (isGhost(c) ? ghosts++ : --at)] = c;
-  stars_.push_back({first, static_cast<std::uint32_t>(cells.size()), static_cast<std::uint32_t>(ghosts)});
-  livePool_ += cells.size();
+  return {first, static_cast<std::uint32_t>(cells.size()), static_cast<std::uint32_t>(ghosts)};
 }
 
+// In place: stars lie in the order of their vertices.
 void FusionMesh::compactPool() {
-  std::vector<CellId> pool;
-  pool.reserve(livePool_ + livePool_ / 4);
+  std::uint64_t end = 0;
   for (StarRange& s : stars_) {
-    const std::uint64_t first = pool.size();
-    for (std::uint32_t i = 0; i < s.size; ++i) pool.push_back(pool_[s.first + i]);
-    s.first = first;
+    if (s.first != end) std::copy_n(pool_.begin() + static_cast<std::ptrdiff_t>(s.first), s.size, pool_.begin() + static_cast<std::ptrdiff_t>(end));
+    s.first = end;
+    end += s.size;
   }
-  pool_ = std::move(pool);
+  pool_.resize(end);
+  giveBackRoom(pool_);
 }
 
 FusionHistory FusionMesh::takeHistory(std::uint32_t levels) {

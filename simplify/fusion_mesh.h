@@ -3,13 +3,15 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <limits>
+#include <mutex>
 #include <span>
 #include <unordered_map>
 #include <vector>
 
-#include "codec/fusion_history.h"
 #include "codec/fetch.h"
+#include "codec/fusion_history.h"
 #include "codec/mesh.h"
 #include "simplify/cell_corners.h"
 #include "simplify/vector3.h"
@@ -44,6 +46,14 @@ struct FusedVertex {
   LatticePoint point{};
   std::span<const std::int32_t> values;  ///< the integers of every point field, one field after the other
   float outside = 0;                     ///< how far the boundary round it may lie outside the original solid, in lattice steps
+};
+
+/// A fusion that is decided on and not done yet: all but the values of what the prey becomes.
+struct PlannedFusion {
+  Prey prey;
+  LatticePoint point{};
+  float outside = 0;           ///< FusedVertex::outside
+  const Star* star = nullptr;  ///< the prey's
 };
 
 class FusionMesh {
@@ -118,6 +128,11 @@ class FusionMesh {
 
   /// Fuses the prey. REQUIRES: legal (FusionTest), `star` the prey's. Returns the fused vertex.
   VertexId fuse(const Prey& prey, const FusedVertex& fused, const Star& star, std::uint32_t level);
+  /// FusedVertex::values of planned[i], which becomes vertex `fused`.
+  using ValuesOf = std::function<std::span<const std::int32_t>(std::size_t i, VertexId fused)>;
+  /// Does fusions in this order; what they fuse is numbered in it, from vertexSlots() on. `workers` share the work, valuesOf's too, and change nothing of its
+  /// outcome. REQUIRES: each legal; no prey vertex in another one's star.
+  void fuse(std::span<const PlannedFusion> planned, std::uint32_t level, const ValuesOf& valuesOf, Workers* workers = nullptr);
 
   [[nodiscard]] FusionHistory takeHistory(std::uint32_t levels);
 
@@ -128,6 +143,7 @@ class FusionMesh {
     std::uint32_t ghosts = 0;  // come first
   };
 
+  void reserve(const LatticeMesh& mesh);
   void buildStars();
   void findSingular(Workers* workers);
   /// How a point lies with respect to the prey, and which prey vertex is to be the first of the record.
@@ -135,12 +151,35 @@ class FusionMesh {
     Placement placement;
     std::uint8_t first;
   };
+  /// A cell that leaves the star of a vertex which stays.
+  struct Loss {
+    VertexId vertex;
+    CellId cell;
+  };
+  /// Of neighbouring fusions, in their order, by losers(vertex): a star's losses are one thread's.
+  static constexpr std::size_t kLosers = 16;
+  using Losses = std::array<std::vector<Loss>, kLosers>;
+  [[nodiscard]] static std::size_t losers(VertexId v) { return v / 16 % kLosers; }  // most who share a cache line of stars_ are together
+
   [[nodiscard]] Placed placed(const Prey& prey, const LatticePoint& point) const;
-  void record(const Prey& prey, const Placed& placed, const Star& star, std::uint32_t level);
-  void addStar(std::span<const CellId> cells);
+  void makeRoom(std::span<const PlannedFusion> planned, std::uint32_t level);
+  void record(Fusion& record, const Prey& prey, const Placed& placed, const Star& star);
+  struct Gone {
+    std::size_t tetrahedra = 0, fromStars = 0;
+  };
+  template <class Lose>
+  Gone fuse(Fusion& record, const PlannedFusion& planned, std::uint64_t toPool, const Lose& lose);
+  void fuseByThreads(std::span<const PlannedFusion> planned, std::uint64_t toPool, const ValuesOf& valuesOf, Workers& workers);
+  void count(const Gone& gone);
+  static void prefetchLists(const Star& star);
+  void prefetch(const PlannedFusion& planned) const;
+  void setValues(VertexId fused, std::span<const std::int32_t> values);
+  [[nodiscard]] StarRange addStar(std::uint64_t first, std::span<const CellId> cells);
   void removeFromStar(VertexId v, CellId c);
   [[nodiscard]] std::uint32_t placeInStar(VertexId v, CellId c);
   void moveInStar(VertexId v, std::uint32_t from, std::uint32_t to);
+  using Places = std::unordered_map<CellId, std::uint32_t>;
+  [[nodiscard]] Places* placesInHub(VertexId v, bool wanted);
   void compactPool();
 
   FusionHistory history_;
@@ -155,10 +194,12 @@ class FusionMesh {
   std::vector<std::uint8_t> aliveVertex_, onBoundary_, onInterface_, singular_;
   /// A vertex with more cells keeps where each one stands: looking through all of them for every cell that goes took time in proportion to the square.
   static constexpr std::size_t kHubCells = 1024;
-  std::unordered_map<VertexId, std::unordered_map<CellId, std::uint32_t>> placesInHub_;  // no longer kept once a star, which only shrinks, is smaller
+  std::unordered_map<VertexId, Places> placesInHub_;  // no longer kept once a star, which only shrinks, is smaller
+  std::mutex hubMutex_;                               // of placesInHub_, not of what is in it
   std::vector<StarRange> stars_;
   std::vector<CellId> pool_;  // stars back to back, with holes
   std::size_t livePool_ = 0;
+  std::vector<Losses> losses_;  // fuseByThreads' own
   bool hasSingular_ = false;  // hardly a mesh does
   std::size_t liveTetrahedra_ = 0;
 };

@@ -106,6 +106,7 @@ bool FusionProposer::propose(VertexId owner, std::span<const Candidate> candidat
   out.most = most;
   test_.takeStar(out.star);
   takeAlong(candidates.subspan(1), most, moment.levelStart, out);
+  out.tetrahedra = static_cast<std::uint32_t>(std::ranges::count_if(out.star.deleted, [this](CellId c) { return !mesh_.isGhost(c); }));
   return true;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <optional>
 #include <span>
 #include <vector>
@@ -19,15 +20,22 @@
 namespace qtet {
 
 /// When each vertex was last touched by a fusion, in fusions since the start: what a proposal relies on must not be touched after it was made.
+/// One thread touches, others may look on: who knows of a fusion (acquired) sees what it touched, and perhaps some of what later ones did.
 class Touched {
  public:
   void resize(std::size_t vertices) { at_.resize(vertices, 0); }
-  void touch(VertexId v, std::uint32_t fusion) { at_[v] = fusion; }
+  /// Fusions decided on.
+  [[nodiscard]] std::uint32_t now() const { return now_.load(std::memory_order_acquire); }
+  /// By the fusion that is being decided on.
+  void touch(VertexId v) { std::atomic_ref(at_[v]).store(now_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed); }
+  /// It is decided on.
+  void next() { now_.store(now_.load(std::memory_order_relaxed) + 1, std::memory_order_release); }
   void prefetch(VertexId v) const { fetch(&at_[v]); }
-  [[nodiscard]] bool since(VertexId v, std::uint32_t fusion) const { return at_[v] > fusion; }
+  [[nodiscard]] bool since(VertexId v, std::uint32_t fusion) const { return std::atomic_ref(at_[v]).load(std::memory_order_relaxed) > fusion; }
 
  private:
-  std::vector<std::uint32_t> at_;
+  std::atomic<std::uint32_t> now_{0};
+  mutable std::vector<std::uint32_t> at_;  // mutable for atomic_ref, which C++20 has none of for what is const
 };
 
 /// What is known of an owner's candidates: those that are not legal, and what comes of the first that is.
@@ -45,7 +53,8 @@ struct Proposal {
   float edgeCost = 0, most = 0;  ///< of the edge alone; what it was asked for: nothing dearer was looked for in larger prey
   Star star;
   std::vector<VertexId> companions;  ///< that could be taken along: which of them were free was part of the decision
-  std::uint32_t madeAfter = 0;       ///< fusions done before
+  std::uint32_t madeAfter = 0;       ///< fusions decided on before
+  std::uint32_t tetrahedra = 0;      ///< that go
 };
 
 /// By the cells that a fusion removes, boundary triangles among them: what its cost is multiplied by (ALGORITHM.md, "Cost a cell").
@@ -69,7 +78,7 @@ class FusionProposer {
   void candidatesOf(VertexId v, std::span<const VertexId> link, std::vector<Candidate>& found);
 
   struct Moment {
-    std::uint32_t levelStart, now;  ///< fusions done
+    std::uint32_t levelStart, now;  ///< fusions decided on
   };
   /// The fusion of the first edge of `candidates`, which are `owner`'s, cheapest first; or of a triangle or tetrahedron that holds it where that is
   /// cheaper for what it removes. Of an edge whose price is above `most`, the price. False, and noted as illegal, when it cannot be. No vertex touched

@@ -163,8 +163,9 @@ class PaperSimplifier {
     figures_.interiorFusions += interior(prey);
     ++figures_.fusions;
     valuesAt(prey, point);
-    cost_.fuse(prey, point, {});
-    (void)mesh_.fuse(prey, {point, integers_, 0}, test_.star(), level);
+    const VertexId fused = mesh_.fuse(prey, {point, integers_, 0}, test_.star(), level);
+    cost_.makeRoom(mesh_.vertexSlots());
+    cost_.fuse(prey, fused, point, {});
     return true;
   }
 

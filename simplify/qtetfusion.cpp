@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <boost/heap/d_ary_heap.hpp>
+#include <cassert>
 #include <cmath>
-#include <deque>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <span>
@@ -16,6 +17,7 @@
 #include "simplify/candidates.h"
 #include "simplify/fusion_mesh.h"
 #include "simplify/fusion_proposer.h"
+#include "simplify/level_proposals.h"
 #include "simplify/queue_entries.h"
 #include "simplify/tet_mesh.h"
 #include "simplify/workers.h"
@@ -29,26 +31,22 @@ constexpr double kLevelQuantile = 0.35;
 constexpr double kWorthAnotherPass = 0.002;
 // A level of a band that removes less than this fraction of the cells is its last: what is left is dear, and waits for larger nodes.
 constexpr double kWorthAnotherLevel = 0.015;
-// A fusion that turns out to cost this much more than its key waits for those that cost less.
-constexpr float kDearer = 1.25f;
 // No new cell may be shaped worse than this, or than a fifth of its star's worst (1 = regular, 0 = flat).
 constexpr double kShapeFloor = 1e-4;
 // Cosine of the largest angle by which a boundary triangle may turn in one fusion: more, and a fold could hide what the quadric does not see.
 constexpr double kNormalCosine = 0.3;
 
-// Vertices whose candidates are found at once, and how many of them a thread takes at a time; of proposals, each dearer and few at once, one.
+// Vertices whose candidates are found at once, and how many of them, or of fusions, a thread takes at a time.
 constexpr std::size_t kCollected = 4096;
 constexpr std::size_t kGrain = 8;
-constexpr std::size_t kProposalGrain = 1;
-// How many entries ahead the memory is asked for lists of candidates, and for what comes of them at most.
-constexpr std::size_t kListsAhead = 8;
-constexpr std::size_t kMostLooked = 32;
-// The same for the candidates of fused vertices.
+// Vertices of the queue that a thread takes at a time.
+constexpr std::size_t kFilled = 1024;
+// How many fused vertices ahead the memory is asked for what their candidates are found from.
 constexpr std::size_t kFusedAhead = 2;
-// Entries of the queue for which threads make proposals ahead: a share of the level's, since a fusion spoils those of its neighbours.
-constexpr std::size_t kAheadShare = 128;
-constexpr std::size_t kLeastAhead = 32;
-constexpr std::size_t kMostAhead = 2048;
+// The same of vertices for the queue.
+constexpr std::size_t kListsAhead = 8;
+// Candidates a vertex, most of the time: 7 in a large mesh, and gaps of as many.
+constexpr std::size_t kMostCandidates = 16;
 
 using Queue = boost::heap::d_ary_heap<QueueEntry, boost::heap::arity<4>>;
 
@@ -56,6 +54,11 @@ using Queue = boost::heap::d_ary_heap<QueueEntry, boost::heap::arity<4>>;
 struct Outcome {
   const Proposal* proposal;
   float cost;
+};
+
+/// Of a run of vertices: where what is left of it ends.
+struct Filled {
+  std::size_t vertices = 0, entries = 0;
 };
 
 class Simplifier {
@@ -67,8 +70,9 @@ class Simplifier {
         cost_(mesh_, mesh, options.cost, &workers_),
         band_(options.bands.cellsPerPacket == 0 ? BandNodes() : BandNodes(mesh_, mesh, options.bands.cellsPerPacket)),
         original_(mesh.tetrahedra.size()),
-        target_(static_cast<std::size_t>(options.targetRatio * static_cast<double>(original_))),
-        values_(cost_.components()) {
+        target_(static_cast<std::size_t>(options.targetRatio * static_cast<double>(original_))) {
+    for (const FieldInfo& field : mesh_.fields())
+      if (!isCellField(field)) pointValues_ += field.components;
     limitBy({kShapeFloor, options.envelopeTolerance * cost_.diagonal(), kNormalCosine});
   }
 
@@ -136,17 +140,13 @@ class Simplifier {
 
   void findCandidates() {
     candidates_.clear();
-    makeRoom();
+    touched_.resize(mesh_.vertexSlots());
     vertices_.clear();
     for (VertexId v = 0; v < mesh_.vertexSlots(); ++v)
       if (mesh_.alive(v) && !mesh_.singular(v)) vertices_.push_back(v);
+    candidates_.reserve(kMostCandidates * vertices_.size());
     collect(vertices_,
             [&](FusionProposer& proposer, std::size_t i, std::vector<Candidate>& found) { proposer.candidatesOf(vertices_[i], found); });
-  }
-
-  void makeRoom() {
-    touched_.resize(mesh_.vertexSlots());
-    proposalOf_.resize(mesh_.vertexSlots(), kNone);
   }
 
   /// The candidates of these vertices, found in parallel, kept in order: find(proposer, index, found).
@@ -156,7 +156,7 @@ class Simplifier {
     for (std::size_t first = 0; first < vertices.size(); first += kCollected) {
       const auto part = vertices.subspan(first, std::min(kCollected, vertices.size() - first));
       workers_.forEach(part.size(), kGrain, [&](std::size_t worker, std::size_t i) { find(*proposers_[worker], first + i, found_[i]); });
-      for (std::size_t i = 0; i < part.size(); ++i) candidates_.set(part[i], found_[i]);
+      candidates_.set(part, found_, workers_);
     }
   }
 
@@ -164,20 +164,14 @@ class Simplifier {
   bool runLevel() {
     fillQueue();
     if (entries_.empty()) return false;
-    levelStart_ = fusions_;
+    levelStart_ = touched_.now();
     fused_.clear();
     links_.clear(), linkEnds_.clear();
-    while (nextKey() <= limit_ && mesh_.liveTetrahedra() > goal_) {
-      if (next_ >= proposedTo_) proposeAhead();
-      const VertexId owner = pop();
-      if (isLocked(owner)) continue;
-      lookAhead();
-      process(owner);
-    }
-    for (const VertexId v : withProposal_) proposalOf_[v] = kNone;
-    withProposal_.clear();
-    proposalsUsed_ = 0, spareProposals_.clear();
-    if (fusions_ > levelStart_) ++level_;
+    proposals_.begin(entries_, limit_, levelStart_, proposers_);
+    workers_.beside([this](std::size_t worker) { proposals_.serve(worker); }, [this] { decide(); });
+    doFusions();
+    proposals_.end();
+    if (!fused_.empty()) ++level_;
     vertices_.insert(vertices_.end(), fused_.begin(), fused_.end());
     collect(fused_, [&](FusionProposer& proposer, std::size_t i, std::vector<Candidate>& found) {
       if (i + kFusedAhead < fused_.size()) prefetchFused(i + kFusedAhead);
@@ -188,6 +182,21 @@ class Simplifier {
     return true;
   }
 
+  // What is fused in this level. The mesh changes afterwards: nothing that is decided here depends on it (ALGORITHM.md, "Threads").
+  void decide() {
+    struct Stop {
+      LevelProposals& proposals;
+      ~Stop() { proposals.stop(); }
+    } const stop{proposals_};
+    while (nextKey() <= limit_ && mesh_.liveTetrahedra() - going_ > goal_) {
+      const bool isEntry = isEntryNext();
+      const VertexId owner = isEntry ? entries_[next_++].owner : popBack();
+      if (isLocked(owner)) continue;
+      if (isEntry) proposals_.comeTo(next_ - 1);
+      process(owner);
+    }
+  }
+
   // Asks the memory for what the candidates of a fused vertex are found from.
   void prefetchFused(std::size_t i) const {
     mesh_.prefetchStar(fused_[i]), cost_.prefetch(fused_[i]);
@@ -195,28 +204,43 @@ class Simplifier {
       if (v != kGhost) cost_.prefetch(v), mesh_.prefetchPoint(v);
   }
 
-  // The vertices whose best candidate is within the level's limit, cheapest first.
+  // The vertices whose best candidate is within the level's limit, cheapest first. Those that have none and will have none are left out for good.
   void fillQueue() {
-    entries_.clear();
     queue_.clear();
-    std::erase_if(vertices_, [&](VertexId v) { return !mesh_.alive(v); });
     entries_.resize(vertices_.size());
-    workers_.forRuns(vertices_.size(), kCollected, [&](std::size_t begin, std::size_t end) {
+    filled_.resize((vertices_.size() + kFilled - 1) / kFilled);
+    const float most = std::min(dearest_, std::numeric_limits<float>::max());
+    workers_.forRuns(vertices_.size(), kFilled, [&](std::size_t begin, std::size_t end) {
+      Filled filled{begin, begin};
       for (std::size_t i = begin; i < end; ++i) {
-        const VertexId v = vertices_[i];
+        if (i + 2 * kListsAhead < end) candidates_.prefetch(vertices_[i + 2 * kListsAhead]);
         if (i + kListsAhead < end) candidates_.prefetchBest(vertices_[i + kListsAhead]);
+        const VertexId v = vertices_[i];
+        if (candidates_.hasFailed(v) && isLocked(v)) candidates_.restart(v);  // what its old neighbours forbade the new ones may allow
         dropDead(v);
         const Candidate* best = candidates_.best(v);
-        entries_[i] = {best ? best->key : std::numeric_limits<float>::infinity(), v};
+        vertices_[filled.vertices] = v;
+        filled.vertices += !candidates_.isEmpty(v);
+        entries_[filled.entries] = {best ? best->key : 0, v};
+        filled.entries += best != nullptr && best->key <= most;
       }
+      filled_[begin / kFilled] = filled;
     });
-    std::erase_if(entries_, [&](const QueueEntry& e) { return e.key > dearest_ || std::isinf(e.key); });
-    next_ = proposedTo_ = looked_ = 0;
-    soon_.fill({});
+    joinRuns(vertices_, &Filled::vertices);
+    joinRuns(entries_, &Filled::entries);
+    next_ = 0;
     if (entries_.empty()) return;
     // What a band can afford it will do, so that the order counts for less there than the number of levels.
     limit_ = sorter_.keepCheapest(entries_, std::isinf(dearest_) ? kLevelQuantile : options_.bands.levelQuantile);
-    ahead_ = std::clamp(entries_.size() / kAheadShare, kLeastAhead, kMostAhead);
+  }
+
+  // What is left of each run moves up to the one before.
+  template <class T>
+  void joinRuns(std::vector<T>& all, std::size_t Filled::*end) const {
+    const auto place = [&](std::size_t i) { return all.begin() + static_cast<std::ptrdiff_t>(i); };
+    auto to = filled_.empty() ? all.begin() : place(filled_[0].*end);
+    for (std::size_t run = 1; run < filled_.size(); ++run) to = std::copy(place(run * kFilled), place(filled_[run].*end), to);
+    all.erase(to, all.end());
   }
 
   // The queue is the sorted entries and a heap of those that came back.
@@ -224,8 +248,8 @@ class Simplifier {
     const float key = next_ < entries_.size() ? entries_[next_].key : std::numeric_limits<float>::infinity();
     return queue_.empty() ? key : std::min(key, queue_.top().key);
   }
-  VertexId pop() {
-    if (next_ < entries_.size() && (queue_.empty() || queue_.top() < entries_[next_])) return entries_[next_++].owner;
+  [[nodiscard]] bool isEntryNext() const { return next_ < entries_.size() && (queue_.empty() || queue_.top() < entries_[next_]); }
+  VertexId popBack() {
     const VertexId owner = queue_.top().owner;
     queue_.pop();
     return owner;
@@ -238,34 +262,6 @@ class Simplifier {
     }
   }
 
-  // The queue's order has nothing to do with where things lie: what its next proposals need is asked for in steps, each of which needs the one before.
-  // Entries that are locked already are passed over, so that a step is a proposal.
-  void lookAhead() {
-    if (looked_ >= next_ + kMostLooked) return;
-    VertexId owner = kNone;
-    while (owner == kNone && looked_ < entries_.size()) {
-      if (looked_ + kListsAhead < entries_.size()) {
-        const VertexId v = entries_[looked_ + kListsAhead].owner;
-        touched_.prefetch(v), candidates_.prefetch(v), mesh_.prefetchVertex(v);
-      }
-      const VertexId v = entries_[looked_++].owner;
-      if (!isLocked(v)) owner = v;
-    }
-    const auto stepsAgo = [this](std::size_t steps) -> Soon& { return soon_[(soonAt_ - steps) % soon_.size()]; };
-    ++soonAt_;
-    stepsAgo(0) = {owner, kNone};
-    if (owner != kNone) candidates_.prefetchBest(owner), mesh_.prefetchList(owner), cost_.prefetchSlot(owner), mesh_.prefetchPoint(owner);
-    if (Soon& soon = stepsAgo(2); soon.owner != kNone) {
-      mesh_.prefetchStar(soon.owner), mesh_.prefetchPlanes(soon.owner), cost_.prefetch(soon.owner);
-      if (const Candidate* best = candidates_.best(soon.owner)) {
-        soon.partner = best->partner;
-        touched_.prefetch(soon.partner), mesh_.prefetchVertex(soon.partner), cost_.prefetchSlot(soon.partner), mesh_.prefetchPoint(soon.partner);
-      }
-    }
-    if (const VertexId v = stepsAgo(4).partner; v != kNone) mesh_.prefetchList(v), cost_.prefetch(v);
-    if (const VertexId v = stepsAgo(5).partner; v != kNone) mesh_.prefetchStar(v), mesh_.prefetchPlanes(v);
-  }
-
   // A vertex that a fusion of this level touched waits for the next one: levels are independent sets.
   [[nodiscard]] bool isLocked(VertexId v) const { return touched_.since(v, levelStart_); }
 
@@ -276,111 +272,87 @@ class Simplifier {
     if (best && best->key <= limit_)
       queue_.push({best->key, owner});
     else
-      giveBack(owner);
-  }
-
-  // With threads: proposals for the next entries, made in parallel. They are used as long as nothing they rely on is touched, so that the
-  // outcome is that of one thread.
-  void proposeAhead() {
-    proposedTo_ = std::min(entries_.size(), next_ + ahead_);
-    if (workers_.count() == 1) return;
-    jobs_.clear();
-    for (std::size_t i = next_; i < proposedTo_; ++i) {
-      const VertexId owner = entries_[i].owner;
-      if (isLocked(owner) || !mesh_.alive(owner)) continue;
-      const Candidate* best = candidates_.best(owner);
-      if (best && mesh_.alive(best->partner) && !isLocked(best->partner)) jobs_.push_back({owner, &proposalFor(owner)});
-    }
-    workers_.forEach(jobs_.size(), kProposalGrain, [&](std::size_t worker, std::size_t i) {
-      const auto [owner, proposal] = jobs_[i];
-      // Where the best is not legal, the next one is wanted soon.
-      for (auto rest = candidates_.remaining(owner); !rest.empty() && rest[0].key <= limit_; rest = rest.subspan(1)) {
-        if (!mesh_.alive(rest[0].partner) || isLocked(rest[0].partner)) break;
-        // No dearer than the one thread would go on with at once: later the owner's other candidates are not what they are now.
-        const float most = std::min(limit_, kDearer * rest[0].key);
-        if (proposers_[worker]->propose(owner, rest, most, {levelStart_, fusions_}, *proposal)) break;
-      }
-    });
-  }
-
-  Proposal& proposalFor(VertexId owner) {
-    if (proposalOf_[owner] == kNone) {
-      proposalOf_[owner] = spareProposal();
-      withProposal_.push_back(owner);
-      proposals_[proposalOf_[owner]].illegal.clear();
-      proposals_[proposalOf_[owner]].partner = kGhost;
-    }
-    return proposals_[proposalOf_[owner]];
-  }
-
-  // The one that was given back last, since the processor has it near.
-  std::uint32_t spareProposal() {
-    if (!spareProposals_.empty()) {
-      const std::uint32_t last = spareProposals_.back();
-      spareProposals_.pop_back();
-      return last;
-    }
-    if (proposals_.size() == proposalsUsed_) proposals_.emplace_back();
-    return proposalsUsed_++;
-  }
-
-  // Nobody asks for it again in this level.
-  void giveBack(VertexId owner) {
-    if (proposalOf_[owner] == kNone) return;
-    spareProposals_.push_back(proposalOf_[owner]);
-    proposalOf_[owner] = kNone;
+      proposals_.giveBack(owner);
   }
 
   /// What comes of the owner's best candidate, made now unless what was found in this level still holds.
   Outcome propose(VertexId owner, VertexId partner, float most) {
-    Proposal& proposal = proposalFor(owner);
+    Proposal& proposal = proposals_.of(owner);
     if (const auto illegal = std::ranges::find(proposal.illegal, partner, &Proposal::Illegal::partner); illegal != proposal.illegal.end())
       return {nullptr, illegal->price};
     const auto changed = [&](VertexId v) { return touched_.since(v, proposal.madeAfter); };
     const auto isWhole = [&] { return std::min(proposal.edgeCost, most) <= proposal.most; };
     const bool holds = proposal.partner == partner &&
                        (proposal.isPriceAll ? proposal.price > most : isWhole() && std::ranges::none_of(proposal.companions, changed));
-    if (!holds && !proposers_[0]->propose(owner, candidates_.remaining(owner), most, {levelStart_, fusions_}, proposal))
+    if (!holds && !proposers_[0]->propose(owner, candidates_.remaining(owner), most, {levelStart_, touched_.now()}, proposal))
       return {nullptr, proposal.illegal.back().price};
     return {&proposal, proposal.price > most ? proposal.price : static_cast<float>(proposal.where.cost)};
   }
 
   void process(VertexId owner) {
     const Candidate candidate = *candidates_.best(owner);
-    if (!mesh_.alive(candidate.partner)) return requeue(owner);
+    assert(mesh_.alive(candidate.partner));  // or the owner would be locked
     if (isLocked(candidate.partner)) return;
     // Dearer than this, it waits for what costs less.
     const float most = std::min(limit_, std::max(kDearer * candidate.key, nextKey()));
     const Outcome outcome = propose(owner, candidate.partner, most);
-    if (outcome.cost <= most && outcome.proposal) {
-      fuse(*outcome.proposal);
-      return giveBack(owner);
-    }
+    if (outcome.cost <= most && outcome.proposal) return decideOn(owner, *outcome.proposal);
     outcome.cost > most ? candidates_.raise(owner, outcome.cost) : candidates_.fail(owner);
     requeue(owner);
   }
 
-  void fuse(const Proposal& proposal) {
-    const Prey& prey = proposal.prey;
-    const LatticePoint& point = proposal.where.point;
+  void decideOn(VertexId owner, const Proposal& proposal) {
+    for (const VertexId v : proposal.prey.vertices()) touched_.touch(v);
     for (const VertexId v : proposal.star.link)
-      if (v != kGhost) mesh_.prefetchVertex(v), touched_.prefetch(v), candidates_.prefetch(v);
-    cost_.valuesAt(prey, point, values_);
-    fuseIntegers(prey, point);
-    cost_.fuse(prey, point, values_);
-    const VertexId fused = mesh_.fuse(prey, {point, integers_, proposal.where.outside}, proposal.star, level_);
-    band_.fused(prey.vertex[0]);
-    makeRoom();
-    touched_.touch(fused, ++fusions_);
-    for (const VertexId v : prey.vertices()) touched_.touch(v, fusions_), candidates_.forget(v);
-    for (const VertexId v : proposal.star.link) {
-      if (v == kGhost) continue;
-      touched_.touch(v, fusions_);
-      candidates_.restart(v);  // what its old neighbours forbade its new ones may allow
+      if (v != kGhost) touched_.touch(v);
+    touched_.next();
+    going_ += proposal.tetrahedra;
+    planned_.push_back({proposal.prey, proposal.where.point, proposal.where.outside, &proposal.star});
+    if (workers_.count() > 1) return;
+    doFusions();  // while the processor has the star near
+    proposals_.giveBack(owner);
+  }
+
+  // Does what was decided on, in that order.
+  void doFusions() {
+    const std::size_t count = planned_.size(), slots = mesh_.vertexSlots(), before = fused_.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      fused_.push_back(static_cast<VertexId>(slots + i));
+      linkEnds_.push_back((linkEnds_.empty() ? 0 : linkEnds_.back()) + planned_[i].star->link.size());
+      band_.fused(planned_[i].prey.vertex[0]);
     }
-    fused_.push_back(fused);
-    links_.insert(links_.end(), proposal.star.link.begin(), proposal.star.link.end());
-    linkEnds_.push_back(links_.size());
+    links_.resize(linkEnds_.empty() ? 0 : linkEnds_.back());
+    integers_.resize(count * pointValues_);
+    cost_.makeRoom(slots + count);
+    touched_.resize(slots + count);
+    const auto valuesOf = [&](std::size_t i, VertexId fused) -> std::span<const std::int32_t> {
+      if (i + kFusedAhead < count) prefetchPrey(planned_[i + kFusedAhead].prey);
+      for (const VertexId v : planned_[i].prey.vertices()) candidates_.forget(v);
+      const std::vector<VertexId>& link = planned_[i].star->link;
+      std::ranges::copy(link, links_.begin() + static_cast<std::ptrdiff_t>(linkEnds_[before + i] - link.size()));
+      const auto integers = std::span(integers_).subspan(i * pointValues_, pointValues_);
+      fuseCosts(planned_[i].prey, fused, planned_[i].point, integers);
+      return integers;
+    };
+    mesh_.fuse(planned_, level_, std::cref(valuesOf), &workers_);
+    planned_.clear();
+    going_ = 0;
+  }
+
+  void prefetchPrey(const Prey& prey) const {
+    for (const VertexId v : prey.vertices()) {
+      cost_.prefetch(v), candidates_.prefetch(v);
+      for (std::size_t f = 0; f < mesh_.fields().size(); ++f)
+        if (!isCellField(mesh_.fields()[f])) fetch(mesh_.values(f, v).data());
+    }
+  }
+
+  void fuseCosts(const Prey& prey, VertexId fused, const LatticePoint& point, std::span<std::int32_t> integers) {
+    std::array<double, kMaxCostComponents> room;
+    const auto values = std::span(room).first(cost_.components());
+    cost_.valuesAt(prey, point, values);
+    findIntegers(prey, point, values, integers);
+    cost_.fuse(prey, fused, point, values);
   }
 
   /// The link of fused_[i], in which nothing changes until the level ends.
@@ -390,24 +362,22 @@ class Simplifier {
   }
 
   // The fused vertex's integers: of a field in the cost what the cost says, of the others the nearest prey vertex's.
-  void fuseIntegers(const Prey& prey, const LatticePoint& point) {
+  void findIntegers(const Prey& prey, const LatticePoint& point, std::span<const double> values, std::span<std::int32_t> integers) const {
     VertexId nearest = prey.vertex[0];
     double least = std::numeric_limits<double>::infinity();
     for (const VertexId v : prey.vertices()) {
       const Vector3 d = mesh_.position(v) - toVector(point);
       if (dot(d, d) < least) least = dot(d, d), nearest = v;
     }
-    integers_.clear();
-    std::size_t part = 0, component = 0;
+    std::size_t part = 0, component = 0, at = 0;
     for (std::size_t f = 0; f < mesh_.fields().size(); ++f) {
       if (isCellField(mesh_.fields()[f])) continue;
       if (part < cost_.parts().size() && cost_.parts()[part].field == f) {
         for (std::size_t c = 0; c < mesh_.fields()[f].components; ++c)
-          integers_.push_back(static_cast<std::int32_t>(std::floor(values_[component++] / cost_.parts()[part].scale + 0.5)));
+          integers[at++] = static_cast<std::int32_t>(std::floor(values[component++] / cost_.parts()[part].scale + 0.5));
         ++part;
       } else {
-        const auto values = mesh_.values(f, nearest);
-        integers_.insert(integers_.end(), values.begin(), values.end());
+        for (const std::int32_t value : mesh_.values(f, nearest)) integers[at++] = value;
       }
     }
   }
@@ -420,8 +390,6 @@ class Simplifier {
            std::log(static_cast<double>(original_) / static_cast<double>(target_));
   }
 
-  static constexpr std::uint32_t kNone = ~0u;
-
   const FusionOptions& options_;
   Workers workers_;
   FusionMesh mesh_;
@@ -433,31 +401,24 @@ class Simplifier {
   std::size_t original_, target_;
   std::size_t goal_ = 0;  // of the levels in hand: target_, or where the band ends
   std::uint32_t level_ = 0;
-  std::uint32_t fusions_ = 0, levelStart_ = 0;
+  std::uint32_t levelStart_ = 0;    // fusions
   std::vector<VertexId> vertices_;  // alive at the level's start
   Candidates candidates_;
+  LevelProposals proposals_{mesh_, cost_, candidates_, touched_};
   std::vector<std::vector<Candidate>> found_;  // collect's own
+  std::vector<Filled> filled_;  // fillQueue's own, by run
   std::vector<QueueEntry> entries_;
   EntrySorter sorter_;
-  std::size_t next_ = 0, proposedTo_ = 0, ahead_ = 0;  // into entries_
-  struct Soon {
-    VertexId owner = kNone, partner = kNone;  // of a proposal
-  };
-  std::array<Soon, 8> soon_;                  // those that were looked at last
-  std::size_t looked_ = 0, soonAt_ = 0;       // into entries_, into soon_
+  std::size_t next_ = 0;                                                // into entries_
   float limit_ = 0, dearest_ = std::numeric_limits<float>::infinity();  // keys: where the level ends, where the band does
   Queue queue_;
-  std::vector<VertexId> fused_;  // of this level
-  std::vector<VertexId> links_;  // theirs, back to back
+  std::vector<PlannedFusion> planned_;  // decided on, not done yet
+  std::size_t going_ = 0;               // tetrahedra that go with them
+  std::size_t pointValues_ = 0;         // integers of a vertex, over all point fields
+  std::vector<std::int32_t> integers_;  // of planned_, back to back
+  std::vector<VertexId> fused_;         // of this level
+  std::vector<VertexId> links_;         // theirs, back to back
   std::vector<std::size_t> linkEnds_;
-  std::deque<Proposal> proposals_;
-  std::vector<std::uint32_t> proposalOf_;  // by vertex, into proposals_
-  std::vector<VertexId> withProposal_;
-  std::uint32_t proposalsUsed_ = 0;
-  std::vector<std::uint32_t> spareProposals_;  // of those
-  std::vector<std::pair<VertexId, Proposal*>> jobs_;
-  std::vector<double> values_;
-  std::vector<std::int32_t> integers_;
 };
 
 Status checkWeights(const LatticeMesh& mesh, const FusionOptions& options) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <new>
 #include <system_error>
 
 namespace qtet {
@@ -18,20 +19,22 @@ inline void pause() {
 
 }  // namespace
 
+void waitALittle(int spins) { spins < kSpins ? pause() : std::this_thread::yield(); }
+
 int threadsAtOnce(int asked) { return std::min(asked, std::max(1, static_cast<int>(std::thread::hardware_concurrency()))); }
 
 struct Workers::Job {
-  std::size_t n, grain;
-  const std::function<void(std::size_t, std::size_t)>& work;
-  std::atomic<std::size_t> next{0};
+  const std::function<void(std::size_t)>& others;
   std::exception_ptr failure;  // under the mutex
 };
 
 Workers::Workers(int threads) {
+  threads_.reserve(static_cast<std::size_t>(std::max(threads, 1) - 1));
   try {
     for (int i = 1; i < threads; ++i) threads_.emplace_back([this, i] { serve(static_cast<std::size_t>(i)); });
   } catch (const std::system_error&) {
     // The result does not depend on how many there are.
+  } catch (const std::bad_alloc&) {  // and those that run already could not be left alone
   }
 }
 
@@ -44,15 +47,28 @@ Workers::~Workers() {
   for (std::thread& t : threads_) t.join();
 }
 
-void Workers::take(Job& job, std::size_t worker) {
-  try {
-    for (std::size_t first = job.next.fetch_add(job.grain); first < job.n; first = job.next.fetch_add(job.grain))
-      for (std::size_t i = first; i < std::min(job.n, first + job.grain); ++i) job.work(worker, i);
-  } catch (...) {
-    job.next = job.n;
+void Workers::beside(const std::function<void(std::size_t)>& others, const std::function<void()>& own) {
+  if (threads_.empty()) return own();
+  Job job{others, {}};
+  {
     const std::lock_guard lock(mutex_);
-    if (!job.failure) job.failure = std::current_exception();
+    job_ = &job;
+    ++jobs_;
   }
+  changed_.notify_all();
+  std::exception_ptr failure;
+  try {
+    own();
+  } catch (...) {
+    failure = std::current_exception();
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    job_ = nullptr;  // who has not come by now need not be waited for
+  }
+  for (int spins = 0; busy_ > 0; ++spins) waitALittle(spins);
+  if (failure) std::rethrow_exception(failure);
+  if (job.failure) std::rethrow_exception(job.failure);
 }
 
 void Workers::forEach(std::size_t n, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& work) {
@@ -60,20 +76,17 @@ void Workers::forEach(std::size_t n, std::size_t grain, const std::function<void
     for (std::size_t i = 0; i < n; ++i) work(0, i);
     return;
   }
-  Job job{n, grain, work, {}, {}};
-  {
-    const std::lock_guard lock(mutex_);
-    job_ = &job;
-    ++jobs_;
-  }
-  changed_.notify_all();
-  take(job, 0);
-  {
-    const std::lock_guard lock(mutex_);
-    job_ = nullptr;  // who has not come by now need not be waited for
-  }
-  for (int spins = 0; busy_ > 0; ++spins) spins < kSpins ? pause() : std::this_thread::yield();
-  if (job.failure) std::rethrow_exception(job.failure);
+  std::atomic<std::size_t> next{0};
+  const auto take = [&](std::size_t worker) {
+    try {
+      for (std::size_t first = next.fetch_add(grain); first < n; first = next.fetch_add(grain))
+        for (std::size_t i = first; i < std::min(n, first + grain); ++i) work(worker, i);
+    } catch (...) {
+      next = n;
+      throw;
+    }
+  };
+  beside(take, [&] { take(0); });
 }
 
 /// The next job after the first `seen`, the caller counted as busy with it; null when there will be none.
@@ -93,7 +106,12 @@ Workers::Job* Workers::next(std::size_t& seen) {
 void Workers::serve(std::size_t worker) {
   std::size_t seen = 0;
   while (Job* job = next(seen)) {
-    take(*job, worker);
+    try {
+      job->others(worker);
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      if (!job->failure) job->failure = std::current_exception();
+    }
     --busy_;
   }
 }

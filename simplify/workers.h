@@ -15,6 +15,9 @@ namespace qtet {
 /// Of the threads that were asked for as many as the machine runs at once: more would wait for one another, ten times as long with 256 on two cores.
 [[nodiscard]] int threadsAtOnce(int asked);
 
+/// For who looks at something again and again until another thread has done it: a moment, and from some tens of microseconds on the processor's next task.
+void waitALittle(int spins);
+
 class Workers {
  public:
   /// `threads` >= 1, the caller's included; fewer where the system gives no more.
@@ -24,6 +27,10 @@ class Workers {
   Workers& operator=(const Workers&) = delete;
 
   [[nodiscard]] std::size_t count() const { return threads_.size() + 1; }
+
+  /// Calls own() here, and others(worker) in each of the other workers, from 1 on, that comes before own() has ended; returns when all have. An exception of
+  /// either is thrown on, after the others have ended: an own() that others wait for has to tell them of its end.
+  void beside(const std::function<void(std::size_t worker)>& others, const std::function<void()>& own);
 
   /// Calls work(worker, i) for every i below `n`, each once, `grain` neighbours at a time; workers are numbered 0..count()-1. Returns when all are
   /// done. What work does must not depend on the worker. An exception of work's is thrown on, after the others have ended.
@@ -38,7 +45,6 @@ class Workers {
   struct Job;
   void serve(std::size_t worker);
   [[nodiscard]] Job* next(std::size_t& seen);
-  void take(Job& job, std::size_t worker);
 
   std::mutex mutex_;
   std::condition_variable changed_;

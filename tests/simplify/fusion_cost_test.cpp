@@ -144,9 +144,10 @@ TEST(FusionCost, aFusedVertexCarriesThePreysQuadrics) {
   std::vector<double> atEdge(cost.components());
   const LatticePoint middle = mesh.points[t[0]];
   cost.valuesAt(edge, middle, atEdge);
-  cost.fuse(edge, middle, atEdge);
   const std::vector<std::int32_t> integers(4, 0);
   const VertexId fused = live.fuse(edge, {middle, integers, 0}, {}, 0);
+  cost.makeRoom(live.vertexSlots());
+  cost.fuse(edge, fused, middle, atEdge);
   const Prey rest{3, {fused, t[2], t[3], 0}};
   std::vector<double> again(cost.components());
   EXPECT_NEAR(cost.valuesAt(rest, p, again), whole, 1e-9 * whole);

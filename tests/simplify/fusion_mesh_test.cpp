@@ -5,7 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <span>
+#include <vector>
 
+#include "simplify/workers.h"
 #include "tests/support/meshes.h"
 
 namespace qtet {
@@ -69,6 +73,55 @@ TEST(FusionMesh, theBoundaryTrianglesOfAStarComeFirst) {
         ASSERT_DOUBLE_EQ(mesh.plane(c).inverseLength, dot(normal, normal) > 0 ? 1 / std::sqrt(dot(normal, normal)) : 0);
       }
     }
+  }
+}
+
+// Rim edges that do not touch one another, all of which take cells from the same two hubs, and from rim vertices between them.
+TEST(FusionMesh, threadsFuseWhatOneDoes) {
+  constexpr std::uint32_t kCells = 6000, kApart = 4, kLevels = 6;
+  FusionMesh one(testing::fanMesh(kCells)), many(testing::fanMesh(kCells));
+  Workers workers(5);
+  std::vector<VertexId> rim(kCells);
+  std::iota(rim.begin(), rim.end(), 2u);
+  for (std::uint32_t level = 0; level < kLevels; ++level) {
+    std::vector<Star> stars;
+    std::vector<PlannedFusion> planned;
+    std::vector<VertexId> next;
+    stars.reserve(rim.size() / kApart);
+    for (std::size_t i = 0; i + kApart <= rim.size(); i += kApart) {
+      stars.push_back(starOf(one, rim[i], rim[i + 1]));
+      planned.push_back({{2, {rim[i], rim[i + 1], 0, 0}}, one.point(rim[i + 1]), level == 2 ? 0.5f : 0, &stars.back()});
+      next.push_back(static_cast<VertexId>(one.vertexSlots() + planned.size() - 1));
+      next.insert(next.end(), {rim[i + 2], rim[i + 3]});
+    }
+    next.insert(next.end(), rim.end() - static_cast<std::ptrdiff_t>(rim.size() % kApart), rim.end());
+    const auto noValues = [](std::size_t, VertexId) { return std::span<const std::int32_t>(); };
+    one.fuse(planned, level, noValues);
+    many.fuse(planned, level, noValues, &workers);
+    rim = next;
+    ASSERT_EQ(one.vertexSlots(), many.vertexSlots());
+    ASSERT_EQ(one.liveTetrahedra(), many.liveTetrahedra());
+    for (VertexId v = 0; v < one.vertexSlots(); ++v) {
+      ASSERT_EQ(one.alive(v), many.alive(v));
+      ASSERT_TRUE(std::ranges::equal(one.star(v), many.star(v))) << "vertex " << v << " at level " << level;
+      ASSERT_EQ(one.boundaryStar(v).size(), many.boundaryStar(v).size());
+      for (const CellId c : one.boundaryStar(v)) ASSERT_EQ(one.outside(c), many.outside(c));
+    }
+  }
+  const FusionHistory a = one.takeHistory(kLevels), b = many.takeHistory(kLevels);
+  EXPECT_EQ(a.points, b.points);
+  EXPECT_EQ(a.cells, b.cells);
+  EXPECT_EQ(a.live, b.live);
+  EXPECT_EQ(a.affectedCells, b.affectedCells);
+  EXPECT_EQ(a.affectedLabels, b.affectedLabels);
+  EXPECT_EQ(a.deletedCells, b.deletedCells);
+  ASSERT_EQ(a.fusions.size(), b.fusions.size());
+  for (std::size_t i = 0; i < a.fusions.size(); ++i) {
+    EXPECT_EQ(a.fusions[i].prey, b.fusions[i].prey);
+    EXPECT_EQ(a.fusions[i].fused, b.fusions[i].fused);
+    EXPECT_EQ(a.fusions[i].level, b.fusions[i].level);
+    EXPECT_EQ(a.fusions[i].firstAffected, b.fusions[i].firstAffected);
+    EXPECT_EQ(a.fusions[i].firstDeleted, b.fusions[i].firstDeleted);
   }
 }
 

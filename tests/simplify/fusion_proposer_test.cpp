@@ -93,9 +93,10 @@ TEST_F(Proposed, whatAVertexIsOffByAlreadyIsNoFusionsCost) {
     std::vector<double> values(cost_.components());
     const double cost = cost_.valuesAt(proposal.prey, proposal.where.point, values);
     if (!(cost > 0)) continue;
-    cost_.fuse(proposal.prey, proposal.where.point, values);
     std::vector<std::int32_t> integers(5 * values.size());
     const VertexId fused = mesh_.fuse(proposal.prey, {proposal.where.point, integers, 0}, proposal.star, 0);
+    cost_.makeRoom(mesh_.vertexSlots());
+    cost_.fuse(proposal.prey, fused, proposal.where.point, values);
     EXPECT_NEAR(cost_.of(fused), cost, 1e-9 * cost);
     const VertexId w = *std::ranges::find_if(proposal.star.link, [](VertexId u) { return u != kGhost; });
     const Prey edge{2, {fused, w, 0, 0}};

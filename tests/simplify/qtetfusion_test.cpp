@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <new>
 
 #include "codec/boundary.h"
 #include "codec/predicates.h"
@@ -11,6 +13,7 @@
 #include "simplify/quantise.h"
 #include "simplify/samples.h"
 #include "simplify/verify.h"
+#include "tests/support/allocation_meter.h"
 #include "tests/support/meshes.h"
 
 namespace qtet {
@@ -20,6 +23,7 @@ using testing::eulerCharacteristics;
 using testing::gridMesh;
 using testing::meshOfHistory;
 using testing::whatIsWrongWith;
+using testing::withoutMemoryInOthers;
 
 // Every boundary point of the finer mesh's solid contains the coarser one's: checked on the cells' corners, which suffices for volumes.
 double volumeOf(const LatticeMesh& mesh) {
@@ -289,6 +293,18 @@ TEST(Fused, theNumberOfThreadsDecidesNothingWhereAllIsBoundary) {
   for (std::uint32_t seed = 1; seed <= 2; ++seed) {
     expectTheSameOfAnyNumberOfThreads(gridMesh(40, seed, [](int, int, int k) { return k < 1; }));
     expectTheSameOfAnyNumberOfThreads(gridMesh(24, seed, [](int i, int j, int k) { return i % 4 < 3 && j % 4 < 3 && k < 4; }));
+  }
+}
+
+TEST(Fused, aThreadThatFindsNoMemoryKeepsNobodyWaiting) {
+  const LatticeMesh mesh = gridMesh(6, 1);
+  FusionOptions options;
+  options.threads = 3;
+  for (std::int64_t n = 0; n < 200; n += 1 + n / 8) {
+    try {
+      withoutMemoryInOthers(n, [&] { EXPECT_TRUE(simplify(mesh, options)); });  // where the others came too late for so many
+    } catch (const std::bad_alloc&) {
+    }
   }
 }
 

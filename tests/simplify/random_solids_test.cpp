@@ -2,6 +2,7 @@
 // QTET_RANDOM_SOLIDS=N tries N more seeds.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdlib>
 #include <map>
 #include <string>
@@ -76,6 +77,44 @@ void keepsItsPromises(std::uint32_t seed) {
 class RandomSolids : public ::testing::TestWithParam<std::uint32_t> {};
 
 TEST_P(RandomSolids, keepEveryInvariantAtEveryLevel) { keepsItsPromises(GetParam()); }
+
+void expectTheSame(const FusionHistory& one, const FusionHistory& several) {
+  EXPECT_EQ(several.points, one.points);
+  EXPECT_EQ(several.values, one.values);
+  EXPECT_EQ(several.cells, one.cells);
+  EXPECT_EQ(several.live, one.live);
+  EXPECT_EQ(several.affectedCells, one.affectedCells);
+  EXPECT_EQ(several.affectedLabels, one.affectedLabels);
+  EXPECT_EQ(several.deletedCells, one.deletedCells);
+  EXPECT_EQ(several.levels, one.levels);
+  EXPECT_EQ(several.bands.ends, one.bands.ends);
+  ASSERT_EQ(several.fusions.size(), one.fusions.size());
+  for (std::size_t i = 0; i < one.fusions.size(); ++i) {
+    EXPECT_EQ(several.fusions[i].prey, one.fusions[i].prey);
+    EXPECT_EQ(several.fusions[i].placement, one.fusions[i].placement);
+    EXPECT_EQ(several.fusions[i].level, one.fusions[i].level);
+  }
+}
+
+TEST_P(RandomSolids, areTheSameForAnyNumberOfThreadsWhateverTheOptions) {
+  const std::uint32_t seed = GetParam();
+  const auto solid = randomSolid(seed);
+  SCOPED_TRACE("seed " + std::to_string(seed) + ": " + solid.description);
+  FusionOptions options;
+  options.targetRatio = std::array{0.0, 0.1, 0.5}[seed % 3];
+  options.envelopeTolerance = seed % 4 == 0 ? 0.05 : 0;
+  options.placement = std::array{PlacementRule::kAuto, PlacementRule::kOptimal, PlacementRule::kVertex}[seed / 2 % 3];
+  options.bands.cellsPerPacket = seed % 5 == 0 ? 20 : 0;
+  const auto one = simplify(solid.mesh, options);
+  ASSERT_TRUE(one) << one.error().text();
+  for (const int threads : {2, 5}) {
+    SCOPED_TRACE(std::to_string(threads) + " threads");
+    options.threads = threads;
+    const auto several = simplify(solid.mesh, options);
+    ASSERT_TRUE(several) << several.error().text();
+    expectTheSame(*one, *several);
+  }
+}
 
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomSolids, ::testing::Range(0u, kSeeds));
 

@@ -59,6 +59,55 @@ TEST_P(OfThreads, anExceptionEndsTheJobAndNotTheWorkers) {
   EXPECT_EQ(done, 100);
 }
 
+TEST_P(OfThreads, othersWorkBesideTheirOwnerUntilHeIsDone) {
+  Workers workers(GetParam());
+  for (int round = 0; round < 100; ++round) {
+    std::atomic<bool> isOver{false};
+    std::atomic<std::size_t> come{0}, gone{0};
+    std::vector<std::atomic<int>> times(workers.count());
+    const auto others = [&](std::size_t worker) {
+      ++times.at(worker), ++come;
+      while (!isOver) waitALittle(0);
+      ++gone;
+    };
+    workers.beside(others, [&] {
+      ++times[0];
+      for (int spins = 0; round == 0 && come + 1 < workers.count(); ++spins) waitALittle(spins);  // once with all of them
+      isOver = true;
+    });
+    EXPECT_EQ(gone, come) << "nobody is left behind";
+    EXPECT_EQ(times[0], 1);
+    for (const auto& t : times) EXPECT_LE(t, 1);
+  }
+}
+
+TEST_P(OfThreads, anExceptionOfEitherSideIsThrownOnWhenTheOthersHaveEnded) {
+  Workers workers(GetParam());
+  std::atomic<bool> isOver{false};
+  std::atomic<int> inside{0};
+  const auto waits = [&](std::size_t) {
+    ++inside;
+    while (!isOver) waitALittle(0);
+    --inside;
+  };
+  const auto fails = [&] {
+    isOver = true;
+    throw std::runtime_error("own");
+  };
+  EXPECT_THROW(workers.beside(waits, fails), std::runtime_error);
+  EXPECT_EQ(inside, 0);
+  if (workers.count() == 1) return;
+  std::atomic<int> come{0};
+  const auto othersFail = [&](std::size_t) {
+    ++come;
+    throw std::runtime_error("others");
+  };
+  EXPECT_THROW(workers.beside(othersFail, [&] { for (int spins = 0; come == 0; ++spins) waitALittle(spins); }), std::runtime_error);
+  std::atomic<int> done{0};
+  workers.forEach(100, 8, [&](std::size_t, std::size_t) { ++done; });
+  EXPECT_EQ(done, 100);
+}
+
 INSTANTIATE_TEST_SUITE_P(Workers, OfThreads, ::testing::Values(1, 2, 5), [](const auto& threads) { return std::to_string(threads.param); });
 
 }  // namespace

@@ -11,6 +11,12 @@ namespace {
 
 std::atomic<std::int64_t> held{0};
 std::atomic<std::int64_t> peak{0};
+std::atomic<std::int64_t> untilFailure{-1};  // allocations in threads that are not spared; negative: none fails
+thread_local bool isSpared = false;
+
+void failInTurn() {
+  if (!isSpared && untilFailure.load() >= 0 && untilFailure.fetch_sub(1) == 0) throw std::bad_alloc();
+}
 
 void* taken(void* memory) {
   if (memory == nullptr) throw std::bad_alloc();
@@ -31,7 +37,10 @@ std::size_t roundedUp(std::size_t bytes, std::size_t alignment) { return (bytes 
 }  // namespace
 
 // All forms: a sanitizer's own do not call one another, and it minds what one form allocates and another gives back.
-void* operator new(std::size_t bytes) { return taken(std::malloc(bytes == 0 ? 1 : bytes)); }
+void* operator new(std::size_t bytes) {
+  failInTurn();
+  return taken(std::malloc(bytes == 0 ? 1 : bytes));
+}
 void* operator new[](std::size_t bytes) { return operator new(bytes); }
 void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
   void* memory = std::malloc(bytes == 0 ? 1 : bytes);
@@ -61,6 +70,15 @@ std::size_t peakBytesOf(const std::function<void()>& work) {
   peak.store(before);
   work();
   return static_cast<std::size_t>(peak.load() - before);
+}
+
+void withoutMemoryInOthers(std::int64_t n, const std::function<void()>& work) {
+  struct Sparing {
+    Sparing() { isSpared = true; }
+    ~Sparing() { untilFailure = -1, isSpared = false; }
+  } const sparing;
+  untilFailure = n;
+  work();
 }
 
 }  // namespace qtet::testing
