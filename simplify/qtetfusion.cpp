@@ -36,7 +36,7 @@ constexpr double kShapeFloor = 1e-4;
 // Cosine of the largest angle by which a boundary triangle may turn in one fusion: more, and a fold could hide what the quadric does not see.
 constexpr double kNormalCosine = 0.3;
 
-// Vertices whose candidates are found at once, and how many of them, or of fusions, a thread takes at a time.
+// Vertices whose candidates are found at once, and how many of them a thread takes at a time.
 constexpr std::size_t kCollected = 4096;
 constexpr std::size_t kGrain = 8;
 // Vertices of the queue that a thread takes at a time.
