@@ -51,16 +51,12 @@ void FusionCost::addSlopes(const LatticeMesh& lattice, std::optional<double> hul
   const std::size_t vertices = lattice.points.size();
   const std::size_t runs = workers && areNear(lattice.tetrahedra, vertices / workers->count()) ? workers->count() : 1;
   const auto run = [&](std::size_t i) { return Vertices{static_cast<VertexId>(i * vertices / runs), static_cast<VertexId>((i + 1) * vertices / runs)}; };
-  const auto each = [&](std::size_t tasks, const auto& task) {
-    if (workers) return workers->forEach(tasks, 1, [&](std::size_t, std::size_t i) { task(i); });
-    for (std::size_t i = 0; i < tasks; ++i) task(i);
-  };
-  each(runs + 1, [&](std::size_t i) {
+  forEach(workers, runs + 1, 1, [&](std::size_t, std::size_t i) {
     if (i < runs) return addFields(lattice, run(i));
     if (!hullWeight) hullWeight = balancedHullWeight(lattice, parts_);
   });
   const double hullFactor = *hullWeight / diagonal_;
-  each(runs, [&](std::size_t i) { addTriangles(lattice.boundary, hullFactor, run(i)), addTriangles(interfaces, hullFactor, run(i)); });
+  forEach(workers, runs, 1, [&](std::size_t, std::size_t i) { addTriangles(lattice.boundary, hullFactor, run(i)), addTriangles(interfaces, hullFactor, run(i)); });
 }
 
 void FusionCost::takeLimits(const LatticeMesh& lattice) {

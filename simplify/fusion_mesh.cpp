@@ -90,10 +90,7 @@ void FusionMesh::findSingular(Workers* workers) {
     if (i + kAhead < singular_.size()) prefetchStar(v + kAhead);
     singular_[i] = !tests[worker].isLinkSphere(v, star(v), history_.cells);
   };
-  if (workers)
-    workers->forEach(singular_.size(), kGrain, ask);
-  else
-    for (std::size_t i = 0; i < singular_.size(); ++i) ask(0, i);
+  forEach(workers, singular_.size(), kGrain, ask);
   hasSingular_ = std::ranges::find(singular_, 1) != singular_.end();
 }
 

@@ -1,11 +1,10 @@
 // The pages that large arrays lie in. Those of 2 MB a system hands out in a tenth of the time, and a processor finds its way among few of them.
 #pragma once
 
-#include <cstddef>
+#include <sys/mman.h>
+
 #include <cstdint>
 #include <vector>
-
-#include <sys/mman.h>
 
 namespace qtet {
 

@@ -89,6 +89,11 @@ void Workers::forEach(std::size_t n, std::size_t grain, const std::function<void
   beside(take, [&] { take(0); });
 }
 
+void forEach(Workers* workers, std::size_t n, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& work) {
+  if (workers) return workers->forEach(n, grain, work);
+  for (std::size_t i = 0; i < n; ++i) work(0, i);
+}
+
 /// The next job after the first `seen`, the caller counted as busy with it; null when there will be none.
 Workers::Job* Workers::next(std::size_t& seen) {
   for (;;) {

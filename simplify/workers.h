@@ -54,4 +54,7 @@ class Workers {
   std::vector<std::thread> threads_;
 };
 
+/// Workers::forEach, or the same by the caller alone where there are no workers.
+void forEach(Workers* workers, std::size_t n, std::size_t grain, const std::function<void(std::size_t worker, std::size_t i)>& work);
+
 }  // namespace qtet

@@ -108,21 +108,7 @@ TEST(FusionMesh, threadsFuseWhatOneDoes) {
       for (const CellId c : one.boundaryStar(v)) ASSERT_EQ(one.outside(c), many.outside(c));
     }
   }
-  const FusionHistory a = one.takeHistory(kLevels), b = many.takeHistory(kLevels);
-  EXPECT_EQ(a.points, b.points);
-  EXPECT_EQ(a.cells, b.cells);
-  EXPECT_EQ(a.live, b.live);
-  EXPECT_EQ(a.affectedCells, b.affectedCells);
-  EXPECT_EQ(a.affectedLabels, b.affectedLabels);
-  EXPECT_EQ(a.deletedCells, b.deletedCells);
-  ASSERT_EQ(a.fusions.size(), b.fusions.size());
-  for (std::size_t i = 0; i < a.fusions.size(); ++i) {
-    EXPECT_EQ(a.fusions[i].prey, b.fusions[i].prey);
-    EXPECT_EQ(a.fusions[i].fused, b.fusions[i].fused);
-    EXPECT_EQ(a.fusions[i].level, b.fusions[i].level);
-    EXPECT_EQ(a.fusions[i].firstAffected, b.fusions[i].firstAffected);
-    EXPECT_EQ(a.fusions[i].firstDeleted, b.fusions[i].firstDeleted);
-  }
+  testing::expectTheSame(many.takeHistory(kLevels), one.takeHistory(kLevels));
 }
 
 }  // namespace

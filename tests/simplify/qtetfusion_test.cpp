@@ -275,12 +275,7 @@ void expectTheSameOfAnyNumberOfThreads(const LatticeMesh& mesh) {
     options.threads = threads;
     const auto several = simplify(mesh, options);
     ASSERT_TRUE(several);
-    EXPECT_EQ(several->points, one->points);
-    EXPECT_EQ(several->values, one->values);
-    EXPECT_EQ(several->cells, one->cells);
-    EXPECT_EQ(several->affectedCells, one->affectedCells);
-    EXPECT_EQ(several->affectedLabels, one->affectedLabels);
-    EXPECT_EQ(several->levels, one->levels);
+    testing::expectTheSame(*several, *one);
   }
 }
 

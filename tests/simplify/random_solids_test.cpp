@@ -78,24 +78,6 @@ class RandomSolids : public ::testing::TestWithParam<std::uint32_t> {};
 
 TEST_P(RandomSolids, keepEveryInvariantAtEveryLevel) { keepsItsPromises(GetParam()); }
 
-void expectTheSame(const FusionHistory& one, const FusionHistory& several) {
-  EXPECT_EQ(several.points, one.points);
-  EXPECT_EQ(several.values, one.values);
-  EXPECT_EQ(several.cells, one.cells);
-  EXPECT_EQ(several.live, one.live);
-  EXPECT_EQ(several.affectedCells, one.affectedCells);
-  EXPECT_EQ(several.affectedLabels, one.affectedLabels);
-  EXPECT_EQ(several.deletedCells, one.deletedCells);
-  EXPECT_EQ(several.levels, one.levels);
-  EXPECT_EQ(several.bands.ends, one.bands.ends);
-  ASSERT_EQ(several.fusions.size(), one.fusions.size());
-  for (std::size_t i = 0; i < one.fusions.size(); ++i) {
-    EXPECT_EQ(several.fusions[i].prey, one.fusions[i].prey);
-    EXPECT_EQ(several.fusions[i].placement, one.fusions[i].placement);
-    EXPECT_EQ(several.fusions[i].level, one.fusions[i].level);
-  }
-}
-
 TEST_P(RandomSolids, areTheSameForAnyNumberOfThreadsWhateverTheOptions) {
   const std::uint32_t seed = GetParam();
   const auto solid = randomSolid(seed);
@@ -112,7 +94,7 @@ TEST_P(RandomSolids, areTheSameForAnyNumberOfThreadsWhateverTheOptions) {
     options.threads = threads;
     const auto several = simplify(solid.mesh, options);
     ASSERT_TRUE(several) << several.error().text();
-    expectTheSame(*one, *several);
+    testing::expectTheSame(*several, *one);
   }
 }
 

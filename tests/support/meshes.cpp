@@ -129,6 +129,27 @@ void addCellFields(LatticeMesh& mesh) {
   mesh.values.push_back(std::move(heights));
 }
 
+void expectTheSame(const FusionHistory& history, const FusionHistory& expected) {
+  EXPECT_EQ(history.points, expected.points);
+  EXPECT_EQ(history.values, expected.values);
+  EXPECT_EQ(history.cells, expected.cells);
+  EXPECT_EQ(history.live, expected.live);
+  EXPECT_EQ(history.affectedCells, expected.affectedCells);
+  EXPECT_EQ(history.affectedLabels, expected.affectedLabels);
+  EXPECT_EQ(history.deletedCells, expected.deletedCells);
+  EXPECT_EQ(history.levels, expected.levels);
+  EXPECT_EQ(history.bands.ends, expected.bands.ends);
+  ASSERT_EQ(history.fusions.size(), expected.fusions.size());
+  for (std::size_t i = 0; i < expected.fusions.size(); ++i) {
+    EXPECT_EQ(history.fusions[i].prey, expected.fusions[i].prey);
+    EXPECT_EQ(history.fusions[i].placement, expected.fusions[i].placement);
+    EXPECT_EQ(history.fusions[i].fused, expected.fusions[i].fused);
+    EXPECT_EQ(history.fusions[i].level, expected.fusions[i].level);
+    EXPECT_EQ(history.fusions[i].firstAffected, expected.fusions[i].firstAffected);
+    EXPECT_EQ(history.fusions[i].firstDeleted, expected.fusions[i].firstDeleted);
+  }
+}
+
 LatticeMesh meshOfHistory(const FusionHistory& history, std::uint32_t undone) {
   FusionHistory h = history;
   for (std::size_t i = h.fusions.size(); i-- > 0;) {

@@ -25,6 +25,9 @@ namespace qtet::testing {
 /// Adds two cell fields to a gridMesh: "Region" (labels of blocks) and "Height" (two components; a point field has the same name).
 void addCellFields(LatticeMesh& mesh);
 
+/// Expects all of both to be the same: what was fused, in which order and level, and what became of the mesh.
+void expectTheSame(const FusionHistory& history, const FusionHistory& expected);
+
 /// The mesh that is left of a history after its last `undone` levels have been taken back, in the history's numbering.
 [[nodiscard]] LatticeMesh meshOfHistory(const FusionHistory& history, std::uint32_t undone);
 
