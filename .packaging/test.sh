@@ -107,7 +107,7 @@ inside python3 -c "import qtet_log; qtet_log.Log('http://127.0.0.1:$port/?mesh=f
 
 step "the plugin in ParaView"
 install paraview python3-paraview xvfb xauth
-cp "$source/tests/codec/qtet_paraview_test.py" "$root/tmp/"
+cp "$source/tests/codec/python/qtet_paraview_test.py" "$root/tmp/"
 plugin=$(inside dpkg -L python3-qtet | grep '/qtet_paraview\.py$')
 inside xvfb-run -a pvbatch --force-offscreen-rendering /tmp/qtet_paraview_test.py "$plugin" /tmp/fin.qtet /tmp "http://127.0.0.1:$port/?mesh=fin" >"$work/paraview.log" 2>&1 ||
   { tail -20 "$work/paraview.log" >&2; fail "the plugin in ParaView"; }

@@ -1,4 +1,5 @@
-// Little-endian reading and writing of bytes. The reader keeps its first error, so decoders are straight lines with one check at the end.
+// Little-endian reading and writing of bytes. The reader keeps its first error, so decoders are
+// straight lines with one check at the end.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +16,9 @@ namespace qtet {
 using Bytes = std::vector<std::uint8_t>;
 using ByteView = std::span<const std::uint8_t>;
 
-/// Reads integers from `view`; after the first failure every read gives 0 and `error()` stays what it was.
-/// The bytes must outlive the reader. Offsets in errors count from `origin`, the view's own place in a file.
+/// Reads integers from `view`; after the first failure every read gives 0 and `error()` stays what
+/// it was. The bytes must outlive the reader. Offsets in errors count from `origin`, the view's own
+/// place in a file.
 class ByteReader {
  public:
   explicit ByteReader(ByteView view, std::uint64_t origin = 0) : view_(view), origin_(origin) {}
@@ -30,7 +32,8 @@ class ByteReader {
     return static_cast<T>(value);
   }
 
-  /// Seven bits a byte, the lowest first; the high bit says that more follow. The shortest form alone, so that a value has one.
+  /// Seven bits a byte, the lowest first; the high bit says that more follow. The shortest form
+  /// alone, so that a value has one.
   [[nodiscard]] std::uint32_t readVarint() {
     std::uint64_t value = 0;
     for (int shift = 0; shift < 35; shift += 7) {
@@ -40,7 +43,8 @@ class ByteReader {
       if ((shift > 0 && byte == 0) || value > 0xFFFFFFFFu) break;
       return static_cast<std::uint32_t>(value);
     }
-    fail(ErrorCode::kBadValue, "a varint is not the shortest one, or above 32 bits; fetch or build the log again");
+    fail(ErrorCode::kBadValue,
+         "a varint is not the shortest one, or above 32 bits; fetch or build the log again");
     return 0;
   }
 
@@ -81,7 +85,8 @@ class ByteWriter {
   void write(T value) {
     static_assert(std::is_integral_v<T>);
     const auto bits = static_cast<std::uint64_t>(value);
-    for (std::size_t i = 0; i < sizeof(T); ++i) bytes_.push_back(static_cast<std::uint8_t>(bits >> (8 * i)));
+    for (std::size_t i = 0; i < sizeof(T); ++i)
+      bytes_.push_back(static_cast<std::uint8_t>(bits >> (8 * i)));
   }
   void writeVarint(std::uint32_t value) {
     for (; value >= 0x80u; value >>= 7) bytes_.push_back(static_cast<std::uint8_t>(value | 0x80u));

@@ -1,4 +1,5 @@
-// SHA-256 of whole logs: the same code natively and in the browser, where outside secure contexts no WebCrypto is to be had.
+// SHA-256 of whole logs: the same code natively and in the browser, where outside secure contexts
+// no WebCrypto is to be had.
 #pragma once
 
 #include <array>

@@ -1,4 +1,5 @@
-// What goes wrong, as a value: every decoder of outside bytes returns Result<T>, and only a caller's mistake asserts.
+// What goes wrong, as a value: every decoder of outside bytes returns Result<T>, and only a
+// caller's mistake asserts.
 #pragma once
 
 #include <cstdint>
@@ -10,23 +11,24 @@ namespace qtet {
 
 /// Stable names of failures; tests assert them and the server maps them to problem types.
 enum class ErrorCode : std::uint8_t {
-  kTruncated,       ///< the bytes end before what they promise
-  kBadMagic,        ///< not a qtet log at all
-  kBadVersion,      ///< a log of a version this build cannot read
-  kBadChecksum,     ///< a CRC-32C does not match its bytes
-  kBadValue,        ///< a value outside its range, or two values that contradict each other
-  kLimitExceeded,   ///< a count or size above a limit of proto/limits.h
-  kBadCodec,        ///< an unknown codec id, or a codec's own decoder refused the bytes
-  kBadOrder,        ///< a chunk was applied before one that it depends on
-  kNotFound,        ///< a file, mesh, field or level of that name does not exist
-  kBadInput,        ///< a mesh that cannot be simplified, with the reason in the message
-  kIo,              ///< the operating system refused to read or write
+  kTruncated,      ///< the bytes end before what they promise
+  kBadMagic,       ///< not a qtet log at all
+  kBadVersion,     ///< a log of a version this build cannot read
+  kBadChecksum,    ///< a CRC-32C does not match its bytes
+  kBadValue,       ///< a value outside its range, or two values that contradict each other
+  kLimitExceeded,  ///< a count or size above a limit of proto/limits.h
+  kBadCodec,       ///< an unknown codec id, or a codec's own decoder refused the bytes
+  kBadOrder,       ///< a chunk was applied before one that it depends on
+  kNotFound,       ///< a file, mesh, field or level of that name does not exist
+  kBadInput,       ///< a mesh that cannot be simplified, with the reason in the message
+  kIo,             ///< the operating system refused to read or write
 };
 
 /// The code's name as it stands in PROTOCOL.md and FORMAT.md, for example "bad-checksum".
 [[nodiscard]] const char* errorCodeName(ErrorCode code);
 
-/// A failure: what, where (byte offset in the input, when there is one) and, in the message, what to do.
+/// A failure: what, where (byte offset in the input, when there is one) and, in the message, what
+/// to do.
 struct Error {
   static constexpr std::uint64_t kNoOffset = ~std::uint64_t{0};
 

@@ -1,4 +1,5 @@
-// Which field a name means: one rule for options, URLs, messages and the C library, over any list of things with a name and an association.
+// Which field a name means: one rule for options, URLs, messages and the C library, over any list
+// of things with a name and an association.
 #pragma once
 
 #include <charconv>
@@ -10,7 +11,8 @@
 
 namespace qtet {
 
-/// "T" of "T@0.5", the name of a field in a step of a series (simplify/join_blocks.h); nothing of a name that does not end in a number.
+/// "T" of "T@0.5", the name of a field in a step of a series (simplify/read/join_blocks.h); nothing
+/// of a name that does not end in a number.
 [[nodiscard]] inline std::optional<std::string_view> nameWithoutStep(std::string_view name) {
   const std::size_t at = name.rfind('@');
   if (at == std::string_view::npos || at == 0) return std::nullopt;
@@ -21,11 +23,15 @@ namespace qtet {
 }
 
 /// Whether `key` is the name or "point:NAME" or "cell:NAME", as the association is.
-[[nodiscard]] inline bool isCalled(std::string_view association, std::string_view name, std::string_view key) {
-  return key == name || (key.size() == association.size() + 1 + name.size() && key.starts_with(association) && key[association.size()] == ':' && key.ends_with(name));
+[[nodiscard]] inline bool isCalled(std::string_view association, std::string_view name,
+                                   std::string_view key) {
+  return key == name ||
+         (key.size() == association.size() + 1 + name.size() && key.starts_with(association) &&
+          key[association.size()] == ':' && key.ends_with(name));
 }
 
-/// The fields that `key` means where several may be meant, ascending: those of that name; else with "point:" or "cell:" before it the one; else of a series' fields every step's, NAME@TIME.
+/// The fields that `key` means where several may be meant, ascending: those of that name; else with
+/// "point:" or "cell:" before it the one; else of a series' fields every step's, NAME@TIME.
 template <std::ranges::random_access_range Fields>
 [[nodiscard]] std::vector<std::uint32_t> fieldsOfKey(const Fields& fields, std::string_view key) {
   std::vector<std::uint32_t> out;
@@ -35,7 +41,8 @@ template <std::ranges::random_access_range Fields>
     return !out.empty();
   };
   if (all([&](const auto& field) { return field.name == key; })) return out;
-  if (all([&](const auto& field) { return isCalled(field.association, field.name, key); })) return out;
+  if (all([&](const auto& field) { return isCalled(field.association, field.name, key); }))
+    return out;
   all([&](const auto& field) {
     const auto name = nameWithoutStep(field.name);
     return name && isCalled(field.association, *name, key);
@@ -43,7 +50,8 @@ template <std::ranges::random_access_range Fields>
   return out;
 }
 
-/// The one field that `key` means: the point field of that name, else the cell field of that name, else with "point:" or "cell:" before it; of a series a step's whole name.
+/// The one field that `key` means: the point field of that name, else the cell field of that name,
+/// else with "point:" or "cell:" before it; of a series a step's whole name.
 template <std::ranges::random_access_range Fields>
 [[nodiscard]] std::optional<std::uint32_t> fieldOfKey(const Fields& fields, std::string_view key) {
   std::optional<std::uint32_t> out;

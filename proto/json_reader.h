@@ -1,5 +1,6 @@
-// Reading parsed JSON the way ByteReader reads bytes: the first error stays, with the JSON pointer of its place, so that a parser is
-// a straight line with one check at the end. For the .cpp files of this room only: it drags nlohmann-json in.
+// Reading parsed JSON the way ByteReader reads bytes: the first error stays, with the JSON pointer
+// of its place, so that a parser is a straight line with one check at the end. For the .cpp files
+// of this room only: it drags nlohmann-json in.
 #pragma once
 
 #include <cmath>
@@ -16,13 +17,18 @@ namespace qtet {
 
 using Json = nlohmann::json;
 
-/// Dumps JSON; bytes that are not UTF-8 (file and field names may hold them) become U+FFFD instead of an exception.
-[[nodiscard]] inline std::string dumpJson(const Json& value) { return value.dump(-1, ' ', false, Json::error_handler_t::replace); }
+/// Dumps JSON; bytes that are not UTF-8 (file and field names may hold them) become U+FFFD instead
+/// of an exception.
+[[nodiscard]] inline std::string dumpJson(const Json& value) {
+  return value.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
 
-/// Levels of arrays and objects in a document from outside: what is legal has seven; a destructor or a dump of 100,000 overflows the stack.
+/// Levels of arrays and objects in a document from outside: what is legal has seven; a destructor
+/// or a dump of 100,000 overflows the stack.
 inline constexpr std::size_t kMaxJsonDepth = 32;
 
-/// Whether no value of the text lies deeper than kMaxJsonDepth. Looks at brackets outside of strings; of what is no JSON it says anything.
+/// Whether no value of the text lies deeper than kMaxJsonDepth. Looks at brackets outside of
+/// strings; of what is no JSON it says anything.
 [[nodiscard]] inline bool isShallowJson(std::string_view text) {
   std::size_t depth = 0;
   bool quoted = false;
@@ -37,8 +43,8 @@ inline constexpr std::size_t kMaxJsonDepth = 32;
   return true;
 }
 
-/// One value of a document. A value that is missing or wrong reads as an empty default and sets the error.
-/// The document and the error slot must outlive the cursor.
+/// One value of a document. A value that is missing or wrong reads as an empty default and sets the
+/// error. The document and the error slot must outlive the cursor.
 class JsonCursor {
  public:
   JsonCursor(const Json* value, std::string pointer, std::optional<Error>* error)
@@ -70,15 +76,18 @@ class JsonCursor {
     if (value_ == nullptr) return {};
     if (!value_->is_string()) return fail("must be a string"), std::string();
     const auto& out = value_->get_ref<const std::string&>();
-    if (out.size() > maxBytes) return fail("is longer than " + std::to_string(maxBytes) + " bytes"), std::string();
+    if (out.size() > maxBytes)
+      return fail("is longer than " + std::to_string(maxBytes) + " bytes"), std::string();
     return out;
   }
 
   /// A whole number in [minimum, maximum].
   [[nodiscard]] std::uint64_t count(std::uint64_t minimum, std::uint64_t maximum) const {
     if (value_ == nullptr) return minimum;
-    if (!value_->is_number_unsigned() || value_->get<std::uint64_t>() < minimum || value_->get<std::uint64_t>() > maximum) {
-      fail("must be a whole number from " + std::to_string(minimum) + " to " + std::to_string(maximum));
+    if (!value_->is_number_unsigned() || value_->get<std::uint64_t>() < minimum ||
+        value_->get<std::uint64_t>() > maximum) {
+      fail("must be a whole number from " + std::to_string(minimum) + " to " +
+           std::to_string(maximum));
       return minimum;
     }
     return value_->get<std::uint64_t>();
@@ -89,7 +98,8 @@ class JsonCursor {
 
   [[nodiscard]] double number() const {
     if (value_ == nullptr) return 0;
-    if (!value_->is_number() || !std::isfinite(value_->get<double>())) return fail("must be a finite number"), 0.0;
+    if (!value_->is_number() || !std::isfinite(value_->get<double>()))
+      return fail("must be a finite number"), 0.0;
     return value_->get<double>();
   }
 
@@ -98,11 +108,13 @@ class JsonCursor {
     std::vector<JsonCursor> out;
     if (value_ == nullptr) return out;
     if (!value_->is_array() || value_->size() < minimum || value_->size() > maximum) {
-      fail("must be an array of " + std::to_string(minimum) + " to " + std::to_string(maximum) + " elements");
+      fail("must be an array of " + std::to_string(minimum) + " to " + std::to_string(maximum) +
+           " elements");
       return out;
     }
     out.reserve(value_->size());
-    for (const Json& item : *value_) out.emplace_back(&item, pointer_ + "/" + std::to_string(out.size()), error_);
+    for (const Json& item : *value_)
+      out.emplace_back(&item, pointer_ + "/" + std::to_string(out.size()), error_);
     return out;
   }
 
@@ -114,13 +126,17 @@ class JsonCursor {
       fail("must be an object of at most " + std::to_string(maximum) + " members");
       return out;
     }
-    for (const auto& [key, value] : value_->items()) out.emplace_back(key, JsonCursor(&value, pointer_ + "/" + key, error_));
+    for (const auto& [key, value] : value_->items())
+      out.emplace_back(key, JsonCursor(&value, pointer_ + "/" + key, error_));
     return out;
   }
 
   /// Sets the error, unless there is one already.
   void fail(const std::string& what) const {
-    if (!*error_) *error_ = Error{ErrorCode::kBadValue, (pointer_.empty() ? "the document" : pointer_) + " " + what, Error::kNoOffset};
+    if (!*error_)
+      *error_ =
+          Error{ErrorCode::kBadValue, (pointer_.empty() ? "the document" : pointer_) + " " + what,
+                Error::kNoOffset};
   }
 
  private:

@@ -1,4 +1,5 @@
-// The known error of a level against the original (FORMAT.md, "Known error"): what a manifest may say beside a level's counts.
+// The known error of a level against the original (FORMAT.md, "Known error"): what a manifest may
+// say beside a level's counts.
 #pragma once
 
 #include <algorithm>
@@ -6,7 +7,8 @@
 
 namespace qtet {
 
-/// From one boundary to the nearest point of the other one, as fractions of the diagonal of the original's bounding box.
+/// From one boundary to the nearest point of the other one, as fractions of the diagonal of the
+/// original's bounding box.
 struct OneSidedDistance {
   double mean = 0;
   double max = 0;

@@ -8,11 +8,16 @@
 namespace qtet {
 
 [[nodiscard]] inline nlohmann::ordered_json toJson(const LevelError& error) {
-  const auto distance = [](const OneSidedDistance& d) { return nlohmann::ordered_json{{"mean", d.mean}, {"max", d.max}}; };
-  nlohmann::ordered_json out = {{"boundary", {{"toLevel", distance(error.toLevel)}, {"toOriginal", distance(error.toOriginal)}}},
-                                {"volumeKept", error.volumeKept},
-                                {"fields", nlohmann::ordered_json::array()}};
-  for (const FieldError& field : error.fields) out["fields"].push_back({{"rms", field.rms}, {"max", field.max}});
+  const auto distance = [](const OneSidedDistance& d) {
+    return nlohmann::ordered_json{{"mean", d.mean}, {"max", d.max}};
+  };
+  nlohmann::ordered_json out = {
+      {"boundary",
+       {{"toLevel", distance(error.toLevel)}, {"toOriginal", distance(error.toOriginal)}}},
+      {"volumeKept", error.volumeKept},
+      {"fields", nlohmann::ordered_json::array()}};
+  for (const FieldError& field : error.fields)
+    out["fields"].push_back({{"rms", field.rms}, {"max", field.max}});
   return out;
 }
 

@@ -1,4 +1,5 @@
-// Every limit on what comes from outside, with its unit and its reason. Compared before anything is allocated or looped over.
+// Every limit on what comes from outside, with its unit and its reason. Compared before anything is
+// allocated or looped over.
 #pragma once
 
 #include <cstddef>
@@ -6,13 +7,15 @@
 
 namespace qtet {
 
-/// Bytes of the manifest in a log: the most levels and fields that there may be, at two bytes a figure, take 5 MB.
+/// Bytes of the manifest in a log: the most levels and fields that there may be, at two bytes a
+/// figure, take 5 MB.
 inline constexpr std::uint32_t kMaxManifestBytes = 8u << 20;
 /// Chunks of one log: at 16 KB a chunk, a 16 GB log.
 inline constexpr std::uint32_t kMaxChunks = 1u << 20;
 /// Fields of one log; each costs 8 bytes in every table entry.
 inline constexpr std::uint32_t kMaxFields = 256;
-/// Bytes of a name (field, mesh, source file): what file systems allow, and a label on a screen is shorter.
+/// Bytes of a name (field, mesh, source file): what file systems allow, and a label on a screen is
+/// shorter.
 inline constexpr std::uint32_t kMaxNameBytes = 256;
 /// Components of one field: a 3x3 tensor has 9; 16 leaves room for a 4x4 matrix.
 inline constexpr std::uint32_t kMaxFieldComponents = 16;
@@ -20,17 +23,22 @@ inline constexpr std::uint32_t kMaxFieldComponents = 16;
 inline constexpr std::uint32_t kMaxClosingBlocks = 1024;
 /// Levels of one log: 5 % growth a level takes a mesh from 1 to 10^9 cells in 425.
 inline constexpr std::uint32_t kMaxLevels = 4096;
-/// Vertices, tetrahedra or boundary triangles of one mesh: the entries of all stars, 4 a tetrahedron and 3 a triangle, fit 32 bits.
+/// Vertices, tetrahedra or boundary triangles of one mesh: the entries of all stars, 4 a
+/// tetrahedron and 3 a triangle, fit 32 bits.
 inline constexpr std::uint32_t kMaxElements = 1u << 29;
-/// Bytes of one block: a base mesh of 10^7 cells fits; a decoder's buffer stays below a browser's memory.
+/// Bytes of one block: a base mesh of 10^7 cells fits; a decoder's buffer stays below a browser's
+/// memory.
 inline constexpr std::uint32_t kMaxBlockBytes = 256u << 20;
-/// New vertices, cells or triangles of one chunk that holds B structure bytes are at most B times this: the range coder
-/// spends at least 1/1,500 bit on a decision (codec/range_coder.h), so a hostile count cannot outgrow the bytes sent by more.
+/// New vertices, cells or triangles of one chunk that holds B structure bytes are at most B times
+/// this: the range coder spends at least 1/1,500 bit on a decision (codec/coding/range_coder.h), so
+/// a hostile count cannot outgrow the bytes sent by more.
 inline constexpr std::uint64_t kMaxDecisionsPerByte = 8 * 1500;
-/// The same of a packet of the layout `regions`, whose slots may be made room for before the bytes of those before it are there; and of a whole log, before a
-/// refiner makes room for it. Real ones bring one or two cells a byte.
+/// The same of a packet of the layout `regions`, whose slots may be made room for before the bytes
+/// of those before it are there; and of a whole log, before a refiner makes room for it. Real ones
+/// bring one or two cells a byte.
 inline constexpr std::uint64_t kMaxElementsPerPacketByte = 64;
-/// Bits of one lattice axis: differences and products of three then fit the exact predicates, and Draco's 2^30.
+/// Bits of one lattice axis: differences and products of three then fit the exact predicates, and
+/// Draco's 2^30.
 inline constexpr int kMaxPositionBits = 28;
 inline constexpr int kMinPositionBits = 4;
 /// Bits of a quantised field value; Draco loses integers above 2^30 without a word.
@@ -38,7 +46,8 @@ inline constexpr int kMaxFieldBits = 28;
 inline constexpr int kMinFieldBits = 1;
 /// Magnitude of any integer given to Draco.
 inline constexpr std::int32_t kMaxDracoMagnitude = 1 << 30;
-/// Triangles of one link, at coding and at fusing: local ids stay small and a record's work is bounded.
+/// Triangles of one link, at coding and at fusing: local ids stay small and a record's work is
+/// bounded.
 inline constexpr std::uint32_t kMaxLinkTriangles = 4096;
 
 }  // namespace qtet

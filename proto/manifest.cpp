@@ -11,14 +11,18 @@ std::string fieldKey(const Manifest& manifest, std::size_t f) {
   return fieldOfKey(manifest, field.name) == f ? field.name : field.association + ":" + field.name;
 }
 
-std::optional<std::uint32_t> fieldOfKey(const Manifest& manifest, std::string_view key) { return fieldOfKey(manifest.fields, key); }
+std::optional<std::uint32_t> fieldOfKey(const Manifest& manifest, std::string_view key) {
+  return fieldOfKey(manifest.fields, key);
+}
 
 std::string manifestToJson(const Manifest& manifest) {
   Json out;
   out["generator"] = manifest.generator;
   out["layout"] = manifest.layout;
   out["source"] = manifest.source;
-  out["lattice"] = {{"bits", manifest.latticeBits}, {"step", manifest.latticeStep}, {"origin", manifest.latticeOrigin}};
+  out["lattice"] = {{"bits", manifest.latticeBits},
+                    {"step", manifest.latticeStep},
+                    {"origin", manifest.latticeOrigin}};
   out["fields"] = Json::array();
   for (const ManifestField& f : manifest.fields)
     out["fields"].push_back({{"name", f.name},
@@ -30,7 +34,7 @@ std::string manifestToJson(const Manifest& manifest) {
                              {"minimum", f.minimum},
                              {"range", f.range}});
   for (std::size_t f = 0; f < manifest.fields.size(); ++f)
-    if (manifest.fields[f].gaps) out["fields"][f]["gaps"] = true;
+    if (manifest.fields[f].hasMissing) out["fields"][f]["gaps"] = true;
   out["levels"] = Json::array();
   for (const ManifestLevel& l : manifest.levels) {
     out["levels"].push_back({{"level", l.level},

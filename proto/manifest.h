@@ -1,5 +1,6 @@
-// The manifest: what a log holds, for people and programs (FORMAT.md, "Manifest"). Decoding needs only the chunk table. codec/log_manifest.h reads it
-// out of a log; as JSON it goes out by the server and the tool.
+// The manifest: what a log holds, for people and programs (FORMAT.md, "Manifest"). Decoding needs
+// only the chunk table. codec/log/log_manifest.h reads it out of a log; as JSON it goes out by the
+// server and the tool.
 #pragma once
 
 #include <array>
@@ -14,8 +15,8 @@
 namespace qtet {
 
 /// In the order of their numbers in a log.
-inline constexpr std::array<std::string_view, 10> kFieldTypes{"float32", "float64", "int8",   "int16",  "int32",
-                                                              "int64",   "uint8",   "uint16", "uint32", "uint64"};
+inline constexpr std::array<std::string_view, 10> kFieldTypes{
+    "float32", "float64", "int8", "int16", "int32", "int64", "uint8", "uint16", "uint32", "uint64"};
 
 struct ManifestField {
   std::string name;
@@ -25,8 +26,8 @@ struct ManifestField {
   int bits = 0;                       ///< integers lie in [0, 2^bits)
   double step = 1;                    ///< value = minimum[c] + step * integer
   std::vector<double> minimum;
-  std::array<double, 2> range{};      ///< of the values, or of the magnitude where components > 1
-  bool gaps = false;                  ///< some values are missing: NaN
+  std::array<double, 2> range{};  ///< of the values, or of the magnitude where components > 1
+  bool hasMissing = false;        ///< some values are missing: NaN
 };
 
 struct ManifestLevel {
@@ -34,14 +35,15 @@ struct ManifestLevel {
   std::uint32_t tetrahedra = 0;
   std::uint32_t vertices = 0;
   std::uint32_t boundaryTriangles = 0;
-  std::uint32_t chunk = 0;            ///< the level is complete once this chunk is applied
-  std::optional<LevelError> error = std::nullopt;  ///< against the last level, where it was measured
+  std::uint32_t chunk = 0;  ///< the level is complete once this chunk is applied
+  /// Against the last level, where it was measured.
+  std::optional<LevelError> error = std::nullopt;
 };
 
 struct Manifest {
   std::string generator;
   std::string layout = "stream";
-  std::string source;                 ///< file name of the input, without its folder
+  std::string source;  ///< file name of the input, without its folder
   int latticeBits = 0;
   double latticeStep = 1;
   std::array<double, 3> latticeOrigin{};
@@ -49,10 +51,12 @@ struct Manifest {
   std::vector<ManifestLevel> levels;  ///< level 0 = base mesh, the last = the input's mesh
 };
 
-/// What names field `f` among the others: its name, or "cell:NAME" for a cell field where a point field has the same name.
+/// What names field `f` among the others: its name, or "cell:NAME" for a cell field where a point
+/// field has the same name.
 [[nodiscard]] std::string fieldKey(const Manifest& manifest, std::size_t f);
 /// The one field that `key` means (field_key.h).
-[[nodiscard]] std::optional<std::uint32_t> fieldOfKey(const Manifest& manifest, std::string_view key);
+[[nodiscard]] std::optional<std::uint32_t> fieldOfKey(const Manifest& manifest,
+                                                      std::string_view key);
 
 [[nodiscard]] std::string manifestToJson(const Manifest& manifest);
 

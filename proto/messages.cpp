@@ -2,7 +2,7 @@
 
 #include "proto/json_reader.h"
 #include "proto/limits.h"
-#include "proto/wish_json.h"
+#include "proto/stream_request_json.h"
 
 namespace qtet {
 namespace {
@@ -11,7 +11,8 @@ constexpr std::size_t kDigestCharacters = 64;
 constexpr std::size_t kMaxTextBytes = 4096;  // of an error's detail
 
 bool isDigest(std::string_view text) {
-  return text.size() == kDigestCharacters && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+  return text.size() == kDigestCharacters &&
+         text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
 }
 
 std::string readDigest(const JsonCursor& json) {
@@ -30,7 +31,8 @@ OpenMessage readOpen(const JsonCursor& json) {
   OpenMessage out;
   out.mesh = readName(json["mesh"]);
   out.digest = readDigest(json.optional("digest"));
-  for (const JsonCursor& name : json.optional("fields").items(0, kMaxFields)) out.fields.push_back(readName(name));
+  for (const JsonCursor& name : json.optional("fields").items(0, kMaxFields))
+    out.fields.push_back(readName(name));
   out.have = readHave(json.optional("have"));
   out.target = readTarget(json.optional("target"));
   out.view = readView(json.optional("view"));
@@ -40,15 +42,20 @@ OpenMessage readOpen(const JsonCursor& json) {
 
 Json parseDocument(std::string_view json, std::optional<Error>& error) {
   if (json.size() > kMaxMessageBytes) {
-    error = Error{ErrorCode::kLimitExceeded, "the message is longer than " + std::to_string(kMaxMessageBytes) + " bytes", Error::kNoOffset};
+    error = Error{ErrorCode::kLimitExceeded,
+                  "the message is longer than " + std::to_string(kMaxMessageBytes) + " bytes",
+                  Error::kNoOffset};
     return Json::object();
   }
   if (!isShallowJson(json)) {
-    error = Error{ErrorCode::kBadValue, "the message nests deeper than " + std::to_string(kMaxJsonDepth) + " levels", Error::kNoOffset};
+    error = Error{ErrorCode::kBadValue,
+                  "the message nests deeper than " + std::to_string(kMaxJsonDepth) + " levels",
+                  Error::kNoOffset};
     return Json::object();
   }
   Json document = Json::parse(json, nullptr, false);
-  if (!document.is_object()) error = Error{ErrorCode::kBadValue, "the message is not a JSON object", Error::kNoOffset};
+  if (!document.is_object())
+    error = Error{ErrorCode::kBadValue, "the message is not a JSON object", Error::kNoOffset};
   return document;
 }
 
@@ -72,8 +79,12 @@ Json openToJson(const OpenMessage& m) {
 struct ToJson {
   Json operator()(const OpenMessage& m) const { return openToJson(m); }
   Json operator()(const CreditMessage& m) const { return {{"type", "credit"}, {"bytes", m.bytes}}; }
-  Json operator()(const ViewMessage& m) const { return {{"type", "view"}, {"view", toJson(m.view)}}; }
-  Json operator()(const TargetMessage& m) const { return {{"type", "target"}, {"target", toJson(m.target)}}; }
+  Json operator()(const ViewMessage& m) const {
+    return {{"type", "view"}, {"view", toJson(m.view)}};
+  }
+  Json operator()(const TargetMessage& m) const {
+    return {{"type", "target"}, {"target", toJson(m.target)}};
+  }
   Json operator()(const PauseMessage&) const { return {{"type", "pause"}}; }
   Json operator()(const ResumeMessage& m) const {
     Json out = {{"type", "resume"}};
@@ -89,8 +100,12 @@ struct ToJson {
     return {{"type", "planned"}, {"stream", m.stream}, {"planned", m.planned}, {"view", m.view}};
   }
   Json operator()(const DoneMessage& m) const { return {{"type", "done"}, {"stream", m.stream}}; }
-  Json operator()(const StoppedMessage& m) const { return {{"type", "stopped"}, {"stream", m.stream}}; }
-  Json operator()(const ErrorMessage& m) const { return {{"type", "error"}, {"code", m.code}, {"detail", m.detail}}; }
+  Json operator()(const StoppedMessage& m) const {
+    return {{"type", "stopped"}, {"stream", m.stream}};
+  }
+  Json operator()(const ErrorMessage& m) const {
+    return {{"type", "error"}, {"code", m.code}, {"detail", m.detail}};
+  }
 };
 
 }  // namespace
@@ -131,10 +146,15 @@ Result<ServerMessage> parseServerMessage(std::string_view json) {
   const std::string type = root["type"].text(kMaxNameBytes);
   ServerMessage out;
   if (type == "opened") {
-    out = OpenedMessage{readStream(root), readName(root["mesh"]), readDigest(root["digest"]), root["bytes"].count(0, kMaxCredit),
-                        root["planned"].count(0, kMaxCredit), readName(root["layout"])};
+    out = OpenedMessage{readStream(root),
+                        readName(root["mesh"]),
+                        readDigest(root["digest"]),
+                        root["bytes"].count(0, kMaxCredit),
+                        root["planned"].count(0, kMaxCredit),
+                        readName(root["layout"])};
   } else if (type == "planned") {
-    out = PlannedMessage{readStream(root), root["planned"].count(0, kMaxCredit), root["view"].count32(0, 0xFFFFFFFFu)};
+    out = PlannedMessage{readStream(root), root["planned"].count(0, kMaxCredit),
+                         root["view"].count32(0, 0xFFFFFFFFu)};
   } else if (type == "done") {
     out = DoneMessage{readStream(root)};
   } else if (type == "stopped") {
@@ -171,10 +191,12 @@ Result<FrameHeader> FrameHeader::parse(ByteView frame) {
   out.parts = reader.read<std::uint16_t>();
   out.size = reader.read<std::uint32_t>();
   if (reader.failed()) return std::unexpected(reader.error());
-  if (out.size != reader.remaining()) reader.fail(ErrorCode::kBadValue, "the frame's payload is not as long as its header says");
+  if (out.size != reader.remaining())
+    reader.fail(ErrorCode::kBadValue, "the frame's payload is not as long as its header says");
   const bool head = out.firstPart == kHead;
   if (head ? out.chunk != 0 || out.parts != 0 : out.parts == 0)
-    reader.fail(ErrorCode::kBadValue, "a head names no chunk and no parts, any other frame at least one part");
+    reader.fail(ErrorCode::kBadValue,
+                "a head names no chunk and no parts, any other frame at least one part");
   if (reader.failed()) return std::unexpected(reader.error());
   return out;
 }

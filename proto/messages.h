@@ -1,5 +1,5 @@
-// The words of `/v1/stream` (PROTOCOL.md, "WebSocket"): JSON messages both ways and the header of a binary frame.
-// Parsers trust nothing; every count and length is compared with a limit.
+// The words of `/v1/stream` (PROTOCOL.md, "WebSocket"): JSON messages both ways and the header of a
+// binary frame. Parsers trust nothing; every count and length is compared with a limit.
 #pragma once
 
 #include <array>
@@ -12,15 +12,17 @@
 
 #include "proto/bytes.h"
 #include "proto/error.h"
-#include "proto/stream_wishes.h"
+#include "proto/stream_request.h"
 
 namespace qtet {
 
 /// What a client must offer in Sec-WebSocket-Protocol.
 inline constexpr std::string_view kStreamSubprotocol = "qtet.v1";
-/// Bytes of one JSON message: an `open` that names kMaxFields fields twice, in names of ordinary length, needs under half of it.
+/// Bytes of one JSON message: an `open` that names kMaxFields fields twice, in names of ordinary
+/// length, needs under half of it.
 inline constexpr std::size_t kMaxMessageBytes = 64u << 10;
-/// Bytes of credit that one message can grant: the largest integer that JSON keeps exactly in every language (2^53 - 1).
+/// Bytes of credit that one message can grant: the largest integer that JSON keeps exactly in every
+/// language (2^53 - 1).
 inline constexpr std::uint64_t kMaxCredit = (std::uint64_t{1} << 53) - 1;
 
 // ---- client to server
@@ -49,9 +51,11 @@ struct ResumeMessage {
 };
 /// `cancel`, or `stop`, its older name.
 struct CancelMessage {};
-using ClientMessage = std::variant<OpenMessage, CreditMessage, ViewMessage, TargetMessage, PauseMessage, ResumeMessage, CancelMessage>;
+using ClientMessage = std::variant<OpenMessage, CreditMessage, ViewMessage, TargetMessage,
+                                   PauseMessage, ResumeMessage, CancelMessage>;
 
-/// Errors: limit-exceeded (above kMaxMessageBytes), bad-value with the JSON pointer of what is wrong. Unknown members are ignored.
+/// Errors: limit-exceeded (above kMaxMessageBytes), bad-value with the JSON pointer of what is
+/// wrong. Unknown members are ignored.
 [[nodiscard]] Result<ClientMessage> parseClientMessage(std::string_view json);
 [[nodiscard]] std::string toJson(const ClientMessage& message);
 
@@ -69,7 +73,8 @@ struct OpenedMessage {
 struct PlannedMessage {
   std::uint32_t stream = 0;
   std::uint64_t planned = 0;  ///< payload bytes that will follow, in the new order
-  std::uint32_t view = 0;     ///< the last of the stream's `view`s that the order regards, counted from 1; 0: that of `open`
+  /// The last of the stream's `view`s that the order regards, counted from 1; 0: that of `open`.
+  std::uint32_t view = 0;
 };
 struct DoneMessage {
   std::uint32_t stream = 0;
@@ -87,7 +92,8 @@ struct ErrorMessage {
   std::string code;
   std::string detail;
 };
-using ServerMessage = std::variant<OpenedMessage, PlannedMessage, DoneMessage, StoppedMessage, ErrorMessage>;
+using ServerMessage =
+    std::variant<OpenedMessage, PlannedMessage, DoneMessage, StoppedMessage, ErrorMessage>;
 
 /// Errors: as parseClientMessage.
 [[nodiscard]] Result<ServerMessage> parseServerMessage(std::string_view json);
@@ -98,7 +104,8 @@ using ServerMessage = std::variant<OpenedMessage, PlannedMessage, DoneMessage, S
 /// The 16 bytes before a frame's payload.
 struct FrameHeader {
   static constexpr std::size_t kBytes = 16;
-  /// `firstPart` of the frame that carries header, manifest and chunk table; its `chunk` and `parts` are 0.
+  /// `firstPart` of the frame that carries header, manifest and chunk table; its `chunk` and
+  /// `parts` are 0.
   static constexpr std::uint16_t kHead = 0xFFFF;
 
   std::uint32_t stream = 0;
@@ -108,8 +115,8 @@ struct FrameHeader {
   std::uint32_t size = 0;  ///< payload bytes
 
   [[nodiscard]] std::array<std::uint8_t, kBytes> encode() const;
-  /// Reads a whole frame. Errors: truncated (under 16 bytes), bad-value (the payload is not `size` bytes long, or a head that names
-  /// a chunk or parts, or a frame without parts).
+  /// Reads a whole frame. Errors: truncated (under 16 bytes), bad-value (the payload is not `size`
+  /// bytes long, or a head that names a chunk or parts, or a frame without parts).
   [[nodiscard]] static Result<FrameHeader> parse(ByteView frame);
   bool operator==(const FrameHeader&) const = default;
 };

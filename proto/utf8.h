@@ -6,7 +6,8 @@
 
 namespace qtet {
 
-/// UTF-8 as RFC 3629 has it: no overlong forms, no surrogates, nothing above U+10FFFF, nothing cut off.
+/// UTF-8 as RFC 3629 has it: no overlong forms, no surrogates, nothing above U+10FFFF, nothing cut
+/// off.
 [[nodiscard]] bool isUtf8(std::string_view text);
 /// `text` with a question mark for each byte that belongs to no sound character: as long as it was.
 [[nodiscard]] std::string soundUtf8(std::string_view text);

@@ -1,4 +1,4 @@
-"""qtet logs from Python: what a log holds, and which bytes of it a level needs. Standard library alone; libqtet.so decodes (codec/qtet.h).
+"""qtet logs from Python: what a log holds, and which bytes of it a level needs. Standard library alone; libqtet.so decodes (codec/api/qtet.h).
 
     with Log("part.qtet") as log:
         log.refine(log.level_of_error("Density", 0.01))

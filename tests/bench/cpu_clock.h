@@ -1,4 +1,5 @@
-// User CPU and wall seconds of a stretch of code, and a process that stays on given cores: what a speed comparison needs.
+// User CPU and wall seconds of a stretch of code, and a process that stays on given cores: what a
+// speed comparison needs.
 #pragma once
 
 #include <sched.h>
@@ -16,7 +17,8 @@ struct Seconds {
 };
 
 [[nodiscard]] inline double userSecondsOf(const rusage& usage) {
-  return static_cast<double>(usage.ru_utime.tv_sec) + 1e-6 * static_cast<double>(usage.ru_utime.tv_usec);
+  return static_cast<double>(usage.ru_utime.tv_sec) +
+         1e-6 * static_cast<double>(usage.ru_utime.tv_usec);
 }
 
 /// Of this process with all its threads, while `work` ran.
@@ -30,10 +32,12 @@ template <class Work>
   const double user = userNow();
   const auto wall = std::chrono::steady_clock::now();
   work();
-  return {userNow() - user, std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count()};
+  return {userNow() - user,
+          std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count()};
 }
 
-/// Keeps this process and what it starts on the last `count` of the cores that it may use: interrupts favour the first. False if refused.
+/// Keeps this process and what it starts on the last `count` of the cores that it may use:
+/// interrupts favour the first. False if refused.
 inline bool pinToCores(int count) {
   cpu_set_t allowed, chosen;
   CPU_ZERO(&chosen);

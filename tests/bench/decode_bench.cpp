@@ -1,7 +1,8 @@
-// Decoding logs from memory, in user CPU time: the records alone, and everything from bytes to mesh and all fields (checksums and Draco included).
+// Decoding logs from memory, in user CPU time: the records alone, and everything from bytes to mesh
+// and all fields (checksums and Draco included).
 //   decode_bench [--runs N] LOG.qtet...
-// Results in TABLE.md. Prints medians, tetrahedra a second, and digests of what came out, by which two builds are compared: `digest` is that of
-// tests/golden, `values` a CRC-32C of all fields.
+// Results in TABLE.md. Prints medians, tetrahedra a second, and digests of what came out, by which
+// two builds are compared: `digest` is that of tests/golden, `values` a CRC-32C of all fields.
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -9,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "codec/log_file.h"
-#include "codec/refiner.h"
-#include "codec/value_block.h"
+#include "codec/log/log_file.h"
+#include "codec/log/refiner.h"
+#include "codec/log/value_block.h"
 #include "proto/checksum.h"
 #include "proto/crc32c.h"
 #include "tests/bench/cpu_clock.h"
@@ -28,20 +29,24 @@ Blocks positionsOf(const LogFile& log) {
   const LogIndex& index = log.index();
   Blocks out;
   for (std::uint32_t c = 0; c < index.chunks.size(); ++c)
-    out.push_back(need(decodeValueBlock(log.block(c, kPositionsPart), 3, index.tuples(c, kPositionsPart), index.chunks[c].valueCodec)));
+    out.push_back(
+        need(decodeValueBlock(log.block(c, kPositionsPart), 3, index.tuples(c, kPositionsPart),
+                              index.chunks[c].valueCodec)));
   return out;
 }
 
 void refine(const LogFile& log, const Blocks& positions) {
   Refiner refiner(log.index());
-  for (std::uint32_t c = 0; c < positions.size(); ++c) need(refiner.apply(c, log.block(c, kStructurePart), positions[c]));
+  for (std::uint32_t c = 0; c < positions.size(); ++c)
+    need(refiner.apply(c, log.block(c, kStructurePart), positions[c]));
 }
 
 Refiner decode(const LogFile& log) {
   std::vector<std::uint32_t> fields(log.index().fields.size());
   std::iota(fields.begin(), fields.end(), 0u);
   Refiner refiner(log.index());
-  for (std::uint32_t c = 0; c < log.index().chunks.size(); ++c) need(applyChunk(log, refiner, c, fields));
+  for (std::uint32_t c = 0; c < log.index().chunks.size(); ++c)
+    need(applyChunk(log, refiner, c, fields));
   return refiner;
 }
 
@@ -66,8 +71,11 @@ void report(const char* path, int runs) {
   const Refiner refiner = decode(log);
   const auto cells = static_cast<double>(refiner.tetrahedra().size());
   const double recordSeconds = bench::medianOf(records), allSeconds = bench::medianOf(all);
-  std::printf("%-28s %9.0f cells  records %7.1f ms %5.0f k/s  everything %7.1f ms %5.0f k/s  digest %.16s values %08x\n", path, cells, 1e3 * recordSeconds,
-              1e-3 * cells / recordSeconds, 1e3 * allSeconds, 1e-3 * cells / allSeconds, toHex(refiner.digest()).c_str(), valuesCrc(refiner));
+  std::printf(
+      "%-28s %9.0f cells  records %7.1f ms %5.0f k/s  everything %7.1f ms %5.0f k/s  digest %.16s "
+      "values %08x\n",
+      path, cells, 1e3 * recordSeconds, 1e-3 * cells / recordSeconds, 1e3 * allSeconds,
+      1e-3 * cells / allSeconds, toHex(refiner.digest()).c_str(), valuesCrc(refiner));
 }
 
 }  // namespace

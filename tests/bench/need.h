@@ -1,4 +1,5 @@
-// For benchmarks, which cannot go on after an error: its text on standard error, and the program ends with 1.
+// For benchmarks, which cannot go on after an error: its text on standard error, and the program
+// ends with 1.
 #pragma once
 
 #include <cstdio>

@@ -1,18 +1,19 @@
-// The stages between a mesh on the lattice and a refined mesh, on the sample `fin`; results in TABLE.md. Rates count input tetrahedra.
+// The stages between a mesh on the lattice and a refined mesh, on the sample `fin`; results in
+// TABLE.md. Rates count input tetrahedra.
 #include <benchmark/benchmark.h>
 
 #include <cstring>
 #include <numeric>
 
-#include "codec/draco_block.h"
-#include "codec/log_file.h"
-#include "codec/log_writer.h"
-#include "codec/value_block.h"
+#include "codec/coding/draco_block.h"
+#include "codec/log/log_file.h"
+#include "codec/log/log_writer.h"
+#include "codec/log/value_block.h"
 #include "proto/checksum.h"
 #include "proto/crc32c.h"
-#include "simplify/qtetfusion.h"
-#include "simplify/quantise.h"
-#include "simplify/samples.h"
+#include "simplify/clean/quantise.h"
+#include "simplify/fuse/qtetfusion.h"
+#include "simplify/samples/samples.h"
 #include "tests/bench/need.h"
 #include "tests/support/meshes.h"
 
@@ -46,7 +47,9 @@ const EncodedLog& encodedAdaptively() {
   return log;
 }
 
-void count(benchmark::State& state) { state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(fin().tetrahedra.size())); }
+void count(benchmark::State& state) {
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(fin().tetrahedra.size()));
+}
 
 void simplifyFin(benchmark::State& state) {
   const LatticeMesh& mesh = fin();
@@ -63,11 +66,14 @@ void encodeFin(benchmark::State& state) {
 BENCHMARK(encodeFin)->Unit(benchmark::kMillisecond);
 
 /// The values of one part, chunk by chunk.
-std::vector<std::vector<std::int32_t>> valuesOf(const LogIndex& index, ByteView bytes, std::uint32_t part) {
+std::vector<std::vector<std::int32_t>> valuesOf(const LogIndex& index, ByteView bytes,
+                                                std::uint32_t part) {
   std::vector<std::vector<std::int32_t>> out;
   for (std::uint32_t chunk = 0; chunk < index.chunks.size(); ++chunk) {
     const BlockEntry& block = index.block(chunk, part);
-    out.push_back(need(decodeValueBlock(bytes.subspan(block.offset, block.size), index.components(part), index.tuples(chunk, part), index.chunks[chunk].valueCodec)));
+    out.push_back(
+        need(decodeValueBlock(bytes.subspan(block.offset, block.size), index.components(part),
+                              index.tuples(chunk, part), index.chunks[chunk].valueCodec)));
   }
   return out;
 }
@@ -78,10 +84,13 @@ void valueBlocks(benchmark::State& state, const EncodedLog& log) {
   std::size_t integers = 0, bytes = 0;
   for (std::uint32_t chunk = 0; chunk < index.chunks.size(); ++chunk)
     for (std::uint32_t part = kPositionsPart; part < index.parts(); ++part)
-      integers += std::size_t{index.tuples(chunk, part)} * index.components(part), bytes += index.block(chunk, part).size;
+      integers += std::size_t{index.tuples(chunk, part)} * index.components(part),
+          bytes += index.block(chunk, part).size;
   for (auto _ : state)
-    for (std::uint32_t part = kPositionsPart; part < index.parts(); ++part) benchmark::DoNotOptimize(valuesOf(index, log.bytes, part));
-  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(integers * sizeof(std::int32_t)));
+    for (std::uint32_t part = kPositionsPart; part < index.parts(); ++part)
+      benchmark::DoNotOptimize(valuesOf(index, log.bytes, part));
+  state.SetBytesProcessed(state.iterations() *
+                          static_cast<std::int64_t>(integers * sizeof(std::int32_t)));
   state.counters["bytes"] = static_cast<double>(bytes);
 }
 void dracoBlocksOfFin(benchmark::State& state) { valueBlocks(state, encoded()); }
@@ -89,12 +98,15 @@ BENCHMARK(dracoBlocksOfFin)->Unit(benchmark::kMillisecond);
 void adaptiveBlocksOfFin(benchmark::State& state) { valueBlocks(state, encodedAdaptively()); }
 BENCHMARK(adaptiveBlocksOfFin)->Unit(benchmark::kMillisecond);
 
-// What Draco alone takes for the same points, as one cloud without cells, in the order of the log's slots.
+// What Draco alone takes for the same points, as one cloud without cells, in the order of the log's
+// slots.
 void dracoPointsOfFin(benchmark::State& state) {
   std::vector<std::int32_t> points;
   for (const LatticePoint& p : fin().points) points.insert(points.end(), p.begin(), p.end());
   const Bytes block = need(encodeDracoBlock(points, 3));
-  for (auto _ : state) benchmark::DoNotOptimize(decodeDracoBlock(block, 3, static_cast<std::uint32_t>(fin().points.size())));
+  for (auto _ : state)
+    benchmark::DoNotOptimize(
+        decodeDracoBlock(block, 3, static_cast<std::uint32_t>(fin().points.size())));
   count(state);
 }
 BENCHMARK(dracoPointsOfFin)->Unit(benchmark::kMillisecond);
@@ -120,7 +132,8 @@ void refineFin(benchmark::State& state) {
     Refiner refiner(index);
     for (std::uint32_t c = 0; c < index.chunks.size(); ++c) {
       const BlockEntry& b = index.block(c, kStructurePart);
-      if (!refiner.apply(c, ByteView(encoded().bytes).subspan(b.offset, b.size), positions[c])) state.SkipWithError("a chunk was refused");
+      if (!refiner.apply(c, ByteView(encoded().bytes).subspan(b.offset, b.size), positions[c]))
+        state.SkipWithError("a chunk was refused");
     }
     benchmark::DoNotOptimize(refiner.tetrahedra().data());
   }

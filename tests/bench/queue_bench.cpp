@@ -1,6 +1,8 @@
-// Which priority queue suits the simplifier: Boost's Fibonacci heap (the paper's choice), pairing and d-ary heaps, and bucket queues, under the operations
-// of queue_trace.h. Prints a Markdown table of ns an operation, a push or a pop; results in QUEUES.md.
-//   queue_bench [--repeats N] [VERTICES...]      (without any: 50000 200000; 2000000 takes 600 MB and some minutes)
+// Which priority queue suits the simplifier: Boost's Fibonacci heap (the paper's choice), pairing
+// and d-ary heaps, and bucket queues, under the operations of queue_trace.h. Prints a Markdown
+// table of ns an operation, a push or a pop; results in QUEUES.md.
+//   queue_bench [--repeats N] [VERTICES...] (without any: 50000 200000; 2000000 takes 600 MB and
+//   some minutes)
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -40,10 +42,12 @@ class Boosted {
 using Fibonacci = Boosted<boost::heap::fibonacci_heap<QueueEntry, boost::heap::compare<After>>>;
 using Pairing = Boosted<boost::heap::pairing_heap<QueueEntry, boost::heap::compare<After>>>;
 template <unsigned arity>
-using DAry = Boosted<boost::heap::d_ary_heap<QueueEntry, boost::heap::arity<arity>, boost::heap::compare<After>>>;
+using DAry = Boosted<
+    boost::heap::d_ary_heap<QueueEntry, boost::heap::arity<arity>, boost::heap::compare<After>>>;
 
-/// Buckets by the leading bits of the key, which as bits of a positive float are in the order of their values. Exact: a heap in each bucket;
-/// otherwise its last entry goes first, out of order by less than a bucket's width.
+/// Buckets by the leading bits of the key, which as bits of a positive float are in the order of
+/// their values. Exact: a heap in each bucket; otherwise its last entry goes first, out of order by
+/// less than a bucket's width.
 template <bool exact>
 class Buckets {
  public:
@@ -61,7 +65,8 @@ class Buckets {
   }
   QueueEntry pop() {
     while (occupied_[lowest_] == 0) ++lowest_;
-    const std::size_t at = 64 * lowest_ + static_cast<std::size_t>(std::countr_zero(occupied_[lowest_]));
+    const std::size_t at =
+        64 * lowest_ + static_cast<std::size_t>(std::countr_zero(occupied_[lowest_]));
     std::vector<QueueEntry>& bucket = buckets_[at];
     if constexpr (exact) std::ranges::pop_heap(bucket, After{});
     const QueueEntry top = bucket.back();
@@ -97,35 +102,43 @@ std::uint64_t replay(const std::vector<QueueEntry>& operations) {
   return checksum;
 }
 
-constexpr std::array kContenders{Contender{"Fibonacci heap (Boost)", true, replay<Fibonacci>},
-                                 Contender{"pairing heap (Boost)", true, replay<Pairing>},
-                                 Contender{"2-ary heap (Boost)", true, replay<DAry<2>>},
-                                 Contender{"4-ary heap (Boost)", true, replay<DAry<4>>},
-                                 Contender{"8-ary heap (Boost)", true, replay<DAry<8>>},
-                                 Contender{"buckets, a heap in each", true, replay<Buckets<true>>},
-                                 Contender{"buckets, 1.6 % out of order", false, replay<Buckets<false>>}};
+constexpr std::array kContenders{
+    Contender{"Fibonacci heap (Boost)", true, replay<Fibonacci>},
+    Contender{"pairing heap (Boost)", true, replay<Pairing>},
+    Contender{"2-ary heap (Boost)", true, replay<DAry<2>>},
+    Contender{"4-ary heap (Boost)", true, replay<DAry<4>>},
+    Contender{"8-ary heap (Boost)", true, replay<DAry<8>>},
+    Contender{"buckets, a heap in each", true, replay<Buckets<true>>},
+    Contender{"buckets, 1.6 % out of order", false, replay<Buckets<false>>}};
 
 bool compare(std::uint32_t vertices, int repeats) {
   const QueueTrace trace = recordQueueTrace(vertices);
-  const auto percent = [&](std::uint64_t n) { return 100 * static_cast<double>(n) / static_cast<double>(trace.pops); };
+  const auto percent = [&](std::uint64_t n) {
+    return 100 * static_cast<double>(n) / static_cast<double>(trace.pops);
+  };
   std::printf(
-      "\n%u vertices: %zu operations in %llu levels; of the pops %.0f %% dead, %.0f %% gone, %.0f %% locked, %.0f %% illegal, %.0f %% "
+      "\n%u vertices: %zu operations in %llu levels; of the pops %.0f %% dead, %.0f %% gone, %.0f "
+      "%% locked, %.0f %% illegal, %.0f %% "
       "fused\n\n",
-      vertices, trace.operations.size(), static_cast<unsigned long long>(trace.levels), percent(trace.dead), percent(trace.gone),
-      percent(trace.locked), percent(trace.illegal), percent(trace.fused));
+      vertices, trace.operations.size(), static_cast<unsigned long long>(trace.levels),
+      percent(trace.dead), percent(trace.gone), percent(trace.locked), percent(trace.illegal),
+      percent(trace.fused));
   std::array<std::vector<double>, kContenders.size()> seconds;
   for (int i = 0; i < repeats; ++i)
     for (std::size_t c = 0; c < kContenders.size(); ++c) {
       std::uint64_t checksum = 0;
-      seconds[c].push_back(timeOf([&] { checksum = kContenders[c].replay(trace.operations); }).user);
+      seconds[c].push_back(
+          timeOf([&] { checksum = kContenders[c].replay(trace.operations); }).user);
       if (kContenders[c].exact && checksum != trace.checksum) {
-        std::fprintf(stderr, "queue_bench: %s pops in another order than the model did\n", kContenders[c].name);
+        std::fprintf(stderr, "queue_bench: %s pops in another order than the model did\n",
+                     kContenders[c].name);
         return false;
       }
     }
   std::puts("| queue | ns an operation | of the 4-ary heap's |\n|---|---|---|");
   for (std::size_t c = 0; c < kContenders.size(); ++c)
-    std::printf("| %s | %.1f | %.2f |\n", kContenders[c].name, 1e9 * medianOf(seconds[c]) / static_cast<double>(trace.operations.size()),
+    std::printf("| %s | %.1f | %.2f |\n", kContenders[c].name,
+                1e9 * medianOf(seconds[c]) / static_cast<double>(trace.operations.size()),
                 medianOf(seconds[c]) / medianOf(seconds[3]));
   std::fflush(stdout);
   return true;
@@ -144,10 +157,13 @@ int main(int argc, char** argv) {
       std::fputs("usage: queue_bench [--repeats N] [VERTICES...], from 1000 vertices\n", stderr);
       return EXIT_FAILURE;
     }
-    isRepeats ? void(repeats = static_cast<int>(value)) : sizes.push_back(static_cast<std::uint32_t>(value));
+    isRepeats ? void(repeats = static_cast<int>(value))
+              : sizes.push_back(static_cast<std::uint32_t>(value));
   }
-  if (!qtet::bench::pinToCores(1)) std::fputs("queue_bench: the system refuses to pin the process to a core\n", stderr);
-  for (const std::uint32_t vertices : sizes.empty() ? std::vector<std::uint32_t>{50000, 200000} : sizes)
+  if (!qtet::bench::pinToCores(1))
+    std::fputs("queue_bench: the system refuses to pin the process to a core\n", stderr);
+  for (const std::uint32_t vertices :
+       sizes.empty() ? std::vector<std::uint32_t>{50000, 200000} : sizes)
     if (!qtet::bench::compare(vertices, repeats)) return EXIT_FAILURE;
   return EXIT_SUCCESS;
 }

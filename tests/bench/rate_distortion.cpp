@@ -1,10 +1,14 @@
-// Error against bytes: the prefixes of a log beside what one would send without it. Writes RATE.md and a picture a mesh.
+// Error against bytes: the prefixes of a log beside what one would send without it. Writes RATE.md
+// and a picture a mesh.
 //   rate_distortion [--out FOLDER] [--curve NAME=OPTIONS]... [MESH...]
-//     MESH: a sample's name, a .vtu, or the name of one in the folder QTET_DATA; without any: fin, comb and bluntfin-welded
-//     --curve: a log made with these options of `qtet simplify` (several in one word: --curve "shape=--hull-weight 15000"); may be given several times;
+//     MESH: a sample's name, a .vtu, or the name of one in the folder QTET_DATA; without any: fin,
+//     comb and bluntfin-welded
+//     --curve: a log made with these options of `qtet simplify` (several in one word: --curve
+//     "shape=--boundary-weight 15000"); may be given several times;
 //     without, one log of the default options. The ladder is made of the first log's levels.
-// Every log has the first point field alone. The errors are those that the log's manifest tells; on a few levels they are held against errors measured
-// from the decoded meshes (parts/direct_error.h), and where the two differ nothing is written.
+// Every log has the first point field alone. The errors are those that the log's manifest tells; on
+// a few levels they are held against errors measured from the decoded meshes
+// (parts/direct_error.h), and where the two differ nothing is written.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -14,10 +18,10 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "codec/atomic_file.h"
-#include "simplify/error_plot.h"
-#include "simplify/samples.h"
-#include "simplify/write_mesh.h"
+#include "codec/files/atomic_file.h"
+#include "simplify/commands/error_plot.h"
+#include "simplify/log/write_mesh.h"
+#include "simplify/samples/samples.h"
 #include "tests/bench/parts/default_vtu.h"
 #include "tests/bench/parts/direct_error.h"
 #include "tests/bench/parts/rate_curves.h"
@@ -30,7 +34,8 @@ namespace {
 constexpr double kRecognisableBoundary = 0.01, kRecognisableField = 0.05;
 constexpr std::array kCheckedRatios = {0.02, 0.1, 0.3};
 constexpr std::size_t kDirectSamples = 4000;
-/// How far the two measurements may be apart: what so few samples leave open, seldom 10 %; errors below the floor are as good as none.
+/// How far the two measurements may be apart: what so few samples leave open, seldom 10 %; errors
+/// below the floor are as good as none.
 constexpr double kTolerance = 0.25, kFloor = 2e-6;
 
 struct Request {
@@ -67,17 +72,20 @@ std::filesystem::path fileOf(const std::string& mesh, const std::filesystem::pat
   const char* data = std::getenv("QTET_DATA");
   const std::filesystem::path path = std::filesystem::path(data ? data : "") / (mesh + ".vtu");
   if (!data || !std::filesystem::exists(path))
-    throw std::runtime_error("'" + mesh + "' is neither a file nor a sample, nor has the folder QTET_DATA (" + (data ? data : "not set") +
-                             ") such a .vtu");
+    throw std::runtime_error("'" + mesh +
+                             "' is neither a file nor a sample, nor has the folder QTET_DATA (" +
+                             (data ? data : "not set") + ") such a .vtu");
   return path;
 }
 
-OpenedLog logOf(const std::filesystem::path& mesh, const std::string& field, const std::string& options,
-                const std::filesystem::path& folder) {
+OpenedLog logOf(const std::filesystem::path& mesh, const std::string& field,
+                const std::string& options, const std::filesystem::path& folder) {
   const std::filesystem::path log = folder / (mesh.stem().string() + ".qtet");
-  const std::string command = quoted(QTET_TOOL) + " simplify " + quoted(mesh) + " -o " + quoted(log) + " --fields " +
-                              quoted("point:" + field) + " " + options + " >/dev/null";
-  if (std::system(command.c_str()) != 0) throw std::runtime_error("the tool failed (its message stands above): " + command);
+  const std::string command = quoted(QTET_TOOL) + " simplify " + quoted(mesh) + " -o " +
+                              quoted(log) + " --fields " + quoted("point:" + field) + " " +
+                              options + " >/dev/null";
+  if (std::system(command.c_str()) != 0)
+    throw std::runtime_error("the tool failed (its message stands above): " + command);
   return need(openLog(log));
 }
 
@@ -92,16 +100,20 @@ std::string percent(double fraction) { return number(100 * fraction) + " %"; }
 /// The known errors of a few levels beside those of the decoded meshes.
 std::string checkedLevels(const OpenedLog& log) {
   const std::vector<ManifestLevel>& levels = log.manifest.levels;
-  const LatticeMesh original = need(meshAtLevel(log.file, static_cast<std::uint32_t>(levels.size() - 1)));
+  const LatticeMesh original =
+      need(meshAtLevel(log.file, static_cast<std::uint32_t>(levels.size() - 1)));
   std::string out;
   for (const double ratio : kCheckedRatios) {
     const ManifestLevel& level = *std::prev(std::ranges::find_if(
-        levels.begin() + 1, levels.end() - 1, [&](const ManifestLevel& l) { return l.tetrahedra > ratio * levels.back().tetrahedra; }));
-    const DirectError direct = directError(original, need(meshAtLevel(log.file, level.level)), kDirectSamples);
+        levels.begin() + 1, levels.end() - 1,
+        [&](const ManifestLevel& l) { return l.tetrahedra > ratio * levels.back().tetrahedra; }));
+    const DirectError direct =
+        directError(original, need(meshAtLevel(log.file, level.level)), kDirectSamples);
     const auto compared = [&](const std::string& what, double known, double measured) {
       if (std::abs(known - measured) > kTolerance * std::max(known, measured) + kFloor)
-        throw std::runtime_error(log.manifest.source + ": level " + std::to_string(level.level) + " has a known " + what + " error of " +
-                                 percent(known) + ", and measured directly " + percent(measured));
+        throw std::runtime_error(log.manifest.source + ": level " + std::to_string(level.level) +
+                                 " has a known " + what + " error of " + percent(known) +
+                                 ", and measured directly " + percent(measured));
       return what + " " + percent(known) + " (" + percent(measured) + ")";
     };
     out += (out.empty() ? "" : "; ") + std::string("level ") + std::to_string(level.level) + ": " +
@@ -126,8 +138,9 @@ std::string comparisonCells(const RateCurve& curve, const RateCurve& ladder) {
 std::string row(const std::string& name, const RateCurve& curve, double vtuBytes) {
   const RatePoint seen = firstWithin(curve, kRecognisableBoundary, kRecognisableField);
   std::ostringstream out;
-  out << "| " << name << " | " << whole(curve.front().bytes) << " | " << whole(seen.bytes) << " | " << percent(seen.bytes / vtuBytes)
-      << " | " << whole(curve.back().bytes) << " | " << percent(curve.back().bytes / vtuBytes) << " |";
+  out << "| " << name << " | " << whole(curve.front().bytes) << " | " << whole(seen.bytes) << " | "
+      << percent(seen.bytes / vtuBytes) << " | " << whole(curve.back().bytes) << " | "
+      << percent(curve.back().bytes / vtuBytes) << " |";
   return out.str();
 }
 
@@ -137,14 +150,18 @@ std::string stacked(const std::string& upper, const std::string& lower) {
     const std::string key = " " + name + "=\"";
     return std::stod(svg.substr(svg.find(key) + key.size()));
   };
-  const double height = length(upper, "height"), width = std::max(length(upper, "width"), length(lower, "width"));
+  const double height = length(upper, "height"),
+               width = std::max(length(upper, "width"), length(lower, "width"));
   std::ostringstream out;
-  out << R"(<svg xmlns="http://www.w3.org/2000/svg" width=")" << width << R"(" height=")" << height + length(lower, "height") << "\">\n"
-      << upper << "<svg y=\"" << height << '"' << lower.substr(std::string("<svg").size()) << "</svg>\n";
+  out << R"(<svg xmlns="http://www.w3.org/2000/svg" width=")" << width << R"(" height=")"
+      << height + length(lower, "height") << "\">\n"
+      << upper << "<svg y=\"" << height << '"' << lower.substr(std::string("<svg").size())
+      << "</svg>\n";
   return out.str();
 }
 
-/// The curves of one mesh, as they are drawn: the logs, the ladder, and shipping the .vtu, which shows nothing until it shows all.
+/// The curves of one mesh, as they are drawn: the logs, the ladder, and shipping the .vtu, which
+/// shows nothing until it shows all.
 struct Curves {
   std::vector<std::pair<std::string, RateCurve>> logs;
   RateCurve ladder;
@@ -161,11 +178,14 @@ struct Curves {
   }
 };
 
-std::string section(const Request& request, const std::string& meshName, const std::filesystem::path& folder) {
+std::string section(const Request& request, const std::string& meshName,
+                    const std::filesystem::path& folder) {
   const std::filesystem::path mesh = fileOf(meshName, folder);
   const std::string name = mesh.stem().string();
   const DefaultVtu vtu = need(defaultVtu(mesh));
-  if (vtu.field.empty()) throw std::runtime_error(mesh.string() + " has no point field, and without one there is no error of it");
+  if (vtu.field.empty())
+    throw std::runtime_error(mesh.string() +
+                             " has no point field, and without one there is no error of it");
   Curves curves;
   curves.vtuBytes = static_cast<double>(vtu.bytes);
   std::string checked;
@@ -176,19 +196,23 @@ std::string section(const Request& request, const std::string& meshName, const s
     curves.ladder = need(ladderCurve(log));
     checked = checkedLevels(log);
   }
-  write(request.out / ("rate_" + name + ".svg"), stacked(curves.svg(name + ": " + vtu.field + ", rms", &RatePoint::field),
-                                                         curves.svg(name + ": boundary, mean", &RatePoint::boundary)));
+  write(request.out / ("rate_" + name + ".svg"),
+        stacked(curves.svg(name + ": " + vtu.field + ", rms", &RatePoint::field),
+                curves.svg(name + ": boundary, mean", &RatePoint::boundary)));
 
   std::ostringstream out;
   out << "\n## " << name << "\n\n"
-      << vtu.cells << " tetrahedra, field " << vtu.field << "; the .vtu takes " << vtu.bytes << " bytes.\n\n"
-      << "| curve | first picture, bytes | recognisable, bytes | of the .vtu | whole, bytes | of the .vtu | field above the ladder | worst "
+      << vtu.cells << " tetrahedra, field " << vtu.field << "; the .vtu takes " << vtu.bytes
+      << " bytes.\n\n"
+      << "| curve | first picture, bytes | recognisable, bytes | of the .vtu | whole, bytes | of "
+         "the .vtu | field above the ladder | worst "
          "| "
          "boundary above the ladder | worst |\n|---|---|---|---|---|---|---|---|---|---|\n";
-  for (const auto& [label, curve] : curves.logs) out << row(label, curve, curves.vtuBytes) << comparisonCells(curve, curves.ladder) << "\n";
+  for (const auto& [label, curve] : curves.logs)
+    out << row(label, curve, curves.vtuBytes) << comparisonCells(curve, curves.ladder) << "\n";
   out << row("ladder", curves.ladder, curves.vtuBytes)
-      << " | | | |\n\nKnown errors and, in brackets, those of the decoded meshes: " << checked << ".\n\n![Error against bytes](rate_"
-      << name << ".svg)\n";
+      << " | | | |\n\nKnown errors and, in brackets, those of the decoded meshes: " << checked
+      << ".\n\n![Error against bytes](rate_" << name << ".svg)\n";
   return out.str();
 }
 
@@ -223,7 +247,8 @@ Request requestOf(const std::vector<std::string>& words) {
   for (std::size_t i = 0; i < words.size(); ++i) {
     const bool isOut = words[i] == "--out";
     if (!isOut && words[i] != "--curve") {
-      if (words[i].starts_with("--")) throw std::runtime_error("unknown option " + words[i] + "; there are --out and --curve");
+      if (words[i].starts_with("--"))
+        throw std::runtime_error("unknown option " + words[i] + "; there are --out and --curve");
       request.meshes.push_back(words[i]);
       continue;
     }
@@ -232,13 +257,15 @@ Request requestOf(const std::vector<std::string>& words) {
     const std::size_t equals = value.find('=');
     if (!isOut && (equals == std::string::npos || equals == 0))
       throw std::runtime_error("--curve '" + value + "' has no name; write NAME=OPTIONS");
-    isOut ? void(request.out = value) : void(request.curves.emplace_back(value.substr(0, equals), value.substr(equals + 1)));
+    isOut ? void(request.out = value)
+          : void(request.curves.emplace_back(value.substr(0, equals), value.substr(equals + 1)));
   }
   if (request.curves.empty()) request.curves.emplace_back("log", "");
   if (request.meshes.empty()) {
     if (const char* data = std::getenv("QTET_DATA"); !data || *data == 0)
       throw std::runtime_error(
-          "QTET_DATA is not set; it names the folder with comb.vtu and bluntfin-welded.vtu. For a sample alone: rate_distortion fin");
+          "QTET_DATA is not set; it names the folder with comb.vtu and bluntfin-welded.vtu. For a "
+          "sample alone: rate_distortion fin");
     request.meshes = {"fin", "comb", "bluntfin-welded"};
   }
   return request;

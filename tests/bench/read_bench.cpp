@@ -1,6 +1,8 @@
-// What reading and splitting costs beside what VTK alone takes to read the same .vtu file: `read_bench [FILE.vtu]`. Without a file two of a million cells
-// are made: hexahedra and tetrahedra, written by VTK as it writes them by default. User and system CPU seconds of all threads, medians of seven runs, the two
-// in turn, each in a process of its own that has no memory from the run before; with pages of 2 MB where the code asks for them, and without.
+// What reading and splitting costs beside what VTK alone takes to read the same .vtu file:
+// `read_bench [FILE.vtu]`. Without a file two of a million cells are made: hexahedra and
+// tetrahedra, written by VTK as it writes them by default. User and system CPU seconds of all
+// threads, medians of seven runs, the two in turn, each in a process of its own that has no memory
+// from the run before; with pages of 2 MB where the code asks for them, and without.
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -23,7 +25,7 @@
 #include <string>
 #include <vector>
 
-#include "simplify/read_mesh.h"
+#include "simplify/read/read_mesh.h"
 #include "tests/bench/cpu_clock.h"
 
 namespace {
@@ -40,7 +42,9 @@ struct Cost {
 Cost costSoFar() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  return {qtet::bench::userSecondsOf(usage), static_cast<double>(usage.ru_stime.tv_sec) + 1e-6 * static_cast<double>(usage.ru_stime.tv_usec)};
+  return {qtet::bench::userSecondsOf(usage),
+          static_cast<double>(usage.ru_stime.tv_sec) +
+              1e-6 * static_cast<double>(usage.ru_stime.tv_usec)};
 }
 
 Cost medianOf(const std::vector<Cost>& runs) {
@@ -50,11 +54,13 @@ Cost medianOf(const std::vector<Cost>& runs) {
     return qtet::bench::medianOf(values);
   };
   // Of the sum, so that it is one run's; the parts need not add up to it.
-  const double cpu = median([](const Cost& run) { return run.cpu(); }), system = median([](const Cost& run) { return run.system; });
+  const double cpu = median([](const Cost& run) { return run.cpu(); }),
+               system = median([](const Cost& run) { return run.system; });
   return {cpu - system, system, runs.back().tetrahedra};
 }
 
-/// `work` in a process of its own, which ends without giving its memory back piece by piece; it returns a number of tetrahedra.
+/// `work` in a process of its own, which ends without giving its memory back piece by piece; it
+/// returns a number of tetrahedra.
 Cost costOf(bool hugePages, const std::function<std::size_t()>& work) {
   int ends[2];
   if (pipe(ends) != 0) std::abort();
@@ -76,7 +82,8 @@ Cost costOf(bool hugePages, const std::function<std::size_t()>& work) {
   return cost;
 }
 
-/// n x n x n crooked hexahedra with a scalar and a vector, or the same with each cut into six tetrahedra.
+/// n x n x n crooked hexahedra with a scalar and a vector, or the same with each cut into six
+/// tetrahedra.
 void writeGrid(const std::filesystem::path& path, int n, bool tetrahedra) {
   vtkNew<vtkUnstructuredGrid> grid;
   vtkNew<vtkPoints> points;
@@ -84,11 +91,14 @@ void writeGrid(const std::filesystem::path& path, int n, bool tetrahedra) {
   scalar->SetName("Scalar");
   vector->SetName("Vector");
   vector->SetNumberOfComponents(3);
-  const auto at = [n](int i, int j, int k) { return vtkIdType{i} + vtkIdType{n + 1} * (j + vtkIdType{n + 1} * k); };
+  const auto at = [n](int i, int j, int k) {
+    return vtkIdType{i} + vtkIdType{n + 1} * (j + vtkIdType{n + 1} * k);
+  };
   for (int k = 0; k <= n; ++k) {
     for (int j = 0; j <= n; ++j) {
       for (int i = 0; i <= n; ++i) {
-        const double x = i + 0.1 * std::sin(j + 2.0 * k), y = j + 0.1 * std::sin(3.0 * k + i), z = k + 0.1 * std::cos(i + j);
+        const double x = i + 0.1 * std::sin(j + 2.0 * k), y = j + 0.1 * std::sin(3.0 * k + i),
+                     z = k + 0.1 * std::cos(i + j);
         points->InsertNextPoint(x, y, z);
         scalar->InsertNextValue(std::sin(0.1 * x) * y);
         vector->InsertNextTuple3(x * y, std::cos(0.1 * z), z);
@@ -101,13 +111,15 @@ void writeGrid(const std::filesystem::path& path, int n, bool tetrahedra) {
   for (int k = 0; k < n; ++k) {
     for (int j = 0; j < n; ++j) {
       for (int i = 0; i < n; ++i) {
-        const vtkIdType c[8] = {at(i, j, k),         at(i + 1, j, k),         at(i + 1, j + 1, k),         at(i, j + 1, k),
-                                at(i, j, k + 1),     at(i + 1, j, k + 1),     at(i + 1, j + 1, k + 1),     at(i, j + 1, k + 1)};
+        const vtkIdType c[8] = {
+            at(i, j, k),     at(i + 1, j, k),     at(i + 1, j + 1, k),     at(i, j + 1, k),
+            at(i, j, k + 1), at(i + 1, j, k + 1), at(i + 1, j + 1, k + 1), at(i, j + 1, k + 1)};
         if (!tetrahedra) {
           grid->InsertNextCell(VTK_HEXAHEDRON, 8, c);
           continue;
         }
-        for (const auto& t : {std::array{1, 2}, std::array{2, 3}, std::array{3, 7}, std::array{7, 4}, std::array{4, 5}, std::array{5, 1}}) {
+        for (const auto& t : {std::array{1, 2}, std::array{2, 3}, std::array{3, 7},
+                              std::array{7, 4}, std::array{4, 5}, std::array{5, 1}}) {
           const vtkIdType ids[4] = {c[0], c[t[0]], c[t[1]], c[6]};
           grid->InsertNextCell(VTK_TETRA, 4, ids);
         }
@@ -139,8 +151,11 @@ void compare(const std::filesystem::path& path, bool hugePages) {
     ourRuns.push_back(costOf(hugePages, [&] { return readByQtet(path); }));
   }
   const Cost vtk = medianOf(vtkRuns), ours = medianOf(ourRuns);
-  std::printf("%s, pages of %s: %zu tetrahedra; VTK alone %.3f s (%.3f of it system), read and split %.3f s (%.3f), %.2f times\n", path.filename().c_str(), hugePages ? "2 MB" : "4 KB",
-              ours.tetrahedra, vtk.cpu(), vtk.system, ours.cpu(), ours.system, ours.cpu() / vtk.cpu());
+  std::printf(
+      "%s, pages of %s: %zu tetrahedra; VTK alone %.3f s (%.3f of it system), read and split %.3f "
+      "s (%.3f), %.2f times\n",
+      path.filename().c_str(), hugePages ? "2 MB" : "4 KB", ours.tetrahedra, vtk.cpu(), vtk.system,
+      ours.cpu(), ours.system, ours.cpu() / vtk.cpu());
   std::fflush(stdout);
 }
 
@@ -152,8 +167,10 @@ int main(int count, char** words) {
     return 0;
   }
   for (const bool tetrahedra : {false, true}) {
-    const auto path = std::filesystem::temp_directory_path() / (tetrahedra ? "qtet-read-bench-tet.vtu" : "qtet-read-bench-hex.vtu");
-    costOf(true, [&] { return writeGrid(path, tetrahedra ? 55 : 100, tetrahedra), std::size_t{0}; });
+    const auto path = std::filesystem::temp_directory_path() /
+                      (tetrahedra ? "qtet-read-bench-tet.vtu" : "qtet-read-bench-hex.vtu");
+    costOf(true,
+           [&] { return writeGrid(path, tetrahedra ? 55 : 100, tetrahedra), std::size_t{0}; });
     for (const bool hugePages : {true, false}) compare(path, hugePages);
     std::filesystem::remove(path);
   }

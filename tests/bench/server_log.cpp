@@ -1,5 +1,6 @@
-// Writes the log that server_bench.py serves: a grid of 44 cubes a side (or others), half a million cells, with two fields of noise, in some 300 chunks of 32 KB or so.
-// It is a sound one: a server decodes nothing that it sends, but whoever asks it for a level gets one.
+// Writes the log that server_bench.py serves: a grid of 44 cubes a side (or others), half a million
+// cells, with two fields of noise, in some 300 chunks of 32 KB or so. It is a sound one: a server
+// decodes nothing that it sends, but whoever asks it for a level gets one.
 //
 //   server_log OUT.qtet [CUBES A SIDE]
 #include <cstdio>
@@ -23,7 +24,8 @@ qtet::LatticeMesh noisyGrid(int side) {
     field.bits = kFieldBits;
     field.minimum.assign(field.components, 0);
     mesh.values[f].resize(mesh.points.size() * field.components);
-    for (std::int32_t& value : mesh.values[f]) value = static_cast<std::int32_t>(random() >> (32 - kFieldBits));
+    for (std::int32_t& value : mesh.values[f])
+      value = static_cast<std::int32_t>(random() >> (32 - kFieldBits));
   }
   return mesh;
 }

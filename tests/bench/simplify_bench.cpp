@@ -1,14 +1,19 @@
-// The simplifier's speed beside VTK's decimation: one program, one input in memory, pinned to as many cores as threads, the programs taking turns,
-// medians of five. Prints Markdown tables.
+// The simplifier's speed beside VTK's decimation: one program, one input in memory, pinned to as
+// many cores as threads, the programs taking turns, medians of five. Prints Markdown tables.
 //   simplify_bench [--threads N] [--repeats N] [--reduction R] [--fields all|one] [NAME...]
-//     NAME: a mesh file, or a sample's name; without any, every .vtu of the folder QTET_DATA, and where that is not set the samples box and fin
+//     NAME: a mesh file, or a sample's name; without any, every .vtu of the folder QTET_DATA, and
+//     where that is not set the samples box and fin
 //   simplify_bench --speedup [--threads N] [--repeats N] [--reduction R] [NAME...]
-//     ours alone, with one thread and with N (two unless given) in turns: wall seconds, and their ratio
+//     ours alone, with one thread and with N (two unless given) in turns: wall seconds, and their
+//     ratio
 //   simplify_bench --growth [CELLS|FILE...]
-//     the whole tool on `qtet sample fin --cells CELLS` (200,000 and 10,000,000 unless given) or on files: seconds and peak memory a cell
-// On the clock: for ours simplify(), from a cleaned mesh on the lattice to the history of fusions, every field optimised and carried along, or with
-// `--fields one` the one scalar that VTK's filter keeps, which is like for like; for VTK the filter's Update(), from an unstructured grid to another,
-// always with that one scalar. Off the clock: reading, cleaning, quantising (its own column), building VTK's grid and scaling it, encoding.
+//     the whole tool on `qtet sample fin --cells CELLS` (200,000 and 10,000,000 unless given) or on
+//     files: seconds and peak memory a cell
+// On the clock: for ours simplify(), from a cleaned mesh on the lattice to the history of fusions,
+// every field optimised and carried along, or with `--fields one` the one scalar that VTK's filter
+// keeps, which is like for like; for VTK the filter's Update(), from an unstructured grid to
+// another, always with that one scalar. Off the clock: reading, cleaning, quantising (its own
+// column), building VTK's grid and scaling it, encoding.
 #include <fcntl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -23,11 +28,11 @@
 #include <string>
 #include <vector>
 
-#include "simplify/clean_mesh.h"
-#include "simplify/qtetfusion.h"
-#include "simplify/quantise.h"
-#include "simplify/read_mesh.h"
-#include "simplify/samples.h"
+#include "simplify/clean/clean_mesh.h"
+#include "simplify/clean/quantise.h"
+#include "simplify/fuse/qtetfusion.h"
+#include "simplify/read/read_mesh.h"
+#include "simplify/samples/samples.h"
 #include "tests/bench/vtk_decimation.h"
 #include "tests/support/meshes.h"
 
@@ -65,7 +70,8 @@ std::vector<std::string> defaultNames() {
   return out;
 }
 
-/// What one program did on one mesh, over all repeats. VTK's filter draws random numbers, so what it removes varies a little: the last run's counts.
+/// What one program did on one mesh, over all repeats. VTK's filter draws random numbers, so what
+/// it removes varies a little: the last run's counts.
 struct Runs {
   std::size_t removed = 0;
   std::vector<double> user, wall;
@@ -76,11 +82,14 @@ struct Runs {
     wall.push_back(seconds.wall);
   }
   /// Thousand cells removed a second of user CPU.
-  [[nodiscard]] double rate() const { return 1e-3 * static_cast<double>(removed) / std::max(medianOf(user), 1e-6); }
+  [[nodiscard]] double rate() const {
+    return 1e-3 * static_cast<double>(removed) / std::max(medianOf(user), 1e-6);
+  }
 };
 
 std::size_t tetrahedraLeft(const FusionHistory& history, std::size_t original) {
-  return static_cast<std::size_t>(std::count(history.live.begin(), history.live.begin() + static_cast<std::ptrdiff_t>(original), 1));
+  return static_cast<std::size_t>(std::count(
+      history.live.begin(), history.live.begin() + static_cast<std::ptrdiff_t>(original), 1));
 }
 
 void addOurs(const LatticeMesh& mesh, const Request& request, int threads, Runs& runs) {
@@ -89,12 +98,15 @@ void addOurs(const LatticeMesh& mesh, const Request& request, int threads, Runs&
   options.threads = threads;
   std::optional<Result<FusionHistory>> history;
   const Seconds seconds = timeOf([&] { history.emplace(simplify(mesh, options)); });
-  runs.add(mesh.tetrahedra.size() - tetrahedraLeft(need(std::move(*history)), mesh.tetrahedra.size()), seconds);
+  runs.add(
+      mesh.tetrahedra.size() - tetrahedraLeft(need(std::move(*history)), mesh.tetrahedra.size()),
+      seconds);
 }
 
 void addVtk(vtkUnstructuredGrid* grid, double scale, const Request& request, Runs& runs) {
   const Decimated out = decimate(grid, scale, request.reduction);
-  runs.add(static_cast<std::size_t>(grid->GetNumberOfCells() - out.grid->GetNumberOfCells()), out.seconds);
+  runs.add(static_cast<std::size_t>(grid->GetNumberOfCells() - out.grid->GetNumberOfCells()),
+           out.seconds);
 }
 
 /// Of the fields only the one that VTK's filter keeps, if there is one.
@@ -118,36 +130,48 @@ void compare(const std::string& name, const Request& request) {
   const auto cells = mesh.tetrahedra.size();
   std::printf("| %s | %zu |", std::filesystem::path(name).stem().c_str(), cells);
   for (const Runs* runs : {&ours, &vtk, &tuned})
-    std::printf(" %.2f %% | %.3f | %.3f | %.0f |", 100 * static_cast<double>(runs->removed) / static_cast<double>(cells),
+    std::printf(" %.2f %% | %.3f | %.3f | %.0f |",
+                100 * static_cast<double>(runs->removed) / static_cast<double>(cells),
                 medianOf(runs->user), medianOf(runs->wall), runs->rate());
-  for (const Runs* theirs : {&vtk, &tuned}) theirs->removed > 0 ? std::printf(" %.2f |", ours.rate() / theirs->rate()) : std::printf(" |");
+  for (const Runs* theirs : {&vtk, &tuned})
+    theirs->removed > 0 ? std::printf(" %.2f |", ours.rate() / theirs->rate()) : std::printf(" |");
   std::printf(" %.3f |\n", quantising.user);
   std::fflush(stdout);
 }
 
 void compareAll(const Request& request) {
   std::printf(
-      "%g %% asked for, %d thread%s, %s in ours, one in VTK's, medians of %d; u = user CPU seconds, w = wall seconds, k/u = thousand cells "
+      "%g %% asked for, %d thread%s, %s in ours, one in VTK's, medians of %d; u = user CPU "
+      "seconds, w = wall seconds, k/u = thousand cells "
       "removed a user second\n\n",
-      100 * request.reduction, request.threads, request.threads == 1 ? "" : "s", request.isOneField ? "one field" : "all fields",
-      request.repeats);
+      100 * request.reduction, request.threads, request.threads == 1 ? "" : "s",
+      request.isOneField ? "one field" : "all fields", request.repeats);
   std::puts(
-      "| mesh | cells | qtet removed | u | w | k/u | VTK removed | u | w | k/u | VTK x 1000 removed | u | w | k/u | qtet / VTK | qtet / "
+      "| mesh | cells | qtet removed | u | w | k/u | VTK removed | u | w | k/u | VTK x 1000 "
+      "removed | u | w | k/u | qtet / VTK | qtet / "
       "VTK x 1000 | quantise u |");
   std::puts("|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|");
-  for (const std::string& name : request.names.empty() ? defaultNames() : request.names) compare(name, request);
+  for (const std::string& name : request.names.empty() ? defaultNames() : request.names)
+    compare(name, request);
 }
 
 void speedup(const Request& request) {
-  std::printf("%g %% asked for, all fields, wall seconds of simplify(), medians of %d (least in brackets)\n\n", 100 * request.reduction, request.repeats);
-  std::printf("| mesh | cells | one thread | %d threads | ratio |\n|---|---|---|---|---|\n", request.threads);
+  std::printf(
+      "%g %% asked for, all fields, wall seconds of simplify(), medians of %d (least in "
+      "brackets)\n\n",
+      100 * request.reduction, request.repeats);
+  std::printf("| mesh | cells | one thread | %d threads | ratio |\n|---|---|---|---|---|\n",
+              request.threads);
   for (const std::string& name : request.names.empty() ? defaultNames() : request.names) {
     const LatticeMesh mesh = need(quantise(meshNamed(name))).mesh;
     Runs one, many;
-    for (int i = 0; i < request.repeats; ++i) addOurs(mesh, request, 1, one), addOurs(mesh, request, request.threads, many);
+    for (int i = 0; i < request.repeats; ++i)
+      addOurs(mesh, request, 1, one), addOurs(mesh, request, request.threads, many);
     const double alone = medianOf(one.wall), together = medianOf(many.wall);
-    std::printf("| %s | %zu | %.4f (%.4f) | %.4f (%.4f) | %.3f |\n", std::filesystem::path(name).stem().c_str(), mesh.tetrahedra.size(), alone,
-                std::ranges::min(one.wall), together, std::ranges::min(many.wall), together / alone);
+    std::printf("| %s | %zu | %.4f (%.4f) | %.4f (%.4f) | %.3f |\n",
+                std::filesystem::path(name).stem().c_str(), mesh.tetrahedra.size(), alone,
+                std::ranges::min(one.wall), together, std::ranges::min(many.wall),
+                together / alone);
     std::fflush(stdout);
   }
 }
@@ -174,16 +198,20 @@ Finished runTool(std::vector<std::string> words) {
   }
   int status = 0;
   rusage usage{};
-  if (wait4(child, &status, 0, &usage) < 0) throw std::runtime_error("the tool's end was not reported");
+  if (wait4(child, &status, 0, &usage) < 0)
+    throw std::runtime_error("the tool's end was not reported");
   constexpr double kBytesAUnit = 1024;  // ru_maxrss counts KiB on Linux
-  return {WIFEXITED(status) && WEXITSTATUS(status) == 0, userSecondsOf(usage), kBytesAUnit * static_cast<double>(usage.ru_maxrss)};
+  return {WIFEXITED(status) && WEXITSTATUS(status) == 0, userSecondsOf(usage),
+          kBytesAUnit * static_cast<double>(usage.ru_maxrss)};
 }
 
 std::string inputFor(const std::string& word, const std::filesystem::path& folder) {
   if (std::filesystem::exists(word)) return word;
   const std::string path = folder / ("fin-" + word + ".vtu");
   if (!runTool({"sample", "fin", "--cells", word, "-o", path}).ok)
-    throw std::runtime_error("'" + word + "' is no file, and the tool did not make a sample of so many cells (its message stands above)");
+    throw std::runtime_error("'" + word +
+                             "' is no file, and the tool did not make a sample of so many cells "
+                             "(its message stands above)");
   return path;
 }
 
@@ -191,21 +219,27 @@ void growth(const Request& request) {
   const std::filesystem::path folder = testing::freshFolder("growth");
   std::vector<std::string> inputs;
   std::vector<Finished> tools;
-  // All of the tool's runs first: Linux counts to a child's peak what its parent held when it was forked.
-  for (const std::string& word : request.names.empty() ? std::vector<std::string>{"200000", "10000000"} : request.names) {
+  // All of the tool's runs first: Linux counts to a child's peak what its parent held when it was
+  // forked.
+  for (const std::string& word :
+       request.names.empty() ? std::vector<std::string>{"200000", "10000000"} : request.names) {
     inputs.push_back(inputFor(word, folder));
-    tools.push_back(runTool({"simplify", inputs.back(), "-o", folder / "log.qtet", "--threads", std::to_string(request.threads)}));
+    tools.push_back(runTool({"simplify", inputs.back(), "-o", folder / "log.qtet", "--threads",
+                             std::to_string(request.threads)}));
     if (!tools.back().ok) throw std::runtime_error("the tool failed on " + inputs.back());
   }
-  std::puts("| input | cells | whole tool, user s | us a cell | simplify(), user s | us a cell | peak memory | bytes a cell |");
+  std::puts(
+      "| input | cells | whole tool, user s | us a cell | simplify(), user s | us a cell | peak "
+      "memory | bytes a cell |");
   std::puts("|---|---|---|---|---|---|---|---|");
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const LatticeMesh mesh = need(quantise(meshNamed(inputs[i]))).mesh;
     Runs ours;
     addOurs(mesh, request, request.threads, ours);
     const auto cells = static_cast<double>(mesh.tetrahedra.size());
-    std::printf("| %s | %.0f | %.2f | %.2f | %.2f | %.2f | %.0f MB | %.0f |\n", std::filesystem::path(inputs[i]).stem().c_str(), cells,
-                tools[i].userSeconds, 1e6 * tools[i].userSeconds / cells, ours.user[0], 1e6 * ours.user[0] / cells,
+    std::printf("| %s | %.0f | %.2f | %.2f | %.2f | %.2f | %.0f MB | %.0f |\n",
+                std::filesystem::path(inputs[i]).stem().c_str(), cells, tools[i].userSeconds,
+                1e6 * tools[i].userSeconds / cells, ours.user[0], 1e6 * ours.user[0] / cells,
                 1e-6 * tools[i].peakBytes, tools[i].peakBytes / cells);
     std::fflush(stdout);
   }
@@ -248,7 +282,9 @@ Request requestOf(const std::vector<std::string>& words) {
     } else if (words[i] == "--speedup") {
       request.speedup = true;
     } else if (words[i].starts_with("--")) {
-      throw std::runtime_error("unknown option " + words[i] + "; there are --threads, --repeats, --reduction, --fields, --speedup and --growth");
+      throw std::runtime_error(
+          "unknown option " + words[i] +
+          "; there are --threads, --repeats, --reduction, --fields, --speedup and --growth");
     } else {
       request.names.push_back(words[i]);
     }
@@ -263,8 +299,11 @@ Request requestOf(const std::vector<std::string>& words) {
 int main(int argc, char** argv) {
   try {
     const auto request = qtet::bench::requestOf({argv + 1, argv + argc});
-    if (!qtet::bench::pinToCores(request.threads)) std::fputs("simplify_bench: the system refuses to pin the process to cores\n", stderr);
-    request.growth ? qtet::bench::growth(request) : request.speedup ? qtet::bench::speedup(request) : qtet::bench::compareAll(request);
+    if (!qtet::bench::pinToCores(request.threads))
+      std::fputs("simplify_bench: the system refuses to pin the process to cores\n", stderr);
+    request.growth    ? qtet::bench::growth(request)
+    : request.speedup ? qtet::bench::speedup(request)
+                      : qtet::bench::compareAll(request);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "simplify_bench: %s\n", error.what());
     return EXIT_FAILURE;

@@ -1,16 +1,18 @@
 // VTK's decimation as a program, for results.py:
 //   vtk_decimate IN OUT_PREFIX SCALE REDUCTION...
-// reads IN (.vtu or .vtk), multiplies its points and scalar, and the boundary weight, by SCALE, removes the fraction REDUCTION of its cells for each of them, divides by SCALE
-// and writes OUT_PREFIX_REDUCTION.vtu. Prints a JSON object a reduction: reduction, cellsIn, cellsOut, userSeconds and wallSeconds of the filter alone.
+// reads IN (.vtu or .vtk), multiplies its points and scalar, and the boundary weight, by SCALE,
+// removes the fraction REDUCTION of its cells for each of them, divides by SCALE and writes
+// OUT_PREFIX_REDUCTION.vtu. Prints a JSON object a reduction: reduction, cellsIn, cellsOut,
+// userSeconds and wallSeconds of the filter alone.
 #include <cstdlib>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 
-#include "codec/atomic_file.h"
-#include "simplify/read_mesh.h"
-#include "simplify/write_mesh.h"
+#include "codec/files/atomic_file.h"
+#include "simplify/log/write_mesh.h"
+#include "simplify/read/read_mesh.h"
 #include "tests/bench/vtk_decimation.h"
 
 namespace {
@@ -26,7 +28,9 @@ int main(int argc, char** argv) {
   const std::span<char*> words(argv, static_cast<std::size_t>(argc));
   if (words.size() < 5) return fail("usage: vtk_decimate IN OUT_PREFIX SCALE REDUCTION...");
   const double scale = std::strtod(words[3], nullptr);
-  if (!(scale > 0)) return fail("SCALE '" + std::string(words[3]) + "' must be a number above 0, such as 1 or 1000");
+  if (!(scale > 0))
+    return fail("SCALE '" + std::string(words[3]) +
+                "' must be a number above 0, such as 1 or 1000");
   const auto read = qtet::readMesh(words[1]);
   if (!read) return fail(read.error().text());
   const auto grid = qtet::bench::gridOf(read->mesh, scale);
@@ -34,10 +38,13 @@ int main(int argc, char** argv) {
 
   for (const std::string word : words.subspan(4)) {
     const double reduction = std::strtod(word.c_str(), nullptr);
-    if (!(reduction > 0 && reduction < 1)) return fail("REDUCTION '" + word + "' must lie between 0 and 1, such as 0.9");
+    if (!(reduction > 0 && reduction < 1))
+      return fail("REDUCTION '" + word + "' must lie between 0 and 1, such as 0.9");
     const qtet::bench::Decimated out = qtet::bench::decimate(grid, scale, reduction);
     const std::string path = std::string(words[2]) + "_" + word + ".vtu";
-    if (const auto written = qtet::writeFileAtomically(path, qtet::vtuBytes(qtet::bench::meshOf(out.grid, scale, field))); !written)
+    if (const auto written = qtet::writeFileAtomically(
+            path, qtet::vtuBytes(qtet::bench::meshOf(out.grid, scale, field)));
+        !written)
       return fail(written.error().text());
     std::cout << nlohmann::ordered_json{{"reduction", reduction},
                                         {"file", path},

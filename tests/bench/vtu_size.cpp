@@ -1,6 +1,7 @@
 // How large a mesh is as VTK writes it by default, for sizes.py:
 //   vtu_size IN.vtu...
-// prints a JSON object a file: file, field (the first point field, which alone is kept), cells, bytes (parts/default_vtu.h).
+// prints a JSON object a file: file, field (the first point field, which alone is kept), cells,
+// bytes (parts/default_vtu.h).
 #include <cstdlib>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -19,7 +20,11 @@ int main(int argc, char** argv) {
       std::cerr << "vtu_size: " << vtu.error().text() << "\n";
       return EXIT_FAILURE;
     }
-    std::cout << nlohmann::ordered_json{{"file", file}, {"field", vtu->field}, {"cells", vtu->cells}, {"bytes", vtu->bytes}} << std::endl;
+    std::cout << nlohmann::ordered_json{{"file", file},
+                                        {"field", vtu->field},
+                                        {"cells", vtu->cells},
+                                        {"bytes", vtu->bytes}}
+              << std::endl;
   }
   return EXIT_SUCCESS;
 }

@@ -75,7 +75,7 @@ class Log:
 
 
 def same(a, b):
-    """Equal, where a gap, which is NaN, equals a gap."""
+    """Equal, where a missing value, which is NaN, equals a missing value."""
     if isinstance(a, (list, tuple)):
         return len(a) == len(b) and all(map(same, a, b))
     return a == b or (a != a and b != b)

@@ -1,9 +1,10 @@
-// What holds of a refiner whatever it was given: every id in its range, every field as long as what it belongs to.
+// What holds of a refiner whatever it was given: every id in its range, every field as long as what
+// it belongs to.
 #pragma once
 
 #include <cstdlib>
 
-#include "codec/refiner.h"
+#include "codec/log/refiner.h"
 
 namespace qtet::fuzz {
 
@@ -27,7 +28,8 @@ inline void abortUnlessSound(const Refiner& refiner) {
 /// REQUIRES: every chunk and this field's part of it were applied without an error.
 inline void abortUnlessWhole(const Refiner& refiner, std::uint32_t field) {
   const FieldShape shape = refiner.index().fields[field];
-  const std::size_t owners = shape.association == Association::kCell ? refiner.tetrahedra().size() : refiner.points().size();
+  const std::size_t owners = shape.association == Association::kCell ? refiner.tetrahedra().size()
+                                                                     : refiner.points().size();
   if (refiner.fieldValues(field).size() != owners * shape.components) std::abort();
 }
 

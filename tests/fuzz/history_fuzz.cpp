@@ -1,17 +1,18 @@
-// Fuzzes by structure: the input chooses a mesh, the simplifier's options and where chunks end. Every level that is decoded must be the mesh that
-// the simplifier had; then the rest of the input damages blocks below their checksums, and no id may leave its range.
+// Fuzzes by structure: the input chooses a mesh, the simplifier's options and where chunks end.
+// Every level that is decoded must be the mesh that the simplifier had; then the rest of the input
+// damages blocks below their checksums, and no id may leave its range.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
 #include <vector>
 
-#include "codec/value_block.h"
-#include "codec/log_manifest.h"
-#include "codec/log_writer.h"
-#include "simplify/paper_fusion.h"
-#include "simplify/qtetfusion.h"
-#include "simplify/verify.h"
+#include "codec/log/log_manifest.h"
+#include "codec/log/log_writer.h"
+#include "codec/log/value_block.h"
+#include "simplify/clean/verify.h"
+#include "simplify/fuse/paper_fusion.h"
+#include "simplify/fuse/qtetfusion.h"
 #include "tests/fuzz/byte_source.h"
 #include "tests/fuzz/checked_refiner.h"
 #include "tests/support/meshes.h"
@@ -37,7 +38,8 @@ LatticeMesh meshFrom(ByteSource& in) {
   std::uint32_t keep = 0;
   for (int i = 0; i < 4; ++i) keep |= std::uint32_t{in.next()} << (8 * i);
   keep = ~keep;  // an input that ends early leaves nothing out
-  LatticeMesh mesh = testing::gridMesh(n, seed, [&](int i, int j, int k) { return (keep >> ((i * n + j) * n + k) & 1) != 0; });
+  LatticeMesh mesh = testing::gridMesh(
+      n, seed, [&](int i, int j, int k) { return (keep >> ((i * n + j) * n + k) & 1) != 0; });
   if (kind & 64) testing::addCellFields(mesh);
   return mesh;
 }
@@ -58,10 +60,11 @@ Result<FusionHistory> historyFrom(const LatticeMesh& mesh, ByteSource& in) {
   const std::uint8_t flags = in.next();
   options.targetRatio = in.next() / 255.0;
   options.shapeWeight = in.next() / 64.0;
-  options.cost.hullWeight = in.next() * in.next() / 16.0;
+  options.cost.boundaryWeight = in.next() * in.next() / 16.0;
   if (flags & 1) options.envelopeTolerance = in.next() / 1024.0;
   if (flags & 2)
-    for (std::size_t f = 0; f < mesh.fields.size(); ++f) options.cost.fieldWeights.push_back(in.next() / 32.0);
+    for (std::size_t f = 0; f < mesh.fields.size(); ++f)
+      options.cost.fieldWeights.push_back(in.next() / 32.0);
   if (flags & 4)
     for (std::size_t f = 0; f < mesh.fields.size(); ++f)
       if (isCellField(mesh.fields[f]) && mesh.fields[f].components == 1) options.regionField = f;
@@ -78,7 +81,8 @@ struct Log {
 
   [[nodiscard]] Bytes structure(std::uint32_t chunk) const {
     const BlockEntry& b = index.block(chunk, kStructurePart);
-    return Bytes(bytes.begin() + static_cast<std::ptrdiff_t>(b.offset), bytes.begin() + static_cast<std::ptrdiff_t>(b.offset + b.size));
+    return Bytes(bytes.begin() + static_cast<std::ptrdiff_t>(b.offset),
+                 bytes.begin() + static_cast<std::ptrdiff_t>(b.offset + b.size));
   }
 };
 
@@ -97,8 +101,9 @@ Log logOf(const FusionHistory& history, ByteSource& in) {
     log.values.emplace_back(1);
     for (std::uint32_t part = kPositionsPart; part < log.index.parts(); ++part) {
       const BlockEntry& b = log.index.block(chunk, part);
-      auto values = decodeValueBlock(ByteView(log.bytes).subspan(static_cast<std::size_t>(b.offset), b.size), log.index.components(part),
-                                     log.index.tuples(chunk, part));
+      auto values =
+          decodeValueBlock(ByteView(log.bytes).subspan(static_cast<std::size_t>(b.offset), b.size),
+                           log.index.components(part), log.index.tuples(chunk, part));
       require(values.has_value(), "a value block does not decode");
       log.values.back().push_back(std::move(*values));
     }
@@ -109,14 +114,16 @@ Log logOf(const FusionHistory& history, ByteSource& in) {
 Status apply(const Log& log, Refiner& refiner, std::uint32_t chunk, ByteView structure) {
   if (Status s = refiner.apply(chunk, structure, log.values[chunk][kPositionsPart]); !s) return s;
   for (std::uint32_t f = 0; f < log.index.fields.size(); ++f)
-    if (Status s = refiner.applyField(f, chunk, log.values[chunk][kFirstFieldPart + f]); !s) return s;
+    if (Status s = refiner.applyField(f, chunk, log.values[chunk][kFirstFieldPart + f]); !s)
+      return s;
   return {};
 }
 
 void compareLevel(const FusionHistory& history, const Log& log, std::uint32_t level) {
   Refiner refiner(log.index);
   refiner.stopAtLevel(level);
-  for (std::uint32_t chunk = 0; chunk < log.index.chunks.size() && (chunk == 0 || refiner.level() < level); ++chunk) {
+  for (std::uint32_t chunk = 0;
+       chunk < log.index.chunks.size() && (chunk == 0 || refiner.level() < level); ++chunk) {
     const Status applied = apply(log, refiner, chunk, log.structure(chunk));
     require(applied.has_value(), applied ? "" : applied.error().text());
   }
@@ -130,12 +137,14 @@ void compareLevel(const FusionHistory& history, const Log& log, std::uint32_t le
   for (std::uint32_t f = 0; f < log.index.fields.size(); ++f)
     decoded.values.emplace_back(refiner.fieldValues(f).begin(), refiner.fieldValues(f).end());
   const auto same = sameMesh(decoded, expected);
-  require(same.has_value(), same ? "" : "level " + std::to_string(level) + ": " + same.error().text());
+  require(same.has_value(),
+          same ? "" : "level " + std::to_string(level) + ": " + same.error().text());
   const std::string wrong = testing::whatIsWrongWith(decoded);
   require(wrong.empty(), "level " + std::to_string(level) + ": " + wrong);
 }
 
-/// Each pair of bytes damages a place of one chunk's structure or residuals; every chunk is decoded as far as it goes.
+/// Each pair of bytes damages a place of one chunk's structure or residuals; every chunk is decoded
+/// as far as it goes.
 void decodeDamaged(Log& log, ByteSource& in) {
   const std::uint32_t bad = in.next() % static_cast<std::uint32_t>(log.index.chunks.size());
   Bytes structure = log.structure(bad);
@@ -145,14 +154,16 @@ void decodeDamaged(Log& log, ByteSource& in) {
     std::vector<std::vector<std::int32_t>>& values = log.values[bad];
     std::vector<std::int32_t>& block = values[kPositionsPart + at % (values.size() - 1)];
     if (value & 1 && !block.empty()) {
-      block[at / values.size() % block.size()] += (value & 2 ? 1 : 40'000) * (static_cast<std::int8_t>(value) >> 2);
+      block[at / values.size() % block.size()] +=
+          (value & 2 ? 1 : 40'000) * (static_cast<std::int8_t>(value) >> 2);
     } else if (!structure.empty()) {
       structure[at % structure.size()] ^= static_cast<std::uint8_t>(value | 1);
     }
   }
   Refiner refiner(log.index);
   for (std::uint32_t chunk = 0; chunk < log.index.chunks.size(); ++chunk) {
-    const Status applied = apply(log, refiner, chunk, chunk == bad ? structure : log.structure(chunk));
+    const Status applied =
+        apply(log, refiner, chunk, chunk == bad ? structure : log.structure(chunk));
     fuzz::abortUnlessSound(refiner);
     if (!applied) return;
   }
@@ -163,7 +174,8 @@ void decodeDamaged(Log& log, ByteSource& in) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   ByteSource in{{data, size}};
   LatticeMesh mesh = meshFrom(in);
-  if (mesh.tetrahedra.empty() || mesh.tetrahedra.size() > 300) return 0;  // small ones meet the same code in less time
+  // small ones meet the same code in less time
+  if (mesh.tetrahedra.empty() || mesh.tetrahedra.size() > 300) return 0;
   changeValues(mesh, in);
   const Result<FusionHistory> history = historyFrom(mesh, in);
   require(history.has_value(), history ? "" : history.error().text());

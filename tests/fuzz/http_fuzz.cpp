@@ -1,13 +1,14 @@
-// Fuzzes the gate before HTTP's parser: a head that grows byte by byte gets the verdict that it gets whole, and never a line end or control byte through.
+// Fuzzes the gate before HTTP's parser: a head that grows byte by byte gets the verdict that it
+// gets whole, and never a line end or control byte through.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <string>
 #include <string_view>
 
-#include "server/http_gate.h"
-#include "server/limits.h"
-#include "server/request_target.h"
+#include "server/wire/http_gate.h"
+#include "server/wire/limits.h"
+#include "server/wire/request_target.h"
 
 using qtet::HttpGate;
 
@@ -18,12 +19,17 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const HttpGate::Verdict verdict = whole.look(bytes);
   HttpGate grown;
   HttpGate::Verdict last = HttpGate::Verdict::kMore;
-  for (std::size_t n = 1; n <= size && last == HttpGate::Verdict::kMore; ++n) last = grown.look(bytes.substr(0, n));
+  for (std::size_t n = 1; n <= size && last == HttpGate::Verdict::kMore; ++n)
+    last = grown.look(bytes.substr(0, n));
   if (size > 0 && last != verdict) std::abort();
   if (verdict == HttpGate::Verdict::kComplete) {
     const std::string_view head = bytes.substr(0, whole.headBytes());
     if (grown.headBytes() != head.size() || !head.ends_with("\r\n\r\n")) std::abort();
-    if (std::ranges::any_of(head, [](char c) { return (static_cast<unsigned char>(c) < 32 && c != '\r' && c != '\n' && c != '\t') || c == 127; })) std::abort();
+    if (std::ranges::any_of(head, [](char c) {
+          return (static_cast<unsigned char>(c) < 32 && c != '\r' && c != '\n' && c != '\t') ||
+                 c == 127;
+        }))
+      std::abort();
     if (std::ranges::count(head, '\r') != std::ranges::count(head, '\n')) std::abort();
   }
   // A target written anew means the same.

@@ -1,9 +1,10 @@
-// Fuzzes the front of a log: the input stands for header, manifest and table. Checksums are made right first, so that the checks behind them
-// are reached; whatever is accepted is encoded again and must give the same bytes.
+// Fuzzes the front of a log: the input stands for header, manifest and table. Checksums are made
+// right first, so that the checks behind them are reached; whatever is accepted is encoded again
+// and must give the same bytes.
 #include <cstdint>
 #include <cstdlib>
 
-#include "codec/log_manifest.h"
+#include "codec/log/log_manifest.h"
 #include "tests/support/forged_log.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -15,6 +16,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   (void)qtet::manifestOf(*index);
   const qtet::Bytes again = index->encode();
   const auto reparsed = qtet::LogIndex::parse(again);
-  if (!reparsed || reparsed->encode() != again || reparsed->headBytes() != index->headBytes()) std::abort();
+  if (!reparsed || reparsed->encode() != again || reparsed->headBytes() != index->headBytes())
+    std::abort();
   return 0;
 }

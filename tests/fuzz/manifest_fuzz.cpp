@@ -1,9 +1,10 @@
-// Fuzzes the manifest of a log with two fields and up to 256 levels: the first byte is the number of levels beyond the base mesh, the rest the manifest.
-// What is accepted is written again and must say the same.
+// Fuzzes the manifest of a log with two fields and up to 256 levels: the first byte is the number
+// of levels beyond the base mesh, the rest the manifest. What is accepted is written again and must
+// say the same.
 #include <cstdint>
 #include <cstdlib>
 
-#include "codec/log_manifest.h"
+#include "codec/log/log_manifest.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;

@@ -1,4 +1,5 @@
-// Fuzzes what comes over a WebSocket, at either end: what is accepted is written and read again and must be the same.
+// Fuzzes what comes over a WebSocket, at either end: what is accepted is written and read again and
+// must be the same.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>

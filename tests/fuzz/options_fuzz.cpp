@@ -1,11 +1,12 @@
-// Fuzzes the server's options: arguments, an empty line, variables. What is understood is understood again as `--check-config` prints it.
+// Fuzzes the server's options: arguments, an empty line, variables. What is understood is
+// understood again as `--check-config` prints it.
 #include <cstdint>
 #include <cstdlib>
 #include <sstream>
 #include <string>
 #include <vector>
 
-#include "server/command_line.h"
+#include "server/program/command_line.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   std::vector<std::string> arguments{"qtet-server"}, variables;
@@ -21,8 +22,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (const std::string& a : arguments) argv.push_back(a.c_str());
   for (const std::string& v : variables) environment.push_back(v.c_str());
   environment.push_back(nullptr);
-  const auto parsed = qtet::parseCommandLine(static_cast<int>(argv.size()), argv.data(), environment.data());
-  if (!parsed || parsed->wish != qtet::CommandLine::Wish::kServe) return 0;
+  const auto parsed =
+      qtet::parseCommandLine(static_cast<int>(argv.size()), argv.data(), environment.data());
+  if (!parsed || parsed->action != qtet::CommandLine::Action::kServe) return 0;
   const std::string text = qtet::configText(*parsed);
   std::vector<std::string> again{"qtet-server"};
   std::istringstream settings(text);

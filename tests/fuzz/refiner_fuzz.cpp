@@ -1,15 +1,16 @@
-// Fuzzes the refiner below checksums and Draco: the input stands for a table that makes few promises, for structure blocks and for residuals
-// (tests/fuzz/seeds.cpp writes real logs in this form). Whatever happens, every id stays in range.
+// Fuzzes the refiner below checksums and Draco: the input stands for a table that makes few
+// promises, for structure blocks and for residuals (tests/fuzz/seeds.cpp writes real logs in this
+// form). Whatever happens, every id stays in range.
 #include <cstdint>
 #include <vector>
 
-#include "codec/refiner.h"
+#include "codec/log/refiner.h"
 #include "tests/fuzz/byte_source.h"
 #include "tests/fuzz/checked_refiner.h"
 
 namespace {
 
-constexpr std::uint32_t kMostChunks = 8;
+constexpr std::uint32_t kMaxChunks = 8;
 
 qtet::ChunkEntry entryFrom(qtet::fuzz::ByteSource& in, std::uint32_t chunk) {
   qtet::ChunkEntry e;
@@ -39,7 +40,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   qtet::LogIndex index;
   index.positionBits = 10;
   index.fields = {{2, qtet::Association::kPoint}, {1, qtet::Association::kCell}};
-  const std::uint32_t chunks = 1 + in.next() % kMostChunks;
+  const std::uint32_t chunks = 1 + in.next() % kMaxChunks;
   for (std::uint32_t c = 0; c < chunks; ++c) {
     index.chunks.push_back(entryFrom(in, c));
     if (c == 0) continue;
@@ -52,12 +53,17 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   bool whole[2] = {true, true};
   for (std::uint32_t c = 0; c < chunks; ++c) {
     const qtet::ByteView structure = in.take(in.next16());
-    const auto status = refiner.apply(c, structure, valuesFrom(in, std::size_t{index.tuples(c, qtet::kPositionsPart)} * 3));
+    const auto status = refiner.apply(
+        c, structure, valuesFrom(in, std::size_t{index.tuples(c, qtet::kPositionsPart)} * 3));
     qtet::fuzz::abortUnlessSound(refiner);
     if (!status) break;
     for (std::uint32_t f = 0; f < 2; ++f) {
       const std::uint32_t part = qtet::kFirstFieldPart + f;
-      whole[f] &= refiner.applyField(f, c, valuesFrom(in, std::size_t{index.tuples(c, part)} * index.components(part))).has_value();
+      whole[f] &=
+          refiner
+              .applyField(
+                  f, c, valuesFrom(in, std::size_t{index.tuples(c, part)} * index.components(part)))
+              .has_value();
       if (whole[f]) qtet::fuzz::abortUnlessWhole(refiner, f);
     }
   }

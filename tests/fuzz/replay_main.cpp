@@ -1,7 +1,9 @@
-// Runs a fuzz target without libFuzzer, so that every build replays what the fuzzer would see: each file named on the command line (or
-// below a folder named there) as it is, then pseudo-random mutations of it. The same seed gives the same bytes on every machine.
+// Runs a fuzz target without libFuzzer, so that every build replays what the fuzzer would see: each
+// file named on the command line (or below a folder named there) as it is, then pseudo-random
+// mutations of it. The same seed gives the same bytes on every machine.
 //   NAME_replay [--mutations=N] [--seed=S] FILE|FOLDER...
-// Bytes that end the program are left in ./replay-crash.bin; NAME_replay replay-crash.bin repeats the failure.
+// Bytes that end the program are left in ./replay-crash.bin; NAME_replay replay-crash.bin repeats
+// the failure.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -69,10 +71,12 @@ void saveCurrentAndDie(int signalNumber) {
 
 void saveCurrentOnDeath() {
   if (__sanitizer_set_death_callback != nullptr) return __sanitizer_set_death_callback(saveCurrent);
-  for (const int signalNumber : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL}) std::signal(signalNumber, saveCurrentAndDie);
+  for (const int signalNumber : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL})
+    std::signal(signalNumber, saveCurrentAndDie);
 }
 
-/// Hands the target a buffer of exactly the input's size, so that a sanitizer sees the first byte read beyond it.
+/// Hands the target a buffer of exactly the input's size, so that a sanitizer sees the first byte
+/// read beyond it.
 void run(const Input& input) {
   const auto exact = std::make_unique<std::uint8_t[]>(input.size());
   std::copy(input.begin(), input.end(), exact.get());
@@ -93,13 +97,17 @@ void mutateOnce(Input& input, Random& random) {
     case 1: *place = kTelling[random.below(std::size(kTelling))]; break;
     case 2: *place = static_cast<std::uint8_t>(random.next()); break;
     case 3: input.resize(at); break;
-    case 4: input.erase(place, place + static_cast<std::ptrdiff_t>(1 + random.below(std::min<std::size_t>(8, input.size() - at)))); break;
+    case 4:
+      input.erase(place, place + static_cast<std::ptrdiff_t>(1 + random.below(std::min<std::size_t>(
+                                                                     8, input.size() - at))));
+      break;
     default: input.insert(place, static_cast<std::uint8_t>(random.next())); break;
   }
 }
 
 Input mutated(Input input, Random& random) {
-  // Most mutations near the front, where counts and offsets stand: half of them see only the first 256 bytes changed.
+  // Most mutations near the front, where counts and offsets stand: half of them see only the first
+  // 256 bytes changed.
   Input tail;
   if (input.size() > 256 && random.below(2) == 0) {
     tail.assign(input.begin() + 256, input.end());
@@ -143,7 +151,8 @@ std::optional<std::uint64_t> numberAfter(std::string_view argument, std::string_
   std::uint64_t value = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (error != std::errc() || end != digits.data() + digits.size()) {
-    std::fprintf(stderr, "%.*s is no number; give for example %.*s1000\n", static_cast<int>(argument.size()), argument.data(),
+    std::fprintf(stderr, "%.*s is no number; give for example %.*s1000\n",
+                 static_cast<int>(argument.size()), argument.data(),
                  static_cast<int>(option.size()), option.data());
     std::exit(2);
   }
@@ -171,7 +180,9 @@ int main(int argc, char** argv) {
   for (const fs::path& path : filesOf(named)) inputs.push_back(readFile(path));
   for (const Input& input : inputs) run(input);
   Random random(seed);
-  for (std::uint64_t i = 0; i < mutations; ++i) run(mutated(inputs[random.below(inputs.size())], random));
-  std::printf("%zu inputs and %llu mutations replayed\n", inputs.size(), static_cast<unsigned long long>(mutations));
+  for (std::uint64_t i = 0; i < mutations; ++i)
+    run(mutated(inputs[random.below(inputs.size())], random));
+  std::printf("%zu inputs and %llu mutations replayed\n", inputs.size(),
+              static_cast<unsigned long long>(mutations));
   return 0;
 }

@@ -1,13 +1,14 @@
-// Writes the fuzzers' seeds anew: `qtet_seeds tests/fuzz/seeds`. Run it when the format changes; log_fuzz and chunk_fuzz take the golden files.
+// Writes the fuzzers' seeds anew: `qtet_seeds tests/fuzz/seeds`. Run it when the format changes;
+// log_fuzz and chunk_fuzz take the golden files.
 #include <cstdio>
 #include <random>
 
-#include "codec/atomic_file.h"
-#include "codec/value_block.h"
-#include "codec/log_manifest.h"
-#include "codec/log_writer.h"
+#include "codec/files/atomic_file.h"
+#include "codec/log/log_manifest.h"
+#include "codec/log/log_writer.h"
+#include "codec/log/value_block.h"
 #include "proto/messages.h"
-#include "simplify/qtetfusion.h"
+#include "simplify/fuse/qtetfusion.h"
 #include "tests/support/forged_log.h"
 #include "tests/support/meshes.h"
 
@@ -16,14 +17,16 @@ namespace {
 
 void write(const std::filesystem::path& path, ByteView bytes) {
   std::filesystem::create_directories(path.parent_path());
-  if (const Status s = writeFileAtomically(path, bytes); !s) std::fprintf(stderr, "%s\n", s.error().text().c_str());
+  if (const Status s = writeFileAtomically(path, bytes); !s)
+    std::fprintf(stderr, "%s\n", s.error().text().c_str());
 }
 
 void write(const std::filesystem::path& path, const std::string& text) {
   write(path, ByteView(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
 }
 
-/// A log with what refiner_fuzz has: a lattice of 10 bits, a point field of two components, a cell field of one.
+/// A log with what refiner_fuzz has: a lattice of 10 bits, a point field of two components, a cell
+/// field of one.
 testing::TakenApart refinerLog(int n, std::uint32_t seed, std::uint32_t chunkBytes) {
   LatticeMesh mesh = testing::gridMesh(n, seed);
   testing::addCellFields(mesh);
@@ -46,7 +49,8 @@ Bytes refinerSeed(const testing::TakenApart& log, std::size_t chunks) {
   w.write(static_cast<std::uint8_t>(chunks - 1));
   for (std::size_t c = 0; c < chunks; ++c) {
     const ChunkEntry& e = log.index.chunks[c];
-    for (const std::uint32_t count : {e.newVertices, e.newTetrahedra, e.newBoundaryTriangles, e.records})
+    for (const std::uint32_t count :
+         {e.newVertices, e.newTetrahedra, e.newBoundaryTriangles, e.records})
       w.write(static_cast<std::uint16_t>(count));
     w.write(static_cast<std::uint8_t>(e.firstLevel));
     w.write(static_cast<std::uint8_t>(e.lastLevel - e.firstLevel));
@@ -57,7 +61,9 @@ Bytes refinerSeed(const testing::TakenApart& log, std::size_t chunks) {
     w.write(static_cast<std::uint16_t>(log.blocks[c][kStructurePart].size()));
     w.append(log.blocks[c][kStructurePart]);
     for (std::uint32_t part = kPositionsPart; part < log.index.parts(); ++part) {
-      const auto values = decodeValueBlock(log.blocks[c][part], log.index.components(part), log.index.tuples(c, part)).value();
+      const auto values = decodeValueBlock(log.blocks[c][part], log.index.components(part),
+                                           log.index.tuples(c, part))
+                              .value();
       for (const std::int32_t value : values) w.write(static_cast<std::uint16_t>(value));
     }
   }
@@ -67,7 +73,8 @@ Bytes refinerSeed(const testing::TakenApart& log, std::size_t chunks) {
 Bytes dracoSeed(std::uint32_t components, std::uint32_t tuples, std::int32_t magnitude) {
   std::mt19937 random(components * 1000 + tuples);
   std::vector<std::int32_t> values(std::size_t{components} * tuples);
-  for (std::int32_t& value : values) value = magnitude == 0 ? 7 : static_cast<std::int32_t>(random() % (2u * magnitude)) - magnitude;
+  for (std::int32_t& value : values)
+    value = magnitude == 0 ? 7 : static_cast<std::int32_t>(random() % (2u * magnitude)) - magnitude;
   ByteWriter w;
   w.write(static_cast<std::uint8_t>(components - 1));
   w.write(static_cast<std::uint16_t>(tuples));
@@ -79,10 +86,12 @@ Bytes dracoSeed(std::uint32_t components, std::uint32_t tuples, std::int32_t mag
 Bytes knownErrorsSeed() {
   Manifest m;
   m.generator = "qtet", m.source = "a.vtu";
-  m.fields = {{"p", 2, "float32", "point", 12, 0.5, {0, 1}, {0, 2}}, {"c", 1, "uint8", "cell", 8, 1, {0}, {0, 255}}};
+  m.fields = {{"p", 2, "float32", "point", 12, 0.5, {0, 1}, {0, 2}},
+              {"c", 1, "uint8", "cell", 8, 1, {0}, {0, 255}}};
   for (std::uint32_t l = 0; l < 6; ++l) {
     const double e = (5 - l) * 0.01;
-    m.levels.push_back({l, 100 + 10 * l * l, 40 + 3 * l, 50 + 2 * l, 0, LevelError{{e / 3, e}, {e / 4, e}, 1 - e, {{e / 9, e}, {0, e / 2}}}});
+    m.levels.push_back({l, 100 + 10 * l * l, 40 + 3 * l, 50 + 2 * l, 0,
+                        LevelError{{e / 3, e}, {e / 4, e}, 1 - e, {{e / 9, e}, {0, e / 2}}}});
   }
   Bytes out = manifestBlock(m).value();
   out.insert(out.begin(), 5);
@@ -114,20 +123,25 @@ int main(int argc, char** argv) {
   write(folder / "draco" / "sixteen", dracoSeed(16, 12, 300));
   const auto shortest = refinerLog(1, 1, 32768);
   Bytes manifest = shortest.index.manifest;
-  manifest.insert(manifest.begin(), static_cast<std::uint8_t>(shortest.index.chunks.back().lastLevel));
+  manifest.insert(manifest.begin(),
+                  static_cast<std::uint8_t>(shortest.index.chunks.back().lastLevel));
   write(folder / "manifest" / "two-fields", manifest);
   write(folder / "manifest" / "known-errors", knownErrorsSeed());
-  OpenMessage open{"fin", std::string(64, 'a'), {"Velocity", "cell:Region"}, 3, {{"Velocity", 2}}, 1 << 20};
+  OpenMessage open{"fin", std::string(64, 'a'), {"Velocity", "cell:Region"},
+                   3,     {{"Velocity", 2}},    1 << 20};
   write(folder / "message" / "open", toJson(ClientMessage(open)));
   write(folder / "message" / "credit", toJson(ClientMessage(CreditMessage{65536})));
   write(folder / "message" / "stop", toJson(ClientMessage(StopMessage{})));
-  write(folder / "message" / "opened", toJson(ServerMessage(OpenedMessage{1, "fin", std::string(64, 'b'), 1000, 900})));
-  write(folder / "message" / "error", toJson(ServerMessage(ErrorMessage{kNotFound, "there is no mesh 'a'"})));
+  write(folder / "message" / "opened",
+        toJson(ServerMessage(OpenedMessage{1, "fin", std::string(64, 'b'), 1000, 900})));
+  write(folder / "message" / "error",
+        toJson(ServerMessage(ErrorMessage{kNotFound, "there is no mesh 'a'"})));
   Bytes frame(FrameHeader::kBytes + 4, 1);
   const auto header = FrameHeader{1, 2, 0, 1, 4}.encode();
   std::copy(header.begin(), header.end(), frame.begin());
   write(folder / "message" / "frame", frame);
-  for (const std::uint8_t kind : std::initializer_list<std::uint8_t>{0, 4, 8, 9, 5 + 64, 9 + 64, 11})
+  for (const std::uint8_t kind :
+       std::initializer_list<std::uint8_t>{0, 4, 8, 9, 5 + 64, 9 + 64, 11})
     write(folder / "history" / ("kind-" + std::to_string(kind)), historySeed(kind, kind + 1u));
   return 0;
 }

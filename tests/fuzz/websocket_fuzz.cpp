@@ -1,4 +1,5 @@
-// Fuzzes what a client sends over a WebSocket below its messages: whole and cut anywhere it means the same, and is within the limits.
+// Fuzzes what a client sends over a WebSocket below its messages: whole and cut anywhere it means
+// the same, and is within the limits.
 #include <cstdint>
 #include <cstdlib>
 #include <string>
@@ -8,7 +9,7 @@
 
 #include "proto/messages.h"
 #include "proto/utf8.h"
-#include "server/web_socket_reader.h"
+#include "server/wire/web_socket_reader.h"
 
 namespace {
 
@@ -32,9 +33,11 @@ Heard hear(std::string_view bytes, std::size_t step) {
       auto event = reader.next();
       if (!event) return out.closed = static_cast<int>(event.error()), out;
       if (!*event) break;
-      const bool message = (*event)->kind == WebSocketReader::Event::Kind::kText || (*event)->kind == WebSocketReader::Event::Kind::kBinary;
+      const bool message = (*event)->kind == WebSocketReader::Event::Kind::kText ||
+                           (*event)->kind == WebSocketReader::Event::Kind::kBinary;
       if ((*event)->payload.size() > (message ? qtet::kMaxMessageBytes : 125)) std::abort();
-      if ((*event)->kind == WebSocketReader::Event::Kind::kText && !qtet::isUtf8((*event)->payload)) std::abort();
+      if ((*event)->kind == WebSocketReader::Event::Kind::kText && !qtet::isUtf8((*event)->payload))
+        std::abort();
       out.events.emplace_back(static_cast<int>((*event)->kind), (*event)->payload);
     }
   }

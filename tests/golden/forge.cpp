@@ -1,27 +1,29 @@
-// Writes the golden files anew: `qtet_golden FOLDER`. Run it only when the format changes; the committed files are the reference.
+// Writes the golden files anew: `qtet_golden FOLDER`. Run it only when the format changes; the
+// committed files are the reference.
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <functional>
 #include <limits>
 
-#include "codec/atomic_file.h"
-#include "codec/log_file.h"
-#include "codec/level_columns.h"
-#include "codec/log_manifest.h"
-#include "codec/log_writer.h"
-#include "simplify/gaps.h"
-#include "simplify/kept_input.h"
-#include "simplify/qtetfusion.h"
+#include "codec/coding/level_columns.h"
+#include "codec/files/atomic_file.h"
+#include "codec/log/log_file.h"
+#include "codec/log/log_manifest.h"
+#include "codec/log/log_writer.h"
 #include "proto/checksum.h"
 #include "proto/limits.h"
+#include "simplify/fuse/qtetfusion.h"
+#include "simplify/log/kept_input.h"
+#include "simplify/mesh/missing_values.h"
 #include "tests/support/forged_log.h"
 #include "tests/support/meshes.h"
 
 namespace qtet {
 namespace {
 
-Bytes logOf(const LatticeMesh& mesh, std::uint32_t chunkBytes, const FusionOptions& fusion = {}, CodecId values = CodecId::kDraco) {
+Bytes logOf(const LatticeMesh& mesh, std::uint32_t chunkBytes, const FusionOptions& fusion = {},
+            CodecId values = CodecId::kDraco) {
   LogWriterOptions options;
   options.source = "golden.vtu";
   options.generator = "qtet golden";
@@ -30,17 +32,18 @@ Bytes logOf(const LatticeMesh& mesh, std::uint32_t chunkBytes, const FusionOptio
   return encodeLog(simplify(mesh, fusion).value(), options).value().bytes;
 }
 
-/// A field of points, one of cells, and every third of their values missing, beside a field without gaps.
-Bytes gappyLog() {
+/// A field of points, one of cells, and every third of their values missing, beside a field without
+/// missing values.
+Bytes logWithMissingValues() {
   LatticeMesh mesh = testing::gridMesh(3, 6);
   testing::addCellFields(mesh);
-  std::vector<std::vector<std::uint8_t>> gaps(mesh.fields.size());
+  std::vector<std::vector<std::uint8_t>> hasMissing(mesh.fields.size());
   for (const std::size_t f : {std::size_t{0}, mesh.fields.size() - 1}) {
-    mesh.fields[f].gaps = true;
-    for (std::size_t i = 0; i < mesh.values[f].size(); ++i) gaps[f].push_back(i / 2 % 3 == 0);
+    mesh.fields[f].hasMissing = true;
+    for (std::size_t i = 0; i < mesh.values[f].size(); ++i) hasMissing[f].push_back(i / 2 % 3 == 0);
   }
   FusionHistory history = simplify(mesh, {}).value();
-  cutGapsOut(history, gaps);
+  restoreMissing(history, hasMissing);
   LogWriterOptions options;
   options.source = "golden.vtu";
   options.generator = "qtet golden";
@@ -57,8 +60,11 @@ Bytes keptLog() {
   input.pointType = "float64";
   for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
     const FieldInfo& info = mesh.fields[f];
-    MeshField& field = input.fields.emplace_back(MeshField{info.name, info.components, info.type, {}, info.association});
-    for (std::size_t i = 0; i < mesh.values[f].size(); ++i) field.values.push_back(info.value(i % info.components, mesh.values[f][i]) + 0.125 * info.step);
+    MeshField& field = input.fields.emplace_back(
+        MeshField{info.name, info.components, info.type, {}, info.association});
+    for (std::size_t i = 0; i < mesh.values[f].size(); ++i)
+      field.values.push_back(info.value(i % info.components, mesh.values[f][i]) +
+                             0.125 * info.step);
   }
   LogWriterOptions options;
   options.source = "golden.vtu";
@@ -70,8 +76,10 @@ Bytes keptLog() {
   return parts.together();
 }
 
-/// A log taken apart, changed and put together with every checksum right; `table` changes what stands there beside the right offsets.
-Bytes forged(const Bytes& good, const std::function<void(LogIndex&)>& table, const std::function<void(std::vector<std::vector<Bytes>>&)>& body = {}) {
+/// A log taken apart, changed and put together with every checksum right; `table` changes what
+/// stands there beside the right offsets.
+Bytes forged(const Bytes& good, const std::function<void(LogIndex&)>& table,
+             const std::function<void(std::vector<std::vector<Bytes>>&)>& body = {}) {
   testing::TakenApart parts = testing::takeApart(good);
   if (body) body(parts.blocks);
   Bytes whole = parts.together();
@@ -82,7 +90,8 @@ Bytes forged(const Bytes& good, const std::function<void(LogIndex&)>& table, con
 
 void write(const std::filesystem::path& path, const Bytes& bytes) {
   std::filesystem::create_directories(path.parent_path());
-  if (const Status s = writeFileAtomically(path, bytes); !s) std::fprintf(stderr, "%s\n", s.error().text().c_str());
+  if (const Status s = writeFileAtomically(path, bytes); !s)
+    std::fprintf(stderr, "%s\n", s.error().text().c_str());
 }
 
 /// What the head says of levels and fields, broken below right checksums.
@@ -100,40 +109,59 @@ void writeBadHeads(const std::filesystem::path& folder, const Bytes& good) {
     return parts.together();
   };
   write(folder / "truncated.manifest-fields.qtet", manifest([](Bytes& b) { b.resize(60); }));
-  write(folder / "truncated.manifest-levels.qtet", manifest([](Bytes& b) { b.resize(b.size() - 3); }));
+  write(folder / "truncated.manifest-levels.qtet",
+        manifest([](Bytes& b) { b.resize(b.size() - 3); }));
   write(folder / "bad-value.manifest-too-long.qtet", manifest([](Bytes& b) { b.push_back(0); }));
-  write(folder / "bad-value.manifest-long-varint.qtet", manifest([](Bytes& b) { b[0] |= 128, b.insert(b.begin() + 1, 0); }));
-  write(folder / "bad-value.manifest-name-length.qtet", manifest([](Bytes& b) { b[0] |= 128, b.insert(b.begin() + 1, 3); }));
-  write(folder / "bad-value.manifest-step.qtet", manifested([](Manifest& m) { m.latticeStep = 0; }));
-  write(folder / "bad-value.manifest-not-finite.qtet", manifested([](Manifest& m) { m.latticeOrigin[1] = std::numeric_limits<double>::quiet_NaN(); }));
-  write(folder / "bad-value.manifest-field-bits.qtet", manifested([](Manifest& m) { m.fields[0].bits = 29; }));
-  write(folder / "bad-value.manifest-field-type.qtet", manifested([](Manifest& m) { m.fields[0].type = "complex64"; }));
-  write(folder / "bad-value.manifest-field-twice.qtet", manifested([](Manifest& m) { m.fields[1].name = m.fields[0].name; }));
-  write(folder / "bad-value.manifest-no-name.qtet", manifested([](Manifest& m) { m.fields[0].name.clear(); }));
-  write(folder / "bad-value.manifest-count.qtet", manifested([](Manifest& m) { m.levels[1].vertices = kMaxElements + 1; }));
+  write(folder / "bad-value.manifest-long-varint.qtet",
+        manifest([](Bytes& b) { b[0] |= 128, b.insert(b.begin() + 1, 0); }));
+  write(folder / "bad-value.manifest-name-length.qtet",
+        manifest([](Bytes& b) { b[0] |= 128, b.insert(b.begin() + 1, 3); }));
+  write(folder / "bad-value.manifest-step.qtet",
+        manifested([](Manifest& m) { m.latticeStep = 0; }));
+  write(folder / "bad-value.manifest-not-finite.qtet", manifested([](Manifest& m) {
+          m.latticeOrigin[1] = std::numeric_limits<double>::quiet_NaN();
+        }));
+  write(folder / "bad-value.manifest-field-bits.qtet",
+        manifested([](Manifest& m) { m.fields[0].bits = 29; }));
+  write(folder / "bad-value.manifest-field-type.qtet",
+        manifested([](Manifest& m) { m.fields[0].type = "complex64"; }));
+  write(folder / "bad-value.manifest-field-twice.qtet",
+        manifested([](Manifest& m) { m.fields[1].name = m.fields[0].name; }));
+  write(folder / "bad-value.manifest-no-name.qtet",
+        manifested([](Manifest& m) { m.fields[0].name.clear(); }));
+  write(folder / "bad-value.manifest-count.qtet",
+        manifested([](Manifest& m) { m.levels[1].vertices = kMaxElements + 1; }));
   // The figures of all levels in the bytes of none.
   const Manifest m = manifestOf(testing::takeApart(good).index).value();
   LevelColumns columns;
-  for (const auto count : {&ManifestLevel::tetrahedra, &ManifestLevel::vertices, &ManifestLevel::boundaryTriangles})
+  for (const auto count :
+       {&ManifestLevel::tetrahedra, &ManifestLevel::vertices, &ManifestLevel::boundaryTriangles})
     for (const ManifestLevel& level : m.levels) columns.push_back(level.*count);
-  const std::size_t size = encodeLevelColumns(columns, static_cast<std::uint32_t>(m.levels.size())).size();
-  write(folder / "limit-exceeded.manifest-bomb.qtet", manifest([size](Bytes& b) { b.resize(b.size() - size); }));
+  const std::size_t size =
+      encodeLevelColumns(columns, static_cast<std::uint32_t>(m.levels.size())).size();
+  write(folder / "limit-exceeded.manifest-bomb.qtet",
+        manifest([size](Bytes& b) { b.resize(b.size() - size); }));
 }
 
 void writeBadClosing(const std::filesystem::path& folder, const Bytes& kept) {
   const auto closing = [&](const std::function<void(std::vector<ClosingBlock>&)>& change) {
     return forged(kept, [&](LogIndex& i) { change(i.closing); });
   };
-  const auto exact = [](std::vector<ClosingBlock>& c) -> ClosingBlock& { return *std::ranges::find(c, ClosingKind::kExactField, &ClosingBlock::kind); };
-  write(folder / "bad-value.gaps-in-the-table-alone.qtet", forged(kept, [](LogIndex& i) { i.fields[0].gaps = true; }));
+  const auto exact = [](std::vector<ClosingBlock>& c) -> ClosingBlock& {
+    return *std::ranges::find(c, ClosingKind::kExactField, &ClosingBlock::kind);
+  };
+  write(folder / "bad-value.gaps-in-the-table-alone.qtet",
+        forged(kept, [](LogIndex& i) { i.fields[0].hasMissing = true; }));
   write(folder / "bad-value.closing-twice.qtet", closing([](auto& c) { c[1].kind = c[0].kind; }));
   write(folder / "bad-value.closing-field.qtet", closing([&](auto& c) { exact(c).field = 99; }));
   write(folder / "bad-value.closing-size.qtet", closing([](auto& c) { ++c[0].block.size; }));
   write(folder / "bad-value.closing-left-out.qtet", closing([](auto& c) { c.pop_back(); }));
-  write(folder / "limit-exceeded.closing-size.qtet", closing([](auto& c) { c[0].block.size = kMaxBlockBytes + 1; }));
+  write(folder / "limit-exceeded.closing-size.qtet",
+        closing([](auto& c) { c[0].block.size = kMaxBlockBytes + 1; }));
   write(folder / "limit-exceeded.closing-blocks.qtet", closing([](auto& c) {
-    while (c.size() <= kMaxClosingBlocks) c.push_back({static_cast<ClosingKind>(1000 + c.size()), 0, {}});
-  }));
+          while (c.size() <= kMaxClosingBlocks)
+            c.push_back({static_cast<ClosingKind>(1000 + c.size()), 0, {}});
+        }));
 }
 
 void writeMustFail(const std::filesystem::path& folder, const Bytes& good) {
@@ -142,7 +170,9 @@ void writeMustFail(const std::filesystem::path& folder, const Bytes& good) {
     b[at] = value;
     return b;
   };
-  const auto cut = [&](std::size_t n) { return Bytes(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(n)); };
+  const auto cut = [&](std::size_t n) {
+    return Bytes(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(n));
+  };
   const auto entry = [&](std::size_t chunk, const std::function<void(ChunkEntry&)>& change) {
     return forged(good, [&](LogIndex& i) { change(i.chunks[chunk]); });
   };
@@ -152,51 +182,82 @@ void writeMustFail(const std::filesystem::path& folder, const Bytes& good) {
   write(folder / "bad-magic.text-mode-copy.qtet", patched(5, 0x0A));
   write(folder / "bad-version.major-1.qtet", patched(8, 1));
   write(folder / "bad-version.major-3.qtet", patched(8, 3));
-  write(folder / "bad-value.regions-without-packets.qtet", forged(good, [](LogIndex& i) { i.layout = Layout::kRegions; }));
+  write(folder / "bad-value.regions-without-packets.qtet",
+        forged(good, [](LogIndex& i) { i.layout = Layout::kRegions; }));
   write(folder / "truncated.header.qtet", cut(63));
   write(folder / "truncated.manifest.qtet", cut(100));
   write(folder / "truncated.last-byte.qtet", cut(good.size() - 1));
-  write(folder / "bad-value.one-byte-too-many.qtet", [&] { Bytes b = good; b.push_back(0); return b; }());
+  write(folder / "bad-value.one-byte-too-many.qtet", [&] {
+    Bytes b = good;
+    b.push_back(0);
+    return b;
+  }());
   write(folder / "bad-checksum.header.qtet", patched(41, 1));
-  write(folder / "bad-checksum.manifest.qtet", patched(70, static_cast<std::uint8_t>(good[70] ^ 1)));
+  write(folder / "bad-checksum.manifest.qtet",
+        patched(70, static_cast<std::uint8_t>(good[70] ^ 1)));
   write(folder / "bad-checksum.table.qtet", patched(index.headBytes() - 3, 99));
-  write(folder / "bad-checksum.block.qtet", patched(good.size() - 7, static_cast<std::uint8_t>(good[good.size() - 7] ^ 16)));
-  write(folder / "bad-value.position-bits.qtet", forged(good, [](LogIndex& i) { i.positionBits = 3; }));
-  write(folder / "bad-value.lattice-too-small.qtet", forged(good, [](LogIndex& i) { i.positionBits = 6; }));
-  write(folder / "bad-value.field-components.qtet", forged(good, [](LogIndex& i) { i.fields[0].components = 0; }));
-  write(folder / "bad-value.field-association.qtet", forged(good, [](LogIndex& i) { i.fields[0].association = static_cast<Association>(2); }));
-  write(folder / "bad-value.points-as-cells.qtet", forged(good, [](LogIndex& i) { i.fields[0].association = Association::kCell; }));
-  write(folder / "bad-value.block-size.qtet", entry(1, [](ChunkEntry& e) { e.blocks[0].size += 8; }));
-  write(folder / "bad-value.dependencies.qtet", forged(good, [](LogIndex& i) { i.dependencies.push_back(1); }));
+  write(folder / "bad-checksum.block.qtet",
+        patched(good.size() - 7, static_cast<std::uint8_t>(good[good.size() - 7] ^ 16)));
+  write(folder / "bad-value.position-bits.qtet",
+        forged(good, [](LogIndex& i) { i.positionBits = 3; }));
+  write(folder / "bad-value.lattice-too-small.qtet",
+        forged(good, [](LogIndex& i) { i.positionBits = 6; }));
+  write(folder / "bad-value.field-components.qtet",
+        forged(good, [](LogIndex& i) { i.fields[0].components = 0; }));
+  write(folder / "bad-value.field-association.qtet",
+        forged(good, [](LogIndex& i) { i.fields[0].association = static_cast<Association>(2); }));
+  write(folder / "bad-value.points-as-cells.qtet",
+        forged(good, [](LogIndex& i) { i.fields[0].association = Association::kCell; }));
+  write(folder / "bad-value.block-size.qtet",
+        entry(1, [](ChunkEntry& e) { e.blocks[0].size += 8; }));
+  write(folder / "bad-value.dependencies.qtet",
+        forged(good, [](LogIndex& i) { i.dependencies.push_back(1); }));
   write(folder / "bad-value.reserved-bytes.qtet", reserved);
-  write(folder / "bad-value.ends-within-a-level.qtet", entry(index.chunks.size() - 1, [](ChunkEntry& e) { e.endSlot = 1000; }));
-  write(folder / "bad-value.a-level-too-many.qtet", entry(index.chunks.size() - 1, [](ChunkEntry& e) { ++e.lastLevel; }));
-  write(folder / "bad-value.too-few-cells.qtet", entry(1, [](ChunkEntry& e) { --e.newTetrahedra; }));
+  write(folder / "bad-value.ends-within-a-level.qtet",
+        entry(index.chunks.size() - 1, [](ChunkEntry& e) { e.endSlot = 1000; }));
+  write(folder / "bad-value.a-level-too-many.qtet",
+        entry(index.chunks.size() - 1, [](ChunkEntry& e) { ++e.lastLevel; }));
+  write(folder / "bad-value.too-few-cells.qtet",
+        entry(1, [](ChunkEntry& e) { --e.newTetrahedra; }));
   write(folder / "bad-value.too-many-records.qtet", entry(1, [](ChunkEntry& e) { ++e.records; }));
-  write(folder / "limit-exceeded.levels.qtet", entry(index.chunks.size() - 1, [](ChunkEntry& e) { e.lastLevel = 4097; }));
-  write(folder / "limit-exceeded.records.qtet", entry(1, [](ChunkEntry& e) { e.records = 0x40000000; }));
-  write(folder / "bad-codec.unknown-id.qtet", entry(1, [](ChunkEntry& e) { e.valueCodec = static_cast<CodecId>(77); }));
-  write(folder / "bad-codec.not-draco.qtet", forged(good, {}, [](auto& blocks) { blocks[1][kPositionsPart] = Bytes(50, 0x5A), std::fill_n(blocks[1][kPositionsPart].end() - 4, 4, 0); }));
-  write(folder / "bad-value.structure-of-noise.qtet", forged(good, {}, [](auto& blocks) { for (auto& b : blocks[1][kStructurePart]) b = static_cast<std::uint8_t>(b * 7 + 3); }));
-  write(folder / "bad-value.structure-too-long.qtet", forged(good, {}, [](auto& blocks) { blocks[1][kStructurePart].push_back(0); }));
+  write(folder / "limit-exceeded.levels.qtet",
+        entry(index.chunks.size() - 1, [](ChunkEntry& e) { e.lastLevel = 4097; }));
+  write(folder / "limit-exceeded.records.qtet",
+        entry(1, [](ChunkEntry& e) { e.records = 0x40000000; }));
+  write(folder / "bad-codec.unknown-id.qtet",
+        entry(1, [](ChunkEntry& e) { e.valueCodec = static_cast<CodecId>(77); }));
+  write(folder / "bad-codec.not-draco.qtet", forged(good, {}, [](auto& blocks) {
+          blocks[1][kPositionsPart] = Bytes(50, 0x5A),
+          std::fill_n(blocks[1][kPositionsPart].end() - 4, 4, 0);
+        }));
+  write(folder / "bad-value.structure-of-noise.qtet", forged(good, {}, [](auto& blocks) {
+          for (auto& b : blocks[1][kStructurePart]) b = static_cast<std::uint8_t>(b * 7 + 3);
+        }));
+  write(folder / "bad-value.structure-too-long.qtet",
+        forged(good, {}, [](auto& blocks) { blocks[1][kStructurePart].push_back(0); }));
   writeBadHeads(folder, good);
-  write(folder / "bad-value.structure-cut.qtet", forged(good, {}, [](auto& blocks) { blocks[2][kStructurePart].resize(blocks[2][kStructurePart].size() / 2); }));
+  write(folder / "bad-value.structure-cut.qtet", forged(good, {}, [](auto& blocks) {
+          blocks[2][kStructurePart].resize(blocks[2][kStructurePart].size() / 2);
+        }));
 }
 
 /// What the valid files decode to, in the form that sha256sum writes.
 void writeDigests(const std::filesystem::path& folder) {
   std::ofstream meshes(folder / "digests.txt"), values(folder / "field-digests.txt");
-  for (const char* name : {"adaptive", "cell-fields", "gaps", "kept-input", "no-fields", "pinched", "regions", "solid", "tunnel"}) {
+  for (const char* name : {"adaptive", "cell-fields", "gaps", "kept-input", "no-fields", "pinched",
+                           "regions", "solid", "tunnel"}) {
     const std::string file = std::string(name) + ".qtet";
     const LogFile log = LogFile::open(folder / "valid" / file).value();
     std::vector<std::uint32_t> fields;
     for (std::uint32_t f = 0; f < log.index().fields.size(); ++f) fields.push_back(f);
     Refiner refiner(log.index());
-    for (std::uint32_t chunk = 0; chunk < log.index().chunks.size(); ++chunk) applyChunk(log, refiner, chunk, fields).value();
+    for (std::uint32_t chunk = 0; chunk < log.index().chunks.size(); ++chunk)
+      applyChunk(log, refiner, chunk, fields).value();
     meshes << toHex(refiner.digest()) << "  " << file << "\n";
     for (const std::uint32_t f : fields) {
       ByteWriter w;
-      for (const std::int32_t value : refiner.fieldValues(f)) w.write(static_cast<std::uint32_t>(value));
+      for (const std::int32_t value : refiner.fieldValues(f))
+        w.write(static_cast<std::uint32_t>(value));
       values << sha256Hex(w.bytes()) << "  " << file << "/" << f << "\n";
     }
   }
@@ -211,17 +272,21 @@ int main(int argc, char** argv) {
   using qtet::testing::gridMesh;
   const qtet::Bytes solid = qtet::logOf(gridMesh(3, 1), 150);
   qtet::write(folder / "valid" / "solid.qtet", solid);
-  qtet::write(folder / "valid" / "tunnel.qtet", qtet::logOf(gridMesh(3, 2, [](int i, int j, int) { return i != 1 || j != 1; }), 300));
-  qtet::write(folder / "valid" / "pinched.qtet", qtet::logOf(gridMesh(4, 3, [](int i, int j, int) { return (i < 2) == (j < 2); }), 700));
+  qtet::write(folder / "valid" / "tunnel.qtet",
+              qtet::logOf(gridMesh(3, 2, [](int i, int j, int) { return i != 1 || j != 1; }), 300));
+  qtet::write(
+      folder / "valid" / "pinched.qtet",
+      qtet::logOf(gridMesh(4, 3, [](int i, int j, int) { return (i < 2) == (j < 2); }), 700));
   qtet::LatticeMesh bare = gridMesh(2, 4);
   bare.fields.clear(), bare.values.clear();
   qtet::write(folder / "valid" / "no-fields.qtet", qtet::logOf(bare, 32768));
   qtet::LatticeMesh cells = gridMesh(3, 5);
   qtet::testing::addCellFields(cells);
   qtet::write(folder / "valid" / "cell-fields.qtet", qtet::logOf(cells, 800));
-  qtet::write(folder / "valid" / "adaptive.qtet", qtet::logOf(gridMesh(3, 5), 400, {}, qtet::CodecId::kAdaptive));
+  qtet::write(folder / "valid" / "adaptive.qtet",
+              qtet::logOf(gridMesh(3, 5), 400, {}, qtet::CodecId::kAdaptive));
   const qtet::Bytes kept = qtet::keptLog();
-  qtet::write(folder / "valid" / "gaps.qtet", qtet::gappyLog());
+  qtet::write(folder / "valid" / "gaps.qtet", qtet::logWithMissingValues());
   qtet::write(folder / "valid" / "kept-input.qtet", kept);
   qtet::FusionOptions bands;
   bands.targetRatio = 0;

@@ -57,7 +57,8 @@ TEST(Bytes, aHugeCountIsRefusedAndNotWrappedRound) {
 }
 
 TEST(Errors, aTextNamesTheCodeAndTheOffset) {
-  EXPECT_EQ((Error{ErrorCode::kBadChecksum, "no match", 12}).text(), "bad-checksum at byte 12: no match");
+  EXPECT_EQ((Error{ErrorCode::kBadChecksum, "no match", 12}).text(),
+            "bad-checksum at byte 12: no match");
   EXPECT_EQ((Error{ErrorCode::kIo, "no file"}).text(), "io: no file");
 }
 

@@ -1,4 +1,5 @@
-// Known vectors: the CRC catalogue's check value and the examples of RFC 3720, appendix B.4. Every way of computing it gives the same.
+// Known vectors: the CRC catalogue's check value and the examples of RFC 3720, appendix B.4. Every
+// way of computing it gives the same.
 #include "proto/crc32c.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +12,9 @@
 namespace qtet {
 namespace {
 
-ByteView view(std::string_view text) { return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}; }
+ByteView view(std::string_view text) {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
 
 /// The definition, bit by bit.
 std::uint32_t byDefinition(ByteView bytes) {
@@ -38,8 +41,8 @@ Bytes descending() {
 /// "An iSCSI - SCSI Read (10) Command PDU".
 Bytes scsiRead() {
   Bytes bytes(48, 0);
-  bytes[0] = 0x01, bytes[1] = 0xC0, bytes[16] = 0x14, bytes[22] = 0x04, bytes[27] = 0x14, bytes[31] = 0x18, bytes[32] = 0x28,
-  bytes[40] = 0x02;
+  bytes[0] = 0x01, bytes[1] = 0xC0, bytes[16] = 0x14, bytes[22] = 0x04, bytes[27] = 0x14,
+  bytes[31] = 0x18, bytes[32] = 0x28, bytes[40] = 0x02;
   return bytes;
 }
 
@@ -75,15 +78,19 @@ TEST_P(Crc32c, longRandomBytesAgreeWithTheTables) {
   for (int i = 0; i < 300; ++i) {
     const std::size_t start = random() % 1000;
     const ByteView part = ByteView(bytes).subspan(start, random() % (bytes.size() - start));
-    ASSERT_EQ(GetParam().run(part), crc32cPaths().back().run(part)) << part.size() << " bytes from " << start;
+    ASSERT_EQ(GetParam().run(part), crc32cPaths().back().run(part))
+        << part.size() << " bytes from " << start;
     if (i % 50 == 0) {
       ASSERT_EQ(GetParam().run(part), byDefinition(part));
     }
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Paths, Crc32c, ::testing::ValuesIn(crc32cPaths().begin(), crc32cPaths().end()),
-                         [](const auto& path) { return path.index + 1 == crc32cPaths().size() ? "tables" : "instruction"; });
+INSTANTIATE_TEST_SUITE_P(Paths, Crc32c,
+                         ::testing::ValuesIn(crc32cPaths().begin(), crc32cPaths().end()),
+                         [](const auto& path) {
+                           return path.index + 1 == crc32cPaths().size() ? "tables" : "instruction";
+                         });
 
 TEST(Crc32cPaths, theInstructionIsTakenWhereThereIsOneAndTheTablesAreAlwaysThere) {
   ASSERT_FALSE(crc32cPaths().empty());

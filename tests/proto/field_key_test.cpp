@@ -13,7 +13,9 @@ struct Named {
 
 using Places = std::vector<std::uint32_t>;
 
-const std::vector<Named> kFields{{"cell", "T"}, {"point", "U"}, {"point", "T"}, {"point", "P@0"}, {"point", "P@0.5"}, {"cell", "P@0.5"}, {"point", "cell:T"}, {"point", "inlet@left"}, {"point", "@1"}};
+const std::vector<Named> kFields{{"cell", "T"},       {"point", "U"},          {"point", "T"},
+                                 {"point", "P@0"},    {"point", "P@0.5"},      {"cell", "P@0.5"},
+                                 {"point", "cell:T"}, {"point", "inlet@left"}, {"point", "@1"}};
 
 TEST(FieldKey, aNameMeansEveryFieldThatHasIt) {
   EXPECT_EQ(fieldsOfKey(kFields, "T"), (Places{0, 2}));
@@ -55,7 +57,8 @@ TEST(FieldKey, aStepEndsInANumber) {
   EXPECT_EQ(nameWithoutStep("T@0.5"), "T");
   EXPECT_EQ(nameWithoutStep("T@-1e-07"), "T");
   EXPECT_EQ(nameWithoutStep("a@b@3"), "a@b");
-  for (const char* name : {"T", "T@", "T@x", "T@1x", "@1", ""}) EXPECT_EQ(nameWithoutStep(name), std::nullopt) << name;
+  for (const char* name : {"T", "T@", "T@x", "T@1x", "@1", ""})
+    EXPECT_EQ(nameWithoutStep(name), std::nullopt) << name;
 }
 
 }  // namespace

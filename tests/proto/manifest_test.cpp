@@ -25,7 +25,8 @@ TEST(Manifest, isWrittenAsTheDocumentSays) {
   EXPECT_EQ(json["generator"], "qtet 0.1.0");
   EXPECT_EQ(json["layout"], "stream");
   EXPECT_EQ(json["source"], "comb.vtu");
-  EXPECT_EQ(json["lattice"], (Json{{"bits", 16}, {"step", 0.1 + 0.2}, {"origin", {-1.5, 1e-17, 3.0}}}));
+  EXPECT_EQ(json["lattice"],
+            (Json{{"bits", 16}, {"step", 0.1 + 0.2}, {"origin", {-1.5, 1e-17, 3.0}}}));
   ASSERT_EQ(json["fields"].size(), 2u);
   EXPECT_EQ(json["fields"][1], (Json{{"name", "velocity"},
                                      {"components", 3},
@@ -36,7 +37,11 @@ TEST(Manifest, isWrittenAsTheDocumentSays) {
                                      {"minimum", {-1.0, -2.0, -3.0}},
                                      {"range", {0.0, 7.0}}}));
   ASSERT_EQ(json["levels"].size(), 3u);
-  EXPECT_EQ(json["levels"][2], (Json{{"level", 2}, {"tetrahedra", 230}, {"vertices", 80}, {"boundaryTriangles", 90}, {"chunk", 3}}));
+  EXPECT_EQ(json["levels"][2], (Json{{"level", 2},
+                                     {"tetrahedra", 230},
+                                     {"vertices", 80},
+                                     {"boundaryTriangles", 90},
+                                     {"chunk", 3}}));
 }
 
 TEST(Manifest, aFieldIsFoundByItsKey) {

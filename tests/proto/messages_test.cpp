@@ -15,7 +15,11 @@ OpenMessage sampleOpen() {
           .fields = {"density", "velocity"},
           .have = {{7, {{9, 12}, {20, 21}}}, {{"density", {3}}, {"velocity", {7, {{10, 12}}}}}},
           .target = FieldErrorTarget{0.01, "density"},
-          .view = {{{1, 0, 0, 2}}, {{0, 1, 0, 3}}, std::array<double, 6>{0, 0, 0, 1, 2, 3}, Isovalue{"density", {}, {0.5}}, std::array<double, 3>{4, 5, 6}},
+          .view = {{{1, 0, 0, 2}},
+                   {{0, 1, 0, 3}},
+                   std::array<double, 6>{0, 0, 0, 1, 2, 3},
+                   Isovalue{"density", {}, {0.5}},
+                   std::array<double, 3>{4, 5, 6}},
           .credit = 1 << 20};
 }
 
@@ -49,7 +53,8 @@ TEST(Messages, openIsReadBack) {
 }
 
 TEST(Messages, theProtocolDocumentsExamplesAreUnderstood) {
-  EXPECT_TRUE(parseClientMessage(R"({"type":"open","mesh":"a","fields":["x"],"have":{"chunks":2,"fields":{"x":1}},"credit":1000})"));
+  EXPECT_TRUE(parseClientMessage(
+      R"({"type":"open","mesh":"a","fields":["x"],"have":{"chunks":2,"fields":{"x":1}},"credit":1000})"));
   EXPECT_TRUE(parseClientMessage(R"({"type":"open","mesh":"a","credit":0})"));
   const auto credit = parseClientMessage(R"({"type":"credit","bytes":12345})");
   ASSERT_TRUE(credit);
@@ -59,94 +64,109 @@ TEST(Messages, theProtocolDocumentsExamplesAreUnderstood) {
   EXPECT_TRUE(std::holds_alternative<CancelMessage>(*stop));
 }
 
-TEST(Messages, wishesAreReadBack) {
+TEST(Messages, viewRequestsAreReadBack) {
   const auto again = [](const std::string& json) {
     const auto message = parseClientMessage(json);
     return message ? toJson(*message) : message.error().message;
   };
   for (const std::string json :
-       {R"({"target":{"level":3},"type":"target"})", R"({"target":{"bytes":5000000000},"type":"target"})", R"({"target":{"tetrahedra":9},"type":"target"})",
-        R"({"target":{"error":0.5,"field":"a"},"type":"target"})", R"({"target":{"boundaryError":0.25},"type":"target"})",
-        R"({"target":null,"type":"target"})", R"({"type":"view","view":null})", R"({"type":"view","view":{"point":[1.0,2.0,3.0]}})",
-        R"({"type":"view","view":{"isovalue":{"component":2,"field":"a","values":[0.5,1.0]}}})", R"({"type":"pause"})",
-        R"({"type":"resume"})", R"({"have":{"chunks":1,"fields":{"a":1},"ranges":[[3,4]]},"type":"resume"})", R"({"type":"cancel"})"})
+       {R"({"target":{"level":3},"type":"target"})",
+        R"({"target":{"bytes":5000000000},"type":"target"})",
+        R"({"target":{"tetrahedra":9},"type":"target"})",
+        R"({"target":{"error":0.5,"field":"a"},"type":"target"})",
+        R"({"target":{"boundaryError":0.25},"type":"target"})",
+        R"({"target":null,"type":"target"})", R"({"type":"view","view":null})",
+        R"({"type":"view","view":{"point":[1.0,2.0,3.0]}})",
+        R"({"type":"view","view":{"isovalue":{"component":2,"field":"a","values":[0.5,1.0]}}})",
+        R"({"type":"pause"})", R"({"type":"resume"})",
+        R"({"have":{"chunks":1,"fields":{"a":1},"ranges":[[3,4]]},"type":"resume"})",
+        R"({"type":"cancel"})"})
     EXPECT_EQ(again(json), json);
 }
 
 TEST(Messages, neighbouringRangesBecomeOne) {
-  const auto message = parseClientMessage(R"({"type":"resume","have":{"chunks":1,"ranges":[[3,4],[4,9]]}})");
+  const auto message =
+      parseClientMessage(R"({"type":"resume","have":{"chunks":1,"ranges":[[3,4],[4,9]]}})");
   ASSERT_TRUE(message);
   EXPECT_EQ(std::get<ResumeMessage>(*message).have->mesh.ranges, (std::vector<ChunkRange>{{3, 9}}));
 }
 
-/// At the last legal nesting a message is only strange, past it it is refused before anything is built of it.
+/// At the last legal nesting a message is only strange, past it it is refused before anything is
+/// built of it.
 TEST(Messages, deepNestingIsRefusedUnread) {
   const auto nested = [](int depth) {
-    return R"({"type":"stop","why":)" + std::string(static_cast<std::size_t>(depth), '[') + std::string(static_cast<std::size_t>(depth), ']') + "}";
+    return R"({"type":"stop","why":)" + std::string(static_cast<std::size_t>(depth), '[') +
+           std::string(static_cast<std::size_t>(depth), ']') + "}";
   };
   EXPECT_TRUE(parseClientMessage(nested(31)));
   EXPECT_EQ(refusal(nested(32)), ErrorCode::kBadValue);
   EXPECT_EQ(refusal(nested(30000)), ErrorCode::kBadValue);
-  EXPECT_TRUE(parseClientMessage(R"({"type":"stop","why":"\"[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[["})"));
+  EXPECT_TRUE(
+      parseClientMessage(R"({"type":"stop","why":"\"[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[["})"));
 }
 
-TEST(Messages, membersOfLaterVersionsAreIgnored) { EXPECT_TRUE(parseClientMessage(R"({"type":"stop","why":"lunch"})")); }
+TEST(Messages, membersOfLaterVersionsAreIgnored) {
+  EXPECT_TRUE(parseClientMessage(R"({"type":"stop","why":"lunch"})"));
+}
 
 TEST(Messages, wrongShapesAreBadValues) {
-  for (const char* json : {"",
-                           "{",
-                           "null",
-                           "7",
-                           "[]",
-                           "\"stop\"",
-                           "{}",
-                           R"({"type":7})",
-                           R"({"type":"jump"})",
-                           R"({"type":"credit"})",
-                           R"({"type":"credit","bytes":-1})",
-                           R"({"type":"credit","bytes":1.5})",
-                           R"({"type":"credit","bytes":"1"})",
-                           R"({"type":"credit","bytes":9007199254740992})",
-                           R"({"type":"open","credit":1})",
-                           R"({"type":"open","mesh":"a"})",
-                           R"({"type":"open","mesh":"","credit":1})",
-                           R"({"type":"open","mesh":["a"],"credit":1})",
-                           R"({"type":"open","mesh":"a","fields":"x","credit":1})",
-                           R"({"type":"open","mesh":"a","fields":[1],"credit":1})",
-                           R"({"type":"open","mesh":"a","have":5,"credit":1})",
-                           R"({"type":"open","mesh":"a","have":{"chunks":-1},"credit":1})",
-                           R"({"type":"open","mesh":"a","have":{"chunks":1048577},"credit":1})",
-                           R"({"type":"open","mesh":"a","have":{"chunks":1,"fields":{"x":2}},"credit":1})",
-                           R"({"type":"open","mesh":"a","have":{"fields":[]},"credit":1})",
-                           R"({"type":"open","mesh":"a","digest":"abc","credit":1})",
-                           R"({"type":"open","mesh":"a","have":{"chunks":3,"ranges":[[3,5]]},"credit":1})",
-                           R"({"type":"open","mesh":"a","have":{"chunks":3,"ranges":[[5,5]]},"credit":1})",
-                           R"({"type":"open","mesh":"a","have":{"chunks":3,"ranges":[[6,8],[5,6]]},"credit":1})",
-                           R"({"type":"open","mesh":"a","have":{"chunks":3,"ranges":[[5]]},"credit":1})",
-                           R"({"type":"open","mesh":"a","have":{"chunks":3,"ranges":[[5,8]],"fields":{"x":{"chunks":3,"ranges":[[7,9]]}}},"credit":1})",
-                           R"({"type":"view"})",
-                           R"({"type":"view","view":[]})",
-                           R"({"type":"view","view":{"frustum":[[1,2,3]]}})",
-                           R"({"type":"view","view":{"frustum":[[1,2,3,4],[1,2,3,4],[1,2,3,4],[1,2,3,4],[1,2,3,4],[1,2,3,4],[1,2,3,4]]}})",
-                           R"({"type":"view","view":{"planes":[[1,2,3,4],[1,2,3,4],[1,2,3,4],[1,2,3,4]]}})",
-                           R"({"type":"view","view":{"box":[0,0,0,1,1]}})",
-                           R"({"type":"view","view":{"box":[0,0,2,1,1,1]}})",
-                           R"({"type":"view","view":{"isovalue":{"field":"a","values":[1,2,3,4,5,6,7,8,9]}}})",
-                           R"({"type":"view","view":{"isovalue":{"field":"a","component":16,"values":[1]}}})",
-                           R"({"type":"view","view":{"isovalue":{"field":"a","component":-1,"values":[1]}}})",
-                           R"({"type":"view","view":{"point":[1,2,null]}})",
-                           R"({"type":"target"})",
-                           R"({"type":"target","target":{}})",
-                           R"({"type":"target","target":{"level":1,"bytes":2}})",
-                           R"({"type":"target","target":{"error":0.1}})",
-                           R"({"type":"target","target":{"boundaryError":-1}})",
-                           R"({"type":"stop"} {"type":"stop"})",
-                           "{\"type\":\"stop\xFF\"}"})
+  for (
+      const char* json :
+      {"",
+       "{",
+       "null",
+       "7",
+       "[]",
+       "\"stop\"",
+       "{}",
+       R"({"type":7})",
+       R"({"type":"jump"})",
+       R"({"type":"credit"})",
+       R"({"type":"credit","bytes":-1})",
+       R"({"type":"credit","bytes":1.5})",
+       R"({"type":"credit","bytes":"1"})",
+       R"({"type":"credit","bytes":9007199254740992})",
+       R"({"type":"open","credit":1})",
+       R"({"type":"open","mesh":"a"})",
+       R"({"type":"open","mesh":"","credit":1})",
+       R"({"type":"open","mesh":["a"],"credit":1})",
+       R"({"type":"open","mesh":"a","fields":"x","credit":1})",
+       R"({"type":"open","mesh":"a","fields":[1],"credit":1})",
+       R"({"type":"open","mesh":"a","have":5,"credit":1})",
+       R"({"type":"open","mesh":"a","have":{"chunks":-1},"credit":1})",
+       R"({"type":"open","mesh":"a","have":{"chunks":1048577},"credit":1})",
+       R"({"type":"open","mesh":"a","have":{"chunks":1,"fields":{"x":2}},"credit":1})",
+       R"({"type":"open","mesh":"a","have":{"fields":[]},"credit":1})",
+       R"({"type":"open","mesh":"a","digest":"abc","credit":1})",
+       R"({"type":"open","mesh":"a","have":{"chunks":3,"ranges":[[3,5]]},"credit":1})",
+       R"({"type":"open","mesh":"a","have":{"chunks":3,"ranges":[[5,5]]},"credit":1})",
+       R"({"type":"open","mesh":"a","have":{"chunks":3,"ranges":[[6,8],[5,6]]},"credit":1})",
+       R"({"type":"open","mesh":"a","have":{"chunks":3,"ranges":[[5]]},"credit":1})",
+       R"({"type":"open","mesh":"a","have":{"chunks":3,"ranges":[[5,8]],"fields":{"x":{"chunks":3,"ranges":[[7,9]]}}},"credit":1})",
+       R"({"type":"view"})",
+       R"({"type":"view","view":[]})",
+       R"({"type":"view","view":{"frustum":[[1,2,3]]}})",
+       R"({"type":"view","view":{"frustum":[[1,2,3,4],[1,2,3,4],[1,2,3,4],[1,2,3,4],[1,2,3,4],[1,2,3,4],[1,2,3,4]]}})",
+       R"({"type":"view","view":{"planes":[[1,2,3,4],[1,2,3,4],[1,2,3,4],[1,2,3,4]]}})",
+       R"({"type":"view","view":{"box":[0,0,0,1,1]}})",
+       R"({"type":"view","view":{"box":[0,0,2,1,1,1]}})",
+       R"({"type":"view","view":{"isovalue":{"field":"a","values":[1,2,3,4,5,6,7,8,9]}}})",
+       R"({"type":"view","view":{"isovalue":{"field":"a","component":16,"values":[1]}}})",
+       R"({"type":"view","view":{"isovalue":{"field":"a","component":-1,"values":[1]}}})",
+       R"({"type":"view","view":{"point":[1,2,null]}})",
+       R"({"type":"target"})",
+       R"({"type":"target","target":{}})",
+       R"({"type":"target","target":{"level":1,"bytes":2}})",
+       R"({"type":"target","target":{"error":0.1}})",
+       R"({"type":"target","target":{"boundaryError":-1}})",
+       R"({"type":"stop"} {"type":"stop"})",
+       "{\"type\":\"stop\xFF\"}"})
     EXPECT_EQ(refusal(json), ErrorCode::kBadValue) << json;
 }
 
 TEST(Messages, aRefusalNamesThePlace) {
-  const auto result = parseClientMessage(R"({"type":"open","mesh":"a","fields":["x",7],"credit":1})");
+  const auto result =
+      parseClientMessage(R"({"type":"open","mesh":"a","fields":["x",7],"credit":1})");
   ASSERT_FALSE(result);
   EXPECT_NE(result.error().message.find("/fields/1"), std::string::npos) << result.error().message;
 }
@@ -154,7 +174,8 @@ TEST(Messages, aRefusalNamesThePlace) {
 TEST(Messages, whatIsTooLongIsRefusedUnread) {
   const std::string stop = R"({"type":"stop"})";
   EXPECT_TRUE(parseClientMessage(stop + std::string(kMaxMessageBytes - stop.size(), ' ')));
-  EXPECT_EQ(refusal(stop + std::string(kMaxMessageBytes - stop.size() + 1, ' ')), ErrorCode::kLimitExceeded);
+  EXPECT_EQ(refusal(stop + std::string(kMaxMessageBytes - stop.size() + 1, ' ')),
+            ErrorCode::kLimitExceeded);
 }
 
 TEST(Messages, oneFieldTooManyIsRefused) {
@@ -167,11 +188,13 @@ TEST(Messages, oneFieldTooManyIsRefused) {
 
 TEST(Messages, everyTruncationIsRefused) {
   const std::string whole = toJson(ClientMessage(sampleOpen()));
-  for (std::size_t n = 0; n < whole.size(); ++n) EXPECT_FALSE(parseClientMessage(whole.substr(0, n))) << n;
+  for (std::size_t n = 0; n < whole.size(); ++n)
+    EXPECT_FALSE(parseClientMessage(whole.substr(0, n))) << n;
 }
 
 TEST(Messages, theServersWordsAreReadBack) {
-  const auto opened = parseServerMessage(toJson(OpenedMessage{3, "comb", std::string(64, '0'), 5000000000ull, 77, "regions"}));
+  const auto opened = parseServerMessage(
+      toJson(OpenedMessage{3, "comb", std::string(64, '0'), 5000000000ull, 77, "regions"}));
   ASSERT_TRUE(opened) << opened.error().message;
   EXPECT_EQ(std::get<OpenedMessage>(*opened).bytes, 5000000000ull);
   EXPECT_EQ(std::get<OpenedMessage>(*opened).stream, 3u);
@@ -183,7 +206,10 @@ TEST(Messages, theServersWordsAreReadBack) {
   EXPECT_EQ(std::get<PlannedMessage>(*planned).view, 2u);
   EXPECT_EQ(std::get<DoneMessage>(*parseServerMessage(toJson(DoneMessage{4}))).stream, 4u);
   EXPECT_EQ(std::get<StoppedMessage>(*parseServerMessage(toJson(StoppedMessage{5}))).stream, 5u);
-  EXPECT_EQ(std::get<ErrorMessage>(*parseServerMessage(toJson(ErrorMessage{kNotFound, "no \"such\" mesh"}))).detail, "no \"such\" mesh");
+  EXPECT_EQ(std::get<ErrorMessage>(
+                *parseServerMessage(toJson(ErrorMessage{kNotFound, "no \"such\" mesh"})))
+                .detail,
+            "no \"such\" mesh");
   EXPECT_FALSE(parseServerMessage(R"({"type":"hello"})"));
 }
 
@@ -208,7 +234,8 @@ TEST(FrameHeader, aFrameIsReadBackAndEveryTruncationIsRefused) {
   for (std::size_t n = 0; n < whole.size(); ++n) {
     const Result<FrameHeader> cut = FrameHeader::parse(ByteView(whole).first(n));
     ASSERT_FALSE(cut) << n;
-    EXPECT_EQ(cut.error().code, n < FrameHeader::kBytes ? ErrorCode::kTruncated : ErrorCode::kBadValue);
+    EXPECT_EQ(cut.error().code,
+              n < FrameHeader::kBytes ? ErrorCode::kTruncated : ErrorCode::kBadValue);
   }
 }
 

@@ -11,11 +11,13 @@ namespace {
 
 std::atomic<std::int64_t> held{0};
 std::atomic<std::int64_t> peak{0};
-std::atomic<std::int64_t> untilFailure{-1};  // allocations in threads that are not spared; negative: none fails
+// allocations in threads that are not spared; negative: none fails
+std::atomic<std::int64_t> untilFailure{-1};
 thread_local bool isSpared = false;
 
 void failInTurn() {
-  if (!isSpared && untilFailure.load() >= 0 && untilFailure.fetch_sub(1) == 0) throw std::bad_alloc();
+  if (!isSpared && untilFailure.load() >= 0 && untilFailure.fetch_sub(1) == 0)
+    throw std::bad_alloc();
 }
 
 void* taken(void* memory) {
@@ -32,11 +34,14 @@ void given(void* memory) {
   std::free(memory);
 }
 
-std::size_t roundedUp(std::size_t bytes, std::size_t alignment) { return (bytes + alignment - 1) / alignment * alignment; }
+std::size_t roundedUp(std::size_t bytes, std::size_t alignment) {
+  return (bytes + alignment - 1) / alignment * alignment;
+}
 
 }  // namespace
 
-// All forms: a sanitizer's own do not call one another, and it minds what one form allocates and another gives back.
+// All forms: a sanitizer's own do not call one another, and it minds what one form allocates and
+// another gives back.
 void* operator new(std::size_t bytes) {
   failInTurn();
   return taken(std::malloc(bytes == 0 ? 1 : bytes));
@@ -46,12 +51,16 @@ void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
   void* memory = std::malloc(bytes == 0 ? 1 : bytes);
   return memory == nullptr ? nullptr : taken(memory);
 }
-void* operator new[](std::size_t bytes, const std::nothrow_t& tag) noexcept { return operator new(bytes, tag); }
+void* operator new[](std::size_t bytes, const std::nothrow_t& tag) noexcept {
+  return operator new(bytes, tag);
+}
 void* operator new(std::size_t bytes, std::align_val_t alignment) {
   const auto step = static_cast<std::size_t>(alignment);
   return taken(std::aligned_alloc(step, roundedUp(bytes == 0 ? 1 : bytes, step)));
 }
-void* operator new[](std::size_t bytes, std::align_val_t alignment) { return operator new(bytes, alignment); }
+void* operator new[](std::size_t bytes, std::align_val_t alignment) {
+  return operator new(bytes, alignment);
+}
 void operator delete(void* memory) noexcept { given(memory); }
 void operator delete[](void* memory) noexcept { given(memory); }
 void operator delete(void* memory, std::size_t) noexcept { given(memory); }

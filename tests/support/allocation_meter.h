@@ -7,10 +7,12 @@
 
 namespace qtet::testing {
 
-/// The largest sum of bytes held at one time by what `work` allocates with new, in all threads, above what was held before.
+/// The largest sum of bytes held at one time by what `work` allocates with new, in all threads,
+/// above what was held before.
 [[nodiscard]] std::size_t peakBytesOf(const std::function<void()>& work);
 
-/// Calls work; meanwhile the n-th allocation with new in other threads, from 0, fails as if there were no memory. Under the thread sanitizer none does.
+/// Calls work; meanwhile the n-th allocation with new in other threads, from 0, fails as if there
+/// were no memory. Under the thread sanitizer none does.
 void withoutMemoryInOthers(std::int64_t n, const std::function<void()>& work);
 
 }  // namespace qtet::testing

@@ -1,10 +1,11 @@
-// Logs that lie: taken apart, changed, and put together with every offset and checksum right, so that only what checks the sense can tell.
+// Logs that lie: taken apart, changed, and put together with every offset and checksum right, so
+// that only what checks the sense can tell.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "codec/log_index.h"
+#include "codec/log/log_index.h"
 #include "proto/crc32c.h"
 
 namespace qtet::testing {
@@ -18,21 +19,25 @@ struct TakenApart {
   [[nodiscard]] Bytes together() {
     for (std::size_t c = 0; c < blocks.size(); ++c) {
       index.chunks[c].blocks.resize(blocks[c].size());
-      for (std::size_t p = 0; p < blocks[c].size(); ++p) index.chunks[c].blocks[p].size = static_cast<std::uint32_t>(blocks[c][p].size());
+      for (std::size_t p = 0; p < blocks[c].size(); ++p)
+        index.chunks[c].blocks[p].size = static_cast<std::uint32_t>(blocks[c][p].size());
     }
-    for (std::size_t i = 0; i < closing.size(); ++i) index.closing[i].block.size = static_cast<std::uint32_t>(closing[i].size());
+    for (std::size_t i = 0; i < closing.size(); ++i)
+      index.closing[i].block.size = static_cast<std::uint32_t>(closing[i].size());
     std::uint64_t offset = index.encode().size();  // which depends on the sizes
     Bytes tail;
     for (std::size_t c = 0; c < blocks.size(); ++c) {
       index.chunks[c].offset = offset;
       for (std::size_t p = 0; p < blocks[c].size(); ++p) {
-        index.chunks[c].blocks[p] = {offset, static_cast<std::uint32_t>(blocks[c][p].size()), crc32c(blocks[c][p])};
+        index.chunks[c].blocks[p] = {offset, static_cast<std::uint32_t>(blocks[c][p].size()),
+                                     crc32c(blocks[c][p])};
         offset += blocks[c][p].size();
         tail.insert(tail.end(), blocks[c][p].begin(), blocks[c][p].end());
       }
     }
     for (std::size_t i = 0; i < closing.size(); ++i) {
-      index.closing[i].block = {offset, static_cast<std::uint32_t>(closing[i].size()), crc32c(closing[i])};
+      index.closing[i].block = {offset, static_cast<std::uint32_t>(closing[i].size()),
+                                crc32c(closing[i])};
       offset += closing[i].size();
       tail.insert(tail.end(), closing[i].begin(), closing[i].end());
     }
@@ -43,7 +48,8 @@ struct TakenApart {
   }
 };
 
-/// `good` with another front, the blocks as they are: its length in the header becomes right, everything else is as `index` says.
+/// `good` with another front, the blocks as they are: its length in the header becomes right,
+/// everything else is as `index` says.
 [[nodiscard]] inline Bytes withFront(ByteView good, LogIndex index) {
   const std::uint64_t before = LogIndex::parse(good).value().headBytes();
   index.fileBytes += index.encode().size() - before;
@@ -69,11 +75,15 @@ struct TakenApart {
   return out;
 }
 
-/// Makes the checksums in the header right, of what it says are manifest and table and of itself, after bytes of them were changed.
+/// Makes the checksums in the header right, of what it says are manifest and table and of itself,
+/// after bytes of them were changed.
 inline void mendChecksums(Bytes& log) {
-  constexpr std::size_t kManifestBytesAt = 24, kTableBytesAt = 28, kManifestCrcAt = 32, kTableCrcAt = 36, kHeaderCrcAt = 60;
+  constexpr std::size_t kManifestBytesAt = 24, kTableBytesAt = 28, kManifestCrcAt = 32,
+                        kTableCrcAt = 36, kHeaderCrcAt = 60;
   if (log.size() < LogIndex::kHeaderBytes) return;
-  const auto get = [&](std::size_t at) { return std::uint64_t{ByteReader(ByteView(log).subspan(at, 4)).read<std::uint32_t>()}; };
+  const auto get = [&](std::size_t at) {
+    return std::uint64_t{ByteReader(ByteView(log).subspan(at, 4)).read<std::uint32_t>()};
+  };
   const auto put = [&](std::size_t at, std::uint32_t value) {
     for (std::size_t i = 0; i < 4; ++i) log[at + i] = static_cast<std::uint8_t>(value >> (8 * i));
   };

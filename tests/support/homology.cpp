@@ -32,7 +32,8 @@ struct Rank {
   std::vector<bool> pivots;  // by row
 };
 
-/// A row of one column makes that column independent of the others, and both go, which may free further rows.
+/// A row of one column makes that column independent of the others, and both go, which may free
+/// further rows.
 void collapse(std::vector<Column>& columns, Rank& out) {
   std::vector<std::set<std::size_t>> columnsOf(out.pivots.size());
   for (std::size_t c = 0; c < columns.size(); ++c)
@@ -44,7 +45,8 @@ void collapse(std::vector<Column>& columns, Rank& out) {
     rows.pop_back();
     if (columnsOf[row].size() != 1) continue;
     const std::size_t column = *columnsOf[row].begin();
-    for (const std::size_t other : columns[column]) columnsOf[other].erase(column), rows.push_back(other);
+    for (const std::size_t other : columns[column])
+      columnsOf[other].erase(column), rows.push_back(other);
     columns[column].clear();
     out.pivots[row] = true;
     ++out.rank;
@@ -67,9 +69,10 @@ void eliminate(const std::vector<Column>& columns, Rank& out) {
   out.rank += static_cast<std::int64_t>(byLowest.size());
 }
 
-/// `dependent`: the pivots of the matrix one dimension up. A pivot's simplex closes a cycle with simplices that are no pivots, so its column is a sum of
-/// theirs and may be left out.
-Rank rankOf(std::vector<Column> columns, std::size_t rows, const std::vector<bool>& dependent = {}) {
+/// `dependent`: the pivots of the matrix one dimension up. A pivot's simplex closes a cycle with
+/// simplices that are no pivots, so its column is a sum of theirs and may be left out.
+Rank rankOf(std::vector<Column> columns, std::size_t rows,
+            const std::vector<bool>& dependent = {}) {
   for (std::size_t c = 0; c < dependent.size(); ++c)
     if (dependent[c]) columns[c].clear();
   Rank out{0, std::vector<bool>(rows)};
@@ -88,7 +91,8 @@ std::array<VertexId, N - 1> without(const std::array<VertexId, N>& simplex, std:
 
 /// The boundary matrix: a column for each simplex, a row for each of their faces.
 template <class Simplex, class Face>
-std::vector<Column> boundaryMatrix(const std::vector<Simplex>& simplices, Numbering<Face>& faces, std::vector<Face>& listed) {
+std::vector<Column> boundaryMatrix(const std::vector<Simplex>& simplices, Numbering<Face>& faces,
+                                   std::vector<Face>& listed) {
   std::vector<Column> columns;
   for (const Simplex& simplex : simplices) {
     Column& column = columns.emplace_back();
@@ -119,9 +123,11 @@ std::array<std::int64_t, 4> bettiNumbers(std::span<const Tetrahedron> cells) {
   const Rank rank3 = rankOf(third, faces.size());
   const Rank rank2 = rankOf(second, edges.size(), rank3.pivots);
   const Rank rank1 = rankOf(first, vertices.size(), rank2.pivots);
-  const auto cycles = [](std::size_t simplices, const Rank& rank) { return static_cast<std::int64_t>(simplices) - rank.rank; };
-  return {cycles(vertices.size(), rank1), cycles(edges.size(), rank1) - rank2.rank, cycles(faces.size(), rank2) - rank3.rank,
-          cycles(cells.size(), rank3)};
+  const auto cycles = [](std::size_t simplices, const Rank& rank) {
+    return static_cast<std::int64_t>(simplices) - rank.rank;
+  };
+  return {cycles(vertices.size(), rank1), cycles(edges.size(), rank1) - rank2.rank,
+          cycles(faces.size(), rank2) - rank3.rank, cycles(cells.size(), rank3)};
 }
 
 }  // namespace qtet::testing

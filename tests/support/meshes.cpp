@@ -11,13 +11,13 @@
 #include <random>
 #include <set>
 
-#include "codec/atomic_file.h"
-#include "codec/boundary.h"
-#include "codec/growing_mesh.h"
-#include "codec/log_writer.h"
-#include "codec/predicates.h"
-#include "simplify/measure_geometry.h"
-#include "simplify/qtetfusion.h"
+#include "codec/files/atomic_file.h"
+#include "codec/log/log_writer.h"
+#include "codec/mesh/boundary.h"
+#include "codec/mesh/growing_mesh.h"
+#include "codec/mesh/predicates.h"
+#include "simplify/fuse/qtetfusion.h"
+#include "simplify/mesh/measure_geometry.h"
 #include "tests/support/written_log.h"
 
 namespace qtet::testing {
@@ -25,16 +25,20 @@ namespace {
 
 constexpr std::int32_t kCube = 64;  // lattice steps a cube
 
-void addCube(LatticeMesh& mesh, const std::function<VertexId(int, int, int)>& vertex, int i, int j, int k) {
-  static constexpr std::array<std::array<int, 3>, 6> kOrders{{{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
-  for (const auto& order : kOrders) {  // Kuhn: a path from corner to corner for each order of the axes
+void addCube(LatticeMesh& mesh, const std::function<VertexId(int, int, int)>& vertex, int i, int j,
+             int k) {
+  static constexpr std::array<std::array<int, 3>, 6> kOrders{
+      {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
+  // Kuhn: a path from corner to corner for each order of the axes
+  for (const auto& order : kOrders) {
     std::array<int, 3> at{i, j, k};
     Tetrahedron t{vertex(at[0], at[1], at[2])};
     for (std::size_t s = 0; s < 3; ++s) {
       ++at[static_cast<std::size_t>(order[s])];
       t[s + 1] = vertex(at[0], at[1], at[2]);
     }
-    if (orientation(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]) < 0) std::swap(t[2], t[3]);
+    if (orientation(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]) < 0)
+      std::swap(t[2], t[3]);
     mesh.tetrahedra.push_back(t);
   }
 }
@@ -44,7 +48,8 @@ void dropUnused(LatticeMesh& mesh) {
   std::vector<VertexId> kept;
   for (Tetrahedron& t : mesh.tetrahedra)
     for (VertexId& v : t) {
-      if (renumbered[v] == kGhost) renumbered[v] = static_cast<VertexId>(kept.size()), kept.push_back(v);
+      if (renumbered[v] == kGhost)
+        renumbered[v] = static_cast<VertexId>(kept.size()), kept.push_back(v);
       v = renumbered[v];
     }
   for (Triangle& t : mesh.boundary)
@@ -56,7 +61,9 @@ void dropUnused(LatticeMesh& mesh) {
     if (isCellField(mesh.fields[f])) continue;
     const auto n = static_cast<std::ptrdiff_t>(mesh.fields[f].components);
     mesh.values[f].clear();
-    for (const VertexId v : kept) mesh.values[f].insert(mesh.values[f].end(), old.values[f].begin() + v * n, old.values[f].begin() + (v + 1) * n);
+    for (const VertexId v : kept)
+      mesh.values[f].insert(mesh.values[f].end(), old.values[f].begin() + v * n,
+                            old.values[f].begin() + (v + 1) * n);
   }
 }
 
@@ -66,14 +73,17 @@ LatticeMesh gridMesh(int n, std::uint32_t seed, const std::function<bool(int, in
   std::mt19937 random(seed);
   LatticeMesh mesh;
   mesh.lattice = {12, 1.0 / kCube, {0, 0, 0}};
-  const auto vertex = [n](int i, int j, int k) { return static_cast<VertexId>((i * (n + 1) + j) * (n + 1) + k); };
+  const auto vertex = [n](int i, int j, int k) {
+    return static_cast<VertexId>((i * (n + 1) + j) * (n + 1) + k);
+  };
   for (int i = 0; i <= n; ++i)
     for (int j = 0; j <= n; ++j)
       for (int k = 0; k <= n; ++k) {
         LatticePoint p{i * kCube, j * kCube, k * kCube};
         const std::array<int, 3> at{i, j, k};
         for (std::size_t a = 0; a < 3; ++a)
-          if (at[a] > 0 && at[a] < n) p[a] += static_cast<std::int32_t>(random() % (kCube / 4)) - kCube / 8;
+          if (at[a] > 0 && at[a] < n)
+            p[a] += static_cast<std::int32_t>(random() % (kCube / 4)) - kCube / 8;
         mesh.points.push_back(p);
       }
   for (int i = 0; i < n; ++i)
@@ -82,7 +92,8 @@ LatticeMesh gridMesh(int n, std::uint32_t seed, const std::function<bool(int, in
         if (keep(i, j, k)) addCube(mesh, vertex, i, j, k);
   dropUnused(mesh);
   mesh.boundary = boundaryOf(mesh.tetrahedra);
-  mesh.fields = {{"Height", 1, "float32", "point", 12, 0.25, {-3}, {-3, 1020}}, {"Swirl", 3, "float64", "point", 10, 0.5, {0, 0, -1}, {0, 900}}};
+  mesh.fields = {{"Height", 1, "float32", "point", 12, 0.25, {-3}, {-3, 1020}},
+                 {"Swirl", 3, "float64", "point", 10, 0.5, {0, 0, -1}, {0, 900}}};
   mesh.values.resize(2);
   for (const LatticePoint& p : mesh.points) {
     mesh.values[0].push_back((p[0] * p[0] + 3 * p[2]) % 4096);
@@ -105,7 +116,9 @@ LatticeMesh fanMesh(std::uint32_t n) {
   mesh.points = {{kRadius, kRadius, kRadius / 2}, {kRadius, kRadius, kRadius / 2 * 3}};
   for (std::uint32_t i = 0; i < n; ++i) {
     const double angle = 2 * std::numbers::pi * i / n;
-    const auto at = [](double x) { return kRadius + static_cast<std::int32_t>(std::floor((kRadius - 1) * x)); };
+    const auto at = [](double x) {
+      return kRadius + static_cast<std::int32_t>(std::floor((kRadius - 1) * x));
+    };
     mesh.points.push_back({at(std::cos(angle)), at(std::sin(angle)), kRadius});
     mesh.tetrahedra.push_back({0, 1, 2 + i, 2 + (i + 1) % n});
   }
@@ -156,8 +169,10 @@ LatticeMesh meshOfHistory(const FusionHistory& history, std::uint32_t undone) {
     const Fusion& f = h.fusions[i];
     if (h.levels - f.level > undone) break;
     for (std::uint32_t j = 0; j < f.affectedCount; ++j)
-      std::ranges::replace(h.cells[h.affectedCells[f.firstAffected + j]], f.fused, f.prey[h.affectedLabels[f.firstAffected + j]]);
-    for (std::uint32_t j = 0; j < f.deletedCount; ++j) h.live[h.deletedCells[f.firstDeleted + j]] = 1;
+      std::ranges::replace(h.cells[h.affectedCells[f.firstAffected + j]], f.fused,
+                           f.prey[h.affectedLabels[f.firstAffected + j]]);
+    for (std::uint32_t j = 0; j < f.deletedCount; ++j)
+      h.live[h.deletedCells[f.firstDeleted + j]] = 1;
   }
   LatticeMesh mesh;
   mesh.lattice = h.lattice;
@@ -168,7 +183,8 @@ LatticeMesh meshOfHistory(const FusionHistory& history, std::uint32_t undone) {
     if (isCellField(mesh.fields[f])) mesh.values[f].clear();
   for (std::size_t c = 0; c < h.cells.size(); ++c) {
     if (!h.live[c]) continue;
-    const auto ghost = static_cast<std::size_t>(std::ranges::find(h.cells[c], kGhost) - h.cells[c].begin());
+    const auto ghost =
+        static_cast<std::size_t>(std::ranges::find(h.cells[c], kGhost) - h.cells[c].begin());
     if (ghost == 4) {
       mesh.tetrahedra.push_back(h.cells[c]);
       for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
@@ -206,7 +222,9 @@ std::array<std::int64_t, 2> eulerCharacteristics(const LatticeMesh& mesh) {
 std::string whatIsWrongWith(const LatticeMesh& mesh) {
   for (std::size_t i = 0; i < mesh.tetrahedra.size(); ++i) {
     const Tetrahedron& t = mesh.tetrahedra[i];
-    if (orientation(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]) <= 0) return "cell " + std::to_string(i) + " is not positive";
+    if (orientation(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]) <=
+        0)
+      return "cell " + std::to_string(i) + " is not positive";
   }
   std::map<Triangle, int> faces;
   for (const Tetrahedron& t : mesh.tetrahedra)
@@ -220,7 +238,9 @@ std::string whatIsWrongWith(const LatticeMesh& mesh) {
     std::ranges::sort(triangles);
     return triangles;
   };
-  return turned(mesh.boundary) == turned(boundaryOf(mesh.tetrahedra)) ? "" : "the boundary is not that of the cells";
+  return turned(mesh.boundary) == turned(boundaryOf(mesh.tetrahedra))
+             ? ""
+             : "the boundary is not that of the cells";
 }
 
 double distanceOutside(const LatticeMesh& solid, const LatticePoint& p) {
@@ -234,18 +254,22 @@ double distanceOutside(const LatticeMesh& solid, const LatticePoint& p) {
   }
   double nearest = std::numeric_limits<double>::infinity();
   for (const Triangle& t : solid.boundary)
-    nearest = std::min(nearest, nearestOnTriangle(toVector(p), {toVector(solid.points[t[0]]), toVector(solid.points[t[1]]), toVector(solid.points[t[2]])}).squared);
+    nearest = std::min(nearest, nearestOnTriangle(toVector(p), {toVector(solid.points[t[0]]),
+                                                                toVector(solid.points[t[1]]),
+                                                                toVector(solid.points[t[2]])})
+                                    .squared);
   return std::sqrt(nearest);
 }
 
-std::filesystem::path writeSampleLog(const std::filesystem::path& folder, const std::string& name, int n, std::uint32_t seed,
-                                     std::uint32_t chunkBytes) {
+std::filesystem::path writeSampleLog(const std::filesystem::path& folder, const std::string& name,
+                                     int n, std::uint32_t seed, std::uint32_t chunkBytes) {
   const std::filesystem::path path = folder / (name + ".qtet");
   writeLog(path, gridMesh(n, seed), {}, chunkBytes);
   return path;
 }
 
-Bytes logBytes(const LatticeMesh& mesh, const FusionOptions& fusion, std::uint32_t chunkBytes, const std::string& source) {
+Bytes logBytes(const LatticeMesh& mesh, const FusionOptions& fusion, std::uint32_t chunkBytes,
+               const std::string& source) {
   const auto history = simplify(mesh, fusion);
   if (!history) throw std::runtime_error(history.error().text());
   LogWriterOptions options;
@@ -257,15 +281,18 @@ Bytes logBytes(const LatticeMesh& mesh, const FusionOptions& fusion, std::uint32
   return std::move(log->bytes);
 }
 
-void writeLog(const std::filesystem::path& path, const LatticeMesh& mesh, const FusionOptions& fusion, std::uint32_t chunkBytes) {
+void writeLog(const std::filesystem::path& path, const LatticeMesh& mesh,
+              const FusionOptions& fusion, std::uint32_t chunkBytes) {
   const Bytes log = logBytes(mesh, fusion, chunkBytes, path.stem().string() + ".vtu");
-  if (const auto written = writeFileAtomically(path, log); !written) throw std::runtime_error(written.error().text());
+  if (const auto written = writeFileAtomically(path, log); !written)
+    throw std::runtime_error(written.error().text());
 }
 
 std::filesystem::path freshFolder(const std::string& name) {
   // One folder a process, gone when the process ends.
   static const struct Root {
-    std::filesystem::path path = std::filesystem::temp_directory_path() / ("qtet-test-" + std::to_string(getpid()));
+    std::filesystem::path path =
+        std::filesystem::temp_directory_path() / ("qtet-test-" + std::to_string(getpid()));
     ~Root() {
       std::error_code ignored;
       std::filesystem::remove_all(path, ignored);

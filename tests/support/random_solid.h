@@ -1,10 +1,11 @@
-// Random small solids of tetrahedra for property tests: tunnels, cavities, several parts, cells that touch in an edge or a vertex.
+// Random small solids of tetrahedra for property tests: tunnels, cavities, several parts, cells
+// that touch in an edge or a vertex.
 #pragma once
 
 #include <cstdint>
 #include <string>
 
-#include "codec/mesh.h"
+#include "codec/mesh/mesh.h"
 
 namespace qtet::testing {
 
@@ -13,9 +14,10 @@ struct RandomSolid {
   std::string description;  ///< what the seed chose, for a failing test's message
 };
 
-/// A grid of 2 to 6 cubes an axis with even, graded or flat spacing, its points inside moved at random, each cube in six (Kuhn) or five tetrahedra; then cubes
-/// and, for some seeds, single tetrahedra taken out at random. At least one cell. Embedded: no two cells overlap. Two fields, none for some seeds.
-/// The same on every machine.
+/// A grid of 2 to 6 cubes an axis with even, graded or flat spacing, its points inside moved at
+/// random, each cube in six (Kuhn) or five tetrahedra; then cubes and, for some seeds, single
+/// tetrahedra taken out at random. At least one cell. Embedded: no two cells overlap. Two fields,
+/// none for some seeds. The same on every machine.
 [[nodiscard]] RandomSolid randomSolid(std::uint32_t seed);
 
 }  // namespace qtet::testing

@@ -5,6 +5,8 @@
 
 namespace qtet::testing {
 
-[[nodiscard]] inline std::filesystem::path sampleLog() { return writeSampleLog(freshFolder("sample-log")); }
+[[nodiscard]] inline std::filesystem::path sampleLog() {
+  return writeSampleLog(freshFolder("sample-log"));
+}
 
 }  // namespace qtet::testing

@@ -1,4 +1,5 @@
-// What the tests of manifests begin with: lattice and a first field whose figures are no short decimals.
+// What the tests of manifests begin with: lattice and a first field whose figures are no short
+// decimals.
 #pragma once
 
 #include "proto/manifest.h"

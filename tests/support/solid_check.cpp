@@ -13,7 +13,8 @@ namespace qtet::testing {
 namespace {
 
 /// Corners of the face opposite each corner, counter-clockwise seen from outside a positive cell.
-constexpr std::array<std::array<std::size_t, 3>, 4> kFaces{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+constexpr std::array<std::array<std::size_t, 3>, 4> kFaces{
+    {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
 
 class Sets {
  public:
@@ -30,7 +31,8 @@ class Sets {
 
 std::array<VertexId, 2> edgeOf(VertexId a, VertexId b) { return {std::min(a, b), std::max(a, b)}; }
 
-/// The rotation of a triangle that begins with its lowest vertex: equal for equal triangles of one sense.
+/// The rotation of a triangle that begins with its lowest vertex: equal for equal triangles of one
+/// sense.
 Triangle turned(Triangle t) {
   std::ranges::rotate(t, std::ranges::min_element(t));
   return t;
@@ -58,7 +60,9 @@ class Checker {
   }
 
  private:
-  [[nodiscard]] Point point(VertexId v) const { return {mesh_.points[v][0], mesh_.points[v][1], mesh_.points[v][2]}; }
+  [[nodiscard]] Point point(VertexId v) const {
+    return {mesh_.points[v][0], mesh_.points[v][1], mesh_.points[v][2]};
+  }
   template <std::size_t N>
   [[nodiscard]] std::array<Point, N> pointsOf(const std::array<VertexId, N>& simplex) const {
     std::array<Point, N> out;
@@ -98,7 +102,8 @@ class Checker {
       out_.facesOneSided += turned(at[0].face) == turned(at[1].face);
       parts.join(at[0].cell, at[1].cell);
     }
-    for (std::size_t c = 0; c < mesh_.tetrahedra.size(); ++c) out_.faceComponents += parts.of(c) == c;
+    for (std::size_t c = 0; c < mesh_.tetrahedra.size(); ++c)
+      out_.faceComponents += parts.of(c) == c;
   }
 
   void checkBoundary() {
@@ -138,8 +143,8 @@ class Checker {
       }
     for (const auto& [edge, triangles] : edges)
       if (triangles != 2)
-        out_.singularEdges.push_back(
-            {std::min(mesh_.points[edge[0]], mesh_.points[edge[1]]), std::max(mesh_.points[edge[0]], mesh_.points[edge[1]])});
+        out_.singularEdges.push_back({std::min(mesh_.points[edge[0]], mesh_.points[edge[1]]),
+                                      std::max(mesh_.points[edge[0]], mesh_.points[edge[1]])});
     for (const auto& [vertex, link] : links)
       if (!isOneCircle(link)) out_.singularVertices.push_back(mesh_.points[vertex]);
     std::ranges::sort(out_.singularEdges);
@@ -152,14 +157,16 @@ class Checker {
       for (const VertexId v : e) ++degree[v], number.try_emplace(v, number.size());
     Sets parts(number.size());
     for (const auto& e : edges) parts.join(number[e[0]], number[e[1]]);
-    const bool connected = std::ranges::all_of(number, [&](const auto& n) { return parts.of(n.second) == parts.of(0); });
+    const bool connected = std::ranges::all_of(
+        number, [&](const auto& n) { return parts.of(n.second) == parts.of(0); });
     return connected && std::ranges::all_of(degree, [](const auto& d) { return d.second == 2; });
   }
 
   void countOverlaps() {
     const auto boxes = boxesOf(mesh_.tetrahedra);
     forEachBoxPair(boxes, boxes, [&](std::size_t i, std::size_t j) {
-      if (i < j) out_.overlaps += insideMeets(pointsOf(mesh_.tetrahedra[i]), pointsOf(mesh_.tetrahedra[j]));
+      if (i < j)
+        out_.overlaps += insideMeets(pointsOf(mesh_.tetrahedra[i]), pointsOf(mesh_.tetrahedra[j]));
     });
   }
 
@@ -188,21 +195,28 @@ class Checker {
     const auto s = pointsOf(first), t = pointsOf(second);
     if (shared == 3) return true;
     if (shared == 2) return foldedOnto(s, t[2]);
-    // With one vertex in common, what else they have in common reaches one of the edges opposite it.
-    if (shared == 1) return segmentMeetsTriangle(s[1], s[2], t) || segmentMeetsTriangle(t[1], t[2], s);
+    // With one vertex in common, what else they have in common reaches one of the edges opposite
+    // it.
+    if (shared == 1)
+      return segmentMeetsTriangle(s[1], s[2], t) || segmentMeetsTriangle(t[1], t[2], s);
     for (std::size_t i = 0; i < 3; ++i)
-      if (segmentMeetsTriangle(s[i], s[(i + 1) % 3], t) || segmentMeetsTriangle(t[i], t[(i + 1) % 3], s)) return true;
+      if (segmentMeetsTriangle(s[i], s[(i + 1) % 3], t) ||
+          segmentMeetsTriangle(t[i], t[(i + 1) % 3], s))
+        return true;
     return false;
   }
 
-  /// Whether d lies in the triangle's plane, on the same side of its first edge as its third vertex: both triangles cover a common part.
+  /// Whether d lies in the triangle's plane, on the same side of its first edge as its third
+  /// vertex: both triangles cover a common part.
   static bool foldedOnto(const std::array<Point, 3>& t, const Point& d) {
     if (sideOf(t[0], t[1], t[2], d) != 0) return false;
-    // Seen from a point off the plane, both turn the same way round the edge. One of the axes leads off it.
+    // Seen from a point off the plane, both turn the same way round the edge. One of the axes leads
+    // off it.
     for (std::size_t k = 0; k < 3; ++k) {
       Point off = t[0];
       ++off[k];
-      if (const int side = sideOf(t[0], t[1], t[2], off); side != 0) return sideOf(t[0], t[1], d, off) == side;
+      if (const int side = sideOf(t[0], t[1], t[2], off); side != 0)
+        return sideOf(t[0], t[1], d, off) == side;
     }
     return true;
   }
@@ -219,11 +233,14 @@ template <class Simplex>
 std::vector<Point> cornersOf(const LatticeMesh& mesh, const Simplex& simplex) {
   std::vector<Point> out;
   for (const VertexId v : simplex)
-    out.push_back({kCorners * mesh.points[v][0], kCorners * mesh.points[v][1], kCorners * mesh.points[v][2]});
+    out.push_back(
+        {kCorners * mesh.points[v][0], kCorners * mesh.points[v][1], kCorners * mesh.points[v][2]});
   return out;
 }
 
-std::array<Point, 4> cellOf(const std::vector<Point>& corners) { return {corners[0], corners[1], corners[2], corners[3]}; }
+std::array<Point, 4> cellOf(const std::vector<Point>& corners) {
+  return {corners[0], corners[1], corners[2], corners[3]};
+}
 
 Point barycentre(const std::vector<Point>& corners) {
   Point sum{};
@@ -258,8 +275,10 @@ SolidReport checkSolid(const LatticeMesh& mesh) { return Checker(mesh).report();
 
 std::string topologyChange(const SolidReport& now, const SolidReport& original) {
   if (now.betti != original.betti) return "the Betti numbers changed";
-  if (now.faceComponents != original.faceComponents) return "the cells hang together by faces in another number of parts";
-  if (now.boundaryEuler != original.boundaryEuler) return "the Euler characteristics of the boundary's parts changed";
+  if (now.faceComponents != original.faceComponents)
+    return "the cells hang together by faces in another number of parts";
+  if (now.boundaryEuler != original.boundaryEuler)
+    return "the Euler characteristics of the boundary's parts changed";
   if (now.singularVertices != original.singularVertices) return "the singular vertices changed";
   if (now.singularEdges != original.singularEdges) return "the singular edges changed";
   return "";
@@ -267,7 +286,8 @@ std::string topologyChange(const SolidReport& now, const SolidReport& original) 
 
 std::string whatIsOutside(const LatticeMesh& inner, const LatticeMesh& outer) {
   std::vector<std::vector<Point>> cells, outerCells, outerBoundary, barycentres;
-  for (const Tetrahedron& t : inner.tetrahedra) cells.push_back(cornersOf(inner, t)), barycentres.push_back({barycentre(cells.back())});
+  for (const Tetrahedron& t : inner.tetrahedra)
+    cells.push_back(cornersOf(inner, t)), barycentres.push_back({barycentre(cells.back())});
   for (const Tetrahedron& t : outer.tetrahedra) outerCells.push_back(cornersOf(outer, t));
   for (const Triangle& t : outer.boundary) outerBoundary.push_back(cornersOf(outer, t));
 

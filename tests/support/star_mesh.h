@@ -1,4 +1,5 @@
-// One vertex and the star round it, as the codec's parts see it: for tests that need a link and no whole mesh.
+// One vertex and the star round it, as the codec's parts see it: for tests that need a link and no
+// whole mesh.
 #pragma once
 
 #include <map>
@@ -6,9 +7,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "codec/boundary.h"
-#include "codec/growing_mesh.h"
-#include "codec/link.h"
+#include "codec/mesh/boundary.h"
+#include "codec/mesh/growing_mesh.h"
+#include "codec/mesh/link.h"
 
 namespace qtet::testing {
 
@@ -17,23 +18,31 @@ struct StarMesh {
   Link link;         ///< of vertex 0, placed
 };
 
-/// The centre of an octahedron whose corners lie 2 * `scale` away on the axes, each of its faces cut in four: 32 cells round an inner vertex, or, of the upper half
-/// alone, 16 and 8 boundary triangles round one on the boundary. REQUIRES: every corner within [0, 2^bits).
-[[nodiscard]] inline StarMesh starMesh(const LatticePoint& centre, const LatticePoint& scale, int bits, bool half = false) {
+/// The centre of an octahedron whose corners lie 2 * `scale` away on the axes, each of its faces
+/// cut in four: 32 cells round an inner vertex, or, of the upper half alone, 16 and 8 boundary
+/// triangles round one on the boundary. REQUIRES: every corner within [0, 2^bits).
+[[nodiscard]] inline StarMesh starMesh(const LatticePoint& centre, const LatticePoint& scale,
+                                       int bits, bool half = false) {
   StarMesh out;
   out.mesh.points.push_back(centre);
   std::map<LatticePoint, VertexId> ids;
   const auto corner = [&](const LatticePoint& at) {
     const auto [found, fresh] = ids.try_emplace(at, static_cast<VertexId>(out.mesh.points.size()));
-    if (fresh) out.mesh.points.push_back({centre[0] + scale[0] * at[0], centre[1] + scale[1] * at[1], centre[2] + scale[2] * at[2]});
+    if (fresh)
+      out.mesh.points.push_back({centre[0] + scale[0] * at[0], centre[1] + scale[1] * at[1],
+                                 centre[2] + scale[2] * at[2]});
     return found->second;
   };
   for (int octant = 0; octant < (half ? 4 : 8); ++octant) {
     const std::int32_t x = octant & 1 ? -1 : 1, y = octant & 2 ? -1 : 1, z = octant & 4 ? -1 : 1;
-    const std::array<VertexId, 6> v{corner({2 * x, 0, 0}), corner({0, 2 * y, 0}), corner({0, 0, 2 * z}), corner({x, y, 0}), corner({0, y, z}), corner({x, 0, z})};
-    for (const auto& [a, b, c] : {std::array{0, 5, 3}, std::array{3, 4, 1}, std::array{5, 2, 4}, std::array{3, 5, 4}}) {
+    const std::array<VertexId, 6> v{corner({2 * x, 0, 0}), corner({0, 2 * y, 0}),
+                                    corner({0, 0, 2 * z}), corner({x, y, 0}),
+                                    corner({0, y, z}),     corner({x, 0, z})};
+    for (const auto& [a, b, c] :
+         {std::array{0, 5, 3}, std::array{3, 4, 1}, std::array{5, 2, 4}, std::array{3, 5, 4}}) {
       const auto at = [&](int i) { return v[static_cast<std::size_t>(i)]; };
-      out.mesh.tetrahedra.push_back(x * y * z > 0 ? Tetrahedron{at(a), at(b), at(c), 0} : Tetrahedron{at(a), at(c), at(b), 0});
+      out.mesh.tetrahedra.push_back(x * y * z > 0 ? Tetrahedron{at(a), at(b), at(c), 0}
+                                                  : Tetrahedron{at(a), at(c), at(b), 0});
     }
   }
   out.mesh.boundary = boundaryOf(out.mesh.tetrahedra);
@@ -55,8 +64,9 @@ inline void labelAs(StarMesh& star, std::span<const std::uint8_t> labels) {
   return out;
 }
 
-/// Gives each triangle of the link the nearest of `prey`, and numbers these anew in order of first appearance along the traversal, as records do. Returns how many
-/// have triangles: the first of `prey`, which is put into the same order.
+/// Gives each triangle of the link the nearest of `prey`, and numbers these anew in order of first
+/// appearance along the traversal, as records do. Returns how many have triangles: the first of
+/// `prey`, which is put into the same order.
 inline std::size_t labelByNearest(StarMesh& star, std::vector<LatticePoint>& prey) {
   std::vector<LatticePoint> ordered;
   std::vector<std::uint8_t> labels(star.link.triangles().size());

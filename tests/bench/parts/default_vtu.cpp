@@ -13,7 +13,8 @@ namespace qtet::bench {
 Result<DefaultVtu> defaultVtu(const std::filesystem::path& path) {
   vtkNew<vtkXMLUnstructuredGridReader> reader;
   reader->SetFileName(path.c_str());
-  if (reader->CanReadFile(path.c_str()) == 0) return fail(ErrorCode::kBadInput, path.string() + " is no .vtu that VTK reads");
+  if (reader->CanReadFile(path.c_str()) == 0)
+    return fail(ErrorCode::kBadInput, path.string() + " is no .vtu that VTK reads");
   reader->Update();
   vtkUnstructuredGrid* grid = reader->GetOutput();
   DefaultVtu out;

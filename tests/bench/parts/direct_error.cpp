@@ -5,8 +5,8 @@
 #include <numeric>
 #include <optional>
 
-#include "simplify/measure_samples.h"
-#include "simplify/measure_triangle_tree.h"
+#include "simplify/measure/measure_samples.h"
+#include "simplify/measure/measure_triangle_tree.h"
 
 namespace qtet::bench {
 namespace {
@@ -44,16 +44,20 @@ class Surface {
 double diagonal(const LatticeMesh& mesh) {
   double squared = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto [low, high] = std::ranges::minmax(mesh.points, {}, [axis](const LatticePoint& p) { return p[axis]; });
+    const auto [low, high] =
+        std::ranges::minmax(mesh.points, {}, [axis](const LatticePoint& p) { return p[axis]; });
     squared += std::pow(high[axis] - low[axis], 2);
   }
   return std::sqrt(squared);
 }
 
 double sixVolumes(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d) {
-  const auto minus = [&](const Vector3& p) { return Vector3{p[0] - a[0], p[1] - a[1], p[2] - a[2]}; };
+  const auto minus = [&](const Vector3& p) {
+    return Vector3{p[0] - a[0], p[1] - a[1], p[2] - a[2]};
+  };
   const Vector3 u = minus(b), v = minus(c), w = minus(d);
-  return u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) + u[2] * (v[0] * w[1] - v[1] * w[0]);
+  return u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) +
+         u[2] * (v[0] * w[1] - v[1] * w[0]);
 }
 
 Vector3 at(const LatticeMesh& mesh, VertexId v) {
@@ -63,7 +67,8 @@ Vector3 at(const LatticeMesh& mesh, VertexId v) {
 
 /// Sum of weight times value over a cell's vertices; a ghost has no weight.
 template <std::size_t N>
-double valueIn(const LatticeMesh& mesh, const Tetrahedron& cell, const std::array<double, N>& weights) {
+double valueIn(const LatticeMesh& mesh, const Tetrahedron& cell,
+               const std::array<double, N>& weights) {
   double out = 0;
   for (std::size_t i = 0; i < N; ++i) out += weights[i] * mesh.values[0][cell[i]];
   return out;
@@ -73,39 +78,48 @@ double valueIn(const LatticeMesh& mesh, const Tetrahedron& cell, const std::arra
 std::optional<double> valueInside(const LatticeMesh& mesh, const Vector3& p) {
   for (const Tetrahedron& cell : mesh.tetrahedra) {
     const auto isBeyond = [&](std::size_t axis) {
-      const auto [low, high] = std::ranges::minmax(cell, {}, [&](VertexId v) { return mesh.points[v][axis]; });
+      const auto [low, high] =
+          std::ranges::minmax(cell, {}, [&](VertexId v) { return mesh.points[v][axis]; });
       return p[axis] < mesh.points[low][axis] || p[axis] > mesh.points[high][axis];
     };
     if (isBeyond(0) || isBeyond(1) || isBeyond(2)) continue;
-    const Vector3 a = at(mesh, cell[0]), b = at(mesh, cell[1]), c = at(mesh, cell[2]), d = at(mesh, cell[3]);
+    const Vector3 a = at(mesh, cell[0]), b = at(mesh, cell[1]), c = at(mesh, cell[2]),
+                  d = at(mesh, cell[3]);
     const double whole = sixVolumes(a, b, c, d);
-    const std::array<double, 4> weights{sixVolumes(p, b, c, d) / whole, sixVolumes(a, p, c, d) / whole, sixVolumes(a, b, p, d) / whole,
-                                        sixVolumes(a, b, c, p) / whole};
-    if (std::ranges::all_of(weights, [](double w) { return w >= -1e-9; })) return valueIn(mesh, cell, weights);
+    const std::array<double, 4> weights{
+        sixVolumes(p, b, c, d) / whole, sixVolumes(a, p, c, d) / whole,
+        sixVolumes(a, b, p, d) / whole, sixVolumes(a, b, c, p) / whole};
+    if (std::ranges::all_of(weights, [](double w) { return w >= -1e-9; }))
+      return valueIn(mesh, cell, weights);
   }
   return std::nullopt;
 }
 
 }  // namespace
 
-DirectError directError(const LatticeMesh& original, const LatticeMesh& level, std::size_t samples) {
+DirectError directError(const LatticeMesh& original, const LatticeMesh& level,
+                        std::size_t samples) {
   const Surface boundary(original), levelBoundary(level);
   DirectError out;
-  out.boundary =
-      std::max(boundary.meanDistanceTo(levelBoundary, samples), levelBoundary.meanDistanceTo(boundary, samples)) / diagonal(original);
+  out.boundary = std::max(boundary.meanDistanceTo(levelBoundary, samples),
+                          levelBoundary.meanDistanceTo(boundary, samples)) /
+                 diagonal(original);
 
   double squares = 0;
-  const std::vector<Sample> places = samplesInVolume(original.points, original.tetrahedra, samples, kSeed);
+  const std::vector<Sample> places =
+      samplesInVolume(original.points, original.tetrahedra, samples, kSeed);
   for (const Sample& place : places) {
     std::optional<double> value = valueInside(level, place.at);
     if (!value) {
       const NearestTriangle nearest = levelBoundary.nearest(place.at);
       value = valueIn(level, levelBoundary.cell(nearest.triangle), nearest.point.weights);
     }
-    squares += std::pow(*value - valueIn(original, original.tetrahedra[place.cell], place.weights), 2);
+    squares +=
+        std::pow(*value - valueIn(original, original.tetrahedra[place.cell], place.weights), 2);
   }
   const auto [low, high] = std::ranges::minmax(original.values[0]);
-  out.field = std::sqrt(squares / static_cast<double>(std::max<std::size_t>(places.size(), 1))) / (high - low);
+  out.field = std::sqrt(squares / static_cast<double>(std::max<std::size_t>(places.size(), 1))) /
+              (high - low);
   return out;
 }
 

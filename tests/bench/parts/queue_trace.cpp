@@ -13,7 +13,8 @@ namespace {
 constexpr double kQuantile = 0.35;
 constexpr double kLeft = 0.01;          // of the vertices, at the end
 constexpr std::uint32_t kIllegal = 20;  // one candidate in so many
-constexpr int kReach = 8;               // steps over locations that a vertex swallowed, before it has no neighbour in a direction
+// steps over locations that a vertex swallowed, before it has no neighbour in a direction
+constexpr int kReach = 8;
 
 /// A stray number from 0 to 1 that depends on nothing but its arguments.
 double noise(std::uint32_t a, std::uint32_t b) {
@@ -38,8 +39,9 @@ class Model {
     std::mt19937 random(1);
     // Errors spread over a few decades, as in a graded mesh.
     for (std::size_t i = 0; i < locations; ++i)
-      error_.push_back(static_cast<float>(std::exp(4 * std::sin(9.0 * static_cast<double>(i) / static_cast<double>(locations)) +
-                                                   static_cast<double>(random() % 1024) / 512)));
+      error_.push_back(static_cast<float>(
+          std::exp(4 * std::sin(9.0 * static_cast<double>(i) / static_cast<double>(locations)) +
+                   static_cast<double>(random() % 1024) / 512)));
     location_ = occupant_;
     vertexAt_ = occupant_;
     alive_.assign(locations, 1);
@@ -72,7 +74,8 @@ class Model {
   static bool after(const QueueEntry& a, const QueueEntry& b) { return b.isBefore(a); }
 
   std::uint32_t rootOf(std::uint32_t location) {
-    while (occupant_[location] != location) location = occupant_[location] = occupant_[occupant_[location]];
+    while (occupant_[location] != location)
+      location = occupant_[location] = occupant_[occupant_[location]];
     return location;
   }
 
@@ -89,14 +92,15 @@ class Model {
     return neighbours_;
   }
 
-  std::optional<std::uint32_t> neighbour(std::uint32_t v, std::array<std::int64_t, 3> place, const std::array<int, 3>& direction,
-                                         int sign) {
+  std::optional<std::uint32_t> neighbour(std::uint32_t v, std::array<std::int64_t, 3> place,
+                                         const std::array<int, 3>& direction, int sign) {
     for (int step = 0; step < kReach; ++step) {
       for (std::size_t k = 0; k < 3; ++k) {
         place[k] += sign * direction[k];
         if (place[k] < 0 || place[k] >= side_) return std::nullopt;
       }
-      const std::uint32_t other = vertexAt_[rootOf(static_cast<std::uint32_t>((place[0] * side_ + place[1]) * side_ + place[2]))];
+      const std::uint32_t other = vertexAt_[rootOf(
+          static_cast<std::uint32_t>((place[0] * side_ + place[1]) * side_ + place[2]))];
       if (other != v) return other;
     }
     return std::nullopt;
@@ -107,7 +111,8 @@ class Model {
     std::optional<Candidate> best;
     for (const std::uint32_t partner : neighbours(v)) {
       if (partner > v) continue;
-      const auto key = static_cast<float>((error_[v] + error_[partner]) * (0.2 + noise(v, partner)));
+      const auto key =
+          static_cast<float>((error_[v] + error_[partner]) * (0.2 + noise(v, partner)));
       if (key > floor && (!best || key < best->key)) best = {key, partner};
     }
     if (best) current_[v] = *best;
@@ -121,12 +126,15 @@ class Model {
   void runLevel() {
     std::vector<float> keys;
     for (const QueueEntry& entry : queue_) keys.push_back(entry.key);
-    const auto quantile = keys.begin() + static_cast<std::ptrdiff_t>(kQuantile * static_cast<double>(keys.size()));
+    const auto quantile =
+        keys.begin() + static_cast<std::ptrdiff_t>(kQuantile * static_cast<double>(keys.size()));
     std::ranges::nth_element(keys, quantile);
     const float limit = *quantile;
     const std::uint64_t fused = trace_.fused;
     ++trace_.levels;
-    while (!queue_.empty() && live_ > target_ && (queue_.front().key <= limit || trace_.fused == fused)) process(pop());
+    while (!queue_.empty() && live_ > target_ &&
+           (queue_.front().key <= limit || trace_.fused == fused))
+      process(pop());
     for (const QueueEntry& entry : deferred_) push(entry);
     deferred_.clear();
   }
@@ -169,7 +177,8 @@ class Model {
 
   std::int64_t side_;
   std::size_t live_ = 0, target_ = 0;
-  std::vector<std::uint32_t> occupant_;  // by location: towards the location whose vertex swallowed it
+  // by location: towards the location whose vertex swallowed it
+  std::vector<std::uint32_t> occupant_;
   std::vector<std::uint32_t> vertexAt_;  // by location that is its own occupant
   std::vector<std::uint32_t> location_;  // by vertex
   std::vector<float> error_;             // by vertex

@@ -1,9 +1,13 @@
-// What a simplifier asks of its priority queue, as a list of operations: recorded from a model of the simplifier on a grid of vertices, without a mesh.
+// What a simplifier asks of its priority queue, as a list of operations: recorded from a model of
+// the simplifier on a grid of vertices, without a mesh.
 //
-// As in simplify/: one entry a vertex, its cheapest candidate; the least is popped; a candidate that is gone or illegal gives way to the vertex's next, dearer
-// one; one whose vertices are locked waits for the level's end; a fusion kills its vertices and enters the fused one, dearer, at the level's end; a level ends at
-// the 35 % quantile of the keys at its start. On the meshes comb and bluntfin the simplifier made 6 to 10 pops a vertex: 7-12 % of vertices
-// that are dead, 30 % of candidates that are gone, 46-53 % locked, 1-3 % illegal, 7-11 % fused; the model is within these or close to them.
+// As in simplify/: one entry a vertex, its cheapest candidate; the least is popped; a candidate
+// that is gone or illegal gives way to the vertex's next, dearer one; one whose vertices are locked
+// waits for the level's end; a fusion kills its vertices and enters the fused one, dearer, at the
+// level's end; a level ends at the 35 % quantile of the keys at its start. On the meshes comb and
+// bluntfin the simplifier made 6 to 10 pops a vertex: 7-12 % of vertices that are dead, 30 % of
+// candidates that are gone, 46-53 % locked, 1-3 % illegal, 7-11 % fused; the model is within these
+// or close to them.
 #pragma once
 
 #include <cstdint>
@@ -16,13 +20,16 @@ struct QueueEntry {
   std::uint32_t owner = 0;
 
   /// Equal keys in the order of their owners, so that every exact queue pops the same.
-  [[nodiscard]] bool isBefore(const QueueEntry& other) const { return key != other.key ? key < other.key : owner < other.owner; }
+  [[nodiscard]] bool isBefore(const QueueEntry& other) const {
+    return key != other.key ? key < other.key : owner < other.owner;
+  }
 };
 
 struct QueueTrace {
   static constexpr float kPop = -1;
 
-  std::vector<QueueEntry> operations;  ///< entries to push, and kPop as the key for a pop; never a pop of an empty queue
+  /// Entries to push, and kPop as the key for a pop; never a pop of an empty queue.
+  std::vector<QueueEntry> operations;
   std::uint64_t pops = 0, dead = 0, gone = 0, locked = 0, illegal = 0, fused = 0, levels = 0;
   std::uint64_t checksum = 0;  ///< of the owners popped, in order
 };

@@ -5,7 +5,7 @@
 #include <cassert>
 #include <cmath>
 
-#include "codec/log_writer.h"
+#include "codec/log/log_writer.h"
 
 namespace qtet::bench {
 namespace {
@@ -42,7 +42,8 @@ Result<RateCurve> logCurve(const OpenedLog& log) {
   RateCurve out;
   for (const ManifestLevel& level : levels) {
     if (!level.error || level.error->fields.empty())
-      return fail(ErrorCode::kNotFound, "the log does not tell the error of level " + std::to_string(level.level) +
+      return fail(ErrorCode::kNotFound, "the log does not tell the error of level " +
+                                            std::to_string(level.level) +
                                             " for a field; make it with one and --measure levels");
     const RatePoint point = pointOf(level, static_cast<double>(log.prefixBytes(level.level)));
     if (!out.empty() && out.back().bytes == point.bytes) out.pop_back();
@@ -56,8 +57,9 @@ Result<RateCurve> ladderCurve(const OpenedLog& log) {
   RateCurve out;
   double bytes = 0;
   for (const double rung : kRungs) {
-    const auto above =
-        std::ranges::find_if(levels, [&](const ManifestLevel& level) { return level.tetrahedra > levels.back().tetrahedra / rung; });
+    const auto above = std::ranges::find_if(levels, [&](const ManifestLevel& level) {
+      return level.tetrahedra > levels.back().tetrahedra / rung;
+    });
     const ManifestLevel& level = above == levels.begin() ? *above : *std::prev(above);
     Result<LatticeMesh> mesh = meshAtLevel(log.file, level.level);
     if (!mesh) return std::unexpected(mesh.error());
@@ -86,13 +88,15 @@ Comparison compare(const RateCurve& curve, const RateCurve& other, Measure measu
     if (!theirs) continue;
     if (!mine || mine->*measure > theirs->*measure) ++out.above;
     if (!mine || !(theirs->*measure > 0)) continue;
-    if (const double ratio = mine->*measure / theirs->*measure; ratio > out.worst) out.worst = ratio, out.worstBytes = bytes;
+    if (const double ratio = mine->*measure / theirs->*measure; ratio > out.worst)
+      out.worst = ratio, out.worstBytes = bytes;
   }
   return out;
 }
 
 RatePoint firstWithin(const RateCurve& curve, double boundary, double field) {
-  const auto found = std::ranges::find_if(curve, [&](const RatePoint& p) { return p.boundary <= boundary && p.field <= field; });
+  const auto found = std::ranges::find_if(
+      curve, [&](const RatePoint& p) { return p.boundary <= boundary && p.field <= field; });
   assert(found != curve.end());
   return *found;
 }

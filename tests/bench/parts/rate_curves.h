@@ -1,4 +1,5 @@
-// Error against bytes: of the prefixes of a log, and of the ladder of separate meshes that one would send without it.
+// Error against bytes: of the prefixes of a log, and of the ladder of separate meshes that one
+// would send without it.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "simplify/error_plot.h"
-#include "simplify/opened_log.h"
+#include "simplify/commands/error_plot.h"
+#include "simplify/log/opened_log.h"
 
 namespace qtet::bench {
 
@@ -22,12 +23,15 @@ struct RatePoint {
 /// Bytes and quality rise from point to point; a point stands until the next.
 using RateCurve = std::vector<RatePoint>;
 
-/// The known errors of a log's levels at the lengths of its prefixes. Of levels that end with the same byte only the finest counts.
-/// Errors: not-found (a log without known errors or without a field).
+/// The known errors of a log's levels at the lengths of its prefixes. Of levels that end with the
+/// same byte only the finest counts. Errors: not-found (a log without known errors or without a
+/// field).
 [[nodiscard]] Result<RateCurve> logCurve(const OpenedLog& log);
 
-/// Meshes at 1/64, 1/16, 1/4 and 1 of the cells, fetched one after the other: the log's own finest levels of at most so many cells (level 0 where none is so
-/// small), each encoded by itself as a base mesh without records. REQUIRES: a log that logCurve takes. Errors: those of decoding and encoding.
+/// Meshes at 1/64, 1/16, 1/4 and 1 of the cells, fetched one after the other: the log's own finest
+/// levels of at most so many cells (level 0 where none is so small), each encoded by itself as a
+/// base mesh without records. REQUIRES: a log that logCurve takes. Errors: those of decoding and
+/// encoding.
 [[nodiscard]] Result<RateCurve> ladderCurve(const OpenedLog& log);
 
 using Measure = double RatePoint::*;
@@ -35,9 +39,11 @@ using Measure = double RatePoint::*;
 /// How a curve compares with another at every byte count at which either of them improves.
 struct Comparison {
   std::size_t places = 0;  ///< such byte counts
-  std::size_t above = 0;   ///< at so many the curve's error is larger, or it has nothing to show while the other has
-  double worst = 0;        ///< the largest error over the other's, where both show something that has an error
-  double worstBytes = 0;   ///< where that is
+  /// At so many the curve's error is larger, or it has nothing to show while the other has.
+  std::size_t above = 0;
+  /// The largest error over the other's, where both show something that has an error.
+  double worst = 0;
+  double worstBytes = 0;  ///< where that is
 };
 [[nodiscard]] Comparison compare(const RateCurve& curve, const RateCurve& other, Measure measure);
 

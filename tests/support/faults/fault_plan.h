@@ -1,4 +1,5 @@
-// What fails, how often, and how: shared, by a mapped file, between a test and the program that it has loaded libqtet_faults.so into.
+// What fails, how often, and how: shared, by a mapped file, between a test and the program that it
+// has loaded libqtet_faults.so into.
 #pragma once
 
 #include <array>
@@ -8,14 +9,25 @@
 
 namespace qtet::test {
 
-enum class Fault : std::uint8_t { kReceive, kSend, kSendFile, kAccept, kOpen, kMap, kReadFile, kWriteFile };
+enum class Fault : std::uint8_t {
+  kReceive,
+  kSend,
+  kSendFile,
+  kAccept,
+  kOpen,
+  kMap,
+  kReadFile,
+  kWriteFile
+};
 inline constexpr std::size_t kFaults = 8;
 
-/// All zero: nothing fails. Lies in a file that both sides map; the environment variable QTET_FAULTS names it.
+/// All zero: nothing fails. Lies in a file that both sides map; the environment variable
+/// QTET_FAULTS names it.
 struct FaultPlan {
   struct Kind {
-    std::atomic<std::uint32_t> every;   ///< each N-th call fails; 0: none
-    std::atomic<std::int32_t> error;    ///< always this one; 0: what is plausible, one after the other
+    std::atomic<std::uint32_t> every;  ///< each N-th call fails; 0: none
+    /// Always this one; 0: what is plausible, one after the other.
+    std::atomic<std::int32_t> error;
     std::atomic<std::uint32_t> calls;
     std::atomic<std::uint32_t> failed;  ///< or done in part only: one byte
   };

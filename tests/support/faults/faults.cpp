@@ -1,5 +1,6 @@
-// libqtet_faults.so, for LD_PRELOAD: system calls of a program that fail as a FaultPlan says. What is not a socket or a regular file (timers, events, pipes)
-// is left alone, and so is everything where there is no plan.
+// libqtet_faults.so, for LD_PRELOAD: system calls of a program that fail as a FaultPlan says. What
+// is not a socket or a regular file (timers, events, pipes) is left alone, and so is everything
+// where there is no plan.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <stdarg.h>
@@ -43,7 +44,8 @@ FaultPlan* mapPlan() {
   if (path == nullptr) return nullptr;
   const long file = ::syscall(SYS_openat, AT_FDCWD, path, O_RDWR | O_CLOEXEC);
   if (file < 0) return nullptr;
-  const long address = ::syscall(SYS_mmap, nullptr, sizeof(FaultPlan), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0L);
+  const long address =
+      ::syscall(SYS_mmap, nullptr, sizeof(FaultPlan), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0L);
   ::syscall(SYS_close, file);
   return address < 0 ? nullptr : reinterpret_cast<FaultPlan*>(address);
 }
@@ -78,7 +80,7 @@ ssize_t transfer(int fault, std::size_t bytes, Real real) {
 }
 
 int kindOf(int file, Fault ofSocket, Fault ofFile) {
-  struct stat info {};
+  struct stat info{};
   if (plan() == nullptr || ::fstat(file, &info) != 0) return 0;
   if (S_ISSOCK(info.st_mode)) return faultOf(ofSocket);
   return S_ISREG(info.st_mode) ? faultOf(ofFile) : 0;
@@ -96,12 +98,14 @@ extern "C" {
 
 ssize_t recv(int socket, void* into, size_t bytes, int flags) {
   static const auto real = next<decltype(recv)>("recv");
-  return transfer(faultOf(Fault::kReceive), bytes, [&](size_t n) { return real(socket, into, n, flags); });
+  return transfer(faultOf(Fault::kReceive), bytes,
+                  [&](size_t n) { return real(socket, into, n, flags); });
 }
 
 ssize_t read(int file, void* into, size_t bytes) {
   static const auto real = next<decltype(read)>("read");
-  return transfer(kindOf(file, Fault::kReceive, Fault::kReadFile), bytes, [&](size_t n) { return real(file, into, n); });
+  return transfer(kindOf(file, Fault::kReceive, Fault::kReadFile), bytes,
+                  [&](size_t n) { return real(file, into, n); });
 }
 
 ssize_t sendmsg(int socket, const msghdr* message, int flags) {
@@ -119,18 +123,21 @@ ssize_t sendmsg(int socket, const msghdr* message, int flags) {
 
 ssize_t send(int socket, const void* bytes, size_t count, int flags) {
   static const auto real = next<decltype(send)>("send");
-  return transfer(faultOf(Fault::kSend), count, [&](size_t n) { return real(socket, bytes, n, flags); });
+  return transfer(faultOf(Fault::kSend), count,
+                  [&](size_t n) { return real(socket, bytes, n, flags); });
 }
 
 ssize_t write(int file, const void* bytes, size_t count) {
   static const auto real = next<decltype(write)>("write");
-  return transfer(kindOf(file, Fault::kSend, Fault::kWriteFile), count, [&](size_t n) { return real(file, bytes, n); });
+  return transfer(kindOf(file, Fault::kSend, Fault::kWriteFile), count,
+                  [&](size_t n) { return real(file, bytes, n); });
 }
 
 /// The kernel's own copying of files is of the same kind.
 ssize_t sendfile(int out, int in, off_t* offset, size_t bytes) {
   static const auto real = next<decltype(sendfile)>("sendfile");
-  return transfer(faultOf(Fault::kSendFile), bytes, [&](size_t n) { return real(out, in, offset, n); });
+  return transfer(faultOf(Fault::kSendFile), bytes,
+                  [&](size_t n) { return real(out, in, offset, n); });
 }
 
 int accept(int socket, sockaddr* address, socklen_t* bytes) {
@@ -160,13 +167,16 @@ int open64(const char* path, int flags, ...) {
 void* mmap(void* address, size_t bytes, int protection, int flags, int file, off_t offset) {
   const int fault = file >= 0 ? faultOf(Fault::kMap) : 0;
   if (fault != 0) return errno = fault, MAP_FAILED;
-  // By a system call: AddressSanitizer maps memory before it can bear dlsym, and waited for itself for ever.
-  return reinterpret_cast<void*>(::syscall(SYS_mmap, address, bytes, protection, flags, file, offset));
+  // By a system call: AddressSanitizer maps memory before it can bear dlsym, and waited for itself
+  // for ever.
+  return reinterpret_cast<void*>(
+      ::syscall(SYS_mmap, address, bytes, protection, flags, file, offset));
 }
 
 int clock_gettime(clockid_t clock, timespec* time) {
   const auto done = static_cast<int>(::syscall(SYS_clock_gettime, clock, time));  // as in mmap
-  if (done == 0 && clock == CLOCK_REALTIME && plan() != nullptr) time->tv_sec += plan()->clockShift.load(std::memory_order_relaxed);
+  if (done == 0 && clock == CLOCK_REALTIME && plan() != nullptr)
+    time->tv_sec += plan()->clockShift.load(std::memory_order_relaxed);
   return done;
 }
 

@@ -1,0 +1,76 @@
+// What stands behind the handle of codec/api/qtet.h, and the border that no exception crosses. For
+// the library's own .cpp files.
+#pragma once
+
+#include <cstdint>
+#include <new>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "codec/api/qtet.h"
+#include "codec/log/log_file.h"
+#include "proto/manifest.h"
+
+struct qtet_log {
+  std::optional<qtet::LogFile> file;
+  qtet::Manifest manifest;               // of `file`
+  std::optional<qtet::Refiner> refiner;  // of `file`, with a complete level
+  std::string message;
+  const char* text = "";  // of the last failure: `message`, or a literal where memory is short
+
+  qtet_status refuse(qtet_status code, std::string why) {
+    message = std::string(qtet_status_name(code)) + ": " + std::move(why);
+    text = message.c_str();
+    return code;
+  }
+  qtet_status refuse(const qtet::Error& error);
+
+  // What a call needs; each gives QTET_OK or refuses.
+  qtet_status needField(std::uint32_t field);
+  qtet_status needLevel(std::uint32_t level);
+  qtet_status needPlace(const void* place) {
+    return place != nullptr ? QTET_OK
+                            : refuse(QTET_BAD_ARGUMENT, "the place for the answer is null");
+  }
+};
+
+namespace qtet {
+
+/// Runs `work`, which gives a qtet_status; what it throws becomes one.
+template <class Work>
+qtet_status guarded(qtet_log* log, const Work& work) noexcept {
+  if (log == nullptr) return QTET_BAD_ARGUMENT;
+  try {
+    return work();
+  } catch (const std::bad_alloc&) {
+    log->text = "out-of-memory: there is not enough memory; refine to a coarser level";
+    return QTET_OUT_OF_MEMORY;
+  } catch (...) {
+    log->text =
+        "internal: the library failed in a way that it should not; please report it with the log";
+    return QTET_INTERNAL;
+  }
+}
+
+/// The same for what needs a log that is open.
+template <class Work>
+qtet_status withLog(qtet_log* log, const Work& work) noexcept {
+  return guarded(log, [&] {
+    return log->file
+               ? work()
+               : log->refuse(QTET_NO_LOG,
+                             "nothing is open: qtet_log_open_file or qtet_log_open_memory first");
+  });
+}
+
+/// The same for what needs a mesh.
+template <class Work>
+qtet_status withMesh(qtet_log* log, const Work& work) noexcept {
+  return withLog(log, [&] {
+    return log->refiner ? work()
+                        : log->refuse(QTET_NO_MESH, "there is no mesh yet: qtet_log_refine first");
+  });
+}
+
+}  // namespace qtet

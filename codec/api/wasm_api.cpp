@@ -1,0 +1,210 @@
+#include "codec/api/wasm_api.h"
+
+#include <cstdlib>
+#include <cstring>
+#include <optional>
+#include <string>
+
+#include "codec/coding/adaptive_block.h"
+#include "codec/coding/level_columns.h"
+#include "codec/coding/value_digits.h"
+#include "codec/log/refiner.h"
+#include "proto/crc32c.h"
+
+using qtet::ByteView;
+using qtet::Error;
+using qtet::ErrorCode;
+using qtet::LogIndex;
+
+#if defined(__wasm__)
+// What libc++ and libc++abi call when they give up; their own versions bring all of printf.
+extern "C" [[noreturn]] void abort_message(const char*, ...) { __builtin_trap(); }
+_LIBCPP_BEGIN_NAMESPACE_STD
+void __libcpp_verbose_abort(const char*, ...) { __builtin_trap(); }
+_LIBCPP_END_NAMESPACE_STD
+#endif
+
+namespace {
+
+// One module instance is one refiner: a page that shows two logs makes two instances.
+std::optional<qtet::Refiner> refiner;
+std::string lastError;
+qtet::LevelColumns levelNumbers;
+
+int report(const Error& error) {
+  lastError = error.text();
+  return 1 + static_cast<int>(error.code);
+}
+
+qtet::Result<std::vector<std::int32_t>> blockValues(std::uint32_t chunk, std::uint32_t part,
+                                                    std::span<const std::int32_t> symbols,
+                                                    ByteView digits) {
+  const LogIndex& index = refiner->index();
+  if (chunk < index.chunks.size() && part < index.parts() &&
+      index.chunks[chunk].valueCodec == qtet::CodecId::kAdaptive)
+    return qtet::decodeAdaptiveBlock(digits, index.components(part), index.tuples(chunk, part));
+  return qtet::joinValues(symbols, digits);
+}
+
+int noLog() { return report({ErrorCode::kBadOrder, "no log is open: call qtet_open first"}); }
+
+bool hasBlock(std::uint32_t chunk, std::uint32_t part) {
+  return refiner && chunk < refiner->index().chunks.size() && part < refiner->index().parts();
+}
+bool hasField(std::uint32_t field) { return refiner && field < refiner->index().fields.size(); }
+
+}  // namespace
+
+extern "C" {
+
+void* qtet_alloc(std::uint32_t bytes) { return std::malloc(bytes); }
+void qtet_free(void* memory) { std::free(memory); }
+
+int qtet_open(const std::uint8_t* head, std::uint32_t bytes) {
+  refiner.reset();
+  auto index = LogIndex::parse(ByteView(head, bytes));
+  if (!index) return report(index.error());
+  refiner.emplace(std::move(*index));
+  return 0;
+}
+
+const char* qtet_error() { return lastError.c_str(); }
+
+std::uint32_t qtet_chunk_count() {
+  return refiner ? static_cast<std::uint32_t>(refiner->index().chunks.size()) : 0;
+}
+
+std::uint32_t qtet_level_count() {
+  return refiner ? refiner->index().chunks.back().lastLevel + 1 : 0;
+}
+
+int qtet_level_columns(const std::uint8_t* bytes, std::uint32_t size, std::uint32_t columns) {
+  if (!refiner) return noLog();
+  const auto fields = static_cast<std::uint32_t>(refiner->index().fields.size());
+  if (columns != qtet::levelColumnCount(fields, false) &&
+      columns != qtet::levelColumnCount(fields, true))
+    return report(
+        {ErrorCode::kBadValue, std::to_string(columns) + " level columns are none of this log's"});
+  auto numbers = qtet::decodeLevelColumns(ByteView(bytes, size), qtet_level_count(), columns);
+  if (!numbers) return report(numbers.error());
+  levelNumbers = std::move(*numbers);
+  return 0;
+}
+const std::uint32_t* qtet_level_numbers() { return levelNumbers.data(); }
+
+double qtet_block_offset(std::uint32_t chunk, std::uint32_t part) {
+  return hasBlock(chunk, part) ? static_cast<double>(refiner->index().block(chunk, part).offset)
+                               : 0;
+}
+std::uint32_t qtet_block_size(std::uint32_t chunk, std::uint32_t part) {
+  return hasBlock(chunk, part) ? refiner->index().block(chunk, part).size : 0;
+}
+std::uint32_t qtet_block_values(std::uint32_t chunk, std::uint32_t part) {
+  return hasBlock(chunk, part) ? refiner->index().tuples(chunk, part) : 0;
+}
+std::uint32_t qtet_field_association(std::uint32_t field) {
+  return hasField(field) ? static_cast<std::uint32_t>(refiner->index().fields[field].association)
+                         : 0;
+}
+std::uint32_t qtet_block_codec(std::uint32_t chunk, std::uint32_t part) {
+  if (!hasBlock(chunk, part)) return 0;
+  const qtet::ChunkEntry& e = refiner->index().chunks[chunk];
+  return static_cast<std::uint32_t>(part == qtet::kStructurePart ? e.structureCodec : e.valueCodec);
+}
+
+std::uint32_t qtet_head_chunks() { return refiner ? refiner->index().headChunks() : 0; }
+std::uint32_t qtet_dependency(std::uint32_t chunk) {
+  if (!hasBlock(chunk, qtet::kStructurePart)) return 0;
+  const LogIndex& index = refiner->index();
+  const qtet::ChunkEntry& e = index.chunks[chunk];
+  return e.dependencyCount == 0 ? chunk : index.dependencies[e.firstDependency];
+}
+const std::uint8_t* qtet_packet_box(std::uint32_t chunk) {
+  static_assert(sizeof(qtet::PacketBox) == 6);
+  return hasBlock(chunk, qtet::kStructurePart) ? refiner->index().chunks[chunk].box.least.data()
+                                               : nullptr;
+}
+const std::uint32_t* qtet_chunk_brings(std::uint32_t chunk) {
+  static std::uint32_t counts[3];
+  if (!hasBlock(chunk, qtet::kStructurePart)) return nullptr;
+  const qtet::ChunkEntry& e = refiner->index().chunks[chunk];
+  counts[0] = e.newTetrahedra;
+  counts[1] = e.newVertices;
+  counts[2] = e.newBoundaryTriangles;
+  return counts;
+}
+
+int qtet_check_block(std::uint32_t chunk, std::uint32_t part, const std::uint8_t* bytes,
+                     std::uint32_t size) {
+  if (!hasBlock(chunk, part)) return report({ErrorCode::kNotFound, "there is no such block"});
+  const qtet::BlockEntry& b = refiner->index().block(chunk, part);
+  if (size == b.size && qtet::crc32c(ByteView(bytes, size)) == b.crc) return 0;
+  return report(
+      {ErrorCode::kBadChecksum,
+       "chunk " + std::to_string(chunk) + ", part " + std::to_string(part) + " arrived damaged",
+       b.offset});
+}
+
+int qtet_apply(std::uint32_t chunk, const std::uint8_t* structure, std::uint32_t size,
+               const std::int32_t* symbols, std::uint32_t count, const std::uint8_t* digits,
+               std::uint32_t digitBytes) {
+  if (!refiner) return noLog();
+  const auto positions = blockValues(chunk, qtet::kPositionsPart, std::span(symbols, count),
+                                     ByteView(digits, digitBytes));
+  if (!positions) return report(positions.error());
+  const auto status = refiner->apply(chunk, ByteView(structure, size), *positions);
+  return status ? 0 : report(status.error());
+}
+
+int qtet_apply_field(std::uint32_t field, std::uint32_t chunk, const std::int32_t* symbols,
+                     std::uint32_t count, const std::uint8_t* digits, std::uint32_t digitBytes) {
+  if (!refiner) return noLog();
+  if (!hasField(field))
+    return report({ErrorCode::kNotFound, "there is no field " + std::to_string(field)});
+  const auto values = blockValues(chunk, qtet::kFirstFieldPart + field, std::span(symbols, count),
+                                  ByteView(digits, digitBytes));
+  if (!values) return report(values.error());
+  const auto status = refiner->applyField(field, chunk, *values);
+  return status ? 0 : report(status.error());
+}
+
+std::uint32_t qtet_chunks_applied() { return refiner ? refiner->chunksApplied() : 0; }
+bool qtet_applied(std::uint32_t chunk) {
+  return hasBlock(chunk, qtet::kStructurePart) && refiner->applied(chunk);
+}
+bool qtet_field_applied(std::uint32_t field, std::uint32_t chunk) {
+  return hasField(field) && hasBlock(chunk, qtet::kFirstFieldPart + field) &&
+         refiner->fieldApplied(field, chunk);
+}
+std::uint32_t qtet_field_chunks_applied(std::uint32_t field) {
+  return hasField(field) ? refiner->fieldChunksApplied(field) : 0;
+}
+std::uint32_t qtet_level() { return refiner ? refiner->level() : 0; }
+std::uint32_t qtet_vertex_count() {
+  return refiner ? static_cast<std::uint32_t>(refiner->points().size()) : 0;
+}
+std::uint32_t qtet_tetrahedron_count() {
+  return refiner ? static_cast<std::uint32_t>(refiner->tetrahedra().size()) : 0;
+}
+std::uint32_t qtet_boundary_count() {
+  return refiner ? static_cast<std::uint32_t>(refiner->boundary().size()) : 0;
+}
+const std::int32_t* qtet_points() {
+  return refiner && !refiner->points().empty() ? refiner->points().data()->data() : nullptr;
+}
+const std::uint32_t* qtet_tetrahedra() {
+  return refiner && !refiner->tetrahedra().empty() ? refiner->tetrahedra().data()->data() : nullptr;
+}
+const std::uint32_t* qtet_boundary() {
+  return refiner && !refiner->boundary().empty() ? refiner->boundary().data()->data() : nullptr;
+}
+const std::int32_t* qtet_field(std::uint32_t field) {
+  return qtet_field_chunks_applied(field) > 0 ? refiner->fieldValues(field).data() : nullptr;
+}
+
+void qtet_digest(std::uint8_t* out) {
+  if (!refiner) return;
+  const auto digest = refiner->digest();
+  std::memcpy(out, digest.data(), digest.size());
+}
+}

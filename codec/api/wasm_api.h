@@ -1,0 +1,80 @@
+// The codec as C functions for WebAssembly (and any other foreign caller). One refiner a module
+// instance; addresses are byte offsets into the module's memory and stay valid until the next call
+// that applies something. Functions that can fail return 0 for success or 1 + ErrorCode, and
+// qtet_error() then gives the text.
+#pragma once
+
+#include <cstdint>
+
+extern "C" {
+
+/// Memory for bytes that the caller hands in; freed by qtet_free.
+void* qtet_alloc(std::uint32_t bytes);
+void qtet_free(void* memory);
+
+/// Starts with the log whose header, manifest and table are `head` (LogIndex::headBytesOf tells how
+/// many bytes that is). A coarser level is made by a new instance that is given the same blocks up
+/// to it: an instance's memory never shrinks.
+int qtet_open(const std::uint8_t* head, std::uint32_t bytes);
+/// NUL-terminated text of the last failure.
+const char* qtet_error();
+
+std::uint32_t qtet_chunk_count();
+std::uint32_t qtet_level_count();
+/// Decodes the end of the manifest, the figures of all levels (codec/coding/level_columns.h);
+/// qtet_level_numbers() then gives them until the next such call.
+int qtet_level_columns(const std::uint8_t* bytes, std::uint32_t size, std::uint32_t columns);
+const std::uint32_t* qtet_level_numbers();
+/// File offset (a double: exact up to 2^53), size and tuples of a block; part 0 structure, 1
+/// positions, 2 + f field f.
+double qtet_block_offset(std::uint32_t chunk, std::uint32_t part);
+std::uint32_t qtet_block_size(std::uint32_t chunk, std::uint32_t part);
+/// Tuples in a value block: of the positions and of point fields as many, of cell fields one a
+/// tetrahedron that the chunk brings.
+std::uint32_t qtet_block_values(std::uint32_t chunk, std::uint32_t part);
+/// What the values of a field belong to: 0 points, 1 tetrahedra (Association of
+/// codec/log/log_index.h).
+std::uint32_t qtet_field_association(std::uint32_t field);
+/// CodecId of a block.
+std::uint32_t qtet_block_codec(std::uint32_t chunk, std::uint32_t part);
+/// Chunks before the first packet (FORMAT.md, "Layout regions"): all of them in `stream`.
+std::uint32_t qtet_head_chunks();
+/// The chunk that this one depends on; of chunk 0 itself.
+std::uint32_t qtet_dependency(std::uint32_t chunk);
+/// Six bytes, a packet's box in 256ths of the lattice: the least along each axis, then the largest,
+/// included. Null where there is no such chunk.
+const std::uint8_t* qtet_packet_box(std::uint32_t chunk);
+/// Tetrahedra, vertices and boundary triangles that a chunk brings; null where there is no such
+/// chunk. Valid until the next such call.
+const std::uint32_t* qtet_chunk_brings(std::uint32_t chunk);
+/// Compares a block's bytes with its CRC-32C.
+int qtet_check_block(std::uint32_t chunk, std::uint32_t part, const std::uint8_t* bytes,
+                     std::uint32_t size);
+
+/// Refiner::apply; `symbols` are the positions block's `count` integers (3 a tuple) as the Draco
+/// decoder gave them, `digits` the `digitBytes` bytes behind the Draco stream
+/// (codec/coding/value_digits.h). Of an adaptive block, no symbols and the whole block as digits.
+int qtet_apply(std::uint32_t chunk, const std::uint8_t* structure, std::uint32_t size,
+               const std::int32_t* symbols, std::uint32_t count, const std::uint8_t* digits,
+               std::uint32_t digitBytes);
+/// Refiner::applyField, of a field's block in the same two parts.
+int qtet_apply_field(std::uint32_t field, std::uint32_t chunk, const std::int32_t* symbols,
+                     std::uint32_t count, const std::uint8_t* digits, std::uint32_t digitBytes);
+
+std::uint32_t qtet_chunks_applied();
+/// Whether this one is applied, of the mesh and of a field: of packets the count does not tell.
+bool qtet_applied(std::uint32_t chunk);
+bool qtet_field_applied(std::uint32_t field, std::uint32_t chunk);
+std::uint32_t qtet_field_chunks_applied(std::uint32_t field);
+std::uint32_t qtet_level();
+std::uint32_t qtet_vertex_count();
+std::uint32_t qtet_tetrahedron_count();
+std::uint32_t qtet_boundary_count();
+const std::int32_t* qtet_points();       ///< 3 a vertex, lattice coordinates
+const std::uint32_t* qtet_tetrahedra();  ///< 4 a tetrahedron
+const std::uint32_t* qtet_boundary();    ///< 3 a triangle, counter-clockwise seen from outside
+/// Components a vertex or, of a cell field, a tetrahedron; 0 when it has no chunk yet.
+const std::int32_t* qtet_field(std::uint32_t field);
+/// Writes the 32 bytes of the mesh digest.
+void qtet_digest(std::uint8_t* out);
+}

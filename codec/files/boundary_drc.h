@@ -1,0 +1,29 @@
+// The boundary surface of a mesh as a standard Draco mesh, for viewers that know triangles and
+// nothing of logs.
+#pragma once
+
+#include <span>
+
+#include "codec/mesh/mesh.h"
+#include "proto/bytes.h"
+#include "proto/error.h"
+
+namespace qtet {
+
+/// Encodes `mesh.boundary` and its vertices: POSITION as float32 in world coordinates, quantised on
+/// the mesh's own lattice, then one GENERIC float32 attribute a point field, its name in the
+/// attribute's metadata under "name", quantised on the field's own steps. Cell fields are left out.
+/// The decoder orders vertices and triangles anew. Lattice points survive (round((x - origin) /
+/// step) gives them back) while |origin / step| + 2^bits <= 2^19: the float then loses at most 2^-5
+/// of a step, twice, and Draco's three roundings at most 2^-2 together. Further out float32 itself
+/// cannot tell them apart, and positions are the nearest floats. The same for fields, with minimum
+/// and step; a field of more bits, with missing values (NaN), or with integers beyond 2^20, is
+/// stored as raw floats.
+/// `colours`, one a point of the mesh, or none, become a COLOR of three normalised bytes, after
+/// everything else and without loss. REQUIRES: indices within range, as many values as the fields'
+/// components say, lattice.bits and field bits within proto/limits.h. Errors: bad-input (no
+/// boundary; coordinates of 1e38 and more), bad-codec (Draco refused, with its message).
+[[nodiscard]] Result<Bytes> boundaryDrc(const LatticeMesh& mesh,
+                                        std::span<const std::array<std::uint8_t, 3>> colours = {});
+
+}  // namespace qtet

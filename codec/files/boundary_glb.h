@@ -1,0 +1,18 @@
+// The boundary surface of a mesh as binary glTF 2.0 with KHR_draco_mesh_compression, which
+// three.js, Babylon.js, Cesium and Blender read.
+#pragma once
+
+#include "codec/mesh/mesh.h"
+#include "proto/bytes.h"
+#include "proto/error.h"
+
+namespace qtet {
+
+/// One mesh of one primitive: the bytes of boundaryDrc, and accessors that say what is in them. A
+/// point field of 1 to 4 components without missing values is the attribute "_NAME" (glTF wants the
+/// underscore); others are in the Draco bytes and not named. The first point field is the colours,
+/// too: COLOR_0, viridis over the field's range, grey where it has missing values. Axes and units
+/// are the mesh's own. REQUIRES and errors: those of boundaryDrc.
+[[nodiscard]] Result<Bytes> boundaryGlb(const LatticeMesh& mesh);
+
+}  // namespace qtet

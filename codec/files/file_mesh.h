@@ -1,0 +1,58 @@
+// A mesh in floats, as the writers of mesh files take it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "codec/mesh/mesh.h"
+#include "proto/error.h"
+
+namespace qtet {
+
+/// A field to write; `values` holds components numbers a point, or a tetrahedron for a cell field.
+struct FileField {
+  std::string name;
+  /// Float32, float64, int8 ... uint64; other names are written as float64.
+  std::string type = "float32";
+  std::uint32_t components = 1;
+  std::vector<double> values;  ///< rounded and clamped to the type
+};
+
+/// What a file is made of; the views must outlive whoever writes it.
+struct FileMesh {
+  std::span<const std::array<double, 3>> points;
+  std::span<const Tetrahedron> tetrahedra;
+  bool doublePoints = true;  ///< coordinates as float64, else float32, where a format knows both
+  std::vector<FileField> pointFields{};
+  std::vector<FileField> cellFields{};
+};
+
+/// A mesh on the lattice in its own units, with the points that `mesh` looks at.
+struct LatticeFileMesh {
+  std::vector<std::array<double, 3>> points;
+  FileMesh mesh;
+};
+
+/// Fields keep their types; a missing value is NaN. Coordinates are float32 if each of them still
+/// rounds to its lattice point, round((x - origin) / step), else float64, which always does: so the
+/// lattice survives exactly. `mesh` must outlive the answer.
+[[nodiscard]] LatticeFileMesh fileMesh(const LatticeMesh& mesh);
+
+/// Errors: bad-input (a coordinate that float32 does not hold, for formats of nothing else;
+/// `format` is ".stl").
+[[nodiscard]] Status fitsFloats(std::span<const std::array<double, 3>> points, const char* format);
+
+/// The boundary of a mesh with the points that it uses, numbered anew in their order, and its point
+/// fields.
+struct FileSurface {
+  std::vector<std::array<double, 3>> points;
+  std::vector<Triangle> triangles;  ///< counter-clockwise seen from outside
+  std::vector<FileField> fields;
+};
+
+[[nodiscard]] FileSurface surfaceOf(const FileMesh& mesh);
+
+}  // namespace qtet

@@ -1,0 +1,55 @@
+// Names and numbers as text that every reader understands.
+#pragma once
+
+#include <charconv>
+#include <string>
+#include <string_view>
+
+namespace qtet {
+
+/// A field's name where only letters, digits and _ may stand, and no digit first; everything else
+/// becomes _.
+[[nodiscard]] inline std::string identifier(std::string_view name) {
+  std::string out;
+  for (const char c : name)
+    out += (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ? c : '_';
+  return out.empty() || (out[0] >= '0' && out[0] <= '9') ? "_" + out : out;
+}
+
+/// The same for the next of several names: one that `taken` holds gets underscores behind it until
+/// it is new.
+template <class Names>
+[[nodiscard]] std::string newIdentifier(std::string_view name, Names& taken) {
+  std::string out = identifier(name);
+  while (!taken.insert(out).second) out += "_";
+  return out;
+}
+
+/// A text inside an attribute's double quotes, or between tags. XML 1.0 has no way to write other
+/// control characters, so these become '?'.
+[[nodiscard]] inline std::string xmlText(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '&': out += "&amp;"; break;
+      case '<': out += "&lt;"; break;
+      case '>': out += "&gt;"; break;
+      case '"': out += "&quot;"; break;
+      case '\t': out += "&#9;"; break;
+      case '\n': out += "&#10;"; break;
+      case '\r': out += "&#13;"; break;
+      default: out += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
+    }
+  }
+  return out;
+}
+
+/// Appends the shortest text that reads as the same number.
+template <class T>
+void appendShortest(std::string& out, T value) {
+  char text[32];
+  const auto written = std::to_chars(text, text + sizeof text, value);
+  out.append(text, written.ptr);
+}
+
+}  // namespace qtet

@@ -1,0 +1,79 @@
+#include <string>
+
+#include "codec/coding/number_type.h"
+#include "codec/files/mesh_file.h"
+
+namespace qtet {
+namespace {
+
+constexpr std::int32_t kGmshTetrahedron = 4;
+constexpr std::size_t kMaxEntities = 0x7FFFFFFF;  ///< ids are signed 32-bit integers
+constexpr std::uint32_t kMaxComponents = 9;
+
+/// What Gmsh shows: scalars, vectors of 3, tensors of 9.
+std::uint32_t gmshComponents(std::uint32_t components) {
+  return components == 1 ? 1 : components <= 3 ? 3 : kMaxComponents;
+}
+
+/// A name between double quotes, for which the format has no escape.
+std::string quoted(const std::string& name) {
+  std::string out = "\"";
+  for (const char c : name) out += c == '"' || static_cast<unsigned char>(c) < 0x20 ? '_' : c;
+  return out + "\"";
+}
+
+void appendData(Bytes& out, const std::string& section, const FileField& field) {
+  const std::uint32_t shown = gmshComponents(field.components);
+  const std::size_t tuples = field.values.size() / field.components;
+  // One string tag (the name), one real tag (the time), three integer tags: step, components,
+  // entities.
+  appendText(out, "$" + section + "\n1\n" + quoted(field.name) + "\n1\n0\n3\n0\n" +
+                      std::to_string(shown) + "\n" + std::to_string(tuples) + "\n");
+  for (std::size_t i = 0; i < tuples; ++i) {
+    appendNumber(out, static_cast<std::int32_t>(i + 1));
+    for (std::uint32_t c = 0; c < shown; ++c)
+      appendNumber(out, c < field.components ? field.values[i * field.components + c] : 0.0);
+  }
+  appendText(out, "\n$End" + section + "\n");
+}
+
+}  // namespace
+
+Result<Bytes> gmshBytes(const FileMesh& mesh) {
+  if (mesh.points.size() > kMaxEntities || mesh.tetrahedra.size() > kMaxEntities)
+    return fail(ErrorCode::kBadInput,
+                "the mesh has more points or cells than a .msh file can number; write .vtu");
+  for (const auto* fields : {&mesh.pointFields, &mesh.cellFields})
+    for (const FileField& field : *fields)
+      if (field.components > kMaxComponents)
+        return fail(ErrorCode::kBadInput,
+                    "field '" + field.name + "' has " + std::to_string(field.components) +
+                        " components, a .msh file at most " + std::to_string(kMaxComponents) +
+                        "; leave it out with --fields, or write .vtu");
+  Bytes out;
+  appendText(out, "$MeshFormat\n2.2 1 8\n");
+  appendNumber(out, std::int32_t{1});  // tells the order of bytes
+  appendText(out, "\n$EndMeshFormat\n$Nodes\n" + std::to_string(mesh.points.size()) + "\n");
+  for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+    appendNumber(out, static_cast<std::int32_t>(i + 1));
+    for (const double x : mesh.points[i]) appendNumber(out, x);
+  }
+  appendText(out, "\n$EndNodes\n$Elements\n" + std::to_string(mesh.tetrahedra.size()) + "\n");
+  if (!mesh.tetrahedra.empty()) {
+    for (const std::int32_t word :
+         {kGmshTetrahedron, static_cast<std::int32_t>(mesh.tetrahedra.size()), 2})
+      appendNumber(out, word);
+  }
+  for (std::size_t i = 0; i < mesh.tetrahedra.size(); ++i) {
+    // Two tags, as all programs expect them: the physical and the elementary entity.
+    for (const std::int32_t word : {static_cast<std::int32_t>(i + 1), 1, 1})
+      appendNumber(out, word);
+    for (const VertexId v : mesh.tetrahedra[i]) appendNumber(out, static_cast<std::int32_t>(v + 1));
+  }
+  appendText(out, "\n$EndElements\n");
+  for (const FileField& field : mesh.pointFields) appendData(out, "NodeData", field);
+  for (const FileField& field : mesh.cellFields) appendData(out, "ElementData", field);
+  return out;
+}
+
+}  // namespace qtet

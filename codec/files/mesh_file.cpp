@@ -1,0 +1,32 @@
+#include "codec/files/mesh_file.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "codec/files/boundary_drc.h"
+#include "codec/files/boundary_glb.h"
+#include "codec/files/vtu_writer.h"
+
+namespace qtet {
+
+bool needsLattice(std::string_view ending) { return ending == ".glb" || ending == ".drc"; }
+
+Result<Bytes> meshFileBytes(const FileMesh& mesh, std::string_view ending) {
+  if (ending == ".vtu") return vtuBytes(mesh);
+  if (ending == ".vtk") return legacyVtkBytes(mesh);
+  if (ending == ".msh") return gmshBytes(mesh);
+  if (ending == ".stl") return stlBytes(surfaceOf(mesh));
+  if (ending == ".ply") return plyBytes(surfaceOf(mesh), mesh.doublePoints);
+  if (ending == ".obj") return objBytes(surfaceOf(mesh));
+  if (ending == ".usda") return usdaBytes(mesh);
+  assert(ending == ".npz");
+  return npzBytes(mesh);
+}
+
+Result<Bytes> meshFileBytes(const LatticeMesh& mesh, std::string_view ending) {
+  if (ending == ".glb") return boundaryGlb(mesh);
+  if (ending == ".drc") return boundaryDrc(mesh);
+  return meshFileBytes(fileMesh(mesh).mesh, ending);
+}
+
+}  // namespace qtet

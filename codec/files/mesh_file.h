@@ -1,0 +1,53 @@
+// Meshes as files of the kinds that other programs read. .vtu has a header of its own
+// (vtu_writer.h), .drc and .glb, too, because they need a lattice (boundary_drc.h, boundary_glb.h).
+#pragma once
+
+#include <string_view>
+
+#include "codec/files/file_mesh.h"
+#include "proto/bytes.h"
+#include "proto/error.h"
+
+namespace qtet {
+
+/// Every ending that a mesh can be written with, between blanks.
+inline constexpr const char* kWrittenEndings = ".vtu .vtk .msh .stl .ply .obj .glb .drc .usda .npz";
+
+/// Whether this kind of file is made of a mesh on the lattice alone.
+[[nodiscard]] bool needsLattice(std::string_view ending);
+
+/// The mesh as a file of the kind that the ending names. REQUIRES: one of kWrittenEndings, and none
+/// that needs the lattice of a mesh in floats. Errors: the writers'.
+[[nodiscard]] Result<Bytes> meshFileBytes(const FileMesh& mesh, std::string_view ending);
+[[nodiscard]] Result<Bytes> meshFileBytes(const LatticeMesh& mesh, std::string_view ending);
+
+/// VTK's legacy format 3.0, binary: an unstructured grid with every field, as VTK, ParaView, meshio
+/// and VisIt read it.
+[[nodiscard]] Bytes legacyVtkBytes(const FileMesh& mesh);
+
+/// Gmsh's MSH 2.2, binary: nodes and tetrahedra numbered from 1 in their order, fields as $NodeData
+/// and $ElementData. Gmsh knows 1, 3 and 9 components: others are filled up with zeros to the next
+/// of them. Errors: bad-input (a field of more than 9 components; more than 2^31 - 1 nodes or
+/// cells).
+[[nodiscard]] Result<Bytes> gmshBytes(const FileMesh& mesh);
+
+/// The boundary's triangles. STL has neither fields nor shared vertices, and floats; PLY, binary
+/// and little-endian, has point fields as properties of the vertices (NAME, or NAME_0, NAME_1, ...
+/// of vectors; letters, digits and _ stay, everything else becomes _); OBJ is text without fields.
+/// Errors: bad-input (more triangles than the format's 32 bits can count; coordinates that .stl's
+/// floats do not hold).
+[[nodiscard]] Result<Bytes> stlBytes(const FileSurface& surface);
+[[nodiscard]] Result<Bytes> plyBytes(const FileSurface& surface, bool doublePoints);
+[[nodiscard]] Bytes objBytes(const FileSurface& surface);
+
+/// OpenUSD text: a TetMesh prim with its surface faces; fields are primvars, of points `vertex`, of
+/// cells `uniform`. Names become USD identifiers as in PLY, and are told in full as displayName.
+/// Errors: bad-input (coordinates that its floats do not hold).
+[[nodiscard]] Result<Bytes> usdaBytes(const FileMesh& mesh);
+
+/// numpy's archive: `points` (n, 3), `tetrahedra` (m, 4), `boundary` (k, 3) and each field as
+/// `point_NAME` or `cell_NAME`, (n) or (n, components), in its own type. Not compressed, so that
+/// numpy maps it into memory. Errors: bad-input (4 GiB or more in all: ZIP without extensions).
+[[nodiscard]] Result<Bytes> npzBytes(const FileMesh& mesh);
+
+}  // namespace qtet

@@ -1,0 +1,85 @@
+#include "codec/files/temporary_folder.h"
+
+#include <fcntl.h>
+#include <stdlib.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <string>
+#include <utility>
+
+namespace qtet {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kPattern = "XXXXXX";
+
+int openFolder(const fs::path& path) {
+  return ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+}
+
+/// Whether the folder that is open has its name still.
+bool isAt(const fs::path& path, int folder) {
+  struct stat opened{}, named{};
+  return ::fstat(folder, &opened) == 0 && ::lstat(path.c_str(), &named) == 0 &&
+         opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
+}
+
+bool isOurs(int folder) {
+  struct stat info{};
+  return ::fstat(folder, &info) == 0 && info.st_uid == ::geteuid();
+}
+
+/// The folders of `parent` whose names are `prefix` and as much as mkdtemp() adds, that are this
+/// user's and that nobody has locked.
+void removeAbandoned(const fs::path& parent, const std::string& prefix) {
+  std::error_code ec;
+  for (fs::directory_iterator it(parent, ec), end; !ec && it != end; it.increment(ec)) {
+    const std::string name = it->path().filename().string();
+    if (!name.starts_with(prefix) || name.size() != prefix.size() + kPattern.size()) continue;
+    const int folder = openFolder(it->path());
+    if (folder < 0) continue;
+    std::error_code ignored;
+    if (isOurs(folder) && ::flock(folder, LOCK_EX | LOCK_NB) == 0 && isAt(it->path(), folder))
+      fs::remove_all(it->path(), ignored);
+    ::close(folder);
+  }
+}
+
+}  // namespace
+
+TemporaryFolder::TemporaryFolder(std::string_view purpose) {
+  const fs::path parent = fs::temp_directory_path(failure_);
+  if (failure_) return;
+  const std::string prefix = "qtet-" + std::string(purpose) + "-";
+  removeAbandoned(parent, prefix);
+  // somebody else may take a folder that has no lock yet for an abandoned one
+  constexpr int kAttempts = 100;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    std::string name = (parent / (prefix + std::string(kPattern))).string();
+    if (::mkdtemp(name.data()) == nullptr) {
+      failure_.assign(errno, std::generic_category());
+      return;
+    }
+    lock_ = openFolder(name);
+    const bool gone =
+        lock_ < 0 ? errno == ENOENT : ::flock(lock_, LOCK_EX) == 0 && !isAt(name, lock_);
+    if (!gone) {
+      path_ = name;
+      return;
+    }
+    if (lock_ >= 0) ::close(std::exchange(lock_, -1));
+  }
+  failure_ = std::make_error_code(std::errc::device_or_resource_busy);
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  if (!path_.empty()) fs::remove_all(path_, ignored);
+  if (lock_ >= 0) ::close(lock_);
+}
+
+}  // namespace qtet

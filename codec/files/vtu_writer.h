@@ -1,0 +1,18 @@
+// Meshes as VTK XML files (.vtu) for ParaView and everything that reads VTK, without VTK.
+#pragma once
+
+#include "codec/files/file_mesh.h"
+#include "proto/bytes.h"
+
+namespace qtet {
+
+/// One UnstructuredGrid piece of tetrahedra: appended raw, little-endian, ids as Int32 (Int64 where
+/// they do not fit), array sizes as UInt32 (UInt64 where an array has 4 GiB or more). The first
+/// scalar field of the
+/// points and that of the cells are the active ones. Deterministic: no dates, no names of machines.
+[[nodiscard]] Bytes vtuBytes(const FileMesh& mesh);
+
+/// A mesh on the lattice, as fileMesh() has it.
+[[nodiscard]] Bytes vtuBytes(const LatticeMesh& mesh);
+
+}  // namespace qtet

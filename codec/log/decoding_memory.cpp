@@ -1,0 +1,93 @@
+#include "codec/log/decoding_memory.h"
+
+#include <algorithm>
+
+#include "codec/mesh/growing_mesh.h"
+#include "codec/record/point_values.h"
+#include "proto/limits.h"
+
+namespace qtet {
+namespace {
+
+// A vector that grows by doubling holds twice what is in it at most, and half as much again while
+// it moves.
+constexpr std::uint64_t kDoubling = 3;
+// The models of probabilities, twice, and other things of one size.
+constexpr std::uint64_t kFixed = 1u << 20;
+// Of the base mesh alone: the faces that are open while it is grown, and those that are paired up
+// to find its boundary.
+constexpr std::uint64_t kBaseTetrahedron = 300;
+// A refiner's own figures of a chunk, beside its row of the table.
+constexpr std::uint64_t kChunk = 128;
+// Draco's buffers of an integer, the digits behind it, and what comes out.
+constexpr std::uint64_t kBlockInteger = 24;
+
+struct Totals {
+  Slots slots;
+  std::uint64_t records = 0, structureBytes = 0, blockIntegers = 0;
+};
+
+Totals totalsOf(const LogIndex& index) {
+  Totals out;
+  for (std::uint32_t chunk = 0; chunk < index.chunks.size(); ++chunk) {
+    const ChunkEntry& entry = index.chunks[chunk];
+    out.slots.vertices += entry.newVertices;
+    out.slots.tetrahedra += entry.newTetrahedra;
+    out.slots.triangles += entry.newBoundaryTriangles;
+    out.records += entry.records;
+    out.structureBytes += entry.blocks[kStructurePart].size;
+    const std::uint64_t positions = std::uint64_t{3} * index.tuples(chunk, kPositionsPart);
+    std::uint64_t largest = 0;
+    for (std::uint32_t part = kFirstFieldPart; part < index.parts(); ++part)
+      largest =
+          std::max(largest, std::uint64_t{index.components(part)} * index.tuples(chunk, part));
+    out.blockIntegers = std::max(out.blockIntegers, positions + largest);
+  }
+  return out;
+}
+
+std::uint64_t fieldBytes(const LogIndex& index, const Slots& slots) {
+  std::uint64_t sum = 0, largest = 0;
+  for (const FieldShape& field : index.fields) {
+    const std::uint64_t bytes =
+        sizeof(std::int32_t) * std::uint64_t{field.components} *
+        (field.association == Association::kPoint ? slots.vertices : slots.tetrahedra);
+    sum += bytes;
+    largest = std::max(largest, bytes);
+  }
+  const std::uint64_t ancestry =
+      index.hasCellField() ? sizeof(std::array<CellId, 4>) * std::uint64_t{slots.tetrahedra} : 0;
+  return (kDoubling - 1) * sum + largest + kDoubling * ancestry;
+}
+
+// The cells of the nodes whose packets may come next, and what the vertices are counted by.
+std::uint64_t nodeBytes(const LogIndex& index, const Slots& slots) {
+  if (index.layout != Layout::kRegions) return 0;
+  const std::uint64_t cells = std::uint64_t{slots.tetrahedra} + slots.triangles;
+  return kDoubling *
+             (sizeof(CellId) * cells + (sizeof(std::array<std::uint32_t, 2>) + sizeof(VertexId)) *
+                                           std::uint64_t{slots.vertices}) +
+         kChunk * (std::uint64_t{2} << index.lastDepth());
+}
+
+}  // namespace
+
+std::uint64_t decodingBytes(const LogIndex& index) {
+  const Totals all = totalsOf(index);
+  const bool withPointField = std::ranges::any_of(
+      index.fields, [](const FieldShape& f) { return f.association == Association::kPoint; });
+  const std::uint64_t mesh = GrowingMesh::roomFor(all.slots) +
+                             PointAncestry(withPointField).roomFor(all.records, all.slots.vertices);
+  // What a refiner makes room for at once, and what it lets grow because so many elements of so few
+  // bytes are not credible.
+  const bool roomy = std::max({all.slots.vertices, all.slots.tetrahedra, all.slots.triangles}) <=
+                     kMaxElementsPerPacketByte * all.structureBytes;
+  const std::uint64_t table =
+      index.chunks.size() * (sizeof(ChunkEntry) + kChunk + index.parts() * sizeof(BlockEntry)) +
+      index.manifest.size();
+  return kFixed + table + (roomy ? 1 : kDoubling) * mesh +
+         kBaseTetrahedron * index.chunks.front().newTetrahedra + fieldBytes(index, all.slots) +
+         nodeBytes(index, all.slots) + kBlockInteger * all.blockIntegers;
+}
+
+}  // namespace qtet

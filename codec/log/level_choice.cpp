@@ -1,0 +1,49 @@
+#include "codec/log/level_choice.h"
+
+#include <string>
+
+#include "codec/log/log_levels.h"
+
+namespace qtet {
+namespace {
+
+template <class ErrorOf>
+Result<std::uint32_t> coarsestWithin(const Manifest& manifest, double bound,
+                                     const ErrorOf& errorOf) {
+  for (const ManifestLevel& level : manifest.levels) {
+    if (!level.error)
+      return fail(ErrorCode::kNotFound,
+                  "the log does not tell the error of level " + std::to_string(level.level) +
+                      "; choose by size, or make it again with qtet simplify --measure levels");
+    if (errorOf(*level.error) <= bound) return level.level;
+  }
+  return manifest.levels.back().level;
+}
+
+}  // namespace
+
+std::uint32_t levelOfTetrahedra(const Manifest& manifest, double most) {
+  std::uint32_t found = 0;
+  for (const ManifestLevel& level : manifest.levels)
+    if (level.tetrahedra <= most) found = level.level;
+  return found;
+}
+
+std::uint32_t levelOfBytes(const Manifest& manifest, const LogIndex& index, std::uint64_t most) {
+  std::uint32_t found = 0;
+  for (const ManifestLevel& level : manifest.levels)
+    if (prefixBytes(manifest, index, level.level) <= most) found = level.level;
+  return found;
+}
+
+Result<std::uint32_t> levelOfBoundaryError(const Manifest& manifest, double bound) {
+  return coarsestWithin(manifest, bound,
+                        [](const LevelError& error) { return error.boundaryDistance(); });
+}
+
+Result<std::uint32_t> levelOfFieldError(const Manifest& manifest, std::size_t field, double bound) {
+  return coarsestWithin(manifest, bound,
+                        [field](const LevelError& error) { return error.fields[field].rms; });
+}
+
+}  // namespace qtet

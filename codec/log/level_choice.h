@@ -1,0 +1,27 @@
+// Which level somebody means who says how large or how good it has to be. Figures are the
+// manifest's.
+#pragma once
+
+#include <cstdint>
+
+#include "codec/log/log_index.h"
+#include "proto/manifest.h"
+
+namespace qtet {
+
+/// The finest level of at most so many tetrahedra; 0 if there is none.
+[[nodiscard]] std::uint32_t levelOfTetrahedra(const Manifest& manifest, double most);
+/// The finest level that a prefix of at most so many bytes of the file holds; 0 if there is none.
+/// REQUIRES: a manifest that manifestOf(index) gave.
+[[nodiscard]] std::uint32_t levelOfBytes(const Manifest& manifest, const LogIndex& index,
+                                         std::uint64_t most);
+/// The coarsest level whose boundary is nowhere further than `bound` from the original's, both
+/// ways; a fraction of the diagonal. Errors: not-found (a level's error is not known, and no
+/// coarser one is good enough).
+[[nodiscard]] Result<std::uint32_t> levelOfBoundaryError(const Manifest& manifest, double bound);
+/// The coarsest level at which a field's rms error is at most `bound`, a fraction of its range.
+/// Errors: as above. REQUIRES: a field of the manifest.
+[[nodiscard]] Result<std::uint32_t> levelOfFieldError(const Manifest& manifest, std::size_t field,
+                                                      double bound);
+
+}  // namespace qtet

@@ -1,0 +1,40 @@
+// Logs put together anew from blocks that are there already: fields added, left out or replaced,
+// the other blocks byte for byte.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "codec/log/log_file.h"
+#include "proto/manifest.h"
+
+namespace qtet {
+
+/// A field for a log, its blocks those of encodeFieldBlocks.
+struct NewField {
+  ManifestField info;
+  std::vector<Bytes> blocks;       ///< one a chunk
+  std::vector<FieldError> errors;  ///< one a level; none where the log knows no errors
+};
+
+/// A closing block for a log.
+struct NewClosing {
+  ClosingKind kind = ClosingKind::kPointOrder;
+  std::uint32_t field = 0;  ///< of kExactField
+  Bytes bytes;
+};
+
+/// The log with `added` behind its own closing blocks. Errors: limit-exceeded (a block too large).
+/// REQUIRES: kinds that the log does not have yet.
+[[nodiscard]] Result<Bytes> withClosing(const LogFile& log, const std::vector<NewClosing>& added);
+
+/// The log with the fields `kept` (numbers of its own fields, in the order wanted) and then
+/// `added`. Errors: limit-exceeded (too many fields, a block too large), bad-value (the log's
+/// manifest). REQUIRES: fields of the log; a block of each added field for every chunk; errors of
+/// each
+/// for every level, if any level of the log has some.
+/// Closing blocks stay, those of fields left out do not.
+[[nodiscard]] Result<Bytes> withFields(const LogFile& log, const std::vector<std::uint32_t>& kept,
+                                       const std::vector<NewField>& added);
+
+}  // namespace qtet

@@ -1,0 +1,73 @@
+// A log on disk or in memory: opened with every checksum available, refined to any level natively.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <stop_token>
+
+#include "codec/log/log_index.h"
+#include "codec/log/refiner.h"
+#include "codec/mesh/mesh.h"
+#include "proto/manifest.h"
+
+namespace qtet {
+
+/// A log mapped read-only into memory, or held there. Immutable, so safe to share between threads;
+/// views live as long as the object.
+class LogFile {
+ public:
+  /// Maps the file and checks header, manifest and table, and that the file is as long as it says.
+  /// Errors: io, and LogIndex::parse's.
+  [[nodiscard]] static Result<LogFile> open(const std::filesystem::path& path);
+  /// The same of bytes that were read or fetched elsewhere. Errors: as open, but for io.
+  [[nodiscard]] static Result<LogFile> fromBytes(Bytes bytes);
+  LogFile(LogFile&&) noexcept;
+  LogFile& operator=(LogFile&&) noexcept;
+  ~LogFile();
+
+  [[nodiscard]] ByteView bytes() const;
+  [[nodiscard]] const LogIndex& index() const { return index_; }
+  /// SHA-256 of the whole file, lower-case hexadecimal; computed once at open.
+  [[nodiscard]] const std::string& digest() const { return digest_; }
+  [[nodiscard]] ByteView block(std::uint32_t chunk, std::uint32_t part) const;
+  /// The bytes of a closing block after comparing them with its CRC-32C. Errors: not-found (the log
+  /// has none of the kind), bad-checksum.
+  [[nodiscard]] Result<ByteView> closing(ClosingKind kind, std::uint32_t field = 0) const;
+  /// Compares every block with its CRC-32C; the first that differs is the error (bad-checksum,
+  /// chunk and part in the message).
+  [[nodiscard]] Status verifyChecksums() const;
+
+ private:
+  struct Mapping;
+  LogFile() = default;
+  [[nodiscard]] static Result<LogFile> checked(std::unique_ptr<Mapping> mapping);
+  std::unique_ptr<Mapping> mapping_;
+  LogIndex index_;
+  std::string digest_;
+};
+
+/// Decodes one chunk's blocks (checksum, range coder, Draco) into the refiner: the mesh, and the
+/// named fields.
+Status applyChunk(const LogFile& log, Refiner& refiner, std::uint32_t chunk,
+                  std::span<const std::uint32_t> fields);
+
+/// Decodes one field's block of a chunk that the refiner has. Errors: not-found (no such field),
+/// Refiner::applyField's, bad-checksum, bad-codec.
+Status applyFieldBlock(const LogFile& log, Refiner& refiner, std::uint32_t chunk,
+                       std::uint32_t field);
+
+/// The mesh that `refiner` holds, with the fields of these numbers.
+[[nodiscard]] LatticeMesh latticeMesh(const Manifest& manifest, const Refiner& refiner,
+                                      std::span<const std::uint32_t> fields);
+
+/// The mesh after level `level` (0 = base mesh) with the given fields; nullopt fields = all.
+/// Errors: not-found (no such level), decoding errors, io (`stop` was requested; looked at after
+/// every chunk).
+[[nodiscard]] Result<LatticeMesh> meshAtLevel(
+    const LogFile& log, std::uint32_t level,
+    const std::optional<std::vector<std::uint32_t>>& fields = std::nullopt,
+    const std::stop_token& stop = {});
+
+}  // namespace qtet

@@ -1,0 +1,353 @@
+#include "codec/log/log_index.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+
+#include "codec/log/chunk_table.h"
+#include "proto/crc32c.h"
+#include "proto/limits.h"
+
+namespace qtet {
+namespace {
+
+// As PNG's: the high bit finds seven-bit transfers, CR LF and LF find text-mode copies, 0x1A stops
+// DOS type.
+constexpr std::array<std::uint8_t, 8> kMagic{0x89, 'Q', 'T', 'E', 'T', '\r', '\n', 0x1A};
+
+// Beside a field's association: its values may be missing.
+constexpr std::uint32_t kMissingFlag = 0x80;
+
+struct Header {
+  std::uint32_t manifestBytes = 0, tableBytes = 0, manifestCrc = 0, tableCrc = 0;
+  std::uint32_t chunks = 0, fields = 0, dependencies = 0, closing = 0;
+  std::uint64_t fileBytes = 0;
+  Layout layout = Layout::kStream;
+  std::uint8_t positionBits = 0;
+
+  [[nodiscard]] std::uint64_t leastTableBytes() const {
+    return std::uint64_t{fields} * 2 +
+           std::uint64_t{chunks} * leastRowBytes(kFirstFieldPart + fields) +
+           std::uint64_t{closing} * kLeastClosingRowBytes;
+  }
+  [[nodiscard]] std::uint64_t headBytes() const {
+    return std::uint64_t{LogIndex::kHeaderBytes} + manifestBytes + tableBytes;
+  }
+};
+
+Result<Header> readHeader(ByteView bytes) {
+  if (bytes.size() < LogIndex::kHeaderBytes)
+    return fail(ErrorCode::kTruncated,
+                "a log starts with a header of 64 bytes; this has " + std::to_string(bytes.size()),
+                bytes.size());
+  if (!std::equal(kMagic.begin(), kMagic.end(), bytes.begin()))
+    return fail(ErrorCode::kBadMagic, "this is not a qtet log (the first 8 bytes differ)", 0);
+  ByteReader r(bytes.first(LogIndex::kHeaderBytes));
+  r.take(kMagic.size());
+  const auto major = r.read<std::uint16_t>();
+  (void)r.read<std::uint16_t>();  // minor: additions that this reader may ignore
+  if (major != LogIndex::kVersionMajor)
+    return fail(ErrorCode::kBadVersion,
+                "version " + std::to_string(major) + " of the format; this build reads version " +
+                    std::to_string(LogIndex::kVersionMajor) +
+                    (major < LogIndex::kVersionMajor
+                         ? ": make the log again from its input with qtet simplify"
+                         : ": use a newer qtet"),
+                8);
+  Header h;
+  const auto layout = r.read<std::uint8_t>();
+  h.positionBits = r.read<std::uint8_t>();
+  bool reservedAreZero = r.read<std::uint16_t>() == 0;
+  h.fileBytes = r.read<std::uint64_t>();
+  h.manifestBytes = r.read<std::uint32_t>();
+  h.tableBytes = r.read<std::uint32_t>();
+  h.manifestCrc = r.read<std::uint32_t>();
+  h.tableCrc = r.read<std::uint32_t>();
+  h.chunks = r.read<std::uint32_t>();
+  h.fields = r.read<std::uint32_t>();
+  h.dependencies = r.read<std::uint32_t>();
+  h.closing = r.read<std::uint32_t>();
+  reservedAreZero &= r.read<std::uint32_t>() == 0;
+  if (r.read<std::uint32_t>() != crc32c(bytes.first(LogIndex::kHeaderBytes - 4)))
+    return fail(ErrorCode::kBadChecksum,
+                "the header's CRC-32C does not match; fetch the file again",
+                LogIndex::kHeaderBytes - 4);
+  if (!reservedAreZero)
+    return fail(ErrorCode::kBadValue,
+                "a reserved byte of the header (14, 15 or 56 to 59) is not 0; use a newer qtet",
+                14);
+  if (layout > static_cast<std::uint8_t>(Layout::kRegions))
+    return fail(ErrorCode::kBadValue, "unknown layout " + std::to_string(layout), 12);
+  h.layout = static_cast<Layout>(layout);
+  if (h.positionBits < kMinPositionBits || h.positionBits > kMaxPositionBits)
+    return fail(ErrorCode::kBadValue,
+                "a lattice of " + std::to_string(h.positionBits) + " bits; 4 to 28 are allowed",
+                13);
+  if (h.manifestBytes > kMaxManifestBytes)
+    return fail(ErrorCode::kLimitExceeded, "the manifest is above 8 MiB", 24);
+  if (h.chunks == 0)
+    return fail(ErrorCode::kBadValue, "a log has at least one chunk, the base mesh", 40);
+  if (h.chunks > kMaxChunks) return fail(ErrorCode::kLimitExceeded, "more than 2^20 chunks", 40);
+  if (h.fields > kMaxFields) return fail(ErrorCode::kLimitExceeded, "more than 256 fields", 44);
+  if (h.closing > kMaxClosingBlocks)
+    return fail(ErrorCode::kLimitExceeded, "more than 1,024 closing blocks", 52);
+  if (h.leastTableBytes() > h.tableBytes)
+    return fail(ErrorCode::kBadValue,
+                "the chunk table is too short for the counts of chunks, fields and closing blocks; "
+                "fetch the file again",
+                28);
+  if (h.headBytes() > h.fileBytes)
+    return fail(ErrorCode::kBadValue, "the file's size is below that of its front", 16);
+  return h;
+}
+
+// Blocks back to back from `offset` to the file's end, each kind once.
+Status checkClosing(const LogIndex& index, std::uint64_t offset, std::uint64_t fileBytes) {
+  for (const ClosingBlock& closing : index.closing) {
+    if (closing.block.size > kMaxBlockBytes)
+      return fail(ErrorCode::kLimitExceeded, "a closing block above 256 MiB", offset);
+    if (closing.kind == ClosingKind::kExactField && closing.field >= index.fields.size())
+      return fail(ErrorCode::kBadValue,
+                  "a closing block of a field that the log does not have; build the log again",
+                  offset);
+    if (index.closingBlock(closing.kind, closing.field) != &closing)
+      return fail(ErrorCode::kBadValue, "two closing blocks of the same kind; build the log again",
+                  offset);
+    offset += closing.block.size;
+  }
+  if (offset != fileBytes)
+    return fail(ErrorCode::kBadValue, "the blocks do not end where the file ends", offset);
+  return {};
+}
+
+// Packets come in the order of their nodes, 2^firstDepth to 2^(lastDepth + 1) - 1: each band is
+// whole, and one bit deeper than the one before it.
+const char* brokenPacket(const LogIndex& index, std::uint32_t i, std::uint32_t head,
+                         std::uint32_t firstNode) {
+  const ChunkEntry& e = index.chunks[i];
+  const ChunkEntry& before = index.chunks[i - 1];
+  if (e.node != firstNode + (i - head))
+    return "its node does not follow that of the packet before it";
+  if (e.endSlot != kLevelEnd || before.endSlot != kLevelEnd)
+    return "a packet, or the chunk before the first one, ends within a level";
+  if (!std::has_single_bit(e.node) && e.lastLevel != before.lastLevel)
+    return "its levels are not those of its band";
+  const std::uint32_t parent = index.dependencies[e.firstDependency];
+  if (parent >= head && !index.chunks[parent].box.contains(e.box))
+    return "its box is not within its parent's";
+  for (std::size_t a = 0; a < 3; ++a)
+    if (e.box.least[a] > e.box.most[a]) return "its box is inside out";
+  return nullptr;
+}
+
+Status checkLayout(const LogIndex& index, std::uint64_t tableEnd) {
+  const auto bad = [](std::uint32_t i, const char* what) {
+    return fail(ErrorCode::kBadValue, "chunk table, row " + std::to_string(i) + ": " + what +
+                                          "; fetch or build the log again");
+  };
+  const auto chunks = static_cast<std::uint32_t>(index.chunks.size());
+  const std::uint32_t head = index.headChunks();
+  if (head < chunks) {
+    const std::uint32_t firstNode = index.chunks[head].node;
+    if (head == 0) return bad(head, "the base mesh is no packet");
+    if (firstNode < 2 || !std::has_single_bit(firstNode))
+      return bad(head, "the first band's packets are not a power of two in number");
+    for (std::uint32_t i = head; i < chunks; ++i)
+      if (const char* what = brokenPacket(index, i, head, firstNode)) return bad(i, what);
+    if (!std::has_single_bit(index.chunks.back().node + 1))
+      return bad(chunks - 1, "the last band is not whole");
+  } else if (index.layout == Layout::kRegions) {
+    return bad(chunks - 1, "a log of regions has packets");
+  }
+  if (index.chunks.back().endSlot != kLevelEnd)
+    return fail(ErrorCode::kBadValue,
+                "the last chunk ends within a level; fetch or build the log again", tableEnd);
+  return {};
+}
+
+// What every later step relies on: blocks that end where the file does, levels in order, counts
+// within limits, packets in order.
+Status check(const LogIndex& index, const Header& header) {
+  std::uint64_t offset = header.headBytes();
+  std::uint64_t vertices = 0;
+  std::uint64_t cells = 0;
+  std::uint64_t triangles = 0;
+  for (std::uint32_t i = 0; i < index.chunks.size(); ++i) {
+    const ChunkEntry& e = index.chunks[i];
+    const auto bad = [i](ErrorCode code, const char* what) {
+      return fail(code, "chunk table, row " + std::to_string(i) + ": " + what +
+                            "; fetch or build the log again");
+    };
+    for (const BlockEntry& b : e.blocks) {
+      if (b.size > kMaxBlockBytes) return bad(ErrorCode::kLimitExceeded, "a block above 256 MiB");
+      offset += b.size;
+    }
+    vertices += e.newVertices, cells += e.newTetrahedra, triangles += e.newBoundaryTriangles;
+    if (vertices > kMaxElements || cells > kMaxElements || triangles > kMaxElements)
+      return bad(ErrorCode::kLimitExceeded, "more than 2^29 vertices, cells or triangles");
+    if (e.structureCodec != CodecId::kRange ||
+        (e.valueCodec != CodecId::kDraco && e.valueCodec != CodecId::kAdaptive &&
+         e.valueCodec != CodecId::kEmpty))
+      return bad(ErrorCode::kBadCodec, "an unknown codec id");
+    if (e.valueCodec == CodecId::kEmpty && e.size() > e.blocks[kStructurePart].size)
+      return bad(ErrorCode::kBadCodec, "value blocks of the codec 'no bytes' that have bytes");
+    if (i == 0 ? e.firstLevel != 0 || e.lastLevel != 0 || e.records != 0 || e.endSlot != kLevelEnd
+               : e.firstLevel == 0)
+      return bad(ErrorCode::kBadValue, "levels out of order");
+    // A split costs at least one decision and brings at most four vertices back; a link triangle or
+    // a deleted cell one decision each.
+    const std::uint64_t decisions =
+        kMaxDecisionsPerByte * (std::uint64_t{e.blocks[kStructurePart].size} + 4);
+    if (e.records > decisions || e.newVertices > 4 * decisions || e.newTetrahedra > 8 * decisions ||
+        e.newBoundaryTriangles > 8 * decisions)
+      return bad(ErrorCode::kLimitExceeded, "it promises more than its bytes can hold");
+    const std::uint64_t elements =
+        kMaxElementsPerPacketByte * (std::uint64_t{e.blocks[kStructurePart].size} + 64);
+    if (e.node != 0 && (e.newVertices > elements || e.newTetrahedra > elements ||
+                        e.newBoundaryTriangles > elements))
+      return bad(ErrorCode::kLimitExceeded, "a packet that promises more than packets hold");
+    // so that tuples() fits its type
+    if (e.records > e.newVertices) return bad(ErrorCode::kBadValue, "more records than vertices");
+  }
+  if (Status layout = checkLayout(index, header.headBytes()); !layout) return layout;
+  if (index.dependencies.size() != header.dependencies)
+    return fail(ErrorCode::kBadValue,
+                "the table has another number of dependencies than the header says; fetch or build "
+                "the log again",
+                48);
+  return checkClosing(index, offset, header.fileBytes);
+}
+
+}  // namespace
+
+std::uint64_t LogIndex::headBytes() const {
+  return chunks.empty() ? kHeaderBytes : chunks.front().offset;
+}
+
+const ClosingBlock* LogIndex::closingBlock(ClosingKind kind, std::uint32_t field) const {
+  const auto at = std::ranges::find_if(
+      closing, [&](const ClosingBlock& c) { return c.kind == kind && c.field == field; });
+  return at == closing.end() ? nullptr : &*at;
+}
+
+std::uint32_t LogIndex::tuples(std::uint32_t chunk, std::uint32_t part) const {
+  const ChunkEntry& e = chunks[chunk];
+  if (part == kPositionsPart) return e.newVertices;
+  if (fields[part - kFirstFieldPart].association == Association::kCell) return e.newTetrahedra;
+  return e.newVertices + e.records;
+}
+
+bool LogIndex::hasCellField() const {
+  return std::ranges::any_of(
+      fields, [](const FieldShape& field) { return field.association == Association::kCell; });
+}
+
+std::uint32_t LogIndex::headChunks() const {
+  return static_cast<std::uint32_t>(
+      std::ranges::find_if(chunks, [](const ChunkEntry& e) { return e.node != 0; }) -
+      chunks.begin());
+}
+
+std::uint32_t LogIndex::firstDepth() const {
+  const std::uint32_t head = headChunks();
+  return head < chunks.size() ? static_cast<std::uint32_t>(std::bit_width(chunks[head].node)) - 1
+                              : 0;
+}
+
+std::uint32_t LogIndex::lastDepth() const {
+  return chunks.empty() || chunks.back().node == 0
+             ? 0
+             : static_cast<std::uint32_t>(std::bit_width(chunks.back().node)) - 1;
+}
+
+Result<std::uint64_t> LogIndex::headBytesOf(ByteView firstBytes) {
+  const Result<Header> header = readHeader(firstBytes);
+  if (!header) return std::unexpected(header.error());
+  return header->headBytes();
+}
+
+Result<LogIndex> LogIndex::parse(ByteView bytes) {
+  const Result<Header> header = readHeader(bytes);
+  if (!header) return std::unexpected(header.error());
+  if (bytes.size() < header->headBytes())
+    return fail(ErrorCode::kTruncated,
+                "the front of the log is " + std::to_string(header->headBytes()) +
+                    " bytes long, these are " + std::to_string(bytes.size()),
+                bytes.size());
+  const ByteView manifest = bytes.subspan(kHeaderBytes, header->manifestBytes);
+  const ByteView table =
+      bytes.subspan(kHeaderBytes + std::size_t{header->manifestBytes}, header->tableBytes);
+  if (crc32c(manifest) != header->manifestCrc)
+    return fail(ErrorCode::kBadChecksum,
+                "the manifest's CRC-32C does not match; fetch the file again", kHeaderBytes);
+  if (crc32c(table) != header->tableCrc)
+    return fail(ErrorCode::kBadChecksum,
+                "the chunk table's CRC-32C does not match; fetch the file again",
+                kHeaderBytes + std::uint64_t{header->manifestBytes});
+  LogIndex index;
+  index.layout = header->layout;
+  index.positionBits = header->positionBits;
+  index.fileBytes = header->fileBytes;
+  index.manifest.assign(manifest.begin(), manifest.end());
+  ByteReader r(table, kHeaderBytes + std::uint64_t{header->manifestBytes});
+  for (std::uint32_t f = 0; f < header->fields; ++f) {
+    const auto components = r.read<std::uint8_t>();
+    const auto association = r.read<std::uint8_t>();
+    if (components == 0 || components > kMaxFieldComponents)
+      return fail(ErrorCode::kBadValue,
+                  "field " + std::to_string(f) + " has a number of components outside 1..16",
+                  r.offset() - 2);
+    if ((association & ~kMissingFlag) > static_cast<std::uint8_t>(Association::kCell))
+      return fail(ErrorCode::kBadValue,
+                  "field " + std::to_string(f) + " has the association " +
+                      std::to_string(association) +
+                      "; this build knows 0 (points) and 1 (cells), and 128 more for missing "
+                      "values: use a newer qtet, or build the log again",
+                  r.offset() - 1);
+    index.fields.push_back({components, static_cast<Association>(association & ~kMissingFlag),
+                            (association & kMissingFlag) != 0});
+  }
+  readChunkRows(r, index, header->chunks, header->headBytes());
+  readClosingRows(r, index, header->closing);
+  if (!r.failed() && r.remaining() > 0)
+    r.fail(ErrorCode::kBadValue,
+           "bytes behind the chunk table's last row; fetch or build the log again");
+  if (r.failed()) return std::unexpected(r.error());
+  if (Status s = check(index, *header); !s) return std::unexpected(s.error());
+  return index;
+}
+
+Bytes LogIndex::encode() const {
+  ByteWriter table;
+  for (const FieldShape& field : fields) {
+    table.write(static_cast<std::uint8_t>(field.components));
+    table.write(static_cast<std::uint8_t>(static_cast<std::uint32_t>(field.association) |
+                                          (field.hasMissing ? kMissingFlag : 0)));
+  }
+  writeChunkRows(table, *this);
+  writeClosingRows(table, *this);
+
+  ByteWriter w;
+  w.append(kMagic);
+  w.write(kVersionMajor);
+  w.write(kVersionMinor);
+  w.write(static_cast<std::uint8_t>(layout));
+  w.write(positionBits);
+  w.write(std::uint16_t{0});
+  w.write(fileBytes);
+  w.write(static_cast<std::uint32_t>(manifest.size()));
+  w.write(static_cast<std::uint32_t>(table.bytes().size()));
+  w.write(crc32c(manifest));
+  w.write(crc32c(table.bytes()));
+  w.write(static_cast<std::uint32_t>(chunks.size()));
+  w.write(static_cast<std::uint32_t>(fields.size()));
+  w.write(static_cast<std::uint32_t>(dependencies.size()));
+  w.write(static_cast<std::uint32_t>(closing.size()));
+  w.write(std::uint32_t{0});
+  w.write(crc32c(w.bytes()));
+  w.append(manifest);
+  w.append(table.bytes());
+  return w.take();
+}
+
+}  // namespace qtet

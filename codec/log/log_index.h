@@ -1,0 +1,158 @@
+// The front of a log: header, manifest and chunk table (FORMAT.md, "Header", "Chunk table"). What a
+// server, a viewer and a verifier need to know before they touch a block. Trusts nothing: every
+// count is checked against limits and against the bytes.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "proto/bytes.h"
+#include "proto/error.h"
+
+namespace qtet {
+
+enum class Layout : std::uint8_t { kStream = 0, kRegions = 1 };
+
+/// How a block's bytes are coded (FORMAT.md, "Codec ids").
+enum class CodecId : std::uint8_t {
+  kEmpty = 0,     ///< no bytes
+  kRange = 1,     ///< structure: the adaptive binary range coder
+  kDraco = 2,     ///< values: one Draco point cloud, sequential, one int32 attribute, and digits
+  kAdaptive = 3,  ///< values: the adaptive binary range coder
+};
+
+/// What the values of a field belong to.
+enum class Association : std::uint8_t { kPoint = 0, kCell = 1 };
+
+/// What decoding needs to know of a field; the manifest has the rest.
+struct FieldShape {
+  std::uint32_t components = 1;  ///< 1..kMaxFieldComponents
+  Association association = Association::kPoint;
+  bool hasMissing = false;  ///< values may be missing: Values::codeOrMissing
+};
+
+struct BlockEntry {
+  std::uint64_t offset = 0;  ///< in the file; derived, not stored
+  std::uint32_t size = 0;    ///< bytes
+  std::uint32_t crc = 0;
+};
+
+/// Parts of a chunk, in file order: structure, positions, then one block a field.
+inline constexpr std::uint32_t kStructurePart = 0;
+inline constexpr std::uint32_t kPositionsPart = 1;
+inline constexpr std::uint32_t kFirstFieldPart = 2;
+
+/// `ChunkEntry::endSlot` of a chunk that finishes its last level.
+inline constexpr std::uint32_t kLevelEnd = 0xFFFFFFFFu;
+
+/// A box on the lattice in 256ths of its size, most included: [least / 256, (most + 1) / 256) along
+/// each axis.
+struct PacketBox {
+  std::array<std::uint8_t, 3> least{}, most{};
+
+  [[nodiscard]] bool contains(const PacketBox& other) const {
+    for (std::size_t a = 0; a < 3; ++a)
+      if (other.least[a] < least[a] || most[a] < other.most[a]) return false;
+    return true;
+  }
+  bool operator==(const PacketBox&) const = default;
+};
+
+/// One row of the chunk table. Chunk 0 is the base mesh (level 0).
+struct ChunkEntry {
+  std::uint64_t offset = 0;  ///< of its first block in the file; derived, not stored
+  /// The levels that its records belong to; the first follows from the row before.
+  std::uint32_t firstLevel = 0;
+  std::uint32_t lastLevel = 0;
+  /// LastLevel is visited below this vertex slot; kLevelEnd = to its end.
+  std::uint32_t endSlot = kLevelEnd;
+  std::uint32_t records = 0;
+  std::uint32_t newVertices = 0;
+  std::uint32_t newTetrahedra = 0;
+  std::uint32_t newBoundaryTriangles = 0;
+  /// Into LogIndex::dependencies; derived: the chunk before, alone; of a packet its parent's.
+  std::uint32_t firstDependency = 0;
+  std::uint32_t dependencyCount = 0;
+  /// Of a packet (layout `regions`): 2^depth + its place at that depth, so that its parent is node
+  /// / 2; else 0.
+  std::uint32_t node = 0;
+  /// Of a packet: where its node's cells lie in the finest mesh; else zeros.
+  PacketBox box;
+  CodecId structureCodec = CodecId::kRange;
+  CodecId valueCodec = CodecId::kDraco;
+  std::vector<BlockEntry> blocks;  ///< 2 + fields
+
+  [[nodiscard]] std::uint64_t size() const {
+    return blocks.empty() ? 0 : blocks.back().offset + blocks.back().size - offset;
+  }
+};
+
+/// What a closing block holds (FORMAT.md, "Closing blocks").
+enum class ClosingKind : std::uint32_t {
+  kPointOrder = 1,      ///< the input's numbering of points
+  kCellOrder = 2,       ///< the input's numbering of cells and of their vertices; needs the points'
+  kExactPositions = 3,  ///< the input's own coordinates
+  kExactField = 4,      ///< the input's own values of one field
+};
+
+/// A block behind the last chunk. No level needs it: who wants the input itself and not only its
+/// mesh on the lattice fetches it.
+struct ClosingBlock {
+  /// Or one that this build does not know, to be left alone.
+  ClosingKind kind = ClosingKind::kPointOrder;
+  std::uint32_t field = 0;  ///< of kExactField; else 0
+  BlockEntry block;
+};
+
+struct LogIndex {
+  static constexpr std::uint32_t kHeaderBytes = 64;
+  static constexpr std::uint16_t kVersionMajor = 2;
+  static constexpr std::uint16_t kVersionMinor = 0;
+
+  Layout layout = Layout::kStream;
+  std::uint8_t positionBits = 0;
+  std::uint64_t fileBytes = 0;
+  Bytes manifest;  ///< as it stands in the file; codec/log/log_manifest.h reads it
+  std::vector<FieldShape> fields;
+  std::vector<ChunkEntry> chunks;
+  std::vector<std::uint32_t> dependencies;
+  std::vector<ClosingBlock> closing;  ///< in file order
+
+  /// The closing block of that kind (and field), or nullptr.
+  [[nodiscard]] const ClosingBlock* closingBlock(ClosingKind kind, std::uint32_t field = 0) const;
+  /// Bytes of header + manifest + table: where the first block starts.
+  [[nodiscard]] std::uint64_t headBytes() const;
+  [[nodiscard]] const BlockEntry& block(std::uint32_t chunk, std::uint32_t part) const {
+    return chunks[chunk].blocks[part];
+  }
+  [[nodiscard]] std::uint32_t parts() const {
+    return kFirstFieldPart + static_cast<std::uint32_t>(fields.size());
+  }
+  /// Tuples in a value block of a chunk, and integers in each of them. REQUIRES: a part that is not
+  /// the structure.
+  [[nodiscard]] std::uint32_t tuples(std::uint32_t chunk, std::uint32_t part) const;
+  [[nodiscard]] std::uint32_t components(std::uint32_t part) const {
+    return part == kPositionsPart ? 3 : fields[part - kFirstFieldPart].components;
+  }
+  [[nodiscard]] bool hasCellField() const;
+  /// Chunks before the first packet: all of them in `stream`.
+  [[nodiscard]] std::uint32_t headChunks() const;
+  /// Depth of the first packets' nodes: how many bits the head's end tells of each cell. 0 in
+  /// `stream`.
+  [[nodiscard]] std::uint32_t firstDepth() const;
+  /// Depth of the last packets' nodes. 0 in `stream`.
+  [[nodiscard]] std::uint32_t lastDepth() const;
+
+  /// Bytes of the header's promise: how much of the file `parse` needs. Errors: truncated (under 64
+  /// bytes), bad-magic, bad-version, bad-checksum, limit-exceeded, bad-value.
+  [[nodiscard]] static Result<std::uint64_t> headBytesOf(ByteView firstBytes);
+  /// Reads the front of a log; `bytes` holds at least headBytesOf() bytes, the rest is not looked
+  /// at.
+  [[nodiscard]] static Result<LogIndex> parse(ByteView bytes);
+  /// Header, manifest and table as they stand in the file. What the rows imply (offsets, first
+  /// levels, dependencies) is not looked at.
+  [[nodiscard]] Bytes encode() const;
+};
+
+}  // namespace qtet

@@ -1,0 +1,29 @@
+#include "codec/log/log_levels.h"
+
+#include "proto/level_error_json.h"
+
+namespace qtet {
+
+std::uint64_t prefixBytes(const Manifest& manifest, const LogIndex& index, std::size_t level) {
+  const ChunkEntry& chunk = index.chunks[manifest.levels[level].chunk];
+  return chunk.offset + chunk.size();
+}
+
+nlohmann::ordered_json levelsJson(const Manifest& manifest, const LogIndex& index) {
+  nlohmann::ordered_json out = nlohmann::ordered_json::array();
+  std::uint64_t before = 0;
+  for (const ManifestLevel& level : manifest.levels) {
+    const std::uint64_t prefix = prefixBytes(manifest, index, level.level);
+    out.push_back({{"level", level.level},
+                   {"tetrahedra", level.tetrahedra},
+                   {"vertices", level.vertices},
+                   {"boundaryTriangles", level.boundaryTriangles},
+                   {"bytes", prefix - before},
+                   {"cumulativeBytes", prefix}});
+    if (level.error) out.back()["error"] = toJson(*level.error);
+    before = prefix;
+  }
+  return out;
+}
+
+}  // namespace qtet

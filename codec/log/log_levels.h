@@ -1,0 +1,23 @@
+// What the levels of a log cost and how good they are, as the tool and the server tell it. Drags
+// nlohmann-json in.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+
+#include "codec/log/log_index.h"
+#include "proto/manifest.h"
+
+namespace qtet {
+
+/// Length of the file's prefix that holds `level`. REQUIRES: a manifest that manifestOf(index)
+/// gave, and one of its levels.
+[[nodiscard]] std::uint64_t prefixBytes(const Manifest& manifest, const LogIndex& index,
+                                        std::size_t level);
+
+/// [{level, tetrahedra, vertices, boundaryTriangles, bytes, cumulativeBytes, error}], as `GET
+/// /v1/meshes/{id}` has it (PROTOCOL.md); `error` where the manifest has it. REQUIRES: as
+/// prefixBytes.
+[[nodiscard]] nlohmann::ordered_json levelsJson(const Manifest& manifest, const LogIndex& index);
+
+}  // namespace qtet

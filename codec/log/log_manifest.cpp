@@ -1,0 +1,246 @@
+#include "codec/log/log_manifest.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "codec/coding/error_figure.h"
+#include "codec/coding/level_columns.h"
+#include "proto/limits.h"
+#include "proto/utf8.h"
+
+namespace qtet {
+namespace {
+
+// ---- texts and numbers
+
+void writeText(ByteWriter& w, const std::string& text) {
+  w.writeVarint(static_cast<std::uint32_t>(text.size()));
+  w.append(ByteView(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
+}
+
+std::string readText(ByteReader& r) {
+  const std::uint32_t size = r.readVarint();
+  if (size > kMaxNameBytes)
+    return r.fail(ErrorCode::kBadValue,
+                  "a name in the manifest is longer than 256 bytes; build the log again"),
+           std::string();
+  const ByteView bytes = r.take(size);
+  std::string text(bytes.begin(), bytes.end());
+  if (!isUtf8(text))
+    return r.fail(ErrorCode::kBadValue, "a text in the manifest is not UTF-8; build the log again"),
+           std::string();
+  return text;
+}
+
+void writeNumber(ByteWriter& w, double number) { w.write(std::bit_cast<std::uint64_t>(number)); }
+
+double readNumber(ByteReader& r) {
+  const auto number = std::bit_cast<double>(r.read<std::uint64_t>());
+  if (std::isfinite(number)) return number;
+  r.fail(ErrorCode::kBadValue, "a number in the manifest is not finite; build the log again");
+  return 0;
+}
+
+double readStep(ByteReader& r) {
+  const double step = readNumber(r);
+  if (!(step > 0))
+    r.fail(ErrorCode::kBadValue, "a step in the manifest is not above 0; build the log again");
+  return step;
+}
+
+// ---- fields
+
+// Beside a field's type, as beside its association in the chunk table: with one of the two changed,
+// other integers would come out.
+constexpr unsigned kMissingFlag = 0x80;
+
+void writeField(ByteWriter& w, const ManifestField& field) {
+  writeText(w, field.name);
+  const auto type =
+      static_cast<unsigned>(std::ranges::find(kFieldTypes, field.type) - kFieldTypes.begin());
+  w.write(static_cast<std::uint8_t>(type | (field.hasMissing ? kMissingFlag : 0)));
+  w.write(static_cast<std::uint8_t>(field.bits));
+  writeNumber(w, field.step);
+  for (const double value : field.minimum) writeNumber(w, value);
+  for (const double value : field.range) writeNumber(w, value);
+}
+
+ManifestField readField(ByteReader& r, const FieldShape& shape) {
+  ManifestField out;
+  out.name = readText(r);
+  if (out.name.empty()) r.fail(ErrorCode::kBadValue, "a field without a name; build the log again");
+  const auto typeAndMissing = r.read<std::uint8_t>();
+  out.hasMissing = (typeAndMissing & kMissingFlag) != 0;
+  if (out.hasMissing != shape.hasMissing)
+    r.fail(ErrorCode::kBadValue,
+           "manifest and chunk table contradict each other in whether a field has missing values; "
+           "fetch or build the log again");
+  const unsigned type = typeAndMissing & ~kMissingFlag;
+  if (type >= kFieldTypes.size())
+    r.fail(ErrorCode::kBadValue, "a field of an unknown type; use a newer qtet");
+  out.type = kFieldTypes[std::min<std::size_t>(type, kFieldTypes.size() - 1)];
+  out.bits = r.read<std::uint8_t>();
+  if (out.bits < kMinFieldBits || out.bits > kMaxFieldBits)
+    r.fail(ErrorCode::kBadValue, "a field's bits are outside 1..28; build the log again");
+  out.components = shape.components;
+  out.association = shape.association == Association::kCell ? "cell" : "point";
+  out.step = readStep(r);
+  for (std::uint32_t c = 0; c < out.components; ++c) out.minimum.push_back(readNumber(r));
+  for (double& value : out.range) value = readNumber(r);
+  return out;
+}
+
+// ---- levels
+
+std::vector<double> pairsOf(const LevelError& error) {
+  std::vector<double> out{error.toLevel.mean, error.toLevel.max, error.toOriginal.mean,
+                          error.toOriginal.max};
+  for (const FieldError& field : error.fields) out.insert(out.end(), {field.rms, field.max});
+  return out;
+}
+
+Status checkErrors(const Manifest& manifest) {
+  for (const ManifestLevel& level : manifest.levels) {
+    const auto bad = [&](const char* what) {
+      return fail(ErrorCode::kBadValue,
+                  "the known error of level " + std::to_string(level.level) + " " + what);
+    };
+    if (level.error.has_value() != manifest.levels.front().error.has_value())
+      return bad("is there and others are not, or the other way round");
+    if (!level.error) continue;
+    if (level.error->fields.size() != manifest.fields.size())
+      return bad("has another number of fields than the manifest");
+    const auto outside = [](double most) {
+      return [most](double number) { return !(number >= 0 && number <= most); };
+    };
+    if (outside(kMaxVolumeFigure / kVolumeFigure)(level.error->volumeKept) ||
+        std::ranges::any_of(pairsOf(*level.error), outside(errorOfFigure(kMaxErrorFigure))))
+      return bad("holds what is no number, below 0 or beyond what a log can tell; measure again");
+  }
+  return {};
+}
+
+LevelColumns columnsOf(const Manifest& manifest) {
+  const std::size_t levels = manifest.levels.size();
+  const auto fields = static_cast<std::uint32_t>(manifest.fields.size());
+  const bool hasErrors = manifest.levels.front().error.has_value();
+  LevelColumns out(levels * levelColumnCount(fields, hasErrors));
+  for (std::size_t l = 0; l < levels; ++l) {
+    const ManifestLevel& level = manifest.levels[l];
+    std::size_t at = l;
+    const auto put = [&](std::uint32_t number) { out[at] = number, at += levels; };
+    for (const std::uint32_t count : {level.tetrahedra, level.vertices, level.boundaryTriangles})
+      put(count);
+    if (!hasErrors) continue;
+    put(static_cast<std::uint32_t>(std::llround(level.error->volumeKept * kVolumeFigure)));
+    for (const double error : pairsOf(*level.error)) put(figureOfError(error));
+  }
+  return out;
+}
+
+/// Takes one level's numbers out of the columns.
+class LevelReader {
+ public:
+  LevelReader(const LevelColumns& columns, std::size_t levels, std::size_t level)
+      : columns_(columns), levels_(levels), at_(level) {}
+
+  std::uint32_t next() { return columns_[std::exchange(at_, at_ + levels_)]; }
+  double error() { return errorOfFigure(next()); }
+
+ private:
+  const LevelColumns& columns_;
+  std::size_t levels_, at_;
+};
+
+LevelError readError(LevelReader& reader, std::size_t fields) {
+  LevelError out;
+  out.volumeKept = reader.next() / static_cast<double>(kVolumeFigure);
+  for (OneSidedDistance* side : {&out.toLevel, &out.toOriginal})
+    side->mean = reader.error(), side->max = reader.error();
+  out.fields.resize(fields);
+  for (FieldError& field : out.fields) field.rms = reader.error(), field.max = reader.error();
+  return out;
+}
+
+/// The chunk with which each level is complete: the last one that begins with this level or a
+/// coarser one.
+std::vector<std::uint32_t> completingChunks(const LogIndex& index) {
+  std::vector<std::uint32_t> out(std::size_t{index.chunks.back().lastLevel} + 1);
+  for (std::uint32_t chunk = 0; chunk < index.chunks.size(); ++chunk)
+    if (const std::uint32_t first = index.chunks[chunk].firstLevel; first < out.size())
+      out[first] = chunk;
+  for (std::size_t level = 1; level < out.size(); ++level)
+    out[level] = std::max(out[level], out[level - 1]);
+  return out;
+}
+
+Status readLevels(ByteReader& r, const LogIndex& index, Manifest& out) {
+  const auto hasErrors = r.read<std::uint8_t>();
+  if (hasErrors > 1)
+    r.fail(ErrorCode::kBadValue,
+           "the manifest's word on known errors is neither 0 nor 1; use a newer qtet");
+  const ByteView bytes = r.take(r.remaining());
+  if (r.failed()) return std::unexpected(r.error());
+  const std::vector<std::uint32_t> chunks = completingChunks(index);
+  const auto levels = static_cast<std::uint32_t>(chunks.size());
+  const auto fields = static_cast<std::uint32_t>(index.fields.size());
+  const Result<LevelColumns> numbers =
+      decodeLevelColumns(bytes, levels, levelColumnCount(fields, hasErrors != 0));
+  if (!numbers) return std::unexpected(numbers.error());
+  for (std::uint32_t l = 0; l < levels; ++l) {
+    LevelReader reader(*numbers, levels, l);
+    const std::uint32_t tetrahedra = reader.next(), vertices = reader.next(),
+                        triangles = reader.next();
+    out.levels.push_back({l, tetrahedra, vertices, triangles, chunks[l], std::nullopt});
+    if (hasErrors) out.levels.back().error = readError(reader, fields);
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<Bytes> manifestBlock(const Manifest& manifest) {
+  if (Status s = checkErrors(manifest); !s) return std::unexpected(s.error());
+  ByteWriter w;
+  writeText(w, manifest.generator);
+  writeText(w, soundUtf8(manifest.source));
+  writeNumber(w, manifest.latticeStep);
+  for (const double value : manifest.latticeOrigin) writeNumber(w, value);
+  for (const ManifestField& field : manifest.fields) writeField(w, field);
+  w.write(static_cast<std::uint8_t>(manifest.levels.front().error.has_value()));
+  w.append(
+      encodeLevelColumns(columnsOf(manifest), static_cast<std::uint32_t>(manifest.levels.size())));
+  if (w.bytes().size() > kMaxManifestBytes)
+    return fail(ErrorCode::kLimitExceeded,
+                "the manifest is above 8 MiB; choose some fields with --fields");
+  return w.take();
+}
+
+Result<Manifest> manifestOf(const LogIndex& index) {
+  Manifest out;
+  ByteReader r(index.manifest, LogIndex::kHeaderBytes);
+  out.layout = index.layout == Layout::kRegions ? "regions" : "stream";
+  out.generator = readText(r);
+  out.source = readText(r);
+  out.latticeBits = index.positionBits;
+  out.latticeStep = readStep(r);
+  for (double& value : out.latticeOrigin) value = readNumber(r);
+  std::set<std::pair<std::string, std::string>> names;
+  for (const FieldShape& shape : index.fields) {
+    const ManifestField& field = out.fields.emplace_back(readField(r, shape));
+    if (r.failed()) return std::unexpected(r.error());
+    if (!names.emplace(field.association, field.name).second)
+      return fail(ErrorCode::kBadValue,
+                  "the manifest has two " + field.association + " fields '" + field.name +
+                      "'; a field is asked for by its name",
+                  r.offset());
+  }
+  if (Status s = readLevels(r, index, out); !s) return std::unexpected(s.error());
+  return out;
+}
+
+}  // namespace qtet

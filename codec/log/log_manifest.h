@@ -1,0 +1,22 @@
+// The manifest in a log, both ways (FORMAT.md, "Manifest"). What header and chunk table say already
+// is not stored, so nothing contradicts them; only whether a field has missing values stands in
+// both.
+#pragma once
+
+#include "codec/log/log_index.h"
+#include "proto/manifest.h"
+
+namespace qtet {
+
+/// The bytes of LogIndex::manifest. Errors are rounded up to three significant digits
+/// (codec/coding/error_figure.h); either no level has one or every level has. Errors: bad-value (an
+/// error that is no number or out of range, a name too long), limit-exceeded (above
+/// kMaxManifestBytes).
+[[nodiscard]] Result<Bytes> manifestBlock(const Manifest& manifest);
+
+/// Reads index.manifest; layout, bits of the lattice, shapes of the fields, the number of levels
+/// and each level's chunk come from the rest of the index. Errors: truncated; limit-exceeded (found
+/// before anything is allocated); bad-value with what is out of range, and for bytes left over.
+[[nodiscard]] Result<Manifest> manifestOf(const LogIndex& index);
+
+}  // namespace qtet

@@ -1,0 +1,112 @@
+// From chunks to a mesh that grows in place (FORMAT.md, "Refinement"). Engine-free and
+// exception-free; compiled natively and to WebAssembly.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "codec/log/log_index.h"
+#include "codec/mesh/mesh.h"
+
+namespace qtet {
+
+class GrowingMesh;
+class Link;
+struct Split;
+
+/// Hears of every split just before it is applied: link labelled, ids those of `mesh`.
+class SplitObserver {
+ public:
+  virtual void beforeSplit(VertexId v, const GrowingMesh& mesh, const Link& link,
+                           const Split& split) = 0;
+
+ protected:
+  ~SplitObserver() = default;
+};
+
+/// Asked whether decoding goes on: whoever checks a log that a stranger sent does not wait for the
+/// end of a chunk, which may be the whole of it.
+class LevelGate {
+ public:
+  virtual bool goOn() = 0;
+
+ protected:
+  ~LevelGate() = default;
+};
+
+/// What a mesh held when a level was complete.
+struct LevelCounts {
+  std::size_t vertices = 0, tetrahedra = 0, boundaryTriangles = 0;
+};
+
+/// Applies the chunks of one log, each after the chunk that it depends on: in `stream` that is file
+/// order, in `regions` packets may come in any order in which parents come first, and end in the
+/// same slots whatever the order. Vertices and cells keep their slots for ever; an affected cell
+/// changes one index. A chunk's slots follow from the chunk table (firstSlots); below the highest
+/// chunk applied, those of chunks that have not come are holes: points kHolePoint, cells of one
+/// vertex (mesh.h), field values 0. In file order there are none. Not thread-safe. After an error
+/// no further chunk is accepted; ids stay in range, but the mesh is a part of a chunk's.
+class Refiner {
+ public:
+  explicit Refiner(LogIndex index);
+  ~Refiner();
+  Refiner(Refiner&&) noexcept;
+  Refiner& operator=(Refiner&&) noexcept;
+
+  /// Applies chunk `chunk`: `structure` is its structure block, `positions` the decoded positions
+  /// block (3 integers a value). Errors: bad-order (a dependency is missing, or applied already),
+  /// bad-checksum is the caller's to find, anything else of FORMAT.md.
+  Status apply(std::uint32_t chunk, ByteView structure, std::span<const std::int32_t> positions);
+  /// Applies field `field` of chunk `chunk`: as many tuples as LogIndex::tuples says. A field may
+  /// lag behind the mesh, never run ahead, and takes a chunk after the one that it depends on, like
+  /// the mesh.
+  Status applyField(std::uint32_t field, std::uint32_t chunk, std::span<const std::int32_t> values);
+
+  /// Makes a chunk that goes beyond `level` end there, and chunks that begin beyond it are refused:
+  /// once level() is `level`, the mesh is that level's, with holes in the slots that packets were
+  /// not allowed to fill.
+  void stopAtLevel(std::uint32_t level);
+
+  /// From now on `observer` hears of every split; nullptr: nobody. It must outlive the chunks
+  /// applied.
+  void observe(SplitObserver* observer);
+
+  /// From now on `gate` is asked before every level, of a packet as well; nullptr: nobody. False
+  /// ends the chunk in hand with the error io. It must outlive the chunks applied.
+  void askBeforeLevels(LevelGate* gate);
+
+  [[nodiscard]] const LogIndex& index() const;
+  /// How many, in file order also which one is next.
+  [[nodiscard]] std::uint32_t chunksApplied() const;
+  [[nodiscard]] bool applied(std::uint32_t chunk) const;
+  [[nodiscard]] bool fieldApplied(std::uint32_t field, std::uint32_t chunk) const;
+  /// Where the slots of a chunk begin; those of the next chunk begin where they end. REQUIRES:
+  /// chunk <= number of chunks.
+  [[nodiscard]] const Slots& firstSlots(std::uint32_t chunk) const;
+  /// Chunks of one field that have been applied.
+  [[nodiscard]] std::uint32_t fieldChunksApplied(std::uint32_t field) const;
+  /// The last level that is complete everywhere.
+  [[nodiscard]] std::uint32_t level() const;
+
+  /// Of the complete levels, 0 first; several may have come with one chunk.
+  [[nodiscard]] std::span<const LevelCounts> levelCounts() const;
+
+  [[nodiscard]] std::span<const LatticePoint> points() const;
+  [[nodiscard]] std::span<const Tetrahedron> tetrahedra() const;
+  [[nodiscard]] std::span<const Triangle> boundary() const;
+  /// components * points integers, or components * tetrahedra of a cell field. Of chunks that the
+  /// field lacks, vertices carry their fused vertex's value and tetrahedra their prediction.
+  [[nodiscard]] std::span<const std::int32_t> fieldValues(std::uint32_t field) const;
+
+  /// SHA-256 over points, tetrahedra and boundary in slot order, little-endian (FORMAT.md,
+  /// "Digests").
+  [[nodiscard]] std::array<std::uint8_t, 32> digest() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace qtet

@@ -1,0 +1,29 @@
+// The bytes of a value block (FORMAT.md, "Value blocks"): a Draco stream of symbols, the digits
+// behind it, and how many bytes of digits there are; or an adaptive block.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "codec/log/log_index.h"
+#include "proto/bytes.h"
+#include "proto/error.h"
+
+namespace qtet {
+
+/// Encodes values.size() / components tuples. No tuples give no bytes.
+/// REQUIRES kDraco or kAdaptive. Errors: limit-exceeded (a magnitude of 2^31), bad-codec (Draco
+/// refused).
+[[nodiscard]] Result<Bytes> encodeValueBlock(std::span<const std::int32_t> values,
+                                             std::uint32_t components,
+                                             CodecId codec = CodecId::kDraco);
+
+/// The inverse; `tuples` is what the chunk table promises. Errors: bad-codec, bad-value (another
+/// number of tuples, components or digits).
+[[nodiscard]] Result<std::vector<std::int32_t>> decodeValueBlock(ByteView bytes,
+                                                                 std::uint32_t components,
+                                                                 std::uint32_t tuples,
+                                                                 CodecId codec = CodecId::kDraco);
+
+}  // namespace qtet

@@ -1,0 +1,20 @@
+// Proof that a log is whole and says of itself what is true: every byte, every record, every count.
+#pragma once
+
+#include <functional>
+
+#include "codec/log/log_file.h"
+#include "proto/manifest.h"
+
+namespace qtet {
+
+/// Compares every block with its checksum, decodes every chunk with every field, and compares what
+/// came out with what manifest and table say: levels, their counts and chunks, the bits of the
+/// original's values. `goOn` hears the fraction of the chunks that are decoded, at every level and
+/// after every chunk, and ends the work by false. How much memory it takes: decodingBytes().
+/// The refiner that is returned holds the finest mesh. REQUIRES: the log's own manifest. Errors:
+/// bad-checksum, bad-value and all that decoding gives; io (`goOn` was false).
+[[nodiscard]] Result<Refiner> decodeVerified(const LogFile& log, const Manifest& manifest,
+                                             const std::function<bool(double fraction)>& goOn = {});
+
+}  // namespace qtet

@@ -1,0 +1,56 @@
+// The cells round each face of a tetrahedral mesh, in linear time and the same order everywhere.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "codec/mesh/mesh.h"
+
+namespace qtet {
+
+/// One side of a face: 4 * cell + opposite corner.
+using FaceSide = std::uint64_t;
+
+[[nodiscard]] inline CellId cellOf(FaceSide side) { return static_cast<CellId>(side / 4); }
+[[nodiscard]] inline int oppositeCornerOf(FaceSide side) { return static_cast<int>(side % 4); }
+
+/// Every face's sides, sorted so that the sides of one face follow one another, the lower cell
+/// first.
+class FaceGroups {
+ public:
+  /// Memory grows with the largest vertex id, so ids from outside are compared with the vertex
+  /// count before. REQUIRES: no kGhost among the vertices, four different vertices a cell.
+  explicit FaceGroups(std::span<const Tetrahedron> tetrahedra);
+
+  /// Calls visit(std::span<const FaceSide>) once a face: one side on the boundary, two inside, more
+  /// where the mesh is not a solid.
+  template <class Visit>
+  void forEach(Visit visit) const {
+    std::vector<FaceSide> sides;
+    for (std::size_t first = 0; first < faces_.size();) {
+      sides.clear();
+      std::size_t end = first;
+      for (; end < faces_.size() && faces_[end].isSameFaceAs(faces_[first]); ++end)
+        sides.push_back(faces_[end].side);
+      visit(std::span<const FaceSide>(sides));
+      first = end;
+    }
+  }
+
+ private:
+  struct Face {
+    VertexId smallest;
+    VertexId middle;
+    VertexId largest;
+    FaceSide side;
+
+    [[nodiscard]] bool isSameFaceAs(const Face& other) const {
+      return smallest == other.smallest && middle == other.middle && largest == other.largest;
+    }
+  };
+
+  std::vector<Face> faces_;
+};
+
+}  // namespace qtet

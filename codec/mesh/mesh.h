@@ -1,0 +1,98 @@
+// The words that every part of the codec shares: ids, lattice points, cells with a ghost vertex,
+// and a mesh on the lattice.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace qtet {
+
+using VertexId = std::uint32_t;
+using CellId = std::uint32_t;
+
+/// The vertex "outside": every boundary triangle (a, b, c), counter-clockwise seen from outside, is
+/// the cell (a, b, c, kGhost).
+inline constexpr VertexId kGhost = 0xFFFFFFFFu;
+
+/// Four vertices; (b-a) x (c-a) . (d-a) > 0 for a cell that is not degenerate, the orientation of
+/// VTK_TETRA.
+using Tetrahedron = std::array<VertexId, 4>;
+/// Three vertices, counter-clockwise seen from outside.
+using Triangle = std::array<VertexId, 3>;
+/// Lattice coordinates, each in [0, 2^bits).
+using LatticePoint = std::array<std::int32_t, 3>;
+
+/// So many slots of each kind: a place in all three at once, or counts.
+struct Slots {
+  std::uint32_t vertices = 0, tetrahedra = 0, triangles = 0;
+
+  [[nodiscard]] bool within(const Slots& end) const {
+    return vertices <= end.vertices && tetrahedra <= end.tetrahedra && triangles <= end.triangles;
+  }
+  bool operator==(const Slots&) const = default;
+};
+
+/// What fills slots whose chunk has not come: a place off the lattice, and cells of one vertex,
+/// which are nothing when drawn.
+inline constexpr LatticePoint kHolePoint{-1, -1, -1};
+inline constexpr Tetrahedron kHoleTetrahedron{0, 0, 0, 0};
+inline constexpr Triangle kHoleTriangle{0, 0, 0};
+
+/// position = origin + step * lattice point, the same step on every axis.
+struct Lattice {
+  int bits = 16;
+  double step = 1;
+  std::array<double, 3> origin{};
+
+  [[nodiscard]] std::array<double, 3> position(const LatticePoint& p) const {
+    return {origin[0] + step * p[0], origin[1] + step * p[1], origin[2] + step * p[2]};
+  }
+};
+
+/// What stands for a value that is missing (NaN) among the integers of a field with missing values;
+/// beyond what any value can be.
+inline constexpr std::int32_t kMissing = std::numeric_limits<std::int32_t>::min();
+
+/// What a field's numbers mean: value of component c = minimum[c] + step * integer. Integer fields
+/// have step 1 and lose nothing.
+struct FieldInfo {
+  std::string name;
+  std::uint32_t components = 1;
+  std::string type = "float32";  ///< of the input: float32, float64, int8 ... uint64
+  /// What a value belongs to: point or cell (a tetrahedron).
+  std::string association = "point";
+  int bits = 12;  ///< integers lie in [0, 2^bits)
+  double step = 1;
+  std::vector<double> minimum;  ///< one a component
+  /// Of the values, or of the magnitude where components > 1.
+  std::array<double, 2> range{0, 0};
+  /// An integer may be kMissing: a value that is NaN.
+  bool hasMissing = false;
+
+  /// The value of an integer of the component; NaN for a missing value.
+  [[nodiscard]] double value(std::size_t component, std::int32_t integer) const {
+    return integer == kMissing ? std::numeric_limits<double>::quiet_NaN()
+                               : minimum[component] + step * integer;
+  }
+};
+
+/// Whether the field's values belong to tetrahedra instead of points.
+[[nodiscard]] inline bool isCellField(const FieldInfo& field) {
+  return field.association == "cell";
+}
+
+/// A mesh on the lattice with quantised fields; `values[f]` holds components integers a point, or a
+/// tetrahedron for a cell field.
+struct LatticeMesh {
+  Lattice lattice;
+  std::vector<LatticePoint> points;
+  std::vector<Tetrahedron> tetrahedra;
+  std::vector<Triangle> boundary;
+  std::vector<FieldInfo> fields;
+  std::vector<std::vector<std::int32_t>> values;
+};
+
+}  // namespace qtet

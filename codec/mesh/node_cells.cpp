@@ -1,0 +1,29 @@
+#include "codec/mesh/node_cells.h"
+
+#include <algorithm>
+
+namespace qtet {
+
+void NodeCells::add(const Slots& first, const Slots& end) {
+  for (CellId t = first.tetrahedra; t < end.tetrahedra; ++t) tetrahedra.push_back(t);
+  for (CellId t = first.triangles; t < end.triangles; ++t) triangles.push_back(t);
+}
+
+// A vertex between two nodes has cells of both for good, however far either is refined: its star is
+// never a node's, whatever has arrived.
+std::vector<VertexId> innerVertices(const GrowingMesh& mesh, const NodeCells& cells,
+                                    VertexCounts& counts) {
+  counts.makeRoom(mesh.points.size());
+  cells.forEach([&](CellRef ref) {
+    for (const VertexId v : mesh.cell(ref))
+      if (v != kGhost) counts.add(v, 0);
+  });
+  std::vector<VertexId> inner;
+  for (const VertexId v : counts.counted())
+    if (counts.of(v)[0] == mesh.star(v).size()) inner.push_back(v);
+  counts.clear();
+  std::ranges::sort(inner);
+  return inner;
+}
+
+}  // namespace qtet

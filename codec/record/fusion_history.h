@@ -1,0 +1,62 @@
+// What a simplifier did, in its own numbering: all that an encoder needs to write the way back.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "codec/mesh/mesh.h"
+#include "codec/mesh/placement.h"
+
+namespace qtet {
+
+/// One fusion: k prey vertices became `fused`, which lies as `placement` says; prey[0] is the near
+/// vertex.
+struct Fusion {
+  std::uint8_t k = 2;
+  Placement placement = Placement::kFree;
+  std::uint32_t level = 0;  ///< 0 = the first independent set fused, that is, the finest level
+  VertexId fused = 0;
+  std::array<VertexId, 4> prey{};
+  std::uint64_t firstAffected = 0;  ///< into affectedCells / affectedLabels
+  std::uint64_t firstDeleted = 0;   ///< into deletedCells
+  std::uint32_t affectedCount = 0, deletedCount = 0;
+};
+
+/// For the layout `regions`: a binary tree over the cells, and the levels in which fusions kept to
+/// its nodes. Node n at depth d is the leaves that share their topmost d bits; band b (0 = the
+/// finest) keeps to the nodes at depth `depth` - b: all cells of a star, those that go included,
+/// belong to one of them.
+struct Bands {
+  std::uint32_t depth = 0;          ///< the tree has 2^depth leaves
+  std::vector<std::uint32_t> leaf;  ///< of every cell of the history, for life
+  /// Of each band, one past its last level (FusionHistory's numbers); ascending, no more than
+  /// `depth`; empty: no bands.
+  std::vector<std::uint32_t> ends;
+
+  [[nodiscard]] std::uint32_t node(std::uint32_t cell, std::uint32_t atDepth) const {
+    return leaf[cell] >> (depth - atDepth);
+  }
+};
+
+/// Cells are the input's tetrahedra followed by its boundary triangles as (a, b, c, kGhost).
+/// REQUIRES within one level no prey vertex in the star of another fusion of that level; within the
+/// list, order of doing.
+struct FusionHistory {
+  Lattice lattice;
+  std::vector<FieldInfo> fields;
+  std::vector<LatticePoint> points;  ///< of every vertex that ever lived
+  /// Per field, components a vertex; of a cell field the input's, a tetrahedron.
+  std::vector<std::vector<std::int32_t>> values;
+  /// As they are now, or as they were when deleted.
+  std::vector<std::array<VertexId, 4>> cells;
+  std::vector<std::uint8_t> live;  ///< one a cell
+  std::vector<Fusion> fusions;
+  std::vector<std::uint32_t> affectedCells;
+  std::vector<std::uint8_t> affectedLabels;  ///< index into prey
+  std::vector<std::uint32_t> deletedCells;
+  std::uint32_t levels = 0;
+  Bands bands;
+};
+
+}  // namespace qtet

@@ -1,0 +1,105 @@
+#include "codec/record/point_values.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace qtet {
+namespace {
+
+using Vector = std::array<double, 3>;
+
+// Only + - * / and comparisons, so that every machine finds the same weights.
+template <class B>
+Vector cross(const Vector& a, const B& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+template <class B>
+double dot(const Vector& a, const B& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+Vector between(const LatticePoint& from, const LatticePoint& to) {
+  return {static_cast<double>(to[0] - from[0]), static_cast<double>(to[1] - from[1]),
+          static_cast<double>(to[2] - from[2])};
+}
+
+// A star that ends after less than this share of the step says nothing of it.
+constexpr double kLeastReach = 0.25;
+
+// A fused vertex lies near its edge: further along than this is as far, which keeps a prediction
+// within 64 bits whatever the values.
+constexpr double kMaxSteps = 4;
+
+/// Where a line through the fused vertex leaves the star.
+struct Exit {
+  double reach = 0;                       // in steps
+  std::array<std::uint32_t, 3> corner{};  // local ids
+  Vector share{};                         // barycentric
+};
+
+}  // namespace
+
+void PointAncestry::reserve(std::uint64_t records, std::uint64_t vertices) {
+  births_.reserve(static_cast<std::size_t>(records));
+  slopes_.reserve(static_cast<std::size_t>(slopesOf(records, vertices)));
+}
+
+void PointAncestry::add(VertexId v, const GrowingMesh& mesh, const Link& link, const Split& split) {
+  Birth birth{v, mesh.next().vertices, static_cast<std::uint32_t>(slopes_.size()), 0,
+              static_cast<std::uint8_t>(split.k)};
+  if (withSlopes_) {
+    const LatticePoint& fused = mesh.points[v];
+    if (split.k == 2) {
+      const Vector step = between(split.points[0], split.points[1]);
+      const double length = dot(step, step);
+      const double along = length > 0 ? dot(between(fused, split.points[0]), step) / length : 0;
+      birth.step = static_cast<std::int16_t>(std::floor(
+          std::fmin(std::fmax(along, -kMaxSteps), kMaxSteps) * (1 << Birth::kStepBits) + 0.5));
+      addSlope(link, step);
+    } else {
+      for (std::size_t i = 0; i < static_cast<std::size_t>(split.k); ++i)
+        addSlope(link, between(fused, split.points[i]));
+    }
+  }
+  births_.push_back(birth);
+}
+
+void PointAncestry::addSlope(const Link& link, const std::array<double, 3>& step) {
+  const std::span<const Link::Offset> corners = link.offsets();
+  if (turned_.size() < corners.size()) turned_.resize(corners.size());
+  for (std::size_t i = 0; i < corners.size(); ++i) turned_[i] = cross(step, corners[i]);
+  std::array<Exit, 2> exits;  // against the step, along it
+  for (const LinkTriangle& t : link.triangles()) {
+    if (t.ghost) continue;
+    const auto [i, j, k] = t.vertex;
+    // Volumes of (step, corner, corner): all of one sign where the line passes the triangle.
+    const double a = dot(turned_[j], corners[k]), b = dot(turned_[k], corners[i]),
+                 c = dot(turned_[i], corners[j]);
+    const double sum = a + b + c;
+    const bool negative = (static_cast<unsigned>(a < 0) | static_cast<unsigned>(b < 0) |
+                           static_cast<unsigned>(c < 0)) != 0;
+    const bool positive = (static_cast<unsigned>(a > 0) | static_cast<unsigned>(b > 0) |
+                           static_cast<unsigned>(c > 0)) != 0;
+    if (negative == positive || sum == 0) continue;
+    const double reach =
+        dot(Vector{corners[i][0], corners[i][1], corners[i][2]},
+            cross(Vector{corners[j][0], corners[j][1], corners[j][2]}, corners[k])) /
+        sum;
+    Exit& exit = exits[reach > 0];
+    if (std::fabs(reach) <= std::fabs(exit.reach)) continue;
+    exit = {reach, t.vertex, {a / sum, b / sum, c / sum}};
+  }
+  Slope slope;
+  const double reach = exits[1].reach - exits[0].reach;
+  if (reach >= kLeastReach)
+    for (std::size_t side = 0; side < 2; ++side)
+      for (std::size_t i = 0; i < 3 && exits[side].reach != 0; ++i) {
+        const double weight = (side == 0 ? -1 : 1) * exits[side].share[i] / reach;
+        slope.vertex[3 * side + i] = link.vertices()[exits[side].corner[i]];
+        slope.weight[3 * side + i] =
+            static_cast<std::int16_t>(std::floor(weight * (1 << Slope::kWeightBits) + 0.5));
+      }
+  slopes_.push_back(slope);
+}
+
+}  // namespace qtet

@@ -1,0 +1,23 @@
+// What a client has and asks for as JSON, both ways. For the .cpp files of this room only, like
+// json_reader.h.
+#pragma once
+
+#include "proto/json_reader.h"
+#include "proto/stream_request.h"
+
+namespace qtet {
+
+/// Each reads an absent value as an empty one; errors go to the cursor's.
+[[nodiscard]] Have readHave(const JsonCursor& json);
+/// Absent and null: everything.
+[[nodiscard]] Target readTarget(const JsonCursor& json);
+/// Absent and null: an empty view.
+[[nodiscard]] View readView(const JsonCursor& json);
+
+[[nodiscard]] Json toJson(const Have& have);
+/// null: everything.
+[[nodiscard]] Json toJson(const Target& target);
+/// null: an empty view.
+[[nodiscard]] Json toJson(const View& view);
+
+}  // namespace qtet

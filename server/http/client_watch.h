@@ -1,0 +1,26 @@
+// Noticing that a client goes while its answer is being made.
+#pragma once
+
+#include <memory>
+#include <utility>
+
+#include "server/wire/client_socket.h"
+
+namespace qtet {
+
+/// Calls gone() once when the client has closed, also only its sending half. One that sends its
+/// next request meanwhile is not watched any further: the end lies behind those bytes. Runs on the
+/// socket's executor, until socket.cancel(). pending() tells whether anybody still wants to know:
+/// as long as it does, the socket is there and used by nobody else.
+template <class Pending, class Gone>
+void watchForEnd(ClientSocket& socket, Pending pending, Gone gone) {
+  socket.whenReadable([&socket, pending = std::move(pending),
+                       gone = std::move(gone)](const boost::system::error_code& ec) mutable {
+    if (!pending()) return;
+    const Arrived arrived = ec ? Arrived::kEnd : socket.arrived();
+    if (arrived == Arrived::kNothing) watchForEnd(socket, std::move(pending), std::move(gone));
+    if (arrived == Arrived::kEnd) gone();
+  });
+}
+
+}  // namespace qtet

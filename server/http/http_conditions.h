@@ -1,0 +1,41 @@
+// Conditions and ranges of RFC 9110, sections 13 and 14, over values.
+#pragma once
+
+#include <cstdint>
+#include <ctime>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "server/http/http_message.h"
+
+namespace qtet {
+
+/// "Sun, 06 Nov 1994 08:49:37 GMT".
+[[nodiscard]] std::string httpDate(std::time_t time);
+/// The form above alone; the two obsolete ones, and anything else, are no date.
+[[nodiscard]] std::optional<std::time_t> parseHttpDate(std::string_view text);
+
+/// What a resource is compared by. `etag` is strong and has its quotes.
+struct Validators {
+  std::string etag;
+  std::time_t modified = 0;
+};
+
+enum class Verdict { kSend, kNotModified, kPreconditionFailed };
+/// If-Match, If-Unmodified-Since, If-None-Match and If-Modified-Since in the order of RFC 9110,
+/// 13.2.2.
+[[nodiscard]] Verdict evaluateConditions(const RequestView& request, const Validators& resource);
+
+struct ByteRange {
+  enum class Kind { kWhole, kPart, kUnsatisfiable };
+  Kind kind = Kind::kWhole;
+  std::uint64_t first = 0;
+  std::uint64_t size = 0;
+};
+/// One range of a file of `bytes` bytes. kWhole where there is none, or one that may be ignored:
+/// other units, several ranges, nonsense, or an If-Range that names another version.
+[[nodiscard]] ByteRange selectRange(const RequestView& request, const Validators& resource,
+                                    std::uint64_t bytes);
+
+}  // namespace qtet

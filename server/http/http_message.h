@@ -1,0 +1,80 @@
+// A request and its answer as plain values, so that everything that decides can be tested without a
+// socket.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "proto/bytes.h"
+#include "server/store/level_request.h"
+#include "server/wire/file_part.h"
+#include "server/wire/upload_request.h"
+
+namespace qtet {
+
+/// What the router looks at. The views belong to the request that was parsed.
+struct RequestView {
+  std::string_view method;
+  std::string_view target;
+  std::optional<std::string_view> range = std::nullopt;
+  std::optional<std::string_view> ifRange = std::nullopt;
+  std::optional<std::string_view> ifMatch = std::nullopt;
+  std::optional<std::string_view> ifNoneMatch = std::nullopt;
+  std::optional<std::string_view> ifModifiedSince = std::nullopt;
+  std::optional<std::string_view> ifUnmodifiedSince = std::nullopt;
+  std::optional<std::string_view> acceptEncoding = std::nullopt;
+  std::optional<std::string_view> authorization = std::nullopt;
+  std::optional<std::string_view> expect = std::nullopt;
+  std::optional<std::string_view> contentLength = std::nullopt;
+  std::optional<std::string_view> contentRange = std::nullopt;
+  std::optional<std::string_view> contentEncoding = std::nullopt;
+  std::optional<std::string_view> requestId = std::nullopt;
+  std::optional<std::string_view> traceparent = std::nullopt;
+};
+
+/// `body` is either text of the reply's own, or bytes that live as long as `owner`, or a level to
+/// be made, or an upload to be taken.
+struct Reply {
+  unsigned status = 200;
+  /// Without Content-Length, Date and Connection.
+  std::vector<std::pair<std::string, std::string>> headers;
+  std::variant<std::string, ByteView, LevelRequest, UploadRequest> body;
+  /// Of the bytes, where they are not the router's or the viewer's.
+  std::shared_ptr<const void> owner{};
+  /// Where the bytes of the body, a view, stand in an open file as well.
+  std::optional<FilePart> file{};
+  bool sendBody = true;  ///< false for HEAD: the headers speak of the body that is left out
+  bool close = false;    ///< the connection cannot be used any further
+
+  /// The first header of that name, as it is written here; "" where there is none.
+  [[nodiscard]] std::string header(std::string_view name) const;
+  /// Bytes of the body; nullopt for a level that is not made yet.
+  [[nodiscard]] std::optional<std::uint64_t> bodyBytes() const;
+};
+
+/// In figures and logs: the client left before its answer was made. nginx's number; never sent.
+inline constexpr unsigned kClientGone = 499;
+
+/// "Not Found" for 404.
+[[nodiscard]] std::string_view reasonPhrase(unsigned status);
+
+/// The status line and the headers, with Content-Length, Date and Connection, up to and with the
+/// empty line.
+[[nodiscard]] std::string headerText(const Reply& reply, bool keepAlive);
+
+/// An error as RFC 9457 has it; `type` is the last part of a path under /problems/.
+[[nodiscard]] Reply problem(unsigned status, std::string_view type, std::string_view detail);
+
+/// 503, to be asked for again in limits::kRetryAfterSeconds.
+[[nodiscard]] Reply busyReply(std::string_view detail);
+
+/// Headers that every answer of this server carries.
+void addCommonHeaders(Reply& reply);
+
+}  // namespace qtet

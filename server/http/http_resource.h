@@ -1,0 +1,56 @@
+// Something that can be sent, under conditions, in ranges and compressed: from bytes and a request
+// to a reply (RFC 9110, 12-14).
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "server/http/http_conditions.h"
+#include "server/http/http_message.h"
+#include "server/wire/content_coding.h"
+#include "server/wire/document.h"
+
+namespace qtet {
+
+inline constexpr std::string_view kRevalidate = "no-cache";
+inline constexpr std::string_view kForEver = "public, max-age=31536000, immutable";
+
+/// What bytes are, and how long they may be kept.
+struct Resource {
+  Validators validators;
+  std::string type;
+  std::string_view cacheControl = kRevalidate;
+  std::vector<std::pair<std::string, std::string>> headers{};
+};
+
+/// The same bytes in every coding that there is; an empty one is not there.
+struct Variants {
+  ByteView identity, gzip, zstd;
+};
+
+/// Status and headers of the resource, no body.
+[[nodiscard]] Reply beginReply(unsigned status, const Resource& resource);
+/// 304 and 412; nullopt when the body is to be sent.
+[[nodiscard]] std::optional<Reply> conditionalReply(const RequestView& request,
+                                                    const Resource& resource);
+/// `begun`, a 200 with its headers, with the bytes or the range of them that is asked for: 200, 206
+/// or 416.
+[[nodiscard]] Reply rangeReply(const RequestView& request, Reply begun, ByteView bytes,
+                               std::shared_ptr<const void> owner);
+/// 200, 206, 304, 412 or 416. The reply keeps `owner`, so that the bytes live as long as it.
+[[nodiscard]] Reply bytesReply(const RequestView& request, const Resource& resource, ByteView bytes,
+                               std::shared_ptr<const void> owner);
+/// The same of the variant that the client likes best; every variant has a tag of its own.
+[[nodiscard]] Reply variantReply(const RequestView& request, Resource resource,
+                                 const Variants& variants, std::shared_ptr<const void> owner);
+/// `resource` as the variant of that coding: its tag, Vary and Content-Encoding.
+void becomeVariant(Resource& resource, ContentCoding coding);
+
+[[nodiscard]] inline ByteView viewOf(const std::string& text) {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+}  // namespace qtet

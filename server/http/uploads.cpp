@@ -1,0 +1,286 @@
+#include "server/http/uploads.h"
+
+#include <fcntl.h>
+#include <spdlog/spdlog.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <exception>
+#include <new>
+
+#include "proto/json_reader.h"
+#include "server/http/http_resource.h"
+#include "server/wire/limits.h"
+#include "server/wire/request_target.h"
+
+namespace qtet {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Hidden, so that no scan of the folder takes one for a mesh. Those of a digest may be gone on
+// with.
+constexpr std::string_view kPrefix = ".upload-";
+constexpr std::string_view kSuffix = ".part";
+
+Reply diskTrouble(const std::string& what, int number) {
+  if (number == ENOSPC || number == EDQUOT)
+    return problem(507, "insufficient-storage", "the server's disk is full; nothing was changed");
+  spdlog::error("an upload: {}: {}", what, std::strerror(number));
+  return problem(500, "internal", what + ": " + std::strerror(number));
+}
+
+bool isDigest(std::string_view text) {
+  return text.size() == 64 && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+}
+
+constexpr std::string_view kSomebodySends = "somebody is sending this log at the moment";
+
+/// Whether somebody else has the file locked; else it is now, until it is closed. Where the file
+/// system has no locks nobody has.
+bool isLocked(int file) { return ::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK; }
+
+/// Whether the file has its name still: between our opening and our locking it another server may
+/// have published or removed it.
+bool isAt(const fs::path& path, int file) {
+  struct stat opened{}, named{};
+  return ::fstat(file, &opened) == 0 && ::lstat(path.c_str(), &named) == 0 &&
+         opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
+}
+
+/// Unless an upload under way has it, of this server or another one.
+void removePart(const fs::path& path) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+  if (file >= 0 && !isLocked(file) && isAt(path, file)) ::unlink(path.c_str());
+  if (file >= 0) ::close(file);
+}
+
+class Counted {
+ public:
+  explicit Counted(std::atomic<std::size_t>& count) : count_(count) { ++count_; }
+  Counted(const Counted&) = delete;
+  Counted& operator=(const Counted&) = delete;
+  ~Counted() { --count_; }
+
+ private:
+  std::atomic<std::size_t>& count_;
+};
+
+Status syncFolder(const fs::path& folder) {
+  const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const bool done = file >= 0 && ::fsync(file) == 0;
+  const int number = errno;
+  if (file >= 0) ::close(file);
+  return done ? Status() : fail(ErrorCode::kIo, folder.string() + ": " + std::strerror(number));
+}
+
+}  // namespace
+
+Upload::~Upload() {
+  // before the lock goes: behind it the name may be another server's
+  if (remove_) ::unlink(part_.c_str());
+  ::close(file_);
+  const std::scoped_lock lock(uploads_.mutex_);
+  uploads_.active_.erase(part_);
+}
+
+std::optional<Reply> Upload::append(ByteView bytes) {
+  while (!bytes.empty()) {
+    const ssize_t n = ::write(file_, bytes.data(), bytes.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return diskTrouble("the upload cannot be written", errno);
+    bytes = bytes.subspan(static_cast<std::size_t>(n));
+  }
+  return std::nullopt;
+}
+
+std::optional<Reply> Upload::partial() {
+  struct stat info{};
+  if (::fstat(file_, &info) != 0) return diskTrouble("the upload cannot be read", errno);
+  if (static_cast<std::uint64_t>(info.st_size) >= request_.totalBytes) return std::nullopt;
+  Reply out;
+  out.status = 202;
+  out.headers = {{"Content-Type", "application/json"}, {"Cache-Control", "no-store"}};
+  out.body = dumpJson({{"digest", *request_.digest}, {"bytes", info.st_size}});
+  addCommonHeaders(out);
+  return out;
+}
+
+std::optional<Reply> Upload::verify(const std::stop_token& stop, MeshPointer& mesh) {
+  if (stop.stop_requested()) return busyReply("the check was broken off");
+  if (::fsync(file_) != 0) return diskTrouble("the upload cannot be kept", errno);
+  Result<MeshPointer> opened = openMesh(part_, request_.id);
+  // where it lies is nobody's business
+  if (!opened && opened.error().message.starts_with(part_.string() + ": "))
+    opened.error().message.erase(0, part_.string().size() + 2);
+  if (!opened && opened.error().code == ErrorCode::kIo)
+    return busyReply("the log is here but cannot be verified now: " + opened.error().text());
+  if (!opened) return problem(422, "bad-log", "this is no sound log: " + opened.error().text());
+  mesh = std::move(*opened);
+  if (request_.digest && mesh->log.digest() != *request_.digest)
+    return problem(
+        422, "bad-log",
+        "the log has the digest " + mesh->log.digest() + ", not the one that the request names");
+  const Counted counted(uploads_.checking_);
+  return uploads_.options_.check(*mesh, uploads_.options_.checkLimits, stop);
+}
+
+Reply Upload::finish(const std::stop_token& stop) {
+  std::stop_source either;
+  const auto end = [&either] { either.request_stop(); };
+  const std::stop_callback whenGone(stop, end), whenEnding(uploads_.ending_.get_token(), end);
+  try {
+    MeshPointer mesh;
+    std::optional<Reply> refusal = verify(either.get_token(), mesh);
+    if (!refusal) return publish(mesh->log.digest());
+    // going on with it would not make it better
+    if (refusal->status == 413 || refusal->status == 422) remove_ = true;
+    return std::move(*refusal);
+  } catch (const std::bad_alloc&) {  // it ends one upload, not the server
+    return busyReply("there is not enough memory for this log now; try again");
+  } catch (const std::exception& error) {
+    spdlog::error("an upload ended by an exception: {}", error.what());
+    return problem(500, "internal", "the log could not be checked or published");
+  }
+}
+
+Reply Upload::publish(const std::string& digest) {
+  const std::scoped_lock lock(uploads_.publishing_);
+  if (std::optional<Reply> refusal = uploads_.precondition(request_)) return std::move(*refusal);
+  const bool replaced = uploads_.store_.find(request_.id) != nullptr;
+  const fs::path target = *pathOfMesh(uploads_.store_.folder(), request_.id);
+  if (::rename(part_.c_str(), target.c_str()) != 0)
+    return diskTrouble("the upload cannot be published", errno);
+  remove_ = false;
+  if (const Status synced = syncFolder(uploads_.store_.folder()); !synced)
+    spdlog::warn("after an upload: {}", synced.error().message);
+  ++uploads_.published_;
+  const Result<FolderChange> change = uploads_.store_.rescan();
+  const MeshPointer mesh = uploads_.store_.find(request_.id);
+  if (!change || !mesh || mesh->log.digest() != digest)
+    return problem(500, "internal", "the log was published but cannot be served now");
+  spdlog::info("{}: uploaded, {} bytes", mesh->id, mesh->log.bytes().size());
+  Reply out =
+      beginReply(replaced ? 200 : 201,
+                 {{mesh->description.etag, mesh->modified}, "application/json", "no-store", {}});
+  out.headers.emplace_back("Location", "/v1/meshes/" + percentEncode(mesh->id));
+  out.body = mesh->description.text;
+  return out;
+}
+
+std::optional<Reply> Uploads::precondition(const UploadRequest& request) const {
+  const MeshPointer mesh = store_.find(request.id);
+  RequestView view{.method = "PUT", .target = ""};
+  if (request.ifMatch) view.ifMatch = *request.ifMatch;
+  if (request.ifNoneMatch) view.ifNoneMatch = *request.ifNoneMatch;
+  // What is not there has no tag at all: If-Match fails and If-None-Match holds.
+  const bool fails =
+      mesh ? evaluateConditions(view, {mesh->description.etag, mesh->modified}) != Verdict::kSend
+           : request.ifMatch.has_value();
+  if (!fails) return std::nullopt;
+  return problem(
+      412, "precondition-failed",
+      mesh ? "the mesh's ETag is " + mesh->description.etag : "there is no mesh of that name");
+}
+
+fs::path Uploads::partOf(const UploadRequest& request) {
+  if (request.digest) return resumablePart(request.id, *request.digest);
+  return store_.folder() / (std::string(kPrefix) + std::to_string(::getpid()) + "." +
+                            std::to_string(next_++) + std::string(kSuffix));
+}
+
+// The mesh's name is a part of it: who may write one mesh neither sees nor touches what is sent for
+// another.
+fs::path Uploads::resumablePart(const std::string& id, const std::string& digest) const {
+  return store_.folder() / (std::string(kPrefix) + digest + "-" + id + std::string(kSuffix));
+}
+
+std::expected<std::unique_ptr<Upload>, Reply> Uploads::begin(const UploadRequest& request) {
+  const auto refuse = [](Reply reply) { return std::unexpected(std::move(reply)); };
+  if (request.totalBytes > options_.mostBytes)
+    return refuse(
+        problem(413, "content-too-large",
+                "a log has at most " + std::to_string(options_.mostBytes) + " bytes here"));
+  if (std::optional<Reply> refusal = precondition(request)) return refuse(std::move(*refusal));
+
+  const std::scoped_lock lock(mutex_);
+  const fs::path part = partOf(request);
+  if (active_.contains(part)) return refuse(problem(409, "upload-conflict", kSomebodySends));
+  if (active_.size() >= limits::kMaxUploads)
+    return refuse(busyReply("too many uploads; try again"));
+  removeOldParts(limits::kPartialUploadTime);
+  const int flags = O_WRONLY | O_APPEND | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK |
+                    (request.first == 0 ? O_CREAT : 0);
+  const int file = ::open(part.c_str(), flags, 0644);
+  if (file < 0 && (request.first == 0 || errno != ENOENT))
+    return refuse(diskTrouble("the upload cannot be written", errno));
+  const auto refuseOpened = [&](Reply reply) {
+    if (file >= 0) ::close(file);
+    return refuse(std::move(reply));
+  };
+  struct stat info{};
+  if (file >= 0 && (isLocked(file) || !isAt(part, file)))
+    return refuseOpened(problem(409, "upload-conflict", kSomebodySends));
+  if (file >= 0 && request.first == 0 && ::ftruncate(file, 0) != 0)
+    return refuseOpened(diskTrouble("the upload cannot be written", errno));
+  if (file < 0 || ::fstat(file, &info) != 0 ||
+      static_cast<std::uint64_t>(info.st_size) != request.first)
+    return refuseOpened(problem(
+        409, "upload-conflict",
+        "there are " + std::to_string(info.st_size) + " bytes of this log; go on from there"));
+  active_.insert(part);
+  return std::unique_ptr<Upload>(new Upload(*this, request, part, file));
+}
+
+std::optional<std::uint64_t> Uploads::partialBytes(const std::string& id,
+                                                   const std::string& digest) const {
+  if (!isDigest(digest)) return std::nullopt;
+  const auto file = identityOf(resumablePart(id, digest));
+  return file ? std::optional(static_cast<std::uint64_t>(file->bytes)) : std::nullopt;
+}
+
+Reply Uploads::remove(const UploadRequest& request) {
+  const std::scoped_lock lock(publishing_);
+  if (std::optional<Reply> refusal = precondition(request)) return std::move(*refusal);
+  if (!store_.find(request.id))
+    return problem(404, "not-found", "there is no mesh of that name; the list is at /v1/meshes");
+  if (::unlink(pathOfMesh(store_.folder(), request.id)->c_str()) != 0 && errno != ENOENT)
+    return diskTrouble("the mesh cannot be removed", errno);
+  if (const Result<FolderChange> change = store_.rescan(); !change)
+    return problem(500, "internal", change.error().message);
+  spdlog::info("{}: removed by request", request.id);
+  Reply out;
+  out.status = 204;
+  addCommonHeaders(out);
+  return out;
+}
+
+void Uploads::sweep() const {
+  const std::scoped_lock lock(mutex_);
+  removeOldParts(-limits::kPartialUploadTime);  // of any age, and whatever the clock was set to
+}
+
+void Uploads::removeOldParts(std::chrono::seconds ofNoDigest) const {
+  std::error_code ec;
+  for (fs::directory_iterator it(store_.folder(), ec), end; !ec && it != end; it.increment(ec)) {
+    const std::string name = it->path().filename().string();
+    if (!name.starts_with(kPrefix) || !name.ends_with(kSuffix)) continue;
+    const std::string_view middle = std::string_view(name).substr(
+        kPrefix.size(), name.size() - kPrefix.size() - kSuffix.size());
+    std::error_code gone;
+    const auto age = fs::file_time_type::clock::now() - it->last_write_time(gone);
+    const std::chrono::seconds most =
+        isDigest(middle.substr(0, middle.find('-'))) ? limits::kPartialUploadTime : ofNoDigest;
+    if (!gone && age > most && !active_.contains(store_.folder() / name)) removePart(it->path());
+  }
+}
+
+std::size_t Uploads::active() const {
+  const std::scoped_lock lock(mutex_);
+  return active_.size();
+}
+
+}  // namespace qtet

@@ -1,0 +1,55 @@
+// The options of qtet-server, from the command line, the environment and a file, in this order of
+// precedence.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "proto/error.h"
+#include "server/wire/limits.h"
+
+namespace qtet {
+
+struct CommandLine {
+  enum class Action { kServe, kCheckConfig, kHelp, kVersion };
+  Action action = Action::kServe;
+  std::filesystem::path folder;
+  std::string host = "127.0.0.1";
+  std::uint16_t port = 8080;
+  std::optional<std::filesystem::path> viewer;
+  std::size_t threads = 1;
+  bool watch = true;
+  std::optional<std::string> adminHost;
+  std::uint16_t adminPort = 0;
+  std::optional<std::filesystem::path> cache;
+  std::uintmax_t cacheBytes = limits::kMaxCacheBytes;
+  std::optional<std::string> accessLog;
+  std::optional<std::filesystem::path> tokens;
+  std::optional<std::filesystem::path> tlsCertificate;  ///< with tlsKey, or neither
+  std::optional<std::filesystem::path> tlsKey;
+  std::uintmax_t maxUploadBytes = limits::kMaxUploadBytes;
+  std::uintmax_t maxCheckBytes = limits::kMaxCheckBytes;
+  std::chrono::seconds maxCheckTime = limits::kCheckTime;
+  std::size_t maxConnections = limits::kMaxConnections;
+  std::size_t maxConnectionsPerAddress = limits::kMaxConnectionsPerAddress;  ///< 0: no bound
+  std::size_t maxLevelsPerAddress = limits::kMaxLevelJobsPerAddress;         ///< 0: no bound
+  unsigned maxRequestsPerSecond = limits::kMaxRequestsPerSecond;             ///< 0: no bound
+  /// Of pages that may open streams; empty: any.
+  std::vector<std::string> allowedOrigins;
+};
+
+/// `environment` is what `environ` points to: NAME=VALUE texts and a nullptr. An option
+/// `max-connections` is QTET_SERVER_MAX_CONNECTIONS there; the file, lines `max-connections = 100`,
+/// is the one that --config or QTET_SERVER_CONFIG names. Errors: bad-value, io (the file) with a
+/// sentence for the user.
+[[nodiscard]] Result<CommandLine> parseCommandLine(int argc, const char* const* argv,
+                                                   const char* const* environment = nullptr);
+[[nodiscard]] std::string usageText();
+/// Every option as it holds, in the form of the file.
+[[nodiscard]] std::string configText(const CommandLine& options);
+
+}  // namespace qtet

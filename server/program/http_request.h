@@ -1,0 +1,37 @@
+// A parsed Beast request as the router's values, and what Beast's parser lets through though a
+// proxy might read it differently.
+#pragma once
+
+#include <boost/beast/http/message.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/http/http_message.h"
+
+namespace qtet {
+
+using RequestHeader = boost::beast::http::request_header<>;
+
+/// Lists that stand on several lines on one, as RFC 9110, 5.3 reads them: else whoever looks at a
+/// header sees its first line alone.
+void joinLists(RequestHeader& header);
+
+/// The views live as long as `header`. A `Range` that stands there twice is none, as one that makes
+/// no sense is none.
+[[nodiscard]] RequestView viewOf(const RequestHeader& header);
+
+/// The answer to a request that must not be understood: no or several hosts, twice what may stand
+/// there once, an odd version, a body where none is taken. Such an answer closes the connection,
+/// since where the next request would begin is in doubt.
+[[nodiscard]] std::optional<Reply> refusalOf(const RequestHeader& header);
+
+/// Whether the request is a WebSocket handshake on the stream's path.
+[[nodiscard]] bool isStreamHandshake(const RequestHeader& header);
+/// The answer to a handshake that is not answered by 101: another version, no key, no subprotocol,
+/// or of a page whose origin is not among `origins` (unless that is nullptr or empty; whoever names
+/// no origin is no browser, and whoever is none may name any).
+[[nodiscard]] std::optional<Reply> handshakeRefusal(const RequestHeader& header,
+                                                    const std::vector<std::string>* origins);
+
+}  // namespace qtet

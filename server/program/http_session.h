@@ -1,0 +1,25 @@
+// One HTTP connection: reads requests, asks the router, writes answers, until one side has had
+// enough or a WebSocket takes over.
+#pragma once
+
+#include <utility>  // before any Asio header: 1.74 uses std::exchange without it
+
+#include <boost/asio/awaitable.hpp>
+#include <memory>
+
+#include "server/program/services.h"
+#include "server/wire/address_limits.h"
+#include "server/wire/client_socket.h"
+#include "server/wire/connections.h"
+
+namespace qtet {
+
+/// Serves until the connection ends, over TLS where there is a context. Runs on the socket's
+/// executor, which must be a single thread or a strand.
+boost::asio::awaitable<void> serveHttp(boost::asio::ip::tcp::socket socket,
+                                       std::shared_ptr<const TlsContext> tls,
+                                       const Services& services,
+                                       std::shared_ptr<Connection> connection,
+                                       std::unique_ptr<AddressLimits::Client> client);
+
+}  // namespace qtet

@@ -1,0 +1,230 @@
+// qtet-server: wires the store, the viewer's files and the server together, and turns failures into
+// exit codes.
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <optional>
+
+#include "codec/files/temporary_folder.h"
+#include "server/program/command_line.h"
+#include "server/program/server.h"
+#include "server/store/bus_guard.h"
+#include "server/store/folder_watch.h"
+
+namespace {
+
+using namespace qtet;
+namespace fs = std::filesystem;
+
+constexpr int kCannotServe = 1;
+constexpr int kWrongUsage = 2;
+
+/// A socket a connection: the usual soft limit of 1,024 files is far below what the server is made
+/// for.
+void raiseFileLimit() {
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+  limit.rlim_cur = limit.rlim_max;
+  (void)::setrlimit(RLIMIT_NOFILE, &limit);
+}
+
+/// The folder given, which must hold a viewer, or the one beside the program, which need not.
+Result<ViewerFiles> loadViewer(const CommandLine& options) {
+  if (options.viewer) return ViewerFiles::load(*options.viewer);
+  std::error_code ec;
+  const fs::path beside =
+      fs::read_symlink("/proc/self/exe", ec).parent_path() / "../share/qtet/viewer";
+  if (ec || !fs::exists(beside / "index.html", ec)) return ViewerFiles();
+  return ViewerFiles::load(beside);
+}
+
+int cannotServe(const Error& error) {
+  std::cerr << "qtet-server: " << error.message << "\n";
+  return kCannotServe;
+}
+
+/// Where finished levels lie: where --cache says, or in systemd's cache folder; nullopt: in a
+/// temporary one.
+std::optional<fs::path> wantedCache(const CommandLine& options) {
+  const char* ofSystemd = std::getenv("CACHE_DIRECTORY");
+  return options.cache || ofSystemd == nullptr ? options.cache : std::optional(fs::path(ofSystemd));
+}
+
+void logRefused(const std::vector<Catalogue::Refused>& refused) {
+  for (const Catalogue::Refused& file : refused)
+    spdlog::error("{} is not served: {}", file.path.string(), file.error.text());
+}
+
+void logChange(const FolderChange& change) {
+  for (const MeshPointer& mesh : change.added)
+    spdlog::info("{}: {} tetrahedra in {} levels, {} bytes", mesh->id,
+                 mesh->manifest.levels.back().tetrahedra, mesh->manifest.levels.size(),
+                 mesh->log.bytes().size());
+  for (const std::string& id : change.removed) spdlog::info("{}: removed", id);
+  logRefused(change.refused);
+}
+
+void lookAgain(const MeshStore& store) {
+  const Result<FolderChange> change = store.rescan();
+  if (!change) return spdlog::error("{}; what was served is served on", change.error().message);
+  logChange(*change);
+}
+
+Result<std::optional<FolderWatch>> watchFolder(const CommandLine& options, const MeshStore& store) {
+  if (!options.watch) return std::optional<FolderWatch>();
+  Result<FolderWatch> watch = FolderWatch::start(options.folder, [&store] { lookAgain(store); });
+  if (!watch) return std::unexpected(watch.error());
+  return std::optional<FolderWatch>(std::move(*watch));
+}
+
+/// What SIGHUP reads again; nullptr: there is none.
+struct Secrets {
+  std::unique_ptr<Access> access{};
+  std::unique_ptr<CurrentTls> tls{};
+};
+
+Result<Secrets> loadSecrets(const CommandLine& options) {
+  Secrets out;
+  if (options.tokens) {
+    Result<Tokens> tokens = Tokens::load(*options.tokens);
+    if (!tokens) return std::unexpected(tokens.error());
+    out.access = std::make_unique<Access>(std::move(*tokens));
+  }
+  if (options.tlsCertificate) {
+    auto context = TlsContext::load(*options.tlsCertificate, *options.tlsKey);
+    if (!context) return std::unexpected(context.error());
+    out.tls = std::make_unique<CurrentTls>(std::move(*context));
+  }
+  return out;
+}
+
+/// SIGHUP. What is wrong is told, and then all that held holds on.
+void reload(const CommandLine& options, const Secrets& secrets) {
+  if (!secrets.access && !secrets.tls)
+    return spdlog::info("SIGHUP: there are no tokens and no certificate to read again");
+  Result<Secrets> read = loadSecrets(options);
+  if (!read)
+    return spdlog::error("SIGHUP: {}; the tokens and the certificate that were read before hold on",
+                         read.error().message);
+  if (secrets.access && secrets.access->tokens()->guardReading() &&
+      !read->access->tokens()->guardReading())
+    return spdlog::error(
+        "SIGHUP: {} has no line that begins with read any more, which would open every mesh; if "
+        "that is meant, write 'read * anyone'. The tokens that were read before hold on",
+        options.tokens->string());
+  if (secrets.access) secrets.access->replace(*read->access->tokens());
+  if (secrets.tls) secrets.tls->replace(read->tls->now());
+  spdlog::info("SIGHUP: the tokens and the certificate were read again");
+}
+
+ServerOptions serverOptions(const CommandLine& options, LevelCache* cache, AccessLog* accessLog,
+                            const Secrets& secrets) {
+  return {.host = options.host,
+          .port = options.port,
+          .threads = options.threads,
+          .maxConnections = options.maxConnections,
+          .maxConnectionsPerAddress = options.maxConnectionsPerAddress,
+          .maxRequestsPerSecond = options.maxRequestsPerSecond,
+          .maxLevelsPerAddress = options.maxLevelsPerAddress,
+          .adminHost = options.adminHost,
+          .adminPort = options.adminPort,
+          .endOnSignals = true,
+          .cache = cache,
+          .accessLog = accessLog,
+          .tls = secrets.tls.get(),
+          .access = secrets.access.get(),
+          .reload = [&options, &secrets] { reload(options, secrets); },
+          .allowedOrigins = options.allowedOrigins,
+          .uploads = {.mostBytes = options.maxUploadBytes,
+                      .checkLimits = {options.maxCheckBytes, options.maxCheckTime}}};
+}
+
+int serve(const CommandLine& options) {
+  raiseFileLimit();
+  guardAgainstBusErrors();
+  const Result<MeshStore> store = MeshStore::open(options.folder);
+  if (!store) return cannotServe(store.error());
+  const CataloguePointer catalogue = store->catalogue();
+  logRefused(catalogue->refused);
+  const Result<ViewerFiles> viewer = loadViewer(options);
+  if (!viewer) return cannotServe(viewer.error());
+  if (viewer->empty())
+    spdlog::info("no viewer found; build it or name it with --viewer DIR, the API works without");
+  std::optional<TemporaryFolder> temporary;
+  const std::optional<fs::path> cacheFolder = wantedCache(options);
+  if (!cacheFolder) temporary.emplace("server");
+  const Result<std::unique_ptr<LevelCache>> cache = LevelCache::open(
+      cacheFolder.value_or(temporary ? temporary->path() : fs::path()), options.cacheBytes);
+  if (!cache) return cannotServe(cache.error());
+  Result<std::unique_ptr<AccessLog>> accessLog = nullptr;
+  if (options.accessLog) accessLog = AccessLog::open(*options.accessLog);
+  if (!accessLog) return cannotServe(accessLog.error());
+
+  const Result<Secrets> secrets = loadSecrets(options);
+  if (!secrets) return cannotServe(secrets.error());
+
+  Server server(*store, *viewer, serverOptions(options, cache->get(), accessLog->get(), *secrets));
+  if (const Status listening = server.listen(); !listening) return cannotServe(listening.error());
+  const Result<std::optional<FolderWatch>> watch = watchFolder(options, *store);
+  if (!watch) return cannotServe(watch.error());
+  const std::size_t count = catalogue->meshes.size();
+  std::cout << "qtet-server: listening on " << server.url() << " (" << count
+            << (count == 1 ? " mesh)" : " meshes)") << std::endl;
+  if (options.adminHost)
+    std::cout << "qtet-server: operators' address is " << *options.adminHost << ":"
+              << server.adminPort() << std::endl;
+  server.run();
+  return 0;
+}
+
+/// What serve() would stumble over, without serving.
+int checkConfig(const CommandLine& options) {
+  std::cout << configText(options);
+  std::error_code ec;
+  if (!fs::is_directory(options.folder, ec))
+    return cannotServe({ErrorCode::kIo,
+                        options.folder.string() + " is no folder; name one that holds .qtet files",
+                        Error::kNoOffset});
+  if (const Result<ViewerFiles> viewer = loadViewer(options); !viewer)
+    return cannotServe(viewer.error());
+  if (const Result<Secrets> secrets = loadSecrets(options); !secrets)
+    return cannotServe(secrets.error());
+  return 0;
+}
+
+int run(int argc, char** argv) {
+  const Result<CommandLine> options = parseCommandLine(argc, argv, environ);
+  if (!options) {
+    std::cerr << "qtet-server: " << options.error().message << "\n\n" << usageText();
+    return kWrongUsage;
+  }
+  switch (options->action) {
+    case CommandLine::Action::kHelp: std::cout << usageText(); return 0;
+    case CommandLine::Action::kVersion: std::cout << "qtet-server " QTET_VERSION "\n"; return 0;
+    case CommandLine::Action::kCheckConfig: return checkConfig(*options);
+    case CommandLine::Action::kServe: break;
+  }
+  spdlog::set_default_logger(spdlog::stderr_color_mt("qtet-server"));
+  return serve(*options);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // until the server listens to it: a reload meant for a running one must not end it
+  std::signal(SIGHUP, SIG_IGN);
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "qtet-server: %s\n", e.what());
+    return kCannotServe;
+  }
+}

@@ -1,0 +1,354 @@
+#include <utility>  // before any Asio header: 1.74 uses std::exchange without it
+
+#include "server/program/server.h"
+
+#include <netinet/tcp.h>
+#include <spdlog/spdlog.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <atomic>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/executor_work_guard.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/redirect_error.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <chrono>
+#include <csignal>
+#include <exception>
+#include <functional>
+#include <thread>
+#include <vector>
+
+#include "server/program/http_session.h"
+#include "server/routes/http_router.h"
+
+namespace qtet {
+namespace {
+
+namespace asio = boost::asio;
+using asio::ip::tcp;
+using boost::system::error_code;
+
+/// One thread and its connections. A context a thread needs no strands, and was a fifth faster than
+/// two threads on one context.
+struct Lane {
+  asio::io_context context{1};
+  asio::executor_work_guard<asio::io_context::executor_type> work = asio::make_work_guard(context);
+};
+
+/// Takes congestion control without pacing for all that is accepted; false: it stays as the system
+/// has it. BBR would send each 64 KB by a timer of its own, which between two programs of one
+/// machine (a proxy in front of this one, say) is most of what sending costs.
+bool endPacing(tcp::acceptor& on) {
+  constexpr std::string_view kReno = "reno";  // there in every kernel, and allowed to everybody
+  return ::setsockopt(on.native_handle(), IPPROTO_TCP, TCP_CONGESTION, kReno.data(),
+                      kReno.size()) == 0;
+}
+
+/// Answers a connection for which there is no place; what does not fit into an empty socket's
+/// buffer is not waited for.
+void turnAway(tcp::socket socket, unsigned status, std::string_view type, std::string_view detail) {
+  Reply busy = problem(status, type, detail);
+  busy.headers.emplace_back("Retry-After", std::to_string(limits::kRetryAfterSeconds));
+  const std::string text = headerText(busy, false) + std::get<std::string>(busy.body);
+  error_code ec;
+  socket.non_blocking(true, ec);
+  if (!ec) socket.write_some(asio::buffer(text), ec);
+}
+
+void logEnd(const std::exception_ptr& thrown) {
+  if (!thrown) return;
+  try {
+    std::rethrow_exception(thrown);
+  } catch (const std::exception& e) {
+    spdlog::error("a connection ended by an exception: {}", e.what());
+  }
+}
+
+}  // namespace
+
+// The order of the members is the order of their lives: connections outlast the lanes that hold
+// their coroutines, and the jobs, whose last handler may still be on its way into a lane, end
+// first.
+struct Server::State {
+  State(const MeshStore& meshes, const ViewerFiles& viewer, ServerOptions given)
+      : store(meshes),
+        options(std::move(given)),
+        uploads(meshes, options.uploads),
+        router(meshes, viewer, options.adminHost ? nullptr : &admin,
+               options.access != nullptr ? std::optional<Writing>({*options.access, uploads})
+                                         : std::nullopt),
+        lanes(std::max<std::size_t>(options.threads, 1)) {}
+
+  asio::awaitable<void> acceptConnections(tcp::acceptor& acceptor, const Services& services);
+  void handOver(tcp::socket socket, const tcp::endpoint& peer, asio::io_context& context,
+                const Services& services);
+  /// For connections that `whose` answers.
+  [[nodiscard]] Status listen(tcp::acceptor& acceptor, Services& whose, const std::string& host,
+                              std::uint16_t port);
+  [[nodiscard]] std::vector<Metrics::Figure> figures() const;
+  void end();
+  void stopLanes() {
+    for (Lane& lane : lanes) lane.context.stop();
+  }
+  void watchSignals();
+  [[nodiscard]] asio::io_context& mainContext() { return lanes.front().context; }
+
+  const MeshStore& store;
+  ServerOptions options;
+  Metrics metrics;
+  std::atomic<bool> ending = false;
+  AdminRoutes admin{metrics, [this] { return !ending; }, [this] { return figures(); }};
+  Uploads uploads;
+  Router router;
+  Connections connections{options.maxConnections};
+  Handshakes handshakes{options.maxHandshakes, options.timeouts.handshake};
+  AddressLimits addresses{options.maxConnectionsPerAddress, options.maxRequestsPerSecond};
+  std::vector<Lane> lanes;
+  tcp::acceptor acceptor{mainContext()};
+  tcp::acceptor adminAcceptor{mainContext()};
+  asio::steady_timer grace{mainContext()};
+  asio::signal_set signals{mainContext()};
+  LevelJobs jobs{{limits::kLevelThreads, limits::kMaxLevelJobs, options.cache, options.makeLevel,
+                  options.maxLevelsPerAddress}};
+  asio::thread_pool writers{1}, checkers{limits::kCheckThreads};
+  Services services{store,
+                    [this](const RequestView& request) { return router.route(request); },
+                    true,
+                    jobs,
+                    metrics,
+                    options.accessLog,
+                    options.timeouts,
+                    &uploads,
+                    &writers,
+                    &checkers,
+                    options.access,
+                    &options.allowedOrigins,
+                    &handshakes};
+  Services adminServices{store,
+                         [this](const RequestView& request) { return routeAdmin(admin, request); },
+                         false,
+                         jobs,
+                         metrics,
+                         options.accessLog,
+                         options.timeouts,
+                         nullptr,
+                         nullptr,
+                         nullptr,
+                         nullptr,
+                         nullptr,
+                         nullptr};
+};
+
+asio::awaitable<void> Server::State::acceptConnections(tcp::acceptor& from, const Services& whose) {
+  asio::steady_timer rest(mainContext());
+  bool failing = false;
+  std::optional<std::chrono::steady_clock::time_point> told;
+  for (std::size_t next = 0; !ending; next = (next + 1) % lanes.size()) {
+    asio::io_context& context = lanes[next].context;
+    tcp::socket socket(context);
+    error_code ec;
+    tcp::endpoint peer;  // by accept() itself: a client that has gone has none afterwards
+    co_await from.async_accept(socket, peer, asio::redirect_error(asio::use_awaitable, ec));
+    if (!ec) {
+      failing = false;
+      handOver(std::move(socket), peer, context, whose);
+    } else if (!ending && ec != asio::error::operation_aborted) {
+      const auto now = std::chrono::steady_clock::now();
+      if (!told || now - *told >= limits::kAcceptWarningInterval) {
+        spdlog::warn("connections cannot be accepted: {}; they wait", ec.message());
+        told = now;
+      }
+      rest.expires_after(std::exchange(failing, true) ? limits::kAcceptRest
+                                                      : limits::kFirstAcceptRest);
+      co_await rest.async_wait(asio::redirect_error(asio::use_awaitable, ec));
+    }
+  }
+}
+
+void Server::State::handOver(tcp::socket socket, const tcp::endpoint& peer,
+                             asio::io_context& context, const Services& whose) {
+  const bool ofOperators = &whose == &adminServices;
+  std::unique_ptr<AddressLimits::Client> client =
+      ofOperators ? nullptr : addresses.enter(peer.address());
+  std::shared_ptr<Connection> connection =
+      client || ofOperators ? connections.enter(context.get_executor()) : nullptr;
+  if (!connection) {
+    metrics.countRefusedConnection();
+    // a handshake costs more than there is for who is turned away
+    if (options.tls != nullptr && !ofOperators) return;
+    if (!client && !ofOperators)
+      return turnAway(std::move(socket), 429, "too-many-requests",
+                      "too many connections from this address; close some");
+    return turnAway(std::move(socket), 503, "busy", "too many connections; try again");
+  }
+  metrics.countConnection();
+  auto tls = options.tls != nullptr && !ofOperators ? options.tls->now() : nullptr;
+  // Posted first: co_spawn would begin the coroutine on this thread.
+  asio::post(context,
+             [&whose, socket = std::move(socket), tls = std::move(tls),
+              connection = std::move(connection), client = std::move(client), &context]() mutable {
+               asio::co_spawn(context,
+                              serveHttp(std::move(socket), std::move(tls), whose,
+                                        std::move(connection), std::move(client)),
+                              logEnd);
+             });
+}
+
+std::vector<Metrics::Figure> Server::State::figures() const {
+  const LevelJobCounts levels = jobs.counts();
+  const Handshakes::Counts hands = handshakes.counts();
+  const CataloguePointer catalogue = store.catalogue();
+  const auto gauge = [](const char* name, const char* help, auto value) {
+    return Metrics::Figure{name, help, false, static_cast<double>(value)};
+  };
+  const auto counter = [](const char* name, const char* help, auto value) {
+    return Metrics::Figure{name, help, true, static_cast<double>(value)};
+  };
+  return {gauge("uploads_open", "Uploads under way.", uploads.active()),
+          gauge("uploads_checking", "Uploads whose logs are being decoded.", uploads.checking()),
+          counter("uploads_published_total", "Logs that were uploaded and published.",
+                  uploads.published()),
+          gauge("connections_open", "Connections that are open, HTTP and WebSocket.",
+                connections.open()),
+          gauge("tls_handshakes_open", "TLS handshakes under way.", hands.open),
+          gauge("tls_handshakes_waiting", "Connections that wait for the place of a TLS handshake.",
+                hands.waiting),
+          counter("tls_handshakes_displaced_total",
+                  "TLS handshakes given up, unfinished, for others that waited.", hands.displaced),
+          gauge("meshes", "Meshes that are served.", catalogue->meshes.size()),
+          gauge("meshes_refused", "Files that are not served because they are damaged.",
+                catalogue->refused.size()),
+          gauge("levels_wanted", "Requests that wait for a level.", levels.wanted),
+          gauge("levels_waiting", "Levels that wait for being made.", levels.waiting),
+          gauge("levels_running", "Levels that are being made.", levels.running),
+          counter("levels_made_total", "Levels made.", levels.made),
+          counter("levels_found_total", "Levels that were kept from before.", levels.found),
+          counter("levels_cancelled_total", "Levels that nobody waited for any more.",
+                  levels.cancelled),
+          counter("levels_refused_total", "Levels refused because there were too many.",
+                  levels.refused),
+          counter("levels_failed_total", "Levels that could not be made.", levels.failed)};
+}
+
+void Server::State::end() {
+  if (ending) return stopLanes();  // asked twice: at once
+  ending = true;
+  spdlog::info("ending; responses under way have {} s",
+               std::chrono::duration_cast<std::chrono::seconds>(options.timeouts.grace).count());
+  error_code ec;
+  acceptor.close(ec);
+  adminAcceptor.close(ec);
+  grace.expires_after(options.timeouts.grace);
+  grace.async_wait([this](error_code cancelled) {
+    if (cancelled) return;
+    spdlog::warn("some connections did not end in time and were cut");
+    stopLanes();
+  });
+  connections.endAll([this] { asio::post(mainContext(), [this] { stopLanes(); }); });
+}
+
+void Server::State::watchSignals() {
+  for (const int signal : {SIGINT, SIGTERM}) signals.add(signal);
+  if (options.reload) signals.add(SIGHUP);
+  auto wait = std::make_shared<std::function<void()>>();
+  *wait = [this, weak = std::weak_ptr(wait)] {
+    signals.async_wait([this, wait = weak.lock()](error_code ec, int signal) {
+      if (ec) return;
+      if (signal != SIGHUP) end();
+      if (signal == SIGHUP) options.reload();
+      (*wait)();
+    });
+  };
+  (*wait)();
+}
+
+Server::Server(const MeshStore& store, const ViewerFiles& viewer, ServerOptions options)
+    : state_(std::make_unique<State>(store, viewer, std::move(options))) {}
+
+/// Connections that outlived the grace time go with the lanes; the last of them must not call into
+/// what is half gone. Their checks end first: a pool waits for what runs in it.
+Server::~Server() {
+  state_->connections.endAll({});
+  state_->uploads.stopChecks();
+}
+
+Status Server::State::listen(tcp::acceptor& on, Services& whose, const std::string& host,
+                             std::uint16_t port) {
+  const auto refused = [&](const error_code& ec) {
+    return fail(ErrorCode::kIo, "cannot listen on " + host + ":" + std::to_string(port) + ": " +
+                                    ec.message() + "; choose another --host or --port");
+  };
+  error_code ec;
+  tcp::resolver resolver(mainContext());
+  const auto found = resolver.resolve(host, std::to_string(port), tcp::resolver::passive, ec);
+  if (ec) return refused(ec);
+  const tcp::endpoint endpoint = *found.begin();
+  on.open(endpoint.protocol(), ec);
+  if (!ec) on.set_option(tcp::acceptor::reuse_address(true), ec);
+  // Else Asio waits for the next client after one that went before it was accepted, whoever else is
+  // waiting already.
+  if (!ec) on.set_option(tcp::acceptor::enable_connection_aborted(true), ec);
+  if (!ec) on.set_option(tcp::no_delay(true), ec);  // what is accepted inherits it (tcp(7))
+  if (!ec) whose.unpaced = endpoint.address().is_loopback() && endPacing(on);
+  if (!ec) on.bind(endpoint, ec);
+  if (!ec) on.listen(tcp::acceptor::max_listen_connections, ec);
+  if (ec) return refused(ec);
+  return {};
+}
+
+Status Server::listen() {
+  const ServerOptions& options = state_->options;
+  if (Status status =
+          state_->listen(state_->acceptor, state_->services, options.host, options.port);
+      !status)
+    return status;
+  if (Status status = options.adminHost
+                          ? state_->listen(state_->adminAcceptor, state_->adminServices,
+                                           *options.adminHost, options.adminPort)
+                          : Status();
+      !status)
+    return status;
+  // from here on; they are obeyed once run() runs
+  if (options.endOnSignals) state_->watchSignals();
+  return {};
+}
+
+std::uint16_t Server::adminPort() const { return state_->adminAcceptor.local_endpoint().port(); }
+
+std::uint16_t Server::port() const { return state_->acceptor.local_endpoint().port(); }
+
+std::string Server::url() const {
+  const tcp::endpoint at = state_->acceptor.local_endpoint();
+  const std::string host = at.address().to_string();
+  const std::string scheme = state_->options.tls != nullptr ? "https://" : "http://";
+  return scheme + (at.address().is_v6() ? "[" + host + "]" : host) + ":" +
+         std::to_string(at.port()) + "/";
+}
+
+void Server::run() {
+  std::signal(SIGPIPE, SIG_IGN);  // sendfile knows no MSG_NOSIGNAL
+  if (state_->options.access != nullptr) state_->uploads.sweep();
+  asio::co_spawn(state_->mainContext(),
+                 state_->acceptConnections(state_->acceptor, state_->services), logEnd);
+  if (state_->options.adminHost)
+    asio::co_spawn(state_->mainContext(),
+                   state_->acceptConnections(state_->adminAcceptor, state_->adminServices), logEnd);
+  std::vector<std::jthread> others;
+  for (std::size_t i = 1; i < state_->lanes.size(); ++i)
+    others.emplace_back([&lane = state_->lanes[i]] { lane.context.run(); });
+  state_->mainContext().run();
+}
+
+void Server::stop() {
+  asio::post(state_->mainContext(), [this] {
+    if (!state_->ending) state_->end();
+  });
+}
+
+}  // namespace qtet

@@ -1,0 +1,79 @@
+// The listening server: accepts connections, spreads them over its threads, and ends in good order.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/program/services.h"
+#include "server/routes/viewer_files.h"
+#include "server/store/level_maker.h"
+#include "server/wire/access.h"
+#include "server/wire/tls_context.h"
+
+namespace qtet {
+
+struct ServerOptions {
+  std::string host = "127.0.0.1";
+  std::uint16_t port = 8080;  ///< 0: any free one
+  std::size_t threads = 1;    ///< for connections; at least 1
+  std::size_t maxConnections = limits::kMaxConnections;
+  std::size_t maxConnectionsPerAddress = limits::kMaxConnectionsPerAddress;  ///< 0: no bound
+  /// Of one address; 0: no bound.
+  unsigned maxRequestsPerSecond = limits::kMaxRequestsPerSecond;
+  /// Made or waiting; 0: no bound.
+  std::size_t maxLevelsPerAddress = limits::kMaxLevelJobsPerAddress;
+  std::size_t maxHandshakes = limits::kMaxHandshakes;
+  Timeouts timeouts{};
+  std::optional<std::string> adminHost{};  ///< operators' paths are answered here and nowhere else
+  std::uint16_t adminPort = 0;
+  bool endOnSignals = false;    ///< SIGINT and SIGTERM do what stop() does
+  LevelCache* cache = nullptr;  ///< finished levels; nullptr: none is kept
+  AccessLog* accessLog = nullptr;
+  /// For everything but the operators' address; nullptr: plain HTTP.
+  CurrentTls* tls = nullptr;
+  /// Who may read and change meshes; nullptr: everybody may read, nobody change.
+  Access* access = nullptr;
+  /// With endOnSignals what SIGHUP does; empty: it ends the process, as usual.
+  std::function<void()> reload{};
+  /// Of pages that may open streams, as browsers write them; empty: any.
+  std::vector<std::string> allowedOrigins{};
+  LevelJobs::Maker makeLevel = qtet::makeLevel;
+  UploadOptions uploads{};
+};
+
+/// Store, viewer, cache, access log, TLS and access must outlive it.
+class Server {
+ public:
+  Server(const MeshStore& store, const ViewerFiles& viewer, ServerOptions options);
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  /// Takes the port; clients may connect from then on. Errors: io (no such host, port in use or not
+  /// allowed).
+  [[nodiscard]] Status listen();
+  /// The port taken. REQUIRES: listen() succeeded.
+  [[nodiscard]] std::uint16_t port() const;
+  /// That of the operators' address. REQUIRES: likewise, and that there is one.
+  [[nodiscard]] std::uint16_t adminPort() const;
+  /// "http://127.0.0.1:8080/", or https. REQUIRES: listen() succeeded.
+  [[nodiscard]] std::string url() const;
+
+  /// Serves until stop() or a signal, then as long as responses under way need, at most the time of
+  /// grace. REQUIRES: listen() succeeded.
+  void run();
+  /// Accepts nothing new, closes WebSockets with 1001, lets responses finish. Thread-safe; returns
+  /// at once.
+  void stop();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace qtet

@@ -1,0 +1,57 @@
+// What every connection needs. The objects outlive all connections.
+#pragma once
+
+#include <utility>  // before any Asio header: 1.74 uses std::exchange without it
+
+#include <boost/asio/thread_pool.hpp>
+#include <chrono>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "server/http/http_message.h"
+#include "server/http/uploads.h"
+#include "server/store/level_jobs.h"
+#include "server/store/mesh_store.h"
+#include "server/wire/access.h"
+#include "server/wire/access_log.h"
+#include "server/wire/handshakes.h"
+#include "server/wire/limits.h"
+#include "server/wire/metrics.h"
+
+namespace qtet {
+
+/// How long a client may take.
+struct Timeouts {
+  /// Of a request, or of a handshake with its wait for a place.
+  std::chrono::milliseconds header = limits::kHeaderTime;
+  std::chrono::milliseconds handshake = limits::kHandshakePatience;
+  std::chrono::milliseconds idle = limits::kIdleTime;
+  std::chrono::milliseconds write = limits::kWriteTime;
+  std::chrono::milliseconds body = limits::kBodyTime;
+  std::chrono::milliseconds silence = limits::kSilenceTime;  ///< of a WebSocket
+  std::chrono::milliseconds grace = limits::kGraceTime;      ///< of all, once the server ends
+};
+
+struct Services {
+  const MeshStore& store;
+  std::function<Reply(const RequestView&)> route;
+  bool streams = true;  ///< WebSockets are answered
+  LevelJobs& jobs;
+  Metrics& metrics;
+  AccessLog* accessLog = nullptr;
+  Timeouts timeouts{};
+  Uploads* uploads = nullptr;                   ///< where the router knows of uploads
+  boost::asio::thread_pool* writers = nullptr;  ///< where meshes are removed
+  /// Where uploads are checked and published, one after the other.
+  boost::asio::thread_pool* checkers = nullptr;
+  /// Who may read what; nullptr: everybody everything.
+  Access* access = nullptr;
+  /// Of pages that may open streams; nullptr or empty: any.
+  const std::vector<std::string>* allowedOrigins = nullptr;
+  Handshakes* handshakes = nullptr;  ///< where there is TLS
+  /// All clients are on this machine, and what is sent to them waits for no timer.
+  bool unpaced = false;
+};
+
+}  // namespace qtet

@@ -1,0 +1,81 @@
+#include "server/routes/access_routes.h"
+
+#include <algorithm>
+
+#include "proto/json_reader.h"
+#include "server/wire/limits.h"
+
+namespace qtet {
+namespace {
+
+Reply unauthorized(std::string_view detail) {
+  Reply out = problem(401, "unauthorized", detail);
+  out.headers.emplace_back("WWW-Authenticate", "Bearer realm=\"qtet\"");
+  return out;
+}
+
+}  // namespace
+
+std::optional<Reply> refusalOf(Tokens::Verdict verdict, Tokens::Scope scope) {
+  const bool reading = scope == Tokens::Scope::kRead;
+  switch (verdict) {
+    case Tokens::Verdict::kAllowed: return std::nullopt;
+    case Tokens::Verdict::kForbidden:
+      return problem(403, "forbidden",
+                     reading ? "this token is for other meshes"
+                             : "this token is for other meshes, or for reading alone");
+    case Tokens::Verdict::kUnknown: break;
+  }
+  return unauthorized(
+      reading ? "send a token that may read this mesh, as Authorization: Bearer TOKEN"
+              : "send a token that may write this mesh, as Authorization: Bearer TOKEN");
+}
+
+Reply ticketReply(const RequestView& request, Access& access) {
+  const std::optional<SecretDigest> bearer = bearerDigest(request.authorization);
+  if (!access.tokens()->knows(bearer))
+    return unauthorized("send a token, as Authorization: Bearer TOKEN");
+  const std::optional<std::string> ticket = access.giveTicket(*bearer);
+  if (!ticket) {
+    Reply busy = problem(429, "too-many-requests",
+                         "there are as many unused tickets of this token as there may be");
+    busy.headers.emplace_back("Retry-After", std::to_string(limits::kTicketTime.count()));
+    return busy;
+  }
+  Reply out;
+  out.status = 201;
+  out.headers = {{"Content-Type", "application/json"}, {"Cache-Control", "no-store"}};
+  out.body = dumpJson({{"ticket", *ticket}, {"seconds", limits::kTicketTime.count()}});
+  addCommonHeaders(out);
+  return out;
+}
+
+std::expected<MayRead, Reply> admitStream(const RequestView& request, Access* access) {
+  if (access == nullptr) return MayRead();
+  std::optional<SecretDigest> bearer = bearerDigest(request.authorization);
+  const std::optional<RequestTarget> target = parseTarget(request.target);
+  const std::optional<std::string> ticket = target ? target->parameter("ticket") : std::nullopt;
+  if (ticket) bearer = access->takeTicket(*ticket);
+  // Who says nothing may still open what is anyone's.
+  const bool named = ticket || bearer;
+  if (named && access->tokens()->guardReading() && !access->tokens()->knows(bearer))
+    return std::unexpected(
+        unauthorized("the ticket is used, too old, or none, or nobody has that token; POST "
+                     "/v1/tickets gives another"));
+  return access->readerOf(bearer);
+}
+
+void keepPrivate(Reply& reply) {
+  constexpr std::string_view kPublic = "public";
+  for (auto& [name, value] : reply.headers)
+    if (name == "Cache-Control" && value.starts_with(kPublic))
+      value.replace(0, kPublic.size(), "private");
+  const auto vary =
+      std::ranges::find(reply.headers, "Vary", &std::pair<std::string, std::string>::first);
+  if (vary == reply.headers.end())
+    reply.headers.emplace_back("Vary", "Authorization");
+  else
+    vary->second += ", Authorization";
+}
+
+}  // namespace qtet

@@ -1,0 +1,244 @@
+#include "server/routes/http_router.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+
+#include "server/http/http_resource.h"
+#include "server/routes/access_routes.h"
+#include "server/routes/log_routes.h"
+#include "server/routes/mesh_list.h"
+#include "server/routes/openapi.h"
+
+namespace qtet {
+namespace {
+
+constexpr std::string_view kAllow = "GET, HEAD, OPTIONS";
+constexpr std::string_view kAllowTickets = "POST, OPTIONS";
+constexpr std::string_view kAllowWriting = "GET, HEAD, OPTIONS, PUT, DELETE";
+/// The page may compile WebAssembly, start workers from blobs and read logs from other hosts;
+/// nothing else comes from elsewhere.
+constexpr std::string_view kPagePolicy =
+    "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self' blob:; style-src "
+    "'self' 'unsafe-inline'; "
+    "img-src 'self' data: blob:; connect-src 'self' http: https: ws: wss: blob: data:; object-src "
+    "'none'; base-uri 'none'; form-action "
+    "'none'";
+
+Reply optionsReply(std::string_view allow = kAllow) {
+  Reply out;
+  out.status = 204;
+  out.headers = {{"Allow", std::string(allow)},
+                 {"Access-Control-Allow-Methods", std::string(allow)},
+                 {"Access-Control-Allow-Headers",
+                  "Authorization, Content-Range, Content-Type, Range, If-Range, If-Match, "
+                  "If-None-Match, If-Modified-Since, If-Unmodified-Since, "
+                  "traceparent, X-Request-Id"},
+                 {"Access-Control-Max-Age", "7200"}};
+  addCommonHeaders(out);
+  return out;
+}
+
+Reply notFound(std::string_view detail) { return problem(404, "not-found", detail); }
+
+/// Methods of RFC 9110; anything else was never heard of.
+bool knownMethod(std::string_view method) {
+  constexpr std::array<std::string_view, 8> kKnown = {"GET",    "HEAD",  "POST",  "PUT",
+                                                      "DELETE", "PATCH", "TRACE", "CONNECT"};
+  return std::ranges::find(kKnown, method) != kKnown.end();
+}
+
+Reply methodRefused(std::string_view method, std::string_view allow = kAllow) {
+  const std::string detail = "what is to be had here takes " + std::string(allow);
+  Reply out = knownMethod(method) ? problem(405, "method-not-allowed", detail)
+                                  : problem(501, "not-implemented", detail);
+  out.headers.emplace_back("Allow", allow);
+  return out;
+}
+
+/// Names joined by "/", or nullopt where one of them cannot be a file of the viewer.
+std::optional<std::string> relativePath(const std::vector<std::string>& segments) {
+  std::string out;
+  for (const std::string& segment : segments) {
+    const bool last = &segment == &segments.back();
+    if (segment.starts_with('.') || segment.find('/') != std::string::npos ||
+        (segment.empty() && !last))
+      return std::nullopt;
+    out += segment + (last ? "" : "/");
+  }
+  return out;
+}
+
+/// `/v1/meshes/{id}/...` leads to what the name stands for now; everything there is to be had for
+/// ever under the digest.
+Reply toLog(const RequestTarget& target, const ServedMesh& mesh) {
+  std::string location = "/v1/logs/" + mesh.log.digest();
+  for (std::size_t i = 3; i < target.segments.size(); ++i)
+    location += "/" + percentEncode(target.segments[i]);
+  if (!target.query.empty()) location += "?" + target.query;
+  Reply out;
+  out.status = 307;
+  out.headers = {{"Location", std::move(location)}, {"Cache-Control", std::string(kRevalidate)}};
+  addCommonHeaders(out);
+  return out;
+}
+
+/// 401 and 403 of a mesh, also of one that does not exist; of the list (nullptr) only for a token
+/// that nobody has.
+std::optional<Reply> readingRefusal(const RequestView& request, const std::string* mesh,
+                                    const Tokens& tokens) {
+  if (!tokens.guardReading()) return std::nullopt;
+  constexpr auto kScope = Tokens::Scope::kRead;
+  const std::optional<SecretDigest> bearer = bearerDigest(request.authorization);
+  if (mesh != nullptr) return refusalOf(tokens.may(kScope, bearer, *mesh), kScope);
+  return bearer && !tokens.knows(bearer) ? refusalOf(Tokens::Verdict::kUnknown, kScope)
+                                         : std::nullopt;
+}
+
+/// Several names may stand for the same bytes.
+bool mayReadUnderSomeName(const MayRead& mayRead, const ServedMesh& mesh,
+                          const Catalogue& catalogue) {
+  const auto may = [&](const auto& entry) {
+    return entry.second->log.digest() == mesh.log.digest() && mayRead(entry.first);
+  };
+  return mayRead(mesh.id) || std::ranges::any_of(catalogue.meshes, may);
+}
+
+/// What is the same for every path: methods, and targets that are none.
+template <class Find>
+Reply answer(const RequestView& request, Find find) {
+  if (request.method == "OPTIONS") return optionsReply();
+  if (request.method != "GET" && request.method != "HEAD") return methodRefused(request.method);
+  const std::optional<RequestTarget> target = parseTarget(request.target);
+  Reply out =
+      target ? find(*target)
+             : problem(400, "bad-request",
+                       "the request's target is no path: a percent code or a byte in it is wrong");
+  out.sendBody = request.method != "HEAD";
+  return out;
+}
+
+}  // namespace
+
+Router::Router(const MeshStore& store, const ViewerFiles& viewer, const AdminRoutes* admin,
+               std::optional<Writing> writing)
+    : store_(store),
+      viewer_(viewer),
+      admin_(admin),
+      writing_(std::move(writing)),
+      started_(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())),
+      openApi_(openApiJson()) {}
+
+/// What only a server with tokens answers: changes, and tickets.
+std::optional<Reply> Router::tokenReply(const RequestView& request,
+                                        const RequestTarget& target) const {
+  const bool ofTickets =
+      target.segments.size() == 2 && target.segments[0] == "v1" && target.segments[1] == "tickets";
+  const bool reads = request.method == "GET" || request.method == "HEAD";
+  if (!ofTickets && (!isMeshPath(target) || reads)) return std::nullopt;
+  const std::string_view allow = ofTickets ? kAllowTickets : kAllowWriting;
+  if (request.method == "OPTIONS") return optionsReply(allow);
+  if (ofTickets && request.method == "POST") return ticketReply(request, writing_->access);
+  if (!ofTickets && (request.method == "PUT" || request.method == "DELETE"))
+    return writeReply(request, target, writing_->access);
+  return methodRefused(request.method, allow);
+}
+
+Reply Router::route(const RequestView& request) const {
+  if (writing_) {
+    const std::optional<RequestTarget> target = parseTarget(request.target);
+    if (std::optional<Reply> reply = target ? tokenReply(request, *target) : std::nullopt)
+      return std::move(*reply);
+  }
+  return answer(request, [&](const RequestTarget& target) { return find(request, target); });
+}
+
+Reply routeAdmin(const AdminRoutes& admin, const RequestView& request) {
+  return answer(request, [&](const RequestTarget& target) {
+    return admin.route(target).value_or(
+        notFound("this address has livez, readyz, metrics and version"));
+  });
+}
+
+Reply Router::find(const RequestView& request, const RequestTarget& target) const {
+  const auto& path = target.segments;
+  if (path[0] == "v1") return api(request, target);
+  if (path.size() == 1 && path[0] == "openapi.json")
+    return variantReply(request, {{openApi_.etag, started_}, "application/json", kRevalidate, {}},
+                        {viewOf(openApi_.text), openApi_.gzip, openApi_.zstd}, nullptr);
+  if (admin_ != nullptr)
+    if (std::optional<Reply> reply = admin_->route(target)) return std::move(*reply);
+  return viewerReply(request, target);
+}
+
+Reply Router::api(const RequestView& request, const RequestTarget& target) const {
+  const auto& path = target.segments;
+  if (path.size() == 2 && path[1] == "stream") {
+    Reply out = problem(426, "upgrade-required", "this is a WebSocket, subprotocol qtet.v1");
+    out.headers.emplace_back("Upgrade", "websocket");
+    return out;
+  }
+  if (path.size() >= 2 && path[1] == "meshes") return meshes(request, target);
+  if (path.size() < 4 || path[1] != "logs")
+    return notFound("there is nothing of that path; the list of meshes is at /v1/meshes");
+  return logs(request, target);
+}
+
+/// To whoever may not read it a log is not there: its digest alone tells nobody whether somebody
+/// has it.
+Reply Router::logs(const RequestView& request, const RequestTarget& target) const {
+  MeshPointer mesh = store_.findLog(target.segments[2]);
+  bool open = true;
+  if (mesh && writing_) {
+    const CataloguePointer catalogue = store_.catalogue();
+    open = mayReadUnderSomeName(writing_->access.readerOf(std::nullopt), *mesh, *catalogue);
+    if (!open &&
+        !mayReadUnderSomeName(writing_->access.readerOf(bearerDigest(request.authorization)), *mesh,
+                              *catalogue))
+      mesh = nullptr;
+  }
+  if (!mesh)
+    return problem(404, "log-changed",
+                   "no mesh has that digest, or not any more, or it is for those who have a token; "
+                   "the list is at /v1/meshes");
+  Reply out = logReply(request, target, mesh);
+  if (!open) keepPrivate(out);
+  return out;
+}
+
+Reply Router::meshes(const RequestView& request, const RequestTarget& target) const {
+  const auto& path = target.segments;
+  if (writing_ && path.size() == 4 && path[3] == "upload")
+    return partialReply(request, target, *writing_);
+  if (writing_)
+    if (std::optional<Reply> refusal = readingRefusal(request, path.size() > 2 ? &path[2] : nullptr,
+                                                      *writing_->access.tokens()))
+      return std::move(*refusal);
+  if (path.size() == 2)
+    return meshListReply(
+        request, target, store_.catalogue(),
+        writing_ ? writing_->access.readerOf(bearerDigest(request.authorization)) : MayRead());
+  const MeshPointer mesh = store_.find(path[2]);
+  if (!mesh) return notFound("there is no mesh of that name; the list is at /v1/meshes");
+  if (path.size() > 3) return toLog(target, *mesh);
+  const Document& text = mesh->description;
+  return variantReply(request, {{text.etag, mesh->modified}, "application/json", kRevalidate, {}},
+                      {viewOf(text.text), text.gzip, text.zstd}, mesh);
+}
+
+Reply Router::viewerReply(const RequestView& request, const RequestTarget& target) const {
+  if (viewer_.empty())
+    return notFound(
+        "this server was started without the viewer's files (--viewer DIR); its meshes are at "
+        "/v1/meshes");
+  const std::optional<std::string> path = relativePath(target.segments);
+  const ViewerFile* file = path ? viewer_.find(*path) : nullptr;
+  if (file == nullptr) return notFound("the viewer has no file of that name; its page is at /");
+  Resource resource{
+      {file->etag, file->modified}, file->type, file->immutable ? kForEver : kRevalidate, {}};
+  if (file->type.starts_with("text/html"))
+    resource.headers.emplace_back("Content-Security-Policy", kPagePolicy);
+  return variantReply(request, std::move(resource), {file->bytes, file->gzip, file->zstd}, nullptr);
+}
+
+}  // namespace qtet

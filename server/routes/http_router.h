@@ -1,0 +1,52 @@
+// From a request to a description of its answer: the whole HTTP interface without a socket
+// (PROTOCOL.md, "HTTP").
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "server/http/http_message.h"
+#include "server/routes/admin_routes.h"
+#include "server/routes/viewer_files.h"
+#include "server/routes/write_routes.h"
+#include "server/store/mesh_store.h"
+#include "server/wire/document.h"
+#include "server/wire/request_target.h"
+
+namespace qtet {
+
+/// Where a WebSocket handshake is to go; anything else there is answered by 426.
+inline constexpr std::string_view kStreamPath = "/v1/stream";
+
+/// Safe to use from any thread. Replies hold views into the viewer's files and the router, which
+/// must outlive them, and keep the logs that they are about.
+class Router {
+ public:
+  /// With `admin`, which must outlive it, the operators' paths are answered too; with `writing`,
+  /// whose parts must, meshes may be changed and read by those who have a token for it.
+  Router(const MeshStore& store, const ViewerFiles& viewer, const AdminRoutes* admin = nullptr,
+         std::optional<Writing> writing = std::nullopt);
+
+  [[nodiscard]] Reply route(const RequestView& request) const;
+
+ private:
+  [[nodiscard]] Reply find(const RequestView& request, const RequestTarget& target) const;
+  [[nodiscard]] Reply api(const RequestView& request, const RequestTarget& target) const;
+  [[nodiscard]] Reply logs(const RequestView& request, const RequestTarget& target) const;
+  [[nodiscard]] std::optional<Reply> tokenReply(const RequestView& request,
+                                                const RequestTarget& target) const;
+  [[nodiscard]] Reply meshes(const RequestView& request, const RequestTarget& target) const;
+  [[nodiscard]] Reply viewerReply(const RequestView& request, const RequestTarget& target) const;
+
+  const MeshStore& store_;
+  const ViewerFiles& viewer_;
+  const AdminRoutes* admin_;
+  std::optional<Writing> writing_;
+  std::time_t started_;
+  Document openApi_;
+};
+
+/// The operators' paths and nothing else, for an address of their own.
+[[nodiscard]] Reply routeAdmin(const AdminRoutes& admin, const RequestView& request);
+
+}  // namespace qtet

@@ -1,0 +1,86 @@
+#include "server/routes/log_routes.h"
+
+#include <charconv>
+#include <span>
+
+#include "server/http/http_resource.h"
+#include "server/routes/level_routes.h"
+
+namespace qtet {
+namespace {
+
+using Path = std::span<const std::string>;
+
+Reply notFound(std::string_view detail) { return problem(404, "not-found", detail); }
+
+/// "12"; no sign, no leading zero.
+std::optional<std::uint32_t> parseIndex(std::string_view text) {
+  std::uint32_t out = 0;
+  const auto [end, ec] = std::from_chars(text.data(), text.data() + text.size(), out);
+  if (ec != std::errc() || end != text.data() + text.size() || (text.size() > 1 && text[0] == '0'))
+    return std::nullopt;
+  return out;
+}
+
+/// Bytes [first, end) of the log. `name` tells the part from the others in the tag; "" is the
+/// whole.
+Reply part(const RequestView& request, const MeshPointer& mesh, const std::string& name,
+           std::uint64_t first, std::uint64_t end) {
+  const std::string tag = '"' + mesh->log.digest() + (name.empty() ? "" : "-" + name) + '"';
+  Reply out = bytesReply(request, {{tag, mesh->modified}, "application/octet-stream", kForEver, {}},
+                         mesh->log.bytes().subspan(first, end - first), mesh);
+  if (const auto* body = std::get_if<ByteView>(&out.body))
+    out.file = FilePart{mesh->descriptor->number,
+                        static_cast<std::uint64_t>(body->data() - mesh->log.bytes().data())};
+  return out;
+}
+
+std::uint64_t endOf(const BlockEntry& block) { return block.offset + block.size; }
+
+/// Structure and positions of a chunk, or one field's block of it.
+Reply chunkReply(const RequestView& request, const MeshPointer& mesh, std::string_view number,
+                 std::optional<std::uint32_t> field) {
+  const LogIndex& index = mesh->log.index();
+  const std::optional<std::uint32_t> chunk = parseIndex(number);
+  if (!chunk || *chunk >= index.chunks.size())
+    return notFound("there is no such chunk; this log has the chunks 0 to " +
+                    std::to_string(index.chunks.size() - 1));
+  const BlockEntry& first = index.block(*chunk, field ? kFirstFieldPart + *field : kStructurePart);
+  const BlockEntry& last = index.block(*chunk, field ? kFirstFieldPart + *field : kPositionsPart);
+  const std::string name =
+      (field ? "f" + std::to_string(*field) : "c") + "-" + std::to_string(*chunk);
+  return part(request, mesh, name, first.offset, endOf(last));
+}
+
+Reply fieldReply(const RequestView& request, const MeshPointer& mesh, Path path) {
+  if (path.size() != 3 || path[1] != "chunks") return notFound("a field has chunks/{n}");
+  const auto field = fieldOfKey(mesh->manifest, path[0]);
+  return field ? chunkReply(request, mesh, path[2], *field)
+               : notFound("this mesh has no field '" + path[0] + "'");
+}
+
+}  // namespace
+
+Reply logReply(const RequestView& request, const RequestTarget& target, const MeshPointer& mesh) {
+  const Path path = Path(target.segments).subspan(3);
+  const LogIndex& index = mesh->log.index();
+  const std::string what = path.empty() ? "" : path[0];
+  if (path.size() == 1 && what == "log")
+    return part(request, mesh, "", 0, mesh->log.bytes().size());
+  if (path.size() == 1 && what == "base")
+    return part(request, mesh, "base", 0, endOf(index.block(0, kPositionsPart)));
+  if (path.size() == 1 && what == "manifest") {
+    const Document& text = mesh->manifestText;
+    return variantReply(request, {{text.etag, mesh->modified}, "application/json", kForEver, {}},
+                        {viewOf(text.text), text.gzip, text.zstd}, mesh);
+  }
+  if (path.size() == 1 && what == "preview.png") return previewReply(request, target, mesh);
+  if (path.size() == 2 && what == "chunks") return chunkReply(request, mesh, path[1], std::nullopt);
+  if (path.size() == 2 && what == "levels") return levelReply(request, target, mesh, path[1]);
+  if (path.size() > 1 && what == "fields") return fieldReply(request, mesh, path.subspan(1));
+  return notFound(
+      "a log has log, manifest, base, chunks/{n}, fields/{name}/chunks/{n}, levels/{k}.vtu and in "
+      "other forms, and preview.png");
+}
+
+}  // namespace qtet

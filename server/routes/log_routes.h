@@ -1,0 +1,15 @@
+// Addresses under a digest: the log, its parts and its levels, immutable for ever (PROTOCOL.md,
+// "HTTP").
+#pragma once
+
+#include "server/http/http_message.h"
+#include "server/store/served_mesh.h"
+#include "server/wire/request_target.h"
+
+namespace qtet {
+
+/// The answer to `/v1/logs/{sha256}/...`. REQUIRES: at least three segments.
+[[nodiscard]] Reply logReply(const RequestView& request, const RequestTarget& target,
+                             const MeshPointer& mesh);
+
+}  // namespace qtet

@@ -1,0 +1,120 @@
+#include "server/routes/write_routes.h"
+
+#include <charconv>
+
+#include "proto/json_reader.h"
+#include "server/routes/access_routes.h"
+
+namespace qtet {
+namespace {
+
+std::optional<std::uint64_t> parseNumber(std::string_view text) {
+  std::uint64_t out = 0;
+  const auto [end, ec] = std::from_chars(text.data(), text.data() + text.size(), out);
+  if (text.empty() || ec != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return out;
+}
+
+/// "bytes 100-199/200" into first and total, and, of an empty body, "bytes */200": all of them are
+/// there. False where it is nothing of that kind or speaks of another number of bytes.
+bool readContentRange(std::string_view text, UploadRequest& out) {
+  constexpr std::string_view kUnit = "bytes ";
+  if (!text.starts_with(kUnit)) return false;
+  text.remove_prefix(kUnit.size());
+  if (const auto all = text.starts_with("*/") && out.bodyBytes == 0 ? parseNumber(text.substr(2))
+                                                                    : std::nullopt) {
+    out.first = out.totalBytes = *all;
+    return *all > 0;  // from 0 on the upload would begin anew
+  }
+  const std::size_t dash = text.find('-'), slash = text.find('/');
+  if (dash == std::string_view::npos || slash == std::string_view::npos || dash > slash)
+    return false;
+  const auto first = parseNumber(text.substr(0, dash)),
+             last = parseNumber(text.substr(dash + 1, slash - dash - 1)),
+             total = parseNumber(text.substr(slash + 1));
+  if (!first || !last || !total || *last < *first || *last >= *total ||
+      *last - *first + 1 != out.bodyBytes)
+    return false;
+  out.first = *first;
+  out.totalBytes = *total;
+  return true;
+}
+
+/// 401 and 403; nullopt: the request may go on.
+std::optional<Reply> authorise(const RequestView& request, const std::string& mesh,
+                               const Access& access) {
+  constexpr auto kScope = Tokens::Scope::kWrite;
+  return refusalOf(access.tokens()->may(kScope, bearerDigest(request.authorization), mesh), kScope);
+}
+
+bool isDigest(std::string_view text) {
+  return text.size() == 64 && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+}
+
+Reply badRequest(std::string_view detail) { return problem(400, "bad-request", detail); }
+
+Reply putReply(const RequestView& request, const RequestTarget& target, UploadRequest out) {
+  if (!request.contentLength)
+    return problem(411, "length-required", "a log is sent with its Content-Length");
+  if (request.contentEncoding)
+    return problem(415, "unsupported-media-type",
+                   "a log is sent as it is, without a Content-Encoding");
+  // too large in any case
+  out.bodyBytes = parseNumber(*request.contentLength).value_or(~std::uint64_t{0});
+  out.totalBytes = out.bodyBytes;
+  out.digest = target.parameter("digest");
+  if (out.digest && !isDigest(*out.digest))
+    return badRequest("digest is the log's SHA-256, 64 hexadecimal digits in lower case");
+  if (request.contentRange && !out.digest)
+    return badRequest("a part of a log is sent with ?digest= of the whole");
+  if (request.contentRange && !readContentRange(*request.contentRange, out))
+    return badRequest(
+        "Content-Range is bytes FIRST-LAST/SIZE, and the body has as many bytes; or bytes */SIZE, "
+        "and it has none");
+  Reply reply;
+  reply.body = std::move(out);
+  return reply;
+}
+
+}  // namespace
+
+bool isMeshPath(const RequestTarget& target) {
+  const auto& path = target.segments;
+  return path.size() == 3 && path[0] == "v1" && path[1] == "meshes";
+}
+
+Reply writeReply(const RequestView& request, const RequestTarget& target, const Access& access) {
+  const std::string& id = target.segments[2];
+  if (std::optional<Reply> refusal = authorise(request, id, access)) return std::move(*refusal);
+  if (!pathOfMesh("", id))
+    return problem(404, "not-found",
+                   "this cannot be the name of a mesh: a file name, not hidden, in UTF-8");
+  UploadRequest out{.id = id};
+  if (request.ifMatch) out.ifMatch = *request.ifMatch;
+  if (request.ifNoneMatch) out.ifNoneMatch = *request.ifNoneMatch;
+  if (request.method == "PUT") return putReply(request, target, std::move(out));
+  out.kind = UploadRequest::Kind::kDelete;
+  Reply reply;
+  reply.body = std::move(out);
+  return reply;
+}
+
+Reply partialReply(const RequestView& request, const RequestTarget& target,
+                   const Writing& writing) {
+  if (std::optional<Reply> refusal = authorise(request, target.segments[2], writing.access))
+    return std::move(*refusal);
+  const std::optional<std::string> digest = target.parameter("digest");
+  if (!digest || !isDigest(*digest))
+    return badRequest("digest is the log's SHA-256, 64 hexadecimal digits in lower case");
+  const std::string& id = target.segments[2];
+  if (!pathOfMesh("", id)) return problem(404, "not-found", "this cannot be the name of a mesh");
+  const std::optional<std::uint64_t> bytes = writing.uploads.partialBytes(id, *digest);
+  if (!bytes) return problem(404, "not-found", "nothing is there of an upload of that log");
+  Reply out;
+  out.headers = {{"Content-Type", "application/json"}, {"Cache-Control", "no-store"}};
+  out.body = dumpJson({{"digest", *digest}, {"bytes", *bytes}});
+  addCommonHeaders(out);
+  return out;
+}
+
+}  // namespace qtet

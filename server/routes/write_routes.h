@@ -1,0 +1,31 @@
+// PUT and DELETE of /v1/meshes/{id}, and what is there of an upload that broke off: who may, and
+// what is asked for.
+#pragma once
+
+#include "server/http/http_message.h"
+#include "server/http/uploads.h"
+#include "server/wire/access.h"
+#include "server/wire/request_target.h"
+
+namespace qtet {
+
+/// What the router needs for writing; both outlive it.
+struct Writing {
+  Access& access;
+  Uploads& uploads;
+};
+
+/// Whether the path is that of one mesh.
+[[nodiscard]] bool isMeshPath(const RequestTarget& target);
+
+/// The answer to a PUT or DELETE on a mesh's path: a reply whose body is an UploadRequest, or 400,
+/// 401, 403, 404, 411, 415.
+[[nodiscard]] Reply writeReply(const RequestView& request, const RequestTarget& target,
+                               const Access& access);
+
+/// `/v1/meshes/{id}/upload?digest=HEX` to whoever may write the mesh: {"digest","bytes"}, 400, 401,
+/// 403 or 404.
+[[nodiscard]] Reply partialReply(const RequestView& request, const RequestTarget& target,
+                                 const Writing& writing);
+
+}  // namespace qtet

@@ -1,0 +1,75 @@
+#include "server/store/descriptions.h"
+
+#include "codec/log/log_levels.h"
+#include "proto/json_reader.h"
+#include "server/store/served_mesh.h"
+#include "server/wire/request_target.h"
+
+namespace qtet {
+namespace {
+
+Json links(const ServedMesh& mesh) {
+  const std::string log = "/v1/logs/" + mesh.log.digest();
+  return {{"self", "/v1/meshes/" + percentEncode(mesh.id)},
+          {"stream", "/v1/stream"},
+          {"log", log + "/log"},
+          {"manifest", log + "/manifest"},
+          {"base", log + "/base"},
+          {"chunk", log + "/chunks/{n}"},
+          {"fieldChunk", log + "/fields/{field}/chunks/{n}"},
+          {"level", log + "/levels/{k}.{form}"},
+          {"vtu", log + "/levels/{k}.vtu"},
+          {"glb", log + "/levels/{k}.glb"},
+          {"drc", log + "/levels/{k}.drc"},
+          {"preview", log + "/preview.png"}};
+}
+
+Json identity(const ServedMesh& mesh) {
+  return {{"id", mesh.id}, {"digest", mesh.log.digest()}, {"bytes", mesh.log.bytes().size()}};
+}
+
+/// Every field with what it costs.
+Json fields(const ServedMesh& mesh) {
+  Json out = Json::array();
+  for (std::size_t f = 0; f < mesh.manifest.fields.size(); ++f) {
+    const ManifestField& field = mesh.manifest.fields[f];
+    std::uint64_t bytes = 0;
+    for (const ChunkEntry& chunk : mesh.log.index().chunks)
+      bytes += chunk.blocks[kFirstFieldPart + f].size;
+    out.push_back({{"key", fieldKey(mesh.manifest, f)},
+                   {"name", field.name},
+                   {"components", field.components},
+                   {"type", field.type},
+                   {"association", field.association},
+                   {"range", field.range},
+                   {"bytes", bytes}});
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string describeEntry(const ServedMesh& mesh) {
+  Json out = identity(mesh);
+  const ManifestLevel& finest = mesh.manifest.levels.back();
+  out["tetrahedra"] = finest.tetrahedra;
+  out["vertices"] = finest.vertices;
+  out["fields"] = Json::array();
+  for (std::size_t f = 0; f < mesh.manifest.fields.size(); ++f)
+    out["fields"].push_back(fieldKey(mesh.manifest, f));
+  out["links"] = links(mesh);
+  return dumpJson(out);
+}
+
+std::string describeMesh(const ServedMesh& mesh) {
+  Json out = identity(mesh);
+  out["headBytes"] = mesh.log.index().headBytes();
+  out["chunks"] = mesh.log.index().chunks.size();
+  out["fields"] = fields(mesh);
+  out["manifest"] = Json::parse(manifestToJson(mesh.manifest));
+  out["levels"] = levelsJson(mesh.manifest, mesh.log.index());
+  out["links"] = links(mesh);
+  return dumpJson(out);
+}
+
+}  // namespace qtet

@@ -1,0 +1,134 @@
+#include "server/store/level_cache.h"
+
+#include <fcntl.h>
+#include <spdlog/spdlog.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <tuple>
+#include <vector>
+
+#include "codec/files/atomic_file.h"
+
+namespace qtet {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kSuffix = ".level";
+constexpr std::size_t kKeyCharacters = 64;
+
+std::optional<LevelFile> mapFile(const fs::path& path) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+  if (file < 0) return std::nullopt;
+  struct stat info{};
+  void* address = MAP_FAILED;
+  const bool sound = ::fstat(file, &info) == 0 && S_ISREG(info.st_mode) && info.st_size > 0;
+  if (sound)
+    address =
+        ::mmap(nullptr, static_cast<std::size_t>(info.st_size), PROT_READ, MAP_SHARED, file, 0);
+  ::close(file);
+  if (address == MAP_FAILED) return std::nullopt;
+  const auto size = static_cast<std::size_t>(info.st_size);
+  return LevelFile{{static_cast<const std::uint8_t*>(address), size},
+                   {address, [size](void* mapped) { ::munmap(mapped, size); }}};
+}
+
+LevelFile fromMemory(Bytes bytes) {
+  const auto owner = std::make_shared<const Bytes>(std::move(bytes));
+  return {*owner, owner};
+}
+
+bool isKey(std::string_view text) {
+  return text.size() == kKeyCharacters &&
+         text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<LevelCache>> LevelCache::open(const fs::path& folder,
+                                                     std::uintmax_t mostBytes) {
+  std::error_code ec;
+  fs::create_directories(folder, ec);
+  std::vector<std::tuple<fs::file_time_type, std::string, std::uintmax_t>> found;
+  for (fs::directory_iterator it(folder, ec), end; !ec && it != end; it.increment(ec)) {
+    const std::string key = it->path().stem().string();
+    std::error_code gone;
+    if (it->path().extension() == kSuffix && isKey(key))
+      found.emplace_back(it->last_write_time(gone), key, it->file_size(gone));
+  }
+  if (ec || ::access(folder.c_str(), W_OK | X_OK) != 0)
+    return fail(
+        ErrorCode::kIo,
+        folder.string() + " cannot keep levels; name a folder that may be written with --cache");
+  // Another server may keep its levels here, too: what it is writing it has locked.
+  removeUnfinished(folder, [](std::string_view name) {
+    return name.ends_with(kSuffix) && isKey(name.substr(0, name.size() - kSuffix.size()));
+  });
+  std::ranges::sort(found);
+  std::unique_ptr<LevelCache> out(new LevelCache(folder, mostBytes));
+  for (const auto& [time, key, bytes] : found) out->add(key, bytes);
+  return out;
+}
+
+fs::path LevelCache::pathOf(const std::string& key) const {
+  return folder_ / (key + std::string(kSuffix));
+}
+
+void LevelCache::add(const std::string& key, std::uintmax_t bytes) {
+  forget(key);
+  entries_.push_front({key, bytes});
+  byKey_[key] = entries_.begin();
+  bytes_ += bytes;
+  while (bytes_ > mostBytes_) {
+    const std::string oldest = entries_.back().key;
+    std::error_code ec;
+    fs::remove(pathOf(oldest), ec);  // whoever is sending it has it mapped
+    forget(oldest);
+  }
+}
+
+void LevelCache::forget(const std::string& key) {
+  const auto it = byKey_.find(key);
+  if (it == byKey_.end()) return;
+  bytes_ -= it->second->bytes;
+  entries_.erase(it->second);
+  byKey_.erase(it);
+}
+
+std::optional<LevelFile> LevelCache::find(const std::string& key) {
+  const std::scoped_lock lock(mutex_);
+  const auto it = byKey_.find(key);
+  if (it == byKey_.end()) return std::nullopt;
+  entries_.splice(entries_.begin(), entries_, it->second);
+  std::optional<LevelFile> out = mapFile(pathOf(key));
+  // also where no file can be opened now: what is not counted any more may not lie there
+  if (!out || out->bytes.size() != it->second->bytes) {
+    std::error_code ec;
+    fs::remove(pathOf(key), ec);
+    forget(key);
+    return std::nullopt;
+  }
+  return out;
+}
+
+LevelFile LevelCache::put(const std::string& key, Bytes bytes) {
+  if (bytes.empty() || bytes.size() > mostBytes_) return fromMemory(std::move(bytes));
+  if (const Status written = writeFileAtomically(pathOf(key), bytes); !written) {
+    spdlog::warn("a level is not kept: {}", written.error().message);
+    return fromMemory(std::move(bytes));
+  }
+  const std::scoped_lock lock(mutex_);
+  std::optional<LevelFile> out = mapFile(pathOf(key));
+  add(key, bytes.size());
+  return out ? std::move(*out) : fromMemory(std::move(bytes));
+}
+
+std::uintmax_t LevelCache::bytes() const {
+  const std::scoped_lock lock(mutex_);
+  return bytes_;
+}
+
+}  // namespace qtet

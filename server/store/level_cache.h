@@ -1,0 +1,52 @@
+// Finished levels on disk, found again by their keys; the least recently used go when there are too
+// many bytes.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <list>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "proto/error.h"
+#include "server/store/level_file.h"
+
+namespace qtet {
+
+/// Thread-safe. The folder is this object's alone: nobody else may write into its files.
+class LevelCache {
+ public:
+  /// Makes the folder if it is not there, takes over what an earlier run left in it, and removes
+  /// what one that was killed did not finish. Errors: io.
+  [[nodiscard]] static Result<std::unique_ptr<LevelCache>> open(const std::filesystem::path& folder,
+                                                                std::uintmax_t mostBytes);
+
+  /// `key` is hexadecimal.
+  [[nodiscard]] std::optional<LevelFile> find(const std::string& key);
+  /// Keeps the bytes and gives them back; where the disk refuses, or they alone are more than there
+  /// may be, from memory.
+  [[nodiscard]] LevelFile put(const std::string& key, Bytes bytes);
+  [[nodiscard]] std::uintmax_t bytes() const;
+
+ private:
+  struct Entry {
+    std::string key;
+    std::uintmax_t bytes;
+  };
+  LevelCache(std::filesystem::path folder, std::uintmax_t mostBytes)
+      : folder_(std::move(folder)), mostBytes_(mostBytes) {}
+  [[nodiscard]] std::filesystem::path pathOf(const std::string& key) const;
+  void add(const std::string& key, std::uintmax_t bytes);
+  void forget(const std::string& key);
+
+  const std::filesystem::path folder_;
+  const std::uintmax_t mostBytes_;
+  mutable std::mutex mutex_;
+  std::uintmax_t bytes_ = 0;
+  std::list<Entry> entries_;  // the most recently used first
+  std::map<std::string, std::list<Entry>::iterator> byKey_;
+};
+
+}  // namespace qtet

@@ -1,0 +1,190 @@
+#include "server/store/level_jobs.h"
+
+#include <algorithm>
+#include <condition_variable>
+#include <deque>
+#include <map>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace qtet {
+namespace {
+
+struct Wanted {
+  LevelJobs::Done done;
+  LevelJobs::Address from = nullptr;
+};
+using Subscribers = std::map<std::uint64_t, Wanted>;
+
+struct Job {
+  LevelRequest request;
+  std::string key;
+  std::stop_source stop;
+  Subscribers subscribers;
+};
+using JobPointer = std::shared_ptr<Job>;
+
+}  // namespace
+
+// A `done` owns whatever waits for it and may take the lock when it goes, so none is destroyed
+// while the lock is held.
+struct LevelJobs::State {
+  explicit State(Options given) : options(std::move(given)) {}
+
+  Options options;
+  mutable std::mutex mutex;
+  std::condition_variable news;
+  bool ending = false;
+  std::uint64_t nextSubscription = 0;
+  std::map<std::string, JobPointer> jobs;  // wanted by somebody, waiting or running
+  std::deque<JobPointer> waiting;
+  std::vector<JobPointer> running;
+  LevelJobCounts counts;
+  std::vector<std::jthread> threads;
+
+  void work();
+  void finish(const JobPointer& job, Result<Bytes> bytes);
+  void withdraw(const JobPointer& job, std::uint64_t subscription);
+  /// Why there is no place for another job. REQUIRES: mutex is held.
+  [[nodiscard]] std::optional<LevelRefusal> refusalOf(Address from) const;
+};
+
+void LevelJobs::State::work() {
+  for (;;) {
+    JobPointer job;
+    {
+      std::unique_lock lock(mutex);
+      news.wait(lock, [this] { return ending || !waiting.empty(); });
+      if (ending) return;
+      job = waiting.front();
+      waiting.pop_front();
+      running.push_back(job);
+    }
+    finish(job, options.maker(job->request, job->stop.get_token()));
+  }
+}
+
+void LevelJobs::State::finish(const JobPointer& job, Result<Bytes> bytes) {
+  Result<LevelFile> file = std::unexpected(Error{});
+  if (!bytes) {
+    file = std::unexpected(bytes.error());
+  } else if (options.cache != nullptr && !job->stop.stop_requested()) {
+    file = options.cache->put(job->key, std::move(*bytes));
+  } else {
+    const auto owner = std::make_shared<const Bytes>(std::move(*bytes));
+    file = LevelFile{*owner, owner};
+  }
+  Subscribers subscribers;
+  {
+    const std::scoped_lock lock(mutex);
+    std::erase(running, job);
+    if (const auto it = jobs.find(job->key); it != jobs.end() && it->second == job) jobs.erase(it);
+    if (!job->stop.stop_requested()) ++(file ? counts.made : counts.failed);
+    if (!ending) subscribers = std::exchange(job->subscribers, {});
+  }
+  for (auto& [number, subscription] : subscribers) subscription.done(file);
+}
+
+void LevelJobs::State::withdraw(const JobPointer& job, std::uint64_t subscription) {
+  Done gone;
+  const std::scoped_lock lock(mutex);
+  const auto it = job->subscribers.find(subscription);
+  if (it == job->subscribers.end()) return;  // answered
+  gone = std::move(it->second.done);
+  job->subscribers.erase(it);
+  if (!job->subscribers.empty()) return;
+  ++counts.cancelled;
+  job->stop.request_stop();
+  jobs.erase(job->key);
+  std::erase(waiting, job);
+}
+
+std::optional<LevelRefusal> LevelJobs::State::refusalOf(Address from) const {
+  if (waiting.size() + running.size() >= options.most) return LevelRefusal::kBusy;
+  if (from == nullptr || options.mostOfAddress == 0) return std::nullopt;
+  const auto wants = [from](const auto& entry) {
+    return std::ranges::any_of(entry.second->subscribers, [from](const auto& subscription) {
+      return subscription.second.from == from;
+    });
+  };
+  if (static_cast<std::size_t>(std::ranges::count_if(jobs, wants)) >= options.mostOfAddress)
+    return LevelRefusal::kAddress;
+  return std::nullopt;
+}
+
+LevelJobs::Subscription& LevelJobs::Subscription::operator=(Subscription&& other) noexcept {
+  std::swap(withdraw_, other.withdraw_);
+  return *this;
+}
+
+LevelJobs::Subscription::~Subscription() {
+  if (withdraw_) withdraw_();
+}
+
+LevelJobs::LevelJobs(Options options) : state_(std::make_shared<State>(std::move(options))) {
+  for (std::size_t i = 0; i < state_->options.threads; ++i)
+    state_->threads.emplace_back([state = state_.get()] { state->work(); });
+}
+
+LevelJobs::~LevelJobs() {
+  std::map<std::string, JobPointer> dropped;
+  {
+    const std::scoped_lock lock(state_->mutex);
+    state_->ending = true;
+    state_->waiting.clear();
+    dropped = std::exchange(state_->jobs, {});
+    for (const JobPointer& job : state_->running) job->stop.request_stop();
+  }
+  state_->news.notify_all();
+  state_->threads.clear();
+  for (const auto& [key, job] : dropped) {
+    Subscribers subscribers;
+    const std::scoped_lock lock(state_->mutex);
+    subscribers = std::exchange(job->subscribers, {});
+  }
+}
+
+std::optional<LevelFile> LevelJobs::find(const LevelRequest& request) {
+  if (state_->options.cache == nullptr) return std::nullopt;
+  std::optional<LevelFile> out = state_->options.cache->find(request.key());
+  if (out) {
+    const std::scoped_lock lock(state_->mutex);
+    ++state_->counts.found;
+  }
+  return out;
+}
+
+std::expected<LevelJobs::Subscription, LevelRefusal> LevelJobs::submit(const LevelRequest& request,
+                                                                       Done done, Address from) {
+  std::string key = request.key();
+  const std::scoped_lock lock(state_->mutex);
+  if (!state_->jobs.contains(key)) {
+    if (const std::optional<LevelRefusal> refusal = state_->refusalOf(from)) {
+      ++state_->counts.refused;
+      return std::unexpected(*refusal);
+    }
+  }
+  JobPointer& job = state_->jobs[key];
+  if (!job) {
+    job = std::make_shared<Job>(Job{request, std::move(key), {}, {}});
+    state_->waiting.push_back(job);
+    state_->news.notify_one();
+  }
+  const std::uint64_t subscription = state_->nextSubscription++;
+  job->subscribers.emplace(subscription, Wanted{std::move(done), from});
+  return Subscription([weak = std::weak_ptr(state_), job, subscription] {
+    if (const auto state = weak.lock()) state->withdraw(job, subscription);
+  });
+}
+
+LevelJobCounts LevelJobs::counts() const {
+  const std::scoped_lock lock(state_->mutex);
+  LevelJobCounts out = state_->counts;
+  out.waiting = state_->waiting.size();
+  out.running = state_->running.size();
+  for (const auto& [key, job] : state_->jobs) out.wanted += job->subscribers.size();
+  return out;
+}
+
+}  // namespace qtet

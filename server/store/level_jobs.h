@@ -1,0 +1,86 @@
+// Levels are made on threads of their own, a few at a time: one job for all who want the same one,
+// ended when nobody wants it any more.
+#pragma once
+
+#include <cstdint>
+#include <expected>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <utility>
+
+#include "server/store/level_cache.h"
+#include "server/store/level_request.h"
+
+namespace qtet {
+
+struct LevelJobCounts {
+  std::size_t waiting = 0;  ///< jobs that have not begun
+  std::size_t running = 0;
+  std::size_t wanted = 0;  ///< subscribers that are not answered
+  std::uint64_t made = 0, found = 0, cancelled = 0, refused = 0, failed = 0;  ///< since the start
+};
+
+enum class LevelRefusal : std::uint8_t {
+  kBusy,     ///< there are as many jobs as there may be
+  kAddress,  ///< the address wants as many as it may
+  /// The client closed; the job ends if nobody else wants it. A client that only closes its sending
+  /// half counts as gone.
+  kGone,
+};
+
+class LevelJobs {
+ public:
+  /// Where a subscription comes from, told from others by where the object lies; nullptr: from
+  /// nowhere that is bounded.
+  using Address = const void*;
+  using Done = std::move_only_function<void(Result<LevelFile>)>;
+  using Maker = std::function<Result<Bytes>(const LevelRequest&, const std::stop_token&)>;
+
+  struct Options {
+    std::size_t threads = 1;
+    std::size_t most = 1;         ///< jobs waiting or running; each may hold a whole mesh in memory
+    LevelCache* cache = nullptr;  ///< nullptr: nothing is kept; else it outlives the jobs
+    Maker maker{};
+    std::size_t mostOfAddress = 0;  ///< of these jobs, that one address may want; 0: no bound
+  };
+
+  explicit LevelJobs(Options options);
+  /// Drops what waits (its `done` is destroyed uncalled) and waits for what runs, which is told to
+  /// stop.
+  ~LevelJobs();
+  LevelJobs(const LevelJobs&) = delete;
+  LevelJobs& operator=(const LevelJobs&) = delete;
+
+  /// Somebody's subscription for a level. When it goes before `done` was called, `done` is
+  /// destroyed uncalled, and with the last subscription the job ends. May outlive the jobs.
+  class Subscription {
+   public:
+    Subscription() = default;
+    Subscription(Subscription&& other) noexcept
+        : withdraw_(std::exchange(other.withdraw_, nullptr)) {}
+    Subscription& operator=(Subscription&& other) noexcept;
+    ~Subscription();
+
+   private:
+    friend class LevelJobs;
+    explicit Subscription(std::move_only_function<void()> withdraw)
+        : withdraw_(std::move(withdraw)) {}
+    std::move_only_function<void()> withdraw_;
+  };
+
+  /// The level if it was kept. Thread-safe, as all that follow.
+  [[nodiscard]] std::optional<LevelFile> find(const LevelRequest& request);
+  /// Has the level made and calls `done` once, on a thread of the pool. A subscription for a job
+  /// that is there already is never refused. REQUIRES: `from` outlives the subscription.
+  [[nodiscard]] std::expected<Subscription, LevelRefusal> submit(const LevelRequest& request,
+                                                                 Done done, Address from = nullptr);
+  [[nodiscard]] LevelJobCounts counts() const;
+
+ private:
+  struct State;
+  std::shared_ptr<State> state_;
+};
+
+}  // namespace qtet

@@ -1,0 +1,41 @@
+#include "server/store/level_maker.h"
+
+#include <exception>
+#include <new>
+#include <string>
+
+#include "codec/files/mesh_file.h"
+#include "server/store/preview.h"
+
+namespace qtet {
+namespace {
+
+Result<Bytes> written(const LatticeMesh& mesh, LevelForm form) {
+  return form == LevelForm::kPng ? previewPng(mesh)
+                                 : meshFileBytes(mesh, "." + std::string(formName(form)));
+}
+
+}  // namespace
+
+Result<Bytes> makeLevel(const LevelRequest& request, const std::stop_token& stop) {
+  try {
+    if (request.form == LevelForm::kIntervals) {
+      const Result<PacketIntervals> table =
+          packetIntervals(request.mesh->log, request.mesh->manifest, stop);
+      if (!table) return std::unexpected(table.error());
+      return table->encode();
+    }
+    const Result<LatticeMesh> mesh =
+        meshAtLevel(request.mesh->log, request.level, request.fields, stop);
+    if (!mesh) return std::unexpected(mesh.error());
+    Result<Bytes> file = written(*mesh, request.form);
+    if (!file || stop.stop_requested()) return file;
+    return encoded(std::move(*file), request.coding);
+  } catch (const std::bad_alloc&) {
+    return fail(ErrorCode::kIo, "there is not enough memory for this level; ask for a coarser one");
+  } catch (const std::exception& error) {  // of a library: it ends one job, not the server
+    return fail(ErrorCode::kBadCodec, std::string("this level cannot be written: ") + error.what());
+  }
+}
+
+}  // namespace qtet

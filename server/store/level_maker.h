@@ -1,0 +1,16 @@
+// Makes a level: decodes the log up to it and writes it in the form that is asked for.
+#pragma once
+
+#include <stop_token>
+
+#include "proto/bytes.h"
+#include "proto/error.h"
+#include "server/store/level_request.h"
+
+namespace qtet {
+
+/// The whole file. Looks at `stop` after every chunk; what it gives back then is of no use.
+/// Errors: those of applyChunk and of the writers; io when there is not enough memory.
+[[nodiscard]] Result<Bytes> makeLevel(const LevelRequest& request, const std::stop_token& stop);
+
+}  // namespace qtet

@@ -1,0 +1,46 @@
+#include "server/store/level_request.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "proto/checksum.h"
+
+namespace qtet {
+namespace {
+
+constexpr std::array<std::pair<LevelForm, std::string_view>, 12> kForms = {{
+    {LevelForm::kVtu, "vtu"},
+    {LevelForm::kVtk, "vtk"},
+    {LevelForm::kMsh, "msh"},
+    {LevelForm::kStl, "stl"},
+    {LevelForm::kPly, "ply"},
+    {LevelForm::kObj, "obj"},
+    {LevelForm::kGlb, "glb"},
+    {LevelForm::kDrc, "drc"},
+    {LevelForm::kUsda, "usda"},
+    {LevelForm::kNpz, "npz"},
+    {LevelForm::kPng, "png"},
+    {LevelForm::kIntervals, "intervals"},
+}};
+
+}  // namespace
+
+std::string LevelRequest::key() const {
+  std::string text = std::string(QTET_VERSION) + ' ' + mesh->log.digest() + ' ' +
+                     std::to_string(level) + ' ' + std::string(formName(form)) + ' ' +
+                     std::string(codingName(coding));
+  for (const std::uint32_t field : fields) text += ' ' + std::to_string(field);
+  return sha256Hex({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+}
+
+std::string_view formName(LevelForm form) {
+  return std::ranges::find(kForms, form, &std::pair<LevelForm, std::string_view>::first)->second;
+}
+
+std::optional<LevelForm> formOfName(std::string_view name) {
+  const auto* it = std::ranges::find(kForms, name, &std::pair<LevelForm, std::string_view>::second);
+  return it == kForms.end() ? std::nullopt : std::optional(it->first);
+}
+
+}  // namespace qtet

@@ -1,0 +1,47 @@
+// A level that somebody has to make before it can be sent, and what names the result.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/store/served_mesh.h"
+#include "server/wire/content_coding.h"
+
+namespace qtet {
+
+/// The kinds of file of codec/files/mesh_file.h, the preview, and the table of
+/// server/store/packet_intervals.h, which nobody fetches.
+enum class LevelForm : std::uint8_t {
+  kVtu,
+  kVtk,
+  kMsh,
+  kStl,
+  kPly,
+  kObj,
+  kGlb,
+  kDrc,
+  kUsda,
+  kNpz,
+  kPng,
+  kIntervals
+};
+
+struct LevelRequest {
+  MeshPointer mesh{};
+  std::uint32_t level = 0;
+  LevelForm form = LevelForm::kVtu;
+  std::vector<std::uint32_t> fields{};  ///< indices into the manifest's, ascending, each once
+  ContentCoding coding = ContentCoding::kIdentity;
+
+  /// The same for the same bytes, with one version of this program: hexadecimal, of the log's
+  /// digest and everything else here.
+  [[nodiscard]] std::string key() const;
+};
+
+/// The ending without its dot.
+[[nodiscard]] std::string_view formName(LevelForm form);
+[[nodiscard]] std::optional<LevelForm> formOfName(std::string_view name);
+
+}  // namespace qtet

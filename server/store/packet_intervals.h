@@ -1,0 +1,89 @@
+// Between which values the fields of points lie where a packet of a log of regions refines the
+// mesh: what tells whether an isosurface meets it. No log holds that; it comes of decoding the
+// whole of it once.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <stop_token>
+#include <vector>
+
+#include "codec/log/log_file.h"
+#include "proto/manifest.h"
+#include "proto/stream_request.h"
+
+namespace qtet {
+
+/// Both ends included; empty at first.
+struct ValueInterval {
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+
+  void add(const ValueInterval& other) {
+    least = other.least < least ? other.least : least;
+    most = other.most > most ? other.most : most;
+  }
+  [[nodiscard]] bool holds(double value) const { return least <= value && value <= most; }
+  bool operator==(const ValueInterval&) const = default;
+};
+
+/// A table: a row a chunk, and for each field of points a column a component and, where there are
+/// several, one for their length. Immutable.
+class PacketIntervals {
+ public:
+  /// Nothing is known.
+  PacketIntervals() = default;
+  /// REQUIRES: as many columns as that manifest has, row by row.
+  PacketIntervals(const Manifest& manifest, std::vector<ValueInterval> values);
+
+  /// The column of an isovalue's field and component; nullopt: the log has no such field of points,
+  /// or nothing is known.
+  [[nodiscard]] std::optional<std::size_t> columnOf(const Manifest& manifest,
+                                                    const Isovalue& isovalue) const;
+  [[nodiscard]] const ValueInterval& of(std::uint32_t chunk, std::size_t column) const {
+    return values_[chunk * columns_ + column];
+  }
+
+  /// As it is kept on disk.
+  [[nodiscard]] Bytes encode() const;
+  /// Nothing is known where `bytes` are not a table of that log.
+  [[nodiscard]] static PacketIntervals decode(ByteView bytes, const LogIndex& index,
+                                              const Manifest& manifest);
+  [[nodiscard]] static std::size_t columnsOf(const Manifest& manifest);
+
+ private:
+  std::size_t columns_ = 0;
+  std::vector<ValueInterval> values_;
+};
+
+/// Of a packet: before and after it, at every corner of every cell that it changes, and the same of
+/// all packets below it. So an isosurface that changes where a packet or one below it comes has its
+/// value within; a parent's interval holds its children's. Of other chunks: empty. Decodes the
+/// whole log; holds the finest mesh. Errors: those of decoding; io (`stop` was requested; looked at
+/// after every chunk).
+[[nodiscard]] Result<PacketIntervals> packetIntervals(const LogFile& log, const Manifest& manifest,
+                                                      const std::stop_token& stop = {});
+
+/// Where a log's table is kept as soon as somebody has made it. Thread-safe.
+class KnownIntervals {
+ public:
+  /// nullptr: not yet.
+  [[nodiscard]] std::shared_ptr<const PacketIntervals> now() const {
+    const std::scoped_lock lock(mutex_);
+    return known_;
+  }
+  void put(PacketIntervals table) {
+    auto known = std::make_shared<const PacketIntervals>(std::move(table));
+    const std::scoped_lock lock(mutex_);
+    known_ = std::move(known);
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::shared_ptr<const PacketIntervals> known_;
+};
+
+}  // namespace qtet

@@ -1,0 +1,121 @@
+#include "server/store/served_mesh.h"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/sendfile.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <optional>
+
+#include "codec/log/log_levels.h"
+#include "codec/log/log_manifest.h"
+#include "server/store/descriptions.h"
+#include "server/wire/limits.h"
+
+namespace qtet {
+
+Descriptor::~Descriptor() {
+  if (number >= 0) ::close(number);
+}
+
+std::uint64_t ServedMesh::prefixBytes(std::uint32_t level) const {
+  return qtet::prefixBytes(manifest, log.index(), level);
+}
+
+std::optional<FileIdentity> identityOf(const std::filesystem::path& path) {
+  struct stat info{};
+  if (::stat(path.c_str(), &info) != 0 || !S_ISREG(info.st_mode)) return std::nullopt;
+  return FileIdentity{info.st_dev, info.st_ino, info.st_size, info.st_mtim};
+}
+
+namespace {
+
+std::atomic<std::uintmax_t> copiedBytes = 0;
+
+/// A part of what may be copied, given back with the last copy of the pointer; nullptr: there is
+/// not enough left.
+std::shared_ptr<void> takeCopy(std::uintmax_t bytes) {
+  if (bytes > limits::kMaxCopiedLogBytes) return nullptr;
+  if (copiedBytes.fetch_add(bytes) + bytes > limits::kMaxCopiedBytes)
+    return copiedBytes.fetch_sub(bytes), nullptr;
+  return {&copiedBytes, [bytes](void*) { copiedBytes.fetch_sub(bytes); }};
+}
+
+/// Whether all of them were copied; errno says why not, EIO where the file was cut short meanwhile.
+bool copyInto(int copy, int file, std::uintmax_t bytes) {
+  off_t offset = 0;
+  while (static_cast<std::uintmax_t>(offset) < bytes) {
+    const auto rest = static_cast<std::size_t>(bytes - static_cast<std::uintmax_t>(offset));
+    // shares the blocks where the file system can
+    ssize_t count = ::copy_file_range(file, &offset, copy, nullptr, rest, 0);
+    if (count < 0) count = ::sendfile(copy, file, &offset, rest);
+    if (count == 0) errno = EIO;
+    if (count <= 0) return false;
+  }
+  return true;
+}
+
+/// A file without a name, which nobody else can change, with the bytes of another one: beside it,
+/// where the kernel can drop its pages and sends them twice as fast as memory's, else in memory. -1
+/// and errno.
+int copyOf(int file, const std::filesystem::path& folder, std::uintmax_t bytes) {
+  for (const bool beside : {true, false}) {
+    const int copy = beside
+                         ? ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, S_IRUSR | S_IWUSR)
+                         : ::memfd_create("qtet-log", MFD_CLOEXEC);
+    if (copy < 0) continue;
+    if (copyInto(copy, file, bytes)) return copy;
+    ::close(copy);
+  }
+  return -1;
+}
+
+/// The file itself, or its copy.
+Result<std::unique_ptr<Descriptor>> openFile(const std::filesystem::path& path,
+                                             std::optional<std::uintmax_t> copiedBytesOfIt) {
+  auto file = std::make_unique<Descriptor>(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (file->number >= 0 && copiedBytesOfIt)
+    file = std::make_unique<Descriptor>(copyOf(file->number, path.parent_path(), *copiedBytesOfIt));
+  if (file->number < 0)
+    return fail(ErrorCode::kIo, path.string() + ": cannot be read: " + std::strerror(errno));
+  return file;
+}
+
+Result<LogFile> openLog(const Descriptor& file, const std::filesystem::path& path) {
+  const std::string alias = "/proc/self/fd/" + std::to_string(file.number);
+  Result<LogFile> log = LogFile::open(alias);
+  if (!log && log.error().message.starts_with(alias))
+    log.error().message.replace(0, alias.size(), path.string());
+  return log;
+}
+
+}  // namespace
+
+Result<MeshPointer> openMesh(const std::filesystem::path& path, std::string id) {
+  // Asked first: a file that changes while it is read differs from this identity, and is opened
+  // again.
+  const FileIdentity file = identityOf(path).value_or(FileIdentity());
+  const auto size = static_cast<std::uintmax_t>(file.bytes);
+  std::shared_ptr<void> copied = size > 0 ? takeCopy(size) : nullptr;
+  auto descriptor = openFile(path, copied ? std::optional(size) : std::nullopt);
+  if (!descriptor) return std::unexpected(descriptor.error());
+  Result<LogFile> log = openLog(**descriptor, path);
+  if (!log) return std::unexpected(log.error());
+  if (const Status whole = log->verifyChecksums(); !whole) return std::unexpected(whole.error());
+  Result<Manifest> manifest = manifestOf(log->index());
+  if (!manifest) return std::unexpected(manifest.error());
+  auto out = std::make_shared<ServedMesh>(
+      ServedMesh{std::move(id), std::move(*log), std::move(*manifest), file.modified.tv_sec, file});
+  out->descriptor = std::move(*descriptor);
+  out->copied = std::move(copied);
+  out->listEntry = describeEntry(*out);
+  out->description = Document(describeMesh(*out));
+  out->manifestText = Document(manifestToJson(out->manifest));
+  return out;
+}
+
+}  // namespace qtet

@@ -1,0 +1,76 @@
+// Which blocks a client has, or will have once what was sent has arrived: of the mesh and of the
+// fields that it asked for.
+#pragma once
+
+#include <cassert>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "codec/log/log_index.h"
+#include "proto/stream_request.h"
+
+namespace qtet {
+
+/// A column is structure, positions, then one a field asked for. Holds the index's address, which
+/// must outlive it.
+class ClientBlocks {
+ public:
+  /// Nothing yet. REQUIRES: fields ascending, distinct, below the log's fields.
+  ClientBlocks(const LogIndex& index, std::vector<std::uint32_t> fields)
+      : index_(&index), fields_(std::move(fields)), held_(index.chunks.size() * columns(), false) {}
+
+  [[nodiscard]] std::size_t columns() const { return kFirstFieldPart + fields_.size(); }
+  [[nodiscard]] std::uint32_t partOf(std::size_t column) const {
+    return column < kFirstFieldPart ? static_cast<std::uint32_t>(column)
+                                    : kFirstFieldPart + fields_[column - kFirstFieldPart];
+  }
+  [[nodiscard]] const std::vector<std::uint32_t>& fields() const { return fields_; }
+
+  [[nodiscard]] bool has(std::uint32_t chunk, std::size_t column) const {
+    return held_[chunk * columns() + column];
+  }
+  [[nodiscard]] bool hasMesh(std::uint32_t chunk) const {
+    return has(chunk, kStructurePart) && has(chunk, kPositionsPart);
+  }
+  [[nodiscard]] bool hasAll(std::uint32_t chunk) const { return missingBlocks(chunk) == 0; }
+  /// Bytes of its blocks that are wanted and not there, and of those that are.
+  [[nodiscard]] std::uint64_t missingBytes(std::uint32_t chunk) const {
+    return bytes(chunk, false);
+  }
+  [[nodiscard]] std::uint64_t heldBytes(std::uint32_t chunk) const { return bytes(chunk, true); }
+
+  void add(std::uint32_t chunk, std::size_t column) { held_[chunk * columns() + column] = true; }
+  /// REQUIRES: no chunk behind the log's last.
+  void add(const HeldChunks& chunks, std::size_t column) {
+    assert(chunks.end() <= index_->chunks.size());
+    for (std::uint32_t c = 0; c < chunks.leading; ++c) add(c, column);
+    for (const ChunkRange& range : chunks.ranges)
+      for (std::uint32_t c = range.first; c < range.end; ++c) add(c, column);
+  }
+  /// Parts first..first+count-1 of a chunk. REQUIRES: parts of columns.
+  void addRun(std::uint32_t chunk, std::uint32_t first, std::uint32_t count) {
+    for (std::size_t column = 0; column < columns(); ++column)
+      if (partOf(column) >= first && partOf(column) < first + count) add(chunk, column);
+  }
+
+ private:
+  [[nodiscard]] std::uint64_t bytes(std::uint32_t chunk, bool held) const {
+    std::uint64_t out = 0;
+    for (std::size_t column = 0; column < columns(); ++column)
+      if (has(chunk, column) == held) out += index_->block(chunk, partOf(column)).size;
+    return out;
+  }
+  [[nodiscard]] std::size_t missingBlocks(std::uint32_t chunk) const {
+    std::size_t out = 0;
+    for (std::size_t column = 0; column < columns(); ++column) out += !has(chunk, column);
+    return out;
+  }
+
+  const LogIndex* index_;
+  std::vector<std::uint32_t> fields_;
+  std::vector<bool> held_;
+};
+
+}  // namespace qtet

@@ -1,0 +1,38 @@
+// Which blocks a client gets, and in which order: a pure function of the log's front, of what the
+// client has and of what it wants (PROTOCOL.md, "Binary frame", "Order").
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "codec/log/log_index.h"
+#include "proto/manifest.h"
+#include "server/stream/client_blocks.h"
+#include "server/stream/log_front.h"
+#include "server/stream/stream_target.h"
+
+namespace qtet {
+
+/// Consecutive blocks of one chunk, one binary frame; or the head.
+struct BlockRun {
+  std::uint32_t chunk = 0;
+  std::uint16_t firstPart = 0;  ///< FrameHeader::kHead: header, manifest and table
+  std::uint16_t parts = 0;
+
+  bool operator==(const BlockRun&) const = default;
+};
+
+/// The runs that a client lacks, the head left out. A run takes neighbouring blocks until it would
+/// exceed `payloadBytes`, and one block at least.
+[[nodiscard]] std::vector<BlockRun> planStream(const LogFront& log, const ClientBlocks& blocks,
+                                               const View& view, const StopAt& stop,
+                                               std::uint32_t payloadBytes);
+
+/// Where a run lies in the file: one contiguous piece.
+struct FileSlice {
+  std::uint64_t offset = 0;
+  std::uint32_t size = 0;
+};
+[[nodiscard]] FileSlice sliceOf(const LogIndex& index, const BlockRun& run);
+
+}  // namespace qtet

@@ -1,0 +1,251 @@
+#include "server/stream/stream_protocol.h"
+
+#include <algorithm>
+
+#include "proto/sentence.h"
+#include "server/wire/limits.h"
+
+namespace qtet {
+namespace {
+
+/// The `error` message that answers.
+struct Refusal {
+  const char* code;
+  std::string detail;
+};
+
+Refusal unknownField(const ServedMesh& mesh, const std::string& name) {
+  return {kUnknownField, "'" + mesh.id + "' has no field '" + name + "'"};
+}
+
+/// Fields asked for, as indices, ascending and each once.
+std::expected<std::vector<std::uint32_t>, Refusal> fieldsOf(const std::vector<std::string>& names,
+                                                            const ServedMesh& mesh) {
+  std::vector<std::uint32_t> out;
+  for (const std::string& name : names) {
+    const auto field = fieldOfKey(mesh.manifest, name);
+    if (!field) return std::unexpected(unknownField(mesh, name));
+    out.push_back(*field);
+  }
+  std::ranges::sort(out);
+  const auto twice = std::ranges::unique(out);
+  out.erase(twice.begin(), twice.end());
+  return out;
+}
+
+std::expected<ClientBlocks, Refusal> blocksOf(const Have& have, std::vector<std::uint32_t> fields,
+                                              const ServedMesh& mesh) {
+  const std::size_t chunks = mesh.log.index().chunks.size();
+  if (have.mesh.end() > chunks)
+    return std::unexpected(Refusal{kLogChanged, "have names chunk " +
+                                                    std::to_string(have.mesh.end() - 1) +
+                                                    " and this log has " + std::to_string(chunks)});
+  ClientBlocks out(mesh.log.index(), std::move(fields));
+  out.add(have.mesh, kStructurePart);
+  out.add(have.mesh, kPositionsPart);
+  for (const auto& [name, held] : have.fields) {
+    const auto field = fieldOfKey(mesh.manifest, name);
+    if (!field) return std::unexpected(unknownField(mesh, name));
+    const auto at = std::ranges::find(out.fields(), *field);
+    if (at != out.fields().end())
+      out.add(held, static_cast<std::size_t>(kFirstFieldPart + (at - out.fields().begin())));
+  }
+  return out;
+}
+
+std::expected<StopAt, Refusal> stopOf(const Target& target, const ServedMesh& mesh) {
+  std::uint32_t field = 0;
+  if (const auto* error = std::get_if<FieldErrorTarget>(&target)) {
+    const auto found = fieldOfKey(mesh.manifest, error->field);
+    if (!found) return std::unexpected(unknownField(mesh, error->field));
+    field = *found;
+  }
+  return stopAt(mesh.log.index(), mesh.manifest, target, field);
+}
+
+}  // namespace
+
+void StreamProtocol::receive(std::string_view json, Clock::time_point now) {
+  if (closing_) return;
+  if (!countMessage(now)) return;
+  const Result<ClientMessage> message = parseClientMessage(json);
+  if (!message) {
+    refuse(kBadMessage, message.error().message);
+    closing_ = true;
+    return;
+  }
+  std::visit([this](const auto& m) { handle(m); }, *message);
+}
+
+void StreamProtocol::receiveBinary() {
+  if (closing_) return;
+  refuse(kBadMessage, "clients send JSON text messages, no binary ones");
+  closing_ = true;
+}
+
+bool StreamProtocol::countMessage(Clock::time_point now) {
+  if (now - second_ >= std::chrono::seconds(1))
+    second_ = now, messagesOfSecond_ = opensOfSecond_ = viewRequestsOfSecond_ = 0;
+  const bool answersRead = answers_.size() < limits::kMaxQueuedAnswers;
+  return count(messagesOfSecond_, answersRead ? limits::kMaxMessagesPerSecond : 0,
+               "too many messages, or answers that are not read");
+}
+
+bool StreamProtocol::count(unsigned& counter, unsigned most, const char* what) {
+  if (++counter <= most) return true;
+  refuse(kTooManyMessages, std::string(what) + "; PROTOCOL.md has the bounds");
+  closing_ = true;
+  return false;
+}
+
+void StreamProtocol::handle(const OpenMessage& message) {
+  stream_.reset();
+  ++opens_;
+  if (!count(opensOfSecond_, limits::kMaxOpensPerSecond, "too many open messages a second")) return;
+  const bool open = !mayRead_ || mayRead_(message.mesh);
+  const MeshPointer mesh = open ? store_.find(message.mesh) : nullptr;
+  if (!mesh)
+    return refuse(kNotFound, "there is no mesh '" + message.mesh +
+                                 (mayRead_ ? "', or it is for other tokens" : "'") +
+                                 "; the list is at /v1/meshes");
+  if (!message.digest.empty() && message.digest != mesh->log.digest())
+    return refuse(kLogChanged, "the mesh '" + message.mesh + "' has the digest " +
+                                   mesh->log.digest() + " by now");
+  auto fields = fieldsOf(message.fields, *mesh);
+  if (!fields) return refuse(fields.error().code, std::move(fields.error().detail));
+  auto blocks = blocksOf(message.have, std::move(*fields), *mesh);
+  if (!blocks) return refuse(blocks.error().code, std::move(blocks.error().detail));
+  auto stop = stopOf(message.target, *mesh);
+  if (!stop) return refuse(stop.error().code, std::move(stop.error().detail));
+  stream_.emplace(Stream{mesh, std::move(*blocks), message.have.mesh.leading > 0, message.view,
+                         *stop, static_cast<std::int64_t>(message.credit)});
+  const std::uint64_t planned = plan(*stream_);
+  answers_.push_back(
+      toJson(OpenedMessage{opens_, mesh->id, mesh->log.digest(), mesh->log.bytes().size(), planned,
+                           mesh->manifest.layout}));
+}
+
+std::uint64_t StreamProtocol::plan(Stream& stream) {
+  const ServedMesh& mesh = *stream.mesh;
+  const LogIndex& index = mesh.log.index();
+  const auto intervals = mesh.intervals->now();
+  stream.plan = planStream({index, mesh.manifest, intervals.get()}, stream.blocks, stream.view,
+                           stream.stop, limits::kFramePayload);
+  if (!stream.hasHead) stream.plan.insert(stream.plan.begin(), {0, FrameHeader::kHead, 0});
+  stream.nextRun = 0;
+  stream.stale = stream.told = false;
+  std::uint64_t planned = 0;
+  for (const BlockRun& run : stream.plan) planned += sliceOf(index, run).size;
+  return planned;
+}
+
+void StreamProtocol::catchUp() {
+  if (!stream_ || !stream_->stale) return;
+  const std::uint64_t planned = plan(*stream_);
+  answers_.push_back(toJson(PlannedMessage{opens_, planned, stream_->views}));
+}
+
+void StreamProtocol::handle(const CreditMessage& message) {
+  // Both lie below 2^53, so the sum cannot overflow; the bound keeps it so.
+  if (stream_)
+    stream_->credit = std::min(stream_->credit + static_cast<std::int64_t>(message.bytes),
+                               static_cast<std::int64_t>(kMaxCredit));
+}
+
+void StreamProtocol::handle(const ViewMessage& message) {
+  if (!stream_ || !countViewRequest()) return;
+  stream_->view = message.view;
+  ++stream_->views;
+  stream_->stale = true;
+}
+
+void StreamProtocol::handle(const TargetMessage& message) {
+  if (!stream_ || !countViewRequest()) return;
+  const auto stop = stopOf(message.target, *stream_->mesh);
+  if (!stop) return answerError(stop.error().code, stop.error().detail);
+  stream_->stop = *stop;
+  stream_->stale = true;
+}
+
+void StreamProtocol::handle(const PauseMessage&) {
+  if (stream_) stream_->paused = true;
+}
+
+void StreamProtocol::handle(const ResumeMessage& message) {
+  if (!stream_) return;
+  if (message.have) {
+    if (!countViewRequest()) return;
+    auto blocks = blocksOf(*message.have, stream_->blocks.fields(), *stream_->mesh);
+    if (!blocks) return answerError(blocks.error().code, blocks.error().detail);
+    catchUp();  // what is due is said of the blocks before
+    stream_->blocks = std::move(*blocks);
+    plan(*stream_);
+  }
+  stream_->paused = false;
+}
+
+void StreamProtocol::handle(const CancelMessage&) {
+  stream_.reset();
+  answers_.push_back(toJson(StoppedMessage{opens_}));
+}
+
+MeshPointer StreamProtocol::lacksIntervals() const {
+  if (!stream_ || !stream_->view.isovalue || stream_->mesh->intervals->now()) return nullptr;
+  const ServedMesh& mesh = *stream_->mesh;
+  const bool sorted = mesh.log.index().layout == Layout::kRegions &&
+                      mesh.manifest.levels.back().tetrahedra <= limits::kMaxIntervalTetrahedra;
+  return sorted ? stream_->mesh : nullptr;
+}
+
+void StreamProtocol::intervalsCame(const MeshPointer& mesh) {
+  if (stream_ && stream_->mesh == mesh && stream_->view.isovalue) stream_->stale = true;
+}
+
+bool StreamProtocol::countViewRequest() {
+  return count(viewRequestsOfSecond_, limits::kMaxViewRequestsPerSecond,
+               "too many views, targets and resumes with have a second");
+}
+
+void StreamProtocol::answerError(const char* code, std::string detail) {
+  catchUp();  // answers keep the order of their messages
+  answers_.push_back(toJson(ErrorMessage{code, sentence(detail)}));
+}
+
+void StreamProtocol::refuse(const char* code, std::string detail) {
+  stream_.reset();
+  answerError(code, std::move(detail));
+}
+
+std::optional<Outgoing> StreamProtocol::next() {
+  catchUp();
+  if (!answers_.empty()) {
+    std::string text = std::move(answers_.front());
+    answers_.pop_front();
+    return text;
+  }
+  if (closing_) return CloseCode::kPolicy;
+  if (!stream_) return std::nullopt;
+  if (stream_->nextRun < stream_->plan.size()) {
+    if (stream_->paused || stream_->credit <= 0) return std::nullopt;
+    return nextFrame(*stream_);
+  }
+  if (stream_->told) return std::nullopt;
+  stream_->told = true;
+  return toJson(DoneMessage{opens_});
+}
+
+OutgoingFrame StreamProtocol::nextFrame(Stream& stream) const {
+  const BlockRun& run = stream.plan[stream.nextRun++];
+  const FileSlice slice = sliceOf(stream.mesh->log.index(), run);
+  stream.credit -= slice.size;
+  if (run.firstPart == FrameHeader::kHead) {
+    stream.hasHead = true;
+  } else {
+    stream.blocks.addRun(run.chunk, run.firstPart, run.parts);
+  }
+  return {{opens_, run.chunk, run.firstPart, run.parts, slice.size},
+          stream.mesh->log.bytes().subspan(slice.offset, slice.size),
+          stream.mesh};
+}
+
+}  // namespace qtet

@@ -1,0 +1,103 @@
+// What a session on `/v1/stream` says, and when (PROTOCOL.md, "WebSocket"): the state behind the
+// socket, without the socket.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "proto/messages.h"
+#include "server/store/mesh_store.h"
+#include "server/stream/planner.h"
+#include "server/wire/access.h"
+#include "server/wire/web_socket_reader.h"
+
+namespace qtet {
+
+/// A binary frame; the payload lies in the mapping of the log, which lives at least as long as the
+/// frame.
+struct OutgoingFrame {
+  FrameHeader header;
+  ByteView payload;
+  MeshPointer mesh;
+};
+using Outgoing = std::variant<std::string, OutgoingFrame, CloseCode>;
+
+/// Fed with messages, asked for what to send next. Not thread-safe; `store` must outlive it.
+class StreamProtocol {
+ public:
+  using Clock = std::chrono::steady_clock;
+  /// With `mayRead` other meshes are not there.
+  explicit StreamProtocol(const MeshStore& store, MayRead mayRead = {})
+      : store_(store), mayRead_(std::move(mayRead)) {}
+
+  void receive(std::string_view json, Clock::time_point now);
+  /// Clients send no binary messages.
+  void receiveBinary();
+  /// The next thing to send; nullopt: nothing before the next message arrives. After a CloseCode
+  /// nothing follows.
+  [[nodiscard]] std::optional<Outgoing> next();
+
+  /// The mesh whose packets' intervals the view asks for and nobody knows yet; nullptr: none. Until
+  /// they are there an isovalue counts for nothing.
+  [[nodiscard]] MeshPointer lacksIntervals() const;
+  /// They are known now: what has not been sent is ordered by them.
+  void intervalsCame(const MeshPointer& mesh);
+
+ private:
+  void handle(const OpenMessage& message);
+  void handle(const CreditMessage& message);
+  void handle(const ViewMessage& message);
+  void handle(const TargetMessage& message);
+  void handle(const PauseMessage& message);
+  void handle(const ResumeMessage& message);
+  void handle(const CancelMessage& message);
+
+  /// What an `open` that was understood has begun. It stays, also when everything was sent, until
+  /// the next `open` or `cancel`: the request may change.
+  struct Stream {
+    MeshPointer mesh;  ///< a stream finishes on the log that it began with
+    ClientBlocks blocks;
+    bool hasHead = false;
+    View view{};
+    StopAt stop{};
+    std::int64_t credit = 0;  ///< bytes; below zero by one frame at most
+    std::uint32_t views = 0;  ///< `view` messages so far
+    bool paused = false;
+    bool stale = false;  ///< the request has changed since the plan was made
+    bool told = false;   ///< `done` was said of this plan
+    std::vector<BlockRun> plan{};
+    std::size_t nextRun = 0;
+  };
+  /// Returns the payload bytes to come.
+  static std::uint64_t plan(Stream& stream);
+  /// Plans anew where the request has changed, and says so.
+  void catchUp();
+  OutgoingFrame nextFrame(Stream& stream) const;
+  /// Ends the stream, or leaves it as it is.
+  void refuse(const char* code, std::string detail);
+  void answerError(const char* code, std::string detail);
+  bool countMessage(Clock::time_point now);
+  bool countViewRequest();
+  bool count(unsigned& counter, unsigned most, const char* what);
+
+  const MeshStore& store_;
+  MayRead mayRead_;
+  std::deque<std::string> answers_;
+  bool closing_ = false;
+
+  std::uint32_t opens_ = 0;  ///< so far: the number of the stream
+  std::optional<Stream> stream_;
+
+  Clock::time_point second_{};  ///< the window that the counters belong to
+  unsigned messagesOfSecond_ = 0;
+  unsigned opensOfSecond_ = 0;
+  unsigned viewRequestsOfSecond_ = 0;
+};
+
+}  // namespace qtet

@@ -1,0 +1,41 @@
+// One WebSocket on `/v1/stream`: carries what StreamProtocol says, and keeps the socket alive and
+// within bounds.
+#pragma once
+
+#include <utility>  // before any Asio header: 1.74 uses std::exchange without it
+
+#include <boost/asio/awaitable.hpp>
+#include <chrono>
+#include <memory>
+#include <string>
+
+#include "server/store/level_jobs.h"
+#include "server/store/mesh_store.h"
+#include "server/wire/access.h"
+#include "server/wire/address_limits.h"
+#include "server/wire/client_socket.h"
+#include "server/wire/connections.h"
+#include "server/wire/limits.h"
+
+namespace qtet {
+
+/// A handshake that was found good.
+struct StreamHandshake {
+  std::string key;         ///< Sec-WebSocket-Key
+  std::string firstBytes;  ///< what came behind its head already
+  MayRead mayRead{};       ///< which meshes it may open; empty: all
+  /// After which it is given up.
+  std::chrono::milliseconds silence = limits::kSilenceTime, write = limits::kWriteTime;
+  /// Where the intervals of packets are found; nullptr: they stay unknown.
+  LevelJobs* jobs = nullptr;
+  bool unpaced = false;  ///< as Services has it
+};
+
+/// Answers the handshake and serves until the socket ends. Runs on the socket's executor, which
+/// must be a single thread or a strand.
+boost::asio::awaitable<void> serveStream(ClientSocket socket, StreamHandshake handshake,
+                                         const MeshStore& store,
+                                         std::shared_ptr<Connection> connection,
+                                         std::unique_ptr<AddressLimits::Client> client);
+
+}  // namespace qtet

@@ -1,0 +1,27 @@
+// Where a stream stops (PROTOCOL.md, "Target"), as bounds on what is sent.
+#pragma once
+
+#include <cstdint>
+
+#include "codec/log/log_index.h"
+#include "proto/manifest.h"
+#include "proto/stream_request.h"
+
+namespace qtet {
+
+struct StopAt {
+  std::uint32_t lastChunk = 0xFFFFFFFFu;  ///< chunks behind it are not sent
+  /// Bytes that the client has and gets, head and all; the first chunk comes in any case.
+  std::uint64_t payload = ~std::uint64_t{0};
+  /// Of the client's mesh; the base mesh comes in any case.
+  std::uint64_t tetrahedra = ~std::uint64_t{0};
+  bool ofWantedOnly = false;  ///< satisfied once what the view wants is there
+};
+
+/// A level beyond the last is the last. Where the log does not tell the errors of its levels, only
+/// the last level is known to be good enough. REQUIRES: the manifest is that of the index; `field`
+/// is the target's, if it names one, and one of the manifest.
+[[nodiscard]] StopAt stopAt(const LogIndex& index, const Manifest& manifest, const Target& target,
+                            std::uint32_t field);
+
+}  // namespace qtet

@@ -1,0 +1,56 @@
+// The tokens that hold now, and the tickets that were given for them.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "server/wire/tokens.h"
+
+namespace qtet {
+
+/// Says of a mesh's name whether somebody may read it; an empty one: everything.
+using MayRead = std::function<bool(const std::string& mesh)>;
+
+/// Thread-safe. Must outlive the MayRead that it gives.
+class Access {
+ public:
+  /// Of a system's clock nothing is asked: its jumps neither end a ticket nor keep one.
+  using Clock = std::chrono::steady_clock;
+
+  explicit Access(Tokens tokens) : tokens_(std::make_shared<const Tokens>(std::move(tokens))) {}
+  [[nodiscard]] std::shared_ptr<const Tokens> tokens() const;
+  /// Requests from now on are judged by these; so are the tickets of tokens that are not among them
+  /// any more.
+  void replace(Tokens tokens);
+
+  /// A secret that stands for the token of that digest once, for limits::kTicketTime: browsers
+  /// cannot send a header with a WebSocket. nullopt: that token has limits::kMaxTickets of them
+  /// unused.
+  [[nodiscard]] std::optional<std::string> giveTicket(const SecretDigest& token,
+                                                      Clock::time_point now = Clock::now());
+  /// The digest of the token that it stands for, for which it is no good any more; nullopt: it is
+  /// none, used, or too old.
+  [[nodiscard]] std::optional<SecretDigest> takeTicket(std::string_view ticket,
+                                                       Clock::time_point now = Clock::now());
+
+  /// What whoever has the token may read, by the tokens that hold when it is asked.
+  [[nodiscard]] MayRead readerOf(const std::optional<SecretDigest>& bearer) const;
+
+ private:
+  struct Ticket {
+    SecretDigest token{};
+    Clock::time_point end{};
+  };
+  mutable std::mutex mutex_;
+  std::shared_ptr<const Tokens> tokens_;
+  /// By their own digests, so that the time of looking one up tells nothing of it.
+  std::map<SecretDigest, Ticket> tickets_;
+};
+
+}  // namespace qtet

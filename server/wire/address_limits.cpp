@@ -1,0 +1,82 @@
+#include <utility>  // before any Asio header: 1.74 uses std::exchange without it
+
+#include "server/wire/address_limits.h"
+
+#include <algorithm>
+
+#include "server/wire/limits.h"
+
+namespace qtet {
+namespace {
+
+/// A second's requests may come at once this many times over.
+constexpr double kBurstSeconds = 2;
+constexpr std::size_t kPrefixBytes = 8;  // of an IPv6 address: its /64
+
+AddressLimits::Key keyOf(const boost::asio::ip::address& address) {
+  AddressLimits::Key out{};
+  if (address.is_v4()) {
+    const auto bytes = address.to_v4().to_bytes();
+    std::ranges::copy(bytes, out.end() - bytes.size());
+  } else {
+    const auto bytes = address.to_v6().to_bytes();
+    std::copy_n(bytes.begin(), address.to_v6().is_v4_mapped() ? bytes.size() : kPrefixBytes,
+                out.begin());
+    if (address.to_v6().is_v4_mapped()) std::fill_n(out.begin(), 12, std::uint8_t{0});
+  }
+  return out;
+}
+
+}  // namespace
+
+struct AddressLimits::Client::Address {
+  std::mutex mutex;
+  std::size_t connections = 0;
+  double spent = 0;  ///< requests that have not been forgiven yet
+  Clock::time_point last{};
+
+  /// What a second allows is forgiven every second.
+  void forgive(Clock::time_point now, unsigned requestsPerSecond) {
+    const std::chrono::duration<double> passed = now - last;
+    spent = std::max(0.0, spent - passed.count() * requestsPerSecond);
+    last = now;
+  }
+};
+
+AddressLimits::Client::~Client() {
+  const std::scoped_lock lock(address_->mutex);
+  --address_->connections;
+}
+
+bool AddressLimits::Client::countRequest(Clock::time_point now) {
+  if (requestsPerSecond_ == 0) return true;
+  const std::scoped_lock lock(address_->mutex);
+  address_->forgive(now, requestsPerSecond_);
+  if (address_->spent + 1 > requestsPerSecond_ * kBurstSeconds) return false;
+  ++address_->spent;
+  return true;
+}
+
+std::unique_ptr<AddressLimits::Client> AddressLimits::enter(
+    const boost::asio::ip::address& address) {
+  const std::scoped_lock lock(state_->mutex);
+  if (state_->addresses.size() >= limits::kMaxRememberedAddresses) forgetQuietAddresses();
+  auto& ofClient = state_->addresses[keyOf(address)];
+  if (!ofClient) ofClient = std::make_shared<Client::Address>();
+  const std::scoped_lock one(ofClient->mutex);
+  if (mostConnections_ != 0 && ofClient->connections >= mostConnections_) return nullptr;
+  ++ofClient->connections;
+  return std::unique_ptr<Client>(new Client(ofClient, requestsPerSecond_));
+}
+
+/// Those without a connection whose requests are all forgiven are as good as new ones.
+void AddressLimits::forgetQuietAddresses() {
+  const auto now = Clock::now();
+  std::erase_if(state_->addresses, [&](const auto& entry) {
+    const std::scoped_lock lock(entry.second->mutex);
+    entry.second->forgive(now, requestsPerSecond_);
+    return entry.second->connections == 0 && entry.second->spent == 0;
+  });
+}
+
+}  // namespace qtet

@@ -1,0 +1,63 @@
+// What one address may take of the server: connections at a time, and requests a second.
+#pragma once
+
+#include <array>
+#include <boost/asio/ip/address.hpp>
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+
+namespace qtet {
+
+/// Thread-safe. An IPv6 client counts as its /64, which is what a provider gives to one.
+class AddressLimits {
+ public:
+  using Clock = std::chrono::steady_clock;
+  using Key = std::array<std::uint8_t, 16>;
+
+  /// 0: no bound. A second's worth of requests may come at once, twice over.
+  AddressLimits(std::size_t mostConnections, unsigned requestsPerSecond)
+      : mostConnections_(mostConnections),
+        requestsPerSecond_(requestsPerSecond),
+        state_(std::make_shared<State>()) {}
+
+  /// A connection's place among those of its address, given back when the object goes. May outlive
+  /// the limits.
+  class Client {
+   public:
+    ~Client();
+    Client(const Client&) = delete;
+    Client& operator=(const Client&) = delete;
+    /// false: the address has asked too often.
+    [[nodiscard]] bool countRequest(Clock::time_point now = Clock::now());
+    /// The same for all clients of one address, and another for each other one; lives as long as
+    /// one of them.
+    [[nodiscard]] const void* address() const { return address_.get(); }
+
+   private:
+    friend class AddressLimits;
+    struct Address;
+    Client(std::shared_ptr<Address> address, unsigned requestsPerSecond)
+        : address_(std::move(address)), requestsPerSecond_(requestsPerSecond) {}
+    std::shared_ptr<Address> address_;
+    unsigned requestsPerSecond_;
+  };
+
+  /// nullptr: the address has as many connections as it may have.
+  [[nodiscard]] std::unique_ptr<Client> enter(const boost::asio::ip::address& address);
+
+ private:
+  struct State {
+    std::mutex mutex;
+    std::map<Key, std::shared_ptr<Client::Address>> addresses;
+  };
+  void forgetQuietAddresses();
+
+  std::size_t mostConnections_;
+  unsigned requestsPerSecond_;
+  std::shared_ptr<State> state_;
+};
+
+}  // namespace qtet

@@ -1,0 +1,55 @@
+// The connections that are open: how many there may be, and how each is told that the server ends.
+#pragma once
+
+#include <boost/asio/any_io_executor.hpp>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <unordered_map>
+
+namespace qtet {
+
+/// One connection's place among the open ones, given back when the object goes; and its ear for the
+/// server's end. All but `requestEnd` belongs to the connection's own executor.
+class Connection {
+ public:
+  explicit Connection(boost::asio::any_io_executor executor) : executor_(std::move(executor)) {}
+
+  /// Whether the server is ending: answer what is under way and begin nothing new.
+  [[nodiscard]] bool ending() const { return ending_; }
+  /// `wake` runs when the end is requested, to interrupt what waits for the client; an empty one
+  /// forgets it.
+  void onEnd(std::function<void()> wake) { wake_ = std::move(wake); }
+  /// Thread-safe.
+  static void requestEnd(const std::shared_ptr<Connection>& connection);
+
+ private:
+  boost::asio::any_io_executor executor_;
+  std::function<void()> wake_;
+  bool ending_ = false;
+};
+
+/// Thread-safe. Must outlive the connections that it hands out.
+class Connections {
+ public:
+  explicit Connections(std::size_t most) : most_(most) {}
+
+  /// nullptr: there are as many as there may be, or the server ends.
+  [[nodiscard]] std::shared_ptr<Connection> enter(boost::asio::any_io_executor executor);
+  [[nodiscard]] std::size_t open() const;
+  /// Tells every connection to end, lets no other in, and calls `whenEmpty` once when the last has
+  /// gone (perhaps at once).
+  void endAll(std::function<void()> whenEmpty);
+
+ private:
+  void leave(Connection* connection);
+
+  const std::size_t most_;
+  mutable std::mutex mutex_;
+  std::unordered_map<Connection*, std::weak_ptr<Connection>> open_;
+  bool ending_ = false;
+  std::function<void()> whenEmpty_;
+};
+
+}  // namespace qtet

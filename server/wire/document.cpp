@@ -1,0 +1,16 @@
+#include "server/wire/document.h"
+
+#include "proto/checksum.h"
+#include "server/wire/content_coding.h"
+
+namespace qtet {
+
+Document::Document(std::string content) : text(std::move(content)) {
+  const ByteView bytes = {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+  etag = '"' + sha256Hex(bytes) + '"';
+  if (bytes.size() < kLeastCompressedBytes) return;
+  gzip = compressed(bytes, ContentCoding::kGzip);
+  zstd = compressed(bytes, ContentCoding::kZstd);
+}
+
+}  // namespace qtet

@@ -1,0 +1,41 @@
+// A look at the bytes of a request's head before Beast's parser sees them. That parser joins folded
+// lines and so lets through what a proxy in front may have read in another way, which is how
+// requests are smuggled (RFC 9112, 2.2, 5.2 and 11.2).
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+
+namespace qtet {
+
+/// Fed with a head that grows; looks at every byte once.
+class HttpGate {
+ public:
+  enum class Verdict {
+    kMore,      ///< sound so far; read on
+    kComplete,  ///< `headBytes` of it are the whole head, with its empty line
+    /// A bare CR or LF, a control byte, a folded line, or no method at the start: 400, and the
+    /// connection ends.
+    kBroken,
+    kTooLong,  ///< more lines than limits::kMaxHeaderLines: 431, and the connection ends
+  };
+
+  /// `bytes` begins with the request line and only ever grows from call to call.
+  [[nodiscard]] Verdict look(std::string_view bytes);
+  /// REQUIRES: the last verdict was kComplete.
+  [[nodiscard]] std::size_t headBytes() const { return checked_; }
+
+ private:
+  [[nodiscard]] bool startsLine(std::string_view bytes) const {
+    return checked_ >= 2 && bytes[checked_ - 1] == '\n';
+  }
+
+  std::size_t checked_ = 0;
+  std::size_t lines_ = 0;
+};
+
+/// How many bytes of empty lines stand before the request line: a client may send one after a body
+/// (RFC 9112, 2.2).
+[[nodiscard]] std::size_t emptyLinesBefore(std::string_view bytes);
+
+}  // namespace qtet

@@ -1,0 +1,139 @@
+#include "server/wire/tokens.h"
+
+#include <fnmatch.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "proto/checksum.h"
+#include "server/wire/limits.h"
+
+namespace qtet {
+namespace {
+
+/// Characters of a token that is given as it is: as many as 16 random bytes in base64, below which
+/// it could be guessed.
+constexpr std::size_t kLeastTokenCharacters = 22;
+constexpr std::string_view kDigestMark = "sha256:";
+constexpr std::string_view kAnyone = "anyone";
+constexpr std::string_view kScheme = "bearer ";
+
+std::optional<SecretDigest> digestOfHex(std::string_view hex) {
+  SecretDigest out{};
+  if (hex.size() != 2 * out.size() ||
+      hex.find_first_not_of("0123456789abcdef") != std::string_view::npos)
+    return std::nullopt;
+  const auto nibble = [](char c) { return c <= '9' ? c - '0' : c - 'a' + 10; };
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out[i] = static_cast<std::uint8_t>(nibble(hex[2 * i]) * 16 + nibble(hex[2 * i + 1]));
+  return out;
+}
+
+bool equalInConstantTime(const SecretDigest& a, const SecretDigest& b) {
+  unsigned difference = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) difference |= static_cast<unsigned>(a[i] ^ b[i]);
+  return difference == 0;
+}
+
+std::string_view tokenOf(std::string_view authorization) {
+  if (authorization.size() <= kScheme.size()) return {};
+  for (std::size_t i = 0; i < kScheme.size(); ++i)
+    if (std::tolower(static_cast<unsigned char>(authorization[i])) != kScheme[i]) return {};
+  std::string_view out = authorization.substr(kScheme.size());
+  while (out.starts_with(' ')) out.remove_prefix(1);
+  return out;
+}
+
+bool matches(const std::string& pattern, const std::string& mesh) {
+  return ::fnmatch(pattern.c_str(), mesh.c_str(), 0) == 0;
+}
+
+}  // namespace
+
+SecretDigest secretDigest(std::string_view secret) {
+  Sha256 hash;
+  hash.update({reinterpret_cast<const std::uint8_t*>(secret.data()), secret.size()});
+  return hash.finish();
+}
+
+std::optional<SecretDigest> bearerDigest(std::optional<std::string_view> authorization) {
+  const std::string_view token = tokenOf(authorization.value_or(""));
+  return token.empty() ? std::nullopt : std::optional(secretDigest(token));
+}
+
+Result<Tokens> Tokens::load(const std::filesystem::path& path) {
+  std::error_code ec;
+  const auto size = std::filesystem::file_size(path, ec);
+  std::ifstream in(path, std::ios::binary);
+  if (ec || !in) return fail(ErrorCode::kIo, path.string() + ": the tokens cannot be read");
+  if (size > limits::kMaxTokenFileBytes)
+    return fail(
+        ErrorCode::kLimitExceeded,
+        path.string() + " has more than " + std::to_string(limits::kMaxTokenFileBytes) + " bytes");
+  std::stringstream text;
+  text << in.rdbuf();
+  Result<Tokens> out = parse(text.str());
+  if (!out) out.error().message = path.string() + ", " + out.error().message;
+  return out;
+}
+
+Result<Tokens> Tokens::parse(std::string_view text) {
+  Tokens out;
+  std::istringstream lines{std::string(text)};
+  std::size_t number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    std::istringstream words(line);
+    std::string scope, pattern, token, more;
+    if (!(words >> scope) || scope.starts_with('#')) continue;
+    words >> pattern >> token;
+    const auto wrong = [&](const std::string& what) {
+      return fail(ErrorCode::kBadValue, "line " + std::to_string(number) + ": " + what);
+    };
+    if ((scope != "write" && scope != "read") || token.empty() || words >> more)
+      return wrong(
+          "a line is: read or write, a PATTERN of mesh names, and a TOKEN or sha256:HEX; or read "
+          "PATTERN anyone");
+    Rule rule{scope == "read" ? Scope::kRead : Scope::kWrite, pattern};
+    if (token.starts_with(kDigestMark)) {
+      rule.digest = digestOfHex(std::string_view(token).substr(kDigestMark.size()));
+      if (!rule.digest) return wrong("sha256: is followed by 64 hexadecimal digits in lower case");
+    } else if (token == kAnyone) {
+      if (rule.scope == Scope::kWrite) return wrong("anyone may read, but not write");
+    } else {
+      if (token.size() < kLeastTokenCharacters)
+        return wrong("the token has fewer than " + std::to_string(kLeastTokenCharacters) +
+                     " characters; 'openssl rand -base64 24' makes a good one");
+      rule.digest = secretDigest(token);
+    }
+    out.guardReading_ |= rule.scope == Scope::kRead;
+    out.rules_.push_back(std::move(rule));
+  }
+  // As a file is that was cut off while it was written; taken at its word it would open everything.
+  if (out.rules_.empty())
+    return fail(
+        ErrorCode::kBadValue,
+        "line 1: there is no line of a token; leave --tokens out where there is to be none");
+  return out;
+}
+
+Tokens::Verdict Tokens::may(Scope scope, const std::optional<SecretDigest>& bearer,
+                            const std::string& mesh) const {
+  bool known = false, allowed = scope == Scope::kRead && !guardReading_;
+  for (const Rule& rule : rules_) {
+    const bool same = bearer && rule.digest && equalInConstantTime(*bearer, *rule.digest);
+    const bool enough = scope == Scope::kRead || rule.scope == Scope::kWrite;
+    known |= same;
+    allowed |= (same || !rule.digest) && enough && matches(rule.pattern, mesh);
+  }
+  return allowed ? Verdict::kAllowed : known ? Verdict::kForbidden : Verdict::kUnknown;
+}
+
+bool Tokens::knows(const std::optional<SecretDigest>& bearer) const {
+  bool known = false;
+  for (const Rule& rule : rules_)
+    known |= bearer && rule.digest && equalInConstantTime(*bearer, *rule.digest);
+  return known;
+}
+
+}  // namespace qtet

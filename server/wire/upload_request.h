@@ -1,0 +1,22 @@
+// What a PUT or DELETE asks for, read off its head.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace qtet {
+
+struct UploadRequest {
+  enum class Kind : std::uint8_t { kPut, kDelete };
+  Kind kind = Kind::kPut;
+  std::string id;  ///< a name that pathOfMesh takes
+  /// 64 lower-case hexadecimal digits, where the request names it.
+  std::optional<std::string> digest{};
+  std::optional<std::string> ifMatch{}, ifNoneMatch{};
+  std::uint64_t bodyBytes = 0;   ///< of this request
+  std::uint64_t first = 0;       ///< where they go
+  std::uint64_t totalBytes = 0;  ///< of the whole log
+};
+
+}  // namespace qtet

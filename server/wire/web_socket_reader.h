@@ -1,0 +1,85 @@
+// What a WebSocket client sends (RFC 6455, 5), out of a stream of bytes cut anywhere: messages,
+// pings and closes, or the code to close with.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <expected>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "proto/bytes.h"
+
+namespace qtet {
+
+/// Close codes of RFC 6455, 7.4.1, that this server uses by its own decision.
+enum class CloseCode : std::uint16_t {
+  kGoingAway = 1001,
+  kProtocol = 1002,
+  kBadText = 1007,
+  kPolicy = 1008,
+  kTooBig = 1009,
+  kInternal = 1011
+};
+
+/// Whether a close frame may carry it (RFC 6455, 7.4, and what IANA has registered since).
+[[nodiscard]] bool isCloseCode(std::uint16_t code);
+
+/// Holds at most one message and one read beyond it; nothing between messages.
+class WebSocketReader {
+ public:
+  struct Event {
+    enum class Kind : std::uint8_t { kText, kBinary, kPing, kPong, kClose };
+    Kind kind = Kind::kText;
+    /// UTF-8 of a text; of a close its code and reason as they came, both sound.
+    std::string payload{};
+  };
+
+  /// REQUIRES: next() has said that there is nothing more.
+  void feed(std::string_view bytes) { buffer_.append(bytes); }
+  /// The next thing that is whole; nullopt: more bytes are needed. After an error nothing may be
+  /// asked any more.
+  [[nodiscard]] std::expected<std::optional<Event>, CloseCode> next();
+
+ private:
+  enum class Opcode : std::uint8_t {
+    kContinuation = 0,
+    kText = 1,
+    kBinary = 2,
+    kClose = 8,
+    kPing = 9,
+    kPong = 10
+  };
+  struct Frame {
+    bool last = false;
+    Opcode opcode = Opcode::kText;
+    std::string payload;
+  };
+  [[nodiscard]] std::expected<std::optional<Frame>, CloseCode> takeFrame();
+  [[nodiscard]] std::expected<std::optional<Event>, CloseCode> control(Frame frame) const;
+  /// nullopt: the message goes on.
+  [[nodiscard]] std::expected<std::optional<Event>, CloseCode> data(Frame frame);
+
+  std::string buffer_;
+  std::string message_;         // fragments so far
+  std::optional<Opcode> kind_;  // of the message whose fragments come
+  std::size_t fragments_ = 0;
+};
+
+/// The header of an unmasked, unfragmented frame that a server sends; at most 10 bytes.
+struct WebSocketHeader {
+  std::uint8_t bytes[10];
+  std::uint8_t size = 0;
+
+  static constexpr std::uint8_t kText = 0x81, kBinary = 0x82, kClose = 0x88, kPing = 0x89,
+                                kPong = 0x8A;
+  WebSocketHeader(std::uint8_t kind, std::uint64_t payloadBytes);
+};
+
+/// The value of Sec-WebSocket-Accept for a key (RFC 6455, 4.2.2).
+[[nodiscard]] std::string webSocketAccept(std::string_view key);
+/// Whether it is what a client must send: 16 bytes in base64.
+[[nodiscard]] bool isWebSocketKey(std::string_view key);
+
+}  // namespace qtet

@@ -1,0 +1,52 @@
+// Making a mesh from a file fit for simplifying (ALGORITHM.md, "Input"): what can be repaired
+// without guessing is, what cannot is refused.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "proto/error.h"
+#include "simplify/mesh/tet_mesh.h"
+
+namespace qtet {
+
+/// How many of one kind, and which first, in the numbering before cleaning.
+struct Occurrences {
+  static constexpr std::size_t kShown = 8;
+
+  std::uint64_t count = 0;
+  std::vector<std::uint64_t> first;
+
+  void add(std::uint64_t index) {
+    if (count++ < kShown) first.push_back(index);
+  }
+};
+
+struct CleanReport {
+  Occurrences repeatedVertexCells;  ///< cells that name a vertex twice: dropped
+  Occurrences duplicateCells;       ///< cells with the four vertices of an earlier one: dropped
+  Occurrences flatCells;            ///< cells of exactly zero volume: kept
+  Occurrences reorientedCells;      ///< cells whose vertices were put in another order
+  Occurrences invertedCells;        ///< cells inside out against their neighbours: kept
+  Occurrences unusedPoints;         ///< points of no cell: dropped
+  Occurrences coincidentPoints;     ///< points at the place of an earlier one: kept apart
+  /// Boundary edges of more than two boundary triangles: kept; `first` holds the lower vertex,.
+  Occurrences nonManifoldEdges;
+  std::vector<std::uint64_t> nonManifoldEdgeEnds;  ///< and this the upper one
+  /// Boundary vertices whose triangles are not one closed fan: kept.
+  Occurrences nonManifoldVertices;
+  std::uint64_t components = 0;  ///< sets of cells that hang together by faces
+
+  /// What was changed or is unusual, one sentence each; empty for a flawless mesh.
+  [[nodiscard]] std::vector<std::string> sentences() const;
+};
+
+/// Cleans in place: drops cells and points with their field values, orders each cell's vertices;
+/// what remains keeps its order. Errors: bad-input (no cell remains; a face of more than two cells;
+/// a component that cannot be oriented), cells named as numbered before. REQUIRES: vertex ids below
+/// the number of points, finite coordinates.
+[[nodiscard]] Result<CleanReport> cleanMesh(TetMesh& mesh);
+
+}  // namespace qtet

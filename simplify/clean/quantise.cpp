@@ -1,0 +1,175 @@
+#include "simplify/clean/quantise.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "codec/mesh/boundary.h"
+#include "codec/mesh/predicates.h"
+#include "proto/limits.h"
+#include "simplify/clean/quantise_field.h"
+#include "simplify/mesh/missing_values.h"
+#include "simplify/mesh/volume_sign.h"
+
+namespace qtet {
+namespace {
+
+struct Box {
+  Position low{}, high{};
+
+  [[nodiscard]] double extent() const {
+    return std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
+  }
+};
+
+Box boxOf(const std::vector<Position>& points) {
+  if (points.empty()) return {};
+  Box box{points.front(), points.front()};
+  for (const Position& p : points) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      box.low[k] = std::min(box.low[k], p[k]);
+      box.high[k] = std::max(box.high[k], p[k]);
+    }
+  }
+  return box;
+}
+
+Lattice latticeOf(const Box& box, int bits) {
+  const double extent = box.extent();
+  return {bits, extent > 0 ? extent / (std::ldexp(1.0, bits) - 1) : 1.0, box.low};
+}
+
+std::vector<LatticePoint> onLattice(const std::vector<Position>& points, const Lattice& lattice) {
+  const double highest = std::ldexp(1.0, lattice.bits) - 1;
+  std::vector<LatticePoint> out;
+  out.reserve(points.size());
+  for (const Position& p : points) {
+    LatticePoint q;
+    for (std::size_t k = 0; k < 3; ++k) {
+      q[k] = static_cast<std::int32_t>(
+          std::clamp(std::floor((p[k] - lattice.origin[k]) / lattice.step + 0.5), 0.0, highest));
+    }
+    out.push_back(q);
+  }
+  return out;
+}
+
+std::vector<signed char> signsOf(const TetMesh& mesh) {
+  std::vector<signed char> signs;
+  signs.reserve(mesh.tetrahedra.size());
+  for (const Tetrahedron& t : mesh.tetrahedra) {
+    signs.push_back(static_cast<signed char>(
+        volumeSign(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]])));
+  }
+  return signs;
+}
+
+/// Cells that were positive and are not, or flat and are inverted.
+Occurrences worseCells(const std::vector<Tetrahedron>& cells,
+                       const std::vector<signed char>& before,
+                       const std::vector<LatticePoint>& points) {
+  Occurrences worse;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (before[i] < 0) continue;
+    const Tetrahedron& t = cells[i];
+    const int now = orientation(points[t[0]], points[t[1]], points[t[2]], points[t[3]]);
+    if (now < 0 || (now == 0 && before[i] > 0)) worse.add(i);
+  }
+  return worse;
+}
+
+Status checkOptions(const QuantiseOptions& options) {
+  const auto isWithin = [](int value, int low, int high) { return value >= low && value <= high; };
+  if (!isWithin(options.positionBits, kMinPositionBits, kMaxPositionBits)) {
+    return fail(ErrorCode::kBadValue, "position bits " + std::to_string(options.positionBits) +
+                                          " are outside " + std::to_string(kMinPositionBits) +
+                                          " to " + std::to_string(kMaxPositionBits));
+  }
+  if (!isWithin(options.fieldBits, kMinFieldBits, kMaxFieldBits)) {
+    return fail(ErrorCode::kBadValue, "field bits " + std::to_string(options.fieldBits) +
+                                          " are outside " + std::to_string(kMinFieldBits) + " to " +
+                                          std::to_string(kMaxFieldBits));
+  }
+  return {};
+}
+
+Status checkBox(const Box& box) {
+  const double extent = box.extent();
+  const double finestStep = extent / std::ldexp(1.0, kMaxPositionBits);
+  if (!std::isfinite(extent) || (extent > 0 && finestStep < std::numeric_limits<double>::min())) {
+    return fail(ErrorCode::kBadInput,
+                "the mesh is " + std::to_string(extent) +
+                    " units large, which floating point cannot divide into a lattice; "
+                    "scale the coordinates to another unit");
+  }
+  return {};
+}
+
+/// Finds the bits and places the points. REQUIRES: checked options and box.
+void placePoints(const TetMesh& mesh, const Box& box, QuantisedMesh& out) {
+  const std::vector<signed char> before = signsOf(mesh);
+  QuantiseReport& report = out.report;
+  for (int bits = report.requestedBits;; ++bits) {
+    out.mesh.lattice = latticeOf(box, bits);
+    out.mesh.points = onLattice(mesh.points, out.mesh.lattice);
+    report.worseCells = worseCells(mesh.tetrahedra, before, out.mesh.points);
+    if (bits == report.requestedBits) report.worseAtRequestedBits = report.worseCells.count;
+    if (report.worseCells.count == 0 || bits == kMaxPositionBits) break;
+  }
+  if (out.mesh.lattice.bits > report.requestedBits) {
+    report.notes.push_back("positions take " + std::to_string(out.mesh.lattice.bits) +
+                           " bits an axis instead of " + std::to_string(report.requestedBits) +
+                           ", at which " + std::to_string(report.worseAtRequestedBits) +
+                           " cells would be flattened or inverted");
+  }
+  if (report.worseCells.count > 0) {
+    report.notes.push_back(
+        std::to_string(report.worseCells.count) + " cells are flattened or inverted even at " +
+        std::to_string(kMaxPositionBits) + " bits an axis, the first is cell " +
+        std::to_string(report.worseCells.first.front()) + " of the cleaned mesh");
+  }
+}
+
+Status placeFields(const TetMesh& mesh, int bits, QuantisedMesh& out) {
+  for (const MeshField& field : mesh.fields) {
+    const std::string name = (isCellField(field) ? "cell field " : "field ") + field.name;
+    Result<QuantisedField> quantised = quantiseField(field, bits);
+    if (!quantised) return std::unexpected(quantised.error());
+    out.report.nonFiniteOf.push_back(quantised->nonFinite);
+    if (quantised->nonFinite > 0) {
+      out.report.nonFiniteValues += quantised->nonFinite;
+      out.report.notes.push_back(name + ": " + std::to_string(quantised->nonFinite) +
+                                 " values are NaN or infinite and come back as NaN");
+    }
+    if (!quantised->exact && !isFloatType(field.type)) {
+      out.report.notes.push_back(name + ": its integers span more than " +
+                                 std::to_string(kMaxFieldBits) + " bits and are rounded to " +
+                                 std::to_string(bits) + " bits");
+    }
+    out.mesh.fields.push_back(std::move(quantised->info));
+    if (quantised->nonFinite > 0)
+      fillMissing(mesh.tetrahedra, out.mesh.fields.back(), quantised->missing, quantised->values);
+    out.mesh.values.push_back(std::move(quantised->values));
+    out.missing.push_back(std::move(quantised->missing));
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<QuantisedMesh> quantise(const TetMesh& mesh, const QuantiseOptions& options) {
+  if (Status checked = checkOptions(options); !checked) return std::unexpected(checked.error());
+  const Box box = boxOf(mesh.points);
+  if (Status checked = checkBox(box); !checked) return std::unexpected(checked.error());
+
+  QuantisedMesh out;
+  out.report.requestedBits = options.positionBits;
+  placePoints(mesh, box, out);
+  out.mesh.tetrahedra = mesh.tetrahedra;
+  out.mesh.boundary = boundaryOf(mesh.tetrahedra);
+  if (Status placed = placeFields(mesh, options.fieldBits, out); !placed)
+    return std::unexpected(placed.error());
+  return out;
+}
+
+}  // namespace qtet

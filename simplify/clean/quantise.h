@@ -1,0 +1,50 @@
+// From floats to the lattice: positions and fields become integers, and everything after this is
+// exact.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "proto/error.h"
+#include "simplify/clean/clean_mesh.h"
+#include "simplify/mesh/tet_mesh.h"
+
+namespace qtet {
+
+struct QuantiseOptions {
+  /// KMinPositionBits..kMaxPositionBits; raised when cells would be flattened or inverted.
+  int positionBits = 16;
+  int fieldBits = 12;  ///< kMinFieldBits..kMaxFieldBits, of fields that are not stored exactly
+};
+
+struct QuantiseReport {
+  int requestedBits = 0;
+  /// Cells that would have lost their sign at the bits asked for.
+  std::uint64_t worseAtRequestedBits = 0;
+  /// Cells that lose it at the bits used; none below kMaxPositionBits.
+  Occurrences worseCells;
+  std::uint64_t nonFiniteValues = 0;       ///< field values that were NaN or infinite: missing
+  std::vector<std::uint64_t> nonFiniteOf;  ///< the same, one a field
+  /// The same and more in sentences, empty when there is nothing to say.
+  std::vector<std::string> notes;
+};
+
+struct QuantisedMesh {
+  /// Missing values are filled with the nearest value: fillMissing.
+  LatticeMesh mesh;
+  QuantiseReport report;
+  std::vector<std::vector<std::uint8_t>> missing{};  ///< one a field: QuantisedField::missing
+};
+
+/// Puts `mesh` on a lattice whose step is the largest extent / (2^bits - 1) and whose origin is the
+/// lowest corner, with as many bits above `positionBits` as it takes for no cell to become worse:
+/// positive volume to zero or less, zero to less. Float fields take `fieldBits`: step = largest
+/// component's extent / (2^bits - 1) and a minimum a component. Integer fields take step 1 and lose
+/// nothing where kMaxFieldBits bits hold their range. Points and cells keep their order; the
+/// boundary is boundaryOf's. Errors: bad-value (bits outside their limits), bad-input (extents that
+/// a double cannot hold or divide). REQUIRES: a mesh that cleanMesh has passed.
+[[nodiscard]] Result<QuantisedMesh> quantise(const TetMesh& mesh,
+                                             const QuantiseOptions& options = {});
+
+}  // namespace qtet

@@ -1,0 +1,110 @@
+#include "simplify/clean/quantise_field.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "proto/limits.h"
+
+namespace qtet {
+namespace {
+
+struct Extents {
+  std::vector<double> minimum, maximum;  ///< of the finite values, 0 where there are none
+  double largest = 0;                    ///< over the components
+  std::uint64_t nonFinite = 0;
+};
+
+Extents extentsOf(const MeshField& field) {
+  const std::size_t components = field.components;
+  Extents out{std::vector<double>(components, std::numeric_limits<double>::infinity()),
+              std::vector<double>(components, -std::numeric_limits<double>::infinity()), 0, 0};
+  for (std::size_t i = 0; i < field.values.size(); ++i) {
+    const double value = field.values[i];
+    if (!std::isfinite(value)) {
+      ++out.nonFinite;
+      continue;
+    }
+    out.minimum[i % components] = std::min(out.minimum[i % components], value);
+    out.maximum[i % components] = std::max(out.maximum[i % components], value);
+  }
+  for (std::size_t c = 0; c < components; ++c) {
+    if (out.minimum[c] > out.maximum[c]) out.minimum[c] = out.maximum[c] = 0;
+    // Minus zero would be another number in the manifest, and the same one everywhere else.
+    if (out.minimum[c] == 0) out.minimum[c] = 0;
+    out.largest = std::max(out.largest, out.maximum[c] - out.minimum[c]);
+  }
+  return out;
+}
+
+/// The range of the values, or of the vectors' lengths; vectors with a component that is not finite
+/// do not count.
+std::array<double, 2> rangeOf(const MeshField& field) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (std::size_t i = 0; i + field.components <= field.values.size(); i += field.components) {
+    double value = field.values[i];
+    if (field.components > 1) {
+      double sum = 0;
+      for (std::size_t c = 0; c < field.components; ++c)
+        sum += field.values[i + c] * field.values[i + c];
+      value = std::sqrt(sum);
+    }
+    if (!std::isfinite(value)) continue;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  if (low > high) return {0, 0};
+  return {low, high};
+}
+
+int bitsFor(double extent) {
+  return std::max(kMinFieldBits,
+                  static_cast<int>(std::bit_width(static_cast<std::uint64_t>(extent))));
+}
+
+}  // namespace
+
+std::int32_t fieldInteger(const FieldInfo& info, std::uint32_t component, double value) {
+  const double highest = std::ldexp(1.0, info.bits) - 1;
+  return static_cast<std::int32_t>(
+      std::clamp(std::floor((value - info.minimum[component]) / info.step + 0.5), 0.0, highest));
+}
+
+Result<QuantisedField> quantiseField(const MeshField& field, int bits) {
+  const Extents extents = extentsOf(field);
+  if (!std::isfinite(extents.largest)) {
+    return fail(
+        ErrorCode::kBadInput,
+        "field " + field.name + " spans more than the largest float64; leave it out with --fields");
+  }
+  QuantisedField out;
+  out.nonFinite = extents.nonFinite;
+  out.exact = !isFloatType(field.type) && extents.largest < std::ldexp(1.0, kMaxFieldBits);
+  out.info = FieldInfo{.name = field.name,
+                       .components = field.components,
+                       .type = field.type,
+                       .association = field.association,
+                       .bits = out.exact ? bitsFor(extents.largest) : bits,
+                       .step = 1,
+                       .minimum = extents.minimum,
+                       .range = rangeOf(field),
+                       .hasMissing = out.nonFinite > 0};
+  if (!out.exact && extents.largest > 0) {
+    // A step of no normal number would lose its own digits; such a field is constant for every
+    // purpose.
+    out.info.step =
+        std::max(extents.largest / (std::ldexp(1.0, bits) - 1), std::numeric_limits<double>::min());
+  }
+  out.values.reserve(field.values.size());
+  if (out.nonFinite > 0) out.missing.assign(field.values.size(), 0);
+  for (std::size_t i = 0; i < field.values.size(); ++i) {
+    const auto component = static_cast<std::uint32_t>(i % field.components);
+    const bool finite = std::isfinite(field.values[i]);
+    if (!finite) out.missing[i] = 1;
+    out.values.push_back(finite ? fieldInteger(out.info, component, field.values[i]) : 0);
+  }
+  return out;
+}
+
+}  // namespace qtet

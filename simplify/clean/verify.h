@@ -1,0 +1,47 @@
+// Proof that what was decoded is what was put in: two meshes compared cell for cell, whatever the
+// numbering.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "codec/mesh/mesh.h"
+#include "proto/error.h"
+#include "simplify/mesh/tet_mesh.h"
+
+namespace qtet {
+
+struct VerifyReport {
+  std::uint64_t vertices = 0;
+  std::uint64_t tetrahedra = 0;
+  /// Vertices that neither position, fields nor neighbours tell from another one: exchanging them
+  /// changes nothing that a file shows.
+  std::uint64_t interchangeable = 0;
+};
+
+/// Whether the meshes are equal up to the numbering of vertices and cells and up to even
+/// permutations within a cell: lattice points and field integers of every vertex, and every cell
+/// with its orientation and field integers. Vertices are matched by 128-bit hashes of what they
+/// carry, refined over the cells round them, so coincident points with equal values are told apart
+/// by their neighbourhoods; a wrong mesh passes by accident with a probability of about 2^-100.
+/// Errors: bad-value, with the first difference found. Of the lattice and of FieldInfo only name,
+/// components and association are compared.
+[[nodiscard]] Result<VerifyReport> sameMesh(const LatticeMesh& decoded,
+                                            const LatticeMesh& expected);
+
+struct OnLattice {
+  LatticeMesh mesh;
+  double largestPositionError = 0;         ///< in lattice steps, 0.5 at most
+  std::vector<double> largestFieldErrors;  ///< in field steps, one a field
+};
+
+/// `mesh` put on the lattice and the field scales that a log states, by the nearest integers, every
+/// error measured on the way: what the log must hold, worked out without the encoder's own
+/// quantiser. `fields` name those of `mesh` by name and association, in any order.
+/// Errors: bad-value (a position or value further than half a step, and a billionth, from its
+/// integer, or outside the bits), not-found.
+[[nodiscard]] Result<OnLattice> putOnLattice(const TetMesh& mesh, const Lattice& lattice,
+                                             const std::vector<FieldInfo>& fields);
+
+}  // namespace qtet

@@ -1,0 +1,26 @@
+// What a log keeps of its input, told and proved: sizes for reports, exact comparison for `qtet
+// verify`. For .cpp files only: it drags nlohmann-json in.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "codec/log/log_file.h"
+#include "proto/manifest.h"
+#include "simplify/mesh/tet_mesh.h"
+
+namespace qtet {
+
+/// {"point order": bytes, "cell order": bytes, "exact positions": bytes, "exact NAME": bytes}, as
+/// far as they are there.
+[[nodiscard]] nlohmann::ordered_json closingJson(const LogIndex& index, const Manifest& manifest);
+
+/// Holds what the log kept against the input: `placed` is the cleaned input on the log's lattice,
+/// `input` the same in floats, its cells' vertices as read. What was proved: {"order": bool,
+/// "positions": bool, "fields": {NAME: bool}}. Errors: bad-value (the first point, cell or value
+/// that differs), and restoreInput's. REQUIRES: sameMesh(finest, placed).
+[[nodiscard]] Result<nlohmann::ordered_json> compareKept(const LogFile& log,
+                                                         const LatticeMesh& finest,
+                                                         const LatticeMesh& placed,
+                                                         const TetMesh& input);
+
+}  // namespace qtet

@@ -1,0 +1,185 @@
+#include <algorithm>
+#include <numeric>
+
+#include "codec/files/atomic_file.h"
+#include "proto/field_key.h"
+#include "proto/limits.h"
+#include "simplify/clean/clean_mesh.h"
+#include "simplify/commands/command_line.h"
+#include "simplify/commands/command_read.h"
+#include "simplify/commands/progress.h"
+#include "simplify/log/add_fields.h"
+#include "simplify/log/opened_log.h"
+#include "simplify/mesh/workers.h"
+#include "simplify/read/read_mesh.h"
+
+namespace qtet {
+namespace {
+
+constexpr int kMaxThreads = 256;
+
+/// Where the new log goes: over the old one unless --output says otherwise.
+std::string outputOf(const ParsedWords& parsed) {
+  return parsed.get<std::string>(parsed.has("output") ? "output" : "LOG");
+}
+
+Status checkNewLog(const ParsedWords& parsed, const std::string& mesh) {
+  return parsed.has("output") ? checkOutput(parsed.get<std::string>("output"), ".qtet", mesh)
+                              : Status{};
+}
+
+std::string namesOf(const Manifest& manifest) {
+  std::string out;
+  for (std::size_t f = 0; f < manifest.fields.size(); ++f)
+    out += (f == 0 ? "" : ", ") + fieldKey(manifest, f);
+  return out.empty() ? "none" : out;
+}
+
+/// The log's fields without those that `mesh` brings anew. Errors: bad-value (a name that is there,
+/// without --replace).
+Result<std::vector<std::uint32_t>> keptBeside(const OpenedLog& log, const TetMesh& mesh,
+                                              bool replace) {
+  std::vector<std::uint32_t> kept;
+  for (std::uint32_t f = 0; f < log.manifest.fields.size(); ++f) {
+    const ManifestField& there = log.manifest.fields[f];
+    const bool again = std::ranges::any_of(mesh.fields, [&](const MeshField& field) {
+      return field.name == there.name && field.association == there.association;
+    });
+    if (!again) {
+      kept.push_back(f);
+    } else if (!replace) {
+      return fail(ErrorCode::kBadValue,
+                  "the log has a " + there.association + " field '" + there.name +
+                      "' already; give --replace, or choose others with --fields");
+    }
+  }
+  return kept;
+}
+
+void printNew(const std::string& output, const LogFile& before, const Bytes& bytes,
+              Console& console) {
+  console.out << output << ": " << bytes.size() << " bytes, before " << before.bytes().size()
+              << "\n";
+}
+
+Status addField(const ParsedWords& parsed, Progress& progress, Console& console) {
+  const auto from = parsed.get<std::string>("from");
+  if (Status checked = checkNewLog(parsed, from); !checked) return checked;
+  const Result<OpenedLog> log = openLog(parsed.get<std::string>("LOG"));
+  if (!log) return std::unexpected(log.error());
+  progress.stage("reading " + from);
+  ReadOptions reading = readOptionsOf(parsed);
+  reading.fields = parseFieldNames(parsed.get<std::string>("fields"));
+  Result<ReadMesh> read = readMesh(from, reading);
+  if (!read) return std::unexpected(read.error());
+  if (read->mesh.fields.empty()) return fail(ErrorCode::kNotFound, from + " holds no field to add");
+  if (const Result<CleanReport> cleaned = cleanMesh(read->mesh); !cleaned)
+    return std::unexpected(cleaned.error());
+  const auto kept = keptBeside(*log, read->mesh, parsed.has("replace"));
+  if (!kept) return std::unexpected(kept.error());
+
+  progress.stage("adding fields");
+  AddFieldsOptions options;
+  options.fieldBits = parsed.integer("field-bits", kMinFieldBits, kMaxFieldBits);
+  options.threads = threadsAtOnce(parsed.integer("threads", 1, kMaxThreads));
+  options.progress = [&](double fraction) { progress.update(fraction); };
+  const Result<AddedFields> added = addFields(log->file, read->mesh, options);
+  if (!added) return std::unexpected(added.error());
+  const Result<Bytes> bytes = withFields(log->file, *kept, added->fields);
+  if (!bytes) return std::unexpected(bytes.error());
+  if (Status written = writeFileAtomically(outputOf(parsed), *bytes); !written) return written;
+  progress.clear();
+  for (const std::string& note : added->notes) console.note(note);
+  for (const NewField& field : added->fields) {
+    const auto size =
+        std::accumulate(field.blocks.begin(), field.blocks.end(), std::size_t{0},
+                        [](std::size_t sum, const Bytes& b) { return sum + b.size(); });
+    console.out << field.info.association << " field " << printable(field.info.name) << ": " << size
+                << " bytes, " << field.info.bits << " bits, step " << field.info.step;
+    if (!field.errors.empty())
+      console.out << "; base mesh rms " << 100 * field.errors.front().rms << " %";
+    console.out << "\n";
+  }
+  printNew(outputOf(parsed), log->file, *bytes, console);
+  return {};
+}
+
+Status removeField(const ParsedWords& parsed, Console& console) {
+  if (Status checked = checkNewLog(parsed, parsed.get<std::string>("LOG")); !checked)
+    return checked;
+  const Result<OpenedLog> log = openLog(parsed.get<std::string>("LOG"));
+  if (!log) return std::unexpected(log.error());
+  std::vector<std::uint32_t> kept(log->manifest.fields.size());
+  std::iota(kept.begin(), kept.end(), 0u);
+  const auto names = parseFieldNames(parsed.get<std::string>("fields"));
+  if (!names) kept.clear();
+  for (const std::string& name : names.value_or(std::vector<std::string>{})) {
+    const std::vector<std::uint32_t> meant = fieldsOfKey(log->manifest.fields, name);
+    if (meant.empty())
+      return fail(ErrorCode::kNotFound,
+                  "the log has no field '" + name + "'; it has: " + namesOf(log->manifest));
+    for (const std::uint32_t f : meant) std::erase(kept, f);
+  }
+  const Result<Bytes> bytes = withFields(log->file, kept, {});
+  if (!bytes) return std::unexpected(bytes.error());
+  if (Status written = writeFileAtomically(outputOf(parsed), *bytes); !written) return written;
+  printNew(outputOf(parsed), log->file, *bytes, console);
+  return {};
+}
+
+}  // namespace
+
+int runAddField(const Words& words, Console& console) {
+  namespace po = boost::program_options;
+  po::options_description options("options");
+  options.add_options()(
+      "from", po::value<std::string>(),
+      "required: the mesh file whose fields are added; its mesh is the log's input")(
+      "fields", po::value<std::string>()->default_value("all"), kFieldsHelp)(
+      "output,o", po::value<std::string>(),
+      "the log to write, NAME.qtet; without it the log itself is replaced once the new one is "
+      "whole")("replace", "fields that the log has already are replaced")(
+      "field-bits", po::value<int>()->default_value(12),
+      "bits of a float field's values, 1 to 28; integer fields are stored exactly")(
+      "threads", po::value<int>()->default_value(1),
+      "threads for measuring, as many as there are processors at most; the result does not depend "
+      "on it");
+  addReadOptions(options);
+  const ParsedWords parsed(
+      words,
+      {"add-field", "add-field LOG.qtet --from MESH.vtu [--fields NAMES] [-o OUT.qtet] [--replace]",
+       "Adds fields of a mesh file to a log without simplifying again: the geometry stays as it "
+       "is, byte for byte. The file must hold the mesh that\n"
+       "the log was made from, in any numbering. Where the log knows the errors of its levels, "
+       "those of the new fields are measured.",
+       "  qtet add-field fin.qtet --from later.vtu --fields Pressure\n  qtet add-field fin.qtet "
+       "--from fin.vtu --replace --field-bits 16 -o fine.qtet\n"},
+      options, {"LOG"});
+  if (parsed.helped(console)) return kExitOk;
+  Progress progress(console);
+  const Status done = addField(parsed, progress, console);
+  progress.clear();
+  return done ? kExitOk : reportFailure(done.error(), false, console);
+}
+
+int runRemoveField(const Words& words, Console& console) {
+  namespace po = boost::program_options;
+  po::options_description options("options");
+  options.add_options()(
+      "fields", po::value<std::string>(),
+      "required: the fields to leave out: all, or names as `qtet extract --fields` takes them")(
+      "output,o", po::value<std::string>(),
+      "the log to write, NAME.qtet; without it the log itself is replaced once the new one is "
+      "whole");
+  const ParsedWords parsed(
+      words,
+      {"remove-field", "remove-field LOG.qtet --fields NAMES [-o OUT.qtet]",
+       "Leaves fields of a log out. Everything else stays as it is, byte for byte.",
+       "  qtet remove-field fin.qtet --fields Velocity -o small.qtet\n"},
+      options, {"LOG"});
+  if (parsed.helped(console)) return kExitOk;
+  const Status done = removeField(parsed, console);
+  return done ? kExitOk : reportFailure(done.error(), false, console);
+}
+
+}  // namespace qtet

@@ -1,0 +1,93 @@
+#include <filesystem>
+#include <iomanip>
+
+#include "simplify/commands/command_line.h"
+#include "simplify/commands/command_read.h"
+#include "simplify/commands/progress.h"
+#include "simplify/read/check_mesh.h"
+
+namespace qtet {
+namespace {
+
+OrderedJson toJson(const CheckReport& report, const std::string& input, const Console& console) {
+  OrderedJson findings = OrderedJson::array();
+  for (const Finding& finding : report.findings) {
+    OrderedJson one = {{"kind", finding.kind},
+                       {"verdict", verdictName(finding.verdict)},
+                       {"text", console.named(finding.text)}};
+    if (finding.found.count > 0)
+      one.update(
+          {{"what", finding.what}, {"count", finding.found.count}, {"first", finding.found.first}});
+    if (!finding.advice.empty()) one["advice"] = finding.advice;
+    findings.push_back(std::move(one));
+  }
+  return {{"input", console.named(input)},
+          {"refused", report.refused()},
+          {"points", report.points},
+          {"tetrahedra", report.tetrahedra},
+          {"fields", report.fields},
+          {"components", report.components},
+          {"read", readReport(report.read)},
+          {"notes", report.read.notes},
+          {"findings", findings}};
+}
+
+void printReport(const CheckReport& report, const std::string& input, const Console& console) {
+  std::ostream& out = console.out;
+  if (report.tetrahedra > 0) {
+    out << console.shown(input) << ": " << counted(report.points, "point", "points") << ", "
+        << counted(report.tetrahedra, "tetrahedron", "tetrahedra");
+    if (!report.read.split.onlyTetrahedra()) out << " of cells that were split";
+    out << ", " << counted(report.fields.size(), "field", "fields") << "\n";
+    for (const std::string& field : report.fields) out << "  " << printable(field) << "\n";
+  }
+  for (const Finding& finding : report.findings) {
+    out << std::left << std::setw(10) << verdictName(finding.verdict)
+        << console.shown(finding.text);
+    if (finding.found.count > 0) {
+      out << ": " << finding.found.count;
+      for (std::size_t i = 0; i < finding.found.first.size(); ++i)
+        out << (i == 0 ? " (" + finding.what + " " : ", ") << finding.found.first[i];
+      if (!finding.found.first.empty())
+        out << (finding.found.count > finding.found.first.size() ? ", ...)" : ")");
+    }
+    out << "\n";
+    if (!finding.advice.empty())
+      out << std::setw(10) << "" << "-> " << console.shown(finding.advice) << "\n";
+  }
+  if (report.findings.empty()) out << "nothing is wrong with it\n";
+  out << (report.refused() ? "qtet simplify would refuse it\n" : "qtet simplify takes it\n");
+}
+
+}  // namespace
+
+int runCheck(const Words& words, Console& console) {
+  namespace po = boost::program_options;
+  po::options_description options("options");
+  options.add_options()("json", "print one JSON object");
+  addReadOptions(options);
+  const ParsedWords parsed(
+      words,
+      {"check", "check IN [options]",
+       "Says everything that is wrong or unusual about a mesh: what it is, how often it is there "
+       "and where first, and whether simplify would refuse it,\n"
+       "repair it or keep it. Ends with 1 if anything would be refused. Tetrahedra are counted "
+       "after splitting; points and other cells as in the file.",
+       "  qtet check part.vtu\n  qtet check ogrid.vts --weld 1e-6 --json\n"},
+      options, {"IN"});
+  if (parsed.helped(console)) return kExitOk;
+  const auto input = parsed.get<std::string>("IN");
+  Progress progress(console);
+  progress.stage("checking " + input);
+  const CheckReport report = checkMesh(input, readOptionsOf(parsed));
+  progress.clear();
+  if (parsed.has("json")) {
+    printJson(toJson(report, input, console), console);
+  } else {
+    for (const std::string& note : report.read.notes) console.note(note);
+    printReport(report, input, console);
+  }
+  return report.refused() ? kExitFailed : kExitOk;
+}
+
+}  // namespace qtet

@@ -1,0 +1,59 @@
+#include "simplify/commands/command_line.h"
+#include "simplify/commands/command_read.h"
+#include "simplify/commands/progress.h"
+#include "simplify/log/write_mesh.h"
+#include "simplify/read/read_mesh.h"
+
+namespace qtet {
+
+int runConvert(const Words& words, Console& console) {
+  namespace po = boost::program_options;
+  po::options_description options("options");
+  addMeshOutputOptions(options);
+  options.add_options()("fields", po::value<std::string>()->default_value("all"), kFieldsHelp);
+  addReadOptions(options);
+  const ParsedWords parsed(
+      words,
+      {"convert", "convert IN -o OUT [options]",
+       "Reads a mesh of any format that simplify reads, or the last level of a log, and writes its "
+       "tetrahedra and fields otherwise as they are: neither\n"
+       "cleaned nor put on a lattice (but for .glb and .drc, whose coordinates and fields have 16 "
+       "bits). The kind of file is told by its name, as for\n"
+       "extract; .qtet files are made by simplify.",
+       "  qtet convert part.msh -o part.vtu\n  qtet convert part.vtu -o skin.stl\n  qtet convert "
+       "part.qtet -o part.usda\n  qtet convert - --format msh --to vtu -o - <part.msh >part.vtu\n  "
+       "qtet convert ogrid.xyz --plot3d ogrid.q --weld 0 -o ogrid.vtu\n"},
+      options, {"IN"});
+  if (parsed.helped(console)) return kExitOk;
+  const auto input = parsed.get<std::string>("IN");
+  if (input.ends_with(".qtet")) {
+    Words extract{input,
+                  "--ratio",
+                  "1",
+                  "--fields",
+                  parsed.get<std::string>("fields"),
+                  "-o",
+                  parsed.get<std::string>("output")};
+    if (parsed.has("to")) extract.insert(extract.end(), {"--to", parsed.get<std::string>("to")});
+    return runExtract(extract, console);
+  }
+  const Result<MeshOutput> output = meshOutputOf(parsed, input);
+  if (!output) return reportFailure(output.error(), false, console);
+  ReadOptions reading = readOptionsOf(parsed);
+  reading.fields = parseFieldNames(parsed.get<std::string>("fields"));
+  Progress progress(console);
+  progress.stage("reading " + input);
+  const Result<ReadMesh> read = readMesh(input, reading);
+  progress.clear();
+  if (!read) return reportFailure(read.error(), false, console);
+  for (const std::string& note : read->report.notes) console.note(note);
+  const Result<Bytes> bytes = meshFileBytes(read->mesh, "mesh" + output->ending);
+  if (!bytes) return reportFailure(bytes.error(), false, console);
+  const std::string what = counted(read->mesh.tetrahedra.size(), "tetrahedron", "tetrahedra") +
+                           ", " + counted(read->mesh.points.size(), "point", "points") + ", " +
+                           counted(read->mesh.fields.size(), "field", "fields");
+  const Status written = writeMeshOutput(*output, *bytes, what, console);
+  return written ? kExitOk : reportFailure(written.error(), false, console);
+}
+
+}  // namespace qtet

@@ -1,0 +1,160 @@
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "codec/log/level_choice.h"
+#include "proto/field_key.h"
+#include "simplify/commands/command_measure.h"
+#include "simplify/log/kept_input.h"
+#include "simplify/log/opened_log.h"
+#include "simplify/log/write_mesh.h"
+
+namespace qtet {
+namespace {
+
+Result<std::uint32_t> levelWithin(const Manifest& manifest,
+                                  const std::pair<std::string, double>& fieldBound) {
+  if (const auto field = fieldOfKey(manifest, fieldBound.first))
+    return levelOfFieldError(manifest, *field, fieldBound.second);
+  std::string keys;
+  for (std::uint32_t f = 0; f < manifest.fields.size(); ++f)
+    keys += (keys.empty() ? "" : ", ") + fieldKey(manifest, f);
+  return fail(ErrorCode::kNotFound, "the log has no field '" + fieldBound.first +
+                                        "'; it has: " + (keys.empty() ? "none" : keys));
+}
+
+Result<std::uint32_t> chosenLevel(const ParsedWords& parsed, const Manifest& manifest) {
+  if (parsed.has("error"))
+    return levelWithin(manifest, parseNamedError("error", parsed.get<std::string>("error")));
+  if (parsed.has("boundary-error"))
+    return levelOfBoundaryError(manifest, parsed.number("boundary-error", 0, 1));
+  if (parsed.has("level"))
+    return static_cast<std::uint32_t>(parsed.integer("level", 0, std::numeric_limits<int>::max()));
+  if (parsed.has("tets")) return levelOfTetrahedra(manifest, parsed.number("tets", 0, 1e18));
+  return levelOfTetrahedra(manifest,
+                           parsed.number("ratio", 0, 1) * manifest.levels.back().tetrahedra);
+}
+
+/// A mesh of the two kinds without the fields that nobody asked for: the numbers of the others,
+/// ascending.
+void keepFields(LatticeMesh& mesh, const std::vector<std::uint32_t>& wanted) {
+  for (std::size_t f = mesh.fields.size(); f-- > 0;) {
+    if (std::ranges::binary_search(wanted, f)) continue;
+    mesh.fields.erase(mesh.fields.begin() + static_cast<std::ptrdiff_t>(f));
+    mesh.values.erase(mesh.values.begin() + static_cast<std::ptrdiff_t>(f));
+  }
+}
+
+void keepFields(TetMesh& mesh, const std::vector<std::uint32_t>& wanted) {
+  for (std::size_t f = mesh.fields.size(); f-- > 0;)
+    if (!std::ranges::binary_search(wanted, f))
+      mesh.fields.erase(mesh.fields.begin() + static_cast<std::ptrdiff_t>(f));
+}
+
+/// The numbers of the fields that are meant, ascending (field_key.h).
+Result<std::vector<std::uint32_t>> wantedFields(const ParsedWords& parsed,
+                                                const Manifest& manifest) {
+  std::vector<std::uint32_t> wanted(manifest.fields.size());
+  std::iota(wanted.begin(), wanted.end(), 0u);
+  const auto names = parseFieldNames(parsed.get<std::string>("fields"));
+  if (!names) return wanted;
+  wanted.clear();
+  for (const std::string& name : *names) {
+    const std::vector<std::uint32_t> meant = fieldsOfKey(manifest.fields, name);
+    if (meant.empty())
+      return fail(ErrorCode::kNotFound,
+                  "the log has no field '" + name + "'; qtet info shows which it has");
+    wanted.insert(wanted.end(), meant.begin(), meant.end());
+  }
+  std::ranges::sort(wanted);
+  wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+  return wanted;
+}
+
+/// At the last level the input itself, as far as the log kept it.
+Result<Bytes> inputFile(const OpenedLog& log, const LatticeMesh& finest,
+                        const std::vector<std::uint32_t>& wanted, const std::string& ending) {
+  Result<RestoredInput> input = restoreInput(log.file, finest);
+  if (!input) return std::unexpected(input.error());
+  const bool exact = input->exactPositions ||
+                     std::ranges::find(input->exactFields, true) != input->exactFields.end();
+  keepFields(input->mesh, wanted);
+  keepFields(input->lattice, wanted);
+  return exact && !needsLattice(ending) ? meshFileBytes(fileMesh(input->mesh), ending)
+                                        : meshFileBytes(input->lattice, ending);
+}
+
+Status extract(const ParsedWords& parsed, Console& console) {
+  const auto input = parsed.get<std::string>("LOG");
+  const Result<MeshOutput> output = meshOutputOf(parsed, input);
+  if (!output) return std::unexpected(output.error());
+  const Result<OpenedLog> log = openLog(input);
+  if (!log) return std::unexpected(log.error());
+
+  const Result<std::uint32_t> level = chosenLevel(parsed, log->manifest);
+  if (!level) return std::unexpected(level.error());
+  const Result<std::vector<std::uint32_t>> wanted = wantedFields(parsed, log->manifest);
+  if (!wanted) return std::unexpected(wanted.error());
+  const bool restores =
+      *level + 1 == log->manifest.levels.size() && !log->file.index().closing.empty();
+  const Result<LatticeMesh> mesh =
+      meshAtLevel(log->file, *level, restores ? std::nullopt : std::optional(*wanted));
+  if (!mesh) return std::unexpected(mesh.error());
+  const Result<Bytes> bytes = restores ? inputFile(*log, *mesh, *wanted, output->ending)
+                                       : meshFileBytes(*mesh, output->ending);
+  if (!bytes) return std::unexpected(bytes.error());
+  const std::string what = "level " + std::to_string(*level) + " of " +
+                           std::to_string(log->manifest.levels.size() - 1) + ", " +
+                           counted(mesh->tetrahedra.size(), "tetrahedron", "tetrahedra") + ", " +
+                           counted(mesh->points.size(), "point", "points");
+  return writeMeshOutput(*output, *bytes, what, console);
+}
+
+}  // namespace
+
+int runExtract(const Words& words, Console& console) {
+  namespace po = boost::program_options;
+  po::options_description options("options");
+  addMeshOutputOptions(options);
+  options.add_options()("level", po::value<int>(), "this level; 0 is the base mesh")(
+      "tets", po::value<double>(), "the finest level with at most so many tetrahedra")(
+      "ratio", po::value<double>(),
+      "the finest level with at most this fraction of all tetrahedra, 0 to 1")(
+      "error", po::value<std::string>(),
+      "NAME=E: the coarsest level at which this field's rms error is at most E, a fraction of its "
+      "range; cell:NAME where a point field has the same name")(
+      "boundary-error", po::value<double>(),
+      "the coarsest level whose boundary is nowhere further than this from the original's, as a "
+      "fraction of the diagonal")("fields", po::value<std::string>()->default_value("all"),
+                                  kFieldsHelp);
+  const ParsedWords parsed(
+      words,
+      {"extract",
+       "extract LOG.qtet (--level K | --tets N | --ratio R | --error NAME=E | --boundary-error E) "
+       "-o OUT",
+       "Writes one level of a log as an ordinary mesh: with its cells as .vtu, .vtk, .msh (Gmsh "
+       "2.2), .usda (OpenUSD) or .npz (numpy), its boundary as\n"
+       ".stl, .ply, .obj, .glb (glTF with Draco) or .drc. .stl and .obj hold no fields, .ply, .glb "
+       "and .drc those of points. Where no level is small enough it is level 0.\n"
+       "The last level is the input's mesh, with its own numbering and numbers where the log was "
+       "made with --keep-order and --lossless.\n"
+       "Errors are those that the log tells, measured when it was made (qtet info shows them).",
+       "  qtet extract fin.qtet --ratio 0.1 -o coarse.vtu\n  qtet extract fin.qtet --error "
+       "Density=0.01 -o near.vtu\n"
+       "  qtet extract fin.qtet --tets 20000 --fields Density -o skin.glb\n"
+       "  curl -s http://127.0.0.1:8080/v1/meshes/fin/log -L | qtet extract - --ratio 0.1 --to vtu "
+       "-o - >coarse.vtu\n"},
+      options, {"LOG"});
+  if (parsed.helped(console)) return kExitOk;
+  const auto given = static_cast<int>(parsed.has("level")) + parsed.has("tets") +
+                     parsed.has("ratio") + parsed.has("error") + parsed.has("boundary-error");
+  if (given != 1)
+    throw UsageError(
+        "give exactly one of --level, --tets, --ratio, --error and --boundary-error\nsee 'qtet "
+        "extract --help'");
+
+  const Status done = extract(parsed, console);
+  return done ? kExitOk : reportFailure(done.error(), false, console);
+}
+
+}  // namespace qtet

@@ -1,0 +1,165 @@
+#include "simplify/commands/command_fusion.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "proto/field_key.h"
+#include "simplify/commands/command_measure.h"
+#include "simplify/fuse/boundary_weight.h"
+#include "simplify/mesh/tet_mesh.h"
+#include "simplify/mesh/workers.h"
+
+namespace qtet {
+namespace {
+
+constexpr int kMaxThreads = 1024;
+// Weights beyond are words gone wrong: what counts a million times as much as the rest decides
+// alone.
+constexpr double kMaxWeight = 1e6;
+constexpr double kMaxBoundaryWeight = 1e9;
+
+/// Why a field does not count, or nothing.
+std::string whyNot(const QuantisedMesh& quantised, std::size_t f, bool named) {
+  const FieldInfo& info = quantised.mesh.fields[f];
+  const auto& values = quantised.mesh.values[f];
+  if (values.empty() || std::ranges::all_of(values, [&](std::int32_t v) { return v == values[0]; }))
+    return "is constant";
+  if (!isFloatType(info.type) && !named)
+    return "is one of integers, which may be labels (--field-weight " + info.name +
+           "=1 makes it count)";
+  return {};
+}
+
+PlacementRule placementRuleOf(const std::string& name) {
+  if (name == "optimal") return PlacementRule::kOptimal;
+  if (name == "vertex") return PlacementRule::kVertex;
+  if (name == "auto") return PlacementRule::kAuto;
+  throw UsageError("--placement '" + name + "' is not known; give optimal, vertex or auto");
+}
+
+// 8,000 cells are packets of about 4 KB.
+constexpr int kCellsPerPacket = 8000;
+// Fewer, and most vertices lie between two leaves, where nothing fuses.
+constexpr int kLeastCellsPerPacket = 100;
+
+std::size_t cellsPerPacketOf(const ParsedWords& parsed) {
+  const auto layout = parsed.get<std::string>("layout");
+  if (layout != "stream" && layout != "regions")
+    throw UsageError("--layout '" + layout + "' is not known; give stream or regions");
+  if (layout == "stream" && parsed.has("cells-per-packet"))
+    throw UsageError("--cells-per-packet is for --layout regions; leave it out, or give that");
+  if (layout == "stream") return 0;
+  return parsed.has("cells-per-packet")
+             ? static_cast<std::size_t>(parsed.integer("cells-per-packet", kLeastCellsPerPacket,
+                                                       std::numeric_limits<int>::max()))
+             : kCellsPerPacket;
+}
+
+}  // namespace
+
+void addFusionOptions(boost::program_options::options_description& options) {
+  namespace po = boost::program_options;
+  options.add_options()("target-ratio", po::value<double>()->default_value(0.01, "0.01"),
+                        "stop when the base mesh has this fraction of the tetrahedra")(
+      "boundary-weight", po::value<double>(),
+      "what the boundary's place counts beside the fields: 0 to 1 for the fields first, 4,000 to "
+      "40,000 for the shape first; without, a weight from 0.5 to 200 by how much the "
+      "fields change at the boundary, which the report tells")(
+      "field-weight", po::value<std::vector<std::string>>(),
+      "NAME=W: what the field's error over its range counts, 1 without; 0 leaves it out; may be "
+      "given for several fields")(
+      "shape-weight", po::value<double>()->default_value(FusionOptions().shapeWeight, "0.5"),
+      "what badly shaped new cells cost: 0 for the least error, 1 and more for rounder cells")(
+      "placement", po::value<std::string>()->default_value("auto"),
+      "where fused vertices go: optimal (least error a cell), vertex (only where vertices were: "
+      "fewest bits a cell), or auto (least error a byte)")(
+      "envelope-tolerance", po::value<double>()->default_value(0, "0"),
+      "how far the boundary may leave the original solid, over all fusions, as a fraction of the "
+      "diagonal; parts of the boundary that are "
+      "closer to "
+      "each other than twice this may come to touch")(
+      "preserve-regions", po::value<std::string>(),
+      "a cell field of one component whose values are regions such as tissues or materials: they "
+      "and their interfaces keep their topology")(
+      "layout", po::value<std::string>()->default_value("stream"),
+      "stream: the smallest log, refined as a whole; regions: packets of places, so that a viewer "
+      "can refine one place without the rest")(
+      "cells-per-packet", po::value<int>(),
+      "with --layout regions: tetrahedra of the original that share a finest packet, 100 and more; "
+      "8000 without")(
+      "threads", po::value<int>()->default_value(1),
+      "threads, as many as there are processors at most; the result does not depend on it");
+}
+
+FusionRequest fusionRequestOf(const ParsedWords& parsed) {
+  FusionRequest out;
+  out.options.targetRatio = parsed.number("target-ratio", 0, 1);
+  if (parsed.has("boundary-weight"))
+    out.options.cost.boundaryWeight = parsed.number("boundary-weight", 0, kMaxBoundaryWeight);
+  out.options.shapeWeight = parsed.number("shape-weight", 0, kMaxWeight);
+  out.options.placement = placementRuleOf(parsed.get<std::string>("placement"));
+  out.options.envelopeTolerance = parsed.number("envelope-tolerance", 0, 1);
+  out.options.threads = threadsAtOnce(parsed.integer("threads", 1, kMaxThreads));
+  out.options.bands.cellsPerPacket = cellsPerPacketOf(parsed);
+  if (parsed.has("field-weight"))
+    for (const std::string& text : parsed.get<std::vector<std::string>>("field-weight")) {
+      out.fieldWeights.push_back(parseNamedNumber(
+          "field-weight", text, "a field's name and its weight such as Density=2"));
+      if (out.fieldWeights.back().second > kMaxWeight)
+        throw UsageError("--field-weight '" + text + "' is above 1,000,000");
+    }
+  if (parsed.has("preserve-regions")) out.regions = parsed.get<std::string>("preserve-regions");
+  return out;
+}
+
+Result<FusionOptions> fusionOptionsFor(const FusionRequest& request, const QuantisedMesh& quantised,
+                                       std::vector<std::string>& notes) {
+  FusionOptions out = request.options;
+  const std::vector<FieldInfo>& fields = quantised.mesh.fields;
+  const auto meantBy = [&](const std::string& name, bool ofCells) {
+    std::vector<std::uint32_t> meant = fieldsOfKey(fields, name);
+    std::erase_if(meant, [&](std::uint32_t f) { return isCellField(fields[f]) != ofCells; });
+    return meant;
+  };
+  std::vector<std::optional<double>> named(fields.size());
+  for (const auto& [name, weight] : request.fieldWeights) {
+    const std::vector<std::uint32_t> meant = meantBy(name, false);
+    if (meant.empty())
+      return fail(ErrorCode::kNotFound,
+                  "--field-weight: the mesh carries no point field '" + name + "'");
+    for (const std::uint32_t f : meant) named[f] = weight;
+  }
+  out.cost.fieldWeights.assign(fields.size(), 0);
+  std::size_t components = 0;
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    if (isCellField(fields[f]) || named[f] == 0) continue;
+    std::string why = whyNot(quantised, f, named[f].has_value());
+    if (why.empty() && components + fields[f].components > kMaxCostComponents)
+      why = "comes after " + std::to_string(kMaxCostComponents) +
+            " components that count, and more cannot";
+    if (why.empty()) components += fields[f].components;
+    if (why.empty())
+      out.cost.fieldWeights[f] = named[f].value_or(1);
+    else
+      notes.push_back("field " + fields[f].name + " " + why +
+                      ": it does not count when cells are fused");
+  }
+  if (!out.cost.boundaryWeight)
+    out.cost.boundaryWeight =
+        balancedBoundaryWeight(quantised.mesh, costPartsOf(quantised.mesh, out.cost.fieldWeights));
+  if (request.regions) {
+    const std::vector<std::uint32_t> meant = meantBy(*request.regions, true);
+    if (meant.size() != 1) {
+      return fail(
+          ErrorCode::kNotFound,
+          "--preserve-regions: the mesh carries " +
+              std::string(meant.empty() ? "no cell field '" : "several steps of the cell field '") +
+              *request.regions +
+              (meant.empty() ? "'; see that --fields includes it" : "'; name one, NAME@TIME"));
+    }
+    out.regionField = meant.front();
+  }
+  return out;
+}
+
+}  // namespace qtet

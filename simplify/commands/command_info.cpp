@@ -1,0 +1,196 @@
+#include <algorithm>
+#include <iomanip>
+#include <sstream>
+
+#include "codec/files/atomic_file.h"
+#include "codec/log/log_levels.h"
+#include "simplify/commands/closing_report.h"
+#include "simplify/commands/command_line.h"
+#include "simplify/commands/error_plot.h"
+#include "simplify/commands/error_table.h"
+#include "simplify/commands/svg_picture.h"
+#include "simplify/log/opened_log.h"
+
+namespace qtet {
+namespace {
+
+OrderedJson infoJson(const OpenedLog& log) {
+  const Manifest& manifest = log.manifest;
+  OrderedJson fields = OrderedJson::array();
+  for (std::size_t f = 0; f < manifest.fields.size(); ++f) {
+    const ManifestField& field = manifest.fields[f];
+    std::uint64_t bytes = 0;
+    for (const ChunkEntry& chunk : log.file.index().chunks)
+      bytes += chunk.blocks[kFirstFieldPart + f].size;
+    fields.push_back({{"name", field.name},
+                      {"components", field.components},
+                      {"type", field.type},
+                      {"association", field.association},
+                      {"bits", field.bits},
+                      {"step", field.step},
+                      {"minimum", field.minimum},
+                      {"range", field.range},
+                      {"missingValues", field.hasMissing},
+                      {"gaps", field.hasMissing},  // its name in version 0.1, until 0.3
+                      {"bytes", bytes}});
+  }
+  return {{"digest", log.file.digest()},
+          {"generator", manifest.generator},
+          {"source", manifest.source},
+          {"layout", manifest.layout},
+          {"bytes", log.file.bytes().size()},
+          {"headBytes", log.file.index().headBytes()},
+          {"chunks", log.file.index().chunks.size()},
+          {"lattice",
+           {{"bits", manifest.latticeBits},
+            {"step", manifest.latticeStep},
+            {"origin", manifest.latticeOrigin}}},
+          {"fields", fields},
+          {"kept", closingJson(log.file.index(), manifest)},
+          {"levels", levelsJson(log.manifest, log.file.index())}};
+}
+
+constexpr std::size_t kShownLevels = 20;  ///< without --all
+
+/// A number with six significant digits: for people, --json has them all.
+std::string brief(double number) {
+  std::ostringstream out;
+  out << std::setprecision(6) << number;
+  return out.str();
+}
+
+/// A line of the head: what it is, bright where colours are allowed, and what there is to say.
+void line(const Console& console, const std::string& what, const std::string& said) {
+  constexpr std::size_t kWidth = 10;
+  console.out << (console.colours ? "\033[1m" : "") << what << (console.colours ? "\033[0m" : "")
+              << std::string(kWidth - std::min(what.size(), kWidth - 1), ' ') << printable(said)
+              << "\n";
+}
+
+/// Columns as wide as their widest cell; the first stands at the left, the others at the right.
+void printColumns(const std::vector<std::vector<std::string>>& rows, const Console& console) {
+  std::vector<std::size_t> widths;
+  for (const auto& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()));
+    for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], textWidth(row[c]));
+  }
+  for (const auto& row : rows) {
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      const std::string space(widths[c] - textWidth(row[c]), ' ');
+      console.out << (c == 0 ? row[c] + space : "  " + space + row[c]);
+    }
+    console.out << "\n";
+  }
+}
+
+void printHead(const OpenedLog& log, const OrderedJson& info, const Console& console) {
+  const ManifestLevel& last = log.manifest.levels.back();
+  const std::uint64_t bytes = info["bytes"];
+  line(console, "source", log.manifest.source + "  (" + log.manifest.generator + ")");
+  line(console, "mesh",
+       counted(last.tetrahedra, "tetrahedron", "tetrahedra") + ", " +
+           counted(last.vertices, "vertex", "vertices") + ", " +
+           counted(last.boundaryTriangles, "boundary triangle", "boundary triangles") +
+           ", levels 0 to " + std::to_string(log.manifest.levels.size() - 1));
+  line(console, "bytes",
+       grouped(bytes) + " in " + counted(info["chunks"], "chunk", "chunks") + ", " +
+           brief(8.0 * static_cast<double>(bytes) / std::max(1u, last.tetrahedra)) +
+           " bits a tetrahedron; the first " + grouped(info["headBytes"]) +
+           " are header, manifest and table");
+  line(console, "lattice",
+       std::to_string(log.manifest.latticeBits) + " bits an axis, step " +
+           brief(log.manifest.latticeStep) + ", layout " + log.manifest.layout);
+  line(console, "digest", info["digest"]);
+  for (const auto& [what, size] : info["kept"].items())
+    line(console, "kept", what + ": " + grouped(size) + " bytes");
+  if (info["fields"].empty()) return;
+  console.out << "\n";
+  std::vector<std::vector<std::string>> rows{
+      {"field", "of", "type", "least", "most", "bits", "step", "bytes"}};
+  for (const OrderedJson& field : info["fields"]) {
+    const auto components = field["components"].get<std::uint32_t>();
+    rows.push_back({printable(field["name"].get<std::string>()),
+                    field["association"] == "cell" ? "cells" : "points",
+                    field["type"].get<std::string>() +
+                        (components > 1 ? " x " + std::to_string(components) : ""),
+                    brief(field["range"][0]), brief(field["range"][1]),
+                    std::to_string(field["bits"].get<int>()), brief(field["step"]),
+                    grouped(field["bytes"])});
+  }
+  printColumns(rows, console);
+}
+
+// Pixels of a PNG to one of the picture's own: sharp on a screen of today and in print.
+constexpr double kPlotScale = 2;
+
+Status checkPlot(const std::string& plot, const std::string& input) {
+  return checkOutput(plot, plot.ends_with(".png") ? ".png" : ".svg", input);
+}
+
+Status writePlot(const OpenedLog& log, const std::filesystem::path& file,
+                 const std::string& title) {
+  std::vector<std::uint64_t> bytes;
+  for (std::size_t level = 0; level < log.manifest.levels.size(); ++level)
+    bytes.push_back(log.prefixBytes(level));
+  const Result<std::vector<ErrorCurve>> curves = errorCurves(log.manifest, bytes);
+  if (!curves) return std::unexpected(curves.error());
+  const std::string svg = errorPlotSvg(title, *curves);
+  if (file.extension() != ".png") return writeFileAtomically(file, Bytes(svg.begin(), svg.end()));
+  const Result<Bytes> png = pngOf(svg, kPlotScale);
+  return png ? writeFileAtomically(file, *png) : std::unexpected(png.error());
+}
+
+}  // namespace
+
+int runInfo(const Words& words, Console& console) {
+  namespace po = boost::program_options;
+  po::options_description options("options");
+  options.add_options()("json", "print one JSON object")("all", "show every level, not 20 of them")(
+      "plot", po::value<std::string>(),
+      "draw error against bytes into this file, NAME.svg or NAME.png");
+  const ParsedWords parsed(
+      words,
+      {"info", "info LOG.qtet [--all] [--plot FILE.svg|FILE.png] [--json]",
+       "Says what a log holds: digest, lattice, fields, and for each level its cells and bytes. "
+       "Level 0 is the base mesh,\n"
+       "the last level the input's mesh; `cumulative` is the length of the file's prefix that "
+       "holds a level, `bytes` what it is above that of the row before. Where the log tells them,\n"
+       "the errors against the original follow: of the boundary in per cent of the diagonal (the "
+       "worse one of both ways), the volume that is\n"
+       "left, and of each field in per cent of its range.\n"
+       "--json: digest, generator, source, layout, bytes, headBytes, chunks, lattice {bits, step, "
+       "origin}, fields [{name, components, type, association, bits,\n"
+       "step, minimum, range, missingValues, bytes}], kept, and levels [{level, tetrahedra, "
+       "vertices, boundaryTriangles, bytes, cumulativeBytes, error}]; error, as\n"
+       "fractions: boundary {toLevel {mean, max}, toOriginal {mean, max}}, volumeKept, fields "
+       "[{rms, max}] in the order of the fields above.",
+       "  qtet info fin.qtet\n  qtet info fin.qtet --plot fin.svg\n  qtet info fin.qtet --json | "
+       "jq '.levels[0]'\n"},
+      options, {"LOG"});
+  if (parsed.helped(console)) return kExitOk;
+  const bool asJson = parsed.has("json");
+  const auto input = parsed.get<std::string>("LOG");
+  const auto plot = parsed.has("plot") ? parsed.get<std::string>("plot") : "";
+  if (parsed.has("plot"))
+    if (Status checked = checkPlot(plot, input); !checked)
+      return reportFailure(checked.error(), asJson, console);
+
+  const Result<OpenedLog> log = openLog(input);
+  if (!log) return reportFailure(log.error(), asJson, console);
+  if (parsed.has("plot"))
+    if (Status written = writePlot(*log, plot, log->manifest.source); !written)
+      return reportFailure(written.error(), asJson, console);
+  const OrderedJson info = infoJson(*log);
+  if (asJson) {
+    printJson(info, console);
+  } else {
+    printHead(*log, info, console);
+    const std::size_t most = parsed.has("all") ? log->manifest.levels.size() : kShownLevels;
+    console.out << "\n" << levelTable(log->manifest, info["levels"], most);
+    if (log->manifest.levels.size() > most)
+      console.out << "\n--all shows all " << log->manifest.levels.size() << " levels\n";
+  }
+  return kExitOk;
+}
+
+}  // namespace qtet

@@ -1,0 +1,186 @@
+#include "simplify/commands/command_line.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <sstream>
+#include <utility>
+
+#include "proto/option_error.h"
+
+namespace qtet {
+
+namespace po = boost::program_options;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Options that had another name in version 0.1, each taken until version 0.3.
+constexpr std::pair<std::string_view, std::string_view> kRenamed[] = {
+    {"--hull-weight", "--boundary-weight"}};
+
+Words withNewNames(Words words) {
+  for (std::string& word : words)
+    for (const auto& [old, now] : kRenamed)
+      if (word == old || word.starts_with(std::string(old) + "=")) word.replace(0, old.size(), now);
+  return words;
+}
+
+std::string hint(const CommandHelp& help) {
+  return "\nusage: qtet " + help.usage + "\nsee 'qtet " + help.name + " --help'";
+}
+
+}  // namespace
+
+ParsedWords::ParsedWords(const Words& words, CommandHelp help, po::options_description options,
+                         const std::vector<std::string>& positional)
+    : help_(std::move(help)), positional_(positional) {
+  // What runTool takes away before, named here for help.
+  options.add_options()("quiet,q", "print nothing but errors and what was asked for")(
+      "verbose,v", "tell how long each stage takes, and the memory at most")("help,h",
+                                                                             "show this and stop");
+  options_.add(options);
+
+  po::options_description all, hidden;
+  po::positional_options_description places;
+  for (const std::string& name : positional_) {
+    hidden.add_options()(name.c_str(), po::value<std::string>());
+    places.add(name.c_str(), 1);
+  }
+  hidden.add_options()("help-json", "help for programs");
+  all.add(options_).add(hidden);
+  try {
+    const auto style = po::command_line_style::unix_style & ~po::command_line_style::allow_guessing;
+    po::store(po::command_line_parser(withNewNames(words))
+                  .options(all)
+                  .positional(places)
+                  .style(style)
+                  .run(),
+              values_);
+    po::notify(values_);
+  } catch (po::error& error) {
+    throw UsageError(optionErrorText<po::error_with_option_name>(error) + hint(help_));
+  }
+  if (has("help") || has("help-json")) return;
+  for (const std::string& name : positional_) {
+    if (!has(name)) throw UsageError(name + " is missing" + hint(help_));
+  }
+  for (const auto& option : options_.options()) {
+    const bool isRequired = option->description().starts_with("required: ");
+    if (isRequired && !has(option->long_name()))
+      throw UsageError("--" + option->long_name() + " is missing" + hint(help_));
+  }
+}
+
+bool ParsedWords::helped(Console& console) const {
+  if (has("help-json")) {
+    OrderedJson options = OrderedJson::array();
+    for (const auto& option : options_.options()) {
+      const std::string brief = option->format_name();  // "-o [ --output ]" or "--output"
+      options.push_back({{"name", option->long_name()},
+                         {"letter", brief.size() > 1 && brief[1] != '-' ? brief.substr(1, 1) : ""},
+                         {"takesValue", option->semantic()->max_tokens() > 0},
+                         {"parameter", option->format_parameter()},
+                         {"text", option->description()}});
+    }
+    printJson({{"name", help_.name},
+               {"usage", help_.usage},
+               {"text", help_.text},
+               {"examples", help_.examples},
+               {"words", positional_},
+               {"options", options}},
+              console);
+    return true;
+  }
+  if (!has("help")) return false;
+  console.out << "usage: qtet " << help_.usage << "\n\n"
+              << help_.text << "\n\n"
+              << options_ << "\nexamples:\n"
+              << help_.examples;
+  return true;
+}
+
+double ParsedWords::number(const std::string& name, double low, double high) const {
+  const auto value = get<double>(name);
+  if (value >= low && value <= high) return value;
+  std::ostringstream text;
+  text << "--" << name << " " << value << " is outside " << low << " to " << high << hint(help_);
+  throw UsageError(text.str());
+}
+
+int ParsedWords::integer(const std::string& name, int low, int high) const {
+  const auto value = get<int>(name);
+  if (value >= low && value <= high) return value;
+  throw UsageError("--" + name + " " + std::to_string(value) + " is outside " +
+                   std::to_string(low) + " to " + std::to_string(high) + hint(help_));
+}
+
+std::optional<std::vector<std::string>> parseFieldNames(const std::string& text) {
+  if (text == "all") return std::nullopt;
+  std::vector<std::string> names;
+  if (text == "none") return names;
+  std::string name;
+  const auto take = [&] {
+    if (name.empty())
+      throw UsageError("--fields '" + text +
+                       "' holds an empty name; give all, none, or names between commas");
+    names.push_back(std::exchange(name, {}));
+  };
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool isEscape =
+        text[i] == '\\' && i + 1 < text.size() && (text[i + 1] == ',' || text[i + 1] == '\\');
+    if (text[i] == ',')
+      take();
+    else
+      name += text[isEscape ? ++i : i];
+  }
+  if (!name.empty()) take();
+  if (names.empty()) throw UsageError("--fields is empty; give all, none, or names between commas");
+  return names;
+}
+
+Status checkOutput(const fs::path& output, const std::string& extensions,
+                   const std::optional<fs::path>& input) {
+  std::istringstream known(extensions);
+  if (std::find(std::istream_iterator<std::string>(known), {}, output.extension().string()) ==
+      std::istream_iterator<std::string>())
+    throw UsageError("the output " + output.string() + " must end in " +
+                     (extensions.find(' ') == std::string::npos ? "" : "one of ") + extensions);
+  std::error_code code;
+  const fs::path folder = output.has_parent_path() ? output.parent_path() : fs::path(".");
+  if (!fs::is_directory(folder, code)) {
+    return fail(ErrorCode::kNotFound,
+                "the folder " + folder.string() +
+                    " of the output does not exist; make it first or choose another output");
+  }
+  if (fs::is_directory(output, code))
+    return fail(ErrorCode::kIo,
+                "the output " + output.string() + " is a folder; give the name of a file");
+  if (::access(folder.c_str(), W_OK) != 0)
+    return fail(ErrorCode::kIo, "the folder " + folder.string() +
+                                    " of the output cannot be written; choose another output");
+  if (input && fs::equivalent(output, *input, code)) {
+    return fail(ErrorCode::kIo,
+                "the output " + output.string() +
+                    " is the input itself; choose another name, the input is never overwritten");
+  }
+  return {};
+}
+
+int reportFailure(const Error& error, bool asJson, Console& console) {
+  console.err << "qtet: " << console.shown(error.text(), true) << "\n";
+  if (asJson)
+    printJson({{"error",
+                {{"code", errorCodeName(error.code)}, {"message", console.named(error.message)}}}},
+              console);
+  return kExitFailed;
+}
+
+void printJson(const OrderedJson& json, Console& console) {
+  console.out << json.dump(2, ' ', false, OrderedJson::error_handler_t::replace) << "\n";
+}
+
+}  // namespace qtet

@@ -1,0 +1,102 @@
+// What the tool's commands share: parsing their words, refusing them with a hint, reporting
+// failures, checking outputs early.
+#pragma once
+
+#include <boost/program_options.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "proto/error.h"
+#include "simplify/commands/commands.h"
+
+namespace qtet {
+
+/// Members keep the order in which they are set, which is the order in which people read them.
+using OrderedJson = nlohmann::ordered_json;
+
+/// Words that are not understood; the message says which and what would be.
+class UsageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// One command's help: usage line, what it does, options, examples.
+struct CommandHelp {
+  std::string name;
+  std::string usage;  ///< "simplify IN -o OUT.qtet [options]"
+  std::string text;
+  std::string examples;  ///< one a line
+};
+
+/// One command's words, parsed. Options may be given once, abbreviations are refused.
+class ParsedWords {
+ public:
+  /// `positional` are the names of the words without a dash, all required, each also an option of
+  /// `options`.
+  ParsedWords(const Words& words, CommandHelp help,
+              boost::program_options::options_description options,
+              const std::vector<std::string>& positional);
+
+  /// Whether --help was asked for (or --help-json, for the manual and completions); it is printed
+  /// then.
+  [[nodiscard]] bool helped(Console& console) const;
+  [[nodiscard]] bool has(const std::string& name) const { return values_.count(name) > 0; }
+  template <class T>
+  [[nodiscard]] T get(const std::string& name) const {
+    return values_[name].as<T>();
+  }
+  /// A number of `low` to `high`. Throws UsageError.
+  [[nodiscard]] double number(const std::string& name, double low, double high) const;
+  [[nodiscard]] int integer(const std::string& name, int low, int high) const;
+
+ private:
+  CommandHelp help_;
+  boost::program_options::options_description options_;
+  std::vector<std::string> positional_;
+  boost::program_options::variables_map values_;
+};
+
+/// What every option --fields of a mesh or a log takes (proto/field_key.h).
+inline constexpr const char* kFieldsHelp =
+    "all, none, or names between commas: NAME means every field of that name, of a series (--time "
+    "all) every step's, NAME@TIME; point:NAME or cell:NAME is one of two with the same name; \\, "
+    "is a comma in a name";
+
+/// The names between commas, of which "\\," is one in a name, and "\\\\" a backslash before it;
+/// "all" is nullopt, "none" the empty list. Throws UsageError.
+[[nodiscard]] std::optional<std::vector<std::string>> parseFieldNames(const std::string& text);
+
+/// Refuses an output before the work is done: an ending that is none of `extensions`, between
+/// blanks (UsageError), a folder that does not exist or cannot be written, the input itself.
+[[nodiscard]] Status checkOutput(const std::filesystem::path& output, const std::string& extensions,
+                                 const std::optional<std::filesystem::path>& input = std::nullopt);
+
+/// A mesh file to write: its kind, and its name or the standard output ("-" with --to).
+struct MeshOutput {
+  std::filesystem::path file;
+  std::string ending;  ///< with its dot
+  bool isStandardOutput = false;
+};
+
+/// -o and --to for meshOutputOf.
+void addMeshOutputOptions(boost::program_options::options_description& options);
+
+/// Of -o and --to, checked as checkOutput does. Throws UsageError.
+[[nodiscard]] Result<MeshOutput> meshOutputOf(const ParsedWords& parsed, const std::string& input);
+
+/// Writes the file whole or not at all, and says `what` became of it: on the standard output, or as
+/// a note where that is the file.
+[[nodiscard]] Status writeMeshOutput(const MeshOutput& output, std::span<const std::uint8_t> bytes,
+                                     const std::string& what, Console& console);
+
+/// Prints the failure, also as {"error":{"code","message"}} on `out` where JSON was asked for;
+/// returns kExitFailed.
+int reportFailure(const Error& error, bool asJson, Console& console);
+
+/// Prints one JSON object; bytes that are no UTF-8 are replaced.
+void printJson(const OrderedJson& json, Console& console);
+
+}  // namespace qtet

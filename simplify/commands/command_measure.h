@@ -1,0 +1,38 @@
+// The words about known error that commands share: --measure and its bounds, and NAME=E.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "simplify/commands/command_line.h"
+#include "simplify/measure/measure_error.h"
+
+namespace qtet {
+
+/// A name and a number of 0 or above from "NAME=E"; the last '=' counts. `meaning` tells what to
+/// write instead. Throws UsageError.
+[[nodiscard]] std::pair<std::string, double> parseNamedNumber(const std::string& option,
+                                                              const std::string& text,
+                                                              const std::string& meaning);
+/// The same for a field's name and a fraction of its range.
+[[nodiscard]] std::pair<std::string, double> parseNamedError(const std::string& option,
+                                                             const std::string& text);
+
+void addMeasureOptions(boost::program_options::options_description& options);
+/// nullopt for `--measure none`. Throws UsageError, also where a bound is to be kept without
+/// measuring.
+[[nodiscard]] std::optional<MeasureOptions> measureOptionsOf(const ParsedWords& parsed);
+
+/// {measure, base}: the word given and the error of the base mesh, where it was measured.
+[[nodiscard]] OrderedJson measureReport(const std::optional<MeasureOptions>& options,
+                                        const std::optional<LevelError>& base);
+/// What measureReport says as a line for people, a line feed in front; empty where nothing was
+/// measured. `fields`: an object with their names, in order.
+[[nodiscard]] std::string measureSentence(const OrderedJson& report, const OrderedJson& fields);
+
+/// "0.012 %": a fraction for people, three significant digits.
+[[nodiscard]] std::string percentText(double fraction);
+
+}  // namespace qtet

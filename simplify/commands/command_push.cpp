@@ -1,0 +1,167 @@
+#include <chrono>
+#include <cstdlib>
+#include <fstream>
+#include <thread>
+
+#include "codec/log/log_file.h"
+#include "simplify/commands/command_line.h"
+#include "simplify/commands/http_client.h"
+#include "simplify/commands/progress.h"
+
+namespace qtet {
+namespace {
+
+constexpr const char* kTokenVariable = "QTET_TOKEN";
+/// After a lost connection: so often, and so long after the first; twice as long each time.
+constexpr int kMaxAttempts = 6;
+constexpr std::chrono::milliseconds kFirstPause{500};
+
+/// What is sent, where to, and by whom.
+struct Push {
+  const LogFile& log;
+  HttpUrl server;
+  std::string target;   ///< /v1/meshes/NAME
+  std::string headers;  ///< who sends it
+};
+
+Result<std::string> readToken(const ParsedWords& parsed) {
+  std::string token;
+  if (parsed.has("token-file")) {
+    const auto path = parsed.get<std::string>("token-file");
+    std::ifstream in(path);
+    if (!(in >> token)) return fail(ErrorCode::kIo, path + " holds no token");
+  } else if (const char* given = std::getenv(kTokenVariable); given != nullptr) {
+    token = given;
+  }
+  if (token.empty() || token.find_first_of(" \r\n") != std::string::npos)
+    return fail(ErrorCode::kBadValue, std::string("no token: set ") + kTokenVariable +
+                                          ", or name a file with --token-file");
+  return token;
+}
+
+/// "http://host/" and "http://host/v1/meshes/" get the log's own name.
+std::string targetOf(const HttpUrl& url, const std::filesystem::path& log) {
+  constexpr std::string_view kMeshes = "/v1/meshes/";
+  if (url.path.starts_with(kMeshes) && url.path.size() > kMeshes.size()) return url.path;
+  return std::string(kMeshes) + encodedSegment(log.stem().string());
+}
+
+/// The detail of a problem, else the body's beginning.
+std::string reasonOf(const HttpAnswer& answer) {
+  const auto json = OrderedJson::parse(answer.body, nullptr, false);
+  const bool told = json.is_object() && json.contains("detail") && json["detail"].is_string();
+  return std::to_string(answer.status) + ": " +
+         (told ? json["detail"].get<std::string>() : answer.body.substr(0, 200));
+}
+
+/// Bytes that the server has of an upload that broke off, perhaps all of them. Errors: exchange's.
+Result<std::uint64_t> bytesThere(const Push& push) {
+  const std::string query = push.target + "/upload?digest=" + push.log.digest();
+  const Result<HttpAnswer> answer =
+      exchange(push.server, {.method = "GET", .target = query, .headers = push.headers});
+  if (!answer) return std::unexpected(answer.error());
+  const auto json = OrderedJson::parse(answer->body, nullptr, false);
+  const bool told = answer->status == 200 && json.is_object() && json.contains("bytes") &&
+                    json["bytes"].is_number_unsigned();
+  const std::uint64_t bytes = told ? json["bytes"].get<std::uint64_t>() : 0;
+  return bytes <= push.log.bytes().size() ? bytes : 0;
+}
+
+Result<HttpAnswer> sendFrom(const Push& push, std::uint64_t first, Progress& progress) {
+  const std::uint64_t size = push.log.bytes().size();
+  std::string headers = push.headers;
+  if (first > 0)
+    headers += "Content-Range: bytes " +
+               (first < size ? std::to_string(first) + "-" + std::to_string(size - 1) : "*") + "/" +
+               std::to_string(size) + "\r\n";
+  constexpr std::string_view kChecking = "the server checks the log";
+  progress.stage(first == size ? kChecking : first > 0 ? "sending the rest" : "sending");
+  return exchange(push.server, {.method = "PUT",
+                                .target = push.target + "?digest=" + push.log.digest(),
+                                .headers = headers,
+                                .body = push.log.bytes().subspan(first),
+                                .progress =
+                                    [&](std::uint64_t sent) {
+                                      progress.update(static_cast<double>(first + sent) /
+                                                      static_cast<double>(size));
+                                      if (first + sent == size) progress.stage(kChecking);
+                                    },
+                                .waiting = [&] { progress.working(); }});
+}
+
+/// Whether another attempt may go better: the server had no time or no place, or disagreed about
+/// what is there.
+bool worthAnother(const HttpAnswer& answer) {
+  return answer.status == 408 || answer.status == 409 || answer.status == 429 ||
+         answer.status == 503;
+}
+
+/// The answer to the log, sent as often as it takes.
+Result<HttpAnswer> pushLog(const Push& push, Console& console) {
+  Progress progress(console);
+  Result<HttpAnswer> out = fail(ErrorCode::kIo, "");
+  for (int attempt = 1; attempt <= kMaxAttempts; ++attempt) {
+    const Result<std::uint64_t> first = bytesThere(push);
+    out = first ? sendFrom(push, *first, progress)
+                : Result<HttpAnswer>(std::unexpected(first.error()));
+    progress.clear();
+    const bool again = out ? worthAnother(*out) : out.error().code == ErrorCode::kIo;
+    if (!again || attempt == kMaxAttempts) break;
+    console.err << "qtet: " << printable(out ? reasonOf(*out) : out.error().message)
+                << "; trying again\n";
+    std::this_thread::sleep_for(kFirstPause * (1 << (attempt - 1)));
+  }
+  return out;
+}
+
+}  // namespace
+
+int runPush(const Words& words, Console& console) {
+  namespace po = boost::program_options;
+  po::options_description options("options");
+  options.add_options()("token-file", po::value<std::string>(),
+                        "file with the token (default: the environment's QTET_TOKEN)")(
+      "json", "print one JSON object");
+  const ParsedWords parsed(
+      words,
+      {"push", "push LOG.qtet URL [--token-file FILE] [--json]",
+       "Sends a log to a qtet-server that takes uploads (qtet-server --tokens). URL is "
+       "http://HOST:PORT/, for a mesh of the\n"
+       "file's name, or http://HOST:PORT/v1/meshes/NAME. The server checks the log before anybody "
+       "sees it, as qtet verify does,\n"
+       "which takes a while for a large one. A connection that breaks is taken up again where it\n"
+       "broke, also by a later push of the same log.",
+       "  QTET_TOKEN=... qtet push fin.qtet http://127.0.0.1:8080/\n"
+       "  qtet push fin.qtet http://127.0.0.1:8080/v1/meshes/wing --token-file ~/.qtet-token\n"},
+      options, {"LOG", "URL"});
+  if (parsed.helped(console)) return kExitOk;
+  const bool asJson = parsed.has("json");
+  const auto file = parsed.get<std::string>("LOG");
+  const Result<HttpUrl> url = parseHttpUrl(parsed.get<std::string>("URL"));
+  if (!url) throw UsageError(url.error().message);
+  const Result<std::string> token = readToken(parsed);
+  if (!token) return reportFailure(token.error(), asJson, console);
+  const Result<LogFile> log = LogFile::open(file);
+  if (!log) return reportFailure(log.error(), asJson, console);
+
+  const Push push{*log, *url, targetOf(*url, file), "Authorization: Bearer " + *token + "\r\n"};
+  const Result<HttpAnswer> answer = pushLog(push, console);
+  if (!answer) return reportFailure(answer.error(), asJson, console);
+  if (answer->status != 200 && answer->status != 201)
+    return reportFailure(
+        {ErrorCode::kIo, "the server refuses the log, " + reasonOf(*answer), Error::kNoOffset},
+        asJson, console);
+  const std::string address = "http://" + push.server.authority() + push.target;
+  if (asJson)
+    printJson({{"address", address},
+               {"digest", log->digest()},
+               {"bytes", log->bytes().size()},
+               {"replaced", answer->status == 200}},
+              console);
+  else
+    console.out << address << "  " << (answer->status == 200 ? "replaced" : "new") << ", "
+                << log->bytes().size() << " bytes\n";
+  return kExitOk;
+}
+
+}  // namespace qtet

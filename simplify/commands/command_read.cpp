@@ -1,0 +1,103 @@
+#include "simplify/commands/command_read.h"
+
+#include <charconv>
+#include <iomanip>
+#include <limits>
+#include <sstream>
+
+namespace qtet {
+namespace {
+
+double numberOf(const std::string& text, double ifEmpty, const std::string& whole) {
+  if (text.empty()) return ifEmpty;
+  double value = 0;
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (read.ec != std::errc{} || read.ptr != text.data() + text.size())
+    throw UsageError("--threshold '" + whole + "': '" + text +
+                     "' is no number; give FIELD=LOW:HIGH, either side may be empty");
+  return value;
+}
+
+Threshold thresholdOf(const std::string& text) {
+  const std::size_t equals = text.rfind('='),
+                    colon = text.find(':', equals == std::string::npos ? 0 : equals);
+  if (equals == std::string::npos || equals == 0 || colon == std::string::npos)
+    throw UsageError("--threshold '" + text +
+                     "' is not understood; give FIELD=LOW:HIGH, either side may be empty");
+  constexpr double kAny = std::numeric_limits<double>::infinity();
+  return {text.substr(0, equals),
+          numberOf(text.substr(equals + 1, colon - equals - 1), -kAny, text),
+          numberOf(text.substr(colon + 1), kAny, text)};
+}
+
+}  // namespace
+
+void addReadOptions(boost::program_options::options_description& options) {
+  namespace po = boost::program_options;
+  options.add_options()("curved", po::value<std::string>()->default_value("split"),
+                        "quadratic cells and those of higher degree: split at all of their nodes, "
+                        "or linear: their corners alone")(
+      "weld", po::value<double>(),
+      "join points that lie within this distance (0: at the same place), as where an O-grid "
+      "closes")(
+      "time", po::value<std::string>()->default_value("last"),
+      "of a series: a step's time, first, last, or all: every step's fields, as NAME@TIME")(
+      "threshold", po::value<std::string>(),
+      "only cells where a field lies within bounds: FIELD=LOW:HIGH, either side may be empty")(
+      "plot3d", po::value<std::string>(), "the input is a PLOT3D grid; its solution file, or none")(
+      "format", po::value<std::string>(),
+      "the kind of file, where the name does not say it or is - (the standard input): vtu, msh, "
+      "...");
+}
+
+ReadOptions readOptionsOf(const ParsedWords& parsed) {
+  ReadOptions options;
+  const auto curved = parsed.get<std::string>("curved");
+  if (curved != "split" && curved != "linear")
+    throw UsageError("--curved '" + curved + "' is not known; give split or linear");
+  options.curved = curved == "split" ? CurvedCells::kSplit : CurvedCells::kLinear;
+  if (parsed.has("weld"))
+    options.weld = parsed.number("weld", 0, std::numeric_limits<double>::max());
+  if (parsed.has("format")) {
+    options.format = parsed.get<std::string>("format");
+    if (options.format.starts_with('.')) options.format.erase(0, 1);
+  }
+  options.time = parsed.get<std::string>("time");
+  if (parsed.has("threshold"))
+    options.threshold = thresholdOf(parsed.get<std::string>("threshold"));
+  options.plot3d = parsed.has("plot3d");
+  if (options.plot3d && parsed.get<std::string>("plot3d") != "none")
+    options.plot3dSolution = parsed.get<std::string>("plot3d");
+  return options;
+}
+
+Words readWordsOf(const ParsedWords& parsed) {
+  Words out;
+  for (const char* name : {"curved", "time", "threshold", "plot3d", "format"}) {
+    if (parsed.has(name))
+      out.insert(out.end(), {"--" + std::string(name), parsed.get<std::string>(name)});
+  }
+  if (parsed.has("weld")) {
+    std::ostringstream exact;
+    exact << std::setprecision(std::numeric_limits<double>::max_digits10)
+          << parsed.get<double>("weld");
+    out.insert(out.end(), {"--weld", exact.str()});
+  }
+  return out;
+}
+
+OrderedJson readReport(const ReadReport& report) {
+  OrderedJson cells = OrderedJson::object();
+  for (std::size_t type = 0; type < report.split.cells.size(); ++type) {
+    if (report.split.cells[type] > 0)
+      cells[cellTypeName(static_cast<std::uint8_t>(type))] = report.split.cells[type];
+  }
+  return {{"cells", cells},
+          {"centrePoints", report.split.centrePoints},
+          {"insideOutCells", report.split.insideOut},
+          {"collapsedCells", report.split.collapsed},
+          {"weldedPoints", report.weldedPoints},
+          {"mendedFaces", report.mendedFaces}};
+}
+
+}  // namespace qtet

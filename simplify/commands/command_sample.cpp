@@ -1,0 +1,48 @@
+#include "codec/files/atomic_file.h"
+#include "simplify/commands/command_line.h"
+#include "simplify/log/write_mesh.h"
+#include "simplify/samples/samples.h"
+
+namespace qtet {
+namespace {
+
+std::string listOfSamples() {
+  std::string out = "Writes a mesh that is computed, not read. NAME is one of:";
+  for (const Sample& sample : samples())
+    out += "\n  " + std::string(sample.name) + "  " + std::string(sample.description);
+  return out;
+}
+
+}  // namespace
+
+int runSample(const Words& words, Console& console) {
+  namespace po = boost::program_options;
+  po::options_description options("options");
+  options.add_options()("output,o", po::value<std::string>(), "required: the .vtu file to write")(
+      "cells", po::value<double>(),
+      "at least so many tetrahedra, for samples that come in sizes (fin: up to 100,000,000)");
+  const ParsedWords parsed(
+      words,
+      {"sample", "sample NAME -o FILE.vtu [--cells N]", listOfSamples(),
+       "  qtet sample box -o box.vtu\n  qtet sample fin --cells 1000000 -o fin.vtu\n"},
+      options, {"NAME"});
+  if (parsed.helped(console)) return kExitOk;
+
+  const auto output = parsed.get<std::string>("output");
+  if (Status checked = checkOutput(output, ".vtu"); !checked)
+    return reportFailure(checked.error(), false, console);
+  std::optional<std::uint64_t> cells;
+  if (parsed.has("cells")) cells = static_cast<std::uint64_t>(parsed.number("cells", 1, 1e12));
+  const Result<TetMesh> mesh = makeSample(parsed.get<std::string>("NAME"), cells);
+  if (!mesh) throw UsageError(mesh.error().message);
+  const Bytes bytes = vtuBytes(*mesh);
+  if (Status written = writeFileAtomically(output, bytes); !written)
+    return reportFailure(written.error(), false, console);
+  console.out << output << ": " << counted(mesh->tetrahedra.size(), "tetrahedron", "tetrahedra")
+              << ", " << counted(mesh->points.size(), "point", "points") << ", "
+              << counted(mesh->fields.size(), "field", "fields") << ", " << grouped(bytes.size())
+              << " bytes\n";
+  return kExitOk;
+}
+
+}  // namespace qtet

@@ -1,0 +1,149 @@
+#include <iomanip>
+#include <numeric>
+#include <sstream>
+
+#include "codec/log/verify_log.h"
+#include "proto/checksum.h"
+#include "simplify/clean/clean_mesh.h"
+#include "simplify/clean/verify.h"
+#include "simplify/commands/closing_report.h"
+#include "simplify/commands/command_line.h"
+#include "simplify/commands/command_read.h"
+#include "simplify/commands/progress.h"
+#include "simplify/log/kept_input.h"
+#include "simplify/log/opened_log.h"
+#include "simplify/read/read_mesh.h"
+
+namespace qtet {
+namespace {
+
+struct Input {
+  std::string path;
+  ReadOptions options;
+};
+
+/// The input read as its options say, cleaned and put on the log's lattice, against what was
+/// decoded; what was found in `out`.
+Status compareWithInput(const OpenedLog& log, const Refiner& refiner, const Input& input,
+                        Progress& progress, OrderedJson& out) {
+  progress.stage("reading " + input.path);
+  std::vector<std::uint32_t> all(log.manifest.fields.size());
+  std::iota(all.begin(), all.end(), 0u);
+  const LatticeMesh decoded = latticeMesh(log.manifest, refiner, all);
+  std::vector<std::string> names;
+  for (const FieldInfo& field : decoded.fields)
+    names.push_back(field.association + ":" + field.name);
+  ReadOptions options = input.options;
+  options.fields = names;
+  Result<ReadMesh> read = readMesh(input.path, options);
+  if (!read) return std::unexpected(read.error());
+  const std::vector<Tetrahedron> asStored = read->mesh.tetrahedra;
+  const Result<CleanReport> cleaned = cleanMesh(read->mesh);
+  if (!cleaned) return std::unexpected(cleaned.error());
+
+  progress.stage("comparing");
+  const Result<OnLattice> expected = putOnLattice(read->mesh, decoded.lattice, decoded.fields);
+  if (!expected) return std::unexpected(expected.error());
+  const Result<VerifyReport> same = sameMesh(decoded, expected->mesh);
+  if (!same) return std::unexpected(same.error());
+  const Result<OrderedJson> kept =
+      compareKept(log.file, decoded, expected->mesh, asRead(read->mesh, asStored, *cleaned));
+  if (!kept) return std::unexpected(kept.error());
+  OrderedJson fieldErrors = OrderedJson::object();
+  for (std::size_t f = 0; f < names.size(); ++f)
+    fieldErrors[fieldKey(log.manifest, f)] = expected->largestFieldErrors[f];
+  out = {{"input", input.path},
+         {"sameMesh", true},
+         {"largestPositionErrorSteps", expected->largestPositionError},
+         {"largestFieldErrorSteps", fieldErrors},
+         {"interchangeableVertices", same->interchangeable},
+         {"kept", *kept}};
+  return {};
+}
+
+Result<OrderedJson> verify(const ParsedWords& parsed, Progress& progress) {
+  progress.stage("checking checksums");
+  const Result<OpenedLog> log = openLog(parsed.get<std::string>("LOG"));
+  if (!log) return std::unexpected(log.error());
+  progress.stage("decoding");
+  const Result<Refiner> refiner = decodeVerified(
+      log->file, log->manifest, [&](double fraction) { return progress.update(fraction), true; });
+  if (!refiner) return std::unexpected(refiner.error());
+  const ManifestLevel& finest = log->manifest.levels.back();
+  OrderedJson report = {{"ok", true},
+                        {"digest", log->file.digest()},
+                        {"meshDigest", toHex(refiner->digest())},
+                        {"bytes", log->file.bytes().size()},
+                        {"chunks", log->file.index().chunks.size()},
+                        {"levels", log->manifest.levels.size()},
+                        {"tetrahedra", finest.tetrahedra},
+                        {"vertices", finest.vertices},
+                        {"boundaryTriangles", finest.boundaryTriangles}};
+  if (!parsed.has("against")) return report;
+  OrderedJson against;
+  if (Status compared = compareWithInput(
+          *log, *refiner, {parsed.get<std::string>("against"), readOptionsOf(parsed)}, progress,
+          against);
+      !compared)
+    return std::unexpected(compared.error());
+  report["against"] = against;
+  return report;
+}
+
+void printReport(const OrderedJson& report, std::ostream& out) {
+  out << "digest      " << report["digest"].get<std::string>() << "\nmeshDigest  "
+      << report["meshDigest"].get<std::string>()
+      << "\nevery checksum and count is right: " << grouped(report["bytes"]) << " bytes, "
+      << counted(report["chunks"], "chunk", "chunks") << ", "
+      << counted(report["levels"].get<std::size_t>() - 1, "level", "levels")
+      << " above the base mesh, " << counted(report["tetrahedra"], "tetrahedron", "tetrahedra")
+      << ", " << counted(report["vertices"], "vertex", "vertices") << "\n";
+  if (!report.contains("against")) return;
+  const OrderedJson& against = report["against"];
+  out << std::setprecision(3) << "the finest level is the mesh of "
+      << printable(against["input"].get<std::string>()) << ", cell for cell; positions are within "
+      << against["largestPositionErrorSteps"].get<double>() << " lattice steps";
+  for (const auto& [name, error] : against["largestFieldErrorSteps"].items())
+    out << ", " << printable(name) << " within " << error.get<double>() << " field steps";
+  out << "\n";
+  if (against["kept"]["order"].get<bool>())
+    out << "its points, cells and their vertices are numbered as in the file\n";
+  if (against["kept"]["positions"].get<bool>())
+    out << "its coordinates are those of the file, bit for bit\n";
+  for (const auto& [name, exact] : against["kept"]["fields"].items())
+    if (exact.get<bool>())
+      out << "its values of " << printable(name) << " are those of the file, bit for bit\n";
+}
+
+}  // namespace
+
+int runVerify(const Words& words, Console& console) {
+  namespace po = boost::program_options;
+  po::options_description options("options");
+  options.add_options()("against", po::value<std::string>(), "the mesh that the log was made from")(
+      "json", "print one JSON object");
+  addReadOptions(options);
+  const ParsedWords parsed(
+      words,
+      {"verify", "verify LOG.qtet [--against IN] [--json]",
+       "Checks every checksum, decodes every chunk and compares every level and field with what "
+       "the manifest says. With --against the finest level\n"
+       "must be the input's mesh cell for cell, positions within half a lattice step, fields "
+       "within half a field step. A mesh that was read with options\n"
+       "(--weld, --curved, ...) has to be read with the same ones. Where the log was made with "
+       "--keep-order or\n"
+       "--lossless, the numbering and the numbers themselves must be those of the file too, and "
+       "what was proved is said.",
+       "  qtet verify fin.qtet\n  qtet verify fin.qtet --against fin.vtu --json\n"},
+      options, {"LOG"});
+  if (parsed.helped(console)) return kExitOk;
+  const bool asJson = parsed.has("json");
+  Progress progress(console);
+  const Result<OrderedJson> report = verify(parsed, progress);
+  progress.clear();
+  if (!report) return reportFailure(report.error(), asJson, console);
+  asJson ? printJson(*report, console) : printReport(*report, console.out);
+  return kExitOk;
+}
+
+}  // namespace qtet

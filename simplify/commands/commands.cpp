@@ -1,0 +1,151 @@
+#include "simplify/commands/commands.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <iomanip>
+#include <sstream>
+
+#include "simplify/commands/command_line.h"
+#include "simplify/commands/standard_input.h"
+
+namespace qtet {
+namespace {
+
+constexpr std::array<Command, 13> kCommands{{
+    {"sample", "make a mesh to try things with", runSample, true},
+    {"check", "say what is wrong with a mesh, and what simplify would do about it", runCheck, false,
+     Command::Pipe::kMesh},
+    {"convert", "write a mesh of any format that is read as another one", runConvert, true,
+     Command::Pipe::kMesh},
+    {"simplify", "turn a volume mesh into a log", runSimplify, true, Command::Pipe::kMesh},
+    {"info", "say what a log holds, level by level", runInfo, false, Command::Pipe::kLog},
+    {"extract", "write one level of a log as an ordinary mesh", runExtract, true,
+     Command::Pipe::kLog},
+    {"add-field", "add fields of a mesh file to a log", runAddField, true},
+    {"remove-field", "leave fields of a log out", runRemoveField, true},
+    {"verify", "check a log, also against the mesh that it was made from", runVerify, false,
+     Command::Pipe::kLog},
+    {"push", "send a log to a server", runPush, true},
+    {"view", "show a mesh or a log in the browser", runView, false, Command::Pipe::kMesh},
+    {"completion", "print what makes a shell complete qtet's words", runCompletion},
+    {"manual", "write the manual pages", runManual, true},
+}};
+
+void printHelp(std::ostream& out) {
+  out << "usage: qtet COMMAND [options]\n\nTurns tetrahedral simulation meshes into logs that a "
+         "browser can show coarse-first, and "
+         "back.\n\ncommands:\n";
+  for (const Command& command : kCommands)
+    out << "  " << std::left << std::setw(13) << command.name << command.summary << "\n";
+  out << "\n  qtet COMMAND --help says more about each; qtet --version tells the version.\n"
+         "  - instead of a mesh's or a log's name is the standard input, -o - the standard output "
+         "of extract and convert.\n"
+         "  Every command knows --quiet and --verbose. NO_COLOR in the environment keeps colours "
+         "away.\n"
+         "\nexamples:\n"
+         "  qtet sample fin -o fin.vtu\n"
+         "  qtet check fin.vtu\n"
+         "  qtet view fin.vtu\n"
+         "  qtet simplify fin.vtu -o fin.qtet\n"
+         "  qtet info fin.qtet\n"
+         "  qtet extract fin.qtet --ratio 0.1 -o coarse.vtu\n"
+         "  curl -s http://HOST/fin.vtu | qtet check - --format vtu\n"
+         "  qtet verify fin.qtet --against fin.vtu\n"
+         "  QTET_TOKEN=... qtet push fin.qtet http://127.0.0.1:8080/\n"
+         "\nexit codes: 0 done, 1 an input or a file is at fault, 2 the command line is\n";
+}
+
+/// Every line of a message for people starts with the tool's name.
+void printLines(std::ostream& err, const std::string& text) {
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) err << "qtet: " << printable(line) << "\n";
+}
+
+/// Takes --quiet and --verbose out of the words, wherever they stand.
+Words withoutManners(Words words, Console& console) {
+  std::erase_if(words, [&](const std::string& word) {
+    const bool quiet = word == "--quiet" || word == "-q",
+               verbose = word == "--verbose" || word == "-v";
+    console.quiet |= quiet;
+    console.verbose |= verbose;
+    return quiet || verbose;
+  });
+  return words;
+}
+
+void tellMemory(const Console& console) {
+  rusage used{};
+  if (console.verbose && ::getrusage(RUSAGE_SELF, &used) == 0)
+    console.err << "qtet: " << used.ru_maxrss / 1024 << " MB of memory at most\n";
+}
+
+int runCommand(const Command& command, const Words& given, Console& console) {
+  Words words = withoutManners(given, console);
+  const auto isAnswer = [](const std::string& word) {
+    return word == "--json" || word.starts_with("--help") || word == "-h" || word == "-" ||
+           word.ends_with("=-");
+  };
+  const bool isAsked = std::ranges::any_of(words, isAnswer);
+  std::unique_ptr<GuardedFolder> piped;
+  if (command.pipe != Command::Pipe::kNone) {
+    Result<std::unique_ptr<GuardedFolder>> spooled =
+        spoolStandardInput(words, command.pipe == Command::Pipe::kLog ? "qtet" : "", STDIN_FILENO);
+    if (!spooled) {
+      console.err << "qtet: " << spooled.error().text() << "\n";
+      return spooled.error().code == ErrorCode::kBadInput ? kExitUsage : kExitFailed;
+    }
+    piped = std::move(*spooled);
+    if (piped)
+      console.piped = *std::ranges::find_if(
+          words, [&](const std::string& word) { return word.starts_with(piped->path().string()); });
+  }
+  std::ostream nowhere(nullptr);
+  Console silent{nowhere, console.err,     console.errIsTerminal, false,
+                 true,    console.verbose, console.piped};
+  try {
+    const bool silenced = console.quiet && command.makesFile && !isAsked;
+    const int code = command.run(words, silenced ? silent : console);
+    tellMemory(console);
+    if (console.out.flush()) return code;
+    console.err
+        << "qtet: the result could not be written to the standard output; is the disk full?\n";
+    return kExitFailed;
+  } catch (const UsageError& error) {
+    printLines(console.err, error.what());
+    return kExitUsage;
+  }
+}
+
+}  // namespace
+
+std::span<const Command> commands() { return kCommands; }
+
+int runTool(const Words& words, Console& console) {
+  const std::string first = words.empty() ? "" : words.front();
+  if (first == "--version") {
+    console.out << "qtet " QTET_VERSION "\n";
+    return kExitOk;
+  }
+  if (first == "--help" || first == "-h" || first == "help") {
+    printHelp(console.out);
+    return kExitOk;
+  }
+  const auto* command =
+      std::find_if(kCommands.begin(), kCommands.end(),
+                   [&](const Command& candidate) { return candidate.name == first; });
+  if (command != kCommands.end())
+    return runCommand(*command, Words(words.begin() + 1, words.end()), console);
+
+  std::string known;
+  for (const Command& candidate : kCommands)
+    known += (known.empty() ? "" : ", ") + std::string(candidate.name);
+  printLines(console.err,
+             (first.empty() ? "a command is missing" : "there is no command '" + first + "'") +
+                 "; there are: " + known + "\nsee 'qtet --help'");
+  return kExitUsage;
+}
+
+}  // namespace qtet

@@ -1,0 +1,80 @@
+// The commands of the `qtet` tool. They take their words and streams as arguments, so tests can run
+// them in process.
+#pragma once
+
+#include <ostream>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "simplify/commands/printable.h"
+
+namespace qtet {
+
+/// What a process ends with.
+inline constexpr int kExitOk = 0;
+inline constexpr int kExitFailed = 1;  ///< an input, a file or the machine is at fault
+inline constexpr int kExitUsage = 2;   ///< the words given are not understood
+
+/// Where a command writes: results to `out`, everything else to `err`, each line of it starting
+/// with "qtet: ".
+struct Console {
+  std::ostream& out;
+  std::ostream& err;
+  bool errIsTerminal = false;
+  /// Whether `out` may be coloured: a terminal, and nobody said NO_COLOR (https://no-color.org).
+  bool colours = false;
+  bool quiet = false;    ///< --quiet: errors alone
+  bool verbose = false;  ///< --verbose: how long each stage takes, and the memory at most
+  std::string piped{};   ///< the temporary file that holds the standard input, where a word was "-"
+
+  /// The text, in which what came through a pipe is called so and not by its temporary name.
+  [[nodiscard]] std::string named(std::string text) const {
+    for (std::size_t at = 0; !piped.empty() && (at = text.find(piped)) != std::string::npos;)
+      text.replace(at, piped.size(), "the standard input");
+    return text;
+  }
+  /// named() for a terminal.
+  [[nodiscard]] std::string shown(const std::string& text, bool keepLines = false) const {
+    return printable(named(text), keepLines);
+  }
+  void note(const std::string& text) const {
+    if (!quiet) err << "qtet: note: " << shown(text) << "\n";
+  }
+};
+
+using Words = std::vector<std::string>;
+
+struct Command {
+  std::string_view name;
+  std::string_view summary;
+  int (*run)(const Words& words, Console& console);
+  /// What it prints is no more than that the file was made: nothing with --quiet.
+  bool makesFile = false;
+  /// Whether "-" among its words is the standard input, and what that holds.
+  enum class Pipe { kNone, kMesh, kLog } pipe = Pipe::kNone;
+};
+
+/// In the order in which help shows them.
+[[nodiscard]] std::span<const Command> commands();
+
+/// Runs the tool on what follows its name on the command line; returns the exit code. Throws
+/// nothing but std::bad_alloc and the like.
+int runTool(const Words& words, Console& console);
+
+int runSample(const Words& words, Console& console);
+int runSimplify(const Words& words, Console& console);
+int runCheck(const Words& words, Console& console);
+int runConvert(const Words& words, Console& console);
+int runInfo(const Words& words, Console& console);
+int runExtract(const Words& words, Console& console);
+int runAddField(const Words& words, Console& console);
+int runRemoveField(const Words& words, Console& console);
+int runPush(const Words& words, Console& console);
+int runView(const Words& words, Console& console);
+int runCompletion(const Words& words, Console& console);
+int runManual(const Words& words, Console& console);
+int runVerify(const Words& words, Console& console);
+
+}  // namespace qtet

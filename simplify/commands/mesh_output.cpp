@@ -1,0 +1,60 @@
+#include "codec/files/atomic_file.h"
+#include "codec/files/mesh_file.h"
+#include "simplify/commands/command_line.h"
+
+namespace qtet {
+
+void addMeshOutputOptions(boost::program_options::options_description& options) {
+  namespace po = boost::program_options;
+  options.add_options()("output,o", po::value<std::string>(),
+                        ("required: the file to write, " + std::string(kWrittenEndings) +
+                         "; or - for the standard output")
+                            .c_str())(
+      "to", po::value<std::string>(),
+      "the kind of file, where the name does not say it or is -: vtu, glb, ...");
+}
+
+Result<MeshOutput> meshOutputOf(const ParsedWords& parsed, const std::string& input) {
+  MeshOutput out{parsed.get<std::string>("output"), {}, false};
+  out.isStandardOutput = out.file == "-";
+  out.ending = out.file.extension().string();
+  if (parsed.has("to")) {
+    const auto kind = parsed.get<std::string>("to");
+    out.ending = (kind.starts_with('.') ? "" : ".") + kind;
+  } else if (out.isStandardOutput) {
+    throw UsageError(
+        "-o - is the standard output, which has no name: say with --to what kind of file to write, "
+        "for example --to vtu");
+  }
+  // Judged by a name that has the ending, in the folder that is meant.
+  std::filesystem::path judged = out.isStandardOutput ? "standard-output" : out.file;
+  judged.replace_extension(out.ending);
+  if (Status checked = checkOutput(
+          out.isStandardOutput ? std::filesystem::temp_directory_path() / judged : judged,
+          kWrittenEndings, input);
+      !checked)
+    return std::unexpected(checked.error());
+  if (!out.isStandardOutput && judged != out.file) {
+    std::error_code code;
+    if (std::filesystem::equivalent(out.file, input, code))
+      return fail(ErrorCode::kIo,
+                  "the output " + out.file.string() +
+                      " is the input itself; choose another name, the input is never overwritten");
+  }
+  return out;
+}
+
+Status writeMeshOutput(const MeshOutput& output, std::span<const std::uint8_t> bytes,
+                       const std::string& what, Console& console) {
+  if (output.isStandardOutput) {
+    console.out.write(reinterpret_cast<const char*>(bytes.data()),
+                      static_cast<std::streamsize>(bytes.size()));
+    console.note(what + ", " + std::to_string(bytes.size()) + " bytes");
+    return {};
+  }
+  if (Status written = writeFileAtomically(output.file, bytes); !written) return written;
+  console.out << output.file.string() << ": " << what << ", " << bytes.size() << " bytes\n";
+  return {};
+}
+
+}  // namespace qtet

@@ -1,0 +1,47 @@
+#include "simplify/commands/printable.h"
+
+#include <algorithm>
+
+namespace qtet {
+namespace {
+
+/// How many bytes of a control character `text` begins with.
+std::size_t controlBytes(std::string_view text) {
+  const auto byte = [&](std::size_t i) {
+    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
+  };
+  if (byte(0) < 0x20 || byte(0) == 0x7F) return 1;
+  return byte(0) == 0xC2 && byte(1) >= 0x80 && byte(1) < 0xA0 ? 2 : 0;
+}
+
+}  // namespace
+
+std::string printable(std::string_view text, bool keepLines) {
+  std::string out;
+  while (!text.empty()) {
+    std::size_t control = controlBytes(text);
+    if (keepLines && text[0] == '\n') control = 0;
+    out += control > 0 ? std::string_view("\uFFFD") : text.substr(0, 1);
+    text.remove_prefix(control > 0 ? control : 1);
+  }
+  return out;
+}
+
+std::size_t textWidth(std::string_view text) {
+  const auto beginsCharacter = [](char c) {
+    return (static_cast<unsigned char>(c) & 0xC0) != 0x80;
+  };
+  return static_cast<std::size_t>(std::ranges::count_if(text, beginsCharacter));
+}
+
+std::string grouped(std::uint64_t number) {
+  std::string text = std::to_string(number);
+  for (std::size_t at = text.size(); at > 3;) text.insert(at -= 3, 1, ',');
+  return text;
+}
+
+std::string counted(std::uint64_t number, std::string_view one, std::string_view many) {
+  return grouped(number) + " " + std::string(number == 1 ? one : many);
+}
+
+}  // namespace qtet

@@ -1,0 +1,28 @@
+// What comes through a pipe, as a file: VTK's readers, and logs, want to be read from any place.
+#pragma once
+
+#include <memory>
+#include <string_view>
+
+#include "proto/error.h"
+#include "simplify/commands/commands.h"
+#include "simplify/read/guarded_folder.h"
+
+namespace qtet {
+
+/// What the file is called, without its ending.
+inline constexpr const char* kPipedFile = "standard-input";
+
+/// Bytes of the standard input at most: more than a mesh of kMaxElements cells has as .vtu, and an
+/// endless pipe ends.
+inline constexpr std::uint64_t kMaxPipedBytes = std::uint64_t{64} << 30;
+
+/// Replaces the word "-" (not one that follows -o or --output) by the name of a temporary file with
+/// what `input` gives until its end; the file is there as long as the answer is. nullptr: there was
+/// no such word. `ending` names the file: of a command that reads logs "qtet", else empty, and
+/// --format among the words says it. Errors: bad-input (twice "-", no --format), limit-exceeded
+/// (more than `most` bytes), truncated (no bytes), io (a terminal, no room).
+[[nodiscard]] Result<std::unique_ptr<GuardedFolder>> spoolStandardInput(
+    Words& words, std::string_view ending, int input, std::uint64_t most = kMaxPipedBytes);
+
+}  // namespace qtet

@@ -1,0 +1,24 @@
+// Which fields the cost of a fusion counts, and in what unit (ALGORITHM.md, "Cost").
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "codec/mesh/mesh.h"
+
+namespace qtet {
+
+/// Components of fields that the cost can hold; each adds 40 bytes a vertex.
+inline constexpr std::size_t kMaxCostComponents = 32;
+
+/// A field that counts.
+struct CostPart {
+  std::size_t field = 0;
+  double scale = 1;  ///< of an integer of the field to the unit that residuals are measured in
+};
+
+/// `weights` is CostOptions::fieldWeights.
+[[nodiscard]] std::vector<CostPart> costPartsOf(const LatticeMesh& mesh,
+                                                std::span<const double> weights);
+
+}  // namespace qtet

@@ -1,0 +1,110 @@
+// Where the prey goes: the legal lattice point of least cost among a few, shape included.
+#pragma once
+
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "simplify/fuse/fusion_check.h"
+#include "simplify/fuse/fusion_cost.h"
+
+namespace qtet {
+
+struct FusionPoint {
+  LatticePoint point{};
+  double cost = 0;    ///< by which the prey's error grows, the shape's share included
+  float outside = 0;  ///< FusedVertex::outside
+};
+
+/// Which points are looked at. A free point takes twice the bits of one that follows from its prey.
+enum class PlacementRule : std::uint8_t {
+  kOptimal,  ///< the quadric's minimum (Eq. 6-7), and what lies between it and the prey's middle
+  kVertex,   ///< the prey vertices alone, which keeps every vertex of every level an original one
+  /// Prey vertices, middle and quarters; a free point only where it adds less than a quarter of
+  /// their error.
+  kAuto,
+};
+
+struct FusionPointOptions {
+  PlacementRule rule = PlacementRule::kAuto;
+  double shapeWeight = 0.5;  ///< FusionOptions::shapeWeight
+};
+
+class FusionPointFinder {
+ public:
+  FusionPointFinder(const FusionMesh& mesh, const FusionCost& cost,
+                    const FusionPointOptions& options)
+      : mesh_(mesh), cost_(cost), options_(options) {}
+
+  /// The unconstrained minimum of the prey's quadric, and the cost there: by how much it is off
+  /// more than its vertices are.
+  struct Ideal {
+    Vector3 offset{};  ///< from prey.vertex[0]
+    double cost = 0;
+  };
+  [[nodiscard]] Ideal ideal(const Prey& prey) const;
+  /// What fusing v with either w costs, by all that is known without the star: what the queue is
+  /// ordered by.
+  [[nodiscard]] Pair keysOf(VertexId v, std::array<VertexId, 2> w) const;
+
+  /// What the fusion would cost if flips, shapes and topology had no say: the envelope alone, which
+  /// is known long before them. Nothing: it leaves no point. REQUIRES: test.gatherBoundary(prey)
+  /// was true.
+  [[nodiscard]] std::optional<double> price(const Prey& prey, const FusionCheck& test);
+  /// A cell flips at every point: asked where that is likely, since it is cheaper to ask than the
+  /// star is to collect. So it is where an inner vertex would go to the boundary, and where many of
+  /// the last fusions had no legal point. REQUIRES: price(prey, test).
+  [[nodiscard]] bool isHopeless(const FusionCheck& test);
+  /// The fusion point. REQUIRES: price(prey, test), then test.gatherRest(), was true.
+  [[nodiscard]] std::optional<FusionPoint> choose(const FusionCheck& test);
+  /// Both. REQUIRES: test.gather(prey) was true.
+  [[nodiscard]] std::optional<FusionPoint> find(const Prey& prey, const FusionCheck& test) {
+    return price(prey, test) ? choose(test) : std::nullopt;
+  }
+
+ private:
+  struct Deciding {
+    std::array<VertexId, 4> vertex{};
+    std::size_t count = 0;
+    bool boundary = false, isAll = false;
+    Vector3 centre{};  // relative to prey.vertex[0]
+  };
+  struct Choice {
+    LatticePoint point;
+    double cost;
+    double compared;  // the cost, times what makes a point dearer than others in the log
+  };
+  [[nodiscard]] static bool comesFirst(const Choice& a, const Choice& b) {
+    return a.compared != b.compared ? a.compared < b.compared : a.point < b.point;
+  }
+
+  [[nodiscard]] PreyQuadric growth(const Prey& prey) const;
+  [[nodiscard]] Deciding deciding(const Prey& prey) const;
+  [[nodiscard]] Ideal idealOf(const Prey& prey, const Deciding& deciding,
+                              const PreyQuadric& of) const;
+  void offer(const LatticePoint& p, double dearness = 1);
+  void offerCheap(const Prey& prey, const FusionCheck& test);
+  void offerFree(const FusionCheck& test);
+  [[nodiscard]] bool isFreeToCome() const { return std::isfinite(leastFree_); }
+  void choose(std::span<const Choice> choices, const FusionCheck& test);
+  void count(bool isRefused);
+
+  const FusionMesh& mesh_;
+  const FusionCost& cost_;
+  FusionPointOptions options_;
+  Prey prey_;
+  Quadric quadric_;
+  Vector3 origin_{};
+  Deciding deciding_;
+  Vector3 ideal_{};  // where the quadric is least, relative to origin_
+  // what a free point compares as at best; infinity once they are among the choices
+  double leastFree_ = 0;
+  std::vector<Choice> choices_;  // those inside the envelope, cheapest first as compared
+  std::optional<FusionPoint> found_;
+  double least_ = 0;  // found_ as compared, shape included
+  // the share of the last fusions that had no legal point, but for inner vertices that would go to
+  // the boundary
+  double refused_ = 0;
+};
+
+}  // namespace qtet

@@ -1,0 +1,131 @@
+// What could be fused: the edges of a vertex with what they would cost, and the proposal that comes
+// of one of them. Reads the mesh, changes nothing.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "codec/coding/prefetch.h"
+#include "simplify/fuse/band_nodes.h"
+#include "simplify/fuse/candidates.h"
+#include "simplify/fuse/fusion_check.h"
+#include "simplify/fuse/fusion_cost.h"
+#include "simplify/fuse/fusion_mesh.h"
+#include "simplify/fuse/fusion_point.h"
+#include "simplify/fuse/vertex_counts.h"
+
+namespace qtet {
+
+/// When each vertex was last touched by a fusion, in fusions since the start: what a proposal
+/// relies on must not be touched after it was made. One thread touches, others may look on: who
+/// knows of a fusion (acquired) sees what it touched, and perhaps some of what later ones did.
+class Touched {
+ public:
+  void resize(std::size_t vertices) { at_.resize(vertices, 0); }
+  /// Fusions decided on.
+  [[nodiscard]] std::uint32_t now() const { return now_.load(std::memory_order_acquire); }
+  /// By the fusion that is being decided on.
+  void touch(VertexId v) {
+    std::atomic_ref(at_[v]).store(now_.load(std::memory_order_relaxed) + 1,
+                                  std::memory_order_relaxed);
+  }
+  /// It is decided on.
+  void next() { now_.store(now_.load(std::memory_order_relaxed) + 1, std::memory_order_release); }
+  void prefetch(VertexId v) const { qtet::prefetch(&at_[v]); }
+  [[nodiscard]] bool since(VertexId v, std::uint32_t fusion) const {
+    return std::atomic_ref(at_[v]).load(std::memory_order_relaxed) > fusion;
+  }
+
+ private:
+  std::atomic<std::uint32_t> now_{0};
+  // mutable for atomic_ref, which C++20 has none of for what is const
+  mutable std::vector<std::uint32_t> at_;
+};
+
+/// What is known of an owner's candidates: those that are not legal, and what comes of the first
+/// that is.
+struct Proposal {
+  struct Illegal {
+    VertexId partner;
+    float price;  ///< below it nobody needed to know
+  };
+  std::vector<Illegal> illegal;
+  /// Of the edge that the rest is about; kGhost: none is known to be legal.
+  VertexId partner = kGhost;
+  float price = 0;          ///< FusionPointFinder::price
+  bool isPriceAll = false;  ///< it was too dear, so that nobody looked further
+  Prey prey;
+  FusionPoint where;
+  /// Of the edge alone; what it was asked for: nothing dearer was looked for in larger prey.
+  float edgeCost = 0, most = 0;
+  Star star;
+  /// That could be taken along: which of them were free was part of the decision.
+  std::vector<VertexId> companions;
+  std::uint32_t madeAfter = 0;   ///< fusions decided on before
+  std::uint32_t tetrahedra = 0;  ///< that go
+};
+
+/// By the cells that a fusion removes, boundary triangles among them: what its cost is multiplied
+/// by (ALGORITHM.md, "Cost a cell").
+class CellShares {
+ public:
+  CellShares();
+  [[nodiscard]] double of(std::size_t cells) const {
+    return shares_[std::min(cells, shares_.size() - 1)];
+  }
+
+ private:
+  std::array<double, kMaxStarCells + 1> shares_{};
+};
+
+class FusionProposer {
+ public:
+  FusionProposer(const FusionMesh& mesh, const FusionCost& cost, const Touched& touched,
+                 const BandNodes& band, const FusionLimits& limits,
+                 const FusionPointOptions& options);
+
+  /// The edges of v that the band allows and whose highest vertex it is, cheapest first.
+  void candidatesOf(VertexId v, std::vector<Candidate>& found);
+  /// The same of a vertex that is higher than all of its neighbours, which are `link`, the ghost
+  /// perhaps among them.
+  void candidatesOf(VertexId v, std::span<const VertexId> link, std::vector<Candidate>& found);
+
+  struct Moment {
+    std::uint32_t levelStart, now;  ///< fusions decided on
+  };
+  /// The fusion of the first edge of `candidates`, which are `owner`'s, cheapest first; or of a
+  /// triangle or tetrahedron that holds it where that is cheaper for what it removes. Of an edge
+  /// whose price is above `most`, the price. False, and noted as illegal, when it cannot be. No
+  /// vertex touched since the level's start is taken along. REQUIRES: neither end of the edge is.
+  [[nodiscard]] bool propose(VertexId owner, std::span<const Candidate> candidates, float most,
+                             const Moment& moment, Proposal& out);
+
+ private:
+  void price(VertexId v, std::vector<Candidate>& found) const;
+  void takeAlong(std::span<const Candidate> others, float most, std::uint32_t levelStart,
+                 Proposal& out);
+  struct Larger {
+    Prey prey;
+    double share;  // of its cost
+  };
+  void findCompanions(const Proposal& edge, std::span<const Candidate> others, double below,
+                      std::uint32_t levelStart);
+  [[nodiscard]] std::optional<Larger> largerPrey(const Proposal& edge, double below) const;
+
+  const FusionMesh& mesh_;
+  const FusionCost& cost_;
+  const Touched& touched_;
+  const BandNodes& band_;
+  FusionCheck test_;
+  FusionPointFinder finder_;
+  CellShares shares_;
+  VertexCounts counts_;
+  std::vector<VertexId> companions_;  // the free ones first
+  std::size_t freeCompanions_ = 0;
+};
+
+}  // namespace qtet

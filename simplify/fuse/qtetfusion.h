@@ -1,0 +1,56 @@
+// QTetFusion (Chopra & Meyer, sections 3.2-3.5): fuses tetrahedra, triangles and edges into points
+// in order of what it costs, in levels of independent fusions, and keeps what undoes each of them
+// (ALGORITHM.md).
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "codec/mesh/mesh.h"
+#include "codec/record/fusion_history.h"
+#include "proto/error.h"
+#include "simplify/fuse/fusion_cost.h"
+#include "simplify/fuse/fusion_point.h"
+
+namespace qtet {
+
+/// ALGORITHM.md, "Bands".
+struct BandOptions {
+  /// Of the input, a leaf of the tree that bands keep to; 0: no bands.
+  std::size_t cellsPerPacket = 0;
+  /// With each more, small boxes take fewer bytes and coarse levels get worse.
+  std::size_t most = 6;
+  /// A band ends at the key that this fraction of the vertices' best edges does not pass at its
+  /// start. 0.9 to 1 trades the error of coarse levels for the bytes of a box
+  /// (tests/bench/REGIONS.md).
+  double dearest = 0.93;
+  /// A level of a band ends at this quantile of what the band can afford, 0..1.
+  double levelQuantile = 0.5;
+};
+
+struct FusionOptions {
+  /// Stop when this fraction of the cells remains, 0..1.
+  double targetRatio = 0.01;
+  CostOptions cost;
+  /// How far the boundary may leave the original solid, over the diagonal of its bounding box, >=
+  /// 0.
+  double envelopeTolerance = 0;
+  /// The cell field of one component whose values are regions that keep their topology.
+  std::optional<std::size_t> regionField;
+  /// What badly shaped new cells add to the cost, >= 0 (ALGORITHM.md, "Shape").
+  double shapeWeight = 0.5;
+  PlacementRule placement = PlacementRule::kAuto;
+  BandOptions bands;
+  int threads = 1;                                ///< the result never depends on it
+  std::function<void(double fraction)> progress;  ///< 0..1, called at most once a level
+};
+
+/// REQUIRES: `mesh` cleaned and quantised (clean_mesh.h, quantise.h). Vertices that no cell uses
+/// stay out of the history. Errors: bad-input (no tetrahedra, a ratio outside 0..1, weights that
+/// are negative or not one a field), limit-exceeded (too many levels).
+[[nodiscard]] Result<FusionHistory> simplify(const LatticeMesh& mesh, const FusionOptions& options);
+/// The same for a mesh that is not needed any more: its memory is given back before the first
+/// fusion.
+[[nodiscard]] Result<FusionHistory> simplify(LatticeMesh&& mesh, const FusionOptions& options);
+
+}  // namespace qtet

@@ -1,0 +1,176 @@
+#include "simplify/log/kept_input.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "codec/log/exact_values.h"
+
+namespace qtet {
+namespace {
+
+Approximation positionsOf(const LatticeMesh& mesh, std::span<const std::int32_t> integers,
+                          std::string type) {
+  return {integers,
+          3,
+          {mesh.lattice.origin.begin(), mesh.lattice.origin.end()},
+          mesh.lattice.step,
+          std::move(type)};
+}
+
+Approximation fieldOf(const LatticeMesh& mesh, std::size_t f) {
+  const FieldInfo& info = mesh.fields[f];
+  return {mesh.values[f], info.components, info.minimum, info.step, info.type};
+}
+
+std::vector<std::int32_t> flat(const std::vector<LatticePoint>& points) {
+  std::vector<std::int32_t> out;
+  out.reserve(points.size() * 3);
+  for (const LatticePoint& p : points) out.insert(out.end(), p.begin(), p.end());
+  return out;
+}
+
+/// An integer field that its own integers restore: step 1, values below 2^28.
+bool losesNothing(const FieldInfo& field) { return !isFloatType(field.type) && field.step == 1; }
+
+std::vector<std::uint32_t> inverse(const std::vector<std::uint32_t>& permutation) {
+  std::vector<std::uint32_t> out(permutation.size());
+  for (std::uint32_t i = 0; i < permutation.size(); ++i) out[permutation[i]] = i;
+  return out;
+}
+
+/// Tuple i of the result is tuple `from[i]`.
+template <class T>
+std::vector<T> gathered(const std::vector<T>& values, std::size_t components,
+                        const std::vector<std::uint32_t>& from) {
+  std::vector<T> out;
+  out.reserve(values.size());
+  for (const std::uint32_t i : from)
+    for (std::size_t c = 0; c < components; ++c) out.push_back(values[i * components + c]);
+  return out;
+}
+
+std::vector<NewClosing> exactBlocks(const LatticeMesh& finest, const EncodedLog& log,
+                                    const TetMesh& input) {
+  std::vector<NewClosing> out;
+  std::vector<double> positions;
+  for (const VertexId v : log.points)
+    positions.insert(positions.end(), input.points[v].begin(), input.points[v].end());
+  const std::vector<std::int32_t> integers = flat(finest.points);
+  const bool wide = input.pointType != "float32";
+  Bytes block{static_cast<std::uint8_t>(wide)};
+  const Bytes stream =
+      encodeExact(positionsOf(finest, integers, wide ? "float64" : "float32"), positions);
+  block.insert(block.end(), stream.begin(), stream.end());
+  out.push_back({ClosingKind::kExactPositions, 0, std::move(block)});
+  for (std::uint32_t f = 0; f < finest.fields.size(); ++f) {
+    if (losesNothing(finest.fields[f])) continue;
+    const std::vector<double> exact =
+        gathered(input.fields[f].values, input.fields[f].components,
+                 isCellField(input.fields[f]) ? log.tetrahedra : log.points);
+    out.push_back({ClosingKind::kExactField, f, encodeExact(fieldOf(finest, f), exact)});
+  }
+  return out;
+}
+
+}  // namespace
+
+TetMesh asRead(const TetMesh& cleaned, const std::vector<Tetrahedron>& before,
+               const CleanReport& report) {
+  TetMesh out = cleaned;
+  if (report.repeatedVertexCells.count + report.duplicateCells.count + report.unusedPoints.count ==
+      0)
+    out.tetrahedra = before;
+  return out;
+}
+
+Result<Bytes> withInput(const EncodedLog& log, const KeptInput& input) {
+  Result<LogFile> file = LogFile::fromBytes(log.bytes);
+  if (!file) return std::unexpected(file.error());
+  const Result<LatticeMesh> finest = meshAtLevel(*file, file->index().chunks.back().lastLevel);
+  if (!finest) return std::unexpected(finest.error());
+  std::vector<NewClosing> blocks;
+  if (input.options.order) {
+    const DecodedMesh decoded{finest->points, finest->tetrahedra};
+    const InputOrder order{inverse(log.points), inverse(log.tetrahedra), input.mesh.tetrahedra};
+    blocks.push_back({ClosingKind::kPointOrder, 0, encodePointOrder(decoded, order.points)});
+    blocks.push_back({ClosingKind::kCellOrder, 0, encodeCellOrder(decoded, order)});
+  }
+  if (input.options.exact)
+    for (NewClosing& block : exactBlocks(*finest, log, input.mesh))
+      blocks.push_back(std::move(block));
+  return withClosing(*file, blocks);
+}
+
+Result<RestoredInput> restoreInput(const LogFile& log, const LatticeMesh& finest) {
+  RestoredInput out;
+  out.points.resize(finest.points.size());
+  std::iota(out.points.begin(), out.points.end(), 0u);
+  out.cells.resize(finest.tetrahedra.size());
+  std::iota(out.cells.begin(), out.cells.end(), 0u);
+  const DecodedMesh decoded{finest.points, finest.tetrahedra};
+  if (log.index().closingBlock(ClosingKind::kPointOrder) != nullptr &&
+      log.index().closingBlock(ClosingKind::kCellOrder) != nullptr) {
+    const Result<ByteView> pointBytes = log.closing(ClosingKind::kPointOrder),
+                           cellBytes = log.closing(ClosingKind::kCellOrder);
+    if (!pointBytes) return std::unexpected(pointBytes.error());
+    if (!cellBytes) return std::unexpected(cellBytes.error());
+    Result<std::vector<VertexId>> points = decodePointOrder(decoded, *pointBytes);
+    if (!points) return std::unexpected(points.error());
+    out.order.emplace().points = std::move(*points);
+    if (Status s = decodeCellOrder(decoded, *cellBytes, *out.order); !s)
+      return std::unexpected(s.error());
+    out.points = out.order->points;
+    out.cells = out.order->cells;
+  }
+  out.lattice = finest;
+  for (std::size_t i = 0; i < out.points.size(); ++i)
+    out.lattice.points[i] = finest.points[out.points[i]];
+  if (out.order) out.lattice.tetrahedra = out.order->tetrahedra;
+  out.mesh.tetrahedra = out.lattice.tetrahedra;
+
+  std::vector<double> positions;
+  if (log.index().closingBlock(ClosingKind::kExactPositions) != nullptr) {
+    const Result<ByteView> bytes = log.closing(ClosingKind::kExactPositions);
+    if (!bytes) return std::unexpected(bytes.error());
+    if (bytes->empty() || (*bytes)[0] > 1)
+      return fail(ErrorCode::kBadValue, "exact positions of an unknown type; use a newer qtet");
+    out.mesh.pointType = (*bytes)[0] == 1 ? "float64" : "float32";
+    const std::vector<std::int32_t> integers = flat(finest.points);
+    Result<std::vector<double>> exact =
+        decodeExact(positionsOf(finest, integers, out.mesh.pointType), bytes->subspan(1));
+    if (!exact) return std::unexpected(exact.error());
+    positions = std::move(*exact);
+    out.exactPositions = true;
+  }
+  for (std::size_t i = 0; i < out.points.size(); ++i) {
+    const std::size_t slot = out.points[i];
+    out.mesh.points.push_back(
+        out.exactPositions
+            ? Position{positions[3 * slot], positions[3 * slot + 1], positions[3 * slot + 2]}
+            : finest.lattice.position(finest.points[slot]));
+  }
+  for (std::uint32_t f = 0; f < finest.fields.size(); ++f) {
+    const FieldInfo& info = finest.fields[f];
+    const std::vector<std::uint32_t>& from = isCellField(info) ? out.cells : out.points;
+    std::vector<double> values;
+    out.exactFields.push_back(losesNothing(info));
+    if (log.index().closingBlock(ClosingKind::kExactField, f) != nullptr) {
+      const Result<ByteView> bytes = log.closing(ClosingKind::kExactField, f);
+      if (!bytes) return std::unexpected(bytes.error());
+      Result<std::vector<double>> exact = decodeExact(fieldOf(finest, f), *bytes);
+      if (!exact) return std::unexpected(exact.error());
+      values = std::move(*exact);
+      out.exactFields.back() = true;
+    } else {
+      for (std::size_t i = 0; i < finest.values[f].size(); ++i)
+        values.push_back(info.value(i % info.components, finest.values[f][i]));
+    }
+    out.lattice.values[f] = gathered(finest.values[f], info.components, from);
+    out.mesh.fields.push_back({info.name, info.components, info.type,
+                               gathered(values, info.components, from), info.association});
+  }
+  return out;
+}
+
+}  // namespace qtet

@@ -1,0 +1,55 @@
+// The input itself behind its log: its numbering (--keep-order) and its own numbers (--lossless),
+// in both directions (FORMAT.md, "Closing blocks").
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "codec/log/log_edit.h"
+#include "codec/log/log_file.h"
+#include "codec/log/log_writer.h"
+#include "codec/mesh/input_order.h"
+#include "simplify/clean/clean_mesh.h"
+#include "simplify/mesh/tet_mesh.h"
+
+namespace qtet {
+
+struct KeepOptions {
+  bool order = false;
+  bool exact = false;
+
+  [[nodiscard]] bool any() const { return order || exact; }
+};
+
+/// What has to be remembered of the input until its log is encoded.
+struct KeptInput {
+  KeepOptions options;
+  TetMesh mesh;  ///< cleaned, but the cells' vertices in the order of the file
+};
+
+/// `cleaned` with the order of vertices that its cells had before (`before`: the mesh as it was
+/// read). Where cleaning dropped points or cells, turned cells stay turned.
+[[nodiscard]] TetMesh asRead(const TetMesh& cleaned, const std::vector<Tetrahedron>& before,
+                             const CleanReport& report);
+
+/// The closing blocks of what is kept, for a log just encoded; bytes with them. Errors:
+/// limit-exceeded, and all that decoding gives.
+[[nodiscard]] Result<Bytes> withInput(const EncodedLog& log, const KeptInput& input);
+
+/// What a log knows of its input, in the input's numbering where it has that, else in slot order.
+struct RestoredInput {
+  std::optional<InputOrder> order;
+  std::vector<VertexId> points;  ///< slot of point i
+  std::vector<CellId> cells;     ///< slot of cell i
+  bool exactPositions = false;
+  std::vector<bool> exactFields;  ///< one a field; true also of integers that lose nothing
+  LatticeMesh lattice;            ///< renumbered
+  TetMesh mesh;                   ///< the same in floats, exact where known
+};
+
+/// `finest` is the mesh of the last level with all fields, in slot order. Errors: bad-checksum,
+/// bad-value.
+[[nodiscard]] Result<RestoredInput> restoreInput(const LogFile& log, const LatticeMesh& finest);
+
+}  // namespace qtet

@@ -1,0 +1,131 @@
+#include "simplify/measure/measure_error.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "codec/coding/error_figure.h"
+#include "codec/coding/level_columns.h"
+#include "proto/field_key.h"
+#include "simplify/measure/measure_boundary.h"
+#include "simplify/measure/measure_fields.h"
+#include "simplify/mesh/workers.h"
+
+namespace qtet {
+namespace {
+
+struct Samples {
+  std::uint32_t volume, vertices, surface, levelSurface, grid;
+};
+
+/// Cells that pay for one place in the volume: measured, ALGORITHM.md, "Known error".
+constexpr std::size_t kCellsPerSample = 10;
+constexpr std::size_t kFewest = 3000, kMax = 50000;
+/// On a level's boundary, where nothing is kept from level to level and a search takes the longest.
+constexpr std::uint32_t kFewestOnLevel = 300;
+constexpr Samples kAllSamples{200000, 200000, 200000, 200000, 1000000};
+
+Samples samplesFor(Effort effort, const FusionHistory& history) {
+  if (effort == Effort::kAll) return kAllSamples;
+  const auto isTetrahedron = [](const Tetrahedron& cell) { return cell[3] != kGhost; };
+  const auto cells = static_cast<std::size_t>(
+      std::ranges::partition_point(history.cells, isTetrahedron) - history.cells.begin());
+  const auto volume =
+      static_cast<std::uint32_t>(std::clamp(cells / kCellsPerSample, kFewest, kMax));
+  return {volume, volume / 4, volume / 4, std::max(volume / 24, kFewestOnLevel), volume / 4};
+}
+
+/// Distances over the diagonal below this are what doubles make of none: a lattice step is a
+/// thousand times as much on the finest lattice.
+constexpr double kNoDistance = 1e-12;
+
+double roundedDistance(double d) { return d < kNoDistance ? 0 : roundedUp(d); }
+OneSidedDistance rounded(const OneSidedDistance& d) {
+  return {roundedDistance(d.mean), roundedDistance(d.max)};
+}
+double roundedVolume(double kept) { return std::round(kept * kVolumeFigure) / kVolumeFigure; }
+
+class ErrorMeter {
+ public:
+  ErrorMeter(HistoryLevels& levels, const MeasureOptions& options, const Samples& samples)
+      : workers_(options.threads),
+        mesh_(levels),
+        boundary_(mesh_,
+                  {samples.surface, samples.levelSurface, samples.grid, options.seed, &workers_}),
+        fields_(mesh_, {samples.volume, samples.vertices, options.seed ^ kFieldSeed, &workers_}) {}
+
+  void coarsen() {
+    mesh_.coarsen();
+    boundary_.follow();
+    fields_.follow();
+  }
+
+  [[nodiscard]] LevelError measure() {
+    LevelError out{rounded(boundary_.toLevel()),
+                   rounded(boundary_.toOriginal()),
+                   roundedVolume(mesh_.volumeKept()),
+                   {}};
+    for (const FieldError& error : fields_.errors())
+      out.fields.push_back({roundedUp(error.rms), roundedUp(error.max)});
+    return out;
+  }
+
+ private:
+  static constexpr std::uint64_t kFieldSeed = 0x5EEDF1E1D5u;  // other numbers than the surface's
+
+  Workers workers_;
+  MeasuredMesh mesh_;
+  BoundaryMeter boundary_;
+  FieldMeter fields_;
+};
+
+using FieldBound = std::pair<std::size_t, double>;
+
+Result<std::vector<FieldBound>> fieldBounds(const FusionHistory& history,
+                                            const ErrorBounds& bounds) {
+  std::vector<FieldBound> out;
+  for (const auto& [name, bound] : bounds.fields) {
+    const auto field = fieldOfKey(history.fields, name);
+    if (!field)
+      return fail(
+          ErrorCode::kNotFound,
+          "no field '" + name + "' to keep an error bound of; name one that the log carries");
+    out.emplace_back(*field, bound);
+  }
+  return out;
+}
+
+}  // namespace
+
+Result<std::vector<LevelError>> measureLevels(FusionHistory& history,
+                                              const MeasureOptions& options) {
+  const Result<std::vector<FieldBound>> bounds = fieldBounds(history, options.bounds);
+  if (!bounds) return std::unexpected(bounds.error());
+  const auto isWithin = [&](const LevelError& error) {
+    const auto keeps = [&](const FieldBound& bound) {
+      return error.fields[bound.first].rms <= bound.second;
+    };
+    return error.boundaryDistance() <= options.bounds.boundary.value_or(error.boundaryDistance()) &&
+           std::ranges::all_of(*bounds, keeps);
+  };
+
+  HistoryLevels levels(history);
+  ErrorMeter meter(levels, options, samplesFor(options.effort, history));
+  std::vector<LevelError> out{meter.measure()};
+  while (levels.level() > 0) {
+    meter.coarsen();
+    LevelError error = meter.measure();
+    if (!isWithin(error)) {
+      levels.refine();
+      break;
+    }
+    out.push_back(std::move(error));
+    if (options.progress)
+      options.progress(static_cast<double>(out.size()) / (levels.finest() + 1.0));
+  }
+  levels.forgetCoarser();
+  std::ranges::reverse(out);
+  return out;
+}
+
+}  // namespace qtet

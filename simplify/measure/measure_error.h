@@ -1,0 +1,48 @@
+// The known error: each level of a history measured against the original, as it goes into the log's
+// manifest (ALGORITHM.md, "Known error").
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "codec/record/fusion_history.h"
+#include "proto/error.h"
+#include "proto/level_error.h"
+
+namespace qtet {
+
+/// How many places stand for the surfaces and the volume.
+enum class Effort : std::uint8_t {
+  kLevels,  ///< as many as keep measuring well below the cost of simplifying
+  kAll,     ///< 200,000 in the volume and on each boundary, whatever that costs
+};
+
+/// What a level may be off by. A level beyond is no level.
+struct ErrorBounds {
+  std::optional<double> boundary;                      ///< LevelError::boundaryDistance()
+  std::vector<std::pair<std::string, double>> fields;  ///< name and rms
+
+  [[nodiscard]] bool any() const { return boundary.has_value() || !fields.empty(); }
+};
+
+struct MeasureOptions {
+  Effort effort = Effort::kLevels;
+  ErrorBounds bounds;
+  int threads = 1;  ///< the result does not depend on it
+  std::uint64_t seed = 1;
+  std::function<void(double fraction)> progress;  ///< 0..1, called once a level
+};
+
+/// The error of each level, coarse-first, the last one (the original itself) all zero. Figures are
+/// those that a log can tell (errors rounded up to three significant digits, volumeKept to 10^-6)
+/// and depend on the history and the options only. With bounds, `history` forgets the coarse levels
+/// from the first one on, counted from the finest, that passes a bound; level 0 is then the
+/// coarsest such that it and all finer ones keep them. Errors: not-found (a bound names no field of
+/// the history). REQUIRES: as HistoryLevels; it stands at level 0 before and after.
+[[nodiscard]] Result<std::vector<LevelError>> measureLevels(FusionHistory& history,
+                                                            const MeasureOptions& options);
+
+}  // namespace qtet

@@ -1,0 +1,202 @@
+#include "simplify/measure/measure_fields.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "simplify/measure/measure_boundary.h"
+#include "simplify/mesh/workers.h"
+
+namespace qtet {
+namespace {
+
+/// A place on a face may miss the cells on both its sides by rounding: it is covered while no
+/// barycentric coordinate is below this.
+constexpr double kRounding = 1e-9;
+
+/// Barycentric coordinates of p; false where the cell is flat or where one coordinate is not above
+/// `least`.
+bool weightsIn(const std::array<Vector3, 4>& corners, const Vector3& p, double least,
+               std::array<double, 4>& weights) {
+  const Vector3 ab = corners[1] - corners[0], ac = corners[2] - corners[0],
+                ad = corners[3] - corners[0], ap = p - corners[0];
+  const Vector3 acad = cross(ac, ad);
+  const double volume = dot(ab, acad);
+  if (volume == 0) return false;
+  const double scale = 1 / volume;
+  weights[1] = dot(ap, acad) * scale;
+  if (!(weights[1] > least)) return false;
+  const Vector3 abap = cross(ab, ap);
+  weights[2] = dot(abap, ad) * scale;
+  weights[3] = dot(abap, ac) * -scale;
+  weights[0] = 1 - weights[1] - weights[2] - weights[3];
+  return weights[2] > least && weights[3] > least && weights[0] > least;
+}
+
+}  // namespace
+
+FieldMeter::FieldMeter(const MeasuredMesh& mesh, const FieldOptions& options)
+    : mesh_(mesh), options_(options) {
+  const FusionHistory& history = mesh.history();
+  if (history.fields.empty()) return;
+  std::vector<std::uint8_t> isOriginal(history.points.size(), 0);
+  for (std::uint32_t id = 0; id < history.cells.size() && !mesh.isGhost(id); ++id)
+    for (const VertexId v : history.cells[id]) isOriginal[v] = 1;
+  findRanges(isOriginal);
+  for (const Sample& sample :
+       samplesInVolume(history.points, history.cells, options.samples, options.seed))
+    places_.push_back({sample, {}, sample.cell});
+  uniform_ = places_.size();
+  addVertices(std::move(isOriginal));
+  keepTruth();
+  squaredErrors_.assign(history.fields.size(), std::vector<double>(places_.size(), 0));
+}
+
+// Every so-many-th vertex, in the order in which the cells meet them, each in the first cell that
+// has it.
+void FieldMeter::addVertices(std::vector<std::uint8_t> isOriginal) {
+  const FusionHistory& history = mesh_.history();
+  const auto vertices =
+      static_cast<std::size_t>(std::count(isOriginal.begin(), isOriginal.end(), std::uint8_t{1}));
+  const std::size_t step = vertices / std::max(options_.vertices, 1u) + 1;
+  std::size_t met = 0;
+  for (std::uint32_t id = 0; id < history.cells.size() && !mesh_.isGhost(id); ++id)
+    for (std::size_t i = 0; i < 4; ++i) {
+      const VertexId v = history.cells[id][i];
+      if (std::exchange(isOriginal[v], std::uint8_t{0}) == 0 || met++ % step != 0) continue;
+      places_.push_back({{toVector(history.points[v]), id, {}}, {}, id});
+      places_.back().sample.weights[i] = 1;
+    }
+}
+
+void FieldMeter::findRanges(const std::vector<std::uint8_t>& isOriginal) {
+  const FusionHistory& history = mesh_.history();
+  for (std::size_t f = 0; f < history.fields.size(); ++f) {
+    const std::size_t components = history.fields[f].components;
+    double squared = 0;
+    for (std::size_t c = 0; c < components; ++c) {
+      std::int32_t low = std::numeric_limits<std::int32_t>::max(),
+                   high = std::numeric_limits<std::int32_t>::min();
+      const bool ofCells = isCellField(history.fields[f]);
+      for (std::size_t i = 0;
+           i < (ofCells ? history.values[f].size() / components : isOriginal.size()); ++i) {
+        if (!ofCells && !isOriginal[i]) continue;
+        low = std::min(low, history.values[f][i * components + c]);
+        high = std::max(high, history.values[f][i * components + c]);
+      }
+      const double range = static_cast<double>(high) - static_cast<double>(low);
+      squared += range * range;
+    }
+    ranges_.push_back(std::sqrt(squared));
+  }
+}
+
+void FieldMeter::keepTruth() {
+  const FusionHistory& history = mesh_.history();
+  for (std::size_t f = 0; f < history.fields.size(); ++f) {
+    const std::size_t components = history.fields[f].components;
+    std::vector<double>& truth = truth_.emplace_back();
+    truth.reserve(places_.size() * components);
+    for (const Place& place : places_)
+      for (std::size_t c = 0; c < components; ++c) truth.push_back(valueAt(place, f, c));
+  }
+}
+
+double FieldMeter::valueAt(const Place& place, std::size_t field, std::size_t component) const {
+  const FusionHistory& history = mesh_.history();
+  const std::size_t components = history.fields[field].components;
+  if (isCellField(history.fields[field]))
+    return history.values[field][place.tetrahedron * components + component];
+  const auto& cell = history.cells[place.sample.cell];
+  const std::size_t corners = cell[3] == kGhost ? 3 : 4;
+  double value = 0;
+  for (std::size_t i = 0; i < corners; ++i)
+    value += place.sample.weights[i] * history.values[field][cell[i] * components + component];
+  return value;
+}
+
+void FieldMeter::follow() {
+  options_.workers->forRuns(places_.size(), kPlacesPerRun, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      if (follow(places_[i])) measure(i);
+  });
+}
+
+bool FieldMeter::follow(Place& place) const {
+  const Fusion* fusion = mesh_.fusionOf(place.sample.cell);
+  if (fusion == nullptr) return false;
+  if (mesh_.isGhost(place.sample.cell)) {
+    leave(*fusion, place);
+  } else if (findIn(*fusion, place)) {
+    place.tetrahedron = place.sample.cell;
+  } else {
+    leave(*fusion, place);
+  }
+  return true;
+}
+
+bool FieldMeter::findIn(const Fusion& fusion, Place& place) const {
+  const FusionHistory& history = mesh_.history();
+  double best = -std::numeric_limits<double>::infinity();
+  bool mayLeave = false;
+  std::array<double, 4> weights;
+  const auto tryCells = [&](double least) {
+    for (const std::uint32_t id : mesh_.affected(fusion)) {
+      const auto& cell = history.cells[id];
+      if (cell[3] == kGhost) {
+        mayLeave = true;
+        continue;
+      }
+      std::array<Vector3, 4> corners;
+      for (std::size_t i = 0; i < 4; ++i) corners[i] = toVector(history.points[cell[i]]);
+      if (!weightsIn(corners, place.sample.at, std::max(least, best), weights)) continue;
+      best = *std::ranges::min_element(weights);
+      place.sample.cell = id;
+      place.sample.weights = weights;
+      if (best >= 0) return true;
+    }
+    return best > least;
+  };
+  // Nearly always a cell holds the place. Rounding at a face, or an inverted cell of the input, may
+  // leave it just beside all of them.
+  if (tryCells(-kRounding)) return true;
+  return !mayLeave && tryCells(-std::numeric_limits<double>::infinity());
+}
+
+void FieldMeter::leave(const Fusion& fusion, Place& place) const {
+  followFusion(mesh_, fusion, place.sample.at, place.nearest);
+  mesh_.boundaryTree().nearest(place.sample.at, place.nearest);
+  place.sample.cell = place.nearest.triangle;
+  const auto& weights = place.nearest.point.weights;
+  place.sample.weights = {weights[0], weights[1], weights[2], 0};
+}
+
+void FieldMeter::measure(std::size_t place) {
+  for (std::size_t f = 0; f < truth_.size(); ++f) {
+    if (!(ranges_[f] > 0)) continue;
+    const std::size_t components = mesh_.history().fields[f].components;
+    double squared = 0;
+    for (std::size_t c = 0; c < components; ++c) {
+      const double apart = valueAt(places_[place], f, c) - truth_[f][place * components + c];
+      squared += apart * apart;
+    }
+    squaredErrors_[f][place] = squared / (ranges_[f] * ranges_[f]);
+  }
+}
+
+std::vector<FieldError> FieldMeter::errors() const {
+  std::vector<FieldError> out;
+  for (const std::vector<double>& squared : squaredErrors_) {
+    double sum = 0, worst = 0;
+    for (std::size_t i = 0; i < squared.size(); ++i) {
+      if (i < uniform_) sum += squared[i];
+      worst = std::max(worst, squared[i]);
+    }
+    out.push_back(
+        {uniform_ == 0 ? 0 : std::sqrt(sum / static_cast<double>(uniform_)), std::sqrt(worst)});
+  }
+  return out;
+}
+
+}  // namespace qtet

@@ -1,0 +1,68 @@
+// How far the fields of a level are from the original's, over the original's volume.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "proto/level_error.h"
+#include "simplify/measure/measure_samples.h"
+#include "simplify/measure/measured_mesh.h"
+
+namespace qtet {
+
+class Workers;
+
+struct FieldOptions {
+  std::uint32_t samples = 0;  ///< places in the original's volume, uniform
+  /// Of the original at most, for the maximum: an error is largest at a vertex of one of the
+  /// meshes.
+  std::uint32_t vertices = 0;
+  std::uint64_t seed = 0;
+  Workers* workers = nullptr;  ///< not null; the result does not depend on how many they are
+};
+
+/// The error of a field at a place is the Euclidean norm of the difference over the diagonal of the
+/// box that the original's values fill (for one component: over their range), 0 for a constant
+/// field. Where the level's solid does not cover a place, its value is that at the nearest point of
+/// its boundary. A cell field's value there is that of the cell that held the place last. Places
+/// are followed from cell to cell through the fusions. A place that the solid has left stays
+/// outside: true while each level is a subset of the one before it, otherwise the value at the
+/// boundary differs from the one inside by what the field changes within the tolerance.
+class FieldMeter {
+ public:
+  /// REQUIRES: `mesh` at its finest level. It must outlive this.
+  FieldMeter(const MeasuredMesh& mesh, const FieldOptions& options);
+
+  /// The step that `mesh` has just done.
+  void follow();
+  /// One a field of the history, in its order.
+  [[nodiscard]] std::vector<FieldError> errors() const;
+
+ private:
+  struct Place {
+    // its cell is a ghost cell where the place is not covered: the nearest one
+    Sample sample;
+    NearestTriangle nearest;  // of a place that is not covered
+    CellId tetrahedron = 0;   // the last that covered it
+  };
+
+  void findRanges(const std::vector<std::uint8_t>& isOriginal);
+  void addVertices(std::vector<std::uint8_t> isOriginal);
+  void keepTruth();
+  [[nodiscard]] double valueAt(const Place& place, std::size_t field, std::size_t component) const;
+  /// Whether the place's cell or weights have changed.
+  [[nodiscard]] bool follow(Place& place) const;
+  [[nodiscard]] bool findIn(const Fusion& fusion, Place& place) const;
+  void leave(const Fusion& fusion, Place& place) const;
+  void measure(std::size_t place);
+
+  const MeasuredMesh& mesh_;
+  FieldOptions options_;
+  std::vector<Place> places_;
+  std::size_t uniform_ = 0;                 // the first places, which the rms is taken over
+  std::vector<double> ranges_;              // in field steps
+  std::vector<std::vector<double>> truth_;  // per field, components a place
+  std::vector<std::vector<double>> squaredErrors_;
+};
+
+}  // namespace qtet

@@ -1,0 +1,76 @@
+// The nearest triangle of a surface on the lattice: a tree of bounding boxes that follows a surface
+// which is being simplified.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "codec/mesh/mesh.h"
+#include "simplify/mesh/measure_geometry.h"
+
+namespace qtet {
+
+/// A triangle and its point nearest to some place. A fresh one is infinitely far away.
+struct NearestTriangle {
+  std::uint32_t triangle = 0;
+  NearestPoint point{std::numeric_limits<double>::infinity(), {}};
+};
+
+/// Beside the boxes the nodes of a surface whose triangles are long and thin and askew have slabs
+/// along one of their triangles, since there boxes hold one another: in a fan of n triangles every
+/// box holds a place of a share of all others. Slabs leave out of a search what boxes do not, never
+/// what is nearest. Triangle i has the first three vertices of cells[i]: a ghost cell, or a copy of
+/// one. Reading is safe from any thread.
+class TriangleTree {
+ public:
+  using Cell = std::array<VertexId, 4>;
+
+  /// A tree over the triangles `ids`. What the spans show must outlive it; vertices may change
+  /// between two refits.
+  TriangleTree(std::span<const LatticePoint> points, std::span<const Cell> cells,
+               std::vector<std::uint32_t> ids);
+
+  /// Fits the boxes to the vertices as they are now and leaves out the triangles that do not live
+  /// any more. Linear time without slabs, n log n with them.
+  void refit(std::span<const std::uint8_t> live);
+  [[nodiscard]] std::size_t builtOver() const { return ids_.size(); }
+
+  /// Puts the nearest triangle into `best` if it is nearer than what stands there: a good guess
+  /// makes the search short. A search for a maximum may end at any triangle whose squared distance
+  /// is not above `enough`. Returns what it took: nodes looked into.
+  std::size_t nearest(const Vector3& p, NearestTriangle& best, double enough = 0) const;
+  /// The same for one triangle.
+  void tryTriangle(const Vector3& p, std::uint32_t triangle, NearestTriangle& best) const;
+
+ private:
+  struct Node {
+    LatticePoint low, high;  // low > high where nothing lives
+    // second child, the first one follows its parent; 0 = a leaf
+    std::uint32_t right = 0;
+    std::uint32_t first = 0, count = 0;  // of a leaf, into ids_
+  };
+
+  /// What lies between two planes, twice: along the surface across its triangles, and away from it.
+  struct Slabs {
+    std::array<Vector3, 2> axis;      // unit vectors
+    std::array<double, 2> low, high;  // low > high where nothing lives
+  };
+
+  void build(std::uint32_t first, std::uint32_t count);
+  void fit(Node& leaf) const;
+  [[nodiscard]] bool isCrowded() const;
+  void fitSlabs(std::span<const std::uint8_t> live);
+  [[nodiscard]] Slabs slabsOf(const Node& node, std::span<const std::uint8_t> live) const;
+  [[nodiscard]] static double squaredDistance(const Vector3& p, const Slabs& slabs);
+  [[nodiscard]] static double squaredDistance(const Vector3& p, const Node& node);
+
+  std::span<const LatticePoint> points_;
+  std::span<const Cell> cells_;
+  std::vector<std::uint32_t> ids_;
+  std::vector<Node> nodes_;
+  std::vector<Slabs> slabs_;  // one a node, or none
+};
+
+}  // namespace qtet

@@ -1,0 +1,31 @@
+// Values that are missing (NaN) on their way through the simplifier, which wants a number
+// everywhere: filled in before, cut out again after.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "codec/mesh/mesh.h"
+#include "codec/record/fusion_history.h"
+
+namespace qtet {
+
+/// Gives each missing value the value of a point or cell that is nearest along the mesh, by steps
+/// from point to point of one cell, or from cell to cell over a point; 0 where none is to be
+/// reached. `missing` has one flag a value.
+void fillMissing(std::span<const Tetrahedron> cells, const FieldInfo& field,
+                 std::span<const std::uint8_t> missing, std::vector<std::int32_t>& values);
+
+/// A history's values of a field with the missing values put back: `missing` are those of the
+/// original's points or cells. A fused vertex is missing if all of its prey are.
+[[nodiscard]] std::vector<std::int32_t> withMissing(const FusionHistory& history,
+                                                    const FieldInfo& field,
+                                                    std::vector<std::uint8_t> missing,
+                                                    std::vector<std::int32_t> values);
+
+/// The same for all fields that have missing values; one list a field, empty without missing
+/// values.
+void restoreMissing(FusionHistory& history, const std::vector<std::vector<std::uint8_t>>& missing);
+
+}  // namespace qtet

@@ -1,0 +1,132 @@
+#include "simplify/mesh/workers.h"
+
+#include <algorithm>
+#include <exception>
+#include <new>
+#include <system_error>
+
+namespace qtet {
+namespace {
+
+// Looks at a counter this often before a worker sleeps, some tens of microseconds: less than it
+// takes to be woken, more than the pause between two jobs.
+constexpr int kSpins = 4000;
+
+inline void pause() {
+#if defined(__x86_64__) || defined(__i386__)
+  __builtin_ia32_pause();
+#endif
+}
+
+}  // namespace
+
+void waitALittle(int spins) { spins < kSpins ? pause() : std::this_thread::yield(); }
+
+int threadsAtOnce(int asked) {
+  return std::min(asked, std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
+}
+
+struct Workers::Job {
+  const std::function<void(std::size_t)>& others;
+  std::exception_ptr failure;  // under the mutex
+};
+
+Workers::Workers(int threads) {
+  threads_.reserve(static_cast<std::size_t>(std::max(threads, 1) - 1));
+  try {
+    for (int i = 1; i < threads; ++i)
+      threads_.emplace_back([this, i] { serve(static_cast<std::size_t>(i)); });
+  } catch (const std::system_error&) {
+    // The result does not depend on how many there are.
+  } catch (const std::bad_alloc&) {  // and those that run already could not be left alone
+  }
+}
+
+Workers::~Workers() {
+  {
+    const std::lock_guard lock(mutex_);
+    ending_ = true;
+  }
+  changed_.notify_all();
+  for (std::thread& t : threads_) t.join();
+}
+
+void Workers::beside(const std::function<void(std::size_t)>& others,
+                     const std::function<void()>& own) {
+  if (threads_.empty()) return own();
+  Job job{others, {}};
+  {
+    const std::lock_guard lock(mutex_);
+    job_ = &job;
+    ++jobs_;
+  }
+  changed_.notify_all();
+  std::exception_ptr failure;
+  try {
+    own();
+  } catch (...) {
+    failure = std::current_exception();
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    job_ = nullptr;  // who has not come by now need not be waited for
+  }
+  for (int spins = 0; busy_ > 0; ++spins) waitALittle(spins);
+  if (failure) std::rethrow_exception(failure);
+  if (job.failure) std::rethrow_exception(job.failure);
+}
+
+void Workers::forEach(std::size_t n, std::size_t grain,
+                      const std::function<void(std::size_t, std::size_t)>& work) {
+  if (threads_.empty() || n <= grain) {
+    for (std::size_t i = 0; i < n; ++i) work(0, i);
+    return;
+  }
+  std::atomic<std::size_t> next{0};
+  const auto take = [&](std::size_t worker) {
+    try {
+      for (std::size_t first = next.fetch_add(grain); first < n; first = next.fetch_add(grain))
+        for (std::size_t i = first; i < std::min(n, first + grain); ++i) work(worker, i);
+    } catch (...) {
+      next = n;
+      throw;
+    }
+  };
+  beside(take, [&] { take(0); });
+}
+
+void forEach(Workers* workers, std::size_t n, std::size_t grain,
+             const std::function<void(std::size_t, std::size_t)>& work) {
+  if (workers) return workers->forEach(n, grain, work);
+  for (std::size_t i = 0; i < n; ++i) work(0, i);
+}
+
+/// The next job after the first `seen`, the caller counted as busy with it; null when there will be
+/// none.
+Workers::Job* Workers::next(std::size_t& seen) {
+  for (;;) {
+    for (int spins = 0; spins < kSpins && jobs_ == seen; ++spins) pause();
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return ending_ || jobs_ != seen; });
+    if (ending_) return nullptr;
+    seen = jobs_;
+    if (job_ == nullptr) continue;  // over already
+    ++busy_;
+    return job_;
+  }
+}
+
+void Workers::serve(std::size_t worker) {
+  std::size_t seen = 0;
+  while (Job* job = next(seen)) {
+    try {
+      job->others(worker);
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      if (!job->failure) job->failure = std::current_exception();
+    }
+    --busy_;
+  }
+}
+
+}  // namespace qtet

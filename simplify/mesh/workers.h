@@ -1,0 +1,70 @@
+// A few threads that wait for the next piece of work: for loops too short to start threads for.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <condition_variable>
+#include <cstddef>
+#include <functional>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace qtet {
+
+/// Of the threads that were asked for as many as the machine runs at once: more would wait for one
+/// another, ten times as long with 256 on two cores.
+[[nodiscard]] int threadsAtOnce(int asked);
+
+/// For who looks at something again and again until another thread has done it: a moment, and from
+/// some tens of microseconds on the processor's next task.
+void waitALittle(int spins);
+
+class Workers {
+ public:
+  /// `threads` >= 1, the caller's included; fewer where the system gives no more.
+  explicit Workers(int threads);
+  ~Workers();
+  Workers(const Workers&) = delete;
+  Workers& operator=(const Workers&) = delete;
+
+  [[nodiscard]] std::size_t count() const { return threads_.size() + 1; }
+
+  /// Calls own() here, and others(worker) in each of the other workers, from 1 on, that comes
+  /// before own() has ended; returns when all have. An exception of either is thrown on, after the
+  /// others have ended: an own() that others wait for has to tell them of its end.
+  void beside(const std::function<void(std::size_t worker)>& others,
+              const std::function<void()>& own);
+
+  /// Calls work(worker, i) for every i below `n`, each once, `grain` neighbours at a time; workers
+  /// are numbered 0..count()-1. Returns when all are done. What work does must not depend on the
+  /// worker. An exception of work's is thrown on, after the others have ended.
+  void forEach(std::size_t n, std::size_t grain,
+               const std::function<void(std::size_t worker, std::size_t i)>& work);
+
+  /// The same for runs of at most `grain` neighbours: work(begin, end).
+  void forRuns(std::size_t n, std::size_t grain,
+               const std::function<void(std::size_t begin, std::size_t end)>& work) {
+    forEach((n + grain - 1) / grain, 1, [&](std::size_t, std::size_t run) {
+      work(run * grain, std::min(n, (run + 1) * grain));
+    });
+  }
+
+ private:
+  struct Job;
+  void serve(std::size_t worker);
+  [[nodiscard]] Job* next(std::size_t& seen);
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  Job* job_ = nullptr;
+  std::atomic<std::size_t> jobs_{0}, busy_{0};
+  bool ending_ = false;
+  std::vector<std::thread> threads_;
+};
+
+/// Workers::forEach, or the same by the caller alone where there are no workers.
+void forEach(Workers* workers, std::size_t n, std::size_t grain,
+             const std::function<void(std::size_t worker, std::size_t i)>& work);
+
+}  // namespace qtet

@@ -1,0 +1,18 @@
+// Gmsh's kinds of elements in VTK's words.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace qtet {
+
+struct GmshElement {
+  std::uint32_t nodes = 0;  ///< 0: a kind that is not known
+  std::uint8_t type = 0;    ///< CellType; 0: of lower dimension
+  /// The place among Gmsh's nodes of each of VTK's; empty: the same order.
+  std::span<const std::uint16_t> nodeOf{};
+};
+
+[[nodiscard]] GmshElement gmshElement(std::int64_t number);
+
+}  // namespace qtet

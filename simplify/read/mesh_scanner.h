@@ -1,0 +1,106 @@
+// Numbers and words of a mesh file that is in memory whole, as text or as bytes; what is wrong is
+// said with the file and the line or byte.
+#pragma once
+
+#include <bit>
+#include <charconv>
+#include <concepts>
+#include <cstring>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "proto/error.h"
+
+namespace qtet {
+
+/// Keeps its first error; after it every read gives 0 or an empty word, and no place moves. Bytes
+/// are little-endian.
+class MeshScanner {
+ public:
+  /// `comment`: the sign from which on a line says nothing; 0: none. The text must outlive the
+  /// scanner.
+  MeshScanner(std::string_view text, std::filesystem::path path, char comment = 0)
+      : text_(text), path_(std::move(path)), comment_(comment) {}
+
+  /// The next word between blanks; empty at the end.
+  std::string_view word();
+  /// The rest of this line, without blanks round it; then the place is at the next line.
+  std::string_view line();
+  [[nodiscard]] bool atEnd();
+
+  /// The next word as a number. `what` is what it should be: "a coordinate". A real number beyond
+  /// what T holds is infinite or 0.
+  template <class T>
+  T number(const char* what) {
+    const std::size_t before = place_;
+    std::string_view text = word();
+    if (text.starts_with('+')) text.remove_prefix(1);
+    T value{};
+    const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (!failed() && (text.empty() || read.ec == std::errc::invalid_argument ||
+                      read.ptr != text.data() + text.size())) {
+      refuse(before, text, what);
+      return T{};
+    }
+    if (read.ec == std::errc::result_out_of_range) {
+      if constexpr (std::floating_point<T>)
+        value = beyondRange(text);
+      else
+        refuse(before, text, what);
+    }
+    return failed() ? T{} : value;
+  }
+
+  /// The next sizeof(T) bytes.
+  template <class T>
+  T raw(const char* what) {
+    T value{};
+    if (failed() || sizeof(T) > text_.size() - place_) {
+      endsWithin(what);
+      return T{};
+    }
+    std::memcpy(&value, text_.data() + place_, sizeof(T));
+    place_ += sizeof(T);
+    return value;
+  }
+
+  /// Whether `count` things of at least `bytesEach` can follow; an error if not. To be asked before
+  /// anything is allocated or looped over.
+  bool fits(std::uint64_t count, std::uint64_t bytesEach, const char* what);
+
+  /// Passes the rest of a line that bytes follow.
+  void skipLine();
+  void seek(std::uint64_t place);
+  [[nodiscard]] std::uint64_t place() const { return place_; }
+  [[nodiscard]] std::uint64_t remaining() const { return text_.size() - place_; }
+
+  /// Records an error at the present place: "FILE, line N: WHAT", or the byte where `bytes_` are
+  /// read.
+  void fail(ErrorCode code, const std::string& what);
+  void readsBytes(bool bytes) { bytes_ = bytes; }
+  [[nodiscard]] bool failed() const { return error_.has_value(); }
+  [[nodiscard]] std::unexpected<Error> error() const { return std::unexpected(*error_); }
+  [[nodiscard]] Status status() const {
+    return error_ ? Status(std::unexpected(*error_)) : Status{};
+  }
+
+ private:
+  static double beyondRange(std::string_view number);
+  void refuse(std::size_t place, std::string_view found, const char* what);
+  void endsWithin(const char* what);
+  void skipBlanks();
+
+  std::string_view text_;
+  std::filesystem::path path_;
+  char comment_;
+  bool bytes_ = false;
+  std::size_t place_ = 0;
+  std::optional<Error> error_;
+};
+
+/// The file's bytes. Errors: io.
+[[nodiscard]] Result<std::string> wholeFile(const std::filesystem::path& path);
+
+}  // namespace qtet

@@ -1,0 +1,186 @@
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "simplify/read/mesh_readers.h"
+#include "simplify/read/mesh_scanner.h"
+#include "simplify/read/select_fields.h"
+
+namespace qtet {
+namespace {
+
+/// A keyword that lists cells: its name in .mesh, its number in .meshb, and what a cell of it is.
+struct Kind {
+  std::string_view word;
+  std::uint32_t code;
+  std::uint8_t type;  ///< 0: of lower dimension, counted
+  std::uint32_t nodes;
+};
+
+constexpr std::array<Kind, 11> kKinds{{{"Tetrahedra", 8, kTetrahedronCell, 4},
+                                       {"Hexahedra", 10, kHexahedronCell, 8},
+                                       {"Hexaedra", 10, kHexahedronCell, 8},
+                                       {"Prisms", 9, kWedgeCell, 6},
+                                       {"Pentahedra", 9, kWedgeCell, 6},
+                                       {"Pyramids", 49, kPyramidCell, 5},
+                                       {"TetrahedraP2", 30, kQuadraticTetrahedronCell, 10},
+                                       {"Edges", 5, 0, 2},
+                                       {"Triangles", 6, 0, 3},
+                                       {"Quadrilaterals", 7, 0, 4},
+                                       {"Vertices", 4, 0, 0}}};
+constexpr std::uint32_t kDimensionCode = 3, kVerticesCode = 4, kEndCode = 54;
+/// Where a .meshb keeps its numbers' widths.
+constexpr std::int32_t kDoubles = 2, kWidePlaces = 3, kWideIds = 4;
+
+class Medit {
+ public:
+  Medit(std::string_view text, const std::filesystem::path& path, bool bytes, ReadReport& report)
+      : in_(text, path, bytes ? '\0' : '#'), bytes_(bytes), report_(report) {
+    in_.readsBytes(bytes);
+  }
+
+  Result<CellMesh> read() {
+    bytes_ ? readBytes() : readText();
+    if (in_.failed()) return in_.error();
+    addReferences("point", pointReferences_);
+    addReferences("cell", cellReferences_);
+    return std::move(out_);
+  }
+
+ private:
+  void readText() {
+    while (!in_.atEnd()) {
+      const std::string_view word = in_.word();
+      if (word == "End") return;
+      if (word == "MeshVersionFormatted") {
+        version_ = in_.number<std::int32_t>("the format's version");
+      } else if (word == "Dimension") {
+        checkDimension(in_.number<std::int32_t>("the dimension"));
+      } else if (word == "Vertices") {
+        readVertices(in_.number<std::uint64_t>("the number of vertices"));
+      } else if (const Kind* kind = kindOf([&](const Kind& k) { return k.word == word; })) {
+        readCells(*kind, in_.number<std::uint64_t>("the number of cells"));
+      }  // any other word or number belongs to a list that nobody needs here
+    }
+  }
+
+  void readBytes() {
+    if (in_.raw<std::int32_t>("the sign of its byte order") != 1 && !in_.failed())
+      return in_.fail(ErrorCode::kBadInput,
+                      "its first number is not 1: it is no .meshb, or one of big-endian numbers; "
+                      "save it as .mesh");
+    version_ = in_.raw<std::int32_t>("the format's version");
+    if (!in_.failed() && (version_ < 1 || version_ > kWideIds))
+      in_.fail(ErrorCode::kBadInput, "version " + std::to_string(version_) +
+                                         "; versions 1 to 4 are read, or save it as .mesh");
+    while (!in_.failed() && in_.remaining() > 0) {
+      const auto code = in_.raw<std::uint32_t>("a keyword");
+      if (code == kEndCode) return;
+      const std::uint64_t begin = in_.place();
+      const std::uint64_t next = version_ >= kWidePlaces
+                                     ? in_.raw<std::uint64_t>("the next keyword's place")
+                                     : in_.raw<std::uint32_t>("the next keyword's place");
+      readKeyword(code);
+      if (in_.failed() || next == 0) return;
+      if (next <= begin)
+        return in_.fail(
+            ErrorCode::kBadInput,
+            "the next keyword's place lies before this one; the file is damaged, export it again");
+      in_.seek(next);
+    }
+  }
+
+  void readKeyword(std::uint32_t code) {
+    if (code == kDimensionCode) return checkDimension(in_.raw<std::int32_t>("the dimension"));
+    if (code == kVerticesCode) return readVertices(count());
+    if (const Kind* kind = kindOf([&](const Kind& k) { return k.code == code; }))
+      readCells(*kind, count());
+  }
+
+  template <class Predicate>
+  static const Kind* kindOf(Predicate is) {
+    const auto at = std::ranges::find_if(kKinds, is);
+    return at == kKinds.end() ? nullptr : &*at;
+  }
+
+  void checkDimension(std::int32_t dimension) {
+    if (!in_.failed() && dimension != 3)
+      in_.fail(ErrorCode::kBadInput, "the mesh has " + std::to_string(dimension) +
+                                         " dimensions, not 3; give a volume mesh");
+  }
+
+  std::uint64_t count() {
+    return version_ >= kWideIds ? in_.raw<std::uint64_t>("a count")
+                                : in_.raw<std::uint32_t>("a count");
+  }
+  std::int64_t integer(const char* what) {
+    if (!bytes_) return in_.number<std::int64_t>(what);
+    return version_ >= kWideIds ? in_.raw<std::int64_t>(what) : in_.raw<std::int32_t>(what);
+  }
+  double real(const char* what) {
+    if (!bytes_) return in_.number<double>(what);
+    return version_ >= kDoubles ? in_.raw<double>(what) : static_cast<double>(in_.raw<float>(what));
+  }
+  [[nodiscard]] std::uint64_t integerBytes() const {
+    return !bytes_ ? 2 : version_ >= kWideIds ? 8 : 4;
+  }
+  [[nodiscard]] std::uint64_t realBytes() const {
+    return !bytes_ ? 2 : version_ >= kDoubles ? 8 : 4;
+  }
+
+  void readVertices(std::uint64_t number) {
+    if (!in_.fits(number, 3 * realBytes() + integerBytes() - (bytes_ ? 0 : 1), "vertices")) return;
+    out_.points.reserve(number);
+    for (std::uint64_t i = 0; i < number && !in_.failed(); ++i) {
+      Position p{};
+      for (double& x : p) x = real("a coordinate");
+      out_.points.push_back(p);
+      pointReferences_.push_back(static_cast<double>(integer("a vertex's reference")));
+    }
+  }
+
+  void readCells(const Kind& kind, std::uint64_t number) {
+    if (!in_.fits(number, (kind.nodes + 1) * integerBytes() - (bytes_ ? 0 : 1), "cells")) return;
+    std::vector<VertexId> ids(kind.nodes);
+    for (std::uint64_t i = 0; i < number && !in_.failed(); ++i) {
+      for (VertexId& id : ids) {
+        const std::int64_t fromOne = integer("a vertex id");
+        id = fromOne >= 1 && fromOne <= std::int64_t{kGhost} ? static_cast<VertexId>(fromOne - 1)
+                                                             : kGhost;
+      }
+      const std::int64_t reference = integer("a cell's reference");
+      if (kind.type == 0) {
+        ++report_.ignoredCells;
+        continue;
+      }
+      out_.addCell(kind.type, ids);
+      cellReferences_.push_back(static_cast<double>(reference));
+    }
+  }
+
+  void addReferences(const char* association, std::vector<double>& references) {
+    if (std::ranges::all_of(references, [](double r) { return r == 0; })) return;
+    // text may hold any number, whatever its version
+    const char* type = version_ >= kWideIds ? "int64" : integerTypeOf(references);
+    out_.fields.push_back({"medit:ref", 1, type, std::move(references), association});
+  }
+
+  MeshScanner in_;
+  bool bytes_;
+  ReadReport& report_;
+  std::int32_t version_ = 1;
+  CellMesh out_;
+  std::vector<double> pointReferences_, cellReferences_;
+};
+
+}  // namespace
+
+Result<CellMesh> readMedit(const std::filesystem::path& path, ReadReport& report) {
+  const Result<std::string> text = wholeFile(path);
+  if (!text) return std::unexpected(text.error());
+  constexpr std::string_view kFirstByte("\1", 1), kFirstByteSwapped("\0", 1);
+  const bool bytes = text->starts_with(kFirstByte) || text->starts_with(kFirstByteSwapped);
+  return Medit(*text, path, bytes, report).read();
+}
+
+}  // namespace qtet

@@ -1,0 +1,172 @@
+#include "simplify/read/read_mesh.h"
+
+#include <fstream>
+
+#include "simplify/clean/mend_faces.h"
+#include "simplify/read/join_blocks.h"
+#include "simplify/read/mesh_format.h"
+#include "simplify/read/mesh_readers.h"
+#include "simplify/read/run_meshio.h"
+#include "simplify/read/select_fields.h"
+#include "simplify/read/time_steps.h"
+#include "simplify/read/vtk_grid.h"
+#include "simplify/read/weld_points.h"
+
+namespace qtet {
+namespace {
+
+/// Everything that a reader must read: also what the threshold looks at.
+ReadOptions withThresholdField(ReadOptions options) {
+  if (options.threshold && options.fields) options.fields->push_back(options.threshold->field);
+  return options;
+}
+
+/// Abaqus and AVS share the ending .inp; Abaqus' lines begin with stars.
+bool isAbaqus(const std::filesystem::path& path) {
+  std::error_code code;
+  // opening a pipe would wait for who writes
+  if (!std::filesystem::is_regular_file(path, code)) return false;
+  std::ifstream file(path);
+  char first = 0;
+  return file >> first && first == '*';
+}
+
+Result<CellMesh> readThroughMeshio(const std::filesystem::path& path, const ReadOptions& options,
+                                   ReadReport& report) {
+  CellMesh out;
+  const Status done = throughMeshio(path, [&](const std::filesystem::path& vtu) -> Status {
+    Result<std::vector<TimedCells>> steps = readVtk(vtu, MeshFormat::kVtu, options, report);
+    if (!steps) return std::unexpected(steps.error());
+    out = std::move(steps->front().cells);
+    return {};
+  });
+  if (!done) return std::unexpected(done.error());
+  return out;
+}
+
+Result<CellMesh> readFile(const std::filesystem::path& path, const ReadOptions& options,
+                          ReadReport& report) {
+  const MeshFormat format =
+      options.plot3d
+          ? MeshFormat::kPlot3d
+          : formatOf(options.format.empty() ? path
+                                            : std::filesystem::path("mesh." + options.format));
+  if (format == MeshFormat::kAvsUcd && isAbaqus(path))
+    return readThroughMeshio(path, options, report);
+  if (Status checked = checkMeshFile(path, format); !checked)
+    return std::unexpected(checked.error());
+  // they have no steps
+  if (format == MeshFormat::kMedit || format == MeshFormat::kTetgen || format == MeshFormat::kSu2) {
+    if (const auto steps = chosenSteps({}, options.time, path, report.notes); !steps)
+      return std::unexpected(steps.error());
+  }
+  if (path.extension() == ".qtet")
+    return fail(ErrorCode::kBadInput,
+                path.string() +
+                    " is a log, which holds a mesh that is simplified already: qtet info tells of "
+                    "it, qtet convert gives the mesh back");
+  switch (format) {
+    case MeshFormat::kGmsh: return readGmsh(path, options.time, report);
+    case MeshFormat::kMedit: return readMedit(path, report);
+    case MeshFormat::kTetgen: return readTetgen(path, report);
+    case MeshFormat::kSu2: return readSu2(path, report);
+    case MeshFormat::kOther: return readThroughMeshio(path, options, report);
+    default: break;
+  }
+  Result<std::vector<TimedCells>> steps = readVtk(path, format, options, report);
+  if (!steps) return std::unexpected(steps.error());
+  if (steps->size() == 1) return std::move(steps->front().cells);
+  return joinSteps(std::move(*steps), path);
+}
+
+/// "of its 12 cells, 8 hexahedron and 4 wedge were split"
+void noteSplit(const SplitReport& split, std::vector<std::string>& notes) {
+  if (split.onlyTetrahedra()) return;
+  std::string kinds;
+  for (std::size_t type = 0; type < split.cells.size(); ++type) {
+    if (split.cells[type] == 0 || type == kTetrahedronCell) continue;
+    kinds += (kinds.empty() ? "" : ", ") + cellTypeName(static_cast<std::uint8_t>(type)) + " " +
+             std::to_string(split.cells[type]);
+  }
+  notes.push_back("cells split into tetrahedra: " + kinds);
+  if (split.centrePoints > 0)
+    notes.push_back(
+        "points added at cells' centres, where no split through their own vertices fits: " +
+        std::to_string(split.centrePoints));
+  if (split.insideOut > 0)
+    notes.push_back("cells stored inside out, turned: " + std::to_string(split.insideOut));
+  if (split.collapsed > 0)
+    notes.push_back("cells that name so few different vertices that nothing is left of them: " +
+                    std::to_string(split.collapsed));
+}
+
+void mend(TetMesh& mesh, ReadReport& report) {
+  const MendReport mended = mendCrossedFaces(mesh);
+  report.mendedFaces = mended.mended;
+  if (mended.mended > 0)
+    report.notes.push_back(
+        "quadrilaterals whose two sides were cut along different diagonals, now along one: " +
+        std::to_string(mended.mended));
+  if (mended.left > 0)
+    report.notes.push_back(
+        "quadrilaterals that stay open, because no other cut of either side leaves its cells "
+        "positive: " +
+        std::to_string(mended.left));
+}
+
+}  // namespace
+
+Result<CellMesh> readCells(const std::filesystem::path& path, const ReadOptions& options,
+                           ReadReport& report) {
+  Result<CellMesh> cells = readFile(path, withThresholdField(options), report);
+  if (!cells) return cells;
+  nameFields(cells->fields, report.notes);
+  if (report.ignoredCells > 0 && cells->cells() > 0)
+    report.notes.push_back(std::to_string(report.ignoredCells) +
+                           " points, lines and faces among the cells were ignored");
+  if (Status checked = checkCellMesh(*cells, path); !checked)
+    return std::unexpected(checked.error());
+  if (Status checked = checkIntegers(withThresholdField(options).fields, path, cells->fields);
+      !checked)
+    return std::unexpected(checked.error());
+  if (options.threshold) {
+    if (Status done = applyThreshold(*options.threshold, path, *cells); !done)
+      return std::unexpected(done.error());
+  }
+  if (options.weld) {
+    report.weldedPoints = weldPoints(*cells, *options.weld);
+    report.notes.push_back("points joined with an earlier one (--weld): " +
+                           std::to_string(report.weldedPoints));
+  }
+  return cells;
+}
+
+Result<TetMesh> tetrahedraOf(CellMesh&& cells, const std::filesystem::path& path,
+                             const ReadOptions& options, ReadReport& report) {
+  const std::vector<std::string> otherFields = std::move(cells.otherFields);
+  Result<TetMesh> mesh = splitCells(std::move(cells), options.curved, report.split);
+  if (!mesh) return fail(mesh.error().code, path.string() + ": " + mesh.error().message);
+  noteSplit(report.split, report.notes);
+  if (options.weld) mend(*mesh, report);
+  if (Status selected = selectFields(options.fields, path, otherFields, mesh->fields); !selected)
+    return std::unexpected(selected.error());
+  return mesh;
+}
+
+Result<ReadMesh> readMesh(const std::filesystem::path& path, const ReadOptions& options) {
+  ReadMesh out;
+  Result<CellMesh> cells = readCells(path, options, out.report);
+  if (!cells) return std::unexpected(cells.error());
+  Result<TetMesh> mesh = tetrahedraOf(std::move(*cells), path, options, out.report);
+  if (!mesh) return std::unexpected(mesh.error());
+  out.mesh = std::move(*mesh);
+  return out;
+}
+
+Result<ReadMesh> readMesh(const std::filesystem::path& path, const FieldNames& fields) {
+  ReadOptions options;
+  options.fields = fields;
+  return readMesh(path, options);
+}
+
+}  // namespace qtet

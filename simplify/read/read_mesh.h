@@ -1,0 +1,41 @@
+// Reading meshes of every format that qtet knows as tetrahedra. VTK is used in fast_xml_parser.cpp,
+// higher_cells.cpp, vtk_cells.cpp and vtk_grid.cpp alone.
+#pragma once
+
+#include <filesystem>
+
+#include "proto/error.h"
+#include "simplify/mesh/tet_mesh.h"
+#include "simplify/read/read_options.h"
+
+namespace qtet {
+
+struct ReadMesh {
+  TetMesh mesh;
+  ReadReport report;
+};
+
+/// The file's cells before they are split, checked, welded and cut by the threshold as the options
+/// say. Errors: as readMesh's.
+[[nodiscard]] Result<CellMesh> readCells(const std::filesystem::path& path,
+                                         const ReadOptions& options, ReadReport& report);
+
+/// Splits what readCells gave, mends it after welding, and leaves the fields asked for.
+[[nodiscard]] Result<TetMesh> tetrahedraOf(CellMesh&& cells, const std::filesystem::path& path,
+                                           const ReadOptions& options, ReadReport& report);
+
+/// Reads volume cells as tetrahedra (split_cells.h), points and fields, with the file's numbering:
+/// of tetrahedra alone `mesh.tetrahedra[i]` is the i-th of them; cells of lower dimension are
+/// skipped, with their values. Vertex ids are checked. Field values keep NaN and infinity;
+/// coordinates must be finite. After welding, faces that two tetrahedra's cells cut differently are
+/// cut alike (mend_faces.h). Errors: those of checkMeshFile; bad-input (the reader's own message; a
+/// kind of cell that is not read; no volume cells; a coordinate that is not finite; a vertex id
+/// outside the points; an integer above 2^53 in magnitude), not-found (no field or time step of
+/// that name; a program that is not installed), limit-exceeded. Not thread-safe: VTK's message
+/// window is global.
+[[nodiscard]] Result<ReadMesh> readMesh(const std::filesystem::path& path,
+                                        const ReadOptions& options);
+[[nodiscard]] Result<ReadMesh> readMesh(const std::filesystem::path& path,
+                                        const FieldNames& fields = std::nullopt);
+
+}  // namespace qtet

@@ -1,0 +1,48 @@
+// What a mesh file is read with, and what is said of the reading.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "simplify/split/split_cells.h"
+
+namespace qtet {
+
+/// Which fields to read: all (nullopt: those of points first), or those that these names mean
+/// (proto/field_key.h), in this order.
+using FieldNames = std::optional<std::vector<std::string>>;
+
+/// Only cells where the field lies within [low, high]: of a cell field its own value, of a point
+/// field those of all of its vertices.
+struct Threshold {
+  std::string field;
+  double low = 0, high = 0;
+};
+
+struct ReadOptions {
+  FieldNames fields;
+  CurvedCells curved = CurvedCells::kSplit;
+  std::optional<double> weld;  ///< points within this distance become one (weld_points.h)
+  std::optional<Threshold> threshold;
+  std::string time = "last";  ///< of a series: "first", "last", "all", or the step's time
+  /// The file's kind as an ending without dot; empty: as its name says.
+  std::string format;
+  /// The Q file beside a PLOT3D grid; empty: the file is no PLOT3D grid.
+  std::string plot3dSolution;
+  bool plot3d = false;
+};
+
+/// What was in the file and is not in the mesh, and what was done to it; `notes` says it in
+/// sentences for people.
+struct ReadReport {
+  std::uint64_t ignoredCells = 0;          ///< of dimension 0, 1 or 2
+  std::vector<std::string> ignoredFields;  ///< texts, more than kMaxFieldComponents components
+  SplitReport split;
+  std::uint64_t weldedPoints = 0;  ///< joined with an earlier one
+  std::uint64_t mendedFaces = 0;   ///< quadrilaterals that both sides cut alike after welding
+  std::vector<std::string> notes;  ///< also VTK's warnings
+};
+
+}  // namespace qtet

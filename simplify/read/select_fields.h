@@ -1,0 +1,45 @@
+// Which of a file's fields were asked for, and which of its cells.
+#pragma once
+
+#include <filesystem>
+#include <span>
+
+#include "simplify/read/read_options.h"
+#include "simplify/split/cell_mesh.h"
+
+namespace qtet {
+
+/// Whether a field of a file may be one of those asked for, before all of the file's fields are
+/// known: by field_key.h, of a series also where a step's is asked for (NAME@TIME of NAME).
+[[nodiscard]] bool isMeant(const FieldNames& names, const std::string& association,
+                           const std::string& name);
+
+/// Leaves the fields asked for, in the order asked, each once. Errors: not-found (no field of that
+/// name; the message lists what there is), limit-exceeded (more than kMaxFields).
+[[nodiscard]] Status selectFields(const FieldNames& names, const std::filesystem::path& path,
+                                  const std::vector<std::string>& otherFields,
+                                  std::vector<MeshField>& fields);
+
+/// Leaves the cells within the threshold. Errors: not-found (no such field among those read),
+/// bad-input (no cell is left).
+[[nodiscard]] Status applyThreshold(const Threshold& threshold, const std::filesystem::path& path,
+                                    CellMesh& mesh);
+
+/// Errors: bad-input (an integer of 2^53 or more in magnitude, which a double cannot tell from its
+/// neighbours, in one of the fields that are asked for).
+[[nodiscard]] Status checkIntegers(const FieldNames& names, const std::filesystem::path& path,
+                                   const std::vector<MeshField>& fields);
+
+/// int32 where it holds all values, else int64: for files that do not say how wide their integers
+/// are.
+[[nodiscard]] const char* integerTypeOf(std::span<const double> values);
+
+/// Whether a log can hold the name: not empty, at most kMaxNameBytes bytes, UTF-8 (FORMAT.md,
+/// "Manifest").
+[[nodiscard]] bool isStorableName(const std::string& name);
+
+/// Gives a field that has no such name, or that of an earlier field of its association, one of its
+/// own, and notes it.
+void nameFields(std::vector<MeshField>& fields, std::vector<std::string>& notes);
+
+}  // namespace qtet

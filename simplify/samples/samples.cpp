@@ -1,0 +1,42 @@
+#include "simplify/samples/samples.h"
+
+#include <array>
+#include <string>
+
+namespace qtet {
+namespace {
+
+constexpr std::array<Sample, 2> kSamples{{
+    {"box", "the unit cube, 3,072 tetrahedra, one scalar field",
+     [](std::uint64_t) { return boxSample(); }, kBoxCells, kBoxCells},
+    {"fin",
+     "supersonic flow round a swept fin, 212,544 tetrahedra or more, density, pressure and "
+     "velocity",
+     finSample, kFinCells, kMaxSampleCells},
+}};
+
+}  // namespace
+
+std::span<const Sample> samples() { return kSamples; }
+
+Result<TetMesh> makeSample(std::string_view name, std::optional<std::uint64_t> cells) {
+  std::string known;
+  for (const Sample& sample : kSamples) {
+    if (sample.name == name) {
+      const std::uint64_t count = cells.value_or(sample.cells);
+      if (sample.cells == sample.mostCells && count != sample.cells)
+        return fail(ErrorCode::kBadValue, "the sample " + std::string(name) +
+                                              " comes in one size, " +
+                                              std::to_string(sample.cells) + " cells");
+      if (count > sample.mostCells)
+        return fail(ErrorCode::kBadValue, "the sample " + std::string(name) + " comes with " +
+                                              std::to_string(sample.mostCells) + " cells at most");
+      return sample.make(count);
+    }
+    known += (known.empty() ? "" : ", ") + std::string(sample.name);
+  }
+  return fail(ErrorCode::kNotFound,
+              "there is no sample '" + std::string(name) + "'; there are: " + known);
+}
+
+}  // namespace qtet

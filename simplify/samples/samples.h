@@ -1,0 +1,47 @@
+// Meshes that are made, not read: for trying the tool without data, for tests and for the demo. The
+// same bits on every machine, because nothing but + - * / sqrt and rounding to float32 goes into
+// them.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "proto/error.h"
+#include "simplify/mesh/tet_mesh.h"
+
+namespace qtet {
+
+inline constexpr std::uint64_t kBoxCells = 3072, kFinCells = 212544;
+/// A mesh of this many cells takes some 30 GB to simplify.
+inline constexpr std::uint64_t kMaxSampleCells = 100'000'000;
+
+struct Sample {
+  std::string_view name;
+  std::string_view description;
+  /// A mesh of at least so many cells, the next size that there is.
+  TetMesh (*make)(std::uint64_t cells);
+  /// Its own size, which is the smallest, and the largest; equal: there is but one.
+  std::uint64_t cells, mostCells;
+};
+
+/// All samples, in the order in which help shows them.
+[[nodiscard]] std::span<const Sample> samples();
+
+/// `cells`: how many tetrahedra at least; nullopt = the sample's own size. Errors: not-found, with
+/// the names there are; bad-value (a size that the sample does not come in).
+[[nodiscard]] Result<TetMesh> makeSample(std::string_view name,
+                                         std::optional<std::uint64_t> cells = std::nullopt);
+
+/// The unit cube in 8 x 8 x 8 cells of 6 Kuhn tetrahedra: 729 points, 3,072 tetrahedra; field
+/// Scalar = sin(2 pi x) cos(pi y) + z^2.
+[[nodiscard]] TetMesh boxSample();
+
+/// A supersonic stream round a swept blunt fin on a plate, an algebraic model of one: bow shock,
+/// boundary layers, tip and horseshoe vortices, a meandering wake. 212,544 tetrahedra, or as many
+/// as asked for, in layers that grow from the wall; fields Density, Pressure, Velocity (free
+/// stream: 1, 1/1.4, Mach 2.95).
+[[nodiscard]] TetMesh finSample(std::uint64_t cells = kFinCells);
+
+}  // namespace qtet

@@ -1,0 +1,36 @@
+// Files of meshes whose numbers are beyond a format.
+#include "codec/files/mesh_file.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace qtet {
+namespace {
+
+/// One tetrahedron with edges of `size`.
+Result<Bytes> tetrahedronFile(double size, std::string_view ending) {
+  const std::vector<std::array<double, 3>> points = {
+      {0, 0, 0}, {size, 0, 0}, {0, size, 0}, {0, 0, size}};
+  const std::vector<Tetrahedron> tetrahedra = {{0, 1, 2, 3}};
+  return meshFileBytes(FileMesh{points, tetrahedra, true, {}, {}}, ending);
+}
+
+TEST(MeshFile, coordinatesBeyondFloatsAreRefusedWhereAFormatKnowsNoOther) {
+  constexpr double kMax = std::numeric_limits<float>::max();
+  for (const char* ending : {".stl", ".usda"}) {
+    EXPECT_TRUE(tetrahedronFile(kMax, ending)) << ending;
+    EXPECT_TRUE(tetrahedronFile(-kMax, ending)) << ending;
+    for (const double size : {1.01 * kMax, -1e308}) {
+      const Result<Bytes> refused = tetrahedronFile(size, ending);
+      ASSERT_FALSE(refused) << ending << size;
+      EXPECT_EQ(refused.error().code, ErrorCode::kBadInput);
+      EXPECT_NE(refused.error().message.find(ending), std::string::npos) << refused.error().message;
+    }
+  }
+  for (const char* ending : {".vtu", ".vtk", ".msh", ".ply", ".obj", ".npz"})
+    EXPECT_TRUE(tetrahedronFile(1e308, ending)) << ending;
+}
+
+}  // namespace
+}  // namespace qtet

@@ -1,0 +1,82 @@
+// What decoding takes, held against what was foretold; and that it ends when it is told to.
+#include "codec/log/decoding_memory.h"
+
+#include <gtest/gtest.h>
+
+#include "codec/log/log_manifest.h"
+#include "codec/log/log_writer.h"
+#include "codec/log/verify_log.h"
+#include "simplify/fuse/qtetfusion.h"
+#include "tests/support/allocation_meter.h"
+#include "tests/support/meshes.h"
+
+namespace qtet {
+namespace {
+
+void compare(const LogFile& log, const std::string& what, double mostTimes) {
+  const Result<Manifest> manifest = manifestOf(log.index());
+  ASSERT_TRUE(manifest) << what;
+  const auto foretold = static_cast<double>(decodingBytes(log.index()));
+  const auto taken = static_cast<double>(testing::peakBytesOf([&] {
+    const Result<Refiner> decoded = decodeVerified(log, *manifest);
+    ASSERT_TRUE(decoded) << what << decoded.error().text();
+  }));
+  EXPECT_LE(taken, foretold) << what;
+  EXPECT_LE(foretold, mostTimes * taken) << what;
+}
+
+TEST(DecodingBytes, areAtLeastWhatDecodingTakesAndNotFarFromIt) {
+  for (const bool cellFields : {false, true})
+    for (const double ratio : {0.0, 0.5, 1.0})
+      for (const bool regions : {false, true}) {
+        LatticeMesh mesh = testing::soundMesh(14, 1);
+        if (cellFields) testing::addCellFields(mesh);
+        FusionOptions options;
+        options.targetRatio = ratio;
+        if (regions) options.bands.cellsPerPacket = 2000;
+        const auto history = simplify(mesh, options);
+        ASSERT_TRUE(history) << history.error().text();
+        auto log = encodeLog(*history, {});
+        ASSERT_TRUE(log) << log.error().text();
+        const std::string what = std::string(regions ? "regions" : "stream") +
+                                 (cellFields ? " with cell fields, " : ", ") +
+                                 std::to_string(ratio);
+        compare(LogFile::fromBytes(std::move(log->bytes)).value(), what, 2.5);
+      }
+}
+
+TEST(DecodingBytes, areEnoughForEveryGoldenLog) {
+  for (const auto& entry :
+       std::filesystem::directory_iterator(std::filesystem::path(QTET_GOLDEN_DIR) / "valid"))
+    if (entry.path().extension() == ".qtet")
+      compare(LogFile::open(entry.path()).value(), entry.path().filename(), 1e9);
+}
+
+// The base mesh and a level of one chunk each, so that whoever asks for the end is asked in the
+// midst of a chunk.
+TEST(DecodeVerified, endsBeforeTheNextLevelWhereNobodyWaits) {
+  for (const bool regions : {false, true}) {
+    FusionOptions options;
+    if (regions) options.bands.cellsPerPacket = 200;
+    const auto history = simplify(testing::soundMesh(5, 1), options);
+    ASSERT_TRUE(history) << history.error().text();
+    auto encoded = encodeLog(*history, {});
+    ASSERT_TRUE(encoded) << encoded.error().text();
+    const LogFile log = LogFile::fromBytes(std::move(encoded->bytes)).value();
+    const Manifest manifest = manifestOf(log.index()).value();
+    int asked = 0;
+    ASSERT_TRUE(decodeVerified(log, manifest, [&](double) { return ++asked, true; }));
+    ASSERT_GT(static_cast<std::size_t>(asked), log.index().chunks.size()) << "also within chunks";
+    for (int most = 0; most < asked; ++most) {
+      int left = most;
+      const Result<Refiner> decoded =
+          decodeVerified(log, manifest, [&](double) { return left-- > 0; });
+      ASSERT_FALSE(decoded);
+      EXPECT_EQ(decoded.error().code, ErrorCode::kIo);
+      EXPECT_EQ(left, -1) << "it was asked again";
+    }
+  }
+}
+
+}  // namespace
+}  // namespace qtet

@@ -1,0 +1,60 @@
+// What is answered to a log by its check alone: sound or not, and at each limit and past it.
+#include "server/http/log_check.h"
+
+#include <gtest/gtest.h>
+
+#include "codec/log/decoding_memory.h"
+#include "tests/server/program/loopback.h"
+#include "tests/server/store/synthetic_log.h"
+#include "tests/support/meshes.h"
+#include "tests/support/written_log.h"
+
+namespace qtet {
+namespace {
+
+class LogCheckTest : public ::testing::Test {
+ protected:
+  MeshPointer open(const Bytes& log) const {
+    folder_.write("a.qtet", log);
+    return openMesh(folder_.path() / "a.qtet", "a").value();
+  }
+
+  test::TempFolder folder_;
+  const CheckLimits enough_{.time = test::kNever};
+};
+
+TEST_F(LogCheckTest, aSoundLogHasNoAnswerAndNoiseHasOne) {
+  for (const bool regions : {false, true}) {
+    FusionOptions options;
+    if (regions) options.bands.cellsPerPacket = 200;
+    EXPECT_FALSE(
+        checkLog(*open(testing::logBytes(testing::soundMesh(8, 1), options)), enough_, {}));
+  }
+  const auto refused = checkLog(*open(test::makeLog({})), enough_, {});
+  ASSERT_TRUE(refused);
+  EXPECT_EQ(refused->status, 422u);
+}
+
+TEST_F(LogCheckTest, theFirstByteBeyondTheLimitOfMemoryIsTooMuch) {
+  const MeshPointer mesh = open(testing::logBytes(testing::soundMesh(6, 1)));
+  const std::uint64_t needed = decodingBytes(mesh->log.index());
+  EXPECT_FALSE(checkLog(*mesh, {.bytes = needed, .time = test::kNever}, {}));
+  EXPECT_EQ(checkLog(*mesh, {.bytes = needed - 1, .time = test::kNever}, {})->status, 413u);
+  EXPECT_EQ(checkLog(*open(test::makeLog({})), {.bytes = 0, .time = test::kNever}, {})->status,
+            413u)
+      << "before a block is looked at";
+}
+
+TEST_F(LogCheckTest, timeThatIsOverAndAStopAreToldApart) {
+  const MeshPointer mesh = open(testing::logBytes(testing::soundMesh(6, 1)));
+  EXPECT_EQ(checkLog(*mesh, {.time = std::chrono::milliseconds(0)}, {})->status, 413u);
+  std::stop_source stop;
+  stop.request_stop();
+  const auto stopped = checkLog(*mesh, {.time = std::chrono::milliseconds(0)}, stop.get_token());
+  ASSERT_TRUE(stopped);
+  EXPECT_EQ(stopped->status, 503u);
+  EXPECT_EQ(stopped->header("Retry-After"), "2");
+}
+
+}  // namespace
+}  // namespace qtet

@@ -1,0 +1,145 @@
+// Figures, access log, request ids and the operators' address.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "server/wire/request_trace.h"
+#include "tests/server/program/loopback.h"
+#include "tests/server/program/served_folder.h"
+
+namespace qtet {
+namespace {
+
+using Json = nlohmann::json;
+
+TEST(RequestTrace, aSoundIdIsKeptAndAnythingElseReplaced) {
+  EXPECT_EQ(traceOf("abc-1.2_3", std::nullopt).id, "abc-1.2_3");
+  EXPECT_EQ(traceOf(std::string(128, 'a'), std::nullopt).id, std::string(128, 'a'));
+  for (const std::string& wrong :
+       {std::string(), std::string("a b"), std::string("a\"b"), std::string(129, 'a')})
+    EXPECT_NE(traceOf(wrong, std::nullopt).id, wrong);
+  EXPECT_NE(traceOf(std::nullopt, std::nullopt).id, traceOf(std::nullopt, std::nullopt).id);
+}
+
+TEST(RequestTrace, aTraceGoesOnUnderASpanOfItsOwn) {
+  const std::string parent = "00-4bf92f3577b34da6a3ce929d0e0e4736-00f067aa0ba902b7-01";
+  const RequestTrace trace = traceOf(std::nullopt, parent);
+  EXPECT_EQ(trace.parentId, "00f067aa0ba902b7");
+  EXPECT_TRUE(trace.traceparent().starts_with("00-4bf92f3577b34da6a3ce929d0e0e4736-"));
+  EXPECT_TRUE(trace.traceparent().ends_with("-01"));
+  EXPECT_EQ(trace.traceparent().size(), parent.size());
+  EXPECT_NE(trace.traceparent(), parent);
+  for (const char* wrong : {"", "00-4bf92f3577b34da6a3ce929d0e0e4736-00f067aa0ba902b7",
+                            "00-00000000000000000000000000000000-00f067aa0ba902b7-01",
+                            "00-4bf92f3577b34da6a3ce929d0e0e4736-0000000000000000-01",
+                            "00-4BF92F3577B34DA6A3CE929D0E0E4736-00f067aa0ba902b7-01",
+                            "ff-4bf92f3577b34da6a3ce929d0e0e4736-00f067aa0ba902b7-01"})
+    EXPECT_EQ(traceOf(std::nullopt, wrong).traceparent(), "") << wrong;
+}
+
+/// What a server needs to serve a folder and to write its access log.
+struct Logged {
+  test::ServedFolder folder;
+  test::TempFolder out;
+  std::filesystem::path path = out.path() / "access.json";
+  Result<std::unique_ptr<AccessLog>> log = AccessLog::open(path.string());
+};
+
+TEST(AccessLog, aLineOfJsonForEveryRequest) {
+  const Logged logged;
+  ASSERT_TRUE(logged.log);
+  {
+    test::RunningServer server(logged.folder.store(), logged.folder.viewer(),
+                               {.accessLog = logged.log->get()});
+    test::RawClient client(server.port());
+    const auto response = client.get("/v1/meshes?x=\"%s",
+                                     "X-Request-Id: mine\r\ntraceparent: "
+                                     "00-4bf92f3577b34da6a3ce929d0e0e4736-00f067aa0ba902b7-01\r\n");
+    EXPECT_EQ(response.header("x-request-id"), "mine");
+    EXPECT_TRUE(response.header("traceparent").starts_with("00-4bf92f3577b34da6a3ce929d0e0e4736-"));
+    EXPECT_EQ(client.get("/nothing").status, 404u);
+    test::RawClient(server.port()).send("\x16\x03");
+  }
+  std::ifstream in(logged.path);
+  std::vector<Json> lines;
+  for (std::string line; std::getline(in, line);) lines.push_back(Json::parse(line));
+  ASSERT_GE(lines.size(), 2u);
+  EXPECT_EQ(lines[0]["id"], "mine");
+  EXPECT_EQ(lines[0]["client"], "127.0.0.1");
+  EXPECT_EQ(lines[0]["method"], "GET");
+  EXPECT_EQ(lines[0]["target"], "/v1/meshes?x=\"%s");
+  EXPECT_EQ(lines[0]["status"], 200);
+  EXPECT_EQ(lines[0]["traceId"], "4bf92f3577b34da6a3ce929d0e0e4736");
+  EXPECT_GT(lines[0]["bytes"], 100);
+  EXPECT_TRUE(lines[0]["whole"]);
+  EXPECT_EQ(lines[0]["time"].get<std::string>().size(),
+            std::string("2026-01-01T00:00:00.000Z").size());
+  EXPECT_EQ(lines[1]["status"], 404);
+}
+
+TEST(AccessLog, noTicketIsWrittenDownHoweverItWasSent) {
+  const Logged logged;
+  ASSERT_TRUE(logged.log);
+  {
+    test::RunningServer server(logged.folder.store(), logged.folder.viewer(),
+                               {.accessLog = logged.log->get()});
+    for (const char* target :
+         {"/v1/stream?ticket=5ecret", "http://a/v1/stream?ticket=5ecret",
+          "/v1/%73tream?x&ticket=5ecret", "/v1/stream/?ticket=5ecret", "/?ticket=5ecret"})
+      EXPECT_NE(test::RawClient(server.port()).get(target).status, 0u) << target;
+  }
+  std::stringstream text;
+  text << std::ifstream(logged.path).rdbuf();
+  EXPECT_NE(text.str().find("http://a/v1/stream"), std::string::npos) << text.str();
+  EXPECT_EQ(text.str().find("5ecret"), std::string::npos) << text.str();
+}
+
+TEST(AccessLog, aFileThatCannotBeWrittenIsAnError) {
+  EXPECT_EQ(AccessLog::open("/proc/nothing/log").error().code, ErrorCode::kIo);
+}
+
+TEST(Operators, theirPathsAreAnsweredBesideEverythingElse) {
+  const test::ServedFolder folder;
+  test::RunningServer server(folder.store(), folder.viewer());
+  test::RawClient client(server.port());
+  EXPECT_EQ(client.get("/livez").body, "ok\n");
+  EXPECT_EQ(client.get("/readyz").status, 200u);
+  EXPECT_EQ(Json::parse(client.get("/version").body)["version"], QTET_VERSION);
+  const std::string metrics = client.get("/metrics").body;
+  EXPECT_NE(metrics.find("qtet_http_requests_total{code=\"200\"} 3\n"), std::string::npos)
+      << metrics;
+  EXPECT_NE(metrics.find("qtet_meshes 2\n"), std::string::npos);
+  EXPECT_NE(metrics.find("qtet_connections_open 1\n"), std::string::npos);
+  EXPECT_NE(metrics.find("qtet_http_request_duration_seconds_bucket{le=\"+Inf\"} 3\n"),
+            std::string::npos);
+}
+
+TEST(Operators, anAddressOfTheirOwnHasTheirPathsAlone) {
+  const test::ServedFolder folder;
+  test::RunningServer server(folder.store(), folder.viewer(), {.adminHost = "127.0.0.1"});
+  EXPECT_EQ(test::RawClient(server.port()).get("/metrics").status, 404u);
+  EXPECT_EQ(test::RawClient(server.port()).get("/livez").status, 404u);
+  test::RawClient client(server.adminPort());
+  EXPECT_EQ(client.get("/metrics").status, 200u);
+  EXPECT_EQ(client.get("/v1/meshes").status, 404u);
+  EXPECT_EQ(test::StreamClient(server.adminPort()).httpStatus(), 404u);
+}
+
+TEST(Operators, theFiguresAreWhatPrometheusReads) {
+  if (std::system("command -v promtool > /dev/null") != 0)
+    GTEST_SKIP() << "promtool (Debian: prometheus) is not installed";
+  const test::ServedFolder folder;
+  test::RunningServer server(folder.store(), folder.viewer());
+  test::RawClient client(server.port());
+  (void)client.get("/v1/meshes");
+  const test::TempFolder out;
+  out.write("metrics", std::string_view(client.get("/metrics").body));
+  EXPECT_EQ(std::system(("promtool check metrics < " + (out.path() / "metrics").string()).c_str()),
+            0);
+}
+
+}  // namespace
+}  // namespace qtet

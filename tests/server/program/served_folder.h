@@ -1,0 +1,52 @@
+// What most server tests need: a folder with two logs and a viewer, opened.
+#pragma once
+
+#include <stdexcept>
+
+#include "server/routes/viewer_files.h"
+#include "server/store/mesh_store.h"
+#include "tests/server/store/synthetic_log.h"
+
+namespace qtet::test {
+
+class ServedFolder {
+ public:
+  ServedFolder() {
+    logs_.write("noise.qtet", makeLog({.chunks = 12}));
+    logs_.write("a b.qtet", makeLog({.chunks = 2, .fields = {}, .seed = 7}));
+    logs_.write("readme.txt", "not a log");
+    viewer_.write("index.html", "<!doctype html><title>viewer</title>");
+    viewer_.write("assets/app-1a2b.js", "console.log(1)");
+    viewer_.write("assets/app-1a2b.js.gz", "(compressed)");
+    viewer_.write("assets/alone.gz", "an archive");
+    viewer_.write("assets/codec.wasm", std::string_view("\0asm", 4));
+    viewer_.write("docs/index.html", "<title>docs</title>");
+    viewer_.write(".secret", "hidden");
+    viewer_.write(".git/config", "hidden");
+    Result<MeshStore> store = MeshStore::open(logs_.path());
+    Result<ViewerFiles> viewer = ViewerFiles::load(viewer_.path());
+    if (!store || !viewer) throw std::runtime_error("the fixture cannot be opened");
+    store_ = std::move(*store);
+    files_ = std::move(*viewer);
+  }
+
+  [[nodiscard]] const MeshStore& store() const { return store_; }
+  [[nodiscard]] const ViewerFiles& viewer() const { return files_; }
+  [[nodiscard]] const ServedMesh& mesh() const { return *store_.find("noise"); }
+  /// An address under the digest of `noise`.
+  [[nodiscard]] std::string log(const std::string& rest = "log") const {
+    return "/v1/logs/" + mesh().log.digest() + "/" + rest;
+  }
+  [[nodiscard]] std::string file() const {
+    return {mesh().log.bytes().begin(), mesh().log.bytes().end()};
+  }
+  [[nodiscard]] const std::filesystem::path& logFolder() const { return logs_.path(); }
+  [[nodiscard]] const std::filesystem::path& viewerFolder() const { return viewer_.path(); }
+
+ private:
+  TempFolder logs_, viewer_;
+  MeshStore store_;
+  ViewerFiles files_;
+};
+
+}  // namespace qtet::test

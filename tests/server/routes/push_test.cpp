@@ -1,0 +1,134 @@
+// `qtet push` against a real server: the whole way from a file to a served mesh.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <fstream>
+#include <functional>
+
+#include "proto/checksum.h"
+#include "tests/server/http/held_check.h"
+#include "tests/server/program/loopback.h"
+#include "tests/server/program/served_folder.h"
+#include "tests/support/meshes.h"
+#include "tests/support/written_log.h"
+
+namespace qtet {
+namespace {
+
+constexpr const char* kToken = "aSecretOfTwentyTwoChars";
+
+struct Outcome {
+  int code = -1;
+  std::string text;  ///< standard output and error
+};
+
+class PushTest : public ::testing::Test {
+ protected:
+  /// `hear` is called with what the program has said so far.
+  Outcome push(const std::string& words, const std::string& token = kToken,
+               const std::function<void(const std::string&)>& hear = {}) {
+    const std::string command = "QTET_TOKEN='" + token + "' " + QTET_TOOL + " push '" +
+                                file_.string() + "' " + words + " 2>&1";
+    Outcome out;
+    FILE* pipe = ::popen(command.c_str(), "r");
+    std::array<char, 4096> piece;
+    for (ssize_t n = 0; (n = ::read(::fileno(pipe), piece.data(), piece.size())) > 0;) {
+      out.text.append(piece.data(), static_cast<std::size_t>(n));
+      if (hear) hear(out.text);
+    }
+    const int status = ::pclose(pipe);
+    out.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return out;
+  }
+  std::string url(const std::string& path = "/") const {
+    return "http://127.0.0.1:" + std::to_string(server_.port()) + path;
+  }
+  std::string served(const std::string& path) {
+    return test::RawClient(server_.port()).get(path).body;
+  }
+
+  test::ServedFolder folder_;
+  test::TempFolder mine_;
+  const Bytes log_ = testing::logBytes(testing::soundMesh(8, 99));
+  const std::filesystem::path file_ = mine_.path() / "my wing.qtet";
+  const std::string digest_ = (mine_.write("my wing.qtet", log_), sha256Hex(log_));
+  test::HeldCheck check_;
+  Access access_{*Tokens::parse(std::string("write * ") + kToken)};
+  std::unique_ptr<MeshStore> store_ =
+      std::make_unique<MeshStore>(*MeshStore::open(folder_.logFolder()));
+  test::RunningServer server_{
+      *store_, folder_.viewer(), {.access = &access_, .uploads = {.check = std::ref(check_)}}};
+};
+
+TEST_F(PushTest, aLogIsServedUnderItsNameOrTheOneGiven) {
+  const Outcome first = push(url());
+  EXPECT_EQ(first.code, 0) << first.text;
+  EXPECT_NE(first.text.find("/v1/meshes/my%20wing  new"), std::string::npos) << first.text;
+  EXPECT_EQ(served("/v1/logs/" + digest_ + "/log"), std::string(log_.begin(), log_.end()));
+  const Outcome again = push(url());
+  EXPECT_EQ(again.code, 0);
+  EXPECT_NE(again.text.find("replaced"), std::string::npos) << again.text;
+  EXPECT_EQ(push(url("/v1/meshes/other")).code, 0);
+  EXPECT_NE(served("/v1/meshes/other").find(digest_), std::string::npos);
+}
+
+TEST_F(PushTest, itGoesOnWhereAnEarlierOneStopped) {
+  const std::string part =
+      (folder_.logFolder() / (".upload-" + digest_ + "-my wing.part")).string();
+  std::ofstream(part, std::ios::binary)
+      .write(reinterpret_cast<const char*>(log_.data()),
+             static_cast<std::streamsize>(log_.size() / 2));
+  const Outcome rest = push(url());
+  EXPECT_EQ(rest.code, 0) << rest.text;
+  EXPECT_EQ(served("/v1/logs/" + digest_ + "/log"), std::string(log_.begin(), log_.end()));
+  // The first half was not sent again: had it been, its bytes would have replaced these.
+  Bytes wrong = log_;
+  wrong[100] ^= 1;
+  std::ofstream(part, std::ios::binary)
+      .write(reinterpret_cast<const char*>(wrong.data()),
+             static_cast<std::streamsize>(wrong.size() / 2));
+  const Outcome refused = push(url());
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_NE(refused.text.find("422"), std::string::npos) << refused.text;
+  EXPECT_EQ(push(url()).code, 0) << "what was wrong is gone";
+}
+
+TEST_F(PushTest, whatTheServerHasWholeIsNotSentAgain) {
+  const std::string part =
+      (folder_.logFolder() / (".upload-" + digest_ + "-my wing.part")).string();
+  Bytes wrong = log_;
+  wrong[100] ^= 1;
+  std::ofstream(part, std::ios::binary)
+      .write(reinterpret_cast<const char*>(wrong.data()),
+             static_cast<std::streamsize>(wrong.size()));
+  EXPECT_NE(push(url()).text.find("422"), std::string::npos) << "it was checked as it lay there";
+  std::ofstream(part, std::ios::binary)
+      .write(reinterpret_cast<const char*>(log_.data()), static_cast<std::streamsize>(log_.size()));
+  EXPECT_EQ(push(url()).code, 0);
+  EXPECT_EQ(served("/v1/logs/" + digest_ + "/log"), std::string(log_.begin(), log_.end()));
+}
+
+TEST_F(PushTest, itSaysThatTheServerChecks) {
+  check_.hold(true);
+  const Outcome pushed = push(url(), kToken, [this](const std::string& said) {
+    if (said.find("the server checks the log") != std::string::npos) check_.hold(false);
+  });
+  EXPECT_EQ(pushed.code, 0) << pushed.text;
+}
+
+TEST_F(PushTest, whatGoesWrongIsSaid) {
+  const Outcome stranger = push(url(), "x");
+  EXPECT_EQ(stranger.code, 1);
+  EXPECT_NE(stranger.text.find("401: send a token"), std::string::npos) << stranger.text;
+  EXPECT_NE(push(url(), "").text.find("QTET_TOKEN"), std::string::npos);
+  for (const char* wrong : {"https://127.0.0.1/", "ftp://x/", "http://", "http://a:b/", "nonsense"})
+    EXPECT_EQ(push(wrong).code, 2) << wrong;
+  mine_.write("my wing.qtet", std::string_view("no log"));
+  EXPECT_EQ(push(url()).code, 1);
+}
+
+}  // namespace
+}  // namespace qtet

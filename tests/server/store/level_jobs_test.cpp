@@ -1,0 +1,275 @@
+#include <utility>  // before any Asio header: 1.74 uses std::exchange without it
+
+#include "server/store/level_jobs.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/write.hpp>
+#include <condition_variable>
+#include <future>
+#include <thread>
+#include <vector>
+
+#include "server/http/level_wait.h"
+#include "tests/server/program/loopback.h"
+#include "tests/server/program/served_folder.h"
+
+namespace qtet {
+namespace {
+
+/// Makes levels when it is told to, and hears of being stopped.
+class HeldMaker {
+ public:
+  Result<Bytes> operator()(const LevelRequest& request, const std::stop_token& stop) {
+    const std::stop_callback wake(stop, [this] { changed_.notify_all(); });
+    std::unique_lock lock(mutex_);
+    ++begun_;
+    changed_.notify_all();
+    changed_.wait(lock, [&] { return free_ || stop.stop_requested(); });
+    if (stop.stop_requested()) ++stopped_;
+    changed_.notify_all();
+    return Bytes(request.level + 1, 0x42);
+  }
+  void release() {
+    const std::scoped_lock lock(mutex_);
+    free_ = true;
+    changed_.notify_all();
+  }
+  void waitForBegun(int count) {
+    wait([&] { return begun_ >= count; });
+  }
+  void waitForStopped(int count) {
+    wait([&] { return stopped_ >= count; });
+  }
+  [[nodiscard]] int begun() {
+    const std::scoped_lock lock(mutex_);
+    return begun_;
+  }
+
+ private:
+  template <class Condition>
+  void wait(Condition condition) {
+    std::unique_lock lock(mutex_);
+    ASSERT_TRUE(changed_.wait_for(lock, test::kPatience, condition));
+  }
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool free_ = false;
+  int begun_ = 0, stopped_ = 0;
+};
+
+class LevelJobsTest : public testing::Test {
+ protected:
+  ~LevelJobsTest() override { maker_.release(); }
+  LevelRequest level(std::uint32_t k) { return {folder_.store().find("noise"), k}; }
+  LevelJobs::Options options(std::size_t most) { return {1, most, nullptr, std::ref(maker_)}; }
+
+  test::ServedFolder folder_;
+  HeldMaker maker_;
+};
+
+TEST_F(LevelJobsTest, aLevelIsMadeElsewhere) {
+  maker_.release();
+  LevelJobs jobs(options(1));
+  std::promise<std::pair<std::size_t, std::thread::id>> promise;
+  const auto subscription = jobs.submit(level(3), [&](Result<LevelFile> file) {
+    promise.set_value({file->bytes.size(), std::this_thread::get_id()});
+  });
+  ASSERT_TRUE(subscription);
+  const auto [bytes, thread] = promise.get_future().get();
+  EXPECT_EQ(bytes, 4u);
+  EXPECT_NE(thread, std::this_thread::get_id());
+}
+
+TEST_F(LevelJobsTest, whoWantsTheSameSharesTheJob) {
+  LevelJobs jobs(options(1));
+  std::atomic<int> done = 0;
+  std::vector<LevelJobs::Subscription> subscribers;
+  std::promise<void> last;
+  for (int i = 0; i < 5; ++i) {
+    auto subscription = jobs.submit(level(3), [&](const Result<LevelFile>& file) {
+      EXPECT_EQ(file->bytes.size(), 4u);
+      if (++done == 5) last.set_value();
+    });
+    ASSERT_TRUE(subscription);
+    subscribers.push_back(std::move(*subscription));
+  }
+  maker_.release();
+  last.get_future().wait();
+  EXPECT_EQ(maker_.begun(), 1);
+  EXPECT_EQ(jobs.counts().made, 1u);
+}
+
+TEST_F(LevelJobsTest, thereAreAsManyJobsAsItWasTold) {
+  LevelJobs jobs(options(2));
+  const auto first = jobs.submit(level(0), [](const Result<LevelFile>&) {});
+  maker_.waitForBegun(1);
+  std::optional second = jobs.submit(level(1), [](const Result<LevelFile>&) {});
+  EXPECT_TRUE(first && *second);
+  EXPECT_EQ(jobs.submit(level(2), [](const Result<LevelFile>&) {}).error(), LevelRefusal::kBusy);
+  EXPECT_TRUE(jobs.submit(level(1), [](const Result<LevelFile>&) {}))
+      << "a subscription for a job that is there needs no place";
+  EXPECT_EQ(jobs.counts().refused, 1u);
+  second.reset();
+  EXPECT_TRUE(jobs.submit(level(2), [](const Result<LevelFile>&) {}))
+      << "a job that waits and nobody wants gives its place back";
+}
+
+TEST_F(LevelJobsTest, anAddressHasAsManyAsItMayHaveAndOthersHaveTheirs) {
+  const int one = 0, other = 0;
+  LevelJobs::Options few = options(4);
+  few.mostOfAddress = 2;
+  LevelJobs jobs(few);
+  const auto submit = [&](std::uint32_t k, LevelJobs::Address from) {
+    return jobs.submit(level(k), [](const Result<LevelFile>&) {}, from);
+  };
+  auto first = submit(0, &one), again = submit(0, &one), second = submit(1, &one);
+  EXPECT_TRUE(first && again && second) << "twice the same is one job";
+  EXPECT_EQ(submit(2, &one).error(), LevelRefusal::kAddress);
+  const auto theirs = submit(2, &other);
+  ASSERT_TRUE(theirs);
+  EXPECT_TRUE(submit(2, &one)) << "somebody else's job takes no place of this address's";
+  {
+    const LevelJobs::Subscription gone = std::move(*second);
+  }
+  EXPECT_TRUE(submit(3, &one)) << "a subscription that has gone gives its place back";
+  EXPECT_TRUE(submit(3, nullptr)) << "who is from nowhere is not bounded";
+  EXPECT_EQ(jobs.counts().refused, 1u);
+}
+
+TEST_F(LevelJobsTest, withTheLastSubscriptionTheJobEnds) {
+  LevelJobs jobs(options(1));
+  std::optional first =
+      jobs.submit(level(0), [](const Result<LevelFile>&) { ADD_FAILURE() << "nobody waits"; });
+  std::optional second =
+      jobs.submit(level(0), [](const Result<LevelFile>&) { ADD_FAILURE() << "nobody waits"; });
+  maker_.waitForBegun(1);
+  first.reset();
+  EXPECT_EQ(jobs.counts().cancelled, 0u);
+  second.reset();
+  maker_.waitForStopped(1);
+  EXPECT_EQ(jobs.counts().cancelled, 1u);
+}
+
+// Asio's reactor hands readiness on later than it hears of it; bytes that were read between the two
+// wake the watch up for nothing.
+TEST_F(LevelJobsTest, aWakeUpForNothingLeavesTheClientWatched) {
+  namespace asio = boost::asio;
+  using asio::ip::tcp;
+  LevelJobs jobs(options(1));
+  asio::io_context context;
+  tcp::acceptor acceptor(context, {asio::ip::address_v4::loopback(), 0});
+  std::optional<tcp::socket> client(context);
+  client->connect(acceptor.local_endpoint());
+  ClientSocket socket(acceptor.accept());
+  asio::write(*client, asio::buffer("request", 7));
+  while (socket.arrived() == Arrived::kNothing) std::this_thread::yield();
+  std::optional<LevelAnswer> answer;
+  asio::co_spawn(
+      context,
+      [&]() -> asio::awaitable<void> {
+        std::array<char, 16> bytes;
+        boost::system::error_code ec;
+        EXPECT_EQ(socket.read(bytes, ec), 7u);
+        answer = co_await waitForLevel(socket, jobs, level(2));
+      },
+      asio::detached);
+  while (maker_.begun() == 0) context.run_one_for(std::chrono::milliseconds(10));
+  while (context.run_one_for(test::kQuiet) != 0) continue;  // the wake-up
+  EXPECT_FALSE(answer);
+  client.reset();
+  ASSERT_TRUE(test::eventually([&] { return context.poll(), answer.has_value(); }))
+      << "the client's end was not seen";
+  EXPECT_TRUE(std::holds_alternative<LevelRefusal>(*answer) &&
+              std::get<LevelRefusal>(*answer) == LevelRefusal::kGone);
+  maker_.waitForStopped(1);
+}
+
+TEST_F(LevelJobsTest, aSubscriptionMayOutliveTheJobs) {
+  std::optional<LevelJobs::Subscription> subscription;
+  {
+    LevelJobs jobs(options(1));
+    auto submitted = jobs.submit(level(0), [](const Result<LevelFile>&) {});
+    ASSERT_TRUE(submitted);
+    subscription = std::move(*submitted);
+  }
+  subscription.reset();
+}
+
+TEST_F(LevelJobsTest, atTheEndWhatWaitsIsDroppedAndWhatRunsIsStopped) {
+  std::vector<LevelJobs::Subscription> subscribers;
+  {
+    LevelJobs jobs(options(8));
+    for (std::uint32_t i = 0; i < 5; ++i)
+      subscribers.push_back(std::move(*jobs.submit(level(i), [](const Result<LevelFile>&) {})));
+    maker_.waitForBegun(1);
+  }
+  EXPECT_EQ(maker_.begun(), 1);
+}
+
+TEST_F(LevelJobsTest, finishedLevelsAreKeptOnDiskUpToALimit) {
+  maker_.release();
+  test::TempFolder folder;
+  {
+    const auto cache = LevelCache::open(folder.path() / "levels", 10);
+    ASSERT_TRUE(cache);
+    LevelJobs jobs({1, 8, cache->get(), std::ref(maker_)});
+    for (const std::uint32_t k : {3u, 4u, 5u, 11u}) {  // 4, 5, 6 and 12 bytes
+      std::promise<std::size_t> bytes;
+      const auto subscription = jobs.submit(
+          level(k), [&](Result<LevelFile> file) { bytes.set_value(file->bytes.size()); });
+      EXPECT_EQ(bytes.get_future().get(), k + 1);
+      if (k == 4) {
+        EXPECT_TRUE(jobs.find(level(3))) << "used again, so 4 is the older one";
+      }
+    }
+    EXPECT_TRUE(jobs.find(level(3)));
+    EXPECT_FALSE(jobs.find(level(4)));
+    EXPECT_TRUE(jobs.find(level(5)));
+    EXPECT_FALSE(jobs.find(level(11))) << "alone above the limit";
+    EXPECT_EQ((*cache)->bytes(), 10u);
+  }
+  const auto again = LevelCache::open(folder.path() / "levels", 10);
+  ASSERT_TRUE(again);
+  const auto found = (*again)->find(level(5).key());
+  ASSERT_TRUE(found) << "a later run finds them";
+  EXPECT_EQ(found->bytes.size(), 6u);
+  std::filesystem::resize_file(folder.path() / "levels" / (level(3).key() + ".level"), 1);
+  EXPECT_FALSE((*again)->find(level(3).key())) << "not the file that was put there";
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "levels" / (level(3).key() + ".level")))
+      << "what is not counted does not lie there";
+}
+
+TEST(LevelCache, whatAKilledServerDidNotFinishGoesAndWhatAnotherOneWritesStays) {
+  const test::TempFolder folder;
+  const std::string key(64, 'a'), unfinished = "." + key + ".level.12.0.tmp",
+                                  written = "." + key + ".level.13.0.tmp";
+  const std::vector<std::string> others = {".a.level.12.0.tmp", "." + key + ".level.12.tmp",
+                                           "." + key + ".12.0.tmp", key + ".level.12.0.tmp"};
+  for (const std::string& name : others) folder.write(name, std::string_view("somebody's"));
+  for (const std::string& name : {unfinished, written})
+    folder.write(name, std::string_view("half"));
+  const int lock = ::open((folder.path() / written).c_str(), O_RDONLY | O_CLOEXEC);
+  ASSERT_EQ(::flock(lock, LOCK_EX), 0);
+  ASSERT_TRUE(LevelCache::open(folder.path(), 10));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / unfinished));
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / written));
+  for (const std::string& name : others)
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / name)) << name;
+  ::close(lock);
+}
+
+TEST(LevelCache, aFolderThatCannotBeIsAnError) {
+  EXPECT_EQ(LevelCache::open("/proc/nothing", 1).error().code, ErrorCode::kIo);
+}
+
+}  // namespace
+}  // namespace qtet

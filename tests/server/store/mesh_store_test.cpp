@@ -1,0 +1,194 @@
+#include "server/store/mesh_store.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "server/store/bus_guard.h"
+#include "server/wire/limits.h"
+#include "tests/server/store/synthetic_log.h"
+
+namespace qtet {
+namespace {
+
+TEST(MeshStore, servesTheSoundLogsInTheOrderOfTheirNames) {
+  test::TempFolder folder;
+  folder.write("b.qtet", test::makeLog({.seed = 1}));
+  folder.write("a.qtet", test::makeLog({.seed = 2}));
+  folder.write("c.txt", "no log");
+  folder.write("sub/d.qtet", test::makeLog({.seed = 3}));
+  const auto store = MeshStore::open(folder.path());
+  ASSERT_TRUE(store);
+  ASSERT_EQ(store->catalogue()->meshes.size(), 2u);
+  EXPECT_EQ(store->catalogue()->meshes.begin()->first, "a");
+  EXPECT_TRUE(store->catalogue()->refused.empty());
+  EXPECT_NE(store->find("b"), nullptr);
+  EXPECT_EQ(store->find("c"), nullptr);
+  EXPECT_EQ(store->find("../b"), nullptr);
+}
+
+ErrorCode refusalOfDamaged(const Bytes& bytes) {
+  test::TempFolder folder;
+  folder.write("good.qtet", test::makeLog({.seed = 1}));
+  folder.write("bad.qtet", bytes);
+  const auto store = MeshStore::open(folder.path());
+  EXPECT_TRUE(store);
+  const CataloguePointer catalogue = store->catalogue();
+  EXPECT_EQ(catalogue->meshes.size(), 1u) << "the sound one is served all the same";
+  EXPECT_EQ(catalogue->refused.size(), 1u);
+  return catalogue->refused.empty() ? ErrorCode::kIo : catalogue->refused[0].error.code;
+}
+
+TEST(MeshStore, aDamagedLogIsRefusedWithItsReason) {
+  const Bytes whole = test::makeLog(test::SyntheticLog());
+  EXPECT_EQ(refusalOfDamaged({}), ErrorCode::kTruncated);
+  EXPECT_EQ(refusalOfDamaged(Bytes(whole.begin(), whole.end() - 1)), ErrorCode::kTruncated);
+  Bytes flipped = whole;
+  flipped.back() ^= 1;  // in the last block: only its CRC-32C can tell
+  EXPECT_EQ(refusalOfDamaged(flipped), ErrorCode::kBadChecksum);
+  flipped = whole;
+  flipped[100] ^= 1;  // in the manifest
+  EXPECT_EQ(refusalOfDamaged(flipped), ErrorCode::kBadChecksum);
+  flipped = whole;
+  flipped[0] ^= 1;
+  EXPECT_EQ(refusalOfDamaged(flipped), ErrorCode::kBadMagic);
+}
+
+/// Rewrites a sound log's front, checksums and all.
+template <class Change>
+Bytes rewritten(Change change) {
+  const Bytes whole = test::makeLog(test::SyntheticLog());
+  LogIndex index = *LogIndex::parse(whole);
+  const Bytes blocks(whole.begin() + static_cast<std::ptrdiff_t>(index.headBytes()), whole.end());
+  change(index);
+  const auto shift = index.encode().size() - index.headBytes();
+  for (ChunkEntry& chunk : index.chunks) chunk.offset += shift;
+  index.fileBytes += shift;
+  Bytes out = index.encode();
+  out.insert(out.end(), blocks.begin(), blocks.end());
+  return out;
+}
+
+TEST(MeshStore, aManifestThatContradictsTheTableIsRefused) {
+  EXPECT_EQ(refusalOfDamaged(rewritten([](LogIndex& index) { index.fields[0].components = 2; })),
+            ErrorCode::kTruncated);
+  EXPECT_EQ(refusalOfDamaged(rewritten(
+                [](LogIndex& index) { index.fields.push_back({1, Association::kPoint}); })),
+            ErrorCode::kBadValue);
+  EXPECT_EQ(refusalOfDamaged(rewritten([](LogIndex& index) { index.manifest.push_back(0); })),
+            ErrorCode::kBadValue);
+  EXPECT_EQ(refusalOfDamaged(rewritten([](LogIndex& index) { index.manifest.resize(2); })),
+            ErrorCode::kTruncated);
+}
+
+TEST(MeshStore, aFolderThatIsNotThereIsAnError) {
+  const auto store = MeshStore::open("/nonexistent/folder");
+  ASSERT_FALSE(store);
+  EXPECT_EQ(store.error().code, ErrorCode::kIo);
+  EXPECT_NE(store.error().message.find("/nonexistent/folder"), std::string::npos);
+}
+
+TEST(MeshStore, newReplacedAndRemovedLogsAreNoticed) {
+  test::TempFolder folder;
+  folder.write("a.qtet", test::makeLog({.seed = 1}));
+  folder.write("b.qtet", test::makeLog({.seed = 2}));
+  const auto store = MeshStore::open(folder.path());
+  ASSERT_TRUE(store);
+  const MeshPointer old = store->find("a");
+  const std::string tag = store->catalogue()->etag;
+  EXPECT_FALSE(store->rescan()->any());
+  EXPECT_EQ(store->find("a"), old) << "what has not changed is not opened again";
+
+  folder.write("new.tmp", test::makeLog({.seed = 3}));
+  std::filesystem::rename(folder.path() / "new.tmp", folder.path() / "a.qtet");
+  folder.write("c.qtet", test::makeLog({.seed = 4}));
+  std::filesystem::remove(folder.path() / "b.qtet");
+  const auto change = store->rescan();
+  ASSERT_TRUE(change);
+  EXPECT_EQ(change->added.size(), 2u);
+  EXPECT_EQ(change->removed, std::vector<std::string>{"b"});
+  EXPECT_NE(store->find("a")->log.digest(), old->log.digest());
+  EXPECT_EQ(store->findLog(old->log.digest()), old) << "who reads it piece by piece may finish";
+  EXPECT_EQ(store->find("b"), nullptr);
+  EXPECT_NE(store->catalogue()->etag, tag);
+  EXPECT_TRUE(old->log.verifyChecksums()) << "the old file's mapping is untouched";
+}
+
+TEST(MeshStore, aDamagedReplacementLeavesTheSoundLogServed) {
+  test::TempFolder folder;
+  folder.write("a.qtet", test::makeLog({.seed = 1}));
+  const auto store = MeshStore::open(folder.path());
+  ASSERT_TRUE(store);
+  const MeshPointer old = store->find("a");
+  folder.write("new.tmp", "nonsense");
+  std::filesystem::rename(folder.path() / "new.tmp", folder.path() / "a.qtet");
+  EXPECT_EQ(store->rescan()->refused.size(), 1u);
+  EXPECT_EQ(store->find("a"), old);
+  EXPECT_TRUE(store->rescan()->refused.empty()) << "it is told of once";
+  EXPECT_EQ(store->catalogue()->refused.size(), 1u);
+  EXPECT_EQ(store->find("a"), old);
+}
+
+TEST(MeshStore, linksOutOfTheFolderAreNotFollowed) {
+  test::TempFolder folder, elsewhere;
+  elsewhere.write("a.qtet", test::makeLog({.seed = 1}));
+  folder.write("real.qtet", test::makeLog({.seed = 2}));
+  std::filesystem::create_symlink(elsewhere.path() / "a.qtet", folder.path() / "a.qtet");
+  std::filesystem::create_symlink("real.qtet", folder.path() / "alias.qtet");
+  const auto store = MeshStore::open(folder.path());
+  ASSERT_TRUE(store);
+  EXPECT_EQ(store->find("a"), nullptr);
+  EXPECT_NE(store->find("alias"), nullptr);
+}
+
+TEST(MeshStore, onlyNamesOfFilesAreMeshes) {
+  EXPECT_EQ(pathOfMesh("/d", "a b"), "/d/a b.qtet");
+  EXPECT_EQ(pathOfMesh("/d", "\xc3\xa4"), "/d/\xc3\xa4.qtet");
+  EXPECT_TRUE(pathOfMesh("/d", std::string(limits::kMaxIdBytes, 'a')));
+  for (const std::string& id :
+       {std::string(), std::string("a/b"), std::string(".."), std::string(".a"), std::string("a\n"),
+        std::string("a\0b", 3), std::string("\xc0\xae"), std::string("\xff"), std::string("a\\b"),
+        std::string(limits::kMaxIdBytes + 1, 'a')})
+    EXPECT_FALSE(pathOfMesh("/d", id)) << id;
+}
+
+TEST(MeshStore, aLevelsPrefixEndsWithItsChunk) {
+  test::TempFolder folder;
+  folder.write("a.qtet", test::makeLog(test::SyntheticLog()));
+  const auto store = MeshStore::open(folder.path());
+  ASSERT_TRUE(store);
+  const MeshPointer found = store->find("a");
+  const ServedMesh& mesh = *found;
+  EXPECT_EQ(mesh.prefixBytes(11), mesh.log.bytes().size());
+  EXPECT_EQ(mesh.prefixBytes(0), mesh.log.index().chunks[1].offset);
+}
+
+/// As `cp` does it, which many people replace files with.
+TEST(ServedMesh, aFileThatIsChangedInPlaceStaysWhatItsDigestSays) {
+  const test::TempFolder folder;
+  const Bytes log = test::makeLog({.chunks = 20});
+  folder.write("noise.qtet", log);
+  const Result<MeshPointer> mesh = openMesh(folder.path() / "noise.qtet", "noise");
+  ASSERT_TRUE(mesh);
+  folder.write("noise.qtet", test::makeLog({.chunks = 3, .seed = 9}));
+  EXPECT_TRUE(std::ranges::equal((*mesh)->log.bytes(), log));
+  EXPECT_TRUE((*mesh)->log.verifyChecksums());
+}
+
+TEST(BusGuard, whatIsLostOfAMappedFileReadsAsZeros) {
+  guardAgainstBusErrors();
+  const test::TempFolder folder;
+  folder.write("noise.qtet", test::makeLog({.chunks = 20}));
+  const Result<LogFile> log = LogFile::open(folder.path() / "noise.qtet");
+  ASSERT_TRUE(log);
+  ASSERT_GT(log->bytes().size(), 3u * 4096);
+  const std::uint64_t before = lostPages();
+  std::filesystem::resize_file(folder.path() / "noise.qtet", 4096);
+  EXPECT_EQ(log->bytes().back(), 0);
+  EXPECT_GT(lostPages(), before);
+  EXPECT_FALSE(log->verifyChecksums());
+}
+
+}  // namespace
+}  // namespace qtet

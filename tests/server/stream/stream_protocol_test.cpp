@@ -1,0 +1,376 @@
+#include "server/stream/stream_protocol.h"
+
+#include <gtest/gtest.h>
+
+#include "server/wire/limits.h"
+#include "tests/server/store/synthetic_log.h"
+
+namespace qtet {
+namespace {
+
+class StreamProtocolTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_.write("noise.qtet", test::makeLog({.chunks = 6}));
+    folder_.write("places.qtet", test::makeLog({.chunks = 2, .bands = 3, .errors = true}));
+    Result<MeshStore> store = MeshStore::open(folder_.path());
+    ASSERT_TRUE(store);
+    store_.emplace(std::move(*store));
+    protocol_.emplace(*store_);
+  }
+
+  void say(const std::string& json) { protocol_->receive(json, now_); }
+  void open(std::uint64_t credit, const std::string& more = "") {
+    say(R"({"type":"open","mesh":"noise","credit":)" + std::to_string(credit) + more + "}");
+  }
+  std::string text() {
+    const auto out = protocol_->next();
+    if (!out || !std::holds_alternative<std::string>(*out)) return "(no text)";
+    return std::get<std::string>(*out);
+  }
+  std::string errorCode() {
+    const auto message = parseServerMessage(text());
+    return message && std::holds_alternative<ErrorMessage>(*message)
+               ? std::get<ErrorMessage>(*message).code
+               : "(no error)";
+  }
+  OpenedMessage opened() {
+    const auto message = parseServerMessage(text());
+    return message && std::holds_alternative<OpenedMessage>(*message)
+               ? std::get<OpenedMessage>(*message)
+               : OpenedMessage{};
+  }
+  std::optional<OutgoingFrame> frame() {
+    const auto out = protocol_->next();
+    if (!out || !std::holds_alternative<OutgoingFrame>(*out)) return std::nullopt;
+    return std::get<OutgoingFrame>(*out);
+  }
+  PlannedMessage planned() {
+    const auto message = parseServerMessage(text());
+    return message && std::holds_alternative<PlannedMessage>(*message)
+               ? std::get<PlannedMessage>(*message)
+               : PlannedMessage{};
+  }
+  void openPlaces(const std::string& more) {
+    say(R"({"type":"open","mesh":"places","fields":["density"],"credit":9007199254740991)" + more +
+        "}");
+  }
+  /// The chunks of all frames up to the next word.
+  std::vector<std::uint32_t> chunks() {
+    std::vector<std::uint32_t> out;
+    for (std::optional<Outgoing> o;
+         (o = protocol_->next()) && std::holds_alternative<OutgoingFrame>(*o);) {
+      const FrameHeader& header = std::get<OutgoingFrame>(*o).header;
+      if (header.firstPart != FrameHeader::kHead) out.push_back(header.chunk);
+    }
+    return out;
+  }
+  bool silent() { return !protocol_->next(); }
+  bool closes() {
+    const auto out = protocol_->next();
+    return out && std::holds_alternative<CloseCode>(*out) &&
+           std::get<CloseCode>(*out) == CloseCode::kPolicy;
+  }
+  const ServedMesh& mesh() { return *store_->find("noise"); }
+
+  test::TempFolder folder_;
+  std::optional<MeshStore> store_;
+  std::optional<StreamProtocol> protocol_;
+  StreamProtocol::Clock::time_point now_ = StreamProtocol::Clock::now();
+};
+
+TEST_F(StreamProtocolTest, saysNothingUnasked) { EXPECT_TRUE(silent()); }
+
+TEST_F(StreamProtocolTest, everythingAskedForIsTheFileItself) {
+  open(kMaxCredit, R"(,"fields":["velocity","density","density"])");
+  const OpenedMessage answer = opened();
+  EXPECT_EQ(answer.stream, 1u);
+  EXPECT_EQ(answer.digest, mesh().log.digest());
+  EXPECT_EQ(answer.bytes, mesh().log.bytes().size());
+  EXPECT_EQ(answer.planned, mesh().log.bytes().size());
+  Bytes all;
+  for (std::optional<OutgoingFrame> f; all.size() < answer.planned && (f = frame());) {
+    EXPECT_EQ(f->header.stream, 1u);
+    EXPECT_EQ(f->header.size, f->payload.size());
+    all.insert(all.end(), f->payload.begin(), f->payload.end());
+  }
+  EXPECT_TRUE(std::ranges::equal(all, mesh().log.bytes()));
+  EXPECT_EQ(text(), R"({"stream":1,"type":"done"})");
+  EXPECT_TRUE(silent());
+}
+
+TEST_F(StreamProtocolTest, noFrameIsSentWithoutCredit) {
+  open(0);
+  EXPECT_EQ(opened().stream, 1u);
+  EXPECT_TRUE(silent());
+  say(R"({"type":"credit","bytes":1})");
+  const auto head = frame();
+  ASSERT_TRUE(head);
+  EXPECT_EQ(head->header.firstPart, FrameHeader::kHead);
+  EXPECT_TRUE(silent());  // below zero now
+  say(R"({"type":"credit","bytes":)" + std::to_string(head->header.size - 1) + "}");
+  EXPECT_TRUE(silent());  // exactly zero is not positive
+  say(R"({"type":"credit","bytes":1})");
+  EXPECT_TRUE(frame());
+}
+
+TEST_F(StreamProtocolTest, doneNeedsNoCredit) {
+  open(1, R"(,"have":{"chunks":5})");
+  EXPECT_EQ(opened().stream, 1u);
+  ASSERT_TRUE(frame());
+  EXPECT_EQ(text(), R"({"stream":1,"type":"done"})");
+}
+
+TEST_F(StreamProtocolTest, aClientThatHasEverythingIsDoneAtOnce) {
+  open(0, R"(,"have":{"chunks":6})");
+  EXPECT_EQ(opened().planned, 0u);
+  EXPECT_EQ(text(), R"({"stream":1,"type":"done"})");
+}
+
+TEST_F(StreamProtocolTest, aSecondOpenSupersedesTheFirstAndItsCredit) {
+  open(kMaxCredit);
+  EXPECT_EQ(opened().stream, 1u);
+  ASSERT_TRUE(frame());
+  open(0);
+  EXPECT_EQ(opened().stream, 2u);
+  EXPECT_TRUE(silent());
+  say(R"({"type":"credit","bytes":1})");
+  const auto first = frame();
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->header.stream, 2u);
+  EXPECT_EQ(first->header.firstPart, FrameHeader::kHead);
+}
+
+TEST_F(StreamProtocolTest, stopEndsAStreamAndSaysSo) {
+  say(R"({"type":"stop"})");
+  EXPECT_EQ(text(), R"({"stream":0,"type":"stopped"})");
+  open(kMaxCredit);
+  EXPECT_EQ(opened().stream, 1u);
+  ASSERT_TRUE(frame());
+  say(R"({"type":"stop"})");
+  EXPECT_EQ(text(), R"({"stream":1,"type":"stopped"})");
+  EXPECT_TRUE(silent());
+  say(R"({"type":"credit","bytes":1000})");
+  EXPECT_TRUE(silent());
+}
+
+TEST_F(StreamProtocolTest, cancelIsStopUnderItsOtherName) {
+  open(kMaxCredit);
+  EXPECT_EQ(opened().stream, 1u);
+  say(R"({"type":"cancel"})");
+  EXPECT_EQ(text(), R"({"stream":1,"type":"stopped"})");
+  EXPECT_TRUE(silent());
+}
+
+TEST_F(StreamProtocolTest, openedTellsTheLayout) {
+  open(0);
+  EXPECT_EQ(opened().layout, "stream");
+  openPlaces("");
+  EXPECT_EQ(opened().layout, "regions");
+}
+
+TEST_F(StreamProtocolTest, aNewViewReordersWhatHasNotBeenSent) {
+  openPlaces(R"(,"view":{"box":[0,0,0,1,1,1]})");
+  const std::uint64_t whole = opened().planned;
+  std::uint64_t sent = 0;
+  for (const std::uint32_t expected : {0u, 0u, 1u, 2u}) {
+    const auto f = frame();
+    ASSERT_TRUE(f);
+    EXPECT_EQ(f->header.chunk, expected);
+    sent += f->header.size;
+  }
+  say(R"({"type":"view","view":{"box":[65000,65000,65000,65001,65001,65001]}})");
+  const PlannedMessage answer = planned();
+  EXPECT_EQ(answer.stream, 1u);
+  EXPECT_EQ(answer.view, 1u);
+  EXPECT_EQ(answer.planned, whole - sent);
+  for (const std::uint32_t expected : {3u, 7u, 15u}) EXPECT_EQ(frame()->header.chunk, expected);
+  EXPECT_EQ(chunks().size(), 10u);
+}
+
+TEST_F(StreamProtocolTest, viewsThatWaitAreAnsweredOnce) {
+  openPlaces("");
+  EXPECT_EQ(opened().stream, 1u);
+  for (int i = 0; i < 3; ++i)
+    say(R"({"type":"view","view":{"point":[0,0,)" + std::to_string(i) + "]}}");
+  EXPECT_EQ(planned().view, 3u);
+  EXPECT_TRUE(frame());
+  say(R"({"type":"view","view":null})");
+  EXPECT_EQ(planned().view, 4u);
+}
+
+TEST_F(StreamProtocolTest, aTargetEndsTheStreamAndALaterOneGoesOn) {
+  openPlaces(R"(,"target":{"level":1},"view":{"box":[0,0,0,1,1,1]})");
+  EXPECT_EQ(opened().stream, 1u);
+  EXPECT_EQ(chunks(), (std::vector<std::uint32_t>{0, 1}));
+  EXPECT_TRUE(silent());
+  say(R"({"type":"target","target":{"level":3}})");
+  const PlannedMessage answer = planned();
+  EXPECT_EQ(answer.view, 0u);
+  EXPECT_GT(answer.planned, 0u);
+  EXPECT_EQ(chunks(), (std::vector<std::uint32_t>{2, 4}));
+  say(R"({"type":"target","target":{"level":0}})");
+  EXPECT_EQ(planned().planned, 0u);
+  EXPECT_EQ(text(), R"({"stream":1,"type":"done"})");
+  say(R"({"type":"target","target":null})");
+  EXPECT_GT(planned().planned, 0u);
+  EXPECT_EQ(chunks().size(), 12u);
+}
+
+TEST_F(StreamProtocolTest, aTargetOfAnUnknownFieldChangesNothing) {
+  openPlaces(R"(,"target":{"level":1})");
+  EXPECT_EQ(opened().stream, 1u);
+  say(R"({"type":"target","target":{"error":0.1,"field":"pressure"}})");
+  EXPECT_EQ(errorCode(), "unknown-field");
+  EXPECT_EQ(chunks(), (std::vector<std::uint32_t>{0, 1}));
+  openPlaces(R"(,"target":{"error":0.1,"field":"pressure"})");
+  EXPECT_EQ(errorCode(), "unknown-field");
+  EXPECT_TRUE(silent());
+}
+
+TEST_F(StreamProtocolTest, pauseKeepsTheStreamAndItsCredit) {
+  open(kMaxCredit);
+  EXPECT_EQ(opened().stream, 1u);
+  ASSERT_TRUE(frame());
+  say(R"({"type":"pause"})");
+  EXPECT_TRUE(silent());
+  say(R"({"type":"view","view":null})");
+  EXPECT_EQ(planned().view, 1u);
+  EXPECT_TRUE(silent());
+  say(R"({"type":"resume"})");
+  EXPECT_EQ(frame()->header.chunk, 0u);
+  EXPECT_EQ(frame()->header.chunk, 1u);
+}
+
+TEST_F(StreamProtocolTest, resumeMaySayAnewWhatIsThere) {
+  openPlaces("");
+  EXPECT_EQ(opened().stream, 1u);
+  say(R"({"type":"pause"})");
+  say(R"({"type":"resume","have":{"chunks":2,"ranges":[[3,15]],"fields":{"density":{"chunks":2,"ranges":[[3,14]]}}}})");
+  EXPECT_EQ(frame()->header.firstPart, FrameHeader::kHead) << "it was not sent before";
+  std::vector<std::uint32_t> sent = chunks();
+  EXPECT_EQ(sent.front(), 14u) << "a field of what is there";
+  std::ranges::sort(sent);
+  EXPECT_EQ(sent, (std::vector<std::uint32_t>{2, 14, 15}));
+  say(R"({"type":"resume","have":{"chunks":17}})");
+  EXPECT_EQ(errorCode(), "log-changed");
+  EXPECT_TRUE(silent()) << "and nothing is sent again";
+}
+
+TEST_F(StreamProtocolTest, anOpenMayHaveRanges) {
+  openPlaces(R"(,"have":{"chunks":4,"ranges":[[5,16]],"fields":{"density":4}})");
+  EXPECT_EQ(opened().stream, 1u);
+  const std::vector<std::uint32_t> sent = chunks();
+  EXPECT_EQ(sent.size(), 12u);
+  EXPECT_EQ(std::ranges::count(sent, 4u), 1) << "its mesh and its field";
+  openPlaces(R"(,"have":{"chunks":4,"ranges":[[5,17]]})");
+  EXPECT_EQ(errorCode(), "log-changed");
+}
+
+TEST_F(StreamProtocolTest, requestsWithoutAStreamAreIgnored) {
+  for (const char* request :
+       {R"({"type":"view","view":null})", R"({"type":"target","target":null})",
+        R"({"type":"pause"})", R"({"type":"resume"})"})
+    say(request);
+  EXPECT_TRUE(silent());
+}
+
+TEST_F(StreamProtocolTest, viewRequestsBeyondTheirRateClose) {
+  open(0);
+  EXPECT_EQ(opened().stream, 1u);
+  for (unsigned i = 0; i < limits::kMaxViewRequestsPerSecond; ++i)
+    say(R"({"type":"view","view":null})");
+  EXPECT_EQ(planned().view, limits::kMaxViewRequestsPerSecond);
+  say(R"({"type":"view","view":null})");
+  EXPECT_EQ(errorCode(), "too-many-messages");
+  EXPECT_TRUE(closes());
+}
+
+TEST_F(StreamProtocolTest, whatDoesNotExistIsNamedAndTheSocketStays) {
+  say(R"({"type":"open","mesh":"nothing","credit":1})");
+  EXPECT_EQ(errorCode(), "not-found");
+  open(1, R"(,"fields":["pressure"])");
+  EXPECT_EQ(errorCode(), "unknown-field");
+  open(1, R"(,"have":{"chunks":1,"fields":{"pressure":1}})");
+  EXPECT_EQ(errorCode(), "unknown-field");
+  open(1, R"(,"digest":")" + std::string(64, '0') + "\"");
+  EXPECT_EQ(errorCode(), "log-changed");
+  open(1, R"(,"have":{"chunks":7})");
+  EXPECT_EQ(errorCode(), "log-changed");
+  EXPECT_TRUE(silent());
+  open(1, R"(,"digest":")" + mesh().log.digest() + "\"");
+  EXPECT_EQ(opened().stream, 6u);
+}
+
+TEST_F(StreamProtocolTest, aRefusedOpenEndsTheStreamBeforeIt) {
+  for (const char* refused : {R"({"type":"open","mesh":"nothing","credit":1})",
+                              R"({"type":"open","mesh":"noise","fields":["pressure"],"credit":1})",
+                              R"({"type":"open","mesh":"noise","have":{"chunks":7},"credit":1})"}) {
+    open(kMaxCredit);
+    EXPECT_NE(opened().stream, 0u);
+    say(refused);
+    EXPECT_NE(errorCode(), "(no error)");
+    EXPECT_TRUE(silent()) << refused;
+  }
+}
+
+TEST_F(StreamProtocolTest, whatIsNotUnderstoodClosesAfterAnExplanation) {
+  open(kMaxCredit);
+  say("hello");
+  EXPECT_EQ(opened().stream, 1u);
+  EXPECT_EQ(errorCode(), "bad-message");
+  EXPECT_TRUE(closes());
+  open(1);  // too late
+  EXPECT_TRUE(closes());
+}
+
+TEST_F(StreamProtocolTest, binaryMessagesAreNotUnderstood) {
+  protocol_->receiveBinary();
+  EXPECT_EQ(errorCode(), "bad-message");
+  EXPECT_TRUE(closes());
+}
+
+TEST_F(StreamProtocolTest, messagesBeyondTheRateClose) {
+  for (unsigned i = 0; i < limits::kMaxMessagesPerSecond; ++i)
+    say(R"({"type":"credit","bytes":1})");
+  EXPECT_TRUE(silent());
+  say(R"({"type":"credit","bytes":1})");
+  EXPECT_EQ(errorCode(), "too-many-messages");
+  EXPECT_TRUE(closes());
+}
+
+TEST_F(StreamProtocolTest, theRateIsCountedAnewEverySecond) {
+  for (unsigned i = 0; i < 3 * limits::kMaxMessagesPerSecond; ++i) {
+    if (i % limits::kMaxMessagesPerSecond == 0) now_ += std::chrono::seconds(1);
+    say(R"({"type":"credit","bytes":1})");
+  }
+  EXPECT_TRUE(silent());
+}
+
+TEST_F(StreamProtocolTest, opensBeyondTheirRateClose) {
+  for (unsigned i = 0; i < limits::kMaxOpensPerSecond; ++i) {
+    open(0);
+    EXPECT_EQ(opened().stream, i + 1);
+  }
+  open(0);
+  EXPECT_EQ(errorCode(), "too-many-messages");
+  EXPECT_TRUE(closes());
+}
+
+TEST_F(StreamProtocolTest, answersThatNobodyReadsDoNotPileUp) {
+  for (unsigned i = 0; i <= limits::kMaxQueuedAnswers; ++i) say(R"({"type":"stop"})");
+  for (unsigned i = 0; i < limits::kMaxQueuedAnswers; ++i)
+    EXPECT_EQ(text(), R"({"stream":0,"type":"stopped"})");
+  EXPECT_EQ(errorCode(), "too-many-messages");
+  EXPECT_TRUE(closes());
+}
+
+TEST_F(StreamProtocolTest, creditCannotOverflow) {
+  open(kMaxCredit);
+  EXPECT_EQ(opened().stream, 1u);
+  for (int i = 0; i < 1500; ++i) say(R"({"type":"credit","bytes":9007199254740991})");
+  EXPECT_TRUE(frame());
+}
+
+}  // namespace
+}  // namespace qtet

@@ -1,0 +1,218 @@
+// Tokens, tickets, and who gets what over real sockets where reading is guarded.
+#include "server/wire/access.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "proto/checksum.h"
+#include "server/wire/limits.h"
+#include "tests/server/program/loopback.h"
+#include "tests/server/program/served_folder.h"
+
+namespace qtet {
+namespace {
+
+using Json = nlohmann::json;
+using test::HttpResponse;
+using test::RawClient;
+using Scope = Tokens::Scope;
+using Verdict = Tokens::Verdict;
+
+const std::string kReader = "readerSecretOfManyChars", kWriter = "writerSecretOfManyChars",
+                  kOther = "otherSecretOfManyChars";
+
+std::string bearer(const std::string& token) { return "Authorization: Bearer " + token + "\r\n"; }
+std::optional<SecretDigest> digestOf(const std::string& token) {
+  return bearerDigest("Bearer " + token);
+}
+
+TEST(Tokens, linesAreReadAndWrongOnesNamed) {
+  const auto tokens = Tokens::parse("# who\n\nwrite lab-* " + kWriter +
+                                    "\nwrite x sha256:" + sha256Hex(ByteView()) + "\n");
+  ASSERT_TRUE(tokens) << tokens.error().message;
+  EXPECT_EQ(tokens->may(Scope::kWrite, digestOf(kWriter), "lab-1"), Verdict::kAllowed);
+  EXPECT_EQ(tokens->may(Scope::kWrite, digestOf(kWriter), "other"), Verdict::kForbidden);
+  EXPECT_EQ(tokens->may(Scope::kWrite, digestOf(kWriter + "x"), "lab-1"), Verdict::kUnknown);
+  EXPECT_EQ(tokens->may(Scope::kWrite, std::nullopt, "lab-1"), Verdict::kUnknown);
+  EXPECT_EQ(tokens->may(Scope::kWrite, digestOf(""), "x"), Verdict::kUnknown)
+      << "the empty token is none, even if its digest stands there";
+  EXPECT_FALSE(tokens->guardReading());
+  EXPECT_EQ(tokens->may(Scope::kRead, std::nullopt, "any"), Verdict::kAllowed)
+      << "no line speaks of reading";
+  for (const std::string& wrong : std::vector<std::string>{
+           "write lab-* short", "own lab-* " + kWriter, "write " + kWriter,
+           "write x " + kWriter + " more", "write x sha256:00", "write x anyone", "read"}) {
+    const auto refused = Tokens::parse("# first\n" + wrong);
+    ASSERT_FALSE(refused) << wrong;
+    EXPECT_NE(refused.error().message.find("line 2"), std::string::npos) << refused.error().message;
+    EXPECT_EQ(refused.error().message.find(kWriter), std::string::npos)
+        << "a message that goes to a log tells no secret";
+  }
+}
+
+TEST(Tokens, aLineOfReadingGuardsAllMeshesAndWritingIncludesReading) {
+  const auto tokens =
+      Tokens::parse("read lab-* " + kReader + "\nwrite lab-1 " + kWriter + "\nread demo anyone\n");
+  ASSERT_TRUE(tokens) << tokens.error().message;
+  EXPECT_TRUE(tokens->guardReading());
+  EXPECT_EQ(tokens->may(Scope::kRead, digestOf(kReader), "lab-1"), Verdict::kAllowed);
+  EXPECT_EQ(tokens->may(Scope::kWrite, digestOf(kReader), "lab-1"), Verdict::kForbidden);
+  EXPECT_EQ(tokens->may(Scope::kRead, digestOf(kReader), "x"), Verdict::kForbidden);
+  EXPECT_EQ(tokens->may(Scope::kRead, digestOf(kWriter), "lab-1"), Verdict::kAllowed);
+  EXPECT_EQ(tokens->may(Scope::kRead, digestOf(kWriter), "lab-2"), Verdict::kForbidden);
+  EXPECT_EQ(tokens->may(Scope::kRead, std::nullopt, "lab-1"), Verdict::kUnknown);
+  EXPECT_EQ(tokens->may(Scope::kRead, std::nullopt, "demo"), Verdict::kAllowed);
+  EXPECT_EQ(tokens->may(Scope::kRead, digestOf(kOther), "demo"), Verdict::kAllowed);
+  EXPECT_TRUE(tokens->knows(digestOf(kReader)));
+  EXPECT_FALSE(tokens->knows(digestOf(kOther)));
+  EXPECT_FALSE(tokens->knows(std::nullopt));
+}
+
+TEST(Tickets, areForOnceForThirtySecondsAndForTheirTokenAlone) {
+  Access access(*Tokens::parse("read * " + kReader));
+  const auto now = Access::Clock::time_point() + std::chrono::hours(1);
+  const auto first = access.giveTicket(*digestOf(kReader), now),
+             second = access.giveTicket(*digestOf(kReader), now);
+  ASSERT_TRUE(first && second);
+  EXPECT_NE(*first, *second);
+  EXPECT_EQ(access.takeTicket(*first, now + limits::kTicketTime - std::chrono::milliseconds(1)),
+            digestOf(kReader));
+  EXPECT_EQ(access.takeTicket(*first, now), std::nullopt) << "used";
+  EXPECT_EQ(access.takeTicket(*second, now + limits::kTicketTime), std::nullopt) << "too old";
+  EXPECT_EQ(access.takeTicket("nonsense", now), std::nullopt);
+  EXPECT_EQ(access.takeTicket("", now), std::nullopt);
+}
+
+TEST(Tickets, ofOneTokenAreBoundedAndOfAnotherStillToBeHad) {
+  Access access(*Tokens::parse("read * " + kReader));
+  const auto now = Access::Clock::now();
+  std::set<std::string> given;
+  for (std::size_t i = 0; i < limits::kMaxTickets; ++i)
+    given.insert(access.giveTicket(*digestOf(kReader), now).value_or(""));
+  EXPECT_EQ(given.size(), limits::kMaxTickets);
+  EXPECT_EQ(access.giveTicket(*digestOf(kReader), now), std::nullopt);
+  EXPECT_TRUE(access.giveTicket(*digestOf(kOther), now));
+  EXPECT_TRUE(access.takeTicket(*given.begin(), now));
+  EXPECT_TRUE(access.giveTicket(*digestOf(kReader), now)) << "a used one leaves its place";
+  EXPECT_TRUE(access.giveTicket(*digestOf(kReader), now + limits::kTicketTime))
+      << "and so do those that are too old";
+}
+
+/// `noise` for one token, `a b` for everybody.
+class GuardedTest : public testing::Test {
+ protected:
+  HttpResponse get(const std::string& target, const std::string& headers = "") {
+    return RawClient(server_.port()).get(target, headers);
+  }
+  HttpResponse postTicket(const std::string& headers) {
+    RawClient client(server_.port());
+    client.send("POST /v1/tickets HTTP/1.1\r\nHost: a\r\nContent-Length: 0\r\n" + headers + "\r\n");
+    return client.receive();
+  }
+  std::string ticket(const std::string& token) {
+    return Json::parse(postTicket(bearer(token)).body).value("ticket", "");
+  }
+  std::string openWord(test::StreamClient& stream, const std::string& mesh) {
+    stream.send(R"({"type":"open","credit":0,"mesh":")" + mesh + "\"}");
+    const auto message = stream.receive();
+    const Json word = message ? Json::parse(message->text()) : Json();
+    return word.value("type", "") == "error" ? word.value("code", "")
+                                             : word.value("type", "nothing");
+  }
+
+  test::ServedFolder folder_;
+  Access access_{*Tokens::parse("read noise " + kReader + "\nread a* anyone\nread none " + kOther +
+                                "\nwrite up* " + kWriter)};
+  test::RunningServer server_{folder_.store(), folder_.viewer(), {.access = &access_}};
+};
+
+TEST_F(GuardedTest, aMeshIsForItsTokenAndNamesAreNotTold) {
+  EXPECT_EQ(get("/v1/meshes/noise", bearer(kReader)).status, 200u);
+  EXPECT_EQ(get("/v1/meshes/noise").status, 401u);
+  EXPECT_EQ(get("/v1/meshes/noise").header("www-authenticate"), "Bearer realm=\"qtet\"");
+  EXPECT_EQ(get("/v1/meshes/noise", bearer(kOther)).status, 403u);
+  for (const char* rest : {"", "/log", "/levels/0.vtu"}) {
+    EXPECT_EQ(get(std::string("/v1/meshes/noise") + rest).body,
+              get(std::string("/v1/meshes/nothing") + rest).body)
+        << "there or not";
+    EXPECT_EQ(get(std::string("/v1/meshes/noise") + rest, bearer(kOther)).body,
+              get(std::string("/v1/meshes/nothing") + rest, bearer(kOther)).body);
+  }
+  EXPECT_EQ(get("/v1/meshes/none", bearer(kOther)).status, 404u)
+      << "who may read it may learn that it is not there";
+  EXPECT_EQ(get("/v1/meshes/a%20b").status, 200u);
+}
+
+TEST_F(GuardedTest, whatIsUnderADigestIsThereForThoseAloneWhoMayReadItUnderSomeName) {
+  for (const char* part : {"log", "manifest", "base", "chunks/0", "levels/0.vtu", "preview.png"}) {
+    EXPECT_EQ(get(folder_.log(part)).status, 404u) << part;
+    EXPECT_EQ(get(folder_.log(part), bearer(kOther)).status, 404u) << part;
+  }
+  const HttpResponse own = get(folder_.log(), bearer(kReader));
+  EXPECT_EQ(own.body, folder_.file());
+  EXPECT_TRUE(own.header("cache-control").starts_with("private")) << own.header("cache-control");
+  const std::string open = "/v1/logs/" + folder_.store().find("a b")->log.digest() + "/log";
+  EXPECT_TRUE(get(open).header("cache-control").starts_with("public"));
+}
+
+TEST_F(GuardedTest, theListHoldsWhatMayBeReadAndItsTagTellsItApart) {
+  const auto ids = [&](const std::string& headers) {
+    std::string out;
+    const Json list = Json::parse(get("/v1/meshes", headers).body);
+    for (const Json& mesh : list["meshes"]) out += mesh["id"].get<std::string>() + ";";
+    return out;
+  };
+  EXPECT_EQ(ids(""), "a b;");
+  EXPECT_EQ(ids(bearer(kReader)), "a b;noise;");
+  EXPECT_EQ(get("/v1/meshes", bearer("nobodysSecretOfManyChars")).status, 401u);
+  EXPECT_NE(get("/v1/meshes").header("etag"), get("/v1/meshes", bearer(kReader)).header("etag"));
+  const HttpResponse page = get("/v1/meshes?limit=1", bearer(kReader));
+  EXPECT_NE(page.header("link").find("after=a%20b"), std::string::npos);
+  EXPECT_EQ(get("/v1/meshes?limit=1").header("link"), "") << "nothing follows that may be seen";
+}
+
+TEST_F(GuardedTest, aTicketOpensOneStreamWithItsTokensMeshes) {
+  EXPECT_EQ(postTicket("").status, 401u);
+  EXPECT_EQ(postTicket(bearer("nobodysSecretOfManyChars")).status, 401u);
+  const std::string path = "/v1/stream?ticket=" + ticket(kReader);
+  test::StreamClient stream(server_.port(), "qtet.v1", path);
+  ASSERT_TRUE(stream.connected());
+  EXPECT_EQ(openWord(stream, "noise"), "opened");
+  EXPECT_EQ(openWord(stream, "a b"), "opened");
+  EXPECT_EQ(openWord(stream, "none"), "not-found");
+  test::StreamClient again(server_.port(), "qtet.v1", path);
+  EXPECT_EQ(again.httpStatus(), 401u) << "used";
+  test::StreamClient other(server_.port(), "qtet.v1", "/v1/stream?ticket=" + ticket(kOther));
+  ASSERT_TRUE(other.connected());
+  EXPECT_EQ(openWord(other, "noise"), "not-found");
+  test::StreamClient nobody(server_.port());
+  ASSERT_TRUE(nobody.connected());
+  EXPECT_EQ(openWord(nobody, "noise"), "not-found");
+  EXPECT_EQ(openWord(nobody, "a b"), "opened");
+  EXPECT_EQ(get("/v1/tickets", bearer(kReader)).status, 405u);
+}
+
+TEST_F(GuardedTest, aTokenThatIsTakenAwayIsNoGoodFromTheNextRequestOn) {
+  const std::string before = ticket(kReader);
+  test::StreamClient stream(server_.port(), "qtet.v1", "/v1/stream?ticket=" + ticket(kReader));
+  EXPECT_EQ(openWord(stream, "noise"), "opened");
+  access_.replace(*Tokens::parse("read noise " + kOther));
+  EXPECT_EQ(get("/v1/meshes/noise", bearer(kReader)).status, 401u);
+  EXPECT_EQ(get("/v1/meshes/noise", bearer(kOther)).status, 200u);
+  EXPECT_EQ(openWord(stream, "noise"), "not-found");
+  EXPECT_EQ(
+      test::StreamClient(server_.port(), "qtet.v1", "/v1/stream?ticket=" + before).httpStatus(),
+      401u);
+}
+
+TEST_F(GuardedTest, whoMayReadMayNotWrite) {
+  RawClient client(server_.port());
+  client.send("DELETE /v1/meshes/noise HTTP/1.1\r\nHost: a\r\n" + bearer(kReader) + "\r\n");
+  EXPECT_EQ(client.receive().status, 403u);
+  EXPECT_EQ(get("/v1/meshes/noise", bearer(kReader)).status, 200u);
+}
+
+}  // namespace
+}  // namespace qtet

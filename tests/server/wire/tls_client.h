@@ -1,0 +1,67 @@
+// A client over TLS that says what it is told, and certificates to serve it with.
+#pragma once
+
+#include <utility>  // before any Asio header: 1.74 uses std::exchange without it
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/ssl/context.hpp>
+#include <boost/asio/ssl/stream.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "tests/server/program/loopback.h"
+
+namespace qtet::test {
+
+/// Makes NAME.crt and NAME.key in `folder` with the openssl program: for localhost, signed by
+/// itself. False: there is no such program.
+[[nodiscard]] bool makeCertificate(const std::filesystem::path& folder, const std::string& name);
+
+/// The first bytes of a handshake over TLS 1.3, whole.
+[[nodiscard]] std::string clientHello();
+
+struct TlsChoice {
+  int least = 0;  ///< TLS1_2_VERSION and so on; 0: what OpenSSL likes
+  int most = 0;
+  std::string alpn{};  ///< as on the wire
+};
+
+/// Blocks, with a time-out of kPatience. Trusts the certificate in the file and no other.
+class TlsClient {
+ public:
+  TlsClient(std::uint16_t port, const std::filesystem::path& certificate,
+            const TlsChoice& choice = {});
+
+  [[nodiscard]] bool connected() const { return connected_; }
+  [[nodiscard]] std::string version() const;
+  [[nodiscard]] std::string alpn() const;
+  bool send(std::string_view bytes);
+  /// The answer to what was sent; status 0: it did not come, or not whole.
+  HttpResponse receive();
+  /// So many bytes; fewer where the connection ended.
+  std::string read(std::size_t bytes);
+  /// The body of the answer to a GET; "" where it is no 200 or 206.
+  std::string get(std::string_view target, std::string_view headers = "");
+  /// Opens `mesh` on `/v1/stream` and reads the payloads of its frames, one behind the other, until
+  /// the server says that this was all; less where the connection ended, and nothing can be said
+  /// behind it.
+  std::string stream(const std::string& mesh);
+  /// Changes the key so often; sent with the next bytes. REQUIRES: TLS 1.3.
+  void updateKey(int times);
+  /// Ends the connection as TLS wants it.
+  void shutdown();
+
+ private:
+  bool fill();
+
+  boost::asio::io_context context_;
+  boost::asio::ssl::context tls_{boost::asio::ssl::context::tls_client};
+  boost::asio::ssl::stream<boost::asio::ip::tcp::socket> stream_;
+  bool connected_ = false;
+  std::string buffer_;  // what came and was not asked for yet
+};
+
+}  // namespace qtet::test

@@ -1,0 +1,31 @@
+#include "simplify/commands/printable.h"
+
+#include <gtest/gtest.h>
+
+namespace qtet {
+namespace {
+
+TEST(Printable, whatATerminalObeysIsReplacedAndAllElseStays) {
+  EXPECT_EQ(printable("T in °C, λ"), "T in °C, λ");
+  EXPECT_EQ(printable("\033[31mred\007"), "\uFFFD[31mred\uFFFD");
+  EXPECT_EQ(printable("a\x7F"), "a\uFFFD");
+  EXPECT_EQ(printable("\xC2\x9B"
+                      "31m\xC2\xA0\xC2"),
+            "\uFFFD31m\xC2\xA0\xC2")
+      << "CSI is one, no-break space none, and half a character is passed on";
+  EXPECT_EQ(printable("a\nb\tc\r"), "a\uFFFDb\uFFFDc\uFFFD");
+  EXPECT_EQ(printable("a\nb\r", true), "a\nb\uFFFD");
+}
+
+TEST(Printable, widthIsOfCharactersAndCountsHaveTheirWord) {
+  EXPECT_EQ(textWidth("T in °C, λ"), 10u);
+  EXPECT_EQ(textWidth(""), 0u);
+  EXPECT_EQ(counted(1, "vertex", "vertices"), "1 vertex");
+  EXPECT_EQ(counted(0, "vertex", "vertices"), "0 vertices");
+  EXPECT_EQ(counted(1234567, "vertex", "vertices"), "1,234,567 vertices");
+  EXPECT_EQ(grouped(999), "999");
+  EXPECT_EQ(grouped(1000), "1,000");
+}
+
+}  // namespace
+}  // namespace qtet

@@ -1,0 +1,131 @@
+// Whatever the solid, every level of its history is a solid of the same topology inside the
+// original, and its log brings all of it back. QTET_RANDOM_SOLIDS=N tries N more seeds.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdlib>
+#include <map>
+#include <string>
+
+#include "codec/files/atomic_file.h"
+#include "codec/log/log_file.h"
+#include "codec/log/log_writer.h"
+#include "simplify/clean/verify.h"
+#include "simplify/fuse/qtetfusion.h"
+#include "tests/support/meshes.h"
+#include "tests/support/random_solid.h"
+#include "tests/support/solid_check.h"
+
+namespace qtet {
+namespace {
+
+using testing::checkSolid;
+using testing::freshFolder;
+using testing::meshOfHistory;
+using testing::randomSolid;
+using testing::SolidReport;
+using testing::topologyChange;
+using testing::whatIsOutside;
+
+constexpr std::uint32_t kSeeds = 64;
+
+void everyLevelKeepsItsPromises(const LatticeMesh& mesh, const FusionHistory& history) {
+  const SolidReport original = checkSolid(mesh);
+  ASSERT_EQ(original.faults(), "") << "the input itself";
+  std::int64_t coarser = 0;
+  for (std::uint32_t undone = 0; undone <= history.levels; ++undone) {
+    SCOPED_TRACE("level " + std::to_string(undone) + " of " + std::to_string(history.levels));
+    const LatticeMesh level = meshOfHistory(history, undone);
+    const SolidReport now = checkSolid(level);
+    ASSERT_EQ(now.faults(), "");
+    ASSERT_EQ(topologyChange(now, original), "");
+    ASSERT_EQ(whatIsOutside(level, mesh), "");
+    ASSERT_GE(now.volume6, coarser) << "less than the coarser level before it";
+    coarser = now.volume6;
+  }
+  EXPECT_EQ(coarser, original.volume6);
+}
+
+void itsLogDecodesToTheSame(const LatticeMesh& mesh, const FusionHistory& history) {
+  LogWriterOptions options;
+  options.chunkBytes = 400;  // several chunks, most of which end inside a level
+  const auto encoded = encodeLog(history, options);
+  ASSERT_TRUE(encoded) << encoded.error().text();
+  const auto path = freshFolder("random-solid") / "solid.qtet";
+  ASSERT_TRUE(writeFileAtomically(path, encoded->bytes));
+  const auto log = LogFile::open(path);
+  ASSERT_TRUE(log) << log.error().text();
+  for (const std::uint32_t level : {0u, history.levels / 2, history.levels}) {
+    const auto decoded = meshAtLevel(*log, level);
+    ASSERT_TRUE(decoded) << decoded.error().text();
+    const auto same =
+        sameMesh(*decoded, level == history.levels ? mesh : meshOfHistory(history, level));
+    EXPECT_TRUE(same) << "level " << level << ": " << same.error().text();
+  }
+}
+
+void keepsItsPromises(std::uint32_t seed) {
+  const auto solid = randomSolid(seed);
+  SCOPED_TRACE("seed " + std::to_string(seed) + ": " + solid.description);
+  FusionOptions options;
+  options.targetRatio = 0;
+  const auto history = simplify(solid.mesh, options);
+  ASSERT_TRUE(history) << history.error().text();
+  everyLevelKeepsItsPromises(solid.mesh, *history);
+  if (!::testing::Test::HasFatalFailure()) itsLogDecodesToTheSame(solid.mesh, *history);
+}
+
+class RandomSolids : public ::testing::TestWithParam<std::uint32_t> {};
+
+TEST_P(RandomSolids, keepEveryInvariantAtEveryLevel) { keepsItsPromises(GetParam()); }
+
+TEST_P(RandomSolids, areTheSameForAnyNumberOfThreadsWhateverTheOptions) {
+  const std::uint32_t seed = GetParam();
+  const auto solid = randomSolid(seed);
+  SCOPED_TRACE("seed " + std::to_string(seed) + ": " + solid.description);
+  FusionOptions options;
+  options.targetRatio = std::array{0.0, 0.1, 0.5}[seed % 3];
+  options.envelopeTolerance = seed % 4 == 0 ? 0.05 : 0;
+  options.placement = std::array{PlacementRule::kAuto, PlacementRule::kOptimal,
+                                 PlacementRule::kVertex}[seed / 2 % 3];
+  options.bands.cellsPerPacket = seed % 5 == 0 ? 20 : 0;
+  const auto one = simplify(solid.mesh, options);
+  ASSERT_TRUE(one) << one.error().text();
+  for (const int threads : {2, 5}) {
+    SCOPED_TRACE(std::to_string(threads) + " threads");
+    options.threads = threads;
+    const auto several = simplify(solid.mesh, options);
+    ASSERT_TRUE(several) << several.error().text();
+    testing::expectTheSame(*several, *one);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, RandomSolids, ::testing::Range(0u, kSeeds));
+
+TEST(RandomSolids, asManyAsAreAskedFor) {
+  const char* asked = std::getenv("QTET_RANDOM_SOLIDS");
+  if (!asked)
+    GTEST_SKIP() << "QTET_RANDOM_SOLIDS is not set; it says how many seeds to try beyond the first "
+                 << kSeeds;
+  const auto count = static_cast<std::uint32_t>(std::strtoul(asked, nullptr, 10));
+  for (std::uint32_t seed = kSeeds; seed < kSeeds + count && !HasFailure(); ++seed)
+    keepsItsPromises(seed);
+}
+
+// The seeds are worth something only if they hold what makes simplifying hard.
+TEST(RandomSolids, haveTunnelsCavitiesPartsAndPinches) {
+  std::map<std::string, int> count;
+  for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
+    const SolidReport report = checkSolid(randomSolid(seed).mesh);
+    count["several parts"] += report.betti[0] > 1;
+    count["tunnels"] += report.betti[1] > 0;
+    count["cavities"] += report.betti[2] > 0;
+    count["singular vertices"] += !report.singularVertices.empty();
+    count["singular edges"] += !report.singularEdges.empty();
+    count["manifold"] += report.singularVertices.empty();
+  }
+  for (const auto& [what, seeds] : count) EXPECT_GE(seeds, 5) << what;
+}
+
+}  // namespace
+}  // namespace qtet

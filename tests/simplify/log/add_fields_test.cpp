@@ -1,0 +1,283 @@
+// Fields that come to a log later: the geometry stays, the values come back, and a mesh that is not
+// the log's is refused.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+
+#include "codec/log/log_manifest.h"
+#include "codec/log/log_writer.h"
+#include "simplify/clean/verify.h"
+#include "simplify/fuse/qtetfusion.h"
+#include "simplify/log/add_fields.h"
+#include "simplify/log/match_mesh.h"
+#include "simplify/mesh/history_levels.h"
+#include "tests/support/meshes.h"
+
+namespace qtet {
+namespace {
+
+/// A grid's mesh, and a log of it in many small chunks. The log carries the first `fields` of the
+/// mesh's.
+struct Sample {
+  LatticeMesh mesh;
+  FusionHistory history;
+  Bytes bytes;
+
+  explicit Sample(std::uint32_t seed, std::size_t fields, bool measured = false,
+                  CodecId codec = CodecId::kDraco, BandOptions bands = {})
+      : mesh(testing::gridMesh(5, seed)) {
+    testing::addCellFields(mesh);
+    LatticeMesh carried = mesh;
+    carried.fields.resize(fields);
+    carried.values.resize(fields);
+    FusionOptions options;
+    options.bands = bands;
+    history = simplify(std::move(carried), options).value();
+    LogWriterOptions writer;
+    writer.chunkBytes = 200;
+    writer.valueCodec = codec;
+    if (measured) writer.errors = measureLevels(history, {}).value();
+    bytes = encodeLog(history, writer).value().bytes;
+  }
+  /// A log of the layout `regions`.
+  static Sample ofRegions(std::uint32_t seed, std::size_t fields, bool measured = false) {
+    Sample sample(seed, fields, measured, CodecId::kDraco, {100, 2, 1, 1});
+    EXPECT_EQ(sample.log().index().layout, Layout::kRegions);
+    return sample;
+  }
+  [[nodiscard]] LogFile log() const { return LogFile::fromBytes(bytes).value(); }
+};
+
+/// The mesh in floats with its fields from `firstField` on; points and cells shuffled, the vertices
+/// of cells in any order.
+TetMesh shuffled(const LatticeMesh& mesh, std::size_t firstField, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  std::vector<std::uint32_t> points(mesh.points.size()), cells(mesh.tetrahedra.size()),
+      places(points.size());
+  std::iota(points.begin(), points.end(), 0u);
+  std::iota(cells.begin(), cells.end(), 0u);
+  std::ranges::shuffle(points, random);
+  std::ranges::shuffle(cells, random);
+  TetMesh out;
+  for (std::uint32_t i = 0; i < points.size(); ++i)
+    places[points[i]] = i, out.points.push_back(mesh.lattice.position(mesh.points[points[i]]));
+  for (const std::uint32_t t : cells) {
+    Tetrahedron cell = mesh.tetrahedra[t];
+    for (VertexId& v : cell) v = places[v];
+    std::ranges::shuffle(cell, random);
+    out.tetrahedra.push_back(cell);
+  }
+  for (std::size_t f = firstField; f < mesh.fields.size(); ++f) {
+    const FieldInfo& info = mesh.fields[f];
+    MeshField& field = out.fields.emplace_back(
+        MeshField{info.name, info.components, "int32", {}, info.association});
+    for (const std::uint32_t i : isCellField(info) ? cells : points)
+      for (std::size_t c = 0; c < info.components; ++c)
+        field.values.push_back(mesh.values[f][i * info.components + c]);
+  }
+  return out;
+}
+
+std::vector<std::uint32_t> allFields(const LogFile& log) {
+  std::vector<std::uint32_t> out(log.index().fields.size());
+  std::iota(out.begin(), out.end(), 0u);
+  return out;
+}
+
+Bytes withAdded(const LogFile& log, const TetMesh& mesh) {
+  const auto added = addFields(log, mesh);
+  EXPECT_TRUE(added) << added.error().text();
+  const auto bytes = withFields(log, allFields(log), added->fields);
+  EXPECT_TRUE(bytes) << bytes.error().text();
+  return *bytes;
+}
+
+TEST(LogHistory, holdsEveryLevelOfTheLog) {
+  for (const Sample& sample : {Sample(1, 0), Sample::ofRegions(1, 0)}) {
+    const LogFile log = sample.log();
+    auto decoded = historyOf(log);
+    ASSERT_TRUE(decoded) << decoded.error().text();
+    for (std::uint32_t undone = 0; undone <= sample.history.levels; ++undone) {
+      LatticeMesh expected = meshAtLevel(log, undone).value();
+      const auto same = sameMesh(testing::meshOfHistory(decoded->history, undone), expected);
+      ASSERT_TRUE(same) << "level " << undone << ": " << same.error().text();
+    }
+  }
+}
+
+TEST(LogHistory, isWrittenAsALogOfTheSameLevelsAgain) {
+  const Sample sample(2, 0);
+  const LogFile log = sample.log();
+  const auto decoded = historyOf(log);
+  ASSERT_TRUE(decoded);
+  const auto again = encodeLog(decoded->history, {});
+  ASSERT_TRUE(again) << again.error().text();
+  const LogFile second = LogFile::fromBytes(again->bytes).value();
+  for (std::uint32_t level = 0; level <= sample.history.levels; ++level)
+    EXPECT_TRUE(sameMesh(meshAtLevel(log, level).value(), meshAtLevel(second, level).value()))
+        << level;
+}
+
+class AddFields : public ::testing::TestWithParam<std::uint32_t> {};
+
+TEST_P(AddFields, theLastLevelHasThemAndTheGeometryStaysByteForByte) {
+  const Sample sample =
+      GetParam() == 4
+          ? Sample::ofRegions(4, 1)
+          : Sample(GetParam(), 1, false, GetParam() == 3 ? CodecId::kAdaptive : CodecId::kDraco);
+  const LogFile before = sample.log();
+  const LogFile after =
+      LogFile::fromBytes(withAdded(before, shuffled(sample.mesh, 1, GetParam()))).value();
+  ASSERT_TRUE(after.verifyChecksums());
+  ASSERT_EQ(after.index().fields.size(), sample.mesh.fields.size());
+  for (std::uint32_t chunk = 0; chunk < before.index().chunks.size(); ++chunk)
+    for (std::uint32_t part = 0; part < before.index().parts(); ++part)
+      ASSERT_TRUE(std::ranges::equal(before.block(chunk, part), after.block(chunk, part)))
+          << chunk << " " << part;
+
+  const std::uint32_t last = sample.history.levels;
+  LatticeMesh decoded = meshAtLevel(after, last).value();
+  // the scale of integers: their own minimum
+  for (std::size_t f = 1; f < decoded.fields.size(); ++f)
+    for (std::size_t i = 0; i < decoded.values[f].size(); ++i)
+      decoded.values[f][i] +=
+          static_cast<std::int32_t>(decoded.fields[f].minimum[i % decoded.fields[f].components]);
+  const auto same = sameMesh(decoded, sample.mesh);
+  EXPECT_TRUE(same) << same.error().text();
+  for (std::uint32_t level = 0; level <= last; level += 3)
+    EXPECT_TRUE(sameMesh(meshAtLevel(after, level, std::vector<std::uint32_t>{0}).value(),
+                         meshAtLevel(before, level).value()))
+        << level;
+}
+
+TEST_P(AddFields, fusedVerticesLieBetweenTheirPrey) {
+  const Sample sample = GetParam() == 4 ? Sample::ofRegions(4, 0) : Sample(GetParam(), 0);
+  const auto decoded = historyOf(sample.log());
+  ASSERT_TRUE(decoded);
+  std::vector<std::int32_t> values;
+  std::mt19937 random(GetParam());
+  for (std::size_t i = 0; i < 2 * std::size_t{decoded->vertices}; ++i)
+    values.push_back(static_cast<std::int32_t>(random() % 4096));
+  const std::vector<std::int32_t> all = fusedValues(*decoded, values, 2);
+  ASSERT_EQ(all.size(), 2 * decoded->history.points.size());
+  EXPECT_TRUE(std::equal(values.begin(), values.end(), all.begin()));
+  for (const Fusion& fusion : decoded->history.fusions)
+    for (std::size_t c = 0; c < 2; ++c) {
+      std::int32_t low = all[2 * fusion.prey[0] + c], high = low;
+      for (std::size_t i = 1; i < fusion.k; ++i) {
+        low = std::min(low, all[2 * fusion.prey[i] + c]);
+        high = std::max(high, all[2 * fusion.prey[i] + c]);
+      }
+      ASSERT_GE(all[2 * fusion.fused + c], low);
+      ASSERT_LE(all[2 * fusion.fused + c], high);
+      if (fusion.placement == Placement::kAtPrey && fusion.k == 2) {
+        ASSERT_EQ(all[2 * fusion.fused + c], all[2 * fusion.prey[0] + c]);
+      }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, AddFields, ::testing::Values(1u, 2u, 3u, 4u));
+
+TEST(AddFields, errorsAreMeasuredWhereTheLogKnowsThemAndAbsentElsewhere) {
+  for (const bool measured : {false, true}) {
+    const Sample sample(4, 1, measured);
+    const LogFile log = sample.log();
+    const LogFile after = LogFile::fromBytes(withAdded(log, shuffled(sample.mesh, 1, 4))).value();
+    const Manifest manifest = manifestOf(after.index()).value();
+    for (const ManifestLevel& level : manifest.levels) {
+      ASSERT_EQ(level.error.has_value(), measured);
+      if (!measured) continue;
+      ASSERT_EQ(level.error->fields.size(), manifest.fields.size());
+      EXPECT_EQ(level.error->fields[1].rms > 0, level.level + 1 < manifest.levels.size())
+          << level.level;
+      EXPECT_EQ(level.error->toLevel.max,
+                manifestOf(log.index())->levels[level.level].error->toLevel.max);
+    }
+  }
+}
+
+TEST(AddFields, leavingFieldsOutGivesTheLogWithoutThem) {
+  const Sample sample(5, 4, true), bare(5, 4, true);
+  const LogFile log = sample.log();
+  const auto some = withFields(log, {3, 0}, {});
+  ASSERT_TRUE(some) << some.error().text();
+  const LogFile left = LogFile::fromBytes(*some).value();
+  const LatticeMesh mesh = meshAtLevel(left, 2).value(), whole = meshAtLevel(log, 2).value();
+  ASSERT_EQ(mesh.fields.size(), 2u);
+  EXPECT_EQ(mesh.values[0], whole.values[3]);
+  EXPECT_EQ(mesh.values[1], whole.values[0]);
+  EXPECT_EQ(withFields(log, allFields(log), {}).value(), sample.bytes);
+}
+
+TEST(AddFields, aMeshThatIsNotTheLogsIsRefusedByName) {
+  const Sample sample(6, 0);
+  const LogFile log = sample.log();
+  const auto refusal = [&](const TetMesh& mesh) {
+    const auto added = addFields(log, mesh);
+    return added ? std::string("accepted") : added.error().text();
+  };
+  const TetMesh good = shuffled(sample.mesh, 0, 6);
+  TetMesh moved = good;
+  moved.points[7][0] += sample.mesh.lattice.step;
+  EXPECT_NE(refusal(moved).find("point 7 "), std::string::npos) << refusal(moved);
+  TetMesh between = good;
+  between.points[9][1] += 0.7 * sample.mesh.lattice.step;
+  EXPECT_NE(refusal(between).find("point 9 "), std::string::npos) << refusal(between);
+  TetMesh fewer = good;
+  fewer.tetrahedra.pop_back();
+  EXPECT_NE(refusal(fewer).find("cells, the log"), std::string::npos) << refusal(fewer);
+  TetMesh rewired = good;
+  std::swap(rewired.tetrahedra[3][0], rewired.tetrahedra[4][0]);
+  EXPECT_NE(refusal(rewired).find("is no cell of the log"), std::string::npos) << refusal(rewired);
+}
+
+TEST(AddFields, aFieldOfALogOfRegionsComesInAnyOrderOfPackets) {
+  const Sample sample = Sample::ofRegions(7, 1, true);
+  const LogFile after =
+      LogFile::fromBytes(withAdded(sample.log(), shuffled(sample.mesh, 1, 7))).value();
+  const LatticeMesh whole = meshAtLevel(after, sample.history.levels).value();
+  Refiner refiner(after.index());
+  const auto chunks = static_cast<std::uint32_t>(after.index().chunks.size());
+  std::vector<std::uint32_t> waiting(chunks);
+  std::iota(waiting.rbegin(), waiting.rend(), 0u);
+  while (!waiting.empty()) {  // the last of those that may come
+    const auto next = std::ranges::find_if(waiting, [&](std::uint32_t chunk) {
+      return chunk == 0 ||
+             refiner.applied(
+                 after.index().dependencies[after.index().chunks[chunk].firstDependency]);
+    });
+    ASSERT_TRUE(applyChunk(after, refiner, *next, allFields(after)));
+    waiting.erase(next);
+  }
+  for (std::uint32_t f = 0; f < whole.fields.size(); ++f)
+    EXPECT_TRUE(std::ranges::equal(refiner.fieldValues(f), whole.values[f]))
+        << whole.fields[f].name;
+}
+
+TEST(MatchMesh, pointsAtOnePlaceAreToldApartByTheirCells) {
+  // Two cells on either side of a crack: three pairs of points at the same places.
+  LatticeMesh log;
+  log.points = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, 0, 4},
+                {4, 0, 0}, {0, 4, 0}, {0, 0, 4}, {9, 9, 9}};
+  log.tetrahedra = {{0, 1, 2, 3}, {4, 5, 6, 7}};
+  LatticeMesh mesh = log;
+  std::ranges::reverse(mesh.points);
+  mesh.tetrahedra = {{1, 2, 3, 0}, {5, 4, 7, 6}};
+  const auto match = matchMesh(mesh, log.points, log.tetrahedra);
+  ASSERT_TRUE(match) << match.error().text();
+  for (VertexId v = 0; v < 8; ++v) EXPECT_EQ(match->points[v], 7 - v);
+  EXPECT_EQ(match->tetrahedra, (std::vector<CellId>{1, 0}));
+
+  mesh.tetrahedra[0] = {1, 2, 7, 0};  // now a cell of both sides
+  EXPECT_FALSE(matchMesh(mesh, log.points, log.tetrahedra));
+  mesh.tetrahedra[0] = {1, 2, 6, 0};  // the right places, but one corner of the other side
+  const auto crossed = matchMesh(mesh, log.points, log.tetrahedra);
+  ASSERT_FALSE(crossed);
+  EXPECT_NE(crossed.error().message.find("two points of the log"), std::string::npos)
+      << crossed.error().message;
+}
+
+}  // namespace
+}  // namespace qtet

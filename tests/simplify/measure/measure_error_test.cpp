@@ -1,0 +1,282 @@
+#include "simplify/measure/measure_error.h"
+#include "codec/coding/error_figure.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "simplify/fuse/qtetfusion.h"
+#include "tests/support/meshes.h"
+
+namespace qtet {
+namespace {
+
+using testing::gridMesh;
+
+/// A cube of 120 steps, cut into six tetrahedra round the diagonal from 0 to 7, with a field.
+/// Vertex v lies where its bits say.
+FusionHistory cube() {
+  FusionHistory h;
+  h.lattice = {8, 1, {0, 0, 0}};
+  for (int v = 0; v < 8; ++v)
+    h.points.push_back({v & 1 ? 120 : 0, v & 2 ? 120 : 0, v & 4 ? 120 : 0});
+  h.cells = {{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}};
+  for (const auto& cell : std::vector(h.cells)) {
+    h.cells.push_back({cell[0], cell[2], cell[1], kGhost});
+    h.cells.push_back({cell[1], cell[2], cell[3], kGhost});
+  }
+  h.live.assign(h.cells.size(), 1);
+  h.fields = {{"Height", 1, "float32", "point", 12, 1, {0}, {0, 120}}};
+  h.values.resize(1);
+  for (const LatticePoint& p : h.points) h.values[0].push_back(p[2]);
+  return h;
+}
+
+/// The vertex goes to `point` and gets `value`: a fusion of one vertex alone, which is all that a
+/// measurement needs to see. One level more.
+void displace(FusionHistory& h, VertexId vertex, const LatticePoint& point, std::int32_t value) {
+  Fusion fusion;
+  fusion.k = 1;
+  fusion.placement = Placement::kFree;
+  fusion.level = h.levels++;
+  fusion.fused = static_cast<VertexId>(h.points.size());
+  fusion.prey[0] = vertex;
+  fusion.firstAffected = h.affectedCells.size();
+  h.points.push_back(point);
+  h.values[0].push_back(value);
+  for (std::uint32_t c = 0; c < h.cells.size(); ++c)
+    if (const auto at = std::ranges::find(h.cells[c], vertex); at != h.cells[c].end()) {
+      *at = fusion.fused;
+      h.affectedCells.push_back(c);
+      h.affectedLabels.push_back(0);
+      ++fusion.affectedCount;
+    }
+  h.fusions.push_back(fusion);
+}
+
+std::vector<LevelError> measured(FusionHistory h, const MeasureOptions& options = {}) {
+  const auto errors = measureLevels(h, options);
+  if (!errors) throw std::runtime_error(errors.error().message);
+  return *errors;
+}
+
+void expectNothing(const LevelError& error) {
+  EXPECT_EQ(error.boundaryDistance(), 0);
+  EXPECT_EQ(error.boundaryMean(), 0);
+  EXPECT_EQ(error.volumeKept, 1);
+  for (const FieldError& field : error.fields) {
+    EXPECT_EQ(field.rms, 0);
+    EXPECT_EQ(field.max, 0);
+  }
+}
+
+constexpr double kDiagonal = 120 * 1.7320508075688772;
+
+TEST(MeasureLevels, theOriginalHasNoError) {
+  const auto errors = measured(cube());
+  ASSERT_EQ(errors.size(), 1u);
+  ASSERT_EQ(errors[0].fields.size(), 1u);
+  expectNothing(errors[0]);
+}
+
+TEST(MeasureLevels, aVertexPutIntoItsOwnPlaceChangesNothing) {
+  FusionHistory h = cube();
+  displace(h, 7, h.points[7], h.values[0][7]);
+  const auto errors = measured(h);
+  ASSERT_EQ(errors.size(), 2u);
+  for (const LevelError& error : errors) {
+    EXPECT_LT(error.boundaryDistance(), 1e-12);
+    EXPECT_EQ(error.volumeKept, 1);
+    EXPECT_LE(error.fields[0].max, 1e-12);
+  }
+}
+
+TEST(MeasureLevels, aCornerPulledInIsAsFarAsItsOldPlaceIs) {
+  FusionHistory h = cube();
+  displace(h, 1, {90, 0, 0}, 0);  // the corner at (120, 0, 0)
+  const LevelError error = measured(h)[0];
+  // Of the old corner from the plane 4 x - y = 360 of the new triangle with 3 and 7.
+  const double distance = 120 / std::sqrt(17.0) / kDiagonal;
+  EXPECT_EQ(error.toLevel.max, roundedUp(distance));
+  // The tetrahedra (0, 1, 3, 7) and (0, 5, 1, 7) of a sixth each lose a quarter of their height
+  // over the plane through 0, 3, 7 or 0, 5, 7.
+  EXPECT_EQ(error.volumeKept, 0.916667);
+  // The new corner lies on the original's boundary, the inside of the new triangles does not.
+  EXPECT_GT(error.toOriginal.max, 0);
+  EXPECT_LE(error.toOriginal.max, error.toLevel.max);
+}
+
+TEST(MeasureLevels, aFlatSideMovedByAFifthIsAFifthAway) {
+  FusionHistory h = cube();
+  for (const VertexId v : {4u, 5u, 6u, 7u})
+    // four levels; the base has the side z = 96
+    displace(h, v, {h.points[v][0], h.points[v][1], 96}, 96);
+  const auto errors = measured(h);
+  ASSERT_EQ(errors.size(), 5u);
+  const LevelError& base = errors.front();
+  EXPECT_EQ(base.toLevel.max, roundedUp(24 / kDiagonal));
+  EXPECT_EQ(base.toOriginal.max, roundedUp(24 / kDiagonal));  // in the middle of the new side
+  EXPECT_EQ(base.volumeKept, 0.8);
+  // A fifth of the volume is not covered; there the error is z - 96 of 120, elsewhere there is
+  // none.
+  EXPECT_EQ(base.fields[0].max, 0.2);
+  const double rms = std::sqrt(0.2 * 0.2 * 0.2 / 3);
+  EXPECT_NEAR(base.fields[0].rms, rms, 0.08 * rms);
+  expectNothing(errors.back());
+}
+
+TEST(MeasureLevels, aWrongValueIsTheErrorAtItsVertex) {
+  FusionHistory h = cube();
+  // a quarter of the range too much at a corner that every cell has
+  displace(h, 7, h.points[7], 120 + 30);
+  const LevelError error = measured(h)[0];
+  EXPECT_EQ(error.fields[0].max, 0.25);
+  const double rms = 0.25 * std::sqrt(0.1);  // of a barycentric coordinate in a tetrahedron
+  EXPECT_NEAR(error.fields[0].rms, rms, 0.05 * rms);
+  EXPECT_LT(error.boundaryDistance(), 1e-12);
+}
+
+TEST(MeasureLevels, aVectorsErrorIsTheLengthOfTheDifference) {
+  FusionHistory h = cube();
+  h.fields.push_back({"Place", 3, "float32", "point", 8, 1, {0, 0, 0}, {0, 208}});
+  h.values.emplace_back();
+  for (const LatticePoint& p : h.points) h.values[1].insert(h.values[1].end(), p.begin(), p.end());
+  displace(h, 7, h.points[7], 120);
+  h.values[1].insert(h.values[1].end(), {120 - 30, 120 - 60, 120 - 60});  // off by 90
+  const LevelError error = measured(h)[0];
+  EXPECT_GE(error.fields[1].max, 90 / kDiagonal);  // the values fill the same box as the points
+  EXPECT_LE(error.fields[1].max, 1.01 * 90 / kDiagonal);  // three digits, rounded up
+  EXPECT_LE(error.fields[0].max, 1e-12);
+}
+
+TEST(MeasureLevels, aConstantFieldHasNoErrorAtAll) {
+  FusionHistory h = cube();
+  h.values[0].assign(8, 5);
+  displace(h, 7, {100, 100, 100}, 5);
+  EXPECT_EQ(measured(h)[0].fields[0].max, 0);
+}
+
+/// Simplified with the field x + 2 y + 3 z, where nothing has moved and every value is linear
+/// between vertices, on a convex solid.
+TEST(MeasureLevels, aLinearFieldOnAConvexSolidLosesNothingWhileTheBoundaryStays) {
+  LatticeMesh mesh = gridMesh(6, 5);
+  mesh.fields.resize(1);
+  mesh.values.resize(1);
+  for (std::size_t v = 0; v < mesh.points.size(); ++v)
+    mesh.values[0][v] = mesh.points[v][0] + 2 * mesh.points[v][1] + 3 * mesh.points[v][2];
+  auto history = simplify(mesh, {});
+  ASSERT_TRUE(history);
+  // also of fused vertices: what is measured here is measuring
+  for (std::size_t v = 0; v < history->points.size(); ++v) {
+    const LatticePoint& p = history->points[v];
+    history->values[0][v] = p[0] + 2 * p[1] + 3 * p[2];
+  }
+  for (const LevelError& error : measured(*history)) {
+    // Where the solid has gone, at most its largest slope times the distance, over the range 6 *
+    // 384.
+    const double diagonal = 384 * std::sqrt(3.0);
+    EXPECT_LE(error.fields[0].max,
+              error.toLevel.max * diagonal * std::sqrt(14.0) / (6 * 384) * 1.01 + 1e-9);
+  }
+}
+
+TEST(MeasureLevels, coarserLevelsAreFurtherAndSmaller) {
+  auto history = simplify(gridMesh(7, 2), {});
+  ASSERT_TRUE(history);
+  const auto errors = measured(*history);
+  ASSERT_EQ(errors.size(), history->levels + 1u);
+  for (std::size_t i = 1; i < errors.size(); ++i) {
+    EXPECT_LE(errors[i - 1].volumeKept, errors[i].volumeKept) << i;
+    EXPECT_GE(errors[i - 1].toLevel.max, errors[i].toLevel.max) << i;
+    EXPECT_GE(errors[i - 1].toLevel.mean, errors[i].toLevel.mean) << i;
+    EXPECT_GE(errors[i].toLevel.max, errors[i].toLevel.mean);
+    EXPECT_GE(errors[i].toOriginal.max, errors[i].toOriginal.mean);
+  }
+  EXPECT_GT(errors.front().fields[0].rms, 0);
+  expectNothing(errors.back());
+}
+
+bool same(const LevelError& a, const LevelError& b) {
+  const auto sameWay = [](const OneSidedDistance& x, const OneSidedDistance& y) {
+    return x.mean == y.mean && x.max == y.max;
+  };
+  const auto sameField = [](const FieldError& x, const FieldError& y) {
+    return x.rms == y.rms && x.max == y.max;
+  };
+  return sameWay(a.toLevel, b.toLevel) && sameWay(a.toOriginal, b.toOriginal) &&
+         a.volumeKept == b.volumeKept && std::ranges::equal(a.fields, b.fields, sameField);
+}
+
+TEST(MeasureLevels, theFiguresDependNeitherOnTheRunNorOnTheThreads) {
+  auto history = simplify(gridMesh(8, 4), {});
+  ASSERT_TRUE(history);
+  const auto once = measured(*history);
+  MeasureOptions options;
+  for (const int threads : {1, 2, 7}) {
+    options.threads = threads;
+    EXPECT_TRUE(std::ranges::equal(measured(*history, options), once, same))
+        << threads << " threads";
+  }
+  options.seed = 2;
+  EXPECT_FALSE(std::ranges::equal(measured(*history, options), once, same))
+      << "the seed has no effect";
+}
+
+TEST(MeasureLevels, moreSamplesAgreeWithFewer) {
+  FusionOptions half;
+  half.targetRatio = 0.5;
+  auto history = simplify(gridMesh(7, 6), half);
+  ASSERT_TRUE(history);
+  MeasureOptions options;
+  options.effort = Effort::kAll;
+  options.threads = 2;
+  const auto few = measured(*history), many = measured(*history, options);
+  for (std::size_t i = 0; i < few.size() / 2; ++i) {
+    EXPECT_NEAR(few[i].fields[0].rms, many[i].fields[0].rms, 0.1 * many[i].fields[0].rms) << i;
+    EXPECT_NEAR(few[i].fields[1].rms, many[i].fields[1].rms, 0.1 * many[i].fields[1].rms) << i;
+    EXPECT_EQ(few[i].volumeKept, many[i].volumeKept);
+  }
+}
+
+TEST(MeasureLevels, aBoundEndsTheHistoryBeforeTheLevelThatPassesIt) {
+  auto history = simplify(gridMesh(7, 2), {});
+  ASSERT_TRUE(history);
+  const FusionHistory whole = *history;
+  const auto errors = measured(whole);
+  const std::size_t wanted = errors.size() / 2;
+
+  MeasureOptions options;
+  options.bounds.fields = {{"Swirl", errors[wanted].fields[1].rms}};
+  const auto kept = measureLevels(*history, options);
+  ASSERT_TRUE(kept);
+  ASSERT_EQ(kept->size(), history->levels + 1u);
+  ASSERT_LT(kept->size(), errors.size());
+  EXPECT_TRUE(std::ranges::equal(*kept, std::span(errors).last(kept->size()), same));
+  EXPECT_GT(errors[errors.size() - kept->size() - 1].fields[1].rms, errors[wanted].fields[1].rms)
+      << "a level more would have kept the bound";
+  EXPECT_EQ(testing::meshOfHistory(*history, 0).tetrahedra,
+            testing::meshOfHistory(whole, static_cast<std::uint32_t>(errors.size() - kept->size()))
+                .tetrahedra);
+
+  FusionHistory again = whole;
+  options.bounds = {};
+  options.bounds.boundary = 0;
+  const auto exact = measureLevels(again, options);
+  ASSERT_TRUE(exact);
+  for (const LevelError& error : *exact) EXPECT_EQ(error.boundaryDistance(), 0);
+}
+
+TEST(MeasureLevels, aBoundOfAFieldThatIsNotThereIsAnError) {
+  FusionHistory h = cube();
+  MeasureOptions options;
+  options.bounds.fields = {{"Warmth", 0.1}};
+  const auto result = measureLevels(h, options);
+  ASSERT_FALSE(result);
+  EXPECT_EQ(result.error().code, ErrorCode::kNotFound);
+  EXPECT_NE(result.error().message.find("Warmth"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace qtet

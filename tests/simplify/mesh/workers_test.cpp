@@ -1,0 +1,121 @@
+#include "simplify/mesh/workers.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <stdexcept>
+#include <thread>
+
+namespace qtet {
+namespace {
+
+TEST(ThreadsAtOnce, areNoMoreThanTheMachineRuns) {
+  EXPECT_EQ(threadsAtOnce(1), 1);
+  const int all = threadsAtOnce(1 << 20);
+  EXPECT_GE(all, 1);
+  EXPECT_LE(all, std::max(1u, std::thread::hardware_concurrency()));
+  EXPECT_EQ(threadsAtOnce(all), all);
+}
+
+class OfThreads : public ::testing::TestWithParam<int> {};
+
+TEST_P(OfThreads, everyItemIsDoneOnceByAWorkerThatThereIs) {
+  Workers workers(GetParam());
+  for (const std::size_t n : {0u, 1u, 7u, 8u, 9u, 1000u}) {
+    std::vector<std::atomic<int>> times(n);
+    workers.forEach(n, 8, [&](std::size_t worker, std::size_t i) {
+      EXPECT_LT(worker, workers.count());
+      ++times[i];
+    });
+    for (const auto& t : times) EXPECT_EQ(t, 1);
+  }
+}
+
+TEST_P(OfThreads, runsCoverAllAndDoNotOverlap) {
+  Workers workers(GetParam());
+  std::vector<std::atomic<int>> times(1001);
+  workers.forRuns(times.size(), 64, [&](std::size_t begin, std::size_t end) {
+    EXPECT_LE(end - begin, 64u);
+    for (std::size_t i = begin; i < end; ++i) ++times[i];
+  });
+  for (const auto& t : times) EXPECT_EQ(t, 1);
+}
+
+TEST_P(OfThreads, thousandsOfShortJobsFollowOneAnother) {
+  Workers workers(GetParam());
+  std::atomic<std::size_t> sum{0};
+  for (std::size_t job = 0; job < 5000; ++job)
+    workers.forEach(40, 8, [&](std::size_t, std::size_t i) { sum += i; });
+  EXPECT_EQ(sum, 5000u * (40 * 39 / 2));
+}
+
+TEST_P(OfThreads, anExceptionEndsTheJobAndNotTheWorkers) {
+  Workers workers(GetParam());
+  const auto fails = [](std::size_t, std::size_t i) {
+    if (i == 77) throw std::runtime_error("at 77");
+  };
+  EXPECT_THROW(workers.forEach(1000, 8, fails), std::runtime_error);
+  std::atomic<int> done{0};
+  workers.forEach(100, 8, [&](std::size_t, std::size_t) { ++done; });
+  EXPECT_EQ(done, 100);
+}
+
+TEST_P(OfThreads, othersWorkBesideTheirOwnerUntilHeIsDone) {
+  Workers workers(GetParam());
+  for (int round = 0; round < 100; ++round) {
+    std::atomic<bool> isOver{false};
+    std::atomic<std::size_t> come{0}, gone{0};
+    std::vector<std::atomic<int>> times(workers.count());
+    const auto others = [&](std::size_t worker) {
+      ++times.at(worker), ++come;
+      while (!isOver) waitALittle(0);
+      ++gone;
+    };
+    workers.beside(others, [&] {
+      ++times[0];
+      // once with all of them
+      for (int spins = 0; round == 0 && come + 1 < workers.count(); ++spins) waitALittle(spins);
+      isOver = true;
+    });
+    EXPECT_EQ(gone, come) << "nobody is left behind";
+    EXPECT_EQ(times[0], 1);
+    for (const auto& t : times) EXPECT_LE(t, 1);
+  }
+}
+
+TEST_P(OfThreads, anExceptionOfEitherSideIsThrownOnWhenTheOthersHaveEnded) {
+  Workers workers(GetParam());
+  std::atomic<bool> isOver{false};
+  std::atomic<int> inside{0};
+  const auto waits = [&](std::size_t) {
+    ++inside;
+    while (!isOver) waitALittle(0);
+    --inside;
+  };
+  const auto fails = [&] {
+    isOver = true;
+    throw std::runtime_error("own");
+  };
+  EXPECT_THROW(workers.beside(waits, fails), std::runtime_error);
+  EXPECT_EQ(inside, 0);
+  if (workers.count() == 1) return;
+  std::atomic<int> come{0};
+  const auto othersFail = [&](std::size_t) {
+    ++come;
+    throw std::runtime_error("others");
+  };
+  EXPECT_THROW(workers.beside(othersFail,
+                              [&] {
+                                for (int spins = 0; come == 0; ++spins) waitALittle(spins);
+                              }),
+               std::runtime_error);
+  std::atomic<int> done{0};
+  workers.forEach(100, 8, [&](std::size_t, std::size_t) { ++done; });
+  EXPECT_EQ(done, 100);
+}
+
+INSTANTIATE_TEST_SUITE_P(Workers, OfThreads, ::testing::Values(1, 2, 5),
+                         [](const auto& threads) { return std::to_string(threads.param); });
+
+}  // namespace
+}  // namespace qtet

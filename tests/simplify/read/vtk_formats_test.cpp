@@ -1,0 +1,435 @@
+// Formats that VTK reads for us: files that VTK's own writers made (meshes/), and text files made
+// here.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstdlib>
+#include <fstream>
+
+#include "simplify/clean/clean_mesh.h"
+#include "simplify/read/read_mesh.h"
+#include "tests/simplify/mesh/tet_meshes.h"
+#include "tests/simplify/split/cell_grids.h"
+
+namespace qtet {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::fileWith;
+using testing::filledBy;
+
+fs::path given(const std::string& name) {
+  return fs::path(QTET_SOURCE_DIR) / "tests/simplify/read/meshes" / name;
+}
+
+const MeshField* field(const ReadMesh& read, const std::string& name) {
+  const auto at = std::ranges::find(read.mesh.fields, name, &MeshField::name);
+  return at == read.mesh.fields.end() ? nullptr : &*at;
+}
+
+/// Reads the file, which must fill a volume of `volume` with a closed hull and a point field that
+/// is x plus `more`.
+ReadMesh expectABar(const fs::path& path, double volume, const std::string& name = "T",
+                    double more = 0, const ReadOptions& options = {}) {
+  const Result<ReadMesh> read = readMesh(path, options);
+  EXPECT_TRUE(read) << read.error().text();
+  if (!read) return {};
+  EXPECT_NEAR(filledBy(read->mesh).volume, volume, 1e-9) << path;
+  EXPECT_EQ(filledBy(read->mesh).openEdges, 0u) << path;
+  const MeshField* x = field(*read, name);
+  EXPECT_TRUE(x) << path;
+  for (std::size_t i = 0; x && i < read->mesh.points.size(); ++i)
+    EXPECT_NEAR(x->values[i], read->mesh.points[i][0] + more, 1e-5) << path;
+  return *read;
+}
+
+TEST(VtkFormats, structuredRectilinearAndImageDataAreRead) {
+  for (const char* name : {"s.vts", "r.vtr", "i.vti"}) expectABar(given(name), 2);
+}
+
+TEST(VtkFormats, cellsWithinAThresholdAreKept) {
+  for (const char* name : {"s.vts", "r.vtr", "i.vti", "p.pvtu"}) {
+    ReadOptions options;
+    options.threshold = Threshold{"T", 1, 2};
+    options.fields = std::vector<std::string>{kOriginalCellField};
+    const Result<ReadMesh> read = readMesh(given(name), options);
+    ASSERT_TRUE(read) << read.error().text();
+    EXPECT_NEAR(filledBy(read->mesh).volume, 1, 1e-9);
+    ASSERT_EQ(read->mesh.fields.size(), 1u);
+    EXPECT_EQ(read->mesh.fields[0].values, std::vector<double>(6, 1.0));
+    options.threshold->low = 5;
+    EXPECT_EQ(readMesh(given(name), options).error().code, ErrorCode::kBadInput);
+    options.threshold->field = "nothing";
+    EXPECT_EQ(readMesh(given(name), options).error().code, ErrorCode::kNotFound);
+  }
+}
+
+TEST(VtkFormats, piecesAndBlocksBecomeOneMesh) {
+  expectABar(given("p.pvtu"), 2);
+  Result<ReadMesh> apart = readMesh(given("m.vtm"));
+  ASSERT_TRUE(apart) << apart.error().text();
+  EXPECT_EQ(cleanMesh(apart->mesh)->components, 2u);
+  EXPECT_TRUE(std::ranges::any_of(apart->report.notes, [](const std::string& note) {
+    return note.find("2 blocks") != std::string::npos;
+  }));
+  ReadOptions weld;
+  weld.weld = 1e-6;
+  ReadMesh joined = expectABar(given("m.vtm"), 4, "T", 0, weld);
+  EXPECT_EQ(joined.report.weldedPoints, 4u);
+  EXPECT_EQ(cleanMesh(joined.mesh)->components, 1u);
+  ASSERT_TRUE(field(joined, "mat"));
+  EXPECT_EQ(field(joined, "mat")->values.back(), 13);
+  EXPECT_EQ(field(joined, kOriginalCellField)->values.back(), 3);
+}
+
+TEST(VtkFormats, ofASeriesTheLastStepTheOneAskedForOrAllAreRead) {
+  expectABar(given("run.pvd"), 2, "T", 100);
+  ReadOptions options;
+  options.time = "0";
+  expectABar(given("run.pvd"), 2, "T", 0, options);
+  options.time = "first";
+  expectABar(given("two.e"), 4, "T", 50, options);
+  options.time = "1.5";
+  expectABar(given("two.e"), 4, "T", 150, options);
+  options.time = "all";
+  const ReadMesh all = expectABar(given("run.pvd"), 2, "T@0", 0, options);
+  EXPECT_TRUE(field(all, "T@0.25"));
+  EXPECT_TRUE(field(all, "mat@0.25"));
+  options.time = "0.3";
+  const Result<ReadMesh> none = readMesh(given("run.pvd"), options);
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.error().code, ErrorCode::kNotFound);
+  EXPECT_NE(none.error().message.find("it has 0, 0.25"), std::string::npos);
+}
+
+TEST(VtkFormats, ofASeriesANameMeansEveryStepAndAStepsNameOne) {
+  ReadOptions options;
+  options.time = "all";
+  const auto namesOf = [&](std::vector<std::string> asked) {
+    options.fields = std::move(asked);
+    const Result<ReadMesh> read = readMesh(given("run.pvd"), options);
+    EXPECT_TRUE(read) << read.error().text();
+    std::vector<std::string> out;
+    for (const MeshField& field : read ? read->mesh.fields : std::vector<MeshField>{})
+      out.push_back(field.association + ":" + field.name);
+    return out;
+  };
+  const std::vector<std::string> both = namesOf({"T"});
+  ASSERT_EQ(both.size(), 2u);
+  EXPECT_TRUE(both[0].starts_with("point:T@") && both[1].starts_with("point:T@"));
+  EXPECT_EQ(namesOf({"point:T"}), both);
+  EXPECT_EQ(namesOf({both[1].substr(6)}), (std::vector<std::string>{both[1]}));
+  EXPECT_EQ(namesOf({both[1], "T"}), (std::vector<std::string>{both[1], both[0]}));
+  options.fields = std::vector<std::string>{"cell:T"};
+  EXPECT_EQ(readMesh(given("run.pvd"), options).error().code, ErrorCode::kNotFound);
+  options.fields = std::vector<std::string>{"T@7"};
+  EXPECT_EQ(readMesh(given("run.pvd"), options).error().code, ErrorCode::kNotFound);
+}
+
+TEST(VtkFormats, aFileThatAnotherNamesInVainIsToldWithBoth) {
+  const std::string pieces =
+                        "<VTKFile type=\"PUnstructuredGrid\" "
+                        "version=\"0.1\"><PUnstructuredGrid><PPoints><PDataArray type=\"Float64\" "
+                        "NumberOfComponents=\"3\"/></PPoints><Piece "
+                        "Source=\"gone.vtu\"/></PUnstructuredGrid></VTKFile>\n",
+                    series =
+                        "<VTKFile type=\"Collection\" version=\"0.1\"><Collection><DataSet "
+                        "timestep=\"0\" file=\"gone.vtu\"/></Collection></VTKFile>\n";
+  for (const auto& [name, text] :
+       {std::pair{"in-vain.pvtu", pieces}, std::pair{"in-vain.pvd", series}}) {
+    const Result<ReadMesh> read = readMesh(fileWith(name, text));
+    ASSERT_FALSE(read);
+    EXPECT_EQ(read.error().code, ErrorCode::kNotFound) << read.error().text();
+    EXPECT_NE(read.error().message.find(name), std::string::npos) << read.error().text();
+    EXPECT_NE(read.error().message.find("there is no file"), std::string::npos)
+        << read.error().text();
+    EXPECT_NE(read.error().message.find("gone.vtu"), std::string::npos) << read.error().text();
+  }
+}
+
+TEST(VtkFormats, ghostCellsOfPiecesAreLeftOutAndTheirMarksAreNoField) {
+  const auto array = [](const std::string& type, const std::string& name,
+                        const std::string& values) {
+    return "<DataArray type=\"" + type + "\" Name=\"" + name + "\" format=\"ascii\">" + values +
+           "</DataArray>";
+  };
+  const fs::path piece = fileWith(
+      "ghosts.vtu",
+      "<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" "
+      "byte_order=\"LittleEndian\"><UnstructuredGrid><Piece NumberOfPoints=\"5\" "
+      "NumberOfCells=\"2\"><PointData>" +
+          array("UInt8", "vtkGhostType", "0 0 0 0 1") + "</PointData><CellData>" +
+          array("UInt8", "vtkGhostType", "0 1") + array("Int32", "part", "7 8") +
+          "</CellData><Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" "
+          "format=\"ascii\">0 0 0 1 0 0 0 1 0 0 0 1 1 1 1</DataArray></Points><Cells>" +
+          array("Int64", "connectivity", "0 1 2 3 1 2 3 4") + array("Int64", "offsets", "4 8") +
+          array("UInt8", "types", "10 10") + "</Cells></Piece></UnstructuredGrid></VTKFile>\n");
+  const fs::path whole = piece.parent_path() / "ghosts.pvtu";
+  std::ofstream(whole) << "<VTKFile type=\"PUnstructuredGrid\" version=\"0.1\" "
+                          "byte_order=\"LittleEndian\"><PUnstructuredGrid "
+                          "GhostLevel=\"1\"><PPointData><PDataArray type=\"UInt8\" "
+                          "Name=\"vtkGhostType\"/></PPointData><PCellData><PDataArray "
+                          "type=\"UInt8\" Name=\"vtkGhostType\"/><PDataArray type=\"Int32\" "
+                          "Name=\"part\"/></PCellData><PPoints><PDataArray "
+                          "type=\"Float64\" NumberOfComponents=\"3\"/></PPoints><Piece "
+                          "Source=\"ghosts.vtu\"/></PUnstructuredGrid></VTKFile>\n";
+  for (const fs::path& path : {piece, whole}) {
+    const Result<ReadMesh> read = readMesh(path);
+    ASSERT_TRUE(read) << read.error().text();
+    EXPECT_EQ(read->mesh.tetrahedra, (std::vector<Tetrahedron>{{0, 1, 2, 3}})) << path;
+    ASSERT_EQ(read->mesh.fields.size(), 1u);
+    EXPECT_EQ(read->mesh.fields[0].name, "part");
+    EXPECT_EQ(read->mesh.fields[0].values, std::vector<double>{7});
+  }
+}
+
+TEST(VtkFormats, aTimeThatAFileWithoutStepsDoesNotHaveIsRefused) {
+  ReadOptions options;
+  const std::string medit =
+      "MeshVersionFormatted 2\nDimension 3\nVertices\n4\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 "
+      "0\nTetrahedra\n1\n1 2 3 4 0\nEnd\n";
+  for (const fs::path& path : {given("step0.vtu"), fileWith("timeless.mesh", medit)}) {
+    for (const char* word : {"first", "last", "all"}) {
+      options.time = word;
+      EXPECT_TRUE(readMesh(path, options)) << path << word;
+    }
+    for (const char* word : {"foo", "0", ""}) {
+      options.time = word;
+      const Result<ReadMesh> read = readMesh(path, options);
+      ASSERT_FALSE(read) << path << word;
+      EXPECT_EQ(read.error().code, ErrorCode::kNotFound);
+      EXPECT_NE(read.error().message.find("--time"), std::string::npos) << read.error().message;
+    }
+  }
+}
+
+TEST(VtkFormats, whatEveryStepHasIsCountedAndToldOnce) {
+  const fs::path path = fileWith("surfaced.pvd",
+                                 "<VTKFile type=\"Collection\"><Collection><DataSet timestep=\"1\" "
+                                 "file=\"a.vtk\"/><DataSet timestep=\"2\" file=\"b.vtk\"/>"
+                                 "<DataSet timestep=\"3\" file=\"c.vtk\"/></Collection></VTKFile>");
+  for (const char* step : {"a.vtk", "b.vtk", "c.vtk"})
+    std::ofstream(path.parent_path() / step)
+        << "# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n0 0 "
+           "0 1 0 0 0 1 0 0 0 1\nCELLS 2 9\n"
+           "4 0 1 2 3\n3 0 1 2\nCELL_TYPES 2\n10\n5\nPOINT_DATA 4\nFIELD f 2\nbig 20 4 double\n"
+        <<
+        [] {
+          std::string zeros;
+          for (int i = 0; i < 80; ++i) zeros += "0 ";
+          return zeros;
+        }()
+        << "\ns 1 4 double\n1 2 3 4\n";
+  ReadOptions options;
+  options.time = "all";
+  const Result<ReadMesh> read = readMesh(path, options);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->mesh.fields.size(), 3u);
+  EXPECT_EQ(read->report.ignoredCells, 1u);
+  EXPECT_EQ(read->report.ignoredFields, std::vector<std::string>{"big"});
+  EXPECT_EQ(std::ranges::count_if(read->report.notes,
+                                  [](const std::string& note) {
+                                    return note.find("big was ignored") != std::string::npos;
+                                  }),
+            1);
+}
+
+TEST(VtkFormats, aSeriesWhoseMeshChangesCannotBeOneLog) {
+  const fs::path path =
+      fileWith("moving.pvd",
+               "<VTKFile type=\"Collection\"><Collection><DataSet timestep=\"1\" "
+               "file=\"a.vtu\"/><DataSet timestep=\"2\" file=\"b.vtu\"/></Collection></VTKFile>");
+  fs::copy_file(given("step0.vtu"), path.parent_path() / "a.vtu");
+  fs::copy_file(given("m/m_1.vtu"), path.parent_path() / "b.vtu");
+  ReadOptions options;
+  EXPECT_TRUE(readMesh(path, options));
+  options.time = "all";
+  const Result<ReadMesh> all = readMesh(path, options);
+  ASSERT_FALSE(all);
+  EXPECT_NE(all.error().message.find("the mesh at time 2 is not that of time 1"), std::string::npos)
+      << all.error().text();
+  fs::remove(path.parent_path() / "a.vtu");
+  EXPECT_EQ(readMesh(path, options).error().code, ErrorCode::kNotFound);
+}
+
+TEST(VtkFormats, exodusBlocksHaveTheirFieldsAndNumbers) {
+  const ReadMesh read = expectABar(given("two.e"), 4, "T", 150);
+  ASSERT_TRUE(field(read, "ObjectId"));
+  EXPECT_EQ(read.report.split.cells[kHexahedronCell], 4u);
+}
+
+TEST(VtkFormats, enSightIsRead) { expectABar(given("ens.0.case"), 2, "T_n"); }
+
+TEST(VtkFormats, cgnsZonesAreReadWithTheirSolution) {  // two files that the CGNS library wrote
+  const ReadMesh mixed = expectABar(given("unstructured.cgns"), 1);
+  EXPECT_EQ(mixed.report.split.cells[kHexahedronCell], 4u);
+  EXPECT_EQ(mixed.report.split.cells[kWedgeCell], 8u);
+  EXPECT_EQ(expectABar(given("structured.cgns"), 1).mesh.points.size(), 27u);
+}
+
+TEST(VtkFormats, avsUcdIsRead) {
+  const std::string text =
+      "12 2 1 0 0\n1 0 0 0\n2 1 0 0\n3 2 0 0\n4 0 1 0\n5 1 1 0\n6 2 1 0\n7 0 0 1\n8 1 0 1\n9 2 0 "
+      "1\n10 0 1 1\n11 1 1 1\n12 2 1 1\n"
+      "1 1 hex 7 8 11 10 1 2 5 4\n2 1 hex 8 9 12 11 2 3 6 5\n1 1\nT, none\n1 0\n2 1\n3 2\n4 0\n5 "
+      "1\n6 2\n7 0\n8 1\n9 2\n10 0\n11 1\n12 2\n";
+  expectABar(fileWith("bar.inp", text), 2);
+  for (std::size_t length = 0; length < 200; length += 40)
+    EXPECT_FALSE(readMesh(fileWith("cut.inp", text.substr(0, length)))) << length;
+}
+
+/// PLOT3D's numbers: C order of bytes, no record marks; `blank` marks the points of the second
+/// grid's last plane.
+std::string plot3d(bool solution, bool blank) {
+  std::string out;
+  const auto put = [&out](auto x) {
+    const auto raw = std::bit_cast<std::array<char, sizeof(x)>>(x);
+    out.append(raw.data(), raw.size());
+  };
+  put(std::int32_t{2});
+  for (int g = 0; g < 2; ++g) put(std::int32_t{3}), put(std::int32_t{2}), put(std::int32_t{2});
+  for (int g = 0; g < 2; ++g) {
+    const auto each = [&](auto&& f) {
+      for (int k = 0; k < 2; ++k) {
+        for (int j = 0; j < 2; ++j) {
+          for (int i = 0; i < 3; ++i)
+            f(static_cast<float>(i + 2 * g), static_cast<float>(j), static_cast<float>(k));
+        }
+      }
+    };
+    if (solution) {
+      for (int q = 0; q < 4; ++q) put(1.0F);
+      each([&](float x, float, float) { put(x + 1); });
+      for (int c = 0; c < 3; ++c) each([&](float, float, float) { put(0.5F); });
+      each([&](float, float, float) { put(2.0F); });
+      continue;
+    }
+    each([&](float x, float, float) { put(x); });
+    each([&](float, float y, float) { put(y); });
+    each([&](float, float, float z) { put(z); });
+    if (blank) each([&](float x, float, float) { put(std::int32_t{x < 4 ? 1 : 0}); });
+  }
+  return out;
+}
+
+TEST(VtkFormats, plot3dGridsAreReadWithTheirSolutionAndWithoutBlankedCells) {
+  for (const bool blank : {false, true}) {
+    const fs::path path = fileWith("grid.xyz", plot3d(false, blank));
+    std::ofstream(path.parent_path() / "grid.q", std::ios::binary) << plot3d(true, false);
+    ReadOptions options;
+    options.plot3d = true;
+    options.plot3dSolution = (path.parent_path() / "grid.q").string();
+    options.weld = 0;
+    const ReadMesh read = expectABar(path, blank ? 3 : 4, "Density", 1, options);
+    EXPECT_TRUE(field(read, "Pressure"));
+    EXPECT_EQ(read.report.weldedPoints, 4u);
+    options.plot3dSolution.clear();
+    const Result<ReadMesh> alone = readMesh(path, options);
+    ASSERT_TRUE(alone) << alone.error().text();
+    EXPECT_NEAR(filledBy(alone->mesh).volume, blank ? 3 : 4, 1e-9);
+  }
+}
+
+std::string foam(const std::string& kind, const std::string& object, const std::string& body) {
+  return "FoamFile\n{\n    version 2.0;\n    format ascii;\n    class " + kind +
+         ";\n    location \"x\";\n    object " + object + ";\n}\n" + body;
+}
+
+/// Two cubes of OpenFOAM, the second with one face cut into two: a polyhedron of seven faces.
+fs::path foamCase() {
+  const fs::path marker = fileWith("case.foam", "");
+  const fs::path mesh = marker.parent_path() / "constant/polyMesh",
+                 system = marker.parent_path() / "system", step = marker.parent_path() / "1";
+  fs::create_directories(mesh);
+  fs::create_directories(system);
+  fs::create_directories(step);
+  const auto write = [](const fs::path& path, const std::string& text) {
+    std::ofstream(path) << text;
+  };
+  write(system / "controlDict", foam("dictionary", "controlDict",
+                                     "startFrom startTime;\nstartTime 0;\nstopAt endTime;\nendTime "
+                                     "1;\ndeltaT 1;\nwriteControl timeStep;\nwriteInterval 1;\n"));
+  write(mesh / "points",
+        foam("vectorField", "points",
+             "14\n(\n(0 0 0)\n(1 0 0)\n(2 0 0)\n(0 1 0)\n(1 1 0)\n(2 1 0)\n(0 0 1)\n(1 0 1)\n(2 0 "
+             "1)\n(0 1 1)\n(1 1 1)\n(2 1 1)\n(2 0.5 0)\n(2 0.5 1)\n)\n"));
+  write(mesh / "faces", foam("faceList", "faces",
+                             "12\n(\n4(1 4 10 7)\n4(0 6 9 3)\n4(0 1 7 6)\n4(3 9 10 4)\n4(0 3 4 "
+                             "1)\n4(6 7 10 9)\n4(2 12 13 8)\n4(12 5 11 13)\n4(1 2 8 7)\n4(4 10 11 "
+                             "5)\n5(1 4 5 12 2)\n5(7 8 13 11 10)\n)\n"));
+  write(mesh / "owner",
+        foam("labelList", "owner", "12\n(\n0\n0\n0\n0\n0\n0\n1\n1\n1\n1\n1\n1\n)\n"));
+  write(mesh / "neighbour", foam("labelList", "neighbour", "1\n(\n1\n)\n"));
+  write(mesh / "boundary", foam("polyBoundaryMesh", "boundary",
+                                "1\n(\nwalls\n{\n type wall;\n nFaces 11;\n startFace 1;\n}\n)\n"));
+  write(step / "p",
+        foam("volScalarField", "p",
+             "dimensions [0 2 -2 0 0 0 0];\ninternalField nonuniform List<scalar> "
+             "\n2\n(\n5\n7\n)\n;\nboundaryField\n{\n walls\n {\n type zeroGradient;\n }\n}\n"));
+  return marker;
+}
+
+TEST(VtkFormats, openFoamCasesWithPolyhedraAreRead) {
+  const Result<ReadMesh> read = readMesh(foamCase());
+  ASSERT_TRUE(read) << read.error().text();
+  EXPECT_NEAR(filledBy(read->mesh).volume, 2, 1e-9);
+  EXPECT_EQ(filledBy(read->mesh).openEdges, 0u);
+  EXPECT_EQ(filledBy(read->mesh).notPositive, 0u);
+  EXPECT_EQ(read->report.split.cells[kPolyhedronCell], 1u);
+  const auto p = std::ranges::find_if(
+      read->mesh.fields, [](const MeshField& f) { return f.name == "p" && isCellField(f); });
+  ASSERT_NE(p, read->mesh.fields.end());
+  EXPECT_EQ(*std::ranges::max_element(p->values), 7);
+}
+
+TEST(VtkFormats, aDamagedExodusFileIsAnErrorOrAMesh) {
+  std::ifstream file(given("two.e"), std::ios::binary);
+  const std::string whole{std::istreambuf_iterator<char>(file), {}};
+  for (std::size_t length = 0; length < whole.size(); length += 500) {
+    const Result<ReadMesh> read = readMesh(fileWith("cut.e", whole.substr(0, length)));
+    EXPECT_TRUE(read || !read.error().message.empty());
+  }
+}
+
+/// Abaqus goes through meshio: a mesh where it is installed, else an error that says what to
+/// install.
+TEST(VtkFormats, abaqusIsReadThroughMeshioOrRefusedWithAdvice) {
+  const std::string text =
+      "*HEADING\n*NODE\n1, 0, 0, 0\n2, 1, 0, 0\n3, 0, 1, 0\n4, 0, 0, 1\n*ELEMENT, TYPE=C3D4\n1, 1, "
+      "2, 3, 4\n";
+  const Result<ReadMesh> read = readMesh(fileWith("one.inp", text));
+  if (read) {
+    EXPECT_EQ(read->mesh.tetrahedra, testing::oneCell().tetrahedra);
+    EXPECT_FALSE(readMesh(fileWith("bad.inp", text.substr(0, 40))));
+  } else {
+    EXPECT_EQ(read.error().code, ErrorCode::kNotFound) << read.error().text();
+    EXPECT_NE(read.error().message.find("apt install python3-meshio"), std::string::npos);
+  }
+}
+
+/// A mesh often comes in an archive with other files, and qtet is called where they lie.
+TEST(VtkFormats, aModuleInTheWorkingFolderIsNotTakenForMeshio) {
+  const fs::path mesh = fs::absolute(fileWith("any.med", "nothing")), before = fs::current_path();
+  std::ofstream(mesh.parent_path() / "meshio.py") << "open('ran', 'w')\n";
+  fs::current_path(mesh.parent_path());
+  EXPECT_FALSE(readMesh(mesh));
+  EXPECT_FALSE(fs::exists("ran"));
+  fs::remove("meshio.py");
+  fs::current_path(before);
+}
+
+TEST(VtkFormats, aTemporaryFolderThatIsNotThereIsAnError) {
+  const fs::path mesh = fileWith("any.med", "nothing");
+  const char* before = std::getenv("TMPDIR");
+  const std::string kept = before ? before : "";
+  ::setenv("TMPDIR", "/nonexistent", 1);
+  const Result<ReadMesh> read = readMesh(mesh);
+  before ? ::setenv("TMPDIR", kept.c_str(), 1) : ::unsetenv("TMPDIR");
+  ASSERT_FALSE(read);
+  EXPECT_EQ(read.error().code, ErrorCode::kIo) << read.error().text();
+  EXPECT_NE(read.error().message.find("TMPDIR"), std::string::npos) << read.error().text();
+}
+
+}  // namespace
+}  // namespace qtet
