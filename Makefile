@@ -15,7 +15,8 @@ SHELL := /bin/bash
 .ONESHELL:
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
-.PHONY: help setup build demo demo-port demo-log test fuzz bench results sizes rate deb test-deb clean
+.PHONY: help setup build demo demo-port demo-log test format format-check lint tidy sanitize-units sanitize
+.PHONY: fuzz bench results sizes rate deb test-deb clean
 .DEFAULT_GOAL := help
 
 help:
@@ -23,7 +24,13 @@ help:
 	make demo                  build qtet and show its sample mesh at http://127.0.0.1:8080/
 	make demo MESH=file.vtu    the same with a mesh of yours (any volume mesh: README.md); PORT=8081 picks another port
 	make test                  build everything and run every test
-	make fuzz                  build the fuzzers with sanitizers and run each for 20 seconds
+	make format                lay out C++ (clang-format-19), TypeScript, JavaScript and CSS (prettier)
+	make format-check          fail where that would change a file, or a line is over 100 columns
+	make tidy                  clang-tidy over the sources changed since the merge base or 20 commits ago
+	make lint                  the linter of TypeScript, with types
+	make fuzz                  run each fuzzer for 20 seconds, built with sanitizers
+	make sanitize-units        the C++ tests and the fuzzers under ASan and UBSan
+	make sanitize              every test under ASan and UBSan, then under TSan; says how long each took
 	make deb                   Debian packages: build/release/packages/*.deb
 	make test-deb              install, start, use and remove them in a Debian of their own (needs root and debootstrap)
 	make build                 build only: build/release/bin/qtet and qtet-server
@@ -158,11 +165,56 @@ demo: demo-log
 test: setup build
 	@ctest --preset release --parallel $(JOBS)
 
-# A build of its own, with clang, address and undefined-behaviour sanitizers. What is found stays in build/fuzz/fuzz/found.
-fuzz: setup
-	@[[ -f build/fuzz/build.ninja && ! CMakePresets.json -nt build/fuzz/build.ninja ]] || cmake --preset fuzz
-	cmake --build --preset fuzz --parallel $(JOBS) --target qtet_fuzzers
-	ctest --preset fuzz --parallel $(JOBS)
+# One clang-format and one prettier, whatever else is installed: their versions differ in what they do.
+CPP_FILES = git ls-files -z '*.h' '*.cpp' '*.c'
+format: setup web-packages
+	@$(CPP_FILES) | xargs -0 clang-format-19 -i
+	cd web-client && npm run --silent format
+
+format-check: setup web-packages
+	@$(CPP_FILES) | xargs -0 clang-format-19 --dry-run -Werror
+	cd web-client && npm run --silent format:check
+	cd .. && tests/lines.sh
+
+lint: setup web-packages
+	@cd web-client && npm run --silent typecheck && npm run --silent lint
+
+.PHONY: web-packages
+web-packages:
+	@cd web-client
+	if [[ ! -f node_modules/.package-lock.json || package-lock.json -nt node_modules/.package-lock.json ]]; then
+	  npm ci --no-audit --no-fund --loglevel=error
+	  touch node_modules/.package-lock.json
+	fi
+
+# The builds with sanitizers, with clang. Assertions are on.
+build/%/build.ninja: CMakePresets.json
+	@cmake --preset $*
+
+TIDY_SINCE ?=
+tidy: setup build/asan/build.ninja
+	@.ci/tidy.sh build/asan $(JOBS) $(TIDY_SINCE)
+
+# What a fuzzer finds stays in build/asan/fuzz/found.
+fuzz: setup build/asan/build.ninja
+	@cmake --build --preset asan --parallel $(JOBS) --target qtet_fuzzers
+	ctest --preset asan --parallel $(JOBS) -L fuzz
+
+sanitize-units: setup build/asan/build.ninja
+	@cmake --build --preset asan --parallel $(JOBS)
+	ctest --preset asan --parallel $(JOBS) -R '^(proto|codec|simplify|server)[.]|^fuzz[.]'
+
+sanitize: setup build/asan/build.ninja build/tsan/build.ninja
+	@failed=
+	for preset in asan tsan; do
+	  start=$$SECONDS
+	  cmake --build --preset $$preset --parallel $(JOBS)
+	  built=$$SECONDS
+	  ctest --preset $$preset --parallel $(JOBS) || failed+=" $$preset"
+	  took+="$$preset: built in $$((built - start)) s, tested in $$((SECONDS - built)) s"$$'\n'
+	done
+	echo -n "$$took"
+	[[ -z $$failed ]] || { echo "sanitize: failures under$$failed; see above" >&2; exit 1; }
 
 deb: TARGETS := --target qtet qtet-server qtet_shared qtet_viewer qtet_manners
 deb: setup build

@@ -26,19 +26,69 @@ import threading
 # for VTK the scale (vtk_decimation.h).
 SETTINGS = [
     ("qtet", "qtet", ["--fields", "{field}", "--field-bits", "16", "--measure", "none"]),
-    ("qtet, optimal", "qtet", ["--fields", "{field}", "--field-bits", "16", "--measure", "none", "--placement", "optimal"]),
+    (
+        "qtet, optimal",
+        "qtet",
+        [
+            "--fields",
+            "{field}",
+            "--field-bits",
+            "16",
+            "--measure",
+            "none",
+            "--placement",
+            "optimal",
+        ],
+    ),
     ("VTK", "vtk", "1"),
     ("VTK x 1000", "vtk", "1000"),
-    ("qtet, optimal, shape first", "qtet", ["--fields", "{field}", "--field-bits", "16", "--measure", "none", "--placement", "optimal", "--hull-weight", "15000"]),
+    (
+        "qtet, optimal, shape first",
+        "qtet",
+        [
+            "--fields",
+            "{field}",
+            "--field-bits",
+            "16",
+            "--measure",
+            "none",
+            "--placement",
+            "optimal",
+            "--hull-weight",
+            "15000",
+        ],
+    ),
 ]
 REDUCTIONS = [50, 80, 90, 95, 99]  # per cent of the cells
 POSITION_BITS = "16"
 # One log for all reductions (--levels): it goes a little beyond the last, since levels seldom end where a reduction does.
 LEVELS_TARGET_RATIO = "0.009"
 
-VERDICTS = [("V", "valid"), ("T", "topology_preserved"), ("E", "inside_envelope"), ("S", "no_new_self_intersections"), ("P", "no_new_pinches")]
-COLUMNS = ["program", "removed %", "verdicts", "rms %", "p99 %", "max %", "Hausdorff", "outside", "volume kept", "dihedral p1", "median",
-           "boundary triangles", "records", "levels", "s", "k cells/s"]
+VERDICTS = [
+    ("V", "valid"),
+    ("T", "topology_preserved"),
+    ("E", "inside_envelope"),
+    ("S", "no_new_self_intersections"),
+    ("P", "no_new_pinches"),
+]
+COLUMNS = [
+    "program",
+    "removed %",
+    "verdicts",
+    "rms %",
+    "p99 %",
+    "max %",
+    "Hausdorff",
+    "outside",
+    "volume kept",
+    "dihedral p1",
+    "median",
+    "boundary triangles",
+    "records",
+    "levels",
+    "s",
+    "k cells/s",
+]
 
 
 class Failure(Exception):
@@ -55,8 +105,12 @@ def run_timed(words):
         if process.returncode == 0:
             return out.read(), usage.ru_utime
         lines = (err.read() or out.read()).strip().splitlines()
-    named = [line for line in lines if "qtet: see " not in line and "qtet: usage" not in line] or lines
-    raise Failure(named[-1] if named else f"{pathlib.Path(words[0]).name}: ended with {process.returncode}")
+    named = [
+        line for line in lines if "qtet: see " not in line and "qtet: usage" not in line
+    ] or lines
+    raise Failure(
+        named[-1] if named else f"{pathlib.Path(words[0]).name}: ended with {process.returncode}"
+    )
 
 
 def run(words):
@@ -77,7 +131,11 @@ class Cache:
         self.folder = folder
 
     def path(self, data_set, setting, what):
-        return self.folder / data_set / f"{''.join(c if c.isalnum() else '-' for c in setting)}_{what}.json"
+        return (
+            self.folder
+            / data_set
+            / f"{''.join(c if c.isalnum() else '-' for c in setting)}_{what}.json"
+        )
 
     def get(self, data_set, setting, what, stamp):
         try:
@@ -87,7 +145,10 @@ class Cache:
         return entry["result"] if entry["stamp"] == stamp else None
 
     def put(self, data_set, setting, what, stamp, result):
-        write_whole(self.path(data_set, setting, what), json.dumps({"stamp": stamp, "result": result}, indent=1))
+        write_whole(
+            self.path(data_set, setting, what),
+            json.dumps({"stamp": stamp, "result": result}, indent=1),
+        )
 
 
 class Qtet:
@@ -100,11 +161,22 @@ class Qtet:
 
     def simplify(self, ratio):
         bits = [] if "--position-bits" in self.options else ["--position-bits", POSITION_BITS]
-        words = [self.args.tool, "simplify", self.path, "-o", self.scratch / "out.qtet", "--target-ratio", ratio, "--json"]
+        words = [
+            self.args.tool,
+            "simplify",
+            self.path,
+            "-o",
+            self.scratch / "out.qtet",
+            "--target-ratio",
+            ratio,
+            "--json",
+        ]
         text, user = run_timed([*words, *bits, *self.options])
         self.report = json.loads(text)
         # The tool tells wall times, which other work on the machine stretches: its CPU time in the same proportions.
-        self.user_seconds = user * self.report["seconds"]["simplify"] / self.report["seconds"]["total"]
+        self.user_seconds = (
+            user * self.report["seconds"]["simplify"] / self.report["seconds"]["total"]
+        )
 
     def simplified(self, reduction):
         ratio = f"{1 - reduction / 100:.6g}"
@@ -113,11 +185,25 @@ class Qtet:
         elif self.report is None:
             self.simplify(LEVELS_TARGET_RATIO)
         mesh = self.scratch / "out.vtu"
-        run([self.args.tool, "extract", self.scratch / "out.qtet", *(["--ratio", ratio] if self.args.levels else ["--level", "0"]), "-o", mesh])
+        run(
+            [
+                self.args.tool,
+                "extract",
+                self.scratch / "out.qtet",
+                *(["--ratio", ratio] if self.args.levels else ["--level", "0"]),
+                "-o",
+                mesh,
+            ]
+        )
         # The time of a log is that of all its levels: no level of it has one of its own.
         seconds = None if self.args.levels else self.user_seconds
         tolerance = self.report["lattice"]["step"] / self.diagonal
-        return mesh, {"seconds": seconds, "records": self.report.get("records"), "levels": self.report["levels"], "tolerance": tolerance}
+        return mesh, {
+            "seconds": seconds,
+            "records": self.report.get("records"),
+            "levels": self.report["levels"],
+            "tolerance": tolerance,
+        }
 
 
 class Vtk:
@@ -127,7 +213,12 @@ class Vtk:
 
     def simplified(self, reduction):
         report = json.loads(run([*self.words, f"{reduction / 100:.6g}"]))
-        return pathlib.Path(report["file"]), {"seconds": report["userSeconds"], "records": None, "levels": None, "tolerance": self.tolerance}
+        return pathlib.Path(report["file"]), {
+            "seconds": report["userSeconds"],
+            "records": None,
+            "levels": None,
+            "tolerance": self.tolerance,
+        }
 
 
 class Runner:
@@ -141,7 +232,11 @@ class Runner:
     def say(self, data_set, setting, reduction, text):
         with self.lock:
             self.done += 1
-            print(f"[{self.done}/{self.total}] {data_set}, {setting}, {reduction} %: {text}", file=sys.stderr, flush=True)
+            print(
+                f"[{self.done}/{self.total}] {data_set}, {setting}, {reduction} %: {text}",
+                file=sys.stderr,
+                flush=True,
+            )
 
     def facts(self, path):
         """Of a data set: the field that is judged, and one lattice step over the diagonal, by which rounding may move a boundary."""
@@ -150,27 +245,72 @@ class Runner:
         if known:
             return known
         with tempfile.TemporaryDirectory(prefix="qtet-results-") as folder:
-            words = ["-o", pathlib.Path(folder) / "whole.qtet", "--position-bits", POSITION_BITS, "--target-ratio", "1", "--fields", "none", "--json"]
+            words = [
+                "-o",
+                pathlib.Path(folder) / "whole.qtet",
+                "--position-bits",
+                POSITION_BITS,
+                "--target-ratio",
+                "1",
+                "--fields",
+                "none",
+                "--json",
+            ]
             report = json.loads(run([self.args.tool, "simplify", path, *words]))
-        itself = json.loads(run([self.args.judge, path, path, "--surface-samples", "1", "--volume-samples", "1", "--no-self-intersections"]))
+        itself = json.loads(
+            run(
+                [
+                    self.args.judge,
+                    path,
+                    path,
+                    "--surface-samples",
+                    "1",
+                    "--volume-samples",
+                    "1",
+                    "--no-self-intersections",
+                ]
+            )
+        )
         diagonal = itself["bounding_box_diagonal"]
-        known = {"field": itself["field_error_over_range"]["field"], "cells": report["tetrahedra"]["full"], "diagonal": diagonal,
-                 "tolerance": report["lattice"]["step"] / diagonal}
+        known = {
+            "field": itself["field_error_over_range"]["field"],
+            "cells": report["tetrahedra"]["full"],
+            "diagonal": diagonal,
+            "tolerance": report["lattice"]["step"] / diagonal,
+        }
         self.cache.put(path.stem, "original", "facts", stamp, known)
         return known
 
     def judged(self, path, simplified, field, tolerance):
-        judge = json.loads(run([self.args.judge, path, simplified, "--field", field, "--envelope-tol", repr(tolerance)]))
+        judge = json.loads(
+            run(
+                [
+                    self.args.judge,
+                    path,
+                    simplified,
+                    "--field",
+                    field,
+                    "--envelope-tol",
+                    repr(tolerance),
+                ]
+            )
+        )
         simplified.unlink()
         return judge
 
     def setting_on(self, path, setting, facts):
         """All reductions of one setting on one data set: {reduction: result or Failure}."""
         name, program, options = setting
-        stamp = [path.stat().st_size, options, *([self.tool_stamp, self.args.levels] if program == "qtet" else [])]
+        stamp = [
+            path.stat().st_size,
+            options,
+            *([self.tool_stamp, self.args.levels] if program == "qtet" else []),
+        ]
         out = {}
         with tempfile.TemporaryDirectory(prefix="qtet-results-") as folder:
-            side = {"qtet": Qtet, "vtk": Vtk}[program](self.args, path, options, facts, pathlib.Path(folder))
+            side = {"qtet": Qtet, "vtk": Vtk}[program](
+                self.args, path, options, facts, pathlib.Path(folder)
+            )
             for reduction in self.args.reductions:
                 out[reduction] = self.cache.get(path.stem, name, reduction, stamp)
                 if out[reduction]:
@@ -178,7 +318,10 @@ class Runner:
                     continue
                 try:
                     mesh, ran = side.simplified(reduction)
-                    out[reduction] = {"ran": ran, "judge": self.judged(path, mesh, facts["field"], ran["tolerance"])}
+                    out[reduction] = {
+                        "ran": ran,
+                        "judge": self.judged(path, mesh, facts["field"], ran["tolerance"]),
+                    }
                     self.cache.put(path.stem, name, reduction, stamp, out[reduction])
                     self.say(path.stem, name, reduction, verdicts(out[reduction]["judge"]))
                 except Failure as failure:
@@ -192,7 +335,11 @@ def verdicts(judge):
 
 
 def figure(value, form):
-    return "" if value is None or (isinstance(value, float) and math.isnan(value)) else format(value, form)
+    return (
+        ""
+        if value is None or (isinstance(value, float) and math.isnan(value))
+        else format(value, form)
+    )
 
 
 def row(name, result):
@@ -203,11 +350,22 @@ def row(name, result):
     quality = judge["simplified"]["quality"]["min_dihedral_deg"]
     removed = judge["original"]["tets"] - judge["simplified"]["tets"]
     rate = None if not ran["seconds"] else removed / ran["seconds"] / 1000
-    return [name, figure(100 * judge["reduction_of_tets"], ".2f"), verdicts(judge), *(figure(100 * field[key], ".4g") for key in ("rms", "p99", "max")),
-            figure(distance["hausdorff"], ".1e"), figure(distance["outside_envelope_max"], ".1e"),
-            figure(1 - judge["coverage"]["original_volume_uncovered_fraction"], ".5f"), figure(quality["p01"], ".2f"), figure(quality["median"], ".1f"),
-            figure(judge["simplified"]["boundary_triangles"], "d"), figure(ran["records"], "d"), figure(ran["levels"], "d"),
-            figure(ran["seconds"], ".2f"), figure(rate, ".0f")]
+    return [
+        name,
+        figure(100 * judge["reduction_of_tets"], ".2f"),
+        verdicts(judge),
+        *(figure(100 * field[key], ".4g") for key in ("rms", "p99", "max")),
+        figure(distance["hausdorff"], ".1e"),
+        figure(distance["outside_envelope_max"], ".1e"),
+        figure(1 - judge["coverage"]["original_volume_uncovered_fraction"], ".5f"),
+        figure(quality["p01"], ".2f"),
+        figure(quality["median"], ".1f"),
+        figure(judge["simplified"]["boundary_triangles"], "d"),
+        figure(ran["records"], "d"),
+        figure(ran["levels"], "d"),
+        figure(ran["seconds"], ".2f"),
+        figure(rate, ".0f"),
+    ]
 
 
 def table(rows):
@@ -227,32 +385,58 @@ def processor():
 
 def summary(args, results):
     """How often each verdict held, by setting: the row to look at first."""
-    lines = ["| program | runs | " + " | ".join(key.replace("_", " ") for _, key in VERDICTS) + " | every verdict |", "|" + "---|" * (len(VERDICTS) + 3)]
+    lines = [
+        "| program | runs | "
+        + " | ".join(key.replace("_", " ") for _, key in VERDICTS)
+        + " | every verdict |",
+        "|" + "---|" * (len(VERDICTS) + 3),
+    ]
     for name, _, _ in args.settings:
-        judged = [r["judge"]["verdict"] for (_, setting), by in results.items() if setting == name for r in by.values() if not isinstance(r, Failure)]
-        counts = [sum(v[key] for v in judged) for _, key in VERDICTS] + [sum(all(v[key] for _, key in VERDICTS) for v in judged)]
+        judged = [
+            r["judge"]["verdict"]
+            for (_, setting), by in results.items()
+            if setting == name
+            for r in by.values()
+            if not isinstance(r, Failure)
+        ]
+        counts = [sum(v[key] for v in judged) for _, key in VERDICTS] + [
+            sum(all(v[key] for _, key in VERDICTS) for v in judged)
+        ]
         lines.append(f"| {name} | {len(judged)} | " + " | ".join(map(str, counts)) + " |")
     return lines
 
 
 def document(args, facts, results):
-    how = "one log a setting, its finest level within each reduction" if args.levels else "one run a reduction"
-    lines = ["# Results", "",
-             f"Written by `make results` on {datetime.date.today()}: {processor()}, {args.jobs} job{'s' * (args.jobs > 1)} at a time; times are rough,"
-             " `simplify_bench` measures them. Do not edit.", "",
-             f"Judged against the original mesh by a program that shares nothing with qtet. qtet: {how}, lattice of {POSITION_BITS} bits an axis. VTK:"
-             " `vtkUnstructuredGridQuadricDecimation`, as it is and with points, scalar and boundary weight times 1000; it keeps one scalar.", "",
-             "*Verdicts*: V valid, T topology preserved, E inside the boundary envelope to one lattice step, S no new self-intersections, P no new pinches;"
-             " a dash where it does not hold. *rms*, *p99*, *max*: error of the first scalar in per cent of its range. *Hausdorff*, *outside*: of the"
-             " boundary, over the diagonal. *Volume kept*: fraction of the original volume still covered. *Dihedral*: 1st percentile and median of the"
-             " cells' smallest angle, degrees. *s*: user CPU seconds of the simplification alone.", ""]
+    how = (
+        "one log a setting, its finest level within each reduction"
+        if args.levels
+        else "one run a reduction"
+    )
+    lines = [
+        "# Results",
+        "",
+        f"Written by `make results` on {datetime.date.today()}: {processor()}, {args.jobs} job{'s' * (args.jobs > 1)} at a time; times are rough,"
+        " `simplify_bench` measures them. Do not edit.",
+        "",
+        f"Judged against the original mesh by a program that shares nothing with qtet. qtet: {how}, lattice of {POSITION_BITS} bits an axis. VTK:"
+        " `vtkUnstructuredGridQuadricDecimation`, as it is and with points, scalar and boundary weight times 1000; it keeps one scalar.",
+        "",
+        "*Verdicts*: V valid, T topology preserved, E inside the boundary envelope to one lattice step, S no new self-intersections, P no new pinches;"
+        " a dash where it does not hold. *rms*, *p99*, *max*: error of the first scalar in per cent of its range. *Hausdorff*, *outside*: of the"
+        " boundary, over the diagonal. *Volume kept*: fraction of the original volume still covered. *Dihedral*: 1st percentile and median of the"
+        " cells' smallest angle, degrees. *s*: user CPU seconds of the simplification alone.",
+        "",
+    ]
     lines += [*summary(args, results), ""]
     for path in args.sets:
         lines += [f"## {path.stem}", ""]
         if isinstance(facts[path], Failure):
             lines += [str(facts[path]), ""]
             continue
-        lines += [f"{facts[path]['cells']:,} tetrahedra; field {facts[path]['field']}; one lattice step is {facts[path]['tolerance']:.2e} of the diagonal.", ""]
+        lines += [
+            f"{facts[path]['cells']:,} tetrahedra; field {facts[path]['field']}; one lattice step is {facts[path]['tolerance']:.2e} of the diagonal.",
+            "",
+        ]
         for reduction in args.reductions:
             rows = [row(name, results[path, name][reduction]) for name, _, _ in args.settings]
             lines += [f"### {reduction} %", "", *table(rows), ""]
@@ -262,35 +446,76 @@ def document(args, facts, results):
 def arguments():
     here = pathlib.Path(__file__).resolve().parent
     built = here.parent.parent / "build" / "release" / "bin"
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--out", type=pathlib.Path, default=here / "RESULTS.md")
-    parser.add_argument("--cache", type=pathlib.Path, required=True, help="folder that keeps the results between runs")
+    parser.add_argument(
+        "--cache",
+        type=pathlib.Path,
+        required=True,
+        help="folder that keeps the results between runs",
+    )
     parser.add_argument("--tool", type=pathlib.Path, default=built / "qtet")
     parser.add_argument("--vtk-decimate", type=pathlib.Path, default=built / "vtk_decimate")
-    parser.add_argument("--jobs", type=int, default=1, help="settings computed at a time; times are less exact with more than one")
-    parser.add_argument("--levels", action="store_true", help="one log a setting instead of one run a reduction: faster, the counts within a level")
+    parser.add_argument(
+        "--jobs",
+        type=int,
+        default=1,
+        help="settings computed at a time; times are less exact with more than one",
+    )
+    parser.add_argument(
+        "--levels",
+        action="store_true",
+        help="one log a setting instead of one run a reduction: faster, the counts within a level",
+    )
     parser.add_argument("--sets", help="only these data sets, names between commas")
-    parser.add_argument("--settings", help="only these settings, numbers from 1 between commas: "
-                        + "; ".join(f"{i + 1} {name}" for i, (name, _, _) in enumerate(SETTINGS)))
-    parser.add_argument("--reductions", help=f"per cent between commas instead of {','.join(map(str, REDUCTIONS))}")
+    parser.add_argument(
+        "--settings",
+        help="only these settings, numbers from 1 between commas: "
+        + "; ".join(f"{i + 1} {name}" for i, (name, _, _) in enumerate(SETTINGS)),
+    )
+    parser.add_argument(
+        "--reductions", help=f"per cent between commas instead of {','.join(map(str, REDUCTIONS))}"
+    )
     args = parser.parse_args()
 
-    args.judge = pathlib.Path(os.environ.get("QTET_JUDGE") or parser.error("QTET_JUDGE is not set; it names the program that judges a simplified mesh"))
-    data = pathlib.Path(os.environ.get("QTET_DATA") or parser.error("QTET_DATA is not set; it names a folder with .vtu files"))
+    args.judge = pathlib.Path(
+        os.environ.get("QTET_JUDGE")
+        or parser.error("QTET_JUDGE is not set; it names the program that judges a simplified mesh")
+    )
+    data = pathlib.Path(
+        os.environ.get("QTET_DATA")
+        or parser.error("QTET_DATA is not set; it names a folder with .vtu files")
+    )
     for program in (args.judge, args.tool, args.vtk_decimate):
         if not os.access(program, os.X_OK):
-            parser.error(f"{program} is no program that can be run; qtet and vtk_decimate are built by `make results`")
+            parser.error(
+                f"{program} is no program that can be run; qtet and vtk_decimate are built by `make results`"
+            )
     found = {path.stem: path for path in sorted(data.glob("*.vtu"))}
     wanted = args.sets.split(",") if args.sets else list(found)
     missing = [name for name in wanted if name not in found]
     if missing or not wanted:
-        parser.error(f"{data} has no {', '.join(missing) or 'mesh'}.vtu; it has: {', '.join(found) or 'nothing'}")
+        parser.error(
+            f"{data} has no {', '.join(missing) or 'mesh'}.vtu; it has: {', '.join(found) or 'nothing'}"
+        )
     args.sets = [found[name] for name in wanted]
     try:
-        args.settings = [SETTINGS[int(number) - 1] for number in args.settings.split(",")] if args.settings else SETTINGS
-        args.reductions = [float(r) if "." in r else int(r) for r in args.reductions.split(",")] if args.reductions else REDUCTIONS
+        args.settings = (
+            [SETTINGS[int(number) - 1] for number in args.settings.split(",")]
+            if args.settings
+            else SETTINGS
+        )
+        args.reductions = (
+            [float(r) if "." in r else int(r) for r in args.reductions.split(",")]
+            if args.reductions
+            else REDUCTIONS
+        )
     except (ValueError, IndexError):
-        parser.error(f"--settings takes numbers from 1 to {len(SETTINGS)}, --reductions per cent, both between commas")
+        parser.error(
+            f"--settings takes numbers from 1 to {len(SETTINGS)}, --reductions per cent, both between commas"
+        )
     return args
 
 

@@ -54,17 +54,42 @@ class Results(unittest.TestCase):
         path.chmod(0o755)
 
     def run_results(self, *words, **environment):
-        env = {**os.environ, "QTET_DATA": str(self.folder / "data"), "QTET_JUDGE": str(self.folder / "judge"), **environment}
-        paths = ["--tool", self.folder / "qtet", "--vtk-decimate", self.folder / "vtk_decimate", "--cache", self.folder / "cache",
-                 "--out", self.folder / "RESULTS.md"]
-        return subprocess.run([sys.executable, RESULTS, *paths, *words], env=env, capture_output=True, text=True, check=False)
+        env = {
+            **os.environ,
+            "QTET_DATA": str(self.folder / "data"),
+            "QTET_JUDGE": str(self.folder / "judge"),
+            **environment,
+        }
+        paths = [
+            "--tool",
+            self.folder / "qtet",
+            "--vtk-decimate",
+            self.folder / "vtk_decimate",
+            "--cache",
+            self.folder / "cache",
+            "--out",
+            self.folder / "RESULTS.md",
+        ]
+        return subprocess.run(
+            [sys.executable, RESULTS, *paths, *words],
+            env=env,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
 
     def test_every_figure_stands_in_the_table(self):
         done = self.run_results("--settings", "1,3", "--reductions", "90")
         self.assertEqual(done.returncode, 0, done.stderr)
         text = (self.folder / "RESULTS.md").read_text()
-        self.assertIn("| qtet | 90.00 | VTE-P | 1 | 2 | 3 | 1.0e-03 | 1.0e-05 | 0.99000 | 5.00 | 30.0 | 40 |  | 7 |", text)
-        self.assertIn("| VTK | 90.00 | VTE-P | 1 | 2 | 3 | 1.0e-03 | 1.0e-05 | 0.99000 | 5.00 | 30.0 | 40 |  |  | 0.50 | 2 |", text)
+        self.assertIn(
+            "| qtet | 90.00 | VTE-P | 1 | 2 | 3 | 1.0e-03 | 1.0e-05 | 0.99000 | 5.00 | 30.0 | 40 |  | 7 |",
+            text,
+        )
+        self.assertIn(
+            "| VTK | 90.00 | VTE-P | 1 | 2 | 3 | 1.0e-03 | 1.0e-05 | 0.99000 | 5.00 | 30.0 | 40 |  |  | 0.50 | 2 |",
+            text,
+        )
 
     def test_what_is_known_is_not_run_again_until_the_tool_changes(self):
         self.run_results("--settings", "1,3", "--reductions", "50,90")
@@ -79,13 +104,18 @@ class Results(unittest.TestCase):
             done = self.run_results("--settings", "5", "--reductions", "90")
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertNotIn(": known", done.stderr)
-        self.assertIn("| qtet, optimal, shape first | qtet: the hull is too heavy |", (self.folder / "RESULTS.md").read_text())
+        self.assertIn(
+            "| qtet, optimal, shape first | qtet: the hull is too heavy |",
+            (self.folder / "RESULTS.md").read_text(),
+        )
 
     def test_a_cache_file_that_is_cut_off_counts_for_nothing(self):
         self.run_results("--settings", "3", "--reductions", "90")
         path = self.folder / "cache" / "part" / "VTK_90.json"
         path.write_text(path.read_text()[:-9])
-        self.assertNotIn(": known", self.run_results("--settings", "3", "--reductions", "90").stderr)
+        self.assertNotIn(
+            ": known", self.run_results("--settings", "3", "--reductions", "90").stderr
+        )
         self.assertIn("result", json.loads(path.read_text()))
 
     def test_what_is_missing_is_named(self):

@@ -16,29 +16,58 @@ CHUNK = 32 << 10
 def cpu_seconds(pid):
     """Of a process and its children that live (nginx's worker)."""
     total = 0
-    for p in [pid] + [int(c) for c in subprocess.run(["pgrep", "-P", str(pid)], capture_output=True, text=True).stdout.split()]:
+    for p in [pid] + [
+        int(c)
+        for c in subprocess.run(
+            ["pgrep", "-P", str(pid)], capture_output=True, text=True
+        ).stdout.split()
+    ]:
         fields = pathlib.Path(f"/proc/{p}/stat").read_text().rsplit(")", 1)[1].split()
         total += int(fields[11]) + int(fields[12])
     return total / TICK
 
 
 def rss(pid):
-    return int(re.search(r"VmRSS:\s+(\d+)", pathlib.Path(f"/proc/{pid}/status").read_text())[1]) << 10
+    return (
+        int(re.search(r"VmRSS:\s+(\d+)", pathlib.Path(f"/proc/{pid}/status").read_text())[1]) << 10
+    )
 
 
 def kernel_tcp_bytes():
-    return int(re.search(r"TCP:.* mem (\d+)", pathlib.Path("/proc/net/sockstat").read_text())[1]) * os.sysconf("SC_PAGESIZE")
+    return int(
+        re.search(r"TCP:.* mem (\d+)", pathlib.Path("/proc/net/sockstat").read_text())[1]
+    ) * os.sysconf("SC_PAGESIZE")
 
 
 def start(command, ready=None):
-    process = subprocess.Popen(["taskset", "-c", "0"] + [str(c) for c in command], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+    process = subprocess.Popen(
+        ["taskset", "-c", "0"] + [str(c) for c in command],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
+    )
     atexit.register(process.terminate)
     return process, (re.search(ready, process.stdout.readline())[1] if ready else None)
 
 
 def start_qtet(args, folder):
-    process, port = start([args.bin / "qtet-server", folder, "--threads", 1, "--port", 0, "--max-connections", 12000, "--max-connections-per-address", 0,
-                           "--max-requests-per-second", 0], r":(\d+)/")
+    process, port = start(
+        [
+            args.bin / "qtet-server",
+            folder,
+            "--threads",
+            1,
+            "--port",
+            0,
+            "--max-connections",
+            12000,
+            "--max-connections-per-address",
+            0,
+            "--max-requests-per-second",
+            0,
+        ],
+        r":(\d+)/",
+    )
     return process, int(port)
 
 
@@ -47,11 +76,13 @@ def start_nginx(folder, scratch):
         s.bind(("127.0.0.1", 0))
         port = s.getsockname()[1]
     conf = scratch / "nginx.conf"
-    conf.write_text(f"""user root; worker_processes 1; daemon off; pid {scratch}/pid; error_log /dev/null;
+    conf.write_text(
+        f"""user root; worker_processes 1; daemon off; pid {scratch}/pid; error_log /dev/null;
 events {{ worker_connections 20000; }}
 http {{ access_log off; sendfile on; tcp_nopush off; keepalive_requests 1000000000; client_body_temp_path {scratch}/a; proxy_temp_path {scratch}/b;
 fastcgi_temp_path {scratch}/c; uwsgi_temp_path {scratch}/d; scgi_temp_path {scratch}/e;
-server {{ listen 127.0.0.1:{port}; root {folder}; default_type application/json; }} }}""")
+server {{ listen 127.0.0.1:{port}; root {folder}; default_type application/json; }} }}"""
+    )
     process, _ = start(["nginx", "-c", conf])
     for _ in range(100):
         with socket.socket() as s:
@@ -63,7 +94,8 @@ server {{ listen 127.0.0.1:{port}; root {folder}; default_type application/json;
 
 class Meter:
     """CPU seconds from here on: of a server, and of it and its client, this process and what it ran. On loopback the kernel does the same work now in one's
-    time, now in the other's: a send is finished by whoever happens to take in the acknowledgement."""
+    time, now in the other's: a send is finished by whoever happens to take in the acknowledgement.
+    """
 
     def __init__(self, pid):
         self.pid, self.before = pid, self.now(pid)
@@ -80,7 +112,11 @@ class Meter:
 def wrk(pid, url, connections, seconds, header=None):
     """Requests for a CPU second of the server, and of both ends."""
     meter = Meter(pid)
-    command = ["taskset", "-c", "1", "wrk", "-t1", f"-c{connections}", f"-d{seconds}s"] + (["-H", header] if header else []) + [url]
+    command = (
+        ["taskset", "-c", "1", "wrk", "-t1", f"-c{connections}", f"-d{seconds}s"]
+        + (["-H", header] if header else [])
+        + [url]
+    )
     out = subprocess.run(command, capture_output=True, text=True).stdout
     if "Non-2xx" in out:
         sys.exit(f"{url}: {out}")
@@ -89,16 +125,23 @@ def wrk(pid, url, connections, seconds, header=None):
 
 # ---- WebSockets, as little of them as does
 
+
 def masked(text):
     data = text.encode()
-    head = bytes([0x81, 0x80 | len(data)]) if len(data) < 126 else bytes([0x81, 0xFE]) + len(data).to_bytes(2, "big")
+    head = (
+        bytes([0x81, 0x80 | len(data)])
+        if len(data) < 126
+        else bytes([0x81, 0xFE]) + len(data).to_bytes(2, "big")
+    )
     return head + bytes(4) + data
 
 
 def web_socket(port):
     s = socket.create_connection(("127.0.0.1", port))
-    s.sendall(b"GET /v1/stream HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
-              b"Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Protocol: qtet.v1\r\n\r\n")
+    s.sendall(
+        b"GET /v1/stream HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
+        b"Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Protocol: qtet.v1\r\n\r\n"
+    )
     answer = b""
     while not answer.endswith(b"\r\n\r\n"):
         answer += s.recv(4096)
@@ -108,7 +151,9 @@ def web_socket(port):
 
 def open_message(name):
     """`name` and its fields, all of them."""
-    return masked(json.dumps({"type": "open", "mesh": name[0], "fields": name[1], "credit": 1 << 40}))
+    return masked(
+        json.dumps({"type": "open", "mesh": name[0], "fields": name[1], "credit": 1 << 40})
+    )
 
 
 def streaming(pid, port, name, clients, seconds):
@@ -205,7 +250,9 @@ def main():
 
     def get(path):
         with socket.create_connection(("127.0.0.1", port)) as s:
-            s.sendall(f"GET {path} HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n".encode())
+            s.sendall(
+                f"GET {path} HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n".encode()
+            )
             return b"".join(iter(lambda: s.recv(1 << 16), b"")).split(b"\r\n\r\n", 1)[1]
 
     listing = get("/v1/meshes")
@@ -214,42 +261,90 @@ def main():
     (folder / "meshes.json").write_bytes(listing)
     nginx, other = start_nginx(folder, scratch)
     log, size = f"/v1/logs/{digest}/log", args.log.stat().st_size
-    print(f"log of {size} bytes, JSON of {len(listing)} bytes; {args.rounds} rounds of {args.seconds} s\n")
+    print(
+        f"log of {size} bytes, JSON of {len(listing)} bytes; {args.rounds} rounds of {args.seconds} s\n"
+    )
     print("| | qtet-server | peer | ratio | ratio by both ends' CPU |\n|---|---|---|---|---|")
 
     def row(name, ours, theirs, unit, scale):
         a, b = (statistics.median(server for server, _ in rates) for rates in (ours, theirs))
-        server, both = (statistics.median(x[i] / y[i] for x, y in zip(ours, theirs)) for i in (0, 1))
-        print(f"| {name} | {a / scale:.0f} {unit} | {b / scale:.0f} {unit} | {server:.2f} | {both:.2f} |", flush=True)
+        server, both = (
+            statistics.median(x[i] / y[i] for x, y in zip(ours, theirs)) for i in (0, 1)
+        )
+        print(
+            f"| {name} | {a / scale:.0f} {unit} | {b / scale:.0f} {unit} | {server:.2f} | {both:.2f} |",
+            flush=True,
+        )
 
     for name, path, peer, connections, header, unit, scale in [
-            ("64 KB ranges, 64 connections", log, "/bench.qtet", 64, "Range: bytes=65536-131071", "MB", 1e6 / 65536),
-            ("1 MB ranges, 16 connections", log, "/bench.qtet", 16, "Range: bytes=65536-1114111", "MB", 1e6 / (1 << 20)),
-            ("whole files, 4 connections", log, "/bench.qtet", 4, None, "MB", 1e6 / size),
-            ("1 KB JSON, 64 connections", "/v1/meshes", "/meshes.json", 64, None, "thousand", 1e3)]:
+        (
+            "64 KB ranges, 64 connections",
+            log,
+            "/bench.qtet",
+            64,
+            "Range: bytes=65536-131071",
+            "MB",
+            1e6 / 65536,
+        ),
+        (
+            "1 MB ranges, 16 connections",
+            log,
+            "/bench.qtet",
+            16,
+            "Range: bytes=65536-1114111",
+            "MB",
+            1e6 / (1 << 20),
+        ),
+        ("whole files, 4 connections", log, "/bench.qtet", 4, None, "MB", 1e6 / size),
+        ("1 KB JSON, 64 connections", "/v1/meshes", "/meshes.json", 64, None, "thousand", 1e3),
+    ]:
         ours, theirs = [], []
         for _ in range(args.rounds):
-            ours.append(wrk(qtet.pid, f"http://127.0.0.1:{port}{path}", connections, args.seconds, header))
-            theirs.append(wrk(nginx.pid, f"http://127.0.0.1:{other}{peer}", connections, args.seconds, header))
+            ours.append(
+                wrk(qtet.pid, f"http://127.0.0.1:{port}{path}", connections, args.seconds, header)
+            )
+            theirs.append(
+                wrk(nginx.pid, f"http://127.0.0.1:{other}{peer}", connections, args.seconds, header)
+            )
         row(name + " (nginx)", ours, theirs, unit, scale)
     if args.ws:
-        ws, ws_port = start(["node", HERE / "server_peer.mjs", args.ws.resolve(), args.log, CHUNK], r"(\d+)")
+        ws, ws_port = start(
+            ["node", HERE / "server_peer.mjs", args.ws.resolve(), args.log, CHUNK], r"(\d+)"
+        )
         for clients in (1, 64):
             ours, theirs = [], []
             for _ in range(args.rounds):
                 ours.append(streaming(qtet.pid, port, bench, clients, args.seconds))
                 theirs.append(streaming(ws.pid, int(ws_port), bench, clients, args.seconds))
-            row(f"chunks by WebSocket, {clients} client{'s' * (clients > 1)} (ws)", ours, theirs, "MB", 1e6)
+            row(
+                f"chunks by WebSocket, {clients} client{'s' * (clients > 1)} (ws)",
+                ours,
+                theirs,
+                "MB",
+                1e6,
+            )
     print("\n| | qtet-server |\n|---|---|")
     for clients in (64, 1000):
-        print(f"| first chunk, median, {clients} clients together | {statistics.median(first_chunk(port, bench, clients) for _ in range(args.rounds)):.1f} ms |", flush=True)
+        print(
+            f"| first chunk, median, {clients} clients together | {statistics.median(first_chunk(port, bench, clients) for _ in range(args.rounds)):.1f} ms |",
+            flush=True,
+        )
     user, kernel = stalled_bytes(qtet, port, bench, 64)
-    print(f"| a stalled client, user and kernel | {user / 1024:.0f} + {kernel / 1024:.0f} KB |", flush=True)
-    for name, connect in [("HTTP", lambda: http_silent(port)), ("WebSocket", lambda: web_socket(port))]:
+    print(
+        f"| a stalled client, user and kernel | {user / 1024:.0f} + {kernel / 1024:.0f} KB |",
+        flush=True,
+    )
+    for name, connect in [
+        ("HTTP", lambda: http_silent(port)),
+        ("WebSocket", lambda: web_socket(port)),
+    ]:
         qtet.send_signal(signal.SIGTERM)
         qtet.wait()
         qtet, port = start_qtet(args, folder)
-        print(f"| {args.idle} idle connections, {name} | {idle_bytes(qtet, connect, args.idle) / 1024:.1f} KB each |", flush=True)
+        print(
+            f"| {args.idle} idle connections, {name} | {idle_bytes(qtet, connect, args.idle) / 1024:.1f} KB each |",
+            flush=True,
+        )
 
 
 main()

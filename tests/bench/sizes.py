@@ -34,7 +34,17 @@ DATA = {
     "wing-potential": (None, 5.5),
 }
 BAR = 1.33  # what streaming coarse-first may cost beside the single-rate coder
-EXACT = ["tetrahedra", "levels", "chunks", "bytes", "head", "connectivity", "positions", "field", "vertex"]
+EXACT = [
+    "tetrahedra",
+    "levels",
+    "chunks",
+    "bytes",
+    "head",
+    "connectivity",
+    "positions",
+    "field",
+    "vertex",
+]
 COLUMNS = ["mesh", "field name", *EXACT, ".vtu"]
 SKIPPED = 77
 OLD = " (old)"  # behind the name of a mesh whose row comes from an earlier run
@@ -63,28 +73,60 @@ class Failure(Exception):
 
 
 def run(words):
-    done = subprocess.run([str(word) for word in words], capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        [str(word) for word in words], capture_output=True, text=True, check=False
+    )
     if done.returncode != 0:
-        raise Failure((done.stderr or done.stdout).strip() or f"{words[0]} ended with {done.returncode}")
+        raise Failure(
+            (done.stderr or done.stdout).strip() or f"{words[0]} ended with {done.returncode}"
+        )
     return json.loads(done.stdout)
 
 
 def simplified(tool, mesh, field, *options):
     with tempfile.TemporaryDirectory(prefix="qtet-sizes-") as folder:
-        return run([tool, "simplify", mesh, "-o", pathlib.Path(folder) / "out.qtet", "--fields", f"point:{field}", *OPTIONS, *options, "--json"])
+        return run(
+            [
+                tool,
+                "simplify",
+                mesh,
+                "-o",
+                pathlib.Path(folder) / "out.qtet",
+                "--fields",
+                f"point:{field}",
+                *OPTIONS,
+                *options,
+                "--json",
+            ]
+        )
 
 
 def measured(tool, mesh, field):
     """The row of a mesh but for its .vtu column."""
     report = simplified(tool, mesh, field)
     of = report["bytesOf"]
-    return {"mesh": mesh.stem, "field name": field, "tetrahedra": report["tetrahedra"]["full"], "levels": report["levels"], "chunks": report["chunks"],
-            "bytes": report["bytes"], "head": of["head"], "connectivity": of["connectivity"], "positions": of["positions"], "field": sum(of["fields"].values()),
-            "vertex": simplified(tool, mesh, field, "--placement", "vertex")["bytes"]}
+    return {
+        "mesh": mesh.stem,
+        "field name": field,
+        "tetrahedra": report["tetrahedra"]["full"],
+        "levels": report["levels"],
+        "chunks": report["chunks"],
+        "bytes": report["bytes"],
+        "head": of["head"],
+        "connectivity": of["connectivity"],
+        "positions": of["positions"],
+        "field": sum(of["fields"].values()),
+        "vertex": simplified(tool, mesh, field, "--placement", "vertex")["bytes"],
+    }
 
 
 def table(columns, rows):
-    return "\n".join("| " + " | ".join(cells) + " |" for cells in [columns, ["---"] * len(columns), *rows]) + "\n"
+    return (
+        "\n".join(
+            "| " + " | ".join(cells) + " |" for cells in [columns, ["---"] * len(columns), *rows]
+        )
+        + "\n"
+    )
 
 
 def read_table(path):
@@ -93,12 +135,24 @@ def read_table(path):
         text = path.read_text(encoding="utf-8").split(EXACT_HEAD)[-1]
     except OSError as error:
         raise Failure(f"{path} cannot be read ({error.strerror}); `make sizes` makes it") from error
-    lines = [[cell.strip() for cell in line.strip("|\n ").split("|")] for line in text.splitlines() if line.startswith("|")]
+    lines = [
+        [cell.strip() for cell in line.strip("|\n ").split("|")]
+        for line in text.splitlines()
+        if line.startswith("|")
+    ]
     if not lines or lines[0] != COLUMNS:
-        raise Failure(f"{path} has no table with the columns {', '.join(COLUMNS)}; `make sizes` makes it")
+        raise Failure(
+            f"{path} has no table with the columns {', '.join(COLUMNS)}; `make sizes` makes it"
+        )
     out = {}
     for cells in lines[2:]:
-        row = dict(zip(COLUMNS, [cell.removesuffix(OLD) if i < 2 else int(cell) for i, cell in enumerate(cells)], strict=True))
+        row = dict(
+            zip(
+                COLUMNS,
+                [cell.removesuffix(OLD) if i < 2 else int(cell) for i, cell in enumerate(cells)],
+                strict=True,
+            )
+        )
         out[row["mesh"]] = row
     return out
 
@@ -108,24 +162,58 @@ def bits_row(name, row):
         return 8 * size / row["tetrahedra"]
 
     zstd, single_rate = DATA.get(row["mesh"], (None, None))
-    return [name, *(f"{bits(row[key]):.2f}" for key in ("bytes", "connectivity", "positions", "field", "head")), f"{bits(row['.vtu']):.0f}",
-            "" if zstd is None else str(zstd), "" if single_rate is None else f"{single_rate:.1f}",
-            "" if single_rate is None else f"{bits(row['bytes']) / single_rate:.2f}", f"{bits(row['vertex']):.2f}",
-            "" if single_rate is None else f"{bits(row['vertex']) / single_rate:.2f}"]
+    return [
+        name,
+        *(
+            f"{bits(row[key]):.2f}"
+            for key in ("bytes", "connectivity", "positions", "field", "head")
+        ),
+        f"{bits(row['.vtu']):.0f}",
+        "" if zstd is None else str(zstd),
+        "" if single_rate is None else f"{single_rate:.1f}",
+        "" if single_rate is None else f"{bits(row['bytes']) / single_rate:.2f}",
+        f"{bits(row['vertex']):.2f}",
+        "" if single_rate is None else f"{bits(row['vertex']) / single_rate:.2f}",
+    ]
 
 
 def document(rows, old):
     names = [row["mesh"] + OLD * (row["mesh"] in old) for row in rows]
-    note = "\n*(old)*: not measured again when this table was made, because `QTET_DATA` was not set.\n" if old else ""
-    columns = ["mesh", "total", "connectivity", "positions", "field", "head", ".vtu", "zstd", "single-rate", "ratio", "vertex", "its ratio"]
+    note = (
+        "\n*(old)*: not measured again when this table was made, because `QTET_DATA` was not set.\n"
+        if old
+        else ""
+    )
+    columns = [
+        "mesh",
+        "total",
+        "connectivity",
+        "positions",
+        "field",
+        "head",
+        ".vtu",
+        "zstd",
+        "single-rate",
+        "ratio",
+        "vertex",
+        "its ratio",
+    ]
     exact = [[name, *(str(row[key]) for key in COLUMNS[1:])] for name, row in zip(names, rows)]
-    return (HEAD + note + "\n" + table(columns, [bits_row(name, row) for name, row in zip(names, rows)]) + EXACT_HEAD
-            + table(COLUMNS, exact))
+    return (
+        HEAD
+        + note
+        + "\n"
+        + table(columns, [bits_row(name, row) for name, row in zip(names, rows)])
+        + EXACT_HEAD
+        + table(COLUMNS, exact)
+    )
 
 
 def sample(tool, name, folder):
     path = pathlib.Path(folder) / f"{name}.vtu"
-    done = subprocess.run([tool, "sample", name, "-o", path], capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        [tool, "sample", name, "-o", path], capture_output=True, text=True, check=False
+    )
     if done.returncode != 0:
         raise Failure(done.stderr.strip())
     return path
@@ -134,7 +222,9 @@ def sample(tool, name, folder):
 def data_set(name):
     path = pathlib.Path(os.environ["QTET_DATA"]) / f"{name}.vtu"
     if not path.is_file():
-        raise Failure(f"{path.parent} has no {path.name}; QTET_DATA names the folder that has the data sets of this table")
+        raise Failure(
+            f"{path.parent} has no {path.name}; QTET_DATA names the folder that has the data sets of this table"
+        )
     return path
 
 
@@ -147,8 +237,15 @@ def make(args):
     has_data = bool(os.environ.get("QTET_DATA"))
     rows, old = [], {}
     if not has_data:
-        old = {name: row for name, row in (read_table(args.table) if args.table.exists() else {}).items() if name in DATA}
-        print(f"sizes: QTET_DATA is not set: the rows of {len(old)} data sets are kept as they are", file=sys.stderr)
+        old = {
+            name: row
+            for name, row in (read_table(args.table) if args.table.exists() else {}).items()
+            if name in DATA
+        }
+        print(
+            f"sizes: QTET_DATA is not set: the rows of {len(old)} data sets are kept as they are",
+            file=sys.stderr,
+        )
     with tempfile.TemporaryDirectory(prefix="qtet-sizes-") as folder:
         for mesh in each_mesh(args, [*SAMPLES, *(DATA if has_data else [])], folder):
             vtu = run([args.vtu_size, mesh])
@@ -160,7 +257,11 @@ def make(args):
 
 
 def differences(row, now):
-    return [f"{key} {row[key]} -> {now[key]} ({100 * (now[key] / row[key] - 1):+.2f} %)" for key in EXACT if row[key] != now[key]]
+    return [
+        f"{key} {row[key]} -> {now[key]} ({100 * (now[key] / row[key] - 1):+.2f} %)"
+        for key in EXACT
+        if row[key] != now[key]
+    ]
 
 
 def check(args):
@@ -174,18 +275,24 @@ def check(args):
         for mesh in each_mesh(args, names, folder):
             if mesh.stem not in rows:
                 raise Failure(f"{args.table} has no row for {mesh.stem}; `make sizes` makes it")
-            differ = differences(rows[mesh.stem], measured(args.tool, mesh, rows[mesh.stem]["field name"]))
+            differ = differences(
+                rows[mesh.stem], measured(args.tool, mesh, rows[mesh.stem]["field name"])
+            )
             changed = changed or bool(differ)
             print(f"sizes: {mesh.stem}: " + ("; ".join(differ) if differ else "as in the table"))
     if changed:
-        print(f"sizes: the logs differ from {args.table}. If that is meant: `make sizes` makes the table anew (with QTET_DATA set also that of the data sets);"
-              " commit it, and tell in CHANGELOG.md what became larger or smaller, and why. If it is not meant, the change before has done it.")
+        print(
+            f"sizes: the logs differ from {args.table}. If that is meant: `make sizes` makes the table anew (with QTET_DATA set also that of the data sets);"
+            " commit it, and tell in CHANGELOG.md what became larger or smaller, and why. If it is not meant, the change before has done it."
+        )
     return int(changed)
 
 
 def main():
     built = HERE.parent.parent / "build" / "release" / "bin"
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--check", choices=["samples", "data"], help="compare instead of making")
     parser.add_argument("--table", type=pathlib.Path, default=HERE / "SIZES.md")
     parser.add_argument("--tool", type=pathlib.Path, default=built / "qtet")

@@ -31,17 +31,44 @@ class Life:
             (self.folder / f"open{i}.qtet").write_bytes(log)
             (self.folder / f"lab{i}.qtet").write_bytes(log)
         self.tokens.write_text(ALL_TOKENS)
-        words = [options.server, self.folder, "--port", "0", "--admin", "127.0.0.1:0", "--threads", str(options.threads), "--tokens", self.tokens, "--cache-bytes", "3000000",
-                 "--access-log", self.scratch / "access", "--max-connections-per-address", "0", "--max-requests-per-second", "0"]
+        words = [
+            options.server,
+            self.folder,
+            "--port",
+            "0",
+            "--admin",
+            "127.0.0.1:0",
+            "--threads",
+            str(options.threads),
+            "--tokens",
+            self.tokens,
+            "--cache-bytes",
+            "3000000",
+            "--access-log",
+            self.scratch / "access",
+            "--max-connections-per-address",
+            "0",
+            "--max-requests-per-second",
+            "0",
+        ]
         if self.tls:
             self.takeCertificate(options.made, "a", "a")
             words += ["--tls-certificate", self.scratch / "crt", "--tls-key", self.scratch / "key"]
         self.made = options.made
         self.errors = open(self.scratch / "stderr", "wb")
-        self.server = subprocess.Popen([str(word) for word in words], stdout=subprocess.PIPE, stderr=self.errors)
+        self.server = subprocess.Popen(
+            [str(word) for word in words], stdout=subprocess.PIPE, stderr=self.errors
+        )
         ports = [re.search(rb":(\d+)", self.server.stdout.readline()) for _ in range(2)]
         self.port, self.adminPort = (int(found[1]) for found in ports)
-        self.lock, self.counts, self.failures, self.bodies, self.figures, self.ending = threading.Lock(), collections.Counter(), [], {}, [], False
+        self.lock, self.counts, self.failures, self.bodies, self.figures, self.ending = (
+            threading.Lock(),
+            collections.Counter(),
+            [],
+            {},
+            [],
+            False,
+        )
 
     def takeCertificate(self, made, certificate, key):
         for name, of in (("crt", certificate), ("key", key)):
@@ -54,12 +81,18 @@ class Life:
 
     def ask(self, method, path, body=None, token=READER, keep=None, **headers):
         """Status, headers, body; `keep`, a list, holds the connection for the next one."""
-        link = keep[0] if keep else http.client.HTTPConnection("127.0.0.1", self.port, timeout=PATIENCE)
+        link = (
+            keep[0]
+            if keep
+            else http.client.HTTPConnection("127.0.0.1", self.port, timeout=PATIENCE)
+        )
         if not keep:
             link.sock = self.connect()
         if token:
             headers["Authorization"] = "Bearer " + token
-        link.request(method, path, body, {name.replace("_", "-"): value for name, value in headers.items()})
+        link.request(
+            method, path, body, {name.replace("_", "-"): value for name, value in headers.items()}
+        )
         answer = link.getresponse()
         out = answer.status, answer.headers, answer.read()
         if keep is None:
@@ -75,7 +108,13 @@ class Life:
 
     def mesh(self, rng, keep=None):
         """The description of one of the meshes; None where it is away or may not be read now."""
-        status, _, body = self.ask("GET", "/v1/meshes/" + rng.choice(["open", "lab", "up"]) + str(rng.randrange(len(self.sources))), keep=keep)
+        status, _, body = self.ask(
+            "GET",
+            "/v1/meshes/"
+            + rng.choice(["open", "lab", "up"])
+            + str(rng.randrange(len(self.sources))),
+            keep=keep,
+        )
         assert status in (200, 401, 404), status
         return json.loads(body) if status == 200 else None
 
@@ -92,7 +131,11 @@ class Life:
                     self.failures.append(traceback.format_exc())
 
     def live(self, kinds):
-        threads = [threading.Thread(target=self.work, args=(does, f"{does.__name__} {i}")) for does, many in kinds for i in range(many)]
+        threads = [
+            threading.Thread(target=self.work, args=(does, f"{does.__name__} {i}"))
+            for does, many in kinds
+            for i in range(many)
+        ]
         for thread in threads:
             thread.start()
         try:
@@ -112,8 +155,15 @@ class Life:
         told = (self.scratch / "stderr").read_text(errors="replace")
         if code != 0:
             self.failures.append(f"exit code {code}")
-        self.failures += re.findall(r"^.*(?:Sanitizer|runtime error|ended by an exception).*$", told, re.M)
-        print(f"life {self.number}, {'TLS' if self.tls else 'plain'}: {dict(sorted(self.counts.items()))}; the server counts {', '.join(self.figures)}", *self.failures[:20], sep="\n  ", flush=True)
+        self.failures += re.findall(
+            r"^.*(?:Sanitizer|runtime error|ended by an exception).*$", told, re.M
+        )
+        print(
+            f"life {self.number}, {'TLS' if self.tls else 'plain'}: {dict(sorted(self.counts.items()))}; the server counts {', '.join(self.figures)}",
+            *self.failures[:20],
+            sep="\n  ",
+            flush=True,
+        )
         return not self.failures
 
 
@@ -123,8 +173,12 @@ class Stream:
     def __init__(self, life, path):
         self.life, self.buffer, self.digests, self.received = life, b"", {}, 0
         self.socket = life.connect()
-        self.socket.sendall((f"GET {path} HTTP/1.1\r\nHost: a\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Key: {base64.b64encode(os.urandom(16)).decode()}\r\n"
-                             "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Protocol: qtet.v1\r\n\r\n").encode())
+        self.socket.sendall(
+            (
+                f"GET {path} HTTP/1.1\r\nHost: a\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Key: {base64.b64encode(os.urandom(16)).decode()}\r\n"
+                "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Protocol: qtet.v1\r\n\r\n"
+            ).encode()
+        )
         while b"\r\n\r\n" not in self.buffer:
             self.fill()
         head, self.buffer = self.buffer.split(b"\r\n\r\n", 1)
@@ -138,8 +192,14 @@ class Stream:
 
     def say(self, **message):
         text, mask = json.dumps(message).encode(), os.urandom(4)
-        size = bytes([0x80 | len(text)]) if len(text) < 126 else bytes([0xFE]) + struct.pack(">H", len(text))
-        self.socket.sendall(b"\x81" + size + mask + bytes(c ^ mask[i % 4] for i, c in enumerate(text)))
+        size = (
+            bytes([0x80 | len(text)])
+            if len(text) < 126
+            else bytes([0xFE]) + struct.pack(">H", len(text))
+        )
+        self.socket.sendall(
+            b"\x81" + size + mask + bytes(c ^ mask[i % 4] for i, c in enumerate(text))
+        )
 
     def listen(self, seconds):
         """Takes what comes for so long; payload bytes."""
@@ -166,7 +226,7 @@ class Stream:
             size = int.from_bytes(self.buffer[2:at], "big")
         if len(self.buffer) < at + size:
             return False
-        data, self.buffer = self.buffer[at:at + size], self.buffer[at + size:]
+        data, self.buffer = self.buffer[at : at + size], self.buffer[at + size :]
         if opcode == 8:
             raise Broken(f"closed, {data!r}")
         if opcode == 1:
@@ -175,7 +235,9 @@ class Stream:
             if message["type"] == "opened":
                 self.digests[message["stream"]] = message["digest"]
         elif opcode == 2:
-            assert data[16:] in self.life.logs[self.digests[struct.unpack("<I", data[:4])[0]]], "a frame that the log does not have"
+            assert (
+                data[16:] in self.life.logs[self.digests[struct.unpack("<I", data[:4])[0]]]
+            ), "a frame that the log does not have"
             self.received += len(data) - 16
         return True
 
@@ -183,11 +245,27 @@ class Stream:
 def someView(rng):
     point = [rng.uniform(-1, 2) for _ in range(3)]
     plane = [rng.uniform(-1, 1) for _ in range(3)] + [rng.uniform(-1, 1)]
-    return rng.choice([None, {"point": point}, {"planes": [plane]}, {"frustum": [plane, [-x for x in plane]], "point": point}, {"box": point + [x + rng.random() for x in point]}])
+    return rng.choice(
+        [
+            None,
+            {"point": point},
+            {"planes": [plane]},
+            {"frustum": [plane, [-x for x in plane]], "point": point},
+            {"box": point + [x + rng.random() for x in point]},
+        ]
+    )
 
 
 def someTarget(rng):
-    return rng.choice([None, {"level": rng.randrange(60)}, {"bytes": rng.randrange(500_000)}, {"tetrahedra": rng.randrange(40_000)}, {"boundaryError": rng.random() / 20}])
+    return rng.choice(
+        [
+            None,
+            {"level": rng.randrange(60)},
+            {"bytes": rng.randrange(500_000)},
+            {"tetrahedra": rng.randrange(40_000)},
+            {"boundaryError": rng.random() / 20},
+        ]
+    )
 
 
 def streams(life, rng):
@@ -203,7 +281,14 @@ def streams(life, rng):
     if mesh is None or client.status != 101:
         return
     fields = [field["key"] for field in mesh["fields"] if rng.random() < 0.5]
-    opens = lambda: client.say(type="open", mesh=mesh["id"], fields=fields, target=someTarget(rng), view=someView(rng), credit=rng.randrange(1, 400_000))
+    opens = lambda: client.say(
+        type="open",
+        mesh=mesh["id"],
+        fields=fields,
+        target=someTarget(rng),
+        view=someView(rng),
+        credit=rng.randrange(1, 400_000),
+    )
     opens()
     for _ in range(rng.randrange(60)):
         came = client.listen(rng.choice([0.001, 0.01, 0.05]))
@@ -215,7 +300,9 @@ def streams(life, rng):
             client.say(type="target", target=someTarget(rng))
         elif what < 9:
             client.say(type="pause")
-            client.say(type="resume", **({"have": {"chunks": rng.randrange(3)}} if what == 7 else {}))
+            client.say(
+                type="resume", **({"have": {"chunks": rng.randrange(3)}} if what == 7 else {})
+            )
         elif what == 9:
             client.say(type="cancel")
             opens()
@@ -232,8 +319,16 @@ def ranges(life, rng):
         last = min(first + rng.randrange(1, 100_000), len(log)) - 1
         root = "/v1/logs/" + mesh["digest"]
         status, _, body = life.ask("GET", root + "/log", keep=keep, Range=f"bytes={first}-{last}")
-        assert status == 404 or (status == 206 and body == log[first:last + 1]), status
-        status, headers, body = life.ask("GET", root + rng.choice(["/log", "/base", "/manifest", f"/chunks/{rng.randrange(mesh['chunks'])}"]), keep=keep, Accept_Encoding="zstd, gzip")
+        assert status == 404 or (status == 206 and body == log[first : last + 1]), status
+        status, headers, body = life.ask(
+            "GET",
+            root
+            + rng.choice(
+                ["/log", "/base", "/manifest", f"/chunks/{rng.randrange(mesh['chunks'])}"]
+            ),
+            keep=keep,
+            Accept_Encoding="zstd, gzip",
+        )
         assert status == 404 or headers["Content-Type"] == "application/json" or body in log, status
     keep[0].close()
 
@@ -243,18 +338,24 @@ def levels(life, rng):
     if mesh is None:
         return
     form = rng.choice(["vtu", "vtk", "msh", "usda", "npz", "glb", "drc", "stl", "ply", "obj"])
-    path = f"/v1/logs/{mesh['digest']}/levels/" + rng.choice([f"{rng.randrange(len(mesh['levels']))}.{form}", f"fit.{form}?tets={rng.randrange(20000)}"])
+    path = f"/v1/logs/{mesh['digest']}/levels/" + rng.choice(
+        [f"{rng.randrange(len(mesh['levels']))}.{form}", f"fit.{form}?tets={rng.randrange(20000)}"]
+    )
     if rng.random() < 0.1:
         path = f"/v1/logs/{mesh['digest']}/preview.png"
     if rng.random() < 0.6:  # leaves before it is made, or in the midst of it
         socket = life.connect()
-        socket.sendall(f"GET {path} HTTP/1.1\r\nHost: a\r\nAuthorization: Bearer {READER}\r\n\r\n".encode())
+        socket.sendall(
+            f"GET {path} HTTP/1.1\r\nHost: a\r\nAuthorization: Bearer {READER}\r\n\r\n".encode()
+        )
         time.sleep(rng.random() * 0.1)
         life.count("levels left")
         return socket.close()
     status, headers, body = life.ask("GET", path, Accept_Encoding=rng.choice(["", "zstd", "gzip"]))
     assert status in (200, 404, 503), status
-    assert status != 200 or life.bodies.setdefault(headers["ETag"], body) == body, "other bytes under the same tag"
+    assert (
+        status != 200 or life.bodies.setdefault(headers["ETag"], body) == body
+    ), "other bytes under the same tag"
 
 
 def uploads(life, rng):
@@ -271,12 +372,21 @@ def uploads(life, rng):
         assert status in (401, 403), status
     elif what == 3:  # breaks off, or leaves while the log is checked
         socket = life.connect()
-        socket.sendall(f"PUT {path}?digest={digest} HTTP/1.1\r\nHost: a\r\nAuthorization: Bearer {WRITER}\r\nContent-Length: {len(log)}\r\n\r\n".encode() + log[:rng.choice([len(log), rng.randrange(len(log))])])
+        socket.sendall(
+            f"PUT {path}?digest={digest} HTTP/1.1\r\nHost: a\r\nAuthorization: Bearer {WRITER}\r\nContent-Length: {len(log)}\r\n\r\n".encode()
+            + log[: rng.choice([len(log), rng.randrange(len(log))])]
+        )
         socket.close()
     else:
         status, _, body = life.ask("GET", f"{path}/upload?digest={digest}", token=WRITER)
         have = json.loads(body)["bytes"] if status == 200 else 0
-        part = {"Content_Range": f"bytes {f'{have}-{len(log) - 1}' if have < len(log) else '*'}/{len(log)}"} if have > 0 else {}
+        part = (
+            {
+                "Content_Range": f"bytes {f'{have}-{len(log) - 1}' if have < len(log) else '*'}/{len(log)}"
+            }
+            if have > 0
+            else {}
+        )
         status, _, _ = life.ask("PUT", f"{path}?digest={digest}", log[have:], token=WRITER, **part)
         assert status in (200, 201, 409, 503), status
 
@@ -296,7 +406,9 @@ def replaces(life, rng):
 
 
 def reloads(life, rng):
-    life.tokens.with_suffix(".new").write_text(rng.choice([ALL_TOKENS, ALL_TOKENS, ALL_TOKENS, FEWER_TOKENS, "nonsense\n"]))
+    life.tokens.with_suffix(".new").write_text(
+        rng.choice([ALL_TOKENS, ALL_TOKENS, ALL_TOKENS, FEWER_TOKENS, "nonsense\n"])
+    )
     os.replace(life.tokens.with_suffix(".new"), life.tokens)
     if life.tls:
         life.takeCertificate(life.made, *rng.choice(["aa", "bb", "ab"]))
@@ -313,7 +425,10 @@ def watches(life, rng):
         answer = link.getresponse()
         text = answer.read().decode()
         assert answer.status == 200 or life.ending, answer.status
-        life.figures = re.findall(r"^qtet_(levels_\w+_total \d+|uploads_\w+_total \d+)", text, re.M) or life.figures
+        life.figures = (
+            re.findall(r"^qtet_(levels_\w+_total \d+|uploads_\w+_total \d+)", text, re.M)
+            or life.figures
+        )
     link.close()
     status, _, body = life.ask("GET", "/v1/meshes?limit=3", token=rng.choice([None, READER]))
     assert status in (200, 401) and json.loads(body), status
@@ -323,7 +438,17 @@ def watches(life, rng):
 def disturbs(life, rng):
     """No HTTP, half of a request, half of a handshake, many requests at once, nothing at all."""
     plain = socket.create_connection(("127.0.0.1", life.port), PATIENCE)
-    plain.sendall(rng.choice([b"", b"\x16\x03\x01\x02\x00\x01", b"GET / HTTP/1.1\r\nHo", b"\0" * 100, b"GET /v1/meshes HTTP/1.1\r\nHost: a\r\n\r\n" * 50]))
+    plain.sendall(
+        rng.choice(
+            [
+                b"",
+                b"\x16\x03\x01\x02\x00\x01",
+                b"GET / HTTP/1.1\r\nHo",
+                b"\0" * 100,
+                b"GET /v1/meshes HTTP/1.1\r\nHost: a\r\n\r\n" * 50,
+            ]
+        )
+    )
     time.sleep(rng.random() * 0.1)
     if rng.random() < 0.5:
         with contextlib.suppress(OSError):  # the server may have gone first
@@ -334,23 +459,62 @@ def disturbs(life, rng):
 def prepare(options):
     options.made = options.scratch / "made"
     options.made.mkdir(parents=True, exist_ok=True)
-    run = lambda *words: subprocess.run([str(word) for word in words], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    run = lambda *words: subprocess.run(
+        [str(word) for word in words],
+        check=True,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
     for i, (cells, layout) in enumerate(((2000, "stream"), (10000, "stream"), (20000, "regions"))):
         run(options.tool, "sample", "fin", "--cells", cells, "-o", options.made / "fin.vtu")
-        run(options.tool, "simplify", options.made / "fin.vtu", "-o", options.made / f"fin{i}.qtet", "--layout", layout)
+        run(
+            options.tool,
+            "simplify",
+            options.made / "fin.vtu",
+            "-o",
+            options.made / f"fin{i}.qtet",
+            "--layout",
+            layout,
+        )
     for name in "ab":
-        run("openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes", "-subj", "/CN=localhost", "-keyout", options.made / f"{name}.key", "-out", options.made / f"{name}.crt")
+        run(
+            "openssl",
+            "req",
+            "-x509",
+            "-newkey",
+            "ec",
+            "-pkeyopt",
+            "ec_paramgen_curve:prime256v1",
+            "-nodes",
+            "-subj",
+            "/CN=localhost",
+            "-keyout",
+            options.made / f"{name}.key",
+            "-out",
+            options.made / f"{name}.crt",
+        )
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     for name in ("server", "tool", "scratch"):
         parser.add_argument(name, type=lambda text: pathlib.Path(text).resolve())
     for name, default in (("seconds", 30), ("lives", 4), ("threads", 2), ("seed", 1)):
         parser.add_argument("--" + name, type=int, default=default)
     options = parser.parse_args()
     prepare(options)
-    kinds = [(streams, 6), (ranges, 2), (levels, 4), (uploads, 2), (replaces, 1), (reloads, 1), (watches, 1), (disturbs, 1)]
+    kinds = [
+        (streams, 6),
+        (ranges, 2),
+        (levels, 4),
+        (uploads, 2),
+        (replaces, 1),
+        (reloads, 1),
+        (watches, 1),
+        (disturbs, 1),
+    ]
     sound = [Life(options, number).live(kinds) for number in range(options.lives)]
     return 0 if all(sound) else 1
 

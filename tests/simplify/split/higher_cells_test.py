@@ -10,7 +10,11 @@ try:
     import numpy as np
     from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
     from vtkmodules.vtkCommonCore import vtkPoints
-    from vtkmodules.vtkCommonDataModel import vtkBezierHexahedron, vtkHigherOrderHexahedron, vtkUnstructuredGrid
+    from vtkmodules.vtkCommonDataModel import (
+        vtkBezierHexahedron,
+        vtkHigherOrderHexahedron,
+        vtkUnstructuredGrid,
+    )
     from vtkmodules.vtkFiltersSources import vtkCellTypeSource
     from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader, vtkXMLUnstructuredGridWriter
 except ImportError as error:
@@ -30,24 +34,36 @@ def write(grid, name):
 
 def converted(path, *words):
     """Points and tetrahedra of what qtet makes of the file."""
-    subprocess.run([program, "convert", path, "-o", out / "split.vtu", *words], check=True, capture_output=True)
+    subprocess.run(
+        [program, "convert", path, "-o", out / "split.vtu", *words], check=True, capture_output=True
+    )
     reader = vtkXMLUnstructuredGridReader()
     reader.SetFileName(str(out / "split.vtu"))
     reader.Update()
     grid = reader.GetOutput()
-    return vtk_to_numpy(grid.GetPoints().GetData()).astype(float), vtk_to_numpy(grid.GetCells().GetConnectivityArray()).reshape(-1, 4)
+    return vtk_to_numpy(grid.GetPoints().GetData()).astype(float), vtk_to_numpy(
+        grid.GetCells().GetConnectivityArray()
+    ).reshape(-1, 4)
 
 
 def fills(points, tetrahedra, volume, what):
     a, b, c, d = (points[tetrahedra[:, k]] for k in range(4))
     volumes = np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a) / 6
     assert volumes.min() > 0, (what, "inverted tetrahedra", volumes.min())
-    assert volume is None or abs(volumes.sum() - volume) < 1e-5 * volume, (what, volumes.sum(), volume)
+    assert volume is None or abs(volumes.sum() - volume) < 1e-5 * volume, (
+        what,
+        volumes.sum(),
+        volume,
+    )
     faces = np.sort(np.concatenate([np.delete(tetrahedra, k, axis=1) for k in range(4)]), axis=1)
     faces, counts = np.unique(faces, axis=0, return_counts=True)
     assert counts.max() == 2, (what, "faces of more than two")
     hull = faces[counts == 1]
-    _, sides = np.unique(np.sort(np.concatenate([np.delete(hull, k, axis=1) for k in range(3)]), axis=1), axis=0, return_counts=True)
+    _, sides = np.unique(
+        np.sort(np.concatenate([np.delete(hull, k, axis=1) for k in range(3)]), axis=1),
+        axis=0,
+        return_counts=True,
+    )
     assert (sides == 2).all(), (what, "the hull is not closed: neighbours cut a face differently")
     return len(hull)
 
@@ -61,9 +77,18 @@ def sources():
             source.SetCellOrder(degree)
             source.SetBlocksDimensions(2, 1, 1)
             source.Update()
-            hull = fills(*converted(write(source.GetOutput(), "higher.vtu"), "--weld", "1e-6"), 2, (kind, degree))
-            flat = 5 * 2 * 2 * 2 if kind in (71, 78) else 5 * 2 * 2  # triangles on the hull of degree 1: VTK cuts a block into 12 tetrahedra
-            assert hull % (degree * degree) == 0 and hull // (degree * degree) in (flat, 5 * 2 * 2), (kind, degree, hull)
+            hull = fills(
+                *converted(write(source.GetOutput(), "higher.vtu"), "--weld", "1e-6"),
+                2,
+                (kind, degree),
+            )
+            flat = (
+                5 * 2 * 2 * 2 if kind in (71, 78) else 5 * 2 * 2
+            )  # triangles on the hull of degree 1: VTK cuts a block into 12 tetrahedra
+            assert hull % (degree * degree) == 0 and hull // (degree * degree) in (
+                flat,
+                5 * 2 * 2,
+            ), (kind, degree, hull)
 
 
 def rational():
@@ -82,8 +107,15 @@ def rational():
         places.InsertNextPoint(points[at])
     grid.SetPoints(places)
     grid.InsertNextCell(vtkBezierHexahedron().GetCellType(), len(points), range(len(points)))
-    for data, set_it, values, name in ((grid.GetPointData(), "SetRationalWeights", [weights[at] for at in sorted(weights)], "RationalWeights"),
-                                       (grid.GetCellData(), "SetHigherOrderDegrees", [degrees], "HigherOrderDegrees")):
+    for data, set_it, values, name in (
+        (
+            grid.GetPointData(),
+            "SetRationalWeights",
+            [weights[at] for at in sorted(weights)],
+            "RationalWeights",
+        ),
+        (grid.GetCellData(), "SetHigherOrderDegrees", [degrees], "HigherOrderDegrees"),
+    ):
         array = numpy_to_vtk(np.array(values, float), deep=True)
         array.SetName(name)
         getattr(data, set_it)(array)
@@ -96,14 +128,28 @@ def rational():
 def gmsh():
     if not shutil.which("gmsh"):
         return print("no gmsh: its elements of higher degree were not tried")
-    (out / "ball.geo").write_text('SetFactory("OpenCASCADE"); Sphere(1) = {0, 0, 0, 1}; Mesh.MeshSizeMax = 0.7;')
-    (out / "bar.geo").write_text('SetFactory("OpenCASCADE"); Rectangle(1) = {0, 0, 0, 1, 1}; Mesh.MeshSizeMax = 0.6;\n'
-                                 "Extrude {0, 0, 2} { Surface{1}; Layers{2}; Recombine; }")
-    (out / "bricks.geo").write_text('SetFactory("OpenCASCADE"); Box(1) = {0, 0, 0, 1, 1, 2}; Transfinite Curve {:} = 3; Transfinite Surface {:}; Recombine Surface {:}; Transfinite Volume {:};')
-    for name, degrees, volume in (("ball", (2, 3, 4, 5, 6), None), ("bar", (2, 3, 4, 5), 2), ("bricks", (2, 3, 4, 5), 2)):
+    (out / "ball.geo").write_text(
+        'SetFactory("OpenCASCADE"); Sphere(1) = {0, 0, 0, 1}; Mesh.MeshSizeMax = 0.7;'
+    )
+    (out / "bar.geo").write_text(
+        'SetFactory("OpenCASCADE"); Rectangle(1) = {0, 0, 0, 1, 1}; Mesh.MeshSizeMax = 0.6;\n'
+        "Extrude {0, 0, 2} { Surface{1}; Layers{2}; Recombine; }"
+    )
+    (out / "bricks.geo").write_text(
+        'SetFactory("OpenCASCADE"); Box(1) = {0, 0, 0, 1, 1, 2}; Transfinite Curve {:} = 3; Transfinite Surface {:}; Recombine Surface {:}; Transfinite Volume {:};'
+    )
+    for name, degrees, volume in (
+        ("ball", (2, 3, 4, 5, 6), None),
+        ("bar", (2, 3, 4, 5), 2),
+        ("bricks", (2, 3, 4, 5), 2),
+    ):
         for degree in degrees:
             made = out / f"{name}{degree}.msh"
-            subprocess.run(["gmsh", out / f"{name}.geo", "-3", "-order", str(degree), "-o", made], check=True, capture_output=True)
+            subprocess.run(
+                ["gmsh", out / f"{name}.geo", "-3", "-order", str(degree), "-o", made],
+                check=True,
+                capture_output=True,
+            )
             fills(*converted(made, "--fields", "none"), volume, (name, degree))
     mixed()
 
@@ -113,7 +159,9 @@ def mixed():
     linear = pathlib.Path(__file__).parent.parent / "read" / "meshes" / "gmsh-mixed1.msh"
     for degree in (2, 3, 5, 9):
         made, script = out / f"mixed{degree}.msh", out / "mixed.geo"
-        script.write_text(f'Merge "{linear}";\nSetOrder {degree};\nMesh.SaveAll = 1;\nSave "{made}";\n')
+        script.write_text(
+            f'Merge "{linear}";\nSetOrder {degree};\nMesh.SaveAll = 1;\nSave "{made}";\n'
+        )
         subprocess.run(["gmsh", script, "-"], check=True, capture_output=True)
         points, tetrahedra = converted(made, "--fields", "none")
         fills(points, tetrahedra, 1 + 0.6 / 3 + 4 * 0.55 / 6 + 0.5, ("mixed", degree))
