@@ -22,7 +22,7 @@ SHELL := /bin/bash
 help:
 	@cat <<'END'
 	make demo                  build qtet and show its sample mesh at http://127.0.0.1:8080/
-	make demo MESH=file.vtu    the same with a mesh of yours (any volume mesh: README.md); PORT=8081 picks another port
+	make demo MESH=file.vtu    the same with a mesh of yours (any: simplify/INPUT.md); PORT=8081 picks another port
 	make test                  build everything and run every test
 	make format                lay out C++ (clang-format-19), TypeScript, JavaScript and CSS (prettier)
 	make format-check          fail where that would change a file, or a line is over 100 columns
