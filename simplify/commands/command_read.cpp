@@ -1,9 +1,7 @@
 #include "simplify/commands/command_read.h"
 
 #include <charconv>
-#include <iomanip>
 #include <limits>
-#include <sstream>
 
 namespace qtet {
 namespace {
@@ -30,6 +28,19 @@ Threshold thresholdOf(const std::string& text) {
           numberOf(text.substr(colon + 1), kAny, text)};
 }
 
+void setWeld(const std::string& text, ReadOptions& options) {
+  if (text == "none") {
+    options.joinPieces = false;
+    return;
+  }
+  double distance = 0;
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), distance);
+  if (read.ec != std::errc{} || read.ptr != text.data() + text.size() || !(distance >= 0) ||
+      distance > std::numeric_limits<double>::max())
+    throw UsageError("--weld '" + text + "' is not understood; give a distance >= 0, or none");
+  options.weld = distance;
+}
+
 }  // namespace
 
 void addReadOptions(boost::program_options::options_description& options) {
@@ -37,9 +48,9 @@ void addReadOptions(boost::program_options::options_description& options) {
   options.add_options()("curved", po::value<std::string>()->default_value("split"),
                         "quadratic cells and those of higher degree: split at all of their nodes, "
                         "or linear: their corners alone")(
-      "weld", po::value<double>(),
-      "join points that lie within this distance (0: at the same place), as where an O-grid "
-      "closes")(
+      "weld", po::value<std::string>(),
+      "a distance: join points within it (0: at the same place), as where an O-grid closes; none: "
+      "keep pieces of a parallel result apart, which are joined at the points that they share")(
       "time", po::value<std::string>()->default_value("last"),
       "of a series: a step's time, first, last, or all: every step's fields, as NAME@TIME")(
       "threshold", po::value<std::string>(),
@@ -56,8 +67,7 @@ ReadOptions readOptionsOf(const ParsedWords& parsed) {
   if (curved != "split" && curved != "linear")
     throw UsageError("--curved '" + curved + "' is not known; give split or linear");
   options.curved = curved == "split" ? CurvedCells::kSplit : CurvedCells::kLinear;
-  if (parsed.has("weld"))
-    options.weld = parsed.number("weld", 0, std::numeric_limits<double>::max());
+  if (parsed.has("weld")) setWeld(parsed.get<std::string>("weld"), options);
   if (parsed.has("format")) {
     options.format = parsed.get<std::string>("format");
     if (options.format.starts_with('.')) options.format.erase(0, 1);
@@ -73,15 +83,9 @@ ReadOptions readOptionsOf(const ParsedWords& parsed) {
 
 Words readWordsOf(const ParsedWords& parsed) {
   Words out;
-  for (const char* name : {"curved", "time", "threshold", "plot3d", "format"}) {
+  for (const char* name : {"curved", "time", "threshold", "plot3d", "format", "weld"}) {
     if (parsed.has(name))
       out.insert(out.end(), {"--" + std::string(name), parsed.get<std::string>(name)});
-  }
-  if (parsed.has("weld")) {
-    std::ostringstream exact;
-    exact << std::setprecision(std::numeric_limits<double>::max_digits10)
-          << parsed.get<double>("weld");
-    out.insert(out.end(), {"--weld", exact.str()});
   }
   return out;
 }
@@ -96,6 +100,8 @@ OrderedJson readReport(const ReadReport& report) {
           {"centrePoints", report.split.centrePoints},
           {"insideOutCells", report.split.insideOut},
           {"collapsedCells", report.split.collapsed},
+          {"pieces", report.pieces},
+          {"joinedPoints", report.joinedPoints},
           {"weldedPoints", report.weldedPoints},
           {"mendedFaces", report.mendedFaces}};
 }

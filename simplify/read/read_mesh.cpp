@@ -147,7 +147,7 @@ Result<TetMesh> tetrahedraOf(CellMesh&& cells, const std::filesystem::path& path
   Result<TetMesh> mesh = splitCells(std::move(cells), options.curved, report.split);
   if (!mesh) return fail(mesh.error().code, path.string() + ": " + mesh.error().message);
   noteSplit(report.split, report.notes);
-  if (options.weld) mend(*mesh, report);
+  if (options.weld || report.joinedPoints > 0) mend(*mesh, report);
   if (Status selected = selectFields(options.fields, path, otherFields, mesh->fields); !selected)
     return std::unexpected(selected.error());
   return mesh;

@@ -18,6 +18,7 @@
 #include <vtkStructuredGrid.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
+#include <vtkVariant.h>
 
 #include <algorithm>
 #include <cmath>
@@ -107,6 +108,23 @@ class Hidden {
   vtkUnsignedCharArray* ghosts_;
   vtkStructuredGrid* grid_;
 };
+
+/// The points' ids that hold for all pieces; empty without an array of such integers.
+std::vector<std::uint64_t> globalIdsOf(vtkDataSet& data) {
+  vtkPointData& fields = *data.GetPointData();
+  vtkDataArray* ids = fields.GetGlobalIds();
+  for (const char* name : {"GlobalPointIds", "GlobalNodeIds", "GlobalNodeId"})
+    if (!ids) ids = fields.GetArray(name);
+  const vtkIdType points = data.GetNumberOfPoints();
+  if (!ids || ids->GetNumberOfComponents() != 1 || ids->GetNumberOfTuples() != points ||
+      ids->GetDataType() == VTK_FLOAT || ids->GetDataType() == VTK_DOUBLE)
+    return {};
+  std::vector<std::uint64_t> out;
+  out.reserve(static_cast<std::size_t>(points));
+  for (vtkIdType i = 0; i < points; ++i)
+    out.push_back(static_cast<std::uint64_t>(ids->GetVariantValue(i).ToTypeInt64()));
+  return out;
+}
 
 /// Takes over an unstructured grid's cells; `rows` gets the place of each among all of the grid's.
 class GridCells {
@@ -314,6 +332,7 @@ Result<CellMesh> cellsOf(vtkDataSet& data, const FieldNames& fields,
                          const std::filesystem::path& path, ReadReport& report) {
   CellMesh out;
   out.points = pointsOf(data);
+  out.pointIds = globalIdsOf(data);
   auto* set = vtkPointSet::SafeDownCast(&data);
   out.pointType = set && set->GetPoints() && set->GetPoints()->GetDataType() == VTK_FLOAT
                       ? "float32"
