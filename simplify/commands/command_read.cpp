@@ -6,6 +6,8 @@
 namespace qtet {
 namespace {
 
+constexpr int kMaxReadSeconds = 86'400;  // a day: longer is for ever
+
 double numberOf(const std::string& text, double ifEmpty, const std::string& whole) {
   if (text.empty()) return ifEmpty;
   double value = 0;
@@ -56,6 +58,8 @@ void addReadOptions(boost::program_options::options_description& options) {
       "threshold", po::value<std::string>(),
       "only cells where a field lies within bounds: FIELD=LOW:HIGH, either side may be empty")(
       "plot3d", po::value<std::string>(), "the input is a PLOT3D grid; its solution file, or none")(
+      "read-seconds", po::value<int>()->default_value(60),
+      "how long a reader of VTK's may read nothing of the file before it is given up")(
       "format", po::value<std::string>(),
       "the kind of file, where the name does not say it or is - (the standard input): vtu, msh, "
       "...");
@@ -75,6 +79,7 @@ ReadOptions readOptionsOf(const ParsedWords& parsed) {
   options.time = parsed.get<std::string>("time");
   if (parsed.has("threshold"))
     options.threshold = thresholdOf(parsed.get<std::string>("threshold"));
+  options.patience = std::chrono::seconds(parsed.integer("read-seconds", 1, kMaxReadSeconds));
   options.plot3d = parsed.has("plot3d");
   if (options.plot3d && parsed.get<std::string>("plot3d") != "none")
     options.plot3dSolution = parsed.get<std::string>("plot3d");
@@ -87,6 +92,7 @@ Words readWordsOf(const ParsedWords& parsed) {
     if (parsed.has(name))
       out.insert(out.end(), {"--" + std::string(name), parsed.get<std::string>(name)});
   }
+  out.insert(out.end(), {"--read-seconds", std::to_string(parsed.get<int>("read-seconds"))});
   return out;
 }
 

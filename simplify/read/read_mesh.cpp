@@ -126,9 +126,10 @@ Result<CellMesh> readCells(const std::filesystem::path& path, const ReadOptions&
                            " points, lines and faces among the cells were ignored");
   if (Status checked = checkCellMesh(*cells, path); !checked)
     return std::unexpected(checked.error());
-  if (Status checked = checkIntegers(withThresholdField(options).fields, path, cells->fields);
-      !checked)
-    return std::unexpected(checked.error());
+  if (Status done = leaveOutWideIntegers(withThresholdField(options).fields, path, cells->fields,
+                                         report.notes);
+      !done)
+    return std::unexpected(done.error());
   if (options.threshold) {
     if (Status done = applyThreshold(*options.threshold, path, *cells); !done)
       return std::unexpected(done.error());

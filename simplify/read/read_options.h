@@ -1,6 +1,7 @@
 // What a mesh file is read with, and what is said of the reading.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -33,6 +34,8 @@ struct ReadOptions {
   /// The Q file beside a PLOT3D grid; empty: the file is no PLOT3D grid.
   std::string plot3dSolution;
   bool plot3d = false;
+  /// How long a foreign reader may read nothing before it is given up (trial_process.h).
+  std::chrono::seconds patience{60};
 };
 
 /// What was in the file and is not in the mesh, and what was done to it; `notes` says it in

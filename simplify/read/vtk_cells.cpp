@@ -90,22 +90,29 @@ class Dimensions {
   std::array<int, 256> of_{};
 };
 
+/// The marks of ghost cells in files of VTK before version 7: how many layers away they lie.
+constexpr const char* kGhostLevels = "vtkGhostLevels";
+
 /// Cells that are another piece's, or blanked out.
 class Hidden {
  public:
   explicit Hidden(vtkDataSet& data)
       : ghosts_(data.GetCellGhostArray()), grid_(vtkStructuredGrid::SafeDownCast(&data)) {
     if (ghosts_ && ghosts_->GetNumberOfTuples() < data.GetNumberOfCells()) ghosts_ = nullptr;
+    levels_ = data.GetCellData()->GetArray(kGhostLevels);
+    if (levels_ && levels_->GetNumberOfTuples() < data.GetNumberOfCells()) levels_ = nullptr;
   }
   [[nodiscard]] bool operator[](vtkIdType cell) const {
     constexpr unsigned kElsewhere =
         vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL;
     if (ghosts_ && (ghosts_->GetValue(cell) & kElsewhere)) return true;
+    if (levels_ && levels_->GetComponent(cell, 0) > 0) return true;
     return grid_ && !grid_->IsCellVisible(cell);
   }
 
  private:
   vtkUnsignedCharArray* ghosts_;
+  vtkDataArray* levels_;
   vtkStructuredGrid* grid_;
 };
 
@@ -277,7 +284,7 @@ class GridFields {
     for (int i = 0; i < data.GetNumberOfArrays(); ++i) {
       const std::string name = nameOf(*data.GetAbstractArray(i), association, i, report_);
       vtkDataArray* array = data.GetArray(i);
-      if (name == vtkDataSetAttributes::GhostArrayName()) continue;
+      if (name == vtkDataSetAttributes::GhostArrayName() || name == kGhostLevels) continue;
       if (!array || array->GetNumberOfComponents() < 1 ||
           array->GetNumberOfComponents() > static_cast<int>(kMaxFieldComponents)) {
         ignore(association, name, array != nullptr);

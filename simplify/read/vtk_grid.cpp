@@ -307,16 +307,35 @@ Result<std::vector<TimedCells>> runReader(const std::filesystem::path& path, Mes
   return out;
 }
 
+/// Why the trial of a reader did not come to its end; what to do about it.
+std::unexpected<Error> trialFailed(TrialEnd end, const std::filesystem::path& path,
+                                   std::chrono::seconds patience) {
+  switch (end) {
+    case TrialEnd::kStuck:
+      return bad(path, "VTK has read nothing of it for " + std::to_string(patience.count()) +
+                           " s, so that it seems to wait for what the file does not hold; if it "
+                           "is only large, give it longer with --read-seconds, else export the "
+                           "mesh again, best as .vtu");
+    case TrialEnd::kOutOfMemory:
+      return bad(path,
+                 "VTK wants more memory for it than this machine has: a count in it is wrong, or "
+                 "it is too large for this machine; export the mesh again, best as .vtu");
+    default:
+      return bad(path,
+                 "VTK crashes on it: its counts contradict each other, or it is too large for this "
+                 "machine; export the mesh again, best as .vtu");
+  }
+}
+
 /// VTK's readers with their messages caught; `work` is done in a process of its own first unless
 /// the format stands damage.
 Result<std::vector<TimedCells>> guarded(
-    const std::filesystem::path& path, bool trial, ReadReport& report,
-    const std::function<Result<std::vector<TimedCells>>()>& work) {
+    const std::filesystem::path& path, bool trial, std::chrono::seconds patience,
+    ReadReport& report, const std::function<Result<std::vector<TimedCells>>()>& work) {
   const MessageCapture capture;
-  if (trial && !survives([&] { (void)work(); })) {
-    return bad(path,
-               "VTK crashes on it: its counts contradict each other, or it is too large for this "
-               "machine; export the mesh again, best as .vtu");
+  if (trial) {
+    const TrialEnd end = tryOut([&] { (void)work(); }, patience);
+    if (end != TrialEnd::kDone) return trialFailed(end, path, patience);
   }
   std::optional<QuietStandardError> quiet;
   if (trial) quiet.emplace();
@@ -506,7 +525,7 @@ Result<std::vector<TimedCells>> readAt(const std::filesystem::path& path, MeshFo
   if (format == MeshFormat::kPvd) return readSeries(path, options, report);
   if (format == MeshFormat::kPvtu || format == MeshFormat::kVtm)
     return readParts(path, format, options, report, depth);
-  return guarded(path, !standsDamage(format), report,
+  return guarded(path, !standsDamage(format), options.patience, report,
                  [&] { return runReader(path, format, options, report); });
 }
 

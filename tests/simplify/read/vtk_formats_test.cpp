@@ -355,6 +355,25 @@ TEST(VtkFormats, exodusBlocksHaveTheirFieldsAndNumbers) {
 
 TEST(VtkFormats, enSightIsRead) { expectABar(given("ens.0.case"), 2, "T_n"); }
 
+// VTK looks for what stands behind "number of steps" until it is there.
+TEST(VtkFormats, anEnSightCaseThatVtkNeverComesToTheEndOfIsGivenUp) {
+  const std::string front =
+                        "FORMAT\ntype: ensight gold\n\nGEOMETRY\nmodel: 1 a.*.geo\n\nVARIABLE\n"
+                        "scalar per node: T a.*.T\n\nTIME\ntime set: 1\nnumber of steps: ",
+                    start = "\nfilename start number: 0\nfilename increment: 1\n";
+  for (const auto& [name, text] :
+       {std::pair{"count.case", front + "99999999999" + start + "time values: 0\n"},
+        std::pair{"line.case", front + "99999999999" + start}}) {
+    ReadOptions options;
+    options.patience = std::chrono::seconds(1);
+    const Result<ReadMesh> read = readMesh(fileWith(name, text), options);
+    ASSERT_FALSE(read) << name;
+    EXPECT_EQ(read.error().code, ErrorCode::kBadInput);
+    EXPECT_NE(read.error().message.find("--read-seconds"), std::string::npos)
+        << read.error().text();
+  }
+}
+
 TEST(VtkFormats, cgnsZonesAreReadWithTheirSolution) {  // two files that the CGNS library wrote
   const ReadMesh mixed = expectABar(given("unstructured.cgns"), 1);
   EXPECT_EQ(mixed.report.split.cells[kHexahedronCell], 4u);
