@@ -616,6 +616,30 @@ TEST(OwnReaders, labelsThatADoubleCannotHoldAreLeftOutAndRefusedWhereTheyAreAske
   }
 }
 
+TEST(OwnReaders, moreEntriesThanToldAreRefused) {
+  const auto refuses = [](const std::string& name, std::string text, const std::string& told,
+                          const std::string& less) {
+    const std::size_t at = text.find(told);
+    ASSERT_NE(at, std::string::npos) << name;
+    const Result<CellMesh> read = cellsIn(fileWith(name, text.replace(at, told.size(), less)));
+    ASSERT_FALSE(read) << name;
+    EXPECT_EQ(read.error().code, ErrorCode::kBadInput) << read.error().text();
+    EXPECT_NE(read.error().message.find("announced"), std::string::npos) << read.error().text();
+  };
+  refuses("vertices.mesh", meditText("1"), "Vertices\n4", "Vertices\n3");
+  refuses("cells.mesh", meditText("1"), "1 2 3 4 1\n", "1 2 3 4 1\n1 2 3 4 1\n");
+  const std::size_t cells = sample().cells(), points = sample().points.size();
+  refuses("elements.su2", su2(), "NELEM = " + std::to_string(cells),
+          "NELEM = " + std::to_string(cells - 1));
+  refuses("points.su2", su2(), "NPOIN=" + std::to_string(points),
+          "NPOIN=" + std::to_string(points - 1));
+  const fs::path nodes = fileWith("more.node", "4 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n");
+  std::ofstream(nodes.parent_path() / "more.ele") << "1 4 0\n0 0 1 2 3\n1 0 1 2 3\n";
+  const Result<CellMesh> read = cellsIn(nodes);
+  ASSERT_FALSE(read);
+  EXPECT_NE(read.error().message.find("announced"), std::string::npos) << read.error().text();
+}
+
 TEST(ReadMesh, aPipeIsNotWaitedFor) {
   const fs::path pipe = testing::freshFolder("pipe") / "pipe.inp";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
