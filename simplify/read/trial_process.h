@@ -1,4 +1,4 @@
-// Trying dangerous work in a process of its own first.
+// Dangerous work in a process of its own.
 #pragma once
 
 #include <chrono>
@@ -14,9 +14,8 @@ enum class TrialEnd : std::uint8_t {
   kOutOfMemory,  ///< it wanted more than the machine has
 };
 
-/// Runs `work` in a copy of this process, whose output goes nowhere, and tells how it ended. The
-/// same work done here after kDone starts from the same memory and so ends the same way. The copy
-/// may take as much memory as the machine has. It is ended once it has read nothing from any file
+/// Runs `work` in a copy of this process, whose output goes nowhere, and tells how it ended. What
+/// `work` finds it must write to a file: its memory goes with the copy. The copy may take as much memory as the machine has. It is ended once it has read nothing from any file
 /// for `patience`, and it ends with this process. REQUIRES: no other thread of this process holds a
 /// lock that `work` needs.
 [[nodiscard]] TrialEnd tryOut(const std::function<void()>& work, std::chrono::seconds patience);

@@ -1,6 +1,6 @@
 #include "simplify/read/vtk_grid.h"
 
-#include <fcntl.h>
+#include <sys/mman.h>
 #include <unistd.h>
 #include <vtkAVSucdReader.h>
 #include <vtkAlgorithm.h>
@@ -28,12 +28,13 @@
 #include <vtkXMLUtilities.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <exception>
-#include <functional>
 #include <new>
-#include <optional>
 
+#include "simplify/read/cell_transfer.h"
 #include "simplify/read/fast_xml_parser.h"
 #include "simplify/read/join_blocks.h"
 #include "simplify/read/mesh_format.h"
@@ -98,27 +99,6 @@ class MessageCapture {
  private:
   vtkSmartPointer<vtkOutputWindow> previous_;
   vtkNew<MessageWindow> window_;
-};
-
-/// Libraries below VTK (Exodus, HDF5) print their errors themselves; what they mean comes as VTK's
-/// message too.
-class QuietStandardError {
- public:
-  QuietStandardError() : kept_(::dup(STDERR_FILENO)) {
-    const int nowhere = ::open("/dev/null", O_WRONLY);
-    if (kept_ >= 0 && nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);
-    if (nowhere >= 0) ::close(nowhere);
-  }
-  QuietStandardError(const QuietStandardError&) = delete;
-  QuietStandardError& operator=(const QuietStandardError&) = delete;
-  ~QuietStandardError() {
-    if (kept_ < 0) return;
-    ::dup2(kept_, STDERR_FILENO);
-    ::close(kept_);
-  }
-
- private:
-  int kept_;
 };
 
 /// Files that name files that name files: a series of .vtm of .pvtu has three.
@@ -327,21 +307,13 @@ std::unexpected<Error> trialFailed(TrialEnd end, const std::filesystem::path& pa
   }
 }
 
-/// VTK's readers with their messages caught; `work` is done in a process of its own first unless
-/// the format stands damage.
-Result<std::vector<TimedCells>> guarded(
-    const std::filesystem::path& path, bool trial, std::chrono::seconds patience,
-    ReadReport& report, const std::function<Result<std::vector<TimedCells>>()>& work) {
+/// VTK's readers with their messages and exceptions as values.
+Result<std::vector<TimedCells>> readHere(const std::filesystem::path& path, MeshFormat format,
+                                         const ReadOptions& options, ReadReport& report) {
   const MessageCapture capture;
-  if (trial) {
-    const TrialEnd end = tryOut([&] { (void)work(); }, patience);
-    if (end != TrialEnd::kDone) return trialFailed(end, path, patience);
-  }
-  std::optional<QuietStandardError> quiet;
-  if (trial) quiet.emplace();
   Result<std::vector<TimedCells>> steps = std::vector<TimedCells>{};
   try {
-    steps = work();
+    steps = runReader(path, format, options, report);
   } catch (const std::bad_alloc&) {
     return bad(path,
                "an array's stated length does not fit in memory; the file is damaged, or the "
@@ -356,6 +328,28 @@ Result<std::vector<TimedCells>> guarded(
   for (const std::string& warning : capture.messages().warnings)
     report.notes.push_back("VTK: " + warning);
   return steps;
+}
+
+/// The same in a process of its own, for readers that do not stand damage: they may write beyond
+/// their arrays without a crash, and what is spoilt then is not ours.
+Result<std::vector<TimedCells>> readApart(const std::filesystem::path& path, MeshFormat format,
+                                          const ReadOptions& options, ReadReport& report) {
+  const int file = ::memfd_create("qtet-read", MFD_CLOEXEC);
+  if (file < 0)
+    return fail(ErrorCode::kIo,
+                "no room for what " + path.string() + " holds: " + std::strerror(errno));
+  const TrialEnd end = tryOut(
+      [&] {
+        ReadReport found;
+        const Result<std::vector<TimedCells>> steps = readHere(path, format, options, found);
+        sendCells(file, steps, found);
+      },
+      options.patience);
+  Result<std::vector<TimedCells>> out = end == TrialEnd::kDone
+                                            ? receiveCells(file, report)
+                                            : trialFailed(end, path, options.patience);
+  ::close(file);
+  return out;
 }
 
 /// One <DataSet> of a .pvd file.
@@ -525,8 +519,8 @@ Result<std::vector<TimedCells>> readAt(const std::filesystem::path& path, MeshFo
   if (format == MeshFormat::kPvd) return readSeries(path, options, report);
   if (format == MeshFormat::kPvtu || format == MeshFormat::kVtm)
     return readParts(path, format, options, report, depth);
-  return guarded(path, !standsDamage(format), options.patience, report,
-                 [&] { return runReader(path, format, options, report); });
+  return standsDamage(format) ? readHere(path, format, options, report)
+                              : readApart(path, format, options, report);
 }
 
 }  // namespace
