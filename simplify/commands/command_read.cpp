@@ -1,12 +1,12 @@
 #include "simplify/commands/command_read.h"
 
 #include <charconv>
-#include <iomanip>
 #include <limits>
-#include <sstream>
 
 namespace qtet {
 namespace {
+
+constexpr int kMaxReadSeconds = 86'400;  // a day: longer is for ever
 
 double numberOf(const std::string& text, double ifEmpty, const std::string& whole) {
   if (text.empty()) return ifEmpty;
@@ -30,6 +30,19 @@ Threshold thresholdOf(const std::string& text) {
           numberOf(text.substr(colon + 1), kAny, text)};
 }
 
+void setWeld(const std::string& text, ReadOptions& options) {
+  if (text == "none") {
+    options.joinPieces = false;
+    return;
+  }
+  double distance = 0;
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), distance);
+  if (read.ec != std::errc{} || read.ptr != text.data() + text.size() || !(distance >= 0) ||
+      distance > std::numeric_limits<double>::max())
+    throw UsageError("--weld '" + text + "' is not understood; give a distance >= 0, or none");
+  options.weld = distance;
+}
+
 }  // namespace
 
 void addReadOptions(boost::program_options::options_description& options) {
@@ -37,14 +50,16 @@ void addReadOptions(boost::program_options::options_description& options) {
   options.add_options()("curved", po::value<std::string>()->default_value("split"),
                         "quadratic cells and those of higher degree: split at all of their nodes, "
                         "or linear: their corners alone")(
-      "weld", po::value<double>(),
-      "join points that lie within this distance (0: at the same place), as where an O-grid "
-      "closes")(
+      "weld", po::value<std::string>(),
+      "a distance: join points within it (0: at the same place), as where an O-grid closes; none: "
+      "keep pieces of a parallel result apart, which are joined at the points that they share")(
       "time", po::value<std::string>()->default_value("last"),
       "of a series: a step's time, first, last, or all: every step's fields, as NAME@TIME")(
       "threshold", po::value<std::string>(),
       "only cells where a field lies within bounds: FIELD=LOW:HIGH, either side may be empty")(
       "plot3d", po::value<std::string>(), "the input is a PLOT3D grid; its solution file, or none")(
+      "read-seconds", po::value<int>()->default_value(60),
+      "how long a reader of VTK's may read nothing of the file before it is given up")(
       "format", po::value<std::string>(),
       "the kind of file, where the name does not say it or is - (the standard input): vtu, msh, "
       "...");
@@ -56,8 +71,7 @@ ReadOptions readOptionsOf(const ParsedWords& parsed) {
   if (curved != "split" && curved != "linear")
     throw UsageError("--curved '" + curved + "' is not known; give split or linear");
   options.curved = curved == "split" ? CurvedCells::kSplit : CurvedCells::kLinear;
-  if (parsed.has("weld"))
-    options.weld = parsed.number("weld", 0, std::numeric_limits<double>::max());
+  if (parsed.has("weld")) setWeld(parsed.get<std::string>("weld"), options);
   if (parsed.has("format")) {
     options.format = parsed.get<std::string>("format");
     if (options.format.starts_with('.')) options.format.erase(0, 1);
@@ -65,6 +79,7 @@ ReadOptions readOptionsOf(const ParsedWords& parsed) {
   options.time = parsed.get<std::string>("time");
   if (parsed.has("threshold"))
     options.threshold = thresholdOf(parsed.get<std::string>("threshold"));
+  options.patience = std::chrono::seconds(parsed.integer("read-seconds", 1, kMaxReadSeconds));
   options.plot3d = parsed.has("plot3d");
   if (options.plot3d && parsed.get<std::string>("plot3d") != "none")
     options.plot3dSolution = parsed.get<std::string>("plot3d");
@@ -73,16 +88,11 @@ ReadOptions readOptionsOf(const ParsedWords& parsed) {
 
 Words readWordsOf(const ParsedWords& parsed) {
   Words out;
-  for (const char* name : {"curved", "time", "threshold", "plot3d", "format"}) {
+  for (const char* name : {"curved", "time", "threshold", "plot3d", "format", "weld"}) {
     if (parsed.has(name))
       out.insert(out.end(), {"--" + std::string(name), parsed.get<std::string>(name)});
   }
-  if (parsed.has("weld")) {
-    std::ostringstream exact;
-    exact << std::setprecision(std::numeric_limits<double>::max_digits10)
-          << parsed.get<double>("weld");
-    out.insert(out.end(), {"--weld", exact.str()});
-  }
+  out.insert(out.end(), {"--read-seconds", std::to_string(parsed.get<int>("read-seconds"))});
   return out;
 }
 
@@ -96,6 +106,8 @@ OrderedJson readReport(const ReadReport& report) {
           {"centrePoints", report.split.centrePoints},
           {"insideOutCells", report.split.insideOut},
           {"collapsedCells", report.split.collapsed},
+          {"pieces", report.pieces},
+          {"joinedPoints", report.joinedPoints},
           {"weldedPoints", report.weldedPoints},
           {"mendedFaces", report.mendedFaces}};
 }

@@ -8,7 +8,7 @@
 
 namespace qtet {
 
-/// --curved, --weld, --time, --threshold, --plot3d, --format.
+/// --curved, --weld, --time, --threshold, --plot3d, --read-seconds, --format.
 void addReadOptions(boost::program_options::options_description& options);
 
 /// The words that say the same once more, for another command.

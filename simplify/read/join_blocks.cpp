@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
+
+#include "simplify/read/join_pieces.h"
 
 namespace qtet {
 namespace {
@@ -13,8 +16,27 @@ const MeshField* find(const CellMesh& mesh, const MeshField& like) {
   return nullptr;
 }
 
-bool agree(const MeshField& a, const MeshField& b) {
-  return a.components == b.components && a.type == b.type;
+/// The type that holds the values of both: the wider of two floats, of two signed or two unsigned
+/// integers; empty: there is none.
+std::string widerType(const std::string& a, const std::string& b) {
+  const auto kind = [](const std::string& type) {
+    return type.substr(0, type.find_first_of("0123456789"));
+  };
+  if (kind(a) != kind(b)) return "";
+  return a.size() != b.size() ? (a.size() > b.size() ? a : b) : std::max(a, b);
+}
+
+/// The field of all blocks, without values; no name: it is not in every block that must have it, or
+/// no type holds the values of all. NaN stands for what a block lacks, which integers have not.
+MeshField commonField(const MeshField& field, const std::vector<CellMesh>& blocks) {
+  MeshField out{field.name, field.components, field.type, {}, field.association};
+  for (const CellMesh& block : blocks) {
+    const MeshField* there = find(block, field);
+    const bool agrees = there ? there->components == out.components : isFloatType(out.type);
+    if (there && agrees) out.type = widerType(out.type, there->type);
+    if (!agrees || out.type.empty()) return {};
+  }
+  return out;
 }
 
 /// The fields that the joined mesh has, without values.
@@ -29,16 +51,14 @@ std::vector<MeshField> commonFields(const std::vector<CellMesh>& blocks,
         return f.name == field.name && f.association == field.association;
       });
       if (known || std::ranges::find(leftOut, key) != leftOut.end()) continue;
-      const bool everywhere = std::ranges::all_of(blocks, [&](const CellMesh& other) {
-        const MeshField* there = find(other, field);
-        const bool lacks = !there && other.cells() > 0;
-        return there ? agree(*there, field) : !lacks || isFloatType(field.type);
-      });
-      if (everywhere) {
-        out.push_back({field.name, field.components, field.type, {}, field.association});
+      MeshField common = commonField(field, blocks);
+      if (!common.name.empty()) {
+        out.push_back(std::move(common));
       } else {
         leftOut.push_back(key);
-        notes.push_back(key + " was left out: it is not in every block, or not of one type");
+        notes.push_back(key +
+                        " was left out: it is not in every block, or its components or types "
+                        "differ between blocks");
       }
     }
   }
@@ -55,42 +75,67 @@ void appendValues(MeshField& field, const CellMesh& block, std::size_t tuples) {
 }
 
 void appendCells(CellMesh& out, const CellMesh& block, VertexId firstPoint) {
-  const auto shifted = [firstPoint](VertexId v) {
-    return v == kGhost || v + std::uint64_t{firstPoint} >= kGhost ? kGhost : v + firstPoint;
+  const auto shift = [&](std::span<VertexId> ids) {
+    for (VertexId& v : ids)
+      v = v >= block.points.size() || v + std::uint64_t{firstPoint} >= kGhost ? kGhost
+                                                                              : v + firstPoint;
   };
   for (std::size_t i = 0; i < block.cells(); ++i) {
     out.addCell(block.types[i], block.cell(i));
     const std::span<VertexId> ids = std::span(out.vertices).subspan(out.begins[out.cells() - 1]);
     if (block.types[i] != kPolyhedronCell) {
-      for (VertexId& v : ids) v = shifted(v);
+      shift(ids);
       continue;
     }
-    for (std::size_t at = 1; at < ids.size(); at += ids[at] + std::size_t{1}) {
-      for (VertexId& v : ids.subspan(at + 1, std::min<std::size_t>(ids[at], ids.size() - at - 1)))
-        v = shifted(v);
-    }
+    for (std::size_t at = 1; at < ids.size(); at += ids[at] + std::size_t{1})
+      shift(ids.subspan(at + 1, std::min<std::size_t>(ids[at], ids.size() - at - 1)));
   }
+}
+
+/// "its 8 pieces were joined at 1234 points that they share"
+void join(CellMesh& mesh, std::span<const VertexId> ends, bool isWanted, ReadReport& report) {
+  report.pieces = ends.size();
+  if (ends.size() < 2) return;
+  const std::string pieces = "its " + std::to_string(ends.size()) + " pieces ";
+  if (!isWanted) {
+    report.notes.push_back(pieces + "stay apart (--weld none)");
+    return;
+  }
+  const JoinedPieces joined = joinPieces(mesh, ends);
+  report.joinedPoints = joined.points;
+  report.notes.push_back(
+      joined.points == 0
+          ? pieces + "have no points in common, and stay apart; --weld D joins points within D"
+          : pieces + "were joined at " + std::to_string(joined.points) + " points that they share" +
+                (joined.byIds ? ", by their global ids" : "") +
+                "; --weld none would keep them apart");
 }
 
 }  // namespace
 
-CellMesh joinBlocks(std::vector<CellMesh> blocks, std::vector<std::string>& notes) {
+CellMesh joinBlocks(std::vector<CellMesh> blocks, bool joinShared, ReadReport& report) {
   std::erase_if(blocks, [](const CellMesh& block) { return block.cells() == 0; });
   if (blocks.empty()) return {};
   if (blocks.size() == 1) return std::move(blocks.front());
   CellMesh out;
   out.pointType = blocks.front().pointType;
-  out.fields = commonFields(blocks, notes);
+  out.fields = commonFields(blocks, report.notes);
+  const bool haveIds = std::ranges::all_of(
+      blocks, [](const CellMesh& b) { return b.pointIds.size() == b.points.size(); });
   std::uint64_t firstCell = 0;
-  std::size_t apart = 0, firstPoint = 0;
+  std::size_t firstPoint = 0;
+  std::vector<VertexId> ends;
   const std::vector<Position>* last = nullptr;
   for (const CellMesh& block : blocks) {
     const bool shares = last && *last == block.points;
     if (!shares) {
       firstPoint = out.points.size();
       out.points.insert(out.points.end(), block.points.begin(), block.points.end());
-      ++apart;
+      if (haveIds)
+        out.pointIds.insert(out.pointIds.end(), block.pointIds.begin(), block.pointIds.end());
+      ends.emplace_back();
     }
+    ends.back() = static_cast<VertexId>(std::min<std::size_t>(out.points.size(), kGhost));
     last = &block.points;
     appendCells(out, block, static_cast<VertexId>(std::min<std::size_t>(firstPoint, kGhost)));
     for (std::size_t i = 0; i < block.cells(); ++i)
@@ -104,9 +149,9 @@ CellMesh joinBlocks(std::vector<CellMesh> blocks, std::vector<std::string>& note
     out.otherFields.insert(out.otherFields.end(), block.otherFields.begin(),
                            block.otherFields.end());
   }
-  if (apart > 1)
-    notes.push_back("its " + std::to_string(apart) +
-                    " blocks have points of their own; --weld D joins those within a distance D");
+  // More points than ids can name: checkCellMesh refuses them.
+  const bool canBeNamed = out.points.size() < kGhost;
+  join(out, ends, joinShared && canBeNamed, report);
   return out;
 }
 

@@ -10,10 +10,12 @@
 namespace qtet {
 
 /// The blocks one after the other, cells numbered on. A block whose points are those of the one
-/// before (as Exodus has them) shares them, others stand apart until they are welded. A field that
-/// a block lacks is NaN there; a field of integers that a block lacks, or that has other components
-/// or another type, is left out, with a note.
-[[nodiscard]] CellMesh joinBlocks(std::vector<CellMesh> blocks, std::vector<std::string>& notes);
+/// before (as Exodus has them) shares them. The others are pieces of their own, which are joined at
+/// the points that they share (join_pieces.h) where `joinShared` says so. A field of floats that a
+/// block lacks is NaN there, and one whose types differ takes the wider; a field of integers that a
+/// block lacks, or whose components differ, is left out. The report's notes tell.
+[[nodiscard]] CellMesh joinBlocks(std::vector<CellMesh> blocks, bool joinShared,
+                                  ReadReport& report);
 
 /// The first step's mesh with every step's fields, called NAME@TIME. Errors: bad-input where a step
 /// has other points or cells than the first.

@@ -53,6 +53,15 @@ bool MeshScanner::atEnd() {
   return failed() || place_ >= text_.size();
 }
 
+void MeshScanner::endsList(std::uint64_t count, const char* what) {
+  if (atEnd()) return;
+  const char next = text_[place_];
+  if ((next >= '0' && next <= '9') || next == '-' || next == '+' || next == '.')
+    fail(ErrorCode::kBadInput, "a number follows the " + std::to_string(count) + " " + what +
+                                   " that are announced: the count is wrong, or lines are too "
+                                   "long; export the file again");
+}
+
 bool MeshScanner::fits(std::uint64_t count, std::uint64_t bytesEach, const char* what) {
   if (failed()) return false;
   if (count <= remaining() / bytesEach) return true;

@@ -70,6 +70,10 @@ class MeshScanner {
   /// anything is allocated or looped over.
   bool fits(std::uint64_t count, std::uint64_t bytesEach, const char* what);
 
+  /// After a list of `count` things as text: an error if a number follows, for then the file holds
+  /// more of them than it told.
+  void endsList(std::uint64_t count, const char* what);
+
   /// Passes the rest of a line that bytes follow.
   void skipLine();
   void seek(std::uint64_t place);

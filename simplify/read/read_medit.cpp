@@ -137,6 +137,7 @@ class Medit {
       out_.points.push_back(p);
       pointReferences_.push_back(static_cast<double>(integer("a vertex's reference")));
     }
+    if (!bytes_) in_.endsList(number, "vertices");
   }
 
   void readCells(const Kind& kind, std::uint64_t number) {
@@ -156,6 +157,7 @@ class Medit {
       out_.addCell(kind.type, ids);
       cellReferences_.push_back(static_cast<double>(reference));
     }
+    if (!bytes_) in_.endsList(number, "cells");
   }
 
   void addReferences(const char* association, std::vector<double>& references) {

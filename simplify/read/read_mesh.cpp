@@ -126,9 +126,10 @@ Result<CellMesh> readCells(const std::filesystem::path& path, const ReadOptions&
                            " points, lines and faces among the cells were ignored");
   if (Status checked = checkCellMesh(*cells, path); !checked)
     return std::unexpected(checked.error());
-  if (Status checked = checkIntegers(withThresholdField(options).fields, path, cells->fields);
-      !checked)
-    return std::unexpected(checked.error());
+  if (Status done = leaveOutWideIntegers(withThresholdField(options).fields, path, cells->fields,
+                                         report.notes);
+      !done)
+    return std::unexpected(done.error());
   if (options.threshold) {
     if (Status done = applyThreshold(*options.threshold, path, *cells); !done)
       return std::unexpected(done.error());
@@ -147,7 +148,7 @@ Result<TetMesh> tetrahedraOf(CellMesh&& cells, const std::filesystem::path& path
   Result<TetMesh> mesh = splitCells(std::move(cells), options.curved, report.split);
   if (!mesh) return fail(mesh.error().code, path.string() + ": " + mesh.error().message);
   noteSplit(report.split, report.notes);
-  if (options.weld) mend(*mesh, report);
+  if (options.weld || report.joinedPoints > 0) mend(*mesh, report);
   if (Status selected = selectFields(options.fields, path, otherFields, mesh->fields); !selected)
     return std::unexpected(selected.error());
   return mesh;

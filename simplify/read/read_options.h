@@ -1,6 +1,7 @@
 // What a mesh file is read with, and what is said of the reading.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -25,6 +26,7 @@ struct ReadOptions {
   FieldNames fields;
   CurvedCells curved = CurvedCells::kSplit;
   std::optional<double> weld;  ///< points within this distance become one (weld_points.h)
+  bool joinPieces = true;      ///< at the points that they share (join_pieces.h)
   std::optional<Threshold> threshold;
   std::string time = "last";  ///< of a series: "first", "last", "all", or the step's time
   /// The file's kind as an ending without dot; empty: as its name says.
@@ -32,6 +34,8 @@ struct ReadOptions {
   /// The Q file beside a PLOT3D grid; empty: the file is no PLOT3D grid.
   std::string plot3dSolution;
   bool plot3d = false;
+  /// How long a foreign reader may read nothing before it is given up (trial_process.h).
+  std::chrono::seconds patience{60};
 };
 
 /// What was in the file and is not in the mesh, and what was done to it; `notes` says it in
@@ -40,6 +44,8 @@ struct ReadReport {
   std::uint64_t ignoredCells = 0;          ///< of dimension 0, 1 or 2
   std::vector<std::string> ignoredFields;  ///< texts, more than kMaxFieldComponents components
   SplitReport split;
+  std::uint64_t pieces = 0;        ///< with points of their own, in the step that was read last
+  std::uint64_t joinedPoints = 0;  ///< of pieces, with one of an earlier piece
   std::uint64_t weldedPoints = 0;  ///< joined with an earlier one
   std::uint64_t mendedFaces = 0;   ///< quadrilaterals that both sides cut alike after welding
   std::vector<std::string> notes;  ///< also VTK's warnings

@@ -70,6 +70,7 @@ class Su2 {
       in_.skipLine();  // the element's own number, where it has one
       out_.addCell(type, ids);
     }
+    in_.endsList(count, "elements");
   }
 
   void points(std::uint64_t count) {
@@ -81,6 +82,7 @@ class Su2 {
       in_.skipLine();
       out_.points.push_back(p);
     }
+    in_.endsList(count, "points");
   }
 
   MeshScanner in_;

@@ -54,6 +54,7 @@ Result<std::uint64_t> readNodes(const std::filesystem::path& path, CellMesh& out
     for (MeshField& field : fields) field.values.push_back(in.number<double>("an attribute"));
     if (markers) in.number<std::int64_t>("a marker");
   }
+  in.endsList(count, "points");
   if (in.failed()) return in.error();
   for (MeshField& field : fields) out.fields.push_back(std::move(field));
   return first;
@@ -85,6 +86,7 @@ Status readElements(const std::filesystem::path& path, std::uint64_t first, Cell
     out.addCell(kTetrahedronCell, ids);
     for (MeshField& field : fields) field.values.push_back(in.number<double>("an attribute"));
   }
+  in.endsList(count, "tetrahedra");
   if (nodes == 10)
     report.notes.push_back(
         "of its ten-node tetrahedra the corners are read; the other nodes lie on straight edges");

@@ -30,8 +30,10 @@ constexpr const char* kScript =
     "    sys.exit(77)\n"
     "try:\n"
     "    mesh = meshio.read(sys.argv[1])\n"
-    "    mesh.cell_sets, mesh.point_sets = {}, {}\n"
+    "    mesh.cell_sets, mesh.point_sets, mesh.field_data, mesh.info = {}, {}, {}, None\n"
     "    meshio.write(sys.argv[2], mesh, file_format='vtu', binary=True)\n"
+    "except SystemExit:\n"  // it has said why
+    "    sys.exit(1)\n"
     "except BaseException as error:\n"
     "    sys.stderr.write('\\n' + (str(error) or type(error).__name__).replace('\\n', ' '))\n"
     "    sys.exit(1)\n";

@@ -106,21 +106,30 @@ Status applyThreshold(const Threshold& threshold, const std::filesystem::path& p
   return {};
 }
 
-Status checkIntegers(const FieldNames& names, const std::filesystem::path& path,
-                     const std::vector<MeshField>& fields) {
+Status leaveOutWideIntegers(const FieldNames& names, const std::filesystem::path& path,
+                            std::vector<MeshField>& fields, std::vector<std::string>& notes) {
   constexpr double kFirstInexactInteger = 0x1p53;
-  for (const MeshField& field : fields) {
-    if ((field.type != "int64" && field.type != "uint64") ||
-        !isMeant(names, field.association, field.name))
+  const auto isWide = [](double value) { return std::abs(value) >= kFirstInexactInteger; };
+  for (std::size_t f = 0; f < fields.size();) {
+    const MeshField& field = fields[f];
+    const bool mayBeWide = field.type == "int64" || field.type == "uint64";
+    const auto wide = mayBeWide && isMeant(names, field.association, field.name)
+                          ? std::ranges::find_if(field.values, isWide)
+                          : field.values.end();
+    if (wide == field.values.end()) {
+      ++f;
       continue;
-    for (std::size_t i = 0; i < field.values.size(); ++i) {
-      if (std::abs(field.values[i]) < kFirstInexactInteger) continue;
-      return fail(ErrorCode::kBadInput,
-                  path.string() + ": " + field.association + " field " + field.name +
-                      " holds an integer of 2^53 or more at " + field.association + " " +
-                      std::to_string(i / field.components) +
-                      "; leave the field out with --fields, or store it in fewer bits");
     }
+    const auto place = static_cast<std::size_t>(wide - field.values.begin()) / field.components;
+    const std::string what = field.association + " field " + field.name +
+                             " holds an integer of 2^53 or more at " + field.association + " " +
+                             std::to_string(place);
+    if (names)
+      return fail(ErrorCode::kBadInput, path.string() + ": " + what +
+                                            "; leave the field out of --fields, or store it in "
+                                            "fewer bits");
+    notes.push_back(what + " and was left out: no double tells it from its neighbours");
+    fields.erase(fields.begin() + static_cast<std::ptrdiff_t>(f));
   }
   return {};
 }

@@ -25,10 +25,13 @@ namespace qtet {
 [[nodiscard]] Status applyThreshold(const Threshold& threshold, const std::filesystem::path& path,
                                     CellMesh& mesh);
 
-/// Errors: bad-input (an integer of 2^53 or more in magnitude, which a double cannot tell from its
-/// neighbours, in one of the fields that are asked for).
-[[nodiscard]] Status checkIntegers(const FieldNames& names, const std::filesystem::path& path,
-                                   const std::vector<MeshField>& fields);
+/// Integers of 2^53 or more in magnitude, which a double cannot tell from their neighbours: where all
+/// fields are meant, one that holds them is left out, with a note. Errors: bad-input (such a field
+/// is asked for by name).
+[[nodiscard]] Status leaveOutWideIntegers(const FieldNames& names,
+                                          const std::filesystem::path& path,
+                                          std::vector<MeshField>& fields,
+                                          std::vector<std::string>& notes);
 
 /// int32 where it holds all values, else int64: for files that do not say how wide their integers
 /// are.

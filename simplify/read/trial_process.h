@@ -1,14 +1,23 @@
-// Trying dangerous work in a process of its own first.
+// Dangerous work in a process of its own.
 #pragma once
 
+#include <chrono>
+#include <cstdint>
 #include <functional>
 
 namespace qtet {
 
-/// Runs `work` in a copy of this process, whose output goes nowhere, and tells whether it came to
-/// its end without being killed by the system (also false if no process could be made). The same
-/// work done here afterwards starts from the same memory and so ends the same way. REQUIRES: no
-/// other thread of this process holds a lock that `work` needs.
-[[nodiscard]] bool survives(const std::function<void()>& work);
+enum class TrialEnd : std::uint8_t {
+  kDone,         ///< it came to its end
+  kCrashed,      ///< the system ended it, or no process could be made
+  kStuck,        ///< it read nothing for too long
+  kOutOfMemory,  ///< it wanted more than the machine has
+};
+
+/// Runs `work` in a copy of this process, whose output goes nowhere, and tells how it ended. What
+/// `work` finds it must write to a file: its memory goes with the copy. The copy may take as much memory as the machine has. It is ended once it has read nothing from any file
+/// for `patience`, and it ends with this process. REQUIRES: no other thread of this process holds a
+/// lock that `work` needs.
+[[nodiscard]] TrialEnd tryOut(const std::function<void()>& work, std::chrono::seconds patience);
 
 }  // namespace qtet

@@ -18,6 +18,7 @@
 #include <vtkStructuredGrid.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
+#include <vtkVariant.h>
 
 #include <algorithm>
 #include <cmath>
@@ -89,24 +90,48 @@ class Dimensions {
   std::array<int, 256> of_{};
 };
 
+/// The marks of ghost cells in files of VTK before version 7: how many layers away they lie.
+constexpr const char* kGhostLevels = "vtkGhostLevels";
+
 /// Cells that are another piece's, or blanked out.
 class Hidden {
  public:
   explicit Hidden(vtkDataSet& data)
       : ghosts_(data.GetCellGhostArray()), grid_(vtkStructuredGrid::SafeDownCast(&data)) {
     if (ghosts_ && ghosts_->GetNumberOfTuples() < data.GetNumberOfCells()) ghosts_ = nullptr;
+    levels_ = data.GetCellData()->GetArray(kGhostLevels);
+    if (levels_ && levels_->GetNumberOfTuples() < data.GetNumberOfCells()) levels_ = nullptr;
   }
   [[nodiscard]] bool operator[](vtkIdType cell) const {
     constexpr unsigned kElsewhere =
         vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL;
     if (ghosts_ && (ghosts_->GetValue(cell) & kElsewhere)) return true;
+    if (levels_ && levels_->GetComponent(cell, 0) > 0) return true;
     return grid_ && !grid_->IsCellVisible(cell);
   }
 
  private:
   vtkUnsignedCharArray* ghosts_;
+  vtkDataArray* levels_;
   vtkStructuredGrid* grid_;
 };
+
+/// The points' ids that hold for all pieces; empty without an array of such integers.
+std::vector<std::uint64_t> globalIdsOf(vtkDataSet& data) {
+  vtkPointData& fields = *data.GetPointData();
+  vtkDataArray* ids = fields.GetGlobalIds();
+  for (const char* name : {"GlobalPointIds", "GlobalNodeIds", "GlobalNodeId"})
+    if (!ids) ids = fields.GetArray(name);
+  const vtkIdType points = data.GetNumberOfPoints();
+  if (!ids || ids->GetNumberOfComponents() != 1 || ids->GetNumberOfTuples() != points ||
+      ids->GetDataType() == VTK_FLOAT || ids->GetDataType() == VTK_DOUBLE)
+    return {};
+  std::vector<std::uint64_t> out;
+  out.reserve(static_cast<std::size_t>(points));
+  for (vtkIdType i = 0; i < points; ++i)
+    out.push_back(static_cast<std::uint64_t>(ids->GetVariantValue(i).ToTypeInt64()));
+  return out;
+}
 
 /// Takes over an unstructured grid's cells; `rows` gets the place of each among all of the grid's.
 class GridCells {
@@ -259,7 +284,7 @@ class GridFields {
     for (int i = 0; i < data.GetNumberOfArrays(); ++i) {
       const std::string name = nameOf(*data.GetAbstractArray(i), association, i, report_);
       vtkDataArray* array = data.GetArray(i);
-      if (name == vtkDataSetAttributes::GhostArrayName()) continue;
+      if (name == vtkDataSetAttributes::GhostArrayName() || name == kGhostLevels) continue;
       if (!array || array->GetNumberOfComponents() < 1 ||
           array->GetNumberOfComponents() > static_cast<int>(kMaxFieldComponents)) {
         ignore(association, name, array != nullptr);
@@ -314,6 +339,7 @@ Result<CellMesh> cellsOf(vtkDataSet& data, const FieldNames& fields,
                          const std::filesystem::path& path, ReadReport& report) {
   CellMesh out;
   out.points = pointsOf(data);
+  out.pointIds = globalIdsOf(data);
   auto* set = vtkPointSet::SafeDownCast(&data);
   out.pointType = set && set->GetPoints() && set->GetPoints()->GetDataType() == VTK_FLOAT
                       ? "float32"

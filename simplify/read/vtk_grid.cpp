@@ -1,6 +1,6 @@
 #include "simplify/read/vtk_grid.h"
 
-#include <fcntl.h>
+#include <sys/mman.h>
 #include <unistd.h>
 #include <vtkAVSucdReader.h>
 #include <vtkAlgorithm.h>
@@ -22,20 +22,19 @@
 #include <vtkStreamingDemandDrivenPipeline.h>
 #include <vtkXMLDataElement.h>
 #include <vtkXMLImageDataReader.h>
-#include <vtkXMLMultiBlockDataReader.h>
-#include <vtkXMLPUnstructuredGridReader.h>
 #include <vtkXMLRectilinearGridReader.h>
 #include <vtkXMLStructuredGridReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 #include <vtkXMLUtilities.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <exception>
-#include <functional>
 #include <new>
-#include <optional>
 
+#include "simplify/read/cell_transfer.h"
 #include "simplify/read/fast_xml_parser.h"
 #include "simplify/read/join_blocks.h"
 #include "simplify/read/mesh_format.h"
@@ -102,26 +101,8 @@ class MessageCapture {
   vtkNew<MessageWindow> window_;
 };
 
-/// Libraries below VTK (Exodus, HDF5) print their errors themselves; what they mean comes as VTK's
-/// message too.
-class QuietStandardError {
- public:
-  QuietStandardError() : kept_(::dup(STDERR_FILENO)) {
-    const int nowhere = ::open("/dev/null", O_WRONLY);
-    if (kept_ >= 0 && nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);
-    if (nowhere >= 0) ::close(nowhere);
-  }
-  QuietStandardError(const QuietStandardError&) = delete;
-  QuietStandardError& operator=(const QuietStandardError&) = delete;
-  ~QuietStandardError() {
-    if (kept_ < 0) return;
-    ::dup2(kept_, STDERR_FILENO);
-    ::close(kept_);
-  }
-
- private:
-  int kept_;
-};
+/// Files that name files that name files: a series of .vtm of .pvtu has three.
+constexpr int kMaxDepth = 8;
 
 std::unexpected<Error> bad(const std::filesystem::path& path, const std::string& what) {
   return fail(ErrorCode::kBadInput, path.string() + ": " + what);
@@ -133,22 +114,6 @@ vtkSmartPointer<vtkAlgorithm> xmlReader(const std::filesystem::path& path) {
   reader->SetFileName(path.c_str());
   return reader;
 }
-
-/// Of a file that names others, whose pieces are .vtu files.
-class PiecesReader : public vtkXMLPUnstructuredGridReader {
- public:
-  static PiecesReader* New();
-  vtkTypeMacro(PiecesReader, vtkXMLPUnstructuredGridReader)
-      PiecesReader(const PiecesReader&) = delete;
-  PiecesReader& operator=(const PiecesReader&) = delete;
-
- protected:
-  PiecesReader() = default;
-  vtkXMLDataReader* CreatePieceReader() override {
-    return FastXmlReader<vtkXMLUnstructuredGridReader>::New();
-  }
-};
-vtkStandardNewMacro(PiecesReader);
 
 vtkSmartPointer<vtkAlgorithm> legacyReader(const std::filesystem::path& path) {
   const auto reader = vtkSmartPointer<vtkDataSetReader>::New();
@@ -221,8 +186,6 @@ vtkSmartPointer<vtkAlgorithm> readerOf(const std::filesystem::path& path, MeshFo
                                        const ReadOptions& options) {
   switch (format) {
     case MeshFormat::kVtu: return xmlReader<vtkXMLUnstructuredGridReader>(path);
-    case MeshFormat::kPvtu: return xmlReader<PiecesReader>(path);
-    case MeshFormat::kVtm: return xmlReader<vtkXMLMultiBlockDataReader>(path);
     case MeshFormat::kVts: return xmlReader<vtkXMLStructuredGridReader>(path);
     case MeshFormat::kVtr: return xmlReader<vtkXMLRectilinearGridReader>(path);
     case MeshFormat::kVti: return xmlReader<vtkXMLImageDataReader>(path);
@@ -243,18 +206,18 @@ vtkSmartPointer<vtkAlgorithm> readerOf(const std::filesystem::path& path, MeshFo
 /// VTK's XML readers stood every damage that was tried; its others write outside their arrays on
 /// counts that contradict each other.
 bool standsDamage(MeshFormat format) {
-  return format == MeshFormat::kVtu || format == MeshFormat::kPvtu || format == MeshFormat::kVtm ||
-         format == MeshFormat::kVts || format == MeshFormat::kVtr || format == MeshFormat::kVti;
+  return format == MeshFormat::kVtu || format == MeshFormat::kVts || format == MeshFormat::kVtr ||
+         format == MeshFormat::kVti;
 }
 
 /// The volume blocks of what a reader gave, in one mesh.
-Result<CellMesh> cellsOfOutput(vtkDataObject* output, const FieldNames& fields,
+Result<CellMesh> cellsOfOutput(vtkDataObject* output, const ReadOptions& options,
                                const std::filesystem::path& path, ReadReport& report) {
   std::vector<CellMesh> blocks;
   const auto add = [&](vtkDataObject* object) -> Status {
     auto* data = vtkDataSet::SafeDownCast(object);
     if (!data || data->GetNumberOfCells() + data->GetNumberOfPoints() == 0) return {};
-    Result<CellMesh> cells = cellsOf(*data, fields, path, report);
+    Result<CellMesh> cells = cellsOf(*data, options.fields, path, report);
     if (!cells) return std::unexpected(cells.error());
     blocks.push_back(std::move(*cells));
     return {};
@@ -271,7 +234,7 @@ Result<CellMesh> cellsOfOutput(vtkDataObject* output, const FieldNames& fields,
     if (Status done = add(each->GetCurrentDataObject()); !done)
       return std::unexpected(done.error());
   }
-  return joinBlocks(std::move(blocks), report.notes);
+  return joinBlocks(std::move(blocks), options.joinPieces, report);
 }
 
 std::vector<double> timesOf(vtkAlgorithm& reader) {
@@ -281,18 +244,23 @@ std::vector<double> timesOf(vtkAlgorithm& reader) {
   return {times, times + info->Length(vtkStreamingDemandDrivenPipeline::TIME_STEPS())};
 }
 
+/// Adds the texts that are not there yet.
+void addNew(std::vector<std::string>& from, std::vector<std::string>& to) {
+  for (std::string& text : from)
+    if (std::ranges::find(to, text) == to.end()) to.push_back(std::move(text));
+}
+
 /// What reading one step more has told: every step has the same mesh, so that counts are those of
 /// one, and what was said before need not be said again.
 void addStep(ReadReport&& step, bool isFirst, ReadReport& report) {
+  report.pieces = step.pieces;
+  report.joinedPoints = step.joinedPoints;
   if (isFirst) {
     report.ignoredCells += step.ignoredCells;
     report.ignoredFields.insert(report.ignoredFields.end(), step.ignoredFields.begin(),
                                 step.ignoredFields.end());
   }
-  for (std::string& note : step.notes) {
-    if (isFirst || std::ranges::find(report.notes, note) == report.notes.end())
-      report.notes.push_back(std::move(note));
-  }
+  addNew(step.notes, report.notes);
 }
 
 /// Runs one reader over the steps that are meant.
@@ -311,8 +279,7 @@ Result<std::vector<TimedCells>> runReader(const std::filesystem::path& path, Mes
     else
       reader->Update();
     ReadReport step;
-    Result<CellMesh> cells =
-        cellsOfOutput(reader->GetOutputDataObject(0), options.fields, path, step);
+    Result<CellMesh> cells = cellsOfOutput(reader->GetOutputDataObject(0), options, path, step);
     if (!cells) return std::unexpected(cells.error());
     addStep(std::move(step), s == 0, report);
     out.push_back({timed ? timeText(times[(*steps)[s]]) : "", std::move(*cells)});
@@ -320,22 +287,33 @@ Result<std::vector<TimedCells>> runReader(const std::filesystem::path& path, Mes
   return out;
 }
 
-/// VTK's readers with their messages caught; `work` is done in a process of its own first unless
-/// the format stands damage.
-Result<std::vector<TimedCells>> guarded(
-    const std::filesystem::path& path, bool trial, ReadReport& report,
-    const std::function<Result<std::vector<TimedCells>>()>& work) {
-  const MessageCapture capture;
-  if (trial && !survives([&] { (void)work(); })) {
-    return bad(path,
-               "VTK crashes on it: its counts contradict each other, or it is too large for this "
-               "machine; export the mesh again, best as .vtu");
+/// Why the trial of a reader did not come to its end; what to do about it.
+std::unexpected<Error> trialFailed(TrialEnd end, const std::filesystem::path& path,
+                                   std::chrono::seconds patience) {
+  switch (end) {
+    case TrialEnd::kStuck:
+      return bad(path, "VTK has read nothing of it for " + std::to_string(patience.count()) +
+                           " s, so that it seems to wait for what the file does not hold; if it "
+                           "is only large, give it longer with --read-seconds, else export the "
+                           "mesh again, best as .vtu");
+    case TrialEnd::kOutOfMemory:
+      return bad(path,
+                 "VTK wants more memory for it than this machine has: a count in it is wrong, or "
+                 "it is too large for this machine; export the mesh again, best as .vtu");
+    default:
+      return bad(path,
+                 "VTK crashes on it: its counts contradict each other, or it is too large for this "
+                 "machine; export the mesh again, best as .vtu");
   }
-  std::optional<QuietStandardError> quiet;
-  if (trial) quiet.emplace();
+}
+
+/// VTK's readers with their messages and exceptions as values.
+Result<std::vector<TimedCells>> readHere(const std::filesystem::path& path, MeshFormat format,
+                                         const ReadOptions& options, ReadReport& report) {
+  const MessageCapture capture;
   Result<std::vector<TimedCells>> steps = std::vector<TimedCells>{};
   try {
-    steps = work();
+    steps = runReader(path, format, options, report);
   } catch (const std::bad_alloc&) {
     return bad(path,
                "an array's stated length does not fit in memory; the file is damaged, or the "
@@ -350,6 +328,28 @@ Result<std::vector<TimedCells>> guarded(
   for (const std::string& warning : capture.messages().warnings)
     report.notes.push_back("VTK: " + warning);
   return steps;
+}
+
+/// The same in a process of its own, for readers that do not stand damage: they may write beyond
+/// their arrays without a crash, and what is spoilt then is not ours.
+Result<std::vector<TimedCells>> readApart(const std::filesystem::path& path, MeshFormat format,
+                                          const ReadOptions& options, ReadReport& report) {
+  const int file = ::memfd_create("qtet-read", MFD_CLOEXEC);
+  if (file < 0)
+    return fail(ErrorCode::kIo,
+                "no room for what " + path.string() + " holds: " + std::strerror(errno));
+  const TrialEnd end = tryOut(
+      [&] {
+        ReadReport found;
+        const Result<std::vector<TimedCells>> steps = readHere(path, format, options, found);
+        sendCells(file, steps, found);
+      },
+      options.patience);
+  Result<std::vector<TimedCells>> out = end == TrialEnd::kDone
+                                            ? receiveCells(file, report)
+                                            : trialFailed(end, path, options.patience);
+  ::close(file);
+  return out;
 }
 
 /// One <DataSet> of a .pvd file.
@@ -383,39 +383,108 @@ Result<std::vector<SeriesEntry>> entriesOf(const std::filesystem::path& path) {
   return entries;
 }
 
-/// The pieces that a .pvtu file names, of which VTK says only a number. What else is wrong with the
-/// file VTK tells.
-Status checkPieces(const std::filesystem::path& path) {
+/// readVtk of a file that is named by one that is named by one ..., `depth` of them.
+Result<std::vector<TimedCells>> readAt(const std::filesystem::path& path, MeshFormat format,
+                                       const ReadOptions& options, ReadReport& report, int depth);
+
+/// The files that the file at `path` names as parts of one mesh, each read alone and by a reader of
+/// its own: VTK's readers of such files believe what the summary says of types and components, and
+/// write beyond their arrays where a part has others.
+Result<CellMesh> cellsOfParts(std::span<const std::filesystem::path> parts,
+                              const std::filesystem::path& path, const ReadOptions& options,
+                              ReadReport& report, int depth) {
+  std::vector<CellMesh> blocks;
+  ReadOptions ofPart = options;
+  ofPart.time = "last";  // the step is chosen already, and a part knows no times
+  for (const std::filesystem::path& part : parts) {
+    const MeshFormat format = formatOf(part);
+    if (format == MeshFormat::kPvd || format >= MeshFormat::kGmsh)
+      return bad(path, "it names " + part.string() +
+                           ", but may name VTK's files alone; convert that to .vtu first");
+    if (Status checked = checkMeshFile(part, format); !checked)
+      return fail(checked.error().code, path.string() + " names it: " + checked.error().message);
+    ReadReport ofOne;
+    Result<std::vector<TimedCells>> read = readAt(part, format, ofPart, ofOne, depth + 1);
+    if (!read) return std::unexpected(read.error());
+    report.ignoredCells += ofOne.ignoredCells;
+    addNew(ofOne.ignoredFields, report.ignoredFields);
+    addNew(ofOne.notes, report.notes);
+    blocks.push_back(std::move(read->back().cells));
+  }
+  const bool isOne = blocks.size() == 1;
+  CellMesh out = joinBlocks(std::move(blocks), options.joinPieces, report);
+  if (isOne) report.pieces = 1;
+  return out;
+}
+
+/// The Source of each Piece of a .pvtu file.
+Result<std::vector<std::filesystem::path>> piecesOf(const std::filesystem::path& path) {
   const MessageCapture capture;
   const auto root =
       vtkSmartPointer<vtkXMLDataElement>::Take(vtkXMLUtilities::ReadElementFromFile(path.c_str()));
   vtkXMLDataElement* grid = root ? root->FindNestedElementWithName("PUnstructuredGrid") : nullptr;
-  for (int i = 0; grid && i < grid->GetNumberOfNestedElements(); ++i) {
-    const char* file = grid->GetNestedElement(i)->GetAttribute("Source");
-    if (!file) continue;
-    if (Status checked = checkMeshFile(path.parent_path() / file, MeshFormat::kVtu); !checked)
-      return fail(checked.error().code, path.string() + " names it: " + checked.error().message);
+  if (!grid) return bad(path, "it holds no <PUnstructuredGrid>; save it again");
+  std::vector<std::filesystem::path> out;
+  for (int i = 0; i < grid->GetNumberOfNestedElements(); ++i) {
+    vtkXMLDataElement* element = grid->GetNestedElement(i);
+    if (std::string_view(element->GetName()) != "Piece") continue;
+    const char* file = element->GetAttribute("Source");
+    if (!file)
+      return bad(path, "its <Piece> number " + std::to_string(out.size()) +
+                           " names no file; save it again");
+    out.push_back(path.parent_path() / file);
   }
-  return {};
+  if (out.empty()) return bad(path, "it names no <Piece>; save it again");
+  return out;
 }
 
-/// The parts of one step, each a file of its own, in one mesh.
-Result<CellMesh> cellsOfParts(std::span<const SeriesEntry> parts, const std::filesystem::path& path,
-                              const ReadOptions& options, ReadReport& report) {
-  std::vector<CellMesh> blocks;
-  ReadOptions ofPart = options;
-  ofPart.time = "last";  // the step is chosen already, and a part knows no times
-  for (const SeriesEntry& part : parts) {
-    const MeshFormat format = formatOf(part.file);
-    if (format == MeshFormat::kPvd || format >= MeshFormat::kGmsh)
-      return bad(part.file, "a .pvd file may name VTK's files alone; convert it to .vtu first");
-    if (Status checked = checkMeshFile(part.file, format); !checked)
-      return fail(checked.error().code, path.string() + " names it: " + checked.error().message);
-    Result<std::vector<TimedCells>> read = readVtk(part.file, format, ofPart, report);
-    if (!read) return std::unexpected(read.error());
-    blocks.push_back(std::move(read->back().cells));
+/// The files of a .vtm file's blocks, depth first. Those that can hold no volume cells (surfaces,
+/// tables) are noted.
+void addBlockFiles(vtkXMLDataElement& element, const std::filesystem::path& path,
+                   std::vector<std::filesystem::path>& out, ReadReport& report) {
+  constexpr std::array kVolumes{".vtu", ".pvtu", ".vts", ".vtr", ".vti", ".vtk", ".vtm"};
+  for (int i = 0; i < element.GetNumberOfNestedElements(); ++i) {
+    vtkXMLDataElement& child = *element.GetNestedElement(i);
+    if (const char* file = child.GetAttribute("file")) {
+      const std::filesystem::path part = path.parent_path() / file;
+      if (std::ranges::find(kVolumes, part.extension()) != kVolumes.end())
+        out.push_back(part);
+      else
+        report.notes.push_back("its block " + part.filename().string() +
+                               " was ignored: such a file holds no volume cells");
+    }
+    addBlockFiles(child, path, out, report);
   }
-  return joinBlocks(std::move(blocks), report.notes);
+}
+
+Result<std::vector<std::filesystem::path>> blocksOf(const std::filesystem::path& path,
+                                                    ReadReport& report) {
+  const MessageCapture capture;
+  const auto root =
+      vtkSmartPointer<vtkXMLDataElement>::Take(vtkXMLUtilities::ReadElementFromFile(path.c_str()));
+  vtkXMLDataElement* set = root ? root->FindNestedElementWithName("vtkMultiBlockDataSet") : nullptr;
+  if (!set) return bad(path, "it holds no <vtkMultiBlockDataSet>; save it again");
+  std::vector<std::filesystem::path> out;
+  addBlockFiles(*set, path, out, report);
+  return out;
+}
+
+/// A file that names the parts of one mesh.
+Result<std::vector<TimedCells>> readParts(const std::filesystem::path& path, MeshFormat format,
+                                          const ReadOptions& options, ReadReport& report,
+                                          int depth) {
+  if (depth == kMaxDepth)
+    return bad(path, "files that name files go deeper than " + std::to_string(kMaxDepth) +
+                         "; does one name itself?");
+  if (const auto steps = chosenSteps({}, options.time, path, report.notes); !steps)
+    return std::unexpected(steps.error());
+  const auto parts = format == MeshFormat::kPvtu ? piecesOf(path) : blocksOf(path, report);
+  if (!parts) return std::unexpected(parts.error());
+  Result<CellMesh> cells = cellsOfParts(*parts, path, options, report, depth);
+  if (!cells) return std::unexpected(cells.error());
+  std::vector<TimedCells> out;
+  out.push_back({"", std::move(*cells)});
+  return out;
 }
 
 Result<std::vector<TimedCells>> readSeries(const std::filesystem::path& path,
@@ -435,8 +504,9 @@ Result<std::vector<TimedCells>> readSeries(const std::filesystem::path& path,
   std::vector<TimedCells> out;
   for (const std::size_t s : *steps) {
     ReadReport step;
-    Result<CellMesh> cells = cellsOfParts(
-        std::span(*entries).subspan(begins[s], begins[s + 1] - begins[s]), path, options, step);
+    std::vector<std::filesystem::path> parts;
+    for (std::size_t i = begins[s]; i < begins[s + 1]; ++i) parts.push_back((*entries)[i].file);
+    Result<CellMesh> cells = cellsOfParts(parts, path, options, step, 0);
     if (!cells) return std::unexpected(cells.error());
     addStep(std::move(step), s == steps->front(), report);
     out.push_back({timeText(times[s]), std::move(*cells)});
@@ -444,16 +514,20 @@ Result<std::vector<TimedCells>> readSeries(const std::filesystem::path& path,
   return out;
 }
 
+Result<std::vector<TimedCells>> readAt(const std::filesystem::path& path, MeshFormat format,
+                                       const ReadOptions& options, ReadReport& report, int depth) {
+  if (format == MeshFormat::kPvd) return readSeries(path, options, report);
+  if (format == MeshFormat::kPvtu || format == MeshFormat::kVtm)
+    return readParts(path, format, options, report, depth);
+  return standsDamage(format) ? readHere(path, format, options, report)
+                              : readApart(path, format, options, report);
+}
+
 }  // namespace
 
 Result<std::vector<TimedCells>> readVtk(const std::filesystem::path& path, MeshFormat format,
                                         const ReadOptions& options, ReadReport& report) {
-  if (format == MeshFormat::kPvd) return readSeries(path, options, report);
-  if (format == MeshFormat::kPvtu) {
-    if (Status checked = checkPieces(path); !checked) return std::unexpected(checked.error());
-  }
-  return guarded(path, !standsDamage(format), report,
-                 [&] { return runReader(path, format, options, report); });
+  return readAt(path, format, options, report, 0);
 }
 
 }  // namespace qtet

@@ -93,20 +93,6 @@ class KeptPoints {
   std::vector<VertexId> next_;  ///< the kept point before it in the same box
 };
 
-void rename(CellMesh& mesh, const std::vector<VertexId>& names) {
-  for (std::size_t i = 0; i < mesh.cells(); ++i) {
-    const std::span<VertexId> ids =
-        std::span(mesh.vertices).subspan(mesh.begins[i], mesh.begins[i + 1] - mesh.begins[i]);
-    if (mesh.types[i] != kPolyhedronCell) {
-      for (VertexId& v : ids) v = names[v];
-      continue;
-    }
-    for (std::size_t at = 1; at < ids.size(); at += ids[at] + 1) {
-      for (VertexId& v : ids.subspan(at + 1, ids[at])) v = names[v];
-    }
-  }
-}
-
 }  // namespace
 
 std::uint64_t weldPoints(CellMesh& mesh, double distance) {
@@ -118,7 +104,7 @@ std::uint64_t weldPoints(CellMesh& mesh, double distance) {
     names[v] = earlier == kGhost ? v : earlier;
     earlier == kGhost ? kept.keep(v) : static_cast<void>(++joined);
   }
-  if (joined > 0) rename(mesh, names);
+  if (joined > 0) mesh.renamePoints(names);
   return joined;
 }
 

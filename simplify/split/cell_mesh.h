@@ -61,6 +61,8 @@ struct CellMesh {
   std::vector<MeshField> fields;         ///< one tuple a point, or a cell of `types`
   std::vector<std::string> otherFields;  ///< names of fields of the file that nobody asked for
   std::string pointType{};               ///< as TetMesh's
+  /// What the file calls each point in all of its pieces (GlobalNodeIds and the like); empty: none.
+  std::vector<std::uint64_t> pointIds{};
 
   [[nodiscard]] std::size_t cells() const { return types.size(); }
   [[nodiscard]] std::span<const VertexId> cell(std::size_t i) const {
@@ -74,6 +76,9 @@ struct CellMesh {
     vertices.insert(vertices.end(), ids.begin(), ids.end());
     begins.push_back(vertices.size());
   }
+  /// Each cell names names[v] in place of the point v. REQUIRES: one name a point, ids below their
+  /// number or kGhost (counts in a polyhedron's stream apart).
+  void renamePoints(std::span<const VertexId> names);
 };
 
 /// "hexahedron"; "cell of VTK type 41" for a kind that is not read.

@@ -597,16 +597,47 @@ TEST(OwnReaders, labelsHaveATypeThatHoldsThem) {
     }
 }
 
-TEST(OwnReaders, labelsThatADoubleCannotHoldAreRefusedWhereTheyAreAskedFor) {
-  for (const auto& [name, text] :
-       {std::pair{"widest.mesh", &meditText}, std::pair{"widest.msh", &gmshText}}) {
+TEST(OwnReaders, labelsThatADoubleCannotHoldAreLeftOutAndRefusedWhereTheyAreAskedFor) {
+  for (const auto& [name, text, label] : {std::tuple{"widest.mesh", &meditText, "medit:ref"},
+                                          std::tuple{"widest.msh", &gmshText, "gmsh:physical"}}) {
     const fs::path path = fileWith(name, text("9007199254740993"));
-    const auto mesh = readMesh(path, std::nullopt);
-    ASSERT_FALSE(mesh) << name;
-    EXPECT_EQ(mesh.error().code, ErrorCode::kBadInput);
-    EXPECT_NE(mesh.error().message.find("2^53"), std::string::npos) << mesh.error().message;
+    const auto all = readMesh(path, std::nullopt);
+    ASSERT_TRUE(all) << name << all.error().text();
+    EXPECT_TRUE(std::ranges::none_of(all->mesh.fields,
+                                     [&](const MeshField& f) { return f.name == label; }));
+    EXPECT_TRUE(std::ranges::any_of(all->report.notes, [](const std::string& note) {
+      return note.find("2^53") != std::string::npos;
+    })) << name;
+    const auto named = readMesh(path, std::vector<std::string>{label});
+    ASSERT_FALSE(named) << name;
+    EXPECT_EQ(named.error().code, ErrorCode::kBadInput);
+    EXPECT_NE(named.error().message.find("2^53"), std::string::npos) << named.error().message;
     EXPECT_TRUE(readMesh(path, std::vector<std::string>{})) << name;
   }
+}
+
+TEST(OwnReaders, moreEntriesThanToldAreRefused) {
+  const auto refuses = [](const std::string& name, std::string text, const std::string& told,
+                          const std::string& less) {
+    const std::size_t at = text.find(told);
+    ASSERT_NE(at, std::string::npos) << name;
+    const Result<CellMesh> read = cellsIn(fileWith(name, text.replace(at, told.size(), less)));
+    ASSERT_FALSE(read) << name;
+    EXPECT_EQ(read.error().code, ErrorCode::kBadInput) << read.error().text();
+    EXPECT_NE(read.error().message.find("announced"), std::string::npos) << read.error().text();
+  };
+  refuses("vertices.mesh", meditText("1"), "Vertices\n4", "Vertices\n3");
+  refuses("cells.mesh", meditText("1"), "1 2 3 4 1\n", "1 2 3 4 1\n1 2 3 4 1\n");
+  const std::size_t cells = sample().cells(), points = sample().points.size();
+  refuses("elements.su2", su2(), "NELEM = " + std::to_string(cells),
+          "NELEM = " + std::to_string(cells - 1));
+  refuses("points.su2", su2(), "NPOIN=" + std::to_string(points),
+          "NPOIN=" + std::to_string(points - 1));
+  const fs::path nodes = fileWith("more.node", "4 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n");
+  std::ofstream(nodes.parent_path() / "more.ele") << "1 4 0\n0 0 1 2 3\n1 0 1 2 3\n";
+  const Result<CellMesh> read = cellsIn(nodes);
+  ASSERT_FALSE(read);
+  EXPECT_NE(read.error().message.find("announced"), std::string::npos) << read.error().text();
 }
 
 TEST(ReadMesh, aPipeIsNotWaitedFor) {

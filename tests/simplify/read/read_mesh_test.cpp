@@ -57,8 +57,9 @@ std::string oneCellVtu(const std::string& pointData, const std::string& cellData
 }
 
 /// The error of reading `text` as `name`; its message must hold the file's name and `word`.
-ErrorCode refused(const std::string& name, const std::string& text, const std::string& word) {
-  const Result<ReadMesh> read = readMesh(fileWith(name, text));
+ErrorCode refused(const std::string& name, const std::string& text, const std::string& word,
+                  const FieldNames& fields = std::nullopt) {
+  const Result<ReadMesh> read = readMesh(fileWith(name, text), fields);
   EXPECT_FALSE(read) << "was read";
   if (read) return ErrorCode::kIo;
   EXPECT_NE(read.error().message.find(name), std::string::npos) << read.error().message;
@@ -162,11 +163,11 @@ TEST(ReadMesh, aNameMeansEveryFieldThatHasItUnlessItSaysWhich) {
             ErrorCode::kNotFound);
 }
 
-TEST(ReadMesh, cellIntegersThatADoubleCannotHoldAreRefused) {
+TEST(ReadMesh, cellIntegersThatADoubleCannotHoldAreRefusedByName) {
   const std::string ids =
       "<DataArray type=\"Int64\" Name=\"id\" format=\"ascii\">1 9007199254740993 2 3 "
       "9007199254740992</DataArray>";
-  EXPECT_EQ(refused("wide-cells.vtu", mixedVtu(ids), "cell 2"),
+  EXPECT_EQ(refused("wide-cells.vtu", mixedVtu(ids), "cell 2", {{"id"}}),
             ErrorCode::kBadInput);  // the third tetrahedron; the line's value does not matter
 }
 
@@ -196,15 +197,19 @@ TEST(ReadMesh, aFieldKeepsWhatIsNotFinite) {
   EXPECT_TRUE(std::isnan(read->mesh.fields[0].values[0]));
 }
 
-TEST(ReadMesh, integersThatADoubleCannotHoldAreRefused) {
+TEST(ReadMesh, integersThatADoubleCannotHoldAreLeftOutAndRefusedByName) {
   const auto text = [](const char* value) {
     return oneCellVtu("<DataArray type=\"Int64\" Name=\"id\" format=\"ascii\">1 2 " +
                       std::string(value) + " 4</DataArray>");
   };
   EXPECT_TRUE(readMesh(fileWith("fits.vtu", text("9007199254740991"))));
-  EXPECT_EQ(refused("wide.vtu", text("9007199254740993"), "point 2"), ErrorCode::kBadInput);
-  EXPECT_TRUE(
-      readMesh(fileWith("left-out.vtu", text("9007199254740993")), std::vector<std::string>{}));
+  EXPECT_EQ(refused("wide.vtu", text("9007199254740993"), "point 2", {{"id"}}),
+            ErrorCode::kBadInput);
+  const Result<ReadMesh> rest = readMesh(fileWith("left-out.vtu", text("9007199254740993")));
+  ASSERT_TRUE(rest) << rest.error().text();
+  EXPECT_TRUE(rest->mesh.fields.empty());
+  ASSERT_EQ(rest->report.notes.size(), 1u);
+  EXPECT_NE(rest->report.notes[0].find("left out"), std::string::npos) << rest->report.notes[0];
 }
 
 TEST(ReadMesh, coordinatesThatAreNotFiniteAreCounted) {

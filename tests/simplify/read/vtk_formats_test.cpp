@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 
@@ -67,16 +68,22 @@ TEST(VtkFormats, cellsWithinAThresholdAreKept) {
 
 TEST(VtkFormats, piecesAndBlocksBecomeOneMesh) {
   expectABar(given("p.pvtu"), 2);
-  Result<ReadMesh> apart = readMesh(given("m.vtm"));
+  ReadOptions none;
+  none.joinPieces = false;
+  Result<ReadMesh> apart = readMesh(given("m.vtm"), none);
   ASSERT_TRUE(apart) << apart.error().text();
   EXPECT_EQ(cleanMesh(apart->mesh)->components, 2u);
-  EXPECT_TRUE(std::ranges::any_of(apart->report.notes, [](const std::string& note) {
-    return note.find("2 blocks") != std::string::npos;
-  }));
-  ReadOptions weld;
-  weld.weld = 1e-6;
-  ReadMesh joined = expectABar(given("m.vtm"), 4, "T", 0, weld);
-  EXPECT_EQ(joined.report.weldedPoints, 4u);
+  EXPECT_EQ(apart->report.pieces, 2u);
+  EXPECT_EQ(apart->report.joinedPoints, 0u);
+  const auto says = [](const ReadReport& report, const std::string& what) {
+    return std::ranges::any_of(report.notes, [&](const std::string& note) {
+      return note.find(what) != std::string::npos;
+    });
+  };
+  EXPECT_TRUE(says(apart->report, "its 2 pieces stay apart (--weld none)"));
+  ReadMesh joined = expectABar(given("m.vtm"), 4);
+  EXPECT_EQ(joined.report.joinedPoints, 4u);
+  EXPECT_TRUE(says(joined.report, "its 2 pieces were joined at 4 points"));
   EXPECT_EQ(cleanMesh(joined.mesh)->components, 1u);
   ASSERT_TRUE(field(joined, "mat"));
   EXPECT_EQ(field(joined, "mat")->values.back(), 13);
@@ -146,6 +153,93 @@ TEST(VtkFormats, aFileThatAnotherNamesInVainIsToldWithBoth) {
         << read.error().text();
     EXPECT_NE(read.error().message.find("gone.vtu"), std::string::npos) << read.error().text();
   }
+}
+
+/// A tetrahedron as a .vtu of its own, its points from x on; `fields` are its <PointData>.
+std::string pieceAt(int x, const std::string& pointType, const std::string& fields) {
+  const std::string low = std::to_string(x), high = std::to_string(x + 1);
+  const auto array = [](const std::string& type, const std::string& name,
+                        const std::string& values) {
+    return "<DataArray type=\"" + type + "\" Name=\"" + name + "\" format=\"ascii\">" + values +
+           "</DataArray>";
+  };
+  // Two neighbours share the triangle at x + 1; each has its fourth corner on its own side.
+  const std::string seam = std::to_string(x < 0 ? x + 1 : x), apex = x < 0 ? low : high;
+  return "<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" byte_order=\"LittleEndian\">"
+         "<UnstructuredGrid><Piece NumberOfPoints=\"4\" NumberOfCells=\"1\"><PointData>" +
+         fields + "</PointData><Points><DataArray type=\"" + pointType +
+         "\" NumberOfComponents=\"3\" format=\"ascii\">" + seam + " 0 0 " + seam + " 1 0 " + seam +
+         " 0 1 " + apex + " 0 0</DataArray></Points><Cells>" +
+         array("Int64", "connectivity", x < 0 ? "0 2 1 3" : "0 1 2 3") +
+         array("Int64", "offsets", "4") + array("UInt8", "types", "10") +
+         "</Cells></Piece></UnstructuredGrid></VTKFile>\n";
+}
+
+std::string fieldOf(const std::string& type, const std::string& name, int components) {
+  std::string values;
+  for (int i = 0; i < 4 * components; ++i) values += std::to_string(i) + " ";
+  return "<DataArray type=\"" + type + "\" Name=\"" + name + "\" NumberOfComponents=\"" +
+         std::to_string(components) + "\" format=\"ascii\">" + values + "</DataArray>";
+}
+
+/// The summary says Float32 and one component of everything, whatever the pieces hold.
+fs::path summaryOf(const std::vector<std::string>& pieces, const std::string& name) {
+  std::string text =
+      "<VTKFile type=\"PUnstructuredGrid\" version=\"0.1\" byte_order=\"LittleEndian\">"
+      "<PUnstructuredGrid><PPointData><PDataArray type=\"Float32\" Name=\"T\"/><PDataArray "
+      "type=\"Float32\" Name=\"U\"/></PPointData><PPoints><PDataArray type=\"Float32\" "
+      "NumberOfComponents=\"3\"/></PPoints>";
+  for (std::size_t i = 0; i < pieces.size(); ++i)
+    text += "<Piece Source=\"" + std::to_string(i) + ".vtu\"/>";
+  const fs::path path = fileWith(name + ".pvtu", text + "</PUnstructuredGrid></VTKFile>\n");
+  for (std::size_t i = 0; i < pieces.size(); ++i)
+    std::ofstream(path.parent_path() / (std::to_string(i) + ".vtu")) << pieces[i];
+  return path;
+}
+
+// VTK's own reader of such files writes beyond its arrays here.
+TEST(VtkFormats, piecesThatDisagreeWithTheirSummaryAndOneAnotherAreReadOneByOne) {
+  const fs::path path =
+      summaryOf({pieceAt(-1, "Float32", fieldOf("Float32", "T", 1) + fieldOf("Float32", "U", 3)),
+                 pieceAt(0, "Float64", fieldOf("Float64", "T", 1) + fieldOf("Float64", "U", 4))},
+                "disagree");
+  Result<ReadMesh> read = readMesh(path);
+  ASSERT_TRUE(read) << read.error().text();
+  EXPECT_EQ(read->mesh.points.size(), 5u);
+  EXPECT_EQ(read->report.joinedPoints, 3u);
+  EXPECT_EQ(cleanMesh(read->mesh)->components, 1u);
+  ASSERT_TRUE(field(*read, "T"));
+  EXPECT_EQ(field(*read, "T")->type, "float64") << "where nothing is lost the wider type is taken";
+  EXPECT_FALSE(field(*read, "U"));
+  EXPECT_TRUE(std::ranges::any_of(read->report.notes, [](const std::string& note) {
+    return note.find("point field U was left out") != std::string::npos;
+  }));
+}
+
+TEST(VtkFormats, anArrayThatOnlySomePiecesHaveIsMissingInTheOthers) {
+  const fs::path path = summaryOf({pieceAt(-1, "Float32", fieldOf("Float32", "T", 1)),
+                                   pieceAt(0, "Float32", fieldOf("Float32", "U", 1))},
+                                  "some");
+  const Result<ReadMesh> read = readMesh(path);
+  ASSERT_TRUE(read) << read.error().text();
+  ASSERT_TRUE(field(*read, "T") && field(*read, "U"));
+  EXPECT_TRUE(std::isnan(field(*read, "T")->values[4]));
+  const std::vector<double>& u = field(*read, "U")->values;
+  EXPECT_TRUE(std::isnan(u[3])) << "the corner that is the first piece's alone";
+  EXPECT_EQ((std::vector<double>{u[0], u[1], u[2], u[4]}), (std::vector<double>{0, 1, 2, 3}))
+      << "on the seam the value that is there";
+}
+
+TEST(VtkFormats, aFileThatNamesItselfIsRefused) {
+  const fs::path path = fileWith(
+      "self.vtm",
+      "<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\" byte_order=\"LittleEndian\">"
+      "<vtkMultiBlockDataSet><DataSet index=\"0\" file=\"self.vtm\"/></vtkMultiBlockDataSet>"
+      "</VTKFile>\n");
+  const Result<ReadMesh> read = readMesh(path);
+  ASSERT_FALSE(read);
+  EXPECT_NE(read.error().message.find("does one name itself?"), std::string::npos)
+      << read.error().text();
 }
 
 TEST(VtkFormats, ghostCellsOfPiecesAreLeftOutAndTheirMarksAreNoField) {
@@ -261,6 +355,25 @@ TEST(VtkFormats, exodusBlocksHaveTheirFieldsAndNumbers) {
 
 TEST(VtkFormats, enSightIsRead) { expectABar(given("ens.0.case"), 2, "T_n"); }
 
+// VTK looks for what stands behind "number of steps" until it is there.
+TEST(VtkFormats, anEnSightCaseThatVtkNeverComesToTheEndOfIsGivenUp) {
+  const std::string front =
+                        "FORMAT\ntype: ensight gold\n\nGEOMETRY\nmodel: 1 a.*.geo\n\nVARIABLE\n"
+                        "scalar per node: T a.*.T\n\nTIME\ntime set: 1\nnumber of steps: ",
+                    start = "\nfilename start number: 0\nfilename increment: 1\n";
+  for (const auto& [name, text] :
+       {std::pair{"count.case", front + "99999999999" + start + "time values: 0\n"},
+        std::pair{"line.case", front + "99999999999" + start}}) {
+    ReadOptions options;
+    options.patience = std::chrono::seconds(1);
+    const Result<ReadMesh> read = readMesh(fileWith(name, text), options);
+    ASSERT_FALSE(read) << name;
+    EXPECT_EQ(read.error().code, ErrorCode::kBadInput);
+    EXPECT_NE(read.error().message.find("--read-seconds"), std::string::npos)
+        << read.error().text();
+  }
+}
+
 TEST(VtkFormats, cgnsZonesAreReadWithTheirSolution) {  // two files that the CGNS library wrote
   const ReadMesh mixed = expectABar(given("unstructured.cgns"), 1);
   EXPECT_EQ(mixed.report.split.cells[kHexahedronCell], 4u);
@@ -323,7 +436,7 @@ TEST(VtkFormats, plot3dGridsAreReadWithTheirSolutionAndWithoutBlankedCells) {
     options.weld = 0;
     const ReadMesh read = expectABar(path, blank ? 3 : 4, "Density", 1, options);
     EXPECT_TRUE(field(read, "Pressure"));
-    EXPECT_EQ(read.report.weldedPoints, 4u);
+    EXPECT_EQ(read.report.joinedPoints, 4u);
     options.plot3dSolution.clear();
     const Result<ReadMesh> alone = readMesh(path, options);
     ASSERT_TRUE(alone) << alone.error().text();
