@@ -1,4 +1,5 @@
-// Builds the demo page. QTET_WASM names the codec's WebAssembly (CMake builds it), QTET_VIEWER_OUT the folder to write.
+// Builds the demo page. QTET_WASM names the codec's WebAssembly (CMake builds it), QTET_VIEWER_OUT
+// the folder to write.
 
 import {defineConfig} from 'vitest/config';
 
@@ -14,7 +15,8 @@ export default defineConfig({
     target: 'es2022',
     outDir: process.env.QTET_VIEWER_OUT ?? 'dist',
     emptyOutDir: true,
-    assetsInlineLimit: 0,  // WebAssembly is compiled while it downloads, which a data: address would prevent
+    // WebAssembly is compiled while it downloads, which a data: address would prevent
+    assetsInlineLimit: 0,
     chunkSizeWarningLimit: 700,
     reportCompressedSize: false,
   },

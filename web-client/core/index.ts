@@ -2,13 +2,34 @@
 
 export {Client, type Listener} from './client';
 export type {Ray, Stretch, Vector} from './cell_ray';
-export {colorGradient, colorTable, isColorMapName, kColorMapEntries, kColorMapNames, type ColorMapName} from './color_maps';
-export {fieldsOf, kClipModes, kMostPlanes, kPlainDisplay, type ClipMode, type Display} from './display';
+export {
+  colorGradient,
+  colorTable,
+  isColorMapName,
+  kColorMapEntries,
+  kColorMapNames,
+  type ColorMapName,
+} from './color_maps';
+export {
+  fieldsOf,
+  kClipModes,
+  kMostPlanes,
+  kPlainDisplay,
+  type ClipMode,
+  type Display,
+} from './display';
 export {errorCode, errorText, QtetError} from './errors';
 export {kMagnitude, scalarRange, type Scalar} from './field_scale';
 export type {FieldValue, Pick, Probe} from './inspector';
 export {errorOfLevel, kFull, limitText, parseLimit, type Limit} from './limit';
-export {fieldKeys, type FieldInfo, type LevelError, type LevelInfo, type Manifest, type Spread} from './manifest';
+export {
+  fieldKeys,
+  type FieldInfo,
+  type LevelError,
+  type LevelInfo,
+  type Manifest,
+  type Spread,
+} from './manifest';
 export type {Plane} from './slice';
 export type {Counts, Statistics} from './statistics';
 export {logTicks, niceTicks, type Tick, type Ticks} from './ticks';

@@ -1,4 +1,5 @@
-// Where triangles lie, told by the boxes of a grid over the lattice: what of a log of regions an isosurface goes through, as far as it is known.
+// Where triangles lie, told by the boxes of a grid over the lattice: what of a log of regions an
+// isosurface goes through, as far as it is known.
 
 import type {PacketBox} from './wishes';
 
@@ -6,13 +7,19 @@ import type {PacketBox} from './wishes';
 const kMarkSteps = 16;
 const kBoxSteps = 256;
 
-/** One byte a box, x fastest: 1 where a corner lies in it or in a neighbour, because a finer mesh has the surface elsewhere. null: no corner. `size`: of the lattice. */
+/**
+ * One byte a box, x fastest: 1 where a corner lies in it or in a neighbour, because a finer mesh
+ * has the surface elsewhere. null: no corner. `size`: of the lattice.
+ */
 export function marksOf(positions: Float32Array, size: number): Uint8Array | null {
   if (positions.length === 0) return null;
   const marks = new Uint8Array(kMarkSteps ** 3);
   for (let at = 0; at < positions.length; at += 3) marks[boxAt(positions, at, size)] = 1;
   const grown = new Uint8Array(marks.length);
-  const range = (at: number): [number, number] => [Math.max(0, at - 1), Math.min(kMarkSteps - 1, at + 1)];
+  const range = (at: number): [number, number] => [
+    Math.max(0, at - 1),
+    Math.min(kMarkSteps - 1, at + 1),
+  ];
   marks.forEach((mark, i) => {
     if (mark === 0) return;
     forBoxes(placeOf(i).map(range), (near) => void (grown[near] = 1));
@@ -23,11 +30,19 @@ export function marksOf(positions: Float32Array, size: number): Uint8Array | nul
 export function meets(marks: Uint8Array, box: PacketBox): boolean {
   let found = false;
   const scale = kBoxSteps / kMarkSteps;
-  forBoxes([0, 1, 2].map((axis) => [Math.floor(box[axis]! / scale), Math.floor(box[axis + 3]! / scale)] as [number, number]), (i) => void (found ||= marks[i] === 1));
+  forBoxes(
+    [0, 1, 2].map(
+      (axis) =>
+        [Math.floor(box[axis]! / scale), Math.floor(box[axis + 3]! / scale)] as [number, number],
+    ),
+    (i) => void (found ||= marks[i] === 1),
+  );
   return found;
 }
 
-/** Least and greatest corner of all marks, in shares of the lattice. REQUIRES: one mark at least. */
+/**
+ * Least and greatest corner of all marks, in shares of the lattice. REQUIRES: one mark at least.
+ */
 export function boundsOfMarks(marks: Uint8Array): number[] {
   const bounds = [1, 1, 1, 0, 0, 0];
   marks.forEach((mark, i) => {
@@ -40,14 +55,25 @@ export function boundsOfMarks(marks: Uint8Array): number[] {
   return bounds;
 }
 
-const placeOf = (i: number): number[] => [i % kMarkSteps, Math.floor(i / kMarkSteps) % kMarkSteps, Math.floor(i / kMarkSteps ** 2)];
+const placeOf = (i: number): number[] => [
+  i % kMarkSteps,
+  Math.floor(i / kMarkSteps) % kMarkSteps,
+  Math.floor(i / kMarkSteps ** 2),
+];
 
 function boxAt(positions: Float32Array, at: number, size: number): number {
-  const step = (axis: number): number => Math.min(kMarkSteps - 1, Math.floor(positions[at + axis]! / size * kMarkSteps));
+  const step = (axis: number): number =>
+    Math.min(kMarkSteps - 1, Math.floor((positions[at + axis]! / size) * kMarkSteps));
   return step(0) + kMarkSteps * (step(1) + kMarkSteps * step(2));
 }
 
 function forBoxes(ranges: [number, number][], use: (i: number) => void): void {
-  const [[x0, x1], [y0, y1], [z0, z1]] = ranges as [[number, number], [number, number], [number, number]];
-  for (let z = z0; z <= z1; ++z) for (let y = y0; y <= y1; ++y) for (let x = x0; x <= x1; ++x) use(x + kMarkSteps * (y + kMarkSteps * z));
+  const [[x0, x1], [y0, y1], [z0, z1]] = ranges as [
+    [number, number],
+    [number, number],
+    [number, number],
+  ];
+  for (let z = z0; z <= z1; ++z)
+    for (let y = y0; y <= y1; ++y)
+      for (let x = x0; x <= x1; ++x) use(x + kMarkSteps * (y + kMarkSteps * z));
 }

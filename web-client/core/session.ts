@@ -1,4 +1,5 @@
-// One mesh on its way into the page: opens the stream, keeps it going over lost connections, refines as far as is wished, and says how it stands.
+// One mesh on its way into the page: opens the stream, keeps it going over lost connections,
+// refines as far as is wished, and says how it stands.
 
 import type {Assembler} from './assembler';
 import type {CoarseVolume} from './coarse_volume';
@@ -7,14 +8,23 @@ import {scalarRange} from './field_scale';
 import {errorOfLevel, kFull, limitReached, type Limit} from './limit';
 import {fieldKeys} from './manifest';
 import {marksOf} from './marks';
-import {kFirstFieldPart, kStructurePart, type Frame, type OpenRequest, type ServerMessage} from './protocol';
+import {
+  kFirstFieldPart,
+  kStructurePart,
+  type Frame,
+  type OpenRequest,
+  type ServerMessage,
+} from './protocol';
 import type {Publisher} from './publisher';
 import type {LogTable, Transport, TransportHandlers} from './transport';
 import {makeTransport} from './transports';
 import {kNoWishes, type Isovalue, type Wishes} from './wishes';
 import type {FromWorker, Source, StreamState} from './worker_messages';
 
-/** Payload bytes under way: enough for 80 Mbit/s at 100 ms, and some ten chunks of decoding that a click has to wait for at most. */
+/**
+ * Payload bytes under way: enough for 80 Mbit/s at 100 ms, and some ten chunks of decoding that a
+ * click has to wait for at most.
+ */
 const kWindowBytes = 1 << 20;
 /** Decoding pauses this often for commands from the page. */
 const kSliceMs = 25;
@@ -22,7 +32,9 @@ const kSliceMs = 25;
 /** Decoding waits so long for the first picture: who shows pictures says of what sooner. */
 const kFirstPictureMs = 500;
 
-/** Blocks may come by the hundred a second: telling of each costs both threads more than it shows. */
+/**
+ * Blocks may come by the hundred a second: telling of each costs both threads more than it shows.
+ */
 const kProgressMs = 100;
 
 /** A view of the protocol has no more (proto/PROTOCOL.md, "View"). */
@@ -33,17 +45,30 @@ const kFittingShare = 0.7;
 
 /** What the codec's sentences leave open: what one sees now, and what to do. */
 const kWaysOut: Record<string, string> = {
-  'bad-checksum': '. What came before is sound and stays on the screen. Try again to fetch the rest anew; if it fails at the same chunk, the file itself is damaged: "qtet verify" says where.',
+  'bad-checksum':
+    '. What came before is sound and stays on the screen. Try again to fetch the rest anew; if ' +
+    'it fails at the same chunk, the file itself is damaged: "qtet verify" says where.',
   'out-of-memory': ' It stays at a level that fits. Close other tabs and try again for more.',
 };
 
-export type TransportFactory = (source: Source, table: LogTable, handlers: TransportHandlers) => Transport;
+export type TransportFactory = (
+  source: Source,
+  table: LogTable,
+  handlers: TransportHandlers,
+) => Transport;
 
 export class Session implements TransportHandlers {
   /** Hears of every part of the log. */
   coarse: Pick<CoarseVolume, 'note' | 'forget'> | null = null;
   private transport: Transport | null = null;
-  private source: Source = {url: '', log: '', mesh: '', fields: null, limit: kFull, transport: 'auto'};
+  private source: Source = {
+    url: '',
+    log: '',
+    mesh: '',
+    fields: null,
+    limit: kFull,
+    transport: 'auto',
+  };
   private state: StreamState = 'connecting';
   private digest = '';
   /** The fields to bring: indexes into the manifest. */
@@ -60,7 +85,10 @@ export class Session implements TransportHandlers {
   private receivedBytes = 0;
   /** Bytes that arrived and whose credit waits until they are applied. */
   private unapplied = 0;
-  /** Carries a word of this session to itself: the next slice, behind the page's commands. A timer would wait 4 ms each time. */
+  /**
+   * Carries a word of this session to itself: the next slice, behind the page's commands. A timer
+   * would wait 4 ms each time.
+   */
   private slices: MessageChannel | undefined;
   private sliceIsDue = false;
   private sliceIsCalled = false;
@@ -72,8 +100,11 @@ export class Session implements TransportHandlers {
   private decodedMs = 0;
 
   constructor(
-    private readonly assembler: Assembler, private readonly publisher: Publisher, private readonly send: (message: FromWorker) => void,
-    private readonly newTransport: TransportFactory = makeTransport) {
+    private readonly assembler: Assembler,
+    private readonly publisher: Publisher,
+    private readonly send: (message: FromWorker) => void,
+    private readonly newTransport: TransportFactory = makeTransport,
+  ) {
     publisher.onFirst = () => this.advance();
     publisher.untilLast = () => this.untilDecoded();
     publisher.onIsosurface = (positions) => this.lookAtSurface(positions);
@@ -93,7 +124,11 @@ export class Session implements TransportHandlers {
 
   /** Bring these fields (indexes into the manifest), whatever was wanted before. */
   want(fields: number[]): void {
-    if (!this.assembler.manifest || (fields.length === this.fields.length && fields.every((field) => this.fields.includes(field)))) return;
+    if (
+      !this.assembler.manifest ||
+      (fields.length === this.fields.length && fields.every((field) => this.fields.includes(field)))
+    )
+      return;
     this.fields = fields;
     this.source.fields = this.keys();
     this.tellPlan();
@@ -131,7 +166,11 @@ export class Session implements TransportHandlers {
     if (packets.length === 0 || !lattice) return;
     const marks = marksOf(positions, lattice.size);
     const isovalue = this.isovalue();
-    if (String(marks) === String(this.wishes.marks ?? null) && JSON.stringify(isovalue) === JSON.stringify(this.wishes.isovalue ?? null)) return;
+    if (
+      String(marks) === String(this.wishes.marks ?? null) &&
+      JSON.stringify(isovalue) === JSON.stringify(this.wishes.isovalue ?? null)
+    )
+      return;
     this.wishes = {...this.wishes, marks, isovalue};
     this.follow();
   }
@@ -141,7 +180,8 @@ export class Session implements TransportHandlers {
     const {isosurfaces} = this.publisher.display;
     const fields = this.assembler.manifest?.fields ?? [];
     const info = isosurfaces && fields[isosurfaces.scalar.field];
-    if (!info || info.association === 'cell' || isosurfaces.values.length > kMostIsovalues) return null;
+    if (!info || info.association === 'cell' || isosurfaces.values.length > kMostIsovalues)
+      return null;
     const {field, component} = isosurfaces.scalar;
     const [low, high] = scalarRange(info, component);
     const values = isosurfaces.values.map((share) => low + share * (high - low));
@@ -155,7 +195,8 @@ export class Session implements TransportHandlers {
   }
 
   pause(): void {
-    if (!this.transport || this.state === 'complete' || this.state === 'failed' || this.paused) return;
+    if (!this.transport || this.state === 'complete' || this.state === 'failed' || this.paused)
+      return;
     this.paused = true;
     this.transport?.pause();
     this.setState('paused');
@@ -182,21 +223,33 @@ export class Session implements TransportHandlers {
     if (message.type === 'opened') this.digest = message.digest;
     if (message.type === 'done') {
       if (!this.isReceived(this.assembler.goal(this.limit, this.fields)?.chunks)) {
-        if (this.aimed) return this.open();  // it may be of the target before, sent as the new one was on its way
-        this.failed(new QtetError('incomplete', 'The server says that everything was sent, but parts of the mesh are missing. Try again.'));
+        // it may be of the target before, sent as the new one was on its way
+        if (this.aimed) return this.open();
+        this.failed(
+          new QtetError(
+            'incomplete',
+            'The server says that everything was sent, but parts of the mesh are missing. Try ' +
+              'again.',
+          ),
+        );
         return;
       }
       this.advanceSoon();
     }
     if (message.type !== 'error') return;
-    // Another mesh stands under this name now: what was decoded is of no use, so start anew with the new one.
+    // Another mesh stands under this name now: what was decoded is of no use, so start anew with
+    // the new one.
     if (message.code === 'log-changed' && this.digest) {
       this.forget();
       this.open();
       return;
     }
     if (message.code === 'unknown-field' && !this.assembler.manifest) {
-      this.send({type: 'error', code: message.code, message: `${message.detail.replace(/\.?$/, '.')} The first field is shown instead.`});
+      this.send({
+        type: 'error',
+        code: message.code,
+        message: `${message.detail.replace(/\.?$/, '.')} The first field is shown instead.`,
+      });
       this.source.fields = null;
       this.open();
       return;
@@ -219,7 +272,7 @@ export class Session implements TransportHandlers {
 
   down(attempt: number, delayMs: number): void {
     if (this.state === 'complete' || this.state === 'held' || this.paused) {
-      this.transport?.disconnect();  // nothing is missing; a wish for more connects again
+      this.transport?.disconnect(); // nothing is missing; a wish for more connects again
       return;
     }
     this.setState('reconnecting', attempt, delayMs);
@@ -262,12 +315,16 @@ export class Session implements TransportHandlers {
 
   /** At the pace so far, once everything is here; Infinity before. */
   private untilDecoded(): number {
-    if (this.limit.kind !== 'full' || this.decodedBytes === 0 || !this.isReceived()) return Infinity;
+    if (this.limit.kind !== 'full' || this.decodedBytes === 0 || !this.isReceived())
+      return Infinity;
     const {bytes, bytesNeeded} = this.assembler.statistics(this.fields);
-    return (bytesNeeded - bytes) * this.decodedMs / this.decodedBytes;
+    return ((bytesNeeded - bytes) * this.decodedMs) / this.decodedBytes;
   }
 
-  /** Frames come in crowds: were each to take a slice, the page's commands and the pictures would wait for all of them. */
+  /**
+   * Frames come in crowds: were each to take a slice, the page's commands and the pictures would
+   * wait for all of them.
+   */
   private advanceSoon(): void {
     if (!this.sliceIsDue) this.advance();
   }
@@ -288,7 +345,8 @@ export class Session implements TransportHandlers {
   /** The first mesh that there is goes to the page before anything finer is decoded. */
   private awaitsPicture(): boolean {
     const {codec} = this.assembler;
-    if (!this.source.pictureFirst || this.publisher.hasPublished || codec.chunksApplied === 0) return false;
+    if (!this.source.pictureFirst || this.publisher.hasPublished || codec.chunksApplied === 0)
+      return false;
     if (this.fields.some((field) => codec.fieldChunksApplied(field) === 0)) return false;
     const now = performance.now();
     if (this.pictureBy === 0) {
@@ -309,7 +367,11 @@ export class Session implements TransportHandlers {
     const {codec, manifest} = this.assembler;
     if (this.limit.kind === 'full' || !manifest || codec.chunksApplied === 0) return false;
     const statistics = this.assembler.statistics(this.fields);
-    return limitReached(this.limit, statistics, errorOfLevel(manifest.levels[statistics.level], this.fields));
+    return limitReached(
+      this.limit,
+      statistics,
+      errorOfLevel(manifest.levels[statistics.level], this.fields),
+    );
   }
 
   private hold(): void {
@@ -326,7 +388,8 @@ export class Session implements TransportHandlers {
     if (this.isReceived()) return this.setState('streaming');
     const {transport} = this;
     // The stream of before serves as long as it brings the fields of now.
-    if (!transport?.isConnected || !this.keys().every((key) => this.requested.includes(key))) return this.reopen();
+    if (!transport?.isConnected || !this.keys().every((key) => this.requested.includes(key)))
+      return this.reopen();
     this.setState('streaming');
     this.aimed = true;
     transport.aim(this.assembler.goal(this.limit, this.fields));
@@ -345,17 +408,29 @@ export class Session implements TransportHandlers {
     }
   }
 
-  /** Begins anew in a fresh codec and ends with room to spare. False when not even the base mesh fits. */
+  /**
+   * Begins anew in a fresh codec and ends with room to spare. False when not even the base mesh
+   * fits.
+   */
   private stayAtWhatFits(): boolean {
     const {tetrahedra} = this.assembler.statistics(this.fields);
     if (tetrahedra === 0) return false;
     this.sliceIsDue = false;
     this.transport?.disconnect();
-    this.limit = this.source.limit = {kind: 'cells', value: Math.max(1, Math.floor(kFittingShare * tetrahedra))};
+    this.limit = this.source.limit = {
+      kind: 'cells',
+      value: Math.max(1, Math.floor(kFittingShare * tetrahedra)),
+    };
     this.guarded(() => {
       this.assembler.codec.restart();
       this.goBack();
-      this.send({type: 'error', code: 'out-of-memory', message: `The whole mesh needs more memory than the browser gives to a page.${kWaysOut['out-of-memory']}`});
+      this.send({
+        type: 'error',
+        code: 'out-of-memory',
+        message:
+          'The whole mesh needs more memory than the browser gives to a ' +
+          `page.${kWaysOut['out-of-memory']}`,
+      });
       this.tellProgress();
       this.hold();
     });
@@ -382,14 +457,29 @@ export class Session implements TransportHandlers {
     return this.fields.map((field) => keys[field]!);
   }
 
-  /** Only the head tells which fields there are: when the right ones were not asked for, ask again. True when it did. */
+  /**
+   * Only the head tells which fields there are: when the right ones were not asked for, ask again.
+   * True when it did.
+   */
   private takeManifest(): boolean {
     const manifest = this.assembler.manifest!;
     const keys = fieldKeys(manifest.fields);
-    this.fields = (this.source.fields ?? []).map((name) => keys.indexOf(name)).filter((field) => field >= 0);
+    this.fields = (this.source.fields ?? [])
+      .map((name) => keys.indexOf(name))
+      .filter((field) => field >= 0);
     const unknown = this.source.fields?.find((name) => !keys.includes(name));
-    if (unknown !== undefined) this.send({type: 'error', code: 'unknown-field', message: `The mesh has no field "${unknown}". The first one is shown instead.`});
-    if (this.fields.length === 0 && keys.length > 0 && (this.source.fields === null || unknown !== undefined)) this.fields = [0];
+    if (unknown !== undefined)
+      this.send({
+        type: 'error',
+        code: 'unknown-field',
+        message: `The mesh has no field "${unknown}". The first one is shown instead.`,
+      });
+    if (
+      this.fields.length === 0 &&
+      keys.length > 0 &&
+      (this.source.fields === null || unknown !== undefined)
+    )
+      this.fields = [0];
     this.assembler.look(this.wishes);
     this.send({type: 'manifest', manifest, digest: this.digest, fields: this.fields});
     this.tellPlan();
@@ -401,14 +491,19 @@ export class Session implements TransportHandlers {
   private open(): void {
     const {manifest} = this.assembler;
     const asked = this.keys();
-    // While it is unknown which fields there are, or where a limit lies, one byte of credit buys the head and nothing that another `open` would waste.
+    // While it is unknown which fields there are, or where a limit lies, one byte of credit buys
+    // the head and nothing that another `open` would waste.
     this.probing = !manifest && (this.source.fields === null || this.limit.kind !== 'full');
     this.requested = asked.filter((name) => name !== '');
     this.unapplied = 0;
     this.aimed = false;
     this.transport?.open({
-      mesh: this.source.mesh, fields: this.requested, credit: this.probing ? 1 : kWindowBytes,
-      have: this.have(asked), wishes: this.wishes, goal: this.assembler.goal(this.limit, this.fields),
+      mesh: this.source.mesh,
+      fields: this.requested,
+      credit: this.probing ? 1 : kWindowBytes,
+      have: this.have(asked),
+      wishes: this.wishes,
+      goal: this.assembler.goal(this.limit, this.fields),
       ...(this.digest ? {digest: this.digest} : {}),
     });
   }
@@ -419,10 +514,12 @@ export class Session implements TransportHandlers {
     const chunks = assembler.receivedChunks;
     const fields = this.fields.map((field, i) => {
       const count = assembler.receivedOfField(field);
-      const ranges = assembler.packets.length > 0 ? assembler.rangesBeyond(count, kFirstFieldPart + field) : [];
+      const ranges =
+        assembler.packets.length > 0 ? assembler.rangesBeyond(count, kFirstFieldPart + field) : [];
       return [keys[i]!, ranges.length > 0 ? {chunks: count, ranges} : count] as const;
     });
-    const ranges = assembler.packets.length > 0 ? assembler.rangesBeyond(chunks, kStructurePart) : [];
+    const ranges =
+      assembler.packets.length > 0 ? assembler.rangesBeyond(chunks, kStructurePart) : [];
     return {chunks, ...(ranges.length > 0 ? {ranges} : {}), fields: Object.fromEntries(fields)};
   }
 
@@ -442,7 +539,11 @@ export class Session implements TransportHandlers {
   /** The leading chunks, all by default, with the fields. */
   private isReceived(chunks = this.assembler.codec.chunkCount): boolean {
     const {assembler} = this;
-    return assembler.manifest !== null && assembler.receivedChunks >= chunks && this.fields.every((field) => assembler.receivedOfField(field) >= chunks);
+    return (
+      assembler.manifest !== null &&
+      assembler.receivedChunks >= chunks &&
+      this.fields.every((field) => assembler.receivedOfField(field) >= chunks)
+    );
   }
 
   private isComplete(): boolean {
@@ -456,18 +557,30 @@ export class Session implements TransportHandlers {
     if (this.state !== 'complete') this.setState('complete');
   }
 
-  private tellPlan(): void { this.send({type: 'plan', plan: this.assembler.plan(this.fields)}); }
+  private tellPlan(): void {
+    this.send({type: 'plan', plan: this.assembler.plan(this.fields)});
+  }
 
-  /** As often as a page can show it; the last word of a burst comes late, and before any other state. */
+  /**
+   * As often as a page can show it; the last word of a burst comes late, and before any other
+   * state.
+   */
   private tellProgress(): void {
-    this.progressTimer ??= setTimeout(() => this.sendProgress(), Math.max(0, this.progressAt + kProgressMs - performance.now()));
+    this.progressTimer ??= setTimeout(
+      () => this.sendProgress(),
+      Math.max(0, this.progressAt + kProgressMs - performance.now()),
+    );
   }
 
   private sendProgress(): void {
     clearTimeout(this.progressTimer);
     this.progressTimer = undefined;
     this.progressAt = performance.now();
-    this.send({type: 'progress', statistics: this.assembler.statistics(this.fields), received: this.receivedBytes});
+    this.send({
+      type: 'progress',
+      statistics: this.assembler.statistics(this.fields),
+      received: this.receivedBytes,
+    });
   }
 
   private setState(state: StreamState, attempt = 0, delayMs = 0): void {

@@ -1,4 +1,5 @@
-// What a value looks like inside the volume: its colour from the map, its extinction from opacities that stand at even shares of the shown range.
+// What a value looks like inside the volume: its colour from the map, its extinction from opacities
+// that stand at even shares of the shown range.
 
 import {colorTable, kColorMapEntries, type ColorMapName} from './color_maps';
 
@@ -22,7 +23,11 @@ export function extinctionOf(opacity: number): number {
 }
 
 /** REQUIRES: at least two opacities. Between them extinction is linear. */
-export function transferTables(opacities: readonly number[], map: ColorMapName, reversed: boolean): TransferTables {
+export function transferTables(
+  opacities: readonly number[],
+  map: ColorMapName,
+  reversed: boolean,
+): TransferTables {
   const colors = colorTable(map, reversed);
   const extinctions = opacities.map(extinctionOf);
   const density = new Float32Array(4 * (kTransferSteps + 1));
@@ -34,13 +39,18 @@ export function transferTables(opacities: readonly number[], map: ColorMapName, 
     const color = (i / kTransferSteps) * (kColorMapEntries - 1);
     const below = 4 * Math.floor(color);
     for (let c = 0; c < 3; ++c) {
-      const [from, to] = [colors[below + c]!, colors[Math.min(below + 4, 4 * kColorMapEntries - 4) + c]!];
-      density[4 * i + c] = extinction * (from + (color % 1) * (to - from)) / 255;
+      const [from, to] = [
+        colors[below + c]!,
+        colors[Math.min(below + 4, 4 * kColorMapEntries - 4) + c]!,
+      ];
+      density[4 * i + c] = (extinction * (from + (color % 1) * (to - from))) / 255;
     }
     density[4 * i + 3] = extinction;
     if (i === 0) continue;
     for (let c = 0; c < 4; ++c) {
-      integral[4 * i + c] = integral[4 * i - 4 + c]! + (density[4 * i + c]! + density[4 * i - 4 + c]!) / 2 / kTransferSteps;
+      integral[4 * i + c] =
+        integral[4 * i - 4 + c]! +
+        (density[4 * i + c]! + density[4 * i - 4 + c]!) / 2 / kTransferSteps;
     }
   }
   return {density, integral};

@@ -1,5 +1,6 @@
-// What a session needs of whatever brings the log's blocks: a WebSocket, byte ranges of a file, or numbered chunks. All speak in the frames and
-// messages of proto/PROTOCOL.md, and each goes on where another one ended.
+// What a session needs of whatever brings the log's blocks: a WebSocket, byte ranges of a file, or
+// numbered chunks. All speak in the frames and messages of proto/PROTOCOL.md, and each goes on
+// where another one ended.
 
 import type {QtetError} from './errors';
 import type {Goal} from './goal';
@@ -38,7 +39,10 @@ export interface Transport {
   disconnect(): void;
 }
 
-/** The chunk table and the fields' keys, once the head is here: whoever fetches blocks by their places needs them. */
+/**
+ * The chunk table and the fields' keys, once the head is here: whoever fetches blocks by their
+ * places needs them.
+ */
 export interface LogTable {
   readonly isKnown: boolean;
   readonly chunkCount: number;

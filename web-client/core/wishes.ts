@@ -1,4 +1,5 @@
-// What the viewer looks at, and which packets of a log of regions to fetch first for it. In lattice coordinates; a box is a packet's, in 256ths of the lattice.
+// What the viewer looks at, and which packets of a log of regions to fetch first for it. In lattice
+// coordinates; a box is a packet's, in 256ths of the lattice.
 
 import type {Vector} from './cell_ray';
 import {boundsOfMarks, meets} from './marks';
@@ -11,7 +12,10 @@ export interface Wishes {
   planes: Plane[];
   /** What is near it comes first. */
   point: Vector | null;
-  /** What meets them is wanted, too (marks.ts): isosurfaces, of which the worker knows where they are. */
+  /**
+   * What meets them is wanted, too (marks.ts): isosurfaces, of which the worker knows where they
+   * are.
+   */
   marks?: Uint8Array | null;
   /** The same for a server, which knows better where they will be. */
   isovalue?: Isovalue | null;
@@ -43,36 +47,58 @@ function reach(box: PacketBox, size: number, normal: readonly number[]): [number
   let low = 0;
   let high = 0;
   for (let axis = 0; axis < 3; ++axis) {
-    const from = normal[axis]! * box[axis]! * size / kBoxSteps, to = normal[axis]! * (box[axis + 3]! + 1) * size / kBoxSteps;
+    const from = (normal[axis]! * box[axis]! * size) / kBoxSteps,
+      to = (normal[axis]! * (box[axis + 3]! + 1) * size) / kBoxSteps;
     low += Math.min(from, to);
     high += Math.max(from, to);
   }
   return [low, high];
 }
 
-/** 0 for what is in sight and on a plane or marked, 3 for what is neither. Never above that of a box within this one, so that parents come before children. */
+/**
+ * 0 for what is in sight and on a plane or marked, 3 for what is neither. Never above that of a box
+ * within this one, so that parents come before children.
+ */
 export function urgency({frustum, planes, marks}: Wishes, box: PacketBox, size: number): number {
   const inSight = frustum.every(({normal, offset}) => reach(box, size, normal)[1] >= offset);
-  const onPlane = (planes.length === 0 && !marks) || (marks && meets(marks, box)) || planes.some(({normal, offset}) => {
-    const [low, high] = reach(box, size, normal);
-    return low <= offset && offset <= high;
-  });
+  const onPlane =
+    (planes.length === 0 && !marks) ||
+    (marks && meets(marks, box)) ||
+    planes.some(({normal, offset}) => {
+      const [low, high] = reach(box, size, normal);
+      return low <= offset && offset <= high;
+    });
   return (inSight ? 0 : 2) + (onPlane ? 0 : 1);
 }
 
 /** Squared, from the point to the nearest of the box. */
 function distance(point: Vector, box: PacketBox, size: number): number {
   return point.reduce((sum, x, axis) => {
-    const outside = Math.max(0, box[axis]! * size / kBoxSteps - x, x - (box[axis + 3]! + 1) * size / kBoxSteps);
+    const outside = Math.max(
+      0,
+      (box[axis]! * size) / kBoxSteps - x,
+      x - ((box[axis + 3]! + 1) * size) / kBoxSteps,
+    );
     return sum + outside * outside;
   }, 0);
 }
 
-/** The packets as they should come: the urgent before the others, of these coarse before fine, near before far. `size`: of the lattice along an axis. */
+/**
+ * The packets as they should come: the urgent before the others, of these coarse before fine, near
+ * before far. `size`: of the lattice along an axis.
+ */
 export function inOrder(packets: readonly Packet[], wishes: Wishes, size: number): Packet[] {
-  const keys = new Map(packets.map((packet) => [packet, [
-    urgency(wishes, packet.box, size), packet.depth, wishes.point ? distance(wishes.point, packet.box, size) : 0, packet.chunk,
-  ]]));
+  const keys = new Map(
+    packets.map((packet) => [
+      packet,
+      [
+        urgency(wishes, packet.box, size),
+        packet.depth,
+        wishes.point ? distance(wishes.point, packet.box, size) : 0,
+        packet.chunk,
+      ],
+    ]),
+  );
   return [...packets].sort((a, b) => {
     const [ka, kb] = [keys.get(a)!, keys.get(b)!];
     const i = ka.findIndex((value, k) => value !== kb[k]);
@@ -88,16 +114,24 @@ export interface WireLattice {
 }
 
 /** As proto/PROTOCOL.md has it, in the mesh's own unit; null: no wishes. */
-export function wireView({frustum, planes, point, marks, isovalue}: Wishes, {origin, step, size}: WireLattice): Record<string, unknown> | null {
-  const shift = (normal: readonly number[]): number => normal.reduce((sum, x, axis) => sum + x * origin[axis]!, 0);
+export function wireView(
+  {frustum, planes, point, marks, isovalue}: Wishes,
+  {origin, step, size}: WireLattice,
+): Record<string, unknown> | null {
+  const shift = (normal: readonly number[]): number =>
+    normal.reduce((sum, x, axis) => sum + x * origin[axis]!, 0);
   // normal . (p - origin) / step = offset
-  const plane = ({normal, offset}: Plane): number[] => [...normal, -(offset * step + shift(normal))];
+  const plane = ({normal, offset}: Plane): number[] => [
+    ...normal,
+    -(offset * step + shift(normal)),
+  ];
   const view: Record<string, unknown> = {};
   if (frustum.length > 0) view.frustum = frustum.map(plane);
   if (planes.length > 0) view.planes = planes.map(plane);
   // Any of both would do, and the box is the larger wish.
   if (isovalue) view.isovalue = isovalue;
-  else if (marks) view.box = boundsOfMarks(marks).map((share, i) => origin[i % 3]! + step * size * share);
+  else if (marks)
+    view.box = boundsOfMarks(marks).map((share, i) => origin[i % 3]! + step * size * share);
   if (point) view.point = point.map((x, axis) => origin[axis]! + step * x);
   return Object.keys(view).length > 0 ? view : null;
 }

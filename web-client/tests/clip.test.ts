@@ -10,11 +10,14 @@ describe('a clip plane in the lattice', () => {
       const {normal, offset} = planeOf({normal: axisNormal(0, flipped), share: 0.25}, kBounds);
       expect(Math.abs(normal[0]! * offset - 25)).toBe(0.5);
     }
-    expect(Math.abs(planeOf({normal: axisNormal(1, false), share: 0.25}, kBounds).offset + 50)).toBe(0.5);
+    expect(
+      Math.abs(planeOf({normal: axisNormal(1, false), share: 0.25}, kBounds).offset + 50),
+    ).toBe(0.5);
   });
 
   test('liesBetweenTwoLatticePlanes', () => {
-    for (let i = 0; i <= 10; ++i) expect(planeOf({normal: axisNormal(2, false), share: i / 10}, kBounds).offset % 1).toBe(0.5);
+    for (let i = 0; i <= 10; ++i)
+      expect(planeOf({normal: axisNormal(2, false), share: i / 10}, kBounds).offset % 1).toBe(0.5);
   });
 
   test('acrossAnyDirectionCountsAlongIt', () => {

@@ -3,9 +3,16 @@ import {errorOfLevel, kFull, limitReached, limitText, parseLimit} from '../core/
 import {kNoStatistics} from '../core/statistics';
 
 test.each([
-  ['full', kFull], ['', kFull], ['cells:20000', {kind: 'cells', value: 20000}], ['bytes:1e5', {kind: 'bytes', value: 1e5}],
-  ['error:0.01', {kind: 'error', value: 0.01}], ['1%', {kind: 'error', value: 0.01}], ['error:0.5%', {kind: 'error', value: 0.005}],
-  ['cells:0', null], ['many', null], ['12', null],
+  ['full', kFull],
+  ['', kFull],
+  ['cells:20000', {kind: 'cells', value: 20000}],
+  ['bytes:1e5', {kind: 'bytes', value: 1e5}],
+  ['error:0.01', {kind: 'error', value: 0.01}],
+  ['1%', {kind: 'error', value: 0.01}],
+  ['error:0.5%', {kind: 'error', value: 0.005}],
+  ['cells:0', null],
+  ['many', null],
+  ['12', null],
 ])('aLimit %s isRead', (text, limit) => {
   expect(parseLimit(text)).toEqual(limit);
   if (limit) expect(parseLimit(limitText(limit as never))).toEqual(limit);
@@ -23,8 +30,20 @@ test('aLimitIsReachedByItsOwnFigure', () => {
 
 test('theErrorIsThatOfTheWorstFieldShownOrElseOfTheBoundary', () => {
   const spread = (mean: number) => ({mean, max: 1});
-  const level = {level: 0, tetrahedra: 1, vertices: 4, boundaryTriangles: 4,
-    error: {toLevel: spread(0.5), toOriginal: spread(0.25), volumeKept: 1, fields: [spread(0.1), spread(0.2)]}};
-  expect([errorOfLevel(level, []), errorOfLevel(level, [0]), errorOfLevel(level, [0, 1])]).toEqual([0.25, 0.1, 0.2]);
+  const level = {
+    level: 0,
+    tetrahedra: 1,
+    vertices: 4,
+    boundaryTriangles: 4,
+    error: {
+      toLevel: spread(0.5),
+      toOriginal: spread(0.25),
+      volumeKept: 1,
+      fields: [spread(0.1), spread(0.2)],
+    },
+  };
+  expect([errorOfLevel(level, []), errorOfLevel(level, [0]), errorOfLevel(level, [0, 1])]).toEqual([
+    0.25, 0.1, 0.2,
+  ]);
   expect(errorOfLevel({...level, error: undefined} as never, [0])).toBeNull();
 });

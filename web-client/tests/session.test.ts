@@ -10,7 +10,19 @@ import {SocketTransport} from '../core/socket_transport';
 import type {Transport} from '../core/transport';
 import type {Wishes} from '../core/wishes';
 import type {FromWorker, Snapshot, Source} from '../core/worker_messages';
-import {errorsOf, FakeCodec, FakeSocket, fakeHead, fieldFrame, headFrame, kFakeBlockBytes, kFakeValues, meshFrame, statesOf, type FakeLog} from './fakes';
+import {
+  errorsOf,
+  FakeCodec,
+  FakeSocket,
+  fakeHead,
+  fieldFrame,
+  headFrame,
+  kFakeBlockBytes,
+  kFakeValues,
+  meshFrame,
+  statesOf,
+  type FakeLog,
+} from './fakes';
 
 const kLog: FakeLog = {fields: ['p', 'v'], chunks: 3};
 
@@ -33,21 +45,43 @@ beforeEach(() => {
     sockets.push(new FakeSocket());
     return sockets.at(-1)!;
   };
-  session = new Session(assembler, publisher, (message) => heard.push(message), ({url}, _, handlers) =>
-    new SocketTransport(url, handlers, makeSocket, () => 0));
+  session = new Session(
+    assembler,
+    publisher,
+    (message) => heard.push(message),
+    ({url}, _, handlers) => new SocketTransport(url, handlers, makeSocket, () => 0),
+  );
 });
 
 afterEach(() => void vi.useRealTimers());
 
 function start(source: Partial<Source> = {}): FakeSocket {
-  session.start({url: 'ws://x', log: '', transport: 'auto', mesh: 'm', fields: ['p'], limit: kFull, ...source});
+  session.start({
+    url: 'ws://x',
+    log: '',
+    transport: 'auto',
+    mesh: 'm',
+    fields: ['p'],
+    limit: kFull,
+    ...source,
+  });
   sockets.at(-1)!.accept();
   return sockets.at(-1)!;
 }
 
 /** Servers that know of targets and pauses say the layout. */
 function opened(socket: FakeSocket, stream: number, layout?: string): void {
-  socket.deliver(JSON.stringify({type: 'opened', stream, mesh: 'm', digest: 'd1', bytes: 1000, planned: 100, layout}));
+  socket.deliver(
+    JSON.stringify({
+      type: 'opened',
+      stream,
+      mesh: 'm',
+      digest: 'd1',
+      bytes: 1000,
+      planned: 100,
+      layout,
+    }),
+  );
 }
 
 const states = (): string[] => statesOf(heard);
@@ -116,7 +150,14 @@ test('whatLiesAheadIsToldWithTheHeadAndAnewForOtherFields', () => {
   session.want([0, 1]);
   const plans = heard.flatMap((message) => (message.type === 'plan' ? [message.plan] : []));
   const head = fakeHead(kLog).length;
-  expect(plans).toEqual([3, 4].map((blocks) => [1, 2, 3].map((chunks) => ({bytes: head + chunks * blocks * kFakeBlockBytes, level: chunks - 1}))));
+  expect(plans).toEqual(
+    [3, 4].map((blocks) =>
+      [1, 2, 3].map((chunks) => ({
+        bytes: head + chunks * blocks * kFakeBlockBytes,
+        level: chunks - 1,
+      })),
+    ),
+  );
 });
 
 describe('a stream', () => {
@@ -127,11 +168,23 @@ describe('a stream', () => {
     vi.advanceTimersByTime(0);
     sendAll(socket, 1, 0);
     expect(states()).toEqual(['connecting', 'streaming', 'complete']);
-    const progress = heard.flatMap((message) => (message.type === 'progress' ? [message.statistics] : []));
+    const progress = heard.flatMap((message) =>
+      message.type === 'progress' ? [message.statistics] : [],
+    );
     const needed = fakeHead(kLog).length + 9 * kFakeBlockBytes;
-    expect(progress).toHaveLength(2);  // of the head, and of everything before the state that says so
-    expect(progress[0]).toMatchObject({bytes: fakeHead(kLog).length, bytesNeeded: needed, total: {tetrahedra: 3}});
-    expect(progress.at(-1)).toMatchObject({bytes: needed, bytesNeeded: needed, tetrahedra: 3, chunks: 3});
+    // of the head, and of everything before the state that says so
+    expect(progress).toHaveLength(2);
+    expect(progress[0]).toMatchObject({
+      bytes: fakeHead(kLog).length,
+      bytesNeeded: needed,
+      total: {tetrahedra: 3},
+    });
+    expect(progress.at(-1)).toMatchObject({
+      bytes: needed,
+      bytesNeeded: needed,
+      tetrahedra: 3,
+      chunks: 3,
+    });
   });
 
   test('resumesWithWhatIsApplied', () => {
@@ -145,7 +198,11 @@ describe('a stream', () => {
     expect(states().at(-1)).toBe('reconnecting');
     vi.advanceTimersByTime(kLongestDelayMs);
     sockets.at(-1)!.accept();
-    expect(opens().at(-1)).toMatchObject({have: {chunks: 2, fields: {p: 1}}, digest: 'd1', fields: ['p']});
+    expect(opens().at(-1)).toMatchObject({
+      have: {chunks: 2, fields: {p: 1}},
+      digest: 'd1',
+      fields: ['p'],
+    });
     opened(sockets.at(-1)!, 1);
     sockets.at(-1)!.deliver(fieldFrame(1, 1, 0));
     sendAll(sockets.at(-1)!, 1, 0, 2);
@@ -176,7 +233,9 @@ describe('a stream', () => {
     socket.deliver(headFrame(1, kLog));
     sendAll(socket, 1, 0);
     expect(errors()).toEqual(['bad-checksum']);
-    expect(heard.find(({type}) => type === 'error')).toMatchObject({message: expect.stringMatching(/chunk 1 is damaged\. What came before is sound and stays/)});
+    expect(heard.find(({type}) => type === 'error')).toMatchObject({
+      message: expect.stringMatching(/chunk 1 is damaged\. What came before is sound and stays/),
+    });
     expect(states().at(-1)).toBe('failed');
     expect(socket.closed).toBe(true);
   });
@@ -270,7 +329,11 @@ describe('a limit', () => {
     socket.deliver(headFrame(1, kLog));
     sendAll(socket, 1, 0);
     session.setLimit({kind: 'cells', value: 1});
-    expect([codec.chunksApplied, codec.fieldChunksApplied(0), states().at(-1)]).toEqual([1, 1, 'held']);
+    expect([codec.chunksApplied, codec.fieldChunksApplied(0), states().at(-1)]).toEqual([
+      1,
+      1,
+      'held',
+    ]);
     expect(opens()).toHaveLength(1);
     session.setLimit({kind: 'bytes', value: fakeHead(kLog).length + 50});
     expect([codec.chunksApplied, states().at(-1)]).toEqual([2, 'held']);
@@ -330,7 +393,7 @@ describe('a target', () => {
     expect(errors()).toEqual([]);
     expect(opens().at(-1)).toMatchObject({target: {level: 1}, have: {chunks: 1, fields: {p: 1}}});
     opened(socket, 3, 'stream');
-    socket.deliver(JSON.stringify({type: 'done', stream: 3}));  // the one that was asked for now
+    socket.deliver(JSON.stringify({type: 'done', stream: 3})); // the one that was asked for now
     expect(errors()).toEqual(['incomplete']);
   });
 
@@ -378,7 +441,10 @@ describe('a target', () => {
     session.pause();
     session.setLimit({kind: 'cells', value: 1});
     expect(states().at(-1)).toBe('streaming');
-    expect([socket.sentOf('target').at(-1)!.target, socket.sentOf('resume').length]).toEqual([{level: 0}, 1]);
+    expect([socket.sentOf('target').at(-1)!.target, socket.sentOf('resume').length]).toEqual([
+      {level: 0},
+      1,
+    ]);
   });
 });
 
@@ -397,7 +463,14 @@ describe('pausing', () => {
   });
 
   test('beforeTheHeadEndsWithAnOpen', () => {
-    session.start({url: 'ws://x', log: '', transport: 'auto', mesh: 'm', fields: null, limit: kFull});
+    session.start({
+      url: 'ws://x',
+      log: '',
+      transport: 'auto',
+      mesh: 'm',
+      fields: null,
+      limit: kFull,
+    });
     session.pause();
     sockets[0]!.accept();
     expect([opens(), states().at(-1)]).toEqual([[], 'paused']);
@@ -412,8 +485,16 @@ describe('pausing', () => {
 
   test('fromTheStartAsksNothingBeforeItEnds', () => {
     session.pause();
-    expect(heard).toEqual([]);  // of what is not there yet
-    session.start({url: 'ws://x', log: '', transport: 'auto', mesh: 'm', fields: ['p'], limit: kFull, paused: true});
+    expect(heard).toEqual([]); // of what is not there yet
+    session.start({
+      url: 'ws://x',
+      log: '',
+      transport: 'auto',
+      mesh: 'm',
+      fields: ['p'],
+      limit: kFull,
+      paused: true,
+    });
     expect([sockets.length, states()]).toEqual([0, ['paused']]);
     session.resume();
     sockets[0]!.accept();
@@ -424,7 +505,15 @@ describe('pausing', () => {
 
   test('fromTheStartIsOverWhenAFailureIsTriedAgain', () => {
     codec.corrupt = 0;
-    session.start({url: 'ws://x', log: '', transport: 'auto', mesh: 'm', fields: ['p'], limit: kFull, paused: true});
+    session.start({
+      url: 'ws://x',
+      log: '',
+      transport: 'auto',
+      mesh: 'm',
+      fields: ['p'],
+      limit: kFull,
+      paused: true,
+    });
     session.resume();
     sockets[0]!.accept();
     sockets[0]!.deliver(headFrame(1, kLog));
@@ -468,7 +557,7 @@ describe('memory', () => {
     codec.room = Infinity;
     session.setLimit(kFull);
     sockets.at(-1)!.accept();
-    sockets.at(-1)!.deliver(fieldFrame(1, 2, 0));  // it came when the connection was given up
+    sockets.at(-1)!.deliver(fieldFrame(1, 2, 0)); // it came when the connection was given up
     expect([codec.chunksApplied, states().at(-1)]).toEqual([kLog.chunks, 'complete']);
   });
 
@@ -491,22 +580,45 @@ test('whatIsosurfacesAreShownIsToldByFieldAndValue', () => {
   const assembler = new Assembler(parts, kFakeValues);
   const publishing = new Publisher(assembler, () => undefined);
   const wishes: Wishes[] = [];
-  const silent = {isConnected: true, connect: () => undefined, open: () => undefined, disconnect: () => undefined, applied: () => undefined, look: (its: Wishes) => wishes.push(its)};
-  const telling = new Session(assembler, publishing, () => undefined, () => silent as unknown as Transport);
-  telling.start({url: 'ws://x', log: '', transport: 'auto', mesh: 'm', fields: ['p'], limit: kFull});
+  const silent = {
+    isConnected: true,
+    connect: () => undefined,
+    open: () => undefined,
+    disconnect: () => undefined,
+    applied: () => undefined,
+    look: (its: Wishes) => wishes.push(its),
+  };
+  const telling = new Session(
+    assembler,
+    publishing,
+    () => undefined,
+    () => silent as unknown as Transport,
+  );
+  telling.start({
+    url: 'ws://x',
+    log: '',
+    transport: 'auto',
+    mesh: 'm',
+    fields: ['p'],
+    limit: kFull,
+  });
   telling.frame(parseFrame(headFrame(1, log)));
   const show = (field: number, values: number[]): void => {
     publishing.show({...kPlainDisplay, isosurfaces: {scalar: {field, component: -1}, values}});
     publishing.onIsosurface(Float32Array.of(1, 1, 1));
   };
   show(0, [0, 0.5]);
-  expect(wishes.at(-1)!.isovalue).toEqual({field: 'p', values: [0, 127.5]});  // the field's range is 0 to 255
+  // the field's range is 0 to 255
+  expect(wishes.at(-1)!.isovalue).toEqual({field: 'p', values: [0, 127.5]});
   show(0, [0, 0.5]);
   expect(wishes).toHaveLength(1);
   show(0, [0.2]);
   expect(wishes.at(-1)!.isovalue).toEqual({field: 'p', values: [51]});
-  show(0, Array.from({length: 9}, (_, i) => i / 9));  // more than a view may have: the box has to do
+  show(
+    0,
+    Array.from({length: 9}, (_, i) => i / 9),
+  ); // more than a view may have: the box has to do
   expect(wishes.at(-1)!.isovalue).toBeNull();
-  show(1, [0.5]);  // of cells
+  show(1, [0.5]); // of cells
   expect(wishes.at(-1)!).toMatchObject({isovalue: null, marks: expect.any(Uint8Array)});
 });

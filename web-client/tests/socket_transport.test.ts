@@ -47,17 +47,30 @@ test('framesAndRepliesOfASupersededStreamAreDropped', () => {
 
 test('aViewIsToldOnceAndOnlyWhereItMatters', () => {
   const socket = new FakeSocket();
-  const seeing = new SocketTransport('ws://x/v1/stream', handlers, () => socket, () => 0.5, {lattice: {origin: [0, 0, 0], step: 1, size: 256}});
+  const seeing = new SocketTransport(
+    'ws://x/v1/stream',
+    handlers,
+    () => socket,
+    () => 0.5,
+    {lattice: {origin: [0, 0, 0], step: 1, size: 256}},
+  );
   seeing.connect();
   socket.accept();
   seeing.open(kOpen);
   const near = (x: number): Wishes => ({...kNoWishes, point: [x, 0, 0]});
   seeing.look(near(1));
-  socket.deliver('{"type":"opened","stream":1,"mesh":"m","digest":"d","bytes":1,"planned":1,"layout":"regions"}');
+  socket.deliver(
+    '{"type":"opened","stream":1,"mesh":"m","digest":"d","bytes":1,"planned":1,"layout":"regions"}',
+  );
   for (const x of [2, 2, 3]) seeing.look(near(x));
   // Marks stand for the isovalue that the server has been told.
-  for (const mark of [0, 1]) seeing.look({...kNoWishes, marks: Uint8Array.of(mark), isovalue: {field: 'p', values: [1]}});
-  expect(socket.sentOf('view').map(({view}) => view)).toEqual([{point: [2, 0, 0]}, {point: [3, 0, 0]}, {isovalue: {field: 'p', values: [1]}}]);
+  for (const mark of [0, 1])
+    seeing.look({...kNoWishes, marks: Uint8Array.of(mark), isovalue: {field: 'p', values: [1]}});
+  expect(socket.sentOf('view').map(({view}) => view)).toEqual([
+    {point: [2, 0, 0]},
+    {point: [3, 0, 0]},
+    {isovalue: {field: 'p', values: [1]}},
+  ]);
 });
 
 test('creditGoesBackInPortionsOfAnEighthOfTheWindow', () => {

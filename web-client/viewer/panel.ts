@@ -34,15 +34,36 @@ export function scalarTitle({field, component}: Scalar, fields: readonly FieldIn
   return `${name}, ${info.components <= 3 ? kAxes[component] : `component ${component + 1}`}`;
 }
 
-/** Every field, vectors with their components, fields of points and of cells in groups where there are both. */
-export function fillScalars(select: HTMLSelectElement, fields: readonly FieldInfo[], chosen: Scalar | null, pointsOnly = false): void {
-  const usable = fields.map((info, field) => ({info, field})).filter(({info}) => !pointsOnly || info.association === 'point');
-  const options = usable.flatMap(({info, field}) => [kMagnitude, ...(info.components > 1 ? info.minimum.keys() : [])].map((component) => {
-    const scalar = {field, component};
-    return {value: scalarText(scalar, fields), title: scalarTitle(scalar, fields), group: info.association === 'cell' ? 'Fields of cells' : 'Fields of points'};
-  }));
+/**
+ * Every field, vectors with their components, fields of points and of cells in groups where there
+ * are both.
+ */
+export function fillScalars(
+  select: HTMLSelectElement,
+  fields: readonly FieldInfo[],
+  chosen: Scalar | null,
+  pointsOnly = false,
+): void {
+  const usable = fields
+    .map((info, field) => ({info, field}))
+    .filter(({info}) => !pointsOnly || info.association === 'point');
+  const options = usable.flatMap(({info, field}) =>
+    [kMagnitude, ...(info.components > 1 ? info.minimum.keys() : [])].map((component) => {
+      const scalar = {field, component};
+      return {
+        value: scalarText(scalar, fields),
+        title: scalarTitle(scalar, fields),
+        group: info.association === 'cell' ? 'Fields of cells' : 'Fields of points',
+      };
+    }),
+  );
   const grouped = new Set(options.map(({group}) => group)).size > 1;
-  fillSelect(select, options.length > 0 ? options.map(({group, ...rest}) => (grouped ? {...rest, group} : rest)) : [{value: '', title: 'No fields'}],
-    chosen ? scalarText(chosen, fields) : '');
+  fillSelect(
+    select,
+    options.length > 0
+      ? options.map(({group, ...rest}) => (grouped ? {...rest, group} : rest))
+      : [{value: '', title: 'No fields'}],
+    chosen ? scalarText(chosen, fields) : '',
+  );
   select.disabled = options.length < 2;
 }

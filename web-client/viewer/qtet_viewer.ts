@@ -1,23 +1,34 @@
 // <qtet-viewer>: a progressive tetrahedral mesh in a web page.
 //
-// Attributes  src          address of the server, by default the page's own; or of a .qtet file on any web server
-//             transport    auto (default), websocket, range or chunks: how a server's logs come
-//             mesh         id of the mesh; without it the viewer offers a menu and starts with the first
-//             field        name of the field, "NAME[0]" for a component; by default the first
-//             colormap     viridis (default), cividis, cool-warm, turbo or grey; "turbo reversed"
-//             range, scale "auto" (default), "symmetric" or "LOW,HIGH"; "log"
-//             edges, surface  "off" hides them; opacity of the surface: above 0, at most 1
-//             clip         up to three planes: axis x, y or z or a direction "1,0,1", a share of the extent after a colon, "-" before an axis for the
-//                          other side: "y", "-x:0.3 z:0.5"; clip-mode: cut (default), cells, slice
-//             iso, threshold  "FIELD=VALUE,VALUE..."; "FIELD=LOW,HIGH"
-//             volume       opacities at even shares of the colours' range, "0,0.1,0.5": the cells are seen through instead of the surface
-//             quality      full (default), "error:0.01" or "1%", "cells:N", "bytes:N": how far to refine
-//             projection, camera  "parallel"; six numbers, as the property `cameraState` gives them
-// Events      load (first picture), progress, refine (a finer picture), complete (the whole mesh is on the screen), error, camera-change,
-//             view-change (an attribute of the view); `detail` holds the figures, the error, the camera or the attribute
-// Slots       poster (shown until the first picture), progress (instead of the viewer's own)
-// Parts       canvas, panel, progress, legend, result, notice
-// Methods     digest(), pause(), resume(), resetView(), look(direction), picture(); properties `counts`, `statistics`, `state`, `view`, `cameraState`
+// Attributes
+//   src          address of the server, by default the page's own; or of a .qtet file on any web
+//                server
+//   transport    auto (default), websocket, range or chunks: how a server's logs come
+//   mesh         id of the mesh; without it the viewer offers a menu and starts with the first
+//   field        name of the field, "NAME[0]" for a component; by default the first
+//   colormap     viridis (default), cividis, cool-warm, turbo or grey; "turbo reversed"
+//   range        "auto" (default), "symmetric" or "LOW,HIGH"
+//   scale        "log"
+//   edges        "off" hides them
+//   surface      "off" hides it
+//   opacity      of the surface: above 0, at most 1
+//   clip         up to three planes: axis x, y or z or a direction "1,0,1", a share of the extent
+//                after a colon, "-" before an axis for the other side: "y", "-x:0.3 z:0.5"
+//   clip-mode    cut (default), cells, slice
+//   iso          "FIELD=VALUE,VALUE..."
+//   threshold    "FIELD=LOW,HIGH"
+//   volume       opacities at even shares of the colours' range, "0,0.1,0.5": the cells are seen
+//                through instead of the surface
+//   quality      full (default), "error:0.01" or "1%", "cells:N", "bytes:N": how far to refine
+//   projection   "parallel"
+//   camera       six numbers, as the property `cameraState` gives them
+// Events         load (first picture), progress, refine (a finer picture), complete (the whole mesh
+//                is on the screen), error, camera-change, view-change (an attribute of the view);
+//                `detail` holds the figures, the error, the camera or the attribute
+// Slots          poster (shown until the first picture), progress (instead of the viewer's own)
+// Parts          canvas, panel, progress, legend, result, notice
+// Methods        digest(), pause(), resume(), resetView(), look(direction), picture()
+// Properties     counts, statistics, state, view, cameraState, token
 
 import {kTransportKinds} from '../core/auto_transport';
 import type {Vector} from '../core/cell_ray';
@@ -49,7 +60,15 @@ import {scalarTitle, type Host, type Scene} from './panel';
 import {ProgressPanel} from './progress_panel';
 import {fillSelect} from './select';
 import {
-  kViewAttributes, parseFieldValues, parseScalar, readSettings, scalarKey, sharesOf, shownRange, type Settings, type ViewAttribute,
+  kViewAttributes,
+  parseFieldValues,
+  parseScalar,
+  readSettings,
+  scalarKey,
+  sharesOf,
+  shownRange,
+  type Settings,
+  type ViewAttribute,
 } from './settings';
 import {embedSnippet, linkTo} from './share';
 import styles from './style.css?inline';
@@ -62,11 +81,17 @@ import {VolumePanel} from './volume_panel';
 const kSheetPixels = 640;
 /** The camera is told of once it rests. */
 const kRestMs = 250;
-/** Notices that the stream has nothing to do with: opening it anew does not help, and its going on ends none of them. */
+/**
+ * Notices that the stream has nothing to do with: opening it anew does not help, and its going on
+ * ends none of them.
+ */
 const kNotOfStream = ['unknown-field', 'no-fullscreen', 'no-picture'];
 /** Notices of the graphics: their way out is to begin drawing anew. */
 const kOfGraphics = ['no-view', 'slow-view', 'silent-view', 'drawing', 'graphics-lost'];
-/** Graphics may take long to start where software draws; after this the user may begin anew, or go on waiting. */
+/**
+ * Graphics may take long to start where software draws; after this the user may begin anew, or go
+ * on waiting.
+ */
 const kStartPatienceMs = 30000;
 
 interface Parts {
@@ -120,8 +145,8 @@ export class QtetViewer extends HTMLElement implements Host {
   private lastCells: {at: number; cells: number} = {at: 0, cells: 0};
   private bearer = '';
   private openings = 0;
-  private earlyCamera: CameraState | null = null;  // asked for before there was a view
-  private pausedEarly = false;  // before there was a stream
+  private earlyCamera: CameraState | null = null; // asked for before there was a view
+  private pausedEarly = false; // before there was a stream
   /** There is a stream of the mesh that was opened last. */
   private started = false;
   /** Since the first step: before it there is nothing in the shadow root. */
@@ -129,15 +154,24 @@ export class QtetViewer extends HTMLElement implements Host {
 
   // ---- for the page
 
-  /** What a server whose meshes are guarded asks for (proto/PROTOCOL.md, "Tokens"); a property, so that it stands in no page's text. */
-  get token(): string { return this.bearer; }
+  /**
+   * What a server whose meshes are guarded asks for (proto/PROTOCOL.md, "Tokens"); a property, so
+   * that it stands in no page's text.
+   */
+  get token(): string {
+    return this.bearer;
+  }
   set token(token: string) {
     this.bearer = token;
     if (this.begun) void this.open();
   }
 
-  get state(): StreamState { return this.streamState; }
-  get statistics(): Statistics { return this.figures; }
+  get state(): StreamState {
+    return this.streamState;
+  }
+  get statistics(): Statistics {
+    return this.figures;
+  }
   get counts(): Counts {
     const {tetrahedra, vertices, boundaryTriangles} = this.figures;
     return {tetrahedra, vertices, boundaryTriangles};
@@ -150,17 +184,22 @@ export class QtetViewer extends HTMLElement implements Host {
       if (value !== null && name !== 'camera') view.set(name, value);
     }
     if (!view.has('mesh') && this.catalog.length > 0) view.set('mesh', this.select('mesh').value);
-    if (this.meshView && !this.meshView.pose.fitted) view.set('camera', this.meshView.cameraState.join(','));
+    if (this.meshView && !this.meshView.pose.fitted)
+      view.set('camera', this.meshView.cameraState.join(','));
     return view;
   }
-  get cameraState(): CameraState | null { return this.meshView?.cameraState ?? null; }
+  get cameraState(): CameraState | null {
+    return this.meshView?.cameraState ?? null;
+  }
   set cameraState(state: CameraState | null) {
     if (state && this.meshView) this.meshView.cameraState = state;
     this.earlyCamera = this.meshView ? null : state;
   }
 
   /** SHA-256 of the decoded mesh (codec/FORMAT.md, "Mesh digest"); empty before there is one. */
-  async digest(): Promise<string> { return this.client?.digest() ?? ''; }
+  async digest(): Promise<string> {
+    return this.client?.digest() ?? '';
+  }
   pause(): void {
     if (this.started) this.client?.pause();
     else this.pausedEarly = this.streamState !== 'failed';
@@ -169,8 +208,12 @@ export class QtetViewer extends HTMLElement implements Host {
     this.pausedEarly = false;
     if (this.started) this.client?.resume();
   }
-  resetView(): void { this.meshView?.look(null); }
-  look(direction: Direction): void { this.meshView?.look(direction); }
+  resetView(): void {
+    this.meshView?.look(null);
+  }
+  look(direction: Direction): void {
+    this.meshView?.look(direction);
+  }
   /** The scene as a PNG; null before there is one. */
   async picture(): Promise<Blob | null> {
     return this.meshView?.picture(getComputedStyle(this).getPropertyValue('--ground')) ?? null;
@@ -182,8 +225,12 @@ export class QtetViewer extends HTMLElement implements Host {
     if (value === null) this.removeAttribute(name);
     else this.setAttribute(name, value);
   }
-  read(name: ViewAttribute): string | null { return this.getAttribute(name); }
-  get fieldTitle(): string { return this.manifest && this.color ? scalarTitle(this.color, this.manifest.fields) : ''; }
+  read(name: ViewAttribute): string | null {
+    return this.getAttribute(name);
+  }
+  get fieldTitle(): string {
+    return this.manifest && this.color ? scalarTitle(this.color, this.manifest.fields) : '';
+  }
   pointAt(point: Vector | null): void {
     this.point = point;
     this.lookAt();
@@ -195,14 +242,18 @@ export class QtetViewer extends HTMLElement implements Host {
 
   // ---- custom element
 
-  /** In steps, each a task of its own: a page stands still for the longest of them, not for their sum. */
+  /**
+   * In steps, each a task of its own: a page stands still for the longest of them, not for their
+   * sum.
+   */
   connectedCallback(): void {
-    const client = this.client = new Client((message) => this.receive(message));
+    const client = (this.client = new Client((message) => this.receive(message)));
     const steps = [
       (): void => {
         this.root.innerHTML = `<style>${styles}</style>${kTemplate}`;
         this.begun = true;
-        this.settings = readSettings((name) => this.getAttribute(name));  // a file's stream begins at once, and only so far
+        // a file's stream begins at once, and only so far
+        this.settings = readSettings((name) => this.getAttribute(name));
         void this.prepareView(client, this.settings.camera);
         void this.open();
       },
@@ -217,12 +268,29 @@ export class QtetViewer extends HTMLElement implements Host {
   }
 
   private build(): void {
-    const clip = new ClipPanel(this.root, this, () => (this.meshView?.pose.direction ?? [0, -1, 0]).map((x) => -x) as [number, number, number]);
+    const clip = new ClipPanel(
+      this.root,
+      this,
+      () =>
+        (this.meshView?.pose.direction ?? [0, -1, 0]).map((x) => -x) as [number, number, number],
+    );
     this.parts = {
-      progress: new ProgressPanel(this.root, (text) => this.announce(text)), legend: new Legend(this.root), color: new ColorPanel(this.root, this), clip,
-      iso: new ValuePanel(this.root, this, 'iso'), threshold: new ValuePanel(this.root, this, 'threshold'), volume: new VolumePanel(this.root, this),
-      level: new LevelPanel(this.root, (quality) => this.write('quality', quality),
-        () => ({statistics: this.figures, manifest: this.manifest, fields: this.color ? [this.color.field] : []})),
+      progress: new ProgressPanel(this.root, (text) => this.announce(text)),
+      legend: new Legend(this.root),
+      color: new ColorPanel(this.root, this),
+      clip,
+      iso: new ValuePanel(this.root, this, 'iso'),
+      threshold: new ValuePanel(this.root, this, 'threshold'),
+      volume: new VolumePanel(this.root, this),
+      level: new LevelPanel(
+        this.root,
+        (quality) => this.write('quality', quality),
+        () => ({
+          statistics: this.figures,
+          manifest: this.manifest,
+          fields: this.color ? [this.color.field] : [],
+        }),
+      ),
       handles: new ClipHandles(this.find('.layer'), kMostPlanes, (i, share) => clip.move(i, share)),
       inspect: new Inspect(this.root, inspectHost(this)),
       resizes: new ResizeObserver(() => this.arrange()),
@@ -251,10 +319,12 @@ export class QtetViewer extends HTMLElement implements Host {
   }
 
   attributeChangedCallback(name: string, before: string | null, after: string | null): void {
-    if (!this.begun || before === after) return;  // the first step reads them all
-    if (name === 'src' || name === 'transport' || (name === 'mesh' && !this.writing)) void this.open();
+    if (!this.begun || before === after) return; // the first step reads them all
+    if (name === 'src' || name === 'transport' || (name === 'mesh' && !this.writing))
+      void this.open();
     else this.apply();
-    if (name === 'camera' && this.settings.camera && this.meshView) this.meshView.cameraState = this.settings.camera;
+    if (name === 'camera' && this.settings.camera && this.meshView)
+      this.meshView.cameraState = this.settings.camera;
     if (name !== 'src' && name !== 'transport') this.tell('view-change', {name, value: after});
   }
 
@@ -264,9 +334,13 @@ export class QtetViewer extends HTMLElement implements Host {
     const before = this.settings;
     this.settings = readSettings((name) => this.getAttribute(name));
     const {parts, settings} = this;
-    const scene: Scene | null = this.manifest && this.bounds.length > 0 ? {manifest: this.manifest, bounds: this.bounds} : null;
+    const scene: Scene | null =
+      this.manifest && this.bounds.length > 0
+        ? {manifest: this.manifest, bounds: this.bounds}
+        : null;
     const known: Scene | null = this.manifest && {manifest: this.manifest, bounds: this.bounds};
-    for (const panel of [parts.color, parts.iso, parts.threshold, parts.volume]) panel.update(settings, known);
+    for (const panel of [parts.color, parts.iso, parts.threshold, parts.volume])
+      panel.update(settings, known);
     parts.clip.update(settings, scene);
     parts.level.update(settings);
     parts.handles.update(settings.planes, this.bounds);
@@ -275,7 +349,8 @@ export class QtetViewer extends HTMLElement implements Host {
       this.meshView.setLook(settings);
       this.meshView.setParallel(settings.parallel);
     }
-    if (this.started && JSON.stringify(before.limit) !== JSON.stringify(settings.limit)) this.client?.setLimit(settings.limit);
+    if (this.started && JSON.stringify(before.limit) !== JSON.stringify(settings.limit))
+      this.client?.setLimit(settings.limit);
     this.showDisplay();
     this.showLegend();
   }
@@ -284,7 +359,15 @@ export class QtetViewer extends HTMLElement implements Host {
 
   private async prepareView(client: Client, start: CameraState | null): Promise<void> {
     const canvas = this.find<HTMLCanvasElement>('.scene');
-    const patience = setTimeout(() => this.addNotice('slow-view', 'The graphics have not started yet. They may only be slow; beginning anew helps if they hang.'), kStartPatienceMs);
+    const patience = setTimeout(
+      () =>
+        this.addNotice(
+          'slow-view',
+          'The graphics have not started yet. They may only be slow; beginning anew helps if ' +
+            'they hang.',
+        ),
+      kStartPatienceMs,
+    );
     try {
       const triad = new Triad(this.find<SVGSVGElement>('.triad'));
       const view = await openView(canvas, {
@@ -295,9 +378,18 @@ export class QtetViewer extends HTMLElement implements Host {
           this.restCamera();
         },
         lost: (lost) => this.graphicsLost(lost),
-        failed: (why) => this.notify('drawing', `Something went wrong while drawing: ${why}. If the picture is not right, try again.`),
+        failed: (why) =>
+          this.notify(
+            'drawing',
+            `Something went wrong while drawing: ${why}. If the picture is not right, try again.`,
+          ),
         silent: (silent) => {
-          if (silent) this.addNotice('silent-view', 'The part that draws does not answer: it hangs, or the browser has ended it. Try again to start it anew; the view stays as it is.');
+          if (silent)
+            this.addNotice(
+              'silent-view',
+              'The part that draws does not answer: it hangs, or the browser has ended it. Try ' +
+                'again to start it anew; the view stays as it is.',
+            );
           else this.endNotices((code) => code === 'silent-view');
         },
         coarse: (have) => this.client?.coarse(have) ?? Promise.reject(new Error('closed')),
@@ -314,18 +406,30 @@ export class QtetViewer extends HTMLElement implements Host {
       if (this.pending) this.draw(this.pending);
       this.pending = null;
     } catch (thrown) {
-      if (canvas.isConnected) this.notify('no-view', `The 3D view cannot start: ${errorText(thrown)}. It needs a browser with WebGL 2; trying again may help.`);
+      if (canvas.isConnected)
+        this.notify(
+          'no-view',
+          `The 3D view cannot start: ${errorText(thrown)}. It needs a browser with WebGL 2; ` +
+            'trying again may help.',
+        );
     } finally {
       clearTimeout(patience);
     }
   }
 
-  /** Another worker and another canvas, for a canvas is given away once; the camera stays, and the mesh comes again from the worker that decodes. */
+  /**
+   * Another worker and another canvas, for a canvas is given away once; the camera stays, and the
+   * mesh comes again from the worker that decodes.
+   */
   private restartView(): void {
     const {client, meshView} = this;
     if (!client) return;
     this.endNotices((code) => kOfGraphics.includes(code));
-    const camera = !meshView ? this.settings.camera : meshView.pose.fitted ? null : meshView.cameraState;
+    const camera = !meshView
+      ? this.settings.camera
+      : meshView.pose.fitted
+        ? null
+        : meshView.cameraState;
     meshView?.dispose();
     this.meshView = null;
     const canvas = this.find('.scene');
@@ -334,27 +438,45 @@ export class QtetViewer extends HTMLElement implements Host {
     void this.prepareView(client, camera);
   }
 
-  private get base(): URL { return new URL(this.getAttribute('src') ?? '.', document.baseURI); }
+  private get base(): URL {
+    return new URL(this.getAttribute('src') ?? '.', document.baseURI);
+  }
 
   private async open(): Promise<void> {
-    const opening = ++this.openings;  // a later one counts, whichever list comes first
+    const opening = ++this.openings; // a later one counts, whichever list comes first
     this.started = false;
     try {
       this.setState('connecting');
       const file = isLogFile(this.base);
-      const catalog = file ? [{id: meshOfLog(this.base), tetrahedra: 0, fields: []}] : await fetchCatalog(this.base, this.bearer);
+      const catalog = file
+        ? [{id: meshOfLog(this.base), tetrahedra: 0, fields: []}]
+        : await fetchCatalog(this.base, this.bearer);
       if (!this.client || opening !== this.openings) return;
       this.catalog = catalog;
       const wanted = file ? null : this.getAttribute('mesh');
       const mesh = wanted ?? this.catalog[0]?.id;
-      if (mesh === undefined) throw new QtetError('not-found', `The server shows no meshes. Put .qtet files into its folder; for guarded ones set the viewer's property "token".`);
+      if (mesh === undefined)
+        throw new QtetError(
+          'not-found',
+          `The server shows no meshes. Put .qtet files into its folder; for guarded ones set ` +
+            `the viewer's property "token".`,
+        );
       const isThere = this.catalog.some(({id}) => id === mesh);
       const menu = this.catalog.length > (isThere ? 1 : 0);
-      fillSelect(this.select('mesh'), this.catalog.map(({id}) => ({value: id, title: id})), mesh);
+      fillSelect(
+        this.select('mesh'),
+        this.catalog.map(({id}) => ({value: id, title: id})),
+        mesh,
+      );
       this.find('.mesh-menu').hidden = !menu;
       this.find('.mesh-name').classList.toggle('visually-hidden', menu);
       if (!isThere) {
-        throw new QtetError('not-found', `There is no mesh "${mesh}" on this server. It has: ${this.catalog.map(({id}) => id).join(', ') || 'none that may be seen without a token'}.`);
+        const names = this.catalog.map(({id}) => id).join(', ');
+        throw new QtetError(
+          'not-found',
+          `There is no mesh "${mesh}" on this server. ` +
+            `It has: ${names || 'none that may be seen without a token'}.`,
+        );
       }
       this.openMesh(mesh);
     } catch (thrown) {
@@ -368,17 +490,35 @@ export class QtetViewer extends HTMLElement implements Host {
     this.opened = opened;
     this.endNotices((code) => !kOfGraphics.includes(code));
     this.find('.mesh-name').textContent = this.find('.title').title = mesh;
-    this.find('.scene').setAttribute('aria-label', `3D view of ${mesh}. Arrow keys turn it, plus and minus zoom; the question mark lists all keys.`);
+    this.find('.scene').setAttribute(
+      'aria-label',
+      `3D view of ${mesh}. Arrow keys turn it, plus and minus zoom; the question mark lists ` +
+        'all keys.',
+    );
     const fields = this.catalog.find(({id}) => id === mesh)?.fields ?? [];
-    const named = [this.getAttribute('field'), ...['iso', 'threshold'].map((name) => this.getAttribute(name)?.replace(/=[^=]*$/, '') ?? null)]
-      .filter((text) => text !== null).map((text) => (fields.includes(text) ? text : scalarKey(text)));
+    const named = [
+      this.getAttribute('field'),
+      ...['iso', 'threshold'].map(
+        (name) => this.getAttribute(name)?.replace(/=[^=]*$/, '') ?? null,
+      ),
+    ]
+      .filter((text) => text !== null)
+      .map((text) => (fields.includes(text) ? text : scalarKey(text)));
     const file = isLogFile(this.base);
     // Of a file nobody knows the fields before its head is here.
     const first = named.length > 0 ? [...new Set(named)] : file ? null : fields.slice(0, 1);
-    const transport = kTransportKinds.find((kind) => kind === this.getAttribute('transport')) ?? 'auto';
+    const transport =
+      kTransportKinds.find((kind) => kind === this.getAttribute('transport')) ?? 'auto';
     this.client?.start({
-      url: file ? '' : streamUrl(this.base), log: file ? this.base.href : logUrl(this.base, mesh), transport, mesh, fields: first, limit: this.settings.limit,
-      pictureFirst: true, paused: this.pausedEarly, ...(this.bearer && {token: this.bearer}),
+      url: file ? '' : streamUrl(this.base),
+      log: file ? this.base.href : logUrl(this.base, mesh),
+      transport,
+      mesh,
+      fields: first,
+      limit: this.settings.limit,
+      pictureFirst: true,
+      paused: this.pausedEarly,
+      ...(this.bearer && {token: this.bearer}),
     });
     this.started = true;
     this.pausedEarly = false;
@@ -393,7 +533,10 @@ export class QtetViewer extends HTMLElement implements Host {
     this.figures = kNoStatistics;
     this.lastCells = {at: 0, cells: 0};
     if (this.meshView) {
-      const {pose: {fitted}, cameraState} = this.meshView;
+      const {
+        pose: {fitted},
+        cameraState,
+      } = this.meshView;
       this.meshView.clear();
       if (sameMesh && !fitted) this.meshView.cameraState = cameraState;
     }
@@ -408,19 +551,24 @@ export class QtetViewer extends HTMLElement implements Host {
 
   private receive(message: Exclude<FromWorker, {type: 'answer'}>): void {
     switch (message.type) {
-      case 'manifest': return this.takeManifest(message.manifest);
+      case 'manifest':
+        return this.takeManifest(message.manifest);
       case 'plan':
         this.plan = message.plan;
         return this.parts?.progress.takePlan(this.plan);
-      case 'snapshot': return this.meshView ? this.draw(message.snapshot) : void (this.pending = message.snapshot);
-      case 'progress': return this.takeProgress(message.statistics);
-      case 'state': return this.setState(message.state, message.attempt, message.delayMs);
-      case 'error': return this.notify(message.code, message.message);
+      case 'snapshot':
+        return this.meshView ? this.draw(message.snapshot) : void (this.pending = message.snapshot);
+      case 'progress':
+        return this.takeProgress(message.statistics);
+      case 'state':
+        return this.setState(message.state, message.attempt, message.delayMs);
+      case 'error':
+        return this.notify(message.code, message.message);
     }
   }
 
   private takeManifest(manifest: Manifest): void {
-    if (this.manifest) this.forget(true);  // another log stands under its name now
+    if (this.manifest) this.forget(true); // another log stands under its name now
     this.manifest = manifest;
     this.parts?.progress.begin(manifest);
     this.apply();
@@ -433,12 +581,16 @@ export class QtetViewer extends HTMLElement implements Host {
   }
 
   private draw(snapshot: Snapshot): void {
-    if (this.figures === kNoStatistics) this.figures = snapshot.statistics;  // else they are newer: a picture may have waited for a view
+    // else they are newer: a picture may have waited for a view
+    if (this.figures === kNoStatistics) this.figures = snapshot.statistics;
     this.snapshot = snapshot;
-    if (snapshot.surface) this.hasGaps = [snapshot.surface, ...snapshot.cuts].some(({values}) => values.some(Number.isNaN));
+    if (snapshot.surface)
+      this.hasGaps = [snapshot.surface, ...snapshot.cuts].some(({values}) =>
+        values.some(Number.isNaN),
+      );
     const {manifest} = this;
     this.meshView!.show(snapshot, (drawingMs) => {
-      if (manifest !== this.manifest) return;  // of the mesh before
+      if (manifest !== this.manifest) return; // of the mesh before
       this.client?.shown(drawingMs);
       this.tell(this.loaded ? 'refine' : 'load', snapshot.statistics);
       this.loaded = true;
@@ -457,7 +609,13 @@ export class QtetViewer extends HTMLElement implements Host {
   /** The decoder may be done long before the picture is: both have to be. */
   private tellComplete(): void {
     const {drawn} = this;
-    if (this.streamState !== 'complete' || this.completionTold || !drawn || drawn.bytes < this.figures.bytesNeeded) return;
+    if (
+      this.streamState !== 'complete' ||
+      this.completionTold ||
+      !drawn ||
+      drawn.bytes < this.figures.bytesNeeded
+    )
+      return;
     this.completionTold = true;
     this.tell('complete', drawn);
   }
@@ -471,7 +629,8 @@ export class QtetViewer extends HTMLElement implements Host {
     const pause = this.find<HTMLButtonElement>('.pause');
     pause.hidden = state === 'complete' || state === 'failed';
     pause.textContent = state === 'paused' || state === 'held' ? 'Continue' : 'Pause';
-    if (state === 'streaming' || state === 'complete') this.endNotices((code) => ![...kNotOfStream, ...kOfGraphics].includes(code));
+    if (state === 'streaming' || state === 'complete')
+      this.endNotices((code) => ![...kNotOfStream, ...kOfGraphics].includes(code));
   }
 
   // ---- to the worker
@@ -479,21 +638,33 @@ export class QtetViewer extends HTMLElement implements Host {
   /** What colours: the attribute's field, or the first. */
   private get color(): Scalar | null {
     const fields = this.manifest?.fields ?? [];
-    return parseScalar(this.getAttribute('field'), fields) ?? (fields.length > 0 ? {field: 0, component: kMagnitude} : null);
+    return (
+      parseScalar(this.getAttribute('field'), fields) ??
+      (fields.length > 0 ? {field: 0, component: kMagnitude} : null)
+    );
   }
 
   private showDisplay(): void {
     if (!this.manifest) return;
-    const {settings, manifest: {fields}} = this;
+    const {
+      settings,
+      manifest: {fields},
+    } = this;
     const iso = this.parts!.iso.value();
     const threshold = parseFieldValues(this.getAttribute('threshold'), fields);
     const ends = threshold && sharesOf(threshold, fields);
     const display: Display = {
-      color: this.color, body: settings.surface && settings.volume === null, mode: settings.planes.length > 0 ? settings.mode : 'cut',
-      planes: this.bounds.length > 0 ? settings.planes.map((plane) => planeOf(plane, this.bounds)) : [],
+      color: this.color,
+      body: settings.surface && settings.volume === null,
+      mode: settings.planes.length > 0 ? settings.mode : 'cut',
+      planes:
+        this.bounds.length > 0 ? settings.planes.map((plane) => planeOf(plane, this.bounds)) : [],
       isosurfaces: iso && {scalar: iso.scalar, values: sharesOf(iso, fields)},
       volume: settings.volume !== null,
-      threshold: threshold && ends!.length === 2 ? {scalar: threshold.scalar, low: ends![0]!, high: ends![1]!} : null,
+      threshold:
+        threshold && ends!.length === 2
+          ? {scalar: threshold.scalar, low: ends![0]!, high: ends![1]!}
+          : null,
     };
     const text = JSON.stringify(display);
     if (text === this.sentDisplay) return;
@@ -505,7 +676,10 @@ export class QtetViewer extends HTMLElement implements Host {
 
   /** Tells a log of regions what to refine first. */
   private lookAt(): void {
-    const planes = this.bounds.length > 0 ? this.settings.planes.map((plane) => planeOf(plane, this.bounds)) : [];
+    const planes =
+      this.bounds.length > 0
+        ? this.settings.planes.map((plane) => planeOf(plane, this.bounds))
+        : [];
     const wishes: Wishes = {frustum: this.meshView?.pose.frustum ?? [], planes, point: this.point};
     const text = JSON.stringify(wishes);
     if (text !== this.toldWishes) this.client?.look(wishes);
@@ -515,40 +689,61 @@ export class QtetViewer extends HTMLElement implements Host {
   // ---- controls
 
   private bindControls(): void {
-    this.select('mesh').addEventListener('change', (event) => this.chooseMesh((event.target as HTMLSelectElement).value));
-    this.input('parallel').addEventListener('change', () => this.write('projection', this.input('parallel').checked ? 'parallel' : null));
+    this.select('mesh').addEventListener('change', (event) =>
+      this.chooseMesh((event.target as HTMLSelectElement).value),
+    );
+    this.input('parallel').addEventListener('change', () =>
+      this.write('projection', this.input('parallel').checked ? 'parallel' : null),
+    );
     this.on('.fold', () => this.fold(!this.find('.panel').classList.contains('folded')));
     this.on('.reset', () => this.resetView());
     this.on('.pause', () => this.togglePause());
-    this.on('.dismiss', () => this.endNotices((code) => code === this.find('.notice').dataset.code));
-    this.on('.retry', () => (kOfGraphics.includes(this.find('.notice').dataset.code ?? '') ? this.restartView() : void this.open()));
+    this.on('.dismiss', () =>
+      this.endNotices((code) => code === this.find('.notice').dataset.code),
+    );
+    this.on('.retry', () =>
+      kOfGraphics.includes(this.find('.notice').dataset.code ?? '')
+        ? this.restartView()
+        : void this.open(),
+    );
     this.on('.picture', () => void this.savePicture());
     this.on('.fullscreen', () => this.toggleFullscreen());
     this.on('.share', () => this.share());
     this.on('.help', () => this.find<HTMLDialogElement>('.help-dialog').showModal());
     this.on('.copy-link', () => void this.copy('input[name=link]'));
     this.on('.copy-snippet', () => void this.copy('textarea'));
-    for (const button of this.root.querySelectorAll<HTMLButtonElement>('.look')) button.addEventListener('click', () => this.look(button.value as Direction));
+    for (const button of this.root.querySelectorAll<HTMLButtonElement>('.look'))
+      button.addEventListener('click', () => this.look(button.value as Direction));
   }
 
   private bindKeys(canvas: HTMLCanvasElement, view: View): void {
     bindKeys(canvas, {
-      turn: (horizontal, vertical) => view.turn(horizontal, vertical), zoom: (factor) => view.zoom(factor),
+      turn: (horizontal, vertical) => view.turn(horizontal, vertical),
+      zoom: (factor) => view.zoom(factor),
       look: (direction) => view.look(direction === null ? null : kDirections[direction]!),
       toggle: (what) => this.toggle(what),
-      moveClip: (step) => { if (this.settings.planes[0]) this.parts?.clip.move(0, this.settings.planes[0].share + step); },
-      inspect: () => this.parts?.inspect.pickMiddle(), picture: () => void this.savePicture(),
-      help: () => this.find<HTMLDialogElement>('.help-dialog').showModal(), escape: () => this.parts?.inspect.use('none'),
+      moveClip: (step) => {
+        if (this.settings.planes[0]) this.parts?.clip.move(0, this.settings.planes[0].share + step);
+      },
+      inspect: () => this.parts?.inspect.pickMiddle(),
+      picture: () => void this.savePicture(),
+      help: () => this.find<HTMLDialogElement>('.help-dialog').showModal(),
+      escape: () => this.parts?.inspect.use('none'),
     });
   }
 
   private toggle(what: 'parallel' | 'edges' | 'clip' | 'pause' | 'fullscreen'): void {
     switch (what) {
-      case 'parallel': return this.write('projection', this.settings.parallel ? null : 'parallel');
-      case 'edges': return this.write('edges', this.settings.edges ? 'off' : null);
-      case 'clip': return this.write('clip', this.settings.planes.length > 0 ? null : 'x:0.5');
-      case 'pause': return this.togglePause();
-      case 'fullscreen': return this.toggleFullscreen();
+      case 'parallel':
+        return this.write('projection', this.settings.parallel ? null : 'parallel');
+      case 'edges':
+        return this.write('edges', this.settings.edges ? 'off' : null);
+      case 'clip':
+        return this.write('clip', this.settings.planes.length > 0 ? null : 'x:0.5');
+      case 'pause':
+        return this.togglePause();
+      case 'fullscreen':
+        return this.toggleFullscreen();
     }
   }
 
@@ -567,16 +762,22 @@ export class QtetViewer extends HTMLElement implements Host {
   /** Another mesh has other fields, places and values; what does not depend on them stays. */
   private chooseMesh(mesh: string): void {
     this.writing = true;
-    for (const name of ['field', 'range', 'iso', 'threshold', 'camera', 'quality'] as const) this.write(name, null);
+    for (const name of ['field', 'range', 'iso', 'threshold', 'camera', 'quality'] as const)
+      this.write(name, null);
     this.write('mesh', mesh);
     this.writing = false;
     this.openMesh(mesh);
   }
 
   private async savePicture(): Promise<void> {
-    const picture = await this.picture().catch((thrown: unknown) => this.notify('no-picture', `The picture cannot be taken: ${errorText(thrown)}.`));
+    const picture = await this.picture().catch((thrown: unknown) =>
+      this.notify('no-picture', `The picture cannot be taken: ${errorText(thrown)}.`),
+    );
     if (!picture) return;
-    const link = Object.assign(document.createElement('a'), {href: URL.createObjectURL(picture), download: `${this.find('.mesh-name').textContent}.png`});
+    const link = Object.assign(document.createElement('a'), {
+      href: URL.createObjectURL(picture),
+      download: `${this.find('.mesh-name').textContent}.png`,
+    });
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 1000);
   }
@@ -584,21 +785,32 @@ export class QtetViewer extends HTMLElement implements Host {
   private toggleFullscreen(): void {
     if (document.fullscreenElement) void document.exitFullscreen();
     else {
-      this.requestFullscreen().catch(() => this.notify('no-fullscreen', 'The browser does not give the whole screen to this page. Its own menu may.'));
+      this.requestFullscreen().catch(() =>
+        this.notify(
+          'no-fullscreen',
+          'The browser does not give the whole screen to this page. Its own menu may.',
+        ),
+      );
     }
   }
 
   private share(): void {
     const link = linkTo(location.href, this.view);
     this.find<HTMLInputElement>('input[name=link]').value = link;
-    this.find<HTMLTextAreaElement>('textarea').value = embedSnippet(link, `3D view of ${this.find('.mesh-name').textContent}`);
+    this.find<HTMLTextAreaElement>('textarea').value = embedSnippet(
+      link,
+      `3D view of ${this.find('.mesh-name').textContent}`,
+    );
     this.find<HTMLDialogElement>('.share-dialog').showModal();
   }
 
   private async copy(selector: string): Promise<void> {
     const box = this.find<HTMLInputElement | HTMLTextAreaElement>(selector);
     box.select();
-    await navigator.clipboard?.writeText(box.value).then(() => this.announce('Copied'), () => undefined);
+    await navigator.clipboard?.writeText(box.value).then(
+      () => this.announce('Copied'),
+      () => undefined,
+    );
   }
 
   private showLegend(): void {
@@ -608,10 +820,18 @@ export class QtetViewer extends HTMLElement implements Host {
       this.parts.legend.hide();
     } else {
       const [low, high] = snapshot.scaleRange;
-      const occurring = snapshot.extent.map((share) => low + share * (high - low)) as [number, number];
+      const occurring = snapshot.extent.map((share) => low + share * (high - low)) as [
+        number,
+        number,
+      ];
       const range = shownRange(settings, occurring);
       this.meshView?.setRange(range.low, range.high, snapshot.scaleRange, range.logarithmic);
-      this.parts.legend.show(snapshot.color, manifest.fields, {...range, hasGaps: this.hasGaps}, settings);
+      this.parts.legend.show(
+        snapshot.color,
+        manifest.fields,
+        {...range, hasGaps: this.hasGaps},
+        settings,
+      );
       this.parts.color.showRange(range.low, range.high);
     }
     this.arrange();
@@ -620,8 +840,13 @@ export class QtetViewer extends HTMLElement implements Host {
   private showStatistics({costMs, statistics}: Snapshot): void {
     const now = performance.now();
     const {at, cells} = this.lastCells;
-    const text = (selector: string, value: string): void => void (this.find(selector).textContent = value);
-    if (at > 0 && statistics.tetrahedra > cells) text('.cell-rate', `${formatCount(Math.round((statistics.tetrahedra - cells) / (now - at) * 1000))} cells/s`);
+    const text = (selector: string, value: string): void =>
+      void (this.find(selector).textContent = value);
+    if (at > 0 && statistics.tetrahedra > cells)
+      text(
+        '.cell-rate',
+        `${formatCount(Math.round(((statistics.tetrahedra - cells) / (now - at)) * 1000))} cells/s`,
+      );
     this.lastCells = {at: now, cells: statistics.tetrahedra};
     text('.frame-ms', `${this.meshView!.pose.frameMs.toFixed(1)} ms`);
     text('.cost-ms', `${costMs.toFixed(1)} ms`);
@@ -641,7 +866,9 @@ export class QtetViewer extends HTMLElement implements Host {
     }, kRestMs);
   }
 
-  private get isNarrow(): boolean { return this.clientWidth <= kSheetPixels; }
+  private get isNarrow(): boolean {
+    return this.clientWidth <= kSheetPixels;
+  }
 
   private fold(folded: boolean): void {
     this.find('.panel').classList.toggle('folded', folded);
@@ -653,7 +880,11 @@ export class QtetViewer extends HTMLElement implements Host {
     if (!this.parts) return;
     const sheet = this.isNarrow;
     const panel = this.find('.panel');
-    const insets = insetsOf(this, {panel, legend: this.find('.legend'), result: this.find('.result')}, sheet);
+    const insets = insetsOf(
+      this,
+      {panel, legend: this.find('.legend'), result: this.find('.result')},
+      sheet,
+    );
     this.style.setProperty('--sheet', `${sheet ? panel.offsetHeight : 0}px`);
     this.middle = [(1 + insets.left - insets.right) / 2, (1 + insets.top - insets.bottom) / 2];
     this.meshView?.setInsets(insets);
@@ -662,7 +893,12 @@ export class QtetViewer extends HTMLElement implements Host {
   // ---- errors
 
   private graphicsLost(lost: boolean): void {
-    if (lost) this.notify('graphics-lost', 'The browser took the graphics away, as it does when memory is short. The picture comes back when it returns them; closing other tabs helps.');
+    if (lost)
+      this.notify(
+        'graphics-lost',
+        'The browser took the graphics away, as it does when memory is short. The picture ' +
+          'comes back when it returns them; closing other tabs helps.',
+      );
     else this.endNotices((code) => code === 'graphics-lost');
   }
 
@@ -703,20 +939,38 @@ export class QtetViewer extends HTMLElement implements Host {
     this.dispatchEvent(new CustomEvent(type, {detail}));
   }
 
-  private on(selector: string, action: () => void): void { this.find(selector).addEventListener('click', action); }
-  private find<T extends Element = HTMLElement>(selector: string): T { return this.root.querySelector<T>(selector)!; }
-  private select(name: string): HTMLSelectElement { return this.find(`select[name=${name}]`); }
-  private input(name: string): HTMLInputElement { return this.find(`input[name=${name}]`); }
+  private on(selector: string, action: () => void): void {
+    this.find(selector).addEventListener('click', action);
+  }
+  private find<T extends Element = HTMLElement>(selector: string): T {
+    return this.root.querySelector<T>(selector)!;
+  }
+  private select(name: string): HTMLSelectElement {
+    return this.find(`select[name=${name}]`);
+  }
+  private input(name: string): HTMLInputElement {
+    return this.find(`input[name=${name}]`);
+  }
 }
 
 /** The viewer as Inspect sees it. */
 function inspectHost(viewer: QtetViewer): ConstructorParameters<typeof Inspect>[1] {
   return {
-    get client() { return viewer.client; },
-    get view() { return viewer.meshView; },
-    get manifest() { return viewer.manifest; },
-    get middle() { return viewer.middle; },
-    get fieldTitle() { return viewer.fieldTitle; },
+    get client() {
+      return viewer.client;
+    },
+    get view() {
+      return viewer.meshView;
+    },
+    get manifest() {
+      return viewer.manifest;
+    },
+    get middle() {
+      return viewer.middle;
+    },
+    get fieldTitle() {
+      return viewer.fieldTitle;
+    },
     announce: (text) => viewer.announce(text),
     pointAt: (point) => viewer.pointAt(point),
   };

@@ -7,7 +7,11 @@ export interface SelectOption {
 }
 
 /** Leaves the menu as it is when it holds these already, so that an open one does not close. */
-export function fillSelect(select: HTMLSelectElement, options: SelectOption[], chosen: string): void {
+export function fillSelect(
+  select: HTMLSelectElement,
+  options: SelectOption[],
+  chosen: string,
+): void {
   const signature = JSON.stringify(options);
   if (select.dataset.options !== signature) {
     select.dataset.options = signature;
@@ -16,7 +20,8 @@ export function fillSelect(select: HTMLSelectElement, options: SelectOption[], c
     for (const {value, title, group} of options) {
       let parent: HTMLElement = select;
       if (group !== undefined) {
-        parent = groups.get(group) ?? Object.assign(document.createElement('optgroup'), {label: group});
+        parent =
+          groups.get(group) ?? Object.assign(document.createElement('optgroup'), {label: group});
         if (!groups.has(group)) select.append(parent);
         groups.set(group, parent);
       }
