@@ -32,8 +32,10 @@ export default defineConfig({
     plugins: () => [
       {
         name: 'minify',
-        renderChunk: (code: string) =>
-          transformWithEsbuild(code, 'worker.js', {minify: true, target: 'es2022'}),
+        async renderChunk(code: string) {
+          const small = {minify: true, target: 'es2022'} as const;
+          return {code: (await transformWithEsbuild(code, 'worker.js', small)).code, map: null};
+        },
       },
     ],
   },

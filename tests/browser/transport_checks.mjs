@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import {writeFileSync} from 'node:fs';
 import {join} from 'node:path';
-import {kDesktop, kTimeoutMs} from './browser.mjs';
+import {kDesktop} from './browser.mjs';
 import {expectWhole} from './expect.mjs';
 import {PoorLine} from './poor_line.mjs';
 import {makeLog, Server} from './programs.mjs';

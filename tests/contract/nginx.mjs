@@ -61,7 +61,7 @@ function configure(folder, serverPort, port) {
     .replace('server 127.0.0.1:8080;', `server 127.0.0.1:${serverPort};`)
     .replace('listen 443 ssl', `listen 127.0.0.1:${port} ssl`)
     .replace(/ssl_certificate_key .*/, `ssl_certificate_key ${folder}/key.pem;`)
-    .replace(/ssl_certificate  .*/, `ssl_certificate ${folder}/cert.pem;`);
+    .replace(/ssl_certificate {2}.*/, `ssl_certificate ${folder}/cert.pem;`);
   writeFileSync(
     join(folder, 'nginx.conf'),
     `daemon off; worker_processes 1; pid ${folder}/pid; error_log ${folder}/error.log;

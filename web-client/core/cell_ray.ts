@@ -36,7 +36,7 @@ export function stretches(cells: Cells, ray: Ray, first: number, last: number): 
   }
   const found: Stretch[] = [];
   for (let cell = 0, at = 0; at < tetrahedra.length; ++cell, at += 4) {
-    if (kept && kept[cell] === 0) continue;
+    if (kept?.[cell] === 0) continue;
     const a = tetrahedra[at]!,
       b = tetrahedra[at + 1]!,
       c = tetrahedra[at + 2]!,

@@ -80,7 +80,7 @@ function verticesNearASide({points, tetrahedra, kept}: Cells, boundary: Uint32Ar
 function candidateFaces({tetrahedra, kept}: Cells, near: Uint8Array): Uint32Array {
   const faces: number[] = [];
   for (let cell = 0, at = 0; at < tetrahedra.length; ++cell, at += 4) {
-    if (kept && kept[cell] === 0) continue;
+    if (kept?.[cell] === 0) continue;
     const n0 = near[tetrahedra[at]!]!,
       n1 = near[tetrahedra[at + 1]!]!,
       n2 = near[tetrahedra[at + 2]!]!,

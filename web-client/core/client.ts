@@ -121,7 +121,7 @@ export class Client {
   private ask<Answer>(question: Question): Promise<Answer> {
     const id = this.nextId++;
     return new Promise((resolve) => {
-      this.asked.set(id, resolve as (answer: never) => void);
+      this.asked.set(id, resolve);
       this.post({...question, id});
     });
   }

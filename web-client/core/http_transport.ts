@@ -115,7 +115,8 @@ export class HttpTransport implements Transport {
     // The head also where the table is known from another transport: only so the source learns
     // which log this is.
     const head = await this.source.head(signal);
-    if (signal.aborted) return;
+    const isOver = (): boolean => signal.aborted;
+    if (isOver()) return;
     const {digest} = this.source;
     if (request.digest && digest && request.digest !== digest)
       throw new QtetError('log-changed', 'Another mesh stands under this name now.');
@@ -128,10 +129,10 @@ export class HttpTransport implements Transport {
       planned: 0,
     });
     if (!this.table.isKnown) deliver({chunk: 0, firstPart: kHeadPart, parts: 0}, head);
-    if (signal.aborted) return; // the manifest told the session to ask for something else
+    if (isOver()) return; // the manifest told the session to ask for something else
     this.pieces = piecesOf(this.table, request);
     await this.fetchAll(deliver, signal);
-    if (!signal.aborted) this.handlers.message({type: 'done', stream});
+    if (!isOver()) this.handlers.message({type: 'done', stream});
   }
 
   private async fetchAll(
@@ -139,6 +140,7 @@ export class HttpTransport implements Transport {
     signal: AbortSignal,
   ): Promise<void> {
     const ahead: {pieces: Piece[]; size: number; payloads: Promise<Uint8Array[]>}[] = [];
+    const isOver = (): boolean => signal.aborted;
     let underWay = 0;
     for (;;) {
       for (
@@ -156,15 +158,12 @@ export class HttpTransport implements Transport {
       const next = ahead.shift();
       if (!next && this.pieces.length === 0) return;
       if (!next) await new Promise<void>((resolve) => void (this.creditCame = resolve));
-      if (signal.aborted) return;
+      if (isOver()) return;
       if (!next) continue;
       const payloads = await next.payloads;
       underWay -= next.size;
       this.measure(next.size);
-      for (const [i, piece] of next.pieces.entries()) {
-        if (signal.aborted) return;
-        deliver(piece, payloads[i]!);
-      }
+      for (const [i, piece] of next.pieces.entries()) if (!isOver()) deliver(piece, payloads[i]!);
     }
   }
 

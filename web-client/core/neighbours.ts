@@ -17,20 +17,17 @@ export function neighboursOf(tetrahedra: Uint32Array): Int32Array {
   // has not come yet.
   const mask = 2 ** Math.ceil(Math.log2(4 * tetrahedra.length + 2)) - 1;
   const slots = new Int32Array(mask + 1).fill(kNone);
-  for (let cell = 0; 4 * cell < tetrahedra.length; ++cell) {
-    if (isHole(tetrahedra, cell)) continue;
-    for (let corner = 0; corner < 4; ++corner) {
-      const face = 4 * cell + corner;
-      let slot = hashOf(tetrahedra, face) & mask;
-      for (; slots[slot] !== kNone; slot = (slot + 1) & mask) {
-        const other = slots[slot]!;
-        if (neighbours[other] !== kNone || !sameFace(tetrahedra, face, other)) continue;
-        neighbours[face] = other >> 2;
-        neighbours[other] = cell;
-        break;
-      }
-      if (neighbours[face] === kNone) slots[slot] = face;
+  for (let face = 0; face < tetrahedra.length; ++face) {
+    if (isHole(tetrahedra, face >> 2)) continue;
+    let slot = hashOf(tetrahedra, face) & mask;
+    for (; slots[slot] !== kNone; slot = (slot + 1) & mask) {
+      const other = slots[slot]!;
+      if (neighbours[other] !== kNone || !sameFace(tetrahedra, face, other)) continue;
+      neighbours[face] = other >> 2;
+      neighbours[other] = face >> 2;
+      break;
     }
+    if (neighbours[face] === kNone) slots[slot] = face;
   }
   return neighbours;
 }

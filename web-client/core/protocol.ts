@@ -59,10 +59,14 @@ export function openMessage(
   request: OpenRequest,
   view: Record<string, unknown> | null = null,
 ): string {
-  const {wishes: _, goal, ...rest} = request;
+  const {mesh, fields, credit, have, digest, goal} = request;
   return JSON.stringify({
     type: 'open',
-    ...rest,
+    mesh,
+    fields,
+    credit,
+    have,
+    digest,
     ...(goal ? {target: targetOf(goal)} : {}),
     ...(view ? {view} : {}),
   });

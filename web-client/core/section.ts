@@ -105,7 +105,7 @@ function crossedCells(
   let triangles = 0;
   let quads = 0;
   for (let cell = 0, at = 0; at < tetrahedra.length; ++cell, at += 4) {
-    if (kept && kept[cell] === 0) continue;
+    if (kept?.[cell] === 0) continue;
     const above = pattern(tetrahedra, distances, at);
     if (above === 0 || above === 15) continue;
     let sum = 0;

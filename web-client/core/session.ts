@@ -198,7 +198,7 @@ export class Session implements TransportHandlers {
     if (!this.transport || this.state === 'complete' || this.state === 'failed' || this.paused)
       return;
     this.paused = true;
-    this.transport?.pause();
+    this.transport.pause();
     this.setState('paused');
   }
 

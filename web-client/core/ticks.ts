@@ -122,6 +122,6 @@ function label(value: number, decimals: number, short: boolean): string {
 }
 
 function superscript(power: number): string {
-  const digits = [...String(Math.abs(power))].map((digit) => kSuperscripts[Number(digit)]).join('');
+  const digits = String(Math.abs(power)).replace(/\d/g, (digit) => kSuperscripts[Number(digit)]!);
   return power < 0 ? `⁻${digits}` : digits;
 }

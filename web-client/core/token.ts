@@ -32,10 +32,10 @@ export async function ticketUrl(
 ): Promise<string> {
   const tickets = new URL('tickets', stream);
   tickets.protocol = tickets.protocol.replace('ws', 'http');
-  let none = false;
+  let status = 0;
   const noticing: Fetch = async (url, init) => {
     const response = await fetch(url, init);
-    none = kNoTickets.includes(response.status);
+    ({status} = response);
     return response;
   };
   try {
@@ -48,7 +48,7 @@ export async function ticketUrl(
     address.searchParams.set('ticket', ticket);
     return address.href;
   } catch (thrown) {
-    if (none) return stream;
+    if (kNoTickets.includes(status)) return stream;
     throw thrown;
   }
 }

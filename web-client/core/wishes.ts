@@ -62,8 +62,7 @@ function reach(box: PacketBox, size: number, normal: readonly number[]): [number
 export function urgency({frustum, planes, marks}: Wishes, box: PacketBox, size: number): number {
   const inSight = frustum.every(({normal, offset}) => reach(box, size, normal)[1] >= offset);
   const onPlane =
-    (planes.length === 0 && !marks) ||
-    (marks && meets(marks, box)) ||
+    (marks ? meets(marks, box) : planes.length === 0) ||
     planes.some(({normal, offset}) => {
       const [low, high] = reach(box, size, normal);
       return low <= offset && offset <= high;

@@ -123,7 +123,7 @@ function obey(
 }
 
 function post(message: FromWorker): void {
-  self.postMessage({...message, run} as Posted);
+  self.postMessage({...message, run});
 }
 
 function postSnapshot(snapshot: Snapshot): void {

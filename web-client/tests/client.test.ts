@@ -70,7 +70,9 @@ test('theFirstPictureOfAMeshDoesNotWaitForThatOfTheMeshBefore', () => {
   const assembler = new Assembler(new FakeCodec(log), kFakeValues);
   let pictures = 0,
     socket = new FakeSocket();
-  const publisher = new Publisher(assembler, () => void ++pictures);
+  const publisher = new Publisher(assembler, () => {
+    ++pictures;
+  });
   const session = new Session(
     assembler,
     publisher,

@@ -8,7 +8,7 @@ describe('a clip plane in the lattice', () => {
   test('standsAtItsShareOfTheExtentWhicheverSideIsCutAway', () => {
     for (const flipped of [false, true]) {
       const {normal, offset} = planeOf({normal: axisNormal(0, flipped), share: 0.25}, kBounds);
-      expect(Math.abs(normal[0]! * offset - 25)).toBe(0.5);
+      expect(Math.abs(normal[0] * offset - 25)).toBe(0.5);
     }
     expect(
       Math.abs(planeOf({normal: axisNormal(1, false), share: 0.25}, kBounds).offset + 50),

@@ -182,7 +182,7 @@ export class FakeCodec implements Codec {
   applyField(field: number, chunk: number): void {
     if (chunk !== this.fieldChunks[field] || chunk >= this.chunksApplied)
       throw new QtetError('bad-order', `field chunk ${chunk}`);
-    ++this.fieldChunks[field]!;
+    ++this.fieldChunks[field];
   }
   fieldChunksApplied(field: number): number {
     return this.fieldChunks[field]!;

@@ -1,5 +1,6 @@
 import {expect, test} from 'vitest';
 import {errorOfLevel, kFull, limitReached, limitText, parseLimit} from '../core/limit';
+import type {Spread} from '../core/manifest';
 import {kNoStatistics} from '../core/statistics';
 
 test.each([
@@ -29,7 +30,7 @@ test('aLimitIsReachedByItsOwnFigure', () => {
 });
 
 test('theErrorIsThatOfTheWorstFieldShownOrElseOfTheBoundary', () => {
-  const spread = (mean: number) => ({mean, max: 1});
+  const spread = (mean: number): Spread => ({mean, max: 1});
   const level = {
     level: 0,
     tetrahedra: 1,

@@ -1,13 +1,13 @@
 import {describe, expect, test} from 'vitest';
 import {FieldScale} from '../core/field_scale';
-import {errorOf, fieldKeys, readManifest} from '../core/manifest';
+import {errorOf, fieldKeys, readManifest, type FieldInfo} from '../core/manifest';
 import {fakeHead} from './fakes';
 import {boundarySoup, pointBounds} from '../core/triangle_soup';
 
-const info = (components: number, minimum: number[], range: [number, number]) => ({
+const info = (components: number, minimum: number[], range: [number, number]): FieldInfo => ({
   name: 'f',
   components,
-  association: 'point' as const,
+  association: 'point',
   step: 0.5,
   minimum,
   range,
@@ -67,7 +67,7 @@ describe('a manifest', () => {
     kStepAt = kBitsAt + 1;
 
   test('isReadAsItStands', () => {
-    const field = (name: string, association: string) => ({
+    const field = (name: string, association: 'point' | 'cell'): FieldInfo => ({
       name,
       components: 1,
       association,

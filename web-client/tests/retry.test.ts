@@ -1,5 +1,6 @@
 import {afterEach, beforeEach, expect, test, vi} from 'vitest';
 import {kLongestDelayMs} from '../core/backoff';
+import {errorText} from '../core/errors';
 import {kMostAttempts, retry} from '../core/retry';
 
 beforeEach(() => void vi.useFakeTimers());
@@ -18,7 +19,7 @@ test('whatFailsForAWhileSucceedsInTheEnd', async () => {
 test('whatNeverSucceedsFailsWithItsLastError', async () => {
   let calls = 0;
   const result = retry(() => Promise.reject(new Error(`call ${++calls}`)));
-  const caught = result.catch((thrown: Error) => thrown.message);
+  const caught = result.catch((thrown: unknown) => errorText(thrown));
   await vi.advanceTimersByTimeAsync(kMostAttempts * kLongestDelayMs);
   expect(await caught).toBe(`call ${kMostAttempts}`);
 });

@@ -234,7 +234,9 @@ describe('a stream', () => {
     sendAll(socket, 1, 0);
     expect(errors()).toEqual(['bad-checksum']);
     expect(heard.find(({type}) => type === 'error')).toMatchObject({
-      message: expect.stringMatching(/chunk 1 is damaged\. What came before is sound and stays/),
+      message: expect.stringMatching(
+        /chunk 1 is damaged\. What came before is sound and stays/,
+      ) as string,
     });
     expect(states().at(-1)).toBe('failed');
     expect(socket.closed).toBe(true);
@@ -620,5 +622,5 @@ test('whatIsosurfacesAreShownIsToldByFieldAndValue', () => {
   ); // more than a view may have: the box has to do
   expect(wishes.at(-1)!.isovalue).toBeNull();
   show(1, [0.5]); // of cells
-  expect(wishes.at(-1)!).toMatchObject({isovalue: null, marks: expect.any(Uint8Array)});
+  expect(wishes.at(-1)!).toMatchObject({isovalue: null, marks: expect.any(Uint8Array) as unknown});
 });

@@ -141,7 +141,10 @@ describe('settings', () => {
 });
 
 describe('the range of the colours', () => {
-  const range = (settings: Partial<Settings>, extent: [number, number]) =>
+  const range = (
+    settings: Partial<Settings>,
+    extent: [number, number],
+  ): ReturnType<typeof shownRange> =>
     shownRange({...readSettings(() => null), ...settings}, extent);
   test('isWhatOccursOrSymmetricOrFixed', () => {
     expect(range({}, [-1, 4])).toEqual({low: -1, high: 4, logarithmic: false});

@@ -161,7 +161,7 @@ export class FieldMaterial extends ShaderMaterial {
     this.uniforms.pixelRatio!.value = Math.max(1, ratio);
   }
   setPlainColor(color: ColorRepresentation): void {
-    const {r, g, b} = new Color().setStyle(String(color)).convertLinearToSRGB();
+    const {r, g, b} = new Color(color).convertLinearToSRGB();
     (this.uniforms.plainColor!.value as Vector3).set(r, g, b);
   }
 

@@ -34,8 +34,9 @@ export interface Size {
 }
 
 /** Throws a TypeError for anything but six finite numbers. */
-export function checkedCamera(state: CameraState): CameraState {
-  if (Array.isArray(state) && state.length === 6 && state.every(Number.isFinite)) return state;
+export function checkedCamera(state: unknown): CameraState {
+  if (Array.isArray(state) && state.length === 6 && state.every(Number.isFinite))
+    return state as CameraState;
   throw new TypeError(
     'A camera is an array of six finite numbers, from where and to where; not ' +
       `${JSON.stringify(state)}.`,

@@ -138,7 +138,7 @@ export class VolumeView {
   /** All of it, whatever moves. REQUIRES: hasCells. */
   async drawWhole(picture: Picture): Promise<void> {
     this.interrupt();
-    while (this.inHand) await this.inHand;
+    await this.idle();
     if (!this.hasCells) return;
     this.update();
     this.interrupted = false;
@@ -185,6 +185,10 @@ export class VolumeView {
       },
       () => end('none'),
     );
+  }
+
+  private async idle(): Promise<void> {
+    while (this.inHand) await this.inHand;
   }
 
   private start(drawing: Promise<void>): void {
@@ -248,12 +252,13 @@ export class VolumeView {
     for (let layer = isInside ? -1 : 0; layer < kMostLayers; ++layer) {
       const reaches = layer < 0 || reachesPixels(gl, () => caster.enter(renderer));
       if (layer > 0 && !(await reaches)) break;
-      for (let row = 0, rows = 0; row < deep.height; row += rows) {
+      for (let row = 0; row < deep.height;) {
         const most = rate > 0 ? Math.min(rate * kStripMs, kStripGrowth * last) : kFirstPixels;
-        rows = Math.min(deep.height - row, Math.ceil(most / deep.width));
+        const rows = Math.min(deep.height - row, Math.ceil(most / deep.width));
         last = rows * deep.width;
         const start = performance.now();
         caster.cast(renderer, deep, row, rows);
+        row += rows;
         rate = last / (await whenDrawn(gl, start));
         this.rate = this.rate > 0 ? Math.min(this.rate, rate) : rate;
         if (ends()) return;

@@ -36,7 +36,7 @@ export async function fetchCatalog(base: URL, token = ''): Promise<MeshEntry[]> 
       `${url.href} is not a list of meshes. Is this a qtet server? For a .qtet file on another ` +
         'one, give its address: ?src=FILE.qtet',
     );
-  return (body.meshes as Partial<MeshEntry>[]).map((mesh) => ({
+  return (body.meshes as Record<keyof MeshEntry, unknown>[]).map((mesh) => ({
     id: String(mesh.id),
     tetrahedra: Number(mesh.tetrahedra ?? 0),
     fields: Array.isArray(mesh.fields) ? mesh.fields.map(String) : [],

@@ -164,9 +164,9 @@ export class ProgressPanel {
   private drawCurve(): void {
     const figure = this.curveFigure;
     const {bytes, level: now} = this.statistics!;
-    const points = this.plan.map(({bytes, level}) => ({
+    const points = this.plan.map(({bytes: needed, level}) => ({
       level,
-      point: [bytes, errorOfLevel(this.manifest?.levels[level], this.fields) ?? 0] as Point,
+      point: [needed, errorOfLevel(this.manifest?.levels[level], this.fields) ?? 0] as Point,
     }));
     const line = points.map(({point}) => point);
     const [firstBytes, firstError] = line[0] ?? [0, 0];

@@ -807,7 +807,9 @@ export class QtetViewer extends HTMLElement implements Host {
   private async copy(selector: string): Promise<void> {
     const box = this.find<HTMLInputElement | HTMLTextAreaElement>(selector);
     box.select();
-    await navigator.clipboard?.writeText(box.value).then(
+    // A page that is not https has no clipboard.
+    const clipboard = navigator.clipboard as Clipboard | undefined;
+    await clipboard?.writeText(box.value).then(
       () => this.announce('Copied'),
       () => undefined,
     );
