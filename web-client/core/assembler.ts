@@ -2,17 +2,19 @@
 // with positions, then fields behind the mesh. The blocks stay (two or three bytes a cell), so that
 // the mesh can be made coarser and finer again without the network.
 
+import type {Packet} from './packet';
+import {kFirstFieldPart, kHeadPart, kPositionsPart, kStructurePart} from './parts';
 import type {BlockValues, Codec} from './codec';
 import type {ValueDecoder} from './draco';
 import {QtetError} from './errors';
 import {goalOf, planOf, type Goal, type LevelBytes} from './goal';
 import type {Limit} from './limit';
 import {fieldKeys, readManifest, type Manifest} from './manifest';
-import {kFirstFieldPart, kHeadPart, kPositionsPart, kStructurePart, type Frame} from './protocol';
+import type {Frame} from './protocol';
 import {Ledger, kNoStatistics, statisticsOf, type Statistics} from './statistics';
 import type {LogTable} from './transport';
 import {readValueBlock} from './value_block';
-import {inOrder, kNoWishes, type Packet, type WireLattice, type Wishes} from './wishes';
+import {inOrder, kNoWishes, type WireLattice, type Wishes} from './wishes';
 
 export class Assembler implements LogTable {
   manifest: Manifest | null = null;

@@ -3,7 +3,7 @@
 
 import {fetchChecked, RangedFile, type Fetch} from './ranged_file';
 import {QtetError} from './errors';
-import {kFirstFieldPart, kStructurePart} from './protocol';
+import {kFirstFieldPart, kStructurePart} from './parts';
 import type {LogTable} from './transport';
 
 /** Neighbouring blocks of one chunk. */

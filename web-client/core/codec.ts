@@ -2,8 +2,8 @@
 // log a codec.
 
 import {QtetError} from './errors';
-import type {Counts} from './statistics';
-import type {PacketBox} from './wishes';
+import type {Counts} from './counts';
+import type {PacketBox} from './packet';
 
 /** What the session needs of a codec; tests bring their own. */
 export interface Codec {

@@ -4,7 +4,7 @@
 import type {Codec} from './codec';
 import {errorOfLevel, limitReached, type Limit} from './limit';
 import type {Manifest} from './manifest';
-import {kFirstFieldPart} from './protocol';
+import {kFirstFieldPart} from './parts';
 
 export interface Goal {
   /** Leading chunks. */

@@ -1,17 +1,12 @@
 // A log over plain HTTP: some requests under way at a time, delivered in order as the frames of
 // proto/PROTOCOL.md, no more than the credit allows.
 
+import {kFirstFieldPart, kHeadPart, kStructurePart} from './parts';
 import {reconnectDelayMs} from './backoff';
 import type {BlockSource, Piece} from './block_source';
 import {errorCode, errorText, QtetError} from './errors';
 import type {Goal} from './goal';
-import {
-  kFirstFieldPart,
-  kHeadPart,
-  kStructurePart,
-  type ChunkRange,
-  type OpenRequest,
-} from './protocol';
+import type {ChunkRange, OpenRequest} from './protocol';
 import {inOrder, kNoWishes, type Wishes} from './wishes';
 import type {LogTable, Transport, TransportHandlers} from './transport';
 

@@ -10,6 +10,7 @@ export {
   kColorMapNames,
   type ColorMapName,
 } from './color_maps';
+export type {Counts} from './counts';
 export {
   fieldsOf,
   kClipModes,
@@ -31,7 +32,7 @@ export {
   type Spread,
 } from './manifest';
 export type {Plane} from './slice';
-export type {Counts, Statistics} from './statistics';
+export type {Statistics} from './statistics';
 export {logTicks, niceTicks, type Tick, type Ticks} from './ticks';
 export {kOpacityPath, transferTables, type TransferTables} from './transfer';
 export type {TriangleSoup} from './triangle_soup';

@@ -1,11 +1,10 @@
 // Where triangles lie, told by the boxes of a grid over the lattice: what of a log of regions an
 // isosurface goes through, as far as it is known.
 
-import type {PacketBox} from './wishes';
+import {kBoxSteps, type PacketBox} from './packet';
 
 /** Boxes along an axis. A packet's box is told in 256ths, each of which lies in one of these. */
 const kMarkSteps = 16;
-const kBoxSteps = 256;
 
 /**
  * One byte a box, x fastest: 1 where a corner lies in it or in a neighbour, because a finer mesh

@@ -7,13 +7,6 @@ import type {Wishes} from './wishes';
 
 export const kSubprotocol = 'qtet.v1';
 export const kFrameHeaderBytes = 16;
-/** `firstPart` of the frame that holds the file's header, manifest and chunk table. */
-export const kHeadPart = 0xffff;
-/** Parts of a chunk, in file order: structure, positions, then one block a field. */
-export const kStructurePart = 0;
-export const kPositionsPart = 1;
-export const kFirstFieldPart = 2;
-
 /** [first, end) of chunks */
 export type ChunkRange = [number, number];
 /** Leading chunks that are here, and, of packets that came out of order, which beyond them. */

@@ -1,6 +1,7 @@
 // One mesh on its way into the page: opens the stream, keeps it going over lost connections,
 // refines as far as is wished, and says how it stands.
 
+import {kFirstFieldPart, kStructurePart} from './parts';
 import type {Assembler} from './assembler';
 import type {CoarseVolume} from './coarse_volume';
 import {errorCode, errorText, QtetError} from './errors';
@@ -8,13 +9,7 @@ import {scalarRange} from './field_scale';
 import {errorOfLevel, kFull, limitReached, type Limit} from './limit';
 import {fieldKeys} from './manifest';
 import {marksOf} from './marks';
-import {
-  kFirstFieldPart,
-  kStructurePart,
-  type Frame,
-  type OpenRequest,
-  type ServerMessage,
-} from './protocol';
+import type {Frame, OpenRequest, ServerMessage} from './protocol';
 import type {Publisher} from './publisher';
 import type {LogTable, Transport, TransportHandlers} from './transport';
 import {makeTransport} from './transports';

@@ -2,14 +2,9 @@
 // lie between.
 
 import type {Codec} from './codec';
+import type {Counts} from './counts';
 import type {Manifest} from './manifest';
-import {kFirstFieldPart, kPositionsPart, kStructurePart} from './protocol';
-
-export interface Counts {
-  tetrahedra: number;
-  vertices: number;
-  boundaryTriangles: number;
-}
+import {kFirstFieldPart, kPositionsPart, kStructurePart} from './parts';
 
 export interface Statistics extends Counts {
   /** Of the original mesh. */

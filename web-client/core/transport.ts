@@ -2,9 +2,10 @@
 // numbered chunks. All speak in the frames and messages of proto/PROTOCOL.md, and each goes on
 // where another one ended.
 
+import type {Packet} from './packet';
 import type {QtetError} from './errors';
 import type {Goal} from './goal';
-import type {Packet, WireLattice, Wishes} from './wishes';
+import type {WireLattice, Wishes} from './wishes';
 import type {Frame, OpenRequest, ServerMessage} from './protocol';
 
 export interface TransportHandlers {

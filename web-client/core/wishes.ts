@@ -3,6 +3,7 @@
 
 import type {Vector} from './cell_ray';
 import {boundsOfMarks, meets} from './marks';
+import {kBoxSteps, type Packet, type PacketBox} from './packet';
 import type {Plane} from './slice';
 
 export interface Wishes {
@@ -29,18 +30,6 @@ export interface Isovalue {
 }
 
 export const kNoWishes: Wishes = {frustum: [], planes: [], point: null};
-
-/** [least x, y, z, largest x, y, z], included. */
-export type PacketBox = ArrayLike<number>;
-
-export interface Packet {
-  chunk: number;
-  /** Coarse packets have smaller levels. */
-  depth: number;
-  box: PacketBox;
-}
-
-const kBoxSteps = 256;
 
 /** Least and largest of normal . p over the box. */
 function reach(box: PacketBox, size: number, normal: readonly number[]): [number, number] {

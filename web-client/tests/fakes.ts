@@ -1,10 +1,11 @@
 // Stand-ins for the network and the codec: small, and strict about order, so that a wrong call
 // fails a test.
 
+import {kFirstFieldPart, kHeadPart} from '../core/parts';
 import type {Codec} from '../core/codec';
 import type {ValueDecoder} from '../core/draco';
 import {QtetError} from '../core/errors';
-import {kFirstFieldPart, kFrameHeaderBytes, kHeadPart} from '../core/protocol';
+import {kFrameHeaderBytes} from '../core/protocol';
 import type {Socket} from '../core/socket_transport';
 import type {FromWorker} from '../core/worker_messages';
 

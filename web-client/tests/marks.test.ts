@@ -1,6 +1,7 @@
 import {describe, expect, test} from 'vitest';
+import type {Packet} from '../core/packet';
 import {boundsOfMarks, marksOf, meets} from '../core/marks';
-import {inOrder, kNoWishes, wireView, type Packet} from '../core/wishes';
+import {inOrder, kNoWishes, wireView} from '../core/wishes';
 
 const kSize = 65536;
 /** A triangle in the middle of the 8th 16th along each axis. */

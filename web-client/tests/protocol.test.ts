@@ -1,12 +1,7 @@
 import {describe, expect, test} from 'vitest';
+import {kHeadPart} from '../core/parts';
 import {QtetError} from '../core/errors';
-import {
-  kFrameHeaderBytes,
-  kHeadPart,
-  openMessage,
-  parseFrame,
-  parseServerMessage,
-} from '../core/protocol';
+import {kFrameHeaderBytes, openMessage, parseFrame, parseServerMessage} from '../core/protocol';
 
 function frameBytes(payload: number[], size = payload.length): ArrayBuffer {
   const bytes = new Uint8Array(kFrameHeaderBytes + payload.length);

@@ -3,14 +3,16 @@
 
 import {readFileSync} from 'node:fs';
 import {describe, expect, test, vi} from 'vitest';
+import type {Packet} from '../core/packet';
+import {kFirstFieldPart, kHeadPart, kStructurePart} from '../core/parts';
 import {Assembler} from '../core/assembler';
 import {ChunkSource} from '../core/block_source';
 import {WasmCodec} from '../core/codec';
 import {kDraco} from '../core/draco';
 import {HttpTransport, piecesOf} from '../core/http_transport';
 import {marksOf} from '../core/marks';
-import {kFirstFieldPart, kHeadPart, kStructurePart, type OpenRequest} from '../core/protocol';
-import {inOrder, kNoWishes, urgency, wireView, type Packet, type Wishes} from '../core/wishes';
+import type {OpenRequest} from '../core/protocol';
+import {inOrder, kNoWishes, urgency, wireView, type Wishes} from '../core/wishes';
 import {kTestWasm} from './whole_log';
 
 const kLog = new URL('../../tests/golden/valid/regions.qtet', import.meta.url);

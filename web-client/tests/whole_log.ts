@@ -7,7 +7,7 @@ import {headBytesOf} from '../core/block_source';
 import {WasmCodec} from '../core/codec';
 import type {ValueDecoder} from '../core/draco';
 import {QtetError} from '../core/errors';
-import {kFirstFieldPart, kHeadPart} from '../core/protocol';
+import {kFirstFieldPart, kHeadPart} from '../core/parts';
 
 /** Empty: tests that need it are skipped. */
 export const kTestWasm = process.env.QTET_WASM ?? '';

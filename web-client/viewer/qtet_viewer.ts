@@ -30,6 +30,7 @@
 // Methods        digest(), pause(), resume(), resetView(), look(direction), picture()
 // Properties     counts, statistics, state, view, cameraState, token
 
+import type {Counts} from '../core/counts';
 import {kTransportKinds} from '../core/auto_transport';
 import type {Vector} from '../core/cell_ray';
 import {Client} from '../core/client';
@@ -39,7 +40,7 @@ import {kMagnitude, type Scalar} from '../core/field_scale';
 import type {LevelBytes} from '../core/goal';
 import {kFull} from '../core/limit';
 import type {Manifest} from '../core/manifest';
-import {kNoStatistics, type Counts, type Statistics} from '../core/statistics';
+import {kNoStatistics, type Statistics} from '../core/statistics';
 import type {Wishes} from '../core/wishes';
 import type {FromWorker, Snapshot, StreamState} from '../core/worker_messages';
 import type {CameraState} from '../three/camera';
