@@ -1,15 +1,21 @@
-// Puts NAME.gz beside every file of the built viewer, which qtet-server (and nginx's gzip_static) sends to whoever takes it, prints what a first
-// visit downloads, and fails when that is too much. Usage: node compress.mjs FOLDER
+// Puts NAME.gz beside every file of the built viewer, which qtet-server (and nginx's gzip_static)
+// sends to whoever takes it, prints what a first visit downloads, and fails when that is too much.
+// Usage: node compress.mjs FOLDER
 
 import {readdirSync, readFileSync, writeFileSync} from 'node:fs';
 import {join} from 'node:path';
 import {gzipSync} from 'node:zlib';
 
-/** Page, scripts and WebAssembly, whatever of it is loaded on demand included: a second at 2.4 Mbit/s. */
-const kMostBytes = 300000;
+/**
+ * Page, scripts and WebAssembly, whatever of it is loaded on demand included: a second at 2.4
+ * Mbit/s.
+ */
+const kMaxBytes = 300000;
 
 const folder = process.argv[2];
-const files = readdirSync(folder, {recursive: true, withFileTypes: true}).filter((entry) => entry.isFile() && !entry.name.endsWith('.gz'));
+const files = readdirSync(folder, {recursive: true, withFileTypes: true}).filter(
+  (entry) => entry.isFile() && !entry.name.endsWith('.gz'),
+);
 let total = 0;
 for (const file of files) {
   const path = join(file.parentPath ?? file.path, file.name);
@@ -18,8 +24,13 @@ for (const file of files) {
   total += compressed.length;
   console.log(`${(compressed.length / 1000).toFixed(1).padStart(7)} kB  ${file.name}`);
 }
-console.log(`${(total / 1000).toFixed(1).padStart(7)} kB  viewer in all, gzip (at most ${kMostBytes / 1000})`);
-if (total > kMostBytes) {
-  console.error(`The viewer weighs ${total - kMostBytes} bytes more than a first visit may download: find what grew, or load it on demand.`);
+console.log(
+  `${(total / 1000).toFixed(1).padStart(7)} kB  viewer in all, gzip (at most ${kMaxBytes / 1000})`,
+);
+if (total > kMaxBytes) {
+  console.error(
+    `The viewer weighs ${total - kMaxBytes} bytes more than a first visit may download: find ` +
+      'what grew, or load it on demand.',
+  );
   process.exit(1);
 }

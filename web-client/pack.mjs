@@ -1,4 +1,5 @@
-// Makes the npm package `qtet` in a folder: modules, types, package.json, README and licence. Usage: node pack.mjs CODEC.wasm FOLDER
+// Makes the npm package `qtet` in a folder: modules, types, package.json, README and licence.
+// Usage: node pack.mjs CODEC.wasm FOLDER
 
 import {execFileSync} from 'node:child_process';
 import {copyFileSync, readFileSync, writeFileSync} from 'node:fs';
@@ -7,25 +8,62 @@ import {fileURLToPath} from 'node:url';
 
 const here = dirname(fileURLToPath(import.meta.url));
 const [wasm, folder] = process.argv.slice(2, 4).map((path) => resolve(path));
-const node = (script, ...words) => execFileSync(process.execPath, [script, ...words], {
-  cwd: here, stdio: 'inherit', env: {...process.env, QTET_WASM: wasm, QTET_PACKAGE_OUT: folder},
-});
-node('node_modules/vite/bin/vite.js', 'build', '--config', 'vite.package.config.ts', '--logLevel', 'warn');
-node('node_modules/typescript/bin/tsc', '--project', 'tsconfig.package.json', '--outDir', join(folder, 'types'));
+const node = (script, ...words) =>
+  execFileSync(process.execPath, [script, ...words], {
+    cwd: here,
+    stdio: 'inherit',
+    env: {...process.env, QTET_WASM: wasm, QTET_PACKAGE_OUT: folder},
+  });
+node(
+  'node_modules/vite/bin/vite.js',
+  'build',
+  '--config',
+  'vite.package.config.ts',
+  '--logLevel',
+  'warn',
+);
+node(
+  'node_modules/typescript/bin/tsc',
+  '--project',
+  'tsconfig.package.json',
+  '--outDir',
+  join(folder, 'types'),
+);
 
 const own = JSON.parse(readFileSync(join(here, 'package.json'), 'utf8'));
 const entry = (name, types) => ({types: `./types/${types}.d.ts`, default: `./${name}.js`});
-writeFileSync(join(folder, 'package.json'), `${JSON.stringify({
-  name: 'qtet', version: own.version, description: own.description, license: 'Apache-2.0', type: 'module',
-  keywords: ['tetrahedral mesh', 'progressive', 'simulation', 'CFD', 'FEM', 'three', 'web component'],
-  exports: {
-    '.': entry('viewer', 'viewer/index'), './element': entry('element', 'viewer/element'), './core': entry('core', 'core/index'),
-    './three': entry('three', 'three/index'),
-  },
-  sideEffects: ['./element.js'],
-  peerDependencies: {three: `>=${own.dependencies.three}`},
-  peerDependenciesMeta: {three: {optional: true}},
-  dependencies: {uplot: own.dependencies.uplot},
-}, null, 2)}\n`);
+writeFileSync(
+  join(folder, 'package.json'),
+  `${JSON.stringify(
+    {
+      name: 'qtet',
+      version: own.version,
+      description: own.description,
+      license: 'Apache-2.0',
+      type: 'module',
+      keywords: [
+        'tetrahedral mesh',
+        'progressive',
+        'simulation',
+        'CFD',
+        'FEM',
+        'three',
+        'web component',
+      ],
+      exports: {
+        '.': entry('viewer', 'viewer/index'),
+        './element': entry('element', 'viewer/element'),
+        './core': entry('core', 'core/index'),
+        './three': entry('three', 'three/index'),
+      },
+      sideEffects: ['./element.js'],
+      peerDependencies: {three: `>=${own.dependencies.three}`},
+      peerDependenciesMeta: {three: {optional: true}},
+      dependencies: {uplot: own.dependencies.uplot},
+    },
+    null,
+    2,
+  )}\n`,
+);
 copyFileSync(join(here, 'docs/PACKAGE.md'), join(folder, 'README.md'));
 copyFileSync(join(here, '../LICENSE'), join(folder, 'LICENSE'));

@@ -1,13 +1,21 @@
-// Builds the npm package's modules: QTET_WASM names the codec's WebAssembly, QTET_PACKAGE_OUT the folder to write (pack.mjs sets both).
+// Builds the npm package's modules: QTET_WASM names the codec's WebAssembly, QTET_PACKAGE_OUT the
+// folder to write (pack.mjs sets both).
 
 import {defineConfig, type Plugin, transformWithEsbuild} from 'vite';
 
-/** Vite would wrap import() in its own preloading, which the Vite of the page that uses the package then takes for its own and calls without an address. */
+/**
+ * Vite would wrap import() in its own preloading, which the Vite of the page that uses the package
+ * then takes for its own and calls without an address.
+ */
 const plainDynamicImports: Plugin = {
   name: 'plain-dynamic-imports',
   configResolved({plugins}) {
     const at = plugins.findIndex(({name}) => name === 'vite:build-import-analysis');
-    if (at < 0) throw new Error('vite:build-import-analysis has another name: see that no chunk of the package holds __vitePreload');
+    if (at < 0)
+      throw new Error(
+        'vite:build-import-analysis has another name: see that no chunk of the package holds ' +
+          '__vitePreload',
+      );
     (plugins as Plugin[]).splice(at, 1);
   },
 };
@@ -16,24 +24,43 @@ export default defineConfig({
   base: './',
   plugins: [plainDynamicImports],
   resolve: {alias: [{find: /^qtet-codec\.wasm/, replacement: process.env.QTET_WASM!}]},
-  // Bundlers take workers' files as they are: these hold all that they need, three too, and nobody else would minify them.
+  // Bundlers take workers' files as they are: these hold all that they need, three too, and nobody
+  // else would minify them.
   worker: {
-    format: 'es', rollupOptions: {output: {entryFileNames: '[name].js'}},
-    plugins: () => [{name: 'minify', renderChunk: (code: string) => transformWithEsbuild(code, 'worker.js', {minify: true, target: 'es2022'})}],
+    format: 'es',
+    rollupOptions: {output: {entryFileNames: '[name].js'}},
+    plugins: () => [
+      {
+        name: 'minify',
+        async renderChunk(code: string) {
+          const small = {minify: true, target: 'es2022'} as const;
+          return {code: (await transformWithEsbuild(code, 'worker.js', small)).code, map: null};
+        },
+      },
+    ],
   },
   build: {
     target: 'es2022',
     outDir: process.env.QTET_PACKAGE_OUT!,
     emptyOutDir: true,
     assetsInlineLimit: 0,
-    minify: false,  // the page that uses it minifies
+    minify: false, // the page that uses it minifies
     modulePreload: false,
     reportCompressedSize: false,
     rollupOptions: {
-      input: {core: './core/index.ts', three: './three/index.ts', viewer: './viewer/index.ts', element: './viewer/element.ts'},
+      input: {
+        core: './core/index.ts',
+        three: './three/index.ts',
+        viewer: './viewer/index.ts',
+        element: './viewer/element.ts',
+      },
       external: (id) => id === 'three' || id.startsWith('three/addons/') || id === 'uplot',
       preserveEntrySignatures: 'strict',
-      output: {entryFileNames: '[name].js', chunkFileNames: 'chunks/[name]-[hash].js', assetFileNames: '[name][extname]'},
+      output: {
+        entryFileNames: '[name].js',
+        chunkFileNames: 'chunks/[name]-[hash].js',
+        assetFileNames: '[name][extname]',
+      },
     },
   },
 });

@@ -1,5 +1,6 @@
-// The chief pictures beside those in tests/browser/baselines, each of which somebody has looked at before it was kept.
-// QTET_BASELINES=write keeps what is seen now instead of comparing: look at every file that changed before you commit it.
+// The chief pictures beside those in tests/browser/baselines, each of which somebody has looked at
+// before it was kept. QTET_BASELINES=write keeps what is seen now instead of comparing: look at
+// every file that changed before you commit it.
 
 import assert from 'node:assert/strict';
 import {copyFileSync, existsSync, readFileSync} from 'node:fs';
@@ -8,19 +9,29 @@ import {fileURLToPath} from 'node:url';
 import {differingBlocks, readPng} from './png.mjs';
 
 const kFolder = fileURLToPath(new URL('baselines/', import.meta.url));
-/** Of 4 x 4 pixels: so many may look otherwise. Another machine's antialiasing and fonts change fewer, a missing cap, edge or light more. */
-const kMostDiffering = 0.01;
+/**
+ * Of 4 x 4 pixels: so many may look otherwise. Another machine's antialiasing and fonts change
+ * fewer, a missing cap, edge or light more.
+ */
+const kMaxDiffering = 0.01;
 
 const kScene = {viewport: {width: 480, height: 320}};
 const kPhoneSize = {viewport: {width: 390, height: 844}, isMobile: true, hasTouch: true};
-/** name: [query, device, whether panels are shown]. Whole meshes only, so that nothing depends on the simplifier. */
+/**
+ * name: [query, device, whether panels are shown]. Whole meshes only, so that nothing depends on
+ * the simplifier.
+ */
 const kPictures = {
   boundary: ['mesh=fin&field=Velocity', kScene],
   'clip-caps': ['mesh=box&clip=y:0.5', kScene],
   'clip-cells': ['mesh=box&clip=y:0.5&clip-mode=cells', kScene],
   isosurfaces: ['mesh=fin&field=Velocity&colormap=turbo&iso=Density=1.3,2.5&surface=off', kScene],
   volume: ['mesh=box&volume=0,0.05,0.2,0.5', kScene],
-  dark: ['mesh=box&clip=x:0.4&colormap=cool-warm', {viewport: {width: 960, height: 600}, colorScheme: 'dark'}, true],
+  dark: [
+    'mesh=box&clip=x:0.4&colormap=cool-warm',
+    {viewport: {width: 960, height: 600}, colorScheme: 'dark'},
+    true,
+  ],
   phone: ['mesh=box&clip=y:0.5', kPhoneSize, true],
 };
 
@@ -28,7 +39,8 @@ async function looksAsItDid({server, browser, out}) {
   const notes = [];
   for (const [name, [query, device, panels = false]] of Object.entries(kPictures)) {
     const viewer = await browser.open(`${server.url}?${query}`, device);
-    if (!panels) await viewer.page.addStyleTag({content: 'qtet-viewer::part(panel) { display: none }'});
+    if (!panels)
+      await viewer.page.addStyleTag({content: 'qtet-viewer::part(panel) { display: none }'});
     await viewer.waitForState('complete');
     await viewer.waitForPicture();
     if (query.includes('volume')) await viewer.restVolume();
@@ -43,7 +55,10 @@ async function looksAsItDid({server, browser, out}) {
     assert.ok(existsSync(path), `${path} is missing`);
     const differing = differingBlocks(readPng(readFileSync(path)), seen);
     notes.push(`${name} ${(100 * differing).toFixed(2)} %`);
-    assert.ok(differing <= kMostDiffering, `${name}: ${(100 * differing).toFixed(2)} % look otherwise than in ${path}`);
+    assert.ok(
+      differing <= kMaxDiffering,
+      `${name}: ${(100 * differing).toFixed(2)} % look otherwise than in ${path}`,
+    );
   }
   return notes.join(', ');
 }

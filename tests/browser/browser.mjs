@@ -8,7 +8,12 @@ const require = createRequire(new URL('../../web-client/package.json', import.me
 const {chromium} = require('playwright-core');
 
 export const kDesktop = {viewport: {width: 1280, height: 800}};
-export const kPhone = {viewport: {width: 390, height: 844}, deviceScaleFactor: 2, isMobile: true, hasTouch: true};
+export const kPhone = {
+  viewport: {width: 390, height: 844},
+  deviceScaleFactor: 2,
+  isMobile: true,
+  hasTouch: true,
+};
 /** Patience only: a machine under load needs a minute for what takes seconds otherwise. */
 export const kTimeoutMs = 180000;
 const kSettleMs = 900;
@@ -23,15 +28,27 @@ export class Browser {
   #pages = [];
 
   static async launch(out) {
-    const args = ['--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--mute-audio'];
+    const args = [
+      '--use-gl=angle',
+      '--use-angle=swiftshader',
+      '--enable-unsafe-swiftshader',
+      '--mute-audio',
+    ];
     if (process.getuid?.() === 0) args.push('--no-sandbox');
     const launched = new Browser();
     launched.#out = out;
-    launched.#browser = await chromium.launch({executablePath: process.env.QTET_CHROMIUM ?? '/usr/bin/chromium', headless: true, args});
+    launched.#browser = await chromium.launch({
+      executablePath: process.env.QTET_CHROMIUM ?? '/usr/bin/chromium',
+      headless: true,
+      args,
+    });
     return launched;
   }
 
-  /** Opens the viewer at `url`; `device` is kDesktop, kPhone, or either with Playwright's other context options; `before` runs before the page's scripts. */
+  /**
+   * Opens the viewer at `url`; `device` is kDesktop, kPhone, or either with Playwright's other
+   * context options; `before` runs before the page's scripts.
+   */
   async open(url, device = kDesktop, before = () => undefined) {
     const context = await this.#browser.newContext(device);
     const page = await context.newPage();
@@ -45,19 +62,29 @@ export class Browser {
     return viewer;
   }
 
-  /** Begins to watch; `end()` gives the tasks of the one page with workers, on its own thread, since it was opened: {ms, cpuMs} each. */
+  /**
+   * Begins to watch; `end()` gives the tasks of the one page with workers, on its own thread, since
+   * it was opened: {ms, cpuMs} each.
+   */
   async trace() {
-    await this.#browser.startTracing(undefined, {categories: ['-*', 'toplevel', 'blink.user_timing', '__metadata']});
-    return {end: async () => {
-      const {traceEvents} = JSON.parse(String(await this.#browser.stopTracing()));
-      const threads = traceEvents.filter(({name}) => name === 'thread_name');
-      const {pid} = threads.find(({args}) => args.name.startsWith('DedicatedWorker'));
-      const {tid} = threads.find((thread) => thread.pid === pid && thread.args.name === 'CrRendererMain');
-      const page = traceEvents.filter((event) => event.pid === pid && event.tid === tid);
-      const opened = page.find(({name}) => name === kOpenedMark).ts;
-      return page.filter(({ph, name, ts}) => ph === 'X' && name.endsWith('RunTask') && ts >= opened)
-        .map(({dur, tdur = 0}) => ({ms: dur / 1000, cpuMs: tdur / 1000}));
-    }};
+    await this.#browser.startTracing(undefined, {
+      categories: ['-*', 'toplevel', 'blink.user_timing', '__metadata'],
+    });
+    return {
+      end: async () => {
+        const {traceEvents} = JSON.parse(String(await this.#browser.stopTracing()));
+        const threads = traceEvents.filter(({name}) => name === 'thread_name');
+        const {pid} = threads.find(({args}) => args.name.startsWith('DedicatedWorker'));
+        const {tid} = threads.find(
+          (thread) => thread.pid === pid && thread.args.name === 'CrRendererMain',
+        );
+        const page = traceEvents.filter((event) => event.pid === pid && event.tid === tid);
+        const opened = page.find(({name}) => name === kOpenedMark).ts;
+        return page
+          .filter(({ph, name, ts}) => ph === 'X' && name.endsWith('RunTask') && ts >= opened)
+          .map(({dur, tdur = 0}) => ({ms: dur / 1000, cpuMs: tdur / 1000}));
+      },
+    };
   }
 
   /** A page that is none of ours. */
@@ -67,10 +94,15 @@ export class Browser {
     return page;
   }
 
-  async picture(page, name) { return readPng(await page.screenshot({path: join(this.#out, `${name}.png`)})); }
+  async picture(page, name) {
+    return readPng(await page.screenshot({path: join(this.#out, `${name}.png`)}));
+  }
 
   async saveFailure(name) {
-    for (const viewer of this.#pages) await viewer.page.screenshot({path: join(this.#out, `failed-${name}.png`)}).catch(() => undefined);
+    for (const viewer of this.#pages)
+      await viewer.page
+        .screenshot({path: join(this.#out, `failed-${name}.png`)})
+        .catch(() => undefined);
   }
 
   async closePages() {
@@ -78,7 +110,9 @@ export class Browser {
     this.#pages = [];
   }
 
-  async close() { await this.#browser.close(); }
+  async close() {
+    await this.#browser.close();
+  }
 }
 
 export class ViewerPage {
@@ -90,45 +124,81 @@ export class ViewerPage {
     this.out = out;
     page.on('pageerror', (error) => this.problems.push(String(error.stack ?? error)));
     page.on('console', (message) => {
-      if (message.type() === 'error' && !/ERR_|WebSocket/.test(message.text())) this.problems.push(message.text());
+      if (message.type() === 'error' && !/ERR_|WebSocket/.test(message.text()))
+        this.problems.push(message.text());
     });
   }
 
-  /** Of what was asked for before: a state that is about to change does not count. Throws what the viewer says when it fails instead. */
+  /**
+   * Of what was asked for before: a state that is about to change does not count. Throws what the
+   * viewer says when it fails instead.
+   */
   async waitForState(wanted) {
     await this.#hearDecoder();
-    await this.page.waitForFunction((state) => [state, 'failed'].includes(window.qtetViewer.state), wanted, {timeout: kTimeoutMs, polling: 50});
+    await this.page.waitForFunction(
+      (state) => [state, 'failed'].includes(window.qtetViewer.state),
+      wanted,
+      {timeout: kTimeoutMs, polling: 50},
+    );
     const state = await this.page.evaluate(() => window.qtetViewer.state);
-    if (state === 'failed' && wanted !== 'failed') throw new Error(`the viewer failed: ${await this.text('.notice p')}`);
+    if (state === 'failed' && wanted !== 'failed')
+      throw new Error(`the viewer failed: ${await this.text('.notice p')}`);
   }
 
   /** Waits until the picture of the figures' moment has been drawn, and one frame more. */
   async waitForPicture() {
-    await this.page.waitForFunction(() => window.qtetSeen.pictures > 0, null, {timeout: kTimeoutMs});
+    await this.page.waitForFunction(() => window.qtetSeen.pictures > 0, null, {
+      timeout: kTimeoutMs,
+    });
     await this.settle();
   }
 
-  /** Waits until what was just changed has been computed and drawn: for a while, for whoever decodes, and for frames of the page and of whoever draws; all of them come late under load. */
+  /**
+   * Waits until what was just changed has been computed and drawn: for a while, for whoever
+   * decodes, and for frames of the page and of whoever draws; all of them come late under load.
+   */
   async settle() {
     await this.page.waitForTimeout(kSettleMs);
     await this.#hearDecoder();
     await this.#waitForDecoder();
-    const frame = () => new Promise((drawn) => { requestAnimationFrame(drawn); });
+    const frame = () =>
+      new Promise((drawn) => {
+        requestAnimationFrame(drawn);
+      });
     for (let i = 0; i < 2; ++i) {
       await this.page.evaluate(frame);
       await this.inView(frame);
     }
   }
 
-  /** Waits until the decoder has heard what the page has told it so far, and the page what that changed at once; not for one that never began. */
+  /**
+   * Waits until the decoder has heard what the page has told it so far, and the page what that
+   * changed at once; not for one that never began.
+   */
   async #hearDecoder() {
-    await this.page.evaluate((ms) => Promise.race([window.qtetViewer.digest(), new Promise((resolve) => { setTimeout(resolve, ms); })]), kHearingMs);
+    await this.page.evaluate(
+      (ms) =>
+        Promise.race([
+          window.qtetViewer.digest(),
+          new Promise((resolve) => {
+            setTimeout(resolve, ms);
+          }),
+        ]),
+      kHearingMs,
+    );
   }
 
   /** Waits until no picture is due or on its way. */
   async #waitForDecoder() {
-    for (const end = Date.now() + kTimeoutMs; Date.now() < end; await this.page.waitForTimeout(20)) {
-      const busy = this.page.workers().filter((worker) => /\/worker\b/.test(worker.url())).map((worker) => worker.evaluate(() => globalThis.qtetPublisher?.isBusy === true));
+    for (
+      const end = Date.now() + kTimeoutMs;
+      Date.now() < end;
+      await this.page.waitForTimeout(20)
+    ) {
+      const busy = this.page
+        .workers()
+        .filter((worker) => /\/worker\b/.test(worker.url()))
+        .map((worker) => worker.evaluate(() => globalThis.qtetPublisher?.isBusy === true));
       if (!(await Promise.all(busy)).includes(true)) return;
     }
     throw new Error('pictures have been under way for minutes');
@@ -138,19 +208,31 @@ export class ViewerPage {
   async accessibilityViolations() {
     await this.page.addScriptTag({path: require.resolve('axe-core/axe.min.js')});
     return this.page.evaluate(async () => {
-      const {violations} = await window.axe.run(document, {runOnly: ['wcag2a', 'wcag2aa', 'wcag21aa', 'wcag22aa', 'best-practice']});
-      return violations.flatMap(({id, nodes}) => nodes.map(({target, failureSummary}) => `${id}: ${target.join(' ')} ${failureSummary}`));
+      const {violations} = await window.axe.run(document, {
+        runOnly: ['wcag2a', 'wcag2aa', 'wcag21aa', 'wcag22aa', 'best-practice'],
+      });
+      return violations.flatMap(({id, nodes}) =>
+        nodes.map(({target, failureSummary}) => `${id}: ${target.join(' ')} ${failureSummary}`),
+      );
     });
   }
 
-  /** Calls `look` with the MeshView, in the worker that draws or, where there is none, on the page. */
+  /**
+   * Calls `look` with the MeshView, in the worker that draws or, where there is none, on the page.
+   */
   inView(look, ...words) {
-    const thread = this.page.workers().find((worker) => worker.url().includes('view_worker')) ?? this.page;
-    return thread.evaluate(([text, its]) => (0, eval)(`(${text})`)(globalThis.qtetView ?? globalThis.qtetViewer.meshView, ...its), [String(look), words]);
+    const thread =
+      this.page.workers().find((worker) => worker.url().includes('view_worker')) ?? this.page;
+    return thread.evaluate(
+      ([text, its]) =>
+        (0, eval)(`(${text})`)(globalThis.qtetView ?? globalThis.qtetViewer.meshView, ...its),
+      [String(look), words],
+    );
   }
 
   async waitInView(isSo) {
-    for (const end = Date.now() + kTimeoutMs; Date.now() < end; await this.page.waitForTimeout(50)) if (await this.inView(isSo)) return;
+    for (const end = Date.now() + kTimeoutMs; Date.now() < end; await this.page.waitForTimeout(50))
+      if (await this.inView(isSo)) return;
     throw new Error(`the view does not become so: ${isSo}`);
   }
 
@@ -159,16 +241,28 @@ export class ViewerPage {
     // Twice: what was just asked for may not have reached the worker that draws.
     for (let i = 0; i < 2; ++i) {
       await this.settle();
-      await this.waitInView(({volume, frame, moved}) => volume.hasCells && volume.atRest && frame === 0 && !moved);
+      await this.waitInView(
+        ({volume, frame, moved}) => volume.hasCells && volume.atRest && frame === 0 && !moved,
+      );
     }
   }
 
-  statistics() { return this.page.evaluate(() => window.qtetViewer.statistics); }
-  counts() { return this.page.evaluate(() => window.qtetViewer.counts); }
-  digest() { return this.page.evaluate(() => window.qtetViewer.digest()); }
+  statistics() {
+    return this.page.evaluate(() => window.qtetViewer.statistics);
+  }
+  counts() {
+    return this.page.evaluate(() => window.qtetViewer.counts);
+  }
+  digest() {
+    return this.page.evaluate(() => window.qtetViewer.digest());
+  }
   /** What init scripts saw: pictures, events by name. */
-  seen() { return this.page.evaluate(() => window.qtetSeen); }
-  text(selector) { return this.page.locator(`qtet-viewer ${selector}`).innerText(); }
+  seen() {
+    return this.page.evaluate(() => window.qtetSeen);
+  }
+  text(selector) {
+    return this.page.locator(`qtet-viewer ${selector}`).innerText();
+  }
 
   /** Writes OUT/NAME.png and gives its pixels. */
   async screenshot(name) {
@@ -186,7 +280,8 @@ function watchEvents(mark) {
     for (const type of ['load', 'refine', 'progress', 'complete', 'error']) {
       viewer.addEventListener(type, (event) => {
         if (type === 'load' || type === 'refine') ++seen.pictures;
-        if (type !== 'progress') seen.events.push({type, at: performance.now(), bytes: event.detail?.bytes});
+        if (type !== 'progress')
+          seen.events.push({type, at: performance.now(), bytes: event.detail?.bytes});
       });
     }
   });

@@ -1,4 +1,5 @@
-// What the viewer must do in a real browser. Each check gets a running server and throws when the viewer does otherwise.
+// What the viewer must do in a real browser. Each check gets a running server and throws when the
+// viewer does otherwise.
 
 import assert from 'node:assert/strict';
 import {kDesktop, kPhone} from './browser.mjs';
@@ -19,7 +20,10 @@ async function refinesToTheOriginal({server, browser, logs}) {
     const {events} = await viewer.seen();
     assert.equal(events[0].type, 'load');
     assert.equal(await viewer.text('.percent'), '100\u202f%');
-    notes.push(`${log.name} ${(await viewer.counts()).tetrahedra} cells, first picture after ${Math.round(events[0].at)} ms`);
+    notes.push(
+      `${log.name} ${(await viewer.counts()).tetrahedra} cells, first picture after ` +
+        `${Math.round(events[0].at)} ms`,
+    );
   }
   return notes.join('; ');
 }
@@ -29,30 +33,44 @@ async function showsACoarsePictureFirst({server, browser}) {
   await viewer.waitForState('held');
   await viewer.waitForPicture();
   const {tetrahedra, total} = await viewer.statistics();
-  assert.ok(tetrahedra > 0 && tetrahedra < total.tetrahedra / 2, `${tetrahedra} of ${total.tetrahedra} cells are not coarse`);
+  assert.ok(
+    tetrahedra > 0 && tetrahedra < total.tetrahedra / 2,
+    `${tetrahedra} of ${total.tetrahedra} cells are not coarse`,
+  );
   const coarse = await viewer.screenshot('coarse');
   await viewer.page.getByRole('button', {name: 'Continue'}).click();
   await viewer.waitForState('complete');
   await viewer.waitForPicture();
   const final = await viewer.screenshot('final');
   for (const [name, picture] of Object.entries({coarse, final})) {
-    assert.ok(coloredShare(picture) > 0.05, `the ${name} picture is blank: ${coloredShare(picture)} of it is coloured`);
+    assert.ok(
+      coloredShare(picture) > 0.05,
+      `the ${name} picture is blank: ${coloredShare(picture)} of it is coloured`,
+    );
   }
   const differing = differingShare(coarse, final);
   assert.ok(differing > 0.01, `refining changes only ${differing} of the picture`);
-  return `${tetrahedra} of ${total.tetrahedra} cells, ${(100 * differing).toFixed(1)} % of the picture changes`;
+  return (
+    `${tetrahedra} of ${total.tetrahedra} cells, ${(100 * differing).toFixed(1)} % of the ` +
+    'picture changes'
+  );
 }
 
 async function survivesAKilledServer({server, browser, logs}) {
   const line = await PoorLine.open(server.port, {holdAt: kCoarseBytes});
   try {
     const viewer = await browser.open(`${line.url}?mesh=fin`);
-    await viewer.page.waitForFunction(() => window.qtetViewer.statistics.chunks > 2, null, {polling: 50});
+    await viewer.page.waitForFunction(() => window.qtetViewer.statistics.chunks > 2, null, {
+      polling: 50,
+    });
     server.kill();
     line.cut();
     await viewer.waitForState('reconnecting');
     const before = await viewer.statistics();
-    assert.ok(before.chunks < before.chunkCount, 'everything had arrived before the server was killed');
+    assert.ok(
+      before.chunks < before.chunkCount,
+      'everything had arrived before the server was killed',
+    );
     assert.equal(await viewer.text('.state-text'), 'Reconnecting');
     await server.start();
     await viewer.waitForState('complete');
@@ -83,7 +101,10 @@ async function showsAPictureSoonOnAPoorLine({server, browser}) {
     await viewer.waitForPicture();
     const {events} = await viewer.seen();
     const {bytes, bytesNeeded} = await viewer.statistics();
-    return `first picture after ${Math.round(events[0].at)} ms at 1.6 Mbit/s and 80 ms, with an empty cache; ${Math.round((100 * bytes) / bytesNeeded)} % is here by now`;
+    return (
+      `first picture after ${Math.round(events[0].at)} ms at 1.6 Mbit/s and 80 ms, with an empty ` +
+      `cache; ${Math.round((100 * bytes) / bytesNeeded)} % is here by now`
+    );
   } finally {
     line.close();
   }
@@ -97,9 +118,13 @@ async function keepsThePageResponsive({server, browser}) {
   const tasks = await trace.end();
   const longest = (key) => Math.round(Math.max(...tasks.map((task) => task[key])));
   assert.ok(tasks.length > 50, `only ${tasks.length} tasks were seen`);
-  // Of processor time, for others have their share of the clock: the bound only catches work that belongs in a worker.
+  // Of processor time, for others have their share of the clock: the bound only catches work that
+  // belongs in a worker.
   assert.ok(longest('cpuMs') < 200, `the page was busy for ${longest('cpuMs')} ms`);
-  return `of ${tasks.length} tasks the longest takes ${longest('cpuMs')} ms of processor time, on the clock ${longest('ms')} ms`;
+  return (
+    `of ${tasks.length} tasks the longest takes ${longest('cpuMs')} ms of processor time, on the ` +
+    `clock ${longest('ms')} ms`
+  );
 }
 
 async function switchesFieldsAndMaps({server, browser, logs}) {
@@ -108,12 +133,24 @@ async function switchesFieldsAndMaps({server, browser, logs}) {
   await viewer.waitForPicture();
   let before = await viewer.screenshot('field-first');
   const fields = viewer.page.locator('qtet-viewer select[name=field]');
-  const names = await fields.locator('option').evaluateAll((options) => options.map(({value}) => value));
-  assert.deepEqual(names, ['Density', 'Pressure', 'Velocity', 'Velocity[0]', 'Velocity[1]', 'Velocity[2]']);
+  const names = await fields
+    .locator('option')
+    .evaluateAll((options) => options.map(({value}) => value));
+  assert.deepEqual(names, [
+    'Density',
+    'Pressure',
+    'Velocity',
+    'Velocity[0]',
+    'Velocity[1]',
+    'Velocity[2]',
+  ]);
   const expectChange = async (name, what) => {
     await viewer.settle();
     const now = await viewer.screenshot(name);
-    assert.ok(differingShare(before, now) > 0.05, `${what} changes only ${differingShare(before, now)} of the picture`);
+    assert.ok(
+      differingShare(before, now) > 0.05,
+      `${what} changes only ${differingShare(before, now)} of the picture`,
+    );
     before = now;
   };
   await fields.selectOption('Velocity[2]');
@@ -164,7 +201,10 @@ async function clipsWithACap({server, browser}) {
   await page.mouse.move(x - 80, y, {steps: 4});
   await page.mouse.up();
   await viewer.settle();
-  assert.ok(differingShare(further, await viewer.screenshot('clip-dragged')) > 0.005, 'the handle moves nothing');
+  assert.ok(
+    differingShare(further, await viewer.screenshot('clip-dragged')) > 0.005,
+    'the handle moves nothing',
+  );
   let before = await viewer.screenshot('clip-flat');
   for (const mode of ['Cells', 'Slice']) {
     await page.getByRole('radio', {name: mode}).check({force: true});
@@ -175,10 +215,16 @@ async function clipsWithACap({server, browser}) {
   }
   await page.getByRole('button', {name: 'Add a plane'}).click();
   await viewer.settle();
-  assert.ok(differingShare(before, await viewer.screenshot('clip-two')) > 0.005, 'the second plane shows nothing');
+  assert.ok(
+    differingShare(before, await viewer.screenshot('clip-two')) > 0.005,
+    'the second plane shows nothing',
+  );
   await page.getByRole('switch', {name: 'Clip'}).uncheck();
   await viewer.settle();
-  assert.ok(differingShare(whole, await viewer.screenshot('unclipped-again')) < 0.005, 'the whole mesh does not come back');
+  assert.ok(
+    differingShare(whole, await viewer.screenshot('unclipped-again')) < 0.005,
+    'the whole mesh does not come back',
+  );
 }
 
 async function showsIsosurfacesAndThresholds({server, browser}) {
@@ -203,7 +249,10 @@ async function showsIsosurfacesAndThresholds({server, browser}) {
   assert.ok(differingShare(whole, inside) > 0.05, 'nothing shines through');
   await page.getByRole('switch', {name: 'Surface', exact: true}).uncheck();
   await viewer.settle();
-  assert.ok(coloredShare(await viewer.screenshot('isosurfaces-alone')) > 0.005, 'there are no isosurfaces');
+  assert.ok(
+    coloredShare(await viewer.screenshot('isosurfaces-alone')) > 0.005,
+    'there are no isosurfaces',
+  );
   assert.equal(new URL(page.url()).searchParams.get('iso'), 'Pressure=1,2.5');
   assert.deepEqual(viewer.problems, []);
 }
@@ -218,7 +267,10 @@ async function pointsAndProbes({server, browser}) {
   await page.locator('qtet-viewer .result').waitFor();
   const said = await viewer.text('.result');
   const [, cell, density] = /Cell ([\d\u202f]+).*Density\s+([\d.]+)/s.exec(said) ?? [];
-  assert.ok(Number(cell?.replaceAll('\u202f', '')) < 212544 && Number(density) > 0.5 && Number(density) < 4, said);
+  assert.ok(
+    Number(cell?.replaceAll('\u202f', '')) < 212544 && Number(density) > 0.5 && Number(density) < 4,
+    said,
+  );
   await page.getByText('Line', {exact: true}).click();
   await page.mouse.click(420, 350);
   await page.getByText('Now point at the other end.', {exact: true}).waitFor();
@@ -228,7 +280,10 @@ async function pointsAndProbes({server, browser}) {
   assert.match(await viewer.text('.result'), /Distance\s+[\d.]+/);
   const drawn = await page.evaluate(() => {
     const canvas = window.qtetViewer.shadowRoot.querySelector('.plot canvas');
-    return canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data.filter((value, i) => i % 4 === 3 && value > 0).length;
+    return canvas
+      .getContext('2d')
+      .getImageData(0, 0, canvas.width, canvas.height)
+      .data.filter((value, i) => i % 4 === 3 && value > 0).length;
   });
   assert.ok(drawn > 500, `the plot has ${drawn} pixels`);
   await viewer.screenshot('probe');
@@ -246,7 +301,10 @@ async function goesCoarserAndStopsAtAnError({server, browser, logs}) {
   assert.ok(left > 0 && left <= 1, `the error that is left is ${left} %`);
   await viewer.page.getByText('Level of detail').click();
   await viewer.page.getByRole('button', {name: 'Coarser'}).click();
-  await viewer.page.waitForFunction((before) => window.qtetViewer.statistics.tetrahedra < before, tetrahedra);
+  await viewer.page.waitForFunction(
+    (before) => window.qtetViewer.statistics.tetrahedra < before,
+    tetrahedra,
+  );
   await viewer.settle();
   await viewer.screenshot('coarser');
   await viewer.page.getByRole('button', {name: 'Continue'}).click();
@@ -256,14 +314,18 @@ async function goesCoarserAndStopsAtAnError({server, browser, logs}) {
 }
 
 async function showsTheSamePictureFromItsLink({server, browser}) {
-  const viewer = await browser.open(`${server.url}?mesh=fin&clip=x:0.4 -z:0.6&field=Pressure&colormap=cividis`);
+  const viewer = await browser.open(
+    `${server.url}?mesh=fin&clip=x:0.4 -z:0.6&field=Pressure&colormap=cividis`,
+  );
   await viewer.waitForState('complete');
   await viewer.waitForPicture();
   await viewer.page.locator('qtet-viewer .scene').focus();
-  for (const key of ['ArrowLeft', 'ArrowLeft', 'ArrowUp', '+', 'o']) await viewer.page.keyboard.press(key);
+  for (const key of ['ArrowLeft', 'ArrowLeft', 'ArrowUp', '+', 'o'])
+    await viewer.page.keyboard.press(key);
   await viewer.settle();
   const first = await viewer.screenshot('link-from');
-  // A link's camera is relative to the whole mesh, which is as long as its lattice of 16 bits, not to the coarse one that was seen first.
+  // A link's camera is relative to the whole mesh, which is as long as its lattice of 16 bits, not
+  // to the coarse one that was seen first.
   assert.equal(await viewer.inView(({bounds}) => bounds[3] - bounds[0]), 65535);
   const again = await browser.open(viewer.page.url());
   await again.waitForState('complete');
@@ -273,8 +335,14 @@ async function showsTheSamePictureFromItsLink({server, browser}) {
   assert.ok(differing < 0.005, `${differing} of the picture is another`);
   await viewer.page.locator('qtet-viewer summary', {hasText: 'View'}).click();
   await viewer.page.getByRole('button', {name: 'Share'}).click();
-  assert.equal(await viewer.page.getByLabel('Link to this picture').inputValue(), viewer.page.url());
-  assert.match(await viewer.page.getByLabel('Lines for another page').inputValue(), /<iframe src="http.*clip=x%3A0.4\+-z%3A0.6/s);
+  assert.equal(
+    await viewer.page.getByLabel('Link to this picture').inputValue(),
+    viewer.page.url(),
+  );
+  assert.match(
+    await viewer.page.getByLabel('Lines for another page').inputValue(),
+    /<iframe src="http.*clip=x%3A0.4\+-z%3A0.6/s,
+  );
 }
 
 async function comesBackFromLostGraphics({server, browser}) {
@@ -290,12 +358,22 @@ async function comesBackFromLostGraphics({server, browser}) {
   await viewer.inView(() => globalThis.qtetLoss.restoreContext());
   await viewer.page.locator('qtet-viewer .notice').waitFor({state: 'hidden'});
   await viewer.settle();
-  assert.ok(differingShare(before, await viewer.screenshot('graphics-after')) < 0.005, 'the picture does not come back');
+  assert.ok(
+    differingShare(before, await viewer.screenshot('graphics-after')) < 0.005,
+    'the picture does not come back',
+  );
 }
 
-/** Older browsers have no canvas that a worker draws into: the page draws itself, with the same script. */
+/**
+ * Older browsers have no canvas that a worker draws into: the page draws itself, with the same
+ * script.
+ */
 async function drawsWithoutAWorker({server, browser}) {
-  const viewer = await browser.open(`${server.url}?mesh=fin&clip=y`, kDesktop, () => delete HTMLCanvasElement.prototype.transferControlToOffscreen);
+  const viewer = await browser.open(
+    `${server.url}?mesh=fin&clip=y`,
+    kDesktop,
+    () => delete HTMLCanvasElement.prototype.transferControlToOffscreen,
+  );
   await viewer.waitForState('complete');
   await viewer.waitForPicture();
   const before = await viewer.screenshot('own-thread');
@@ -318,7 +396,10 @@ async function drawsWithoutAWorker({server, browser}) {
   assert.deepEqual(viewer.problems, []);
 }
 
-/** Left button, right button, wheel: each moves the camera that the worker has, and the page knows of it. */
+/**
+ * Left button, right button, wheel: each moves the camera that the worker has, and the page knows
+ * of it.
+ */
 async function turnsByPointer({server, browser}) {
   const viewer = await browser.open(`${server.url}?mesh=box`);
   await viewer.waitForState('complete');
@@ -329,9 +410,18 @@ async function turnsByPointer({server, browser}) {
   const expectMoved = async (what, same, other) => {
     await viewer.settle();
     const now = await camera();
-    const moved = (from, to) => Math.hypot(...[0, 1, 2].map((i) => now[from + i] - before[to + i])) > 1e-3;
-    assert.equal(moved(3, 3), other, `${what}: the target is at ${now.slice(3)} after ${before.slice(3)}`);
-    assert.equal(Math.abs(Math.hypot(...now.slice(0, 3)) - Math.hypot(...before.slice(0, 3))) < 1e-2, same, `${what}: the distance`);
+    const moved = (from, to) =>
+      Math.hypot(...[0, 1, 2].map((i) => now[from + i] - before[to + i])) > 1e-3;
+    assert.equal(
+      moved(3, 3),
+      other,
+      `${what}: the target is at ${now.slice(3)} after ${before.slice(3)}`,
+    );
+    assert.equal(
+      Math.abs(Math.hypot(...now.slice(0, 3)) - Math.hypot(...before.slice(0, 3))) < 1e-2,
+      same,
+      `${what}: the distance`,
+    );
     assert.notDeepEqual(now, before, what);
     before = now;
   };
@@ -356,14 +446,23 @@ async function turnsByPointer({server, browser}) {
 async function isAccessible({server, browser}) {
   const notes = [];
   for (const colorScheme of ['light', 'dark']) {
-    const viewer = await browser.open(`${server.url}?mesh=fin&clip=x&iso=Density=2&threshold=Density=1,4&volume=0,0.1,0.4`, {...kDesktop, colorScheme, bypassCSP: true});
+    const viewer = await browser.open(
+      `${server.url}?mesh=fin&clip=x&iso=Density=2&threshold=Density=1,4&volume=0,0.1,0.4`,
+      {...kDesktop, colorScheme, bypassCSP: true},
+    );
     await viewer.waitForState('complete');
     await viewer.waitForPicture();
     notes.push(await viewer.page.locator('qtet-viewer .live').innerText());
-    for (const summary of await viewer.page.locator('qtet-viewer summary').all()) await summary.click();
-    const expectNone = async (what) => assert.deepEqual(await viewer.accessibilityViolations(), [], `${colorScheme}, ${what}`);
+    for (const summary of await viewer.page.locator('qtet-viewer summary').all())
+      await summary.click();
+    const expectNone = async (what) =>
+      assert.deepEqual(await viewer.accessibilityViolations(), [], `${colorScheme}, ${what}`);
     await expectNone('every panel open');
-    await viewer.page.evaluate(() => ['volume', 'clip', 'iso', 'threshold'].forEach((name) => window.qtetViewer.removeAttribute(name)));
+    await viewer.page.evaluate(() =>
+      ['volume', 'clip', 'iso', 'threshold'].forEach((name) =>
+        window.qtetViewer.removeAttribute(name),
+      ),
+    );
     await viewer.page.getByText('Line', {exact: true}).click();
     for (const x of [420, 640]) {
       await viewer.settle();
@@ -371,7 +470,10 @@ async function isAccessible({server, browser}) {
     }
     await viewer.page.locator('qtet-viewer .plot canvas').waitFor();
     await expectNone('a line with its plot');
-    for (const [button, dialog] of [['Share', '.share-dialog'], ['Keys', '.help-dialog']]) {
+    for (const [button, dialog] of [
+      ['Share', '.share-dialog'],
+      ['Keys', '.help-dialog'],
+    ]) {
       await viewer.page.getByRole('button', {name: button}).click();
       await viewer.page.locator(`qtet-viewer ${dialog}[open]`).waitFor();
       await expectNone(button);
@@ -381,7 +483,10 @@ async function isAccessible({server, browser}) {
     // The focus goes through the panel from top to bottom.
     await viewer.page.locator('qtet-viewer .scene').focus();
     await viewer.page.keyboard.press('Tab');
-    assert.equal(await viewer.page.evaluate(() => window.qtetViewer.shadowRoot.activeElement.name), 'mesh');
+    assert.equal(
+      await viewer.page.evaluate(() => window.qtetViewer.shadowRoot.activeElement.name),
+      'mesh',
+    );
   }
   assert.deepEqual(notes, ['Complete', 'Complete']);
 }
@@ -394,15 +499,22 @@ async function obeysTheKeyboard({server, browser}) {
   await viewer.page.locator('qtet-viewer .scene').focus();
   for (let i = 0; i < 6; ++i) await viewer.page.keyboard.press('ArrowLeft');
   await viewer.settle();
-  assert.ok(differingShare(before, await viewer.screenshot('keys-turned')) > 0.01, 'arrows turn nothing');
+  assert.ok(
+    differingShare(before, await viewer.screenshot('keys-turned')) > 0.01,
+    'arrows turn nothing',
+  );
   await viewer.page.keyboard.press('Home');
   await viewer.settle();
-  assert.ok(differingShare(before, await viewer.screenshot('keys-home')) < 0.005, 'Home does not bring the first view back');
+  assert.ok(
+    differingShare(before, await viewer.screenshot('keys-home')) < 0.005,
+    'Home does not bring the first view back',
+  );
   // What lies in the middle is that of the picture, not of what the panel covers of it.
   await viewer.page.keyboard.press('i');
   await viewer.page.locator('qtet-viewer .result').waitFor();
   const off = await viewer.page.evaluate(() => {
-    const {meshView, bounds, shadowRoot} = window.qtetViewer;
+    const {meshView, viewing, shadowRoot} = window.qtetViewer;
+    const {bounds} = viewing.mesh;
     const {x, y} = meshView.project([0, 1, 2].map((axis) => (bounds[axis] + bounds[axis + 3]) / 2));
     const mark = shadowRoot.querySelector('.marks circle');
     return Math.hypot(mark.getAttribute('cx') - x, mark.getAttribute('cy') - y);
@@ -416,7 +528,9 @@ async function fitsAPhone({server, browser, logs}) {
   await viewer.waitForPicture();
   const picture = await viewer.screenshot('phone');
   assert.ok(coloredShare(picture) > 0.03, 'the phone picture is blank');
-  const wide = await viewer.page.evaluate(() => document.documentElement.scrollWidth > document.documentElement.clientWidth);
+  const wide = await viewer.page.evaluate(
+    () => document.documentElement.scrollWidth > document.documentElement.clientWidth,
+  );
   assert.equal(wide, false, 'the page scrolls sideways');
   await viewer.page.getByRole('button', {name: 'Controls'}).tap();
   await viewer.settle();
@@ -427,19 +541,28 @@ async function fitsAPhone({server, browser, logs}) {
 }
 
 async function showsWhatIsSoundOfADamagedFile({server, browser, logs}) {
-  const line = await PoorLine.open(server.port, {bytesPerSecond: 200000, streamsOnly: true, damageAt: 150000});
+  const line = await PoorLine.open(server.port, {
+    bytesPerSecond: 200000,
+    streamsOnly: true,
+    damageAt: 150000,
+  });
   try {
     const viewer = await browser.open(`${line.url}?mesh=fin`);
     await viewer.waitForState('failed');
     const said = await viewer.page.getByRole('alert').innerText();
-    assert.match(said, /chunk \d+, part \d+ arrived damaged.*What came before is sound and stays on the screen/s);
+    assert.match(
+      said,
+      /chunk \d+, part \d+ arrived damaged.*What came before is sound and stays on the screen/s,
+    );
     await viewer.waitForPicture();
     await viewer.settle();
     const {tetrahedra, total} = await viewer.statistics();
     assert.ok(tetrahedra > 10000 && tetrahedra < total.tetrahedra, `${tetrahedra} cells are shown`);
     assert.ok(coloredShare(await viewer.screenshot('damaged')) > 0.05, 'nothing is shown');
     await viewer.page.getByRole('button', {name: 'Try again'}).click();
-    await viewer.page.waitForFunction(() => window.qtetViewer.state === 'complete', null, {polling: 50});
+    await viewer.page.waitForFunction(() => window.qtetViewer.state === 'complete', null, {
+      polling: 50,
+    });
     await expectWhole(viewer, logs.fin);
     return said.split('\n')[0];
   } finally {
@@ -460,8 +583,24 @@ async function saysWhatIsWrong({server, browser}) {
 }
 
 export const checks = {
-  refinesToTheOriginal, showsACoarsePictureFirst, survivesAKilledServer,
-  survivesAServerThatIsAwayWhenItIsAsked, showsAPictureSoonOnAPoorLine,
-  keepsThePageResponsive, switchesFieldsAndMaps, clipsWithACap, showsIsosurfacesAndThresholds, pointsAndProbes, goesCoarserAndStopsAtAnError,
-  showsTheSamePictureFromItsLink, comesBackFromLostGraphics, drawsWithoutAWorker, turnsByPointer, isAccessible, obeysTheKeyboard, fitsAPhone, showsWhatIsSoundOfADamagedFile, saysWhatIsWrong,
+  refinesToTheOriginal,
+  showsACoarsePictureFirst,
+  survivesAKilledServer,
+  survivesAServerThatIsAwayWhenItIsAsked,
+  showsAPictureSoonOnAPoorLine,
+  keepsThePageResponsive,
+  switchesFieldsAndMaps,
+  clipsWithACap,
+  showsIsosurfacesAndThresholds,
+  pointsAndProbes,
+  goesCoarserAndStopsAtAnError,
+  showsTheSamePictureFromItsLink,
+  comesBackFromLostGraphics,
+  drawsWithoutAWorker,
+  turnsByPointer,
+  isAccessible,
+  obeysTheKeyboard,
+  fitsAPhone,
+  showsWhatIsSoundOfADamagedFile,
+  saysWhatIsWrong,
 };

@@ -10,9 +10,26 @@ import {linearBox} from './volume_checks.mjs';
 const kSponge = 3;
 const isInSponge = (x, y, z) => (x + y + z) % 2 === 0 || (7 * x + 3 * y + 5 * z) % 3 === 0;
 
-/** In the worker that draws, the opacity being the same everywhere: of all pixels those that show anything, and those where it is not what the box's cubes on the line of sight add up to. */
+/**
+ * In the worker that draws, the opacity being the same everywhere: of all pixels those that show
+ * anything, and those where it is not what the box's cubes on the line of sight add up to.
+ */
 function compareWithCubes(view, sizes, cubes) {
-  const {volume: {deep, caster: {ray: {material: {uniforms}}}, fine: {of: {vertices}}}, renderer, pose: {fromCanvas: m}} = view;
+  const {
+    volume: {
+      deep,
+      caster: {
+        ray: {
+          material: {uniforms},
+        },
+      },
+      fine: {
+        of: {vertices},
+      },
+    },
+    renderer,
+    pose: {fromCanvas: m},
+  } = view;
   const {width, height} = deep.volume;
   const gl = renderer.getContext();
   renderer.setRenderTarget(deep.volume);
@@ -21,21 +38,35 @@ function compareWithCubes(view, sizes, cubes) {
   renderer.setRenderTarget(null);
   const edges = [0, 1, 2].map((axis) => {
     const all = vertices.filter((_, i) => i % 4 === axis);
-    const low = all.reduce((a, b) => Math.min(a, b)), high = all.reduce((a, b) => Math.max(a, b));
+    const low = all.reduce((a, b) => Math.min(a, b)),
+      high = all.reduce((a, b) => Math.max(a, b));
     return Array.from({length: sizes[axis] + 1}, (_, i) => low + (i / sizes[axis]) * (high - low));
   });
-  const point = (x, y, z) => [0, 1, 2].map((i) => (m[i] * x + m[i + 4] * y + m[i + 8] * z + m[i + 12]) / (m[3] * x + m[7] * y + m[11] * z + m[15]));
+  const point = (x, y, z) =>
+    [0, 1, 2].map(
+      (i) =>
+        (m[i] * x + m[i + 4] * y + m[i + 8] * z + m[i + 12]) /
+        (m[3] * x + m[7] * y + m[11] * z + m[15]),
+    );
   const extinction = uniforms.density.value.image.data[3] * uniforms.perDiagonal.value;
   const found = {shown: 0, less: 0, more: 0};
   for (let pixel = 0; pixel < width * height; ++pixel) {
-    const [from, to] = [-1, 1].map((z) => point((2 * (pixel % width) + 1) / width - 1, (2 * Math.floor(pixel / width) + 1) / height - 1, z));
+    const [from, to] = [-1, 1].map((z) =>
+      point(
+        (2 * (pixel % width) + 1) / width - 1,
+        (2 * Math.floor(pixel / width) + 1) / height - 1,
+        z,
+      ),
+    );
     const along = to.map((value, axis) => value - from[axis]);
     const at = edges.map((all, axis) => all.map((place) => (place - from[axis]) / along[axis]));
     let shares = 0;
     for (const cube of cubes) {
-      let enter = 0, leave = Infinity;
+      let enter = 0,
+        leave = Infinity;
       for (let axis = 0; axis < 3; ++axis) {
-        const a = at[axis][cube[axis]], b = at[axis][cube[axis] + 1];
+        const a = at[axis][cube[axis]],
+          b = at[axis][cube[axis] + 1];
         enter = Math.max(enter, Math.min(a, b));
         leave = Math.min(leave, Math.max(a, b));
       }
@@ -54,14 +85,23 @@ function compareWithCubes(view, sizes, cubes) {
 async function openSponge({server, browser, logs, out, bin}) {
   const sizes = [kSponge, 2 * kSponge, 3 * kSponge];
   const cubes = [];
-  for (let z = 0; z < sizes[2]; ++z) for (let y = 0; y < sizes[1]; ++y) for (let x = 0; x < sizes[0]; ++x) if (isInSponge(x, y, z)) cubes.push([x, y, z]);
+  for (let z = 0; z < sizes[2]; ++z)
+    for (let y = 0; y < sizes[1]; ++y)
+      for (let x = 0; x < sizes[0]; ++x) if (isInSponge(x, y, z)) cubes.push([x, y, z]);
   const mesh = join(out, 'sponge.vtu');
   writeFileSync(mesh, linearBox(kSponge, {}, isInSponge));
-  execFileSync(join(bin, 'qtet'), ['simplify', mesh, '-o', join(logs.fin.folder, 'sponge.qtet')], {stdio: 'pipe'});
+  execFileSync(join(bin, 'qtet'), ['simplify', mesh, '-o', join(logs.fin.folder, 'sponge.qtet')], {
+    stdio: 'pipe',
+  });
   server.kill();
   await server.start();
-  const viewer = await browser.open(`${server.url}?mesh=sponge&field=x&volume=0.3,0.3`, {viewport: {width: 480, height: 320}, deviceScaleFactor: 1.5});
-  await viewer.page.addStyleTag({content: 'qtet-viewer::part(panel), qtet-viewer::part(legend) { display: none }'});
+  const viewer = await browser.open(`${server.url}?mesh=sponge&field=x&volume=0.3,0.3`, {
+    viewport: {width: 480, height: 320},
+    deviceScaleFactor: 1.5,
+  });
+  await viewer.page.addStyleTag({
+    content: 'qtet-viewer::part(panel), qtet-viewer::part(legend) { display: none }',
+  });
   await viewer.waitForState('complete');
   await viewer.waitForPicture();
   return {viewer, compare: (camera) => comparedFrom(viewer, camera, sizes, cubes)};
@@ -71,7 +111,11 @@ async function comparedFrom(viewer, camera, sizes, cubes) {
   await viewer.page.evaluate((place) => window.qtetViewer.setAttribute('camera', place), camera);
   await viewer.restVolume();
   const {shown, less, more} = await viewer.inView(compareWithCubes, sizes, cubes);
-  return {shown, wrong: less + more, note: `of ${shown} pixels ${less} show too little, ${more} too much`};
+  return {
+    shown,
+    wrong: less + more,
+    note: `of ${shown} pixels ${less} show too little, ${more} too much`,
+  };
 }
 
 /** From each of the cameras the whole picture is right. */
@@ -89,11 +133,22 @@ async function looksRightFrom(cameras, tools, picture) {
   return notes.join('; ');
 }
 
-/** Many edges at which rays leave the mesh on one side and stay in it on the other: none comes in again too rarely, or too often. */
-const castsRaysBesideEdges = (tools) => looksRightFrom(['2.6,3.2,1.7,0,0,0', '-1.9,2.7,2.4,0,0.1,0'], tools, 'volume-sponge');
+/**
+ * Many edges at which rays leave the mesh on one side and stay in it on the other: none comes in
+ * again too rarely, or too often.
+ */
+const castsRaysBesideEdges = (tools) =>
+  looksRightFrom(['2.6,3.2,1.7,0,0,0', '-1.9,2.7,2.4,0,0.1,0'], tools, 'volume-sponge');
 
-/** From just outside of the mesh, nearer to a face than the canvas's near plane: its rays begin at that plane. */
+/**
+ * From just outside of the mesh, nearer to a face than the canvas's near plane: its rays begin at
+ * that plane.
+ */
 const castsRaysFromCloseToAFace = (tools) =>
-  looksRightFrom(['0.2703,0.1,0.1,0,0.05,0', '0.2693,-0.3,0.5,0.2,0.3,-0.2', '0.05,-0.5375,0.15,0,0,0'], tools, 'volume-close');
+  looksRightFrom(
+    ['0.2703,0.1,0.1,0,0.05,0', '0.2693,-0.3,0.5,0.2,0.3,-0.2', '0.05,-0.5375,0.15,0,0,0'],
+    tools,
+    'volume-close',
+  );
 
 export const edgeChecks = {castsRaysBesideEdges, castsRaysFromCloseToAFace};

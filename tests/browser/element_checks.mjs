@@ -11,12 +11,13 @@ import {PoorLine} from './poor_line.mjs';
 /** A picture of the mesh before is already on its way when another one is chosen. */
 async function showsNothingOfTheMeshBefore({server, browser}) {
   const viewer = await browser.open(`${server.url}?mesh=fin`, undefined, () => {
-    const seen = window.qtetSwitch = {before: 0, loads: []};
+    const seen = (window.qtetSwitch = {before: 0, loads: []});
     window.Worker = class extends window.Worker {
       constructor(url, options) {
         super(url, options);
         if (options?.name !== 'qtet') return;
-        this.addEventListener('message', ({data}) => {  // hears of it before the viewer does
+        this.addEventListener('message', ({data}) => {
+          // hears of it before the viewer does
           if (data.type !== 'snapshot' || seen.before > 0) return;
           seen.before = data.snapshot.statistics.total.tetrahedra;
           const viewer = document.querySelector('qtet-viewer');
@@ -28,7 +29,9 @@ async function showsNothingOfTheMeshBefore({server, browser}) {
       }
     };
   });
-  await viewer.page.waitForFunction(() => window.qtetSwitch.loads.length > 0, null, {timeout: kTimeoutMs});
+  await viewer.page.waitForFunction(() => window.qtetSwitch.loads.length > 0, null, {
+    timeout: kTimeoutMs,
+  });
   await viewer.waitForState('complete');
   const {before, loads} = await viewer.page.evaluate(() => window.qtetSwitch);
   const {total} = await viewer.statistics();
@@ -36,10 +39,13 @@ async function showsNothingOfTheMeshBefore({server, browser}) {
   assert.deepEqual(loads, [total.tetrahedra]);
 }
 
-/** The graphics are so slow that the whole mesh is decoded before the first picture is on the screen. */
+/**
+ * The graphics are so slow that the whole mesh is decoded before the first picture is on the
+ * screen.
+ */
 async function tellsOfTheWholeMeshOnceItIsDrawn({server, browser}) {
   const viewer = await browser.open(`${server.url}?mesh=fin`, undefined, () => {
-    const told = window.qtetTold = {complete: [], last: null};
+    const told = (window.qtetTold = {complete: [], last: null});
     document.addEventListener('DOMContentLoaded', () => {
       const viewer = document.querySelector('qtet-viewer');
       viewer.addEventListener('complete', ({detail}) => told.complete.push(detail.tetrahedra));
@@ -52,32 +58,45 @@ async function tellsOfTheWholeMeshOnceItIsDrawn({server, browser}) {
       }
       set onmessage(hear) {
         const held = [];
-        super.onmessage = !this.isView ? hear : (event) => {
-          const viewer = document.querySelector('qtet-viewer');
-          if (event.data.type !== 'shown' || viewer.state === 'complete') return hear(event);
-          if (held.push(event) > 1) return undefined;
-          const wait = setInterval(() => {
-            if (viewer.state !== 'complete') return;
-            clearInterval(wait);
-            for (const event of held) hear(event);
-          }, 5);
-          return undefined;
-        };
+        super.onmessage = !this.isView
+          ? hear
+          : (event) => {
+              const viewer = document.querySelector('qtet-viewer');
+              if (event.data.type !== 'shown' || viewer.state === 'complete') return hear(event);
+              if (held.push(event) > 1) return undefined;
+              const wait = setInterval(() => {
+                if (viewer.state !== 'complete') return;
+                clearInterval(wait);
+                for (const event of held) hear(event);
+              }, 5);
+              return undefined;
+            };
       }
     };
   });
-  await viewer.page.waitForFunction(() => window.qtetTold.last?.tetrahedra === window.qtetTold.last?.total.tetrahedra && window.qtetTold.last,
-    null, {timeout: kTimeoutMs});
+  await viewer.page.waitForFunction(
+    () =>
+      window.qtetTold.last?.tetrahedra === window.qtetTold.last?.total.tetrahedra &&
+      window.qtetTold.last,
+    null,
+    {timeout: kTimeoutMs},
+  );
   const {complete, last} = await viewer.page.evaluate(() => window.qtetTold);
   assert.deepEqual(complete, [last.total.tetrahedra]);
 }
 
-/** The whole mesh is decoded before there is anything to draw with: the picture that waited for it is old, the figures are not. */
+/**
+ * The whole mesh is decoded before there is anything to draw with: the picture that waited for it
+ * is old, the figures are not.
+ */
 async function tellsTheNewestFiguresWithAnOldPicture({server, browser, logs}) {
   const viewer = await browser.open(`${server.url}?mesh=fin`, undefined, () => {
     document.addEventListener('DOMContentLoaded', () => {
       const viewer = document.querySelector('qtet-viewer');
-      viewer.addEventListener('load', ({detail}) => void (window.qtetLoad = [detail.tetrahedra, viewer.statistics.tetrahedra]));
+      viewer.addEventListener(
+        'load',
+        ({detail}) => void (window.qtetLoad = [detail.tetrahedra, viewer.statistics.tetrahedra]),
+      );
     });
     window.Worker = class extends window.Worker {
       constructor(url, options) {
@@ -86,7 +105,8 @@ async function tellsTheNewestFiguresWithAnOldPicture({server, browser, logs}) {
       }
       set onmessage(hear) {
         super.onmessage = (event) => {
-          if (!this.wait || document.querySelector('qtet-viewer').state === 'complete') return hear(event);
+          if (!this.wait || document.querySelector('qtet-viewer').state === 'complete')
+            return hear(event);
           if (this.wait.push(event) > 1) return undefined;
           const timer = setInterval(() => {
             if (document.querySelector('qtet-viewer').state !== 'complete') return;
@@ -107,18 +127,23 @@ async function tellsTheNewestFiguresWithAnOldPicture({server, browser, logs}) {
   await expectWhole(viewer, logs.fin);
 }
 
-/** A page that does not wait between putting the element into its place and saying what it shows. */
+/**
+ * A page that does not wait between putting the element into its place and saying what it shows.
+ */
 async function takesItsAttributesInTheTaskThatAppendsIt({server, browser}) {
   const viewer = await browser.open(`${server.url}?mesh=box`);
   await viewer.page.evaluate(() => {
-    const late = window.qtetViewer = document.createElement('qtet-viewer');
+    const late = (window.qtetViewer = document.createElement('qtet-viewer'));
     document.querySelector('qtet-viewer').replaceWith(late);
     late.setAttribute('src', '/nowhere.qtet');
     late.token = 'any';
   });
   await viewer.waitForState('failed');
   assert.match(await viewer.text('.notice p'), /nowhere\.qtet/);
-  assert.deepEqual(viewer.problems.filter((problem) => problem.includes('TypeError')), []);
+  assert.deepEqual(
+    viewer.problems.filter((problem) => problem.includes('TypeError')),
+    [],
+  );
 }
 
 /** A pause that comes before there is anything to pause: nothing is asked for until it ends. */
@@ -126,7 +151,7 @@ async function pausesInTheTaskThatAppendsIt({server, browser}) {
   const viewer = await browser.open(`${server.url}?mesh=box`);
   await viewer.waitForState('complete');
   await viewer.page.evaluate(() => {
-    const late = window.qtetViewer = document.createElement('qtet-viewer');
+    const late = (window.qtetViewer = document.createElement('qtet-viewer'));
     late.setAttribute('mesh', 'fin');
     document.querySelector('qtet-viewer').replaceWith(late);
     late.pause();
@@ -143,10 +168,11 @@ async function pausesInTheTaskThatAppendsIt({server, browser}) {
 /** Whatever goes wrong in one picture, the ones after it come. */
 async function drawsOnAfterAPictureThatFailed({server, browser}) {
   for (const breakOnce of [
-    ({surface}) => void (surface.show = () => {
-      delete surface.show;
-      throw new Error('broken on purpose');
-    }),
+    ({surface}) =>
+      void (surface.show = () => {
+        delete surface.show;
+        throw new Error('broken on purpose');
+      }),
     ({renderer}) => {
       const {render} = renderer;
       renderer.render = () => {
@@ -161,7 +187,9 @@ async function drawsOnAfterAPictureThatFailed({server, browser}) {
     const whole = await viewer.screenshot('broken-not');
     await viewer.inView(breakOnce);
     await viewer.page.evaluate(() => window.qtetViewer.setAttribute('surface', 'off'));
-    await viewer.page.getByText('Something went wrong while drawing: Uncaught Error: broken on purpose').waitFor();
+    await viewer.page
+      .getByText('Something went wrong while drawing: Uncaught Error: broken on purpose')
+      .waitFor();
     await viewer.page.evaluate(() => {
       const viewer = window.qtetViewer;
       viewer.removeAttribute('surface');
@@ -171,9 +199,15 @@ async function drawsOnAfterAPictureThatFailed({server, browser}) {
     await viewer.waitInView(({cuts}) => cuts[0].visible);
     await viewer.settle();
     const other = await viewer.screenshot('broken-after');
-    assert.ok(coloredShare(other) > 0.02 && differingShare(whole, other) > 0.02, 'no other picture comes');
+    assert.ok(
+      coloredShare(other) > 0.02 && differingShare(whole, other) > 0.02,
+      'no other picture comes',
+    );
     assert.ok(await viewer.page.locator('qtet-viewer .notice').isVisible(), 'the notice is gone');
-    assert.ok(await viewer.page.getByRole('button', {name: 'Try again'}).isVisible(), 'there is no way out');
+    assert.ok(
+      await viewer.page.getByRole('button', {name: 'Try again'}).isVisible(),
+      'there is no way out',
+    );
   }
 }
 
@@ -183,14 +217,18 @@ async function heedsAQualityThatChangesBeforeTheHeadHasCome({server, browser, lo
     const {postMessage} = Worker.prototype;
     Worker.prototype.postMessage = function (message, ...rest) {
       postMessage.call(this, message, ...rest);
-      if (message.type === 'start') queueMicrotask(() => window.qtetViewer.removeAttribute('quality'));
+      if (message.type === 'start')
+        queueMicrotask(() => window.qtetViewer.removeAttribute('quality'));
     };
   });
   await viewer.waitForState('complete');
   await expectWhole(viewer, logs.fin);
 }
 
-/** In mid-stream another log takes the name: the page begins anew, with the places and values of the new one. */
+/**
+ * In mid-stream another log takes the name: the page begins anew, with the places and values of the
+ * new one.
+ */
 async function showsTheLogThatTookTheName({server, browser, logs}) {
   const path = join(logs.fin.folder, 'changing.qtet');
   copyFileSync(join(logs.fin.folder, 'fin.qtet'), path);
@@ -199,7 +237,11 @@ async function showsTheLogThatTookTheName({server, browser, logs}) {
   const line = await PoorLine.open(server.port, {holdAt: 50000});
   try {
     const viewer = await browser.open(`${line.url}?mesh=changing&clip=x:0.4`);
-    await viewer.page.waitForFunction(() => window.qtetViewer.statistics.chunks > 2 && window.qtetSeen.pictures > 0, null, {timeout: kTimeoutMs, polling: 50});
+    await viewer.page.waitForFunction(
+      () => window.qtetViewer.statistics.chunks > 2 && window.qtetSeen.pictures > 0,
+      null,
+      {timeout: kTimeoutMs, polling: 50},
+    );
     const {chunks, chunkCount} = await viewer.statistics();
     assert.ok(chunks < chunkCount, 'everything had come before the log was replaced');
     server.kill();
@@ -207,14 +249,21 @@ async function showsTheLogThatTookTheName({server, browser, logs}) {
     copyFileSync(join(logs.box.folder, 'box.qtet'), path);
     await server.start();
     await viewer.waitForState('complete');
-    await viewer.page.waitForFunction(() => window.qtetSeen.events.some(({type}) => type === 'complete'), null, {timeout: kTimeoutMs});
+    await viewer.page.waitForFunction(
+      () => window.qtetSeen.events.some(({type}) => type === 'complete'),
+      null,
+      {timeout: kTimeoutMs},
+    );
     await expectWhole(viewer, logs.box);
     await viewer.settle();
     const again = await browser.open(viewer.page.url());
     await again.waitForState('complete');
     await again.waitForPicture();
     await again.settle();
-    const differing = differingShare(await again.screenshot('changed-fresh'), await viewer.screenshot('changed'));
+    const differing = differingShare(
+      await again.screenshot('changed-fresh'),
+      await viewer.screenshot('changed'),
+    );
     assert.ok(differing < 0.005, `${differing} of the picture is another than a fresh page's`);
     const loads = (await viewer.seen()).events.filter(({type}) => type === 'load').length;
     assert.equal(loads, 2);
@@ -225,7 +274,10 @@ async function showsTheLogThatTookTheName({server, browser, logs}) {
   }
 }
 
-/** Every attribute brings all settings along: only what changes the picture draws it anew, which takes graphics without a GPU a fifth of a second. */
+/**
+ * Every attribute brings all settings along: only what changes the picture draws it anew, which
+ * takes graphics without a GPU a fifth of a second.
+ */
 async function drawsOnlyWhatChanges({server, browser}) {
   const viewer = await browser.open(`${server.url}?mesh=fin`);
   await viewer.waitForState('complete');
@@ -243,30 +295,51 @@ async function drawsOnlyWhatChanges({server, browser}) {
     const before = await viewer.inView((view) => view.drawnByCheck);
     await viewer.page.evaluate((words) => window.qtetViewer.setAttribute(...words), [name, value]);
     await viewer.settle();
-    return await viewer.inView((view) => view.drawnByCheck) - before;
+    return (await viewer.inView((view) => view.drawnByCheck)) - before;
   };
   assert.equal(await drawnAfter('quality', 'cells:100000000'), 0);
-  assert.ok(await drawnAfter('edges', 'off') > 0);
-  assert.ok(await drawnAfter('projection', 'parallel') > 0);
+  assert.ok((await drawnAfter('edges', 'off')) > 0);
+  assert.ok((await drawnAfter('projection', 'parallel')) > 0);
 }
 
-/** Whatever is touched or reached by Tab is to be seen then, and the panel's own head stays where it is. */
+/**
+ * Whatever is touched or reached by Tab is to be seen then, and the panel's own head stays where it
+ * is.
+ */
 async function showsWhatHasTheFocus({server, browser}) {
-  for (const device of [{...kPhone, deviceScaleFactor: 1}, {viewport: {width: 1000, height: 420}}]) {
-    const viewer = await browser.open(`${server.url}?mesh=box&clip=x&iso=Scalar=0.5&threshold=Scalar=0,1&volume`, device);
+  for (const device of [
+    {...kPhone, deviceScaleFactor: 1},
+    {viewport: {width: 1000, height: 420}},
+  ]) {
+    const viewer = await browser.open(
+      `${server.url}?mesh=box&clip=x&iso=Scalar=0.5&threshold=Scalar=0,1&volume`,
+      device,
+    );
     await viewer.waitForState('complete');
     await viewer.waitForPicture();
     const {page} = viewer;
     if (device.isMobile) await page.getByRole('button', {name: 'Controls'}).tap();
-    for (const text of ['Slice', 'Line', 'Reversed']) await page.getByText(text, {exact: true})[device.isMobile ? 'tap' : 'click']();
-    const place = () => page.evaluate(() => {
-      const {shadowRoot} = window.qtetViewer;
-      const focused = shadowRoot.activeElement;
-      const panel = shadowRoot.querySelector('.panel');
-      const shown = shadowRoot.querySelector('.body').getBoundingClientRect();
-      const {top, bottom} = (focused?.closest('label') ?? focused ?? panel).getBoundingClientRect();
-      return {name: focused?.name || focused?.className, scrolled: panel.scrollTop, inPanel: panel.contains(focused), inHead: focused?.closest('header') != null, seen: top >= shown.top - 1 && bottom <= shown.bottom + 1};
-    });
+    for (const text of ['Slice', 'Line', 'Reversed'])
+      await page.getByText(text, {exact: true})[device.isMobile ? 'tap' : 'click']();
+    const place = () =>
+      page.evaluate(() => {
+        const {shadowRoot} = window.qtetViewer;
+        const focused = shadowRoot.activeElement;
+        const panel = shadowRoot.querySelector('.panel');
+        const shown = shadowRoot.querySelector('.body').getBoundingClientRect();
+        const {top, bottom} = (
+          focused?.closest('label') ??
+          focused ??
+          panel
+        ).getBoundingClientRect();
+        return {
+          name: focused?.name || focused?.className,
+          scrolled: panel.scrollTop,
+          inPanel: panel.contains(focused),
+          inHead: focused?.closest('header') != null,
+          seen: top >= shown.top - 1 && bottom <= shown.bottom + 1,
+        };
+      });
     assert.equal((await place()).scrolled, 0, 'a touch scrolls the panel away');
     await page.locator('qtet-viewer .fold').focus();
     let tabs = 0;
@@ -283,6 +356,12 @@ async function showsWhatHasTheFocus({server, browser}) {
 export const elementChecks = {
   showsWhatHasTheFocus,
   drawsOnlyWhatChanges,
-  showsNothingOfTheMeshBefore, tellsOfTheWholeMeshOnceItIsDrawn, tellsTheNewestFiguresWithAnOldPicture, takesItsAttributesInTheTaskThatAppendsIt, pausesInTheTaskThatAppendsIt,
-  drawsOnAfterAPictureThatFailed, heedsAQualityThatChangesBeforeTheHeadHasCome, showsTheLogThatTookTheName,
+  showsNothingOfTheMeshBefore,
+  tellsOfTheWholeMeshOnceItIsDrawn,
+  tellsTheNewestFiguresWithAnOldPicture,
+  takesItsAttributesInTheTaskThatAppendsIt,
+  pausesInTheTaskThatAppendsIt,
+  drawsOnAfterAPictureThatFailed,
+  heedsAQualityThatChangesBeforeTheHeadHasCome,
+  showsTheLogThatTookTheName,
 };

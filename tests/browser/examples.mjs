@@ -12,25 +12,45 @@ const kExamples = ['three_level', 'three_stream', 'vtk_level', 'vtk_stream'];
 /** Of the picture's middle: each shows its mesh in viridis. */
 const kLeastColored = 0.05;
 
-/** Pages of the project for each example, as examples/README.md says; vite.config.js builds them beside index.html. */
+/**
+ * Pages of the project for each example, as examples/README.md says; vite.config.js builds them
+ * beside index.html.
+ */
 export function addExamples(project) {
   for (const folder of ['public', 'examples']) mkdirSync(join(project, folder));
-  copyFileSync(join(client, 'node_modules/three/examples/jsm/libs/draco/gltf/draco_decoder.js'), join(project, 'public/draco_decoder.js'));
+  copyFileSync(
+    join(client, 'node_modules/three/examples/jsm/libs/draco/gltf/draco_decoder.js'),
+    join(project, 'public/draco_decoder.js'),
+  );
   copyFileSync(join(client, 'examples/page.js'), join(project, 'examples/page.js'));
   for (const name of kExamples) {
     copyFileSync(join(client, `examples/${name}.js`), join(project, `examples/${name}.js`));
     const decoder = name === 'vtk_level' ? '<script src="/draco_decoder.js"></script>' : '';
-    writeFileSync(join(project, `${name}.html`), `<!doctype html><html lang="en"><head><title>${name}</title><style>body { margin: 0 }</style></head>
-<body>${decoder}<script type="module" src="/examples/${name}.js"></script></body></html>`);
+    writeFileSync(
+      join(project, `${name}.html`),
+      `<!doctype html><html lang="en">
+<head><title>${name}</title><style>body { margin: 0 }</style></head>
+<body>${decoder}<script type="module" src="/examples/${name}.js"></script></body></html>`,
+    );
   }
   const pages = ['index', ...kExamples].map((name) => `${name}.html`);
-  writeFileSync(join(project, 'vite.config.js'), `export default {build: {target: 'es2022', chunkSizeWarningLimit: 4000, rollupOptions: {input: ${JSON.stringify(pages)}}}};\n`);
+  writeFileSync(
+    join(project, 'vite.config.js'),
+    "export default {build: {target: 'es2022', chunkSizeWarningLimit: 4000, rollupOptions: " +
+      `{input: ${JSON.stringify(pages)}}}};\n`,
+  );
 }
 
-/** Waits for a picture that shows something; how much of it is coloured. `problems`: a list that ends the wait when it fills. */
+/**
+ * Waits for a picture that shows something; how much of it is coloured. `problems`: a list that
+ * ends the wait when it fills.
+ */
 export async function waitForColor(browser, page, name, problems = []) {
   let share = 0;
-  for (const end = Date.now() + kTimeoutMs; share < kLeastColored && Date.now() < end && problems.length === 0;) {
+  for (
+    const end = Date.now() + kTimeoutMs;
+    share < kLeastColored && Date.now() < end && problems.length === 0;
+  ) {
     await page.waitForTimeout(300);
     share = coloredShare(await browser.picture(page, name));
   }

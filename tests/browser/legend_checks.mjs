@@ -1,4 +1,4 @@
-// Fields that are awkward to show: names, numbers and gaps that still have to be read.
+// Fields that are awkward to show: names, numbers and missing values that still have to be read.
 
 import assert from 'node:assert/strict';
 import {execFileSync} from 'node:child_process';
@@ -10,38 +10,68 @@ import {linearBox} from './volume_checks.mjs';
 const kLong = 'Turbulent kinetic energy dissipation rate per unit mass, averaged in time';
 
 /** Rectangles of the legend and of its numbers. */
-const placesOf = (viewer) => viewer.page.evaluate(() => {
-  const {shadowRoot} = window.qtetViewer;
-  const rectangle = (element) => {
-    const {left, right, top, bottom} = element.getBoundingClientRect();
-    return {left, right, top, bottom, text: element.textContent};
-  };
-  return {card: rectangle(shadowRoot.querySelector('.legend')), ticks: [...shadowRoot.querySelectorAll('.legend-ticks span')].map(rectangle)};
-});
+const placesOf = (viewer) =>
+  viewer.page.evaluate(() => {
+    const {shadowRoot} = window.qtetViewer;
+    const rectangle = (element) => {
+      const {left, right, top, bottom} = element.getBoundingClientRect();
+      return {left, right, top, bottom, text: element.textContent};
+    };
+    return {
+      card: rectangle(shadowRoot.querySelector('.legend')),
+      ticks: [...shadowRoot.querySelectorAll('.legend-ticks span')].map(rectangle),
+    };
+  });
 
 async function showsAwkwardFieldsLegibly({server, browser, logs, out, bin}) {
   const mesh = join(out, 'awkward.vtu');
-  writeFileSync(mesh, linearBox(4, {
-    Offset: (x, y, z) => 101325 + 0.03 * z, Tiny: (x) => 1e-9 * x, Constant: () => 42.5, Gaps: (x, y, z) => (z < 1 ? NaN : y), [kLong]: (x, y) => y,
-  }));
-  execFileSync(join(bin, 'qtet'), ['simplify', mesh, '-o', join(logs.fin.folder, 'awkward.qtet'), '--field-bits', '20'], {stdio: 'pipe'});
+  writeFileSync(
+    mesh,
+    linearBox(4, {
+      Offset: (x, y, z) => 101325 + 0.03 * z,
+      Tiny: (x) => 1e-9 * x,
+      Constant: () => 42.5,
+      Missing: (x, y, z) => (z < 1 ? NaN : y),
+      [kLong]: (x, y) => y,
+    }),
+  );
+  execFileSync(
+    join(bin, 'qtet'),
+    ['simplify', mesh, '-o', join(logs.fin.folder, 'awkward.qtet'), '--field-bits', '20'],
+    {stdio: 'pipe'},
+  );
   server.kill();
   await server.start();
   const viewer = await browser.open(`${server.url}?mesh=awkward`, kPhone);
   await viewer.waitForState('complete');
   await viewer.waitForPicture();
   const {page} = viewer;
-  for (const field of ['Offset', 'Tiny', 'Constant', 'Gaps', kLong]) {
+  for (const field of ['Offset', 'Tiny', 'Constant', 'Missing', kLong]) {
     await page.evaluate((name) => window.qtetViewer.setAttribute('field', name), field);
-    await page.waitForFunction((name) => window.qtetViewer.shadowRoot.querySelector('.legend-name').title === name, field);
+    await page.waitForFunction(
+      (name) => window.qtetViewer.shadowRoot.querySelector('.legend-name').title === name,
+      field,
+    );
     await viewer.settle();
     const {card, ticks} = await placesOf(viewer);
-    assert.ok(ticks.length > 0 && ticks.every(({left, right}) => left >= card.left && right <= card.right), `${field}: ${JSON.stringify(ticks)} in ${JSON.stringify(card)}`);
-    for (let i = 1; i < ticks.length; ++i) assert.ok(ticks[i].left > ticks[i - 1].right, `${field}: "${ticks[i - 1].text}" and "${ticks[i].text}" overlap`);
-    assert.equal(await page.locator('qtet-viewer .legend-gap').isVisible(), field === 'Gaps', field);
+    assert.ok(
+      ticks.length > 0 && ticks.every(({left, right}) => left >= card.left && right <= card.right),
+      `${field}: ${JSON.stringify(ticks)} in ${JSON.stringify(card)}`,
+    );
+    for (let i = 1; i < ticks.length; ++i)
+      assert.ok(
+        ticks[i].left > ticks[i - 1].right,
+        `${field}: "${ticks[i - 1].text}" and "${ticks[i].text}" overlap`,
+      );
+    assert.equal(
+      await page.locator('qtet-viewer .legend-missing').isVisible(),
+      field === 'Missing',
+      field,
+    );
     await viewer.screenshot(`legend-${field.slice(0, 8).toLowerCase()}`);
   }
-  // A tap moves nothing: the mesh stays fitted to what the cards leave free. Moving a finger turns it.
+  // A tap moves nothing: the mesh stays fitted to what the cards leave free. Moving a finger turns
+  // it.
   await page.touchscreen.tap(195, 350);
   await viewer.settle();
   assert.equal(await viewer.inView(({orbit}) => orbit.fitted), true);
@@ -54,16 +84,28 @@ async function showsAwkwardFieldsLegibly({server, browser, logs, out, bin}) {
   assert.deepEqual(viewer.problems, []);
 }
 
-/** A low window, or one at 200 %: the legend is nearly as wide as what the panel leaves, so the mesh stands above it. */
+/**
+ * A low window, or one at 200 %: the legend is nearly as wide as what the panel leaves, so the mesh
+ * stands above it.
+ */
 async function keepsTheMeshOutOfTheLegend({server, browser}) {
-  const viewer = await browser.open(`${server.url}?mesh=box`, {viewport: {width: 720, height: 450}, deviceScaleFactor: 2});
+  const viewer = await browser.open(`${server.url}?mesh=box`, {
+    viewport: {width: 720, height: 450},
+    deviceScaleFactor: 2,
+  });
   await viewer.waitForState('complete');
   await viewer.waitForPicture();
   await viewer.settle();
   const {card} = await placesOf(viewer);
   const lowest = await viewer.page.evaluate(() => {
-    const {meshView, bounds} = window.qtetViewer;
-    return Math.max(...Array.from({length: 8}, (_, i) => meshView.project([0, 1, 2].map((axis) => bounds[axis + 3 * ((i >> axis) & 1)])).y));
+    const {meshView, viewing} = window.qtetViewer;
+    const {bounds} = viewing.mesh;
+    return Math.max(
+      ...Array.from(
+        {length: 8},
+        (_, i) => meshView.project([0, 1, 2].map((axis) => bounds[axis + 3 * ((i >> axis) & 1)])).y,
+      ),
+    );
   });
   assert.ok(lowest < card.top, `the mesh reaches down to ${lowest}, the legend up to ${card.top}`);
   await viewer.screenshot('legend-low');

@@ -1,5 +1,6 @@
-// The npm package as a stranger uses it: packed, installed into an empty Vite project, type-checked, built, and looked at in Chromium with two
-// viewers on one page; and the examples in the same project. Usage: node package.mjs --bin DIR --wasm FILE --out DIR
+// The npm package as a stranger uses it: packed, installed into an empty Vite project,
+// type-checked, built, and looked at in Chromium with two viewers on one page; and the examples in
+// the same project. Usage: node package.mjs --bin DIR --wasm FILE --out DIR
 
 import assert from 'node:assert/strict';
 import {execFileSync} from 'node:child_process';
@@ -11,7 +12,9 @@ import {Browser, kTimeoutMs} from './browser.mjs';
 import {addExamples, checkExamples, waitForColor} from './examples.mjs';
 import {makeLog, Server} from './programs.mjs';
 
-const {values: options} = parseArgs({options: {bin: {type: 'string'}, wasm: {type: 'string'}, out: {type: 'string'}}});
+const {values: options} = parseArgs({
+  options: {bin: {type: 'string'}, wasm: {type: 'string'}, out: {type: 'string'}},
+});
 if (!options.bin || !options.wasm || !options.out) {
   console.error('Usage: node package.mjs --bin DIR --wasm FILE --out DIR');
   process.exit(2);
@@ -22,10 +25,12 @@ const built = join(options.out, 'package');
 const project = join(options.out, 'project');
 
 const kPage = `<!doctype html><html lang="en"><head><title>Two meshes</title><style>
-  body { margin: 0; display: grid; grid-template-columns: 1fr 1fr; height: 100vh } qtet-viewer { min-width: 0 }
+  body { margin: 0; display: grid; grid-template-columns: 1fr 1fr; height: 100vh }
+  qtet-viewer { min-width: 0 }
   qtet-viewer::part(panel) { display: none }
 </style></head><body>
-<qtet-viewer mesh="box" colormap="turbo"></qtet-viewer><qtet-viewer mesh="fin" clip="y:0.5"><p slot="poster">Loading</p></qtet-viewer>
+<qtet-viewer mesh="box" colormap="turbo"></qtet-viewer>
+<qtet-viewer mesh="fin" clip="y:0.5"><p slot="poster">Loading</p></qtet-viewer>
 <script type="module" src="/main.ts"></script></body></html>`;
 
 /** Uses what the package says that it has, so that the compiler judges the types. */
@@ -44,32 +49,68 @@ const client = new Client((message) => {
   if (snapshot.surface) triangles = snapshot.surface.positions.length / 9;
   client.shown();
 });
-client.start({url: new URL('/v1/stream', location.href).href.replace('http', 'ws'), mesh: 'box', fields: null, limit: kFull});
-Object.assign(window, {viewers, first, triangles: () => triangles, parts: [MeshView, SoupMesh, colorTable('turbo').length, kViewAttributes.length]});
+const url = new URL('/v1/stream', location.href).href.replace('http', 'ws');
+client.start({url, mesh: 'box', fields: null, limit: kFull});
+const parts = [MeshView, SoupMesh, colorTable('turbo').length, kViewAttributes.length];
+Object.assign(window, {viewers, first, triangles: () => triangles, parts});
 `;
 
 function makeProject() {
   rmSync(project, {recursive: true, force: true});
   mkdirSync(project);
-  writeFileSync(join(project, 'package.json'), JSON.stringify({name: 'stranger', private: true, type: 'module'}));
-  writeFileSync(join(project, 'tsconfig.json'), JSON.stringify({
-    compilerOptions: {target: 'ES2022', module: 'ESNext', moduleResolution: 'Bundler', strict: true, noEmit: true, skipLibCheck: false, types: [], lib: ['ES2022', 'DOM', 'DOM.Iterable']},
-    files: ['main.ts'],
-  }));
+  writeFileSync(
+    join(project, 'package.json'),
+    JSON.stringify({name: 'stranger', private: true, type: 'module'}),
+  );
+  writeFileSync(
+    join(project, 'tsconfig.json'),
+    JSON.stringify({
+      compilerOptions: {
+        target: 'ES2022',
+        module: 'ESNext',
+        moduleResolution: 'Bundler',
+        strict: true,
+        noEmit: true,
+        skipLibCheck: false,
+        types: [],
+        lib: ['ES2022', 'DOM', 'DOM.Iterable'],
+      },
+      files: ['main.ts'],
+    }),
+  );
   writeFileSync(join(project, 'index.html'), kPage);
   writeFileSync(join(project, 'main.ts'), kScript);
   addExamples(project);
 }
 
-const run = (folder, command, ...words) => execFileSync(command, words, {cwd: folder, encoding: 'utf8', stdio: ['ignore', 'pipe', 'inherit']});
+const run = (folder, command, ...words) =>
+  execFileSync(command, words, {
+    cwd: folder,
+    encoding: 'utf8',
+    stdio: ['ignore', 'pipe', 'inherit'],
+  });
 
 run(client, process.execPath, 'pack.mjs', options.wasm, built);
 const [{filename, files}] = JSON.parse(run(built, 'npm', 'pack', '--json', '--loglevel=error'));
-assert.ok(files.length > 40 && !files.some(({path}) => path.endsWith('.ts') && !path.endsWith('.d.ts')), 'the package holds sources or too little');
+assert.ok(
+  files.length > 40 && !files.some(({path}) => path.endsWith('.ts') && !path.endsWith('.d.ts')),
+  'the package holds sources or too little',
+);
 makeProject();
-run(project, 'npm', 'install', join(built, filename), '--omit=peer', '--no-audit', '--no-fund', '--prefer-offline', '--loglevel=error');
+run(
+  project,
+  'npm',
+  'install',
+  join(built, filename),
+  '--omit=peer',
+  '--no-audit',
+  '--no-fund',
+  '--prefer-offline',
+  '--loglevel=error',
+);
 // What every such project has is here already: nothing is downloaded twice.
-for (const name of ['three', '@kitware', 'vite', 'typescript', '@types']) symlinkSync(join(client, 'node_modules', name), join(project, 'node_modules', name));
+for (const name of ['three', '@kitware', 'vite', 'typescript', '@types'])
+  symlinkSync(join(client, 'node_modules', name), join(project, 'node_modules', name));
 run(project, process.execPath, 'node_modules/typescript/bin/tsc');
 run(project, process.execPath, 'node_modules/vite/bin/vite.js', 'build', '--logLevel', 'error');
 
@@ -79,13 +120,26 @@ const browser = await Browser.launch(options.out);
 try {
   await server.start();
   const page = await browser.page(server.url);
-  await page.waitForFunction(() => window.viewers?.every((viewer) => viewer.state === 'complete' && viewer.matches('.loaded')) && window.triangles() > 0, null, {timeout: kTimeoutMs});
-  const digests = await page.evaluate(() => Promise.all(window.viewers.map((viewer) => viewer.digest())));
-  assert.deepEqual(digests, logs.map(({meshDigest}) => meshDigest));
+  await page.waitForFunction(
+    () =>
+      window.viewers?.every((viewer) => viewer.state === 'complete' && viewer.matches('.loaded')) &&
+      window.triangles() > 0,
+    null,
+    {timeout: kTimeoutMs},
+  );
+  const digests = await page.evaluate(() =>
+    Promise.all(window.viewers.map((viewer) => viewer.digest())),
+  );
+  assert.deepEqual(
+    digests,
+    logs.map(({meshDigest}) => meshDigest),
+  );
   await waitForColor(browser, page, 'package');
   await page.evaluate(() => window.viewers.forEach((viewer) => viewer.remove()));
   assert.equal(await page.evaluate(() => window.viewers[0].statistics.tetrahedra), 0);
-  console.log(`ok    ${filename}: installed, type-checked, built, two viewers and a client on one page`);
+  console.log(
+    `ok    ${filename}: installed, type-checked, built, two viewers and a client on one page`,
+  );
   await page.context().close();
   await checkExamples(browser, server);
 } finally {

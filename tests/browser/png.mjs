@@ -1,4 +1,5 @@
-// Reads the PNG files that Chromium writes (8 bits, RGB or RGBA, not interlaced) and compares pictures.
+// Reads the PNG files that Chromium writes (8 bits, RGB or RGBA, not interlaced) and compares
+// pictures.
 
 import {inflateSync} from 'node:zlib';
 
@@ -7,13 +8,19 @@ export function readPng(file) {
   const width = file.readUInt32BE(16);
   const height = file.readUInt32BE(20);
   const channels = {2: 3, 6: 4}[file[25]];
-  if (file[24] !== 8 || channels === undefined || file[28] !== 0) throw new Error('this PNG is none that Chromium writes');
+  if (file[24] !== 8 || channels === undefined || file[28] !== 0)
+    throw new Error('this PNG is none that Chromium writes');
   const packed = [];
   for (let at = 8; at < file.length; at += 12 + file.readUInt32BE(at)) {
-    if (file.toString('latin1', at + 4, at + 8) === 'IDAT') packed.push(file.subarray(at + 8, at + 8 + file.readUInt32BE(at)));
+    if (file.toString('latin1', at + 4, at + 8) === 'IDAT')
+      packed.push(file.subarray(at + 8, at + 8 + file.readUInt32BE(at)));
   }
   const pixels = unfilter(inflateSync(Buffer.concat(packed)), width * channels, height, channels);
-  return {width, height, at: (x, y) => [...pixels.subarray((y * width + x) * channels, (y * width + x) * channels + 3)]};
+  return {
+    width,
+    height,
+    at: (x, y) => [...pixels.subarray((y * width + x) * channels, (y * width + x) * channels + 3)],
+  };
 }
 
 function unfilter(rows, stride, height, channels) {
@@ -80,10 +87,16 @@ export function largestDifference(a, b) {
 }
 
 const kBlockPixels = 4;
-/** Of 255, between the means of two blocks: what antialiasing moves about within a block does not count. */
+/**
+ * Of 255, between the means of two blocks: what antialiasing moves about within a block does not
+ * count.
+ */
 const kVisibleStep = 10;
 
-/** Share of the blocks of 4 x 4 pixels whose means differ visibly; 1 for pictures of different sizes. */
+/**
+ * Share of the blocks of 4 x 4 pixels whose means differ visibly; 1 for pictures of different
+ * sizes.
+ */
 export function differingBlocks(a, b) {
   if (a.width !== b.width || a.height !== b.height) return 1;
   let differing = 0;
@@ -101,7 +114,8 @@ export function differingBlocks(a, b) {
 function blockMean(picture, left, top) {
   const sums = [0, 0, 0];
   for (let y = top; y < top + kBlockPixels; ++y) {
-    for (let x = left; x < left + kBlockPixels; ++x) picture.at(x, y).forEach((value, c) => void (sums[c] += value / kBlockPixels ** 2));
+    for (let x = left; x < left + kBlockPixels; ++x)
+      picture.at(x, y).forEach((value, c) => void (sums[c] += value / kBlockPixels ** 2));
   }
   return sums;
 }

@@ -1,4 +1,5 @@
-// A slow line between the browser and the server: a TCP relay with a rate and a delay. Connections that the server loses, it loses.
+// A slow line between the browser and the server: a TCP relay with a rate and a delay. Connections
+// that the server loses, it loses.
 
 import {createServer, connect} from 'node:net';
 
@@ -12,9 +13,15 @@ export class PoorLine {
   /** From now on no WebSocket gets through, as behind some companies' proxies. */
   refuseStreams = false;
 
-  /** `bytesPerSecond` towards the browser on each connection, or on those of /v1/stream only; `delayMs` is added each way. Of the first connection of
-   *  /v1/stream byte `damageAt` arrives changed, or nothing at all behind the first `holdAt` bytes, however slow this machine is. */
-  static async open(targetPort, {bytesPerSecond = Infinity, delayMs = 0, streamsOnly = false, damageAt = -1, holdAt = Infinity}) {
+  /**
+   * `bytesPerSecond` towards the browser on each connection, or on those of /v1/stream only;
+   * `delayMs` is added each way. Of the first connection of /v1/stream byte `damageAt` arrives
+   * changed, or nothing at all behind the first `holdAt` bytes, however slow this machine is.
+   */
+  static async open(
+    targetPort,
+    {bytesPerSecond = Infinity, delayMs = 0, streamsOnly = false, damageAt = -1, holdAt = Infinity},
+  ) {
     const line = new PoorLine();
     line.bytesPerSecond = bytesPerSecond;
     line.#relay = createServer((browser) => {
@@ -25,7 +32,8 @@ export class PoorLine {
         line.#connections.delete(end);
       };
       line.#connections.add(end);
-      for (const socket of [browser, server]) socket.on('error', end).on('close', end).setNoDelay(true);
+      for (const socket of [browser, server])
+        socket.on('error', end).on('close', end).setNoDelay(true);
       let slow = !streamsOnly;
       let damage = -1;
       let room = Infinity;
@@ -36,26 +44,42 @@ export class PoorLine {
         if (stream) [damage, damageAt, room, holdAt] = [damageAt, -1, holdAt, Infinity];
         setTimeout(() => server.writable && server.write(bytes), delayMs);
       });
-      relaySlowly(server, browser, () => Math.min(room, slow ? (line.bytesPerSecond * kTickMs) / 1000 : Infinity), delayMs, (bytes) => {
-        room -= bytes.length;
-        if (damage >= 0 && damage < bytes.length) bytes[damage] ^= 1;
-        damage -= bytes.length;
-      });
+      relaySlowly(
+        server,
+        browser,
+        () => Math.min(room, slow ? (line.bytesPerSecond * kTickMs) / 1000 : Infinity),
+        delayMs,
+        (bytes) => {
+          room -= bytes.length;
+          if (damage >= 0 && damage < bytes.length) bytes[damage] ^= 1;
+          damage -= bytes.length;
+        },
+      );
     });
     await new Promise((resolve) => void line.#relay.listen(0, '127.0.0.1', resolve));
     return line;
   }
 
-  get url() { return `http://127.0.0.1:${this.#relay.address().port}/`; }
-  /** Breaks every connection, with what is under way: a server's death alone leaves its last megabytes in the kernel. */
+  get url() {
+    return `http://127.0.0.1:${this.#relay.address().port}/`;
+  }
+  /**
+   * Breaks every connection, with what is under way: a server's death alone leaves its last
+   * megabytes in the kernel.
+   */
   cut() {
     for (const end of [...this.#connections]) end();
   }
 
-  close() { this.#relay.close(); }
+  close() {
+    this.#relay.close();
+  }
 }
 
-/** Passes on `portion()` bytes a tick, and reads no further ahead, so that the server feels the line. */
+/**
+ * Passes on `portion()` bytes a tick, and reads no further ahead, so that the server feels the
+ * line.
+ */
 function relaySlowly(from, to, portion, delayMs, spoil) {
   const timer = setInterval(() => {
     const bytes = from.read(Math.min(portion(), from.readableLength));

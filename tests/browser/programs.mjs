@@ -1,4 +1,5 @@
-// The programs under test: qtet makes logs, qtet-server serves them and can be killed and started again on its port.
+// The programs under test: qtet makes logs, qtet-server serves them and can be killed and started
+// again on its port.
 
 import {execFileSync, spawn} from 'node:child_process';
 import {mkdirSync} from 'node:fs';
@@ -6,14 +7,18 @@ import {join} from 'node:path';
 
 const kStartTimeoutMs = 20000;
 
-/** Makes OUT/logs/NAME.qtet from a sample and asks the tool for the digest of the whole mesh. `options`: further words for `qtet simplify`. */
+/**
+ * Makes OUT/logs/NAME.qtet from a sample and asks the tool for the digest of the whole mesh.
+ * `options`: further words for `qtet simplify`.
+ */
 export function makeLog(bin, name, out, sample = name, options = []) {
   const folder = join(out, 'logs');
   const mesh = join(out, `${name}.vtu`);
   const log = join(folder, `${name}.qtet`);
   const tool = join(bin, 'qtet');
   mkdirSync(folder, {recursive: true});
-  const run = (...words) => execFileSync(tool, words, {encoding: 'utf8', stdio: ['ignore', 'pipe', 'pipe']});
+  const run = (...words) =>
+    execFileSync(tool, words, {encoding: 'utf8', stdio: ['ignore', 'pipe', 'pipe']});
   run('sample', sample, '-o', mesh);
   run('simplify', mesh, '-o', log, ...options);
   const report = JSON.parse(run('verify', log, '--json'));
@@ -31,17 +36,24 @@ export class Server {
     this.arguments = [folder, '--viewer', viewer, ...options];
   }
 
-  get url() { return `http://127.0.0.1:${this.port}/`; }
+  get url() {
+    return `http://127.0.0.1:${this.port}/`;
+  }
 
   /** Starts it, on the port that it had before; nothing when it runs. */
   async start() {
     if (this.#process) return;
     await this.#gone;
-    const started = spawn(this.command, [...this.arguments, '--port', String(this.port)], {stdio: ['ignore', 'pipe', 'pipe']});
+    const started = spawn(this.command, [...this.arguments, '--port', String(this.port)], {
+      stdio: ['ignore', 'pipe', 'pipe'],
+    });
     this.#process = started;
     let said = '';
     this.port = await new Promise((resolve, reject) => {
-      const timer = setTimeout(() => reject(new Error(`qtet-server does not listen; it said: ${said}`)), kStartTimeoutMs);
+      const timer = setTimeout(
+        () => reject(new Error(`qtet-server does not listen; it said: ${said}`)),
+        kStartTimeoutMs,
+      );
       const hear = (text) => {
         said += text;
         const port = /listening on http:\/\/[^:]+:(\d+)/.exec(said)?.[1];
@@ -51,7 +63,9 @@ export class Server {
       };
       started.stdout.setEncoding('utf8').on('data', hear);
       started.stderr.setEncoding('utf8').on('data', (text) => void (said += text));
-      started.once('exit', (code) => reject(new Error(`qtet-server ended with ${code}; it said: ${said}`)));
+      started.once('exit', (code) =>
+        reject(new Error(`qtet-server ended with ${code}; it said: ${said}`)),
+      );
     });
   }
 
@@ -60,7 +74,8 @@ export class Server {
     const ending = this.#process;
     if (!ending) return;
     ending.removeAllListeners('exit');
-    if (ending.exitCode === null) this.#gone = new Promise((resolve) => void ending.once('exit', resolve));
+    if (ending.exitCode === null)
+      this.#gone = new Promise((resolve) => void ending.once('exit', resolve));
     ending.kill('SIGKILL');
     this.#process = null;
   }

@@ -8,14 +8,19 @@ import {PoorLine} from './poor_line.mjs';
 const cameraOf = (viewer) => viewer.page.evaluate(() => window.qtetViewer.cameraState);
 const turn = async (viewer) => {
   await viewer.page.locator('qtet-viewer .scene').focus();
-  for (const key of ['ArrowLeft', 'ArrowLeft', 'ArrowUp', '+']) await viewer.page.keyboard.press(key);
+  for (const key of ['ArrowLeft', 'ArrowLeft', 'ArrowUp', '+'])
+    await viewer.page.keyboard.press(key);
   await viewer.settle();
 };
 const near = (a, b) => a.every((x, i) => Math.abs(x - b[i]) < 1e-6);
 
 /** A block that arrives damaged ends the stream; the second attempt shows the same view, finer. */
 async function triesAgainWithTheSameView({server, browser, logs}) {
-  const line = await PoorLine.open(server.port, {bytesPerSecond: 200000, streamsOnly: true, damageAt: 150000});
+  const line = await PoorLine.open(server.port, {
+    bytesPerSecond: 200000,
+    streamsOnly: true,
+    damageAt: 150000,
+  });
   try {
     const viewer = await browser.open(`${line.url}?mesh=fin&field=Pressure&clip=x:0.4`);
     await viewer.waitForState('failed');
@@ -23,14 +28,22 @@ async function triesAgainWithTheSameView({server, browser, logs}) {
     await turn(viewer);
     const camera = await cameraOf(viewer);
     await viewer.page.getByRole('button', {name: 'Try again'}).click();
-    await viewer.page.waitForFunction(() => window.qtetViewer.state === 'complete', null, {polling: 50});
+    await viewer.page.waitForFunction(() => window.qtetViewer.state === 'complete', null, {
+      polling: 50,
+    });
     await expectWhole(viewer, logs.fin);
     await viewer.settle();
     const after = await cameraOf(viewer);
     assert.ok(near(after, camera), `the camera was at ${camera} and is at ${after}`);
     const {searchParams} = new URL(viewer.page.url());
-    assert.deepEqual(['field', 'clip'].map((name) => searchParams.get(name)), ['Pressure', 'x:0.4']);
-    assert.ok(near(await viewer.inView(({cameraState}) => cameraState), camera), 'the picture has another camera than the page');
+    assert.deepEqual(
+      ['field', 'clip'].map((name) => searchParams.get(name)),
+      ['Pressure', 'x:0.4'],
+    );
+    assert.ok(
+      near(await viewer.inView(({cameraState}) => cameraState), camera),
+      'the picture has another camera than the page',
+    );
   } finally {
     line.close();
   }
@@ -38,10 +51,13 @@ async function triesAgainWithTheSameView({server, browser, logs}) {
 
 const drawers = ({page}) => page.workers().filter((worker) => worker.url().includes('view_worker'));
 
-/** The worker that draws ends without a word, then hangs: the user is told, and gets the same picture from another one. */
+/**
+ * The worker that draws ends without a word, then hangs: the user is told, and gets the same
+ * picture from another one.
+ */
 async function drawsAnewWhereTheDrawingWorkerEnded({server, browser}) {
   const viewer = await browser.open(`${server.url}?mesh=fin&clip=y`, undefined, () => {
-    const kSpeedUp = 10;  // of the page's patience
+    const kSpeedUp = 10; // of the page's patience
     const {setInterval} = window;
     window.setInterval = (action, ms, ...words) => setInterval(action, ms / kSpeedUp, ...words);
   });
@@ -50,17 +66,33 @@ async function drawsAnewWhereTheDrawingWorkerEnded({server, browser}) {
   await turn(viewer);
   const camera = await cameraOf(viewer);
   const before = await viewer.screenshot('drawing-before');
-  const ends = {ends: () => void self.close(), hangs: () => void setTimeout(() => { for (;;); })};
+  const ends = {
+    ends: () => void self.close(),
+    hangs: () =>
+      void setTimeout(() => {
+        for (;;);
+      }),
+  };
   for (const [what, end] of Object.entries(ends)) {
     const old = drawers(viewer);
     await viewer.inView(end);
     await viewer.page.getByText('does not answer').waitFor();
     await viewer.page.getByRole('button', {name: 'Try again'}).click();
-    // The browser may tell of the old one's end after the new one is there, and nobody answers in it.
-    while (drawers(viewer).length !== 1 || old.includes(drawers(viewer)[0])) await viewer.page.waitForTimeout(50);
-    await viewer.page.waitForFunction(() => window.qtetViewer.meshView?.pose.fitted === false, null, {polling: 50});
+    // The browser may tell of the old one's end after the new one is there, and nobody answers in
+    // it.
+    while (drawers(viewer).length !== 1 || old.includes(drawers(viewer)[0]))
+      await viewer.page.waitForTimeout(50);
+    await viewer.page.waitForFunction(
+      () => window.qtetViewer.meshView?.pose.fitted === false,
+      null,
+      {polling: 50},
+    );
     await viewer.settle();
-    assert.equal(await viewer.page.locator('qtet-viewer .notice').isVisible(), false, 'the notice stays');
+    assert.equal(
+      await viewer.page.locator('qtet-viewer .notice').isVisible(),
+      false,
+      'the notice stays',
+    );
     assert.ok(near(await cameraOf(viewer), camera), `${what}: another camera`);
     const differing = differingShare(before, await viewer.screenshot(`drawing-${what}`));
     assert.ok(differing < 0.005, `${what}: ${differing} of the picture is another`);

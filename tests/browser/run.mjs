@@ -1,8 +1,10 @@
 // The whole of it: the tool's log, the server, and the viewer in Chromium with software WebGL.
-// Usage: node run.mjs --bin DIR --viewer DIR --out DIR [--only REGEX] [--retries N]
-// A check that fails is tried N times more (0 unless given) and is then called "flaky": on machines that others use, too, a browser may stall for longer
-// than any check foresees. What it said the first time is printed all the same, for it may be a fault that shows only at times.
-// Needs web-client/node_modules (playwright-core) and a Chromium: /usr/bin/chromium, or the one that QTET_CHROMIUM names.
+// Usage: node run.mjs --bin DIR --viewer DIR --out DIR [--only REGEX] [--retries N] A check that
+// fails is tried N times more (0 unless given) and is then called "flaky": on machines that others
+// use, too, a browser may stall for longer than any check foresees. What it said the first time is
+// printed all the same, for it may be a fault that shows only at times. Needs
+// web-client/node_modules (playwright-core) and a Chromium: /usr/bin/chromium, or the one that
+// QTET_CHROMIUM names.
 
 import {mkdirSync} from 'node:fs';
 import {parseArgs} from 'node:util';
@@ -19,7 +21,13 @@ import {volumeChecks} from './volume_checks.mjs';
 import {makeLog, Server} from './programs.mjs';
 
 const {values: options} = parseArgs({
-  options: {bin: {type: 'string'}, viewer: {type: 'string'}, out: {type: 'string'}, only: {type: 'string', default: ''}, retries: {type: 'string', default: '0'}},
+  options: {
+    bin: {type: 'string'},
+    viewer: {type: 'string'},
+    out: {type: 'string'},
+    only: {type: 'string', default: ''},
+    retries: {type: 'string', default: '0'},
+  },
 });
 const retries = Number(options.retries);
 if (!Number.isInteger(retries) || retries < 0) {
@@ -27,11 +35,23 @@ if (!Number.isInteger(retries) || retries < 0) {
   process.exit(2);
 }
 if (!options.bin || !options.viewer || !options.out) {
-  console.error('Usage: node run.mjs --bin DIR --viewer DIR --out DIR [--only REGEX] [--retries N]');
+  console.error(
+    'Usage: node run.mjs --bin DIR --viewer DIR --out DIR [--only REGEX] [--retries N]',
+  );
   process.exit(2);
 }
 
-const all = {...checks, ...elementChecks, ...transportChecks, ...volumeChecks, ...edgeChecks, ...legendChecks, ...recoveryChecks, ...monkeyChecks, ...baselineChecks};
+const all = {
+  ...checks,
+  ...elementChecks,
+  ...transportChecks,
+  ...volumeChecks,
+  ...edgeChecks,
+  ...legendChecks,
+  ...recoveryChecks,
+  ...monkeyChecks,
+  ...baselineChecks,
+};
 const chosen = Object.entries(all).filter(([name]) => new RegExp(options.only).test(name));
 if (chosen.length === 0) {
   console.error(`no check's name matches --only ${options.only}`);
@@ -39,7 +59,10 @@ if (chosen.length === 0) {
 }
 
 mkdirSync(options.out, {recursive: true});
-const logs = {fin: makeLog(options.bin, 'fin', options.out), box: makeLog(options.bin, 'box', options.out)};
+const logs = {
+  fin: makeLog(options.bin, 'fin', options.out),
+  box: makeLog(options.bin, 'box', options.out),
+};
 const server = new Server(options.bin, logs.fin.folder, options.viewer);
 const browser = await Browser.launch(options.out);
 
@@ -47,7 +70,14 @@ const browser = await Browser.launch(options.out);
 async function run(name, check) {
   try {
     await server.start();
-    return await check({server, browser, logs, viewer: options.viewer, out: options.out, bin: options.bin});
+    return await check({
+      server,
+      browser,
+      logs,
+      viewer: options.viewer,
+      out: options.out,
+      bin: options.bin,
+    });
   } catch (thrown) {
     await browser.saveFailure(name);
     throw thrown;
@@ -56,7 +86,8 @@ async function run(name, check) {
   }
 }
 
-const failed = [], flaky = [];
+const failed = [],
+  flaky = [];
 try {
   for (const [name, check] of chosen) {
     for (let tries = 0; tries <= retries; ++tries) {
@@ -68,9 +99,10 @@ try {
         break;
       } catch (thrown) {
         const again = tries < retries;
-        console.log(`${again ? 'AGAIN' : 'FAIL '} ${name}: ${thrown.stack}${thrown.cause ? `\nbecause ${thrown.cause.stack}` : ''}`);
+        const because = thrown.cause ? `\nbecause ${thrown.cause.stack}` : '';
+        console.log(`${again ? 'AGAIN' : 'FAIL '} ${name}: ${thrown.stack}${because}`);
         if (!again) failed.push(name);
-        else server.kill();  // it, too, begins anew
+        else server.kill(); // it, too, begins anew
       }
     }
   }
@@ -79,5 +111,6 @@ try {
   server.kill();
 }
 if (flaky.length > 0) console.log(`passed, but not at once: ${flaky.join(', ')}`);
-console.log(`${failed.length > 0 ? `${failed.length} failed: ${failed.join(', ')}; ` : ''}screenshots are in ${options.out}`);
+const failures = failed.length > 0 ? `${failed.length} failed: ${failed.join(', ')}; ` : '';
+console.log(`${failures}screenshots are in ${options.out}`);
 process.exit(failed.length === 0 ? 0 : 1);

@@ -1,4 +1,5 @@
-// Web servers that know nothing of qtet: nginx where it is installed, else a few lines of node; with byte ranges or without.
+// Web servers that know nothing of qtet: nginx where it is installed, else a few lines of node;
+// with byte ranges or without.
 
 import {spawn, spawnSync} from 'node:child_process';
 import {createReadStream, cpSync, mkdirSync, rmSync, statSync, writeFileSync} from 'node:fs';
@@ -8,9 +9,17 @@ import {extname, join, resolve} from 'node:path';
 import {setTimeout as sleep} from 'node:timers/promises';
 
 const kNginx = '/usr/sbin/nginx';
-const kTypes = {'.html': 'text/html', '.js': 'text/javascript', '.wasm': 'application/wasm', '.css': 'text/css'};
+const kTypes = {
+  '.html': 'text/html',
+  '.js': 'text/javascript',
+  '.wasm': 'application/wasm',
+  '.css': 'text/css',
+};
 
-/** A folder with the viewer's files and a log beside them, as somebody would copy it onto a web server. */
+/**
+ * A folder with the viewer's files and a log beside them, as somebody would copy it onto a web
+ * server.
+ */
 export function makeSite(folder, viewer, log) {
   rmSync(folder, {recursive: true, force: true});
   mkdirSync(folder, {recursive: true});
@@ -19,24 +28,43 @@ export function makeSite(folder, viewer, log) {
   return folder;
 }
 
-/** {name, url, requests, close()}; `ranges`: false for a server that answers every request with the whole file. */
+/**
+ * {name, url, requests, close()}; `ranges`: false for a server that answers every request with the
+ * whole file.
+ */
 export async function hostFolder(folder, {ranges = true, nginx = true} = {}) {
   if (nginx && ranges && !spawnSync(kNginx, ['-v']).error) return hostByNginx(folder);
   const requests = [];
   const server = createServer((request, response) => {
-    const path = join(folder, decodeURIComponent(new URL(request.url, 'http://x').pathname).replace(/\/$/, '/index.html'));
-    const size = resolve(path).startsWith(resolve(folder)) && statSync(path, {throwIfNoEntry: false})?.size;
+    const path = join(
+      folder,
+      decodeURIComponent(new URL(request.url, 'http://x').pathname).replace(/\/$/, '/index.html'),
+    );
+    const size =
+      resolve(path).startsWith(resolve(folder)) && statSync(path, {throwIfNoEntry: false})?.size;
     if (!size) return void response.writeHead(404).end();
     requests.push(`${request.url} ${request.headers.range ?? ''}`);
     const [, from, to] = (ranges && /^bytes=(\d+)-(\d+)$/.exec(request.headers.range ?? '')) || [];
     const type = {'content-type': kTypes[extname(path)] ?? 'application/octet-stream'};
-    if (from === undefined) return void createReadStream(path).pipe(response.writeHead(200, {...type, 'content-length': size}));
+    if (from === undefined)
+      return void createReadStream(path).pipe(
+        response.writeHead(200, {...type, 'content-length': size}),
+      );
     const end = Math.min(Number(to), size - 1);
-    response.writeHead(206, {...type, 'content-range': `bytes ${from}-${end}/${size}`, 'content-length': end - from + 1});
+    response.writeHead(206, {
+      ...type,
+      'content-range': `bytes ${from}-${end}/${size}`,
+      'content-length': end - from + 1,
+    });
     createReadStream(path, {start: Number(from), end}).pipe(response);
   });
   await new Promise((listening) => void server.listen(0, '127.0.0.1', listening));
-  return {name: 'node', url: `http://127.0.0.1:${server.address().port}/`, requests, close: () => server.close()};
+  return {
+    name: 'node',
+    url: `http://127.0.0.1:${server.address().port}/`,
+    requests,
+    close: () => server.close(),
+  };
 }
 
 async function hostByNginx(folder) {
@@ -48,13 +76,22 @@ async function hostByNginx(folder) {
   });
   const state = `${folder}-nginx`;
   mkdirSync(state, {recursive: true});
-  const temporary = ['client_body', 'proxy', 'fastcgi', 'uwsgi', 'scgi'].map((kind) => `${kind}_temp_path ${state}/${kind};`).join(' ');
-  writeFileSync(join(state, 'nginx.conf'), `daemon off; worker_processes 1; pid ${state}/pid; error_log ${state}/error.log;
+  const temporary = ['client_body', 'proxy', 'fastcgi', 'uwsgi', 'scgi']
+    .map((kind) => `${kind}_temp_path ${state}/${kind};`)
+    .join(' ');
+  writeFileSync(
+    join(state, 'nginx.conf'),
+    `daemon off; worker_processes 1; pid ${state}/pid; error_log ${state}/error.log;
 events { worker_connections 64; }
-http { include /etc/nginx/mime.types; access_log off; ${temporary} server { listen 127.0.0.1:${port}; root ${folder}; } }
-`);
+http {
+  include /etc/nginx/mime.types; access_log off; ${temporary}
+  server { listen 127.0.0.1:${port}; root ${folder}; }
+}
+`,
+  );
   const nginx = spawn(kNginx, ['-p', state, '-c', join(state, 'nginx.conf')], {stdio: 'ignore'});
   const url = `http://127.0.0.1:${port}/`;
-  for (let tries = 0; tries < 100 && !(await fetch(url).catch(() => null)); ++tries) await sleep(50);
+  for (let tries = 0; tries < 100 && !(await fetch(url).catch(() => null)); ++tries)
+    await sleep(50);
   return {name: 'nginx', url, requests: [], close: () => nginx.kill()};
 }

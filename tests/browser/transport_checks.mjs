@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import {writeFileSync} from 'node:fs';
 import {join} from 'node:path';
-import {kDesktop, kTimeoutMs} from './browser.mjs';
+import {kDesktop} from './browser.mjs';
 import {expectWhole} from './expect.mjs';
 import {PoorLine} from './poor_line.mjs';
 import {makeLog, Server} from './programs.mjs';
@@ -15,7 +15,10 @@ async function readsALogFromAPlainWebServer({browser, logs, viewer: files, out})
   for (const options of [{}, {nginx: false}, {ranges: false}]) {
     const host = await hostFolder(folder, options);
     try {
-      const viewer = await browser.open(`${host.url}?src=fin.qtet&colormap=cividis`, {...kDesktop, colorScheme: notes.length === 0 ? 'dark' : 'light'});
+      const viewer = await browser.open(`${host.url}?src=fin.qtet&colormap=cividis`, {
+        ...kDesktop,
+        colorScheme: notes.length === 0 ? 'dark' : 'light',
+      });
       await viewer.waitForState('complete');
       await viewer.waitForPicture();
       await expectWhole(viewer, logs.fin);
@@ -55,7 +58,7 @@ async function readsAFileOnlySoFar({browser, logs, viewer: files, out}) {
     const viewer = await browser.open(`${host.url}?src=fin.qtet&quality=cells:20000`);
     await viewer.waitForState('held');
     const {tetrahedra} = await viewer.statistics();
-    assert.ok(tetrahedra > 2000 && tetrahedra < 50000, `${tetrahedra} cells`);  // whole chunks
+    assert.ok(tetrahedra > 2000 && tetrahedra < 50000, `${tetrahedra} cells`); // whole chunks
   } finally {
     host.close();
   }
@@ -66,7 +69,9 @@ async function takesRangesAndChunksFromAServer({server, browser, logs}) {
     const viewer = await browser.open(`${server.url}?mesh=fin&transport=${kind}`);
     await viewer.waitForState('complete');
     await expectWhole(viewer, logs.fin);
-    const fetched = await viewer.page.evaluate(() => performance.getEntriesByType('resource').map(({name}) => name));
+    const fetched = await viewer.page.evaluate(() =>
+      performance.getEntriesByType('resource').map(({name}) => name),
+    );
     assert.ok(!fetched.some((name) => name.includes('/v1/stream')), 'a WebSocket was opened');
   }
 }
@@ -75,7 +80,9 @@ async function goesOnOverHttpWhereTheSocketIsBlocked({server, browser, logs}) {
   const line = await PoorLine.open(server.port, {holdAt: 50000});
   try {
     const viewer = await browser.open(`${line.url}?mesh=fin`);
-    await viewer.page.waitForFunction(() => window.qtetViewer.statistics.chunks > 2, null, {polling: 50});
+    await viewer.page.waitForFunction(() => window.qtetViewer.statistics.chunks > 2, null, {
+      polling: 50,
+    });
     const {chunks, chunkCount} = await viewer.statistics();
     assert.ok(chunks < chunkCount, 'everything had come before the line was cut');
     line.refuseStreams = true;
@@ -89,21 +96,37 @@ async function goesOnOverHttpWhereTheSocketIsBlocked({server, browser, logs}) {
 }
 
 /**
- * A log of regions refines where it is cut, and where an isosurface goes through it, before it refines elsewhere; whatever the order, it ends as the same mesh.
- * Everything has come before the mesh is made anew from nothing to 100,000 cells: what it has then is a matter of order, not of what the network and the processors were doing.
+ * A log of regions refines where it is cut, and where an isosurface goes through it, before it
+ * refines elsewhere; whatever the order, it ends as the same mesh. Everything has come before the
+ * mesh is made anew from nothing to 100,000 cells: what it has then is a matter of order, not of
+ * what the network and the processors were doing.
  */
 async function refinesWhatIsLookedAtFirst({server, browser, out, bin}) {
-  const log = makeLog(bin, 'regions', out, 'fin', ['--layout', 'regions', '--cells-per-packet', '1500']);
+  const log = makeLog(bin, 'regions', out, 'fin', [
+    '--layout',
+    'regions',
+    '--cells-per-packet',
+    '1500',
+  ]);
   server.kill();
   await server.start();
-  const lookedAt = (viewer) => viewer.inView(({cuts, isosurface}) => [cuts[0], isosurface].reduce((sum, mesh) => sum + (mesh.visible ? mesh.geometry.drawRange.count : 0), 0));
+  const lookedAt = (viewer) =>
+    viewer.inView(({cuts, isosurface}) =>
+      [cuts[0], isosurface].reduce(
+        (sum, mesh) => sum + (mesh.visible ? mesh.geometry.drawRange.count : 0),
+        0,
+      ),
+    );
   const open = async (query) => {
     const viewer = await browser.open(`${server.url}?mesh=regions&${query}`);
     await viewer.waitForState('complete');
     await viewer.waitForPicture();
     return viewer;
   };
-  /** What is to be seen of the cut and the isosurface with 100,000 cells, and how many cells that took. */
+  /**
+   * What is to be seen of the cut and the isosurface with 100,000 cells, and how many cells that
+   * took.
+   */
   const coarser = async (viewer, late = null) => {
     await viewer.page.evaluate(() => window.qtetViewer.setAttribute('quality', 'cells:100000'));
     await viewer.waitForState('held');
@@ -117,29 +140,47 @@ async function refinesWhatIsLookedAtFirst({server, browser, out, bin}) {
   const cut = await coarser(cutting);
   const share = cut.looked / whole.looked;
   const cells = cut.cells / whole.cells;
-  assert.ok(share > 0.9 && cells < 0.6, `the cut has ${share} of its cells when the mesh has ${cells}`);
+  assert.ok(
+    share > 0.9 && cells < 0.6,
+    `the cut has ${share} of its cells when the mesh has ${cells}`,
+  );
   // What the log knows of the error is drawn to its end, and what is here of it.
   await cutting.page.getByText('Level of detail').click();
-  assert.match(await cutting.text('.curve figcaption'), /^Error against bytes: [\d.]+\u202f% at .*, [\d.]+\u202f% at .*, 0\u202f% at /);
-  const [ahead, reached] = await cutting.page.locator('qtet-viewer .curve path').evaluateAll((paths) => paths.map((path) => path.getAttribute('d').split('L').length));
+  assert.match(
+    await cutting.text('.curve figcaption'),
+    /^Error against bytes: [\d.]+\u202f% at .*, [\d.]+\u202f% at .*, 0\u202f% at /,
+  );
+  const [ahead, reached] = await cutting.page
+    .locator('qtet-viewer .curve path')
+    .evaluateAll((paths) => paths.map((path) => path.getAttribute('d').split('L').length));
   assert.ok(reached > 2 && reached < ahead, `${reached} of ${ahead} points are reached`);
   await cutting.page.getByRole('button', {name: 'Continue'}).click();
   await cutting.waitForState('complete');
   await cutting.settle();
   await expectWhole(cutting, log);
   assert.equal(await lookedAt(cutting), whole.looked);
-  // An isosurface goes through more cells than there are: some more of it has come than where nobody asked for it before.
+  // An isosurface goes through more cells than there are: some more of it has come than where
+  // nobody asked for it before.
   const iso = await coarser(await open('surface=off&iso=Density=2.5'));
   const unasked = await coarser(await open('surface=off'), ['iso', 'Density=2.5']);
   const more = iso.looked / unasked.looked;
-  assert.ok(more > 1.08 && iso.cells < 1.02 * unasked.cells, `the isosurface has ${more} times the triangles with ${iso.cells} instead of ${unasked.cells} cells`);
+  assert.ok(
+    more > 1.08 && iso.cells < 1.02 * unasked.cells,
+    `the isosurface has ${more} times the triangles with ${iso.cells} instead of ` +
+      `${unasked.cells} cells`,
+  );
   const viewer = await browser.open(`${server.url}?mesh=regions&clip=y:0.3`);
   await viewer.waitForState('complete');
   await expectWhole(viewer, log);
-  return `${Math.round(100 * share)} % of the cut is there with ${Math.round(100 * cells)} % of the cells, of an isosurface ${more.toFixed(2)} times as much as unasked`;
+  return (
+    `${Math.round(100 * share)} % of the cut is there with ${Math.round(100 * cells)} % of the ` +
+    `cells, of an isosurface ${more.toFixed(2)} times as much as unasked`
+  );
 }
 
-/** Guarded meshes: the page says that they are, and shows them once it sets the token, by every way. */
+/**
+ * Guarded meshes: the page says that they are, and shows them once it sets the token, by every way.
+ */
 async function showsWhatATokenOpens({browser, logs, viewer: files, out, bin}) {
   const token = 'mq3Vt0pCk8Jx1yQ2b7nS5uEw';
   writeFileSync(join(out, 'tokens'), `read fin ${token}\n`);
@@ -160,7 +201,11 @@ async function showsWhatATokenOpens({browser, logs, viewer: files, out, bin}) {
 }
 
 export const transportChecks = {
-  showsWhatATokenOpens, readsAFileOnlySoFar,
+  showsWhatATokenOpens,
+  readsAFileOnlySoFar,
   refinesWhatIsLookedAtFirst,
-  readsALogFromAPlainWebServer, saysThatAFileIsMissing, takesRangesAndChunksFromAServer, goesOnOverHttpWhereTheSocketIsBlocked,
+  readsALogFromAPlainWebServer,
+  saysThatAFileIsMissing,
+  takesRangesAndChunksFromAServer,
+  goesOnOverHttpWhereTheSocketIsBlocked,
 };

@@ -7,37 +7,78 @@ import {join} from 'node:path';
 import {kDesktop, kPhone} from './browser.mjs';
 import {coloredShare, differingShare, largestDifference, readPng} from './png.mjs';
 
-/** Box of 1 x 2 x 3 with the field x, and others of functions of the place: n cubes along the shortest side, six tetrahedra each; of the cubes those that `keeps` does, with a field of the cells. */
+/**
+ * Box of 1 x 2 x 3 with the field x, and others of functions of the place: n cubes along the
+ * shortest side, six tetrahedra each; of the cubes those that `keeps` does, with a field of the
+ * cells.
+ */
 export function linearBox(n, others = {}, keeps = null) {
   const sizes = [n, 2 * n, 3 * n];
   const id = (x, y, z) => (z * (sizes[1] + 1) + y) * (sizes[0] + 1) + x;
   const points = [];
   const cells = [];
-  for (let z = 0; z <= sizes[2]; ++z) for (let y = 0; y <= sizes[1]; ++y) for (let x = 0; x <= sizes[0]; ++x) points.push([x / n, y / n, z / n]);
+  for (let z = 0; z <= sizes[2]; ++z)
+    for (let y = 0; y <= sizes[1]; ++y)
+      for (let x = 0; x <= sizes[0]; ++x) points.push([x / n, y / n, z / n]);
   const corner = (x, y, z, bits) => id(x + (bits & 1), y + ((bits >> 1) & 1), z + (bits >> 2));
-  const sixths = [[1, 3], [3, 2], [2, 6], [6, 4], [4, 5], [5, 1]];
-  for (let z = 0; z < sizes[2]; ++z) for (let y = 0; y < sizes[1]; ++y) for (let x = 0; x < sizes[0]; ++x) {
-    if (keeps && !keeps(x, y, z)) continue;
-    for (const [p, q] of sixths) cells.push([0, p, q, 7].map((bits) => corner(x, y, z, bits)));
-  }
+  const sixths = [
+    [1, 3],
+    [3, 2],
+    [2, 6],
+    [6, 4],
+    [4, 5],
+    [5, 1],
+  ];
+  for (let z = 0; z < sizes[2]; ++z)
+    for (let y = 0; y < sizes[1]; ++y)
+      for (let x = 0; x < sizes[0]; ++x) {
+        if (keeps && !keeps(x, y, z)) continue;
+        for (const [p, q] of sixths) cells.push([0, p, q, 7].map((bits) => corner(x, y, z, bits)));
+      }
   const array = (type, name, values, components = 1) =>
-    `<DataArray type="${type}" Name="${name}" NumberOfComponents="${components}" format="ascii">${values.join(' ')}</DataArray>`;
-  return `<?xml version="1.0"?><VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian"><UnstructuredGrid>
-<Piece NumberOfPoints="${points.length}" NumberOfCells="${cells.length}"><PointData>${Object.entries({x: (x) => x, ...others}).map(([name, value]) => array('Float32', name, points.map((place) => value(...place)))).join('')}</PointData>
-${keeps ? `<CellData>${array('Float32', 'which', cells.map((_, i) => (7 * i) % 12))}</CellData>` : ''}<Points>${array('Float32', 'Points', points.flat(), 3)}</Points><Cells>${array('Int64', 'connectivity', cells.flat())}
-${array('Int64', 'offsets', cells.map((_, i) => 4 * i + 4))}${array('UInt8', 'types', cells.map(() => 10))}</Cells></Piece></UnstructuredGrid></VTKFile>`;
+    `<DataArray type="${type}" Name="${name}" NumberOfComponents="${components}" ` +
+    `format="ascii">${values.join(' ')}</DataArray>`;
+  const fields = Object.entries({x: (x) => x, ...others}).map(([name, value]) => {
+    const values = points.map((place) => value(...place));
+    return array('Float32', name, values);
+  });
+  const which = cells.map((_, i) => (7 * i) % 12);
+  const offsets = cells.map((_, i) => 4 * i + 4);
+  const types = cells.map(() => 10);
+  return `<?xml version="1.0"?>
+<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian"><UnstructuredGrid>
+<Piece NumberOfPoints="${points.length}" NumberOfCells="${cells.length}">
+<PointData>${fields.join('')}</PointData>
+${keeps ? `<CellData>${array('Float32', 'which', which)}</CellData>` : ''}
+<Points>${array('Float32', 'Points', points.flat(), 3)}</Points>
+<Cells>${array('Int64', 'connectivity', cells.flat())}
+${array('Int64', 'offsets', offsets)}${array('UInt8', 'types', types)}</Cells>
+</Piece></UnstructuredGrid></VTKFile>`;
 }
 
-/** RGBA in 0..255 where the lattice's points (shares of the box) come to lie, out of a picture with all its pixels. */
+/**
+ * RGBA in 0..255 where the lattice's points (shares of the box) come to lie, out of a picture with
+ * all its pixels.
+ */
 function pixelsAt(viewer, places) {
   return viewer.page.evaluate(async (shares) => {
-    const {meshView, bounds} = window.qtetViewer;
+    const {meshView, viewing} = window.qtetViewer;
+    const {bounds} = viewing.mesh;
     const picture = await createImageBitmap(await meshView.picture('transparent'));
     const context = new OffscreenCanvas(picture.width, picture.height).getContext('2d');
     context.drawImage(picture, 0, 0);
     return shares.map((share) => {
-      const {x, y} = meshView.project(share.map((s, axis) => bounds[axis] + s * (bounds[axis + 3] - bounds[axis])));
-      return [...context.getImageData(Math.round(x * picture.width / meshView.canvas.clientWidth), Math.round(y * picture.height / meshView.canvas.clientHeight) - 1, 1, 1).data];
+      const {x, y} = meshView.project(
+        share.map((s, axis) => bounds[axis] + s * (bounds[axis + 3] - bounds[axis])),
+      );
+      return [
+        ...context.getImageData(
+          Math.round((x * picture.width) / meshView.canvas.clientWidth),
+          Math.round((y * picture.height) / meshView.canvas.clientHeight) - 1,
+          1,
+          1,
+        ).data,
+      ];
     });
   }, places);
 }
@@ -45,41 +86,76 @@ function pixelsAt(viewer, places) {
 async function drawsAVolumeAsTheFormulaSays({server, browser, logs, out, bin}) {
   const mesh = join(out, 'linear.vtu');
   writeFileSync(mesh, linearBox(4));
-  execFileSync(join(bin, 'qtet'), ['simplify', mesh, '-o', join(logs.fin.folder, 'linear.qtet')], {stdio: 'pipe'});
+  execFileSync(join(bin, 'qtet'), ['simplify', mesh, '-o', join(logs.fin.folder, 'linear.qtet')], {
+    stdio: 'pipe',
+  });
   server.kill();
   await server.start();
-  const kOpacity = 0.3, kPath = 0.1;  // the last of the opacities, and of what share of the diagonal it is told
+  const kOpacity = 0.3,
+    kPath = 0.1; // the last of the opacities, and of what share of the diagonal it is told
   const extinction = -Math.log(1 - kOpacity) / kPath / Math.hypot(1, 2, 3);
-  const viewer = await browser.open(`${server.url}?mesh=linear&field=x&volume=0,${kOpacity}&projection=parallel&colormap=grey`);
+  const viewer = await browser.open(
+    `${server.url}?mesh=linear&field=x&volume=0,${kOpacity}&projection=parallel&colormap=grey`,
+  );
   await viewer.waitForState('complete');
   await viewer.waitForPicture();
   const notes = [];
-  const expectClose = (pixels, depths, what) => pixels.forEach(([, , , alpha], i) => {
-    const expected = 255 * (1 - Math.exp(-depths[i]));
-    notes.push(Math.abs(alpha - expected));
-    assert.ok(Math.abs(alpha - expected) < 2, `${what}: ${alpha} instead of ${expected.toFixed(1)} (${JSON.stringify(pixels)})`);
-  });
+  const expectClose = (pixels, depths, what) =>
+    pixels.forEach(([, , , alpha], i) => {
+      const expected = 255 * (1 - Math.exp(-depths[i]));
+      notes.push(Math.abs(alpha - expected));
+      assert.ok(
+        Math.abs(alpha - expected) < 2,
+        `${what}: ${alpha} instead of ${expected.toFixed(1)} (${JSON.stringify(pixels)})`,
+      );
+    });
   const look = async (direction) => {
     await viewer.page.evaluate((way) => window.qtetViewer.look(way), direction);
     await viewer.restVolume();
   };
   const at = [0.13, 0.4, 0.62, 0.9];
-  await look('-y');  // along y, 2 long, the value stays what it is
-  expectClose(await pixelsAt(viewer, at.map((x) => [x, 0.5, 0.37])), at.map((x) => extinction * x * 2), 'along the level sets');
-  await look('+x');  // along x, 1 long, it goes from 0 to 1
-  expectClose(await pixelsAt(viewer, at.map((z) => [0.5, 0.3, z])), at.map(() => extinction / 2), 'across the level sets');
+  await look('-y'); // along y, 2 long, the value stays what it is
+  expectClose(
+    await pixelsAt(
+      viewer,
+      at.map((x) => [x, 0.5, 0.37]),
+    ),
+    at.map((x) => extinction * x * 2),
+    'along the level sets',
+  );
+  await look('+x'); // along x, 1 long, it goes from 0 to 1
+  expectClose(
+    await pixelsAt(
+      viewer,
+      at.map((z) => [0.5, 0.3, z]),
+    ),
+    at.map(() => extinction / 2),
+    'across the level sets',
+  );
   await viewer.page.evaluate(() => window.qtetViewer.setAttribute('clip', 'x:0.6'));
   await viewer.restVolume();
-  const [low, high] = await viewer.page.evaluate(() => [0, 3].map((i) => window.qtetViewer.bounds[i]));
+  const [low, high] = await viewer.page.evaluate(() =>
+    [0, 3].map((i) => window.qtetViewer.viewing.mesh.bounds[i]),
+  );
   const cut = (Math.floor(low + 0.6 * (high - low)) + 0.5 - low) / (high - low);
-  expectClose(await pixelsAt(viewer, at.map((z) => [0.2, 0.7, z])), at.map(() => (extinction * cut * cut) / 2), 'clipped');
+  expectClose(
+    await pixelsAt(
+      viewer,
+      at.map((z) => [0.2, 0.7, z]),
+    ),
+    at.map(() => (extinction * cut * cut) / 2),
+    'clipped',
+  );
   await viewer.screenshot('volume-linear');
   assert.deepEqual(viewer.problems, []);
   return `${notes.length} pixels, at most ${Math.max(...notes).toFixed(2)} of 255 off`;
 }
 
 async function editsTheTransferFunction({server, browser}) {
-  const viewer = await browser.open(`${server.url}?mesh=fin&quality=cells:20000`, {...kDesktop, colorScheme: 'dark'});
+  const viewer = await browser.open(`${server.url}?mesh=fin&quality=cells:20000`, {
+    ...kDesktop,
+    colorScheme: 'dark',
+  });
   await viewer.waitForState('held');
   await viewer.waitForPicture();
   const {page} = viewer;
@@ -87,10 +163,18 @@ async function editsTheTransferFunction({server, browser}) {
   await page.getByRole('switch', {name: 'Volume'}).check();
   await viewer.restVolume();
   const first = await viewer.screenshot('volume');
-  assert.ok(differingShare(surface, first) > 0.02 && coloredShare(first) > 0.015, 'the volume is not to be seen');
+  assert.ok(
+    differingShare(surface, first) > 0.02 && coloredShare(first) > 0.015,
+    'the volume is not to be seen',
+  );
   // Its dark, faint end, too: all of the fin is there, on a ground that is the same everywhere.
   const ground = first.at(100, 650);
-  for (const [x, y] of [[450, 240], [650, 500], [700, 560], [800, 350]]) {
+  for (const [x, y] of [
+    [450, 240],
+    [650, 500],
+    [700, 560],
+    [800, 350],
+  ]) {
     const steps = first.at(x, y).reduce((sum, value, c) => sum + Math.abs(value - ground[c]), 0);
     assert.ok(steps >= 5, `at ${x}, ${y} the volume is ${steps} steps off its ground`);
   }
@@ -99,7 +183,10 @@ async function editsTheTransferFunction({server, browser}) {
   await page.getByRole('slider', {name: 'Opacity at 13 % of the range'}).focus();
   for (let i = 0; i < 20; ++i) await page.keyboard.press('ArrowUp');
   await viewer.restVolume();
-  assert.ok(differingShare(first, await viewer.screenshot('volume-denser')) > 0.02, 'the sliders change nothing');
+  assert.ok(
+    differingShare(first, await viewer.screenshot('volume-denser')) > 0.02,
+    'the sliders change nothing',
+  );
   assert.match(new URL(page.url()).searchParams.get('volume'), /^0\.0\d*,0\.2\d*,/);
   await page.locator('qtet-viewer .scene').focus();
   for (let i = 0; i < 10; ++i) await page.keyboard.press('ArrowLeft');
@@ -107,7 +194,10 @@ async function editsTheTransferFunction({server, browser}) {
   await viewer.screenshot('volume-turned');
   await page.getByRole('switch', {name: 'Volume'}).uncheck();
   await viewer.settle();
-  const phone = await browser.open(`${server.url}?mesh=fin&quality=cells:20000&volume=0,0.2,0.6`, kPhone);
+  const phone = await browser.open(
+    `${server.url}?mesh=fin&quality=cells:20000&volume=0,0.2,0.6`,
+    kPhone,
+  );
   await phone.waitForState('held');
   await phone.waitForPicture();
   await phone.restVolume();
@@ -118,20 +208,29 @@ async function editsTheTransferFunction({server, browser}) {
   assert.deepEqual([...viewer.problems, ...phone.problems], []);
 }
 
-/** Graphics that are slow: few cells and pixels while the camera is dragged, then all of both, in strips. */
+/**
+ * Graphics that are slow: few cells and pixels while the camera is dragged, then all of both, in
+ * strips.
+ */
 async function drawsFewCellsWhileSomethingMoves({server, browser}) {
-  const viewer = await browser.open(`${server.url}?mesh=fin&volume=0,0.1,0.3,0.6`, {viewport: {width: 480, height: 320}});
+  const viewer = await browser.open(`${server.url}?mesh=fin&volume=0,0.1,0.3,0.6`, {
+    viewport: {width: 480, height: 320},
+  });
   const {page} = viewer;
-  await page.addStyleTag({content: 'qtet-viewer { background: #fff } qtet-viewer::part(panel), qtet-viewer::part(legend) { display: none }'});
+  await page.addStyleTag({
+    content:
+      'qtet-viewer { background: #fff } qtet-viewer::part(panel), qtet-viewer::part(legend) { ' +
+      'display: none }',
+  });
   await viewer.waitForState('complete');
   await viewer.waitForPicture();
   await viewer.restVolume();
   const before = await viewer.screenshot('volume-rest');
   await viewer.inView(({volume}) => {
-    const seen = globalThis.qtetSeen = {coarse: 0, cells: 0, strips: 0};
+    const seen = (globalThis.qtetSeen = {coarse: 0, cells: 0, strips: 0});
     const {caster, drawAtOnce} = volume;
     const {cast} = caster;
-    volume.wholeMs = Infinity;  // a machine may be faster than that on so small a canvas
+    volume.wholeMs = Infinity; // a machine may be faster than that on so small a canvas
     volume.drawAtOnce = (picture, its, share) => {
       if (its === volume.coarse) ++seen.coarse;
       seen.cells = its.shown.count;
@@ -153,17 +252,42 @@ async function drawsFewCellsWhileSomethingMoves({server, browser}) {
   assert.ok(seen.cells > 1000 && seen.cells <= 8000 && seen.strips > 2, JSON.stringify(seen));
   const atRest = await viewer.screenshot('volume-rest-turned');
   assert.ok(largestDifference(before, atRest) > 30, 'dragging turns nothing');
-  const whole = readPng(Buffer.from(await page.evaluate(async () => [...new Uint8Array(await (await window.qtetViewer.meshView.picture('#ffffff')).arrayBuffer())])));
+  const whole = readPng(
+    Buffer.from(
+      await page.evaluate(async () => [
+        ...new Uint8Array(
+          await (await window.qtetViewer.meshView.picture('#ffffff')).arrayBuffer(),
+        ),
+      ]),
+    ),
+  );
   const off = largestDifference(atRest, whole);
   assert.ok(off <= 2, `the picture at rest is ${off} of 255 off the one that is asked for`);
   assert.deepEqual(viewer.problems, []);
   return `${seen.coarse} pictures of ${seen.cells} cells, then ${seen.strips} strips`;
 }
 
-/** In the worker that draws: RGBA of the volume alone in some pixels, as drawn and as every cell on the line of sight adds to it, looked for one by one. */
+/**
+ * In the worker that draws: RGBA of the volume alone in some pixels, as drawn and as every cell on
+ * the line of sight adds to it, looked for one by one.
+ */
 function compareWithEveryCell(view, level) {
-  const {volume, renderer, pose: {fromCanvas: m}} = view;
-  const {deep, caster: {ray: {material: {uniforms}}}, fine: {of: {vertices, cells, tags, cellValues}}} = volume;
+  const {
+    volume,
+    renderer,
+    pose: {fromCanvas: m},
+  } = view;
+  const {
+    deep,
+    caster: {
+      ray: {
+        material: {uniforms},
+      },
+    },
+    fine: {
+      of: {vertices, cells, tags, cellValues},
+    },
+  } = volume;
   const {width, height} = deep.volume;
   const gl = renderer.getContext();
   renderer.setRenderTarget(deep.volume);
@@ -172,20 +296,44 @@ function compareWithEveryCell(view, level) {
   renderer.setRenderTarget(null);
   const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
   const minus = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
-  const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-  const point = (x, y, z) => [0, 1, 2].map((i) => (m[i] * x + m[i + 4] * y + m[i + 8] * z + m[i + 12]) / (m[3] * x + m[7] * y + m[11] * z + m[15]));
+  const cross = (a, b) => [
+    a[1] * b[2] - a[2] * b[1],
+    a[2] * b[0] - a[0] * b[2],
+    a[0] * b[1] - a[1] * b[0],
+  ];
+  const point = (x, y, z) =>
+    [0, 1, 2].map(
+      (i) =>
+        (m[i] * x + m[i + 4] * y + m[i + 8] * z + m[i + 12]) /
+        (m[3] * x + m[7] * y + m[11] * z + m[15]),
+    );
   const at = (v) => [...vertices.subarray(4 * v, 4 * v + 4)];
-  const [density, range, scale] = [uniforms.density.value.image.data, uniforms.range.value, uniforms.scaleRange.value];
-  const shareOf = (v) => (uniforms.logarithmic.value ? Math.log((scale[0] + v * (scale[1] - scale[0])) / range[0]) / Math.log(range[1] / range[0]) : (v - range[0]) / (range[1] - range[0]));
-  const looks = (v) => density.subarray(4 * Math.round(Math.min(1, Math.max(0, shareOf(v))) * (density.length / 4 - 1))).subarray(0, 4);
+  const [density, range, scale] = [
+    uniforms.density.value.image.data,
+    uniforms.range.value,
+    uniforms.scaleRange.value,
+  ];
+  const shareOf = (v) =>
+    uniforms.logarithmic.value
+      ? Math.log((scale[0] + v * (scale[1] - scale[0])) / range[0]) / Math.log(range[1] / range[0])
+      : (v - range[0]) / (range[1] - range[0]);
+  const looks = (v) =>
+    density
+      .subarray(4 * Math.round(Math.min(1, Math.max(0, shareOf(v))) * (density.length / 4 - 1)))
+      .subarray(0, 4);
   /** Where a line is in the cell, and its value there; null: nowhere. */
   const stretch = (cell, from, along) => {
     const corners = [...cells.subarray(4 * cell, 4 * cell + 4)].map(at);
-    let enter = -Infinity, leave = Infinity, value = 0, slope = 0;
+    let enter = -Infinity,
+      leave = Infinity,
+      value = 0,
+      slope = 0;
     for (let i = 0; i < 4; ++i) {
       const [a, b, c] = [1, 2, 3].map((k) => corners[(i + k) & 3]);
-      const normal = cross(minus(b, a), minus(c, a)), whole = dot(normal, minus(corners[i], a));
-      const share = dot(normal, minus(from, a)) / whole, change = dot(normal, along) / whole;
+      const normal = cross(minus(b, a), minus(c, a)),
+        whole = dot(normal, minus(corners[i], a));
+      const share = dot(normal, minus(from, a)) / whole,
+        change = dot(normal, along) / whole;
       value += share * (cellValues ? cellValues[cell] : corners[i][3]);
       slope += change * (cellValues ? cellValues[cell] : corners[i][3]);
       if (change > 0) enter = Math.max(enter, -share / change);
@@ -196,27 +344,41 @@ function compareWithEveryCell(view, level) {
   };
   const pairs = [];
   for (let k = 0; k < 300; ++k) {
-    const x = Math.floor((width * ((k * 0.6180339) % 1))), y = Math.floor((height * (k + 0.5)) / 300);
-    const [from, to] = [-1, 1].map((z) => point((2 * x + 1) / width - 1, (2 * y + 1) / height - 1, z));
-    const along = minus(to, from), reach = Math.hypot(...along);
-    let first = 0, last = Infinity;
+    const x = Math.floor(width * ((k * 0.6180339) % 1)),
+      y = Math.floor((height * (k + 0.5)) / 300);
+    const [from, to] = [-1, 1].map((z) =>
+      point((2 * x + 1) / width - 1, (2 * y + 1) / height - 1, z),
+    );
+    const along = minus(to, from),
+      reach = Math.hypot(...along);
+    let first = 0,
+      last = Infinity;
     for (const {x: nx, y: ny, z: nz, w} of uniforms.clipPlanes.value) {
-      const room = w - dot([nx, ny, nz], from), change = -dot([nx, ny, nz], along);
+      const room = w - dot([nx, ny, nz], from),
+        change = -dot([nx, ny, nz], along);
       if (change > 0) first = Math.max(first, -room / change);
       else if (change < 0) last = Math.min(last, -room / change);
     }
     const color = [0, 0, 0, 0];
-    let end = false, before = null;
-    const found = Array.from(tags, (tag, cell) => (tag >>> 31 ? null : stretch(cell, from, along))).filter((its) => its).sort((a, b) => a.enter - b.enter);
+    let end = false,
+      before = null;
+    const found = Array.from(tags, (tag, cell) => (tag >>> 31 ? null : stretch(cell, from, along)))
+      .filter((its) => its)
+      .sort((a, b) => a.enter - b.enter);
     for (const {enter, leave, value, slope} of found) {
       const kParts = 64;
       for (let i = 0; i < kParts && !end; ++i) {
         const t = enter + ((i + 0.5) / kParts) * (leave - enter);
         if (t < first || t > last) continue;
         const now = value + t * slope;
-        if (level !== null && before !== null && (before - level) * (now - level) < 0) end = true;  // a surface stands there
+        // a surface stands there
+        if (level !== null && before !== null && (before - level) * (now - level) < 0) end = true;
         before = now;
-        const its = looks(now), opacity = end ? 0 : 1 - Math.exp((-its[3] * reach * (leave - enter) * uniforms.perDiagonal.value) / kParts);
+        const its = looks(now),
+          opacity = end
+            ? 0
+            : 1 -
+              Math.exp((-its[3] * reach * (leave - enter) * uniforms.perDiagonal.value) / kParts);
         const rest = 1 - color[3];
         if (its[3] > 0) for (let c = 0; c < 4; ++c) color[c] += (rest * opacity * its[c]) / its[3];
       }
@@ -227,8 +389,15 @@ function compareWithEveryCell(view, level) {
 }
 
 /** Two pieces, one of them with a hole, a pit and a gap. */
-const isThere = (x, y, z) => y !== 5 && !(x === 1 && y === 2 && z > 2 && z < 6) && !(y < 4 && y !== 1 && z > 5) && !(y === 3 && z === 1);
-/** Pages, and views of each by name: attributes, and where Density ends the line of sight, an isosurface being there. */
+const isThere = (x, y, z) =>
+  y !== 5 &&
+  !(x === 1 && y === 2 && z > 2 && z < 6) &&
+  !(y < 4 && y !== 1 && z > 5) &&
+  !(y === 3 && z === 1);
+/**
+ * Pages, and views of each by name: attributes, and where Density ends the line of sight, an
+ * isosurface being there.
+ */
 const kCasts = {
   'mesh=holes&volume=0.05,0.2': {
     holes: [{field: 'x', camera: '1.6,2.2,0.7,0,0,0'}],
@@ -245,22 +414,40 @@ const kCasts = {
 async function castsRaysAsEveryCellSays({server, browser, logs, out, bin}) {
   const mesh = join(out, 'holes.vtu');
   writeFileSync(mesh, linearBox(3, {}, isThere));
-  execFileSync(join(bin, 'qtet'), ['simplify', mesh, '-o', join(logs.fin.folder, 'holes.qtet')], {stdio: 'pipe'});
+  execFileSync(join(bin, 'qtet'), ['simplify', mesh, '-o', join(logs.fin.folder, 'holes.qtet')], {
+    stdio: 'pipe',
+  });
   server.kill();
   await server.start();
   const notes = [];
   for (const [query, views] of Object.entries(kCasts)) {
-    const viewer = await browser.open(`${server.url}?${query}`, {viewport: {width: 480, height: 320}, deviceScaleFactor: 1.5});
-    await viewer.page.addStyleTag({content: 'qtet-viewer::part(panel), qtet-viewer::part(legend) { display: none }'});
+    const viewer = await browser.open(`${server.url}?${query}`, {
+      viewport: {width: 480, height: 320},
+      deviceScaleFactor: 1.5,
+    });
+    await viewer.page.addStyleTag({
+      content: 'qtet-viewer::part(panel), qtet-viewer::part(legend) { display: none }',
+    });
     await viewer.waitForState(query.includes('quality') ? 'held' : 'complete');
     await viewer.waitForPicture();
     for (const [name, [attributes, level = null]] of Object.entries(views)) {
-      await viewer.page.evaluate((all) => Object.entries(all).forEach((its) => window.qtetViewer.setAttribute(...its)), attributes);
+      await viewer.page.evaluate(
+        (all) => Object.entries(all).forEach((its) => window.qtetViewer.setAttribute(...its)),
+        attributes,
+      );
       await viewer.restVolume();
       await viewer.screenshot(`volume-cast-${name}`);
-      const [low, high] = await viewer.page.evaluate(() => window.qtetViewer.snapshot.scaleRange);
-      const pairs = await viewer.inView(compareWithEveryCell, level && (level - low) / (high - low));
-      const off = pairs.map(([drawn, wanted]) => 255 * Math.max(...drawn.map((value, c) => Math.abs(value - wanted[c]))));
+      const [low, high] = await viewer.page.evaluate(
+        () => window.qtetViewer.viewing.mesh.snapshot.scaleRange,
+      );
+      const pairs = await viewer.inView(
+        compareWithEveryCell,
+        level && (level - low) / (high - low),
+      );
+      const off = pairs.map(
+        ([drawn, wanted]) =>
+          255 * Math.max(...drawn.map((value, c) => Math.abs(value - wanted[c]))),
+      );
       const shown = pairs.filter(([drawn, wanted]) => Math.max(drawn[3], wanted[3]) > 0.02).length;
       const others = off.filter((steps) => steps > 3).length;
       notes.push(`${name} ${others} of ${shown}, at most ${Math.max(...off).toFixed(1)}`);
@@ -274,4 +461,9 @@ async function castsRaysAsEveryCellSays({server, browser, logs, out, bin}) {
   return notes.join('; ');
 }
 
-export const volumeChecks = {castsRaysAsEveryCellSays, drawsAVolumeAsTheFormulaSays, editsTheTransferFunction, drawsFewCellsWhileSomethingMoves};
+export const volumeChecks = {
+  castsRaysAsEveryCellSays,
+  drawsAVolumeAsTheFormulaSays,
+  editsTheTransferFunction,
+  drawsFewCellsWhileSomethingMoves,
+};

@@ -1,6 +1,7 @@
 // Every response of a running qtet-server against proto/openapi.yaml.
 //   node check.mjs --bin build/release/bin --out FOLDER      FOLDER is made anew
-// Asks for everything that the description names, validates status, type, headers and JSON, and fails if an answer that it names was never seen.
+// Asks for everything that the description names and validates status, type, headers and JSON.
+// Fails if an answer that the description names was never seen.
 
 import {spawnSync} from 'node:child_process';
 import {createHash} from 'node:crypto';
@@ -16,9 +17,21 @@ import {kToken, prepare, startServer} from './server.mjs';
 
 const {values: options} = parseArgs({options: {bin: {type: 'string'}, out: {type: 'string'}}});
 const source = join(import.meta.dirname ?? new URL('.', import.meta.url).pathname, '../..');
-const description = parse(readFileSync(join(source, 'proto/openapi.yaml'), 'utf8'), {maxAliasCount: -1});
+const description = parse(readFileSync(join(source, 'proto/openapi.yaml'), 'utf8'), {
+  maxAliasCount: -1,
+});
 /** What cannot be had from a healthy server by asking. */
-const kUnasked = new Set(['readLevel 500', 'readLevel 503', 'readPreview 500', 'readPreview 503', 'putMesh 503', 'putMesh 507', 'isReady 503', 'openStream 101', 'readViewer 404']);
+const kUnasked = new Set([
+  'readLevel 500',
+  'readLevel 503',
+  'readPreview 500',
+  'readPreview 503',
+  'putMesh 503',
+  'putMesh 507',
+  'isReady 503',
+  'openStream 101',
+  'readViewer 404',
+]);
 
 const kForms = ['vtu', 'vtk', 'msh', 'usda', 'npz', 'glb', 'drc', 'stl', 'ply', 'obj'];
 
@@ -31,29 +44,60 @@ const complain = (what, why) => complaints.push(`${what}: ${why}`);
 const ajv = new Ajv2020({strict: false, allErrors: true});
 addFormats(ajv);
 ajv.addSchema(description, 'openapi');
-const pointerOf = (parts) => 'openapi#/' + parts.map((part) => encodeURIComponent(String(part).replaceAll('~', '~0').replaceAll('/', '~1'))).join('/');
-const validatorAt = (parts) => ajv.getSchema(pointerOf(parts)) ?? ajv.compile({$ref: pointerOf(parts)});
+const pointerOf = (parts) =>
+  'openapi#/' +
+  parts
+    .map((part) => encodeURIComponent(String(part).replaceAll('~', '~0').replaceAll('/', '~1')))
+    .join('/');
+const validatorAt = (parts) =>
+  ajv.getSchema(pointerOf(parts)) ?? ajv.compile({$ref: pointerOf(parts)});
 /** The object at `parts`, references followed, and where it stands. */
 function resolve(parts) {
   const object = parts.reduce((at, part) => at?.[part], description);
-  return object?.$ref ? resolve(object.$ref.slice(2).split('/').map((part) => part.replaceAll('~1', '/').replaceAll('~0', '~'))) : {object, parts};
+  return object?.$ref
+    ? resolve(
+        object.$ref
+          .slice(2)
+          .split('/')
+          .map((part) => part.replaceAll('~1', '/').replaceAll('~0', '~')),
+      )
+    : {object, parts};
 }
 const patterns = Object.keys(description.paths).map((template) => {
-  const escaped = template.replace(/[.*+?^$()|[\]\\]/g, '\\$&').replaceAll('{rest}', '.+').replaceAll('{level}', '[^/.]+').replaceAll('{form}', `(?:${kForms.join('|')})`);
+  const escaped = template
+    .replace(/[.*+?^$()|[\]\\]/g, '\\$&')
+    .replaceAll('{rest}', '.+')
+    .replaceAll('{level}', '[^/.]+')
+    .replaceAll('{form}', `(?:${kForms.join('|')})`);
   return {template, pattern: new RegExp('^' + escaped.replace(/\{[^}]+\}/g, '[^/]+') + '$')};
 });
 /** The most exact template: the one with the fewest braces. */
-const templateOf = (path) => patterns.filter(({pattern}) => pattern.test(path))
-  .sort((a, b) => a.template.split('{').length - b.template.split('{').length || b.template.length - a.template.length)[0]?.template;
+const templateOf = (path) =>
+  patterns
+    .filter(({pattern}) => pattern.test(path))
+    .sort(
+      (a, b) =>
+        a.template.split('{').length - b.template.split('{').length ||
+        b.template.length - a.template.length,
+    )[0]?.template;
 
 function judge(what, method, path, reply) {
-  for (const header of ['x-request-id', 'date', 'access-control-allow-origin', 'cross-origin-resource-policy', 'timing-allow-origin', 'x-content-type-options'])
+  for (const header of [
+    'x-request-id',
+    'date',
+    'access-control-allow-origin',
+    'cross-origin-resource-policy',
+    'timing-allow-origin',
+    'x-content-type-options',
+  ])
     if (!reply.headers[header]) complain(what, `has no ${header}`);
   const template = templateOf(path);
   const isProblem = reply.status >= 400;
-  if (isProblem && reply.headers['content-type'] !== 'application/problem+json') complain(what, `an error as ${reply.headers['content-type']}`);
+  if (isProblem && reply.headers['content-type'] !== 'application/problem+json')
+    complain(what, `an error as ${reply.headers['content-type']}`);
   if (method === 'OPTIONS') return;
-  const operation = template && description.paths[template][method === 'HEAD' ? 'get' : method.toLowerCase()];
+  const operation =
+    template && description.paths[template][method === 'HEAD' ? 'get' : method.toLowerCase()];
   if (!operation) {
     if (!isProblem) complain(what, 'is not described');
     return judgeBody(what, method, reply, ['components', 'responses', 'Problem']);
@@ -61,7 +105,13 @@ function judge(what, method, path, reply) {
   const status = operation.responses[reply.status] ? String(reply.status) : 'default';
   if (status === 'default' && !isProblem) complain(what, `status ${reply.status} is not described`);
   seen.add(`${operation.operationId} ${status}`);
-  judgeBody(what, method, reply, ['paths', template, method === 'HEAD' ? 'get' : method.toLowerCase(), 'responses', status]);
+  judgeBody(what, method, reply, [
+    'paths',
+    template,
+    method === 'HEAD' ? 'get' : method.toLowerCase(),
+    'responses',
+    status,
+  ]);
 }
 
 function judgeBody(what, method, reply, place) {
@@ -78,11 +128,13 @@ function judgeBody(what, method, reply, place) {
   }
   const type = (reply.headers['content-type'] ?? '').split(';')[0];
   if (!response.content[type]) return complain(what, `type ${type} is not described`);
-  if (method === 'HEAD' || !response.content[type].schema || reply.headers['content-encoding']) return;
+  if (method === 'HEAD' || !response.content[type].schema || reply.headers['content-encoding'])
+    return;
   const body = type.endsWith('json') ? JSON.parse(reply.body.toString()) : reply.body.toString();
   const validate = validatorAt([...parts, 'content', type, 'schema']);
   if (!validate(body)) complain(what, ajv.errorsText(validate.errors));
-  if (type === 'application/problem+json' && body.status !== reply.status) complain(what, 'the problem tells another status');
+  if (type === 'application/problem+json' && body.status !== reply.status)
+    complain(what, 'the problem tells another status');
 }
 
 // ---- the questions
@@ -90,12 +142,28 @@ function judgeBody(what, method, reply, place) {
 const agent = new http.Agent({keepAlive: true, maxSockets: 1});
 function ask(port, method, path, headers = {}, body = undefined) {
   return new Promise((done, failed) => {
-    const request = http.request({port, method, path, headers: body === undefined ? headers : {'content-length': body.length, ...headers}, agent}, (response) => {
-      const pieces = [];
-      response.on('data', (piece) => pieces.push(piece));
-      response.on('end', () => done({status: response.statusCode, headers: response.headers, body: Buffer.concat(pieces)}));
-    });
-    request.useChunkedEncodingByDefault = false;  // else node adds a Transfer-Encoding where there is no length
+    const request = http.request(
+      {
+        port,
+        method,
+        path,
+        headers: body === undefined ? headers : {'content-length': body.length, ...headers},
+        agent,
+      },
+      (response) => {
+        const pieces = [];
+        response.on('data', (piece) => pieces.push(piece));
+        response.on('end', () =>
+          done({
+            status: response.statusCode,
+            headers: response.headers,
+            body: Buffer.concat(pieces),
+          }),
+        );
+      },
+    );
+    // else node adds a Transfer-Encoding where there is no length
+    request.useChunkedEncodingByDefault = false;
     request.on('error', failed);
     request.end(body);
   });
@@ -105,7 +173,11 @@ async function checkAll(port) {
   const expect = async (status, method, path, headers, body) => {
     const reply = await ask(port, method, path, headers, body);
     const what = `${method} ${path} ${headers ? JSON.stringify(headers).slice(0, 200) : ''}`;
-    if (reply.status !== status) complain(what, `status ${reply.status} instead of ${status}: ${reply.body.toString().slice(0, 200)}`);
+    if (reply.status !== status)
+      complain(
+        what,
+        `status ${reply.status} instead of ${status}: ${reply.body.toString().slice(0, 200)}`,
+      );
     judge(what, method, path.split('?')[0], reply);
     return reply;
   };
@@ -114,7 +186,12 @@ async function checkAll(port) {
   const log = `/v1/logs/${mesh.digest}`;
 
   const documents = ['/v1/meshes', '/v1/meshes/fin', `${log}/manifest`, '/openapi.json', '/'];
-  const binaries = [`${log}/log`, `${log}/base`, `${log}/chunks/0`, `${log}/fields/Density/chunks/0`];
+  const binaries = [
+    `${log}/log`,
+    `${log}/base`,
+    `${log}/chunks/0`,
+    `${log}/fields/Density/chunks/0`,
+  ];
   const levels = kForms.map((form) => `${log}/levels/1.${form}`).concat(`${log}/preview.png`);
   for (const path of [...documents, ...binaries, ...levels]) {
     const whole = await get(200, path);
@@ -124,30 +201,64 @@ async function checkAll(port) {
     await get(412, path, {'if-match': '"other"'});
     if (documents.includes(path)) continue;
     const part = await get(206, path, {range: 'bytes=1-3'});
-    if (!part.body.equals(whole.body.subarray(1, 4))) complain(path, 'the range is not that of the whole');
+    if (!part.body.equals(whole.body.subarray(1, 4)))
+      complain(path, 'the range is not that of the whole');
     await get(416, path, {range: `bytes=${whole.body.length}-`});
   }
-  for (const form of kForms) {  // as the tool writes them
+  for (const form of kForms) {
+    // as the tool writes them
     const file = join(options.out, `level.${form}`);
-    const done = spawnSync(join(options.bin, 'qtet'), ['extract', join(options.out, 'logs/fin.qtet'), '--level', '1', '-o', file], {encoding: 'utf8'});
-    if (done.status !== 0 || !(await get(200, `${log}/levels/1.${form}`)).body.equals(readFileSync(file))) complain(form, `is not what the tool writes ${done.stderr}`);
+    const done = spawnSync(
+      join(options.bin, 'qtet'),
+      ['extract', join(options.out, 'logs/fin.qtet'), '--level', '1', '-o', file],
+      {encoding: 'utf8'},
+    );
+    if (
+      done.status !== 0 ||
+      !(await get(200, `${log}/levels/1.${form}`)).body.equals(readFileSync(file))
+    )
+      complain(form, `is not what the tool writes ${done.stderr}`);
   }
   const glb = await get(200, `${log}/levels/fit.glb?error=Density:0.02`);
-  const verdict = await validator.validateBytes(new Uint8Array(glb.body), {ignoredIssues: ['UNSUPPORTED_EXTENSION']});
+  const verdict = await validator.validateBytes(new Uint8Array(glb.body), {
+    ignoredIssues: ['UNSUPPORTED_EXTENSION'],
+  });
   if (verdict.issues.numErrors > 0) complain('glb', JSON.stringify(verdict.issues.messages));
   await get(200, `${log}/levels/fit.vtu?tets=500&fields=Density`, {'accept-encoding': 'zstd'});
   const served = JSON.parse((await get(200, '/openapi.json')).body);
   if (JSON.stringify(sorted(served)) !== JSON.stringify(sorted(description)))
-    complain('/openapi.json', 'is not proto/openapi.yaml; make proto/openapi.json anew with: node tests/contract/openapi_json.mjs');
+    complain(
+      '/openapi.json',
+      'is not proto/openapi.yaml; make proto/openapi.json anew with: node ' +
+        'tests/contract/openapi_json.mjs',
+    );
 
   const nobody = '0'.repeat(64);
-  for (const path of ['/v1/meshes/none', '/v1/meshes/none/log', `/v1/logs/${nobody}/log`, `/v1/logs/${nobody}/manifest`, `/v1/logs/${nobody}/base`,
-    `${log}/chunks/99999`, `${log}/fields/none/chunks/0`, `${log}/levels/999.vtu`, `${log}/levels/fit.vtu?error=none:1`, `${log}/preview.png?field=none`, '/nothing', '/v2'])
+  for (const path of [
+    '/v1/meshes/none',
+    '/v1/meshes/none/log',
+    `/v1/logs/${nobody}/log`,
+    `/v1/logs/${nobody}/manifest`,
+    `/v1/logs/${nobody}/base`,
+    `${log}/chunks/99999`,
+    `${log}/fields/none/chunks/0`,
+    `${log}/levels/999.vtu`,
+    `${log}/levels/fit.vtu?error=none:1`,
+    `${log}/preview.png?field=none`,
+    '/nothing',
+    '/v2',
+  ])
     await get(404, path);
-  for (const path of ['/v1/meshes?limit=0', `${log}/levels/fit.vtu`, '/%', '/v1/stream/%zz']) await get(400, path);
+  for (const path of ['/v1/meshes?limit=0', `${log}/levels/fit.vtu`, '/%', '/v1/stream/%zz'])
+    await get(400, path);
   await get(307, '/v1/meshes/fin/log');
   await get(426, '/v1/stream');
-  await get(400, '/v1/stream', {connection: 'Upgrade', upgrade: 'websocket', 'sec-websocket-version': '13', 'sec-websocket-key': 'dGhlIHNhbXBsZSBub25jZQ=='});
+  await get(400, '/v1/stream', {
+    connection: 'Upgrade',
+    upgrade: 'websocket',
+    'sec-websocket-version': '13',
+    'sec-websocket-key': 'dGhlIHNhbXBsZSBub25jZQ==',
+  });
   for (const path of ['/livez', '/readyz', '/metrics', '/version']) await get(200, path);
   for (const method of ['POST', 'PATCH', 'DELETE']) await expect(405, method, '/v1/meshes');
   await get(431, '/', {x: 'y'.repeat(8500), z: 'y'.repeat(8500)});
@@ -171,7 +282,13 @@ async function checkReading(expect) {
   await expect(204, 'OPTIONS', '/v1/tickets');
   for (let i = 1; i < 256; ++i) await expect(201, 'POST', '/v1/tickets', token);
   await expect(429, 'POST', '/v1/tickets', token);
-  const handshake = {connection: 'Upgrade', upgrade: 'websocket', 'sec-websocket-version': '13', 'sec-websocket-key': 'dGhlIHNhbXBsZSBub25jZQ==', 'sec-websocket-protocol': 'qtet.v1'};
+  const handshake = {
+    connection: 'Upgrade',
+    upgrade: 'websocket',
+    'sec-websocket-version': '13',
+    'sec-websocket-key': 'dGhlIHNhbXBsZSBub25jZQ==',
+    'sec-websocket-protocol': 'qtet.v1',
+  };
   await expect(401, 'GET', '/v1/stream?ticket=none', handshake);
 }
 
@@ -181,14 +298,22 @@ async function checkWriting(expect, mesh) {
   const digest = createHash('sha256').update(other).digest('hex');
   const put = (status, path, headers, body = other) => expect(status, 'PUT', path, headers, body);
   const half = Math.floor(other.length / 2);
-  const range = (first, last) => ({...token, 'content-range': `bytes ${first}-${last}/${other.length}`});
+  const range = (first, last) => ({
+    ...token,
+    'content-range': `bytes ${first}-${last}/${other.length}`,
+  });
   await put(401, '/v1/meshes/up');
   await put(403, '/v1/meshes/fin', token);
   await put(404, '/v1/meshes/up%2f', token);
   await put(415, '/v1/meshes/up', {...token, 'content-encoding': 'gzip'});
   await put(413, '/v1/meshes/up', token, Buffer.alloc(1000001));
   await put(422, '/v1/meshes/up', token, Buffer.from('nonsense'));
-  await put(422, '/v1/meshes/up', token, readFileSync(new URL('../golden/must-fail/bad-value.structure-of-noise.qtet', import.meta.url)));
+  await put(
+    422,
+    '/v1/meshes/up',
+    token,
+    readFileSync(new URL('../golden/must-fail/bad-value.structure-of-noise.qtet', import.meta.url)),
+  );
   await put(412, '/v1/meshes/up', {...token, 'if-match': '*'});
   await put(400, '/v1/meshes/up?digest=1', token);
   await put(202, `/v1/meshes/up?digest=${digest}`, range(0, half - 1), other.subarray(0, half));
@@ -198,9 +323,19 @@ async function checkWriting(expect, mesh) {
   await expect(401, 'GET', partial);
   await expect(403, 'GET', partial.replace('/up/', '/fin/'), token);
   await expect(400, 'GET', '/v1/meshes/up/upload', token);
-  await put(201, `/v1/meshes/up?digest=${digest}`, range(half, other.length - 1), other.subarray(half));
+  await put(
+    201,
+    `/v1/meshes/up?digest=${digest}`,
+    range(half, other.length - 1),
+    other.subarray(half),
+  );
   await expect(404, 'GET', partial, token);
-  await put(409, `/v1/meshes/up?digest=${digest}`, {...token, 'content-range': `bytes */${other.length}`}, Buffer.alloc(0));
+  await put(
+    409,
+    `/v1/meshes/up?digest=${digest}`,
+    {...token, 'content-range': `bytes */${other.length}`},
+    Buffer.alloc(0),
+  );
   await put(200, '/v1/meshes/up', token);
   await expect(411, 'PUT', '/v1/meshes/up', token);
   await expect(412, 'DELETE', '/v1/meshes/up', {...token, 'if-match': `"${mesh.digest}"`});
@@ -212,8 +347,16 @@ async function checkWriting(expect, mesh) {
 }
 
 /** With members in the order of their names: for comparing. */
-const sorted = (value) => Array.isArray(value) ? value.map(sorted)
-  : value && typeof value === 'object' ? Object.fromEntries(Object.keys(value).sort().map((key) => [key, sorted(value[key])])) : value;
+const sorted = (value) =>
+  Array.isArray(value)
+    ? value.map(sorted)
+    : value && typeof value === 'object'
+      ? Object.fromEntries(
+          Object.keys(value)
+            .sort()
+            .map((key) => [key, sorted(value[key])]),
+        )
+      : value;
 
 prepare(options);
 const {child, port} = await startServer(options);
@@ -228,7 +371,12 @@ for (const path of Object.values(description.paths))
   for (const operation of Object.values(path))
     for (const status of Object.keys(operation.responses ?? {})) {
       const name = `${operation.operationId} ${status}`;
-      if (status !== 'default' && !seen.has(name) && !kUnasked.has(name)) complain(name, 'is described and was never seen');
+      if (status !== 'default' && !seen.has(name) && !kUnasked.has(name))
+        complain(name, 'is described and was never seen');
     }
-console.log(complaints.length === 0 ? `contract: ${seen.size} described answers seen, all as described` : complaints.join('\n'));
+console.log(
+  complaints.length === 0
+    ? `contract: ${seen.size} described answers seen, all as described`
+    : complaints.join('\n'),
+);
 process.exit(complaints.length === 0 ? 0 : 1);

@@ -1,5 +1,7 @@
-// server/deploy/nginx.conf in front of a qtet-server: HTTP/2, ranges, an upload, the WebSocket's handshake, and no way to the operators' paths.
-//   node nginx.mjs --bin build/release/bin --out FOLDER      exit code 77: nginx or openssl is not installed
+// server/deploy/nginx.conf in front of a qtet-server: HTTP/2, ranges, an upload, the WebSocket's
+// handshake, and no way to the operators' paths.
+//   node nginx.mjs --bin build/release/bin --out FOLDER
+// Exit code 77: nginx or openssl is not installed.
 
 import assert from 'node:assert';
 import {spawn, spawnSync} from 'node:child_process';
@@ -18,39 +20,83 @@ const kNginx = '/usr/sbin/nginx';
 for (const program of [kNginx, 'openssl'])
   if (spawnSync(program, [program === kNginx ? '-v' : 'version']).error) process.exit(77);
 
-const freePort = () => new Promise((done) => {
-  const server = net.createServer().listen(0, '127.0.0.1', () => {
-    const {port} = server.address();
-    server.close(() => done(port));
+const freePort = () =>
+  new Promise((done) => {
+    const server = net.createServer().listen(0, '127.0.0.1', () => {
+      const {port} = server.address();
+      server.close(() => done(port));
+    });
   });
-});
 
-/** The example with this machine's ports and a certificate of its own; everything else as it stands. */
+/**
+ * The example with this machine's ports and a certificate of its own; everything else as it stands.
+ */
 function configure(folder, serverPort, port) {
-  const made = spawnSync('openssl', ['req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:P-256', '-nodes', '-days', '1', '-subj', '/CN=localhost',
-    '-keyout', join(folder, 'key.pem'), '-out', join(folder, 'cert.pem')], {encoding: 'utf8'});
+  const made = spawnSync(
+    'openssl',
+    [
+      'req',
+      '-x509',
+      '-newkey',
+      'ec',
+      '-pkeyopt',
+      'ec_paramgen_curve:P-256',
+      '-nodes',
+      '-days',
+      '1',
+      '-subj',
+      '/CN=localhost',
+      '-keyout',
+      join(folder, 'key.pem'),
+      '-out',
+      join(folder, 'cert.pem'),
+    ],
+    {encoding: 'utf8'},
+  );
   assert.equal(made.status, 0, made.stderr);
-  const example = readFileSync(fileURLToPath(new URL('../../server/deploy/nginx.conf', import.meta.url)), 'utf8')
+  const example = readFileSync(
+    fileURLToPath(new URL('../../server/deploy/nginx.conf', import.meta.url)),
+    'utf8',
+  )
     .replace('server 127.0.0.1:8080;', `server 127.0.0.1:${serverPort};`)
     .replace('listen 443 ssl', `listen 127.0.0.1:${port} ssl`)
     .replace(/ssl_certificate_key .*/, `ssl_certificate_key ${folder}/key.pem;`)
-    .replace(/ssl_certificate  .*/, `ssl_certificate ${folder}/cert.pem;`);
-  writeFileSync(join(folder, 'nginx.conf'), `daemon off; worker_processes 1; pid ${folder}/pid; error_log ${folder}/error.log;
+    .replace(/ssl_certificate {2}.*/, `ssl_certificate ${folder}/cert.pem;`);
+  writeFileSync(
+    join(folder, 'nginx.conf'),
+    `daemon off; worker_processes 1; pid ${folder}/pid; error_log ${folder}/error.log;
 events { worker_connections 256; }
-http { access_log off; client_body_temp_path ${folder}/body; proxy_temp_path ${folder}/proxy; fastcgi_temp_path ${folder}/f; uwsgi_temp_path ${folder}/u;
-scgi_temp_path ${folder}/s;
+http { access_log off;
+client_body_temp_path ${folder}/body; proxy_temp_path ${folder}/proxy;
+fastcgi_temp_path ${folder}/f; uwsgi_temp_path ${folder}/u; scgi_temp_path ${folder}/s;
 ${example}}
-`);
+`,
+  );
 }
 
 function ask(port, method, path, headers = {}, body = undefined) {
   return new Promise((done, failed) => {
-    const request = https.request({port, method, path, headers, rejectUnauthorized: false, agent: false}, (response) => {
-      const pieces = [];
-      response.on('data', (piece) => pieces.push(piece));
-      response.on('end', () => done({status: response.statusCode, headers: response.headers, body: Buffer.concat(pieces)}));
-    });
-    request.on('upgrade', (response, socket) => (socket.destroy(), done({status: response.statusCode, headers: response.headers})));
+    const request = https.request(
+      {port, method, path, headers, rejectUnauthorized: false, agent: false},
+      (response) => {
+        const pieces = [];
+        response.on('data', (piece) => pieces.push(piece));
+        response.on('end', () =>
+          done({
+            status: response.statusCode,
+            headers: response.headers,
+            body: Buffer.concat(pieces),
+          }),
+        );
+      },
+    );
+    request.on(
+      'upgrade',
+      (response, socket) => (
+        socket.destroy(),
+        done({status: response.statusCode, headers: response.headers})
+      ),
+    );
     request.on('error', failed);
     request.end(body);
   });
@@ -58,7 +104,9 @@ function ask(port, method, path, headers = {}, body = undefined) {
 
 function askHttp2(port, path) {
   return new Promise((done, failed) => {
-    const client = http2.connect(`https://127.0.0.1:${port}`, {rejectUnauthorized: false}).on('error', failed);
+    const client = http2
+      .connect(`https://127.0.0.1:${port}`, {rejectUnauthorized: false})
+      .on('error', failed);
     const stream = client.request({':path': path});
     stream.on('response', (headers) => (client.destroy(), done(headers[':status'])));
     stream.on('error', failed);
@@ -74,13 +122,25 @@ async function check(port) {
   assert.equal(part.status, 206);
   assert.ok(part.body.equals(log.subarray(10, 20)));
   assert.match(part.headers['x-request-id'], /^[0-9a-f]{32}$/, "nginx's own request id comes back");
-  assert.equal((await ask(port, 'GET', mesh.links.log, {'if-none-match': whole.headers.etag})).status, 304);
+  assert.equal(
+    (await ask(port, 'GET', mesh.links.log, {'if-none-match': whole.headers.etag})).status,
+    304,
+  );
   assert.equal(await askHttp2(port, '/v1/meshes'), 200);
-  for (const path of ['/metrics', '/livez', '/readyz', '/version']) assert.equal((await ask(port, 'GET', path)).status, 404, path);
+  for (const path of ['/metrics', '/livez', '/readyz', '/version'])
+    assert.equal((await ask(port, 'GET', path)).status, 404, path);
   const other = readFileSync(join(options.out, 'other.qtet'));
-  assert.equal((await ask(port, 'PUT', '/v1/meshes/up', {authorization: `Bearer ${kToken}`}, other)).status, 201);
-  const handshake = await ask(port, 'GET', '/v1/stream', {connection: 'Upgrade', upgrade: 'websocket', 'sec-websocket-version': '13',
-    'sec-websocket-key': 'dGhlIHNhbXBsZSBub25jZQ==', 'sec-websocket-protocol': 'qtet.v1'});
+  assert.equal(
+    (await ask(port, 'PUT', '/v1/meshes/up', {authorization: `Bearer ${kToken}`}, other)).status,
+    201,
+  );
+  const handshake = await ask(port, 'GET', '/v1/stream', {
+    connection: 'Upgrade',
+    upgrade: 'websocket',
+    'sec-websocket-version': '13',
+    'sec-websocket-key': 'dGhlIHNhbXBsZSBub25jZQ==',
+    'sec-websocket-protocol': 'qtet.v1',
+  });
   assert.equal(handshake.status, 101);
   assert.equal(handshake.headers['sec-websocket-protocol'], 'qtet.v1');
 }
@@ -91,10 +151,16 @@ const port = await freePort();
 const folder = join(options.out, 'nginx');
 mkdirSync(folder, {recursive: true});
 configure(folder, server.port, port);
-const nginx = spawn(kNginx, ['-e', join(folder, 'error.log'), '-p', folder, '-c', join(folder, 'nginx.conf')], {stdio: 'inherit'});
+const nginx = spawn(
+  kNginx,
+  ['-e', join(folder, 'error.log'), '-p', folder, '-c', join(folder, 'nginx.conf')],
+  {stdio: 'inherit'},
+);
 try {
   for (let i = 0; i < 1200; ++i) {
-    const up = await new Promise((done) => net.connect(port, '127.0.0.1', () => done(true)).on('error', () => done(false)));
+    const up = await new Promise((done) =>
+      net.connect(port, '127.0.0.1', () => done(true)).on('error', () => done(false)),
+    );
     if (up) break;
     await sleep(50);
   }

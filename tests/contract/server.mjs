@@ -4,7 +4,10 @@ import {spawn, spawnSync} from 'node:child_process';
 import {mkdirSync, rmSync, writeFileSync} from 'node:fs';
 import {join} from 'node:path';
 
-/** May write meshes whose names begin with "up"; those that begin with "s" nobody may read, all others everybody. */
+/**
+ * May write meshes whose names begin with "up"; those that begin with "s" nobody may read, all
+ * others everybody.
+ */
 export const kToken = 'aSecretOfTwentyTwoChars';
 
 function run(program, words) {
@@ -12,7 +15,10 @@ function run(program, words) {
   if (done.status !== 0) throw new Error(`${program} ${words.join(' ')}: ${done.stderr}`);
 }
 
-/** Makes the folder `out` anew: logs/fin.qtet, other.qtet, tokens, viewer/. `bin` holds the programs. */
+/**
+ * Makes the folder `out` anew: logs/fin.qtet, other.qtet, tokens, viewer/. `bin` holds the
+ * programs.
+ */
 export function prepare({bin, out}) {
   rmSync(out, {recursive: true, force: true});
   for (const folder of ['logs', 'viewer']) mkdirSync(join(out, folder), {recursive: true});
@@ -26,8 +32,19 @@ export function prepare({bin, out}) {
 
 /** The process, and the port that it listens on. */
 export function startServer({bin, out}) {
-  const words = [join(out, 'logs'), '--port', '0', '--viewer', join(out, 'viewer'), '--tokens', join(out, 'tokens'), '--max-upload-bytes', '1000000',
-    '--cache', join(out, 'cache')];
+  const words = [
+    join(out, 'logs'),
+    '--port',
+    '0',
+    '--viewer',
+    join(out, 'viewer'),
+    '--tokens',
+    join(out, 'tokens'),
+    '--max-upload-bytes',
+    '1000000',
+    '--cache',
+    join(out, 'cache'),
+  ];
   const child = spawn(join(bin, 'qtet-server'), words, {stdio: ['ignore', 'pipe', 'inherit']});
   return new Promise((ready, failed) => {
     child.stdout.once('data', (line) => ready({child, port: Number(/:(\d+)\//.exec(line)?.[1])}));

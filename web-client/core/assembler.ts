@@ -1,17 +1,20 @@
-// Keeps the blocks that arrive and puts them into the codec in the order that it wants: structure with positions, then fields behind the mesh. The
-// blocks stay (two or three bytes a cell), so that the mesh can be made coarser and finer again without the network.
+// Keeps the blocks that arrive and puts them into the codec in the order that it wants: structure
+// with positions, then fields behind the mesh. The blocks stay (two or three bytes a cell), so that
+// the mesh can be made coarser and finer again without the network.
 
+import type {Packet} from './packet';
+import {kFirstFieldPart, kHeadPart, kPositionsPart, kStructurePart} from './parts';
 import type {BlockValues, Codec} from './codec';
 import type {ValueDecoder} from './draco';
 import {QtetError} from './errors';
 import {goalOf, planOf, type Goal, type LevelBytes} from './goal';
 import type {Limit} from './limit';
 import {fieldKeys, readManifest, type Manifest} from './manifest';
-import {kFirstFieldPart, kHeadPart, kPositionsPart, kStructurePart, type Frame} from './protocol';
+import type {Frame} from './protocol';
 import {Ledger, kNoStatistics, statisticsOf, type Statistics} from './statistics';
 import type {LogTable} from './transport';
 import {readValueBlock} from './value_block';
-import {inOrder, kNoWishes, type Packet, type WireLattice, type Wishes} from './wishes';
+import {inOrder, kNoViewRequest, type WireLattice, type ViewRequest} from './view_request';
 
 export class Assembler implements LogTable {
   manifest: Manifest | null = null;
@@ -22,10 +25,15 @@ export class Assembler implements LogTable {
   private received: number[] = [];
   private packetList: Packet[] = [];
   private rank = new Map<number, number>();
-  /** Chunks whose structure and positions are here and not applied, in the order of their coming. */
+  /**
+   * Chunks whose structure and positions are here and not applied, in the order of their coming.
+   */
   private readonly ready = new Set<number>();
 
-  constructor(readonly codec: Codec, private readonly values: ValueDecoder) {}
+  constructor(
+    readonly codec: Codec,
+    private readonly values: ValueDecoder,
+  ) {}
 
   forget(): void {
     this.manifest = this.ledger = this.head = null;
@@ -37,13 +45,25 @@ export class Assembler implements LogTable {
 
   // ---- LogTable
 
-  get isKnown(): boolean { return this.manifest !== null; }
-  get chunkCount(): number { return this.codec.chunkCount; }
-  get fieldKeys(): string[] { return fieldKeys(this.manifest?.fields ?? []); }
-  blockOffset(chunk: number, part: number): number { return this.codec.blockOffset(chunk, part); }
-  blockSize(chunk: number, part: number): number { return this.codec.blockSize(chunk, part); }
+  get isKnown(): boolean {
+    return this.manifest !== null;
+  }
+  get chunkCount(): number {
+    return this.codec.chunkCount;
+  }
+  get fieldKeys(): string[] {
+    return fieldKeys(this.manifest?.fields ?? []);
+  }
+  blockOffset(chunk: number, part: number): number {
+    return this.codec.blockOffset(chunk, part);
+  }
+  blockSize(chunk: number, part: number): number {
+    return this.codec.blockSize(chunk, part);
+  }
 
-  get packets(): readonly Packet[] { return this.packetList; }
+  get packets(): readonly Packet[] {
+    return this.packetList;
+  }
   get lattice(): WireLattice | null {
     const lattice = this.manifest?.lattice;
     return lattice ? {origin: lattice.origin, step: lattice.step, size: 2 ** lattice.bits} : null;
@@ -52,25 +72,38 @@ export class Assembler implements LogTable {
   // ---- blocks
 
   /** Leading chunks that are here: of the mesh, and of one field. */
-  get receivedChunks(): number { return Math.min(this.leading(kStructurePart), this.leading(kPositionsPart)); }
-  receivedOfField(field: number): number { return Math.min(this.leading(kFirstFieldPart + field), this.receivedChunks); }
+  get receivedChunks(): number {
+    return Math.min(this.leading(kStructurePart), this.leading(kPositionsPart));
+  }
+  receivedOfField(field: number): number {
+    return Math.min(this.leading(kFirstFieldPart + field), this.receivedChunks);
+  }
 
   /** Figures of the mesh with these fields. */
   statistics(fields: readonly number[]): Statistics {
-    return this.manifest && this.ledger ? statisticsOf(this.codec, this.manifest, this.ledger, fields) : kNoStatistics;
+    return this.manifest && this.ledger
+      ? statisticsOf(this.codec, this.manifest, this.ledger, fields)
+      : kNoStatistics;
   }
 
   /** Where `limit` lies with these fields; null: at the end. */
   goal(limit: Limit, fields: readonly number[]): Goal | null {
-    return this.manifest && this.head ? goalOf(limit, this.codec, this.manifest, fields, this.head.length) : null;
+    return this.manifest && this.head
+      ? goalOf(limit, this.codec, this.manifest, fields, this.head.length)
+      : null;
   }
 
   /** planOf this log. */
   plan(fields: readonly number[]): LevelBytes[] {
-    return this.manifest && this.head ? planOf(this.codec, this.manifest, fields, this.head.length) : [];
+    return this.manifest && this.head
+      ? planOf(this.codec, this.manifest, fields, this.head.length)
+      : [];
   }
 
-  /** Applies the next block of the fields, or else the next chunk of the mesh if `refine`; false when neither is here. Throws what the codec refuses. */
+  /**
+   * Applies the next block of the fields, or else the next chunk of the mesh if `refine`; false
+   * when neither is here. Throws what the codec refuses.
+   */
   step(fields: readonly number[], refine: boolean): boolean {
     for (const field of fields) if (this.stepField(field)) return true;
     const chunk = refine ? this.nextChunk() : -1;
@@ -105,18 +138,23 @@ export class Assembler implements LogTable {
   }
 
   /** What is looked at is also decoded first. */
-  look(wishes: Wishes): void {
+  look(view: ViewRequest): void {
     const {lattice, packets} = this;
-    this.rank = new Map(lattice ? inOrder(packets, wishes, lattice.size).map(({chunk}, i) => [chunk, i]) : []);
+    this.rank = new Map(
+      lattice ? inOrder(packets, view, lattice.size).map(({chunk}, i) => [chunk, i]) : [],
+    );
   }
 
   /** Of the head before every packet. */
-  private rankOf(chunk: number): number { return this.rank.get(chunk) ?? chunk - this.codec.chunkCount; }
+  private rankOf(chunk: number): number {
+    return this.rank.get(chunk) ?? chunk - this.codec.chunkCount;
+  }
 
   /** The most urgent of those that are here and whose parent is applied; -1: none. */
   private nextChunk(): number {
     const {codec} = this;
-    if (codec.headChunks === codec.chunkCount) return this.ready.has(codec.chunksApplied) ? codec.chunksApplied : -1;
+    if (codec.headChunks === codec.chunkCount)
+      return this.ready.has(codec.chunksApplied) ? codec.chunksApplied : -1;
     let best = -1;
     for (const chunk of this.ready) {
       if (chunk > 0 && !codec.applied(codec.dependency(chunk))) continue;
@@ -125,20 +163,31 @@ export class Assembler implements LogTable {
     return best;
   }
 
-  /** Keeps what the frame holds. Throws bad-order, bad-message, bad-checksum and what the codec says of a head. */
+  /**
+   * Keeps what the frame holds. Throws bad-order, bad-message, bad-checksum and what the codec says
+   * of a head.
+   */
   take(frame: Frame): void {
     if (frame.firstPart === kHeadPart) {
       this.takeHead(frame.payload);
       return;
     }
-    if (!this.manifest) throw new QtetError('bad-order', 'The server sent a part of the mesh before its head.');
-    if (frame.chunk >= this.codec.chunkCount) throw new QtetError('bad-message', `The server sent chunk ${frame.chunk}, which does not exist.`);
+    if (!this.manifest)
+      throw new QtetError('bad-order', 'The server sent a part of the mesh before its head.');
+    if (frame.chunk >= this.codec.chunkCount)
+      throw new QtetError(
+        'bad-message',
+        `The server sent chunk ${frame.chunk}, which does not exist.`,
+      );
     const parts = kFirstFieldPart + this.manifest.fields.length;
     let at = 0;
     for (let part = frame.firstPart; part < frame.firstPart + frame.parts; ++part) {
       const size = part < parts ? this.codec.blockSize(frame.chunk, part) : Infinity;
       if (at + size > frame.payload.length) {
-        throw new QtetError('bad-message', `Chunk ${frame.chunk} arrived in a size that differs from the chunk table's.`);
+        throw new QtetError(
+          'bad-message',
+          `Chunk ${frame.chunk} arrived in a size that differs from the chunk table's.`,
+        );
       }
       this.keep(frame.chunk, part, frame.payload.subarray(at, at + size));
       at += size;
@@ -151,7 +200,7 @@ export class Assembler implements LogTable {
     this.ledger = new Ledger(this.codec, head.length);
     this.head = head.slice();
     this.packetList = packetsOf(this.codec);
-    this.look(kNoWishes);
+    this.look(kNoViewRequest);
     this.ready.clear();
     this.blocks = Array.from({length: this.codec.chunkCount}, () => []);
     this.received = Array<number>(kFirstFieldPart + this.manifest.fields.length).fill(0);
@@ -161,7 +210,13 @@ export class Assembler implements LogTable {
     this.codec.checkBlock(chunk, part, bytes);
     const parts = this.blocks[chunk]!;
     parts[part] = bytes;
-    if (part < kFirstFieldPart && parts[kStructurePart] && parts[kPositionsPart] && !this.codec.applied(chunk)) this.ready.add(chunk);
+    if (
+      part < kFirstFieldPart &&
+      parts[kStructurePart] &&
+      parts[kPositionsPart] &&
+      !this.codec.applied(chunk)
+    )
+      this.ready.add(chunk);
   }
 
   private leading(part: number): number {
@@ -174,7 +229,16 @@ export class Assembler implements LogTable {
     const chunk = this.nextOfField(field);
     if (chunk < 0) return false;
     const part = kFirstFieldPart + field;
-    this.codec.applyField(field, chunk, this.decode(chunk, part, this.blocks[chunk]![part]!, this.manifest!.fields[field]!.components));
+    this.codec.applyField(
+      field,
+      chunk,
+      this.decode(
+        chunk,
+        part,
+        this.blocks[chunk]![part]!,
+        this.manifest!.fields[field]!.components,
+      ),
+    );
     this.ledger!.addField(field, chunk);
     return true;
   }
@@ -187,10 +251,17 @@ export class Assembler implements LogTable {
     const {codec} = this;
     const part = kFirstFieldPart + field;
     const count = codec.fieldChunksApplied(field);
-    if (count < codec.headChunks) return count < codec.chunksApplied && this.blocks[count]?.[part] ? count : -1;
+    if (count < codec.headChunks)
+      return count < codec.chunksApplied && this.blocks[count]?.[part] ? count : -1;
     if (count === codec.chunksApplied) return -1;
     for (let chunk = codec.headChunks; chunk < codec.chunkCount; ++chunk) {
-      if (this.blocks[chunk]![part] && codec.applied(chunk) && !codec.fieldApplied(field, chunk) && codec.fieldApplied(field, codec.dependency(chunk))) return chunk;
+      if (
+        this.blocks[chunk]![part] &&
+        codec.applied(chunk) &&
+        !codec.fieldApplied(field, chunk) &&
+        codec.fieldApplied(field, codec.dependency(chunk))
+      )
+        return chunk;
     }
     return -1;
   }

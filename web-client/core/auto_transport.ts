@@ -1,11 +1,12 @@
-// The transport that works: a WebSocket where one can be had, else byte ranges, else numbered chunks; and the next one as soon as one fails for good.
-// They are interchangeable because each goes on behind what the last one brought.
+// The transport that works: a WebSocket where one can be had, else byte ranges, else numbered
+// chunks; and the next one as soon as one fails for good. They are interchangeable because each
+// goes on behind what the last one brought.
 
 import type {QtetError} from './errors';
 import type {Goal} from './goal';
 import type {Frame, OpenRequest, ServerMessage} from './protocol';
 import type {Transport, TransportHandlers} from './transport';
-import type {Wishes} from './wishes';
+import type {ViewRequest} from './view_request';
 
 export type TransportKind = 'websocket' | 'range' | 'chunks';
 export const kTransportKinds: readonly TransportKind[] = ['websocket', 'range', 'chunks'];
@@ -20,24 +21,45 @@ export class AutoTransport implements Transport, TransportHandlers {
   private timer: ReturnType<typeof setTimeout> | undefined;
 
   /** REQUIRES: at least one kind. `make` makes a transport of a kind with these handlers. */
-  constructor(private readonly kinds: readonly TransportKind[], private readonly make: (kind: TransportKind, handlers: TransportHandlers) => Transport,
-              private readonly handlers: TransportHandlers) {
+  constructor(
+    private readonly kinds: readonly TransportKind[],
+    private readonly make: (kind: TransportKind, handlers: TransportHandlers) => Transport,
+    private readonly handlers: TransportHandlers,
+  ) {
     this.current = make(kinds[0]!, this);
   }
 
-  get kind(): TransportKind { return this.kinds[this.at]!; }
-  get isConnected(): boolean { return this.current.isConnected; }
+  get kind(): TransportKind {
+    return this.kinds[this.at]!;
+  }
+  get isConnected(): boolean {
+    return this.current.isConnected;
+  }
   connect(): void {
     clearTimeout(this.timer);
     this.current.connect();
   }
-  open(request: OpenRequest): void { this.current.open(request); }
-  stop(): void { this.current.stop(); }
-  pause(): void { this.current.pause(); }
-  resume(): boolean { return this.current.resume(); }
-  aim(goal: Goal | null): void { this.current.aim(goal); }
-  applied(bytes: number): void { this.current.applied(bytes); }
-  look(wishes: Wishes): void { this.current.look(wishes); }
+  open(request: OpenRequest): void {
+    this.current.open(request);
+  }
+  stop(): void {
+    this.current.stop();
+  }
+  pause(): void {
+    this.current.pause();
+  }
+  resume(): boolean {
+    return this.current.resume();
+  }
+  aim(goal: Goal | null): void {
+    this.current.aim(goal);
+  }
+  applied(bytes: number): void {
+    this.current.applied(bytes);
+  }
+  look(view: ViewRequest): void {
+    this.current.look(view);
+  }
   disconnect(): void {
     clearTimeout(this.timer);
     this.current.disconnect();
@@ -45,8 +67,12 @@ export class AutoTransport implements Transport, TransportHandlers {
 
   // ---- TransportHandlers
 
-  connected(): void { this.handlers.connected(); }
-  message(message: ServerMessage): void { this.handlers.message(message); }
+  connected(): void {
+    this.handlers.connected();
+  }
+  message(message: ServerMessage): void {
+    this.handlers.message(message);
+  }
   frame(frame: Frame): void {
     this.failures = 0;
     this.handlers.frame(frame);
@@ -56,7 +82,8 @@ export class AutoTransport implements Transport, TransportHandlers {
     this.handlers.down(attempt, delayMs);
   }
   failed(error: QtetError): void {
-    // What this way cannot do another may; when all have failed without a byte between them, the last one's word counts.
+    // What this way cannot do another may; when all have failed without a byte between them, the
+    // last one's word counts.
     if (error.code === 'http' && ++this.failures < kPatience + this.kinds.length) {
       this.change(0);
       return;
@@ -67,7 +94,8 @@ export class AutoTransport implements Transport, TransportHandlers {
   private change(delayMs: number): void {
     this.current.disconnect();
     this.at = (this.at + 1) % this.kinds.length;
-    this.failures = Math.max(0, this.failures - 1);  // the new way gets one try before the one after it
+    // the new way gets one try before the one after it
+    this.failures = Math.max(0, this.failures - 1);
     this.current = this.make(this.kind, this);
     this.timer = setTimeout(() => this.current.connect(), delayMs);
   }

@@ -1,8 +1,9 @@
-// Where blocks come from over HTTP: out of the file by their places, or by their numbers from a qtet-server or whoever keeps copies of its answers.
+// Where blocks come from over HTTP: out of the file by their places, or by their numbers from a
+// qtet-server or whoever keeps copies of its answers.
 
 import {fetchChecked, RangedFile, type Fetch} from './ranged_file';
 import {QtetError} from './errors';
-import {kFirstFieldPart, kStructurePart} from './protocol';
+import {kFirstFieldPart, kStructurePart} from './parts';
 import type {LogTable} from './transport';
 
 /** Neighbouring blocks of one chunk. */
@@ -33,9 +34,12 @@ const kGapBytes = 4096;
 
 /** Bytes of the front from its first 64. */
 export function headBytesOf(header: Uint8Array): number {
-  if (header.length < kHeaderBytes) throw new QtetError('truncated', 'The file is too short for a qtet log.');
+  if (header.length < kHeaderBytes)
+    throw new QtetError('truncated', 'The file is too short for a qtet log.');
   const view = new DataView(header.buffer, header.byteOffset);
-  return kHeaderBytes + view.getUint32(kManifestBytesAt, true) + view.getUint32(kTableBytesAt, true);
+  return (
+    kHeaderBytes + view.getUint32(kManifestBytesAt, true) + view.getUint32(kTableBytesAt, true)
+  );
 }
 
 const plainTag = (tag: string): string => tag.replace(/^"|"$/g, '');
@@ -43,9 +47,17 @@ const plainTag = (tag: string): string => tag.replace(/^"|"$/g, '');
 export class RangeSource implements BlockSource {
   private readonly file: RangedFile;
 
-  constructor(url: string, private readonly table: LogTable, fetch?: Fetch) { this.file = new RangedFile(url, fetch); }
+  constructor(
+    url: string,
+    private readonly table: LogTable,
+    fetch?: Fetch,
+  ) {
+    this.file = new RangedFile(url, fetch);
+  }
 
-  get digest(): string { return plainTag(this.file.tag); }
+  get digest(): string {
+    return plainTag(this.file.tag);
+  }
 
   async head(signal: AbortSignal): Promise<Uint8Array> {
     const header = await this.file.read(0, kHeaderBytes, signal);
@@ -69,11 +81,19 @@ export class RangeSource implements BlockSource {
     const start = this.begin(pieces[0]!);
     const end = this.end(pieces[pieces.length - 1]!);
     const bytes = end > start ? await this.file.read(start, end, signal) : new Uint8Array(0);
-    if (bytes.length < end - start) throw new QtetError('truncated', `${this.file.url} ends before its last chunk does. Copy the file again.`);
-    return pieces.map((piece) => bytes.subarray(this.begin(piece) - start, this.end(piece) - start));
+    if (bytes.length < end - start)
+      throw new QtetError(
+        'truncated',
+        `${this.file.url} ends before its last chunk does. Copy the file again.`,
+      );
+    return pieces.map((piece) =>
+      bytes.subarray(this.begin(piece) - start, this.end(piece) - start),
+    );
   }
 
-  private begin({chunk, firstPart}: Piece): number { return this.table.blockOffset(chunk, firstPart); }
+  private begin({chunk, firstPart}: Piece): number {
+    return this.table.blockOffset(chunk, firstPart);
+  }
   private end({chunk, firstPart, parts}: Piece): number {
     const last = firstPart + parts - 1;
     return this.table.blockOffset(chunk, last) + this.table.blockSize(chunk, last);
@@ -86,24 +106,39 @@ export class ChunkSource implements BlockSource {
   private base: string;
 
   /** `url`: /v1/meshes/{id}/log of a server. */
-  constructor(url: string, private readonly table: LogTable, private readonly get: Fetch = (address, init) => globalThis.fetch(address, init)) {
+  constructor(
+    url: string,
+    private readonly table: LogTable,
+    private readonly get: Fetch = (address, init) => globalThis.fetch(address, init),
+  ) {
     this.base = url;
   }
 
   async head(signal: AbortSignal): Promise<Uint8Array> {
     const response = await fetchChecked(this.get, new URL('base', this.base).href, {signal});
     if (response.url) this.base = response.url;
-    this.digest = /\/v1\/logs\/([0-9a-f]{64})\//.exec(response.url)?.[1] ?? plainTag(response.headers.get('etag') ?? '');
+    this.digest =
+      /\/v1\/logs\/([0-9a-f]{64})\//.exec(response.url)?.[1] ??
+      plainTag(response.headers.get('etag') ?? '');
     const bytes = new Uint8Array(await response.arrayBuffer());
     return bytes.subarray(0, headBytesOf(bytes));
   }
 
-  together(): number { return 1; }
+  together(): number {
+    return 1;
+  }
 
   async fetch([piece]: readonly Piece[], signal: AbortSignal): Promise<Uint8Array[]> {
     const {chunk, firstPart} = piece!;
-    const key = firstPart === kStructurePart ? '' : `fields/${encodeURIComponent(this.table.fieldKeys[firstPart - kFirstFieldPart]!)}/`;
-    const response = await fetchChecked(this.get, new URL(`${key}chunks/${chunk}`, this.base).href, {signal});
+    const key =
+      firstPart === kStructurePart
+        ? ''
+        : `fields/${encodeURIComponent(this.table.fieldKeys[firstPart - kFirstFieldPart]!)}/`;
+    const response = await fetchChecked(
+      this.get,
+      new URL(`${key}chunks/${chunk}`, this.base).href,
+      {signal},
+    );
     return [new Uint8Array(await response.arrayBuffer())];
   }
 }

@@ -1,18 +1,28 @@
-// The surface of a set of cells: every face that belongs to one of them only, seen from outside, with the cell that it belongs to.
+// The surface of a set of cells: every face that belongs to one of them only, seen from outside,
+// with the cell that it belongs to.
 
 import type {FieldScale} from './field_scale';
 import type {Cells} from './section';
 import type {TriangleSoup} from './triangle_soup';
 
 /** Corners of the face opposite to corner i. */
-const kFaces = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]] as const;
+const kFaces = [
+  [1, 2, 3],
+  [0, 3, 2],
+  [0, 1, 3],
+  [0, 2, 1],
+] as const;
 const kEmpty = -1;
 
-/** Faces as 4 * cell + the corner opposite. `boundary`: the whole mesh's, 3 vertices a triangle; it only spares work. */
+/**
+ * Faces as 4 * cell + the corner opposite. `boundary`: the whole mesh's, 3 vertices a triangle; it
+ * only spares work.
+ */
 export function surfaceFaces(cells: Cells, boundary: Uint32Array): Uint32Array {
   const near = verticesNearASide(cells, boundary);
   const candidates = candidateFaces(cells, near);
-  // Open addressing, at most half full; a face that comes a second time lies between two cells and cancels the first.
+  // Open addressing, at most half full; a face that comes a second time lies between two cells and
+  // cancels the first.
   const mask = 2 ** Math.ceil(Math.log2(2 * candidates.length + 2)) - 1;
   const slots = new Int32Array(mask + 1).fill(kEmpty);
   const inner = new Uint8Array(candidates.length);
@@ -21,13 +31,14 @@ export function surfaceFaces(cells: Cells, boundary: Uint32Array): Uint32Array {
     const [a, b, c] = sortedCorners(cells.tetrahedra, candidates[i]!);
     corners.set([a, b, c], 3 * i);
     let slot = (Math.imul(a, 73856093) ^ Math.imul(b, 19349663) ^ Math.imul(c, 83492791)) & mask;
-    for (;; slot = (slot + 1) & mask) {
+    for (; ; slot = (slot + 1) & mask) {
       const other = slots[slot]!;
       if (other === kEmpty) {
         slots[slot] = i;
         break;
       }
-      if (corners[3 * other] !== a || corners[3 * other + 1] !== b || corners[3 * other + 2] !== c) continue;
+      if (corners[3 * other] !== a || corners[3 * other + 1] !== b || corners[3 * other + 2] !== c)
+        continue;
       inner[other] = inner[i] = 1;
       break;
     }
@@ -36,20 +47,28 @@ export function surfaceFaces(cells: Cells, boundary: Uint32Array): Uint32Array {
 }
 
 /** The faces as a soup. */
-export function facesSoup({points, tetrahedra}: Cells, faces: Uint32Array, scale: FieldScale | null): TriangleSoup {
+export function facesSoup(
+  {points, tetrahedra}: Cells,
+  faces: Uint32Array,
+  scale: FieldScale | null,
+): TriangleSoup {
   const positions = new Float32Array(9 * faces.length);
   const values = new Float32Array(scale ? 3 * faces.length : 0);
   for (let i = 0; i < faces.length; ++i) {
     const cell = faces[i]! >> 2;
     outwardCorners(points, tetrahedra, faces[i]!).forEach((vertex, k) => {
-      for (let axis = 0; axis < 3; ++axis) positions[9 * i + 3 * k + axis] = points[3 * vertex + axis]!;
+      for (let axis = 0; axis < 3; ++axis)
+        positions[9 * i + 3 * k + axis] = points[3 * vertex + axis]!;
       if (scale) values[3 * i + k] = scale.at(scale.ofCells ? cell : vertex);
     });
   }
   return {positions, values, firstHalf: faces.length};
 }
 
-/** Only faces between such vertices can be on the surface: those of the mesh's boundary and of cells that are not kept. */
+/**
+ * Only faces between such vertices can be on the surface: those of the mesh's boundary and of cells
+ * that are not kept.
+ */
 function verticesNearASide({points, tetrahedra, kept}: Cells, boundary: Uint32Array): Uint8Array {
   const near = new Uint8Array(points.length / 3);
   for (const vertex of boundary) near[vertex] = 1;
@@ -61,8 +80,11 @@ function verticesNearASide({points, tetrahedra, kept}: Cells, boundary: Uint32Ar
 function candidateFaces({tetrahedra, kept}: Cells, near: Uint8Array): Uint32Array {
   const faces: number[] = [];
   for (let cell = 0, at = 0; at < tetrahedra.length; ++cell, at += 4) {
-    if (kept && kept[cell] === 0) continue;
-    const n0 = near[tetrahedra[at]!]!, n1 = near[tetrahedra[at + 1]!]!, n2 = near[tetrahedra[at + 2]!]!, n3 = near[tetrahedra[at + 3]!]!;
+    if (kept?.[cell] === 0) continue;
+    const n0 = near[tetrahedra[at]!]!,
+      n1 = near[tetrahedra[at + 1]!]!,
+      n2 = near[tetrahedra[at + 2]!]!,
+      n3 = near[tetrahedra[at + 3]!]!;
     if (n1 & n2 & n3) faces.push(at);
     if (n0 & n2 & n3) faces.push(at + 1);
     if (n0 & n1 & n3) faces.push(at + 2);
@@ -74,20 +96,33 @@ function candidateFaces({tetrahedra, kept}: Cells, near: Uint8Array): Uint32Arra
 function sortedCorners(tetrahedra: Uint32Array, face: number): [number, number, number] {
   const at = face & ~3;
   const [i, j, k] = kFaces[face & 3]!;
-  let a = tetrahedra[at + i]!, b = tetrahedra[at + j]!, c = tetrahedra[at + k]!;
+  let a = tetrahedra[at + i]!,
+    b = tetrahedra[at + j]!,
+    c = tetrahedra[at + k]!;
   if (a > b) [a, b] = [b, a];
   if (b > c) [b, c] = [c, b];
   if (a > b) [a, b] = [b, a];
   return [a, b, c];
 }
 
-function outwardCorners(points: Int32Array, tetrahedra: Uint32Array, face: number): [number, number, number] {
+function outwardCorners(
+  points: Int32Array,
+  tetrahedra: Uint32Array,
+  face: number,
+): [number, number, number] {
   const at = face & ~3;
   const [i, j, k] = kFaces[face & 3]!;
-  const a = tetrahedra[at + i]!, b = tetrahedra[at + j]!, c = tetrahedra[at + k]!, inside = tetrahedra[face]!;
-  const difference = (p: number, axis: number): number => points[3 * p + axis]! - points[3 * a + axis]!;
+  const a = tetrahedra[at + i]!,
+    b = tetrahedra[at + j]!,
+    c = tetrahedra[at + k]!,
+    inside = tetrahedra[face]!;
+  const difference = (p: number, axis: number): number =>
+    points[3 * p + axis]! - points[3 * a + axis]!;
   const [ux, uy, uz] = [difference(b, 0), difference(b, 1), difference(b, 2)];
   const [vx, vy, vz] = [difference(c, 0), difference(c, 1), difference(c, 2)];
-  const side = (uy * vz - uz * vy) * difference(inside, 0) + (uz * vx - ux * vz) * difference(inside, 1) + (ux * vy - uy * vx) * difference(inside, 2);
+  const side =
+    (uy * vz - uz * vy) * difference(inside, 0) +
+    (uz * vx - ux * vz) * difference(inside, 1) +
+    (ux * vy - uy * vx) * difference(inside, 2);
   return side <= 0 ? [a, b, c] : [a, c, b];
 }

@@ -6,21 +6,32 @@ import type {Display} from './display';
 import type {Pick, Probe} from './inspector';
 import {kFull, type Limit} from './limit';
 import type {CoarseCells} from './volume';
-import type {Wishes} from './wishes';
+import type {ViewRequest} from './view_request';
 import type {FromWorker, Posted, Question, Source, ToWorker} from './worker_messages';
 
 export type Listener = (message: Exclude<FromWorker, {type: 'answer'}>) => void;
 
-const kAnySource: Source = {url: '', log: '', mesh: '', fields: null, limit: kFull, transport: 'auto'};
+const kAnySource: Source = {
+  url: '',
+  log: '',
+  mesh: '',
+  fields: null,
+  limit: kFull,
+  transport: 'auto',
+};
 
 export class Client {
-  private readonly worker = new Worker(new URL('./worker.ts', import.meta.url), {type: 'module', name: 'qtet'});
+  private readonly worker = new Worker(new URL('./worker.ts', import.meta.url), {
+    type: 'module',
+    name: 'qtet',
+  });
   private readonly asked = new Map<number, (answer: never) => void>();
   private nextId = 0;
   private run = 0;
 
   constructor(listen: Listener) {
-    // The page knows where its build put the codec; the worker's own file may have been moved without what it refers to.
+    // The page knows where its build put the codec; the worker's own file may have been moved
+    // without what it refers to.
     this.post({type: 'load', codecUrl: new URL(codecUrl, import.meta.url).href});
     this.worker.onmessage = (event: MessageEvent<Posted>) => {
       const message = event.data;
@@ -32,43 +43,85 @@ export class Client {
       this.asked.delete(message.id);
     };
     this.worker.onerror = (event) => {
-      listen({type: 'error', code: 'internal', message: `The decoder stopped: ${event.message || 'unknown cause'}. Reload the page.`});
+      listen({
+        type: 'error',
+        code: 'internal',
+        message: `The decoder stopped: ${event.message || 'unknown cause'}. Reload the page.`,
+      });
       listen({type: 'state', state: 'failed', attempt: 0, delayMs: 0});
     };
   }
 
-  /** `url` and `mesh`, or `log` alone; what else is left out is chosen: the first field, everything, whatever transport works. Nothing of an earlier start is heard any more. */
-  start(source: Partial<Source>): void { this.post({type: 'start', source: {...kAnySource, ...source}, run: ++this.run}); }
-  /** REQUIRES: fields of the last `manifest` message. Its fields are fetched if they are not here. */
-  show(display: Display): void { this.post({type: 'display', display}); }
-  setLimit(limit: Limit): void { this.post({type: 'limit', limit}); }
+  /**
+   * `url` and `mesh`, or `log` alone; what else is left out is chosen: the first field, everything,
+   * whatever transport works. Nothing of an earlier start is heard any more.
+   */
+  start(source: Partial<Source>): void {
+    this.post({type: 'start', source: {...kAnySource, ...source}, run: ++this.run});
+  }
+  /**
+   * REQUIRES: fields of the last `manifest` message. Its fields are fetched if they are not here.
+   */
+  show(display: Display): void {
+    this.post({type: 'display', display});
+  }
+  setLimit(limit: Limit): void {
+    this.post({type: 'limit', limit});
+  }
   /** What the user looks at, which logs of regions refine first. */
-  look(wishes: Wishes): void { this.post({type: 'look', wishes}); }
-  pause(): void { this.post({type: 'pause'}); }
-  resume(): void { this.post({type: 'resume'}); }
-  /** To be called once a snapshot is on the screen; the next one waits for it. `drawingMs`: what drawing it took, for who knows. */
-  shown(drawingMs?: number): void { this.post({type: 'shown', drawingMs}); }
+  look(view: ViewRequest): void {
+    this.post({type: 'look', view});
+  }
+  pause(): void {
+    this.post({type: 'pause'});
+  }
+  resume(): void {
+    this.post({type: 'resume'});
+  }
+  /**
+   * To be called once a snapshot is on the screen; the next one waits for it. `drawingMs`: what
+   * drawing it took, for who knows.
+   */
+  shown(drawingMs?: number): void {
+    this.post({type: 'shown', drawingMs});
+  }
   /** The picture once more, whole: whoever drew it is gone. */
-  repeat(): void { this.post({type: 'repeat'}); }
+  repeat(): void {
+    this.post({type: 'repeat'});
+  }
 
-  /** SHA-256 over the mesh as it stands in the worker, lower-case hexadecimal; empty before there is one. */
-  digest(): Promise<string> { return this.ask({type: 'digest'}); }
-  pick(ray: Ray): Promise<Pick | null> { return this.ask({type: 'pick', ray}); }
-  probe(from: Vector, to: Vector): Promise<Probe | null> { return this.ask({type: 'probe', from, to}); }
+  /**
+   * SHA-256 over the mesh as it stands in the worker, lower-case hexadecimal; empty before there is
+   * one.
+   */
+  digest(): Promise<string> {
+    return this.ask({type: 'digest'});
+  }
+  pick(ray: Ray): Promise<Pick | null> {
+    return this.ask({type: 'pick', ray});
+  }
+  probe(from: Vector, to: Vector): Promise<Probe | null> {
+    return this.ask({type: 'probe', from, to});
+  }
 
-  /** The last snapshot's volume with few cells, unless the asker has them: those of version `have`. Refused where there are none. */
+  /**
+   * The last snapshot's volume with few cells, unless the asker has them: those of version `have`.
+   * Refused where there are none.
+   */
   async coarse(have: number): Promise<CoarseCells> {
     const answer = await this.ask<CoarseCells | null>({type: 'coarse', have});
     if (!answer) throw new Error('there are no coarse cells');
     return answer;
   }
 
-  dispose(): void { this.worker.terminate(); }
+  dispose(): void {
+    this.worker.terminate();
+  }
 
   private ask<Answer>(question: Question): Promise<Answer> {
     const id = this.nextId++;
     return new Promise((resolve) => {
-      this.asked.set(id, resolve as (answer: never) => void);
+      this.asked.set(id, resolve);
       this.post({...question, id});
     });
   }

@@ -1,4 +1,5 @@
-// The mesh with few cells, decoded once more from the blocks that have come: what is drawn of a volume while something moves and the graphics are slow.
+// The mesh with few cells, decoded once more from the blocks that have come: what is drawn of a
+// volume while something moves and the graphics are slow.
 
 import type {Assembler} from './assembler';
 import {fieldsOf, keptCells, type Display} from './display';
@@ -17,17 +18,26 @@ export class CoarseVolume {
   constructor(private readonly makeAssembler: () => Promise<Assembler>) {}
 
   /** A part of the log; its bytes are kept anyway. */
-  note(frame: Frame): void { this.frames.push(frame); }
+  note(frame: Frame): void {
+    this.frames.push(frame);
+  }
 
   forget(): void {
     this.frames = [];
     this.key = '';
   }
 
-  /** The cells that `display` shows, unless the asker has them: those of version `have`. Throws where there are no values of the field yet. */
+  /**
+   * The cells that `display` shows, unless the asker has them: those of version `have`. Throws
+   * where there are no values of the field yet.
+   */
   async cells(have: number, display: Display): Promise<CoarseCells> {
     const assembler = await (this.assembler ??= this.makeAssembler());
-    const key = JSON.stringify([display.color, display.threshold, display.mode === 'cells' && display.planes]);
+    const key = JSON.stringify([
+      display.color,
+      display.threshold,
+      display.mode === 'cells' && display.planes,
+    ]);
     if (key === this.key && have === this.version) return {version: have};
     this.key = '';
     const cells = this.take(assembler, display);
@@ -42,7 +52,11 @@ export class CoarseVolume {
     for (const frame of this.frames) assembler.take(frame);
     const hasRoom = (): boolean => {
       const next = codec.chunksApplied;
-      return next === 0 || (next < codec.chunkCount && codec.tetrahedronCount + codec.brings(next).tetrahedra <= kCoarseCells);
+      return (
+        next === 0 ||
+        (next < codec.chunkCount &&
+          codec.tetrahedronCount + codec.brings(next).tetrahedra <= kCoarseCells)
+      );
     };
     while (assembler.step(fields, hasRoom())) continue;
     const mesh = meshNow(assembler);

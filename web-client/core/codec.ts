@@ -1,8 +1,9 @@
-// The WebAssembly codec (codec/wasm_api.h) with types: bytes in, views of the growing mesh out. One log a codec.
+// The WebAssembly codec (codec/wasm_api.h) with types: bytes in, views of the growing mesh out. One
+// log a codec.
 
 import {QtetError} from './errors';
-import type {Counts} from './statistics';
-import type {PacketBox} from './wishes';
+import type {Counts} from './counts';
+import type {PacketBox} from './packet';
 
 /** What the session needs of a codec; tests bring their own. */
 export interface Codec {
@@ -10,7 +11,10 @@ export interface Codec {
   /** After `out-of-memory`: an empty codec, whose memory is the browser's again. */
   restart(): void;
   readonly chunkCount: number;
-  /** Numbers of all levels, column by column, from the end of the manifest. Throws `limit-exceeded`, `truncated`, `bad-value`. */
+  /**
+   * Numbers of all levels, column by column, from the end of the manifest. Throws `limit-exceeded`,
+   * `truncated`, `bad-value`.
+   */
   levelColumns(bytes: Uint8Array, columns: number): Uint32Array;
   /** In the file. */
   blockOffset(chunk: number, part: number): number;
@@ -46,7 +50,10 @@ export interface Codec {
   digest(): string;
 }
 
-/** A value block in its two parts (FORMAT.md, "Value blocks"): what Draco decodes, and the digits behind it; an adaptive block is all digits. */
+/**
+ * A value block in its two parts (FORMAT.md, "Value blocks"): what Draco decodes, and the digits
+ * behind it; an adaptive block is all digits.
+ */
 export interface BlockValues {
   symbols: Int32Array;
   digits: Uint8Array;
@@ -60,8 +67,17 @@ const kOfCells = 1;
 
 /** Names by ErrorCode of proto/error.h. */
 const kErrorCodes = [
-  'truncated', 'bad-magic', 'bad-version', 'bad-checksum', 'bad-value', 'limit-exceeded', 'bad-codec', 'bad-order', 'not-found',
-  'bad-input', 'io',
+  'truncated',
+  'bad-magic',
+  'bad-version',
+  'bad-checksum',
+  'bad-value',
+  'limit-exceeded',
+  'bad-codec',
+  'bad-order',
+  'not-found',
+  'bad-input',
+  'io',
 ];
 
 interface Exports {
@@ -82,8 +98,22 @@ interface Exports {
   qtet_block_codec(chunk: number, part: number): number;
   qtet_check_block(chunk: number, part: number, bytes: number, size: number): number;
   qtet_apply(
-    chunk: number, structure: number, size: number, symbols: number, count: number, digits: number, digitBytes: number): number;
-  qtet_apply_field(field: number, chunk: number, symbols: number, count: number, digits: number, digitBytes: number): number;
+    chunk: number,
+    structure: number,
+    size: number,
+    symbols: number,
+    count: number,
+    digits: number,
+    digitBytes: number,
+  ): number;
+  qtet_apply_field(
+    field: number,
+    chunk: number,
+    symbols: number,
+    count: number,
+    digits: number,
+    digitBytes: number,
+  ): number;
   qtet_head_chunks(): number;
   qtet_dependency(chunk: number): number;
   qtet_packet_box(chunk: number): number;
@@ -104,70 +134,155 @@ interface Exports {
 }
 
 export class WasmCodec implements Codec {
-  private constructor(private readonly module: WebAssembly.Module, private wasm: Exports) {}
+  private constructor(
+    private readonly module: WebAssembly.Module,
+    private wasm: Exports,
+  ) {}
 
   static async create(module: WebAssembly.Module): Promise<WasmCodec> {
-    return new WasmCodec(module, begin(await WebAssembly.instantiate(module, stubbedImports(module))));
+    return new WasmCodec(
+      module,
+      begin(await WebAssembly.instantiate(module, stubbedImports(module))),
+    );
   }
 
-  restart(): void { this.wasm = begin(new WebAssembly.Instance(this.module, stubbedImports(this.module))); }
+  restart(): void {
+    this.wasm = begin(new WebAssembly.Instance(this.module, stubbedImports(this.module)));
+  }
 
   open(head: Uint8Array): void {
     this.with([head], ([address]) => this.wasm.qtet_open(address!, head.length));
   }
 
-  get chunkCount(): number { return this.wasm.qtet_chunk_count() >>> 0; }
-  levelColumns(bytes: Uint8Array, columns: number): Uint32Array {
-    this.with([bytes], ([address]) => this.wasm.qtet_level_columns(address!, bytes.length, columns));
-    const count = columns * (this.wasm.qtet_level_count() >>> 0);
-    return new Uint32Array(this.wasm.memory.buffer, this.wasm.qtet_level_numbers() >>> 0, count).slice();
+  get chunkCount(): number {
+    return this.wasm.qtet_chunk_count() >>> 0;
   }
-  blockOffset(chunk: number, part: number): number { return this.wasm.qtet_block_offset(chunk, part); }
-  blockSize(chunk: number, part: number): number { return this.wasm.qtet_block_size(chunk, part) >>> 0; }
-  blockValues(chunk: number, part: number): number { return this.wasm.qtet_block_values(chunk, part) >>> 0; }
-  blockCodec(chunk: number, part: number): number { return this.wasm.qtet_block_codec(chunk, part) >>> 0; }
+  levelColumns(bytes: Uint8Array, columns: number): Uint32Array {
+    this.with([bytes], ([address]) =>
+      this.wasm.qtet_level_columns(address!, bytes.length, columns),
+    );
+    const count = columns * (this.wasm.qtet_level_count() >>> 0);
+    return new Uint32Array(
+      this.wasm.memory.buffer,
+      this.wasm.qtet_level_numbers() >>> 0,
+      count,
+    ).slice();
+  }
+  blockOffset(chunk: number, part: number): number {
+    return this.wasm.qtet_block_offset(chunk, part);
+  }
+  blockSize(chunk: number, part: number): number {
+    return this.wasm.qtet_block_size(chunk, part) >>> 0;
+  }
+  blockValues(chunk: number, part: number): number {
+    return this.wasm.qtet_block_values(chunk, part) >>> 0;
+  }
+  blockCodec(chunk: number, part: number): number {
+    return this.wasm.qtet_block_codec(chunk, part) >>> 0;
+  }
 
   checkBlock(chunk: number, part: number, bytes: Uint8Array): void {
-    this.with([bytes], ([address]) => this.wasm.qtet_check_block(chunk, part, address!, bytes.length));
+    this.with([bytes], ([address]) =>
+      this.wasm.qtet_check_block(chunk, part, address!, bytes.length),
+    );
   }
 
   apply(chunk: number, structure: Uint8Array, {symbols, digits}: BlockValues): void {
     this.with([structure, bytesOf(symbols), digits], ([from, values, rest]) =>
-      this.wasm.qtet_apply(chunk, from!, structure.length, values!, symbols.length, rest!, digits.length));
+      this.wasm.qtet_apply(
+        chunk,
+        from!,
+        structure.length,
+        values!,
+        symbols.length,
+        rest!,
+        digits.length,
+      ),
+    );
   }
 
   applyField(field: number, chunk: number, {symbols, digits}: BlockValues): void {
     this.with([bytesOf(symbols), digits], ([values, rest]) =>
-      this.wasm.qtet_apply_field(field, chunk, values!, symbols.length, rest!, digits.length));
+      this.wasm.qtet_apply_field(field, chunk, values!, symbols.length, rest!, digits.length),
+    );
   }
 
-  get headChunks(): number { return this.wasm.qtet_head_chunks() >>> 0; }
-  dependency(chunk: number): number { return this.wasm.qtet_dependency(chunk) >>> 0; }
-  packetBox(chunk: number): PacketBox { return new Uint8Array(this.wasm.memory.buffer, this.wasm.qtet_packet_box(chunk) >>> 0, 6).slice(); }
+  get headChunks(): number {
+    return this.wasm.qtet_head_chunks() >>> 0;
+  }
+  dependency(chunk: number): number {
+    return this.wasm.qtet_dependency(chunk) >>> 0;
+  }
+  packetBox(chunk: number): PacketBox {
+    return new Uint8Array(
+      this.wasm.memory.buffer,
+      this.wasm.qtet_packet_box(chunk) >>> 0,
+      6,
+    ).slice();
+  }
   brings(chunk: number): Counts {
-    const [tetrahedra, vertices, boundaryTriangles] = new Uint32Array(this.wasm.memory.buffer, this.wasm.qtet_chunk_brings(chunk) >>> 0, 3);
+    const [tetrahedra, vertices, boundaryTriangles] = new Uint32Array(
+      this.wasm.memory.buffer,
+      this.wasm.qtet_chunk_brings(chunk) >>> 0,
+      3,
+    );
     return {tetrahedra: tetrahedra!, vertices: vertices!, boundaryTriangles: boundaryTriangles!};
   }
-  applied(chunk: number): boolean { return this.wasm.qtet_applied(chunk) !== 0; }
-  fieldApplied(field: number, chunk: number): boolean { return this.wasm.qtet_field_applied(field, chunk) !== 0; }
-  get chunksApplied(): number { return this.wasm.qtet_chunks_applied() >>> 0; }
-  fieldChunksApplied(field: number): number { return this.wasm.qtet_field_chunks_applied(field) >>> 0; }
-  get level(): number { return this.wasm.qtet_level() >>> 0; }
-  get vertexCount(): number { return this.wasm.qtet_vertex_count() >>> 0; }
-  get tetrahedronCount(): number { return this.wasm.qtet_tetrahedron_count() >>> 0; }
-  get boundaryCount(): number { return this.wasm.qtet_boundary_count() >>> 0; }
+  applied(chunk: number): boolean {
+    return this.wasm.qtet_applied(chunk) !== 0;
+  }
+  fieldApplied(field: number, chunk: number): boolean {
+    return this.wasm.qtet_field_applied(field, chunk) !== 0;
+  }
+  get chunksApplied(): number {
+    return this.wasm.qtet_chunks_applied() >>> 0;
+  }
+  fieldChunksApplied(field: number): number {
+    return this.wasm.qtet_field_chunks_applied(field) >>> 0;
+  }
+  get level(): number {
+    return this.wasm.qtet_level() >>> 0;
+  }
+  get vertexCount(): number {
+    return this.wasm.qtet_vertex_count() >>> 0;
+  }
+  get tetrahedronCount(): number {
+    return this.wasm.qtet_tetrahedron_count() >>> 0;
+  }
+  get boundaryCount(): number {
+    return this.wasm.qtet_boundary_count() >>> 0;
+  }
 
-  points(): Int32Array { return new Int32Array(this.wasm.memory.buffer, this.wasm.qtet_points() >>> 0, 3 * this.vertexCount); }
+  points(): Int32Array {
+    return new Int32Array(
+      this.wasm.memory.buffer,
+      this.wasm.qtet_points() >>> 0,
+      3 * this.vertexCount,
+    );
+  }
   tetrahedra(): Uint32Array {
-    return new Uint32Array(this.wasm.memory.buffer, this.wasm.qtet_tetrahedra() >>> 0, 4 * this.tetrahedronCount);
+    return new Uint32Array(
+      this.wasm.memory.buffer,
+      this.wasm.qtet_tetrahedra() >>> 0,
+      4 * this.tetrahedronCount,
+    );
   }
   boundary(): Uint32Array {
-    return new Uint32Array(this.wasm.memory.buffer, this.wasm.qtet_boundary() >>> 0, 3 * this.boundaryCount);
+    return new Uint32Array(
+      this.wasm.memory.buffer,
+      this.wasm.qtet_boundary() >>> 0,
+      3 * this.boundaryCount,
+    );
   }
   field(field: number, components: number): Int32Array | null {
     const address = this.wasm.qtet_field(field) >>> 0;
-    const tuples = this.wasm.qtet_field_association(field) === kOfCells ? this.tetrahedronCount : this.vertexCount;
-    return address === 0 ? null : new Int32Array(this.wasm.memory.buffer, address, components * tuples);
+    const tuples =
+      this.wasm.qtet_field_association(field) === kOfCells
+        ? this.tetrahedronCount
+        : this.vertexCount;
+    return address === 0
+      ? null
+      : new Int32Array(this.wasm.memory.buffer, address, components * tuples);
   }
 
   digest(): string {
@@ -178,7 +293,10 @@ export class WasmCodec implements Codec {
     return bytes.map((byte) => byte.toString(16).padStart(2, '0')).join('');
   }
 
-  /** Copies the blocks into the module, calls `use` with their addresses, frees them, and throws what the call reports. */
+  /**
+   * Copies the blocks into the module, calls `use` with their addresses, frees them, and throws
+   * what the call reports.
+   */
   private with(blocks: Uint8Array[], use: (addresses: number[]) => number): void {
     const addresses = blocks.map((bytes) => {
       const address = this.wasm.qtet_alloc(Math.max(bytes.length, 1)) >>> 0;
@@ -214,16 +332,25 @@ function guarded(call: () => number): number {
   }
 }
 
-function outOfMemory(): QtetError { return new QtetError('out-of-memory', 'The whole mesh needs more memory than the browser gives to a page.'); }
+function outOfMemory(): QtetError {
+  return new QtetError(
+    'out-of-memory',
+    'The whole mesh needs more memory than the browser gives to a page.',
+  );
+}
 
 function bytesOf(values: Int32Array): Uint8Array {
   return new Uint8Array(values.buffer, values.byteOffset, values.byteLength);
 }
 
-/** libc++'s abort path links three WASI calls that are never of use here; every import answers "bad file". */
+/**
+ * libc++'s abort path links three WASI calls that are never of use here; every import answers "bad
+ * file".
+ */
 function stubbedImports(module: WebAssembly.Module): WebAssembly.Imports {
   const kBadFile = 8;
   const imports: Record<string, Record<string, () => number>> = {};
-  for (const {module: from, name} of WebAssembly.Module.imports(module)) (imports[from] ??= {})[name] = () => kBadFile;
+  for (const {module: from, name} of WebAssembly.Module.imports(module))
+    (imports[from] ??= {})[name] = () => kBadFile;
   return imports;
 }

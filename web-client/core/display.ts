@@ -7,10 +7,13 @@ import type {Cells} from './section';
 import {isosurface, slice, type Plane} from './slice';
 import {boundarySoup, joinSoups, type TriangleSoup} from './triangle_soup';
 
-/** cut: what lies above a plane is gone, flat caps close the hole; cells: whole cells stay or go; slice: the cuts alone, each whole. */
+/**
+ * cut: what lies above a plane is gone, flat caps close the hole; cells: whole cells stay or go;
+ * slice: the cuts alone, each whole.
+ */
 export type ClipMode = 'cut' | 'cells' | 'slice';
 export const kClipModes: readonly ClipMode[] = ['cut', 'cells', 'slice'];
-export const kMostPlanes = 3;
+export const kMaxPlanes = 3;
 
 export interface Display {
   color: Scalar | null;
@@ -27,7 +30,15 @@ export interface Display {
   volume: boolean;
 }
 
-export const kPlainDisplay: Display = {color: null, body: true, mode: 'cut', planes: [], isosurfaces: null, threshold: null, volume: false};
+export const kPlainDisplay: Display = {
+  color: null,
+  body: true,
+  mode: 'cut',
+  planes: [],
+  isosurfaces: null,
+  threshold: null,
+  volume: false,
+};
 
 /** The fields that a display needs, each once. */
 export function fieldsOf(display: Display): number[] {
@@ -49,7 +60,8 @@ export function keptCells(mesh: MeshNow, display: Display): Uint8Array | null {
   const planes = display.mode === 'cells' ? display.planes : [];
   if (!scale && planes.length === 0) return null;
   const kept = new Uint8Array(mesh.tetrahedra.length / 4).fill(1);
-  if (scale) keepWithin(kept, mesh.tetrahedra, scale, display.threshold!.low, display.threshold!.high);
+  if (scale)
+    keepWithin(kept, mesh.tetrahedra, scale, display.threshold!.low, display.threshold!.high);
   for (const plane of planes) keepBelow(kept, mesh.points, mesh.tetrahedra, plane);
   return kept;
 }
@@ -73,9 +85,15 @@ export function cutsOf(mesh: MeshNow, display: Display, kept: Uint8Array | null)
   return planes.map((plane) => slice({...mesh, kept}, scale, plane));
 }
 
-export function isosurfacesOf(mesh: MeshNow, display: Display, kept: Uint8Array | null): TriangleSoup | null {
+export function isosurfacesOf(
+  mesh: MeshNow,
+  display: Display,
+  kept: Uint8Array | null,
+): TriangleSoup | null {
   const levels = display.isosurfaces && mesh.scale(display.isosurfaces.scalar);
   if (!levels || levels.ofCells) return null;
   const scale = display.color && mesh.scale(display.color);
-  return joinSoups(display.isosurfaces!.values.map((value) => isosurface({...mesh, kept}, levels, value, scale)));
+  return joinSoups(
+    display.isosurfaces!.values.map((value) => isosurface({...mesh, kept}, levels, value, scale)),
+  );
 }

@@ -1,11 +1,16 @@
-// Positions and field blocks: each begins with a Draco bit stream, a point cloud in sequential encoding with one generic attribute of 32-bit integers
-// and no prediction (codec/FORMAT.md, "Value blocks"). Only such streams occur, so this decodes them and nothing else (Draco's bitstream
-// specification, 2.2): Draco's own decoder weighs a fifth of the whole viewer. The tests compare both.
+// Positions and field blocks: each begins with a Draco bit stream, a point cloud in sequential
+// encoding with one generic attribute of 32-bit integers and no prediction (codec/FORMAT.md, "Value
+// blocks"). Only such streams occur, so this decodes them and nothing else (Draco's bitstream
+// specification, 2.2): Draco's own decoder weighs a fifth of the whole viewer. The tests compare
+// both.
 
 import {QtetError} from './errors';
 
 export interface ValueDecoder {
-  /** `count` tuples of `components` integers. Throws `bad-codec` when the bytes are no Draco stream of this kind, `bad-value` when they hold anything else. */
+  /**
+   * `count` tuples of `components` integers. Throws `bad-codec` when the bytes are no Draco stream
+   * of this kind, `bad-value` when they hold anything else.
+   */
   decode(bytes: Uint8Array, count: number, components: number): Int32Array;
 }
 
@@ -17,7 +22,7 @@ const kTagged = 0;
 const kRaw = 1;
 /** Bits of the alphabet of bit lengths that tagged symbols use. */
 const kTagBits = 5;
-const kMostSymbolBits = 18;
+const kMaxSymbolBits = 18;
 const kMetadataFlag = 0x8000;
 
 export const kDraco: ValueDecoder = {
@@ -31,21 +36,27 @@ export const kDraco: ValueDecoder = {
 };
 
 function readHeader(reader: Reader, count: number, components: number): void {
-  if (String.fromCharCode(reader.u8(), reader.u8(), reader.u8(), reader.u8(), reader.u8()) !== 'DRACO') throw refused('it is no Draco stream');
+  if (
+    String.fromCharCode(reader.u8(), reader.u8(), reader.u8(), reader.u8(), reader.u8()) !== 'DRACO'
+  )
+    throw refused('it is no Draco stream');
   const major = reader.u8();
   reader.u8();
   const cloud = reader.u8() === 0;
   const sequential = reader.u8() === 0;
   const flags = reader.u8() | (reader.u8() << 8);
-  if (major !== 2 || !cloud || flags & kMetadataFlag) throw refused('it is not a point cloud of Draco 2');
+  if (major !== 2 || !cloud || flags & kMetadataFlag)
+    throw refused('it is not a point cloud of Draco 2');
   // A constant costs no bits, so nothing but this count bounds what decoding allocates.
-  if (!sequential || reader.u32() !== count || reader.u8() !== 1 || reader.varint() !== 1) throw otherValues();
+  if (!sequential || reader.u32() !== count || reader.u8() !== 1 || reader.varint() !== 1)
+    throw otherValues();
   const type = reader.u8();
   const dataType = reader.u8();
   if (type !== kGeneric || dataType !== kInt32 || reader.u8() !== components) throw otherValues();
-  reader.u8();      // normalized: of no meaning for integers
-  reader.varint();  // the attribute's id
-  if (reader.u8() !== kIntegerDecoder || reader.i8() !== kNoPrediction) throw refused('it predicts its values');
+  reader.u8(); // normalized: of no meaning for integers
+  reader.varint(); // the attribute's id
+  if (reader.u8() !== kIntegerDecoder || reader.i8() !== kNoPrediction)
+    throw refused('it predicts its values');
 }
 
 function readIntegers(reader: Reader, count: number, components: number): Int32Array {
@@ -53,7 +64,8 @@ function readIntegers(reader: Reader, count: number, components: number): Int32A
   if (reader.u8() === 0) {
     const size = reader.u8();
     if (size < 1 || size > 4) throw refused('its integers have an impossible size');
-    for (let i = 0; i < count; ++i) for (let b = 0; b < size; ++b) out[i] = out[i]! | (reader.u8() << (8 * b));
+    for (let i = 0; i < count; ++i)
+      for (let b = 0; b < size; ++b) out[i] = out[i]! | (reader.u8() << (8 * b));
     return out;
   }
   const scheme = reader.u8();
@@ -75,7 +87,7 @@ function readTagged(reader: Reader, out: Int32Array, components: number): void {
 
 function readRaw(reader: Reader, out: Int32Array): void {
   const bits = reader.u8();
-  if (bits < 1 || bits > kMostSymbolBits) throw refused('its alphabet has an impossible size');
+  if (bits < 1 || bits > kMaxSymbolBits) throw refused('its alphabet has an impossible size');
   const symbols = new SymbolReader(reader, bits);
   for (let i = 0; i < out.length; ++i) out[i] = symbols.next();
 }
@@ -111,10 +123,14 @@ class SymbolReader {
   }
 
   next(): number {
-    while (this.state < this.base && this.at > 0) this.state = this.state * 256 + this.bytes[--this.at]!;
+    while (this.state < this.base && this.at > 0)
+      this.state = this.state * 256 + this.bytes[--this.at]!;
     const rest = this.state & (this.table.length - 1);
     const symbol = this.table[rest]!;
-    this.state = (this.state >>> this.precisionBits) * this.probabilities[symbol]! + rest - this.starts[symbol]!;
+    this.state =
+      (this.state >>> this.precisionBits) * this.probabilities[symbol]! +
+      rest -
+      this.starts[symbol]!;
     return symbol;
   }
 
@@ -138,7 +154,8 @@ function readProbabilities(reader: Reader): Uint32Array {
   for (let i = 0; i < count; ++i) {
     const first = reader.u8();
     const extra = first & 3;
-    if (extra === 3) {  // a run of symbols that do not occur
+    if (extra === 3) {
+      // a run of symbols that do not occur
       i += first >> 2;
       if (i >= count) throw refused('its alphabet ends within a run');
       continue;
@@ -154,10 +171,18 @@ class Reader {
   private at = 0;
   constructor(private readonly bytes: Uint8Array) {}
 
-  get remaining(): number { return this.bytes.length - this.at; }
-  u8(): number { return this.take(1)[0]!; }
-  i8(): number { return (this.u8() << 24) >> 24; }
-  u32(): number { return (this.u8() | (this.u8() << 8) | (this.u8() << 16) | (this.u8() << 24)) >>> 0; }
+  get remaining(): number {
+    return this.bytes.length - this.at;
+  }
+  u8(): number {
+    return this.take(1)[0]!;
+  }
+  i8(): number {
+    return (this.u8() << 24) >> 24;
+  }
+  u32(): number {
+    return (this.u8() | (this.u8() << 8) | (this.u8() << 16) | (this.u8() << 24)) >>> 0;
+  }
   varint(): number {
     let value = 0;
     for (let shift = 0; shift < 35; shift += 7) {
@@ -197,7 +222,10 @@ class BitReader {
 }
 
 function otherValues(): QtetError {
-  return new QtetError('bad-value', 'A block of the mesh holds other values than its chunk table says.');
+  return new QtetError(
+    'bad-value',
+    'A block of the mesh holds other values than its chunk table says.',
+  );
 }
 
 function refused(why: string): QtetError {

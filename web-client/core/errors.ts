@@ -1,7 +1,10 @@
 // What goes wrong, as one type: a code to branch on and a text for people.
 
 export class QtetError extends Error {
-  constructor(readonly code: string, message: string) {
+  constructor(
+    readonly code: string,
+    message: string,
+  ) {
     super(message);
     this.name = 'QtetError';
   }

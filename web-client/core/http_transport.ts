@@ -1,19 +1,26 @@
-// A log over plain HTTP: some requests under way at a time, delivered in order as the frames of proto/PROTOCOL.md, no more than the credit allows.
+// A log over plain HTTP: some requests under way at a time, delivered in order as the frames of
+// proto/PROTOCOL.md, no more than the credit allows.
 
+import {kFirstFieldPart, kHeadPart, kStructurePart} from './parts';
 import {reconnectDelayMs} from './backoff';
 import type {BlockSource, Piece} from './block_source';
 import {errorCode, errorText, QtetError} from './errors';
 import type {Goal} from './goal';
-import {kFirstFieldPart, kHeadPart, kStructurePart, type ChunkRange, type OpenRequest} from './protocol';
-import {inOrder, kNoWishes, type Wishes} from './wishes';
+import type {ChunkRange, OpenRequest} from './protocol';
+import {inOrder, kNoViewRequest, type ViewRequest} from './view_request';
 import type {LogTable, Transport, TransportHandlers} from './transport';
 
-/** Under way at a time: browsers give a host six connections over HTTP/1.1, and others want some. */
+/**
+ * Under way at a time: browsers give a host six connections over HTTP/1.1, and others want some.
+ */
 const kAhead = 3;
-/** A request is about what the line brings in so many seconds, within these bounds: few requests, and steady progress. */
+/**
+ * A request is about what the line brings in so many seconds, within these bounds: few requests,
+ * and steady progress.
+ */
 const kRequestSeconds = 0.4;
 const kLeastBytes = 32 << 10;
-const kMostBytes = 512 << 10;
+const kMaxBytes = 512 << 10;
 
 export class HttpTransport implements Transport {
   isConnected = false;
@@ -31,8 +38,12 @@ export class HttpTransport implements Transport {
   private arrived = {at: 0, bytes: 0};
 
   /** `makeSource` is called anew when the log was replaced. */
-  constructor(private readonly makeSource: () => BlockSource, private readonly table: LogTable, private readonly handlers: TransportHandlers,
-              private readonly random: () => number = Math.random) {
+  constructor(
+    private readonly makeSource: () => BlockSource,
+    private readonly table: LogTable,
+    private readonly handlers: TransportHandlers,
+    private readonly random: () => number = Math.random,
+  ) {
     this.source = makeSource();
   }
 
@@ -55,9 +66,15 @@ export class HttpTransport implements Transport {
     });
   }
 
-  stop(): void { this.abort.abort(); }
-  pause(): void { this.stop(); }
-  resume(): boolean { return false; }
+  stop(): void {
+    this.abort.abort();
+  }
+  pause(): void {
+    this.stop();
+  }
+  resume(): boolean {
+    return false;
+  }
 
   aim(goal: Goal | null): void {
     this.goal = goal;
@@ -70,10 +87,12 @@ export class HttpTransport implements Transport {
   }
 
   /** What is under way comes first all the same. */
-  look(wishes: Wishes): void {
+  look(view: ViewRequest): void {
     if (!this.table.isKnown || this.table.packets.length === 0) return;
-    const rank = new Map(chunkOrder(this.table, wishes).map((chunk, i) => [chunk, i]));
-    this.pieces.sort((a, b) => rank.get(a.chunk)! - rank.get(b.chunk)! || a.firstPart - b.firstPart);
+    const rank = new Map(chunkOrder(this.table, view).map((chunk, i) => [chunk, i]));
+    this.pieces.sort(
+      (a, b) => rank.get(a.chunk)! - rank.get(b.chunk)! || a.firstPart - b.firstPart,
+    );
   }
 
   disconnect(): void {
@@ -88,27 +107,45 @@ export class HttpTransport implements Transport {
       this.attempt = 0;
       this.handlers.frame({stream, ...piece, payload});
     };
-    // The head also where the table is known from another transport: only so the source learns which log this is.
+    // The head also where the table is known from another transport: only so the source learns
+    // which log this is.
     const head = await this.source.head(signal);
-    if (signal.aborted) return;
+    const isOver = (): boolean => signal.aborted;
+    if (isOver()) return;
     const {digest} = this.source;
-    if (request.digest && digest && request.digest !== digest) throw new QtetError('log-changed', 'Another mesh stands under this name now.');
-    this.handlers.message({type: 'opened', stream, mesh: request.mesh, digest, bytes: 0, planned: 0});
+    if (request.digest && digest && request.digest !== digest)
+      throw new QtetError('log-changed', 'Another mesh stands under this name now.');
+    this.handlers.message({
+      type: 'opened',
+      stream,
+      mesh: request.mesh,
+      digest,
+      bytes: 0,
+      planned: 0,
+    });
     if (!this.table.isKnown) deliver({chunk: 0, firstPart: kHeadPart, parts: 0}, head);
-    if (signal.aborted) return;  // the manifest told the session to ask for something else
+    if (isOver()) return; // the manifest told the session to ask for something else
     this.pieces = piecesOf(this.table, request);
     await this.fetchAll(deliver, signal);
-    if (!signal.aborted) this.handlers.message({type: 'done', stream});
+    if (!isOver()) this.handlers.message({type: 'done', stream});
   }
 
-  private async fetchAll(deliver: (piece: Piece, payload: Uint8Array) => void, signal: AbortSignal): Promise<void> {
+  private async fetchAll(
+    deliver: (piece: Piece, payload: Uint8Array) => void,
+    signal: AbortSignal,
+  ): Promise<void> {
     const ahead: {pieces: Piece[]; size: number; payloads: Promise<Uint8Array[]>}[] = [];
+    const isOver = (): boolean => signal.aborted;
     let underWay = 0;
     for (;;) {
-      for (let near = this.wantedNext(); near.length > 0 && ahead.length < kAhead && underWay < this.credit; near = this.wantedNext()) {
+      for (
+        let near = this.wantedNext();
+        near.length > 0 && ahead.length < kAhead && underWay < this.credit;
+        near = this.wantedNext()
+      ) {
         const wanted = this.pieces.splice(0, this.source.together(near, this.requestBytes));
         const payloads = this.source.fetch(wanted, signal);
-        payloads.catch(() => undefined);  // it is awaited below, in its turn
+        payloads.catch(() => undefined); // it is awaited below, in its turn
         const size = wanted.reduce((sum, piece) => sum + sizeOf(this.table, piece), 0);
         ahead.push({pieces: wanted, size, payloads});
         underWay += size;
@@ -116,21 +153,18 @@ export class HttpTransport implements Transport {
       const next = ahead.shift();
       if (!next && this.pieces.length === 0) return;
       if (!next) await new Promise<void>((resolve) => void (this.creditCame = resolve));
-      if (signal.aborted) return;
+      if (isOver()) return;
       if (!next) continue;
       const payloads = await next.payloads;
       underWay -= next.size;
       this.measure(next.size);
-      for (const [i, piece] of next.pieces.entries()) {
-        if (signal.aborted) return;
-        deliver(piece, payloads[i]!);
-      }
+      for (const [i, piece] of next.pieces.entries()) if (!isOver()) deliver(piece, payloads[i]!);
     }
   }
 
   /** The next pieces on this side of the goal. */
   private wantedNext(): Piece[] {
-    const near = this.pieces.slice(0, kMostPieces);
+    const near = this.pieces.slice(0, kMaxPieces);
     const {goal} = this;
     return goal ? near.filter(({chunk}) => chunk < goal.chunks) : near;
   }
@@ -141,7 +175,10 @@ export class HttpTransport implements Transport {
     const seconds = (now - this.arrived.at) / 1000;
     if (this.arrived.at > 0 && seconds > 0) {
       const fitting = (bytes / seconds) * kRequestSeconds;
-      this.requestBytes = Math.min(kMostBytes, Math.max(kLeastBytes, (this.requestBytes + fitting) / 2));
+      this.requestBytes = Math.min(
+        kMaxBytes,
+        Math.max(kLeastBytes, (this.requestBytes + fitting) / 2),
+      );
     }
     this.arrived = {at: now, bytes};
   }
@@ -156,7 +193,9 @@ export class HttpTransport implements Transport {
       return;
     }
     if (code !== 'network') {
-      this.handlers.failed(thrown instanceof QtetError ? thrown : new QtetError('internal', errorText(thrown)));
+      this.handlers.failed(
+        thrown instanceof QtetError ? thrown : new QtetError('internal', errorText(thrown)),
+      );
       return;
     }
     const delayMs = reconnectDelayMs(this.attempt, this.random());
@@ -167,28 +206,40 @@ export class HttpTransport implements Transport {
 }
 
 /** More are never asked for by one request. */
-const kMostPieces = 256;
+const kMaxPieces = 256;
 
-/** What `request` lacks, in the order of proto/PROTOCOL.md: blocks that fields lag behind by, then chunk by chunk; of regions the head, then the packets
- *  as they are wished for. */
-export function piecesOf(table: LogTable, {fields, have, wishes}: Pick<OpenRequest, 'fields' | 'have' | 'wishes'>): Piece[] {
-  const wanted = fields.map((key) => ({field: table.fieldKeys.indexOf(key), here: have.fields[key] ?? 0})).filter(({field}) => field >= 0);
+/**
+ * What `request` lacks, in the order of proto/PROTOCOL.md: blocks that fields lag behind by, then
+ * chunk by chunk; of regions the head, then the packets in the order of the view request.
+ */
+export function piecesOf(
+  table: LogTable,
+  {fields, have, view}: Pick<OpenRequest, 'fields' | 'have' | 'view'>,
+): Piece[] {
+  const wanted = fields
+    .map((key) => ({field: table.fieldKeys.indexOf(key), here: have.fields[key] ?? 0}))
+    .filter(({field}) => field >= 0);
   const pieces: Piece[] = [];
-  for (const chunk of chunkOrder(table, wishes)) {
+  for (const chunk of chunkOrder(table, view)) {
     if (!isHere(have, chunk)) pieces.push({chunk, firstPart: kStructurePart, parts: 2});
-    for (const {field, here} of wanted) if (!isHere(here, chunk)) pieces.push({chunk, firstPart: kFirstFieldPart + field, parts: 1});
+    for (const {field, here} of wanted)
+      if (!isHere(here, chunk)) pieces.push({chunk, firstPart: kFirstFieldPart + field, parts: 1});
   }
   return pieces;
 }
 
-function chunkOrder({chunkCount, packets, lattice}: LogTable, wishes = kNoWishes): number[] {
+function chunkOrder({chunkCount, packets, lattice}: LogTable, view = kNoViewRequest): number[] {
   const order = Array.from({length: chunkCount - packets.length}, (_, chunk) => chunk);
-  return packets.length > 0 ? [...order, ...inOrder(packets, wishes, lattice!.size).map(({chunk}) => chunk)] : order;
+  return packets.length > 0
+    ? [...order, ...inOrder(packets, view, lattice!.size).map(({chunk}) => chunk)]
+    : order;
 }
 
 function isHere(have: number | {chunks: number; ranges?: ChunkRange[]}, chunk: number): boolean {
   if (typeof have === 'number') return chunk < have;
-  return chunk < have.chunks || (have.ranges ?? []).some(([first, end]) => first <= chunk && chunk < end);
+  return (
+    chunk < have.chunks || (have.ranges ?? []).some(([first, end]) => first <= chunk && chunk < end)
+  );
 }
 
 function sizeOf(table: LogTable, {chunk, firstPart, parts}: Piece): number {

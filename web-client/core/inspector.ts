@@ -1,7 +1,17 @@
-// What lies under the pointer, and a field along a line: asked by the page, answered from the mesh as it stands.
+// What lies under the pointer, and a field along a line: asked by the page, answered from the mesh
+// as it stands.
 
 import type {Assembler} from './assembler';
-import {along, barycentric, below, dot, stretches, type Ray, type Stretch, type Vector} from './cell_ray';
+import {
+  along,
+  barycentric,
+  below,
+  dot,
+  stretches,
+  type Ray,
+  type Stretch,
+  type Vector,
+} from './cell_ray';
 import {cuttingPlanes, keptCells, type Display, type MeshNow} from './display';
 import {FieldScale, kMagnitude, scalarRange} from './field_scale';
 import type {FieldInfo} from './manifest';
@@ -25,7 +35,10 @@ export interface Pick {
   fields: FieldValue[];
 }
 
-/** A polyline: positions along the line in the mesh's unit, ascending, and the coloured value in its own; NaN between two cells that do not touch. */
+/**
+ * A polyline: positions along the line in the mesh's unit, ascending, and the coloured value in its
+ * own; NaN between two cells that do not touch.
+ */
 export interface Probe {
   at: number[];
   values: number[];
@@ -35,7 +48,10 @@ export interface Probe {
 export class Inspector {
   constructor(private readonly assembler: Assembler) {}
 
-  /** The first thing that `ray` (lattice coordinates) meets of what is shown; null when it meets nothing. */
+  /**
+   * The first thing that `ray` (lattice coordinates) meets of what is shown; null when it meets
+   * nothing.
+   */
   pick(ray: Ray, display: Display): Pick | null {
     const mesh = meshNow(this.assembler);
     if (!mesh) return null;
@@ -58,11 +74,14 @@ export class Inspector {
     const scale = display.color && mesh.scale(display.color);
     const probe: Probe = {at: [], values: [], length};
     if (!scale || length === 0) return probe;
-    const found = stretches({...mesh, kept: keptCells(mesh, display)}, ray, 0, 1).sort((a, b) => a.from - b.from);
+    const found = stretches({...mesh, kept: keptCells(mesh, display)}, ray, 0, 1).sort(
+      (a, b) => a.from - b.from,
+    );
     let end = -1;
     for (const {cell, from: first, to: last} of found) {
       if (end >= 0 && first > end + 1e-6) push(probe, end * length, NaN);
-      for (const t of [first, last]) push(probe, t * length, valueAt(mesh, scale, cell, along(ray, t)));
+      for (const t of [first, last])
+        push(probe, t * length, valueAt(mesh, scale, cell, along(ray, t)));
       end = last;
     }
     return this.unscaled(probe, display);
@@ -82,9 +101,19 @@ export class Inspector {
     const fields: FieldValue[] = [];
     manifest!.fields.forEach((info, field) => {
       const values = codec.field(field, info.components);
-      if (values) fields.push({field, values: components(info, values, info.association === 'cell' ? [cell] : corners, shares)});
+      if (values)
+        fields.push({
+          field,
+          values: components(info, values, info.association === 'cell' ? [cell] : corners, shares),
+        });
     });
-    return {cell, corners, lattice, position: lattice.map((x, axis) => origin[axis]! + step * x) as Vector, fields};
+    return {
+      cell,
+      corners,
+      lattice,
+      position: lattice.map((x, axis) => origin[axis]! + step * x) as Vector,
+      fields,
+    };
   }
 }
 
@@ -106,7 +135,8 @@ function firstSeen(mesh: MeshNow, ray: Ray, stretch: Stretch, display: Display):
   const last = valueAt(mesh, levels, stretch.cell, along(ray, visible.to));
   for (const value of display.isosurfaces!.values) {
     const share = (value - first) / (last - first);
-    if (share >= 0 && share <= 1) t = Math.min(t, visible.from + share * (visible.to - visible.from));
+    if (share >= 0 && share <= 1)
+      t = Math.min(t, visible.from + share * (visible.to - visible.from));
   }
   return t;
 }
@@ -114,15 +144,26 @@ function firstSeen(mesh: MeshNow, ray: Ray, stretch: Stretch, display: Display):
 function valueAt(mesh: Cells, scale: FieldScale, cell: number, point: Vector): number {
   if (scale.ofCells) return scale.at(cell);
   const shares = barycentric(mesh, cell, point);
-  return shares.reduce((sum, share, i) => sum + share * scale.at(mesh.tetrahedra[4 * cell + i]!), 0);
+  return shares.reduce(
+    (sum, share, i) => sum + share * scale.at(mesh.tetrahedra[4 * cell + i]!),
+    0,
+  );
 }
 
 /** `tuples`: one cell, or the four corners that `shares` weigh. */
-function components(info: FieldInfo, values: Int32Array, tuples: number[], shares: number[]): number[] {
+function components(
+  info: FieldInfo,
+  values: Int32Array,
+  tuples: number[],
+  shares: number[],
+): number[] {
   return Array.from({length: info.components}, (_, c) => {
     const scale = new FieldScale(values, info, c);
     const [low, high] = scalarRange(info, info.components > 1 ? c : kMagnitude);
-    const value = tuples.length === 1 ? scale.at(tuples[0]!) : tuples.reduce((sum, tuple, i) => sum + shares[i]! * scale.at(tuple), 0);
+    const value =
+      tuples.length === 1
+        ? scale.at(tuples[0]!)
+        : tuples.reduce((sum, tuple, i) => sum + shares[i]! * scale.at(tuple), 0);
     return low + value * (high - low);
   });
 }

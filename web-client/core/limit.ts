@@ -1,32 +1,53 @@
-// How far to refine: all the way, or until so many cells, so many bytes, or so small an error are reached.
+// How far to refine: all the way, or until so many cells, so many bytes, or so small an error are
+// reached.
 
 import type {LevelInfo} from './manifest';
 import type {Statistics} from './statistics';
 
 export type Limit =
   | {kind: 'full'}
-  /** tetrahedra; bytes of the log; `error`: the known rms error of the fields that are shown over their range, or of the boundary over the diagonal. */
+  /**
+   * tetrahedra; bytes of the log; `error`: the known rms error of the fields that are shown over
+   * their range, or of the boundary over the diagonal.
+   */
   | {kind: 'cells' | 'bytes' | 'error'; value: number};
 
 export const kFull: Limit = {kind: 'full'};
 
-/** The known error of a level with these fields, the largest of theirs, or of the boundary where there are none; null: the log does not tell. */
-export function errorOfLevel(level: LevelInfo | undefined, fields: readonly number[]): number | null {
+/**
+ * The known error of a level with these fields, the largest of theirs, or of the boundary where
+ * there are none; null: the log does not tell.
+ */
+export function errorOfLevel(
+  level: LevelInfo | undefined,
+  fields: readonly number[],
+): number | null {
   if (!level?.error) return null;
   if (fields.length === 0) return level.error.toOriginal.mean;
   return Math.max(...fields.map((field) => level.error!.fields[field]?.mean ?? 0));
 }
 
-export function limitReached(limit: Limit, statistics: Pick<Statistics, 'tetrahedra' | 'bytes'>, error: number | null): boolean {
+export function limitReached(
+  limit: Limit,
+  statistics: Pick<Statistics, 'tetrahedra' | 'bytes'>,
+  error: number | null,
+): boolean {
   switch (limit.kind) {
-    case 'full': return false;
-    case 'cells': return statistics.tetrahedra >= limit.value;
-    case 'bytes': return statistics.bytes >= limit.value;
-    case 'error': return error !== null && error <= limit.value;
+    case 'full':
+      return false;
+    case 'cells':
+      return statistics.tetrahedra >= limit.value;
+    case 'bytes':
+      return statistics.bytes >= limit.value;
+    case 'error':
+      return error !== null && error <= limit.value;
   }
 }
 
-/** As an attribute tells it: "full", "cells:20000", "bytes:100000", "error:0.01", "1%"; null for anything else. */
+/**
+ * As an attribute tells it: "full", "cells:20000", "bytes:100000", "error:0.01", "1%"; null for
+ * anything else.
+ */
 export function parseLimit(text: string | null): Limit | null {
   if (text === null || text === 'full' || text === '') return kFull;
   const match = /^(?:(cells|bytes|error):)?(\d+(?:\.\d*)?(?:e[+-]?\d+)?)(%?)$/i.exec(text.trim());

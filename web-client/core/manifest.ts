@@ -19,7 +19,10 @@ export interface Spread {
   max: number;
 }
 
-/** How far a level is from the last one: distances over the diagonal, fields over their range; never understated. */
+/**
+ * How far a level is from the last one: distances over the diagonal, fields over their range; never
+ * understated.
+ */
 export interface LevelError {
   toLevel: Spread;
   toOriginal: Spread;
@@ -43,10 +46,17 @@ export interface Manifest {
   levels: LevelInfo[];
 }
 
-/** What a server calls each field: its name; of two with one name, `cell:NAME` is that of the cells (proto/PROTOCOL.md). */
+/**
+ * What a server calls each field: its name; of two with one name, `cell:NAME` is that of the cells
+ * (proto/PROTOCOL.md).
+ */
 export function fieldKeys(fields: readonly FieldInfo[]): string[] {
-  const points = new Set(fields.filter(({association}) => association === 'point').map(({name}) => name));
-  return fields.map(({association, name}) => (association === 'cell' && points.has(name) ? `cell:${name}` : name));
+  const points = new Set(
+    fields.filter(({association}) => association === 'point').map(({name}) => name),
+  );
+  return fields.map(({association, name}) =>
+    association === 'cell' && points.has(name) ? `cell:${name}` : name,
+  );
 }
 
 /** Places in the front of a log (codec/FORMAT.md, "Header", "Chunk table"). */
@@ -54,8 +64,11 @@ const kHeaderBytes = 64;
 const kPositionBitsAt = 13;
 const kManifestBytesAt = 24;
 const kFieldsAt = 44;
-/** Beside a field's association, and beside its type: values may be missing. Which ones, FieldScale tells. */
-const kGapsFlag = 128;
+/**
+ * Beside a field's association, and beside its type: values may be missing. Which ones, FieldScale
+ * tells.
+ */
+const kMissingFlag = 128;
 const kOfCells = 1;
 /** codec/FORMAT.md, "Manifest" and "Level columns". */
 const kMaxNameBytes = 256;
@@ -66,37 +79,60 @@ const kVolumeFigure = 1e6;
 const kErrorFigureDigits = 14;
 
 /**
- * REQUIRES: a head that the codec has opened, so that its counts and checksums are known to be right; `levelColumns` is that codec's.
- * Throws `truncated`, `bad-value`, and what `levelColumns` throws.
+ * REQUIRES: a head that the codec has opened, so that its counts and checksums are known to be
+ * right; `levelColumns` is that codec's. Throws `truncated`, `bad-value`, and what `levelColumns`
+ * throws.
  */
-export function readManifest(head: Uint8Array, levelColumns: (bytes: Uint8Array, columns: number) => Uint32Array): Manifest {
+export function readManifest(
+  head: Uint8Array,
+  levelColumns: (bytes: Uint8Array, columns: number) => Uint32Array,
+): Manifest {
   const header = new DataView(head.buffer, head.byteOffset, head.byteLength);
   const tableAt = kHeaderBytes + header.getUint32(kManifestBytesAt, true);
-  const shapes = Array.from({length: header.getUint32(kFieldsAt, true)}, (_, f) =>
-    ({components: head[tableAt + 2 * f]!, association: head[tableAt + 2 * f + 1]!}));
+  const shapes = Array.from({length: header.getUint32(kFieldsAt, true)}, (_, f) => ({
+    components: head[tableAt + 2 * f]!,
+    association: head[tableAt + 2 * f + 1]!,
+  }));
   const reader = new ManifestReader(head.subarray(kHeaderBytes, tableAt));
-  reader.text();  // which program wrote it
+  reader.text(); // which program wrote it
   const source = reader.text();
-  const lattice = {bits: head[kPositionBitsAt]!, step: reader.step(), origin: reader.numbers(3) as [number, number, number]};
-  const fields = shapes.map(({components, association}) => readField(reader, components, association));
-  if (new Set(fields.map(({association, name}) => `${association}:${name}`)).size < fields.length) throw damaged('has a field twice');
+  const lattice = {
+    bits: head[kPositionBitsAt]!,
+    step: reader.step(),
+    origin: reader.numbers(3) as [number, number, number],
+  };
+  const fields = shapes.map(({components, association}) =>
+    readField(reader, components, association),
+  );
+  if (new Set(fields.map(({association, name}) => `${association}:${name}`)).size < fields.length)
+    throw damaged('has a field twice');
   const hasErrors = reader.byte();
   if (hasErrors > 1) throw damaged('tells of errors in a way that this viewer does not know');
   const columns = kCountColumns + (hasErrors ? 1 + 2 * (2 + fields.length) : 0);
   return {source, lattice, fields, levels: levelsOf(levelColumns(reader.rest(), columns), columns)};
 }
 
-function readField(reader: ManifestReader, components: number, associationAndGaps: number): FieldInfo {
-  const association = (associationAndGaps & ~kGapsFlag) === kOfCells ? 'cell' : 'point';
+function readField(
+  reader: ManifestReader,
+  components: number,
+  associationAndMissing: number,
+): FieldInfo {
+  const association = (associationAndMissing & ~kMissingFlag) === kOfCells ? 'cell' : 'point';
   const name = reader.text();
   if (name === '') throw damaged('has a field without a name');
   const type = reader.byte();
-  if ((type & kGapsFlag) !== (associationAndGaps & kGapsFlag)) throw damaged('contradicts itself in whether a field has gaps');
-  if ((type & ~kGapsFlag) >= kFieldTypes) throw damaged('has a field of an unknown type');
+  if ((type & kMissingFlag) !== (associationAndMissing & kMissingFlag))
+    throw damaged('contradicts itself in whether a field has missing values');
+  if ((type & ~kMissingFlag) >= kFieldTypes) throw damaged('has a field of an unknown type');
   const bits = reader.byte();
   if (bits < 1 || bits > kMaxFieldBits) throw damaged(`has a field of ${bits} bits`);
   return {
-    name, components, association, step: reader.step(), minimum: reader.numbers(components), range: reader.numbers(2) as [number, number],
+    name,
+    components,
+    association,
+    step: reader.step(),
+    minimum: reader.numbers(components),
+    range: reader.numbers(2) as [number, number],
   };
 }
 
@@ -107,17 +143,28 @@ function levelsOf(numbers: Uint32Array, columns: number): LevelInfo[] {
     const info: LevelInfo = {level, tetrahedra: at(0), vertices: at(1), boundaryTriangles: at(2)};
     if (columns === kCountColumns) return info;
     const pairs: Spread[] = [];
-    for (let column = kCountColumns + 1; column < columns; column += 2) pairs.push({mean: errorOf(at(column)), max: errorOf(at(column + 1))});
+    for (let column = kCountColumns + 1; column < columns; column += 2)
+      pairs.push({mean: errorOf(at(column)), max: errorOf(at(column + 1))});
     const [toLevel, toOriginal, ...fields] = pairs;
-    info.error = {toLevel: toLevel!, toOriginal: toOriginal!, volumeKept: at(kCountColumns) / kVolumeFigure, fields};
+    info.error = {
+      toLevel: toLevel!,
+      toOriginal: toOriginal!,
+      volumeKept: at(kCountColumns) / kVolumeFigure,
+      fields,
+    };
     return info;
   });
 }
 
-/** Three significant digits as an integer (codec/error_figure.h); read as a decimal, so that it is rounded once. */
+/**
+ * Three significant digits as an integer (codec/error_figure.h); read as a decimal, so that it is
+ * rounded once.
+ */
 export function errorOf(figure: number): number {
   if (figure === 0) return 0;
-  return Number(`${100 + (figure - 1) % 900}e${Math.floor((figure - 1) / 900) - kErrorFigureDigits}`);
+  return Number(
+    `${100 + ((figure - 1) % 900)}e${Math.floor((figure - 1) / 900) - kErrorFigureDigits}`,
+  );
 }
 
 class ManifestReader {
@@ -128,19 +175,24 @@ class ManifestReader {
     this.view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   }
 
-  byte(): number { return this.view.getUint8(this.take(1)); }
+  byte(): number {
+    return this.view.getUint8(this.take(1));
+  }
 
   text(): string {
     const low = this.byte();
     const high = low < 128 ? 0 : this.byte();
-    if (low >= 128 && high === 0) throw damaged('has a length that is not written in its shortest form');
+    if (low >= 128 && high === 0)
+      throw damaged('has a length that is not written in its shortest form');
     const size = (low & 127) + 128 * high;
     if (size > kMaxNameBytes) throw damaged('has a name that is too long');
     const from = this.take(size);
     return new TextDecoder().decode(this.bytes.subarray(from, from + size));
   }
 
-  numbers(count: number): number[] { return Array.from({length: count}, () => this.number()); }
+  numbers(count: number): number[] {
+    return Array.from({length: count}, () => this.number());
+  }
 
   step(): number {
     const step = this.number();
@@ -148,7 +200,9 @@ class ManifestReader {
     return step;
   }
 
-  rest(): Uint8Array { return this.bytes.subarray(this.at); }
+  rest(): Uint8Array {
+    return this.bytes.subarray(this.at);
+  }
 
   private number(): number {
     const value = this.view.getFloat64(this.take(8), true);
@@ -157,7 +211,8 @@ class ManifestReader {
   }
 
   private take(count: number): number {
-    if (this.at + count > this.bytes.length) throw new QtetError('truncated', "The mesh's description ends too early.");
+    if (this.at + count > this.bytes.length)
+      throw new QtetError('truncated', "The mesh's description ends too early.");
     this.at += count;
     return this.at - count;
   }

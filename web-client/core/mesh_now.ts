@@ -8,7 +8,9 @@ import {FieldScale} from './field_scale';
 export function meshNow({codec, manifest}: Assembler): MeshNow | null {
   if (!manifest || codec.chunksApplied === 0) return null;
   return {
-    points: codec.points(), tetrahedra: codec.tetrahedra(), boundary: codec.boundary(),
+    points: codec.points(),
+    tetrahedra: codec.tetrahedra(),
+    boundary: codec.boundary(),
     scale: ({field, component}) => {
       const info = manifest.fields[field];
       const values = info && codec.field(field, info.components);

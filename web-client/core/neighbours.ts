@@ -3,35 +3,39 @@
 const kNone = -1;
 
 /** A place in the codec's arrays whose cell has not come yet. */
-export function isHole(tetrahedra: Uint32Array, cell: number): boolean { return tetrahedra[4 * cell] === tetrahedra[4 * cell + 1]; }
+export function isHole(tetrahedra: Uint32Array, cell: number): boolean {
+  return tetrahedra[4 * cell] === tetrahedra[4 * cell + 1];
+}
 
-/** Neighbours across the faces opposite to the four corners, 4 a cell; -1: none. Holes have none and are none's. */
+/**
+ * Neighbours across the faces opposite to the four corners, 4 a cell; -1: none. Holes have none and
+ * are none's.
+ */
 export function neighboursOf(tetrahedra: Uint32Array): Int32Array {
   const neighbours = new Int32Array(tetrahedra.length).fill(kNone);
-  // Open addressing, at most half full; a slot holds 4 * cell + corner of a face whose other side has not come yet.
+  // Open addressing, at most half full; a slot holds 4 * cell + corner of a face whose other side
+  // has not come yet.
   const mask = 2 ** Math.ceil(Math.log2(4 * tetrahedra.length + 2)) - 1;
   const slots = new Int32Array(mask + 1).fill(kNone);
-  for (let cell = 0; 4 * cell < tetrahedra.length; ++cell) {
-    if (isHole(tetrahedra, cell)) continue;
-    for (let corner = 0; corner < 4; ++corner) {
-      const face = 4 * cell + corner;
-      let slot = hashOf(tetrahedra, face) & mask;
-      for (; slots[slot] !== kNone; slot = (slot + 1) & mask) {
-        const other = slots[slot]!;
-        if (neighbours[other] !== kNone || !sameFace(tetrahedra, face, other)) continue;
-        neighbours[face] = other >> 2;
-        neighbours[other] = cell;
-        break;
-      }
-      if (neighbours[face] === kNone) slots[slot] = face;
+  for (let face = 0; face < tetrahedra.length; ++face) {
+    if (isHole(tetrahedra, face >> 2)) continue;
+    let slot = hashOf(tetrahedra, face) & mask;
+    for (; slots[slot] !== kNone; slot = (slot + 1) & mask) {
+      const other = slots[slot]!;
+      if (neighbours[other] !== kNone || !sameFace(tetrahedra, face, other)) continue;
+      neighbours[face] = other >> 2;
+      neighbours[other] = face >> 2;
+      break;
     }
+    if (neighbours[face] === kNone) slots[slot] = face;
   }
   return neighbours;
 }
 
 /** The same for the three corners in any order. */
 function hashOf(tetrahedra: Uint32Array, face: number): number {
-  const at = face & ~3, corner = face & 3;
+  const at = face & ~3,
+    corner = face & 3;
   let sum = 0;
   let mix = 0;
   for (let i = 0; i < 4; ++i) {
@@ -45,7 +49,8 @@ function hashOf(tetrahedra: Uint32Array, face: number): number {
 }
 
 function sameFace(tetrahedra: Uint32Array, a: number, b: number): boolean {
-  const atA = a & ~3, atB = b & ~3;
+  const atA = a & ~3,
+    atB = b & ~3;
   for (let i = 0; i < 4; ++i) {
     if (i === (a & 3)) continue;
     const vertex = tetrahedra[atA + i];

@@ -1,18 +1,12 @@
-// The wire in TypeScript: messages and the binary frame of proto/PROTOCOL.md, read with every count checked.
+// The wire in TypeScript: messages and the binary frame of proto/PROTOCOL.md, read with every count
+// checked.
 
 import {QtetError} from './errors';
 import type {Goal} from './goal';
-import type {Wishes} from './wishes';
+import type {ViewRequest} from './view_request';
 
 export const kSubprotocol = 'qtet.v1';
 export const kFrameHeaderBytes = 16;
-/** `firstPart` of the frame that holds the file's header, manifest and chunk table. */
-export const kHeadPart = 0xffff;
-/** Parts of a chunk, in file order: structure, positions, then one block a field. */
-export const kStructurePart = 0;
-export const kPositionsPart = 1;
-export const kFirstFieldPart = 2;
-
 /** [first, end) of chunks */
 export type ChunkRange = [number, number];
 /** Leading chunks that are here, and, of packets that came out of order, which beyond them. */
@@ -27,13 +21,21 @@ export interface OpenRequest {
   have: {chunks: number; ranges?: ChunkRange[]; fields: Record<string, number | HaveChunks>};
   credit: number;
   digest?: string;
-  wishes?: Wishes;
+  view?: ViewRequest;
   /** Where the stream may stop; null: nowhere before its end. */
   goal?: Goal | null;
 }
 
 export type ServerMessage =
-  | {type: 'opened'; stream: number; mesh: string; digest: string; bytes: number; planned: number; layout?: string}
+  | {
+      type: 'opened';
+      stream: number;
+      mesh: string;
+      digest: string;
+      bytes: number;
+      planned: number;
+      layout?: string;
+    }
   | {type: 'done'; stream: number}
   | {type: 'stopped'; stream: number}
   | {type: 'error'; code: string; detail: string};
@@ -46,21 +48,39 @@ export interface Frame {
   payload: Uint8Array;
 }
 
-export function openMessage(request: OpenRequest, view: Record<string, unknown> | null = null): string {
-  const {wishes: _, goal, ...rest} = request;
-  return JSON.stringify({type: 'open', ...rest, ...(goal ? {target: targetOf(goal)} : {}), ...(view ? {view} : {})});
+export function openMessage(
+  request: OpenRequest,
+  view: Record<string, unknown> | null = null,
+): string {
+  const {mesh, fields, credit, have, digest, goal} = request;
+  return JSON.stringify({
+    type: 'open',
+    mesh,
+    fields,
+    credit,
+    have,
+    digest,
+    ...(goal ? {target: targetOf(goal)} : {}),
+    ...(view ? {view} : {}),
+  });
 }
 
 export function targetMessage(goal: Goal | null): string {
   return JSON.stringify({type: 'target', target: goal && targetOf(goal)});
 }
 
-function targetOf({level}: Goal): {level: number} { return {level}; }
+function targetOf({level}: Goal): {level: number} {
+  return {level};
+}
 
-export function pauseMessage(): string { return JSON.stringify({type: 'pause'}); }
+export function pauseMessage(): string {
+  return JSON.stringify({type: 'pause'});
+}
 
 /** Without saying anew what is here: what was sent is, or is on its way. */
-export function resumeMessage(): string { return JSON.stringify({type: 'resume'}); }
+export function resumeMessage(): string {
+  return JSON.stringify({type: 'resume'});
+}
 
 export function viewMessage(view: Record<string, unknown> | null): string {
   return JSON.stringify({type: 'view', view});
@@ -77,12 +97,17 @@ export function stopMessage(): string {
 /** Reads a binary message. Throws `bad-message` when it is not one frame exactly. */
 export function parseFrame(buffer: ArrayBuffer): Frame {
   if (buffer.byteLength < kFrameHeaderBytes) {
-    throw badMessage(`a binary message of ${buffer.byteLength} bytes is shorter than its ${kFrameHeaderBytes}-byte header`);
+    throw badMessage(
+      `a binary message of ${buffer.byteLength} bytes is shorter than its ` +
+        `${kFrameHeaderBytes}-byte header`,
+    );
   }
   const view = new DataView(buffer);
   const size = view.getUint32(12, true);
   if (size !== buffer.byteLength - kFrameHeaderBytes) {
-    throw badMessage(`a frame says ${size} payload bytes and holds ${buffer.byteLength - kFrameHeaderBytes}`);
+    throw badMessage(
+      `a frame says ${size} payload bytes and holds ${buffer.byteLength - kFrameHeaderBytes}`,
+    );
   }
   return {
     stream: view.getUint32(0, true),
@@ -101,13 +126,18 @@ export function parseServerMessage(text: string): ServerMessage | null {
   } catch {
     throw badMessage('a text message is not JSON');
   }
-  if (typeof json !== 'object' || json === null) throw badMessage('a text message is not a JSON object');
+  if (typeof json !== 'object' || json === null)
+    throw badMessage('a text message is not a JSON object');
   const message = json as Record<string, unknown>;
   switch (message.type) {
     case 'opened':
       return {
-        type: 'opened', stream: numberOf(message, 'stream'), mesh: textOf(message, 'mesh'), digest: textOf(message, 'digest'),
-        bytes: numberOf(message, 'bytes'), planned: numberOf(message, 'planned'),
+        type: 'opened',
+        stream: numberOf(message, 'stream'),
+        mesh: textOf(message, 'mesh'),
+        digest: textOf(message, 'digest'),
+        bytes: numberOf(message, 'bytes'),
+        planned: numberOf(message, 'planned'),
         ...(typeof message.layout === 'string' ? {layout: message.layout} : {}),
       };
     case 'done':
@@ -122,7 +152,8 @@ export function parseServerMessage(text: string): ServerMessage | null {
 
 function numberOf(message: Record<string, unknown>, key: string): number {
   const value = message[key];
-  if (typeof value !== 'number' || !Number.isSafeInteger(value) || value < 0) throw badMessage(`"${key}" is not a count`);
+  if (typeof value !== 'number' || !Number.isSafeInteger(value) || value < 0)
+    throw badMessage(`"${key}" is not a count`);
   return value;
 }
 

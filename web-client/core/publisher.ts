@@ -1,7 +1,18 @@
-// Turns the growing mesh into pictures for the page, no faster than the page shows them and than decoding can spare.
+// Turns the growing mesh into pictures for the page, no faster than the page shows them and than
+// decoding can spare.
 
 import type {Assembler} from './assembler';
-import {cutsOf, cuttingPlanes, fieldsOf, isosurfacesOf, keptCells, kPlainDisplay, surfaceOf, type Display, type MeshNow} from './display';
+import {
+  cutsOf,
+  cuttingPlanes,
+  fieldsOf,
+  isosurfacesOf,
+  keptCells,
+  kPlainDisplay,
+  surfaceOf,
+  type Display,
+  type MeshNow,
+} from './display';
 import {scalarRange} from './field_scale';
 import {meshNow} from './mesh_now';
 import {noSoup, pointBounds} from './triangle_soup';
@@ -10,17 +21,26 @@ import type {Snapshot} from './worker_messages';
 
 /** From one picture to the next, so that decoding has the worker and the page its frames. */
 const kShortestPauseMs = 100;
-/** Between pictures there is this many times what the last one cost: in the worker, and on its way to the screen, where graphics without a GPU take the processors from decoding. */
+/**
+ * Between pictures there is this many times what the last one cost: in the worker, and on its way
+ * to the screen, where graphics without a GPU take the processors from decoding.
+ */
 const kCostFactor = 4;
 /** A page that is out of sight draws nothing: what it took then says nothing of pictures. */
 const kLongestPauseMs = 1000;
-/** Below this share of new bytes a picture hardly differs from the last one, and waits for more, but not for longer than this. */
+/**
+ * Below this share of new bytes a picture hardly differs from the last one, and waits for more, but
+ * not for longer than this.
+ */
 const kGrowth = 0.1;
 /** The same where a picture takes so long that decoding feels it. */
 const kSlowMs = 100;
 const kSlowGrowth = 1;
 const kSmallGrowthMs = 500;
-/** A picture stands at least this many times as long as it takes to the screen, or the last one comes instead, which is sooner there without it. */
+/**
+ * A picture stands at least this many times as long as it takes to the screen, or the last one
+ * comes instead, which is sooner there without it.
+ */
 const kWorthMaking = 2;
 /** A cut that the user drags comes at once; this only keeps it from starving the decoder. */
 const kCutPauseMs = 8;
@@ -47,7 +67,10 @@ export class Publisher {
   private sentAt = 0;
   private bytes = 0;
   private isFirst = true;
-  /** What the last one took to the screen, the first one without its waiting for the graphics to start; 0: nobody knows. */
+  /**
+   * What the last one took to the screen, the first one without its waiting for the graphics to
+   * start; 0: nobody knows.
+   */
   private tookMs = 0;
   /** Since then the mesh is another than that of the last one. */
   private changedAt = 0;
@@ -55,9 +78,15 @@ export class Publisher {
   private dueAt = 0;
   private timer: ReturnType<typeof setTimeout> | undefined;
 
-  constructor(private readonly assembler: Assembler, private readonly send: (snapshot: Snapshot) => void) {}
+  constructor(
+    private readonly assembler: Assembler,
+    private readonly send: (snapshot: Snapshot) => void,
+  ) {}
 
-  /** The mesh or the shown field's values changed; the last of such pictures need not leave time for decoding. */
+  /**
+   * The mesh or the shown field's values changed; the last of such pictures need not leave time for
+   * decoding.
+   */
   changed(isLast = false): void {
     if (!this.meshChanged) this.changedAt = performance.now();
     this.meshChanged = true;
@@ -68,8 +97,13 @@ export class Publisher {
   show(display: Display): void {
     const before = this.display;
     this.display = display;
-    const whole = display.mode === 'cells' || before.mode !== display.mode || before.body !== display.body || before.volume !== display.volume ||
-      JSON.stringify([before.color, before.threshold, before.isosurfaces]) !== JSON.stringify([display.color, display.threshold, display.isosurfaces]);
+    const whole =
+      display.mode === 'cells' ||
+      before.mode !== display.mode ||
+      before.body !== display.body ||
+      before.volume !== display.volume ||
+      JSON.stringify([before.color, before.threshold, before.isosurfaces]) !==
+        JSON.stringify([display.color, display.threshold, display.isosurfaces]);
     if (whole || !this.wanted) this.meshChanged = true;
     this.wanted = this.cutChanged = true;
     this.schedule();
@@ -79,7 +113,10 @@ export class Publisher {
   shown(drawingMs = 0): void {
     const now = performance.now();
     if (!this.onScreen) {
-      this.nextAt = Math.max(this.nextAt, now + Math.min(kLongestPauseMs, kCostFactor * (now - this.sentAt)));
+      this.nextAt = Math.max(
+        this.nextAt,
+        now + Math.min(kLongestPauseMs, kCostFactor * (now - this.sentAt)),
+      );
       this.tookMs = Math.min(kLongestPauseMs, this.isFirst ? drawingMs : now - this.sentAt);
     }
     this.onScreen = true;
@@ -93,12 +130,14 @@ export class Publisher {
   }
 
   /** A picture is due, or on its way to the screen. */
-  get isBusy(): boolean { return this.timer !== undefined || !this.onScreen; }
+  get isBusy(): boolean {
+    return this.timer !== undefined || !this.onScreen;
+  }
 
   /** Starts with an empty mesh, and waits for a display. */
   reset(): void {
     this.meshChanged = this.cutChanged = this.wanted = this.hasPublished = this.isLast = false;
-    this.onScreen = true;  // nobody waits for the picture of the mesh before
+    this.onScreen = true; // nobody waits for the picture of the mesh before
     this.bounds = [];
     this.bytes = this.tookMs = 0;
     this.display = kPlainDisplay;
@@ -128,7 +167,9 @@ export class Publisher {
     if (this.isLast) return now;
     if (this.cutChanged) return Math.min(this.nextAt, now + kCutPauseMs);
     const {bytes} = this.assembler.statistics(fieldsOf(this.display));
-    const isSmall = bytes >= this.bytes && bytes < (1 + (this.tookMs < kSlowMs ? kGrowth : kSlowGrowth)) * this.bytes;
+    const isSmall =
+      bytes >= this.bytes &&
+      bytes < (1 + (this.tookMs < kSlowMs ? kGrowth : kSlowGrowth)) * this.bytes;
     return Math.max(this.nextAt, isSmall ? this.changedAt + kSmallGrowthMs : 0, this.lastAt(now));
   }
 
@@ -145,9 +186,14 @@ export class Publisher {
     const {display} = this;
     const kept = keptCells(mesh, display);
     // A finer mesh has another cut: both travel together, so that they always fit.
-    const snapshot: Snapshot = {...this.frame(mesh), cuts: cutsOf(mesh, display, kept), planes: cuttingPlanes(display)};
+    const snapshot: Snapshot = {
+      ...this.frame(mesh),
+      cuts: cutsOf(mesh, display, kept),
+      planes: cuttingPlanes(display),
+    };
     if (this.meshChanged) {
-      snapshot.surface = display.body && display.mode !== 'slice' ? surfaceOf(mesh, display, kept) : noSoup();
+      snapshot.surface =
+        display.body && display.mode !== 'slice' ? surfaceOf(mesh, display, kept) : noSoup();
       snapshot.isosurface = isosurfacesOf(mesh, display, kept) ?? noSoup();
       this.onIsosurface(snapshot.isosurface.positions);
       snapshot.volume = this.volumeOf(mesh, kept);
@@ -174,11 +220,18 @@ export class Publisher {
     const {color} = this.display;
     const scale = color && mesh.scale(color);
     const info = color && this.assembler.manifest!.fields[color.field];
-    if (this.meshChanged || this.bounds.length === 0) this.bounds = pointBounds(mesh.points, mesh.boundary);
+    if (this.meshChanged || this.bounds.length === 0)
+      this.bounds = pointBounds(mesh.points, mesh.boundary);
     return {
-      bounds: this.bounds, color: scale ? color : null, statistics: this.assembler.statistics(fieldsOf(this.display)), costMs: 0,
+      bounds: this.bounds,
+      color: scale ? color : null,
+      statistics: this.assembler.statistics(fieldsOf(this.display)),
+      costMs: 0,
       // Of a component nobody knows the range but the values themselves.
-      extent: scale && info && info.components > 1 && color.component >= 0 ? scale.extent(mesh.tetrahedra) : [0, 1],
+      extent:
+        scale && info && info.components > 1 && color.component >= 0
+          ? scale.extent(mesh.tetrahedra)
+          : [0, 1],
       scaleRange: scale && info ? scalarRange(info, color.component) : [0, 1],
     };
   }

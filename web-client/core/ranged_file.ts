@@ -1,4 +1,5 @@
-// A file on any web server, read by byte ranges; of a server that knows no ranges the whole, as it comes.
+// A file on any web server, read by byte ranges; of a server that knows no ranges the whole, as it
+// comes.
 
 import {QtetError} from './errors';
 
@@ -10,7 +11,11 @@ const kPassing = [408, 425, 429];
 export type Fetch = (url: string, init: RequestInit) => Promise<Response>;
 
 /** An answer, or the failure that says why there is none: `http` will not change, `network` may. */
-export async function fetchChecked(fetch: Fetch, url: string, init: RequestInit): Promise<Response> {
+export async function fetchChecked(
+  fetch: Fetch,
+  url: string,
+  init: RequestInit,
+): Promise<Response> {
   let response: Response;
   try {
     response = await fetch(url, init);
@@ -20,7 +25,12 @@ export async function fetchChecked(fetch: Fetch, url: string, init: RequestInit)
   }
   if (response.ok) return response;
   const {status, statusText} = response;
-  const code = status >= 500 || kPassing.includes(status) ? 'network' : status === 404 || status === 410 ? 'not-found' : 'http';
+  const code =
+    status >= 500 || kPassing.includes(status)
+      ? 'network'
+      : status === 404 || status === 410
+        ? 'not-found'
+        : 'http';
   throw new QtetError(code, `${url} is answered by "${status} ${statusText}".`);
 }
 
@@ -30,16 +40,27 @@ export class RangedFile {
   tag = '';
   /** In bytes; 0 while it is unknown. */
   size = 0;
-  /** What has come of the file's beginning: the first answer, or all of a server that knows no ranges. */
+  /**
+   * What has come of the file's beginning: the first answer, or all of a server that knows no
+   * ranges.
+   */
   private front = new Uint8Array(0);
   private frontSize = 0;
   private first: Promise<void> | null = null;
   private whole = false;
   private waiting: {to: number; resolve: () => void; reject: (thrown: unknown) => void}[] = [];
 
-  constructor(url: string, private readonly fetch: Fetch = (address, init) => globalThis.fetch(address, init)) { this.url = url; }
+  constructor(
+    url: string,
+    private readonly fetch: Fetch = (address, init) => globalThis.fetch(address, init),
+  ) {
+    this.url = url;
+  }
 
-  /** Bytes [from, to), fewer only where the file ends. Throws `network`, `not-found`, `http`, and `log-changed` when it is another file by now. */
+  /**
+   * Bytes [from, to), fewer only where the file ends. Throws `network`, `not-found`, `http`, and
+   * `log-changed` when it is another file by now.
+   */
   async read(from: number, to: number, signal: AbortSignal): Promise<Uint8Array> {
     this.first ??= this.begin();
     try {
@@ -62,7 +83,9 @@ export class RangedFile {
 
   /** Nobody's signal ends it: whoever reads next needs it, too. */
   private async begin(): Promise<void> {
-    const response = await fetchChecked(this.fetch, this.url, {headers: {Range: `bytes=0-${kFirstBytes - 1}`}});
+    const response = await fetchChecked(this.fetch, this.url, {
+      headers: {Range: `bytes=0-${kFirstBytes - 1}`},
+    });
     this.tag = response.headers.get('etag') ?? '';
     if (response.url) this.url = response.url;
     if (response.status !== 206) {
@@ -78,14 +101,23 @@ export class RangedFile {
   }
 
   private async range(from: number, to: number, signal: AbortSignal): Promise<Uint8Array> {
-    const response = await fetchChecked(this.fetch, this.url, {headers: {Range: `bytes=${from}-${to - 1}`}, signal});
+    const response = await fetchChecked(this.fetch, this.url, {
+      headers: {Range: `bytes=${from}-${to - 1}`},
+      signal,
+    });
     const tag = response.headers.get('etag') ?? '';
-    if (tag !== this.tag) throw new QtetError('log-changed', 'Another file has taken the place of the one that was being read.');
+    if (tag !== this.tag)
+      throw new QtetError(
+        'log-changed',
+        'Another file has taken the place of the one that was being read.',
+      );
     const bytes = new Uint8Array(await response.arrayBuffer());
     return response.status === 206 ? bytes : bytes.subarray(from, to);
   }
 
-  /** Takes in the whole file, piece by piece; who waits for a part goes on as soon as it is here. */
+  /**
+   * Takes in the whole file, piece by piece; who waits for a part goes on as soon as it is here.
+   */
   private async drain(response: Response): Promise<void> {
     try {
       const reader = response.body!.getReader();
@@ -99,7 +131,8 @@ export class RangedFile {
     } catch {
       this.first = null;
       this.frontSize = 0;
-      for (const {reject} of this.waiting.splice(0)) reject(new QtetError('network', `${this.url} broke off.`));
+      for (const {reject} of this.waiting.splice(0))
+        reject(new QtetError('network', `${this.url} broke off.`));
     }
   }
 
@@ -122,7 +155,8 @@ export class RangedFile {
   }
 
   private arrival(to: number): Promise<void> {
-    if (to <= this.frontSize || (this.size > 0 && this.frontSize >= this.size)) return Promise.resolve();
+    if (to <= this.frontSize || (this.size > 0 && this.frontSize >= this.size))
+      return Promise.resolve();
     return new Promise((resolve, reject) => this.waiting.push({to, resolve, reject}));
   }
 }

@@ -1,16 +1,23 @@
-// Trying again what the network made fail: the viewer's own parts come over the same line as the mesh.
+// Trying again what the network made fail: the viewer's own parts come over the same line as the
+// mesh.
 
 import {reconnectDelayMs} from './backoff';
 
-export const kMostAttempts = 8;
+export const kMaxAttempts = 8;
 
-/** The result of `action`, which is called again after growing pauses while it fails; the last failure is thrown. */
-export async function retry<T>(action: () => Promise<T>, random: () => number = Math.random): Promise<T> {
+/**
+ * The result of `action`, which is called again after growing pauses while it fails; the last
+ * failure is thrown.
+ */
+export async function retry<T>(
+  action: () => Promise<T>,
+  random: () => number = Math.random,
+): Promise<T> {
   for (let attempt = 0; ; ++attempt) {
     try {
       return await action();
     } catch (thrown) {
-      if (attempt + 1 >= kMostAttempts) throw thrown;
+      if (attempt + 1 >= kMaxAttempts) throw thrown;
       await new Promise((resolve) => setTimeout(resolve, reconnectDelayMs(attempt, random())));
     }
   }

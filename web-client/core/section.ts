@@ -1,33 +1,61 @@
-// Where a function that is linear in each cell is zero: a plane's cut and an isosurface are both that. One triangle or quad for every cell that it
-// crosses, the field interpolated along the cell's edges, so that the sides drawn are the cells' own.
+// Where a function that is linear in each cell is zero: a plane's cut and an isosurface are both
+// that. One triangle or quad for every cell that it crosses, the field interpolated along the
+// cell's edges, so that the sides drawn are the cells' own.
 
 import type {FieldScale} from './field_scale';
 import type {TriangleSoup} from './triangle_soup';
 
-/** Views of the mesh: 3 lattice coordinates a vertex, 4 vertices a tetrahedron; of `kept` (absent: all) the cells that are 1 are looked at. */
+/**
+ * Views of the mesh: 3 lattice coordinates a vertex, 4 vertices a tetrahedron; of `kept` (absent:
+ * all) the cells that are 1 are looked at.
+ */
 export interface Cells {
   points: Int32Array;
   tetrahedra: Uint32Array;
   kept?: Uint8Array | null;
 }
 
-/** The tetrahedra's corners [alone, the other three] and [pair, other pair] for each pattern of corners above zero. */
+/**
+ * The tetrahedra's corners [alone, the other three] and [pair, other pair] for each pattern of
+ * corners above zero.
+ */
 const kTriangleOf: Record<number, number[]> = {
-  0b0001: [0, 1, 2, 3], 0b1110: [0, 1, 2, 3], 0b0010: [1, 0, 2, 3], 0b1101: [1, 0, 2, 3],
-  0b0100: [2, 0, 1, 3], 0b1011: [2, 0, 1, 3], 0b1000: [3, 0, 1, 2], 0b0111: [3, 0, 1, 2],
+  0b0001: [0, 1, 2, 3],
+  0b1110: [0, 1, 2, 3],
+  0b0010: [1, 0, 2, 3],
+  0b1101: [1, 0, 2, 3],
+  0b0100: [2, 0, 1, 3],
+  0b1011: [2, 0, 1, 3],
+  0b1000: [3, 0, 1, 2],
+  0b0111: [3, 0, 1, 2],
 };
 /** Quad corners in a round: edges (a c), (a d), (b d), (b c) of the pairs a b | c d. */
 const kQuadOf: Record<number, number[]> = {
-  0b0011: [0, 1, 2, 3], 0b1100: [0, 1, 2, 3], 0b0101: [0, 2, 1, 3], 0b1010: [0, 2, 1, 3], 0b1001: [0, 3, 1, 2], 0b0110: [0, 3, 1, 2],
+  0b0011: [0, 1, 2, 3],
+  0b1100: [0, 1, 2, 3],
+  0b0101: [0, 2, 1, 3],
+  0b1010: [0, 2, 1, 3],
+  0b1001: [0, 3, 1, 2],
+  0b0110: [0, 3, 1, 2],
 };
 
-/** `distances`: the function, a number a vertex. A corner at zero counts as above it, so no cell's section is lost or doubled; a cell with a corner
- *  that is NaN has none. */
-export function section(cells: Cells, distances: Float64Array, scale: FieldScale | null): TriangleSoup {
+/**
+ * `distances`: the function, a number a vertex. A corner at zero counts as above it, so no cell's
+ * section is lost or doubled; a cell with a corner that is NaN has none.
+ */
+export function section(
+  cells: Cells,
+  distances: Float64Array,
+  scale: FieldScale | null,
+): TriangleSoup {
   const {points, tetrahedra} = cells;
   const {crossed, triangles, quads} = crossedCells(cells, distances);
   const corners = 3 * (triangles + 2 * quads);
-  const soup: TriangleSoup = {positions: new Float32Array(3 * corners), values: new Float32Array(scale ? corners : 0), firstHalf: triangles};
+  const soup: TriangleSoup = {
+    positions: new Float32Array(3 * corners),
+    values: new Float32Array(scale ? corners : 0),
+    firstHalf: triangles,
+  };
   const cut = new CutWriter(points, distances, scale, soup);
   let triangle = 0;
   let half = triangles;
@@ -37,14 +65,18 @@ export function section(cells: Cells, distances: Float64Array, scale: FieldScale
     cut.cell = cell;
     if (three) {
       const alone = tetrahedra[4 * cell + three[0]!]!;
-      for (let i = 0; i < 3; ++i) cut.write(3 * triangle + i, alone, tetrahedra[4 * cell + three[i + 1]!]!);
+      for (let i = 0; i < 3; ++i)
+        cut.write(3 * triangle + i, alone, tetrahedra[4 * cell + three[i + 1]!]!);
       ++triangle;
       continue;
     }
     const four = kQuadOf[above]!;
-    const a = tetrahedra[4 * cell + four[0]!]!, b = tetrahedra[4 * cell + four[1]!]!;
-    const c = tetrahedra[4 * cell + four[2]!]!, d = tetrahedra[4 * cell + four[3]!]!;
-    // The quad p0..p3 as (p1, p2, p0) and (p3, p0, p2): the diagonal p0 p2 lies opposite to the first corner of both.
+    const a = tetrahedra[4 * cell + four[0]!]!,
+      b = tetrahedra[4 * cell + four[1]!]!;
+    const c = tetrahedra[4 * cell + four[2]!]!,
+      d = tetrahedra[4 * cell + four[3]!]!;
+    // The quad p0..p3 as (p1, p2, p0) and (p3, p0, p2): the diagonal p0 p2 lies opposite to the
+    // first corner of both.
     cut.write(3 * half, a, d);
     cut.write(3 * half + 1, b, d);
     cut.write(3 * half + 2, a, c);
@@ -57,16 +89,23 @@ export function section(cells: Cells, distances: Float64Array, scale: FieldScale
 }
 
 function pattern(tetrahedra: Uint32Array, distances: Float64Array, at: number): number {
-  return (distances[tetrahedra[at]!]! >= 0 ? 1 : 0) | (distances[tetrahedra[at + 1]!]! >= 0 ? 2 : 0) |
-         (distances[tetrahedra[at + 2]!]! >= 0 ? 4 : 0) | (distances[tetrahedra[at + 3]!]! >= 0 ? 8 : 0);
+  return (
+    (distances[tetrahedra[at]!]! >= 0 ? 1 : 0) |
+    (distances[tetrahedra[at + 1]!]! >= 0 ? 2 : 0) |
+    (distances[tetrahedra[at + 2]!]! >= 0 ? 4 : 0) |
+    (distances[tetrahedra[at + 3]!]! >= 0 ? 8 : 0)
+  );
 }
 
-function crossedCells({tetrahedra, kept}: Cells, distances: Float64Array): {crossed: number[]; triangles: number; quads: number} {
+function crossedCells(
+  {tetrahedra, kept}: Cells,
+  distances: Float64Array,
+): {crossed: number[]; triangles: number; quads: number} {
   const crossed: number[] = [];
   let triangles = 0;
   let quads = 0;
   for (let cell = 0, at = 0; at < tetrahedra.length; ++cell, at += 4) {
-    if (kept && kept[cell] === 0) continue;
+    if (kept?.[cell] === 0) continue;
     const above = pattern(tetrahedra, distances, at);
     if (above === 0 || above === 15) continue;
     let sum = 0;
@@ -84,10 +123,16 @@ class CutWriter {
   cell = 0;
 
   constructor(
-    private readonly points: Int32Array, private readonly distances: Float64Array, private readonly scale: FieldScale | null,
-    private readonly soup: TriangleSoup) {}
+    private readonly points: Int32Array,
+    private readonly distances: Float64Array,
+    private readonly scale: FieldScale | null,
+    private readonly soup: TriangleSoup,
+  ) {}
 
-  /** Writes the point where edge (p, q) is zero. The lower id goes first, so that neighbours write the same floats. */
+  /**
+   * Writes the point where edge (p, q) is zero. The lower id goes first, so that neighbours write
+   * the same floats.
+   */
   write(corner: number, p: number, q: number): void {
     if (p > q) [p, q] = [q, p];
     const t = this.distances[p]! / (this.distances[p]! - this.distances[q]!);

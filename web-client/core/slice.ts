@@ -4,7 +4,10 @@ import type {FieldScale} from './field_scale';
 import {section, type Cells} from './section';
 import type {TriangleSoup} from './triangle_soup';
 
-/** The points with normal . p = offset, in lattice coordinates; what lies above (normal . p > offset) is cut away. */
+/**
+ * The points with normal . p = offset, in lattice coordinates; what lies above (normal . p >
+ * offset) is cut away.
+ */
 export interface Plane {
   normal: [number, number, number];
   offset: number;
@@ -15,8 +18,16 @@ export function slice(cells: Cells, scale: FieldScale | null, plane: Plane): Tri
   return section(cells, planeDistances(cells.points, plane), scale);
 }
 
-/** Where the point field `levels` is `value` (in [0, 1], as it gives them), coloured by `scale`. REQUIRES: a field of points. */
-export function isosurface(cells: Cells, levels: FieldScale, value: number, scale: FieldScale | null): TriangleSoup {
+/**
+ * Where the point field `levels` is `value` (in [0, 1], as it gives them), coloured by `scale`.
+ * REQUIRES: a field of points.
+ */
+export function isosurface(
+  cells: Cells,
+  levels: FieldScale,
+  value: number,
+  scale: FieldScale | null,
+): TriangleSoup {
   const distances = new Float64Array(cells.points.length / 3);
   for (let v = 0; v < distances.length; ++v) distances[v] = levels.at(v) - value;
   return section(cells, distances, scale);

@@ -6,5 +6,8 @@ import type {Snapshot} from './worker_messages';
 export function buffersOf({surface, cuts, isosurface, volume}: Snapshot): ArrayBuffer[] {
   const soups = [surface, ...cuts, isosurface].filter((soup) => soup !== undefined);
   const arrays: ArrayBufferView[] = soups.flatMap(({positions, values}) => [positions, values]);
-  return [...arrays.map(({buffer}) => buffer as ArrayBuffer), ...(volume ? buffersOfVolume(volume) : [])];
+  return [
+    ...arrays.map(({buffer}) => buffer as ArrayBuffer),
+    ...(volume ? buffersOfVolume(volume) : []),
+  ];
 }

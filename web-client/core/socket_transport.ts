@@ -1,18 +1,34 @@
-// One WebSocket to /v1/stream that comes back by itself. Counts streams and credit; knows nothing of what the bytes mean.
+// One WebSocket to /v1/stream that comes back by itself. Counts streams and credit; knows nothing
+// of what the bytes mean.
 
 import {reconnectDelayMs} from './backoff';
 import {errorCode, errorText, QtetError} from './errors';
 import type {Goal} from './goal';
 import {
-  creditMessage, kSubprotocol, openMessage, parseFrame, parseServerMessage, pauseMessage, resumeMessage, stopMessage, targetMessage, viewMessage,
+  creditMessage,
+  kSubprotocol,
+  openMessage,
+  parseFrame,
+  parseServerMessage,
+  pauseMessage,
+  resumeMessage,
+  stopMessage,
+  targetMessage,
+  viewMessage,
   type OpenRequest,
 } from './protocol';
 import type {LogTable, Transport, TransportHandlers} from './transport';
-import {kNoWishes, wireView, type Wishes} from './wishes';
+import {kNoViewRequest, wireView, type ViewRequest} from './view_request';
 
-/** Credit is returned in portions of this share of the window: few messages, and the server never waits for one. */
+/**
+ * Credit is returned in portions of this share of the window: few messages, and the server never
+ * waits for one.
+ */
 const kCreditShare = 8;
-/** The server closes with this code after a message that it does not understand: trying again would not help. */
+/**
+ * The server closes with this code after a message that it does not understand: trying again would
+ * not help.
+ */
 const kPolicyViolation = 1008;
 
 /** The part of WebSocket that is used; tests bring their own. */
@@ -40,17 +56,23 @@ export class SocketTransport implements Transport {
   /** Empty: the server has not said, and then knows nothing of views, targets and pauses. */
   private layout = '';
   private isPaused = false;
-  private wishes: Wishes = kNoWishes;
+  private view: ViewRequest = kNoViewRequest;
   /** The view that the server was told last. */
   private told = '';
 
   /** `url` is asked for before every connection where it is good for one alone. */
   constructor(
-    private readonly url: string | (() => Promise<string>), private readonly handlers: TransportHandlers,
-    private readonly makeSocket: SocketFactory = (address, protocol) => new WebSocket(address, protocol) as unknown as Socket,
-    private readonly random: () => number = Math.random, private readonly table: Pick<LogTable, 'lattice'> | null = null) {}
+    private readonly url: string | (() => Promise<string>),
+    private readonly handlers: TransportHandlers,
+    private readonly makeSocket: SocketFactory = (address, protocol) =>
+      new WebSocket(address, protocol) as unknown as Socket,
+    private readonly random: () => number = Math.random,
+    private readonly table: Pick<LogTable, 'lattice'> | null = null,
+  ) {}
 
-  get isConnected(): boolean { return this.connected; }
+  get isConnected(): boolean {
+    return this.connected;
+  }
 
   connect(): void {
     this.disconnect();
@@ -59,13 +81,16 @@ export class SocketTransport implements Transport {
       return;
     }
     const {turn} = this;
-    this.url().then((url) => {
-      if (turn === this.turn) this.connectTo(url);
-    }, (thrown: unknown) => {
-      if (turn !== this.turn) return;
-      if (errorCode(thrown) === 'network') this.lost(0, '');
-      else this.fail(thrown);
-    });
+    this.url().then(
+      (url) => {
+        if (turn === this.turn) this.connectTo(url);
+      },
+      (thrown: unknown) => {
+        if (turn !== this.turn) return;
+        if (errorCode(thrown) === 'network') this.lost(0, '');
+        else this.fail(thrown);
+      },
+    );
   }
 
   private connectTo(url: string): void {
@@ -89,15 +114,15 @@ export class SocketTransport implements Transport {
     this.owed = 0;
     this.layout = '';
     this.isPaused = false;
-    this.wishes = request.wishes ?? this.wishes;
-    const view = this.view();
-    this.told = viewMessage(view);
-    this.socket?.send(openMessage(request, view));
+    this.view = request.view ?? this.view;
+    const wire = this.wire();
+    this.told = viewMessage(wire);
+    this.socket?.send(openMessage(request, wire));
   }
 
-  look(wishes: Wishes): void {
-    this.wishes = wishes;
-    const text = viewMessage(this.view());
+  look(view: ViewRequest): void {
+    this.view = view;
+    const text = viewMessage(this.wire());
     if (!this.connected || this.layout !== 'regions' || text === this.told) return;
     this.told = text;
     this.socket?.send(text);
@@ -124,7 +149,10 @@ export class SocketTransport implements Transport {
     if (this.connected && this.layout !== '') this.socket?.send(targetMessage(goal));
   }
 
-  /** Gives the credit of `bytes` applied payload bytes back; it travels once a share of the window has come together. */
+  /**
+   * Gives the credit of `bytes` applied payload bytes back; it travels once a share of the window
+   * has come together.
+   */
   applied(bytes: number): void {
     this.owed += bytes;
     if (this.owed * kCreditShare >= this.window) this.grant();
@@ -142,9 +170,9 @@ export class SocketTransport implements Transport {
     socket.close(1000);
   }
 
-  private view(): Record<string, unknown> | null {
+  private wire(): Record<string, unknown> | null {
     const lattice = this.table?.lattice;
-    return lattice ? wireView(this.wishes, lattice) : null;
+    return lattice ? wireView(this.view, lattice) : null;
   }
 
   private grant(): void {
@@ -159,12 +187,13 @@ export class SocketTransport implements Transport {
         const message = parseServerMessage(data);
         if (message?.type === 'opened') this.layout = message.layout ?? '';
         // Replies to a superseded open say nothing about the current one.
-        if (message && (message.type === 'error' || message.stream === this.stream)) this.handlers.message(message);
+        if (message && (message.type === 'error' || message.stream === this.stream))
+          this.handlers.message(message);
         return;
       }
       const frame = parseFrame(data as ArrayBuffer);
       if (frame.stream !== this.stream) return;
-      this.attempt = 0;  // only bytes prove that the connection is worth something
+      this.attempt = 0; // only bytes prove that the connection is worth something
       this.handlers.frame(frame);
     } catch (thrown) {
       this.fail(thrown);
@@ -173,13 +202,20 @@ export class SocketTransport implements Transport {
 
   private fail(thrown: unknown): void {
     this.disconnect();
-    this.handlers.failed(thrown instanceof QtetError ? thrown : new QtetError('internal', errorText(thrown)));
+    this.handlers.failed(
+      thrown instanceof QtetError ? thrown : new QtetError('internal', errorText(thrown)),
+    );
   }
 
   private lost(code: number, reason: string): void {
     this.disconnect();
     if (code === kPolicyViolation) {
-      this.handlers.failed(new QtetError('bad-message', `The server ended the stream: ${reason || 'a message was not understood'}.`));
+      this.handlers.failed(
+        new QtetError(
+          'bad-message',
+          `The server ended the stream: ${reason || 'a message was not understood'}.`,
+        ),
+      );
       return;
     }
     const delayMs = reconnectDelayMs(this.attempt, this.random());

@@ -1,14 +1,10 @@
-// The figures behind the progress bar: what there is now, what there will be, and how many bytes lie between.
+// The figures behind the progress bar: what there is now, what there will be, and how many bytes
+// lie between.
 
 import type {Codec} from './codec';
+import type {Counts} from './counts';
 import type {Manifest} from './manifest';
-import {kFirstFieldPart, kPositionsPart, kStructurePart} from './protocol';
-
-export interface Counts {
-  tetrahedra: number;
-  vertices: number;
-  boundaryTriangles: number;
-}
+import {kFirstFieldPart, kPositionsPart, kStructurePart} from './parts';
 
 export interface Statistics extends Counts {
   /** Of the original mesh. */
@@ -23,11 +19,22 @@ export interface Statistics extends Counts {
 }
 
 export const kNoStatistics: Statistics = {
-  tetrahedra: 0, vertices: 0, boundaryTriangles: 0, total: {tetrahedra: 0, vertices: 0, boundaryTriangles: 0},
-  level: 0, lastLevel: 0, chunks: 0, chunkCount: 0, bytes: 0, bytesNeeded: 0,
+  tetrahedra: 0,
+  vertices: 0,
+  boundaryTriangles: 0,
+  total: {tetrahedra: 0, vertices: 0, boundaryTriangles: 0},
+  level: 0,
+  lastLevel: 0,
+  chunks: 0,
+  chunkCount: 0,
+  bytes: 0,
+  bytesNeeded: 0,
 };
 
-/** What is applied, counted as it comes: packets come in any order, and in the codec's arrays are holes until all are here. */
+/**
+ * What is applied, counted as it comes: packets come in any order, and in the codec's arrays are
+ * holes until all are here.
+ */
 export class Ledger {
   counts: Counts = {tetrahedra: 0, vertices: 0, boundaryTriangles: 0};
   private meshBytes = 0;
@@ -35,18 +42,24 @@ export class Ledger {
   /** By field: bytes applied, and needed in all. */
   private readonly fields = new Map<number, {applied: number; needed: number}>();
 
-  constructor(private readonly codec: Codec, private readonly headBytes: number) {
+  constructor(
+    private readonly codec: Codec,
+    private readonly headBytes: number,
+  ) {
     this.meshNeeded = this.needed([kStructurePart, kPositionsPart]);
   }
 
   addChunk(chunk: number): void {
-    this.meshBytes += this.codec.blockSize(chunk, kStructurePart) + this.codec.blockSize(chunk, kPositionsPart);
+    this.meshBytes +=
+      this.codec.blockSize(chunk, kStructurePart) + this.codec.blockSize(chunk, kPositionsPart);
     const {tetrahedra, vertices, boundaryTriangles} = this.codec.brings(chunk);
     this.counts.tetrahedra += tetrahedra;
     this.counts.vertices += vertices;
     this.counts.boundaryTriangles += boundaryTriangles;
   }
-  addField(field: number, chunk: number): void { this.ofField(field).applied += this.codec.blockSize(chunk, kFirstFieldPart + field); }
+  addField(field: number, chunk: number): void {
+    this.ofField(field).applied += this.codec.blockSize(chunk, kFirstFieldPart + field);
+  }
 
   clear(): void {
     this.counts = {tetrahedra: 0, vertices: 0, boundaryTriangles: 0};
@@ -56,7 +69,10 @@ export class Ledger {
 
   /** Bytes applied and bytes needed of the mesh with these fields. */
   bytes(fields: readonly number[]): {applied: number; needed: number} {
-    const sum = {applied: this.headBytes + this.meshBytes, needed: this.headBytes + this.meshNeeded};
+    const sum = {
+      applied: this.headBytes + this.meshBytes,
+      needed: this.headBytes + this.meshNeeded,
+    };
     for (const field of fields) {
       const {applied, needed} = this.ofField(field);
       sum.applied += applied;
@@ -67,25 +83,40 @@ export class Ledger {
 
   private ofField(field: number): {applied: number; needed: number} {
     let sums = this.fields.get(field);
-    if (!sums) this.fields.set(field, (sums = {applied: 0, needed: this.needed([kFirstFieldPart + field])}));
+    if (!sums)
+      this.fields.set(field, (sums = {applied: 0, needed: this.needed([kFirstFieldPart + field])}));
     return sums;
   }
 
   private needed(parts: number[]): number {
     let sum = 0;
-    for (let chunk = 0; chunk < this.codec.chunkCount; ++chunk) for (const part of parts) sum += this.codec.blockSize(chunk, part);
+    for (let chunk = 0; chunk < this.codec.chunkCount; ++chunk)
+      for (const part of parts) sum += this.codec.blockSize(chunk, part);
     return sum;
   }
 }
 
 /** `fields` are indexes into the manifest's. */
-export function statisticsOf(codec: Codec, manifest: Manifest, ledger: Ledger, fields: readonly number[]): Statistics {
+export function statisticsOf(
+  codec: Codec,
+  manifest: Manifest,
+  ledger: Ledger,
+  fields: readonly number[],
+): Statistics {
   const last = manifest.levels[manifest.levels.length - 1];
   const {applied, needed} = ledger.bytes(fields);
   return {
     ...ledger.counts,
-    total: {tetrahedra: last?.tetrahedra ?? 0, vertices: last?.vertices ?? 0, boundaryTriangles: last?.boundaryTriangles ?? 0},
-    level: codec.level, lastLevel: last?.level ?? 0, chunks: codec.chunksApplied, chunkCount: codec.chunkCount,
-    bytes: applied, bytesNeeded: needed,
+    total: {
+      tetrahedra: last?.tetrahedra ?? 0,
+      vertices: last?.vertices ?? 0,
+      boundaryTriangles: last?.boundaryTriangles ?? 0,
+    },
+    level: codec.level,
+    lastLevel: last?.level ?? 0,
+    chunks: codec.chunksApplied,
+    chunkCount: codec.chunkCount,
+    bytes: applied,
+    bytesNeeded: needed,
   };
 }

@@ -1,4 +1,5 @@
-// Numbers beside a colour bar: round steps of 1, 2 or 5, written short, with one power of ten taken out where it helps.
+// Numbers beside a colour bar: round steps of 1, 2 or 5, written short, with one power of ten taken
+// out where it helps.
 
 export interface Tick {
   /** In [0, 1] along the bar. */
@@ -8,7 +9,10 @@ export interface Tick {
 
 export interface Ticks {
   ticks: Tick[];
-  /** What the labels are multiplied by, and what is added to them then, as text ("× 10⁵", "+ 101325"); empty for neither. */
+  /**
+   * What the labels are multiplied by, and what is added to them then, as text ("× 10⁵", "+
+   * 101325"); empty for neither.
+   */
   factor: string;
 }
 
@@ -19,9 +23,12 @@ const kPlainBelow = 5;
 const kMinus = '\u2212';
 
 /** Labels have no more digits: what they have in common is told once instead. */
-const kMostDigits = 5;
+const kMaxDigits = 5;
 
-/** At most `most` (2 or more) ticks inside [low, high]. A range without width gives one tick, where its colour is: at the beginning. */
+/**
+ * At most `most` (2 or more) ticks inside [low, high]. A range without width gives one tick, where
+ * its colour is: at the beginning.
+ */
 export function niceTicks(low: number, high: number, most: number): Ticks {
   const largest = Math.max(Math.abs(low), Math.abs(high));
   const exponent = largest > 0 ? Math.floor(Math.log10(largest) + 1e-9) : 0;
@@ -32,7 +39,7 @@ export function niceTicks(low: number, high: number, most: number): Ticks {
   const step = niceStep(low / unit, high / unit, most);
   const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
   const digits = Math.floor(Math.log10(Math.max(largest / unit, 1))) + 1 + decimals;
-  if (digits > kMostDigits) {
+  if (digits > kMaxDigits) {
     const base = firstTick(low / unit, step) * step * unit;
     const {ticks, factor: small} = niceTicks(low - base, high - base, most);
     const sign = base < 0 ? kMinus : '+';
@@ -47,12 +54,16 @@ export function niceTicks(low: number, high: number, most: number): Ticks {
   return {ticks, factor};
 }
 
-/** The same on a logarithmic bar: powers of ten, and 2 and 5 times them where these are few. REQUIRES: 0 < low < high. */
+/**
+ * The same on a logarithmic bar: powers of ten, and 2 and 5 times them where these are few.
+ * REQUIRES: 0 < low < high.
+ */
 export function logTicks(low: number, high: number, most: number): Ticks {
   const from = Math.floor(Math.log10(low) - 1e-9);
   const to = Math.ceil(Math.log10(high) + 1e-9);
   const at = (value: number): number => Math.log(value / low) / Math.log(high / low);
-  if (high < 10 * low) {  // hardly curved: the numbers of an even bar, where they belong
+  if (high < 10 * low) {
+    // hardly curved: the numbers of an even bar, where they belong
     const {ticks, factor} = niceTicks(low, high, most);
     return {ticks: ticks.map((tick) => ({...tick, at: at(low + tick.at * (high - low))})), factor};
   }
@@ -62,7 +73,8 @@ export function logTicks(low: number, high: number, most: number): Ticks {
       if (power % every !== 0) continue;
       for (const factor of factors) {
         const value = factor * 10 ** power;
-        if (value >= low * (1 - 1e-9) && value <= high * (1 + 1e-9)) ticks.push({at: Math.min(1, Math.max(0, at(value))), label: powerLabel(factor, power)});
+        if (value >= low * (1 - 1e-9) && value <= high * (1 + 1e-9))
+          ticks.push({at: Math.min(1, Math.max(0, at(value))), label: powerLabel(factor, power)});
       }
     }
     return ticks;
@@ -71,16 +83,21 @@ export function logTicks(low: number, high: number, most: number): Ticks {
   if (fine.length <= most && fine.length > 0) return {ticks: fine, factor: ''};
   for (let every = 1; ; ++every) {
     const ticks = choose([1], every);
-    if (ticks.length <= most) return {ticks: ticks.length > 0 ? ticks : choose([1], 1).slice(0, most), factor: ''};
+    if (ticks.length <= most)
+      return {ticks: ticks.length > 0 ? ticks : choose([1], 1).slice(0, most), factor: ''};
   }
 }
 
 function powerLabel(factor: number, power: number): string {
-  if (power >= kPlainFrom && power < kPlainBelow) return label(factor * 10 ** power, Math.max(0, -power), false);
+  if (power >= kPlainFrom && power < kPlainBelow)
+    return label(factor * 10 ** power, Math.max(0, -power), false);
   return factor === 1 ? `10${superscript(power)}` : `${factor}·10${superscript(power)}`;
 }
 
-/** The smallest step of 1, 2 or 5 times a power of ten that puts at most `most` ticks inside [low, high]. */
+/**
+ * The smallest step of 1, 2 or 5 times a power of ten that puts at most `most` ticks inside [low,
+ * high].
+ */
 function niceStep(low: number, high: number, most: number): number {
   const power = 10 ** (Math.floor(Math.log10((high - low) / most)) - 1);
   for (let unit = power; ; unit *= 10) {
@@ -91,8 +108,12 @@ function niceStep(low: number, high: number, most: number): number {
   }
 }
 
-function firstTick(low: number, step: number): number { return Math.ceil(low / step - 1e-6); }
-function lastTick(high: number, step: number): number { return Math.floor(high / step + 1e-6); }
+function firstTick(low: number, step: number): number {
+  return Math.ceil(low / step - 1e-6);
+}
+function lastTick(high: number, step: number): number {
+  return Math.floor(high / step + 1e-6);
+}
 
 function label(value: number, decimals: number, short: boolean): string {
   const fixed = Math.abs(value).toFixed(Math.min(decimals, 20));
@@ -101,6 +122,6 @@ function label(value: number, decimals: number, short: boolean): string {
 }
 
 function superscript(power: number): string {
-  const digits = [...String(Math.abs(power))].map((digit) => kSuperscripts[Number(digit)]).join('');
+  const digits = String(Math.abs(power)).replace(/\d/g, (digit) => kSuperscripts[Number(digit)]!);
   return power < 0 ? `⁻${digits}` : digits;
 }

@@ -1,4 +1,5 @@
-// A bearer token over HTTP, and as a ticket over a WebSocket, with which browsers send no headers (proto/PROTOCOL.md, "Tokens").
+// A bearer token over HTTP, and as a ticket over a WebSocket, with which browsers send no headers
+// (proto/PROTOCOL.md, "Tokens").
 
 import {QtetError} from './errors';
 import {fetchChecked, type Fetch} from './ranged_file';
@@ -8,7 +9,10 @@ const kPlainFetch: Fetch = (url, init) => globalThis.fetch(url, init);
 const kNoTickets = [404, 405];
 
 /** A fetch that sends the token; `undefined`, which means the plain one, without a token. */
-export function fetchWith(token: string | undefined, fetch: Fetch = kPlainFetch): Fetch | undefined {
+export function fetchWith(
+  token: string | undefined,
+  fetch: Fetch = kPlainFetch,
+): Fetch | undefined {
   if (!token) return undefined;
   return (url, init) => {
     const headers = new Headers(init.headers);
@@ -17,25 +21,34 @@ export function fetchWith(token: string | undefined, fetch: Fetch = kPlainFetch)
   };
 }
 
-/** The stream's address with a fresh ticket, good for one connection. Throws `network`, which may pass, or `http`. */
-export async function ticketUrl(stream: string, token: string, fetch: Fetch = kPlainFetch): Promise<string> {
+/**
+ * The stream's address with a fresh ticket, good for one connection. Throws `network`, which may
+ * pass, or `http`.
+ */
+export async function ticketUrl(
+  stream: string,
+  token: string,
+  fetch: Fetch = kPlainFetch,
+): Promise<string> {
   const tickets = new URL('tickets', stream);
   tickets.protocol = tickets.protocol.replace('ws', 'http');
-  let none = false;
+  let status = 0;
   const noticing: Fetch = async (url, init) => {
     const response = await fetch(url, init);
-    none = kNoTickets.includes(response.status);
+    ({status} = response);
     return response;
   };
   try {
-    const response = await fetchChecked(fetchWith(token, noticing)!, tickets.href, {method: 'POST'});
+    const response = await fetchChecked(fetchWith(token, noticing)!, tickets.href, {
+      method: 'POST',
+    });
     const {ticket} = (await response.json()) as {ticket?: unknown};
     if (typeof ticket !== 'string') throw new QtetError('http', `${tickets.href} gives no ticket.`);
     const address = new URL(stream);
     address.searchParams.set('ticket', ticket);
     return address.href;
   } catch (thrown) {
-    if (none) return stream;
+    if (kNoTickets.includes(status)) return stream;
     throw thrown;
   }
 }

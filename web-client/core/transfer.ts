@@ -1,11 +1,12 @@
-// What a value looks like inside the volume: its colour from the map, its extinction from opacities that stand at even shares of the shown range.
+// What a value looks like inside the volume: its colour from the map, its extinction from opacities
+// that stand at even shares of the shown range.
 
 import {colorTable, kColorMapEntries, type ColorMapName} from './color_maps';
 
 /** An opacity is that of a path of this share of the mesh's diagonal. */
 export const kOpacityPath = 0.1;
 /** Above this a path would have to be infinitely dense. */
-const kMostOpacity = 0.99;
+const kMaxOpacity = 0.99;
 /** So fine that the nearest step is good enough. */
 export const kTransferSteps = 1023;
 
@@ -18,11 +19,15 @@ export interface TransferTables {
 
 /** Extinction in 1/diagonal of an opacity. */
 export function extinctionOf(opacity: number): number {
-  return -Math.log(1 - Math.min(kMostOpacity, Math.max(0, opacity))) / kOpacityPath;
+  return -Math.log(1 - Math.min(kMaxOpacity, Math.max(0, opacity))) / kOpacityPath;
 }
 
 /** REQUIRES: at least two opacities. Between them extinction is linear. */
-export function transferTables(opacities: readonly number[], map: ColorMapName, reversed: boolean): TransferTables {
+export function transferTables(
+  opacities: readonly number[],
+  map: ColorMapName,
+  reversed: boolean,
+): TransferTables {
   const colors = colorTable(map, reversed);
   const extinctions = opacities.map(extinctionOf);
   const density = new Float32Array(4 * (kTransferSteps + 1));
@@ -34,13 +39,18 @@ export function transferTables(opacities: readonly number[], map: ColorMapName, 
     const color = (i / kTransferSteps) * (kColorMapEntries - 1);
     const below = 4 * Math.floor(color);
     for (let c = 0; c < 3; ++c) {
-      const [from, to] = [colors[below + c]!, colors[Math.min(below + 4, 4 * kColorMapEntries - 4) + c]!];
-      density[4 * i + c] = extinction * (from + (color % 1) * (to - from)) / 255;
+      const [from, to] = [
+        colors[below + c]!,
+        colors[Math.min(below + 4, 4 * kColorMapEntries - 4) + c]!,
+      ];
+      density[4 * i + c] = (extinction * (from + (color % 1) * (to - from))) / 255;
     }
     density[4 * i + 3] = extinction;
     if (i === 0) continue;
     for (let c = 0; c < 4; ++c) {
-      integral[4 * i + c] = integral[4 * i - 4 + c]! + (density[4 * i + c]! + density[4 * i - 4 + c]!) / 2 / kTransferSteps;
+      integral[4 * i + c] =
+        integral[4 * i - 4 + c]! +
+        (density[4 * i + c]! + density[4 * i - 4 + c]!) / 2 / kTransferSteps;
     }
   }
   return {density, integral};

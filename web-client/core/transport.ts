@@ -1,9 +1,11 @@
-// What a session needs of whatever brings the log's blocks: a WebSocket, byte ranges of a file, or numbered chunks. All speak in the frames and
-// messages of proto/PROTOCOL.md, and each goes on where another one ended.
+// What a session needs of whatever brings the log's blocks: a WebSocket, byte ranges of a file, or
+// numbered chunks. All speak in the frames and messages of proto/PROTOCOL.md, and each goes on
+// where another one ended.
 
+import type {Packet} from './packet';
 import type {QtetError} from './errors';
 import type {Goal} from './goal';
-import type {Packet, WireLattice, Wishes} from './wishes';
+import type {WireLattice, ViewRequest} from './view_request';
 import type {Frame, OpenRequest, ServerMessage} from './protocol';
 
 export interface TransportHandlers {
@@ -33,12 +35,15 @@ export interface Transport {
   /** Gives the credit of `bytes` applied payload bytes back. */
   applied(bytes: number): void;
   /** What is looked at: of a log of regions, packets come in another order from now on. */
-  look(wishes: Wishes): void;
+  look(view: ViewRequest): void;
   /** Ends the connection for good; `connect` may be called again. */
   disconnect(): void;
 }
 
-/** The chunk table and the fields' keys, once the head is here: whoever fetches blocks by their places needs them. */
+/**
+ * The chunk table and the fields' keys, once the head is here: whoever fetches blocks by their
+ * places needs them.
+ */
 export interface LogTable {
   readonly isKnown: boolean;
   readonly chunkCount: number;

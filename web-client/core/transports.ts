@@ -9,20 +9,41 @@ import type {LogTable, Transport, TransportHandlers} from './transport';
 import type {Source} from './worker_messages';
 
 /** A server offers all, a file on any other host its ranges alone. */
-export function kindsOf({url, log, transport}: Pick<Source, 'url' | 'log' | 'transport'>): TransportKind[] {
+export function kindsOf({
+  url,
+  log,
+  transport,
+}: Pick<Source, 'url' | 'log' | 'transport'>): TransportKind[] {
   if (url === '') return ['range'];
   if (log === '') return ['websocket'];
   return transport === 'auto' ? [...kTransportKinds] : [transport];
 }
 
-export function makeTransport(source: Source, table: LogTable, handlers: TransportHandlers): Transport {
+export function makeTransport(
+  source: Source,
+  table: LogTable,
+  handlers: TransportHandlers,
+): Transport {
   const {url, log, token} = source;
   const fetch = fetchWith(token);
-  return new AutoTransport(kindsOf(source), (kind, its) => {
-    switch (kind) {
-      case 'websocket': return new SocketTransport(token ? () => ticketUrl(url, token) : url, its, undefined, undefined, table);
-      case 'range': return new HttpTransport(() => new RangeSource(log, table, fetch), table, its);
-      case 'chunks': return new HttpTransport(() => new ChunkSource(log, table, fetch), table, its);
-    }
-  }, handlers);
+  return new AutoTransport(
+    kindsOf(source),
+    (kind, its) => {
+      switch (kind) {
+        case 'websocket':
+          return new SocketTransport(
+            token ? () => ticketUrl(url, token) : url,
+            its,
+            undefined,
+            undefined,
+            table,
+          );
+        case 'range':
+          return new HttpTransport(() => new RangeSource(log, table, fetch), table, its);
+        case 'chunks':
+          return new HttpTransport(() => new ChunkSource(log, table, fetch), table, its);
+      }
+    },
+    handlers,
+  );
 }

@@ -1,5 +1,5 @@
-// What the renderer draws: triangles without shared corners, so that a shader can tell a corner's number from the vertex's and
-// draw edges of even width.
+// What the renderer draws: triangles without shared corners, so that a shader can tell a corner's
+// number from the vertex's and draw edges of even width.
 
 import type {FieldScale} from './field_scale';
 
@@ -8,12 +8,19 @@ export interface TriangleSoup {
   positions: Float32Array;
   /** 3 field values a triangle, in [0, 1] over the field's range; empty when there is no field */
   values: Float32Array;
-  /** Triangles from this one on are halves of quads: the side opposite to their first corner is no edge of the mesh. */
+  /**
+   * Triangles from this one on are halves of quads: the side opposite to their first corner is no
+   * edge of the mesh.
+   */
   firstHalf: number;
 }
 
 /** The boundary as a soup. `points`: 3 a vertex, `triangles`: 3 a triangle. */
-export function boundarySoup(points: Int32Array, triangles: Uint32Array, scale: FieldScale | null): TriangleSoup {
+export function boundarySoup(
+  points: Int32Array,
+  triangles: Uint32Array,
+  scale: FieldScale | null,
+): TriangleSoup {
   const positions = new Float32Array(3 * triangles.length);
   const values = new Float32Array(scale ? triangles.length : 0);
   for (let corner = 0; corner < triangles.length; ++corner) {
@@ -31,10 +38,14 @@ export function noSoup(): TriangleSoup {
   return {positions: new Float32Array(0), values: new Float32Array(0), firstHalf: 0};
 }
 
-/** Smallest and largest lattice coordinates of the triangles' vertices: [x0, y0, z0, x1, y1, z1]. REQUIRES: at least one triangle. */
+/**
+ * Smallest and largest lattice coordinates of the triangles' vertices: [x0, y0, z0, x1, y1, z1].
+ * REQUIRES: at least one triangle.
+ */
 export function pointBounds(points: Int32Array, triangles: Uint32Array): number[] {
   const bounds = [0, 1, 2].map((axis) => {
-    let low = Infinity, high = -Infinity;
+    let low = Infinity,
+      high = -Infinity;
     for (let i = 0; i < triangles.length; ++i) {
       const value = points[3 * triangles[i]! + axis]!;
       if (value < low) low = value;
@@ -47,9 +58,11 @@ export function pointBounds(points: Int32Array, triangles: Uint32Array): number[
 
 /** Several in one: whole triangles first, then the halves of quads. */
 export function joinSoups(soups: TriangleSoup[]): TriangleSoup {
-  const sum = (size: (soup: TriangleSoup) => number): number => soups.reduce((all, soup) => all + size(soup), 0);
+  const sum = (size: (soup: TriangleSoup) => number): number =>
+    soups.reduce((all, soup) => all + size(soup), 0);
   const joined: TriangleSoup = {
-    positions: new Float32Array(sum(({positions}) => positions.length)), values: new Float32Array(sum(({values}) => values.length)),
+    positions: new Float32Array(sum(({positions}) => positions.length)),
+    values: new Float32Array(sum(({values}) => values.length)),
     firstHalf: sum(({firstHalf}) => firstHalf),
   };
   let at = 0;

@@ -6,13 +6,19 @@ import type {FieldScale} from './field_scale';
 import {isHole, neighboursOf} from './neighbours';
 
 export interface VolumeCells {
-  /** 4 a vertex: place on the lattice and value in [0, 1]; values of a field of cells stand in `cellValues` instead. */
+  /**
+   * 4 a vertex: place on the lattice and value in [0, 1]; values of a field of cells stand in
+   * `cellValues` instead.
+   */
   vertices: Float32Array;
   /** 4 vertices a cell, in ascending order. */
   cells: Uint32Array;
   /** 1 + the cell, with kHiddenCell added where nothing of it is to be seen. */
   tags: Uint32Array;
-  /** Through the faces opposite to a cell's four corners, 2 numbers each: the tag of the cell beyond, and its vertex that is not of the face; 0, 0: the boundary. */
+  /**
+   * Through the faces opposite to a cell's four corners, 2 numbers each: the tag of the cell
+   * beyond, and its vertex that is not of the face; 0, 0: the boundary.
+   */
   links: Uint32Array;
   /** As entryFaces gives them. */
   entries: Uint32Array;
@@ -31,28 +37,55 @@ export const kHiddenCell = 0x80000000;
 /** A mesh of more cells has a coarse one beside it, of no more. */
 export const kCoarseCells = 8000;
 
-/** Copies of the mesh as it is, because the codec's memory moves on. Hidden are cells that are not `kept` (null: all are), and those with a corner whose value is missing. */
-export function volumeCells(mesh: MeshNow, scale: FieldScale, kept: Uint8Array | null): VolumeCells {
+/**
+ * Copies of the mesh as it is, because the codec's memory moves on. Hidden are cells that are not
+ * `kept` (null: all are), and those with a corner whose value is missing.
+ */
+export function volumeCells(
+  mesh: MeshNow,
+  scale: FieldScale,
+  kept: Uint8Array | null,
+): VolumeCells {
   const cells = sortedCells(mesh.tetrahedra);
   const vertices = new Float32Array((4 * mesh.points.length) / 3);
   for (let v = 0; 4 * v < vertices.length; ++v) {
     for (let axis = 0; axis < 3; ++axis) vertices[4 * v + axis] = mesh.points[3 * v + axis]!;
     if (!scale.ofCells) vertices[4 * v + 3] = scale.at(v);
   }
-  const cellValues = scale.ofCells ? Float32Array.from({length: cells.length / 4}, (_, cell) => scale.at(cell)) : null;
+  const cellValues = scale.ofCells
+    ? Float32Array.from({length: cells.length / 4}, (_, cell) => scale.at(cell))
+    : null;
   const isHidden = (cell: number): boolean => {
     let value = cellValues ? cellValues[cell]! : 0;
-    if (!cellValues) for (let i = 4 * cell; i < 4 * cell + 4; ++i) value += vertices[4 * cells[i]! + 3]!;
+    if (!cellValues)
+      for (let i = 4 * cell; i < 4 * cell + 4; ++i) value += vertices[4 * cells[i]! + 3]!;
     return kept?.[cell] === 0 || Number.isNaN(value);
   };
   const tags = new Uint32Array(cells.length / 4);
-  for (let cell = 0; cell < tags.length; ++cell) tags[cell] = 1 + cell + (isHidden(cell) ? kHiddenCell : 0);
+  for (let cell = 0; cell < tags.length; ++cell)
+    tags[cell] = 1 + cell + (isHidden(cell) ? kHiddenCell : 0);
   const neighbours = neighboursOf(cells);
-  return {vertices, cells, tags, links: linksOf(cells, neighbours, tags), entries: entryFaces(vertices, cells, neighbours, tags), cellValues};
+  return {
+    vertices,
+    cells,
+    tags,
+    links: linksOf(cells, neighbours, tags),
+    entries: entryFaces(vertices, cells, neighbours, tags),
+    cellValues,
+  };
 }
 
-export function buffersOfVolume({vertices, cells, tags, links, entries, cellValues}: VolumeCells): ArrayBuffer[] {
-  return [vertices, cells, tags, links, entries, ...(cellValues ? [cellValues] : [])].map(({buffer}) => buffer as ArrayBuffer);
+export function buffersOfVolume({
+  vertices,
+  cells,
+  tags,
+  links,
+  entries,
+  cellValues,
+}: VolumeCells): ArrayBuffer[] {
+  return [vertices, cells, tags, links, entries, ...(cellValues ? [cellValues] : [])].map(
+    ({buffer}) => buffer as ArrayBuffer,
+  );
 }
 
 function sortedCells(tetrahedra: Uint32Array): Uint32Array {

@@ -1,4 +1,5 @@
-// What passes between the page and the worker that decodes. Typed arrays travel by transfer, never by copy.
+// What passes between the page and the worker that decodes. Typed arrays travel by transfer, never
+// by copy.
 
 import type {TransportKind} from './auto_transport';
 import type {Ray, Vector} from './cell_ray';
@@ -12,22 +13,32 @@ import type {Plane} from './slice';
 import type {Statistics} from './statistics';
 import type {TriangleSoup} from './triangle_soup';
 import type {CoarseCells, VolumeCells} from './volume';
-import type {Wishes} from './wishes';
+import type {ViewRequest} from './view_request';
 
 /** Where the stream stands. `paused`: by the user; `held`: the level that was asked for is here. */
-export type StreamState = 'connecting' | 'streaming' | 'complete' | 'reconnecting' | 'paused' | 'held' | 'failed';
+export type StreamState =
+  'connecting' | 'streaming' | 'complete' | 'reconnecting' | 'paused' | 'held' | 'failed';
 
 export interface Source {
   /** ws: or wss: address of /v1/stream; empty: there is none */
   url: string;
-  /** Address of the log as a file, for byte ranges; of a server's also for its chunks (/v1/meshes/{id}/log) */
+  /**
+   * Address of the log as a file, for byte ranges; of a server's also for its chunks
+   * (/v1/meshes/{id}/log)
+   */
   log: string;
   /** `auto`: whatever works. */
   transport: 'auto' | TransportKind;
-  /** Where the server wants one for reading: sent with requests, and traded for a ticket before a WebSocket. */
+  /**
+   * Where the server wants one for reading: sent with requests, and traded for a ticket before a
+   * WebSocket.
+   */
   token?: string;
   mesh: string;
-  /** Names of the fields to begin with, as the server calls them; null: the first one, whichever that is; empty: none. */
+  /**
+   * Names of the fields to begin with, as the server calls them; null: the first one, whichever
+   * that is; empty: none.
+   */
   fields: string[] | null;
   limit: Limit;
   /** Nothing is asked of the network before `resume`. */
@@ -43,7 +54,7 @@ export type ToWorker =
   | {type: 'start'; source: Source; run: number}
   | {type: 'display'; display: Display}
   | {type: 'limit'; limit: Limit}
-  | {type: 'look'; wishes: Wishes}
+  | {type: 'look'; view: ViewRequest}
   | {type: 'pause'}
   | {type: 'resume'}
   /** The last snapshot is on the screen: the next may come. */
@@ -86,7 +97,10 @@ export type Posted = FromWorker & {run?: number};
 
 export type FromWorker =
   | {type: 'manifest'; manifest: Manifest; digest: string; fields: number[]}
-  /** What the fields of now will take, as planOf tells it: after `manifest`, and whenever other fields are wanted. */
+  /**
+   * What the fields of now will take, as planOf tells it: after `manifest`, and whenever other
+   * fields are wanted.
+   */
   | {type: 'plan'; plan: LevelBytes[]}
   | {type: 'snapshot'; snapshot: Snapshot}
   | {type: 'progress'; statistics: Statistics; received: number}

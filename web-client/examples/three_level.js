@@ -14,7 +14,10 @@ const loader = new GLTFLoader().setDRACOLoader(new DRACOLoader());
 const mesh = (await loader.loadAsync(level('glb', 50000))).scene;
 const {center, radius} = new THREE.Box3().setFromObject(mesh).getBoundingSphere(new THREE.Sphere());
 mesh.position.copy(center).negate();
-scene.add(new THREE.Group().add(mesh)).children.at(-1).scale.setScalar(1 / radius);
+scene
+  .add(new THREE.Group().add(mesh))
+  .children.at(-1)
+  .scale.setScalar(1 / radius);
 camera.position.set(1.5, 1, 2.2);
 new OrbitControls(camera, renderer.domElement);
 renderer.setAnimationLoop(() => renderer.render(scene, camera));

@@ -1,4 +1,6 @@
-// A level of detail in vtk.js: a .glb with Draco and the first field's colours. The decoder is npm's draco3d, or three's.
+// A level of detail in vtk.js: a .glb with Draco and the first field's colours. The decoder is
+// npm's draco3d, or three's.
+/* global DracoDecoderModule */
 import '@kitware/vtk.js/Rendering/Profiles/Geometry';
 import GenericRenderWindow from '@kitware/vtk.js/Rendering/Misc/GenericRenderWindow';
 import GLTFImporter from '@kitware/vtk.js/IO/Geometry/GLTFImporter';

@@ -1,4 +1,5 @@
-// A stream in vtk.js: the boundary as vtkPolyData, a finer one as often as more has come. `npm install qtet @kitware/vtk.js`
+// A stream in vtk.js: the boundary as vtkPolyData, a finer one as often as more has come. `npm
+// install qtet @kitware/vtk.js`
 import '@kitware/vtk.js/Rendering/Profiles/Geometry';
 import {Client, kPlainDisplay} from 'qtet/core';
 import Actor from '@kitware/vtk.js/Rendering/Core/Actor';
@@ -13,14 +14,22 @@ const [mapper, actor, mesh] = [Mapper, Actor, PolyData].map((kind) => kind.newIn
 actor.setMapper(mapper);
 mapper.setInputData(mesh);
 const client = new Client(({type, fields, snapshot}) => {
-  if (type === 'manifest') client.show({...kPlainDisplay, color: {field: fields[0] ?? 0, component: -1}});
+  if (type === 'manifest')
+    client.show({...kPlainDisplay, color: {field: fields[0] ?? 0, component: -1}});
   if (type !== 'snapshot' || !snapshot.surface) return;
   const {positions, values} = snapshot.surface;
   mesh.getPoints().setData(positions, 3);
-  mesh.getPolys().setData(Uint32Array.from({length: 4 * positions.length / 9}, (_, i) => i % 4 ? 3 * (i >> 2) + i % 4 - 1 : 3));
+  mesh
+    .getPolys()
+    .setData(
+      Uint32Array.from({length: (4 * positions.length) / 9}, (_, i) =>
+        i % 4 ? 3 * (i >> 2) + (i % 4) - 1 : 3,
+      ),
+    );
   mesh.getPointData().setScalars(DataArray.newInstance({name: 'field', values}));
   mesh.modified();
-  if (!screen.getRenderer().hasViewProp(actor)) screen.getRenderer().addActor(actor), screen.getRenderer().resetCamera();
+  if (!screen.getRenderer().hasViewProp(actor))
+    (screen.getRenderer().addActor(actor), screen.getRenderer().resetCamera());
   screen.getRenderWindow().render();
   client.shown();
 });

@@ -8,9 +8,13 @@ const ray = (origin: Vector, direction: Vector): Ray => ({origin, direction});
 
 describe('a line through cells', () => {
   test.each<[Vector, Vector, number]>([
-    [[-5, 11.3, 17.7], [1, 0, 0], 40], [[-7, 3.1, 4.2], [0.9, 0.31, 0.23], 0], [[20.5, 13.25, 99], [0, 0, -1], 40],
+    [[-5, 11.3, 17.7], [1, 0, 0], 40],
+    [[-7, 3.1, 4.2], [0.9, 0.31, 0.23], 0],
+    [[20.5, 13.25, 99], [0, 0, -1], 40],
   ])('from %j towards %j isCoveredWithoutGapsOrOverlaps', (origin, direction, length) => {
-    const found = stretches(cells, ray(origin, direction), 0, Infinity).sort((a, b) => a.from - b.from);
+    const found = stretches(cells, ray(origin, direction), 0, Infinity).sort(
+      (a, b) => a.from - b.from,
+    );
     expect(found.length).toBeGreaterThan(4);
     for (let i = 1; i < found.length; ++i) expect(found[i]!.from).toBeCloseTo(found[i - 1]!.to, 9);
     if (length > 0) expect(found.at(-1)!.to - found[0]!.from).toBeCloseTo(length, 9);
@@ -22,7 +26,9 @@ describe('a line through cells', () => {
   });
 
   test('passesByCellsThatAreNotKept', () => {
-    const kept = Uint8Array.from({length: tetrahedra.length / 4}, (_, cell) => (cell >= 96 ? 1 : 0));
+    const kept = Uint8Array.from({length: tetrahedra.length / 4}, (_, cell) =>
+      cell >= 96 ? 1 : 0,
+    );
     const found = stretches({...cells, kept}, ray([-5, 11.3, 17.7], [1, 0, 0]), 0, Infinity);
     expect(Math.min(...found.map(({from}) => from))).toBeCloseTo(15, 9);
   });
@@ -31,7 +37,11 @@ describe('a line through cells', () => {
     const line = ray([0, 0, 0], [2, 0, 0]);
     const plane = {normal: [1, 0, 0] as Vector, offset: 12};
     expect(below([plane], line, {cell: 3, from: 1, to: 9})).toEqual({cell: 3, from: 1, to: 6});
-    expect(below([{normal: [-1, 0, 0], offset: -12}], line, {cell: 3, from: 1, to: 9})).toEqual({cell: 3, from: 6, to: 9});
+    expect(below([{normal: [-1, 0, 0], offset: -12}], line, {cell: 3, from: 1, to: 9})).toEqual({
+      cell: 3,
+      from: 6,
+      to: 9,
+    });
     expect(below([plane], line, {cell: 3, from: 7, to: 9})).toBeNull();
     expect(below([{normal: [0, 1, 0], offset: -1}], line, {cell: 3, from: 1, to: 9})).toBeNull();
   });
@@ -43,7 +53,12 @@ test('sharesOfCornersGiveThePointBack', () => {
     const point = along(line, (from + to) / 2);
     const shares = barycentric(cells, cell, point);
     expect(Math.min(...shares)).toBeGreaterThan(0);
-    const back = [0, 1, 2].map((axis) => shares.reduce((sum, share, i) => sum + share * points[3 * tetrahedra[4 * cell + i]! + axis]!, 0));
+    const back = [0, 1, 2].map((axis) =>
+      shares.reduce(
+        (sum, share, i) => sum + share * points[3 * tetrahedra[4 * cell + i]! + axis]!,
+        0,
+      ),
+    );
     back.forEach((value, axis) => expect(value).toBeCloseTo(point[axis]!, 9));
   }
 });

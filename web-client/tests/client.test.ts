@@ -15,9 +15,15 @@ class FakeWorker {
   static last: FakeWorker;
   posted: ToWorker[] = [];
   onmessage: ((event: {data: Posted}) => void) | null = null;
-  constructor() { FakeWorker.last = this; }
-  postMessage(message: ToWorker): void { this.posted.push(message); }
-  say(message: Posted): void { this.onmessage!({data: message}); }
+  constructor() {
+    FakeWorker.last = this;
+  }
+  postMessage(message: ToWorker): void {
+    this.posted.push(message);
+  }
+  say(message: Posted): void {
+    this.onmessage!({data: message});
+  }
 }
 
 beforeEach(() => void vi.stubGlobal('Worker', FakeWorker));
@@ -26,7 +32,13 @@ afterEach(() => {
   vi.useRealTimers();
 });
 
-const state = (run?: number): Posted => ({type: 'state', state: 'streaming', attempt: 0, delayMs: 0, ...(run !== undefined && {run})});
+const state = (run?: number): Posted => ({
+  type: 'state',
+  state: 'streaming',
+  attempt: 0,
+  delayMs: 0,
+  ...(run !== undefined && {run}),
+});
 
 test('whatTheWorkerSaysOfTheMeshBeforeIsNotHeard', () => {
   const heard: unknown[] = [];
@@ -39,7 +51,7 @@ test('whatTheWorkerSaysOfTheMeshBeforeIsNotHeard', () => {
   expect(heard).toEqual([]);
   worker.say(state(runs[1]));
   expect(heard).toHaveLength(1);
-  worker.say(state());  // a decoder that could not be loaded has no run
+  worker.say(state()); // a decoder that could not be loaded has no run
   expect(heard).toHaveLength(2);
 });
 
@@ -56,10 +68,23 @@ test('theFirstPictureOfAMeshDoesNotWaitForThatOfTheMeshBefore', () => {
   vi.useFakeTimers();
   const log = {fields: ['p'], chunks: 1};
   const assembler = new Assembler(new FakeCodec(log), kFakeValues);
-  let pictures = 0, socket = new FakeSocket();
-  const publisher = new Publisher(assembler, () => void ++pictures);
-  const session = new Session(assembler, publisher, () => undefined,
-    ({url}, _, handlers) => new SocketTransport(url, handlers, () => (socket = new FakeSocket()), () => 0));
+  let pictures = 0,
+    socket = new FakeSocket();
+  const publisher = new Publisher(assembler, () => {
+    ++pictures;
+  });
+  const session = new Session(
+    assembler,
+    publisher,
+    () => undefined,
+    ({url}, _, handlers) =>
+      new SocketTransport(
+        url,
+        handlers,
+        () => (socket = new FakeSocket()),
+        () => 0,
+      ),
+  );
   for (const mesh of ['a', 'b']) {
     session.start({url: 'ws://x', log: '', transport: 'auto', mesh, fields: ['p'], limit: kFull});
     socket.accept();

@@ -1,5 +1,5 @@
 import {describe, expect, test} from 'vitest';
-import {extentAlong, planeOf} from '../viewer/clip_panel';
+import {extentAlong, planeOf} from '../viewer/clip_plane';
 import {axisNormal} from '../viewer/settings';
 
 const kBounds = [0, 0, 0, 100, 200, 50];
@@ -8,13 +8,16 @@ describe('a clip plane in the lattice', () => {
   test('standsAtItsShareOfTheExtentWhicheverSideIsCutAway', () => {
     for (const flipped of [false, true]) {
       const {normal, offset} = planeOf({normal: axisNormal(0, flipped), share: 0.25}, kBounds);
-      expect(Math.abs(normal[0]! * offset - 25)).toBe(0.5);
+      expect(Math.abs(normal[0] * offset - 25)).toBe(0.5);
     }
-    expect(Math.abs(planeOf({normal: axisNormal(1, false), share: 0.25}, kBounds).offset + 50)).toBe(0.5);
+    expect(
+      Math.abs(planeOf({normal: axisNormal(1, false), share: 0.25}, kBounds).offset + 50),
+    ).toBe(0.5);
   });
 
   test('liesBetweenTwoLatticePlanes', () => {
-    for (let i = 0; i <= 10; ++i) expect(planeOf({normal: axisNormal(2, false), share: i / 10}, kBounds).offset % 1).toBe(0.5);
+    for (let i = 0; i <= 10; ++i)
+      expect(planeOf({normal: axisNormal(2, false), share: i / 10}, kBounds).offset % 1).toBe(0.5);
   });
 
   test('acrossAnyDirectionCountsAlongIt', () => {

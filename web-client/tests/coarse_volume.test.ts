@@ -8,7 +8,11 @@ import {FakeCodec, fieldFrame, headFrame, kFakeValues, meshFrame, type FakeLog} 
 
 /** Each chunk brings one cell. */
 const kLog: FakeLog = {fields: ['p', 'v'], chunks: kCoarseCells + 100};
-const shows = (field: number): Display => ({...kPlainDisplay, volume: true, color: {field, component: -1}});
+const shows = (field: number): Display => ({
+  ...kPlainDisplay,
+  volume: true,
+  color: {field, component: -1},
+});
 
 let codec: FakeCodec;
 let coarse: CoarseVolume;
@@ -20,7 +24,9 @@ beforeEach(() => {
 });
 
 function noteAll(field: number): void {
-  for (let chunk = 0; chunk < kLog.chunks; ++chunk) for (const bytes of [meshFrame(1, chunk), fieldFrame(1, chunk, field)]) coarse.note(parseFrame(bytes));
+  for (let chunk = 0; chunk < kLog.chunks; ++chunk)
+    for (const bytes of [meshFrame(1, chunk), fieldFrame(1, chunk, field)])
+      coarse.note(parseFrame(bytes));
 }
 
 test('hasNoMoreCellsThanItMay', async () => {

@@ -1,24 +1,56 @@
 import {describe, expect, test} from 'vitest';
 import {keepBelow, keepWithin} from '../core/cell_choice';
 import {facesSoup, surfaceFaces} from '../core/cell_surface';
-import {cutsOf, fieldsOf, isosurfacesOf, keptCells, kPlainDisplay, surfaceOf, type Display, type MeshNow} from '../core/display';
+import {
+  cutsOf,
+  fieldsOf,
+  isosurfacesOf,
+  keptCells,
+  kPlainDisplay,
+  surfaceOf,
+  type Display,
+  type MeshNow,
+} from '../core/display';
 import {FieldScale, kMagnitude, scalarRange, type Scalar} from '../core/field_scale';
 import type {FieldInfo} from '../core/manifest';
 import {isosurface} from '../core/slice';
-import {joinSoups} from '../core/triangle_soup';
+import {joinSoups, type TriangleSoup} from '../core/triangle_soup';
 import {allVertices, cubes, soupArea, soupVolume} from './cubes';
 
 const {points, tetrahedra} = cubes(4, 10);
 const cells = tetrahedra.length / 4;
-const info = (association: 'point' | 'cell', range: [number, number], components = 1): FieldInfo =>
-  ({name: 'f', components, association, step: 1, minimum: Array<number>(components).fill(0), range});
+const info = (
+  association: 'point' | 'cell',
+  range: [number, number],
+  components = 1,
+): FieldInfo => ({
+  name: 'f',
+  components,
+  association,
+  step: 1,
+  minimum: Array<number>(components).fill(0),
+  range,
+});
 /** x of each vertex; and of each cell the x of the cube that it lies in. */
-const xs = new FieldScale(Int32Array.from({length: points.length / 3}, (_, v) => points[3 * v]!), info('point', [0, 40]));
+const xs = new FieldScale(
+  Int32Array.from({length: points.length / 3}, (_, v) => points[3 * v]!),
+  info('point', [0, 40]),
+);
 const cubeOf = Int32Array.from({length: cells}, (_, cell) => 10 * Math.floor(cell / (6 * 16)));
 const cellXs = new FieldScale(cubeOf, info('cell', [0, 30]));
-const mesh: MeshNow = {points, tetrahedra, boundary: allVertices(points), scale: ({field}: Scalar) => [xs, cellXs][field] ?? null};
+const mesh: MeshNow = {
+  points,
+  tetrahedra,
+  boundary: allVertices(points),
+  scale: ({field}: Scalar) => [xs, cellXs][field] ?? null,
+};
 const display = (change: Partial<Display>): Display => ({...kPlainDisplay, ...change});
-const surface = (kept: Uint8Array | null) => facesSoup({points, tetrahedra, kept}, surfaceFaces({points, tetrahedra, kept}, mesh.boundary), null);
+const surface = (kept: Uint8Array | null): TriangleSoup =>
+  facesSoup(
+    {points, tetrahedra, kept},
+    surfaceFaces({points, tetrahedra, kept}, mesh.boundary),
+    null,
+  );
 
 describe('the surface of cells', () => {
   test('ofAllIsTheBoundarySeenFromOutside', () => {
@@ -27,15 +59,23 @@ describe('the surface of cells', () => {
   });
 
   test('ofSomeEnclosesTheirVolume', () => {
-    const kept = Uint8Array.from({length: cells}, (_, i) => (i * 7919) % 3 === 0 ? 1 : 0);
+    const kept = Uint8Array.from({length: cells}, (_, i) => ((i * 7919) % 3 === 0 ? 1 : 0));
     expect(soupVolume(surface(kept))).toBeCloseTo(kept.reduce((sum, k) => sum + k, 0) * 1000, 1);
   });
 
   test('carriesTheValuesOfItsOwnCells', () => {
     const soup = surfaceOf(mesh, display({color: {field: 1, component: kMagnitude}}), null);
     for (let i = 0; i < soup.values.length; i += 3) {
-      const low = Math.min(soup.positions[3 * i]!, soup.positions[3 * i + 3]!, soup.positions[3 * i + 6]!);
-      const high = Math.max(soup.positions[3 * i]!, soup.positions[3 * i + 3]!, soup.positions[3 * i + 6]!);
+      const low = Math.min(
+        soup.positions[3 * i]!,
+        soup.positions[3 * i + 3]!,
+        soup.positions[3 * i + 6]!,
+      );
+      const high = Math.max(
+        soup.positions[3 * i]!,
+        soup.positions[3 * i + 3]!,
+        soup.positions[3 * i + 6]!,
+      );
       expect(30 * soup.values[i]!).toBeGreaterThanOrEqual(high - 10.001);
       expect(30 * soup.values[i]!).toBeLessThanOrEqual(low + 0.001);
     }
@@ -50,7 +90,10 @@ describe('chosen cells', () => {
   });
 
   test('byAThresholdOfCellsAreThoseCells', () => {
-    const kept = keptCells(mesh, display({threshold: {scalar: {field: 1, component: kMagnitude}, low: 0.3, high: 0.4}}))!;
+    const kept = keptCells(
+      mesh,
+      display({threshold: {scalar: {field: 1, component: kMagnitude}, low: 0.3, high: 0.4}}),
+    )!;
     expect(soupVolume(surface(kept))).toBeCloseTo(6 * 10 * 1600, 1);
   });
 
@@ -68,7 +111,9 @@ describe('chosen cells', () => {
   });
 
   test('inWholeCellsHaveNoCuts', () => {
-    expect(cutsOf(mesh, display({mode: 'cells', planes: [{normal: [0, 0, 1], offset: 12.5}]}), null)).toEqual([]);
+    expect(
+      cutsOf(mesh, display({mode: 'cells', planes: [{normal: [0, 0, 1], offset: 12.5}]}), null),
+    ).toEqual([]);
   });
 });
 
@@ -80,22 +125,45 @@ describe('isosurfaces', () => {
   });
 
   test('ofSeveralValuesAreOneSoupColouredByAnotherField', () => {
-    const soup = isosurfacesOf(mesh, display({
-      color: {field: 1, component: kMagnitude}, isosurfaces: {scalar: {field: 0, component: kMagnitude}, values: [0.1, 0.6]},
-    }), null)!;
+    const soup = isosurfacesOf(
+      mesh,
+      display({
+        color: {field: 1, component: kMagnitude},
+        isosurfaces: {scalar: {field: 0, component: kMagnitude}, values: [0.1, 0.6]},
+      }),
+      null,
+    )!;
     expect(soupArea(soup)).toBeCloseTo(3200, 2);
-    expect(new Set([...soup.values].map((value) => Math.round(30 * value)))).toEqual(new Set([0, 20]));
+    expect(new Set([...soup.values].map((value) => Math.round(30 * value)))).toEqual(
+      new Set([0, 20]),
+    );
   });
 
   test('haveNoPartInCellsWhereAValueIsMissing', () => {
-    const gaps = Int32Array.from({length: points.length / 3}, (_, v) => points[3 * v + 2] === 0 ? -(2 ** 31) : points[3 * v]!);
-    expect(soupArea(isosurface({points, tetrahedra}, new FieldScale(gaps, info('point', [0, 40])), 13 / 40, null))).toBeCloseTo(1200, 2);
+    const missing = Int32Array.from({length: points.length / 3}, (_, v) =>
+      points[3 * v + 2] === 0 ? -(2 ** 31) : points[3 * v]!,
+    );
+    expect(
+      soupArea(
+        isosurface(
+          {points, tetrahedra},
+          new FieldScale(missing, info('point', [0, 40])),
+          13 / 40,
+          null,
+        ),
+      ),
+    ).toBeCloseTo(1200, 2);
   });
 
   test('joinedKeepTheirHalvesBehindTheirTriangles', () => {
-    const [a, b] = [0.1, 0.6].map((value) => isosurface({points, tetrahedra}, xs, value, null)) as [never, never];
+    const [a, b] = [0.1, 0.6].map((value) => isosurface({points, tetrahedra}, xs, value, null)) as [
+      never,
+      never,
+    ];
     const joined = joinSoups([a, b]) as {firstHalf: number; positions: Float32Array};
-    expect(joined.firstHalf).toBe((a as {firstHalf: number}).firstHalf + (b as {firstHalf: number}).firstHalf);
+    expect(joined.firstHalf).toBe(
+      (a as {firstHalf: number}).firstHalf + (b as {firstHalf: number}).firstHalf,
+    );
     expect(soupArea(joined)).toBeCloseTo(3200, 2);
   });
 });
@@ -104,14 +172,23 @@ describe('components', () => {
   const vector = info('point', [0, 5], 3);
   test('ofHolesAndUnusedVerticesDoNotCount', () => {
     const values = Int32Array.from([1, 0, 0, 2, 0, 0, 3, 0, 0, 4, 0, 0, -5, 0, 0]);
-    const cells = Uint32Array.from([0, 1, 2, 3, 4, 4, 4, 4]);
-    const [low, high] = new FieldScale(values, vector, 0).extent(cells);
-    expect([low, high].map((share) => 10 * share - 5)).toEqual([1, 4].map((value) => expect.closeTo(value, 5)));
-    expect(new FieldScale(values.subarray(0, 6), {...vector, association: 'cell'}, 0).extent(cells)).toEqual([expect.closeTo(0.6, 5), expect.closeTo(0.6, 5)]);
+    const oneAndAHole = Uint32Array.from([0, 1, 2, 3, 4, 4, 4, 4]);
+    const [low, high] = new FieldScale(values, vector, 0).extent(oneAndAHole);
+    expect([low, high].map((share) => 10 * share - 5)).toEqual(
+      [1, 4].map((value) => expect.closeTo(value, 5) as number),
+    );
+    expect(
+      new FieldScale(values.subarray(0, 6), {...vector, association: 'cell'}, 0).extent(
+        oneAndAHole,
+      ),
+    ).toEqual([expect.closeTo(0.6, 5), expect.closeTo(0.6, 5)]);
     expect(new FieldScale(values, vector, 0).extent(new Uint32Array(0))).toEqual([0, 1]);
   });
   test('spanTheLargestMagnitudeBothWays', () => {
-    expect([scalarRange(vector, 1), scalarRange(vector, kMagnitude)]).toEqual([[-5, 5], [0, 5]]);
+    expect([scalarRange(vector, 1), scalarRange(vector, kMagnitude)]).toEqual([
+      [-5, 5],
+      [0, 5],
+    ]);
     const scale = new FieldScale(Int32Array.from([3, -4, 0, 0, 5, 0]), vector, 1);
     expect([scale.at(0), scale.at(1)]).toEqual([0.1, 1]);
   });
@@ -119,5 +196,13 @@ describe('components', () => {
 
 test('aDisplayNeedsEachOfItsFieldsOnce', () => {
   const scalar = (field: number): Scalar => ({field, component: kMagnitude});
-  expect(fieldsOf(display({color: scalar(2), isosurfaces: {scalar: scalar(0), values: []}, threshold: {scalar: scalar(2), low: 0, high: 1}}))).toEqual([2, 0]);
+  expect(
+    fieldsOf(
+      display({
+        color: scalar(2),
+        isosurfaces: {scalar: scalar(0), values: []},
+        threshold: {scalar: scalar(2), low: 0, high: 1},
+      }),
+    ),
+  ).toEqual([2, 0]);
 });

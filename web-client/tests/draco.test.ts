@@ -1,5 +1,6 @@
-// Our decoder of Draco streams against Draco's own, on every value block of the golden logs; and on streams that are broken.
-import draco3d from 'draco3d';
+// Our decoder of Draco streams against Draco's own, on every value block of the golden logs; and on
+// streams that are broken.
+import draco3d, {type Draco} from 'draco3d';
 import {readdirSync, readFileSync} from 'node:fs';
 import {describe, expect, test} from 'vitest';
 import {kDraco} from '../core/draco';
@@ -8,7 +9,11 @@ import {kTestWasm, takeWholeLog} from './whole_log';
 
 const kGolden = new URL('../../tests/golden/valid/', import.meta.url);
 
-interface Block { bytes: Uint8Array; count: number; components: number; }
+interface Block {
+  bytes: Uint8Array;
+  count: number;
+  components: number;
+}
 
 async function goldenBlocks(): Promise<Block[]> {
   const blocks: Block[] = [];
@@ -23,8 +28,8 @@ async function goldenBlocks(): Promise<Block[]> {
   return blocks;
 }
 
-/** draco3d has no types; only tests use it. */
-function stock(draco: any, {bytes, count, components}: Block): Int32Array {
+/** What Draco itself makes of the block. */
+function stock(draco: Draco, {bytes, count, components}: Block): Int32Array {
   const decoder = new draco.Decoder();
   const cloud = new draco.PointCloud();
   const buffer = new draco.DecoderBuffer();
@@ -32,14 +37,22 @@ function stock(draco: any, {bytes, count, components}: Block): Int32Array {
   expect(decoder.DecodeBufferToPointCloud(buffer, cloud).ok()).toBe(true);
   const size = 4 * count * components;
   const address = draco._malloc(size);
-  decoder.GetAttributeDataArrayForAllPoints(cloud, decoder.GetAttribute(cloud, 0), draco.DT_INT32, size, address);
-  const values = draco.HEAP32.slice(address >> 2, (address + size) >> 2) as Int32Array;
+  decoder.GetAttributeDataArrayForAllPoints(
+    cloud,
+    decoder.GetAttribute(cloud, 0),
+    draco.DT_INT32,
+    size,
+    address,
+  );
+  const values = draco.HEAP32.slice(address >> 2, (address + size) >> 2);
   draco._free(address);
   for (const object of [cloud, decoder, buffer]) draco.destroy(object);
   return values;
 }
 
-/** Where a stream says how its symbols are coded: behind the header and one attribute's description. */
+/**
+ * Where a stream says how its symbols are coded: behind the header and one attribute's description.
+ */
 const kSchemeAt = 25;
 
 describe.skipIf(kTestWasm === '')('a Draco stream', () => {
@@ -47,8 +60,11 @@ describe.skipIf(kTestWasm === '')('a Draco stream', () => {
     const blocks = await goldenBlocks();
     const draco = await draco3d.createDecoderModule({});
     const schemes = new Set(blocks.map(({bytes}) => bytes[kSchemeAt]));
-    expect([blocks.length > 30, [...schemes].sort()]).toEqual([true, [0, 1]]);
-    for (const block of blocks) expect(kDraco.decode(block.bytes, block.count, block.components)).toEqual(stock(draco, block));
+    expect([blocks.length > 30, [...schemes].sort((a, b) => a! - b!)]).toEqual([true, [0, 1]]);
+    for (const block of blocks)
+      expect(kDraco.decode(block.bytes, block.count, block.components)).toEqual(
+        stock(draco, block),
+      );
   });
 
   test('cutOrChangedAnywhereGivesAnErrorOfOursOrOtherValues', async () => {
@@ -64,7 +80,11 @@ describe.skipIf(kTestWasm === '')('a Draco stream', () => {
     for (const block of blocks) {
       for (let at = 0; at < block.bytes.length; ++at) {
         attempt(block, block.bytes.subarray(0, at));
-        for (let bit = 0; bit < 8; ++bit) attempt(block, block.bytes.map((byte, i) => (i === at ? byte ^ (1 << bit) : byte)));
+        for (let bit = 0; bit < 8; ++bit)
+          attempt(
+            block,
+            block.bytes.map((byte, i) => (i === at ? byte ^ (1 << bit) : byte)),
+          );
       }
     }
     expect([...codes].sort()).toEqual(['bad-codec', 'bad-value']);
@@ -73,8 +93,13 @@ describe.skipIf(kTestWasm === '')('a Draco stream', () => {
   test('ofAnotherShapeIsBadValue', async () => {
     const [block] = await goldenBlocks();
     const {bytes, count, components} = block!;
-    for (const [other, width] of [[count + 1, components], [count, components + 1]] as const) {
-      expect(() => kDraco.decode(bytes, other, width)).toThrow(expect.objectContaining({code: 'bad-value'}));
+    for (const [other, width] of [
+      [count + 1, components],
+      [count, components + 1],
+    ] as const) {
+      expect(() => kDraco.decode(bytes, other, width)).toThrow(
+        expect.objectContaining({code: 'bad-value'}) as Error,
+      );
     }
   });
 });

@@ -1,15 +1,19 @@
-// Stand-ins for the network and the codec: small, and strict about order, so that a wrong call fails a test.
+// Stand-ins for the network and the codec: small, and strict about order, so that a wrong call
+// fails a test.
 
+import {kFirstFieldPart, kHeadPart} from '../core/parts';
 import type {Codec} from '../core/codec';
 import type {ValueDecoder} from '../core/draco';
 import {QtetError} from '../core/errors';
-import {kFirstFieldPart, kFrameHeaderBytes, kHeadPart} from '../core/protocol';
+import {kFrameHeaderBytes} from '../core/protocol';
 import type {Socket} from '../core/socket_transport';
 import type {FromWorker} from '../core/worker_messages';
 
 /** What a session has said. */
-export const statesOf = (heard: FromWorker[]): string[] => heard.flatMap((message) => (message.type === 'state' ? [message.state] : []));
-export const errorsOf = (heard: FromWorker[]): string[] => heard.flatMap((message) => (message.type === 'error' ? [message.code] : []));
+export const statesOf = (heard: FromWorker[]): string[] =>
+  heard.flatMap((message) => (message.type === 'state' ? [message.state] : []));
+export const errorsOf = (heard: FromWorker[]): string[] =>
+  heard.flatMap((message) => (message.type === 'error' ? [message.code] : []));
 
 export class FakeSocket implements Socket {
   binaryType = '';
@@ -19,16 +23,34 @@ export class FakeSocket implements Socket {
   sent: Record<string, unknown>[] = [];
   closed = false;
 
-  send(data: string): void { this.sent.push(JSON.parse(data) as Record<string, unknown>); }
-  close(): void { this.closed = true; }
+  send(data: string): void {
+    this.sent.push(JSON.parse(data) as Record<string, unknown>);
+  }
+  close(): void {
+    this.closed = true;
+  }
 
-  accept(): void { this.onopen?.(undefined as never); }
-  deliver(data: unknown): void { this.onmessage?.({data}); }
-  lose(code: number): void { this.onclose?.({code, reason: ''}); }
-  sentOf(type: string): Record<string, unknown>[] { return this.sent.filter((message) => message.type === type); }
+  accept(): void {
+    this.onopen?.(undefined as never);
+  }
+  deliver(data: unknown): void {
+    this.onmessage?.({data});
+  }
+  lose(code: number): void {
+    this.onclose?.({code, reason: ''});
+  }
+  sentOf(type: string): Record<string, unknown>[] {
+    return this.sent.filter((message) => message.type === type);
+  }
 }
 
-export function frame(options: {stream: number; chunk?: number; firstPart?: number; parts?: number; payload?: Uint8Array}): ArrayBuffer {
+export function frame(options: {
+  stream: number;
+  chunk?: number;
+  firstPart?: number;
+  parts?: number;
+  payload?: Uint8Array;
+}): ArrayBuffer {
   const payload = options.payload ?? new Uint8Array(0);
   const bytes = new Uint8Array(kFrameHeaderBytes + payload.length);
   const view = new DataView(bytes.buffer);
@@ -51,16 +73,20 @@ export interface FakeLog {
 /** Every block of a fake log is 10 bytes. */
 export const kFakeBlockBytes = 10;
 
-const doubles = (...values: number[]): Uint8Array => new Uint8Array(new Float64Array(values).buffer);
+const doubles = (...values: number[]): Uint8Array =>
+  new Uint8Array(new Float64Array(values).buffer);
 const text = (value: string): number[] => [value.length, ...new TextEncoder().encode(value)];
 
 export function fakeHead({fields, cellFields = []}: FakeLog): Uint8Array {
   const names = [...fields, ...cellFields];
-  const kFloat32 = 0, kBits = 8;
+  const kFloat32 = 0,
+    kBits = 8;
   const manifest = [
-    ...text('fake'), ...text('fake.vtu'), ...doubles(1, 0, 0, 0),
+    ...text('fake'),
+    ...text('fake.vtu'),
+    ...doubles(1, 0, 0, 0),
     ...names.flatMap((name) => [...text(name), kFloat32, kBits, ...doubles(1, 0, 0, 255)]),
-    0,  // no known errors
+    0, // no known errors
   ];
   const table = names.flatMap((_, f) => [1, f < fields.length ? 0 : 1]);
   const head = new Uint8Array(64 + manifest.length + table.length);
@@ -80,11 +106,23 @@ export function headFrame(stream: number, log: FakeLog): ArrayBuffer {
 }
 
 export function meshFrame(stream: number, chunk: number): ArrayBuffer {
-  return frame({stream, chunk, firstPart: 0, parts: 2, payload: new Uint8Array(2 * kFakeBlockBytes)});
+  return frame({
+    stream,
+    chunk,
+    firstPart: 0,
+    parts: 2,
+    payload: new Uint8Array(2 * kFakeBlockBytes),
+  });
 }
 
 export function fieldFrame(stream: number, chunk: number, field: number): ArrayBuffer {
-  return frame({stream, chunk, firstPart: kFirstFieldPart + field, parts: 1, payload: new Uint8Array(kFakeBlockBytes)});
+  return frame({
+    stream,
+    chunk,
+    firstPart: kFirstFieldPart + field,
+    parts: 1,
+    payload: new Uint8Array(kFakeBlockBytes),
+  });
 }
 
 /** Counts what is applied, in order; chunk n gives a mesh of n + 1 tetrahedra. */
@@ -94,7 +132,9 @@ export class FakeCodec implements Codec {
   private fieldChunks: number[] = [];
   private readonly headBytes: number;
 
-  constructor(private readonly log: FakeLog) { this.headBytes = fakeHead(log).length; }
+  constructor(private readonly log: FakeLog) {
+    this.headBytes = fakeHead(log).length;
+  }
 
   /** Chunks that fit into memory. */
   room = Infinity;
@@ -107,46 +147,92 @@ export class FakeCodec implements Codec {
     this.chunksApplied = 0;
     this.fieldChunks = this.log.fields.map(() => 0);
   }
-  get chunkCount(): number { return this.log.chunks; }
+  get chunkCount(): number {
+    return this.log.chunks;
+  }
   levelColumns(): Uint32Array {
     const levels = Array.from({length: this.log.chunks}, (_, level) => level);
-    return Uint32Array.from([...levels.map((level) => level + 1), ...levels.map((level) => level + 4), ...levels.map(() => 4)]);
+    return Uint32Array.from([
+      ...levels.map((level) => level + 1),
+      ...levels.map((level) => level + 4),
+      ...levels.map(() => 4),
+    ]);
   }
   blockOffset(chunk: number, part: number): number {
     const parts = 2 + this.log.fields.length + (this.log.cellFields?.length ?? 0);
     return this.headBytes + kFakeBlockBytes * (chunk * parts + part);
   }
-  blockSize(): number { return kFakeBlockBytes; }
-  blockValues(): number { return 1; }
-  blockCodec(): number { return 2; }
+  blockSize(): number {
+    return kFakeBlockBytes;
+  }
+  blockValues(): number {
+    return 1;
+  }
+  blockCodec(): number {
+    return 2;
+  }
   checkBlock(chunk: number): void {
     if (chunk === this.corrupt) throw new QtetError('bad-checksum', `chunk ${chunk} is damaged`);
   }
   apply(chunk: number): void {
     if (chunk >= this.room) throw new QtetError('out-of-memory', 'no room');
-    if (chunk !== this.chunksApplied) throw new QtetError('bad-order', `chunk ${chunk} after ${this.chunksApplied} chunks`);
+    if (chunk !== this.chunksApplied)
+      throw new QtetError('bad-order', `chunk ${chunk} after ${this.chunksApplied} chunks`);
     ++this.chunksApplied;
   }
   applyField(field: number, chunk: number): void {
-    if (chunk !== this.fieldChunks[field] || chunk >= this.chunksApplied) throw new QtetError('bad-order', `field chunk ${chunk}`);
-    ++this.fieldChunks[field]!;
+    if (chunk !== this.fieldChunks[field] || chunk >= this.chunksApplied)
+      throw new QtetError('bad-order', `field chunk ${chunk}`);
+    ++this.fieldChunks[field];
   }
-  fieldChunksApplied(field: number): number { return this.fieldChunks[field]!; }
-  get headChunks(): number { return this.log.chunks; }
-  dependency(chunk: number): number { return Math.max(0, chunk - 1); }
-  packetBox(): number[] { return [0, 0, 0, 255, 255, 255]; }
-  brings(): {tetrahedra: number; vertices: number; boundaryTriangles: number} { return {tetrahedra: 1, vertices: 0, boundaryTriangles: 0}; }
-  applied(chunk: number): boolean { return chunk < this.chunksApplied; }
-  fieldApplied(field: number, chunk: number): boolean { return chunk < this.fieldChunks[field]!; }
-  get level(): number { return Math.max(0, this.chunksApplied - 1); }
-  get vertexCount(): number { return 0; }
-  get tetrahedronCount(): number { return this.chunksApplied; }
-  get boundaryCount(): number { return 0; }
-  points(): Int32Array { return new Int32Array(0); }
-  tetrahedra(): Uint32Array { return new Uint32Array(0); }
-  boundary(): Uint32Array { return new Uint32Array(0); }
-  field(field: number): Int32Array | null { return this.fieldChunks[field]! > 0 ? new Int32Array(0) : null; }
-  digest(): string { return 'fake'; }
+  fieldChunksApplied(field: number): number {
+    return this.fieldChunks[field]!;
+  }
+  get headChunks(): number {
+    return this.log.chunks;
+  }
+  dependency(chunk: number): number {
+    return Math.max(0, chunk - 1);
+  }
+  packetBox(): number[] {
+    return [0, 0, 0, 255, 255, 255];
+  }
+  brings(): {tetrahedra: number; vertices: number; boundaryTriangles: number} {
+    return {tetrahedra: 1, vertices: 0, boundaryTriangles: 0};
+  }
+  applied(chunk: number): boolean {
+    return chunk < this.chunksApplied;
+  }
+  fieldApplied(field: number, chunk: number): boolean {
+    return chunk < this.fieldChunks[field]!;
+  }
+  get level(): number {
+    return Math.max(0, this.chunksApplied - 1);
+  }
+  get vertexCount(): number {
+    return 0;
+  }
+  get tetrahedronCount(): number {
+    return this.chunksApplied;
+  }
+  get boundaryCount(): number {
+    return 0;
+  }
+  points(): Int32Array {
+    return new Int32Array(0);
+  }
+  tetrahedra(): Uint32Array {
+    return new Uint32Array(0);
+  }
+  boundary(): Uint32Array {
+    return new Uint32Array(0);
+  }
+  field(field: number): Int32Array | null {
+    return this.fieldChunks[field]! > 0 ? new Int32Array(0) : null;
+  }
+  digest(): string {
+    return 'fake';
+  }
 }
 
 export const kFakeValues: ValueDecoder = {decode: () => new Int32Array(0)};

@@ -19,8 +19,12 @@ class FakeWorker {
     this.posted.push(message);
     if (message.type === 'begin') queueMicrotask(() => this.say({type: 'drawn', pose: {} as Pose}));
   }
-  say(message: FromView): void { this.onmessage!({data: message}); }
-  terminate(): void { this.terminated = true; }
+  say(message: FromView): void {
+    this.onmessage!({data: message});
+  }
+  terminate(): void {
+    this.terminated = true;
+  }
 }
 
 let queries: {text: string; target: EventTarget}[] = [];
@@ -35,12 +39,27 @@ beforeEach(() => {
     return target;
   });
   vi.stubGlobal('document', new EventTarget());
-  vi.stubGlobal('ResizeObserver', class { observe(): void { return; } disconnect(): void { return; } });
+  vi.stubGlobal(
+    'ResizeObserver',
+    class {
+      observe(): void {
+        return;
+      }
+      disconnect(): void {
+        return;
+      }
+    },
+  );
 });
 afterEach(() => void vi.unstubAllGlobals());
 
 function open(listeners: ViewListeners = {}): Promise<View> {
-  const canvas = Object.assign(new EventTarget(), {style: {}, clientWidth: 90, clientHeight: 60, transferControlToOffscreen: () => ({})});
+  const canvas = Object.assign(new EventTarget(), {
+    style: {},
+    clientWidth: 90,
+    clientHeight: 60,
+    transferControlToOffscreen: () => ({}),
+  });
   return openView(canvas as unknown as HTMLCanvasElement, listeners);
 }
 
@@ -64,7 +83,8 @@ test('aViewOrCameraThatThereIsNotIsRefusedBeforeItIsSent', async () => {
   const view = await open();
   const sent = FakeWorker.last.posted.length;
   expect(() => view.look('left' as never)).toThrow(/no view from "left".*\+x/);
-  for (const state of [[1, 2, 3], [1, 2, 3, 4, 5, NaN], '1,2,3,4,5,6']) expect(() => (view.cameraState = state as never)).toThrow(/six finite numbers/);
+  for (const state of [[1, 2, 3], [1, 2, 3, 4, 5, NaN], '1,2,3,4,5,6'])
+    expect(() => (view.cameraState = state as never)).toThrow(/six finite numbers/);
   expect(FakeWorker.last.posted).toHaveLength(sent);
   view.look('-z');
   view.cameraState = [1, 2, 3, 4, 5, 6];
@@ -77,7 +97,10 @@ test('anotherScreensDensityIsToldEveryTime', async () => {
     vi.stubGlobal('window', {devicePixelRatio: density});
     queries.at(-1)!.target.dispatchEvent(new Event('change'));
     expect(queries.at(-1)!.text).toBe(`(resolution: ${density}dppx)`);
-    expect(FakeWorker.last.posted.at(-1)).toMatchObject({type: 'size', size: {pixelRatio: density}});
+    expect(FakeWorker.last.posted.at(-1)).toMatchObject({
+      type: 'size',
+      size: {pixelRatio: density},
+    });
   }
   view.dispose();
   const sent = FakeWorker.last.posted.length;
@@ -97,7 +120,7 @@ test('aWorkerThatDoesNotAnswerIsToldOfUntilItDoes', async () => {
   expect(told).toEqual([true]);
   FakeWorker.last.say({type: 'lost', lost: false});
   expect(told).toEqual([true, false]);
-  Object.assign(document, {hidden: true});  // browsers stop workers of pages that nobody sees
+  Object.assign(document, {hidden: true}); // browsers stop workers of pages that nobody sees
   vi.advanceTimersByTime(600000);
   expect(told).toEqual([true, false]);
   view.dispose();

@@ -9,8 +9,9 @@ test('countsAreGroupedByThousands', () => {
 });
 
 test('bytesHaveThreeDigitsAndNeverFour', () => {
-  expect([0, 999, 1000, 12345, 999499, 999500, 1.5e9].map((bytes) => plain(formatBytes(bytes))))
-    .toEqual(['0 B', '999 B', '1.00 kB', '12.3 kB', '999 kB', '1.00 MB', '1.50 GB']);
+  expect(
+    [0, 999, 1000, 12345, 999499, 999500, 1.5e9].map((bytes) => plain(formatBytes(bytes))),
+  ).toEqual(['0 B', '999 B', '1.00 kB', '12.3 kB', '999 kB', '1.00 MB', '1.50 GB']);
 });
 
 test('aHundredPercentMeansAllOfIt', () => {

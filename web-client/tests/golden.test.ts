@@ -1,5 +1,6 @@
-// The golden files, judged by the WebAssembly codec as tests/codec/golden_test.cpp judges them natively. Needs the built codec:
-// QTET_WASM names it (ctest does); without it these tests are skipped.
+// The golden files, judged by the WebAssembly codec as tests/codec/golden_test.cpp judges them
+// natively. Needs the built codec: QTET_WASM names it (ctest does); without it these tests are
+// skipped.
 
 import {createHash} from 'node:crypto';
 import {readdirSync, readFileSync} from 'node:fs';
@@ -23,28 +24,40 @@ async function decode(log: Uint8Array): Promise<Digests> {
   const assembler = await takeWholeLog(log, kDraco);
   const {codec} = assembler;
   const fields = assembler.manifest!.fields.map(({components}, i) =>
-    createHash('sha256').update(codec.field(i, components)!).digest('hex'));
+    createHash('sha256').update(codec.field(i, components)!).digest('hex'),
+  );
   return {mesh: codec.digest(), fields};
 }
 
 /** "DIGEST  NAME" a line, as sha256sum writes. */
-const digestsIn = (file: string): Map<string, string> => new Map(readFileSync(new URL(file, kGolden), 'utf8').trim().split('\n')
-  .map((line) => line.split(/\s+/).reverse() as [string, string]));
+const digestsIn = (file: string): Map<string, string> =>
+  new Map(
+    readFileSync(new URL(file, kGolden), 'utf8')
+      .trim()
+      .split('\n')
+      .map((line) => line.split(/\s+/).reverse() as [string, string]),
+  );
 
 const filesIn = (folder: string): string[] => readdirSync(new URL(folder, kGolden)).sort();
 const read = (path: string): Uint8Array => new Uint8Array(readFileSync(new URL(path, kGolden)));
 
 describe.skipIf(kTestWasm === '')('golden files', () => {
-  const digests = digestsIn('digests.txt'), fieldDigests = digestsIn('field-digests.txt');
+  const digests = digestsIn('digests.txt'),
+    fieldDigests = digestsIn('field-digests.txt');
 
   test.each(filesIn('valid'))('valid %s decodesToItsDigests', async (name) => {
     const decoded = await decode(read(`valid/${name}`));
     expect(decoded.mesh).toBe(digests.get(name));
-    decoded.fields.forEach((digest, i) => expect(digest, `field ${i}`).toBe(fieldDigests.get(`${name}/${i}`)));
+    decoded.fields.forEach((digest, i) =>
+      expect(digest, `field ${i}`).toBe(fieldDigests.get(`${name}/${i}`)),
+    );
   });
 
-  test.each(filesIn('must-fail').filter((name) => !kLengthOnly.includes(name)))('broken %s failsWithTheCodeInItsName', async (name) => {
-    const code = await decode(read(`must-fail/${name}`)).then(() => 'accepted', errorCode);
-    expect(code).toBe(name.slice(0, name.indexOf('.')));
-  });
+  test.each(filesIn('must-fail').filter((name) => !kLengthOnly.includes(name)))(
+    'broken %s failsWithTheCodeInItsName',
+    async (name) => {
+      const code = await decode(read(`must-fail/${name}`)).then(() => 'accepted', errorCode);
+      expect(code).toBe(name.slice(0, name.indexOf('.')));
+    },
+  );
 });

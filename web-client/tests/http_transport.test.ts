@@ -1,4 +1,5 @@
-// Ranges and numbered chunks against a web server of a few lines: its files are arrays, its wishes functions.
+// Ranges and numbered chunks against a web server of a few lines: its files are arrays, its wishes
+// functions.
 
 import {afterEach, beforeEach, describe, expect, test, vi} from 'vitest';
 import {Assembler} from '../core/assembler';
@@ -13,7 +14,18 @@ import {Session} from '../core/session';
 import {SocketTransport} from '../core/socket_transport';
 import {kindsOf} from '../core/transports';
 import type {FromWorker} from '../core/worker_messages';
-import {errorsOf, FakeCodec, FakeSocket, fakeHead, headFrame, kFakeBlockBytes, kFakeValues, meshFrame, statesOf, type FakeLog} from './fakes';
+import {
+  errorsOf,
+  FakeCodec,
+  FakeSocket,
+  fakeHead,
+  headFrame,
+  kFakeBlockBytes,
+  kFakeValues,
+  meshFrame,
+  statesOf,
+  type FakeLog,
+} from './fakes';
 
 const kLog: FakeLog = {fields: ['p', 'v'], chunks: 40};
 const kParts = 4;
@@ -37,20 +49,36 @@ interface Host {
 }
 
 function host(bytes: () => Uint8Array): Host {
-  const it: Host = {asked: [], tag: '"t1"', ranges: true, broken: 0, fetch: async (url, init) => {
-    const range = new Headers(init.headers).get('range');
-    it.asked.push(range ?? url);
-    if (it.broken > 0 && it.broken-- > 0) throw new TypeError('network');
-    const all = bytes();
-    const [, from, to] = /bytes=(\d+)-(\d+)/.exec(range ?? '') ?? [];
-    const headers = {etag: it.tag, 'content-range': `bytes ${from}-${to}/${all.length}`};
-    if (range && it.ranges) return new Response(all.slice(Number(from), Number(to) + 1), {status: 206, headers});
-    const chunk = /(?:fields\/(\w+)\/)?chunks\/(\d+)$/.exec(url);
-    if (!chunk) return new Response(all.slice(0, url.endsWith('base') ? fakeHead(kLog).length + 2 * kFakeBlockBytes : undefined), {headers: {etag: it.tag}});
-    const part = chunk[1] ? 2 + kLog.fields.indexOf(chunk[1]) : 0;
-    const at = fakeHead(kLog).length + (kParts * Number(chunk[2]) + part) * kFakeBlockBytes;
-    return new Response(all.slice(at, at + (part === 0 ? 2 : 1) * kFakeBlockBytes), {headers: {etag: it.tag}});
-  }};
+  const it: Host = {
+    asked: [],
+    tag: '"t1"',
+    ranges: true,
+    broken: 0,
+    fetch: async (url, init) => {
+      const range = new Headers(init.headers).get('range');
+      it.asked.push(range ?? url);
+      if (it.broken > 0 && it.broken-- > 0) throw new TypeError('network');
+      const all = bytes();
+      const [, from, to] = /bytes=(\d+)-(\d+)/.exec(range ?? '') ?? [];
+      const headers = {etag: it.tag, 'content-range': `bytes ${from}-${to}/${all.length}`};
+      if (range && it.ranges)
+        return new Response(all.slice(Number(from), Number(to) + 1), {status: 206, headers});
+      const chunk = /(?:fields\/(\w+)\/)?chunks\/(\d+)$/.exec(url);
+      if (!chunk)
+        return new Response(
+          all.slice(
+            0,
+            url.endsWith('base') ? fakeHead(kLog).length + 2 * kFakeBlockBytes : undefined,
+          ),
+          {headers: {etag: it.tag}},
+        );
+      const part = chunk[1] ? 2 + kLog.fields.indexOf(chunk[1]) : 0;
+      const at = fakeHead(kLog).length + (kParts * Number(chunk[2]) + part) * kFakeBlockBytes;
+      return new Response(all.slice(at, at + (part === 0 ? 2 : 1) * kFakeBlockBytes), {
+        headers: {etag: it.tag},
+      });
+    },
+  };
   return it;
 }
 
@@ -71,9 +99,29 @@ function expectLog(log: FakeLog): void {
 }
 
 function session(it: Host, kind: 'range' | 'chunks', fields: string[] | null = ['p']): Session {
-  const made = new Session(assembler, new Publisher(assembler, () => undefined), (message) => heard.push(message), ({log}, table, handlers) =>
-    new HttpTransport(() => (kind === 'range' ? new RangeSource(log, table, it.fetch) : new ChunkSource(log, table, it.fetch)), table, handlers, () => 0));
-  made.start({url: '', log: 'https://x/v1/meshes/m/log', transport: 'auto', mesh: 'm', fields, limit: kFull});
+  const made = new Session(
+    assembler,
+    new Publisher(assembler, () => undefined),
+    (message) => heard.push(message),
+    ({log}, table, handlers) =>
+      new HttpTransport(
+        () =>
+          kind === 'range'
+            ? new RangeSource(log, table, it.fetch)
+            : new ChunkSource(log, table, it.fetch),
+        table,
+        handlers,
+        () => 0,
+      ),
+  );
+  made.start({
+    url: '',
+    log: 'https://x/v1/meshes/m/log',
+    transport: 'auto',
+    mesh: 'm',
+    fields,
+    limit: kFull,
+  });
   return made;
 }
 
@@ -110,7 +158,8 @@ describe('ranges', () => {
     expect(states().at(-1)).toBe('complete');
     expect(it.asked[1]).toMatch(/^bytes=65536-/);
     const last = Number(/-(\d+)$/.exec(it.asked.at(-1)!)![1]);
-    expect(last).toBe(bytes.length - kFakeBlockBytes - 1);  // the other field's last block is nobody's wish
+    // the other field's last block is nobody's wish
+    expect(last).toBe(bytes.length - kFakeBlockBytes - 1);
   });
 
   test('whatLiesBehindTheGoalIsNotFetchedBeforeItIsWanted', async () => {
@@ -123,7 +172,8 @@ describe('ranges', () => {
     await settle(1000);
     expect(states().at(-1)).toBe('held');
     const end = fakeHead(log).length + 4000 * kParts * kFakeBlockBytes;
-    const fetched = (): number => Math.max(...it.asked.map((range) => Number(/-(\d+)$/.exec(range)![1])));
+    const fetched = (): number =>
+      Math.max(...it.asked.map((range) => Number(/-(\d+)$/.exec(range)![1])));
     expect(fetched()).toBeLessThan(end);
     made.setLimit(kFull);
     await settle(1000);
@@ -166,25 +216,39 @@ describe('ranges', () => {
     };
     const made = session(it, 'chunks');
     await settle();
-    expect([codec.chunksApplied > 0, codec.chunksApplied < 10, states().at(-1)]).toEqual([true, true, 'paused']);
+    expect([codec.chunksApplied > 0, codec.chunksApplied < 10, states().at(-1)]).toEqual([
+      true,
+      true,
+      'paused',
+    ]);
     it.tag = `"${'b'.repeat(64)}"`;
     it.asked = [];
     made.resume();
     await settle(5000);
-    expect(it.asked.slice(0, 3).map((url) => url.replace(/.*\/m\//, ''))).toEqual(['base', 'base', 'chunks/0']);  // which log it is, and all of it anew
+    expect(it.asked.slice(0, 3).map((url) => url.replace(/.*\/m\//, ''))).toEqual([
+      'base',
+      'base',
+      'chunks/0',
+    ]); // which log it is, and all of it anew
     await settle(5000);
     expect([codec.chunksApplied, errors(), states().at(-1)]).toEqual([40, [], 'complete']);
   });
 
   test('aPageInsteadOfALogIsSaidToBeNone', async () => {
-    session(host(() => new TextEncoder().encode(`<html>${' '.repeat(100)}`)), 'range');
+    session(
+      host(() => new TextEncoder().encode(`<html>${' '.repeat(100)}`)),
+      'range',
+    );
     await settle();
     expect(errors()).toEqual(['bad-magic']);
     expect(states().at(-1)).toBe('failed');
   });
 
   test('aFileThatIsTooShortSaysSo', async () => {
-    session(host(() => file(kLog).slice(0, -200)), 'range');
+    session(
+      host(() => file(kLog).slice(0, -200)),
+      'range',
+    );
     await settle();
     expect(errors()).toEqual(['truncated']);
   });
@@ -195,14 +259,26 @@ describe('ranges', () => {
     const bytes = file(log);
     const it = host(() => bytes);
     let payload = 0;
-    const transport: HttpTransport = new HttpTransport(() => new RangeSource('https://x/f.qtet', assembler, it.fetch), assembler, {
-      connected: () => transport.open({mesh: 'm', fields: ['p', 'v'], have: {chunks: 0, fields: {}}, credit: 50_000}),
-      message: () => undefined, down: () => undefined, failed: () => undefined,
-      frame: (frame) => {
-        assembler.take(frame);
-        payload += frame.payload.length;
+    const transport: HttpTransport = new HttpTransport(
+      () => new RangeSource('https://x/f.qtet', assembler, it.fetch),
+      assembler,
+      {
+        connected: () =>
+          transport.open({
+            mesh: 'm',
+            fields: ['p', 'v'],
+            have: {chunks: 0, fields: {}},
+            credit: 50_000,
+          }),
+        message: () => undefined,
+        down: () => undefined,
+        failed: () => undefined,
+        frame: (frame) => {
+          assembler.take(frame);
+          payload += frame.payload.length;
+        },
       },
-    });
+    );
     transport.connect();
     await settle(1000);
     expect(payload).toBeGreaterThan(49_000);
@@ -227,12 +303,22 @@ test('numberedChunksGiveTheSame', async () => {
 });
 
 test('whatIsHereIsNotAskedForAgainAndLaggingFieldsComeInTheirChunk', () => {
-  assembler.take({stream: 1, chunk: 0, firstPart: 0xffff, parts: 0, payload: fakeHead({...kLog, chunks: 3})});
+  assembler.take({
+    stream: 1,
+    chunk: 0,
+    firstPart: 0xffff,
+    parts: 0,
+    payload: fakeHead({...kLog, chunks: 3}),
+  });
   const few = new FakeCodec({...kLog, chunks: 3});
   const table = new Assembler(few, kFakeValues);
   table.take({stream: 1, chunk: 0, firstPart: 0xffff, parts: 0, payload: fakeHead(kLog)});
   const pieces = piecesOf(table, {fields: ['v'], have: {chunks: 2, fields: {v: 1}}});
-  expect(pieces.map(({chunk, firstPart}) => [chunk, firstPart])).toEqual([[1, 3], [2, 0], [2, 3]]);
+  expect(pieces.map(({chunk, firstPart}) => [chunk, firstPart])).toEqual([
+    [1, 3],
+    [2, 0],
+    [2, 3],
+  ]);
 });
 
 describe('the choice among transports', () => {
@@ -240,18 +326,54 @@ describe('the choice among transports', () => {
     const it = host(() => file(kLog));
     const sockets: FakeSocket[] = [];
     const kinds: TransportKind[] = [];
-    const made = new Session(assembler, new Publisher(assembler, () => undefined), (message) => heard.push(message), ({url, log}, table, handlers) =>
-      new AutoTransport(['websocket', 'range'], (kind, its) => {
-        kinds.push(kind);
-        if (kind === 'range') return new HttpTransport(() => new RangeSource(log, table, it.fetch), table, its, () => 0);
-        return new SocketTransport(url, its, () => {
-          sockets.push(new FakeSocket());
-          return sockets.at(-1)!;
-        }, () => 0);
-      }, handlers));
-    made.start({url: 'ws://x', log: 'https://x/f.qtet', transport: 'auto', mesh: 'm', fields: ['p'], limit: kFull});
+    const made = new Session(
+      assembler,
+      new Publisher(assembler, () => undefined),
+      (message) => heard.push(message),
+      ({url, log}, table, handlers) =>
+        new AutoTransport(
+          ['websocket', 'range'],
+          (kind, its) => {
+            kinds.push(kind);
+            if (kind === 'range')
+              return new HttpTransport(
+                () => new RangeSource(log, table, it.fetch),
+                table,
+                its,
+                () => 0,
+              );
+            return new SocketTransport(
+              url,
+              its,
+              () => {
+                sockets.push(new FakeSocket());
+                return sockets.at(-1)!;
+              },
+              () => 0,
+            );
+          },
+          handlers,
+        ),
+    );
+    made.start({
+      url: 'ws://x',
+      log: 'https://x/f.qtet',
+      transport: 'auto',
+      mesh: 'm',
+      fields: ['p'],
+      limit: kFull,
+    });
     sockets[0]!.accept();
-    sockets[0]!.deliver(JSON.stringify({type: 'opened', stream: 1, mesh: 'm', digest: 't1', bytes: 1000, planned: 100}));
+    sockets[0]!.deliver(
+      JSON.stringify({
+        type: 'opened',
+        stream: 1,
+        mesh: 'm',
+        digest: 't1',
+        bytes: 1000,
+        planned: 100,
+      }),
+    );
     sockets[0]!.deliver(headFrame(1, kLog));
     for (let chunk = 0; chunk < 5; ++chunk) sockets[0]!.deliver(meshFrame(1, chunk));
     for (let lost = 0; lost < 2; ++lost) {
@@ -267,6 +389,10 @@ describe('the choice among transports', () => {
     expect(kindsOf({url: '', log: 'x', transport: 'auto'})).toEqual(['range']);
     expect(kindsOf({url: 'ws://x', log: 'x', transport: 'chunks'})).toEqual(['chunks']);
     expect(kindsOf({url: 'ws://x', log: '', transport: 'auto'})).toEqual(['websocket']);
-    expect(kindsOf({url: 'ws://x', log: 'x', transport: 'auto'})).toEqual(['websocket', 'range', 'chunks']);
+    expect(kindsOf({url: 'ws://x', log: 'x', transport: 'auto'})).toEqual([
+      'websocket',
+      'range',
+      'chunks',
+    ]);
   });
 });

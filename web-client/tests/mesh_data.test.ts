@@ -1,11 +1,17 @@
 import {describe, expect, test} from 'vitest';
 import {FieldScale} from '../core/field_scale';
-import {errorOf, fieldKeys, readManifest} from '../core/manifest';
+import {errorOf, fieldKeys, readManifest, type FieldInfo} from '../core/manifest';
 import {fakeHead} from './fakes';
 import {boundarySoup, pointBounds} from '../core/triangle_soup';
 
-const info = (components: number, minimum: number[], range: [number, number]) =>
-  ({name: 'f', components, association: 'point' as const, step: 0.5, minimum, range});
+const info = (components: number, minimum: number[], range: [number, number]): FieldInfo => ({
+  name: 'f',
+  components,
+  association: 'point',
+  step: 0.5,
+  minimum,
+  range,
+});
 
 describe('field values', () => {
   test('ofAScalarSpanItsRange', () => {
@@ -20,14 +26,21 @@ describe('field values', () => {
 
   test('keepTheDigitsOfASmallRangeRoundALargeValue', () => {
     const field = {...info(1, [101325], [101325, 101325.002]), step: 0.001};
-    const soup = boundarySoup(new Int32Array(9), Uint32Array.from([0, 1, 2]), new FieldScale(Int32Array.from([0, 1, 2]), field));
+    const soup = boundarySoup(
+      new Int32Array(9),
+      Uint32Array.from([0, 1, 2]),
+      new FieldScale(Int32Array.from([0, 1, 2]), field),
+    );
     expect([...soup.values].map((value) => Number(value.toFixed(5)))).toEqual([0, 0.5, 1]);
   });
 
   test('thatAreMissingAreNaN', () => {
-    const gap = -(2 ** 31);
-    expect(new FieldScale(Int32Array.from([gap, 4]), info(1, [10], [10, 14])).at(0)).toBeNaN();
-    const vectors = new FieldScale(Int32Array.from([0, gap, 0, 6, 8, 0]), info(3, [0, 0, 0], [0, 10]));
+    const missing = -(2 ** 31);
+    expect(new FieldScale(Int32Array.from([missing, 4]), info(1, [10], [10, 14])).at(0)).toBeNaN();
+    const vectors = new FieldScale(
+      Int32Array.from([0, missing, 0, 6, 8, 0]),
+      info(3, [0, 0, 0], [0, 10]),
+    );
     expect([0, 1].map((vertex) => vectors.at(vertex))).toEqual([NaN, 0.5]);
   });
 
@@ -48,14 +61,28 @@ test('aSoupHasEveryTrianglesCornersInOrder', () => {
 describe('a manifest', () => {
   const columns = (): Uint32Array => Uint32Array.from([5, 6, 4, 7, 3, 8]);
   const head = (): Uint8Array => fakeHead({fields: ['p', 'q'], cellFields: ['p'], chunks: 2});
-  const kNameAt = 64 + 5 + 9 + 32 + 1, kTypeAt = kNameAt + 1, kBitsAt = kTypeAt + 1, kStepAt = kBitsAt + 1;
+  const kNameAt = 64 + 5 + 9 + 32 + 1,
+    kTypeAt = kNameAt + 1,
+    kBitsAt = kTypeAt + 1,
+    kStepAt = kBitsAt + 1;
 
   test('isReadAsItStands', () => {
-    const field = (name: string, association: string) => ({name, components: 1, association, step: 1, minimum: [0], range: [0, 255]});
+    const field = (name: string, association: 'point' | 'cell'): FieldInfo => ({
+      name,
+      components: 1,
+      association,
+      step: 1,
+      minimum: [0],
+      range: [0, 255],
+    });
     expect(readManifest(head(), columns)).toEqual({
-      source: 'fake.vtu', lattice: {bits: 16, step: 1, origin: [0, 0, 0]},
+      source: 'fake.vtu',
+      lattice: {bits: 16, step: 1, origin: [0, 0, 0]},
       fields: [field('p', 'point'), field('q', 'point'), field('p', 'cell')],
-      levels: [{level: 0, tetrahedra: 5, vertices: 4, boundaryTriangles: 3}, {level: 1, tetrahedra: 6, vertices: 7, boundaryTriangles: 8}],
+      levels: [
+        {level: 0, tetrahedra: 5, vertices: 4, boundaryTriangles: 3},
+        {level: 1, tetrahedra: 6, vertices: 7, boundaryTriangles: 8},
+      ],
     });
   });
 
@@ -66,28 +93,37 @@ describe('a manifest', () => {
   test('ofFieldsWithGapsIsTheSameButForTheFlagInBothPlaces', () => {
     const bytes = head();
     for (let f = 0; f < 3; ++f) bytes[bytes.length - 1 - 2 * f]! += 128;
-    expect(() => readManifest(bytes, columns)).toThrow('gaps');
+    expect(() => readManifest(bytes, columns)).toThrow('missing values');
     for (let f = 0; f < 3; ++f) bytes[kTypeAt + 36 * f]! += 128;
     expect(readManifest(bytes, columns)).toEqual(readManifest(head(), columns));
   });
 
   test('tellsTheErrorsWhereThereAreSome', () => {
     const bytes = fakeHead({fields: ['p'], chunks: 1});
-    bytes[bytes.length - 3] = 1;  // behind it stands the table's shape of the one field
+    bytes[bytes.length - 3] = 1; // behind it stands the table's shape of the one field
     const {levels} = readManifest(bytes, (_, count) => {
       expect(count).toBe(10);
       return Uint32Array.from([9, 8, 7, 987654, 1, 901, 0, 0, 9024, 9924]);
     });
     expect(levels[0]!.error).toEqual({
-      toLevel: {mean: 1e-12, max: 1e-11}, toOriginal: {mean: 0, max: 0}, volumeKept: 0.987654, fields: [{mean: 0.0123, max: 0.123}],
+      toLevel: {mean: 1e-12, max: 1e-11},
+      toOriginal: {mean: 0, max: 0},
+      volumeKept: 0.987654,
+      fields: [{mean: 0.0123, max: 0.123}],
     });
     expect(errorOf(17100)).toBe(9.99e6);
   });
 
   test.each([
-    ['a name too long', 64, [0x81, 0x03]], ['a length not in its shortest form', 64, [0x84, 0x00]], ['no name', kNameAt - 1, [0]],
-    ['the same field twice', kNameAt + 36, ['p'.charCodeAt(0)]], ['an unknown type', kTypeAt, [10]], ['no bits', kBitsAt, [0]],
-    ['too many bits', kBitsAt, [29]], ['a step of 0', kStepAt, [0, 0, 0, 0, 0, 0, 0, 0]], ['a step that is no number', kStepAt + 6, [0xf8, 0x7f]],
+    ['a name too long', 64, [0x81, 0x03]],
+    ['a length not in its shortest form', 64, [0x84, 0x00]],
+    ['no name', kNameAt - 1, [0]],
+    ['the same field twice', kNameAt + 36, ['p'.charCodeAt(0)]],
+    ['an unknown type', kTypeAt, [10]],
+    ['no bits', kBitsAt, [0]],
+    ['too many bits', kBitsAt, [29]],
+    ['a step of 0', kStepAt, [0, 0, 0, 0, 0, 0, 0, 0]],
+    ['a step that is no number', kStepAt + 6, [0xf8, 0x7f]],
   ])('with %s isRefused', (_, at, bytes) => {
     const bad = head();
     bad.set(bytes, at);

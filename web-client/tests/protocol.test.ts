@@ -1,6 +1,7 @@
 import {describe, expect, test} from 'vitest';
+import {kHeadPart} from '../core/parts';
 import {QtetError} from '../core/errors';
-import {kFrameHeaderBytes, kHeadPart, openMessage, parseFrame, parseServerMessage} from '../core/protocol';
+import {kFrameHeaderBytes, openMessage, parseFrame, parseServerMessage} from '../core/protocol';
 
 function frameBytes(payload: number[], size = payload.length): ArrayBuffer {
   const bytes = new Uint8Array(kFrameHeaderBytes + payload.length);
@@ -25,8 +26,13 @@ function codeOf(action: () => unknown): string {
 
 describe('binary frames', () => {
   test('everyFieldOfTheHeaderIsReadLittleEndian', () => {
-    expect(parseFrame(frameBytes([9, 8]))).toEqual(
-      {stream: 7, chunk: 0x01020304, firstPart: kHeadPart, parts: 3, payload: new Uint8Array([9, 8])});
+    expect(parseFrame(frameBytes([9, 8]))).toEqual({
+      stream: 7,
+      chunk: 0x01020304,
+      firstPart: kHeadPart,
+      parts: 3,
+      payload: new Uint8Array([9, 8]),
+    });
   });
 
   test('aPayloadMayBeEmpty', () => {
@@ -35,11 +41,13 @@ describe('binary frames', () => {
 
   test('everyTruncationIsRefused', () => {
     const whole = frameBytes([1, 2, 3]);
-    for (let size = 0; size < whole.byteLength; ++size) expect(codeOf(() => parseFrame(whole.slice(0, size)))).toBe('bad-message');
+    for (let size = 0; size < whole.byteLength; ++size)
+      expect(codeOf(() => parseFrame(whole.slice(0, size)))).toBe('bad-message');
   });
 
   test('aSizeThatDiffersFromThePayloadIsRefused', () => {
-    for (const size of [0, 2, 4, 0xffffffff]) expect(codeOf(() => parseFrame(frameBytes([1, 2, 3], size)))).toBe('bad-message');
+    for (const size of [0, 2, 4, 0xffffffff])
+      expect(codeOf(() => parseFrame(frameBytes([1, 2, 3], size)))).toBe('bad-message');
   });
 });
 
@@ -51,20 +59,43 @@ describe('server messages', () => {
 
   test('doneStoppedAndErrorAreRead', () => {
     expect(parseServerMessage('{"type":"done","stream":1}')).toEqual({type: 'done', stream: 1});
-    expect(parseServerMessage('{"type":"stopped","stream":1}')).toEqual({type: 'stopped', stream: 1});
-    expect(parseServerMessage('{"type":"error","code":"not-found","detail":"d"}')).toEqual({type: 'error', code: 'not-found', detail: 'd'});
+    expect(parseServerMessage('{"type":"stopped","stream":1}')).toEqual({
+      type: 'stopped',
+      stream: 1,
+    });
+    expect(parseServerMessage('{"type":"error","code":"not-found","detail":"d"}')).toEqual({
+      type: 'error',
+      code: 'not-found',
+      detail: 'd',
+    });
   });
 
   test('anUnknownTypeIsIgnored', () => {
     expect(parseServerMessage('{"type":"later"}')).toBeNull();
   });
 
-  test.each(['', '{', '3', 'null', '{"type":"done"}', '{"type":"done","stream":-1}', '{"type":"done","stream":1.5}',
-             '{"type":"error","code":1,"detail":""}', '{"type":"opened","stream":1,"mesh":"m","digest":"d","bytes":"1","planned":0}'])(
-    'brokenMessage %s isRefused', (text) => expect(codeOf(() => parseServerMessage(text))).toBe('bad-message'));
+  test.each([
+    '',
+    '{',
+    '3',
+    'null',
+    '{"type":"done"}',
+    '{"type":"done","stream":-1}',
+    '{"type":"done","stream":1.5}',
+    '{"type":"error","code":1,"detail":""}',
+    '{"type":"opened","stream":1,"mesh":"m","digest":"d","bytes":"1","planned":0}',
+  ])('brokenMessage %s isRefused', (text) =>
+    expect(codeOf(() => parseServerMessage(text))).toBe('bad-message'),
+  );
 });
 
 test('openCarriesHaveAndDigest', () => {
-  const request = {mesh: 'm', fields: ['p'], have: {chunks: 3, fields: {p: 2}}, credit: 9, digest: 'd'};
+  const request = {
+    mesh: 'm',
+    fields: ['p'],
+    have: {chunks: 3, fields: {p: 2}},
+    credit: 9,
+    digest: 'd',
+  };
   expect(JSON.parse(openMessage(request))).toEqual({type: 'open', ...request});
 });

@@ -18,7 +18,10 @@ beforeEach(() => {
   const codec = new FakeCodec({fields: [], chunks: 1});
   codec.chunksApplied = 1;
   const assembler = {codec, manifest: {fields: []}, statistics: () => ({...kNoStatistics, bytes})};
-  publisher = new Publisher(assembler as unknown as Assembler, (snapshot) => void pictures.push(snapshot));
+  publisher = new Publisher(
+    assembler as unknown as Assembler,
+    (snapshot) => void pictures.push(snapshot),
+  );
   publisher.show(kPlainDisplay);
   grow(1000);
   vi.advanceTimersByTime(1);
@@ -56,7 +59,7 @@ test('aPictureThatTookLongOnItsWayIsFollowedByALongerPause', () => {
   untilNext();
   vi.advanceTimersByTime(60);
   grow(4000);
-  expect(untilNext(100)).toBe(Infinity);  // the last one is not yet on the screen
+  expect(untilNext(100)).toBe(Infinity); // the last one is not yet on the screen
   publisher.shown();
   expect(untilNext()).toBeGreaterThan(500);
 });
@@ -114,7 +117,7 @@ test('aPictureThatWouldHardlyBeSeenBeforeTheLastOneIsLeftOut', () => {
   let end = performance.now() + 310;
   publisher.untilLast = () => Math.max(0, end - performance.now());
   grow(5000);
-  expect(untilNext()).toBeLessThanOrEqual(1);  // it will be seen for as long as it takes
+  expect(untilNext()).toBeLessThanOrEqual(1); // it will be seen for as long as it takes
   publisher.shown();
   shownAfter(150, 10000);
   vi.advanceTimersByTime(2000);

@@ -8,9 +8,21 @@ import {parseFrame} from '../core/protocol';
 import {Session} from '../core/session';
 import {SocketTransport} from '../core/socket_transport';
 import type {Transport} from '../core/transport';
-import type {Wishes} from '../core/wishes';
+import type {ViewRequest} from '../core/view_request';
 import type {FromWorker, Snapshot, Source} from '../core/worker_messages';
-import {errorsOf, FakeCodec, FakeSocket, fakeHead, fieldFrame, headFrame, kFakeBlockBytes, kFakeValues, meshFrame, statesOf, type FakeLog} from './fakes';
+import {
+  errorsOf,
+  FakeCodec,
+  FakeSocket,
+  fakeHead,
+  fieldFrame,
+  headFrame,
+  kFakeBlockBytes,
+  kFakeValues,
+  meshFrame,
+  statesOf,
+  type FakeLog,
+} from './fakes';
 
 const kLog: FakeLog = {fields: ['p', 'v'], chunks: 3};
 
@@ -33,21 +45,43 @@ beforeEach(() => {
     sockets.push(new FakeSocket());
     return sockets.at(-1)!;
   };
-  session = new Session(assembler, publisher, (message) => heard.push(message), ({url}, _, handlers) =>
-    new SocketTransport(url, handlers, makeSocket, () => 0));
+  session = new Session(
+    assembler,
+    publisher,
+    (message) => heard.push(message),
+    ({url}, _, handlers) => new SocketTransport(url, handlers, makeSocket, () => 0),
+  );
 });
 
 afterEach(() => void vi.useRealTimers());
 
 function start(source: Partial<Source> = {}): FakeSocket {
-  session.start({url: 'ws://x', log: '', transport: 'auto', mesh: 'm', fields: ['p'], limit: kFull, ...source});
+  session.start({
+    url: 'ws://x',
+    log: '',
+    transport: 'auto',
+    mesh: 'm',
+    fields: ['p'],
+    limit: kFull,
+    ...source,
+  });
   sockets.at(-1)!.accept();
   return sockets.at(-1)!;
 }
 
 /** Servers that know of targets and pauses say the layout. */
 function opened(socket: FakeSocket, stream: number, layout?: string): void {
-  socket.deliver(JSON.stringify({type: 'opened', stream, mesh: 'm', digest: 'd1', bytes: 1000, planned: 100, layout}));
+  socket.deliver(
+    JSON.stringify({
+      type: 'opened',
+      stream,
+      mesh: 'm',
+      digest: 'd1',
+      bytes: 1000,
+      planned: 100,
+      layout,
+    }),
+  );
 }
 
 const states = (): string[] => statesOf(heard);
@@ -116,7 +150,14 @@ test('whatLiesAheadIsToldWithTheHeadAndAnewForOtherFields', () => {
   session.want([0, 1]);
   const plans = heard.flatMap((message) => (message.type === 'plan' ? [message.plan] : []));
   const head = fakeHead(kLog).length;
-  expect(plans).toEqual([3, 4].map((blocks) => [1, 2, 3].map((chunks) => ({bytes: head + chunks * blocks * kFakeBlockBytes, level: chunks - 1}))));
+  expect(plans).toEqual(
+    [3, 4].map((blocks) =>
+      [1, 2, 3].map((chunks) => ({
+        bytes: head + chunks * blocks * kFakeBlockBytes,
+        level: chunks - 1,
+      })),
+    ),
+  );
 });
 
 describe('a stream', () => {
@@ -127,11 +168,23 @@ describe('a stream', () => {
     vi.advanceTimersByTime(0);
     sendAll(socket, 1, 0);
     expect(states()).toEqual(['connecting', 'streaming', 'complete']);
-    const progress = heard.flatMap((message) => (message.type === 'progress' ? [message.statistics] : []));
+    const progress = heard.flatMap((message) =>
+      message.type === 'progress' ? [message.statistics] : [],
+    );
     const needed = fakeHead(kLog).length + 9 * kFakeBlockBytes;
-    expect(progress).toHaveLength(2);  // of the head, and of everything before the state that says so
-    expect(progress[0]).toMatchObject({bytes: fakeHead(kLog).length, bytesNeeded: needed, total: {tetrahedra: 3}});
-    expect(progress.at(-1)).toMatchObject({bytes: needed, bytesNeeded: needed, tetrahedra: 3, chunks: 3});
+    // of the head, and of everything before the state that says so
+    expect(progress).toHaveLength(2);
+    expect(progress[0]).toMatchObject({
+      bytes: fakeHead(kLog).length,
+      bytesNeeded: needed,
+      total: {tetrahedra: 3},
+    });
+    expect(progress.at(-1)).toMatchObject({
+      bytes: needed,
+      bytesNeeded: needed,
+      tetrahedra: 3,
+      chunks: 3,
+    });
   });
 
   test('resumesWithWhatIsApplied', () => {
@@ -145,7 +198,11 @@ describe('a stream', () => {
     expect(states().at(-1)).toBe('reconnecting');
     vi.advanceTimersByTime(kLongestDelayMs);
     sockets.at(-1)!.accept();
-    expect(opens().at(-1)).toMatchObject({have: {chunks: 2, fields: {p: 1}}, digest: 'd1', fields: ['p']});
+    expect(opens().at(-1)).toMatchObject({
+      have: {chunks: 2, fields: {p: 1}},
+      digest: 'd1',
+      fields: ['p'],
+    });
     opened(sockets.at(-1)!, 1);
     sockets.at(-1)!.deliver(fieldFrame(1, 1, 0));
     sendAll(sockets.at(-1)!, 1, 0, 2);
@@ -176,7 +233,11 @@ describe('a stream', () => {
     socket.deliver(headFrame(1, kLog));
     sendAll(socket, 1, 0);
     expect(errors()).toEqual(['bad-checksum']);
-    expect(heard.find(({type}) => type === 'error')).toMatchObject({message: expect.stringMatching(/chunk 1 is damaged\. What came before is sound and stays/)});
+    expect(heard.find(({type}) => type === 'error')).toMatchObject({
+      message: expect.stringMatching(
+        /chunk 1 is damaged\. What came before is sound and stays/,
+      ) as string,
+    });
     expect(states().at(-1)).toBe('failed');
     expect(socket.closed).toBe(true);
   });
@@ -270,7 +331,11 @@ describe('a limit', () => {
     socket.deliver(headFrame(1, kLog));
     sendAll(socket, 1, 0);
     session.setLimit({kind: 'cells', value: 1});
-    expect([codec.chunksApplied, codec.fieldChunksApplied(0), states().at(-1)]).toEqual([1, 1, 'held']);
+    expect([codec.chunksApplied, codec.fieldChunksApplied(0), states().at(-1)]).toEqual([
+      1,
+      1,
+      'held',
+    ]);
     expect(opens()).toHaveLength(1);
     session.setLimit({kind: 'bytes', value: fakeHead(kLog).length + 50});
     expect([codec.chunksApplied, states().at(-1)]).toEqual([2, 'held']);
@@ -330,7 +395,7 @@ describe('a target', () => {
     expect(errors()).toEqual([]);
     expect(opens().at(-1)).toMatchObject({target: {level: 1}, have: {chunks: 1, fields: {p: 1}}});
     opened(socket, 3, 'stream');
-    socket.deliver(JSON.stringify({type: 'done', stream: 3}));  // the one that was asked for now
+    socket.deliver(JSON.stringify({type: 'done', stream: 3})); // the one that was asked for now
     expect(errors()).toEqual(['incomplete']);
   });
 
@@ -361,7 +426,17 @@ describe('a target', () => {
     expect(states().at(-1)).toBe('complete');
   });
 
-  test('aPauseInWhichAnotherFieldWasWishedForEndsWithAnOpen', () => {
+  test('aPauseBeforeTheHeadIsHereGoesOnWithTheSameStream', () => {
+    const socket = start({fields: null});
+    opened(socket, 1, 'stream');
+    session.pause();
+    session.resume();
+    expect([opens().length, socket.sentOf('resume').length]).toEqual([1, 1]);
+    socket.deliver(headFrame(1, kLog));
+    expect(opens().map(({credit}) => credit)).toEqual([1, 1 << 20]);
+  });
+
+  test('aPauseInWhichAnotherFieldWasAskedForEndsWithAnOpen', () => {
     const socket = start();
     opened(socket, 1, 'stream');
     socket.deliver(headFrame(1, kLog));
@@ -378,7 +453,10 @@ describe('a target', () => {
     session.pause();
     session.setLimit({kind: 'cells', value: 1});
     expect(states().at(-1)).toBe('streaming');
-    expect([socket.sentOf('target').at(-1)!.target, socket.sentOf('resume').length]).toEqual([{level: 0}, 1]);
+    expect([socket.sentOf('target').at(-1)!.target, socket.sentOf('resume').length]).toEqual([
+      {level: 0},
+      1,
+    ]);
   });
 });
 
@@ -397,7 +475,14 @@ describe('pausing', () => {
   });
 
   test('beforeTheHeadEndsWithAnOpen', () => {
-    session.start({url: 'ws://x', log: '', transport: 'auto', mesh: 'm', fields: null, limit: kFull});
+    session.start({
+      url: 'ws://x',
+      log: '',
+      transport: 'auto',
+      mesh: 'm',
+      fields: null,
+      limit: kFull,
+    });
     session.pause();
     sockets[0]!.accept();
     expect([opens(), states().at(-1)]).toEqual([[], 'paused']);
@@ -412,8 +497,16 @@ describe('pausing', () => {
 
   test('fromTheStartAsksNothingBeforeItEnds', () => {
     session.pause();
-    expect(heard).toEqual([]);  // of what is not there yet
-    session.start({url: 'ws://x', log: '', transport: 'auto', mesh: 'm', fields: ['p'], limit: kFull, paused: true});
+    expect(heard).toEqual([]); // of what is not there yet
+    session.start({
+      url: 'ws://x',
+      log: '',
+      transport: 'auto',
+      mesh: 'm',
+      fields: ['p'],
+      limit: kFull,
+      paused: true,
+    });
     expect([sockets.length, states()]).toEqual([0, ['paused']]);
     session.resume();
     sockets[0]!.accept();
@@ -424,7 +517,15 @@ describe('pausing', () => {
 
   test('fromTheStartIsOverWhenAFailureIsTriedAgain', () => {
     codec.corrupt = 0;
-    session.start({url: 'ws://x', log: '', transport: 'auto', mesh: 'm', fields: ['p'], limit: kFull, paused: true});
+    session.start({
+      url: 'ws://x',
+      log: '',
+      transport: 'auto',
+      mesh: 'm',
+      fields: ['p'],
+      limit: kFull,
+      paused: true,
+    });
     session.resume();
     sockets[0]!.accept();
     sockets[0]!.deliver(headFrame(1, kLog));
@@ -468,7 +569,7 @@ describe('memory', () => {
     codec.room = Infinity;
     session.setLimit(kFull);
     sockets.at(-1)!.accept();
-    sockets.at(-1)!.deliver(fieldFrame(1, 2, 0));  // it came when the connection was given up
+    sockets.at(-1)!.deliver(fieldFrame(1, 2, 0)); // it came when the connection was given up
     expect([codec.chunksApplied, states().at(-1)]).toEqual([kLog.chunks, 'complete']);
   });
 
@@ -483,30 +584,83 @@ describe('memory', () => {
   });
 });
 
-/** Head chunk 0, and packets; who carries them only hears the wishes. */
+/** A transport that is always connected, and does `what` besides. */
+function carrier(what: Partial<Transport>): Transport {
+  return {
+    isConnected: true,
+    connect: () => undefined,
+    open: () => undefined,
+    stop: () => undefined,
+    pause: () => undefined,
+    resume: () => true,
+    aim: () => undefined,
+    applied: () => undefined,
+    look: () => undefined,
+    disconnect: () => undefined,
+    ...what,
+  };
+}
+
+test('creditIsGivenBackOnceForWhatWasApplied', () => {
+  const given: number[] = [];
+  const assembler = new Assembler(codec, kFakeValues);
+  const giving = new Session(
+    assembler,
+    new Publisher(assembler, () => undefined),
+    () => undefined,
+    () => carrier({applied: (bytes) => given.push(bytes)}),
+  );
+  giving.start({url: 'ws://x', log: '', transport: 'auto', mesh: 'm', fields: ['p'], limit: kFull});
+  giving.connected();
+  giving.frame(parseFrame(headFrame(1, kLog)));
+  giving.frame(parseFrame(meshFrame(1, 0)));
+  giving.frame(parseFrame(fieldFrame(1, 0, 0)));
+  giving.setLimit(kFull); // decoding goes on without a new byte
+  expect(given).toEqual([fakeHead(kLog).length, 2 * kFakeBlockBytes, kFakeBlockBytes]);
+});
+
+/** Head chunk 0, and packets; who carries them only hears the views. */
 test('whatIsosurfacesAreShownIsToldByFieldAndValue', () => {
   const log: FakeLog = {fields: ['p'], cellFields: ['p'], chunks: 3};
   const parts = new FakeCodec(log);
   Object.defineProperty(parts, 'headChunks', {value: 1});
   const assembler = new Assembler(parts, kFakeValues);
   const publishing = new Publisher(assembler, () => undefined);
-  const wishes: Wishes[] = [];
-  const silent = {isConnected: true, connect: () => undefined, open: () => undefined, disconnect: () => undefined, applied: () => undefined, look: (its: Wishes) => wishes.push(its)};
-  const telling = new Session(assembler, publishing, () => undefined, () => silent as unknown as Transport);
-  telling.start({url: 'ws://x', log: '', transport: 'auto', mesh: 'm', fields: ['p'], limit: kFull});
+  const views: ViewRequest[] = [];
+  const telling = new Session(
+    assembler,
+    publishing,
+    () => undefined,
+    () => carrier({look: (view) => views.push(view)}),
+  );
+  telling.start({
+    url: 'ws://x',
+    log: '',
+    transport: 'auto',
+    mesh: 'm',
+    fields: ['p'],
+    limit: kFull,
+  });
   telling.frame(parseFrame(headFrame(1, log)));
   const show = (field: number, values: number[]): void => {
     publishing.show({...kPlainDisplay, isosurfaces: {scalar: {field, component: -1}, values}});
     publishing.onIsosurface(Float32Array.of(1, 1, 1));
   };
   show(0, [0, 0.5]);
-  expect(wishes.at(-1)!.isovalue).toEqual({field: 'p', values: [0, 127.5]});  // the field's range is 0 to 255
+  // the field's range is 0 to 255
+  expect(views.at(-1)!.isovalue).toEqual({field: 'p', values: [0, 127.5]});
   show(0, [0, 0.5]);
-  expect(wishes).toHaveLength(1);
+  expect(views).toHaveLength(1);
   show(0, [0.2]);
-  expect(wishes.at(-1)!.isovalue).toEqual({field: 'p', values: [51]});
-  show(0, Array.from({length: 9}, (_, i) => i / 9));  // more than a view may have: the box has to do
-  expect(wishes.at(-1)!.isovalue).toBeNull();
-  show(1, [0.5]);  // of cells
-  expect(wishes.at(-1)!).toMatchObject({isovalue: null, marks: expect.any(Uint8Array)});
+  expect(views.at(-1)!.isovalue).toEqual({field: 'p', values: [51]});
+  show(
+    0,
+    Array.from({length: 9}, (_, i) => i / 9),
+  ); // more than a view may have: the box has to do
+  expect(views.at(-1)!.isovalue).toBeNull();
+  show(1, [0.5]); // of cells
+  expect(views.at(-1)!).toMatchObject({
+    isovalue: null,
+    surfaceBoxes: expect.any(Uint8Array) as unknown,
+  });
 });

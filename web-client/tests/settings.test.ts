@@ -3,45 +3,95 @@ import {kMagnitude} from '../core/field_scale';
 import type {FieldInfo} from '../core/manifest';
 import {logTicks} from '../core/ticks';
 import {
-  clipText, fieldValuesText, parseClip, parseFieldValues, parseScalar, readSettings, scalarText, sharesOf, shownRange, type Settings,
+  clipText,
+  fieldValuesText,
+  parseClip,
+  parseFieldValues,
+  parseScalar,
+  readSettings,
+  scalarText,
+  sharesOf,
+  shownRange,
+  type Settings,
 } from '../viewer/settings';
 
-const field = (name: string, components: number, association: 'point' | 'cell' = 'point'): FieldInfo =>
-  ({name, components, association, step: 1, minimum: Array<number>(components).fill(0), range: [0, 10]});
+const field = (
+  name: string,
+  components: number,
+  association: 'point' | 'cell' = 'point',
+): FieldInfo => ({
+  name,
+  components,
+  association,
+  step: 1,
+  minimum: Array<number>(components).fill(0),
+  range: [0, 10],
+});
 const fields = [field('p', 1), field('U', 3), field('p', 1, 'cell'), field('odd[1]', 1)];
 
 describe('clip planes', () => {
-  test.each<[string, string]>([['x', 'x:0.5'], ['-y:0.3', '-y:0.3'], ['x:0.2 z:1 -y', 'x:0.2 z:1 -y:0.5'], ['3,0,4:0.25', '0.6,0,0.8:0.25']])(
-    '%s comeBackAs %s', (text, back) => expect(clipText(parseClip(text))).toBe(back));
-  test.each(['', 'w', 'x:', 'x:2', '0,0,0:0.5', '1,2:0.5'])('%s isNone', (text) => expect(parseClip(text)).toEqual([]));
+  test.each<[string, string]>([
+    ['x', 'x:0.5'],
+    ['-y:0.3', '-y:0.3'],
+    ['x:0.2 z:1 -y', 'x:0.2 z:1 -y:0.5'],
+    ['3,0,4:0.25', '0.6,0,0.8:0.25'],
+  ])('%s comeBackAs %s', (text, back) => expect(clipText(parseClip(text))).toBe(back));
+  test.each(['', 'w', 'x:', 'x:2', '0,0,0:0.5', '1,2:0.5'])('%s isNone', (text) =>
+    expect(parseClip(text)).toEqual([]),
+  );
   test('areAtMostThree', () => expect(parseClip('x y z x')).toHaveLength(3));
-  test('cutAwayTheSideOfTheFirstCamera', () => expect(parseClip('y')[0]!.normal).toEqual([0, -1, 0]));
+  test('cutAwayTheSideOfTheFirstCamera', () =>
+    expect(parseClip('y')[0]!.normal).toEqual([0, -1, 0]));
 });
 
 describe('fields', () => {
-  test.each<[string, number, number]>([['p', 0, kMagnitude], ['U', 1, kMagnitude], ['U[2]', 1, 2], ['cell:p', 2, kMagnitude], ['odd[1]', 3, kMagnitude]])(
-    '%s isReadAndWritten', (text, index, component) => {
-      expect(parseScalar(text, fields)).toEqual({field: index, component});
-      expect(scalarText({field: index, component}, fields)).toBe(text);
-    });
-  test.each(['q', 'q[0]', ''])('%s isUnknown', (text) => expect(parseScalar(text, fields)).toBeNull());
-  test('aComponentThatIsNotThereIsTheMagnitude', () => expect(parseScalar('U[7]', fields)).toEqual({field: 1, component: kMagnitude}));
+  test.each<[string, number, number]>([
+    ['p', 0, kMagnitude],
+    ['U', 1, kMagnitude],
+    ['U[2]', 1, 2],
+    ['cell:p', 2, kMagnitude],
+    ['odd[1]', 3, kMagnitude],
+  ])('%s isReadAndWritten', (text, index, component) => {
+    expect(parseScalar(text, fields)).toEqual({field: index, component});
+    expect(scalarText({field: index, component}, fields)).toBe(text);
+  });
+  test.each(['q', 'q[0]', ''])('%s isUnknown', (text) =>
+    expect(parseScalar(text, fields)).toBeNull(),
+  );
+  test('aComponentThatIsNotThereIsTheMagnitude', () =>
+    expect(parseScalar('U[7]', fields)).toEqual({field: 1, component: kMagnitude}));
   test('withValuesAreReadWrittenAndScaled', () => {
     const values = parseFieldValues('U[0]=5, -10', fields)!;
     expect(values).toEqual({scalar: {field: 1, component: 0}, values: [5, -10]});
     expect(fieldValuesText(values, fields)).toBe('U[0]=5,-10');
     expect(sharesOf(values, fields)).toEqual([0.75, 0]);
-    expect([parseFieldValues('p', fields), parseFieldValues('p=', fields), parseFieldValues('p=a', fields), parseFieldValues('q=1', fields)])
-      .toEqual([null, null, null, null]);
+    expect([
+      parseFieldValues('p', fields),
+      parseFieldValues('p=', fields),
+      parseFieldValues('p=a', fields),
+      parseFieldValues('q=1', fields),
+    ]).toEqual([null, null, null, null]);
   });
 });
 
 describe('settings', () => {
-  const of = (attributes: Record<string, string>): Settings => readSettings((name) => attributes[name] ?? null);
+  const of = (attributes: Record<string, string>): Settings =>
+    readSettings((name) => attributes[name] ?? null);
   test('withoutAttributesAreThePlainOnes', () => {
     expect(of({})).toEqual({
-      map: 'viridis', reversed: false, range: 'auto', logarithmic: false, edges: true, surface: true, opacity: 1, planes: [], mode: 'cut',
-      limit: {kind: 'full'}, parallel: false, camera: null, volume: null,
+      map: 'viridis',
+      reversed: false,
+      range: 'auto',
+      logarithmic: false,
+      edges: true,
+      surface: true,
+      opacity: 1,
+      planes: [],
+      mode: 'cut',
+      limit: {kind: 'full'},
+      parallel: false,
+      camera: null,
+      volume: null,
     });
   });
   test('aVolumeIsOpacitiesOrTheFirstOnes', () => {
@@ -49,19 +99,53 @@ describe('settings', () => {
     for (const text of ['', 'on', '0.5', '0,2']) expect(of({volume: text}).volume).toHaveLength(9);
   });
   test('areReadFromTheirAttributes', () => {
-    expect(of({colormap: 'turbo reversed', range: '1,5', scale: 'log', edges: 'off', surface: 'off', opacity: '0.4', 'clip-mode': 'cells',
-      quality: '1%', projection: 'parallel', camera: '1,2,3,0,0,0'})).toMatchObject({
-      map: 'turbo', reversed: true, range: [1, 5], logarithmic: true, edges: false, surface: false, opacity: 0.4, mode: 'cells',
-      limit: {kind: 'error', value: 0.01}, parallel: true, camera: [1, 2, 3, 0, 0, 0],
+    expect(
+      of({
+        colormap: 'turbo reversed',
+        range: '1,5',
+        scale: 'log',
+        edges: 'off',
+        surface: 'off',
+        opacity: '0.4',
+        'clip-mode': 'cells',
+        quality: '1%',
+        projection: 'parallel',
+        camera: '1,2,3,0,0,0',
+      }),
+    ).toMatchObject({
+      map: 'turbo',
+      reversed: true,
+      range: [1, 5],
+      logarithmic: true,
+      edges: false,
+      surface: false,
+      opacity: 0.4,
+      mode: 'cells',
+      limit: {kind: 'error', value: 0.01},
+      parallel: true,
+      camera: [1, 2, 3, 0, 0, 0],
     });
   });
   test('thatMakeNoSenseAreThePlainOnes', () => {
-    expect(of({colormap: 'jet', range: '5,1', opacity: '7', 'clip-mode': 'x', quality: 'much', camera: '1,2'})).toEqual(of({}));
+    expect(
+      of({
+        colormap: 'jet',
+        range: '5,1',
+        opacity: '7',
+        'clip-mode': 'x',
+        quality: 'much',
+        camera: '1,2',
+      }),
+    ).toEqual(of({}));
   });
 });
 
 describe('the range of the colours', () => {
-  const range = (settings: Partial<Settings>, extent: [number, number]) => shownRange({...readSettings(() => null), ...settings}, extent);
+  const range = (
+    settings: Partial<Settings>,
+    extent: [number, number],
+  ): ReturnType<typeof shownRange> =>
+    shownRange({...readSettings(() => null), ...settings}, extent);
   test('isWhatOccursOrSymmetricOrFixed', () => {
     expect(range({}, [-1, 4])).toEqual({low: -1, high: 4, logarithmic: false});
     expect(range({range: 'symmetric'}, [-1, 4])).toEqual({low: -4, high: 4, logarithmic: false});
@@ -69,14 +153,20 @@ describe('the range of the colours', () => {
   });
   test('isLogarithmicOnlyAboveZero', () => {
     expect(range({logarithmic: true}, [1, 100])).toEqual({low: 1, high: 100, logarithmic: true});
-    expect(range({logarithmic: true}, [-1, 100])).toEqual({low: 0.01, high: 100, logarithmic: true});
+    expect(range({logarithmic: true}, [-1, 100])).toEqual({
+      low: 0.01,
+      high: 100,
+      logarithmic: true,
+    });
     expect(range({logarithmic: true}, [-5, -1]).logarithmic).toBe(false);
   });
 });
 
 describe('logarithmic ticks', () => {
   test.each<[number, number, string[]]>([
-    [1, 100, ['1', '2', '5', '10', '20', '50', '100']], [1e-6, 1e6, ['10⁻⁶', '10⁻⁴', '0.01', '1', '100', '10000', '10⁶']], [3, 4, ['3.0', '3.2', '3.4', '3.6', '3.8', '4.0']],
+    [1, 100, ['1', '2', '5', '10', '20', '50', '100']],
+    [1e-6, 1e6, ['10⁻⁶', '10⁻⁴', '0.01', '1', '100', '10000', '10⁶']],
+    [3, 4, ['3.0', '3.2', '3.4', '3.6', '3.8', '4.0']],
   ])('from %d to %d', (low, high, labels) => {
     const {ticks} = logTicks(low, high, 7);
     expect(ticks.map(({label}) => label)).toEqual(labels);

@@ -2,8 +2,17 @@ import {expect, test} from 'vitest';
 import {embedSnippet, linkTo} from '../viewer/share';
 
 test('aLinkHoldsTheViewAndNothingOfWhatStoodThereBefore', () => {
-  const link = linkTo('http://a.org/v/?mesh=old&x=1#part', new Map([['mesh', 'fin & co'], ['clip', 'x:0.5 -z:1']]));
-  expect([...new URL(link).searchParams]).toEqual([['mesh', 'fin & co'], ['clip', 'x:0.5 -z:1']]);
+  const link = linkTo(
+    'http://a.org/v/?mesh=old&x=1#part',
+    new Map([
+      ['mesh', 'fin & co'],
+      ['clip', 'x:0.5 -z:1'],
+    ]),
+  );
+  expect([...new URL(link).searchParams]).toEqual([
+    ['mesh', 'fin & co'],
+    ['clip', 'x:0.5 -z:1'],
+  ]);
   expect(link).toMatch(/^http:\/\/a\.org\/v\/\?/);
 });
 

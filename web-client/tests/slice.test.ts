@@ -5,19 +5,31 @@ import type {TriangleSoup} from '../core/triangle_soup';
 import {cubes, soupArea} from './cubes';
 
 type Point = [number, number, number];
-const corner = (soup: TriangleSoup, i: number): Point => [...soup.positions.subarray(3 * i, 3 * i + 3)] as Point;
+const corner = (soup: TriangleSoup, i: number): Point =>
+  [...soup.positions.subarray(3 * i, 3 * i + 3)] as Point;
 
 const plane = (normal: Point, offset: number): Plane => ({normal, offset});
 
 describe('a cut', () => {
   const {points, tetrahedra} = cubes(3, 10);
 
-  test.each([[0.5], [4.5], [9.5], [10.5], [29.5]])('acrossACubeAt %d coversItsSectionOnce', (at) => {
-    for (const normal of [[1, 0, 0], [0, -1, 0], [0, 0, 1]] as Point[]) {
-      const soup = slice({points, tetrahedra}, null, plane(normal, at * (normal[0] + normal[1] + normal[2])));
-      expect(soupArea(soup)).toBeCloseTo(900, 3);
-    }
-  });
+  test.each([[0.5], [4.5], [9.5], [10.5], [29.5]])(
+    'acrossACubeAt %d coversItsSectionOnce',
+    (at) => {
+      for (const normal of [
+        [1, 0, 0],
+        [0, -1, 0],
+        [0, 0, 1],
+      ] as Point[]) {
+        const soup = slice(
+          {points, tetrahedra},
+          null,
+          plane(normal, at * (normal[0] + normal[1] + normal[2])),
+        );
+        expect(soupArea(soup)).toBeCloseTo(900, 3);
+      }
+    },
+  );
 
   test('throughVerticesStillCoversTheSectionOnce', () => {
     expect(soupArea(slice({points, tetrahedra}, null, plane([1, 0, 0], 10)))).toBeCloseTo(900, 3);
@@ -33,13 +45,26 @@ describe('a cut', () => {
     const soup = slice({points, tetrahedra}, null, plane(normal, 77.25));
     expect(soup.positions.length).toBeGreaterThan(0);
     for (let i = 0; i < soup.positions.length / 3; ++i) {
-      expect(corner(soup, i).reduce((sum, value, k) => sum + value * normal[k]!, 0)).toBeCloseTo(77.25, 3);
+      expect(corner(soup, i).reduce((sum, value, k) => sum + value * normal[k]!, 0)).toBeCloseTo(
+        77.25,
+        3,
+      );
     }
   });
 
   test('interpolatesALinearFieldExactly', () => {
-    const values = Int32Array.from({length: points.length / 3}, (_, v) => 2 * points[3 * v]! + 3 * points[3 * v + 1]! + 5 * points[3 * v + 2]!);
-    const scale = new FieldScale(values, {name: 'f', components: 1, association: 'point', step: 1, minimum: [0], range: [0, 300]});
+    const values = Int32Array.from(
+      {length: points.length / 3},
+      (_, v) => 2 * points[3 * v]! + 3 * points[3 * v + 1]! + 5 * points[3 * v + 2]!,
+    );
+    const scale = new FieldScale(values, {
+      name: 'f',
+      components: 1,
+      association: 'point',
+      step: 1,
+      minimum: [0],
+      range: [0, 300],
+    });
     const soup = slice({points, tetrahedra}, scale, plane([1, 1, 1], 41.5));
     for (let i = 0; i < soup.values.length; ++i) {
       const [x, y, z] = corner(soup, i);
@@ -60,15 +85,27 @@ describe('one tetrahedron', () => {
   test('cutInPairsGivesAQuadWhoseDiagonalIsOppositeToTheFirstCorners', () => {
     const soup = slice({points, tetrahedra}, null, plane([1, 1, 0], 2));
     expect([soup.positions.length, soup.firstHalf]).toEqual([18, 0]);
-    const shared = (first: number): string => [corner(soup, first + 1), corner(soup, first + 2)].map(String).sort().join(' ');
+    const shared = (first: number): string =>
+      [corner(soup, first + 1), corner(soup, first + 2)].map(String).sort().join(' ');
     expect(shared(3)).toBe(shared(0));
     expect(String(corner(soup, 0))).not.toBe(String(corner(soup, 3)));
   });
 
   test('givesTheSameCutWhicheverSideIsAbove', () => {
-    for (const normal of [[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 0], [1, 0, 1], [0, 1, 1]] as Point[]) {
+    for (const normal of [
+      [1, 0, 0],
+      [0, 1, 0],
+      [0, 0, 1],
+      [1, 1, 0],
+      [1, 0, 1],
+      [0, 1, 1],
+    ] as Point[]) {
       const there = slice({points, tetrahedra}, null, plane(normal, 1.5));
-      const back = slice({points, tetrahedra}, null, plane(normal.map((value) => -value) as Point, -1.5));
+      const back = slice(
+        {points, tetrahedra},
+        null,
+        plane(normal.map((value) => -value) as Point, -1.5),
+      );
       expect(back.positions.length).toBe(there.positions.length);
       expect(soupArea(back)).toBeCloseTo(soupArea(there), 6);
     }

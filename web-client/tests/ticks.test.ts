@@ -1,7 +1,8 @@
 import {expect, test} from 'vitest';
 import {niceTicks} from '../core/ticks';
 
-const labels = (low: number, high: number, most = 6): string[] => niceTicks(low, high, most).ticks.map(({label}) => label);
+const labels = (low: number, high: number, most = 6): string[] =>
+  niceTicks(low, high, most).ticks.map(({label}) => label);
 
 test('stepsAreRound', () => {
   expect(labels(0, 1)).toEqual(['0.0', '0.2', '0.4', '0.6', '0.8', '1.0']);
@@ -10,7 +11,8 @@ test('stepsAreRound', () => {
 });
 
 test('ticksStandWhereTheirNumbersAre', () => {
-  for (const {at, label} of niceTicks(-3, 7, 6).ticks) expect(-3 + 10 * at).toBeCloseTo(Number(label.replace('\u2212', '-')), 9);
+  for (const {at, label} of niceTicks(-3, 7, 6).ticks)
+    expect(-3 + 10 * at).toBeCloseTo(Number(label.replace('\u2212', '-')), 9);
 });
 
 test('largeAndSmallNumbersShareOneFactor', () => {
@@ -21,10 +23,22 @@ test('largeAndSmallNumbersShareOneFactor', () => {
 });
 
 test('aNarrowRangeRoundALargeValueKeepsItsDigits', () => {
-  expect(niceTicks(101325, 101326, 6)).toMatchObject({factor: '+ 101325', ticks: [{at: 0, label: '0.0'}, {label: '0.2'}, {}, {}, {}, {at: 1, label: '1.0'}]});
-  expect(niceTicks(101325, 101325.02, 6)).toMatchObject({factor: '+ 101325', ticks: [{label: '0.000'}, {label: '0.005'}, {}, {}, {label: '0.020'}]});
-  expect(niceTicks(-293.1505, -293.15, 6)).toMatchObject({factor: '× 10⁻⁴ \u2212 293.1505', ticks: [{label: '0'}, {label: '1'}, {}, {}, {}, {label: '5'}]});
-  expect(niceTicks(1.5e12, 1.5e12 + 2e6, 6)).toMatchObject({factor: '× 10⁶ + 1500000000000', ticks: [{label: '0.0'}, {label: '0.5'}, {}, {}, {}]});
+  expect(niceTicks(101325, 101326, 6)).toMatchObject({
+    factor: '+ 101325',
+    ticks: [{at: 0, label: '0.0'}, {label: '0.2'}, {}, {}, {}, {at: 1, label: '1.0'}],
+  });
+  expect(niceTicks(101325, 101325.02, 6)).toMatchObject({
+    factor: '+ 101325',
+    ticks: [{label: '0.000'}, {label: '0.005'}, {}, {}, {label: '0.020'}],
+  });
+  expect(niceTicks(-293.1505, -293.15, 6)).toMatchObject({
+    factor: '× 10⁻⁴ \u2212 293.1505',
+    ticks: [{label: '0'}, {label: '1'}, {}, {}, {}, {label: '5'}],
+  });
+  expect(niceTicks(1.5e12, 1.5e12 + 2e6, 6)).toMatchObject({
+    factor: '× 10⁶ + 1500000000000',
+    ticks: [{label: '0.0'}, {label: '0.5'}, {}, {}, {}],
+  });
 });
 
 test('aConstantFieldGetsOneTick', () => {

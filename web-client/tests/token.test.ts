@@ -12,50 +12,89 @@ let asked: {url: string; method: string; authorization: string | null; range: st
 function fake(...answers: (Response | Error)[]): Fetch {
   return (url, init) => {
     const headers = new Headers(init.headers);
-    asked.push({url, method: init.method ?? 'GET', authorization: headers.get('authorization'), range: headers.get('range')});
+    asked.push({
+      url,
+      method: init.method ?? 'GET',
+      authorization: headers.get('authorization'),
+      range: headers.get('range'),
+    });
     const answer = answers.shift() ?? new Error('nothing more was expected');
     return answer instanceof Error ? Promise.reject(answer) : Promise.resolve(answer);
   };
 }
-const ticket = (name: string): Response => new Response(JSON.stringify({ticket: name, seconds: 30}), {status: 201});
+const ticket = (name: string): Response =>
+  new Response(JSON.stringify({ticket: name, seconds: 30}), {status: 201});
 
-beforeEach(() => { asked = []; });
+beforeEach(() => {
+  asked = [];
+});
 afterEach(() => void vi.useRealTimers());
 
 test('aTokenGoesWithEveryRequestBesideWhatItHasAlready', async () => {
-  await fetchWith('secret', fake(new Response()))!('https://x/log', {headers: {Range: 'bytes=0-1'}});
-  expect(asked).toEqual([{url: 'https://x/log', method: 'GET', authorization: 'Bearer secret', range: 'bytes=0-1'}]);
+  await fetchWith('secret', fake(new Response()))!('https://x/log', {
+    headers: {Range: 'bytes=0-1'},
+  });
+  expect(asked).toEqual([
+    {url: 'https://x/log', method: 'GET', authorization: 'Bearer secret', range: 'bytes=0-1'},
+  ]);
   expect(fetchWith(undefined)).toBeUndefined();
 });
 
 test('aStreamsAddressCarriesATicketAndNeverTheToken', async () => {
-  expect(await ticketUrl(kStream, 'secret', fake(ticket('t1')))).toBe('wss://x/v1/stream?ticket=t1');
-  expect(asked).toEqual([{url: 'https://x/v1/tickets', method: 'POST', authorization: 'Bearer secret', range: null}]);
+  expect(await ticketUrl(kStream, 'secret', fake(ticket('t1')))).toBe(
+    'wss://x/v1/stream?ticket=t1',
+  );
+  expect(asked).toEqual([
+    {url: 'https://x/v1/tickets', method: 'POST', authorization: 'Bearer secret', range: null},
+  ]);
 });
 
 test('aServerWithoutTokensNeedsNoTicketAndARefusalIsFinal', async () => {
   expect(await ticketUrl(kStream, 'secret', fake(new Response('', {status: 405})))).toBe(kStream);
-  await expect(ticketUrl(kStream, 'secret', fake(new Response('', {status: 401})))).rejects.toMatchObject({code: 'http'});
-  await expect(ticketUrl(kStream, 'secret', fake(new Response('{}', {status: 201})))).rejects.toMatchObject({code: 'http'});
-  await expect(ticketUrl(kStream, 'secret', fake(new Error('offline')))).rejects.toMatchObject({code: 'network'});
+  await expect(
+    ticketUrl(kStream, 'secret', fake(new Response('', {status: 401}))),
+  ).rejects.toMatchObject({code: 'http'});
+  await expect(
+    ticketUrl(kStream, 'secret', fake(new Response('{}', {status: 201}))),
+  ).rejects.toMatchObject({code: 'http'});
+  await expect(ticketUrl(kStream, 'secret', fake(new Error('offline')))).rejects.toMatchObject({
+    code: 'network',
+  });
 });
 
-function transportOver(fetch: Fetch): {urls: string[]; sockets: FakeSocket[]; heard: string[]; transport: SocketTransport} {
-  const urls: string[] = [], sockets: FakeSocket[] = [], heard: string[] = [];
-  const transport = new SocketTransport(() => ticketUrl(kStream, 'secret', fetch), {
-    connected: () => heard.push('connected'), message: () => undefined, frame: () => undefined,
-    down: (attempt) => heard.push(`down ${attempt}`), failed: ({code}) => heard.push(`failed ${code}`),
-  }, (url) => {
-    urls.push(url);
-    sockets.push(new FakeSocket());
-    return sockets.at(-1)!;
-  }, () => 0.5);
+function transportOver(fetch: Fetch): {
+  urls: string[];
+  sockets: FakeSocket[];
+  heard: string[];
+  transport: SocketTransport;
+} {
+  const urls: string[] = [],
+    sockets: FakeSocket[] = [],
+    heard: string[] = [];
+  const transport = new SocketTransport(
+    () => ticketUrl(kStream, 'secret', fetch),
+    {
+      connected: () => heard.push('connected'),
+      message: () => undefined,
+      frame: () => undefined,
+      down: (attempt) => heard.push(`down ${attempt}`),
+      failed: ({code}) => heard.push(`failed ${code}`),
+    },
+    (url) => {
+      urls.push(url);
+      sockets.push(new FakeSocket());
+      return sockets.at(-1)!;
+    },
+    () => 0.5,
+  );
   return {urls, sockets, heard, transport};
 }
 
 test('everyConnectionHasATicketOfItsOwn', async () => {
   vi.useFakeTimers();
-  const {urls, sockets, heard, transport} = transportOver(fake(ticket('t1'), new Error('offline'), ticket('t2')));
+  const {urls, sockets, heard, transport} = transportOver(
+    fake(ticket('t1'), new Error('offline'), ticket('t2')),
+  );
   transport.connect();
   await vi.waitFor(() => expect(urls).toHaveLength(1));
   sockets[0]!.accept();

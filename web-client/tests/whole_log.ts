@@ -1,4 +1,5 @@
-// A whole log through the assembler, block by block, as the worker does it. Needs the built codec: QTET_WASM names it (ctest does).
+// A whole log through the assembler, block by block, as the worker does it. Needs the built codec:
+// QTET_WASM names it (ctest does).
 
 import {readFileSync} from 'node:fs';
 import {Assembler} from '../core/assembler';
@@ -6,7 +7,7 @@ import {headBytesOf} from '../core/block_source';
 import {WasmCodec} from '../core/codec';
 import type {ValueDecoder} from '../core/draco';
 import {QtetError} from '../core/errors';
-import {kFirstFieldPart, kHeadPart} from '../core/protocol';
+import {kFirstFieldPart, kHeadPart} from '../core/parts';
 
 /** Empty: tests that need it are skipped. */
 export const kTestWasm = process.env.QTET_WASM ?? '';
@@ -16,12 +17,19 @@ export async function takeWholeLog(log: Uint8Array, values: ValueDecoder): Promi
   const codec = await WasmCodec.create(await WebAssembly.compile(readFileSync(kTestWasm)));
   const assembler = new Assembler(codec, values);
   const headBytes = headBytesOf(log);
-  assembler.take({stream: 1, chunk: 0, firstPart: kHeadPart, parts: 0, payload: log.subarray(0, headBytes)});
+  assembler.take({
+    stream: 1,
+    chunk: 0,
+    firstPart: kHeadPart,
+    parts: 0,
+    payload: log.subarray(0, headBytes),
+  });
   const parts = kFirstFieldPart + assembler.manifest!.fields.length;
   for (let chunk = 0, at = headBytes; chunk < codec.chunkCount; ++chunk) {
     const sizes = Array.from({length: parts}, (_, part) => codec.blockSize(chunk, part));
     const end = at + sizes.reduce((sum, size) => sum + size, 0);
-    if (end > log.length) throw new QtetError('truncated', `chunk ${chunk} ends at ${end} of ${log.length} bytes`);
+    if (end > log.length)
+      throw new QtetError('truncated', `chunk ${chunk} ends at ${end} of ${log.length} bytes`);
     assembler.take({stream: 1, chunk, firstPart: 0, parts, payload: log.subarray(at, end)});
     at = end;
   }

@@ -1,14 +1,29 @@
-// The cells of a volume where a ray caster's shaders can read them: one texel a vertex and a cell, and the faces that rays come in through.
+// The cells of a volume where a ray caster's shaders can read them: one texel a vertex and a cell,
+// and the faces that rays come in through.
 
 import {
-  BufferGeometry, DataTexture, FloatType, NearestFilter, RGBAFormat, RGBAIntegerFormat, RGIntegerFormat, RedFormat, Sphere, UnsignedIntType, Vector3,
-  type PixelFormat, type TextureDataType,
+  BufferGeometry,
+  DataTexture,
+  FloatType,
+  NearestFilter,
+  RGBAFormat,
+  RGBAIntegerFormat,
+  RGIntegerFormat,
+  RedFormat,
+  Sphere,
+  UnsignedIntType,
+  Vector3,
+  type PixelFormat,
+  type TextureDataType,
 } from 'three';
 import {cellAround} from '../core/cell_entry';
 import type {Vector} from '../core/cell_ray';
 import type {VolumeCells} from '../core/volume';
 
-/** Texels in a row; a power of two, which nearly every GPU that has WebGL 2 takes, most of them four times as many rows: sixteen million cells. */
+/**
+ * Texels in a row; a power of two, which nearly every GPU that has WebGL 2 takes, most of them four
+ * times as many rows: sixteen million cells.
+ */
 export const kRowBits = 12;
 export const kRow = 1 << kRowBits;
 
@@ -33,19 +48,24 @@ export class CellTextures {
     this.ofCells = from.cellValues !== null;
     this.count = from.cells.length / 4;
     this.entryGeometry.setDrawRange(0, (3 * from.entries.length) / 8);
-    this.entryGeometry.boundingSphere = new Sphere(new Vector3(), Infinity);  // there are no places to tell it from
+    // there are no places to tell it from
+    this.entryGeometry.boundingSphere = new Sphere(new Vector3(), Infinity);
   }
 
   /** The cell that the eye is in: its corners, and its tag; null: it is in none. */
   eyeCell(eye: Vector): Uint32Array | null {
-    if (eye.join() !== this.eye) this.cellOfEye = cellAround(this.from.vertices, this.from.cells, eye);
+    if (eye.join() !== this.eye)
+      this.cellOfEye = cellAround(this.from.vertices, this.from.cells, eye);
     this.eye = eye.join();
     const cell = this.cellOfEye;
-    return cell < 0 ? null : Uint32Array.of(...this.from.cells.subarray(4 * cell, 4 * cell + 4), this.from.tags[cell]!);
+    return cell < 0
+      ? null
+      : Uint32Array.of(...this.from.cells.subarray(4 * cell, 4 * cell + 4), this.from.tags[cell]!);
   }
 
   dispose(): void {
-    for (const texture of [this.vertices, this.links, this.entries, this.cellValues]) texture.dispose();
+    for (const texture of [this.vertices, this.links, this.entries, this.cellValues])
+      texture.dispose();
     this.entryGeometry.dispose();
   }
 }
@@ -55,9 +75,16 @@ export function mostRows({vertices, links, entries}: VolumeCells): number {
   return Math.max(heightOf(vertices, 4), heightOf(links, 2), heightOf(entries, 4));
 }
 
-function heightOf(values: {length: number}, size: number): number { return Math.max(1, Math.ceil(values.length / (size * kRow))); }
+function heightOf(values: {length: number}, size: number): number {
+  return Math.max(1, Math.ceil(values.length / (size * kRow)));
+}
 
-function rows(values: Float32Array | Uint32Array, size: number, format: PixelFormat, type: TextureDataType): DataTexture {
+function rows(
+  values: Float32Array | Uint32Array,
+  size: number,
+  format: PixelFormat,
+  type: TextureDataType,
+): DataTexture {
   const height = heightOf(values, size);
   const filled = new (values.constructor as Float32ArrayConstructor)(size * kRow * height);
   filled.set(values);
@@ -65,9 +92,17 @@ function rows(values: Float32Array | Uint32Array, size: number, format: PixelFor
 }
 
 /** RGBA in one row. */
-export function tableTexture(values: Float32Array): DataTexture { return dataTexture(values, values.length / 4, 1, RGBAFormat, FloatType); }
+export function tableTexture(values: Float32Array): DataTexture {
+  return dataTexture(values, values.length / 4, 1, RGBAFormat, FloatType);
+}
 
-function dataTexture(values: Float32Array, width: number, height: number, format: PixelFormat, type: TextureDataType): DataTexture {
+function dataTexture(
+  values: Float32Array,
+  width: number,
+  height: number,
+  format: PixelFormat,
+  type: TextureDataType,
+): DataTexture {
   const texture = new DataTexture(values, width, height, format, type);
   texture.minFilter = texture.magFilter = NearestFilter;
   texture.needsUpdate = true;

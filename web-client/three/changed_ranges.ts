@@ -1,6 +1,9 @@
 // Which stretches of a buffer changed, so that only they travel to the GPU.
 
-/** Floats that are compared, and sent, together: fewer calls than floats, fewer floats than a buffer. */
+/**
+ * Floats that are compared, and sent, together: fewer calls than floats, fewer floats than a
+ * buffer.
+ */
 export const kBlockFloats = 1024;
 
 export interface Range {
@@ -8,7 +11,10 @@ export interface Range {
   count: number;
 }
 
-/** Copies `from` to the start of `to` and gives the ranges of `to` that became different, in order. REQUIRES: `to` is not shorter. */
+/**
+ * Copies `from` to the start of `to` and gives the ranges of `to` that became different, in order.
+ * REQUIRES: `to` is not shorter.
+ */
 export function copyChanged(to: Float32Array, from: Float32Array): Range[] {
   const ranges: Range[] = [];
   for (let start = 0; start < from.length; start += kBlockFloats) {

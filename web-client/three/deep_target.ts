@@ -1,22 +1,45 @@
-// What is drawn beside the canvas and brought onto it at its end: the scene with its depths, and the volume, which comes over it. In half floats, so that
-// many faint layers add up without steps; without EXT_color_buffer_float or EXT_color_buffer_half_float in bytes.
+// What is drawn beside the canvas and brought onto it at its end: the scene with its depths, and
+// the volume, which comes over it. In half floats, so that many faint layers add up without steps;
+// without EXT_color_buffer_float or EXT_color_buffer_half_float in bytes.
 
 import {
-  DepthTexture, HalfFloatType, Mesh, NearestFilter, NoBlending, OrthographicCamera, PlaneGeometry, Scene, ShaderMaterial, UnsignedByteType, UnsignedIntType, Vector2,
-  WebGLRenderTarget, type Camera, type WebGLRenderer,
+  DepthTexture,
+  HalfFloatType,
+  Mesh,
+  NearestFilter,
+  NoBlending,
+  OrthographicCamera,
+  PlaneGeometry,
+  Scene,
+  ShaderMaterial,
+  UnsignedByteType,
+  UnsignedIntType,
+  Vector2,
+  WebGLRenderTarget,
+  type Camera,
+  type WebGLRenderer,
 } from 'three';
 
 export class DeepTarget {
-  private readonly scene = new WebGLRenderTarget(1, 1, {depthTexture: new DepthTexture(1, 1, UnsignedIntType)});
+  private readonly scene = new WebGLRenderTarget(1, 1, {
+    depthTexture: new DepthTexture(1, 1, UnsignedIntType),
+  });
   /** Premultiplied; what is added comes behind what is there. */
   readonly volume = new WebGLRenderTarget(1, 1, {depthBuffer: false});
   private readonly camera = new OrthographicCamera(-1, 1, 1, -1, 0, 1);
   private readonly planes = new Scene();
   private readonly material = new ShaderMaterial({
-    vertexShader: 'out vec2 at; void main() { at = uv; gl_Position = vec4(position.xy, 0.0, 1.0); }',
-    fragmentShader: `in vec2 at; uniform sampler2D scene; uniform sampler2D volume;
-      void main() { vec4 front = texture(volume, at); gl_FragColor = front + (1.0 - front.a) * texture(scene, at); }`,
-    uniforms: {scene: {value: this.scene.texture}, volume: {value: this.volume.texture}}, depthTest: false, depthWrite: false, blending: NoBlending,
+    vertexShader:
+      'out vec2 at; void main() { at = uv; gl_Position = vec4(position.xy, 0.0, 1.0); }',
+    fragmentShader: /* glsl */ `in vec2 at; uniform sampler2D scene; uniform sampler2D volume;
+      void main() {
+        vec4 front = texture(volume, at);
+        gl_FragColor = front + (1.0 - front.a) * texture(scene, at);
+      }`,
+    uniforms: {scene: {value: this.scene.texture}, volume: {value: this.volume.texture}},
+    depthTest: false,
+    depthWrite: false,
+    blending: NoBlending,
   });
   private readonly plane = new Mesh(new PlaneGeometry(2, 2), this.material);
 
@@ -26,18 +49,30 @@ export class DeepTarget {
     this.planes.add(this.plane);
   }
 
-  get width(): number { return this.volume.width; }
-  get height(): number { return this.volume.height; }
-  get depths(): DepthTexture { return this.scene.depthTexture!; }
+  get width(): number {
+    return this.volume.width;
+  }
+  get height(): number {
+    return this.volume.height;
+  }
+  get depths(): DepthTexture {
+    return this.scene.depthTexture!;
+  }
 
   /** Begins a picture with the scene and no volume yet. `share` of the canvas's pixels each way. */
   begin(renderer: WebGLRenderer, share: number, scene: Scene, camera: Camera): void {
     const {extensions} = renderer;
-    const type = extensions.has('EXT_color_buffer_float') || extensions.has('EXT_color_buffer_half_float') ? HalfFloatType : UnsignedByteType;
+    const type =
+      extensions.has('EXT_color_buffer_float') || extensions.has('EXT_color_buffer_half_float')
+        ? HalfFloatType
+        : UnsignedByteType;
     const {width, height} = renderer.getDrawingBufferSize(new Vector2());
     for (const target of [this.scene, this.volume]) {
       target.texture.type = type;
-      target.setSize(Math.max(1, Math.round(width * share)), Math.max(1, Math.round(height * share)));
+      target.setSize(
+        Math.max(1, Math.round(width * share)),
+        Math.max(1, Math.round(height * share)),
+      );
     }
     renderer.setRenderTarget(this.volume);
     renderer.clear();

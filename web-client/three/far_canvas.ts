@@ -1,8 +1,12 @@
-// A canvas of the page as the worker that draws into it sees it: its surface, its size, and the pointer's events, which the page passes on.
+// A canvas of the page as the worker that draws into it sees it: its surface, its size, and the
+// pointer's events, which the page passes on.
 
 import {watchDensity} from './density';
 
-/** What of a pointer's, a wheel's or a key's event is passed on; places are from the canvas's corner. */
+/**
+ * What of a pointer's, a wheel's or a key's event is passed on; places are from the canvas's
+ * corner.
+ */
 export interface FarEvent {
   type: string;
   clientX: number;
@@ -36,7 +40,9 @@ export class FarCanvas extends EventTarget {
   readonly ownerDocument = this;
   onresize: () => void = () => undefined;
 
-  constructor(readonly surface: OffscreenCanvas) { super(); }
+  constructor(readonly surface: OffscreenCanvas) {
+    super();
+  }
 
   resize({width, height, pixelRatio}: FarSize): void {
     Object.assign(this, {clientWidth: width, clientHeight: height, pixelRatio});
@@ -51,16 +57,24 @@ export class FarCanvas extends EventTarget {
   getBoundingClientRect(): {left: number; top: number; width: number; height: number} {
     return {left: 0, top: 0, width: this.clientWidth, height: this.clientHeight};
   }
-  getRootNode(): this { return this; }
+  getRootNode(): this {
+    return this;
+  }
   /** The page has captured it already. */
-  setPointerCapture(): void { return; }
-  releasePointerCapture(): void { return; }
+  setPointerCapture(): void {
+    return;
+  }
+  releasePointerCapture(): void {
+    return;
+  }
 }
 
 export type ViewCanvas = HTMLCanvasElement | FarCanvas;
 
-export const surfaceOf = (canvas: ViewCanvas): HTMLCanvasElement | OffscreenCanvas => (canvas instanceof FarCanvas ? canvas.surface : canvas);
-export const pixelRatioOf = (canvas: ViewCanvas): number => (canvas instanceof FarCanvas ? canvas.pixelRatio : window.devicePixelRatio);
+export const surfaceOf = (canvas: ViewCanvas): HTMLCanvasElement | OffscreenCanvas =>
+  canvas instanceof FarCanvas ? canvas.surface : canvas;
+export const pixelRatioOf = (canvas: ViewCanvas): number =>
+  canvas instanceof FarCanvas ? canvas.pixelRatio : window.devicePixelRatio;
 
 /** Calls `resized` whenever the canvas has another size; gives what ends that. */
 export function watchSize(canvas: ViewCanvas, resized: () => void): () => void {

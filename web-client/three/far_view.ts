@@ -1,4 +1,5 @@
-// The page's side of a view that a worker draws: commands out, poses in. Without three: that is the worker's.
+// The page's side of a view that a worker draws: commands out, poses in. Without three: that is the
+// worker's.
 
 import type {Ray, Vector} from '../core/cell_ray';
 import {retry} from '../core/retry';
@@ -13,25 +14,45 @@ import {checkedCamera, project, rayAt, type Pose} from './pose';
 import type {Insets, Look, View, ViewListeners} from './view';
 import type {Command, FromView, ToView} from './view_messages';
 
-/** What the canvas hears that a view has to do with; moves only while a button or a finger is down. */
-const kCanvasEvents = ['pointerdown', 'pointermove', 'pointerup', 'pointercancel', 'wheel', 'contextmenu'] as const;
+/**
+ * What the canvas hears that a view has to do with; moves only while a button or a finger is down.
+ */
+const kCanvasEvents = [
+  'pointerdown',
+  'pointermove',
+  'pointerup',
+  'pointercancel',
+  'wheel',
+  'contextmenu',
+] as const;
 
 /** The worker that draws is asked so often whether it is there, while the page is in sight. */
 const kPingMs = 5000;
-/** So many questions without an answer: graphics made of software let a worker wait for seconds, and a page that slept has asked only once. */
-const kMostUnanswered = 6;
+/**
+ * So many questions without an answer: graphics made of software let a worker wait for seconds, and
+ * a page that slept has asked only once.
+ */
+const kMaxUnanswered = 6;
 
-/** A view of `canvas`, drawn by a worker where workers can draw, else on this thread. Throws when the browser has no WebGL 2, or the line fails. */
+/**
+ * A view of `canvas`, drawn by a worker where workers can draw, else on this thread. Throws when
+ * the browser has no WebGL 2, or the line fails.
+ */
 export async function openView(canvas: HTMLCanvasElement, listeners: ViewListeners): Promise<View> {
   const {worker, url, draws} = await retry(startWorker);
-  if (draws && 'transferControlToOffscreen' in canvas) return FarView.begin(worker, canvas, listeners);
+  if (draws && 'transferControlToOffscreen' in canvas)
+    return FarView.begin(worker, canvas, listeners);
   worker.terminate();
-  await import(/* @vite-ignore */ url);  // the same script once more, so that no visitor loads it in two builds
+  // the same script once more, so that no visitor loads it in two builds
+  await import(/* @vite-ignore */ url);
   return new globalThis.qtetMeshView!(canvas, listeners);
 }
 
 async function startWorker(): Promise<{worker: Worker; url: string; draws: boolean}> {
-  const worker = new Worker(new URL('./view_worker.ts', import.meta.url), {type: 'module', name: 'qtet-view'});
+  const worker = new Worker(new URL('./view_worker.ts', import.meta.url), {
+    type: 'module',
+    name: 'qtet-view',
+  });
   const hello = await answerOf(worker);
   if (hello.type !== 'hello') throw new Error('the worker that draws does not greet');
   return {worker, ...hello};
@@ -50,7 +71,10 @@ function answerOf(worker: Worker): Promise<FromView> {
 
 class FarView implements View {
   private readonly shown = new Map<number, (ms: number) => void>();
-  private readonly pictures = new Map<number, {resolve(blob: Blob): void; reject(why: Error): void}>();
+  private readonly pictures = new Map<
+    number,
+    {resolve(blob: Blob): void; reject(why: Error): void}
+  >();
   private readonly ended = new AbortController();
   private readonly resizes: ResizeObserver;
   private readonly timer: ReturnType<typeof setInterval>;
@@ -58,19 +82,35 @@ class FarView implements View {
   private nextId = 0;
   private pressed = 0;
 
-  static async begin(worker: Worker, canvas: HTMLCanvasElement, listeners: ViewListeners): Promise<FarView> {
+  static async begin(
+    worker: Worker,
+    canvas: HTMLCanvasElement,
+    listeners: ViewListeners,
+  ): Promise<FarView> {
     const surface = canvas.transferControlToOffscreen();
-    const begin: ToView = {type: 'begin', canvas: surface, size: sizeOf(canvas), answers: listeners.coarse !== undefined};
+    const begin: ToView = {
+      type: 'begin',
+      canvas: surface,
+      size: sizeOf(canvas),
+      answers: listeners.coarse !== undefined,
+    };
     worker.postMessage(begin, [surface]);
     const first = await answerOf(worker);
     if (first.type !== 'drawn') {
       worker.terminate();
-      throw new Error(first.type === 'failed' ? first.message : 'the worker that draws does not answer');
+      throw new Error(
+        first.type === 'failed' ? first.message : 'the worker that draws does not answer',
+      );
     }
     return new FarView(worker, canvas, listeners, first.pose);
   }
 
-  private constructor(private readonly worker: Worker, readonly canvas: HTMLCanvasElement, private readonly listeners: ViewListeners, public pose: Pose) {
+  private constructor(
+    private readonly worker: Worker,
+    readonly canvas: HTMLCanvasElement,
+    private readonly listeners: ViewListeners,
+    public pose: Pose,
+  ) {
     worker.onmessage = (event: MessageEvent<FromView>) => {
       this.hear(0);
       this.receive(event.data);
@@ -79,9 +119,18 @@ class FarView implements View {
     worker.onmessageerror = () => listeners.failed?.('a message cannot be read');
     this.timer = setInterval(() => this.ping(), kPingMs);
     canvas.style.touchAction = 'none';
-    for (const type of kCanvasEvents) canvas.addEventListener(type, (event) => this.pass(event), {passive: false, signal: this.ended.signal});
+    for (const type of kCanvasEvents)
+      canvas.addEventListener(type, (event) => this.pass(event), {
+        passive: false,
+        signal: this.ended.signal,
+      });
     for (const type of ['keydown', 'keyup'] as const) {
-      document.addEventListener(type, (event) => event.key === 'Control' && this.send({type: 'event', event: farEvent(event, canvas)}), {signal: this.ended.signal});
+      document.addEventListener(
+        type,
+        (event) =>
+          event.key === 'Control' && this.send({type: 'event', event: farEvent(event, canvas)}),
+        {signal: this.ended.signal},
+      );
     }
     const resized = (): void => this.send({type: 'size', size: sizeOf(canvas)});
     this.resizes = new ResizeObserver(resized);
@@ -89,7 +138,9 @@ class FarView implements View {
     this.ended.signal.addEventListener('abort', watchDensity(resized));
   }
 
-  get cameraState(): CameraState { return this.pose.camera; }
+  get cameraState(): CameraState {
+    return this.pose.camera;
+  }
   set cameraState(state: CameraState) {
     this.pose = {...this.pose, camera: checkedCamera(state), fitted: false};
     this.send({type: 'camera', state});
@@ -100,17 +151,37 @@ class FarView implements View {
     this.shown.set(id, drawn);
     this.send({type: 'show', id, snapshot}, buffersOf(snapshot));
   }
-  clear(): void { this.command('clear'); }
-  setLook({map, reversed, edges, opacity, volume = null}: Look): void { this.command('setLook', {map, reversed, edges, opacity, volume}); }
-  setRange(low: number, high: number, scaleRange: [number, number], logarithmic: boolean): void { this.command('setRange', low, high, scaleRange, logarithmic); }
-  setInsets(insets: Insets): void { this.command('setInsets', insets); }
-  look(direction: Direction | null): void { this.command('look', checkedDirection(direction)); }
-  setParallel(parallel: boolean): void { this.command('setParallel', parallel); }
-  turn(horizontal: number, vertical: number): void { this.command('turn', horizontal, vertical); }
-  zoom(factor: number): void { this.command('zoom', factor); }
+  clear(): void {
+    this.command('clear');
+  }
+  setLook({map, reversed, edges, opacity, volume = null}: Look): void {
+    this.command('setLook', {map, reversed, edges, opacity, volume});
+  }
+  setRange(low: number, high: number, scaleRange: [number, number], logarithmic: boolean): void {
+    this.command('setRange', low, high, scaleRange, logarithmic);
+  }
+  setInsets(insets: Insets): void {
+    this.command('setInsets', insets);
+  }
+  look(direction: Direction | null): void {
+    this.command('look', checkedDirection(direction));
+  }
+  setParallel(parallel: boolean): void {
+    this.command('setParallel', parallel);
+  }
+  turn(horizontal: number, vertical: number): void {
+    this.command('turn', horizontal, vertical);
+  }
+  zoom(factor: number): void {
+    this.command('zoom', factor);
+  }
 
-  rayAt(x: number, y: number): Ray { return rayAt(this.pose, this.canvas, x, y); }
-  project(point: Vector): {x: number; y: number} { return project(this.pose, this.canvas, point); }
+  rayAt(x: number, y: number): Ray {
+    return rayAt(this.pose, this.canvas, x, y);
+  }
+  project(point: Vector): {x: number; y: number} {
+    return project(this.pose, this.canvas, point);
+  }
 
   picture(background: string): Promise<Blob> {
     const id = this.nextId++;
@@ -132,7 +203,8 @@ class FarView implements View {
   }
 
   private hear(unanswered: number): void {
-    const was = this.unanswered > kMostUnanswered, is = unanswered > kMostUnanswered;
+    const was = this.unanswered > kMaxUnanswered,
+      is = unanswered > kMaxUnanswered;
     this.unanswered = unanswered;
     if (was !== is) this.listeners.silent?.(is);
   }
@@ -142,12 +214,19 @@ class FarView implements View {
       case 'drawn':
         this.pose = message.pose;
         return this.listeners.drawn?.(message.pose);
-      case 'shown': return taken(this.shown, message.id)?.(message.drawingMs);
-      case 'pictured': return taken(this.pictures, message.id)?.resolve(message.blob);
-      case 'failed': return taken(this.pictures, message.id)?.reject(new Error(message.message));
-      case 'lost': return this.listeners.lost?.(message.lost);
-      case 'coarse': return void this.coarse(message.id, message.have);
-      case 'hello': case 'pong': return;
+      case 'shown':
+        return taken(this.shown, message.id)?.(message.drawingMs);
+      case 'pictured':
+        return taken(this.pictures, message.id)?.resolve(message.blob);
+      case 'failed':
+        return taken(this.pictures, message.id)?.reject(new Error(message.message));
+      case 'lost':
+        return this.listeners.lost?.(message.lost);
+      case 'coarse':
+        return void this.coarse(message.id, message.have);
+      case 'hello':
+      case 'pong':
+        return;
     }
   }
 
@@ -164,7 +243,8 @@ class FarView implements View {
       this.canvas.setPointerCapture((event as PointerEvent).pointerId);
     }
     if (event.type === 'pointermove' && this.pressed === 0) return;
-    if (event.type === 'pointerup' || event.type === 'pointercancel') this.pressed = Math.max(0, this.pressed - 1);
+    if (event.type === 'pointerup' || event.type === 'pointercancel')
+      this.pressed = Math.max(0, this.pressed - 1);
     this.send({type: 'event', event: farEvent(event, this.canvas)});
   }
 
@@ -172,7 +252,9 @@ class FarView implements View {
     this.send({type: 'command', name, words} as ToView);
   }
 
-  private send(message: ToView, transfer: Transferable[] = []): void { this.worker.postMessage(message, transfer); }
+  private send(message: ToView, transfer: Transferable[] = []): void {
+    this.worker.postMessage(message, transfer);
+  }
 }
 
 /** What waits under `id`, and no longer. */
@@ -183,12 +265,46 @@ function taken<Waiting>(asked: Map<number, Waiting>, id = -1): Waiting | undefin
 }
 
 function sizeOf({clientWidth, clientHeight}: HTMLCanvasElement): FarSize {
-  return {width: Math.max(1, clientWidth), height: Math.max(1, clientHeight), pixelRatio: window.devicePixelRatio};
+  return {
+    width: Math.max(1, clientWidth),
+    height: Math.max(1, clientHeight),
+    pixelRatio: window.devicePixelRatio,
+  };
 }
 
-function farEvent(event: Partial<PointerEvent & WheelEvent & KeyboardEvent> & {type: string}, canvas: HTMLElement): FarEvent {
+function farEvent(
+  event: Partial<PointerEvent & WheelEvent & KeyboardEvent> & {type: string},
+  canvas: HTMLElement,
+): FarEvent {
   const {left, top} = canvas.getBoundingClientRect();
-  const clientX = (event.clientX ?? 0) - left, clientY = (event.clientY ?? 0) - top;
-  const {type, button = 0, pointerId = 0, pointerType = '', deltaY = 0, deltaMode = 0, ctrlKey = false, metaKey = false, shiftKey = false, key = ''} = event;
-  return {type, clientX, clientY, pageX: clientX, pageY: clientY, button, pointerId, pointerType, deltaY, deltaMode, ctrlKey, metaKey, shiftKey, key};
+  const clientX = (event.clientX ?? 0) - left,
+    clientY = (event.clientY ?? 0) - top;
+  const {
+    type,
+    button = 0,
+    pointerId = 0,
+    pointerType = '',
+    deltaY = 0,
+    deltaMode = 0,
+    ctrlKey = false,
+    metaKey = false,
+    shiftKey = false,
+    key = '',
+  } = event;
+  return {
+    type,
+    clientX,
+    clientY,
+    pageX: clientX,
+    pageY: clientY,
+    button,
+    pointerId,
+    pointerType,
+    deltaY,
+    deltaMode,
+    ctrlKey,
+    metaKey,
+    shiftKey,
+    key,
+  };
 }

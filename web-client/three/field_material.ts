@@ -1,13 +1,25 @@
-// The one material: a colour map over field values, cell edges, and up to three clip planes by discarding. Colours go out as they stand in the
-// table (sRGB, no tone mapping), so that a flat cut shows exactly what the legend shows.
+// The one material: a colour map over field values, cell edges, and up to three clip planes by
+// discarding. Colours go out as they stand in the table (sRGB, no tone mapping), so that a flat cut
+// shows exactly what the legend shows.
 
-import {DataTexture, DoubleSide, LinearFilter, RGBAFormat, ShaderMaterial, Vector3, Vector4, type ColorRepresentation, Color} from 'three';
+import {
+  DataTexture,
+  DoubleSide,
+  LinearFilter,
+  RGBAFormat,
+  ShaderMaterial,
+  Vector3,
+  Vector4,
+  type ColorRepresentation,
+  Color,
+} from 'three';
 import {colorTable, kColorMapEntries, type ColorMapName} from '../core/color_maps';
 
 const kVertexShader = /* glsl */ `
   in float value;
   out float vValue;
-  centroid out vec3 vLattice;  // never outside of its triangle, or slivers above a plane would leave pixels
+  // never outside of its triangle, or slivers above a plane would leave pixels
+  centroid out vec3 vLattice;
   out vec3 vView;
   out vec3 vCorner;
   void main() {
@@ -41,7 +53,8 @@ const kFragmentShader = /* glsl */ `
   uniform float pixelRatio;
 
   vec3 surfaceColor() {
-    if (!colored || isnan(vValue)) return plainColor;  // a value that is missing makes its triangle plain
+    // a value that is missing makes its triangle plain
+    if (!colored || isnan(vValue)) return plainColor;
     float t = (vValue - range.x) / max(range.y - range.x, 1e-12);
     if (logarithmic) {
       float value = mix(scaleRange.x, scaleRange.y, vValue);
@@ -49,10 +62,12 @@ const kFragmentShader = /* glsl */ `
     }
     t = clamp(t, 0.0, 1.0);
     // Entry centres, so that both ends of the range show the table's own ends.
-    return texture(colorMap, vec2((t * ${kColorMapEntries - 1}.0 + 0.5) / ${kColorMapEntries}.0, 0.5)).rgb;
+    float at = (t * ${kColorMapEntries - 1}.0 + 0.5) / ${kColorMapEntries}.0;
+    return texture(colorMap, vec2(at, 0.5)).rgb;
   }
 
-  // 1 on an edge, 0 inside; fades where triangles come down to a few pixels, which would else turn dark.
+  // 1 on an edge, 0 inside; fades where triangles come down to a few pixels, which would else turn
+  // dark.
   float edge() {
     vec3 perPixel = max(fwidth(vCorner), 1e-6);
     vec3 distance = smoothstep(vec3(0.0), perPixel * 0.85 * pixelRatio, vCorner);
@@ -65,7 +80,8 @@ const kFragmentShader = /* glsl */ `
     for (int i = 0; i < 3; ++i) if (dot(clipPlanes[i].xyz, vLattice) > clipPlanes[i].w) discard;
     vec3 color = surfaceColor();
     if (lit) {
-      // Flat shading from the screen's derivatives: cells look like cells. The light sits a little above the eye.
+      // Flat shading from the screen's derivatives: cells look like cells. The light sits a little
+      // above the eye.
       vec3 normal = normalize(cross(dFdx(vView), dFdy(vView)));
       vec3 light = normalize(vec3(0.25, 0.45, 1.0));
       float facing = abs(dot(normal, light));
@@ -89,10 +105,19 @@ export class FieldMaterial extends ShaderMaterial {
       fragmentShader: kFragmentShader,
       side: DoubleSide,
       uniforms: {
-        firstHalf: {value: 0}, colorMap: {value: emptyTexture()}, range: {value: [0, 1]}, colored: {value: false},
-        plainColor: {value: new Vector3(0.72, 0.74, 0.78)}, lit: {value: lit}, twoSided: {value: twoSided}, clipPlanes: {value: [kNoPlane.clone(), kNoPlane.clone(), kNoPlane.clone()]},
-        scaleRange: {value: [0, 1]}, logarithmic: {value: false}, opacity: {value: 1},
-        edgeStrength: {value: 0.6}, pixelRatio: {value: 1},
+        firstHalf: {value: 0},
+        colorMap: {value: emptyTexture()},
+        range: {value: [0, 1]},
+        colored: {value: false},
+        plainColor: {value: new Vector3(0.72, 0.74, 0.78)},
+        lit: {value: lit},
+        twoSided: {value: twoSided},
+        clipPlanes: {value: [kNoPlane.clone(), kNoPlane.clone(), kNoPlane.clone()]},
+        scaleRange: {value: [0, 1]},
+        logarithmic: {value: false},
+        opacity: {value: 1},
+        edgeStrength: {value: 0.6},
+        pixelRatio: {value: 1},
       },
     });
   }
@@ -105,7 +130,10 @@ export class FieldMaterial extends ShaderMaterial {
     texture.needsUpdate = true;
   }
 
-  /** The map spans `low` to `high`, values of the field; `scaleRange` is what 0 and 1 in the soups mean. Logarithmic: 0 < low. */
+  /**
+   * The map spans `low` to `high`, values of the field; `scaleRange` is what 0 and 1 in the soups
+   * mean. Logarithmic: 0 < low.
+   */
   setRange(low: number, high: number, scaleRange: [number, number], logarithmic: boolean): void {
     const span = scaleRange[1] - scaleRange[0] || 1;
     const share = (value: number): number => (value - scaleRange[0]) / span;
@@ -119,17 +147,27 @@ export class FieldMaterial extends ShaderMaterial {
     this.transparent = opacity < 1;
     this.depthWrite = opacity >= 1;
   }
-  setColored(colored: boolean): void { this.uniforms.colored!.value = colored; }
-  setFirstHalf(triangle: number): void { this.uniforms.firstHalf!.value = triangle; }
+  setColored(colored: boolean): void {
+    this.uniforms.colored!.value = colored;
+  }
+  setFirstHalf(triangle: number): void {
+    this.uniforms.firstHalf!.value = triangle;
+  }
   /** 0 hides the edges, 1 draws them at full strength. */
-  setEdges(strength: number): void { this.uniforms.edgeStrength!.value = strength; }
-  setPixelRatio(ratio: number): void { this.uniforms.pixelRatio!.value = Math.max(1, ratio); }
+  setEdges(strength: number): void {
+    this.uniforms.edgeStrength!.value = strength;
+  }
+  setPixelRatio(ratio: number): void {
+    this.uniforms.pixelRatio!.value = Math.max(1, ratio);
+  }
   setPlainColor(color: ColorRepresentation): void {
-    const {r, g, b} = new Color().setStyle(String(color)).convertLinearToSRGB();
+    const {r, g, b} = new Color(color).convertLinearToSRGB();
     (this.uniforms.plainColor!.value as Vector3).set(r, g, b);
   }
 
-  /** Hides what lies above any of at most three planes normal . p = offset (lattice coordinates). */
+  /**
+   * Hides what lies above any of at most three planes normal . p = offset (lattice coordinates).
+   */
   setClip(planes: readonly {normal: [number, number, number]; offset: number}[]): void {
     (this.uniforms.clipPlanes!.value as Vector4[]).forEach((clip, i) => {
       const plane = planes[i];
@@ -145,7 +183,12 @@ export class FieldMaterial extends ShaderMaterial {
 }
 
 function emptyTexture(): DataTexture {
-  const texture = new DataTexture(new Uint8Array(4 * kColorMapEntries), kColorMapEntries, 1, RGBAFormat);
+  const texture = new DataTexture(
+    new Uint8Array(4 * kColorMapEntries),
+    kColorMapEntries,
+    1,
+    RGBAFormat,
+  );
   texture.minFilter = texture.magFilter = LinearFilter;
   return texture;
 }

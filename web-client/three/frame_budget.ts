@@ -1,4 +1,5 @@
-// What pictures take on the graphics' side, and how many pixels one may have that is drawn while something moves.
+// What pictures take on the graphics' side, and how many pixels one may have that is drawn while
+// something moves.
 
 /** A moving picture takes at most so long. */
 export const kMovingMs = 60;
@@ -8,19 +9,26 @@ const kLeastShare = 0.2;
 const kPollMs = 4;
 const kPollShare = 0.125;
 
-const pause = (start: number): Promise<void> => new Promise((resolve) => setTimeout(resolve, Math.max(kPollMs, kPollShare * (performance.now() - start))));
+const pause = (start: number): Promise<void> =>
+  new Promise((resolve) =>
+    setTimeout(resolve, Math.max(kPollMs, kPollShare * (performance.now() - start))),
+  );
 
 /** Waits until the graphics have drawn what they were told so far; gives the time since `start`. */
 export async function whenDrawn(gl: WebGL2RenderingContext, start: number): Promise<number> {
   const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
   gl.flush();
-  do await pause(start); while (fence && !gl.isContextLost() && gl.clientWaitSync(fence, 0, 0) === gl.TIMEOUT_EXPIRED);
+  do await pause(start);
+  while (fence && !gl.isContextLost() && gl.clientWaitSync(fence, 0, 0) === gl.TIMEOUT_EXPIRED);
   gl.deleteSync(fence);
   return performance.now() - start;
 }
 
 /** Calls `draw`, and gives whether any pixel of it passes the tests of depth and shader. */
-export async function reachesPixels(gl: WebGL2RenderingContext, draw: () => void): Promise<boolean> {
+export async function reachesPixels(
+  gl: WebGL2RenderingContext,
+  draw: () => void,
+): Promise<boolean> {
   const query = gl.isContextLost() ? null : gl.createQuery();
   if (query) gl.beginQuery(gl.ANY_SAMPLES_PASSED, query);
   const start = performance.now();
@@ -28,7 +36,8 @@ export async function reachesPixels(gl: WebGL2RenderingContext, draw: () => void
   if (!query) return false;
   gl.endQuery(gl.ANY_SAMPLES_PASSED);
   gl.flush();
-  do await pause(start); while (!gl.isContextLost() && !gl.getQueryParameter(query, gl.QUERY_RESULT_AVAILABLE));
+  do await pause(start);
+  while (!gl.isContextLost() && !gl.getQueryParameter(query, gl.QUERY_RESULT_AVAILABLE));
   const reaches = Boolean(gl.getQueryParameter(query, gl.QUERY_RESULT));
   gl.deleteQuery(query);
   return reaches;
@@ -42,7 +51,10 @@ export class FrameBudget {
 
   share(): number {
     if (this.fixed + this.perPicture <= kMovingMs) return 1;
-    return Math.max(kLeastShare, Math.min(1, Math.sqrt(Math.max(0, kMovingMs - this.fixed) / this.perPicture)));
+    return Math.max(
+      kLeastShare,
+      Math.min(1, Math.sqrt(Math.max(0, kMovingMs - this.fixed) / this.perPicture)),
+    );
   }
 
   /** Two pictures of different sizes tell what goes by pixels; until then all of it does. */

@@ -1,8 +1,9 @@
-// A canvas that shows a progressive mesh: surface, cuts and isosurfaces. Draws only when something changed.
+// A canvas that shows a progressive mesh: surface, cuts and isosurfaces. Draws only when something
+// changed.
 
 import {Frustum, Group, Matrix4, Scene, Vector3, WebGLRenderer} from 'three';
 import type {Ray, Vector} from '../core/cell_ray';
-import {kMostPlanes} from '../core/display';
+import {kMaxPlanes} from '../core/display';
 import {transferTables} from '../core/transfer';
 import type {VolumeCells} from '../core/volume';
 import type {Snapshot} from '../core/worker_messages';
@@ -19,7 +20,7 @@ import {VolumeView, type Picture} from './volume_view';
 /** How dark cell edges are: enough to follow, not enough to change what a colour says. */
 const kEdgeStrength = 0.52;
 /** Pixels beyond two a point cost more than they show. */
-const kMostPixelRatio = 2;
+const kMaxPixelRatio = 2;
 
 export class MeshView implements View {
   readonly orbit: OrbitCamera;
@@ -30,7 +31,7 @@ export class MeshView implements View {
   private readonly lattice = new Group();
   private readonly surface = new SoupMesh(true);
   private readonly isosurface = new SoupMesh(true, true);
-  private readonly cuts = Array.from({length: kMostPlanes}, () => new SoupMesh(false));
+  private readonly cuts = Array.from({length: kMaxPlanes}, () => new SoupMesh(false));
   private readonly volume: VolumeView;
   /** Since the last picture something changed that people change, not the mesh alone. */
   private moved = false;
@@ -46,11 +47,22 @@ export class MeshView implements View {
   private afterFrame: ((ms: number) => void)[] = [];
 
   /** Throws when the browser has no WebGL 2. */
-  constructor(readonly canvas: ViewCanvas, private readonly listeners: ViewListeners = {}) {
+  constructor(
+    readonly canvas: ViewCanvas,
+    private readonly listeners: ViewListeners = {},
+  ) {
     this.surfaceCanvas = surfaceOf(canvas);
-    this.renderer = new WebGLRenderer({canvas: this.surfaceCanvas, antialias: true, alpha: true, powerPreference: 'high-performance'});
+    this.renderer = new WebGLRenderer({
+      canvas: this.surfaceCanvas,
+      antialias: true,
+      alpha: true,
+      powerPreference: 'high-performance',
+    });
     this.renderer.setClearColor(0, 0);
-    this.volume = new VolumeView((moved) => this.invalidate(moved), listeners.coarse?.bind(listeners));
+    this.volume = new VolumeView(
+      (moved) => this.invalidate(moved),
+      listeners.coarse?.bind(listeners),
+    );
     this.orbit = new OrbitCamera(canvas as HTMLCanvasElement, () => this.invalidate());
     this.lattice.add(this.surface, this.isosurface, ...this.cuts);
     this.scene.add(this.lattice);
@@ -71,19 +83,24 @@ export class MeshView implements View {
     this.volume.setClip(snapshot.planes);
     this.cuts.forEach((mesh, i) => {
       // A cap would hide the volume behind it; a slice stands in it.
-      mesh.show(this.volume.hasCells && snapshot.planes.length > 0 ? null : snapshot.cuts[i] ?? null);
+      mesh.show(
+        this.volume.hasCells && snapshot.planes.length > 0 ? null : (snapshot.cuts[i] ?? null),
+      );
       mesh.material.setClip(snapshot.planes.filter((_, k) => k !== i));
     });
     if (snapshot.bounds.length > 0) this.growTo(snapshot.bounds);
   }
 
   /**
-   * A camera's state is relative to the largest mesh that was seen: a coarse one is a little smaller, and which one comes first is the line's choice, so that
-   * the whole mesh alone gives a state, or a link, the same picture everywhere.
+   * A camera's state is relative to the largest mesh that was seen: a coarse one is a little
+   * smaller, and which one comes first is the line's choice, so that the whole mesh alone gives a
+   * state, or a link, the same picture everywhere.
    */
   private growTo(seen: number[]): void {
     const isFirst = this.bounds.length === 0;
-    const bounds = isFirst ? seen : this.bounds.map((end, i) => (i < 3 ? Math.min : Math.max)(end, seen[i]!));
+    const bounds = isFirst
+      ? seen
+      : this.bounds.map((end, i) => (i < 3 ? Math.min : Math.max)(end, seen[i]!));
     if (!isFirst && bounds.every((end, i) => end === this.bounds[i])) return;
     this.bounds = bounds;
     this.placeLattice();
@@ -107,16 +124,19 @@ export class MeshView implements View {
   setLook(wanted: Look): void {
     const {map, reversed, edges, opacity, volume} = wanted;
     const look = JSON.stringify([map, reversed, edges, opacity, volume]);
-    if (look === this.shownLook) return;  // it is said with every change of an attribute, and a picture costs more than a comparison
+    // it is said with every change of an attribute, and a picture costs more than a comparison
+    if (look === this.shownLook) return;
     this.shownLook = look;
     for (const mesh of this.meshes()) {
       mesh.material.setColorMap(map, reversed);
-      // An isosurface's polygons are the cells' sections, not the mesh: their edges would hide its shape.
+      // An isosurface's polygons are the cells' sections, not the mesh: their edges would hide its
+      // shape.
       mesh.material.setEdges(edges && mesh !== this.isosurface ? kEdgeStrength : 0);
     }
     this.surface.material.setOpacity(opacity);
     const transfer = volume ? `${map} ${reversed} ${volume.join()}` : '';
-    if (volume && transfer !== this.transfer) this.volume.setTransfer(transferTables(volume, map, reversed));
+    if (volume && transfer !== this.transfer)
+      this.volume.setTransfer(transferTables(volume, map, reversed));
     this.transfer = transfer;
     this.invalidate();
   }
@@ -124,7 +144,7 @@ export class MeshView implements View {
   /** FieldMaterial.setRange for all. */
   setRange(low: number, high: number, scaleRange: [number, number], logarithmic: boolean): void {
     const text = [low, high, scaleRange, logarithmic].join();
-    if (text === this.range) return;  // it is said with every picture
+    if (text === this.range) return; // it is said with every picture
     this.range = text;
     for (const mesh of this.meshes()) mesh.material.setRange(low, high, scaleRange, logarithmic);
     const {range, logarithmic: log} = this.surface.material.uniforms;
@@ -134,14 +154,23 @@ export class MeshView implements View {
 
   setInsets(insets: Insets): void {
     const {left, right, top, bottom} = this.insets;
-    if (left === insets.left && right === insets.right && top === insets.top && bottom === insets.bottom) return;  // resizing empties the canvas
+    if (
+      left === insets.left &&
+      right === insets.right &&
+      top === insets.top &&
+      bottom === insets.bottom
+    )
+      return; // resizing empties the canvas
     this.insets = insets;
     this.resize();
   }
 
   // ---- camera
 
-  /** A standard view, or the one that a mesh is first seen in (null): as near as its bounding box allows. */
+  /**
+   * A standard view, or the one that a mesh is first seen in (null): as near as its bounding box
+   * allows.
+   */
   look(direction: Direction | null): void {
     checkedDirection(direction);
     if (this.bounds.length === 0) return;
@@ -155,7 +184,9 @@ export class MeshView implements View {
     this.invalidate();
   }
 
-  get cameraState(): CameraState { return this.orbit.state; }
+  get cameraState(): CameraState {
+    return this.orbit.state;
+  }
   /** Before there is a mesh it waits for one. */
   set cameraState(state: CameraState) {
     checkedCamera(state);
@@ -181,25 +212,44 @@ export class MeshView implements View {
     const {camera, fitted} = this.orbit;
     camera.updateMatrixWorld();
     this.lattice.updateMatrixWorld();
-    const toCanvas = new Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
+    const toCanvas = new Matrix4().multiplyMatrices(
+      camera.projectionMatrix,
+      camera.matrixWorldInverse,
+    );
     // In sight is where normal . (scale p + position) + constant >= 0.
     const scale = this.lattice.scale.x;
-    const frustum = fitted || this.bounds.length === 0 ? [] : new Frustum().setFromProjectionMatrix(toCanvas).planes.map(({normal, constant}) =>
-      ({normal: normal.toArray(), offset: -(constant + normal.dot(this.lattice.position)) / scale}));
+    const frustum =
+      fitted || this.bounds.length === 0
+        ? []
+        : new Frustum().setFromProjectionMatrix(toCanvas).planes.map(({normal, constant}) => ({
+            normal: normal.toArray(),
+            offset: -(constant + normal.dot(this.lattice.position)) / scale,
+          }));
     toCanvas.multiply(this.lattice.matrixWorld);
     const {x, y, z, w} = camera.quaternion;
     return {
-      toCanvas: toCanvas.toArray(), fromCanvas: toCanvas.clone().invert().toArray(), rotation: {x, y, z, w}, camera: this.orbit.state, fitted,
-      direction: camera.getWorldDirection(new Vector3()).toArray(), frustum, frameMs: this.frameMs,
+      toCanvas: toCanvas.toArray(),
+      fromCanvas: toCanvas.clone().invert().toArray(),
+      rotation: {x, y, z, w},
+      camera: this.orbit.state,
+      fitted,
+      direction: camera.getWorldDirection(new Vector3()).toArray(),
+      frustum,
+      frameMs: this.frameMs,
     };
   }
 
-  rayAt(x: number, y: number): Ray { return rayAt(this.pose, this.canvas, x, y); }
-  project(point: Vector): {x: number; y: number} { return project(this.pose, this.canvas, point); }
+  rayAt(x: number, y: number): Ray {
+    return rayAt(this.pose, this.canvas, x, y);
+  }
+  project(point: Vector): {x: number; y: number} {
+    return project(this.pose, this.canvas, point);
+  }
 
   /** The picture as it stands, on `background` (CSS colour). */
   async picture(background: string): Promise<Blob> {
-    if (this.volume.hasCells && this.bounds.length > 0) await this.volume.drawWhole(this.volumePicture);
+    if (this.volume.hasCells && this.bounds.length > 0)
+      await this.volume.drawWhole(this.volumePicture);
     // In one task with the copy: a canvas that has been shown is empty.
     if (this.volume.hasCells) this.volume.present(this.renderer);
     else this.draw();
@@ -225,7 +275,7 @@ export class MeshView implements View {
   // ---- helpers
 
   private readonly onLost = (event: Event): void => {
-    event.preventDefault();  // else it never comes back
+    event.preventDefault(); // else it never comes back
     this.listeners.lost?.(true);
   };
   private readonly onRestored = (): void => {
@@ -233,11 +283,13 @@ export class MeshView implements View {
     this.invalidate();
   };
 
-  private meshes(): SoupMesh[] { return [this.surface, this.isosurface, ...this.cuts]; }
+  private meshes(): SoupMesh[] {
+    return [this.surface, this.isosurface, ...this.cuts];
+  }
 
   private placeLattice(): void {
-    const low = new Vector3(...this.bounds.slice(0, 3) as Vector);
-    const high = new Vector3(...this.bounds.slice(3, 6) as Vector);
+    const low = new Vector3(...(this.bounds.slice(0, 3) as Vector));
+    const high = new Vector3(...(this.bounds.slice(3, 6) as Vector));
     const scale = 2 / Math.max(low.distanceTo(high), 1);
     this.lattice.scale.setScalar(scale);
     this.lattice.position.copy(low.add(high)).multiplyScalar(-0.5 * scale);
@@ -245,22 +297,33 @@ export class MeshView implements View {
 
   private fittingDistance(): number {
     const corners = Array.from({length: 8}, (_, i) =>
-      new Vector3(this.bounds[i & 1 ? 3 : 0], this.bounds[i & 2 ? 4 : 1], this.bounds[i & 4 ? 5 : 2]).multiply(this.lattice.scale).add(this.lattice.position));
-    return this.orbit.fittingDistance(corners, 1 - this.insets.left - this.insets.right, 1 - this.insets.top - this.insets.bottom);
+      new Vector3(
+        this.bounds[i & 1 ? 3 : 0],
+        this.bounds[i & 2 ? 4 : 1],
+        this.bounds[i & 4 ? 5 : 2],
+      )
+        .multiply(this.lattice.scale)
+        .add(this.lattice.position),
+    );
+    return this.orbit.fittingDistance(
+      corners,
+      1 - this.insets.left - this.insets.right,
+      1 - this.insets.top - this.insets.bottom,
+    );
   }
 
   private resize(): void {
     const width = Math.max(this.canvas.clientWidth, 1);
     const height = Math.max(this.canvas.clientHeight, 1);
-    const ratio = Math.min(pixelRatioOf(this.canvas), kMostPixelRatio);
+    const ratio = Math.min(pixelRatioOf(this.canvas), kMaxPixelRatio);
     this.renderer.setPixelRatio(ratio);
     this.renderer.setSize(width, height, false);
     for (const mesh of this.meshes()) mesh.material.setPixelRatio(ratio);
     const {camera} = this.orbit;
     camera.aspect = width / height;
     // Shifts the picture's centre into the middle of what the panels leave free.
-    const right = (this.insets.right - this.insets.left) / 2 * width;
-    const down = (this.insets.bottom - this.insets.top) / 2 * height;
+    const right = ((this.insets.right - this.insets.left) / 2) * width;
+    const down = ((this.insets.bottom - this.insets.top) / 2) * height;
     camera.setViewOffset(width, height, right, down, width, height);
     if (this.orbit.fitted && this.bounds.length > 0) this.orbit.fit(() => this.fittingDistance());
     // At once: a resized canvas is empty until it is drawn.
@@ -273,7 +336,8 @@ export class MeshView implements View {
   private invalidate(moved = true): void {
     if (moved) this.volume.interrupt();
     this.moved ||= moved;
-    // The graphics have one picture in hand at a time; when it is done, the next comes as things stand then.
+    // The graphics have one picture in hand at a time; when it is done, the next comes as things
+    // stand then.
     if (this.volume.busy) this.volume.waiting = true;
     else if (this.frame === 0) this.frame = requestAnimationFrame(() => this.draw());
   }
@@ -282,15 +346,33 @@ export class MeshView implements View {
   private get volumePicture(): Picture {
     this.orbit.setDepths();
     const {toCanvas, fromCanvas} = this.pose;
-    const {renderer, scene, orbit: {camera}, lattice: {position, scale}} = this;
-    return {renderer, scene, camera, toCanvas, fromCanvas, eye: camera.position.clone().sub(position).divide(scale).toArray(), diagonal: 2 / scale.x};
+    const {
+      renderer,
+      scene,
+      orbit: {camera},
+      lattice: {position, scale},
+    } = this;
+    return {
+      renderer,
+      scene,
+      camera,
+      toCanvas,
+      fromCanvas,
+      eye: camera.position.clone().sub(position).divide(scale).toArray(),
+      diagonal: 2 / scale.x,
+    };
   }
 
   /** Null, and an error that says so, where the graphics' textures end before the cells do. */
   private fitting(cells: VolumeCells | null): VolumeCells | null {
     const most = this.renderer.capabilities.maxTextureSize;
     if (!cells || mostRows(cells) <= most) return cells;
-    reportError(new Error(`the graphics take no volume of more than ${((most * kRow) / 4e6).toFixed(1)} million cells; set Refine to fewer`));
+    reportError(
+      new Error(
+        `the graphics take no volume of more than ${((most * kRow) / 4e6).toFixed(1)} million ` +
+          'cells; set Refine to fewer',
+      ),
+    );
     return null;
   }
 
@@ -301,17 +383,20 @@ export class MeshView implements View {
     const start = performance.now();
     const done = this.afterFrame;
     this.afterFrame = [];
-    // Graphics without a GPU draw long after they were told to; and whoever waits for a picture that failed would wait for ever.
+    // Graphics without a GPU draw long after they were told to; and whoever waits for a picture
+    // that failed would wait for ever.
     const tell = (ms: number): void => done.forEach((drawn) => drawn(ms));
     try {
       this.orbit.setDepths();
-      if (this.volume.hasCells && this.bounds.length > 0) this.volume.draw(this.volumePicture, this.moved);
+      if (this.volume.hasCells && this.bounds.length > 0)
+        this.volume.draw(this.volumePicture, this.moved);
       else this.renderer.render(this.scene, this.orbit.camera);
       this.moved = false;
       this.frameMs = performance.now() - start;
       this.listeners.drawn?.(this.pose);
     } finally {
-      if (done.length > 0) void whenDrawn(this.renderer.getContext() as WebGL2RenderingContext, start).then(tell);
+      if (done.length > 0)
+        void whenDrawn(this.renderer.getContext() as WebGL2RenderingContext, start).then(tell);
     }
   }
 }

@@ -1,4 +1,5 @@
-// How a view stands: what turns points of the lattice into places on the canvas and back. Plain data, so that it passes between threads.
+// How a view stands: what turns points of the lattice into places on the canvas and back. Plain
+// data, so that it passes between threads.
 
 import type {Ray, Vector} from '../core/cell_ray';
 import type {Plane} from '../core/slice';
@@ -18,7 +19,10 @@ export interface Pose {
   fitted: boolean;
   /** Where the camera looks, as a unit normal in lattice coordinates. */
   direction: Vector;
-  /** What is in sight, as planes in lattice coordinates with the inside above; none while all of the mesh is fitted into the picture. */
+  /**
+   * What is in sight, as planes in lattice coordinates with the inside above; none while all of the
+   * mesh is fitted into the picture.
+   */
   frustum: Plane[];
   /** What the last frame took on the thread that draws. */
   frameMs: number;
@@ -30,19 +34,32 @@ export interface Size {
 }
 
 /** Throws a TypeError for anything but six finite numbers. */
-export function checkedCamera(state: CameraState): CameraState {
-  if (Array.isArray(state) && state.length === 6 && state.every(Number.isFinite)) return state;
-  throw new TypeError(`A camera is an array of six finite numbers, from where and to where; not ${JSON.stringify(state)}.`);
+export function checkedCamera(state: unknown): CameraState {
+  if (Array.isArray(state) && state.length === 6 && state.every(Number.isFinite))
+    return state as CameraState;
+  throw new TypeError(
+    'A camera is an array of six finite numbers, from where and to where; not ' +
+      `${JSON.stringify(state)}.`,
+  );
 }
 
 /** Where a point of the lattice is on the canvas, in CSS pixels. */
-export function project({toCanvas}: Pose, {clientWidth, clientHeight}: Size, point: Vector): {x: number; y: number} {
+export function project(
+  {toCanvas}: Pose,
+  {clientWidth, clientHeight}: Size,
+  point: Vector,
+): {x: number; y: number} {
   const [x, y] = transformed(toCanvas, point);
-  return {x: (x + 1) / 2 * clientWidth, y: (1 - y) / 2 * clientHeight};
+  return {x: ((x + 1) / 2) * clientWidth, y: ((1 - y) / 2) * clientHeight};
 }
 
 /** The line of sight through a point of the canvas, in CSS pixels from its corner. */
-export function rayAt({fromCanvas}: Pose, {clientWidth, clientHeight}: Size, x: number, y: number): Ray {
+export function rayAt(
+  {fromCanvas}: Pose,
+  {clientWidth, clientHeight}: Size,
+  x: number,
+  y: number,
+): Ray {
   const at = [(2 * x) / clientWidth - 1, 1 - (2 * y) / clientHeight] as const;
   const origin = transformed(fromCanvas, [...at, -1]);
   const far = transformed(fromCanvas, [...at, 1]);
@@ -52,7 +69,8 @@ export function rayAt({fromCanvas}: Pose, {clientWidth, clientHeight}: Size, x: 
 }
 
 function transformed(matrix: Matrix, [x, y, z]: Vector): Vector {
-  const row = (i: number): number => matrix[i]! * x + matrix[i + 4]! * y + matrix[i + 8]! * z + matrix[i + 12]!;
+  const row = (i: number): number =>
+    matrix[i]! * x + matrix[i + 4]! * y + matrix[i + 8]! * z + matrix[i + 12]!;
   const w = row(3);
   return [row(0) / w, row(1) / w, row(2) / w];
 }

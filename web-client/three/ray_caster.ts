@@ -1,9 +1,28 @@
-// A volume's cells on a DeepTarget, by casting rays (ray_shaders.ts). Rays that leave the mesh through a hole or a concavity come in again: layer by layer the
-// next faces of the boundary are drawn, and rays cast from there, until no pixel has such a face.
+// A volume's cells on a DeepTarget, by casting rays (ray_shaders.ts). Rays that leave the mesh
+// through a hole or a concavity come in again: layer by layer the next faces of the boundary are
+// drawn, and rays cast from there, until no pixel has such a face.
 
 import {
-  BufferAttribute, BufferGeometry, Camera, CustomBlending, GLSL3, Matrix4, Mesh, NearestFilter, NoBlending, OneFactor, OneMinusDstAlphaFactor, RGIntegerFormat, RawShaderMaterial,
-  Scene, UnsignedIntType, Vector3, Vector4, WebGLRenderTarget, type DataTexture, type WebGLRenderer,
+  BufferAttribute,
+  BufferGeometry,
+  Camera,
+  CustomBlending,
+  GLSL3,
+  Matrix4,
+  Mesh,
+  NearestFilter,
+  NoBlending,
+  OneFactor,
+  OneMinusDstAlphaFactor,
+  RGIntegerFormat,
+  RawShaderMaterial,
+  Scene,
+  UnsignedIntType,
+  Vector3,
+  Vector4,
+  WebGLRenderTarget,
+  type DataTexture,
+  type WebGLRenderer,
 } from 'three';
 import type {Vector} from '../core/cell_ray';
 import type {TransferTables} from '../core/transfer';
@@ -11,7 +30,12 @@ import {kLeastNear} from './camera';
 import {tableTexture, type CellTextures} from './cell_textures';
 import type {DeepTarget} from './deep_target';
 import type {Matrix} from './pose';
-import {kEntryFragmentShader, kEntryVertexShader, kRayFragmentShader, kRayVertexShader} from './ray_shaders';
+import {
+  kEntryFragmentShader,
+  kEntryVertexShader,
+  kRayFragmentShader,
+  kRayVertexShader,
+} from './ray_shaders';
 import {raysOf} from './rays';
 
 /** Of a camera, in lattice coordinates. */
@@ -27,23 +51,69 @@ const kNoPlane = new Vector4(0, 0, 0, 1);
 const kNoCell = new Uint32Array(5);
 
 const entryTarget = (): WebGLRenderTarget =>
-  new WebGLRenderTarget(1, 1, {format: RGIntegerFormat, type: UnsignedIntType, internalFormat: 'RG32UI', minFilter: NearestFilter, magFilter: NearestFilter});
+  new WebGLRenderTarget(1, 1, {
+    format: RGIntegerFormat,
+    type: UnsignedIntType,
+    internalFormat: 'RG32UI',
+    minFilter: NearestFilter,
+    magFilter: NearestFilter,
+  });
 
 export class RayCaster {
-  private readonly entry = new Mesh(new BufferGeometry(), new RawShaderMaterial({
-    glslVersion: GLSL3, vertexShader: kEntryVertexShader, fragmentShader: kEntryFragmentShader, blending: NoBlending,
-    uniforms: {vertices: {value: null}, entries: {value: null}, toCanvas: {value: new Matrix4()}, middle: {value: [1, 1]}, distances: {value: [0, 1]}, isFirst: {value: true}, before: {value: null}, picture: {value: null}},
-  }));
-  private readonly ray = new Mesh(new BufferGeometry(), new RawShaderMaterial({
-    glslVersion: GLSL3, vertexShader: kRayVertexShader, fragmentShader: kRayFragmentShader, depthTest: false, depthWrite: false, transparent: true,
-    blending: CustomBlending, blendSrc: OneMinusDstAlphaFactor, blendDst: OneFactor,
-    uniforms: {
-      vertices: {value: null}, links: {value: null}, cellValues: {value: null}, ofCells: {value: false}, entries: {value: null}, layer: {value: null},
-      eyeCell: {value: kNoCell}, near: {value: vectors()}, far: {value: vectors()}, farPerNear: {value: 1}, perPixel: {value: [1, 1]}, depths: {value: null},
-      clipPlanes: {value: Array.from({length: 3}, () => kNoPlane.clone())}, density: {value: null}, integral: {value: null}, range: {value: [0, 1]},
-      scaleRange: {value: [0, 1]}, logarithmic: {value: false}, perDiagonal: {value: 1},
-    },
-  }));
+  private readonly entry = new Mesh(
+    new BufferGeometry(),
+    new RawShaderMaterial({
+      glslVersion: GLSL3,
+      vertexShader: kEntryVertexShader,
+      fragmentShader: kEntryFragmentShader,
+      blending: NoBlending,
+      uniforms: {
+        vertices: {value: null},
+        entries: {value: null},
+        toCanvas: {value: new Matrix4()},
+        middle: {value: [1, 1]},
+        distances: {value: [0, 1]},
+        isFirst: {value: true},
+        before: {value: null},
+        picture: {value: null},
+      },
+    }),
+  );
+  private readonly ray = new Mesh(
+    new BufferGeometry(),
+    new RawShaderMaterial({
+      glslVersion: GLSL3,
+      vertexShader: kRayVertexShader,
+      fragmentShader: kRayFragmentShader,
+      depthTest: false,
+      depthWrite: false,
+      transparent: true,
+      blending: CustomBlending,
+      blendSrc: OneMinusDstAlphaFactor,
+      blendDst: OneFactor,
+      uniforms: {
+        vertices: {value: null},
+        links: {value: null},
+        cellValues: {value: null},
+        ofCells: {value: false},
+        entries: {value: null},
+        layer: {value: null},
+        eyeCell: {value: kNoCell},
+        near: {value: vectors()},
+        far: {value: vectors()},
+        farPerNear: {value: 1},
+        perPixel: {value: [1, 1]},
+        depths: {value: null},
+        clipPlanes: {value: Array.from({length: 3}, () => kNoPlane.clone())},
+        density: {value: null},
+        integral: {value: null},
+        range: {value: [0, 1]},
+        scaleRange: {value: [0, 1]},
+        logarithmic: {value: false},
+        perDiagonal: {value: 1},
+      },
+    }),
+  );
   private readonly entryScene = new Scene();
   private readonly rayScene = new Scene();
   private readonly camera = new Camera();
@@ -51,15 +121,24 @@ export class RayCaster {
   private targets = [entryTarget(), entryTarget()] as [WebGLRenderTarget, WebGLRenderTarget];
 
   constructor() {
-    this.ray.geometry.setAttribute('position', new BufferAttribute(new Float32Array([-1, -1, 0, 3, -1, 0, -1, 3, 0]), 3));
-    for (const [scene, mesh] of [[this.entryScene, this.entry], [this.rayScene, this.ray]] as const) {
+    this.ray.geometry.setAttribute(
+      'position',
+      new BufferAttribute(new Float32Array([-1, -1, 0, 3, -1, 0, -1, 3, 0]), 3),
+    );
+    for (const [scene, mesh] of [
+      [this.entryScene, this.entry],
+      [this.rayScene, this.ray],
+    ] as const) {
       mesh.frustumCulled = false;
       scene.add(mesh);
     }
   }
 
   setTransfer({density, integral}: TransferTables): void {
-    for (const [name, values] of [['density', density], ['integral', integral]] as const) {
+    for (const [name, values] of [
+      ['density', density],
+      ['integral', integral],
+    ] as const) {
       (this.uniforms[name]!.value as DataTexture | null)?.dispose();
       this.uniforms[name]!.value = tableTexture(values);
     }
@@ -79,11 +158,24 @@ export class RayCaster {
     });
   }
 
-  /** A picture of these cells on `deep` begins. True when the eye is in one of them: rays from there come first, before any layer. */
-  begin(cells: CellTextures, {toCanvas, fromCanvas, eye, diagonal}: Sight, deep: DeepTarget): boolean {
+  /**
+   * A picture of these cells on `deep` begins. True when the eye is in one of them: rays from there
+   * come first, before any layer.
+   */
+  begin(
+    cells: CellTextures,
+    {toCanvas, fromCanvas, eye, diagonal}: Sight,
+    deep: DeepTarget,
+  ): boolean {
     const {uniforms} = this;
-    for (const name of ['vertices', 'links', 'cellValues', 'ofCells', 'entries'] as const) uniforms[name]!.value = cells[name];
-    const {near, far, farPerNear, distances: [from, to]} = raysOf(fromCanvas);
+    for (const name of ['vertices', 'links', 'cellValues', 'ofCells', 'entries'] as const)
+      uniforms[name]!.value = cells[name];
+    const {
+      near,
+      far,
+      farPerNear,
+      distances: [from, to],
+    } = raysOf(fromCanvas);
     (uniforms.near!.value as Vector3[]).forEach((vector, i) => vector.set(...near[i]!));
     (uniforms.far!.value as Vector3[]).forEach((vector, i) => vector.set(...far[i]!));
     uniforms.farPerNear!.value = farPerNear;
@@ -92,14 +184,16 @@ export class RayCaster {
     uniforms.perDiagonal!.value = 1 / diagonal;
     const eyeCell = cells.eyeCell(eye);
     uniforms.eyeCell!.value = eyeCell ?? kNoCell;
-    uniforms.layer!.value = cells.entries;  // is not read before the first layer, but has to be of its kind
+    // is not read before the first layer, but has to be of its kind
+    uniforms.layer!.value = cells.entries;
     const its = this.entry.material.uniforms;
     this.entry.geometry = cells.entryGeometry;
     its.vertices!.value = cells.vertices;
     its.entries!.value = its.before!.value = cells.entries;
     its.picture!.value = deep.volume.texture;
     its.isFirst!.value = true;
-    its.distances!.value = [Math.max(0, from - kLeastNear), to];  // from the eye on where that is close
+    // from the eye on where that is close
+    its.distances!.value = [Math.max(0, from - kLeastNear), to];
     its.middle!.value = [deep.width / 2, deep.height / 2];
     (its.toCanvas!.value as Matrix4).fromArray(toCanvas);
     for (const target of this.targets) target.setSize(deep.width, deep.height);
@@ -134,13 +228,18 @@ export class RayCaster {
   }
 
   dispose(): void {
-    for (const name of ['density', 'integral']) (this.uniforms[name]!.value as DataTexture | null)?.dispose();
+    for (const name of ['density', 'integral'])
+      (this.uniforms[name]!.value as DataTexture | null)?.dispose();
     for (const target of this.targets) target.dispose();
     for (const mesh of [this.entry, this.ray]) mesh.material.dispose();
     this.ray.geometry.dispose();
   }
 
-  private get uniforms(): RawShaderMaterial['uniforms'] { return this.ray.material.uniforms; }
+  private get uniforms(): RawShaderMaterial['uniforms'] {
+    return this.ray.material.uniforms;
+  }
 }
 
-function vectors(): Vector3[] { return Array.from({length: 3}, () => new Vector3()); }
+function vectors(): Vector3[] {
+  return Array.from({length: 3}, () => new Vector3());
+}

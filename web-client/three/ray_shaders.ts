@@ -1,25 +1,38 @@
-// Casting rays through tetrahedra, from face to face. A ray is told as two directions across it: in their plane it is the origin, a face that it goes through a
-// triangle round that, and where it leaves a cell is seen from the signs of three areas, each of two of the triangle's corners or of one and the fourth. Signs
-// are the same from both sides of a face, so that no ray is lost between cells.
-// After R. Marmitt and P. Slusallek, "Fast ray traversal of tetrahedral and hexahedral meshes for direct volume rendering", EuroVis 2006.
+// Casting rays through tetrahedra, from face to face. A ray is told as two directions across it: in
+// their plane it is the origin, a face that it goes through a triangle round that, and where it
+// leaves a cell is seen from the signs of three areas, each of two of the triangle's corners or of
+// one and the fourth. Signs are the same from both sides of a face, so that no ray is lost between
+// cells. After R. Marmitt and P. Slusallek, "Fast ray traversal of tetrahedral and hexahedral
+// meshes for direct volume rendering", EuroVis 2006.
 
 import {kTransferSteps} from '../core/transfer';
 import {kRow, kRowBits} from './cell_textures';
 
 /** What is as opaque as this hides the rest: a step of 255. */
 const kOpaque = 0.996;
-/** Values of so little a difference, of the range's, are taken for one: two steps of a colour map. */
+/**
+ * Values of so little a difference, of the range's, are taken for one: two steps of a colour map.
+ */
 const kNarrow = 1 / 128;
-/** Faces that rays come in through are drawn larger by so many pixels: some graphics round corners to a sixteenth, most to a 256th. */
+/**
+ * Faces that rays come in through are drawn larger by so many pixels: some graphics round corners
+ * to a sixteenth, most to a 256th.
+ */
 const kMargin = 1 / 16;
 /** By so many of its heights at most, as a face seen edge-on would become endless. */
-const kMostMargin = 4;
-/** Faces are drawn from so far before the eye on, in radii of the mesh: long before the canvas's near plane, where an eye may be close to a face. */
+const kMaxMargin = 4;
+/**
+ * Faces are drawn from so far before the eye on, in radii of the mesh: long before the canvas's
+ * near plane, where an eye may be close to a face.
+ */
 const kNearest = 1e-5;
 /** A ray begins so far inside of its face at least, in shares of that. */
 const kInside = 1e-4;
-/** Cells that a ray goes through at most between two faces of the boundary: many times those along a straight line through ten million (600 to 1,000). */
-const kMostSteps = 8192;
+/**
+ * Cells that a ray goes through at most between two faces of the boundary: many times those along a
+ * straight line through ten million (600 to 1,000).
+ */
+const kMaxSteps = 8192;
 
 const kHead = /* glsl */ `
   precision highp float;
@@ -29,22 +42,33 @@ const kHead = /* glsl */ `
   uniform sampler2D vertices;
   ivec2 texel(int i) { return ivec2(i & ${kRow - 1}, i >> ${kRowBits}); }`;
 
-// A ray that leaves through one face beside an edge has to come in again by the face at the edge's other side, or neither. Graphics round corners, which moves
-// edges, so that faces are drawn larger, and the shader cuts them where single floats say that they end.
+// A ray that leaves through one face beside an edge has to come in again by the face at the edge's
+// other side, or neither. Graphics round corners, which moves edges, so that faces are drawn
+// larger, and the shader cuts them where single floats say that they end.
 const kSide = /* glsl */ `
-  float sideOf(vec2 a, vec2 b, vec2 at) { return (b.x - a.x) * (at.y - a.y) - (b.y - a.y) * (at.x - a.x); }`;
+  float sideOf(vec2 a, vec2 b, vec2 at) {
+    return (b.x - a.x) * (at.y - a.y) - (b.y - a.y) * (at.x - a.x);
+  }`;
 
-/** Draws the faces that rays come in through: of each pixel the nearest one behind that of the layer before. Their depths are even shares of the distance, so that they need no near plane. */
+/**
+ * Draws the faces that rays come in through: of each pixel the nearest one behind that of the layer
+ * before. Their depths are even shares of the distance, so that they need no near plane.
+ */
 export const kEntryVertexShader = /* glsl */ `${kHead}${kSide}
   uniform usampler2D entries;
   uniform mat4 toCanvas;
   uniform vec2 middle;       // of the canvas, in pixels
   flat out uint vEntry;
-  flat out vec4 vFirst;      // two corners, and the third, in pixels from the middle, in the order of their numbers: the face at an edge's other side takes the edge the same way
+  // two corners, and the third, in pixels from the middle, in the order of their numbers: the face
+  // at an edge's other side takes the edge the same way
+  flat out vec4 vFirst;
   flat out vec2 vThird;
   out float vDistance;       // before the eye; one by that where vTurn is not 0
-  flat out int vTurn;        // 1: they go round anticlockwise; -1: clockwise; 0: not all of them are before the eye
-  vec4 onCanvas(uint vertex) { return toCanvas * vec4(texelFetch(vertices, texel(int(vertex)), 0).xyz, 1.0); }
+  // 1: they go round anticlockwise; -1: clockwise; 0: not all of them are before the eye
+  flat out int vTurn;
+  vec4 onCanvas(uint vertex) {
+    return toCanvas * vec4(texelFetch(vertices, texel(int(vertex)), 0).xyz, 1.0);
+  }
   void main() {
     int entry = gl_VertexID / 3;
     int own = gl_VertexID - 3 * entry;
@@ -57,11 +81,13 @@ export const kEntryVertexShader = /* glsl */ `${kHead}${kSide}
     float whole = sideOf(u, v, w);
     bool isBefore = min(min(p.w, q.w), r.w) > ${kNearest} && whole > 0.0;
     // Each edge outward, in its plane.
-    vec3 margins = min(${kMargin} / whole * vec3(distance(v, w), distance(w, u), distance(u, v)), ${kMostMargin}.0);
+    vec3 sides = vec3(distance(v, w), distance(w, u), distance(u, v));
+    vec3 margins = min(${kMargin} / whole * sides, ${kMaxMargin}.0);
     vec3 shares = (1.0 + margins.x + margins.y + margins.z) * isOwn - margins;
     vec4 its = own == 0 ? p : own == 1 ? q : r;
     // What hardware clips is nearer than kNearest.
-    gl_Position = isBefore ? vec4(shares.x * a + shares.y * b + shares.z * c, 0.0, 1.0) : vec4(its.xy, its.w - 2.0 * ${kNearest}, its.w);
+    gl_Position = isBefore ? vec4(shares.x * a + shares.y * b + shares.z * c, 0.0, 1.0)
+      : vec4(its.xy, its.w - 2.0 * ${kNearest}, its.w);
     vDistance = isBefore ? dot(shares, vec3(1.0 / p.w, 1.0 / q.w, 1.0 / r.w)) : its.w;
     bool turns = ids.y < ids.z;  // the lowest comes first
     vTurn = !isBefore ? 0 : turns ? 1 : -1;
@@ -84,13 +110,17 @@ export const kEntryFragmentShader = /* glsl */ `${kHead}${kSide}
   void main() {
     vec2 at = gl_FragCoord.xy - middle;
     bool turns = vTurn > 0;
-    if (vTurn != 0 && ((sideOf(vFirst.xy, vFirst.zw, at) >= 0.0) != turns || (sideOf(vFirst.zw, vThird, at) >= 0.0) != turns
-                       || (sideOf(vFirst.xy, vThird, at) >= 0.0) == turns)) discard;
-    float depth = ((vTurn != 0 ? 1.0 / vDistance : vDistance) - distances.x) / (distances.y - distances.x);
+    bool first = (sideOf(vFirst.xy, vFirst.zw, at) >= 0.0) == turns;
+    bool second = (sideOf(vFirst.zw, vThird, at) >= 0.0) == turns;
+    bool third = (sideOf(vFirst.xy, vThird, at) >= 0.0) != turns;
+    if (vTurn != 0 && !(first && second && third)) discard;
+    float away = vTurn != 0 ? 1.0 / vDistance : vDistance;
+    float depth = (away - distances.x) / (distances.y - distances.x);
     if (!isFirst) {
       ivec2 pixel = ivec2(gl_FragCoord.xy);
       uvec2 last = texelFetch(before, pixel, 0).xy;
-      if (last.x == 0u || depth <= uintBitsToFloat(last.y) || texelFetch(picture, pixel, 0).a > ${kOpaque}) discard;
+      if (last.x == 0u || depth <= uintBitsToFloat(last.y)) discard;
+      if (texelFetch(picture, pixel, 0).a > ${kOpaque}) discard;
     }
     gl_FragDepth = depth;
     found = uvec4(vEntry + 1u, floatBitsToUint(depth), 0u, 0u);
@@ -106,8 +136,11 @@ export const kRayFragmentShader = /* glsl */ `${kHead}
   uniform bool ofCells;
   uniform usampler2D entries;
   uniform usampler2D layer;   // which of them
-  uniform uint eyeCell[5];    // corners and tag of the cell where all rays begin; tag 0: at the entries
-  uniform vec3 near[3];       // the canvas's middle at the near plane, in lattice coordinates, and the ways from there to its right and upper end
+  // corners and tag of the cell where all rays begin; tag 0: at the entries
+  uniform uint eyeCell[5];
+  // the canvas's middle at the near plane, in lattice coordinates, and the ways from there to its
+  // right and upper end
+  uniform vec3 near[3];
   uniform vec3 far[3];
   uniform float farPerNear;   // homogeneous coordinates' w
   uniform vec2 perPixel;
@@ -129,14 +162,20 @@ export const kRayFragmentShader = /* glsl */ `${kHead}
     return v > 0.0 ? log(v / range.x) / log(range.y / range.x) : 0.0;
   }
 
-  vec4 densityAt(float share) { return texelFetch(density, ivec2(int(clamp(share, 0.0, 1.0) * ${kTransferSteps}.0 + 0.5), 0), 0); }
+  vec4 densityAt(float share) {
+    int step = int(clamp(share, 0.0, 1.0) * ${kTransferSteps}.0 + 0.5);
+    return texelFetch(density, ivec2(step, 0), 0);
+  }
 
   // Beyond the ends values look like the ends.
   vec4 integralTo(float share) {
     float at = clamp(share, 0.0, 1.0) * ${kTransferSteps}.0;
     int i = min(int(at), ${kTransferSteps - 1});
-    vec4 inside = mix(texelFetch(integral, ivec2(i, 0), 0), texelFetch(integral, ivec2(i + 1, 0), 0), at - float(i));
-    return share == clamp(share, 0.0, 1.0) ? inside : inside + (share - clamp(share, 0.0, 1.0)) * densityAt(share);
+    vec4 low = texelFetch(integral, ivec2(i, 0), 0);
+    vec4 high = texelFetch(integral, ivec2(i + 1, 0), 0);
+    vec4 inside = mix(low, high, at - float(i));
+    float beyond = share - clamp(share, 0.0, 1.0);
+    return beyond == 0.0 ? inside : inside + beyond * densityAt(share);
   }
 
   // A vertex as the ray sees it: beside the ray, along it, and the value.
@@ -148,7 +187,8 @@ export const kRayFragmentShader = /* glsl */ `${kHead}
 
   float area(vec4 p, vec4 q) { return p.x * q.y - p.y * q.x; }
 
-  // Where the ray goes through the triangle with these areas beside it, and the value there. Never outside of the triangle.
+  // Where the ray goes through the triangle with these areas beside it, and the value there. Never
+  // outside of the triangle.
   vec2 through(vec4 a, vec4 b, vec4 c, vec3 areas) {
     vec3 shares = max(areas, 0.0);
     float sum = shares.x + shares.y + shares.z;
@@ -158,7 +198,8 @@ export const kRayFragmentShader = /* glsl */ `${kHead}
 
   vec3 areasOf(vec4 a, vec4 b, vec4 c) { return vec3(area(b, c), area(c, a), area(a, b)); }
 
-  // Puts the corner last that is opposite to the face by which the ray comes in: of the faces that it goes through the first.
+  // Puts the corner last that is opposite to the face by which the ray comes in: of the faces that
+  // it goes through the first.
   void turn(inout uvec4 ids) {
     vec4 p[4] = vec4[4](seen(ids.x), seen(ids.y), seen(ids.z), seen(ids.w));
     int found = 0;
@@ -181,7 +222,8 @@ export const kRayFragmentShader = /* glsl */ `${kHead}
 
   // Adds a stretch of the ray, from front to back.
   void add(float from, float to, float length) {
-    vec4 mean = abs(to - from) < ${kNarrow} ? densityAt(0.5 * (from + to)) : (integralTo(to) - integralTo(from)) / (to - from);
+    vec4 mean = abs(to - from) < ${kNarrow} ? densityAt(0.5 * (from + to))
+      : (integralTo(to) - integralTo(from)) / (to - from);
     if (mean.a <= 0.0) return;
     float opacity = 1.0 - exp(-mean.a * length * perDiagonal);
     color += (1.0 - color.a) * opacity * vec4(mean.rgb / mean.a, 1.0);
@@ -197,13 +239,16 @@ export const kRayFragmentShader = /* glsl */ `${kHead}
     along = far[0] + at.x * far[1] + at.y * far[2] - origin;
     float reach = length(along);
     along /= reach;
-    across = normalize(cross(along, abs(along.x) < 0.6 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0)));
+    vec3 aside = abs(along.x) < 0.6 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
+    across = normalize(cross(along, aside));
     up = cross(along, across);
 
-    // What of the ray is to be seen: before the first thing that is not the volume, below the planes.
+    // What of the ray is to be seen: before the first thing that is not the volume, below the
+    // planes.
     float first = 0.0;
     float depth = texelFetch(depths, pixel, 0).r;
-    float last = depth < 1.0 ? reach * farPerNear * depth / (1.0 - depth + farPerNear * depth) : 1e30;
+    float last = 1e30;
+    if (depth < 1.0) last = reach * farPerNear * depth / (1.0 - depth + farPerNear * depth);
     for (int i = 0; i < 3; ++i) {
       float room = clipPlanes[i].w - dot(clipPlanes[i].xyz, origin);
       float change = -dot(clipPlanes[i].xyz, along);
@@ -233,26 +278,28 @@ export const kRayFragmentShader = /* glsl */ `${kHead}
       c = point;
       areas = -areas.xzy;
     }
-    // Pixels' corners are rounded, so that a ray may pass beside its face by some hundredth of a pixel: into the face with it.
+    // Pixels' corners are rounded, so that a ray may pass beside its face by some hundredth of a
+    // pixel: into the face with it.
     vec3 shares = max(areas, ${kInside} * (areas.x + areas.y + areas.z));
     shares /= max(shares.x + shares.y + shares.z, 1e-30);
-    vec2 aside = shares.x * a.xy + shares.y * b.xy + shares.z * c.xy;
+    vec2 off = shares.x * a.xy + shares.y * b.xy + shares.z * c.xy;
     if (min(min(areas.x, areas.y), areas.z) < ${kInside} * (areas.x + areas.y + areas.z)) {
-      origin += aside.x * across + aside.y * up;
+      origin += off.x * across + off.y * up;
       a = seen(ia);
       b = seen(ib);
       c = seen(ic);
       areas = areasOf(a, b, c);
     }
     vec2 enter = through(a, b, c, areas);
-    for (int step = 0; step < ${kMostSteps}; ++step) {
+    for (int step = 0; step < ${kMaxSteps}; ++step) {
       // The fourth corner takes the place of the one that the face ahead lacks.
       vec4 point = seen(id);
       vec3 sides = vec3(area(a, point), area(b, point), area(c, point));
       bool lacksC = sides.x <= 0.0 && sides.y >= 0.0;
       bool lacksA = !lacksC && sides.y <= 0.0 && sides.z >= 0.0;
       uint lacked = lacksA ? ia : lacksC ? ic : ib;
-      int corner = int(lacked > ia) + int(lacked > ib) + int(lacked > ic) + int(lacked > id);  // a cell's corners are in ascending order
+      // a cell's corners are in ascending order
+      int corner = int(lacked > ia) + int(lacked > ib) + int(lacked > ic) + int(lacked > id);
       int cell = int(tag & 0x7fffffffu) - 1;
       if (lacksA) {
         ia = id;
@@ -276,7 +323,8 @@ export const kRayFragmentShader = /* glsl */ `${kHead}
           add(share, share, to - from);
         } else {
           float slope = (leave.y - enter.y) / (leave.x - enter.x);
-          add(shareOf(enter.y + (from - enter.x) * slope), shareOf(enter.y + (to - enter.x) * slope), to - from);
+          float begin = shareOf(enter.y + (from - enter.x) * slope);
+          add(begin, shareOf(enter.y + (to - enter.x) * slope), to - from);
         }
       }
       if (leave.x >= last || color.a > ${kOpaque}) break;

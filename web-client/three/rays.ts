@@ -1,5 +1,6 @@
-// The lines of sight through a canvas, in lattice coordinates, as a shader takes them. They begin at the near plane: a parallel view's eye is a thousand times
-// as far away as the mesh is large, so that single floats told from there would be wrong.
+// The lines of sight through a canvas, in lattice coordinates, as a shader takes them. They begin
+// at the near plane: a parallel view's eye is a thousand times as far away as the mesh is large, so
+// that single floats told from there would be wrong.
 
 import type {Vector} from '../core/cell_ray';
 import type {Matrix} from './pose';
@@ -15,9 +16,22 @@ export interface Rays {
 }
 
 export function raysOf(fromCanvas: Matrix): Rays {
-  const w = (z: number): number => fromCanvas[11]! * z + fromCanvas[15]!;  // for x and y alike: the planes are parallel to the canvas
-  const column = (k: number): Vector => [fromCanvas[4 * k]!, fromCanvas[4 * k + 1]!, fromCanvas[4 * k + 2]!];
+  // for x and y alike: the planes are parallel to the canvas
+  const w = (z: number): number => fromCanvas[11]! * z + fromCanvas[15]!;
+  const column = (k: number): Vector => [
+    fromCanvas[4 * k]!,
+    fromCanvas[4 * k + 1]!,
+    fromCanvas[4 * k + 2]!,
+  ];
   const [x, y, z, middle] = [0, 1, 2, 3].map(column) as [Vector, Vector, Vector, Vector];
-  const plane = (at: number): Vector[] => [middle.map((value, axis) => value + at * z[axis]!), x, y].map((vector) => vector.map((value) => value / w(at)) as Vector);
-  return {near: plane(-1), far: plane(1), farPerNear: w(1) / w(-1), distances: [1 / w(-1), 1 / w(1)]};
+  const plane = (at: number): Vector[] =>
+    [middle.map((value, axis) => value + at * z[axis]!), x, y].map(
+      (vector) => vector.map((value) => value / w(at)) as Vector,
+    );
+  return {
+    near: plane(-1),
+    far: plane(1),
+    farPerNear: w(1) / w(-1),
+    distances: [1 / w(-1), 1 / w(1)],
+  };
 }

@@ -1,4 +1,5 @@
-// A triangle soup as a three.js object. Its buffers stay and grow; of a new soup only the stretches that differ are uploaded.
+// A triangle soup as a three.js object. Its buffers stay and grow; of a new soup only the stretches
+// that differ are uploaded.
 
 import {BufferAttribute, BufferGeometry, DynamicDrawUsage, Mesh, Sphere, Vector3} from 'three';
 import type {TriangleSoup} from '../core/triangle_soup';
@@ -14,7 +15,8 @@ export class SoupMesh extends Mesh<BufferGeometry, FieldMaterial> {
 
   constructor(lit: boolean, twoSided = false) {
     super(new BufferGeometry(), new FieldMaterial(lit, twoSided));
-    this.frustumCulled = false;  // the view knows the bounds; computing them again for every picture costs more than it saves
+    // the view knows the bounds; computing them again for every picture costs more than it saves
+    this.frustumCulled = false;
     this.visible = false;
   }
 
@@ -40,8 +42,16 @@ export class SoupMesh extends Mesh<BufferGeometry, FieldMaterial> {
   private grow(corners: number): void {
     this.geometry.dispose();
     this.capacity = this.capacity === 0 ? corners : Math.ceil(corners * kGrowth);
-    for (const [name, size] of [['position', 3], ['value', 1]] as const) {
-      this.geometry.setAttribute(name, new BufferAttribute(new Float32Array(size * this.capacity), size).setUsage(DynamicDrawUsage));
+    for (const [name, size] of [
+      ['position', 3],
+      ['value', 1],
+    ] as const) {
+      this.geometry.setAttribute(
+        name,
+        new BufferAttribute(new Float32Array(size * this.capacity), size).setUsage(
+          DynamicDrawUsage,
+        ),
+      );
     }
     this.geometry.boundingSphere = new Sphere(new Vector3(), Infinity);
   }

@@ -1,4 +1,5 @@
-// What a viewer asks of the picture, wherever that is drawn: on the page's thread (MeshView) or in a worker (FarView).
+// What a viewer asks of the picture, wherever that is drawn: on the page's thread (MeshView) or in
+// a worker (FarView).
 
 import type {Ray, Vector} from '../core/cell_ray';
 import type {ColorMapName} from '../core/color_maps';
@@ -32,7 +33,10 @@ export interface ViewListeners {
   lost?(lost: boolean): void;
   /** Something went wrong in the worker that draws; it goes on. */
   failed?(message: string): void;
-  /** Nothing has been heard of the worker that draws for so long that it is dead, or hangs; false: it has said something after all. */
+  /**
+   * Nothing has been heard of the worker that draws for so long that it is dead, or hangs; false:
+   * it has said something after all.
+   */
   silent?(silent: boolean): void;
   /** Client.coarse: without it a volume of many cells follows slowly where graphics are slow. */
   coarse?(have: number): Promise<CoarseCells>;
@@ -43,7 +47,10 @@ export interface View {
   readonly pose: Pose;
   /** Six numbers. Set before there is a mesh, it waits for one. */
   cameraState: CameraState;
-  /** Shows the picture; `drawn` is called after the frame that holds it, with what drawing that took. The snapshot's arrays may be gone afterwards. */
+  /**
+   * Shows the picture; `drawn` is called after the frame that holds it, with what drawing that
+   * took. The snapshot's arrays may be gone afterwards.
+   */
   show(snapshot: Snapshot, drawn: (ms: number) => void): void;
   /** Forgets the mesh; the next one is fitted anew. */
   clear(): void;
@@ -51,7 +58,10 @@ export interface View {
   /** FieldMaterial.setRange for all. */
   setRange(low: number, high: number, scaleRange: [number, number], logarithmic: boolean): void;
   setInsets(insets: Insets): void;
-  /** A standard view, or the one that a mesh is first seen in (null): as near as its bounding box allows. */
+  /**
+   * A standard view, or the one that a mesh is first seen in (null): as near as its bounding box
+   * allows.
+   */
   look(direction: Direction | null): void;
   setParallel(parallel: boolean): void;
   /** Turns the camera round its target, in radians. */

@@ -1,4 +1,5 @@
-// What passes between a page and the worker that draws for it. A snapshot's arrays travel by transfer.
+// What passes between a page and the worker that draws for it. A snapshot's arrays travel by
+// transfer.
 
 import type {CoarseCells} from '../core/volume';
 import type {Snapshot} from '../core/worker_messages';
@@ -8,7 +9,8 @@ import type {Pose} from './pose';
 import type {View} from './view';
 
 /** Methods of View that answer nothing. */
-export type Command = 'clear' | 'setLook' | 'setRange' | 'setInsets' | 'look' | 'setParallel' | 'turn' | 'zoom';
+export type Command =
+  'clear' | 'setLook' | 'setRange' | 'setInsets' | 'look' | 'setParallel' | 'turn' | 'zoom';
 
 export type ToView =
   /** First of all. */

@@ -1,5 +1,6 @@
-// Draws for a page: a MeshView in a worker, so that the page never waits for the graphics, which may take seconds to start and to compile.
-// Loaded by a page itself, where workers cannot draw, this script gives it the MeshView (far_view.ts).
+// Draws for a page: a MeshView in a worker, so that the page never waits for the graphics, which
+// may take seconds to start and to compile. Loaded by a page itself, where workers cannot draw,
+// this script gives it the MeshView (far_view.ts).
 
 import {errorText} from '../core/errors';
 import type {CoarseCells} from '../core/volume';
@@ -18,7 +19,9 @@ let view: MeshView | null = null;
 let nextId = 0;
 const asked = new Map<number, {resolve(cells: CoarseCells): void; reject(why: Error): void}>();
 
-function post(message: FromView): void { self.postMessage(message); }
+function post(message: FromView): void {
+  self.postMessage(message);
+}
 
 /** Asked of the page. */
 function coarse(have: number): Promise<CoarseCells> {
@@ -32,7 +35,9 @@ function begin({canvas: surface, size, answers}: Extract<ToView, {type: 'begin'}
   canvas.resize(size);
   try {
     view = globalThis.qtetView = new MeshView(canvas, {
-      drawn: (pose) => post({type: 'drawn', pose}), lost: (lost) => post({type: 'lost', lost}), ...(answers ? {coarse} : {}),
+      drawn: (pose) => post({type: 'drawn', pose}),
+      lost: (lost) => post({type: 'lost', lost}),
+      ...(answers ? {coarse} : {}),
     });
     post({type: 'drawn', pose: view.pose});
   } catch (thrown) {
@@ -42,13 +47,23 @@ function begin({canvas: surface, size, answers}: Extract<ToView, {type: 'begin'}
 
 function obey(message: Exclude<ToView, {type: 'begin' | 'ping'}>, its: MeshView): void {
   switch (message.type) {
-    case 'command': return (its[message.name] as (...words: unknown[]) => void)(...message.words);
-    case 'camera': return void (its.cameraState = message.state);
-    case 'size': return canvas?.resize(message.size);
-    case 'event': return canvas?.receive(message.event);
-    case 'show': return its.show(message.snapshot, (drawingMs) => post({type: 'shown', id: message.id, drawingMs}));
-    case 'picture': return void its.picture(message.background).then(
-      (blob) => post({type: 'pictured', id: message.id, blob}), (thrown: unknown) => post({type: 'failed', id: message.id, message: errorText(thrown)}));
+    case 'command':
+      return (its[message.name] as (...words: unknown[]) => void)(...message.words);
+    case 'camera':
+      return void (its.cameraState = message.state);
+    case 'size':
+      return canvas?.resize(message.size);
+    case 'event':
+      return canvas?.receive(message.event);
+    case 'show':
+      return its.show(message.snapshot, (drawingMs) =>
+        post({type: 'shown', id: message.id, drawingMs}),
+      );
+    case 'picture':
+      return void its.picture(message.background).then(
+        (blob) => post({type: 'pictured', id: message.id, blob}),
+        (thrown: unknown) => post({type: 'failed', id: message.id, message: errorText(thrown)}),
+      );
     case 'coarse': {
       const waiting = asked.get(message.id);
       asked.delete(message.id);
@@ -66,6 +81,9 @@ if (typeof document !== 'undefined') {
     else if (event.data.type === 'begin') begin(event.data);
     else if (view) obey(event.data, view);
   };
-  const draws = typeof OffscreenCanvas !== 'undefined' && typeof WebGL2RenderingContext !== 'undefined' && typeof requestAnimationFrame !== 'undefined';
+  const draws =
+    typeof OffscreenCanvas !== 'undefined' &&
+    typeof WebGL2RenderingContext !== 'undefined' &&
+    typeof requestAnimationFrame !== 'undefined';
   post({type: 'hello', url: self.location.href, draws});
 }

@@ -1,5 +1,6 @@
-// The volume on the canvas. Graphics that are fast draw all of it at once. Slow ones draw few cells with few pixels while something moves, and all cells with
-// all pixels once it rests: in strips of pixels, so that the next movement waits for a strip and not for the picture.
+// The volume on the canvas. Graphics that are fast draw all of it at once. Slow ones draw few cells
+// with few pixels while something moves, and all cells with all pixels once it rests: in strips of
+// pixels, so that the next movement waits for a strip and not for the picture.
 
 import type {PerspectiveCamera, Scene, WebGLRenderer} from 'three';
 import type {TransferTables} from '../core/transfer';
@@ -11,14 +12,20 @@ import {RayCaster, type Sight} from './ray_caster';
 
 /** A strip takes about so long. */
 const kStripMs = 120;
-/** Pixels of the first strip, of which nobody knows what they take: some tenth of that without a GPU. */
+/**
+ * Pixels of the first strip, of which nobody knows what they take: some tenth of that without a
+ * GPU.
+ */
 const kFirstPixels = 1 << 14;
 /** A strip has at most so many times the pixels of the one before. */
 const kStripGrowth = 2;
 /** A picture is at rest so long after its last change. */
 const kRestMs = 150;
-/** Times that a line of sight comes into the mesh at most: what is behind hundreds of walls is not to be told apart, and every layer takes its passes. */
-const kMostLayers = 256;
+/**
+ * Times that a line of sight comes into the mesh at most: what is behind hundreds of walls is not
+ * to be told apart, and every layer takes its passes.
+ */
+const kMaxLayers = 256;
 
 /** A mesh of cells. */
 interface Layered {
@@ -26,7 +33,10 @@ interface Layered {
   wanted: VolumeCells | null;
   of: VolumeCells | null;
   shown: CellTextures | null;
-  /** How many layers a picture that is drawn at once has: as many as the one before needed, and often one more. */
+  /**
+   * How many layers a picture that is drawn at once has: as many as the one before needed, and
+   * often one more.
+   */
   layers: number;
 }
 
@@ -47,7 +57,10 @@ export class VolumeView {
   private readonly budget = new FrameBudget();
   private coarseVersion = -1;
   private coarseState: 'stale' | 'asked' | 'here' | 'none' = 'stale';
-  /** What all of it with all pixels took last, and pixels in a millisecond in its slowest strip; 0: nobody knows yet. */
+  /**
+   * What all of it with all pixels took last, and pixels in a millisecond in its slowest strip; 0:
+   * nobody knows yet.
+   */
   private wholeMs = 0;
   private rate = 0;
   private inHand: Promise<void> | null = null;
@@ -58,18 +71,27 @@ export class VolumeView {
   private timer: ReturnType<typeof setTimeout> | undefined;
 
   /** `changed`: another picture is due. `askCoarse`: ViewListeners.coarse. */
-  constructor(private readonly changed: (moved: boolean) => void, private readonly askCoarse?: (have: number) => Promise<CoarseCells>) {}
+  constructor(
+    private readonly changed: (moved: boolean) => void,
+    private readonly askCoarse?: (have: number) => Promise<CoarseCells>,
+  ) {}
 
-  get hasCells(): boolean { return this.fine.wanted !== null; }
+  get hasCells(): boolean {
+    return this.fine.wanted !== null;
+  }
   /** The graphics have something in hand. */
-  get busy(): boolean { return this.inHand !== null; }
+  get busy(): boolean {
+    return this.inHand !== null;
+  }
   /** Nothing moves, and all of it is on the canvas. */
-  get atRest(): boolean { return this.whole && !this.busy && this.timer === undefined; }
+  get atRest(): boolean {
+    return this.whole && !this.busy && this.timer === undefined;
+  }
 
   take(cells: VolumeCells | null): void {
     this.fine.wanted = cells;
     this.whole = false;
-    this.coarseState = 'stale';  // it may be of another field by now: its next answer tells
+    this.coarseState = 'stale'; // it may be of another field by now: its next answer tells
     if (cells) return;
     this.coarse.wanted = null;
     this.coarseVersion = -1;
@@ -77,9 +99,15 @@ export class VolumeView {
     if (!this.busy) this.update();
   }
 
-  setTransfer(tables: TransferTables): void { this.caster.setTransfer(tables); }
-  setRange(...words: Parameters<RayCaster['setRange']>): void { this.caster.setRange(...words); }
-  setClip(...words: Parameters<RayCaster['setClip']>): void { this.caster.setClip(...words); }
+  setTransfer(tables: TransferTables): void {
+    this.caster.setTransfer(tables);
+  }
+  setRange(...words: Parameters<RayCaster['setRange']>): void {
+    this.caster.setRange(...words);
+  }
+  setClip(...words: Parameters<RayCaster['setClip']>): void {
+    this.caster.setClip(...words);
+  }
 
   /** What is being drawn is of no use any more. */
   interrupt(): void {
@@ -100,15 +128,17 @@ export class VolumeView {
     if (moved && isSlow && !isSmall) this.refreshCoarse();
     if (!isSlow) this.start(this.drawAtOnce(picture, this.fine, 1));
     else if (moved && isSmall) this.start(this.drawAtOnce(picture, this.fine, this.budget.share()));
-    else if (moved && this.coarseState === 'here') this.start(this.drawAtOnce(picture, this.coarse, this.budget.share()));
-    else if (!moved || this.coarseState === 'none') this.start(this.drawStrips(picture, () => this.interrupted));
+    else if (moved && this.coarseState === 'here')
+      this.start(this.drawAtOnce(picture, this.coarse, this.budget.share()));
+    else if (!moved || this.coarseState === 'none')
+      this.start(this.drawStrips(picture, () => this.interrupted));
     // Else the coarse mesh is under way, and the picture before stands.
   }
 
   /** All of it, whatever moves. REQUIRES: hasCells. */
   async drawWhole(picture: Picture): Promise<void> {
     this.interrupt();
-    while (this.inHand) await this.inHand;
+    await this.idle();
     if (!this.hasCells) return;
     this.update();
     this.interrupted = false;
@@ -117,7 +147,9 @@ export class VolumeView {
   }
 
   /** What was drawn last, on a canvas that has become empty. */
-  present(renderer: WebGLRenderer): void { this.deep.present(renderer); }
+  present(renderer: WebGLRenderer): void {
+    this.deep.present(renderer);
+  }
 
   dispose(): void {
     this.interrupt();
@@ -145,11 +177,18 @@ export class VolumeView {
       if (this.hasCells) this.changed(true);
     };
     if (!this.askCoarse) return end('none');
-    this.askCoarse(this.coarseVersion).then(({version, cells}) => {
-      if (cells) this.coarse.wanted = cells;
-      this.coarseVersion = version;
-      end(this.coarse.wanted ? 'here' : 'none');
-    }, () => end('none'));
+    this.askCoarse(this.coarseVersion).then(
+      ({version, cells}) => {
+        if (cells) this.coarse.wanted = cells;
+        this.coarseVersion = version;
+        end(this.coarse.wanted ? 'here' : 'none');
+      },
+      () => end('none'),
+    );
+  }
+
+  private async idle(): Promise<void> {
+    while (this.inHand) await this.inHand;
   }
 
   private start(drawing: Promise<void>): void {
@@ -161,7 +200,11 @@ export class VolumeView {
   }
 
   /** True when the eye is in a cell: RayCaster.begin. */
-  private begin({renderer, scene, camera, ...sight}: Picture, its: Layered, share: number): boolean {
+  private begin(
+    {renderer, scene, camera, ...sight}: Picture,
+    its: Layered,
+    share: number,
+  ): boolean {
     this.deep.begin(renderer, share, scene, camera);
     return this.caster.begin(its.shown!, sight, this.deep);
   }
@@ -180,18 +223,21 @@ export class VolumeView {
     deep.present(renderer);
     const ms = await whenDrawn(gl, start);
     const needed = (await Promise.all(reached)).filter(Boolean).length;
-    const isCut = needed === its.layers && needed < kMostLayers;
-    its.layers = Math.min(needed + 1, kMostLayers);
+    const isCut = needed === its.layers && needed < kMaxLayers;
+    its.layers = Math.min(needed + 1, kMaxLayers);
     const isWhole = its === this.fine && share === 1;
     if (isWhole) this.wholeMs = ms;
     else this.budget.learn(share, ms);
     if (this.interrupted) return;
     this.whole = isWhole && !isCut;
     if (this.whole) return;
-    this.timer = setTimeout(() => {
-      this.timer = undefined;
-      this.changed(false);
-    }, isWhole ? 0 : kRestMs);
+    this.timer = setTimeout(
+      () => {
+        this.timer = undefined;
+        this.changed(false);
+      },
+      isWhole ? 0 : kRestMs,
+    );
   }
 
   private async drawStrips(picture: Picture, ends: () => boolean): Promise<void> {
@@ -199,20 +245,21 @@ export class VolumeView {
     const {renderer} = picture;
     const gl = renderer.getContext() as WebGL2RenderingContext;
     const begun = performance.now();
-    let last = this.rate > 0 ? Infinity : 0;  // pixels of the strip before
+    let last = this.rate > 0 ? Infinity : 0; // pixels of the strip before
     let rate = this.rate;
     this.rate = 0;
     const isInside = this.begin(picture, this.fine, 1);
-    for (let layer = isInside ? -1 : 0; layer < kMostLayers; ++layer) {
+    for (let layer = isInside ? -1 : 0; layer < kMaxLayers; ++layer) {
       const reaches = layer < 0 || reachesPixels(gl, () => caster.enter(renderer));
-      if (layer > 0 && !await reaches) break;
-      for (let row = 0, rows = 0; row < deep.height; row += rows) {
+      if (layer > 0 && !(await reaches)) break;
+      for (let row = 0; row < deep.height;) {
         const most = rate > 0 ? Math.min(rate * kStripMs, kStripGrowth * last) : kFirstPixels;
-        rows = Math.min(deep.height - row, Math.ceil(most / deep.width));
+        const rows = Math.min(deep.height - row, Math.ceil(most / deep.width));
         last = rows * deep.width;
         const start = performance.now();
         caster.cast(renderer, deep, row, rows);
-        rate = last / await whenDrawn(gl, start);
+        row += rows;
+        rate = last / (await whenDrawn(gl, start));
         this.rate = this.rate > 0 ? Math.min(this.rate, rate) : rate;
         if (ends()) return;
       }

@@ -9,31 +9,54 @@ export interface MeshEntry {
   fields: string[];
 }
 
-/** Throws a QtetError whose text tells what to do. `token`: empty where the server asks for none. */
+/**
+ * Throws a QtetError whose text tells what to do. `token`: empty where the server asks for none.
+ */
 export async function fetchCatalog(base: URL, token = ''): Promise<MeshEntry[]> {
   const url = new URL('v1/meshes', base);
   let response: Response;
   try {
     response = await (fetchWith(token) ?? fetch)(url.href, {});
   } catch {
-    throw new QtetError('offline', `The server at ${base.host} does not answer. Check the connection and try again.`);
+    throw new QtetError(
+      'offline',
+      `The server at ${base.host} does not answer. Check the connection and try again.`,
+    );
   }
-  if (!response.ok) throw new QtetError('http', `The server at ${base.host} answers "${response.status} ${response.statusText}" instead of its meshes. For a .qtet file on a plain web server, give its address: ?src=FILE.qtet`);
+  if (!response.ok)
+    throw new QtetError(
+      'http',
+      `The server at ${base.host} answers "${response.status} ${response.statusText}" instead ` +
+        'of its meshes. For a .qtet file on a plain web server, give its address: ?src=FILE.qtet',
+    );
   const body = (await response.json().catch(() => null)) as {meshes?: unknown} | null;
-  if (!Array.isArray(body?.meshes)) throw new QtetError('bad-message', `${url.href} is not a list of meshes. Is this a qtet server? For a .qtet file on another one, give its address: ?src=FILE.qtet`);
-  return (body.meshes as Partial<MeshEntry>[]).map((mesh) => ({
-    id: String(mesh.id), tetrahedra: Number(mesh.tetrahedra ?? 0), fields: Array.isArray(mesh.fields) ? mesh.fields.map(String) : [],
+  if (!Array.isArray(body?.meshes))
+    throw new QtetError(
+      'bad-message',
+      `${url.href} is not a list of meshes. Is this a qtet server? For a .qtet file on another ` +
+        'one, give its address: ?src=FILE.qtet',
+    );
+  return (body.meshes as Record<keyof MeshEntry, unknown>[]).map((mesh) => ({
+    id: String(mesh.id),
+    tetrahedra: Number(mesh.tetrahedra ?? 0),
+    fields: Array.isArray(mesh.fields) ? mesh.fields.map(String) : [],
   }));
 }
 
 /** A log that lies on any web server: its address names the file. */
-export function isLogFile(base: URL): boolean { return base.pathname.endsWith('.qtet'); }
+export function isLogFile(base: URL): boolean {
+  return base.pathname.endsWith('.qtet');
+}
 
 /** The file's name as a mesh's id. */
-export function meshOfLog(base: URL): string { return decodeURIComponent(base.pathname.replace(/^.*\//, '').replace(/\.qtet$/, '')); }
+export function meshOfLog(base: URL): string {
+  return decodeURIComponent(base.pathname.replace(/^.*\//, '').replace(/\.qtet$/, ''));
+}
 
 /** Address of a server's log as a file. */
-export function logUrl(base: URL, mesh: string): string { return new URL(`v1/meshes/${encodeURIComponent(mesh)}/log`, base).href; }
+export function logUrl(base: URL, mesh: string): string {
+  return new URL(`v1/meshes/${encodeURIComponent(mesh)}/log`, base).href;
+}
 
 /** Address of the stream beside the HTTP address. */
 export function streamUrl(base: URL): string {

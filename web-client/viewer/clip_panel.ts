@@ -1,47 +1,35 @@
-// Up to three clip planes: across an axis or as the camera looks, moved by a slider here and by a handle in the picture.
+// Up to three clip planes: across an axis or as the camera looks, moved by a slider here and by a
+// handle in the picture.
 
-import {kMostPlanes} from '../core/display';
-import type {Plane} from '../core/slice';
+import {kMaxPlanes} from '../core/display';
 import {formatCoordinate} from './format';
-import type {Host, Panel, Scene} from './panel';
+import type {Attributes} from './page';
+import type {Panel, Scene} from './panel';
 import {axisNormal, axisOf, clipText, type ClipSetting, type Settings} from './settings';
-
-/** How far the bounds reach along a normal, in lattice units. */
-export function extentAlong(bounds: number[], normal: readonly number[]): [number, number] {
-  let low = 0;
-  let high = 0;
-  for (let axis = 0; axis < 3; ++axis) {
-    const a = normal[axis]! * bounds[axis]!, b = normal[axis]! * bounds[axis + 3]!;
-    low += Math.min(a, b);
-    high += Math.max(a, b);
-  }
-  return [low, high];
-}
-
-/** The plane in lattice coordinates. A share counts along the axis upwards, whichever side is cut away; along a free normal, along it. */
-export function planeOf({normal, share}: ClipSetting, bounds: number[]): Plane {
-  const [low, high] = extentAlong(bounds, normal);
-  const {axis} = axisOf({normal, share});
-  const upwards = axis < 0 || normal[axis]! > 0;
-  // Between two lattice planes: no vertex lies on the cut, and no cell's section is a single point.
-  return {normal, offset: Math.floor(low + (upwards ? share : 1 - share) * (high - low)) + 0.5};
-}
 
 export class ClipPanel implements Panel {
   private planes: ClipSetting[] = [];
 
   /** `viewNormal`: from the mesh to the camera, in lattice coordinates. */
-  constructor(private readonly root: ParentNode, private readonly host: Host, private readonly viewNormal: () => [number, number, number]) {
+  constructor(
+    private readonly root: ParentNode,
+    private readonly attributes: Attributes,
+    private readonly viewNormal: () => [number, number, number],
+  ) {
     this.find<HTMLInputElement>('input[name=clip]').addEventListener('change', (event) => {
-      this.write((event.target as HTMLInputElement).checked ? [{normal: axisNormal(0, false), share: 0.5}] : []);
+      this.write(
+        (event.target as HTMLInputElement).checked
+          ? [{normal: axisNormal(0, false), share: 0.5}]
+          : [],
+      );
     });
     this.find('.clip-modes').addEventListener('change', (event) => {
       const mode = (event.target as HTMLInputElement).value;
-      host.write('clip-mode', mode === 'cut' ? null : mode);
+      attributes.write('clip-mode', mode === 'cut' ? null : mode);
     });
     this.find('.add-plane').addEventListener('click', () => this.add());
     const rows = this.find('.planes');
-    rows.replaceChildren(...Array.from({length: kMostPlanes}, (_, i) => this.row(i)));
+    rows.replaceChildren(...Array.from({length: kMaxPlanes}, (_, i) => this.row(i)));
   }
 
   update({planes, mode}: Settings, scene: Scene | null): void {
@@ -49,13 +37,19 @@ export class ClipPanel implements Panel {
     this.find<HTMLInputElement>('input[name=clip]').checked = planes.length > 0;
     this.find('.clip').hidden = planes.length === 0;
     this.find<HTMLInputElement>(`.clip-modes input[value=${mode}]`).checked = true;
-    this.find('.add-plane').hidden = planes.length >= kMostPlanes;
-    [...this.find('.planes').children].forEach((row, i) => this.updateRow(row as HTMLElement, planes[i], scene));
+    this.find('.add-plane').hidden = planes.length >= kMaxPlanes;
+    [...this.find('.planes').children].forEach((row, i) =>
+      this.updateRow(row as HTMLElement, planes[i], scene),
+    );
   }
 
   /** Moves plane `i` to a share of the extent. */
   move(i: number, share: number): void {
-    this.write(this.planes.map((plane, k) => (k === i ? {...plane, share: Math.min(1, Math.max(0, share))} : plane)));
+    this.write(
+      this.planes.map((plane, k) =>
+        k === i ? {...plane, share: Math.min(1, Math.max(0, share))} : plane,
+      ),
+    );
   }
 
   private row(i: number): HTMLElement {
@@ -64,17 +58,31 @@ export class ClipPanel implements Panel {
     row.innerHTML = `<legend class="visually-hidden">Clip plane ${i + 1}</legend>
       <div class="row">
         <select name="axis" aria-label="Direction of clip plane ${i + 1}">
-          <option value="x">X</option><option value="y">Y</option><option value="z">Z</option><option value="view">As I look</option><option value="free" hidden>Free</option>
+          <option value="x">X</option><option value="y">Y</option><option value="z">Z</option>
+          <option value="view">As I look</option><option value="free" hidden>Free</option>
         </select>
         <label class="toggle"><input type="checkbox" name="flip"><span>Flip</span></label>
         <output class="position"></output>
-        <button type="button" class="icon remove" aria-label="Remove clip plane ${i + 1}"><svg viewBox="0 0 20 20" aria-hidden="true"><path d="M5 5l10 10M15 5 5 15"/></svg></button>
+        <button type="button" class="icon remove" aria-label="Remove clip plane ${i + 1}">
+          <svg viewBox="0 0 20 20" aria-hidden="true"><path d="M5 5l10 10M15 5 5 15"/></svg>
+        </button>
       </div>
-      <input type="range" name="position" min="0" max="1000" aria-label="Position of clip plane ${i + 1}">`;
-    row.querySelector('select')!.addEventListener('change', (event) => this.turn(i, (event.target as HTMLSelectElement).value));
+      <input type="range" name="position" min="0" max="1000"
+        aria-label="Position of clip plane ${i + 1}">`;
+    row
+      .querySelector('select')!
+      .addEventListener('change', (event) =>
+        this.turn(i, (event.target as HTMLSelectElement).value),
+      );
     row.querySelector('[name=flip]')!.addEventListener('change', () => this.flip(i));
-    row.querySelector('.remove')!.addEventListener('click', () => this.write(this.planes.filter((_, k) => k !== i)));
-    row.querySelector('[name=position]')!.addEventListener('input', (event) => this.move(i, Number((event.target as HTMLInputElement).value) / 1000));
+    row
+      .querySelector('.remove')!
+      .addEventListener('click', () => this.write(this.planes.filter((_, k) => k !== i)));
+    row
+      .querySelector('[name=position]')!
+      .addEventListener('input', (event) =>
+        this.move(i, Number((event.target as HTMLInputElement).value) / 1000),
+      );
     return row;
   }
 
@@ -105,15 +113,21 @@ export class ClipPanel implements Panel {
   }
 
   private flip(i: number): void {
-    this.write(this.planes.map((plane, k) => {
-      if (k !== i) return plane;
-      const normal = plane.normal.map((x) => (x === 0 ? 0 : -x)) as ClipSetting['normal'];
-      return {normal, share: axisOf(plane).axis >= 0 ? plane.share : 1 - plane.share};
-    }));
+    this.write(
+      this.planes.map((plane, k) => {
+        if (k !== i) return plane;
+        const normal = plane.normal.map((x) => (x === 0 ? 0 : -x)) as ClipSetting['normal'];
+        return {normal, share: axisOf(plane).axis >= 0 ? plane.share : 1 - plane.share};
+      }),
+    );
   }
 
-  private write(planes: ClipSetting[]): void { this.host.write('clip', planes.length > 0 ? clipText(planes) : null); }
-  private find<T extends HTMLElement = HTMLElement>(selector: string): T { return this.root.querySelector<T>(selector)!; }
+  private write(planes: ClipSetting[]): void {
+    this.attributes.write('clip', planes.length > 0 ? clipText(planes) : null);
+  }
+  private find<T extends HTMLElement = HTMLElement>(selector: string): T {
+    return this.root.querySelector<T>(selector)!;
+  }
 }
 
 /** The coordinate across an axis; of a free plane, how far along. */
@@ -121,6 +135,10 @@ function positionText(plane: ClipSetting, {bounds, manifest}: Scene): string {
   const {axis} = axisOf(plane);
   if (axis < 0) return `${Math.round(100 * plane.share)}\u202f%`;
   const {origin, step} = manifest.lattice;
-  const low = bounds[axis]!, high = bounds[axis + 3]!;
-  return formatCoordinate(origin[axis]! + step * (low + plane.share * (high - low)), step * (high - low));
+  const low = bounds[axis]!,
+    high = bounds[axis + 3]!;
+  return formatCoordinate(
+    origin[axis]! + step * (low + plane.share * (high - low)),
+    step * (high - low),
+  );
 }

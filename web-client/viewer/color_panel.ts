@@ -1,24 +1,38 @@
 // Field, colour map, scale, range, edges, surface and opacity.
 
-import {kMagnitude} from '../core/field_scale';
-import {fillScalars, type Host, type Panel, type Scene} from './panel';
-import {parseNumbers, parseScalar, type Settings} from './settings';
+import type {Attributes} from './page';
+import {fillScalars, type Panel, type Scene} from './panel';
+import {parseNumbers, shownScalar, type Settings} from './settings';
 
 export class ColorPanel implements Panel {
-  constructor(private readonly root: ParentNode, private readonly host: Host) {
-    this.on('select[name=field]', (select) => host.write('field', select.value));
+  constructor(
+    private readonly root: ParentNode,
+    private readonly attributes: Attributes,
+  ) {
+    this.on('select[name=field]', (select) => attributes.write('field', select.value));
     this.on('.swatches', () => this.writeMap());
     this.on('input[name=reversed]', () => this.writeMap());
-    this.on('input[name=log]', (input) => host.write('scale', (input as HTMLInputElement).checked ? 'log' : null));
+    this.on('input[name=log]', (input) =>
+      attributes.write('scale', (input as HTMLInputElement).checked ? 'log' : null),
+    );
     this.on('select[name=range]', (select) => this.writeRange(select.value));
-    for (const end of ['low', 'high']) this.on(`input[name=range-${end}]`, () => this.writeRange('fixed'));
-    this.on('input[name=edges]', (input) => host.write('edges', (input as HTMLInputElement).checked ? null : 'off'));
-    this.on('input[name=surface]', (input) => host.write('surface', (input as HTMLInputElement).checked ? null : 'off'));
-    this.input('opacity').addEventListener('input', () => host.write('opacity', String(Number(this.input('opacity').value) / 100)));
+    for (const end of ['low', 'high'])
+      this.on(`input[name=range-${end}]`, () => this.writeRange('fixed'));
+    this.on('input[name=edges]', (input) =>
+      attributes.write('edges', (input as HTMLInputElement).checked ? null : 'off'),
+    );
+    this.on('input[name=surface]', (input) =>
+      attributes.write('surface', (input as HTMLInputElement).checked ? null : 'off'),
+    );
+    this.input('opacity').addEventListener('input', () =>
+      attributes.write('opacity', String(Number(this.input('opacity').value) / 100)),
+    );
   }
 
   update(settings: Settings, scene: Scene | null): void {
-    this.root.querySelector<HTMLInputElement>(`input[name=colormap][value=${settings.map}]`)!.checked = true;
+    this.root.querySelector<HTMLInputElement>(
+      `input[name=colormap][value=${settings.map}]`,
+    )!.checked = true;
     this.input('reversed').checked = settings.reversed;
     this.input('log').checked = settings.logarithmic;
     this.input('edges').checked = settings.edges;
@@ -26,42 +40,59 @@ export class ColorPanel implements Panel {
     this.input('opacity').value = String(Math.round(100 * settings.opacity));
     this.find('.opacity-text').textContent = `${Math.round(100 * settings.opacity)}\u202f%`;
     const fixed = typeof settings.range !== 'string';
-    this.find<HTMLSelectElement>('select[name=range]').value = fixed ? 'fixed' : String(settings.range);
+    this.find<HTMLSelectElement>('select[name=range]').value = fixed
+      ? 'fixed'
+      : String(settings.range);
     this.find('.range-fixed').hidden = !fixed;
     const fields = scene?.manifest.fields ?? [];
-    const chosen = parseScalar(this.host.read('field'), fields) ?? (fields.length > 0 ? {field: 0, component: kMagnitude} : null);
+    const chosen = shownScalar(this.attributes.read('field'), fields);
     fillScalars(this.find<HTMLSelectElement>('select[name=field]'), fields, chosen);
   }
 
   /** The range in force, which a fixed one begins with. */
   showRange(low: number, high: number): void {
     const active = (this.root as ShadowRoot).activeElement;
-    for (const [name, value] of [['range-low', low], ['range-high', high]] as const) {
-      if (this.input(name) !== active) this.input(name).value = String(Number(value.toPrecision(5)));
+    for (const [name, value] of [
+      ['range-low', low],
+      ['range-high', high],
+    ] as const) {
+      if (this.input(name) !== active)
+        this.input(name).value = String(Number(value.toPrecision(5)));
     }
   }
 
   private writeMap(): void {
     const map = this.root.querySelector<HTMLInputElement>('input[name=colormap]:checked')!.value;
-    this.host.write('colormap', this.input('reversed').checked ? `${map} reversed` : map);
+    this.attributes.write('colormap', this.input('reversed').checked ? `${map} reversed` : map);
   }
 
   private writeRange(kind: string): void {
     if (kind !== 'fixed') {
-      this.host.write('range', kind === 'auto' ? null : kind);
+      this.attributes.write('range', kind === 'auto' ? null : kind);
       return;
     }
     const text = `${this.input('range-low').value},${this.input('range-high').value}`;
     const [low, high] = parseNumbers(text);
     const valid = low !== undefined && high !== undefined && low < high;
-    this.input('range-high').setCustomValidity(valid ? '' : 'The end of the range has to be above its start.');
-    if (valid) this.host.write('range', `${low},${high}`);
+    this.input('range-high').setCustomValidity(
+      valid ? '' : 'The end of the range has to be above its start.',
+    );
+    if (valid) this.attributes.write('range', `${low},${high}`);
     else this.input('range-high').reportValidity();
   }
 
-  private on(selector: string, action: (control: HTMLInputElement | HTMLSelectElement) => void): void {
-    this.find(selector).addEventListener('change', (event) => action(event.currentTarget as HTMLInputElement));
+  private on(
+    selector: string,
+    action: (control: HTMLInputElement | HTMLSelectElement) => void,
+  ): void {
+    this.find(selector).addEventListener('change', (event) =>
+      action(event.currentTarget as HTMLInputElement),
+    );
   }
-  private find<T extends HTMLElement = HTMLElement>(selector: string): T { return this.root.querySelector<T>(selector)!; }
-  private input(name: string): HTMLInputElement { return this.find<HTMLInputElement>(`input[name=${name}]`); }
+  private find<T extends HTMLElement = HTMLElement>(selector: string): T {
+    return this.root.querySelector<T>(selector)!;
+  }
+  private input(name: string): HTMLInputElement {
+    return this.find<HTMLInputElement>(`input[name=${name}]`);
+  }
 }

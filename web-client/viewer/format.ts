@@ -1,4 +1,5 @@
-// Numbers for people: grouped digits, bytes in decimal units, percent that never says 100 too early.
+// Numbers for people: grouped digits, bytes in decimal units, percent that never says 100 too
+// early.
 
 const kCounts = new Intl.NumberFormat('en', {maximumFractionDigits: 0});
 const kByteUnits = ['B', 'kB', 'MB', 'GB', 'TB'];
@@ -29,7 +30,8 @@ export function percentOf(part: number, whole: number): number {
 export function formatError(error: number): string {
   if (error === 0) return '0\u202f%';
   const percent = 100 * error;
-  return `${percent >= 0.001 ? Number(percent.toPrecision(2)) : percent.toExponential(1).replaceAll('-', '\u2212')}\u202f%`;
+  if (percent >= 0.001) return `${Number(percent.toPrecision(2))}\u202f%`;
+  return `${percent.toExponential(1).replaceAll('-', '\u2212')}\u202f%`;
 }
 
 /** "4 s", "2 min", "1.5 h". */
@@ -43,14 +45,18 @@ export function formatDuration(seconds: number): string {
 export function formatValue(value: number): string {
   if (Number.isNaN(value)) return 'missing';
   const magnitude = Math.abs(value);
-  const text = magnitude !== 0 && (magnitude >= 1e5 || magnitude < 1e-3) ? value.toExponential(4) : String(Number(value.toPrecision(5)));
+  const text =
+    magnitude !== 0 && (magnitude >= 1e5 || magnitude < 1e-3)
+      ? value.toExponential(4)
+      : String(Number(value.toPrecision(5)));
   return text.replaceAll('-', '\u2212');
 }
 
 /** A coordinate on an axis of length `span`, to a thousandth of that: next to zero is zero. */
 export function formatCoordinate(value: number, span: number): string {
   const magnitude = Math.max(Math.abs(value), span);
-  if (magnitude >= 1e5 || magnitude < 1e-2) return (Math.abs(value) < span / 2000 ? 0 : value).toExponential(2).replaceAll('-', '\u2212');
+  if (magnitude >= 1e5 || magnitude < 1e-2)
+    return (Math.abs(value) < span / 2000 ? 0 : value).toExponential(2).replaceAll('-', '\u2212');
   const decimals = Math.max(0, Math.ceil(-Math.log10(span / 1000) - 1e-9));
   const text = Math.abs(value).toFixed(Math.min(decimals, 8));
   return value < 0 && Number(text) !== 0 ? `\u2212${text}` : text;

@@ -1,4 +1,5 @@
-// Pointing at the mesh: a cell with its values, or two points with their distance and the field between them.
+// Pointing at the mesh: a cell with its values, or two points with their distance and the field
+// between them.
 
 import type {Vector} from '../core/cell_ray';
 import type {Client} from '../core/client';
@@ -34,19 +35,33 @@ export class Inspect {
   private plot: {destroy(): void} | null = null;
 
   /** Hears the canvas through its root: another may take its place. */
-  constructor(private readonly root: ShadowRoot, private readonly host: InspectHost) {
+  constructor(
+    private readonly root: ShadowRoot,
+    private readonly host: InspectHost,
+  ) {
     this.card = root.querySelector('.result')!;
     this.marks = root.querySelector('.marks')!;
-    const onCanvas = (type: 'pointerdown' | 'pointerup', heard: (event: PointerEvent) => void): void => root.addEventListener(type, (event) => {
-      if ((event.target as Element).matches('.scene')) heard(event as PointerEvent);
-    });
+    const onCanvas = (
+      type: 'pointerdown' | 'pointerup',
+      heard: (event: PointerEvent) => void,
+    ): void =>
+      root.addEventListener(type, (event) => {
+        if ((event.target as Element).matches('.scene')) heard(event as PointerEvent);
+      });
     onCanvas('pointerdown', (event) => void (this.pressed = {x: event.clientX, y: event.clientY}));
     onCanvas('pointerup', (event) => {
-      const moved = this.pressed ? Math.hypot(event.clientX - this.pressed.x, event.clientY - this.pressed.y) : Infinity;
+      const moved = this.pressed
+        ? Math.hypot(event.clientX - this.pressed.x, event.clientY - this.pressed.y)
+        : Infinity;
       this.pressed = null;
-      if (moved <= kClickPixels && this.tool !== 'none') void this.click(event.offsetX, event.offsetY);
+      if (moved <= kClickPixels && this.tool !== 'none')
+        void this.click(event.offsetX, event.offsetY);
     });
-    root.querySelector('.tools')!.addEventListener('change', (event) => this.use((event.target as HTMLInputElement).value as Tool));
+    root
+      .querySelector('.tools')!
+      .addEventListener('change', (event) =>
+        this.use((event.target as HTMLInputElement).value as Tool),
+      );
     root.querySelector('.close-result')!.addEventListener('click', () => this.clear());
   }
 
@@ -59,7 +74,10 @@ export class Inspect {
 
   /** What is under the middle of the picture: the keyboard's way. */
   pickMiddle(): void {
-    const {view, middle: [x, y]} = this.host;
+    const {
+      view,
+      middle: [x, y],
+    } = this.host;
     if (!view) return;
     if (this.tool === 'none') this.use('point');
     void this.click(x * view.canvas.clientWidth, y * view.canvas.clientHeight);
@@ -80,25 +98,32 @@ export class Inspect {
     this.marks.replaceChildren();
     if (!view) return;
     const at = this.points.map(({lattice}) => view.project(lattice));
-    if (at.length === 2) this.marks.append(shape('line', {x1: at[0]!.x, y1: at[0]!.y, x2: at[1]!.x, y2: at[1]!.y}));
+    if (at.length === 2)
+      this.marks.append(shape('line', {x1: at[0]!.x, y1: at[0]!.y, x2: at[1]!.x, y2: at[1]!.y}));
     for (const {x, y} of at) this.marks.append(shape('circle', {cx: x, cy: y, r: 5}));
   }
 
   private async click(x: number, y: number): Promise<void> {
     const {client, view} = this.host;
-    if (!client || !view || view.canvas.clientWidth === 0) return;  // a page may hide the viewer
+    if (!client || !view || view.canvas.clientWidth === 0) return; // a page may hide the viewer
     const pick = await client.pick(view.rayAt(x, y));
     if (!pick) {
       this.host.announce('Nothing there');
       if (this.tool === 'point') this.clear();
       return;
     }
-    this.points = this.tool === 'line' && this.points.length === 1 ? [this.points[0]!, pick] : [pick];
+    this.points =
+      this.tool === 'line' && this.points.length === 1 ? [this.points[0]!, pick] : [pick];
     this.place();
     this.host.pointAt(pick.lattice);
     if (this.tool === 'point') this.showPick(pick);
     else if (this.points.length === 2) await this.showLine(this.points[0]!, pick);
-    else this.showText('Line', [['Start', this.placeText(pick.position)]], 'Now point at the other end.');
+    else
+      this.showText(
+        'Line',
+        [['Start', this.placeText(pick.position)]],
+        'Now point at the other end.',
+      );
   }
 
   private showPick(pick: Pick): void {
@@ -106,7 +131,8 @@ export class Inspect {
     const rows: [string, string][] = [['Position', this.placeText(pick.position)]];
     for (const {field, values} of pick.fields) {
       rows.push([fields[field]!.name, values.map(formatValue).join(', ')]);
-      if (values.length > 1) rows.push([`${fields[field]!.name}, magnitude`, formatValue(Math.hypot(...values))]);
+      if (values.length > 1)
+        rows.push([`${fields[field]!.name}, magnitude`, formatValue(Math.hypot(...values))]);
     }
     rows.push(['Vertices', pick.corners.map(formatCount).join(', ')]);
     this.showText(`Cell ${formatCount(pick.cell)}`, rows);
@@ -116,21 +142,29 @@ export class Inspect {
     const probe = await this.host.client!.probe(from.lattice, to.lattice);
     if (!probe) return;
     const delta = to.position.map((x, axis) => x - from.position[axis]!) as Vector;
-    this.showText('Line', [['Distance', formatValue(probe.length)], ['Difference', this.placeText(delta)]]);
+    this.showText('Line', [
+      ['Distance', formatValue(probe.length)],
+      ['Difference', this.placeText(delta)],
+    ]);
     if (probe.values.length > 1) await this.drawPlot(probe);
   }
 
   /** To a ten-thousandth of what the lattice spans. */
   private placeText(place: Vector): string {
     const {bits, step} = this.host.manifest!.lattice;
-    return place.map((x) => formatCoordinate(x, step * 2 ** bits / 10)).join(', ');
+    return place.map((x) => formatCoordinate(x, (step * 2 ** bits) / 10)).join(', ');
   }
 
   /** uPlot comes over the network with the first plot only. */
   private async drawPlot(probe: Probe): Promise<void> {
     const {drawProbe} = await import('./probe_plot');
     this.plot?.destroy();
-    this.plot = drawProbe(this.root, this.card.querySelector('.plot')!, probe, this.host.fieldTitle);
+    this.plot = drawProbe(
+      this.root,
+      this.card.querySelector('.plot')!,
+      probe,
+      this.host.fieldTitle,
+    );
   }
 
   private showText(title: string, rows: [string, string][], hint = ''): void {
@@ -139,17 +173,23 @@ export class Inspect {
     this.card.hidden = false;
     this.card.querySelector('h2')!.textContent = title;
     this.card.querySelector('.hint')!.textContent = hint;
-    this.card.querySelector('dl')!.replaceChildren(...rows.map(([name, value]) => {
-      const row = document.createElement('div');
-      row.append(Object.assign(document.createElement('dt'), {textContent: name}), Object.assign(document.createElement('dd'), {textContent: value}));
-      return row;
-    }));
+    this.card.querySelector('dl')!.replaceChildren(
+      ...rows.map(([name, value]) => {
+        const row = document.createElement('div');
+        row.append(
+          Object.assign(document.createElement('dt'), {textContent: name}),
+          Object.assign(document.createElement('dd'), {textContent: value}),
+        );
+        return row;
+      }),
+    );
     this.host.announce([title, ...rows.map((row) => row.join(' ')), hint].join('. '));
   }
 }
 
 function shape(name: string, attributes: Record<string, number>): SVGElement {
   const element = document.createElementNS('http://www.w3.org/2000/svg', name);
-  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value.toFixed(1));
+  for (const [key, value] of Object.entries(attributes))
+    element.setAttribute(key, value.toFixed(1));
   return element;
 }

@@ -3,28 +3,40 @@
 import type {Insets} from '../three/view';
 
 /** A sheet that is pulled up covers the mesh rather than squeezing it out of sight. */
-const kMostCovered = 0.6;
+const kMaxCovered = 0.6;
 /** Of the free width: a wider legend leaves no corner. */
 const kWide = 0.6;
 
 /** `result`: on a sheet's screen it stands above the sheet, and the mesh above both. */
-export function insetsOf(host: HTMLElement, {panel, legend, result}: {panel: HTMLElement; legend: HTMLElement; result: HTMLElement}, sheet: boolean): Insets {
+export function insetsOf(
+  host: HTMLElement,
+  {panel, legend, result}: {panel: HTMLElement; legend: HTMLElement; result: HTMLElement},
+  sheet: boolean,
+): Insets {
   const whole = host.getBoundingClientRect();
   const card = panel.getBoundingClientRect();
   const bar = legend.getBoundingClientRect();
   const width = Math.max(whole.width, 1);
   const height = Math.max(whole.height, 1);
-  const hidden = card.width === 0;  // a page may hide the panel, and the legend
+  const hidden = card.width === 0; // a page may hide the panel, and the legend
   const bare = bar.width === 0;
   if (sheet) {
     const covered = result.hidden ? card.top : result.getBoundingClientRect().top;
     return {
-      left: 0, right: 0, top: bare ? 0 : Math.min(kMostCovered, (bar.bottom - whole.top) / height),
-      bottom: hidden ? 0 : Math.min(kMostCovered, (whole.bottom - covered) / height),
+      left: 0,
+      right: 0,
+      top: bare ? 0 : Math.min(kMaxCovered, (bar.bottom - whole.top) / height),
+      bottom: hidden ? 0 : Math.min(kMaxCovered, (whole.bottom - covered) / height),
     };
   }
   const free = (hidden ? whole.right : card.left) - whole.left;
-  // The legend takes a corner only: half of its height is room enough, unless hardly anything beside it is free.
+  // The legend takes a corner only: half of its height is room enough, unless hardly anything
+  // beside it is free.
   const bottom = bare ? 0 : (whole.bottom - bar.top) / height / (bar.width > kWide * free ? 1 : 2);
-  return {left: 0, right: hidden ? 0 : Math.min(kMostCovered, (whole.right - card.left) / width), top: 0, bottom: Math.min(kMostCovered, bottom)};
+  return {
+    left: 0,
+    right: hidden ? 0 : Math.min(kMaxCovered, (whole.right - card.left) / width),
+    top: 0,
+    bottom: Math.min(kMaxCovered, bottom),
+  };
 }

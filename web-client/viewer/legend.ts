@@ -7,14 +7,14 @@ import {logTicks, niceTicks} from '../core/ticks';
 import {scalarTitle} from './panel';
 import type {Settings} from './settings';
 
-const kMostTicks = 6;
+const kMaxTicks = 6;
 
 export interface ShownRange {
   low: number;
   high: number;
   logarithmic: boolean;
   /** Somewhere there is no value: that colour is told, too. */
-  hasGaps: boolean;
+  hasMissing: boolean;
 }
 
 export class Legend {
@@ -25,25 +25,36 @@ export class Legend {
     this.figure = root.querySelector('.legend')!;
   }
 
-  hide(): void { this.figure.hidden = true; }
+  hide(): void {
+    this.figure.hidden = true;
+  }
 
-  show(scalar: Scalar, fields: readonly FieldInfo[], range: ShownRange, {map, reversed}: Settings): void {
+  show(
+    scalar: Scalar,
+    fields: readonly FieldInfo[],
+    range: ShownRange,
+    {map, reversed}: Settings,
+  ): void {
     this.figure.hidden = false;
     const wanted = JSON.stringify([scalar, range, map, reversed, scalarTitle(scalar, fields)]);
-    if (wanted === this.shown) return;  // every picture asks, few change it
+    if (wanted === this.shown) return; // every picture asks, few change it
     this.shown = wanted;
-    const {ticks, factor} = range.logarithmic ? logTicks(range.low, range.high, kMostTicks) : niceTicks(range.low, range.high, kMostTicks);
+    const {ticks, factor} = range.logarithmic
+      ? logTicks(range.low, range.high, kMaxTicks)
+      : niceTicks(range.low, range.high, kMaxTicks);
     const name = this.part('.legend-name');
     name.textContent = name.title = scalarTitle(scalar, fields);
-    this.part('.legend-gap').hidden = !range.hasGaps;
+    this.part('.legend-missing').hidden = !range.hasMissing;
     this.part('.legend-factor').textContent = range.logarithmic ? 'logarithmic' : factor;
     this.part('.legend-bar').style.background = colorGradient(map, reversed, 33);
-    this.part('.legend-ticks').replaceChildren(...ticks.map(({at, label}) => {
-      const tick = document.createElement('span');
-      tick.style.left = `${100 * at}%`;
-      tick.textContent = label;
-      return tick;
-    }));
+    this.part('.legend-ticks').replaceChildren(
+      ...ticks.map(({at, label}) => {
+        const tick = document.createElement('span');
+        tick.style.left = `${100 * at}%`;
+        tick.textContent = label;
+        return tick;
+      }),
+    );
   }
 
   private part(selector: string): HTMLElement {

@@ -1,4 +1,5 @@
-// How far to refine: all of it, or to so many cells, bytes or so small an error; coarser and finer by halves and doubles.
+// How far to refine: all of it, or to so many cells, bytes or so small an error; coarser and finer
+// by halves and doubles.
 
 import {errorOfLevel, limitText, type Limit} from '../core/limit';
 import type {Manifest} from '../core/manifest';
@@ -14,15 +15,27 @@ export class LevelPanel {
   private readonly select: HTMLSelectElement;
   private readonly input: HTMLInputElement;
 
-  constructor(private readonly root: ShadowRoot, private readonly write: (quality: string | null) => void, now: () => {statistics: Statistics; manifest: Manifest | null; fields: number[]}) {
+  constructor(
+    private readonly root: ShadowRoot,
+    private readonly write: (quality: string | null) => void,
+    now: () => {statistics: Statistics; manifest: Manifest | null; fields: number[]},
+  ) {
     this.select = root.querySelector('select[name=limit]')!;
     this.input = root.querySelector('input[name=limit-value]')!;
     this.select.addEventListener('change', () => {
       const kind = this.select.value as Limit['kind'];
-      const {statistics: {bytes, tetrahedra, level}, manifest, fields} = now();
+      const {
+        statistics: {bytes, tetrahedra, level},
+        manifest,
+        fields,
+      } = now();
       // Begins with where the mesh stands.
       const error = errorOfLevel(manifest?.levels[level], fields) ?? 0;
-      const value = {cells: tetrahedra, bytes, error: error > 0 ? Number(error.toPrecision(2)) : 0.01};
+      const value = {
+        cells: tetrahedra,
+        bytes,
+        error: error > 0 ? Number(error.toPrecision(2)) : 0.01,
+      };
       this.set(kind === 'full' ? {kind} : {kind, value: Math.max(value[kind], Number.MIN_VALUE)});
     });
     this.input.addEventListener('change', () => {
@@ -33,7 +46,11 @@ export class LevelPanel {
     const scale = (factor: number): void => {
       const {statistics} = now();
       const goal = Math.round(statistics.tetrahedra * factor);
-      this.set(goal >= statistics.total.tetrahedra ? {kind: 'full'} : {kind: 'cells', value: Math.max(1, goal)});
+      this.set(
+        goal >= statistics.total.tetrahedra
+          ? {kind: 'full'}
+          : {kind: 'cells', value: Math.max(1, goal)},
+      );
     };
     root.querySelector('.coarser')!.addEventListener('click', () => scale(0.5));
     root.querySelector('.finer')!.addEventListener('click', () => scale(2));
@@ -44,10 +61,12 @@ export class LevelPanel {
     this.select.value = limit.kind;
     this.root.querySelector<HTMLElement>('.limit-value')!.hidden = limit.kind === 'full';
     this.root.querySelector('.limit-unit')!.textContent = kUnits[limit.kind];
-    if (limit.kind !== 'full' && this.root.activeElement !== this.input) this.input.value = String(Number((limit.value / kFactors[limit.kind]).toPrecision(4)));
+    if (limit.kind !== 'full' && this.root.activeElement !== this.input)
+      this.input.value = String(Number((limit.value / kFactors[limit.kind]).toPrecision(4)));
   }
 
   private set(limit: Limit): void {
-    if (limitText(limit) !== limitText(this.limit)) this.write(limit.kind === 'full' ? null : limitText(limit));
+    if (limitText(limit) !== limitText(this.limit))
+      this.write(limit.kind === 'full' ? null : limitText(limit));
   }
 }

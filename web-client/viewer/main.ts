@@ -1,4 +1,5 @@
-// The demo page: the viewer over the whole window. The address tells what to show, and follows what is shown: a link is a picture.
+// The demo page: the viewer over the whole window. The address tells what to show, and follows what
+// is shown: a link is a picture.
 
 import './element';
 import type {QtetViewer} from './qtet_viewer';
@@ -22,7 +23,9 @@ const kRestMs = 300;
 let timer: ReturnType<typeof setTimeout> | undefined;
 const remember = (): void => {
   const view = viewer.view;
-  const origin = ['src', 'transport'].flatMap((name) => (query.get(name) ? [[name, query.get(name)!] as const] : []));
+  const origin = ['src', 'transport'].flatMap((name) =>
+    query.get(name) ? [[name, query.get(name)!] as const] : [],
+  );
   history.replaceState(null, '', linkTo(location.href, new Map([...origin, ...view])));
 };
 for (const type of ['camera-change', 'view-change']) {

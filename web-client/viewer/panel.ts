@@ -1,15 +1,9 @@
-// What the panels share: the attributes that they write, and the fields that menus offer.
+// What the panels share: when they are brought up to date, and the fields that menus offer.
 
 import {kMagnitude, type Scalar} from '../core/field_scale';
 import type {FieldInfo, Manifest} from '../core/manifest';
 import {fillSelect} from './select';
-import {scalarText, type Settings, type ViewAttribute} from './settings';
-
-export interface Host {
-  /** Sets an attribute of the viewer; null removes it. */
-  write(name: ViewAttribute, value: string | null): void;
-  read(name: ViewAttribute): string | null;
-}
+import {scalarText, type Settings} from './settings';
 
 /** What is known of the mesh when a panel is brought up to date. */
 export interface Scene {
@@ -34,15 +28,36 @@ export function scalarTitle({field, component}: Scalar, fields: readonly FieldIn
   return `${name}, ${info.components <= 3 ? kAxes[component] : `component ${component + 1}`}`;
 }
 
-/** Every field, vectors with their components, fields of points and of cells in groups where there are both. */
-export function fillScalars(select: HTMLSelectElement, fields: readonly FieldInfo[], chosen: Scalar | null, pointsOnly = false): void {
-  const usable = fields.map((info, field) => ({info, field})).filter(({info}) => !pointsOnly || info.association === 'point');
-  const options = usable.flatMap(({info, field}) => [kMagnitude, ...(info.components > 1 ? info.minimum.keys() : [])].map((component) => {
-    const scalar = {field, component};
-    return {value: scalarText(scalar, fields), title: scalarTitle(scalar, fields), group: info.association === 'cell' ? 'Fields of cells' : 'Fields of points'};
-  }));
+/**
+ * Every field, vectors with their components, fields of points and of cells in groups where there
+ * are both.
+ */
+export function fillScalars(
+  select: HTMLSelectElement,
+  fields: readonly FieldInfo[],
+  chosen: Scalar | null,
+  pointsOnly = false,
+): void {
+  const usable = fields
+    .map((info, field) => ({info, field}))
+    .filter(({info}) => !pointsOnly || info.association === 'point');
+  const options = usable.flatMap(({info, field}) =>
+    [kMagnitude, ...(info.components > 1 ? info.minimum.keys() : [])].map((component) => {
+      const scalar = {field, component};
+      return {
+        value: scalarText(scalar, fields),
+        title: scalarTitle(scalar, fields),
+        group: info.association === 'cell' ? 'Fields of cells' : 'Fields of points',
+      };
+    }),
+  );
   const grouped = new Set(options.map(({group}) => group)).size > 1;
-  fillSelect(select, options.length > 0 ? options.map(({group, ...rest}) => (grouped ? {...rest, group} : rest)) : [{value: '', title: 'No fields'}],
-    chosen ? scalarText(chosen, fields) : '');
+  fillSelect(
+    select,
+    options.length > 0
+      ? options.map(({group, ...rest}) => (grouped ? {...rest, group} : rest))
+      : [{value: '', title: 'No fields'}],
+    chosen ? scalarText(chosen, fields) : '',
+  );
   select.disabled = options.length < 2;
 }

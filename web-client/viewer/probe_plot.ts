@@ -7,28 +7,73 @@ import {formatValue} from './format';
 
 const kHeight = 170;
 
-/** Two places at one distance are a jump: uPlot wants them in ascending order, which they are. A gap is where the value is missing. */
-export function drawProbe(root: ShadowRoot, place: HTMLElement, probe: Probe, title: string): {destroy(): void} {
+/**
+ * Two places at one distance are a jump: uPlot wants them in ascending order, which they are. A gap
+ * is where the value is missing.
+ */
+export function drawProbe(
+  root: ShadowRoot,
+  place: HTMLElement,
+  probe: Probe,
+  title: string,
+): {destroy(): void} {
   if (!root.querySelector('style.plot-style')) {
-    root.append(Object.assign(document.createElement('style'), {className: 'plot-style', textContent: plotStyles}));
+    root.append(
+      Object.assign(document.createElement('style'), {
+        className: 'plot-style',
+        textContent: plotStyles,
+      }),
+    );
   }
   const style = getComputedStyle(root.host);
   const ink = style.getPropertyValue('--ink-soft').trim();
   const axis: uPlot.Axis = {
-    stroke: ink, grid: {stroke: style.getPropertyValue('--line').trim(), width: 1}, ticks: {show: false}, font: '12px system-ui',
+    stroke: ink,
+    grid: {stroke: style.getPropertyValue('--line').trim(), width: 1},
+    ticks: {show: false},
+    font: '12px system-ui',
     values: (_, ticks) => ticks.map((tick) => formatValue(tick)),
   };
-  const data: uPlot.AlignedData = [probe.at, probe.values.map((value) => (Number.isNaN(value) ? null : value))];
-  const plot = new uPlot({
-    width: place.clientWidth, height: kHeight, legend: {show: false}, cursor: {points: {size: 7}, drag: {x: false, y: false}},
-    scales: {x: {time: false}}, axes: [{...axis, size: 28}, {...axis, size: 62}],
-    series: [{}, {label: title, stroke: style.getPropertyValue('--accent').trim(), width: 2, points: {show: false}}],
-    hooks: {setCursor: [(self) => {
-      const i = self.cursor.idx;
-      const readout = place.parentElement!.querySelector('.hint')!;
-      readout.textContent = i == null ? title : `${title} ${formatValue(probe.values[i]!)} at ${formatValue(probe.at[i]!)}`;
-    }]},
-  }, data, place);
+  const data: uPlot.AlignedData = [
+    probe.at,
+    probe.values.map((value) => (Number.isNaN(value) ? null : value)),
+  ];
+  const plot = new uPlot(
+    {
+      width: place.clientWidth,
+      height: kHeight,
+      legend: {show: false},
+      cursor: {points: {size: 7}, drag: {x: false, y: false}},
+      scales: {x: {time: false}},
+      axes: [
+        {...axis, size: 28},
+        {...axis, size: 62},
+      ],
+      series: [
+        {},
+        {
+          label: title,
+          stroke: style.getPropertyValue('--accent').trim(),
+          width: 2,
+          points: {show: false},
+        },
+      ],
+      hooks: {
+        setCursor: [
+          (self) => {
+            const i = self.cursor.idx;
+            const readout = place.parentElement!.querySelector('.hint')!;
+            readout.textContent =
+              i == null
+                ? title
+                : `${title} ${formatValue(probe.values[i]!)} at ${formatValue(probe.at[i]!)}`;
+          },
+        ],
+      },
+    },
+    data,
+    place,
+  );
   place.setAttribute('role', 'img');
   place.setAttribute('aria-label', `${title} along the line`);
   return {destroy: () => plot.destroy()};

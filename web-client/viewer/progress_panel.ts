@@ -1,5 +1,6 @@
-// State, bar and figures: bytes, cells, the known error that is left, and how long it will take. The bar counts bytes: the share of what the whole
-// mesh with the shown fields needs. Below it, how far to refine, and the known error against bytes, with the place that is reached.
+// State, bar and figures: bytes, cells, the known error that is left, and how long it will take.
+// The bar counts bytes: the share of what the whole mesh with the shown fields needs. Below it, how
+// far to refine, and the known error against bytes, with the place that is reached.
 
 import type {LevelBytes} from '../core/goal';
 import {errorOfLevel, type Limit} from '../core/limit';
@@ -9,14 +10,24 @@ import type {StreamState} from '../core/worker_messages';
 import {formatBytes, formatCount, formatDuration, formatError, percentOf} from './format';
 
 const kStateTexts: Record<StreamState, string> = {
-  connecting: 'Connecting', streaming: 'Streaming', complete: 'Complete', reconnecting: 'Reconnecting', paused: 'Paused', held: 'At this level',
+  connecting: 'Connecting',
+  streaming: 'Streaming',
+  complete: 'Complete',
+  reconnecting: 'Reconnecting',
+  paused: 'Paused',
+  held: 'At this level',
   failed: 'Stopped',
 };
 /** Screen readers hear of every so many per cent. */
 const kAnnouncedPercent = 25;
-/** Figures that change faster nobody reads, and each change makes the browser draw the page anew. */
+/**
+ * Figures that change faster nobody reads, and each change makes the browser draw the page anew.
+ */
 const kFiguresMs = 250;
-/** The rate is that of the last so many milliseconds: short enough to follow the line, long enough to be calm. */
+/**
+ * The rate is that of the last so many milliseconds: short enough to follow the line, long enough
+ * to be calm.
+ */
 const kRateWindowMs = 4000;
 
 /** The plot shows errors down to this share of the first one at least. */
@@ -39,7 +50,10 @@ export class ProgressPanel {
   private arrivals: {at: number; bytes: number}[] = [];
   private plan: LevelBytes[] = [];
 
-  constructor(root: ParentNode, private readonly announce: (text: string) => void) {
+  constructor(
+    root: ParentNode,
+    private readonly announce: (text: string) => void,
+  ) {
     this.root = root.querySelector('.progress')!;
     this.curveFigure = root.querySelector('.curve')!;
   }
@@ -53,7 +67,9 @@ export class ProgressPanel {
   }
 
   /** What lies ahead, with these fields. */
-  takePlan(plan: LevelBytes[]): void { this.plan = plan; }
+  takePlan(plan: LevelBytes[]): void {
+    this.plan = plan;
+  }
 
   follow(fields: number[], limit: Limit): void {
     this.fields = fields;
@@ -64,13 +80,19 @@ export class ProgressPanel {
   show(statistics: Statistics): void {
     this.statistics = statistics;
     this.arrivals.push({at: performance.now(), bytes: statistics.bytes});
-    this.timer ??= setTimeout(() => this.draw(), Math.max(0, this.drawnAt + kFiguresMs - performance.now()));
+    this.timer ??= setTimeout(
+      () => this.draw(),
+      Math.max(0, this.drawnAt + kFiguresMs - performance.now()),
+    );
   }
 
   showState(state: StreamState, attempt = 0, delayMs = 0): void {
     this.state = state;
     this.root.dataset.state = state;
-    const retry = state === 'reconnecting' ? `Connection lost, trying again in ${formatDuration(delayMs / 1000)}` : '';
+    const retry =
+      state === 'reconnecting'
+        ? `Connection lost, trying again in ${formatDuration(delayMs / 1000)}`
+        : '';
     this.part('.state-text').textContent = kStateTexts[state];
     this.part('.state-note').textContent = retry && attempt > 0 ? retry : '';
     if (state !== 'streaming') this.announce(retry || kStateTexts[state]);
@@ -79,7 +101,9 @@ export class ProgressPanel {
 
   /** The known error of what is on the screen; null where the log does not tell. */
   errorLeft(): number | null {
-    return this.manifest && this.statistics ? errorOfLevel(this.manifest.levels[this.statistics.level], this.fields) : null;
+    return this.manifest && this.statistics
+      ? errorOfLevel(this.manifest.levels[this.statistics.level], this.fields)
+      : null;
   }
 
   private draw(): void {
@@ -91,10 +115,13 @@ export class ProgressPanel {
     const percent = percentOf(bytes, bytesNeeded);
     const bar = this.part('.bar');
     bar.setAttribute('aria-valuenow', String(percent));
-    (bar.firstElementChild as HTMLElement).style.transform = `scaleX(${bytesNeeded > 0 ? bytes / bytesNeeded : 0})`;
+    (bar.firstElementChild as HTMLElement).style.transform =
+      `scaleX(${bytesNeeded > 0 ? bytes / bytesNeeded : 0})`;
     this.part('.percent').textContent = `${percent}\u202f%`;
     this.part('.bytes').replaceChildren(...ofTotal(formatBytes(bytes), formatBytes(bytesNeeded)));
-    this.part('.cells').replaceChildren(...ofTotal(formatCount(tetrahedra), formatCount(total.tetrahedra)));
+    this.part('.cells').replaceChildren(
+      ...ofTotal(formatCount(tetrahedra), formatCount(total.tetrahedra)),
+    );
     const error = this.errorLeft();
     this.part('.error-row').hidden = error === null;
     if (error !== null) this.part('.error-left').textContent = formatError(error);
@@ -110,23 +137,37 @@ export class ProgressPanel {
   private secondsLeft(): number | null {
     const {bytes, bytesNeeded} = this.statistics!;
     const now = performance.now();
-    this.arrivals = this.arrivals.filter(({at}, i, all) => now - at < kRateWindowMs || i === all.length - 1);
+    this.arrivals = this.arrivals.filter(
+      ({at}, i, all) => now - at < kRateWindowMs || i === all.length - 1,
+    );
     const first = this.arrivals[0]!;
-    const rate = (bytes - first.bytes) / Math.max(now - first.at, 1) * 1000;
-    const goal = this.limit.kind === 'bytes' ? Math.min(this.limit.value, bytesNeeded) : bytesNeeded;
+    const rate = ((bytes - first.bytes) / Math.max(now - first.at, 1)) * 1000;
+    const goal =
+      this.limit.kind === 'bytes' ? Math.min(this.limit.value, bytesNeeded) : bytesNeeded;
     // Where an error or a number of cells ends it, nobody knows at which byte.
-    if (this.state !== 'streaming' || rate <= 0 || bytes >= goal || this.limit.kind === 'cells' || this.limit.kind === 'error') return null;
+    if (
+      this.state !== 'streaming' ||
+      rate <= 0 ||
+      bytes >= goal ||
+      this.limit.kind === 'cells' ||
+      this.limit.kind === 'error'
+    )
+      return null;
     return (goal - bytes) / rate;
   }
 
   /**
-   * Logarithmic both ways, from the first level's error to the last one's that is not 0; behind that the line goes to the ground. Where one is has the bytes that
-   * are here: of a log of regions these may be more than the level needs, for what is looked at comes first.
+   * Logarithmic both ways, from the first level's error to the last one's that is not 0; behind
+   * that the line goes to the ground. Where one is has the bytes that are here: of a log of regions
+   * these may be more than the level needs, for what is looked at comes first.
    */
   private drawCurve(): void {
     const figure = this.curveFigure;
     const {bytes, level: now} = this.statistics!;
-    const points = this.plan.map(({bytes, level}) => ({level, point: [bytes, errorOfLevel(this.manifest?.levels[level], this.fields) ?? 0] as Point}));
+    const points = this.plan.map(({bytes: needed, level}) => ({
+      level,
+      point: [needed, errorOfLevel(this.manifest?.levels[level], this.fields) ?? 0] as Point,
+    }));
     const line = points.map(({point}) => point);
     const [firstBytes, firstError] = line[0] ?? [0, 0];
     figure.hidden = line.length < 2 || firstError === 0;
@@ -135,18 +176,30 @@ export class ProgressPanel {
     const least = Math.min(...line.map(([, error]) => error || Infinity), firstError / kLeastSpan);
     const place = ([at, error]: Point): string => {
       const x = Math.log(at / firstBytes) / Math.log(Math.max(lastBytes / firstBytes, 1.01));
-      const y = error > 0 ? 0.9 * Math.log(firstError / error) / Math.log(firstError / least) : 1;
+      const y = error > 0 ? (0.9 * Math.log(firstError / error)) / Math.log(firstError / least) : 1;
       return `${(100 * Math.min(1, Math.max(0, x))).toFixed(2)} ${(40 * y).toFixed(2)}`;
     };
-    const reached = points.filter(({level, point: [at]}) => at <= bytes && level <= now).map(({point}) => point);
+    const reached = points
+      .filter(({level, point: [at]}) => at <= bytes && level <= now)
+      .map(({point}) => point);
     const here: Point = [bytes, reached.at(-1)?.[1] ?? firstError];
     if (reached.length > 0) reached.push(here);
-    for (const [name, drawn] of [['ahead', line], ['reached', reached]] as const) {
-      figure.querySelector(`.${name}`)!.setAttribute('d', drawn.length > 0 ? `M${drawn.map(place).join('L')}` : '');
+    for (const [name, drawn] of [
+      ['ahead', line],
+      ['reached', reached],
+    ] as const) {
+      figure
+        .querySelector(`.${name}`)!
+        .setAttribute('d', drawn.length > 0 ? `M${drawn.map(place).join('L')}` : '');
     }
     figure.querySelector('.here')!.setAttribute('d', `M${place(here)}h0`);
-    const ends = [line[0]!, ...(bytes > firstBytes && bytes < lastBytes ? [here] : []), line.at(-1)!];
-    figure.querySelector('figcaption')!.textContent = `Error against bytes: ${ends.map(([at, error]) => `${formatError(error)} at ${formatBytes(at)}`).join(', ')}`;
+    const ends = [
+      line[0]!,
+      ...(bytes > firstBytes && bytes < lastBytes ? [here] : []),
+      line.at(-1)!,
+    ];
+    const texts = ends.map(([at, error]) => `${formatError(error)} at ${formatBytes(at)}`);
+    figure.querySelector('figcaption')!.textContent = `Error against bytes: ${texts.join(', ')}`;
   }
 
   private part(selector: string): HTMLElement {

@@ -7,21 +7,28 @@ export interface SelectOption {
 }
 
 /** Leaves the menu as it is when it holds these already, so that an open one does not close. */
-export function fillSelect(select: HTMLSelectElement, options: SelectOption[], chosen: string): void {
+export function fillSelect(
+  select: HTMLSelectElement,
+  options: SelectOption[],
+  chosen: string,
+): void {
   const signature = JSON.stringify(options);
   if (select.dataset.options !== signature) {
     select.dataset.options = signature;
-    const groups = new Map<string, HTMLElement>();
     select.replaceChildren();
-    for (const {value, title, group} of options) {
-      let parent: HTMLElement = select;
-      if (group !== undefined) {
-        parent = groups.get(group) ?? Object.assign(document.createElement('optgroup'), {label: group});
-        if (!groups.has(group)) select.append(parent);
-        groups.set(group, parent);
-      }
-      parent.append(new Option(title, value));
-    }
+    for (const {value, title, group} of options)
+      groupOf(select, group).append(new Option(title, value));
   }
   select.value = chosen;
+}
+
+/** The group of that label, made with its first option; without a label the menu itself. */
+function groupOf(select: HTMLSelectElement, label: string | undefined): HTMLElement {
+  if (label === undefined) return select;
+  const groups = [...select.querySelectorAll('optgroup')];
+  const there = groups.find((group) => group.label === label);
+  if (there) return there;
+  const made = Object.assign(document.createElement('optgroup'), {label});
+  select.append(made);
+  return made;
 }

@@ -1,7 +1,8 @@
-// What the viewer shows, as its attributes tell it: every control writes an attribute, every attribute can stand in a link. Texts in, plain data out.
+// What the viewer shows, as its attributes tell it: every control writes an attribute, every
+// attribute can stand in a link. Texts in, plain data out.
 
 import {isColorMapName, type ColorMapName} from '../core/color_maps';
-import {kClipModes, kMostPlanes, type ClipMode} from '../core/display';
+import {kClipModes, kMaxPlanes, type ClipMode} from '../core/display';
 import {kMagnitude, scalarRange, type Scalar} from '../core/field_scale';
 import {kFull, parseLimit, type Limit} from '../core/limit';
 import {fieldKeys, type FieldInfo} from '../core/manifest';
@@ -9,11 +10,28 @@ import type {CameraState} from '../three/camera';
 
 /** Attributes that make up a view, in the order of a link. */
 export const kViewAttributes = [
-  'mesh', 'field', 'colormap', 'range', 'scale', 'edges', 'surface', 'opacity', 'clip', 'clip-mode', 'iso', 'threshold', 'volume', 'quality', 'projection', 'camera',
+  'mesh',
+  'field',
+  'colormap',
+  'range',
+  'scale',
+  'edges',
+  'surface',
+  'opacity',
+  'clip',
+  'clip-mode',
+  'iso',
+  'threshold',
+  'volume',
+  'quality',
+  'projection',
+  'camera',
 ] as const;
 export type ViewAttribute = (typeof kViewAttributes)[number];
 
-/** Across an axis, or across any direction of the lattice; at a share of the mesh's extent that way. */
+/**
+ * Across an axis, or across any direction of the lattice; at a share of the mesh's extent that way.
+ */
 export interface ClipSetting {
   normal: [number, number, number];
   share: number;
@@ -41,12 +59,19 @@ export function readSettings(get: (name: ViewAttribute) => string | null): Setti
   const mode = get('clip-mode') as ClipMode;
   const opacity = Number(get('opacity') ?? 1);
   return {
-    map: isColorMapName(map) ? map : 'viridis', reversed: reversed === 'reversed',
-    range: parseRange(get('range')), logarithmic: get('scale') === 'log',
-    edges: get('edges') !== 'off', surface: get('surface') !== 'off', opacity: opacity > 0 && opacity <= 1 ? opacity : 1,
+    map: isColorMapName(map) ? map : 'viridis',
+    reversed: reversed === 'reversed',
+    range: parseRange(get('range')),
+    logarithmic: get('scale') === 'log',
+    edges: get('edges') !== 'off',
+    surface: get('surface') !== 'off',
+    opacity: opacity > 0 && opacity <= 1 ? opacity : 1,
     volume: parseVolume(get('volume')),
-    planes: parseClip(get('clip')), mode: kClipModes.includes(mode) ? mode : 'cut', limit: parseLimit(get('quality')) ?? kFull,
-    parallel: get('projection') === 'parallel', camera: parseCamera(get('camera')),
+    planes: parseClip(get('clip')),
+    mode: kClipModes.includes(mode) ? mode : 'cut',
+    limit: parseLimit(get('quality')) ?? kFull,
+    parallel: get('projection') === 'parallel',
+    camera: parseCamera(get('camera')),
   };
 }
 
@@ -56,23 +81,34 @@ function parseRange(text: string | null): Settings['range'] {
   return numbers.length === 2 && numbers[0]! < numbers[1]! ? [numbers[0]!, numbers[1]!] : 'auto';
 }
 
-/** What the volume begins with: low values are faint, so that the shape of all of it is still to be seen, high ones dense. */
+/**
+ * What the volume begins with: low values are faint, so that the shape of all of it is still to be
+ * seen, high ones dense.
+ */
 export const kFirstOpacities: readonly number[] = [0.03, 0.04, 0.06, 0.1, 0.2, 0.35, 0.5, 0.7, 0.9];
 
 function parseVolume(text: string | null): number[] | null {
   if (text === null) return null;
   const numbers = parseNumbers(text);
-  return numbers.length >= 2 && numbers.length <= 33 && numbers.every((value) => value >= 0 && value <= 1) ? numbers : [...kFirstOpacities];
+  return numbers.length >= 2 &&
+    numbers.length <= 33 &&
+    numbers.every((value) => value >= 0 && value <= 1)
+    ? numbers
+    : [...kFirstOpacities];
 }
 
 function parseCamera(text: string | null): CameraState | null {
   const numbers = parseNumbers(text ?? '');
-  return numbers.length === 6 ? numbers as CameraState : null;
+  return numbers.length === 6 ? (numbers as CameraState) : null;
 }
 
 /** "1, 2.5 3e-4" as numbers; empty when anything in it is none. */
 export function parseNumbers(text: string): number[] {
-  const numbers = text.replaceAll('\u2212', '-').split(/[\s,;]+/).filter((word) => word !== '').map(Number);
+  const numbers = text
+    .replaceAll('\u2212', '-')
+    .split(/[\s,;]+/)
+    .filter((word) => word !== '')
+    .map(Number);
   return numbers.every(Number.isFinite) ? numbers : [];
 }
 
@@ -82,8 +118,12 @@ export function parseNumbers(text: string): number[] {
 const kFirstSides = [1, -1, 1];
 
 export function parseClip(text: string | null): ClipSetting[] {
-  const planes = (text ?? '').trim().split(/\s+/).map(parsePlane).filter((plane) => plane !== null);
-  return planes.slice(0, kMostPlanes);
+  const planes = (text ?? '')
+    .trim()
+    .split(/\s+/)
+    .map(parsePlane)
+    .filter((plane) => plane !== null);
+  return planes.slice(0, kMaxPlanes);
 }
 
 function parsePlane(word: string): ClipSetting | null {
@@ -112,11 +152,16 @@ export function axisOf({normal}: ClipSetting): {axis: number; flipped: boolean} 
 }
 
 export function clipText(planes: ClipSetting[]): string {
-  return planes.map((plane) => {
-    const {axis, flipped} = axisOf(plane);
-    const direction = axis >= 0 ? `${flipped ? '-' : ''}${'xyz'[axis]}` : plane.normal.map((x) => Number(x.toFixed(4))).join(',');
-    return `${direction}:${Number(plane.share.toFixed(4))}`;
-  }).join(' ');
+  return planes
+    .map((plane) => {
+      const {axis, flipped} = axisOf(plane);
+      const direction =
+        axis >= 0
+          ? `${flipped ? '-' : ''}${'xyz'[axis]}`
+          : plane.normal.map((x) => Number(x.toFixed(4))).join(',');
+      return `${direction}:${Number(plane.share.toFixed(4))}`;
+    })
+    .join(' ');
 }
 
 // ---- fields: "Velocity" (its magnitude), "Velocity[0]" (a component)
@@ -131,6 +176,12 @@ export function parseScalar(text: string | null, fields: readonly FieldInfo[]): 
   if (field < 0) return null;
   const component = Number(match![2]);
   return {field, component: component < fields[field]!.components ? component : kMagnitude};
+}
+
+/** What colours: the field of that name, or the first; null: there is none. */
+export function shownScalar(text: string | null, fields: readonly FieldInfo[]): Scalar | null {
+  const first = fields.length > 0 ? {field: 0, component: kMagnitude} : null;
+  return parseScalar(text, fields) ?? first;
 }
 
 /** The key of the field alone, for asking a server before its fields are known. */
@@ -150,7 +201,10 @@ export interface FieldValues {
   values: number[];
 }
 
-export function parseFieldValues(text: string | null, fields: readonly FieldInfo[]): FieldValues | null {
+export function parseFieldValues(
+  text: string | null,
+  fields: readonly FieldInfo[],
+): FieldValues | null {
   const at = text?.lastIndexOf('=') ?? -1;
   if (at < 0) return null;
   const scalar = parseScalar(text!.slice(0, at), fields);
@@ -158,8 +212,30 @@ export function parseFieldValues(text: string | null, fields: readonly FieldInfo
   return scalar && values.length > 0 ? {scalar, values} : null;
 }
 
-export function fieldValuesText({scalar, values}: FieldValues, fields: readonly FieldInfo[]): string {
-  return `${scalarText(scalar, fields)}=${values.map((value) => Number(value.toPrecision(6))).join(',')}`;
+/**
+ * Isosurfaces need a field of points, a threshold two values; null: the text says nothing, or
+ * nothing that fits the mesh.
+ */
+export function fieldValuesOf(
+  kind: 'iso' | 'threshold',
+  text: string | null,
+  fields: readonly FieldInfo[],
+): FieldValues | null {
+  const value = parseFieldValues(text, fields);
+  if (!value) return null;
+  const fits =
+    kind === 'iso'
+      ? fields[value.scalar.field]!.association === 'point'
+      : value.values.length === 2;
+  return fits ? value : null;
+}
+
+export function fieldValuesText(
+  {scalar, values}: FieldValues,
+  fields: readonly FieldInfo[],
+): string {
+  const numbers = values.map((value) => Number(value.toPrecision(6)));
+  return `${scalarText(scalar, fields)}=${numbers.join(',')}`;
 }
 
 /** Values of the field as shares of its scalarRange. */
@@ -170,8 +246,14 @@ export function sharesOf({scalar, values}: FieldValues, fields: readonly FieldIn
 
 // ---- the range that the colours span
 
-/** `extent`: what occurs, in the field's values. Logarithmic ranges begin above 0, at a ten-thousandth of their end if they have to. */
-export function shownRange({range, logarithmic}: Settings, extent: [number, number]): {low: number; high: number; logarithmic: boolean} {
+/**
+ * `extent`: what occurs, in the field's values. Logarithmic ranges begin above 0, at a
+ * ten-thousandth of their end if they have to.
+ */
+export function shownRange(
+  {range, logarithmic}: Settings,
+  extent: [number, number],
+): {low: number; high: number; logarithmic: boolean} {
   const most = Math.max(Math.abs(extent[0]), Math.abs(extent[1]));
   const [low, high] = range === 'auto' ? extent : range === 'symmetric' ? [-most, most] : range;
   if (!logarithmic || high <= 0) return {low, high, logarithmic: false};

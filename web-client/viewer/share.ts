@@ -8,8 +8,15 @@ export function linkTo(page: string, view: ReadonlyMap<string, string>): string 
   return url.href;
 }
 
-/** HTML for a page on any host: this page in a frame, which brings its own worker and WebAssembly from where they lie. */
+/**
+ * HTML for a page on any host: this page in a frame, which brings its own worker and WebAssembly
+ * from where they lie.
+ */
 export function embedSnippet(link: string, title: string): string {
-  const quoted = (text: string): string => text.replaceAll('&', '&amp;').replaceAll('"', '&quot;').replaceAll('<', '&lt;');
-  return `<iframe src="${quoted(link)}"\n  title="${quoted(title)}" allow="fullscreen"\n  style="width: 100%; height: 600px; border: 0"></iframe>`;
+  const quoted = (text: string): string =>
+    text.replaceAll('&', '&amp;').replaceAll('"', '&quot;').replaceAll('<', '&lt;');
+  return (
+    `<iframe src="${quoted(link)}"\n  title="${quoted(title)}" allow="fullscreen"\n  ` +
+    'style="width: 100%; height: 600px; border: 0"></iframe>'
+  );
 }

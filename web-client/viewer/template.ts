@@ -1,31 +1,66 @@
-// The viewer's markup. Native controls throughout: they bring keyboard, touch and screen readers along.
+// The viewer's markup. Native controls throughout: they bring keyboard, touch and screen readers
+// along.
 
 import {colorGradient, kColorMapNames} from '../core/color_maps';
 import {kDirections} from '../three/directions';
 import {kKeyHelp} from './keys';
 
-const kMapTitles = {viridis: 'Viridis', cividis: 'Cividis', 'cool-warm': 'Cool-warm', turbo: 'Turbo', grey: 'Grey'};
+const kMapTitles = {
+  viridis: 'Viridis',
+  cividis: 'Cividis',
+  'cool-warm': 'Cool-warm',
+  turbo: 'Turbo',
+  grey: 'Grey',
+};
 const kModeTitles = {cut: 'Flat', cells: 'Cells', slice: 'Slice'};
 const kToolTitles = {none: 'Turn', point: 'Point', line: 'Line'};
 
-const swatches = kColorMapNames.map((name) => `
-  <label class="swatch" title="${kMapTitles[name]}">
-    <input type="radio" name="colormap" value="${name}" aria-label="${kMapTitles[name]}">
+const swatches = kColorMapNames
+  .map((name) => {
+    const title = kMapTitles[name];
+    return `
+  <label class="swatch" title="${title}">
+    <input type="radio" name="colormap" value="${name}" aria-label="${title}">
     <span style="background:${colorGradient(name)}"></span>
-  </label>`).join('');
+  </label>`;
+  })
+  .join('');
 
-const segments = (name: string, titles: Record<string, string>): string => Object.entries(titles).map(([value, title], i) =>
-  `<label><input type="radio" name="${name}" value="${value}"${i === 0 ? ' checked' : ''}><span>${title}</span></label>`).join('');
+const segments = (name: string, titles: Record<string, string>): string =>
+  Object.entries(titles)
+    .map(([value, title], i) => {
+      const checked = i === 0 ? ' checked' : '';
+      const input = `<input type="radio" name="${name}" value="${value}"${checked}>`;
+      return `<label>${input}<span>${title}</span></label>`;
+    })
+    .join('');
 
 const toggle = (name: string, title: string, checked = false): string =>
-  `<label class="switch"><span class="name">${title}</span><input type="checkbox" role="switch" name="${name}"${checked ? ' checked' : ''}></label>`;
+  `<label class="switch"><span class="name">${title}</span>` +
+  `<input type="checkbox" role="switch" name="${name}"${checked ? ' checked' : ''}></label>`;
 
-const directions = kDirections.map((direction) =>
-  `<button type="button" class="look" value="${direction}" aria-label="Look from ${direction}">${direction.replace('-', '\u2212')}</button>`).join('');
+const directions = kDirections
+  .map((direction) => {
+    const text = direction.replace('-', '\u2212');
+    const label = `aria-label="Look from ${direction}"`;
+    return `<button type="button" class="look" value="${direction}" ${label}>${text}</button>`;
+  })
+  .join('');
 
-const keys = kKeyHelp.map(([key, what]) => `<div><dt>${key.split(' ').map((k) => (k === '…' ? k : `<kbd>${k}</kbd>`)).join(' ')}</dt><dd>${what}</dd></div>`).join('');
+const keys = kKeyHelp
+  .map(([key, what]) => {
+    const caps = key.split(' ').map((k) => (k === '…' ? k : `<kbd>${k}</kbd>`));
+    return `<div><dt>${caps.join(' ')}</dt><dd>${what}</dd></div>`;
+  })
+  .join('');
 
-const closeIcon = '<svg viewBox="0 0 20 20" aria-hidden="true"><path d="M5 5l10 10M15 5 5 15"/></svg>';
+/** Of the known error against bytes. */
+const curves = ['ahead', 'reached', 'here']
+  .map((name) => `<path class="${name}" vector-effect="non-scaling-stroke"/>`)
+  .join('');
+
+const closeIcon =
+  '<svg viewBox="0 0 20 20" aria-hidden="true"><path d="M5 5l10 10M15 5 5 15"/></svg>';
 
 export const kTemplate = `
 <slot name="poster"></slot>
@@ -38,11 +73,14 @@ export const kTemplate = `
   <figcaption><span class="legend-name"></span><span class="legend-factor"></span></figcaption>
   <div class="legend-bar"></div>
   <div class="legend-ticks"></div>
-  <div class="legend-gap" hidden><i></i>No value</div>
+  <div class="legend-missing" hidden><i></i>No value</div>
 </figure>
 
 <section class="card result" part="result" aria-label="What was pointed at" hidden>
-  <div class="row"><h2></h2><button type="button" class="icon close-result" aria-label="Close">${closeIcon}</button></div>
+  <div class="row">
+    <h2></h2>
+    <button type="button" class="icon close-result" aria-label="Close">${closeIcon}</button>
+  </div>
   <dl></dl>
   <div class="plot"></div>
   <p class="hint"></p>
@@ -51,11 +89,17 @@ export const kTemplate = `
 <aside class="card panel" part="panel" aria-label="Mesh and display">
   <header>
     <div class="title">
-      <label class="mesh-menu" hidden><span class="visually-hidden">Mesh</span><select name="mesh"></select></label>
+      <label class="mesh-menu" hidden>
+        <span class="visually-hidden">Mesh</span><select name="mesh"></select>
+      </label>
       <h1 class="mesh-name">&nbsp;</h1>
     </div>
-    <button type="button" class="icon fold" aria-expanded="true" aria-controls="controls" aria-label="Controls">
-      <svg viewBox="0 0 20 20" aria-hidden="true"><path d="M3 6.5h7m5 0h2M3 13.5h2m5 0h7"/><circle cx="12.5" cy="6.5" r="2.2"/><circle cx="7.5" cy="13.5" r="2.2"/></svg>
+    <button type="button" class="icon fold" aria-expanded="true" aria-controls="controls"
+      aria-label="Controls">
+      <svg viewBox="0 0 20 20" aria-hidden="true">
+        <path d="M3 6.5h7m5 0h2M3 13.5h2m5 0h7"/>
+        <circle cx="12.5" cy="6.5" r="2.2"/><circle cx="7.5" cy="13.5" r="2.2"/>
+      </svg>
     </button>
   </header>
 
@@ -65,7 +109,8 @@ export const kTemplate = `
       <span class="state"><i class="dot"></i><span class="state-text">Connecting</span></span>
       <output class="percent">0 %</output>
     </div>
-    <div class="bar" role="progressbar" aria-label="Part of the mesh that is here" aria-valuemin="0" aria-valuemax="100" aria-valuenow="0"><i></i></div>
+    <div class="bar" role="progressbar" aria-label="Part of the mesh that is here"
+      aria-valuemin="0" aria-valuemax="100" aria-valuenow="0"><i></i></div>
     <p class="state-note"></p>
     <dl>
       <div><dt>Data</dt><dd class="bytes">&ndash;</dd></div>
@@ -77,7 +122,9 @@ export const kTemplate = `
 
   <div class="controls" id="controls">
     <section>
-      <label class="field"><span class="name">Field</span><select name="field" disabled></select></label>
+      <label class="field">
+        <span class="name">Field</span><select name="field" disabled></select>
+      </label>
       <fieldset class="swatches"><legend class="name">Colours</legend>${swatches}</fieldset>
       <div class="row wrap">
         <label class="toggle"><input type="checkbox" name="reversed"><span>Reversed</span></label>
@@ -85,10 +132,15 @@ export const kTemplate = `
       </div>
       <div class="row">
         <span class="name">Range</span>
-        <select name="range" class="small" aria-label="Range of the colours"><option value="auto">Automatic</option><option value="symmetric">Symmetric</option><option value="fixed">Fixed</option></select>
+        <select name="range" class="small" aria-label="Range of the colours">
+          <option value="auto">Automatic</option>
+          <option value="symmetric">Symmetric</option>
+          <option value="fixed">Fixed</option>
+        </select>
       </div>
       <div class="row range-fixed" hidden>
-        <input type="text" inputmode="decimal" name="range-low" aria-label="Start of the range"><span class="name">to</span>
+        <input type="text" inputmode="decimal" name="range-low" aria-label="Start of the range">
+        <span class="name">to</span>
         <input type="text" inputmode="decimal" name="range-high" aria-label="End of the range">
       </div>
     </section>
@@ -96,13 +148,22 @@ export const kTemplate = `
     <section>
       ${toggle('edges', 'Cell edges', true)}
       ${toggle('surface', 'Surface', true)}
-      <div class="field"><span class="row"><span class="name" id="opacity-name">Opacity</span><output class="opacity-text"></output></span><input type="range" name="opacity" min="5" max="100" step="5" value="100" aria-labelledby="opacity-name"></div>
+      <div class="field">
+        <span class="row">
+          <span class="name" id="opacity-name">Opacity</span><output class="opacity-text"></output>
+        </span>
+        <input type="range" name="opacity" min="5" max="100" step="5" value="100"
+          aria-labelledby="opacity-name">
+      </div>
     </section>
 
     <section>
       ${toggle('clip', 'Clip')}
       <div class="clip" hidden>
-        <fieldset class="segments clip-modes"><legend class="visually-hidden">What a clip leaves</legend>${segments('clip-mode', kModeTitles)}</fieldset>
+        <fieldset class="segments clip-modes">
+          <legend class="visually-hidden">What a clip leaves</legend>
+          ${segments('clip-mode', kModeTitles)}
+        </fieldset>
         <div class="planes"></div>
         <button type="button" class="add-plane">Add a plane</button>
       </div>
@@ -110,34 +171,63 @@ export const kTemplate = `
       <div class="iso sub" hidden>
         <select name="iso-field" aria-label="Field of the isosurfaces"></select>
         <input type="range" min="0" max="1000" aria-label="First isovalue">
-        <label class="row"><span class="name">Values</span><input type="text" name="iso-values" autocomplete="off"></label>
+        <label class="row">
+          <span class="name">Values</span>
+          <input type="text" name="iso-values" autocomplete="off">
+        </label>
       </div>
       ${toggle('volume', 'Volume')}
       <div class="volume sub" hidden>
         <div class="bars" role="group" aria-label="Transfer function"></div>
-        <div class="row buttons"><button type="button" class="fainter">Fainter</button><button type="button" class="denser">Denser</button></div>
+        <div class="row buttons">
+          <button type="button" class="fainter">Fainter</button>
+          <button type="button" class="denser">Denser</button>
+        </div>
       </div>
       ${toggle('threshold', 'Threshold')}
       <div class="threshold sub" hidden>
         <select name="threshold-field" aria-label="Field of the threshold"></select>
         <input type="range" min="0" max="1000" aria-label="Least value">
         <input type="range" min="0" max="1000" aria-label="Largest value">
-        <label class="row"><span class="name">From, to</span><input type="text" name="threshold-values" autocomplete="off"></label>
+        <label class="row">
+          <span class="name">From, to</span>
+          <input type="text" name="threshold-values" autocomplete="off">
+        </label>
       </div>
     </section>
 
     <section>
       <span class="name" aria-hidden="true">Pointer</span>
-      <fieldset class="segments tools"><legend class="visually-hidden">Pointer</legend>${segments('tool', kToolTitles)}</fieldset>
+      <fieldset class="segments tools">
+        <legend class="visually-hidden">Pointer</legend>
+        ${segments('tool', kToolTitles)}
+      </fieldset>
     </section>
 
     <details>
       <summary>Level of detail</summary>
       <div class="sub">
-        <label class="field"><span class="name">Refine</span><select name="limit"><option value="full">all of it</option><option value="error">until the error is</option><option value="cells">until there are</option><option value="bytes">until it took</option></select></label>
-        <label class="row limit-value" hidden><input type="text" inputmode="decimal" name="limit-value" aria-label="Limit"><span class="limit-unit name"></span></label>
-        <div class="row buttons"><button type="button" class="coarser">Coarser</button><button type="button" class="finer">Finer</button></div>
-        <figure class="curve" hidden><svg viewBox="0 -1 100 42" preserveAspectRatio="none" aria-hidden="true">${['ahead', 'reached', 'here'].map((name) => `<path class="${name}" vector-effect="non-scaling-stroke"/>`).join('')}</svg><figcaption></figcaption></figure>
+        <label class="field">
+          <span class="name">Refine</span>
+          <select name="limit">
+            <option value="full">all of it</option>
+            <option value="error">until the error is</option>
+            <option value="cells">until there are</option>
+            <option value="bytes">until it took</option>
+          </select>
+        </label>
+        <label class="row limit-value" hidden>
+          <input type="text" inputmode="decimal" name="limit-value" aria-label="Limit">
+          <span class="limit-unit name"></span>
+        </label>
+        <div class="row buttons">
+          <button type="button" class="coarser">Coarser</button>
+          <button type="button" class="finer">Finer</button>
+        </div>
+        <figure class="curve" hidden>
+          <svg viewBox="0 -1 100 42" preserveAspectRatio="none" aria-hidden="true">${curves}</svg>
+          <figcaption></figcaption>
+        </figure>
       </div>
     </details>
 
@@ -147,8 +237,10 @@ export const kTemplate = `
         <div class="looks" role="group" aria-label="Standard views">${directions}</div>
         ${toggle('parallel', 'Parallel projection')}
         <div class="buttons">
-          <button type="button" class="picture">Save picture</button><button type="button" class="fullscreen">Full screen</button>
-          <button type="button" class="share">Share</button><button type="button" class="help">Keys</button>
+          <button type="button" class="picture">Save picture</button>
+          <button type="button" class="fullscreen">Full screen</button>
+          <button type="button" class="share">Share</button>
+          <button type="button" class="help">Keys</button>
         </div>
       </div>
     </details>
@@ -175,12 +267,35 @@ export const kTemplate = `
 
 <div class="card notice" part="notice" role="alert" hidden>
   <p></p>
-  <div><button type="button" class="retry">Try again</button><button type="button" class="dismiss">Close</button></div>
+  <div>
+    <button type="button" class="retry">Try again</button>
+    <button type="button" class="dismiss">Close</button>
+  </div>
 </div>
 
-<dialog class="help-dialog" aria-label="Keys"><form method="dialog" class="row"><h2>Keys</h2><button class="icon" aria-label="Close">${closeIcon}</button></form><dl class="keys">${keys}</dl>
-  <p class="hint">They work while the picture has the focus. Drag turns, the wheel or two fingers zoom, the right button or two fingers move.</p></dialog>
-<dialog class="share-dialog" aria-label="Share"><form method="dialog" class="row"><h2>Share</h2><button class="icon" aria-label="Close">${closeIcon}</button></form>
-  <label class="field"><span class="name">Link to this picture</span><input type="text" name="link" readonly></label>
-  <label class="field"><span class="name">Lines for another page</span><textarea name="snippet" rows="6" readonly></textarea></label>
-  <div class="buttons"><button type="button" class="copy-link">Copy link</button><button type="button" class="copy-snippet">Copy lines</button></div></dialog>`;
+<dialog class="help-dialog" aria-label="Keys">
+  <form method="dialog" class="row">
+    <h2>Keys</h2>
+    <button class="icon" aria-label="Close">${closeIcon}</button>
+  </form>
+  <dl class="keys">${keys}</dl>
+  <p class="hint">They work while the picture has the focus. Drag turns, the wheel or two fingers
+    zoom, the right button or two fingers move.</p>
+</dialog>
+<dialog class="share-dialog" aria-label="Share">
+  <form method="dialog" class="row">
+    <h2>Share</h2>
+    <button class="icon" aria-label="Close">${closeIcon}</button>
+  </form>
+  <label class="field">
+    <span class="name">Link to this picture</span><input type="text" name="link" readonly>
+  </label>
+  <label class="field">
+    <span class="name">Lines for another page</span>
+    <textarea name="snippet" rows="6" readonly></textarea>
+  </label>
+  <div class="buttons">
+    <button type="button" class="copy-link">Copy link</button>
+    <button type="button" class="copy-snippet">Copy lines</button>
+  </div>
+</dialog>`;

@@ -2,8 +2,17 @@
 
 import {scalarRange, kMagnitude, type Scalar} from '../core/field_scale';
 import type {FieldInfo} from '../core/manifest';
-import {fillScalars, type Host, type Panel, type Scene} from './panel';
-import {fieldValuesText, parseFieldValues, parseNumbers, parseScalar, sharesOf, type FieldValues, type Settings} from './settings';
+import type {Attributes} from './page';
+import {fillScalars, type Panel, type Scene} from './panel';
+import {
+  fieldValuesText,
+  fieldValuesOf,
+  parseNumbers,
+  parseScalar,
+  sharesOf,
+  type FieldValues,
+  type Settings,
+} from './settings';
 
 const kSteps = 1000;
 
@@ -15,47 +24,65 @@ export class ValuePanel implements Panel {
   private readonly numbers: HTMLInputElement;
   private readonly sliders: HTMLInputElement[];
 
-  /** `kind`: isosurfaces have one slider, for the first of their values, a threshold two, for its ends. */
-  constructor(private readonly root: ShadowRoot, private readonly host: Host, private readonly kind: 'iso' | 'threshold') {
+  /**
+   * `kind`: isosurfaces have one slider, for the first of their values, a threshold two, for its
+   * ends.
+   */
+  constructor(
+    private readonly root: ShadowRoot,
+    private readonly attributes: Attributes,
+    private readonly kind: 'iso' | 'threshold',
+  ) {
     this.on = root.querySelector(`input[name=${kind}]`)!;
     this.body = root.querySelector(`.${kind}`)!;
     this.select = this.body.querySelector('select')!;
     this.numbers = this.body.querySelector('input[type=text]')!;
     this.sliders = [...this.body.querySelectorAll<HTMLInputElement>('input[type=range]')];
     this.on.addEventListener('change', () => this.toggle());
-    this.select.addEventListener('change', () => this.choose(parseScalar(this.select.value, this.fields)));
+    this.select.addEventListener('change', () =>
+      this.choose(parseScalar(this.select.value, this.fields)),
+    );
     this.numbers.addEventListener('change', () => this.type());
     for (const slider of this.sliders) slider.addEventListener('input', () => this.slide(slider));
   }
 
   update(_: Settings, scene: Scene | null): void {
     this.fields = scene?.manifest.fields ?? [];
-    const usable = this.fields.some((info) => this.kind === 'threshold' || info.association === 'point');
+    const usable = this.fields.some(
+      (info) => this.kind === 'threshold' || info.association === 'point',
+    );
     const now = this.value();
     this.on.disabled = !usable;
     this.on.checked = now !== null;
     this.body.hidden = now === null;
     if (!now) return;
     fillScalars(this.select, this.fields, now.scalar, this.kind === 'iso');
-    if (this.root.activeElement !== this.numbers) this.numbers.value = now.values.map((value) => Number(value.toPrecision(4))).join(', ');
-    sharesOf(now, this.fields).slice(0, this.sliders.length).forEach((share, i) => {
-      this.sliders[i]!.value = String(Math.round(kSteps * share));
-      this.sliders[i]!.setAttribute('aria-valuetext', String(Number(now.values[i]!.toPrecision(4))));
-    });
+    if (this.root.activeElement !== this.numbers)
+      this.numbers.value = now.values.map((value) => Number(value.toPrecision(4))).join(', ');
+    sharesOf(now, this.fields)
+      .slice(0, this.sliders.length)
+      .forEach((share, i) => {
+        this.sliders[i]!.value = String(Math.round(kSteps * share));
+        this.sliders[i]!.setAttribute(
+          'aria-valuetext',
+          String(Number(now.values[i]!.toPrecision(4))),
+        );
+      });
   }
 
   /** What the attribute says; null: nothing, or nothing that fits the mesh. */
   value(): FieldValues | null {
-    const value = parseFieldValues(this.host.read(this.kind), this.fields);
-    if (!value || (this.kind === 'iso' && this.fields[value.scalar.field]!.association === 'cell')) return null;
-    return this.kind === 'threshold' && value.values.length !== 2 ? null : value;
+    return fieldValuesOf(this.kind, this.attributes.read(this.kind), this.fields);
   }
 
   private toggle(): void {
-    if (!this.on.checked) return this.host.write(this.kind, null);
-    const shown = parseScalar(this.host.read('field'), this.fields);
-    const fits = shown && (this.kind === 'threshold' || this.fields[shown.field]!.association === 'point');
-    const first = this.fields.findIndex((info) => this.kind === 'threshold' || info.association === 'point');
+    if (!this.on.checked) return this.attributes.write(this.kind, null);
+    const shown = parseScalar(this.attributes.read('field'), this.fields);
+    const fits =
+      shown && (this.kind === 'threshold' || this.fields[shown.field]!.association === 'point');
+    const first = this.fields.findIndex(
+      (info) => this.kind === 'threshold' || info.association === 'point',
+    );
     this.choose(fits ? shown : {field: first, component: kMagnitude});
   }
 
@@ -69,8 +96,16 @@ export class ValuePanel implements Panel {
   private type(): void {
     const now = this.value();
     const values = parseNumbers(this.numbers.value);
-    const valid = values.length > 0 && (this.kind === 'iso' || (values.length === 2 && values[0]! <= values[1]!));
-    this.numbers.setCustomValidity(valid ? '' : this.kind === 'iso' ? 'Numbers with commas between them: 0.2, 0.5' : 'Two numbers, the smaller first: 0.2, 0.5');
+    const valid =
+      values.length > 0 &&
+      (this.kind === 'iso' || (values.length === 2 && values[0]! <= values[1]!));
+    this.numbers.setCustomValidity(
+      valid
+        ? ''
+        : this.kind === 'iso'
+          ? 'Numbers with commas between them: 0.2, 0.5'
+          : 'Two numbers, the smaller first: 0.2, 0.5',
+    );
     if (valid && now) this.write({scalar: now.scalar, values});
     else this.numbers.reportValidity();
   }
@@ -79,12 +114,19 @@ export class ValuePanel implements Panel {
     const now = this.value();
     if (!now) return;
     const [low, high] = scalarRange(this.fields[now.scalar.field]!, now.scalar.component);
-    const at = (slider: HTMLInputElement): number => low + (Number(slider.value) / kSteps) * (high - low);
-    if (this.kind === 'iso') return this.write({scalar: now.scalar, values: [at(moved), ...now.values.slice(1)]});
+    const at = (slider: HTMLInputElement): number =>
+      low + (Number(slider.value) / kSteps) * (high - low);
+    if (this.kind === 'iso')
+      return this.write({scalar: now.scalar, values: [at(moved), ...now.values.slice(1)]});
     const i = this.sliders.indexOf(moved);
     const other = at(this.sliders[1 - i]!);
-    this.write({scalar: now.scalar, values: i === 0 ? [Math.min(at(moved), other), other] : [other, Math.max(at(moved), other)]});
+    this.write({
+      scalar: now.scalar,
+      values: i === 0 ? [Math.min(at(moved), other), other] : [other, Math.max(at(moved), other)],
+    });
   }
 
-  private write(values: FieldValues): void { this.host.write(this.kind, fieldValuesText(values, this.fields)); }
+  private write(values: FieldValues): void {
+    this.attributes.write(this.kind, fieldValuesText(values, this.fields));
+  }
 }

@@ -1,7 +1,9 @@
-// The transfer function: a row of opacities over the colours, each a slider of its own, so that keyboard, touch and screen readers can edit it.
+// The transfer function: a row of opacities over the colours, each a slider of its own, so that
+// keyboard, touch and screen readers can edit it.
 
 import {colorGradient} from '../core/color_maps';
-import type {Host, Panel, Scene} from './panel';
+import type {Attributes} from './page';
+import type {Panel, Scene} from './panel';
 import {kFirstOpacities, type Settings} from './settings';
 
 const kSteps = 100;
@@ -12,11 +14,16 @@ export class VolumePanel implements Panel {
   private readonly bars: HTMLElement;
   private opacities: number[] = [];
 
-  constructor(root: ParentNode, private readonly host: Host) {
+  constructor(
+    root: ParentNode,
+    private readonly attributes: Attributes,
+  ) {
     this.on = root.querySelector('input[name=volume]')!;
     this.body = root.querySelector('.volume')!;
     this.bars = this.body.querySelector('.bars')!;
-    this.on.addEventListener('change', () => host.write('volume', this.on.checked ? kFirstOpacities.join() : null));
+    this.on.addEventListener('change', () =>
+      attributes.write('volume', this.on.checked ? kFirstOpacities.join() : null),
+    );
     this.body.querySelector('.fainter')!.addEventListener('click', () => this.scale(0.7));
     this.body.querySelector('.denser')!.addEventListener('click', () => this.scale(1 / 0.7));
   }
@@ -27,7 +34,8 @@ export class VolumePanel implements Panel {
     this.body.hidden = volume === null;
     if (!volume) return;
     this.opacities = volume;
-    if (this.bars.children.length !== volume.length) this.bars.replaceChildren(...volume.map((_, i) => this.slider(i)));
+    if (this.bars.children.length !== volume.length)
+      this.bars.replaceChildren(...volume.map((_, i) => this.slider(i)));
     this.bars.style.backgroundImage = colorGradient(map, reversed);
     volume.forEach((opacity, i) => {
       const slider = this.bars.children[i] as HTMLInputElement;
@@ -37,10 +45,22 @@ export class VolumePanel implements Panel {
   }
 
   private slider(i: number): HTMLInputElement {
-    const slider = Object.assign(document.createElement('input'), {type: 'range', min: '0', max: String(kSteps), step: '1'});
-    slider.setAttribute('aria-label', `Opacity at ${Math.round((100 * i) / (this.opacities.length - 1))} % of the range`);
+    const slider = Object.assign(document.createElement('input'), {
+      type: 'range',
+      min: '0',
+      max: String(kSteps),
+      step: '1',
+    });
+    slider.setAttribute(
+      'aria-label',
+      `Opacity at ${Math.round((100 * i) / (this.opacities.length - 1))} % of the range`,
+    );
     slider.setAttribute('aria-orientation', 'vertical');
-    slider.addEventListener('input', () => this.write(this.opacities.map((opacity, k) => (k === i ? Number(slider.value) / kSteps : opacity))));
+    slider.addEventListener('input', () =>
+      this.write(
+        this.opacities.map((opacity, k) => (k === i ? Number(slider.value) / kSteps : opacity)),
+      ),
+    );
     return slider;
   }
 
@@ -49,5 +69,7 @@ export class VolumePanel implements Panel {
     this.write(this.opacities.map((opacity) => 1 - (1 - Math.min(opacity, 0.99)) ** factor));
   }
 
-  private write(opacities: number[]): void { this.host.write('volume', opacities.map((opacity) => Number(opacity.toFixed(3))).join()); }
+  private write(opacities: number[]): void {
+    this.attributes.write('volume', opacities.map((opacity) => Number(opacity.toFixed(3))).join());
+  }
 }
