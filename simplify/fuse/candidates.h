@@ -72,7 +72,8 @@ class Candidates {
     if (owner < lists_.size()) qtet::prefetch(&lists_[owner]);
   }
   void prefetchBest(VertexId owner) const {
-    if (owner < lists_.size()) qtet::prefetch(pool_.data() + lists_[owner].first + lists_[owner].next);
+    if (owner < lists_.size())
+      qtet::prefetch(pool_.data() + lists_[owner].first + lists_[owner].next);
   }
   /// It has none, nor will have.
   [[nodiscard]] bool isEmpty(VertexId owner) const {

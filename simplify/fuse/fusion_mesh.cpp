@@ -4,9 +4,9 @@
 #include <atomic>
 #include <cmath>
 
-#include "codec/mesh/boundary.h"
+#include "codec/mesh/growing_mesh.h"
+#include "codec/mesh/link.h"
 #include "simplify/fuse/large_pages.h"
-#include "simplify/fuse/sphere_check.h"
 #include "simplify/mesh/workers.h"
 
 namespace qtet {
@@ -94,12 +94,20 @@ void FusionMesh::findSingular(Workers* workers) {
   constexpr std::size_t kGrain = 1024;
   constexpr VertexId kAhead = 4;
   singular_.assign(history_.points.size(), 0);
-  std::vector<SphereCheck> tests(workers ? workers->count() : 1,
-                                 SphereCheck(history_.points.size()));
+  struct alignas(64) Own {  // in cache lines of its own
+    Link link;
+  };
+  std::vector<Own> own(workers ? workers->count() : 1);
   const auto ask = [&](std::size_t worker, std::size_t i) {
     const auto v = static_cast<VertexId>(i);
     if (i + kAhead < singular_.size()) prefetchStar(v + kAhead);
-    singular_[i] = !tests[worker].isLinkSphere(v, star(v), history_.cells);
+    Link& link = own[worker].link;
+    link.clear(singular_.size());
+    for (const CellId c : star(v)) {
+      const auto turned = withLast(cell(c), onlyCorner(cornersThatAre(cell(c), v)));
+      link.add(turned[0], turned[1], turned[2]);
+    }
+    singular_[i] = !(link.close() && link.isSphere());
   };
   forEach(workers, singular_.size(), kGrain, ask);
   hasSingular_ = std::ranges::find(singular_, 1) != singular_.end();

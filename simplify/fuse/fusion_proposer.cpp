@@ -94,7 +94,7 @@ void FusionProposer::price(VertexId v, std::vector<Candidate>& found) const {
 }
 
 bool FusionProposer::propose(VertexId owner, std::span<const Candidate> candidates, float most,
-                             const Moment& moment, Proposal& out) {
+                             std::uint32_t now, Proposal& out) {
   const Prey edge{2, {owner, candidates[0].partner, 0, 0}};
   const auto exact = test_.gatherBoundary(edge) ? finder_.price(edge, test_) : std::nullopt;
   const double share = shares_.of(mesh_.cellsRound(owner, candidates[0].partner));
@@ -108,7 +108,7 @@ bool FusionProposer::propose(VertexId owner, std::span<const Candidate> candidat
     return false;
   }
   out.partner = candidates[0].partner;
-  out.madeAfter = moment.now;
+  out.madeAfter = now;
   out.price = price;
   out.isPriceAll = isPriceAll;
   if (isPriceAll) return true;
@@ -118,17 +118,16 @@ bool FusionProposer::propose(VertexId owner, std::span<const Candidate> candidat
   out.edgeCost = static_cast<float>(out.where.cost);
   out.most = most;
   test_.takeStar(out.star);
-  takeAlong(candidates.subspan(1), most, moment.levelStart, out);
+  takeAlong(candidates.subspan(1), most, out);
   out.tetrahedra = static_cast<std::uint32_t>(
       std::ranges::count_if(out.star.deleted, [this](CellId c) { return !mesh_.isGhost(c); }));
   return true;
 }
 
 // What costs more than `most` comes back, whatever it takes along.
-void FusionProposer::takeAlong(std::span<const Candidate> others, float most,
-                               std::uint32_t levelStart, Proposal& out) {
+void FusionProposer::takeAlong(std::span<const Candidate> others, float most, Proposal& out) {
   const double below = std::min(out.where.cost, static_cast<double>(most));
-  findCompanions(out, others, below, levelStart);
+  findCompanions(out, others, below);
   const std::optional<Larger> larger = largerPrey(out, below);
   out.companions = companions_;
   if (!larger || !test_.gatherBoundary(larger->prey)) return;
@@ -146,7 +145,7 @@ void FusionProposer::takeAlong(std::span<const Candidate> others, float most,
 // and those of the owner are known. The ones that are not free are among them at the end, since
 // they may have been touched because of this edge's neighbours.
 void FusionProposer::findCompanions(const Proposal& edge, std::span<const Candidate> others,
-                                    double below, std::uint32_t levelStart) {
+                                    double below) {
   companions_.clear();
   std::size_t free = 0;
   for (const Candidate& other : others) {
@@ -157,8 +156,7 @@ void FusionProposer::findCompanions(const Proposal& edge, std::span<const Candid
     if (!mesh_.alive(other.partner) || !std::ranges::any_of(edge.star.deleted, holds)) continue;
     companions_.push_back(other.partner);
     cost_.prefetch(other.partner);
-    if (!touched_.since(other.partner, levelStart))
-      std::swap(companions_[free++], companions_.back());
+    if (!touched_.isLocked(other.partner)) std::swap(companions_[free++], companions_.back());
   }
   freeCompanions_ = free;
 }

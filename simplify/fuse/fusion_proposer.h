@@ -4,47 +4,21 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "codec/coding/prefetch.h"
 #include "simplify/fuse/band_nodes.h"
 #include "simplify/fuse/candidates.h"
 #include "simplify/fuse/fusion_check.h"
 #include "simplify/fuse/fusion_cost.h"
 #include "simplify/fuse/fusion_mesh.h"
 #include "simplify/fuse/fusion_point.h"
+#include "simplify/fuse/touched.h"
 #include "simplify/fuse/vertex_counts.h"
 
 namespace qtet {
-
-/// When each vertex was last touched by a fusion, in fusions since the start: what a proposal
-/// relies on must not be touched after it was made. One thread touches, others may look on: who
-/// knows of a fusion (acquired) sees what it touched, and perhaps some of what later ones did.
-class Touched {
- public:
-  void resize(std::size_t vertices) { at_.resize(vertices, 0); }
-  /// Fusions decided on.
-  [[nodiscard]] std::uint32_t now() const { return now_.load(std::memory_order_acquire); }
-  /// By the fusion that is being decided on.
-  void touch(VertexId v) {
-    std::atomic_ref(at_[v]).store(now_.load(std::memory_order_relaxed) + 1,
-                                  std::memory_order_relaxed);
-  }
-  /// It is decided on.
-  void next() { now_.store(now_.load(std::memory_order_relaxed) + 1, std::memory_order_release); }
-  void prefetch(VertexId v) const { qtet::prefetch(&at_[v]); }
-  [[nodiscard]] bool since(VertexId v, std::uint32_t fusion) const {
-    return std::atomic_ref(at_[v]).load(std::memory_order_relaxed) > fusion;
-  }
-
- private:
-  std::atomic<std::uint32_t> now_{0};
-  // mutable for atomic_ref, which C++20 has none of for what is const
-  mutable std::vector<std::uint32_t> at_;
-};
 
 /// What is known of an owner's candidates: those that are not legal, and what comes of the first
 /// that is.
@@ -94,26 +68,22 @@ class FusionProposer {
   /// perhaps among them.
   void candidatesOf(VertexId v, std::span<const VertexId> link, std::vector<Candidate>& found);
 
-  struct Moment {
-    std::uint32_t levelStart, now;  ///< fusions decided on
-  };
   /// The fusion of the first edge of `candidates`, which are `owner`'s, cheapest first; or of a
   /// triangle or tetrahedron that holds it where that is cheaper for what it removes. Of an edge
   /// whose price is above `most`, the price. False, and noted as illegal, when it cannot be. No
-  /// vertex touched since the level's start is taken along. REQUIRES: neither end of the edge is.
+  /// locked vertex is taken along. `now`: fusions decided on. REQUIRES: neither end of the edge is
+  /// locked.
   [[nodiscard]] bool propose(VertexId owner, std::span<const Candidate> candidates, float most,
-                             const Moment& moment, Proposal& out);
+                             std::uint32_t now, Proposal& out);
 
  private:
   void price(VertexId v, std::vector<Candidate>& found) const;
-  void takeAlong(std::span<const Candidate> others, float most, std::uint32_t levelStart,
-                 Proposal& out);
+  void takeAlong(std::span<const Candidate> others, float most, Proposal& out);
   struct Larger {
     Prey prey;
     double share;  // of its cost
   };
-  void findCompanions(const Proposal& edge, std::span<const Candidate> others, double below,
-                      std::uint32_t levelStart);
+  void findCompanions(const Proposal& edge, std::span<const Candidate> others, double below);
   [[nodiscard]] std::optional<Larger> largerPrey(const Proposal& edge, double below) const;
 
   const FusionMesh& mesh_;
@@ -127,5 +97,8 @@ class FusionProposer {
   std::vector<VertexId> companions_;  // the free ones first
   std::size_t freeCompanions_ = 0;
 };
+
+/// One a worker.
+using Proposers = std::vector<std::unique_ptr<FusionProposer>>;
 
 }  // namespace qtet

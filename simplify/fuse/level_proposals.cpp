@@ -13,8 +13,8 @@ constexpr std::size_t kLocksAhead = 8;
 }  // namespace
 
 void LevelProposals::begin(std::span<const QueueEntry> entries, float limit,
-                           std::uint32_t levelStart, Proposers proposers) {
-  entries_ = entries, limit_ = limit, levelStart_ = levelStart, proposers_ = proposers;
+                           const Proposers& proposers) {
+  entries_ = entries, limit_ = limit, proposers_ = &proposers;
   workers_.resize(proposers.size());
   for (Worker& worker : workers_) worker.first = worker.end = worker.madeCount = 0;
   made_.assign(proposers.size() > 1 ? entries.size() : 0, nullptr);
@@ -73,7 +73,7 @@ bool LevelProposals::claim(Worker& worker) {
   do {
     for (at = first; at < entries_.size(); ++at) {
       if (at + kLocksAhead < entries_.size()) touched_.prefetch(entries_[at + kLocksAhead].owner);
-      if (!isLocked(entries_[at].owner)) break;
+      if (!touched_.isLocked(entries_[at].owner)) break;
     }
   } while (!claimed_.compare_exchange_weak(first, std::min(at + 1, entries_.size()),
                                            std::memory_order_relaxed));
@@ -123,15 +123,16 @@ void LevelProposals::comeTo(std::size_t at) {
 Proposal* LevelProposals::make(const Claim& claim, std::size_t worker) {
   const std::uint32_t now = touched_.now();
   auto rest = candidates_.remaining(claim.owner);
-  if (isLocked(claim.owner) || rest.empty() || isLocked(rest[0].partner)) return &nothing_;
+  if (touched_.isLocked(claim.owner) || rest.empty() || touched_.isLocked(rest[0].partner))
+    return &nothing_;
   Proposal& proposal = newOf(workers_[worker]);
   // Where the best is not legal, the next one is wanted soon.
   for (; !rest.empty() && rest[0].key <= limit_; rest = rest.subspan(1)) {
-    if (!mesh_.alive(rest[0].partner) || isLocked(rest[0].partner)) break;
+    if (!mesh_.alive(rest[0].partner) || touched_.isLocked(rest[0].partner)) break;
     // No dearer than one thread would go on with at once: later the owner's other candidates are
     // not what they are now.
     const float most = std::min(limit_, kDearer * rest[0].key);
-    if (proposers_[worker]->propose(claim.owner, rest, most, {levelStart_, now}, proposal)) break;
+    if ((*proposers_)[worker]->propose(claim.owner, rest, most, now, proposal)) break;
   }
   return &proposal;
 }

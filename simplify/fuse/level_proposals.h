@@ -6,7 +6,6 @@
 #include <atomic>
 #include <cstdint>
 #include <deque>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -28,11 +27,9 @@ class LevelProposals {
                  const Touched& touched)
       : mesh_(mesh), cost_(cost), candidates_(candidates), touched_(touched) {}
 
-  using Proposers = std::span<const std::unique_ptr<FusionProposer>>;
-  /// A level begins with these entries, sorted, and this limit of its keys, after so many fusions.
-  /// `proposers`: one a worker. All of them outlive the level.
-  void begin(std::span<const QueueEntry> entries, float limit, std::uint32_t levelStart,
-             Proposers proposers);
+  /// A level begins with these entries, sorted, and this limit of its keys. `proposers`: one a
+  /// worker. All of them outlive the level. REQUIRES: Touched::beginLevel.
+  void begin(std::span<const QueueEntry> entries, float limit, const Proposers& proposers);
   /// What another worker does until stop().
   void serve(std::size_t worker);
   void stop() { isOver_.store(true, std::memory_order_relaxed); }
@@ -65,7 +62,6 @@ class LevelProposals {
     std::size_t madeCount = 0;
   };
 
-  [[nodiscard]] bool isLocked(VertexId v) const { return touched_.since(v, levelStart_); }
   bool claim(Worker& worker);
   void claimMore(Worker& worker);
   void askMemory(Worker& worker) const;
@@ -85,8 +81,7 @@ class LevelProposals {
   const Touched& touched_;
   std::span<const QueueEntry> entries_;
   float limit_ = 0;
-  std::uint32_t levelStart_ = 0;
-  Proposers proposers_;
+  const Proposers* proposers_ = nullptr;
   std::deque<Worker> workers_;
   // by entry, read and written atomically; null while nobody has made it
   std::vector<Proposal*> made_;

@@ -76,7 +76,7 @@ TEST_F(Proposed, proposalsCostWhatTheyAddByTheCellsThatGo) {
     proposer.candidatesOf(v, found);
     Proposal proposal;
     if (found.empty() ||
-        !proposer.propose(v, found, std::numeric_limits<float>::infinity(), {0, 0}, proposal))
+        !proposer.propose(v, found, std::numeric_limits<float>::infinity(), 0, proposal))
       continue;
     ASSERT_TRUE(test.gather(proposal.prey));
     const auto place = finder.find(proposal.prey, test);
@@ -98,7 +98,7 @@ TEST_F(Proposed, whatAVertexIsOffByAlreadyIsNoFusionsCost) {
     Proposal proposal;
     proposer.candidatesOf(v, found);
     if (found.empty() ||
-        !proposer.propose(v, found, std::numeric_limits<float>::infinity(), {0, 0}, proposal))
+        !proposer.propose(v, found, std::numeric_limits<float>::infinity(), 0, proposal))
       continue;
     std::vector<double> values(cost_.components());
     const double cost = cost_.valuesAt(proposal.prey, proposal.where.point, values);

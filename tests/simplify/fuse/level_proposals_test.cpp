@@ -39,20 +39,20 @@ class ALevel : public ::testing::TestWithParam<int> {
   /// for each; as in a level, others serve meanwhile.
   template <class Decide>
   void walk(const Decide& decide) {
-    const std::uint32_t start = touched_.now();
-    proposals_.begin(entries_, kLimit, start, proposers_);
-    workers_.beside([this](std::size_t worker) { proposals_.serve(worker); },
-                    [&] {
-                      for (std::size_t i = 0; i < entries_.size(); ++i) {
-                        const VertexId owner = entries_[i].owner;
-                        if (touched_.since(owner, start) ||
-                            touched_.since(candidates_.best(owner)->partner, start))
-                          continue;
-                        proposals_.comeTo(i);
-                        decide(owner, proposals_.of(owner));
-                      }
-                      proposals_.stop();
-                    });
+    touched_.beginLevel();
+    proposals_.begin(entries_, kLimit, proposers_);
+    workers_.beside(
+        [this](std::size_t worker) { proposals_.serve(worker); },
+        [&] {
+          for (std::size_t i = 0; i < entries_.size(); ++i) {
+            const VertexId owner = entries_[i].owner;
+            if (touched_.isLocked(owner) || touched_.isLocked(candidates_.best(owner)->partner))
+              continue;
+            proposals_.comeTo(i);
+            decide(owner, proposals_.of(owner));
+          }
+          proposals_.stop();
+        });
     proposals_.end();
   }
 
@@ -63,7 +63,7 @@ class ALevel : public ::testing::TestWithParam<int> {
   BandNodes band_;
   Candidates candidates_;
   Workers workers_{GetParam()};
-  std::vector<std::unique_ptr<FusionProposer>> proposers_;
+  Proposers proposers_;
   std::vector<QueueEntry> entries_;
   LevelProposals proposals_{mesh_, cost_, candidates_, touched_};
 };
@@ -80,7 +80,7 @@ TEST_P(ALevel, proposalsAreWhatTheOneThatDecidesWouldMake) {
       auto rest = candidates_.remaining(owner);
       while (rest[0].partner != proposal.partner) rest = rest.subspan(1);
       ASSERT_TRUE(alone->propose(owner, rest, std::min(kLimit, kDearer * rest[0].key),
-                                 {touched_.now(), touched_.now()}, expected));
+                                 touched_.now(), expected));
       EXPECT_EQ(proposal.price, expected.price);
       EXPECT_EQ(proposal.isPriceAll, expected.isPriceAll);
       if (proposal.isPriceAll) return;
@@ -112,7 +112,8 @@ TEST_P(ALevel, whatIsMadeBeforeATouchIsSeenToBeOld) {
 }
 
 TEST_P(ALevel, aLevelMayEndBeforeItsEntriesDo) {
-  proposals_.begin(entries_, kLimit, touched_.now(), proposers_);
+  touched_.beginLevel();
+  proposals_.begin(entries_, kLimit, proposers_);
   workers_.beside([this](std::size_t worker) { proposals_.serve(worker); },
                   [&] {
                     proposals_.comeTo(0);

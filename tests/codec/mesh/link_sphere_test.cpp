@@ -1,9 +1,11 @@
-#include "simplify/fuse/sphere_check.h"
-
+// Link says of any triangles whether they are one sphere as the definition does.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <random>
+
+#include "codec/mesh/link.h"
+#include "tests/support/plain_sphere.h"
 
 namespace qtet {
 namespace {
@@ -11,31 +13,14 @@ namespace {
 using Triangles = std::vector<Triangle>;
 
 constexpr VertexId kVertices = 400;
-constexpr VertexId kCentre = kVertices - 1;
 
-/// The triangles as the link of kCentre, whose corner in the cells goes round.
-bool isSphere(const Triangles& link) {
-  std::vector<Tetrahedron> cells;
-  std::vector<CellId> star;
-  for (const Triangle& t : link) {
-    // Even permutations of (centre, t): the sense of all stays the same.
-    const std::array<Tetrahedron, 4> turned{{{kCentre, t[0], t[1], t[2]},
-                                             {t[0], kCentre, t[2], t[1]},
-                                             {t[0], t[1], kCentre, t[2]},
-                                             {t[0], t[2], t[1], kCentre}}};
-    star.push_back(static_cast<CellId>(cells.size()));
-    cells.push_back(turned[cells.size() % 4]);
-  }
-  SphereCheck test(kVertices);
-  const bool first = test.isLinkSphere(kCentre, star, cells);
-  (void)test.isLinkSphere(kCentre, std::span(star).first(star.size() / 2), cells);
-  EXPECT_EQ(test.isLinkSphere(kCentre, star, cells), first) << "what was asked before has a say";
-  Link judge;
-  judge.clear(kVertices);
-  for (const Triangle& t : link) judge.add(t[0], t[1], t[2]);
-  EXPECT_EQ(first, judge.close() && judge.isSphere())
-      << "Link says something else of " << link.size() << " triangles";
-  return first;
+bool isSphere(const Triangles& triangles) {
+  static Link link;  // what was asked before has no say
+  link.clear(kVertices);
+  link.add(triangles);
+  const bool is = link.close() && link.isSphere();
+  EXPECT_EQ(is, testing::isPlainSphere(triangles)) << triangles.size() << " triangles";
+  return is;
 }
 
 /// Two apexes over a ring of n vertices.
@@ -68,7 +53,7 @@ void rename(Triangles& triangles, VertexId from, VertexId to) {
   for (Triangle& t : triangles) std::ranges::replace(t, from, to);
 }
 
-TEST(SphereCheck, spheresOfAnySizeAreKnownWithAndWithoutTheGhost) {
+TEST(LinkSphere, spheresOfAnySizeAreKnownWithAndWithoutTheGhost) {
   for (const VertexId ring : {3u, 4u, 17u, 60u, 61u, 62u, 63u, 64u, 65u, 150u}) {
     Triangles sphere = doubleCone(ring);
     EXPECT_TRUE(isSphere(sphere)) << ring;
@@ -77,7 +62,7 @@ TEST(SphereCheck, spheresOfAnySizeAreKnownWithAndWithoutTheGhost) {
   }
 }
 
-TEST(SphereCheck, anOpenSurfaceAndATurnedTriangleAreNone) {
+TEST(LinkSphere, anOpenSurfaceAndATurnedTriangleAreNone) {
   Triangles sphere = doubleCone(6);
   sphere.pop_back();
   EXPECT_FALSE(isSphere(sphere));
@@ -86,14 +71,14 @@ TEST(SphereCheck, anOpenSurfaceAndATurnedTriangleAreNone) {
   EXPECT_FALSE(isSphere(sphere));
 }
 
-TEST(SphereCheck, surfacesOfCharacteristicTwoThatDoNotHangTogetherAreNone) {
+TEST(LinkSphere, surfacesOfCharacteristicTwoThatDoNotHangTogetherAreNone) {
   EXPECT_FALSE(isSphere(both(doubleCone(5), torus(10)))) << "a sphere and a torus";
   Triangles other = doubleCone(5, 10);
   rename(other, 10, 0), rename(other, 11, 1);
   EXPECT_FALSE(isSphere(both(doubleCone(5), other))) << "two spheres that share two vertices";
 }
 
-TEST(SphereCheck, aTorusTwoSpheresAndAPinchedSphereAreNone) {
+TEST(LinkSphere, aTorusTwoSpheresAndAPinchedSphereAreNone) {
   EXPECT_FALSE(isSphere(torus(0)));
   EXPECT_FALSE(isSphere(both(doubleCone(5), doubleCone(4, 20))));
   Triangles pinched = doubleCone(8);
@@ -101,7 +86,7 @@ TEST(SphereCheck, aTorusTwoSpheresAndAPinchedSphereAreNone) {
   EXPECT_FALSE(isSphere(pinched)) << "its poles are one vertex";
 }
 
-TEST(SphereCheck, saysWhatLinkSaysOfWhateverTriangles) {
+TEST(LinkSphere, agreesWithTheDefinitionOnWhateverTriangles) {
   std::mt19937 random(7);
   std::size_t spheres = 0;
   for (int trial = 0; trial < 20000; ++trial) {

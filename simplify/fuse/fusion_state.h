@@ -1,0 +1,59 @@
+// Everything that a fusion changes: the mesh, what its vertices cost, their candidates, and when
+// each was touched. All of them are as long as the mesh has vertex slots, and dead vertices have no
+// candidates.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "simplify/fuse/candidates.h"
+#include "simplify/fuse/fusion_cost.h"
+#include "simplify/fuse/fusion_mesh.h"
+#include "simplify/fuse/touched.h"
+#include "simplify/mesh/workers.h"
+
+namespace qtet {
+
+class FusionState {
+ public:
+  /// REQUIRES: as FusionMesh and FusionCost; `workers` outlive this.
+  FusionState(const LatticeMesh& lattice, std::size_t regionField, const CostOptions& cost,
+              Workers& workers);
+  FusionState(const FusionState&) = delete;
+  FusionState& operator=(const FusionState&) = delete;
+
+  [[nodiscard]] const FusionMesh& mesh() const { return mesh_; }
+  [[nodiscard]] const FusionCost& cost() const { return cost_; }
+  [[nodiscard]] const Touched& touched() const { return touched_; }
+  [[nodiscard]] Touched& touched() { return touched_; }
+  [[nodiscard]] const Candidates& candidates() const { return candidates_; }
+  [[nodiscard]] Candidates& candidates() { return candidates_; }
+
+  /// The owner's cheapest candidate that is alive and has not failed, or none; dead ones are
+  /// dropped. Threads may ask at once, each for owners of its own.
+  const Candidate* bestAlive(VertexId owner);
+
+  /// Does fusions in this order; the fused vertices are numbered in it, from vertexSlots() on.
+  /// REQUIRES: as FusionMesh::fuse.
+  void fuse(std::span<const PlannedFusion> planned, std::uint32_t level);
+
+  [[nodiscard]] FusionHistory takeHistory(std::uint32_t levels) {
+    return mesh_.takeHistory(levels);
+  }
+
+ private:
+  void prefetch(const Prey& prey) const;
+  void fuseCosts(const PlannedFusion& planned, VertexId fused, std::span<std::int32_t> integers);
+  void findIntegers(const PlannedFusion& planned, std::span<const double> values,
+                    std::span<std::int32_t> integers) const;
+
+  Workers& workers_;
+  FusionMesh mesh_;
+  FusionCost cost_;
+  Touched touched_;
+  Candidates candidates_;
+  std::vector<std::int32_t> integers_;  // fuse's own
+};
+
+}  // namespace qtet

@@ -1,0 +1,24 @@
+// How far doubles can be trusted with lattice coordinates.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "simplify/mesh/vector3.h"
+
+namespace qtet {
+
+/// In a star whose coordinates stay below 2^16 every volume is an integer under 2^53, exact in
+/// doubles; where they reach r, it is off by less than 2^5 r^3 2^-52.
+inline constexpr int kExactBits = 16;
+inline constexpr double kRounding = 0x1p-47;
+
+/// What volumes with an apex at d over triangles of this reach may be off by, on a lattice of so
+/// many bits. Both relative to the same origin.
+[[nodiscard]] inline double roundingAt(const Vector3& d, double reach, int latticeBits) {
+  if (latticeBits <= kExactBits) return 0;
+  const double farthest = std::max({reach, std::abs(d[0]), std::abs(d[1]), std::abs(d[2])});
+  return farthest < 1 << kExactBits ? 0 : kRounding * farthest * farthest * farthest;
+}
+
+}  // namespace qtet

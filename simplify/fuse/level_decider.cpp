@@ -1,0 +1,78 @@
+#include "simplify/fuse/level_decider.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace qtet {
+
+void LevelDecider::run(LevelQueue& queue, LevelFusions& fusions, std::size_t goal) {
+  state_.touched().beginLevel();
+  proposals_.begin(queue.entries(), queue.limit(), proposers_);
+  workers_.beside([this](std::size_t worker) { proposals_.serve(worker); },
+                  [&] { decide(queue, fusions, goal); });
+  fusions.carryOut();
+  proposals_.end();
+}
+
+// The mesh changes afterwards: nothing that is decided here depends on it (ALGORITHM.md,
+// "Threads").
+void LevelDecider::decide(LevelQueue& queue, LevelFusions& fusions, std::size_t goal) {
+  struct Stop {
+    LevelProposals& proposals;
+    ~Stop() { proposals.stop(); }
+  } const stop{proposals_};
+  while (queue.nextKey() <= queue.limit() &&
+         state_.mesh().liveTetrahedra() - fusions.going() > goal) {
+    const auto [owner, entry] = queue.pop();
+    if (state_.touched().isLocked(owner)) continue;
+    if (entry != LevelQueue::kBack) proposals_.comeTo(entry);
+    process(owner, queue, fusions);
+  }
+}
+
+void LevelDecider::process(VertexId owner, LevelQueue& queue, LevelFusions& fusions) {
+  const Candidate candidate = *state_.candidates().best(owner);
+  assert(state_.mesh().alive(candidate.partner));  // or the owner would be locked
+  if (state_.touched().isLocked(candidate.partner)) return;
+  // Dearer than this, it waits for what costs less.
+  const float most = std::min(queue.limit(), std::max(kDearer * candidate.key, queue.nextKey()));
+  const Outcome outcome = propose(owner, candidate.partner, most);
+  if (outcome.cost <= most && outcome.proposal) {
+    fusions.decideOn(*outcome.proposal);
+    if (workers_.count() > 1) return;
+    fusions.carryOut();  // while the processor has the star near
+    proposals_.giveBack(owner);
+    return;
+  }
+  outcome.cost > most ? state_.candidates().raise(owner, outcome.cost)
+                      : state_.candidates().fail(owner);
+  // It comes back with its best remaining candidate, unless that waits for a later level.
+  const Candidate* best = state_.bestAlive(owner);
+  if (best && best->key <= queue.limit())
+    queue.push({best->key, owner});
+  else
+    proposals_.giveBack(owner);
+}
+
+// What comes of the owner's best candidate, made now unless what was found in this level still
+// holds.
+LevelDecider::Outcome LevelDecider::propose(VertexId owner, VertexId partner, float most) {
+  Proposal& proposal = proposals_.of(owner);
+  if (const auto illegal =
+          std::ranges::find(proposal.illegal, partner, &Proposal::Illegal::partner);
+      illegal != proposal.illegal.end())
+    return {nullptr, illegal->price};
+  const auto changed = [&](VertexId v) { return state_.touched().since(v, proposal.madeAfter); };
+  const auto isWhole = [&] { return std::min(proposal.edgeCost, most) <= proposal.most; };
+  const bool holds =
+      proposal.partner == partner &&
+      (proposal.isPriceAll ? proposal.price > most
+                           : isWhole() && std::ranges::none_of(proposal.companions, changed));
+  if (!holds && !proposers_[0]->propose(owner, state_.candidates().remaining(owner), most,
+                                        state_.touched().now(), proposal))
+    return {nullptr, proposal.illegal.back().price};
+  return {&proposal,
+          proposal.price > most ? proposal.price : static_cast<float>(proposal.where.cost)};
+}
+
+}  // namespace qtet

@@ -1,0 +1,30 @@
+#include "simplify/fuse/level_fusions.h"
+
+namespace qtet {
+
+void LevelFusions::begin(std::uint32_t level) {
+  level_ = level;
+  fused_.clear(), links_.clear(), linkEnds_.clear();
+}
+
+void LevelFusions::decideOn(const Proposal& proposal) {
+  const std::vector<VertexId>& link = proposal.star.link;
+  for (const VertexId v : proposal.prey.vertices()) state_.touched().touch(v);
+  for (const VertexId v : link)
+    if (v != kGhost) state_.touched().touch(v);
+  state_.touched().next();
+  going_ += proposal.tetrahedra;
+  fused_.push_back(static_cast<VertexId>(state_.mesh().vertexSlots() + planned_.size()));
+  links_.insert(links_.end(), link.begin(), link.end());
+  linkEnds_.push_back(links_.size());
+  planned_.push_back({proposal.prey, proposal.where.point, proposal.where.outside, &proposal.star});
+}
+
+void LevelFusions::carryOut() {
+  for (const PlannedFusion& planned : planned_) band_.fused(planned.prey.vertex[0]);
+  state_.fuse(planned_, level_);
+  planned_.clear();
+  going_ = 0;
+}
+
+}  // namespace qtet

@@ -1,0 +1,49 @@
+// The fusions of a level: decided on first, and done afterwards by all threads. What is decided in
+// a level depends on none of them (ALGORITHM.md, "Threads").
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "simplify/fuse/band_nodes.h"
+#include "simplify/fuse/fusion_proposer.h"
+#include "simplify/fuse/fusion_state.h"
+
+namespace qtet {
+
+class LevelFusions {
+ public:
+  /// REQUIRES: both outlive this.
+  LevelFusions(FusionState& state, BandNodes& band) : state_(state), band_(band) {}
+
+  void begin(std::uint32_t level);
+  /// Touches the fusion's star. REQUIRES: no vertex of the prey is locked, and the proposal stays
+  /// until carryOut.
+  void decideOn(const Proposal& proposal);
+  /// Tetrahedra that go with what is decided on and not done yet.
+  [[nodiscard]] std::size_t going() const { return going_; }
+  /// Does what was decided on, in that order.
+  void carryOut();
+
+  /// The fused vertices of the level, those not done yet among them.
+  [[nodiscard]] std::span<const VertexId> fused() const { return fused_; }
+  /// The link of fused()[i], in which nothing changes until the level ends.
+  [[nodiscard]] std::span<const VertexId> linkOf(std::size_t i) const {
+    const std::size_t first = i == 0 ? 0 : linkEnds_[i - 1];
+    return std::span(links_).subspan(first, linkEnds_[i] - first);
+  }
+
+ private:
+  FusionState& state_;
+  BandNodes& band_;
+  std::uint32_t level_ = 0;
+  std::vector<PlannedFusion> planned_;
+  std::size_t going_ = 0;
+  std::vector<VertexId> fused_;
+  std::vector<VertexId> links_;  // of fused_, back to back
+  std::vector<std::size_t> linkEnds_;
+};
+
+}  // namespace qtet

@@ -1,0 +1,45 @@
+// The vertices that may still be fused, with their candidates kept up to date.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "simplify/fuse/fusion_proposer.h"
+#include "simplify/fuse/fusion_state.h"
+#include "simplify/fuse/level_fusions.h"
+#include "simplify/fuse/queue_entries.h"
+#include "simplify/mesh/workers.h"
+
+namespace qtet {
+
+class OpenVertices {
+ public:
+  /// REQUIRES: all outlive this; a proposer a worker whenever candidates are looked for.
+  OpenVertices(FusionState& state, Workers& workers, const Proposers& proposers)
+      : state_(state), workers_(workers), proposers_(proposers) {}
+
+  /// Looks for all candidates anew.
+  void findAll();
+  /// What a level fused comes in, with its candidates. REQUIRES: carried out.
+  void add(const LevelFusions& level);
+
+  /// The key that this fraction of the vertices' best candidates does not pass.
+  [[nodiscard]] float keyAt(double fraction) const;
+  /// The vertices whose best candidate costs no more than `most`, in order of the vertices. Those
+  /// that have none and will have none are left out for good.
+  void fill(std::vector<QueueEntry>& entries, float most);
+
+ private:
+  template <class Find>
+  void collect(std::span<const VertexId> vertices, const Find& find);
+  void prefetchFused(const LevelFusions& level, std::size_t i) const;
+
+  FusionState& state_;
+  Workers& workers_;
+  const Proposers& proposers_;
+  std::vector<VertexId> vertices_;             // ascending
+  std::vector<std::vector<Candidate>> found_;  // collect's own
+};
+
+}  // namespace qtet
