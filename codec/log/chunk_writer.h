@@ -1,0 +1,61 @@
+// A log's chunks as they are written: what goes into the open one, the rows of those that are
+// closed, and the bytes of their blocks.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "codec/coding/range_coder.h"
+#include "codec/log/log_index.h"
+#include "codec/mesh/mesh.h"
+#include "codec/record/values.h"
+
+namespace qtet {
+
+class ChunkWriter {
+ public:
+  /// Chunk 0 is open. `fields` must outlive it.
+  ChunkWriter(std::span<const FieldInfo> fields, CodecId valueCodec);
+
+  /// What the open chunk holds so far. These objects stay the same for every chunk.
+  [[nodiscard]] RangeEncoder& structure() { return open_.structure; }
+  [[nodiscard]] Values& positions() { return open_.values.front(); }
+  [[nodiscard]] std::span<Values> fields() { return std::span(open_.values).subspan(1); }
+  /// Counts a record of the open chunk, whose values have been written.
+  void endRecord();
+  /// Bytes of the open chunk's blocks, about.
+  [[nodiscard]] std::uint64_t estimatedBytes() const;
+
+  /// Ends the open chunk, after which the mesh has slots up to `end`, and opens the next one, which
+  /// begins in `nextLevel`; of a packet also its node. Errors: limit-exceeded, bad-codec.
+  Status close(std::uint32_t lastLevel, std::uint32_t endSlot, const Slots& end);
+  void begin(std::uint32_t firstLevel, std::uint32_t node = 0);
+
+  /// Of the closed chunks.
+  [[nodiscard]] std::vector<ChunkEntry>& rows() { return rows_; }
+  [[nodiscard]] const Bytes& body() const { return body_; }
+
+ private:
+  /// Parts are numbered as blocks are, less the structure's.
+  struct OpenChunk {
+    ChunkEntry row;
+    Slots first;
+    RangeEncoder structure;
+    std::vector<Values> values;
+    std::vector<std::size_t> seen;  // values whose bits have been estimated
+    std::uint64_t valueBits = 0;    // estimate of what they will take
+  };
+
+  Status addBlock(const Bytes& block);
+
+  std::span<const FieldInfo> fields_;
+  CodecId valueCodec_;
+  OpenChunk open_;
+  // of the chunks closed since the base mesh: what the values took, and the estimates
+  std::uint64_t valueBytes_ = 0, valueBits_ = 0;
+  std::vector<ChunkEntry> rows_;
+  Bytes body_;
+};
+
+}  // namespace qtet

@@ -1,0 +1,88 @@
+#include "codec/log/record_writer.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "codec/record/base_coder.h"
+#include "proto/limits.h"
+
+namespace qtet {
+
+RecordWriter::RecordWriter(const FusionHistory& history, CodecId valueCodec)
+    : history_(history),
+      chunks_(history.fields, valueCodec),
+      mirror_(history),
+      truths_(history, mirror_),
+      fields_(history, mirror_),
+      coder_(chunks_.structure(), models_, mirror_.mesh(), link_, chunks_.positions()),
+      added_(history.levels + 1u) {}
+
+Status RecordWriter::base() {
+  std::vector<Tetrahedron> cells;
+  std::vector<std::uint32_t> ids;
+  for (std::uint32_t i = 0; i < history_.cells.size(); ++i)
+    if (const auto& cell = history_.cells[i];
+        history_.live[i] && std::ranges::find(cell, kGhost) == cell.end()) {
+      cells.push_back(cell);
+      ids.push_back(i);
+    }
+  std::vector<VertexId> used;
+  for (const Tetrahedron& t : cells) used.insert(used.end(), t.begin(), t.end());
+  std::ranges::sort(used);
+  used.erase(std::ranges::unique(used).begin(), used.end());
+
+  BaseTruth truth(cells);
+  BaseCoder<RangeEncoder> coder(chunks_.structure(), static_cast<std::uint32_t>(used.size()),
+                                static_cast<std::uint32_t>(cells.size()));
+  if (!coder.run(&truth, [] { return false; }))
+    return fail(ErrorCode::kBadValue,
+                "two cells of the base mesh disagree on the orientation of their face");
+  std::vector<std::uint32_t> inOrder;
+  for (const std::uint32_t i : coder.order) inOrder.push_back(ids[i]);
+  if (Status s = mirror_.start(std::move(coder.tetrahedra), std::move(inOrder),
+                               std::move(coder.vertexOrder));
+      !s)
+    return s;
+  const std::vector<LatticePoint>& points = mesh().points;
+  const auto at = [&](VertexId u, std::uint32_t c) { return points[u][c]; };
+  for (VertexId v = 0; v < points.size(); ++v)
+    for (std::uint32_t c = 0; c < 3; ++c)
+      chunks_.positions().code<true>(predictBase(coder.births[v], v, c, true, at), points[v][c]);
+  fields_.base(coder.births, chunks_.fields());
+  added_[0] = mesh().next();
+  return {};
+}
+
+const Fusion* RecordWriter::flag(VertexId v) {
+  const Fusion* fusion = truths_.fusionAt(v);
+  coder_.splits(v, mesh().level(), fusion != nullptr);
+  return fusion;
+}
+
+Status RecordWriter::record(VertexId v, Fusion fusion) {
+  const auto bad = [&](const char* what) {
+    return fail(ErrorCode::kBadValue,
+                "fusion of vertex " + std::to_string(fusion.fused) + ": " + what);
+  };
+  if (mesh().star(v).size() > kMaxLinkTriangles) return bad("its star has too many cells");
+  if (!mesh().enter(v, link_)) return bad("its link is not a closed surface");
+  RecordTruth truth;
+  if (!truths_.describe(v, link_, fusion, truth))
+    return bad("the history's cells are not those of its star");
+  Split split;
+  if (!coder_.code(v, truth, split)) return bad("its cells cannot be described by labels");
+  const Slots before = mesh().next();
+  fields_.beforeSplit(v, link_, split);
+  mirror_.apply(v, link_, split, fusion, truths_.restored(split));
+  fields_.afterSplit(fusion, before.tetrahedra, chunks_.fields());
+  chunks_.endRecord();
+  const Slots& after = mesh().next();
+  Slots& level = added_[mesh().level()];
+  level.vertices += after.vertices - before.vertices;
+  level.tetrahedra += after.tetrahedra - before.tetrahedra;
+  level.triangles += after.triangles - before.triangles;
+  return {};
+}
+
+}  // namespace qtet

@@ -1,0 +1,64 @@
+// What the encoders of both layouts share: the base mesh and one record after the other, written
+// into the open chunk and applied to the mirror of the decoder's mesh.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "codec/log/chunk_writer.h"
+#include "codec/mesh/link.h"
+#include "codec/record/field_writer.h"
+#include "codec/record/fusion_history.h"
+#include "codec/record/mirror_mesh.h"
+#include "codec/record/record_coder.h"
+#include "codec/record/split_truths.h"
+
+namespace qtet {
+
+class RecordWriter {
+ public:
+  /// `history` must outlive it.
+  RecordWriter(const FusionHistory& history, CodecId valueCodec);
+  RecordWriter(const RecordWriter&) = delete;
+  RecordWriter& operator=(const RecordWriter&) = delete;
+
+  /// Writes the base mesh into chunk 0, which stays open. Errors: bad-value. REQUIRES: called once
+  /// and first.
+  Status base();
+  /// Writes the split flag of v in the level in hand (GrowingMesh::beginLevel). The fusion that its
+  /// split undoes, or nullptr. REQUIRES: v may split.
+  [[nodiscard]] const Fusion* flag(VertexId v);
+  /// Writes the record of v and splits it. Errors: bad-value. REQUIRES: flag(v) gave `fusion`.
+  Status record(VertexId v, Fusion fusion);
+  /// Ends the open chunk.
+  Status closeChunk(std::uint32_t lastLevel, std::uint32_t endSlot) {
+    return chunks_.close(lastLevel, endSlot, mesh().next());
+  }
+
+  [[nodiscard]] ChunkWriter& chunks() { return chunks_; }
+  [[nodiscard]] RecordModels& models() { return models_; }
+  [[nodiscard]] GrowingMesh& mesh() { return mirror_.mesh(); }
+  [[nodiscard]] const MirrorMesh& mirror() const { return mirror_; }
+  /// What each level brought so far, the base mesh first.
+  [[nodiscard]] const std::vector<Slots>& added() const { return added_; }
+  /// What positions took of the structure blocks, in 64ths of a bit.
+  [[nodiscard]] std::uint64_t positionCost() const { return coder_.positionCost(); }
+  /// Fraction of the history's cells that have come.
+  [[nodiscard]] double done() const {
+    return static_cast<double>(mirror_.tetrahedra().size()) /
+           static_cast<double>(history_.cells.size());
+  }
+
+ private:
+  const FusionHistory& history_;
+  ChunkWriter chunks_;
+  MirrorMesh mirror_;
+  SplitTruths truths_;
+  FieldWriter fields_;
+  Link link_;
+  RecordModels models_;
+  RecordCoder<RangeEncoder> coder_;
+  std::vector<Slots> added_;
+};
+
+}  // namespace qtet

@@ -1,0 +1,65 @@
+#include "codec/record/mirror_mesh.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "codec/mesh/boundary.h"
+#include "codec/record/base_coder.h"
+
+namespace qtet {
+
+MirrorMesh::MirrorMesh(const FusionHistory& history)
+    : history_(history), slots_(history.points.size(), kGhost) {}
+
+Status MirrorMesh::start(std::vector<Tetrahedron> tetrahedra, std::vector<std::uint32_t> cells,
+                         std::vector<VertexId> vertices) {
+  tetrahedra_ = std::move(cells);
+  vertices_ = std::move(vertices);
+  for (VertexId v = 0; v < vertices_.size(); ++v) slots_[vertices_[v]] = v;
+  for (const VertexId vertex : vertices_) mesh_.points.push_back(history_.points[vertex]);
+  mesh_.tetrahedra = std::move(tetrahedra);
+  mesh_.boundary = boundaryOf(mesh_.tetrahedra);
+  mesh_.start(history_.lattice.bits);
+  return matchBoundary();
+}
+
+// The decoder derives the base mesh's boundary; the history's ghost cells must be the same
+// triangles.
+Status MirrorMesh::matchBoundary() {
+  std::vector<std::pair<Triangle, std::uint32_t>> ghosts;
+  for (std::uint32_t i = 0; i < history_.cells.size(); ++i)
+    if (const auto& c = history_.cells[i];
+        history_.live[i] && std::ranges::find(c, kGhost) != c.end()) {
+      const auto turned =
+          withLast(c, static_cast<std::size_t>(std::ranges::find(c, kGhost) - c.begin()));
+      ghosts.emplace_back(sortedFace({slots_[turned[0]], slots_[turned[1]], slots_[turned[2]]}), i);
+    }
+  std::ranges::sort(ghosts);
+  for (const Triangle& t : mesh_.boundary) {
+    const auto at = std::ranges::lower_bound(ghosts, std::pair{sortedFace(t), 0u});
+    if (at == ghosts.end() || at->first != sortedFace(t))
+      return fail(ErrorCode::kBadValue, "a boundary face of the base mesh has no ghost cell");
+    triangles_.push_back(at->second);
+  }
+  if (ghosts.size() != triangles_.size())
+    return fail(ErrorCode::kBadValue, "a ghost cell of the base mesh has no boundary face");
+  return {};
+}
+
+void MirrorMesh::apply(VertexId v, const Link& link, const Split& split, const Fusion& fusion,
+                       std::span<const std::uint32_t> restored) {
+  mesh_.apply(v, link, split);
+  for (const std::uint32_t cell : restored) {
+    const auto& corners = history_.cells[cell];
+    const bool ghost = std::ranges::find(corners, kGhost) != corners.end();
+    (ghost ? triangles_ : tetrahedra_).push_back(cell);
+  }
+  vertices_[v] = fusion.prey[0];
+  slots_[fusion.prey[0]] = v;
+  for (std::size_t i = 1; i < fusion.k; ++i) {
+    slots_[fusion.prey[i]] = static_cast<VertexId>(vertices_.size());
+    vertices_.push_back(fusion.prey[i]);
+  }
+}
+
+}  // namespace qtet
