@@ -12,9 +12,7 @@
 #include <vector>
 
 #include "proto/bytes.h"
-#include "server/store/level_request.h"
 #include "server/wire/file_part.h"
-#include "server/wire/upload_request.h"
 
 namespace qtet {
 
@@ -38,13 +36,13 @@ struct RequestView {
   std::optional<std::string_view> traceparent = std::nullopt;
 };
 
-/// `body` is either text of the reply's own, or bytes that live as long as `owner`, or a level to
-/// be made, or an upload to be taken.
+/// `body` is text of the reply's own, or bytes that live as long as `owner`, or left open: it is
+/// not there yet, and nobody knows its length.
 struct Reply {
   unsigned status = 200;
   /// Without Content-Length, Date and Connection.
   std::vector<std::pair<std::string, std::string>> headers;
-  std::variant<std::string, ByteView, LevelRequest, UploadRequest> body;
+  std::variant<std::string, ByteView, std::monostate> body;
   /// Of the bytes, where they are not the router's or the viewer's.
   std::shared_ptr<const void> owner{};
   /// Where the bytes of the body, a view, stand in an open file as well.
@@ -54,7 +52,7 @@ struct Reply {
 
   /// The first header of that name, as it is written here; "" where there is none.
   [[nodiscard]] std::string header(std::string_view name) const;
-  /// Bytes of the body; nullopt for a level that is not made yet.
+  /// Bytes of the body; nullopt where it is left open.
   [[nodiscard]] std::optional<std::uint64_t> bodyBytes() const;
 };
 

@@ -120,7 +120,8 @@ class HttpSession {
   asio::awaitable<bool> becomeStream(Parser& parser);
   /// Answers one request; false: the connection is not to be used further.
   asio::awaitable<bool> answer(const RequestHeader& request, bool keepAlive);
-  asio::awaitable<bool> answerLevel(const RequestView& request, Reply reply, bool keepAlive);
+  asio::awaitable<bool> answerLevel(const RequestView& request, Reply reply,
+                                    const LevelRequest& level, bool keepAlive);
   asio::awaitable<bool> answerUpload(const RequestView& request, const UploadRequest& upload,
                                      bool keepAlive);
   /// Reads the body into the upload; the answer, if it ends before its time. A connection that is
@@ -336,22 +337,21 @@ asio::awaitable<bool> HttpSession::becomeStream(Parser& parser) {
 
 asio::awaitable<bool> HttpSession::answer(const RequestHeader& request, bool keepAlive) {
   const RequestView view = viewOf(request);
-  Reply reply = services_.route(view);
-  keepAlive = keepAlive && !reply.close;
+  Answer answer = services_.route(view);
+  keepAlive = keepAlive && !answer.reply.close;
   bool again = false;
-  if (std::holds_alternative<LevelRequest>(reply.body)) {
-    again = co_await answerLevel(view, std::move(reply), keepAlive);
-  } else if (const auto* upload = std::get_if<UploadRequest>(&reply.body)) {
+  if (const auto* level = std::get_if<LevelRequest>(&answer.work)) {
+    again = co_await answerLevel(view, std::move(answer.reply), *level, keepAlive);
+  } else if (const auto* upload = std::get_if<UploadRequest>(&answer.work)) {
     again = co_await answerUpload(view, *upload, keepAlive);
   } else {
-    again = co_await send(std::move(reply), keepAlive && !hasBody(view));
+    again = co_await send(std::move(answer.reply), keepAlive && !hasBody(view));
   }
   co_return again;
 }
 
 asio::awaitable<bool> HttpSession::answerLevel(const RequestView& request, Reply reply,
-                                               bool keepAlive) {
-  LevelRequest level = std::get<LevelRequest>(reply.body);
+                                               const LevelRequest& level, bool keepAlive) {
   std::optional<LevelFile> file = services_.jobs.find(level);
   if (!file && reply.sendBody) {
     LevelAnswer answered = co_await waitForLevel(socket_, services_.jobs, level,

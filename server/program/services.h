@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "server/http/http_message.h"
 #include "server/http/uploads.h"
+#include "server/routes/answer.h"
 #include "server/store/level_jobs.h"
 #include "server/store/mesh_store.h"
 #include "server/wire/access.h"
@@ -35,7 +35,7 @@ struct Timeouts {
 
 struct Services {
   const MeshStore& store;
-  std::function<Reply(const RequestView&)> route;
+  std::function<Answer(const RequestView&)> route;
   bool streams = true;  ///< WebSockets are answered
   LevelJobs& jobs;
   Metrics& metrics;

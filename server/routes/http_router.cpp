@@ -106,15 +106,15 @@ bool mayReadUnderSomeName(const MayRead& mayRead, const ServedMesh& mesh,
 
 /// What is the same for every path: methods, and targets that are none.
 template <class Find>
-Reply answer(const RequestView& request, Find find) {
+Answer answer(const RequestView& request, Find find) {
   if (request.method == "OPTIONS") return optionsReply();
   if (request.method != "GET" && request.method != "HEAD") return methodRefused(request.method);
   const std::optional<RequestTarget> target = parseTarget(request.target);
-  Reply out =
-      target ? find(*target)
+  Answer out =
+      target ? Answer(find(*target))
              : problem(400, "bad-request",
                        "the request's target is no path: a percent code or a byte in it is wrong");
-  out.sendBody = request.method != "HEAD";
+  out.reply.sendBody = request.method != "HEAD";
   return out;
 }
 
@@ -130,8 +130,8 @@ Router::Router(const MeshStore& store, const ViewerFiles& viewer, const AdminRou
       openApi_(openApiJson()) {}
 
 /// What only a server with tokens answers: changes, and tickets.
-std::optional<Reply> Router::tokenReply(const RequestView& request,
-                                        const RequestTarget& target) const {
+std::optional<Answer> Router::routeWithTokens(const RequestView& request,
+                                              const RequestTarget& target) const {
   const bool ofTickets =
       target.segments.size() == 2 && target.segments[0] == "v1" && target.segments[1] == "tickets";
   const bool reads = request.method == "GET" || request.method == "HEAD";
@@ -140,27 +140,28 @@ std::optional<Reply> Router::tokenReply(const RequestView& request,
   if (request.method == "OPTIONS") return optionsReply(allow);
   if (ofTickets && request.method == "POST") return ticketReply(request, writing_->access);
   if (!ofTickets && (request.method == "PUT" || request.method == "DELETE"))
-    return writeReply(request, target, writing_->access);
+    return routeWriting(request, target, writing_->access);
   return methodRefused(request.method, allow);
 }
 
-Reply Router::route(const RequestView& request) const {
+Answer Router::route(const RequestView& request) const {
   if (writing_) {
     const std::optional<RequestTarget> target = parseTarget(request.target);
-    if (std::optional<Reply> reply = target ? tokenReply(request, *target) : std::nullopt)
-      return std::move(*reply);
+    if (std::optional<Answer> found = target ? routeWithTokens(request, *target) : std::nullopt)
+      return std::move(*found);
   }
   return answer(request, [&](const RequestTarget& target) { return find(request, target); });
 }
 
 Reply routeAdmin(const AdminRoutes& admin, const RequestView& request) {
-  return answer(request, [&](const RequestTarget& target) {
+  const auto find = [&](const RequestTarget& target) {
     return admin.route(target).value_or(
         notFound("this address has livez, readyz, metrics and version"));
-  });
+  };
+  return answer(request, find).reply;
 }
 
-Reply Router::find(const RequestView& request, const RequestTarget& target) const {
+Answer Router::find(const RequestView& request, const RequestTarget& target) const {
   const auto& path = target.segments;
   if (path[0] == "v1") return api(request, target);
   if (path.size() == 1 && path[0] == "openapi.json")
@@ -171,7 +172,7 @@ Reply Router::find(const RequestView& request, const RequestTarget& target) cons
   return viewerReply(request, target);
 }
 
-Reply Router::api(const RequestView& request, const RequestTarget& target) const {
+Answer Router::api(const RequestView& request, const RequestTarget& target) const {
   const auto& path = target.segments;
   if (path.size() == 2 && path[1] == "stream") {
     Reply out = problem(426, "upgrade-required", "this is a WebSocket, subprotocol qtet.v1");
@@ -186,7 +187,7 @@ Reply Router::api(const RequestView& request, const RequestTarget& target) const
 
 /// To whoever may not read it a log is not there: its digest alone tells nobody whether somebody
 /// has it.
-Reply Router::logs(const RequestView& request, const RequestTarget& target) const {
+Answer Router::logs(const RequestView& request, const RequestTarget& target) const {
   MeshPointer mesh = store_.findLog(target.segments[2]);
   bool open = true;
   if (mesh && writing_) {
@@ -201,8 +202,8 @@ Reply Router::logs(const RequestView& request, const RequestTarget& target) cons
     return problem(404, "log-changed",
                    "no mesh has that digest, or not any more, or it is for those who have a token; "
                    "the list is at /v1/meshes");
-  Reply out = logReply(request, target, mesh);
-  if (!open) keepPrivate(out);
+  Answer out = routeLog(request, target, mesh);
+  if (!open) keepPrivate(out.reply);
   return out;
 }
 

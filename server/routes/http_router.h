@@ -7,6 +7,7 @@
 
 #include "server/http/http_message.h"
 #include "server/routes/admin_routes.h"
+#include "server/routes/answer.h"
 #include "server/routes/viewer_files.h"
 #include "server/routes/write_routes.h"
 #include "server/store/mesh_store.h"
@@ -27,14 +28,14 @@ class Router {
   Router(const MeshStore& store, const ViewerFiles& viewer, const AdminRoutes* admin = nullptr,
          std::optional<Writing> writing = std::nullopt);
 
-  [[nodiscard]] Reply route(const RequestView& request) const;
+  [[nodiscard]] Answer route(const RequestView& request) const;
 
  private:
-  [[nodiscard]] Reply find(const RequestView& request, const RequestTarget& target) const;
-  [[nodiscard]] Reply api(const RequestView& request, const RequestTarget& target) const;
-  [[nodiscard]] Reply logs(const RequestView& request, const RequestTarget& target) const;
-  [[nodiscard]] std::optional<Reply> tokenReply(const RequestView& request,
-                                                const RequestTarget& target) const;
+  [[nodiscard]] Answer find(const RequestView& request, const RequestTarget& target) const;
+  [[nodiscard]] Answer api(const RequestView& request, const RequestTarget& target) const;
+  [[nodiscard]] Answer logs(const RequestView& request, const RequestTarget& target) const;
+  [[nodiscard]] std::optional<Answer> routeWithTokens(const RequestView& request,
+                                                      const RequestTarget& target) const;
   [[nodiscard]] Reply meshes(const RequestView& request, const RequestTarget& target) const;
   [[nodiscard]] Reply viewerReply(const RequestView& request, const RequestTarget& target) const;
 

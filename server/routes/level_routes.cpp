@@ -133,18 +133,18 @@ Resource resourceOf(const LevelRequest& wanted, const std::string& name) {
                                    name + "." + std::string(formName(wanted.form)) + "\""}}};
 }
 
-Reply toBeMade(const RequestView& request, const Resource& resource, LevelRequest wanted) {
+Answer toBeMade(const RequestView& request, const Resource& resource, LevelRequest wanted) {
   if (std::optional<Reply> early = conditionalReply(request, resource)) return std::move(*early);
   Reply out = beginReply(200, resource);
   out.headers.emplace_back("Accept-Ranges", "bytes");
-  out.body = std::move(wanted);
-  return out;
+  out.body = std::monostate();
+  return {std::move(out), std::move(wanted)};
 }
 
 }  // namespace
 
-Reply levelReply(const RequestView& request, const RequestTarget& target, const MeshPointer& mesh,
-                 std::string_view name) {
+Answer routeLevel(const RequestView& request, const RequestTarget& target, const MeshPointer& mesh,
+                  std::string_view name) {
   const std::size_t dot = std::min(name.find('.'), name.size());
   const auto form = formOfName(name.substr(std::min(dot + 1, name.size())));
   if (!form || form == LevelForm::kPng || form == LevelForm::kIntervals)
@@ -167,8 +167,8 @@ Reply levelReply(const RequestView& request, const RequestTarget& target, const 
   return toBeMade(request, resource, std::move(wanted));
 }
 
-Reply previewReply(const RequestView& request, const RequestTarget& target,
-                   const MeshPointer& mesh) {
+Answer routePreview(const RequestView& request, const RequestTarget& target,
+                    const MeshPointer& mesh) {
   const Manifest& manifest = mesh->manifest;
   const auto small = [](const ManifestLevel& level) {
     return level.boundaryTriangles <= kMaxPreviewTriangles;

@@ -61,7 +61,7 @@ Reply fieldReply(const RequestView& request, const MeshPointer& mesh, Path path)
 
 }  // namespace
 
-Reply logReply(const RequestView& request, const RequestTarget& target, const MeshPointer& mesh) {
+Answer routeLog(const RequestView& request, const RequestTarget& target, const MeshPointer& mesh) {
   const Path path = Path(target.segments).subspan(3);
   const LogIndex& index = mesh->log.index();
   const std::string what = path.empty() ? "" : path[0];
@@ -74,9 +74,9 @@ Reply logReply(const RequestView& request, const RequestTarget& target, const Me
     return variantReply(request, {{text.etag, mesh->modified}, "application/json", kForEver, {}},
                         {viewOf(text.text), text.gzip, text.zstd}, mesh);
   }
-  if (path.size() == 1 && what == "preview.png") return previewReply(request, target, mesh);
+  if (path.size() == 1 && what == "preview.png") return routePreview(request, target, mesh);
   if (path.size() == 2 && what == "chunks") return chunkReply(request, mesh, path[1], std::nullopt);
-  if (path.size() == 2 && what == "levels") return levelReply(request, target, mesh, path[1]);
+  if (path.size() == 2 && what == "levels") return routeLevel(request, target, mesh, path[1]);
   if (path.size() > 1 && what == "fields") return fieldReply(request, mesh, path.subspan(1));
   return notFound(
       "a log has log, manifest, base, chunks/{n}, fields/{name}/chunks/{n}, levels/{k}.vtu and in "

@@ -2,14 +2,14 @@
 // "HTTP").
 #pragma once
 
-#include "server/http/http_message.h"
+#include "server/routes/answer.h"
 #include "server/store/served_mesh.h"
 #include "server/wire/request_target.h"
 
 namespace qtet {
 
 /// The answer to `/v1/logs/{sha256}/...`. REQUIRES: at least three segments.
-[[nodiscard]] Reply logReply(const RequestView& request, const RequestTarget& target,
-                             const MeshPointer& mesh);
+[[nodiscard]] Answer routeLog(const RequestView& request, const RequestTarget& target,
+                              const MeshPointer& mesh);
 
 }  // namespace qtet

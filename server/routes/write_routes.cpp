@@ -53,7 +53,7 @@ bool isDigest(std::string_view text) {
 
 Reply badRequest(std::string_view detail) { return problem(400, "bad-request", detail); }
 
-Reply putReply(const RequestView& request, const RequestTarget& target, UploadRequest out) {
+Answer routePut(const RequestView& request, const RequestTarget& target, UploadRequest out) {
   if (!request.contentLength)
     return problem(411, "length-required", "a log is sent with its Content-Length");
   if (request.contentEncoding)
@@ -71,9 +71,7 @@ Reply putReply(const RequestView& request, const RequestTarget& target, UploadRe
     return badRequest(
         "Content-Range is bytes FIRST-LAST/SIZE, and the body has as many bytes; or bytes */SIZE, "
         "and it has none");
-  Reply reply;
-  reply.body = std::move(out);
-  return reply;
+  return Answer(std::move(out));
 }
 
 }  // namespace
@@ -83,7 +81,7 @@ bool isMeshPath(const RequestTarget& target) {
   return path.size() == 3 && path[0] == "v1" && path[1] == "meshes";
 }
 
-Reply writeReply(const RequestView& request, const RequestTarget& target, const Access& access) {
+Answer routeWriting(const RequestView& request, const RequestTarget& target, const Access& access) {
   const std::string& id = target.segments[2];
   if (std::optional<Reply> refusal = authorise(request, id, access)) return std::move(*refusal);
   if (!pathOfMesh("", id))
@@ -92,11 +90,9 @@ Reply writeReply(const RequestView& request, const RequestTarget& target, const 
   UploadRequest out{.id = id};
   if (request.ifMatch) out.ifMatch = *request.ifMatch;
   if (request.ifNoneMatch) out.ifNoneMatch = *request.ifNoneMatch;
-  if (request.method == "PUT") return putReply(request, target, std::move(out));
+  if (request.method == "PUT") return routePut(request, target, std::move(out));
   out.kind = UploadRequest::Kind::kDelete;
-  Reply reply;
-  reply.body = std::move(out);
-  return reply;
+  return Answer(std::move(out));
 }
 
 Reply partialReply(const RequestView& request, const RequestTarget& target,

@@ -2,8 +2,8 @@
 // what is asked for.
 #pragma once
 
-#include "server/http/http_message.h"
 #include "server/http/uploads.h"
+#include "server/routes/answer.h"
 #include "server/wire/access.h"
 #include "server/wire/request_target.h"
 
@@ -18,10 +18,10 @@ struct Writing {
 /// Whether the path is that of one mesh.
 [[nodiscard]] bool isMeshPath(const RequestTarget& target);
 
-/// The answer to a PUT or DELETE on a mesh's path: a reply whose body is an UploadRequest, or 400,
-/// 401, 403, 404, 411, 415.
-[[nodiscard]] Reply writeReply(const RequestView& request, const RequestTarget& target,
-                               const Access& access);
+/// The answer to a PUT or DELETE on a mesh's path: an upload to be taken, or 400, 401, 403, 404,
+/// 411, 415.
+[[nodiscard]] Answer routeWriting(const RequestView& request, const RequestTarget& target,
+                                  const Access& access);
 
 /// `/v1/meshes/{id}/upload?digest=HEX` to whoever may write the mesh: {"digest","bytes"}, 400, 401,
 /// 403 or 404.

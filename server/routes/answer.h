@@ -1,0 +1,26 @@
+// What the router says to a request: a reply as it stands, or one whose body takes work first.
+#pragma once
+
+#include <utility>
+#include <variant>
+
+#include "server/http/http_message.h"
+#include "server/store/level_request.h"
+#include "server/wire/upload_request.h"
+
+namespace qtet {
+
+/// With a level to be made, `reply` is the head that its bytes go out with. With an upload to be
+/// taken, the upload alone makes the reply, and this one says nothing.
+struct Answer {
+  using Work = std::variant<std::monostate, LevelRequest, UploadRequest>;
+
+  Answer(Reply whole) : reply(std::move(whole)) {}  // most answers are one
+  Answer(Reply head, LevelRequest level) : reply(std::move(head)), work(std::move(level)) {}
+  explicit Answer(UploadRequest upload) : work(std::move(upload)) {}
+
+  Reply reply{};
+  Work work{};
+};
+
+}  // namespace qtet
