@@ -155,7 +155,9 @@ class LogEncoder {
     BaseTruth truth(cells);
     BaseCoder<RangeEncoder> coder(range_, static_cast<std::uint32_t>(used.size()),
                                   static_cast<std::uint32_t>(cells.size()));
-    if (!coder.run(&truth, [] { return false; }))
+    const bool coded = coder.run(&truth, [this] { return options_.stop.stop_requested(); });
+    if (options_.stop.stop_requested()) return cancelled();
+    if (!coded)
       return fail(ErrorCode::kBadValue,
                   "two cells of the base mesh disagree on the orientation of their face");
     mesh_.tetrahedra = std::move(coder.tetrahedra);
@@ -393,6 +395,7 @@ class LogEncoder {
   }
 
   Status record(RecordCoder<RangeEncoder>& coder, VertexId v, Fusion fusion) {
+    if (options_.stop.stop_requested()) return cancelled();
     const auto bad = [&](const char* what) {
       return fail(ErrorCode::kBadValue,
                   "fusion of vertex " + std::to_string(fusion.fused) + ": " + what);

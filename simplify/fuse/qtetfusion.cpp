@@ -19,6 +19,7 @@
 #include "simplify/fuse/fusion_proposer.h"
 #include "simplify/fuse/level_proposals.h"
 #include "simplify/fuse/queue_entries.h"
+#include "simplify/mesh/stopping.h"
 #include "simplify/mesh/tet_mesh.h"
 #include "simplify/mesh/workers.h"
 
@@ -69,7 +70,7 @@ class Simplifier {
  public:
   Simplifier(const LatticeMesh& mesh, const FusionOptions& options)
       : options_(options),
-        workers_(options.threads),
+        workers_(options.threads, options.stop),
         mesh_(mesh, options.regionField.value_or(FusionMesh::kNoRegions), &workers_),
         cost_(mesh_, mesh, options.cost, &workers_),
         band_(options.bands.cellsPerPacket == 0
@@ -208,6 +209,7 @@ class Simplifier {
       ~Stop() { proposals.stop(); }
     } const stop{proposals_};
     while (nextKey() <= limit_ && mesh_.liveTetrahedra() - going_ > goal_) {
+      throwIfStopped(options_.stop);
       const bool isEntry = isEntryNext();
       const VertexId owner = isEntry ? entries_[next_++].owner : popBack();
       if (isLocked(owner)) continue;
@@ -507,14 +509,16 @@ Status check(const LatticeMesh& mesh, const FusionOptions& options) {
 
 Result<FusionHistory> simplify(const LatticeMesh& mesh, const FusionOptions& options) {
   if (Status checked = check(mesh, options); !checked) return std::unexpected(checked.error());
-  return Simplifier(mesh, options).run();
+  return orCancelled([&] { return Simplifier(mesh, options).run(); });
 }
 
 Result<FusionHistory> simplify(LatticeMesh&& mesh, const FusionOptions& options) {
   if (Status checked = check(mesh, options); !checked) return std::unexpected(checked.error());
-  Simplifier simplifier(mesh, options);
-  mesh = {};
-  return simplifier.run();
+  return orCancelled([&] {
+    Simplifier simplifier(mesh, options);
+    mesh = {};
+    return simplifier.run();
+  });
 }
 
 }  // namespace qtet

@@ -61,7 +61,7 @@ const kOfCells = 1;
 /** Names by ErrorCode of proto/error.h. */
 const kErrorCodes = [
   'truncated', 'bad-magic', 'bad-version', 'bad-checksum', 'bad-value', 'limit-exceeded', 'bad-codec', 'bad-order', 'not-found',
-  'bad-input', 'io',
+  'bad-input', 'io', 'cancelled',
 ];
 
 interface Exports {
