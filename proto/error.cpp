@@ -15,6 +15,7 @@ const char* errorCodeName(ErrorCode code) {
     case ErrorCode::kNotFound: return "not-found";
     case ErrorCode::kBadInput: return "bad-input";
     case ErrorCode::kIo: return "io";
+    case ErrorCode::kCancelled: return "cancelled";
   }
   return "unknown";
 }

@@ -22,6 +22,7 @@ enum class ErrorCode : std::uint8_t {
   kNotFound,       ///< a file, mesh, field or level of that name does not exist
   kBadInput,       ///< a mesh that cannot be simplified, with the reason in the message
   kIo,             ///< the operating system refused to read or write
+  kCancelled,      ///< the caller asked to stop
 };
 
 /// The code's name as it stands in PROTOCOL.md and FORMAT.md, for example "bad-checksum".
@@ -47,6 +48,11 @@ using Status = std::expected<void, Error>;
 [[nodiscard]] inline std::unexpected<Error> fail(ErrorCode code, std::string message,
                                                  std::uint64_t offset = Error::kNoOffset) {
   return std::unexpected<Error>(Error{code, std::move(message), offset});
+}
+
+/// What work answers that was told to stop.
+[[nodiscard]] inline std::unexpected<Error> cancelled() {
+  return fail(ErrorCode::kCancelled, "stopped, as the caller asked");
 }
 
 }  // namespace qtet

@@ -58,6 +58,7 @@ const char* qtet_status_name(qtet_status status) {
     case QTET_NOT_FOUND: return "not-found";
     case QTET_BAD_INPUT: return "bad-input";
     case QTET_IO: return "io";
+    case QTET_CANCELLED: return "cancelled";
     case QTET_BAD_ARGUMENT: return "bad-argument";
     case QTET_NO_LOG: return "no-log";
     case QTET_NO_MESH: return "no-mesh";

@@ -35,6 +35,7 @@ qtet_status statusOf(ErrorCode code) {
     case ErrorCode::kNotFound: return QTET_NOT_FOUND;
     case ErrorCode::kBadInput: return QTET_BAD_INPUT;
     case ErrorCode::kIo: return QTET_IO;
+    case ErrorCode::kCancelled: return QTET_CANCELLED;
   }
   return QTET_INTERNAL;
 }

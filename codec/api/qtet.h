@@ -67,8 +67,9 @@ enum {
   QTET_BAD_CODEC = 7,      /* a block that its own decoder refuses */
   QTET_BAD_ORDER = 8,      /* a chunk that needs another one first */
   QTET_NOT_FOUND = 9,      /* no such level or field, or an error that was not measured */
-  QTET_BAD_INPUT = 10,     /* a mesh that cannot be simplified; no function here returns it */
+  QTET_BAD_INPUT = 10,     /* a mesh that cannot be simplified: qtet_simplify.h */
   QTET_IO = 11,            /* the operating system refused to open or read: a missing file, too */
+  QTET_CANCELLED = 12,     /* the caller asked to stop: qtet_simplify.h */
   QTET_BAD_ARGUMENT = 100, /* null, not a number, or an array or struct too small */
   QTET_NO_LOG = 101,       /* nothing is open */
   QTET_NO_MESH = 102,      /* nothing is refined: qtet_log_refine first */

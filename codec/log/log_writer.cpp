@@ -153,7 +153,7 @@ Result<EncodedLog> encodeLog(const FusionHistory& history, const LogWriterOption
   if (!bands) return std::unexpected(bands.error());
   if (Status s = checkCellFields(history); !s) return std::unexpected(s.error());
 
-  RecordWriter writer(history, options.valueCodec);
+  RecordWriter writer(history, options.valueCodec, options.stop);
   if (Status s = writer.base(); !s) return std::unexpected(s.error());
   const Layout layout = bands->empty() ? Layout::kStream : Layout::kRegions;
   std::uint64_t childBytes = 0;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,7 @@ struct LogWriterOptions {
   /// For the manifest: none, or one a level, coarse-first, the input's mesh included.
   std::vector<LevelError> errors;
   std::function<void(double)> progress;  ///< fraction done, 0..1
+  std::stop_token stop{};                ///< asked at every record
 };
 
 struct LogStatistics {
@@ -48,7 +50,7 @@ struct EncodedLog {
 };
 
 /// Writes the history backwards, coarse-first. Errors: bad-value (the history contradicts itself or
-/// holds a fusion that no label coding describes), limit-exceeded, bad-codec.
+/// holds a fusion that no label coding describes), limit-exceeded, bad-codec, cancelled.
 [[nodiscard]] Result<EncodedLog> encodeLog(const FusionHistory& history,
                                            const LogWriterOptions& options);
 

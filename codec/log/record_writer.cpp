@@ -9,8 +9,9 @@
 
 namespace qtet {
 
-RecordWriter::RecordWriter(const FusionHistory& history, CodecId valueCodec)
+RecordWriter::RecordWriter(const FusionHistory& history, CodecId valueCodec, std::stop_token stop)
     : history_(history),
+      stop_(std::move(stop)),
       chunks_(history.fields, valueCodec),
       mirror_(history),
       truths_(history, mirror_),
@@ -35,7 +36,9 @@ Status RecordWriter::base() {
   BaseTruth truth(cells);
   BaseCoder<RangeEncoder> coder(chunks_.structure(), static_cast<std::uint32_t>(used.size()),
                                 static_cast<std::uint32_t>(cells.size()));
-  if (!coder.run(&truth, [] { return false; }))
+  const bool coded = coder.run(&truth, [this] { return stop_.stop_requested(); });
+  if (stop_.stop_requested()) return cancelled();
+  if (!coded)
     return fail(ErrorCode::kBadValue,
                 "two cells of the base mesh disagree on the orientation of their face");
   std::vector<std::uint32_t> inOrder;
@@ -61,6 +64,7 @@ const Fusion* RecordWriter::flag(VertexId v) {
 }
 
 Status RecordWriter::record(VertexId v, Fusion fusion) {
+  if (stop_.stop_requested()) return cancelled();
   const auto bad = [&](const char* what) {
     return fail(ErrorCode::kBadValue,
                 "fusion of vertex " + std::to_string(fusion.fused) + ": " + what);

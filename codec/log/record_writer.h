@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <stop_token>
 #include <vector>
 
 #include "codec/log/chunk_writer.h"
@@ -17,18 +18,18 @@ namespace qtet {
 
 class RecordWriter {
  public:
-  /// `history` must outlive it.
-  RecordWriter(const FusionHistory& history, CodecId valueCodec);
+  /// `history` must outlive it. `stop` is asked at every record.
+  RecordWriter(const FusionHistory& history, CodecId valueCodec, std::stop_token stop);
   RecordWriter(const RecordWriter&) = delete;
   RecordWriter& operator=(const RecordWriter&) = delete;
 
-  /// Writes the base mesh into chunk 0, which stays open. Errors: bad-value. REQUIRES: called once
+  /// Writes the base mesh into chunk 0, which stays open. Errors: bad-value, cancelled. REQUIRES: called once
   /// and first.
   Status base();
   /// Writes the split flag of v in the level in hand (GrowingMesh::beginLevel). The fusion that its
   /// split undoes, or nullptr. REQUIRES: v may split.
   [[nodiscard]] const Fusion* flag(VertexId v);
-  /// Writes the record of v and splits it. Errors: bad-value. REQUIRES: flag(v) gave `fusion`.
+  /// Writes the record of v and splits it. Errors: bad-value, cancelled. REQUIRES: flag(v) gave `fusion`.
   Status record(VertexId v, Fusion fusion);
   /// Ends the open chunk.
   Status closeChunk(std::uint32_t lastLevel, std::uint32_t endSlot) {
@@ -51,6 +52,7 @@ class RecordWriter {
 
  private:
   const FusionHistory& history_;
+  std::stop_token stop_;
   ChunkWriter chunks_;
   MirrorMesh mirror_;
   SplitTruths truths_;

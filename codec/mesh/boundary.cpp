@@ -6,10 +6,11 @@
 
 namespace qtet {
 
-std::vector<Triangle> boundaryOf(std::span<const Tetrahedron> tetrahedra) {
+std::vector<Triangle> boundaryOf(std::span<const Tetrahedron> tetrahedra,
+                                 const std::atomic<bool>* stopped) {
   // bit i: no other cell has the face opposite corner i
   std::vector<std::uint8_t> open(tetrahedra.size(), 0);
-  FaceGroups(tetrahedra).forEach([&](std::span<const FaceSide> sides) {
+  FaceGroups(tetrahedra, stopped).forEach([&](std::span<const FaceSide> sides) {
     if (sides.size() == 1)
       open[cellOf(sides[0])] |= static_cast<std::uint8_t>(1u << oppositeCornerOf(sides[0]));
   });

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <span>
 #include <vector>
 
@@ -22,9 +23,10 @@ inline constexpr std::array<std::array<int, 3>, 4> kCellFaces{
 
 /// The faces of exactly one cell, ordered by the cell's slot and then by the opposite corner 0..3,
 /// each as cellFace gives it. Linear time; memory grows with the largest vertex id, so ids from
-/// outside are compared with the vertex count before. REQUIRES: no kGhost among the vertices, four
-/// different vertices a cell.
-[[nodiscard]] std::vector<Triangle> boundaryOf(std::span<const Tetrahedron> tetrahedra);
+/// outside are compared with the vertex count before. Once `stopped` is true it gives up, and the
+/// faces are unspecified. REQUIRES: no kGhost among the vertices, four different vertices a cell.
+[[nodiscard]] std::vector<Triangle> boundaryOf(std::span<const Tetrahedron> tetrahedra,
+                                               const std::atomic<bool>* stopped = nullptr);
 
 /// A surface as a mesh of its own: the vertices that it uses, in their order, and its triangles as
 /// indices into them.

@@ -28,15 +28,23 @@ std::vector<std::uint64_t> bucketStarts(std::span<const Tetrahedron> tetrahedra)
   return begin;
 }
 
+// Cells or vertices between two looks at whether to stop.
+constexpr std::size_t kLookEvery = 4096;
+
 }  // namespace
 
-FaceGroups::FaceGroups(std::span<const Tetrahedron> tetrahedra) : faces_(tetrahedra.size() * 4) {
+FaceGroups::FaceGroups(std::span<const Tetrahedron> tetrahedra, const std::atomic<bool>* stopped)
+    : faces_(tetrahedra.size() * 4) {
   if (tetrahedra.empty()) return;
+  const auto isStopped = [stopped](std::size_t at) {
+    return at % kLookEvery == 0 && stopped != nullptr && *stopped;
+  };
   // A counting sort by the smallest vertex first: what is left to compare are some twenty faces a
   // bucket.
   const std::vector<std::uint64_t> begin = bucketStarts(tetrahedra);
   std::vector<std::uint64_t> next(begin.begin(), begin.end() - 1);
   for (std::size_t cell = 0; cell < tetrahedra.size(); ++cell) {
+    if (isStopped(cell)) break;
     for (int i = 0; i < 4; ++i) {
       const Triangle face = sorted(cellFace(tetrahedra[cell], i));
       faces_[next[face[0]]++] = {face[0], face[1], face[2],
@@ -44,6 +52,7 @@ FaceGroups::FaceGroups(std::span<const Tetrahedron> tetrahedra) : faces_(tetrahe
     }
   }
   for (std::size_t v = 0; v + 1 < begin.size(); ++v) {
+    if (isStopped(v)) break;
     std::sort(faces_.begin() + static_cast<std::ptrdiff_t>(begin[v]),
               faces_.begin() + static_cast<std::ptrdiff_t>(begin[v + 1]),
               [](const Face& a, const Face& b) {
@@ -51,6 +60,7 @@ FaceGroups::FaceGroups(std::span<const Tetrahedron> tetrahedra) : faces_(tetrahe
                        std::tie(b.middle, b.largest, b.side);
               });
   }
+  if (stopped != nullptr && *stopped) faces_.clear();
 }
 
 }  // namespace qtet

@@ -1,6 +1,7 @@
 // The cells round each face of a tetrahedral mesh, in linear time and the same order everywhere.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -20,8 +21,10 @@ using FaceSide = std::uint64_t;
 class FaceGroups {
  public:
   /// Memory grows with the largest vertex id, so ids from outside are compared with the vertex
-  /// count before. REQUIRES: no kGhost among the vertices, four different vertices a cell.
-  explicit FaceGroups(std::span<const Tetrahedron> tetrahedra);
+  /// count before. Once `stopped` is true it gives up, and there are no groups. REQUIRES: no kGhost
+  /// among the vertices, four different vertices a cell.
+  explicit FaceGroups(std::span<const Tetrahedron> tetrahedra,
+                      const std::atomic<bool>* stopped = nullptr);
 
   /// Calls visit(std::span<const FaceSide>) once a face: one side on the boundary, two inside, more
   /// where the mesh is not a solid.

@@ -6,6 +6,7 @@
 
 #include "codec/mesh/boundary.h"
 #include "simplify/mesh/cell_faces.h"
+#include "simplify/mesh/stopping.h"
 #include "simplify/mesh/surface_manifold.h"
 #include "simplify/mesh/volume_sign.h"
 
@@ -18,7 +19,12 @@ struct Cleaning {
   CleanReport report;
   std::vector<std::uint64_t> cellNames;
   std::vector<std::uint64_t> pointNames;
+  const std::stop_token& stop;
+  StopFlag stopped{stop};
 };
+
+// Cells between two looks at whether to stop.
+constexpr std::size_t kLookEvery = 65536;
 
 std::vector<std::uint64_t> countedUp(std::size_t count) {
   std::vector<std::uint64_t> out(count);
@@ -63,7 +69,9 @@ void dropRepeatedVertexCells(Cleaning& cleaning) {
 }
 
 void dropDuplicateCells(Cleaning& cleaning) {
-  const std::vector<CellId> duplicates = duplicatesIn(cleaning.mesh.tetrahedra);
+  const std::vector<CellId> duplicates =
+      duplicatesIn(cleaning.mesh.tetrahedra, cleaning.stopped.get());
+  throwIfStopped(cleaning.stop);
   if (duplicates.empty()) return;
   std::vector<char> drop(cleaning.mesh.tetrahedra.size(), 0);
   for (const CellId cell : duplicates) {
@@ -91,6 +99,7 @@ Result<std::vector<CellId>> orientComponent(CellId first, const Cleaning& cleani
   std::vector<CellId> component{first};
   sense[first] = kAsStored;
   for (std::size_t next = 0; next < component.size(); ++next) {
+    if (next % kLookEvery == 0) throwIfStopped(cleaning.stop);
     const CellId cell = component[next];
     for (std::size_t i = 0; i < 4; ++i) {
       const CellId other = neighbours[cell].across[i];
@@ -125,7 +134,9 @@ void turn(Cleaning& cleaning, const std::vector<CellId>& component, const std::v
 }
 
 Status orient(Cleaning& cleaning) {
-  const auto neighbours = neighboursOf(cleaning.mesh.tetrahedra, cleaning.cellNames);
+  const auto neighbours =
+      neighboursOf(cleaning.mesh.tetrahedra, cleaning.cellNames, cleaning.stopped.get());
+  throwIfStopped(cleaning.stop);
   if (!neighbours) return std::unexpected(neighbours.error());
 
   std::vector<Tetrahedron>& cells = cleaning.mesh.tetrahedra;
@@ -138,6 +149,7 @@ Status orient(Cleaning& cleaning) {
     ++cleaning.report.components;
   }
   for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (i % kLookEvery == 0) throwIfStopped(cleaning.stop);
     if (turned[i]) {
       std::swap(cells[i][2], cells[i][3]);
       cleaning.report.reorientedCells.add(cleaning.cellNames[i]);
@@ -193,7 +205,10 @@ void reportCoincidentPoints(Cleaning& cleaning) {
 }
 
 void reportNonManifoldParts(Cleaning& cleaning) {
-  const NonManifoldParts parts = nonManifoldPartsOf(boundaryOf(cleaning.mesh.tetrahedra));
+  const std::vector<Triangle> boundary =
+      boundaryOf(cleaning.mesh.tetrahedra, cleaning.stopped.get());
+  throwIfStopped(cleaning.stop);
+  const NonManifoldParts parts = nonManifoldPartsOf(boundary);
   for (const auto& [low, high] : parts.edges) {
     cleaning.report.nonManifoldEdges.add(cleaning.pointNames[low]);
     if (cleaning.report.nonManifoldEdges.count <= Occurrences::kShown)
@@ -201,6 +216,23 @@ void reportNonManifoldParts(Cleaning& cleaning) {
   }
   for (const VertexId v : parts.vertices)
     cleaning.report.nonManifoldVertices.add(cleaning.pointNames[v]);
+}
+
+Result<CleanReport> clean(TetMesh& mesh, const std::stop_token& stop) {
+  Cleaning cleaning{
+      mesh, {}, countedUp(mesh.tetrahedra.size()), countedUp(mesh.points.size()), stop};
+  dropRepeatedVertexCells(cleaning);
+  dropDuplicateCells(cleaning);
+  if (mesh.tetrahedra.empty()) {
+    return fail(ErrorCode::kBadInput,
+                "no cell has four different vertices, so there is nothing to simplify; export the "
+                "volume mesh again");
+  }
+  if (Status oriented = orient(cleaning); !oriented) return std::unexpected(oriented.error());
+  dropUnusedPoints(cleaning);
+  reportCoincidentPoints(cleaning);
+  reportNonManifoldParts(cleaning);
+  return std::move(cleaning.report);
 }
 
 /// "WHAT: 77 (cells 3, 6, ...)"
@@ -232,20 +264,8 @@ std::vector<std::string> CleanReport::sentences() const {
   return out;
 }
 
-Result<CleanReport> cleanMesh(TetMesh& mesh) {
-  Cleaning cleaning{mesh, {}, countedUp(mesh.tetrahedra.size()), countedUp(mesh.points.size())};
-  dropRepeatedVertexCells(cleaning);
-  dropDuplicateCells(cleaning);
-  if (mesh.tetrahedra.empty()) {
-    return fail(ErrorCode::kBadInput,
-                "no cell has four different vertices, so there is nothing to simplify; export the "
-                "volume mesh again");
-  }
-  if (Status oriented = orient(cleaning); !oriented) return std::unexpected(oriented.error());
-  dropUnusedPoints(cleaning);
-  reportCoincidentPoints(cleaning);
-  reportNonManifoldParts(cleaning);
-  return std::move(cleaning.report);
+Result<CleanReport> cleanMesh(TetMesh& mesh, const std::stop_token& stop) {
+  return orCancelled([&] { return clean(mesh, stop); });
 }
 
 }  // namespace qtet

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -45,8 +46,8 @@ struct CleanReport {
 
 /// Cleans in place: drops cells and points with their field values, orders each cell's vertices;
 /// what remains keeps its order. Errors: bad-input (no cell remains; a face of more than two cells;
-/// a component that cannot be oriented), cells named as numbered before. REQUIRES: vertex ids below
-/// the number of points, finite coordinates.
-[[nodiscard]] Result<CleanReport> cleanMesh(TetMesh& mesh);
+/// a component that cannot be oriented), cells named as numbered before; cancelled (the mesh is
+/// unspecified then). REQUIRES: vertex ids below the number of points, finite coordinates.
+[[nodiscard]] Result<CleanReport> cleanMesh(TetMesh& mesh, const std::stop_token& stop = {});
 
 }  // namespace qtet

@@ -9,10 +9,14 @@
 #include "proto/limits.h"
 #include "simplify/clean/quantise_field.h"
 #include "simplify/mesh/missing_values.h"
+#include "simplify/mesh/stopping.h"
 #include "simplify/mesh/volume_sign.h"
 
 namespace qtet {
 namespace {
+
+// Cells between two looks at whether to stop.
+constexpr std::size_t kLookEvery = 65536;
 
 struct Box {
   Position low{}, high{};
@@ -54,10 +58,11 @@ std::vector<LatticePoint> onLattice(const std::vector<Position>& points, const L
   return out;
 }
 
-std::vector<signed char> signsOf(const TetMesh& mesh) {
+std::vector<signed char> signsOf(const TetMesh& mesh, const std::stop_token& stop) {
   std::vector<signed char> signs;
   signs.reserve(mesh.tetrahedra.size());
   for (const Tetrahedron& t : mesh.tetrahedra) {
+    if (signs.size() % kLookEvery == 0) throwIfStopped(stop);
     signs.push_back(static_cast<signed char>(
         volumeSign(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]])));
   }
@@ -67,9 +72,10 @@ std::vector<signed char> signsOf(const TetMesh& mesh) {
 /// Cells that were positive and are not, or flat and are inverted.
 Occurrences worseCells(const std::vector<Tetrahedron>& cells,
                        const std::vector<signed char>& before,
-                       const std::vector<LatticePoint>& points) {
+                       const std::vector<LatticePoint>& points, const std::stop_token& stop) {
   Occurrences worse;
   for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (i % kLookEvery == 0) throwIfStopped(stop);
     if (before[i] < 0) continue;
     const Tetrahedron& t = cells[i];
     const int now = orientation(points[t[0]], points[t[1]], points[t[2]], points[t[3]]);
@@ -106,13 +112,15 @@ Status checkBox(const Box& box) {
 }
 
 /// Finds the bits and places the points. REQUIRES: checked options and box.
-void placePoints(const TetMesh& mesh, const Box& box, QuantisedMesh& out) {
-  const std::vector<signed char> before = signsOf(mesh);
+void placePoints(const TetMesh& mesh, const Box& box, const std::stop_token& stop,
+                 QuantisedMesh& out) {
+  const std::vector<signed char> before = signsOf(mesh, stop);
   QuantiseReport& report = out.report;
   for (int bits = report.requestedBits;; ++bits) {
+    throwIfStopped(stop);
     out.mesh.lattice = latticeOf(box, bits);
     out.mesh.points = onLattice(mesh.points, out.mesh.lattice);
-    report.worseCells = worseCells(mesh.tetrahedra, before, out.mesh.points);
+    report.worseCells = worseCells(mesh.tetrahedra, before, out.mesh.points, stop);
     if (bits == report.requestedBits) report.worseAtRequestedBits = report.worseCells.count;
     if (report.worseCells.count == 0 || bits == kMaxPositionBits) break;
   }
@@ -130,8 +138,9 @@ void placePoints(const TetMesh& mesh, const Box& box, QuantisedMesh& out) {
   }
 }
 
-Status placeFields(const TetMesh& mesh, int bits, QuantisedMesh& out) {
+Status placeFields(const TetMesh& mesh, int bits, const std::stop_token& stop, QuantisedMesh& out) {
   for (const MeshField& field : mesh.fields) {
+    throwIfStopped(stop);
     const std::string name = (isCellField(field) ? "cell field " : "field ") + field.name;
     Result<QuantisedField> quantised = quantiseField(field, bits);
     if (!quantised) return std::unexpected(quantised.error());
@@ -155,21 +164,28 @@ Status placeFields(const TetMesh& mesh, int bits, QuantisedMesh& out) {
   return {};
 }
 
-}  // namespace
-
-Result<QuantisedMesh> quantise(const TetMesh& mesh, const QuantiseOptions& options) {
+Result<QuantisedMesh> place(const TetMesh& mesh, const QuantiseOptions& options,
+                            const std::stop_token& stop) {
   if (Status checked = checkOptions(options); !checked) return std::unexpected(checked.error());
   const Box box = boxOf(mesh.points);
   if (Status checked = checkBox(box); !checked) return std::unexpected(checked.error());
 
   QuantisedMesh out;
   out.report.requestedBits = options.positionBits;
-  placePoints(mesh, box, out);
+  placePoints(mesh, box, stop, out);
   out.mesh.tetrahedra = mesh.tetrahedra;
-  out.mesh.boundary = boundaryOf(mesh.tetrahedra);
-  if (Status placed = placeFields(mesh, options.fieldBits, out); !placed)
+  out.mesh.boundary = boundaryOf(mesh.tetrahedra, StopFlag(stop).get());
+  throwIfStopped(stop);
+  if (Status placed = placeFields(mesh, options.fieldBits, stop, out); !placed)
     return std::unexpected(placed.error());
   return out;
+}
+
+}  // namespace
+
+Result<QuantisedMesh> quantise(const TetMesh& mesh, const QuantiseOptions& options,
+                               const std::stop_token& stop) {
+  return orCancelled([&] { return place(mesh, options, stop); });
 }
 
 }  // namespace qtet

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -43,8 +44,9 @@ struct QuantisedMesh {
 /// component's extent / (2^bits - 1) and a minimum a component. Integer fields take step 1 and lose
 /// nothing where kMaxFieldBits bits hold their range. Points and cells keep their order; the
 /// boundary is boundaryOf's. Errors: bad-value (bits outside their limits), bad-input (extents that
-/// a double cannot hold or divide). REQUIRES: a mesh that cleanMesh has passed.
+/// a double cannot hold or divide), cancelled. REQUIRES: a mesh that cleanMesh has passed.
 [[nodiscard]] Result<QuantisedMesh> quantise(const TetMesh& mesh,
-                                             const QuantiseOptions& options = {});
+                                             const QuantiseOptions& options = {},
+                                             const std::stop_token& stop = {});
 
 }  // namespace qtet

@@ -1,12 +1,8 @@
 #include "simplify/commands/command_fusion.h"
 
-#include <algorithm>
 #include <limits>
 
-#include "proto/field_key.h"
 #include "simplify/commands/command_measure.h"
-#include "simplify/fuse/boundary_weight.h"
-#include "simplify/mesh/tet_mesh.h"
 #include "simplify/mesh/workers.h"
 
 namespace qtet {
@@ -17,18 +13,6 @@ constexpr int kMaxThreads = 1024;
 // alone.
 constexpr double kMaxWeight = 1e6;
 constexpr double kMaxBoundaryWeight = 1e9;
-
-/// Why a field does not count, or nothing.
-std::string whyNot(const QuantisedMesh& quantised, std::size_t f, bool named) {
-  const FieldInfo& info = quantised.mesh.fields[f];
-  const auto& values = quantised.mesh.values[f];
-  if (values.empty() || std::ranges::all_of(values, [&](std::int32_t v) { return v == values[0]; }))
-    return "is constant";
-  if (!isFloatType(info.type) && !named)
-    return "is one of integers, which may be labels (--field-weight " + info.name +
-           "=1 makes it count)";
-  return {};
-}
 
 PlacementRule placementRuleOf(const std::string& name) {
   if (name == "optimal") return PlacementRule::kOptimal;
@@ -91,16 +75,16 @@ void addFusionOptions(boost::program_options::options_description& options) {
       "threads, as many as there are processors at most; the result does not depend on it");
 }
 
-FusionRequest fusionRequestOf(const ParsedWords& parsed) {
-  FusionRequest out;
-  out.options.targetRatio = parsed.number("target-ratio", 0, 1);
+void takeFusionOptions(const ParsedWords& parsed, PipelineOptions& out) {
+  FusionOptions& fusion = out.fusion;
+  fusion.targetRatio = parsed.number("target-ratio", 0, 1);
   if (parsed.has("boundary-weight"))
-    out.options.cost.boundaryWeight = parsed.number("boundary-weight", 0, kMaxBoundaryWeight);
-  out.options.shapeWeight = parsed.number("shape-weight", 0, kMaxWeight);
-  out.options.placement = placementRuleOf(parsed.get<std::string>("placement"));
-  out.options.envelopeTolerance = parsed.number("envelope-tolerance", 0, 1);
-  out.options.threads = threadsAtOnce(parsed.integer("threads", 1, kMaxThreads));
-  out.options.bands.cellsPerPacket = cellsPerPacketOf(parsed);
+    fusion.cost.boundaryWeight = parsed.number("boundary-weight", 0, kMaxBoundaryWeight);
+  fusion.shapeWeight = parsed.number("shape-weight", 0, kMaxWeight);
+  fusion.placement = placementRuleOf(parsed.get<std::string>("placement"));
+  fusion.envelopeTolerance = parsed.number("envelope-tolerance", 0, 1);
+  fusion.threads = threadsAtOnce(parsed.integer("threads", 1, kMaxThreads));
+  fusion.bands.cellsPerPacket = cellsPerPacketOf(parsed);
   if (parsed.has("field-weight"))
     for (const std::string& text : parsed.get<std::vector<std::string>>("field-weight")) {
       out.fieldWeights.push_back(parseNamedNumber(
@@ -109,57 +93,6 @@ FusionRequest fusionRequestOf(const ParsedWords& parsed) {
         throw UsageError("--field-weight '" + text + "' is above 1,000,000");
     }
   if (parsed.has("preserve-regions")) out.regions = parsed.get<std::string>("preserve-regions");
-  return out;
-}
-
-Result<FusionOptions> fusionOptionsFor(const FusionRequest& request, const QuantisedMesh& quantised,
-                                       std::vector<std::string>& notes) {
-  FusionOptions out = request.options;
-  const std::vector<FieldInfo>& fields = quantised.mesh.fields;
-  const auto meantBy = [&](const std::string& name, bool ofCells) {
-    std::vector<std::uint32_t> meant = fieldsOfKey(fields, name);
-    std::erase_if(meant, [&](std::uint32_t f) { return isCellField(fields[f]) != ofCells; });
-    return meant;
-  };
-  std::vector<std::optional<double>> named(fields.size());
-  for (const auto& [name, weight] : request.fieldWeights) {
-    const std::vector<std::uint32_t> meant = meantBy(name, false);
-    if (meant.empty())
-      return fail(ErrorCode::kNotFound,
-                  "--field-weight: the mesh carries no point field '" + name + "'");
-    for (const std::uint32_t f : meant) named[f] = weight;
-  }
-  out.cost.fieldWeights.assign(fields.size(), 0);
-  std::size_t components = 0;
-  for (std::size_t f = 0; f < fields.size(); ++f) {
-    if (isCellField(fields[f]) || named[f] == 0) continue;
-    std::string why = whyNot(quantised, f, named[f].has_value());
-    if (why.empty() && components + fields[f].components > kMaxCostComponents)
-      why = "comes after " + std::to_string(kMaxCostComponents) +
-            " components that count, and more cannot";
-    if (why.empty()) components += fields[f].components;
-    if (why.empty())
-      out.cost.fieldWeights[f] = named[f].value_or(1);
-    else
-      notes.push_back("field " + fields[f].name + " " + why +
-                      ": it does not count when cells are fused");
-  }
-  if (!out.cost.boundaryWeight)
-    out.cost.boundaryWeight =
-        balancedBoundaryWeight(quantised.mesh, costPartsOf(quantised.mesh, out.cost.fieldWeights));
-  if (request.regions) {
-    const std::vector<std::uint32_t> meant = meantBy(*request.regions, true);
-    if (meant.size() != 1) {
-      return fail(
-          ErrorCode::kNotFound,
-          "--preserve-regions: the mesh carries " +
-              std::string(meant.empty() ? "no cell field '" : "several steps of the cell field '") +
-              *request.regions +
-              (meant.empty() ? "'; see that --fields includes it" : "'; name one, NAME@TIME"));
-    }
-    out.regionField = meant.front();
-  }
-  return out;
 }
 
 }  // namespace qtet

@@ -1,25 +1,18 @@
 #include <chrono>
 #include <iomanip>
-#include <sstream>
+#include <map>
+#include <optional>
 
 #include "codec/files/atomic_file.h"
-#include "codec/log/log_index.h"
-#include "codec/log/log_manifest.h"
-#include "codec/log/log_writer.h"
 #include "proto/checksum.h"
 #include "proto/limits.h"
-#include "proto/manifest.h"
-#include "simplify/clean/clean_mesh.h"
 #include "simplify/commands/closing_report.h"
 #include "simplify/commands/command_fusion.h"
 #include "simplify/commands/command_line.h"
 #include "simplify/commands/command_measure.h"
 #include "simplify/commands/command_read.h"
 #include "simplify/commands/progress.h"
-#include "simplify/fuse/cost_parts.h"
-#include "simplify/fuse/paper_fusion.h"
-#include "simplify/log/kept_input.h"
-#include "simplify/mesh/missing_values.h"
+#include "simplify/pipeline/pipeline.h"
 #include "simplify/read/read_mesh.h"
 
 namespace qtet {
@@ -27,13 +20,8 @@ namespace {
 
 struct Request {
   std::string input, output;
-  std::string algorithm;
   ReadOptions read;
-  QuantiseOptions quantise;
-  FusionRequest fusion;
-  std::optional<MeasureOptions> measure;
-  CodecId valueCodec = CodecId::kDraco;
-  KeepOptions keep;
+  PipelineOptions pipeline;
 };
 
 CodecId valueCodecOf(const std::string& name) {
@@ -42,32 +30,42 @@ CodecId valueCodecOf(const std::string& name) {
   throw UsageError("--geometry-codec '" + name + "' is not known; give draco or adaptive");
 }
 
+Algorithm algorithmOf(const std::string& name) {
+  if (name == "qtet") return Algorithm::kQtet;
+  if (name == "paper") return Algorithm::kPaper;
+  throw UsageError("--algorithm '" + name + "' is not known; give qtet or paper");
+}
+
 Request requestOf(const ParsedWords& parsed) {
   Request request;
   request.input = parsed.get<std::string>("IN");
   request.output = parsed.get<std::string>("output");
-  request.algorithm = parsed.get<std::string>("algorithm");
-  if (request.algorithm != "qtet" && request.algorithm != "paper")
-    throw UsageError("--algorithm '" + request.algorithm + "' is not known; give qtet or paper");
+  PipelineOptions& options = request.pipeline;
+  options.source = std::filesystem::path(request.input).filename().string();
+  options.algorithm = algorithmOf(parsed.get<std::string>("algorithm"));
   request.read = readOptionsOf(parsed);
   request.read.fields = parseFieldNames(parsed.get<std::string>("fields"));
-  request.quantise.positionBits =
+  options.quantise.positionBits =
       parsed.integer("position-bits", kMinPositionBits, kMaxPositionBits);
-  request.quantise.fieldBits = parsed.integer("field-bits", kMinFieldBits, kMaxFieldBits);
-  request.fusion = fusionRequestOf(parsed);
-  if (request.algorithm == "paper" &&
-      (request.fusion.regions || request.fusion.options.envelopeTolerance > 0 ||
-       !request.fusion.fieldWeights.empty()))
-    throw UsageError(
-        "--algorithm paper knows no --preserve-regions, --envelope-tolerance or --field-weight; "
-        "leave them out");
-  if (request.algorithm == "paper" && request.fusion.options.bands.cellsPerPacket > 0)
-    throw UsageError("--algorithm paper knows no --layout regions; leave it out");
-  request.measure = measureOptionsOf(parsed);
-  request.valueCodec = valueCodecOf(parsed.get<std::string>("geometry-codec"));
-  request.keep = {parsed.has("keep-order"), parsed.has("lossless")};
+  options.quantise.fieldBits = parsed.integer("field-bits", kMinFieldBits, kMaxFieldBits);
+  takeFusionOptions(parsed, options);
+  if (Status checked = checkOptions(options); !checked) throw UsageError(checked.error().message);
+  options.measure = measureOptionsOf(parsed);
+  options.valueCodec = valueCodecOf(parsed.get<std::string>("geometry-codec"));
+  options.keep = {parsed.has("keep-order"), parsed.has("lossless")};
   return request;
 }
+
+/// What a stage is called in JSON, and what it does, for people who wait; kKeep goes on with what
+/// kEncode began.
+struct StageName {
+  const char* name;
+  const char* doing;
+};
+const std::map<Stage, StageName> kStages{
+    {Stage::kClean, {"clean", "cleaning"}},          {Stage::kQuantise, {"quantise", "quantising"}},
+    {Stage::kSimplify, {"simplify", "simplifying"}}, {Stage::kMeasure, {"measure", "measuring"}},
+    {Stage::kEncode, {"encode", "encoding"}},        {Stage::kKeep, {"keep", nullptr}}};
 
 /// Wall time of each stage, by name, in the order of doing.
 class Stopwatch {
@@ -76,6 +74,11 @@ class Stopwatch {
     const Clock::time_point now = Clock::now();
     seconds_[name] = std::chrono::duration<double>(now - last_).count();
     last_ = now;
+  }
+  /// The stages of a pipeline that has just ended.
+  void lap(const PipelineReport& report) {
+    for (const auto& [stage, seconds] : report.seconds) seconds_[kStages.at(stage).name] = seconds;
+    last_ = Clock::now();
   }
   [[nodiscard]] OrderedJson seconds() const {
     OrderedJson out = seconds_;
@@ -109,8 +112,9 @@ OrderedJson toJson(const CleanReport& report) {
 }
 
 /// Bytes and bits a tetrahedron of each stream.
-void addSizes(const EncodedLog& log, const Manifest& manifest, OrderedJson& report) {
-  const LogStatistics& statistics = log.statistics;
+void addSizes(const PipelineOutput& made, OrderedJson& report) {
+  const LogStatistics& statistics = made.report.statistics;
+  const Manifest& manifest = made.report.manifest;
   const std::uint64_t tetrahedra = manifest.levels.back().tetrahedra;
   const auto bits = [&](std::uint64_t bytes) {
     return 8.0 * static_cast<double>(bytes) / static_cast<double>(tetrahedra);
@@ -120,7 +124,7 @@ void addSizes(const EncodedLog& log, const Manifest& manifest, OrderedJson& repo
     fieldBytes[fieldKey(manifest, f)] = statistics.fieldBytes[f];
     fieldBits[fieldKey(manifest, f)] = bits(statistics.fieldBytes[f]);
   }
-  report["bytes"] = log.bytes.size();
+  report["bytes"] = made.log.size();
   report["bytesOf"] = {{"head", statistics.headBytes},
                        {"connectivity", statistics.structureBytes},
                        {"childBits", statistics.childBytes},
@@ -129,69 +133,7 @@ void addSizes(const EncodedLog& log, const Manifest& manifest, OrderedJson& repo
   report["bitsPerTetrahedron"] = {{"connectivity", bits(statistics.structureBytes)},
                                   {"positions", bits(statistics.positionBytes)},
                                   {"fields", fieldBits},
-                                  {"total", bits(log.bytes.size())}};
-}
-
-/// The input on the lattice, and what was said on the way there.
-struct Prepared {
-  std::uint64_t cellsIn = 0;
-  ReadReport read;
-  CleanReport clean;
-  QuantisedMesh quantised;
-  Lattice lattice;  ///< the quantised mesh's, which the simplifier takes
-  KeptInput kept;   ///< empty where nothing of the input is kept
-  std::vector<std::string> fusionNotes;
-  /// That the fusions were ordered by, where there were fields to weigh it against.
-  std::optional<double> boundaryWeight;
-
-  [[nodiscard]] std::vector<std::string> notes() const {
-    std::vector<std::string> out = read.notes;
-    for (const std::string& sentence : clean.sentences()) out.push_back(sentence);
-    out.insert(out.end(), quantised.report.notes.begin(), quantised.report.notes.end());
-    out.insert(out.end(), fusionNotes.begin(), fusionNotes.end());
-    return out;
-  }
-};
-
-/// Reads, cleans and quantises. The mesh in floats is gone afterwards: large meshes need the room.
-Result<Prepared> prepare(const Request& request, Progress& progress, Stopwatch& watch) {
-  progress.stage("reading " + request.input);
-  Result<ReadMesh> read = readMesh(request.input, request.read);
-  if (!read) return std::unexpected(read.error());
-  watch.lap("read");
-  Prepared out;
-  out.cellsIn = read->mesh.tetrahedra.size();
-
-  progress.stage("cleaning");
-  const std::vector<Tetrahedron> asStored =
-      request.keep.any() ? read->mesh.tetrahedra : std::vector<Tetrahedron>{};
-  Result<CleanReport> cleaned = cleanMesh(read->mesh);
-  if (!cleaned) return std::unexpected(cleaned.error());
-  watch.lap("clean");
-
-  progress.stage("quantising");
-  Result<QuantisedMesh> quantised = quantise(read->mesh, request.quantise);
-  if (!quantised) return std::unexpected(quantised.error());
-  watch.lap("quantise");
-  if (request.keep.any()) out.kept = {request.keep, asRead(read->mesh, asStored, *cleaned)};
-  out.read = std::move(read->report);
-  out.clean = std::move(*cleaned);
-  out.quantised = std::move(*quantised);
-  out.lattice = out.quantised.mesh.lattice;
-  return out;
-}
-
-/// The known error of each level; with bounds, the history ends where they would be passed.
-Result<std::vector<LevelError>> measure(const Request& request, FusionHistory& history,
-                                        Progress& progress, Stopwatch& watch) {
-  if (!request.measure) return {};
-  progress.stage("measuring");
-  MeasureOptions options = *request.measure;
-  options.threads = request.fusion.options.threads;
-  options.progress = [&](double fraction) { progress.update(fraction); };
-  Result<std::vector<LevelError>> errors = measureLevels(history, options);
-  watch.lap("measure");
-  return errors;
+                                  {"total", bits(made.log.size())}};
 }
 
 OrderedJson toJson(const PaperFigures& figures) {
@@ -211,117 +153,76 @@ OrderedJson toJson(const PaperFigures& figures) {
             {"few", refused.few}}}};
 }
 
-/// Simplifies by the algorithm asked for; the paper's leaves its figures in `paper`.
-Result<FusionHistory> fuseBy(const Request& request, LatticeMesh&& mesh,
-                             const FusionOptions& options, OrderedJson& paper) {
-  if (request.algorithm != "paper") return simplify(std::move(mesh), options);
-  Result<PaperFusion> fused = simplifyAsThePaper(mesh, options);
-  if (!fused) return std::unexpected(fused.error());
-  paper = toJson(fused->figures);
-  return std::move(fused->history);
-}
-
-/// Simplifies, measures, encodes and writes.
-Result<EncodedLog> makeLog(const Request& request, Prepared& prepared, Progress& progress,
-                           Stopwatch& watch, OrderedJson& paper) {
-  progress.stage("simplifying");
-  Result<FusionOptions> fusion =
-      fusionOptionsFor(request.fusion, prepared.quantised, prepared.fusionNotes);
-  if (!fusion) return std::unexpected(fusion.error());
-  if (request.algorithm != "paper" &&
-      !costPartsOf(prepared.quantised.mesh, fusion->cost.fieldWeights).empty())
-    prepared.boundaryWeight = fusion->cost.boundaryWeight;
-  fusion->progress = [&](double fraction) { progress.update(fraction); };
-  Result<FusionHistory> history =
-      fuseBy(request, std::move(prepared.quantised.mesh), *fusion, paper);
-  if (!history) return std::unexpected(history.error());
-  watch.lap("simplify");
-  if (fusion->bands.cellsPerPacket > 0 && history->bands.ends.empty())
-    prepared.fusionNotes.push_back(
-        "the mesh is too small for more than one packet (--cells-per-packet): the log has the "
-        "layout stream");
-  const Result<std::vector<LevelError>> errors = measure(request, *history, progress, watch);
-  if (!errors) return std::unexpected(errors.error());
-  restoreMissing(*history, prepared.quantised.missing);
-
-  progress.stage("encoding");
-  LogWriterOptions options;
-  options.source = std::filesystem::path(request.input).filename().string();
-  options.generator = "qtet " QTET_VERSION;
-  options.progress = fusion->progress;
-  options.errors = *errors;
-  options.valueCodec = request.valueCodec;
-  Result<EncodedLog> log = encodeLog(*history, options);
-  if (!log) return log;
-  watch.lap("encode");
-  if (request.keep.any()) {
-    Result<Bytes> whole = withInput(*log, prepared.kept);
-    if (!whole) return std::unexpected(whole.error());
-    log->bytes = std::move(*whole);
-    watch.lap("keep");
-  }
-  if (Status written = writeFileAtomically(request.output, log->bytes); !written)
-    return std::unexpected(written.error());
-  watch.lap("write");
-  return log;
+/// A pipeline's progress, for the person who waits.
+auto shownBy(Progress& progress) {
+  return [&progress, shown = std::optional<Stage>()](Stage stage, double fraction) mutable {
+    const char* doing = kStages.at(stage).doing;
+    if (doing == nullptr) return;
+    if (stage == shown) return progress.update(fraction);
+    progress.stage(doing);
+    shown = stage;
+  };
 }
 
 /// The counts are those of the bytes written, not of what was meant to be written.
-Result<OrderedJson> reportOf(const Request& request, const Prepared& prepared,
-                             const EncodedLog& log, const Stopwatch& watch) {
-  const Result<LogIndex> index = LogIndex::parse(log.bytes);
-  if (!index) return std::unexpected(index.error());
-  const Result<Manifest> manifest = manifestOf(*index);
-  if (!manifest) return std::unexpected(manifest.error());
-
-  const QuantiseReport& quantised = prepared.quantised.report;
-  const Lattice& lattice = prepared.lattice;
-  const std::uint64_t full = manifest->levels.back().tetrahedra,
-                      base = manifest->levels.front().tetrahedra;
+OrderedJson reportOf(const Request& request, const ReadReport& read, const PipelineOutput& made,
+                     const Stopwatch& watch) {
+  const PipelineReport& from = made.report;
+  const Manifest& manifest = from.manifest;
+  const std::uint64_t full = manifest.levels.back().tetrahedra,
+                      base = manifest.levels.front().tetrahedra;
+  const bool isPaper = request.pipeline.algorithm == Algorithm::kPaper;
   OrderedJson report = {
       {"input", request.input},
       {"output", request.output},
-      {"algorithm", request.algorithm},
-      {"digest", sha256Hex(log.bytes)},
-      {"tetrahedra", {{"input", prepared.cellsIn}, {"full", full}, {"base", base}}},
-      {"vertices", manifest->levels.back().vertices},
+      {"algorithm", isPaper ? "paper" : "qtet"},
+      {"digest", sha256Hex(made.log)},
+      {"tetrahedra", {{"input", from.tetrahedraIn}, {"full", full}, {"base", base}}},
+      {"vertices", manifest.levels.back().vertices},
       {"percentRemoved", 100.0 * (1.0 - static_cast<double>(base) / static_cast<double>(full))},
-      {"layout", manifest->layout},
-      {"levels", manifest->levels.size() - 1},
-      {"chunks", index->chunks.size()}};
-  report["records"] = log.statistics.records;
-  if (prepared.boundaryWeight) {
-    report["boundaryWeight"] = *prepared.boundaryWeight;
-    report["hullWeight"] = *prepared.boundaryWeight;  // its name in version 0.1, until 0.3
+      {"layout", manifest.layout},
+      {"levels", manifest.levels.size() - 1},
+      {"chunks", from.index.chunks.size()}};
+  report["records"] = from.statistics.records;
+  if (from.boundaryWeight) {
+    report["boundaryWeight"] = *from.boundaryWeight;
+    report["hullWeight"] = *from.boundaryWeight;  // its name in version 0.1, until 0.3
   }
-  addSizes(log, *manifest, report);
-  if (!index->closing.empty()) report["kept"] = closingJson(*index, *manifest);
-  report["error"] = measureReport(request.measure, manifest->levels.front().error);
-  report["lattice"] = {{"bits", lattice.bits},
-                       {"requestedBits", quantised.requestedBits},
-                       {"step", lattice.step},
-                       {"origin", lattice.origin},
-                       {"worseCells", toJson(quantised.worseCells)}};
-  report["clean"] = toJson(prepared.clean);
-  report["read"] = readReport(prepared.read);
-  report["ignoredCells"] = prepared.read.ignoredCells;
-  report["ignoredFields"] = prepared.read.ignoredFields;
-  report["nonFiniteValues"] = quantised.nonFiniteValues;
+  addSizes(made, report);
+  if (!from.index.closing.empty()) report["kept"] = closingJson(from.index, manifest);
+  report["error"] = measureReport(request.pipeline.measure, manifest.levels.front().error);
+  report["lattice"] = {{"bits", manifest.latticeBits},
+                       {"requestedBits", from.quantise.requestedBits},
+                       {"step", manifest.latticeStep},
+                       {"origin", manifest.latticeOrigin},
+                       {"worseCells", toJson(from.quantise.worseCells)}};
+  report["clean"] = toJson(from.clean);
+  report["read"] = readReport(read);
+  report["ignoredCells"] = read.ignoredCells;
+  report["ignoredFields"] = read.ignoredFields;
+  report["nonFiniteValues"] = from.quantise.nonFiniteValues;
   report["seconds"] = watch.seconds();
-  report["notes"] = prepared.notes();
+  report["notes"] = read.notes;
+  for (const std::string& note : from.notes) report["notes"].push_back(note);
+  if (from.paper) report["paper"] = toJson(*from.paper);
   return report;
 }
 
 Result<OrderedJson> run(const Request& request, Progress& progress) {
   Stopwatch watch;
-  Result<Prepared> prepared = prepare(request, progress, watch);
-  if (!prepared) return std::unexpected(prepared.error());
-  OrderedJson paper;
-  const Result<EncodedLog> log = makeLog(request, *prepared, progress, watch, paper);
-  if (!log) return std::unexpected(log.error());
-  Result<OrderedJson> report = reportOf(request, *prepared, *log, watch);
-  if (report && !paper.is_null()) (*report)["paper"] = paper;
-  return report;
+  progress.stage("reading " + request.input);
+  Result<ReadMesh> read = readMesh(request.input, request.read);
+  if (!read) return std::unexpected(read.error());
+  watch.lap("read");
+  PipelineOptions options = request.pipeline;
+  options.progress = shownBy(progress);
+  const Result<PipelineOutput> made = simplifyToLog(std::move(read->mesh), options);
+  if (!made) return std::unexpected(made.error());
+  watch.lap(made->report);
+  if (Status written = writeFileAtomically(request.output, made->log); !written)
+    return std::unexpected(written.error());
+  watch.lap("write");
+  return reportOf(request, read->report, *made, watch);
 }
 
 void printReport(const OrderedJson& report, std::ostream& out) {

@@ -23,6 +23,7 @@ void LevelDecider::decide(LevelQueue& queue, LevelFusions& fusions, std::size_t 
   } const stop{proposals_};
   while (queue.nextKey() <= queue.limit() &&
          state_.mesh().liveTetrahedra() - fusions.going() > goal) {
+    workers_.throwIfStopped();
     const auto [owner, entry] = queue.pop();
     if (state_.touched().isLocked(owner)) continue;
     if (entry != LevelQueue::kBack) proposals_.comeTo(entry);

@@ -14,6 +14,7 @@
 #include "simplify/fuse/fusion_check.h"
 #include "simplify/fuse/fusion_cost.h"
 #include "simplify/fuse/fusion_mesh.h"
+#include "simplify/mesh/stopping.h"
 #include "simplify/mesh/tet_mesh.h"
 
 namespace qtet {
@@ -82,13 +83,17 @@ class PaperSimplifier {
         handles_(cells_),
         queued_(cells_, 1),
         nextLevel_(mesh.points.size(), 0) {
-    for (CellId c = 0; c < cells_; ++c) handles_[c] = heap_.push({keyOf(c), c});
+    for (CellId c = 0; c < cells_; ++c) {
+      throwIfStopped(options.stop);
+      handles_[c] = heap_.push({keyOf(c), c});
+    }
   }
 
   Result<PaperFusion> run() {
     const auto start = std::chrono::steady_clock::now();
     figures_.initialiseSeconds = secondsSince(start_);
     while (!heap_.empty() && mesh_.liveTetrahedra() > target_) {
+      throwIfStopped(options_.stop);
       const CellId cell = heap_.top().cell;
       heap_.pop();
       queued_[cell] = 0;
@@ -246,7 +251,7 @@ Result<PaperFusion> simplifyAsThePaper(const LatticeMesh& mesh, const FusionOpti
   if (mesh.tetrahedra.empty()) return fail(ErrorCode::kBadInput, "the mesh has no tetrahedra");
   if (!(options.targetRatio >= 0 && options.targetRatio <= 1))
     return fail(ErrorCode::kBadInput, "the target ratio must lie in 0..1");
-  return PaperSimplifier(mesh, options).run();
+  return orCancelled([&] { return PaperSimplifier(mesh, options).run(); });
 }
 
 }  // namespace qtet

@@ -15,6 +15,7 @@
 #include "simplify/fuse/level_fusions.h"
 #include "simplify/fuse/level_queue.h"
 #include "simplify/fuse/open_vertices.h"
+#include "simplify/mesh/stopping.h"
 #include "simplify/mesh/tet_mesh.h"
 #include "simplify/mesh/workers.h"
 
@@ -51,7 +52,7 @@ class Simplifier {
       : options_(options),
         original_(mesh.tetrahedra.size()),
         target_(static_cast<std::size_t>(options.targetRatio * static_cast<double>(original_))),
-        workers_(options.threads),
+        workers_(options.threads, options.stop),
         state_(mesh, options.regionField.value_or(FusionMesh::kNoRegions), options.cost, workers_),
         band_(options.bands.cellsPerPacket == 0
                   ? BandNodes()
@@ -198,14 +199,16 @@ Status check(const LatticeMesh& mesh, const FusionOptions& options) {
 
 Result<FusionHistory> simplify(const LatticeMesh& mesh, const FusionOptions& options) {
   if (Status checked = check(mesh, options); !checked) return std::unexpected(checked.error());
-  return Simplifier(mesh, options).run();
+  return orCancelled([&] { return Simplifier(mesh, options).run(); });
 }
 
 Result<FusionHistory> simplify(LatticeMesh&& mesh, const FusionOptions& options) {
   if (Status checked = check(mesh, options); !checked) return std::unexpected(checked.error());
-  Simplifier simplifier(mesh, options);
-  mesh = {};
-  return simplifier.run();
+  return orCancelled([&] {
+    Simplifier simplifier(mesh, options);
+    mesh = {};
+    return simplifier.run();
+  });
 }
 
 }  // namespace qtet

@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <optional>
+#include <stop_token>
 
 #include "codec/mesh/mesh.h"
 #include "codec/record/fusion_history.h"
@@ -43,11 +44,12 @@ struct FusionOptions {
   BandOptions bands;
   int threads = 1;                                ///< the result never depends on it
   std::function<void(double fraction)> progress;  ///< 0..1, called at most once a level
+  std::stop_token stop{};                         ///< asked many times a second
 };
 
 /// REQUIRES: `mesh` cleaned and quantised (clean_mesh.h, quantise.h). Vertices that no cell uses
 /// stay out of the history. Errors: bad-input (no tetrahedra, a ratio outside 0..1, weights that
-/// are negative or not one a field), limit-exceeded (too many levels).
+/// are negative or not one a field), limit-exceeded (too many levels), cancelled.
 [[nodiscard]] Result<FusionHistory> simplify(const LatticeMesh& mesh, const FusionOptions& options);
 /// The same for a mesh that is not needed any more: its memory is given back before the first
 /// fusion.

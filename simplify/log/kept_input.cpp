@@ -1,6 +1,7 @@
 #include "simplify/log/kept_input.h"
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -50,8 +51,8 @@ std::vector<T> gathered(const std::vector<T>& values, std::size_t components,
   return out;
 }
 
-std::vector<NewClosing> exactBlocks(const LatticeMesh& finest, const EncodedLog& log,
-                                    const TetMesh& input) {
+Result<std::vector<NewClosing>> exactBlocks(const LatticeMesh& finest, const EncodedLog& log,
+                                            const TetMesh& input, const std::stop_token& stop) {
   std::vector<NewClosing> out;
   std::vector<double> positions;
   for (const VertexId v : log.points)
@@ -64,6 +65,7 @@ std::vector<NewClosing> exactBlocks(const LatticeMesh& finest, const EncodedLog&
   block.insert(block.end(), stream.begin(), stream.end());
   out.push_back({ClosingKind::kExactPositions, 0, std::move(block)});
   for (std::uint32_t f = 0; f < finest.fields.size(); ++f) {
+    if (stop.stop_requested()) return cancelled();
     if (losesNothing(finest.fields[f])) continue;
     const std::vector<double> exact =
         gathered(input.fields[f].values, input.fields[f].components,
@@ -84,10 +86,13 @@ TetMesh asRead(const TetMesh& cleaned, const std::vector<Tetrahedron>& before,
   return out;
 }
 
-Result<Bytes> withInput(const EncodedLog& log, const KeptInput& input) {
+Result<Bytes> withInput(const EncodedLog& log, const KeptInput& input,
+                        const std::stop_token& stop) {
   Result<LogFile> file = LogFile::fromBytes(log.bytes);
   if (!file) return std::unexpected(file.error());
-  const Result<LatticeMesh> finest = meshAtLevel(*file, file->index().chunks.back().lastLevel);
+  const Result<LatticeMesh> finest =
+      meshAtLevel(*file, file->index().chunks.back().lastLevel, std::nullopt, stop);
+  if (stop.stop_requested()) return cancelled();
   if (!finest) return std::unexpected(finest.error());
   std::vector<NewClosing> blocks;
   if (input.options.order) {
@@ -96,9 +101,11 @@ Result<Bytes> withInput(const EncodedLog& log, const KeptInput& input) {
     blocks.push_back({ClosingKind::kPointOrder, 0, encodePointOrder(decoded, order.points)});
     blocks.push_back({ClosingKind::kCellOrder, 0, encodeCellOrder(decoded, order)});
   }
-  if (input.options.exact)
-    for (NewClosing& block : exactBlocks(*finest, log, input.mesh))
-      blocks.push_back(std::move(block));
+  if (input.options.exact) {
+    Result<std::vector<NewClosing>> exact = exactBlocks(*finest, log, input.mesh, stop);
+    if (!exact) return std::unexpected(exact.error());
+    std::ranges::move(*exact, std::back_inserter(blocks));
+  }
   return withClosing(*file, blocks);
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <stop_token>
 #include <vector>
 
 #include "codec/log/log_edit.h"
@@ -34,8 +35,9 @@ struct KeptInput {
                              const CleanReport& report);
 
 /// The closing blocks of what is kept, for a log just encoded; bytes with them. Errors:
-/// limit-exceeded, and all that decoding gives.
-[[nodiscard]] Result<Bytes> withInput(const EncodedLog& log, const KeptInput& input);
+/// limit-exceeded, cancelled, and all that decoding gives.
+[[nodiscard]] Result<Bytes> withInput(const EncodedLog& log, const KeptInput& input,
+                                      const std::stop_token& stop = {});
 
 /// What a log knows of its input, in the input's numbering where it has that, else in slot order.
 struct RestoredInput {

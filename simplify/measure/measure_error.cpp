@@ -9,6 +9,7 @@
 #include "proto/field_key.h"
 #include "simplify/measure/measure_boundary.h"
 #include "simplify/measure/measure_fields.h"
+#include "simplify/mesh/stopping.h"
 #include "simplify/mesh/workers.h"
 
 namespace qtet {
@@ -48,7 +49,7 @@ double roundedVolume(double kept) { return std::round(kept * kVolumeFigure) / kV
 class ErrorMeter {
  public:
   ErrorMeter(HistoryLevels& levels, const MeasureOptions& options, const Samples& samples)
-      : workers_(options.threads),
+      : workers_(options.threads, options.stop),
         mesh_(levels),
         boundary_(mesh_,
                   {samples.surface, samples.levelSurface, samples.grid, options.seed, &workers_}),
@@ -95,10 +96,7 @@ Result<std::vector<FieldBound>> fieldBounds(const FusionHistory& history,
   return out;
 }
 
-}  // namespace
-
-Result<std::vector<LevelError>> measureLevels(FusionHistory& history,
-                                              const MeasureOptions& options) {
+Result<std::vector<LevelError>> measured(FusionHistory& history, const MeasureOptions& options) {
   const Result<std::vector<FieldBound>> bounds = fieldBounds(history, options.bounds);
   if (!bounds) return std::unexpected(bounds.error());
   const auto isWithin = [&](const LevelError& error) {
@@ -110,6 +108,7 @@ Result<std::vector<LevelError>> measureLevels(FusionHistory& history,
   };
 
   HistoryLevels levels(history);
+  for (; levels.level() < levels.finest(); levels.refine()) throwIfStopped(options.stop);
   ErrorMeter meter(levels, options, samplesFor(options.effort, history));
   std::vector<LevelError> out{meter.measure()};
   while (levels.level() > 0) {
@@ -126,6 +125,13 @@ Result<std::vector<LevelError>> measureLevels(FusionHistory& history,
   levels.forgetCoarser();
   std::ranges::reverse(out);
   return out;
+}
+
+}  // namespace
+
+Result<std::vector<LevelError>> measureLevels(FusionHistory& history,
+                                              const MeasureOptions& options) {
+  return orCancelled([&] { return measured(history, options); });
 }
 
 }  // namespace qtet

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,7 @@ struct MeasureOptions {
   int threads = 1;  ///< the result does not depend on it
   std::uint64_t seed = 1;
   std::function<void(double fraction)> progress;  ///< 0..1, called once a level
+  std::stop_token stop{};                         ///< asked many times a second
 };
 
 /// The error of each level, coarse-first, the last one (the original itself) all zero. Figures are
@@ -41,7 +43,8 @@ struct MeasureOptions {
 /// and depend on the history and the options only. With bounds, `history` forgets the coarse levels
 /// from the first one on, counted from the finest, that passes a bound; level 0 is then the
 /// coarsest such that it and all finer ones keep them. Errors: not-found (a bound names no field of
-/// the history). REQUIRES: as HistoryLevels; it stands at level 0 before and after.
+/// the history), cancelled (the history is unspecified then). REQUIRES: as HistoryLevels; it stands
+/// at level 0 before and after.
 [[nodiscard]] Result<std::vector<LevelError>> measureLevels(FusionHistory& history,
                                                             const MeasureOptions& options);
 

@@ -33,11 +33,12 @@ void join(std::span<const Tetrahedron> cells, FaceSide one, FaceSide other,
 
 }  // namespace
 
-std::vector<CellId> duplicatesIn(std::span<const Tetrahedron> cells) {
+std::vector<CellId> duplicatesIn(std::span<const Tetrahedron> cells,
+                                 const std::atomic<bool>* stopped) {
   std::vector<CellId> duplicates;
   // Cells with the same vertices share all four faces, and only they share a face and the vertex
   // opposite it.
-  FaceGroups(cells).forEach([&](std::span<const FaceSide> sides) {
+  FaceGroups(cells, stopped).forEach([&](std::span<const FaceSide> sides) {
     for (std::size_t i = 1; i < sides.size(); ++i) {
       const auto isTwin = [&](FaceSide earlier) {
         return oppositeVertex(cells, earlier) == oppositeVertex(cells, sides[i]);
@@ -61,10 +62,11 @@ std::vector<CellId> crowdedFacesIn(std::span<const Tetrahedron> cells) {
 }
 
 Result<std::vector<CellNeighbours>> neighboursOf(std::span<const Tetrahedron> cells,
-                                                 std::span<const std::uint64_t> names) {
+                                                 std::span<const std::uint64_t> names,
+                                                 const std::atomic<bool>* stopped) {
   std::vector<CellNeighbours> out(cells.size());
   std::vector<FaceSide> crowded;
-  FaceGroups(cells).forEach([&](std::span<const FaceSide> sides) {
+  FaceGroups(cells, stopped).forEach([&](std::span<const FaceSide> sides) {
     if (sides.size() == 2) join(cells, sides[0], sides[1], out);
     if (sides.size() > 2 && crowded.empty()) crowded.assign(sides.begin(), sides.end());
   });

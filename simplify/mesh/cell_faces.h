@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -25,16 +26,19 @@ struct CellNeighbours {
          t[2] == t[3];
 }
 
-/// The later cells of each set of cells with the same four vertices, ascending.
-[[nodiscard]] std::vector<CellId> duplicatesIn(std::span<const Tetrahedron> cells);
+/// The later cells of each set of cells with the same four vertices, ascending. Unspecified once
+/// `stopped` is true.
+[[nodiscard]] std::vector<CellId> duplicatesIn(std::span<const Tetrahedron> cells,
+                                               const std::atomic<bool>* stopped = nullptr);
 
 /// A cell of each face that more than two cells have, by face. REQUIRES: four different vertices a
 /// cell.
 [[nodiscard]] std::vector<CellId> crowdedFacesIn(std::span<const Tetrahedron> cells);
 
 /// Errors: bad-input for a face of more than two cells; `names[i]` is what cell i is called in the
-/// message.
+/// message. Unspecified once `stopped` is true.
 [[nodiscard]] Result<std::vector<CellNeighbours>> neighboursOf(
-    std::span<const Tetrahedron> cells, std::span<const std::uint64_t> names);
+    std::span<const Tetrahedron> cells, std::span<const std::uint64_t> names,
+    const std::atomic<bool>* stopped = nullptr);
 
 }  // namespace qtet

@@ -4,6 +4,7 @@
 #include <exception>
 #include <new>
 #include <system_error>
+#include <utility>
 
 namespace qtet {
 namespace {
@@ -31,7 +32,7 @@ struct Workers::Job {
   std::exception_ptr failure;  // under the mutex
 };
 
-Workers::Workers(int threads) {
+Workers::Workers(int threads, std::stop_token stop) : stop_(std::move(stop)) {
   threads_.reserve(static_cast<std::size_t>(std::max(threads, 1) - 1));
   try {
     for (int i = 1; i < threads; ++i)
@@ -79,14 +80,19 @@ void Workers::beside(const std::function<void(std::size_t)>& others,
 void Workers::forEach(std::size_t n, std::size_t grain,
                       const std::function<void(std::size_t, std::size_t)>& work) {
   if (threads_.empty() || n <= grain) {
-    for (std::size_t i = 0; i < n; ++i) work(0, i);
+    for (std::size_t first = 0; first < n; first += grain) {
+      throwIfStopped();
+      for (std::size_t i = first; i < std::min(n, first + grain); ++i) work(0, i);
+    }
     return;
   }
   std::atomic<std::size_t> next{0};
   const auto take = [&](std::size_t worker) {
     try {
-      for (std::size_t first = next.fetch_add(grain); first < n; first = next.fetch_add(grain))
+      for (std::size_t first = next.fetch_add(grain); first < n; first = next.fetch_add(grain)) {
+        throwIfStopped();
         for (std::size_t i = first; i < std::min(n, first + grain); ++i) work(worker, i);
+      }
     } catch (...) {
       next = n;
       throw;

@@ -7,8 +7,11 @@
 #include <cstddef>
 #include <functional>
 #include <mutex>
+#include <stop_token>
 #include <thread>
 #include <vector>
+
+#include "simplify/mesh/stopping.h"
 
 namespace qtet {
 
@@ -22,11 +25,15 @@ void waitALittle(int spins);
 
 class Workers {
  public:
-  /// `threads` >= 1, the caller's included; fewer where the system gives no more.
-  explicit Workers(int threads);
+  /// `threads` >= 1, the caller's included; fewer where the system gives no more. Once a stop is
+  /// asked for, forEach and forRuns throw Stopped (stopping.h).
+  explicit Workers(int threads, std::stop_token stop = {});
   ~Workers();
   Workers(const Workers&) = delete;
   Workers& operator=(const Workers&) = delete;
+
+  /// For work between two calls that takes long.
+  void throwIfStopped() const { qtet::throwIfStopped(stop_); }
 
   [[nodiscard]] std::size_t count() const { return threads_.size() + 1; }
 
@@ -61,6 +68,7 @@ class Workers {
   std::atomic<std::size_t> jobs_{0}, busy_{0};
   bool ending_ = false;
   std::vector<std::thread> threads_;
+  std::stop_token stop_;
 };
 
 /// Workers::forEach, or the same by the caller alone where there are no workers.

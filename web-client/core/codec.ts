@@ -78,6 +78,7 @@ const kErrorCodes = [
   'not-found',
   'bad-input',
   'io',
+  'cancelled',
 ];
 
 interface Exports {

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "simplify/mesh/stopping.h"
+
 namespace qtet {
 namespace {
 
@@ -29,6 +31,20 @@ TEST_P(OfThreads, everyItemIsDoneOnceByAWorkerThatThereIs) {
     });
     for (const auto& t : times) EXPECT_EQ(t, 1);
   }
+}
+
+TEST_P(OfThreads, aStopEndsTheJobAndEveryJobAfterIt) {
+  std::stop_source stop;
+  Workers workers(GetParam(), stop.get_token());
+  std::atomic<std::size_t> done{0};
+  const auto work = [&](std::size_t, std::size_t) {
+    if (++done == 100) stop.request_stop();
+  };
+  EXPECT_THROW(workers.forEach(100000, 8, work), Stopped);
+  EXPECT_LT(done, 1000u) << "each worker ends with the grain in hand";
+  const std::size_t before = done;
+  EXPECT_THROW(workers.forEach(10, 64, work), Stopped);
+  EXPECT_EQ(done, before);
 }
 
 TEST_P(OfThreads, runsCoverAllAndDoNotOverlap) {

@@ -1,0 +1,102 @@
+#include "simplify/pipeline/fusion_choice.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "proto/field_key.h"
+#include "simplify/fuse/boundary_weight.h"
+#include "simplify/mesh/tet_mesh.h"
+
+namespace qtet {
+namespace {
+
+/// The fields of one association that a name means.
+std::vector<std::uint32_t> meantBy(const std::string& name, bool ofCells,
+                                   const std::vector<FieldInfo>& fields) {
+  std::vector<std::uint32_t> meant = fieldsOfKey(fields, name);
+  std::erase_if(meant, [&](std::uint32_t f) { return isCellField(fields[f]) != ofCells; });
+  return meant;
+}
+
+/// The weights given by name, one a field.
+Result<std::vector<std::optional<double>>> namedWeights(const PipelineOptions& options,
+                                                        const std::vector<FieldInfo>& fields) {
+  std::vector<std::optional<double>> named(fields.size());
+  for (const auto& [name, weight] : options.fieldWeights) {
+    const std::vector<std::uint32_t> meant = meantBy(name, false, fields);
+    if (meant.empty())
+      return fail(ErrorCode::kNotFound,
+                  "--field-weight: the mesh carries no point field '" + name + "'");
+    for (const std::uint32_t f : meant) named[f] = weight;
+  }
+  return named;
+}
+
+/// Why a field does not count, or nothing. `components`: of those that count already.
+std::string whyNot(const QuantisedMesh& quantised, std::size_t f, bool isNamed,
+                   std::size_t components) {
+  const FieldInfo& info = quantised.mesh.fields[f];
+  const auto& values = quantised.mesh.values[f];
+  if (values.empty() || std::ranges::all_of(values, [&](std::int32_t v) { return v == values[0]; }))
+    return "is constant";
+  if (!isFloatType(info.type) && !isNamed)
+    return "is one of integers, which may be labels (--field-weight " + info.name +
+           "=1 makes it count)";
+  if (components + info.components > kMaxCostComponents)
+    return "comes after " + std::to_string(kMaxCostComponents) +
+           " components that count, and more cannot";
+  return {};
+}
+
+std::vector<double> weightsOf(const QuantisedMesh& quantised,
+                              const std::vector<std::optional<double>>& named,
+                              std::vector<std::string>& notes) {
+  const std::vector<FieldInfo>& fields = quantised.mesh.fields;
+  std::vector<double> weights(fields.size(), 0);
+  std::size_t components = 0;
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    if (isCellField(fields[f]) || named[f] == 0) continue;
+    const std::string why = whyNot(quantised, f, named[f].has_value(), components);
+    if (why.empty()) {
+      components += fields[f].components;
+      weights[f] = named[f].value_or(1);
+    } else {
+      notes.push_back("field " + fields[f].name + " " + why +
+                      ": it does not count when cells are fused");
+    }
+  }
+  return weights;
+}
+
+Result<std::size_t> regionFieldOf(const std::string& name, const std::vector<FieldInfo>& fields) {
+  const std::vector<std::uint32_t> meant = meantBy(name, true, fields);
+  if (meant.size() == 1) return meant.front();
+  return fail(
+      ErrorCode::kNotFound,
+      "--preserve-regions: the mesh carries " +
+          std::string(meant.empty() ? "no cell field '" : "several steps of the cell field '") +
+          name + (meant.empty() ? "'; see that --fields includes it" : "'; name one, NAME@TIME"));
+}
+
+}  // namespace
+
+Result<FusionOptions> fusionOptionsFor(const PipelineOptions& options,
+                                       const QuantisedMesh& quantised,
+                                       std::vector<std::string>& notes) {
+  const LatticeMesh& mesh = quantised.mesh;
+  const auto named = namedWeights(options, mesh.fields);
+  if (!named) return std::unexpected(named.error());
+  FusionOptions out = options.fusion;
+  out.cost.fieldWeights = weightsOf(quantised, *named, notes);
+  if (!out.cost.boundaryWeight)
+    out.cost.boundaryWeight =
+        balancedBoundaryWeight(mesh, costPartsOf(mesh, out.cost.fieldWeights));
+  if (options.regions) {
+    const Result<std::size_t> field = regionFieldOf(*options.regions, mesh.fields);
+    if (!field) return std::unexpected(field.error());
+    out.regionField = *field;
+  }
+  return out;
+}
+
+}  // namespace qtet

@@ -1,0 +1,193 @@
+#include "simplify/pipeline/pipeline.h"
+
+#include <chrono>
+#include <cmath>
+
+#include "codec/log/log_manifest.h"
+#include "simplify/fuse/cost_parts.h"
+#include "simplify/mesh/missing_values.h"
+#include "simplify/pipeline/fusion_choice.h"
+
+namespace qtet {
+namespace {
+
+// Fewer, and most vertices lie between two leaves, where nothing fuses.
+constexpr std::size_t kLeastCellsPerPacket = 100;
+
+/// The stage in hand: tells the caller of it, and notes how long it took.
+class Stages {
+ public:
+  Stages(const PipelineOptions& options, PipelineReport& report)
+      : options_(options), report_(report) {}
+
+  /// Begins a stage; the one before it is over. Errors: cancelled.
+  Status begin(Stage stage) {
+    end();
+    if (options_.stop.stop_requested()) return cancelled();
+    stage_ = stage;
+    tell(0);
+    return {};
+  }
+
+  void end() {
+    const Clock::time_point now = Clock::now();
+    if (stage_)
+      report_.seconds.emplace_back(*stage_, std::chrono::duration<double>(now - start_).count());
+    stage_.reset();
+    start_ = now;
+  }
+
+  /// For the stage's own options.
+  [[nodiscard]] std::function<void(double)> progress() {
+    return [this](double fraction) { tell(fraction); };
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void tell(double fraction) {
+    if (options_.progress) options_.progress(*stage_, fraction);
+  }
+
+  const PipelineOptions& options_;
+  PipelineReport& report_;
+  Clock::time_point start_ = Clock::now();
+  std::optional<Stage> stage_;
+};
+
+/// What a run knows from its first stage to its last.
+struct Run {
+  const PipelineOptions& options;
+  PipelineReport report{};
+  Stages stages{options, report};
+  KeptInput kept{};  ///< empty where nothing of the input is kept
+
+  void note(const std::vector<std::string>& sentences) {
+    report.notes.insert(report.notes.end(), sentences.begin(), sentences.end());
+  }
+};
+
+Result<QuantisedMesh> prepare(TetMesh&& given, Run& run) {
+  TetMesh mesh = std::move(given);
+  const bool keeps = run.options.keep.any();
+  run.report.tetrahedraIn = mesh.tetrahedra.size();
+  if (Status s = run.stages.begin(Stage::kClean); !s) return std::unexpected(s.error());
+  const std::vector<Tetrahedron> asStored = keeps ? mesh.tetrahedra : std::vector<Tetrahedron>{};
+  Result<CleanReport> cleaned = cleanMesh(mesh, run.options.stop);
+  if (!cleaned) return std::unexpected(cleaned.error());
+  run.report.clean = std::move(*cleaned);
+  run.note(run.report.clean.sentences());
+
+  if (Status s = run.stages.begin(Stage::kQuantise); !s) return std::unexpected(s.error());
+  Result<QuantisedMesh> out = quantise(mesh, run.options.quantise, run.options.stop);
+  if (!out) return out;
+  run.report.quantise = out->report;
+  run.note(out->report.notes);
+  if (keeps) run.kept = {run.options.keep, asRead(mesh, asStored, run.report.clean)};
+  return out;
+}
+
+/// By the algorithm asked for; the paper's leaves its figures in the report.
+Result<FusionHistory> fuse(LatticeMesh&& mesh, const FusionOptions& options, Run& run) {
+  if (run.options.algorithm != Algorithm::kPaper) return simplify(std::move(mesh), options);
+  Result<PaperFusion> fused = simplifyAsThePaper(mesh, options);
+  if (!fused) return std::unexpected(fused.error());
+  run.report.paper = fused->figures;
+  return std::move(fused->history);
+}
+
+Result<FusionHistory> simplify(QuantisedMesh& quantised, Run& run) {
+  if (Status s = run.stages.begin(Stage::kSimplify); !s) return std::unexpected(s.error());
+  Result<FusionOptions> options = fusionOptionsFor(run.options, quantised, run.report.notes);
+  if (!options) return std::unexpected(options.error());
+  options->progress = run.stages.progress();
+  options->stop = run.options.stop;
+  if (run.options.algorithm != Algorithm::kPaper &&
+      !costPartsOf(quantised.mesh, options->cost.fieldWeights).empty())
+    run.report.boundaryWeight = options->cost.boundaryWeight;
+  Result<FusionHistory> history = fuse(std::move(quantised.mesh), *options, run);
+  if (history && options->bands.cellsPerPacket > 0 && history->bands.ends.empty())
+    run.note(
+        {"the mesh is too small for more than one packet (--cells-per-packet): the log has the "
+         "layout stream"});
+  return history;
+}
+
+/// The known error of each level; with bounds, the history ends where they would be passed.
+Result<std::vector<LevelError>> measure(FusionHistory& history, Run& run) {
+  if (!run.options.measure) return {};
+  if (Status s = run.stages.begin(Stage::kMeasure); !s) return std::unexpected(s.error());
+  MeasureOptions options = *run.options.measure;
+  options.threads = run.options.fusion.threads;
+  options.progress = run.stages.progress();
+  options.stop = run.options.stop;
+  return measureLevels(history, options);
+}
+
+Result<Bytes> encode(const FusionHistory& history, std::vector<LevelError> errors, Run& run) {
+  if (Status s = run.stages.begin(Stage::kEncode); !s) return std::unexpected(s.error());
+  LogWriterOptions options;
+  options.source = run.options.source;
+  options.generator = "qtet " QTET_VERSION;
+  options.progress = run.stages.progress();
+  options.stop = run.options.stop;
+  options.errors = std::move(errors);
+  options.valueCodec = run.options.valueCodec;
+  Result<EncodedLog> log = encodeLog(history, options);
+  if (!log) return std::unexpected(log.error());
+  run.report.statistics = log->statistics;
+  if (!run.options.keep.any()) return std::move(log->bytes);
+  if (Status s = run.stages.begin(Stage::kKeep); !s) return std::unexpected(s.error());
+  return withInput(*log, run.kept, run.options.stop);
+}
+
+/// What the log says of itself.
+Status readBack(const Bytes& log, PipelineReport& report) {
+  Result<LogIndex> index = LogIndex::parse(log);
+  if (!index) return std::unexpected(index.error());
+  report.index = std::move(*index);
+  Result<Manifest> manifest = manifestOf(report.index);
+  if (!manifest) return std::unexpected(manifest.error());
+  report.manifest = std::move(*manifest);
+  return {};
+}
+
+Status bad(std::string what) { return fail(ErrorCode::kBadValue, std::move(what)); }
+
+}  // namespace
+
+Status checkOptions(const PipelineOptions& options) {
+  const FusionOptions& fusion = options.fusion;
+  const bool isPaper = options.algorithm == Algorithm::kPaper;
+  if (isPaper && (options.regions || fusion.envelopeTolerance > 0 || !options.fieldWeights.empty()))
+    return bad(
+        "--algorithm paper knows no --preserve-regions, --envelope-tolerance or --field-weight; "
+        "leave them out");
+  if (isPaper && fusion.bands.cellsPerPacket > 0)
+    return bad("--algorithm paper knows no --layout regions; leave it out");
+  if (fusion.bands.cellsPerPacket > 0 && fusion.bands.cellsPerPacket < kLeastCellsPerPacket)
+    return bad("--cells-per-packet is below " + std::to_string(kLeastCellsPerPacket));
+  for (const auto& [name, weight] : options.fieldWeights)
+    if (!(weight >= 0) || std::isinf(weight))
+      return bad("--field-weight of " + name + " is negative or not finite");
+  return {};
+}
+
+Result<PipelineOutput> simplifyToLog(TetMesh&& mesh, const PipelineOptions& options) {
+  if (Status checked = checkOptions(options); !checked) return std::unexpected(checked.error());
+  Run run{options};
+  Result<QuantisedMesh> quantised = prepare(std::move(mesh), run);
+  if (!quantised) return std::unexpected(quantised.error());
+  Result<FusionHistory> history = simplify(*quantised, run);
+  if (!history) return std::unexpected(history.error());
+  Result<std::vector<LevelError>> errors = measure(*history, run);
+  if (!errors) return std::unexpected(errors.error());
+  restoreMissing(*history, quantised->missing);
+  Result<Bytes> log = encode(*history, std::move(*errors), run);
+  if (!log) return std::unexpected(log.error());
+  run.stages.end();
+  if (Status read = readBack(*log, run.report); !read) return std::unexpected(read.error());
+  return PipelineOutput{std::move(*log), std::move(run.report)};
+}
+
+}  // namespace qtet

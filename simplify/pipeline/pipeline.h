@@ -1,0 +1,88 @@
+// From a mesh in arrays to the bytes of its log, in one call: clean, put on the lattice, simplify,
+// measure, encode (ALGORITHM.md). What `qtet simplify`, the C API and Python share.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "codec/log/log_writer.h"
+#include "proto/manifest.h"
+#include "simplify/clean/clean_mesh.h"
+#include "simplify/clean/quantise.h"
+#include "simplify/fuse/paper_fusion.h"
+#include "simplify/fuse/qtetfusion.h"
+#include "simplify/log/kept_input.h"
+#include "simplify/measure/measure_error.h"
+
+namespace qtet {
+
+enum class Algorithm : std::uint8_t {
+  kQtet,
+  kPaper,  ///< the paper's own loop, tetrahedra only
+};
+
+/// In the order of doing. kMeasure and kKeep are left out where nothing is measured or kept.
+enum class Stage : std::uint8_t { kClean, kQuantise, kSimplify, kMeasure, kEncode, kKeep };
+
+struct PipelineOptions {
+  std::string source{};  ///< the input's file name, for the manifest; may be empty
+  Algorithm algorithm = Algorithm::kQtet;
+  QuantiseOptions quantise{};
+  /// Fields by index, progress and stop are the pipeline's own affair. Measuring takes its threads.
+  FusionOptions fusion{};
+  /// Point fields by name (proto/field_key.h) and what they count; 1 where none is given.
+  std::vector<std::pair<std::string, double>> fieldWeights{};
+  /// The name of the cell field whose values are regions that keep their topology.
+  std::optional<std::string> regions{};
+  /// Of these only effort and bounds count; without them nothing is measured.
+  std::optional<MeasureOptions> measure{std::in_place};
+  CodecId valueCodec = CodecId::kDraco;
+  KeepOptions keep{};
+
+  /// Called in the caller's thread, with 0 when a stage begins; the fraction is in 0..1.
+  std::function<void(Stage stage, double fraction)> progress{};
+  /// Asked several times a second in every stage; then the error is `cancelled`.
+  std::stop_token stop{};
+};
+
+struct PipelineReport {
+  std::uint64_t tetrahedraIn = 0;  ///< before cleaning
+  CleanReport clean;
+  QuantiseReport quantise;
+  /// That the fusions were ordered by, where there were fields to weigh it against.
+  std::optional<double> boundaryWeight;
+  std::optional<PaperFigures> paper;  ///< with Algorithm::kPaper
+  LogStatistics statistics;
+  /// Read from the bytes of the log, not from what was meant to be written.
+  LogIndex index;
+  Manifest manifest;
+  /// What was changed or is unusual, one sentence each, in the order of doing.
+  std::vector<std::string> notes;
+  std::vector<std::pair<Stage, double>> seconds;  ///< wall time, in the order of doing
+};
+
+struct PipelineOutput {
+  Bytes log;
+  PipelineReport report;
+};
+
+/// Whether the options go together and lie in their ranges. Errors: bad-value.
+[[nodiscard]] Status checkOptions(const PipelineOptions& options);
+
+/// Whether what cleanMesh and quantise require holds, and whether a log can hold the fields: for a
+/// mesh that comes from outside and was not read by readMesh. Errors: bad-input (the first point,
+/// tetrahedron or field at fault, by its number), limit-exceeded.
+[[nodiscard]] Status checkArrays(const TetMesh& mesh);
+
+/// Makes the log of a mesh; the mesh is given back before the first fusion. The same mesh and
+/// options give the same bytes, whatever the number of threads. Errors: checkOptions's, cleanMesh's,
+/// quantise's, simplify's, measureLevels's and encodeLog's; not-found (a weight or regions name no
+/// field); cancelled. REQUIRES: a mesh that checkArrays or readMesh has passed.
+[[nodiscard]] Result<PipelineOutput> simplifyToLog(TetMesh&& mesh, const PipelineOptions& options);
+
+}  // namespace qtet

@@ -1,0 +1,263 @@
+#include "simplify/pipeline/pipeline.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <limits>
+
+#include "codec/files/atomic_file.h"
+#include "codec/log/log_file.h"
+#include "simplify/log/write_mesh.h"
+#include "simplify/read/read_mesh.h"
+#include "tests/simplify/mesh/tet_meshes.h"
+#include "tests/simplify/pipeline/field_meshes.h"
+
+namespace qtet {
+namespace {
+
+namespace fs = std::filesystem;
+
+Bytes contentOf(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+PipelineOptions usual() {
+  PipelineOptions options;
+  options.source = "mesh.vtu";
+  return options;
+}
+
+struct Case {
+  const char* words;
+  void (*change)(PipelineOptions&);
+};
+
+// What a caller sets is what the tool's option of that name does.
+TEST(Pipeline, logsAreTheToolsByteForByte) {
+  const fs::path folder = testing::freshFolder("pipeline-tool");
+  ASSERT_TRUE(writeFileAtomically(folder / "mesh.vtu", vtuBytes(testing::boxWithFields())));
+  for (const Case& c : {
+           Case{"", [](PipelineOptions&) {}},
+           Case{"--algorithm paper --measure none",
+                [](PipelineOptions& o) {
+                  o.algorithm = Algorithm::kPaper;
+                  o.measure.reset();
+                }},
+           Case{"--target-ratio 0.3 --position-bits 18 --field-bits 9 --threads 2",
+                [](PipelineOptions& o) {
+                  o.fusion.targetRatio = 0.3;
+                  o.quantise = {18, 9};
+                  o.fusion.threads = 2;
+                }},
+           Case{"--lossless --keep-order --geometry-codec adaptive",
+                [](PipelineOptions& o) {
+                  o.keep = {true, true};
+                  o.valueCodec = CodecId::kAdaptive;
+                }},
+           Case{"--field-weight Swirl=3 --boundary-weight 20 --shape-weight 1 --placement optimal "
+                "--envelope-tolerance 0.01 --preserve-regions Label",
+                [](PipelineOptions& o) {
+                  o.fieldWeights = {{"Swirl", 3}};
+                  o.regions = "Label";
+                  o.fusion.cost.boundaryWeight = 20;
+                  o.fusion.shapeWeight = 1;
+                  o.fusion.placement = PlacementRule::kOptimal;
+                  o.fusion.envelopeTolerance = 0.01;
+                }},
+           Case{"--layout regions --cells-per-packet 300",
+                [](PipelineOptions& o) { o.fusion.bands.cellsPerPacket = 300; }},
+           Case{"--measure all --max-boundary-error 0.02 --max-field-error Scalar=0.05",
+                [](PipelineOptions& o) {
+                  o.measure->effort = Effort::kAll;
+                  o.measure->bounds = {0.02, {{"Scalar", 0.05}}};
+                }},
+       }) {
+    const std::string command = "cd '" + folder.string() +
+                                "' && '" QTET_TOOL "' simplify mesh.vtu -o log.qtet -q " + c.words;
+    ASSERT_EQ(std::system(command.c_str()), 0) << c.words;
+    Result<ReadMesh> read = readMesh(folder / "mesh.vtu");
+    ASSERT_TRUE(read);
+    PipelineOptions options = usual();
+    c.change(options);
+    const Result<PipelineOutput> made = simplifyToLog(std::move(read->mesh), options);
+    ASSERT_TRUE(made) << made.error().text();
+    EXPECT_EQ(made->log, contentOf(folder / "log.qtet")) << c.words;
+  }
+}
+
+TEST(Pipeline, theReportIsOfTheBytes) {
+  TetMesh mesh = testing::boxWithFields();
+  mesh.points.push_back({9, 9, 9});  // of no cell
+  for (MeshField& field : mesh.fields)
+    if (!isCellField(field)) field.values.resize(mesh.points.size() * field.components);
+  ASSERT_TRUE(checkArrays(mesh));
+  PipelineOptions options = usual();
+  options.keep.exact = true;
+  const Result<PipelineOutput> made = simplifyToLog(std::move(mesh), options);
+  ASSERT_TRUE(made) << made.error().text();
+  const PipelineReport& report = made->report;
+  EXPECT_EQ(report.tetrahedraIn, kBoxCells);
+  EXPECT_EQ(report.manifest.levels.back().tetrahedra, kBoxCells);
+  EXPECT_LT(report.manifest.levels.front().tetrahedra, kBoxCells / 20);
+  EXPECT_TRUE(report.manifest.levels.front().error.has_value());
+  EXPECT_EQ(report.manifest.source, "mesh.vtu");
+  EXPECT_EQ(report.statistics.fileBytes > 0, true);
+  EXPECT_EQ(report.index.fileBytes, made->log.size());
+  EXPECT_EQ(report.index.closing.size(), 4u);  // positions and the three fields of floats
+  EXPECT_EQ(report.clean.unusedPoints.count, 1u);
+  ASSERT_EQ(report.notes.size(), 1u);
+  EXPECT_EQ(report.notes[0], "points of no cell, dropped: 1 (point 729)");
+  EXPECT_TRUE(report.boundaryWeight.has_value());
+  EXPECT_FALSE(report.paper.has_value());
+  std::vector<Stage> stages;
+  for (const auto& [stage, seconds] : report.seconds) {
+    stages.push_back(stage);
+    EXPECT_GE(seconds, 0);
+  }
+  EXPECT_EQ(stages, (std::vector{Stage::kClean, Stage::kQuantise, Stage::kSimplify, Stage::kMeasure,
+                                 Stage::kEncode, Stage::kKeep}));
+}
+
+TEST(Pipeline, progressBeginsEachStageWithZeroAndGoesOnToOne) {
+  std::vector<std::pair<Stage, double>> told;
+  PipelineOptions options = usual();
+  options.progress = [&](Stage stage, double fraction) { told.emplace_back(stage, fraction); };
+  ASSERT_TRUE(simplifyToLog(testing::boxWithFields(), options));
+  std::optional<Stage> stage;
+  double last = 0;
+  for (const auto& [now, fraction] : told) {
+    if (now != stage) {
+      EXPECT_EQ(fraction, 0);
+      EXPECT_TRUE(!stage || *stage < now);
+      last = 0;
+    }
+    EXPECT_GE(fraction, last);
+    EXPECT_LE(fraction, 1);
+    stage = now, last = fraction;
+  }
+  EXPECT_EQ(stage, Stage::kEncode);
+  EXPECT_GT(last, 0.5);
+  EXPECT_GT(told.size(), 50u);
+}
+
+TEST(Pipeline, aStopAtAnyStageIsAnErrorOfItsOwn) {
+  for (const Stage at : {Stage::kClean, Stage::kQuantise, Stage::kSimplify, Stage::kMeasure,
+                         Stage::kEncode, Stage::kKeep}) {
+    std::stop_source stop;
+    PipelineOptions options = usual();
+    options.keep = {true, true};
+    options.stop = stop.get_token();
+    options.progress = [&](Stage stage, double) {
+      EXPECT_LE(stage, at) << "a stage begins after the stop";
+      if (stage == at) stop.request_stop();
+    };
+    const Result<PipelineOutput> made = simplifyToLog(testing::boxWithFields(), options);
+    ASSERT_FALSE(made);
+    EXPECT_EQ(made.error().code, ErrorCode::kCancelled);
+    EXPECT_STREQ(errorCodeName(made.error().code), "cancelled");
+  }
+}
+
+// The stages themselves, which ask again and again: one that did not would go on to its end.
+TEST(Pipeline, everyStageAsksWhetherToStop) {
+  std::stop_source stopped;
+  stopped.request_stop();
+  const std::stop_token stop = stopped.get_token();
+  const auto isCancelled = [](const auto& result) {
+    return !result && result.error().code == ErrorCode::kCancelled;
+  };
+  TetMesh mesh = testing::boxWithFields();
+  TetMesh another = mesh;
+  EXPECT_TRUE(isCancelled(cleanMesh(another, stop)));
+  ASSERT_TRUE(cleanMesh(mesh));
+  EXPECT_TRUE(isCancelled(quantise(mesh, {}, stop)));
+  const Result<QuantisedMesh> quantised = quantise(mesh);
+  ASSERT_TRUE(quantised);
+  for (const int threads : {1, 3}) {
+    FusionOptions fusion;
+    fusion.threads = threads;
+    Result<FusionHistory> history = simplify(quantised->mesh, fusion);
+    ASSERT_TRUE(history);
+    fusion.stop = stop;
+    EXPECT_TRUE(isCancelled(simplify(quantised->mesh, fusion)));
+    EXPECT_TRUE(isCancelled(simplifyAsThePaper(quantised->mesh, fusion)));
+    MeasureOptions measure;
+    measure.threads = threads;
+    LogWriterOptions encode;
+    encode.stop = stop;
+    EXPECT_TRUE(isCancelled(encodeLog(*history, encode)));
+    const Result<EncodedLog> log = encodeLog(*history, {});
+    ASSERT_TRUE(log);
+    EXPECT_TRUE(isCancelled(withInput(*log, {{true, true}, mesh}, stop)));
+    measure.stop = stop;
+    EXPECT_TRUE(isCancelled(measureLevels(*history, measure)));
+  }
+}
+
+TEST(Pipeline, optionsThatDoNotGoTogetherAreRefused) {
+  const auto refused = [](void (*change)(PipelineOptions&), ErrorCode code,
+                          const std::string& words) {
+    PipelineOptions options = usual();
+    change(options);
+    const Result<PipelineOutput> made = simplifyToLog(testing::boxWithFields(), options);
+    ASSERT_FALSE(made);
+    EXPECT_EQ(made.error().code, code) << made.error().text();
+    EXPECT_NE(made.error().message.find(words), std::string::npos) << made.error().text();
+  };
+  refused([](PipelineOptions& o) { o.algorithm = Algorithm::kPaper, o.regions = "Label"; },
+          ErrorCode::kBadValue, "paper knows no");
+  refused(
+      [](PipelineOptions& o) {
+        o.algorithm = Algorithm::kPaper, o.fusion.bands.cellsPerPacket = 1000;
+      },
+      ErrorCode::kBadValue, "regions");
+  refused([](PipelineOptions& o) { o.fusion.bands.cellsPerPacket = 99; }, ErrorCode::kBadValue,
+          "below 100");
+  refused([](PipelineOptions& o) { o.fieldWeights = {{"Scalar", -1}}; }, ErrorCode::kBadValue,
+          "Scalar");
+  refused([](PipelineOptions& o) { o.fieldWeights = {{"Label", 1}}; }, ErrorCode::kNotFound,
+          "no point field 'Label'");
+  refused([](PipelineOptions& o) { o.regions = "Scalar"; }, ErrorCode::kNotFound,
+          "no cell field 'Scalar'");
+  refused([](PipelineOptions& o) { o.regions = "Height"; }, ErrorCode::kBadInput, "Height");
+  refused([](PipelineOptions& o) { o.quantise.positionBits = 40; }, ErrorCode::kBadValue, "40");
+  refused([](PipelineOptions& o) { o.fusion.targetRatio = 2; }, ErrorCode::kBadInput, "0..1");
+}
+
+TEST(Arrays, whatALogCannotHoldIsNamed) {
+  const auto refused = [](const std::string& words, auto change,
+                          ErrorCode code = ErrorCode::kBadInput) {
+    TetMesh mesh = testing::boxWithFields();
+    change(mesh);
+    const Status checked = checkArrays(mesh);
+    ASSERT_FALSE(checked) << words;
+    EXPECT_EQ(checked.error().code, code) << checked.error().text();
+    EXPECT_NE(checked.error().message.find(words), std::string::npos) << checked.error().text();
+  };
+  ASSERT_TRUE(checkArrays(testing::boxWithFields()));
+  refused("no points", [](TetMesh& m) { m.points.clear(); });
+  refused("no tetrahedra", [](TetMesh& m) { m.tetrahedra.clear(); });
+  refused("point 3 has a coordinate", [](TetMesh& m) { m.points[3][1] = NAN; });
+  refused("tetrahedron 7 names a point outside the 729",
+          [](TetMesh& m) { m.tetrahedra[7][2] = 729; });
+  refused("field 1 needs a name", [](TetMesh& m) { m.fields[1].name = ""; });
+  refused("field 1 needs a name", [](TetMesh& m) { m.fields[1].name = "\xFF"; });
+  refused("field 1 needs a name", [](TetMesh& m) { m.fields[1].name = std::string(257, 'n'); });
+  refused("neither to points", [](TetMesh& m) { m.fields[1].association = "face"; });
+  refused("unknown type half", [](TetMesh& m) { m.fields[1].type = "half"; });
+  refused("0 components", [](TetMesh& m) { m.fields[1].components = 0; });
+  refused("17 components", [](TetMesh& m) { m.fields[1].components = 17; });
+  refused("field 3 (Height) has 3071 numbers, not 3072",
+          [](TetMesh& m) { m.fields[3].values.pop_back(); });
+  refused("2^53", [](TetMesh& m) { m.fields[2].values[5] = 9007199254740992.0; });
+  refused("2^53",
+          [](TetMesh& m) { m.fields[2].values[5] = std::numeric_limits<double>::quiet_NaN(); });
+  refused("two point fields are called Swirl", [](TetMesh& m) { m.fields[0].name = "Swirl"; });
+  refused(
+      "more than 256 fields", [](TetMesh& m) { m.fields.resize(257); }, ErrorCode::kLimitExceeded);
+}
+
+}  // namespace
+}  // namespace qtet
