@@ -1,4 +1,4 @@
-// Making a mesh from a file fit for simplifying (ALGORITHM.md, "Input"): what can be repaired
+// Making a mesh from a file fit for simplifying (INPUT.md, "Cleaning"): what can be repaired
 // without guessing is, what cannot is refused.
 #pragma once
 

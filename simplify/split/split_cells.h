@@ -1,5 +1,5 @@
 // Splitting volume cells into tetrahedra so that neighbours agree on the face between them
-// (ALGORITHM.md, "Splitting").
+// (INPUT.md, "Splitting").
 #pragma once
 
 #include <array>

@@ -9,7 +9,7 @@ namespace {
 
 /// Without coder: no decision is asked where labels need no escape and no word has four letters.
 struct Silent {
-  static constexpr bool kEncoding = false;
+  [[maybe_unused]] static constexpr bool kEncoding = false;
   int bit(int, BitModel&) { return ADD_FAILURE() << "a decision is asked", 0; }
 };
 
