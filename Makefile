@@ -1,5 +1,6 @@
-# The front door: `make demo` shows a mesh in the browser, `make test` runs every test. Both may be repeated and do only what is missing.
-# Developers use cmake and ctest with the presets of CMakePresets.json; this file adds nothing to them but the packages.
+# The front door: `make demo` shows a mesh in the browser, `make test` runs every test. Both may be
+# repeated and do only what is missing. Developers use cmake and ctest with the presets of
+# CMakePresets.json; this file adds nothing to them but the packages.
 
 MESH ?=
 PORT ?= 8080
@@ -7,76 +8,96 @@ RESULTS ?=
 export MESH PORT
 
 BUILD := build/release
-# A translation unit with Boost.Beast or VTK takes up to 1.5 GB to compile: no more jobs than cores, nor than memory allows.
-JOBS ?= $(shell awk -v cores="$$(nproc)" '/MemAvailable/ {n = int($$2 / 1500000); n = n < cores ? n : cores; print n < 1 ? 1 : n}' /proc/meminfo)
+# A translation unit with Boost.Beast or VTK takes up to 1.5 GB to compile: no more jobs than cores,
+# nor than memory allows.
+JOBS ?= $(shell awk -v cores="$$(nproc)" '/MemAvailable/ { \
+  n = int($$2 / 1500000); n = n < cores ? n : cores; print n < 1 ? 1 : n}' /proc/meminfo)
 
 SHELL := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
 .ONESHELL:
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
-.PHONY: help setup build demo demo-port demo-log test format format-check lint tidy sanitize-units sanitize
-.PHONY: fuzz bench results sizes rate deb test-deb clean
+.PHONY: help setup build demo demo-port demo-log test format format-check lint tidy sanitize-units
+.PHONY: sanitize fuzz bench results sizes rate deb test-deb clean
 .DEFAULT_GOAL := help
 
 help:
 	@cat <<'END'
 	make demo                  build qtet and show its sample mesh at http://127.0.0.1:8080/
-	make demo MESH=file.vtu    the same with a mesh of yours (any: simplify/INPUT.md); PORT=8081 picks another port
+	make demo MESH=file.vtu    the same with a mesh of yours (any kind that simplify/INPUT.md names)
 	make test                  build everything and run every test
-	make format                lay out C++ (clang-format-19), TypeScript, JavaScript and CSS (prettier)
+	make format                lay out C++ (clang-format-19) and TypeScript, JavaScript, CSS (prettier)
 	make format-check          fail where that would change a file, or a line is over 100 columns
-	make tidy                  clang-tidy over the sources changed since the merge base or 20 commits ago
+	make tidy                  clang-tidy over what changed since the merge base or in 20 commits
 	make lint                  the linter of TypeScript, with types
 	make fuzz                  run each fuzzer for 20 seconds, built with sanitizers
 	make sanitize-units        the C++ tests and the fuzzers under ASan and UBSan
-	make sanitize              every test under ASan and UBSan, then under TSan; says how long each took
+	make sanitize              every test under ASan and UBSan, then under TSan, and how long that took
 	make deb                   Debian packages: build/release/packages/*.deb
-	make test-deb              install, start, use and remove them in a Debian of their own (needs root and debootstrap)
+	make test-deb              install, use and remove them in a Debian of their own (needs root)
 	make build                 build only: build/release/bin/qtet and qtet-server
-	make setup                 install the Debian packages of .ci/packages.txt that are missing (asks sudo if not root)
+	make setup                 install what is missing of .ci/packages.txt (asks sudo if not root)
 	make bench                 build and run the benchmarks
-	make results               compare with VTK's decimation: QTET_DATA=folder of .vtu, QTET_JUDGE=program; RESULTS="--jobs 2 --sets a,b"
-	make sizes                 tests/bench/SIZES.md made anew, to the byte; QTET_DATA=folder of .vtu for the data sets too
-	make rate                  tests/bench/RATE.md made anew: error against bytes; QTET_DATA as before
+	make results               compare with VTK's decimation: tests/bench/RESULTS.md
+	make sizes                 tests/bench/SIZES.md made anew: to the byte
+	make rate                  tests/bench/RATE.md made anew: error against bytes
 	make clean                 remove build/
+	PORT=N                     another port for the demo than $(PORT)
 	JOBS=N                     compile N files at a time (now $(JOBS))
+	QTET_DATA=FOLDER           the .vtu files of results, and for sizes and rate the data sets, too
+	QTET_JUDGE=PROGRAM         what judges the meshes of results
+	RESULTS="--sets a,b"       options of tests/bench/results.py
 	END
 
 setup:
-	@mapfile -t wanted < <(sed 's/#.*//' .ci/packages.txt | grep -o '[^[:space:]]*')
+	@say() { printf 'setup: %s\n' "$$@"; }
+	mapfile -t wanted < <(sed 's/#.*//' .ci/packages.txt | grep -o '[^[:space:]]*')
 	if ! command -v dpkg-query >/dev/null; then
-	  echo "setup: this is no Debian; if the build fails, install what .ci/packages.txt names from your system's packages"
+	  say "this is no Debian; if the build fails, install what .ci/packages.txt names from your \
+	system's packages"
 	  exit 0
 	fi
-	installed=$$(dpkg-query -W -f '$${db:Status-Status} $${Package}\n' "$${wanted[@]}" 2>/dev/null | sed -n 's/^installed //p') || true
+	installed=$$(dpkg-query -W -f '$${db:Status-Status} $${Package}\n' "$${wanted[@]}" 2>/dev/null |
+	  sed -n 's/^installed //p') || true
 	mapfile -t missing < <(comm -23 <(printf '%s\n' "$${wanted[@]}" | sort) <(sort <<<"$$installed"))
 	nodeIsFine() {
-	  command -v npm >/dev/null && node -e 'process.exit(Number(process.versions.node.split(".")[0]) >= 18 ? 0 : 1)' 2>/dev/null
+	  command -v npm >/dev/null &&
+	    node -e 'process.exit(parseInt(process.versions.node) >= 18 ? 0 : 1)' 2>/dev/null
 	}
 	nodeIsFine || missing+=(nodejs npm)
 	if [[ $${#missing[@]} == 0 ]]; then
-	  echo "setup: all $${#wanted[@]} packages of .ci/packages.txt and node $$(node --version) are here"
+	  say "all $${#wanted[@]} packages of .ci/packages.txt and node $$(node --version) are here"
 	  exit 0
 	fi
-	echo "setup: installing $${#missing[@]} packages: $${missing[*]}"
+	say "installing $${#missing[@]} packages: $${missing[*]}"
 	asRoot=(env)
 	if [[ $$(id -u) != 0 ]]; then
-	  command -v sudo >/dev/null || { echo "setup: there is no sudo; run as root: apt-get install --no-install-recommends $${missing[*]}" >&2; exit 1; }
+	  command -v sudo >/dev/null || {
+	    say "there is no sudo; run as root: apt-get install --no-install-recommends $${missing[*]}" >&2
+	    exit 1
+	  }
 	  asRoot=(sudo)
 	  [[ $${CI:-} == true ]] && asRoot=(sudo -n)
 	  asRoot+=(env)
 	fi
 	asRoot+=(DEBIAN_FRONTEND=noninteractive)
-	"$${asRoot[@]}" apt-get update || echo "setup: apt-get update failed; going on with the package lists that are here"
+	"$${asRoot[@]}" apt-get update ||
+	  say "apt-get update failed; going on with the package lists that are here"
 	"$${asRoot[@]}" apt-get install -y --no-install-recommends --no-remove "$${missing[@]}" || {
-	  echo "setup: apt-get could not install them (its reason stands above). qtet is built on Debian 12; a package that apt" >&2
-	  echo "setup: would have to remove, such as another version's wasm32 library, has to be removed by you first." >&2
+	  say "apt-get could not install them (its reason stands above). qtet is built on Debian 12;" \
+	    "a package that apt would have to remove, such as another version's wasm32 library," \
+	    "has to be removed by you first." >&2
 	  exit 1
 	}
-	nodeIsFine || { echo "setup: node $$(node --version 2>/dev/null || echo "is missing") - version 18 or later is needed, with npm" >&2; exit 1; }
+	nodeIsFine || {
+	  version=$$(node --version 2>/dev/null || echo "is missing")
+	  say "node $$version - version 18 or later is needed, with npm" >&2
+	  exit 1
+	}
 
-# Configures when there is no build yet, when the presets changed, or when the folder was moved; ninja sees to everything else.
+# Configures when there is no build yet, when the presets changed, or when the folder was moved;
+# ninja sees to everything else.
 build:
 	@if ! grep -qsxF "CMAKE_HOME_DIRECTORY:INTERNAL=$$(pwd -P)" $(BUILD)/CMakeCache.txt; then
 	  cmake --preset release --fresh
@@ -87,20 +108,21 @@ build:
 
 # Before anything is built: a port in use is told at once.
 demo-port:
-	@if [[ ! $$PORT =~ ^[0-9]{1,5}$$ ]] || ((10#$$PORT < 1 || 10#$$PORT > 65535)); then
-	  echo "demo: PORT=$$PORT is no port; give a number from 1024 to 65535, for example: make demo PORT=8081" >&2
-	  exit 1
+	@refuse() { echo "demo: $$1" >&2; exit 1; }
+	if [[ ! $$PORT =~ ^[0-9]{1,5}$$ ]] || ((10#$$PORT < 1 || 10#$$PORT > 65535)); then
+	  refuse "PORT=$$PORT is no port; give a number from 1024 to 65535, for example: \
+	make demo PORT=8081"
 	fi
 	if (exec 3<>"/dev/tcp/127.0.0.1/$$PORT") 2>/dev/null; then
-	  echo "demo: port $$PORT is in use by another program; choose another: make demo PORT=$$((10#$$PORT + 1))" >&2
-	  exit 1
+	  refuse "port $$PORT is in use by another program; choose another: \
+	make demo PORT=$$((10#$$PORT + 1))"
 	fi
 	if [[ -n $$MESH && ! -r $$MESH ]]; then
-	  echo "demo: MESH=$$MESH cannot be read; give the path of a mesh file, in quotes if it holds spaces" >&2
-	  exit 1
+	  refuse "MESH=$$MESH cannot be read; give the path of a mesh file, in quotes if it holds spaces"
 	fi
 
-# The log's name, also the mesh's id in the URL: the file's name without its folder and ending, in letters that need no quoting.
+# The log's name, also the mesh's id in the URL: the file's name without its folder and ending, in
+# letters that need no quoting.
 define demo_name
 name=fin
 if [[ -n $$MESH ]]; then
@@ -114,9 +136,10 @@ endef
 # The demo waits for nothing that it does not show, the tests least of all.
 demo: TARGETS := --target qtet qtet-server qtet_viewer
 
-# Makes build/demo/NAME.qtet, unless it is there already, newer than the mesh and the tool, and from this very mesh: what an older tool wrote
-# need not be what this viewer reads, nor as good as what this tool writes.
-# The tool writes its files whole or not at all, so an interrupted run leaves nothing half done.
+# Makes build/demo/NAME.qtet, unless it is there already, newer than the mesh and the tool, and from
+# this very mesh: what an older tool wrote need not be what this viewer reads, nor as good as what
+# this tool writes. The tool writes its files whole or not at all, so an interrupted run leaves
+# nothing half done.
 demo-log: demo-port setup build
 	@$(demo_name)
 	log=build/demo/$$name.qtet
@@ -126,7 +149,8 @@ demo-log: demo-port setup build
 	mkdir -p build/demo build/demo-input
 	[[ -n $$MESH || -f $$input ]] || "$$tool" sample fin -o "$$input"
 	path=$$(realpath -- "$$input")
-	if [[ -f $$log && ! $$input -nt $$log && ! $$tool -nt $$log && $$(cat "$$origin" 2>/dev/null) == "$$path" ]]; then
+	if [[ -f $$log && ! $$input -nt $$log && ! $$tool -nt $$log &&
+	  $$(cat "$$origin" 2>/dev/null) == "$$path" ]]; then
 	  echo "demo: $$log is up to date"
 	  exit 0
 	fi
@@ -135,20 +159,25 @@ demo-log: demo-port setup build
 	"$$tool" simplify "$$input" -o "$$log"
 	echo "$$path" >"$$origin"
 
-# In a terminal's foreground the server becomes the foreground job instead of make, which would call a Ctrl-C an error.
-# (Fields 3 and 6 behind the name in /proc/PID/stat: this process group, and the terminal's.) setpriv stops the server whenever this
-# shell is gone, however it went.
+# In a terminal's foreground the server becomes the foreground job instead of make, which would call
+# a Ctrl-C an error. (Fields 3 and 6 behind the name in /proc/PID/stat: this process group, and the
+# terminal's.) setpriv stops the server whenever this shell is gone, however it went.
 demo: demo-log
 	@$(demo_name)
 	stat=$$(</proc/$$$$/stat)
 	read -r _ _ group _ _ terminalGroup _ <<<"$${stat##*) }"
 	terminal=$$([[ $$group == "$$terminalGroup" ]] && echo yes || echo no)
 	[[ $$terminal == no ]] || set -m
-	setpriv --pdeathsig TERM $(BUILD)/bin/qtet-server build/demo --port "$$PORT" --viewer $(BUILD)/share/qtet/viewer &
+	setpriv --pdeathsig TERM $(BUILD)/bin/qtet-server build/demo --port "$$PORT" --viewer \
+	  $(BUILD)/share/qtet/viewer &
 	server=$$!
 	[[ $$terminal == yes ]] || trap 'kill -TERM $$server' INT TERM
 	until (exec 3<>"/dev/tcp/127.0.0.1/$$PORT") 2>/dev/null; do
-	  kill -0 $$server 2>/dev/null || { wait $$server || status=$$?; echo "demo: the server stopped; see its message above" >&2; exit $${status:-1}; }
+	  kill -0 $$server 2>/dev/null || {
+	    wait $$server || status=$$?
+	    echo "demo: the server stopped; see its message above" >&2
+	    exit $${status:-1}
+	  }
 	  sleep 0.1
 	done
 	[[ -n $$MESH ]] || look='&field=Velocity&clip=y'  # the sample at its best: cut open along the flow
@@ -157,7 +186,8 @@ demo: demo-log
 	if [[ $$terminal == yes ]]; then
 	  fg %1 >/dev/null || status=$$?
 	else
-	  wait $$server || true  # ends early when a signal arrives; the second one gives the server's own status
+	  # It ends early when a signal arrives; the second one gives the server's own status.
+	  wait $$server || true
 	  wait $$server || status=$$?
 	fi
 	exit $$status
@@ -165,7 +195,8 @@ demo: demo-log
 test: setup build
 	@ctest --preset release --parallel $(JOBS)
 
-# One clang-format and one prettier, whatever else is installed: their versions differ in what they do.
+# One clang-format and one prettier, whatever else is installed: their versions differ in what they
+# do.
 CPP_FILES = git ls-files -z '*.h' '*.cpp' '*.c'
 format: setup web-packages
 	@$(CPP_FILES) | xargs -0 clang-format-19 -i
@@ -182,9 +213,10 @@ lint: setup web-packages
 .PHONY: web-packages
 web-packages:
 	@cd web-client
-	if [[ ! -f node_modules/.package-lock.json || package-lock.json -nt node_modules/.package-lock.json ]]; then
+	installed=node_modules/.package-lock.json
+	if [[ ! -f $$installed || package-lock.json -nt $$installed ]]; then
 	  npm ci --no-audit --no-fund --loglevel=error
-	  touch node_modules/.package-lock.json
+	  touch "$$installed"
 	fi
 
 # The builds with sanitizers, with clang. Assertions are on.
@@ -236,7 +268,8 @@ bench: setup build
 	  "$$program"
 	done
 
-# tests/bench/RESULTS.md. What is known already is kept in build/results, so it may be stopped and started again.
+# tests/bench/RESULTS.md. What is known already is kept in build/results, so it may be stopped and
+# started again.
 results: TARGETS := --target qtet vtk_decimate
 results: setup build
 	@python3 tests/bench/results.py --cache build/results $(RESULTS)
@@ -249,7 +282,8 @@ sizes: setup build
 # tests/bench/RATE.md and its pictures.
 rate: TARGETS := --target qtet rate_distortion
 rate: setup build
-	@$(BUILD)/bin/rate_distortion --out tests/bench --curve "log=" --curve "optimal=--placement optimal" --curve "vertex=--placement vertex"
+	@$(BUILD)/bin/rate_distortion --out tests/bench --curve "log=" --curve \
+	  "optimal=--placement optimal" --curve "vertex=--placement vertex"
 
 clean:
 	@rm -rf build

@@ -10,7 +10,8 @@ jobs=$2
 since=${3:-}
 
 if [[ -z $since ]]; then
-  since=$(git merge-base HEAD origin/HEAD 2>/dev/null || git merge-base HEAD origin/main 2>/dev/null || true)
+  since=$(git merge-base HEAD origin/HEAD 2>/dev/null ||
+    git merge-base HEAD origin/main 2>/dev/null || true)
   if [[ -z $since || $since == "$(git rev-parse HEAD)" ]]; then
     since=$(git rev-parse --verify --quiet HEAD~20 || git rev-list --max-parents=0 HEAD | tail -n 1)
   fi

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# The Debian packages in a Debian of their own: installed, started, used, removed. Needs root, debootstrap and a Debian mirror: debootstrap's
-# own default, or the one of the environment variable QTET_DEBIAN_MIRROR.
+# The Debian packages in a Debian of their own: installed, started, used, removed. Needs root,
+# debootstrap and a Debian mirror: debootstrap's own default, or the one of the environment variable
+# QTET_DEBIAN_MIRROR.
 #   test.sh FOLDER-OF-PACKAGES FOLDER-TO-WORK-IN      77 = skipped
 set -euo pipefail
 packages=$(realpath "$1")
@@ -13,7 +14,10 @@ port=${QTET_TEST_PORT:-18087}
 skip() { echo "skipped: $1"; exit 77; }
 [[ $(id -u) == 0 ]] || skip "a chroot needs root"
 command -v debootstrap >/dev/null || skip "debootstrap is not installed"
-[[ -n $(compgen -G "$packages/*.deb") ]] || { echo "there are no packages in $packages; make deb first" >&2; exit 1; }
+[[ -n $(compgen -G "$packages/*.deb") ]] || {
+  echo "there are no packages in $packages; make deb first" >&2
+  exit 1
+}
 
 root=$work/root
 server=
@@ -24,19 +28,29 @@ cleanUp() {
 trap cleanUp EXIT
 fail() { echo "test-deb: $1" >&2; exit 1; }
 step() { printf 'test-deb: %s\n' "$1"; }
-inside() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive "$@"; }
+# With the end of what the failed command wrote.
+failWith() { tail -20 "$1" >&2; fail "$2"; }
+inside() {
+  chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin LC_ALL=C.UTF-8 \
+    DEBIAN_FRONTEND=noninteractive "$@"
+}
 get() { inside curl -fsS --max-time 20 "http://127.0.0.1:$port$1"; }
 deb() { (cd "$packages" && printf '/packages/%s' "$1"_*.deb); }
-install() { inside apt-get install -y --no-install-recommends -qq "$@" >"$work/apt.log" 2>&1 || { tail -20 "$work/apt.log" >&2; fail "apt-get install $*"; }; }
+install() {
+  inside apt-get install -y --no-install-recommends -qq "$@" >"$work/apt.log" 2>&1 ||
+    failWith "$work/apt.log" "apt-get install $*"
+}
 
 # ---- a bare Debian 12; the first run downloads it, later ones copy it
 
 if [[ ! -d $work/base ]]; then
   step "making a Debian 12"
   rm -rf "$work/base.part"
-  debootstrap --variant=minbase bookworm "$work/base.part" ${mirror:+"$mirror"} >"$work/debootstrap.log" 2>&1 || {
+  debootstrap --variant=minbase bookworm "$work/base.part" ${mirror:+"$mirror"} \
+    >"$work/debootstrap.log" 2>&1 || {
     tail -5 "$work/debootstrap.log" >&2
-    skip "debootstrap could not fetch Debian from ${mirror:-its default mirror; QTET_DEBIAN_MIRROR=URL names another}"
+    mirror=${mirror:-its default mirror; QTET_DEBIAN_MIRROR=URL names another}
+    skip "debootstrap could not fetch Debian from $mirror"
   }
   mv "$work/base.part" "$work/base"
 fi
@@ -56,23 +70,34 @@ install curl
 step "qtet-server"
 install "$(deb qtet-server)"
 inside dpkg -l | grep -E >/dev/null 'libvtk|libgl1' && fail "qtet-server draws VTK or OpenGL in"
-[[ $(stat -c %U:%a "$root/var/lib/qtet" 2>/dev/null || true) != root:* ]] || fail "/var/lib/qtet belongs to root"
-inside qtet-server --config /etc/qtet/server.conf --check-config | grep >/dev/null /var/lib/qtet || fail "the settings do not hold"
+[[ $(stat -c %U:%a "$root/var/lib/qtet" 2>/dev/null || true) != root:* ]] ||
+  fail "/var/lib/qtet belongs to root"
+inside qtet-server --config /etc/qtet/server.conf --check-config | grep >/dev/null /var/lib/qtet ||
+  fail "the settings do not hold"
 install systemd
-inside systemd-analyze verify qtet-server.service 2>"$work/unit.log" || { cat "$work/unit.log" >&2; fail "the unit is not sound"; }
-[[ ! -s $work/unit.log ]] || { cat "$work/unit.log" >&2; fail "systemd complains of the unit"; }
+inside systemd-analyze verify qtet-server.service 2>"$work/unit.log" ||
+  failWith "$work/unit.log" "the unit is not sound"
+[[ ! -s $work/unit.log ]] || failWith "$work/unit.log" "systemd complains of the unit"
 # systemd's own score of what the unit leaves open, in tenths: 0 is nothing, 100 everything.
-inside systemd-analyze security --offline=true --threshold=25 --no-pager qtet-server.service >"$work/security.log" 2>&1 || { tail -3 "$work/security.log" >&2; fail "the unit is not hardened"; }
-# Who may upload. (The folder's settings are root's; the token file, as the server reads it, its group's.)
+inside systemd-analyze security --offline=true --threshold=25 --no-pager qtet-server.service \
+  >"$work/security.log" 2>&1 || failWith "$work/security.log" "the unit is not hardened"
+# Who may upload. (The folder's settings are root's; the token file, as the server reads it, its
+# group's.)
 token=$(head -c 24 /dev/urandom | base64 -w0 | tr -d '+/=')
 printf 'write up-* %s\n' "$token" >"$root/etc/qtet/tokens"
 inside chown root:qtet /etc/qtet/tokens
 chmod 640 "$root/etc/qtet/tokens"
 # exec, so that what is killed at the end is the server and not a shell before it.
-(exec chroot "$root" env -i PATH=/usr/sbin:/usr/bin LC_ALL=C.UTF-8 setpriv --reuid=qtet --regid=qtet --clear-groups \
-  qtet-server --config /etc/qtet/server.conf --tokens /etc/qtet/tokens --port "$port" --admin 127.0.0.1:$((port + 1)) >"$work/server.log" 2>&1) &
+(exec chroot "$root" env -i PATH=/usr/sbin:/usr/bin LC_ALL=C.UTF-8 \
+  setpriv --reuid=qtet --regid=qtet --clear-groups \
+  qtet-server --config /etc/qtet/server.conf --tokens /etc/qtet/tokens --port "$port" \
+  --admin 127.0.0.1:$((port + 1)) >"$work/server.log" 2>&1) &
 server=$!
-for _ in {1..50}; do get /v1/meshes >/dev/null 2>&1 && break; kill -0 $server || { cat "$work/server.log" >&2; fail "the server ended"; }; sleep 0.1; done
+for _ in {1..50}; do
+  get /v1/meshes >/dev/null 2>&1 && break
+  kill -0 $server || failWith "$work/server.log" "the server ended"
+  sleep 0.1
+done
 [[ $(get /v1/meshes) == *'"meshes":[]'* ]] || fail "an empty folder is not an empty list"
 get / | grep >/dev/null '<qtet-viewer\|<script' || fail "the viewer is missing"
 
@@ -88,29 +113,42 @@ inside install -o qtet -g qtet -m 0644 /tmp/fin.qtet /var/lib/qtet/.fin.part
 inside mv /var/lib/qtet/.fin.part /var/lib/qtet/fin.qtet
 for _ in {1..50}; do [[ $(get /v1/meshes) != *'"id":"fin"'* ]] || break; sleep 0.1; done
 [[ $(get /v1/meshes/fin) == *'"digest"'* ]] || fail "the server does not see a new log"
-inside curl -fsSL --max-time 20 "http://127.0.0.1:$port/v1/meshes/fin/log" | cmp - "$root/tmp/fin.qtet" || fail "the log arrives changed"
-inside env QTET_TOKEN="$token" qtet push /tmp/fin.qtet "http://127.0.0.1:$port/v1/meshes/up-fin" >/dev/null || fail "an upload"
-[[ $(get /v1/meshes/up-fin) == *'"digest"'* && -f $root/var/lib/qtet/up-fin.qtet ]] || fail "the server does not have what was uploaded"
-inside env QTET_TOKEN="$token" qtet push /tmp/fin.qtet "http://127.0.0.1:$port/v1/meshes/other" >/dev/null 2>&1 && fail "a token wrote what it must not"
-for page in qtet qtet-simplify; do [[ -n $(compgen -G "$root/usr/share/man/man1/$page.1*") ]] || fail "there is no man page $page(1)"; done
+meshes=http://127.0.0.1:$port/v1/meshes
+inside curl -fsSL --max-time 20 "$meshes/fin/log" | cmp - "$root/tmp/fin.qtet" ||
+  fail "the log arrives changed"
+inside env QTET_TOKEN="$token" qtet push /tmp/fin.qtet "$meshes/up-fin" >/dev/null ||
+  fail "an upload"
+[[ $(get /v1/meshes/up-fin) == *'"digest"'* && -f $root/var/lib/qtet/up-fin.qtet ]] ||
+  fail "the server does not have what was uploaded"
+inside env QTET_TOKEN="$token" qtet push /tmp/fin.qtet "$meshes/other" >/dev/null 2>&1 &&
+  fail "a token wrote what it must not"
+for page in qtet qtet-simplify; do
+  [[ -n $(compgen -G "$root/usr/share/man/man1/$page.1*") ]] || fail "there is no man page $page(1)"
+done
 
 # ---- the library: a program of somebody else's, and Python
 
 step "libqtet-dev, python3-qtet"
 install "$(deb libqtet0)" "$(deb libqtet-dev)" "$(deb python3-qtet)" gcc libc6-dev pkgconf
 cp "$source/tests/consumer/levels.c" "$root/tmp/"
-inside sh -c 'cc -std=c99 /tmp/levels.c $(pkg-config --cflags --libs qtet) -o /tmp/levels && /tmp/levels /tmp/fin.qtet full' | grep >/dev/null '^level 0:' || fail "levels.c"
-inside python3 -c 'import qtet_log; log = qtet_log.Log("/tmp/fin.qtet"); print(log.refine(log.last_level), log.counts())' >/dev/null || fail "qtet_log"
-inside python3 -c "import qtet_log; qtet_log.Log('http://127.0.0.1:$port/?mesh=fin').refine(0)" || fail "qtet_log over HTTP"
+inside sh -c 'cc -std=c99 /tmp/levels.c $(pkg-config --cflags --libs qtet) -o /tmp/levels &&
+  /tmp/levels /tmp/fin.qtet full' | grep >/dev/null '^level 0:' || fail "levels.c"
+inside python3 -c 'import qtet_log
+log = qtet_log.Log("/tmp/fin.qtet")
+print(log.refine(log.last_level), log.counts())' >/dev/null || fail "qtet_log"
+inside python3 -c "import qtet_log
+qtet_log.Log('http://127.0.0.1:$port/?mesh=fin').refine(0)" || fail "qtet_log over HTTP"
 
-# ---- ParaView, which takes libvtk9-dev's place on Debian 12 and so cannot be where the project is built
+# ---- ParaView, which takes libvtk9-dev's place on Debian 12 and so cannot be where the project is
+# built
 
 step "the plugin in ParaView"
 install paraview python3-paraview xvfb xauth
 cp "$source/tests/codec/python/qtet_paraview_test.py" "$root/tmp/"
 plugin=$(inside dpkg -L python3-qtet | grep '/qtet_paraview\.py$')
-inside xvfb-run -a pvbatch --force-offscreen-rendering /tmp/qtet_paraview_test.py "$plugin" /tmp/fin.qtet /tmp "http://127.0.0.1:$port/?mesh=fin" >"$work/paraview.log" 2>&1 ||
-  { tail -20 "$work/paraview.log" >&2; fail "the plugin in ParaView"; }
+inside xvfb-run -a pvbatch --force-offscreen-rendering /tmp/qtet_paraview_test.py "$plugin" \
+  /tmp/fin.qtet /tmp "http://127.0.0.1:$port/?mesh=fin" >"$work/paraview.log" 2>&1 ||
+  failWith "$work/paraview.log" "the plugin in ParaView"
 
 # ---- and away again
 
@@ -118,12 +156,15 @@ step "removing"
 kill $server; wait $server || true
 server=
 # The proper end of a service whose package goes: logs stay, everything else does not.
-mapfile -t files < <(for p in qtet qtet-server libqtet0 libqtet-dev python3-qtet; do inside dpkg -L $p; done | sort -u)
-inside apt-get remove -y -qq qtet-server >"$work/apt.log" 2>&1 || { tail -20 "$work/apt.log" >&2; fail "apt-get remove"; }
+ours=(qtet qtet-server libqtet0 libqtet-dev python3-qtet)
+mapfile -t files < <(for p in "${ours[@]}"; do inside dpkg -L "$p"; done | sort -u)
+inside apt-get remove -y -qq qtet-server >"$work/apt.log" 2>&1 ||
+  failWith "$work/apt.log" "apt-get remove"
 [[ -f $root/etc/qtet/server.conf ]] || fail "removing took the settings, which only a purge may"
 [[ ! -e $root/usr/bin/qtet-server ]] || fail "removing left the server"
 rm "$root/etc/qtet/tokens"
-inside apt-get purge -y -qq qtet qtet-server libqtet0 libqtet-dev python3-qtet >"$work/apt.log" 2>&1 || { tail -20 "$work/apt.log" >&2; fail "apt-get purge"; }
+inside apt-get purge -y -qq "${ours[@]}" >"$work/apt.log" 2>&1 ||
+  failWith "$work/apt.log" "apt-get purge"
 for file in "${files[@]}"; do [[ ! -f $root$file ]] || fail "$file is left behind"; done
 [[ ! -e $root/etc/qtet ]] || fail "/etc/qtet is left behind"
 [[ -f $root/var/lib/qtet/fin.qtet ]] || fail "a purge took somebody's log"

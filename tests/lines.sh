@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
-# No line of code or prose is over 100 columns, but for those that cannot be broken: a table's row, a
-# link, a word without blanks, an example of a protocol's message.
+# No line of code or prose is over 100 columns, but for those that cannot be broken: a table's row,
+# a link, a word without blanks, an example of a protocol's message.
 #   lines.sh [ROOT]   0 = none; 1 = each is named
 set -euo pipefail
 cd "${1:-$(dirname "${BASH_SOURCE[0]}")/..}"
 
 long=$(
-  git ls-files -z '*.h' '*.cpp' '*.c' '*.ts' '*.mjs' '*.css' '*.py' '*.sh' '*.cmake' '*CMakeLists.txt' \
-    Makefile '*.md' '*.yaml' '.ci/*' ':!tests/golden' ':!tests/bench/RESULTS.md' |
+  git ls-files -z '*.h' '*.cpp' '*.c' '*.ts' '*.mjs' '*.css' '*.py' '*.sh' \
+    '*.cmake' '*CMakeLists.txt' Makefile '*.md' '*.yaml' '.ci/*' '.packaging/*' \
+    ':!tests/golden' ':!tests/bench/RESULTS.md' |
     LC_ALL=C.UTF-8 xargs -0 grep -nHP '^.{101,}$' |
     grep -vP '^[^:]+[.]md:\d+: *([|]|!?\[)' |           # tables, pictures, links
     grep -vP '^[^:]+:\d+:\S*\s*\S*\s*\S*$' |            # hardly a blank to break at

@@ -1,11 +1,13 @@
-"""qtet logs from Python: what a log holds, and which bytes of it a level needs. Standard library alone; libqtet.so decodes (codec/api/qtet.h).
+"""qtet logs from Python: what a log holds, and which bytes of it a level needs. Standard library
+alone; libqtet.so decodes (codec/api/qtet.h).
 
     with Log("part.qtet") as log:
         log.refine(log.level_of_error("Density", 0.01))
         print(log.counts())
 
-A source is a file, a log's URL on any host, `http://host/v1/meshes/NAME` of a qtet-server, or the address of its viewer (`http://host/?mesh=NAME`).
-Of a URL only the bytes that a level needs are fetched, where the host answers Range requests."""
+A source is a file, a log's URL on any host, `http://host/v1/meshes/NAME` of a qtet-server, or the
+address of its viewer (`http://host/?mesh=NAME`). Of a URL only the bytes that a level needs are
+fetched, where the host answers Range requests."""
 import ctypes
 import ctypes.util
 import os
@@ -29,28 +31,65 @@ class QtetError(RuntimeError):
 
 
 class LogInfo(ctypes.Structure):
-    _fields_ = [("versionMajor", _u32), ("versionMinor", _u32), ("bytes", _u64), ("chunks", _u32), ("levels", _u32), ("fields", _u32),
-                ("latticeBits", _u32), ("latticeStep", _f64), ("latticeOrigin", _f64 * 3), ("digest", _text), ("source", _text),
-                ("generator", _text)]
+    _fields_ = [
+        ("versionMajor", _u32),
+        ("versionMinor", _u32),
+        ("bytes", _u64),
+        ("chunks", _u32),
+        ("levels", _u32),
+        ("fields", _u32),
+        ("latticeBits", _u32),
+        ("latticeStep", _f64),
+        ("latticeOrigin", _f64 * 3),
+        ("digest", _text),
+        ("source", _text),
+        ("generator", _text),
+    ]
 
 
 class FieldInfo(ctypes.Structure):
-    _fields_ = [("components", _u32), ("association", _u32), ("bits", _u32), ("reserved", _u32), ("step", _f64), ("minimum", _f64 * 16),
-                ("range", _f64 * 2), ("bytes", _u64), ("name", _text), ("type", _text)]
+    _fields_ = [
+        ("components", _u32),
+        ("association", _u32),
+        ("bits", _u32),
+        ("reserved", _u32),
+        ("step", _f64),
+        ("minimum", _f64 * 16),
+        ("range", _f64 * 2),
+        ("bytes", _u64),
+        ("name", _text),
+        ("type", _text),
+    ]
 
 
 class LevelInfo(ctypes.Structure):
-    _fields_ = [("tetrahedra", _u32), ("vertices", _u32), ("boundaryTriangles", _u32), ("hasError", _u32), ("prefixBytes", _u64),
-                ("boundaryDistance", _f64), ("toLevelMean", _f64), ("toLevelMax", _f64), ("toOriginalMean", _f64),
-                ("toOriginalMax", _f64), ("volumeKept", _f64)]
+    _fields_ = [
+        ("tetrahedra", _u32),
+        ("vertices", _u32),
+        ("boundaryTriangles", _u32),
+        ("hasError", _u32),
+        ("prefixBytes", _u64),
+        ("boundaryDistance", _f64),
+        ("toLevelMean", _f64),
+        ("toLevelMax", _f64),
+        ("toOriginalMean", _f64),
+        ("toOriginalMax", _f64),
+        ("volumeKept", _f64),
+    ]
 
 
 def _candidates():
-    """Where libqtet.so may be: QTET_LIBRARY, beside an installed copy of this file, where the system's linker looks."""
+    """Where libqtet.so may be: QTET_LIBRARY, beside an installed copy of this file, where the
+    system's linker looks."""
     if os.environ.get("QTET_LIBRARY"):
         return [os.environ["QTET_LIBRARY"]]
     here = pathlib.Path(__file__).resolve().parent
-    installed = [str(found) for up in list(here.parents)[:3] for below in ("lib", "lib64", "lib/*-linux-gnu") for found in up.glob(below + "/libqtet.so.0")]
+    installed = [
+        str(found)
+        for up in list(here.parents)[:3]
+        for below in ("lib", "lib64", "lib/*-linux-gnu")
+        for found in up.glob(below + "/libqtet.so.0")
+    ]
     return [*installed, "libqtet.so.0", ctypes.util.find_library("qtet") or "libqtet.so"]
 
 
@@ -69,12 +108,22 @@ def library():
         except OSError as error:
             tried.append(str(error))
             continue
-        for function, result in (("create", ctypes.c_void_p), ("error", _text), ("tetrahedra", ctypes.c_void_p), ("boundary", ctypes.c_void_p), ("lattice_points", ctypes.c_void_p),
-                                 ("field_count", ctypes.c_size_t)):
+        for function, result in (
+            ("create", ctypes.c_void_p),
+            ("error", _text),
+            ("tetrahedra", ctypes.c_void_p),
+            ("boundary", ctypes.c_void_p),
+            ("lattice_points", ctypes.c_void_p),
+            ("field_count", ctypes.c_size_t),
+        ):
             getattr(c, "qtet_log_" + function).restype = result
         _loaded = c
         return c
-    raise QtetError("libqtet.so is not found (" + "; ".join(tried) + "); install libqtet0, or set QTET_LIBRARY to its path")
+    raise QtetError(
+        "libqtet.so is not found ("
+        + "; ".join(tried)
+        + "); install libqtet0, or set QTET_LIBRARY to its path"
+    )
 
 
 class _Remote:
@@ -85,7 +134,10 @@ class _Remote:
         self.file = tempfile.NamedTemporaryFile(prefix="qtet-", suffix=".qtet")
         head = self._get(0, _HEADER_BYTES)
         if len(head) < _HEADER_BYTES or not head.startswith(_MAGIC):
-            raise QtetError(f"{url} is no qtet log; give the URL of a .qtet file, or http://host/v1/meshes/NAME of a qtet-server")
+            raise QtetError(
+                f"{url} is no qtet log; give the URL of a .qtet file,"
+                " or http://host/v1/meshes/NAME of a qtet-server"
+            )
         self.bytes, manifest, table = struct.unpack_from("<QII", head, 16)
         self.file.truncate(max(self.bytes, self.have))
         self.need(_HEADER_BYTES + manifest + table)
@@ -99,14 +151,19 @@ class _Remote:
         return True
 
     def _get(self, first, end):
-        """Writes the bytes [first, end) of the log to the file; the first ones of them are the answer."""
-        request = urllib.request.Request(self.url, headers={"Range": f"bytes={first}-{end - 1}", "Accept-Encoding": "identity"})
+        """Writes the bytes [first, end) of the log to the file; the first ones of them are the
+        answer."""
+        request = urllib.request.Request(
+            self.url, headers={"Range": f"bytes={first}-{end - 1}", "Accept-Encoding": "identity"}
+        )
         try:
             with urllib.request.urlopen(request, timeout=_TIMEOUT_S) as answer:
                 self._same_log(answer)
                 return self._store(answer, first if answer.status == 206 else 0, end)
         except (urllib.error.URLError, OSError, ValueError) as error:
-            raise QtetError(f"{self.url} cannot be fetched: {error}; is the server running, and the name right?") from error
+            raise QtetError(
+                f"{self.url} cannot be fetched: {error}; is the server running, and the name right?"
+            ) from error
 
     def _same_log(self, answer):
         tag = answer.headers.get("ETag")
@@ -123,7 +180,9 @@ class _Remote:
             at += len(piece)
         self.file.flush()
         if self.have and at < end:
-            raise QtetError(f"{self.url} ended after {at} bytes, {end} were asked for; fetch it again")
+            raise QtetError(
+                f"{self.url} ended after {at} bytes, {end} were asked for; fetch it again"
+            )
         self.have = max(self.have, at)
         return start
 
@@ -136,8 +195,13 @@ def _log_url(source):
     mesh = urllib.parse.parse_qs(parts.query).get("mesh")
     if mesh and not parts.path.startswith("/v1/"):
         folder = parts.path[: parts.path.rfind("/") + 1] or "/"
-        parts = parts._replace(path=folder + "v1/meshes/" + urllib.parse.quote(mesh[0], safe=""), query="", fragment="")
-    if "/v1/meshes/" in parts.path and parts.path.rpartition("/v1/meshes/")[2].strip("/").count("/") == 0:
+        parts = parts._replace(
+            path=folder + "v1/meshes/" + urllib.parse.quote(mesh[0], safe=""), query="", fragment=""
+        )
+    if (
+        "/v1/meshes/" in parts.path
+        and parts.path.rpartition("/v1/meshes/")[2].strip("/").count("/") == 0
+    ):
         parts = parts._replace(path=parts.path.rstrip("/") + "/log")
     return urllib.parse.urlunsplit(parts)
 
@@ -173,7 +237,10 @@ class Log:
             raise MemoryError("no memory for a log")
         self.check(self.c.qtet_log_open_file(self.handle, os.fsencode(path)))
         self.info = self._struct(LogInfo, self.c.qtet_log_get_info)
-        self.fields = [self._struct(FieldInfo, self.c.qtet_log_get_field, _u32(f)) for f in range(self.info.fields)]
+        self.fields = [
+            self._struct(FieldInfo, self.c.qtet_log_get_field, _u32(f))
+            for f in range(self.info.fields)
+        ]
 
     def check(self, status):
         if status != 0:
@@ -181,7 +248,11 @@ class Log:
 
     def _struct(self, kind, function, *arguments):
         out = kind()
-        self.check(function(self.handle, *arguments, ctypes.c_size_t(ctypes.sizeof(kind)), ctypes.byref(out)))
+        self.check(
+            function(
+                self.handle, *arguments, ctypes.c_size_t(ctypes.sizeof(kind)), ctypes.byref(out)
+            )
+        )
         return out
 
     def _level(self, function, *arguments):
@@ -201,28 +272,37 @@ class Log:
         return self._level(self.c.qtet_log_level_of_tetrahedra, _u64(int(most)))
 
     def level_of_error(self, field, bound):
-        """The coarsest level at which a field's rms error is at most `bound` of its range; field "boundary": the distance, of the diagonal."""
+        """The coarsest level at which a field's rms error is at most `bound` of its range; field
+        "boundary": the distance, of the diagonal."""
         if field == "boundary":
             return self._level(self.c.qtet_log_level_of_boundary_error, _f64(bound))
         number = self._level(self.c.qtet_log_find_field, field.encode())
         return self._level(self.c.qtet_log_level_of_field_error, _u32(number), _f64(bound))
 
     def refine(self, level):
-        """Makes the mesh that of a level (the last one if there is none so fine), after fetching what is missing of it."""
+        """Makes the mesh that of a level (the last one if there is none so fine), after fetching
+        what is missing of it."""
         level = min(level, self.last_level)
         if self.remote and self.remote.need(self.level_info(level).prefixBytes):
-            self._open(self.remote.file.name)  # anew: the library must not see a file change that it has open
+            # Anew: the library must not see a file change that it has open.
+            self._open(self.remote.file.name)
         self.check(self.c.qtet_log_refine(self.handle, _u32(level)))
         return level
 
     def counts(self):
         """(vertices, tetrahedra, boundary triangles) of the mesh."""
         c = self.c
-        return c.qtet_log_vertex_count(self.handle), c.qtet_log_tetrahedron_count(self.handle), c.qtet_log_boundary_count(self.handle)
+        return (
+            c.qtet_log_vertex_count(self.handle),
+            c.qtet_log_tetrahedron_count(self.handle),
+            c.qtet_log_boundary_count(self.handle),
+        )
 
     def copy_points(self, target, count, is_double):
         """Writes 3 numbers a vertex to ctypes' `target`."""
-        function = self.c.qtet_log_copy_points_double if is_double else self.c.qtet_log_copy_points_float
+        function = (
+            self.c.qtet_log_copy_points_double if is_double else self.c.qtet_log_copy_points_float
+        )
         self.check(function(self.handle, ctypes.c_size_t(count), target))
 
     def field_count(self, field):
@@ -230,5 +310,7 @@ class Log:
 
     def copy_field(self, field, target, count, is_double):
         """Writes a field's values to ctypes' `target`; NaN where one is missing."""
-        function = self.c.qtet_log_copy_field_double if is_double else self.c.qtet_log_copy_field_float
+        function = (
+            self.c.qtet_log_copy_field_double if is_double else self.c.qtet_log_copy_field_float
+        )
         self.check(function(self.handle, _u32(field), ctypes.c_size_t(count), target))

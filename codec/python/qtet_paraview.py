@@ -1,13 +1,20 @@
-"""ParaView plugin: opens qtet logs, files (File > Open) and URLs (Sources > Qtet URL), with a slider for the level or the error.
+"""ParaView plugin: opens qtet logs, files (File > Open) and URLs (Sources > Qtet URL), with a
+slider for the level or the error.
 
-Tools > Manage Plugins > Load New... > qtet_paraview.py. It needs qtet_vtk.py and qtet_log.py beside it, and libqtet.so (QTET_LIBRARY names it
-where it is not installed)."""
+Tools > Manage Plugins > Load New... > qtet_paraview.py. It needs qtet_vtk.py and qtet_log.py beside
+it, and libqtet.so (QTET_LIBRARY names it where it is not installed)."""
 import os
 import sys
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
-from paraview.util.vtkAlgorithm import VTKPythonAlgorithmBase, smdomain, smhint, smproperty, smproxy  # noqa: E402
+from paraview.util.vtkAlgorithm import (  # noqa: E402
+    VTKPythonAlgorithmBase,
+    smdomain,
+    smhint,
+    smproperty,
+    smproxy,
+)
 from vtkmodules.vtkCommonCore import vtkDataArraySelection  # noqa: E402
 from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid  # noqa: E402
 
@@ -16,10 +23,12 @@ import qtet_vtk  # noqa: E402
 BY_LEVEL, BY_BOUNDARY_ERROR, BY_FIELD_ERROR = 0, 1, 2
 
 _PROPERTIES = """
-  <IntVectorProperty name="LevelRange" command="GetLevelRange" number_of_elements="2" default_values="0 0" information_only="1">
+  <IntVectorProperty name="LevelRange" command="GetLevelRange" number_of_elements="2"
+                     default_values="0 0" information_only="1">
     <SimpleIntInformationHelper/>
   </IntVectorProperty>
-  <IntVectorProperty name="ChooseBy" command="SetChooseBy" number_of_elements="1" default_values="0">
+  <IntVectorProperty name="ChooseBy" command="SetChooseBy" number_of_elements="1"
+                     default_values="0">
     <EnumerationDomain name="enum">
       <Entry text="Level" value="0"/>
       <Entry text="Boundary error" value="1"/>
@@ -32,16 +41,28 @@ _PROPERTIES = """
       <RequiredProperties><Property name="LevelRange" function="RangeInfo"/></RequiredProperties>
     </IntRangeDomain>
     <Documentation>0 is the coarsest, the last one the whole mesh.</Documentation>
-    <Hints><PropertyWidgetDecorator type="GenericDecorator" mode="visibility" property="ChooseBy" value="0"/></Hints>
+    <Hints>
+      <PropertyWidgetDecorator type="GenericDecorator" mode="visibility"
+                               property="ChooseBy" value="0"/>
+    </Hints>
   </IntVectorProperty>
-  <DoubleVectorProperty name="ErrorPercent" command="SetErrorPercent" number_of_elements="1" default_values="1.0">
+  <DoubleVectorProperty name="ErrorPercent" command="SetErrorPercent" number_of_elements="1"
+                        default_values="1.0">
     <DoubleRangeDomain name="range" min="0" max="10"/>
-    <Documentation>The coarsest level that is this good: of the boundary in per cent of the box's diagonal, of a field (rms) in per cent of its range.</Documentation>
-    <Hints><PropertyWidgetDecorator type="GenericDecorator" mode="visibility" property="ChooseBy" values="1 2"/></Hints>
+    <Documentation>The coarsest level that is this good: of the boundary in per cent of the box's
+    diagonal, of a field (rms) in per cent of its range.</Documentation>
+    <Hints>
+      <PropertyWidgetDecorator type="GenericDecorator" mode="visibility"
+                               property="ChooseBy" values="1 2"/>
+    </Hints>
   </DoubleVectorProperty>
-  <StringVectorProperty name="ErrorField" command="SetErrorField" number_of_elements="1" default_values="">
+  <StringVectorProperty name="ErrorField" command="SetErrorField" number_of_elements="1"
+                        default_values="">
     <Documentation>The field whose error counts; empty: the first.</Documentation>
-    <Hints><PropertyWidgetDecorator type="GenericDecorator" mode="visibility" property="ChooseBy" value="2"/></Hints>
+    <Hints>
+      <PropertyWidgetDecorator type="GenericDecorator" mode="visibility"
+                               property="ChooseBy" value="2"/>
+    </Hints>
   </StringVectorProperty>
 """
 
@@ -78,7 +99,9 @@ class _QtetSource(VTKPythonAlgorithmBase):
         if self._choose == BY_BOUNDARY_ERROR:
             return log.level_of_error("boundary", self._percent / 100)
         if self._choose == BY_FIELD_ERROR and log.fields:
-            return log.level_of_error(self._field or log.fields[0].name.decode(), self._percent / 100)
+            return log.level_of_error(
+                self._field or log.fields[0].name.decode(), self._percent / 100
+            )
         return self._level
 
     def SetLevel(self, level):
@@ -114,7 +137,9 @@ class _QtetSource(VTKPythonAlgorithmBase):
                 return 1
             log.refine(self._chosen_level(log))
             wanted = {field.name.decode(errors="replace") for field in log.fields}
-            grid = qtet_vtk.grid_of(log, [name for name in wanted if self._arrays.ArrayIsEnabled(name)])
+            grid = qtet_vtk.grid_of(
+                log, [name for name in wanted if self._arrays.ArrayIsEnabled(name)]
+            )
         except (qtet_vtk.QtetError, OSError) as error:
             return self._failed(error)
         vtkUnstructuredGrid.GetData(outInfo, 0).ShallowCopy(grid)

@@ -1,7 +1,8 @@
 """qtet logs as VTK's grids, for VTK, PyVista and ParaView.
 
     grid = qtet_vtk.read("part.qtet", tetrahedra=100_000)       # a vtkUnstructuredGrid
-    mesh = pyvista.wrap(qtet_vtk.read("http://localhost:8080/v1/meshes/part", error=("Density", 0.01)))
+    part = "http://localhost:8080/v1/meshes/part"
+    mesh = pyvista.wrap(qtet_vtk.read(part, error=("Density", 0.01)))
 
 libqtet.so decodes straight into VTK's own arrays; numpy is not needed."""
 import array
@@ -11,7 +12,9 @@ try:
     from vtkmodules import vtkCommonCore as core
     from vtkmodules import vtkCommonDataModel as model
 except ImportError as error:
-    raise ImportError("VTK's Python modules are needed (Debian: python3-vtk9; or pip install vtk)") from error
+    raise ImportError(
+        "VTK's Python modules are needed (Debian: python3-vtk9; or pip install vtk)"
+    ) from error
 
 from qtet_log import CELL, POINT, Log, QtetError
 
@@ -21,9 +24,18 @@ __all__ = ["Log", "QtetError", "grid_of", "read", "surface_of"]
 _FLOAT_BITS = 20
 # What stands in a slot whose chunk has not come (qtet.h, "Sizes").
 _NO_POINT, _NO_TETRAHEDRON, _NO_TRIANGLE = b"\xff" * 12, bytes(16), bytes(12)
-_ARRAYS = {"float32": core.vtkFloatArray, "float64": core.vtkDoubleArray, "int8": core.vtkTypeInt8Array, "uint8": core.vtkTypeUInt8Array,
-           "int16": core.vtkTypeInt16Array, "uint16": core.vtkTypeUInt16Array, "int32": core.vtkTypeInt32Array,
-           "uint32": core.vtkTypeUInt32Array, "int64": core.vtkTypeInt64Array, "uint64": core.vtkTypeUInt64Array}
+_ARRAYS = {
+    "float32": core.vtkFloatArray,
+    "float64": core.vtkDoubleArray,
+    "int8": core.vtkTypeInt8Array,
+    "uint8": core.vtkTypeUInt8Array,
+    "int16": core.vtkTypeInt16Array,
+    "uint16": core.vtkTypeUInt16Array,
+    "int32": core.vtkTypeInt32Array,
+    "uint32": core.vtkTypeUInt32Array,
+    "int64": core.vtkTypeInt64Array,
+    "uint64": core.vtkTypeUInt64Array,
+}
 
 
 def _sized(values, components, tuples):
@@ -34,11 +46,17 @@ def _sized(values, components, tuples):
 
 def _memory(values):
     """An array's memory for ctypes."""
-    return ctypes.cast((ctypes.c_char * (values.GetDataTypeSize() * values.GetNumberOfValues())).from_buffer(values), ctypes.c_void_p)
+    return ctypes.cast(
+        (ctypes.c_char * (values.GetDataTypeSize() * values.GetNumberOfValues())).from_buffer(
+            values
+        ),
+        ctypes.c_void_p,
+    )
 
 
 class _Kept:
-    """Which slots of one kind hold something, in logs of layout `regions` between bands; everywhere else all do, and nothing is looked at one by one."""
+    """Which slots of one kind hold something, in logs of layout `regions` between bands; everywhere
+    else all do, and nothing is looked at one by one."""
 
     def __init__(self, address, count, width, hole):
         self.ids = None  # all
@@ -74,7 +92,8 @@ def _points(log, kept):
 
 
 def _cells(source, kept, corners, count, vertices):
-    """vtkCellArray of the kept ones of `count` cells, from the library's own indices; `vertices` are those kept."""
+    """vtkCellArray of the kept ones of `count` cells, from the library's own indices; `vertices`
+    are those kept."""
     connectivity = _sized(core.vtkTypeInt32Array(), corners, count)
     if count:
         ctypes.memmove(_memory(connectivity), source, 4 * corners * count)
@@ -97,7 +116,9 @@ def _field(log, number):
     kind = info.type.decode()
     tuples = log.field_count(number) // info.components
     is_double = kind != "float32"
-    values = _sized(core.vtkDoubleArray() if is_double else core.vtkFloatArray(), info.components, tuples)
+    values = _sized(
+        core.vtkDoubleArray() if is_double else core.vtkFloatArray(), info.components, tuples
+    )
     if tuples:
         log.copy_field(number, _memory(values), tuples * info.components, is_double)
     if kind not in ("float32", "float64") and kind in _ARRAYS:
@@ -111,9 +132,13 @@ def _add_fields(log, grid, fields, kept):
     """`kept` by association: what of its slots stays."""
     known = {info.name.decode(errors="replace") for info in log.fields}
     if fields is not None and not set(fields) <= known:
-        raise QtetError(f"the log has no field {sorted(set(fields) - known)}; it has {sorted(known)}")
+        raise QtetError(
+            f"the log has no field {sorted(set(fields) - known)}; it has {sorted(known)}"
+        )
     for number, info in enumerate(log.fields):
-        if info.association not in kept or (fields is not None and info.name.decode(errors="replace") not in fields):
+        if info.association not in kept or (
+            fields is not None and info.name.decode(errors="replace") not in fields
+        ):
             continue
         data = grid.GetCellData() if info.association == CELL else grid.GetPointData()
         values = kept[info.association].of(_field(log, number))
@@ -128,7 +153,8 @@ def _vertices(log):
 
 
 def grid_of(log, fields=None):
-    """The log's present mesh as a vtkUnstructuredGrid of tetrahedra, with the named fields (None: all)."""
+    """The log's present mesh as a vtkUnstructuredGrid of tetrahedra, with the named fields (None:
+    all)."""
     source, count = log.c.qtet_log_tetrahedra(log.handle), log.counts()[1]
     vertices, cells = _vertices(log), _Kept(source, count, 4, _NO_TETRAHEDRON)
     grid = model.vtkUnstructuredGrid()
@@ -139,7 +165,8 @@ def grid_of(log, fields=None):
 
 
 def surface_of(log, fields=None):
-    """The log's present boundary as a vtkPolyData of triangles, with the points of the whole mesh and its point fields."""
+    """The log's present boundary as a vtkPolyData of triangles, with the points of the whole mesh
+    and its point fields."""
     source, count = log.c.qtet_log_boundary(log.handle), log.counts()[2]
     vertices, triangles = _vertices(log), _Kept(source, count, 3, _NO_TRIANGLE)
     surface = model.vtkPolyData()
@@ -154,7 +181,8 @@ def read(source, level=None, tetrahedra=None, error=None, fields=None):
 
     level       its number, 0 the coarsest; without anything: the whole mesh
     tetrahedra  or the finest level of at most so many
-    error       or ("NAME", E): the coarsest at which the field's rms error is at most E of its range, or the distance ("boundary", E)
+    error       or ("NAME", E): the coarsest at which the field's rms error is at most E of its
+                range, or the distance ("boundary", E)
     fields      names; None: all"""
     if sum(choice is not None for choice in (level, tetrahedra, error)) > 1:
         raise ValueError("give one of level, tetrahedra and error")

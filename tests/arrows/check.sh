@@ -1,6 +1,8 @@
 #!/usr/bin/env bash
-# Keeps the arrows between the rooms: proto <- codec <- simplify, and proto, codec <- server.
-#   check.sh [ROOT]      0 = all hold; 1 = every arrow that breaks is named as file:line, with what to do
+# Keeps the arrows between the rooms: proto <- codec <- simplify, and proto, codec <- server; in the
+# page: core <- three <- viewer. Inside a room neither files nor folders may stand in a circle.
+#   check.sh [ROOT]   0 = all hold
+#                     1 = every arrow that breaks is named as file:line, with what to do
 set -euo pipefail
 shopt -s nullglob globstar
 
@@ -19,7 +21,7 @@ declare -A foreign=(
 
 broken=0
 complain() {
-  printf '%s\n' "$1"
+  printf '%s\n' "$*"
   broken=1
 }
 
@@ -33,21 +35,26 @@ isIn() { # word list...
 # The C++ sources of a folder, one a line; nothing that was built or fetched.
 sourcesOf() {
   find "$1" \( -name node_modules -o -name dist \) -prune -o \
-    -type f \( -name '*.h' -o -name '*.hpp' -o -name '*.c' -o -name '*.cc' -o -name '*.cpp' -o -name '*.inc' \) -print | sort
+    -type f -regex '.*[.]\(h\|hpp\|c\|cc\|cpp\|inc\)' -print | sort
 }
 
 # Lines "number:name" of a file's includes; $2 is the opening delimiter.
-includesOf() { sed -nE "/^[[:space:]]*#[[:space:]]*include/{=;s/^[^#]*#[[:space:]]*include[[:space:]]*$2([^\">]+)[\">].*/\\1/p}" "$1" \
-  | awk '/^[0-9]+$/ {line = $0; next} {print line ":" $0}'; }
+includesOf() {
+  local include='#[[:space:]]*include'
+  sed -nE "/^[[:space:]]*$include/{=;s/^[^#]*$include[[:space:]]*$2([^\">]+)[\">].*/\\1/p}" "$1" |
+    awk '/^[0-9]+$/ {line = $0; next} {print line ":" $0}'
+}
 
 checkQuoted() { # file room
   local file=$1 room=$2 line name target
   while IFS=: read -r line name; do
     target=${name%%/*}
     if [[ $name != */* || ! -e $name ]]; then
-      complain "$file:$line: \"$name\" is no file of the repository; write includes from the root, like \"codec/mesh.h\""
+      complain "$file:$line: \"$name\" is no file of the repository;" \
+        "write includes from the root, like \"codec/mesh.h\""
     elif [[ $target != "$room" ]] && ! isIn "$target" ${allowed[$room]}; then
-      complain "$file:$line: $room/ must not include \"$name\"; it may use only: $room ${allowed[$room]}"
+      complain "$file:$line: $room/ must not include \"$name\";" \
+        "it may use only: $room ${allowed[$room]}"
     fi
   done < <(includesOf "$file" '"')
 }
@@ -56,7 +63,8 @@ checkForeign() { # file room
   local file=$1 room=$2 line name
   while IFS=: read -r line name; do
     if [[ $name =~ ^(${foreign[$room]}) ]]; then
-      complain "$file:$line: $room/ must not include <$name>; move what needs it to the room that may"
+      complain "$file:$line: $room/ must not include <$name>;" \
+        "move what needs it to the room that may"
     fi
   done < <(includesOf "$file" '<')
 }
@@ -66,8 +74,10 @@ checkLinks() { # room: a library linked is an arrow too
   [[ -f $room/CMakeLists.txt ]] || return 0
   while IFS=: read -r line name; do
     [[ $name == "$room" ]] || isIn "$name" ${allowed[$room]} ||
-      complain "$room/CMakeLists.txt:$line: $room/ must not link qtet::$name; it may link only: ${allowed[$room]}"
-  done < <(sed 's/#.*//' "$room/CMakeLists.txt" | grep -noE 'qtet::(proto|codec|simplify|server)\b' | sed 's/qtet:://' || true)
+      complain "$room/CMakeLists.txt:$line: $room/ must not link qtet::$name;" \
+        "it may link only: ${allowed[$room]}"
+  done < <(sed 's/#.*//' "$room/CMakeLists.txt" |
+    grep -noE 'qtet::(proto|codec|simplify|server)\b' | sed 's/qtet:://' || true)
 }
 
 for room in proto codec simplify server; do
@@ -84,26 +94,74 @@ if [[ -d web-client ]]; then
   while IFS= read -r file; do
     while IFS=: read -r line name; do
       isIn "${name%%/*}" proto codec simplify server &&
-        complain "$file:$line: web-client/ must not include \"$name\"; it uses the codec through codec/wasm_api.h's exports"
+        complain "$file:$line: web-client/ must not include \"$name\";" \
+          "it uses the codec through codec/api/wasm_api.h's exports"
     done < <(includesOf "$file" '"')
   done < <(sourcesOf web-client)
 fi
 
-# No file may include itself through others. tsort names the files of a loop on stderr.
-pairs=$(for room in proto codec simplify server; do
-  [[ -d $room ]] || continue
-  sourcesOf "$room" | while IFS= read -r file; do
-    includesOf "$file" '"' | while IFS=: read -r _ name; do printf '%s %s\n' "$file" "$name"; done
+# Lines "from to": which file includes or imports which.
+cppArrows() {
+  local room
+  for room in proto codec simplify server; do
+    [[ -d $room ]] || continue
+    sourcesOf "$room" | while IFS= read -r file; do
+      includesOf "$file" '"' | while IFS=: read -r _ name; do printf '%s %s\n' "$file" "$name"; done
+    done
   done
-done)
-if ! loops=$(tsort <<<"$pairs" 2>&1 >/dev/null); then
-  complain "these files include one another in a circle; move what they share into a file of its own:
+}
+
+# The page's own modules; a worker's address (new URL) is no import, so it makes no arrow.
+typescriptArrows() {
+  [[ -d web-client ]] || return 0
+  find web-client \( -name node_modules -o -name dist -o -name tests \) -prune \
+    -o -name '*.ts' -print | sort | xargs -r grep -HE "(from|import) *\(?['\"]\.\.?/" |
+    sed -nE "s/^([^:]+):.*(from|import) *\(?['\"]([^'\"?]+)(\?[^'\"]*)?['\"].*/\1 \3/p" |
+    awk '{
+      folder = $1; sub(/[^\/]*$/, "", folder)
+      n = split(folder $2, part, "/"); top = 0
+      for (i = 1; i <= n; ++i) {
+        if (part[i] == "." || part[i] == "") continue
+        if (part[i] == "..") --top; else kept[++top] = part[i]
+      }
+      path = kept[1]; for (i = 2; i <= top; ++i) path = path "/" kept[i]
+      print $1, path (path ~ /\.[a-z]+$/ ? "" : ".ts")
+    }'
+}
+
+# tsort names the members of a circle on stderr.
+checkCircles() { # what, what to do; arrows on stdin
+  local loops
+  loops=$(tsort 2>&1 >/dev/null) ||
+    complain "$1 stand in a circle; $2:
 $(sed -E 's/^tsort: (-: )?/  /' <<<"$loops")"
-fi
+}
+
+# Arrows between the folders that the files lie in.
+folderArrows() { awk '{
+    from = $1; to = $2; sub(/\/[^\/]*$/, "", from); sub(/\/[^\/]*$/, "", to)
+    if (from != to) print from, to
+  }' | sort -u; }
+
+arrows=$(cppArrows)
+checkCircles "these files" "move what they share into a file of its own" <<<"$arrows"
+checkCircles "these folders" "move what they share into the lower one" \
+  < <(folderArrows <<<"$arrows")
+arrows=$(typescriptArrows)
+checkCircles "these modules" "move what they share into a module of its own" <<<"$arrows"
+
+# The page's folders, in this order: each may import from those before it.
+declare -A layer=([web-client/core]=1 [web-client/three]=2 [web-client/viewer]=3)
+while read -r from to; do
+  [[ -n ${layer[$from]:-} && -n ${layer[$to]:-} ]] || continue
+  ((layer[$from] > layer[$to])) ||
+    complain "$from/ must not import from $to/; the order is web-client/core <- three <- viewer"
+done < <(folderArrows <<<"$arrows")
 
 # A folder is a room with a meaning; "common" and "utils" have none.
 while IFS= read -r folder; do
-  complain "$folder: no folder may be called common, util or utils; name it after what it holds, or move its files to their room"
+  complain "$folder: no folder may be called common, util or utils;" \
+    "name it after what it holds, or move its files to their room"
 done < <(find . \( -name node_modules -o -name build -o -name .git \) -prune -o \
   -type d \( -iname common -o -iname util -o -iname utils \) -print | sed 's|^\./||' | sort)
 

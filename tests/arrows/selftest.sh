@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Proves that check.sh can fail: each forged repository breaks one arrow, and the message must name the file and line.
+# Proves that check.sh can fail: each forged repository breaks one arrow, and the message must name
+# the file and line.
 set -euo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -10,14 +11,22 @@ failures=0
 # A small repository in which every arrow holds.
 soundTree() {
   rm -rf "$scratch/repo"
-  mkdir -p "$scratch"/repo/{proto,codec,simplify,server,web-client}
+  mkdir -p "$scratch"/repo/{proto,codec/{coding,mesh},simplify,server,web-client/{core,viewer}}
   cd "$scratch/repo"
   printf '#pragma once\n#include <vector>\n' >proto/bytes.h
   printf '#pragma once\n#include "proto/bytes.h"\n' >codec/mesh.h
   printf '#include "codec/mesh.h"\n#include <draco/mesh/mesh.h>\n' >codec/mesh.cpp
   printf '#include <vtkPoints.h>\n#include "codec/mesh.h"\n' >simplify/main.cpp
-  printf '#include <boost/asio.hpp>\n\n#include "codec/mesh.h"\n#include "proto/bytes.h"\n' >server/main.cpp
-  printf 'target_link_libraries(qtet_server PUBLIC qtet::codec)  # never qtet::simplify\n' >server/CMakeLists.txt
+  printf '#include <boost/asio.hpp>\n\n#include "codec/mesh.h"\n#include "proto/bytes.h"\n' \
+    >server/main.cpp
+  printf '#pragma once\n' >codec/coding/bits.h
+  printf '#pragma once\n#include "codec/coding/bits.h"\n' >codec/mesh/star.h
+  printf 'export const bits = 1\n' >web-client/core/bits.ts
+  printf "import { bits } from './bits'\n" >web-client/core/mesh.ts
+  printf "import {\n  bits,\n} from '../core/bits'\nimport './style.css'\n" \
+    >web-client/viewer/page.ts
+  printf 'target_link_libraries(qtet_server PUBLIC qtet::codec)  # never qtet::simplify\n' \
+    >server/CMakeLists.txt
 }
 
 accepts() { # what
@@ -41,7 +50,8 @@ refuses() { # what, text expected in the message
 
 soundTree; accepts "a sound tree"
 soundTree; echo '#include "simplify/fusion.h"' >>server/main.cpp; : >simplify/fusion.h
-refuses "server including simplify" 'server/main.cpp:5: server/ must not include "simplify/fusion.h"'
+refuses "server including simplify" \
+  'server/main.cpp:5: server/ must not include "simplify/fusion.h"'
 soundTree; echo '  #  include "codec/mesh.h"' >>proto/bytes.h
 refuses "proto including codec" 'proto/bytes.h:3: proto/ must not include "codec/mesh.h"'
 soundTree; echo '#include "server/x.h"' >>codec/mesh.cpp; : >server/x.h
@@ -49,7 +59,8 @@ refuses "codec including server" 'codec/mesh.cpp:3: codec/ must not include "ser
 soundTree; echo '#include <vtkCell.h>' >>codec/mesh.h
 refuses "codec including VTK" 'codec/mesh.h:3: codec/ must not include <vtkCell.h>'
 soundTree; echo '#include <boost/asio/ip/tcp.hpp>' >>codec/mesh.h
-refuses "codec including Boost.Asio" 'codec/mesh.h:3: codec/ must not include <boost/asio/ip/tcp.hpp>'
+refuses "codec including Boost.Asio" \
+  'codec/mesh.h:3: codec/ must not include <boost/asio/ip/tcp.hpp>'
 soundTree; echo '#include <vtkCell.h>' >>server/main.cpp
 refuses "server including VTK" 'server/main.cpp:5: server/ must not include <vtkCell.h>'
 soundTree; echo '#include "mesh.h"' >>codec/mesh.cpp
@@ -57,11 +68,22 @@ refuses "an include that is not written from the root" 'codec/mesh.cpp:3: "mesh.
 soundTree; echo '#include "codec/gone.h"' >>codec/mesh.cpp
 refuses "an include of a file that does not exist" 'codec/mesh.cpp:3: "codec/gone.h" is no file'
 soundTree; echo '#include "codec/mesh.h"' >web-client/stub.cpp
-refuses "web-client including codec" 'web-client/stub.cpp:1: web-client/ must not include "codec/mesh.h"'
+refuses "web-client including codec" \
+  'web-client/stub.cpp:1: web-client/ must not include "codec/mesh.h"'
 soundTree; echo 'target_link_libraries(x PRIVATE qtet::simplify)' >>server/CMakeLists.txt
 refuses "server linking simplify" 'server/CMakeLists.txt:2: server/ must not link qtet::simplify'
-soundTree; printf '#include "codec/b.h"\n' >codec/a.h; printf '#include "codec/c.h"\n' >codec/b.h; printf '#include "codec/a.h"\n' >codec/c.h
+soundTree; printf '#include "codec/b.h"\n' >codec/a.h; printf '#include "codec/c.h"\n' >codec/b.h
+printf '#include "codec/a.h"\n' >codec/c.h
 refuses "a circle of three headers" 'codec/b.h'
+soundTree; printf '#pragma once\n#include "codec/mesh/star.h"\n' >codec/coding/models.h
+refuses "a circle of two folders" 'these folders stand in a circle'
+refuses "a circle of two folders" 'codec/coding'
+soundTree; printf "import { a } from './mesh'\nexport const bits = a\n" >web-client/core/bits.ts
+refuses "a circle of two modules" 'web-client/core/mesh.ts'
+soundTree; printf "import type { A } from './mesh'\n" >web-client/core/bits.ts
+refuses "a circle of types" 'these modules stand in a circle'
+soundTree; printf "export * from '../viewer/page'\n" >web-client/core/other.ts
+refuses "core importing the viewer" 'web-client/core/ must not import from web-client/viewer/'
 soundTree; mkdir server/utils
 refuses "a folder called utils" 'server/utils: no folder may be called'
 soundTree; mkdir common

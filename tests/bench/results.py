@@ -1,11 +1,15 @@
 #!/usr/bin/env python3
-"""Every figure of the judge for qtet and for VTK's decimation, data set by data set: writes RESULTS.md. `make results` runs it.
+"""Every figure of the judge for qtet and for VTK's decimation, data set by data set.
+
+It writes RESULTS.md; `make results` runs it.
 
   QTET_DATA=/folder/of/meshes QTET_JUDGE=/path/to/judge tests/bench/results.py --cache build/results
 
-The judge is a program of its own, `judge ORIGINAL.vtu SIMPLIFIED.vtu [--field NAME] [--envelope-tol F]`, that prints its figures as JSON.
-Each result is kept in the cache folder and not computed again, so that the run may be stopped and started; a result of qtet counts only for the tool, byte for
-byte, that it was made with; one of VTK counts until it is deleted. Standard library only.
+The judge is a program of its own that prints its figures as JSON:
+`judge ORIGINAL.vtu SIMPLIFIED.vtu [--field NAME] [--envelope-tol F]`.
+Each result is kept in the cache folder and not computed again, so that the run may be stopped and
+started. A result of qtet counts only for the tool, byte for byte, that it was made with; one of VTK
+counts until it is deleted. Standard library only.
 """
 
 import argparse
@@ -22,8 +26,8 @@ import sys
 import tempfile
 import threading
 
-# What is compared: name in the table, program, and for qtet its options ({field}: the field that is judged; --position-bits here goes before the one below),
-# for VTK the scale (vtk_decimation.h).
+# What is compared: name in the table, program, and for qtet its options ({field}: the field that is
+# judged; --position-bits here goes before the one below), for VTK the scale (vtk_decimation.h).
 SETTINGS = [
     ("qtet", "qtet", ["--fields", "{field}", "--field-bits", "16", "--measure", "none"]),
     (
@@ -61,7 +65,8 @@ SETTINGS = [
 ]
 REDUCTIONS = [50, 80, 90, 95, 99]  # per cent of the cells
 POSITION_BITS = "16"
-# One log for all reductions (--levels): it goes a little beyond the last, since levels seldom end where a reduction does.
+# One log for all reductions (--levels): it goes a little beyond the last, since levels seldom end
+# where a reduction does.
 LEVELS_TARGET_RATIO = "0.009"
 
 VERDICTS = [
@@ -125,7 +130,7 @@ def write_whole(path, text):
 
 
 class Cache:
-    """JSON results by data set, setting and reduction, each with the stamp of what it was made with."""
+    """JSON results by data set, setting and reduction, each stamped with what it was made with."""
 
     def __init__(self, folder):
         self.folder = folder
@@ -152,7 +157,8 @@ class Cache:
 
 
 class Qtet:
-    """The tool with one setting's options on one data set: a run for each reduction, so that the counts are met, or one log for all of them."""
+    """The tool with one setting's options on one data set: a run for each reduction, so that the
+    counts are met, or one log for all of them."""
 
     def __init__(self, args, path, options, facts, scratch):
         self.args, self.path, self.diagonal, self.scratch = args, path, facts["diagonal"], scratch
@@ -173,7 +179,8 @@ class Qtet:
         ]
         text, user = run_timed([*words, *bits, *self.options])
         self.report = json.loads(text)
-        # The tool tells wall times, which other work on the machine stretches: its CPU time in the same proportions.
+        # The tool tells wall times, which other work on the machine stretches: its CPU time in the
+        # same proportions.
         self.user_seconds = (
             user * self.report["seconds"]["simplify"] / self.report["seconds"]["total"]
         )
@@ -239,7 +246,8 @@ class Runner:
             )
 
     def facts(self, path):
-        """Of a data set: the field that is judged, and one lattice step over the diagonal, by which rounding may move a boundary."""
+        """Of a data set: the field that is judged, and one lattice step over the diagonal, by which
+        rounding may move a boundary."""
         stamp = [path.stat().st_size, POSITION_BITS]
         known = self.cache.get(path.stem, "original", "facts", stamp)
         if known:
@@ -415,16 +423,21 @@ def document(args, facts, results):
     lines = [
         "# Results",
         "",
-        f"Written by `make results` on {datetime.date.today()}: {processor()}, {args.jobs} job{'s' * (args.jobs > 1)} at a time; times are rough,"
+        f"Written by `make results` on {datetime.date.today()}: {processor()},"
+        f" {args.jobs} job{'s' * (args.jobs > 1)} at a time; times are rough,"
         " `simplify_bench` measures them. Do not edit.",
         "",
-        f"Judged against the original mesh by a program that shares nothing with qtet. qtet: {how}, lattice of {POSITION_BITS} bits an axis. VTK:"
-        " `vtkUnstructuredGridQuadricDecimation`, as it is and with points, scalar and boundary weight times 1000; it keeps one scalar.",
+        "Judged against the original mesh by a program that shares nothing with qtet."
+        f" qtet: {how}, lattice of {POSITION_BITS} bits an axis. VTK:"
+        " `vtkUnstructuredGridQuadricDecimation`, as it is and with points, scalar and boundary"
+        " weight times 1000; it keeps one scalar.",
         "",
-        "*Verdicts*: V valid, T topology preserved, E inside the boundary envelope to one lattice step, S no new self-intersections, P no new pinches;"
-        " a dash where it does not hold. *rms*, *p99*, *max*: error of the first scalar in per cent of its range. *Hausdorff*, *outside*: of the"
-        " boundary, over the diagonal. *Volume kept*: fraction of the original volume still covered. *Dihedral*: 1st percentile and median of the"
-        " cells' smallest angle, degrees. *s*: user CPU seconds of the simplification alone.",
+        "*Verdicts*: V valid, T topology preserved, E inside the boundary envelope to one lattice"
+        " step, S no new self-intersections, P no new pinches; a dash where it does not hold."
+        " *rms*, *p99*, *max*: error of the first scalar in per cent of its range. *Hausdorff*,"
+        " *outside*: of the boundary, over the diagonal. *Volume kept*: fraction of the original"
+        " volume still covered. *Dihedral*: 1st percentile and median of the cells' smallest angle,"
+        " degrees. *s*: user CPU seconds of the simplification alone.",
         "",
     ]
     lines += [*summary(args, results), ""]
@@ -434,7 +447,8 @@ def document(args, facts, results):
             lines += [str(facts[path]), ""]
             continue
         lines += [
-            f"{facts[path]['cells']:,} tetrahedra; field {facts[path]['field']}; one lattice step is {facts[path]['tolerance']:.2e} of the diagonal.",
+            f"{facts[path]['cells']:,} tetrahedra; field {facts[path]['field']};"
+            f" one lattice step is {facts[path]['tolerance']:.2e} of the diagonal.",
             "",
         ]
         for reduction in args.reductions:
@@ -491,14 +505,16 @@ def arguments():
     for program in (args.judge, args.tool, args.vtk_decimate):
         if not os.access(program, os.X_OK):
             parser.error(
-                f"{program} is no program that can be run; qtet and vtk_decimate are built by `make results`"
+                f"{program} is no program that can be run;"
+                " qtet and vtk_decimate are built by `make results`"
             )
     found = {path.stem: path for path in sorted(data.glob("*.vtu"))}
     wanted = args.sets.split(",") if args.sets else list(found)
     missing = [name for name in wanted if name not in found]
     if missing or not wanted:
         parser.error(
-            f"{data} has no {', '.join(missing) or 'mesh'}.vtu; it has: {', '.join(found) or 'nothing'}"
+            f"{data} has no {', '.join(missing) or 'mesh'}.vtu;"
+            f" it has: {', '.join(found) or 'nothing'}"
         )
     args.sets = [found[name] for name in wanted]
     try:
@@ -514,7 +530,8 @@ def arguments():
         )
     except (ValueError, IndexError):
         parser.error(
-            f"--settings takes numbers from 1 to {len(SETTINGS)}, --reductions per cent, both between commas"
+            f"--settings takes numbers from 1 to {len(SETTINGS)}, --reductions per cent,"
+            " both between commas"
         )
     return args
 

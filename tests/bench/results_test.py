@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""results.py against a tool, a decimator and a judge that only pretend: what it keeps, what it runs again, and what it says of failures."""
+"""results.py against a tool, a decimator and a judge that only pretend: what it keeps, what it runs
+again, and what it says of failures."""
 
 import json
 import os
@@ -19,7 +20,8 @@ TOOL = """
         sys.exit("qtet: the hull is too heavy\\nqtet: see 'qtet simplify --help'")
     else:
         pathlib.Path(sys.argv[sys.argv.index("-o") + 1]).write_text("log")
-        print(json.dumps({"tetrahedra": {"full": 1000}, "lattice": {"step": 0.5}, "levels": 7, "seconds": {"simplify": 1, "total": 2}}))
+        print(json.dumps({"tetrahedra": {"full": 1000}, "lattice": {"step": 0.5}, "levels": 7,
+                          "seconds": {"simplify": 1, "total": 2}}))
 """
 DECIMATE = """
     out = sys.argv[2] + "_" + sys.argv[4] + ".vtu"
@@ -29,9 +31,13 @@ DECIMATE = """
 JUDGE = """
     print(json.dumps({
         "bounding_box_diagonal": 100, "reduction_of_tets": 0.9,
-        "verdict": {"valid": True, "topology_preserved": True, "inside_envelope": "--envelope-tol" in sys.argv and
-                    float(sys.argv[sys.argv.index("--envelope-tol") + 1]) == 0.005, "no_new_self_intersections": False, "no_new_pinches": True},
-        "original": {"tets": 1000}, "simplified": {"tets": 100, "boundary_triangles": 40, "quality": {"min_dihedral_deg": {"p01": 5, "median": 30}}},
+        "verdict": {"valid": True, "topology_preserved": True,
+                    "inside_envelope": "--envelope-tol" in sys.argv and
+                    float(sys.argv[sys.argv.index("--envelope-tol") + 1]) == 0.005,
+                    "no_new_self_intersections": False, "no_new_pinches": True},
+        "original": {"tets": 1000},
+        "simplified": {"tets": 100, "boundary_triangles": 40,
+                       "quality": {"min_dihedral_deg": {"p01": 5, "median": 30}}},
         "coverage": {"original_volume_uncovered_fraction": 0.01},
         "boundary_distance_over_diagonal": {"hausdorff": 1e-3, "outside_envelope_max": 1e-5},
         "field_error_over_range": {"field": "Heat", "rms": 0.01, "p99": 0.02, "max": 0.03}}))
@@ -83,11 +89,13 @@ class Results(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         text = (self.folder / "RESULTS.md").read_text()
         self.assertIn(
-            "| qtet | 90.00 | VTE-P | 1 | 2 | 3 | 1.0e-03 | 1.0e-05 | 0.99000 | 5.00 | 30.0 | 40 |  | 7 |",
+            "| qtet | 90.00 | VTE-P | 1 | 2 | 3 | 1.0e-03 | 1.0e-05 | 0.99000 | 5.00 | 30.0 | 40 |"
+            "  | 7 |",
             text,
         )
         self.assertIn(
-            "| VTK | 90.00 | VTE-P | 1 | 2 | 3 | 1.0e-03 | 1.0e-05 | 0.99000 | 5.00 | 30.0 | 40 |  |  | 0.50 | 2 |",
+            "| VTK | 90.00 | VTE-P | 1 | 2 | 3 | 1.0e-03 | 1.0e-05 | 0.99000 | 5.00 | 30.0 | 40 |"
+            "  |  | 0.50 | 2 |",
             text,
         )
 

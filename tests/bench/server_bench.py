@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
-"""qtet-server beside nginx and npm's ws: what a server's CPU second gives, how soon the first chunk comes, what connections cost in memory.
+"""qtet-server beside nginx and npm's ws: what a server's CPU second gives, how soon the first chunk
+comes, what connections cost in memory.
 
-The servers are pinned to core 0, the clients to core 1, one server runs at a time, and rounds alternate between the servers, so that whatever else the
-machine does hits them alike. Needs nginx, wrk, taskset and, for the last peer, a folder in which `npm install ws` was run.
+The servers are pinned to core 0, the clients to core 1, one server runs at a time, and rounds
+alternate between the servers, so that whatever else the machine does hits them alike. Needs nginx,
+wrk, taskset and, for the last peer, a folder in which `npm install ws` was run.
 
   server_bench.py --bin build/release/bin --log LOG.qtet [--ws FOLDER] [--rounds 5] [--seconds 2]
 """
-import argparse, atexit, json, os, pathlib, re, resource, selectors, signal, socket, statistics, subprocess, sys, tempfile, time
+import argparse, atexit, json, os, pathlib, re, resource, selectors, signal, socket, statistics
+import subprocess, sys, tempfile, time
 
 TICK = os.sysconf("SC_CLK_TCK")
 HERE = pathlib.Path(__file__).resolve().parent
@@ -79,7 +82,8 @@ def start_nginx(folder, scratch):
     conf.write_text(
         f"""user root; worker_processes 1; daemon off; pid {scratch}/pid; error_log /dev/null;
 events {{ worker_connections 20000; }}
-http {{ access_log off; sendfile on; tcp_nopush off; keepalive_requests 1000000000; client_body_temp_path {scratch}/a; proxy_temp_path {scratch}/b;
+http {{ access_log off; sendfile on; tcp_nopush off; keepalive_requests 1000000000;
+client_body_temp_path {scratch}/a; proxy_temp_path {scratch}/b;
 fastcgi_temp_path {scratch}/c; uwsgi_temp_path {scratch}/d; scgi_temp_path {scratch}/e;
 server {{ listen 127.0.0.1:{port}; root {folder}; default_type application/json; }} }}"""
     )
@@ -93,8 +97,9 @@ server {{ listen 127.0.0.1:{port}; root {folder}; default_type application/json;
 
 
 class Meter:
-    """CPU seconds from here on: of a server, and of it and its client, this process and what it ran. On loopback the kernel does the same work now in one's
-    time, now in the other's: a send is finished by whoever happens to take in the acknowledgement.
+    """CPU seconds from here on: of a server, and of it and its client, this process and what it
+    ran. On loopback the kernel does the same work now in one's time, now in the other's: a send is
+    finished by whoever happens to take in the acknowledgement.
     """
 
     def __init__(self, pid):
@@ -139,7 +144,8 @@ def masked(text):
 def web_socket(port):
     s = socket.create_connection(("127.0.0.1", port))
     s.sendall(
-        b"GET /v1/stream HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
+        b"GET /v1/stream HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\n"
+        b"Connection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
         b"Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Protocol: qtet.v1\r\n\r\n"
     )
     answer = b""
@@ -157,7 +163,8 @@ def open_message(name):
 
 
 def streaming(pid, port, name, clients, seconds):
-    """Bytes for a CPU second of the server, and of both ends; each client asks again when it has all."""
+    """Bytes for a CPU second of the server, and of both ends; each client asks again when it has
+    all."""
     poll = selectors.DefaultSelector()
     sockets = [web_socket(port) for _ in range(clients)]
     for s in sockets:
@@ -211,7 +218,8 @@ def idle_bytes(process, connect, count):
 
 
 def stalled_bytes(process, port, name, count):
-    """Of the server's and the kernel's memory for a client that asks for everything and reads nothing."""
+    """Of the server's and the kernel's memory for a client that asks for everything and reads
+    nothing."""
     sockets = [web_socket(port) for _ in range(count)]
     time.sleep(0.3)
     before = rss(process.pid), kernel_tcp_bytes()
@@ -262,7 +270,8 @@ def main():
     nginx, other = start_nginx(folder, scratch)
     log, size = f"/v1/logs/{digest}/log", args.log.stat().st_size
     print(
-        f"log of {size} bytes, JSON of {len(listing)} bytes; {args.rounds} rounds of {args.seconds} s\n"
+        f"log of {size} bytes, JSON of {len(listing)} bytes;"
+        f" {args.rounds} rounds of {args.seconds} s\n"
     )
     print("| | qtet-server | peer | ratio | ratio by both ends' CPU |\n|---|---|---|---|---|")
 
@@ -272,7 +281,8 @@ def main():
             statistics.median(x[i] / y[i] for x, y in zip(ours, theirs)) for i in (0, 1)
         )
         print(
-            f"| {name} | {a / scale:.0f} {unit} | {b / scale:.0f} {unit} | {server:.2f} | {both:.2f} |",
+            f"| {name} | {a / scale:.0f} {unit} | {b / scale:.0f} {unit}"
+            f" | {server:.2f} | {both:.2f} |",
             flush=True,
         )
 
@@ -325,8 +335,9 @@ def main():
             )
     print("\n| | qtet-server |\n|---|---|")
     for clients in (64, 1000):
+        median = statistics.median(first_chunk(port, bench, clients) for _ in range(args.rounds))
         print(
-            f"| first chunk, median, {clients} clients together | {statistics.median(first_chunk(port, bench, clients) for _ in range(args.rounds)):.1f} ms |",
+            f"| first chunk, median, {clients} clients together | {median:.1f} ms |",
             flush=True,
         )
     user, kernel = stalled_bytes(qtet, port, bench, 64)
@@ -341,8 +352,9 @@ def main():
         qtet.send_signal(signal.SIGTERM)
         qtet.wait()
         qtet, port = start_qtet(args, folder)
+        kilobytes = idle_bytes(qtet, connect, args.idle) / 1024
         print(
-            f"| {args.idle} idle connections, {name} | {idle_bytes(qtet, connect, args.idle) / 1024:.1f} KB each |",
+            f"| {args.idle} idle connections, {name} | {kilobytes:.1f} KB each |",
             flush=True,
         )
 

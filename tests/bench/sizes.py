@@ -1,8 +1,11 @@
 #!/usr/bin/env python3
-"""What a log takes, to the byte: writes SIZES.md, or compares the tool with it. `make sizes` runs the one, ctest the other.
+"""What a log takes, to the byte: writes SIZES.md, or compares the tool with it. `make sizes` runs
+the one, ctest the other.
 
-  sizes.py                  makes the table anew: the samples, and where QTET_DATA names a folder the data sets in it; without, their old rows are kept
-  sizes.py --check samples  0 if the tool's logs of the samples have exactly the sizes of the table, else 1 and what to do
+  sizes.py                  makes the table anew: the samples, and where QTET_DATA names a folder
+                            the data sets in it; without, their old rows are kept
+  sizes.py --check samples  0 if the tool's logs of the samples have exactly the sizes of the
+                            table, else 1 and what to do
   sizes.py --check data     the same for the data sets; 77 (skipped) where QTET_DATA is not set
 
 A log here has the tool's default options, with the first point field alone. Standard library only.
@@ -19,8 +22,9 @@ import tempfile
 HERE = pathlib.Path(__file__).resolve().parent
 OPTIONS = ["--position-bits", "16", "--field-bits", "12"]
 SAMPLES = ["box", "fin"]
-# Data sets, each with two reference figures in bits a cell that were measured elsewhere on the same mesh and that nothing here recomputes: cells and points in
-# Hilbert order, differences, zstd -19; a single-rate coder guided by the geometry. None: not known.
+# Data sets, each with two reference figures in bits a cell that were measured elsewhere on the same
+# mesh and that nothing here recomputes: cells and points in Hilbert order, differences, zstd -19; a
+# single-rate coder guided by the geometry. None: not known.
 DATA = {
     "spx-welded": (28, 10.7),
     "aneurysm": (24, 8.0),
@@ -51,16 +55,21 @@ OLD = " (old)"  # behind the name of a mesh whose row comes from an earlier run
 
 HEAD = f"""# Sizes
 
-Made by `make sizes`; do not edit. A test compares the byte counts with what the tool makes: a change of them is made by the same command, and told in
-[CHANGELOG.md](../../CHANGELOG.md) with its reason.
+Made by `make sizes`; do not edit. A test compares the byte counts with what the tool makes: a
+change of them is made by the same command, and told in [CHANGELOG.md](../../CHANGELOG.md) with its
+reason.
 
-Logs with the default options of `qtet simplify` (16-bit lattice, 12-bit fields) and the first point field alone.
+Logs with the default options of `qtet simplify` (16-bit lattice, 12-bit fields) and the first point
+field alone.
 
 ## Bits a tetrahedron of the original
 
-*Head*: header, manifest (with the known errors) and chunk table. *.vtu*: as VTK writes it by default, with the same field (`vtu_size`). Two figures for the same meshes were measured
-elsewhere and are not recomputed here: *zstd*, Hilbert order, differences and zstd -19; *single-rate*, a geometry-guided coder without levels. *Ratio*: the log's total over the
-latter; the bar is {BAR}. *Vertex*: the same with `--placement vertex`, fused vertices only where vertices were, whose levels have larger errors (RATE.md); the whole mesh is the same.
+*Head*: header, manifest (with the known errors) and chunk table. *.vtu*: as VTK writes it by
+default, with the same field (`vtu_size`). Two figures for the same meshes were measured elsewhere
+and are not recomputed here: *zstd*, Hilbert order, differences and zstd -19; *single-rate*, a
+geometry-guided coder without levels. *Ratio*: the log's total over the latter; the bar is {BAR}.
+*Vertex*: the same with `--placement vertex`, fused vertices only where vertices were, whose levels
+have larger errors (RATE.md); the whole mesh is the same.
 """
 EXACT_HEAD = """
 ## Bytes
@@ -223,7 +232,8 @@ def data_set(name):
     path = pathlib.Path(os.environ["QTET_DATA"]) / f"{name}.vtu"
     if not path.is_file():
         raise Failure(
-            f"{path.parent} has no {path.name}; QTET_DATA names the folder that has the data sets of this table"
+            f"{path.parent} has no {path.name};"
+            " QTET_DATA names the folder that has the data sets of this table"
         )
     return path
 
@@ -282,8 +292,10 @@ def check(args):
             print(f"sizes: {mesh.stem}: " + ("; ".join(differ) if differ else "as in the table"))
     if changed:
         print(
-            f"sizes: the logs differ from {args.table}. If that is meant: `make sizes` makes the table anew (with QTET_DATA set also that of the data sets);"
-            " commit it, and tell in CHANGELOG.md what became larger or smaller, and why. If it is not meant, the change before has done it."
+            f"sizes: the logs differ from {args.table}. If that is meant: `make sizes` makes the"
+            " table anew (with QTET_DATA set also that of the data sets); commit it, and tell in"
+            " CHANGELOG.md what became larger or smaller, and why. If it is not meant, the change"
+            " before has done it."
         )
     return int(changed)
 

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""sizes.py against a tool that only pretends: what it compares, to the byte, and what it says of a difference."""
+"""sizes.py against a tool that only pretends: what it compares, to the byte, and what it says of a
+difference."""
 
 import os
 import pathlib
@@ -19,8 +20,10 @@ TOOL = """
         assert "point:Heat" in sys.argv
         more = int(pathlib.Path(__file__).with_name("MORE").read_text())
         size = 1000 * len(pathlib.Path(sys.argv[2]).stem) - (100 if "vertex" in sys.argv else 0)
-        print(json.dumps({"tetrahedra": {"full": 800}, "levels": 7, "chunks": 3, "bytes": size + more,
-                          "bytesOf": {"head": 100, "connectivity": 200, "positions": 300, "fields": {"Heat": size + more - 600}}}))
+        print(json.dumps({"tetrahedra": {"full": 800}, "levels": 7, "chunks": 3,
+                          "bytes": size + more,
+                          "bytesOf": {"head": 100, "connectivity": 200, "positions": 300,
+                                      "fields": {"Heat": size + more - 600}}}))
 """
 VTU_SIZE = """
     print(json.dumps({"field": "Heat", "cells": 800, "bytes": 8000}))

@@ -1,5 +1,6 @@
-# What is installed is what other programs can use: installs into a folder of its own, builds levels.c against it with find_package and with
-# pkg-config, and compares what it prints with what `qtet info` and `qtet extract` say.
+# What is installed is what other programs can use: installs into a folder of its own, builds
+# levels.c against it with find_package and with pkg-config, and compares what it prints with what
+# `qtet info` and `qtet extract` say.
 #   cmake -DBUILD=build/release -DSOURCE=. -DOUT=folder [-DPYTHON=python3] [-DNM=nm] -P check.cmake
 cmake_minimum_required(VERSION 3.25)
 set(here ${CMAKE_CURRENT_LIST_DIR})
@@ -7,7 +8,8 @@ set(prefix ${OUT}/installed)
 file(REMOVE_RECURSE ${OUT})
 
 function(run)  # what is run must succeed; its output is in `said`
-  execute_process(COMMAND ${ARGV} OUTPUT_VARIABLE said ERROR_VARIABLE complaint RESULT_VARIABLE status)
+  execute_process(COMMAND ${ARGV}
+    OUTPUT_VARIABLE said ERROR_VARIABLE complaint RESULT_VARIABLE status)
   if(NOT status EQUAL 0)
     list(JOIN ARGV " " command)
     message(FATAL_ERROR "${command}\nended with ${status}:\n${said}${complaint}")
@@ -44,7 +46,8 @@ endif()
 # ---- a program of somebody else's, twice
 
 find_program(compiler NAMES cc gcc-12 gcc clang-19 clang REQUIRED)
-run(${CMAKE_COMMAND} -S ${here} -B ${OUT}/build -DCMAKE_C_COMPILER=${compiler} -DCMAKE_PREFIX_PATH=${prefix})
+run(${CMAKE_COMMAND} -S ${here} -B ${OUT}/build
+  -DCMAKE_C_COMPILER=${compiler} -DCMAKE_PREFIX_PATH=${prefix})
 run(${CMAKE_COMMAND} --build ${OUT}/build)
 set(programs ${OUT}/build/levels)
 
@@ -54,7 +57,8 @@ if(pkg_config)
   set(ENV{PKG_CONFIG_PATH} ${folder}/pkgconfig)
   run(${pkg_config} --cflags --libs qtet)
   separate_arguments(flags UNIX_COMMAND "${said}")
-  run(${compiler} -std=c99 -pedantic -Wall -Wextra -Werror ${here}/levels.c ${flags} -Wl,-rpath,${folder} -o ${OUT}/levels)
+  run(${compiler} -std=c99 -pedantic -Wall -Wextra -Werror ${here}/levels.c ${flags}
+    -Wl,-rpath,${folder} -o ${OUT}/levels)
   list(APPEND programs ${OUT}/levels)
 else()
   message("no pkg-config: qtet.pc not tried")
@@ -73,7 +77,8 @@ function(expected_levels log)  # the table as levels.c prints it, and the number
     foreach(member IN ITEMS tetrahedra vertices boundaryTriangles cumulativeBytes)
       string(JSON ${member} GET "${said}" levels ${i} ${member})
     endforeach()
-    string(APPEND lines "level ${i}: ${tetrahedra} tetrahedra, ${vertices} vertices, ${boundaryTriangles} boundary triangles, ${cumulativeBytes} bytes\n")
+    string(APPEND lines "level ${i}: ${tetrahedra} tetrahedra, ${vertices} vertices, "
+      "${boundaryTriangles} boundary triangles, ${cumulativeBytes} bytes\n")
   endforeach()
   set(lines "${lines}" PARENT_SCOPE)
   set(last ${last} PARENT_SCOPE)
@@ -101,7 +106,8 @@ foreach(name IN ITEMS solid cell-fields no-fields)
 endforeach()
 
 foreach(program IN LISTS programs)
-  execute_process(COMMAND ${program} ${SOURCE}/tests/golden/must-fail/truncated.last-byte.qtet full ERROR_VARIABLE complaint RESULT_VARIABLE status)
+  execute_process(COMMAND ${program} ${SOURCE}/tests/golden/must-fail/truncated.last-byte.qtet full
+    ERROR_VARIABLE complaint RESULT_VARIABLE status)
   if(NOT status EQUAL 1 OR NOT complaint MATCHES "^levels: truncated")
     message(FATAL_ERROR "${program} of a log cut short: status ${status}, '${complaint}'")
   endif()

@@ -13,14 +13,35 @@ u32, u64, f64 = ctypes.c_uint32, ctypes.c_uint64, ctypes.c_double
 
 
 class LogInfo(ctypes.Structure):
-    _fields_ = [("versionMajor", u32), ("versionMinor", u32), ("bytes", u64), ("chunks", u32), ("levels", u32), ("fields", u32),
-                ("latticeBits", u32), ("latticeStep", f64), ("latticeOrigin", f64 * 3), ("digest", ctypes.c_char_p),
-                ("source", ctypes.c_char_p), ("generator", ctypes.c_char_p)]
+    _fields_ = [
+        ("versionMajor", u32),
+        ("versionMinor", u32),
+        ("bytes", u64),
+        ("chunks", u32),
+        ("levels", u32),
+        ("fields", u32),
+        ("latticeBits", u32),
+        ("latticeStep", f64),
+        ("latticeOrigin", f64 * 3),
+        ("digest", ctypes.c_char_p),
+        ("source", ctypes.c_char_p),
+        ("generator", ctypes.c_char_p),
+    ]
 
 
 class FieldInfo(ctypes.Structure):
-    _fields_ = [("components", u32), ("association", u32), ("bits", u32), ("reserved", u32), ("step", f64), ("minimum", f64 * 16),
-                ("range", f64 * 2), ("bytes", u64), ("name", ctypes.c_char_p), ("type", ctypes.c_char_p)]
+    _fields_ = [
+        ("components", u32),
+        ("association", u32),
+        ("bits", u32),
+        ("reserved", u32),
+        ("step", f64),
+        ("minimum", f64 * 16),
+        ("range", f64 * 2),
+        ("bytes", u64),
+        ("name", ctypes.c_char_p),
+        ("type", ctypes.c_char_p),
+    ]
 
 
 class Log:
@@ -33,7 +54,11 @@ class Log:
         self.handle = ctypes.c_void_p(self.c.qtet_log_create())
         self.check(self.c.qtet_log_open_file(self.handle, str(path).encode()))
         self.info = LogInfo()
-        self.check(self.c.qtet_log_get_info(self.handle, ctypes.c_size_t(ctypes.sizeof(LogInfo)), ctypes.byref(self.info)))
+        self.check(
+            self.c.qtet_log_get_info(
+                self.handle, ctypes.c_size_t(ctypes.sizeof(LogInfo)), ctypes.byref(self.info)
+            )
+        )
 
     def __enter__(self):
         return self
@@ -55,22 +80,45 @@ class Log:
         return out
 
     def points(self, letter):
-        function = {"f": self.c.qtet_log_copy_points_float, "d": self.c.qtet_log_copy_points_double}[letter]
+        function = {
+            "f": self.c.qtet_log_copy_points_float,
+            "d": self.c.qtet_log_copy_points_double,
+        }[letter]
         return self.copied(letter, 3 * self.c.qtet_log_vertex_count(self.handle), function)
 
     def tetrahedra(self):
-        return self.c.qtet_log_tetrahedra(self.handle)[: 4 * self.c.qtet_log_tetrahedron_count(self.handle)]
+        return self.c.qtet_log_tetrahedra(self.handle)[
+            : 4 * self.c.qtet_log_tetrahedron_count(self.handle)
+        ]
 
     def fields(self):
         """(name, kind, components, values), those of points first, as in a .vtu."""
         out = []
         for f in range(self.info.fields):
             field = FieldInfo()
-            self.check(self.c.qtet_log_get_field(self.handle, u32(f), ctypes.c_size_t(ctypes.sizeof(FieldInfo)), ctypes.byref(field)))
+            self.check(
+                self.c.qtet_log_get_field(
+                    self.handle,
+                    u32(f),
+                    ctypes.c_size_t(ctypes.sizeof(FieldInfo)),
+                    ctypes.byref(field),
+                )
+            )
             count = self.c.qtet_log_field_count(self.handle, u32(f))
-            letter, function = ("f", self.c.qtet_log_copy_field_float) if field.type == b"float32" else ("d", self.c.qtet_log_copy_field_double)
+            letter, function = (
+                ("f", self.c.qtet_log_copy_field_float)
+                if field.type == b"float32"
+                else ("d", self.c.qtet_log_copy_field_double)
+            )
             values = self.copied(letter, count, function, u32(f))
-            out.append((field.name.decode(), ("PointData", "CellData")[field.association], field.components, list(values)))
+            out.append(
+                (
+                    field.name.decode(),
+                    ("PointData", "CellData")[field.association],
+                    field.components,
+                    list(values),
+                )
+            )
         return sorted(out, key=lambda field: field[1] == "CellData")
 
 
@@ -84,7 +132,9 @@ def same(a, b):
 def compare(log, level, mesh):
     assert list(log.points(mesh.point_type)) == list(mesh.points), f"points of level {level}"
     assert log.tetrahedra() == list(mesh.tetrahedra), f"tetrahedra of level {level}"
-    extracted = [(name, kind, components, list(values)) for name, kind, components, _, values in mesh.fields]
+    extracted = [
+        (name, kind, components, list(values)) for name, kind, components, _, values in mesh.fields
+    ]
     assert same(log.fields(), extracted), f"fields of level {level}"
 
 
@@ -96,11 +146,16 @@ def main(library, program, logs, out):
     for path in sorted(pathlib.Path(logs).glob("*.qtet")):
         with Log(c, path) as log:
             # Backwards and forwards again: the mesh must not remember where it was.
-            # Of a log that keeps its input, extract gives the input itself at the last level, the library the mesh on the lattice.
+            # Of a log that keeps its input, extract gives the input itself at the last level, the
+            # library the mesh on the lattice.
             last = [] if path.stem == "kept-input" else [log.info.levels - 1]
             for level in [*last, 2, 3, 0]:
                 extracted = pathlib.Path(out) / "ctypes.vtu"
-                subprocess.run([program, "extract", path, "--level", str(level), "-o", extracted], check=True, stdout=subprocess.DEVNULL)
+                subprocess.run(
+                    [program, "extract", path, "--level", str(level), "-o", extracted],
+                    check=True,
+                    stdout=subprocess.DEVNULL,
+                )
                 log.refine(level)
                 compare(log, level, vtu.Vtu(extracted))
                 compared += 1

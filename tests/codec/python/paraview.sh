@@ -2,9 +2,14 @@
 # The ParaView plugin in ParaView itself, where that is installed.
 #   paraview.sh LIBRARY QTET-PROGRAM MODULES FOLDER-TO-WRITE-TO      77 = skipped
 set -euo pipefail
-command -v pvbatch >/dev/null || { echo "skipped: pvbatch is not installed (Debian: paraview, which takes the place of libvtk9-dev)"; exit 77; }
+command -v pvbatch >/dev/null || {
+  echo "skipped: pvbatch is not installed (Debian: paraview, which takes the place of libvtk9-dev)"
+  exit 77
+}
 "$2" sample fin -o "$4/paraview.vtu" >/dev/null
 "$2" simplify "$4/paraview.vtu" -o "$4/paraview.qtet" >/dev/null
 display=()
 [[ -n ${DISPLAY:-} ]] || ! command -v xvfb-run >/dev/null || display=(xvfb-run -a)
-QTET_LIBRARY=$1 exec "${display[@]}" pvbatch --force-offscreen-rendering "$(dirname "${BASH_SOURCE[0]}")/qtet_paraview_test.py" "$3/qtet_paraview.py" "$4/paraview.qtet" "$4"
+here=$(dirname "${BASH_SOURCE[0]}")
+QTET_LIBRARY=$1 exec "${display[@]}" pvbatch --force-offscreen-rendering \
+  "$here/qtet_paraview_test.py" "$3/qtet_paraview.py" "$4/paraview.qtet" "$4"

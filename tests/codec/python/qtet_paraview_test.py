@@ -1,6 +1,8 @@
-"""The ParaView plugin in pvbatch, off-screen: files, levels, errors, fields, URLs, and a picture that is not empty.
-   pvbatch --force-offscreen-rendering qtet_paraview_test.py PLUGIN LOG FOLDER-TO-WRITE-TO [URL]; QTET_LIBRARY names libqtet.so. The log, and
-   what the URL gives, is made of `qtet sample fin`, with its errors measured."""
+"""The ParaView plugin in pvbatch, off-screen: files, levels, errors, fields, URLs, and a picture
+that is not empty.
+   pvbatch --force-offscreen-rendering qtet_paraview_test.py PLUGIN LOG FOLDER-TO-WRITE-TO [URL]
+QTET_LIBRARY names libqtet.so. The log, and what the URL gives, is made of `qtet sample fin`, with
+its errors measured."""
 import inspect
 import os
 import pathlib
@@ -9,7 +11,8 @@ import sys
 from paraview import simple, vtk
 from vtkmodules.vtkIOImage import vtkPNGReader
 
-# ParaView 5.11.0 under Python 3.11, as in Debian 12, can load no Python plugin at all without this (mended in 5.11.1).
+# ParaView 5.11.0 under Python 3.11, as in Debian 12, can load no Python plugin at all without this
+# (mended in 5.11.1).
 if not hasattr(inspect, "getargspec"):
     inspect.getargspec = inspect.getfullargspec
 
@@ -37,9 +40,14 @@ def has(source, name):
 
 def check(source):
     source.UpdatePipelineInformation()
-    assert list(source.GetProperty("LevelRange")) == [0, levels - 1], list(source.GetProperty("LevelRange"))
+    assert list(source.GetProperty("LevelRange")) == [0, levels - 1], list(
+        source.GetProperty("LevelRange")
+    )
     slider = source.SMProxy.GetProperty("Level").GetDomain("range")
-    assert (slider.GetMinimum(0, vtk.reference(0)), slider.GetMaximum(0, vtk.reference(0))) == (0, levels - 1), "the slider's range"
+    assert (slider.GetMinimum(0, vtk.reference(0)), slider.GetMaximum(0, vtk.reference(0))) == (
+        0,
+        levels - 1,
+    ), "the slider's range"
     for level in (levels - 1, 0, levels // 2):
         source.Level = level
         assert cells(source) == sizes[level], (level, cells(source), sizes)
@@ -57,6 +65,7 @@ assert has(reader, "Density") and has(reader, "Velocity")
 reader.Fields = ["Velocity"]
 assert has(reader, "Velocity") and not has(reader, "Density"), "a field that is not wanted was read"
 reader.Fields = ["Density", "Velocity"]
+
 
 def picture_has_colours():
     view = simple.CreateView("RenderView")
@@ -77,7 +86,10 @@ def picture_has_colours():
 if os.environ.get("DISPLAY"):
     picture_has_colours()
 else:
-    print("no picture: Debian's ParaView draws on an X server alone, and DISPLAY names none (xvfb-run gives one)")
+    print(
+        "no picture: Debian's ParaView draws on an X server alone, and DISPLAY names none"
+        " (xvfb-run gives one)"
+    )
 
 if len(sys.argv) > 4:
     check(QtetURL(Url=sys.argv[4]))  # noqa: F821: LoadPlugin put it here

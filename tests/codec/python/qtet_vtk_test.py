@@ -1,5 +1,7 @@
-"""The Python modules beside libqtet.so, judged by VTK's own reader of what `qtet extract` writes; over HTTP, from a host with and without Range.
-   qtet_vtk_test.py LIBRARY QTET-PROGRAM MODULES FOLDER-OF-LOGS FOLDER-TO-WRITE-TO; ends with 77 where VTK is not installed."""
+"""The Python modules beside libqtet.so, judged by VTK's own reader of what `qtet extract` writes;
+over HTTP, from a host with and without Range.
+   qtet_vtk_test.py LIBRARY QTET-PROGRAM MODULES FOLDER-OF-LOGS FOLDER-TO-WRITE-TO
+It ends with 77 where VTK is not installed."""
 import functools
 import http.server
 import os
@@ -19,12 +21,17 @@ except ImportError as error:
     sys.exit(77)
 
 LOGS, OUT = pathlib.Path(logs), pathlib.Path(out)
-EXTRACTED_OTHERWISE = {"kept-input"}  # at the last level extract gives the input itself, in its own numbering
+# At the last level extract gives the input itself, in its own numbering.
+EXTRACTED_OTHERWISE = {"kept-input"}
 
 
 def extracted(log, level):
     path = OUT / "level.vtu"
-    subprocess.run([program, "extract", log, "--level", str(level), "-o", path], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(
+        [program, "extract", log, "--level", str(level), "-o", path],
+        check=True,
+        stdout=subprocess.DEVNULL,
+    )
     reader = vtkXMLUnstructuredGridReader()
     reader.SetFileName(str(path))
     reader.Update()
@@ -32,12 +39,21 @@ def extracted(log, level):
 
 
 def values_of(data):
-    """{name: (VTK's type, components, values)} of points or cells; NaN as text, so that it equals itself."""
+    """{name: (VTK's type, components, values)} of points or cells; NaN as text, so that it equals
+    itself."""
     found = {}
     for i in range(data.GetNumberOfArrays()):
         values = data.GetArray(i)
-        numbers = [values.GetComponent(t, c) for t in range(values.GetNumberOfTuples()) for c in range(values.GetNumberOfComponents())]
-        found[values.GetName()] = (values.GetDataTypeAsString(), values.GetNumberOfComponents(), [x if x == x else "nan" for x in numbers])
+        numbers = [
+            values.GetComponent(t, c)
+            for t in range(values.GetNumberOfTuples())
+            for c in range(values.GetNumberOfComponents())
+        ]
+        found[values.GetName()] = (
+            values.GetDataTypeAsString(),
+            values.GetNumberOfComponents(),
+            [x if x == x else "nan" for x in numbers],
+        )
     return found
 
 
@@ -45,11 +61,15 @@ def compare(grid, expected, what):
     assert grid.GetNumberOfPoints() == expected.GetNumberOfPoints() > 0, what
     assert grid.GetNumberOfCells() == expected.GetNumberOfCells() > 0, what
     for i in range(grid.GetNumberOfPoints()):
-        assert max(abs(a - b) for a, b in zip(grid.GetPoint(i), expected.GetPoint(i))) < 1e-6, f"{what}: point {i}"
+        assert (
+            max(abs(a - b) for a, b in zip(grid.GetPoint(i), expected.GetPoint(i))) < 1e-6
+        ), f"{what}: point {i}"
     for i in range(grid.GetNumberOfCells()):
         a, b = grid.GetCell(i), expected.GetCell(i)
         assert a.GetCellType() == b.GetCellType() == 10, what
-        assert [a.GetPointId(k) for k in range(4)] == [b.GetPointId(k) for k in range(4)], f"{what}: cell {i}"
+        assert [a.GetPointId(k) for k in range(4)] == [
+            b.GetPointId(k) for k in range(4)
+        ], f"{what}: cell {i}"
     assert values_of(grid.GetPointData()) == values_of(expected.GetPointData()), what
     assert values_of(grid.GetCellData()) == values_of(expected.GetCellData()), what
 
@@ -68,10 +88,13 @@ def every_log_is_what_extract_writes():
     for path in sorted(LOGS.glob("*.qtet")):
         with qtet_vtk.Log(path) as log:
             last = [] if path.stem in EXTRACTED_OTHERWISE else [log.last_level]
-            between = range(3, log.last_level, 3) if path.stem == "regions" else []  # where slots are empty
+            # Where slots are empty.
+            between = range(3, log.last_level, 3) if path.stem == "regions" else []
             for level in [*last, 2, *between, 0]:
                 log.refine(level)
-                compare(qtet_vtk.grid_of(log), extracted(path, level), f"{path.name}, level {level}")
+                compare(
+                    qtet_vtk.grid_of(log), extracted(path, level), f"{path.name}, level {level}"
+                )
                 surface = qtet_vtk.surface_of(log)
                 assert surface.GetNumberOfPolys() == log.level_info(level).boundaryTriangles > 0
                 compared += 1
@@ -83,27 +106,42 @@ def levels_are_chosen_and_fields_left_out():
     with qtet_vtk.Log(path) as log:
         sizes = [log.level_info(level).tetrahedra for level in range(log.info.levels)]
     middle = sizes[len(sizes) // 2]
-    assert qtet_vtk.read(path, tetrahedra=middle).GetNumberOfCells() == max(size for size in sizes if size <= middle)
+    assert qtet_vtk.read(path, tetrahedra=middle).GetNumberOfCells() == max(
+        size for size in sizes if size <= middle
+    )
     assert qtet_vtk.read(path).GetNumberOfCells() == sizes[-1]
     box = OUT / "box.qtet"
-    for words in (["sample", "box", "-o", OUT / "box.vtu"], ["simplify", OUT / "box.vtu", "-o", box]):
+    for words in (
+        ["sample", "box", "-o", OUT / "box.vtu"],
+        ["simplify", OUT / "box.vtu", "-o", box],
+    ):
         subprocess.run([program, *words], check=True, capture_output=True)
     for name, option in (("Scalar", "--error=Scalar=0.01"), ("boundary", "--boundary-error=0.01")):
-        subprocess.run([program, "extract", box, option, "-o", OUT / "near.vtu"], check=True, stdout=subprocess.DEVNULL)
+        subprocess.run(
+            [program, "extract", box, option, "-o", OUT / "near.vtu"],
+            check=True,
+            stdout=subprocess.DEVNULL,
+        )
         grid = qtet_vtk.read(box, error=(name, 0.01))
         assert grid.GetNumberOfCells() < qtet_vtk.read(box).GetNumberOfCells(), name
-        assert f'NumberOfCells="{grid.GetNumberOfCells()}"'.encode() in (OUT / "near.vtu").read_bytes()[:1000], name
+        assert (
+            f'NumberOfCells="{grid.GetNumberOfCells()}"'.encode()
+            in (OUT / "near.vtu").read_bytes()[:1000]
+        ), name
     none = qtet_vtk.read(path, level=1, fields=[])
     assert none.GetPointData().GetNumberOfArrays() == 0
     assert values_of(qtet_vtk.read(path, fields=["Swirl"]).GetPointData()).keys() == {"Swirl"}
     refused(lambda: qtet_vtk.read(path, fields=["Colour"]), "Colour")
     refused(lambda: qtet_vtk.read(path, level=1, tetrahedra=5), "one of")
     refused(lambda: qtet_vtk.read(LOGS / "nobody.qtet"), "nobody.qtet")
-    refused(lambda: qtet_vtk.read(LOGS.parent / "must-fail" / "truncated.last-byte.qtet"), "truncated")
+    refused(
+        lambda: qtet_vtk.read(LOGS.parent / "must-fail" / "truncated.last-byte.qtet"), "truncated"
+    )
 
 
 class Host(http.server.SimpleHTTPRequestHandler):
     """Static files with one Range, as nginx has it; under /whole/ without. Counts what it sends."""
+
     sent = 0
 
     def do_GET(self):
@@ -141,7 +179,9 @@ def urls_fetch_what_a_level_needs():
                 need = log.level_info(level).prefixBytes
                 log.refine(level)
                 compare(qtet_vtk.grid_of(log), extracted(path, level), f"{url}, level {level}")
-                assert Host.sent <= max(need, Host.sent if level == 1 else 0), f"{Host.sent} bytes for {need}"
+                assert Host.sent <= max(
+                    need, Host.sent if level == 1 else 0
+                ), f"{Host.sent} bytes for {need}"
         assert Host.sent == path.stat().st_size, Host.sent
     whole = qtet_vtk.read(f"{root}/whole/solid.qtet", level=0)
     compare(whole, extracted(path, 0), "a host without Range")

@@ -1,12 +1,16 @@
 #!/usr/bin/env python3
-"""Everything that qtet-server does, at once, by clients of every kind: for a sanitizer's server, whose reports end in its exit code.
+"""Everything that qtet-server does, at once, by clients of every kind: for a sanitizer's server,
+whose reports end in its exit code.
 
   load.py SERVER TOOL SCRATCH [--seconds 30] [--lives 4] [--threads 2] [--seed 1]
 
-Each life is a server of its own, plain and TLS in turn, and ends by SIGTERM with all clients at work. What comes is held against the logs that were served.
-Exit code 1: a wrong answer, a connection that broke without a reason, a report, or a server that did not end in good order.
+Each life is a server of its own, plain and TLS in turn, and ends by SIGTERM with all clients at
+work. What comes is held against the logs that were served.
+Exit code 1: a wrong answer, a connection that broke without a reason, a report, or a server that
+did not end in good order.
 """
-import argparse, base64, collections, contextlib, hashlib, http.client, json, os, pathlib, random, re, shutil, signal, socket, ssl, struct, subprocess, sys, threading, time, traceback
+import argparse, base64, collections, contextlib, hashlib, http.client, json, os, pathlib, random
+import re, shutil, signal, socket, ssl, struct, subprocess, sys, threading, time, traceback
 
 READER, WRITER = "reader-of-the-load-is-me", "writer-of-the-load-is-me"  # 22 characters at least
 ALL_TOKENS = f"write up* {WRITER}\nread * {READER}\nread open* anyone\n"
@@ -159,7 +163,8 @@ class Life:
             r"^.*(?:Sanitizer|runtime error|ended by an exception).*$", told, re.M
         )
         print(
-            f"life {self.number}, {'TLS' if self.tls else 'plain'}: {dict(sorted(self.counts.items()))}; the server counts {', '.join(self.figures)}",
+            f"life {self.number}, {'TLS' if self.tls else 'plain'}:"
+            f" {dict(sorted(self.counts.items()))}; the server counts {', '.join(self.figures)}",
             *self.failures[:20],
             sep="\n  ",
             flush=True,
@@ -175,7 +180,8 @@ class Stream:
         self.socket = life.connect()
         self.socket.sendall(
             (
-                f"GET {path} HTTP/1.1\r\nHost: a\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Key: {base64.b64encode(os.urandom(16)).decode()}\r\n"
+                f"GET {path} HTTP/1.1\r\nHost: a\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+                f"Sec-WebSocket-Key: {base64.b64encode(os.urandom(16)).decode()}\r\n"
                 "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Protocol: qtet.v1\r\n\r\n"
             ).encode()
         )
@@ -373,20 +379,16 @@ def uploads(life, rng):
     elif what == 3:  # breaks off, or leaves while the log is checked
         socket = life.connect()
         socket.sendall(
-            f"PUT {path}?digest={digest} HTTP/1.1\r\nHost: a\r\nAuthorization: Bearer {WRITER}\r\nContent-Length: {len(log)}\r\n\r\n".encode()
+            f"PUT {path}?digest={digest} HTTP/1.1\r\nHost: a\r\nAuthorization: Bearer {WRITER}\r\n"
+            f"Content-Length: {len(log)}\r\n\r\n".encode()
             + log[: rng.choice([len(log), rng.randrange(len(log))])]
         )
         socket.close()
     else:
         status, _, body = life.ask("GET", f"{path}/upload?digest={digest}", token=WRITER)
         have = json.loads(body)["bytes"] if status == 200 else 0
-        part = (
-            {
-                "Content_Range": f"bytes {f'{have}-{len(log) - 1}' if have < len(log) else '*'}/{len(log)}"
-            }
-            if have > 0
-            else {}
-        )
+        rest = f"{have}-{len(log) - 1}" if have < len(log) else "*"
+        part = {"Content_Range": f"bytes {rest}/{len(log)}"} if have > 0 else {}
         status, _, _ = life.ask("PUT", f"{path}?digest={digest}", log[have:], token=WRITER, **part)
         assert status in (200, 201, 409, 503), status
 

@@ -22,8 +22,9 @@ offers bash "$(in_bash qtet view --we)" --weld
 
 if command -v fish >/dev/null; then
   qtet completion fish >qtet.fish
-  offers fish "$(HOME=$PWD fish --no-config -c "source qtet.fish; complete -C 'qtet ex'")" extract
-  offers fish "$(HOME=$PWD fish --no-config -c "source qtet.fish; complete -C 'qtet view --we'")" --weld
+  in_fish() { HOME=$PWD fish --no-config -c "source qtet.fish; complete -C '$1'"; }
+  offers fish "$(in_fish 'qtet ex')" extract
+  offers fish "$(in_fish 'qtet view --we')" --weld
 fi
 
 # zsh completes in a terminal alone: here no more than that it understands the file.

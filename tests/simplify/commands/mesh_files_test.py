@@ -1,5 +1,7 @@
-"""Every kind of file that `qtet extract` and `qtet convert` write, read back by VTK, meshio, numpy and (if installed) Gmsh, and held against the .vtu.
-   mesh_files_test.py QTET-PROGRAM FOLDER-OF-LOGS FOLDER-TO-WRITE-TO; ends with 77 where VTK's Python modules, meshio or numpy are missing."""
+"""Every kind of file that `qtet extract` and `qtet convert` write, read back by VTK, meshio, numpy
+and (if installed) Gmsh, and held against the .vtu.
+   mesh_files_test.py QTET-PROGRAM FOLDER-OF-LOGS FOLDER-TO-WRITE-TO
+It ends with 77 where VTK's Python modules, meshio or numpy are missing."""
 import math
 import pathlib
 import re
@@ -37,32 +39,51 @@ def read(reader, path):
 
 
 def arrays(data):
-    return {data.GetArrayName(i): vtk_to_numpy(data.GetArray(i)) for i in range(data.GetNumberOfArrays())}
+    return {
+        data.GetArrayName(i): vtk_to_numpy(data.GetArray(i))
+        for i in range(data.GetNumberOfArrays())
+    }
 
 
 class Mesh:
     """points, tetrahedra, and fields of points and cells by name."""
 
     def __init__(self, points, tetrahedra, point_fields, cell_fields):
-        self.points, self.tetrahedra, self.point_fields, self.cell_fields = points, tetrahedra, point_fields, cell_fields
+        self.points, self.tetrahedra, self.point_fields, self.cell_fields = (
+            points,
+            tetrahedra,
+            point_fields,
+            cell_fields,
+        )
 
     @staticmethod
     def of_grid(grid):
         assert set(vtk_to_numpy(grid.GetCellTypesArray())) == {10}
-        return Mesh(vtk_to_numpy(grid.GetPoints().GetData()), vtk_to_numpy(grid.GetCells().GetConnectivityArray()).reshape(-1, 4),
-                    arrays(grid.GetPointData()), arrays(grid.GetCellData()))
+        return Mesh(
+            vtk_to_numpy(grid.GetPoints().GetData()),
+            vtk_to_numpy(grid.GetCells().GetConnectivityArray()).reshape(-1, 4),
+            arrays(grid.GetPointData()),
+            arrays(grid.GetCellData()),
+        )
 
     @staticmethod
     def of_meshio(mesh):
         (block,) = mesh.cells
         assert block.type == "tetra", block.type
-        return Mesh(mesh.points, block.data, mesh.point_data, {name: values[0] for name, values in mesh.cell_data.items() if ":" not in name})
+        return Mesh(
+            mesh.points,
+            block.data,
+            mesh.point_data,
+            {name: values[0] for name, values in mesh.cell_data.items() if ":" not in name},
+        )
 
     def boundary(self):
         """Faces of one cell, each turned so that its smallest vertex is first."""
         t = self.tetrahedra
         faces = np.concatenate([t[:, [1, 2, 3]], t[:, [0, 3, 2]], t[:, [0, 1, 3]], t[:, [0, 2, 1]]])
-        _, first, counts = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
+        _, first, counts = np.unique(
+            np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True
+        )
         return {turned(face) for face in faces[first[counts == 1]]}
 
 
@@ -76,7 +97,12 @@ def same_fields(found, expected, what, exact_types):
     for name, values in expected.items():
         stored = found[name] if exact_types else found[name].astype(values.dtype)
         assert np.array_equal(stored, values, equal_nan=values.dtype.kind == "f"), (what, name)
-        assert not exact_types or found[name].dtype == values.dtype, (what, name, found[name].dtype, values.dtype)
+        assert not exact_types or found[name].dtype == values.dtype, (
+            what,
+            name,
+            found[name].dtype,
+            values.dtype,
+        )
 
 
 def same(found, expected, what, exact_types=True):
@@ -93,12 +119,17 @@ def filled_up(fields):
     for name, values in fields.items():
         width = 1 if values.ndim == 1 else values.shape[1]
         wide = 1 if width == 1 else 3 if width <= 3 else 9
-        out[name] = values if wide == width else np.hstack([values, np.zeros((len(values), wide - width), values.dtype)])
+        out[name] = (
+            values
+            if wide == width
+            else np.hstack([values, np.zeros((len(values), wide - width), values.dtype)])
+        )
     return out
 
 
 def surface(path, polydata, expected, tolerance):
-    """Triangles at the same places, counter-clockwise from outside, as the boundary of the cells."""
+    """Triangles at the same places, counter-clockwise from outside, as the boundary of the
+    cells."""
     places = vtk_to_numpy(polydata.GetPoints().GetData())
     corners = vtk_to_numpy(polydata.GetPolys().GetConnectivityArray()).reshape(-1, 3)
     scale = np.ptp(expected.points, axis=0).max() * tolerance
@@ -111,55 +142,104 @@ def surface(path, polydata, expected, tolerance):
 
 def npz(path, expected):
     with np.load(path) as archive:
-        names = {"points", "tetrahedra", "boundary"} | {"point_" + n for n in expected.point_fields} | {"cell_" + n for n in expected.cell_fields}
+        names = (
+            {"points", "tetrahedra", "boundary"}
+            | {"point_" + n for n in expected.point_fields}
+            | {"cell_" + n for n in expected.cell_fields}
+        )
         assert set(archive.files) == names, archive.files
-        found = Mesh(archive["points"], archive["tetrahedra"], {n[6:]: archive[n] for n in archive.files if n.startswith("point_")},
-                     {n[5:]: archive[n] for n in archive.files if n.startswith("cell_")})
+        found = Mesh(
+            archive["points"],
+            archive["tetrahedra"],
+            {n[6:]: archive[n] for n in archive.files if n.startswith("point_")},
+            {n[5:]: archive[n] for n in archive.files if n.startswith("cell_")},
+        )
         same(found, expected, path)
         assert {turned(face) for face in archive["boundary"]} == expected.boundary(), path
 
 
 def usda(path, expected):
     text = path.read_text()
-    assert text.startswith("#usda 1.0\n") and text.count("{") == text.count("}") and 'orientation = "rightHanded"' in text
+    assert (
+        text.startswith("#usda 1.0\n")
+        and text.count("{") == text.count("}")
+        and 'orientation = "rightHanded"' in text
+    )
 
     def numbers(name):
         (found,) = re.findall(rf"^    \S+\[\] {re.escape(name)} = \[(.*)\]", text, re.M)
         return np.array([float(x) for x in re.findall(r"[^\s,()]+", found)])
 
-    assert np.array_equal(numbers("points").reshape(-1, 3).astype(np.float32), expected.points.astype(np.float32)), path
+    assert np.array_equal(
+        numbers("points").reshape(-1, 3).astype(np.float32), expected.points.astype(np.float32)
+    ), path
     assert np.array_equal(numbers("tetVertexIndices").reshape(-1, 4), expected.tetrahedra), path
-    assert {turned(face) for face in numbers("surfaceFaceVertexIndices").reshape(-1, 3).astype(int)} == expected.boundary(), path
-    for fields, interpolation in ((expected.point_fields, "vertex"), (expected.cell_fields, "uniform")):
+    assert {
+        turned(face) for face in numbers("surfaceFaceVertexIndices").reshape(-1, 3).astype(int)
+    } == expected.boundary(), path
+    for fields, interpolation in (
+        (expected.point_fields, "vertex"),
+        (expected.cell_fields, "uniform"),
+    ):
         assert text.count(f'interpolation = "{interpolation}"') == len(fields), path
         for name, values in fields.items():
-            stored = name + "_" if interpolation == "uniform" and name in expected.point_fields else name  # USD has one room for both
-            assert np.array_equal(numbers("primvars:" + stored).astype(values.dtype), values.ravel(), equal_nan=True), (path, name)
+            # USD has one room for both.
+            is_taken = interpolation == "uniform" and name in expected.point_fields
+            stored = name + "_" if is_taken else name
+            assert np.array_equal(
+                numbers("primvars:" + stored).astype(values.dtype), values.ravel(), equal_nan=True
+            ), (path, name)
 
 
 def ply(path, expected):
     polydata = read(vtkPLYReader(), path)
     places, _, originals = surface(path, polydata, expected, 1e-5)
-    assert sorted(originals) == sorted({v for face in expected.boundary() for v in face}), "vertices that no face uses"
+    assert sorted(originals) == sorted(
+        {v for face in expected.boundary() for v in face}
+    ), "vertices that no face uses"
     header = path.read_bytes().split(b"end_header\n")[0].decode()
     body = path.read_bytes().split(b"end_header\n", 1)[1]
-    kinds = {"float": "<f4", "double": "<f8", "char": "i1", "uchar": "u1", "short": "<i2", "ushort": "<u2", "int": "<i4", "uint": "<u4"}
-    row = np.dtype([(name, kinds[kind]) for kind, name in re.findall(r"^property (\w+) (\w+)$", header, re.M)])
+    kinds = {
+        "float": "<f4",
+        "double": "<f8",
+        "char": "i1",
+        "uchar": "u1",
+        "short": "<i2",
+        "ushort": "<u2",
+        "int": "<i4",
+        "uint": "<u4",
+    }
+    row = np.dtype(
+        [(name, kinds[kind]) for kind, name in re.findall(r"^property (\w+) (\w+)$", header, re.M)]
+    )
     table = np.frombuffer(body, row, len(places))
     for name, values in expected.point_fields.items():
         columns = [values] if values.ndim == 1 else list(values.T)
         for c, column in enumerate(columns):
             stored = table[name if values.ndim == 1 else f"{name}_{c}"]
-            assert np.array_equal(stored, column[originals].astype(stored.dtype), equal_nan=stored.dtype.kind == "f"), (path, name, c)
+            assert np.array_equal(
+                stored, column[originals].astype(stored.dtype), equal_nan=stored.dtype.kind == "f"
+            ), (path, name, c)
 
 
 def gmsh(path, expected):
-    same(Mesh.of_meshio(meshio.read(path)), Mesh(expected.points, expected.tetrahedra, filled_up(expected.point_fields),
-                                                 filled_up(expected.cell_fields)), path, exact_types=False)
+    same(
+        Mesh.of_meshio(meshio.read(path)),
+        Mesh(
+            expected.points,
+            expected.tetrahedra,
+            filled_up(expected.point_fields),
+            filled_up(expected.cell_fields),
+        ),
+        path,
+        exact_types=False,
+    )
     if not shutil.which("gmsh"):
         return print("no gmsh: .msh read by meshio alone")
     again = OUT / "again.mesh"
-    said = subprocess.run(["gmsh", path, "-save", "-o", again], capture_output=True, text=True, check=True)
+    said = subprocess.run(
+        ["gmsh", path, "-save", "-o", again], capture_output=True, text=True, check=True
+    )
     assert "Error" not in said.stdout + said.stderr, said
     count = re.search(r"Tetrahedra\s+(\d+)", again.read_text())
     assert int(count[1]) == len(expected.tetrahedra), said
@@ -179,9 +259,14 @@ def check_all(write, expected):
 def main():
     qtet("sample", "box", "-o", OUT / "box.vtu")
     qtet("simplify", OUT / "box.vtu", "-o", OUT / "box.qtet")
-    cases = [(OUT / "box.qtet", ["--ratio", 0.3]), (LOGS / "cell-fields.qtet", ["--level", 9]), (LOGS / "gaps.qtet", ["--ratio", 1]),
-             (LOGS / "kept-input.qtet", ["--ratio", 1])]
+    cases = [
+        (OUT / "box.qtet", ["--ratio", 0.3]),
+        (LOGS / "cell-fields.qtet", ["--level", 9]),
+        (LOGS / "gaps.qtet", ["--ratio", 1]),
+        (LOGS / "kept-input.qtet", ["--ratio", 1]),
+    ]
     for log, choice in cases:
+
         def extracted(ending):
             qtet("extract", log, *choice, "-o", OUT / ("level" + ending))
             return OUT / ("level" + ending)
@@ -194,12 +279,20 @@ def main():
 
     whole = Mesh.of_grid(read(vtkXMLUnstructuredGridReader(), OUT / "box.vtu"))
     check_all(converted, whole)
-    same(Mesh.of_grid(read(vtkXMLUnstructuredGridReader(), converted(".vtu"))), whole, "convert to .vtu")
+    same(
+        Mesh.of_grid(read(vtkXMLUnstructuredGridReader(), converted(".vtu"))),
+        whole,
+        "convert to .vtu",
+    )
     for path in ("level.vtk", "level.msh"):  # and back in again by qtet itself
         assert "refused" not in qtet("check", OUT / path).stdout
     qtet("convert", LOGS / "solid.qtet", "--fields", "Height", "-o", OUT / "one.npz")
     with np.load(OUT / "one.npz") as archive:
-        assert "point_Height" in archive.files and "point_Swirl" not in archive.files and len(archive["tetrahedra"]) == 162
+        assert (
+            "point_Height" in archive.files
+            and "point_Swirl" not in archive.files
+            and len(archive["tetrahedra"]) == 162
+        )
     assert math.isfinite(whole.points.sum())
     print("every kind of file was read back by somebody else")
 

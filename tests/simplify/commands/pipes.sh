@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Meshes and logs through pipes: - as an input and as an output is the same as a file, and what cannot be is refused.
+# Meshes and logs through pipes: - as an input and as an output is the same as a file, and what
+# cannot be is refused.
 #   pipes.sh QTET-PROGRAM FOLDER-TO-WRITE-TO
 set -euo pipefail
 mkdir -p "$2/temporary"
@@ -11,25 +12,38 @@ fail() { echo "pipes: $1" >&2; exit 1; }
 refuses() {
   local code=0
   "$qtet" "${@:3}" </dev/null >out.txt 2>err.txt || code=$?
-  [[ $code == "$1" && ! -s out.txt ]] && grep -q -- "$2" err.txt || { cat err.txt >&2; fail "${*:3} ended with $code"; }
+  [[ $code == "$1" && ! -s out.txt ]] && grep -q -- "$2" err.txt || {
+    cat err.txt >&2
+    fail "${*:3} ended with $code"
+  }
 }
+# What --json says of a member.
+member() { "$qtet" "${@:2}" --json | grep "\"$1\""; }
 
 "$qtet" sample box -o box.vtu >/dev/null
 "$qtet" simplify box.vtu -o box.qtet 2>/dev/null >/dev/null
 "$qtet" simplify - --format vtu -o piped.qtet <box.vtu 2>/dev/null >/dev/null
-[[ $("$qtet" verify - --json <piped.qtet | grep meshDigest) == $("$qtet" verify box.qtet --json | grep meshDigest) ]] || fail "a mesh from a pipe is another one"
-cat box.qtet | "$qtet" info - --json | cmp - <("$qtet" info box.qtet --json) || fail "info of a pipe"
-cat box.vtu | "$qtet" check - --format .vtu 2>/dev/null | grep -q "simplify takes it" || fail "check of a pipe"
+[[ $(member meshDigest verify - <piped.qtet) == $(member meshDigest verify box.qtet) ]] ||
+  fail "a mesh from a pipe is another one"
+cat box.qtet | "$qtet" info - --json | cmp - <("$qtet" info box.qtet --json) ||
+  fail "info of a pipe"
+cat box.vtu | "$qtet" check - --format .vtu 2>/dev/null | grep -q "simplify takes it" ||
+  fail "check of a pipe"
 "$qtet" extract box.qtet --ratio 0.3 -o level.vtu >/dev/null
-"$qtet" extract - --ratio 0.3 --to vtu -o - <box.qtet 2>err.txt | cmp - level.vtu || fail "extract from pipe to pipe"
+"$qtet" extract - --ratio 0.3 --to vtu -o - <box.qtet 2>err.txt | cmp - level.vtu ||
+  fail "extract from pipe to pipe"
 grep -q 'note: level' err.txt || fail "extract says nothing beside its output"
-"$qtet" extract - --ratio 0.3 --to vtu -o - --quiet <box.qtet 2>err.txt | cmp - level.vtu || fail "--quiet took the output"
+"$qtet" extract - --ratio 0.3 --to vtu -o - --quiet <box.qtet 2>err.txt | cmp - level.vtu ||
+  fail "--quiet took the output"
 [[ ! -s err.txt ]] || fail "--quiet still talks"
-"$qtet" convert - --format=vtu --to msh -o - <box.vtu 2>/dev/null | "$qtet" convert - --format msh -o back.vtu >/dev/null 2>&1
+"$qtet" convert - --format=vtu --to msh -o - <box.vtu 2>/dev/null |
+  "$qtet" convert - --format msh -o back.vtu >/dev/null 2>&1
 "$qtet" convert box.vtu -o straight.vtu >/dev/null 2>&1
-[[ $("$qtet" check back.vtu --json | grep '"tetrahedra"') == $("$qtet" check straight.vtu --json | grep '"tetrahedra"') ]] || fail "convert through two pipes"
+[[ $(member tetrahedra check back.vtu) == $(member tetrahedra check straight.vtu) ]] ||
+  fail "convert through two pipes"
 cp box.vtu nameless
-"$qtet" check nameless --format vtu >/dev/null 2>&1 || fail "--format of a file whose name says nothing"
+"$qtet" check nameless --format vtu >/dev/null 2>&1 ||
+  fail "--format of a file whose name says nothing"
 refuses 2 '--format' check -
 refuses 2 'given once' simplify - - --format vtu -o x.qtet
 refuses 2 '--to' extract box.qtet --level 0 -o -

@@ -1,5 +1,7 @@
-"""Cells of higher degree that VTK's own source makes, and Gmsh where it is installed, through `qtet convert`: the tetrahedra must fill the same volume and meet face to face.
-   higher_cells_test.py QTET-PROGRAM FOLDER-TO-WRITE-TO; ends with 77 where VTK's Python modules or numpy are missing."""
+"""Cells of higher degree that VTK's own source makes, and Gmsh where it is installed, through `qtet
+convert`: the tetrahedra must fill the same volume and meet face to face.
+   higher_cells_test.py QTET-PROGRAM FOLDER-TO-WRITE-TO
+It ends with 77 where VTK's Python modules or numpy are missing."""
 import math
 import pathlib
 import shutil
@@ -69,7 +71,8 @@ def fills(points, tetrahedra, volume, what):
 
 
 def sources():
-    """Lagrange and Bezier tetrahedra, hexahedra, wedges. (Some nodes of the third degree's tetrahedra VTK makes twice.)"""
+    """Lagrange and Bezier tetrahedra, hexahedra, wedges. (Some nodes of the third degree's
+    tetrahedra VTK makes twice.)"""
     for kind in (71, 72, 73, 78, 79, 80):
         for degree in (2, 3, 4):
             source = vtkCellTypeSource()
@@ -136,7 +139,8 @@ def gmsh():
         "Extrude {0, 0, 2} { Surface{1}; Layers{2}; Recombine; }"
     )
     (out / "bricks.geo").write_text(
-        'SetFactory("OpenCASCADE"); Box(1) = {0, 0, 0, 1, 1, 2}; Transfinite Curve {:} = 3; Transfinite Surface {:}; Recombine Surface {:}; Transfinite Volume {:};'
+        'SetFactory("OpenCASCADE"); Box(1) = {0, 0, 0, 1, 1, 2}; Transfinite Curve {:} = 3;'
+        " Transfinite Surface {:}; Recombine Surface {:}; Transfinite Volume {:};"
     )
     for name, degrees, volume in (
         ("ball", (2, 3, 4, 5, 6), None),
@@ -155,7 +159,8 @@ def gmsh():
 
 
 def mixed():
-    """A hexahedron, a pyramid on it, tetrahedra on the pyramid and a prism beside the hexahedron, of every degree that there is, and bent."""
+    """A hexahedron, a pyramid on it, tetrahedra on the pyramid and a prism beside the hexahedron,
+    of every degree that there is, and bent."""
     linear = pathlib.Path(__file__).parent.parent / "read" / "meshes" / "gmsh-mixed1.msh"
     for degree in (2, 3, 5, 9):
         made, script = out / f"mixed{degree}.msh", out / "mixed.geo"
