@@ -1,0 +1,151 @@
+// The folder that a document's examples run in. It looks like the repository's root after a build,
+// with meshes and logs under the names that the examples use. In an example /tmp and /opt stand for
+// places in the folder, and port 8080 for a free one.
+
+import {execFileSync, spawnSync} from 'node:child_process';
+import {
+  cpSync,
+  existsSync,
+  mkdirSync,
+  readFileSync,
+  readdirSync,
+  rmSync,
+  symlinkSync,
+  writeFileSync,
+} from 'node:fs';
+import {createServer} from 'node:net';
+import {delimiter, join} from 'node:path';
+import {fileURLToPath} from 'node:url';
+
+const kTimeoutMs = 300_000;
+const kRooms = ['codec', 'proto', 'server', 'simplify', 'tests', 'web-client'];
+const kCompilers = ['cc', 'gcc-12', 'gcc', 'clang-19', 'clang'];
+const kStandIns = fileURLToPath(new URL('stand_ins/', import.meta.url));
+
+/** What every document's examples find: made once, from a built-in sample. */
+export function makeInputs(bin, folder) {
+  rmSync(folder, {recursive: true, force: true});
+  mkdirSync(join(folder, 'served'), {recursive: true});
+  const qtet = (...words) => execFileSync(join(bin, 'qtet'), words, {cwd: folder, stdio: 'pipe'});
+  qtet('sample', 'box', '-o', 'box.vtu');
+  withFields(folder, 'part.vtu', ['Density']);
+  withFields(folder, 'part-with-stress.vtu', ['Stress']);
+  withFields(folder, 'step.vtu', ['T', 'U']);
+  const steps = [0, 0.25].map((time) => `<DataSet timestep="${time}" file="step.vtu"/>`).join('');
+  const series = `<VTKFile type="Collection"><Collection>${steps}</Collection></VTKFile>\n`;
+  writeFileSync(join(folder, 'run.pvd'), series);
+  qtet('simplify', 'part.vtu', '-o', 'part.qtet');
+  for (const copy of ['wing.qtet', 'served/part.qtet']) {
+    cpSync(join(folder, 'part.qtet'), join(folder, copy));
+  }
+}
+
+/** The box's one field under other names, in a file of its own. */
+function withFields(folder, file, names) {
+  const box = readFileSync(join(folder, 'box.vtu'), 'latin1');
+  const renamed = box
+    .replace('Scalars="Scalar"', '')
+    .replace(/ *<DataArray .*Name="Scalar".*\n/, (array) =>
+      names.map((name) => array.replace('"Scalar"', `"${name}"`)).join(''),
+    );
+  writeFileSync(join(folder, file), renamed, 'latin1');
+}
+
+export class Scratch {
+  #environment;
+
+  /** `build`: the folder of the build; `inputs`: what makeInputs has made. */
+  static async create({root, build, inputs, folder}) {
+    rmSync(folder, {recursive: true, force: true});
+    cpSync(inputs, folder, {recursive: true});
+    for (const own of ['build/release/bin', 'tmp', 'opt']) {
+      mkdirSync(join(folder, own), {recursive: true});
+    }
+    for (const room of kRooms) symlinkSync(join(root, room), join(folder, room));
+    linkAll(build, join(folder, 'build/release'), ['bin']);
+    const standIns = readdirSync(kStandIns);
+    linkAll(join(build, 'bin'), join(folder, 'build/release/bin'), standIns);
+    linkAll(kStandIns, join(folder, 'build/release/bin'), []);
+    // Debian's g++-12 brings no cc.
+    const compiler = kCompilers.map(onPath).find((path) => path !== undefined);
+    if (compiler) symlinkSync(compiler, join(folder, 'build/release/bin/cc'));
+    return new Scratch({root, build, folder, port: await freePort()});
+  }
+
+  constructor({root, build, folder, port}) {
+    Object.assign(this, {root, build, folder, port});
+    const {QTET_TOKEN: _, ...inherited} = process.env;
+    this.#environment = {
+      ...inherited,
+      LC_ALL: 'C.UTF-8',
+      PATH: `${this.path('build/release/bin')}:${process.env.PATH}`,
+      QTET_BIN: join(build, 'bin'),
+      QTET_SCRATCH: folder,
+      QTET_SERVER_PORT: String(port),
+    };
+  }
+
+  path(name) {
+    return join(this.folder, name);
+  }
+
+  /** An example's text with this machine's places in it. */
+  local(text) {
+    return text
+      .replace(/(?<![\w.~/-])\/(tmp|opt)\b/g, (_, name) => this.path(name))
+      .replace(/\b(127\.0\.0\.1|localhost):8080\b/g, `127.0.0.1:${this.port}`);
+  }
+
+  /** Runs a program in the folder; it must end with 0. Gives its standard output. */
+  run(program, words, {input = '', environment = {}} = {}) {
+    const done = spawnSync(program, words, {
+      cwd: this.folder,
+      input,
+      encoding: 'utf8',
+      env: {...this.#environment, ...environment},
+      timeout: kTimeoutMs,
+    });
+    if (done.error) throw new Error(`${program}: ${done.error.message}`);
+    if (done.status === 0) return done.stdout;
+    throw new Error(`${done.stdout}${done.stderr}${program} ended with ${done.status}`);
+  }
+
+  /** For an example that asks the port for something, where none before it has started a server. */
+  ensureServer() {
+    if (existsSync(this.path('server.pid'))) return;
+    const tokens = existsSync(this.path('tokens')) ? ['--tokens', 'tokens'] : [];
+    this.run(join(kStandIns, 'qtet-server'), ['served', ...tokens]);
+  }
+
+  stopServer() {
+    if (!existsSync(this.path('server.pid'))) return;
+    const server = Number(readFileSync(this.path('server.pid'), 'utf8'));
+    rmSync(this.path('server.pid'));
+    try {
+      process.kill(server);
+    } catch (error) {
+      if (error.code !== 'ESRCH') throw error;
+    }
+  }
+}
+
+function linkAll(from, to, except) {
+  for (const name of readdirSync(from)) {
+    if (!except.includes(name)) symlinkSync(join(from, name), join(to, name));
+  }
+}
+
+function onPath(program) {
+  const folders = process.env.PATH.split(delimiter);
+  return folders.map((folder) => join(folder, program)).find((path) => existsSync(path));
+}
+
+function freePort() {
+  return new Promise((resolve, reject) => {
+    const probe = createServer().once('error', reject);
+    probe.listen(0, '127.0.0.1', () => {
+      const {port} = probe.address();
+      probe.close(() => resolve(port));
+    });
+  });
+}
