@@ -62,7 +62,8 @@ Status PacketWriter::endHead() {
   waiting_[1].add({}, writer_.mesh().next());
   for (std::uint32_t node = 1; node < 1u << bands_.front().depth; ++node)
     if (Status s = children(node, std::exchange(waiting_[node], {})); !s) return s;
-  head_ = {writer_.models(), models_};
+  head_.records = writer_.models();
+  head_.children = models_;
   return writer_.closeChunk(bands_.front().firstLevel - 1, kLevelEnd);
 }
 

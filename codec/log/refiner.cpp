@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdlib>
 #include <limits>
+#include <string>
+#include <utility>
 
 #include "codec/log/refiner_state.h"
 #include "proto/checksum.h"
@@ -29,52 +31,25 @@ std::unexpected<Error> refuseChunk(ErrorCode code, std::uint32_t chunk, const st
                         (code == ErrorCode::kBadOrder ? "" : kCorrupt));
 }
 
-Refiner::State::State(LogIndex logIndex)
-    : index(std::move(logIndex)),
-      headChunks(index.headChunks()),
-      firstDepth(index.firstDepth()),
-      lastDepth(index.lastDepth()) {
-  births = PointAncestry(std::ranges::any_of(
-      index.fields, [](const FieldShape& f) { return f.association == Association::kPoint; }));
-  hasCellField = index.hasCellField();
-  fields.resize(index.fields.size());
-  for (Field& f : fields) f.applied.resize(index.chunks.size());
-  brought.resize(index.chunks.size());
-  slots.resize(1);
-  for (const ChunkEntry& e : index.chunks) {
-    const Slots& s = slots.back();
-    slots.push_back({s.vertices + e.newVertices, s.tetrahedra + e.newTetrahedra,
-                     s.triangles + e.newBoundaryTriangles});
-  }
-  if (headChunks == index.chunks.size()) return;
-  waiting.resize(std::size_t{2} << lastDepth);
-  added.resize(std::size_t{index.chunks.back().lastLevel} + 1);
-  missing.resize(added.size());
-  for (const ChunkEntry& e : index.chunks)
-    for (std::uint32_t l = e.firstLevel; e.node != 0 && l <= e.lastLevel; ++l) ++missing[l];
-}
-
 Refiner::Refiner(LogIndex index) : state_(std::make_unique<State>(std::move(index))) {}
 Refiner::~Refiner() = default;
 Refiner::Refiner(Refiner&&) noexcept = default;
 Refiner& Refiner::operator=(Refiner&&) noexcept = default;
 
 Status Refiner::State::mayCome(std::uint32_t chunk) const {
-  if (broken)
-    return refuseChunk(ErrorCode::kBadOrder, chunk,
-                       "an earlier chunk failed; start again from chunk 0");
-  if (chunk >= index.chunks.size())
-    return refuseChunk(ErrorCode::kBadOrder, chunk, "there is no such chunk");
-  if (brought[chunk].applied)
-    return refuseChunk(ErrorCode::kBadOrder, chunk, "it has been applied already");
-  if (chunk > 0 && !brought[dependencyOf(chunk)].applied)
-    return refuseChunk(ErrorCode::kBadOrder, chunk,
-                       "chunk " + std::to_string(dependencyOf(chunk)) + " has to be applied first");
-  const bool beyond = isPacket(chunk) ? index.chunks[chunk].firstLevel > stopLevel
-                                      : chunk > 0 && lastLevel() >= stopLevel;
-  if (stopped || beyond)
-    return refuseChunk(ErrorCode::kBadOrder, chunk,
-                       "the refiner was told to stop at a level before it");
+  const auto refuse = [&](const std::string& what) {
+    return refuseChunk(ErrorCode::kBadOrder, chunk, what);
+  };
+  const auto hasCome = [&](std::uint32_t c) { return brought[c].extent != Extent::kNothing; };
+  if (phase == Phase::kBroken) return refuse("an earlier chunk failed; start again from chunk 0");
+  if (chunk >= plan.index.chunks.size()) return refuse("there is no such chunk");
+  if (hasCome(chunk)) return refuse("it has been applied already");
+  if (chunk > 0 && !hasCome(plan.dependencyOf(chunk)))
+    return refuse("chunk " + std::to_string(plan.dependencyOf(chunk)) + " has to be applied first");
+  const bool beyond = plan.isPacket(chunk) ? plan.index.chunks[chunk].firstLevel > orders.stopLevel
+                                           : chunk > 0 && mesh.levels().last() >= orders.stopLevel;
+  if (phase == Phase::kStopped || beyond)
+    return refuse("the refiner was told to stop at a level before it");
   return {};
 }
 
@@ -83,74 +58,85 @@ Status Refiner::State::mayCome(std::uint32_t chunk) const {
 // far as it goes: a reader may stop long before the end, and without exceptions a failed reserve()
 // is the end.
 void Refiner::State::makeRoom(std::size_t bytes) {
-  structureBytes += bytes;
-  if (roomy || stopLevel < index.chunks.back().lastLevel) return;
-  const Slots& total = slots.back();
+  if (!structureBytes) return;
+  *structureBytes += bytes;
+  if (orders.stopLevel < plan.index.chunks.back().lastLevel) return;
+  const Slots& total = plan.slots.back();
   if (std::max({total.vertices, total.tetrahedra, total.triangles}) >
-      kMaxElementsPerPacketByte * structureBytes)
+      kMaxElementsPerPacketByte * *structureBytes)
     return;
-  roomy = true;
-  std::uint64_t records = 0;
-  for (const ChunkEntry& e : index.chunks) records += e.records;
-  if (!hasMemory(GrowingMesh::roomFor(total) + births.roomFor(records, total.vertices))) return;
-  mesh.reserve(total);
-  births.reserve(records, total.vertices);
+  structureBytes.reset();
+  if (hasMemory(mesh.records().roomForAll())) mesh.records().makeRoomForAll();
+}
+
+Status Refiner::State::apply(std::uint32_t chunk, ByteView structure, Values& positions) {
+  const ChunkEntry& entry = plan.index.chunks[chunk];
+  const std::size_t firstBirth = mesh.records().records();
+  ChunkInHand inHand{chunk,
+                     entry,
+                     RangeDecoder(structure),
+                     positions,
+                     plan.slots[chunk],
+                     plan.slots[chunk + 1],
+                     firstBirth + entry.records};
+  const Result<Extent> extent = mesh.read(inHand);
+  if (!extent) return std::unexpected(extent.error());
+  if (*extent == Extent::kWhole) {
+    if (Status s = mesh.records().checkCounts(inHand); !s) return s;
+    if (!positions.atEnd())
+      return refuseChunk(ErrorCode::kBadValue, chunk, "position values are left over");
+  }
+  brought[chunk] = {*extent, firstBirth, mesh.records().records(), mesh.mesh().next().tetrahedra};
+  fields.inherit(chunk);
+  ++chunks;
+  return {};
 }
 
 Status Refiner::apply(std::uint32_t chunk, ByteView structure,
                       std::span<const std::int32_t> positions) {
   State& s = *state_;
   if (Status order = s.mayCome(chunk); !order) return order;
-  const ChunkEntry& entry = s.index.chunks[chunk];
-  if (positions.size() != std::size_t{s.index.tuples(chunk, kPositionsPart)} * 3)
+  if (positions.size() != std::size_t{s.plan.index.tuples(chunk, kPositionsPart)} * 3)
     return refuseChunk(ErrorCode::kBadValue, chunk, "wrong number of position values");
-
-  s.broken = true;  // until the chunk has gone in whole
+  s.phase = State::Phase::kBroken;  // until the chunk has gone in whole
   s.makeRoom(structure.size());
-  State::Brought& brought = s.brought[chunk];
-  brought.firstBirth = s.births.births().size();
   Values residuals(positions);
-  const Status status = chunk == 0          ? s.base(entry, structure, residuals)
-                        : s.isPacket(chunk) ? s.packet(chunk, entry, structure, residuals)
-                                            : s.records(chunk, entry, structure, residuals);
-  if (!status) return status;
-  if (Status c = s.checkCounts(chunk); !c && !brought.cut) return c;
-  if (!residuals.atEnd() && !brought.cut)
-    return refuseChunk(ErrorCode::kBadValue, chunk, "position values are left over");
-  brought.applied = true;
-  brought.endBirth = s.births.births().size();
-  brought.end = s.mesh.next();
-  for (std::size_t f = 0; f < s.fields.size(); ++f)
-    if (s.fields[f].chunks > 0) s.inherit(s.fields[f], s.index.fields[f], chunk);
-  ++s.chunks;
-  s.broken = false;
+  if (Status status = s.apply(chunk, structure, residuals); !status) return status;
+  const bool stopped = s.brought[chunk].extent == Extent::kCut && !s.plan.isPacket(chunk);
+  s.phase = stopped ? State::Phase::kStopped : State::Phase::kOpen;
   return {};
 }
 
-void Refiner::observe(SplitObserver* observer) { state_->observer = observer; }
-void Refiner::askBeforeLevels(LevelGate* gate) { state_->gate = gate; }
-void Refiner::stopAtLevel(std::uint32_t level) { state_->stopLevel = level; }
+Status Refiner::applyField(std::uint32_t field, std::uint32_t chunk,
+                           std::span<const std::int32_t> values) {
+  return state_->fields.apply(field, chunk, values);
+}
 
-const LogIndex& Refiner::index() const { return state_->index; }
+void Refiner::observe(SplitObserver* observer) { state_->orders.observer = observer; }
+void Refiner::askBeforeLevels(LevelGate* gate) { state_->orders.gate = gate; }
+void Refiner::stopAtLevel(std::uint32_t level) { state_->orders.stopLevel = level; }
+
+const LogIndex& Refiner::index() const { return state_->plan.index; }
 std::uint32_t Refiner::chunksApplied() const { return state_->chunks; }
 std::uint32_t Refiner::fieldChunksApplied(std::uint32_t field) const {
-  return state_->fields[field].chunks;
+  return state_->fields.chunks(field);
 }
 bool Refiner::applied(std::uint32_t chunk) const {
-  return chunk < state_->brought.size() && state_->brought[chunk].applied;
+  return chunk < state_->brought.size() && state_->brought[chunk].extent != Extent::kNothing;
 }
 bool Refiner::fieldApplied(std::uint32_t field, std::uint32_t chunk) const {
-  return field < state_->fields.size() && chunk < state_->brought.size() &&
-         state_->fields[field].applied[chunk];
+  return state_->fields.applied(field, chunk);
 }
-const Slots& Refiner::firstSlots(std::uint32_t chunk) const { return state_->slots[chunk]; }
-std::uint32_t Refiner::level() const { return state_->lastLevel(); }
-std::span<const LevelCounts> Refiner::levelCounts() const { return state_->levelCounts; }
-std::span<const LatticePoint> Refiner::points() const { return state_->mesh.points; }
-std::span<const Tetrahedron> Refiner::tetrahedra() const { return state_->mesh.tetrahedra; }
-std::span<const Triangle> Refiner::boundary() const { return state_->mesh.boundary; }
+const Slots& Refiner::firstSlots(std::uint32_t chunk) const { return state_->plan.slots[chunk]; }
+std::uint32_t Refiner::level() const { return state_->mesh.levels().last(); }
+std::span<const LevelCounts> Refiner::levelCounts() const {
+  return state_->mesh.levels().complete();
+}
+std::span<const LatticePoint> Refiner::points() const { return state_->mesh.mesh().points; }
+std::span<const Tetrahedron> Refiner::tetrahedra() const { return state_->mesh.mesh().tetrahedra; }
+std::span<const Triangle> Refiner::boundary() const { return state_->mesh.mesh().boundary; }
 std::span<const std::int32_t> Refiner::fieldValues(std::uint32_t field) const {
-  return state_->fields[field].values;
+  return state_->fields.values(field);
 }
 
 std::array<std::uint8_t, 32> Refiner::digest() const {

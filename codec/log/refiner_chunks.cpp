@@ -1,9 +1,8 @@
-// A refiner's chunks: the base mesh, the runs of levels of the head (all of `stream`), and the
-// packets of `regions`.
-#include <algorithm>
+#include "codec/log/refiner_chunks.h"
 
-#include "codec/log/refiner_state.h"
-#include "codec/mesh/boundary.h"
+#include <algorithm>
+#include <array>
+#include <utility>
 
 namespace qtet {
 namespace {
@@ -12,214 +11,175 @@ namespace {
 // alike.
 constexpr std::uint32_t kVerticesAhead = 8;
 
+constexpr const char* kEmptyLevel = "a level without a record";
+
 }  // namespace
 
-Status Refiner::State::base(const ChunkEntry& entry, ByteView structure, Values& positions) {
-  RangeDecoder decoder(structure);
-  BaseCoder<RangeDecoder> coder(decoder, entry.newVertices, entry.newTetrahedra);
-  if (!coder.run(nullptr, [&] { return decoder.overrun(); }))
-    return refuseChunk(ErrorCode::kBadValue, 0, "the base mesh's structure contradicts itself");
-  baseBirths = std::move(coder.births);
-  const std::int32_t size = std::int32_t{1} << index.positionBits;
-  std::vector<LatticePoint> points;  // the mesh gets its cells once all of their vertices are there
-  points.reserve(entry.newVertices);
-  for (std::uint32_t v = 0; v < entry.newVertices; ++v) {
-    LatticePoint p{};
-    const auto at = [&](VertexId u, std::uint32_t c) { return points[u][c]; };
-    for (std::uint32_t c = 0; c < 3; ++c) {
-      p[c] = positions.code<false>(predictBase(baseBirths[v], v, c, true, at), 0);
-      if (positions.bad() || p[c] < 0 || p[c] >= size)
-        return refuseChunk(ErrorCode::kBadValue, 0, "a vertex lies outside the lattice");
-    }
-    points.push_back(p);
-  }
-  mesh.points = std::move(points);
-  mesh.tetrahedra = std::move(coder.tetrahedra);
-  mesh.boundary = boundaryOf(mesh.tetrahedra);
-  mesh.start(index.positionBits);
-  if (hasCellField) ancestry.addBase(mesh.tetrahedra);
-  completeLevel();
-  if (Status s = endHead(0, decoder); !s) return s;
-  return decoder.atEnd()
-             ? Status{}
-             : refuseChunk(ErrorCode::kBadValue, 0, "the base mesh's structure contradicts itself");
+// ---- levels
+
+LevelBook::LevelBook(const ChunkPlan& plan) {
+  if (!plan.hasPackets()) return;
+  added_.resize(std::size_t{plan.index.chunks.back().lastLevel} + 1);
+  missing_.resize(added_.size());
+  for (const ChunkEntry& e : plan.index.chunks)
+    for (std::uint32_t l = e.firstLevel; e.node != 0 && l <= e.lastLevel; ++l) ++missing_[l];
 }
 
-Status Refiner::State::records(std::uint32_t chunk, const ChunkEntry& entry, ByteView structure,
-                               Values& positions) {
-  RangeDecoder decoder(structure);
-  if (Status s = run(chunk, entry, decoder, positions); !s) return s;
-  if (stopped) {
-    brought[chunk].cut = true;
-    return {};
-  }
-  if (Status s = endHead(chunk, decoder); !s) return s;
-  if (!decoder.atEnd())
-    return refuseChunk(ErrorCode::kBadValue, chunk,
-                       "the structure block is longer or shorter than its records");
-  return {};
+void LevelBook::bring(std::uint32_t level, const Slots& before, const Slots& after) {
+  added_[level].vertices += after.vertices - before.vertices;
+  added_[level].tetrahedra += after.tetrahedra - before.tetrahedra;
+  added_[level].boundaryTriangles += after.triangles - before.triangles;
 }
 
-Status Refiner::State::run(std::uint32_t chunk, const ChunkEntry& entry, RangeDecoder& decoder,
-                           Values& positions) {
-  RecordCoder<RangeDecoder> coder(decoder, models.records, mesh, link, positions);
-  if (entry.firstLevel != (inLevel ? level : level + 1))
-    return refuseChunk(ErrorCode::kBadValue, chunk, "it does not continue the level before it");
-  for (;;) {
-    if (!inLevel) {
-      if (Status s = mayGoOn(); !s) return s;
-      ++level;
-      nextSlot = 0;
-      inLevel = true;
-      levelBirths = births.births().size();
+bool LevelBook::endPacket(std::uint32_t firstLevel, std::uint32_t lastLevel) {
+  for (std::uint32_t l = firstLevel; l <= lastLevel; ++l) --missing_[l];
+  while (complete_.size() < missing_.size() && missing_[complete_.size()] == 0) {
+    const LevelCounts& more = added_[complete_.size()];
+    const LevelCounts& before = complete_.back();
+    if (more.vertices == 0) return false;
+    complete_.push_back({before.vertices + more.vertices, before.tetrahedra + more.tetrahedra,
+                         before.boundaryTriangles + more.boundaryTriangles});
+  }
+  return true;
+}
+
+// ---- the head
+
+Result<Extent> HeadReader::read(ChunkInHand& chunk) {
+  const ChunkEntry& entry = chunk.entry;
+  if (entry.firstLevel != levels_.last() + 1)
+    return chunk.refuse(ErrorCode::kBadValue, "it does not continue the level before it");
+  GrowingMesh& mesh = records_.mesh();
+  RecordCoder<RangeDecoder> coder = records_.coderOf(chunk);
+  for (std::uint32_t level = entry.firstLevel;; ++level) {
+    if (!open_) {
+      if (Status s = orders_.mayGoOn(); !s) return std::unexpected(s.error());
+      open_ = OpenLevel{0, records_.records()};
       mesh.beginLevel(level);
     }
-    const std::uint32_t end = level == entry.lastLevel
-                                  ? std::min(entry.endSlot, mesh.levelVertices())
-                                  : mesh.levelVertices();
-    for (; nextSlot < end; ++nextSlot) {
-      mesh.expect(nextSlot + kVerticesAhead);
-      if (!mesh.maysplit(nextSlot)) continue;
-      const bool splits = coder.splits(nextSlot, level, false);
-      if (decoder.overrun())
-        return refuseChunk(ErrorCode::kTruncated, chunk, "the structure block ends too early");
-      if (!splits) continue;
-      if (Status s = split(chunk, coder, nextSlot); !s) return s;
-    }
-    if (level == entry.lastLevel && entry.endSlot != kLevelEnd) return {};
-    inLevel = false;
-    if (births.births().size() == levelBirths)
-      return refuseChunk(ErrorCode::kBadValue, chunk, "a level without a record");
-    completeLevel();
-    if (level == entry.lastLevel) return {};
-    if (level == stopLevel) {
-      stopped = true;
-      return {};
-    }
+    const bool isLast = level == entry.lastLevel;
+    const std::uint32_t vertices = mesh.levelVertices();
+    if (Status s = visit(chunk, coder, isLast ? std::min(entry.endSlot, vertices) : vertices); !s)
+      return std::unexpected(s.error());
+    if (isLast && entry.endSlot != kLevelEnd) break;
+    if (records_.records() == open_->recordsBefore)
+      return chunk.refuse(ErrorCode::kBadValue, kEmptyLevel);
+    open_.reset();
+    levels_.complete(mesh.next());
+    if (isLast) break;
+    if (level == orders_.stopLevel) return Extent::kCut;
   }
+  return Extent::kWhole;
 }
 
-// The cells of the first packets' nodes: one bit after the other from the root down.
-Status Refiner::State::endHead(std::uint32_t chunk, RangeDecoder& decoder) {
-  if (chunk + 1 != headChunks || headChunks == index.chunks.size()) return {};
-  NodeCells root;
-  root.add({}, mesh.next());
-  waiting[1] = std::move(root);
-  for (std::uint32_t node = 1; node < 1u << firstDepth; ++node)
-    if (Status s = children(chunk, node, std::exchange(waiting[node], {}), decoder); !s) return s;
-  headModels = models;
+// Visits the level's vertices below `endSlot` that have not been visited yet.
+Status HeadReader::visit(ChunkInHand& chunk, RecordCoder<RangeDecoder>& coder,
+                         std::uint32_t endSlot) {
+  const GrowingMesh& mesh = records_.mesh();
+  for (VertexId v = open_->nextSlot; v < endSlot; ++v) {
+    mesh.expect(v + kVerticesAhead);
+    if (!mesh.maysplit(v)) continue;
+    if (Status s = records_.vertex(chunk, coder, v); !s) return s;
+  }
+  open_->nextSlot = std::max(open_->nextSlot, endSlot);
   return {};
 }
 
-Status Refiner::State::children(std::uint32_t chunk, std::uint32_t node, const NodeCells& cells,
-                                RangeDecoder& decoder) {
-  ChildCoder<RangeDecoder> coder(decoder, models.children, mesh, index.positionBits, counts);
+// ---- packets
+
+PacketReader::PacketReader(const ChunkPlan& plan, const RefinerOrders& orders,
+                           RecordReader& records, LevelBook& levels)
+    : plan_(plan),
+      orders_(orders),
+      records_(records),
+      levels_(levels),
+      waiting_(plan.hasPackets() ? std::size_t{2} << plan.lastDepth : 0) {}
+
+// The cells of the first packets' nodes: one bit after the other from the root down.
+Status PacketReader::endHead(ChunkInHand& chunk) {
+  waiting_[1].add({}, records_.mesh().next());
+  for (std::uint32_t node = 1; node < 1u << plan_.firstDepth; ++node)
+    if (Status s = children(chunk, node, std::exchange(waiting_[node], {})); !s) return s;
+  head_.records = records_.models();
+  head_.children = models_;
+  return {};
+}
+
+Status PacketReader::children(ChunkInHand& chunk, std::uint32_t node, const NodeCells& cells) {
+  ChildCoder<RangeDecoder> coder(chunk.decoder, models_, records_.mesh(), plan_.index.positionBits,
+                                 counts_);
   std::array<NodeCells, 2> halves;
-  if (!coder.code(cells, [](CellRef) { return 0; }, halves) || decoder.overrun())
-    return refuseChunk(ErrorCode::kBadValue, chunk, "its child bits end too early or name no axis");
-  for (std::uint32_t i = 0; i < 2; ++i) waiting[2 * node + i] = std::move(halves[i]);
+  if (!coder.code(cells, [](CellRef) { return 0; }, halves) || chunk.decoder.overrun())
+    return chunk.refuse(ErrorCode::kBadValue, "its child bits end too early or name no axis");
+  for (std::uint32_t i = 0; i < 2; ++i) waiting_[2 * node + i] = std::move(halves[i]);
   return {};
 }
 
 // Reads nothing that another packet of this band or a finer one could have changed: stars that lie
 // in the node, and vertices beside them, which have cells of the node and so are split by its
 // packets alone.
-Status Refiner::State::packet(std::uint32_t chunk, const ChunkEntry& entry, ByteView structure,
-                              Values& positions) {
-  RangeDecoder decoder(structure);
-  models = headModels;
-  NodeCells cells = std::exchange(waiting[entry.node], {});
-  mesh.continueAt(slots[chunk], slots[chunk + 1]);
-  if (hasCellField) ancestry.makeRoom(slots[chunk + 1].tetrahedra);
-  RecordCoder<RangeDecoder> coder(decoder, models.records, mesh, link, positions);
-  std::vector<VertexId> inner = innerVertices(mesh, cells, counts);
-  for (std::uint32_t l = entry.firstLevel; l <= std::min(entry.lastLevel, stopLevel); ++l)
-    if (Status s = packetLevel(chunk, l, coder, decoder, inner); !s) return s;
-  brought[chunk].cut = entry.lastLevel > stopLevel;
-  if (!brought[chunk].cut) {
-    cells.add(slots[chunk], mesh.next());
-    if (2 * entry.node < waiting.size())
-      if (Status s = children(chunk, entry.node, cells, decoder); !s) return s;
-    if (!decoder.atEnd())
-      return refuseChunk(ErrorCode::kBadValue, chunk,
-                         "the structure block is longer or shorter than its records");
+Result<Extent> PacketReader::read(ChunkInHand& packet) {
+  const ChunkEntry& entry = packet.entry;
+  records_.models() = head_.records;
+  models_ = head_.children;
+  NodeCells cells = std::exchange(waiting_[entry.node], {});
+  records_.continueAt(packet);
+  const GrowingMesh& mesh = records_.mesh();
+  RecordCoder<RangeDecoder> coder = records_.coderOf(packet);
+  std::vector<VertexId> inner = innerVertices(mesh, cells, counts_);
+  const std::uint32_t lastLevel = std::min(entry.lastLevel, orders_.stopLevel);
+  for (std::uint32_t l = entry.firstLevel; l <= lastLevel; ++l)
+    if (Status s = level(packet, l, coder, inner); !s) return std::unexpected(s.error());
+  const Extent extent = lastLevel < entry.lastLevel ? Extent::kCut : Extent::kWhole;
+  if (extent == Extent::kWhole) {
+    cells.add(packet.first, mesh.next());
+    if (2 * entry.node < waiting_.size())
+      if (Status s = children(packet, entry.node, cells); !s) return std::unexpected(s.error());
+    if (!packet.decoder.atEnd()) return packet.refuseLength();
   }
-  return endPacket(chunk, entry);
+  if (!levels_.endPacket(entry.firstLevel, lastLevel))
+    return packet.refuse(ErrorCode::kBadValue, kEmptyLevel);
+  return extent;
 }
 
-Status Refiner::State::packetLevel(std::uint32_t chunk, std::uint32_t atLevel,
-                                   RecordCoder<RangeDecoder>& coder, RangeDecoder& decoder,
-                                   std::vector<VertexId>& inner) {
-  if (Status s = mayGoOn(); !s) return s;
-  mesh.beginLevel(atLevel);
+Status PacketReader::level(ChunkInHand& packet, std::uint32_t level,
+                           RecordCoder<RangeDecoder>& coder, std::vector<VertexId>& inner) {
+  if (Status s = orders_.mayGoOn(); !s) return s;
+  GrowingMesh& mesh = records_.mesh();
+  mesh.beginLevel(level);
   const Slots before = mesh.next();
   const std::size_t vertices = inner.size();
   for (std::size_t i = 0; i < vertices; ++i) {
     if (!mesh.maysplit(inner[i])) continue;
-    const bool splits = coder.splits(inner[i], atLevel, false);
-    if (decoder.overrun())
-      return refuseChunk(ErrorCode::kTruncated, chunk, "the structure block ends too early");
-    if (!splits) continue;
-    if (Status s = split(chunk, coder, inner[i]); !s) return s;
+    if (Status s = records_.vertex(packet, coder, inner[i]); !s) return s;
   }
-  const Slots& after = mesh.next();
   // of a star in the node, so theirs are, too
-  for (VertexId v = before.vertices; v < after.vertices; ++v) inner.push_back(v);
-  added[atLevel].vertices += after.vertices - before.vertices;
-  added[atLevel].tetrahedra += after.tetrahedra - before.tetrahedra;
-  added[atLevel].boundaryTriangles += after.triangles - before.triangles;
+  for (VertexId v = before.vertices; v < mesh.next().vertices; ++v) inner.push_back(v);
+  levels_.bring(level, before, mesh.next());
   return {};
 }
 
-// Levels are complete once every packet of their band has come.
-Status Refiner::State::endPacket(std::uint32_t chunk, const ChunkEntry& entry) {
-  for (std::uint32_t l = entry.firstLevel; l <= std::min(entry.lastLevel, stopLevel); ++l)
-    --missing[l];
-  while (levelCounts.size() < missing.size() && levelCounts.size() <= stopLevel &&
-         missing[levelCounts.size()] == 0) {
-    const LevelCounts& more = added[levelCounts.size()];
-    const LevelCounts& before = levelCounts.back();
-    if (more.vertices == 0)
-      return refuseChunk(ErrorCode::kBadValue, chunk, "a level without a record");
-    levelCounts.push_back({before.vertices + more.vertices, before.tetrahedra + more.tetrahedra,
-                           before.boundaryTriangles + more.boundaryTriangles});
+// ---- all three
+
+Status MeshReader::base(ChunkInHand& chunk) {
+  if (Status s = records_.base(chunk); !s) return s;
+  levels_.complete(records_.mesh().next());
+  return {};
+}
+
+Result<Extent> MeshReader::read(ChunkInHand& chunk) {
+  if (plan_.isPacket(chunk.number)) return packets_.read(chunk);
+  const bool isBase = chunk.number == 0;
+  if (isBase) {
+    if (Status s = base(chunk); !s) return std::unexpected(s.error());
+  } else {
+    const Result<Extent> extent = head_.read(chunk);
+    if (!extent || *extent == Extent::kCut) return extent;
   }
-  return {};
-}
-
-Status Refiner::State::split(std::uint32_t chunk, RecordCoder<RangeDecoder>& coder, VertexId v) {
-  if (mesh.star(v).size() > kMaxLinkTriangles)
-    return refuseChunk(ErrorCode::kLimitExceeded, chunk, "a star has too many cells");
-  if (!mesh.enter(v, link))
-    return refuseChunk(ErrorCode::kBadValue, chunk, "a vertex splits whose link is not a sphere");
-  Split& split = inHand;
-  if (!coder.code(v, {}, split))
-    return refuseChunk(ErrorCode::kBadValue, chunk,
-                       "a record's labels or positions contradict each other");
-  const std::int32_t size = std::int32_t{1} << index.positionBits;
-  for (int i = 0; i < split.k; ++i)
-    for (const std::int32_t x : split.points[static_cast<std::size_t>(i)])
-      if (x < 0 || x >= size)
-        return refuseChunk(ErrorCode::kBadValue, chunk, "a vertex lies outside the lattice");
-  if (!mesh.slotsAfter(split, link).within(slots[chunk + 1]) ||
-      births.births().size() - brought[chunk].firstBirth == index.chunks[chunk].records)
-    return refuseChunk(
-        ErrorCode::kBadValue, chunk,
-        "it brings more vertices, cells, triangles or records than the chunk table says");
-  if (observer != nullptr) observer->beforeSplit(v, mesh, link, split);
-  births.add(v, mesh, link, split);
-  if (hasCellField) ancestry.addRestored(mesh.star(v), link, split.deleted, mesh.next().tetrahedra);
-  mesh.apply(v, link, split);
-  return {};
-}
-
-Status Refiner::State::checkCounts(std::uint32_t chunk) const {
-  if (mesh.next() == slots[chunk + 1] &&
-      births.births().size() - brought[chunk].firstBirth == index.chunks[chunk].records)
-    return {};
-  return refuseChunk(
-      ErrorCode::kBadValue, chunk,
-      "vertices, cells, triangles or records do not add up to the chunk table's counts");
+  if (chunk.number + 1 == plan_.headChunks && plan_.hasPackets())
+    if (Status s = packets_.endHead(chunk); !s) return std::unexpected(s.error());
+  if (!chunk.decoder.atEnd()) return isBase ? chunk.refuseBase() : chunk.refuseLength();
+  return Extent::kWhole;
 }
 
 }  // namespace qtet
