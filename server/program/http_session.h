@@ -8,9 +8,8 @@
 #include <memory>
 
 #include "server/program/services.h"
-#include "server/wire/address_limits.h"
-#include "server/wire/client_socket.h"
-#include "server/wire/connections.h"
+#include "server/wire/peer.h"
+#include "server/wire/tls_context.h"
 
 namespace qtet {
 

@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "server/http/http_message.h"
 #include "server/stream/stream_protocol.h"
 #include "server/wire/client_socket.h"
+#include "server/wire/file_part.h"
 #include "server/wire/limits.h"
 #include "server/wire/web_socket_reader.h"
 

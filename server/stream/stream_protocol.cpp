@@ -133,14 +133,14 @@ std::uint64_t StreamProtocol::plan(Stream& stream) {
                            stream.stop, limits::kFramePayload);
   if (!stream.hasHead) stream.plan.insert(stream.plan.begin(), {0, FrameHeader::kHead, 0});
   stream.nextRun = 0;
-  stream.stale = stream.told = false;
+  stream.planState = Stream::PlanState::kCurrent;
   std::uint64_t planned = 0;
   for (const BlockRun& run : stream.plan) planned += sliceOf(index, run).size;
   return planned;
 }
 
 void StreamProtocol::catchUp() {
-  if (!stream_ || !stream_->stale) return;
+  if (!stream_ || stream_->planState != Stream::PlanState::kStale) return;
   const std::uint64_t planned = plan(*stream_);
   answers_.push_back(toJson(PlannedMessage{opens_, planned, stream_->views}));
 }
@@ -156,7 +156,7 @@ void StreamProtocol::handle(const ViewMessage& message) {
   if (!stream_ || !countViewRequest()) return;
   stream_->view = message.view;
   ++stream_->views;
-  stream_->stale = true;
+  stream_->planState = Stream::PlanState::kStale;
 }
 
 void StreamProtocol::handle(const TargetMessage& message) {
@@ -164,7 +164,7 @@ void StreamProtocol::handle(const TargetMessage& message) {
   const auto stop = stopOf(message.target, *stream_->mesh);
   if (!stop) return answerError(stop.error().code, stop.error().detail);
   stream_->stop = *stop;
-  stream_->stale = true;
+  stream_->planState = Stream::PlanState::kStale;
 }
 
 void StreamProtocol::handle(const PauseMessage&) {
@@ -198,7 +198,8 @@ MeshPointer StreamProtocol::lacksIntervals() const {
 }
 
 void StreamProtocol::intervalsCame(const MeshPointer& mesh) {
-  if (stream_ && stream_->mesh == mesh && stream_->view.isovalue) stream_->stale = true;
+  if (stream_ && stream_->mesh == mesh && stream_->view.isovalue)
+    stream_->planState = Stream::PlanState::kStale;
 }
 
 bool StreamProtocol::countViewRequest() {
@@ -229,8 +230,8 @@ std::optional<Outgoing> StreamProtocol::next() {
     if (stream_->paused || stream_->credit <= 0) return std::nullopt;
     return nextFrame(*stream_);
   }
-  if (stream_->told) return std::nullopt;
-  stream_->told = true;
+  if (stream_->planState == Stream::PlanState::kDone) return std::nullopt;
+  stream_->planState = Stream::PlanState::kDone;
   return toJson(DoneMessage{opens_});
 }
 

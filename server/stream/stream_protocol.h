@@ -69,8 +69,12 @@ class StreamProtocol {
     std::int64_t credit = 0;  ///< bytes; below zero by one frame at most
     std::uint32_t views = 0;  ///< `view` messages so far
     bool paused = false;
-    bool stale = false;  ///< the request has changed since the plan was made
-    bool told = false;   ///< `done` was said of this plan
+    enum class PlanState : std::uint8_t {
+      kCurrent,
+      kDone,   ///< all of it was sent, and `done` was said
+      kStale,  ///< the request has changed since it was made
+    };
+    PlanState planState = PlanState::kCurrent;
     std::vector<BlockRun> plan{};
     std::size_t nextRun = 0;
   };

@@ -7,17 +7,20 @@
 
 #include <array>
 #include <boost/asio/co_spawn.hpp>
-#include <boost/asio/post.hpp>
 #include <boost/asio/redirect_error.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <exception>
+#include <memory>
 #include <optional>
 
+#include "server/stream/control_frames.h"
 #include "server/stream/frame_gather.h"
+#include "server/stream/interval_search.h"
+#include "server/stream/patience.h"
+#include "server/stream/stream_input.h"
 #include "server/stream/stream_protocol.h"
 #include "server/wire/limits.h"
-#include "server/wire/web_socket_reader.h"
 
 namespace qtet {
 namespace {
@@ -27,7 +30,6 @@ using asio::redirect_error;
 using asio::use_awaitable;
 using boost::system::error_code;
 using Clock = std::chrono::steady_clock;
-using Event = WebSocketReader::Event;
 
 /// On the stack of whoever reads, so that a silent client has no buffer.
 constexpr std::size_t kReadBytes = 4096;
@@ -37,91 +39,81 @@ constexpr int kUnsentBytes = 80 << 10;
 /// Before other connections of the thread have their turn.
 constexpr int kReadsInARow = 8;
 
+/// Holds several frames back until nothing more is to be written: else each of them would end a
+/// packet. Does nothing on a paced connection.
+class Cork {
+ public:
+  Cork(ClientSocket& socket, bool unpaced) : socket_(socket), unpaced_(unpaced) {}
+  void hold() {
+    if (!unpaced_ || held_) return;
+    held_ = true;
+    socket_.holdBack(true);
+  }
+  void release() {
+    if (!held_) return;
+    held_ = false;
+    socket_.holdBack(false);
+  }
+
+ private:
+  ClientSocket& socket_;
+  const bool unpaced_;
+  bool held_ = false;
+};
+
 /// A reader, a writer and a clock on one executor. The writer alone writes, also pongs and closes,
 /// so that nothing comes between the parts of a frame; the reader wakes it when there is something
-/// to say. All hold the session, so it ends with the last of them.
+/// to say. All hold the session, so it ends with the last of them. Once the socket is closed
+/// nothing is read or written any more.
 class StreamSession : public std::enable_shared_from_this<StreamSession> {
  public:
-  StreamSession(ClientSocket socket, StreamProtocol protocol,
-                std::shared_ptr<Connection> connection,
-                std::unique_ptr<AddressLimits::Client> client)
-      : socket_(std::move(socket)),
-        wake_(socket_.get_executor()),
-        clock_(socket_.get_executor()),
+  StreamSession(Peer peer, StreamProtocol protocol, const StreamHandshake& handshake)
+      : peer_(std::move(peer)),
+        wake_(peer_.socket.get_executor()),
+        clock_(peer_.socket.get_executor()),
         protocol_(std::move(protocol)),
-        connection_(std::move(connection)),
-        client_(std::move(client)) {}
+        input_(protocol_, control_),
+        intervals_(handshake.jobs, peer_.address(), peer_.socket.get_executor(),
+                   [this](const MeshPointer& mesh) {
+                     protocol_.intervalsCame(mesh);
+                     wake_.cancel();
+                   }),
+        patience_(handshake.silence, handshake.write, Clock::now()),
+        cork_(peer_.socket, handshake.unpaced) {}
 
   asio::awaitable<void> run(StreamHandshake handshake);
   /// Ends the session by the server's own fault.
   void fail() {
-    close(CloseCode::kInternal);
+    control_.close(CloseCode::kInternal);
     wake_.cancel();
   }
 
  private:
   enum class Reading : std::uint8_t { kWaits, kEnded };
   Reading readSome();
+  void hear(std::string_view bytes);
   asio::awaitable<void> read();
   asio::awaitable<void> write();
   asio::awaitable<void> keepTime();
   asio::awaitable<void> waitForNews();
   asio::awaitable<void> flush(FrameGather& gather);
-  /// Whether the session goes on.
-  bool take(std::string_view bytes);
-  bool handle(Event event);
-  void hear(std::string_view bytes);
-  /// Has the intervals found that the view wants; ends with its subscription.
-  void findIntervals();
   void collect(FrameGather& gather);
-  void close(CloseCode code);
-  void holdBack(bool hold) {
-    if (held_ != hold) socket_.holdBack(hold);
-    held_ = hold;
-  }
   /// Ends reading and writing at once.
   void cut() {
-    ended_ = true;
-    socket_.close();
+    peer_.socket.close();
     clock_.cancel();
     wake_.cancel();
   }
 
-  ClientSocket socket_;
+  Peer peer_;
   asio::steady_timer wake_, clock_;
   StreamProtocol protocol_;
-  WebSocketReader reader_;
-  std::shared_ptr<Connection> connection_;
-  std::unique_ptr<AddressLimits::Client> client_;
-
-  LevelJobs* jobs_ = nullptr;
-  LevelJobs::Subscription intervals_;  // of `intervalsOf_`
-  MeshPointer intervalsOf_;            // are being found
-
-  std::optional<std::string> pong_;   // the payload of the last ping that is not answered yet
-  bool ping_ = false;                 // one is due
-  std::optional<std::string> close_;  // the payload of the close frame to send
-  bool closeSent_ = false;
-  bool deaf_ = false;        // what still comes is read and thrown away
-  std::size_t drained_ = 0;  // bytes of it
-  bool ended_ = false;       // nothing can be written any more
-
-  Clock::duration silence_{}, writeTime_{};  // as the handshake says
-  Clock::time_point heard_ = Clock::now();   // when bytes last came
-  bool unpaced_ = false;
-  // until nothing more is to be written: else each frame would end a packet
-  bool held_ = false;
-  bool writing_ = false;
-  // when the client last took some of what is being written
-  Clock::time_point written_{};
-  Clock::time_point second_{};  // the window that pings_ belongs to
-  unsigned pings_ = 0;
+  ControlFrames control_;
+  StreamInput input_;
+  IntervalSearch intervals_;
+  Patience patience_;
+  Cork cork_;
 };
-
-std::string closePayload(CloseCode code) {
-  const auto number = static_cast<std::uint16_t>(code);
-  return {static_cast<char>(number >> 8), static_cast<char>(number & 0xFF)};
-}
 
 std::string handshakeAnswer(const std::string& key) {
   return "HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: "
@@ -130,79 +122,11 @@ std::string handshakeAnswer(const std::string& key) {
          "\r\nServer: qtet-server/" QTET_VERSION "\r\n\r\n";
 }
 
-void StreamSession::close(CloseCode code) {
-  if (!close_ && !closeSent_) close_ = closePayload(code);
-}
-
-bool StreamSession::handle(Event event) {
-  switch (event.kind) {
-    case Event::Kind::kText: protocol_.receive(event.payload, Clock::now()); break;
-    case Event::Kind::kBinary: protocol_.receiveBinary(); break;
-    case Event::Kind::kPong: break;
-    case Event::Kind::kPing:
-      if (heard_ - second_ >= std::chrono::seconds(1)) second_ = heard_, pings_ = 0;
-      if (++pings_ > limits::kMaxPingsPerSecond) return close(CloseCode::kPolicy), false;
-      pong_ = std::move(event.payload);
-      break;
-    case Event::Kind::kClose:
-      // the client's own code, as RFC 6455 suggests
-      if (!closeSent_) close_ = event.payload.substr(0, 2);
-      return false;
-  }
-  return true;
-}
-
-bool StreamSession::take(std::string_view bytes) {
-  heard_ = Clock::now();
-  reader_.feed(bytes);
-  for (;;) {
-    auto event = reader_.next();
-    if (!event) return close(event.error()), false;
-    if (!*event) return true;
-    if (!handle(std::move(**event))) return false;
-  }
-}
-
 void StreamSession::hear(std::string_view bytes) {
-  deaf_ = deaf_ || !take(bytes);
-  if (jobs_ != nullptr && !deaf_) findIntervals();
-}
-
-void StreamSession::findIntervals() {
-  MeshPointer mesh = protocol_.lacksIntervals();
-  if (mesh == intervalsOf_) return;
-  intervals_ = {};
-  intervalsOf_ = nullptr;
-  if (!mesh) return;
-  const LevelRequest request{mesh, 0, LevelForm::kIntervals};
-  const auto keep = [mesh](const LevelFile& table) {
-    mesh->intervals->put(PacketIntervals::decode(table.bytes, mesh->log.index(), mesh->manifest));
-  };
-  if (const std::optional<LevelFile> kept = jobs_->find(request)) {
-    keep(*kept);
-    return protocol_.intervalsCame(mesh);
-  }
-  auto done = [keep, mesh, weak = weak_from_this(),
-               executor = socket_.get_executor()](Result<LevelFile> table) {
-    if (table)
-      keep(*table);
-    else
-      spdlog::error("{}: the values of its packets cannot be found: {}", mesh->id,
-                    table.error().text());
-    // nor by trying again
-    if (!table && table.error().code != ErrorCode::kIo) mesh->intervals->put({});
-    asio::post(executor, [mesh, weak] {
-      const auto self = weak.lock();
-      if (!self) return;
-      self->protocol_.intervalsCame(mesh);
-      self->wake_.cancel();
-    });
-  };
-  auto subscription =
-      jobs_->submit(request, std::move(done), client_ ? client_->address() : nullptr);
-  if (!subscription) return;  // too many jobs; the next view tries again
-  intervals_ = std::move(*subscription);
-  intervalsOf_ = std::move(mesh);
+  const auto now = Clock::now();
+  if (input_.listens()) patience_.heard(now);
+  input_.take(bytes, now);
+  if (input_.listens()) intervals_.want(protocol_.lacksIntervals());
 }
 
 /// A plain function: a buffer in a coroutine would be held by every silent client.
@@ -210,12 +134,11 @@ StreamSession::Reading StreamSession::readSome() {
   std::array<char, kReadBytes> bytes;
   for (int i = 0; i < kReadsInARow; ++i) {
     error_code ec;
-    const std::size_t count = socket_.read(bytes, ec);
+    const std::size_t count = peer_.socket.read(bytes, ec);
     if (ec == asio::error::would_block) return Reading::kWaits;
     if (ec) return Reading::kEnded;
-    drained_ += deaf_ ? count : 0;
-    if (drained_ > limits::kLingerBytes) return Reading::kEnded;
     hear({bytes.data(), count});
+    if (input_.ignoredBytes() > limits::kLingerBytes) return Reading::kEnded;
     wake_.cancel();
   }
   return Reading::kWaits;  // others' turn
@@ -224,22 +147,19 @@ StreamSession::Reading StreamSession::readSome() {
 /// Also behind the last word that counts: closing while bytes of the client's lie unread would
 /// reset the connection, and ours might be lost.
 asio::awaitable<void> StreamSession::read() {
-  for (;;) {
-    if (ended_ || readSome() == Reading::kEnded) break;
-    co_await socket_.waitToRead();
-  }
+  while (peer_.socket.isOpen() && readSome() != Reading::kEnded) co_await peer_.socket.waitToRead();
   cut();
 }
 
 void StreamSession::collect(FrameGather& gather) {
-  if (pong_) gather.add(WebSocketHeader::kPong, *std::exchange(pong_, std::nullopt));
-  if (std::exchange(ping_, false)) gather.add(WebSocketHeader::kPing, {});
-  while (!gather.full() && !close_) {
+  while (std::optional<ControlFrame> sign = control_.takeSign())
+    gather.add(sign->kind, std::move(sign->payload));
+  while (!gather.full() && !control_.closing()) {
     std::optional<Outgoing> outgoing = protocol_.next();
     if (!outgoing) {
       // What the credit allows is still sent; the rest comes elsewhere, after an `open` with
       // `have`.
-      if (connection_->ending()) close(CloseCode::kGoingAway);
+      if (peer_.connection->ending()) control_.close(CloseCode::kGoingAway);
       break;
     }
     if (auto* text = std::get_if<std::string>(&*outgoing)) {
@@ -247,43 +167,43 @@ void StreamSession::collect(FrameGather& gather) {
     } else if (auto* frame = std::get_if<OutgoingFrame>(&*outgoing)) {
       gather.add(std::move(*frame));
     } else {
-      close(std::get<CloseCode>(*outgoing));
+      control_.close(std::get<CloseCode>(*outgoing));
     }
   }
-  if (close_ && !gather.full()) {
-    gather.add(WebSocketHeader::kClose, *std::exchange(close_, std::nullopt));
-    closeSent_ = true;
-  }
+  if (gather.full()) return;
+  if (std::optional<ControlFrame> last = control_.takeClose())
+    gather.add(last->kind, std::move(last->payload));
 }
 
 asio::awaitable<void> StreamSession::write() {
-  connection_->onEnd([this] { wake_.cancel(); });
-  while (!ended_ && !closeSent_) {
+  peer_.connection->onEnd([this] { wake_.cancel(); });
+  while (peer_.socket.isOpen() && !control_.closed()) {
     bool idle = false;
     {  // an idle session holds no gather
       FrameGather gather;
       collect(gather);
       idle = gather.empty();
-      if (idle ? held_ : unpaced_ && gather.several()) holdBack(!idle);
+      if (gather.several()) cork_.hold();
       if (!idle) co_await flush(gather);
     }
-    if (idle) co_await waitForNews();
+    if (!idle) continue;
+    cork_.release();
+    co_await waitForNews();
   }
-  if (!ended_) holdBack(false);
-  connection_->onEnd({});
+  if (peer_.socket.isOpen()) cork_.release();
+  peer_.connection->onEnd({});
 }
 
 asio::awaitable<void> StreamSession::flush(FrameGather& gather) {
-  writing_ = true;
-  written_ = Clock::now();
-  while (!ended_ && !gather.written()) {
+  patience_.took(Clock::now());
+  while (peer_.socket.isOpen() && !gather.written()) {
     error_code ec;
-    const std::size_t count = gather.write(socket_, ec);
-    if (count > 0) written_ = Clock::now();
-    if (ec == asio::error::would_block) ec = co_await socket_.waitToWrite();
+    const std::size_t count = gather.write(peer_.socket, ec);
+    if (count > 0) patience_.took(Clock::now());
+    if (ec == asio::error::would_block) ec = co_await peer_.socket.waitToWrite();
     if (ec) cut();
   }
-  writing_ = false;
+  patience_.wrote();
 }
 
 /// One executor runs reader, writer, clock and the server's end, so nothing can happen between the
@@ -297,55 +217,47 @@ asio::awaitable<void> StreamSession::waitForNews() {
 /// Pings a silent client, gives up one that stays so, takes nothing that waits for it, or does not
 /// close.
 asio::awaitable<void> StreamSession::keepTime() {
-  while (!ended_) {
+  while (peer_.socket.isOpen()) {
     error_code ec;
-    const bool closing = closeSent_;
-    clock_.expires_after(closing ? Clock::duration(limits::kClosingTime) : silence_ / 2);
+    const bool closing = control_.closed();
+    clock_.expires_after(closing ? Clock::duration(limits::kClosingTime) : patience_.interval());
     co_await clock_.async_wait(redirect_error(use_awaitable, ec));
-    if (ended_) break;
-    const auto now = Clock::now();
-    if (ec) continue;  // the writer has closed
-    if (closing || now - heard_ >= silence_ || (writing_ && now - written_ >= writeTime_)) {
+    if (ec) continue;  // the writer has closed, or the session was cut
+    const Patience::Verdict verdict = patience_.at(Clock::now());
+    if (closing || verdict == Patience::Verdict::kGiveUp) {
       cut();
-    } else if (now - heard_ >= silence_ / 2) {
-      ping_ = true;
+    } else if (verdict == Patience::Verdict::kPing) {
+      control_.ping();
       wake_.cancel();
     }
   }
 }
 
 asio::awaitable<void> StreamSession::run(StreamHandshake handshake) {
-  (void)::setsockopt(socket_.number(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &kUnsentBytes,
+  (void)::setsockopt(peer_.socket.number(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &kUnsentBytes,
                      sizeof(kUnsentBytes));
-  silence_ = handshake.silence;
-  writeTime_ = handshake.write;
-  unpaced_ = handshake.unpaced;
   const std::string answer = handshakeAnswer(handshake.key);
   const iovec part{const_cast<char*>(answer.data()), answer.size()};
   error_code ec;
-  const std::size_t taken = socket_.write({&part, 1}, false, ec);
+  const std::size_t taken = peer_.socket.write({&part, 1}, false, ec);
   if (taken < answer.size()) co_return;  // an empty socket takes it at once
   const auto ended = [self = shared_from_this()](const std::exception_ptr& thrown) {
     if (thrown) self->fail();
   };
-  const auto executor = socket_.get_executor();
-  jobs_ = handshake.jobs;
+  const auto executor = peer_.socket.get_executor();
   hear(handshake.firstBytes);
   asio::co_spawn(executor, [self = shared_from_this()] { return self->read(); }, ended);
   asio::co_spawn(executor, [self = shared_from_this()] { return self->keepTime(); }, ended);
   co_await write();
   clock_.cancel();
-  if (!ended_) socket_.finishSending();
+  if (peer_.socket.isOpen()) peer_.socket.finishSending();
 }
 
 }  // namespace
 
-asio::awaitable<void> serveStream(ClientSocket socket, StreamHandshake handshake,
-                                  const MeshStore& store, std::shared_ptr<Connection> connection,
-                                  std::unique_ptr<AddressLimits::Client> client) {
+asio::awaitable<void> serveStream(Peer peer, StreamHandshake handshake, const MeshStore& store) {
   const auto session = std::make_shared<StreamSession>(
-      std::move(socket), StreamProtocol(store, std::move(handshake.mayRead)), std::move(connection),
-      std::move(client));
+      std::move(peer), StreamProtocol(store, std::move(handshake.mayRead)), handshake);
   co_await session->run(std::move(handshake));
 }
 

@@ -6,16 +6,13 @@
 
 #include <boost/asio/awaitable.hpp>
 #include <chrono>
-#include <memory>
 #include <string>
 
 #include "server/store/level_jobs.h"
 #include "server/store/mesh_store.h"
 #include "server/wire/access.h"
-#include "server/wire/address_limits.h"
-#include "server/wire/client_socket.h"
-#include "server/wire/connections.h"
 #include "server/wire/limits.h"
+#include "server/wire/peer.h"
 
 namespace qtet {
 
@@ -33,9 +30,7 @@ struct StreamHandshake {
 
 /// Answers the handshake and serves until the socket ends. Runs on the socket's executor, which
 /// must be a single thread or a strand.
-boost::asio::awaitable<void> serveStream(ClientSocket socket, StreamHandshake handshake,
-                                         const MeshStore& store,
-                                         std::shared_ptr<Connection> connection,
-                                         std::unique_ptr<AddressLimits::Client> client);
+boost::asio::awaitable<void> serveStream(Peer peer, StreamHandshake handshake,
+                                         const MeshStore& store);
 
 }  // namespace qtet

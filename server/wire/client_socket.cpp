@@ -68,8 +68,8 @@ void ClientSocket::explain(int result, bool& wantsOther, int wanted, error_code&
   } else if (kind == SSL_ERROR_ZERO_RETURN) {
     ec = asio::error::eof;
   } else {
-    plainHttp_ = ERR_GET_REASON(::ERR_peek_error()) == SSL_R_HTTP_REQUEST;
-    broken_ = true;
+    tlsState_ = ERR_GET_REASON(::ERR_peek_error()) == SSL_R_HTTP_REQUEST ? TlsState::kPlainHttp
+                                                                         : TlsState::kBroken;
     ec = kind == SSL_ERROR_SYSCALL && why != 0 ? error_code(why, boost::system::system_category())
                                                : asio::error::connection_aborted;
   }
@@ -110,8 +110,9 @@ asio::awaitable<bool> ClientSocket::shakeHands() {
 }
 
 bool ClientSocket::becomePlainForPlainHttp() {
-  if (plainHttp_) tls_.reset();
-  return plainHttp_;
+  const bool plain = tlsState_ == TlsState::kPlainHttp;
+  if (plain) tls_.reset();
+  return plain;
 }
 
 std::size_t ClientSocket::read(std::span<char> into, error_code& ec) {
@@ -122,7 +123,7 @@ std::size_t ClientSocket::read(std::span<char> into, error_code& ec) {
     ec = asio::error::eof;
     return 0;
   }
-  if (broken_) return ec = asio::error::connection_aborted, 0;
+  if (tlsState_ != TlsState::kSound) return ec = asio::error::connection_aborted, 0;
   std::size_t count = 0;
   ::ERR_clear_error();
   errno = 0;
@@ -131,7 +132,7 @@ std::size_t ClientSocket::read(std::span<char> into, error_code& ec) {
   if (done != 1) explain(done, readWantsWrite_, SSL_ERROR_WANT_WRITE, ec);
   if (count > 0) SSL_set_app_data(tls_.get(), nullptr);
   if (reinterpret_cast<std::uintptr_t>(SSL_get_app_data(tls_.get())) > kMaxKeyUpdates)
-    broken_ = true, ec = asio::error::connection_aborted;
+    tlsState_ = TlsState::kBroken, ec = asio::error::connection_aborted;
   return count;
 }
 
@@ -144,7 +145,7 @@ std::size_t ClientSocket::write(std::span<const iovec> parts, bool more, error_c
         ::sendmsg(socket_.native_handle(), &message, MSG_NOSIGNAL | (more ? MSG_MORE : 0));
     return count < 0 ? failed(errno, ec) : static_cast<std::size_t>(count);
   }
-  if (broken_) return ec = asio::error::connection_aborted, 0;
+  if (tlsState_ != TlsState::kSound) return ec = asio::error::connection_aborted, 0;
   // A record: of one large part where it lies, of small ones together.
   std::array<char, kRecordBytes> gathered;
   const void* record = parts.front().iov_base;
@@ -229,7 +230,8 @@ void ClientSocket::cancel() {
 
 void ClientSocket::finishSending() {
   ::ERR_clear_error();
-  if (tls_ && !broken_ && ::SSL_is_init_finished(tls_.get())) (void)::SSL_shutdown(tls_.get());
+  if (tls_ && tlsState_ == TlsState::kSound && ::SSL_is_init_finished(tls_.get()))
+    (void)::SSL_shutdown(tls_.get());
   error_code ec;
   socket_.shutdown(tcp::socket::shutdown_send, ec);
 }

@@ -37,6 +37,7 @@ class ClientSocket {
 
   [[nodiscard]] auto get_executor() { return socket_.get_executor(); }
   [[nodiscard]] int number() { return socket_.native_handle(); }
+  [[nodiscard]] bool isOpen() const { return socket_.is_open(); }
   [[nodiscard]] bool isTls() const { return tls_ != nullptr; }
   /// The client's address; "" where it has gone.
   [[nodiscard]] std::string peer() const;
@@ -83,6 +84,11 @@ class ClientSocket {
   void close();
 
  private:
+  enum class TlsState : std::uint8_t {
+    kSound,
+    kBroken,     ///< nothing may be asked of TLS any more
+    kPlainHttp,  ///< likewise: the client speaks HTTP without it
+  };
   struct EndTls {
     void operator()(ssl_st* session) const;
   };
@@ -95,8 +101,7 @@ class ClientSocket {
   // TLS reads in order to write, and the other way round.
   bool readWantsWrite_ = false;
   bool writeWantsRead_ = false;
-  bool broken_ = false;  // nothing may be asked of TLS any more
-  bool plainHttp_ = false;
+  TlsState tlsState_ = TlsState::kSound;
   bool cancelled_ = false;  // since the handshake was begun
 };
 

@@ -1,0 +1,42 @@
+// What the figures and the access log tell of the request under way.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+#include "server/http/http_message.h"
+#include "server/wire/access_log.h"
+#include "server/wire/metrics.h"
+#include "server/wire/request_trace.h"
+
+namespace qtet {
+
+/// Of one connection, request by request. `metrics` and `log` outlive it.
+class RequestReport {
+ public:
+  /// `address` is the client's, "" where there is no log. Its first request begins.
+  RequestReport(Metrics& metrics, AccessLog* log, std::string address)
+      : metrics_(metrics), log_(log), address_(std::move(address)) {
+    begin();
+  }
+
+  /// A request of which nothing is known yet.
+  void begin();
+  /// Its head has come.
+  void identify(const RequestView& request);
+  /// X-Request-Id, and traceparent if the client has sent one.
+  void addHeaders(Reply& reply) const;
+  /// Its answer was sent, or nobody waits for it any more. `bytes` of the body went out.
+  void end(unsigned status, std::uint64_t bytes, bool whole) const;
+
+ private:
+  Metrics& metrics_;
+  AccessLog* log_;
+  std::string address_;
+  RequestTrace trace_;
+  std::string method_, target_;
+  std::chrono::steady_clock::time_point begun_;
+};
+
+}  // namespace qtet
