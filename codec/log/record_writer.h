@@ -23,13 +23,14 @@ class RecordWriter {
   RecordWriter(const RecordWriter&) = delete;
   RecordWriter& operator=(const RecordWriter&) = delete;
 
-  /// Writes the base mesh into chunk 0, which stays open. Errors: bad-value, cancelled. REQUIRES: called once
-  /// and first.
+  /// Writes the base mesh into chunk 0, which stays open. Errors: bad-value, cancelled. REQUIRES:
+  /// called once and first.
   Status base();
   /// Writes the split flag of v in the level in hand (GrowingMesh::beginLevel). The fusion that its
   /// split undoes, or nullptr. REQUIRES: v may split.
   [[nodiscard]] const Fusion* flag(VertexId v);
-  /// Writes the record of v and splits it. Errors: bad-value, cancelled. REQUIRES: flag(v) gave `fusion`.
+  /// Writes the record of v and splits it. Errors: bad-value, cancelled. REQUIRES: flag(v) gave
+  /// `fusion`.
   Status record(VertexId v, Fusion fusion);
   /// Ends the open chunk.
   Status closeChunk(std::uint32_t lastLevel, std::uint32_t endSlot) {

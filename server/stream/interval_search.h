@@ -18,8 +18,8 @@ class IntervalSearch {
   /// Says of a mesh that its intervals are known, or never will be.
   using Found = std::function<void(const MeshPointer&)>;
 
-  /// `jobs` makes what is not kept; nullptr: nothing is ever found. `from` is for whom, and outlives
-  /// the object. `found` runs on `executor`, or within want().
+  /// `jobs` makes what is not kept; nullptr: nothing is ever found. `from` is for whom, and
+  /// outlives the object. `found` runs on `executor`, or within want().
   IntervalSearch(LevelJobs* jobs, LevelJobs::Address from, boost::asio::any_io_executor executor,
                  Found found)
       : jobs_(jobs),

@@ -1,4 +1,5 @@
-// The client at the other end of a connection, and what its connection takes of the server's bounds.
+// The client at the other end of a connection, and what its connection takes of the server's
+// bounds.
 #pragma once
 
 #include <utility>  // before any Asio header: 1.74 uses std::exchange without it

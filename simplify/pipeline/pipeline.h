@@ -80,9 +80,9 @@ struct PipelineOutput {
 [[nodiscard]] Status checkArrays(const TetMesh& mesh);
 
 /// Makes the log of a mesh; the mesh is given back before the first fusion. The same mesh and
-/// options give the same bytes, whatever the number of threads. Errors: checkOptions's, cleanMesh's,
-/// quantise's, simplify's, measureLevels's and encodeLog's; not-found (a weight or regions name no
-/// field); cancelled. REQUIRES: a mesh that checkArrays or readMesh has passed.
+/// options give the same bytes, whatever the number of threads. Errors: checkOptions's,
+/// cleanMesh's, quantise's, simplify's, measureLevels's and encodeLog's; not-found (a weight or
+/// regions name no field); cancelled. REQUIRES: a mesh that checkArrays or readMesh has passed.
 [[nodiscard]] Result<PipelineOutput> simplifyToLog(TetMesh&& mesh, const PipelineOptions& options);
 
 }  // namespace qtet

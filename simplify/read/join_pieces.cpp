@@ -114,8 +114,8 @@ bool uniteByIds(const CellMesh& mesh, const PieceOf& pieceOf, PointSets& sets) {
   return true;
 }
 
-/// Before one another by their coordinates, bit by bit but for the sign of 0: an order of NaNs, too,
-/// which are refused later.
+/// Before one another by their coordinates, bit by bit but for the sign of 0: an order of NaNs,
+/// too, which are refused later.
 bool isBefore(const Position& a, const Position& b) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::strong_ordering order = std::strong_order(a[axis] + 0.0, b[axis] + 0.0);

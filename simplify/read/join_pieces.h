@@ -18,8 +18,8 @@ struct JoinedPieces {
 /// piece has ids and equal ids lie at one place, else those at exactly the same place. Two points
 /// of one piece never do, so that a slit in a piece stays. Where a piece has several points at one
 /// place, whole faces decide: a point is joined with that of the cell on the other side. All cells
-/// name the earliest point then, which takes what values it misses from the others; these go, and the
-/// points behind them move up. `pieceEnds` are behind each piece's last point. REQUIRES: they
+/// name the earliest point then, which takes what values it misses from the others; these go, and
+/// the points behind them move up. `pieceEnds` are behind each piece's last point. REQUIRES: they
 /// ascend to the number of points; vertex ids below that or kGhost; pointIds empty or one a point.
 JoinedPieces joinPieces(CellMesh& mesh, std::span<const VertexId> pieceEnds);
 

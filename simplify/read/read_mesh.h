@@ -30,8 +30,9 @@ struct ReadMesh {
 /// coordinates must be finite. After welding, faces that two tetrahedra's cells cut differently are
 /// cut alike (mend_faces.h). Errors: those of checkMeshFile; bad-input (the reader's own message; a
 /// kind of cell that is not read; no volume cells; a coordinate that is not finite; a vertex id
-/// outside the points; an integer of 2^53 or more in magnitude in a field asked for by name), not-found (no field or time step of
-/// that name; a program that is not installed), limit-exceeded. Not thread-safe: VTK's message
+/// outside the points; an integer of 2^53 or more in magnitude in a field asked for by name),
+/// not-found (no field or time step of that name; a program that is not installed), limit-exceeded.
+/// Not thread-safe: VTK's message
 /// window is global.
 [[nodiscard]] Result<ReadMesh> readMesh(const std::filesystem::path& path,
                                         const ReadOptions& options);
