@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <span>
 
 #include "codec/mesh/predicates.h"
@@ -53,6 +54,9 @@ void BoundaryEnvelope::addFaces(const Prey& prey) {
 // the same plane.
 inline void BoundaryEnvelope::addFace(const Face& face, const Vector3& from) {
   const BoundaryPlane& plane = mesh_.plane(face.ghost);
+  const double allowed = !(plane.inverseLength > 0) ? -std::numeric_limits<double>::infinity()
+                         : tolerance_ == 0          ? 0
+                                           : std::max(0.0, tolerance_ - mesh_.outside(face.ghost));
   double height = dot(plane.normal, from);
   if (mesh_.latticeBits() > kExactBits) {
     const auto cornerAt = [&](std::size_t i) {
@@ -67,11 +71,12 @@ inline void BoundaryEnvelope::addFace(const Face& face, const Vector3& from) {
   faces_.add(face);
   if (isFirst) {
     planes = {both(plane.normal, {}), Pair{height, std::numeric_limits<double>::infinity()},
-              Pair{plane.inverseLength, 0}};
+              Pair{plane.inverseLength, 0}, Pair{allowed, 0}};
   } else {
     for (std::size_t k = 0; k < 3; ++k) planes.normal[k][1] = plane.normal[k];
     planes.height[1] = height;
     planes.inverseLength[1] = plane.inverseLength;
+    planes.allowed[1] = allowed;
   }
 }
 
@@ -92,19 +97,15 @@ bool BoundaryEnvelope::turnsTooFar(const LatticePoint& p) const {
          });
 }
 
-double BoundaryEnvelope::rounding(const Vector3& d) const {
-  return roundingAt(d, reach_, mesh_.latticeBits());
-}
-
-// `side`: how high p lies above the face's plane, times the normal's length, within `error`.
-inline bool BoundaryEnvelope::isOutside(const Face& face, double side, const LatticePoint& p,
-                                        double error) const {
+// `side`: how high the point lies above the face's plane, times the normal's length.
+inline bool BoundaryEnvelope::isOutside(const Face& face, double side, const Probe& probe) const {
   const auto& t = mesh_.cell(face.ghost);
-  const bool isSure = std::abs(side) > error || error == 0;
-  const bool beyond =
-      isSure ? side > 0
-             : orientation(mesh_.point(t[0]), mesh_.point(t[1]), mesh_.point(t[2]), p) > 0;
-  return beyond && (tolerance_ == 0 || distance(face, p) + mesh_.outside(face.ghost) > tolerance_);
+  const bool isSure = std::abs(side) > probe.error || probe.error == 0;
+  const bool isBeyond = isSure ? side > 0
+                               : orientation(mesh_.point(t[0]), mesh_.point(t[1]),
+                                             mesh_.point(t[2]), probe.point) > 0;
+  return isBeyond &&
+         (tolerance_ == 0 || distance(face, probe.point) + mesh_.outside(face.ghost) > tolerance_);
 }
 
 // From p to the triangle. The convex hull of both is all that the solid gains there, and no point
@@ -120,55 +121,43 @@ double BoundaryEnvelope::distance(const Face& face, const LatticePoint& p) const
 
 float BoundaryEnvelope::outsideAt(const LatticePoint& p) const {
   if (tolerance_ == 0) return 0;
-  const Vector3 d = toVector(p) - origin_;
+  const Probe probe = probeOf(p);
   double most = 0;
   for (std::size_t i = 0; i < faces_.size(); ++i) {
-    const Pair side = dot(planes_[i / 2].normal, both(d, d)) - planes_[i / 2].height;
-    const bool beyond = side[i % 2] > -rounding(d);
+    const bool beyond = heightsOf(planes_[i / 2], probe)[i % 2] > -probe.error;
     most = std::max(most, mesh_.outside(faces_[i].ghost) + (beyond ? distance(faces_[i], p) : 0));
   }
   const auto bound = static_cast<float>(most);
   return bound < most ? std::nextafter(bound, std::numeric_limits<float>::infinity()) : bound;
 }
 
-// Calls visit(face, side) for the faces that d may lie outside of, in their order; true as soon as
-// it says so.
-template <class Visit>
-inline bool BoundaryEnvelope::anyFacing(const Vector3& d, double error, const Visit& visit) const {
-  const double least = error > 0 ? -error : std::numeric_limits<double>::denorm_min();
-  const TwoVectors twice = both(d, d);
-  for (std::size_t i = 0; 2 * i < faces_.size(); ++i) {
-    const Pair side = dot(planes_[i].normal, twice) - planes_[i].height;
-    if ((side[0] >= least && visit(faces_[2 * i], side[0])) ||
-        (side[1] >= least && visit(faces_[2 * i + 1], side[1])))
-      return true;
-  }
-  return false;
+BoundaryEnvelope::Probe BoundaryEnvelope::probeOf(const LatticePoint& p) const {
+  const Vector3 d = toVector(p) - origin_;
+  return {p, both(d, d), roundingAt(d, reach_, mesh_.latticeBits())};
 }
 
-inline bool BoundaryEnvelope::isExact() const {
-  return mesh_.latticeBits() <= kExactBits && tolerance_ == 0;
+inline Pair BoundaryEnvelope::heightsOf(const Planes& planes, const Probe& probe) {
+  return dot(planes.normal, probe.twice) - planes.height;
+}
+
+// Which of the two faces of planes_[i] the point lies outside of. Without a branch where a point
+// lies outside if and only if doubles say so.
+inline BoundaryEnvelope::Lanes BoundaryEnvelope::outsideOf(std::size_t i,
+                                                           const Probe& probe) const {
+  const Pair side = heightsOf(planes_[i], probe);
+  if (mesh_.latticeBits() <= kExactBits && tolerance_ == 0) return side > 0;
+  Lanes out = probe.error > 0 ? side >= -probe.error : side > 0;
+  for (std::size_t lane = 0; lane < 2; ++lane)
+    if (out[lane] != 0 && !isOutside(faces_[2 * i + lane], side[lane], probe)) out[lane] = 0;
+  return out;
 }
 
 bool BoundaryEnvelope::holds(const LatticePoint& p) const {
-  const Vector3 d = toVector(p) - origin_;
-  if (isExact()) return isOnLattice(p, mesh_.latticeBits()) && !isAnyFacing(d);
-  const double error = rounding(d);
-  return isOnLattice(p, mesh_.latticeBits()) &&
-         !anyFacing(d, error,
-                    [&](const Face& face, double side) { return isOutside(face, side, p, error); });
-}
-
-// The same of a plane that is passed, which is nearly always all that is asked: two faces at a
-// time, without a branch.
-inline bool BoundaryEnvelope::isAnyFacing(const Vector3& d) const {
-  const TwoVectors twice = both(d, d);
-  Pair farthest = Pair{} - 1;
-  for (const Planes& planes : this->planes()) {
-    const Pair side = dot(planes.normal, twice) - planes.height;
-    farthest = side > farthest ? side : farthest;
-  }
-  return farthest[0] > 0 || farthest[1] > 0;
+  if (!isOnLattice(p, mesh_.latticeBits())) return false;
+  const Probe probe = probeOf(p);
+  Lanes isOutside{};
+  for (std::size_t i = 0; i < planes().size(); ++i) isOutside |= outsideOf(i, probe);
+  return (isOutside[0] | isOutside[1]) == 0;
 }
 
 bool BoundaryEnvelope::project(Vector3 p, LatticePoint& inside) const {
@@ -176,72 +165,59 @@ bool BoundaryEnvelope::project(Vector3 p, LatticePoint& inside) const {
   for (int step = 0; step <= kProjections; ++step) {
     for (std::size_t a = 0; a < 3; ++a)
       inside[a] = static_cast<std::int32_t>(std::clamp(p[a] + 0.5, 0.0, end));
-    Vector3 back{};
-    switch (isExact() && step < kExactProjections ? wayBackExactly(p, inside, back)
-                                                  : wayBack(p, inside, step, back)) {
-      case WayBack::kInside: return true;
-      case WayBack::kLost: return false;
-      case WayBack::kOutside: p = p - back;
-    }
+    const Probe probe = probeOf(inside);
+    const Vector3 past = p - toVector(inside);  // rounding's share
+    const std::optional<std::size_t> face = farthestFace(probe, past);
+    if (!face) return true;
+    if (std::isinf(planes_[*face / 2].allowed[*face % 2])) return false;
+    p = p - wayBack(*face, probe, past, step >= kExactProjections);
   }
   return false;
 }
 
-// How far p, whose lattice point is `inside`, lies outside of the face that it is farthest outside
-// of.
-BoundaryEnvelope::WayBack BoundaryEnvelope::wayBack(const Vector3& p, const LatticePoint& inside,
-                                                    int step, Vector3& back) const {
-  const Vector3 d = toVector(inside) - origin_;
-  const double error = rounding(d);
-  double farthest = -1;
-  const Vector3 past = p - toVector(inside);  // rounding's share
-  const bool isLost = anyFacing(d, error, [&](const Face& face, double side) {
-    if (!isOutside(face, side, inside, error)) return false;
-    const auto& [normal, inverseLength] = mesh_.plane(face.ghost);
-    if (!(inverseLength > 0)) return true;  // a sliver whose plane doubles do not know
-    const double allowed =
-        tolerance_ == 0 ? 0 : std::max(0.0, tolerance_ - mesh_.outside(face.ghost));
-    const double outside = (side + dot(normal, past)) * inverseLength - allowed;
-    if (std::abs(outside) > farthest)
-      farthest = std::abs(outside), back = (outside * inverseLength) * normal;
-    if (step >= kExactProjections) back = back + (kRoundingReach * inverseLength) * normal;
-    return false;
-  });
-  return isLost ? WayBack::kLost : farthest < 0 ? WayBack::kInside : WayBack::kOutside;
+// How far two faces are from the point that lies `past` the probe, within their planes' rounding.
+inline Pair BoundaryEnvelope::beyond(const Planes& planes, const Probe& probe,
+                                     const TwoVectors& past) {
+  return (heightsOf(planes, probe) + dot(planes.normal, past)) * planes.inverseLength -
+         planes.allowed;
 }
 
-// The same of the steps that keep no distance, two faces at a time, without a branch: no sliver is
-// passed where doubles are exact, and of equally far faces the first one counts.
-inline BoundaryEnvelope::WayBack BoundaryEnvelope::wayBackExactly(const Vector3& p,
-                                                                  const LatticePoint& inside,
-                                                                  Vector3& back) const {
-  const Vector3 d = toVector(inside) - origin_, past = p - toVector(inside);
-  const TwoVectors twice = both(d, d), twicePast = both(past, past);
-  using Lanes = decltype(Pair{} > Pair{});
+// The face that the point lies farthest outside of; of equally far faces the first one. Two faces
+// at a time, without a branch where doubles are exact.
+inline std::optional<std::size_t> BoundaryEnvelope::farthestFace(const Probe& probe,
+                                                                 const Vector3& past) const {
   constexpr Lanes kAllButSign = ~(Lanes{} + std::numeric_limits<std::int64_t>::min());
-  const auto outsideOf = [&](const Planes& planes, const Pair& side) {
-    return (side + dot(planes.normal, twicePast)) * planes.inverseLength;
-  };
+  const TwoVectors twicePast = both(past, past);
   Pair farthest = Pair{} - 1;
   Lanes at{}, where{};
-  for (const Planes& planes : this->planes()) {
-    const Pair side = dot(planes.normal, twice) - planes.height;
-    const Pair distance =
-        std::bit_cast<Pair>(std::bit_cast<Lanes>(outsideOf(planes, side)) & kAllButSign);
-    const Lanes isFarther = (side > 0) & (distance > farthest);
+  for (std::size_t i = 0; i < planes().size(); ++i, at += 1) {
+    const Pair distance = std::bit_cast<Pair>(
+        std::bit_cast<Lanes>(beyond(planes_[i], probe, twicePast)) & kAllButSign);
+    const Lanes isFarther = outsideOf(i, probe) & (distance > farthest);
     farthest = isFarther ? distance : farthest;
     where = isFarther ? at : where;
-    at += 1;
   }
-  if (farthest[0] < 0 && farthest[1] < 0) return WayBack::kInside;
+  if (farthest[0] < 0 && farthest[1] < 0) return std::nullopt;
   const bool isSecond =
       farthest[1] != farthest[0] ? farthest[1] > farthest[0] : where[1] < where[0];
-  const Planes& planes = planes_[static_cast<std::size_t>(where[isSecond])];
-  const Pair outside = outsideOf(planes, dot(planes.normal, twice) - planes.height);
-  const Vector3 normal{planes.normal[0][isSecond], planes.normal[1][isSecond],
-                       planes.normal[2][isSecond]};
-  back = (outside[isSecond] * planes.inverseLength[isSecond]) * normal;
-  return WayBack::kOutside;
+  return 2 * static_cast<std::size_t>(where[isSecond]) + isSecond;
+}
+
+// From the point back onto the plane of this face; to keep a distance, also away from it and from
+// every later face that the point lies outside of.
+Vector3 BoundaryEnvelope::wayBack(std::size_t face, const Probe& probe, const Vector3& past,
+                                  bool keepsDistance) const {
+  const auto normalOf = [&](std::size_t i) -> Vector3 {
+    const TwoVectors& normal = planes_[i / 2].normal;
+    return {normal[0][i % 2], normal[1][i % 2], normal[2][i % 2]};
+  };
+  const Planes& planes = planes_[face / 2];
+  const double outside = beyond(planes, probe, both(past, past))[face % 2];
+  Vector3 back = (outside * planes.inverseLength[face % 2]) * normalOf(face);
+  for (std::size_t i = face; keepsDistance && i < faces_.size(); ++i)
+    if (outsideOf(i / 2, probe)[i % 2] != 0)
+      back = back + (kRoundingReach * planes_[i / 2].inverseLength[i % 2]) * normalOf(i);
+  return back;
 }
 
 }  // namespace qtet

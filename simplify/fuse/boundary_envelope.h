@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <span>
 
 #include "simplify/fuse/fixed_list.h"
 #include "simplify/fuse/fusion_mesh.h"
@@ -34,6 +36,7 @@ class BoundaryEnvelope {
   [[nodiscard]] bool turnsTooFar(const LatticePoint& p) const;
 
  private:
+  using Lanes = decltype(Pair{} > Pair{});  // all bits or none of each of two
   struct Face {
     CellId ghost;
     bool stays;           // one of its vertices is prey
@@ -44,6 +47,15 @@ class BoundaryEnvelope {
   struct Planes {
     TwoVectors normal;
     Pair height, inverseLength;
+    // What is left of the tolerance. -infinity: a sliver whose plane doubles do not know, so that
+    // whatever lies outside of it lies outside of no other face further.
+    Pair allowed;
+  };
+  // A point as two faces at a time ask for it.
+  struct Probe {
+    LatticePoint point;
+    TwoVectors twice;  // relative to the first prey vertex
+    double error;      // of its heights above the planes, times the normals' lengths
   };
 
   template <std::uint32_t k>
@@ -52,21 +64,18 @@ class BoundaryEnvelope {
   [[nodiscard]] std::span<const Planes> planes() const {
     return std::span(planes_).first((faces_.size() + 1) / 2);
   }
-  [[nodiscard]] double rounding(const Vector3& d) const;
-  template <class Visit>
-  [[nodiscard]] bool anyFacing(const Vector3& d, double error, const Visit& visit) const;
-  [[nodiscard]] bool isOutside(const Face& face, double side, const LatticePoint& p,
-                               double error) const;
+  [[nodiscard]] Probe probeOf(const LatticePoint& p) const;
+  [[nodiscard]] static Pair heightsOf(const Planes& planes, const Probe& probe);
+  [[nodiscard]] static Pair beyond(const Planes& planes, const Probe& probe,
+                                   const TwoVectors& past);
+  [[nodiscard]] Lanes outsideOf(std::size_t i, const Probe& probe) const;
+  [[nodiscard]] bool isOutside(const Face& face, double side, const Probe& probe) const;
   [[nodiscard]] double distance(const Face& face, const LatticePoint& p) const;
+  [[nodiscard]] std::optional<std::size_t> farthestFace(const Probe& probe,
+                                                        const Vector3& past) const;
+  [[nodiscard]] Vector3 wayBack(std::size_t face, const Probe& probe, const Vector3& past,
+                                bool keepsDistance) const;
   [[nodiscard]] bool turnsTooFar(const Face& face, const LatticePoint& p) const;
-  /// A point lies outside if and only if doubles say so.
-  [[nodiscard]] bool isExact() const;
-  [[nodiscard]] bool isAnyFacing(const Vector3& d) const;
-  enum class WayBack : std::uint8_t { kInside, kOutside, kLost };
-  [[nodiscard]] WayBack wayBack(const Vector3& p, const LatticePoint& inside, int step,
-                                Vector3& back) const;
-  [[nodiscard]] WayBack wayBackExactly(const Vector3& p, const LatticePoint& inside,
-                                       Vector3& back) const;
 
   const FusionMesh& mesh_;
   double tolerance_, normalCosine_;
