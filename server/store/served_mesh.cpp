@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cassert>
 #include <cerrno>
 #include <cstring>
 #include <optional>
@@ -24,6 +25,7 @@ Descriptor::~Descriptor() {
 }
 
 std::uint64_t ServedMesh::prefixBytes(std::uint32_t level) const {
+  assert(level < manifest.levels.size());
   return qtet::prefixBytes(manifest, log.index(), level);
 }
 
