@@ -13,7 +13,6 @@
 #include "codec/log/log_manifest.h"
 #include "codec/log/value_block.h"
 #include "codec/mesh/compact_mesh.h"
-#include "proto/checksum.h"
 #include "proto/crc32c.h"
 
 namespace qtet {
@@ -35,7 +34,7 @@ LogFile::LogFile(LogFile&&) noexcept = default;
 LogFile& LogFile::operator=(LogFile&&) noexcept = default;
 LogFile::~LogFile() = default;
 
-Result<LogFile> LogFile::open(const std::filesystem::path& path) {
+Result<LogFile> LogFile::open(const std::filesystem::path& path, DigestOf digestOf) {
   const auto io = [&](const char* what) {
     return fail(ErrorCode::kIo, path.string() + ": " + what + ": " + std::strerror(errno));
   };
@@ -58,7 +57,7 @@ Result<LogFile> LogFile::open(const std::filesystem::path& path) {
     return fail(ErrorCode::kTruncated, path.string() + ": the file is empty", 0);
   if (mapping->address == nullptr) return io("cannot be mapped into memory");
 
-  Result<LogFile> log = checked(std::move(mapping));
+  Result<LogFile> log = checked(std::move(mapping), digestOf);
   if (!log) log.error().message = path.string() + ": " + log.error().message;
   return log;
 }
@@ -69,7 +68,7 @@ Result<LogFile> LogFile::fromBytes(Bytes bytes) {
   return checked(std::move(mapping));
 }
 
-Result<LogFile> LogFile::checked(std::unique_ptr<Mapping> mapping) {
+Result<LogFile> LogFile::checked(std::unique_ptr<Mapping> mapping, DigestOf digestOf) {
   LogFile log;
   log.mapping_ = std::move(mapping);
   Result<LogIndex> index = LogIndex::parse(log.bytes());
@@ -81,7 +80,7 @@ Result<LogFile> LogFile::checked(std::unique_ptr<Mapping> mapping) {
             std::to_string(index->fileBytes) + "; copy or fetch it again",
         log.bytes().size());
   log.index_ = std::move(*index);
-  log.digest_ = sha256Hex(log.bytes());
+  log.digest_ = digestOf(log.bytes());
   return log;
 }
 

@@ -10,6 +10,7 @@
 #include "codec/log/log_index.h"
 #include "codec/log/refiner.h"
 #include "codec/mesh/mesh.h"
+#include "proto/checksum.h"
 #include "proto/manifest.h"
 
 namespace qtet {
@@ -18,9 +19,13 @@ namespace qtet {
 /// views live as long as the object.
 class LogFile {
  public:
+  /// SHA-256 in lower-case hexadecimal: ours, or a faster one of a room that has one.
+  using DigestOf = std::string (*)(ByteView);
+
   /// Maps the file and checks header, manifest and table, and that the file is as long as it says.
   /// Errors: io, and LogIndex::parse's.
-  [[nodiscard]] static Result<LogFile> open(const std::filesystem::path& path);
+  [[nodiscard]] static Result<LogFile> open(const std::filesystem::path& path,
+                                            DigestOf digestOf = sha256Hex);
   /// The same of bytes that were read or fetched elsewhere. Errors: as open, but for io.
   [[nodiscard]] static Result<LogFile> fromBytes(Bytes bytes);
   LogFile(LogFile&&) noexcept;
@@ -42,7 +47,8 @@ class LogFile {
  private:
   struct Mapping;
   LogFile() = default;
-  [[nodiscard]] static Result<LogFile> checked(std::unique_ptr<Mapping> mapping);
+  [[nodiscard]] static Result<LogFile> checked(std::unique_ptr<Mapping> mapping,
+                                               DigestOf digestOf = sha256Hex);
   std::unique_ptr<Mapping> mapping_;
   LogIndex index_;
   std::string digest_;

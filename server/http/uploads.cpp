@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cassert>
 #include <cerrno>
 #include <cstring>
 #include <exception>
@@ -237,6 +238,7 @@ std::expected<std::unique_ptr<Upload>, Reply> Uploads::begin(const UploadRequest
 
 std::optional<std::uint64_t> Uploads::partialBytes(const std::string& id,
                                                    const std::string& digest) const {
+  assert(pathOfMesh("", id));
   if (!isDigest(digest)) return std::nullopt;
   const auto file = identityOf(resumablePart(id, digest));
   return file ? std::optional(static_cast<std::uint64_t>(file->bytes)) : std::nullopt;

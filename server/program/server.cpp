@@ -17,6 +17,7 @@
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
+#include <cassert>
 #include <chrono>
 #include <csignal>
 #include <exception>
@@ -319,11 +320,18 @@ Status Server::listen() {
   return {};
 }
 
-std::uint16_t Server::adminPort() const { return state_->adminAcceptor.local_endpoint().port(); }
+std::uint16_t Server::adminPort() const {
+  assert(state_->adminAcceptor.is_open());
+  return state_->adminAcceptor.local_endpoint().port();
+}
 
-std::uint16_t Server::port() const { return state_->acceptor.local_endpoint().port(); }
+std::uint16_t Server::port() const {
+  assert(state_->acceptor.is_open());
+  return state_->acceptor.local_endpoint().port();
+}
 
 std::string Server::url() const {
+  assert(state_->acceptor.is_open());
   const tcp::endpoint at = state_->acceptor.local_endpoint();
   const std::string host = at.address().to_string();
   const std::string scheme = state_->options.tls != nullptr ? "https://" : "http://";
@@ -332,6 +340,7 @@ std::string Server::url() const {
 }
 
 void Server::run() {
+  assert(state_->acceptor.is_open());
   std::signal(SIGPIPE, SIG_IGN);  // sendfile knows no MSG_NOSIGNAL
   if (state_->options.access != nullptr) state_->uploads.sweep();
   asio::co_spawn(state_->mainContext(),

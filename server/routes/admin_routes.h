@@ -16,7 +16,7 @@ struct AdminRoutes {
   std::function<bool()> ready;                            ///< new work is welcome
   std::function<std::vector<Metrics::Figure>()> figures;  ///< of now
 
-  /// nullopt: the path is nothing of this. REQUIRES: GET or HEAD.
+  /// The answer to GET and HEAD; nullopt: the path is nothing of this.
   [[nodiscard]] std::optional<Reply> route(const RequestTarget& target) const;
 };
 

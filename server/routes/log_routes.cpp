@@ -1,5 +1,6 @@
 #include "server/routes/log_routes.h"
 
+#include <cassert>
 #include <charconv>
 #include <span>
 
@@ -62,6 +63,7 @@ Reply fieldReply(const RequestView& request, const MeshPointer& mesh, Path path)
 }  // namespace
 
 Answer routeLog(const RequestView& request, const RequestTarget& target, const MeshPointer& mesh) {
+  assert(target.segments.size() >= 3);
   const Path path = Path(target.segments).subspan(3);
   const LogIndex& index = mesh->log.index();
   const std::string what = path.empty() ? "" : path[0];

@@ -2,9 +2,9 @@
 
 #include <charconv>
 
-#include "proto/checksum.h"
 #include "proto/json_reader.h"
 #include "server/http/http_resource.h"
+#include "server/wire/digest.h"
 #include "server/wire/limits.h"
 
 namespace qtet {
@@ -50,7 +50,7 @@ Reply meshListReply(const RequestView& request, const RequestTarget& target,
   const auto page = std::make_shared<const std::string>(text + "}");
   const std::string seed =
       mayRead ? *page : catalogue->etag + ' ' + std::to_string(*limit) + ' ' + after;
-  Resource resource{{'"' + sha256Hex(viewOf(seed)) + '"', catalogue->changed},
+  Resource resource{{'"' + hexDigestOf(seed) + '"', catalogue->changed},
                     "application/json",
                     kRevalidate,
                     std::move(headers)};

@@ -7,8 +7,8 @@
 #include <fstream>
 #include <utility>
 
-#include "proto/checksum.h"
 #include "server/wire/content_coding.h"
+#include "server/wire/digest.h"
 #include "server/wire/limits.h"
 
 namespace qtet {
@@ -63,7 +63,7 @@ Result<ViewerFile> readFile(const fs::path& path, const std::string& name, std::
   if (!bytes) return std::unexpected(bytes.error());
   struct stat info{};
   const std::time_t modified = ::stat(path.c_str(), &info) == 0 ? info.st_mtime : 0;
-  std::string etag = '"' + sha256Hex(*bytes) + '"';
+  std::string etag = '"' + hexDigestOf(*bytes) + '"';
   return ViewerFile{
       std::move(*bytes),          {}, {}, std::string(typeOf(path)), std::move(etag), modified,
       name.starts_with("assets/")};

@@ -1,5 +1,6 @@
 #include "server/routes/write_routes.h"
 
+#include <cassert>
 #include <charconv>
 
 #include "proto/json_reader.h"
@@ -82,6 +83,7 @@ bool isMeshPath(const RequestTarget& target) {
 }
 
 Answer routeWriting(const RequestView& request, const RequestTarget& target, const Access& access) {
+  assert(isMeshPath(target));
   const std::string& id = target.segments[2];
   if (std::optional<Reply> refusal = authorise(request, id, access)) return std::move(*refusal);
   if (!pathOfMesh("", id))
@@ -97,6 +99,7 @@ Answer routeWriting(const RequestView& request, const RequestTarget& target, con
 
 Reply partialReply(const RequestView& request, const RequestTarget& target,
                    const Writing& writing) {
+  assert(target.segments.size() == 4);
   if (std::optional<Reply> refusal = authorise(request, target.segments[2], writing.access))
     return std::move(*refusal);
   const std::optional<std::string> digest = target.parameter("digest");

@@ -19,12 +19,12 @@ struct Writing {
 [[nodiscard]] bool isMeshPath(const RequestTarget& target);
 
 /// The answer to a PUT or DELETE on a mesh's path: an upload to be taken, or 400, 401, 403, 404,
-/// 411, 415.
+/// 411, 415. REQUIRES: isMeshPath(target).
 [[nodiscard]] Answer routeWriting(const RequestView& request, const RequestTarget& target,
                                   const Access& access);
 
 /// `/v1/meshes/{id}/upload?digest=HEX` to whoever may write the mesh: {"digest","bytes"}, 400, 401,
-/// 403 or 404.
+/// 403 or 404. REQUIRES: such a path.
 [[nodiscard]] Reply partialReply(const RequestView& request, const RequestTarget& target,
                                  const Writing& writing);
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-#include "proto/checksum.h"
+#include "server/wire/digest.h"
 
 namespace qtet {
 namespace {
@@ -31,7 +31,7 @@ std::string LevelRequest::key() const {
                      std::to_string(level) + ' ' + std::string(formName(form)) + ' ' +
                      std::string(codingName(coding));
   for (const std::uint32_t field : fields) text += ' ' + std::to_string(field);
-  return sha256Hex({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  return hexDigestOf(text);
 }
 
 std::string_view formName(LevelForm form) {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <mutex>
 
-#include "proto/checksum.h"
 #include "proto/json_reader.h"
+#include "server/wire/digest.h"
 #include "server/wire/limits.h"
 
 namespace qtet {
@@ -46,7 +46,7 @@ std::string listTag(const Catalogue::Meshes& meshes) {
   std::string all;
   for (const auto& [id, mesh] : meshes)
     all += std::to_string(id.size()) + ':' + id + mesh->log.digest();
-  return sha256Hex({reinterpret_cast<const std::uint8_t*>(all.data()), all.size()});
+  return hexDigestOf(all);
 }
 
 /// Builds a catalogue out of the one before and the folder.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -60,7 +61,9 @@ void addValues(const ManifestField& field, std::span<const std::int32_t> integer
 }  // namespace
 
 PacketIntervals::PacketIntervals(const Manifest& manifest, std::vector<ValueInterval> values)
-    : columns_(columnsOf(manifest)), values_(std::move(values)) {}
+    : columns_(columnsOf(manifest)), values_(std::move(values)) {
+  assert(columns_ == 0 ? values_.empty() : values_.size() % columns_ == 0);
+}
 
 std::size_t PacketIntervals::columnsOf(const Manifest& manifest) {
   std::size_t out = 0;

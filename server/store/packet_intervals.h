@@ -3,6 +3,7 @@
 // whole of it once.
 #pragma once
 
+#include <cassert>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -43,7 +44,9 @@ class PacketIntervals {
   /// or nothing is known.
   [[nodiscard]] std::optional<std::size_t> columnOf(const Manifest& manifest,
                                                     const Isovalue& isovalue) const;
+  /// REQUIRES: a chunk of the table, and a column of columnOf().
   [[nodiscard]] const ValueInterval& of(std::uint32_t chunk, std::size_t column) const {
+    assert(column < columns_ && chunk < values_.size() / columns_);
     return values_[chunk * columns_ + column];
   }
 

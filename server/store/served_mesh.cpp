@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cassert>
 #include <cerrno>
 #include <cstring>
 #include <optional>
@@ -14,6 +15,7 @@
 #include "codec/log/log_levels.h"
 #include "codec/log/log_manifest.h"
 #include "server/store/descriptions.h"
+#include "server/wire/digest.h"
 #include "server/wire/limits.h"
 
 namespace qtet {
@@ -23,6 +25,7 @@ Descriptor::~Descriptor() {
 }
 
 std::uint64_t ServedMesh::prefixBytes(std::uint32_t level) const {
+  assert(level < manifest.levels.size());
   return qtet::prefixBytes(manifest, log.index(), level);
 }
 
@@ -87,7 +90,8 @@ Result<std::unique_ptr<Descriptor>> openFile(const std::filesystem::path& path,
 
 Result<LogFile> openLog(const Descriptor& file, const std::filesystem::path& path) {
   const std::string alias = "/proc/self/fd/" + std::to_string(file.number);
-  Result<LogFile> log = LogFile::open(alias);
+  const auto digest = [](ByteView bytes) { return hexDigestOf(bytes); };
+  Result<LogFile> log = LogFile::open(alias, digest);
   if (!log && log.error().message.starts_with(alias))
     log.error().message.replace(0, alias.size(), path.string());
   return log;

@@ -2,9 +2,11 @@
 // fields that it asked for.
 #pragma once
 
+#include <algorithm>
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -14,21 +16,26 @@
 namespace qtet {
 
 /// A column is structure, positions, then one a field asked for. Holds the index's address, which
-/// must outlive it.
+/// must outlive it. Everything REQUIRES chunks of the log and columns below columns().
 class ClientBlocks {
  public:
   /// Nothing yet. REQUIRES: fields ascending, distinct, below the log's fields.
   ClientBlocks(const LogIndex& index, std::vector<std::uint32_t> fields)
-      : index_(&index), fields_(std::move(fields)), held_(index.chunks.size() * columns(), false) {}
+      : index_(&index), fields_(std::move(fields)), held_(index.chunks.size() * columns(), false) {
+    assert(std::ranges::adjacent_find(fields_, std::greater_equal()) == fields_.end());
+    assert(fields_.empty() || fields_.back() < index.fields.size());
+  }
 
   [[nodiscard]] std::size_t columns() const { return kFirstFieldPart + fields_.size(); }
   [[nodiscard]] std::uint32_t partOf(std::size_t column) const {
+    assert(column < columns());
     return column < kFirstFieldPart ? static_cast<std::uint32_t>(column)
                                     : kFirstFieldPart + fields_[column - kFirstFieldPart];
   }
   [[nodiscard]] const std::vector<std::uint32_t>& fields() const { return fields_; }
 
   [[nodiscard]] bool has(std::uint32_t chunk, std::size_t column) const {
+    assert(chunk < index_->chunks.size() && column < columns());
     return held_[chunk * columns() + column];
   }
   [[nodiscard]] bool hasMesh(std::uint32_t chunk) const {
@@ -41,7 +48,10 @@ class ClientBlocks {
   }
   [[nodiscard]] std::uint64_t heldBytes(std::uint32_t chunk) const { return bytes(chunk, true); }
 
-  void add(std::uint32_t chunk, std::size_t column) { held_[chunk * columns() + column] = true; }
+  void add(std::uint32_t chunk, std::size_t column) {
+    assert(chunk < index_->chunks.size() && column < columns());
+    held_[chunk * columns() + column] = true;
+  }
   /// REQUIRES: no chunk behind the log's last.
   void add(const HeldChunks& chunks, std::size_t column) {
     assert(chunks.end() <= index_->chunks.size());
@@ -51,8 +61,10 @@ class ClientBlocks {
   }
   /// Parts first..first+count-1 of a chunk. REQUIRES: parts of columns.
   void addRun(std::uint32_t chunk, std::uint32_t first, std::uint32_t count) {
+    [[maybe_unused]] std::uint32_t added = 0;
     for (std::size_t column = 0; column < columns(); ++column)
-      if (partOf(column) >= first && partOf(column) < first + count) add(chunk, column);
+      if (partOf(column) >= first && partOf(column) < first + count) add(chunk, column), ++added;
+    assert(added == count);
   }
 
  private:

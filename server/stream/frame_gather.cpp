@@ -1,5 +1,6 @@
 #include "server/stream/frame_gather.h"
 
+#include <cassert>
 #include <span>
 
 namespace qtet {
@@ -15,6 +16,7 @@ void FrameGather::consume(std::size_t bytes) {
 }
 
 std::size_t FrameGather::write(ClientSocket& socket, boost::system::error_code& ec) {
+  assert(!written());
   const Part& first = parts_.front();
   std::size_t count = 0;
   if (first.inFile() && !socket.isTls()) {

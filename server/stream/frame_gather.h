@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <boost/asio/buffer.hpp>
+#include <cassert>
 #include <cstdint>
 #include <deque>
 #include <string>
@@ -26,6 +27,7 @@ class FrameGather {
 
   /// REQUIRES: not full(). A text, or what a control frame carries.
   void add(std::uint8_t kind, std::string payload) {
+    assert(!full());
     items_.push_back({{}, 0, std::move(payload), nullptr});
     Item& item = items_.back();
     const WebSocketHeader header(kind, item.text.size());
@@ -35,6 +37,7 @@ class FrameGather {
   }
   /// REQUIRES: not full().
   void add(OutgoingFrame frame) {
+    assert(!full());
     items_.push_back({{}, 0, {}, std::move(frame.mesh)});
     Item& item = items_.back();
     const WebSocketHeader header(WebSocketHeader::kBinary,
@@ -58,6 +61,7 @@ class FrameGather {
   [[nodiscard]] bool written() const { return parts_.empty(); }
   /// Gives the socket what it takes by one call: parts in memory up to the next that lies in a
   /// file, or such a one; with TLS all from memory. Bytes taken; would_block, or another error.
+  /// REQUIRES: not written().
   std::size_t write(ClientSocket& socket, boost::system::error_code& ec);
 
  private:

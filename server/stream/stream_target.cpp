@@ -1,6 +1,7 @@
 #include "server/stream/stream_target.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "codec/log/level_choice.h"
 
@@ -51,6 +52,9 @@ class Chooser {
 
 StopAt stopAt(const LogIndex& index, const Manifest& manifest, const Target& target,
               std::uint32_t field) {
+  assert(manifest.fields.size() == index.fields.size());
+  assert(!manifest.levels.empty() && manifest.levels.back().chunk < index.chunks.size());
+  assert(!std::holds_alternative<FieldErrorTarget>(target) || field < manifest.fields.size());
   return std::visit(Chooser(index, manifest, field), target);
 }
 

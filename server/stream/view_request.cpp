@@ -1,6 +1,7 @@
 #include "server/stream/view_request.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -72,6 +73,7 @@ bool ViewRequest::isMet(std::uint32_t packet) const {
 }
 
 Tier ViewRequest::tierOf(std::uint32_t packet) const {
+  assert(packet < log_.index.chunks.size());
   const Box box = inSpace(log_.index.chunks[packet].box);
   if (!isSeen(box)) return Tier::kRest;
   const bool anywhere = view_.planes.empty() && !view_.box && !column_;

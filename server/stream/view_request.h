@@ -26,6 +26,7 @@ class ViewRequest {
   /// unknown counts for nothing. The log outlives the object.
   ViewRequest(const View& view, const LogFront& log);
 
+  /// REQUIRES: a chunk of the log.
   [[nodiscard]] Tier tierOf(std::uint32_t packet) const;
   /// What error in the box counts: 1 at the view's point and without one, falling with the square
   /// of the distance like what is seen of it.

@@ -2,6 +2,7 @@
 
 #include <zlib.h>
 #include <zstd.h>
+#include <cassert>
 
 #include <algorithm>
 #include <cctype>
@@ -124,6 +125,7 @@ Bytes encoded(Bytes bytes, ContentCoding coding) {
 }
 
 Bytes compressed(ByteView bytes, ContentCoding coding) {
+  assert(coding != ContentCoding::kIdentity);
   Bytes out = coding == ContentCoding::kGzip ? gzipped(bytes) : zstandard(bytes);
   return out.size() < bytes.size() ? out : Bytes();
 }

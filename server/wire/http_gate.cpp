@@ -1,5 +1,7 @@
 #include "server/wire/http_gate.h"
 
+#include <cassert>
+
 #include "server/wire/limits.h"
 
 namespace qtet {
@@ -19,6 +21,11 @@ bool isControl(char c) {
 }  // namespace
 
 HttpGate::Verdict HttpGate::look(std::string_view bytes) {
+  assert(last_ == Verdict::kMore && bytes.size() >= checked_);
+  return last_ = lookOn(bytes);
+}
+
+HttpGate::Verdict HttpGate::lookOn(std::string_view bytes) {
   for (; checked_ < bytes.size(); ++checked_) {
     const char c = bytes[checked_];
     if (checked_ == 0 && !isMethodCharacter(c)) return Verdict::kBroken;

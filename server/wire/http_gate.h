@@ -3,6 +3,7 @@
 // requests are smuggled (RFC 9112, 2.2, 5.2 and 11.2).
 #pragma once
 
+#include <cassert>
 #include <cstddef>
 #include <string_view>
 
@@ -20,18 +21,24 @@ class HttpGate {
     kTooLong,  ///< more lines than limits::kMaxHeaderLines: 431, and the connection ends
   };
 
-  /// `bytes` begins with the request line and only ever grows from call to call.
+  /// REQUIRES: `bytes` begins with the request line, and grows from call to call until a verdict
+  /// other than kMore.
   [[nodiscard]] Verdict look(std::string_view bytes);
   /// REQUIRES: the last verdict was kComplete.
-  [[nodiscard]] std::size_t headBytes() const { return checked_; }
+  [[nodiscard]] std::size_t headBytes() const {
+    assert(last_ == Verdict::kComplete);
+    return checked_;
+  }
 
  private:
+  [[nodiscard]] Verdict lookOn(std::string_view bytes);
   [[nodiscard]] bool startsLine(std::string_view bytes) const {
     return checked_ >= 2 && bytes[checked_ - 1] == '\n';
   }
 
   std::size_t checked_ = 0;
   std::size_t lines_ = 0;
+  Verdict last_ = Verdict::kMore;
 };
 
 /// How many bytes of empty lines stand before the request line: a client may send one after a body

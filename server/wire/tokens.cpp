@@ -5,7 +5,6 @@
 #include <fstream>
 #include <sstream>
 
-#include "proto/checksum.h"
 #include "server/wire/limits.h"
 
 namespace qtet {
@@ -50,11 +49,7 @@ bool matches(const std::string& pattern, const std::string& mesh) {
 
 }  // namespace
 
-SecretDigest secretDigest(std::string_view secret) {
-  Sha256 hash;
-  hash.update({reinterpret_cast<const std::uint8_t*>(secret.data()), secret.size()});
-  return hash.finish();
-}
+SecretDigest secretDigest(std::string_view secret) { return digestOf(secret); }
 
 std::optional<SecretDigest> bearerDigest(std::optional<std::string_view> authorization) {
   const std::string_view token = tokenOf(authorization.value_or(""));

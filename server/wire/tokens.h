@@ -1,7 +1,6 @@
 // Who may read and who may change which meshes: bearer tokens (RFC 6750) from a file.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -10,11 +9,12 @@
 #include <vector>
 
 #include "proto/error.h"
+#include "server/wire/digest.h"
 
 namespace qtet {
 
 /// SHA-256 of a secret: what is kept and compared instead of it.
-using SecretDigest = std::array<std::uint8_t, 32>;
+using SecretDigest = Digest;
 
 [[nodiscard]] SecretDigest secretDigest(std::string_view secret);
 /// That of the token in the value of an Authorization header; nullopt: there is none.

@@ -3,6 +3,7 @@
 #include <array>
 #include <bit>
 #include <boost/uuid/detail/sha1.hpp>
+#include <cassert>
 
 #include "proto/messages.h"
 #include "proto/utf8.h"
@@ -101,6 +102,16 @@ std::expected<std::optional<WebSocketReader::Event>, CloseCode> WebSocketReader:
 }
 
 std::expected<std::optional<WebSocketReader::Event>, CloseCode> WebSocketReader::next() {
+  assert(state_ != State::kBroken);
+  auto event = takeEvent();
+  if (!event)
+    state_ = State::kBroken;
+  else if (!*event)
+    state_ = State::kHungry;
+  return event;
+}
+
+std::expected<std::optional<WebSocketReader::Event>, CloseCode> WebSocketReader::takeEvent() {
   for (;;) {
     auto frame = takeFrame();
     if (!frame) return std::unexpected(frame.error());

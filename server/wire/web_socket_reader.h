@@ -2,6 +2,7 @@
 // pings and closes, or the code to close with.
 #pragma once
 
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <expected>
@@ -36,10 +37,13 @@ class WebSocketReader {
     std::string payload{};
   };
 
-  /// REQUIRES: next() has said that there is nothing more.
-  void feed(std::string_view bytes) { buffer_.append(bytes); }
-  /// The next thing that is whole; nullopt: more bytes are needed. After an error nothing may be
-  /// asked any more.
+  /// REQUIRES: next() has said that more bytes are needed, or nothing was fed yet.
+  void feed(std::string_view bytes) {
+    assert(state_ == State::kHungry);
+    state_ = State::kFed;
+    buffer_.append(bytes);
+  }
+  /// The next thing that is whole; nullopt: more bytes are needed. REQUIRES: there was no error yet.
   [[nodiscard]] std::expected<std::optional<Event>, CloseCode> next();
 
  private:
@@ -56,11 +60,14 @@ class WebSocketReader {
     Opcode opcode = Opcode::kText;
     std::string payload;
   };
+  enum class State : std::uint8_t { kHungry, kFed, kBroken };
+  [[nodiscard]] std::expected<std::optional<Event>, CloseCode> takeEvent();
   [[nodiscard]] std::expected<std::optional<Frame>, CloseCode> takeFrame();
   [[nodiscard]] std::expected<std::optional<Event>, CloseCode> control(Frame frame) const;
   /// nullopt: the message goes on.
   [[nodiscard]] std::expected<std::optional<Event>, CloseCode> data(Frame frame);
 
+  State state_ = State::kHungry;
   std::string buffer_;
   std::string message_;         // fragments so far
   std::optional<Opcode> kind_;  // of the message whose fragments come

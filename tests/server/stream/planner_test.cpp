@@ -215,6 +215,45 @@ TEST(Planner, errorPerByteDecidesWithoutAViewRequest) {
   EXPECT_GT(seconds, 0) << "the file's order would do as well";
 }
 
+/// Gives a chunk so many records, in so many bytes with all its fields.
+void setSize(Planned& log, std::uint32_t chunk, std::uint32_t records, std::uint32_t bytes) {
+  ChunkEntry& entry = log.index.chunks[chunk];
+  entry.records = records;
+  for (BlockEntry& block : entry.blocks) block.size = 0;
+  entry.blocks[kStructurePart].size = bytes;
+}
+
+/// A band's gain is divided among its packets by their records.
+TEST(Planner, ofABandWhoHasMoreRecordsForAByteComesFirst) {
+  Planned log({.chunks = 1, .bands = 1, .errors = true});
+  const auto firstOf = [&](std::uint32_t records1, std::uint32_t bytes1, std::uint32_t records2,
+                           std::uint32_t bytes2) {
+    setSize(log, 1, records1, bytes1);
+    setSize(log, 2, records2, bytes2);
+    return log.chunks({}).at(1);
+  };
+  EXPECT_EQ(firstOf(10, 5000, 10, 5000), 1u) << "the file's order";
+  EXPECT_EQ(firstOf(10, 5000, 11, 5000), 2u);
+  EXPECT_EQ(firstOf(11, 5000, 10, 5000), 1u);
+  EXPECT_EQ(firstOf(10, 5000, 30, 10000), 2u) << "three times the records for twice the bytes";
+  EXPECT_EQ(firstOf(10, 5000, 30, 20000), 1u) << "three times the records for four times the bytes";
+}
+
+/// The first band takes .1875 of squared error away and the second .0625, whatever records they
+/// have.
+TEST(Planner, aPacketsShareIsThatOfItsOwnBand) {
+  Planned log({.chunks = 1, .bands = 2, .errors = true});
+  const auto orderFor = [&](std::uint32_t recordsOfNode3) {
+    setSize(log, 1, 100 - recordsOfNode3, 5000);  // node 2
+    setSize(log, 2, recordsOfNode3, 5000);        // node 3
+    for (std::uint32_t chunk = 3; chunk < 7; ++chunk) setSize(log, chunk, 1000, 5000);
+    return log.chunks({});
+  };
+  EXPECT_EQ(orderFor(40), (std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5, 6}))
+      << "40 % of .1875 is more than 25 % of .0625";
+  EXPECT_EQ(orderFor(5), (std::vector<std::uint32_t>{0, 1, 3, 4, 2, 5, 6})) << "5 % is less";
+}
+
 TEST(Planner, fieldsOfWhatIsThereComeBeforeNewPacketsOfTheSameTier) {
   const Planned log({.chunks = 1, .bands = 2, .errors = true});
   ClientBlocks blocks = log.blocks({0}, 1, {0});

@@ -1,0 +1,28 @@
+#include "server/wire/digest.h"
+
+#include <openssl/evp.h>
+
+#include <stdexcept>
+
+#include "proto/checksum.h"
+
+namespace qtet {
+
+Digest digestOf(ByteView bytes) {
+  // fetched once: EVP_sha256() would look for it at every call
+  static const EVP_MD* const kSha256 = ::EVP_MD_fetch(nullptr, "SHA256", nullptr);
+  Digest out{};
+  if (kSha256 == nullptr ||
+      ::EVP_Digest(bytes.data(), bytes.size(), out.data(), nullptr, kSha256, nullptr) != 1)
+    throw std::runtime_error("OpenSSL cannot make a SHA-256");
+  return out;
+}
+
+Digest digestOf(std::string_view text) {
+  return digestOf(ByteView(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
+}
+
+std::string hexDigestOf(ByteView bytes) { return toHex(digestOf(bytes)); }
+std::string hexDigestOf(std::string_view text) { return toHex(digestOf(text)); }
+
+}  // namespace qtet
