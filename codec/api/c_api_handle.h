@@ -1,5 +1,5 @@
-// What stands behind the handle of codec/api/qtet.h, and the border that no exception crosses. For
-// the library's own .cpp files.
+// What stands behind the handles of the C API (codec/api/qtet.h, simplify/api/qtet_simplify.h), and
+// the border that no exception crosses. For the library's own .cpp files.
 #pragma once
 
 #include <cstdint>
@@ -12,19 +12,32 @@
 #include "codec/log/log_file.h"
 #include "proto/manifest.h"
 
-struct qtet_log {
-  std::optional<qtet::LogFile> file;
-  qtet::Manifest manifest;               // of `file`
-  std::optional<qtet::Refiner> refiner;  // of `file`, with a complete level
+namespace qtet {
+
+[[nodiscard]] qtet_status statusOf(ErrorCode code);
+
+/// The last failure of a handle.
+struct Failure {
   std::string message;
-  const char* text = "";  // of the last failure: `message`, or a literal where memory is short
+  const char* text = "";  // `message`, or a literal where memory is short
 
   qtet_status refuse(qtet_status code, std::string why) {
     message = std::string(qtet_status_name(code)) + ": " + std::move(why);
     text = message.c_str();
     return code;
   }
-  qtet_status refuse(const qtet::Error& error);
+  qtet_status refuse(const Error& error);
+};
+
+}  // namespace qtet
+
+struct qtet_log : qtet::Failure {
+  static constexpr const char* kShortOfMemory =
+      "out-of-memory: there is not enough memory; refine to a coarser level";
+
+  std::optional<qtet::LogFile> file;
+  qtet::Manifest manifest;               // of `file`
+  std::optional<qtet::Refiner> refiner;  // of `file`, with a complete level
 
   // What a call needs; each gives QTET_OK or refuses.
   qtet_status needField(std::uint32_t field);
@@ -37,18 +50,19 @@ struct qtet_log {
 
 namespace qtet {
 
-/// Runs `work`, which gives a qtet_status; what it throws becomes one.
-template <class Work>
-qtet_status guarded(qtet_log* log, const Work& work) noexcept {
-  if (log == nullptr) return QTET_BAD_ARGUMENT;
+/// Runs `work`, which gives a qtet_status; what it throws becomes one. Null is refused.
+template <class Handle, class Work>
+qtet_status guarded(Handle* handle, const Work& work) noexcept {
+  if (handle == nullptr) return QTET_BAD_ARGUMENT;
   try {
     return work();
   } catch (const std::bad_alloc&) {
-    log->text = "out-of-memory: there is not enough memory; refine to a coarser level";
+    handle->text = Handle::kShortOfMemory;
     return QTET_OUT_OF_MEMORY;
   } catch (...) {
-    log->text =
-        "internal: the library failed in a way that it should not; please report it with the log";
+    handle->text =
+        "internal: the library failed in a way that it should not; please report it with the log "
+        "or the mesh";
     return QTET_INTERNAL;
   }
 }

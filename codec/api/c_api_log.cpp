@@ -21,25 +21,6 @@ using qtet::withLog;
 
 namespace {
 
-// The border's numbers are for ever, so they do not follow ErrorCode's order.
-qtet_status statusOf(ErrorCode code) {
-  switch (code) {
-    case ErrorCode::kTruncated: return QTET_TRUNCATED;
-    case ErrorCode::kBadMagic: return QTET_BAD_MAGIC;
-    case ErrorCode::kBadVersion: return QTET_BAD_VERSION;
-    case ErrorCode::kBadChecksum: return QTET_BAD_CHECKSUM;
-    case ErrorCode::kBadValue: return QTET_BAD_VALUE;
-    case ErrorCode::kLimitExceeded: return QTET_LIMIT_EXCEEDED;
-    case ErrorCode::kBadCodec: return QTET_BAD_CODEC;
-    case ErrorCode::kBadOrder: return QTET_BAD_ORDER;
-    case ErrorCode::kNotFound: return QTET_NOT_FOUND;
-    case ErrorCode::kBadInput: return QTET_BAD_INPUT;
-    case ErrorCode::kIo: return QTET_IO;
-    case ErrorCode::kCancelled: return QTET_CANCELLED;
-  }
-  return QTET_INTERNAL;
-}
-
 /// `path` is "" for a log from memory.
 qtet_status take(qtet_log* log, Result<LogFile> file, const std::string& path) {
   if (!file) return log->refuse(file.error());
@@ -147,9 +128,28 @@ qtet_level_info infoOfLevel(const qtet_log& log, std::uint32_t level) {
 
 }  // namespace
 
+// The border's numbers are for ever, so they do not follow ErrorCode's order.
+qtet_status qtet::statusOf(ErrorCode code) {
+  switch (code) {
+    case ErrorCode::kTruncated: return QTET_TRUNCATED;
+    case ErrorCode::kBadMagic: return QTET_BAD_MAGIC;
+    case ErrorCode::kBadVersion: return QTET_BAD_VERSION;
+    case ErrorCode::kBadChecksum: return QTET_BAD_CHECKSUM;
+    case ErrorCode::kBadValue: return QTET_BAD_VALUE;
+    case ErrorCode::kLimitExceeded: return QTET_LIMIT_EXCEEDED;
+    case ErrorCode::kBadCodec: return QTET_BAD_CODEC;
+    case ErrorCode::kBadOrder: return QTET_BAD_ORDER;
+    case ErrorCode::kNotFound: return QTET_NOT_FOUND;
+    case ErrorCode::kBadInput: return QTET_BAD_INPUT;
+    case ErrorCode::kIo: return QTET_IO;
+    case ErrorCode::kCancelled: return QTET_CANCELLED;
+  }
+  return QTET_INTERNAL;
+}
+
 static_assert(QTET_MAX_COMPONENTS == qtet::kMaxFieldComponents);
 
-qtet_status qtet_log::refuse(const qtet::Error& error) {
+qtet_status qtet::Failure::refuse(const Error& error) {
   message = error.text();
   text = message.c_str();
   return statusOf(error.code);

@@ -1,6 +1,6 @@
 # What is installed is what other programs can use: installs into a folder of its own, builds
-# levels.c against it with find_package and with pkg-config, and compares what it prints with what
-# `qtet info` and `qtet extract` say.
+# levels.c and simplify.c against it with find_package and with pkg-config, and compares what they
+# print and write with what `qtet info`, `qtet extract` and `qtet simplify` do.
 #   cmake -DBUILD=build/release -DSOURCE=. -DOUT=folder [-DPYTHON=python3] [-DNM=nm] -P check.cmake
 cmake_minimum_required(VERSION 3.25)
 set(here ${CMAKE_CURRENT_LIST_DIR})
@@ -30,8 +30,12 @@ foreach(component IN ITEMS library development tool)
 endforeach()
 file(GLOB_RECURSE library ${prefix}/libqtet.so)
 if(NM)
-  file(STRINGS ${SOURCE}/codec/api/qtet.h declarations REGEX "^QTET_API ")
-  list(TRANSFORM declarations REPLACE ".*[ *](qtet_[a-z_]+)\\(.*" "\\1")
+  set(declarations)
+  foreach(header IN ITEMS codec/api/qtet.h simplify/api/qtet_simplify.h)
+    file(STRINGS ${SOURCE}/${header} declared REGEX "^QTET_API ")
+    list(TRANSFORM declared REPLACE ".*[ *](qtet_[a-z_]+)\\(.*" "\\1")
+    list(APPEND declarations ${declared})
+  endforeach()
   list(SORT declarations)
   run(${NM} -D --defined-only --format=posix ${library})
   string(REGEX REPLACE " [^\n]*" "" exports "${said}")
@@ -43,7 +47,10 @@ else()
   message("no nm: exported symbols not compared")
 endif()
 
-# ---- a program of somebody else's, twice
+file(STRINGS ${library} readers REGEX "^libvtk")
+expect_same("libraries of VTK that libqtet.so needs" "${readers}" "")
+
+# ---- programs of somebody else's, twice
 
 find_program(compiler NAMES cc gcc-12 gcc clang-19 clang REQUIRED)
 run(${CMAKE_COMMAND} -S ${here} -B ${OUT}/build
@@ -57,8 +64,10 @@ if(pkg_config)
   set(ENV{PKG_CONFIG_PATH} ${folder}/pkgconfig)
   run(${pkg_config} --cflags --libs qtet)
   separate_arguments(flags UNIX_COMMAND "${said}")
-  run(${compiler} -std=c99 -pedantic -Wall -Wextra -Werror ${here}/levels.c ${flags}
-    -Wl,-rpath,${folder} -o ${OUT}/levels)
+  foreach(program IN ITEMS levels simplify)
+    run(${compiler} -std=c99 -pedantic -Wall -Wextra -Werror ${here}/${program}.c ${flags}
+      -Wl,-rpath,${folder} -o ${OUT}/${program})
+  endforeach()
   list(APPEND programs ${OUT}/levels)
 else()
   message("no pkg-config: qtet.pc not tried")
@@ -112,6 +121,23 @@ foreach(program IN LISTS programs)
     message(FATAL_ERROR "${program} of a log cut short: status ${status}, '${complaint}'")
   endif()
 endforeach()
+
+# ---- a log that a program makes is the tool's of the same mesh
+
+foreach(name IN ITEMS solid cell-fields no-fields)
+  set(log ${SOURCE}/tests/golden/valid/${name}.qtet)
+  expected_levels(${log})
+  run(${qtet} extract ${log} --level ${last} -o ${OUT}/whole.vtu)
+  run(${qtet} simplify ${OUT}/whole.vtu -o ${OUT}/expected.qtet --target-ratio 0.2)
+  run(${OUT}/build/simplify ${log} ${OUT}/made.qtet whole.vtu 0.2)
+  file(SHA256 ${OUT}/expected.qtet expected)
+  file(SHA256 ${OUT}/made.qtet found)
+  expect_same("the log made of ${name}" ${found} ${expected})
+endforeach()
+execute_process(COMMAND ${OUT}/build/simplify ${log} ${OUT}/no/made.qtet whole.vtu 0.2 ERROR_VARIABLE complaint RESULT_VARIABLE status)
+if(NOT status EQUAL 1 OR NOT complaint MATCHES "simplify: not-found")
+  message(FATAL_ERROR "a log written into no folder: status ${status}, '${complaint}'")
+endif()
 
 # ---- the same from Python
 

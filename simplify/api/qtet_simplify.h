@@ -1,0 +1,152 @@
+/* From a mesh in arrays to its log: what `qtet simplify` does, for C and for every language that
+ * calls C. C99.
+ *
+ *   qtet_input_mesh mesh = {0};
+ *   mesh.points = xyz, mesh.pointType = QTET_FLOAT64, mesh.pointCount = 729;
+ *   mesh.tetrahedra = ids, mesh.idType = QTET_UINT32, mesh.tetrahedronCount = 3072;
+ *   qtet_simplified* made = qtet_simplified_create();
+ *   if (qtet_simplify(made, sizeof mesh, &mesh, 0, NULL) ||
+ *       qtet_simplified_write(made, "part.qtet"))
+ *     puts(qtet_simplified_error(made));
+ *   qtet_simplified_destroy(made);
+ *
+ * Errors, threads, pointers and structs are as in qtet.h. A message names an option as the program
+ * `qtet` does: --target-ratio is targetRatio here. The same mesh and options give the same bytes
+ * here and there. */
+#ifndef QTET_SIMPLIFY_H
+#define QTET_SIMPLIFY_H
+
+#include "codec/api/qtet.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- what goes in */
+
+/* Types of numbers in arrays. */
+enum {
+  QTET_FLOAT32 = 1,
+  QTET_FLOAT64 = 2,
+  QTET_INT8 = 3,
+  QTET_INT16 = 4,
+  QTET_INT32 = 5,
+  QTET_INT64 = 6,
+  QTET_UINT8 = 7,
+  QTET_UINT16 = 8,
+  QTET_UINT32 = 9,
+  QTET_UINT64 = 10
+};
+
+typedef struct {
+  const char* name;     /* 1 to 256 bytes of UTF-8; other fields of its association have others */
+  uint32_t association; /* QTET_POINT or QTET_CELL */
+  uint32_t type;        /* QTET_FLOAT32 ... QTET_UINT64; integers below 2^53 in magnitude */
+  uint32_t components;  /* 1 .. QTET_MAX_COMPONENTS */
+  uint32_t reserved;    /* 0 */
+  /* `components` numbers a point or tetrahedron, those of one together. A float that is not finite
+   * is a missing value. */
+  const void* values;
+} qtet_input_field;
+
+typedef struct {
+  const void* points; /* x, y and z of each, finite */
+  uint64_t pointCount;
+  /* Four points each; which way round does not matter. Flat and repeated ones are dealt with as
+   * `qtet check` tells. */
+  const void* tetrahedra;
+  uint64_t tetrahedronCount;
+  uint32_t pointType; /* QTET_FLOAT32 or QTET_FLOAT64 */
+  uint32_t idType;    /* QTET_INT32, QTET_INT64, QTET_UINT32 or QTET_UINT64 */
+  const qtet_input_field* fields;
+  uint32_t fieldCount;
+  uint32_t fieldBytes; /* sizeof(qtet_input_field) */
+} qtet_input_mesh;
+
+/* ---- how */
+
+enum { QTET_ALGORITHM_QTET = 0, QTET_ALGORITHM_PAPER = 1 };
+enum { QTET_PLACEMENT_AUTO = 0, QTET_PLACEMENT_OPTIMAL = 1, QTET_PLACEMENT_VERTEX = 2 };
+enum { QTET_MEASURE_NONE = 0, QTET_MEASURE_LEVELS = 1, QTET_MEASURE_ALL = 2 };
+enum { QTET_CODEC_DRACO = 0, QTET_CODEC_ADAPTIVE = 1 };
+
+/* In the order of doing; QTET_STAGE_MEASURE and QTET_STAGE_KEEP only where they are asked for. */
+enum {
+  QTET_STAGE_CLEAN = 0,
+  QTET_STAGE_QUANTISE = 1,
+  QTET_STAGE_SIMPLIFY = 2,
+  QTET_STAGE_MEASURE = 3,
+  QTET_STAGE_ENCODE = 4,
+  QTET_STAGE_KEEP = 5
+};
+
+/* Called about ten times a second, in the thread that called qtet_simplify: which stage is in hand,
+ * and how much of it is done, 0 to 1. Anything but 0 ends the work soon, with QTET_CANCELLED. */
+typedef int (*qtet_progress)(void* user, uint32_t stage, double fraction);
+
+/* A field and what is said of it. */
+typedef struct {
+  const char* name;
+  double value;
+} qtet_named_number;
+
+/* qtet_simplify_defaults sets all of them. `qtet simplify --help` says more of each. */
+typedef struct {
+  double targetRatio;       /* the base mesh's tetrahedra over the input's, 0.01 */
+  double boundaryWeight;    /* beside the fields; NaN: chosen by the mesh */
+  double shapeWeight;       /* 0.5 */
+  double envelopeTolerance; /* over the diagonal of the mesh's box, 0 */
+  uint32_t positionBits;    /* of the lattice, an axis: 16 */
+  uint32_t fieldBits;       /* of a float field's values: 12 */
+  uint32_t algorithm;       /* QTET_ALGORITHM_QTET */
+  uint32_t placement;       /* QTET_PLACEMENT_AUTO */
+  uint32_t measure;         /* QTET_MEASURE_LEVELS: the known error of each level */
+  uint32_t valueCodec;      /* QTET_CODEC_DRACO */
+  uint32_t keepOrder;       /* 1: the log keeps the input's numbering; 0 */
+  uint32_t lossless;        /* 1: it keeps the input's own numbers; 0 */
+  uint32_t cellsPerPacket;  /* 100 and more: layout `regions`; 0: layout `stream` */
+  uint32_t threads;         /* as many as there are processors at most; 1. The log is the same */
+  double maxBoundaryError;  /* over the diagonal; NaN: no bound */
+  const qtet_named_number* maxFieldErrors; /* rms over the field's range */
+  const qtet_named_number* fieldWeights;   /* of point fields; others count 1 */
+  uint32_t maxFieldErrorCount, fieldWeightCount;
+  const char* regions;    /* a cell field whose values keep their topology, or null */
+  const char* source;     /* the name that the log calls its input, or null */
+  qtet_progress progress; /* or null */
+  void* user;             /* handed to it */
+} qtet_simplify_options;
+
+QTET_API qtet_status qtet_simplify_defaults(size_t optionsBytes, qtet_simplify_options* options);
+
+/* ---- making a log */
+
+/* A log that was made, or why there is none. */
+typedef struct qtet_simplified qtet_simplified;
+
+/* Null only if memory is short. */
+QTET_API qtet_simplified* qtet_simplified_create(void);
+/* Gives the log's memory back; null is allowed. */
+QTET_API void qtet_simplified_destroy(qtet_simplified* made);
+/* Text of the last failure, "" before the first; until the next call that fails. */
+QTET_API const char* qtet_simplified_error(const qtet_simplified* made);
+
+/* Makes the log of a mesh; `options` null: the defaults. Keeps no pointer. If it fails, there is no
+ * log. QTET_BAD_INPUT: a mesh that cannot be simplified, with the reason in the text. */
+QTET_API qtet_status qtet_simplify(qtet_simplified* made, size_t meshBytes,
+                                   const qtet_input_mesh* mesh, size_t optionsBytes,
+                                   const qtet_simplify_options* options);
+
+/* The log and its length; until the next qtet_simplify or destroy. Null and 0 without one.
+ * qtet_log_open_memory opens it. */
+QTET_API const void* qtet_simplified_log(const qtet_simplified* made, size_t* bytes);
+/* Writes the log as a file, whole or not at all: after a failure what was there is there still. */
+QTET_API qtet_status qtet_simplified_write(qtet_simplified* made, const char* path);
+/* What was changed or is unusual about the mesh, a line each; "" if nothing is. Until the next
+ * qtet_simplify or destroy. */
+QTET_API const char* qtet_simplified_notes(const qtet_simplified* made);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

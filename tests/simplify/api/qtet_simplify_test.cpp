@@ -1,0 +1,366 @@
+// simplify/api/qtet_simplify.h as a C program sees it: logs as the tool makes them, and every wrong
+// argument a status with a text.
+#include "simplify/api/qtet_simplify.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <functional>
+#include <memory>
+#include <thread>
+
+#include "codec/coding/number_type.h"
+#include "codec/files/atomic_file.h"
+#include "proto/manifest.h"
+#include "simplify/log/write_mesh.h"
+#include "simplify/read/read_mesh.h"
+#include "tests/simplify/pipeline/field_meshes.h"
+#include "tests/support/meshes.h"
+
+namespace qtet {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Made = std::unique_ptr<qtet_simplified, decltype(&qtet_simplified_destroy)>;
+
+Made made() { return {qtet_simplified_create(), &qtet_simplified_destroy}; }
+
+std::string errorOf(const Made& log) { return qtet_simplified_error(log.get()); }
+
+Bytes bytesOf(const Made& log) {
+  std::size_t bytes = 0;
+  const auto* data = static_cast<const std::uint8_t*>(qtet_simplified_log(log.get(), &bytes));
+  return {data, data + bytes};
+}
+
+Bytes contentOf(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+qtet_simplify_options usual() {
+  qtet_simplify_options options;
+  EXPECT_EQ(qtet_simplify_defaults(sizeof options, &options), QTET_OK);
+  options.source = "mesh.vtu";
+  return options;
+}
+
+/// A mesh in the arrays that a C program has; everything in its own type.
+class Arrays {
+ public:
+  explicit Arrays(const TetMesh& mesh) : mesh_(mesh) {
+    for (const MeshField& field : mesh_.fields) {
+      numberType(field.type).append(bytes_.emplace_back(), field.values);
+      const auto type = static_cast<std::uint32_t>(std::ranges::find(kFieldTypes, field.type) -
+                                                   kFieldTypes.begin() + QTET_FLOAT32);
+      fields_.push_back({field.name.c_str(),
+                         static_cast<std::uint32_t>(isCellField(field) ? QTET_CELL : QTET_POINT),
+                         type, field.components, 0, bytes_.back().data()});
+    }
+    for (std::size_t f = 0; f < bytes_.size(); ++f) fields_[f].values = bytes_[f].data();
+    const bool isFloat = mesh_.pointType == "float32";
+    for (const Position& p : mesh_.points)
+      numberType(isFloat ? "float32" : "float64").append(points_, p);
+    input = {points_.data(),
+             mesh_.points.size(),
+             mesh_.tetrahedra.data(),
+             mesh_.tetrahedra.size(),
+             isFloat ? QTET_FLOAT32 : QTET_FLOAT64,
+             QTET_UINT32,
+             fields_.data(),
+             static_cast<std::uint32_t>(fields_.size()),
+             sizeof(qtet_input_field)};
+  }
+  Arrays(const Arrays&) = delete;
+  Arrays& operator=(const Arrays&) = delete;
+
+  qtet_input_mesh input{};
+  qtet_input_field& field(std::size_t f) { return fields_[f]; }
+
+ private:
+  TetMesh mesh_;
+  Bytes points_;
+  std::vector<Bytes> bytes_;
+  std::vector<qtet_input_field> fields_;
+};
+
+qtet_status simplified(const Made& log, const Arrays& arrays,
+                       const qtet_simplify_options& options = usual()) {
+  return qtet_simplify(log.get(), sizeof arrays.input, &arrays.input, sizeof options, &options);
+}
+
+/// The log that the tool makes of the mesh, and the mesh as it reads it.
+struct ToolsLog {
+  Bytes log;
+  TetMesh mesh;
+};
+ToolsLog toolsLog(const std::string& name, const TetMesh& mesh, const std::string& words) {
+  const fs::path folder = testing::freshFolder("c-simplify-" + name);
+  EXPECT_TRUE(writeFileAtomically(folder / "mesh.vtu", vtuBytes(mesh)));
+  const std::string command =
+      "cd '" + folder.string() + "' && '" QTET_TOOL "' simplify mesh.vtu -o log.qtet -q " + words;
+  EXPECT_EQ(std::system(command.c_str()), 0) << command;
+  Result<ReadMesh> read = readMesh(folder / "mesh.vtu");
+  EXPECT_TRUE(read);
+  return {contentOf(folder / "log.qtet"), std::move(read->mesh)};
+}
+
+TEST(QtetSimplify, logsAreTheToolsByteForByte) {
+  struct Case {
+    const char* words;
+    void (*change)(qtet_simplify_options&);
+  };
+  static const qtet_named_number kWeights[] = {{"Swirl", 3}}, kBounds[] = {{"Scalar", 0.05}};
+  for (const Case& c : {
+           Case{"", [](qtet_simplify_options&) {}},
+           Case{"--lossless --keep-order --geometry-codec adaptive --placement vertex --threads 2",
+                [](qtet_simplify_options& o) {
+                  o.lossless = o.keepOrder = 1;
+                  o.valueCodec = QTET_CODEC_ADAPTIVE;
+                  o.placement = QTET_PLACEMENT_VERTEX;
+                  o.threads = 2;
+                }},
+           Case{"--algorithm paper --measure none",
+                [](qtet_simplify_options& o) {
+                  o.algorithm = QTET_ALGORITHM_PAPER;
+                  o.measure = QTET_MEASURE_NONE;
+                }},
+           Case{"--target-ratio 0.2 --boundary-weight 7 --shape-weight 0.1 "
+                "--envelope-tolerance 0.02 --position-bits 17 --field-bits 11 "
+                "--placement optimal --measure all --preserve-regions Label",
+                [](qtet_simplify_options& o) {
+                  o.targetRatio = 0.2;
+                  o.boundaryWeight = 7;
+                  o.shapeWeight = 0.1;
+                  o.envelopeTolerance = 0.02;
+                  o.positionBits = 17;
+                  o.fieldBits = 11;
+                  o.placement = QTET_PLACEMENT_OPTIMAL;
+                  o.measure = QTET_MEASURE_ALL;
+                  o.regions = "Label";
+                }},
+           Case{"--layout regions --cells-per-packet 300 --field-weight Swirl=3 "
+                "--max-boundary-error 0.05 --max-field-error Scalar=0.05",
+                [](qtet_simplify_options& o) {
+                  o.cellsPerPacket = 300;
+                  o.fieldWeights = kWeights, o.fieldWeightCount = 1;
+                  o.maxFieldErrors = kBounds, o.maxFieldErrorCount = 1;
+                  o.maxBoundaryError = 0.05;
+                }},
+       }) {
+    const ToolsLog tool = toolsLog("box", testing::boxWithFields(), c.words);
+    const Arrays arrays(tool.mesh);
+    qtet_simplify_options options = usual();
+    c.change(options);
+    const Made log = made();
+    ASSERT_EQ(simplified(log, arrays, options), QTET_OK) << errorOf(log);
+    EXPECT_EQ(bytesOf(log), tool.log) << c.words;
+  }
+}
+
+TEST(QtetSimplify, soAreThoseOfALargeMeshAndItsProgressIsTold) {
+  const ToolsLog tool = toolsLog("fin", finSample(), "--measure none");
+  const Arrays arrays(tool.mesh);
+  struct Told {
+    std::thread::id thread = std::this_thread::get_id();
+    std::uint32_t stage = 0;
+    double fraction = 0;
+    int calls = 0, bad = 0;
+  } told;
+  qtet_simplify_options options = usual();
+  options.measure = QTET_MEASURE_NONE;
+  options.user = &told;
+  options.progress = [](void* user, std::uint32_t stage, double fraction) {
+    Told& t = *static_cast<Told*>(user);
+    t.bad += std::this_thread::get_id() != t.thread || stage < t.stage || fraction < 0 ||
+             fraction > 1 || (stage == t.stage && fraction < t.fraction);
+    t.stage = stage, t.fraction = fraction, ++t.calls;
+    return 0;
+  };
+  const Made log = made();
+  ASSERT_EQ(simplified(log, arrays, options), QTET_OK) << errorOf(log);
+  EXPECT_EQ(bytesOf(log), tool.log);
+  EXPECT_EQ(told.bad, 0);
+  EXPECT_GT(told.calls, 3);
+}
+
+TEST(QtetSimplify, aCallbackThatSaysSoEndsTheWork) {
+  const Arrays arrays(finSample());
+  int calls = 0;
+  qtet_simplify_options options = usual();
+  options.user = &calls;
+  options.progress = [](void* user, std::uint32_t, double) {
+    return ++*static_cast<int*>(user) == 2 ? 1 : 0;
+  };
+  const Made log = made();
+  EXPECT_EQ(simplified(log, arrays, options), QTET_CANCELLED);
+  EXPECT_TRUE(errorOf(log).starts_with("cancelled: ")) << errorOf(log);
+  EXPECT_EQ(calls, 2) << "nobody is asked again";
+  EXPECT_EQ(qtet_simplified_log(log.get(), nullptr), nullptr);
+  const Arrays box(testing::boxWithFields());
+  EXPECT_EQ(simplified(log, box), QTET_OK) << "the handle is as good as before";
+}
+
+TEST(QtetSimplify, typesOfNumbersDoNotMatterWhereTheyHoldTheSame) {
+  const TetMesh mesh = boxSample();  // coordinates of 1/8, which a float holds
+  Arrays arrays(mesh);
+  const Made log = made();
+  ASSERT_EQ(simplified(log, arrays), QTET_OK) << errorOf(log);
+  const Bytes expected = bytesOf(log);
+  std::vector<float> points;
+  for (const Position& p : mesh.points)
+    for (const double x : p) points.push_back(static_cast<float>(x));
+  arrays.input.points = points.data(), arrays.input.pointType = QTET_FLOAT32;
+  std::vector<std::int64_t> wide;
+  std::vector<std::int32_t> narrow;
+  for (const Tetrahedron& cell : mesh.tetrahedra)
+    for (const VertexId v : cell) wide.push_back(v), narrow.push_back(static_cast<int>(v));
+  for (const auto& [ids, type] : {std::pair{static_cast<const void*>(wide.data()), QTET_INT64},
+                                  {wide.data(), QTET_UINT64},
+                                  {narrow.data(), QTET_INT32},
+                                  {narrow.data(), QTET_UINT32}}) {
+    arrays.input.tetrahedra = ids, arrays.input.idType = static_cast<std::uint32_t>(type);
+    ASSERT_EQ(simplified(log, arrays), QTET_OK) << errorOf(log);
+    EXPECT_EQ(bytesOf(log), expected);
+  }
+}
+
+TEST(QtetSimplify, whatIsLeftOutIsTheDefault) {
+  const Arrays arrays(testing::boxWithFields());
+  const Made log = made();
+  ASSERT_EQ(qtet_simplify(log.get(), sizeof arrays.input, &arrays.input, 0, nullptr), QTET_OK);
+  const Bytes expected = bytesOf(log);
+  struct Longer {
+    qtet_simplify_options options;
+    char later[64];
+  } longer;
+  ASSERT_EQ(qtet_simplify_defaults(sizeof longer, &longer.options), QTET_OK);
+  EXPECT_TRUE(std::ranges::all_of(longer.later, [](char c) { return c == 0; }));
+  std::ranges::fill(longer.later, 'x');
+  ASSERT_EQ(
+      qtet_simplify(log.get(), sizeof arrays.input, &arrays.input, sizeof longer, &longer.options),
+      QTET_OK);
+  EXPECT_EQ(bytesOf(log), expected);
+}
+
+TEST(QtetSimplify, theLogIsOpenedFromMemoryAndWrittenAsAFile) {
+  TetMesh mesh = testing::boxWithFields();
+  std::swap(mesh.tetrahedra[3][0], mesh.tetrahedra[3][1]);
+  const Arrays arrays(mesh);
+  const Made log = made();
+  EXPECT_EQ(qtet_simplified_write(log.get(), "log.qtet"), QTET_NO_LOG);
+  ASSERT_EQ(simplified(log, arrays), QTET_OK) << errorOf(log);
+  EXPECT_STREQ(qtet_simplified_notes(log.get()),
+               "cells turned to the orientation of VTK: 1 (cell 3)\n");
+  std::size_t bytes = 0;
+  const void* data = qtet_simplified_log(log.get(), &bytes);
+  const std::unique_ptr<qtet_log, decltype(&qtet_log_destroy)> reader(qtet_log_create(),
+                                                                      &qtet_log_destroy);
+  ASSERT_EQ(qtet_log_open_memory(reader.get(), bytes, data), QTET_OK);
+  ASSERT_EQ(qtet_log_refine(reader.get(), QTET_FULL), QTET_OK);
+  EXPECT_EQ(qtet_log_tetrahedron_count(reader.get()), kBoxCells);
+
+  const fs::path folder = testing::freshFolder("c-simplify-write");
+  EXPECT_EQ(qtet_simplified_write(log.get(), (folder / "no" / "log.qtet").c_str()), QTET_NOT_FOUND);
+  ASSERT_EQ(qtet_simplified_write(log.get(), (folder / "log.qtet").c_str()), QTET_OK);
+  EXPECT_EQ(contentOf(folder / "log.qtet"), bytesOf(log));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1) << "nothing is left beside it";
+}
+
+TEST(QtetSimplify, noExceptionAndNoCrashWhateverIsGiven) {
+  const auto refused = [](qtet_status status, const std::string& words,
+                          const std::function<void(Arrays&, qtet_simplify_options&)>& change) {
+    Arrays arrays(testing::boxWithFields());
+    qtet_simplify_options options = usual();
+    const Made log = made();
+    ASSERT_EQ(simplified(log, arrays, options), QTET_OK);
+    change(arrays, options);
+    EXPECT_EQ(simplified(log, arrays, options), status) << words << ": " << errorOf(log);
+    EXPECT_TRUE(errorOf(log).starts_with(std::string(qtet_status_name(status)) + ": "))
+        << errorOf(log);
+    EXPECT_NE(errorOf(log).find(words), std::string::npos) << errorOf(log);
+    std::size_t bytes = 7;
+    EXPECT_EQ(qtet_simplified_log(log.get(), &bytes), nullptr) << "the log before is gone";
+    EXPECT_EQ(bytes, 0u);
+  };
+  using O = qtet_simplify_options;
+  refused(QTET_BAD_INPUT, "null", [](Arrays& a, O&) { a.input.points = nullptr; });
+  refused(QTET_BAD_INPUT, "null", [](Arrays& a, O&) { a.input.tetrahedra = nullptr; });
+  refused(QTET_BAD_INPUT, "null", [](Arrays& a, O&) { a.input.fields = nullptr; });
+  refused(QTET_BAD_INPUT, "no points", [](Arrays& a, O&) { a.input.pointCount = 0; });
+  refused(QTET_BAD_INPUT, "no tetrahedra", [](Arrays& a, O&) { a.input.tetrahedronCount = 0; });
+  refused(QTET_BAD_INPUT, "outside the 700", [](Arrays& a, O&) { a.input.pointCount = 700; });
+  refused(QTET_LIMIT_EXCEEDED, "2^29",
+          [](Arrays& a, O&) { a.input.pointCount = std::uint64_t{1} << 60; });
+  refused(QTET_LIMIT_EXCEEDED, "2^29",
+          [](Arrays& a, O&) { a.input.tetrahedronCount = ~std::uint64_t{0}; });
+  refused(QTET_LIMIT_EXCEEDED, "256 fields", [](Arrays& a, O&) { a.input.fieldCount = 257; });
+  refused(QTET_BAD_INPUT, "points are of type 5",
+          [](Arrays& a, O&) { a.input.pointType = QTET_INT32; });
+  refused(QTET_BAD_INPUT, "tetrahedra are of type 1",
+          [](Arrays& a, O&) { a.input.idType = QTET_FLOAT32; });
+  refused(QTET_BAD_INPUT, "sizeof(qtet_input_field)",
+          [](Arrays& a, O&) { a.input.fieldBytes = 8; });
+  refused(QTET_BAD_INPUT, "field 2", [](Arrays& a, O&) { a.field(2).name = nullptr; });
+  refused(QTET_BAD_INPUT, "field 2", [](Arrays& a, O&) { a.field(2).values = nullptr; });
+  refused(QTET_BAD_INPUT, "association 2", [](Arrays& a, O&) { a.field(2).association = 2; });
+  refused(QTET_BAD_INPUT, "type 11", [](Arrays& a, O&) { a.field(2).type = 11; });
+  refused(QTET_BAD_INPUT, "type 0", [](Arrays& a, O&) { a.field(2).type = 0; });
+  refused(QTET_BAD_INPUT, "17 components", [](Arrays& a, O&) { a.field(2).components = 17; });
+  refused(QTET_BAD_INPUT, "0 components", [](Arrays& a, O&) { a.field(2).components = 0; });
+  refused(QTET_BAD_INPUT, "called Swirl", [](Arrays& a, O&) { a.field(0).name = "Swirl"; });
+  refused(QTET_BAD_VALUE, "algorithm is 2", [](Arrays&, O& o) { o.algorithm = 2; });
+  refused(QTET_BAD_VALUE, "placement is 3", [](Arrays&, O& o) { o.placement = 3; });
+  refused(QTET_BAD_VALUE, "measure is 3", [](Arrays&, O& o) { o.measure = 3; });
+  refused(QTET_BAD_VALUE, "valueCodec is 2", [](Arrays&, O& o) { o.valueCodec = 2; });
+  refused(QTET_BAD_VALUE, "keepOrder is 2", [](Arrays&, O& o) { o.keepOrder = 2; });
+  refused(QTET_BAD_VALUE, "lossless is 2", [](Arrays&, O& o) { o.lossless = 2; });
+  refused(QTET_BAD_VALUE, "position bits", [](Arrays&, O& o) { o.positionBits = ~0u; });
+  refused(QTET_BAD_VALUE, "field bits", [](Arrays&, O& o) { o.fieldBits = 0; });
+  refused(QTET_BAD_VALUE, "below 100", [](Arrays&, O& o) { o.cellsPerPacket = 1; });
+  refused(QTET_BAD_INPUT, "0..1", [](Arrays&, O& o) { o.targetRatio = NAN; });
+  refused(QTET_BAD_INPUT, "weights", [](Arrays&, O& o) { o.shapeWeight = NAN; });
+  refused(QTET_BAD_INPUT, "tolerance", [](Arrays&, O& o) { o.envelopeTolerance = -1; });
+  refused(QTET_BAD_VALUE, "needs measuring",
+          [](Arrays&, O& o) { o.measure = QTET_MEASURE_NONE, o.maxBoundaryError = 0.1; });
+  refused(QTET_BAD_VALUE, "fieldWeights is null", [](Arrays&, O& o) { o.fieldWeightCount = 1; });
+  static const qtet_named_number kNoName{nullptr, 1}, kNoNumber{"Swirl", NAN}, kNoField{"?", 1};
+  refused(QTET_BAD_VALUE, "maxFieldErrors[0]",
+          [](Arrays&, O& o) { o.maxFieldErrors = &kNoName, o.maxFieldErrorCount = 1; });
+  refused(QTET_BAD_VALUE, "fieldWeights[0]",
+          [](Arrays&, O& o) { o.fieldWeights = &kNoNumber, o.fieldWeightCount = 1; });
+  refused(QTET_NOT_FOUND, "'?'",
+          [](Arrays&, O& o) { o.fieldWeights = &kNoField, o.fieldWeightCount = 1; });
+  refused(QTET_NOT_FOUND, "'?'", [](Arrays&, O& o) { o.regions = "?"; });
+}
+
+TEST(QtetSimplify, aNullHandleOrStructIsRefused) {
+  const Arrays arrays(boxSample());
+  const Made log = made();
+  const qtet_simplify_options options = usual();
+  const qtet_input_mesh& mesh = arrays.input;
+  EXPECT_EQ(qtet_simplify(nullptr, sizeof mesh, &mesh, 0, nullptr), QTET_BAD_ARGUMENT);
+  EXPECT_EQ(qtet_simplify(log.get(), sizeof mesh, nullptr, 0, nullptr), QTET_BAD_ARGUMENT);
+  EXPECT_EQ(qtet_simplify(log.get(), sizeof mesh - 1, &mesh, 0, nullptr), QTET_BAD_ARGUMENT);
+  EXPECT_NE(errorOf(log).find("pass sizeof"), std::string::npos);
+  EXPECT_EQ(qtet_simplify(log.get(), sizeof mesh, &mesh, sizeof options - 1, &options),
+            QTET_BAD_ARGUMENT);
+  EXPECT_EQ(qtet_simplify_defaults(sizeof options, nullptr), QTET_BAD_ARGUMENT);
+  qtet_simplify_options none{};
+  EXPECT_EQ(qtet_simplify_defaults(sizeof options - 1, &none), QTET_BAD_ARGUMENT);
+  EXPECT_EQ(qtet_simplified_write(nullptr, "log.qtet"), QTET_BAD_ARGUMENT);
+  EXPECT_EQ(qtet_simplified_write(log.get(), nullptr), QTET_BAD_ARGUMENT);
+  EXPECT_STREQ(qtet_simplified_error(nullptr), "bad-argument: the place for the log is null");
+  EXPECT_STREQ(qtet_simplified_notes(nullptr), "");
+  EXPECT_EQ(qtet_simplified_log(nullptr, nullptr), nullptr);
+  qtet_simplified_destroy(nullptr);
+}
+
+}  // namespace
+}  // namespace qtet
