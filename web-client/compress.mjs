@@ -10,7 +10,7 @@ import {gzipSync} from 'node:zlib';
  * Page, scripts and WebAssembly, whatever of it is loaded on demand included: a second at 2.4
  * Mbit/s.
  */
-const kMostBytes = 300000;
+const kMaxBytes = 300000;
 
 const folder = process.argv[2];
 const files = readdirSync(folder, {recursive: true, withFileTypes: true}).filter(
@@ -25,11 +25,11 @@ for (const file of files) {
   console.log(`${(compressed.length / 1000).toFixed(1).padStart(7)} kB  ${file.name}`);
 }
 console.log(
-  `${(total / 1000).toFixed(1).padStart(7)} kB  viewer in all, gzip (at most ${kMostBytes / 1000})`,
+  `${(total / 1000).toFixed(1).padStart(7)} kB  viewer in all, gzip (at most ${kMaxBytes / 1000})`,
 );
-if (total > kMostBytes) {
+if (total > kMaxBytes) {
   console.error(
-    `The viewer weighs ${total - kMostBytes} bytes more than a first visit may download: find ` +
+    `The viewer weighs ${total - kMaxBytes} bytes more than a first visit may download: find ` +
       'what grew, or load it on demand.',
   );
   process.exit(1);

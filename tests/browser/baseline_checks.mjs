@@ -13,7 +13,7 @@ const kFolder = fileURLToPath(new URL('baselines/', import.meta.url));
  * Of 4 x 4 pixels: so many may look otherwise. Another machine's antialiasing and fonts change
  * fewer, a missing cap, edge or light more.
  */
-const kMostDiffering = 0.01;
+const kMaxDiffering = 0.01;
 
 const kScene = {viewport: {width: 480, height: 320}};
 const kPhoneSize = {viewport: {width: 390, height: 844}, isMobile: true, hasTouch: true};
@@ -56,7 +56,7 @@ async function looksAsItDid({server, browser, out}) {
     const differing = differingBlocks(readPng(readFileSync(path)), seen);
     notes.push(`${name} ${(100 * differing).toFixed(2)} %`);
     assert.ok(
-      differing <= kMostDiffering,
+      differing <= kMaxDiffering,
       `${name}: ${(100 * differing).toFixed(2)} % look otherwise than in ${path}`,
     );
   }

@@ -1,4 +1,4 @@
-// Fields that are awkward to show: names, numbers and gaps that still have to be read.
+// Fields that are awkward to show: names, numbers and missing values that still have to be read.
 
 import assert from 'node:assert/strict';
 import {execFileSync} from 'node:child_process';
@@ -31,7 +31,7 @@ async function showsAwkwardFieldsLegibly({server, browser, logs, out, bin}) {
       Offset: (x, y, z) => 101325 + 0.03 * z,
       Tiny: (x) => 1e-9 * x,
       Constant: () => 42.5,
-      Gaps: (x, y, z) => (z < 1 ? NaN : y),
+      Missing: (x, y, z) => (z < 1 ? NaN : y),
       [kLong]: (x, y) => y,
     }),
   );
@@ -46,7 +46,7 @@ async function showsAwkwardFieldsLegibly({server, browser, logs, out, bin}) {
   await viewer.waitForState('complete');
   await viewer.waitForPicture();
   const {page} = viewer;
-  for (const field of ['Offset', 'Tiny', 'Constant', 'Gaps', kLong]) {
+  for (const field of ['Offset', 'Tiny', 'Constant', 'Missing', kLong]) {
     await page.evaluate((name) => window.qtetViewer.setAttribute('field', name), field);
     await page.waitForFunction(
       (name) => window.qtetViewer.shadowRoot.querySelector('.legend-name').title === name,
@@ -64,8 +64,8 @@ async function showsAwkwardFieldsLegibly({server, browser, logs, out, bin}) {
         `${field}: "${ticks[i - 1].text}" and "${ticks[i].text}" overlap`,
       );
     assert.equal(
-      await page.locator('qtet-viewer .legend-gap').isVisible(),
-      field === 'Gaps',
+      await page.locator('qtet-viewer .legend-missing').isVisible(),
+      field === 'Missing',
       field,
     );
     await viewer.screenshot(`legend-${field.slice(0, 8).toLowerCase()}`);

@@ -14,7 +14,7 @@ import type {Frame} from './protocol';
 import {Ledger, kNoStatistics, statisticsOf, type Statistics} from './statistics';
 import type {LogTable} from './transport';
 import {readValueBlock} from './value_block';
-import {inOrder, kNoWishes, type WireLattice, type Wishes} from './wishes';
+import {inOrder, kNoViewRequest, type WireLattice, type ViewRequest} from './view_request';
 
 export class Assembler implements LogTable {
   manifest: Manifest | null = null;
@@ -138,10 +138,10 @@ export class Assembler implements LogTable {
   }
 
   /** What is looked at is also decoded first. */
-  look(wishes: Wishes): void {
+  look(view: ViewRequest): void {
     const {lattice, packets} = this;
     this.rank = new Map(
-      lattice ? inOrder(packets, wishes, lattice.size).map(({chunk}, i) => [chunk, i]) : [],
+      lattice ? inOrder(packets, view, lattice.size).map(({chunk}, i) => [chunk, i]) : [],
     );
   }
 
@@ -200,7 +200,7 @@ export class Assembler implements LogTable {
     this.ledger = new Ledger(this.codec, head.length);
     this.head = head.slice();
     this.packetList = packetsOf(this.codec);
-    this.look(kNoWishes);
+    this.look(kNoViewRequest);
     this.ready.clear();
     this.blocks = Array.from({length: this.codec.chunkCount}, () => []);
     this.received = Array<number>(kFirstFieldPart + this.manifest.fields.length).fill(0);

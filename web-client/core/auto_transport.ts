@@ -6,7 +6,7 @@ import type {QtetError} from './errors';
 import type {Goal} from './goal';
 import type {Frame, OpenRequest, ServerMessage} from './protocol';
 import type {Transport, TransportHandlers} from './transport';
-import type {Wishes} from './wishes';
+import type {ViewRequest} from './view_request';
 
 export type TransportKind = 'websocket' | 'range' | 'chunks';
 export const kTransportKinds: readonly TransportKind[] = ['websocket', 'range', 'chunks'];
@@ -57,8 +57,8 @@ export class AutoTransport implements Transport, TransportHandlers {
   applied(bytes: number): void {
     this.current.applied(bytes);
   }
-  look(wishes: Wishes): void {
-    this.current.look(wishes);
+  look(view: ViewRequest): void {
+    this.current.look(view);
   }
   disconnect(): void {
     clearTimeout(this.timer);

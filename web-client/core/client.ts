@@ -6,7 +6,7 @@ import type {Display} from './display';
 import type {Pick, Probe} from './inspector';
 import {kFull, type Limit} from './limit';
 import type {CoarseCells} from './volume';
-import type {Wishes} from './wishes';
+import type {ViewRequest} from './view_request';
 import type {FromWorker, Posted, Question, Source, ToWorker} from './worker_messages';
 
 export type Listener = (message: Exclude<FromWorker, {type: 'answer'}>) => void;
@@ -69,8 +69,8 @@ export class Client {
     this.post({type: 'limit', limit});
   }
   /** What the user looks at, which logs of regions refine first. */
-  look(wishes: Wishes): void {
-    this.post({type: 'look', wishes});
+  look(view: ViewRequest): void {
+    this.post({type: 'look', view});
   }
   pause(): void {
     this.post({type: 'pause'});

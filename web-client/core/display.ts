@@ -13,7 +13,7 @@ import {boundarySoup, joinSoups, type TriangleSoup} from './triangle_soup';
  */
 export type ClipMode = 'cut' | 'cells' | 'slice';
 export const kClipModes: readonly ClipMode[] = ['cut', 'cells', 'slice'];
-export const kMostPlanes = 3;
+export const kMaxPlanes = 3;
 
 export interface Display {
   color: Scalar | null;

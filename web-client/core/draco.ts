@@ -22,7 +22,7 @@ const kTagged = 0;
 const kRaw = 1;
 /** Bits of the alphabet of bit lengths that tagged symbols use. */
 const kTagBits = 5;
-const kMostSymbolBits = 18;
+const kMaxSymbolBits = 18;
 const kMetadataFlag = 0x8000;
 
 export const kDraco: ValueDecoder = {
@@ -87,7 +87,7 @@ function readTagged(reader: Reader, out: Int32Array, components: number): void {
 
 function readRaw(reader: Reader, out: Int32Array): void {
   const bits = reader.u8();
-  if (bits < 1 || bits > kMostSymbolBits) throw refused('its alphabet has an impossible size');
+  if (bits < 1 || bits > kMaxSymbolBits) throw refused('its alphabet has an impossible size');
   const symbols = new SymbolReader(reader, bits);
   for (let i = 0; i < out.length; ++i) out[i] = symbols.next();
 }

@@ -3,8 +3,8 @@
 
 import type {FieldInfo} from './manifest';
 
-/** The integer of a value that is missing (codec/mesh.h, kGap). */
-const kGap = -2147483648;
+/** The integer of a value that is missing (codec/mesh.h). */
+const kMissing = -2147483648;
 /**
  * Instead of a component: the magnitude of all of them, or the value itself where there is but one.
  */
@@ -64,14 +64,14 @@ export class FieldScale {
   at(index: number): number {
     if (this.component >= 0) {
       const integer = this.values[index * this.components + this.component]!;
-      return integer === kGap
+      return integer === kMissing
         ? NaN
         : (this.minimum[this.component]! + this.step * integer - this.low) * this.inverseSpan;
     }
     let sum = 0;
     for (let c = 0; c < this.components; ++c) {
       const integer = this.values[index * this.components + c]!;
-      if (integer === kGap) return NaN;
+      if (integer === kMissing) return NaN;
       const value = this.minimum[c]! + this.step * integer;
       sum += value * value;
     }

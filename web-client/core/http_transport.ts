@@ -7,7 +7,7 @@ import type {BlockSource, Piece} from './block_source';
 import {errorCode, errorText, QtetError} from './errors';
 import type {Goal} from './goal';
 import type {ChunkRange, OpenRequest} from './protocol';
-import {inOrder, kNoWishes, type Wishes} from './wishes';
+import {inOrder, kNoViewRequest, type ViewRequest} from './view_request';
 import type {LogTable, Transport, TransportHandlers} from './transport';
 
 /**
@@ -20,7 +20,7 @@ const kAhead = 3;
  */
 const kRequestSeconds = 0.4;
 const kLeastBytes = 32 << 10;
-const kMostBytes = 512 << 10;
+const kMaxBytes = 512 << 10;
 
 export class HttpTransport implements Transport {
   isConnected = false;
@@ -87,9 +87,9 @@ export class HttpTransport implements Transport {
   }
 
   /** What is under way comes first all the same. */
-  look(wishes: Wishes): void {
+  look(view: ViewRequest): void {
     if (!this.table.isKnown || this.table.packets.length === 0) return;
-    const rank = new Map(chunkOrder(this.table, wishes).map((chunk, i) => [chunk, i]));
+    const rank = new Map(chunkOrder(this.table, view).map((chunk, i) => [chunk, i]));
     this.pieces.sort(
       (a, b) => rank.get(a.chunk)! - rank.get(b.chunk)! || a.firstPart - b.firstPart,
     );
@@ -164,7 +164,7 @@ export class HttpTransport implements Transport {
 
   /** The next pieces on this side of the goal. */
   private wantedNext(): Piece[] {
-    const near = this.pieces.slice(0, kMostPieces);
+    const near = this.pieces.slice(0, kMaxPieces);
     const {goal} = this;
     return goal ? near.filter(({chunk}) => chunk < goal.chunks) : near;
   }
@@ -176,7 +176,7 @@ export class HttpTransport implements Transport {
     if (this.arrived.at > 0 && seconds > 0) {
       const fitting = (bytes / seconds) * kRequestSeconds;
       this.requestBytes = Math.min(
-        kMostBytes,
+        kMaxBytes,
         Math.max(kLeastBytes, (this.requestBytes + fitting) / 2),
       );
     }
@@ -206,21 +206,21 @@ export class HttpTransport implements Transport {
 }
 
 /** More are never asked for by one request. */
-const kMostPieces = 256;
+const kMaxPieces = 256;
 
 /**
  * What `request` lacks, in the order of proto/PROTOCOL.md: blocks that fields lag behind by, then
- * chunk by chunk; of regions the head, then the packets as they are wished for.
+ * chunk by chunk; of regions the head, then the packets in the order of the view request.
  */
 export function piecesOf(
   table: LogTable,
-  {fields, have, wishes}: Pick<OpenRequest, 'fields' | 'have' | 'wishes'>,
+  {fields, have, view}: Pick<OpenRequest, 'fields' | 'have' | 'view'>,
 ): Piece[] {
   const wanted = fields
     .map((key) => ({field: table.fieldKeys.indexOf(key), here: have.fields[key] ?? 0}))
     .filter(({field}) => field >= 0);
   const pieces: Piece[] = [];
-  for (const chunk of chunkOrder(table, wishes)) {
+  for (const chunk of chunkOrder(table, view)) {
     if (!isHere(have, chunk)) pieces.push({chunk, firstPart: kStructurePart, parts: 2});
     for (const {field, here} of wanted)
       if (!isHere(here, chunk)) pieces.push({chunk, firstPart: kFirstFieldPart + field, parts: 1});
@@ -228,10 +228,10 @@ export function piecesOf(
   return pieces;
 }
 
-function chunkOrder({chunkCount, packets, lattice}: LogTable, wishes = kNoWishes): number[] {
+function chunkOrder({chunkCount, packets, lattice}: LogTable, view = kNoViewRequest): number[] {
   const order = Array.from({length: chunkCount - packets.length}, (_, chunk) => chunk);
   return packets.length > 0
-    ? [...order, ...inOrder(packets, wishes, lattice!.size).map(({chunk}) => chunk)]
+    ? [...order, ...inOrder(packets, view, lattice!.size).map(({chunk}) => chunk)]
     : order;
 }
 

@@ -14,7 +14,7 @@ export type {Counts} from './counts';
 export {
   fieldsOf,
   kClipModes,
-  kMostPlanes,
+  kMaxPlanes,
   kPlainDisplay,
   type ClipMode,
   type Display,
@@ -37,5 +37,8 @@ export {logTicks, niceTicks, type Tick, type Ticks} from './ticks';
 export {kOpacityPath, transferTables, type TransferTables} from './transfer';
 export type {TriangleSoup} from './triangle_soup';
 export type {CoarseCells, VolumeCells} from './volume';
-export {kNoWishes, type Wishes} from './wishes';
+export {kNoViewRequest, type ViewRequest} from './view_request';
+// Names of version 0.1.
+export {kMaxPlanes as kMostPlanes} from './display';
+export {kNoViewRequest as kNoWishes, type ViewRequest as Wishes} from './view_request';
 export type {FromWorker, Snapshot, Source, StreamState} from './worker_messages';

@@ -68,7 +68,7 @@ const kFieldsAt = 44;
  * Beside a field's association, and beside its type: values may be missing. Which ones, FieldScale
  * tells.
  */
-const kGapsFlag = 128;
+const kMissingFlag = 128;
 const kOfCells = 1;
 /** codec/FORMAT.md, "Manifest" and "Level columns". */
 const kMaxNameBytes = 256;
@@ -115,15 +115,15 @@ export function readManifest(
 function readField(
   reader: ManifestReader,
   components: number,
-  associationAndGaps: number,
+  associationAndMissing: number,
 ): FieldInfo {
-  const association = (associationAndGaps & ~kGapsFlag) === kOfCells ? 'cell' : 'point';
+  const association = (associationAndMissing & ~kMissingFlag) === kOfCells ? 'cell' : 'point';
   const name = reader.text();
   if (name === '') throw damaged('has a field without a name');
   const type = reader.byte();
-  if ((type & kGapsFlag) !== (associationAndGaps & kGapsFlag))
-    throw damaged('contradicts itself in whether a field has gaps');
-  if ((type & ~kGapsFlag) >= kFieldTypes) throw damaged('has a field of an unknown type');
+  if ((type & kMissingFlag) !== (associationAndMissing & kMissingFlag))
+    throw damaged('contradicts itself in whether a field has missing values');
+  if ((type & ~kMissingFlag) >= kFieldTypes) throw damaged('has a field of an unknown type');
   const bits = reader.byte();
   if (bits < 1 || bits > kMaxFieldBits) throw damaged(`has a field of ${bits} bits`);
   return {

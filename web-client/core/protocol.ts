@@ -3,7 +3,7 @@
 
 import {QtetError} from './errors';
 import type {Goal} from './goal';
-import type {Wishes} from './wishes';
+import type {ViewRequest} from './view_request';
 
 export const kSubprotocol = 'qtet.v1';
 export const kFrameHeaderBytes = 16;
@@ -21,7 +21,7 @@ export interface OpenRequest {
   have: {chunks: number; ranges?: ChunkRange[]; fields: Record<string, number | HaveChunks>};
   credit: number;
   digest?: string;
-  wishes?: Wishes;
+  view?: ViewRequest;
   /** Where the stream may stop; null: nowhere before its end. */
   goal?: Goal | null;
 }

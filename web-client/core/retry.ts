@@ -3,7 +3,7 @@
 
 import {reconnectDelayMs} from './backoff';
 
-export const kMostAttempts = 8;
+export const kMaxAttempts = 8;
 
 /**
  * The result of `action`, which is called again after growing pauses while it fails; the last
@@ -17,7 +17,7 @@ export async function retry<T>(
     try {
       return await action();
     } catch (thrown) {
-      if (attempt + 1 >= kMostAttempts) throw thrown;
+      if (attempt + 1 >= kMaxAttempts) throw thrown;
       await new Promise((resolve) => setTimeout(resolve, reconnectDelayMs(attempt, random())));
     }
   }

@@ -8,12 +8,12 @@ import {errorCode, errorText, QtetError} from './errors';
 import {scalarRange} from './field_scale';
 import {errorOfLevel, kFull, limitReached, type Limit} from './limit';
 import {fieldKeys} from './manifest';
-import {marksOf} from './marks';
+import {surfaceBoxesOf} from './surface_boxes';
 import type {Frame, OpenRequest, ServerMessage} from './protocol';
 import type {Publisher} from './publisher';
 import type {LogTable, Transport, TransportHandlers} from './transport';
 import {makeTransport} from './transports';
-import {kNoWishes, type Isovalue, type Wishes} from './wishes';
+import {kNoViewRequest, type Isovalue, type ViewRequest} from './view_request';
 import type {FromWorker, Source, StreamState} from './worker_messages';
 
 /**
@@ -33,7 +33,7 @@ const kFirstPictureMs = 500;
 const kProgressMs = 100;
 
 /** A view of the protocol has no more (proto/PROTOCOL.md, "View"). */
-const kMostIsovalues = 8;
+const kMaxIsovalues = 8;
 
 /** Of the cells at which memory ended: their pictures need some, too. */
 const kFittingShare = 0.7;
@@ -76,7 +76,7 @@ export class Session implements TransportHandlers {
   private paused = false;
   /** Another target was sent since the stream was opened. */
   private aimed = false;
-  private wishes: Wishes = kNoWishes;
+  private view: ViewRequest = kNoViewRequest;
   private receivedBytes = 0;
   /** Bytes that arrived and whose credit waits until they are applied. */
   private unapplied = 0;
@@ -149,9 +149,9 @@ export class Session implements TransportHandlers {
   }
 
   /** What the user looks at. */
-  look(wishes: Wishes): void {
-    const {marks = null, isovalue = null} = this.wishes;
-    this.wishes = {...wishes, marks, isovalue};
+  look(view: ViewRequest): void {
+    const {surfaceBoxes = null, isovalue = null} = this.view;
+    this.view = {...view, surfaceBoxes, isovalue};
     this.follow();
   }
 
@@ -159,14 +159,14 @@ export class Session implements TransportHandlers {
   private lookAtSurface(positions: Float32Array): void {
     const {lattice, packets} = this.assembler;
     if (packets.length === 0 || !lattice) return;
-    const marks = marksOf(positions, lattice.size);
+    const surfaceBoxes = surfaceBoxesOf(positions, lattice.size);
     const isovalue = this.isovalue();
     if (
-      String(marks) === String(this.wishes.marks ?? null) &&
-      JSON.stringify(isovalue) === JSON.stringify(this.wishes.isovalue ?? null)
+      String(surfaceBoxes) === String(this.view.surfaceBoxes ?? null) &&
+      JSON.stringify(isovalue) === JSON.stringify(this.view.isovalue ?? null)
     )
       return;
-    this.wishes = {...this.wishes, marks, isovalue};
+    this.view = {...this.view, surfaceBoxes, isovalue};
     this.follow();
   }
 
@@ -175,7 +175,7 @@ export class Session implements TransportHandlers {
     const {isosurfaces} = this.publisher.display;
     const fields = this.assembler.manifest?.fields ?? [];
     const info = isosurfaces && fields[isosurfaces.scalar.field];
-    if (!info || info.association === 'cell' || isosurfaces.values.length > kMostIsovalues)
+    if (!info || info.association === 'cell' || isosurfaces.values.length > kMaxIsovalues)
       return null;
     const {field, component} = isosurfaces.scalar;
     const [low, high] = scalarRange(info, component);
@@ -185,8 +185,8 @@ export class Session implements TransportHandlers {
 
   private follow(): void {
     if (this.assembler.packets.length === 0) return;
-    this.assembler.look(this.wishes);
-    if (!this.paused) this.transport?.look(this.wishes);
+    this.assembler.look(this.view);
+    if (!this.paused) this.transport?.look(this.view);
   }
 
   pause(): void {
@@ -267,7 +267,7 @@ export class Session implements TransportHandlers {
 
   down(attempt: number, delayMs: number): void {
     if (this.state === 'complete' || this.state === 'held' || this.paused) {
-      this.transport?.disconnect(); // nothing is missing; a wish for more connects again
+      this.transport?.disconnect(); // nothing is missing; to ask for more connects again
       return;
     }
     this.setState('reconnecting', attempt, delayMs);
@@ -435,7 +435,7 @@ export class Session implements TransportHandlers {
   private forget(): void {
     this.sliceIsDue = false;
     this.digest = '';
-    this.wishes = {...this.wishes, marks: null, isovalue: null};
+    this.view = {...this.view, surfaceBoxes: null, isovalue: null};
     this.fields = [];
     this.requested = [];
     this.receivedBytes = this.unapplied = this.pictureBy = this.decodedBytes = this.decodedMs = 0;
@@ -475,7 +475,7 @@ export class Session implements TransportHandlers {
       (this.source.fields === null || unknown !== undefined)
     )
       this.fields = [0];
-    this.assembler.look(this.wishes);
+    this.assembler.look(this.view);
     this.send({type: 'manifest', manifest, digest: this.digest, fields: this.fields});
     this.tellPlan();
     if (!this.probing && this.keys().every((key) => this.requested.includes(key))) return false;
@@ -497,7 +497,7 @@ export class Session implements TransportHandlers {
       fields: this.requested,
       credit: this.probing ? 1 : kWindowBytes,
       have: this.have(asked),
-      wishes: this.wishes,
+      view: this.view,
       goal: this.assembler.goal(this.limit, this.fields),
       ...(this.digest ? {digest: this.digest} : {}),
     });

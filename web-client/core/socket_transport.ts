@@ -18,7 +18,7 @@ import {
   type OpenRequest,
 } from './protocol';
 import type {LogTable, Transport, TransportHandlers} from './transport';
-import {kNoWishes, wireView, type Wishes} from './wishes';
+import {kNoViewRequest, wireView, type ViewRequest} from './view_request';
 
 /**
  * Credit is returned in portions of this share of the window: few messages, and the server never
@@ -56,7 +56,7 @@ export class SocketTransport implements Transport {
   /** Empty: the server has not said, and then knows nothing of views, targets and pauses. */
   private layout = '';
   private isPaused = false;
-  private wishes: Wishes = kNoWishes;
+  private view: ViewRequest = kNoViewRequest;
   /** The view that the server was told last. */
   private told = '';
 
@@ -114,15 +114,15 @@ export class SocketTransport implements Transport {
     this.owed = 0;
     this.layout = '';
     this.isPaused = false;
-    this.wishes = request.wishes ?? this.wishes;
-    const view = this.view();
-    this.told = viewMessage(view);
-    this.socket?.send(openMessage(request, view));
+    this.view = request.view ?? this.view;
+    const wire = this.wire();
+    this.told = viewMessage(wire);
+    this.socket?.send(openMessage(request, wire));
   }
 
-  look(wishes: Wishes): void {
-    this.wishes = wishes;
-    const text = viewMessage(this.view());
+  look(view: ViewRequest): void {
+    this.view = view;
+    const text = viewMessage(this.wire());
     if (!this.connected || this.layout !== 'regions' || text === this.told) return;
     this.told = text;
     this.socket?.send(text);
@@ -170,9 +170,9 @@ export class SocketTransport implements Transport {
     socket.close(1000);
   }
 
-  private view(): Record<string, unknown> | null {
+  private wire(): Record<string, unknown> | null {
     const lattice = this.table?.lattice;
-    return lattice ? wireView(this.wishes, lattice) : null;
+    return lattice ? wireView(this.view, lattice) : null;
   }
 
   private grant(): void {

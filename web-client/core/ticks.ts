@@ -23,7 +23,7 @@ const kPlainBelow = 5;
 const kMinus = '\u2212';
 
 /** Labels have no more digits: what they have in common is told once instead. */
-const kMostDigits = 5;
+const kMaxDigits = 5;
 
 /**
  * At most `most` (2 or more) ticks inside [low, high]. A range without width gives one tick, where
@@ -39,7 +39,7 @@ export function niceTicks(low: number, high: number, most: number): Ticks {
   const step = niceStep(low / unit, high / unit, most);
   const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
   const digits = Math.floor(Math.log10(Math.max(largest / unit, 1))) + 1 + decimals;
-  if (digits > kMostDigits) {
+  if (digits > kMaxDigits) {
     const base = firstTick(low / unit, step) * step * unit;
     const {ticks, factor: small} = niceTicks(low - base, high - base, most);
     const sign = base < 0 ? kMinus : '+';

@@ -6,7 +6,7 @@ import {colorTable, kColorMapEntries, type ColorMapName} from './color_maps';
 /** An opacity is that of a path of this share of the mesh's diagonal. */
 export const kOpacityPath = 0.1;
 /** Above this a path would have to be infinitely dense. */
-const kMostOpacity = 0.99;
+const kMaxOpacity = 0.99;
 /** So fine that the nearest step is good enough. */
 export const kTransferSteps = 1023;
 
@@ -19,7 +19,7 @@ export interface TransferTables {
 
 /** Extinction in 1/diagonal of an opacity. */
 export function extinctionOf(opacity: number): number {
-  return -Math.log(1 - Math.min(kMostOpacity, Math.max(0, opacity))) / kOpacityPath;
+  return -Math.log(1 - Math.min(kMaxOpacity, Math.max(0, opacity))) / kOpacityPath;
 }
 
 /** REQUIRES: at least two opacities. Between them extinction is linear. */

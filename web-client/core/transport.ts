@@ -5,7 +5,7 @@
 import type {Packet} from './packet';
 import type {QtetError} from './errors';
 import type {Goal} from './goal';
-import type {WireLattice, Wishes} from './wishes';
+import type {WireLattice, ViewRequest} from './view_request';
 import type {Frame, OpenRequest, ServerMessage} from './protocol';
 
 export interface TransportHandlers {
@@ -35,7 +35,7 @@ export interface Transport {
   /** Gives the credit of `bytes` applied payload bytes back. */
   applied(bytes: number): void;
   /** What is looked at: of a log of regions, packets come in another order from now on. */
-  look(wishes: Wishes): void;
+  look(view: ViewRequest): void;
   /** Ends the connection for good; `connect` may be called again. */
   disconnect(): void;
 }

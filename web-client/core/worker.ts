@@ -84,7 +84,7 @@ function obey(
     case 'limit':
       return session.setLimit(message.limit);
     case 'look':
-      return session.look(message.wishes);
+      return session.look(message.view);
     case 'pause':
       return session.pause();
     case 'resume':

@@ -13,7 +13,7 @@ import type {Plane} from './slice';
 import type {Statistics} from './statistics';
 import type {TriangleSoup} from './triangle_soup';
 import type {CoarseCells, VolumeCells} from './volume';
-import type {Wishes} from './wishes';
+import type {ViewRequest} from './view_request';
 
 /** Where the stream stands. `paused`: by the user; `held`: the level that was asked for is here. */
 export type StreamState =
@@ -54,7 +54,7 @@ export type ToWorker =
   | {type: 'start'; source: Source; run: number}
   | {type: 'display'; display: Display}
   | {type: 'limit'; limit: Limit}
-  | {type: 'look'; wishes: Wishes}
+  | {type: 'look'; view: ViewRequest}
   | {type: 'pause'}
   | {type: 'resume'}
   /** The last snapshot is on the screen: the next may come. */

@@ -140,14 +140,14 @@ describe('isosurfaces', () => {
   });
 
   test('haveNoPartInCellsWhereAValueIsMissing', () => {
-    const gaps = Int32Array.from({length: points.length / 3}, (_, v) =>
+    const missing = Int32Array.from({length: points.length / 3}, (_, v) =>
       points[3 * v + 2] === 0 ? -(2 ** 31) : points[3 * v]!,
     );
     expect(
       soupArea(
         isosurface(
           {points, tetrahedra},
-          new FieldScale(gaps, info('point', [0, 40])),
+          new FieldScale(missing, info('point', [0, 40])),
           13 / 40,
           null,
         ),

@@ -35,10 +35,10 @@ describe('field values', () => {
   });
 
   test('thatAreMissingAreNaN', () => {
-    const gap = -(2 ** 31);
-    expect(new FieldScale(Int32Array.from([gap, 4]), info(1, [10], [10, 14])).at(0)).toBeNaN();
+    const missing = -(2 ** 31);
+    expect(new FieldScale(Int32Array.from([missing, 4]), info(1, [10], [10, 14])).at(0)).toBeNaN();
     const vectors = new FieldScale(
-      Int32Array.from([0, gap, 0, 6, 8, 0]),
+      Int32Array.from([0, missing, 0, 6, 8, 0]),
       info(3, [0, 0, 0], [0, 10]),
     );
     expect([0, 1].map((vertex) => vectors.at(vertex))).toEqual([NaN, 0.5]);
@@ -93,7 +93,7 @@ describe('a manifest', () => {
   test('ofFieldsWithGapsIsTheSameButForTheFlagInBothPlaces', () => {
     const bytes = head();
     for (let f = 0; f < 3; ++f) bytes[bytes.length - 1 - 2 * f]! += 128;
-    expect(() => readManifest(bytes, columns)).toThrow('gaps');
+    expect(() => readManifest(bytes, columns)).toThrow('missing values');
     for (let f = 0; f < 3; ++f) bytes[kTypeAt + 36 * f]! += 128;
     expect(readManifest(bytes, columns)).toEqual(readManifest(head(), columns));
   });

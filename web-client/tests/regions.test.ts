@@ -10,9 +10,9 @@ import {ChunkSource} from '../core/block_source';
 import {WasmCodec} from '../core/codec';
 import {kDraco} from '../core/draco';
 import {HttpTransport, piecesOf} from '../core/http_transport';
-import {marksOf} from '../core/marks';
+import {surfaceBoxesOf} from '../core/surface_boxes';
 import type {OpenRequest} from '../core/protocol';
-import {inOrder, kNoWishes, urgency, wireView, type Wishes} from '../core/wishes';
+import {inOrder, kNoViewRequest, urgency, wireView, type ViewRequest} from '../core/view_request';
 import {kTestWasm} from './whole_log';
 
 const kLog = new URL('../../tests/golden/valid/regions.qtet', import.meta.url);
@@ -152,19 +152,19 @@ describe.skipIf(kTestWasm === '')('regions', () => {
   test('whatIsLookedAtComesFirstAndOnlyWhatIsMissing', async () => {
     const {assembler, bytes} = await opened();
     const size = assembler.lattice!.size;
-    const wishes: Wishes = {...kNoWishes, planes: [{normal: [1, 0, 0], offset: 200}]};
+    const view: ViewRequest = {...kNoViewRequest, planes: [{normal: [1, 0, 0], offset: 200}]};
     const request: OpenRequest = {
       mesh: 'm',
       fields: [],
       have: {chunks: 0, fields: {}},
       credit: 1e9,
-      wishes,
+      view,
     };
     const order = piecesOf(assembler, request).map(({chunk}) => chunk);
     expect([...order].sort((a, b) => a - b)).toEqual(
       Array.from({length: assembler.chunkCount}, (_, chunk) => chunk),
     );
-    const urgent = assembler.packets.filter(({box}) => urgency(wishes, box, size) === 0).length;
+    const urgent = assembler.packets.filter(({box}) => urgency(view, box, size) === 0).length;
     expect(urgent).toBeGreaterThan(0);
     expect(urgent).toBeLessThan(assembler.packets.length);
     // Applied in that order, no chunk waits for a later one.
@@ -186,7 +186,7 @@ describe.skipIf(kTestWasm === '')('regions', () => {
       const {assembler, bytes} = await opened();
       const asked: number[] = [];
       const size = assembler.lattice!.size;
-      const far: Wishes = {...kNoWishes, planes: [{normal: [1, 0, 0], offset: 200}]};
+      const far: ViewRequest = {...kNoViewRequest, planes: [{normal: [1, 0, 0], offset: 200}]};
       const transport: HttpTransport = new HttpTransport(
         () =>
           new ChunkSource('https://x/v1/meshes/m/log', assembler, async (url) => {
@@ -240,15 +240,15 @@ test('boxesInSightComeBeforeBoxesBehindAndParentsBeforeChildren', () => {
     {chunk: 2, depth: 1, box: [0, 0, 0, 127, 255, 255]},
     {chunk: 3, depth: 1, box: [128, 0, 0, 255, 255, 255]},
   ];
-  const right: Wishes = {frustum: [{normal: [1, 0, 0], offset: 700}], planes: [], point: null};
+  const right: ViewRequest = {frustum: [{normal: [1, 0, 0], offset: 700}], planes: [], point: null};
   expect(inOrder(packets, right, 1024).map(({chunk}) => chunk)).toEqual([1, 3, 2]);
   expect(
-    inOrder(packets, {...kNoWishes, point: [900, 0, 0]}, 1024).map(({chunk}) => chunk),
+    inOrder(packets, {...kNoViewRequest, point: [900, 0, 0]}, 1024).map(({chunk}) => chunk),
   ).toEqual([1, 3, 2]);
-  expect(inOrder(packets, kNoWishes, 1024).map(({chunk}) => chunk)).toEqual([1, 2, 3]);
+  expect(inOrder(packets, kNoViewRequest, 1024).map(({chunk}) => chunk)).toEqual([1, 2, 3]);
 });
 
-test('wishesTravelInTheMeshsOwnUnits', () => {
+test('aViewRequestTravelsInTheMeshsOwnUnits', () => {
   const view = wireView(
     {
       frustum: [{normal: [0, 0, 1], offset: 10}],
@@ -258,15 +258,17 @@ test('wishesTravelInTheMeshsOwnUnits', () => {
     {origin: [100, 0, 0], step: 0.5, size: 256},
   );
   expect(view).toEqual({frustum: [[0, 0, 1, -5]], planes: [[1, 0, 0, -102]], point: [101, 0, 0]});
-  expect(wireView(kNoWishes, {origin: [0, 0, 0], step: 1, size: 256})).toBeNull();
-  const marks = marksOf(Float32Array.of(8, 8, 8), 256);
-  expect(wireView({...kNoWishes, marks}, {origin: [0, 0, 0], step: 1, size: 256})).toEqual({
+  expect(wireView(kNoViewRequest, {origin: [0, 0, 0], step: 1, size: 256})).toBeNull();
+  const surfaceBoxes = surfaceBoxesOf(Float32Array.of(8, 8, 8), 256);
+  expect(
+    wireView({...kNoViewRequest, surfaceBoxes}, {origin: [0, 0, 0], step: 1, size: 256}),
+  ).toEqual({
     box: [0, 0, 0, 32, 32, 32],
   });
-  // A box beside it would be a wish of its own.
+  // A box beside it would be a request of its own.
   expect(
     wireView(
-      {...kNoWishes, marks, isovalue: {field: 'p', values: [2]}},
+      {...kNoViewRequest, surfaceBoxes, isovalue: {field: 'p', values: [2]}},
       {origin: [0, 0, 0], step: 1, size: 256},
     ),
   ).toEqual({isovalue: {field: 'p', values: [2]}});

@@ -1,7 +1,7 @@
 import {afterEach, beforeEach, expect, test, vi} from 'vitest';
 import {kLongestDelayMs} from '../core/backoff';
 import {errorText} from '../core/errors';
-import {kMostAttempts, retry} from '../core/retry';
+import {kMaxAttempts, retry} from '../core/retry';
 
 beforeEach(() => void vi.useFakeTimers());
 afterEach(() => void vi.useRealTimers());
@@ -20,6 +20,6 @@ test('whatNeverSucceedsFailsWithItsLastError', async () => {
   let calls = 0;
   const result = retry(() => Promise.reject(new Error(`call ${++calls}`)));
   const caught = result.catch((thrown: unknown) => errorText(thrown));
-  await vi.advanceTimersByTimeAsync(kMostAttempts * kLongestDelayMs);
-  expect(await caught).toBe(`call ${kMostAttempts}`);
+  await vi.advanceTimersByTimeAsync(kMaxAttempts * kLongestDelayMs);
+  expect(await caught).toBe(`call ${kMaxAttempts}`);
 });

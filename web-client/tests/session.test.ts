@@ -8,7 +8,7 @@ import {parseFrame} from '../core/protocol';
 import {Session} from '../core/session';
 import {SocketTransport} from '../core/socket_transport';
 import type {Transport} from '../core/transport';
-import type {Wishes} from '../core/wishes';
+import type {ViewRequest} from '../core/view_request';
 import type {FromWorker, Snapshot, Source} from '../core/worker_messages';
 import {
   errorsOf,
@@ -426,7 +426,7 @@ describe('a target', () => {
     expect(states().at(-1)).toBe('complete');
   });
 
-  test('aPauseInWhichAnotherFieldWasWishedForEndsWithAnOpen', () => {
+  test('aPauseInWhichAnotherFieldWasAskedForEndsWithAnOpen', () => {
     const socket = start();
     opened(socket, 1, 'stream');
     socket.deliver(headFrame(1, kLog));
@@ -574,21 +574,21 @@ describe('memory', () => {
   });
 });
 
-/** Head chunk 0, and packets; who carries them only hears the wishes. */
+/** Head chunk 0, and packets; who carries them only hears the views. */
 test('whatIsosurfacesAreShownIsToldByFieldAndValue', () => {
   const log: FakeLog = {fields: ['p'], cellFields: ['p'], chunks: 3};
   const parts = new FakeCodec(log);
   Object.defineProperty(parts, 'headChunks', {value: 1});
   const assembler = new Assembler(parts, kFakeValues);
   const publishing = new Publisher(assembler, () => undefined);
-  const wishes: Wishes[] = [];
+  const views: ViewRequest[] = [];
   const silent = {
     isConnected: true,
     connect: () => undefined,
     open: () => undefined,
     disconnect: () => undefined,
     applied: () => undefined,
-    look: (its: Wishes) => wishes.push(its),
+    look: (its: ViewRequest) => views.push(its),
   };
   const telling = new Session(
     assembler,
@@ -611,16 +611,19 @@ test('whatIsosurfacesAreShownIsToldByFieldAndValue', () => {
   };
   show(0, [0, 0.5]);
   // the field's range is 0 to 255
-  expect(wishes.at(-1)!.isovalue).toEqual({field: 'p', values: [0, 127.5]});
+  expect(views.at(-1)!.isovalue).toEqual({field: 'p', values: [0, 127.5]});
   show(0, [0, 0.5]);
-  expect(wishes).toHaveLength(1);
+  expect(views).toHaveLength(1);
   show(0, [0.2]);
-  expect(wishes.at(-1)!.isovalue).toEqual({field: 'p', values: [51]});
+  expect(views.at(-1)!.isovalue).toEqual({field: 'p', values: [51]});
   show(
     0,
     Array.from({length: 9}, (_, i) => i / 9),
   ); // more than a view may have: the box has to do
-  expect(wishes.at(-1)!.isovalue).toBeNull();
+  expect(views.at(-1)!.isovalue).toBeNull();
   show(1, [0.5]); // of cells
-  expect(wishes.at(-1)!).toMatchObject({isovalue: null, marks: expect.any(Uint8Array) as unknown});
+  expect(views.at(-1)!).toMatchObject({
+    isovalue: null,
+    surfaceBoxes: expect.any(Uint8Array) as unknown,
+  });
 });

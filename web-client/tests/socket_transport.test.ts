@@ -3,7 +3,7 @@ import {kFirstDelayMs, kLongestDelayMs, reconnectDelayMs} from '../core/backoff'
 import type {OpenRequest} from '../core/protocol';
 import {SocketTransport} from '../core/socket_transport';
 import type {TransportHandlers} from '../core/transport';
-import {kNoWishes, type Wishes} from '../core/wishes';
+import {kNoViewRequest, type ViewRequest} from '../core/view_request';
 import {FakeSocket, frame} from './fakes';
 
 const kOpen: OpenRequest = {mesh: 'm', fields: [], have: {chunks: 0, fields: {}}, credit: 80};
@@ -57,15 +57,19 @@ test('aViewIsToldOnceAndOnlyWhereItMatters', () => {
   seeing.connect();
   socket.accept();
   seeing.open(kOpen);
-  const near = (x: number): Wishes => ({...kNoWishes, point: [x, 0, 0]});
+  const near = (x: number): ViewRequest => ({...kNoViewRequest, point: [x, 0, 0]});
   seeing.look(near(1));
   socket.deliver(
     '{"type":"opened","stream":1,"mesh":"m","digest":"d","bytes":1,"planned":1,"layout":"regions"}',
   );
   for (const x of [2, 2, 3]) seeing.look(near(x));
-  // Marks stand for the isovalue that the server has been told.
-  for (const mark of [0, 1])
-    seeing.look({...kNoWishes, marks: Uint8Array.of(mark), isovalue: {field: 'p', values: [1]}});
+  // The boxes stand for the isovalue that the server has been told.
+  for (const inside of [0, 1])
+    seeing.look({
+      ...kNoViewRequest,
+      surfaceBoxes: Uint8Array.of(inside),
+      isovalue: {field: 'p', values: [1]},
+    });
   expect(socket.sentOf('view').map(({view}) => view)).toEqual([
     {point: [2, 0, 0]},
     {point: [3, 0, 0]},

@@ -32,7 +32,7 @@ const kPingMs = 5000;
  * So many questions without an answer: graphics made of software let a worker wait for seconds, and
  * a page that slept has asked only once.
  */
-const kMostUnanswered = 6;
+const kMaxUnanswered = 6;
 
 /**
  * A view of `canvas`, drawn by a worker where workers can draw, else on this thread. Throws when
@@ -203,8 +203,8 @@ class FarView implements View {
   }
 
   private hear(unanswered: number): void {
-    const was = this.unanswered > kMostUnanswered,
-      is = unanswered > kMostUnanswered;
+    const was = this.unanswered > kMaxUnanswered,
+      is = unanswered > kMaxUnanswered;
     this.unanswered = unanswered;
     if (was !== is) this.listeners.silent?.(is);
   }

@@ -3,7 +3,7 @@
 
 import {Frustum, Group, Matrix4, Scene, Vector3, WebGLRenderer} from 'three';
 import type {Ray, Vector} from '../core/cell_ray';
-import {kMostPlanes} from '../core/display';
+import {kMaxPlanes} from '../core/display';
 import {transferTables} from '../core/transfer';
 import type {VolumeCells} from '../core/volume';
 import type {Snapshot} from '../core/worker_messages';
@@ -20,7 +20,7 @@ import {VolumeView, type Picture} from './volume_view';
 /** How dark cell edges are: enough to follow, not enough to change what a colour says. */
 const kEdgeStrength = 0.52;
 /** Pixels beyond two a point cost more than they show. */
-const kMostPixelRatio = 2;
+const kMaxPixelRatio = 2;
 
 export class MeshView implements View {
   readonly orbit: OrbitCamera;
@@ -31,7 +31,7 @@ export class MeshView implements View {
   private readonly lattice = new Group();
   private readonly surface = new SoupMesh(true);
   private readonly isosurface = new SoupMesh(true, true);
-  private readonly cuts = Array.from({length: kMostPlanes}, () => new SoupMesh(false));
+  private readonly cuts = Array.from({length: kMaxPlanes}, () => new SoupMesh(false));
   private readonly volume: VolumeView;
   /** Since the last picture something changed that people change, not the mesh alone. */
   private moved = false;
@@ -315,7 +315,7 @@ export class MeshView implements View {
   private resize(): void {
     const width = Math.max(this.canvas.clientWidth, 1);
     const height = Math.max(this.canvas.clientHeight, 1);
-    const ratio = Math.min(pixelRatioOf(this.canvas), kMostPixelRatio);
+    const ratio = Math.min(pixelRatioOf(this.canvas), kMaxPixelRatio);
     this.renderer.setPixelRatio(ratio);
     this.renderer.setSize(width, height, false);
     for (const mesh of this.meshes()) mesh.material.setPixelRatio(ratio);

@@ -20,7 +20,7 @@ const kNarrow = 1 / 128;
  */
 const kMargin = 1 / 16;
 /** By so many of its heights at most, as a face seen edge-on would become endless. */
-const kMostMargin = 4;
+const kMaxMargin = 4;
 /**
  * Faces are drawn from so far before the eye on, in radii of the mesh: long before the canvas's
  * near plane, where an eye may be close to a face.
@@ -32,7 +32,7 @@ const kInside = 1e-4;
  * Cells that a ray goes through at most between two faces of the boundary: many times those along a
  * straight line through ten million (600 to 1,000).
  */
-const kMostSteps = 8192;
+const kMaxSteps = 8192;
 
 const kHead = /* glsl */ `
   precision highp float;
@@ -82,7 +82,7 @@ export const kEntryVertexShader = /* glsl */ `${kHead}${kSide}
     bool isBefore = min(min(p.w, q.w), r.w) > ${kNearest} && whole > 0.0;
     // Each edge outward, in its plane.
     vec3 sides = vec3(distance(v, w), distance(w, u), distance(u, v));
-    vec3 margins = min(${kMargin} / whole * sides, ${kMostMargin}.0);
+    vec3 margins = min(${kMargin} / whole * sides, ${kMaxMargin}.0);
     vec3 shares = (1.0 + margins.x + margins.y + margins.z) * isOwn - margins;
     vec4 its = own == 0 ? p : own == 1 ? q : r;
     // What hardware clips is nearer than kNearest.
@@ -291,7 +291,7 @@ export const kRayFragmentShader = /* glsl */ `${kHead}
       areas = areasOf(a, b, c);
     }
     vec2 enter = through(a, b, c, areas);
-    for (int step = 0; step < ${kMostSteps}; ++step) {
+    for (int step = 0; step < ${kMaxSteps}; ++step) {
       // The fourth corner takes the place of the one that the face ahead lacks.
       vec4 point = seen(id);
       vec3 sides = vec3(area(a, point), area(b, point), area(c, point));

@@ -25,7 +25,7 @@ const kRestMs = 150;
  * Times that a line of sight comes into the mesh at most: what is behind hundreds of walls is not
  * to be told apart, and every layer takes its passes.
  */
-const kMostLayers = 256;
+const kMaxLayers = 256;
 
 /** A mesh of cells. */
 interface Layered {
@@ -223,8 +223,8 @@ export class VolumeView {
     deep.present(renderer);
     const ms = await whenDrawn(gl, start);
     const needed = (await Promise.all(reached)).filter(Boolean).length;
-    const isCut = needed === its.layers && needed < kMostLayers;
-    its.layers = Math.min(needed + 1, kMostLayers);
+    const isCut = needed === its.layers && needed < kMaxLayers;
+    its.layers = Math.min(needed + 1, kMaxLayers);
     const isWhole = its === this.fine && share === 1;
     if (isWhole) this.wholeMs = ms;
     else this.budget.learn(share, ms);
@@ -249,7 +249,7 @@ export class VolumeView {
     let rate = this.rate;
     this.rate = 0;
     const isInside = this.begin(picture, this.fine, 1);
-    for (let layer = isInside ? -1 : 0; layer < kMostLayers; ++layer) {
+    for (let layer = isInside ? -1 : 0; layer < kMaxLayers; ++layer) {
       const reaches = layer < 0 || reachesPixels(gl, () => caster.enter(renderer));
       if (layer > 0 && !(await reaches)) break;
       for (let row = 0; row < deep.height;) {

@@ -1,7 +1,7 @@
 // Up to three clip planes: across an axis or as the camera looks, moved by a slider here and by a
 // handle in the picture.
 
-import {kMostPlanes} from '../core/display';
+import {kMaxPlanes} from '../core/display';
 import type {Plane} from '../core/slice';
 import {formatCoordinate} from './format';
 import type {Host, Panel, Scene} from './panel';
@@ -54,7 +54,7 @@ export class ClipPanel implements Panel {
     });
     this.find('.add-plane').addEventListener('click', () => this.add());
     const rows = this.find('.planes');
-    rows.replaceChildren(...Array.from({length: kMostPlanes}, (_, i) => this.row(i)));
+    rows.replaceChildren(...Array.from({length: kMaxPlanes}, (_, i) => this.row(i)));
   }
 
   update({planes, mode}: Settings, scene: Scene | null): void {
@@ -62,7 +62,7 @@ export class ClipPanel implements Panel {
     this.find<HTMLInputElement>('input[name=clip]').checked = planes.length > 0;
     this.find('.clip').hidden = planes.length === 0;
     this.find<HTMLInputElement>(`.clip-modes input[value=${mode}]`).checked = true;
-    this.find('.add-plane').hidden = planes.length >= kMostPlanes;
+    this.find('.add-plane').hidden = planes.length >= kMaxPlanes;
     [...this.find('.planes').children].forEach((row, i) =>
       this.updateRow(row as HTMLElement, planes[i], scene),
     );

@@ -3,7 +3,7 @@
 import type {Insets} from '../three/view';
 
 /** A sheet that is pulled up covers the mesh rather than squeezing it out of sight. */
-const kMostCovered = 0.6;
+const kMaxCovered = 0.6;
 /** Of the free width: a wider legend leaves no corner. */
 const kWide = 0.6;
 
@@ -25,8 +25,8 @@ export function insetsOf(
     return {
       left: 0,
       right: 0,
-      top: bare ? 0 : Math.min(kMostCovered, (bar.bottom - whole.top) / height),
-      bottom: hidden ? 0 : Math.min(kMostCovered, (whole.bottom - covered) / height),
+      top: bare ? 0 : Math.min(kMaxCovered, (bar.bottom - whole.top) / height),
+      bottom: hidden ? 0 : Math.min(kMaxCovered, (whole.bottom - covered) / height),
     };
   }
   const free = (hidden ? whole.right : card.left) - whole.left;
@@ -35,8 +35,8 @@ export function insetsOf(
   const bottom = bare ? 0 : (whole.bottom - bar.top) / height / (bar.width > kWide * free ? 1 : 2);
   return {
     left: 0,
-    right: hidden ? 0 : Math.min(kMostCovered, (whole.right - card.left) / width),
+    right: hidden ? 0 : Math.min(kMaxCovered, (whole.right - card.left) / width),
     top: 0,
-    bottom: Math.min(kMostCovered, bottom),
+    bottom: Math.min(kMaxCovered, bottom),
   };
 }

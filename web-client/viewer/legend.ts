@@ -7,14 +7,14 @@ import {logTicks, niceTicks} from '../core/ticks';
 import {scalarTitle} from './panel';
 import type {Settings} from './settings';
 
-const kMostTicks = 6;
+const kMaxTicks = 6;
 
 export interface ShownRange {
   low: number;
   high: number;
   logarithmic: boolean;
   /** Somewhere there is no value: that colour is told, too. */
-  hasGaps: boolean;
+  hasMissing: boolean;
 }
 
 export class Legend {
@@ -40,11 +40,11 @@ export class Legend {
     if (wanted === this.shown) return; // every picture asks, few change it
     this.shown = wanted;
     const {ticks, factor} = range.logarithmic
-      ? logTicks(range.low, range.high, kMostTicks)
-      : niceTicks(range.low, range.high, kMostTicks);
+      ? logTicks(range.low, range.high, kMaxTicks)
+      : niceTicks(range.low, range.high, kMaxTicks);
     const name = this.part('.legend-name');
     name.textContent = name.title = scalarTitle(scalar, fields);
-    this.part('.legend-gap').hidden = !range.hasGaps;
+    this.part('.legend-missing').hidden = !range.hasMissing;
     this.part('.legend-factor').textContent = range.logarithmic ? 'logarithmic' : factor;
     this.part('.legend-bar').style.background = colorGradient(map, reversed, 33);
     this.part('.legend-ticks').replaceChildren(

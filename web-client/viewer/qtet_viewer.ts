@@ -34,14 +34,14 @@ import type {Counts} from '../core/counts';
 import {kTransportKinds} from '../core/auto_transport';
 import type {Vector} from '../core/cell_ray';
 import {Client} from '../core/client';
-import {kMostPlanes, type Display} from '../core/display';
+import {kMaxPlanes, type Display} from '../core/display';
 import {errorCode, errorText, QtetError} from '../core/errors';
 import {kMagnitude, type Scalar} from '../core/field_scale';
 import type {LevelBytes} from '../core/goal';
 import {kFull} from '../core/limit';
 import type {Manifest} from '../core/manifest';
 import {kNoStatistics, type Statistics} from '../core/statistics';
-import type {Wishes} from '../core/wishes';
+import type {ViewRequest} from '../core/view_request';
 import type {FromWorker, Snapshot, StreamState} from '../core/worker_messages';
 import type {CameraState} from '../three/camera';
 import {kDirections, type Direction} from '../three/directions';
@@ -125,7 +125,7 @@ export class QtetViewer extends HTMLElement implements Host {
   private sentDisplay = '';
   private plan: LevelBytes[] = [];
   /** Of what is shown some has no value. */
-  private hasGaps = false;
+  private hasMissing = false;
   /** The server and the mesh that were opened last. */
   private opened = '';
   /** What users have not been freed of: the last one is shown. */
@@ -142,7 +142,7 @@ export class QtetViewer extends HTMLElement implements Host {
   /** As Inspect's host. */
   middle: [number, number] = [0.5, 0.5];
   private toldCamera = '';
-  private toldWishes = '';
+  private toldRequest = '';
   private lastCells: {at: number; cells: number} = {at: 0, cells: 0};
   private bearer = '';
   private openings = 0;
@@ -292,7 +292,7 @@ export class QtetViewer extends HTMLElement implements Host {
           fields: this.color ? [this.color.field] : [],
         }),
       ),
-      handles: new ClipHandles(this.find('.layer'), kMostPlanes, (i, share) => clip.move(i, share)),
+      handles: new ClipHandles(this.find('.layer'), kMaxPlanes, (i, share) => clip.move(i, share)),
       inspect: new Inspect(this.root, inspectHost(this)),
       resizes: new ResizeObserver(() => this.arrange()),
     };
@@ -529,7 +529,7 @@ export class QtetViewer extends HTMLElement implements Host {
   private forget(sameMesh = false): void {
     this.manifest = this.pending = this.snapshot = this.drawn = null;
     this.bounds = this.plan = [];
-    this.sentDisplay = this.toldWishes = '';
+    this.sentDisplay = this.toldRequest = '';
     this.loaded = false;
     this.figures = kNoStatistics;
     this.lastCells = {at: 0, cells: 0};
@@ -586,7 +586,7 @@ export class QtetViewer extends HTMLElement implements Host {
     if (this.figures === kNoStatistics) this.figures = snapshot.statistics;
     this.snapshot = snapshot;
     if (snapshot.surface)
-      this.hasGaps = [snapshot.surface, ...snapshot.cuts].some(({values}) =>
+      this.hasMissing = [snapshot.surface, ...snapshot.cuts].some(({values}) =>
         values.some(Number.isNaN),
       );
     const {manifest} = this;
@@ -681,10 +681,14 @@ export class QtetViewer extends HTMLElement implements Host {
       this.bounds.length > 0
         ? this.settings.planes.map((plane) => planeOf(plane, this.bounds))
         : [];
-    const wishes: Wishes = {frustum: this.meshView?.pose.frustum ?? [], planes, point: this.point};
-    const text = JSON.stringify(wishes);
-    if (text !== this.toldWishes) this.client?.look(wishes);
-    this.toldWishes = text;
+    const request: ViewRequest = {
+      frustum: this.meshView?.pose.frustum ?? [],
+      planes,
+      point: this.point,
+    };
+    const text = JSON.stringify(request);
+    if (text !== this.toldRequest) this.client?.look(request);
+    this.toldRequest = text;
   }
 
   // ---- controls
@@ -832,7 +836,7 @@ export class QtetViewer extends HTMLElement implements Host {
       this.parts.legend.show(
         snapshot.color,
         manifest.fields,
-        {...range, hasGaps: this.hasGaps},
+        {...range, hasMissing: this.hasMissing},
         settings,
       );
       this.parts.color.showRange(range.low, range.high);

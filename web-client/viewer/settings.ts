@@ -2,7 +2,7 @@
 // attribute can stand in a link. Texts in, plain data out.
 
 import {isColorMapName, type ColorMapName} from '../core/color_maps';
-import {kClipModes, kMostPlanes, type ClipMode} from '../core/display';
+import {kClipModes, kMaxPlanes, type ClipMode} from '../core/display';
 import {kMagnitude, scalarRange, type Scalar} from '../core/field_scale';
 import {kFull, parseLimit, type Limit} from '../core/limit';
 import {fieldKeys, type FieldInfo} from '../core/manifest';
@@ -123,7 +123,7 @@ export function parseClip(text: string | null): ClipSetting[] {
     .split(/\s+/)
     .map(parsePlane)
     .filter((plane) => plane !== null);
-  return planes.slice(0, kMostPlanes);
+  return planes.slice(0, kMaxPlanes);
 }
 
 function parsePlane(word: string): ClipSetting | null {

@@ -73,7 +73,7 @@ export const kTemplate = `
   <figcaption><span class="legend-name"></span><span class="legend-factor"></span></figcaption>
   <div class="legend-bar"></div>
   <div class="legend-ticks"></div>
-  <div class="legend-gap" hidden><i></i>No value</div>
+  <div class="legend-missing" hidden><i></i>No value</div>
 </figure>
 
 <section class="card result" part="result" aria-label="What was pointed at" hidden>

@@ -4,66 +4,67 @@
 import {kBoxSteps, type PacketBox} from './packet';
 
 /** Boxes along an axis. A packet's box is told in 256ths, each of which lies in one of these. */
-const kMarkSteps = 16;
+const kGridSteps = 16;
 
 /**
  * One byte a box, x fastest: 1 where a corner lies in it or in a neighbour, because a finer mesh
  * has the surface elsewhere. null: no corner. `size`: of the lattice.
  */
-export function marksOf(positions: Float32Array, size: number): Uint8Array | null {
+export function surfaceBoxesOf(positions: Float32Array, size: number): Uint8Array | null {
   if (positions.length === 0) return null;
-  const marks = new Uint8Array(kMarkSteps ** 3);
-  for (let at = 0; at < positions.length; at += 3) marks[boxAt(positions, at, size)] = 1;
-  const grown = new Uint8Array(marks.length);
+  const boxes = new Uint8Array(kGridSteps ** 3);
+  for (let at = 0; at < positions.length; at += 3) boxes[boxAt(positions, at, size)] = 1;
+  const grown = new Uint8Array(boxes.length);
   const range = (at: number): [number, number] => [
     Math.max(0, at - 1),
-    Math.min(kMarkSteps - 1, at + 1),
+    Math.min(kGridSteps - 1, at + 1),
   ];
-  marks.forEach((mark, i) => {
-    if (mark === 0) return;
+  boxes.forEach((inside, i) => {
+    if (inside === 0) return;
     forBoxes(placeOf(i).map(range), (near) => void (grown[near] = 1));
   });
   return grown;
 }
 
-export function meets(marks: Uint8Array, box: PacketBox): boolean {
+export function meets(boxes: Uint8Array, box: PacketBox): boolean {
   let found = false;
-  const scale = kBoxSteps / kMarkSteps;
+  const scale = kBoxSteps / kGridSteps;
   forBoxes(
     [0, 1, 2].map(
       (axis) =>
         [Math.floor(box[axis]! / scale), Math.floor(box[axis + 3]! / scale)] as [number, number],
     ),
-    (i) => void (found ||= marks[i] === 1),
+    (i) => void (found ||= boxes[i] === 1),
   );
   return found;
 }
 
 /**
- * Least and greatest corner of all marks, in shares of the lattice. REQUIRES: one mark at least.
+ * Least and greatest corner of all boxes that are 1, in shares of the lattice. REQUIRES: there is
+ * one.
  */
-export function boundsOfMarks(marks: Uint8Array): number[] {
+export function boundsOfBoxes(boxes: Uint8Array): number[] {
   const bounds = [1, 1, 1, 0, 0, 0];
-  marks.forEach((mark, i) => {
-    if (mark === 0) return;
+  boxes.forEach((inside, i) => {
+    if (inside === 0) return;
     placeOf(i).forEach((at, axis) => {
-      bounds[axis] = Math.min(bounds[axis]!, at / kMarkSteps);
-      bounds[axis + 3] = Math.max(bounds[axis + 3]!, (at + 1) / kMarkSteps);
+      bounds[axis] = Math.min(bounds[axis]!, at / kGridSteps);
+      bounds[axis + 3] = Math.max(bounds[axis + 3]!, (at + 1) / kGridSteps);
     });
   });
   return bounds;
 }
 
 const placeOf = (i: number): number[] => [
-  i % kMarkSteps,
-  Math.floor(i / kMarkSteps) % kMarkSteps,
-  Math.floor(i / kMarkSteps ** 2),
+  i % kGridSteps,
+  Math.floor(i / kGridSteps) % kGridSteps,
+  Math.floor(i / kGridSteps ** 2),
 ];
 
 function boxAt(positions: Float32Array, at: number, size: number): number {
   const step = (axis: number): number =>
-    Math.min(kMarkSteps - 1, Math.floor((positions[at + axis]! / size) * kMarkSteps));
-  return step(0) + kMarkSteps * (step(1) + kMarkSteps * step(2));
+    Math.min(kGridSteps - 1, Math.floor((positions[at + axis]! / size) * kGridSteps));
+  return step(0) + kGridSteps * (step(1) + kGridSteps * step(2));
 }
 
 function forBoxes(ranges: [number, number][], use: (i: number) => void): void {
@@ -74,5 +75,5 @@ function forBoxes(ranges: [number, number][], use: (i: number) => void): void {
   ];
   for (let z = z0; z <= z1; ++z)
     for (let y = y0; y <= y1; ++y)
-      for (let x = x0; x <= x1; ++x) use(x + kMarkSteps * (y + kMarkSteps * z));
+      for (let x = x0; x <= x1; ++x) use(x + kGridSteps * (y + kGridSteps * z));
 }

@@ -2,11 +2,11 @@
 // coordinates; a box is a packet's, in 256ths of the lattice.
 
 import type {Vector} from './cell_ray';
-import {boundsOfMarks, meets} from './marks';
+import {boundsOfBoxes, meets} from './surface_boxes';
 import {kBoxSteps, type Packet, type PacketBox} from './packet';
 import type {Plane} from './slice';
 
-export interface Wishes {
+export interface ViewRequest {
   /** Up to 6: inside are the points with normal . p >= offset. Empty: everything is in sight. */
   frustum: Plane[];
   /** What lies on them is wanted. */
@@ -14,10 +14,10 @@ export interface Wishes {
   /** What is near it comes first. */
   point: Vector | null;
   /**
-   * What meets them is wanted, too (marks.ts): isosurfaces, of which the worker knows where they
-   * are.
+   * What meets them is wanted, too (surface_boxes.ts): isosurfaces, of which the worker knows where
+   * they are.
    */
-  marks?: Uint8Array | null;
+  surfaceBoxes?: Uint8Array | null;
   /** The same for a server, which knows better where they will be. */
   isovalue?: Isovalue | null;
 }
@@ -29,7 +29,7 @@ export interface Isovalue {
   values: number[];
 }
 
-export const kNoWishes: Wishes = {frustum: [], planes: [], point: null};
+export const kNoViewRequest: ViewRequest = {frustum: [], planes: [], point: null};
 
 /** Least and largest of normal . p over the box. */
 function reach(box: PacketBox, size: number, normal: readonly number[]): [number, number] {
@@ -45,13 +45,17 @@ function reach(box: PacketBox, size: number, normal: readonly number[]): [number
 }
 
 /**
- * 0 for what is in sight and on a plane or marked, 3 for what is neither. Never above that of a box
- * within this one, so that parents come before children.
+ * 0 for what is in sight and on a plane or in a surface's box, 3 for what is neither. Never above
+ * that of a box within this one, so that parents come before children.
  */
-export function urgency({frustum, planes, marks}: Wishes, box: PacketBox, size: number): number {
+export function urgency(
+  {frustum, planes, surfaceBoxes}: ViewRequest,
+  box: PacketBox,
+  size: number,
+): number {
   const inSight = frustum.every(({normal, offset}) => reach(box, size, normal)[1] >= offset);
   const onPlane =
-    (marks ? meets(marks, box) : planes.length === 0) ||
+    (surfaceBoxes ? meets(surfaceBoxes, box) : planes.length === 0) ||
     planes.some(({normal, offset}) => {
       const [low, high] = reach(box, size, normal);
       return low <= offset && offset <= high;
@@ -75,14 +79,14 @@ function distance(point: Vector, box: PacketBox, size: number): number {
  * The packets as they should come: the urgent before the others, of these coarse before fine, near
  * before far. `size`: of the lattice along an axis.
  */
-export function inOrder(packets: readonly Packet[], wishes: Wishes, size: number): Packet[] {
+export function inOrder(packets: readonly Packet[], view: ViewRequest, size: number): Packet[] {
   const keys = new Map(
     packets.map((packet) => [
       packet,
       [
-        urgency(wishes, packet.box, size),
+        urgency(view, packet.box, size),
         packet.depth,
-        wishes.point ? distance(wishes.point, packet.box, size) : 0,
+        view.point ? distance(view.point, packet.box, size) : 0,
         packet.chunk,
       ],
     ]),
@@ -101,9 +105,9 @@ export interface WireLattice {
   size: number;
 }
 
-/** As proto/PROTOCOL.md has it, in the mesh's own unit; null: no wishes. */
+/** As proto/PROTOCOL.md has it, in the mesh's own unit; null: nothing is asked for. */
 export function wireView(
-  {frustum, planes, point, marks, isovalue}: Wishes,
+  {frustum, planes, point, surfaceBoxes, isovalue}: ViewRequest,
   {origin, step, size}: WireLattice,
 ): Record<string, unknown> | null {
   const shift = (normal: readonly number[]): number =>
@@ -113,13 +117,13 @@ export function wireView(
     ...normal,
     -(offset * step + shift(normal)),
   ];
-  const view: Record<string, unknown> = {};
-  if (frustum.length > 0) view.frustum = frustum.map(plane);
-  if (planes.length > 0) view.planes = planes.map(plane);
-  // Any of both would do, and the box is the larger wish.
-  if (isovalue) view.isovalue = isovalue;
-  else if (marks)
-    view.box = boundsOfMarks(marks).map((share, i) => origin[i % 3]! + step * size * share);
-  if (point) view.point = point.map((x, axis) => origin[axis]! + step * x);
-  return Object.keys(view).length > 0 ? view : null;
+  const wire: Record<string, unknown> = {};
+  if (frustum.length > 0) wire.frustum = frustum.map(plane);
+  if (planes.length > 0) wire.planes = planes.map(plane);
+  // Either would do, and the box asks for more.
+  if (isovalue) wire.isovalue = isovalue;
+  else if (surfaceBoxes)
+    wire.box = boundsOfBoxes(surfaceBoxes).map((share, i) => origin[i % 3]! + step * size * share);
+  if (point) wire.point = point.map((x, axis) => origin[axis]! + step * x);
+  return Object.keys(wire).length > 0 ? wire : null;
 }
