@@ -23,6 +23,7 @@ test('aLimitIsReachedByItsOwnFigure', () => {
   const statistics = {...kNoStatistics, tetrahedra: 100, bytes: 5000};
   expect(limitReached({kind: 'cells', value: 100}, statistics, null)).toBe(true);
   expect(limitReached({kind: 'cells', value: 101}, statistics, null)).toBe(false);
+  expect(limitReached({kind: 'bytes', value: 5000}, statistics, null)).toBe(true);
   expect(limitReached({kind: 'bytes', value: 5001}, statistics, null)).toBe(false);
   expect(limitReached({kind: 'error', value: 0.01}, statistics, 0.01)).toBe(true);
   expect(limitReached({kind: 'error', value: 0.01}, statistics, null)).toBe(false);

@@ -574,6 +574,41 @@ describe('memory', () => {
   });
 });
 
+/** A transport that is always connected, and does `what` besides. */
+function carrier(what: Partial<Transport>): Transport {
+  return {
+    isConnected: true,
+    connect: () => undefined,
+    open: () => undefined,
+    stop: () => undefined,
+    pause: () => undefined,
+    resume: () => true,
+    aim: () => undefined,
+    applied: () => undefined,
+    look: () => undefined,
+    disconnect: () => undefined,
+    ...what,
+  };
+}
+
+test('creditIsGivenBackOnceForWhatWasApplied', () => {
+  const given: number[] = [];
+  const assembler = new Assembler(codec, kFakeValues);
+  const giving = new Session(
+    assembler,
+    new Publisher(assembler, () => undefined),
+    () => undefined,
+    () => carrier({applied: (bytes) => given.push(bytes)}),
+  );
+  giving.start({url: 'ws://x', log: '', transport: 'auto', mesh: 'm', fields: ['p'], limit: kFull});
+  giving.connected();
+  giving.frame(parseFrame(headFrame(1, kLog)));
+  giving.frame(parseFrame(meshFrame(1, 0)));
+  giving.frame(parseFrame(fieldFrame(1, 0, 0)));
+  giving.setLimit(kFull); // decoding goes on without a new byte
+  expect(given).toEqual([fakeHead(kLog).length, 2 * kFakeBlockBytes, kFakeBlockBytes]);
+});
+
 /** Head chunk 0, and packets; who carries them only hears the views. */
 test('whatIsosurfacesAreShownIsToldByFieldAndValue', () => {
   const log: FakeLog = {fields: ['p'], cellFields: ['p'], chunks: 3};
@@ -582,19 +617,11 @@ test('whatIsosurfacesAreShownIsToldByFieldAndValue', () => {
   const assembler = new Assembler(parts, kFakeValues);
   const publishing = new Publisher(assembler, () => undefined);
   const views: ViewRequest[] = [];
-  const silent = {
-    isConnected: true,
-    connect: () => undefined,
-    open: () => undefined,
-    disconnect: () => undefined,
-    applied: () => undefined,
-    look: (its: ViewRequest) => views.push(its),
-  };
   const telling = new Session(
     assembler,
     publishing,
     () => undefined,
-    () => silent as unknown as Transport,
+    () => carrier({look: (view) => views.push(view)}),
   );
   telling.start({
     url: 'ws://x',

@@ -1,0 +1,62 @@
+import {beforeEach, describe, expect, test} from 'vitest';
+import {Assembler} from '../core/assembler';
+import {parseFrame} from '../core/protocol';
+import {kNoViewRequest} from '../core/view_request';
+import {FakeCodec, headFrame, kFakeValues, meshFrame, type FakeLog} from './fakes';
+
+const kLog: FakeLog = {fields: [], chunks: 6};
+const kHeadChunks = 2;
+
+/** Two chunks of the head; packets 2 to the left and 3 to the right, 4 within 2, 5 within 3. */
+class PacketCodec extends FakeCodec {
+  readonly order: number[] = [];
+  override get headChunks(): number {
+    return kHeadChunks;
+  }
+  override dependency(chunk: number): number {
+    return chunk < 4 ? Math.min(chunk, kHeadChunks) - 1 : chunk - 2;
+  }
+  override packetBox(chunk = 0): number[] {
+    const left = chunk % 2 === 0 ? 0 : 128;
+    return [left, 0, 0, left + 127, 255, 255];
+  }
+  override apply(chunk: number): void {
+    this.order.push(chunk);
+    ++this.chunksApplied;
+  }
+  override applied(chunk = 0): boolean {
+    return this.order.includes(chunk);
+  }
+}
+
+let codec: PacketCodec;
+let assembler: Assembler;
+
+beforeEach(() => {
+  codec = new PacketCodec(kLog);
+  assembler = new Assembler(codec, kFakeValues);
+  assembler.take(parseFrame(headFrame(1, kLog)));
+});
+
+function decoded(arriving: number[]): number[] {
+  for (const chunk of arriving) assembler.take(parseFrame(meshFrame(1, chunk)));
+  while (assembler.step([], true)) continue;
+  return codec.order;
+}
+
+describe('what is here', () => {
+  test('isDecodedHeadFirstThenCoarseBeforeFineHoweverItArrives', () => {
+    expect(decoded([4, 5, 3, 1, 2, 0])).toEqual([0, 1, 2, 3, 4, 5]);
+  });
+
+  test('isDecodedInTheOrderOfTheViewRequest', () => {
+    const right = assembler.lattice!.size - 1;
+    assembler.look({...kNoViewRequest, planes: [{normal: [1, 0, 0], offset: right}]});
+    expect(decoded([0, 1, 3, 2, 5, 4])).toEqual([0, 1, 3, 5, 2, 4]);
+  });
+
+  test('waitsForTheChunkThatItDependsOn', () => {
+    expect(decoded([0, 1, 4, 5])).toEqual([0, 1]);
+    expect(decoded([3])).toEqual([0, 1, 3, 5]);
+  });
+});
