@@ -426,6 +426,16 @@ describe('a target', () => {
     expect(states().at(-1)).toBe('complete');
   });
 
+  test('aPauseBeforeTheHeadIsHereGoesOnWithTheSameStream', () => {
+    const socket = start({fields: null});
+    opened(socket, 1, 'stream');
+    session.pause();
+    session.resume();
+    expect([opens().length, socket.sentOf('resume').length]).toEqual([1, 1]);
+    socket.deliver(headFrame(1, kLog));
+    expect(opens().map(({credit}) => credit)).toEqual([1, 1 << 20]);
+  });
+
   test('aPauseInWhichAnotherFieldWasAskedForEndsWithAnOpen', () => {
     const socket = start();
     opened(socket, 1, 'stream');

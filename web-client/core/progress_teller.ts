@@ -1,0 +1,31 @@
+// Tells of progress as often as a page can show it.
+
+/**
+ * Blocks may come by the hundred a second: telling of each costs both threads more than it shows.
+ */
+const kProgressMs = 100;
+
+export class ProgressTeller {
+  private timer: ReturnType<typeof setTimeout> | undefined;
+  private toldAt = -kProgressMs;
+
+  constructor(private readonly tell: () => void) {}
+
+  /** The last change of a burst is told late, but never lost. */
+  changed(): void {
+    const wait = Math.max(0, this.toldAt + kProgressMs - performance.now());
+    this.timer ??= setTimeout(() => this.send(), wait);
+  }
+
+  /** Tells at once what waits to be told. */
+  flush(): void {
+    if (this.timer !== undefined) this.send();
+  }
+
+  private send(): void {
+    clearTimeout(this.timer);
+    this.timer = undefined;
+    this.toldAt = performance.now();
+    this.tell();
+  }
+}

@@ -1,0 +1,124 @@
+// What is wanted of a log, and how far what is here and what is decoded have come towards that.
+
+import type {Assembler} from './assembler';
+import type {Goal} from './goal';
+import {errorOfLevel, kFull, limitReached, type Limit} from './limit';
+import {fieldKeys} from './manifest';
+import {kFirstFieldPart, kStructurePart} from './parts';
+import type {OpenRequest} from './protocol';
+import type {Statistics} from './statistics';
+import {kNoSurfaceRequest, type SurfaceRequest} from './surface_request';
+import {kNoViewRequest, type ViewRequest} from './view_request';
+import type {Source} from './worker_messages';
+
+export class Wanted {
+  /** Of the fields, before the head tells which there are; null: the first one. */
+  names: string[] | null = null;
+  /** Indexes into the manifest. */
+  fields: readonly number[] = [];
+  limit: Limit = kFull;
+  view: ViewRequest = kNoViewRequest;
+
+  constructor(private readonly assembler: Assembler) {}
+
+  begin({fields, limit}: Source): void {
+    this.names = fields;
+    this.limit = limit;
+  }
+
+  /** Another log comes: its fields may have other places, and its surfaces are elsewhere. */
+  forget(): void {
+    this.fields = [];
+    this.look(this.view, kNoSurfaceRequest);
+  }
+
+  /**
+   * Looks the names up. The first field stands in for a name that there is not, which is returned.
+   * REQUIRES: the head is here.
+   */
+  findFields(): string | undefined {
+    const keys = fieldKeys(this.assembler.manifest!.fields);
+    const unknown = this.names?.find((name) => !keys.includes(name));
+    this.fields = (this.names ?? []).map((name) => keys.indexOf(name)).filter((i) => i >= 0);
+    const wantsFirst = this.names === null || unknown !== undefined;
+    if (this.fields.length === 0 && keys.length > 0 && wantsFirst) this.fields = [0];
+    return unknown;
+  }
+
+  /** False: these are wanted already. REQUIRES: the head is here. */
+  changeFields(fields: readonly number[]): boolean {
+    const {fields: now} = this;
+    if (fields.length === now.length && fields.every((field) => now.includes(field))) return false;
+    this.fields = fields;
+    this.names = this.keys;
+    return true;
+  }
+
+  look(page: ViewRequest, {surfaceBoxes, isovalue}: SurfaceRequest): void {
+    this.view = {...page, surfaceBoxes, isovalue};
+  }
+
+  /** Of the fields, as a server calls them. */
+  get keys(): string[] {
+    const {manifest} = this.assembler;
+    if (!manifest) return this.names ?? [];
+    const keys = fieldKeys(manifest.fields);
+    return this.fields.map((field) => keys[field]!);
+  }
+
+  get statistics(): Statistics {
+    return this.assembler.statistics(this.fields);
+  }
+
+  /** Where the limit lies; null: at the end, or nobody knows. */
+  get goal(): Goal | null {
+    return this.assembler.goal(this.limit, this.fields);
+  }
+
+  /** Only the head can tell which fields there are, or where the limit lies. */
+  get needsHead(): boolean {
+    return !this.assembler.manifest && (this.names === null || this.limit.kind !== 'full');
+  }
+
+  /** The leading chunks, all by default, are here with the fields. */
+  isReceived(chunks = this.assembler.codec.chunkCount): boolean {
+    const {assembler} = this;
+    return (
+      assembler.manifest !== null &&
+      assembler.receivedChunks >= chunks &&
+      this.fields.every((field) => assembler.receivedOfField(field) >= chunks)
+    );
+  }
+
+  /** The whole mesh is decoded with the fields. */
+  get isComplete(): boolean {
+    const {codec, manifest} = this.assembler;
+    if (!manifest || codec.chunksApplied < codec.chunkCount) return false;
+    return this.fields.every((field) => codec.fieldChunksApplied(field) === codec.chunkCount);
+  }
+
+  /** What is decoded is as fine as the limit; without one it never is. */
+  get isReached(): boolean {
+    const {codec, manifest} = this.assembler;
+    if (this.limit.kind === 'full' || !manifest || codec.chunksApplied === 0) return false;
+    const {statistics, fields} = this;
+    const error = errorOfLevel(manifest.levels[statistics.level], fields);
+    return limitReached(this.limit, statistics, error);
+  }
+
+  /** What `open` says of the blocks that are here. */
+  get have(): OpenRequest['have'] {
+    const {assembler, keys} = this;
+    if (!assembler.manifest) return {chunks: 0, fields: {}};
+    const beyond = (count: number, part: number): [number, number][] =>
+      assembler.packets.length > 0 ? assembler.rangesBeyond(count, part) : [];
+    const chunks = assembler.receivedChunks;
+    const ranges = beyond(chunks, kStructurePart);
+    const fields = this.fields.map((field, i) => {
+      const count = assembler.receivedOfField(field);
+      const its = beyond(count, kFirstFieldPart + field);
+      return [keys[i]!, its.length > 0 ? {chunks: count, ranges: its} : count] as const;
+    });
+    return {chunks, ...(ranges.length > 0 ? {ranges} : {}), fields: Object.fromEntries(fields)};
+  }
+}
