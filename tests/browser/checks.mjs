@@ -513,7 +513,8 @@ async function obeysTheKeyboard({server, browser}) {
   await viewer.page.keyboard.press('i');
   await viewer.page.locator('qtet-viewer .result').waitFor();
   const off = await viewer.page.evaluate(() => {
-    const {meshView, bounds, shadowRoot} = window.qtetViewer;
+    const {meshView, viewing, shadowRoot} = window.qtetViewer;
+    const {bounds} = viewing.mesh;
     const {x, y} = meshView.project([0, 1, 2].map((axis) => (bounds[axis] + bounds[axis + 3]) / 2));
     const mark = shadowRoot.querySelector('.marks circle');
     return Math.hypot(mark.getAttribute('cx') - x, mark.getAttribute('cy') - y);

@@ -98,7 +98,8 @@ async function keepsTheMeshOutOfTheLegend({server, browser}) {
   await viewer.settle();
   const {card} = await placesOf(viewer);
   const lowest = await viewer.page.evaluate(() => {
-    const {meshView, bounds} = window.qtetViewer;
+    const {meshView, viewing} = window.qtetViewer;
+    const {bounds} = viewing.mesh;
     return Math.max(
       ...Array.from(
         {length: 8},

@@ -256,7 +256,7 @@ async function measureCuts() {
         [name, text],
       );
       await viewer.settle();
-      costs.push(await viewer.page.evaluate(() => window.qtetViewer.snapshot.costMs));
+      costs.push(await viewer.page.evaluate(() => window.qtetViewer.viewing.mesh.snapshot.costMs));
     }
     return costs.sort((a, b) => a - b)[costs.length >> 1];
   };

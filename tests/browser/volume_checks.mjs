@@ -62,7 +62,8 @@ ${array('Int64', 'offsets', offsets)}${array('UInt8', 'types', types)}</Cells>
  */
 function pixelsAt(viewer, places) {
   return viewer.page.evaluate(async (shares) => {
-    const {meshView, bounds} = window.qtetViewer;
+    const {meshView, viewing} = window.qtetViewer;
+    const {bounds} = viewing.mesh;
     const picture = await createImageBitmap(await meshView.picture('transparent'));
     const context = new OffscreenCanvas(picture.width, picture.height).getContext('2d');
     context.drawImage(picture, 0, 0);
@@ -134,7 +135,7 @@ async function drawsAVolumeAsTheFormulaSays({server, browser, logs, out, bin}) {
   await viewer.page.evaluate(() => window.qtetViewer.setAttribute('clip', 'x:0.6'));
   await viewer.restVolume();
   const [low, high] = await viewer.page.evaluate(() =>
-    [0, 3].map((i) => window.qtetViewer.bounds[i]),
+    [0, 3].map((i) => window.qtetViewer.viewing.mesh.bounds[i]),
   );
   const cut = (Math.floor(low + 0.6 * (high - low)) + 0.5 - low) / (high - low);
   expectClose(
@@ -436,7 +437,9 @@ async function castsRaysAsEveryCellSays({server, browser, logs, out, bin}) {
       );
       await viewer.restVolume();
       await viewer.screenshot(`volume-cast-${name}`);
-      const [low, high] = await viewer.page.evaluate(() => window.qtetViewer.snapshot.scaleRange);
+      const [low, high] = await viewer.page.evaluate(
+        () => window.qtetViewer.viewing.mesh.snapshot.scaleRange,
+      );
       const pairs = await viewer.inView(
         compareWithEveryCell,
         level && (level - low) / (high - low),

@@ -1,5 +1,5 @@
 import {describe, expect, test} from 'vitest';
-import {extentAlong, planeOf} from '../viewer/clip_panel';
+import {extentAlong, planeOf} from '../viewer/clip_plane';
 import {axisNormal} from '../viewer/settings';
 
 const kBounds = [0, 0, 0, 100, 200, 50];

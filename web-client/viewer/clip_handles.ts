@@ -2,7 +2,7 @@
 // normal.
 
 import type {View} from '../three/view';
-import {extentAlong, planeOf} from './clip_panel';
+import {extentAlong, planeOf} from './clip_plane';
 import {axisOf, type ClipSetting} from './settings';
 
 const kArrowPixels = 34;

@@ -2,35 +2,10 @@
 // handle in the picture.
 
 import {kMaxPlanes} from '../core/display';
-import type {Plane} from '../core/slice';
 import {formatCoordinate} from './format';
-import type {Host, Panel, Scene} from './panel';
+import type {Attributes} from './page';
+import type {Panel, Scene} from './panel';
 import {axisNormal, axisOf, clipText, type ClipSetting, type Settings} from './settings';
-
-/** How far the bounds reach along a normal, in lattice units. */
-export function extentAlong(bounds: number[], normal: readonly number[]): [number, number] {
-  let low = 0;
-  let high = 0;
-  for (let axis = 0; axis < 3; ++axis) {
-    const a = normal[axis]! * bounds[axis]!,
-      b = normal[axis]! * bounds[axis + 3]!;
-    low += Math.min(a, b);
-    high += Math.max(a, b);
-  }
-  return [low, high];
-}
-
-/**
- * The plane in lattice coordinates. A share counts along the axis upwards, whichever side is cut
- * away; along a free normal, along it.
- */
-export function planeOf({normal, share}: ClipSetting, bounds: number[]): Plane {
-  const [low, high] = extentAlong(bounds, normal);
-  const {axis} = axisOf({normal, share});
-  const upwards = axis < 0 || normal[axis]! > 0;
-  // Between two lattice planes: no vertex lies on the cut, and no cell's section is a single point.
-  return {normal, offset: Math.floor(low + (upwards ? share : 1 - share) * (high - low)) + 0.5};
-}
 
 export class ClipPanel implements Panel {
   private planes: ClipSetting[] = [];
@@ -38,7 +13,7 @@ export class ClipPanel implements Panel {
   /** `viewNormal`: from the mesh to the camera, in lattice coordinates. */
   constructor(
     private readonly root: ParentNode,
-    private readonly host: Host,
+    private readonly attributes: Attributes,
     private readonly viewNormal: () => [number, number, number],
   ) {
     this.find<HTMLInputElement>('input[name=clip]').addEventListener('change', (event) => {
@@ -50,7 +25,7 @@ export class ClipPanel implements Panel {
     });
     this.find('.clip-modes').addEventListener('change', (event) => {
       const mode = (event.target as HTMLInputElement).value;
-      host.write('clip-mode', mode === 'cut' ? null : mode);
+      attributes.write('clip-mode', mode === 'cut' ? null : mode);
     });
     this.find('.add-plane').addEventListener('click', () => this.add());
     const rows = this.find('.planes');
@@ -148,7 +123,7 @@ export class ClipPanel implements Panel {
   }
 
   private write(planes: ClipSetting[]): void {
-    this.host.write('clip', planes.length > 0 ? clipText(planes) : null);
+    this.attributes.write('clip', planes.length > 0 ? clipText(planes) : null);
   }
   private find<T extends HTMLElement = HTMLElement>(selector: string): T {
     return this.root.querySelector<T>(selector)!;

@@ -1,31 +1,31 @@
 // Field, colour map, scale, range, edges, surface and opacity.
 
-import {kMagnitude} from '../core/field_scale';
-import {fillScalars, type Host, type Panel, type Scene} from './panel';
-import {parseNumbers, parseScalar, type Settings} from './settings';
+import type {Attributes} from './page';
+import {fillScalars, type Panel, type Scene} from './panel';
+import {parseNumbers, shownScalar, type Settings} from './settings';
 
 export class ColorPanel implements Panel {
   constructor(
     private readonly root: ParentNode,
-    private readonly host: Host,
+    private readonly attributes: Attributes,
   ) {
-    this.on('select[name=field]', (select) => host.write('field', select.value));
+    this.on('select[name=field]', (select) => attributes.write('field', select.value));
     this.on('.swatches', () => this.writeMap());
     this.on('input[name=reversed]', () => this.writeMap());
     this.on('input[name=log]', (input) =>
-      host.write('scale', (input as HTMLInputElement).checked ? 'log' : null),
+      attributes.write('scale', (input as HTMLInputElement).checked ? 'log' : null),
     );
     this.on('select[name=range]', (select) => this.writeRange(select.value));
     for (const end of ['low', 'high'])
       this.on(`input[name=range-${end}]`, () => this.writeRange('fixed'));
     this.on('input[name=edges]', (input) =>
-      host.write('edges', (input as HTMLInputElement).checked ? null : 'off'),
+      attributes.write('edges', (input as HTMLInputElement).checked ? null : 'off'),
     );
     this.on('input[name=surface]', (input) =>
-      host.write('surface', (input as HTMLInputElement).checked ? null : 'off'),
+      attributes.write('surface', (input as HTMLInputElement).checked ? null : 'off'),
     );
     this.input('opacity').addEventListener('input', () =>
-      host.write('opacity', String(Number(this.input('opacity').value) / 100)),
+      attributes.write('opacity', String(Number(this.input('opacity').value) / 100)),
     );
   }
 
@@ -45,9 +45,7 @@ export class ColorPanel implements Panel {
       : String(settings.range);
     this.find('.range-fixed').hidden = !fixed;
     const fields = scene?.manifest.fields ?? [];
-    const chosen =
-      parseScalar(this.host.read('field'), fields) ??
-      (fields.length > 0 ? {field: 0, component: kMagnitude} : null);
+    const chosen = shownScalar(this.attributes.read('field'), fields);
     fillScalars(this.find<HTMLSelectElement>('select[name=field]'), fields, chosen);
   }
 
@@ -65,12 +63,12 @@ export class ColorPanel implements Panel {
 
   private writeMap(): void {
     const map = this.root.querySelector<HTMLInputElement>('input[name=colormap]:checked')!.value;
-    this.host.write('colormap', this.input('reversed').checked ? `${map} reversed` : map);
+    this.attributes.write('colormap', this.input('reversed').checked ? `${map} reversed` : map);
   }
 
   private writeRange(kind: string): void {
     if (kind !== 'fixed') {
-      this.host.write('range', kind === 'auto' ? null : kind);
+      this.attributes.write('range', kind === 'auto' ? null : kind);
       return;
     }
     const text = `${this.input('range-low').value},${this.input('range-high').value}`;
@@ -79,7 +77,7 @@ export class ColorPanel implements Panel {
     this.input('range-high').setCustomValidity(
       valid ? '' : 'The end of the range has to be above its start.',
     );
-    if (valid) this.host.write('range', `${low},${high}`);
+    if (valid) this.attributes.write('range', `${low},${high}`);
     else this.input('range-high').reportValidity();
   }
 

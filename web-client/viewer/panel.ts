@@ -1,15 +1,9 @@
-// What the panels share: the attributes that they write, and the fields that menus offer.
+// What the panels share: when they are brought up to date, and the fields that menus offer.
 
 import {kMagnitude, type Scalar} from '../core/field_scale';
 import type {FieldInfo, Manifest} from '../core/manifest';
 import {fillSelect} from './select';
-import {scalarText, type Settings, type ViewAttribute} from './settings';
-
-export interface Host {
-  /** Sets an attribute of the viewer; null removes it. */
-  write(name: ViewAttribute, value: string | null): void;
-  read(name: ViewAttribute): string | null;
-}
+import {scalarText, type Settings} from './settings';
 
 /** What is known of the mesh when a panel is brought up to date. */
 export interface Scene {

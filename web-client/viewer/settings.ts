@@ -178,6 +178,12 @@ export function parseScalar(text: string | null, fields: readonly FieldInfo[]): 
   return {field, component: component < fields[field]!.components ? component : kMagnitude};
 }
 
+/** What colours: the field of that name, or the first; null: there is none. */
+export function shownScalar(text: string | null, fields: readonly FieldInfo[]): Scalar | null {
+  const first = fields.length > 0 ? {field: 0, component: kMagnitude} : null;
+  return parseScalar(text, fields) ?? first;
+}
+
 /** The key of the field alone, for asking a server before its fields are known. */
 export function scalarKey(text: string): string {
   return text.replace(/\[\d+\]$/, '');
@@ -204,6 +210,24 @@ export function parseFieldValues(
   const scalar = parseScalar(text!.slice(0, at), fields);
   const values = parseNumbers(text!.slice(at + 1));
   return scalar && values.length > 0 ? {scalar, values} : null;
+}
+
+/**
+ * Isosurfaces need a field of points, a threshold two values; null: the text says nothing, or
+ * nothing that fits the mesh.
+ */
+export function fieldValuesOf(
+  kind: 'iso' | 'threshold',
+  text: string | null,
+  fields: readonly FieldInfo[],
+): FieldValues | null {
+  const value = parseFieldValues(text, fields);
+  if (!value) return null;
+  const fits =
+    kind === 'iso'
+      ? fields[value.scalar.field]!.association === 'point'
+      : value.values.length === 2;
+  return fits ? value : null;
 }
 
 export function fieldValuesText(

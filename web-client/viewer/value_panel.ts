@@ -2,10 +2,11 @@
 
 import {scalarRange, kMagnitude, type Scalar} from '../core/field_scale';
 import type {FieldInfo} from '../core/manifest';
-import {fillScalars, type Host, type Panel, type Scene} from './panel';
+import type {Attributes} from './page';
+import {fillScalars, type Panel, type Scene} from './panel';
 import {
   fieldValuesText,
-  parseFieldValues,
+  fieldValuesOf,
   parseNumbers,
   parseScalar,
   sharesOf,
@@ -29,7 +30,7 @@ export class ValuePanel implements Panel {
    */
   constructor(
     private readonly root: ShadowRoot,
-    private readonly host: Host,
+    private readonly attributes: Attributes,
     private readonly kind: 'iso' | 'threshold',
   ) {
     this.on = root.querySelector(`input[name=${kind}]`)!;
@@ -71,15 +72,12 @@ export class ValuePanel implements Panel {
 
   /** What the attribute says; null: nothing, or nothing that fits the mesh. */
   value(): FieldValues | null {
-    const value = parseFieldValues(this.host.read(this.kind), this.fields);
-    if (!value || (this.kind === 'iso' && this.fields[value.scalar.field]!.association === 'cell'))
-      return null;
-    return this.kind === 'threshold' && value.values.length !== 2 ? null : value;
+    return fieldValuesOf(this.kind, this.attributes.read(this.kind), this.fields);
   }
 
   private toggle(): void {
-    if (!this.on.checked) return this.host.write(this.kind, null);
-    const shown = parseScalar(this.host.read('field'), this.fields);
+    if (!this.on.checked) return this.attributes.write(this.kind, null);
+    const shown = parseScalar(this.attributes.read('field'), this.fields);
     const fits =
       shown && (this.kind === 'threshold' || this.fields[shown.field]!.association === 'point');
     const first = this.fields.findIndex(
@@ -129,6 +127,6 @@ export class ValuePanel implements Panel {
   }
 
   private write(values: FieldValues): void {
-    this.host.write(this.kind, fieldValuesText(values, this.fields));
+    this.attributes.write(this.kind, fieldValuesText(values, this.fields));
   }
 }

@@ -2,7 +2,8 @@
 // keyboard, touch and screen readers can edit it.
 
 import {colorGradient} from '../core/color_maps';
-import type {Host, Panel, Scene} from './panel';
+import type {Attributes} from './page';
+import type {Panel, Scene} from './panel';
 import {kFirstOpacities, type Settings} from './settings';
 
 const kSteps = 100;
@@ -15,13 +16,13 @@ export class VolumePanel implements Panel {
 
   constructor(
     root: ParentNode,
-    private readonly host: Host,
+    private readonly attributes: Attributes,
   ) {
     this.on = root.querySelector('input[name=volume]')!;
     this.body = root.querySelector('.volume')!;
     this.bars = this.body.querySelector('.bars')!;
     this.on.addEventListener('change', () =>
-      host.write('volume', this.on.checked ? kFirstOpacities.join() : null),
+      attributes.write('volume', this.on.checked ? kFirstOpacities.join() : null),
     );
     this.body.querySelector('.fainter')!.addEventListener('click', () => this.scale(0.7));
     this.body.querySelector('.denser')!.addEventListener('click', () => this.scale(1 / 0.7));
@@ -69,6 +70,6 @@ export class VolumePanel implements Panel {
   }
 
   private write(opacities: number[]): void {
-    this.host.write('volume', opacities.map((opacity) => Number(opacity.toFixed(3))).join());
+    this.attributes.write('volume', opacities.map((opacity) => Number(opacity.toFixed(3))).join());
   }
 }

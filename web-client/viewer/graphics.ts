@@ -1,0 +1,121 @@
+// What draws for a viewer: its view, from the start of the graphics to their loss and their return.
+
+import {errorText} from '../core/errors';
+import type {CoarseCells} from '../core/volume';
+import type {CameraState} from '../three/camera';
+import {openView} from '../three/far_view';
+import type {View} from '../three/view';
+import {find} from './find';
+import type {Notices} from './notices';
+import {Triad} from './triad';
+
+/**
+ * Graphics may take long to start where software draws. After this the user may begin anew, or go
+ * on waiting.
+ */
+const kStartPatienceMs = 30000;
+
+export interface GraphicsListeners {
+  opened(view: View): void;
+  /** After each frame. */
+  drawn(): void;
+  /** Something that the page should hear of, too. */
+  failed(code: string, message: string): void;
+  /** Client.coarse. */
+  coarse(have: number): Promise<CoarseCells>;
+}
+
+export class Graphics {
+  view: View | null = null;
+  private ended = false;
+
+  constructor(
+    private readonly root: ShadowRoot,
+    private readonly notices: Notices,
+    private readonly listeners: GraphicsListeners,
+  ) {}
+
+  /** `camera` is asked once there is a view; null: the mesh is fitted. */
+  async open(camera: () => CameraState | null): Promise<void> {
+    const canvas = find<HTMLCanvasElement>(this.root, '.scene');
+    const patience = setTimeout(() => this.tellOfWaiting(), kStartPatienceMs);
+    try {
+      const view = await this.openOn(canvas);
+      if (this.ended || !canvas.isConnected) return view.dispose();
+      this.view = view;
+      this.notices.end('slow-view');
+      const state = camera();
+      if (state) view.cameraState = state;
+      this.listeners.opened(view);
+    } catch (thrown) {
+      if (!canvas.isConnected) return;
+      this.listeners.failed(
+        'no-view',
+        `The 3D view cannot start: ${errorText(thrown)}. It needs a browser with WebGL 2; trying ` +
+          'again may help.',
+      );
+    } finally {
+      clearTimeout(patience);
+    }
+  }
+
+  /** Another worker and another canvas: a canvas can be given away only once. */
+  async restart(camera: () => CameraState | null): Promise<void> {
+    this.notices.endOf('graphics');
+    this.view?.dispose();
+    this.view = null;
+    const canvas = find(this.root, '.scene');
+    canvas.replaceWith(canvas.cloneNode());
+    return this.open(camera);
+  }
+
+  dispose(): void {
+    this.ended = true;
+    this.view?.dispose();
+    this.view = null;
+  }
+
+  private openOn(canvas: HTMLCanvasElement): Promise<View> {
+    const triad = new Triad(find<SVGSVGElement>(this.root, '.triad'));
+    return openView(canvas, {
+      drawn: ({rotation}) => {
+        triad.turn(rotation);
+        this.listeners.drawn();
+      },
+      lost: (lost) => this.tellOfLoss(lost),
+      failed: (why) =>
+        this.listeners.failed(
+          'drawing',
+          `Something went wrong while drawing: ${why}. If the picture is not right, try again.`,
+        ),
+      silent: (silent) => this.tellOfSilence(silent),
+      coarse: (have) => this.listeners.coarse(have),
+    });
+  }
+
+  private tellOfWaiting(): void {
+    this.notices.add(
+      'slow-view',
+      'The graphics have not started yet. They may only be slow; beginning anew helps if they ' +
+        'hang.',
+    );
+  }
+
+  private tellOfSilence(silent: boolean): void {
+    if (!silent) return this.notices.end('silent-view');
+    this.notices.add(
+      'silent-view',
+      'The part that draws does not answer: it hangs, or the browser has ended it. Try again to ' +
+        'start it anew; the view stays as it is.',
+    );
+  }
+
+  private tellOfLoss(lost: boolean): void {
+    if (!lost) return this.notices.end('graphics-lost');
+    this.listeners.failed(
+      'graphics-lost',
+      'The browser took the graphics away, as it does when memory is short. The picture comes ' +
+        'back when it returns them; closing other tabs helps.',
+    );
+  }
+}

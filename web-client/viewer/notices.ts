@@ -1,0 +1,59 @@
+// Notices over the picture: what went wrong, and the way out. The last one that has not ended is
+// shown.
+
+import {find, onClick} from './find';
+
+/** What a notice is about; trying again begins that anew. There is no trying again for the page. */
+export type NoticeSource = 'stream' | 'graphics' | 'page';
+
+const kOfPage = ['unknown-field', 'no-fullscreen', 'no-picture'];
+const kOfGraphics = ['no-view', 'slow-view', 'silent-view', 'drawing', 'graphics-lost'];
+
+function sourceOf(code: string): NoticeSource {
+  if (kOfPage.includes(code)) return 'page';
+  return kOfGraphics.includes(code) ? 'graphics' : 'stream';
+}
+
+export class Notices {
+  private notices: {code: string; message: string}[] = [];
+  private readonly card: HTMLElement;
+
+  constructor(root: ShadowRoot, retry: (source: NoticeSource) => void) {
+    this.card = find(root, '.notice');
+    onClick(this.card, '.dismiss', () => this.end(this.shownCode));
+    onClick(this.card, '.retry', () => retry(sourceOf(this.shownCode)));
+  }
+
+  /** Takes the place of an earlier one with this code. */
+  add(code: string, message: string): void {
+    this.notices = [...this.notices.filter((notice) => notice.code !== code), {code, message}];
+    this.show();
+  }
+
+  end(code: string): void {
+    this.keep((notice) => notice.code !== code);
+  }
+
+  endOf(...sources: NoticeSource[]): void {
+    this.keep((notice) => !sources.includes(sourceOf(notice.code)));
+  }
+
+  private keep(stays: (notice: {code: string}) => boolean): void {
+    const {length} = this.notices;
+    this.notices = this.notices.filter(stays);
+    if (this.notices.length !== length) this.show();
+  }
+
+  private get shownCode(): string {
+    return this.card.dataset.code ?? '';
+  }
+
+  private show(): void {
+    const notice = this.notices.at(-1);
+    this.card.hidden = !notice;
+    if (!notice) return;
+    this.card.dataset.code = notice.code;
+    find(this.card, 'p').textContent = notice.message;
+    find(this.card, '.retry').hidden = sourceOf(notice.code) === 'page';
+  }
+}

@@ -1,0 +1,165 @@
+// The cards over the picture, each a component of its own, brought up to date together.
+
+import type {Vector} from '../core/cell_ray';
+import type {Client} from '../core/client';
+import {kMaxPlanes} from '../core/display';
+import type {StreamState} from '../core/worker_messages';
+import type {View} from '../three/view';
+import type {Actions} from './actions';
+import {CardLayout} from './card_layout';
+import {ClipHandles} from './clip_handles';
+import {ClipPanel} from './clip_panel';
+import {ColorPanel} from './color_panel';
+import {find} from './find';
+import {Inspect} from './inspect';
+import {Legend, type ShownRange} from './legend';
+import {LevelPanel} from './level_panel';
+import type {Page} from './page';
+import {scalarTitle, type Scene} from './panel';
+import {ProgressPanel} from './progress_panel';
+import {shownScalar, type Settings} from './settings';
+import type {ShownMesh} from './shown_mesh';
+import {StatisticsPanel} from './statistics_panel';
+import {ValuePanel} from './value_panel';
+import {ViewPanel} from './view_panel';
+import {VolumePanel} from './volume_panel';
+
+export interface PanelsHost {
+  readonly client: Client;
+  readonly view: View | null;
+  readonly mesh: ShownMesh;
+  /** What is pointed at, of lattice coordinates, is wanted first; null: nothing is. */
+  pointAt(point: Vector | null): void;
+}
+
+export class Panels {
+  readonly progress: ProgressPanel;
+  readonly cards: CardLayout;
+  readonly clip: ClipPanel;
+  readonly inspect: Inspect;
+  private readonly color: ColorPanel;
+  /** All that show attributes alone, and the fields of the mesh. */
+  private readonly simple: readonly {update(settings: Settings, known: Scene | null): void}[];
+  private readonly handles: ClipHandles;
+  private readonly legend: Legend;
+  private readonly statistics: StatisticsPanel;
+  private readonly view: ViewPanel;
+
+  constructor(page: Page, host: PanelsHost, actions: Actions) {
+    const {root} = page;
+    const announce = (text: string): void => page.announce(text);
+    this.progress = new ProgressPanel(root, announce);
+    this.legend = new Legend(root);
+    this.statistics = new StatisticsPanel(root);
+    this.view = new ViewPanel(page, actions);
+    this.color = new ColorPanel(root, page);
+    this.clip = new ClipPanel(
+      root,
+      page,
+      () => (host.view?.pose.direction ?? [0, -1, 0]).map((x) => -x) as Vector,
+    );
+    this.handles = new ClipHandles(find(root, '.layer'), kMaxPlanes, (i, share) =>
+      this.clip.move(i, share),
+    );
+    const level = new LevelPanel(
+      root,
+      (quality) => page.write('quality', quality),
+      () => standing(page, host.mesh),
+    );
+    this.simple = [
+      this.color,
+      new ValuePanel(root, page, 'iso'),
+      new ValuePanel(root, page, 'threshold'),
+      new VolumePanel(root, page),
+      level,
+      this.view,
+    ];
+    const cards = new CardLayout(page.element, root, (insets) => host.view?.setInsets(insets));
+    this.cards = cards;
+    this.inspect = new Inspect(root, {
+      get client() {
+        return host.client;
+      },
+      get view() {
+        return host.view;
+      },
+      get manifest() {
+        return host.mesh.manifest;
+      },
+      get middle() {
+        return cards.middle;
+      },
+      get fieldTitle() {
+        return fieldTitle(page, host.mesh);
+      },
+      announce,
+      pointAt: (point) => host.pointAt(point),
+    });
+  }
+
+  attach(view: View): void {
+    this.handles.attach(view);
+  }
+
+  /** Brings all in line with the attributes and what is known of the mesh. */
+  update(settings: Settings, {manifest, bounds}: ShownMesh): void {
+    const known: Scene | null = manifest && {manifest, bounds};
+    for (const panel of this.simple) panel.update(settings, known);
+    this.clip.update(settings, bounds.length > 0 ? known : null);
+    this.handles.update(settings.planes, bounds);
+  }
+
+  /** After each frame: what stands in the picture follows it. */
+  follow(): void {
+    this.handles.place();
+    this.inspect.place();
+  }
+
+  showState(state: StreamState, attempt: number, delayMs: number): void {
+    this.progress.showState(state, attempt, delayMs);
+    this.view.showState(state);
+  }
+
+  /** Figures of the picture that came. `frameMs`: of drawing. */
+  showFigures({statistics, costMs}: NonNullable<ShownMesh['snapshot']>, frameMs: number): void {
+    this.statistics.show(statistics, costMs, frameMs);
+  }
+
+  /** The legend; null: nothing is coloured. */
+  showRange(range: ShownRange | null, {snapshot, manifest}: ShownMesh, settings: Settings): void {
+    if (range && snapshot?.color && manifest) {
+      this.legend.show(snapshot.color, manifest.fields, range, settings);
+      this.color.showRange(range.low, range.high);
+    } else {
+      this.legend.hide();
+    }
+    this.cards.arrange();
+  }
+
+  /** Another mesh comes. */
+  clear(): void {
+    this.progress.begin(null);
+    this.statistics.clear();
+    this.inspect.clear();
+    this.legend.hide();
+    this.handles.update([], []);
+  }
+
+  dispose(): void {
+    this.cards.dispose();
+  }
+}
+
+function fieldTitle({read}: Pick<Page, 'read'>, {manifest}: ShownMesh): string {
+  const color = manifest && shownScalar(read('field'), manifest.fields);
+  return manifest && color ? scalarTitle(color, manifest.fields) : '';
+}
+
+/** Where the mesh stands: coarser and finer begin there. */
+function standing(
+  {read}: Pick<Page, 'read'>,
+  {statistics, manifest}: ShownMesh,
+): ReturnType<ConstructorParameters<typeof LevelPanel>[2]> {
+  const color = shownScalar(read('field'), manifest?.fields ?? []);
+  return {statistics, manifest, fields: color ? [color.field] : []};
+}

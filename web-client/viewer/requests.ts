@@ -1,0 +1,66 @@
+// What a viewer asks of its worker: what to show, and what to refine first. Each is sent once,
+// until it changes.
+
+import type {Vector} from '../core/cell_ray';
+import type {Client} from '../core/client';
+import type {Display} from '../core/display';
+import type {Plane} from '../core/slice';
+import {planeOf} from './clip_plane';
+import {fieldValuesOf, sharesOf, shownScalar, type Settings, type ViewAttribute} from './settings';
+import type {ShownMesh} from './shown_mesh';
+
+export class Requests {
+  /** What is pointed at, on the lattice. */
+  point: Vector | null = null;
+  private display = '';
+  private view = '';
+
+  constructor(private readonly client: Client) {}
+
+  /** Another mesh comes, of which the worker has been told nothing. */
+  forget(): void {
+    this.display = this.view = '';
+  }
+
+  /** True if it is another display than before. */
+  show(display: Display): boolean {
+    const text = JSON.stringify(display);
+    if (text === this.display) return false;
+    this.display = text;
+    this.client.show(display);
+    return true;
+  }
+
+  look(frustum: Plane[], planes: Plane[]): void {
+    const view = {frustum, planes, point: this.point};
+    const text = JSON.stringify(view);
+    if (text !== this.view) this.client.look(view);
+    this.view = text;
+  }
+}
+
+/** In lattice coordinates; none before there are bounds. */
+export function planesOf({planes}: Settings, {bounds}: ShownMesh): Plane[] {
+  return bounds.length > 0 ? planes.map((plane) => planeOf(plane, bounds)) : [];
+}
+
+/** `read`: an attribute. REQUIRES: the manifest is here. */
+export function displayOf(
+  settings: Settings,
+  mesh: ShownMesh,
+  read: (name: ViewAttribute) => string | null,
+): Display {
+  const {fields} = mesh.manifest!;
+  const iso = fieldValuesOf('iso', read('iso'), fields);
+  const threshold = fieldValuesOf('threshold', read('threshold'), fields);
+  const [low, high] = threshold ? sharesOf(threshold, fields) : [];
+  return {
+    color: shownScalar(read('field'), fields),
+    body: settings.surface && settings.volume === null,
+    mode: settings.planes.length > 0 ? settings.mode : 'cut',
+    planes: planesOf(settings, mesh),
+    isosurfaces: iso && {scalar: iso.scalar, values: sharesOf(iso, fields)},
+    volume: settings.volume !== null,
+    threshold: threshold && {scalar: threshold.scalar, low: low!, high: high!},
+  };
+}

@@ -1,0 +1,36 @@
+// The figures behind the pictures: what they cost, and how many cells come.
+
+import type {Statistics} from '../core/statistics';
+import {find} from './find';
+import {formatCount} from './format';
+
+export class StatisticsPanel {
+  /** Of the picture before; at 0 there was none. */
+  private last = {at: 0, cells: 0};
+
+  constructor(private readonly root: ParentNode) {}
+
+  clear(): void {
+    this.last = {at: 0, cells: 0};
+  }
+
+  /** `costMs`: of making the picture; `frameMs`: of drawing. */
+  show(statistics: Statistics, costMs: number, frameMs: number): void {
+    const now = performance.now();
+    const {at, cells} = this.last;
+    if (at > 0 && statistics.tetrahedra > cells) {
+      const rate = ((statistics.tetrahedra - cells) / (now - at)) * 1000;
+      this.write('.cell-rate', `${formatCount(Math.round(rate))} cells/s`);
+    }
+    this.last = {at: now, cells: statistics.tetrahedra};
+    this.write('.frame-ms', `${frameMs.toFixed(1)} ms`);
+    this.write('.cost-ms', `${costMs.toFixed(1)} ms`);
+    this.write('.level', `${statistics.level} of ${statistics.lastLevel}`);
+    this.write('.vertices', formatCount(statistics.vertices));
+    this.write('.triangles', formatCount(statistics.boundaryTriangles));
+  }
+
+  private write(selector: string, text: string): void {
+    find(this.root, selector).textContent = text;
+  }
+}

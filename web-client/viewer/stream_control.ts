@@ -1,0 +1,172 @@
+// Which mesh of which server comes to a viewer, and whether it comes: opening, pausing, refining.
+
+import {kTransportKinds} from '../core/auto_transport';
+import type {Client} from '../core/client';
+import {errorCode, errorText, QtetError} from '../core/errors';
+import {kFull, type Limit} from '../core/limit';
+import type {StreamState} from '../core/worker_messages';
+import {fetchCatalog, isLogFile, logUrl, meshOfLog, streamUrl, type MeshEntry} from './catalog';
+import {MeshMenu} from './mesh_menu';
+import type {Kept, Page} from './page';
+import {scalarKey} from './settings';
+
+/** Another mesh has other fields, places and values; what does not depend on them stays. */
+const kOfOneMesh = ['field', 'range', 'iso', 'threshold', 'camera', 'quality'] as const;
+
+export interface StreamListeners {
+  /** How far to refine from the beginning. */
+  limit(): Limit;
+  /** A mesh is opened; `isSame`: the one of before, anew. */
+  opens(isSame: boolean): void;
+  changed(state: StreamState, attempt: number, delayMs: number): void;
+  failed(code: string, message: string): void;
+}
+
+export class StreamControl {
+  state: StreamState = 'connecting';
+  /** Attributes change because another mesh was chosen from the menu. */
+  isChoosing = false;
+  private readonly menu: MeshMenu;
+  private catalog: MeshEntry[] = [];
+  /** A later opening counts, whichever list comes first. */
+  private openings = 0;
+  /** There is a stream of the mesh that was opened last. */
+  private started = false;
+
+  constructor(
+    private readonly page: Page,
+    private readonly kept: Kept,
+    private readonly client: Client,
+    private readonly listeners: StreamListeners,
+  ) {
+    this.menu = new MeshMenu(page.root, (mesh) => this.choose(mesh));
+  }
+
+  /** Lists the meshes, and begins with the one that the attribute names, or the first. */
+  async open(): Promise<void> {
+    const opening = ++this.openings;
+    this.started = false;
+    try {
+      this.enter('connecting');
+      const catalog = await this.list();
+      if (opening !== this.openings) return;
+      this.catalog = catalog;
+      this.openMesh(this.firstMesh());
+    } catch (thrown) {
+      if (opening !== this.openings) return;
+      this.listeners.failed(errorCode(thrown), errorText(thrown));
+      this.enter('failed');
+    }
+  }
+
+  pause(): void {
+    if (this.started) this.client.pause();
+    else this.kept.paused = this.state !== 'failed';
+  }
+
+  resume(): void {
+    this.kept.paused = false;
+    if (this.started) this.client.resume();
+  }
+
+  togglePause(): void {
+    if (this.state === 'held') this.refineFully();
+    else if (this.state === 'paused') this.resume();
+    else this.pause();
+  }
+
+  setLimit(limit: Limit): void {
+    if (this.started) this.client.setLimit(limit);
+  }
+
+  enter(state: StreamState, attempt = 0, delayMs = 0): void {
+    this.state = state;
+    this.listeners.changed(state, attempt, delayMs);
+  }
+
+  dispose(): void {
+    ++this.openings;
+  }
+
+  private get base(): URL {
+    return new URL(this.page.element.getAttribute('src') ?? '.', document.baseURI);
+  }
+
+  private async list(): Promise<MeshEntry[]> {
+    const {base} = this;
+    if (isLogFile(base)) return [{id: meshOfLog(base), tetrahedra: 0, fields: []}];
+    return fetchCatalog(base, this.page.token);
+  }
+
+  /** Fills the menu. Throws `not-found`. */
+  private firstMesh(): string {
+    const names = this.catalog.map(({id}) => id);
+    const wanted = isLogFile(this.base) ? null : this.page.read('mesh');
+    const mesh = wanted ?? names[0];
+    if (mesh === undefined) {
+      throw new QtetError(
+        'not-found',
+        'The server shows no meshes. Put .qtet files into its folder; for guarded ones set the ' +
+          'viewer\'s property "token".',
+      );
+    }
+    this.menu.fill(this.catalog, mesh);
+    if (names.includes(mesh)) return mesh;
+    throw new QtetError(
+      'not-found',
+      `There is no mesh "${mesh}" on this server. ` +
+        `It has: ${names.join(', ') || 'none that may be seen without a token'}.`,
+    );
+  }
+
+  private openMesh(mesh: string): void {
+    const {base, client, kept, listeners, page} = this;
+    const opened = `${base.href} ${mesh}`;
+    listeners.opens(opened === kept.opened);
+    kept.opened = opened;
+    this.menu.name(mesh);
+    const isFile = isLogFile(base);
+    const transport = page.element.getAttribute('transport');
+    client.start({
+      url: isFile ? '' : streamUrl(base),
+      log: isFile ? base.href : logUrl(base, mesh),
+      transport: kTransportKinds.find((kind) => kind === transport) ?? 'auto',
+      mesh,
+      fields: this.firstFields(mesh),
+      limit: listeners.limit(),
+      pictureFirst: true,
+      paused: kept.paused,
+      ...(page.token && {token: page.token}),
+    });
+    this.started = true;
+    kept.paused = false;
+  }
+
+  /** Those that the attributes name, or else the first: null where nobody knows that one yet. */
+  private firstFields(mesh: string): string[] | null {
+    const {page} = this;
+    const fields = this.catalog.find(({id}) => id === mesh)?.fields ?? [];
+    const withValues = (['iso', 'threshold'] as const).map((name) =>
+      page.read(name)?.replace(/=[^=]*$/, ''),
+    );
+    const named = [page.read('field') ?? undefined, ...withValues]
+      .filter((text) => text !== undefined)
+      .map((text) => (fields.includes(text) ? text : scalarKey(text)));
+    if (named.length > 0) return [...new Set(named)];
+    return isLogFile(this.base) ? null : fields.slice(0, 1);
+  }
+
+  /** What memory stopped has no `quality` to take away: it is tried once more. */
+  private refineFully(): void {
+    if (this.page.read('quality') !== null) this.page.write('quality', null);
+    else this.client.setLimit(kFull);
+  }
+
+  private choose(mesh: string): void {
+    this.isChoosing = true;
+    for (const name of kOfOneMesh) this.page.write(name, null);
+    this.page.write('mesh', mesh);
+    this.isChoosing = false;
+    this.openMesh(mesh);
+  }
+}

@@ -1,0 +1,298 @@
+// One stay of a viewer in a document: the stream, the graphics and the panels, and how a change of
+// one reaches the others.
+
+import type {Vector} from '../core/cell_ray';
+import type {Client} from '../core/client';
+import type {Manifest} from '../core/manifest';
+import type {Statistics} from '../core/statistics';
+import type {FromWorker, Snapshot, StreamState} from '../core/worker_messages';
+import type {View} from '../three/view';
+import {Actions, type ActionsHost} from './actions';
+import {CameraWatch} from './camera_watch';
+import {find} from './find';
+import {Graphics} from './graphics';
+import {bindKeys} from './keys';
+import type {ShownRange} from './legend';
+import {Notices} from './notices';
+import type {Kept, Page} from './page';
+import {Panels, type PanelsHost} from './panels';
+import {displayOf, planesOf, Requests} from './requests';
+import {readSettings, shownRange, type Settings} from './settings';
+import {ShownMesh} from './shown_mesh';
+import {StreamControl} from './stream_control';
+
+export class Viewing implements ActionsHost, PanelsHost {
+  mesh = new ShownMesh();
+  settings: Settings;
+  readonly stream: StreamControl;
+  private readonly notices: Notices;
+  private readonly graphics: Graphics;
+  private readonly camera: CameraWatch;
+  private readonly requests: Requests;
+  private readonly actions: Actions;
+  /** They come a task later than the rest. */
+  private panels: Panels | null = null;
+  /** The page has been told that all is here. */
+  private completeTold = false;
+
+  /** REQUIRES: the page's root holds the markup. */
+  constructor(
+    private readonly page: Page,
+    readonly client: Client,
+    private readonly kept: Kept,
+  ) {
+    // A file's stream begins at once, and only so far.
+    this.settings = readSettings((name) => page.read(name));
+    this.requests = new Requests(client);
+    this.actions = new Actions(page, this);
+    this.notices = new Notices(page.root, (source) =>
+      source === 'graphics' ? this.restartGraphics() : void this.stream.open(),
+    );
+    this.camera = new CameraWatch(
+      () => (this.view && this.mesh.bounds.length > 0 ? this.view.cameraState : null),
+      (state) => {
+        this.lookAt();
+        page.tell('camera-change', state);
+      },
+    );
+    this.graphics = new Graphics(page.root, this.notices, {
+      opened: (view) => this.begin(view),
+      drawn: () => {
+        this.panels?.follow();
+        this.camera.frame();
+      },
+      failed: (code, message) => this.failed(code, message),
+      coarse: (have) => client.coarse(have),
+    });
+    this.stream = new StreamControl(page, kept, client, {
+      limit: () => this.settings.limit,
+      opens: (isSame) => {
+        this.forget(isSame);
+        this.notices.endOf('stream', 'page');
+      },
+      changed: (state, attempt, delayMs) => this.showState(state, attempt, delayMs),
+      failed: (code, message) => this.failed(code, message),
+    });
+    const {camera} = this.settings;
+    void this.graphics.open(() => kept.camera ?? camera);
+    void this.stream.open();
+  }
+
+  buildPanels(): void {
+    this.panels = new Panels(this.page, this, this.actions);
+    this.panels.progress.begin(this.mesh.manifest);
+    this.panels.progress.takePlan(this.mesh.plan);
+    this.showState(this.stream.state, 0, 0);
+    if (this.view) this.panels.attach(this.view);
+    this.apply();
+  }
+
+  dispose(): void {
+    this.camera.dispose();
+    this.stream.dispose();
+    this.graphics.dispose();
+    this.panels?.dispose();
+    this.panels = null;
+  }
+
+  get view(): View | null {
+    return this.graphics.view;
+  }
+
+  /** Brings everything in line with the attributes. */
+  apply(): void {
+    const {mesh, page, panels, view} = this;
+    if (!panels) return;
+    const before = this.settings;
+    this.settings = readSettings((name) => page.read(name));
+    panels.update(this.settings, mesh);
+    view?.setLook(this.settings);
+    view?.setParallel(this.settings.parallel);
+    const {limit} = this.settings;
+    if (JSON.stringify(before.limit) !== JSON.stringify(limit)) this.stream.setLimit(limit);
+    this.showDisplay();
+    this.showRange();
+  }
+
+  // ---- ActionsHost, PanelsHost
+
+  async picture(): Promise<Blob | null> {
+    const ground = getComputedStyle(this.page.element).getPropertyValue('--ground');
+    return this.view?.picture(ground) ?? null;
+  }
+
+  togglePause(): void {
+    this.stream.togglePause();
+  }
+
+  moveClip(step: number): void {
+    const [plane] = this.settings.planes;
+    if (plane) this.panels?.clip.move(0, plane.share + step);
+  }
+
+  inspect(): void {
+    this.panels?.inspect.pickMiddle();
+  }
+
+  endTool(): void {
+    this.panels?.inspect.use('none');
+  }
+
+  pointAt(point: Vector | null): void {
+    this.requests.point = point;
+    this.lookAt();
+  }
+
+  failed(code: string, message: string): void {
+    if (!this.page.element.isConnected) return;
+    this.notices.add(code, message);
+    this.page.tell('error', {code, message});
+  }
+
+  // ---- from the worker
+
+  receive(message: Exclude<FromWorker, {type: 'answer'}>): void {
+    switch (message.type) {
+      case 'manifest':
+        return this.takeManifest(message.manifest);
+      case 'plan':
+        this.mesh.plan = message.plan;
+        return this.panels?.progress.takePlan(message.plan);
+      case 'snapshot':
+        return this.takePicture(message.snapshot);
+      case 'progress':
+        return this.takeProgress(message.statistics);
+      case 'state':
+        return this.stream.enter(message.state, message.attempt, message.delayMs);
+      case 'error':
+        return this.failed(message.code, message.message);
+    }
+  }
+
+  private takeManifest(manifest: Manifest): void {
+    if (this.mesh.manifest) this.forget(true); // another log stands under its name now
+    this.mesh.manifest = manifest;
+    this.panels?.progress.begin(manifest);
+    this.apply();
+  }
+
+  private takeProgress(statistics: Statistics): void {
+    this.mesh.statistics = statistics;
+    this.panels?.progress.show(statistics);
+    this.page.tell('progress', statistics);
+  }
+
+  private takePicture(snapshot: Snapshot): void {
+    this.mesh.waiting = this.view ? null : snapshot;
+    if (this.view) this.draw(snapshot, this.view);
+  }
+
+  // ---- the picture
+
+  /** There is a view: what has been waiting for it is shown. */
+  private begin(view: View): void {
+    this.panels?.attach(view);
+    bindKeys(find(this.page.root, '.scene'), this.actions.keys(view));
+    this.apply();
+    this.panels?.cards.arrange();
+    const {waiting} = this.mesh;
+    this.mesh.waiting = null;
+    if (waiting) this.draw(waiting, view);
+  }
+
+  private draw(snapshot: Snapshot, view: View): void {
+    const {mesh, page} = this;
+    mesh.take(snapshot);
+    view.show(snapshot, (drawingMs) => {
+      if (mesh !== this.mesh) return; // of the mesh before
+      this.client.shown(drawingMs);
+      page.tell(mesh.drawn ? 'refine' : 'load', snapshot.statistics);
+      mesh.drawn = snapshot.statistics;
+      page.element.classList.add('loaded');
+      this.tellComplete();
+    });
+    if (mesh.bounds.length === 0) {
+      mesh.bounds = snapshot.bounds;
+      this.apply();
+    }
+    this.panels?.showFigures(snapshot, view.pose.frameMs);
+    this.showRange();
+  }
+
+  /** The camera stays, and the mesh comes again from the worker that decodes. */
+  private restartGraphics(): void {
+    const {view} = this;
+    const moved = view && !view.pose.fitted ? view.cameraState : null;
+    const camera = view ? moved : this.settings.camera;
+    this.client.repeat();
+    void this.graphics.restart(() => this.kept.camera ?? camera);
+  }
+
+  /** With `isSame` the camera stays where people have moved it. */
+  private forget(isSame: boolean): void {
+    this.mesh = new ShownMesh();
+    this.requests.forget();
+    const {view} = this;
+    if (view) {
+      const {cameraState, pose} = view;
+      const {fitted} = pose;
+      view.clear();
+      if (isSame && !fitted) view.cameraState = cameraState;
+    }
+    this.panels?.clear();
+  }
+
+  private showDisplay(): void {
+    const {mesh, page, panels, settings} = this;
+    if (!mesh.manifest) return;
+    const display = displayOf(settings, mesh, (name) => page.read(name));
+    if (!this.requests.show(display)) return;
+    panels?.progress.follow(display.color ? [display.color.field] : [], settings.limit);
+    this.lookAt();
+  }
+
+  /** Tells a log of regions what to refine first. */
+  private lookAt(): void {
+    this.requests.look(this.view?.pose.frustum ?? [], planesOf(this.settings, this.mesh));
+  }
+
+  private showRange(): void {
+    const {mesh, panels, settings} = this;
+    if (!panels) return;
+    const range = mesh.manifest && mesh.snapshot && rangeOf(mesh.snapshot, settings);
+    if (range && mesh.snapshot) {
+      const {low, high, logarithmic} = range;
+      this.view?.setRange(low, high, mesh.snapshot.scaleRange, logarithmic);
+    }
+    panels.showRange(range && {...range, hasMissing: mesh.hasMissing}, mesh, settings);
+  }
+
+  // ---- the state
+
+  private showState(state: StreamState, attempt: number, delayMs: number): void {
+    this.completeTold &&= state === 'complete';
+    this.tellComplete();
+    if (!this.panels) return;
+    this.panels.showState(state, attempt, delayMs);
+    if (state === 'streaming' || state === 'complete') this.notices.endOf('stream');
+  }
+
+  /** The decoder and the picture both have to be done. */
+  private tellComplete(): void {
+    const {mesh, stream} = this;
+    if (stream.state !== 'complete' || this.completeTold || !mesh.isDrawn) return;
+    this.completeTold = true;
+    this.page.tell('complete', mesh.drawn);
+  }
+}
+
+/** What the colours span; null: nothing is coloured. */
+function rangeOf(
+  {color, scaleRange, extent}: Snapshot,
+  settings: Settings,
+): Omit<ShownRange, 'hasMissing'> | null {
+  if (!color) return null;
+  const [low, high] = scaleRange;
+  const valueAt = (share: number): number => low + share * (high - low);
+  return shownRange(settings, [valueAt(extent[0]), valueAt(extent[1])]);
+}
