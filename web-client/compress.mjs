@@ -1,15 +1,13 @@
-// Puts NAME.gz beside every file of the built viewer, which qtet-server (and nginx's gzip_static)
-// sends to whoever takes it, prints what a first visit downloads, and fails when that is too much.
-// Usage: node compress.mjs FOLDER
+// Writes NAME.gz beside every file of the built viewer: qtet-server and nginx's gzip_static send it
+// to clients that accept gzip. Prints the size of a first visit's download, and fails if it is too
+// large.
+//   node compress.mjs FOLDER
 
 import {readdirSync, readFileSync, writeFileSync} from 'node:fs';
 import {join} from 'node:path';
 import {gzipSync} from 'node:zlib';
 
-/**
- * Page, scripts and WebAssembly, whatever of it is loaded on demand included: a second at 2.4
- * Mbit/s.
- */
+/** Page, scripts and WebAssembly, including what is loaded on demand: one second at 2.4 Mbit/s. */
 const kMaxBytes = 300000;
 
 const folder = process.argv[2];

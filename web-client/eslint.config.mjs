@@ -1,4 +1,4 @@
-// What `npm run lint` refuses, here and in ../tests: defects that the compiler does not see, and
+// The rules of `npm run lint`, here and in ../tests: defects that the compiler does not see, and
 // the house's own rules. Layout is prettier's.
 
 import {fileURLToPath} from 'node:url';
@@ -6,7 +6,7 @@ import js from '@eslint/js';
 import globals from 'globals';
 import tseslint from 'typescript-eslint';
 
-/** Of both languages. */
+/** Rules for both languages. */
 const shared = {
   eqeqeq: ['error', 'always', {null: 'ignore'}], // `== null` means null and undefined
   'max-len': ['error', {code: 100}],
@@ -42,20 +42,21 @@ export default tseslint.config(
 
       // `return this.fail(...)` ends a function early, in one line.
       '@typescript-eslint/no-confusing-void-expression': 'off',
-      // The compiler asks for `!` at every index (noUncheckedIndexedAccess); meshes are indexes.
+      // The compiler asks for `!` at every index (noUncheckedIndexedAccess), and meshes are full of
+      // indexes.
       '@typescript-eslint/no-non-null-assertion': 'off',
       // `find<HTMLSelectElement>(...)` says what the markup holds there, as querySelector does.
       '@typescript-eslint/no-unnecessary-type-parameters': 'off',
       // An async function turns what it throws into a rejection, with or without an await.
       '@typescript-eslint/require-await': 'off',
-      // Numbers are what messages tell.
+      // Messages contain numbers.
       '@typescript-eslint/restrict-template-expressions': ['error', {allowNumber: true}],
     },
   },
   {
     files: ['**/*.{js,mjs}'],
     extends: [js.configs.recommended],
-    // What a check gives to page.evaluate runs in the browser.
+    // Functions that a check passes to page.evaluate run in the browser.
     languageOptions: {globals: {...globals.node, ...globals.browser}},
     rules: shared,
   },

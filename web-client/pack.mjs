@@ -1,5 +1,5 @@
 // Makes the npm package `qtet` in a folder: modules, types, package.json, README and licence.
-// Usage: node pack.mjs CODEC.wasm FOLDER
+//   node pack.mjs CODEC.wasm FOLDER
 
 import {execFileSync} from 'node:child_process';
 import {copyFileSync, readFileSync, writeFileSync} from 'node:fs';

@@ -1,4 +1,4 @@
-// How TypeScript, JavaScript and CSS are laid out, here and in ../tests (npm run format).
+// The layout of TypeScript, JavaScript and CSS, here and in ../tests (npm run format).
 
 export default {
   printWidth: 100,

@@ -33,7 +33,7 @@ export default defineConfig({
     target: 'es2022',
     outDir: process.env.QTET_VIEWER_OUT ?? 'dist',
     emptyOutDir: true,
-    // WebAssembly is compiled while it downloads, which a data: address would prevent
+    // a data: address would prevent compiling WebAssembly while it downloads
     assetsInlineLimit: 0,
     chunkSizeWarningLimit: 700,
     reportCompressedSize: false,

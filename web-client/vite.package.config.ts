@@ -4,8 +4,8 @@
 import {defineConfig, type Plugin, transformWithEsbuild} from 'vite';
 
 /**
- * Vite would wrap import() in its own preloading, which the Vite of the page that uses the package
- * then takes for its own and calls without an address.
+ * Vite would wrap import() in its own preloading. The Vite of a page that uses the package then
+ * takes it for its own and calls it without an address.
  */
 const plainDynamicImports: Plugin = {
   name: 'plain-dynamic-imports',
@@ -24,8 +24,8 @@ export default defineConfig({
   base: './',
   plugins: [plainDynamicImports],
   resolve: {alias: [{find: /^qtet-codec\.wasm/, replacement: process.env.QTET_WASM!}]},
-  // Bundlers take workers' files as they are: these hold all that they need, three too, and nobody
-  // else would minify them.
+  // Bundlers copy workers' files unchanged. So these contain everything they need, including three,
+  // and are minified here.
   worker: {
     format: 'es',
     rollupOptions: {output: {entryFileNames: '[name].js'}},

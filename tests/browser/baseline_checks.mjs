@@ -1,6 +1,6 @@
-// The chief pictures beside those in tests/browser/baselines, each of which somebody has looked at
-// before it was kept. QTET_BASELINES=write keeps what is seen now instead of comparing: look at
-// every file that changed before you commit it.
+// Compares the most important pictures with those in tests/browser/baselines. Somebody has looked
+// at each of them. QTET_BASELINES=write keeps the current pictures instead of comparing: look at
+// every changed file before you commit it.
 
 import assert from 'node:assert/strict';
 import {copyFileSync, existsSync, readFileSync} from 'node:fs';
@@ -10,8 +10,8 @@ import {differingBlocks, readPng} from './png.mjs';
 
 const kFolder = fileURLToPath(new URL('baselines/', import.meta.url));
 /**
- * Of 4 x 4 pixels: so many may look otherwise. Another machine's antialiasing and fonts change
- * fewer, a missing cap, edge or light more.
+ * The share of blocks of 4 x 4 pixels that may differ. Another machine's antialiasing and fonts
+ * change fewer; a missing cap, edge or light changes more.
  */
 const kMaxDiffering = 0.01;
 

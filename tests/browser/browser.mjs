@@ -14,7 +14,7 @@ export const kPhone = {
   isMobile: true,
   hasTouch: true,
 };
-/** Patience only: a machine under load needs a minute for what takes seconds otherwise. */
+/** Only patience: a machine under load needs a minute for work of seconds. */
 export const kTimeoutMs = 180000;
 const kSettleMs = 900;
 /** A decoder that cannot be loaded answers nothing. */
@@ -63,7 +63,7 @@ export class Browser {
   }
 
   /**
-   * Begins to watch; `end()` gives the tasks of the one page with workers, on its own thread, since
+   * Starts tracing. `end()` returns the tasks on the own thread of the one page with workers, since
    * it was opened: {ms, cpuMs} each.
    */
   async trace() {
@@ -87,7 +87,7 @@ export class Browser {
     };
   }
 
-  /** A page that is none of ours. */
+  /** Opens a page that is not ours. */
   async page(url) {
     const page = await (await this.#browser.newContext(kDesktop)).newPage();
     await page.goto(url);
@@ -116,7 +116,7 @@ export class Browser {
 }
 
 export class ViewerPage {
-  /** Uncaught errors and console errors other than a network that is not there. */
+  /** Uncaught errors, and console errors except those about a missing network. */
   problems = [];
 
   constructor(page, out) {
@@ -130,8 +130,8 @@ export class ViewerPage {
   }
 
   /**
-   * Of what was asked for before: a state that is about to change does not count. Throws what the
-   * viewer says when it fails instead.
+   * Waits for a state that results from all earlier commands, not for one that is about to change.
+   * If the viewer fails instead, throws its message.
    */
   async waitForState(wanted) {
     await this.#hearDecoder();
@@ -145,7 +145,7 @@ export class ViewerPage {
       throw new Error(`the viewer failed: ${await this.text('.notice p')}`);
   }
 
-  /** Waits until the picture of the figures' moment has been drawn, and one frame more. */
+  /** Waits until the picture of the current figures has been drawn, and one more frame. */
   async waitForPicture() {
     await this.page.waitForFunction(() => window.qtetSeen.pictures > 0, null, {
       timeout: kTimeoutMs,
@@ -154,8 +154,8 @@ export class ViewerPage {
   }
 
   /**
-   * Waits until what was just changed has been computed and drawn: for a while, for whoever
-   * decodes, and for frames of the page and of whoever draws; all of them come late under load.
+   * Waits until the last change has been computed and drawn: for a while, then for the decoder,
+   * then for frames of the page and of the worker that draws. All of them are late under load.
    */
   async settle() {
     await this.page.waitForTimeout(kSettleMs);
@@ -172,8 +172,8 @@ export class ViewerPage {
   }
 
   /**
-   * Waits until the decoder has heard what the page has told it so far, and the page what that
-   * changed at once; not for one that never began.
+   * Waits until the decoder has received the page's commands, and the page the immediate answers.
+   * Does nothing for a decoder that never started.
    */
   async #hearDecoder() {
     await this.page.evaluate(
@@ -188,7 +188,7 @@ export class ViewerPage {
     );
   }
 
-  /** Waits until no picture is due or on its way. */
+  /** Waits until no picture is due or under way. */
   async #waitForDecoder() {
     for (
       const end = Date.now() + kTimeoutMs;
@@ -204,7 +204,9 @@ export class ViewerPage {
     throw new Error('pictures have been under way for minutes');
   }
 
-  /** What axe-core finds against WCAG 2.2 AA, shadow roots included: "rule: element" each. */
+  /**
+   * The violations of WCAG 2.2 AA that axe-core finds, including shadow roots, as "rule: element".
+   */
   async accessibilityViolations() {
     await this.page.addScriptTag({path: require.resolve('axe-core/axe.min.js')});
     return this.page.evaluate(async () => {
@@ -218,7 +220,8 @@ export class ViewerPage {
   }
 
   /**
-   * Calls `look` with the MeshView, in the worker that draws or, where there is none, on the page.
+   * Calls `look` with the MeshView in the worker that draws, or on the page if there is no such
+   * worker.
    */
   inView(look, ...words) {
     const thread =
@@ -238,7 +241,7 @@ export class ViewerPage {
 
   /** Waits for a volume with all its cells and pixels, seen from where the camera is. */
   async restVolume() {
-    // Twice: what was just asked for may not have reached the worker that draws.
+    // Twice, because the last command may not have reached the worker that draws.
     for (let i = 0; i < 2; ++i) {
       await this.settle();
       await this.waitInView(
@@ -256,7 +259,7 @@ export class ViewerPage {
   digest() {
     return this.page.evaluate(() => window.qtetViewer.digest());
   }
-  /** What init scripts saw: pictures, events by name. */
+  /** The pictures and events that the init scripts saw, by name. */
   seen() {
     return this.page.evaluate(() => window.qtetSeen);
   }
@@ -264,7 +267,7 @@ export class ViewerPage {
     return this.page.locator(`qtet-viewer ${selector}`).innerText();
   }
 
-  /** Writes OUT/NAME.png and gives its pixels. */
+  /** Writes OUT/NAME.png and returns its pixels. */
   async screenshot(name) {
     return readPng(await this.page.screenshot({path: join(this.out, `${name}.png`)}));
   }

@@ -1,5 +1,5 @@
-// What the viewer must do in a real browser. Each check gets a running server and throws when the
-// viewer does otherwise.
+// What the viewer must do in a real browser. Each check gets a running server and throws if the
+// viewer does something else.
 
 import assert from 'node:assert/strict';
 import {kDesktop, kPhone} from './browser.mjs';
@@ -7,7 +7,7 @@ import {expectWhole} from './expect.mjs';
 import {coloredShare, differingShare} from './png.mjs';
 import {PoorLine} from './poor_line.mjs';
 
-/** Bytes after which the coarse picture is taken: some levels of the samples, never all. */
+/** The coarse picture is taken after so many bytes: some levels of the samples, never all. */
 const kCoarseBytes = 50000;
 
 async function refinesToTheOriginal({server, browser, logs}) {
@@ -118,7 +118,7 @@ async function keepsThePageResponsive({server, browser}) {
   const tasks = await trace.end();
   const longest = (key) => Math.round(Math.max(...tasks.map((task) => task[key])));
   assert.ok(tasks.length > 50, `only ${tasks.length} tasks were seen`);
-  // Of processor time, for others have their share of the clock: the bound only catches work that
+  // Measures processor time, because others share the clock. The bound catches only work that
   // belongs in a worker.
   assert.ok(longest('cpuMs') < 200, `the page was busy for ${longest('cpuMs')} ms`);
   return (
@@ -324,8 +324,8 @@ async function showsTheSamePictureFromItsLink({server, browser}) {
     await viewer.page.keyboard.press(key);
   await viewer.settle();
   const first = await viewer.screenshot('link-from');
-  // A link's camera is relative to the whole mesh, which is as long as its lattice of 16 bits, not
-  // to the coarse one that was seen first.
+  // A link's camera is relative to the whole mesh, which spans its lattice of 16 bits, not to the
+  // coarse mesh that came first.
   assert.equal(await viewer.inView(({bounds}) => bounds[3] - bounds[0]), 65535);
   const again = await browser.open(viewer.page.url());
   await again.waitForState('complete');
@@ -365,8 +365,7 @@ async function comesBackFromLostGraphics({server, browser}) {
 }
 
 /**
- * Older browsers have no canvas that a worker draws into: the page draws itself, with the same
- * script.
+ * In older browsers no worker can draw into a canvas. The page draws itself, with the same script.
  */
 async function drawsWithoutAWorker({server, browser}) {
   const viewer = await browser.open(
@@ -509,7 +508,7 @@ async function obeysTheKeyboard({server, browser}) {
     differingShare(before, await viewer.screenshot('keys-home')) < 0.005,
     'Home does not bring the first view back',
   );
-  // What lies in the middle is that of the picture, not of what the panel covers of it.
+  // The middle is that of the free part of the picture.
   await viewer.page.keyboard.press('i');
   await viewer.page.locator('qtet-viewer .result').waitFor();
   const off = await viewer.page.evaluate(() => {

@@ -1,4 +1,5 @@
-// The volume's rays beside edges of the mesh: every pixel, against what is known of cubes.
+// Rays of a volume beside edges of the mesh: every pixel is compared with what is known about
+// cubes.
 
 import assert from 'node:assert/strict';
 import {execFileSync} from 'node:child_process';
@@ -6,13 +7,13 @@ import {writeFileSync} from 'node:fs';
 import {join} from 'node:path';
 import {linearBox} from './volume_checks.mjs';
 
-/** Cubes along the shortest side, and which of them are there. */
+/** Cubes along the shortest side. Below: which cubes are there. */
 const kSponge = 3;
 const isInSponge = (x, y, z) => (x + y + z) % 2 === 0 || (7 * x + 3 * y + 5 * z) % 3 === 0;
 
 /**
- * In the worker that draws, the opacity being the same everywhere: of all pixels those that show
- * anything, and those where it is not what the box's cubes on the line of sight add up to.
+ * Runs in the worker that draws; the opacity is the same everywhere. Counts the pixels that show
+ * anything, and those that differ from the sum of the cubes on their line of sight.
  */
 function compareWithCubes(view, sizes, cubes) {
   const {
@@ -81,7 +82,7 @@ function compareWithCubes(view, sizes, cubes) {
   return found;
 }
 
-/** The box of cubes as a volume that is as opaque everywhere, without cards. */
+/** Shows the box of cubes as a volume of constant opacity, without cards. */
 async function openSponge({server, browser, logs, out, bin}) {
   const sizes = [kSponge, 2 * kSponge, 3 * kSponge];
   const cubes = [];
@@ -118,7 +119,7 @@ async function comparedFrom(viewer, camera, sizes, cubes) {
   };
 }
 
-/** From each of the cameras the whole picture is right. */
+/** Checks the whole picture from each of the cameras. */
 async function looksRightFrom(cameras, tools, picture) {
   const {viewer, compare} = await openSponge(tools);
   const notes = [];
@@ -134,15 +135,15 @@ async function looksRightFrom(cameras, tools, picture) {
 }
 
 /**
- * Many edges at which rays leave the mesh on one side and stay in it on the other: none comes in
- * again too rarely, or too often.
+ * Many edges where rays leave the mesh on one side and stay in it on the other. No ray may enter
+ * again too rarely or too often.
  */
 const castsRaysBesideEdges = (tools) =>
   looksRightFrom(['2.6,3.2,1.7,0,0,0', '-1.9,2.7,2.4,0,0.1,0'], tools, 'volume-sponge');
 
 /**
- * From just outside of the mesh, nearer to a face than the canvas's near plane: its rays begin at
- * that plane.
+ * The eye is just outside of the mesh, nearer to a face than the canvas's near plane. The rays
+ * begin at that plane.
  */
 const castsRaysFromCloseToAFace = (tools) =>
   looksRightFrom(

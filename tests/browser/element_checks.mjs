@@ -1,4 +1,4 @@
-// The element when it is used at awkward moments.
+// The element, used at awkward moments.
 
 import assert from 'node:assert/strict';
 import {copyFileSync, rmSync} from 'node:fs';
@@ -8,7 +8,7 @@ import {expectWhole} from './expect.mjs';
 import {coloredShare, differingShare} from './png.mjs';
 import {PoorLine} from './poor_line.mjs';
 
-/** A picture of the mesh before is already on its way when another one is chosen. */
+/** A picture of the previous mesh is already on its way when another mesh is chosen. */
 async function showsNothingOfTheMeshBefore({server, browser}) {
   const viewer = await browser.open(`${server.url}?mesh=fin`, undefined, () => {
     const seen = (window.qtetSwitch = {before: 0, loads: []});
@@ -17,7 +17,7 @@ async function showsNothingOfTheMeshBefore({server, browser}) {
         super(url, options);
         if (options?.name !== 'qtet') return;
         this.addEventListener('message', ({data}) => {
-          // hears of it before the viewer does
+          // receives it before the viewer does
           if (data.type !== 'snapshot' || seen.before > 0) return;
           seen.before = data.snapshot.statistics.total.tetrahedra;
           const viewer = document.querySelector('qtet-viewer');
@@ -86,8 +86,8 @@ async function tellsOfTheWholeMeshOnceItIsDrawn({server, browser}) {
 }
 
 /**
- * The whole mesh is decoded before there is anything to draw with: the picture that waited for it
- * is old, the figures are not.
+ * The whole mesh is decoded before there is a view. The picture that waited is old, but the figures
+ * must be new.
  */
 async function tellsTheNewestFiguresWithAnOldPicture({server, browser, logs}) {
   const viewer = await browser.open(`${server.url}?mesh=fin`, undefined, () => {
@@ -127,9 +127,7 @@ async function tellsTheNewestFiguresWithAnOldPicture({server, browser, logs}) {
   await expectWhole(viewer, logs.fin);
 }
 
-/**
- * A page that does not wait between putting the element into its place and saying what it shows.
- */
+/** A page sets the attributes in the task that appends the element. */
 async function takesItsAttributesInTheTaskThatAppendsIt({server, browser}) {
   const viewer = await browser.open(`${server.url}?mesh=box`);
   await viewer.page.evaluate(() => {
@@ -146,7 +144,7 @@ async function takesItsAttributesInTheTaskThatAppendsIt({server, browser}) {
   );
 }
 
-/** A pause that comes before there is anything to pause: nothing is asked for until it ends. */
+/** A pause before there is a stream: nothing is requested until it ends. */
 async function pausesInTheTaskThatAppendsIt({server, browser}) {
   const viewer = await browser.open(`${server.url}?mesh=box`);
   await viewer.waitForState('complete');
@@ -165,7 +163,7 @@ async function pausesInTheTaskThatAppendsIt({server, browser}) {
   assert.deepEqual(viewer.problems, []);
 }
 
-/** Whatever goes wrong in one picture, the ones after it come. */
+/** After an error in one picture, the next ones are drawn. */
 async function drawsOnAfterAPictureThatFailed({server, browser}) {
   for (const breakOnce of [
     ({surface}) =>
@@ -211,7 +209,7 @@ async function drawsOnAfterAPictureThatFailed({server, browser}) {
   }
 }
 
-/** What the worker was started with counts no more, although it has not told of any mesh yet. */
+/** The quality changes before the worker knows any mesh: the new one counts. */
 async function heedsAQualityThatChangesBeforeTheHeadHasCome({server, browser, logs}) {
   const viewer = await browser.open(`${server.url}?mesh=fin&quality=cells:1000`, undefined, () => {
     const {postMessage} = Worker.prototype;
@@ -226,8 +224,8 @@ async function heedsAQualityThatChangesBeforeTheHeadHasCome({server, browser, lo
 }
 
 /**
- * In mid-stream another log takes the name: the page begins anew, with the places and values of the
- * new one.
+ * Another log takes the name in mid-stream: the page starts again, with the places and values of
+ * the new one.
  */
 async function showsTheLogThatTookTheName({server, browser, logs}) {
   const path = join(logs.fin.folder, 'changing.qtet');
@@ -275,7 +273,7 @@ async function showsTheLogThatTookTheName({server, browser, logs}) {
 }
 
 /**
- * Every attribute brings all settings along: only what changes the picture draws it anew, which
+ * Every attribute change sets all settings. Only those that change the picture may redraw it: that
  * takes graphics without a GPU a fifth of a second.
  */
 async function drawsOnlyWhatChanges({server, browser}) {
@@ -303,8 +301,8 @@ async function drawsOnlyWhatChanges({server, browser}) {
 }
 
 /**
- * Whatever is touched or reached by Tab is to be seen then, and the panel's own head stays where it
- * is.
+ * Every control that is touched or reached by Tab must be visible then, and the panel's head must
+ * stay in place.
  */
 async function showsWhatHasTheFocus({server, browser}) {
   for (const device of [

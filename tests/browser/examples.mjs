@@ -1,4 +1,5 @@
-// The examples of web-client/examples in a stranger's project (package.mjs), and what they draw.
+// The examples of web-client/examples in a stranger's project (package.mjs), and the pictures that
+// they draw.
 
 import assert from 'node:assert/strict';
 import {copyFileSync, mkdirSync, writeFileSync} from 'node:fs';
@@ -9,7 +10,7 @@ import {coloredShare} from './png.mjs';
 
 const client = fileURLToPath(new URL('../../web-client/', import.meta.url));
 const kExamples = ['three_level', 'three_stream', 'vtk_level', 'vtk_stream'];
-/** Of the picture's middle: each shows its mesh in viridis. */
+/** The least coloured share of the picture's middle: each example shows its mesh in viridis. */
 const kLeastColored = 0.05;
 
 /**
@@ -42,8 +43,8 @@ export function addExamples(project) {
 }
 
 /**
- * Waits for a picture that shows something; how much of it is coloured. `problems`: a list that
- * ends the wait when it fills.
+ * Waits for a picture that shows something, and returns its coloured share. `problems` is a list
+ * that ends the wait when it fills.
  */
 export async function waitForColor(browser, page, name, problems = []) {
   let share = 0;

@@ -1,9 +1,9 @@
-// What every check asks of a mesh that is said to be whole.
+// What every check expects of a complete mesh.
 
 import assert from 'node:assert/strict';
 
 export async function expectWhole(viewer, log) {
-  // The figures are those of the last picture, which comes a moment after the last byte.
+  // The figures belong to the last picture, which comes a moment after the last byte.
   await viewer.page.waitForFunction(() => {
     const {tetrahedra, total} = window.qtetViewer.statistics;
     return tetrahedra === total.tetrahedra;

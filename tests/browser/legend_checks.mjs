@@ -1,4 +1,4 @@
-// Fields that are awkward to show: names, numbers and missing values that still have to be read.
+// Fields that are awkward to show: names, numbers and missing values must stay readable.
 
 import assert from 'node:assert/strict';
 import {execFileSync} from 'node:child_process';
@@ -9,7 +9,7 @@ import {linearBox} from './volume_checks.mjs';
 
 const kLong = 'Turbulent kinetic energy dissipation rate per unit mass, averaged in time';
 
-/** Rectangles of the legend and of its numbers. */
+/** The rectangles of the legend and of its numbers. */
 const placesOf = (viewer) =>
   viewer.page.evaluate(() => {
     const {shadowRoot} = window.qtetViewer;
@@ -70,8 +70,7 @@ async function showsAwkwardFieldsLegibly({server, browser, logs, out, bin}) {
     );
     await viewer.screenshot(`legend-${field.slice(0, 8).toLowerCase()}`);
   }
-  // A tap moves nothing: the mesh stays fitted to what the cards leave free. Moving a finger turns
-  // it.
+  // A tap moves nothing: the mesh stays fitted to the free space. Moving a finger turns it.
   await page.touchscreen.tap(195, 350);
   await viewer.settle();
   assert.equal(await viewer.inView(({orbit}) => orbit.fitted), true);
@@ -85,8 +84,8 @@ async function showsAwkwardFieldsLegibly({server, browser, logs, out, bin}) {
 }
 
 /**
- * A low window, or one at 200 %: the legend is nearly as wide as what the panel leaves, so the mesh
- * stands above it.
+ * In a low window, or one at 200 %, the legend is nearly as wide as the free space, so that the
+ * mesh must stand above it.
  */
 async function keepsTheMeshOutOfTheLegend({server, browser}) {
   const viewer = await browser.open(`${server.url}?mesh=box`, {

@@ -1,6 +1,7 @@
-// What tests/bench/VIEWER.md says of the viewer, measured: headless Chromium, software WebGL,
-// everything on this machine. Usage: QTET_DATA=FOLDER node measure.mjs --bin DIR --viewer DIR --out
-// DIR      FOLDER holds comb.vtu and post-welded.vtu; prints the table
+// Measures what tests/bench/VIEWER.md says about the viewer, and prints the table: headless
+// Chromium, software WebGL, everything on this machine.
+//   QTET_DATA=FOLDER node measure.mjs --bin DIR --viewer DIR --out DIR
+// FOLDER holds comb.vtu and post-welded.vtu.
 
 import {execFileSync} from 'node:child_process';
 import {existsSync, mkdirSync, readdirSync, readFileSync, statSync} from 'node:fs';
@@ -57,7 +58,7 @@ function browsers(kind) {
           },
         ];
       } catch {
-        return []; // it has ended
+        return []; // the process has ended
       }
     });
   const parents = new Map(processes.map(({pid, parent}) => [pid, parent]));
@@ -68,7 +69,7 @@ function browsers(kind) {
 
 const rendererMegabytes = () => Math.max(0, ...browsers('renderer').map(({resident}) => resident));
 
-const kTicks = 100; // a second: USER_HZ
+const kTicks = 100; // per second: USER_HZ
 const ticksOf = (path) =>
   readFileSync(path, 'utf8')
     .replace(/.*\) /, '')
@@ -76,13 +77,11 @@ const ticksOf = (path) =>
     .slice(11, 13)
     .reduce((sum, text) => sum + Number(text), 0);
 
-/** What the graphics have had of the processors. */
+/** The processor time of the graphics. */
 const graphicsSeconds = () =>
   browsers('gpu-process').reduce((sum, {pid}) => sum + ticksOf(`/proc/${pid}/stat`) / kTicks, 0);
 
-/**
- * What the pages' workers have had of the processors: other programs on this machine do not count.
- */
+/** The processor time of the pages' workers, without other programs on this machine. */
 function workerSeconds() {
   let ticks = 0;
   for (const {pid} of browsers('renderer')) {
@@ -95,14 +94,14 @@ function workerSeconds() {
 }
 
 /**
- * What the page's thread did between opening and the whole mesh, by its longest tasks: on the
- * clock, and of the processor.
+ * The longest tasks of the page's thread between opening and the whole mesh, in time and in
+ * processor time.
  */
 async function measureLoading() {
   const trace = await browser.trace();
   const viewer = await browser.open(`${server.url}?mesh=post-welded`);
-  // Nothing else is asked of the workers, as settle() would: a digest of the whole mesh takes
-  // memory of the codec's that stays.
+  // The workers get no other command, as settle() would send: a digest of the whole mesh takes
+  // memory of the codec that stays.
   await viewer.page.waitForFunction(
     () => window.qtetSeen.events.some(({type}) => type === 'complete'),
     null,
@@ -150,8 +149,8 @@ async function measureLoading() {
 }
 
 /**
- * Turns the view by keys while the mesh refines: how long a key waits for the page, and until the
- * page has painted again (Event Timing, steps of 8 ms).
+ * Turns the view by keys while the mesh refines. Measures how long a key waits for the page, and
+ * for the next paint (Event Timing, in steps of 8 ms).
  */
 async function measureInput() {
   const viewer = await browser.open(`${server.url}?mesh=post-welded`);
@@ -196,8 +195,8 @@ async function measureInput() {
 }
 
 /**
- * Until all is decoded, from a coarse mesh: seconds on the clock, and of the workers' processor
- * time.
+ * Refines from a coarse mesh until everything is decoded: seconds on the clock, and of the workers'
+ * processor time.
  */
 async function refine(viewer) {
   const before = workerSeconds();
@@ -219,8 +218,8 @@ async function refine(viewer) {
 async function measureDecoding() {
   const viewer = await browser.open(`${server.url}?mesh=comb&quality=cells:1`);
   const rates = [];
-  // First the bytes come over the line and the code is cold; then all bytes are here, and the code
-  // is what V8 has made of it.
+  // First the bytes come over the line and the code is cold. Then all bytes are here, and V8 has
+  // optimised the code.
   for (let round = 0; round < 2; ++round) {
     await viewer.waitForState('held');
     await viewer.settle();

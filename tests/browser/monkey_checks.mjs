@@ -1,6 +1,6 @@
-// Hundreds of random actions, as somebody in a hurry would do them, with faults between them; then
-// everything has to be as in a fresh page with the same address. A seed gives the same actions
-// again: QTET_MONKEY=SEED,ACTIONS runs another one.
+// Hundreds of random actions of a user in a hurry, with faults between them. Then everything must
+// be as on a fresh page with the same address. A seed repeats its actions: QTET_MONKEY=SEED,ACTIONS
+// runs another one.
 
 import assert from 'node:assert/strict';
 import {copyFileSync, rmSync} from 'node:fs';
@@ -128,7 +128,7 @@ async function staysSoundWhateverIsDone({server, browser, logs}) {
           },
           Math.round(100 * random()),
         )
-        .catch(() => undefined), // the worker may just be another one
+        .catch(() => undefined), // the worker may have been replaced just now
     cut: () => line.cut(),
     restart: async () => {
       server.kill();
@@ -157,7 +157,7 @@ async function staysSoundWhateverIsDone({server, browser, logs}) {
       await actions[name]();
       if (random() < 0.3) await page.waitForTimeout(60 * random());
     }
-    // Then calm: what was asked for stands in the address, and all of the mesh is wanted.
+    // Then calm: the address holds the wanted state, and the whole mesh is wanted.
     line.bytesPerSecond = Infinity;
     await page.setViewportSize(kSmall.viewport);
     await page.evaluate(() => {

@@ -1,6 +1,7 @@
-// The npm package as a stranger uses it: packed, installed into an empty Vite project,
-// type-checked, built, and looked at in Chromium with two viewers on one page; and the examples in
-// the same project. Usage: node package.mjs --bin DIR --wasm FILE --out DIR
+// The npm package as a stranger uses it: packed, installed into an empty Vite project, checked by
+// the compiler, built, and viewed in Chromium with two viewers on one page. The same project runs
+// the examples.
+//   node package.mjs --bin DIR --wasm FILE --out DIR
 
 import assert from 'node:assert/strict';
 import {execFileSync} from 'node:child_process';
@@ -33,7 +34,7 @@ const kPage = `<!doctype html><html lang="en"><head><title>Two meshes</title><st
 <qtet-viewer mesh="fin" clip="y:0.5"><p slot="poster">Loading</p></qtet-viewer>
 <script type="module" src="/main.ts"></script></body></html>`;
 
-/** Uses what the package says that it has, so that the compiler judges the types. */
+/** Uses what the package promises, so that the compiler checks the types. */
 const kScript = `import 'qtet/element';
 import {QtetViewer, kViewAttributes} from 'qtet';
 import {Client, colorTable, kFull, kPlainDisplay, type Display, type Snapshot} from 'qtet/core';
@@ -108,7 +109,7 @@ run(
   '--prefer-offline',
   '--loglevel=error',
 );
-// What every such project has is here already: nothing is downloaded twice.
+// What every such project has is here already, so that nothing is downloaded twice.
 for (const name of ['three', '@kitware', 'vite', 'typescript', '@types'])
   symlinkSync(join(client, 'node_modules', name), join(project, 'node_modules', name));
 run(project, process.execPath, 'node_modules/typescript/bin/tsc');

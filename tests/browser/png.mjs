@@ -52,7 +52,7 @@ function* middle(picture) {
   }
 }
 
-/** Share of the middle that is coloured as fields are and backgrounds are not. */
+/** The share of the middle that is coloured like a field, not like a background. */
 export function coloredShare(picture) {
   let colored = 0;
   let all = 0;
@@ -64,7 +64,7 @@ export function coloredShare(picture) {
   return colored / all;
 }
 
-/** Share of the middle where two pictures differ visibly. */
+/** The share of the middle where two pictures differ visibly. */
 export function differingShare(a, b) {
   let differing = 0;
   let all = 0;
@@ -76,7 +76,7 @@ export function differingShare(a, b) {
   return differing / all;
 }
 
-/** The largest step, of 255, between two pictures in the middle. */
+/** The largest difference, of 255, between two pictures in the middle. */
 export function largestDifference(a, b) {
   let most = 0;
   for (const [x, y] of middle(a)) {
@@ -88,13 +88,13 @@ export function largestDifference(a, b) {
 
 const kBlockPixels = 4;
 /**
- * Of 255, between the means of two blocks: what antialiasing moves about within a block does not
- * count.
+ * A visible difference, of 255, between the means of two blocks. What antialiasing moves within a
+ * block does not count.
  */
 const kVisibleStep = 10;
 
 /**
- * Share of the blocks of 4 x 4 pixels whose means differ visibly; 1 for pictures of different
+ * The share of blocks of 4 x 4 pixels whose means differ visibly; 1 for pictures of different
  * sizes.
  */
 export function differingBlocks(a, b) {

@@ -1,5 +1,5 @@
-// A slow line between the browser and the server: a TCP relay with a rate and a delay. Connections
-// that the server loses, it loses.
+// A slow line between the browser and the server: a TCP relay with a rate and a delay. It passes on
+// lost connections.
 
 import {createServer, connect} from 'node:net';
 
@@ -8,9 +8,9 @@ const kTickMs = 20;
 export class PoorLine {
   #relay;
   #connections = new Set();
-  /** Towards the browser, on each connection that is slow; may change. */
+  /** The rate towards the browser on each slow connection; it may change. */
   bytesPerSecond;
-  /** From now on no WebSocket gets through, as behind some companies' proxies. */
+  /** If true, no WebSocket gets through, as behind some companies' proxies. */
   refuseStreams = false;
 
   /**
@@ -64,8 +64,8 @@ export class PoorLine {
     return `http://127.0.0.1:${this.#relay.address().port}/`;
   }
   /**
-   * Breaks every connection, with what is under way: a server's death alone leaves its last
-   * megabytes in the kernel.
+   * Breaks every connection, including what is under way. The death of a server alone leaves its
+   * last megabytes in the kernel.
    */
   cut() {
     for (const end of [...this.#connections]) end();
@@ -77,8 +77,7 @@ export class PoorLine {
 }
 
 /**
- * Passes on `portion()` bytes a tick, and reads no further ahead, so that the server feels the
- * line.
+ * Passes on `portion()` bytes a tick. It reads no further ahead, so that the server feels the line.
  */
 function relaySlowly(from, to, portion, delayMs, spoil) {
   const timer = setInterval(() => {

@@ -1,4 +1,4 @@
-// The programs under test: qtet makes logs, qtet-server serves them and can be killed and started
+// The programs under test: qtet makes logs; qtet-server serves them, and can be killed and started
 // again on its port.
 
 import {execFileSync, spawn} from 'node:child_process';
@@ -8,8 +8,8 @@ import {join} from 'node:path';
 const kStartTimeoutMs = 20000;
 
 /**
- * Makes OUT/logs/NAME.qtet from a sample and asks the tool for the digest of the whole mesh.
- * `options`: further words for `qtet simplify`.
+ * Makes OUT/logs/NAME.qtet from a sample and asks qtet for the digest of the whole mesh. `options`
+ * are further words for `qtet simplify`.
  */
 export function makeLog(bin, name, out, sample = name, options = []) {
   const folder = join(out, 'logs');
@@ -27,7 +27,7 @@ export function makeLog(bin, name, out, sample = name, options = []) {
 
 export class Server {
   #process = null;
-  /** That the one before has left its port. */
+  /** Resolves when the previous server has left its port. */
   #gone = Promise.resolve();
   port = 0;
 
@@ -40,7 +40,7 @@ export class Server {
     return `http://127.0.0.1:${this.port}/`;
   }
 
-  /** Starts it, on the port that it had before; nothing when it runs. */
+  /** Starts the server on its port, if it is not running. */
   async start() {
     if (this.#process) return;
     await this.#gone;
@@ -69,7 +69,7 @@ export class Server {
     });
   }
 
-  /** Ends it without a chance to say goodbye. */
+  /** Kills it without a chance to clean up. */
   kill() {
     const ending = this.#process;
     if (!ending) return;

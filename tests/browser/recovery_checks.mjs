@@ -1,4 +1,4 @@
-// Ways out of trouble that keep what one was looking at.
+// Ways out of trouble that keep the view.
 
 import assert from 'node:assert/strict';
 import {expectWhole} from './expect.mjs';
@@ -14,7 +14,7 @@ const turn = async (viewer) => {
 };
 const near = (a, b) => a.every((x, i) => Math.abs(x - b[i]) < 1e-6);
 
-/** A block that arrives damaged ends the stream; the second attempt shows the same view, finer. */
+/** A damaged block ends the stream. The second attempt shows the same view, finer. */
 async function triesAgainWithTheSameView({server, browser, logs}) {
   const line = await PoorLine.open(server.port, {
     bytesPerSecond: 200000,
@@ -52,12 +52,12 @@ async function triesAgainWithTheSameView({server, browser, logs}) {
 const drawers = ({page}) => page.workers().filter((worker) => worker.url().includes('view_worker'));
 
 /**
- * The worker that draws ends without a word, then hangs: the user is told, and gets the same
- * picture from another one.
+ * The worker that draws ends without a word, then another one hangs. The user is told, and gets the
+ * same picture from a new worker.
  */
 async function drawsAnewWhereTheDrawingWorkerEnded({server, browser}) {
   const viewer = await browser.open(`${server.url}?mesh=fin&clip=y`, undefined, () => {
-    const kSpeedUp = 10; // of the page's patience
+    const kSpeedUp = 10; // speeds up the page's patience
     const {setInterval} = window;
     window.setInterval = (action, ms, ...words) => setInterval(action, ms / kSpeedUp, ...words);
   });
@@ -78,7 +78,7 @@ async function drawsAnewWhereTheDrawingWorkerEnded({server, browser}) {
     await viewer.inView(end);
     await viewer.page.getByText('does not answer').waitFor();
     await viewer.page.getByRole('button', {name: 'Try again'}).click();
-    // The browser may tell of the old one's end after the new one is there, and nobody answers in
+    // The browser may report the old worker's end after the new one is there, and nobody answers in
     // it.
     while (drawers(viewer).length !== 1 || old.includes(drawers(viewer)[0]))
       await viewer.page.waitForTimeout(50);

@@ -1,10 +1,10 @@
-// The whole of it: the tool's log, the server, and the viewer in Chromium with software WebGL.
-// Usage: node run.mjs --bin DIR --viewer DIR --out DIR [--only REGEX] [--retries N] A check that
-// fails is tried N times more (0 unless given) and is then called "flaky": on machines that others
-// use, too, a browser may stall for longer than any check foresees. What it said the first time is
-// printed all the same, for it may be a fault that shows only at times. Needs
-// web-client/node_modules (playwright-core) and a Chromium: /usr/bin/chromium, or the one that
-// QTET_CHROMIUM names.
+// The whole system: the tool's log, the server, and the viewer in Chromium with software WebGL.
+//   node run.mjs --bin DIR --viewer DIR --out DIR [--only REGEX] [--retries N]
+// A check that fails is tried up to N times more (default 0). If it passes then, it is called
+// "flaky": on a shared machine a browser may stall for longer than any check foresees. The first
+// failure is printed all the same, for it may be a fault that shows only sometimes.
+// Needs web-client/node_modules (playwright-core) and a Chromium: /usr/bin/chromium, or the one
+// that QTET_CHROMIUM names.
 
 import {mkdirSync} from 'node:fs';
 import {parseArgs} from 'node:util';
@@ -66,7 +66,7 @@ const logs = {
 const server = new Server(options.bin, logs.fin.folder, options.viewer);
 const browser = await Browser.launch(options.out);
 
-/** What the check says of itself. Throws what it finds wrong. */
+/** Runs the check and returns its note. Throws the fault that it finds. */
 async function run(name, check) {
   try {
     await server.start();
@@ -102,7 +102,7 @@ try {
         const because = thrown.cause ? `\nbecause ${thrown.cause.stack}` : '';
         console.log(`${again ? 'AGAIN' : 'FAIL '} ${name}: ${thrown.stack}${because}`);
         if (!again) failed.push(name);
-        else server.kill(); // it, too, begins anew
+        else server.kill(); // the server starts again, too
       }
     }
   }

@@ -1,4 +1,4 @@
-// Web servers that know nothing of qtet: nginx where it is installed, else a few lines of node;
+// Web servers that know nothing about qtet: nginx if it is installed, else a few lines of node;
 // with byte ranges or without.
 
 import {spawn, spawnSync} from 'node:child_process';
@@ -17,7 +17,7 @@ const kTypes = {
 };
 
 /**
- * A folder with the viewer's files and a log beside them, as somebody would copy it onto a web
+ * Makes a folder with the viewer's files and a log beside them, as a user would copy them to a web
  * server.
  */
 export function makeSite(folder, viewer, log) {
@@ -29,8 +29,8 @@ export function makeSite(folder, viewer, log) {
 }
 
 /**
- * {name, url, requests, close()}; `ranges`: false for a server that answers every request with the
- * whole file.
+ * Returns {name, url, requests, close()}. Without `ranges` the server answers every request with
+ * the whole file.
  */
 export async function hostFolder(folder, {ranges = true, nginx = true} = {}) {
   if (nginx && ranges && !spawnSync(kNginx, ['-v']).error) return hostByNginx(folder);

@@ -1,4 +1,4 @@
-// The ways a log can take into the page, each by itself and one after the other.
+// The transports of a log, each by itself and one after the other.
 
 import assert from 'node:assert/strict';
 import {writeFileSync} from 'node:fs';
@@ -96,10 +96,9 @@ async function goesOnOverHttpWhereTheSocketIsBlocked({server, browser, logs}) {
 }
 
 /**
- * A log of regions refines where it is cut, and where an isosurface goes through it, before it
- * refines elsewhere; whatever the order, it ends as the same mesh. Everything has come before the
- * mesh is made anew from nothing to 100,000 cells: what it has then is a matter of order, not of
- * what the network and the processors were doing.
+ * A log of regions first refines where it is cut and where an isosurface passes. In every order it
+ * ends as the same mesh. All bytes have come before the mesh is decoded again, from nothing to
+ * 100,000 cells: then only the order decides what it has, and not the network or the processors.
  */
 async function refinesWhatIsLookedAtFirst({server, browser, out, bin}) {
   const log = makeLog(bin, 'regions', out, 'fin', [
@@ -124,7 +123,7 @@ async function refinesWhatIsLookedAtFirst({server, browser, out, bin}) {
     return viewer;
   };
   /**
-   * What is to be seen of the cut and the isosurface with 100,000 cells, and how many cells that
+   * The visible part of the cut and the isosurface with 100,000 cells, and how many cells that
    * took.
    */
   const coarser = async (viewer, late = null) => {
@@ -144,7 +143,7 @@ async function refinesWhatIsLookedAtFirst({server, browser, out, bin}) {
     share > 0.9 && cells < 0.6,
     `the cut has ${share} of its cells when the mesh has ${cells}`,
   );
-  // What the log knows of the error is drawn to its end, and what is here of it.
+  // The curve shows the log's errors to the end, and the part that is here.
   await cutting.page.getByText('Level of detail').click();
   assert.match(
     await cutting.text('.curve figcaption'),
@@ -159,8 +158,8 @@ async function refinesWhatIsLookedAtFirst({server, browser, out, bin}) {
   await cutting.settle();
   await expectWhole(cutting, log);
   assert.equal(await lookedAt(cutting), whole.looked);
-  // An isosurface goes through more cells than there are: some more of it has come than where
-  // nobody asked for it before.
+  // An isosurface passes more cells than that. A bit more of it must be here than if nobody asked
+  // for it.
   const iso = await coarser(await open('surface=off&iso=Density=2.5'));
   const unasked = await coarser(await open('surface=off'), ['iso', 'Density=2.5']);
   const more = iso.looked / unasked.looked;
@@ -178,9 +177,7 @@ async function refinesWhatIsLookedAtFirst({server, browser, out, bin}) {
   );
 }
 
-/**
- * Guarded meshes: the page says that they are, and shows them once it sets the token, by every way.
- */
+/** Guarded meshes: the page says so, and shows them once it has the token, with every transport. */
 async function showsWhatATokenOpens({browser, logs, viewer: files, out, bin}) {
   const token = 'mq3Vt0pCk8Jx1yQ2b7nS5uEw';
   writeFileSync(join(out, 'tokens'), `read fin ${token}\n`);

@@ -1,5 +1,6 @@
-// The tool's .usda by three.js' parser of OpenUSD text, held against its .vtu's numbers of cells
-// and its boundary as .obj. node usda.mjs --bin FOLDER --out FOLDER
+// Reads the tool's .usda by three.js' parser of OpenUSD text. Compares it with the numbers of cells
+// in the .vtu and with the boundary in the .obj.
+//   node usda.mjs --bin FOLDER --out FOLDER
 
 import assert from 'node:assert/strict';
 import {execFileSync} from 'node:child_process';
@@ -59,7 +60,8 @@ assert.ok(
   'the cells do not fill the box',
 );
 
-// The boundary's triangles at the same places, corners in the same order, whichever comes first.
+// The boundary's triangles must have the same places and the same order of corners; any corner may
+// come first.
 const obj = readFileSync(file('box.obj'), 'utf8')
   .split('\n')
   .map((line) => line.split(' '));

@@ -1,4 +1,4 @@
-// The volume: against what a formula says of a box, and what a user does with it.
+// The volume, compared with a formula for a box; and the user's controls for it.
 
 import assert from 'node:assert/strict';
 import {execFileSync} from 'node:child_process';
@@ -8,9 +8,9 @@ import {kDesktop, kPhone} from './browser.mjs';
 import {coloredShare, differingShare, largestDifference, readPng} from './png.mjs';
 
 /**
- * Box of 1 x 2 x 3 with the field x, and others of functions of the place: n cubes along the
- * shortest side, six tetrahedra each; of the cubes those that `keeps` does, with a field of the
- * cells.
+ * A box of 1 x 2 x 3 with the field x, and `others` that are functions of the place. It has n cubes
+ * along the shortest side and six tetrahedra a cube. `keeps` chooses cubes; the mesh then has a
+ * cell field, too.
  */
 export function linearBox(n, others = {}, keeps = null) {
   const sizes = [n, 2 * n, 3 * n];
@@ -57,8 +57,7 @@ ${array('Int64', 'offsets', offsets)}${array('UInt8', 'types', types)}</Cells>
 }
 
 /**
- * RGBA in 0..255 where the lattice's points (shares of the box) come to lie, out of a picture with
- * all its pixels.
+ * RGBA in 0..255 at lattice points, given as shares of the box, in a picture with all its pixels.
  */
 function pixelsAt(viewer, places) {
   return viewer.page.evaluate(async (shares) => {
@@ -92,7 +91,7 @@ async function drawsAVolumeAsTheFormulaSays({server, browser, logs, out, bin}) {
   server.kill();
   await server.start();
   const kOpacity = 0.3,
-    kPath = 0.1; // the last of the opacities, and of what share of the diagonal it is told
+    kPath = 0.1; // the last opacity, and its path as a share of the diagonal
   const extinction = -Math.log(1 - kOpacity) / kPath / Math.hypot(1, 2, 3);
   const viewer = await browser.open(
     `${server.url}?mesh=linear&field=x&volume=0,${kOpacity}&projection=parallel&colormap=grey`,
@@ -114,7 +113,7 @@ async function drawsAVolumeAsTheFormulaSays({server, browser, logs, out, bin}) {
     await viewer.restVolume();
   };
   const at = [0.13, 0.4, 0.62, 0.9];
-  await look('-y'); // along y, 2 long, the value stays what it is
+  await look('-y'); // along y, 2 long, the value is constant
   expectClose(
     await pixelsAt(
       viewer,
@@ -167,7 +166,8 @@ async function editsTheTransferFunction({server, browser}) {
     differingShare(surface, first) > 0.02 && coloredShare(first) > 0.015,
     'the volume is not to be seen',
   );
-  // Its dark, faint end, too: all of the fin is there, on a ground that is the same everywhere.
+  // The dark, faint end shows, too: the whole fin is there, on a ground that is the same
+  // everywhere.
   const ground = first.at(100, 650);
   for (const [x, y] of [
     [450, 240],
@@ -209,8 +209,7 @@ async function editsTheTransferFunction({server, browser}) {
 }
 
 /**
- * Graphics that are slow: few cells and pixels while the camera is dragged, then all of both, in
- * strips.
+ * Slow graphics draw few cells and pixels while the camera is dragged, then all of both, in strips.
  */
 async function drawsFewCellsWhileSomethingMoves({server, browser}) {
   const viewer = await browser.open(`${server.url}?mesh=fin&volume=0,0.1,0.3,0.6`, {
@@ -230,7 +229,7 @@ async function drawsFewCellsWhileSomethingMoves({server, browser}) {
     const seen = (globalThis.qtetSeen = {coarse: 0, cells: 0, strips: 0});
     const {caster, drawAtOnce} = volume;
     const {cast} = caster;
-    volume.wholeMs = Infinity; // a machine may be faster than that on so small a canvas
+    volume.wholeMs = Infinity; // a machine may be faster than that on such a small canvas
     volume.drawAtOnce = (picture, its, share) => {
       if (its === volume.coarse) ++seen.coarse;
       seen.cells = its.shown.count;
@@ -268,8 +267,8 @@ async function drawsFewCellsWhileSomethingMoves({server, browser}) {
 }
 
 /**
- * In the worker that draws: RGBA of the volume alone in some pixels, as drawn and as every cell on
- * the line of sight adds to it, looked for one by one.
+ * Runs in the worker that draws. Returns the RGBA of the volume alone in some pixels, as drawn, and
+ * as the sum of all cells on the line of sight, searched one by one.
  */
 function compareWithEveryCell(view, level) {
   const {
@@ -321,7 +320,7 @@ function compareWithEveryCell(view, level) {
     density
       .subarray(4 * Math.round(Math.min(1, Math.max(0, shareOf(v))) * (density.length / 4 - 1)))
       .subarray(0, 4);
-  /** Where a line is in the cell, and its value there; null: nowhere. */
+  /** The part of a line within the cell, and its values; null if there is none. */
   const stretch = (cell, from, along) => {
     const corners = [...cells.subarray(4 * cell, 4 * cell + 4)].map(at);
     let enter = -Infinity,
@@ -388,15 +387,15 @@ function compareWithEveryCell(view, level) {
   return pairs;
 }
 
-/** Two pieces, one of them with a hole, a pit and a gap. */
+/** Two pieces. One of them has a hole, a pit and a slit. */
 const isThere = (x, y, z) =>
   y !== 5 &&
   !(x === 1 && y === 2 && z > 2 && z < 6) &&
   !(y < 4 && y !== 1 && z > 5) &&
   !(y === 3 && z === 1);
 /**
- * Pages, and views of each by name: attributes, and where Density ends the line of sight, an
- * isosurface being there.
+ * Pages with several views each: their attributes, and the value of Density where an isosurface
+ * ends the line of sight.
  */
 const kCasts = {
   'mesh=holes&volume=0.05,0.2': {
@@ -452,7 +451,7 @@ async function castsRaysAsEveryCellSays({server, browser, logs, out, bin}) {
       const others = off.filter((steps) => steps > 3).length;
       notes.push(`${name} ${others} of ${shown}, at most ${Math.max(...off).toFixed(1)}`);
       assert.ok(shown > 30, `${name}: ${shown} pixels show anything`);
-      // Where a surface ends the line of sight a pixel may lie beside its edge.
+      // If a surface ends the line of sight, a pixel may lie beside its edge.
       assert.ok(others <= (level === null ? 0.02 : 0.05) * shown, notes.at(-1));
     }
     assert.deepEqual(viewer.problems, []);

@@ -1,6 +1,6 @@
-// Keeps the blocks that arrive and puts them into the codec in the order that it wants: structure
-// with positions, then fields behind the mesh. The blocks stay (two or three bytes a cell), so that
-// the mesh can be made coarser and finer again without the network.
+// Keeps the blocks that arrive and puts them into the codec in its order: structure with positions
+// first, then fields. The blocks stay (two or three bytes a cell), so that the mesh can become
+// coarser and finer again without the network.
 
 import type {Packet} from './packet';
 import {kFirstFieldPart, kHeadPart, kPositionsPart, kStructurePart} from './parts';
@@ -25,9 +25,7 @@ export class Assembler implements LogTable {
   private received: number[] = [];
   private packetList: Packet[] = [];
   private rank = new Map<number, number>();
-  /**
-   * Chunks whose structure and positions are here and not applied, in the order of their coming.
-   */
+  /** Chunks whose structure and positions are here but not applied, in the order of arrival. */
   private readonly ready = new Set<number>();
 
   constructor(
@@ -71,7 +69,7 @@ export class Assembler implements LogTable {
 
   // ---- blocks
 
-  /** Leading chunks that are here: of the mesh, and of one field. */
+  /** How many leading chunks are here: of the mesh, and of one field. */
   get receivedChunks(): number {
     return Math.min(this.leading(kStructurePart), this.leading(kPositionsPart));
   }
@@ -79,21 +77,21 @@ export class Assembler implements LogTable {
     return Math.min(this.leading(kFirstFieldPart + field), this.receivedChunks);
   }
 
-  /** Figures of the mesh with these fields. */
+  /** The mesh's figures with these fields. */
   statistics(fields: readonly number[]): Statistics {
     return this.manifest && this.ledger
       ? statisticsOf(this.codec, this.manifest, this.ledger, fields)
       : kNoStatistics;
   }
 
-  /** Where `limit` lies with these fields; null: at the end. */
+  /** Where the limit lies for these fields; null means at the end. */
   goal(limit: Limit, fields: readonly number[]): Goal | null {
     return this.manifest && this.head
       ? goalOf(limit, this.codec, this.manifest, fields, this.head.length)
       : null;
   }
 
-  /** planOf this log. */
+  /** planOf for this log. */
   plan(fields: readonly number[]): LevelBytes[] {
     return this.manifest && this.head
       ? planOf(this.codec, this.manifest, fields, this.head.length)
@@ -101,8 +99,8 @@ export class Assembler implements LogTable {
   }
 
   /**
-   * Applies the next block of the fields, or else the next chunk of the mesh if `refine`; false
-   * when neither is here. Throws what the codec refuses.
+   * Applies the next block of the fields, or else, if `refine`, the next chunk of the mesh. Returns
+   * false when neither is here. Throws the codec's errors.
    */
   step(fields: readonly number[], refine: boolean): boolean {
     for (const field of fields) if (this.stepField(field)) return true;
@@ -125,7 +123,7 @@ export class Assembler implements LogTable {
     });
   }
 
-  /** Chunks from the last leading one on that are here, as [first, end) each. */
+  /** The chunks from `count` on that are here, as ranges [first, end). */
   rangesBeyond(count: number, part: number): [number, number][] {
     const ranges: [number, number][] = [];
     for (let chunk = count; chunk < this.blocks.length; ++chunk) {
@@ -137,7 +135,7 @@ export class Assembler implements LogTable {
     return ranges;
   }
 
-  /** What is looked at is also decoded first. */
+  /** Decodes in the order of the view request from now on. */
   look(view: ViewRequest): void {
     const {lattice, packets} = this;
     this.rank = new Map(
@@ -145,12 +143,12 @@ export class Assembler implements LogTable {
     );
   }
 
-  /** Of the head before every packet. */
+  /** Chunks of the head come before every packet. */
   private rankOf(chunk: number): number {
     return this.rank.get(chunk) ?? chunk - this.codec.chunkCount;
   }
 
-  /** The most urgent of those that are here and whose parent is applied; -1: none. */
+  /** The most urgent chunk that is here and whose parent is applied; -1 if there is none. */
   private nextChunk(): number {
     const {codec} = this;
     if (codec.headChunks === codec.chunkCount)
@@ -164,8 +162,8 @@ export class Assembler implements LogTable {
   }
 
   /**
-   * Keeps what the frame holds. Throws bad-order, bad-message, bad-checksum and what the codec says
-   * of a head.
+   * Keeps the frame's blocks. Throws bad-order, bad-message, bad-checksum, and the codec's errors
+   * about a head.
    */
   take(frame: Frame): void {
     if (frame.firstPart === kHeadPart) {

@@ -1,6 +1,5 @@
-// The transport that works: a WebSocket where one can be had, else byte ranges, else numbered
-// chunks; and the next one as soon as one fails for good. They are interchangeable because each
-// goes on behind what the last one brought.
+// The first transport that works: a WebSocket, else byte ranges, else numbered chunks. When one
+// fails for good, the next takes over. Any of them can continue where another stopped.
 
 import type {QtetError} from './errors';
 import type {Goal} from './goal';
@@ -11,7 +10,7 @@ import type {ViewRequest} from './view_request';
 export type TransportKind = 'websocket' | 'range' | 'chunks';
 export const kTransportKinds: readonly TransportKind[] = ['websocket', 'range', 'chunks'];
 
-/** Failures in a row, without a byte between them, after which another way is tried. */
+/** After so many failures in a row, without a byte between them, the next transport is tried. */
 const kPatience = 2;
 
 export class AutoTransport implements Transport, TransportHandlers {
@@ -20,7 +19,7 @@ export class AutoTransport implements Transport, TransportHandlers {
   private failures = 0;
   private timer: ReturnType<typeof setTimeout> | undefined;
 
-  /** REQUIRES: at least one kind. `make` makes a transport of a kind with these handlers. */
+  /** REQUIRES: at least one kind. `make` creates a transport of a kind with these handlers. */
   constructor(
     private readonly kinds: readonly TransportKind[],
     private readonly make: (kind: TransportKind, handlers: TransportHandlers) => Transport,
@@ -82,8 +81,8 @@ export class AutoTransport implements Transport, TransportHandlers {
     this.handlers.down(attempt, delayMs);
   }
   failed(error: QtetError): void {
-    // What this way cannot do another may; when all have failed without a byte between them, the
-    // last one's word counts.
+    // Another transport may succeed. If all have failed without a byte between them, the last error
+    // is reported.
     if (error.code === 'http' && ++this.failures < kPatience + this.kinds.length) {
       this.change(0);
       return;
@@ -94,7 +93,7 @@ export class AutoTransport implements Transport, TransportHandlers {
   private change(delayMs: number): void {
     this.current.disconnect();
     this.at = (this.at + 1) % this.kinds.length;
-    // the new way gets one try before the one after it
+    // the new transport gets one try before the next one
     this.failures = Math.max(0, this.failures - 1);
     this.current = this.make(this.kind, this);
     this.timer = setTimeout(() => this.current.connect(), delayMs);

@@ -4,7 +4,7 @@ export const kFirstDelayMs = 250;
 export const kLongestDelayMs = 8000;
 
 /**
- * Doubles from 250 ms to 8 s; the random half keeps many viewers from coming back at the same
+ * Doubles from 250 ms to 8 s. The random half keeps many viewers from reconnecting at the same
  * moment. `random` is in [0, 1).
  */
 export function reconnectDelayMs(attempt: number, random: number): number {

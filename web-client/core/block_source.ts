@@ -1,5 +1,5 @@
-// Where blocks come from over HTTP: out of the file by their places, or by their numbers from a
-// qtet-server or whoever keeps copies of its answers.
+// Where blocks come from over HTTP: from a file, by byte ranges; or from a qtet-server or a cache
+// in front of it, by their numbers.
 
 import {fetchChecked, RangedFile, type Fetch} from './ranged_file';
 import {QtetError} from './errors';
@@ -16,23 +16,26 @@ export interface Piece {
 export interface BlockSource {
   /** Header, manifest and chunk table. */
   head(signal: AbortSignal): Promise<Uint8Array>;
-  /** How many of `pieces`, at least one, one request should fetch if about `bytes` are wanted. */
+  /**
+   * How many of `pieces` (at least one) one request should fetch when about `bytes` bytes are
+   * wanted.
+   */
   together(pieces: readonly Piece[], bytes: number): number;
   /** The bytes of each piece. Throws `network`, `not-found`, `http`, `log-changed`. */
   fetch(pieces: readonly Piece[], signal: AbortSignal): Promise<Uint8Array[]>;
-  /** SHA-256 of the log where the server tells it, else its tag. */
+  /** SHA-256 of the log if the server tells it, else the response's tag. */
   readonly digest: string;
 }
 
-/** codec/FORMAT.md, "Header": bytes that no text and no transfer as text leaves as they are. */
+/** codec/FORMAT.md, "Header": these bytes survive no transfer that treats the file as text. */
 const kMagic = [0x89, 0x51, 0x54, 0x45, 0x54, 0x0d, 0x0a, 0x1a];
 const kHeaderBytes = 64;
 const kManifestBytesAt = 24;
 const kTableBytesAt = 28;
-/** Reading on over so many unwanted bytes is cheaper than another request. */
+/** Reading over so many unwanted bytes is cheaper than another request. */
 const kGapBytes = 4096;
 
-/** Bytes of the front from its first 64. */
+/** The size of the log's front, from its first 64 bytes. */
 export function headBytesOf(header: Uint8Array): number {
   if (header.length < kHeaderBytes)
     throw new QtetError('truncated', 'The file is too short for a qtet log.');
@@ -102,7 +105,7 @@ export class RangeSource implements BlockSource {
 
 export class ChunkSource implements BlockSource {
   digest = '';
-  /** Where the log's own addresses begin, once a redirection has told. */
+  /** The base of the log's own addresses, once a redirection has told it. */
   private base: string;
 
   /** `url`: /v1/meshes/{id}/log of a server. */

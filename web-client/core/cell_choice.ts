@@ -1,12 +1,12 @@
-// Which cells are shown whole: by a threshold of a field, and by planes that leave every cell that
-// reaches below them ("crinkle").
+// Which cells are shown whole: those within a threshold of a field, and those that reach below
+// every plane ("crinkle" clipping).
 
 import type {FieldScale} from './field_scale';
 import {planeDistances, type Plane} from './slice';
 
 /**
- * Clears `kept` for cells whose value, or one of whose corners' values, lies outside [low, high]
- * (in [0, 1], as `scale` gives them) or is missing.
+ * Clears `kept` for cells with a value outside [low, high] or a missing one, at a corner or for the
+ * cell. The bounds are in [0, 1], as `scale` gives values.
  */
 export function keepWithin(
   kept: Uint8Array,
@@ -30,7 +30,7 @@ export function keepWithin(
   }
 }
 
-/** Clears `kept` for cells that lie above the plane with all of their corners. */
+/** Clears `kept` for cells whose corners all lie above the plane. */
 export function keepBelow(
   kept: Uint8Array,
   points: Int32Array,

@@ -1,5 +1,5 @@
-// Where lines of sight come into the cells: through the faces that belong to one cell only, or with
-// the eye, which is inside one.
+// Where lines of sight enter the cells: through faces that belong to one cell only, or at the eye,
+// if a cell contains it.
 
 import type {Vector} from './cell_ray';
 import {isHole} from './neighbours';
@@ -7,7 +7,7 @@ import {isHole} from './neighbours';
 type Corners = [Vector, Vector, Vector, Vector];
 
 /**
- * Eight numbers a face: its corners, anticlockwise as seen from outside, the lowest number first,
+ * Eight numbers a face: its three corners (anticlockwise seen from outside, lowest number first),
  * the cell's fourth corner, the cell's tag (VolumeCells), and three zeros.
  */
 export function entryFaces(
@@ -31,7 +31,7 @@ export function entryFaces(
   return Uint32Array.from(found);
 }
 
-/** The cell that `point` (lattice coordinates) is in; -1: it is in none. */
+/** The cell that contains `point` (lattice coordinates); -1 if none does. */
 export function cellAround(vertices: Float32Array, cells: Uint32Array, point: Vector): number {
   for (let cell = 0; 4 * cell < cells.length; ++cell) {
     if (isHole(cells, cell) || isOutsideBox(vertices, cells, cell, point)) continue;
@@ -55,7 +55,7 @@ function place(vertices: Float32Array, id: number): Vector {
   return [vertices[4 * id]!, vertices[4 * id + 1]!, vertices[4 * id + 2]!];
 }
 
-/** Nothing is allocated here: of all cells few go on. */
+/** Nothing is allocated here: most cells end at this test. */
 function isOutsideBox(
   vertices: Float32Array,
   cells: Uint32Array,
@@ -76,7 +76,7 @@ function isOutsideBox(
 }
 
 /**
- * Six times the volume; positive where b, c, d go round anticlockwise as seen from the far side of
+ * Six times the volume. It is positive if b, c, d go round anticlockwise seen from the far side of
  * a.
  */
 function orientation([a, b, c, d]: Corners): number {

@@ -1,5 +1,5 @@
-// A straight line through the cells: what a pointer points at, and a field along a probe. Exact:
-// each cell's own stretch of the line, no samples.
+// A straight line through the cells, for picking and for probing a field. It is exact: each cell
+// has its own stretch of the line, and nothing is sampled.
 
 import type {Cells} from './section';
 import type {Plane} from './slice';
@@ -19,14 +19,14 @@ export interface Stretch {
   to: number;
 }
 
-/** Every kept cell that the line passes between t = `first` and `last`, in no order. */
+/** Every kept cell that the line passes between t = `first` and t = `last`, in no order. */
 export function stretches(cells: Cells, ray: Ray, first: number, last: number): Stretch[] {
   const {points, tetrahedra, kept} = cells;
   const [across, up] = sideways(ray.direction);
   const s = new Float64Array(points.length / 3);
   const u = new Float64Array(points.length / 3);
-  // Where the line is the origin of a plane that it pierces: cells that do not surround it there
-  // are passed by.
+  // Project along the line, so that it becomes the origin of a plane. Cells that do not surround
+  // the origin are skipped.
   for (let v = 0; v < s.length; ++v) {
     const x = points[3 * v]! - ray.origin[0],
       y = points[3 * v + 1]! - ray.origin[1],
@@ -51,7 +51,7 @@ export function stretches(cells: Cells, ray: Ray, first: number, last: number): 
   return found;
 }
 
-/** Shortens a stretch to what lies below every plane; null when nothing does. */
+/** Shortens a stretch to the part below every plane; null if nothing is left. */
 export function below(planes: readonly Plane[], ray: Ray, stretch: Stretch): Stretch | null {
   let {from, to} = stretch;
   for (const {normal, offset} of planes) {
@@ -64,7 +64,7 @@ export function below(planes: readonly Plane[], ray: Ray, stretch: Stretch): Str
   return from < to ? {cell: stretch.cell, from, to} : null;
 }
 
-/** Shares of the four corners in `point`; they add up to 1. */
+/** Barycentric coordinates of `point`: the shares of the four corners, which add up to 1. */
 export function barycentric(
   {points, tetrahedra}: Cells,
   cell: number,
@@ -115,7 +115,7 @@ function insideOf(
 
 type Vector4 = [number, number, number, number];
 
-/** Two directions across the given one and across each other. */
+/** Two directions perpendicular to the given one and to each other. */
 function sideways(direction: Vector): [Vector, Vector] {
   const smallest = [0, 1, 2].sort((a, b) => Math.abs(direction[a]!) - Math.abs(direction[b]!))[0]!;
   const axis: Vector = [0, 0, 0];

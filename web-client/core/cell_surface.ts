@@ -1,5 +1,5 @@
-// The surface of a set of cells: every face that belongs to one of them only, seen from outside,
-// with the cell that it belongs to.
+// The surface of a set of cells: every face that belongs to only one of them, seen from outside,
+// with its cell.
 
 import type {FieldScale} from './field_scale';
 import type {Cells} from './section';
@@ -15,14 +15,14 @@ const kFaces = [
 const kEmpty = -1;
 
 /**
- * Faces as 4 * cell + the corner opposite. `boundary`: the whole mesh's, 3 vertices a triangle; it
- * only spares work.
+ * Each face is 4 * cell + the opposite corner. `boundary` is the whole mesh's, 3 vertices a
+ * triangle; it only saves work.
  */
 export function surfaceFaces(cells: Cells, boundary: Uint32Array): Uint32Array {
   const near = verticesNearASide(cells, boundary);
   const candidates = candidateFaces(cells, near);
-  // Open addressing, at most half full; a face that comes a second time lies between two cells and
-  // cancels the first.
+  // Open addressing, at most half full. A face that comes a second time lies between two cells and
+  // cancels the first one.
   const mask = 2 ** Math.ceil(Math.log2(2 * candidates.length + 2)) - 1;
   const slots = new Int32Array(mask + 1).fill(kEmpty);
   const inner = new Uint8Array(candidates.length);
@@ -66,8 +66,8 @@ export function facesSoup(
 }
 
 /**
- * Only faces between such vertices can be on the surface: those of the mesh's boundary and of cells
- * that are not kept.
+ * Only faces between these vertices can be on the surface: vertices of the mesh's boundary, and of
+ * cells that are not kept.
  */
 function verticesNearASide({points, tetrahedra, kept}: Cells, boundary: Uint32Array): Uint8Array {
   const near = new Uint8Array(points.length / 3);

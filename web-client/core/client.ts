@@ -30,8 +30,8 @@ export class Client {
   private run = 0;
 
   constructor(listen: Listener) {
-    // The page knows where its build put the codec; the worker's own file may have been moved
-    // without what it refers to.
+    // The page knows where its build put the codec. The worker's own file may have moved without
+    // the files that it refers to.
     this.post({type: 'load', codecUrl: new URL(codecUrl, import.meta.url).href});
     this.worker.onmessage = (event: MessageEvent<Posted>) => {
       const message = event.data;
@@ -53,14 +53,15 @@ export class Client {
   }
 
   /**
-   * `url` and `mesh`, or `log` alone; what else is left out is chosen: the first field, everything,
-   * whatever transport works. Nothing of an earlier start is heard any more.
+   * `url` and `mesh` must be given, or `log` alone. By default the session takes the first field,
+   * no limit, and any transport that works. Messages of an earlier start are dropped.
    */
   start(source: Partial<Source>): void {
     this.post({type: 'start', source: {...kAnySource, ...source}, run: ++this.run});
   }
   /**
-   * REQUIRES: fields of the last `manifest` message. Its fields are fetched if they are not here.
+   * REQUIRES: the display's fields are in the last `manifest` message. Fields that are missing are
+   * fetched.
    */
   show(display: Display): void {
     this.post({type: 'display', display});
@@ -68,7 +69,7 @@ export class Client {
   setLimit(limit: Limit): void {
     this.post({type: 'limit', limit});
   }
-  /** What the user looks at, which logs of regions refine first. */
+  /** What the user looks at: logs of regions refine it first. */
   look(view: ViewRequest): void {
     this.post({type: 'look', view});
   }
@@ -79,21 +80,18 @@ export class Client {
     this.post({type: 'resume'});
   }
   /**
-   * To be called once a snapshot is on the screen; the next one waits for it. `drawingMs`: what
-   * drawing it took, for who knows.
+   * Must be called when a snapshot is on the screen; the next one waits for it. `drawingMs` says
+   * how long drawing took, if known.
    */
   shown(drawingMs?: number): void {
     this.post({type: 'shown', drawingMs});
   }
-  /** The picture once more, whole: whoever drew it is gone. */
+  /** Asks for the whole picture again, because its receiver is gone. */
   repeat(): void {
     this.post({type: 'repeat'});
   }
 
-  /**
-   * SHA-256 over the mesh as it stands in the worker, lower-case hexadecimal; empty before there is
-   * one.
-   */
+  /** SHA-256 of the mesh in the worker, lower-case hexadecimal; empty before there is a mesh. */
   digest(): Promise<string> {
     return this.ask({type: 'digest'});
   }
@@ -105,8 +103,8 @@ export class Client {
   }
 
   /**
-   * The last snapshot's volume with few cells, unless the asker has them: those of version `have`.
-   * Refused where there are none.
+   * The last snapshot's volume with few cells. The cells are left out if the caller has version
+   * `have`. Rejects if there are none.
    */
   async coarse(have: number): Promise<CoarseCells> {
     const answer = await this.ask<CoarseCells | null>({type: 'coarse', have});

@@ -1,5 +1,5 @@
-// The mesh with few cells, decoded once more from the blocks that have come: what is drawn of a
-// volume while something moves and the graphics are slow.
+// The mesh with few cells, decoded a second time from the same blocks. Where graphics are slow, a
+// volume is drawn with it while something moves.
 
 import type {Assembler} from './assembler';
 import {fieldsOf, keptCells, type Display} from './display';
@@ -10,14 +10,14 @@ import {kCoarseCells, volumeCells, type CoarseCells, type VolumeCells} from './v
 export class CoarseVolume {
   private version = 0;
   private frames: Frame[] = [];
-  /** What the cells are of; empty: there are none. */
+  /** What the cells were made for; empty if there are none. */
   private key = '';
   private assembler: Promise<Assembler> | null = null;
 
-  /** `makeAssembler`: with an empty codec of its own. */
+  /** `makeAssembler` makes an assembler with an empty codec of its own. */
   constructor(private readonly makeAssembler: () => Promise<Assembler>) {}
 
-  /** A part of the log; its bytes are kept anyway. */
+  /** Notes a part of the log. The bytes are kept elsewhere anyway. */
   note(frame: Frame): void {
     this.frames.push(frame);
   }
@@ -28,8 +28,8 @@ export class CoarseVolume {
   }
 
   /**
-   * The cells that `display` shows, unless the asker has them: those of version `have`. Throws
-   * where there are no values of the field yet.
+   * The cells that `display` shows, left out if the caller has version `have`. Throws if the field
+   * has no values yet.
    */
   async cells(have: number, display: Display): Promise<CoarseCells> {
     const assembler = await (this.assembler ??= this.makeAssembler());

@@ -1,25 +1,25 @@
-// The WebAssembly codec (codec/wasm_api.h) with types: bytes in, views of the growing mesh out. One
-// log a codec.
+// The WebAssembly codec (codec/wasm_api.h) with types: bytes in, views of the growing mesh out. A
+// codec reads one log.
 
 import {QtetError} from './errors';
 import type {Counts} from './counts';
 import type {PacketBox} from './packet';
 
-/** What the session needs of a codec; tests bring their own. */
+/** What the session needs from a codec. Tests bring their own. */
 export interface Codec {
   open(head: Uint8Array): void;
-  /** After `out-of-memory`: an empty codec, whose memory is the browser's again. */
+  /** Starts again with an empty codec after `out-of-memory`; the browser gets the memory back. */
   restart(): void;
   readonly chunkCount: number;
   /**
-   * Numbers of all levels, column by column, from the end of the manifest. Throws `limit-exceeded`,
-   * `truncated`, `bad-value`.
+   * The numbers of all levels, column by column, from the end of the manifest. Throws
+   * `limit-exceeded`, `truncated`, `bad-value`.
    */
   levelColumns(bytes: Uint8Array, columns: number): Uint32Array;
-  /** In the file. */
+  /** Byte offset in the file. */
   blockOffset(chunk: number, part: number): number;
   blockSize(chunk: number, part: number): number;
-  /** Tuples of a value block. */
+  /** How many tuples the value block holds. */
   blockValues(chunk: number, part: number): number;
   blockCodec(chunk: number, part: number): number;
   /** Throws `bad-checksum` when the bytes are not the block's. */
@@ -28,7 +28,7 @@ export interface Codec {
   applyField(field: number, chunk: number, values: BlockValues): void;
   /** Chunks before the first packet: all of them in the layout `stream`. */
   readonly headChunks: number;
-  /** The chunk that this one waits for; of chunk 0 itself. */
+  /** The chunk that this one depends on. Chunk 0 depends on itself. */
   dependency(chunk: number): number;
   packetBox(chunk: number): PacketBox;
   brings(chunk: number): Counts;
@@ -44,15 +44,15 @@ export interface Codec {
   points(): Int32Array;
   tetrahedra(): Uint32Array;
   boundary(): Uint32Array;
-  /** A tuple a vertex, or a tetrahedron of a cell field; null while the field has no chunk. */
+  /** One tuple a vertex, or a tetrahedron for a cell field; null while the field has no chunk. */
   field(field: number, components: number): Int32Array | null;
   /** SHA-256 of the mesh, lower-case hexadecimal. */
   digest(): string;
 }
 
 /**
- * A value block in its two parts (FORMAT.md, "Value blocks"): what Draco decodes, and the digits
- * behind it; an adaptive block is all digits.
+ * The two parts of a value block (FORMAT.md, "Value blocks"): what Draco decodes, and the digits
+ * behind it. An adaptive block is all digits.
  */
 export interface BlockValues {
   symbols: Int32Array;
@@ -294,8 +294,8 @@ export class WasmCodec implements Codec {
   }
 
   /**
-   * Copies the blocks into the module, calls `use` with their addresses, frees them, and throws
-   * what the call reports.
+   * Copies the blocks into the module, calls `use` with their addresses and frees them. Throws the
+   * error that the call reports.
    */
   private with(blocks: Uint8Array[], use: (addresses: number[]) => number): void {
     const addresses = blocks.map((bytes) => {
@@ -322,7 +322,7 @@ function begin({exports}: WebAssembly.Instance): Exports {
   return wasm;
 }
 
-/** The module has no exceptions: where memory ends, it stops for good. */
+/** The module has no exceptions: when memory ends, it stops for good. */
 function guarded(call: () => number): number {
   try {
     return call();
@@ -344,7 +344,7 @@ function bytesOf(values: Int32Array): Uint8Array {
 }
 
 /**
- * libc++'s abort path links three WASI calls that are never of use here; every import answers "bad
+ * libc++'s abort path imports three WASI calls that never run here. Every import answers "bad
  * file".
  */
 function stubbedImports(module: WebAssembly.Module): WebAssembly.Imports {

@@ -61,17 +61,17 @@ export function isColorMapName(name: string | null): name is ColorMapName {
   return name !== null && (kColorMapNames as readonly string[]).includes(name);
 }
 
-/** Of x from 0 to 1, lowest power first: red, green, blue. */
+/** Polynomials in x from 0 to 1, lowest power first: red, green, blue. */
 const kTurbo = [
   [0.13572138, 4.6153926, -42.66032258, 132.13108234, -152.94239396, 59.28637943],
   [0.09140261, 2.19418839, 4.84296658, -14.18503333, 4.27729857, 2.82956604],
   [0.1066733, 12.64194608, -60.58204836, 110.36276771, -89.90310912, 27.34824973],
 ];
-/** Neither end is the colour of a background. */
+/** So neither end is the colour of a background. */
 const kGreyFrom = 26;
 const kGreyTo = 236;
 
-/** The table as 256 RGBA entries, opaque, in sRGB; `reversed`: from the last to the first. */
+/** The table as 256 opaque RGBA entries in sRGB; `reversed` turns it round. */
 export function colorTable(name: ColorMapName, reversed = false): Uint8Array {
   const table = new Uint8Array(4 * kColorMapEntries).fill(255);
   const entry = entriesOf(name);
@@ -102,7 +102,7 @@ function entriesOf(name: ColorMapName): (i: number) => number[] {
   return (i) => [0, 1, 2].map((c) => packed.charCodeAt(3 * i + c));
 }
 
-/** CSS gradient through `stops` evenly spaced entries, from left to right. */
+/** A CSS gradient from left to right through `stops` evenly spaced entries. */
 export function colorGradient(name: ColorMapName, reversed = false, stops = 17): string {
   const table = colorTable(name, reversed);
   const colors = Array.from({length: stops}, (_, i) => {

@@ -1,4 +1,4 @@
-// What a mesh is counted in.
+// The size of a mesh.
 
 export interface Counts {
   tetrahedra: number;

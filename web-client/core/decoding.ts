@@ -1,23 +1,23 @@
-// Decoding in slices: applies the blocks that are here, as far as they are wanted, and knows its
+// Decodes in slices: applies the blocks that are here, as far as they are wanted, and measures its
 // pace.
 
 import type {Assembler} from './assembler';
 import {Slices} from './slices';
 import type {Wanted} from './wanted';
 
-/** The page's commands come between two slices of so long. */
+/** How long a slice takes. The page's commands come between two slices. */
 const kSliceMs = 25;
-/** A display says soon what to show: decoding waits so long for the first picture. */
+/** How long decoding waits for the first picture: the page sends a display soon. */
 const kFirstPictureMs = 500;
 
 export class Decoding {
   private readonly slices: Slices;
-  /** When decoding goes on without a first picture; null: it does not wait yet. */
+  /** When decoding continues without a first picture; null: it does not wait. */
   private firstPictureBy: number | null = null;
-  /** What has been decoded, and how long that took. */
+  /** Bytes decoded so far, and the time that took. */
   private pace = {bytes: 0, ms: 0};
 
-  /** `again`: called when there may be more to decode. */
+  /** `again` is called when there may be more to decode. */
   constructor(
     private readonly assembler: Assembler,
     private readonly wanted: Wanted,
@@ -26,14 +26,14 @@ export class Decoding {
     this.slices = new Slices(again);
   }
 
-  /** `again` is called soon: until then nobody else needs to decode. */
+  /** `again` will be called soon, so that nobody else needs to decode. */
   get isDue(): boolean {
     return this.slices.isDue;
   }
 
   /**
-   * Decodes one slice. True if there was anything. `pictureFirst`: the first mesh that there is
-   * goes to the page before anything finer is decoded. Throws what the codec refuses.
+   * Decodes one slice. Returns true if there was anything to decode. With `pictureFirst` the first
+   * mesh goes to the page before anything finer is decoded. Throws the codec's errors.
    */
   advance(pictureFirst: boolean): boolean {
     this.slices.drop();
@@ -52,13 +52,13 @@ export class Decoding {
     return true;
   }
 
-  /** From the empty mesh to the limit, at once. Throws what the codec refuses. */
+  /** Decodes from the empty mesh to the limit, in one go. Throws the codec's errors. */
   goBack(): void {
     this.assembler.rewind();
     while (this.step()) continue;
   }
 
-  /** How long decoding so many bytes takes at the pace so far; Infinity: nobody knows. */
+  /** How long `bytes` will take at the pace so far; Infinity if unknown. */
   msFor(bytes: number): number {
     return this.pace.bytes > 0 ? (bytes * this.pace.ms) / this.pace.bytes : Infinity;
   }
@@ -67,7 +67,7 @@ export class Decoding {
     this.slices.drop();
   }
 
-  /** Another log comes. */
+  /** Must be called before another log. */
   forget(): void {
     this.stop();
     this.firstPictureBy = null;

@@ -1,4 +1,4 @@
-// What the page wants to see, and its making from the mesh: plain data in, triangles out.
+// What the page wants to see, and how it is made from the mesh: plain data in, triangles out.
 
 import {keepBelow, keepWithin} from './cell_choice';
 import {facesSoup, surfaceFaces} from './cell_surface';
@@ -8,8 +8,8 @@ import {isosurface, slice, type Plane} from './slice';
 import {boundarySoup, joinSoups, type TriangleSoup} from './triangle_soup';
 
 /**
- * cut: what lies above a plane is gone, flat caps close the hole; cells: whole cells stay or go;
- * slice: the cuts alone, each whole.
+ * cut: the part above a plane is removed, and flat caps close the hole; cells: whole cells stay or
+ * go; slice: only the cuts are shown, each whole.
  */
 export type ClipMode = 'cut' | 'cells' | 'slice';
 export const kClipModes: readonly ClipMode[] = ['cut', 'cells', 'slice'];
@@ -20,13 +20,13 @@ export interface Display {
   /** False: only cuts and isosurfaces are drawn. */
   body: boolean;
   mode: ClipMode;
-  /** What lies above any of them is cut away. */
+  /** The parts above any of them are cut away. */
   planes: Plane[];
-  /** Values of a point field in [0, 1] over its scalarRange. */
+  /** The values are in [0, 1] over the point field's scalarRange. */
   isosurfaces: {scalar: Scalar; values: number[]} | null;
-  /** Cells outside [low, high], in [0, 1] over the scalarRange, are hidden. */
+  /** Hides cells outside [low, high]. Both are in [0, 1] over the scalarRange. */
   threshold: {scalar: Scalar; low: number; high: number} | null;
-  /** The cells themselves are wanted, to be seen through, coloured by `color`. */
+  /** Shows the cells themselves, translucent, coloured by `color`. */
   volume: boolean;
 }
 
@@ -46,7 +46,7 @@ export function fieldsOf(display: Display): number[] {
   return [...new Set(scalars.filter((scalar) => scalar != null).map(({field}) => field))];
 }
 
-/** The mesh as it stands, and its fields: null while a field has no values. */
+/** The mesh as it is now. `scale` is null while a field has no values. */
 export interface MeshNow {
   points: Int32Array;
   tetrahedra: Uint32Array;
@@ -54,7 +54,7 @@ export interface MeshNow {
   scale(scalar: Scalar): FieldScale | null;
 }
 
-/** The cells that threshold and whole-cell planes leave; null: all. */
+/** The cells that the threshold and the `cells` mode leave; null means all. */
 export function keptCells(mesh: MeshNow, display: Display): Uint8Array | null {
   const scale = display.threshold && mesh.scale(display.threshold.scalar);
   const planes = display.mode === 'cells' ? display.planes : [];
@@ -66,7 +66,10 @@ export function keptCells(mesh: MeshNow, display: Display): Uint8Array | null {
   return kept;
 }
 
-/** Planes that a renderer has to cut by: the cells mode has cut already, and slices cut nothing. */
+/**
+ * The planes that the renderer must cut by. The `cells` mode has cut already, and slices cut
+ * nothing.
+ */
 export function cuttingPlanes(display: Display): Plane[] {
   return display.mode === 'cut' ? display.planes : [];
 }
@@ -78,7 +81,9 @@ export function surfaceOf(mesh: MeshNow, display: Display, kept: Uint8Array | nu
   return facesSoup(cells, surfaceFaces(cells, mesh.boundary), scale);
 }
 
-/** One soup a plane; a renderer hides of each what lies above the other cutting planes. */
+/**
+ * One soup a plane. The renderer hides the parts of each that lie above the other cutting planes.
+ */
 export function cutsOf(mesh: MeshNow, display: Display, kept: Uint8Array | null): TriangleSoup[] {
   const scale = display.color && mesh.scale(display.color);
   const planes = display.mode === 'cells' ? [] : display.planes;

@@ -1,15 +1,15 @@
-// Positions and field blocks: each begins with a Draco bit stream, a point cloud in sequential
-// encoding with one generic attribute of 32-bit integers and no prediction (codec/FORMAT.md, "Value
-// blocks"). Only such streams occur, so this decodes them and nothing else (Draco's bitstream
-// specification, 2.2): Draco's own decoder weighs a fifth of the whole viewer. The tests compare
-// both.
+// Decodes positions and field blocks. Each begins with a Draco bit stream: a point cloud in
+// sequential encoding, with one generic attribute of 32-bit integers and no prediction
+// (codec/FORMAT.md, "Value blocks"; Draco's bitstream specification, 2.2).
+//
+// Why not Draco's own decoder? It weighs a fifth of the whole viewer. The tests compare both.
 
 import {QtetError} from './errors';
 
 export interface ValueDecoder {
   /**
-   * `count` tuples of `components` integers. Throws `bad-codec` when the bytes are no Draco stream
-   * of this kind, `bad-value` when they hold anything else.
+   * Decodes `count` tuples of `components` integers. Throws `bad-codec` if the bytes are no Draco
+   * stream of this kind, and `bad-value` for any other fault.
    */
   decode(bytes: Uint8Array, count: number, components: number): Int32Array;
 }
@@ -20,7 +20,7 @@ const kIntegerDecoder = 1;
 const kNoPrediction = -2;
 const kTagged = 0;
 const kRaw = 1;
-/** Bits of the alphabet of bit lengths that tagged symbols use. */
+/** The size, in bits, of the alphabet that tagged symbols code bit lengths with. */
 const kTagBits = 5;
 const kMaxSymbolBits = 18;
 const kMetadataFlag = 0x8000;
@@ -47,13 +47,13 @@ function readHeader(reader: Reader, count: number, components: number): void {
   const flags = reader.u8() | (reader.u8() << 8);
   if (major !== 2 || !cloud || flags & kMetadataFlag)
     throw refused('it is not a point cloud of Draco 2');
-  // A constant costs no bits, so nothing but this count bounds what decoding allocates.
+  // A constant costs no bits, so only this count bounds what decoding allocates.
   if (!sequential || reader.u32() !== count || reader.u8() !== 1 || reader.varint() !== 1)
     throw otherValues();
   const type = reader.u8();
   const dataType = reader.u8();
   if (type !== kGeneric || dataType !== kInt32 || reader.u8() !== components) throw otherValues();
-  reader.u8(); // normalized: of no meaning for integers
+  reader.u8(); // normalized: meaningless for integers
   reader.varint(); // the attribute's id
   if (reader.u8() !== kIntegerDecoder || reader.i8() !== kNoPrediction)
     throw refused('it predicts its values');
@@ -75,7 +75,7 @@ function readIntegers(reader: Reader, count: number, components: number): Int32A
   return out;
 }
 
-/** The bit length of a tuple is a symbol, its values follow as they are. */
+/** Each tuple is a symbol that gives a bit length, followed by its values as plain bits. */
 function readTagged(reader: Reader, out: Int32Array, components: number): void {
   const tags = new SymbolReader(reader, kTagBits);
   const bits = new BitReader(reader);
@@ -92,11 +92,11 @@ function readRaw(reader: Reader, out: Int32Array): void {
   for (let i = 0; i < out.length; ++i) out[i] = symbols.next();
 }
 
-/** rANS with a table of probabilities; the bytes are read from their end. */
+/** A rANS decoder with a table of probabilities. It reads the bytes from their end. */
 class SymbolReader {
   private readonly precisionBits: number;
   private readonly base: number;
-  /** By remainder: which symbol. */
+  /** The symbol for each remainder. */
   private readonly table: Uint32Array;
   private readonly probabilities: Uint32Array;
   private readonly starts: Uint32Array;

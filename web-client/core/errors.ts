@@ -1,4 +1,4 @@
-// What goes wrong, as one type: a code to branch on and a text for people.
+// The one error type: a code to branch on and a text for people.
 
 export class QtetError extends Error {
   constructor(
@@ -10,7 +10,7 @@ export class QtetError extends Error {
   }
 }
 
-/** The text of anything that was thrown. */
+/** The message of anything that was thrown. */
 export function errorText(thrown: unknown): string {
   return thrown instanceof Error ? thrown.message : String(thrown);
 }

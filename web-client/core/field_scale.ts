@@ -1,17 +1,15 @@
-// From a field's integers to one number a vertex (or a cell): the value, a component, or the
-// magnitude of a vector, in [0, 1] over a range that does not change while the mesh refines.
+// Turns a field's integers into one number a vertex or cell: the value, a component, or a vector's
+// magnitude. The number is in [0, 1] over a range that stays the same while the mesh refines.
 
 import type {FieldInfo} from './manifest';
 
-/** The integer of a value that is missing (codec/mesh.h). */
+/** The integer that marks a missing value (codec/mesh.h). */
 const kMissing = -2147483648;
-/**
- * Instead of a component: the magnitude of all of them, or the value itself where there is but one.
- */
+/** In place of a component: the magnitude of a vector, or the value of a scalar. */
 export const kMagnitude = -1;
 
 /**
- * What a colour, an isosurface or a threshold goes by: field `field` of the manifest, one component
+ * What a colour, an isosurface or a threshold refers to: a field of the manifest, and a component
  * of it or kMagnitude.
  */
 export interface Scalar {
@@ -20,8 +18,8 @@ export interface Scalar {
 }
 
 /**
- * What 0 and 1 mean for this scalar. The manifest knows the range of values and magnitudes; a
- * component stays within the largest magnitude.
+ * The values that 0 and 1 stand for. The manifest knows the range of values and magnitudes. A
+ * component lies within the largest magnitude.
  */
 export function scalarRange(info: FieldInfo, component: number): [number, number] {
   if (component === kMagnitude || info.components === 1) return info.range;
@@ -37,7 +35,9 @@ export class FieldScale {
   private readonly step: number;
   private readonly minimum: number[];
 
-  /** `values` holds `info.components` integers a vertex, or a cell of a cell field. */
+  /**
+   * `values` holds `info.components` integers for each vertex, or for each cell of a cell field.
+   */
   constructor(
     private readonly values: Int32Array,
     info: FieldInfo,
@@ -58,8 +58,8 @@ export class FieldScale {
   }
 
   /**
-   * NaN where a value is missing. Relative to the range, so that a small range round a large value
-   * keeps its digits in 32-bit floats.
+   * The value at a vertex or cell, NaN if it is missing. It is relative to the range, so that a
+   * small range round a large value keeps its digits in 32-bit floats.
    */
   at(index: number): number {
     if (this.component >= 0) {
@@ -79,8 +79,8 @@ export class FieldScale {
   }
 
   /**
-   * Smallest and largest that occurs in these cells, in [0, 1]; [0, 1] where nothing does. Holes,
-   * cells of one vertex, hold what is no value.
+   * The smallest and the largest value in these cells, in [0, 1]; [0, 1] if there is none. Holes
+   * (cells whose first two vertices are equal) do not count.
    */
   extent(tetrahedra: Uint32Array): [number, number] {
     const occurs = new Uint8Array(this.size);

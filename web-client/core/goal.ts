@@ -1,5 +1,5 @@
-// What the chunks of a log of layout `stream` reach one after the other: where a stream may stop,
-// so that nobody sends or fetches what lies behind a limit.
+// What the chunks of a `stream` log reach, one after the other. This tells where a stream may stop,
+// so that nothing behind a limit is sent or fetched.
 
 import type {Codec} from './codec';
 import {errorOfLevel, limitReached, type Limit} from './limit';
@@ -7,15 +7,15 @@ import type {Manifest} from './manifest';
 import {kFirstFieldPart} from './parts';
 
 export interface Goal {
-  /** Leading chunks. */
+  /** How many leading chunks. */
   chunks: number;
-  /** The first level that holds all of them: what qtet.v1 calls a target. */
+  /** The first level that contains all of them: the target of qtet.v1. */
   level: number;
 }
 
 /**
- * Of the log, to show the mesh with the fields that are asked for; `level`: index into the
- * manifest's.
+ * Bytes of the log that a level needs with the fields that are asked for. `level` is an index into
+ * the manifest's levels.
  */
 export interface LevelBytes {
   bytes: number;
@@ -23,8 +23,8 @@ export interface LevelBytes {
 }
 
 /**
- * null: everything is wanted, also of logs of regions, whose limits are about what is looked at.
- * `headBytes`: of the log.
+ * Returns null if everything is wanted. That includes logs of regions: their limits concern what
+ * the user looks at. `headBytes` is the size of the log's head.
  */
 export function goalOf(
   limit: Limit,
@@ -43,9 +43,10 @@ export function goalOf(
 }
 
 /**
- * The least bytes with which each level is there that a chunk ends, ascending. In a log of regions
- * the packets end it that do not depend on one another: what is looked at may come before them, so
- * that a level is there later than this, and never sooner.
+ * The least bytes with which each level is complete, ascending, for the levels that a chunk ends.
+ *
+ * In a log of regions, packets that do not depend on one another end a level together. The view
+ * request changes their order, so a level may be complete later than this, but never sooner.
  */
 export function planOf(
   codec: Codec,
@@ -53,7 +54,7 @@ export function planOf(
   fields: readonly number[],
   headBytes: number,
 ): LevelBytes[] {
-  let first = 0; // of those that end the level together
+  let first = 0; // the first of the chunks that end a level together
   return [...stepsOf(codec, levels, fields, headBytes)]
     .filter(({chunks}) => {
       const ends = chunks === codec.chunkCount || codec.dependency(chunks) >= first;

@@ -1,5 +1,5 @@
-// A log over plain HTTP: some requests under way at a time, delivered in order as the frames of
-// proto/PROTOCOL.md, no more than the credit allows.
+// A log over plain HTTP. A few requests run at a time. Blocks are delivered in order, as the frames
+// of proto/PROTOCOL.md, and within the credit.
 
 import {kFirstFieldPart, kHeadPart, kStructurePart} from './parts';
 import {reconnectDelayMs} from './backoff';
@@ -11,12 +11,13 @@ import {inOrder, kNoViewRequest, type ViewRequest} from './view_request';
 import type {LogTable, Transport, TransportHandlers} from './transport';
 
 /**
- * Under way at a time: browsers give a host six connections over HTTP/1.1, and others want some.
+ * How many requests run at a time. Browsers open six connections to a host over HTTP/1.1, and
+ * others want some of them.
  */
 const kAhead = 3;
 /**
- * A request is about what the line brings in so many seconds, within these bounds: few requests,
- * and steady progress.
+ * A request asks for what the line brings in so many seconds, within the bounds below. Requests are
+ * few, and progress is steady.
  */
 const kRequestSeconds = 0.4;
 const kLeastBytes = 32 << 10;
@@ -27,7 +28,7 @@ export class HttpTransport implements Transport {
   private stream = 0;
   private credit = 0;
   private goal: Goal | null = null;
-  /** What is still to be asked for, in that order. */
+  /** What remains to be fetched, in this order. */
   private pieces: Piece[] = [];
   private attempt = 0;
   private source: BlockSource;
@@ -37,7 +38,7 @@ export class HttpTransport implements Transport {
   private requestBytes = kLeastBytes;
   private arrived = {at: 0, bytes: 0};
 
-  /** `makeSource` is called anew when the log was replaced. */
+  /** `makeSource` is called again when the log has been replaced. */
   constructor(
     private readonly makeSource: () => BlockSource,
     private readonly table: LogTable,
@@ -86,7 +87,7 @@ export class HttpTransport implements Transport {
     this.creditCame();
   }
 
-  /** What is under way comes first all the same. */
+  /** Requests that are under way come first all the same. */
   look(view: ViewRequest): void {
     if (!this.table.isKnown || this.table.packets.length === 0) return;
     const rank = new Map(chunkOrder(this.table, view).map((chunk, i) => [chunk, i]));
@@ -107,8 +108,8 @@ export class HttpTransport implements Transport {
       this.attempt = 0;
       this.handlers.frame({stream, ...piece, payload});
     };
-    // The head also where the table is known from another transport: only so the source learns
-    // which log this is.
+    // The head is fetched even if another transport has brought the table: only the head tells the
+    // source which log this is.
     const head = await this.source.head(signal);
     const isOver = (): boolean => signal.aborted;
     if (isOver()) return;
@@ -124,7 +125,7 @@ export class HttpTransport implements Transport {
       planned: 0,
     });
     if (!this.table.isKnown) deliver({chunk: 0, firstPart: kHeadPart, parts: 0}, head);
-    if (isOver()) return; // the manifest told the session to ask for something else
+    if (isOver()) return; // the manifest made the session open another stream
     this.pieces = piecesOf(this.table, request);
     await this.fetchAll(deliver, signal);
     if (!isOver()) this.handlers.message({type: 'done', stream});
@@ -145,7 +146,7 @@ export class HttpTransport implements Transport {
       ) {
         const wanted = this.pieces.splice(0, this.source.together(near, this.requestBytes));
         const payloads = this.source.fetch(wanted, signal);
-        payloads.catch(() => undefined); // it is awaited below, in its turn
+        payloads.catch(() => undefined); // awaited below, in its turn
         const size = wanted.reduce((sum, piece) => sum + sizeOf(this.table, piece), 0);
         ahead.push({pieces: wanted, size, payloads});
         underWay += size;
@@ -162,14 +163,14 @@ export class HttpTransport implements Transport {
     }
   }
 
-  /** The next pieces on this side of the goal. */
+  /** The next pieces before the goal. */
   private wantedNext(): Piece[] {
     const near = this.pieces.slice(0, kMaxPieces);
     const {goal} = this;
     return goal ? near.filter(({chunk}) => chunk < goal.chunks) : near;
   }
 
-  /** Fits the size of requests to the line. */
+  /** Adapts the size of requests to the line. */
   private measure(bytes: number): void {
     const now = performance.now();
     const seconds = (now - this.arrived.at) / 1000;
@@ -205,12 +206,13 @@ export class HttpTransport implements Transport {
   }
 }
 
-/** More are never asked for by one request. */
+/** The most pieces that one request may ask for. */
 const kMaxPieces = 256;
 
 /**
- * What `request` lacks, in the order of proto/PROTOCOL.md: blocks that fields lag behind by, then
- * chunk by chunk; of regions the head, then the packets in the order of the view request.
+ * The pieces that `request` lacks, in the order of proto/PROTOCOL.md: chunk by chunk, structure
+ * before fields. A log of regions has its head first, then its packets in the order of the view
+ * request.
  */
 export function piecesOf(
   table: LogTable,

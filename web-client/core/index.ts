@@ -38,7 +38,7 @@ export {kOpacityPath, transferTables, type TransferTables} from './transfer';
 export type {TriangleSoup} from './triangle_soup';
 export type {CoarseCells, VolumeCells} from './volume';
 export {kNoViewRequest, type ViewRequest} from './view_request';
-// Names of version 0.1.
+// Aliases of version 0.1.
 export {kMaxPlanes as kMostPlanes} from './display';
 export {kNoViewRequest as kNoWishes, type ViewRequest as Wishes} from './view_request';
 export type {FromWorker, Snapshot, Source, StreamState} from './worker_messages';

@@ -1,5 +1,5 @@
-// What lies under the pointer, and a field along a line: asked by the page, answered from the mesh
-// as it stands.
+// Answers the page's questions about the mesh as it is now: what lies under the pointer, and a
+// field along a line.
 
 import type {Assembler} from './assembler';
 import {
@@ -18,7 +18,7 @@ import type {FieldInfo} from './manifest';
 import {meshNow} from './mesh_now';
 import type {Cells} from './section';
 
-/** Values of one field at a place, a number a component; NaN where missing. */
+/** The values of one field at a place, one a component; NaN if missing. */
 export interface FieldValue {
   field: number;
   values: number[];
@@ -28,16 +28,16 @@ export interface Pick {
   cell: number;
   /** Its vertices. */
   corners: number[];
-  /** In the mesh's own coordinates, and on the lattice. */
+  /** In the mesh's own coordinates; `lattice` is the same place on the lattice. */
   position: Vector;
   lattice: Vector;
-  /** Of the fields that are here. */
+  /** Only fields that are here. */
   fields: FieldValue[];
 }
 
 /**
- * A polyline: positions along the line in the mesh's unit, ascending, and the coloured value in its
- * own; NaN between two cells that do not touch.
+ * A polyline: ascending positions along the line in the mesh's unit, and the coloured value at
+ * each. NaN separates cells that do not touch.
  */
 export interface Probe {
   at: number[];
@@ -48,10 +48,7 @@ export interface Probe {
 export class Inspector {
   constructor(private readonly assembler: Assembler) {}
 
-  /**
-   * The first thing that `ray` (lattice coordinates) meets of what is shown; null when it meets
-   * nothing.
-   */
+  /** The first visible thing that `ray` (lattice coordinates) meets; null if there is none. */
   pick(ray: Ray, display: Display): Pick | null {
     const mesh = meshNow(this.assembler);
     if (!mesh) return null;
@@ -64,7 +61,7 @@ export class Inspector {
     return best && this.pickAt(cells, best.cell, along(ray, best.t));
   }
 
-  /** The field that colours, from one point of the lattice to another; null while there is none. */
+  /** The coloured field from one lattice point to another; null while there is none. */
   probe(from: Vector, to: Vector, display: Display): Probe | null {
     const mesh = meshNow(this.assembler);
     const manifest = this.assembler.manifest;
@@ -117,7 +114,7 @@ export class Inspector {
   }
 }
 
-/** Where the ray first sees something of this stretch; Infinity: nowhere. */
+/** The t at which the ray first sees something of this stretch; Infinity if it never does. */
 function firstSeen(mesh: MeshNow, ray: Ray, stretch: Stretch, display: Display): number {
   const planes = cuttingPlanes(display);
   const visible = below(planes, ray, stretch);
@@ -150,7 +147,7 @@ function valueAt(mesh: Cells, scale: FieldScale, cell: number, point: Vector): n
   );
 }
 
-/** `tuples`: one cell, or the four corners that `shares` weigh. */
+/** `tuples` is one cell, or the four corners that `shares` weigh. */
 function components(
   info: FieldInfo,
   values: Int32Array,

@@ -1,5 +1,4 @@
-// How far to refine: all the way, or until so many cells, so many bytes, or so small an error are
-// reached.
+// How far to refine: fully, or up to a number of cells, a number of bytes, or an error.
 
 import type {LevelInfo} from './manifest';
 import type {Statistics} from './statistics';
@@ -7,16 +6,16 @@ import type {Statistics} from './statistics';
 export type Limit =
   | {kind: 'full'}
   /**
-   * tetrahedra; bytes of the log; `error`: the known rms error of the fields that are shown over
-   * their range, or of the boundary over the diagonal.
+   * `cells` counts tetrahedra, `bytes` those of the log. `error` is the known rms error of the
+   * shown fields over their range, or of the boundary over the diagonal.
    */
   | {kind: 'cells' | 'bytes' | 'error'; value: number};
 
 export const kFull: Limit = {kind: 'full'};
 
 /**
- * The known error of a level with these fields, the largest of theirs, or of the boundary where
- * there are none; null: the log does not tell.
+ * The known error of a level: the largest of these fields', or the boundary's if there are none.
+ * Null: the log does not tell.
  */
 export function errorOfLevel(
   level: LevelInfo | undefined,
@@ -45,8 +44,8 @@ export function limitReached(
 }
 
 /**
- * As an attribute tells it: "full", "cells:20000", "bytes:100000", "error:0.01", "1%"; null for
- * anything else.
+ * Reads an attribute: "full", "cells:20000", "bytes:100000", "error:0.01", "1%"; null for anything
+ * else.
  */
 export function parseLimit(text: string | null): Limit | null {
   if (text === null || text === 'full' || text === '') return kFull;

@@ -1,36 +1,36 @@
-// The connection of a session, with the stream that was opened on it last.
+// A session's connection, and the stream that was opened on it last.
 
 import type {Transport} from './transport';
 import type {ViewRequest} from './view_request';
 import type {Wanted} from './wanted';
 
 /**
- * Payload bytes under way: enough for 80 Mbit/s at 100 ms, and some ten chunks of decoding that a
- * click has to wait for at most.
+ * How many payload bytes may be under way. It is enough for 80 Mbit/s at 100 ms; a click waits for
+ * the decoding of some ten chunks at most.
  */
 const kWindowBytes = 1 << 20;
 
-/** Where the stream ends: behind the head, where the limit was, or where the limit is since. */
+/** Where the stream ends: behind the head, at the limit, or at a limit that was set since. */
 type End = 'head' | 'limit' | 'later limit';
 
 export class LogStream {
-  /** Of the log; empty before the server has told. */
+  /** SHA-256 of the log; empty until the server tells it. */
   digest = '';
-  /** Payload bytes that came of the log. */
+  /** Payload bytes received of this log. */
   receivedBytes = 0;
   private transport: Transport | null = null;
-  /** Keys of the fields that it brings. */
+  /** Keys of the fields that the stream brings. */
   private keys: readonly string[] = [];
   private end: End = 'limit';
-  /** Bytes that arrived and whose credit waits until they are applied. */
+  /** Bytes received whose credit has not been returned: they are not applied yet. */
   private unapplied = 0;
 
-  /** REQUIRES: the transport of before, if any, is disconnected. */
+  /** REQUIRES: the previous transport, if any, is disconnected. */
   use(transport: Transport): void {
     this.transport = transport;
   }
 
-  /** Another log comes. */
+  /** Must be called before another log. */
   forget(): void {
     this.digest = '';
     this.keys = [];
@@ -41,7 +41,7 @@ export class LogStream {
     return this.transport?.isConnected === true;
   }
 
-  /** The server may be done with a limit before it hears of the later one. */
+  /** The server may report the end of the earlier limit before it hears of the later one. */
   get mayEndEarly(): boolean {
     return this.end === 'later limit';
   }
@@ -70,7 +70,7 @@ export class LogStream {
     this.transport?.open({
       mesh,
       fields,
-      credit: needsHead ? 1 : kWindowBytes, // one byte buys the head and nothing behind it
+      credit: needsHead ? 1 : kWindowBytes, // one byte buys the head and nothing more
       have,
       view,
       goal,
@@ -78,7 +78,7 @@ export class LogStream {
     });
   }
 
-  /** Has the stream end where the limit is now. */
+  /** Moves the end of the stream to the limit of now. */
   aim({goal}: Wanted): void {
     if (!this.endsAtHead) this.end = 'later limit';
     this.transport?.aim(goal);
@@ -88,13 +88,13 @@ export class LogStream {
     this.transport?.look(view);
   }
 
-  /** False: there is nothing to pause. */
+  /** Returns false if there is nothing to pause. */
   pause(): boolean {
     this.transport?.pause();
     return this.transport !== null;
   }
 
-  /** False: it cannot go on where it paused; `open` does. */
+  /** Returns false if the stream cannot continue; it must be opened again. */
   resume(): boolean {
     return this.transport?.resume() === true;
   }
@@ -104,7 +104,7 @@ export class LogStream {
     this.unapplied += bytes;
   }
 
-  /** Everything that came is applied: as much may follow. */
+  /** Returns the credit: everything received is applied. */
   giveCredit(): void {
     const {unapplied} = this;
     this.unapplied = 0;

@@ -9,25 +9,25 @@ export interface FieldInfo {
   /** value of component c = minimum[c] + step * integer */
   step: number;
   minimum: number[];
-  /** of the values, or of the magnitude where components > 1 */
+  /** of the values; of the magnitudes if components > 1 */
   range: [number, number];
 }
 
-/** Of a mean or rms, and of the largest. */
+/** A mean or rms, and a maximum. */
 export interface Spread {
   mean: number;
   max: number;
 }
 
 /**
- * How far a level is from the last one: distances over the diagonal, fields over their range; never
+ * How far a level is from the last one: distances over the diagonal, fields over their range. Never
  * understated.
  */
 export interface LevelError {
   toLevel: Spread;
   toOriginal: Spread;
   volumeKept: number;
-  /** In the order of the fields; `mean` is the rms. */
+  /** One for each field; `mean` is the rms. */
   fields: Spread[];
 }
 
@@ -47,8 +47,8 @@ export interface Manifest {
 }
 
 /**
- * What a server calls each field: its name; of two with one name, `cell:NAME` is that of the cells
- * (proto/PROTOCOL.md).
+ * The server's key for each field: its name, or `cell:NAME` for the cell field if two fields share
+ * a name (proto/PROTOCOL.md).
  */
 export function fieldKeys(fields: readonly FieldInfo[]): string[] {
   const points = new Set(
@@ -59,14 +59,14 @@ export function fieldKeys(fields: readonly FieldInfo[]): string[] {
   );
 }
 
-/** Places in the front of a log (codec/FORMAT.md, "Header", "Chunk table"). */
+/** Offsets in the front of a log (codec/FORMAT.md, "Header", "Chunk table"). */
 const kHeaderBytes = 64;
 const kPositionBitsAt = 13;
 const kManifestBytesAt = 24;
 const kFieldsAt = 44;
 /**
- * Beside a field's association, and beside its type: values may be missing. Which ones, FieldScale
- * tells.
+ * Added to a field's association and to its type if values may be missing. FieldScale tells which
+ * ones.
  */
 const kMissingFlag = 128;
 const kOfCells = 1;
@@ -79,9 +79,9 @@ const kVolumeFigure = 1e6;
 const kErrorFigureDigits = 14;
 
 /**
- * REQUIRES: a head that the codec has opened, so that its counts and checksums are known to be
- * right; `levelColumns` is that codec's. Throws `truncated`, `bad-value`, and what `levelColumns`
- * throws.
+ * Reads the manifest of a head. REQUIRES: the codec has opened the head, and so has checked its
+ * counts and checksums; `levelColumns` belongs to that codec. Throws `truncated`, `bad-value`, and
+ * the errors of `levelColumns`.
  */
 export function readManifest(
   head: Uint8Array,
@@ -94,7 +94,7 @@ export function readManifest(
     association: head[tableAt + 2 * f + 1]!,
   }));
   const reader = new ManifestReader(head.subarray(kHeaderBytes, tableAt));
-  reader.text(); // which program wrote it
+  reader.text(); // the program that wrote it
   const source = reader.text();
   const lattice = {
     bits: head[kPositionBitsAt]!,
@@ -156,10 +156,7 @@ function levelsOf(numbers: Uint32Array, columns: number): LevelInfo[] {
   });
 }
 
-/**
- * Three significant digits as an integer (codec/error_figure.h); read as a decimal, so that it is
- * rounded once.
- */
+/** Decodes three significant digits (codec/error_figure.h). Parsing a decimal rounds only once. */
 export function errorOf(figure: number): number {
   if (figure === 0) return 0;
   return Number(

@@ -1,4 +1,4 @@
-// The codec's mesh as display.ts wants it.
+// The codec's mesh in the form that display.ts needs.
 
 import type {Assembler} from './assembler';
 import type {MeshNow} from './display';

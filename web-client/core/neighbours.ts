@@ -1,19 +1,19 @@
-// Which cells lie beside which: a line of sight goes from one to the next.
+// Finds each cell's neighbours: a line of sight passes from one to the next.
 
 const kNone = -1;
 
-/** A place in the codec's arrays whose cell has not come yet. */
+/** A slot in the codec's arrays whose cell has not arrived yet. */
 export function isHole(tetrahedra: Uint32Array, cell: number): boolean {
   return tetrahedra[4 * cell] === tetrahedra[4 * cell + 1];
 }
 
 /**
- * Neighbours across the faces opposite to the four corners, 4 a cell; -1: none. Holes have none and
- * are none's.
+ * Four neighbours a cell, across the faces opposite to its corners; -1 if there is none. Holes have
+ * no neighbours and are nobody's.
  */
 export function neighboursOf(tetrahedra: Uint32Array): Int32Array {
   const neighbours = new Int32Array(tetrahedra.length).fill(kNone);
-  // Open addressing, at most half full; a slot holds 4 * cell + corner of a face whose other side
+  // Open addressing, at most half full. A slot holds 4 * cell + corner of a face whose other side
   // has not come yet.
   const mask = 2 ** Math.ceil(Math.log2(4 * tetrahedra.length + 2)) - 1;
   const slots = new Int32Array(mask + 1).fill(kNone);
@@ -32,7 +32,7 @@ export function neighboursOf(tetrahedra: Uint32Array): Int32Array {
   return neighbours;
 }
 
-/** The same for the three corners in any order. */
+/** Does not depend on the order of the three corners. */
 function hashOf(tetrahedra: Uint32Array, face: number): number {
   const at = face & ~3,
     corner = face & 3;

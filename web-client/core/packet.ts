@@ -1,4 +1,4 @@
-// Packets of a log of regions: chunks that lie somewhere.
+// Packets: the chunks of a log of regions, each with a place.
 
 /** [least x, y, z, largest x, y, z], included; in 256ths of the lattice. */
 export type PacketBox = ArrayLike<number>;
@@ -6,7 +6,7 @@ export const kBoxSteps = 256;
 
 export interface Packet {
   chunk: number;
-  /** Coarse packets have smaller levels. */
+  /** Coarse packets have a smaller depth. */
   depth: number;
   box: PacketBox;
 }

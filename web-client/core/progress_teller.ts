@@ -1,7 +1,8 @@
-// Tells of progress as often as a page can show it.
+// Reports progress no more often than a page can show it.
 
 /**
- * Blocks may come by the hundred a second: telling of each costs both threads more than it shows.
+ * Blocks may come by the hundred a second. Reporting each would cost both threads more than it
+ * shows.
  */
 const kProgressMs = 100;
 
@@ -11,13 +12,13 @@ export class ProgressTeller {
 
   constructor(private readonly tell: () => void) {}
 
-  /** The last change of a burst is told late, but never lost. */
+  /** The last change of a burst is reported late, but never lost. */
   changed(): void {
     const wait = Math.max(0, this.toldAt + kProgressMs - performance.now());
     this.timer ??= setTimeout(() => this.send(), wait);
   }
 
-  /** Tells at once what waits to be told. */
+  /** Reports at once if a report is waiting. */
   flush(): void {
     if (this.timer !== undefined) this.send();
   }

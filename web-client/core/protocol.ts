@@ -1,5 +1,4 @@
-// The wire in TypeScript: messages and the binary frame of proto/PROTOCOL.md, read with every count
-// checked.
+// The messages and the binary frame of proto/PROTOCOL.md. Every count that is read is checked.
 
 import {QtetError} from './errors';
 import type {Goal} from './goal';
@@ -9,7 +8,10 @@ export const kSubprotocol = 'qtet.v1';
 export const kFrameHeaderBytes = 16;
 /** [first, end) of chunks */
 export type ChunkRange = [number, number];
-/** Leading chunks that are here, and, of packets that came out of order, which beyond them. */
+/**
+ * How many leading chunks are here, and which packets beyond them, since packets may come out of
+ * order.
+ */
 export interface HaveChunks {
   chunks: number;
   ranges: ChunkRange[];
@@ -22,7 +24,7 @@ export interface OpenRequest {
   credit: number;
   digest?: string;
   view?: ViewRequest;
-  /** Where the stream may stop; null: nowhere before its end. */
+  /** Where the stream may stop; null means at its end. */
   goal?: Goal | null;
 }
 
@@ -77,7 +79,9 @@ export function pauseMessage(): string {
   return JSON.stringify({type: 'pause'});
 }
 
-/** Without saying anew what is here: what was sent is, or is on its way. */
+/**
+ * Continues the paused stream. It need not say what is here: everything sent is here or under way.
+ */
 export function resumeMessage(): string {
   return JSON.stringify({type: 'resume'});
 }
@@ -94,7 +98,7 @@ export function stopMessage(): string {
   return JSON.stringify({type: 'stop'});
 }
 
-/** Reads a binary message. Throws `bad-message` when it is not one frame exactly. */
+/** Reads a binary message. Throws `bad-message` if it is not exactly one frame. */
 export function parseFrame(buffer: ArrayBuffer): Frame {
   if (buffer.byteLength < kFrameHeaderBytes) {
     throw badMessage(
@@ -118,7 +122,7 @@ export function parseFrame(buffer: ArrayBuffer): Frame {
   };
 }
 
-/** Reads a text message; unknown types give null, so that a later server may say more. */
+/** Reads a text message. Unknown types give null, so that later servers may add some. */
 export function parseServerMessage(text: string): ServerMessage | null {
   let json: unknown;
   try {

@@ -1,4 +1,4 @@
-// Turns the growing mesh into pictures for the page, no faster than the page shows them and than
+// Turns the growing mesh into pictures for the page, no faster than the page shows them and
 // decoding can spare.
 
 import type {Assembler} from './assembler';
@@ -19,60 +19,62 @@ import {noSoup, pointBounds} from './triangle_soup';
 import {volumeCells, type VolumeCells} from './volume';
 import type {Snapshot} from './worker_messages';
 
-/** From one picture to the next, so that decoding has the worker and the page its frames. */
+/**
+ * The least time between two pictures: decoding needs the worker, and the page needs its frames.
+ */
 const kShortestPauseMs = 100;
 /**
- * Between pictures there is this many times what the last one cost: in the worker, and on its way
- * to the screen, where graphics without a GPU take the processors from decoding.
+ * The pause between pictures is so many times the cost of the last one, in the worker and on its
+ * way to the screen. Graphics without a GPU take the processors from decoding.
  */
 const kCostFactor = 4;
-/** A page that is out of sight draws nothing: what it took then says nothing of pictures. */
+/** A hidden page draws nothing, so that the time until it does says nothing about pictures. */
 const kLongestPauseMs = 1000;
 /**
- * Below this share of new bytes a picture hardly differs from the last one, and waits for more, but
- * not for longer than this.
+ * Below this share of new bytes a picture hardly differs from the last one. It waits for more, but
+ * at most kSmallGrowthMs.
  */
 const kGrowth = 0.1;
-/** The same where a picture takes so long that decoding feels it. */
+/** The same share where a picture takes so long that decoding suffers. */
 const kSlowMs = 100;
 const kSlowGrowth = 1;
 const kSmallGrowthMs = 500;
 /**
- * A picture stands at least this many times as long as it takes to the screen, or the last one
- * comes instead, which is sooner there without it.
+ * A picture is worth making if it stays at least this many times as long as it takes to reach the
+ * screen. Otherwise only the last one is made, and it arrives sooner.
  */
 const kWorthMaking = 2;
-/** A cut that the user drags comes at once; this only keeps it from starving the decoder. */
+/** A cut that the user drags comes at once. This pause only keeps it from starving the decoder. */
 const kCutPauseMs = 8;
 
 export class Publisher {
   display: Display = kPlainDisplay;
   /** Since the last reset. */
   hasPublished = false;
-  /** Called after the first picture of a mesh has gone out. */
+  /** Called after the first picture of a mesh has been sent. */
   onFirst: () => void = () => undefined;
-  /** Called with the corners of each new isosurface; empty: there is none. */
+  /** Called with the corners of each new isosurface; no corners if there is none. */
   onIsosurface: (positions: Float32Array) => void = () => undefined;
-  /** When all that is wanted will have been decoded, in ms from now; Infinity: nobody knows. */
+  /** How long until everything wanted is decoded, in ms; Infinity if unknown. */
   untilLast: () => number = () => Infinity;
   private meshChanged = false;
   private cutChanged = false;
-  /** Nothing finer follows by itself. */
+  /** Nothing finer will follow by itself. */
   private isLast = false;
-  /** Nothing is drawn before the page has said what. */
+  /** The page has said what to draw. */
   private wanted = false;
   private bounds: number[] = [];
   private onScreen = true;
-  /** Of the last picture. */
+  /** When the last picture was sent, and how many bytes it was made of. */
   private sentAt = 0;
   private bytes = 0;
   private isFirst = true;
   /**
-   * What the last one took to the screen, the first one without its waiting for the graphics to
-   * start; 0: nobody knows.
+   * How long the last picture took to the screen; for the first one, without the start of the
+   * graphics. 0 if unknown.
    */
   private tookMs = 0;
-  /** Since then the mesh is another than that of the last one. */
+  /** When the mesh began to differ from the last picture's. */
   private changedAt = 0;
   private nextAt = 0;
   private dueAt = 0;
@@ -84,7 +86,7 @@ export class Publisher {
   ) {}
 
   /**
-   * The mesh or the shown field's values changed; the last of such pictures need not leave time for
+   * The mesh or the shown values have changed. With `isLast` the picture need not leave time for
    * decoding.
    */
   changed(isLast = false): void {
@@ -109,7 +111,7 @@ export class Publisher {
     this.schedule();
   }
 
-  /** The page has drawn the last picture, which took so long; 0: nobody knows. */
+  /** The page has drawn the last picture in `drawingMs`; 0 if unknown. */
   shown(drawingMs = 0): void {
     const now = performance.now();
     if (!this.onScreen) {
@@ -123,21 +125,21 @@ export class Publisher {
     this.schedule();
   }
 
-  /** The picture once more, for who has none; the last one is not waited for. */
+  /** Sends the picture again, without waiting for the last one. */
   repeat(): void {
     this.onScreen = true;
     this.changed(true);
   }
 
-  /** A picture is due, or on its way to the screen. */
+  /** A picture is due or on its way to the screen. */
   get isBusy(): boolean {
     return this.timer !== undefined || !this.onScreen;
   }
 
-  /** Starts with an empty mesh, and waits for a display. */
+  /** Begins with an empty mesh and waits for a display. */
   reset(): void {
     this.meshChanged = this.cutChanged = this.wanted = this.hasPublished = this.isLast = false;
-    this.onScreen = true; // nobody waits for the picture of the mesh before
+    this.onScreen = true; // nobody waits for the previous mesh's picture
     this.bounds = [];
     this.bytes = this.tookMs = 0;
     this.display = kPlainDisplay;
@@ -155,7 +157,7 @@ export class Publisher {
     this.timer = setTimeout(() => this.publishIfDue(), due - now);
   }
 
-  /** By now a better moment may be known. */
+  /** A better moment may be known by now. */
   private publishIfDue(): void {
     this.timer = undefined;
     const now = performance.now();
@@ -173,7 +175,7 @@ export class Publisher {
     return Math.max(this.nextAt, isSmall ? this.changedAt + kSmallGrowthMs : 0, this.lastAt(now));
   }
 
-  /** When the last picture is due, where one before it is not worth making; else 0. */
+  /** When the last picture is due, if one before it is not worth making; else 0. */
   private lastAt(now: number): number {
     const left = this.tookMs > 0 ? this.untilLast() : Infinity;
     return left < kWorthMaking * this.tookMs ? now + left : 0;
@@ -185,7 +187,7 @@ export class Publisher {
     const start = performance.now();
     const {display} = this;
     const kept = keptCells(mesh, display);
-    // A finer mesh has another cut: both travel together, so that they always fit.
+    // A finer mesh has another cut. Both travel together, so that they always match.
     const snapshot: Snapshot = {
       ...this.frame(mesh),
       cuts: cutsOf(mesh, display, kept),
@@ -227,7 +229,7 @@ export class Publisher {
       color: scale ? color : null,
       statistics: this.assembler.statistics(fieldsOf(this.display)),
       costMs: 0,
-      // Of a component nobody knows the range but the values themselves.
+      // The range of a component is known from its values only.
       extent:
         scale && info && info.components > 1 && color.component >= 0
           ? scale.extent(mesh.tetrahedra)

@@ -1,16 +1,16 @@
-// A file on any web server, read by byte ranges; of a server that knows no ranges the whole, as it
-// comes.
+// A file on any web server, read by byte ranges. From a server without ranges the whole file is
+// read as it comes.
 
 import {QtetError} from './errors';
 
-/** The first request asks for so much: a log's head and its first levels, in one round trip. */
+/** The first request asks for so much: a log's head and its first levels in one round trip. */
 const kFirstBytes = 64 << 10;
-/** Answers that may be another one soon. */
+/** Status codes that may pass. */
 const kPassing = [408, 425, 429];
 
 export type Fetch = (url: string, init: RequestInit) => Promise<Response>;
 
-/** An answer, or the failure that says why there is none: `http` will not change, `network` may. */
+/** Fetches. Throws `http` for an answer that will not change, and `network` for one that may. */
 export async function fetchChecked(
   fetch: Fetch,
   url: string,
@@ -35,14 +35,13 @@ export async function fetchChecked(
 }
 
 export class RangedFile {
-  /** Where redirections led, and the tag of what lies there. */
+  /** The address that redirections led to, and the tag of what is there. */
   url: string;
   tag = '';
-  /** In bytes; 0 while it is unknown. */
+  /** In bytes; 0 until it is known. */
   size = 0;
   /**
-   * What has come of the file's beginning: the first answer, or all of a server that knows no
-   * ranges.
+   * The beginning of the file: the first answer, or everything so far from a server without ranges.
    */
   private front = new Uint8Array(0);
   private frontSize = 0;
@@ -58,8 +57,8 @@ export class RangedFile {
   }
 
   /**
-   * Bytes [from, to), fewer only where the file ends. Throws `network`, `not-found`, `http`, and
-   * `log-changed` when it is another file by now.
+   * Bytes [from, to); fewer only at the end of the file. Throws `network`, `not-found`, `http`, and
+   * `log-changed` if the file has been replaced.
    */
   async read(from: number, to: number, signal: AbortSignal): Promise<Uint8Array> {
     this.first ??= this.begin();
@@ -81,7 +80,7 @@ export class RangedFile {
     return joined;
   }
 
-  /** Nobody's signal ends it: whoever reads next needs it, too. */
+  /** No reader's signal cancels this: the next reader needs it, too. */
   private async begin(): Promise<void> {
     const response = await fetchChecked(this.fetch, this.url, {
       headers: {Range: `bytes=0-${kFirstBytes - 1}`},
@@ -115,9 +114,7 @@ export class RangedFile {
     return response.status === 206 ? bytes : bytes.subarray(from, to);
   }
 
-  /**
-   * Takes in the whole file, piece by piece; who waits for a part goes on as soon as it is here.
-   */
+  /** Reads the whole file piece by piece. A reader continues as soon as its part is here. */
   private async drain(response: Response): Promise<void> {
     try {
       const reader = response.body!.getReader();

@@ -1,13 +1,11 @@
-// Trying again what the network made fail: the viewer's own parts come over the same line as the
-// mesh.
+// Retries what the network made fail: the viewer's own parts come over the same line as the mesh.
 
 import {reconnectDelayMs} from './backoff';
 
 export const kMaxAttempts = 8;
 
 /**
- * The result of `action`, which is called again after growing pauses while it fails; the last
- * failure is thrown.
+ * Calls `action` until it succeeds, with growing pauses between failures. Throws the last failure.
  */
 export async function retry<T>(
   action: () => Promise<T>,

@@ -1,13 +1,13 @@
-// Where a function that is linear in each cell is zero: a plane's cut and an isosurface are both
-// that. One triangle or quad for every cell that it crosses, the field interpolated along the
-// cell's edges, so that the sides drawn are the cells' own.
+// The section of the mesh where a function that is linear in each cell is zero: a plane's cut or an
+// isosurface. Each crossed cell gives one triangle or quad. Its sides are the cell's own,
+// interpolated along the cell's edges.
 
 import type {FieldScale} from './field_scale';
 import type {TriangleSoup} from './triangle_soup';
 
 /**
- * Views of the mesh: 3 lattice coordinates a vertex, 4 vertices a tetrahedron; of `kept` (absent:
- * all) the cells that are 1 are looked at.
+ * Views of the mesh: 3 lattice coordinates a vertex, 4 vertices a tetrahedron. Only cells whose
+ * `kept` is 1 count; without `kept` all do.
  */
 export interface Cells {
   points: Int32Array;
@@ -15,10 +15,7 @@ export interface Cells {
   kept?: Uint8Array | null;
 }
 
-/**
- * The tetrahedra's corners [alone, the other three] and [pair, other pair] for each pattern of
- * corners above zero.
- */
+/** For each pattern of corners above zero: the corner alone, then the other three. */
 const kTriangleOf: Record<number, number[]> = {
   0b0001: [0, 1, 2, 3],
   0b1110: [0, 1, 2, 3],
@@ -29,7 +26,10 @@ const kTriangleOf: Record<number, number[]> = {
   0b1000: [3, 0, 1, 2],
   0b0111: [3, 0, 1, 2],
 };
-/** Quad corners in a round: edges (a c), (a d), (b d), (b c) of the pairs a b | c d. */
+/**
+ * For each pattern of two corners above zero: the pairs a b | c d. The quad goes round by the edges
+ * (a c), (a d), (b d), (b c).
+ */
 const kQuadOf: Record<number, number[]> = {
   0b0011: [0, 1, 2, 3],
   0b1100: [0, 1, 2, 3],
@@ -40,8 +40,8 @@ const kQuadOf: Record<number, number[]> = {
 };
 
 /**
- * `distances`: the function, a number a vertex. A corner at zero counts as above it, so no cell's
- * section is lost or doubled; a cell with a corner that is NaN has none.
+ * `distances` is the function, one number a vertex. A corner at zero counts as above, so that no
+ * section is lost or doubled. A cell with a NaN corner has none.
  */
 export function section(
   cells: Cells,
@@ -75,8 +75,8 @@ export function section(
       b = tetrahedra[4 * cell + four[1]!]!;
     const c = tetrahedra[4 * cell + four[2]!]!,
       d = tetrahedra[4 * cell + four[3]!]!;
-    // The quad p0..p3 as (p1, p2, p0) and (p3, p0, p2): the diagonal p0 p2 lies opposite to the
-    // first corner of both.
+    // The quad p0..p3 becomes (p1, p2, p0) and (p3, p0, p2): the diagonal p0 p2 lies opposite to
+    // the first corner of both.
     cut.write(3 * half, a, d);
     cut.write(3 * half + 1, b, d);
     cut.write(3 * half + 2, a, c);
@@ -130,8 +130,8 @@ class CutWriter {
   ) {}
 
   /**
-   * Writes the point where edge (p, q) is zero. The lower id goes first, so that neighbours write
-   * the same floats.
+   * Writes the point where the edge (p, q) is zero. The lower id comes first, so that neighbours
+   * write the same floats.
    */
   write(corner: number, p: number, q: number): void {
     if (p > q) [p, q] = [q, p];

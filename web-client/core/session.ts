@@ -1,5 +1,5 @@
-// One mesh on its way into the page: opens the stream, keeps it going over lost connections,
-// refines as far as is asked for, and tells the page where it stands.
+// Brings one mesh into the page: opens the stream, keeps it going over lost connections, refines as
+// far as is asked for, and reports its state.
 
 import type {Assembler} from './assembler';
 import type {CoarseVolume} from './coarse_volume';
@@ -18,10 +18,10 @@ import type {ViewRequest} from './view_request';
 import {Wanted} from './wanted';
 import type {FromWorker, Source} from './worker_messages';
 
-/** Of the cells at which memory ended: their pictures need some, too. */
+/** The share of the cells at which memory ended that is kept: pictures need memory, too. */
 const kFittingShare = 0.7;
 
-/** Follows the codec's own sentence: what the user sees now, and what to do. */
+/** Appended to the codec's message: what the user sees now, and what to do. */
 const kWaysOut: Record<string, string> = {
   'bad-checksum':
     '. What came before is sound and stays on the screen. Try again to fetch the rest anew; if ' +
@@ -45,7 +45,7 @@ const kNoSource: Source = {
 };
 
 export class Session implements TransportHandlers {
-  /** Hears of every part of the log. */
+  /** Receives every frame of the log. */
   coarse: Pick<CoarseVolume, 'note' | 'forget'> | null = null;
   private state: SessionState = {name: 'connecting'};
   private source = kNoSource;
@@ -79,7 +79,7 @@ export class Session implements TransportHandlers {
     this.stream.connect();
   }
 
-  /** Bring these fields (indexes into the manifest), whatever was wanted before. */
+  /** Brings these fields (indexes into the manifest) instead of the previous ones. */
   want(fields: readonly number[]): void {
     if (!this.assembler.manifest || !this.wanted.changeFields(fields)) return;
     this.sendPlan();
@@ -90,7 +90,7 @@ export class Session implements TransportHandlers {
     if (!this.wanted.isReceived()) this.reopen();
   }
 
-  /** Refine so far, and no farther; coarser than now goes back. */
+  /** Refines up to this limit. A coarser limit goes back. */
   setLimit(limit: Limit): void {
     this.wanted.limit = limit;
     if (!this.assembler.manifest || this.state.name === 'failed') return;
@@ -113,7 +113,7 @@ export class Session implements TransportHandlers {
     if (canPause(this.state) && this.stream.pause()) this.enter({name: 'paused'});
   }
 
-  /** Goes on after a pause, or tries again after an error. */
+  /** Continues after a pause, or tries again after an error. */
   resume(): void {
     const {names, limit} = this.wanted;
     if (this.state.name === 'failed')
@@ -156,7 +156,7 @@ export class Session implements TransportHandlers {
   }
 
   down(attempt: number, delayMs: number): void {
-    // Where nothing is missing, asking for more connects again.
+    // If nothing is missing, the connection may end. Asking for more connects again.
     if (isAtRest(this.state)) this.stream.disconnect();
     else this.enter({name: 'reconnecting', attempt, delayMs});
   }
@@ -184,7 +184,7 @@ export class Session implements TransportHandlers {
   }
 
   private refused({code, detail}: {code: string; detail: string}): void {
-    // Another mesh stands under this name now: what was decoded is of no use.
+    // Another mesh has taken this name: what was decoded is useless.
     if (code === 'log-changed' && this.stream.digest) {
       this.forget();
       this.open();
@@ -206,7 +206,7 @@ export class Session implements TransportHandlers {
     this.stream.open(this.source.mesh, this.wanted);
   }
 
-  /** Opens on the connection there is, or makes one. */
+  /** Opens a stream on the present connection, or connects first. */
   private reopen(): void {
     const {isConnected} = this.stream;
     this.enter({name: isConnected ? 'streaming' : 'connecting'});
@@ -214,9 +214,7 @@ export class Session implements TransportHandlers {
     else this.stream.connect();
   }
 
-  /**
-   * True when the stream was asked for anew, because only the head tells which fields there are.
-   */
+  /** Returns true if the stream was opened again, now that the fields are known. */
   private takeManifest(): boolean {
     const manifest = this.assembler.manifest!;
     const unknown = this.wanted.findFields();
@@ -263,20 +261,20 @@ export class Session implements TransportHandlers {
   }
 
   /**
-   * Frames come in crowds: were each to take a slice, the page's commands and the pictures would
-   * wait for all of them.
+   * Frames come in crowds. If each took a slice, the page's commands and the pictures would wait
+   * for all of them.
    */
   private advanceSoon(): void {
     if (!this.decoding.isDue) this.advance();
   }
 
-  /** No picture of the way is shown. */
+  /** Shows no picture on the way. */
   private goBack(): void {
     this.decoding.goBack();
     this.publisher.changed(true);
   }
 
-  /** In ms from now, once everything is here; Infinity before. */
+  /** In ms. Infinity until everything is received. */
   private untilDecoded(): number {
     if (this.wanted.limit.kind !== 'full' || !this.wanted.isReceived()) return Infinity;
     const {bytes, bytesNeeded} = this.wanted.statistics;
@@ -301,16 +299,16 @@ export class Session implements TransportHandlers {
     if (this.state.name !== 'complete') this.enter({name: 'complete'});
   }
 
-  /** True if there was one. What comes next tells the page. */
+  /** Returns true if there was a pause. The caller reports the next state. */
   private endPause(): boolean {
     const wasPaused = this.state.name === 'paused';
     if (wasPaused) this.state = {name: 'streaming'};
     return wasPaused;
   }
 
-  /** After a pause or a limit: what is here first, then the network. */
+  /** Continues after a pause or a new limit: first with what is here, then with the network. */
   private goOn(wasPaused: boolean): void {
-    this.state = {name: 'streaming'}; // the page hears of it unless decoding ends it at once
+    this.state = {name: 'streaming'}; // reported below, unless decoding ends it at once
     this.advance();
     if (this.wanted.isComplete || this.wanted.isReached) return;
     if (this.wanted.isReceived()) return this.enter({name: 'streaming'});
@@ -331,8 +329,8 @@ export class Session implements TransportHandlers {
   }
 
   /**
-   * Begins anew in a fresh codec and ends with room to spare. False when not even the base mesh
-   * fits.
+   * Starts again in a fresh codec, at a limit that leaves room. Returns false if not even the base
+   * mesh fits.
    */
   private stayAtWhatFits(): boolean {
     const {tetrahedra} = this.wanted.statistics;
@@ -354,7 +352,7 @@ export class Session implements TransportHandlers {
     return true;
   }
 
-  /** Another log comes. */
+  /** Must be called before another log. */
   private forget(): void {
     this.decoding.forget();
     this.stream.forget();

@@ -1,4 +1,4 @@
-// Where a session stands: always one of these, and the page hears of every change.
+// The state of a session. It is always exactly one of these, and the page hears of every change.
 
 import type {FromWorker, StreamState} from './worker_messages';
 
@@ -6,7 +6,7 @@ export type SessionState =
   | {name: Exclude<StreamState, 'reconnecting'>}
   | {name: 'reconnecting'; attempt: number; delayMs: number};
 
-/** Nothing is asked of the network: the user has stopped it, or nothing is missing. */
+/** The network is idle: the user has paused it, or nothing is missing. */
 export function isAtRest({name}: SessionState): boolean {
   return name === 'paused' || name === 'held' || name === 'complete';
 }

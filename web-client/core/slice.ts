@@ -1,12 +1,12 @@
-// Planes and isovalues as sections of the mesh.
+// Sections of the mesh by planes and isovalues.
 
 import type {FieldScale} from './field_scale';
 import {section, type Cells} from './section';
 import type {TriangleSoup} from './triangle_soup';
 
 /**
- * The points with normal . p = offset, in lattice coordinates; what lies above (normal . p >
- * offset) is cut away.
+ * The points with normal . p = offset, in lattice coordinates. The part above (normal . p > offset)
+ * is cut away.
  */
 export interface Plane {
   normal: [number, number, number];
@@ -19,8 +19,8 @@ export function slice(cells: Cells, scale: FieldScale | null, plane: Plane): Tri
 }
 
 /**
- * Where the point field `levels` is `value` (in [0, 1], as it gives them), coloured by `scale`.
- * REQUIRES: a field of points.
+ * The surface where the point field `levels` equals `value` (in [0, 1], as it gives values),
+ * coloured by `scale`. REQUIRES: `levels` is a field of points.
  */
 export function isosurface(
   cells: Cells,
@@ -33,7 +33,7 @@ export function isosurface(
   return section(cells, distances, scale);
 }
 
-/** How far each vertex lies above the plane, times the normal's length. */
+/** Each vertex's height above the plane, times the normal's length. */
 export function planeDistances(points: Int32Array, plane: Plane): Float64Array {
   const [nx, ny, nz] = plane.normal;
   const distances = new Float64Array(points.length / 3);

@@ -1,11 +1,11 @@
-// Work in slices: between two of them the worker hears the page's commands.
+// Runs work in slices: between two of them the worker hears the page's commands.
 
-/** `dropped`: the message that calls the next slice is under way, and nobody wants it any more. */
+/** `dropped`: the message that starts the next slice is under way, but nobody wants the slice. */
 type SliceState = 'none' | 'due' | 'dropped';
 
 export class Slices {
   private state: SliceState = 'none';
-  /** Carries the calls: a message queues behind the page's commands, a timer would wait 4 ms. */
+  /** A message queues behind the page's commands. A timer would wait 4 ms. */
   private channel: MessageChannel | undefined;
 
   constructor(private readonly run: () => void) {}
@@ -14,7 +14,7 @@ export class Slices {
     return this.state === 'due';
   }
 
-  /** Calls `run` once, behind what is queued already. */
+  /** Calls `run` once, behind everything that is queued. */
   call(): void {
     if (this.state === 'none') this.open().port2.postMessage(null);
     this.state = 'due';

@@ -1,4 +1,4 @@
-// The memory that a snapshot owns and gives away when it travels between threads.
+// The buffers that a snapshot transfers when it travels between threads.
 
 import {buffersOfVolume} from './volume';
 import type {Snapshot} from './worker_messages';

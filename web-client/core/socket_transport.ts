@@ -1,5 +1,5 @@
-// One WebSocket to /v1/stream that comes back by itself. Counts streams and credit; knows nothing
-// of what the bytes mean.
+// One WebSocket to /v1/stream that reconnects by itself. It counts streams and credit, and does not
+// look into the blocks.
 
 import {reconnectDelayMs} from './backoff';
 import {errorCode, errorText, QtetError} from './errors';
@@ -21,17 +21,17 @@ import type {LogTable, Transport, TransportHandlers} from './transport';
 import {kNoViewRequest, wireView, type ViewRequest} from './view_request';
 
 /**
- * Credit is returned in portions of this share of the window: few messages, and the server never
- * waits for one.
+ * Credit is returned in portions of this share of the window. Messages are few, and the server
+ * never waits for one.
  */
 const kCreditShare = 8;
 /**
- * The server closes with this code after a message that it does not understand: trying again would
+ * The server closes with this code after a message that it does not understand. Trying again would
  * not help.
  */
 const kPolicyViolation = 1008;
 
-/** The part of WebSocket that is used; tests bring their own. */
+/** The part of WebSocket that is used here. Tests bring their own. */
 export interface Socket {
   binaryType: string;
   onopen: ((event: never) => void) | null;
@@ -48,19 +48,21 @@ export class SocketTransport implements Transport {
   private connected = false;
   private stream = 0;
   private attempt = 0;
-  /** Counts ends, so that an address that comes too late is not used. */
+  /** Counts disconnections, so that an address that comes too late is not used. */
   private turn = 0;
   private timer: ReturnType<typeof setTimeout> | undefined;
   private window = 0;
   private owed = 0;
-  /** Empty: the server has not said, and then knows nothing of views, targets and pauses. */
+  /** Empty if the server has not said. It then knows no views, targets and pauses. */
   private layout = '';
   private isPaused = false;
   private view: ViewRequest = kNoViewRequest;
-  /** The view that the server was told last. */
+  /** The last view that the server was sent. */
   private told = '';
 
-  /** `url` is asked for before every connection where it is good for one alone. */
+  /**
+   * A function as `url` is called before every connection: its address is good for one connection.
+   */
   constructor(
     private readonly url: string | (() => Promise<string>),
     private readonly handlers: TransportHandlers,
@@ -106,7 +108,7 @@ export class SocketTransport implements Transport {
     socket.onclose = (event) => this.lost(event.code, event.reason);
   }
 
-  /** Starts a stream; what still arrives of the one before is dropped. */
+  /** Starts a stream. Late frames of the previous one are dropped. */
   open(request: OpenRequest): void {
     if (!this.connected) return;
     ++this.stream;
@@ -150,15 +152,15 @@ export class SocketTransport implements Transport {
   }
 
   /**
-   * Gives the credit of `bytes` applied payload bytes back; it travels once a share of the window
-   * has come together.
+   * Returns the credit of `bytes` applied payload bytes. It is sent once a portion has come
+   * together.
    */
   applied(bytes: number): void {
     this.owed += bytes;
     if (this.owed * kCreditShare >= this.window) this.grant();
   }
 
-  /** Ends the connection for good; `connect` may be called again. */
+  /** Disconnects; `connect` may be called again. */
   disconnect(): void {
     clearTimeout(this.timer);
     ++this.turn;
@@ -186,14 +188,14 @@ export class SocketTransport implements Transport {
       if (typeof data === 'string') {
         const message = parseServerMessage(data);
         if (message?.type === 'opened') this.layout = message.layout ?? '';
-        // Replies to a superseded open say nothing about the current one.
+        // Replies to an earlier `open` do not concern the current one.
         if (message && (message.type === 'error' || message.stream === this.stream))
           this.handlers.message(message);
         return;
       }
       const frame = parseFrame(data as ArrayBuffer);
       if (frame.stream !== this.stream) return;
-      this.attempt = 0; // only bytes prove that the connection is worth something
+      this.attempt = 0; // only bytes prove that the connection works
       this.handlers.frame(frame);
     } catch (thrown) {
       this.fail(thrown);

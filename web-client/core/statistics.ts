@@ -1,5 +1,4 @@
-// The figures behind the progress bar: what there is now, what there will be, and how many bytes
-// lie between.
+// The figures behind the progress bar: what is here, what will be, and how many bytes are missing.
 
 import type {Codec} from './codec';
 import type {Counts} from './counts';
@@ -7,13 +6,13 @@ import type {Manifest} from './manifest';
 import {kFirstFieldPart, kPositionsPart, kStructurePart} from './parts';
 
 export interface Statistics extends Counts {
-  /** Of the original mesh. */
+  /** The original mesh. */
   total: Counts;
   level: number;
   lastLevel: number;
   chunks: number;
   chunkCount: number;
-  /** Bytes applied and needed to show the whole mesh with the chosen fields. */
+  /** Bytes applied, and bytes needed for the whole mesh with the chosen fields. */
   bytes: number;
   bytesNeeded: number;
 }
@@ -32,14 +31,14 @@ export const kNoStatistics: Statistics = {
 };
 
 /**
- * What is applied, counted as it comes: packets come in any order, and in the codec's arrays are
- * holes until all are here.
+ * Counts what is applied, as it comes. The codec's arrays cannot tell: packets come in any order,
+ * and the arrays have holes until all are here.
  */
 export class Ledger {
   counts: Counts = {tetrahedra: 0, vertices: 0, boundaryTriangles: 0};
   private meshBytes = 0;
   private readonly meshNeeded: number;
-  /** By field: bytes applied, and needed in all. */
+  /** Bytes applied and needed, by field. */
   private readonly fields = new Map<number, {applied: number; needed: number}>();
 
   constructor(
@@ -67,7 +66,7 @@ export class Ledger {
     for (const sums of this.fields.values()) sums.applied = 0;
   }
 
-  /** Bytes applied and bytes needed of the mesh with these fields. */
+  /** Bytes applied and bytes needed for the mesh with these fields. */
   bytes(fields: readonly number[]): {applied: number; needed: number} {
     const sum = {
       applied: this.headBytes + this.meshBytes,

@@ -1,14 +1,14 @@
-// Where triangles lie, told by the boxes of a grid over the lattice: what of a log of regions an
-// isosurface goes through, as far as it is known.
+// The boxes of a grid over the lattice that a surface passes through: the parts of a log of regions
+// that an isosurface needs, as far as is known.
 
 import {kBoxSteps, type PacketBox} from './packet';
 
-/** Boxes along an axis. A packet's box is told in 256ths, each of which lies in one of these. */
+/** Boxes along an axis. A packet's box is given in 256ths, each of which lies in one of these. */
 const kGridSteps = 16;
 
 /**
- * One byte a box, x fastest: 1 where a corner lies in it or in a neighbour, because a finer mesh
- * has the surface elsewhere. null: no corner. `size`: of the lattice.
+ * One byte a box, x fastest; null if there are no corners. A byte is 1 if a corner lies in the box
+ * or beside it, because a finer mesh has the surface elsewhere. `size` is the lattice's.
  */
 export function surfaceBoxesOf(positions: Float32Array, size: number): Uint8Array | null {
   if (positions.length === 0) return null;
@@ -39,10 +39,7 @@ export function meets(boxes: Uint8Array, box: PacketBox): boolean {
   return found;
 }
 
-/**
- * Least and greatest corner of all boxes that are 1, in shares of the lattice. REQUIRES: there is
- * one.
- */
+/** The bounds of all boxes that are 1, as shares of the lattice. REQUIRES: there is one. */
 export function boundsOfBoxes(boxes: Uint8Array): number[] {
   const bounds = [1, 1, 1, 0, 0, 0];
   boxes.forEach((inside, i) => {

@@ -1,5 +1,5 @@
-// What the isosurfaces on the screen add to a view request: a log of regions refines them where
-// they are now, as coarse as they may be.
+// The part of a view request that comes from isosurfaces. A log of regions refines them where they
+// are now, however coarse they are.
 
 import type {Display} from './display';
 import {scalarRange} from './field_scale';
@@ -7,14 +7,14 @@ import {fieldKeys, type FieldInfo} from './manifest';
 import {surfaceBoxesOf} from './surface_boxes';
 import type {Isovalue, ViewRequest} from './view_request';
 
-/** A view of the protocol has no more (proto/PROTOCOL.md, "View"). */
+/** The protocol allows no more (proto/PROTOCOL.md, "View"). */
 const kMaxIsovalues = 8;
 
 export type SurfaceRequest = Required<Pick<ViewRequest, 'surfaceBoxes' | 'isovalue'>>;
 
 export const kNoSurfaceRequest: SurfaceRequest = {surfaceBoxes: null, isovalue: null};
 
-/** `positions`: corners of the isosurfaces that `display` asks for. `size`: of the lattice. */
+/** `positions` holds the corners of the isosurfaces of `display`. `size` is the lattice's. */
 export function surfaceRequest(
   positions: Float32Array,
   {isosurfaces}: Display,
@@ -27,7 +27,7 @@ export function surfaceRequest(
   };
 }
 
-/** What of the view request is that. */
+/** That part of a view request. */
 export function surfaceRequestOf({
   surfaceBoxes = null,
   isovalue = null,
@@ -42,7 +42,7 @@ export function asksForTheSame(a: SurfaceRequest, b: SurfaceRequest): boolean {
   );
 }
 
-/** As a server is told; null: it would not understand. */
+/** In the server's terms; null if it would not understand. */
 function isovalueOf(
   {scalar: {field, component}, values}: NonNullable<Display['isosurfaces']>,
   fields: readonly FieldInfo[],

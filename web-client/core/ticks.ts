@@ -1,5 +1,5 @@
-// Numbers beside a colour bar: round steps of 1, 2 or 5, written short, with one power of ten taken
-// out where it helps.
+// The numbers beside a colour bar: round steps of 1, 2 or 5, written short, with one power of ten
+// taken out where it helps.
 
 export interface Tick {
   /** In [0, 1] along the bar. */
@@ -10,24 +10,24 @@ export interface Tick {
 export interface Ticks {
   ticks: Tick[];
   /**
-   * What the labels are multiplied by, and what is added to them then, as text ("× 10⁵", "+
-   * 101325"); empty for neither.
+   * The factor of all labels and the number added to them, as text ("× 10⁵", "+ 101325"); empty for
+   * neither.
    */
   factor: string;
 }
 
 const kSuperscripts = '⁰¹²³⁴⁵⁶⁷⁸⁹';
-/** Values are written as they are from 10^-3 up to below 10^5. */
+/** Values from 10^-3 to below 10^5 are written plainly. */
 const kPlainFrom = -3;
 const kPlainBelow = 5;
 const kMinus = '\u2212';
 
-/** Labels have no more digits: what they have in common is told once instead. */
+/** The most digits of a label. What labels share is written once instead. */
 const kMaxDigits = 5;
 
 /**
- * At most `most` (2 or more) ticks inside [low, high]. A range without width gives one tick, where
- * its colour is: at the beginning.
+ * At most `most` (2 or more) ticks inside [low, high]. A range without width gives one tick, at the
+ * beginning, where its colour is.
  */
 export function niceTicks(low: number, high: number, most: number): Ticks {
   const largest = Math.max(Math.abs(low), Math.abs(high));
@@ -55,15 +55,15 @@ export function niceTicks(low: number, high: number, most: number): Ticks {
 }
 
 /**
- * The same on a logarithmic bar: powers of ten, and 2 and 5 times them where these are few.
- * REQUIRES: 0 < low < high.
+ * The same for a logarithmic bar: powers of ten, and 2 and 5 times them if these are few. REQUIRES:
+ * 0 < low < high.
  */
 export function logTicks(low: number, high: number, most: number): Ticks {
   const from = Math.floor(Math.log10(low) - 1e-9);
   const to = Math.ceil(Math.log10(high) + 1e-9);
   const at = (value: number): number => Math.log(value / low) / Math.log(high / low);
   if (high < 10 * low) {
-    // hardly curved: the numbers of an even bar, where they belong
+    // hardly curved: the numbers of a linear bar, at their logarithmic places
     const {ticks, factor} = niceTicks(low, high, most);
     return {ticks: ticks.map((tick) => ({...tick, at: at(low + tick.at * (high - low))})), factor};
   }
@@ -95,8 +95,7 @@ function powerLabel(factor: number, power: number): string {
 }
 
 /**
- * The smallest step of 1, 2 or 5 times a power of ten that puts at most `most` ticks inside [low,
- * high].
+ * The smallest step of 1, 2 or 5 times a power of ten with at most `most` ticks inside [low, high].
  */
 function niceStep(low: number, high: number, most: number): number {
   const power = 10 ** (Math.floor(Math.log10((high - low) / most)) - 1);

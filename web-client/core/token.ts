@@ -1,14 +1,14 @@
-// A bearer token over HTTP, and as a ticket over a WebSocket, with which browsers send no headers
-// (proto/PROTOCOL.md, "Tokens").
+// A bearer token: sent over HTTP, and traded for a ticket before a WebSocket, because browsers send
+// no headers with one (proto/PROTOCOL.md, "Tokens").
 
 import {QtetError} from './errors';
 import {fetchChecked, type Fetch} from './ranged_file';
 
 const kPlainFetch: Fetch = (url, init) => globalThis.fetch(url, init);
-/** What a server without tokens answers, whose streams need no ticket. */
+/** Answers of a server without tokens. Its streams need no ticket. */
 const kNoTickets = [404, 405];
 
-/** A fetch that sends the token; `undefined`, which means the plain one, without a token. */
+/** A fetch that sends the token; `undefined`, the plain fetch, without a token. */
 export function fetchWith(
   token: string | undefined,
   fetch: Fetch = kPlainFetch,
@@ -22,8 +22,8 @@ export function fetchWith(
 }
 
 /**
- * The stream's address with a fresh ticket, good for one connection. Throws `network`, which may
- * pass, or `http`.
+ * The stream's address with a fresh ticket, which is good for one connection. Throws `network`,
+ * which may pass, or `http`.
  */
 export async function ticketUrl(
   stream: string,

@@ -1,23 +1,23 @@
-// What a value looks like inside the volume: its colour from the map, its extinction from opacities
-// that stand at even shares of the shown range.
+// How a value looks inside the volume: its colour from the map, its extinction from opacities at
+// even shares of the shown range.
 
 import {colorTable, kColorMapEntries, type ColorMapName} from './color_maps';
 
-/** An opacity is that of a path of this share of the mesh's diagonal. */
+/** Opacities apply to a path of this share of the mesh's diagonal. */
 export const kOpacityPath = 0.1;
-/** Above this a path would have to be infinitely dense. */
+/** A higher opacity would need an almost infinite density. */
 const kMaxOpacity = 0.99;
-/** So fine that the nearest step is good enough. */
+/** Fine enough to take the nearest step. */
 export const kTransferSteps = 1023;
 
 export interface TransferTables {
-  /** RGBA at the steps 0..kTransferSteps: colour times extinction, and extinction (a diagonal). */
+  /** RGBA at steps 0 to kTransferSteps: colour times extinction, and extinction per diagonal. */
   density: Float32Array;
-  /** The same integrated over shares from 0 to each step. */
+  /** The same, integrated from share 0 to each step. */
   integral: Float32Array;
 }
 
-/** Extinction in 1/diagonal of an opacity. */
+/** The extinction, per diagonal, of an opacity. */
 export function extinctionOf(opacity: number): number {
   return -Math.log(1 - Math.min(kMaxOpacity, Math.max(0, opacity))) / kOpacityPath;
 }

@@ -1,6 +1,6 @@
-// What a session needs of whatever brings the log's blocks: a WebSocket, byte ranges of a file, or
-// numbered chunks. All speak in the frames and messages of proto/PROTOCOL.md, and each goes on
-// where another one ended.
+// What a session needs from a transport of blocks: a WebSocket, byte ranges of a file, or numbered
+// chunks. All of them use the frames and messages of proto/PROTOCOL.md, and each can continue where
+// another stopped.
 
 import type {Packet} from './packet';
 import type {QtetError} from './errors';
@@ -9,40 +9,40 @@ import type {WireLattice, ViewRequest} from './view_request';
 import type {Frame, OpenRequest, ServerMessage} from './protocol';
 
 export interface TransportHandlers {
-  /** Connected (again): the moment to `open`. */
+  /** Connected, or reconnected: the moment to `open`. */
   connected(): void;
   message(message: ServerMessage): void;
   /** A frame of the current stream. */
   frame(frame: Frame): void;
-  /** The connection is lost, or was never made; the next attempt comes after `delayMs`. */
+  /** The connection is lost or was never made. The next attempt comes after `delayMs`. */
   down(attempt: number, delayMs: number): void;
-  /** The conversation cannot go on; nothing more is tried. */
+  /** The transport has given up. */
   failed(error: QtetError): void;
 }
 
 export interface Transport {
   readonly isConnected: boolean;
   connect(): void;
-  /** Starts a stream; what still arrives of the one before is dropped. */
+  /** Starts a stream. Late frames of the previous one are dropped. */
   open(request: OpenRequest): void;
   stop(): void;
   /** Nothing more comes until `resume` or `open`. */
   pause(): void;
-  /** False: this transport cannot go on where it paused; `open` does. */
+  /** Returns false if the stream cannot continue; it must be opened again. */
   resume(): boolean;
-  /** Another place to stop at; null: nowhere before the end. */
+  /** Moves the place to stop at; null means the end. */
   aim(goal: Goal | null): void;
-  /** Gives the credit of `bytes` applied payload bytes back. */
+  /** Returns the credit of `bytes` applied payload bytes. */
   applied(bytes: number): void;
-  /** What is looked at: of a log of regions, packets come in another order from now on. */
+  /** Changes the order in which the packets of a log of regions come. */
   look(view: ViewRequest): void;
-  /** Ends the connection for good; `connect` may be called again. */
+  /** Disconnects; `connect` may be called again. */
   disconnect(): void;
 }
 
 /**
- * The chunk table and the fields' keys, once the head is here: whoever fetches blocks by their
- * places needs them.
+ * The chunk table and the fields' keys, once the head is here, for those who fetch blocks by their
+ * places.
  */
 export interface LogTable {
   readonly isKnown: boolean;
@@ -52,7 +52,7 @@ export interface LogTable {
   readonly packets: readonly Packet[];
   /** Null before the head is here. */
   readonly lattice: WireLattice | null;
-  /** In the file. */
+  /** Byte offset in the file. */
   blockOffset(chunk: number, part: number): number;
   blockSize(chunk: number, part: number): number;
 }

@@ -1,4 +1,4 @@
-// Which transports a source can be read by, and their making.
+// Which transports a source can be read by, and how they are made.
 
 import {AutoTransport, kTransportKinds, type TransportKind} from './auto_transport';
 import {ChunkSource, RangeSource} from './block_source';
@@ -8,7 +8,7 @@ import {fetchWith, ticketUrl} from './token';
 import type {LogTable, Transport, TransportHandlers} from './transport';
 import type {Source} from './worker_messages';
 
-/** A server offers all, a file on any other host its ranges alone. */
+/** A qtet-server offers all of them, a file on another host only byte ranges. */
 export function kindsOf({
   url,
   log,

@@ -1,5 +1,5 @@
-// What the renderer draws: triangles without shared corners, so that a shader can tell a corner's
-// number from the vertex's and draw edges of even width.
+// What the renderer draws: triangles without shared corners. A shader can tell the corner from the
+// vertex's number and draw edges of even width.
 
 import type {FieldScale} from './field_scale';
 
@@ -9,7 +9,7 @@ export interface TriangleSoup {
   /** 3 field values a triangle, in [0, 1] over the field's range; empty when there is no field */
   values: Float32Array;
   /**
-   * Triangles from this one on are halves of quads: the side opposite to their first corner is no
+   * Triangles from this one on are halves of quads. The side opposite to their first corner is no
    * edge of the mesh.
    */
   firstHalf: number;
@@ -33,14 +33,14 @@ export function boundarySoup(
   return {positions, values, firstHalf: triangles.length / 3};
 }
 
-/** Nothing; new each time, because soups are given away. */
+/** An empty soup, new each time, because soups are transferred. */
 export function noSoup(): TriangleSoup {
   return {positions: new Float32Array(0), values: new Float32Array(0), firstHalf: 0};
 }
 
 /**
- * Smallest and largest lattice coordinates of the triangles' vertices: [x0, y0, z0, x1, y1, z1].
- * REQUIRES: at least one triangle.
+ * The bounds of the triangles' vertices on the lattice: [x0, y0, z0, x1, y1, z1]. REQUIRES: at
+ * least one triangle.
  */
 export function pointBounds(points: Int32Array, triangles: Uint32Array): number[] {
   const bounds = [0, 1, 2].map((axis) => {
@@ -56,7 +56,7 @@ export function pointBounds(points: Int32Array, triangles: Uint32Array): number[
   return [...bounds.map(([low]) => low), ...bounds.map(([, high]) => high)];
 }
 
-/** Several in one: whole triangles first, then the halves of quads. */
+/** Joins soups: whole triangles first, then the halves of quads. */
 export function joinSoups(soups: TriangleSoup[]): TriangleSoup {
   const sum = (size: (soup: TriangleSoup) => number): number =>
     soups.reduce((all, soup) => all + size(soup), 0);

@@ -1,11 +1,11 @@
-// A value block in its two parts (codec/FORMAT.md, "Value blocks"): what Draco decodes, and the
-// digits that stand as they are.
+// Splits a value block (codec/FORMAT.md, "Value blocks") into what Draco decodes and the digits
+// behind it.
 
 import {kAdaptiveCodec, kDracoCodec, type BlockValues, type Codec} from './codec';
 import type {ValueDecoder} from './draco';
 import {QtetError} from './errors';
 
-/** The number of digit bytes stands in the block's last bytes. */
+/** The block's last bytes hold the number of digit bytes. */
 const kDigitCountBytes = 4;
 
 export interface ValueBlockPlace {
@@ -16,7 +16,7 @@ export interface ValueBlockPlace {
 }
 
 /**
- * Throws `bad-codec` and `bad-value`, and what `values` throws. REQUIRES: `codec` has the log's
+ * Throws `bad-codec`, `bad-value`, and the errors of `values`. REQUIRES: `codec` has the log's
  * head.
  */
 export function readValueBlock(

@@ -1,5 +1,5 @@
-// What the viewer looks at, and which packets of a log of regions to fetch first for it. In lattice
-// coordinates; a box is a packet's, in 256ths of the lattice.
+// What the viewer looks at, and the order in which a log of regions brings its packets for it. All
+// places are lattice coordinates; a packet's box is in 256ths of the lattice.
 
 import type {Vector} from './cell_ray';
 import {boundsOfBoxes, meets} from './surface_boxes';
@@ -7,22 +7,22 @@ import {kBoxSteps, type Packet, type PacketBox} from './packet';
 import type {Plane} from './slice';
 
 export interface ViewRequest {
-  /** Up to 6: inside are the points with normal . p >= offset. Empty: everything is in sight. */
+  /** Up to 6 planes, with the inside at normal . p >= offset. If empty, everything is in sight. */
   frustum: Plane[];
-  /** What lies on them is wanted. */
+  /** Packets that they cut are wanted. */
   planes: Plane[];
-  /** What is near it comes first. */
+  /** Packets near it come first. */
   point: Vector | null;
   /**
-   * What meets them is wanted, too (surface_boxes.ts): isosurfaces, of which the worker knows where
-   * they are.
+   * Packets that meet these boxes (surface_boxes.ts) are wanted, too: isosurfaces pass there, as
+   * far as the worker knows.
    */
   surfaceBoxes?: Uint8Array | null;
-  /** The same for a server, which knows better where they will be. */
+  /** The same for a server, which knows better where the isosurfaces will be. */
   isovalue?: Isovalue | null;
 }
 
-/** As proto/PROTOCOL.md has it. */
+/** Defined by proto/PROTOCOL.md. */
 export interface Isovalue {
   field: string;
   component?: number;
@@ -31,7 +31,7 @@ export interface Isovalue {
 
 export const kNoViewRequest: ViewRequest = {frustum: [], planes: [], point: null};
 
-/** Least and largest of normal . p over the box. */
+/** The least and the largest normal . p over the box. */
 function reach(box: PacketBox, size: number, normal: readonly number[]): [number, number] {
   let low = 0;
   let high = 0;
@@ -45,8 +45,9 @@ function reach(box: PacketBox, size: number, normal: readonly number[]): [number
 }
 
 /**
- * 0 for what is in sight and on a plane or in a surface's box, 3 for what is neither. Never above
- * that of a box within this one, so that parents come before children.
+ * How urgent a packet is: 0 if it is in sight and on a plane or in a surface's box, 3 if it is
+ * neither. A box never gets less than the box that contains it, so that parents come before
+ * children.
  */
 export function urgency(
   {frustum, planes, surfaceBoxes}: ViewRequest,
@@ -63,7 +64,7 @@ export function urgency(
   return (inSight ? 0 : 2) + (onPlane ? 0 : 1);
 }
 
-/** Squared, from the point to the nearest of the box. */
+/** The squared distance from the point to the box. */
 function distance(point: Vector, box: PacketBox, size: number): number {
   return point.reduce((sum, x, axis) => {
     const outside = Math.max(
@@ -76,8 +77,8 @@ function distance(point: Vector, box: PacketBox, size: number): number {
 }
 
 /**
- * The packets as they should come: the urgent before the others, of these coarse before fine, near
- * before far. `size`: of the lattice along an axis.
+ * The packets in the order in which they should come: by urgency, then coarse before fine, then
+ * near before far. `size` is the lattice's along an axis.
  */
 export function inOrder(packets: readonly Packet[], view: ViewRequest, size: number): Packet[] {
   const keys = new Map(
@@ -105,7 +106,9 @@ export interface WireLattice {
   size: number;
 }
 
-/** As proto/PROTOCOL.md has it, in the mesh's own unit; null: nothing is asked for. */
+/**
+ * The request as proto/PROTOCOL.md defines it, in the mesh's own unit; null if it asks for nothing.
+ */
 export function wireView(
   {frustum, planes, point, surfaceBoxes, isovalue}: ViewRequest,
   {origin, step, size}: WireLattice,
@@ -120,7 +123,7 @@ export function wireView(
   const wire: Record<string, unknown> = {};
   if (frustum.length > 0) wire.frustum = frustum.map(plane);
   if (planes.length > 0) wire.planes = planes.map(plane);
-  // Either would do, and the box asks for more.
+  // Either would do. The box would ask for more.
   if (isovalue) wire.isovalue = isovalue;
   else if (surfaceBoxes)
     wire.box = boundsOfBoxes(surfaceBoxes).map((share, i) => origin[i % 3]! + step * size * share);

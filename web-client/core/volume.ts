@@ -1,4 +1,4 @@
-// The cells themselves for a renderer that looks through them.
+// The cells for a renderer that looks through them.
 
 import {entryFaces} from './cell_entry';
 import type {MeshNow} from './display';
@@ -7,39 +7,39 @@ import {isHole, neighboursOf} from './neighbours';
 
 export interface VolumeCells {
   /**
-   * 4 a vertex: place on the lattice and value in [0, 1]; values of a field of cells stand in
-   * `cellValues` instead.
+   * 4 numbers a vertex: its place on the lattice, and its value in [0, 1]. Values of a cell field
+   * stand in `cellValues` instead.
    */
   vertices: Float32Array;
   /** 4 vertices a cell, in ascending order. */
   cells: Uint32Array;
-  /** 1 + the cell, with kHiddenCell added where nothing of it is to be seen. */
+  /** 1 + the cell; kHiddenCell is added if the cell is invisible. */
   tags: Uint32Array;
   /**
-   * Through the faces opposite to a cell's four corners, 2 numbers each: the tag of the cell
-   * beyond, and its vertex that is not of the face; 0, 0: the boundary.
+   * 2 numbers for each face, opposite to a cell's four corners: the tag of the cell beyond, and its
+   * vertex off the face. 0, 0 means the boundary.
    */
   links: Uint32Array;
-  /** As entryFaces gives them. */
+  /** The result of entryFaces. */
   entries: Uint32Array;
   cellValues: Float32Array | null;
 }
 
 /** A mesh with few cells instead of one with many. */
 export interface CoarseCells {
-  /** Counts such meshes. */
+  /** Counts the coarse meshes. */
   version: number;
-  /** Absent where the asker has them. */
+  /** Absent if the asker has this version. */
   cells?: VolumeCells;
 }
 
 export const kHiddenCell = 0x80000000;
-/** A mesh of more cells has a coarse one beside it, of no more. */
+/** A larger mesh has a coarse one beside it, with no more cells than this. */
 export const kCoarseCells = 8000;
 
 /**
- * Copies of the mesh as it is, because the codec's memory moves on. Hidden are cells that are not
- * `kept` (null: all are), and those with a corner whose value is missing.
+ * Copies the mesh, because the codec's memory moves. Cells are hidden if they are not `kept` (null
+ * keeps all) or a corner's value is missing.
  */
 export function volumeCells(
   mesh: MeshNow,

@@ -1,4 +1,4 @@
-// What is wanted of a log, and how far what is here and what is decoded have come towards that.
+// What is wanted of a log, and how far receiving and decoding have come.
 
 import type {Assembler} from './assembler';
 import type {Goal} from './goal';
@@ -12,7 +12,9 @@ import {kNoViewRequest, type ViewRequest} from './view_request';
 import type {Source} from './worker_messages';
 
 export class Wanted {
-  /** Of the fields, before the head tells which there are; null: the first one. */
+  /**
+   * Names of the fields, for use before the head tells which there are; null means the first field.
+   */
   names: string[] | null = null;
   /** Indexes into the manifest. */
   fields: readonly number[] = [];
@@ -26,14 +28,14 @@ export class Wanted {
     this.limit = limit;
   }
 
-  /** Another log comes: its fields may have other places, and its surfaces are elsewhere. */
+  /** Must be called before another log: its fields and surfaces may be elsewhere. */
   forget(): void {
     this.fields = [];
     this.look(this.view, kNoSurfaceRequest);
   }
 
   /**
-   * Looks the names up. The first field stands in for a name that there is not, which is returned.
+   * Finds the fields by their names. The first field replaces an unknown name, which is returned.
    * REQUIRES: the head is here.
    */
   findFields(): string | undefined {
@@ -45,7 +47,7 @@ export class Wanted {
     return unknown;
   }
 
-  /** False: these are wanted already. REQUIRES: the head is here. */
+  /** Returns false if these are wanted already. REQUIRES: the head is here. */
   changeFields(fields: readonly number[]): boolean {
     const {fields: now} = this;
     if (fields.length === now.length && fields.every((field) => now.includes(field))) return false;
@@ -58,7 +60,7 @@ export class Wanted {
     this.view = {...page, surfaceBoxes, isovalue};
   }
 
-  /** Of the fields, as a server calls them. */
+  /** The server's keys of the fields. */
   get keys(): string[] {
     const {manifest} = this.assembler;
     if (!manifest) return this.names ?? [];
@@ -70,17 +72,17 @@ export class Wanted {
     return this.assembler.statistics(this.fields);
   }
 
-  /** Where the limit lies; null: at the end, or nobody knows. */
+  /** Where the limit lies; null means at the end, or unknown. */
   get goal(): Goal | null {
     return this.assembler.goal(this.limit, this.fields);
   }
 
-  /** Only the head can tell which fields there are, or where the limit lies. */
+  /** Only the head can tell which fields there are or where the limit lies. */
   get needsHead(): boolean {
     return !this.assembler.manifest && (this.names === null || this.limit.kind !== 'full');
   }
 
-  /** The leading chunks, all by default, are here with the fields. */
+  /** The leading chunks, by default all, are here with the fields. */
   isReceived(chunks = this.assembler.codec.chunkCount): boolean {
     const {assembler} = this;
     return (
@@ -97,7 +99,7 @@ export class Wanted {
     return this.fields.every((field) => codec.fieldChunksApplied(field) === codec.chunkCount);
   }
 
-  /** What is decoded is as fine as the limit; without one it never is. */
+  /** The decoded mesh has reached the limit. Without a limit this is never true. */
   get isReached(): boolean {
     const {codec, manifest} = this.assembler;
     if (this.limit.kind === 'full' || !manifest || codec.chunksApplied === 0) return false;
@@ -106,7 +108,7 @@ export class Wanted {
     return limitReached(this.limit, statistics, error);
   }
 
-  /** What `open` says of the blocks that are here. */
+  /** The `have` of an `open` message. */
   get have(): OpenRequest['have'] {
     const {assembler, keys} = this;
     if (!assembler.manifest) return {chunks: 0, fields: {}};

@@ -1,4 +1,4 @@
-// The worker: network, decoding and cutting happen here, so that the page only draws.
+// The worker. It does networking, decoding and cutting, so that the page only draws.
 
 import {Assembler} from './assembler';
 import {CoarseVolume} from './coarse_volume';
@@ -23,7 +23,7 @@ interface Parts {
 }
 
 declare global {
-  /** To look at. */
+  /** For debugging and tests. */
   var qtetPublisher: Publisher | undefined;
 }
 
@@ -61,7 +61,7 @@ async function start(codecUrl: string): Promise<Parts> {
   return {codec, publisher, coarse, inspector: new Inspector(assembler), session};
 }
 
-/** Compiles while it downloads; a host that serves .wasm under another type costs only that. */
+/** Compiles while downloading. A host that serves .wasm under another type loses only that. */
 async function compile(url: string): Promise<WebAssembly.Module> {
   const response = await fetch(url);
   if (!response.ok) throw new Error(`${url}: HTTP ${response.status}`);

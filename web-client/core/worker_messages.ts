@@ -1,5 +1,5 @@
-// What passes between the page and the worker that decodes. Typed arrays travel by transfer, never
-// by copy.
+// Messages between the page and the worker that decodes. Typed arrays are transferred, never
+// copied.
 
 import type {TransportKind} from './auto_transport';
 import type {Ray, Vector} from './cell_ray';
@@ -15,91 +15,88 @@ import type {TriangleSoup} from './triangle_soup';
 import type {CoarseCells, VolumeCells} from './volume';
 import type {ViewRequest} from './view_request';
 
-/** Where the stream stands. `paused`: by the user; `held`: the level that was asked for is here. */
+/** The state of the stream. `paused`: by the user; `held`: it has reached the limit. */
 export type StreamState =
   'connecting' | 'streaming' | 'complete' | 'reconnecting' | 'paused' | 'held' | 'failed';
 
 export interface Source {
-  /** ws: or wss: address of /v1/stream; empty: there is none */
+  /** ws: or wss: address of /v1/stream; empty if there is none */
   url: string;
   /**
-   * Address of the log as a file, for byte ranges; of a server's also for its chunks
-   * (/v1/meshes/{id}/log)
+   * Address of the log as a file, for byte ranges. On a server it is also the base of the chunks
+   * (/v1/meshes/{id}/log).
    */
   log: string;
   /** `auto`: whatever works. */
   transport: 'auto' | TransportKind;
   /**
-   * Where the server wants one for reading: sent with requests, and traded for a ticket before a
+   * For servers that guard reading. It is sent with requests, and traded for a ticket before a
    * WebSocket.
    */
   token?: string;
   mesh: string;
-  /**
-   * Names of the fields to begin with, as the server calls them; null: the first one, whichever
-   * that is; empty: none.
-   */
+  /** Keys of the fields to begin with; null: the first one; empty: none. */
   fields: string[] | null;
   limit: Limit;
-  /** Nothing is asked of the network before `resume`. */
+  /** The network stays idle until `resume`. */
   paused?: boolean;
-  /** A display follows soon: decoding lets its first picture go before what is finer. */
+  /** A display follows soon: decoding sends a first picture before it refines. */
   pictureFirst?: boolean;
 }
 
 export type ToWorker =
-  /** First of all: where the codec's WebAssembly lies. */
+  /** The first message: where the codec's WebAssembly lies. */
   | {type: 'load'; codecUrl: string}
-  /** `run` counts the starts: what the worker says of an earlier one is of another mesh. */
+  /** `run` counts the starts. Messages of an earlier run concern another mesh. */
   | {type: 'start'; source: Source; run: number}
   | {type: 'display'; display: Display}
   | {type: 'limit'; limit: Limit}
   | {type: 'look'; view: ViewRequest}
   | {type: 'pause'}
   | {type: 'resume'}
-  /** The last snapshot is on the screen: the next may come. */
+  /** The last snapshot is on the screen, so that the next may come. */
   | {type: 'shown'; drawingMs?: number | undefined}
-  /** What was sent is lost: the picture once more. */
+  /** The last snapshot is lost: send it again. */
   | {type: 'repeat'}
   | ({id: number} & Question);
 
-/** Each is answered by an `answer` of the same id. */
+/** The worker answers each by an `answer` with the same id. */
 export type Question =
   | {type: 'digest'}
   | {type: 'pick'; ray: Ray}
   | {type: 'probe'; from: Vector; to: Vector}
-  /** A volume with few cells, of which the page has version `have`; null: there is none. */
+  /** Asks for a volume with few cells. The page has version `have`. */
   | {type: 'coarse'; have: number};
 
-/** One consistent picture; what did not change since the last one is absent. */
+/** One consistent picture. Parts that have not changed are absent. */
 export interface Snapshot {
   surface?: TriangleSoup;
   isosurface?: TriangleSoup;
-  /** null: none is wanted, or there are no values yet. */
+  /** Null if none is wanted or there are no values yet. */
   volume?: VolumeCells | null;
-  /** One a plane; of each, and of the surface, nothing is to be seen above the (other) planes. */
+  /** One a plane. The parts above the other planes must be hidden, as for the surface. */
   cuts: TriangleSoup[];
   planes: Plane[];
   /** Bounds of the surface in lattice coordinates: [x0, y0, z0, x1, y1, z1]. */
   bounds: number[];
-  /** What the soups' values are of; null: there are none yet. */
+  /** What the soups' values are; null if there are none yet. */
   color: Scalar | null;
-  /** What 0 and 1 of them mean, and which of them occur. */
+  /** The values that 0 and 1 stand for; `extent` is the part of [0, 1] that occurs. */
   scaleRange: [number, number];
   extent: [number, number];
   statistics: Statistics;
-  /** What making it took in the worker. */
+  /** How long the worker took to make it. */
   costMs: number;
 }
 
-/** As it travels; without a run it comes from before the first start. */
+/** With its run. Messages without one come from before the first start. */
 export type Posted = FromWorker & {run?: number};
 
 export type FromWorker =
   | {type: 'manifest'; manifest: Manifest; digest: string; fields: number[]}
   /**
-   * What the fields of now will take, as planOf tells it: after `manifest`, and whenever other
-   * fields are wanted.
+   * The result of planOf for the current fields. It is sent after `manifest` and whenever the
+   * fields change.
    */
   | {type: 'plan'; plan: LevelBytes[]}
   | {type: 'snapshot'; snapshot: Snapshot}

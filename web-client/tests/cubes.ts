@@ -1,6 +1,6 @@
 // A block of cubes, six tetrahedra each.
 
-/** The six tetrahedra round a cube's diagonal; vertex i stands at the bits of i. */
+/** The six tetrahedra round a cube's diagonal. Vertex i stands at the bits of i. */
 const kCube = [
   [1, 3],
   [3, 2],
@@ -29,7 +29,7 @@ export function cubes(n: number, size: number): {points: Int32Array; tetrahedra:
   return {points: Int32Array.from(points), tetrahedra: Uint32Array.from(tetrahedra)};
 }
 
-/** Every vertex, as a boundary: what surfaceFaces may take it for when it does not know. */
+/** Every vertex as a boundary: the safe choice if surfaceFaces knows no better. */
 export function allVertices(points: Int32Array): Uint32Array {
   return Uint32Array.from({length: points.length / 3}, (_, i) => i);
 }
@@ -50,7 +50,7 @@ export function soupArea({positions}: {positions: Float32Array}): number {
   return sum;
 }
 
-/** Six times the volume that a closed soup encloses, positive when it is seen from outside. */
+/** Six times the volume that a closed soup encloses; positive if it is seen from outside. */
 export function soupVolume({positions: p}: {positions: Float32Array}): number {
   let sum = 0;
   for (let i = 0; i < p.length; i += 9) {

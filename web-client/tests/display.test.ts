@@ -31,7 +31,7 @@ const info = (
   minimum: Array<number>(components).fill(0),
   range,
 });
-/** x of each vertex; and of each cell the x of the cube that it lies in. */
+/** The x of each vertex. Below, for each cell, the x of its cube. */
 const xs = new FieldScale(
   Int32Array.from({length: points.length / 3}, (_, v) => points[3 * v]!),
   info('point', [0, 40]),

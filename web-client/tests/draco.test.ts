@@ -1,5 +1,5 @@
-// Our decoder of Draco streams against Draco's own, on every value block of the golden logs; and on
-// streams that are broken.
+// Compares our decoder of Draco streams with Draco's own on every value block of the golden logs,
+// and breaks streams.
 import draco3d, {type Draco} from 'draco3d';
 import {readdirSync, readFileSync} from 'node:fs';
 import {describe, expect, test} from 'vitest';
@@ -28,7 +28,7 @@ async function goldenBlocks(): Promise<Block[]> {
   return blocks;
 }
 
-/** What Draco itself makes of the block. */
+/** Draco's own result. */
 function stock(draco: Draco, {bytes, count, components}: Block): Int32Array {
   const decoder = new draco.Decoder();
   const cloud = new draco.PointCloud();
@@ -50,9 +50,7 @@ function stock(draco: Draco, {bytes, count, components}: Block): Int32Array {
   return values;
 }
 
-/**
- * Where a stream says how its symbols are coded: behind the header and one attribute's description.
- */
+/** The offset of the scheme of the symbols: behind the header and one attribute's description. */
 const kSchemeAt = 25;
 
 describe.skipIf(kTestWasm === '')('a Draco stream', () => {

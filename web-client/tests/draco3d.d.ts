@@ -1,4 +1,4 @@
-// draco3d, Draco's own coder, has no types; these are of what the tests use of it.
+// draco3d, Draco's own coder, has no types. These cover what the tests use.
 declare module 'draco3d' {
   export interface Draco {
     Decoder: new () => {

@@ -1,4 +1,4 @@
-// Stand-ins for the network and the codec: small, and strict about order, so that a wrong call
+// Fakes of the network and the codec. They are small, and strict about order, so that a wrong call
 // fails a test.
 
 import {kFirstFieldPart, kHeadPart} from '../core/parts';
@@ -9,7 +9,7 @@ import {kFrameHeaderBytes} from '../core/protocol';
 import type {Socket} from '../core/socket_transport';
 import type {FromWorker} from '../core/worker_messages';
 
-/** What a session has said. */
+/** The states that a session has reported. */
 export const statesOf = (heard: FromWorker[]): string[] =>
   heard.flatMap((message) => (message.type === 'state' ? [message.state] : []));
 export const errorsOf = (heard: FromWorker[]): string[] =>
@@ -65,7 +65,7 @@ export function frame(options: {
 
 export interface FakeLog {
   fields: string[];
-  /** Behind the point fields. */
+  /** They come after the point fields. */
   cellFields?: string[];
   chunks: number;
 }
@@ -125,7 +125,7 @@ export function fieldFrame(stream: number, chunk: number, field: number): ArrayB
   });
 }
 
-/** Counts what is applied, in order; chunk n gives a mesh of n + 1 tetrahedra. */
+/** Counts what is applied, in order. Chunk n makes a mesh of n + 1 tetrahedra. */
 export class FakeCodec implements Codec {
   chunksApplied = 0;
   corrupt = -1;
@@ -136,7 +136,7 @@ export class FakeCodec implements Codec {
     this.headBytes = fakeHead(log).length;
   }
 
-  /** Chunks that fit into memory. */
+  /** How many chunks fit into memory. */
   room = Infinity;
   restarts = 0;
   restart(): void {

@@ -4,7 +4,7 @@ import type {Pose} from '../three/pose';
 import type {View, ViewListeners} from '../three/view';
 import type {FromView, ToView} from '../three/view_messages';
 
-/** The worker that draws, by hand. */
+/** The worker that draws; the test speaks for it. */
 class FakeWorker {
   static last: FakeWorker;
   posted: ToView[] = [];

@@ -1,6 +1,5 @@
-// The golden files, judged by the WebAssembly codec as tests/codec/golden_test.cpp judges them
-// natively. Needs the built codec: QTET_WASM names it (ctest does); without it these tests are
-// skipped.
+// The golden files, judged by the WebAssembly codec as tests/codec judges them natively. Needs the
+// built codec, which QTET_WASM names (ctest sets it). Without it these tests are skipped.
 
 import {createHash} from 'node:crypto';
 import {readdirSync, readFileSync} from 'node:fs';
@@ -10,7 +9,7 @@ import {errorCode} from '../core/errors';
 import {kTestWasm, takeWholeLog} from './whole_log';
 
 const kGolden = new URL('../../tests/golden/', import.meta.url);
-/** These are wrong by the file's length alone, which a stream of blocks does not have. */
+/** These are wrong only in the file's length, which a stream of blocks does not have. */
 const kLengthOnly = ['truncated.last-byte.qtet', 'bad-value.one-byte-too-many.qtet'];
 
 /** Digests of the finest mesh (codec/FORMAT.md, "Digests"). */

@@ -1,5 +1,5 @@
-// Ranges and numbered chunks against a web server of a few lines: its files are arrays, its wishes
-// functions.
+// Ranges and numbered chunks against a web server of a few lines, whose files are arrays and whose
+// answers are functions.
 
 import {afterEach, beforeEach, describe, expect, test, vi} from 'vitest';
 import {Assembler} from '../core/assembler';
@@ -44,7 +44,7 @@ interface Host {
   asked: string[];
   tag: string;
   ranges: boolean;
-  /** Answers that fail from now on. */
+  /** How many of the next answers fail. */
   broken: number;
 }
 
@@ -158,7 +158,7 @@ describe('ranges', () => {
     expect(states().at(-1)).toBe('complete');
     expect(it.asked[1]).toMatch(/^bytes=65536-/);
     const last = Number(/-(\d+)$/.exec(it.asked.at(-1)!)![1]);
-    // the other field's last block is nobody's wish
+    // nobody asked for the other field's last block
     expect(last).toBe(bytes.length - kFakeBlockBytes - 1);
   });
 
@@ -229,7 +229,7 @@ describe('ranges', () => {
       'base',
       'base',
       'chunks/0',
-    ]); // which log it is, and all of it anew
+    ]); // which log it is, and then all of it again
     await settle(5000);
     expect([codec.chunksApplied, errors(), states().at(-1)]).toEqual([40, [], 'complete']);
   });

@@ -100,7 +100,7 @@ describe('a manifest', () => {
 
   test('tellsTheErrorsWhereThereAreSome', () => {
     const bytes = fakeHead({fields: ['p'], chunks: 1});
-    bytes[bytes.length - 3] = 1; // behind it stands the table's shape of the one field
+    bytes[bytes.length - 3] = 1; // it is followed by the one field's shape in the table
     const {levels} = readManifest(bytes, (_, count) => {
       expect(count).toBe(10);
       return Uint32Array.from([9, 8, 7, 987654, 1, 901, 0, 0, 9024, 9924]);

@@ -18,7 +18,7 @@ test('aNeighbourSharesThreeCornersAndHolesAreNobodys', () => {
     expect([...mine].every((vertex) => its.includes(vertex))).toBe(true);
     expect([...neighbours.subarray(4 * other, 4 * other + 4)]).toContain(face >> 2);
   }
-  // Two triangles a square of the six sides, of which one was the hole's; its four faces, and those
-  // of its three neighbours.
+  // Two triangles for each square of the six sides, minus the hole's one, plus the hole's four
+  // faces and those of its three neighbours.
   expect(outside).toBe(6 * 4 * 4 * 2 - 1 + 4 + 3);
 });

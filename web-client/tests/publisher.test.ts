@@ -10,7 +10,7 @@ let bytes: number;
 let pictures: Snapshot[];
 let publisher: Publisher;
 
-/** A mesh whose bytes are told by the test, and which has sent its first picture, shown at once. */
+/** A mesh whose bytes the test sets. Its first picture has been sent and shown at once. */
 beforeEach(() => {
   vi.useFakeTimers();
   bytes = 1000;
@@ -59,7 +59,7 @@ test('aPictureThatTookLongOnItsWayIsFollowedByALongerPause', () => {
   untilNext();
   vi.advanceTimersByTime(60);
   grow(4000);
-  expect(untilNext(100)).toBe(Infinity); // the last one is not yet on the screen
+  expect(untilNext(100)).toBe(Infinity); // the previous one is not yet on the screen
   publisher.shown();
   expect(untilNext()).toBeGreaterThan(500);
 });
@@ -93,7 +93,7 @@ test('aMeshThatHasHardlyGrownWaitsForMoreButNotForEver', () => {
   expect(untilNext()).toBeLessThanOrEqual(501);
 });
 
-/** The picture of so many bytes takes so long to the screen. */
+/** Shows a picture of `to` bytes that takes `ms` to the screen. */
 function shownAfter(ms: number, to: number): void {
   grow(to);
   untilNext();

@@ -1,5 +1,5 @@
-// Logs of regions: packets in any legal order, what is coarse beside what is fine, and which
-// packets come first. The golden log, and the built codec.
+// Logs of regions: packets in any legal order, coarse cells beside fine ones, and the packets that
+// come first. Uses the golden log and the built codec.
 
 import {readFileSync} from 'node:fs';
 import {describe, expect, test, vi} from 'vitest';
@@ -51,8 +51,9 @@ function takeChunk(assembler: Assembler, bytes: Uint8Array, chunk: number): void
 }
 
 /**
- * Six times the cells' volume and that within the boundary, and whether each boundary edge has its
- * opposite once: equal and closed where nothing cracks.
+ * Six times the cells' volume, six times the volume within the boundary, and whether each boundary
+ * edge has exactly one opposite. If nothing cracks, the volumes are equal and the boundary is
+ * closed.
  */
 function measure({codec}: Assembler): {cells: number; enclosed: number; closed: boolean} {
   const points = codec.points();
@@ -127,7 +128,7 @@ describe.skipIf(kTestWasm === '')('regions', () => {
       const {tetrahedra, total, bytes: here, bytesNeeded} = assembler.statistics(fields);
       expect([tetrahedra, here]).toEqual([total.tetrahedra, bytesNeeded]);
     }
-    expect(unlike).toBeGreaterThan(0); // there were holes, and nobody counted them
+    expect(unlike).toBeGreaterThan(0); // there were holes, and they were not counted
   });
 
   test('thePlanTellsOfEachChunkOfTheHeadAndOfEachBandWithItsLevel', async () => {
@@ -167,7 +168,7 @@ describe.skipIf(kTestWasm === '')('regions', () => {
     const urgent = assembler.packets.filter(({box}) => urgency(view, box, size) === 0).length;
     expect(urgent).toBeGreaterThan(0);
     expect(urgent).toBeLessThan(assembler.packets.length);
-    // Applied in that order, no chunk waits for a later one.
+    // In that order no chunk waits for a later one.
     const heads = assembler.chunkCount - assembler.packets.length;
     for (const chunk of order.slice(0, heads + urgent)) {
       takeChunk(assembler, bytes, chunk);
@@ -265,7 +266,7 @@ test('aViewRequestTravelsInTheMeshsOwnUnits', () => {
   ).toEqual({
     box: [0, 0, 0, 32, 32, 32],
   });
-  // A box beside it would be a request of its own.
+  // A box beside it would ask for more.
   expect(
     wireView(
       {...kNoViewRequest, surfaceBoxes, isovalue: {field: 'p', values: [2]}},

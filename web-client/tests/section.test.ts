@@ -1,12 +1,15 @@
 import {expect, test} from 'vitest';
 import {section} from '../core/section';
 
-/** Halfway between two 32-bit floats, so that the last bit of a 64-bit one decides. */
+/**
+ * The crossing is halfway between two 32-bit floats, so that the last bit of a 64-bit float
+ * decides.
+ */
 const kFar = 46137355;
 const kAbove = 5;
 const kBelow = -6;
 
-/** x of the corners that lie on the x axis. */
+/** The x of the corners that lie on the x axis. */
 function onTheAxis(positions: Float32Array): number[] {
   return [...positions].filter((_, i) => i % 3 === 0 && !positions[i + 1] && !positions[i + 2]);
 }

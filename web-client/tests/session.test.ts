@@ -69,7 +69,7 @@ function start(source: Partial<Source> = {}): FakeSocket {
   return sockets.at(-1)!;
 }
 
-/** Servers that know of targets and pauses say the layout. */
+/** Servers that know targets and pauses tell the layout. */
 function opened(socket: FakeSocket, stream: number, layout?: string): void {
   socket.deliver(
     JSON.stringify({
@@ -172,7 +172,7 @@ describe('a stream', () => {
       message.type === 'progress' ? [message.statistics] : [],
     );
     const needed = fakeHead(kLog).length + 9 * kFakeBlockBytes;
-    // of the head, and of everything before the state that says so
+    // one for the head, and one for everything before the state
     expect(progress).toHaveLength(2);
     expect(progress[0]).toMatchObject({
       bytes: fakeHead(kLog).length,
@@ -395,7 +395,7 @@ describe('a target', () => {
     expect(errors()).toEqual([]);
     expect(opens().at(-1)).toMatchObject({target: {level: 1}, have: {chunks: 1, fields: {p: 1}}});
     opened(socket, 3, 'stream');
-    socket.deliver(JSON.stringify({type: 'done', stream: 3})); // the one that was asked for now
+    socket.deliver(JSON.stringify({type: 'done', stream: 3})); // the current one
     expect(errors()).toEqual(['incomplete']);
   });
 
@@ -497,7 +497,7 @@ describe('pausing', () => {
 
   test('fromTheStartAsksNothingBeforeItEnds', () => {
     session.pause();
-    expect(heard).toEqual([]); // of what is not there yet
+    expect(heard).toEqual([]); // about what is not there yet
     session.start({
       url: 'ws://x',
       log: '',
@@ -569,7 +569,7 @@ describe('memory', () => {
     codec.room = Infinity;
     session.setLimit(kFull);
     sockets.at(-1)!.accept();
-    sockets.at(-1)!.deliver(fieldFrame(1, 2, 0)); // it came when the connection was given up
+    sockets.at(-1)!.deliver(fieldFrame(1, 2, 0)); // it had arrived when the connection was given up
     expect([codec.chunksApplied, states().at(-1)]).toEqual([kLog.chunks, 'complete']);
   });
 
@@ -584,7 +584,7 @@ describe('memory', () => {
   });
 });
 
-/** A transport that is always connected, and does `what` besides. */
+/** A transport that is always connected. `what` replaces its methods. */
 function carrier(what: Partial<Transport>): Transport {
   return {
     isConnected: true,
@@ -615,11 +615,11 @@ test('creditIsGivenBackOnceForWhatWasApplied', () => {
   giving.frame(parseFrame(headFrame(1, kLog)));
   giving.frame(parseFrame(meshFrame(1, 0)));
   giving.frame(parseFrame(fieldFrame(1, 0, 0)));
-  giving.setLimit(kFull); // decoding goes on without a new byte
+  giving.setLimit(kFull); // decoding continues without a new byte
   expect(given).toEqual([fakeHead(kLog).length, 2 * kFakeBlockBytes, kFakeBlockBytes]);
 });
 
-/** Head chunk 0, and packets; who carries them only hears the views. */
+/** Chunk 0 is the head, the others are packets. The transport only notes view requests. */
 test('whatIsosurfacesAreShownIsToldByFieldAndValue', () => {
   const log: FakeLog = {fields: ['p'], cellFields: ['p'], chunks: 3};
   const parts = new FakeCodec(log);
@@ -658,7 +658,7 @@ test('whatIsosurfacesAreShownIsToldByFieldAndValue', () => {
     Array.from({length: 9}, (_, i) => i / 9),
   ); // more than a view may have: the box has to do
   expect(views.at(-1)!.isovalue).toBeNull();
-  show(1, [0.5]); // of cells
+  show(1, [0.5]); // a cell field
   expect(views.at(-1)!).toMatchObject({
     isovalue: null,
     surfaceBoxes: expect.any(Uint8Array) as unknown,

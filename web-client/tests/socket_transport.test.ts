@@ -63,7 +63,7 @@ test('aViewIsToldOnceAndOnlyWhereItMatters', () => {
     '{"type":"opened","stream":1,"mesh":"m","digest":"d","bytes":1,"planned":1,"layout":"regions"}',
   );
   for (const x of [2, 2, 3]) seeing.look(near(x));
-  // The boxes stand for the isovalue that the server has been told.
+  // The boxes follow from the isovalue that the server knows.
   for (const inside of [0, 1])
     seeing.look({
       ...kNoViewRequest,

@@ -38,7 +38,7 @@ describe('the boxes of a surface', () => {
     expect(
       inOrder(packets, {...kNoViewRequest, surfaceBoxes}, kSize).map(({chunk}) => chunk),
     ).toEqual([1, 3, 4, 2]);
-    // A plane where they are not: either will do.
+    // A plane elsewhere: a packet may meet either.
     const plane = {normal: [1, 0, 0] as [number, number, number], offset: 10};
     expect(
       inOrder(packets, {...kNoViewRequest, surfaceBoxes, planes: [plane]}, kSize).map(

@@ -8,7 +8,7 @@ import {FakeSocket} from './fakes';
 const kStream = 'wss://x/v1/stream';
 let asked: {url: string; method: string; authorization: string | null; range: string | null}[];
 
-/** Notes what it is asked, and answers with these, one after the other. */
+/** Notes the requests and answers with these, one after the other. */
 function fake(...answers: (Response | Error)[]): Fetch {
   return (url, init) => {
     const headers = new Headers(init.headers);

@@ -1,5 +1,5 @@
-// A whole log through the assembler, block by block, as the worker does it. Needs the built codec:
-// QTET_WASM names it (ctest does).
+// Puts a whole log through the assembler, block by block, as the worker does. Needs the built
+// codec, which QTET_WASM names (ctest sets it).
 
 import {readFileSync} from 'node:fs';
 import {Assembler} from '../core/assembler';
@@ -9,10 +9,10 @@ import type {ValueDecoder} from '../core/draco';
 import {QtetError} from '../core/errors';
 import {kFirstFieldPart, kHeadPart} from '../core/parts';
 
-/** Empty: tests that need it are skipped. */
+/** If empty, tests that need it are skipped. */
 export const kTestWasm = process.env.QTET_WASM ?? '';
 
-/** Throws what the assembler and the codec throw, and `truncated`. */
+/** Throws `truncated`, and the errors of the assembler and the codec. */
 export async function takeWholeLog(log: Uint8Array, values: ValueDecoder): Promise<Assembler> {
   const codec = await WasmCodec.create(await WebAssembly.compile(readFileSync(kTestWasm)));
   const assembler = new Assembler(codec, values);

@@ -1,5 +1,5 @@
-// Where the picture is taken from: orbiting, the six standard views, perspective or parallel. The
-// world is a ball of radius 1 round the origin, z up.
+// The camera: orbiting, six standard views, perspective or parallel projection. The world is a ball
+// of radius 1 round the origin, z up.
 
 import {MathUtils, PerspectiveCamera, Quaternion, Spherical, Vector3} from 'three';
 import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
@@ -7,29 +7,29 @@ import type {Direction} from './directions';
 
 const kFieldOfViewDegrees = 32;
 /**
- * So narrow that lines are parallel to a pixel: one camera does both, and every control works in
- * both.
+ * So narrow that parallel lines look parallel, to a pixel. One camera serves both projections, and
+ * every control works in both.
  */
 const kParallelDegrees = 0.1;
-/** From where a mesh is first seen: front right, from above. */
+/** The first direction to a mesh: front right, from above. */
 const kFirstDirection = new Vector3(0.62, -1, 0.55).normalize();
 const kUp = new Vector3(0, 0, 1);
-/** Air round a mesh that has just been fitted. */
+/** Leaves some air round a fitted mesh. */
 const kMargin = 1.16;
-/** The near plane comes no nearer to the eye than this, in radii. */
+/** The least distance of the near plane from the eye, in radii. */
 export const kLeastNear = 0.01;
-/** Nothing is farther from the middle than this, in radii. */
+/** The largest distance of anything from the middle, in radii. */
 const kDepth = 2.5;
 
-/** A view as six numbers: from where (at a distance as with perspective), and to where. */
+/** A view as six numbers: the eye (at the distance of a perspective view) and the target. */
 export type CameraState = [number, number, number, number, number, number];
 
 export class OrbitCamera {
   readonly camera = new PerspectiveCamera(kFieldOfViewDegrees, 1, kLeastNear, 100);
   readonly controls: OrbitControls;
-  /** Until somebody turns or zooms, the mesh stays fitted to the space that there is. */
+  /** Until the user turns or zooms, the mesh stays fitted to the free space. */
   fitted = true;
-  /** Keeps the first view's direction, or that of a standard view, while the mesh is fitted. */
+  /** The direction of a fitted view: the first one's, or a standard view's. */
   private direction = kFirstDirection;
 
   constructor(canvas: HTMLCanvasElement, changed: () => void) {
@@ -72,7 +72,7 @@ export class OrbitCamera {
   }
 
   /**
-   * Along `direction`, or as a mesh is first seen, at the distance where `distance` says that
+   * Looks along `direction`, or as a mesh is first seen. `distance` gives the distance at which
    * everything fits.
    */
   look(direction: Direction | null, distance: () => number): void {
@@ -82,7 +82,7 @@ export class OrbitCamera {
         'xyz'.indexOf(direction[1]!),
         direction[0] === '+' ? 1 : -1,
       );
-      // From straight above and below, x goes to the right: a grain of tilt tells the controls so.
+      // A little tilt tells the controls that x points right, seen from straight above or below.
       this.direction = along.z === 0 ? along : along.add(new Vector3(0, -1e-4, 0)).normalize();
     }
     this.fit(distance);
@@ -96,7 +96,7 @@ export class OrbitCamera {
     this.moveTo(this.direction.clone().multiplyScalar(distance()));
   }
 
-  /** Turns round the target, in radians. */
+  /** Turns round the target by these radians. */
   orbit(horizontal: number, vertical: number): void {
     this.fitted = false;
     const toYUp = new Quaternion().setFromUnitVectors(kUp, new Vector3(0, 1, 0));
@@ -107,15 +107,14 @@ export class OrbitCamera {
     this.moveTo(new Vector3().setFromSpherical(spherical).applyQuaternion(toYUp.invert()));
   }
 
-  /** Below 1 nearer, above 1 farther. */
+  /** A factor below 1 moves nearer, above 1 farther. */
   zoom(factor: number): void {
     this.fitted = false;
     this.moveTo(this.offset().multiplyScalar(factor));
   }
 
   /**
-   * How far the turned camera must stand for every corner to fall into the free shares of the
-   * picture's width and height.
+   * The distance at which every corner is within the free shares of the picture's width and height.
    */
   fittingDistance(corners: Vector3[], freeWidth: number, freeHeight: number): number {
     const tanHeight = this.tangent() * freeHeight;
@@ -134,10 +133,7 @@ export class OrbitCamera {
     return Math.max(1, ...distances);
   }
 
-  /**
-   * To be called before every frame: the depths that there are, and no more, so that the parallel
-   * view keeps its digits.
-   */
+  /** Must be called before every frame. Tight depths keep the digits of a parallel view. */
   setDepths(): void {
     const distance = this.camera.position.length();
     this.camera.near = Math.max(kLeastNear, distance - kDepth);

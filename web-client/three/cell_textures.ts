@@ -1,5 +1,5 @@
-// The cells of a volume where a ray caster's shaders can read them: one texel a vertex and a cell,
-// and the faces that rays come in through.
+// The cells of a volume as textures for a ray caster's shaders, one texel a vertex and a cell, and
+// the faces by which rays enter.
 
 import {
   BufferGeometry,
@@ -21,8 +21,8 @@ import type {Vector} from '../core/cell_ray';
 import type {VolumeCells} from '../core/volume';
 
 /**
- * Texels in a row; a power of two, which nearly every GPU that has WebGL 2 takes, most of them four
- * times as many rows: sixteen million cells.
+ * Texels in a row: a power of two. Nearly every GPU with WebGL 2 takes such rows, most of them four
+ * times as many: sixteen million cells.
  */
 export const kRowBits = 12;
 export const kRow = 1 << kRowBits;
@@ -34,9 +34,9 @@ export class CellTextures {
   readonly cellValues: DataTexture;
   readonly ofCells: boolean;
   readonly count: number;
-  /** A triangle an entry, all of it from `entries`. */
+  /** One triangle for each entry. The shader reads it from `entries`. */
   readonly entryGeometry = new BufferGeometry();
-  /** What was asked last, and the answer. */
+  /** The last question, and its answer. */
   private eye = '';
   private cellOfEye = -1;
 
@@ -48,11 +48,11 @@ export class CellTextures {
     this.ofCells = from.cellValues !== null;
     this.count = from.cells.length / 4;
     this.entryGeometry.setDrawRange(0, (3 * from.entries.length) / 8);
-    // there are no places to tell it from
+    // there are no positions to compute it from
     this.entryGeometry.boundingSphere = new Sphere(new Vector3(), Infinity);
   }
 
-  /** The cell that the eye is in: its corners, and its tag; null: it is in none. */
+  /** The cell that contains the eye, as its corners and its tag; null if none does. */
   eyeCell(eye: Vector): Uint32Array | null {
     if (eye.join() !== this.eye)
       this.cellOfEye = cellAround(this.from.vertices, this.from.cells, eye);
@@ -70,7 +70,7 @@ export class CellTextures {
   }
 }
 
-/** Rows of the largest texture of these cells. */
+/** The rows of the largest texture of these cells. */
 export function mostRows({vertices, links, entries}: VolumeCells): number {
   return Math.max(heightOf(vertices, 4), heightOf(links, 2), heightOf(entries, 4));
 }

@@ -1,8 +1,8 @@
-// Which stretches of a buffer changed, so that only they travel to the GPU.
+// Finds the changed parts of a buffer, so that only they are sent to the GPU.
 
 /**
- * Floats that are compared, and sent, together: fewer calls than floats, fewer floats than a
- * buffer.
+ * The unit of comparing and sending, a compromise between the number of calls and the floats that
+ * are sent for nothing.
  */
 export const kBlockFloats = 1024;
 
@@ -12,7 +12,7 @@ export interface Range {
 }
 
 /**
- * Copies `from` to the start of `to` and gives the ranges of `to` that became different, in order.
+ * Copies `from` to the start of `to` and returns the ranges of `to` that have changed, in order.
  * REQUIRES: `to` is not shorter.
  */
 export function copyChanged(to: Float32Array, from: Float32Array): Range[] {
@@ -20,7 +20,7 @@ export function copyChanged(to: Float32Array, from: Float32Array): Range[] {
   for (let start = 0; start < from.length; start += kBlockFloats) {
     const end = Math.min(start + kBlockFloats, from.length);
     let i = start;
-    // NaN differs from itself: a missing value is sent each time, which harms nothing.
+    // NaN differs from itself, so that a missing value is sent each time. That does no harm.
     while (i < end && to[i] === from[i]) ++i;
     if (i === end) continue;
     to.set(from.subarray(start, end), start);

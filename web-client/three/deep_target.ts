@@ -1,6 +1,6 @@
-// What is drawn beside the canvas and brought onto it at its end: the scene with its depths, and
-// the volume, which comes over it. In half floats, so that many faint layers add up without steps;
-// without EXT_color_buffer_float or EXT_color_buffer_half_float in bytes.
+// An off-screen target that holds the scene with its depths, and the volume, which is drawn over
+// it. It uses half floats, so that many faint layers add up without steps; bytes without
+// EXT_color_buffer_float or EXT_color_buffer_half_float.
 
 import {
   DepthTexture,
@@ -24,7 +24,7 @@ export class DeepTarget {
   private readonly scene = new WebGLRenderTarget(1, 1, {
     depthTexture: new DepthTexture(1, 1, UnsignedIntType),
   });
-  /** Premultiplied; what is added comes behind what is there. */
+  /** Premultiplied alpha. New parts lie behind those that are there. */
   readonly volume = new WebGLRenderTarget(1, 1, {depthBuffer: false});
   private readonly camera = new OrthographicCamera(-1, 1, 1, -1, 0, 1);
   private readonly planes = new Scene();
@@ -59,7 +59,10 @@ export class DeepTarget {
     return this.scene.depthTexture!;
   }
 
-  /** Begins a picture with the scene and no volume yet. `share` of the canvas's pixels each way. */
+  /**
+   * Begins a picture with the scene and an empty volume. `share` is that of the canvas's pixels,
+   * each way.
+   */
   begin(renderer: WebGLRenderer, share: number, scene: Scene, camera: Camera): void {
     const {extensions} = renderer;
     const type =
@@ -81,7 +84,7 @@ export class DeepTarget {
     renderer.setRenderTarget(null);
   }
 
-  /** Brings it onto the canvas. */
+  /** Copies the picture onto the canvas. */
   present(renderer: WebGLRenderer): void {
     renderer.setRenderTarget(null);
     renderer.render(this.planes, this.camera);

@@ -1,7 +1,6 @@
-// When a window comes to another screen, or is zoomed: as many pixels of the page, more or fewer of
-// the screen.
+// Watches the pixel density: it changes when a window moves to another screen or is zoomed.
 
-/** Calls at every change of devicePixelRatio until the returned function is called. */
+/** Calls `changed` at every change of devicePixelRatio until the returned function is called. */
 export function watchDensity(changed: () => void): () => void {
   const ended = new AbortController();
   const listen = (): void =>

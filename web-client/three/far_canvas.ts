@@ -1,12 +1,9 @@
-// A canvas of the page as the worker that draws into it sees it: its surface, its size, and the
-// pointer's events, which the page passes on.
+// The page's canvas, as the worker that draws into it sees it: its surface, its size, and the
+// pointer events that the page forwards.
 
 import {watchDensity} from './density';
 
-/**
- * What of a pointer's, a wheel's or a key's event is passed on; places are from the canvas's
- * corner.
- */
+/** The forwarded part of a pointer, wheel or key event. Places count from the canvas's corner. */
 export interface FarEvent {
   type: string;
   clientX: number;
@@ -30,13 +27,13 @@ export interface FarSize {
   pixelRatio: number;
 }
 
-/** As much of an element as OrbitControls asks for. */
+/** The part of an element that OrbitControls needs. */
 export class FarCanvas extends EventTarget {
   clientWidth = 1;
   clientHeight = 1;
   pixelRatio = 1;
   readonly style: Record<string, string> = {};
-  /** It hears of moves and keys here, too: the page sends what belongs to the canvas alone. */
+  /** Moves and keys arrive here, too: the page forwards only the canvas's events. */
   readonly ownerDocument = this;
   onresize: () => void = () => undefined;
 
@@ -60,7 +57,7 @@ export class FarCanvas extends EventTarget {
   getRootNode(): this {
     return this;
   }
-  /** The page has captured it already. */
+  /** The page has captured the pointer already. */
   setPointerCapture(): void {
     return;
   }
@@ -76,7 +73,7 @@ export const surfaceOf = (canvas: ViewCanvas): HTMLCanvasElement | OffscreenCanv
 export const pixelRatioOf = (canvas: ViewCanvas): number =>
   canvas instanceof FarCanvas ? canvas.pixelRatio : window.devicePixelRatio;
 
-/** Calls `resized` whenever the canvas has another size; gives what ends that. */
+/** Calls `resized` whenever the canvas's size changes. Returns a function that ends this. */
 export function watchSize(canvas: ViewCanvas, resized: () => void): () => void {
   if (canvas instanceof FarCanvas) {
     canvas.onresize = resized;

@@ -1,5 +1,5 @@
-// The page's side of a view that a worker draws: commands out, poses in. Without three: that is the
-// worker's.
+// The page's side of a view that a worker draws: commands out, poses in. It needs no three; the
+// worker does.
 
 import type {Ray, Vector} from '../core/cell_ray';
 import {retry} from '../core/retry';
@@ -15,7 +15,8 @@ import type {Insets, Look, View, ViewListeners} from './view';
 import type {Command, FromView, ToView} from './view_messages';
 
 /**
- * What the canvas hears that a view has to do with; moves only while a button or a finger is down.
+ * The canvas's events that a view needs. Moves are forwarded only while a button or a finger is
+ * down.
  */
 const kCanvasEvents = [
   'pointerdown',
@@ -26,24 +27,24 @@ const kCanvasEvents = [
   'contextmenu',
 ] as const;
 
-/** The worker that draws is asked so often whether it is there, while the page is in sight. */
+/** The worker that draws is asked this often whether it responds, while the page is visible. */
 const kPingMs = 5000;
 /**
- * So many questions without an answer: graphics made of software let a worker wait for seconds, and
- * a page that slept has asked only once.
+ * So many unanswered questions are allowed: software graphics may block a worker for seconds, and a
+ * page that slept has asked only once.
  */
 const kMaxUnanswered = 6;
 
 /**
- * A view of `canvas`, drawn by a worker where workers can draw, else on this thread. Throws when
- * the browser has no WebGL 2, or the line fails.
+ * A view of `canvas`, drawn by a worker if workers can draw, else on this thread. Throws if the
+ * browser has no WebGL 2 or the network fails.
  */
 export async function openView(canvas: HTMLCanvasElement, listeners: ViewListeners): Promise<View> {
   const {worker, url, draws} = await retry(startWorker);
   if (draws && 'transferControlToOffscreen' in canvas)
     return FarView.begin(worker, canvas, listeners);
   worker.terminate();
-  // the same script once more, so that no visitor loads it in two builds
+  // the same script again, so that nobody downloads it in two builds
   await import(/* @vite-ignore */ url);
   return new globalThis.qtetMeshView!(canvas, listeners);
 }
@@ -58,7 +59,7 @@ async function startWorker(): Promise<{worker: Worker; url: string; draws: boole
   return {worker, ...hello};
 }
 
-/** The next message; the worker ends where there is none. */
+/** The worker's next message. The worker ends if there is none. */
 function answerOf(worker: Worker): Promise<FromView> {
   return new Promise((resolve, reject) => {
     worker.onmessage = (event: MessageEvent<FromView>) => resolve(event.data);
@@ -235,7 +236,7 @@ class FarView implements View {
     this.send({type: 'coarse', id, answer}, answer?.cells ? buffersOfVolume(answer.cells) : []);
   }
 
-  /** The canvas keeps what began on it, as OrbitControls would have it. */
+  /** Captures the pointer for a drag that began on the canvas, as OrbitControls would. */
   private pass(event: PointerEvent | WheelEvent | MouseEvent): void {
     if (event.type === 'wheel' || event.type === 'contextmenu') event.preventDefault();
     if (event.type === 'pointerdown') {
@@ -257,7 +258,7 @@ class FarView implements View {
   }
 }
 
-/** What waits under `id`, and no longer. */
+/** Removes and returns what waits under `id`. */
 function taken<Waiting>(asked: Map<number, Waiting>, id = -1): Waiting | undefined {
   const waiting = asked.get(id);
   asked.delete(id);

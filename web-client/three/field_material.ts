@@ -1,6 +1,6 @@
-// The one material: a colour map over field values, cell edges, and up to three clip planes by
-// discarding. Colours go out as they stand in the table (sRGB, no tone mapping), so that a flat cut
-// shows exactly what the legend shows.
+// The only material: a colour map over field values, cell edges, and up to three clip planes by
+// discarding. Colours are written as they stand in the table (sRGB, no tone mapping), so that a
+// flat cut shows exactly the legend's colours.
 
 import {
   DataTexture,
@@ -18,14 +18,14 @@ import {colorTable, kColorMapEntries, type ColorMapName} from '../core/color_map
 const kVertexShader = /* glsl */ `
   in float value;
   out float vValue;
-  // never outside of its triangle, or slivers above a plane would leave pixels
+  // centroid: a place outside the triangle would leave pixels of slivers above a plane
   centroid out vec3 vLattice;
   out vec3 vView;
   out vec3 vCorner;
   void main() {
     int corner = gl_VertexID % 3;
     vCorner = vec3(corner == 0, corner == 1, corner == 2);
-    // The side opposite to the first corner is a quad's diagonal in triangles from firstHalf on.
+    // In triangles from firstHalf on, the side opposite to the first corner is a quad's diagonal.
     if (gl_VertexID / 3 >= firstHalf) vCorner.x = 1.0;
     vValue = value;
     vLattice = position;
@@ -40,8 +40,9 @@ const kFragmentShader = /* glsl */ `
   in vec3 vView;
   in vec3 vCorner;
   uniform sampler2D colorMap;
-  uniform vec2 range;      // what the map spans, of vValue; with logarithmic, of the value itself
-  uniform vec2 scaleRange; // what 0 and 1 of vValue mean
+  // the ends of the map, in units of vValue; of the value itself if logarithmic
+  uniform vec2 range;
+  uniform vec2 scaleRange; // the values that vValue 0 and 1 stand for
   uniform bool logarithmic;
   uniform bool colored;
   uniform vec3 plainColor;
@@ -53,7 +54,7 @@ const kFragmentShader = /* glsl */ `
   uniform float pixelRatio;
 
   vec3 surfaceColor() {
-    // a value that is missing makes its triangle plain
+    // a missing value makes its triangle plain
     if (!colored || isnan(vValue)) return plainColor;
     float t = (vValue - range.x) / max(range.y - range.x, 1e-12);
     if (logarithmic) {
@@ -61,13 +62,13 @@ const kFragmentShader = /* glsl */ `
       t = value > 0.0 ? log(value / range.x) / log(range.y / range.x) : 0.0;
     }
     t = clamp(t, 0.0, 1.0);
-    // Entry centres, so that both ends of the range show the table's own ends.
+    // Sample the centres of entries, so that both ends of the range show the table's own ends.
     float at = (t * ${kColorMapEntries - 1}.0 + 0.5) / ${kColorMapEntries}.0;
     return texture(colorMap, vec2(at, 0.5)).rgb;
   }
 
-  // 1 on an edge, 0 inside; fades where triangles come down to a few pixels, which would else turn
-  // dark.
+  // 1 on an edge, 0 inside. Edges fade where triangles are only a few pixels large, which would
+  // turn dark.
   float edge() {
     vec3 perPixel = max(fwidth(vCorner), 1e-6);
     vec3 distance = smoothstep(vec3(0.0), perPixel * 0.85 * pixelRatio, vCorner);
@@ -80,7 +81,7 @@ const kFragmentShader = /* glsl */ `
     for (int i = 0; i < 3; ++i) if (dot(clipPlanes[i].xyz, vLattice) > clipPlanes[i].w) discard;
     vec3 color = surfaceColor();
     if (lit) {
-      // Flat shading from the screen's derivatives: cells look like cells. The light sits a little
+      // Flat shading from screen derivatives makes cells look like cells. The light is a little
       // above the eye.
       vec3 normal = normalize(cross(dFdx(vView), dFdy(vView)));
       vec3 light = normalize(vec3(0.25, 0.45, 1.0));
@@ -92,13 +93,16 @@ const kFragmentShader = /* glsl */ `
     gl_FragColor = vec4(min(color, 1.0), opacity);
   }`;
 
-/** No point is above this plane. */
+/** No point lies above this plane. */
 const kNoPlane = new Vector4(0, 0, 0, 1);
 
 export class FieldMaterial extends ShaderMaterial {
   private table = '';
 
-  /** `lit`: shaded as a surface, `twoSided` with no inside that is greyed; else flat, as a cut. */
+  /**
+   * `lit` shades it as a surface, without `lit` it is flat, as a cut. The inside of a surface is
+   * grey unless it is `twoSided`.
+   */
   constructor(lit: boolean, twoSided = false) {
     super({
       vertexShader: `uniform int firstHalf;\n${kVertexShader}`,
@@ -131,8 +135,8 @@ export class FieldMaterial extends ShaderMaterial {
   }
 
   /**
-   * The map spans `low` to `high`, values of the field; `scaleRange` is what 0 and 1 in the soups
-   * mean. Logarithmic: 0 < low.
+   * The map spans `low` to `high`, values of the field. `scaleRange` holds the values of 0 and 1 in
+   * the soups. REQUIRES: 0 < low < high if logarithmic.
    */
   setRange(low: number, high: number, scaleRange: [number, number], logarithmic: boolean): void {
     const span = scaleRange[1] - scaleRange[0] || 1;

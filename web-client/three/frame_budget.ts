@@ -1,11 +1,11 @@
-// What pictures take on the graphics' side, and how many pixels one may have that is drawn while
+// The time that pictures take on the graphics' side, and the pixels that a picture may have while
 // something moves.
 
-/** A moving picture takes at most so long. */
+/** The most time for a picture while something moves. */
 export const kMovingMs = 60;
-/** Shares of the canvas's pixels each way: below this one sees nothing. */
+/** The least share of the canvas's pixels, each way: with fewer, nothing is recognisable. */
 const kLeastShare = 0.2;
-/** Asking takes time from whoever works: the longer a picture takes, the rarer. */
+/** Polling takes time from the workers. It is rarer the longer a picture takes. */
 const kPollMs = 4;
 const kPollShare = 0.125;
 
@@ -14,7 +14,7 @@ const pause = (start: number): Promise<void> =>
     setTimeout(resolve, Math.max(kPollMs, kPollShare * (performance.now() - start))),
   );
 
-/** Waits until the graphics have drawn what they were told so far; gives the time since `start`. */
+/** Waits until the graphics have drawn everything. Returns the time since `start`. */
 export async function whenDrawn(gl: WebGL2RenderingContext, start: number): Promise<number> {
   const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
   gl.flush();
@@ -24,7 +24,7 @@ export async function whenDrawn(gl: WebGL2RenderingContext, start: number): Prom
   return performance.now() - start;
 }
 
-/** Calls `draw`, and gives whether any pixel of it passes the tests of depth and shader. */
+/** Calls `draw`. Returns whether any of its pixels passes the tests of depth and shader. */
 export async function reachesPixels(
   gl: WebGL2RenderingContext,
   draw: () => void,
@@ -44,7 +44,7 @@ export async function reachesPixels(
 }
 
 export class FrameBudget {
-  /** What the cells take, and all pixels, in ms; who needs a budget is slow. */
+  /** The time of the cells, and that of all pixels, in ms. The first guess is slow. */
   private fixed = 0;
   private perPicture = 10 * kMovingMs;
   private last: {share: number; ms: number} | null = null;
@@ -57,7 +57,10 @@ export class FrameBudget {
     );
   }
 
-  /** Two pictures of different sizes tell what goes by pixels; until then all of it does. */
+  /**
+   * Two pictures of different sizes tell how much depends on pixels. Until then all of it is
+   * assumed to.
+   */
   learn(share: number, ms: number): void {
     const {last} = this;
     const difference = last ? share * share - last.share * last.share : 0;

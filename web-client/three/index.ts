@@ -1,5 +1,5 @@
-// qtet/three: Snapshots of qtet/core as three.js objects, each with dispose(). three is the page's
-// own.
+// qtet/three: snapshots of qtet/core as three.js objects, each with dispose(). The page brings its
+// own three.
 
 export {OrbitCamera, type CameraState} from './camera';
 export {kDirections, type Direction} from './directions';

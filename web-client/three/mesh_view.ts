@@ -1,5 +1,5 @@
-// A canvas that shows a progressive mesh: surface, cuts and isosurfaces. Draws only when something
-// changed.
+// A canvas that shows a progressive mesh: surface, cuts and isosurfaces. It draws only after
+// changes.
 
 import {Frustum, Group, Matrix4, Scene, Vector3, WebGLRenderer} from 'three';
 import type {Ray, Vector} from '../core/cell_ray';
@@ -17,9 +17,9 @@ import {SoupMesh} from './soup_mesh';
 import type {Insets, Look, View, ViewListeners} from './view';
 import {VolumeView, type Picture} from './volume_view';
 
-/** How dark cell edges are: enough to follow, not enough to change what a colour says. */
+/** The darkness of cell edges: enough to follow them, too little to change what a colour says. */
 const kEdgeStrength = 0.52;
-/** Pixels beyond two a point cost more than they show. */
+/** More than two pixels a point cost more than they show. */
 const kMaxPixelRatio = 2;
 
 export class MeshView implements View {
@@ -33,7 +33,7 @@ export class MeshView implements View {
   private readonly isosurface = new SoupMesh(true, true);
   private readonly cuts = Array.from({length: kMaxPlanes}, () => new SoupMesh(false));
   private readonly volume: VolumeView;
-  /** Since the last picture something changed that people change, not the mesh alone. */
+  /** The user has changed something since the last picture; new levels alone do not count. */
   private moved = false;
   private shownLook = '';
   private transfer = '';
@@ -72,7 +72,7 @@ export class MeshView implements View {
     this.resize();
   }
 
-  /** Shows the picture; `drawn` is called after the frame that holds it. */
+  /** Shows the picture. `drawn` is called after the frame that contains it. */
   show(snapshot: Snapshot, drawn: (ms: number) => void): void {
     this.afterFrame.push(drawn);
     this.invalidate(snapshot.volume == null);
@@ -82,7 +82,7 @@ export class MeshView implements View {
     if (snapshot.volume !== undefined) this.volume.take(this.fitting(snapshot.volume));
     this.volume.setClip(snapshot.planes);
     this.cuts.forEach((mesh, i) => {
-      // A cap would hide the volume behind it; a slice stands in it.
+      // A cap would hide the volume behind it. A slice is drawn inside it.
       mesh.show(
         this.volume.hasCells && snapshot.planes.length > 0 ? null : (snapshot.cuts[i] ?? null),
       );
@@ -92,9 +92,9 @@ export class MeshView implements View {
   }
 
   /**
-   * A camera's state is relative to the largest mesh that was seen: a coarse one is a little
-   * smaller, and which one comes first is the line's choice, so that the whole mesh alone gives a
-   * state, or a link, the same picture everywhere.
+   * A camera's state is relative to the largest mesh so far. A coarse mesh is a little smaller, and
+   * the line decides which one comes first. So only the whole mesh gives a state, or a link, the
+   * same picture everywhere.
    */
   private growTo(seen: number[]): void {
     const isFirst = this.bounds.length === 0;
@@ -124,12 +124,12 @@ export class MeshView implements View {
   setLook(wanted: Look): void {
     const {map, reversed, edges, opacity, volume} = wanted;
     const look = JSON.stringify([map, reversed, edges, opacity, volume]);
-    // it is said with every change of an attribute, and a picture costs more than a comparison
+    // it is called with every attribute change, and a picture costs more than a comparison
     if (look === this.shownLook) return;
     this.shownLook = look;
     for (const mesh of this.meshes()) {
       mesh.material.setColorMap(map, reversed);
-      // An isosurface's polygons are the cells' sections, not the mesh: their edges would hide its
+      // An isosurface's polygons are sections of cells, not the mesh. Their edges would hide its
       // shape.
       mesh.material.setEdges(edges && mesh !== this.isosurface ? kEdgeStrength : 0);
     }
@@ -144,7 +144,7 @@ export class MeshView implements View {
   /** FieldMaterial.setRange for all. */
   setRange(low: number, high: number, scaleRange: [number, number], logarithmic: boolean): void {
     const text = [low, high, scaleRange, logarithmic].join();
-    if (text === this.range) return; // it is said with every picture
+    if (text === this.range) return; // it is called with every picture
     this.range = text;
     for (const mesh of this.meshes()) mesh.material.setRange(low, high, scaleRange, logarithmic);
     const {range, logarithmic: log} = this.surface.material.uniforms;
@@ -160,7 +160,7 @@ export class MeshView implements View {
       top === insets.top &&
       bottom === insets.bottom
     )
-      return; // resizing empties the canvas
+      return; // resizing clears the canvas
     this.insets = insets;
     this.resize();
   }
@@ -168,8 +168,7 @@ export class MeshView implements View {
   // ---- camera
 
   /**
-   * A standard view, or the one that a mesh is first seen in (null): as near as its bounding box
-   * allows.
+   * Shows a standard view, or (null) the first view of a mesh, as near as its bounding box allows.
    */
   look(direction: Direction | null): void {
     checkedDirection(direction);
@@ -187,7 +186,7 @@ export class MeshView implements View {
   get cameraState(): CameraState {
     return this.orbit.state;
   }
-  /** Before there is a mesh it waits for one. */
+  /** Waits for a mesh if there is none. */
   set cameraState(state: CameraState) {
     checkedCamera(state);
     if (this.bounds.length === 0) this.startState = state;
@@ -207,7 +206,7 @@ export class MeshView implements View {
     this.invalidate();
   }
 
-  /** As of now, the last frame drawn or not. */
+  /** The pose of now, drawn or not. */
   get pose(): Pose {
     const {camera, fitted} = this.orbit;
     camera.updateMatrixWorld();
@@ -216,7 +215,7 @@ export class MeshView implements View {
       camera.projectionMatrix,
       camera.matrixWorldInverse,
     );
-    // In sight is where normal . (scale p + position) + constant >= 0.
+    // A point is in sight if normal . (scale p + position) + constant >= 0.
     const scale = this.lattice.scale.x;
     const frustum =
       fitted || this.bounds.length === 0
@@ -246,11 +245,11 @@ export class MeshView implements View {
     return project(this.pose, this.canvas, point);
   }
 
-  /** The picture as it stands, on `background` (CSS colour). */
+  /** The current picture on `background` (a CSS colour). */
   async picture(background: string): Promise<Blob> {
     if (this.volume.hasCells && this.bounds.length > 0)
       await this.volume.drawWhole(this.volumePicture);
-    // In one task with the copy: a canvas that has been shown is empty.
+    // Drawing and copying share a task: a canvas that has been shown is empty.
     if (this.volume.hasCells) this.volume.present(this.renderer);
     else this.draw();
     const copy = new OffscreenCanvas(this.surfaceCanvas.width, this.surfaceCanvas.height);
@@ -275,7 +274,7 @@ export class MeshView implements View {
   // ---- helpers
 
   private readonly onLost = (event: Event): void => {
-    event.preventDefault(); // else it never comes back
+    event.preventDefault(); // otherwise it never comes back
     this.listeners.lost?.(true);
   };
   private readonly onRestored = (): void => {
@@ -321,28 +320,27 @@ export class MeshView implements View {
     for (const mesh of this.meshes()) mesh.material.setPixelRatio(ratio);
     const {camera} = this.orbit;
     camera.aspect = width / height;
-    // Shifts the picture's centre into the middle of what the panels leave free.
+    // Shifts the picture's centre into the middle of the free area.
     const right = ((this.insets.right - this.insets.left) / 2) * width;
     const down = ((this.insets.bottom - this.insets.top) / 2) * height;
     camera.setViewOffset(width, height, right, down, width, height);
     if (this.orbit.fitted && this.bounds.length > 0) this.orbit.fit(() => this.fittingDistance());
-    // At once: a resized canvas is empty until it is drawn.
+    // Draws at once: a resized canvas is empty until it is drawn.
     if (!this.volume.hasCells) return this.draw();
     this.volume.present(this.renderer);
     this.invalidate();
   }
 
-  /** `moved`: by people, who should see something at once. */
+  /** `moved`: the user did it and should see something at once. */
   private invalidate(moved = true): void {
     if (moved) this.volume.interrupt();
     this.moved ||= moved;
-    // The graphics have one picture in hand at a time; when it is done, the next comes as things
-    // stand then.
+    // The graphics draw one picture at a time. The next begins after it, from the state of then.
     if (this.volume.busy) this.volume.waiting = true;
     else if (this.frame === 0) this.frame = requestAnimationFrame(() => this.draw());
   }
 
-  /** Of the volume. */
+  /** The volume's picture. */
   private get volumePicture(): Picture {
     this.orbit.setDepths();
     const {toCanvas, fromCanvas} = this.pose;
@@ -363,7 +361,7 @@ export class MeshView implements View {
     };
   }
 
-  /** Null, and an error that says so, where the graphics' textures end before the cells do. */
+  /** Returns null and reports an error if the cells do not fit into the graphics' textures. */
   private fitting(cells: VolumeCells | null): VolumeCells | null {
     const most = this.renderer.capabilities.maxTextureSize;
     if (!cells || mostRows(cells) <= most) return cells;
@@ -383,8 +381,8 @@ export class MeshView implements View {
     const start = performance.now();
     const done = this.afterFrame;
     this.afterFrame = [];
-    // Graphics without a GPU draw long after they were told to; and whoever waits for a picture
-    // that failed would wait for ever.
+    // Graphics without a GPU draw long after the call. Failures are told, too, or somebody would
+    // wait for ever.
     const tell = (ms: number): void => done.forEach((drawn) => drawn(ms));
     try {
       this.orbit.setDepths();

@@ -1,5 +1,5 @@
-// How a view stands: what turns points of the lattice into places on the canvas and back. Plain
-// data, so that it passes between threads.
+// The pose of a view: it turns points of the lattice into places on the canvas and back. It is
+// plain data, so that it can pass between threads.
 
 import type {Ray, Vector} from '../core/cell_ray';
 import type {Plane} from '../core/slice';
@@ -15,16 +15,16 @@ export interface Pose {
   /** The camera's, as a quaternion. */
   rotation: {x: number; y: number; z: number; w: number};
   camera: CameraState;
-  /** Nobody has turned or zoomed: all of the mesh is in the picture. */
+  /** The user has not turned or zoomed: the whole mesh is in the picture. */
   fitted: boolean;
-  /** Where the camera looks, as a unit normal in lattice coordinates. */
+  /** The direction of the camera, as a unit normal in lattice coordinates. */
   direction: Vector;
   /**
-   * What is in sight, as planes in lattice coordinates with the inside above; none while all of the
-   * mesh is fitted into the picture.
+   * The frustum, as planes in lattice coordinates with the inside above; empty while the whole mesh
+   * is fitted into the picture.
    */
   frustum: Plane[];
-  /** What the last frame took on the thread that draws. */
+  /** The time of the last frame on the thread that draws. */
   frameMs: number;
 }
 
@@ -33,7 +33,7 @@ export interface Size {
   clientHeight: number;
 }
 
-/** Throws a TypeError for anything but six finite numbers. */
+/** Throws a TypeError unless it is an array of six finite numbers. */
 export function checkedCamera(state: unknown): CameraState {
   if (Array.isArray(state) && state.length === 6 && state.every(Number.isFinite))
     return state as CameraState;
@@ -43,7 +43,7 @@ export function checkedCamera(state: unknown): CameraState {
   );
 }
 
-/** Where a point of the lattice is on the canvas, in CSS pixels. */
+/** The place of a lattice point on the canvas, in CSS pixels. */
 export function project(
   {toCanvas}: Pose,
   {clientWidth, clientHeight}: Size,

@@ -1,6 +1,6 @@
-// A volume's cells on a DeepTarget, by casting rays (ray_shaders.ts). Rays that leave the mesh
-// through a hole or a concavity come in again: layer by layer the next faces of the boundary are
-// drawn, and rays cast from there, until no pixel has such a face.
+// Draws a volume's cells onto a DeepTarget by casting rays (ray_shaders.ts). Rays that leave the
+// mesh through a hole or a concavity may enter it again. So it works in layers: it draws the next
+// boundary faces and casts rays from there, until no pixel has such a face.
 
 import {
   BufferAttribute,
@@ -38,12 +38,12 @@ import {
 } from './ray_shaders';
 import {raysOf} from './rays';
 
-/** Of a camera, in lattice coordinates. */
+/** A camera's lines of sight, in lattice coordinates. */
 export interface Sight {
   toCanvas: Matrix;
   fromCanvas: Matrix;
   eye: Vector;
-  /** The mesh's. */
+  /** The mesh's diagonal. */
   diagonal: number;
 }
 
@@ -117,7 +117,7 @@ export class RayCaster {
   private readonly entryScene = new Scene();
   private readonly rayScene = new Scene();
   private readonly camera = new Camera();
-  /** Those of the layer, and of the layer before. */
+  /** The entries of this layer, and of the one before. */
   private targets = [entryTarget(), entryTarget()] as [WebGLRenderTarget, WebGLRenderTarget];
 
   constructor() {
@@ -144,7 +144,7 @@ export class RayCaster {
     }
   }
 
-  /** As FieldMaterial.setRange. */
+  /** The same as FieldMaterial.setRange. */
   setRange(range: [number, number], scaleRange: [number, number], logarithmic: boolean): void {
     this.uniforms.range!.value = range;
     this.uniforms.scaleRange!.value = scaleRange;
@@ -159,8 +159,8 @@ export class RayCaster {
   }
 
   /**
-   * A picture of these cells on `deep` begins. True when the eye is in one of them: rays from there
-   * come first, before any layer.
+   * Begins a picture of these cells on `deep`. Returns true if the eye is inside a cell: rays from
+   * there come first, before any layer.
    */
   begin(
     cells: CellTextures,
@@ -184,7 +184,7 @@ export class RayCaster {
     uniforms.perDiagonal!.value = 1 / diagonal;
     const eyeCell = cells.eyeCell(eye);
     uniforms.eyeCell!.value = eyeCell ?? kNoCell;
-    // is not read before the first layer, but has to be of its kind
+    // not read before the first layer, but it must have its type
     uniforms.layer!.value = cells.entries;
     const its = this.entry.material.uniforms;
     this.entry.geometry = cells.entryGeometry;
@@ -192,7 +192,7 @@ export class RayCaster {
     its.entries!.value = its.before!.value = cells.entries;
     its.picture!.value = deep.volume.texture;
     its.isFirst!.value = true;
-    // from the eye on where that is close
+    // starts at the eye if that is close
     its.distances!.value = [Math.max(0, from - kLeastNear), to];
     its.middle!.value = [deep.width / 2, deep.height / 2];
     (its.toCanvas!.value as Matrix4).fromArray(toCanvas);

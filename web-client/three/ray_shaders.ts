@@ -1,36 +1,38 @@
-// Casting rays through tetrahedra, from face to face. A ray is told as two directions across it: in
-// their plane it is the origin, a face that it goes through a triangle round that, and where it
-// leaves a cell is seen from the signs of three areas, each of two of the triangle's corners or of
-// one and the fourth. Signs are the same from both sides of a face, so that no ray is lost between
-// cells. After R. Marmitt and P. Slusallek, "Fast ray traversal of tetrahedral and hexahedral
-// meshes for direct volume rendering", EuroVis 2006.
+// Casts rays through tetrahedra, from face to face. Two directions across the ray span a plane. In
+// this plane the ray is the origin, and a face that it passes is a triangle round the origin. The
+// signs of three areas tell by which face the ray leaves a cell. Each area belongs to two corners
+// of the triangle, or to one and the fourth. Signs are the same from both sides of a face, so that
+// no ray is lost between cells.
+//
+// After R. Marmitt and P. Slusallek, "Fast ray traversal of tetrahedral and hexahedral meshes for
+// direct volume rendering", EuroVis 2006.
 
 import {kTransferSteps} from '../core/transfer';
 import {kRow, kRowBits} from './cell_textures';
 
-/** What is as opaque as this hides the rest: a step of 255. */
+/** This opacity hides the rest: less than a step of 255 is missing. */
 const kOpaque = 0.996;
-/**
- * Values of so little a difference, of the range's, are taken for one: two steps of a colour map.
- */
+/** Values whose difference is this share of the range count as equal: two steps of a colour map. */
 const kNarrow = 1 / 128;
 /**
- * Faces that rays come in through are drawn larger by so many pixels: some graphics round corners
- * to a sixteenth, most to a 256th.
+ * The faces by which rays enter are drawn larger by so many pixels. Some graphics round corners to
+ * a sixteenth of a pixel, most to a 256th.
  */
 const kMargin = 1 / 16;
-/** By so many of its heights at most, as a face seen edge-on would become endless. */
+/**
+ * The margin is at most so many of the face's heights: a face seen edge-on would become endless.
+ */
 const kMaxMargin = 4;
 /**
- * Faces are drawn from so far before the eye on, in radii of the mesh: long before the canvas's
- * near plane, where an eye may be close to a face.
+ * Faces are drawn from this distance before the eye on, in radii of the mesh. That is long before
+ * the canvas's near plane: an eye may be close to a face.
  */
 const kNearest = 1e-5;
-/** A ray begins so far inside of its face at least, in shares of that. */
+/** A ray begins at least this share inside of its face. */
 const kInside = 1e-4;
 /**
- * Cells that a ray goes through at most between two faces of the boundary: many times those along a
- * straight line through ten million (600 to 1,000).
+ * The most cells that a ray passes between two boundary faces. A straight line through ten million
+ * cells passes 600 to 1,000.
  */
 const kMaxSteps = 8192;
 
@@ -42,29 +44,29 @@ const kHead = /* glsl */ `
   uniform sampler2D vertices;
   ivec2 texel(int i) { return ivec2(i & ${kRow - 1}, i >> ${kRowBits}); }`;
 
-// A ray that leaves through one face beside an edge has to come in again by the face at the edge's
-// other side, or neither. Graphics round corners, which moves edges, so that faces are drawn
-// larger, and the shader cuts them where single floats say that they end.
+// Beside an edge, a ray that leaves through one face must enter again by the face at the edge's
+// other side, or by neither. Graphics round corners and so move edges. Therefore faces are drawn
+// larger, and the shader cuts them at the edges that single floats give.
 const kSide = /* glsl */ `
   float sideOf(vec2 a, vec2 b, vec2 at) {
     return (b.x - a.x) * (at.y - a.y) - (b.y - a.y) * (at.x - a.x);
   }`;
 
 /**
- * Draws the faces that rays come in through: of each pixel the nearest one behind that of the layer
- * before. Their depths are even shares of the distance, so that they need no near plane.
+ * Draws the faces by which rays enter: for each pixel the nearest one behind that of the layer
+ * before. Depths are linear in the distance, so that they need no near plane.
  */
 export const kEntryVertexShader = /* glsl */ `${kHead}${kSide}
   uniform usampler2D entries;
   uniform mat4 toCanvas;
   uniform vec2 middle;       // of the canvas, in pixels
   flat out uint vEntry;
-  // two corners, and the third, in pixels from the middle, in the order of their numbers: the face
-  // at an edge's other side takes the edge the same way
+  // Two corners, and the third, in pixels from the middle, in the order of their ids: the faces at
+  // both sides of an edge take it the same way.
   flat out vec4 vFirst;
   flat out vec2 vThird;
-  out float vDistance;       // before the eye; one by that where vTurn is not 0
-  // 1: they go round anticlockwise; -1: clockwise; 0: not all of them are before the eye
+  out float vDistance;       // from the eye; its inverse if vTurn is not 0
+  // 1: the corners go round anticlockwise; -1: clockwise; 0: not all of them are before the eye.
   flat out int vTurn;
   vec4 onCanvas(uint vertex) {
     return toCanvas * vec4(texelFetch(vertices, texel(int(vertex)), 0).xyz, 1.0);
@@ -80,16 +82,16 @@ export const kEntryVertexShader = /* glsl */ `${kHead}${kSide}
     vec2 u = a * middle, v = b * middle, w = c * middle;
     float whole = sideOf(u, v, w);
     bool isBefore = min(min(p.w, q.w), r.w) > ${kNearest} && whole > 0.0;
-    // Each edge outward, in its plane.
+    // Move each edge outward in the face's plane.
     vec3 sides = vec3(distance(v, w), distance(w, u), distance(u, v));
     vec3 margins = min(${kMargin} / whole * sides, ${kMaxMargin}.0);
     vec3 shares = (1.0 + margins.x + margins.y + margins.z) * isOwn - margins;
     vec4 its = own == 0 ? p : own == 1 ? q : r;
-    // What hardware clips is nearer than kNearest.
+    // Only what is nearer than kNearest is clipped.
     gl_Position = isBefore ? vec4(shares.x * a + shares.y * b + shares.z * c, 0.0, 1.0)
       : vec4(its.xy, its.w - 2.0 * ${kNearest}, its.w);
     vDistance = isBefore ? dot(shares, vec3(1.0 / p.w, 1.0 / q.w, 1.0 / r.w)) : its.w;
-    bool turns = ids.y < ids.z;  // the lowest comes first
+    bool turns = ids.y < ids.z;  // the lowest id comes first
     vTurn = !isBefore ? 0 : turns ? 1 : -1;
     vFirst = vec4(u, turns ? v : w);
     vThird = turns ? w : v;
@@ -101,7 +103,7 @@ export const kEntryFragmentShader = /* glsl */ `${kHead}${kSide}
   flat in vec2 vThird;
   in float vDistance;
   flat in int vTurn;
-  uniform vec2 distances;  // of depths 0 and 1
+  uniform vec2 distances;  // at depths 0 and 1
   uniform vec2 middle;
   uniform bool isFirst;
   uniform usampler2D before;
@@ -135,16 +137,16 @@ export const kRayFragmentShader = /* glsl */ `${kHead}
   uniform sampler2D cellValues;
   uniform bool ofCells;
   uniform usampler2D entries;
-  uniform usampler2D layer;   // which of them
-  // corners and tag of the cell where all rays begin; tag 0: at the entries
+  uniform usampler2D layer;   // the entry of each pixel
+  // Corners and tag of the cell where all rays begin. With tag 0 they begin at the entries.
   uniform uint eyeCell[5];
-  // the canvas's middle at the near plane, in lattice coordinates, and the ways from there to its
-  // right and upper end
+  // The middle of the canvas at the near plane, in lattice coordinates, and the ways from there to
+  // its right and upper end.
   uniform vec3 near[3];
   uniform vec3 far[3];
-  uniform float farPerNear;   // homogeneous coordinates' w
+  uniform float farPerNear;   // of the homogeneous coordinate w
   uniform vec2 perPixel;
-  uniform sampler2D depths;   // of what is not the volume
+  uniform sampler2D depths;   // of the scene without the volume
   uniform vec4 clipPlanes[3];
   uniform sampler2D density;
   uniform sampler2D integral;
@@ -167,7 +169,7 @@ export const kRayFragmentShader = /* glsl */ `${kHead}
     return texelFetch(density, ivec2(step, 0), 0);
   }
 
-  // Beyond the ends values look like the ends.
+  // Values beyond the ends look like the ends.
   vec4 integralTo(float share) {
     float at = clamp(share, 0.0, 1.0) * ${kTransferSteps}.0;
     int i = min(int(at), ${kTransferSteps - 1});
@@ -178,7 +180,7 @@ export const kRayFragmentShader = /* glsl */ `${kHead}
     return beyond == 0.0 ? inside : inside + beyond * densityAt(share);
   }
 
-  // A vertex as the ray sees it: beside the ray, along it, and the value.
+  // A vertex in the ray's coordinates: beside it (two numbers), along it, and the value.
   vec4 seen(uint vertex) {
     vec4 its = texelFetch(vertices, texel(int(vertex)), 0);
     vec3 at = its.xyz - origin;
@@ -187,8 +189,8 @@ export const kRayFragmentShader = /* glsl */ `${kHead}
 
   float area(vec4 p, vec4 q) { return p.x * q.y - p.y * q.x; }
 
-  // Where the ray goes through the triangle with these areas beside it, and the value there. Never
-  // outside of the triangle.
+  // The place along the ray, and the value, where it passes the triangle with these areas. The
+  // place is never outside of the triangle.
   vec2 through(vec4 a, vec4 b, vec4 c, vec3 areas) {
     vec3 shares = max(areas, 0.0);
     float sum = shares.x + shares.y + shares.z;
@@ -198,8 +200,8 @@ export const kRayFragmentShader = /* glsl */ `${kHead}
 
   vec3 areasOf(vec4 a, vec4 b, vec4 c) { return vec3(area(b, c), area(c, a), area(a, b)); }
 
-  // Puts the corner last that is opposite to the face by which the ray comes in: of the faces that
-  // it goes through the first.
+  // Puts the corner last that is opposite to the face by which the ray enters: the first of the
+  // faces that it passes.
   void turn(inout uvec4 ids) {
     vec4 p[4] = vec4[4](seen(ids.x), seen(ids.y), seen(ids.z), seen(ids.w));
     int found = 0;
@@ -230,7 +232,7 @@ export const kRayFragmentShader = /* glsl */ `${kHead}
   }
 
   void main() {
-    color = vec4(0.0);  // and returns instead of discarding, behind which SwiftShader walks on
+    color = vec4(0.0);  // returns instead of discarding, after which SwiftShader goes on
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     int entry = eyeCell[4] > 0u ? 1 : int(texelFetch(layer, pixel, 0).x);
     if (entry == 0) return;
@@ -243,8 +245,7 @@ export const kRayFragmentShader = /* glsl */ `${kHead}
     across = normalize(cross(along, aside));
     up = cross(along, across);
 
-    // What of the ray is to be seen: before the first thing that is not the volume, below the
-    // planes.
+    // The visible part of the ray: before the scene, and below the planes.
     float first = 0.0;
     float depth = texelFetch(depths, pixel, 0).r;
     float last = 1e30;
@@ -278,8 +279,8 @@ export const kRayFragmentShader = /* glsl */ `${kHead}
       c = point;
       areas = -areas.xzy;
     }
-    // Pixels' corners are rounded, so that a ray may pass beside its face by some hundredth of a
-    // pixel: into the face with it.
+    // Pixel corners are rounded, so that a ray may miss its face by some hundredths of a pixel.
+    // Move it into the face.
     vec3 shares = max(areas, ${kInside} * (areas.x + areas.y + areas.z));
     shares /= max(shares.x + shares.y + shares.z, 1e-30);
     vec2 off = shares.x * a.xy + shares.y * b.xy + shares.z * c.xy;
@@ -292,13 +293,13 @@ export const kRayFragmentShader = /* glsl */ `${kHead}
     }
     vec2 enter = through(a, b, c, areas);
     for (int step = 0; step < ${kMaxSteps}; ++step) {
-      // The fourth corner takes the place of the one that the face ahead lacks.
+      // The fourth corner replaces the one that the next face lacks.
       vec4 point = seen(id);
       vec3 sides = vec3(area(a, point), area(b, point), area(c, point));
       bool lacksC = sides.x <= 0.0 && sides.y >= 0.0;
       bool lacksA = !lacksC && sides.y <= 0.0 && sides.z >= 0.0;
       uint lacked = lacksA ? ia : lacksC ? ic : ib;
-      // a cell's corners are in ascending order
+      // The corners of a cell are in ascending order.
       int corner = int(lacked > ia) + int(lacked > ib) + int(lacked > ic) + int(lacked > id);
       int cell = int(tag & 0x7fffffffu) - 1;
       if (lacksA) {

@@ -1,22 +1,22 @@
-// The lines of sight through a canvas, in lattice coordinates, as a shader takes them. They begin
-// at the near plane: a parallel view's eye is a thousand times as far away as the mesh is large, so
-// that single floats told from there would be wrong.
+// The lines of sight through a canvas, in lattice coordinates, for shaders. They begin at the near
+// plane. The eye of a parallel view is a thousand times as far away as the mesh is large, so that
+// single floats relative to it would be wrong.
 
 import type {Vector} from '../core/cell_ray';
 import type {Matrix} from './pose';
 
 export interface Rays {
-  /** The middle of the near plane, and the ways from there to its right and upper end. */
+  /** The middle of the near plane, and the ways from there to its right and its upper end. */
   near: Vector[];
   far: Vector[];
-  /** The homogeneous coordinate w of the far plane's points by that of the near plane's. */
+  /** The homogeneous coordinate w at the far plane, divided by that at the near plane. */
   farPerNear: number;
-  /** How far before the eye the two planes are, in radii of the mesh. */
+  /** The distances of the two planes from the eye, in radii of the mesh. */
   distances: [number, number];
 }
 
 export function raysOf(fromCanvas: Matrix): Rays {
-  // for x and y alike: the planes are parallel to the canvas
+  // the same for all x and y: the planes are parallel to the canvas
   const w = (z: number): number => fromCanvas[11]! * z + fromCanvas[15]!;
   const column = (k: number): Vector => [
     fromCanvas[4 * k]!,

@@ -1,4 +1,4 @@
-// A triangle soup as a three.js object. Its buffers stay and grow; of a new soup only the stretches
+// A triangle soup as a three.js object. Its buffers stay and grow. Only the parts of a new soup
 // that differ are uploaded.
 
 import {BufferAttribute, BufferGeometry, DynamicDrawUsage, Mesh, Sphere, Vector3} from 'three';
@@ -6,21 +6,21 @@ import type {TriangleSoup} from '../core/triangle_soup';
 import {copyChanged} from './changed_ranges';
 import {FieldMaterial} from './field_material';
 
-/** Room that a buffer gets beyond what it needs, for the levels to come. */
+/** A buffer gets this many times the room that it needs, for later levels. */
 const kGrowth = 1.5;
 
 export class SoupMesh extends Mesh<BufferGeometry, FieldMaterial> {
-  /** Corners that the buffers hold. */
+  /** The corners that fit into the buffers. */
   private capacity = 0;
 
   constructor(lit: boolean, twoSided = false) {
     super(new BufferGeometry(), new FieldMaterial(lit, twoSided));
-    // the view knows the bounds; computing them again for every picture costs more than it saves
+    // the view knows the bounds, and computing them for every picture costs more than it saves
     this.frustumCulled = false;
     this.visible = false;
   }
 
-  /** Shows the soup, whose arrays are free afterwards; null shows nothing. */
+  /** Shows the soup, or nothing for null. The soup's arrays are free afterwards. */
   show(soup: TriangleSoup | null): void {
     this.visible = soup !== null && soup.positions.length > 0;
     if (!soup || !this.visible) return;

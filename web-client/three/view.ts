@@ -1,5 +1,5 @@
-// What a viewer asks of the picture, wherever that is drawn: on the page's thread (MeshView) or in
-// a worker (FarView).
+// What a viewer needs from a picture, whether it is drawn on the page's thread (MeshView) or in a
+// worker (FarView).
 
 import type {Ray, Vector} from '../core/cell_ray';
 import type {ColorMapName} from '../core/color_maps';
@@ -9,7 +9,7 @@ import type {CameraState} from './camera';
 import type {Direction} from './directions';
 import type {Pose, Size} from './pose';
 
-/** Shares of the canvas that panels cover, each in [0, 1); the mesh is centred in what remains. */
+/** The shares of the canvas that panels cover, each in [0, 1). The mesh is centred in the rest. */
 export interface Insets {
   left: number;
   right: number;
@@ -21,46 +21,48 @@ export interface Look {
   map: ColorMapName;
   reversed: boolean;
   edges: boolean;
-  /** Of the surface; cuts and isosurfaces stay solid. */
+  /** Opacity of the surface. Cuts and isosurfaces stay solid. */
   opacity: number;
-  /** Of the volume, at even shares of the range; null: it is not shown. */
+  /** Opacities of the volume at even shares of the range; null hides it. */
   volume?: number[] | null;
 }
 
-/** `drawn`: after each frame. `lost`: the browser took the graphics away, or gave them back. */
+/**
+ * `drawn` is called after each frame, `lost` when the browser takes the graphics away or gives them
+ * back.
+ */
 export interface ViewListeners {
   drawn?(pose: Pose): void;
   lost?(lost: boolean): void;
-  /** Something went wrong in the worker that draws; it goes on. */
+  /** The worker that draws had an error; it continues. */
   failed?(message: string): void;
   /**
-   * Nothing has been heard of the worker that draws for so long that it is dead, or hangs; false:
-   * it has said something after all.
+   * The worker that draws has been silent for so long that it is dead or hangs; false: it has
+   * answered after all.
    */
   silent?(silent: boolean): void;
-  /** Client.coarse: without it a volume of many cells follows slowly where graphics are slow. */
+  /** Client.coarse. Without it a volume of many cells follows slowly on slow graphics. */
   coarse?(have: number): Promise<CoarseCells>;
 }
 
 export interface View {
   readonly canvas: Size;
   readonly pose: Pose;
-  /** Six numbers. Set before there is a mesh, it waits for one. */
+  /** Six numbers. If they are set before there is a mesh, they wait for one. */
   cameraState: CameraState;
   /**
-   * Shows the picture; `drawn` is called after the frame that holds it, with what drawing that
-   * took. The snapshot's arrays may be gone afterwards.
+   * Shows the picture. `drawn` is called after the frame that contains it, with the time of
+   * drawing. The snapshot's arrays may be gone afterwards.
    */
   show(snapshot: Snapshot, drawn: (ms: number) => void): void;
   /** Forgets the mesh; the next one is fitted anew. */
   clear(): void;
   setLook(look: Look): void;
-  /** FieldMaterial.setRange for all. */
+  /** FieldMaterial.setRange for all materials. */
   setRange(low: number, high: number, scaleRange: [number, number], logarithmic: boolean): void;
   setInsets(insets: Insets): void;
   /**
-   * A standard view, or the one that a mesh is first seen in (null): as near as its bounding box
-   * allows.
+   * Shows a standard view, or (null) the first view of a mesh, as near as its bounding box allows.
    */
   look(direction: Direction | null): void;
   setParallel(parallel: boolean): void;
@@ -70,9 +72,9 @@ export interface View {
   zoom(factor: number): void;
   /** The line of sight through a point of the canvas, in CSS pixels from its corner. */
   rayAt(x: number, y: number): Ray;
-  /** Where a point of the lattice is on the canvas, in CSS pixels. */
+  /** The place of a lattice point on the canvas, in CSS pixels. */
   project(point: Vector): {x: number; y: number};
-  /** The picture as it stands, on `background` (CSS colour). */
+  /** The current picture on `background` (a CSS colour). */
   picture(background: string): Promise<Blob>;
   dispose(): void;
 }

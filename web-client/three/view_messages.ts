@@ -1,5 +1,4 @@
-// What passes between a page and the worker that draws for it. A snapshot's arrays travel by
-// transfer.
+// Messages between a page and the worker that draws for it. A snapshot's arrays are transferred.
 
 import type {CoarseCells} from '../core/volume';
 import type {Snapshot} from '../core/worker_messages';
@@ -8,12 +7,12 @@ import type {FarEvent, FarSize} from './far_canvas';
 import type {Pose} from './pose';
 import type {View} from './view';
 
-/** Methods of View that answer nothing. */
+/** Methods of View without a result. */
 export type Command =
   'clear' | 'setLook' | 'setRange' | 'setInsets' | 'look' | 'setParallel' | 'turn' | 'zoom';
 
 export type ToView =
-  /** First of all. */
+  /** The first message. */
   | {type: 'begin'; canvas: OffscreenCanvas; size: FarSize; answers: boolean}
   | {[Name in Command]: {type: 'command'; name: Name; words: Parameters<View[Name]>}}[Command]
   | {type: 'camera'; state: CameraState}
@@ -21,13 +20,13 @@ export type ToView =
   | {type: 'event'; event: FarEvent}
   | {type: 'show'; id: number; snapshot: Snapshot}
   | {type: 'picture'; id: number; background: string}
-  /** Is anybody there? */
+  /** Asks whether the worker responds. */
   | {type: 'ping'}
-  /** Answers `coarse`; null: there are none. */
+  /** Answers `coarse`; null if there are no cells. */
   | {type: 'coarse'; id: number; answer: CoarseCells | null};
 
 export type FromView =
-  /** The worker runs: its own address, and whether it can draw with WebGL 2. */
+  /** The worker is running. It tells its own address, and whether it can draw with WebGL 2. */
   | {type: 'hello'; url: string; draws: boolean}
   | {type: 'drawn'; pose: Pose}
   | {type: 'shown'; id: number; drawingMs: number}
@@ -35,5 +34,5 @@ export type FromView =
   | {type: 'lost'; lost: boolean}
   | {type: 'coarse'; id: number; have: number}
   | {type: 'pictured'; id: number; blob: Blob}
-  /** `id`: of the picture that cannot be taken; without one the view cannot start. */
+  /** With `id` this picture cannot be taken; without it the view cannot start. */
   | {type: 'failed'; message: string; id?: number};

@@ -1,6 +1,6 @@
 // Draws for a page: a MeshView in a worker, so that the page never waits for the graphics, which
-// may take seconds to start and to compile. Loaded by a page itself, where workers cannot draw,
-// this script gives it the MeshView (far_view.ts).
+// may take seconds to start and to compile. If workers cannot draw, the page loads this script
+// itself and gets its MeshView (far_view.ts).
 
 import {errorText} from '../core/errors';
 import type {CoarseCells} from '../core/volume';
@@ -9,8 +9,9 @@ import {MeshView} from './mesh_view';
 import type {FromView, ToView} from './view_messages';
 
 declare global {
-  /** On a page: the class. In the worker: the view itself, to look at. */
+  /** On a page, the class for far_view.ts. */
   var qtetMeshView: typeof MeshView | undefined;
+  /** For debugging and tests. */
   var qtetView: MeshView | undefined;
 }
 

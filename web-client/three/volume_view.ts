@@ -1,5 +1,5 @@
-// The volume on the canvas. Graphics that are fast draw all of it at once. Slow ones draw few cells
-// with few pixels while something moves, and all cells with all pixels once it rests: in strips of
+// The volume on the canvas. Fast graphics draw all of it at once. Slow ones draw few cells with few
+// pixels while something moves, and all cells with all pixels once it rests. They draw in strips of
 // pixels, so that the next movement waits for a strip and not for the picture.
 
 import type {PerspectiveCamera, Scene, WebGLRenderer} from 'three';
@@ -10,37 +10,37 @@ import {DeepTarget} from './deep_target';
 import {FrameBudget, kMovingMs, reachesPixels, whenDrawn} from './frame_budget';
 import {RayCaster, type Sight} from './ray_caster';
 
-/** A strip takes about so long. */
+/** The time of a strip, about. */
 const kStripMs = 120;
 /**
- * Pixels of the first strip, of which nobody knows what they take: some tenth of that without a
- * GPU.
+ * The pixels of the first strip, whose time is unknown. Without a GPU it takes some tenths of
+ * kStripMs.
  */
 const kFirstPixels = 1 << 14;
-/** A strip has at most so many times the pixels of the one before. */
+/** The most pixels of a strip, as a multiple of the previous strip's. */
 const kStripGrowth = 2;
-/** A picture is at rest so long after its last change. */
+/** A picture rests so long after its last change. */
 const kRestMs = 150;
 /**
- * Times that a line of sight comes into the mesh at most: what is behind hundreds of walls is not
- * to be told apart, and every layer takes its passes.
+ * The most times that a line of sight enters the mesh. What lies behind hundreds of walls cannot be
+ * told apart, and every layer takes its passes.
  */
 const kMaxLayers = 256;
 
 /** A mesh of cells. */
 interface Layered {
-  /** Not yet `shown`: a picture that is being drawn keeps its own. */
+  /** May differ from `shown`: a picture that is being drawn keeps its cells. */
   wanted: VolumeCells | null;
   of: VolumeCells | null;
   shown: CellTextures | null;
   /**
-   * How many layers a picture that is drawn at once has: as many as the one before needed, and
-   * often one more.
+   * The layers of a picture that is drawn at once: as many as the previous one needed, and often
+   * one more.
    */
   layers: number;
 }
 
-/** What a picture is made of. */
+/** The parts of a picture. */
 export interface Picture extends Sight {
   renderer: WebGLRenderer;
   scene: Scene;
@@ -58,19 +58,19 @@ export class VolumeView {
   private coarseVersion = -1;
   private coarseState: 'stale' | 'asked' | 'here' | 'none' = 'stale';
   /**
-   * What all of it with all pixels took last, and pixels in a millisecond in its slowest strip; 0:
-   * nobody knows yet.
+   * The last time for all cells and pixels, and the pixels a millisecond in its slowest strip; 0 if
+   * unknown.
    */
   private wholeMs = 0;
   private rate = 0;
   private inHand: Promise<void> | null = null;
-  /** Another picture is due after the one in hand. */
+  /** Another picture must follow the current one. */
   waiting = false;
   private interrupted = false;
   private whole = false;
   private timer: ReturnType<typeof setTimeout> | undefined;
 
-  /** `changed`: another picture is due. `askCoarse`: ViewListeners.coarse. */
+  /** `changed` asks for another picture. `askCoarse` is ViewListeners.coarse. */
   constructor(
     private readonly changed: (moved: boolean) => void,
     private readonly askCoarse?: (have: number) => Promise<CoarseCells>,
@@ -79,7 +79,7 @@ export class VolumeView {
   get hasCells(): boolean {
     return this.fine.wanted !== null;
   }
-  /** The graphics have something in hand. */
+  /** The graphics are drawing. */
   get busy(): boolean {
     return this.inHand !== null;
   }
@@ -91,7 +91,7 @@ export class VolumeView {
   take(cells: VolumeCells | null): void {
     this.fine.wanted = cells;
     this.whole = false;
-    this.coarseState = 'stale'; // it may be of another field by now: its next answer tells
+    this.coarseState = 'stale'; // it may belong to another field now; its next answer tells
     if (cells) return;
     this.coarse.wanted = null;
     this.coarseVersion = -1;
@@ -109,7 +109,7 @@ export class VolumeView {
     this.caster.setClip(...words);
   }
 
-  /** What is being drawn is of no use any more. */
+  /** The current drawing is useless now. */
   interrupt(): void {
     this.interrupted = true;
     this.whole = false;
@@ -117,7 +117,9 @@ export class VolumeView {
     this.timer = undefined;
   }
 
-  /** Draws what there is time for; the rest follows by itself. REQUIRES: not busy, hasCells. */
+  /**
+   * Draws as much as there is time for. The rest follows by itself. REQUIRES: not busy, hasCells.
+   */
   draw(picture: Picture, moved: boolean): void {
     clearTimeout(this.timer);
     this.timer = undefined;
@@ -132,10 +134,10 @@ export class VolumeView {
       this.start(this.drawAtOnce(picture, this.coarse, this.budget.share()));
     else if (!moved || this.coarseState === 'none')
       this.start(this.drawStrips(picture, () => this.interrupted));
-    // Else the coarse mesh is under way, and the picture before stands.
+    // Otherwise the coarse mesh is under way, and the previous picture stays.
   }
 
-  /** All of it, whatever moves. REQUIRES: hasCells. */
+  /** Draws all of it, even while something moves. REQUIRES: hasCells. */
   async drawWhole(picture: Picture): Promise<void> {
     this.interrupt();
     await this.idle();
@@ -146,7 +148,7 @@ export class VolumeView {
     await this.inHand;
   }
 
-  /** What was drawn last, on a canvas that has become empty. */
+  /** Shows the last picture again on a canvas that has been cleared. */
   present(renderer: WebGLRenderer): void {
     this.deep.present(renderer);
   }
@@ -159,7 +161,7 @@ export class VolumeView {
     this.caster.dispose();
   }
 
-  /** Between pictures. */
+  /** Takes the new cells. REQUIRES: no picture is being drawn. */
   private update(): void {
     for (const its of [this.fine, this.coarse]) {
       if (its.wanted === its.of) continue;
@@ -199,7 +201,7 @@ export class VolumeView {
     });
   }
 
-  /** True when the eye is in a cell: RayCaster.begin. */
+  /** Returns true if the eye is inside a cell, as RayCaster.begin. */
   private begin(
     {renderer, scene, camera, ...sight}: Picture,
     its: Layered,
@@ -245,7 +247,7 @@ export class VolumeView {
     const {renderer} = picture;
     const gl = renderer.getContext() as WebGL2RenderingContext;
     const begun = performance.now();
-    let last = this.rate > 0 ? Infinity : 0; // pixels of the strip before
+    let last = this.rate > 0 ? Infinity : 0; // pixels of the previous strip
     let rate = this.rate;
     this.rate = 0;
     const isInside = this.begin(picture, this.fine, 1);

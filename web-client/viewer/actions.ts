@@ -9,7 +9,7 @@ import type {Page} from './page';
 import type {Settings} from './settings';
 import {ShareDialog} from './share_dialog';
 
-/** Until then the browser may still read a picture that is saved. */
+/** How long the browser may still read a picture that is being saved. */
 const kSavingMs = 1000;
 
 export interface ActionsHost {
@@ -19,7 +19,7 @@ export interface ActionsHost {
   togglePause(): void;
   /** Moves the first clip plane by a share of the extent. */
   moveClip(step: number): void;
-  /** Points at what lies in the middle. */
+  /** Picks what lies in the middle. */
   inspect(): void;
   endTool(): void;
   failed(code: string, message: string): void;
@@ -77,7 +77,7 @@ export class Actions {
     });
   }
 
-  /** For a canvas that `view` draws into. */
+  /** Key actions for the canvas of `view`. */
   keys(view: View): KeyActions {
     return {
       turn: (horizontal, vertical) => view.turn(horizontal, vertical),

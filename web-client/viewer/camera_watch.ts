@@ -1,4 +1,4 @@
-// Tells of the camera once it rests.
+// Reports the camera once it rests.
 
 import type {CameraState} from '../three/camera';
 
@@ -8,13 +8,13 @@ export class CameraWatch {
   private timer: ReturnType<typeof setTimeout> | undefined;
   private told = '';
 
-  /** `now`: the camera; null: there is nothing to tell of. */
+  /** `now` gives the camera, or null if there is nothing to report. */
   constructor(
     private readonly now: () => CameraState | null,
     private readonly rests: (state: CameraState) => void,
   ) {}
 
-  /** After each frame. */
+  /** Must be called after every frame. */
   frame(): void {
     clearTimeout(this.timer);
     this.timer = setTimeout(() => this.tell(), kRestMs);

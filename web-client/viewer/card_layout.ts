@@ -4,16 +4,16 @@ import type {Insets} from '../three/view';
 import {find, onClick} from './find';
 import {insetsOf} from './layout';
 
-/** Narrower than this, the panel is a sheet at the foot (style.css says the same). */
+/** In a narrower viewer the panel is a sheet at the foot (style.css says the same). */
 const kSheetPixels = 640;
 
 export class CardLayout {
-  /** Of what the cards leave free, in shares of the canvas. */
+  /** The middle of the free area, as shares of the canvas. */
   middle: [number, number] = [0.5, 0.5];
   private readonly panel: HTMLElement;
   private readonly resizes = new ResizeObserver(() => this.arrange());
 
-  /** `changed` hears what the cards cover. */
+  /** `changed` is told what the cards cover. */
   constructor(
     private readonly element: HTMLElement,
     private readonly root: ShadowRoot,

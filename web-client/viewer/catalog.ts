@@ -1,4 +1,4 @@
-// What a server has: GET /v1/meshes of proto/PROTOCOL.md.
+// The meshes of a server: GET /v1/meshes of proto/PROTOCOL.md.
 
 import {QtetError} from '../core/errors';
 import {fetchWith} from '../core/token';
@@ -9,9 +9,7 @@ export interface MeshEntry {
   fields: string[];
 }
 
-/**
- * Throws a QtetError whose text tells what to do. `token`: empty where the server asks for none.
- */
+/** Throws a QtetError whose text says what to do. `token` is empty if the server asks for none. */
 export async function fetchCatalog(base: URL, token = ''): Promise<MeshEntry[]> {
   const url = new URL('v1/meshes', base);
   let response: Response;
@@ -43,22 +41,22 @@ export async function fetchCatalog(base: URL, token = ''): Promise<MeshEntry[]> 
   }));
 }
 
-/** A log that lies on any web server: its address names the file. */
+/** Whether the address names a log on any web server. */
 export function isLogFile(base: URL): boolean {
   return base.pathname.endsWith('.qtet');
 }
 
-/** The file's name as a mesh's id. */
+/** The file's name, as a mesh's id. */
 export function meshOfLog(base: URL): string {
   return decodeURIComponent(base.pathname.replace(/^.*\//, '').replace(/\.qtet$/, ''));
 }
 
-/** Address of a server's log as a file. */
+/** The address of a server's log as a file. */
 export function logUrl(base: URL, mesh: string): string {
   return new URL(`v1/meshes/${encodeURIComponent(mesh)}/log`, base).href;
 }
 
-/** Address of the stream beside the HTTP address. */
+/** The address of the stream that belongs to an HTTP address. */
 export function streamUrl(base: URL): string {
   const url = new URL('v1/stream', base);
   url.protocol = base.protocol === 'https:' ? 'wss:' : 'ws:';

@@ -1,5 +1,5 @@
-// A handle in the picture for each clip plane: a dot in its middle that is dragged along its
-// normal.
+// A handle in the picture for each clip plane: a dot in the plane's middle, which is dragged along
+// the normal.
 
 import type {View} from '../three/view';
 import {extentAlong, planeOf} from './clip_plane';
@@ -40,7 +40,7 @@ export class ClipHandles {
     this.place();
   }
 
-  /** To be called after every frame. */
+  /** Must be called after every frame. */
   place(): void {
     this.handles.forEach((handle, i) => {
       const at = this.positionOf(i);
@@ -53,8 +53,8 @@ export class ClipHandles {
   }
 
   /**
-   * The plane's middle on the canvas, the direction of its normal there, and pixels a unit of the
-   * lattice.
+   * The plane's middle on the canvas, the direction of its normal there, and pixels per lattice
+   * unit.
    */
   private positionOf(
     i: number,

@@ -1,5 +1,5 @@
-// Up to three clip planes: across an axis or as the camera looks, moved by a slider here and by a
-// handle in the picture.
+// Up to three clip planes, across an axis or facing the camera. Sliders here and handles in the
+// picture move them.
 
 import {kMaxPlanes} from '../core/display';
 import {formatCoordinate} from './format';
@@ -10,7 +10,7 @@ import {axisNormal, axisOf, clipText, type ClipSetting, type Settings} from './s
 export class ClipPanel implements Panel {
   private planes: ClipSetting[] = [];
 
-  /** `viewNormal`: from the mesh to the camera, in lattice coordinates. */
+  /** `viewNormal` points from the mesh to the camera, in lattice coordinates. */
   constructor(
     private readonly root: ParentNode,
     private readonly attributes: Attributes,
@@ -130,7 +130,7 @@ export class ClipPanel implements Panel {
   }
 }
 
-/** The coordinate across an axis; of a free plane, how far along. */
+/** The plane's coordinate on its axis; for a free plane, its share of the extent. */
 function positionText(plane: ClipSetting, {bounds, manifest}: Scene): string {
   const {axis} = axisOf(plane);
   if (axis < 0) return `${Math.round(100 * plane.share)}\u202f%`;

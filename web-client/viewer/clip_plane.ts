@@ -1,10 +1,10 @@
-// Clip planes of the attributes, which stand at a share of the mesh's extent, as planes of the
-// lattice.
+// Turns clip planes of the attributes, which stand at a share of the mesh's extent, into lattice
+// planes.
 
 import type {Plane} from '../core/slice';
 import {axisOf, type ClipSetting} from './settings';
 
-/** How far the bounds reach along a normal, in lattice units. */
+/** The extent of the bounds along a normal, in lattice units. */
 export function extentAlong(bounds: number[], normal: readonly number[]): [number, number] {
   let low = 0;
   let high = 0;
@@ -18,13 +18,13 @@ export function extentAlong(bounds: number[], normal: readonly number[]): [numbe
 }
 
 /**
- * The plane in lattice coordinates. A share counts along the axis upwards, whichever side is cut
- * away; along a free normal, along it.
+ * The plane in lattice coordinates. A share counts upwards along an axis, whichever side is cut
+ * away, and along the normal of a free plane.
  */
 export function planeOf({normal, share}: ClipSetting, bounds: number[]): Plane {
   const [low, high] = extentAlong(bounds, normal);
   const {axis} = axisOf({normal, share});
   const upwards = axis < 0 || normal[axis]! > 0;
-  // Between two lattice planes: no vertex lies on the cut, and no cell's section is a single point.
+  // Between two lattice planes no vertex lies on the cut, and no cell's section is a single point.
   return {normal, offset: Math.floor(low + (upwards ? share : 1 - share) * (high - low)) + 0.5};
 }

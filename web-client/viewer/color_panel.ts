@@ -49,7 +49,7 @@ export class ColorPanel implements Panel {
     fillScalars(this.find<HTMLSelectElement>('select[name=field]'), fields, chosen);
   }
 
-  /** The range in force, which a fixed one begins with. */
+  /** Shows the current range, which a fixed one starts from. */
   showRange(low: number, high: number): void {
     const active = (this.root as ShadowRoot).activeElement;
     for (const [name, value] of [

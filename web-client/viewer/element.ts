@@ -1,4 +1,4 @@
-// qtet/element: defines <qtet-viewer>, once however often it is loaded.
+// qtet/element: defines <qtet-viewer>, only once however often it is loaded.
 
 import {QtetViewer} from './qtet_viewer';
 

@@ -1,4 +1,4 @@
-// Parts of the viewer's markup (template.ts), which always holds them.
+// Finds parts of the viewer's markup (template.ts). REQUIRES: the part is there.
 
 export function find<T extends Element = HTMLElement>(root: ParentNode, selector: string): T {
   return root.querySelector<T>(selector)!;

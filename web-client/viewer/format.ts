@@ -1,5 +1,5 @@
-// Numbers for people: grouped digits, bytes in decimal units, percent that never says 100 too
-// early.
+// Numbers for people: grouped digits, bytes in decimal units, and percentages that never reach 100
+// too early.
 
 const kCounts = new Intl.NumberFormat('en', {maximumFractionDigits: 0});
 const kByteUnits = ['B', 'kB', 'MB', 'GB', 'TB'];
@@ -21,12 +21,12 @@ export function formatBytes(bytes: number): string {
   return `${text}\u00a0${kByteUnits[unit]}`;
 }
 
-/** Rounds down: 100 means all of it. */
+/** Rounds down, so that 100 means everything. */
 export function percentOf(part: number, whole: number): number {
   return whole > 0 ? Math.min(100, Math.floor((100 * part) / whole)) : 0;
 }
 
-/** A relative error: "1.2 %", "0.034 %"; three digits are what a log knows. */
+/** A relative error: "1.2 %", "0.034 %". A log knows three digits. */
 export function formatError(error: number): string {
   if (error === 0) return '0\u202f%';
   const percent = 100 * error;
@@ -52,7 +52,9 @@ export function formatValue(value: number): string {
   return text.replaceAll('-', '\u2212');
 }
 
-/** A coordinate on an axis of length `span`, to a thousandth of that: next to zero is zero. */
+/**
+ * A coordinate on an axis of length `span`, to a thousandth of it. Almost zero is written as zero.
+ */
 export function formatCoordinate(value: number, span: number): string {
   const magnitude = Math.max(Math.abs(value), span);
   if (magnitude >= 1e5 || magnitude < 1e-2)

@@ -1,4 +1,4 @@
-// What draws for a viewer: its view, from the start of the graphics to their loss and their return.
+// The graphics of a viewer: they start, may be lost, come back, and can be restarted.
 
 import {errorText} from '../core/errors';
 import type {CoarseCells} from '../core/volume';
@@ -9,17 +9,14 @@ import {find} from './find';
 import type {Notices} from './notices';
 import {Triad} from './triad';
 
-/**
- * Graphics may take long to start where software draws. After this the user may begin anew, or go
- * on waiting.
- */
+/** Graphics without a GPU may start slowly. After this time the user may restart them or wait. */
 const kStartPatienceMs = 30000;
 
 export interface GraphicsListeners {
   opened(view: View): void;
   /** After each frame. */
   drawn(): void;
-  /** Something that the page should hear of, too. */
+  /** For failures that the page should hear of, too. */
   failed(code: string, message: string): void;
   /** Client.coarse. */
   coarse(have: number): Promise<CoarseCells>;
@@ -35,7 +32,7 @@ export class Graphics {
     private readonly listeners: GraphicsListeners,
   ) {}
 
-  /** `camera` is asked once there is a view; null: the mesh is fitted. */
+  /** `camera` is called once there is a view; null fits the mesh. */
   async open(camera: () => CameraState | null): Promise<void> {
     const canvas = find<HTMLCanvasElement>(this.root, '.scene');
     const patience = setTimeout(() => this.tellOfWaiting(), kStartPatienceMs);
@@ -59,7 +56,7 @@ export class Graphics {
     }
   }
 
-  /** Another worker and another canvas: a canvas can be given away only once. */
+  /** Uses another worker and another canvas: a canvas can be transferred only once. */
   async restart(camera: () => CameraState | null): Promise<void> {
     this.notices.endOf('graphics');
     this.view?.dispose();

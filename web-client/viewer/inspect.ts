@@ -1,5 +1,5 @@
-// Pointing at the mesh: a cell with its values, or two points with their distance and the field
-// between them.
+// Pointing at the mesh: shows a cell with its values, or two points with their distance and the
+// field between them.
 
 import type {Vector} from '../core/cell_ray';
 import type {Client} from '../core/client';
@@ -17,12 +17,12 @@ export interface InspectHost {
   readonly client: Client | null;
   readonly view: View | null;
   readonly manifest: Manifest | null;
-  /** Of what the cards leave free, in shares of the canvas. */
+  /** The middle of the free area, as shares of the canvas. */
   readonly middle: [number, number];
-  /** Title of the field that colours, for the plot. */
+  /** The title of the coloured field, for the plot. */
   readonly fieldTitle: string;
   announce(text: string): void;
-  /** What is pointed at, of lattice coordinates, is wanted first; null: nothing is. */
+  /** The place that is pointed at, in lattice coordinates, is refined first; null for none. */
   pointAt(point: Vector | null): void;
 }
 
@@ -34,7 +34,7 @@ export class Inspect {
   private readonly marks: SVGSVGElement;
   private plot: {destroy(): void} | null = null;
 
-  /** Hears the canvas through its root: another may take its place. */
+  /** Listens on the root, because another canvas may replace this one. */
   constructor(
     private readonly root: ShadowRoot,
     private readonly host: InspectHost,
@@ -72,7 +72,7 @@ export class Inspect {
     this.clear();
   }
 
-  /** What is under the middle of the picture: the keyboard's way. */
+  /** Picks what is under the middle of the picture, for the keyboard. */
   pickMiddle(): void {
     const {
       view,
@@ -92,7 +92,7 @@ export class Inspect {
     this.host.pointAt(null);
   }
 
-  /** To be called after every frame: the marks follow their points. */
+  /** Must be called after every frame, so that the marks follow their points. */
   place(): void {
     const {view} = this.host;
     this.marks.replaceChildren();
@@ -149,13 +149,13 @@ export class Inspect {
     if (probe.values.length > 1) await this.drawPlot(probe);
   }
 
-  /** To a ten-thousandth of what the lattice spans. */
+  /** With a precision of a ten-thousandth of the lattice's span. */
   private placeText(place: Vector): string {
     const {bits, step} = this.host.manifest!.lattice;
     return place.map((x) => formatCoordinate(x, (step * 2 ** bits) / 10)).join(', ');
   }
 
-  /** uPlot comes over the network with the first plot only. */
+  /** uPlot is loaded with the first plot. */
   private async drawPlot(probe: Probe): Promise<void> {
     const {drawProbe} = await import('./probe_plot');
     this.plot?.destroy();

@@ -1,4 +1,4 @@
-// The keyboard on the canvas; kKeyHelp is what the help shows.
+// The keyboard on the canvas. The help shows kKeyHelp.
 
 export const kKeyHelp: readonly (readonly [string, string])[] = [
   ['← → ↑ ↓', 'turn'],

@@ -1,13 +1,13 @@
-// Which shares of the viewer the cards cover, so that the mesh is centred in what is left.
+// The shares of the viewer that the cards cover. The mesh is centred in the rest.
 
 import type {Insets} from '../three/view';
 
-/** A sheet that is pulled up covers the mesh rather than squeezing it out of sight. */
+/** A sheet that is pulled up covers the mesh; it does not squeeze it out of sight. */
 const kMaxCovered = 0.6;
-/** Of the free width: a wider legend leaves no corner. */
+/** Share of the free width: a wider legend leaves no corner. */
 const kWide = 0.6;
 
-/** `result`: on a sheet's screen it stands above the sheet, and the mesh above both. */
+/** `result` stands above the sheet on narrow screens, and the mesh above both. */
 export function insetsOf(
   host: HTMLElement,
   {panel, legend, result}: {panel: HTMLElement; legend: HTMLElement; result: HTMLElement},
@@ -30,8 +30,8 @@ export function insetsOf(
     };
   }
   const free = (hidden ? whole.right : card.left) - whole.left;
-  // The legend takes a corner only: half of its height is room enough, unless hardly anything
-  // beside it is free.
+  // The legend only takes a corner, so that half of its height is enough room, unless it leaves
+  // hardly any width.
   const bottom = bare ? 0 : (whole.bottom - bar.top) / height / (bar.width > kWide * free ? 1 : 2);
   return {
     left: 0,

@@ -13,7 +13,7 @@ export interface ShownRange {
   low: number;
   high: number;
   logarithmic: boolean;
-  /** Somewhere there is no value: that colour is told, too. */
+  /** Some values are missing: the legend explains their colour. */
   hasMissing: boolean;
 }
 
@@ -37,7 +37,7 @@ export class Legend {
   ): void {
     this.figure.hidden = false;
     const wanted = JSON.stringify([scalar, range, map, reversed, scalarTitle(scalar, fields)]);
-    if (wanted === this.shown) return; // every picture asks, few change it
+    if (wanted === this.shown) return; // every picture asks, but few change it
     this.shown = wanted;
     const {ticks, factor} = range.logarithmic
       ? logTicks(range.low, range.high, kMaxTicks)

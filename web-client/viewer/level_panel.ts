@@ -1,5 +1,5 @@
-// How far to refine: all of it, or to so many cells, bytes or so small an error; coarser and finer
-// by halves and doubles.
+// How far to refine: fully, or up to a number of cells or bytes or an error. Coarser and finer
+// change the cells by a factor of two.
 
 import {errorOfLevel, limitText, type Limit} from '../core/limit';
 import type {Manifest} from '../core/manifest';
@@ -7,7 +7,7 @@ import type {Statistics} from '../core/statistics';
 import {parseNumbers, type Settings} from './settings';
 
 const kUnits = {full: '', cells: 'cells', bytes: 'kB', error: '%'};
-/** From a figure in its unit to the limit's own. */
+/** From the shown unit to the limit's own. */
 const kFactors = {full: 1, cells: 1, bytes: 1000, error: 0.01};
 
 export class LevelPanel {
@@ -29,7 +29,7 @@ export class LevelPanel {
         manifest,
         fields,
       } = now();
-      // Begins with where the mesh stands.
+      // Starts from the mesh as it is now.
       const error = errorOfLevel(manifest?.levels[level], fields) ?? 0;
       const value = {
         cells: tetrahedra,

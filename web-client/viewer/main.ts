@@ -1,5 +1,5 @@
-// The demo page: the viewer over the whole window. The address tells what to show, and follows what
-// is shown: a link is a picture.
+// The demo page: the viewer fills the window. The address says what is shown and follows changes,
+// so that a link is a picture.
 
 import './element';
 import type {QtetViewer} from './qtet_viewer';
@@ -18,7 +18,7 @@ for (const name of ['src', 'transport', ...kViewAttributes]) {
   const value = query.get(name);
   if (value !== null && value !== '') viewer.setAttribute(name, value);
 }
-/** Browsers allow some hundred changes of the address in half a minute; a slider makes more. */
+/** Browsers allow a few hundred changes of the address in half a minute. A slider makes more. */
 const kRestMs = 300;
 let timer: ReturnType<typeof setTimeout> | undefined;
 const remember = (): void => {

@@ -1,10 +1,13 @@
-// The mesh's name, or a menu where there are several.
+// The mesh's name, or a menu if there are several.
 
 import type {MeshEntry} from './catalog';
 import {find} from './find';
 import {fillSelect} from './select';
 
-/** What the menu says; empty before there is one. Also for a viewer that is out of its page. */
+/**
+ * The mesh in the menu; empty if there is no menu yet. It also works for a viewer outside a
+ * document.
+ */
 export function chosenMesh(root: ParentNode): string {
   return root.querySelector<HTMLSelectElement>('select[name=mesh]')?.value ?? '';
 }

@@ -1,9 +1,11 @@
-// Notices over the picture: what went wrong, and the way out. The last one that has not ended is
-// shown.
+// Notices over the picture: what went wrong, and what to do. The newest one is shown until it ends.
 
 import {find, onClick} from './find';
 
-/** What a notice is about; trying again begins that anew. There is no trying again for the page. */
+/**
+ * What a notice concerns. Trying again restarts the stream or the graphics; for the page there is
+ * no trying again.
+ */
 export type NoticeSource = 'stream' | 'graphics' | 'page';
 
 const kOfPage = ['unknown-field', 'no-fullscreen', 'no-picture'];
@@ -24,7 +26,7 @@ export class Notices {
     onClick(this.card, '.retry', () => retry(sourceOf(this.shownCode)));
   }
 
-  /** Takes the place of an earlier one with this code. */
+  /** Replaces an earlier notice with the same code. */
   add(code: string, message: string): void {
     this.notices = [...this.notices.filter((notice) => notice.code !== code), {code, message}];
     this.show();

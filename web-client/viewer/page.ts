@@ -1,4 +1,4 @@
-// The element as its parts see it.
+// How the element's parts see the element.
 
 import type {CameraState} from '../three/camera';
 import type {ViewAttribute} from './settings';
@@ -12,21 +12,21 @@ export interface Attributes {
 export interface Page extends Attributes {
   readonly element: HTMLElement;
   readonly root: ShadowRoot;
-  /** Empty: the server asks for none. */
+  /** Empty if the server asks for none. */
   readonly token: string;
-  /** Attributes that show the same picture again. */
+  /** The attributes that show the same picture again. */
   readonly view: Map<string, string>;
   /** Dispatches an event. */
   tell(type: string, detail: unknown): void;
-  /** To screen readers. */
+  /** Tells screen readers. */
   announce(text: string): void;
 }
 
-/** What outlives a stay in a document. */
+/** What survives when the element leaves a document. */
 export interface Kept {
-  /** Asked for before there was a view. */
+  /** The camera that was asked for before there was a view. */
   camera: CameraState | null;
-  /** Paused before there was a stream. */
+  /** The stream was paused before there was one. */
   paused: boolean;
   /** The server and the mesh that were opened last. */
   opened: string;

@@ -1,11 +1,11 @@
-// What the panels share: when they are brought up to date, and the fields that menus offer.
+// What the panels share: their update, and the fields in their menus.
 
 import {kMagnitude, type Scalar} from '../core/field_scale';
 import type {FieldInfo, Manifest} from '../core/manifest';
 import {fillSelect} from './select';
 import {scalarText, type Settings} from './settings';
 
-/** What is known of the mesh when a panel is brought up to date. */
+/** The mesh, as far as a panel needs it. */
 export interface Scene {
   manifest: Manifest;
   bounds: number[];
@@ -18,7 +18,7 @@ export interface Panel {
 
 const kAxes = ['x', 'y', 'z'];
 
-/** "Velocity, x"; without a component, a vector's magnitude says so. */
+/** "Velocity, x", or "Velocity, magnitude" for a vector without a component. */
 export function scalarTitle({field, component}: Scalar, fields: readonly FieldInfo[]): string {
   const info = fields[field]!;
   const twins = fields.filter(({name}) => name === info.name).length > 1;
@@ -29,8 +29,8 @@ export function scalarTitle({field, component}: Scalar, fields: readonly FieldIn
 }
 
 /**
- * Every field, vectors with their components, fields of points and of cells in groups where there
- * are both.
+ * Offers every field, and the components of vectors. Fields of points and of cells are in groups if
+ * there are both.
  */
 export function fillScalars(
   select: HTMLSelectElement,

@@ -1,4 +1,4 @@
-// The cards over the picture, each a component of its own, brought up to date together.
+// The cards over the picture. Each panel is a component of its own; this updates them together.
 
 import type {Vector} from '../core/cell_ray';
 import type {Client} from '../core/client';
@@ -28,7 +28,7 @@ export interface PanelsHost {
   readonly client: Client;
   readonly view: View | null;
   readonly mesh: ShownMesh;
-  /** What is pointed at, of lattice coordinates, is wanted first; null: nothing is. */
+  /** The place that is pointed at, in lattice coordinates, is refined first; null for none. */
   pointAt(point: Vector | null): void;
 }
 
@@ -38,7 +38,7 @@ export class Panels {
   readonly clip: ClipPanel;
   readonly inspect: Inspect;
   private readonly color: ColorPanel;
-  /** All that show attributes alone, and the fields of the mesh. */
+  /** Panels that need only the attributes and the mesh's fields. */
   private readonly simple: readonly {update(settings: Settings, known: Scene | null): void}[];
   private readonly handles: ClipHandles;
   private readonly legend: Legend;
@@ -101,7 +101,7 @@ export class Panels {
     this.handles.attach(view);
   }
 
-  /** Brings all in line with the attributes and what is known of the mesh. */
+  /** Brings all panels in line with the attributes and the mesh. */
   update(settings: Settings, {manifest, bounds}: ShownMesh): void {
     const known: Scene | null = manifest && {manifest, bounds};
     for (const panel of this.simple) panel.update(settings, known);
@@ -109,7 +109,7 @@ export class Panels {
     this.handles.update(settings.planes, bounds);
   }
 
-  /** After each frame: what stands in the picture follows it. */
+  /** Must be called after every frame: handles and marks follow the picture. */
   follow(): void {
     this.handles.place();
     this.inspect.place();
@@ -120,12 +120,12 @@ export class Panels {
     this.view.showState(state);
   }
 
-  /** Figures of the picture that came. `frameMs`: of drawing. */
+  /** Shows the picture's figures. `frameMs` is the time of drawing. */
   showFigures({statistics, costMs}: NonNullable<ShownMesh['snapshot']>, frameMs: number): void {
     this.statistics.show(statistics, costMs, frameMs);
   }
 
-  /** The legend; null: nothing is coloured. */
+  /** Shows the legend; null if nothing is coloured. */
   showRange(range: ShownRange | null, {snapshot, manifest}: ShownMesh, settings: Settings): void {
     if (range && snapshot?.color && manifest) {
       this.legend.show(snapshot.color, manifest.fields, range, settings);
@@ -136,7 +136,7 @@ export class Panels {
     this.cards.arrange();
   }
 
-  /** Another mesh comes. */
+  /** Must be called before another mesh. */
   clear(): void {
     this.progress.begin(null);
     this.statistics.clear();
@@ -155,7 +155,7 @@ function fieldTitle({read}: Pick<Page, 'read'>, {manifest}: ShownMesh): string {
   return manifest && color ? scalarTitle(color, manifest.fields) : '';
 }
 
-/** Where the mesh stands: coarser and finer begin there. */
+/** The mesh as it is now: coarser and finer start from it. */
 function standing(
   {read}: Pick<Page, 'read'>,
   {statistics, manifest}: ShownMesh,

@@ -1,4 +1,4 @@
-// A field along a line, drawn by uPlot; loaded when somebody first asks for it.
+// A field along a line, drawn by uPlot. It is loaded when somebody first asks for it.
 
 import uPlot from 'uplot';
 import plotStyles from 'uplot/dist/uPlot.min.css?inline';
@@ -8,8 +8,8 @@ import {formatValue} from './format';
 const kHeight = 170;
 
 /**
- * Two places at one distance are a jump: uPlot wants them in ascending order, which they are. A gap
- * is where the value is missing.
+ * Two values at one distance are a jump. The distances ascend, as uPlot requires. Missing values
+ * leave a gap.
  */
 export function drawProbe(
   root: ShadowRoot,

@@ -1,6 +1,6 @@
-// State, bar and figures: bytes, cells, the known error that is left, and how long it will take.
-// The bar counts bytes: the share of what the whole mesh with the shown fields needs. Below it, how
-// far to refine, and the known error against bytes, with the place that is reached.
+// State, bar and figures: bytes, cells, the known error that is left, and the time that is left.
+// The bar shows bytes: the share of what the whole mesh with the shown fields needs. The curve
+// below shows the known error against bytes, and the point that is reached.
 
 import type {LevelBytes} from '../core/goal';
 import {errorOfLevel, type Limit} from '../core/limit';
@@ -18,22 +18,20 @@ const kStateTexts: Record<StreamState, string> = {
   held: 'At this level',
   failed: 'Stopped',
 };
-/** Screen readers hear of every so many per cent. */
+/** Screen readers are told at every multiple of so many per cent. */
 const kAnnouncedPercent = 25;
-/**
- * Figures that change faster nobody reads, and each change makes the browser draw the page anew.
- */
+/** Nobody reads figures that change faster, and each change makes the browser redraw the page. */
 const kFiguresMs = 250;
 /**
- * The rate is that of the last so many milliseconds: short enough to follow the line, long enough
- * to be calm.
+ * The rate covers the last so many milliseconds: short enough to follow the line, long enough to be
+ * calm.
  */
 const kRateWindowMs = 4000;
 
-/** The plot shows errors down to this share of the first one at least. */
+/** The curve spans errors from the first one down to at most this fraction of it. */
 const kLeastSpan = 10;
 
-/** Bytes and the error that is left with them. */
+/** Bytes, and the error that is left with them. */
 type Point = [number, number];
 
 export class ProgressPanel {
@@ -66,7 +64,7 @@ export class ProgressPanel {
     this.announced = -1;
   }
 
-  /** What lies ahead, with these fields. */
+  /** Takes the plan of these fields. */
   takePlan(plan: LevelBytes[]): void {
     this.plan = plan;
   }
@@ -76,7 +74,7 @@ export class ProgressPanel {
     this.limit = limit;
   }
 
-  /** Draws the figures soon, however often they change before that. */
+  /** Draws the figures soon, and only once for a burst of changes. */
   show(statistics: Statistics): void {
     this.statistics = statistics;
     this.arrivals.push({at: performance.now(), bytes: statistics.bytes});
@@ -99,7 +97,7 @@ export class ProgressPanel {
     if (this.statistics) this.draw();
   }
 
-  /** The known error of what is on the screen; null where the log does not tell. */
+  /** The known error of the mesh on the screen; null if the log does not tell. */
   errorLeft(): number | null {
     return this.manifest && this.statistics
       ? errorOfLevel(this.manifest.levels[this.statistics.level], this.fields)
@@ -144,7 +142,7 @@ export class ProgressPanel {
     const rate = ((bytes - first.bytes) / Math.max(now - first.at, 1)) * 1000;
     const goal =
       this.limit.kind === 'bytes' ? Math.min(this.limit.value, bytesNeeded) : bytesNeeded;
-    // Where an error or a number of cells ends it, nobody knows at which byte.
+    // With a limit of errors or cells, the byte at which it ends is unknown.
     if (
       this.state !== 'streaming' ||
       rate <= 0 ||
@@ -157,9 +155,9 @@ export class ProgressPanel {
   }
 
   /**
-   * Logarithmic both ways, from the first level's error to the last one's that is not 0; behind
-   * that the line goes to the ground. Where one is has the bytes that are here: of a log of regions
-   * these may be more than the level needs, for what is looked at comes first.
+   * Both axes are logarithmic, from the first level's error to the last one that is not 0. Behind
+   * it the line goes to the ground. The reached point has the bytes that are here. In a log of
+   * regions these may be more than the level needs, because what is looked at comes first.
    */
   private drawCurve(): void {
     const figure = this.curveFigure;

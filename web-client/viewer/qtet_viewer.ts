@@ -48,20 +48,20 @@ import {Viewing} from './viewing';
 export class QtetViewer extends HTMLElement {
   static readonly observedAttributes = ['src', 'transport', ...kViewAttributes];
 
-  /** While the element is in a document. */
+  /** Exists while the element is in a document. */
   client: Client | null = null;
   private readonly root = this.attachShadow({mode: 'open'});
   private readonly page = pageOf(this, this.root);
   private readonly kept: Kept = {camera: null, paused: false, opened: ''};
-  /** From the first step on: before it there is nothing in the shadow root. */
+  /** Exists from the first step on; before it the shadow root is empty. */
   private viewing: Viewing | null = null;
   private bearer = '';
 
   // ---- for the page
 
   /**
-   * What a server whose meshes are guarded asks for (proto/PROTOCOL.md, "Tokens"). It is a
-   * property, so that it stands in no page's text.
+   * The token for a server that guards its meshes (proto/PROTOCOL.md, "Tokens"). It is a property,
+   * so that no page's text contains it.
    */
   get token(): string {
     return this.bearer;
@@ -81,16 +81,16 @@ export class QtetViewer extends HTMLElement {
     const {tetrahedra, vertices, boundaryTriangles} = this.statistics;
     return {tetrahedra, vertices, boundaryTriangles};
   }
-  /** What is known of the log; null before its head is here. */
+  /** The log's manifest; null before its head is here. */
   get manifest(): Manifest | null {
     return this.viewing?.mesh.manifest ?? null;
   }
-  /** What draws; null before it can. */
+  /** The view that draws; null before there is one. */
   get meshView(): View | null {
     return this.viewing?.view ?? null;
   }
 
-  /** Attributes that show the same picture again, with the camera as it stands. */
+  /** The attributes that show the same picture again, with the current camera. */
   get view(): Map<string, string> {
     const view = new Map<string, string>();
     for (const name of kViewAttributes) {
@@ -139,8 +139,8 @@ export class QtetViewer extends HTMLElement {
   // ---- custom element
 
   /**
-   * In steps, each a task of its own: a page stands still for the longest of them, not for their
-   * sum.
+   * Starts in steps, each a task of its own: a page stands still for the longest of them, not for
+   * their sum.
    */
   connectedCallback(): void {
     const client = new Client((message) => this.viewing?.receive(message));

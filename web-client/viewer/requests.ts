@@ -1,5 +1,5 @@
-// What a viewer asks of its worker: what to show, and what to refine first. Each is sent once,
-// until it changes.
+// What a viewer asks of its worker: what to show, and what to refine first. Each request is sent
+// only if it has changed.
 
 import type {Vector} from '../core/cell_ray';
 import type {Client} from '../core/client';
@@ -10,19 +10,19 @@ import {fieldValuesOf, sharesOf, shownScalar, type Settings, type ViewAttribute}
 import type {ShownMesh} from './shown_mesh';
 
 export class Requests {
-  /** What is pointed at, on the lattice. */
+  /** The place that is pointed at, on the lattice. */
   point: Vector | null = null;
   private display = '';
   private view = '';
 
   constructor(private readonly client: Client) {}
 
-  /** Another mesh comes, of which the worker has been told nothing. */
+  /** Must be called before another mesh: the worker has been told nothing about it. */
   forget(): void {
     this.display = this.view = '';
   }
 
-  /** True if it is another display than before. */
+  /** Returns true if the display has changed. */
   show(display: Display): boolean {
     const text = JSON.stringify(display);
     if (text === this.display) return false;
@@ -39,12 +39,12 @@ export class Requests {
   }
 }
 
-/** In lattice coordinates; none before there are bounds. */
+/** The clip planes in lattice coordinates; none before there are bounds. */
 export function planesOf({planes}: Settings, {bounds}: ShownMesh): Plane[] {
   return bounds.length > 0 ? planes.map((plane) => planeOf(plane, bounds)) : [];
 }
 
-/** `read`: an attribute. REQUIRES: the manifest is here. */
+/** `read` gives an attribute. REQUIRES: the manifest is here. */
 export function displayOf(
   settings: Settings,
   mesh: ShownMesh,

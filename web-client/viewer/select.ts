@@ -1,4 +1,4 @@
-// Filling a native select.
+// Fills a native select.
 
 export interface SelectOption {
   value: string;
@@ -6,7 +6,7 @@ export interface SelectOption {
   group?: string;
 }
 
-/** Leaves the menu as it is when it holds these already, so that an open one does not close. */
+/** A menu that holds these options already stays untouched, so that an open one does not close. */
 export function fillSelect(
   select: HTMLSelectElement,
   options: SelectOption[],
@@ -22,7 +22,9 @@ export function fillSelect(
   select.value = chosen;
 }
 
-/** The group of that label, made with its first option; without a label the menu itself. */
+/**
+ * The group with this label, created for its first option; the menu itself if there is no label.
+ */
 function groupOf(select: HTMLSelectElement, label: string | undefined): HTMLElement {
   if (label === undefined) return select;
   const groups = [...select.querySelectorAll('optgroup')];

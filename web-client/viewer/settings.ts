@@ -1,5 +1,5 @@
-// What the viewer shows, as its attributes tell it: every control writes an attribute, every
-// attribute can stand in a link. Texts in, plain data out.
+// What the viewer shows, read from its attributes. Every control writes an attribute, and every
+// attribute can be part of a link.
 
 import {isColorMapName, type ColorMapName} from '../core/color_maps';
 import {kClipModes, kMaxPlanes, type ClipMode} from '../core/display';
@@ -8,7 +8,7 @@ import {kFull, parseLimit, type Limit} from '../core/limit';
 import {fieldKeys, type FieldInfo} from '../core/manifest';
 import type {CameraState} from '../three/camera';
 
-/** Attributes that make up a view, in the order of a link. */
+/** The attributes of a view, in the order of a link. */
 export const kViewAttributes = [
   'mesh',
   'field',
@@ -30,7 +30,8 @@ export const kViewAttributes = [
 export type ViewAttribute = (typeof kViewAttributes)[number];
 
 /**
- * Across an axis, or across any direction of the lattice; at a share of the mesh's extent that way.
+ * A plane at a share of the mesh's extent along its normal, which is an axis or any direction of
+ * the lattice.
  */
 export interface ClipSetting {
   normal: [number, number, number];
@@ -82,8 +83,8 @@ function parseRange(text: string | null): Settings['range'] {
 }
 
 /**
- * What the volume begins with: low values are faint, so that the shape of all of it is still to be
- * seen, high ones dense.
+ * The first opacities of a volume: low values are faint, so that its whole shape is visible, and
+ * high ones dense.
  */
 export const kFirstOpacities: readonly number[] = [0.03, 0.04, 0.06, 0.1, 0.2, 0.35, 0.5, 0.7, 0.9];
 
@@ -102,7 +103,7 @@ function parseCamera(text: string | null): CameraState | null {
   return numbers.length === 6 ? (numbers as CameraState) : null;
 }
 
-/** "1, 2.5 3e-4" as numbers; empty when anything in it is none. */
+/** Reads "1, 2.5 3e-4" as numbers. The result is empty if anything in it is no number. */
 export function parseNumbers(text: string): number[] {
   const numbers = text
     .replaceAll('\u2212', '-')
@@ -145,7 +146,7 @@ export function axisNormal(axis: number, flipped: boolean): [number, number, num
   return normal;
 }
 
-/** Across which axis a plane lies, and from which side; -1: none of them. */
+/** The plane's axis, -1 for a free plane, and its side. */
 export function axisOf({normal}: ClipSetting): {axis: number; flipped: boolean} {
   const axis = normal.findIndex((x) => Math.abs(x) === 1);
   return {axis, flipped: axis >= 0 && normal[axis] !== kFirstSides[axis]};
@@ -178,13 +179,13 @@ export function parseScalar(text: string | null, fields: readonly FieldInfo[]): 
   return {field, component: component < fields[field]!.components ? component : kMagnitude};
 }
 
-/** What colours: the field of that name, or the first; null: there is none. */
+/** The scalar that colours: the named field, or the first one; null if there is none. */
 export function shownScalar(text: string | null, fields: readonly FieldInfo[]): Scalar | null {
   const first = fields.length > 0 ? {field: 0, component: kMagnitude} : null;
   return parseScalar(text, fields) ?? first;
 }
 
-/** The key of the field alone, for asking a server before its fields are known. */
+/** The field's key without a component, to ask a server before its fields are known. */
 export function scalarKey(text: string): string {
   return text.replace(/\[\d+\]$/, '');
 }
@@ -213,8 +214,8 @@ export function parseFieldValues(
 }
 
 /**
- * Isosurfaces need a field of points, a threshold two values; null: the text says nothing, or
- * nothing that fits the mesh.
+ * Reads isosurfaces, which need a point field, or a threshold, which needs two values. Null if the
+ * text is empty or does not fit the mesh.
  */
 export function fieldValuesOf(
   kind: 'iso' | 'threshold',
@@ -238,7 +239,7 @@ export function fieldValuesText(
   return `${scalarText(scalar, fields)}=${numbers.join(',')}`;
 }
 
-/** Values of the field as shares of its scalarRange. */
+/** The values as shares of the field's scalarRange. */
 export function sharesOf({scalar, values}: FieldValues, fields: readonly FieldInfo[]): number[] {
   const [low, high] = scalarRange(fields[scalar.field]!, scalar.component);
   return values.map((value) => (high > low ? (value - low) / (high - low) : 0));
@@ -247,8 +248,8 @@ export function sharesOf({scalar, values}: FieldValues, fields: readonly FieldIn
 // ---- the range that the colours span
 
 /**
- * `extent`: what occurs, in the field's values. Logarithmic ranges begin above 0, at a
- * ten-thousandth of their end if they have to.
+ * `extent` is the range of the values that occur. A logarithmic range starts above 0, if necessary
+ * at a ten-thousandth of its end.
  */
 export function shownRange(
   {range, logarithmic}: Settings,

@@ -1,4 +1,4 @@
-// A link to the same picture, and the lines that put it into another page.
+// A link to the same picture, and HTML that embeds it in another page.
 
 /** The page's address with these parameters instead of its own. */
 export function linkTo(page: string, view: ReadonlyMap<string, string>): string {
@@ -9,8 +9,8 @@ export function linkTo(page: string, view: ReadonlyMap<string, string>): string 
 }
 
 /**
- * HTML for a page on any host: this page in a frame, which brings its own worker and WebAssembly
- * from where they lie.
+ * HTML for a page on any host: a frame with this page, which loads its worker and its WebAssembly
+ * itself.
  */
 export function embedSnippet(link: string, title: string): string {
   const quoted = (text: string): string =>

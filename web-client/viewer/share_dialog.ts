@@ -1,4 +1,4 @@
-// Link and lines for other pages, to be copied.
+// The dialog with the link and the HTML to copy.
 
 import {find, onClick} from './find';
 import type {Page} from './page';
@@ -24,7 +24,7 @@ export class ShareDialog {
   private async copy(selector: string): Promise<void> {
     const box = this.box(selector);
     box.select();
-    // A page that is not https has no clipboard.
+    // Pages without https have no clipboard.
     const clipboard = navigator.clipboard as Clipboard | undefined;
     await clipboard?.writeText(box.value).then(
       () => this.page.announce('Copied'),

@@ -1,4 +1,4 @@
-// What a viewer knows of the mesh that it shows. Another mesh begins with none of it.
+// What a viewer knows about the mesh that it shows. Another mesh gets another object.
 
 import type {LevelBytes} from '../core/goal';
 import type {Manifest} from '../core/manifest';
@@ -10,21 +10,21 @@ export class ShownMesh {
   manifest: Manifest | null = null;
   /** In lattice coordinates; empty before the first picture. */
   bounds: number[] = [];
-  /** What lies ahead. */
+  /** The levels ahead. */
   plan: LevelBytes[] = [];
   /** The newest figures. */
   statistics: Statistics = kNoStatistics;
   /** The newest picture. */
   snapshot: Snapshot | null = null;
-  /** A picture that came before there was a view. */
+  /** A picture that waits for a view. */
   waiting: Snapshot | null = null;
-  /** Some of its values are missing. */
+  /** Some values in the picture are missing. */
   hasMissing = false;
-  /** Figures of the picture on the screen; null: there is none. */
+  /** The figures of the picture on the screen; null if there is none. */
   drawn: Statistics | null = null;
 
   take(snapshot: Snapshot): void {
-    // Other figures are newer: the picture may have waited for a view.
+    // Other figures are newer than a picture that waited for a view.
     if (this.statistics === kNoStatistics) this.statistics = snapshot.statistics;
     this.snapshot = snapshot;
     if (!snapshot.surface) return; // a new cut of the same mesh
@@ -33,7 +33,7 @@ export class ShownMesh {
     );
   }
 
-  /** All that is here and wanted is on the screen: the decoder may be done long before. */
+  /** The whole mesh is on the screen. The decoder may have finished long before. */
   get isDrawn(): boolean {
     return this.drawn !== null && this.drawn.bytes >= this.statistics.bytesNeeded;
   }

@@ -1,11 +1,11 @@
-// The figures behind the pictures: what they cost, and how many cells come.
+// The figures about the pictures: their cost, and the rate of new cells.
 
 import type {Statistics} from '../core/statistics';
 import {find} from './find';
 import {formatCount} from './format';
 
 export class StatisticsPanel {
-  /** Of the picture before; at 0 there was none. */
+  /** The previous picture; there was none if `at` is 0. */
   private last = {at: 0, cells: 0};
 
   constructor(private readonly root: ParentNode) {}
@@ -14,7 +14,7 @@ export class StatisticsPanel {
     this.last = {at: 0, cells: 0};
   }
 
-  /** `costMs`: of making the picture; `frameMs`: of drawing. */
+  /** `costMs` is the time of making the picture, `frameMs` of drawing it. */
   show(statistics: Statistics, costMs: number, frameMs: number): void {
     const now = performance.now();
     const {at, cells} = this.last;

@@ -1,4 +1,5 @@
-// Which mesh of which server comes to a viewer, and whether it comes: opening, pausing, refining.
+// Decides which mesh of which server comes to a viewer, and whether it comes: opens, pauses,
+// refines.
 
 import {kTransportKinds} from '../core/auto_transport';
 import type {Client} from '../core/client';
@@ -10,13 +11,13 @@ import {MeshMenu} from './mesh_menu';
 import type {Kept, Page} from './page';
 import {scalarKey} from './settings';
 
-/** Another mesh has other fields, places and values; what does not depend on them stays. */
+/** Attributes that belong to one mesh: another one has other fields, places and values. */
 const kOfOneMesh = ['field', 'range', 'iso', 'threshold', 'camera', 'quality'] as const;
 
 export interface StreamListeners {
-  /** How far to refine from the beginning. */
+  /** The limit to begin with. */
   limit(): Limit;
-  /** A mesh is opened; `isSame`: the one of before, anew. */
+  /** A mesh is opened. `isSame`: it is the previous one again. */
   opens(isSame: boolean): void;
   changed(state: StreamState, attempt: number, delayMs: number): void;
   failed(code: string, message: string): void;
@@ -24,13 +25,13 @@ export interface StreamListeners {
 
 export class StreamControl {
   state: StreamState = 'connecting';
-  /** Attributes change because another mesh was chosen from the menu. */
+  /** Attributes are changing because the user chose another mesh. */
   isChoosing = false;
   private readonly menu: MeshMenu;
   private catalog: MeshEntry[] = [];
-  /** A later opening counts, whichever list comes first. */
+  /** Numbers the openings: the last one counts, whichever list arrives first. */
   private openings = 0;
-  /** There is a stream of the mesh that was opened last. */
+  /** The mesh that was opened last has a stream. */
   private started = false;
 
   constructor(
@@ -42,7 +43,7 @@ export class StreamControl {
     this.menu = new MeshMenu(page.root, (mesh) => this.choose(mesh));
   }
 
-  /** Lists the meshes, and begins with the one that the attribute names, or the first. */
+  /** Lists the meshes and opens the one that the attribute names, or the first. */
   async open(): Promise<void> {
     const opening = ++this.openings;
     this.started = false;
@@ -142,7 +143,10 @@ export class StreamControl {
     kept.paused = false;
   }
 
-  /** Those that the attributes name, or else the first: null where nobody knows that one yet. */
+  /**
+   * The keys of the fields that the attributes name, or else of the first field; null if that is
+   * unknown.
+   */
   private firstFields(mesh: string): string[] | null {
     const {page} = this;
     const fields = this.catalog.find(({id}) => id === mesh)?.fields ?? [];
@@ -156,7 +160,7 @@ export class StreamControl {
     return isLogFile(this.base) ? null : fields.slice(0, 1);
   }
 
-  /** What memory stopped has no `quality` to take away: it is tried once more. */
+  /** If memory was the limit, there is no `quality` to remove: refining is tried again. */
   private refineFully(): void {
     if (this.page.read('quality') !== null) this.page.write('quality', null);
     else this.client.setLimit(kFull);

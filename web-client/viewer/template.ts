@@ -1,5 +1,4 @@
-// The viewer's markup. Native controls throughout: they bring keyboard, touch and screen readers
-// along.
+// The viewer's markup. All controls are native: they work with keyboard, touch and screen readers.
 
 import {colorGradient, kColorMapNames} from '../core/color_maps';
 import {kDirections} from '../three/directions';
@@ -54,7 +53,7 @@ const keys = kKeyHelp
   })
   .join('');
 
-/** Of the known error against bytes. */
+/** The known error against bytes. */
 const curves = ['ahead', 'reached', 'here']
   .map((name) => `<path class="${name}" vector-effect="non-scaling-stroke"/>`)
   .join('');

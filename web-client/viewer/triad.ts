@@ -1,4 +1,4 @@
-// The axes in the corner, turned as the camera is.
+// The axes in the corner, which turn with the camera.
 
 const kNames = ['x', 'y', 'z'];
 const kLength = 19;
@@ -7,7 +7,7 @@ export class Triad {
   private readonly axes: {line: SVGLineElement; text: SVGTextElement}[];
 
   constructor(private readonly svg: SVGSVGElement) {
-    svg.replaceChildren(); // of a view before this one
+    svg.replaceChildren(); // axes of a previous view
     this.axes = kNames.map((name) => {
       const line = document.createElementNS(svg.namespaceURI, 'line') as SVGLineElement;
       const text = document.createElementNS(svg.namespaceURI, 'text') as SVGTextElement;
@@ -18,10 +18,10 @@ export class Triad {
     });
   }
 
-  /** `rotation`: the camera's quaternion. */
+  /** `rotation` is the camera's quaternion. */
   turn(rotation: {x: number; y: number; z: number; w: number}): void {
-    // Rows of the inverse rotation: where the world's axes point on the screen, and how far towards
-    // the eye.
+    // The rows of the inverse rotation: the directions of the world's axes on the screen, and
+    // towards the eye.
     const {x, y, z, w} = rotation;
     const right = [1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)];
     const up = [2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)];

@@ -1,4 +1,4 @@
-// Isosurfaces and the threshold: both are a field and values of it.
+// Isosurfaces and the threshold. Both are a field and values of it.
 
 import {scalarRange, kMagnitude, type Scalar} from '../core/field_scale';
 import type {FieldInfo} from '../core/manifest';
@@ -24,10 +24,7 @@ export class ValuePanel implements Panel {
   private readonly numbers: HTMLInputElement;
   private readonly sliders: HTMLInputElement[];
 
-  /**
-   * `kind`: isosurfaces have one slider, for the first of their values, a threshold two, for its
-   * ends.
-   */
+  /** Isosurfaces have one slider, for their first value; a threshold has two, for its ends. */
   constructor(
     private readonly root: ShadowRoot,
     private readonly attributes: Attributes,
@@ -70,7 +67,7 @@ export class ValuePanel implements Panel {
       });
   }
 
-  /** What the attribute says; null: nothing, or nothing that fits the mesh. */
+  /** The value of the attribute; null if it is empty or does not fit the mesh. */
   value(): FieldValues | null {
     return fieldValuesOf(this.kind, this.attributes.read(this.kind), this.fields);
   }

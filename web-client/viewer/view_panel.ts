@@ -1,5 +1,5 @@
-// Standard views, the projection, and what is done with a picture; and the buttons at the panel's
-// foot.
+// Standard views, projection, and the buttons for pictures, sharing and help; and the buttons at
+// the panel's foot.
 
 import type {StreamState} from '../core/worker_messages';
 import type {Direction} from '../three/directions';

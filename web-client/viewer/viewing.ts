@@ -1,5 +1,4 @@
-// One stay of a viewer in a document: the stream, the graphics and the panels, and how a change of
-// one reaches the others.
+// A viewer while it is in a document: connects the stream, the graphics and the panels.
 
 import type {Vector} from '../core/cell_ray';
 import type {Client} from '../core/client';
@@ -30,9 +29,9 @@ export class Viewing implements ActionsHost, PanelsHost {
   private readonly camera: CameraWatch;
   private readonly requests: Requests;
   private readonly actions: Actions;
-  /** They come a task later than the rest. */
+  /** They are built a task later than the rest. */
   private panels: Panels | null = null;
-  /** The page has been told that all is here. */
+  /** The `complete` event has been dispatched. */
   private completeTold = false;
 
   /** REQUIRES: the page's root holds the markup. */
@@ -41,7 +40,7 @@ export class Viewing implements ActionsHost, PanelsHost {
     readonly client: Client,
     private readonly kept: Kept,
   ) {
-    // A file's stream begins at once, and only so far.
+    // The stream of a file begins at once and needs the limit.
     this.settings = readSettings((name) => page.read(name));
     this.requests = new Requests(client);
     this.actions = new Actions(page, this);
@@ -170,7 +169,7 @@ export class Viewing implements ActionsHost, PanelsHost {
   }
 
   private takeManifest(manifest: Manifest): void {
-    if (this.mesh.manifest) this.forget(true); // another log stands under its name now
+    if (this.mesh.manifest) this.forget(true); // another log has taken its name
     this.mesh.manifest = manifest;
     this.panels?.progress.begin(manifest);
     this.apply();
@@ -189,7 +188,7 @@ export class Viewing implements ActionsHost, PanelsHost {
 
   // ---- the picture
 
-  /** There is a view: what has been waiting for it is shown. */
+  /** The view is ready: show what has been waiting for it. */
   private begin(view: View): void {
     this.panels?.attach(view);
     bindKeys(find(this.page.root, '.scene'), this.actions.keys(view));
@@ -204,7 +203,7 @@ export class Viewing implements ActionsHost, PanelsHost {
     const {mesh, page} = this;
     mesh.take(snapshot);
     view.show(snapshot, (drawingMs) => {
-      if (mesh !== this.mesh) return; // of the mesh before
+      if (mesh !== this.mesh) return; // it belongs to the previous mesh
       this.client.shown(drawingMs);
       page.tell(mesh.drawn ? 'refine' : 'load', snapshot.statistics);
       mesh.drawn = snapshot.statistics;
@@ -219,7 +218,7 @@ export class Viewing implements ActionsHost, PanelsHost {
     this.showRange();
   }
 
-  /** The camera stays, and the mesh comes again from the worker that decodes. */
+  /** Keeps the camera. The mesh comes again from the worker that decodes. */
   private restartGraphics(): void {
     const {view} = this;
     const moved = view && !view.pose.fitted ? view.cameraState : null;
@@ -228,7 +227,7 @@ export class Viewing implements ActionsHost, PanelsHost {
     void this.graphics.restart(() => this.kept.camera ?? camera);
   }
 
-  /** With `isSame` the camera stays where people have moved it. */
+  /** With `isSame` the camera stays where the user has moved it. */
   private forget(isSame: boolean): void {
     this.mesh = new ShownMesh();
     this.requests.forget();
@@ -277,7 +276,7 @@ export class Viewing implements ActionsHost, PanelsHost {
     if (state === 'streaming' || state === 'complete') this.notices.endOf('stream');
   }
 
-  /** The decoder and the picture both have to be done. */
+  /** Both the decoder and the picture must be complete. */
   private tellComplete(): void {
     const {mesh, stream} = this;
     if (stream.state !== 'complete' || this.completeTold || !mesh.isDrawn) return;
@@ -286,7 +285,7 @@ export class Viewing implements ActionsHost, PanelsHost {
   }
 }
 
-/** What the colours span; null: nothing is coloured. */
+/** The range of the colours; null if nothing is coloured. */
 function rangeOf(
   {color, scaleRange, extent}: Snapshot,
   settings: Settings,

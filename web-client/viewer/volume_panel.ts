@@ -1,5 +1,5 @@
-// The transfer function: a row of opacities over the colours, each a slider of its own, so that
-// keyboard, touch and screen readers can edit it.
+// The transfer function: a row of opacities over the colours. Each is a slider, so that keyboard,
+// touch and screen readers can edit it.
 
 import {colorGradient} from '../core/color_maps';
 import type {Attributes} from './page';
@@ -64,7 +64,7 @@ export class VolumePanel implements Panel {
     return slider;
   }
 
-  /** Opacity 0 stays 0: what is hidden is hidden. */
+  /** Opacity 0 stays 0, so that hidden values stay hidden. */
   private scale(factor: number): void {
     this.write(this.opacities.map((opacity) => 1 - (1 - Math.min(opacity, 0.99)) ** factor));
   }
