@@ -11,7 +11,8 @@ jobs=$2
 since=${3:-}
 
 if [[ -z $since ]]; then
-  since=$(git merge-base HEAD origin/HEAD 2>/dev/null || git merge-base HEAD origin/main 2>/dev/null || true)
+  since=$(git merge-base HEAD origin/HEAD 2>/dev/null ||
+    git merge-base HEAD origin/main 2>/dev/null || true)
   [[ $since == "$(git rev-parse HEAD)" ]] && since=
 fi
 changed() {

@@ -43,7 +43,8 @@ class WebSocketReader {
     state_ = State::kFed;
     buffer_.append(bytes);
   }
-  /// The next thing that is whole; nullopt: more bytes are needed. REQUIRES: there was no error yet.
+  /// The next thing that is whole; nullopt: more bytes are needed. REQUIRES: there was no error
+  /// yet.
   [[nodiscard]] std::expected<std::optional<Event>, CloseCode> next();
 
  private:

@@ -11,9 +11,9 @@ namespace qtet {
 /// Whether to go on.
 using Tell = std::function<bool(Stage stage, double fraction)>;
 
-/// simplifyToLog in another thread; `tell` is called in this one, about ten times a second, until it
-/// answers false, which ends the work. An exception of either goes on to the caller, after the work
-/// has ended.
+/// simplifyToLog in another thread; `tell` is called in this one, about ten times a second, until
+/// it answers false, which ends the work. An exception of either goes on to the caller, after the
+/// work has ended.
 [[nodiscard]] Result<PipelineOutput> simplifyAndTell(TetMesh&& mesh, PipelineOptions options,
                                                      const Tell& tell);
 
