@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "codec/record/fusion_history.h"
-#include "simplify/fuse/fusion_mesh.h"
+#include "simplify/mesh/fusion_mesh.h"
 
 namespace qtet {
 

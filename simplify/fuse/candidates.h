@@ -12,7 +12,7 @@
 
 #include "codec/coding/prefetch.h"
 #include "codec/mesh/mesh.h"
-#include "simplify/fuse/large_pages.h"
+#include "simplify/mesh/large_pages.h"
 #include "simplify/mesh/workers.h"
 
 namespace qtet {

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "simplify/fuse/fusion_check.h"
-#include "simplify/fuse/fusion_cost.h"
+#include "simplify/cost/fusion_cost.h"
+#include "simplify/legality/fusion_check.h"
 
 namespace qtet {
 

@@ -9,14 +9,14 @@
 #include <span>
 #include <vector>
 
+#include "simplify/cost/fusion_cost.h"
 #include "simplify/fuse/band_nodes.h"
 #include "simplify/fuse/candidates.h"
-#include "simplify/fuse/fusion_check.h"
-#include "simplify/fuse/fusion_cost.h"
-#include "simplify/fuse/fusion_mesh.h"
 #include "simplify/fuse/fusion_point.h"
 #include "simplify/fuse/touched.h"
 #include "simplify/fuse/vertex_counts.h"
+#include "simplify/legality/fusion_check.h"
+#include "simplify/mesh/fusion_mesh.h"
 
 namespace qtet {
 

@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
+#include "simplify/cost/fusion_cost.h"
 #include "simplify/fuse/candidates.h"
-#include "simplify/fuse/fusion_cost.h"
-#include "simplify/fuse/fusion_mesh.h"
 #include "simplify/fuse/touched.h"
+#include "simplify/mesh/fusion_mesh.h"
 #include "simplify/mesh/workers.h"
 
 namespace qtet {

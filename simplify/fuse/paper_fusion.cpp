@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "proto/limits.h"
-#include "simplify/fuse/fusion_check.h"
-#include "simplify/fuse/fusion_cost.h"
-#include "simplify/fuse/fusion_mesh.h"
+#include "simplify/cost/fusion_cost.h"
+#include "simplify/legality/fusion_check.h"
+#include "simplify/mesh/fusion_mesh.h"
 #include "simplify/mesh/stopping.h"
 #include "simplify/mesh/tet_mesh.h"
 

@@ -10,7 +10,7 @@
 #include "codec/mesh/mesh.h"
 #include "codec/record/fusion_history.h"
 #include "proto/error.h"
-#include "simplify/fuse/fusion_cost.h"
+#include "simplify/cost/fusion_cost.h"
 #include "simplify/fuse/fusion_point.h"
 
 namespace qtet {

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "proto/field_key.h"
-#include "simplify/fuse/boundary_weight.h"
+#include "simplify/cost/boundary_weight.h"
 #include "simplify/mesh/tet_mesh.h"
 
 namespace qtet {

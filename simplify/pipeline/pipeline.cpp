@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "codec/log/log_manifest.h"
-#include "simplify/fuse/cost_parts.h"
+#include "simplify/cost/cost_parts.h"
 #include "simplify/mesh/missing_values.h"
 #include "simplify/pipeline/fusion_choice.h"
 

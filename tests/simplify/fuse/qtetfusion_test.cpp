@@ -11,7 +11,7 @@
 #include "codec/mesh/predicates.h"
 #include "simplify/clean/quantise.h"
 #include "simplify/clean/verify.h"
-#include "simplify/fuse/fusion_mesh.h"
+#include "simplify/mesh/fusion_mesh.h"
 #include "simplify/samples/samples.h"
 #include "tests/support/allocation_meter.h"
 #include "tests/support/meshes.h"

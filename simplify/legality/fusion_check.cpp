@@ -1,0 +1,42 @@
+#include "simplify/legality/fusion_check.h"
+
+#include "simplify/legality/edge_link_check.h"
+
+namespace qtet {
+
+FusionCheck::FusionCheck(const FusionMesh& mesh, const FusionLimits& limits)
+    : mesh_(mesh),
+      envelope_(mesh, limits.envelopeTolerance, limits.normalCosine),
+      flips_(mesh),
+      star_(mesh),
+      shapes_(mesh, star_, limits.shapeFloor) {}
+
+bool FusionCheck::gatherBoundary(const Prey& prey) {
+  std::size_t size = 0;
+  for (const VertexId v : prey.vertices()) size += mesh_.star(v).size();
+  if (size > kMaxStarCells) return false;
+  prey_ = prey;
+  envelope_.gather(prey);
+  flips_.forget();
+  return true;
+}
+
+bool FusionCheck::gatherRest() {
+  if (!star_.gather(prey_)) return false;
+  shapes_.measure();
+  return true;
+}
+
+double FusionCheck::shapeAt(const LatticePoint& p, double least) const {
+  const double shape = shapes_.at(p, least);
+  return shape >= 0 && envelope_.turnsTooFar(p) ? -1 : shape;
+}
+
+bool FusionCheck::keepsTopology() {
+  const bool isSmallEdge = prey_.k == 2 && star_.ring().size() <= kMaxRing;
+  if (isSmallEdge ? !edgeKeepsTopology(star_) : !link_.passes(mesh_, prey_, star_.star()))
+    return false;
+  return !mesh_.hasRegions() || regions_.passes(mesh_, prey_, star_.star());
+}
+
+}  // namespace qtet

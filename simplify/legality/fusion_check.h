@@ -1,0 +1,86 @@
+// Whether a fusion keeps the mesh what it is: topology exactly (the link condition with the ghost
+// vertex), no cell flipped, inside the boundary envelope, and how well shaped the new cells are
+// (ALGORITHM.md, "Legality"). Topology, flips and the envelope without tolerance are exact.
+#pragma once
+
+#include <cstdint>
+
+#include "simplify/legality/boundary_envelope.h"
+#include "simplify/legality/flip_check.h"
+#include "simplify/legality/full_link_check.h"
+#include "simplify/legality/local_star.h"
+#include "simplify/legality/region_check.h"
+#include "simplify/legality/star_shapes.h"
+#include "simplify/mesh/fusion_mesh.h"
+
+namespace qtet {
+
+struct FusionLimits {
+  /// No new cell may be shaped worse than this or than a fifth of its star's worst, whichever is
+  /// lower.
+  double shapeFloor = 0;
+  /// How far the boundary may leave the original solid, all fusions together, in lattice steps.
+  double envelopeTolerance = 0;
+  /// Cosine of the largest angle by which a boundary triangle may turn in one fusion; negative:
+  /// any.
+  double normalCosine = -1;
+};
+
+/// One thread's own; the mesh may be shared while nobody fuses.
+class FusionCheck {
+ public:
+  explicit FusionCheck(const FusionMesh& mesh, const FusionLimits& limits = {});
+  FusionCheck(const FusionCheck&) = delete;
+  FusionCheck& operator=(const FusionCheck&) = delete;
+
+  /// Collects the boundary triangles of the prey's star, which is all that the envelope asks for.
+  /// False when the star is too large.
+  [[nodiscard]] bool gatherBoundary(const Prey& prey);
+  /// Collects the rest of the star. False when that already rules the fusion out. REQUIRES
+  /// gatherBoundary.
+  [[nodiscard]] bool gatherRest();
+  /// Both.
+  [[nodiscard]] bool gather(const Prey& prey) { return gatherBoundary(prey) && gatherRest(); }
+  /// Keeps topology: of the solid, of its boundary, and of every component of either; and the log
+  /// can describe it. REQUIRES gather.
+  [[nodiscard]] bool keepsTopology();
+
+  /// p lies on the inner side of (or on) every boundary face of the star, or within what is left of
+  /// the tolerance. REQUIRES gatherBoundary.
+  [[nodiscard]] bool insideEnvelope(const LatticePoint& p) const { return envelope_.holds(p); }
+  /// Moves p onto the planes of the boundary faces that it lies outside of, one after the other,
+  /// until its lattice point is inside. REQUIRES gatherBoundary.
+  [[nodiscard]] bool projectInside(const Vector3& p, LatticePoint& inside) const {
+    return envelope_.project(p, inside);
+  }
+  /// With the prey at p a cell of one of these prey vertices, one bit each, would flip or go flat,
+  /// as far as doubles can tell. REQUIRES gatherBoundary.
+  [[nodiscard]] bool flipsAt(const LatticePoint& p, std::uint32_t moving) const {
+    return flips_.flipsAt(prey_, p, moving);
+  }
+  /// How far the star's boundary may lie outside the original solid with the prey at p, in lattice
+  /// steps. REQUIRES gatherBoundary, p inside the envelope.
+  [[nodiscard]] float outsideAt(const LatticePoint& p) const { return envelope_.outsideAt(p); }
+  /// The worst shape among the affected cells with the prey at p (1 = regular, 0 = flat), or a
+  /// negative number where p is not legal: a cell would flip or be squashed, or a boundary triangle
+  /// turn too far; or where the shape is worse than `least`. REQUIRES gather.
+  [[nodiscard]] double shapeAt(const LatticePoint& p, double least = 0) const;
+  /// The worst shape in the star as it is. REQUIRES gather.
+  [[nodiscard]] double oldShape() const { return shapes_.old(); }
+
+  [[nodiscard]] const Star& star() const { return star_.star(); }
+  /// The same for good: until the next gather there is none here.
+  void takeStar(Star& star) { star_.takeStar(star); }
+
+ private:
+  const FusionMesh& mesh_;
+  Prey prey_;
+  BoundaryEnvelope envelope_;
+  FlipCheck flips_;
+  LocalStar star_;
+  StarShapes shapes_;
+  FullLinkCheck link_;
+  RegionCheck regions_;
+};
+
+}  // namespace qtet

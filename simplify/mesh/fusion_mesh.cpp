@@ -1,0 +1,399 @@
+#include "simplify/mesh/fusion_mesh.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "codec/mesh/growing_mesh.h"
+#include "codec/mesh/link.h"
+#include "simplify/mesh/large_pages.h"
+#include "simplify/mesh/workers.h"
+
+namespace qtet {
+namespace {
+
+// By cells of the input, boundary triangles among them: of what fusions affect until 1 % is left,
+// and of the stars with their gaps. Seen were 3 and 5.6; with more the arrays move.
+constexpr std::size_t kAffectedACell = 4;
+constexpr std::size_t kPoolACell = 6;
+
+}  // namespace
+
+FusionMesh::FusionMesh(const LatticeMesh& mesh, std::size_t regionField, Workers* workers)
+    : regionField_(regionField),
+      firstGhost_(static_cast<CellId>(mesh.tetrahedra.size())),
+      liveTetrahedra_(mesh.tetrahedra.size()) {
+  history_.lattice = mesh.lattice;
+  history_.fields = mesh.fields;
+  reserve(mesh);
+  history_.points.assign(mesh.points.begin(), mesh.points.end());
+  for (std::size_t f = 0; f < mesh.values.size(); ++f)
+    history_.values[f].assign(mesh.values[f].begin(), mesh.values[f].end());
+  history_.cells.assign(mesh.tetrahedra.begin(), mesh.tetrahedra.end());
+  onBoundary_.assign(mesh.points.size(), 0);
+  for (const Triangle& t : mesh.boundary) {
+    history_.cells.push_back({t[0], t[1], t[2], kGhost});
+    for (const VertexId v : t) onBoundary_[v] = 1;
+  }
+  history_.live.assign(history_.cells.size(), 1);
+  aliveVertex_.assign(mesh.points.size(), 1);
+  planes_.resize(mesh.boundary.size());
+  for (CellId c = firstGhost_; c < history_.cells.size(); ++c) findPlane(c);
+  buildStars();
+  findSingular(workers);
+  if (hasRegions()) findInterfaces();
+}
+
+// For all that will ever be where a bound is known, else for what is likely: arrays do not move
+// while they grow, and what stays unused the system never hands out.
+void FusionMesh::reserve(const LatticeMesh& mesh) {
+  // each fusion leaves a vertex less
+  const std::size_t fusions = mesh.points.size(), vertices = mesh.points.size() + fusions;
+  const std::size_t cells = mesh.tetrahedra.size() + mesh.boundary.size();
+  history_.points.reserve(vertices);
+  history_.values.resize(mesh.values.size());
+  for (std::size_t f = 0; f < mesh.fields.size(); ++f)
+    history_.values[f].reserve(isCellField(mesh.fields[f]) ? 0
+                                                           : vertices * mesh.fields[f].components);
+  history_.fusions.reserve(fusions);
+  history_.deletedCells.reserve(cells);
+  history_.affectedCells.reserve(kAffectedACell * cells),
+      history_.affectedLabels.reserve(kAffectedACell * cells);
+  for (auto* flags : {&aliveVertex_, &onBoundary_, &singular_}) flags->reserve(vertices);
+  if (hasRegions()) onInterface_.reserve(vertices);
+  stars_.reserve(vertices);
+  pool_.reserve(kPoolACell * cells);
+  history_.cells.reserve(cells), history_.live.reserve(cells);
+  useLargePages(history_.points), useLargePages(history_.fusions),
+      useLargePages(history_.deletedCells), useLargePages(history_.affectedCells);
+  for (const auto& values : history_.values) useLargePages(values);
+  useLargePages(stars_), useLargePages(pool_), useLargePages(history_.cells);
+}
+
+void FusionMesh::buildStars() {
+  stars_.assign(history_.points.size(), {});
+  for (const auto& c : history_.cells)
+    for (const VertexId v : c)
+      if (v != kGhost) ++stars_[v].size;
+  for (StarRange& s : stars_) {
+    s.first = livePool_;
+    livePool_ += s.size;
+    s.size = 0;
+  }
+  pool_.resize(livePool_);
+  const auto add = [&](CellId c) {
+    for (const VertexId v : history_.cells[c])
+      if (v != kGhost) pool_[stars_[v].first + stars_[v].size++] = c;
+  };
+  for (CellId c = firstGhost_; c < history_.cells.size(); ++c) add(c);
+  for (StarRange& s : stars_) s.ghosts = s.size;
+  for (CellId c = 0; c < firstGhost_; ++c) add(c);
+}
+
+void FusionMesh::findSingular(Workers* workers) {
+  constexpr std::size_t kGrain = 1024;
+  constexpr VertexId kAhead = 4;
+  singular_.assign(history_.points.size(), 0);
+  struct alignas(64) Own {  // in cache lines of its own
+    Link link;
+  };
+  std::vector<Own> own(workers ? workers->count() : 1);
+  const auto ask = [&](std::size_t worker, std::size_t i) {
+    const auto v = static_cast<VertexId>(i);
+    if (i + kAhead < singular_.size()) prefetchStar(v + kAhead);
+    Link& link = own[worker].link;
+    link.clear(singular_.size());
+    for (const CellId c : star(v)) {
+      const auto turned = withLast(cell(c), onlyCorner(cornersThatAre(cell(c), v)));
+      link.add(turned[0], turned[1], turned[2]);
+    }
+    singular_[i] = !(link.close() && link.isSphere());
+  };
+  forEach(workers, singular_.size(), kGrain, ask);
+  hasSingular_ = std::ranges::find(singular_, 1) != singular_.end();
+}
+
+void FusionMesh::findInterfaces() {
+  onInterface_.assign(history_.points.size(), 0);
+  std::vector<std::int64_t> first(history_.points.size(), kOutside);
+  for (CellId c = 0; c < firstGhost_; ++c)
+    for (const VertexId v : history_.cells[c]) {
+      if (first[v] == kOutside) first[v] = region(c);
+      onInterface_[v] |= first[v] != region(c);
+    }
+}
+
+// The first in this order that holds takes the fewest bits.
+FusionMesh::Placed FusionMesh::placed(const Prey& prey, const LatticePoint& point) const {
+  std::array<LatticePoint, 4> at{};
+  for (std::size_t i = 0; i < prey.k; ++i) at[i] = history_.points[prey.vertex[i]];
+  for (std::uint8_t i = 0; i < prey.k; ++i)
+    if (at[i] == point) return {Placement::kAtPrey, i};
+  if (middle(std::span(at).first(prey.k)) == point) return {Placement::kMiddle, 0};
+  for (std::uint8_t i = 0; i < 2 && prey.k == 2; ++i)
+    if (quarter(at[i], at[1 - i]) == point) return {Placement::kQuarter, i};
+  return {Placement::kFree, 0};
+}
+
+// Everything of a record but where its cells begin.
+void FusionMesh::record(Fusion& record, const Prey& prey, const Placed& placed, const Star& star) {
+  record.k = prey.k;
+  record.placement = placed.placement;
+  record.prey = prey.vertex;
+  const std::uint8_t first = placed.first;
+  std::swap(record.prey[0], record.prey[first]);
+  std::ranges::copy(star.affected, &history_.affectedCells[record.firstAffected]);
+  std::ranges::transform(star.labels, &history_.affectedLabels[record.firstAffected],
+                         [&](std::uint8_t label) {
+                           return label == first ? std::uint8_t{0} : label == 0 ? first : label;
+                         });
+  std::ranges::copy(star.deleted, history_.deletedCells.begin() +
+                                      static_cast<std::ptrdiff_t>(record.firstDeleted));
+}
+
+// The last ghost takes a ghost's place, and the last cell takes that of what is now the hole.
+void FusionMesh::removeFromStar(VertexId v, CellId c) {
+  StarRange& range = stars_[v];
+  std::uint32_t hole = placeInStar(v, c);
+  if (isGhost(c)) {
+    moveInStar(v, --range.ghosts, hole);
+    hole = range.ghosts;
+  }
+  moveInStar(v, --range.size, hole);
+}
+
+std::uint32_t FusionMesh::placeInStar(VertexId v, CellId c) {
+  const auto cells = star(v);
+  if (cells.size() <= kHubCells) {
+    const auto first = cells.begin() + (isGhost(c) ? 0 : stars_[v].ghosts);
+    return static_cast<std::uint32_t>(std::find(first, cells.end(), c) - cells.begin());
+  }
+  Places& places = *placesInHub(v, true);
+  if (places.empty())
+    for (std::uint32_t i = 0; i < cells.size(); ++i) places[cells[i]] = i;
+  return places.extract(c).mapped();
+}
+
+/// Those of a hub, null where they are not kept and not wanted.
+FusionMesh::Places* FusionMesh::placesInHub(VertexId v, bool wanted) {
+  const std::lock_guard lock(hubMutex_);
+  if (wanted) return &placesInHub_[v];
+  const auto hub = placesInHub_.find(v);
+  return hub == placesInHub_.end() ? nullptr : &hub->second;
+}
+
+void FusionMesh::moveInStar(VertexId v, std::uint32_t from, std::uint32_t to) {
+  if (from == to) return;
+  CellId* cells = &pool_[stars_[v].first];
+  cells[to] = cells[from];
+  if (stars_[v].size < kHubCells) return;
+  if (Places* places = placesInHub(v, false)) (*places)[cells[to]] = to;
+}
+
+void FusionMesh::findPlane(CellId ghost) {
+  const auto& cell = history_.cells[ghost];
+  const Vector3 a = position(cell[0]), normal = cross(position(cell[1]) - a, position(cell[2]) - a);
+  const double squared = dot(normal, normal);
+  planes_[ghost - firstGhost_] = {normal, squared > 0 ? 1 / std::sqrt(squared) : 0};
+}
+
+// The boundary triangles that stay get the bound of the whole star.
+void FusionMesh::pushOutside(const Star& star, float outside) {
+  for (const CellId c : star.affected)
+    if (c >= firstGhost_) outside_[c - firstGhost_] = outside;
+}
+
+VertexId FusionMesh::fuse(const Prey& prey, const FusedVertex& what, const Star& star,
+                          std::uint32_t level) {
+  const PlannedFusion planned{prey, what.point, what.outside, &star};
+  fuse(std::span(&planned, 1), level, [&](std::size_t, VertexId) { return what.values; });
+  return history_.fusions.back().fused;
+}
+
+void FusionMesh::fuse(std::span<const PlannedFusion> planned, std::uint32_t level,
+                      const ValuesOf& valuesOf, Workers* workers) {
+  const std::uint64_t toPool = pool_.size() - history_.affectedCells.size();  // modulo 2^64
+  makeRoom(planned, level);
+  if (workers && workers->count() > 1) {
+    fuseByThreads(planned, toPool, valuesOf, *workers);
+  } else {
+    const auto records = std::span(history_.fusions).last(planned.size());
+    for (std::size_t i = 0; i < planned.size(); ++i) {
+      const std::vector<VertexId>& link = planned[i].star->link;
+      for (const VertexId v : link)
+        if (v != kGhost) prefetchVertex(v);
+      setValues(records[i].fused, valuesOf(i, records[i].fused));
+      for (const VertexId v : link)
+        if (v != kGhost) prefetchList(v);
+      count(fuse(records[i], planned[i], toPool,
+                 [this](VertexId v, CellId c) { removeFromStar(v, c); }));
+    }
+  }
+  if (pool_.size() > 2 * livePool_ + 4096) compactPool();
+}
+
+// Records that say where their cells begin, and whatever grows with each fusion as long as it will
+// be.
+void FusionMesh::makeRoom(std::span<const PlannedFusion> planned, std::uint32_t level) {
+  std::uint64_t affected = history_.affectedCells.size(), deleted = history_.deletedCells.size();
+  std::size_t vertices = history_.points.size();
+  bool isOutside = false;
+  for (const PlannedFusion& p : planned) {
+    Fusion& record = history_.fusions.emplace_back();
+    record.level = level;
+    record.fused = static_cast<VertexId>(vertices++);
+    record.firstAffected = affected,
+    record.affectedCount = static_cast<std::uint32_t>(p.star->affected.size());
+    record.firstDeleted = deleted,
+    record.deletedCount = static_cast<std::uint32_t>(p.star->deleted.size());
+    affected += record.affectedCount, deleted += record.deletedCount;
+    isOutside |= p.outside > 0;
+  }
+  pool_.resize(pool_.size() + (affected - history_.affectedCells.size()));
+  livePool_ += affected - history_.affectedCells.size();
+  history_.affectedCells.resize(affected), history_.affectedLabels.resize(affected),
+      history_.deletedCells.resize(deleted);
+  history_.points.resize(vertices);
+  for (std::size_t f = 0; f < history_.fields.size(); ++f)
+    if (!isCellField(history_.fields[f]))
+      history_.values[f].resize(vertices * history_.fields[f].components);
+  onBoundary_.resize(vertices), singular_.resize(vertices), aliveVertex_.resize(vertices),
+      stars_.resize(vertices);
+  if (hasRegions()) onInterface_.resize(vertices);
+  if (isOutside && outside_.empty()) outside_.assign(history_.cells.size() - firstGhost_, 0);
+}
+
+void FusionMesh::prefetchLists(const Star& star) {
+  prefetchAll(std::span<const CellId>(star.affected)),
+      prefetchAll(std::span<const std::uint8_t>(star.labels));
+  prefetchAll(std::span<const CellId>(star.deleted)),
+      prefetchAll(std::span<const VertexId>(star.link));
+}
+
+// Asks the memory for what the fusion changes.
+void FusionMesh::prefetch(const PlannedFusion& planned) const {
+  for (const VertexId v : planned.prey.vertices()) prefetchVertex(v), prefetchPoint(v);
+  for (const CellId c : planned.star->affected) {
+    qtet::prefetch(&history_.cells[c]);
+    if (isGhost(c)) qtet::prefetch(&planes_[c - firstGhost_]);
+  }
+  for (const CellId c : planned.star->deleted)
+    qtet::prefetch(&history_.cells[c]), qtet::prefetch(&history_.live[c]);
+}
+
+// Cells, prey and what is fused are one fusion's own; the stars round them are not, and change
+// after all of that, each by one thread.
+void FusionMesh::fuseByThreads(std::span<const PlannedFusion> planned, std::uint64_t toPool,
+                               const ValuesOf& valuesOf, Workers& workers) {
+  constexpr std::size_t kRun = 32, kAhead = 2, kLossesAhead = 4;
+  const auto records = std::span(history_.fusions).last(planned.size());
+  const std::size_t runs = (planned.size() + kRun - 1) / kRun;
+  if (losses_.size() < runs) losses_.resize(runs);
+  workers.forRuns(planned.size(), kRun, [&](std::size_t begin, std::size_t end) {
+    Losses& losses = losses_[begin / kRun];
+    for (auto& some : losses) some.clear();
+    Gone gone;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (i + 3 * kAhead < end) prefetchAll(std::span(planned[i + 3 * kAhead].star, 1));
+      if (i + 2 * kAhead < end) prefetchLists(*planned[i + 2 * kAhead].star);
+      if (i + kAhead < end) prefetch(planned[i + kAhead]);
+      setValues(records[i].fused, valuesOf(i, records[i].fused));
+      const Gone more = fuse(records[i], planned[i], toPool,
+                             [&](VertexId v, CellId c) { losses[losers(v)].push_back({v, c}); });
+      gone.tetrahedra += more.tetrahedra, gone.fromStars += more.fromStars;
+    }
+    count(gone);
+  });
+  workers.forEach(kLosers, 1, [&](std::size_t, std::size_t some) {
+    for (const Losses& of : std::span(losses_).first(runs)) {
+      const std::vector<Loss>& losses = of[some];
+      for (std::size_t i = 0; i < losses.size(); ++i) {
+        if (i + 2 * kLossesAhead < losses.size())
+          prefetchVertex(losses[i + 2 * kLossesAhead].vertex);
+        if (i + kLossesAhead < losses.size()) prefetchList(losses[i + kLossesAhead].vertex);
+        removeFromStar(losses[i].vertex, losses[i].cell);
+      }
+    }
+  });
+}
+
+void FusionMesh::count(const Gone& gone) {
+  std::atomic_ref(liveTetrahedra_).fetch_sub(gone.tetrahedra, std::memory_order_relaxed);
+  std::atomic_ref(livePool_).fetch_sub(gone.fromStars, std::memory_order_relaxed);
+}
+
+// Calls lose(vertex, cell) for each cell that goes from the star of a vertex which stays.
+template <class Lose>
+FusionMesh::Gone FusionMesh::fuse(Fusion& fusion, const PlannedFusion& planned,
+                                  std::uint64_t toPool, const Lose& lose) {
+  const Prey& prey = planned.prey;
+  const Star& star = *planned.star;
+  const VertexId fused = fusion.fused;
+  Gone gone;
+  record(fusion, prey, placed(prey, planned.point), star);
+  if (planned.outside > 0) pushOutside(star, planned.outside);
+  history_.points[fused] = planned.point;
+  for (const VertexId v : prey.vertices()) {
+    onBoundary_[fused] |= onBoundary_[v];
+    if (hasRegions()) onInterface_[fused] |= onInterface_[v];
+    aliveVertex_[v] = 0;
+    gone.fromStars += stars_[v].size;
+    stars_[v].size = stars_[v].ghosts = 0;
+  }
+  for (std::size_t i = 0; i < star.affected.size(); ++i) {
+    const CellId c = star.affected[i];
+    auto& cell = history_.cells[c];
+    cell[onlyCorner(cornersThatAre(cell, prey.vertex[star.labels[i]]))] = fused;
+    if (isGhost(c)) findPlane(c);
+  }
+  for (const CellId c : star.deleted) {
+    history_.live[c] = 0;
+    gone.tetrahedra += !isGhost(c);
+    const auto& cell = history_.cells[c];
+    unsigned fusing = 0;
+    for (const VertexId v : prey.vertices()) fusing |= cornersThatAre(cell, v);
+    const OtherCorners& others = kOtherCorners[fusing];
+    for (std::size_t i = 0; i < others.count; ++i)
+      if (const VertexId v = cell[others.corner[i]]; v != kGhost) lose(v, c), ++gone.fromStars;
+  }
+  aliveVertex_[fused] = 1;
+  stars_[fused] = addStar(fusion.firstAffected + toPool, star.affected);
+  return gone;
+}
+
+void FusionMesh::setValues(VertexId fused, std::span<const std::int32_t> values) {
+  for (std::size_t f = 0; f < history_.fields.size(); ++f) {
+    if (isCellField(history_.fields[f])) continue;
+    const std::size_t n = history_.fields[f].components;
+    std::ranges::copy(values.first(n), &history_.values[f][fused * n]);
+    values = values.subspan(n);
+  }
+}
+
+// The fused vertex's, ghosts first.
+FusionMesh::StarRange FusionMesh::addStar(std::uint64_t first, std::span<const CellId> cells) {
+  std::size_t ghosts = 0, at = cells.size();
+  for (const CellId c : cells) pool_[first + (isGhost(c) ? ghosts++ : --at)] = c;
+  return {first, static_cast<std::uint32_t>(cells.size()), static_cast<std::uint32_t>(ghosts)};
+}
+
+// In place: stars lie in the order of their vertices.
+void FusionMesh::compactPool() {
+  std::uint64_t end = 0;
+  for (StarRange& s : stars_) {
+    if (s.first != end)
+      std::copy_n(pool_.begin() + static_cast<std::ptrdiff_t>(s.first), s.size,
+                  pool_.begin() + static_cast<std::ptrdiff_t>(end));
+    s.first = end;
+    end += s.size;
+  }
+  pool_.resize(end);
+  giveBackRoom(pool_);
+}
+
+FusionHistory FusionMesh::takeHistory(std::uint32_t levels) {
+  history_.levels = levels;
+  return std::move(history_);
+}
+
+}  // namespace qtet

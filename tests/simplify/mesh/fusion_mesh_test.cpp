@@ -1,0 +1,136 @@
+// The mesh under simplification at a vertex of very many cells.
+#include "simplify/mesh/fusion_mesh.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <span>
+#include <vector>
+
+#include "simplify/mesh/workers.h"
+#include "tests/support/meshes.h"
+
+namespace qtet {
+namespace {
+
+Star starOf(const FusionMesh& mesh, VertexId a, VertexId b) {
+  Star out;
+  for (const VertexId v : {a, b})
+    for (const CellId c : mesh.star(v)) {
+      const auto has = [&](VertexId w) {
+        return std::ranges::find(mesh.cell(c), w) != mesh.cell(c).end();
+      };
+      for (const VertexId w : mesh.cell(c))
+        if (w != a && w != b && std::ranges::find(out.link, w) == out.link.end())
+          out.link.push_back(w);
+      if (!(has(a) && has(b)))
+        out.affected.push_back(c), out.labels.push_back(v == a ? 0 : 1);
+      else if (v == a)
+        out.deleted.push_back(c);
+    }
+  return out;
+}
+
+// The rim's edges go one by one; each takes cells from the axis' two vertices, whose stars hold
+// nearly all that there are.
+TEST(FusionMesh, cellsGoFromAHubWithoutALookAtAllOthers) {
+  constexpr std::uint32_t kCells = 800'000, kFusions = kCells - 600;
+  FusionMesh mesh(testing::fanMesh(kCells));
+  VertexId last = 2 + kCells - 1;
+  for (std::uint32_t i = 0; i < kFusions; ++i) {
+    const VertexId next = 2 + kCells - 2 - i;
+    last = mesh.fuse({2, {last, next, 0, 0}}, {mesh.point(next), {}, 0}, starOf(mesh, last, next),
+                     i / 1000);
+  }
+  EXPECT_EQ(mesh.liveTetrahedra(), kCells - kFusions);
+  for (const VertexId hub : {0u, 1u}) {
+    std::vector<CellId> star(mesh.star(hub).begin(), mesh.star(hub).end());
+    EXPECT_EQ(star.size(), 2 * (kCells - kFusions)) << "cells and boundary triangles";
+    std::ranges::sort(star);
+    EXPECT_TRUE(std::ranges::adjacent_find(star) == star.end());
+    EXPECT_EQ(mesh.boundaryStar(hub).size(), kCells - kFusions);
+    for (const CellId c : mesh.boundaryStar(hub)) EXPECT_TRUE(mesh.isGhost(c));
+    for (const CellId c : star)
+      EXPECT_TRUE(std::ranges::find(mesh.cell(c), hub) != mesh.cell(c).end());
+  }
+  const FusionHistory history = mesh.takeHistory(kFusions / 1000 + 1);
+  for (CellId c = 0; c < kFusions; ++c)
+    EXPECT_EQ(history.live[c], c < kCells - kFusions - 1 || c == kCells - 1) << c;
+}
+
+TEST(FusionMesh, theBoundaryTrianglesOfAStarComeFirst) {
+  constexpr std::uint32_t kCells = 40;
+  FusionMesh mesh(testing::fanMesh(kCells));
+  VertexId last = 2 + kCells - 1;
+  for (std::uint32_t i = 0; i < 30; ++i) {
+    const VertexId next = 2 + kCells - 2 - i;
+    last =
+        mesh.fuse({2, {last, next, 0, 0}}, {mesh.point(next), {}, 0}, starOf(mesh, last, next), i);
+    for (VertexId v = 0; v < mesh.vertexSlots(); ++v) {
+      if (!mesh.alive(v)) continue;
+      const auto star = mesh.star(v);
+      const auto ghosts = mesh.boundaryStar(v);
+      ASSERT_EQ(std::ranges::count_if(star, [&](CellId c) { return mesh.isGhost(c); }),
+                std::ssize(ghosts));
+      ASSERT_TRUE(std::ranges::all_of(
+          ghosts, [&](CellId c) { return mesh.isGhost(c) && mesh.cell(c)[3] == kGhost; }));
+      for (const CellId c : star)
+        ASSERT_TRUE(std::ranges::find(mesh.cell(c), v) != mesh.cell(c).end());
+      ASSERT_EQ(mesh.innerStar(v).size() + ghosts.size(), star.size());
+      for (const CellId c : ghosts) {
+        const Vector3 a = mesh.position(mesh.cell(c)[0]);
+        const Vector3 normal =
+            cross(mesh.position(mesh.cell(c)[1]) - a, mesh.position(mesh.cell(c)[2]) - a);
+        ASSERT_EQ(mesh.plane(c).normal, normal) << "a plane follows its triangle";
+        ASSERT_DOUBLE_EQ(mesh.plane(c).inverseLength,
+                         dot(normal, normal) > 0 ? 1 / std::sqrt(dot(normal, normal)) : 0);
+      }
+    }
+  }
+}
+
+// Rim edges that do not touch one another, all of which take cells from the same two hubs, and from
+// rim vertices between them.
+TEST(FusionMesh, threadsFuseWhatOneDoes) {
+  constexpr std::uint32_t kCells = 6000, kApart = 4, kLevels = 6;
+  FusionMesh one(testing::fanMesh(kCells)), many(testing::fanMesh(kCells));
+  Workers workers(5);
+  std::vector<VertexId> rim(kCells);
+  std::iota(rim.begin(), rim.end(), 2u);
+  for (std::uint32_t level = 0; level < kLevels; ++level) {
+    std::vector<Star> stars;
+    std::vector<PlannedFusion> planned;
+    std::vector<VertexId> next;
+    stars.reserve(rim.size() / kApart);
+    for (std::size_t i = 0; i + kApart <= rim.size(); i += kApart) {
+      stars.push_back(starOf(one, rim[i], rim[i + 1]));
+      planned.push_back({{2, {rim[i], rim[i + 1], 0, 0}},
+                         one.point(rim[i + 1]),
+                         level == 2 ? 0.5f : 0,
+                         &stars.back()});
+      next.push_back(static_cast<VertexId>(one.vertexSlots() + planned.size() - 1));
+      next.insert(next.end(), {rim[i + 2], rim[i + 3]});
+    }
+    next.insert(next.end(), rim.end() - static_cast<std::ptrdiff_t>(rim.size() % kApart),
+                rim.end());
+    const auto noValues = [](std::size_t, VertexId) { return std::span<const std::int32_t>(); };
+    one.fuse(planned, level, noValues);
+    many.fuse(planned, level, noValues, &workers);
+    rim = next;
+    ASSERT_EQ(one.vertexSlots(), many.vertexSlots());
+    ASSERT_EQ(one.liveTetrahedra(), many.liveTetrahedra());
+    for (VertexId v = 0; v < one.vertexSlots(); ++v) {
+      ASSERT_EQ(one.alive(v), many.alive(v));
+      ASSERT_TRUE(std::ranges::equal(one.star(v), many.star(v)))
+          << "vertex " << v << " at level " << level;
+      ASSERT_EQ(one.boundaryStar(v).size(), many.boundaryStar(v).size());
+      for (const CellId c : one.boundaryStar(v)) ASSERT_EQ(one.outside(c), many.outside(c));
+    }
+  }
+  testing::expectTheSame(many.takeHistory(kLevels), one.takeHistory(kLevels));
+}
+
+}  // namespace
+}  // namespace qtet
