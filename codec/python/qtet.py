@@ -1,0 +1,369 @@
+"""qtet logs made of numpy arrays (simplify/api/qtet_simplify.h): numpy and libqtet.so are needed.
+
+    import qtet
+    log = qtet.simplify(points, cells, point_data={"Heat": heat}, target_ratio=0.02)  # bytes
+    qtet.simplify(points, cells, path="part.qtet", progress=lambda stage, done: print(stage, done))
+    with qtet.Log("part.qtet") as log:  # qtet_log.py
+        print(log.counts())
+
+The same mesh and options give the same bytes as the program `qtet simplify`."""
+import ctypes
+import os
+import threading
+
+import numpy
+
+from qtet_log import Log, QtetError, library
+
+__all__ = ["Cancelled", "Log", "QtetError", "simplify"]
+
+_u32, _u64, _f64, _text, _address = (
+    ctypes.c_uint32,
+    ctypes.c_uint64,
+    ctypes.c_double,
+    ctypes.c_char_p,
+    ctypes.c_void_p,
+)
+_POINT, _CELL = 0, 1
+_CANCELLED, _OUT_OF_MEMORY = 12, 103
+_TYPES = {
+    "float32": 1,
+    "float64": 2,
+    "int8": 3,
+    "int16": 4,
+    "int32": 5,
+    "int64": 6,
+    "uint8": 7,
+    "uint16": 8,
+    "uint32": 9,
+    "uint64": 10,
+}
+# What is stored as another type that holds it.
+_WIDENED = {"bool": "uint8", "float16": "float32"}
+_ALGORITHMS = {"qtet": 0, "paper": 1}
+_PLACEMENTS = {"auto": 0, "optimal": 1, "vertex": 2}
+_MEASURES = {"none": 0, "levels": 1, "all": 2}
+_CODECS = {"draco": 0, "adaptive": 1}
+_STAGES = ("clean", "quantise", "simplify", "measure", "encode", "keep")
+_MAX_COMPONENTS = 16
+# Between two looks at how far the work has come, and at Ctrl-C.
+_INTERVAL_S = 0.1
+
+
+class Cancelled(QtetError):
+    """The progress callback asked to stop."""
+
+
+class _Field(ctypes.Structure):
+    _fields_ = [
+        ("name", _text),
+        ("association", _u32),
+        ("type", _u32),
+        ("components", _u32),
+        ("reserved", _u32),
+        ("values", _address),
+    ]
+
+
+class _Mesh(ctypes.Structure):
+    _fields_ = [
+        ("points", _address),
+        ("pointCount", _u64),
+        ("tetrahedra", _address),
+        ("tetrahedronCount", _u64),
+        ("pointType", _u32),
+        ("idType", _u32),
+        ("fields", ctypes.POINTER(_Field)),
+        ("fieldCount", _u32),
+        ("fieldBytes", _u32),
+    ]
+
+
+class _NamedNumber(ctypes.Structure):
+    _fields_ = [("name", _text), ("value", _f64)]
+
+
+_Progress = ctypes.CFUNCTYPE(ctypes.c_int, _address, _u32, _f64)
+
+
+class _Options(ctypes.Structure):
+    _fields_ = [
+        ("targetRatio", _f64),
+        ("boundaryWeight", _f64),
+        ("shapeWeight", _f64),
+        ("envelopeTolerance", _f64),
+        ("positionBits", _u32),
+        ("fieldBits", _u32),
+        ("algorithm", _u32),
+        ("placement", _u32),
+        ("measure", _u32),
+        ("valueCodec", _u32),
+        ("keepOrder", _u32),
+        ("lossless", _u32),
+        ("cellsPerPacket", _u32),
+        ("threads", _u32),
+        ("maxBoundaryError", _f64),
+        ("maxFieldErrors", ctypes.POINTER(_NamedNumber)),
+        ("fieldWeights", ctypes.POINTER(_NamedNumber)),
+        ("maxFieldErrorCount", _u32),
+        ("fieldWeightCount", _u32),
+        ("regions", _text),
+        ("source", _text),
+        ("progress", _Progress),
+        ("user", _address),
+    ]
+
+
+def _library():
+    c = library()
+    if not hasattr(c, "qtet_simplify"):
+        raise QtetError("this libqtet.so makes no logs; install a newer libqtet0")
+    c.qtet_simplified_create.restype = _address
+    c.qtet_simplified_error.restype = _text
+    c.qtet_simplified_log.restype = _address
+    return c
+
+
+def _array(values, what):
+    """A packed array of one of the types that a log has, in the machine's order of bytes."""
+    array = numpy.asarray(values)
+    name = array.dtype.newbyteorder("=").name
+    name = _WIDENED.get(name, name)
+    if name not in _TYPES:
+        raise ValueError(
+            f"{what}: no log has numbers of type {array.dtype}; give floats of 32 or "
+            "64 bits, or integers"
+        )
+    return numpy.ascontiguousarray(array, dtype=name)
+
+
+def _points(points):
+    array = _array(points, "points")
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise ValueError(f"points have the shape {array.shape}; give (points, 3)")
+    return array if array.dtype.name in ("float32", "float64") else array.astype("float64")
+
+
+def _cells(cells):
+    array = _array(cells, "cells")
+    if array.ndim != 2 or array.shape[1] != 4 or array.dtype.kind not in "iu":
+        raise ValueError(
+            f"cells are {array.dtype} of the shape {array.shape}; give integers of "
+            "the shape (cells, 4), as of tetrahedra (qtet convert splits others)"
+        )
+    return (
+        array
+        if array.dtype.name in ("int32", "int64", "uint32", "uint64")
+        else (array.astype("int64"))
+    )
+
+
+class _Input:
+    """The C struct of a mesh, and the arrays that it points into."""
+
+    def __init__(self, points, cells, point_data, cell_data):
+        self.points, self.cells, self.values = _points(points), _cells(cells), []
+        fields = [
+            self._field(name, values, association, tuples)
+            for data, association, tuples in (
+                (point_data, _POINT, len(self.points)),
+                (cell_data, _CELL, len(self.cells)),
+            )
+            for name, values in (data or {}).items()
+        ]
+        self.mesh = _Mesh(
+            self.points.ctypes.data,
+            len(self.points),
+            self.cells.ctypes.data,
+            len(self.cells),
+            _TYPES[self.points.dtype.name],
+            _TYPES[self.cells.dtype.name],
+            (_Field * len(fields))(*fields),
+            len(fields),
+            ctypes.sizeof(_Field),
+        )
+
+    def _field(self, name, values, association, tuples):
+        array = _array(values, f"field {name!r}")
+        components = int(numpy.prod(array.shape[1:]))
+        if array.ndim == 0 or len(array) != tuples or not 1 <= components <= _MAX_COMPONENTS:
+            raise ValueError(
+                f"field {name!r} has the shape {array.shape}; give ({tuples},) or ({tuples}, "
+                f"components), at most {_MAX_COMPONENTS} of these"
+            )
+        self.values.append(array)
+        return _Field(
+            name.encode(), association, _TYPES[array.dtype.name], components, 0, array.ctypes.data
+        )
+
+
+def _named(numbers):
+    entries = [_NamedNumber(name.encode(), value) for name, value in (numbers or {}).items()]
+    return (_NamedNumber * len(entries))(*entries), len(entries)
+
+
+def _choice(choices, word, what):
+    if word not in choices:
+        raise ValueError(f"{what} {word!r} is not known; give one of {', '.join(choices)}")
+    return choices[word]
+
+
+class _Work:
+    """One call of qtet_simplify in a thread of its own: Python handles Ctrl-C between two steps of
+    the thread that waits, and would lose it in a callback from C."""
+
+    def __init__(self, c, source, options):
+        self.c, self.source, self.options = c, source, options
+        self.stage, self.fraction, self.is_stopped, self.status = 0, 0.0, False, None
+        self.is_over = threading.Event()
+        options.progress = _Progress(self._tell)
+        self.made = _address(c.qtet_simplified_create())
+        if not self.made:
+            raise MemoryError("no memory for a log")
+
+    def _tell(self, _, stage, fraction):
+        self.stage, self.fraction = stage, fraction
+        return int(self.is_stopped)
+
+    def _call(self):
+        try:
+            self.status = self.c.qtet_simplify(
+                self.made,
+                ctypes.c_size_t(ctypes.sizeof(_Mesh)),
+                ctypes.byref(self.source.mesh),
+                ctypes.c_size_t(ctypes.sizeof(_Options)),
+                ctypes.byref(self.options),
+            )
+        finally:
+            self.is_over.set()
+
+    def run(self, progress):
+        thread = threading.Thread(target=self._call, name="qtet.simplify")
+        try:
+            thread.start()
+            while not self.is_over.wait(_INTERVAL_S):
+                if progress and progress(_STAGES[self.stage], self.fraction) is False:
+                    break
+        finally:
+            self.is_stopped = True
+            self._wait_for_end(thread)
+        self.check(self.status)
+
+    def _wait_for_end(self, thread):
+        """Whatever else is interrupted meanwhile: C must not write into memory that is gone."""
+        while thread in threading.enumerate() and not self.is_over.is_set():
+            try:
+                # not join: an interrupted one takes a thread that runs for one that has ended
+                self.is_over.wait()
+            except KeyboardInterrupt:
+                pass
+
+    def check(self, status):
+        if status == 0:
+            return
+        text = self.c.qtet_simplified_error(self.made).decode(errors="replace")
+        if status == _OUT_OF_MEMORY:
+            raise MemoryError(text)
+        raise (Cancelled if status == _CANCELLED else QtetError)(text)
+
+    def log(self):
+        size = ctypes.c_size_t()
+        address = self.c.qtet_simplified_log(self.made, ctypes.byref(size))
+        return ctypes.string_at(address, size.value)
+
+    def write(self, path):
+        self.check(self.c.qtet_simplified_write(self.made, os.fsencode(path)))
+
+    def close(self):
+        self.c.qtet_simplified_destroy(self.made)
+
+
+def simplify(
+    points,
+    cells,
+    point_data=None,
+    cell_data=None,
+    *,
+    path=None,
+    progress=None,
+    source="",
+    target_ratio=None,
+    boundary_weight=None,
+    shape_weight=None,
+    envelope_tolerance=None,
+    position_bits=None,
+    field_bits=None,
+    algorithm="qtet",
+    placement="auto",
+    measure="levels",
+    value_codec="draco",
+    keep_order=False,
+    lossless=False,
+    cells_per_packet=0,
+    threads=1,
+    max_boundary_error=None,
+    max_field_errors=None,
+    field_weights=None,
+    regions=None,
+):
+    """Makes the log of a tetrahedral mesh: its bytes, or, with `path`, a file (and the path).
+
+    points      (n, 3) floats, finite, in any unit of length
+    cells       (m, 4) integers: the points of each tetrahedron, counted from 0
+    point_data  {name: array}: (n,) or (n, components), float or integer; NaN is a missing value
+    cell_data   {name: array}: the same with m
+    progress    called about ten times a second with the stage's name and the fraction of it that
+                is done, 0 to 1; the answer False ends the work with Cancelled
+    source      what the log calls its input
+    target_ratio          of the base mesh's tetrahedra to the input's; 0.01
+    boundary_weight       what the boundary's place counts beside the fields; chosen by the mesh
+    shape_weight          what badly shaped cells cost; 0.5
+    envelope_tolerance    how far the boundary may leave the solid, over the box's diagonal; 0
+    position_bits, field_bits   of the lattice an axis, 16; of a float field's values, 12
+    algorithm, placement, measure, value_codec   the words of `qtet simplify --help`
+    keep_order, lossless  keep the input's numbering; its own numbers
+    cells_per_packet      100 and more: the layout `regions`, with packets of so many cells
+    threads               the log does not depend on it
+    max_boundary_error    coarsest level: the boundary's distance, over the diagonal
+    max_field_errors      {name: rms error over the field's range}
+    field_weights         {name: what a point field counts, 1 otherwise}
+    regions               the name of a cell field whose values keep their topology
+
+    Raises ValueError (arrays of another shape or type, a word that is not known), QtetError (a mesh
+    that cannot be simplified, options out of range, a file that cannot be written), Cancelled,
+    MemoryError. Ctrl-C ends the work soon, and KeyboardInterrupt is raised. Other threads of Python
+    run meanwhile; the arrays must not change."""
+    c = _library()
+    options = _Options()
+    if c.qtet_simplify_defaults(ctypes.c_size_t(ctypes.sizeof(options)), ctypes.byref(options)):
+        raise QtetError("libqtet.so and qtet.py are of different versions; install both anew")
+    for member, value in (
+        ("targetRatio", target_ratio),
+        ("boundaryWeight", boundary_weight),
+        ("shapeWeight", shape_weight),
+        ("envelopeTolerance", envelope_tolerance),
+        ("positionBits", position_bits),
+        ("fieldBits", field_bits),
+        ("maxBoundaryError", max_boundary_error),
+    ):
+        if value is not None:
+            setattr(options, member, value)
+    options.algorithm = _choice(_ALGORITHMS, algorithm, "algorithm")
+    options.placement = _choice(_PLACEMENTS, placement, "placement")
+    options.measure = _choice(_MEASURES, measure, "measure")
+    options.valueCodec = _choice(_CODECS, value_codec, "value_codec")
+    options.keepOrder, options.lossless = bool(keep_order), bool(lossless)
+    options.cellsPerPacket, options.threads = cells_per_packet, threads
+    options.maxFieldErrors, options.maxFieldErrorCount = _named(max_field_errors)
+    options.fieldWeights, options.fieldWeightCount = _named(field_weights)
+    options.regions = regions.encode() if regions is not None else None
+    options.source = source.encode()
+    work = _Work(c, _Input(points, cells, point_data, cell_data), options)
+    try:
+        work.run(progress)
+        if path is None:
+            return work.log()
+        work.write(path)
+        return path
+    finally:
+        work.close()

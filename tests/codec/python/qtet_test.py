@@ -1,0 +1,234 @@
+"""qtet.simplify: logs as the tool makes them, every wrong argument an exception, Ctrl-C.
+   qtet_test.py LIBRARY QTET-PROGRAM MODULES FOLDER-TO-WRITE-TO; ends with 77 without numpy."""
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+library, program, modules, out = sys.argv[1:]
+os.environ["QTET_LIBRARY"] = library
+sys.path.insert(0, modules)
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+try:
+    import numpy
+    import qtet
+except ImportError as error:
+    print("skipped:", error)
+    sys.exit(77)
+
+OUT = pathlib.Path(out)
+OUT.mkdir(parents=True, exist_ok=True)
+_KUHN = [(0, 1, 3, 7), (0, 1, 7, 5), (0, 5, 7, 4), (0, 3, 2, 7), (0, 2, 6, 7), (0, 6, 4, 7)]
+
+
+def grid(n):
+    """A cube of n^3 cells, six tetrahedra each, and fields of every association and shape."""
+    ticks = numpy.arange(n + 1)
+    z, y, x = (a.ravel() for a in numpy.meshgrid(ticks, ticks, ticks, indexing="ij"))
+    points = numpy.stack([x, y, z], axis=1) / n
+    corner = (x + (n + 1) * (y + (n + 1) * z))[(x < n) & (y < n) & (z < n)]
+    steps = numpy.array(
+        [dx + (n + 1) * (dy + (n + 1) * dz) for dz in (0, 1) for dy in (0, 1) for dx in (0, 1)]
+    )
+    cells = (corner[:, None, None] + steps[numpy.array(_KUHN)]).reshape(-1, 4)
+    heat = numpy.sin(3 * points[:, 0]) * points[:, 1] + points[:, 2] ** 2
+    middle = points[cells].mean(axis=1)
+    return (
+        points,
+        cells,
+        {"Heat": heat.astype("float32"), "Swirl": (points - 0.5)[:, [1, 0, 2]]},
+        {"Region": (middle[:, 0] * 3).astype("int16"), "Height": middle[:, 2]},
+    )
+
+
+def write_vtu(path, points, cells, point_data, cell_data):
+    """The mesh as a plain .vtu, so that the tool reads what Python has."""
+    names = {
+        "float32": "Float32",
+        "float64": "Float64",
+        "int16": "Int16",
+        "int64": "Int64",
+        "uint8": "UInt8",
+    }
+
+    def array(name, values):
+        flat = values.reshape(len(values), -1)
+        text = " ".join(
+            numpy.format_float_scientific(v, unique=True) if values.dtype.kind == "f" else str(v)
+            for v in flat.ravel()
+        )
+        return (
+            f'<DataArray type="{names[values.dtype.name]}" Name="{name}" format="ascii" '
+            f'NumberOfComponents="{flat.shape[1]}">{text}</DataArray>'
+        )
+
+    count = len(cells)
+    path.write_text(
+        '<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" '
+        f'header_type="UInt64"><UnstructuredGrid><Piece NumberOfPoints="{len(points)}" '
+        f'NumberOfCells="{count}"><Points>{array("Points", points)}</Points><Cells>'
+        + array("connectivity", cells.astype("int64").reshape(-1))
+        + array("offsets", 4 * numpy.arange(1, count + 1))
+        + array("types", numpy.full(count, 10, dtype="uint8"))
+        + "</Cells><PointData>"
+        + "".join(array(n, v) for n, v in point_data.items())
+        + "</PointData><CellData>"
+        + "".join(array(n, v) for n, v in cell_data.items())
+        + "</CellData></Piece></UnstructuredGrid></VTKFile>"
+    )
+
+
+def refused(kind, word, call):
+    try:
+        call()
+    except kind as error:
+        assert word in str(error), error
+        return
+    raise AssertionError(f"accepted; expected {kind.__name__} with '{word}'")
+
+
+def logs_are_the_tools():
+    points, cells, point_data, cell_data = grid(6)
+    vtu, log = OUT / "grid.vtu", OUT / "grid.qtet"
+    write_vtu(vtu, points, cells, point_data, cell_data)
+    for words, options in (
+        ("", {}),
+        (
+            "--target-ratio 0.2 --field-weight Heat=3 --preserve-regions Region --threads 2 "
+            "--boundary-weight 9 --shape-weight 0.2 --envelope-tolerance 0.01 --field-bits 10 "
+            "--position-bits 18 --placement optimal",
+            {
+                "target_ratio": 0.2,
+                "field_weights": {"Heat": 3},
+                "regions": "Region",
+                "threads": 2,
+                "boundary_weight": 9,
+                "shape_weight": 0.2,
+                "envelope_tolerance": 0.01,
+                "field_bits": 10,
+                "position_bits": 18,
+                "placement": "optimal",
+            },
+        ),
+        (
+            "--lossless --keep-order --geometry-codec adaptive --measure all "
+            "--max-boundary-error 0.1 --max-field-error Heat=0.1",
+            {
+                "lossless": True,
+                "keep_order": True,
+                "value_codec": "adaptive",
+                "measure": "all",
+                "max_boundary_error": 0.1,
+                "max_field_errors": {"Heat": 0.1},
+            },
+        ),
+        (
+            "--layout regions --cells-per-packet 200 --measure none",
+            {"cells_per_packet": 200, "measure": "none"},
+        ),
+        ("--algorithm paper", {"algorithm": "paper"}),
+    ):
+        subprocess.run([program, "simplify", vtu, "-o", log, "-q", *words.split()], check=True)
+        made = qtet.simplify(points, cells, point_data, cell_data, source="grid.vtu", **options)
+        assert made == log.read_bytes(), words
+    path = OUT / "made.qtet"
+    assert qtet.simplify(points, cells, point_data, cell_data, path=path) is path
+    with qtet.Log(path) as opened:
+        opened.refine(opened.last_level)
+        assert opened.counts()[:2] == (len(points), len(cells))
+
+
+def shapes_and_types_do_not_matter():
+    points, cells, _, _ = grid(3)
+    tensor = numpy.arange(len(points) * 9).reshape(-1, 3, 3)
+    expected = qtet.simplify(points, cells, {"T": tensor.reshape(-1, 9)}, {"Flag": cells[:, 0] % 2})
+    big = points.astype(">f8")
+    odd = numpy.zeros((len(cells), 8), dtype="int64")[:, ::2]
+    odd[:] = cells
+    flag = cells[:, 0] % 2
+    for same_points, same_cells in (
+        (points.tolist(), cells.tolist()),
+        (big, odd),
+        (numpy.asfortranarray(points), cells.astype("uint16")),
+    ):
+        assert qtet.simplify(same_points, same_cells, {"T": tensor}, {"Flag": flag}) == expected
+    flags = qtet.simplify(points, cells, None, {"Flag": cells[:, 0] % 2 == 1})
+    assert flags == qtet.simplify(points, cells, None, {"Flag": (cells[:, 0] % 2).astype("uint8")})
+
+
+def what_is_wrong_is_an_exception():
+    points, cells, point_data, cell_data = grid(3)
+    refused(ValueError, "(points, 3)", lambda: qtet.simplify(points[:, :2], cells))
+    refused(ValueError, "(cells, 4)", lambda: qtet.simplify(points, cells[:, :3]))
+    refused(ValueError, "(cells, 4)", lambda: qtet.simplify(points, cells.astype("float64")))
+    refused(ValueError, "complex", lambda: qtet.simplify(points * 1j, cells))
+    refused(ValueError, "'Heat'", lambda: qtet.simplify(points, cells, {"Heat": points[1:]}))
+    refused(ValueError, "'Heat'", lambda: qtet.simplify(points, cells, {"Heat": 1.0}))
+    refused(
+        ValueError,
+        "'Heat'",
+        lambda: qtet.simplify(points, cells, {"Heat": numpy.zeros((len(points), 17))}),
+    )
+    refused(ValueError, "placement 'best'", lambda: qtet.simplify(points, cells, placement="best"))
+    refused(TypeError, "ratio", lambda: qtet.simplify(points, cells, ratio=1))
+    refused(
+        qtet.QtetError,
+        "bad-input: tetrahedron 0 names a point",
+        lambda: qtet.simplify(points, cells - 1),
+    )
+    refused(qtet.QtetError, "not finite", lambda: qtet.simplify(points * numpy.nan, cells))
+    refused(
+        qtet.QtetError,
+        "not-found: ",
+        lambda: qtet.simplify(points, cells, field_weights={"Heat": 1}),
+    )
+    refused(qtet.QtetError, "0..1", lambda: qtet.simplify(points, cells, target_ratio=2))
+    refused(
+        qtet.QtetError,
+        "not-found: ",
+        lambda: qtet.simplify(points, cells, path=OUT / "no" / "log.qtet"),
+    )
+
+
+def progress_is_told_and_may_end_the_work(mesh):
+    told = []
+    refused(
+        qtet.Cancelled,
+        "cancelled: ",
+        lambda: qtet.simplify(
+            *mesh, progress=lambda stage, done: told.append((stage, done)) or len(told) < 4
+        ),
+    )
+    assert len(told) == 4, told
+    assert all(
+        stage in ("clean", "quantise", "simplify", "measure", "encode") and 0 <= done <= 1
+        for stage, done in told
+    ), told
+
+    def fails(stage, done):
+        raise OSError("the window is closed")
+
+    refused(OSError, "the window is closed", lambda: qtet.simplify(*mesh, progress=fails))
+
+
+def ctrl_c_ends_the_work(mesh):
+    killer = threading.Timer(0.4, os.kill, (os.getpid(), signal.SIGINT))
+    killer.start()
+    start = time.monotonic()
+    refused(KeyboardInterrupt, "", lambda: qtet.simplify(*mesh, measure="all"))
+    print(f"Ctrl-C after 0.4 s ended the work after {time.monotonic() - start:.2f} s")
+    killer.join()
+    time.sleep(0.2)
+    assert [t.name for t in threading.enumerate()] == ["MainThread"], "the work goes on"
+
+
+logs_are_the_tools()
+shapes_and_types_do_not_matter()
+what_is_wrong_is_an_exception()
+large = grid(40)
+progress_is_told_and_may_end_the_work(large)
+ctrl_c_ends_the_work(large)
+print("qtet.simplify makes the tool's logs")
