@@ -129,7 +129,8 @@ done
 # ---- the library: a program of somebody else's, and Python
 
 step "libqtet-dev, python3-qtet"
-install "$(deb libqtet0)" "$(deb libqtet-dev)" "$(deb python3-qtet)" gcc libc6-dev pkgconf python3-numpy
+install "$(deb libqtet0)" "$(deb libqtet-dev)" "$(deb python3-qtet)" gcc libc6-dev pkgconf \
+  python3-numpy
 cp "$source/tests/consumer/levels.c" "$source/tests/consumer/simplify.c" "$root/tmp/"
 inside sh -c 'cc -std=c99 /tmp/levels.c $(pkg-config --cflags --libs qtet) -o /tmp/levels &&
   /tmp/levels /tmp/fin.qtet full' | grep >/dev/null '^level 0:' || fail "levels.c"
@@ -140,7 +141,8 @@ inside python3 -c 'import qtet_log
 log = qtet_log.Log("/tmp/fin.qtet")
 print(log.refine(log.last_level), log.counts())' >/dev/null || fail "qtet_log"
 inside python3 -c 'import qtet
-qtet.simplify([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 1, 2, 3]], path="/tmp/one.qtet")' ||
+points = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+qtet.simplify(points, [[0, 1, 2, 3]], path="/tmp/one.qtet")' ||
   fail "qtet.simplify"
 inside python3 -c "import qtet_log
 qtet_log.Log('http://127.0.0.1:$port/?mesh=fin').refine(0)" || fail "qtet_log over HTTP"
