@@ -1,5 +1,5 @@
 // Shapes in a star beside their definition, cell by cell.
-#include "simplify/fuse/star_shapes.h"
+#include "simplify/legality/star_shapes.h"
 
 #include <gtest/gtest.h>
 
