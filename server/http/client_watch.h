@@ -18,8 +18,10 @@ void watchForEnd(ClientSocket& socket, Pending pending, Gone gone) {
                        gone = std::move(gone)](const boost::system::error_code& ec) mutable {
     if (!pending()) return;
     const Arrived arrived = ec ? Arrived::kEnd : socket.arrived();
-    if (arrived == Arrived::kNothing) watchForEnd(socket, std::move(pending), std::move(gone));
-    if (arrived == Arrived::kEnd) gone();
+    if (arrived == Arrived::kNothing)
+      watchForEnd(socket, std::move(pending), std::move(gone));
+    else if (arrived == Arrived::kEnd)
+      gone();
   });
 }
 

@@ -98,7 +98,8 @@ asio::awaitable<bool> HttpSession::waitForPlace(Handshakes::Client& handshake,
 
 asio::awaitable<void> HttpSession::run() {
   const bool greeted = co_await shakeHands();
-  while (greeted) {
+  if (!greeted) co_return;
+  for (;;) {
     const bool begun = co_await input_.waitForRequest();
     if (!begun) co_return;
     const bool again = co_await serveRequest();

@@ -15,7 +15,8 @@ namespace qtet {
 struct Answer {
   using Work = std::variant<std::monostate, LevelRequest, UploadRequest>;
 
-  Answer(Reply whole) : reply(std::move(whole)) {}  // most answers are one
+  // Most answers are one. NOLINTNEXTLINE(google-explicit-constructor)
+  Answer(Reply whole) : reply(std::move(whole)) {}
   Answer(Reply head, LevelRequest level) : reply(std::move(head)), work(std::move(level)) {}
   explicit Answer(UploadRequest upload) : work(std::move(upload)) {}
 
