@@ -11,17 +11,13 @@ std::vector<CostPart> costPartsOf(const LatticeMesh& mesh, std::span<const doubl
   std::vector<CostPart> parts;
   std::vector<double> chosen;
   double total = 0;
-  std::size_t components = 0;
   for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
     const FieldInfo& info = mesh.fields[f];
     const double weight = weights.empty() ? isFloatType(info.type) : weights[f];
     const auto [low, high] = std::ranges::minmax(mesh.values[f]);
-    if (isCellField(info) || weight <= 0 || low == high ||
-        components + info.components > kMaxCostComponents)
-      continue;
+    if (isCellField(info) || weight <= 0 || low == high) continue;
     parts.push_back({f, 1});
     chosen.push_back(weight);
-    components += info.components;
     total += weight;
   }
   for (std::size_t i = 0; i < parts.size(); ++i) {

@@ -8,9 +8,6 @@
 
 namespace qtet {
 
-/// Components of fields that the cost can hold; each adds 40 bytes a vertex.
-inline constexpr std::size_t kMaxCostComponents = 32;
-
 /// A field that counts.
 struct CostPart {
   std::size_t field = 0;

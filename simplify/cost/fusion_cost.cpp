@@ -36,9 +36,11 @@ FusionCost::FusionCost(const FusionMesh& mesh, const LatticeMesh& lattice,
                        const CostOptions& options, Workers* workers)
     : mesh_(mesh),
       parts_(costPartsOf(lattice, options.fieldWeights)),
+      basis_(lattice, parts_),
+      components_(basis_.components()),
+      stride_(kHead + kPerComponent * components_),
       diagonal_(diagonalOf(lattice)) {
-  takeLimits(lattice);
-  stride_ = kHead + kPerComponent * components_;
+  if (basis_.isDirect()) takeLimits(lattice);
   slot_.resize(lattice.points.size());
   std::iota(slot_.begin(), slot_.end(), 0u);
   quadrics_.reserve(lattice.points.size() * stride_);
@@ -79,7 +81,6 @@ void FusionCost::takeLimits(const LatticeMesh& lattice) {
     const FieldInfo& info = lattice.fields[part.field];
     limits_.insert(limits_.end(), info.components, part.scale * (std::ldexp(1.0, info.bits) - 1));
   }
-  components_ = limits_.size();
 }
 
 void FusionCost::takeValues(const LatticeMesh& lattice) {
@@ -88,8 +89,8 @@ void FusionCost::takeValues(const LatticeMesh& lattice) {
     const std::size_t n = lattice.fields[part.field].components;
     for (VertexId v = 0; v < lattice.points.size(); ++v)
       for (std::size_t c = 0; c < n; ++c)
-        quadrics_[at(v) + placeOf(kValue, first + c)] =
-            part.scale * lattice.values[part.field][v * n + c];
+        basis_.add(first + c, part.scale * lattice.values[part.field][v * n + c],
+                   std::span(quadrics_).subspan(at(v) + placeOf(kValue, 0), components_));
     first += n;
   }
 }
@@ -275,10 +276,28 @@ double FusionCost::valuesAt(const Prey& prey, const LatticePoint& p,
   for (std::size_t f = 0; f < components_; ++f) {
     const double best = value(prey.vertex[0], f) +
                         (sum.weight > 0 ? (dot(sum.slope[f], d) + sum.offset[f]) / sum.weight : 0);
-    values[f] = std::clamp(best, 0.0, limits_[f]);
+    values[f] = basis_.isDirect() ? std::clamp(best, 0.0, limits_[f]) : best;
     cost += sum.weight * (values[f] - best) * (values[f] - best);
   }
   return cost;
+}
+
+std::array<double, 4> FusionCost::sharesOf(const Prey& prey, const LatticePoint& p) const {
+  std::array<double, 4> shares{};
+  const auto vertices = prey.vertices();
+  if (prey.k == 2) {
+    const Vector3 along = mesh_.position(vertices[1]) - mesh_.position(vertices[0]);
+    const double t = dot(toVector(p) - mesh_.position(vertices[0]), along) / dot(along, along);
+    shares[1] = t > 0 ? std::min(t, 1.0) : 0;
+    shares[0] = 1 - shares[1];
+    return shares;
+  }
+  double whole = 0;
+  for (const VertexId v : vertices) whole += quadrics_[at(v) + kWeight];
+  for (std::size_t i = 0; i < vertices.size(); ++i)
+    shares[i] = whole > 0 ? quadrics_[at(vertices[i]) + kWeight] / whole
+                          : 1.0 / static_cast<double>(vertices.size());
+  return shares;
 }
 
 void FusionCost::fuse(const Prey& prey, VertexId fused, const LatticePoint& p,

@@ -13,6 +13,7 @@
 
 #include "codec/coding/prefetch.h"
 #include "codec/mesh/mesh.h"
+#include "simplify/cost/cost_basis.h"
 #include "simplify/cost/cost_parts.h"
 #include "simplify/cost/edge_quadric.h"
 #include "simplify/cost/line_allocator.h"
@@ -66,15 +67,24 @@ class FusionCost {
     for (std::size_t i = 0; i < stride_; i += kLineDoubles) qtet::prefetch(&quadrics_[at(v) + i]);
   }
 
-  /// The fields in the cost, in the order of their values.
+  /// The fields in the cost.
   [[nodiscard]] std::span<const CostPart> parts() const { return parts_; }
+  /// What the values stand for, in the order of parts().
+  [[nodiscard]] const CostBasis& basis() const { return basis_; }
   /// Of the bounding box, in lattice steps.
   [[nodiscard]] double diagonal() const { return diagonal_; }
   [[nodiscard]] std::size_t components() const { return components_; }
 
-  /// The best values at p, within the fields' limits, in the cost's unit (components() numbers),
-  /// and E there.
+  /// The best values at p in the cost's unit (components() numbers), within the fields' limits if
+  /// basis().isDirect(), and E there.
   double valuesAt(const Prey& prey, const LatticePoint& p, std::span<double> values) const;
+  /// How much each prey vertex has to say in what the fused vertex at p takes from their values:
+  /// by its place on an edge, else by the volume that it stands for. The shares sum to 1.
+  [[nodiscard]] std::array<double, 4> sharesOf(const Prey& prey, const LatticePoint& p) const;
+  /// A vertex's value number f.
+  [[nodiscard]] double value(VertexId v, std::size_t f) const {
+    return quadrics_[at(v) + placeOf(kValue, f)];
+  }
   /// The prey's quadrics become the fused vertex's. Threads may do so at once, each for prey of its
   /// own. REQUIRES: room for it; called before or after FusionMesh::fuse, once each fusion.
   void fuse(const Prey& prey, VertexId fused, const LatticePoint& p,
@@ -133,9 +143,6 @@ class FusionCost {
   [[nodiscard]] Vector3 slope(const double* q, std::size_t f) const {
     return {q[placeOf(0, f)], q[placeOf(1, f)], q[placeOf(2, f)]};
   }
-  [[nodiscard]] double value(VertexId v, std::size_t f) const {
-    return quadrics_[at(v) + placeOf(kValue, f)];
-  }
   [[nodiscard]] PreyQuadric ofEdge(VertexId v, VertexId w) const;
   template <class T>
   [[nodiscard]] T pullOf(const T& trace, const T& weight) const;
@@ -146,9 +153,10 @@ class FusionCost {
 
   const FusionMesh& mesh_;
   std::vector<CostPart> parts_;
+  CostBasis basis_;
   std::size_t components_ = 0, stride_ = kHead;
   double diagonal_ = 1;         // lattice steps
-  std::vector<double> limits_;  // a component's largest value; the smallest is 0
+  std::vector<double> limits_;  // if direct, a component's largest value; the smallest is 0
   std::vector<double, LineAllocator<double>> quadrics_;  // stride_ a slot
   std::vector<std::uint32_t> slot_;  // by vertex: a fused vertex takes its first prey vertex's
 };

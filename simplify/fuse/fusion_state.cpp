@@ -1,9 +1,11 @@
 #include "simplify/fuse/fusion_state.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 
 #include "simplify/mesh/tet_mesh.h"
 
@@ -19,6 +21,40 @@ std::size_t valuesOfAPoint(std::span<const FieldInfo> fields) {
     if (!isCellField(field)) count += field.components;
   return count;
 }
+
+// The fields of a fused vertex where the cost's values stand for many components: the mean of what
+// the prey vertices have, changed as the values change.
+class ManyFields {
+ public:
+  ManyFields(const FusionState& state, const PlannedFusion& planned, std::span<const double> values)
+      : mesh_(state.mesh()),
+        basis_(state.cost().basis()),
+        prey_(planned.prey),
+        shares_(state.cost().sharesOf(planned.prey, planned.point)) {
+    for (std::size_t j = 0; j < values.size(); ++j) {
+      change_[j] = values[j];
+      for (std::size_t i = 0; i < prey_.k; ++i)
+        change_[j] -= shares_[i] * state.cost().value(prey_.vertex[i], j);
+    }
+  }
+
+  /// Component c of a field, number `component` of all in the cost.
+  [[nodiscard]] double at(const CostPart& part, std::size_t c, std::size_t component) const {
+    double value =
+        basis_.changeOf(component, std::span(change_).first(basis_.components())) / part.scale;
+    for (std::size_t i = 0; i < prey_.k; ++i)
+      value += shares_[i] * mesh_.values(part.field, prey_.vertex[i])[c];
+    const double most = std::ldexp(1.0, mesh_.fields()[part.field].bits) - 1;
+    return std::clamp(value, 0.0, most);
+  }
+
+ private:
+  const FusionMesh& mesh_;
+  const CostBasis& basis_;
+  Prey prey_;
+  std::array<double, 4> shares_;
+  CostValues change_{};
+};
 
 }  // namespace
 
@@ -71,24 +107,31 @@ void FusionState::fuseCosts(const PlannedFusion& planned, VertexId fused,
   cost_.fuse(planned.prey, fused, planned.point, values);
 }
 
-// The fused vertex's integers: of a field in the cost what the cost says, of the others the
-// nearest prey vertex's.
-void FusionState::findIntegers(const PlannedFusion& planned, std::span<const double> values,
-                               std::span<std::int32_t> integers) const {
+VertexId FusionState::nearest(const PlannedFusion& planned) const {
   VertexId nearest = planned.prey.vertex[0];
   double least = std::numeric_limits<double>::infinity();
   for (const VertexId v : planned.prey.vertices()) {
     const Vector3 d = mesh_.position(v) - toVector(planned.point);
     if (dot(d, d) < least) least = dot(d, d), nearest = v;
   }
+  return nearest;
+}
+
+// The fused vertex's integers: of a field in the cost what the cost says, of the others the
+// nearest prey vertex's.
+void FusionState::findIntegers(const PlannedFusion& planned, std::span<const double> values,
+                               std::span<std::int32_t> integers) const {
+  std::optional<ManyFields> many;
+  if (!cost_.basis().isDirect()) many.emplace(*this, planned, values);
+  const VertexId nearest = this->nearest(planned);
   std::size_t part = 0, component = 0, at = 0;
   for (std::size_t f = 0; f < mesh_.fields().size(); ++f) {
     if (isCellField(mesh_.fields()[f])) continue;
     if (part < cost_.parts().size() && cost_.parts()[part].field == f) {
-      for (std::size_t c = 0; c < mesh_.fields()[f].components; ++c)
+      const CostPart& own = cost_.parts()[part++];
+      for (std::size_t c = 0; c < mesh_.fields()[f].components; ++c, ++component)
         integers[at++] = static_cast<std::int32_t>(
-            std::floor(values[component++] / cost_.parts()[part].scale + 0.5));
-      ++part;
+            std::floor((many ? many->at(own, c, component) : values[component] / own.scale) + 0.5));
     } else {
       for (const std::int32_t value : mesh_.values(f, nearest)) integers[at++] = value;
     }

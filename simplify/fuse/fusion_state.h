@@ -47,6 +47,7 @@ class FusionState {
   void fuseCosts(const PlannedFusion& planned, VertexId fused, std::span<std::int32_t> integers);
   void findIntegers(const PlannedFusion& planned, std::span<const double> values,
                     std::span<std::int32_t> integers) const;
+  [[nodiscard]] VertexId nearest(const PlannedFusion& planned) const;
 
   Workers& workers_;
   FusionMesh mesh_;

@@ -32,9 +32,8 @@ Result<std::vector<std::optional<double>>> namedWeights(const PipelineOptions& o
   return named;
 }
 
-/// Why a field does not count, or nothing. `components`: of those that count already.
-std::string whyNot(const QuantisedMesh& quantised, std::size_t f, bool isNamed,
-                   std::size_t components) {
+/// Why a field does not count, or nothing.
+std::string whyNot(const QuantisedMesh& quantised, std::size_t f, bool isNamed) {
   const FieldInfo& info = quantised.mesh.fields[f];
   const auto& values = quantised.mesh.values[f];
   if (values.empty() || std::ranges::all_of(values, [&](std::int32_t v) { return v == values[0]; }))
@@ -42,9 +41,6 @@ std::string whyNot(const QuantisedMesh& quantised, std::size_t f, bool isNamed,
   if (!isFloatType(info.type) && !isNamed)
     return "is one of integers, which may be labels (--field-weight " + info.name +
            "=1 makes it count)";
-  if (components + info.components > kMaxCostComponents)
-    return "comes after " + std::to_string(kMaxCostComponents) +
-           " components that count, and more cannot";
   return {};
 }
 
@@ -53,12 +49,10 @@ std::vector<double> weightsOf(const QuantisedMesh& quantised,
                               std::vector<std::string>& notes) {
   const std::vector<FieldInfo>& fields = quantised.mesh.fields;
   std::vector<double> weights(fields.size(), 0);
-  std::size_t components = 0;
   for (std::size_t f = 0; f < fields.size(); ++f) {
     if (isCellField(fields[f]) || named[f] == 0) continue;
-    const std::string why = whyNot(quantised, f, named[f].has_value(), components);
+    const std::string why = whyNot(quantised, f, named[f].has_value());
     if (why.empty()) {
-      components += fields[f].components;
       weights[f] = named[f].value_or(1);
     } else {
       notes.push_back("field " + fields[f].name + " " + why +
