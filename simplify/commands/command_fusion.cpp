@@ -47,8 +47,8 @@ void addFusionOptions(boost::program_options::options_description& options) {
                         "stop when the base mesh has this fraction of the tetrahedra")(
       "boundary-weight", po::value<double>(),
       "what the boundary's place counts beside the fields: 0 to 1 for the fields first, 4,000 to "
-      "40,000 for the shape first; without, a weight from 0.5 to 200 by how much the "
-      "fields change at the boundary, which the report tells")(
+      "40,000 for the shape first; without, a weight from 0.05 to 200 by how "
+      "smooth the fields and the boundary are, which the report tells")(
       "field-weight", po::value<std::vector<std::string>>(),
       "NAME=W: what the field's error over its range counts, 1 without; 0 leaves it out; may be "
       "given for several fields")(

@@ -5,19 +5,19 @@
 #include <vector>
 
 #include "codec/mesh/boundary.h"
+#include "simplify/cost/expected_error.h"
 #include "simplify/mesh/cell_corners.h"
 #include "simplify/mesh/vector3.h"
 
 namespace qtet {
 namespace {
 
-// The square of "a few times": 200 on the data set comb, where that weight was found by its
-// boundary (99.7 % of the volume left at 95 % removed).
+// Of what the fields change over the distance that the boundary is off by: "a few times", squared.
 constexpr double kBoundaryToFields = 6;
 // More puts the shape before the fields, which is a user's choice; less would give the shape away
-// where fields hardly change at the boundary.
+// where fields are so smooth that they hardly need cells.
 constexpr double kMaxWeight = 200;
-constexpr double kLeastWeight = 0.5;
+constexpr double kLeastWeight = 0.05;
 
 // Of the fields in the cost: the sum of their squared gradients in a cell of positive volume.
 class Steepness {
@@ -99,10 +99,14 @@ double balancedBoundaryWeight(const LatticeMesh& mesh, std::span<const CostPart>
     }
   }
   if (!(area > 0)) return kMaxWeight;
-  // Means over area and volume: steep / area is the squared gradient at the boundary; boundary area
-  // / diagonal against volume is how the two terms of the cost are summed.
-  const double weight = kBoundaryToFields * diagonalOf(mesh) * (steep / area) * (volume / area);
-  return std::clamp(weight, kLeastWeight, kMaxWeight);
+  // Means over area and volume: boundary area / diagonal against volume is how the two terms of the
+  // cost are summed.
+  const double scale = diagonalOf(mesh) * volume / area;
+  const double worth = kBoundaryToFields * scale * (steep / area);
+  const double boundary = expectedBoundaryError(mesh);
+  const double balance =
+      boundary > 0 ? scale * expectedFieldError(mesh, parts) / boundary : kMaxWeight;
+  return std::clamp(std::min(worth, std::sqrt(worth * balance)), kLeastWeight, kMaxWeight);
 }
 
 }  // namespace qtet
