@@ -75,20 +75,13 @@ void appendValues(MeshField& field, const CellMesh& block, std::size_t tuples) {
 }
 
 void appendCells(CellMesh& out, const CellMesh& block, VertexId firstPoint) {
-  const auto shift = [&](std::span<VertexId> ids) {
-    for (VertexId& v : ids)
-      v = v >= block.points.size() || v + std::uint64_t{firstPoint} >= kGhost ? kGhost
-                                                                              : v + firstPoint;
+  const auto shift = [&](VertexId& v) {
+    v = v >= block.points.size() || v + std::uint64_t{firstPoint} >= kGhost ? kGhost
+                                                                            : v + firstPoint;
   };
   for (std::size_t i = 0; i < block.cells(); ++i) {
     out.addCell(block.types[i], block.cell(i));
-    const std::span<VertexId> ids = std::span(out.vertices).subspan(out.begins[out.cells() - 1]);
-    if (block.types[i] != kPolyhedronCell) {
-      shift(ids);
-      continue;
-    }
-    for (std::size_t at = 1; at < ids.size(); at += ids[at] + std::size_t{1})
-      shift(ids.subspan(at + 1, std::min<std::size_t>(ids[at], ids.size() - at - 1)));
+    forEachId(block.types[i], std::span(out.vertices).subspan(out.begins[out.cells() - 1]), shift);
   }
 }
 

@@ -26,17 +26,13 @@ bool isWithin(const Threshold& threshold, const MeshField& field, std::size_t tu
   return value >= threshold.low && value <= threshold.high;
 }
 
-/// A polyhedron's stream names counts among its vertices; everything else vertices alone.
 bool allWithin(const Threshold& threshold, const MeshField& field, const CellMesh& mesh,
                std::size_t cell) {
   if (isCellField(field)) return isWithin(threshold, field, cell);
-  const std::span<const VertexId> ids = mesh.cell(cell);
-  const auto within = [&](VertexId v) { return isWithin(threshold, field, v); };
-  if (mesh.types[cell] != kPolyhedronCell) return std::ranges::all_of(ids, within);
-  for (std::size_t at = 1; at < ids.size(); at += ids[at] + 1) {
-    if (!std::ranges::all_of(ids.subspan(at + 1, ids[at]), within)) return false;
-  }
-  return true;
+  bool all = true;
+  forEachId(mesh.types[cell], mesh.cell(cell),
+            [&](VertexId v) { all = all && isWithin(threshold, field, v); });
+  return all;
 }
 
 }  // namespace

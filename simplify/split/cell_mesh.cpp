@@ -1,6 +1,7 @@
 #include "simplify/split/cell_mesh.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "proto/limits.h"
@@ -68,20 +69,12 @@ Status checkPoints(const CellMesh& mesh, const std::filesystem::path& path) {
 }  // namespace
 
 void CellMesh::renamePoints(std::span<const VertexId> names) {
-  const auto rename = [&](std::span<VertexId> ids) {
-    for (VertexId& v : ids)
-      if (v != kGhost) v = names[v];
-  };
-  for (std::size_t i = 0; i < cells(); ++i) {
-    const std::span<VertexId> ids =
-        std::span(vertices).subspan(begins[i], begins[i + 1] - begins[i]);
-    if (types[i] != kPolyhedronCell) {
-      rename(ids);
-      continue;
-    }
-    for (std::size_t at = 1; at < ids.size(); at += ids[at] + std::size_t{1})
-      rename(ids.subspan(at + 1, std::min<std::size_t>(ids[at], ids.size() - at - 1)));
-  }
+  assert(names.size() == points.size());
+  for (std::size_t i = 0; i < cells(); ++i)
+    forEachId(types[i], std::span(vertices).subspan(begins[i], begins[i + 1] - begins[i]),
+              [names](VertexId& v) {
+                if (v != kGhost) v = names[v];
+              });
 }
 
 std::string cellTypeName(std::uint8_t type) {

@@ -2,6 +2,8 @@
 // every reader makes.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <span>
@@ -48,6 +50,20 @@ enum CellType : std::uint8_t {
 /// Numbers that name a polyhedron's faces: real ones have some hundred, and splitting one takes
 /// time in proportion to the square.
 inline constexpr std::size_t kMaxPolyhedronNumbers = 16384;
+
+/// Calls visit(id) with each vertex among the `ids` of a cell (CellMesh::vertices), a polyhedron's
+/// counts left out. A count that goes beyond the ids' end ends there.
+template <class Id, class Visit>
+void forEachId(std::uint8_t type, std::span<Id> ids, const Visit& visit) {
+  if (type != kPolyhedronCell) {
+    for (Id& id : ids) visit(id);
+    return;
+  }
+  for (std::size_t at = 1; at < ids.size();) {
+    const std::size_t end = at + 1 + std::min<std::size_t>(ids[at], ids.size() - at - 1);
+    for (++at; at < end; ++at) visit(ids[at]);
+  }
+}
 
 /// Cells of three dimensions only. `vertices` of a polyhedron: the number of its faces, then each
 /// face's number of vertices and its vertices.
