@@ -2,6 +2,8 @@
 
 #include <type_traits>
 
+#include "codec/coding/nearest_integer.h"
+
 namespace qtet {
 namespace {
 
@@ -12,7 +14,7 @@ T nearest(double value) {
   } else {
     // The limits of 64-bit integers are no doubles: compare with the powers of two around them.
     if (std::isnan(value)) return 0;
-    const double rounded = std::round(value);
+    const double rounded = nearestInteger(value);
     if (rounded <= static_cast<double>(std::numeric_limits<T>::min()))
       return std::numeric_limits<T>::min();
     if (rounded >= static_cast<double>(std::numeric_limits<T>::max()))

@@ -38,7 +38,7 @@ inline void appendText(Bytes& out, std::string_view text) {
 struct NumberType {
   std::string_view name, xmlName, legacyName, numpyName;
   std::uint64_t sizeBytes;
-  /// Each value rounded and clamped to the type; what is not a number becomes 0 in an integer.
+  /// Each value rounded (nearestInteger) and clamped to the type; NaN becomes 0 in an integer.
   void (*append)(Bytes&, std::span<const double>);
   void (*appendBigEndian)(Bytes&, std::span<const double>);
 };

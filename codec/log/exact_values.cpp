@@ -7,6 +7,7 @@
 #include <limits>
 #include <unordered_map>
 
+#include "codec/coding/nearest_integer.h"
 #include "codec/coding/range_coder.h"
 #include "codec/mesh/mesh.h"
 #include "proto/limits.h"
@@ -41,12 +42,9 @@ class Ordering {
       }
       case Kind::kInteger: break;
     }
-    // Not floor(value + 0.5), which near 2^53 is another number.
-    const double below = std::floor(value);
-    return std::isnan(value)
-               ? 0
-               : static_cast<std::int64_t>(std::clamp(value - below >= 0.5 ? below + 1 : below,
-                                                      -kIntegerEnd, kIntegerEnd));
+    return std::isnan(value) ? 0
+                             : static_cast<std::int64_t>(
+                                   std::clamp(nearestInteger(value), -kIntegerEnd, kIntegerEnd));
   }
   /// False: no number of the type.
   [[nodiscard]] bool number(std::int64_t order, double& out) const {
