@@ -27,8 +27,8 @@ using Json = nlohmann::json;
 /// or a dump of 100,000 overflows the stack.
 inline constexpr std::size_t kMaxJsonDepth = 32;
 
-/// Whether no value of the text lies deeper than kMaxJsonDepth. Looks at brackets outside of
-/// strings; of what is no JSON it says anything.
+/// Whether no value of the text lies deeper than kMaxJsonDepth. Counts brackets outside of strings.
+/// The result is unspecified for invalid JSON.
 [[nodiscard]] inline bool isShallowJson(std::string_view text) {
   std::size_t depth = 0;
   bool quoted = false;

@@ -30,7 +30,7 @@ inline constexpr std::uint32_t kMaxElements = 1u << 29;
 /// memory.
 inline constexpr std::uint32_t kMaxBlockBytes = 256u << 20;
 /// New vertices, cells or triangles of one chunk that holds B structure bytes are at most B times
-/// this: the range coder spends at least 1/1,500 bit on a decision (codec/coding/range_coder.h), so
+/// this: the range coder spends at least 1/1,420 bit on a decision (codec/coding/range_coder.h), so
 /// a hostile count cannot outgrow the bytes sent by more.
 inline constexpr std::uint64_t kMaxDecisionsPerByte = 8 * 1500;
 /// The same of a packet of the layout `regions`, whose slots may be made room for before the bytes

@@ -273,10 +273,10 @@ int runSimplify(const Words& words, Console& console) {
   const ParsedWords parsed(
       words,
       {"simplify", "simplify IN -o OUT.qtet [options]",
-       "Reads a volume mesh with its fields (.vtu, .vtk, .msh, Exodus, EnSight, CGNS, ...: see "
-       "README.md), splits its cells into tetrahedra, cleans\n"
-       "them, simplifies them level by level and writes the log,\n"
-       "from which every level and the whole mesh come back.",
+       "Reads a volume mesh with its fields (.vtu, .vtk, .msh, Exodus, EnSight, CGNS, ...:\n"
+       "simplify/INPUT.md has them all), splits its cells into tetrahedra, cleans them,\n"
+       "simplifies them level by level and writes the log, from which every level and the whole\n"
+       "mesh come back.",
        "  qtet simplify fin.vtu -o fin.qtet\n  qtet simplify fin.vtu -o fin.qtet --fields "
        "Density,Velocity --field-bits 10 --json\n"
        "  qtet simplify ogrid.xyz --plot3d ogrid.q --weld 0 -o ogrid.qtet\n  qtet simplify run.pvd "

@@ -273,7 +273,7 @@ def main():
         f"log of {size} bytes, JSON of {len(listing)} bytes;"
         f" {args.rounds} rounds of {args.seconds} s\n"
     )
-    print("| | qtet-server | peer | ratio | ratio by both ends' CPU |\n|---|---|---|---|---|")
+    print("| | qtet-server | peer | ratio | ratio with the client's CPU |\n|---|---|---|---|---|")
 
     def row(name, ours, theirs, unit, scale):
         a, b = (statistics.median(server for server, _ in rates) for rates in (ours, theirs))

@@ -82,6 +82,13 @@ TEST_F(Tool, helpAndVersionSucceed) {
   }
 }
 
+TEST_F(Tool, helpOfSimplifyFitsAHundredColumnsAndNamesTheFormatsDocument) {
+  const std::string help = run("simplify --help").out;
+  EXPECT_NE(help.find("simplify/INPUT.md"), std::string::npos);
+  std::istringstream lines(help);
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100u) << line;
+}
+
 TEST_F(Tool, completionsAndManualPagesSayWhatHelpSays) {
   for (const char* shell : {"bash", "zsh", "fish"}) {
     const Ran ran = run(std::string("completion ") + shell);
