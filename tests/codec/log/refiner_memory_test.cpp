@@ -10,6 +10,7 @@
 #include "simplify/fuse/qtetfusion.h"
 #include "tests/support/allocation_meter.h"
 #include "tests/support/meshes.h"
+#include "tests/support/sanitizer.h"
 
 namespace qtet {
 namespace {
@@ -50,10 +51,8 @@ class AddressLimit {
  public:
   explicit AddressLimit(rlim_t bytes) {
     ::getrlimit(RLIMIT_AS, &before_);
-#if !defined(__SANITIZE_ADDRESS__)
     const rlimit limit{bytes, before_.rlim_max};
-    ::setrlimit(RLIMIT_AS, &limit);
-#endif
+    if (!testing::kSanitized) ::setrlimit(RLIMIT_AS, &limit);
   }
   AddressLimit(const AddressLimit&) = delete;
   AddressLimit& operator=(const AddressLimit&) = delete;

@@ -12,6 +12,7 @@
 #include "tests/server/program/program.h"
 #include "tests/server/program/served_folder.h"
 #include "tests/server/stream/swarm.h"
+#include "tests/support/sanitizer.h"
 
 namespace qtet {
 namespace {
@@ -21,15 +22,7 @@ using test::Program;
 using test::RawClient;
 using test::Swarm;
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true;
-#elif defined(__has_feature)
-constexpr bool kSanitized = __has_feature(address_sanitizer) || __has_feature(thread_sanitizer);
-#else
-constexpr bool kSanitized = false;
-#endif
-
-class EnduranceTest : public testing::Test {
+class EnduranceTest : public ::testing::Test {
  protected:
   EnduranceTest() {
     const auto bytes =
@@ -148,7 +141,7 @@ TEST_F(EnduranceTest, aThousandStalledClientsHoldUpNobodyAndLoseNothing) {
             << " ms; " << each << " bytes of the server's memory a stalled client\n";
   const bool ownProgram =
       std::getenv("QTET_TESTED_SERVER") == nullptr;  // a sanitizer's memory says nothing of ours
-  if (ownProgram && !kSanitized) {
+  if (ownProgram && !testing::kSanitized) {
     EXPECT_LT(each, 64u << 10);
   }
   // Whoever stalls for longer than the server waits is cut, perhaps since the machine did; the

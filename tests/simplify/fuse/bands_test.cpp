@@ -9,6 +9,7 @@
 #include "simplify/fuse/kd_tree.h"
 #include "simplify/fuse/qtetfusion.h"
 #include "tests/support/meshes.h"
+#include "tests/support/sanitizer.h"
 
 namespace qtet {
 namespace {
@@ -111,7 +112,7 @@ TEST_F(BandsOfAGrid, aMeshOfOneLeafHasNoBands) {
 }
 
 TEST(BandNodes, aBoundaryTriangleFindsItsCellAlsoAtAHubOfAMillionCells) {
-  const LatticeMesh mesh = testing::fanMesh(500'000);
+  const LatticeMesh mesh = testing::fanMesh(500'000 / testing::kStride);
   const FusionMesh live(mesh);
   BandNodes nodes(live, mesh, 1000);
   nodes.begin(live);

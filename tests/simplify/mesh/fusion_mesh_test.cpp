@@ -11,6 +11,7 @@
 
 #include "simplify/mesh/workers.h"
 #include "tests/support/meshes.h"
+#include "tests/support/sanitizer.h"
 
 namespace qtet {
 namespace {
@@ -36,7 +37,7 @@ Star starOf(const FusionMesh& mesh, VertexId a, VertexId b) {
 // The rim's edges go one by one; each takes cells from the axis' two vertices, whose stars hold
 // nearly all that there are.
 TEST(FusionMesh, cellsGoFromAHubWithoutALookAtAllOthers) {
-  constexpr std::uint32_t kCells = 800'000, kFusions = kCells - 600;
+  constexpr std::uint32_t kCells = 800'000 / testing::kStride, kFusions = kCells - 600;
   FusionMesh mesh(testing::fanMesh(kCells));
   VertexId last = 2 + kCells - 1;
   for (std::uint32_t i = 0; i < kFusions; ++i) {
