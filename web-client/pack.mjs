@@ -5,6 +5,7 @@ import {execFileSync} from 'node:child_process';
 import {copyFileSync, readFileSync, writeFileSync} from 'node:fs';
 import {dirname, join, resolve} from 'node:path';
 import {fileURLToPath} from 'node:url';
+import {addEndings} from './typed_paths.mjs';
 
 const here = dirname(fileURLToPath(import.meta.url));
 const [wasm, folder] = process.argv.slice(2, 4).map((path) => resolve(path));
@@ -29,6 +30,7 @@ node(
   '--outDir',
   join(folder, 'types'),
 );
+addEndings(join(folder, 'types'));
 
 const own = JSON.parse(readFileSync(join(here, 'package.json'), 'utf8'));
 const entry = (name, types) => ({types: `./types/${types}.d.ts`, default: `./${name}.js`});
@@ -57,7 +59,8 @@ writeFileSync(
         './three': entry('three', 'three/index'),
       },
       sideEffects: ['./element.js'],
-      peerDependencies: {three: `>=${own.dependencies.three}`},
+      // Any release of three may rename what we use: the one that is tested, and its corrections.
+      peerDependencies: {three: `^${own.dependencies.three}`},
       peerDependenciesMeta: {three: {optional: true}},
       dependencies: {uplot: own.dependencies.uplot},
     },

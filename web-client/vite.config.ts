@@ -3,6 +3,7 @@
 
 import type {Plugin} from 'vite';
 import {defineConfig} from 'vitest/config';
+import {notices} from './notices';
 
 const wasm = process.env.QTET_WASM ?? 'qtet-codec.wasm';
 
@@ -23,7 +24,7 @@ const smallShaders = (): Plugin => ({
 });
 
 export default defineConfig({
-  plugins: [smallShaders()],
+  plugins: [smallShaders(), notices()],
   base: './',
   resolve: {
     alias: [{find: /^qtet-codec\.wasm/, replacement: wasm}],

@@ -2,6 +2,7 @@
 // folder to write (pack.mjs sets both).
 
 import {defineConfig, type Plugin, transformWithEsbuild} from 'vite';
+import {notices} from './notices';
 
 /**
  * Vite would wrap import() in its own preloading. The Vite of a page that uses the package then
@@ -22,7 +23,7 @@ const plainDynamicImports: Plugin = {
 
 export default defineConfig({
   base: './',
-  plugins: [plainDynamicImports],
+  plugins: [plainDynamicImports, notices()],
   resolve: {alias: [{find: /^qtet-codec\.wasm/, replacement: process.env.QTET_WASM!}]},
   // Bundlers copy workers' files unchanged. So these contain everything they need, including three,
   // and are minified here.
