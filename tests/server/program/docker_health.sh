@@ -1,0 +1,56 @@
+#!/usr/bin/env bash
+# The container's health check follows the settings: by option, by environment, by file, with TLS;
+# and it fails where no server answers.
+#   docker_health.sh FOLDER_OF_PROGRAMS SCRATCH      exit code 77: openssl is missing
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+health=$here/../../../.packaging/docker-health.sh
+server=$1/qtet-server out=$2
+command -v openssl >/dev/null || { echo "skipped: needs openssl"; exit 77; }
+rm -rf "$out" && mkdir -p "$out/logs"
+out=$(realpath "$out")
+openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:prime256v1 -nodes -days 2 \
+  -subj /CN=localhost -keyout "$out/key" -out "$out/crt" 2>/dev/null
+unset "${!QTET_SERVER_@}"
+
+pid=
+trap '[[ -z $pid ]] || kill "$pid" 2>/dev/null || true' EXIT
+fail() { echo "docker_health: $1" >&2; exit 1; }
+# A port that nobody had a moment ago; another program may still take it.
+freePort() {
+  local port
+  while port=$((20000 + RANDOM)); (exec 3<>"/dev/tcp/127.0.0.1/$port") 2>/dev/null; do :; done
+  echo "$port"
+}
+
+# NAME WORDS...: a server that is started so is healthy once it listens, and not when it is gone.
+healthy() {
+  local name=$1
+  shift
+  "$@" >"$out/$name.txt" 2>&1 &
+  pid=$!
+  until grep -qs 'listening on' "$out/$name.txt"; do
+    kill -0 "$pid" 2>/dev/null || fail "$name: $(<"$out/$name.txt")"
+    sleep 0.05
+  done
+  "$health" "$pid" || fail "$name: not healthy"
+  kill -STOP "$pid"
+  ! timeout 1 "$health" "$pid" 2>/dev/null || fail "$name: healthy while it hangs"
+  kill -CONT "$pid"
+  kill "$pid" && wait "$pid"
+  ! "$health" "$pid" 2>/dev/null || fail "$name: healthy when it is gone"
+  echo "$name: healthy"
+}
+
+port=$(freePort)
+healthy option "$server" "$out/logs" --port "$port"
+export QTET_SERVER_HOST=0.0.0.0
+healthy host "$server" "$out/logs" --port "$port"
+QTET_SERVER_PORT=$port
+export QTET_SERVER_PORT
+healthy environment "$server" "$out/logs"
+healthy both "$server" "$out/logs" --port "$(freePort)"
+unset QTET_SERVER_PORT
+printf 'folder = %s\nport = %s\n' "$out/logs" "$port" >"$out/conf"
+healthy file "$server" --config "$out/conf"
+healthy tls "$server" --config "$out/conf" --tls-certificate "$out/crt" --tls-key "$out/key"
