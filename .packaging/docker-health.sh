@@ -7,13 +7,20 @@ pid=${1:-$(pidof -s qtet-server)}
 mapfile -d '' words <"/proc/$pid/cmdline"
 settings=$("${words[@]}" --check-config)
 setting() { sed -n "s/^$1 = //p" <<<"$settings"; }
-host=$(setting host)
+address=$(setting admin)  # where alone /readyz is answered, never with TLS
+certificate=
+[[ -n $address ]] || {
+  address=$(setting host):$(setting port)
+  certificate=$(setting tls-certificate)
+}
+host=${address%:*} port=${address##*:}
+host=${host#[} host=${host%]}
 case $host in  # all addresses: the own one is among them
   0.0.0.0) host=127.0.0.1 ;;
   ::) host=::1 ;;
 esac
-exec 3<>"/dev/tcp/$host/$(setting port)"
+exec 3<>"/dev/tcp/$host/$port"
 printf 'GET /readyz HTTP/1.0\r\nHost: localhost\r\n\r\n' >&3
 read -r _ status _ <&3
 # A port with TLS says 400 to plain HTTP.
-[[ $status == 200 || ($status == 400 && -n $(setting tls-certificate)) ]]
+[[ $status == 200 || ($status == 400 && -n $certificate) ]]

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The container's health check follows the settings: by option, by environment, by file, with TLS;
-# and it fails where no server answers.
+# The container's health check follows the settings: by option, by environment, by file, with TLS,
+# with the operators' address apart; and it fails where no server answers.
 #   docker_health.sh FOLDER_OF_PROGRAMS SCRATCH      exit code 77: openssl is missing
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -54,3 +54,4 @@ unset QTET_SERVER_PORT
 printf 'folder = %s\nport = %s\n' "$out/logs" "$port" >"$out/conf"
 healthy file "$server" --config "$out/conf"
 healthy tls "$server" --config "$out/conf" --tls-certificate "$out/crt" --tls-key "$out/key"
+healthy admin "$server" --config "$out/conf" --admin "127.0.0.1:$(freePort)"
