@@ -280,9 +280,9 @@ class Log:
         return self._level(self.c.qtet_log_level_of_field_error, _u32(number), _f64(bound))
 
     def refine(self, level):
-        """Makes the mesh that of a level (the last one if there is none so fine), after fetching
-        what is missing of it."""
-        level = min(level, self.last_level)
+        """Makes the mesh that of a level, after fetching what is missing of it."""
+        if not 0 <= level <= self.last_level:
+            raise QtetError(f"there is no level {level}; the last is {self.last_level}")
         if self.remote and self.remote.need(self.level_info(level).prefixBytes):
             # Anew: the library must not see a file change that it has open.
             self._open(self.remote.file.name)

@@ -37,10 +37,12 @@ _PROPERTIES = """
     <Documentation>What chooses how fine the mesh is.</Documentation>
   </IntVectorProperty>
   <IntVectorProperty name="Level" command="SetLevel" number_of_elements="1" default_values="0">
-    <IntRangeDomain name="range">
+    <!-- Without a mode ParaView sets the middle level, also where a script said Level=0. -->
+    <IntRangeDomain name="range" default_mode="min">
       <RequiredProperties><Property name="LevelRange" function="RangeInfo"/></RequiredProperties>
     </IntRangeDomain>
-    <Documentation>0 is the coarsest, the last one the whole mesh.</Documentation>
+    <Documentation>0 is the coarsest, with which a log opens; the last one is the whole
+    mesh.</Documentation>
     <Hints>
       <PropertyWidgetDecorator type="GenericDecorator" mode="visibility"
                                property="ChooseBy" value="0"/>

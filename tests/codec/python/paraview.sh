@@ -6,6 +6,12 @@ command -v pvbatch >/dev/null || {
   echo "skipped: pvbatch is not installed (Debian: paraview, which takes the place of libvtk9-dev)"
   exit 77
 }
+# Debian has the module in a package of its own, and pvbatch without it may end with 0.
+printf 'import paraview.simple\nprint("paraview" + " module")\n' >"$4/paraview_module.py"
+pvbatch "$4/paraview_module.py" 2>/dev/null | grep -q '^paraview module$' || {
+  echo "skipped: pvbatch has no Python module paraview (Debian: python3-paraview)"
+  exit 77
+}
 "$2" sample fin -o "$4/paraview.vtu" >/dev/null
 "$2" simplify "$4/paraview.vtu" -o "$4/paraview.qtet" >/dev/null
 display=()

@@ -48,6 +48,9 @@ def check(source):
         0,
         levels - 1,
     ), "the slider's range"
+    assert source.Level == 0 and cells(source) == sizes[0], f"opens at level {source.Level}"
+    source.Level = levels + 400
+    assert cells(source) not in sizes[1:], "a level that there is none of was shown"
     for level in (levels - 1, 0, levels // 2):
         source.Level = level
         assert cells(source) == sizes[level], (level, cells(source), sizes)
@@ -93,4 +96,5 @@ else:
 
 if len(sys.argv) > 4:
     check(QtetURL(Url=sys.argv[4]))  # noqa: F821: LoadPlugin put it here
+    check(QtetURL(Url=sys.argv[4], Level=0))  # noqa: F821
 print("the plugin shows what qtet_vtk reads")

@@ -128,6 +128,8 @@ def levels_are_chosen_and_fields_left_out():
             f'NumberOfCells="{grid.GetNumberOfCells()}"'.encode()
             in (OUT / "near.vtu").read_bytes()[:1000]
         ), name
+    for level in (len(sizes), 500, -1):
+        refused(lambda: qtet_vtk.read(path, level=level), f"no level {level}; the last is ")
     none = qtet_vtk.read(path, level=1, fields=[])
     assert none.GetPointData().GetNumberOfArrays() == 0
     assert values_of(qtet_vtk.read(path, fields=["Swirl"]).GetPointData()).keys() == {"Swirl"}

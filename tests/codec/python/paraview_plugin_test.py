@@ -1,0 +1,112 @@
+"""The plugin's classes in VTK alone, with a stand-in for ParaView's decorators: the level with which
+a log opens, levels that there are none of, and what the slider is told.
+   paraview_plugin_test.py LIBRARY QTET-PROGRAM MODULES FOLDER-OF-LOGS FOLDER-TO-WRITE-TO
+It ends with 77 where VTK is not installed. paraview.sh runs the plugin in ParaView itself."""
+import contextlib
+import io
+import os
+import pathlib
+import stat
+import subprocess
+import sys
+import types
+import xml.etree.ElementTree as xml
+
+library, program, modules, logs, out = sys.argv[1:]
+os.environ["QTET_LIBRARY"] = library
+sys.path.insert(0, modules)
+try:
+    from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
+except ImportError as error:
+    print("skipped:", error)
+    sys.exit(77)
+
+LOG, OUT = pathlib.Path(logs) / "solid.qtet", pathlib.Path(out)
+PROPERTIES = []
+
+
+class StandIn:
+    """smproxy, smproperty, smdomain and smhint: decorators that change nothing."""
+
+    def __getattr__(self, name):
+        def of(*texts, **_):
+            if name == "xml":
+                PROPERTIES.extend(texts)
+            return lambda decorated: decorated
+
+        return of
+
+
+def plugin():
+    stand_in = types.ModuleType("paraview.util.vtkAlgorithm")
+    stand_in.VTKPythonAlgorithmBase = VTKPythonAlgorithmBase
+    for name in ("smproxy", "smproperty", "smdomain", "smhint"):
+        setattr(stand_in, name, StandIn())
+    for name in ("paraview", "paraview.util"):
+        sys.modules[name] = types.ModuleType(name)
+    sys.modules[stand_in.__name__] = stand_in
+    import qtet_paraview
+
+    return qtet_paraview
+
+
+def cells(source):
+    source.Update()
+    return source.GetOutputDataObject(0).GetNumberOfCells()
+
+
+def a_log_opens_at_its_coarsest_level(module):
+    import qtet_vtk
+
+    with qtet_vtk.Log(LOG) as log:
+        sizes = [log.level_info(level).tetrahedra for level in range(log.info.levels)]
+    source = module.QtetReader()
+    source.SetFileName(str(LOG))
+    assert source.GetLevelRange() == (0, len(sizes) - 1)
+    assert cells(source) == sizes[0]
+    source.SetLevel(len(sizes) - 1)
+    assert cells(source) == sizes[-1]
+    return source, sizes
+
+
+def a_level_that_there_is_none_of_is_an_error(source, sizes):
+    said = io.StringIO()
+    source.SetLevel(500)
+    with contextlib.redirect_stderr(said):
+        source.Update()
+    assert f"no level 500; the last is {len(sizes) - 1}" in said.getvalue(), said.getvalue()
+    source.SetLevel(0)
+    assert cells(source) == sizes[0], "an error is the end of it"
+
+
+def the_slider_begins_at_the_coarsest_level():
+    assert len(PROPERTIES) == 2, "files and URLs"
+    for text in PROPERTIES:
+        (level,) = xml.fromstring(f"<all>{text}</all>").findall(".//*[@command='SetLevel']")
+        assert level.get("default_values") == "0"
+        assert (
+            level.find("IntRangeDomain").get("default_mode") == "min"
+        ), "ParaView takes the middle"
+
+
+def without_its_module_paraview_is_skipped():
+    """A pvbatch that says what Debian's says, and ends with 0."""
+    pvbatch = OUT / "stand-in" / "pvbatch"
+    pvbatch.parent.mkdir(parents=True, exist_ok=True)
+    pvbatch.write_text("#!/bin/sh\necho \"ModuleNotFoundError: No module named 'paraview'\" >&2\n")
+    pvbatch.chmod(pvbatch.stat().st_mode | stat.S_IXUSR)
+    script = pathlib.Path(__file__).parent / "paraview.sh"
+    ran = subprocess.run(
+        [script, library, program, modules, OUT],
+        env={**os.environ, "PATH": f"{pvbatch.parent}:{os.environ['PATH']}"},
+        capture_output=True,
+        text=True,
+    )
+    assert ran.returncode == 77 and "skipped" in ran.stdout, ran
+
+
+opened = a_log_opens_at_its_coarsest_level(plugin())
+a_level_that_there_is_none_of_is_an_error(*opened)
+the_slider_begins_at_the_coarsest_level()
+without_its_module_paraview_is_skipped()
+print("the plugin opens logs at their coarsest level and refuses levels that there are none of")
