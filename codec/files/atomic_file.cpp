@@ -148,13 +148,25 @@ void removeUnfinished(const fs::path& folder,
   }
 }
 
+Result<fs::path> fileBehindLinks(const fs::path& asked) {
+  constexpr int kMaxLinks = 40;  // as many as Linux follows (path_resolution(7))
+  fs::path path = asked;
+  std::error_code code;
+  for (int links = 0; fs::is_symlink(path, code); ++links) {
+    const fs::path next = links < kMaxLinks ? fs::read_symlink(path, code) : fs::path();
+    if (next.empty())
+      return fail(ErrorCode::kIo, asked.string() +
+                                      " is a link that leads nowhere, or through too many others; "
+                                      "remove it or choose another output");
+    path = path.parent_path() / next;  // an absolute one takes the place of the whole
+  }
+  return path;
+}
+
 Status writeFileAtomically(const fs::path& asked, ByteView bytes, FileCalls& calls) {
-  std::error_code none, links;
-  // the file that it leads to
-  const fs::path path = fs::is_symlink(asked, none) ? fs::weakly_canonical(asked, links) : asked;
-  if (links)
-    return fail(ErrorCode::kIo, asked.string() + " leads nowhere: " + links.message() +
-                                    "; remove the link or choose another output");
+  const Result<fs::path> behind = fileBehindLinks(asked);
+  if (!behind) return std::unexpected(behind.error());
+  const fs::path& path = *behind;
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   std::error_code code;
   if (!fs::is_directory(folder, code)) {

@@ -18,11 +18,15 @@ namespace qtet {
 /// process that is killed on its way leaves at most `.NAME.*.tmp`, which the next write of the same
 /// `path` removes (each writer holds a lock on its own, so those of writers at work are let alone).
 /// Several processes may write the same `path`: one of the whole files wins. A file that is
-/// replaced hands on its permissions; a symbolic link stays, and the file that it leads to is
-/// replaced. Errors: not-found (the folder does not exist), io (no regular file is there; with the
+/// replaced hands on its permissions. A symbolic link stays: the file that it leads to is replaced,
+/// or made. Errors: not-found (the folder does not exist), io (no regular file is there; with the
 /// file and the operating system's reason).
 [[nodiscard]] Status writeFileAtomically(const std::filesystem::path& path, ByteView bytes,
                                          FileCalls& calls = systemFileCalls());
+
+/// The file that writing to `path` makes or replaces: behind every symbolic link, whether it is
+/// there or not. Errors: io (a circle of links).
+[[nodiscard]] Result<std::filesystem::path> fileBehindLinks(const std::filesystem::path& path);
 
 /// Removes what writers that were killed left in `folder` of the files whose names `isOurs`
 /// accepts, of at most 190 bytes. Those of writers at work are let alone, whichever process they

@@ -9,6 +9,7 @@
 #include <sstream>
 #include <utility>
 
+#include "codec/files/atomic_file.h"
 #include "proto/option_error.h"
 
 namespace qtet {
@@ -150,7 +151,9 @@ Status checkOutput(const fs::path& output, const std::string& extensions,
     throw UsageError("the output " + output.string() + " must end in " +
                      (extensions.find(' ') == std::string::npos ? "" : "one of ") + extensions);
   std::error_code code;
-  const fs::path folder = output.has_parent_path() ? output.parent_path() : fs::path(".");
+  const Result<fs::path> file = fileBehindLinks(output);
+  if (!file) return std::unexpected(file.error());
+  const fs::path folder = file->has_parent_path() ? file->parent_path() : fs::path(".");
   if (!fs::is_directory(folder, code)) {
     return fail(ErrorCode::kNotFound,
                 "the folder " + folder.string() +

@@ -71,6 +71,24 @@ TEST(AtomicFile, followsALink) {
   EXPECT_EQ(filesIn(folder / "real"), 1u);
   fs::create_symlink("loop", folder / "loop");
   EXPECT_FALSE(writeFileAtomically(folder / "loop", Bytes{1}));
+  EXPECT_TRUE(fs::is_symlink(folder / "loop"));
+}
+
+TEST(AtomicFile, makesTheFileThatALinkLeadsTo) {
+  const fs::path folder = testing::freshFolder("atomic-link-to-nothing");
+  fs::create_directory(folder / "real");
+  fs::create_symlink("real/second", folder / "first");
+  fs::create_symlink(folder / "real" / "a", folder / "real" / "second");
+  ASSERT_TRUE(writeFileAtomically(folder / "first", Bytes{'n', 'e', 'w'}));
+  EXPECT_TRUE(fs::is_symlink(folder / "first") && fs::is_symlink(folder / "real" / "second"));
+  EXPECT_FALSE(fs::is_symlink(folder / "real" / "a"));
+  EXPECT_EQ(contentOf(folder / "real" / "a"), "new");
+  EXPECT_EQ(filesIn(folder / "real"), 2u) << "the file and the link to it";
+  fs::create_symlink("nowhere/a", folder / "lost");
+  const Status lost = writeFileAtomically(folder / "lost", Bytes{1});
+  ASSERT_FALSE(lost);
+  EXPECT_NE(lost.error().message.find("nowhere"), std::string::npos) << lost.error().message;
+  EXPECT_TRUE(fs::is_symlink(folder / "lost"));
 }
 
 TEST(AtomicFile, aPipeIsLeftAlone) {
