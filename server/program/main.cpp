@@ -203,7 +203,8 @@ int checkConfig(const CommandLine& options) {
 int run(int argc, char** argv) {
   const Result<CommandLine> options = parseCommandLine(argc, argv, environ);
   if (!options) {
-    std::cerr << "qtet-server: " << options.error().message << "\n\n" << usageText();
+    std::cerr << "qtet-server: " << options.error().message
+              << "\nqtet-server: see 'qtet-server --help'\n";
     return kWrongUsage;
   }
   switch (options->action) {

@@ -31,12 +31,15 @@ std::string bashScript() {
          "cur=${COMP_WORDS[COMP_CWORD]} words=\n  COMPREPLY=()\n"
          "  if ((COMP_CWORD == 1)); then\n    mapfile -t COMPREPLY < <(compgen -W \"" +
          names +
-         " --help --version\" -- \"$cur\")\n    return\n  fi\n  case ${COMP_WORDS[1]} in\n" +
+         " help --help --version\" -- \"$cur\")\n    return\n  fi\n  case ${COMP_WORDS[1]} in\n" +
          cases +
          "  esac\n  if [[ $cur == -* ]]; then\n    mapfile -t COMPREPLY < <(compgen -W \"$words\" "
          "-- \"$cur\")\n"
          "  elif [[ ${COMP_WORDS[1]} == completion ]]; then\n    mapfile -t COMPREPLY < <(compgen "
          "-W \"bash zsh fish\" -- \"$cur\")\n"
+         "  elif [[ ${COMP_WORDS[1]} == help ]]; then\n    mapfile -t COMPREPLY < <(compgen -W \"" +
+         names +
+         "\" -- \"$cur\")\n"
          "  else\n    compopt -o filenames 2>/dev/null\n    mapfile -t COMPREPLY < <(compgen -f -- "
          "\"$cur\")\n  fi\n}\ncomplete -F _qtet qtet\n";
 }

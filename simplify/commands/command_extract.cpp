@@ -149,9 +149,7 @@ int runExtract(const Words& words, Console& console) {
   const auto given = static_cast<int>(parsed.has("level")) + parsed.has("tets") +
                      parsed.has("ratio") + parsed.has("error") + parsed.has("boundary-error");
   if (given != 1)
-    throw UsageError(
-        "give exactly one of --level, --tets, --ratio, --error and --boundary-error\nsee 'qtet "
-        "extract --help'");
+    throw UsageError("give exactly one of --level, --tets, --ratio, --error and --boundary-error");
 
   const Status done = extract(parsed, console);
   return done ? kExitOk : reportFailure(done.error(), false, console);

@@ -30,8 +30,17 @@ Words withNewNames(Words words) {
   return words;
 }
 
-std::string hint(const CommandHelp& help) {
-  return "\nusage: qtet " + help.usage + "\nsee 'qtet " + help.name + " --help'";
+/// Words without a dash that no place is left for. Boost's own error does not say which they are.
+constexpr const char* kTooMany = "one too many";
+
+/// What is wrong with the first word of `more`, and where it was meant to go, most probably.
+UsageError oneTooMany(const CommandHelp& help, const std::vector<std::string>& positional,
+                      const std::vector<std::string>& more, bool wantsOutput) {
+  std::string places;
+  for (const std::string& name : positional) places += (places.empty() ? "" : " and ") + name;
+  const std::string word = "'" + more.front() + "'";
+  return UsageError(word + " is one word too many, 'qtet " + help.name + "' takes " + places +
+                    (wantsOutput ? "; name the output with -o " + more.front() : ""));
 }
 
 }  // namespace
@@ -51,7 +60,9 @@ ParsedWords::ParsedWords(const Words& words, CommandHelp help, po::options_descr
     hidden.add_options()(name.c_str(), po::value<std::string>());
     places.add(name.c_str(), 1);
   }
-  hidden.add_options()("help-json", "help for programs");
+  places.add(kTooMany, -1);
+  hidden.add_options()("help-json", "help for programs")(kTooMany,
+                                                         po::value<std::vector<std::string>>());
   all.add(options_).add(hidden);
   try {
     const auto style = po::command_line_style::unix_style & ~po::command_line_style::allow_guessing;
@@ -63,17 +74,24 @@ ParsedWords::ParsedWords(const Words& words, CommandHelp help, po::options_descr
               values_);
     po::notify(values_);
   } catch (po::error& error) {
-    throw UsageError(optionErrorText<po::error_with_option_name>(error) + hint(help_));
+    throw UsageError(optionErrorText<po::error_with_option_name>(error));
   }
   if (has("help") || has("help-json")) return;
+  if (has(kTooMany))
+    throw oneTooMany(help_, positional_, get<std::vector<std::string>>(kTooMany),
+                     isRequired("output") && !has("output"));
   for (const std::string& name : positional_) {
-    if (!has(name)) throw UsageError(name + " is missing" + hint(help_));
+    if (!has(name)) throw UsageError(name + " is missing");
   }
   for (const auto& option : options_.options()) {
-    const bool isRequired = option->description().starts_with("required: ");
-    if (isRequired && !has(option->long_name()))
-      throw UsageError("--" + option->long_name() + " is missing" + hint(help_));
+    const std::string& name = option->long_name();
+    if (isRequired(name) && !has(name)) throw UsageError("--" + name + " is missing");
   }
+}
+
+bool ParsedWords::isRequired(const std::string& option) const {
+  const auto* found = options_.find_nothrow(option, false);
+  return found != nullptr && found->description().starts_with("required: ");
 }
 
 bool ParsedWords::helped(Console& console) const {
@@ -108,7 +126,7 @@ double ParsedWords::number(const std::string& name, double low, double high) con
   const auto value = get<double>(name);
   if (value >= low && value <= high) return value;
   std::ostringstream text;
-  text << "--" << name << " " << value << " is outside " << low << " to " << high << hint(help_);
+  text << "--" << name << " " << value << " is outside " << low << " to " << high;
   throw UsageError(text.str());
 }
 
@@ -116,7 +134,7 @@ int ParsedWords::integer(const std::string& name, int low, int high) const {
   const auto value = get<int>(name);
   if (value >= low && value <= high) return value;
   throw UsageError("--" + name + " " + std::to_string(value) + " is outside " +
-                   std::to_string(low) + " to " + std::to_string(high) + hint(help_));
+                   std::to_string(low) + " to " + std::to_string(high));
 }
 
 std::optional<std::vector<std::string>> parseFieldNames(const std::string& text) {

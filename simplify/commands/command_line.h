@@ -17,7 +17,8 @@ namespace qtet {
 /// Members keep the order in which they are set, which is the order in which people read them.
 using OrderedJson = nlohmann::ordered_json;
 
-/// Words that are not understood; the message says which and what would be.
+/// Words that are not understood; the message, one line, says which and what would be. The tool
+/// adds a line that leads to the command's help.
 class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -53,6 +54,8 @@ class ParsedWords {
   [[nodiscard]] int integer(const std::string& name, int low, int high) const;
 
  private:
+  [[nodiscard]] bool isRequired(const std::string& option) const;
+
   CommandHelp help_;
   boost::program_options::options_description options_;
   std::vector<std::string> positional_;

@@ -40,7 +40,8 @@ void printHelp(std::ostream& out) {
          "back.\n\ncommands:\n";
   for (const Command& command : kCommands)
     out << "  " << std::left << std::setw(13) << command.name << command.summary << "\n";
-  out << "\n  qtet COMMAND --help says more about each; qtet --version tells the version.\n"
+  out << "  help         say more about one of them, as --help after it does\n";
+  out << "\n  qtet --version tells the version.\n"
          "  - instead of a mesh's or a log's name is the standard input, -o - the standard output "
          "of extract and convert.\n"
          "  Every command knows --quiet and --verbose. NO_COLOR in the environment keeps colours "
@@ -58,10 +59,11 @@ void printHelp(std::ostream& out) {
          "\nexit codes: 0 done, 1 an input or a file is at fault, 2 the command line is\n";
 }
 
-/// Every line of a message for people starts with the tool's name.
-void printLines(std::ostream& err, const std::string& text) {
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) err << "qtet: " << printable(line) << "\n";
+/// Two lines: what is wrong with the words, and where the right ones stand. `command` is empty, or
+/// a command and a blank.
+int refuseWords(const std::string& what, const std::string& command, const Console& console) {
+  console.err << "qtet: " << printable(what) << "\nqtet: see 'qtet " << command << "--help'\n";
+  return kExitUsage;
 }
 
 /// Takes --quiet and --verbose out of the words, wherever they stand.
@@ -94,8 +96,10 @@ int runCommand(const Command& command, const Words& given, Console& console) {
     Result<std::unique_ptr<GuardedFolder>> spooled =
         spoolStandardInput(words, command.pipe == Command::Pipe::kLog ? "qtet" : "", STDIN_FILENO);
     if (!spooled) {
+      if (spooled.error().code == ErrorCode::kBadInput)
+        return refuseWords(spooled.error().message, std::string(command.name) + " ", console);
       console.err << "qtet: " << spooled.error().text() << "\n";
-      return spooled.error().code == ErrorCode::kBadInput ? kExitUsage : kExitFailed;
+      return kExitFailed;
     }
     piped = std::move(*spooled);
     if (piped)
@@ -114,9 +118,37 @@ int runCommand(const Command& command, const Words& given, Console& console) {
         << "qtet: the result could not be written to the standard output; is the disk full?\n";
     return kExitFailed;
   } catch (const UsageError& error) {
-    printLines(console.err, error.what());
-    return kExitUsage;
+    return refuseWords(error.what(), std::string(command.name) + " ", console);
   }
+}
+
+const Command* findCommand(const std::string& name) {
+  const auto* found = std::ranges::find(kCommands, name, &Command::name);
+  return found == kCommands.end() ? nullptr : found;
+}
+
+int refuseCommand(const std::string& name, Console& console) {
+  std::string known;
+  for (const Command& candidate : kCommands)
+    known += (known.empty() ? "" : ", ") + std::string(candidate.name);
+  return refuseWords(
+      (name.empty() ? "a command is missing" : "there is no command '" + name + "'") +
+          "; there are: " + known,
+      "", console);
+}
+
+/// `qtet help`, `qtet help COMMAND`.
+int runHelp(const Words& words, Console& console) {
+  if (words.empty()) {
+    printHelp(console.out);
+    return kExitOk;
+  }
+  if (words.size() > 1)
+    return refuseWords("'" + words[1] + "' is one word too many, 'qtet help' takes one command", "",
+                       console);
+  const Command* command = findCommand(words.front());
+  return command != nullptr ? runCommand(*command, {"--help"}, console)
+                            : refuseCommand(words.front(), console);
 }
 
 }  // namespace
@@ -129,23 +161,10 @@ int runTool(const Words& words, Console& console) {
     console.out << "qtet " QTET_VERSION "\n";
     return kExitOk;
   }
-  if (first == "--help" || first == "-h" || first == "help") {
-    printHelp(console.out);
-    return kExitOk;
-  }
-  const auto* command =
-      std::find_if(kCommands.begin(), kCommands.end(),
-                   [&](const Command& candidate) { return candidate.name == first; });
-  if (command != kCommands.end())
-    return runCommand(*command, Words(words.begin() + 1, words.end()), console);
-
-  std::string known;
-  for (const Command& candidate : kCommands)
-    known += (known.empty() ? "" : ", ") + std::string(candidate.name);
-  printLines(console.err,
-             (first.empty() ? "a command is missing" : "there is no command '" + first + "'") +
-                 "; there are: " + known + "\nsee 'qtet --help'");
-  return kExitUsage;
+  const Words rest = words.empty() ? Words() : Words(words.begin() + 1, words.end());
+  if (first == "--help" || first == "-h" || first == "help") return runHelp(rest, console);
+  const Command* command = findCommand(first);
+  return command != nullptr ? runCommand(*command, rest, console) : refuseCommand(first, console);
 }
 
 }  // namespace qtet

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 #include <set>
@@ -32,7 +33,10 @@ TEST(Program, helpAndVersionGoToStandardOutput) {
 
 TEST(Program, wrongUsageIsExitCode2) {
   Program program({"--nonsense"});
-  EXPECT_NE(program.errors().find("nonsense"), std::string::npos);
+  const std::string said = program.errors();
+  EXPECT_NE(said.find("nonsense"), std::string::npos);
+  EXPECT_TRUE(said.ends_with("\nqtet-server: see 'qtet-server --help'\n")) << said;
+  EXPECT_EQ(std::ranges::count(said, '\n'), 2) << said;
   EXPECT_EQ(program.exitCode(), 2);
 }
 

@@ -18,6 +18,7 @@ in_bash() {
 }
 offers bash "$(in_bash qtet ex)" extract
 offers bash "$(in_bash qtet view --we)" --weld
+offers bash "$(in_bash qtet help ex)" extract
 [[ $(in_bash qtet sim) == simplify ]] || fail "bash completes sim to something else, too"
 
 if command -v fish >/dev/null; then

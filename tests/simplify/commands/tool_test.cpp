@@ -1,18 +1,11 @@
 // The tool as people and scripts run it: exit codes, streams, JSON, files.
-#include <gtest/gtest.h>
-#include <sys/wait.h>
+#include "tests/simplify/commands/tool_run.h"
 
-#include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstdlib>
-#include <fstream>
 #include <limits>
-#include <nlohmann/json.hpp>
 
-#include "codec/files/atomic_file.h"
 #include "simplify/commands/printable.h"
-#include "simplify/log/write_mesh.h"
 #include "simplify/read/read_mesh.h"
 #include "tests/simplify/mesh/tet_meshes.h"
 
@@ -20,52 +13,6 @@ namespace qtet {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct Ran {
-  int code = -1;
-  std::string out;
-  std::string err;
-
-  [[nodiscard]] nlohmann::json json() const { return nlohmann::json::parse(out); }
-};
-
-std::string contentOf(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-class Tool : public ::testing::Test {
- protected:
-  /// Runs `qtet WORDS` in the test's folder.
-  Ran run(const std::string& words) {
-    const std::string command =
-        "cd '" + folder_.string() + "' && '" QTET_TOOL "' " + words + " >out.txt 2>err.txt";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contentOf(folder_ / "out.txt"),
-            contentOf(folder_ / "err.txt")};
-  }
-  /// A failure must leave every line of the diagnostics marked and the standard output empty.
-  void expectFailure(const std::string& words, int code, const std::string& word) {
-    const Ran ran = run(words);
-    EXPECT_EQ(ran.code, code) << words << "\n" << ran.err;
-    EXPECT_TRUE(ran.out.empty()) << ran.out;
-    EXPECT_NE(ran.err.find(word), std::string::npos) << words << "\n" << ran.err;
-    std::istringstream lines(ran.err);
-    for (std::string line; std::getline(lines, line);)
-      EXPECT_TRUE(line.starts_with("qtet: ")) << line;
-  }
-  void write(const std::string& name, const TetMesh& mesh) {
-    ASSERT_TRUE(writeFileAtomically(folder_ / name, vtuBytes(mesh)));
-  }
-  void makeBoxLog() {
-    ASSERT_EQ(run("sample box -o box.vtu").code, 0);
-    const Ran ran = run("simplify box.vtu -o box.qtet");
-    ASSERT_EQ(ran.code, 0) << ran.err;
-  }
-
-  fs::path folder_ = testing::freshFolder(
-      std::string("tool-") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
-};
 
 TEST_F(Tool, helpAndVersionSucceed) {
   EXPECT_EQ(run("--version").out, "qtet " QTET_VERSION "\n");
@@ -235,7 +182,7 @@ TEST_F(Tool, wordsThatAreNotUnderstoodEndWithTwo) {
   expectFailure("simplify in.vtu -o out.qtet --algorithm edges", 2, "give qtet or paper");
   expectFailure("simplify in.vtu -o out.qtet --fields a,,b", 2, "empty name");
   expectFailure("simplify in.vtu -o out.vtu", 2, ".qtet");
-  expectFailure("simplify a.vtu b.vtu -o out.qtet", 2, "positional");
+  expectFailure("simplify a.vtu b.vtu -o out.qtet", 2, "'b.vtu' is one word too many");
   expectFailure("extract a.qtet -o a.vtu", 2, "exactly one");
   expectFailure("extract a.qtet -o a.vtu --level 1 --tets 5", 2, "exactly one");
   expectFailure("extract a.qtet -o a.step --level 1", 2, ".vtu");
