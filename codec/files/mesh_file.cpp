@@ -11,6 +11,11 @@ namespace qtet {
 
 bool needsLattice(std::string_view ending) { return ending == ".glb" || ending == ".drc"; }
 
+bool holdsFields(std::string_view ending, std::string_view association) {
+  if (ending == ".stl" || ending == ".obj") return false;
+  return association != "cell" || !(ending == ".ply" || needsLattice(ending));
+}
+
 Result<Bytes> meshFileBytes(const FileMesh& mesh, std::string_view ending) {
   if (ending == ".vtu") return vtuBytes(mesh);
   if (ending == ".vtk") return legacyVtkBytes(mesh);

@@ -16,6 +16,10 @@ inline constexpr const char* kWrittenEndings = ".vtu .vtk .msh .stl .ply .obj .g
 /// Whether this kind of file is made of a mesh on the lattice alone.
 [[nodiscard]] bool needsLattice(std::string_view ending);
 
+/// Whether this kind of file holds fields of points, or of cells ("point", "cell"). REQUIRES: one of
+/// kWrittenEndings.
+[[nodiscard]] bool holdsFields(std::string_view ending, std::string_view association);
+
 /// The mesh as a file of the kind that the ending names. REQUIRES: one of kWrittenEndings, and none
 /// that needs the lattice of a mesh in floats. Errors: the writers'.
 [[nodiscard]] Result<Bytes> meshFileBytes(const FileMesh& mesh, std::string_view ending);

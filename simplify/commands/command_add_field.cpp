@@ -2,6 +2,8 @@
 #include <numeric>
 
 #include "codec/files/atomic_file.h"
+#include "codec/log/log_manifest.h"
+#include "proto/checksum.h"
 #include "proto/field_key.h"
 #include "proto/limits.h"
 #include "simplify/clean/clean_mesh.h"
@@ -56,10 +58,63 @@ Result<std::vector<std::uint32_t>> keptBeside(const OpenedLog& log, const TetMes
   return kept;
 }
 
-void printNew(const std::string& output, const LogFile& before, const Bytes& bytes,
-              Console& console) {
-  console.out << output << ": " << bytes.size() << " bytes, before " << before.bytes().size()
-              << "\n";
+std::size_t bytesOf(const NewField& field) {
+  return std::accumulate(field.blocks.begin(), field.blocks.end(), std::size_t{0},
+                         [](std::size_t sum, const Bytes& b) { return sum + b.size(); });
+}
+
+OrderedJson toJson(const NewField& field) {
+  const ManifestField& info = field.info;
+  OrderedJson out = {{"name", info.name},
+                     {"association", info.association},
+                     {"components", info.components},
+                     {"type", info.type},
+                     {"bits", info.bits},
+                     {"step", info.step},
+                     {"minimum", info.minimum},
+                     {"range", info.range},
+                     {"missingValues", info.hasMissing},
+                     {"bytes", bytesOf(field)}};
+  if (!field.errors.empty())
+    out["error"] = {{"rms", field.errors.front().rms}, {"max", field.errors.front().max}};
+  return out;
+}
+
+/// What add-field and remove-field tell alike: {input, output, digest, bytes, bytesBefore,
+/// tetrahedra, vertices, levels, fields}. `fields` are the keys of those that the new log holds.
+/// Errors: those of LogIndex::parse and manifestOf.
+Result<OrderedJson> newLogJson(const ParsedWords& parsed, const LogFile& before,
+                               const Bytes& bytes) {
+  const Result<LogIndex> index = LogIndex::parse(bytes);
+  if (!index) return std::unexpected(index.error());
+  const Result<Manifest> manifest = manifestOf(*index);
+  if (!manifest) return std::unexpected(manifest.error());
+  OrderedJson fields = OrderedJson::array();
+  for (std::size_t f = 0; f < manifest->fields.size(); ++f)
+    fields.push_back(fieldKey(*manifest, f));
+  return OrderedJson{{"input", parsed.get<std::string>("LOG")},
+                     {"output", outputOf(parsed)},
+                     {"digest", sha256Hex(bytes)},
+                     {"bytes", bytes.size()},
+                     {"bytesBefore", before.bytes().size()},
+                     {"tetrahedra", manifest->levels.back().tetrahedra},
+                     {"vertices", manifest->levels.back().vertices},
+                     {"levels", manifest->levels.size() - 1},
+                     {"fields", fields}};
+}
+
+void printNew(const OrderedJson& report, std::ostream& out) {
+  out << report["output"].get<std::string>() << ": " << report["bytes"] << " bytes, before "
+      << report["bytesBefore"] << "\n";
+}
+
+void printAdded(const std::vector<NewField>& fields, std::ostream& out) {
+  for (const NewField& field : fields) {
+    out << field.info.association << " field " << printable(field.info.name) << ": "
+        << bytesOf(field) << " bytes, " << field.info.bits << " bits, step " << field.info.step;
+    if (!field.errors.empty()) out << "; base mesh rms " << 100 * field.errors.front().rms << " %";
+    out << "\n";
+  }
 }
 
 Status addField(const ParsedWords& parsed, Progress& progress, Console& console) {
@@ -87,20 +142,21 @@ Status addField(const ParsedWords& parsed, Progress& progress, Console& console)
   if (!added) return std::unexpected(added.error());
   const Result<Bytes> bytes = withFields(log->file, *kept, added->fields);
   if (!bytes) return std::unexpected(bytes.error());
+  Result<OrderedJson> report = newLogJson(parsed, log->file, *bytes);
+  if (!report) return std::unexpected(report.error());
   if (Status written = writeFileAtomically(outputOf(parsed), *bytes); !written) return written;
   progress.clear();
   for (const std::string& note : added->notes) console.note(note);
-  for (const NewField& field : added->fields) {
-    const auto size =
-        std::accumulate(field.blocks.begin(), field.blocks.end(), std::size_t{0},
-                        [](std::size_t sum, const Bytes& b) { return sum + b.size(); });
-    console.out << field.info.association << " field " << printable(field.info.name) << ": " << size
-                << " bytes, " << field.info.bits << " bits, step " << field.info.step;
-    if (!field.errors.empty())
-      console.out << "; base mesh rms " << 100 * field.errors.front().rms << " %";
-    console.out << "\n";
+  if (!parsed.has("json")) {
+    printAdded(added->fields, console.out);
+    printNew(*report, console.out);
+    return {};
   }
-  printNew(outputOf(parsed), log->file, *bytes, console);
+  (*report)["from"] = from;
+  (*report)["added"] = OrderedJson::array();
+  for (const NewField& field : added->fields) (*report)["added"].push_back(toJson(field));
+  (*report)["notes"] = added->notes;
+  printJson(*report, console);
   return {};
 }
 
@@ -122,8 +178,10 @@ Status removeField(const ParsedWords& parsed, Console& console) {
   }
   const Result<Bytes> bytes = withFields(log->file, kept, {});
   if (!bytes) return std::unexpected(bytes.error());
+  Result<OrderedJson> report = newLogJson(parsed, log->file, *bytes);
+  if (!report) return std::unexpected(report.error());
   if (Status written = writeFileAtomically(outputOf(parsed), *bytes); !written) return written;
-  printNew(outputOf(parsed), log->file, *bytes, console);
+  parsed.has("json") ? printJson(*report, console) : printNew(*report, console.out);
   return {};
 }
 
@@ -143,7 +201,7 @@ int runAddField(const Words& words, Console& console) {
       "bits of a float field's values, 1 to 28; integer fields are stored exactly")(
       "threads", po::value<int>()->default_value(1),
       "threads for measuring, as many as there are processors at most; the result does not depend "
-      "on it");
+      "on it")("json", "print one JSON object");
   addReadOptions(options);
   const ParsedWords parsed(
       words,
@@ -151,7 +209,10 @@ int runAddField(const Words& words, Console& console) {
        "Adds fields of a mesh file to a log without simplifying again: the geometry stays as it "
        "is, byte for byte. The file must hold the mesh that\n"
        "the log was made from, in any numbering. Where the log knows the errors of its levels, "
-       "those of the new fields are measured.",
+       "those of the new fields are measured.\n"
+       "--json: input, output, digest, bytes, bytesBefore, tetrahedra, vertices, levels, fields "
+       "(keys), from, added [{name, association,\ncomponents, type, bits, step, minimum, range, "
+       "missingValues, bytes, error {rms, max} of the base mesh}], notes.",
        "  qtet add-field fin.qtet --from later.vtu --fields Pressure\n  qtet add-field fin.qtet "
        "--from fin.vtu --replace --field-bits 16 -o fine.qtet\n"},
       options, {"LOG"});
@@ -159,7 +220,7 @@ int runAddField(const Words& words, Console& console) {
   Progress progress(console);
   const Status done = addField(parsed, progress, console);
   progress.clear();
-  return done ? kExitOk : reportFailure(done.error(), false, console);
+  return done ? kExitOk : reportFailure(done.error(), parsed.has("json"), console);
 }
 
 int runRemoveField(const Words& words, Console& console) {
@@ -170,16 +231,18 @@ int runRemoveField(const Words& words, Console& console) {
       "required: the fields to leave out: all, or names as `qtet extract --fields` takes them")(
       "output,o", po::value<std::string>(),
       "the log to write, NAME.qtet; without it the log itself is replaced once the new one is "
-      "whole");
+      "whole")("json", "print one JSON object");
   const ParsedWords parsed(
       words,
       {"remove-field", "remove-field LOG.qtet --fields NAMES [-o OUT.qtet]",
-       "Leaves fields of a log out. Everything else stays as it is, byte for byte.",
+       "Leaves fields of a log out. Everything else stays as it is, byte for byte.\n"
+       "--json: input, output, digest, bytes, bytesBefore, tetrahedra, vertices, levels, fields "
+       "(keys).",
        "  qtet remove-field fin.qtet --fields Velocity -o small.qtet\n"},
       options, {"LOG"});
   if (parsed.helped(console)) return kExitOk;
   const Status done = removeField(parsed, console);
-  return done ? kExitOk : reportFailure(done.error(), false, console);
+  return done ? kExitOk : reportFailure(done.error(), parsed.has("json"), console);
 }
 
 }  // namespace qtet

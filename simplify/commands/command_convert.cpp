@@ -5,6 +5,22 @@
 #include "simplify/read/read_mesh.h"
 
 namespace qtet {
+namespace {
+
+MeshOutputReport reportOf(const std::string& input, const ReadMesh& read,
+                          const std::string& ending) {
+  const TetMesh& mesh = read.mesh;
+  return {counted(mesh.tetrahedra.size(), "tetrahedron", "tetrahedra") + ", " +
+              counted(mesh.points.size(), "point", "points") + ", " +
+              counted(mesh.fields.size(), "field", "fields"),
+          {{"tetrahedra", mesh.tetrahedra.size()},
+           {"vertices", mesh.points.size()},
+           {"fields", writtenFieldsJson(mesh.fields, ending)},
+           {"input", input},
+           {"notes", read.report.notes}}};
+}
+
+}  // namespace
 
 int runConvert(const Words& words, Console& console) {
   namespace po = boost::program_options;
@@ -19,7 +35,9 @@ int runConvert(const Words& words, Console& console) {
        "tetrahedra and fields otherwise as they are: neither\n"
        "cleaned nor put on a lattice (but for .glb and .drc, whose coordinates and fields have 16 "
        "bits). The kind of file is told by its name, as for\n"
-       "extract; .qtet files are made by simplify.",
+       "extract; .qtet files are made by simplify.\n"
+       "--json: output, kind, bytes, tetrahedra, vertices, fields [{name, association, components, "
+       "type}] that the file holds, input, notes; of a log what extract says.",
        "  qtet convert part.msh -o part.vtu\n  qtet convert part.vtu -o skin.stl\n  qtet convert "
        "part.qtet -o part.usda\n  qtet convert - --format msh --to vtu -o - <part.msh >part.vtu\n  "
        "qtet convert ogrid.xyz --plot3d ogrid.q --weld 0 -o ogrid.vtu\n"},
@@ -35,25 +53,24 @@ int runConvert(const Words& words, Console& console) {
                   "-o",
                   parsed.get<std::string>("output")};
     if (parsed.has("to")) extract.insert(extract.end(), {"--to", parsed.get<std::string>("to")});
+    if (parsed.has("json")) extract.emplace_back("--json");
     return runExtract(extract, console);
   }
   const Result<MeshOutput> output = meshOutputOf(parsed, input);
-  if (!output) return reportFailure(output.error(), false, console);
+  const bool asJson = parsed.has("json");
+  if (!output) return reportFailure(output.error(), asJson, console);
   ReadOptions reading = readOptionsOf(parsed);
   reading.fields = parseFieldNames(parsed.get<std::string>("fields"));
   Progress progress(console);
   progress.stage("reading " + input);
   const Result<ReadMesh> read = readMesh(input, reading);
   progress.clear();
-  if (!read) return reportFailure(read.error(), false, console);
+  if (!read) return reportFailure(read.error(), asJson, console);
   for (const std::string& note : read->report.notes) console.note(note);
   const Result<Bytes> bytes = meshFileBytes(read->mesh, "mesh" + output->ending);
-  if (!bytes) return reportFailure(bytes.error(), false, console);
-  const std::string what = counted(read->mesh.tetrahedra.size(), "tetrahedron", "tetrahedra") +
-                           ", " + counted(read->mesh.points.size(), "point", "points") + ", " +
-                           counted(read->mesh.fields.size(), "field", "fields");
-  const Status written = writeMeshOutput(*output, *bytes, what, console);
-  return written ? kExitOk : reportFailure(written.error(), false, console);
+  const Status written =
+      writeMeshOutput(*output, *bytes, reportOf(input, *read, output->ending), console);
+  return written ? kExitOk : reportFailure(written.error(), asJson, console);
 }
 
 }  // namespace qtet

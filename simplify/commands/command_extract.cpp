@@ -4,6 +4,7 @@
 
 #include "codec/log/level_choice.h"
 #include "proto/field_key.h"
+#include "proto/level_error_json.h"
 #include "simplify/commands/command_measure.h"
 #include "simplify/log/kept_input.h"
 #include "simplify/log/opened_log.h"
@@ -84,6 +85,31 @@ Result<Bytes> inputFile(const OpenedLog& log, const LatticeMesh& finest,
                                         : meshFileBytes(input->lattice, ending);
 }
 
+MeshOutputReport reportOf(const Manifest& manifest, std::uint32_t level,
+                          const std::vector<std::uint32_t>& wanted, const std::string& ending) {
+  const ManifestLevel& told = manifest.levels[level];
+  const std::size_t last = manifest.levels.size() - 1;
+  MeshOutputReport out{"level " + std::to_string(level) + " of " + std::to_string(last) + ", " +
+                           counted(told.tetrahedra, "tetrahedron", "tetrahedra") + ", " +
+                           counted(told.vertices, "point", "points"),
+                       {{"level", level},
+                        {"levels", last},
+                        {"tetrahedra", told.tetrahedra},
+                        {"vertices", told.vertices},
+                        {"boundaryTriangles", told.boundaryTriangles}}};
+  std::vector<ManifestField> fields;
+  LevelError error = told.error.value_or(LevelError());
+  error.fields.clear();
+  for (const std::uint32_t f : wanted) {
+    if (!holdsFields(ending, manifest.fields[f].association)) continue;
+    fields.push_back(manifest.fields[f]);
+    if (told.error) error.fields.push_back(told.error->fields[f]);
+  }
+  out.json["fields"] = writtenFieldsJson(fields, ending);
+  if (told.error) out.json["error"] = toJson(error);
+  return out;
+}
+
 Status extract(const ParsedWords& parsed, Console& console) {
   const auto input = parsed.get<std::string>("LOG");
   const Result<MeshOutput> output = meshOutputOf(parsed, input);
@@ -103,11 +129,9 @@ Status extract(const ParsedWords& parsed, Console& console) {
   const Result<Bytes> bytes = restores ? inputFile(*log, *mesh, *wanted, output->ending)
                                        : meshFileBytes(*mesh, output->ending);
   if (!bytes) return std::unexpected(bytes.error());
-  const std::string what = "level " + std::to_string(*level) + " of " +
-                           std::to_string(log->manifest.levels.size() - 1) + ", " +
-                           counted(mesh->tetrahedra.size(), "tetrahedron", "tetrahedra") + ", " +
-                           counted(mesh->points.size(), "point", "points");
-  return writeMeshOutput(*output, *bytes, what, console);
+  MeshOutputReport report = reportOf(log->manifest, *level, *wanted, output->ending);
+  report.json["input"] = input;
+  return writeMeshOutput(*output, *bytes, report, console);
 }
 
 }  // namespace
@@ -138,7 +162,10 @@ int runExtract(const Words& words, Console& console) {
        "and .drc those of points. Where no level is small enough it is level 0.\n"
        "The last level is the input's mesh, with its own numbering and numbers where the log was "
        "made with --keep-order and --lossless.\n"
-       "Errors are those that the log tells, measured when it was made (qtet info shows them).",
+       "Errors are those that the log tells, measured when it was made (qtet info shows them).\n"
+       "--json: output, kind, bytes, level, levels, tetrahedra, vertices and boundaryTriangles of "
+       "the level, fields [{name, association,\ncomponents, type}] that the file holds, error as "
+       "in qtet info with the same fields, input.",
        "  qtet extract fin.qtet --ratio 0.1 -o coarse.vtu\n  qtet extract fin.qtet --error "
        "Density=0.01 -o near.vtu\n"
        "  qtet extract fin.qtet --tets 20000 --fields Density -o skin.glb\n"
@@ -152,7 +179,7 @@ int runExtract(const Words& words, Console& console) {
     throw UsageError("give exactly one of --level, --tets, --ratio, --error and --boundary-error");
 
   const Status done = extract(parsed, console);
-  return done ? kExitOk : reportFailure(done.error(), false, console);
+  return done ? kExitOk : reportFailure(done.error(), parsed.has("json"), console);
 }
 
 }  // namespace qtet

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "codec/files/mesh_file.h"
 #include "proto/error.h"
 #include "simplify/commands/commands.h"
 
@@ -82,18 +83,40 @@ struct MeshOutput {
   std::filesystem::path file;
   std::string ending;  ///< with its dot
   bool isStandardOutput = false;
+  bool asJson = false;  ///< tells of it as one JSON object
 };
 
-/// -o and --to for meshOutputOf.
+/// -o, --to and --json for meshOutputOf.
 void addMeshOutputOptions(boost::program_options::options_description& options);
 
-/// Of -o and --to, checked as checkOutput does. Throws UsageError.
+/// What becomes known of a mesh that was written.
+struct MeshOutputReport {
+  std::string sentence;
+  OrderedJson json;  ///< the members beside `output`, `kind` and `bytes`
+};
+
+/// Of -o and --to, checked as checkOutput does. Throws UsageError, also where --json and the file
+/// both want the standard output.
 [[nodiscard]] Result<MeshOutput> meshOutputOf(const ParsedWords& parsed, const std::string& input);
 
-/// Writes the file whole or not at all, and says `what` became of it: on the standard output, or as
-/// a note where that is the file.
+/// Writes the file whole or not at all, and tells of it on the standard output: the sentence, or
+/// with --json one object. Where the file is the standard output the sentence is a note.
 [[nodiscard]] Status writeMeshOutput(const MeshOutput& output, std::span<const std::uint8_t> bytes,
-                                     const std::string& what, Console& console);
+                                     const MeshOutputReport& report, Console& console);
+
+/// [{name, association, components, type}] of the fields that a file of this kind holds; `Field` is
+/// MeshField or ManifestField.
+template <class Fields>
+[[nodiscard]] OrderedJson writtenFieldsJson(const Fields& fields, const std::string& ending) {
+  OrderedJson out = OrderedJson::array();
+  for (const auto& field : fields)
+    if (holdsFields(ending, field.association))
+      out.push_back({{"name", field.name},
+                     {"association", field.association},
+                     {"components", field.components},
+                     {"type", field.type}});
+  return out;
+}
 
 /// Prints the failure, also as {"error":{"code","message"}} on `out` where JSON was asked for;
 /// returns kExitFailed.

@@ -1,5 +1,4 @@
 #include "codec/files/atomic_file.h"
-#include "codec/files/mesh_file.h"
 #include "simplify/commands/command_line.h"
 
 namespace qtet {
@@ -11,12 +10,17 @@ void addMeshOutputOptions(boost::program_options::options_description& options) 
                          "; or - for the standard output")
                             .c_str())(
       "to", po::value<std::string>(),
-      "the kind of file, where the name does not say it or is -: vtu, glb, ...");
+      "the kind of file, where the name does not say it or is -: vtu, glb, ...")(
+      "json", "print one JSON object");
 }
 
 Result<MeshOutput> meshOutputOf(const ParsedWords& parsed, const std::string& input) {
-  MeshOutput out{parsed.get<std::string>("output"), {}, false};
+  MeshOutput out{parsed.get<std::string>("output"), {}, false, parsed.has("json")};
   out.isStandardOutput = out.file == "-";
+  if (out.isStandardOutput && out.asJson)
+    throw UsageError(
+        "-o - and --json both want the standard output; give the output a name, or leave --json "
+        "out");
   out.ending = out.file.extension().string();
   if (parsed.has("to")) {
     const auto kind = parsed.get<std::string>("to");
@@ -45,15 +49,23 @@ Result<MeshOutput> meshOutputOf(const ParsedWords& parsed, const std::string& in
 }
 
 Status writeMeshOutput(const MeshOutput& output, std::span<const std::uint8_t> bytes,
-                       const std::string& what, Console& console) {
+                       const MeshOutputReport& report, Console& console) {
   if (output.isStandardOutput) {
     console.out.write(reinterpret_cast<const char*>(bytes.data()),
                       static_cast<std::streamsize>(bytes.size()));
-    console.note(what + ", " + std::to_string(bytes.size()) + " bytes");
+    console.note(report.sentence + ", " + std::to_string(bytes.size()) + " bytes");
     return {};
   }
   if (Status written = writeFileAtomically(output.file, bytes); !written) return written;
-  console.out << output.file.string() << ": " << what << ", " << bytes.size() << " bytes\n";
+  if (!output.asJson) {
+    console.out << output.file.string() << ": " << report.sentence << ", " << bytes.size()
+                << " bytes\n";
+    return {};
+  }
+  OrderedJson json = {
+      {"output", output.file.string()}, {"kind", output.ending.substr(1)}, {"bytes", bytes.size()}};
+  json.update(report.json);
+  printJson(json, console);
   return {};
 }
 
