@@ -95,13 +95,14 @@ std::optional<Reply> readingRefusal(const RequestView& request, const std::strin
                                          : std::nullopt;
 }
 
-/// Several names may stand for the same bytes.
-bool mayReadUnderSomeName(const MayRead& mayRead, const ServedMesh& mesh,
-                          const Catalogue& catalogue) {
-  const auto may = [&](const auto& entry) {
+/// A name under which the log may be read; several may stand for the same bytes.
+std::optional<std::string> readableName(const MayRead& mayRead, const ServedMesh& mesh,
+                                        const Catalogue& catalogue) {
+  if (mayRead(mesh.id)) return mesh.id;
+  const auto found = std::ranges::find_if(catalogue.meshes, [&](const auto& entry) {
     return entry.second->log.digest() == mesh.log.digest() && mayRead(entry.first);
-  };
-  return mayRead(mesh.id) || std::ranges::any_of(catalogue.meshes, may);
+  });
+  return found == catalogue.meshes.end() ? std::nullopt : std::optional(found->first);
 }
 
 /// What is the same for every path: methods, and targets that are none.
@@ -188,21 +189,22 @@ Answer Router::api(const RequestView& request, const RequestTarget& target) cons
 /// To whoever may not read it a log is not there: its digest alone tells nobody whether somebody
 /// has it.
 Answer Router::logs(const RequestView& request, const RequestTarget& target) const {
-  MeshPointer mesh = store_.findLog(target.segments[2]);
+  const MeshPointer mesh = store_.findLog(target.segments[2]);
+  std::optional<std::string> name = mesh ? std::optional(mesh->id) : std::nullopt;
   bool open = true;
   if (mesh && writing_) {
     const CataloguePointer catalogue = store_.catalogue();
-    open = mayReadUnderSomeName(writing_->access.readerOf(std::nullopt), *mesh, *catalogue);
-    if (!open &&
-        !mayReadUnderSomeName(writing_->access.readerOf(bearerDigest(request.authorization)), *mesh,
-                              *catalogue))
-      mesh = nullptr;
+    name = readableName(writing_->access.readerOf(std::nullopt), *mesh, *catalogue);
+    open = name.has_value();
+    if (!open)
+      name = readableName(writing_->access.readerOf(bearerDigest(request.authorization)), *mesh,
+                          *catalogue);
   }
-  if (!mesh)
+  if (!name)
     return problem(404, "log-changed",
                    "no mesh has that digest, or not any more, or it is for those who have a token; "
                    "the list is at /v1/meshes");
-  Answer out = routeLog(request, target, mesh);
+  Answer out = routeLog(request, target, {mesh, *name});
   if (!open) keepPrivate(out.reply);
   return out;
 }

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "codec/log/level_choice.h"
+#include "server/http/content_disposition.h"
 #include "server/http/http_resource.h"
 #include "server/store/preview.h"
 
@@ -125,12 +126,12 @@ std::string canonicalPath(const LevelRequest& level) {
 /// is part of the tag.
 Resource resourceOf(const LevelRequest& wanted, const std::string& name) {
   const bool picture = wanted.form == LevelForm::kPng;  // looked at, not saved
-  return {
-      {'"' + wanted.key() + '"', wanted.mesh->modified},
-      std::string(mediaType(wanted.form)),
-      kForEver,
-      {{"Content-Disposition", (picture ? "inline" : "attachment") + std::string("; filename=\"") +
-                                   name + "." + std::string(formName(wanted.form)) + "\""}}};
+  return {{'"' + wanted.key() + '"', wanted.mesh->modified},
+          std::string(mediaType(wanted.form)),
+          kForEver,
+          {{"Content-Disposition",
+            contentDisposition(picture ? Disposition::kInline : Disposition::kAttachment,
+                               name + "." + std::string(formName(wanted.form)))}}};
 }
 
 Answer toBeMade(const RequestView& request, const Resource& resource, LevelRequest wanted) {
@@ -143,8 +144,9 @@ Answer toBeMade(const RequestView& request, const Resource& resource, LevelReque
 
 }  // namespace
 
-Answer routeLevel(const RequestView& request, const RequestTarget& target, const MeshPointer& mesh,
+Answer routeLevel(const RequestView& request, const RequestTarget& target, const NamedLog& log,
                   std::string_view name) {
+  const MeshPointer& mesh = log.mesh;
   const std::size_t dot = std::min(name.find('.'), name.size());
   const auto form = formOfName(name.substr(std::min(dot + 1, name.size())));
   if (!form || form == LevelForm::kPng || form == LevelForm::kIntervals)
@@ -157,7 +159,7 @@ Answer routeLevel(const RequestView& request, const RequestTarget& target, const
   if (!fields) return fields.error();
   LevelRequest wanted{mesh, *level, *form, *fields};
 
-  Resource resource = resourceOf(wanted, "level-" + std::to_string(*level));
+  Resource resource = resourceOf(wanted, log.name + "-level-" + std::to_string(*level));
   if (name.starts_with("fit."))
     resource.headers.emplace_back("Content-Location", canonicalPath(wanted));
   if (!isCompressed(*form)) {
@@ -167,8 +169,8 @@ Answer routeLevel(const RequestView& request, const RequestTarget& target, const
   return toBeMade(request, resource, std::move(wanted));
 }
 
-Answer routePreview(const RequestView& request, const RequestTarget& target,
-                    const MeshPointer& mesh) {
+Answer routePreview(const RequestView& request, const RequestTarget& target, const NamedLog& log) {
+  const MeshPointer& mesh = log.mesh;
   const Manifest& manifest = mesh->manifest;
   const auto small = [](const ManifestLevel& level) {
     return level.boundaryTriangles <= kMaxPreviewTriangles;
@@ -185,7 +187,7 @@ Answer routePreview(const RequestView& request, const RequestTarget& target,
     if (first != manifest.fields.end())
       wanted.fields = {static_cast<std::uint32_t>(first - manifest.fields.begin())};
   }
-  const Resource resource = resourceOf(wanted, "preview");
+  const Resource resource = resourceOf(wanted, log.name + "-preview");
   return toBeMade(request, resource, std::move(wanted));
 }
 

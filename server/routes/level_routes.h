@@ -8,13 +8,19 @@
 
 namespace qtet {
 
-/// The answer to `/v1/logs/{sha256}/levels/{name}`: a level to be made, or 304, 400, 404 or 412.
+/// A log, and a name of it that whoever asks may know: what is saved is called by it.
+struct NamedLog {
+  MeshPointer mesh;
+  std::string name;
+};
+
+/// The answer to `/v1/logs/{sha256}/levels/{level}`: a level to be made, or 304, 400, 404 or 412.
 [[nodiscard]] Answer routeLevel(const RequestView& request, const RequestTarget& target,
-                                const MeshPointer& mesh, std::string_view name);
+                                const NamedLog& log, std::string_view level);
 
 /// The same for `/v1/logs/{sha256}/preview.png?field=NAME`: the level that is drawn, with the field
 /// or the first one of points.
 [[nodiscard]] Answer routePreview(const RequestView& request, const RequestTarget& target,
-                                  const MeshPointer& mesh);
+                                  const NamedLog& log);
 
 }  // namespace qtet

@@ -5,7 +5,6 @@
 #include <span>
 
 #include "server/http/http_resource.h"
-#include "server/routes/level_routes.h"
 
 namespace qtet {
 namespace {
@@ -62,8 +61,9 @@ Reply fieldReply(const RequestView& request, const MeshPointer& mesh, Path path)
 
 }  // namespace
 
-Answer routeLog(const RequestView& request, const RequestTarget& target, const MeshPointer& mesh) {
+Answer routeLog(const RequestView& request, const RequestTarget& target, const NamedLog& log) {
   assert(target.segments.size() >= 3);
+  const MeshPointer& mesh = log.mesh;
   const Path path = Path(target.segments).subspan(3);
   const LogIndex& index = mesh->log.index();
   const std::string what = path.empty() ? "" : path[0];
@@ -76,9 +76,9 @@ Answer routeLog(const RequestView& request, const RequestTarget& target, const M
     return variantReply(request, {{text.etag, mesh->modified}, "application/json", kForEver, {}},
                         {viewOf(text.text), text.gzip, text.zstd}, mesh);
   }
-  if (path.size() == 1 && what == "preview.png") return routePreview(request, target, mesh);
+  if (path.size() == 1 && what == "preview.png") return routePreview(request, target, log);
   if (path.size() == 2 && what == "chunks") return chunkReply(request, mesh, path[1], std::nullopt);
-  if (path.size() == 2 && what == "levels") return routeLevel(request, target, mesh, path[1]);
+  if (path.size() == 2 && what == "levels") return routeLevel(request, target, log, path[1]);
   if (path.size() > 1 && what == "fields") return fieldReply(request, mesh, path.subspan(1));
   return notFound(
       "a log has log, manifest, base, chunks/{n}, fields/{name}/chunks/{n}, levels/{k}.vtu and in "

@@ -3,13 +3,13 @@
 #pragma once
 
 #include "server/routes/answer.h"
-#include "server/store/served_mesh.h"
+#include "server/routes/level_routes.h"
 #include "server/wire/request_target.h"
 
 namespace qtet {
 
 /// The answer to `/v1/logs/{sha256}/...`. REQUIRES: at least three segments.
 [[nodiscard]] Answer routeLog(const RequestView& request, const RequestTarget& target,
-                              const MeshPointer& mesh);
+                              const NamedLog& log);
 
 }  // namespace qtet

@@ -236,6 +236,15 @@ TEST_F(RouterTest, levelsAreToBeMade) {
   EXPECT_EQ(ask("HEAD", folder_.log("levels/11.drc")).bodyBytes(), std::nullopt);
 }
 
+TEST_F(RouterTest, whatIsSavedIsCalledByTheMeshAndTheLevel) {
+  const auto savedAs = [&](const std::string& rest) {
+    return header(get(folder_.log(rest)), "Content-Disposition");
+  };
+  EXPECT_EQ(savedAs("levels/11.vtu"), "attachment; filename=\"noise-level-11.vtu\"");
+  EXPECT_EQ(savedAs("levels/fit.glb?tets=1"), "attachment; filename=\"noise-level-0.glb\"");
+  EXPECT_EQ(savedAs("preview.png"), "inline; filename=\"noise-preview.png\"");
+}
+
 TEST_F(RouterTest, whatDoesNotExistIsNotFound) {
   for (const char* target :
        {"/v1", "/v1/", "/v2/meshes", "/v1/meshes/", "/v1/meshes/nothing", "/v1/meshes/nothing/log",

@@ -157,6 +157,19 @@ TEST_F(GuardedTest, whatIsUnderADigestIsThereForThoseAloneWhoMayReadItUnderSomeN
   EXPECT_TRUE(get(open).header("cache-control").starts_with("public"));
 }
 
+TEST_F(GuardedTest, aSavedFileIsCalledByANameThatTheAskerMayKnow) {
+  const auto savedAs = [&](const std::string& headers) {
+    RawClient client(server_.port());
+    client.send("HEAD " + folder_.log("levels/1.vtu") + " HTTP/1.1\r\nHost: a\r\n" + headers +
+                "\r\n");
+    return client.receive(true).header("content-disposition");
+  };
+  EXPECT_EQ(savedAs(bearer(kReader)), "attachment; filename=\"noise-level-1.vtu\"");
+  std::filesystem::copy(folder_.logFolder() / "noise.qtet", folder_.logFolder() / "a2.qtet");
+  ASSERT_TRUE(folder_.store().rescan());
+  EXPECT_EQ(savedAs(""), "attachment; filename=\"a2-level-1.vtu\"");
+}
+
 TEST_F(GuardedTest, theListHoldsWhatMayBeReadAndItsTagTellsItApart) {
   const auto ids = [&](const std::string& headers) {
     std::string out;
