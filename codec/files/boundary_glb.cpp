@@ -6,40 +6,23 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <span>
 
+#include "codec/coding/number_type.h"
 #include "codec/files/boundary_drc.h"
 #include "codec/files/field_colours.h"
+#include "codec/files/file_mesh.h"
+#include "codec/files/glb_file.h"
+#include "codec/mesh/boundary.h"
 
 namespace qtet {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-// glTF 2.0, 3.6.2.2 and 4.4
-constexpr int kUnsignedByte = 5121;
-constexpr int kUnsignedInt = 5125;
-constexpr int kFloat = 5126;
-constexpr std::uint32_t kGlbMagic = 0x46546C67;
-constexpr std::uint32_t kGlbVersion = 2;
-constexpr std::uint32_t kJsonChunk = 0x4E4F534A;
-constexpr std::uint32_t kBinaryChunk = 0x004E4942;
-constexpr std::array<const char*, 4> kTypes = {"SCALAR", "VEC2", "VEC3", "VEC4"};
 constexpr const char* kExtension = "KHR_draco_mesh_compression";
-
-void putU32(Bytes& out, std::uint32_t value) {
-  for (int shift = 0; shift < 32; shift += 8)
-    out.push_back(static_cast<std::uint8_t>(value >> shift));
-}
-
-void putChunk(Bytes& out, std::uint32_t type, ByteView content, std::uint8_t padding) {
-  const std::size_t padded = (content.size() + 3) / 4 * 4;
-  putU32(out, static_cast<std::uint32_t>(padded));
-  putU32(out, type);
-  out.insert(out.end(), content.begin(), content.end());
-  out.insert(out.end(), padded - content.size(), padding);
-}
+/// More than the frame of a file can have: a manifest's fields have shorter names together.
+constexpr std::uint64_t kMaxFrameBytes = std::uint64_t{64} << 20;
 
 /// POSITION must tell its bounds (glTF 2.0, 3.7.2.1): of what a reader decodes, not of what was put
 /// in.
@@ -53,17 +36,11 @@ Json positionAccessor(const draco::PointAttribute& attribute, std::uint32_t poin
     for (std::size_t a = 0; a < 3; ++a)
       least[a] = std::min(least[a], p[a]), most[a] = std::max(most[a], p[a]);
   }
-  return {{"componentType", kFloat},
+  return {{"componentType", kGlbFloat},
           {"count", points},
           {"type", "VEC3"},
           {"min", least},
           {"max", most}};
-}
-
-/// glTF's colours are linear (glTF 2.0, 3.9.2), sRGB's are not (IEC 61966-2-1).
-std::uint8_t linearByte(double srgb) {
-  const double linear = srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
-  return static_cast<std::uint8_t>(std::lround(255 * linear));
 }
 
 /// By the first point field; none without one.
@@ -74,17 +51,18 @@ std::vector<std::array<std::uint8_t, 3>> coloursOf(const LatticeMesh& mesh) {
   const RangeFractions fractions(mesh, static_cast<std::size_t>(field - mesh.fields.begin()));
   std::vector<std::array<std::uint8_t, 3>> out(mesh.points.size());
   for (VertexId v = 0; v < out.size(); ++v) {
-    const Colour colour = viridis(fractions[v]);
-    out[v] = {linearByte(colour[0]), linearByte(colour[1]), linearByte(colour[2])};
+    const Colour colour = linearLight(viridis(fractions[v]));
+    for (std::size_t c = 0; c < 3; ++c)
+      out[v][c] = static_cast<std::uint8_t>(std::lround(255 * colour[c]));
   }
   return out;
 }
 
 /// What the Draco bytes hold, in glTF's words. Draco may split vertices where the surface is not
 /// manifold, so it is asked for its counts.
-Json describe(const draco::Mesh& mesh, std::span<const FieldInfo> fields, std::size_t bytes) {
+GlbContent describe(const draco::Mesh& mesh, std::span<const FieldInfo> fields, std::size_t bytes) {
   Json accessors = {
-      {{"componentType", kUnsignedInt}, {"count", mesh.num_faces() * 3}, {"type", "SCALAR"}}};
+      {{"componentType", kGlbUnsignedInt}, {"count", mesh.num_faces() * 3}, {"type", "SCALAR"}}};
   Json attributes = Json::object(), ids = Json::object();
   const auto add = [&](const std::string& name, int attribute, Json accessor) {
     attributes[name] = accessors.size();
@@ -99,7 +77,7 @@ Json describe(const draco::Mesh& mesh, std::span<const FieldInfo> fields, std::s
     }
     if (attribute.attribute_type() == draco::GeometryAttribute::COLOR) {
       add("COLOR_0", i,
-          {{"componentType", kUnsignedByte},
+          {{"componentType", kGlbUnsignedByte},
            {"normalized", true},
            {"count", mesh.num_points()},
            {"type", "VEC3"}});
@@ -108,7 +86,7 @@ Json describe(const draco::Mesh& mesh, std::span<const FieldInfo> fields, std::s
     const auto components = static_cast<std::size_t>(attribute.num_components());
     std::string name;
     const draco::AttributeMetadata* metadata = mesh.GetAttributeMetadataByAttributeId(i);
-    if (components > kTypes.size() || metadata == nullptr ||
+    if (glbType(components) == nullptr || metadata == nullptr ||
         !metadata->GetEntryString("name", &name))
       continue;
     if (std::ranges::any_of(fields, [&](const FieldInfo& f) {
@@ -116,31 +94,140 @@ Json describe(const draco::Mesh& mesh, std::span<const FieldInfo> fields, std::s
         }))
       continue;  // glTF has no NaN
     add("_" + name, i,
-        {{"componentType", kFloat},
+        {{"componentType", kGlbFloat},
          {"count", mesh.num_points()},
-         {"type", kTypes[components - 1]}});
+         {"type", glbType(components)}});
   }
-  const Json primitive = {{"attributes", attributes},
-                          {"indices", 0},
-                          {"material", 0},
-                          {"mode", 4},
-                          {"extensions", {{kExtension, {{"bufferView", 0}, {"attributes", ids}}}}}};
-  return {{"asset", {{"version", "2.0"}, {"generator", "qtet " QTET_VERSION}}},
-          {"extensionsUsed", {kExtension}},
-          {"extensionsRequired", {kExtension}},
-          {"scene", 0},
-          {"scenes", {{{"nodes", {0}}}}},
-          {"nodes", {{{"mesh", 0}}}},
-          {"meshes", {{{"primitives", {primitive}}}}},
-          {"materials",
-           {{{"doubleSided", true},
-             {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0.8}}}}}},
-          {"accessors", accessors},
-          {"bufferViews", {{{"buffer", 0}, {"byteLength", bytes}}}},
-          {"buffers", {{{"byteLength", bytes}}}}};
+  return {.accessors = accessors,
+          .bufferViews = Json::array({{{"buffer", 0}, {"byteLength", bytes}}}),
+          .attributes = attributes,
+          .extensions = {{kExtension, {{"bufferView", 0}, {"attributes", ids}}}},
+          .requiredExtensions = {kExtension}};
+}
+
+/// A .glb's buffer and what is in it, array by array.
+class PlainArrays {
+ public:
+  explicit PlainArrays(std::size_t points) : points_(points) {
+    content_.accessors = content_.bufferViews = Json::array();
+    content_.attributes = Json::object();
+  }
+
+  void addIndices(const std::vector<Triangle>& triangles) {
+    begin(kElementArrayBuffer);
+    for (const Triangle& triangle : triangles)
+      for (const VertexId v : triangle) appendNumber(buffer_, v);
+    end({{"componentType", kGlbUnsignedInt}, {"count", 3 * triangles.size()}, {"type", "SCALAR"}});
+  }
+  /// `values`: as many for each point as `accessor`'s type has.
+  template <class T>
+  void addAttribute(const std::string& name, const std::vector<T>& values, Json accessor) {
+    begin(kArrayBuffer);
+    for (const T value : values) appendNumber(buffer_, value);
+    content_.attributes[name] = content_.accessors.size();
+    accessor["count"] = points_;
+    end(std::move(accessor));
+  }
+  [[nodiscard]] Bytes file() const { return glbBytes(content_, buffer_); }
+
+ private:
+  // glTF 2.0, 5.11.5
+  static constexpr int kArrayBuffer = 34962;
+  static constexpr int kElementArrayBuffer = 34963;
+
+  // Every array has a multiple of 4 bytes, as glTF wants its elements to begin.
+  void begin(int target) {
+    content_.bufferViews.push_back(
+        {{"buffer", 0}, {"byteOffset", buffer_.size()}, {"target", target}});
+  }
+  void end(Json accessor) {
+    Json& view = content_.bufferViews.back();
+    view["byteLength"] = buffer_.size() - view["byteOffset"].get<std::size_t>();
+    accessor["bufferView"] = content_.bufferViews.size() - 1;
+    content_.accessors.push_back(std::move(accessor));
+  }
+
+  std::size_t points_;
+  GlbContent content_;
+  Bytes buffer_;
+};
+
+void addPositions(PlainArrays& arrays, std::span<const std::array<double, 3>> points) {
+  std::vector<float> values;
+  std::array<float, 3> least{}, most{};
+  least.fill(std::numeric_limits<float>::max());
+  most.fill(std::numeric_limits<float>::lowest());
+  for (const auto& point : points)
+    for (std::size_t a = 0; a < 3; ++a) {
+      values.push_back(static_cast<float>(point[a]));
+      least[a] = std::min(least[a], values.back()), most[a] = std::max(most[a], values.back());
+    }
+  arrays.addAttribute(
+      "POSITION", values,
+      {{"componentType", kGlbFloat}, {"type", "VEC3"}, {"min", least}, {"max", most}});
+}
+
+void addField(PlainArrays& arrays, const LatticeMesh& mesh, std::size_t number,
+              std::span<const VertexId> vertices) {
+  const FieldInfo& field = mesh.fields[number];
+  constexpr double kMost = std::numeric_limits<float>::max();
+  std::vector<float> values;
+  values.reserve(vertices.size() * field.components);
+  for (const VertexId v : vertices)
+    for (std::uint32_t c = 0; c < field.components; ++c) {
+      const double value =
+          field.value(c, mesh.values[number][std::size_t{v} * field.components + c]);
+      values.push_back(static_cast<float>(std::clamp(value, -kMost, kMost)));
+    }
+  arrays.addAttribute("_" + field.name, values,
+                      {{"componentType", kGlbFloat}, {"type", glbType(field.components)}});
+}
+
+/// With a fourth byte, opaque: elements of three would not begin at multiples of 4.
+void addColours(PlainArrays& arrays, std::span<const std::array<std::uint8_t, 3>> colours,
+                std::span<const VertexId> vertices) {
+  constexpr std::uint8_t kOpaque = 255;
+  std::vector<std::uint8_t> values;
+  for (const VertexId v : vertices) {
+    values.insert(values.end(), colours[v].begin(), colours[v].end());
+    values.push_back(kOpaque);
+  }
+  arrays.addAttribute(
+      "COLOR_0", values,
+      {{"componentType", kGlbUnsignedByte}, {"normalized", true}, {"type", "VEC4"}});
 }
 
 }  // namespace
+
+Result<Bytes> plainBoundaryGlb(const LatticeMesh& mesh) {
+  if (mesh.boundary.empty())
+    return fail(ErrorCode::kBadInput, "the mesh has no boundary triangle to encode");
+  const CompactTriangles surface = compactTriangles(mesh.boundary, mesh.points.size());
+  std::vector<std::array<double, 3>> points;
+  for (const VertexId v : surface.vertices) points.push_back(mesh.lattice.position(mesh.points[v]));
+  if (Status checked = fitsFloats(points, ".glb"); !checked)
+    return std::unexpected(checked.error());
+  // glTF has no NaN
+  const auto isNamed = [](const FieldInfo& field) {
+    return !isCellField(field) && !field.hasMissing && glbType(field.components) != nullptr;
+  };
+  std::uint64_t bytes = 12 * surface.triangles.size() + 16 * points.size();
+  for (const FieldInfo& field : mesh.fields)
+    if (isNamed(field)) bytes += 4 * field.components * points.size();
+  if (bytes >= kMaxGlbBytes - kMaxFrameBytes)
+    return fail(ErrorCode::kBadInput,
+                "the boundary has more bytes than a .glb can count; choose a "
+                "coarser level or fewer fields");
+
+  PlainArrays arrays(points.size());
+  arrays.addIndices(surface.triangles);
+  addPositions(arrays, points);
+  for (std::size_t f = 0; f < mesh.fields.size(); ++f)
+    if (isNamed(mesh.fields[f])) addField(arrays, mesh, f, surface.vertices);
+  if (const auto colours = coloursOf(mesh); !colours.empty())
+    addColours(arrays, colours, surface.vertices);
+  return arrays.file();
+}
 
 Result<Bytes> boundaryGlb(const LatticeMesh& mesh) {
   const Result<Bytes> drc = boundaryDrc(mesh, coloursOf(mesh));
@@ -153,16 +240,7 @@ Result<Bytes> boundaryGlb(const LatticeMesh& mesh) {
     return fail(ErrorCode::kBadCodec,
                 std::string("Draco cannot read what it wrote: ") + decoded.status().error_msg());
 
-  const std::string json = describe(*decoded.value(), mesh.fields, drc->size())
-                               .dump(-1, ' ', false, Json::error_handler_t::replace);
-  Bytes out;
-  putU32(out, kGlbMagic);
-  putU32(out, kGlbVersion);
-  putU32(out, 0);  // the length, below
-  putChunk(out, kJsonChunk, {reinterpret_cast<const std::uint8_t*>(json.data()), json.size()}, ' ');
-  putChunk(out, kBinaryChunk, *drc, 0);
-  for (std::size_t i = 0; i < 4; ++i) out[8 + i] = static_cast<std::uint8_t>(out.size() >> (8 * i));
-  return out;
+  return glbBytes(describe(*decoded.value(), mesh.fields, drc->size()), *drc);
 }
 
 }  // namespace qtet

@@ -1,5 +1,5 @@
-// The boundary surface of a mesh as binary glTF 2.0 with KHR_draco_mesh_compression, which
-// three.js, Babylon.js, Cesium and Blender read.
+// The boundary surface of a mesh as binary glTF 2.0: with KHR_draco_mesh_compression, which
+// three.js, Babylon.js, Cesium and Blender read, or plain.
 #pragma once
 
 #include "codec/mesh/mesh.h"
@@ -14,5 +14,11 @@ namespace qtet {
 /// too: COLOR_0, viridis over the field's range, grey where it has missing values. Axes and units
 /// are the mesh's own. REQUIRES and errors: those of boundaryDrc.
 [[nodiscard]] Result<Bytes> boundaryGlb(const LatticeMesh& mesh);
+
+/// The same without Draco, for readers that do not know the extension (VTK): points, triangles,
+/// colours and the named fields as plain accessors, positions and fields as float32. Points have
+/// the order of the mesh. REQUIRES: as boundaryDrc. Errors: bad-input (no boundary; coordinates of
+/// 1e38 and more; 4 GiB or more in all: .glb counts with 32 bits).
+[[nodiscard]] Result<Bytes> plainBoundaryGlb(const LatticeMesh& mesh);
 
 }  // namespace qtet

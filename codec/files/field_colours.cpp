@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "proto/limits.h"
+
 namespace qtet {
 namespace {
 
@@ -31,17 +33,28 @@ Colour viridis(double fraction) {
   return out;
 }
 
+Colour linearLight(const Colour& colour) {
+  Colour out{};
+  for (std::size_t c = 0; c < 3; ++c)
+    out[c] = colour[c] <= 0.04045 ? colour[c] / 12.92 : std::pow((colour[c] + 0.055) / 1.055, 2.4);
+  return out;
+}
+
+double rangeFraction(std::span<const double> components, const std::array<double, 2>& range) {
+  double value = 0;
+  for (const double x : components) value = components.size() == 1 ? x : value + x * x;
+  if (components.size() > 1) value = std::sqrt(value);
+  const double span = range[1] - range[0];
+  return span > 0 ? (value - range[0]) / span : std::isnan(value) ? value : 0.5;
+}
+
 double RangeFractions::operator[](VertexId v) const {
   if (!usable_) return std::numeric_limits<double>::quiet_NaN();
   const FieldInfo& field = mesh_.fields[field_];
-  double value = 0;
-  for (std::uint32_t c = 0; c < field.components; ++c) {
-    const double x = field.value(c, mesh_.values[field_][std::size_t{v} * field.components + c]);
-    value = field.components == 1 ? x : value + x * x;
-  }
-  if (field.components > 1) value = std::sqrt(value);
-  const double span = field.range[1] - field.range[0];
-  return span > 0 ? (value - field.range[0]) / span : std::isnan(value) ? value : 0.5;
+  std::array<double, kMaxFieldComponents> value{};
+  for (std::uint32_t c = 0; c < field.components; ++c)
+    value[c] = field.value(c, mesh_.values[field_][std::size_t{v} * field.components + c]);
+  return rangeFraction(std::span(value).first(field.components), field.range);
 }
 
 }  // namespace qtet

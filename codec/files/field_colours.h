@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "codec/mesh/mesh.h"
 
@@ -13,6 +14,14 @@ using Colour = std::array<double, 3>;
 
 /// Viridis at a fraction of the range, clamped to [0, 1]; a grey for NaN.
 [[nodiscard]] Colour viridis(double fraction);
+
+/// sRGB's numbers as linear light (IEC 61966-2-1), which glTF and OpenUSD mean by a colour.
+[[nodiscard]] Colour linearLight(const Colour& colour);
+
+/// What of a range a value is (of several components the magnitude): 0.5 where the range is one
+/// value, NaN where the value is.
+[[nodiscard]] double rangeFraction(std::span<const double> components,
+                                   const std::array<double, 2>& range);
 
 /// What of a field's range a vertex's value (of vectors the magnitude) is: 0.5 where the range is
 /// one value, NaN where there is no value, or no point field of this number. `mesh` must outlive

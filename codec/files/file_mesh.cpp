@@ -12,7 +12,7 @@ namespace qtet {
 namespace {
 
 FileField dequantised(const FieldInfo& info, const std::vector<std::int32_t>& integers) {
-  FileField field{info.name, info.type, info.components, {}};
+  FileField field{info.name, info.type, info.components, {}, info.range};
   field.values.reserve(integers.size());
   for (std::size_t i = 0; i < integers.size(); ++i)
     field.values.push_back(info.value(i % info.components, integers[i]));
@@ -63,7 +63,7 @@ FileSurface surfaceOf(const FileMesh& mesh) {
   out.triangles = std::move(triangles);
   for (const VertexId v : used) out.points.push_back(mesh.points[v]);
   for (const FileField& field : mesh.pointFields) {
-    FileField kept{field.name, field.type, field.components, {}};
+    FileField kept{field.name, field.type, field.components, {}, field.range};
     kept.values.reserve(used.size() * field.components);
     for (const VertexId v : used)
       for (std::uint32_t c = 0; c < field.components; ++c)

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,6 +20,8 @@ struct FileField {
   std::string type = "float32";
   std::uint32_t components = 1;
   std::vector<double> values;  ///< rounded and clamped to the type
+  /// For colours: of vectors that of the magnitude; without it that of the values.
+  std::optional<std::array<double, 2>> range{};
 };
 
 /// What a file is made of; the views must outlive whoever writes it.

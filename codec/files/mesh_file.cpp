@@ -28,8 +28,9 @@ Result<Bytes> meshFileBytes(const FileMesh& mesh, std::string_view ending) {
   return npzBytes(mesh);
 }
 
-Result<Bytes> meshFileBytes(const LatticeMesh& mesh, std::string_view ending) {
-  if (ending == ".glb") return boundaryGlb(mesh);
+Result<Bytes> meshFileBytes(const LatticeMesh& mesh, std::string_view ending,
+                            const MeshFileOptions& options) {
+  if (ending == ".glb") return options.draco ? boundaryGlb(mesh) : plainBoundaryGlb(mesh);
   if (ending == ".drc") return boundaryDrc(mesh);
   return meshFileBytes(fileMesh(mesh).mesh, ending);
 }

@@ -20,10 +20,16 @@ inline constexpr const char* kWrittenEndings = ".vtu .vtk .msh .stl .ply .obj .g
 /// kWrittenEndings.
 [[nodiscard]] bool holdsFields(std::string_view ending, std::string_view association);
 
+/// What a kind of file leaves open.
+struct MeshFileOptions {
+  bool draco = true;  ///< .glb: triangles and fields in Draco, else as plain numbers
+};
+
 /// The mesh as a file of the kind that the ending names. REQUIRES: one of kWrittenEndings, and none
 /// that needs the lattice of a mesh in floats. Errors: the writers'.
 [[nodiscard]] Result<Bytes> meshFileBytes(const FileMesh& mesh, std::string_view ending);
-[[nodiscard]] Result<Bytes> meshFileBytes(const LatticeMesh& mesh, std::string_view ending);
+[[nodiscard]] Result<Bytes> meshFileBytes(const LatticeMesh& mesh, std::string_view ending,
+                                          const MeshFileOptions& options = {});
 
 /// VTK's legacy format 3.0, binary: an unstructured grid with every field, as VTK, ParaView, meshio
 /// and VisIt read it.
@@ -44,9 +50,12 @@ inline constexpr const char* kWrittenEndings = ".vtu .vtk .msh .stl .ply .obj .g
 [[nodiscard]] Result<Bytes> plyBytes(const FileSurface& surface, bool doublePoints);
 [[nodiscard]] Bytes objBytes(const FileSurface& surface);
 
-/// OpenUSD text: a TetMesh prim with its surface faces; fields are primvars, of points `vertex`, of
-/// cells `uniform`. Names become USD identifiers as in PLY, and are told in full as displayName.
-/// Errors: bad-input (coordinates that its floats do not hold).
+/// OpenUSD text: an Xform `mesh` of two prims. `tetrahedra` is a TetMesh with its surface faces;
+/// fields are primvars, of points `vertex`, of cells `uniform`. Its purpose is `guide`, because
+/// `boundary` is what programs draw: a Mesh of the boundary's points alone, with their fields, and
+/// the first of these as displayColor (viridis over its range, grey where it is missing). Names
+/// become USD identifiers as in PLY, and are told in full as displayName. Errors: bad-input
+/// (coordinates that its floats do not hold).
 [[nodiscard]] Result<Bytes> usdaBytes(const FileMesh& mesh);
 
 /// numpy's archive: `points` (n, 3), `tetrahedra` (m, 4), `boundary` (k, 3) and each field as

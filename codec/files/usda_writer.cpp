@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <string>
 
+#include "codec/files/field_colours.h"
 #include "codec/files/file_names.h"
 #include "codec/files/mesh_file.h"
 #include "codec/mesh/boundary.h"
@@ -48,6 +50,9 @@ std::string quoted(const std::string& text) {
   return out + "\"";
 }
 
+/// Of what stands in a prim in the first prim.
+constexpr const char* kIndent = "        ";
+
 /// Numbers of 1 to 4 components are a type of USD's own, others a flat array with elementSize.
 std::string primvarText(const FileField& field, const char* interpolation,
                         std::set<std::string>& names) {
@@ -59,21 +64,92 @@ std::string primvarText(const FileField& field, const char* interpolation,
   const std::size_t width = tuple ? field.components : 1;
   for (std::size_t i = 0; i < field.values.size(); i += width)
     tuples.push_back(std::span(field.values).subspan(i, width));
-  std::string out = "    " + type + "[] primvars:" + newIdentifier(field.name, names) + " = " +
-                    (isDouble ? arrayText(tuples, kDouble) : arrayText(tuples, kFloat)) +
-                    " (\n        displayName = " + quoted(field.name) +
-                    "\n        interpolation = \"" + interpolation + "\"\n";
-  if (!tuple) out += "        elementSize = " + std::to_string(field.components) + "\n";
-  return out + "    )\n";
+  std::string out = kIndent + type + "[] primvars:" + newIdentifier(field.name, names) + " = " +
+                    (isDouble ? arrayText(tuples, kDouble) : arrayText(tuples, kFloat)) + " (\n" +
+                    kIndent + "    displayName = " + quoted(field.name) + "\n" + kIndent +
+                    "    interpolation = \"" + interpolation + "\"\n";
+  if (!tuple)
+    out += kIndent + std::string("    elementSize = ") + std::to_string(field.components) + "\n";
+  return out + kIndent + ")\n";
 }
 
-std::string extentText(const FileMesh& mesh) {
-  if (mesh.points.empty()) return {};
-  std::array<std::array<double, 3>, 2> box{mesh.points[0], mesh.points[0]};
-  for (const auto& p : mesh.points)
+/// "TYPE NAME = VALUE" as a line of a prim.
+std::string attribute(const std::string& name, const std::string& value) {
+  return kIndent + name + " = " + value + "\n";
+}
+
+/// What both prims have: orientation, extent and points.
+std::string shapeText(std::span<const std::array<double, 3>> points) {
+  std::string out = attribute("uniform token orientation", "\"rightHanded\"");
+  if (points.empty()) return out + attribute("point3f[] points", "[]");
+  std::array<std::array<double, 3>, 2> box{points[0], points[0]};
+  for (const auto& p : points)
     for (std::size_t k = 0; k < 3; ++k)
       box[0][k] = std::min(box[0][k], p[k]), box[1][k] = std::max(box[1][k], p[k]);
-  return "    float3[] extent = " + arrayText(box, kFloat) + "\n";
+  return out + attribute("float3[] extent", arrayText(box, kFloat)) +
+         attribute("point3f[] points", arrayText(points, kFloat));
+}
+
+std::string cellsText(const FileMesh& mesh) {
+  // Its faces [123] [032] [013] [021] of a right-handed tetrahedron are those of
+  // codec/mesh/boundary.h. Guides are not drawn unless somebody asks: the other prim is.
+  std::string out = "    def TetMesh \"tetrahedra\"\n    {\n" +
+                    attribute("uniform token purpose", "\"guide\"") + shapeText(mesh.points) +
+                    attribute("int4[] tetVertexIndices", arrayText(mesh.tetrahedra, kInteger)) +
+                    attribute("int3[] surfaceFaceVertexIndices",
+                              arrayText(boundaryOf(mesh.tetrahedra), kInteger));
+  std::set<std::string> names;
+  for (const FileField& field : mesh.pointFields) out += primvarText(field, "vertex", names);
+  for (const FileField& field : mesh.cellFields) out += primvarText(field, "uniform", names);
+  return out + "    }\n";
+}
+
+std::span<const double> valueOf(const FileField& field, std::size_t point) {
+  return std::span(field.values).subspan(point * field.components, field.components);
+}
+
+/// Of the values, or of the magnitude where components > 1; those that are missing do not count.
+std::array<double, 2> rangeOf(const FileField& field) {
+  if (field.range) return *field.range;
+  std::array<double, 2> range{std::numeric_limits<double>::max(),
+                              std::numeric_limits<double>::lowest()};
+  for (std::size_t i = 0; i * field.components < field.values.size(); ++i) {
+    // in a range from 0 to 1 the fraction is the value
+    const double value = rangeFraction(valueOf(field, i), {0, 1});
+    if (!std::isfinite(value)) continue;
+    range[0] = std::min(range[0], value), range[1] = std::max(range[1], value);
+  }
+  return range;
+}
+
+/// A surface is coloured by its first field, as a .glb is.
+std::string coloursText(const FileSurface& surface) {
+  if (surface.fields.empty()) return {};
+  const FileField& field = surface.fields.front();
+  const std::array<double, 2> range = rangeOf(field);
+  std::vector<Colour> colours;
+  for (std::size_t i = 0; i < surface.points.size(); ++i)
+    colours.push_back(linearLight(viridis(rangeFraction(valueOf(field, i), range))));
+  constexpr auto kShort = [](std::string& out, double x) {
+    appendShortest(out, std::round(1000 * x) / 1000);
+  };
+  return attribute("color3f[] primvars:displayColor", arrayText(colours, kShort) + " (") + kIndent +
+         "    interpolation = \"vertex\"\n" + kIndent + ")\n";
+}
+
+std::string boundaryText(const FileSurface& surface) {
+  std::vector<std::array<VertexId, 1>> counts(surface.triangles.size(), {3}), corners;
+  for (const Triangle& triangle : surface.triangles)
+    for (const VertexId v : triangle) corners.push_back({v});
+  std::string out = "    def Mesh \"boundary\"\n    {\n" +
+                    attribute("uniform token subdivisionScheme", "\"none\"") +
+                    attribute("uniform bool doubleSided", "1") + shapeText(surface.points) +
+                    attribute("int[] faceVertexCounts", arrayText(counts, kInteger)) +
+                    attribute("int[] faceVertexIndices", arrayText(corners, kInteger)) +
+                    coloursText(surface);
+  std::set<std::string> names{"displayColor"};
+  for (const FileField& field : surface.fields) out += primvarText(field, "vertex", names);
+  return out + "    }\n";
 }
 
 }  // namespace
@@ -81,20 +157,10 @@ std::string extentText(const FileMesh& mesh) {
 Result<Bytes> usdaBytes(const FileMesh& mesh) {
   if (Status checked = fitsFloats(mesh.points, ".usda"); !checked)
     return std::unexpected(checked.error());
-  // Its faces [123] [032] [013] [021] of a right-handed tetrahedron are those of
-  // codec/mesh/boundary.h.
-  std::string text =
+  const std::string text =
       "#usda 1.0\n(\n    defaultPrim = \"mesh\"\n    doc = \"written by qtet\"\n    metersPerUnit "
-      "= 1\n    upAxis = \"Z\"\n)\n\n"
-      "def TetMesh \"mesh\"\n{\n    uniform token orientation = \"rightHanded\"\n" +
-      extentText(mesh) + "    point3f[] points = " + arrayText(mesh.points, kFloat) +
-      "\n    int4[] tetVertexIndices = " + arrayText(mesh.tetrahedra, kInteger) +
-      "\n    int3[] surfaceFaceVertexIndices = " +
-      arrayText(boundaryOf(mesh.tetrahedra), kInteger) + "\n";
-  std::set<std::string> names;
-  for (const FileField& field : mesh.pointFields) text += primvarText(field, "vertex", names);
-  for (const FileField& field : mesh.cellFields) text += primvarText(field, "uniform", names);
-  text += "}\n";
+      "= 1\n    upAxis = \"Z\"\n)\n\ndef Xform \"mesh\"\n{\n" +
+      cellsText(mesh) + "\n" + boundaryText(surfaceOf(mesh)) + "}\n";
   return Bytes(text.begin(), text.end());
 }
 

@@ -53,7 +53,8 @@ int runConvert(const Words& words, Console& console) {
                   "-o",
                   parsed.get<std::string>("output")};
     if (parsed.has("to")) extract.insert(extract.end(), {"--to", parsed.get<std::string>("to")});
-    if (parsed.has("json")) extract.emplace_back("--json");
+    for (const char* same : {"json", "no-draco"})
+      if (parsed.has(same)) extract.push_back("--" + std::string(same));
     return runExtract(extract, console);
   }
   const Result<MeshOutput> output = meshOutputOf(parsed, input);
@@ -67,7 +68,7 @@ int runConvert(const Words& words, Console& console) {
   progress.clear();
   if (!read) return reportFailure(read.error(), asJson, console);
   for (const std::string& note : read->report.notes) console.note(note);
-  const Result<Bytes> bytes = meshFileBytes(read->mesh, "mesh" + output->ending);
+  const Result<Bytes> bytes = meshFileBytes(read->mesh, "mesh" + output->ending, output->options);
   const Status written =
       writeMeshOutput(*output, *bytes, reportOf(input, *read, output->ending), console);
   return written ? kExitOk : reportFailure(written.error(), asJson, console);

@@ -74,15 +74,16 @@ Result<std::vector<std::uint32_t>> wantedFields(const ParsedWords& parsed,
 
 /// At the last level the input itself, as far as the log kept it.
 Result<Bytes> inputFile(const OpenedLog& log, const LatticeMesh& finest,
-                        const std::vector<std::uint32_t>& wanted, const std::string& ending) {
+                        const std::vector<std::uint32_t>& wanted, const MeshOutput& output) {
   Result<RestoredInput> input = restoreInput(log.file, finest);
   if (!input) return std::unexpected(input.error());
   const bool exact = input->exactPositions ||
                      std::ranges::find(input->exactFields, true) != input->exactFields.end();
   keepFields(input->mesh, wanted);
   keepFields(input->lattice, wanted);
-  return exact && !needsLattice(ending) ? meshFileBytes(fileMesh(input->mesh), ending)
-                                        : meshFileBytes(input->lattice, ending);
+  return exact && !needsLattice(output.ending)
+             ? meshFileBytes(fileMesh(input->mesh), output.ending)
+             : meshFileBytes(input->lattice, output.ending, output.options);
 }
 
 MeshOutputReport reportOf(const Manifest& manifest, std::uint32_t level,
@@ -126,8 +127,8 @@ Status extract(const ParsedWords& parsed, Console& console) {
   const Result<LatticeMesh> mesh =
       meshAtLevel(log->file, *level, restores ? std::nullopt : std::optional(*wanted));
   if (!mesh) return std::unexpected(mesh.error());
-  const Result<Bytes> bytes = restores ? inputFile(*log, *mesh, *wanted, output->ending)
-                                       : meshFileBytes(*mesh, output->ending);
+  const Result<Bytes> bytes = restores ? inputFile(*log, *mesh, *wanted, *output)
+                                       : meshFileBytes(*mesh, output->ending, output->options);
   if (!bytes) return std::unexpected(bytes.error());
   MeshOutputReport report = reportOf(log->manifest, *level, *wanted, output->ending);
   report.json["input"] = input;

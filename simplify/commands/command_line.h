@@ -84,9 +84,10 @@ struct MeshOutput {
   std::string ending;  ///< with its dot
   bool isStandardOutput = false;
   bool asJson = false;  ///< tells of it as one JSON object
+  MeshFileOptions options{};
 };
 
-/// -o, --to and --json for meshOutputOf.
+/// -o, --to, --no-draco and --json for meshOutputOf.
 void addMeshOutputOptions(boost::program_options::options_description& options);
 
 /// What becomes known of a mesh that was written.

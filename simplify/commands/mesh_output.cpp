@@ -11,6 +11,8 @@ void addMeshOutputOptions(boost::program_options::options_description& options) 
                             .c_str())(
       "to", po::value<std::string>(),
       "the kind of file, where the name does not say it or is -: vtu, glb, ...")(
+      "no-draco",
+      "a .glb of plain numbers, larger, for programs without KHR_draco_mesh_compression (VTK)")(
       "json", "print one JSON object");
 }
 
@@ -30,6 +32,9 @@ Result<MeshOutput> meshOutputOf(const ParsedWords& parsed, const std::string& in
         "-o - is the standard output, which has no name: say with --to what kind of file to write, "
         "for example --to vtu");
   }
+  out.options.draco = !parsed.has("no-draco");
+  if (!out.options.draco && out.ending != ".glb")
+    throw UsageError("--no-draco is for .glb; leave it out of a " + out.ending);
   // Judged by a name that has the ending, in the folder that is meant.
   std::filesystem::path judged = out.isStandardOutput ? "standard-output" : out.file;
   judged.replace_extension(out.ending);

@@ -30,7 +30,8 @@ FileMesh fileMesh(const TetMesh& mesh) {
 
 Bytes vtuBytes(const TetMesh& mesh) { return vtuBytes(fileMesh(mesh)); }
 
-Result<Bytes> meshFileBytes(const TetMesh& mesh, const std::filesystem::path& output) {
+Result<Bytes> meshFileBytes(const TetMesh& mesh, const std::filesystem::path& output,
+                            const MeshFileOptions& file) {
   const std::string ending = output.extension().string();
   if (!needsLattice(ending)) return meshFileBytes(fileMesh(mesh), ending);
   TetMesh cleaned = mesh;
@@ -39,7 +40,8 @@ Result<Bytes> meshFileBytes(const TetMesh& mesh, const std::filesystem::path& ou
   QuantiseOptions options;
   options.positionBits = options.fieldBits = kExportBits;
   const Result<QuantisedMesh> quantised = quantise(cleaned, options);
-  return quantised ? meshFileBytes(quantised->mesh, ending) : std::unexpected(quantised.error());
+  return quantised ? meshFileBytes(quantised->mesh, ending, file)
+                   : std::unexpected(quantised.error());
 }
 
 }  // namespace qtet

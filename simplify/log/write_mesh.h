@@ -19,6 +19,7 @@ namespace qtet {
 /// the mesh is put on one of 16 bits an axis, its fields on 16 bits. REQUIRES: an ending of
 /// kWrittenEndings. Errors: the writers'; bad-input, where a mesh that is to go on a lattice is
 /// none.
-[[nodiscard]] Result<Bytes> meshFileBytes(const TetMesh& mesh, const std::filesystem::path& output);
+[[nodiscard]] Result<Bytes> meshFileBytes(const TetMesh& mesh, const std::filesystem::path& output,
+                                          const MeshFileOptions& file = {});
 
 }  // namespace qtet

@@ -30,9 +30,10 @@ const {tetrahedra, points} = JSON.parse(qtet('check', file('box.vtu'), '--json')
 
 const {specsByPath} = new USDAParser().parseData(readFileSync(file('box.usda'), 'utf8'));
 assert.equal(specsByPath['/'].fields.defaultPrim, 'mesh');
-assert.equal(specsByPath['/mesh'].fields.typeName, 'TetMesh');
+assert.equal(specsByPath['/mesh'].fields.typeName, 'Xform');
+assert.equal(specsByPath['/mesh/tetrahedra'].fields.typeName, 'TetMesh');
 const numbers = (name, width) => {
-  const flat = [...specsByPath[`/mesh.${name}`].fields.default].flat().map(Number);
+  const flat = [...specsByPath[`/mesh/tetrahedra.${name}`].fields.default].flat().map(Number);
   assert.ok(flat.every(Number.isFinite), name);
   return Array.from({length: flat.length / width}, (_, i) =>
     flat.slice(width * i, width * i + width),
@@ -81,6 +82,25 @@ assert.deepEqual(
   facesOfObj.map(turned).sort(),
 );
 assert.equal(numbers('primvars:Scalar', 1).length, points);
+
+// What a viewer shows of it: the boundary as one mesh.
+const {USDLoader} = await import(
+  pathToFileURL(require.resolve('three/examples/jsm/loaders/USDLoader.js')).href
+);
+const shown = [];
+new USDLoader()
+  .parse(readFileSync(file('box.usda'), 'utf8'))
+  .traverse((object) => object.isMesh && shown.push(object));
+assert.deepEqual(
+  shown.map((mesh) => mesh.name),
+  ['boundary'],
+);
+const {index, attributes} = shown[0].geometry;
+assert.equal(
+  (index ?? attributes.position).count,
+  3 * faces.length,
+  'triangles that three.js shows',
+);
 console.log(
   `usda: three.js reads ${tetrahedra} tetrahedra, ${faces.length} faces of the boundary, and ` +
     'the field',

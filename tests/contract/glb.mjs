@@ -20,6 +20,9 @@ const made = [
   ['extract', file('box.qtet'), '--ratio', '1', '--fields', 'Scalar'],
   ['extract', join(golden, 'gaps.qtet'), '--ratio', '1'],
   ['convert', file('box.vtu')],
+  ['extract', file('box.qtet'), '--ratio', '1', '--fields', 'Scalar', '--no-draco'],
+  ['extract', join(golden, 'gaps.qtet'), '--ratio', '1', '--no-draco'],
+  ['convert', file('box.vtu'), '--no-draco'],
 ];
 for (const words of made) {
   qtet(...words, '-o', file('skin.glb'));

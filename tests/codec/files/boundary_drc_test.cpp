@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <map>
 #include <memory>
@@ -313,6 +314,67 @@ TEST(BoundaryGlb, theFirstPointFieldIsTheColoursInLinearLight) {
   const auto plain = boundaryGlb(mesh);
   ASSERT_TRUE(plain);
   EXPECT_EQ(decodeGlb(*plain)->GetNamedAttribute(draco::GeometryAttribute::COLOR), nullptr);
+}
+
+/// The JSON of a .glb, and what an accessor's bytes are.
+struct ReadGlb {
+  explicit ReadGlb(const Bytes& glb) {
+    const std::size_t length = ByteReader(ByteView(glb).subspan(12)).read<std::uint32_t>();
+    json = nlohmann::json::parse(glb.begin() + 20,
+                                 glb.begin() + 20 + static_cast<std::ptrdiff_t>(length));
+    buffer = Bytes(glb.begin() + static_cast<std::ptrdiff_t>(28 + length), glb.end());
+    primitive = json["meshes"][0]["primitives"][0];
+  }
+  template <class T>
+  [[nodiscard]] std::vector<T> array(std::size_t accessor) const {
+    const auto& view = json["bufferViews"][json["accessors"][accessor]["bufferView"].get<int>()];
+    std::vector<T> out(view["byteLength"].get<std::size_t>() / sizeof(T));
+    std::memcpy(out.data(), buffer.data() + view["byteOffset"].get<std::size_t>(),
+                out.size() * sizeof(T));
+    return out;
+  }
+  template <class T>
+  [[nodiscard]] std::vector<T> attribute(const char* name) const {
+    return array<T>(primitive["attributes"][name].get<std::size_t>());
+  }
+
+  nlohmann::json json, primitive;
+  Bytes buffer;
+};
+
+TEST(BoundaryGlb, withoutDracoTheNumbersStandThere) {
+  LatticeMesh mesh = wavySquare(8, 12, 0.5, {10, -3, 0});
+  const auto glb = plainBoundaryGlb(mesh);
+  ASSERT_TRUE(glb) << glb.error().text();
+  const ReadGlb read(*glb);
+  EXPECT_FALSE(read.json.contains("extensionsRequired"));
+  const std::size_t points = mesh.points.size() - 1;  // no triangle uses the last one
+  const auto positions = read.attribute<float>("POSITION");
+  ASSERT_EQ(positions.size(), 3 * points);
+  for (std::size_t i = 0; i < points; ++i) {
+    const auto wanted = mesh.lattice.position(mesh.points[i]);
+    for (std::size_t a = 0; a < 3; ++a)
+      EXPECT_EQ(positions[3 * i + a], static_cast<float>(wanted[a]));
+  }
+  std::vector<std::uint32_t> corners;
+  for (const Triangle& triangle : mesh.boundary)
+    corners.insert(corners.end(), triangle.begin(), triangle.end());
+  EXPECT_EQ(read.array<std::uint32_t>(0), corners);
+  const auto velocity = read.attribute<float>("_velocity");
+  ASSERT_EQ(velocity.size(), 3 * points);
+  EXPECT_EQ(velocity[5], static_cast<float>(mesh.fields[1].value(2, mesh.values[1][5])));
+  EXPECT_EQ(read.attribute<std::uint8_t>("COLOR_0").size(), 4 * points);
+  for (const auto& view : read.json["bufferViews"]) EXPECT_EQ(view["byteOffset"].get<int>() % 4, 0);
+  mesh.fields[0].hasMissing = true;
+  EXPECT_FALSE(ReadGlb(*plainBoundaryGlb(mesh)).primitive["attributes"].contains("_density"));
+}
+
+TEST(BoundaryGlb, withoutDracoTheSameIsRefused) {
+  for (const LatticeMesh& mesh : {LatticeMesh(), wavySquare(8, 12, 1e300, {0, 0, 0})}) {
+    const auto glb = plainBoundaryGlb(mesh);
+    ASSERT_FALSE(glb);
+    EXPECT_EQ(glb.error().code, ErrorCode::kBadInput);
+  }
 }
 
 TEST(BoundaryDrc, aMeshWithoutABoundaryIsRefused) {

@@ -13,7 +13,7 @@ try:
     import meshio
     import numpy as np
     from vtkmodules.util.numpy_support import vtk_to_numpy
-    from vtkmodules.vtkIOGeometry import vtkOBJReader, vtkSTLReader
+    from vtkmodules.vtkIOGeometry import vtkGLTFReader, vtkOBJReader, vtkSTLReader
     from vtkmodules.vtkIOLegacy import vtkUnstructuredGridReader
     from vtkmodules.vtkIOPLY import vtkPLYReader
     from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
@@ -166,8 +166,11 @@ def usda(path, expected):
         and 'orientation = "rightHanded"' in text
     )
 
-    def numbers(name):
-        (found,) = re.findall(rf"^    \S+\[\] {re.escape(name)} = \[(.*)\]", text, re.M)
+    prims = dict(re.findall(r'^    def \w+ "(\w+)"\n    \{\n(.*?)^    \}\n', text, re.M | re.S))
+    assert list(prims) == ["tetrahedra", "boundary"], path
+
+    def numbers(name, prim="tetrahedra"):
+        (found,) = re.findall(rf"^        \S+\[\] {re.escape(name)} = \[(.*)\]", prims[prim], re.M)
         return np.array([float(x) for x in re.findall(r"[^\s,()]+", found)])
 
     assert np.array_equal(
@@ -181,7 +184,8 @@ def usda(path, expected):
         (expected.point_fields, "vertex"),
         (expected.cell_fields, "uniform"),
     ):
-        assert text.count(f'interpolation = "{interpolation}"') == len(fields), path
+        count = prims["tetrahedra"].count(f'interpolation = "{interpolation}"')
+        assert count == len(fields), path
         for name, values in fields.items():
             # USD has one room for both.
             is_taken = interpolation == "uniform" and name in expected.point_fields
@@ -189,6 +193,31 @@ def usda(path, expected):
             assert np.array_equal(
                 numbers("primvars:" + stored).astype(values.dtype), values.ravel(), equal_nan=True
             ), (path, name)
+    usda_boundary(path, expected, lambda name: numbers(name, "boundary"))
+
+
+def usda_boundary(path, expected, numbers):
+    """The Mesh prim: the boundary's points in their order, coloured."""
+    used = np.array(sorted({v for face in expected.boundary() for v in face}))
+    assert np.array_equal(
+        numbers("points").reshape(-1, 3).astype(np.float32),
+        expected.points[used].astype(np.float32),
+    ), path
+    assert (numbers("faceVertexCounts") == 3).all(), path
+    corners = used[numbers("faceVertexIndices").astype(int).reshape(-1, 3)]
+    assert {turned(face) for face in corners} == expected.boundary(), path
+    for name, values in expected.point_fields.items():
+        assert np.array_equal(
+            numbers("primvars:" + name).astype(values.dtype), values[used].ravel(), equal_nan=True
+        ), (path, name)
+    if not expected.point_fields:
+        return
+    colours = numbers("primvars:displayColor").reshape(-1, 3)
+    first = next(iter(expected.point_fields.values()))[used]
+    size = first if first.ndim == 1 else np.linalg.norm(first, axis=1)
+    assert len(colours) == len(used) and ((colours >= 0) & (colours <= 1)).all(), path
+    # viridis goes from a dark blue to a bright yellow
+    assert colours[np.nanargmax(size)][1] > colours[np.nanargmin(size)][1], path
 
 
 def ply(path, expected):
@@ -222,6 +251,28 @@ def ply(path, expected):
             ), (path, name, c)
 
 
+def glb(path, expected):
+    """Without Draco: the boundary as VTK reads it, with the fields that glTF can have."""
+    blocks = read(vtkGLTFReader(), path)
+    while blocks.IsA("vtkMultiBlockDataSet"):
+        assert blocks.GetNumberOfBlocks() == 1, path
+        blocks = blocks.GetBlock(0)
+    _, _, originals = surface(path, blocks, expected, 1e-4)
+    found = arrays(blocks.GetPointData())
+    named = {
+        name: values
+        for name, values in expected.point_fields.items()
+        if (values.ndim == 1 or values.shape[1] <= 4) and np.isfinite(values).all()
+    }
+    assert {"_" + name for name in named} == {name for name in found if name.startswith("_")}, (
+        path,
+        list(found),
+    )
+    for name, values in named.items():
+        scale = np.ptp(values) * 1e-4 or 1
+        assert np.abs(found["_" + name] - values[originals]).max() <= scale, (path, name)
+
+
 def gmsh(path, expected):
     same(
         Mesh.of_meshio(meshio.read(path)),
@@ -246,7 +297,7 @@ def gmsh(path, expected):
 
 
 def check_all(write, expected):
-    """`write(ending)` writes a file of that kind, of the mesh `expected`."""
+    """`write(ending, words...)` writes a file of that kind, of the mesh `expected`."""
     same(Mesh.of_grid(read(vtkUnstructuredGridReader(), write(".vtk"))), expected, "legacy .vtk")
     gmsh(write(".msh"), expected)
     npz(write(".npz"), expected)
@@ -254,6 +305,7 @@ def check_all(write, expected):
     ply(write(".ply"), expected)
     surface("stl", read(vtkSTLReader(), write(".stl")), expected, 1e-5)
     surface("obj", read(vtkOBJReader(), write(".obj")), expected, 1e-5)
+    glb(write(".glb", "--no-draco"), expected)
 
 
 def main():
@@ -267,14 +319,14 @@ def main():
     ]
     for log, choice in cases:
 
-        def extracted(ending):
-            qtet("extract", log, *choice, "-o", OUT / ("level" + ending))
+        def extracted(ending, *words):
+            qtet("extract", log, *choice, *words, "-o", OUT / ("level" + ending))
             return OUT / ("level" + ending)
 
         check_all(extracted, Mesh.of_grid(read(vtkXMLUnstructuredGridReader(), extracted(".vtu"))))
 
-    def converted(ending):
-        qtet("convert", OUT / "box.vtu", "-o", OUT / ("whole" + ending))
+    def converted(ending, *words):
+        qtet("convert", OUT / "box.vtu", *words, "-o", OUT / ("whole" + ending))
         return OUT / ("whole" + ending)
 
     whole = Mesh.of_grid(read(vtkXMLUnstructuredGridReader(), OUT / "box.vtu"))
