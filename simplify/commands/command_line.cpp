@@ -33,6 +33,9 @@ Words withNewNames(Words words) {
 /// Words without a dash that no place is left for. Boost's own error does not say which they are.
 constexpr const char* kTooMany = "one too many";
 
+/// "LOG..." stands for one word and more.
+bool takesMore(const std::string& name) { return name.ends_with("..."); }
+
 /// What is wrong with the first word of `more`, and where it was meant to go, most probably.
 UsageError oneTooMany(const CommandHelp& help, const std::vector<std::string>& positional,
                       const std::vector<std::string>& more, bool wantsOutput) {
@@ -57,10 +60,15 @@ ParsedWords::ParsedWords(const Words& words, CommandHelp help, po::options_descr
   po::options_description all, hidden;
   po::positional_options_description places;
   for (const std::string& name : positional_) {
-    hidden.add_options()(name.c_str(), po::value<std::string>());
-    places.add(name.c_str(), 1);
+    if (takesMore(name)) {
+      hidden.add_options()(name.c_str(), po::value<std::vector<std::string>>());
+      places.add(name.c_str(), -1);
+    } else {
+      hidden.add_options()(name.c_str(), po::value<std::string>());
+      places.add(name.c_str(), 1);
+    }
   }
-  places.add(kTooMany, -1);
+  if (positional_.empty() || !takesMore(positional_.back())) places.add(kTooMany, -1);
   hidden.add_options()("help-json", "help for programs")(kTooMany,
                                                          po::value<std::vector<std::string>>());
   all.add(options_).add(hidden);
@@ -81,7 +89,8 @@ ParsedWords::ParsedWords(const Words& words, CommandHelp help, po::options_descr
     throw oneTooMany(help_, positional_, get<std::vector<std::string>>(kTooMany),
                      isRequired("output") && !has("output"));
   for (const std::string& name : positional_) {
-    if (!has(name)) throw UsageError(name + " is missing");
+    if (!has(name))
+      throw UsageError((takesMore(name) ? name.substr(0, name.size() - 3) : name) + " is missing");
   }
   for (const auto& option : options_.options()) {
     const std::string& name = option->long_name();

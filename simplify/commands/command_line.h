@@ -36,8 +36,8 @@ struct CommandHelp {
 /// One command's words, parsed. Options may be given once, abbreviations are refused.
 class ParsedWords {
  public:
-  /// `positional` are the names of the words without a dash, all required, each also an option of
-  /// `options`.
+  /// `positional` are the names of the words without a dash, all required; the last may end in
+  /// "...", which is a vector of one word and more.
   ParsedWords(const Words& words, CommandHelp help,
               boost::program_options::options_description options,
               const std::vector<std::string>& positional);

@@ -14,7 +14,7 @@
 namespace qtet {
 namespace {
 
-constexpr std::array<Command, 13> kCommands{{
+constexpr std::array<Command, 14> kCommands{{
     {"sample", "make a mesh to try things with", runSample, true},
     {"check", "say what is wrong with a mesh, and what simplify would do about it", runCheck, false,
      Command::Pipe::kMesh},
@@ -29,6 +29,7 @@ constexpr std::array<Command, 13> kCommands{{
     {"verify", "check a log, also against the mesh that it was made from", runVerify, false,
      Command::Pipe::kLog},
     {"push", "send a log to a server", runPush, true},
+    {"publish", "make a folder for any web server: the viewer and logs", runPublish, true},
     {"view", "show a mesh or a log in the browser", runView, false, Command::Pipe::kMesh},
     {"completion", "print what makes a shell complete qtet's words", runCompletion},
     {"manual", "write the manual pages", runManual, true},
@@ -56,6 +57,7 @@ void printHelp(std::ostream& out) {
          "  curl -s http://HOST/fin.vtu | qtet check - --format vtu\n"
          "  qtet verify fin.qtet --against fin.vtu\n"
          "  QTET_TOKEN=... qtet push fin.qtet http://127.0.0.1:8080/\n"
+         "  qtet publish site fin.qtet\n"
          "\nexit codes: 0 done, 1 an input or a file is at fault, 2 the command line is\n";
 }
 

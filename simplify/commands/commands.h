@@ -72,6 +72,7 @@ int runExtract(const Words& words, Console& console);
 int runAddField(const Words& words, Console& console);
 int runRemoveField(const Words& words, Console& console);
 int runPush(const Words& words, Console& console);
+int runPublish(const Words& words, Console& console);
 int runView(const Words& words, Console& console);
 int runCompletion(const Words& words, Console& console);
 int runManual(const Words& words, Console& console);

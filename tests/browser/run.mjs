@@ -15,6 +15,7 @@ import {edgeChecks} from './edge_checks.mjs';
 import {elementChecks} from './element_checks.mjs';
 import {legendChecks} from './legend_checks.mjs';
 import {monkeyChecks} from './monkey_checks.mjs';
+import {publishChecks} from './publish_checks.mjs';
 import {recoveryChecks} from './recovery_checks.mjs';
 import {transportChecks} from './transport_checks.mjs';
 import {volumeChecks} from './volume_checks.mjs';
@@ -45,6 +46,7 @@ const all = {
   ...checks,
   ...elementChecks,
   ...transportChecks,
+  ...publishChecks,
   ...volumeChecks,
   ...edgeChecks,
   ...legendChecks,

@@ -1,4 +1,5 @@
-// The meshes of a server: GET /v1/meshes of proto/PROTOCOL.md.
+// The meshes of a server, GET /v1/meshes of proto/PROTOCOL.md, or of a folder that `qtet publish`
+// made: the same list in its index.json, with addresses of files.
 
 import {QtetError} from '../core/errors';
 import {fetchWith} from '../core/token';
@@ -7,11 +8,14 @@ export interface MeshEntry {
   id: string;
   tetrahedra: number;
   fields: string[];
+  /** The address of the log as a file, from a published list; without it the server has it. */
+  log?: string;
 }
 
 /** Throws a QtetError whose text says what to do. `token` is empty if the server asks for none. */
 export async function fetchCatalog(base: URL, token = ''): Promise<MeshEntry[]> {
-  const url = new URL('v1/meshes', base);
+  const isList = isMeshList(base);
+  const url = isList ? base : new URL('v1/meshes', base);
   let response: Response;
   try {
     response = await (fetchWith(token) ?? fetch)(url.href, {});
@@ -34,11 +38,20 @@ export async function fetchCatalog(base: URL, token = ''): Promise<MeshEntry[]> 
       `${url.href} is not a list of meshes. Is this a qtet server? For a .qtet file on another ` +
         'one, give its address: ?src=FILE.qtet',
     );
-  return (body.meshes as Record<keyof MeshEntry, unknown>[]).map((mesh) => ({
+  return (body.meshes as Listed[]).map((mesh) => ({
     id: String(mesh.id),
     tetrahedra: Number(mesh.tetrahedra ?? 0),
     fields: Array.isArray(mesh.fields) ? mesh.fields.map(String) : [],
+    ...(isList && {log: new URL(String(mesh.links?.log), url).href}),
   }));
+}
+
+/** An entry as it comes: every member is somebody else's word. */
+type Listed = Partial<Record<keyof MeshEntry, unknown>> & {links?: {log?: unknown}};
+
+/** Whether the address names a list that `qtet publish` made. */
+export function isMeshList(base: URL): boolean {
+  return base.pathname.endsWith('.json');
 }
 
 /** Whether the address names a log on any web server. */

@@ -13,6 +13,9 @@ declare global {
 }
 
 const viewer = document.createElement('qtet-viewer');
+/** `qtet publish` puts it into the page: where the list of the folder's meshes is. */
+const published = document.querySelector<HTMLMetaElement>('meta[name=qtet-src]');
+if (published) viewer.setAttribute('src', published.content);
 const query = new URLSearchParams(location.search);
 for (const name of ['src', 'transport', ...kViewAttributes]) {
   const value = query.get(name);

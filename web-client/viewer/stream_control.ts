@@ -126,11 +126,11 @@ export class StreamControl {
     listeners.opens(opened === kept.opened);
     kept.opened = opened;
     this.menu.name(mesh);
-    const isFile = isLogFile(base);
+    const file = isLogFile(base) ? base.href : this.catalog.find(({id}) => id === mesh)?.log;
     const transport = page.element.getAttribute('transport');
     client.start({
-      url: isFile ? '' : streamUrl(base),
-      log: isFile ? base.href : logUrl(base, mesh),
+      url: file === undefined ? streamUrl(base) : '',
+      log: file ?? logUrl(base, mesh),
       transport: kTransportKinds.find((kind) => kind === transport) ?? 'auto',
       mesh,
       fields: this.firstFields(mesh),

@@ -1,0 +1,77 @@
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "simplify/commands/command_line.h"
+#include "simplify/publish/publish_site.h"
+
+namespace qtet {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Where the packages and the build folder have the viewer: beside this program's folder.
+fs::path installedViewer() {
+  std::error_code code;
+  return fs::read_symlink("/proc/self/exe", code).parent_path() / "../share/qtet/viewer";
+}
+
+/// Logs whose names can be shown and be part of an address.
+std::vector<fs::path> logsOf(const ParsedWords& parsed) {
+  std::vector<fs::path> logs;
+  for (const std::string& word : parsed.get<std::vector<std::string>>("LOG...")) {
+    const std::string name = fs::path(word).filename().string();
+    if (!name.ends_with(".qtet") || name == ".qtet")
+      throw UsageError("'" + word + "' is no log, NAME.qtet; make one with qtet simplify");
+    if (printable(name) != name)
+      throw UsageError("'" + word + "' has a name that no address can hold; rename it");
+    logs.emplace_back(word);
+  }
+  return logs;
+}
+
+OrderedJson toJson(const std::string& folder, const PublishedSite& site) {
+  OrderedJson meshes = OrderedJson::array();
+  for (const PublishedMesh& mesh : site.meshes)
+    meshes.push_back({{"name", mesh.name}, {"bytes", mesh.bytes}, {"tetrahedra", mesh.tetrahedra}});
+  return {{"output", folder}, {"files", site.files}, {"bytes", site.bytes}, {"meshes", meshes}};
+}
+
+}  // namespace
+
+int runPublish(const Words& words, Console& console) {
+  namespace po = boost::program_options;
+  po::options_description options("options");
+  options.add_options()("viewer", po::value<std::string>(),
+                        "the viewer's files; without it those installed with qtet-server")(
+      "json", "print one JSON object");
+  const ParsedWords parsed(
+      words,
+      {"publish", "publish FOLDER LOG.qtet... [--viewer DIR] [--json]",
+       "Writes a folder that any web server can serve as it stands, without a program of ours: the "
+       "viewer, compressed too, the logs,\n"
+       "index.json with their list, and README.txt with the settings for nginx, Caddy, S3 with "
+       "CloudFront, and GitHub Pages.\n"
+       "The folder appears whole or not at all. One that an earlier publish made is replaced as a "
+       "whole, logs included; a folder that\n"
+       "holds anything else is refused.\n"
+       "--json: output, files, bytes, meshes [{name, bytes, tetrahedra}].",
+       "  qtet publish site fin.qtet\n  qtet publish /var/www/meshes logs/*.qtet\n"},
+      options, {"FOLDER", "LOG..."});
+  if (parsed.helped(console)) return kExitOk;
+  const auto folder = parsed.get<std::string>("FOLDER");
+  const fs::path viewer =
+      parsed.has("viewer") ? fs::path(parsed.get<std::string>("viewer")) : installedViewer();
+  const Result<PublishedSite> site = publishSite(folder, viewer, logsOf(parsed));
+  if (!site) return reportFailure(site.error(), parsed.has("json"), console);
+  if (parsed.has("json")) {
+    printJson(toJson(folder, *site), console);
+    return kExitOk;
+  }
+  console.out << console.shown(folder) << ": " << counted(site->meshes.size(), "mesh", "meshes")
+              << ", " << counted(site->files, "file", "files") << ", " << grouped(site->bytes)
+              << " bytes; README.txt there says how to serve it\n";
+  return kExitOk;
+}
+
+}  // namespace qtet

@@ -1,0 +1,177 @@
+#include "simplify/publish/publish_site.h"
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "proto/field_key.h"
+#include "simplify/log/opened_log.h"
+#include "simplify/publish/compressed.h"
+#include "simplify/publish/hosting_notes.h"
+#include "simplify/publish/site_folder.h"
+
+namespace qtet {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kPage = "index.html";
+/// Where the page looks for its meshes (web-client/viewer/main.ts).
+constexpr const char* kListElement = "<meta name=\"qtet-src\" content=\"index.json\">\n  ";
+
+Bytes bytesOf(const std::string& text) { return {text.begin(), text.end()}; }
+
+/// For an address: letters, digits, - . _ ~ stay (RFC 3986, "unreserved").
+std::string percentEncoded(const std::string& name) {
+  constexpr std::string_view kDigits = "0123456789ABCDEF", kKept = "-._~";
+  std::string out;
+  for (const char c : name) {
+    const bool isLetter =
+        (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    const auto byte = static_cast<unsigned char>(c);
+    if (isLetter || kKept.find(c) != kKept.npos)
+      out += c;
+    else
+      (out += '%') += {kDigits[byte >> 4], kDigits[byte & 15]};
+  }
+  return out;
+}
+
+Result<Bytes> readWhole(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  Bytes out{std::istreambuf_iterator<char>(in), {}};
+  if (!in.is_open() || in.bad())
+    return fail(ErrorCode::kIo, path.string() + " cannot be read; check its permissions");
+  return out;
+}
+
+struct Coding {
+  const char* ending;
+  Result<Bytes> (*coded)(ByteView);
+};
+
+/// A folder that is being made, and how many bytes are in it.
+struct Site {
+  SiteFolder folder;
+  std::uint64_t bytes = 0;
+
+  Status write(const std::string& name, ByteView content) {
+    bytes += content.size();
+    return folder.write(name, content);
+  }
+  /// With what compresses to less beside it.
+  Status writeWithCodings(const std::string& name, ByteView content) {
+    if (Status written = write(name, content); !written) return written;
+    for (const auto& [ending, coded] : {Coding{".gz", gzipped}, Coding{".br", brotlied}}) {
+      const Result<Bytes> small = coded(content);
+      if (!small) return std::unexpected(small.error());
+      if (small->size() >= content.size()) continue;
+      if (Status written = write(name + ending, *small); !written) return written;
+    }
+    return {};
+  }
+};
+
+/// Relative names of the viewer's files, ascending; those that are compressed already are made
+/// anew.
+Result<std::vector<std::string>> viewerFiles(const fs::path& viewer) {
+  std::vector<std::string> names;
+  std::error_code code;
+  for (fs::recursive_directory_iterator at(viewer, code), end; !code && at != end;
+       at.increment(code)) {
+    const std::string ending = at->path().extension().string();
+    const bool isOurs = ending != ".gz" && ending != ".br" && ending != ".zst";
+    std::error_code unknown;
+    if (at->is_regular_file(unknown) && isOurs)
+      names.push_back(at->path().lexically_relative(viewer).generic_string());
+  }
+  std::ranges::sort(names);
+  if (std::ranges::binary_search(names, kPage)) return names;
+  return fail(ErrorCode::kNotFound,
+              "the folder " + viewer.string() +
+                  " holds no viewer (index.html); give the one of qtet-server with --viewer");
+}
+
+Result<Bytes> pageWithList(const Bytes& page) {
+  std::string text(page.begin(), page.end());
+  const std::size_t end = text.find("</head>");
+  if (end == text.npos)
+    return fail(ErrorCode::kBadInput,
+                "the viewer's index.html has no </head>; give the viewer of this version");
+  text.insert(end, kListElement);
+  return bytesOf(text);
+}
+
+Status writeViewer(Site& site, const fs::path& viewer) {
+  const Result<std::vector<std::string>> names = viewerFiles(viewer);
+  if (!names) return std::unexpected(names.error());
+  for (const std::string& name : *names) {
+    Result<Bytes> content = readWhole(viewer / name);
+    if (content && name == kPage) content = pageWithList(*content);
+    if (!content) return std::unexpected(content.error());
+    if (Status written = site.writeWithCodings(name, *content); !written) return written;
+  }
+  return {};
+}
+
+/// Copies the log and says what the list says of it.
+Result<Json> writeLog(Site& site, const fs::path& path) {
+  const Result<OpenedLog> log = openLog(path);
+  if (!log) return std::unexpected(log.error());
+  if (Status sound = log->file.verifyChecksums(); !sound) return std::unexpected(sound.error());
+  const std::string name = path.stem().string();
+  if (site.folder.files().contains(name + ".qtet"))
+    return fail(ErrorCode::kBadInput, "two logs are called " + name +
+                                          ".qtet, and a folder holds one; rename " + path.string());
+  if (Status written = site.write(name + ".qtet", log->file.bytes()); !written)
+    return std::unexpected(written.error());
+  Json fields = Json::array();
+  for (std::size_t f = 0; f < log->manifest.fields.size(); ++f)
+    fields.push_back(fieldKey(log->manifest, f));
+  const ManifestLevel& whole = log->manifest.levels.back();
+  return Json{{"id", name},
+              {"bytes", log->file.bytes().size()},
+              {"digest", log->file.digest()},
+              {"tetrahedra", whole.tetrahedra},
+              {"vertices", whole.vertices},
+              {"fields", fields},
+              {"links", {{"log", percentEncoded(name) + ".qtet"}}}};
+}
+
+Status writeList(Site& site, const Json& meshes) {
+  Json list = {{"generator", "qtet " QTET_VERSION}, {"meshes", meshes}};
+  list["files"] = site.folder.files();
+  for (const char* ending : {"", ".gz", ".br"})
+    list["files"].push_back(std::string(kSiteList) + ending);
+  return site.writeWithCodings(
+      kSiteList, bytesOf(list.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"));
+}
+
+}  // namespace
+
+Result<PublishedSite> publishSite(const fs::path& folder, const fs::path& viewer,
+                                  const std::vector<fs::path>& logs) {
+  Result<SiteFolder> begun = SiteFolder::begin(folder);
+  if (!begun) return std::unexpected(begun.error());
+  Site site{std::move(*begun)};
+  PublishedSite out;
+  Json meshes = Json::array();
+  for (const fs::path& path : logs) {
+    const Result<Json> mesh = writeLog(site, path);
+    if (!mesh) return std::unexpected(mesh.error());
+    meshes.push_back(*mesh);
+    out.meshes.push_back({(*mesh)["id"], (*mesh)["bytes"], (*mesh)["tetrahedra"]});
+  }
+  Status status = writeViewer(site, viewer);
+  if (status) status = site.write("README.txt", bytesOf(hostingNotes()));
+  if (status) status = site.write(".nojekyll", {});
+  if (status) status = writeList(site, meshes);
+  if (status) status = site.folder.finish();
+  if (!status) return std::unexpected(status.error());
+  out.files = site.folder.files().size();
+  out.bytes = site.bytes;
+  return out;
+}
+
+}  // namespace qtet

@@ -1,0 +1,35 @@
+// Logs with the viewer as a folder that any web server can serve.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "proto/error.h"
+
+namespace qtet {
+
+struct PublishedMesh {
+  std::string name;  ///< the log's file name without .qtet
+  std::uint64_t bytes = 0, tetrahedra = 0;
+};
+
+struct PublishedSite {
+  std::vector<PublishedMesh> meshes;
+  std::size_t files = 0;
+  std::uint64_t bytes = 0;
+};
+
+/// Makes `folder` of the viewer's files and the logs: each file of the viewer with NAME.gz and
+/// NAME.br beside it where that is smaller, NAME.qtet for each log, index.json (a list as `GET
+/// /v1/meshes` gives it, PROTOCOL.md, with `links.log` relative to it, and `files`), README.txt
+/// (hosting_notes.h) and .nojekyll. The page learns from a meta element that index.json is its
+/// list. The same inputs give the same bytes. The folder appears whole or not at all
+/// (site_folder.h). Errors: not-found and io (of files), those of openLog and
+/// LogFile::verifyChecksums, bad-input (two logs of one name; a viewer without a page).
+[[nodiscard]] Result<PublishedSite> publishSite(const std::filesystem::path& folder,
+                                                const std::filesystem::path& viewer,
+                                                const std::vector<std::filesystem::path>& logs);
+
+}  // namespace qtet
