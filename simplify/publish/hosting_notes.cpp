@@ -32,6 +32,7 @@ nginx:
       server_name meshes.example.org;
       root /var/www/meshes;
       gzip_static on;
+      gzip_vary on;
       # brotli_static on;  # with the module brotli (Debian: libnginx-mod-http-brotli-static)
       add_header Cache-Control no-cache;
       add_header Access-Control-Allow-Origin *;

@@ -85,6 +85,7 @@ async function check(port, site) {
   assert.ok(gunzipSync(small.body).equals(readFileSync(join(site, script))));
   assert.match(small.headers['content-type'], /javascript/);
   assert.match(small.headers['cache-control'], /immutable/);
+  assert.match(small.headers.vary, /Accept-Encoding/);
   const plain = await ask(port, script);
   assert.equal(plain.headers['content-encoding'], undefined);
 
