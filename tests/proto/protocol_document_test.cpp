@@ -17,9 +17,14 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
+/// Both pages, one after the other.
 std::string protocolDocument() {
-  std::ifstream file(QTET_SOURCE_DIR "/proto/PROTOCOL.md");
-  return {std::istreambuf_iterator<char>(file), {}};
+  std::string both;
+  for (const char* page : {"/proto/PROTOCOL.md", "/proto/SESSION.md"}) {
+    std::ifstream file(std::string(QTET_SOURCE_DIR) + page);
+    both.append(std::istreambuf_iterator<char>(file), {});
+  }
+  return both;
 }
 
 /// The document with `from`, which stands in it, made `to` where it stands first.
