@@ -15,13 +15,16 @@ constexpr const char* kTokenVariable = "QTET_TOKEN";
 /// After a lost connection: so often, and so long after the first; twice as long each time.
 constexpr int kMaxAttempts = 6;
 constexpr std::chrono::milliseconds kFirstPause{500};
+/// For the answer to a whole log: the server decodes it first, and others before it.
+constexpr std::chrono::hours kCheckTime{1};
 
 /// What is sent, where to, and by whom.
 struct Push {
   const LogFile& log;
   HttpUrl server;
-  std::string target;   ///< /v1/meshes/NAME
-  std::string headers;  ///< who sends it
+  std::string target;         ///< /v1/meshes/NAME
+  std::string authorization;  ///< the header that says who sends it
+  std::string authorities;    ///< HttpRequest's
 };
 
 Result<std::string> readToken(const ParsedWords& parsed) {
@@ -46,8 +49,11 @@ std::string targetOf(const HttpUrl& url, const std::filesystem::path& log) {
   return std::string(kMeshes) + encodedSegment(log.stem().string());
 }
 
-/// The detail of a problem, else the body's beginning.
+/// Where the log should go instead, the detail of a problem, or the body's beginning.
 std::string reasonOf(const HttpAnswer& answer) {
+  if (!answer.location.empty())
+    return std::to_string(answer.status) + ": the address leads to " +
+           answer.location.substr(0, answer.location.find('?')) + "; push to that one";
   const auto json = OrderedJson::parse(answer.body, nullptr, false);
   const bool told = json.is_object() && json.contains("detail") && json["detail"].is_string();
   return std::to_string(answer.status) + ": " +
@@ -57,8 +63,10 @@ std::string reasonOf(const HttpAnswer& answer) {
 /// Bytes that the server has of an upload that broke off, perhaps all of them. Errors: exchange's.
 Result<std::uint64_t> bytesThere(const Push& push) {
   const std::string query = push.target + "/upload?digest=" + push.log.digest();
-  const Result<HttpAnswer> answer =
-      exchange(push.server, {.method = "GET", .target = query, .headers = push.headers});
+  const Result<HttpAnswer> answer = exchange(push.server, {.method = "GET",
+                                                           .target = query,
+                                                           .headers = {push.authorization},
+                                                           .authorities = push.authorities});
   if (!answer) return std::unexpected(answer.error());
   const auto json = OrderedJson::parse(answer->body, nullptr, false);
   const bool told = answer->status == 200 && json.is_object() && json.contains("bytes") &&
@@ -69,17 +77,20 @@ Result<std::uint64_t> bytesThere(const Push& push) {
 
 Result<HttpAnswer> sendFrom(const Push& push, std::uint64_t first, Progress& progress) {
   const std::uint64_t size = push.log.bytes().size();
-  std::string headers = push.headers;
+  std::vector<std::string> headers{push.authorization};
   if (first > 0)
-    headers += "Content-Range: bytes " +
-               (first < size ? std::to_string(first) + "-" + std::to_string(size - 1) : "*") + "/" +
-               std::to_string(size) + "\r\n";
+    headers.push_back(
+        "Content-Range: bytes " +
+        (first < size ? std::to_string(first) + "-" + std::to_string(size - 1) : "*") + "/" +
+        std::to_string(size));
   constexpr std::string_view kChecking = "the server checks the log";
   progress.stage(first == size ? kChecking : first > 0 ? "sending the rest" : "sending");
   return exchange(push.server, {.method = "PUT",
                                 .target = push.target + "?digest=" + push.log.digest(),
                                 .headers = headers,
                                 .body = push.log.bytes().subspan(first),
+                                .authorities = push.authorities,
+                                .patience = {.answering = kCheckTime},
                                 .progress =
                                     [&](std::uint64_t sent) {
                                       progress.update(static_cast<double>(first + sent) /
@@ -121,18 +132,22 @@ int runPush(const Words& words, Console& console) {
   po::options_description options("options");
   options.add_options()("token-file", po::value<std::string>(),
                         "file with the token (default: the environment's QTET_TOKEN)")(
+      "cacert", po::value<std::string>()->default_value("", "the system's"),
+      "PEM file of the authorities that may sign an https server's certificate")(
       "json", "print one JSON object");
   const ParsedWords parsed(
       words,
-      {"push", "push LOG.qtet URL [--token-file FILE] [--json]",
+      {"push", "push LOG.qtet URL [--token-file FILE] [--cacert FILE] [--json]",
        "Sends a log to a qtet-server that takes uploads (qtet-server --tokens). URL is "
-       "http://HOST:PORT/, for a mesh of the\n"
-       "file's name, or http://HOST:PORT/v1/meshes/NAME. The server checks the log before anybody "
-       "sees it, as qtet verify does,\n"
-       "which takes a while for a large one. A connection that breaks is taken up again where it\n"
-       "broke, also by a later push of the same log.",
+       "https://HOST:PORT/, for a mesh of the\n"
+       "file's name, or https://HOST:PORT/v1/meshes/NAME. With http the token travels unencrypted. "
+       "The server checks the log before\n"
+       "anybody sees it, as qtet verify does, which takes a while for a large one. A connection "
+       "that breaks is taken up again\n"
+       "where it broke, also by a later push of the same log.",
        "  QTET_TOKEN=... qtet push fin.qtet http://127.0.0.1:8080/\n"
-       "  qtet push fin.qtet http://127.0.0.1:8080/v1/meshes/wing --token-file ~/.qtet-token\n"},
+       "  qtet push fin.qtet https://meshes.example.org/v1/meshes/wing --token-file "
+       "~/.qtet-token\n"},
       options, {"LOG", "URL"});
   if (parsed.helped(console)) return kExitOk;
   const bool asJson = parsed.has("json");
@@ -144,14 +159,15 @@ int runPush(const Words& words, Console& console) {
   const Result<LogFile> log = LogFile::open(file);
   if (!log) return reportFailure(log.error(), asJson, console);
 
-  const Push push{*log, *url, targetOf(*url, file), "Authorization: Bearer " + *token + "\r\n"};
+  const Push push{*log, *url, targetOf(*url, file), "Authorization: Bearer " + *token,
+                  parsed.get<std::string>("cacert")};
   const Result<HttpAnswer> answer = pushLog(push, console);
   if (!answer) return reportFailure(answer.error(), asJson, console);
   if (answer->status != 200 && answer->status != 201)
     return reportFailure(
         {ErrorCode::kIo, "the server refuses the log, " + reasonOf(*answer), Error::kNoOffset},
         asJson, console);
-  const std::string address = "http://" + push.server.authority() + push.target;
+  const std::string address = push.server.origin + push.target;
   if (asJson)
     printJson({{"address", address},
                {"digest", log->digest()},

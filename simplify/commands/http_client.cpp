@@ -1,208 +1,239 @@
 #include "simplify/commands/http_client.h"
 
-#include <netdb.h>
-#include <netinet/tcp.h>
-#include <poll.h>
-#include <sys/socket.h>
-#include <unistd.h>
+#include <curl/curl.h>
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <charconv>
-#include <chrono>
-#include <cstring>
 #include <memory>
-#include <optional>
 
 namespace qtet {
 namespace {
 
-using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
 
 /// Of an answer: a mesh's description with thousands of levels takes some 100 KB.
 constexpr std::size_t kMaxAnswerBytes = 4u << 20;
-/// For connecting, and for each piece sent or read. The last one is long: the server decodes the
-/// log before it answers, and others before it; a server that is gone for good is noticed sooner,
-/// by asking its system now and then.
-constexpr auto kStepTime = 30s;
-constexpr auto kAnswerTime = 3600s;
-constexpr int kKeepAliveSeconds = 30;
-/// How often whoever waits for the answer is told that there is none yet.
-constexpr auto kWaitingTime = 1s;
-constexpr std::size_t kPiece = 256u << 10;
+/// Seconds after which the system is asked whether a silent peer is still there: a server that
+/// checks a log says nothing for minutes.
+constexpr long kKeepAliveSeconds = 30;
+/// A proxy sends http to https, and a name to another: two hops, and some to spare.
+constexpr long kMaxRedirections = 5;
 
-class Socket {
- public:
-  explicit Socket(int file) : file_(file) {}
-  ~Socket() {
-    if (file_ >= 0) ::close(file_);
+template <auto function>
+struct Release {
+  template <class T>
+  void operator()(T* it) const {
+    function(it);
   }
-  Socket(Socket&& other) noexcept : file_(std::exchange(other.file_, -1)) {}
-  Socket& operator=(Socket&&) = delete;
-  [[nodiscard]] int get() const { return file_; }
-  /// The events that came; 0: none in time.
-  [[nodiscard]] short wait(short events, std::chrono::milliseconds time) const {
-    pollfd file{file_, events, 0};
-    const int n = ::poll(&file, 1, static_cast<int>(time.count()));
-    return n > 0 ? file.revents : short{0};
-  }
+};
+using Handle = std::unique_ptr<CURL, Release<curl_easy_cleanup>>;
+using Lines = std::unique_ptr<curl_slist, Release<curl_slist_free_all>>;
+using ParsedUrl = std::unique_ptr<CURLU, Release<curl_url_cleanup>>;
 
- private:
-  int file_;
+/// What the callbacks of one transfer share.
+struct Transfer {
+  CURL* handle;
+  const HttpRequest& request;
+  HttpAnswer answer{};
+  std::size_t takenBytes = 0;  ///< of the body, by libcurl
+  curl_off_t movedBytes = 0;   ///< both ways, at movedAt
+  Clock::time_point movedAt = Clock::now();
+  const char* trouble = nullptr;  ///< why a callback ended the transfer
+  std::array<char, CURL_ERROR_SIZE> reason{};
 };
 
-std::unexpected<Error> lost(const std::string& what) { return fail(ErrorCode::kIo, what); }
-std::unexpected<Error> lost(const std::string& what, int number) {
-  return lost(what + ": " + std::strerror(number));
+std::size_t takeBody(char* to, std::size_t size, std::size_t count, void* with) {
+  auto& transfer = *static_cast<Transfer*>(with);
+  const ByteView rest = transfer.request.body.subspan(transfer.takenBytes);
+  const std::size_t bytes = std::min(size * count, rest.size());
+  std::copy_n(rest.data(), bytes, to);
+  transfer.takenBytes += bytes;
+  return bytes;
 }
 
-Result<Socket> connectTo(const addrinfo& address, const std::string& name) {
-  Socket socket(::socket(address.ai_family, address.ai_socktype | SOCK_CLOEXEC | SOCK_NONBLOCK,
-                         address.ai_protocol));
-  if (socket.get() < 0) return lost("no socket", errno);
-  int trouble = ::connect(socket.get(), address.ai_addr, address.ai_addrlen) == 0 ? 0 : errno;
-  if (trouble == EINPROGRESS) {
-    socklen_t size = sizeof(trouble);
-    if (socket.wait(POLLOUT, kStepTime) == 0) return lost(name + " does not answer");
-    ::getsockopt(socket.get(), SOL_SOCKET, SO_ERROR, &trouble, &size);
+int rewindBody(void* with, curl_off_t offset, int origin) {
+  auto& transfer = *static_cast<Transfer*>(with);
+  const bool inside =
+      offset >= 0 && static_cast<std::uint64_t>(offset) <= transfer.request.body.size();
+  if (origin != SEEK_SET || !inside) return CURL_SEEKFUNC_FAIL;
+  transfer.takenBytes = static_cast<std::size_t>(offset);
+  return CURL_SEEKFUNC_OK;
+}
+
+std::size_t keepAnswer(char* from, std::size_t size, std::size_t count, void* with) {
+  auto& transfer = *static_cast<Transfer*>(with);
+  const std::size_t bytes = size * count;
+  if (transfer.answer.body.size() + bytes > kMaxAnswerBytes) {
+    transfer.trouble = "the server's answer does not end";
+    return 0;
   }
-  if (trouble != 0) return lost(name, trouble);
-  const int on = 1;
-  ::setsockopt(socket.get(), SOL_SOCKET, SO_KEEPALIVE, &on, sizeof(on));
-  for (const int option : {TCP_KEEPIDLE, TCP_KEEPINTVL})
-    ::setsockopt(socket.get(), IPPROTO_TCP, option, &kKeepAliveSeconds, sizeof(kKeepAliveSeconds));
-  return socket;
+  transfer.answer.body.append(from, bytes);
+  return bytes;
 }
 
-Result<Socket> connectTo(const HttpUrl& server) {
-  addrinfo hints{};
-  hints.ai_socktype = SOCK_STREAM;
-  addrinfo* found = nullptr;
-  if (const int number = ::getaddrinfo(server.host.c_str(), server.port.c_str(), &hints, &found);
-      number != 0)
-    return lost(server.host + ": " + ::gai_strerror(number));
-  const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> owner(found, ::freeaddrinfo);
-  Result<Socket> out = lost(server.authority() + " has no address");
-  for (const addrinfo* at = found; at != nullptr; at = at->ai_next) {
-    Result<Socket> socket = connectTo(*at, server.authority());
-    if (socket) return socket;
-    out = std::unexpected(socket.error());
+/// Called by libcurl once a second, and whenever bytes move; not 0 ends the transfer.
+int watch(void* with, curl_off_t, curl_off_t received, curl_off_t, curl_off_t sent) {
+  auto& transfer = *static_cast<Transfer*>(with);
+  const HttpRequest& request = transfer.request;
+  const auto now = Clock::now();
+  curl_off_t connected = 0;  // microseconds until it was
+  curl_easy_getinfo(transfer.handle, CURLINFO_PRETRANSFER_TIME_T, &connected);
+  const bool moved = received + sent != transfer.movedBytes;
+  if (moved && request.progress) request.progress(static_cast<std::uint64_t>(sent));
+  if (moved || connected == 0) {
+    transfer.movedBytes = received + sent;
+    transfer.movedAt = now;
+    return 0;
   }
-  return out;
+  const bool allSent = static_cast<std::uint64_t>(sent) >= request.body.size();
+  if (allSent && request.waiting) request.waiting();
+  if (now - transfer.movedAt < (allSent ? request.patience.answering : request.patience.moving))
+    return 0;
+  transfer.trouble = allSent ? "the server does not answer" : "the server takes nothing any more";
+  return 1;
 }
 
-/// Errors: io. true: all was sent; false: the server has answered already.
-Result<bool> sendAll(const Socket& socket, ByteView bytes,
-                     const std::function<void(std::uint64_t)>& progress) {
-  for (std::size_t sent = 0; sent < bytes.size();) {
-    const short events = socket.wait(POLLIN | POLLOUT, kStepTime);
-    if (events == 0) return lost("the server takes nothing any more");
-    if ((events & POLLIN) != 0) return false;
-    const ssize_t n = ::send(socket.get(), bytes.data() + sent,
-                             std::min(bytes.size() - sent, kPiece), MSG_NOSIGNAL);
-    if (n < 0 && errno != EAGAIN && errno != EINTR) return lost("the connection was lost", errno);
-    if (n > 0) sent += static_cast<std::size_t>(n);
-    if (progress) progress(sent);
+/// Sets options one by one and keeps the first error.
+struct Options {
+  CURL* handle;
+  CURLcode code = CURLE_OK;
+
+  template <class T>
+  void set(CURLoption option, T value) {
+    if (code == CURLE_OK) code = curl_easy_setopt(handle, option, value);
   }
-  return true;
+};
+
+/// What is true of every request: which protocols, whom to trust, how long to wait.
+void setRules(Options& options, const HttpUrl& server, const HttpRequest& request) {
+  const bool secure = server.origin.starts_with("https:");
+  options.set(CURLOPT_NOSIGNAL, 1L);
+  options.set(CURLOPT_USERAGENT, "qtet/" QTET_VERSION);
+  options.set(CURLOPT_HTTP_VERSION, static_cast<long>(CURL_HTTP_VERSION_1_1));
+  options.set(CURLOPT_PROTOCOLS_STR, "http,https");
+  options.set(CURLOPT_REDIR_PROTOCOLS_STR, secure ? "https" : "http,https");
+  options.set(CURLOPT_FOLLOWLOCATION, request.method == "GET" ? 1L : 0L);
+  options.set(CURLOPT_MAXREDIRS, kMaxRedirections);
+  options.set(CURLOPT_SSLVERSION, static_cast<long>(CURL_SSLVERSION_TLSv1_2));
+  if (!request.authorities.empty()) {
+    options.set(CURLOPT_CAINFO, request.authorities.c_str());
+    options.set(CURLOPT_CAPATH, static_cast<const char*>(nullptr));
+  }
+  // A proxy would read the token of a plain request; of https it sees the host alone.
+  if (!secure) options.set(CURLOPT_PROXY, "");
+  options.set(CURLOPT_CONNECTTIMEOUT_MS, static_cast<long>(request.patience.connecting.count()));
+  options.set(CURLOPT_TCP_KEEPALIVE, 1L);
+  options.set(CURLOPT_TCP_KEEPIDLE, kKeepAliveSeconds);
+  options.set(CURLOPT_TCP_KEEPINTVL, kKeepAliveSeconds);
 }
 
-/// Reads until the server closes: every request asks it to.
-Result<std::string> readAll(const Socket& socket, const std::function<void()>& waiting) {
-  std::string out;
-  std::array<char, 16384> piece;
-  const auto end = std::chrono::steady_clock::now() + kAnswerTime;
-  for (;;) {
-    while (socket.wait(POLLIN, kWaitingTime) == 0) {
-      if (std::chrono::steady_clock::now() >= end) return lost("the server does not answer");
-      if (waiting) waiting();
+void setCallbacks(Options& options, Transfer& transfer) {
+  options.set(CURLOPT_ERRORBUFFER, transfer.reason.data());
+  options.set(CURLOPT_WRITEFUNCTION, &keepAnswer);
+  options.set(CURLOPT_WRITEDATA, &transfer);
+  options.set(CURLOPT_NOPROGRESS, 0L);
+  options.set(CURLOPT_XFERINFOFUNCTION, &watch);
+  options.set(CURLOPT_XFERINFODATA, &transfer);
+  if (transfer.request.method != "PUT") return;
+  options.set(CURLOPT_UPLOAD, 1L);
+  options.set(CURLOPT_INFILESIZE_LARGE, static_cast<curl_off_t>(transfer.request.body.size()));
+  options.set(CURLOPT_READFUNCTION, &takeBody);
+  options.set(CURLOPT_READDATA, &transfer);
+  options.set(CURLOPT_SEEKFUNCTION, &rewindBody);
+  options.set(CURLOPT_SEEKDATA, &transfer);
+}
+
+Lines linesOf(const std::vector<std::string>& headers) {
+  Lines out;
+  for (const std::string& header : headers)
+    if (curl_slist* longer = curl_slist_append(out.get(), header.c_str()); longer != nullptr) {
+      (void)out.release();
+      out.reset(longer);
     }
-    const ssize_t n = ::recv(socket.get(), piece.data(), piece.size(), 0);
-    if (n == 0) return out;
-    if (n < 0 && errno != EAGAIN && errno != EINTR)
-      return out.empty() ? Result<std::string>(lost("the connection was lost", errno)) : out;
-    if (n > 0) out.append(piece.data(), static_cast<std::size_t>(n));
-    if (out.size() > kMaxAnswerBytes) return lost("the server's answer does not end");
-  }
+  return out;
 }
 
-Result<HttpAnswer> parseAnswer(const std::string& text) {
-  const std::size_t end = text.find("\r\n\r\n");
-  HttpAnswer out;
-  const bool http = text.starts_with("HTTP/1.") && text.size() > 12 && end != std::string::npos;
-  if (http) std::from_chars(text.data() + 9, text.data() + 12, out.status);
-  if (text.empty()) return lost("the server closed without an answer");
-  if (out.status < 100) return fail(ErrorCode::kBadValue, "what answers there does not speak HTTP");
-  out.body = text.substr(end + 4);
-  return out;
+Error errorOf(CURLcode code, const HttpUrl& server, const Transfer& transfer) {
+  const bool told = transfer.reason.front() != '\0';
+  const std::string reason = told ? transfer.reason.data() : curl_easy_strerror(code);
+  const auto with = [](ErrorCode kind, const std::string& text) {
+    return Error{kind, text, Error::kNoOffset};
+  };
+  if (transfer.trouble != nullptr) return with(ErrorCode::kIo, transfer.trouble);
+  switch (code) {
+    case CURLE_PEER_FAILED_VERIFICATION:
+      return with(ErrorCode::kBadValue, "the certificate of " + server.origin + " does not hold (" +
+                                            reason +
+                                            "); renew it, or name the file of its "
+                                            "authority with --cacert");
+    case CURLE_SSL_CACERT_BADFILE: return with(ErrorCode::kNotFound, "no certificates: " + reason);
+    case CURLE_WEIRD_SERVER_REPLY:
+    case CURLE_UNSUPPORTED_PROTOCOL:
+      return with(ErrorCode::kBadValue,
+                  "what answers at " + server.origin + " does not speak HTTP (" + reason + ")");
+    case CURLE_TOO_MANY_REDIRECTS: return with(ErrorCode::kBadValue, server.origin + ": " + reason);
+    case CURLE_GOT_NOTHING: return with(ErrorCode::kIo, "the server closed without an answer");
+    default: return with(ErrorCode::kIo, server.origin + ": " + reason);
+  }
 }
 
 }  // namespace
 
-std::string HttpUrl::authority() const {
-  return (host.find(':') != std::string::npos ? "[" + host + "]" : host) + ":" + port;
-}
-
 Result<HttpUrl> parseHttpUrl(const std::string& text) {
-  constexpr std::string_view kScheme = "http://";
+  const ParsedUrl url(curl_url());
   const auto wrong = [&](const std::string& why) {
-    return fail(ErrorCode::kBadValue, "'" + text + "' " + why);
+    return fail(ErrorCode::kBadValue,
+                "'" + text + "' is no address like https://host:8080/v1/meshes/name: " + why);
   };
-  if (text.starts_with("https://"))
-    return wrong(
-        "is https, which this tool does not speak; give the server's own http address, perhaps "
-        "through an ssh tunnel");
-  if (!text.starts_with(kScheme))
-    return wrong("is no address like http://host:8080/v1/meshes/name");
-  const std::size_t slash = std::min(text.find('/', kScheme.size()), text.size());
-  std::string authority = text.substr(kScheme.size(), slash - kScheme.size());
-  HttpUrl out;
-  out.path = slash == text.size() ? "/" : text.substr(slash);
-  const std::size_t colon = authority.rfind(':');
-  if (colon != std::string::npos && authority.find(']', colon) == std::string::npos) {
-    out.port = authority.substr(colon + 1);
-    authority.resize(colon);
-  }
-  if (authority.starts_with('[') && authority.ends_with(']'))
-    authority = authority.substr(1, authority.size() - 2);
-  out.host = authority;
-  const bool badPort = out.port.empty() || out.port.size() > 5 ||
-                       out.port.find_first_not_of("0123456789") != std::string::npos;
-  const bool badPath = std::ranges::any_of(
-      out.path, [](char c) { return c <= ' ' || c >= 0x7F || c == '?' || c == '#'; });
-  if (out.host.empty() || out.host.find_first_of(" @\r\n") != std::string::npos || badPort ||
-      badPath)
-    return wrong("is no address like http://host:8080/v1/meshes/name");
+  const auto partOf = [&](CURLUPart part) {
+    char* found = nullptr;
+    const bool has = curl_url_get(url.get(), part, &found, 0) == CURLUE_OK;
+    const std::unique_ptr<char, Release<curl_free>> owner(found);
+    return std::string(has ? found : "");
+  };
+  if (const CURLUcode code =
+          curl_url_set(url.get(), CURLUPART_URL, text.c_str(), CURLU_DISALLOW_USER);
+      code != CURLUE_OK)
+    return wrong(curl_url_strerror(code));
+  if (const std::string scheme = partOf(CURLUPART_SCHEME); scheme != "http" && scheme != "https")
+    return wrong("it is " + scheme);
+  if (text.find_first_of("?#") != std::string::npos) return wrong("it has a query or a fragment");
+  HttpUrl out{.origin = "", .path = partOf(CURLUPART_PATH)};
+  if (!std::ranges::all_of(out.path, [](char c) { return c > ' ' && c < 0x7F; }))
+    return wrong("it has characters that want to be written as %XX");
+  curl_url_set(url.get(), CURLUPART_PATH, nullptr, 0);
+  out.origin = partOf(CURLUPART_URL);
+  if (out.origin.ends_with('/')) out.origin.pop_back();
   return out;
 }
 
 std::string encodedSegment(const std::string& text) {
-  constexpr std::string_view kDigits = "0123456789ABCDEF";
-  std::string out;
-  for (const char c : text) {
-    const bool plain = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') ||
-                       c == '-' || c == '.' || c == '_' || c == '~';
-    const auto byte = static_cast<std::uint8_t>(c);
-    out += plain ? std::string(1, c) : std::string{'%', kDigits[byte >> 4], kDigits[byte & 15]};
-  }
-  return out;
+  const std::unique_ptr<char, Release<curl_free>> out(
+      curl_easy_escape(nullptr, text.data(), static_cast<int>(text.size())));
+  return out ? out.get() : "";
 }
 
 Result<HttpAnswer> exchange(const HttpUrl& server, const HttpRequest& request) {
-  Result<Socket> socket = connectTo(server);
-  if (!socket) return std::unexpected(socket.error());
-  const std::string head =
-      request.method + " " + request.target + " HTTP/1.1\r\nHost: " + server.authority() +
-      "\r\nUser-Agent: qtet/" QTET_VERSION "\r\nConnection: close\r\nContent-Length: " +
-      std::to_string(request.body.size()) + "\r\n" + request.headers + "\r\n";
-  Result<bool> sent =
-      sendAll(*socket, {reinterpret_cast<const std::uint8_t*>(head.data()), head.size()}, {});
-  if (sent && *sent) sent = sendAll(*socket, request.body, request.progress);
-  if (!sent) return std::unexpected(sent.error());
-  const Result<std::string> answer = readAll(*socket, request.waiting);
-  if (!answer) return std::unexpected(answer.error());
-  return parseAnswer(*answer);
+  static const CURLcode ready = curl_global_init(CURL_GLOBAL_DEFAULT);
+  const Handle handle(ready == CURLE_OK ? curl_easy_init() : nullptr);
+  if (!handle) return fail(ErrorCode::kIo, "libcurl does not start");
+  Transfer transfer{.handle = handle.get(), .request = request};
+  const Lines headers = linesOf(request.headers);
+  const std::string url = server.origin + request.target;
+  Options options{handle.get()};
+  options.set(CURLOPT_URL, url.c_str());
+  options.set(CURLOPT_HTTPHEADER, headers.get());
+  setRules(options, server, request);
+  setCallbacks(options, transfer);
+  if (options.code == CURLE_OK) options.code = curl_easy_perform(handle.get());
+  if (options.code != CURLE_OK) return std::unexpected(errorOf(options.code, server, transfer));
+  long status = 0;
+  const char* location = nullptr;
+  curl_easy_getinfo(handle.get(), CURLINFO_RESPONSE_CODE, &status);
+  curl_easy_getinfo(handle.get(), CURLINFO_REDIRECT_URL, &location);
+  transfer.answer.status = static_cast<unsigned>(status);
+  if (location != nullptr) transfer.answer.location = location;
+  return std::move(transfer.answer);
 }
 
 }  // namespace qtet

@@ -1,10 +1,6 @@
 // `qtet push` against a real server: the whole way from a file to a served mesh.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <array>
-#include <cstdio>
 #include <fstream>
 #include <functional>
 
@@ -12,36 +8,20 @@
 #include "tests/server/http/held_check.h"
 #include "tests/server/program/loopback.h"
 #include "tests/server/program/served_folder.h"
+#include "tests/server/routes/push_run.h"
 #include "tests/support/meshes.h"
 #include "tests/support/written_log.h"
 
 namespace qtet {
 namespace {
 
-constexpr const char* kToken = "aSecretOfTwentyTwoChars";
-
-struct Outcome {
-  int code = -1;
-  std::string text;  ///< standard output and error
-};
+using Outcome = test::PushOutcome;
 
 class PushTest : public ::testing::Test {
  protected:
-  /// `hear` is called with what the program has said so far.
-  Outcome push(const std::string& words, const std::string& token = kToken,
+  Outcome push(const std::string& words, const std::string& token = test::kPushToken,
                const std::function<void(const std::string&)>& hear = {}) {
-    const std::string command = "QTET_TOKEN='" + token + "' " + QTET_TOOL + " push '" +
-                                file_.string() + "' " + words + " 2>&1";
-    Outcome out;
-    FILE* pipe = ::popen(command.c_str(), "r");
-    std::array<char, 4096> piece;
-    for (ssize_t n = 0; (n = ::read(::fileno(pipe), piece.data(), piece.size())) > 0;) {
-      out.text.append(piece.data(), static_cast<std::size_t>(n));
-      if (hear) hear(out.text);
-    }
-    const int status = ::pclose(pipe);
-    out.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    return out;
+    return test::runPush(file_, words, token, hear);
   }
   std::string url(const std::string& path = "/") const {
     return "http://127.0.0.1:" + std::to_string(server_.port()) + path;
@@ -56,7 +36,7 @@ class PushTest : public ::testing::Test {
   const std::filesystem::path file_ = mine_.path() / "my wing.qtet";
   const std::string digest_ = (mine_.write("my wing.qtet", log_), sha256Hex(log_));
   test::HeldCheck check_;
-  Access access_{*Tokens::parse(std::string("write * ") + kToken)};
+  Access access_{*Tokens::parse(std::string("write * ") + test::kPushToken)};
   std::unique_ptr<MeshStore> store_ =
       std::make_unique<MeshStore>(*MeshStore::open(folder_.logFolder()));
   test::RunningServer server_{
@@ -113,7 +93,7 @@ TEST_F(PushTest, whatTheServerHasWholeIsNotSentAgain) {
 
 TEST_F(PushTest, itSaysThatTheServerChecks) {
   check_.hold(true);
-  const Outcome pushed = push(url(), kToken, [this](const std::string& said) {
+  const Outcome pushed = push(url(), test::kPushToken, [this](const std::string& said) {
     if (said.find("the server checks the log") != std::string::npos) check_.hold(false);
   });
   EXPECT_EQ(pushed.code, 0) << pushed.text;
@@ -124,7 +104,7 @@ TEST_F(PushTest, whatGoesWrongIsSaid) {
   EXPECT_EQ(stranger.code, 1);
   EXPECT_NE(stranger.text.find("401: send a token"), std::string::npos) << stranger.text;
   EXPECT_NE(push(url(), "").text.find("QTET_TOKEN"), std::string::npos);
-  for (const char* wrong : {"https://127.0.0.1/", "ftp://x/", "http://", "http://a:b/", "nonsense"})
+  for (const char* wrong : {"ftp://x/", "http://", "http://a:b/", "nonsense"})
     EXPECT_EQ(push(wrong).code, 2) << wrong;
   mine_.write("my wing.qtet", std::string_view("no log"));
   EXPECT_EQ(push(url()).code, 1);

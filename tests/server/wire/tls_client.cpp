@@ -1,5 +1,6 @@
 #include "tests/server/wire/tls_client.h"
 
+#include <openssl/pem.h>
 #include <openssl/ssl.h>
 #include <sys/socket.h>
 
@@ -26,6 +27,24 @@ bool makeCertificate(const std::filesystem::path& folder, const std::string& nam
       "-addext subjectAltName=DNS:localhost -keyout '" +
       base + ".key' -out '" + base + ".crt' 2> /dev/null";
   return std::system(command.c_str()) == 0;
+}
+
+bool expireCertificate(const std::filesystem::path& folder, const std::string& name) {
+  constexpr long kHour = 3600;
+  const auto file = [&](const char* ending, const char* mode) {
+    return std::unique_ptr<BIO, decltype(&::BIO_free)>(
+        ::BIO_new_file((folder / (name + ending)).c_str(), mode), &::BIO_free);
+  };
+  const std::unique_ptr<X509, decltype(&::X509_free)> certificate(
+      ::PEM_read_bio_X509(file(".crt", "r").get(), nullptr, nullptr, nullptr), &::X509_free);
+  const std::unique_ptr<EVP_PKEY, decltype(&::EVP_PKEY_free)> key(
+      ::PEM_read_bio_PrivateKey(file(".key", "r").get(), nullptr, nullptr, nullptr),
+      &::EVP_PKEY_free);
+  if (!certificate || !key) return false;
+  ::X509_gmtime_adj(X509_getm_notBefore(certificate.get()), -25 * kHour);
+  ::X509_gmtime_adj(X509_getm_notAfter(certificate.get()), -kHour);
+  return ::X509_sign(certificate.get(), key.get(), ::EVP_sha256()) > 0 &&
+         ::PEM_write_bio_X509(file(".crt", "w").get(), certificate.get()) == 1;
 }
 
 std::string clientHello() {

@@ -20,6 +20,9 @@ namespace qtet::test {
 /// itself. False: there is no such program.
 [[nodiscard]] bool makeCertificate(const std::filesystem::path& folder, const std::string& name);
 
+/// Signs NAME.crt of `folder` anew with NAME.key, for a day that is over. False: it did not go.
+[[nodiscard]] bool expireCertificate(const std::filesystem::path& folder, const std::string& name);
+
 /// The first bytes of a handshake over TLS 1.3, whole.
 [[nodiscard]] std::string clientHello();
 

@@ -1,0 +1,23 @@
+// `qtet push` as a child process.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+namespace qtet::test {
+
+inline constexpr const char* kPushToken = "aSecretOfTwentyTwoChars";
+
+struct PushOutcome {
+  int code = -1;
+  std::string text;  ///< standard output and error
+};
+
+/// Pushes `file` with the shell's words behind it. `hear` is called with what the program has said
+/// so far.
+[[nodiscard]] PushOutcome runPush(const std::filesystem::path& file, const std::string& words,
+                                  const std::string& token = kPushToken,
+                                  const std::function<void(const std::string&)>& hear = {});
+
+}  // namespace qtet::test
