@@ -8,7 +8,6 @@
 #include "simplify/commands/command_line.h"
 #include "simplify/commands/error_plot.h"
 #include "simplify/commands/error_table.h"
-#include "simplify/commands/svg_picture.h"
 #include "simplify/log/opened_log.h"
 
 namespace qtet {
@@ -120,13 +119,6 @@ void printHead(const OpenedLog& log, const OrderedJson& info, const Console& con
   printColumns(rows, console);
 }
 
-// Pixels of a PNG to one of the picture's own: sharp on a screen of today and in print.
-constexpr double kPlotScale = 2;
-
-Status checkPlot(const std::string& plot, const std::string& input) {
-  return checkOutput(plot, plot.ends_with(".png") ? ".png" : ".svg", input);
-}
-
 Status writePlot(const OpenedLog& log, const std::filesystem::path& file,
                  const std::string& title) {
   std::vector<std::uint64_t> bytes;
@@ -135,9 +127,7 @@ Status writePlot(const OpenedLog& log, const std::filesystem::path& file,
   const Result<std::vector<ErrorCurve>> curves = errorCurves(log.manifest, bytes);
   if (!curves) return std::unexpected(curves.error());
   const std::string svg = errorPlotSvg(title, *curves);
-  if (file.extension() != ".png") return writeFileAtomically(file, Bytes(svg.begin(), svg.end()));
-  const Result<Bytes> png = pngOf(svg, kPlotScale);
-  return png ? writeFileAtomically(file, *png) : std::unexpected(png.error());
+  return writeFileAtomically(file, Bytes(svg.begin(), svg.end()));
 }
 
 }  // namespace
@@ -146,11 +136,10 @@ int runInfo(const Words& words, Console& console) {
   namespace po = boost::program_options;
   po::options_description options("options");
   options.add_options()("json", "print one JSON object")("all", "show every level, not 20 of them")(
-      "plot", po::value<std::string>(),
-      "draw error against bytes into this file, NAME.svg or NAME.png");
+      "plot", po::value<std::string>(), "draw error against bytes into this file, NAME.svg");
   const ParsedWords parsed(
       words,
-      {"info", "info LOG.qtet [--all] [--plot FILE.svg|FILE.png] [--json]",
+      {"info", "info LOG.qtet [--all] [--plot FILE.svg] [--json]",
        "Says what a log holds: digest, lattice, fields, and for each level its cells and bytes. "
        "Level 0 is the base mesh,\n"
        "the last level the input's mesh; `cumulative` is the length of the file's prefix that "
@@ -172,7 +161,7 @@ int runInfo(const Words& words, Console& console) {
   const auto input = parsed.get<std::string>("LOG");
   const auto plot = parsed.has("plot") ? parsed.get<std::string>("plot") : "";
   if (parsed.has("plot"))
-    if (Status checked = checkPlot(plot, input); !checked)
+    if (Status checked = checkOutput(plot, ".svg", input); !checked)
       return reportFailure(checked.error(), asJson, console);
 
   const Result<OpenedLog> log = openLog(input);

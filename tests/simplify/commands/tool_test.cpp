@@ -455,16 +455,7 @@ TEST_F(Tool, theErrorsAreDrawn) {
     EXPECT_NE(svg.find(words), std::string::npos) << words;
   EXPECT_EQ(svg.find("nan"), std::string::npos);
   EXPECT_EQ(svg.find("inf"), std::string::npos);
-  ASSERT_EQ(run("info box.qtet --plot box.png").code, 0);
-  const std::string png = contentOf(folder_ / "box.png");
-  ASSERT_GT(png.size(), 24u);
-  EXPECT_EQ(png.substr(0, 8), "\x89PNG\r\n\x1a\n");
-  const auto sizeAt = [&](std::size_t at) {
-    return static_cast<int>(static_cast<unsigned char>(png[at + 2])) * 256 +
-           static_cast<unsigned char>(png[at + 3]);
-  };
-  EXPECT_GT(sizeAt(16), 1200) << "pixels across";
-  EXPECT_GT(sizeAt(20), 800) << "pixels down";
+  expectFailure("info box.qtet --plot box.png", 2, ".svg");
   expectFailure("info box.qtet --plot box.jpg", 2, ".svg");
   expectFailure("info box.qtet --plot nowhere/box.svg", 1, "nowhere");
 }
