@@ -248,7 +248,7 @@ sanitize: setup build/asan/build.ninja build/tsan/build.ninja
 	echo -n "$$took"
 	[[ -z $$failed ]] || { echo "sanitize: failures under$$failed; see above" >&2; exit 1; }
 
-deb: TARGETS := --target qtet qtet-server qtet_shared qtet_viewer qtet_manners
+deb: TARGETS := --target qtet qtet-server qtet_shared qtet_viewer qtet_manners qtet_packaging
 deb: setup build
 	@rm -rf $(BUILD)/packages
 	cd $(BUILD) && cpack -G DEB

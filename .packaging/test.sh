@@ -41,6 +41,15 @@ install() {
     failWith "$work/apt.log" "apt-get install $*"
 }
 
+# ---- the packages' form, as Debian's own judge sees it
+
+if command -v lintian >/dev/null; then
+  step "lintian"
+  lintian --allow-root --fail-on error "$packages"/*.deb || fail "lintian found errors"
+else
+  step "lintian is not installed; nobody judges the packages' form"
+fi
+
 # ---- a bare Debian 12; the first run downloads it, later ones copy it
 
 if [[ ! -d $work/base ]]; then
@@ -131,6 +140,8 @@ done
 step "libqtet-dev, python3-qtet"
 install "$(deb libqtet0)" "$(deb libqtet-dev)" "$(deb python3-qtet)" gcc libc6-dev pkgconf \
   python3-numpy
+[[ -f $root/usr/lib/$(inside gcc -print-multiarch)/libqtet.so.0 ]] ||
+  fail "the library is not where Debian's other libraries are"
 cp "$source/tests/consumer/levels.c" "$source/tests/consumer/simplify.c" "$root/tmp/"
 inside sh -c 'cc -std=c99 /tmp/levels.c $(pkg-config --cflags --libs qtet) -o /tmp/levels &&
   /tmp/levels /tmp/fin.qtet full' | grep >/dev/null '^level 0:' || fail "levels.c"

@@ -1,8 +1,8 @@
 // What is done with an example of each language. `check` looks without running, `run` runs. Both
 // throw what is wrong. `run` may return why it could only check, `check` why it could not.
 
-import {existsSync, mkdirSync, writeFileSync} from 'node:fs';
-import {join} from 'node:path';
+import {existsSync, mkdirSync, readdirSync, writeFileSync} from 'node:fs';
+import {dirname, join} from 'node:path';
 
 import {jsonValuesOf} from './blocks.mjs';
 
@@ -72,8 +72,15 @@ function installed(scratch) {
   return prefix;
 }
 
+/** The folder of the installed library: lib, or Debian's lib/ARCHITECTURE. */
+function libraryFolder(scratch) {
+  const prefix = installed(scratch);
+  const file = readdirSync(prefix, {recursive: true}).find((path) => path.endsWith('/qtet.pc'));
+  return dirname(dirname(join(prefix, file)));
+}
+
 function compileC({text}, {scratch}, program = null) {
-  const lib = join(installed(scratch), 'lib');
+  const lib = libraryFolder(scratch);
   const environment = {PKG_CONFIG_PATH: join(lib, 'pkgconfig')};
   const words = scratch.run('pkg-config', ['--cflags', '--libs', 'qtet'], {environment});
   const strict = ['-std=c99', '-pedantic', '-Wall', '-Wextra', '-Werror'];
