@@ -57,11 +57,11 @@ class Server {
   /// Takes the port; clients may connect from then on. Errors: io (no such host, port in use or not
   /// allowed).
   [[nodiscard]] Status listen();
-  /// The port taken. REQUIRES: listen() succeeded.
+  /// The port taken. REQUIRES: listen() succeeded, and run() has not ended.
   [[nodiscard]] std::uint16_t port() const;
   /// That of the operators' address. REQUIRES: likewise, and that there is one.
   [[nodiscard]] std::uint16_t adminPort() const;
-  /// "http://127.0.0.1:8080/", or https. REQUIRES: listen() succeeded.
+  /// "http://127.0.0.1:8080/", or https. REQUIRES: as port().
   [[nodiscard]] std::string url() const;
 
   /// Serves until stop() or a signal, then as long as responses under way need, at most the time of

@@ -384,12 +384,13 @@ TEST(ServerEnd, idleConnectionsAreClosedAtOnceAndNobodyNewIsLetIn) {
   test::RunningServer server(
       folder.store(), folder.viewer(),
       {.threads = 2, .timeouts = {.idle = test::kNever, .grace = test::kNever}});
-  RawClient idle(server.port());
+  const std::uint16_t port = server.port();
+  RawClient idle(port);
   EXPECT_EQ(idle.get("/v1/meshes").status, 200u);
   server.stop();
   EXPECT_TRUE(idle.closedByServer());
   server.join();
-  EXPECT_THROW(RawClient(server.port()), std::exception);
+  EXPECT_THROW(RawClient{port}, std::exception);
 }
 
 TEST(ServerLimits, oneConnectionTooManyIsTurnedAwayAndALaterOneIsServed) {
