@@ -1,5 +1,6 @@
 // codec/api/qtet.h: refining, and the arrays of the mesh.
 #include <algorithm>
+#include <cassert>
 #include <cstring>
 #include <limits>
 #include <span>
@@ -38,6 +39,7 @@ Status refineTo(const LogFile& file, Refiner& refiner, std::uint32_t level) {
 
 /// Numbers of a field at the mesh's level. REQUIRES: a mesh and a field of the log.
 std::size_t fieldCount(const qtet_log& log, std::uint32_t field) {
+  assert(log.refiner && field < log.file->index().fields.size());
   const FieldShape& shape = log.file->index().fields[field];
   const bool cells = shape.association == qtet::Association::kCell;
   return shape.components *

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 
 #include "codec/coding/mixed_bit.h"
 #include "codec/coding/range_coder.h"
@@ -88,6 +89,7 @@ class AdaptiveCoder {
 }  // namespace
 
 Bytes encodeAdaptiveBlock(std::span<const std::int32_t> values, std::uint32_t components) {
+  assert(components > 0 && components <= kMaxFieldComponents && values.size() % components == 0);
   if (values.empty()) return {};
   RangeEncoder encoder;
   AdaptiveCoder<RangeEncoder> coder(encoder, components);

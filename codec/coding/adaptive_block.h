@@ -11,8 +11,8 @@
 
 namespace qtet {
 
-/// Encodes values.size() / components tuples; no tuples give no bytes. REQUIRES |value| < 2^31,
-/// components <= kMaxFieldComponents.
+/// Encodes values.size() / components tuples; no tuples give no bytes. REQUIRES |value| < 2^31, 1
+/// to kMaxFieldComponents components, whole tuples.
 [[nodiscard]] Bytes encodeAdaptiveBlock(std::span<const std::int32_t> values,
                                         std::uint32_t components);
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <cstdint>
 #include <ranges>
 
@@ -30,6 +31,7 @@ inline constexpr std::uint32_t kMaxErrorFigure = 900 * 19;
 /// The least figure that does not understate `error`. REQUIRES: 0 to
 /// errorOfFigure(kMaxErrorFigure).
 [[nodiscard]] inline std::uint32_t figureOfError(double error) {
+  assert(error >= 0 && error <= errorOfFigure(kMaxErrorFigure));
   return *std::ranges::partition_point(
       std::views::iota(0u, kMaxErrorFigure),
       [error](std::uint32_t figure) { return errorOfFigure(figure) < error; });

@@ -1,5 +1,6 @@
 #include "codec/coding/level_columns.h"
 
+#include <cassert>
 #include <string>
 
 #include "codec/coding/error_figure.h"
@@ -48,6 +49,7 @@ bool soundLevel(const LevelColumns& numbers, std::uint32_t levels, std::uint32_t
 }  // namespace
 
 Bytes encodeLevelColumns(const LevelColumns& numbers, std::uint32_t levels) {
+  assert(levels > 0 && numbers.size() % levels == 0);
   RangeEncoder coder;
   LevelColumns copy = numbers;
   code(coder, copy, levels);

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
+#include <cmath>
 #include <cstdint>
 
 namespace qtet {
@@ -10,6 +12,7 @@ namespace qtet {
 /// floor(64 * log2(x)) with a linear mantissa: the exponent and the six bits below the leading one.
 /// 0 for what is below 1. REQUIRES finite.
 [[nodiscard]] inline int log2Fixed(double x) {
+  assert(std::isfinite(x));
   return std::max(static_cast<int>(std::bit_cast<std::int64_t>(x) >> 46) - (1023 << 6), 0);
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <cstdint>
 #ifdef __SSE2__
 #include <emmintrin.h>
@@ -26,6 +27,7 @@ inline constexpr std::array<std::int32_t, 33> kLogistic{
 
 /// The probability, in 1/65536, at log odds of x. REQUIRES |x| <= kMax.
 [[nodiscard]] constexpr std::uint32_t squash(int x) {
+  assert(-kMax <= x && x <= kMax);
   const auto at = static_cast<std::size_t>(x + 2048);
   const std::int32_t low = kLogistic[at >> 7];
   return static_cast<std::uint32_t>(
@@ -72,6 +74,15 @@ struct Mixer {
 
 namespace mixing {
 
+/// No model is there twice.
+template <std::size_t N>
+[[nodiscard]] constexpr bool areDifferent(const std::array<BitModel*, N>& models) {
+  for (std::size_t i = 0; i < N; ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (models[i] == models[j]) return false;
+  return true;
+}
+
 /// After a decision: the weights follow the opinions that were right, and the models the decision.
 template <std::size_t N>
 [[gnu::always_inline]] inline void learn(Mixer<N>& mixer, const std::array<BitModel*, N>& models,
@@ -90,6 +101,7 @@ template <std::size_t N>
                                              const std::array<BitModel*, 4>& models,
                                              const std::array<std::int32_t, 4>& opinion,
                                              std::int32_t error, int bit) {
+  assert(areDifferent(models));
   const auto four = [](auto a, auto b, auto c, auto d) {
     const auto one = [](auto x) { return _mm_cvtsi32_si128(static_cast<int>(x)); };
     return _mm_unpacklo_epi64(_mm_unpacklo_epi32(one(a), one(b)),
@@ -133,6 +145,7 @@ template <class Coder, std::size_t N>
 [[gnu::always_inline]] inline int mixedBit(Coder& coder, int value,
                                            const std::array<BitModel*, N>& models,
                                            Mixer<N>& mixer) {
+  assert(mixing::areDifferent(models));
   std::array<std::int32_t, N> opinion;
   std::int64_t sum = 0;
   for (std::size_t i = 0; i < N; ++i) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <cstdint>
 
 #include "codec/coding/log2_fixed.h"
@@ -69,6 +70,7 @@ class RangeEncoder {
   /// A decision whose probability of being 1 is known, in 1/65536. REQUIRES kLowest <= probability
   /// <= kHighest.
   int likely(int value, std::uint32_t probability) {
+    assert(range::kLowest <= probability && probability <= range::kHighest);
     encode(value, probability);
     return value;
   }

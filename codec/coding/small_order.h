@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cstddef>
 
 namespace qtet {
@@ -11,6 +12,7 @@ namespace qtet {
 template <class Before>
 [[nodiscard]] std::array<std::size_t, 4> smallOrder(std::size_t n, const Before& before) {
   std::array<std::size_t, 4> order{};
+  assert(n <= order.size());
   for (std::size_t i = 0; i < n; ++i) {
     std::size_t at = i;
     for (; at > 0 && before(i, order[at - 1]); --at) order[at] = order[at - 1];

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <bit>
+#include <cassert>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -31,6 +32,7 @@ struct Split {
   const std::uint32_t magnitude =
       value < 0 ? 0u - static_cast<std::uint32_t>(value) : static_cast<std::uint32_t>(value);
   const int bits = std::bit_width(magnitude);
+  assert(bits <= kMaxBits);
   if (bits <= kWhole) return {value, 0, 0};
   const int count = bits - kWhole;
   const auto symbol =
@@ -40,6 +42,7 @@ struct Split {
 
 /// How many digits follow a symbol. REQUIRES |symbol| < kSymbols.
 [[nodiscard]] inline int countOf(std::int32_t symbol) {
+  assert(-kSymbols < symbol && symbol < kSymbols);
   const std::int32_t magnitude = symbol < 0 ? -symbol : symbol;
   return magnitude < 1 << kWhole ? 0 : 1 + ((magnitude - (1 << kWhole)) >> 1);
 }
@@ -47,8 +50,10 @@ struct Split {
 /// REQUIRES |symbol| < kSymbols, digits < 2^countOf(symbol).
 [[nodiscard]] inline std::int32_t join(std::int32_t symbol, std::uint32_t digits) {
   const std::int32_t magnitude = symbol < 0 ? -symbol : symbol;
+  assert(magnitude < kSymbols && (magnitude >= 1 << kWhole || digits == 0));
   if (magnitude < 1 << kWhole) return symbol;
   const int count = countOf(symbol);
+  assert(digits >> count == 0);
   const std::uint32_t leading = 2 + ((static_cast<std::uint32_t>(magnitude) - (1u << kWhole)) & 1);
   const auto value = static_cast<std::int32_t>(leading << count | digits);
   return symbol < 0 ? -value : value;

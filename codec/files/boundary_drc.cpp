@@ -125,6 +125,7 @@ Result<Bytes> boundaryDrc(const LatticeMesh& mesh,
     return fail(ErrorCode::kBadInput,
                 "the mesh's coordinates are beyond what float32 holds, and Draco knows no other; "
                 "take the level as .vtu");
+  assert(mesh.lattice.bits > 0 && mesh.lattice.bits <= kMaxPositionBits);
   assert(mesh.fields.size() == mesh.values.size());
   const CompactTriangles surface = compactTriangles(mesh.boundary, mesh.points.size());
 
@@ -134,6 +135,8 @@ Result<Bytes> boundaryDrc(const LatticeMesh& mesh,
   std::vector<std::pair<int, std::size_t>> fields;
   for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
     if (isCellField(mesh.fields[f])) continue;
+    assert(mesh.values[f].size() == mesh.points.size() * mesh.fields[f].components);
+    assert(mesh.fields[f].bits >= kMinFieldBits && mesh.fields[f].bits <= kMaxFieldBits);
     fields.emplace_back(addField(target, mesh.fields[f], mesh.values[f], surface.vertices), f);
   }
   if (!colours.empty()) addColours(target, colours, surface.vertices);

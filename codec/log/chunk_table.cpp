@@ -1,6 +1,7 @@
 #include "codec/log/chunk_table.h"
 
 #include <bit>
+#include <cassert>
 
 #include "proto/limits.h"
 
@@ -66,6 +67,7 @@ void writeNode(ByteWriter& w, const ChunkEntry& e) {
 }  // namespace
 
 void readChunkRows(ByteReader& r, LogIndex& index, std::uint32_t chunks, std::uint64_t offset) {
+  assert(r.failed() || chunks * leastRowBytes(index.parts()) <= r.remaining());
   index.chunks.reserve(chunks);
   while (index.chunks.size() < chunks && !r.failed()) {
     ChunkEntry e;
@@ -107,6 +109,7 @@ void writeChunkRows(ByteWriter& w, const LogIndex& index) {
 
 void readClosingRows(ByteReader& r, LogIndex& index, std::uint32_t count) {
   if (r.failed()) return;
+  assert(!index.chunks.empty());
   std::uint64_t offset = index.chunks.back().offset + index.chunks.back().size();
   index.closing.reserve(count);
   while (index.closing.size() < count && !r.failed()) {

@@ -23,7 +23,8 @@ void readChunkRows(ByteReader& r, LogIndex& index, std::uint32_t chunks, std::ui
 void writeChunkRows(ByteWriter& w, const LogIndex& index);
 
 /// The rows of `count` closing blocks, which stand behind those of the chunks as their blocks do.
-/// REQUIRES: as above, and the chunks' rows in `index`.
+/// REQUIRES: the chunks' rows in `index`, and that count * kLeastClosingRowBytes fits what remained
+/// before them.
 void readClosingRows(ByteReader& r, LogIndex& index, std::uint32_t count);
 
 void writeClosingRows(ByteWriter& w, const LogIndex& index);

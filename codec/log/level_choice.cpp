@@ -1,5 +1,6 @@
 #include "codec/log/level_choice.h"
 
+#include <cassert>
 #include <string>
 
 #include "codec/log/log_levels.h"
@@ -42,6 +43,7 @@ Result<std::uint32_t> levelOfBoundaryError(const Manifest& manifest, double boun
 }
 
 Result<std::uint32_t> levelOfFieldError(const Manifest& manifest, std::size_t field, double bound) {
+  assert(field < manifest.fields.size());
   return coarsestWithin(manifest, bound,
                         [field](const LevelError& error) { return error.fields[field].rms; });
 }

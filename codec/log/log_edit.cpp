@@ -1,6 +1,7 @@
 #include "codec/log/log_edit.h"
 
 #include <algorithm>
+#include <cassert>
 #include <string>
 #include <utility>
 
@@ -43,7 +44,10 @@ void keepErrors(LevelError& error, std::size_t level, const std::vector<std::uin
                 const std::vector<NewField>& added) {
   const std::vector<FieldError> before = std::exchange(error.fields, {});
   for (const std::uint32_t f : kept) error.fields.push_back(before[f]);
-  for (const NewField& field : added) error.fields.push_back(field.errors[level]);
+  for (const NewField& field : added) {
+    assert(level < field.errors.size());
+    error.fields.push_back(field.errors[level]);
+  }
 }
 
 }  // namespace
@@ -59,10 +63,12 @@ Result<Bytes> withFields(const LogFile& log, const std::vector<std::uint32_t>& k
   std::vector<ManifestField> fields;
   index.fields.clear();
   for (const std::uint32_t f : kept) {
+    assert(f < manifest->fields.size());
     fields.push_back(manifest->fields[f]);
     index.fields.push_back(log.index().fields[f]);
   }
   for (const NewField& field : added) {
+    assert(field.blocks.size() == index.chunks.size());
     fields.push_back(field.info);
     index.fields.push_back(
         {field.info.components,
@@ -112,6 +118,7 @@ Result<Bytes> withClosing(const LogFile& log, const std::vector<NewClosing>& add
     if (c.bytes.size() > kMaxBlockBytes)
       return fail(ErrorCode::kLimitExceeded,
                   "a closing block above 256 MiB; leave out --lossless or --keep-order");
+    assert(index.closingBlock(c.kind, c.field) == nullptr);
     index.closing.push_back({c.kind, c.field, {}});
     closing.push_back(c.bytes);
   }

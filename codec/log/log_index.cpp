@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 
 #include "codec/log/chunk_table.h"
 #include "proto/crc32c.h"
@@ -231,6 +232,7 @@ const ClosingBlock* LogIndex::closingBlock(ClosingKind kind, std::uint32_t field
 }
 
 std::uint32_t LogIndex::tuples(std::uint32_t chunk, std::uint32_t part) const {
+  assert(chunk < chunks.size() && part != kStructurePart && part < parts());
   const ChunkEntry& e = chunks[chunk];
   if (part == kPositionsPart) return e.newVertices;
   if (fields[part - kFirstFieldPart].association == Association::kCell) return e.newTetrahedra;

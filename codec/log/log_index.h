@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <vector>
 
@@ -133,6 +134,7 @@ struct LogIndex {
   /// the structure.
   [[nodiscard]] std::uint32_t tuples(std::uint32_t chunk, std::uint32_t part) const;
   [[nodiscard]] std::uint32_t components(std::uint32_t part) const {
+    assert(part != kStructurePart && part < parts());
     return part == kPositionsPart ? 3 : fields[part - kFirstFieldPart].components;
   }
   [[nodiscard]] bool hasCellField() const;

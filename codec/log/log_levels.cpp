@@ -1,10 +1,13 @@
 #include "codec/log/log_levels.h"
 
+#include <cassert>
+
 #include "proto/level_error_json.h"
 
 namespace qtet {
 
 std::uint64_t prefixBytes(const Manifest& manifest, const LogIndex& index, std::size_t level) {
+  assert(level < manifest.levels.size() && manifest.levels[level].chunk < index.chunks.size());
   const ChunkEntry& chunk = index.chunks[manifest.levels[level].chunk];
   return chunk.offset + chunk.size();
 }

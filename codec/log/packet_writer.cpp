@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <string>
 #include <utility>
 
@@ -56,7 +57,9 @@ PacketWriter::PacketWriter(const FusionHistory& history, const std::vector<Band>
     : history_(history),
       bands_(bands),
       writer_(writer),
-      waiting_(std::size_t{2} << history.bands.depth) {}
+      waiting_(std::size_t{2} << history.bands.depth) {
+  assert(!bands.empty() && bands.back().depth <= history.bands.depth);
+}
 
 Status PacketWriter::endHead() {
   waiting_[1].add({}, writer_.mesh().next());
@@ -87,6 +90,8 @@ Status PacketWriter::children(std::uint32_t node, const NodeCells& cells) {
 }
 
 Status PacketWriter::write(const Band& band) {
+  [[maybe_unused]] const std::uint32_t last = writer_.chunks().rows().back().node;
+  assert(last == (band.depth == bands_.front().depth ? 0 : (1u << band.depth) - 1));
   for (std::uint32_t node = 1u << band.depth; node < 2u << band.depth; ++node)
     if (Status s = packet(band, node); !s) return s;
   return {};
@@ -144,6 +149,7 @@ void PacketWriter::findBoxes() {
   for (auto row = first; row != rows.end(); ++row) row->box = {{255, 255, 255}, {0, 0, 0}};
   const GrowingMesh& mesh = writer_.mesh();
   const std::uint32_t depth = bands_.back().depth;
+  assert(rows.back().node == (2u << depth) - 1);
   for (CellId t = 0; t < mesh.tetrahedra.size(); ++t)
     for (const VertexId v : mesh.tetrahedra[t]) {
       std::array<std::uint8_t, 3> at{};

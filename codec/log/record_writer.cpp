@@ -1,6 +1,7 @@
 #include "codec/log/record_writer.h"
 
 #include <algorithm>
+#include <cassert>
 #include <string>
 #include <utility>
 
@@ -20,6 +21,7 @@ RecordWriter::RecordWriter(const FusionHistory& history, CodecId valueCodec, std
       added_(history.levels + 1u) {}
 
 Status RecordWriter::base() {
+  assert(mirror_.vertices().empty());
   std::vector<Tetrahedron> cells;
   std::vector<std::uint32_t> ids;
   for (std::uint32_t i = 0; i < history_.cells.size(); ++i)
@@ -58,12 +60,14 @@ Status RecordWriter::base() {
 }
 
 const Fusion* RecordWriter::flag(VertexId v) {
+  assert(mesh().maysplit(v));
   const Fusion* fusion = truths_.fusionAt(v);
   coder_.splits(v, mesh().level(), fusion != nullptr);
   return fusion;
 }
 
 Status RecordWriter::record(VertexId v, Fusion fusion) {
+  assert(mirror_.vertices()[v] == fusion.fused);
   if (stop_.stop_requested()) return cancelled();
   const auto bad = [&](const char* what) {
     return fail(ErrorCode::kBadValue,

@@ -1,6 +1,7 @@
 #include "codec/log/refiner.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstdlib>
 #include <limits>
 #include <string>
@@ -127,7 +128,10 @@ bool Refiner::applied(std::uint32_t chunk) const {
 bool Refiner::fieldApplied(std::uint32_t field, std::uint32_t chunk) const {
   return state_->fields.applied(field, chunk);
 }
-const Slots& Refiner::firstSlots(std::uint32_t chunk) const { return state_->plan.slots[chunk]; }
+const Slots& Refiner::firstSlots(std::uint32_t chunk) const {
+  assert(chunk < state_->plan.slots.size());
+  return state_->plan.slots[chunk];
+}
 std::uint32_t Refiner::level() const { return state_->mesh.levels().last(); }
 std::span<const LevelCounts> Refiner::levelCounts() const {
   return state_->mesh.levels().complete();

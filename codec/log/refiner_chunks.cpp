@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <utility>
 
 namespace qtet {
@@ -97,6 +98,7 @@ PacketReader::PacketReader(const ChunkPlan& plan, const RefinerOrders& orders,
 
 // The cells of the first packets' nodes: one bit after the other from the root down.
 Status PacketReader::endHead(ChunkInHand& chunk) {
+  assert(plan_.hasPackets());
   waiting_[1].add({}, records_.mesh().next());
   for (std::uint32_t node = 1; node < 1u << plan_.firstDepth; ++node)
     if (Status s = children(chunk, node, std::exchange(waiting_[node], {})); !s) return s;

@@ -1,6 +1,7 @@
 #include "codec/log/refiner_records.h"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include "codec/mesh/boundary.h"
@@ -58,6 +59,7 @@ void RecordReader::makeRoomForAll() {
 }
 
 Status RecordReader::base(ChunkInHand& chunk) {
+  assert(mesh_.points.empty());
   BaseCoder<RangeDecoder> coder(chunk.decoder, chunk.entry.newVertices, chunk.entry.newTetrahedra);
   if (!coder.run(nullptr, [&] { return chunk.decoder.overrun(); })) return chunk.refuseBase();
   ancestry_.base = std::move(coder.births);
@@ -84,6 +86,7 @@ Status RecordReader::base(ChunkInHand& chunk) {
 
 Status RecordReader::vertex(const ChunkInHand& chunk, RecordCoder<RangeDecoder>& coder,
                             VertexId v) {
+  assert(mesh_.maysplit(v));
   const bool splits = coder.splits(v, mesh_.level(), false);
   if (chunk.decoder.overrun())
     return chunk.refuse(ErrorCode::kTruncated, "the structure block ends too early");

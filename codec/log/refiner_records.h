@@ -2,6 +2,7 @@
 // grows. For refiner*.cpp and nobody else.
 #pragma once
 
+#include <cassert>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -33,6 +34,7 @@ struct ChunkPlan {
   [[nodiscard]] bool hasPackets() const { return headChunks < index.chunks.size(); }
   /// REQUIRES: not chunk 0.
   [[nodiscard]] std::uint32_t dependencyOf(std::uint32_t chunk) const {
+    assert(chunk > 0 && chunk < index.chunks.size());
     return index.dependencies[index.chunks[chunk].firstDependency];
   }
 };

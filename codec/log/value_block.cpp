@@ -1,6 +1,7 @@
 #include "codec/log/value_block.h"
 
 #include <algorithm>
+#include <cassert>
 #include <limits>
 
 #include "codec/coding/adaptive_block.h"
@@ -16,6 +17,7 @@ constexpr std::size_t kCountBytes = 4;
 
 Result<Bytes> encodeValueBlock(std::span<const std::int32_t> values, std::uint32_t components,
                                CodecId codec) {
+  assert(codec == CodecId::kDraco || codec == CodecId::kAdaptive);
   if (values.empty()) return Bytes{};
   if (std::ranges::find(values, std::numeric_limits<std::int32_t>::min()) != values.end())
     return fail(ErrorCode::kLimitExceeded,

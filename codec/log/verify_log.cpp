@@ -1,6 +1,7 @@
 #include "codec/log/verify_log.h"
 
 #include <algorithm>
+#include <cassert>
 #include <numeric>
 #include <string>
 
@@ -69,6 +70,7 @@ class Gate final : public LevelGate {
 
 Result<Refiner> decodeVerified(const LogFile& log, const Manifest& manifest,
                                const std::function<bool(double fraction)>& goOn) {
+  assert(manifest.fields.size() == log.index().fields.size());
   if (Status checked = log.verifyChecksums(); !checked) return std::unexpected(checked.error());
   Refiner refiner(log.index());
   Gate gate(goOn, log.index().chunks.size());

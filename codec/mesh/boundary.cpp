@@ -1,5 +1,6 @@
 #include "codec/mesh/boundary.h"
 
+#include <cassert>
 #include <cstdint>
 
 #include "codec/mesh/face_groups.h"
@@ -29,7 +30,10 @@ CompactTriangles compactTriangles(std::span<const Triangle> triangles, std::size
   CompactTriangles out{{}, {triangles.begin(), triangles.end()}};
   std::vector<VertexId> numbers(vertexCount, kAbsent);
   for (const Triangle& triangle : triangles)
-    for (const VertexId v : triangle) numbers[v] = 0;
+    for (const VertexId v : triangle) {
+      assert(v < vertexCount);
+      numbers[v] = 0;
+    }
   for (VertexId v = 0; v < numbers.size(); ++v) {
     if (numbers[v] == kAbsent) continue;
     numbers[v] = static_cast<VertexId>(out.vertices.size());

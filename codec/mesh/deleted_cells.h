@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -39,7 +40,9 @@ class DeletedCells {
  public:
   DeletedCells(Coder& coder, DeletedModels& models, const Link& link, int k,
                std::span<const LocalCell> truth, std::vector<LocalCell>& out)
-      : coder_(coder), models_(models), link_(link), k_(k), truth_(truth), out_(out) {}
+      : coder_(coder), models_(models), link_(link), k_(k), truth_(truth), out_(out) {
+    assert(link.triangles().size() <= kMaxLinkTriangles && k >= 2 && k <= 4);
+  }
 
   /// `escape` = the labels alone do not tell everything. False when the link is not what a split
   /// can leave.

@@ -1,6 +1,7 @@
 #include "codec/mesh/growing_mesh.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace qtet {
 namespace {
@@ -15,6 +16,7 @@ constexpr std::uint32_t kSpareCells = 2;
 }  // namespace
 
 void GrowingMesh::start(int positionBits) {
+  assert(states_.empty() && positionBits > 0 && positionBits <= kMaxPositionBits);
   spreadShift_ = std::max(0, positionBits - kSpreadBits);
   states_.assign(points.size(), {});
   marked_.assign(points.size(), 0);
@@ -31,6 +33,7 @@ void GrowingMesh::start(int positionBits) {
 }
 
 void GrowingMesh::continueAt(const Slots& first, const Slots& end) {
+  assert(first.within(end));
   next_ = first;
   if (points.size() < end.vertices)
     points.resize(end.vertices, kHolePoint), states_.resize(end.vertices),
@@ -57,6 +60,7 @@ VertexId GrowingMesh::newVertex() {
 }
 
 void GrowingMesh::beginLevel(std::uint32_t level) {
+  assert(level > 0 && level <= kMaxLevels);
   level_ = level;
   levelVertices_ = static_cast<std::uint32_t>(points.size());
 }
@@ -235,6 +239,8 @@ void GrowingMesh::moveStar(const Link& link, std::span<const VertexId> prey) {
 }
 
 void GrowingMesh::apply(VertexId v, const Link& link, const Split& split) {
+  assert(split.k >= 2 && split.k <= 4);
+  assert(link.triangles().size() == entered_.size() && star(v).size() == entered_.size());
   fused_ = points[v];
   std::array<VertexId, 4> all{v};
   const auto prey = std::span(all).first(static_cast<std::size_t>(split.k));

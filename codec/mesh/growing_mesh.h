@@ -69,7 +69,8 @@ class GrowingMesh {
   /// next() after this split.
   [[nodiscard]] Slots slotsAfter(const Split& split, const Link& link) const;
 
-  /// Frees all present vertices for splitting. REQUIRES: levels count up from 1.
+  /// Frees all present vertices for splitting. REQUIRES: 1 to kMaxLevels; upwards in `stream` and
+  /// within a packet of `regions`, which no vertex of another packet of its band meets.
   void beginLevel(std::uint32_t level);
   /// The level in hand.
   [[nodiscard]] std::uint32_t level() const { return level_; }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <numeric>
 #include <unordered_map>
 
@@ -259,6 +260,7 @@ class CellOrderCoder {
 }  // namespace
 
 Bytes encodePointOrder(const DecodedMesh& mesh, std::span<const VertexId> slots) {
+  assert(slots.size() == mesh.points.size());
   RangeEncoder encoder;
   std::vector<VertexId> order(slots.begin(), slots.end());
   (void)PointOrderCoder<RangeEncoder>(encoder, mesh).run(order, [] { return false; });
@@ -275,6 +277,9 @@ Result<std::vector<VertexId>> decodePointOrder(const DecodedMesh& mesh, ByteView
 }
 
 Bytes encodeCellOrder(const DecodedMesh& mesh, const InputOrder& order) {
+  assert(order.points.size() == mesh.points.size());
+  assert(order.cells.size() == mesh.tetrahedra.size());
+  assert(order.tetrahedra.size() == mesh.tetrahedra.size());
   RangeEncoder encoder;
   InputOrder copy = order;
   (void)CellOrderCoder<RangeEncoder>(encoder, mesh, order.points)
@@ -283,6 +288,7 @@ Bytes encodeCellOrder(const DecodedMesh& mesh, const InputOrder& order) {
 }
 
 Status decodeCellOrder(const DecodedMesh& mesh, ByteView bytes, InputOrder& order) {
+  assert(order.points.size() == mesh.points.size());
   RangeDecoder decoder(bytes);
   order.cells.assign(mesh.tetrahedra.size(), 0);
   order.tetrahedra.assign(mesh.tetrahedra.size(), {});

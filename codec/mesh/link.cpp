@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 
 #include "codec/coding/log2_fixed.h"
 #include "codec/coding/pair.h"
@@ -157,6 +158,7 @@ std::uint32_t Link::localOf(VertexId vertex) const {
 void Link::place(std::span<const LatticePoint> points, const LatticePoint& centre) {
   for (std::size_t i = 0; i < vertexCount_; ++i) {
     const VertexId v = vertices_[i];
+    assert(v == kGhost || v < points.size());
     const LatticePoint& p = v == kGhost ? centre : points[v];
     const auto along = [&](std::size_t a) { return static_cast<double>(p[a] - centre[a]); };
     putPair(&offsets_[i][0], Pair{along(0), along(1)});
@@ -190,6 +192,7 @@ void Link::traverse() {
   seen_[start_] = 1;
   for (std::uint32_t i = 0; i < end; ++i)
     for (const std::uint32_t next : triangles_[order[i]].neighbour) {
+      assert(next < triangleCount_);  // close() saw to it
       order[end] = next;
       end += seen_[next] == 0;
       seen_[next] = 1;

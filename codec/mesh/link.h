@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -53,7 +54,10 @@ class Link {
   void clear(std::size_t vertices);
   /// A hint: triangles of this vertex are to come. REQUIRES: below the number of slots, or the
   /// ghost.
-  void expect(VertexId vertex) const { prefetch(&locals_[localSlot(vertex)]); }
+  void expect(VertexId vertex) const {
+    assert(localSlot(vertex) < locals_.size());
+    prefetch(&locals_[localSlot(vertex)]);
+  }
   /// Adds the triangle (a, b, c) of the cell (a, b, c, centre).
   void add(VertexId a, VertexId b, VertexId c) {
     const Triangle one{a, b, c};
@@ -70,6 +74,7 @@ class Link {
   /// Triangles in breadth-first order from the start, neighbours 0, 1, 2. REQUIRES isSphere() was
   /// true.
   [[nodiscard]] std::span<const std::uint32_t> traversal() const {
+    assert(reached_ == triangleCount_);
     return {order_.data(), triangleCount_};
   }
   /// Notes where the vertices lie with respect to the centre, and makes the triangle that is
@@ -86,6 +91,7 @@ class Link {
   /// Gives a triangle its label. REQUIRES: it has none yet, label < 4.
   void label(std::uint32_t triangle, unsigned label) {
     LinkTriangle& t = triangles_[triangle];
+    assert(triangle < triangleCount_ && t.label == kNoLabel && label < 4);
     t.label = static_cast<std::uint8_t>(label);
     for (const std::uint32_t v : t.vertex) labelsRound_[v] += LabelCounts{1} << (16 * label);
   }

@@ -1,10 +1,13 @@
 #include "codec/mesh/node_cells.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace qtet {
 
 void NodeCells::add(const Slots& first, const Slots& end) {
+  assert(tetrahedra.empty() || tetrahedra.back() < first.tetrahedra);
+  assert(triangles.empty() || triangles.back() < first.triangles);
   for (CellId t = first.tetrahedra; t < end.tetrahedra; ++t) tetrahedra.push_back(t);
   for (CellId t = first.triangles; t < end.triangles; ++t) triangles.push_back(t);
 }

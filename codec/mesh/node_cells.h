@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <vector>
 
@@ -31,8 +32,9 @@ class VertexCounts {
  public:
   using Counts = std::array<std::uint32_t, 2>;
 
-  /// REQUIRES: clear() before more vertices than `vertices` are counted.
+  /// Room to count vertices below `vertices`. REQUIRES: no vertex is counted.
   void makeRoom(std::size_t vertices) {
+    assert(counted_.empty());
     if (counts_.size() < vertices) counts_.resize(vertices);
   }
   void add(VertexId v, std::size_t which) {

@@ -2,6 +2,7 @@
 // prey vertex from the others.
 #pragma once
 
+#include <cassert>
 #include <cstdint>
 #include <span>
 
@@ -18,9 +19,12 @@ enum class Placement : std::uint8_t {
 
 /// REQUIRES: 2 to 4 points, no coordinate negative.
 [[nodiscard]] inline LatticePoint middle(std::span<const LatticePoint> prey) {
+  assert(prey.size() >= 2 && prey.size() <= 4);
   LatticePoint sum{};
-  for (const LatticePoint& p : prey)
+  for (const LatticePoint& p : prey) {
+    assert(p[0] >= 0 && p[1] >= 0 && p[2] >= 0);
     for (std::size_t a = 0; a < 3; ++a) sum[a] += p[a];
+  }
   for (std::int32_t& x : sum) x /= static_cast<std::int32_t>(prey.size());
   return sum;
 }

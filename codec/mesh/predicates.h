@@ -2,6 +2,7 @@
 // bit.
 #pragma once
 
+#include <cassert>
 #include <cstdint>
 
 #include "codec/mesh/mesh.h"
@@ -20,6 +21,11 @@ struct Difference {
 [[nodiscard]] inline Difference difference(const LatticePoint& from, const LatticePoint& to) {
   return {std::int64_t{to[0]} - from[0], std::int64_t{to[1]} - from[1],
           std::int64_t{to[2]} - from[2]};
+}
+
+/// Every coordinate is in [0, 2^kMaxPositionBits).
+[[nodiscard]] inline bool isOnLattice(const LatticePoint& p) {
+  return (static_cast<std::uint32_t>(p[0] | p[1] | p[2]) >> kMaxPositionBits) == 0;
 }
 
 /// u x v . w; the cross product's components fit 64 bits for differences below 2^28, the last
@@ -51,6 +57,8 @@ static_assert(kMaxPositionBits <= 30, "the cross product's components must fit 6
 /// REQUIRES: coordinates in [0, 2^kMaxPositionBits).
 [[nodiscard]] inline Int128 volume6(const LatticePoint& a, const LatticePoint& b,
                                     const LatticePoint& c, const LatticePoint& d) {
+  assert(detail::isOnLattice(a) && detail::isOnLattice(b));
+  assert(detail::isOnLattice(c) && detail::isOnLattice(d));
   const detail::Difference u = detail::difference(a, b), v = detail::difference(a, c),
                            w = detail::difference(a, d);
   if (detail::isShort(u, v, w)) return detail::determinant<std::int64_t>(u, v, w);
@@ -61,6 +69,8 @@ static_assert(kMaxPositionBits <= 30, "the cross product's components must fit 6
 /// REQUIRES: as volume6.
 [[nodiscard]] inline int orientation(const LatticePoint& a, const LatticePoint& b,
                                      const LatticePoint& c, const LatticePoint& d) {
+  assert(detail::isOnLattice(a) && detail::isOnLattice(b));
+  assert(detail::isOnLattice(c) && detail::isOnLattice(d));
   const detail::Difference u = detail::difference(a, b), v = detail::difference(a, c),
                            w = detail::difference(a, d);
   if (detail::isShort(u, v, w)) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <cstdint>
 #include <vector>
 
@@ -22,6 +23,7 @@ class StarPool {
 
   /// The first unit of a run. REQUIRES units > 0.
   [[nodiscard]] std::uint32_t take(std::uint32_t units) {
+    assert(units > 0);
     // One of that size, or two or more: cutting less off would leave pieces that nobody can use.
     for (std::uint32_t size = units;
          size < std::min<std::size_t>(free_.size(), units + kMaxTooLong + 1); ++size) {
@@ -37,6 +39,7 @@ class StarPool {
   }
   /// Gives a run back. REQUIRES taken with so many units, and not given back yet.
   void give(std::uint32_t first, std::uint32_t units) {
+    assert(units > 0 && (std::size_t{first} + units) * kUnit <= cells_.size());
     if (free_.size() <= units) free_.resize(units + 1, kNone);
     *at(first) = free_[units];
     free_[units] = first;

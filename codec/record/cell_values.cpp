@@ -1,6 +1,7 @@
 #include "codec/record/cell_values.h"
 
 #include <algorithm>
+#include <cassert>
 #include <numeric>
 
 #include "codec/mesh/face_groups.h"
@@ -25,6 +26,7 @@ void CellAncestry::add(CellId cell, CellId earlier) {
 }
 
 void CellAncestry::addBase(std::span<const Tetrahedron> tetrahedra) {
+  assert(known_.empty());
   known_.assign(tetrahedra.size(), {kNone, kNone, kNone, kNone});
   FaceGroups(tetrahedra).forEach([this](std::span<const FaceSide> sides) {
     for (std::size_t i = 1; i < sides.size(); ++i) add(cellOf(sides[i]), cellOf(sides[i - 1]));
@@ -45,6 +47,7 @@ void CellAncestry::addSide(LocalVertex a, LocalVertex b, LocalVertex c, std::siz
 
 void CellAncestry::addRestored(std::span<const CellRef> star, const Link& link,
                                std::span<const LocalCell> restored, CellId first) {
+  assert(star.size() == link.triangles().size() && first <= known_.size());
   CellId next = first;
   sides_.clear();
   atSplit_.clear();

@@ -1,6 +1,7 @@
 #include "codec/record/field_writer.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace qtet {
 
@@ -13,6 +14,7 @@ FieldWriter::FieldWriter(const FusionHistory& history, const MirrorMesh& mirror)
 }
 
 void FieldWriter::base(std::span<const BaseBirth> births, std::span<Values> out) {
+  assert(pointAncestry_.births().empty() && births.size() == mirror_.vertices().size());
   if (cellAncestry_) cellAncestry_->addBase(mirror_.mesh().tetrahedra);
   for (std::size_t f = 0; f < history_.fields.size(); ++f)
     if (isCellField(history_.fields[f]))
@@ -35,12 +37,14 @@ void FieldWriter::basePoints(std::size_t f, std::span<const BaseBirth> births, V
 
 void FieldWriter::beforeSplit(VertexId v, const Link& link, const Split& split) {
   const GrowingMesh& mesh = mirror_.mesh();
+  assert(link.triangles().size() == mesh.star(v).size());
   pointAncestry_.add(v, mesh, link, split);
   if (cellAncestry_)
     cellAncestry_->addRestored(mesh.star(v), link, split.deleted, mesh.next().tetrahedra);
 }
 
 void FieldWriter::afterSplit(const Fusion& fusion, CellId first, std::span<Values> out) {
+  assert(mirror_.vertices()[pointAncestry_.births().back().slot] == fusion.prey[0]);
   for (std::size_t f = 0; f < history_.fields.size(); ++f)
     if (isCellField(history_.fields[f]))
       cells(f, first, out[f]);

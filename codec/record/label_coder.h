@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <cstring>
 #include <span>
@@ -59,6 +60,7 @@ class LabelCoder {
   /// Codes every triangle's label below k; an encoder's are read from `truth` (one a triangle).
   /// REQUIRES link placed, 2 <= k <= 4.
   void code(int k, std::span<const std::uint8_t> truth) {
+    assert(k >= 2 && k <= 4);
     if (k == 2)
       codeOf<2>(truth);
     else if (k == 3)

@@ -1,6 +1,7 @@
 #include "codec/record/mirror_mesh.h"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include "codec/mesh/boundary.h"
@@ -13,6 +14,7 @@ MirrorMesh::MirrorMesh(const FusionHistory& history)
 
 Status MirrorMesh::start(std::vector<Tetrahedron> tetrahedra, std::vector<std::uint32_t> cells,
                          std::vector<VertexId> vertices) {
+  assert(vertices_.empty());
   tetrahedra_ = std::move(cells);
   vertices_ = std::move(vertices);
   for (VertexId v = 0; v < vertices_.size(); ++v) slots_[vertices_[v]] = v;

@@ -2,6 +2,7 @@
 // and which cell of the history each slot holds.
 #pragma once
 
+#include <cassert>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -36,8 +37,13 @@ class MirrorMesh {
   [[nodiscard]] std::uint32_t cellOf(CellRef ref) const {
     return ref & kBoundaryBit ? triangles_[ref & ~kBoundaryBit] : tetrahedra_[ref];
   }
+  /// Whether a vertex of the history has come; the ghost is always there.
+  [[nodiscard]] bool has(VertexId vertex) const {
+    return vertex == kGhost || slots_[vertex] != kGhost;
+  }
   /// Where a vertex of the history is, the ghost included. REQUIRES: it has come.
   [[nodiscard]] VertexId slotOf(VertexId vertex) const {
+    assert(has(vertex));
     return vertex == kGhost ? kGhost : slots_[vertex];
   }
 

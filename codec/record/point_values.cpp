@@ -1,6 +1,7 @@
 #include "codec/record/point_values.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -45,6 +46,7 @@ void PointAncestry::reserve(std::uint64_t records, std::uint64_t vertices) {
 }
 
 void PointAncestry::add(VertexId v, const GrowingMesh& mesh, const Link& link, const Split& split) {
+  assert(link.triangles().size() == mesh.star(v).size());
   Birth birth{v, mesh.next().vertices, static_cast<std::uint32_t>(slopes_.size()), 0,
               static_cast<std::uint8_t>(split.k)};
   if (withSlopes_) {

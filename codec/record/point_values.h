@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -72,6 +73,7 @@ class PointAncestry {
   template <bool kEncoding, class At, class Truth>
   void code(const Birth& b, Values& values, std::uint32_t components, const At& at,
             const Truth& truth, bool hasMissing = false) const {
+    assert(components <= kMaxFieldComponents);
     // not cleared: that would take as long as the rest
     std::array<std::int32_t, std::size_t{4} * kMaxFieldComponents> prey;
     for (std::uint32_t c = 0; c < components; ++c)

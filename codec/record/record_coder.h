@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -66,6 +67,7 @@ class RecordCoder {
 
   /// The split flag of v at `level`. REQUIRES mesh.maysplit(v).
   bool splits(VertexId v, std::uint32_t level, bool truth) {
+    assert(mesh_.maysplit(v));
     const std::size_t size = mesh_.star(v).size();
     const GrowingMesh::Spread& spread = mesh_.spread(v);
     const auto& squares = spread.squares;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 
 namespace qtet {
 namespace {
@@ -41,6 +42,7 @@ const Fusion* SplitTruths::fusionAt(VertexId v) const {
 }
 
 bool SplitTruths::describe(VertexId v, const Link& link, Fusion& fusion, RecordTruth& truth) {
+  assert(link.triangles().size() == mirror_.mesh().star(v).size());
   truth.k = fusion.k;
   truth.placement = fusion.placement;
   if (!labels(v, fusion, truth)) return false;
@@ -72,8 +74,10 @@ bool SplitTruths::deleted(const Link& link, const Fusion& fusion, RecordTruth& t
     for (std::size_t j = 0; j < 4; ++j) {
       const auto prey = std::find(fusion.prey.begin(), fusion.prey.begin() + fusion.k, cell[j]) -
                         fusion.prey.begin();
-      local[j] = prey < fusion.k ? kPreyBit | static_cast<LocalVertex>(prey)
-                                 : link.localOf(mirror_.slotOf(cell[j]));
+      const bool isPrey = prey < fusion.k;
+      if (!isPrey && !mirror_.has(cell[j])) return false;
+      local[j] = isPrey ? kPreyBit | static_cast<LocalVertex>(prey)
+                        : link.localOf(mirror_.slotOf(cell[j]));
       if (local[j] == kNoNeighbour) return false;
     }
     truth.deleted.push_back(sorted(local));
