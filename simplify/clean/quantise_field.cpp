@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -66,6 +67,7 @@ int bitsFor(double extent) {
 }  // namespace
 
 std::int32_t fieldInteger(const FieldInfo& info, std::uint32_t component, double value) {
+  assert(std::isfinite(value) && component < info.components);
   const double highest = std::ldexp(1.0, info.bits) - 1;
   return static_cast<std::int32_t>(
       std::clamp(std::floor((value - info.minimum[component]) / info.step + 0.5), 0.0, highest));

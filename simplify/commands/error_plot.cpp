@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <iomanip>
 #include <sstream>
@@ -209,6 +210,7 @@ Result<std::vector<ErrorCurve>> errorCurves(const Manifest& manifest,
 }
 
 std::string errorPlotSvg(const std::string& title, const std::vector<ErrorCurve>& curves) {
+  assert(!curves.empty());
   return ErrorPlot(curves).svg(title);
 }
 

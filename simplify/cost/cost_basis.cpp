@@ -1,6 +1,7 @@
 #include "simplify/cost/cost_basis.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 
@@ -163,6 +164,7 @@ void CostBasis::add(std::size_t i, double value, std::span<double> values) const
 }
 
 double CostBasis::changeOf(std::size_t i, std::span<const double> values) const {
+  assert(!isDirect());
   return dot(std::span(directions_).subspan(i * components_, components_), values);
 }
 

@@ -1,6 +1,7 @@
 #include "simplify/cost/fusion_cost.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numeric>
 
@@ -40,6 +41,7 @@ FusionCost::FusionCost(const FusionMesh& mesh, const LatticeMesh& lattice,
       components_(basis_.components()),
       stride_(kHead + kPerComponent * components_),
       diagonal_(diagonalOf(lattice)) {
+  assert(mesh.vertexSlots() == lattice.points.size());
   if (basis_.isDirect()) takeLimits(lattice);
   slot_.resize(lattice.points.size());
   std::iota(slot_.begin(), slot_.end(), 0u);
@@ -308,6 +310,7 @@ void FusionCost::fuse(const Prey& prey, VertexId fused, const LatticePoint& p,
   const Vector3 place = toVector(p);
   for (const VertexId v : prey.vertices())
     accumulate(v, place, [&](std::size_t f) { return values[f]; }, sum);
+  assert(fused < slot_.size());
   slot_[fused] = slot_[prey.vertex[0]];
   double* q = &quadrics_[at(fused)];
   const Symmetric3& a = sum.q.a;

@@ -1,6 +1,7 @@
 #include "simplify/fuse/band_nodes.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "simplify/fuse/kd_tree.h"
 
@@ -8,6 +9,7 @@ namespace qtet {
 
 BandNodes::BandNodes(const FusionMesh& mesh, const LatticeMesh& lattice,
                      std::size_t cellsPerPacket) {
+  assert(mesh.vertexSlots() == lattice.points.size());
   bands_.depth = kdDepth(lattice.tetrahedra.size(), cellsPerPacket);
   if (bands_.depth == 0) return;
   bands_.leaf = kdLeaves(lattice.points, lattice.tetrahedra, bands_.depth);
@@ -27,6 +29,7 @@ BandNodes::BandNodes(const FusionMesh& mesh, const LatticeMesh& lattice,
 }
 
 void BandNodes::begin(const FusionMesh& mesh) {
+  assert(bands() < depth());
   const std::uint32_t depth = bands_.depth - bands();
   nodes_.assign(mesh.vertexSlots(), kBetween);
   for (VertexId v = 0; v < nodes_.size(); ++v) {

@@ -91,12 +91,14 @@ class Candidates {
   }
   /// The best one is not legal: on to the next. REQUIRES: best(owner).
   void fail(VertexId owner) {
+    assert(best(owner));
     List& list = lists_[owner];
     pool_[list.first + list.next++].key *= kFailed;
   }
   /// The best one is gone for good: on to the next. Threads may do so at once, each for owners of
   /// its own. REQUIRES: best(owner).
   void drop(VertexId owner) {
+    assert(best(owner));
     List& list = lists_[owner];
     // of those that failed the order does not count
     pool_[list.first + list.next] = pool_[list.first];
@@ -113,6 +115,7 @@ class Candidates {
   }
   /// The best one costs `key`, more than was known. REQUIRES: best(owner).
   void raise(VertexId owner, float key) {
+    assert(best(owner));
     const List& list = lists_[owner];
     std::size_t i = list.first + list.next;
     pool_[i].key = key;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 
 namespace qtet {
@@ -95,6 +96,7 @@ void FusionProposer::price(VertexId v, std::vector<Candidate>& found) const {
 
 bool FusionProposer::propose(VertexId owner, std::span<const Candidate> candidates, float most,
                              std::uint32_t now, Proposal& out) {
+  assert(!candidates.empty());
   const Prey edge{2, {owner, candidates[0].partner, 0, 0}};
   const auto exact = test_.gatherBoundary(edge) ? finder_.price(edge, test_) : std::nullopt;
   const double share = shares_.of(mesh_.cellsRound(owner, candidates[0].partner));

@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 
 namespace qtet {
 namespace {
+
+/// Of a tree: twice as many packets as leaves stay below kMaxChunks.
+constexpr std::uint32_t kMaxDepth = 18;
 
 /// Four times the barycentre, and whose it is.
 struct Item {
@@ -24,7 +28,7 @@ std::size_t longestAxis(std::span<const Item> items) {
   return longest;
 }
 
-// At most 18 calls deep.
+// At most kMaxDepth calls deep.
 void split(std::span<Item> items, std::uint32_t node, std::uint32_t depth,
            std::vector<std::uint32_t>& leaf) {
   if (depth == 0 || items.empty()) {
@@ -45,16 +49,19 @@ void split(std::span<Item> items, std::uint32_t node, std::uint32_t depth,
 }  // namespace
 
 std::uint32_t kdDepth(std::size_t cells, std::size_t cellsPerLeaf) {
+  assert(cellsPerLeaf > 0);
   std::uint32_t depth = 0;
   // Nearest in proportion: cells / 2^depth lies within a factor sqrt(2) of what was asked for.
-  while (depth < 18 && static_cast<double>(cells) / std::ldexp(1.0, static_cast<int>(depth)) >
-                           1.4142135623730951 * static_cast<double>(cellsPerLeaf))
+  while (depth < kMaxDepth &&
+         static_cast<double>(cells) / std::ldexp(1.0, static_cast<int>(depth)) >
+             1.4142135623730951 * static_cast<double>(cellsPerLeaf))
     ++depth;
   return depth;
 }
 
 std::vector<std::uint32_t> kdLeaves(std::span<const LatticePoint> points,
                                     std::span<const Tetrahedron> tetrahedra, std::uint32_t depth) {
+  assert(depth <= kMaxDepth);
   std::vector<Item> items(tetrahedra.size());
   for (CellId c = 0; c < tetrahedra.size(); ++c) {
     items[c].cell = c;

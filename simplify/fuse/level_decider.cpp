@@ -6,6 +6,7 @@
 namespace qtet {
 
 void LevelDecider::run(LevelQueue& queue, LevelFusions& fusions, std::size_t goal) {
+  assert(proposers_.size() == workers_.count() && fusions.fused().empty());
   state_.touched().beginLevel();
   proposals_.begin(queue.entries(), queue.limit(), proposers_);
   workers_.beside([this](std::size_t worker) { proposals_.serve(worker); },

@@ -1,5 +1,7 @@
 #include "simplify/fuse/level_fusions.h"
 
+#include <cassert>
+
 namespace qtet {
 
 void LevelFusions::begin(std::uint32_t level) {
@@ -9,7 +11,10 @@ void LevelFusions::begin(std::uint32_t level) {
 
 void LevelFusions::decideOn(const Proposal& proposal) {
   const std::vector<VertexId>& link = proposal.star.link;
-  for (const VertexId v : proposal.prey.vertices()) state_.touched().touch(v);
+  for (const VertexId v : proposal.prey.vertices()) {
+    assert(!state_.touched().isLocked(v));
+    state_.touched().touch(v);
+  }
   for (const VertexId v : link)
     if (v != kGhost) state_.touched().touch(v);
   state_.touched().next();

@@ -1,6 +1,7 @@
 #include "simplify/fuse/level_proposals.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "simplify/mesh/workers.h"
 
@@ -110,6 +111,7 @@ void LevelProposals::askMemory(Worker& worker) const {
 }
 
 void LevelProposals::comeTo(std::size_t at) {
+  assert(at < entries_.size() && at >= reached_.load(std::memory_order_relaxed));
   hand_ = at, isFirst_ = true;
   reached_.store(at, std::memory_order_relaxed);
   Worker& own = workers_[0];

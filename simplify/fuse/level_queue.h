@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <boost/heap/d_ary_heap.hpp>
+#include <cassert>
 #include <cstddef>
 #include <limits>
 #include <span>
@@ -41,6 +42,7 @@ class LevelQueue {
   static constexpr std::size_t kBack = ~std::size_t{0};
   /// REQUIRES: nextKey() is not infinity.
   Next pop() {
+    assert(next_ < entries_.size() || !back_.empty());
     if (next_ < entries_.size() && (back_.empty() || back_.top() < entries_[next_])) {
       const std::size_t entry = next_++;
       return {entries_[entry].owner, entry};

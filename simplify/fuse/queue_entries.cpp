@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cstddef>
 #include <utility>
 
@@ -20,6 +21,7 @@ std::uint32_t rankOf(const QueueEntry& entry) {
 }  // namespace
 
 float EntrySorter::keepCheapest(std::vector<QueueEntry>& entries, double quantile) {
+  assert(!entries.empty() && quantile >= 0 && quantile <= 1);
   const auto at = static_cast<std::size_t>(quantile * static_cast<double>(entries.size() - 1));
   counts_.assign(kDigits, 0);
   for (const QueueEntry& e : entries) ++counts_[rankOf(e) >> (32 - kDigitBits)];

@@ -20,6 +20,7 @@ class VertexCounts {
   /// Counts `v` once more; true the first time. REQUIRES: not kGhost; fewer than kMax vertices so
   /// far, or v among them.
   bool add(VertexId v) {
+    assert(v != kGhost);
     std::size_t at = (v * 0x9E3779B1u) >> (32 - kLogSlots);
     for (; slots_[at].vertex != v; at = (at + 1) % kSlots) {
       if (slots_[at].vertex != kGhost) continue;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -28,6 +29,7 @@ bool isOnLattice(const LatticePoint& p, int bits) {
 }  // namespace
 
 void BoundaryEnvelope::gather(const Prey& prey) {
+  assert(starCellsOf(mesh_, prey) <= kMaxStarCells);
   origin_ = mesh_.position(prey.vertex[0]);
   faces_.clear();
   reach_ = 0;

@@ -12,9 +12,7 @@ FusionCheck::FusionCheck(const FusionMesh& mesh, const FusionLimits& limits)
       shapes_(mesh, star_, limits.shapeFloor) {}
 
 bool FusionCheck::gatherBoundary(const Prey& prey) {
-  std::size_t size = 0;
-  for (const VertexId v : prey.vertices()) size += mesh_.star(v).size();
-  if (size > kMaxStarCells) return false;
+  if (starCellsOf(mesh_, prey) > kMaxStarCells) return false;
   prey_ = prey;
   envelope_.gather(prey);
   flips_.forget();

@@ -1,12 +1,14 @@
 #include "simplify/legality/local_star.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "codec/mesh/growing_mesh.h"
 
 namespace qtet {
 
 bool LocalStar::gather(const Prey& prey) {
+  assert(starCellsOf(mesh_, prey) <= kMaxStarCells);
   prey_ = prey;
   for (const VertexId v : prey.vertices()) mesh_.prefetchStar(v);
   star_.affected.clear(), star_.deleted.clear(), star_.labels.clear(), star_.link.clear();

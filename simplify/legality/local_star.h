@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -15,6 +16,13 @@ namespace qtet {
 /// Cells in the stars of a prey beyond which a fusion is not tried: a hub of a graded mesh would
 /// make every fusion near it expensive.
 inline constexpr std::size_t kMaxStarCells = 800;
+
+/// Cells in the stars of the prey's vertices, all together: one of two stars counts twice.
+[[nodiscard]] inline std::size_t starCellsOf(const FusionMesh& mesh, const Prey& prey) {
+  std::size_t cells = 0;
+  for (const VertexId v : prey.vertices()) cells += mesh.star(v).size();
+  return cells;
+}
 
 class LocalStar {
  public:
@@ -45,6 +53,7 @@ class LocalStar {
   }
   /// The edges opposite the prey in the deleted cells. REQUIRES: prey().k == 2.
   [[nodiscard]] std::span<const std::array<Local, 2>> ring() const {
+    assert(prey_.k == 2);
     return std::span(ring_).first(star_.deleted.size());
   }
   struct Counts {
@@ -52,7 +61,10 @@ class LocalStar {
   };
   /// What the first prey vertex' star has; what only the second one's has comes after it.
   /// REQUIRES: prey().k == 2.
-  [[nodiscard]] const Counts& ofFirst() const { return ofFirst_; }
+  [[nodiscard]] const Counts& ofFirst() const {
+    assert(prey_.k == 2);
+    return ofFirst_;
+  }
 
  private:
   template <std::uint32_t k>

@@ -1,6 +1,7 @@
 #include "simplify/legality/region_check.h"
 
 #include <algorithm>
+#include <cassert>
 #include <numeric>
 
 namespace qtet {
@@ -16,6 +17,7 @@ constexpr VertexId kNoVertex = kGhost - 1;
 // if the same holds before (any regions that the star holds meet in one contractible set), and if
 // on the link nothing changes: no region touches it but where it has triangles there.
 bool RegionCheck::passes(const FusionMesh& mesh, const Prey& prey, const Star& star) {
+  assert(mesh.hasRegions());
   regions_.clear();
   simplices_.clear();
   for (const CellId c : star.affected)

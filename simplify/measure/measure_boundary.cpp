@@ -1,6 +1,7 @@
 #include "simplify/measure/measure_boundary.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "simplify/mesh/workers.h"
@@ -24,6 +25,7 @@ void followFusion(const MeasuredMesh& mesh, const Fusion& fusion, const Vector3&
 
 BoundaryMeter::BoundaryMeter(const MeasuredMesh& mesh, const BoundaryOptions& options)
     : mesh_(mesh), options_(options) {
+  assert(mesh.level() == mesh.history().levels);
   const FusionHistory& history = mesh.history();
   const auto onIt = [](const Vector3& at, std::uint32_t ghost) {
     return Followed{at, {ghost, {0, {}}}};

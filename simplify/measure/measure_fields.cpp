@@ -1,6 +1,7 @@
 #include "simplify/measure/measure_fields.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -38,6 +39,7 @@ bool weightsIn(const std::array<Vector3, 4>& corners, const Vector3& p, double l
 
 FieldMeter::FieldMeter(const MeasuredMesh& mesh, const FieldOptions& options)
     : mesh_(mesh), options_(options) {
+  assert(mesh.level() == mesh.history().levels);
   const FusionHistory& history = mesh.history();
   if (history.fields.empty()) return;
   std::vector<std::uint8_t> isOriginal(history.points.size(), 0);

@@ -1,6 +1,7 @@
 #include "simplify/measure/measured_mesh.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -43,6 +44,7 @@ MeasuredMesh::MeasuredMesh(HistoryLevels& levels) : levels_(levels) {
 }
 
 void MeasuredMesh::coarsen() {
+  assert(level() > 0);
   levels_.coarsen();
   step_ = levels_.fusionsInto(levels_.level());
   for (const Fusion& fusion : step_) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <cmath>
 
 #include "codec/mesh/growing_mesh.h"
@@ -334,6 +335,7 @@ FusionMesh::Gone FusionMesh::fuse(Fusion& fusion, const PlannedFusion& planned,
   if (planned.outside > 0) pushOutside(star, planned.outside);
   history_.points[fused] = planned.point;
   for (const VertexId v : prey.vertices()) {
+    assert(aliveVertex_[v] && !singular(v));
     onBoundary_[fused] |= onBoundary_[v];
     if (hasRegions()) onInterface_[fused] |= onInterface_[v];
     aliveVertex_[v] = 0;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -120,21 +121,29 @@ class FusionMesh {
   [[nodiscard]] bool hasRegions() const { return regionField_ != kNoRegions; }
   /// REQUIRES: hasRegions().
   [[nodiscard]] std::int64_t region(CellId c) const {
+    assert(hasRegions());
     const auto& values = history_.values[regionField_];
     return c < values.size() ? values[c] : kOutside;
   }
   /// Two regions meet at v. REQUIRES: hasRegions().
-  [[nodiscard]] bool onInterface(VertexId v) const { return onInterface_[v]; }
+  [[nodiscard]] bool onInterface(VertexId v) const {
+    assert(hasRegions());
+    return onInterface_[v];
+  }
   /// On the boundary or, where there are regions, between two of them: what the vertex stands for
   /// is a surface.
   [[nodiscard]] bool onSurface(VertexId v) const {
     return onBoundary_[v] || (hasRegions() && onInterface_[v]);
   }
   /// REQUIRES: a ghost cell.
-  [[nodiscard]] const BoundaryPlane& plane(CellId c) const { return planes_[c - firstGhost_]; }
+  [[nodiscard]] const BoundaryPlane& plane(CellId c) const {
+    assert(isGhost(c));
+    return planes_[c - firstGhost_];
+  }
   /// How far boundary triangle `c` may lie outside the original solid, in lattice steps. REQUIRES:
   /// a ghost cell.
   [[nodiscard]] float outside(CellId c) const {
+    assert(isGhost(c));
     return outside_.empty() ? 0 : outside_[c - firstGhost_];
   }
   [[nodiscard]] std::size_t liveTetrahedra() const { return liveTetrahedra_; }

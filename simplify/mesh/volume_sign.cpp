@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <boost/multiprecision/cpp_int.hpp>
+#include <cassert>
 #include <cmath>
 
 namespace qtet {
@@ -35,6 +36,10 @@ double permanent(const Edges& e) {
   return (product(e.u[1], e.v[2]) + product(e.u[2], e.v[1])) * std::abs(e.w[0]) +
          (product(e.u[2], e.v[0]) + product(e.u[0], e.v[2])) * std::abs(e.w[1]) +
          (product(e.u[0], e.v[1]) + product(e.u[1], e.v[0])) * std::abs(e.w[2]);
+}
+
+[[maybe_unused]] bool isFinite(const Position& p) {
+  return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
 }
 
 using ExactPosition = std::array<cpp_int, 3>;
@@ -79,6 +84,7 @@ double roundedVolume6(const Position& a, const Position& b, const Position& c, c
 }
 
 int volumeSign(const Position& a, const Position& b, const Position& c, const Position& d) {
+  assert(isFinite(a) && isFinite(b) && isFinite(c) && isFinite(d));
   const Edges edges{minus(b, a), minus(c, a), minus(d, a)};
   const double volume = determinant(edges);
   const double bound = permanent(edges);

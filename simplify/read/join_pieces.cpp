@@ -235,6 +235,7 @@ JoinedPieces joinPieces(CellMesh& mesh, std::span<const VertexId> pieceEnds) {
   assert(mesh.pointIds.empty() || mesh.pointIds.size() == mesh.points.size());
   JoinedPieces out;
   if (pieceEnds.size() < 2) return out;
+  assert(pieceEnds.back() == mesh.points.size());
   const PieceOf pieceOf(pieceEnds);
   PointSets sets(mesh.points.size());
   out.byIds = uniteByIds(mesh, pieceOf, sets);

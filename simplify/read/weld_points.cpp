@@ -2,6 +2,7 @@
 
 #include <array>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <numeric>
 #include <unordered_map>
@@ -96,6 +97,7 @@ class KeptPoints {
 }  // namespace
 
 std::uint64_t weldPoints(CellMesh& mesh, double distance) {
+  assert(distance >= 0);
   KeptPoints kept(mesh.points, distance);
   std::vector<VertexId> names(mesh.points.size());
   std::uint64_t joined = 0;
