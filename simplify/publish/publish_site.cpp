@@ -117,9 +117,14 @@ Status writeViewer(Site& site, const fs::path& viewer) {
 
 /// Copies the log and says what the list says of it.
 Result<Json> writeLog(Site& site, const fs::path& path) {
+  const auto named = [&](Error error) {  // of several logs it is this one
+    if (error.message.find(path.string()) == std::string::npos)
+      error.message = path.string() + ": " + error.message;
+    return std::unexpected(std::move(error));
+  };
   const Result<OpenedLog> log = openLog(path);
-  if (!log) return std::unexpected(log.error());
-  if (Status sound = log->file.verifyChecksums(); !sound) return std::unexpected(sound.error());
+  if (!log) return named(log.error());
+  if (Status sound = log->file.verifyChecksums(); !sound) return named(sound.error());
   const std::string name = path.stem().string();
   if (site.folder.files().contains(name + ".qtet"))
     return fail(ErrorCode::kBadInput, "two logs are called " + name +

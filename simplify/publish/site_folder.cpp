@@ -69,6 +69,9 @@ Status checkPlace(const fs::path& place) {
                                   "folder, or move that away");
 }
 
+/// "site/" names what "site" does, but neither a link nor a last name are seen in it.
+fs::path withoutSlash(fs::path path) { return path.has_filename() ? path : path.parent_path(); }
+
 /// mkdtemp's folders are for their owner alone; a web server is somebody else.
 mode_t folderMode() {
   const mode_t mask = ::umask(0);
@@ -119,11 +122,11 @@ SiteFolder::~SiteFolder() {
 
 Result<SiteFolder> SiteFolder::begin(const fs::path& place) {
   std::error_code code;
-  const Result<fs::path> behind = fileBehindLinks(place);
+  const Result<fs::path> behind =
+      fileBehindLinks(withoutSlash(fs::absolute(place, code).lexically_normal()));
   if (!behind) return std::unexpected(behind.error());
   SiteFolder out;
-  out.place_ = fs::absolute(*behind, code).lexically_normal();
-  if (!out.place_.has_filename()) out.place_ = out.place_.parent_path();  // "site/"
+  out.place_ = withoutSlash(*behind);
   if (Status checked = checkPlace(out.place_); !checked) return std::unexpected(checked.error());
   std::string hidden =
       (out.place_.parent_path() / ("." + out.place_.filename().string() + ".XXXXXX")).string();

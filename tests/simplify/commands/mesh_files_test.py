@@ -257,7 +257,7 @@ def glb(path, expected):
     while blocks.IsA("vtkMultiBlockDataSet"):
         assert blocks.GetNumberOfBlocks() == 1, path
         blocks = blocks.GetBlock(0)
-    _, _, originals = surface(path, blocks, expected, 1e-4)
+    _, _, originals = surface(path, blocks, expected, 1e-5)
     found = arrays(blocks.GetPointData())
     named = {
         name: values
