@@ -206,6 +206,8 @@ qtet_status qtet_simplify(qtet_simplified* made, size_t meshBytes, const qtet_in
     Result<PipelineOutput> output = make(arrays, given);
     if (!output) return made->refuse(output.error());
     for (const std::string& note : output->report.notes) made->notes += note + "\n";
+    for (const std::string& warning : output->report.warnings)
+      made->notes += "warning: " + warning + "\n";
     made->log = std::move(output->log);
     return QTET_OK;
   });

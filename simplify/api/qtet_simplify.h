@@ -141,8 +141,9 @@ QTET_API qtet_status qtet_simplify(qtet_simplified* made, size_t meshBytes,
 QTET_API const void* qtet_simplified_log(const qtet_simplified* made, size_t* bytes);
 /* Writes the log as a file, whole or not at all: after a failure what was there is there still. */
 QTET_API qtet_status qtet_simplified_write(qtet_simplified* made, const char* path);
-/* What was changed or is unusual about the mesh, a line each; "" if nothing is. Until the next
- * qtet_simplify or destroy. */
+/* What was changed or is unusual about the mesh, a line each; "" if nothing is. A line that begins
+ * with "warning: " says that the base mesh has lost much of the shape, and which options help.
+ * Until the next qtet_simplify or destroy. */
 QTET_API const char* qtet_simplified_notes(const qtet_simplified* made);
 
 #ifdef __cplusplus

@@ -52,7 +52,7 @@ ParsedWords::ParsedWords(const Words& words, CommandHelp help, po::options_descr
                          const std::vector<std::string>& positional)
     : help_(std::move(help)), positional_(positional) {
   // What runTool takes away before, named here for help.
-  options.add_options()("quiet,q", "print nothing but errors and what was asked for")(
+  options.add_options()("quiet,q", "print nothing but errors, warnings and what was asked for")(
       "verbose,v", "tell how long each stage takes, and the memory at most")("help,h",
                                                                              "show this and stop");
   options_.add(options);

@@ -204,6 +204,7 @@ OrderedJson reportOf(const Request& request, const ReadReport& read, const Pipel
   report["seconds"] = watch.seconds();
   report["notes"] = read.notes;
   for (const std::string& note : from.notes) report["notes"].push_back(note);
+  report["warnings"] = from.warnings;
   if (from.paper) report["paper"] = toJson(*from.paper);
   return report;
 }
@@ -294,6 +295,7 @@ int runSimplify(const Words& words, Console& console) {
   if (!report) return reportFailure(report.error(), asJson, console);
   for (const OrderedJson& note : (*report)["notes"]) console.note(note.get<std::string>());
   asJson ? printJson(*report, console) : printReport(*report, console.out);
+  for (const OrderedJson& warning : (*report)["warnings"]) console.warn(warning.get<std::string>());
   return kExitOk;
 }
 

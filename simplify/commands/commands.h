@@ -25,7 +25,7 @@ struct Console {
   bool errIsTerminal = false;
   /// Whether `out` may be coloured: a terminal, and nobody said NO_COLOR (https://no-color.org).
   bool colours = false;
-  bool quiet = false;    ///< --quiet: errors alone
+  bool quiet = false;    ///< --quiet: errors and warnings alone
   bool verbose = false;  ///< --verbose: how long each stage takes, and the memory at most
   std::string piped{};   ///< the temporary file that holds the standard input, where a word was "-"
 
@@ -42,6 +42,8 @@ struct Console {
   void note(const std::string& text) const {
     if (!quiet) err << "qtet: note: " << shown(text) << "\n";
   }
+  /// Of what was done as asked and is most probably not what was wanted: also with --quiet.
+  void warn(const std::string& text) const { err << "qtet: warning: " << shown(text) << "\n"; }
 };
 
 using Words = std::vector<std::string>;

@@ -7,6 +7,7 @@
 #include "simplify/cost/cost_parts.h"
 #include "simplify/mesh/missing_values.h"
 #include "simplify/pipeline/fusion_choice.h"
+#include "simplify/pipeline/loss_warnings.h"
 
 namespace qtet {
 namespace {
@@ -60,7 +61,8 @@ struct Run {
   const PipelineOptions& options;
   PipelineReport report{};
   Stages stages{options, report};
-  KeptInput kept{};  ///< empty where nothing of the input is kept
+  KeptInput kept{};          ///< empty where nothing of the input is kept
+  double wallThickness = 0;  ///< of the mesh before the first fusion
 
   void note(const std::vector<std::string>& sentences) {
     report.notes.insert(report.notes.end(), sentences.begin(), sentences.end());
@@ -83,7 +85,11 @@ Result<QuantisedMesh> prepare(TetMesh&& given, Run& run) {
   if (!out) return out;
   run.report.quantise = out->report;
   run.note(out->report.notes);
-  if (keeps) run.kept = {run.options.keep, asRead(mesh, asStored, run.report.clean)};
+  run.wallThickness = wallThicknessOf(out->mesh);
+  if (keeps) {
+    run.kept.options = run.options.keep;
+    run.kept.mesh = asRead(mesh, asStored, run.report.clean);
+  }
   return out;
 }
 
@@ -152,6 +158,13 @@ Status readBack(const Bytes& log, PipelineReport& report) {
   return {};
 }
 
+void warn(Run& run) {
+  const PipelineOptions& options = run.options;
+  const double allowed = options.measure ? options.measure->bounds.boundary.value_or(0) : 0;
+  run.report.warnings =
+      lossWarnings(run.report.manifest, {run.report.clean, run.wallThickness, allowed});
+}
+
 Status bad(std::string what) { return fail(ErrorCode::kBadValue, std::move(what)); }
 
 }  // namespace
@@ -187,6 +200,7 @@ Result<PipelineOutput> simplifyToLog(TetMesh&& mesh, const PipelineOptions& opti
   if (!log) return std::unexpected(log.error());
   run.stages.end();
   if (Status read = readBack(*log, run.report); !read) return std::unexpected(read.error());
+  warn(run);
   return PipelineOutput{std::move(*log), std::move(run.report)};
 }
 

@@ -63,6 +63,8 @@ struct PipelineReport {
   Manifest manifest;
   /// What was changed or is unusual, one sentence each, in the order of doing.
   std::vector<std::string> notes;
+  /// What the base mesh has lost, where that is much (loss_warnings.h); one sentence each.
+  std::vector<std::string> warnings;
   std::vector<std::pair<Stage, double>> seconds;  ///< wall time, in the order of doing
 };
 

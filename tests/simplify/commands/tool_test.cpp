@@ -62,7 +62,7 @@ TEST_F(Tool, completionsAndManualPagesSayWhatHelpSays) {
 
 TEST_F(Tool, quietSaysErrorsAloneAndVerboseHowLongItTook) {
   ASSERT_EQ(run("sample box -o box.vtu").code, 0);
-  const Ran quiet = run("simplify box.vtu -o box.qtet --quiet");
+  const Ran quiet = run("simplify box.vtu -o box.qtet --quiet --target-ratio 0.05");
   EXPECT_EQ(quiet.code, 0);
   EXPECT_EQ(quiet.out + quiet.err, "");
   EXPECT_NE(run("info -q box.qtet").out.find("3,072 tetrahedra"), std::string::npos);
@@ -71,6 +71,20 @@ TEST_F(Tool, quietSaysErrorsAloneAndVerboseHowLongItTook) {
   const Ran verbose = run("simplify box.vtu -o box.qtet --verbose");
   for (const char* words : {"qtet: simplifying: ", " s\n", " MB of memory at most"})
     EXPECT_NE(verbose.err.find(words), std::string::npos) << verbose.err;
+}
+
+TEST_F(Tool, aBaseMeshThatLostMuchIsWarnedOfAlsoWhereItIsToBeQuiet) {
+  ASSERT_EQ(run("sample box -o box.vtu").code, 0);
+  const Ran quiet = run("simplify box.vtu -o box.qtet --quiet");
+  EXPECT_EQ(quiet.code, 0);
+  EXPECT_EQ(quiet.out, "");
+  EXPECT_TRUE(quiet.err.starts_with("qtet: warning: the base mesh has lost ")) << quiet.err;
+  EXPECT_EQ(std::ranges::count(quiet.err, '\n'), 1);
+  const nlohmann::json lost = run("simplify box.vtu -o box.qtet --json").json(),
+                       kept = run("simplify box.vtu -o box.qtet --json --target-ratio 0.05").json();
+  ASSERT_EQ(lost["warnings"].size(), 1u);
+  EXPECT_NE(lost["warnings"][0].get<std::string>().find("--target-ratio"), std::string::npos);
+  EXPECT_EQ(kept["warnings"], nlohmann::json::array());
 }
 
 TEST_F(Tool, infoShowsTwentyLevelsOrAll) {

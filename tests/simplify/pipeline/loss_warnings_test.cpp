@@ -1,0 +1,147 @@
+#include "simplify/pipeline/loss_warnings.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+#include "simplify/pipeline/pipeline.h"
+
+namespace qtet {
+namespace {
+
+using Place = std::function<Position(double x, double y, double z)>;
+
+/// Adds sides[0] x sides[1] x sides[2] cubes of six cells each, with points of their own; `place`
+/// moves each point of the unit cube.
+void addBlock(TetMesh& mesh, const std::array<int, 3>& sides, const Place& place) {
+  const auto first = static_cast<VertexId>(mesh.points.size());
+  const auto [nx, ny, nz] = sides;
+  const auto at = [&](const std::array<int, 3>& p) {
+    return first + static_cast<VertexId>(p[0] + (nx + 1) * (p[1] + (ny + 1) * p[2]));
+  };
+  for (int k = 0; k <= nz; ++k)
+    for (int j = 0; j <= ny; ++j)
+      for (int i = 0; i <= nx; ++i)
+        mesh.points.push_back(place(1.0 * i / nx, 1.0 * j / ny, 1.0 * k / nz));
+  for (int k = 0; k < nz; ++k)
+    for (int j = 0; j < ny; ++j)
+      for (int i = 0; i < nx; ++i) {
+        std::array<std::size_t, 3> order{0, 1, 2};
+        do {
+          std::array<int, 3> p{i, j, k};
+          Tetrahedron t{at(p)};
+          for (std::size_t s = 0; s < 3; ++s) ++p[order[s]], t[s + 1] = at(p);
+          mesh.tetrahedra.push_back(t);
+        } while (std::next_permutation(order.begin(), order.end()));
+      }
+}
+
+/// The cube as a ball of radius 1.
+Position onBall(double x, double y, double z) {
+  const Position p{2 * x - 1, 2 * y - 1, 2 * z - 1};
+  const double length = std::hypot(p[0], p[1], p[2]),
+               most = std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
+  const double scale = length > 0 ? most / length : 0;
+  return {p[0] * scale, p[1] * scale, p[2] * scale};
+}
+
+TetMesh ball(int side) {
+  TetMesh mesh;
+  addBlock(mesh, {side, side, side}, onBall);
+  return mesh;
+}
+
+std::vector<std::string> warningsOf(TetMesh mesh, double targetRatio) {
+  PipelineOptions options;
+  options.fusion.targetRatio = targetRatio;
+  const Result<PipelineOutput> made = simplifyToLog(std::move(mesh), options);
+  EXPECT_TRUE(made) << made.error().text();
+  return made ? made->report.warnings : std::vector<std::string>{"none was made"};
+}
+
+void expectWarning(const std::vector<std::string>& warnings,
+                   const std::vector<std::string>& words) {
+  ASSERT_EQ(warnings.size(), 1u);
+  for (const std::string& word : words)
+    EXPECT_NE(warnings[0].find(word), std::string::npos) << word << " is not in: " << warnings[0];
+}
+
+TEST(LossWarnings, anOrdinaryMeshHasNone) {
+  EXPECT_EQ(warningsOf(ball(12), 0.2), std::vector<std::string>{});
+}
+
+TEST(LossWarnings, tooFewCellsAreTheReasonWhereNothingElseIs) {
+  expectWarning(warningsOf(ball(12), 0.002),
+                {"has lost ", " % of the volume", "too few cells are left for this shape",
+                 "--max-boundary-error 0.02"});
+}
+
+TEST(LossWarnings, piecesThatAreNotJoinedAreTheReason) {
+  TetMesh mesh;
+  for (const double x : {0.0, 0.5})
+    for (const double y : {0.0, 0.5})
+      addBlock(mesh, {6, 6, 12},
+               [&](double u, double v, double w) { return onBall(x + u / 2, y + v / 2, w); });
+  expectWarning(warningsOf(std::move(mesh), 0.004),
+                {"points lie at the place of another one", "--weld 0"});
+}
+
+TEST(LossWarnings, manyPartsAreTheReason) {
+  TetMesh mesh;
+  for (int part = 0; part < 27; ++part)
+    addBlock(mesh, {4, 4, 4}, [&](double x, double y, double z) {
+      const Position p = onBall(x, y, z);
+      return Position{p[0] + 3 * (part % 3), p[1] + 3 * (part / 3 % 3), p[2] + 3 * (part / 9)};
+    });
+  expectWarning(warningsOf(std::move(mesh), 0.01),
+                {"falls into 27 parts", "--target-ratio 0.27", "--weld DISTANCE"});
+}
+
+TEST(LossWarnings, thinWallsAreTheReason) {
+  TetMesh mesh;
+  addBlock(mesh, {48, 48, 1}, [](double x, double y, double z) {
+    return Position{x, y, 0.1 * std::sin(9 * x) * std::cos(9 * y) + 0.01 * z};
+  });
+  expectWarning(warningsOf(std::move(mesh), 0.01),
+                {"its walls are thin", "--boundary-weight 15000"});
+}
+
+Manifest manifestOf(double volumeKept, double boundary) {
+  Manifest manifest;
+  manifest.levels = {{0, 10, 10, 10, 0, std::nullopt}, {1, 1000, 1000, 500, 1, std::nullopt}};
+  manifest.levels[0].error.emplace();
+  manifest.levels[0].error->volumeKept = volumeKept;
+  manifest.levels[0].error->toOriginal.max = boundary;
+  return manifest;
+}
+
+TEST(LossWarnings, beginAboveTheLimitsOnly) {
+  const CleanReport clean;
+  const LossFacts facts{clean, 0.2, 0};
+  EXPECT_TRUE(lossWarnings(manifestOf(1 - 0.0199, 0.02), facts).empty());
+  EXPECT_TRUE(lossWarnings(manifestOf(1 + 0.0199, 0.02), facts).empty());
+  expectWarning(lossWarnings(manifestOf(0.95, 0), facts), {"has lost 5 % of the volume"});
+  expectWarning(lossWarnings(manifestOf(1.05, 0), facts), {"has gained 5 % of the volume"});
+  expectWarning(lossWarnings(manifestOf(1, 0.03), facts), {"up to 3 % of the diagonal off"});
+  EXPECT_TRUE(lossWarnings(manifestOf(1, 0.03), {clean, 0.2, 0.04}).empty())
+      << "the user allowed it";
+  Manifest unmeasured = manifestOf(0.5, 0.5);
+  unmeasured.levels[0].error.reset();
+  EXPECT_TRUE(lossWarnings(unmeasured, facts).empty());
+}
+
+TEST(WallThickness, isTwiceTheVolumeOverTheArea) {
+  LatticeMesh mesh;
+  mesh.points = {{0, 0, 0}, {6, 0, 0}, {0, 6, 0}, {0, 0, 6}};
+  mesh.boundary = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+  const double area = 3 * 18 + std::sqrt(3.0) / 4 * 72;
+  EXPECT_NEAR(wallThicknessOf(mesh), 2 * 36 / area / std::sqrt(108.0), 1e-12);
+  EXPECT_EQ(wallThicknessOf({}), 0);
+}
+
+}  // namespace
+}  // namespace qtet
