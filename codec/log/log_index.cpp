@@ -332,7 +332,7 @@ Bytes LogIndex::encode() const {
   ByteWriter w;
   w.append(kMagic);
   w.write(kVersionMajor);
-  w.write(kVersionMinor);
+  w.write(closingBlock(ClosingKind::kOriginalCells) != nullptr ? kVersionMinor : std::uint16_t{0});
   w.write(static_cast<std::uint8_t>(layout));
   w.write(positionBits);
   w.write(std::uint16_t{0});

@@ -95,6 +95,7 @@ enum class ClosingKind : std::uint32_t {
   kCellOrder = 2,       ///< the input's numbering of cells and of their vertices; needs the points'
   kExactPositions = 3,  ///< the input's own coordinates
   kExactField = 4,      ///< the input's own values of one field
+  kOriginalCells = 5,   ///< the file's cell that each was split from; needs the cells' order
 };
 
 /// A block behind the last chunk. No level needs it: who wants the input itself and not only its
@@ -109,7 +110,8 @@ struct ClosingBlock {
 struct LogIndex {
   static constexpr std::uint32_t kHeaderBytes = 64;
   static constexpr std::uint16_t kVersionMajor = 2;
-  static constexpr std::uint16_t kVersionMinor = 0;
+  /// Of a log with original cells; any other says 0.
+  static constexpr std::uint16_t kVersionMinor = 1;
 
   Layout layout = Layout::kStream;
   std::uint8_t positionBits = 0;

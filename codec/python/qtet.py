@@ -111,6 +111,8 @@ class _Options(ctypes.Structure):
         ("source", _text),
         ("progress", _Progress),
         ("user", _address),
+        ("originalIds", _u32),
+        ("reserved", _u32),
     ]
 
 
@@ -299,6 +301,7 @@ def simplify(
     value_codec="draco",
     keep_order=False,
     lossless=False,
+    original_ids=False,
     cells_per_packet=0,
     threads=1,
     max_boundary_error=None,
@@ -322,6 +325,7 @@ def simplify(
     position_bits, field_bits   of the lattice an axis, 16; of a float field's values, 12
     algorithm, placement, measure, value_codec   the words of `qtet simplify --help`
     keep_order, lossless  keep the input's numbering; its own numbers
+    original_ids          keep the cell field OriginalCellId (int32) for the last level alone
     cells_per_packet      100 and more: the layout `regions`, with packets of so many cells
     threads               the log does not depend on it
     max_boundary_error    coarsest level: the boundary's distance, over the diagonal
@@ -353,6 +357,7 @@ def simplify(
     options.measure = _choice(_MEASURES, measure, "measure")
     options.valueCodec = _choice(_CODECS, value_codec, "value_codec")
     options.keepOrder, options.lossless = bool(keep_order), bool(lossless)
+    options.originalIds = bool(original_ids)
     options.cellsPerPacket, options.threads = cells_per_packet, threads
     options.maxFieldErrors, options.maxFieldErrorCount = _named(max_field_errors)
     options.fieldWeights, options.fieldWeightCount = _named(field_weights)

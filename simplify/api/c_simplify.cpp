@@ -71,7 +71,8 @@ Status checkChoices(const qtet_simplify_options& options) {
                                {options.measure, QTET_MEASURE_ALL, "measure"},
                                {options.valueCodec, QTET_CODEC_ADAPTIVE, "valueCodec"},
                                {options.keepOrder, 1, "keepOrder"},
-                               {options.lossless, 1, "lossless"}})
+                               {options.lossless, 1, "lossless"},
+                               {options.originalIds, 1, "originalIds"}})
     if (choice.number > choice.last)
       return fail(ErrorCode::kBadValue, std::string(choice.member) + " is " +
                                             std::to_string(choice.number) + "; the last is " +
@@ -147,7 +148,7 @@ Result<PipelineOptions> optionsOf(const qtet_simplify_options& from) {
   out.measure = std::move(*measure);
   out.valueCodec =
       from.valueCodec == QTET_CODEC_ADAPTIVE ? qtet::CodecId::kAdaptive : qtet::CodecId::kDraco;
-  out.keep = {from.keepOrder != 0, from.lossless != 0};
+  out.keep = {from.keepOrder != 0, from.lossless != 0, from.originalIds != 0};
   return out;
 }
 

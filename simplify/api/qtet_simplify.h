@@ -114,6 +114,10 @@ typedef struct {
   const char* source;     /* the name that the log calls its input, or null */
   qtet_progress progress; /* or null */
   void* user;             /* handed to it */
+  /* Since 0.3. 1: the cell field OriginalCellId (int32, not negative) is kept for the last level
+   * alone instead of a stream, and the numbering with it; 0 */
+  uint32_t originalIds;
+  uint32_t reserved; /* 0 */
 } qtet_simplify_options;
 
 QTET_API qtet_status qtet_simplify_defaults(size_t optionsBytes, qtet_simplify_options* options);

@@ -34,6 +34,15 @@ Status sameOrder(const RestoredInput& restored, const LatticeMesh& placed, const
   return {};
 }
 
+Status sameOriginalCells(const std::vector<std::uint32_t>& restored,
+                         const std::optional<std::vector<std::uint32_t>>& cells) {
+  if (!cells) return differs("no cell of the file was split, but the log says so");
+  const auto [mine, theirs] = std::ranges::mismatch(restored, *cells);
+  if (mine == restored.end()) return {};
+  return differs("cell " + std::to_string(mine - restored.begin()) +
+                 " comes from another cell of the file");
+}
+
 bool sameBits(double a, double b) {
   return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
 }
@@ -45,6 +54,7 @@ nlohmann::ordered_json closingJson(const LogIndex& index, const Manifest& manife
   for (const ClosingBlock& c : index.closing) switch (c.kind) {
       case ClosingKind::kPointOrder: out["point order"] = c.block.size; break;
       case ClosingKind::kCellOrder: out["cell order"] = c.block.size; break;
+      case ClosingKind::kOriginalCells: out["original cells"] = c.block.size; break;
       case ClosingKind::kExactPositions: out["exact positions"] = c.block.size; break;
       case ClosingKind::kExactField:
         out["exact " + fieldKey(manifest, c.field)] = c.block.size;
@@ -55,7 +65,8 @@ nlohmann::ordered_json closingJson(const LogIndex& index, const Manifest& manife
 }
 
 Result<nlohmann::ordered_json> compareKept(const LogFile& log, const LatticeMesh& finest,
-                                           const LatticeMesh& placed, const TetMesh& input) {
+                                           const LatticeMesh& placed, const TetMesh& input,
+                                           const std::optional<std::vector<std::uint32_t>>& cells) {
   nlohmann::ordered_json out = {
       {"order", false}, {"positions", false}, {"fields", nlohmann::ordered_json::object()}};
   if (log.index().closing.empty()) return out;
@@ -64,6 +75,11 @@ Result<nlohmann::ordered_json> compareKept(const LogFile& log, const LatticeMesh
   if (restored->order)
     if (Status s = sameOrder(*restored, placed, input); !s) return std::unexpected(s.error());
   out["order"] = restored->order.has_value();
+  if (restored->originalCells) {
+    if (Status s = sameOriginalCells(*restored->originalCells, cells); !s)
+      return std::unexpected(s.error());
+    out["originalCells"] = true;
+  }
   MeshMatch match;  // where each of the input's points and cells stands in what was restored
   if (restored->order) {
     for (VertexId v = 0; v < input.points.size(); ++v) match.points.push_back(v);

@@ -2,7 +2,10 @@
 // verify`. For .cpp files only: it drags nlohmann-json in.
 #pragma once
 
+#include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <vector>
 
 #include "codec/log/log_file.h"
 #include "proto/manifest.h"
@@ -10,17 +13,17 @@
 
 namespace qtet {
 
-/// {"point order": bytes, "cell order": bytes, "exact positions": bytes, "exact NAME": bytes}, as
+/// {"point order": bytes, "cell order": bytes, "original cells": bytes, "exact positions": bytes, "exact NAME": bytes}, as
 /// far as they are there.
 [[nodiscard]] nlohmann::ordered_json closingJson(const LogIndex& index, const Manifest& manifest);
 
 /// Holds what the log kept against the input: `placed` is the cleaned input on the log's lattice,
-/// `input` the same in floats, its cells' vertices as read. What was proved: {"order": bool,
-/// "positions": bool, "fields": {NAME: bool}}. Errors: bad-value (the first point, cell or value
-/// that differs), and restoreInput's. REQUIRES: sameMesh(finest, placed).
-[[nodiscard]] Result<nlohmann::ordered_json> compareKept(const LogFile& log,
-                                                         const LatticeMesh& finest,
-                                                         const LatticeMesh& placed,
-                                                         const TetMesh& input);
+/// `input` the same in floats, its cells' vertices as read, `cells` takeOriginalCells' of it. What
+/// was proved: {"order": bool, "positions": bool, "fields": {NAME: bool}}, and "originalCells":
+/// true where the log has them. Errors: bad-value (the first point, cell or value that differs),
+/// and restoreInput's. REQUIRES: sameMesh(finest, placed).
+[[nodiscard]] Result<nlohmann::ordered_json> compareKept(
+    const LogFile& log, const LatticeMesh& finest, const LatticeMesh& placed, const TetMesh& input,
+    const std::optional<std::vector<std::uint32_t>>& cells);
 
 }  // namespace qtet

@@ -26,7 +26,9 @@ int runConvert(const Words& words, Console& console) {
   namespace po = boost::program_options;
   po::options_description options("options");
   addMeshOutputOptions(options);
-  options.add_options()("fields", po::value<std::string>()->default_value("all"), kFieldsHelp);
+  options.add_options()("fields", po::value<std::string>()->default_value("all"), kFieldsHelp)(
+      "original-ids",
+      "add the cell field OriginalCellId: which cell of the input each tetrahedron was split from");
   addReadOptions(options);
   const ParsedWords parsed(
       words,
@@ -62,6 +64,7 @@ int runConvert(const Words& words, Console& console) {
   if (!output) return reportFailure(output.error(), asJson, console);
   ReadOptions reading = readOptionsOf(parsed);
   reading.fields = parseFieldNames(parsed.get<std::string>("fields"));
+  reading.originalIds = parsed.has("original-ids");
   Progress progress(console);
   progress.stage("reading " + input);
   const Result<ReadMesh> read = readMesh(input, reading);

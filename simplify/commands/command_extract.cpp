@@ -9,6 +9,7 @@
 #include "simplify/log/kept_input.h"
 #include "simplify/log/opened_log.h"
 #include "simplify/log/write_mesh.h"
+#include "simplify/split/split_cells.h"
 
 namespace qtet {
 namespace {
@@ -52,19 +53,31 @@ void keepFields(TetMesh& mesh, const std::vector<std::uint32_t>& wanted) {
       mesh.fields.erase(mesh.fields.begin() + static_cast<std::ptrdiff_t>(f));
 }
 
+/// The fields of the log's levels; of the last level also what its closing blocks hold.
+std::vector<ManifestField> fieldsOf(const OpenedLog& log, bool restores) {
+  std::vector<ManifestField> out = log.manifest.fields;
+  if (!restores || log.file.index().closingBlock(ClosingKind::kOriginalCells) == nullptr)
+    return out;
+  out.emplace_back().name = kOriginalCellField;
+  out.back().association = "cell";
+  return out;
+}
+
 /// The numbers of the fields that are meant, ascending (field_key.h).
 Result<std::vector<std::uint32_t>> wantedFields(const ParsedWords& parsed,
-                                                const Manifest& manifest) {
-  std::vector<std::uint32_t> wanted(manifest.fields.size());
+                                                const std::vector<ManifestField>& fields) {
+  std::vector<std::uint32_t> wanted(fields.size());
   std::iota(wanted.begin(), wanted.end(), 0u);
   const auto names = parseFieldNames(parsed.get<std::string>("fields"));
   if (!names) return wanted;
   wanted.clear();
   for (const std::string& name : *names) {
-    const std::vector<std::uint32_t> meant = fieldsOfKey(manifest.fields, name);
+    const std::vector<std::uint32_t> meant = fieldsOfKey(fields, name);
     if (meant.empty())
       return fail(ErrorCode::kNotFound,
-                  "the log has no field '" + name + "'; qtet info shows which it has");
+                  "the log has no field '" + name +
+                      "' at this level; qtet info shows which it has, and what is kept for the "
+                      "last level alone");
     wanted.insert(wanted.end(), meant.begin(), meant.end());
   }
   std::ranges::sort(wanted);
@@ -120,10 +133,10 @@ Status extract(const ParsedWords& parsed, Console& console) {
 
   const Result<std::uint32_t> level = chosenLevel(parsed, log->manifest);
   if (!level) return std::unexpected(level.error());
-  const Result<std::vector<std::uint32_t>> wanted = wantedFields(parsed, log->manifest);
-  if (!wanted) return std::unexpected(wanted.error());
   const bool restores =
       *level + 1 == log->manifest.levels.size() && !log->file.index().closing.empty();
+  const Result<std::vector<std::uint32_t>> wanted = wantedFields(parsed, fieldsOf(*log, restores));
+  if (!wanted) return std::unexpected(wanted.error());
   const Result<LatticeMesh> mesh =
       meshAtLevel(log->file, *level, restores ? std::nullopt : std::optional(*wanted));
   if (!mesh) return std::unexpected(mesh.error());

@@ -52,7 +52,8 @@ Request requestOf(const ParsedWords& parsed) {
   if (Status checked = checkOptions(options); !checked) throw UsageError(checked.error().message);
   options.measure = measureOptionsOf(parsed);
   options.valueCodec = valueCodecOf(parsed.get<std::string>("geometry-codec"));
-  options.keep = {parsed.has("keep-order"), parsed.has("lossless")};
+  request.read.originalIds = parsed.has("original-ids");
+  options.keep = {parsed.has("keep-order"), parsed.has("lossless"), request.read.originalIds};
   return request;
 }
 
@@ -267,7 +268,10 @@ int runSimplify(const Words& words, Console& console) {
                             "extract gives it back at the last level")(
       "lossless",
       "keep the input's own coordinates and field values: extract gives them back bit for bit at "
-      "the last level")("json", "print one JSON object");
+      "the last level")("original-ids",
+                        "keep which cell of the input each tetrahedron was split from: extract "
+                        "gives it back at the last level as the cell field OriginalCellId; implies "
+                        "--keep-order")("json", "print one JSON object");
   addReadOptions(options);
   addFusionOptions(options);
   addMeasureOptions(options);

@@ -35,11 +35,13 @@ Status compareWithInput(const OpenedLog& log, const Refiner& refiner, const Inpu
     names.push_back(field.association + ":" + field.name);
   ReadOptions options = input.options;
   options.fields = names;
+  options.originalIds = log.file.index().closingBlock(ClosingKind::kOriginalCells) != nullptr;
   Result<ReadMesh> read = readMesh(input.path, options);
   if (!read) return std::unexpected(read.error());
   const std::vector<Tetrahedron> asStored = read->mesh.tetrahedra;
   const Result<CleanReport> cleaned = cleanMesh(read->mesh);
   if (!cleaned) return std::unexpected(cleaned.error());
+  const auto cells = options.originalIds ? takeOriginalCells(read->mesh) : std::nullopt;
 
   progress.stage("comparing");
   const Result<OnLattice> expected = putOnLattice(read->mesh, decoded.lattice, decoded.fields);
@@ -47,7 +49,7 @@ Status compareWithInput(const OpenedLog& log, const Refiner& refiner, const Inpu
   const Result<VerifyReport> same = sameMesh(decoded, expected->mesh);
   if (!same) return std::unexpected(same.error());
   const Result<OrderedJson> kept =
-      compareKept(log.file, decoded, expected->mesh, asRead(read->mesh, asStored, *cleaned));
+      compareKept(log.file, decoded, expected->mesh, asRead(read->mesh, asStored, *cleaned), cells);
   if (!kept) return std::unexpected(kept.error());
   OrderedJson fieldErrors = OrderedJson::object();
   for (std::size_t f = 0; f < names.size(); ++f)

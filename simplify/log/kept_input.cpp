@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "codec/log/exact_values.h"
+#include "codec/mesh/original_cells.h"
+#include "simplify/split/split_cells.h"
 
 namespace qtet {
 namespace {
@@ -75,7 +77,37 @@ Result<std::vector<NewClosing>> exactBlocks(const LatticeMesh& finest, const Enc
   return out;
 }
 
+/// Without the input's order it means nothing.
+Status restoreOriginalCells(const LogFile& log, RestoredInput& out) {
+  if (!out.order || log.index().closingBlock(ClosingKind::kOriginalCells) == nullptr) return {};
+  const Result<ByteView> bytes = log.closing(ClosingKind::kOriginalCells);
+  if (!bytes) return std::unexpected(bytes.error());
+  Result<std::vector<std::uint32_t>> ids = decodeOriginalCells(*bytes, out.cells.size());
+  if (!ids) return std::unexpected(ids.error());
+  FieldInfo info;
+  info.name = kOriginalCellField, info.type = "int32", info.association = "cell";
+  info.minimum = {0};
+  out.lattice.fields.push_back(info);
+  out.lattice.values.emplace_back(ids->begin(), ids->end());
+  out.mesh.fields.push_back(
+      {info.name, 1, info.type, std::vector<double>(ids->begin(), ids->end()), info.association});
+  out.originalCells = std::move(*ids);
+  return {};
+}
+
 }  // namespace
+
+std::optional<std::vector<std::uint32_t>> takeOriginalCells(TetMesh& mesh) {
+  const auto field = std::ranges::find_if(mesh.fields, [](const MeshField& f) {
+    return isCellField(f) && f.name == kOriginalCellField;
+  });
+  if (field == mesh.fields.end() || field->type != "int32" || field->components != 1 ||
+      std::ranges::any_of(field->values, [](double value) { return value < 0; }))
+    return std::nullopt;
+  std::vector<std::uint32_t> out(field->values.begin(), field->values.end());
+  mesh.fields.erase(field);
+  return out;
+}
 
 TetMesh asRead(const TetMesh& cleaned, const std::vector<Tetrahedron>& before,
                const CleanReport& report) {
@@ -95,11 +127,13 @@ Result<Bytes> withInput(const EncodedLog& log, const KeptInput& input,
   if (stop.stop_requested()) return cancelled();
   if (!finest) return std::unexpected(finest.error());
   std::vector<NewClosing> blocks;
-  if (input.options.order) {
+  if (input.options.keepsOrder()) {
     const DecodedMesh decoded{finest->points, finest->tetrahedra};
     const InputOrder order{inverse(log.points), inverse(log.tetrahedra), input.mesh.tetrahedra};
     blocks.push_back({ClosingKind::kPointOrder, 0, encodePointOrder(decoded, order.points)});
     blocks.push_back({ClosingKind::kCellOrder, 0, encodeCellOrder(decoded, order)});
+    if (input.originalCells)
+      blocks.push_back({ClosingKind::kOriginalCells, 0, encodeOriginalCells(*input.originalCells)});
   }
   if (input.options.exact) {
     Result<std::vector<NewClosing>> exact = exactBlocks(*finest, log, input.mesh, stop);
@@ -177,6 +211,7 @@ Result<RestoredInput> restoreInput(const LogFile& log, const LatticeMesh& finest
     out.mesh.fields.push_back({info.name, info.components, info.type,
                                gathered(values, info.components, from), info.association});
   }
+  if (Status s = restoreOriginalCells(log, out); !s) return std::unexpected(s.error());
   return out;
 }
 

@@ -19,15 +19,24 @@ namespace qtet {
 struct KeepOptions {
   bool order = false;
   bool exact = false;
+  /// The cell field kOriginalCellField (split_cells.h) in a closing block instead of a stream, and
+  /// with it the order, which it rests on.
+  bool originalCells = false;
 
-  [[nodiscard]] bool any() const { return order || exact; }
+  [[nodiscard]] bool keepsOrder() const { return order || originalCells; }
+  [[nodiscard]] bool any() const { return keepsOrder() || exact; }
 };
 
 /// What has to be remembered of the input until its log is encoded.
 struct KeptInput {
   KeepOptions options;
   TetMesh mesh;  ///< cleaned, but the cells' vertices in the order of the file
+  std::optional<std::vector<std::uint32_t>> originalCells{};  ///< takeOriginalCells'
 };
+
+/// Takes the field kOriginalCellField out of a mesh: one number a cell. None where there is none,
+/// or where it is no int32 of one component without negative values: then the field stays.
+[[nodiscard]] std::optional<std::vector<std::uint32_t>> takeOriginalCells(TetMesh& mesh);
 
 /// `cleaned` with the order of vertices that its cells had before (`before`: the mesh as it was
 /// read). Where cleaning dropped points or cells, turned cells stay turned.
@@ -48,6 +57,8 @@ struct RestoredInput {
   std::vector<bool> exactFields;  ///< one a field; true also of integers that lose nothing
   LatticeMesh lattice;            ///< renumbered
   TetMesh mesh;                   ///< the same in floats, exact where known
+  /// One a cell, in the input's order. Both meshes have it as their last field, too.
+  std::optional<std::vector<std::uint32_t>> originalCells;
 };
 
 /// `finest` is the mesh of the last level with all fields, in slot order. Errors: bad-checksum,

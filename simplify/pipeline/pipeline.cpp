@@ -79,6 +79,7 @@ Result<QuantisedMesh> prepare(TetMesh&& given, Run& run) {
   if (!cleaned) return std::unexpected(cleaned.error());
   run.report.clean = std::move(*cleaned);
   run.note(run.report.clean.sentences());
+  if (run.options.keep.originalCells) run.kept.originalCells = takeOriginalCells(mesh);
 
   if (Status s = run.stages.begin(Stage::kQuantise); !s) return std::unexpected(s.error());
   Result<QuantisedMesh> out = quantise(mesh, run.options.quantise, run.options.stop);

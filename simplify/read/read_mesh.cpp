@@ -1,7 +1,9 @@
 #include "simplify/read/read_mesh.h"
 
+#include <algorithm>
 #include <fstream>
 
+#include "proto/field_key.h"
 #include "simplify/clean/mend_faces.h"
 #include "simplify/read/join_blocks.h"
 #include "simplify/read/mesh_format.h"
@@ -100,6 +102,18 @@ void noteSplit(const SplitReport& split, std::vector<std::string>& notes) {
                     std::to_string(split.collapsed));
 }
 
+/// --original-ids asks for them beside the fields that are named.
+void meanOriginalIds(const std::vector<MeshField>& fields, FieldNames& names,
+                     std::vector<std::string>& notes) {
+  const std::string key = "cell:" + std::string(kOriginalCellField);
+  if (fieldsOfKey(fields, key).empty())
+    notes.emplace_back(
+        "--original-ids: no cell was split, so that each tetrahedron is one of the file's; "
+        "--keep-order keeps their numbering");
+  else if (names)
+    names->push_back(key);
+}
+
 void mend(TetMesh& mesh, ReadReport& report) {
   const MendReport mended = mendCrossedFaces(mesh);
   report.mendedFaces = mended.mended;
@@ -145,11 +159,17 @@ Result<CellMesh> readCells(const std::filesystem::path& path, const ReadOptions&
 Result<TetMesh> tetrahedraOf(CellMesh&& cells, const std::filesystem::path& path,
                              const ReadOptions& options, ReadReport& report) {
   const std::vector<std::string> otherFields = std::move(cells.otherFields);
-  Result<TetMesh> mesh = splitCells(std::move(cells), options.curved, report.split);
+  FieldNames names = options.fields;
+  const bool isNamed = names && std::ranges::any_of(*names, [](const std::string& name) {
+                         return isCalled("cell", kOriginalCellField, name);
+                       });
+  Result<TetMesh> mesh =
+      splitCells(std::move(cells), {options.curved, options.originalIds || isNamed}, report.split);
   if (!mesh) return fail(mesh.error().code, path.string() + ": " + mesh.error().message);
   noteSplit(report.split, report.notes);
   if (options.weld || report.joinedPoints > 0) mend(*mesh, report);
-  if (Status selected = selectFields(options.fields, path, otherFields, mesh->fields); !selected)
+  if (options.originalIds) meanOriginalIds(mesh->fields, names, report.notes);
+  if (Status selected = selectFields(names, path, otherFields, mesh->fields); !selected)
     return std::unexpected(selected.error());
   return mesh;
 }

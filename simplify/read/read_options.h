@@ -27,6 +27,9 @@ struct ReadOptions {
   CurvedCells curved = CurvedCells::kSplit;
   std::optional<double> weld;  ///< points within this distance become one (weld_points.h)
   bool joinPieces = true;      ///< at the points that they share (join_pieces.h)
+  /// With the cell field kOriginalCellField (split_cells.h), beside those asked for by name; naming
+  /// it does the same.
+  bool originalIds = false;
   std::optional<Threshold> threshold;
   std::string time = "last";  ///< of a series: "first", "last", "all", or the step's time
   /// The file's kind as an ending without dot; empty: as its name says.

@@ -618,7 +618,7 @@ bool SplitReport::onlyTetrahedra() const {
   return true;
 }
 
-Result<TetMesh> splitCells(CellMesh&& mesh, CurvedCells curved, SplitReport& report) {
+Result<TetMesh> splitCells(CellMesh&& mesh, const SplitOptions& options, SplitReport& report) {
   if (std::ranges::all_of(mesh.types, [](std::uint8_t type) { return type == kTetrahedronCell; })) {
     if (mesh.cells() > kMaxElements)
       return fail(ErrorCode::kLimitExceeded, std::to_string(mesh.cells()) +
@@ -627,13 +627,13 @@ Result<TetMesh> splitCells(CellMesh&& mesh, CurvedCells curved, SplitReport& rep
     report.cells[kTetrahedronCell] = mesh.cells();
     return asTheyAre(std::move(mesh));
   }
-  if (curved == CurvedCells::kSplit) {
+  if (options.curved == CurvedCells::kSplit) {
     if (Status done = placeBezierNodes(mesh); !done) return std::unexpected(done.error());
   }
-  Splitter splitter(mesh, curved, report);
+  Splitter splitter(mesh, options.curved, report);
   if (Status done = splitter.run(); !done) return std::unexpected(done.error());
   TetMesh out = splitter.finish();
-  addOriginalCellIds(mesh, splitter.ends(), out);
+  if (options.originalIds) addOriginalCellIds(mesh, splitter.ends(), out);
   return out;
 }
 

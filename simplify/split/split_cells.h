@@ -14,6 +14,11 @@ namespace qtet {
 /// alone.
 enum class CurvedCells { kSplit, kLinear };
 
+struct SplitOptions {
+  CurvedCells curved = CurvedCells::kSplit;
+  bool originalIds = false;  ///< with kOriginalCellField
+};
+
 struct SplitReport {
   std::array<std::uint64_t, 256> cells{};  ///< by type, how many there were
   /// Points added in cells that no split through their own vertices fits.
@@ -24,8 +29,8 @@ struct SplitReport {
   [[nodiscard]] bool onlyTetrahedra() const;
 };
 
-/// The field that says which cell of the file a tetrahedron comes from; there where a cell was
-/// split and no field has the name.
+/// The field that says which cell of the file a tetrahedron comes from; there on
+/// request, where a cell was split and no field has the name.
 inline constexpr const char* kOriginalCellField = "OriginalCellId";
 
 /// Every quadrilateral is cut from its smallest vertex id, every polygon of more corners from the
@@ -35,6 +40,7 @@ inline constexpr const char* kOriginalCellField = "OriginalCellId";
 /// ones follow. Cell fields are inherited; point fields take the mean at new points, integers the
 /// value of one of its vertices. Errors: limit-exceeded; bad-input (with kSplit, a number of nodes
 /// that no degree has). REQUIRES: a mesh that checkCellMesh has passed.
-[[nodiscard]] Result<TetMesh> splitCells(CellMesh&& mesh, CurvedCells curved, SplitReport& report);
+[[nodiscard]] Result<TetMesh> splitCells(CellMesh&& mesh, const SplitOptions& options,
+                                         SplitReport& report);
 
 }  // namespace qtet

@@ -148,7 +148,8 @@ def main(library, program, logs, out):
             # Backwards and forwards again: the mesh must not remember where it was.
             # Of a log that keeps its input, extract gives the input itself at the last level, the
             # library the mesh on the lattice.
-            last = [] if path.stem == "kept-input" else [log.info.levels - 1]
+            keepsInput = path.stem in ("kept-input", "original-cells")
+            last = [] if keepsInput else [log.info.levels - 1]
             for level in [*last, 2, 3, 0]:
                 extracted = pathlib.Path(out) / "ctypes.vtu"
                 subprocess.run(

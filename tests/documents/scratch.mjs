@@ -22,6 +22,20 @@ const kRooms = ['codec', 'proto', 'server', 'simplify', 'tests', 'web-client'];
 const kCompilers = ['cc', 'gcc-12', 'gcc', 'clang-19', 'clang'];
 const kStandIns = fileURLToPath(new URL('stand_ins/', import.meta.url));
 
+/** Two hexahedra. */
+const kVoxels = `# vtk DataFile Version 3.0
+voxels
+ASCII
+DATASET UNSTRUCTURED_GRID
+POINTS 12 float
+0 0 0 1 0 0 2 0 0 0 1 0 1 1 0 2 1 0 0 0 1 1 0 1 2 0 1 0 1 1 1 1 1 2 1 1
+CELLS 2 18
+8 0 1 4 3 6 7 10 9
+8 1 2 5 4 7 8 11 10
+CELL_TYPES 2
+12 12
+`;
+
 /** What every document's examples find: made once, from a built-in sample. */
 export function makeInputs(bin, folder) {
   rmSync(folder, {recursive: true, force: true});
@@ -34,6 +48,7 @@ export function makeInputs(bin, folder) {
   const steps = [0, 0.25].map((time) => `<DataSet timestep="${time}" file="step.vtu"/>`).join('');
   const series = `<VTKFile type="Collection"><Collection>${steps}</Collection></VTKFile>\n`;
   writeFileSync(join(folder, 'run.pvd'), series);
+  writeFileSync(join(folder, 'voxels.vtk'), kVoxels);
   qtet('simplify', 'part.vtu', '-o', 'part.qtet');
   for (const copy of ['wing.qtet', 'served/part.qtet']) {
     cpSync(join(folder, 'part.qtet'), join(folder, copy));

@@ -51,9 +51,8 @@ Bytes logWithMissingValues() {
   return encodeLog(history, options).value().bytes;
 }
 
-/// With every kind of closing block, and one of a kind that is not known yet.
-Bytes keptLog() {
-  const LatticeMesh mesh = testing::gridMesh(2, 7);
+/// The mesh in floats, its values an eighth of a step beside the lattice's.
+TetMesh besideTheLattice(const LatticeMesh& mesh) {
   TetMesh input;
   for (const LatticePoint& p : mesh.points) input.points.push_back(mesh.lattice.position(p));
   input.tetrahedra = mesh.tetrahedra;
@@ -66,11 +65,32 @@ Bytes keptLog() {
       field.values.push_back(info.value(i % info.components, mesh.values[f][i]) +
                              0.125 * info.step);
   }
+  return input;
+}
+
+EncodedLog encodedLog(const LatticeMesh& mesh) {
   LogWriterOptions options;
   options.source = "golden.vtu";
   options.generator = "qtet golden";
-  const EncodedLog log = encodeLog(simplify(mesh, {}).value(), options).value();
-  testing::TakenApart parts = testing::takeApart(withInput(log, {{true, true}, input}).value());
+  return encodeLog(simplify(mesh, {}).value(), options).value();
+}
+
+/// Of hexahedra that were each cut into six cells; the file has every third of them.
+Bytes logWithOriginalCells() {
+  const LatticeMesh mesh = testing::gridMesh(2, 8);
+  KeptInput kept{{false, false, true}, besideTheLattice(mesh)};
+  kept.originalCells.emplace();
+  for (std::uint32_t t = 0; t < mesh.tetrahedra.size(); ++t)
+    kept.originalCells->push_back(3 * (t / 6));
+  return withInput(encodedLog(mesh), kept).value();
+}
+
+/// With the closing blocks of version 2.0, and one of a kind that is not known yet.
+Bytes keptLog() {
+  const LatticeMesh mesh = testing::gridMesh(2, 7);
+  const EncodedLog log = encodedLog(mesh);
+  testing::TakenApart parts =
+      testing::takeApart(withInput(log, {{true, true}, besideTheLattice(mesh)}).value());
   parts.index.closing.push_back({static_cast<ClosingKind>(70000), 300, {}});
   parts.closing.push_back(Bytes(200, 0x5A));
   return parts.together();
@@ -244,8 +264,8 @@ void writeMustFail(const std::filesystem::path& folder, const Bytes& good) {
 /// What the valid files decode to, in the form that sha256sum writes.
 void writeDigests(const std::filesystem::path& folder) {
   std::ofstream meshes(folder / "digests.txt"), values(folder / "field-digests.txt");
-  for (const char* name : {"adaptive", "cell-fields", "gaps", "kept-input", "no-fields", "pinched",
-                           "regions", "solid", "tunnel"}) {
+  for (const char* name : {"adaptive", "cell-fields", "gaps", "kept-input", "no-fields",
+                           "original-cells", "pinched", "regions", "solid", "tunnel"}) {
     const std::string file = std::string(name) + ".qtet";
     const LogFile log = LogFile::open(folder / "valid" / file).value();
     std::vector<std::uint32_t> fields;
@@ -288,6 +308,7 @@ int main(int argc, char** argv) {
   const qtet::Bytes kept = qtet::keptLog();
   qtet::write(folder / "valid" / "gaps.qtet", qtet::logWithMissingValues());
   qtet::write(folder / "valid" / "kept-input.qtet", kept);
+  qtet::write(folder / "valid" / "original-cells.qtet", qtet::logWithOriginalCells());
   qtet::FusionOptions bands;
   bands.targetRatio = 0;
   bands.bands = {100, 2, 1, 1};

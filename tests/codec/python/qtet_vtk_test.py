@@ -22,7 +22,7 @@ except ImportError as error:
 
 LOGS, OUT = pathlib.Path(logs), pathlib.Path(out)
 # At the last level extract gives the input itself, in its own numbering.
-EXTRACTED_OTHERWISE = {"kept-input"}
+EXTRACTED_OTHERWISE = {"kept-input", "original-cells"}
 
 
 def extracted(log, level):

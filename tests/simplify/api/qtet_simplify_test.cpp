@@ -16,6 +16,7 @@
 
 #include "codec/coding/number_type.h"
 #include "codec/files/atomic_file.h"
+#include "codec/log/log_index.h"
 #include "proto/manifest.h"
 #include "simplify/log/write_mesh.h"
 #include "simplify/read/read_mesh.h"
@@ -249,6 +250,30 @@ TEST(QtetSimplify, whatIsLeftOutIsTheDefault) {
   EXPECT_EQ(bytesOf(log), expected);
 }
 
+TEST(QtetSimplify, originalIdsAreKeptForTheLastLevelAlone) {
+  TetMesh mesh = testing::boxWithFields();
+  MeshField ids{"OriginalCellId", 1, "int32", {}, "cell"};
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+    ids.values.push_back(static_cast<double>(t / 6));
+  mesh.fields.push_back(ids);
+  const Arrays arrays(mesh);
+  const Made log = made();
+  const auto closingKinds = [&] {
+    const LogIndex index = LogIndex::parse(bytesOf(log)).value();
+    std::vector<std::uint32_t> out;
+    for (const ClosingBlock& c : index.closing) out.push_back(static_cast<std::uint32_t>(c.kind));
+    return out;
+  };
+  ASSERT_EQ(simplified(log, arrays), QTET_OK) << errorOf(log);
+  EXPECT_EQ(LogIndex::parse(bytesOf(log)).value().fields.size(), mesh.fields.size());
+  EXPECT_TRUE(closingKinds().empty());
+  qtet_simplify_options options = usual();
+  options.originalIds = 1;
+  ASSERT_EQ(simplified(log, arrays, options), QTET_OK) << errorOf(log);
+  EXPECT_EQ(LogIndex::parse(bytesOf(log)).value().fields.size(), mesh.fields.size() - 1);
+  EXPECT_EQ(closingKinds(), (std::vector<std::uint32_t>{1, 2, 5}));
+}
+
 TEST(QtetSimplify, theLogIsOpenedFromMemoryAndWrittenAsAFile) {
   TetMesh mesh = testing::boxWithFields();
   std::swap(mesh.tetrahedra[3][0], mesh.tetrahedra[3][1]);
@@ -321,6 +346,7 @@ TEST(QtetSimplify, noExceptionAndNoCrashWhateverIsGiven) {
   refused(QTET_BAD_VALUE, "measure is 3", [](Arrays&, O& o) { o.measure = 3; });
   refused(QTET_BAD_VALUE, "valueCodec is 2", [](Arrays&, O& o) { o.valueCodec = 2; });
   refused(QTET_BAD_VALUE, "keepOrder is 2", [](Arrays&, O& o) { o.keepOrder = 2; });
+  refused(QTET_BAD_VALUE, "originalIds is 2", [](Arrays&, O& o) { o.originalIds = 2; });
   refused(QTET_BAD_VALUE, "lossless is 2", [](Arrays&, O& o) { o.lossless = 2; });
   refused(QTET_BAD_VALUE, "position bits", [](Arrays&, O& o) { o.positionBits = ~0u; });
   refused(QTET_BAD_VALUE, "field bits", [](Arrays&, O& o) { o.fieldBits = 0; });

@@ -225,9 +225,12 @@ TEST(ReadMesh, hexahedraAreSplitAndTheirNumberKept) {
       asciiVtu("0 0 0 1 0 0 1 1 0 0 1 0 0 0 1 1 0 1 1 1 1 0 1 1 0.5 0.5 -1",
                "0 1 2 0 2 1 8 0 1 2 3 4 5 6 7", "3 7 15", "5 10 12", 9, 3, "",
                "<DataArray type=\"Float32\" Name=\"s\" format=\"ascii\">5 6 7</DataArray>");
-  const Result<ReadMesh> read = readMesh(fileWith("hex.vtu", text));
+  ReadOptions options;
+  options.originalIds = true;
+  const Result<ReadMesh> read = readMesh(fileWith("hex.vtu", text), options);
   ASSERT_TRUE(read) << read.error().text();
   EXPECT_EQ(read->mesh.tetrahedra.size(), 7u);
+  EXPECT_EQ(readMesh(fileWith("hex.vtu", text))->mesh.fields.size(), 1u);
   ASSERT_EQ(read->mesh.fields.size(), 2u);
   EXPECT_EQ(read->mesh.fields[0].values, (std::vector<double>{6, 7, 7, 7, 7, 7, 7}));
   EXPECT_EQ(read->mesh.fields[1].name, kOriginalCellField);
@@ -236,6 +239,8 @@ TEST(ReadMesh, hexahedraAreSplitAndTheirNumberKept) {
   EXPECT_EQ(readMesh(fileWith("hex.vtu", text), std::vector<std::string>{"s"})->mesh.fields.size(),
             1u);
   EXPECT_TRUE(readMesh(fileWith("hex.vtu", text), std::vector<std::string>{kOriginalCellField}));
+  options.fields = std::vector<std::string>{};
+  EXPECT_EQ(readMesh(fileWith("hex.vtu", text), options)->mesh.fields.size(), 1u);
 }
 
 TEST(ReadMesh, cellsWithTooFewVerticesAreRefused) {

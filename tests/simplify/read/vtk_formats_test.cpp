@@ -81,7 +81,9 @@ TEST(VtkFormats, piecesAndBlocksBecomeOneMesh) {
     });
   };
   EXPECT_TRUE(says(apart->report, "its 2 pieces stay apart (--weld none)"));
-  ReadMesh joined = expectABar(given("m.vtm"), 4);
+  ReadOptions withIds;
+  withIds.originalIds = true;
+  ReadMesh joined = expectABar(given("m.vtm"), 4, "T", 0, withIds);
   EXPECT_EQ(joined.report.joinedPoints, 4u);
   EXPECT_TRUE(says(joined.report, "its 2 pieces were joined at 4 points"));
   EXPECT_EQ(cleanMesh(joined.mesh)->components, 1u);

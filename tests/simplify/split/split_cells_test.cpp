@@ -24,7 +24,7 @@ using testing::mixed;
 
 TetMesh splitOf(CellMesh mesh, SplitReport& report, CurvedCells how = CurvedCells::kSplit) {
   EXPECT_TRUE(checkCellMesh(mesh, "mesh")) << checkCellMesh(mesh, "mesh").error().text();
-  Result<TetMesh> out = splitCells(std::move(mesh), how, report);
+  Result<TetMesh> out = splitCells(std::move(mesh), {how, true}, report);
   EXPECT_TRUE(out) << out.error().text();
   return out ? std::move(*out) : TetMesh{};
 }
@@ -333,7 +333,7 @@ TEST(SplitCells, aRationalBezierCellComesToLieOnItsCircles) {
   EXPECT_EQ(split.fields[0].name, "x");
 
   mesh.fields[1].values[3] = 0;
-  const Result<TetMesh> refused = splitCells(CellMesh(mesh), CurvedCells::kSplit, report);
+  const Result<TetMesh> refused = splitCells(CellMesh(mesh), {}, report);
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().message.find("weight"), std::string::npos);
 }
@@ -348,7 +348,7 @@ TEST(SplitCells, aNumberOfNodesThatNoDegreeHasIsLinearisedOnRequestAlone) {
     CellMesh one = mesh;
     one.addCell(type, ids);
     SplitReport report;
-    const Result<TetMesh> refused = splitCells(CellMesh(one), CurvedCells::kSplit, report);
+    const Result<TetMesh> refused = splitCells(CellMesh(one), {}, report);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, ErrorCode::kBadInput);
     EXPECT_NE(refused.error().message.find("19 nodes"), std::string::npos);
