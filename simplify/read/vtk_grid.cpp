@@ -36,6 +36,7 @@
 
 #include "simplify/read/cell_transfer.h"
 #include "simplify/read/fast_xml_parser.h"
+#include "simplify/read/foam_fields.h"
 #include "simplify/read/join_blocks.h"
 #include "simplify/read/mesh_format.h"
 #include "simplify/read/time_steps.h"
@@ -157,9 +158,11 @@ vtkSmartPointer<vtkAlgorithm> enSightReader(const std::filesystem::path& path) {
   return reader;
 }
 
-vtkSmartPointer<vtkAlgorithm> foamReader(const std::filesystem::path& path) {
+vtkSmartPointer<vtkAlgorithm> foamReader(const std::filesystem::path& path,
+                                         const FieldNames& fields) {
   const auto reader = vtkSmartPointer<vtkOpenFOAMReader>::New();
   reader->SetFileName(path.c_str());
+  reader->SetCreateCellToPoint(asksForPointFields(fields));
   reader->DecomposePolyhedraOff();
   reader->UpdateInformation();
   reader->EnableAllCellArrays();
@@ -193,7 +196,7 @@ vtkSmartPointer<vtkAlgorithm> readerOf(const std::filesystem::path& path, MeshFo
     case MeshFormat::kExodus: return exodusReader(path);
     case MeshFormat::kCgns: return cgnsReader(path);
     case MeshFormat::kEnSight: return enSightReader(path);
-    case MeshFormat::kOpenFoam: return foamReader(path);
+    case MeshFormat::kOpenFoam: return foamReader(path, options.fields);
     case MeshFormat::kPlot3d: return plot3dReader(path, options.plot3dSolution);
     default: {
       const auto reader = vtkSmartPointer<vtkAVSucdReader>::New();
@@ -281,6 +284,7 @@ Result<std::vector<TimedCells>> runReader(const std::filesystem::path& path, Mes
     ReadReport step;
     Result<CellMesh> cells = cellsOfOutput(reader->GetOutputDataObject(0), options, path, step);
     if (!cells) return std::unexpected(cells.error());
+    if (format == MeshFormat::kOpenFoam) keepFoamFields(options.fields, *cells, step.notes);
     addStep(std::move(step), s == 0, report);
     out.push_back({timed ? timeText(times[(*steps)[s]]) : "", std::move(*cells)});
   }

@@ -478,10 +478,11 @@ fs::path foamCase() {
   write(mesh / "neighbour", foam("labelList", "neighbour", "1\n(\n1\n)\n"));
   write(mesh / "boundary", foam("polyBoundaryMesh", "boundary",
                                 "1\n(\nwalls\n{\n type wall;\n nFaces 11;\n startFace 1;\n}\n)\n"));
-  write(step / "p",
-        foam("volScalarField", "p",
-             "dimensions [0 2 -2 0 0 0 0];\ninternalField nonuniform List<scalar> "
-             "\n2\n(\n5\n7\n)\n;\nboundaryField\n{\n walls\n {\n type zeroGradient;\n }\n}\n"));
+  for (const char* name : {"p", "q"})
+    write(step / name,
+          foam("volScalarField", name,
+               "dimensions [0 2 -2 0 0 0 0];\ninternalField nonuniform List<scalar> "
+               "\n2\n(\n5\n7\n)\n;\nboundaryField\n{\n walls\n {\n type zeroGradient;\n }\n}\n"));
   return marker;
 }
 
@@ -496,6 +497,34 @@ TEST(VtkFormats, openFoamCasesWithPolyhedraAreRead) {
       read->mesh.fields, [](const MeshField& f) { return f.name == "p" && isCellField(f); });
   ASSERT_NE(p, read->mesh.fields.end());
   EXPECT_EQ(*std::ranges::max_element(p->values), 7);
+}
+
+TEST(VtkFormats, ofOpenFoamTheSolversCellValuesAreReadAndPointValuesByName) {
+  const fs::path file = foamCase();
+  const auto fieldsOf = [&](const FieldNames& names) {
+    const Result<ReadMesh> read = readMesh(file, names);
+    EXPECT_TRUE(read) << read.error().text();
+    std::vector<std::string> out;
+    if (read)
+      for (const MeshField& f : read->mesh.fields) out.push_back(f.association + ":" + f.name);
+    return out;
+  };
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(fieldsOf(std::nullopt), (Names{"cell:p", "cell:q"}));
+  EXPECT_EQ(fieldsOf(Names{"p"}), Names{"cell:p"});
+  EXPECT_EQ(fieldsOf(Names{"point:p"}), Names{"point:p"});
+  EXPECT_EQ(fieldsOf(Names{"p", "point:p"}), (Names{"point:p", "cell:p"}));
+  EXPECT_EQ(fieldsOf(Names{"q", "point:p"}), (Names{"cell:q", "point:p"}));
+  const Result<ReadMesh> all = readMesh(file);
+  ASSERT_TRUE(all);
+  EXPECT_TRUE(std::ranges::any_of(all->report.notes, [](const std::string& note) {
+    return note.find("--fields p,point:p adds the means at points") != std::string::npos;
+  }));
+  const Result<ReadMesh> means = readMesh(file, Names{"point:p"});
+  ASSERT_TRUE(means);
+  const auto [least, most] = std::ranges::minmax(means->mesh.fields[0].values);
+  EXPECT_GE(least, 5);
+  EXPECT_LE(most, 7);
 }
 
 TEST(VtkFormats, aDamagedExodusFileIsAnErrorOrAMesh) {
