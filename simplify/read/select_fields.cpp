@@ -14,6 +14,10 @@
 namespace qtet {
 namespace {
 
+/// What to do about integers that no double holds.
+const std::string kLabelsInstead =
+    "number its different values 0, 1, 2 ... and store these labels as int32";
+
 std::string namesOf(const std::vector<MeshField>& fields, const std::vector<std::string>& others) {
   std::string out;
   for (const MeshField& field : fields) out += (out.empty() ? "" : ", ") + field.name;
@@ -121,10 +125,11 @@ Status leaveOutWideIntegers(const FieldNames& names, const std::filesystem::path
                              " holds an integer of 2^53 or more at " + field.association + " " +
                              std::to_string(place);
     if (names)
-      return fail(ErrorCode::kBadInput, path.string() + ": " + what +
-                                            "; leave the field out of --fields, or store it in "
-                                            "fewer bits");
-    notes.push_back(what + " and was left out: no double tells it from its neighbours");
+      return fail(
+          ErrorCode::kBadInput,
+          path.string() + ": " + what + "; leave the field out of --fields, or " + kLabelsInstead);
+    notes.push_back(what + " and was left out, since no double tells it from its neighbours; " +
+                    kLabelsInstead + " to keep it");
     fields.erase(fields.begin() + static_cast<std::ptrdiff_t>(f));
   }
   return {};
