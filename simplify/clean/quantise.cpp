@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include "codec/mesh/boundary.h"
 #include "codec/mesh/predicates.h"
 #include "proto/limits.h"
+#include "simplify/clean/float_spacing.h"
 #include "simplify/clean/quantise_field.h"
 #include "simplify/mesh/missing_values.h"
 #include "simplify/mesh/stopping.h"
@@ -116,6 +119,8 @@ void placePoints(const TetMesh& mesh, const Box& box, const std::stop_token& sto
                  QuantisedMesh& out) {
   const std::vector<signed char> before = signsOf(mesh, stop);
   QuantiseReport& report = out.report;
+  if (std::optional<std::string> lost = lostToFloats(mesh))
+    report.notes.push_back(std::move(*lost));
   for (int bits = report.requestedBits;; ++bits) {
     throwIfStopped(stop);
     out.mesh.lattice = latticeOf(box, bits);

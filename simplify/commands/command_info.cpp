@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <iomanip>
 #include <sstream>
 
@@ -51,11 +52,32 @@ OrderedJson infoJson(const OpenedLog& log) {
 
 constexpr std::size_t kShownLevels = 20;  ///< without --all
 
-/// A number with six significant digits: for people, --json has them all.
+/// Digits of a number for people; --json has them all, of which a double has 17 at most.
+constexpr int kBriefDigits = 6, kAllDigits = 17;
+constexpr double kBriefEnd = 1e6;  ///< the first whole number with more digits
+
 std::string brief(double number) {
   std::ostringstream out;
-  out << std::setprecision(6) << number;
+  out << std::setprecision(kBriefDigits) << number;
   return out.str();
+}
+
+/// A coordinate with all digits that a lattice of this step has, six at least.
+std::string coordinate(double x, double step) {
+  const double steps = step > 0 ? std::abs(x) / step : 0;
+  std::ostringstream out;
+  int digits = kBriefDigits;
+  for (double known = kBriefEnd; known <= steps && digits < kAllDigits; known *= 10) ++digits;
+  out << std::setprecision(digits) << x;
+  return out.str();
+}
+
+/// "(0, 4600000.25, -3)": the lattice's lowest corner.
+std::string originText(const Manifest& manifest) {
+  std::string out;
+  for (const double x : manifest.latticeOrigin)
+    out += (out.empty() ? "(" : ", ") + coordinate(x, manifest.latticeStep);
+  return out + ")";
 }
 
 /// A line of the head: what it is, bright where colours are allowed, and what there is to say.
@@ -98,7 +120,8 @@ void printHead(const OpenedLog& log, const OrderedJson& info, const Console& con
            " are header, manifest and table");
   line(console, "lattice",
        std::to_string(log.manifest.latticeBits) + " bits an axis, step " +
-           brief(log.manifest.latticeStep) + ", layout " + log.manifest.layout);
+           brief(log.manifest.latticeStep) + ", from " + originText(log.manifest) + ", layout " +
+           log.manifest.layout);
   line(console, "digest", info["digest"]);
   for (const auto& [what, size] : info["kept"].items())
     line(console, "kept", what + ": " + grouped(size) + " bytes");

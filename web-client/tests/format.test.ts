@@ -29,3 +29,10 @@ test('coordinatesAreAsFineAsTheirAxis', () => {
   expect(formatCoordinate(1234567, 2e6)).toBe('1.23e+6');
   expect(formatCoordinate(-0.00012345, 0.001)).toBe('\u22121.23e\u22124');
 });
+
+test('coordinatesOfAMapKeepTheirDigits', () => {
+  expect(formatCoordinate(4600123.46, 20)).toBe('4600123.46');
+  expect(formatCoordinate(499999.5, 20)).toBe('499999.50');
+  expect(formatCoordinate(4600123.46, 9000)).toBe('4600123');
+  expect(formatCoordinate(4612345, 2e5)).toBe('4.6123e+6');
+});

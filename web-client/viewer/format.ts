@@ -53,12 +53,17 @@ export function formatValue(value: number): string {
 }
 
 /**
- * A coordinate on an axis of length `span`, to a thousandth of it. Almost zero is written as zero.
+ * A coordinate on an axis of length `span`, to a thousandth of it, however far from the origin it
+ * lies. Almost zero is written as zero.
  */
 export function formatCoordinate(value: number, span: number): string {
   const magnitude = Math.max(Math.abs(value), span);
-  if (magnitude >= 1e5 || magnitude < 1e-2)
-    return (Math.abs(value) < span / 2000 ? 0 : value).toExponential(2).replaceAll('-', '\u2212');
+  if (span >= 1e5 || magnitude < 1e-2) {
+    const more = Math.max(0, Math.ceil(Math.log10(magnitude / span) - 1e-9));
+    return (Math.abs(value) < span / 2000 ? 0 : value)
+      .toExponential(Math.min(2 + more, 16))
+      .replaceAll('-', '\u2212');
+  }
   const decimals = Math.max(0, Math.ceil(-Math.log10(span / 1000) - 1e-9));
   const text = Math.abs(value).toFixed(Math.min(decimals, 8));
   return value < 0 && Number(text) !== 0 ? `\u2212${text}` : text;
