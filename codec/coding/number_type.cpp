@@ -2,6 +2,7 @@
 
 #include <type_traits>
 
+#include "codec/coding/float_bits.h"
 #include "codec/coding/nearest_integer.h"
 
 namespace qtet {
@@ -9,8 +10,10 @@ namespace {
 
 template <class T>
 T nearest(double value) {
-  if constexpr (std::is_floating_point_v<T>) {
-    return static_cast<T>(value);
+  if constexpr (std::is_same_v<T, float>) {
+    return narrowed(value);
+  } else if constexpr (std::is_floating_point_v<T>) {
+    return value;
   } else {
     // The limits of 64-bit integers are no doubles: compare with the powers of two around them.
     if (std::isnan(value)) return 0;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <unordered_map>
 
+#include "codec/coding/float_bits.h"
 #include "codec/coding/nearest_integer.h"
 #include "codec/coding/range_coder.h"
 #include "codec/mesh/mesh.h"
@@ -31,7 +32,7 @@ class Ordering {
   [[nodiscard]] std::int64_t of(double value) const {
     switch (kind_) {
       case Kind::kFloat32: {
-        const std::uint32_t bits = floatBits(value);
+        const auto bits = std::bit_cast<std::uint32_t>(narrowed(value));
         const auto magnitude = static_cast<std::int64_t>(bits & 0x7FFFFFFFu);
         return bits >> 31 != 0 ? ~magnitude : magnitude;
       }
@@ -53,7 +54,8 @@ class Ordering {
     switch (kind_) {
       case Kind::kFloat32:
         if (magnitude >> 31 != 0) return false;
-        out = floatOf(static_cast<std::uint32_t>(magnitude) | (negative ? 0x80000000u : 0u));
+        out = widened(std::bit_cast<float>(static_cast<std::uint32_t>(magnitude) |
+                                           (negative ? 0x80000000u : 0u)));
         return true;
       case Kind::kFloat64:
         out = std::bit_cast<double>(magnitude | (negative ? std::uint64_t{1} << 63 : 0));
@@ -65,22 +67,6 @@ class Ordering {
   }
 
  private:
-  // By hand, because conversion between the types may make a signalling NaN quiet.
-  static constexpr std::uint64_t kDoubleExponent = std::uint64_t{0x7FF} << 52;
-  static std::uint32_t floatBits(double value) {
-    const auto bits = std::bit_cast<std::uint64_t>(value);
-    if (!std::isnan(value)) return std::bit_cast<std::uint32_t>(static_cast<float>(value));
-    return static_cast<std::uint32_t>(bits >> 63) << 31 | 0x7F800000u |
-           static_cast<std::uint32_t>(bits >> 29 & 0x7FFFFFu);
-  }
-  static double floatOf(std::uint32_t bits) {
-    const float value = std::bit_cast<float>(bits);
-    if ((bits & 0x7F800000u) != 0x7F800000u || (bits & 0x7FFFFFu) == 0)
-      return static_cast<double>(value);
-    return std::bit_cast<double>(std::uint64_t{bits >> 31} << 63 | kDoubleExponent |
-                                 std::uint64_t{bits & 0x7FFFFFu} << 29);
-  }
-
   Kind kind_;
 };
 

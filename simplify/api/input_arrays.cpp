@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cstring>
+#include <type_traits>
 
+#include "codec/coding/float_bits.h"
 #include "proto/limits.h"
 #include "proto/manifest.h"
 
@@ -74,8 +76,12 @@ Result<MeshField> fieldOf(const qtet_input_field& field, std::uint32_t number,
   const bool isKnown = withType(field.type, [&]<class T>(T) {
     const T* from = static_cast<const T*>(field.values);
     out.values.reserve(count);
-    std::transform(from, from + count, std::back_inserter(out.values),
-                   [](T value) { return static_cast<double>(value); });
+    std::transform(from, from + count, std::back_inserter(out.values), [](T value) {
+      if constexpr (std::is_same_v<T, float>)
+        return widened(value);
+      else
+        return static_cast<double>(value);
+    });
   });
   if (!isKnown) return bad(which + "has the unknown type " + std::to_string(field.type));
   out.type = kFieldTypes[field.type - 1];

@@ -59,6 +59,8 @@ Status compareWithInput(const OpenedLog& log, const Refiner& refiner, const Inpu
          {"largestPositionErrorSteps", expected->largestPositionError},
          {"largestFieldErrorSteps", fieldErrors},
          {"interchangeableVertices", same->interchangeable},
+         {"droppedPoints", cleaned->unusedPoints.count},
+         {"droppedCells", cleaned->repeatedVertexCells.count + cleaned->duplicateCells.count},
          {"kept", *kept}};
   return {};
 }
@@ -92,6 +94,17 @@ Result<OrderedJson> verify(const ParsedWords& parsed, Progress& progress) {
   return report;
 }
 
+/// Dropped points and cells shift the numbers of those behind them (kept_input.h, asRead).
+std::string orderSentence(const OrderedJson& against) {
+  const auto points = against["droppedPoints"].get<std::uint64_t>(),
+             cells = against["droppedCells"].get<std::uint64_t>();
+  if (points + cells == 0)
+    return "its points, cells and their vertices are numbered as in the file\n";
+  return "its points and cells are numbered in the file's order, but count without " +
+         counted(points, "point", "points") + " and " + counted(cells, "cell", "cells") +
+         " of the file that were dropped; a cell that was turned stays turned\n";
+}
+
 void printReport(const OrderedJson& report, std::ostream& out) {
   out << "digest      " << report["digest"].get<std::string>() << "\nmeshDigest  "
       << report["meshDigest"].get<std::string>()
@@ -108,8 +121,9 @@ void printReport(const OrderedJson& report, std::ostream& out) {
   for (const auto& [name, error] : against["largestFieldErrorSteps"].items())
     out << ", " << printable(name) << " within " << error.get<double>() << " field steps";
   out << "\n";
-  if (against["kept"]["order"].get<bool>())
-    out << "its points, cells and their vertices are numbered as in the file\n";
+  if (against["kept"]["order"].get<bool>()) out << orderSentence(against);
+  if (against["kept"].value("originalCells", false))
+    out << "its cells know which cell of the file they come from\n";
   if (against["kept"]["positions"].get<bool>())
     out << "its coordinates are those of the file, bit for bit\n";
   for (const auto& [name, exact] : against["kept"]["fields"].items())

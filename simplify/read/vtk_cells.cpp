@@ -22,7 +22,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
+#include "codec/coding/float_bits.h"
 #include "proto/limits.h"
 #include "simplify/read/select_fields.h"
 #include "simplify/split/higher_cells.h"
@@ -38,6 +40,14 @@ std::uint32_t narrowed(vtkIdType id) {
   return id >= 0 && id < vtkIdType{kGhost} ? static_cast<VertexId>(id) : kGhost;
 }
 
+template <class T>
+double asDouble(T value) {
+  if constexpr (std::is_same_v<T, float>)
+    return widened(value);
+  else
+    return static_cast<double>(value);
+}
+
 /// All tuples as doubles; `out` has room for them. Without a virtual call a value where the array
 /// is a plain one.
 void copyValues(vtkDataArray& array, double* out) {
@@ -45,7 +55,7 @@ void copyValues(vtkDataArray& array, double* out) {
   const auto copyFrom = [&]<class T>(vtkAOSDataArrayTemplate<T>& plain) {
     const T* values = plain.GetPointer(0);
     std::transform(values, values + plain.GetNumberOfValues(), out,
-                   [](T value) { return static_cast<double>(value); });
+                   [](T value) { return asDouble(value); });
   };
   switch (array.GetDataType()) {
     vtkTemplateMacro(if (auto* plain = vtkAOSDataArrayTemplate<VTK_TT>::FastDownCast(

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "codec/coding/float_bits.h"
+#include "codec/files/atomic_file.h"
 #include "simplify/commands/printable.h"
 #include "simplify/read/read_mesh.h"
 #include "tests/simplify/mesh/tet_meshes.h"
@@ -752,6 +754,80 @@ TEST_F(Tool, theInputItselfComesBack) {
   ASSERT_EQ(run("extract odd.qtet --level 0 -o base.vtu").code, 0);
   EXPECT_EQ(readMesh(folder_ / "base.vtu")->mesh.tetrahedra.size(),
             info["levels"][0]["tetrahedra"]);
+}
+
+TEST_F(Tool, aSignallingNanComesBackBitForBit) {
+  TetMesh mesh = boxSample();
+  constexpr std::uint32_t kNarrowBits = 0x7FA12345u;
+  constexpr std::uint64_t kWideBits = 0x7FF4000000ABCDEFu;
+  MeshField narrow{"Narrow", 1, "float32", std::vector<double>(mesh.points.size(), 1), "point"},
+      wide{"Wide", 1, "float64", std::vector<double>(mesh.points.size(), 1), "point"};
+  narrow.values[3] = widened(std::bit_cast<float>(kNarrowBits));
+  wide.values[4] = std::bit_cast<double>(kWideBits);
+  mesh.fields = {narrow, wide};
+  write("odd.vtu", mesh);
+  ASSERT_EQ(run("simplify odd.vtu -o odd.qtet --keep-order --lossless").code, 0);
+  ASSERT_EQ(run("verify odd.qtet --against odd.vtu").code, 0);
+  ASSERT_EQ(run("extract odd.qtet --ratio 1 -o back.vtu").code, 0);
+  for (const char* file : {"odd.vtu", "back.vtu"}) {
+    const std::string bytes = contentOf(folder_ / file);
+    const auto holds = [&](const auto& bits) {
+      return bytes.find(std::string(reinterpret_cast<const char*>(&bits), sizeof bits)) !=
+             std::string::npos;
+    };
+    EXPECT_TRUE(holds(kNarrowBits)) << file;
+    EXPECT_TRUE(holds(kWideBits)) << file;
+  }
+}
+
+TEST_F(Tool, verifySaysWhatItsNumbersCountWithout) {
+  TetMesh mesh = oddMesh();
+  write("plain.vtu", mesh);
+  mesh.points.insert(mesh.points.begin(), {{5, 5, 5}, {6, 6, 6}});
+  for (Tetrahedron& cell : mesh.tetrahedra)
+    for (VertexId& v : cell) v += 2;
+  mesh.tetrahedra.insert(mesh.tetrahedra.begin() + 1, mesh.tetrahedra.front());
+  for (MeshField& field : mesh.fields) {
+    const std::size_t more = (isCellField(field) ? 1 : 2) * field.components;
+    field.values.insert(field.values.begin(), more, 0.0);
+  }
+  write("dropped.vtu", mesh);
+  for (const char* name : {"plain", "dropped"})
+    ASSERT_EQ(run(std::string("simplify ") + name + ".vtu -o " + name + ".qtet --keep-order").code,
+              0);
+  EXPECT_NE(run("verify plain.qtet --against plain.vtu").out.find("are numbered as in the file\n"),
+            std::string::npos);
+  const Ran said = run("verify dropped.qtet --against dropped.vtu");
+  EXPECT_EQ(said.code, 0) << said.err;
+  EXPECT_EQ(said.out.find("are numbered as in the file\n"), std::string::npos) << said.out;
+  EXPECT_NE(said.out.find("count without 2 points and 1 cell"), std::string::npos) << said.out;
+  const nlohmann::json against =
+      run("verify dropped.qtet --against dropped.vtu --json").json()["against"];
+  EXPECT_EQ(against["droppedPoints"], 2);
+  EXPECT_EQ(against["droppedCells"], 1);
+}
+
+TEST_F(Tool, coordinatesOfAMapKeepWhatTheLatticeKeeps) {
+  TetMesh mesh = boxSample();
+  mesh.pointType = "float64";
+  for (Position& p : mesh.points) p = {499'999.5 + 9 * p[0], 4'600'000.25 + 9 * p[1], 100 + p[2]};
+  write("map.vtu", mesh);
+  ASSERT_EQ(run("simplify map.vtu -o map.qtet").code, 0);
+  const std::string info = run("info map.qtet").out;
+  EXPECT_NE(info.find("from (499999.5, 4600000.25, 100)"), std::string::npos) << info;
+  const double step = run("info map.qtet --json").json()["lattice"]["step"];
+  for (const char* ending : {"vtu", "vtk"}) {
+    const std::string name = std::string("back.") + ending;
+    ASSERT_EQ(run("extract map.qtet --ratio 1 -o " + name).code, 0);
+    const Result<ReadMesh> back = readMesh(folder_ / name);
+    ASSERT_TRUE(back) << back.error().text();
+    EXPECT_EQ(back->mesh.pointType, "float64") << name;
+    for (const Position& p : back->mesh.points)
+      for (std::size_t k = 0; k < 2; ++k) {
+        const double eighths = (p[k] - mesh.points[0][k]) / 9 * 8;
+        ASSERT_NEAR(eighths, std::round(eighths), 0.51 * step / 9 * 8) << name;
+      }
+  }
 }
 
 TEST_F(Tool, verifyProvesWhatTheLogKeptAndNoMore) {
