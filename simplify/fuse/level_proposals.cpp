@@ -32,11 +32,11 @@ void LevelProposals::end() {
 }
 
 void LevelProposals::serve(std::size_t worker) {
-  for (int spins = 0; !isOver_.load(std::memory_order_relaxed);) {
+  for (Waiting waiting; !isOver_.load(std::memory_order_relaxed);) {
     if (makeNext(worker))
-      spins = 0;
+      waiting = {};
     else
-      waitALittle(spins++);
+      waiting.once();
   }
 }
 
@@ -141,12 +141,12 @@ Proposal* LevelProposals::make(const Claim& claim, std::size_t worker) {
 
 // While another thread makes it, worker 0 makes others.
 Proposal* LevelProposals::await(std::size_t at) {
-  for (int spins = 0;;) {
+  for (Waiting waiting;;) {
     if (Proposal* made = std::atomic_ref(made_[at]).load(std::memory_order_acquire)) return made;
     if (makeNext(0))
-      spins = 0;
+      waiting = {};
     else
-      waitALittle(spins++);
+      waiting.once();
   }
 }
 

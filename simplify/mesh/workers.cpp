@@ -9,9 +9,16 @@
 namespace qtet {
 namespace {
 
-// Looks at a counter this often before a worker sleeps, some tens of microseconds: less than it
-// takes to be woken, more than the pause between two jobs.
-constexpr int kSpins = 4000;
+using Clock = std::chrono::steady_clock;
+
+// How long a thread looks before it sleeps: about as long as being woken takes, and more than the
+// pause between two jobs. A time and no count, since processors' pauses take 5 to 75 ns.
+constexpr std::chrono::microseconds kMoment{50};
+// Looks between two looks at the clock, which takes as long as some pauses.
+constexpr int kLooksAClock = 16;
+// How long a thread sleeps between two looks where nobody wakes it. The kernel adds half of it, and
+// a look takes a thirtieth.
+constexpr std::chrono::microseconds kNap{100};
 
 inline void pause() {
 #if defined(__x86_64__) || defined(__i386__)
@@ -19,9 +26,26 @@ inline void pause() {
 #endif
 }
 
+/// Looks until it is done, or for a moment.
+template <class Done>
+void spinUntil(const Done& done) {
+  const Clock::time_point end = Clock::now() + kMoment;
+  do {
+    for (int look = 0; look < kLooksAClock; ++look) {
+      if (done()) return;
+      pause();
+    }
+  } while (Clock::now() < end);
+}
+
 }  // namespace
 
-void waitALittle(int spins) { spins < kSpins ? pause() : std::this_thread::yield(); }
+void Waiting::once() {
+  if (isLong_) return std::this_thread::sleep_for(kNap);
+  if (looks_ == 0) end_ = Clock::now() + kMoment;
+  pause();
+  isLong_ = ++looks_ % kLooksAClock == 0 && Clock::now() >= end_;
+}
 
 int threadsAtOnce(int asked) {
   return std::min(asked, std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
@@ -72,9 +96,14 @@ void Workers::beside(const std::function<void(std::size_t)>& others,
     const std::lock_guard lock(mutex_);
     job_ = nullptr;  // who has not come by now need not be waited for
   }
-  for (int spins = 0; busy_ > 0; ++spins) waitALittle(spins);
+  awaitOthers();
   if (failure) std::rethrow_exception(failure);
   if (job.failure) std::rethrow_exception(job.failure);
+}
+
+void Workers::awaitOthers() {
+  spinUntil([this] { return busy_ == 0; });
+  for (std::size_t busy = busy_; busy > 0; busy = busy_) busy_.wait(busy);
 }
 
 void Workers::forEach(std::size_t n, std::size_t grain,
@@ -111,7 +140,7 @@ void forEach(Workers* workers, std::size_t n, std::size_t grain,
 /// none.
 Workers::Job* Workers::next(std::size_t& seen) {
   for (;;) {
-    for (int spins = 0; spins < kSpins && jobs_ == seen; ++spins) pause();
+    spinUntil([&] { return jobs_ != seen; });
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return ending_ || jobs_ != seen; });
     if (ending_) return nullptr;
@@ -131,7 +160,7 @@ void Workers::serve(std::size_t worker) {
       const std::lock_guard lock(mutex_);
       if (!job->failure) job->failure = std::current_exception();
     }
-    --busy_;
+    if (--busy_ == 0) busy_.notify_one();
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <functional>
@@ -19,9 +20,19 @@ namespace qtet {
 /// another, ten times as long with 256 on two cores.
 [[nodiscard]] int threadsAtOnce(int asked);
 
-/// For who looks at something again and again until another thread has done it: a moment, and from
-/// some tens of microseconds on the processor's next task.
-void waitALittle(int spins);
+/// One wait of a thread that looks at something again and again until another thread has done it.
+/// It keeps the processor for a moment and then sleeps between the looks, so that a busy machine
+/// has the processor for others.
+class Waiting {
+ public:
+  /// Between two looks.
+  void once();
+
+ private:
+  std::chrono::steady_clock::time_point end_{};  // of the moment
+  int looks_ = 0;
+  bool isLong_ = false;
+};
 
 class Workers {
  public:
@@ -59,6 +70,7 @@ class Workers {
 
  private:
   struct Job;
+  void awaitOthers();
   void serve(std::size_t worker);
   [[nodiscard]] Job* next(std::size_t& seen);
 

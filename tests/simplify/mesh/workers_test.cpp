@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
+#include <ctime>
 #include <stdexcept>
 #include <thread>
 
@@ -84,13 +86,13 @@ TEST_P(OfThreads, othersWorkBesideTheirOwnerUntilHeIsDone) {
     std::vector<std::atomic<int>> times(workers.count());
     const auto others = [&](std::size_t worker) {
       ++times.at(worker), ++come;
-      while (!isOver) waitALittle(0);
+      for (Waiting waiting; !isOver;) waiting.once();
       ++gone;
     };
     workers.beside(others, [&] {
       ++times[0];
       // once with all of them
-      for (int spins = 0; round == 0 && come + 1 < workers.count(); ++spins) waitALittle(spins);
+      for (Waiting waiting; round == 0 && come + 1 < workers.count();) waiting.once();
       isOver = true;
     });
     EXPECT_EQ(gone, come) << "nobody is left behind";
@@ -105,7 +107,7 @@ TEST_P(OfThreads, anExceptionOfEitherSideIsThrownOnWhenTheOthersHaveEnded) {
   std::atomic<int> inside{0};
   const auto waits = [&](std::size_t) {
     ++inside;
-    while (!isOver) waitALittle(0);
+    for (Waiting waiting; !isOver;) waiting.once();
     --inside;
   };
   const auto fails = [&] {
@@ -122,12 +124,57 @@ TEST_P(OfThreads, anExceptionOfEitherSideIsThrownOnWhenTheOthersHaveEnded) {
   };
   EXPECT_THROW(workers.beside(othersFail,
                               [&] {
-                                for (int spins = 0; come == 0; ++spins) waitALittle(spins);
+                                for (Waiting waiting; come == 0;) waiting.once();
                               }),
                std::runtime_error);
   std::atomic<int> done{0};
   workers.forEach(100, 8, [&](std::size_t, std::size_t) { ++done; });
   EXPECT_EQ(done, 100);
+}
+
+/// Processor time of this process.
+std::chrono::duration<double, std::milli> processorTime() {
+  timespec now{};
+  ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return std::chrono::seconds(now.tv_sec) + std::chrono::nanoseconds(now.tv_nsec);
+}
+
+constexpr std::chrono::milliseconds kLongWait{300};
+
+/// Of the threads that wait. Sleeping between looks takes a tenth of it; spinning would take all of
+/// the wait, or a part of it on a busy machine.
+double mostMilliseconds(const Workers& workers) {
+  return 40.0 * static_cast<double>(std::max<std::size_t>(1, workers.count() - 1));
+}
+
+TEST_P(OfThreads, whoWaitsLongForTheOwnerSleeps) {
+  Workers workers(GetParam());
+  std::atomic<bool> isOver{false};
+  const auto before = processorTime();
+  workers.beside(
+      [&](std::size_t) {
+        for (Waiting waiting; !isOver;) waiting.once();
+      },
+      [&] {
+        std::this_thread::sleep_for(kLongWait);
+        isOver = true;
+      });
+  EXPECT_LT((processorTime() - before).count(), mostMilliseconds(workers));
+}
+
+TEST_P(OfThreads, anOwnerThatWaitsLongForTheOthersSleeps) {
+  Workers workers(GetParam());
+  std::atomic<bool> isThere{workers.count() == 1};
+  const auto before = processorTime();
+  workers.beside(
+      [&](std::size_t) {
+        isThere = true;
+        std::this_thread::sleep_for(kLongWait);
+      },
+      [&] {
+        for (Waiting waiting; !isThere;) waiting.once();
+      });
+  EXPECT_LT((processorTime() - before).count(), mostMilliseconds(workers));
 }
 
 INSTANTIATE_TEST_SUITE_P(Workers, OfThreads, ::testing::Values(1, 2, 5),
