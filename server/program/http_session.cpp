@@ -62,6 +62,7 @@ class HttpSession {
   const Services& services_;
   HttpInput input_;
   RequestReport report_;
+  bool headOnly_ = false;  // the request under way is a HEAD: its answer has no body
 };
 
 asio::awaitable<bool> HttpSession::shakeHands() {
@@ -111,6 +112,7 @@ asio::awaitable<bool> HttpSession::serveRequest() {
   report_.begin();
   Parser parser;
   auto head = co_await input_.readHead(parser);
+  headOnly_ = parser.get().method() == http::verb::head;
   if (!head) {
     if (head.error()) co_await refuse(std::move(*head.error()));
     co_return false;
@@ -190,7 +192,7 @@ asio::awaitable<bool> HttpSession::send(Reply reply, bool keepAlive) {
   ByteView body;
   if (const auto* text = std::get_if<std::string>(&reply.body)) body = viewOf(*text);
   if (const auto* view = std::get_if<ByteView>(&reply.body)) body = *view;
-  if (!reply.sendBody) body = {};
+  if (!reply.sendBody || headOnly_) body = {};
   if (body.size() < limits::kLeastFromFile) reply.file.reset();
   const Sent sent = co_await sendReply(peer_.socket, {head, body, reply.file},
                                        services_.timeouts.write, services_.unpaced);

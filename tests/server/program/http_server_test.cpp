@@ -453,6 +453,61 @@ TEST(ServerLimits, oneAddressMayHaveSoManyConnections) {
   EXPECT_TRUE(third.closedByServer());
 }
 
+TEST(ServerLimits, aHeadThatIsRefusedHasNoBodyThatTheNextAnswerWouldBeTakenFor) {
+  const test::ServedFolder folder;
+  test::RunningServer server(folder.store(), folder.viewer(), {.maxRequestsPerSecond = 1});
+  RawClient client(server.port());
+  constexpr int kRequests = 50;
+  std::string requests;
+  for (int i = 0; i < kRequests; ++i) requests += "HEAD /livez HTTP/1.1\r\nHost: a\r\n\r\n";
+  client.send(requests);
+  int refused = 0;
+  for (int i = 0; i < kRequests; ++i) {
+    const HttpResponse response = client.receive(true);
+    ASSERT_TRUE(response.status == 200 || response.status == 429) << i << " " << response.status;
+    refused += response.status == 429;
+    EXPECT_NE(response.header("content-length"), "0") << "that of the answer to a GET";
+  }
+  EXPECT_GT(refused, 0);
+}
+
+/// Whole lines behind the request line of a HEAD that is refused, and by which status.
+struct RefusedHead {
+  std::string target, lines;
+  unsigned status;
+};
+
+TEST(ServerLimits, everyRefusalOfAHeadIsItsHeadersAlone) {
+  const test::ServedFolder folder;
+  Access access(
+      *Tokens::parse("write * aSecretOfTwentyTwoChars\nread * aSecretOfTwentyTwoChars\n"));
+  test::RunningServer server(folder.store(), folder.viewer(), {.access = &access});
+  const std::string host = "Host: a\r\n";
+  for (const RefusedHead& head : std::vector<RefusedHead>{
+           {"/livez", "", 400},
+           {"/livez", host + host, 400},
+           {"/livez", "Host: a b\r\n", 400},
+           {"/livez", host + "Origin: a\r\nOrigin: b\r\n", 400},
+           {"/livez", host + "Expect: much\r\n", 417},
+           {"/livez", host + "Transfer-Encoding: chunked\r\n", 501},
+           {"/livez", host + "Content-Length: 5\r\n", 413},
+           {"/livez", host + "Content-Length: x\r\n", 400},
+           {"/a%00b", host, 400},
+           {"/v1/tickets", host, 405},
+           {"/v1/stream", host, 426},
+           {"/v1/stream", host + "Connection: Upgrade\r\nUpgrade: websocket\r\n", 426},
+           {"/v1/meshes/noise", host, 401},
+           {"/v1/meshes/noise/upload", host, 401},
+           {"/nothing", host, 404}}) {
+    RawClient client(server.port());
+    client.send("HEAD " + head.target + " HTTP/1.1\r\n" + head.lines + "\r\n");
+    client.finishSending();
+    const std::string answer = client.readToEnd();
+    EXPECT_TRUE(answer.starts_with("HTTP/1.1 " + std::to_string(head.status))) << answer;
+    EXPECT_EQ(answer.find("\r\n\r\n"), answer.size() - 4) << head.lines << answer;
+  }
+}
+
 TEST(ServerLimits, oneAddressMayAskSoOften) {
   const test::ServedFolder folder;
   test::RunningServer server(folder.store(), folder.viewer(), {.maxRequestsPerSecond = 5});
