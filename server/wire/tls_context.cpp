@@ -2,9 +2,11 @@
 
 #include "server/wire/tls_context.h"
 
+#include <openssl/err.h>
 #include <openssl/ssl.h>
 
 #include <boost/asio/ssl/context.hpp>
+#include <boost/asio/ssl/error.hpp>
 #include <cstdint>
 #include <new>
 #include <string>
@@ -13,7 +15,8 @@
 namespace qtet {
 namespace {
 
-namespace ssl = boost::asio::ssl;
+namespace asio = boost::asio;
+namespace ssl = asio::ssl;
 using boost::system::error_code;
 
 /// Of TLS 1.2; those of 1.3 are all of this kind.
@@ -95,6 +98,12 @@ Result<std::shared_ptr<const TlsContext>> TlsContext::load(const std::filesystem
   if (ec)
     return refused(key,
                    "holds no key in PEM, unencrypted, that belongs to " + certificate.string());
+  // OpenSSL keeps a key of each kind: one of another kind than the certificate's is no error to it.
+  ::ERR_clear_error();
+  if (::SSL_CTX_check_private_key(out->context().native_handle()) != 1) {
+    ec = error_code(static_cast<int>(::ERR_get_error()), asio::error::get_ssl_category());
+    return refused(key, "holds a key, but not that of " + certificate.string());
+  }
   return out;
 }
 

@@ -19,13 +19,13 @@ namespace asio = boost::asio;
 namespace ssl = asio::ssl;
 using boost::system::error_code;
 
-bool makeCertificate(const std::filesystem::path& folder, const std::string& name) {
+bool makeCertificate(const std::filesystem::path& folder, const std::string& name,
+                     const std::string& algorithm) {
   const std::string base = (folder / name).string();
-  const std::string command =
-      "openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:prime256v1 -nodes -days 2 -subj "
-      "/CN=localhost "
-      "-addext subjectAltName=DNS:localhost -keyout '" +
-      base + ".key' -out '" + base + ".crt' 2> /dev/null";
+  const std::string command = "openssl req -x509 -newkey " + algorithm +
+                              " -nodes -days 2 -subj /CN=localhost "
+                              "-addext subjectAltName=DNS:localhost -keyout '" +
+                              base + ".key' -out '" + base + ".crt' 2> /dev/null";
   return std::system(command.c_str()) == 0;
 }
 

@@ -17,8 +17,10 @@
 namespace qtet::test {
 
 /// Makes NAME.crt and NAME.key in `folder` with the openssl program: for localhost, signed by
-/// itself. False: there is no such program.
-[[nodiscard]] bool makeCertificate(const std::filesystem::path& folder, const std::string& name);
+/// itself. `algorithm` is what follows -newkey. False: there is no such program.
+[[nodiscard]] bool makeCertificate(
+    const std::filesystem::path& folder, const std::string& name,
+    const std::string& algorithm = "ec -pkeyopt ec_paramgen_curve:prime256v1");
 
 /// Signs NAME.crt of `folder` anew with NAME.key, for a day that is over. False: it did not go.
 [[nodiscard]] bool expireCertificate(const std::filesystem::path& folder, const std::string& name);

@@ -159,6 +159,21 @@ TEST_F(TlsTest, whatIsNoPairIsNamed) {
   }
 }
 
+TEST_F(TlsTest, aKeyOfAnotherKindThanItsCertificateIsRefused) {
+  ASSERT_TRUE(test::makeCertificate(folder_.path(), "rsa", "rsa:2048"));
+  EXPECT_TRUE(TlsContext::load(file("rsa.crt"), file("rsa.key")));
+  for (const auto& [certificate, key] :
+       {std::pair("a.crt", "rsa.key"), std::pair("rsa.crt", "a.key")}) {
+    const auto refused = TlsContext::load(file(certificate), file(key));
+    ASSERT_FALSE(refused) << certificate << " " << key;
+    EXPECT_TRUE(refused.error().message.starts_with(file(key).string() + " holds a key, but not"))
+        << refused.error().message;
+    test::Program check({(folder_.path() / "logs").string(), "--check-config", "--tls-certificate",
+                         file(certificate), "--tls-key", file(key)});
+    EXPECT_EQ(check.exitCode(), 1);
+  }
+}
+
 TEST_F(TlsTest, whoSpeaksPlainHttpIsTold) {
   test::RawClient plain(port());
   const test::HttpResponse answer = plain.get("/v1/meshes");
