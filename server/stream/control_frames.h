@@ -2,6 +2,7 @@
 // (RFC 6455, 5.5).
 #pragma once
 
+#include <cassert>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -27,10 +28,13 @@ class ControlFrames {
   void pong(std::string payload) { pong_ = std::move(payload); }
   void ping() { ping_ = true; }
   /// Closes by our own decision, unless a close frame is due or out already.
-  void close(CloseCode code) {
+  /// `reason` is for people: UTF-8, at most 123 bytes (RFC 6455, 5.5).
+  void close(CloseCode code, std::string_view reason = "") {
+    assert(reason.size() <= 123);
     const auto number = static_cast<std::uint16_t>(code);
     if (!closing())
-      close_ = Due{{static_cast<char>(number >> 8), static_cast<char>(number & 0xFF)}};
+      close_ = Due{std::string{static_cast<char>(number >> 8), static_cast<char>(number & 0xFF)} +
+                   std::string(reason)};
   }
   /// Answers the client's close frame with the client's own code, as RFC 6455 suggests.
   void answerClose(std::string_view payload) {

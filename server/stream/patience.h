@@ -17,19 +17,23 @@ class Patience {
 
   /// Bytes came.
   void heard(Clock::time_point now) { heard_ = now; }
-  /// Writing begins, or the client took some of what is written.
-  void took(Clock::time_point now) { writing_ = now; }
+  /// Writing begins.
+  void begins(Clock::time_point now) { writing_ = now; }
+  /// The client took some of what is written, which is a sign of life like any other: its pong
+  /// waits behind the data.
+  void took(Clock::time_point now) { writing_ = heard_ = now; }
   /// All was taken.
   void wrote() { writing_.reset(); }
 
   enum class Verdict : std::uint8_t {
     kWait,
     kPing,    ///< half of the silence has passed
-    kGiveUp,  ///< it was silent, or took nothing, for too long
+    kSilent,  ///< it said and took nothing for too long
+    kStuck,   ///< it took nothing of what is being written for too long
   };
   [[nodiscard]] Verdict at(Clock::time_point now) const {
-    const bool stuck = writing_ && now - *writing_ >= write_;
-    if (stuck || now - heard_ >= silence_) return Verdict::kGiveUp;
+    if (writing_ && now - *writing_ >= write_) return Verdict::kStuck;
+    if (!writing_ && now - heard_ >= silence_) return Verdict::kSilent;
     return now - heard_ >= silence_ / 2 ? Verdict::kPing : Verdict::kWait;
   }
   /// How often at() is to be asked.

@@ -36,6 +36,8 @@ constexpr std::size_t kReadBytes = 4096;
 /// Bytes that the kernel may hold unsent: so a superseded order stops soon, and a stalled client
 /// costs little.
 constexpr int kUnsentBytes = 80 << 10;
+/// What a client reads that is given up.
+constexpr std::string_view kSilenceReason = "no message and no pong came for too long";
 /// Before other connections of the thread have their turn.
 constexpr int kReadsInARow = 8;
 
@@ -195,7 +197,7 @@ asio::awaitable<void> StreamSession::write() {
 }
 
 asio::awaitable<void> StreamSession::flush(FrameGather& gather) {
-  patience_.took(Clock::now());
+  patience_.begins(Clock::now());
   while (peer_.socket.isOpen() && !gather.written()) {
     error_code ec;
     const std::size_t count = gather.write(peer_.socket, ec);
@@ -214,8 +216,8 @@ asio::awaitable<void> StreamSession::waitForNews() {
   co_await wake_.async_wait(redirect_error(use_awaitable, ec));
 }
 
-/// Pings a silent client, gives up one that stays so, takes nothing that waits for it, or does not
-/// close.
+/// Pings a silent client, closes on one that stays so, and cuts one that takes nothing of what waits
+/// for it, or does not close.
 asio::awaitable<void> StreamSession::keepTime() {
   while (peer_.socket.isOpen()) {
     error_code ec;
@@ -224,8 +226,11 @@ asio::awaitable<void> StreamSession::keepTime() {
     co_await clock_.async_wait(redirect_error(use_awaitable, ec));
     if (ec) continue;  // the writer has closed, or the session was cut
     const Patience::Verdict verdict = patience_.at(Clock::now());
-    if (closing || verdict == Patience::Verdict::kGiveUp) {
-      cut();
+    if (closing || verdict == Patience::Verdict::kStuck) {
+      cut();  // in the midst of a frame nothing can be said
+    } else if (verdict == Patience::Verdict::kSilent) {
+      control_.close(CloseCode::kPolicy, kSilenceReason);
+      wake_.cancel();
     } else if (verdict == Patience::Verdict::kPing) {
       control_.ping();
       wake_.cancel();

@@ -226,5 +226,17 @@ TEST_F(EnduranceTest, halfOpenConnectionsAreGivenUpAndCostNobodyElseAnything) {
   EXPECT_EQ(vanished.count([&](const Swarm::Client& client) { return client.done; }), 0u);
 }
 
+TEST_F(EnduranceTest, aStreamThatSaysNothingIsToldWhyItEnds) {
+  const MeshStore store = *MeshStore::open(folder_.path() / "logs");
+  test::RunningServer server(store, files_.viewer(), {.timeouts = {.silence = 2 * test::kShort}});
+  RawClient silent(server.port());
+  silent.send(
+      "GET /v1/stream HTTP/1.1\r\nHost: a\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
+      "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n"
+      "Sec-WebSocket-Protocol: qtet.v1\r\n\r\n");
+  const std::string all = silent.readToEnd();
+  EXPECT_TRUE(all.ends_with("\x03\xF0no message and no pong came for too long")) << all;
+}
+
 }  // namespace
 }  // namespace qtet

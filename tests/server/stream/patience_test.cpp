@@ -16,22 +16,42 @@ TEST(Patience, aSilentClientIsPingedAtHalfTheTimeAndThenGivenUp) {
   EXPECT_EQ(patience.at(kBegin + seconds(14)), Verdict::kWait);
   EXPECT_EQ(patience.at(kBegin + seconds(15)), Verdict::kPing);
   EXPECT_EQ(patience.at(kBegin + seconds(29)), Verdict::kPing);
-  EXPECT_EQ(patience.at(kBegin + seconds(30)), Verdict::kGiveUp);
+  EXPECT_EQ(patience.at(kBegin + seconds(30)), Verdict::kSilent);
   patience.heard(kBegin + seconds(29));
   EXPECT_EQ(patience.at(kBegin + seconds(30)), Verdict::kWait);
 }
 
 TEST(Patience, whoTakesNothingIsGivenUpHoweverMuchItSays) {
   Patience patience(seconds(1000), seconds(30), kBegin);
-  patience.took(kBegin);
+  patience.begins(kBegin);
   patience.heard(kBegin + seconds(29));
   EXPECT_EQ(patience.at(kBegin + seconds(29)), Verdict::kWait);
-  EXPECT_EQ(patience.at(kBegin + seconds(30)), Verdict::kGiveUp);
+  EXPECT_EQ(patience.at(kBegin + seconds(30)), Verdict::kStuck);
   patience.took(kBegin + seconds(10));
   EXPECT_EQ(patience.at(kBegin + seconds(39)), Verdict::kWait);
-  EXPECT_EQ(patience.at(kBegin + seconds(40)), Verdict::kGiveUp);
+  EXPECT_EQ(patience.at(kBegin + seconds(40)), Verdict::kStuck);
   patience.wrote();
   EXPECT_EQ(patience.at(kBegin + seconds(40)), Verdict::kWait) << "nothing is being written";
+}
+
+TEST(Patience, whoeverTakesBytesSteadilyIsAliveThoughNoPongComes) {
+  Patience patience(seconds(30), seconds(30), kBegin);
+  patience.begins(kBegin);
+  for (int i = 1; i <= 20; ++i) {
+    patience.took(kBegin + seconds(10 * i));
+    EXPECT_EQ(patience.at(kBegin + seconds(10 * i + 9)), Verdict::kWait) << i;
+  }
+  patience.wrote();
+  EXPECT_EQ(patience.at(kBegin + seconds(215)), Verdict::kPing);
+  EXPECT_EQ(patience.at(kBegin + seconds(229)), Verdict::kPing) << "since the last byte taken";
+  EXPECT_EQ(patience.at(kBegin + seconds(230)), Verdict::kSilent);
+}
+
+TEST(Patience, aWriteThatHasJustBegunIsWaitedForHoweverLongTheClientWasSilent) {
+  Patience patience(seconds(30), seconds(30), kBegin);
+  patience.begins(kBegin + seconds(29));
+  EXPECT_EQ(patience.at(kBegin + seconds(58)), Verdict::kPing);
+  EXPECT_EQ(patience.at(kBegin + seconds(59)), Verdict::kStuck);
 }
 
 }  // namespace
