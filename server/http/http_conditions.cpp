@@ -11,9 +11,11 @@ namespace qtet {
 namespace {
 
 constexpr std::array<std::string_view, 7> kDays = {"Sun", "Mon", "Tue", "Wed", "Thu", "Fri", "Sat"};
+constexpr std::array<std::string_view, 7> kLongDays = {"Sunday",   "Monday", "Tuesday", "Wednesday",
+                                                       "Thursday", "Friday", "Saturday"};
 constexpr std::array<std::string_view, 12> kMonths = {"Jan", "Feb", "Mar", "Apr", "May", "Jun",
                                                       "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"};
-constexpr std::size_t kDateCharacters = 29;
+constexpr std::size_t kDateCharacters = 29, kAscTimeCharacters = 24;
 
 std::string_view trim(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t");
@@ -52,7 +54,7 @@ bool modifiedAfter(const Validators& resource, std::string_view date, bool whenN
 
 bool sameVersion(std::string_view ifRange, const Validators& resource) {
   const std::string_view value = trim(ifRange);
-  return value == resource.etag || value == httpDate(resource.modified);
+  return value == resource.etag || parseHttpDate(value) == resource.modified;
 }
 
 ByteRange cut(std::uint64_t first, std::uint64_t last, std::uint64_t bytes) {
@@ -96,7 +98,38 @@ std::string httpDate(std::time_t time) {
   return out.data();
 }
 
-std::optional<std::time_t> parseHttpDate(std::string_view text) {
+namespace {
+
+/// "Sunday, 06-Nov-94 08:49:37 GMT" as RFC 9110 writes it today; "" where it is of another form.
+/// A year that lies more than 50 years ahead is one of the century before (5.6.7).
+std::string ofRfc850(std::string_view text) {
+  const std::size_t comma = text.find(',');
+  constexpr std::string_view kRest = ", 06-Nov-94 08:49:37 GMT";
+  if (comma == std::string_view::npos || text.size() - comma != kRest.size()) return "";
+  if (std::ranges::find(kLongDays, text.substr(0, comma)) == kLongDays.end()) return "";
+  const std::string_view rest = text.substr(comma);
+  const auto year = parseDigits(rest.substr(9, 2));
+  if (!year || rest[4] != '-' || rest[8] != '-') return "";
+  using namespace std::chrono;
+  const year_month_day today(floor<days>(system_clock::now()));
+  const int now = static_cast<int>(today.year());
+  int full = now - now % 100 + static_cast<int>(*year);
+  if (full > now + 50) full -= 100;
+  return std::string(text.substr(0, 3)) + std::string(rest.substr(0, 4)) + " " +
+         std::string(rest.substr(5, 3)) + " " + std::to_string(full) + std::string(rest.substr(11));
+}
+
+/// "Sun Nov  6 08:49:37 1994", likewise.
+std::string ofAscTime(std::string_view text) {
+  if (text.size() != kAscTimeCharacters || text[3] != ' ' || text[7] != ' ') return "";
+  std::string day(text.substr(8, 2));
+  if (day[0] == ' ') day[0] = '0';
+  return std::string(text.substr(0, 3)) + ", " + day + " " + std::string(text.substr(4, 3)) +
+         std::string(text.substr(19)) + std::string(text.substr(10, 9)) + " GMT";
+}
+
+/// The form that httpDate() writes, alone.
+std::optional<std::time_t> parseImfDate(std::string_view text) {
   if (text.size() != kDateCharacters) return std::nullopt;
   const auto number = [&](std::size_t at, std::size_t digits) {
     return parseDigits(text.substr(at, digits));
@@ -118,9 +151,20 @@ std::optional<std::time_t> parseHttpDate(std::string_view text) {
   return httpDate(out) == text ? std::optional(out) : std::nullopt;
 }
 
+}  // namespace
+
+std::optional<std::time_t> parseHttpDate(std::string_view text) {
+  if (const auto time = parseImfDate(text)) return time;
+  if (const auto time = parseImfDate(ofRfc850(text))) return time;
+  return parseImfDate(ofAscTime(text));
+}
+
 Verdict evaluateConditions(const RequestView& request, const Validators& resource) {
   if (request.ifMatch) {
-    if (!listHolds(*request.ifMatch, resource.etag, false)) return Verdict::kPreconditionFailed;
+    const bool holds =
+        listHolds(*request.ifMatch, resource.etag, false) ||
+        (!resource.plainEtag.empty() && listHolds(*request.ifMatch, resource.plainEtag, false));
+    if (!holds) return Verdict::kPreconditionFailed;
   } else if (request.ifUnmodifiedSince &&
              modifiedAfter(resource, *request.ifUnmodifiedSince, false)) {
     return Verdict::kPreconditionFailed;

@@ -13,13 +13,17 @@ namespace qtet {
 
 /// "Sun, 06 Nov 1994 08:49:37 GMT".
 [[nodiscard]] std::string httpDate(std::time_t time);
-/// The form above alone; the two obsolete ones, and anything else, are no date.
+/// The form above, and the two that old clients send (RFC 9110, 5.6.7): "Sunday, 06-Nov-94 08:49:37
+/// GMT" and "Sun Nov  6 08:49:37 1994". Anything else is no date.
 [[nodiscard]] std::optional<std::time_t> parseHttpDate(std::string_view text);
 
 /// What a resource is compared by. `etag` is strong and has its quotes.
 struct Validators {
   std::string etag;
   std::time_t modified = 0;
+  /// Of a coded variant: the tag of the uncoded one, which If-Match accepts as well, since both
+  /// stand for the same state of the resource. Else empty.
+  std::string plainEtag{};
 };
 
 enum class Verdict { kSend, kNotModified, kPreconditionFailed };

@@ -60,6 +60,7 @@ void becomeVariant(Resource& resource, ContentCoding coding) {
   if (coding == ContentCoding::kIdentity) return;
   const std::string name(codingName(coding));
   // other bytes, another strong tag
+  resource.validators.plainEtag = resource.validators.etag;
   resource.validators.etag.insert(resource.validators.etag.size() - 1, "-" + name);
   resource.headers.emplace_back("Content-Encoding", name);
 }

@@ -108,9 +108,13 @@ std::optional<std::string> readableName(const MayRead& mayRead, const ServedMesh
 /// What is the same for every path: methods, and targets that are none.
 template <class Find>
 Answer answer(const RequestView& request, Find find) {
-  if (request.method == "OPTIONS") return optionsReply();
-  if (request.method != "GET" && request.method != "HEAD") return methodRefused(request.method);
   const std::optional<RequestTarget> target = parseTarget(request.target);
+  // RFC 9112, 3.2: OPTIONS may be asked of "*", and CONNECT names no path
+  const bool noPath = request.target == "*" || request.method == "CONNECT";
+  if (target || noPath) {
+    if (request.method == "OPTIONS") return optionsReply();
+    if (request.method != "GET" && request.method != "HEAD") return methodRefused(request.method);
+  }
   Answer out =
       target ? Answer(find(*target))
              : problem(400, "bad-request",
@@ -221,7 +225,7 @@ Reply Router::meshes(const RequestView& request, const RequestTarget& target) co
     return meshListReply(
         request, target, store_.catalogue(),
         writing_ ? writing_->access.readerOf(bearerDigest(request.authorization)) : MayRead());
-  const MeshPointer mesh = store_.find(path[2]);
+  const MeshPointer mesh = path.back().empty() ? nullptr : store_.find(path[2]);
   if (!mesh) return notFound("there is no mesh of that name; the list is at /v1/meshes");
   if (path.size() > 3) return toLog(target, *mesh);
   const Document& text = mesh->description;

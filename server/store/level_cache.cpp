@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "codec/files/atomic_file.h"
+#include "proto/crc32c.h"
 
 namespace qtet {
 namespace {
@@ -20,6 +21,18 @@ namespace fs = std::filesystem;
 constexpr std::string_view kSuffix = ".level";
 constexpr std::size_t kKeyCharacters = 64;
 
+/// Behind the level's bytes in its file: these four, and the CRC-32C of the level.
+constexpr std::string_view kMark = "QLV1";
+constexpr std::size_t kSealBytes = 8;
+
+Bytes sealOf(ByteView level) {
+  ByteWriter out;
+  for (const char c : kMark) out.write(static_cast<std::uint8_t>(c));
+  out.write(crc32c(level));
+  return out.take();
+}
+
+/// The file as it lies there, seal and all.
 std::optional<LevelFile> mapFile(const fs::path& path) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
   if (file < 0) return std::nullopt;
@@ -41,6 +54,15 @@ LevelFile fromMemory(Bytes bytes) {
   return {*owner, owner};
 }
 
+/// Without its seal; nullopt: it is not what was written.
+std::optional<LevelFile> unsealed(LevelFile file) {
+  if (file.bytes.size() < kSealBytes) return std::nullopt;
+  const ByteView level = file.bytes.first(file.bytes.size() - kSealBytes);
+  if (!std::ranges::equal(sealOf(level), file.bytes.last(kSealBytes))) return std::nullopt;
+  file.bytes = level;
+  return file;
+}
+
 bool isKey(std::string_view text) {
   return text.size() == kKeyCharacters &&
          text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
@@ -57,7 +79,8 @@ Result<std::unique_ptr<LevelCache>> LevelCache::open(const fs::path& folder,
     const std::string key = it->path().stem().string();
     std::error_code gone;
     if (it->path().extension() == kSuffix && isKey(key))
-      found.emplace_back(it->last_write_time(gone), key, it->file_size(gone));
+      found.emplace_back(it->last_write_time(gone), key,
+                         std::max<std::uintmax_t>(it->file_size(gone), kSealBytes) - kSealBytes);
   }
   if (ec || ::access(folder.c_str(), W_OK | X_OK) != 0)
     return fail(
@@ -104,6 +127,7 @@ std::optional<LevelFile> LevelCache::find(const std::string& key) {
   if (it == byKey_.end()) return std::nullopt;
   entries_.splice(entries_.begin(), entries_, it->second);
   std::optional<LevelFile> out = mapFile(pathOf(key));
+  if (out) out = unsealed(std::move(*out));
   // also where no file can be opened now: what is not counted any more may not lie there
   if (!out || out->bytes.size() != it->second->bytes) {
     std::error_code ec;
@@ -116,14 +140,21 @@ std::optional<LevelFile> LevelCache::find(const std::string& key) {
 
 LevelFile LevelCache::put(const std::string& key, Bytes bytes) {
   if (bytes.empty() || bytes.size() > mostBytes_) return fromMemory(std::move(bytes));
-  if (const Status written = writeFileAtomically(pathOf(key), bytes); !written) {
+  const std::size_t size = bytes.size();
+  const Bytes seal = sealOf(bytes);
+  bytes.insert(bytes.end(), seal.begin(), seal.end());
+  const Status written = writeFileAtomically(pathOf(key), bytes);
+  bytes.resize(size);
+  if (!written) {
     spdlog::warn("a level is not kept: {}", written.error().message);
     return fromMemory(std::move(bytes));
   }
   const std::scoped_lock lock(mutex_);
   std::optional<LevelFile> out = mapFile(pathOf(key));
-  add(key, bytes.size());
-  return out ? std::move(*out) : fromMemory(std::move(bytes));
+  add(key, size);
+  if (!out || out->bytes.size() != size + kSealBytes) return fromMemory(std::move(bytes));
+  out->bytes = out->bytes.first(size);
+  return std::move(*out);
 }
 
 std::uintmax_t LevelCache::bytes() const {

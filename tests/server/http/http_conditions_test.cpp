@@ -8,6 +8,8 @@ namespace {
 constexpr std::time_t kTime = 784111777;  // RFC 9110's own example
 const Validators kResource{"\"abc\"", kTime};
 
+Verdict verdict(const RequestView& request) { return evaluateConditions(request, kResource); }
+
 TEST(HttpDate, isTheFormOfRfc9110BothWays) {
   EXPECT_EQ(httpDate(kTime), "Sun, 06 Nov 1994 08:49:37 GMT");
   EXPECT_EQ(parseHttpDate("Sun, 06 Nov 1994 08:49:37 GMT"), kTime);
@@ -15,15 +17,35 @@ TEST(HttpDate, isTheFormOfRfc9110BothWays) {
     EXPECT_EQ(parseHttpDate(httpDate(t)), t);
 }
 
+TEST(HttpDate, theTwoFormsThatAreObsoleteCountAsWell) {
+  EXPECT_EQ(parseHttpDate("Sunday, 06-Nov-94 08:49:37 GMT"), kTime);
+  EXPECT_EQ(parseHttpDate("Sun Nov  6 08:49:37 1994"), kTime);
+  EXPECT_EQ(parseHttpDate("Wed Nov 16 08:49:37 1994"), kTime + 10 * 86400);
+  // two digits: at most 50 years ahead
+  EXPECT_EQ(parseHttpDate("Tuesday, 01-Jan-30 00:00:00 GMT"), 1893456000);
+  EXPECT_EQ(
+      verdict({.method = "GET", .target = "/", .ifModifiedSince = "Sun Nov  6 08:49:37 1994"}),
+      Verdict::kNotModified);
+  EXPECT_EQ(selectRange({.method = "GET",
+                         .target = "/",
+                         .range = "bytes=0-1",
+                         .ifRange = "Sunday, 06-Nov-94 08:49:37 GMT"},
+                        kResource, 10)
+                .kind,
+            ByteRange::Kind::kPart);
+}
+
 TEST(HttpDate, anythingElseIsNoDate) {
   for (const char* text :
        {"", "yesterday", "Mon, 06 Nov 1994 08:49:37 GMT", "Sun, 06 Nov 1994 25:49:37 GMT",
         "Sun, 31 Feb 1994 08:49:37 GMT", "Sun, 06-Nov-1994 08:49:37 GMT",
-        "Sun, 06 Nov 1994 08:49:37 UTC", "Sunday, 06-Nov-94 08:49:37 GMT"})
+        "Sun, 06 Nov 1994 08:49:37 UTC", "Monday, 06-Nov-94 08:49:37 GMT",
+        "Sunday, 06-Nov-1994 08:49:37 GMT", "Sunday, 06 Nov 94 08:49:37 GMT",
+        "Sunday, 06-Nov-94 08:49:37", "Day, 06-Nov-94 08:49:37 GMT", "Sun Nov 06 8:49:37 1994",
+        "Mon Nov  6 08:49:37 1994", "Sun Nov  6 08:49:37 94", "Sun Nov  6 08:49:37 1994 GMT",
+        ", 06-Nov-94 08:49:37 GMT", "Sun Nov 31 08:49:37 1994"})
     EXPECT_FALSE(parseHttpDate(text)) << text;
 }
-
-Verdict verdict(const RequestView& request) { return evaluateConditions(request, kResource); }
 
 TEST(Conditions, ifNoneMatchComparesWeaklyAndOverLists) {
   EXPECT_EQ(verdict({.method = "GET", .target = "/", .ifNoneMatch = "\"abc\""}),

@@ -334,6 +334,38 @@ TEST_F(RouterTest, targetsThatAreNoPathsAreBadRequests) {
     expectProblem(get(target), 400, "bad-request");
 }
 
+TEST_F(RouterTest, anEncodedNulIsNoPathWhateverTheMethod) {
+  for (const char* method : {"GET", "HEAD", "OPTIONS", "POST", "PUT", "DELETE", "BREW"})
+    for (const char* target : {"/a%00b", "/v1/meshes/noise%00", "/v1/meshes/%00/log", "/%00"})
+      EXPECT_EQ(ask(method, target).status, 400u) << method << " " << target;
+  EXPECT_EQ(ask("OPTIONS", "*").status, 204u);
+  EXPECT_EQ(ask("CONNECT", "a:80").status, 405u);
+}
+
+TEST_F(RouterTest, aSlashBehindAMeshLeadsNowhere) {
+  expectProblem(get("/v1/meshes/noise/"), 404, "not-found");
+  expectProblem(get("/v1/meshes/noise/levels/"), 404, "not-found");
+  EXPECT_EQ(get("/v1/meshes/noise/log").status, 307u);
+}
+
+TEST_F(RouterTest, ifMatchTakesTheUncodedTagUnderEveryCoding) {
+  const std::string target = "/v1/meshes/noise", tag = header(get(target), "ETag");
+  for (const char* coding : {"gzip", "zstd", "identity"}) {
+    const Reply reply =
+        route({.method = "GET", .target = target, .ifMatch = tag, .acceptEncoding = coding});
+    EXPECT_EQ(reply.status, 200u) << coding;
+    EXPECT_EQ(header(reply, "Content-Encoding"), coding == std::string("identity") ? "" : coding);
+  }
+  EXPECT_EQ(
+      route({.method = "GET", .target = target, .ifMatch = "\"other\"", .acceptEncoding = "gzip"})
+          .status,
+      412u);
+  EXPECT_EQ(route({.method = "GET", .target = target, .ifNoneMatch = tag, .acceptEncoding = "gzip"})
+                .status,
+            200u)
+      << "other bytes";
+}
+
 TEST_F(RouterTest, onlyReadingIsAllowed) {
   for (const char* method : {"POST", "PUT", "DELETE", "PATCH", "TRACE", "CONNECT"}) {
     const Reply reply = ask(method, "/v1/meshes");

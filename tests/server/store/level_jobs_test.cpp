@@ -14,6 +14,8 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/write.hpp>
 #include <condition_variable>
+#include <fstream>
+#include <functional>
 #include <future>
 #include <thread>
 #include <vector>
@@ -265,6 +267,35 @@ TEST(LevelCache, whatAKilledServerDidNotFinishGoesAndWhatAnotherOneWritesStays) 
   for (const std::string& name : others)
     EXPECT_TRUE(std::filesystem::exists(folder.path() / name)) << name;
   ::close(lock);
+}
+
+TEST(LevelCache, aDamagedLevelIsNoticedAndMadeAnew) {
+  const test::TempFolder folder;
+  const std::string key(64, 'b');
+  const Bytes level = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
+  const std::filesystem::path file = folder.path() / (key + ".level");
+  const auto damages = std::vector<std::function<void()>>{
+      [&] {
+        std::fstream(file, std::ios::in | std::ios::out | std::ios::binary).seekp(3).put('x');
+      },
+      [&] { std::filesystem::resize_file(file, std::filesystem::file_size(file) - 1); },
+      [&] { std::filesystem::resize_file(file, std::filesystem::file_size(file) + 1); },
+      [&] { std::filesystem::resize_file(file, 3); },
+      [&] {
+        folder.write(key + ".level", ByteView(level));
+      }};  // as a cache without checksums has it
+  for (const bool restarted : {false, true})
+    for (std::size_t i = 0; i < damages.size(); ++i) {
+      auto cache = LevelCache::open(folder.path(), 100);
+      ASSERT_TRUE(cache);
+      EXPECT_TRUE(std::ranges::equal((*cache)->put(key, level).bytes, level));
+      EXPECT_TRUE((*cache)->find(key));
+      damages[i]();
+      if (restarted) cache = LevelCache::open(folder.path(), 100);
+      EXPECT_FALSE((*cache)->find(key)) << i;
+      EXPECT_FALSE(std::filesystem::exists(file)) << i;
+      EXPECT_EQ((*cache)->bytes(), 0u) << i;
+    }
 }
 
 TEST(LevelCache, aFolderThatCannotBeIsAnError) {
