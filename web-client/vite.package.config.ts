@@ -3,6 +3,7 @@
 
 import {defineConfig, type Plugin, transformWithEsbuild} from 'vite';
 import {notices} from './notices';
+import {smallShaders} from './small_shaders';
 
 /**
  * Vite would wrap import() in its own preloading. The Vite of a page that uses the package then
@@ -31,6 +32,7 @@ export default defineConfig({
     format: 'es',
     rollupOptions: {output: {entryFileNames: '[name].js'}},
     plugins: () => [
+      ...smallShaders(),
       {
         name: 'minify',
         async renderChunk(code: string) {
