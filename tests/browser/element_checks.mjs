@@ -39,6 +39,43 @@ async function showsNothingOfTheMeshBefore({server, browser}) {
   assert.deepEqual(loads, [total.tetrahedra]);
 }
 
+/** What the first picture is made of, and what the view hears before it. */
+async function holdsTheAddressFromTheFirstPictureOn({server, browser}) {
+  const view = 'clip=y:0.5&iso=Density=1.3&threshold=Density=0.5,4&range=1,3&projection=parallel';
+  const viewer = await browser.open(`${server.url}?mesh=fin&${view}`, undefined, () => {
+    const first = (window.qtetFirst = {picture: null, commands: [], isShown: false});
+    window.Worker = class extends window.Worker {
+      constructor(url, options) {
+        super(url, options);
+        this.addEventListener('message', ({data}) => {
+          if (data.type !== 'snapshot' || first.picture) return;
+          const {planes, cuts, color, isosurface} = data.snapshot;
+          first.picture = {
+            planes: planes.length,
+            cuts: cuts.map(({values}) => values.length > 0),
+            isColored: color !== null,
+            hasIsosurface: isosurface.positions.length > 0,
+          };
+        });
+      }
+      postMessage(message, ...rest) {
+        super.postMessage(message, ...rest);
+        if (message.type === 'show') first.isShown = true;
+        if (message.type === 'command' && !first.isShown)
+          first.commands.push([message.name, message.words[0]]);
+      }
+    };
+  });
+  await viewer.waitForState('complete');
+  await viewer.waitForPicture();
+  const {picture, commands} = await viewer.page.evaluate(() => window.qtetFirst);
+  assert.deepEqual(picture, {planes: 1, cuts: [true], isColored: true, hasIsosurface: true});
+  const said = new Map(commands);
+  assert.equal(said.get('setRange'), 1);
+  assert.equal(said.get('setParallel'), true);
+  assert.deepEqual(viewer.problems, []);
+}
+
 /**
  * The graphics are so slow that the whole mesh is decoded before the first picture is on the
  * screen.
@@ -363,3 +400,4 @@ export const elementChecks = {
   heedsAQualityThatChangesBeforeTheHeadHasCome,
   showsTheLogThatTookTheName,
 };
+  holdsTheAddressFromTheFirstPictureOn,

@@ -14,6 +14,7 @@ import {canPause, isAtRest, stateMessage, type SessionState} from './session_sta
 import {asksForTheSame, surfaceRequest, surfaceRequestOf} from './surface_request';
 import type {LogTable, Transport, TransportHandlers} from './transport';
 import {makeTransport} from './transports';
+import {pointBounds} from './triangle_soup';
 import type {ViewRequest} from './view_request';
 import {Wanted} from './wanted';
 import type {FromWorker, Source} from './worker_messages';
@@ -49,6 +50,8 @@ export class Session implements TransportHandlers {
   coarse: Pick<CoarseVolume, 'note' | 'forget'> | null = null;
   private state: SessionState = {name: 'connecting'};
   private source = kNoSource;
+  /** The page has heard of this log's base mesh. */
+  private baseTold = false;
   private readonly stream = new LogStream();
   private readonly wanted: Wanted;
   private readonly decoding: Decoding;
@@ -252,7 +255,9 @@ export class Session implements TransportHandlers {
   private advance(): void {
     this.guarded(() => {
       const pictureFirst = this.source.pictureFirst === true && !this.publisher.hasPublished;
-      if (this.decoding.advance(pictureFirst)) this.publisher.changed(this.wanted.isComplete);
+      const hasChanged = this.decoding.advance(pictureFirst);
+      this.tellOfBase();
+      if (hasChanged) this.publisher.changed(this.wanted.isComplete);
       this.progress.changed();
       if (this.wanted.isComplete) this.complete();
       else if (this.wanted.isReached) this.hold();
@@ -354,6 +359,7 @@ export class Session implements TransportHandlers {
 
   /** Must be called before another log. */
   private forget(): void {
+    this.baseTold = false;
     this.decoding.forget();
     this.stream.forget();
     this.wanted.forget();
@@ -363,6 +369,14 @@ export class Session implements TransportHandlers {
   }
 
   // ---- to the page
+
+  private tellOfBase(): void {
+    const {codec} = this.assembler;
+    if (this.baseTold || codec.chunksApplied === 0) return;
+    if (this.wanted.fields.some((field) => codec.fieldChunksApplied(field) === 0)) return;
+    this.baseTold = true;
+    this.send({type: 'base', bounds: pointBounds(codec.points(), codec.boundary())});
+  }
 
   private sendPlan(): void {
     this.send({type: 'plan', plan: this.assembler.plan(this.wanted.fields)});

@@ -99,6 +99,11 @@ export type FromWorker =
    * fields change.
    */
   | {type: 'plan'; plan: LevelBytes[]}
+  /**
+   * The base mesh is decoded with the values of the fields. `bounds` are those of Snapshot. Each
+   * log sends it once, so that the first display can hold planes that stand at shares of them.
+   */
+  | {type: 'base'; bounds: number[]}
   | {type: 'snapshot'; snapshot: Snapshot}
   | {type: 'progress'; statistics: Statistics; received: number}
   | {type: 'state'; state: StreamState; attempt: number; delayMs: number}

@@ -102,11 +102,11 @@ export class Panels {
   }
 
   /** Brings all panels in line with the attributes and the mesh. */
-  update(settings: Settings, {manifest, bounds}: ShownMesh): void {
+  update(settings: Settings, {manifest, bounds, snapshot}: ShownMesh): void {
     const known: Scene | null = manifest && {manifest, bounds};
     for (const panel of this.simple) panel.update(settings, known);
     this.clip.update(settings, bounds.length > 0 ? known : null);
-    this.handles.update(settings.planes, bounds);
+    this.handles.update(settings.planes, snapshot ? bounds : []);
   }
 
   /** Must be called after every frame: handles and marks follow the picture. */

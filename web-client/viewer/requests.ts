@@ -44,7 +44,7 @@ export function planesOf({planes}: Settings, {bounds}: ShownMesh): Plane[] {
   return bounds.length > 0 ? planes.map((plane) => planeOf(plane, bounds)) : [];
 }
 
-/** `read` gives an attribute. REQUIRES: the manifest is here. */
+/** `read` gives an attribute. REQUIRES: the manifest and the bounds are here. */
 export function displayOf(
   settings: Settings,
   mesh: ShownMesh,

@@ -8,7 +8,7 @@ import type {Snapshot} from '../core/worker_messages';
 export class ShownMesh {
   /** Null before the head of the log is here. */
   manifest: Manifest | null = null;
-  /** In lattice coordinates; empty before the first picture. */
+  /** The base mesh's, in lattice coordinates; empty before it is decoded. */
   bounds: number[] = [];
   /** The levels ahead. */
   plan: LevelBytes[] = [];

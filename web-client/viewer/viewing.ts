@@ -48,7 +48,7 @@ export class Viewing implements ActionsHost, PanelsHost {
       source === 'graphics' ? this.restartGraphics() : void this.stream.open(),
     );
     this.camera = new CameraWatch(
-      () => (this.view && this.mesh.bounds.length > 0 ? this.view.cameraState : null),
+      () => (this.view && this.mesh.snapshot ? this.view.cameraState : null),
       (state) => {
         this.lookAt();
         page.tell('camera-change', state);
@@ -160,6 +160,9 @@ export class Viewing implements ActionsHost, PanelsHost {
       case 'snapshot':
         return this.takePicture(message.snapshot);
       case 'progress':
+      case 'base':
+        this.mesh.bounds = message.bounds;
+        return this.apply();
         return this.takeProgress(message.statistics);
       case 'state':
         return this.stream.enter(message.state, message.attempt, message.delayMs);
@@ -204,16 +207,16 @@ export class Viewing implements ActionsHost, PanelsHost {
     mesh.take(snapshot);
     view.show(snapshot, (drawingMs) => {
       if (mesh !== this.mesh) return; // it belongs to the previous mesh
+    const isFirst = mesh.snapshot === null;
       this.client.shown(drawingMs);
+    // The range and the free area come first: no frame shows the picture without them.
+    if (isFirst) this.apply();
+    else this.showRange();
       page.tell(mesh.drawn ? 'refine' : 'load', snapshot.statistics);
       mesh.drawn = snapshot.statistics;
       page.element.classList.add('loaded');
       this.tellComplete();
     });
-    if (mesh.bounds.length === 0) {
-      mesh.bounds = snapshot.bounds;
-      this.apply();
-    }
     this.panels?.showFigures(snapshot, view.pose.frameMs);
     this.showRange();
   }
@@ -243,7 +246,8 @@ export class Viewing implements ActionsHost, PanelsHost {
 
   private showDisplay(): void {
     const {mesh, page, panels, settings} = this;
-    if (!mesh.manifest) return;
+    // A picture without its planes would show what the address hides.
+    if (!mesh.manifest || mesh.bounds.length === 0) return;
     const display = displayOf(settings, mesh, (name) => page.read(name));
     if (!this.requests.show(display)) return;
     panels?.progress.follow(display.color ? [display.color.field] : [], settings.limit);
