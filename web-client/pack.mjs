@@ -2,7 +2,7 @@
 //   node pack.mjs CODEC.wasm FOLDER
 
 import {execFileSync} from 'node:child_process';
-import {copyFileSync, readFileSync, writeFileSync} from 'node:fs';
+import {copyFileSync, readdirSync, readFileSync, writeFileSync} from 'node:fs';
 import {dirname, join, resolve} from 'node:path';
 import {fileURLToPath} from 'node:url';
 import {addEndings} from './typed_paths.mjs';
@@ -31,6 +31,14 @@ node(
   join(folder, 'types'),
 );
 addEndings(join(folder, 'types'));
+
+/** A private member with its comment. A private constructor stays: it forbids `new`. */
+const kPrivate = /^ +(?:\/\*\*(?:(?!\*\/)[\s\S])*\*\/\s+)?private (?!constructor)[^\n]*;\n/gm;
+const types = join(folder, 'types');
+for (const name of readdirSync(types, {recursive: true})) {
+  const path = join(types, name);
+  if (path.endsWith('.d.ts')) writeFileSync(path, readFileSync(path, 'utf8').replace(kPrivate, ''));
+}
 
 const own = JSON.parse(readFileSync(join(here, 'package.json'), 'utf8'));
 const entry = (name, types) => ({types: `./types/${types}.d.ts`, default: `./${name}.js`});

@@ -99,10 +99,11 @@ async function tellsOfTheWholeMeshOnceItIsDrawn({server, browser}) {
           ? hear
           : (event) => {
               const viewer = document.querySelector('qtet-viewer');
-              if (event.data.type !== 'shown' || viewer.state === 'complete') return hear(event);
+              const isDecoded = () => viewer.viewing?.stream.state === 'complete';
+              if (event.data.type !== 'shown' || isDecoded()) return hear(event);
               if (held.push(event) > 1) return undefined;
               const wait = setInterval(() => {
-                if (viewer.state !== 'complete') return;
+                if (!isDecoded()) return;
                 clearInterval(wait);
                 for (const event of held) hear(event);
               }, 5);
@@ -128,6 +129,7 @@ async function tellsOfTheWholeMeshOnceItIsDrawn({server, browser}) {
  */
 async function tellsTheNewestFiguresWithAnOldPicture({server, browser, logs}) {
   const viewer = await browser.open(`${server.url}?mesh=fin`, undefined, () => {
+    const states = (window.qtetStates = []);
     document.addEventListener('DOMContentLoaded', () => {
       const viewer = document.querySelector('qtet-viewer');
       viewer.addEventListener(
@@ -142,11 +144,14 @@ async function tellsTheNewestFiguresWithAnOldPicture({server, browser, logs}) {
       }
       set onmessage(hear) {
         super.onmessage = (event) => {
-          if (!this.wait || document.querySelector('qtet-viewer').state === 'complete')
-            return hear(event);
+          const viewer = document.querySelector('qtet-viewer');
+          const isDecoded = () => viewer.viewing?.stream.state === 'complete';
+          if (!this.wait || isDecoded()) return hear(event);
+          states.push(viewer.state);
           if (this.wait.push(event) > 1) return undefined;
           const timer = setInterval(() => {
-            if (document.querySelector('qtet-viewer').state !== 'complete') return;
+            if (!isDecoded()) return;
+            states.push(viewer.state);
             clearInterval(timer);
             for (const held of this.wait) hear(held);
           }, 5);
@@ -159,6 +164,8 @@ async function tellsTheNewestFiguresWithAnOldPicture({server, browser, logs}) {
   const [shown, told] = await viewer.page.evaluate(() => window.qtetLoad);
   const {total} = await viewer.statistics();
   assert.ok(shown < total.tetrahedra, 'the first picture is no old one');
+  const blank = await viewer.page.evaluate(() => window.qtetStates);
+  assert.ok(blank.length > 0 && !blank.includes('complete'), 'a blank canvas is called complete');
   assert.equal(told, total.tetrahedra);
   await viewer.waitForState('complete');
   await expectWhole(viewer, logs.fin);
@@ -197,6 +204,69 @@ async function pausesInTheTaskThatAppendsIt({server, browser}) {
   assert.equal(await viewer.page.evaluate(() => window.qtetViewer.state), 'paused');
   await viewer.page.getByRole('button', {name: 'Continue'}).click();
   await viewer.waitForState('complete');
+  assert.deepEqual(viewer.problems, []);
+}
+
+/** What a page asks for in the task that appends the element is kept until it can be done. */
+async function keepsWhatIsAskedForBeforeThereIsAMesh({server, browser}) {
+  const viewer = await browser.open(`${server.url}?mesh=box`);
+  await viewer.waitForState('complete');
+  await viewer.page.evaluate(() => {
+    const late = (window.qtetViewer = document.createElement('qtet-viewer'));
+    late.setAttribute('mesh', 'fin');
+    document.querySelector('qtet-viewer').replaceWith(late);
+    late.look('+z');
+    window.qtetRange = new Promise((chosen) => {
+      const choose = setInterval(() => {
+        const select = late.shadowRoot.querySelector('select[name=range]');
+        if (!select || late.manifest) return;
+        clearInterval(choose);
+        select.value = 'fixed';
+        select.dispatchEvent(new Event('change'));
+        chosen();
+      });
+    });
+  });
+  await viewer.waitForState('complete');
+  await viewer.settle();
+  const {direction, range} = await viewer.page.evaluate(async () => {
+    await window.qtetRange;
+    const {meshView} = window.qtetViewer;
+    return {direction: meshView.pose.direction, range: window.qtetViewer.getAttribute('range')};
+  });
+  assert.ok(direction[2] < -0.99, `the first picture is seen along ${direction}`);
+  assert.match(range ?? '', /^[\d.]+,[\d.]+$/);
+}
+
+/** A page may move the element: a tab, a dialog. */
+async function keepsCameraAndMeshWhereverItMoves({server, browser}) {
+  const viewer = await browser.open(`${server.url}?mesh=fin`);
+  await viewer.waitForState('complete');
+  await viewer.waitForPicture();
+  const camera = [1, -2, 1.5, 0.1, 0, 0];
+  const told = await viewer.page.evaluate(async (state) => {
+    const {qtetViewer} = window;
+    qtetViewer.cameraState = state;
+    const {client} = qtetViewer;
+    const place = document.createElement('section');
+    document.body.append(place);
+    place.append(qtetViewer);
+    await new Promise((later) => {
+      setTimeout(later, 100);
+    });
+    return {isSame: qtetViewer.client === client, state: qtetViewer.state};
+  }, camera);
+  assert.deepEqual(told, {isSame: true, state: 'complete'});
+  await viewer.page.evaluate(async () => {
+    const {qtetViewer} = window;
+    qtetViewer.remove();
+    await new Promise((later) => {
+      setTimeout(later, 100);
+    });
+    document.body.append(qtetViewer);
+  });
+  await viewer.waitForState('complete');
+  assert.deepEqual(await viewer.page.evaluate(() => window.qtetViewer.cameraState), camera);
   assert.deepEqual(viewer.problems, []);
 }
 
@@ -389,6 +459,7 @@ async function showsWhatHasTheFocus({server, browser}) {
 }
 
 export const elementChecks = {
+  holdsTheAddressFromTheFirstPictureOn,
   showsWhatHasTheFocus,
   drawsOnlyWhatChanges,
   showsNothingOfTheMeshBefore,
@@ -396,8 +467,9 @@ export const elementChecks = {
   tellsTheNewestFiguresWithAnOldPicture,
   takesItsAttributesInTheTaskThatAppendsIt,
   pausesInTheTaskThatAppendsIt,
+  keepsWhatIsAskedForBeforeThereIsAMesh,
+  keepsCameraAndMeshWhereverItMoves,
   drawsOnAfterAPictureThatFailed,
   heedsAQualityThatChangesBeforeTheHeadHasCome,
   showsTheLogThatTookTheName,
 };
-  holdsTheAddressFromTheFirstPictureOn,

@@ -36,7 +36,7 @@ const kPage = `<!doctype html><html lang="en"><head><title>Two meshes</title><st
 
 /** Uses what the package promises, so that the compiler checks the types. */
 const kScript = `import 'qtet/element';
-import {QtetViewer, kViewAttributes} from 'qtet';
+import {QtetViewer, kViewAttributes, type QtetViewerAttributes} from 'qtet';
 import {Client, colorTable, kFull, kPlainDisplay, type Display, type Snapshot} from 'qtet/core';
 import {MeshView, SoupMesh} from 'qtet/three';
 const viewers = [...document.querySelectorAll('qtet-viewer')];
@@ -52,7 +52,13 @@ const client = new Client((message) => {
 });
 const url = new URL('/v1/stream', location.href).href.replace('http', 'ws');
 client.start({url, mesh: 'box', fields: null, limit: kFull});
-const parts = [MeshView, SoupMesh, colorTable('turbo').length, kViewAttributes.length];
+const attributes: QtetViewerAttributes = {mesh: 'box', 'clip-mode': 'slice'};
+first.addEventListener('camera-change', ({detail}) => console.log(detail[0] + detail[5]));
+first.addEventListener('complete', ({detail: {total}}) => console.log(total.vertices));
+// @ts-expect-error: the types show no private members
+type Hidden = QtetViewer['viewing'];
+export type {Hidden};
+const parts = [attributes, MeshView, SoupMesh, colorTable('turbo').length, kViewAttributes.length];
 Object.assign(window, {viewers, first, triangles: () => triangles, parts});
 `;
 

@@ -42,7 +42,8 @@ export class MeshView implements View {
   private readonly surfaceCanvas: HTMLCanvasElement | OffscreenCanvas;
   private bounds: number[] = [];
   private insets: Insets = {left: 0, right: 0, top: 0, bottom: 0};
-  private startState: CameraState | null = null;
+  /** What the next mesh is seen from first; null: its first view. */
+  private start: CameraState | Direction | null = null;
   private frame = 0;
   private afterFrame: ((ms: number) => void)[] = [];
 
@@ -108,9 +109,9 @@ export class MeshView implements View {
       if (this.orbit.fitted) this.orbit.fit(() => this.fittingDistance());
       return;
     }
-    if (this.startState) this.orbit.state = this.startState;
-    else this.look(null);
-    this.startState = null;
+    if (Array.isArray(this.start)) this.orbit.state = this.start;
+    else this.look(this.start);
+    this.start = null;
   }
 
   /** Forgets the mesh; the next one is fitted anew. */
@@ -170,9 +171,13 @@ export class MeshView implements View {
   /**
    * Shows a standard view, or (null) the first view of a mesh, as near as its bounding box allows.
    */
+   * Waits for a mesh if there is none.
   look(direction: Direction | null): void {
     checkedDirection(direction);
-    if (this.bounds.length === 0) return;
+    if (this.bounds.length === 0) {
+      this.start = direction;
+      return;
+    }
     this.orbit.look(direction, () => this.fittingDistance());
     this.invalidate();
   }
@@ -189,7 +194,7 @@ export class MeshView implements View {
   /** Waits for a mesh if there is none. */
   set cameraState(state: CameraState) {
     checkedCamera(state);
-    if (this.bounds.length === 0) this.startState = state;
+    if (this.bounds.length === 0) this.start = state;
     else this.orbit.state = state;
     this.invalidate();
   }

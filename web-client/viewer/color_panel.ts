@@ -5,11 +5,18 @@ import {fillScalars, type Panel, type Scene} from './panel';
 import {parseNumbers, shownScalar, type Settings} from './settings';
 
 export class ColorPanel implements Panel {
+  /** The fixed ranges of fields that were left. */
+  private readonly ranges = new Map<string, string>();
+  /** The field in the menu. */
+  private field = '';
+  /** A fixed range was chosen before there were values: the first one is kept. */
+  private awaitsRange = false;
+
   constructor(
     private readonly root: ParentNode,
     private readonly attributes: Attributes,
   ) {
-    this.on('select[name=field]', (select) => attributes.write('field', select.value));
+    this.on('select[name=field]', (select) => this.chooseField(select.value));
     this.on('.swatches', () => this.writeMap());
     this.on('input[name=reversed]', () => this.writeMap());
     this.on('input[name=log]', (input) =>
@@ -39,14 +46,16 @@ export class ColorPanel implements Panel {
     this.input('surface').checked = settings.surface;
     this.input('opacity').value = String(Math.round(100 * settings.opacity));
     this.find('.opacity-text').textContent = `${Math.round(100 * settings.opacity)}\u202f%`;
-    const fixed = typeof settings.range !== 'string';
+    const fixed = typeof settings.range !== 'string' || this.awaitsRange;
     this.find<HTMLSelectElement>('select[name=range]').value = fixed
       ? 'fixed'
       : String(settings.range);
     this.find('.range-fixed').hidden = !fixed;
     const fields = scene?.manifest.fields ?? [];
     const chosen = shownScalar(this.attributes.read('field'), fields);
-    fillScalars(this.find<HTMLSelectElement>('select[name=field]'), fields, chosen);
+    const menu = this.find<HTMLSelectElement>('select[name=field]');
+    fillScalars(menu, fields, chosen);
+    this.field = menu.value;
   }
 
   /** Shows the current range, which a fixed one starts from. */
@@ -59,6 +68,21 @@ export class ColorPanel implements Panel {
       if (this.input(name) !== active)
         this.input(name).value = String(Number(value.toPrecision(5)));
     }
+    if (!this.awaitsRange) return;
+    this.awaitsRange = false;
+    this.writeRange('fixed');
+  }
+
+  /** Numbers mean nothing for another field: a fixed range stays behind, and comes back. */
+  private chooseField(field: string): void {
+    const range = this.attributes.read('range');
+    if (range !== null && parseNumbers(range).length === 2) {
+      this.ranges.set(this.field, range);
+      this.attributes.write('range', null);
+    }
+    this.attributes.write('field', field);
+    const kept = this.ranges.get(field);
+    if (kept !== undefined) this.attributes.write('range', kept);
   }
 
   private writeMap(): void {
@@ -67,6 +91,9 @@ export class ColorPanel implements Panel {
   }
 
   private writeRange(kind: string): void {
+    const isUnknown = ['low', 'high'].every((end) => this.input(`range-${end}`).value === '');
+    this.awaitsRange = kind === 'fixed' && isUnknown;
+    if (this.awaitsRange) return void (this.find('.range-fixed').hidden = false);
     if (kind !== 'fixed') {
       this.attributes.write('range', kind === 'auto' ? null : kind);
       return;

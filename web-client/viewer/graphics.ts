@@ -3,11 +3,15 @@
 import {errorText} from '../core/errors';
 import type {CoarseCells} from '../core/volume';
 import type {CameraState} from '../three/camera';
+import type {Direction} from '../three/directions';
 import {openView} from '../three/far_view';
 import type {View} from '../three/view';
 import {find} from './find';
 import type {Notices} from './notices';
 import {Triad} from './triad';
+
+/** Where a view begins: a camera, a standard view, or null for the first view of a mesh. */
+export type ViewStart = CameraState | Direction | null;
 
 /** Graphics without a GPU may start slowly. After this time the user may restart them or wait. */
 const kStartPatienceMs = 30000;
@@ -32,8 +36,8 @@ export class Graphics {
     private readonly listeners: GraphicsListeners,
   ) {}
 
-  /** `camera` is called once there is a view; null fits the mesh. */
-  async open(camera: () => CameraState | null): Promise<void> {
+  /** `start` is called once there is a view. */
+  async open(start: () => ViewStart): Promise<void> {
     const canvas = find<HTMLCanvasElement>(this.root, '.scene');
     const patience = setTimeout(() => this.tellOfWaiting(), kStartPatienceMs);
     try {
@@ -41,8 +45,9 @@ export class Graphics {
       if (this.ended || !canvas.isConnected) return view.dispose();
       this.view = view;
       this.notices.end('slow-view');
-      const state = camera();
-      if (state) view.cameraState = state;
+      const from = start();
+      if (typeof from === 'string') view.look(from);
+      else if (from) view.cameraState = from;
       this.listeners.opened(view);
     } catch (thrown) {
       if (!canvas.isConnected) return;
@@ -57,13 +62,13 @@ export class Graphics {
   }
 
   /** Uses another worker and another canvas: a canvas can be transferred only once. */
-  async restart(camera: () => CameraState | null): Promise<void> {
+  async restart(start: () => ViewStart): Promise<void> {
     this.notices.endOf('graphics');
     this.view?.dispose();
     this.view = null;
     const canvas = find(this.root, '.scene');
     canvas.replaceWith(canvas.cloneNode());
-    return this.open(camera);
+    return this.open(start);
   }
 
   dispose(): void {

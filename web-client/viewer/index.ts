@@ -1,5 +1,6 @@
 // qtet: the viewer's class; qtet/element also defines <qtet-viewer>.
 
+export type {QtetViewerAttributes, QtetViewerEventMap} from './events';
 export {QtetViewer} from './qtet_viewer';
 export {kViewAttributes, type ViewAttribute} from './settings';
 export {embedSnippet, linkTo} from './share';

@@ -1,12 +1,13 @@
 // How the element's parts see the element.
 
 import type {CameraState} from '../three/camera';
+import type {Direction} from '../three/directions';
 import type {ViewAttribute} from './settings';
 
 export interface Attributes {
   /** Sets an attribute of the viewer; null removes it. */
   write(name: ViewAttribute, value: string | null): void;
-  read(name: ViewAttribute): string | null;
+  read(name: ViewAttribute | 'transport'): string | null;
 }
 
 export interface Page extends Attributes {
@@ -22,10 +23,10 @@ export interface Page extends Attributes {
   announce(text: string): void;
 }
 
-/** What survives when the element leaves a document. */
+/** What survives when the element leaves a document, and what it was asked for before. */
 export interface Kept {
-  /** The camera that was asked for before there was a view. */
-  camera: CameraState | null;
+  /** The next view begins with this camera or standard view; null: as the attributes say. */
+  start: CameraState | Direction | null;
   /** The stream was paused before there was one. */
   paused: boolean;
   /** The server and the mesh that were opened last. */

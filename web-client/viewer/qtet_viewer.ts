@@ -36,8 +36,10 @@ import type {Manifest} from '../core/manifest';
 import {kNoStatistics, type Statistics} from '../core/statistics';
 import type {StreamState} from '../core/worker_messages';
 import type {CameraState} from '../three/camera';
-import type {Direction} from '../three/directions';
+import {checkedDirection, type Direction} from '../three/directions';
+import {checkedCamera} from '../three/pose';
 import type {View} from '../three/view';
+import type {QtetViewerEventMap} from './events';
 import {chosenMesh} from './mesh_menu';
 import type {Kept, Page} from './page';
 import {kViewAttributes, type ViewAttribute} from './settings';
@@ -52,7 +54,7 @@ export class QtetViewer extends HTMLElement {
   client: Client | null = null;
   private readonly root = this.attachShadow({mode: 'open'});
   private readonly page = pageOf(this, this.root);
-  private readonly kept: Kept = {camera: null, paused: false, opened: ''};
+  private readonly kept: Kept = {start: null, paused: false, opened: ''};
   /** Exists from the first step on; before it the shadow root is empty. */
   private viewing: Viewing | null = null;
   private bearer = '';
@@ -71,8 +73,11 @@ export class QtetViewer extends HTMLElement {
     void this.viewing?.stream.open();
   }
 
+  /** It is not `complete` before a picture is on the screen. */
   get state(): StreamState {
-    return this.viewing?.stream.state ?? 'connecting';
+    const {viewing} = this;
+    const state = viewing?.stream.state ?? 'connecting';
+    return state === 'complete' && !viewing?.mesh.drawn ? 'streaming' : state;
   }
   get statistics(): Statistics {
     return this.viewing?.mesh.statistics ?? kNoStatistics;
@@ -110,7 +115,7 @@ export class QtetViewer extends HTMLElement {
   set cameraState(state: CameraState | null) {
     const {meshView} = this;
     if (state && meshView) meshView.cameraState = state;
-    this.kept.camera = meshView ? null : state;
+    this.kept.start = meshView ? null : state && checkedCamera(state);
   }
 
   /** SHA-256 of the decoded mesh (codec/FORMAT.md, "Mesh digest"); empty before there is one. */
@@ -126,14 +131,38 @@ export class QtetViewer extends HTMLElement {
     this.viewing?.stream.resume();
   }
   resetView(): void {
+    this.kept.start = null;
     this.meshView?.look(null);
   }
+  /** Before there is a picture, the first one is seen from there. */
   look(direction: Direction): void {
-    this.meshView?.look(direction);
+    if (this.meshView) this.meshView.look(direction);
+    else this.kept.start = checkedDirection(direction);
   }
   /** The scene as a PNG; null before there is one. */
   async picture(): Promise<Blob | null> {
     return this.viewing?.picture() ?? null;
+  }
+
+  // ---- typed events
+
+  override addEventListener<Type extends keyof QtetViewerEventMap>(
+    type: Type,
+    listener: (this: QtetViewer, event: QtetViewerEventMap[Type]) => void,
+    options?: boolean | AddEventListenerOptions,
+  ): void;
+  override addEventListener(...words: Parameters<EventTarget['addEventListener']>): void;
+  override addEventListener(...words: unknown[]): void {
+    super.addEventListener(...(words as Parameters<HTMLElement['addEventListener']>));
+  }
+  override removeEventListener<Type extends keyof QtetViewerEventMap>(
+    type: Type,
+    listener: (this: QtetViewer, event: QtetViewerEventMap[Type]) => void,
+    options?: boolean | EventListenerOptions,
+  ): void;
+  override removeEventListener(...words: Parameters<EventTarget['removeEventListener']>): void;
+  override removeEventListener(...words: unknown[]): void {
+    super.removeEventListener(...(words as Parameters<HTMLElement['removeEventListener']>));
   }
 
   // ---- custom element
@@ -143,6 +172,7 @@ export class QtetViewer extends HTMLElement {
    * their sum.
    */
   connectedCallback(): void {
+    if (this.client) return; // it has moved within the document
     const client = new Client((message) => this.viewing?.receive(message));
     this.client = client;
     const steps = [
@@ -160,9 +190,18 @@ export class QtetViewer extends HTMLElement {
     setTimeout(step);
   }
 
+  /** Who moves an element takes it out and puts it in at once: then everything stays. */
   disconnectedCallback(): void {
-    this.client?.dispose();
-    this.viewing?.dispose();
+    queueMicrotask(() => {
+      if (!this.isConnected) this.end();
+    });
+  }
+
+  private end(): void {
+    const {meshView, client, viewing} = this;
+    if (meshView && !meshView.pose.fitted) this.kept.start = meshView.cameraState;
+    client?.dispose();
+    viewing?.dispose();
     this.client = this.viewing = null;
   }
 
@@ -174,6 +213,7 @@ export class QtetViewer extends HTMLElement {
     else viewing.apply();
     const {settings, view} = viewing;
     if (name === 'camera' && settings.camera && view) view.cameraState = settings.camera;
+    if (name === 'transport') viewing.apply();
     if (!isOfStream) this.page.tell('view-change', {name, value: after});
   }
 }
@@ -192,7 +232,7 @@ function pageOf(element: QtetViewer, root: ShadowRoot): Page {
       if (value === null) element.removeAttribute(name);
       else element.setAttribute(name, value);
     },
-    read: (name: ViewAttribute) => element.getAttribute(name),
+    read: (name: string) => element.getAttribute(name),
     tell: (type: string, detail: unknown) =>
       void element.dispatchEvent(new CustomEvent(type, {detail})),
     announce: (text: string) => {

@@ -9,7 +9,7 @@ import type {View} from '../three/view';
 import {Actions, type ActionsHost} from './actions';
 import {CameraWatch} from './camera_watch';
 import {find} from './find';
-import {Graphics} from './graphics';
+import {Graphics, type ViewStart} from './graphics';
 import {bindKeys} from './keys';
 import type {ShownRange} from './legend';
 import {Notices} from './notices';
@@ -72,8 +72,7 @@ export class Viewing implements ActionsHost, PanelsHost {
       changed: (state, attempt, delayMs) => this.showState(state, attempt, delayMs),
       failed: (code, message) => this.failed(code, message),
     });
-    const {camera} = this.settings;
-    void this.graphics.open(() => kept.camera ?? camera);
+    void this.graphics.open(() => this.takeStart());
     void this.stream.open();
   }
 
@@ -227,7 +226,14 @@ export class Viewing implements ActionsHost, PanelsHost {
     const moved = view && !view.pose.fitted ? view.cameraState : null;
     const camera = view ? moved : this.settings.camera;
     this.client.repeat();
-    void this.graphics.restart(() => this.kept.camera ?? camera);
+    void this.graphics.restart(() => (view ? moved : this.takeStart()));
+  }
+
+  /** What was asked for before there was a view counts once. */
+  private takeStart(): ViewStart {
+    const {start} = this.kept;
+    this.kept.start = null;
+    return start ?? readSettings((name) => this.page.read(name)).camera;
   }
 
   /** With `isSame` the camera stays where the user has moved it. */
