@@ -42,7 +42,7 @@ export async function hostFolder(folder, {ranges = true, nginx = true} = {}) {
     );
     const size =
       resolve(path).startsWith(resolve(folder)) && statSync(path, {throwIfNoEntry: false})?.size;
-    if (!size) return void response.writeHead(404).end();
+    if (size === undefined || size === false) return void response.writeHead(404).end();
     requests.push(`${request.url} ${request.headers.range ?? ''}`);
     const [, from, to] = (ranges && /^bytes=(\d+)-(\d+)$/.exec(request.headers.range ?? '')) || [];
     const type = {'content-type': kTypes[extname(path)] ?? 'application/octet-stream'};

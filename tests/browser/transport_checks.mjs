@@ -197,7 +197,44 @@ async function showsWhatATokenOpens({browser, logs, viewer: files, out, bin}) {
   }
 }
 
+/** Each fault ends with a sentence that says what and where, not with waiting. */
+async function saysWhatIsWrong({server, browser, logs, viewer: files, out}) {
+  const wrong = 'clip=w:0.5&range=5,1&quality=best&field=Nope&iso=Nope=1&colormap=rainbow';
+  const viewer = await browser.open(`${server.url}?mesh=fin&${wrong}`);
+  await viewer.waitForState('complete');
+  const said = () => viewer.text('.notice p');
+  for (const [name, text] of new URLSearchParams(wrong))
+    assert.ok((await said()).includes(`"${text}"`), `${name}: ${await said()}`);
+  await viewer.page.evaluate(
+    (names) => {
+      for (const name of names) window.qtetViewer.removeAttribute(name);
+    },
+    [...new URLSearchParams(wrong).keys()],
+  );
+  await viewer.settle();
+  assert.ok(await viewer.page.locator('qtet-viewer .notice').isHidden(), 'the notice stays');
+  await viewer.page.evaluate(() => window.qtetViewer.setAttribute('field', 'Later'));
+  await viewer.page.getByText('The mesh has no field "Later"').waitFor();
+
+  const folder = makeSite(join(out, 'empty-site'), files, logs.box);
+  writeFileSync(join(folder, 'empty.qtet'), '');
+  for (const ranges of [true, false]) {
+    const host = await hostFolder(folder, {ranges, nginx: false});
+    try {
+      const empty = await browser.open(`${host.url}?src=empty.qtet`);
+      await empty.waitForState('failed');
+      assert.match(await empty.text('.notice p'), /empty\.qtet is empty: it has 0 bytes/);
+      const other = await browser.open(`${server.url}?src=${host.url}box.qtet`);
+      await other.waitForState('failed');
+      assert.match(await other.text('.notice p'), /Access-Control-Allow-Origin/);
+    } finally {
+      host.close();
+    }
+  }
+}
+
 export const transportChecks = {
+  saysWhatIsWrong,
   showsWhatATokenOpens,
   readsAFileOnlySoFar,
   refinesWhatIsLookedAtFirst,

@@ -1,7 +1,7 @@
 // Where blocks come from over HTTP: from a file, by byte ranges; or from a qtet-server or a cache
 // in front of it, by their numbers.
 
-import {fetchChecked, RangedFile, type Fetch} from './ranged_file';
+import {emptyFile, fetchChecked, RangedFile, type Fetch} from './ranged_file';
 import {QtetError} from './errors';
 import {kFirstFieldPart, kStructurePart} from './parts';
 import type {LogTable} from './transport';
@@ -64,6 +64,7 @@ export class RangeSource implements BlockSource {
 
   async head(signal: AbortSignal): Promise<Uint8Array> {
     const header = await this.file.read(0, kHeaderBytes, signal);
+    if (header.length === 0) throw emptyFile(this.file.url);
     if (!kMagic.every((byte, i) => header[i] === byte)) {
       throw new QtetError('bad-magic', `${this.file.url} is no qtet log. Is the address right?`);
     }

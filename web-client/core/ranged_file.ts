@@ -2,11 +2,15 @@
 // read as it comes.
 
 import {QtetError} from './errors';
+import {refusedOrigin} from './refused_origin';
 
 /** The first request asks for so much: a log's head and its first levels in one round trip. */
 const kFirstBytes = 64 << 10;
 /** Status codes that may pass. */
 const kPassing = [408, 425, 429];
+
+/** The answer of a server to byte ranges of an empty file. */
+const kNoSuchRange = 416;
 
 export type Fetch = (url: string, init: RequestInit) => Promise<Response>;
 
@@ -21,10 +25,11 @@ export async function fetchChecked(
     response = await fetch(url, init);
   } catch (thrown) {
     if (init.signal?.aborted) throw thrown;
-    throw new QtetError('network', `${url} does not answer.`);
+    throw (await refusedOrigin(url)) ?? new QtetError('network', `${url} does not answer.`);
   }
   if (response.ok) return response;
   const {status, statusText} = response;
+  if (status === kNoSuchRange) throw emptyFile(url);
   const code =
     status >= 500 || kPassing.includes(status)
       ? 'network'
@@ -32,6 +37,10 @@ export async function fetchChecked(
         ? 'not-found'
         : 'http';
   throw new QtetError(code, `${url} is answered by "${status} ${statusText}".`);
+}
+
+export function emptyFile(url: string): QtetError {
+  return new QtetError('truncated', `${url} is empty: it has 0 bytes. Copy the file again.`);
 }
 
 export class RangedFile {
@@ -47,6 +56,8 @@ export class RangedFile {
   private frontSize = 0;
   private first: Promise<void> | null = null;
   private whole = false;
+  /** All of a file without ranges is here. */
+  private ended = false;
   private waiting: {to: number; resolve: () => void; reject: (thrown: unknown) => void}[] = [];
 
   constructor(
@@ -89,6 +100,7 @@ export class RangedFile {
     if (response.url) this.url = response.url;
     if (response.status !== 206) {
       this.whole = true;
+      this.ended = false;
       this.front = new Uint8Array(Number(response.headers.get('content-length') ?? 0));
       void this.drain(response);
       return;
@@ -124,6 +136,7 @@ export class RangedFile {
         this.take(value);
       }
       this.size = this.frontSize;
+      this.ended = true;
       this.wake(Infinity);
     } catch {
       this.first = null;
@@ -152,7 +165,7 @@ export class RangedFile {
   }
 
   private arrival(to: number): Promise<void> {
-    if (to <= this.frontSize || (this.size > 0 && this.frontSize >= this.size))
+    if (to <= this.frontSize || this.ended || (this.size > 0 && this.frontSize >= this.size))
       return Promise.resolve();
     return new Promise((resolve, reject) => this.waiting.push({to, resolve, reject}));
   }

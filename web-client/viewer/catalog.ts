@@ -2,6 +2,7 @@
 // made: the same list in its index.json, with addresses of files.
 
 import {QtetError} from '../core/errors';
+import {refusedOrigin} from '../core/refused_origin';
 import {fetchWith} from '../core/token';
 
 export interface MeshEntry {
@@ -20,6 +21,8 @@ export async function fetchCatalog(base: URL, token = ''): Promise<MeshEntry[]> 
   try {
     response = await (fetchWith(token) ?? fetch)(url.href, {});
   } catch {
+    const refused = await refusedOrigin(url.href);
+    if (refused) throw refused;
     throw new QtetError(
       'offline',
       `The server at ${base.host} does not answer. Check the connection and try again.`,

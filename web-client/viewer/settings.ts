@@ -88,11 +88,14 @@ function parseRange(text: string | null): Settings['range'] {
  */
 export const kFirstOpacities: readonly number[] = [0.03, 0.04, 0.06, 0.1, 0.2, 0.35, 0.5, 0.7, 0.9];
 
+/** The most opacities of a volume: more cannot be told apart in the picture. */
+export const kMaxOpacities = 33;
+
 function parseVolume(text: string | null): number[] | null {
   if (text === null) return null;
   const numbers = parseNumbers(text);
   return numbers.length >= 2 &&
-    numbers.length <= 33 &&
+    numbers.length <= kMaxOpacities &&
     numbers.every((value) => value >= 0 && value <= 1)
     ? numbers
     : [...kFirstOpacities];

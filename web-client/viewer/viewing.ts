@@ -19,6 +19,7 @@ import {displayOf, planesOf, Requests} from './requests';
 import {readSettings, shownRange, type Settings} from './settings';
 import {ShownMesh} from './shown_mesh';
 import {StreamControl} from './stream_control';
+import {unfittingParts, wrongParts} from './wrong_parts';
 
 export class Viewing implements ActionsHost, PanelsHost {
   mesh = new ShownMesh();
@@ -31,6 +32,8 @@ export class Viewing implements ActionsHost, PanelsHost {
   private readonly actions: Actions;
   /** They are built a task later than the rest. */
   private panels: Panels | null = null;
+  /** The sentences about attributes that were told last. */
+  private wrong = '';
   /** The `complete` event has been dispatched. */
   private completeTold = false;
 
@@ -103,6 +106,7 @@ export class Viewing implements ActionsHost, PanelsHost {
     if (!panels) return;
     const before = this.settings;
     this.settings = readSettings((name) => page.read(name));
+    this.tellWrongParts();
     panels.update(this.settings, mesh);
     view?.setLook(this.settings);
     view?.setParallel(this.settings.parallel);
@@ -156,12 +160,12 @@ export class Viewing implements ActionsHost, PanelsHost {
       case 'plan':
         this.mesh.plan = message.plan;
         return this.panels?.progress.takePlan(message.plan);
-      case 'snapshot':
-        return this.takePicture(message.snapshot);
-      case 'progress':
       case 'base':
         this.mesh.bounds = message.bounds;
         return this.apply();
+      case 'snapshot':
+        return this.takePicture(message.snapshot);
+      case 'progress':
         return this.takeProgress(message.statistics);
       case 'state':
         return this.stream.enter(message.state, message.attempt, message.delayMs);
@@ -203,28 +207,26 @@ export class Viewing implements ActionsHost, PanelsHost {
 
   private draw(snapshot: Snapshot, view: View): void {
     const {mesh, page} = this;
-    mesh.take(snapshot);
-    view.show(snapshot, (drawingMs) => {
-      if (mesh !== this.mesh) return; // it belongs to the previous mesh
     const isFirst = mesh.snapshot === null;
-      this.client.shown(drawingMs);
+    mesh.take(snapshot);
     // The range and the free area come first: no frame shows the picture without them.
     if (isFirst) this.apply();
     else this.showRange();
+    view.show(snapshot, (drawingMs) => {
+      if (mesh !== this.mesh) return; // it belongs to the previous mesh
+      this.client.shown(drawingMs);
       page.tell(mesh.drawn ? 'refine' : 'load', snapshot.statistics);
       mesh.drawn = snapshot.statistics;
       page.element.classList.add('loaded');
       this.tellComplete();
     });
     this.panels?.showFigures(snapshot, view.pose.frameMs);
-    this.showRange();
   }
 
   /** Keeps the camera. The mesh comes again from the worker that decodes. */
   private restartGraphics(): void {
     const {view} = this;
     const moved = view && !view.pose.fitted ? view.cameraState : null;
-    const camera = view ? moved : this.settings.camera;
     this.client.repeat();
     void this.graphics.restart(() => (view ? moved : this.takeStart()));
   }
@@ -248,6 +250,19 @@ export class Viewing implements ActionsHost, PanelsHost {
       if (isSame && !fitted) view.cameraState = cameraState;
     }
     this.panels?.clear();
+  }
+
+  /** Says which attributes the picture does not follow, and why. */
+  private tellWrongParts(): void {
+    const {mesh, notices, page} = this;
+    const read = page.read.bind(page);
+    const sentences = wrongParts(read);
+    if (mesh.manifest) sentences.push(...unfittingParts(read, mesh.manifest));
+    const text = sentences.join('\n');
+    if (text === this.wrong) return;
+    this.wrong = text;
+    if (text === '') notices.end('bad-attribute');
+    else this.failed('bad-attribute', text);
   }
 
   private showDisplay(): void {

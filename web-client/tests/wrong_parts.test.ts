@@ -1,0 +1,86 @@
+import {expect, test} from 'vitest';
+import type {FieldInfo, Manifest} from '../core/manifest';
+import {unfittingParts, wrongParts} from '../viewer/wrong_parts';
+
+const reading =
+  (attributes: Record<string, string>) =>
+  (name: string): string | null =>
+    attributes[name] ?? null;
+const field = (name: string, association: 'point' | 'cell'): FieldInfo => ({
+  name,
+  components: 1,
+  association,
+  step: 1,
+  minimum: [0],
+  range: [0, 10],
+});
+const manifest: Manifest = {
+  source: 'test',
+  lattice: {bits: 16, step: 1, origin: [0, 0, 0]},
+  fields: [field('p', 'point'), field('part', 'cell')],
+  levels: [{level: 0, tetrahedra: 1, vertices: 4, boundaryTriangles: 4}],
+};
+
+const kRight: Record<string, string[]> = {
+  transport: ['auto', 'range'],
+  colormap: ['turbo', 'turbo reversed', 'cool-warm+reversed'],
+  range: ['auto', 'symmetric', '-1,2'],
+  scale: ['log', 'linear'],
+  edges: ['on', 'off'],
+  opacity: ['0.5', '1'],
+  clip: ['x', '-y:0.3 z:0.5', '1,0,1:0.4'],
+  'clip-mode': ['cut', 'cells', 'slice'],
+  iso: ['p=1', 'p=1,2'],
+  threshold: ['p=1,2'],
+  volume: ['', '0,0.5'],
+  quality: ['full', '1%', 'cells:20000', 'error:0.01'],
+  projection: ['parallel', 'perspective'],
+  camera: ['1,2,3,0,0,0'],
+};
+const kWrong: Record<string, string[]> = {
+  transport: ['udp'],
+  colormap: ['rainbow', 'turbo backwards', 'turbo reversed twice'],
+  range: ['5,1', '1', '1,2,3', 'a,b'],
+  scale: ['cubic'],
+  edges: ['yes'],
+  opacity: ['0', '1.5', 'x'],
+  clip: ['w:0.5', 'x:2', 'x y z x', 'x w'],
+  'clip-mode': ['flat'],
+  iso: ['p', 'p=', '1'],
+  threshold: ['p=1', 'p=1,2,3'],
+  volume: ['1', '0,2', Array(34).fill(0.5).join()],
+  quality: ['0%', 'best', 'cells:-1'],
+  projection: ['fish-eye'],
+  camera: ['1,2,3'],
+};
+
+test.each(
+  Object.entries(kRight).flatMap(([name, texts]) =>
+    texts.map((text): [string, string] => [name, text]),
+  ),
+)('%s="%s" isUnderstood', (name, text) => expect(wrongParts(reading({[name]: text}))).toEqual([]));
+test.each(
+  Object.entries(kWrong).flatMap(([name, texts]) =>
+    texts.map((text): [string, string] => [name, text]),
+  ),
+)('%s="%s" isNamedWithWhatMayStandThere', (name, text) => {
+  const [sentence, ...more] = wrongParts(reading({[name]: text}));
+  expect(more).toEqual([]);
+  expect(sentence).toContain(`${name}="${text}"`);
+  expect(sentence).toMatch(/It takes .{4,}\.$/);
+});
+test('everyWrongPartIsNamed', () =>
+  expect(wrongParts(reading({clip: 'w', range: '2,1', opacity: '7'}))).toHaveLength(3));
+test('whatTheMeshDoesNotHaveIsNamed', () => {
+  const sentences = (attributes: Record<string, string>): string =>
+    unfittingParts(reading(attributes), manifest).join('|');
+  expect(sentences({field: 'p', iso: 'p=1', threshold: 'part=1,2', quality: '50%'})).toMatch(
+    /^quality="50%" ends nowhere/,
+  );
+  expect(sentences({field: 'T'})).toContain('no field "T"');
+  expect(sentences({field: 'T'})).toContain('It has p, part.');
+  expect(sentences({iso: 'T=1'})).toContain('no field "T"');
+  expect(sentences({iso: 'part=1'})).toContain('takes a field of points');
+  expect(sentences({threshold: 'T=1,2'})).toContain('no field "T"');
+  expect(sentences({quality: 'cells:10'})).toBe('');
+});
