@@ -110,4 +110,99 @@ async function keepsTheMeshOutOfTheLegend({server, browser}) {
   await viewer.screenshot('legend-low');
 }
 
-export const legendChecks = {showsAwkwardFieldsLegibly, keepsTheMeshOutOfTheLegend};
+/** A range's numbers and a plot's curve belong to the field that is shown. */
+async function followsTheField({server, browser}) {
+  const viewer = await browser.open(`${server.url}?mesh=fin&field=Density&range=1,2`);
+  await viewer.waitForState('complete');
+  await viewer.waitForPicture();
+  const {page} = viewer;
+  const attribute = (name) => page.evaluate((its) => window.qtetViewer.getAttribute(its), name);
+  const field = page.locator('qtet-viewer select[name=field]');
+  await field.selectOption('Pressure');
+  assert.equal(await attribute('range'), null);
+  await field.selectOption('Density');
+  assert.equal(await attribute('range'), '1,2');
+  await viewer.settle();
+
+  await page.getByText('Line', {exact: true}).click();
+  const {x, y} = await page.evaluate(() => {
+    const {bounds} = window.qtetViewer.viewing.mesh;
+    const middle = [0, 1, 2].map((axis) => (bounds[axis] + bounds[axis + 3]) / 2);
+    return window.qtetViewer.meshView.project(middle);
+  });
+  await page.mouse.click(x - 40, y);
+  await viewer.settle();
+  await page.mouse.click(x + 40, y);
+  const plot = page.locator('qtet-viewer .plot');
+  await plot.locator('canvas').waitFor();
+  await viewer.settle();
+  assert.equal(await plot.getAttribute('aria-label'), 'Density along the line');
+  const covered = await page.evaluate(() => {
+    const {right} = window.qtetViewer.shadowRoot.querySelector('.result').getBoundingClientRect();
+    return {
+      right,
+      marks: [...window.qtetViewer.shadowRoot.querySelectorAll('.marks circle')].map((mark) =>
+        Number(mark.getAttribute('cx')),
+      ),
+    };
+  });
+  assert.equal(covered.marks.length, 2);
+  assert.ok(
+    covered.marks.every((mark) => mark > covered.right),
+    JSON.stringify(covered),
+  );
+  await field.selectOption('Pressure');
+  await page.waitForFunction(
+    () =>
+      window.qtetViewer.shadowRoot.querySelector('.plot').getAttribute('aria-label') ===
+      'Pressure along the line',
+  );
+  await viewer.screenshot('plot-follows');
+}
+
+/** What a scale or a surface hides is told where it is chosen. */
+async function saysWhatIsHidden({server, browser}) {
+  const viewer = await browser.open(
+    `${server.url}?mesh=fin&field=Velocity[1]&scale=log&iso=Density=1.5&clip=1,1,0:0.9`,
+  );
+  await viewer.waitForState('complete');
+  await viewer.waitForPicture();
+  const {page} = viewer;
+  assert.match(await viewer.text('.legend-note'), /^Values below .* first colour$/);
+  const hint = page.locator('qtet-viewer .iso-hidden');
+  assert.ok(await hint.isHidden(), 'a cut shows what is inside');
+  const select = page.locator('qtet-viewer .plane:first-child select');
+  assert.equal(await select.inputValue(), 'free');
+  const {scrollWidth, clientWidth} = await select.evaluate((box) => ({
+    scrollWidth: box.scrollWidth,
+    clientWidth: box.clientWidth,
+  }));
+  assert.ok(clientWidth > 90 && scrollWidth <= clientWidth, `"Free" has ${clientWidth} pixels`);
+  await page.evaluate(() => {
+    window.qtetViewer.removeAttribute('clip');
+    window.qtetViewer.removeAttribute('scale');
+  });
+  await hint.waitFor();
+  assert.ok(await page.locator('qtet-viewer .legend-note').isHidden());
+  await page.getByRole('button', {name: 'See through it'}).click();
+  await hint.waitFor({state: 'hidden'});
+  const working = await page.evaluate(() => {
+    const mark = window.qtetViewer.shadowRoot.querySelector('.working');
+    const seen = (window.qtetWorking = []);
+    new MutationObserver(() => seen.push(!mark.hidden)).observe(mark, {attributes: true});
+    window.qtetViewer.setAttribute('volume', '0,0.1,0.5');
+    return mark.hidden;
+  });
+  assert.equal(working, true);
+  await viewer.restVolume();
+  await viewer.settle();
+  const seen = await page.evaluate(() => window.qtetWorking);
+  assert.ok(seen.includes(true) && seen.at(-1) === false, `the volume said ${seen}`);
+}
+
+export const legendChecks = {
+  showsAwkwardFieldsLegibly,
+  keepsTheMeshOutOfTheLegend,
+  followsTheField,
+  saysWhatIsHidden,
+};

@@ -146,19 +146,18 @@ describe('the range of the colours', () => {
     extent: [number, number],
   ): ReturnType<typeof shownRange> =>
     shownRange({...readSettings(() => null), ...settings}, extent);
+  const linear = {logarithmic: false, hides: 'none'};
   test('isWhatOccursOrSymmetricOrFixed', () => {
-    expect(range({}, [-1, 4])).toEqual({low: -1, high: 4, logarithmic: false});
-    expect(range({range: 'symmetric'}, [-1, 4])).toEqual({low: -4, high: 4, logarithmic: false});
-    expect(range({range: [2, 3]}, [-1, 4])).toEqual({low: 2, high: 3, logarithmic: false});
+    expect(range({}, [-1, 4])).toEqual({low: -1, high: 4, ...linear});
+    expect(range({range: 'symmetric'}, [-1, 4])).toEqual({low: -4, high: 4, ...linear});
+    expect(range({range: [2, 3]}, [-1, 4])).toEqual({low: 2, high: 3, ...linear});
   });
-  test('isLogarithmicOnlyAboveZero', () => {
-    expect(range({logarithmic: true}, [1, 100])).toEqual({low: 1, high: 100, logarithmic: true});
-    expect(range({logarithmic: true}, [-1, 100])).toEqual({
-      low: 0.01,
-      high: 100,
-      logarithmic: true,
-    });
-    expect(range({logarithmic: true}, [-5, -1]).logarithmic).toBe(false);
+  test('isLogarithmicOnlyAboveZeroAndTellsWhatItHides', () => {
+    const of = (low: number, high: number): ReturnType<typeof shownRange> =>
+      range({logarithmic: true}, [low, high]);
+    expect(of(1, 100)).toEqual({low: 1, high: 100, logarithmic: true, hides: 'none'});
+    expect(of(-1, 100)).toEqual({low: 0.01, high: 100, logarithmic: true, hides: 'low'});
+    expect(of(-5, -1)).toEqual({low: -5, high: -1, logarithmic: false, hides: 'all'});
   });
 });
 

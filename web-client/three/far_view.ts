@@ -223,6 +223,8 @@ class FarView implements View {
         return taken(this.pictures, message.id)?.reject(new Error(message.message));
       case 'lost':
         return this.listeners.lost?.(message.lost);
+      case 'works':
+        return this.listeners.works?.(message.working);
       case 'coarse':
         return void this.coarse(message.id, message.have);
       case 'hello':

@@ -63,6 +63,7 @@ export class MeshView implements View {
     this.volume = new VolumeView(
       (moved) => this.invalidate(moved),
       listeners.coarse?.bind(listeners),
+      (working) => listeners.works?.(working),
     );
     this.orbit = new OrbitCamera(canvas as HTMLCanvasElement, () => this.invalidate());
     this.lattice.add(this.surface, this.isosurface, ...this.cuts);
@@ -170,8 +171,8 @@ export class MeshView implements View {
 
   /**
    * Shows a standard view, or (null) the first view of a mesh, as near as its bounding box allows.
-   */
    * Waits for a mesh if there is none.
+   */
   look(direction: Direction | null): void {
     checkedDirection(direction);
     if (this.bounds.length === 0) {

@@ -41,6 +41,8 @@ export interface ViewListeners {
    * answered after all.
    */
   silent?(silent: boolean): void;
+  /** A volume is being drawn, or all its cells and pixels are on the canvas. */
+  works?(working: boolean): void;
   /** Client.coarse. Without it a volume of many cells follows slowly on slow graphics. */
   coarse?(have: number): Promise<CoarseCells>;
 }

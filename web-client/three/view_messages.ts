@@ -31,6 +31,7 @@ export type FromView =
   | {type: 'drawn'; pose: Pose}
   | {type: 'shown'; id: number; drawingMs: number}
   | {type: 'pong'}
+  | {type: 'works'; working: boolean}
   | {type: 'lost'; lost: boolean}
   | {type: 'coarse'; id: number; have: number}
   | {type: 'pictured'; id: number; blob: Blob}

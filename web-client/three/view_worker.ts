@@ -38,6 +38,7 @@ function begin({canvas: surface, size, answers}: Extract<ToView, {type: 'begin'}
     view = globalThis.qtetView = new MeshView(canvas, {
       drawn: (pose) => post({type: 'drawn', pose}),
       lost: (lost) => post({type: 'lost', lost}),
+      works: (working) => post({type: 'works', working}),
       ...(answers ? {coarse} : {}),
     });
     post({type: 'drawn', pose: view.pose});

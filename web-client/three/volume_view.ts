@@ -70,10 +70,11 @@ export class VolumeView {
   private whole = false;
   private timer: ReturnType<typeof setTimeout> | undefined;
 
-  /** `changed` asks for another picture. `askCoarse` is ViewListeners.coarse. */
+  /** `changed` asks for another picture. `askCoarse` and `works` are those of ViewListeners. */
   constructor(
     private readonly changed: (moved: boolean) => void,
     private readonly askCoarse?: (have: number) => Promise<CoarseCells>,
+    private readonly works: (working: boolean) => void = () => undefined,
   ) {}
 
   get hasCells(): boolean {
@@ -194,8 +195,10 @@ export class VolumeView {
   }
 
   private start(drawing: Promise<void>): void {
+    this.works(true);
     this.inHand = drawing.catch(reportError).finally(() => {
       this.inHand = null;
+      if (this.atRest || !this.hasCells) this.works(false);
       if (!this.hasCells) this.update();
       if (this.interrupted || this.waiting) this.changed(this.interrupted);
     });

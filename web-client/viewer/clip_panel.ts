@@ -62,13 +62,15 @@ export class ClipPanel implements Panel {
           <option value="view">As I look</option><option value="free" hidden>Free</option>
         </select>
         <label class="toggle"><input type="checkbox" name="flip"><span>Flip</span></label>
-        <output class="position"></output>
         <button type="button" class="icon remove" aria-label="Remove clip plane ${i + 1}">
           <svg viewBox="0 0 20 20" aria-hidden="true"><path d="M5 5l10 10M15 5 5 15"/></svg>
         </button>
       </div>
-      <input type="range" name="position" min="0" max="1000"
-        aria-label="Position of clip plane ${i + 1}">`;
+      <div class="row">
+        <input type="range" name="position" min="0" max="1000"
+          aria-label="Position of clip plane ${i + 1}">
+        <output class="position"></output>
+      </div>`;
     row
       .querySelector('select')!
       .addEventListener('change', (event) =>

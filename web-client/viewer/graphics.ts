@@ -91,6 +91,7 @@ export class Graphics {
           `Something went wrong while drawing: ${why}. If the picture is not right, try again.`,
         ),
       silent: (silent) => this.tellOfSilence(silent),
+      works: (working) => void (find(this.root, '.working').hidden = !working),
       coarse: (have) => this.listeners.coarse(have),
     });
   }

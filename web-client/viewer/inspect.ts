@@ -92,6 +92,12 @@ export class Inspect {
     this.host.pointAt(null);
   }
 
+  /** Brings a line's plot in line with the picture: another field, or a finer mesh. */
+  refresh(): void {
+    const [from, to] = this.points;
+    if (this.tool === 'line' && from && to) void this.showLine(from, to);
+  }
+
   /** Must be called after every frame, so that the marks follow their points. */
   place(): void {
     const {view} = this.host;

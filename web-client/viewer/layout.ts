@@ -6,6 +6,8 @@ import type {Insets} from '../three/view';
 const kMaxCovered = 0.6;
 /** Share of the free width: a wider legend leaves no corner. */
 const kWide = 0.6;
+/** Beside the panel and the card of a point this share of the width stays for the mesh. */
+const kLeastFree = 0.35;
 
 /** `result` stands above the sheet on narrow screens, and the mesh above both. */
 export function insetsOf(
@@ -33,8 +35,10 @@ export function insetsOf(
   // The legend only takes a corner, so that half of its height is enough room, unless it leaves
   // hardly any width.
   const bottom = bare ? 0 : (whole.bottom - bar.top) / height / (bar.width > kWide * free ? 1 : 2);
+  const pointed = result.hidden ? 0 : (result.getBoundingClientRect().right - whole.left) / width;
+  const left = pointed < free / width - kLeastFree ? pointed : 0;
   return {
-    left: 0,
+    left,
     right: hidden ? 0 : Math.min(kMaxCovered, (whole.right - card.left) / width),
     top: 0,
     bottom: Math.min(kMaxCovered, bottom),

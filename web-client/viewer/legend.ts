@@ -4,6 +4,7 @@ import {colorGradient} from '../core/color_maps';
 import type {Scalar} from '../core/field_scale';
 import type {FieldInfo} from '../core/manifest';
 import {logTicks, niceTicks} from '../core/ticks';
+import {formatValue} from './format';
 import {scalarTitle} from './panel';
 import type {Settings} from './settings';
 
@@ -13,6 +14,8 @@ export interface ShownRange {
   low: number;
   high: number;
   logarithmic: boolean;
+  /** What a logarithmic scale hides: nothing, the values below `low`, or all of them. */
+  hides: 'none' | 'low' | 'all';
   /** Some values are missing: the legend explains their colour. */
   hasMissing: boolean;
 }
@@ -46,6 +49,9 @@ export class Legend {
     name.textContent = name.title = scalarTitle(scalar, fields);
     this.part('.legend-missing').hidden = !range.hasMissing;
     this.part('.legend-factor').textContent = range.logarithmic ? 'logarithmic' : factor;
+    const note = noteOf(range);
+    this.part('.legend-note').hidden = note === '';
+    this.part('.legend-note').textContent = note;
     this.part('.legend-bar').style.background = colorGradient(map, reversed, 33);
     this.part('.legend-ticks').replaceChildren(
       ...ticks.map(({at, label}) => {
@@ -60,4 +66,10 @@ export class Legend {
   private part(selector: string): HTMLElement {
     return this.figure.querySelector<HTMLElement>(selector)!;
   }
+}
+
+/** What the colours do not tell apart. */
+function noteOf({hides, low}: ShownRange): string {
+  if (hides === 'all') return 'No values above 0: the scale is linear';
+  return hides === 'low' ? `Values below ${formatValue(low)} have the first colour` : '';
 }

@@ -44,6 +44,8 @@ export class Panels {
   private readonly legend: Legend;
   private readonly statistics: StatisticsPanel;
   private readonly view: ViewPanel;
+  /** The field and the level that a line's plot shows. */
+  private plotted = '';
 
   constructor(page: Page, host: PanelsHost, actions: Actions) {
     const {root} = page;
@@ -121,8 +123,15 @@ export class Panels {
   }
 
   /** Shows the picture's figures. `frameMs` is the time of drawing. */
-  showFigures({statistics, costMs}: NonNullable<ShownMesh['snapshot']>, frameMs: number): void {
+  showFigures(
+    {color, statistics, costMs}: NonNullable<ShownMesh['snapshot']>,
+    frameMs: number,
+  ): void {
     this.statistics.show(statistics, costMs, frameMs);
+    const isWhole = statistics.bytes >= statistics.bytesNeeded;
+    const plotted = JSON.stringify([color, isWhole]);
+    if (plotted !== this.plotted) this.inspect.refresh();
+    this.plotted = plotted;
   }
 
   /** Shows the legend; null if nothing is coloured. */

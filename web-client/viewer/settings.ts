@@ -252,16 +252,18 @@ export function sharesOf({scalar, values}: FieldValues, fields: readonly FieldIn
 
 /**
  * `extent` is the range of the values that occur. A logarithmic range starts above 0, if necessary
- * at a ten-thousandth of its end.
+ * at a ten-thousandth of its end; `hides` then says what this hides, or why there is none.
  */
 export function shownRange(
   {range, logarithmic}: Settings,
   extent: [number, number],
-): {low: number; high: number; logarithmic: boolean} {
+): {low: number; high: number; logarithmic: boolean; hides: 'none' | 'low' | 'all'} {
   const most = Math.max(Math.abs(extent[0]), Math.abs(extent[1]));
   const [low, high] = range === 'auto' ? extent : range === 'symmetric' ? [-most, most] : range;
-  if (!logarithmic || high <= 0) return {low, high, logarithmic: false};
+  if (!logarithmic) return {low, high, logarithmic: false, hides: 'none'};
+  if (high <= 0) return {low, high, logarithmic: false, hides: 'all'};
   const kDecades = 1e-4;
   const from = low > 0 ? low : high * kDecades;
-  return from < high ? {low: from, high, logarithmic: true} : {low, high, logarithmic: false};
+  if (from >= high) return {low, high, logarithmic: false, hides: 'all'};
+  return {low: from, high, logarithmic: true, hides: low > 0 ? 'none' : 'low'};
 }

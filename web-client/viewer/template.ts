@@ -72,6 +72,7 @@ export const kTemplate = `
   <figcaption><span class="legend-name"></span><span class="legend-factor"></span></figcaption>
   <div class="legend-bar"></div>
   <div class="legend-ticks"></div>
+  <div class="legend-note" hidden></div>
   <div class="legend-missing" hidden><i></i>No value</div>
 </figure>
 
@@ -174,10 +175,13 @@ export const kTemplate = `
           <span class="name">Values</span>
           <input type="text" name="iso-values" autocomplete="off">
         </label>
+        <p class="hint iso-hidden" hidden>The surface hides them.
+          <button type="button" class="see-through">See through it</button></p>
       </div>
       ${toggle('volume', 'Volume')}
       <div class="volume sub" hidden>
         <div class="bars" role="group" aria-label="Transfer function"></div>
+        <p class="hint working" hidden>Drawing all cells and pixels</p>
         <div class="row buttons">
           <button type="button" class="fainter">Fainter</button>
           <button type="button" class="denser">Denser</button>

@@ -15,6 +15,8 @@ import {
 } from './settings';
 
 const kSteps = 1000;
+/** The surface's opacity through which isosurfaces are seen well. */
+const kSeeThrough = '0.25';
 
 export class ValuePanel implements Panel {
   private fields: readonly FieldInfo[] = [];
@@ -41,9 +43,12 @@ export class ValuePanel implements Panel {
     );
     this.numbers.addEventListener('change', () => this.type());
     for (const slider of this.sliders) slider.addEventListener('input', () => this.slide(slider));
+    this.body
+      .querySelector('.see-through')
+      ?.addEventListener('click', () => attributes.write('opacity', kSeeThrough));
   }
 
-  update(_: Settings, scene: Scene | null): void {
+  update(settings: Settings, scene: Scene | null): void {
     this.fields = scene?.manifest.fields ?? [];
     const usable = this.fields.some(
       (info) => this.kind === 'threshold' || info.association === 'point',
@@ -52,6 +57,8 @@ export class ValuePanel implements Panel {
     this.on.disabled = !usable;
     this.on.checked = now !== null;
     this.body.hidden = now === null;
+    const hidden = this.body.querySelector<HTMLElement>('.iso-hidden');
+    if (hidden) hidden.hidden = !hidesInside(settings);
     if (!now) return;
     fillScalars(this.select, this.fields, now.scalar, this.kind === 'iso');
     if (this.root.activeElement !== this.numbers)
@@ -126,4 +133,9 @@ export class ValuePanel implements Panel {
   private write(values: FieldValues): void {
     this.attributes.write(this.kind, fieldValuesText(values, this.fields));
   }
+}
+
+/** An opaque surface without a cut lets nothing inside be seen. */
+function hidesInside({surface, opacity, planes, volume}: Settings): boolean {
+  return surface && opacity === 1 && planes.length === 0 && volume === null;
 }
