@@ -29,10 +29,18 @@ inline constexpr std::uint32_t kMaxElements = 1u << 29;
 /// Bytes of one block: a base mesh of 10^7 cells fits; a decoder's buffer stays below a browser's
 /// memory.
 inline constexpr std::uint32_t kMaxBlockBytes = 256u << 20;
-/// New vertices, cells or triangles of one chunk that holds B structure bytes are at most B times
-/// this: the range coder spends at least 1/1,420 bit on a decision (codec/coding/range_coder.h), so
-/// a hostile count cannot outgrow the bytes sent by more.
-inline constexpr std::uint64_t kMaxDecisionsPerByte = 8 * 1500;
+/// Decisions that one byte of a range coder's stream can hold are fewer: each costs 1/1,420 bit at
+/// least (codec/coding/range_coder.h). A value of an adaptive block or a level's figure costs one.
+inline constexpr std::uint64_t kMaxDecisionsPerByte = 12'000;
+/// Steps that a reader takes for one structure byte: split flags, cells of stars that split,
+/// tetrahedra of the base mesh, child bits, levels. Decisions that cost next to nothing would
+/// allow ten times as many, which is minutes for a small file. Real logs take up to 14.
+inline constexpr std::uint64_t kMaxStepsPerByte = 1024;
+/// Structure bytes that a reader takes steps for without having them, so that tiny logs are free:
+/// four million steps, a fifth of a second.
+inline constexpr std::uint64_t kFreeStepBytes = 4096;
+/// Structure bytes that a chunk's counts are checked as if it had in addition.
+inline constexpr std::uint64_t kFreeCountBytes = 64;
 /// The same of a packet of the layout `regions`, whose slots may be made room for before the bytes
 /// of those before it are there; and of a whole log, before a refiner makes room for it. Real ones
 /// bring one or two cells a byte.

@@ -1,5 +1,5 @@
 // The input's own numbers, bit for bit, told as corrections to what the lattice or a field's scale
-// gives (FORMAT.md, "Exact values").
+// gives (CLOSING.md, "Exact values").
 #pragma once
 
 #include <cstdint>

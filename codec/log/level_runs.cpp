@@ -20,6 +20,7 @@ class LevelRuns {
   /// Writes a level, and closes its last chunk unless another level should join that or `isLast`.
   Status write(std::uint32_t level, bool isLast) {
     writer_.mesh().beginLevel(level);
+    writer_.meter().spend(1);
     // none once a chunk ended within the level
     std::optional<std::uint64_t> begun = chunks_.estimatedBytes();
     for (VertexId v = 0; v < writer_.mesh().levelVertices(); ++v) {
@@ -39,6 +40,7 @@ class LevelRuns {
   Status cut(std::uint32_t lastLevel, std::uint32_t endSlot, std::uint32_t nextLevel) {
     if (Status s = writer_.closeChunk(lastLevel, endSlot); !s) return s;
     chunks_.begin(nextLevel);
+    if (nextLevel == lastLevel) writer_.meter().spend(1);
     return {};
   }
 

@@ -102,18 +102,30 @@ Result<Header> readHeader(ByteView bytes) {
   return h;
 }
 
+// What is wrong with a closing row beside the others, or nullptr.
+const char* brokenClosing(const LogIndex& index, const ClosingBlock& closing) {
+  if (closing.kind == ClosingKind::kExactField && closing.field >= index.fields.size())
+    return "a closing block of a field that the log does not have; build the log again";
+  const bool ofMesh = closing.kind == ClosingKind::kPointOrder ||
+                      closing.kind == ClosingKind::kCellOrder ||
+                      closing.kind == ClosingKind::kExactPositions;
+  if (ofMesh && closing.field != 0)
+    return "a closing block of points or cells that names a field; build the log again";
+  if (index.closingBlock(closing.kind, closing.field) != &closing)
+    return "two closing blocks of the same kind; build the log again";
+  if (closing.kind == ClosingKind::kCellOrder &&
+      index.closingBlock(ClosingKind::kPointOrder) == nullptr)
+    return "the input's numbering of cells without that of its points; build the log again";
+  return nullptr;
+}
+
 // Blocks back to back from `offset` to the file's end, each kind once.
 Status checkClosing(const LogIndex& index, std::uint64_t offset, std::uint64_t fileBytes) {
   for (const ClosingBlock& closing : index.closing) {
     if (closing.block.size > kMaxBlockBytes)
       return fail(ErrorCode::kLimitExceeded, "a closing block above 256 MiB", offset);
-    if (closing.kind == ClosingKind::kExactField && closing.field >= index.fields.size())
-      return fail(ErrorCode::kBadValue,
-                  "a closing block of a field that the log does not have; build the log again",
-                  offset);
-    if (index.closingBlock(closing.kind, closing.field) != &closing)
-      return fail(ErrorCode::kBadValue, "two closing blocks of the same kind; build the log again",
-                  offset);
+    if (const char* what = brokenClosing(index, closing))
+      return fail(ErrorCode::kBadValue, what, offset);
     offset += closing.block.size;
   }
   if (offset != fileBytes)
@@ -195,15 +207,15 @@ Status check(const LogIndex& index, const Header& header) {
     if (i == 0 ? e.firstLevel != 0 || e.lastLevel != 0 || e.records != 0 || e.endSlot != kLevelEnd
                : e.firstLevel == 0)
       return bad(ErrorCode::kBadValue, "levels out of order");
-    // A split costs at least one decision and brings at most four vertices back; a link triangle or
-    // a deleted cell one decision each.
-    const std::uint64_t decisions =
-        kMaxDecisionsPerByte * (std::uint64_t{e.blocks[kStructurePart].size} + 4);
-    if (e.records > decisions || e.newVertices > 4 * decisions || e.newTetrahedra > 8 * decisions ||
-        e.newBoundaryTriangles > 8 * decisions)
+    // A split takes at least one step and brings at most four vertices back; the cells that it
+    // brings are less than eight for each cell of its star, which is a step.
+    const std::uint64_t steps =
+        kMaxStepsPerByte * (std::uint64_t{e.blocks[kStructurePart].size} + kFreeCountBytes);
+    if (e.records > steps || e.newVertices > 4 * steps || e.newTetrahedra > 8 * steps ||
+        e.newBoundaryTriangles > 8 * steps)
       return bad(ErrorCode::kLimitExceeded, "it promises more than its bytes can hold");
-    const std::uint64_t elements =
-        kMaxElementsPerPacketByte * (std::uint64_t{e.blocks[kStructurePart].size} + 64);
+    const std::uint64_t elements = kMaxElementsPerPacketByte *
+                                   (std::uint64_t{e.blocks[kStructurePart].size} + kFreeCountBytes);
     if (e.node != 0 && (e.newVertices > elements || e.newTetrahedra > elements ||
                         e.newBoundaryTriangles > elements))
       return bad(ErrorCode::kLimitExceeded, "a packet that promises more than packets hold");

@@ -171,6 +171,7 @@ Result<EncodedLog> encodeLog(const FusionHistory& history, const LogWriterOption
   if (!index) return std::unexpected(index.error());
   EncodedLog log;
   log.statistics = statisticsOf(*index, history, writer.positionCost(), childBytes);
+  log.statistics.steps = writer.meter().steps();
   index->fileBytes = log.statistics.fileBytes;
   log.points = writer.mirror().vertices();
   log.tetrahedra = writer.mirror().tetrahedra();

@@ -38,6 +38,7 @@ struct LogStatistics {
   std::uint64_t baseBytes = 0;  ///< of the above, what chunk 0 takes
   std::uint64_t fileBytes = 0;
   std::uint64_t records = 0;
+  std::uint64_t steps = 0;  ///< of a reader's work (Refiner::steps)
   std::uint32_t chunks = 0;
   std::uint32_t levels = 0;  ///< without the base mesh
 };

@@ -81,6 +81,7 @@ Status PacketWriter::children(std::uint32_t node, const NodeCells& cells) {
   std::array<NodeCells, 2> halves;
   RangeEncoder& structure = writer_.chunks().structure();
   const std::size_t before = structure.size();
+  writer_.meter().spend(cells.size());
   ChildCoder<RangeEncoder> coder(structure, models_, writer_.mesh(), history_.lattice.bits,
                                  counts_);
   if (!coder.code(cells, truth, halves) || !inNode) return failBeyondNode();
@@ -119,6 +120,7 @@ Status PacketWriter::packet(const Band& band, std::uint32_t node) {
 Status PacketWriter::level(std::uint32_t level, std::vector<VertexId>& inner) {
   GrowingMesh& mesh = writer_.mesh();
   mesh.beginLevel(level);
+  writer_.meter().spend(1);
   const VertexId firstNew = mesh.next().vertices;
   const std::size_t vertices = inner.size();
   for (std::size_t i = 0; i < vertices; ++i) {

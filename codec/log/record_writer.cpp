@@ -56,13 +56,24 @@ Status RecordWriter::base() {
       chunks_.positions().code<true>(predictBase(coder.births[v], v, c, true, at), points[v][c]);
   fields_.base(coder.births, chunks_.fields());
   added_[0] = mesh().next();
+  meter_.spend(mesh().tetrahedra.size());
   return {};
+}
+
+Status RecordWriter::closeChunk(std::uint32_t lastLevel, std::uint32_t endSlot) {
+  if (Status s = chunks_.close(lastLevel, endSlot, mesh().next()); !s) return s;
+  meter_.grant(chunks_.rows().back().blocks[kStructurePart].size);
+  if (!meter_.isExceeded()) return {};
+  return fail(ErrorCode::kLimitExceeded,
+              "too many levels of too few fusions, which readers refuse as too much work; simplify "
+              "less (--target-ratio)");
 }
 
 const Fusion* RecordWriter::flag(VertexId v) {
   assert(mesh().maysplit(v));
   const Fusion* fusion = truths_.fusionAt(v);
   coder_.splits(v, mesh().level(), fusion != nullptr);
+  meter_.spend(1 + (fusion != nullptr ? mesh().star(v).size() : 0));
   return fusion;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "codec/log/chunk_writer.h"
+#include "codec/log/work_meter.h"
 #include "codec/mesh/link.h"
 #include "codec/record/field_writer.h"
 #include "codec/record/fusion_history.h"
@@ -32,12 +33,13 @@ class RecordWriter {
   /// Writes the record of v and splits it. Errors: bad-value, cancelled. REQUIRES: flag(v) gave
   /// `fusion`.
   Status record(VertexId v, Fusion fusion);
-  /// Ends the open chunk.
-  Status closeChunk(std::uint32_t lastLevel, std::uint32_t endSlot) {
-    return chunks_.close(lastLevel, endSlot, mesh().next());
-  }
+  /// Ends the open chunk. Errors: those of ChunkWriter::close; limit-exceeded where a reader would
+  /// refuse so much work for so few bytes.
+  Status closeChunk(std::uint32_t lastLevel, std::uint32_t endSlot);
 
   [[nodiscard]] ChunkWriter& chunks() { return chunks_; }
+  /// Of what is written; levels and child bits are the caller's to count.
+  [[nodiscard]] WorkMeter& meter() { return meter_; }
   [[nodiscard]] RecordModels& models() { return models_; }
   [[nodiscard]] GrowingMesh& mesh() { return mirror_.mesh(); }
   [[nodiscard]] const MirrorMesh& mirror() const { return mirror_; }
@@ -62,6 +64,7 @@ class RecordWriter {
   RecordModels models_;
   RecordCoder<RangeEncoder> coder_;
   std::vector<Slots> added_;
+  WorkMeter meter_;
 };
 
 }  // namespace qtet

@@ -73,6 +73,7 @@ void Refiner::State::makeRoom(std::size_t bytes) {
 Status Refiner::State::apply(std::uint32_t chunk, ByteView structure, Values& positions) {
   const ChunkEntry& entry = plan.index.chunks[chunk];
   const std::size_t firstBirth = mesh.records().records();
+  mesh.records().meter().grant(structure.size());
   ChunkInHand inHand{chunk,
                      entry,
                      RangeDecoder(structure),
@@ -133,6 +134,7 @@ const Slots& Refiner::firstSlots(std::uint32_t chunk) const {
   return state_->plan.slots[chunk];
 }
 std::uint32_t Refiner::level() const { return state_->mesh.levels().last(); }
+std::uint64_t Refiner::steps() const { return state_->mesh.records().meter().steps(); }
 std::span<const LevelCounts> Refiner::levelCounts() const {
   return state_->mesh.levels().complete();
 }

@@ -90,6 +90,8 @@ class Refiner {
   /// The last level that is complete everywhere.
   [[nodiscard]] std::uint32_t level() const;
 
+  /// Work so far, which limit-exceeded bounds (kMaxStepsPerByte).
+  [[nodiscard]] std::uint64_t steps() const;
   /// Of the complete levels, 0 first; several may have come with one chunk.
   [[nodiscard]] std::span<const LevelCounts> levelCounts() const;
 

@@ -53,6 +53,7 @@ Result<Extent> HeadReader::read(ChunkInHand& chunk) {
   GrowingMesh& mesh = records_.mesh();
   RecordCoder<RangeDecoder> coder = records_.coderOf(chunk);
   for (std::uint32_t level = entry.firstLevel;; ++level) {
+    if (Status s = records_.work(chunk, 1); !s) return std::unexpected(s.error());
     if (!open_) {
       if (Status s = orders_.mayGoOn(); !s) return std::unexpected(s.error());
       open_ = OpenLevel{0, records_.records()};
@@ -111,6 +112,7 @@ Status PacketReader::children(ChunkInHand& chunk, std::uint32_t node, const Node
   ChildCoder<RangeDecoder> coder(chunk.decoder, models_, records_.mesh(), plan_.index.positionBits,
                                  counts_);
   std::array<NodeCells, 2> halves;
+  if (Status s = records_.work(chunk, cells.size()); !s) return s;
   if (!coder.code(cells, [](CellRef) { return 0; }, halves) || chunk.decoder.overrun())
     return chunk.refuse(ErrorCode::kBadValue, "its child bits end too early or name no axis");
   for (std::uint32_t i = 0; i < 2; ++i) waiting_[2 * node + i] = std::move(halves[i]);
@@ -147,6 +149,7 @@ Result<Extent> PacketReader::read(ChunkInHand& packet) {
 Status PacketReader::level(ChunkInHand& packet, std::uint32_t level,
                            RecordCoder<RangeDecoder>& coder, std::vector<VertexId>& inner) {
   if (Status s = orders_.mayGoOn(); !s) return s;
+  if (Status s = records_.work(packet, 1); !s) return s;
   GrowingMesh& mesh = records_.mesh();
   mesh.beginLevel(level);
   const Slots before = mesh.next();

@@ -58,8 +58,16 @@ void RecordReader::makeRoomForAll() {
   ancestry_.points.reserve(recordsOfAll(), total.vertices);
 }
 
+Status RecordReader::work(const ChunkInHand& chunk, std::uint64_t steps) {
+  meter_.spend(steps);
+  if (!meter_.isExceeded()) return {};
+  return chunk.refuse(ErrorCode::kLimitExceeded,
+                      "it takes more work than a log of so few bytes may ask for");
+}
+
 Status RecordReader::base(ChunkInHand& chunk) {
   assert(mesh_.points.empty());
+  if (Status s = work(chunk, chunk.entry.newTetrahedra); !s) return s;
   BaseCoder<RangeDecoder> coder(chunk.decoder, chunk.entry.newVertices, chunk.entry.newTetrahedra);
   if (!coder.run(nullptr, [&] { return chunk.decoder.overrun(); })) return chunk.refuseBase();
   ancestry_.base = std::move(coder.births);
@@ -90,6 +98,7 @@ Status RecordReader::vertex(const ChunkInHand& chunk, RecordCoder<RangeDecoder>&
   const bool splits = coder.splits(v, mesh_.level(), false);
   if (chunk.decoder.overrun())
     return chunk.refuse(ErrorCode::kTruncated, "the structure block ends too early");
+  if (Status s = work(chunk, 1 + (splits ? mesh_.star(v).size() : 0)); !s) return s;
   return splits ? split(chunk, coder, v) : Status{};
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "codec/log/refiner.h"
+#include "codec/log/work_meter.h"
 #include "codec/mesh/growing_mesh.h"
 #include "codec/record/base_coder.h"
 #include "codec/record/cell_values.h"
@@ -100,6 +101,10 @@ class RecordReader {
   [[nodiscard]] GrowingMesh& mesh() { return mesh_; }
   [[nodiscard]] const GrowingMesh& mesh() const { return mesh_; }
   [[nodiscard]] RecordModels& models() { return models_; }
+  /// Takes that many steps, or refuses the chunk with limit-exceeded.
+  [[nodiscard]] Status work(const ChunkInHand& chunk, std::uint64_t steps);
+  [[nodiscard]] WorkMeter& meter() { return meter_; }
+  [[nodiscard]] const WorkMeter& meter() const { return meter_; }
   [[nodiscard]] const Ancestry& ancestry() const { return ancestry_; }
   /// Records so far.
   [[nodiscard]] std::size_t records() const { return ancestry_.points.births().size(); }
@@ -115,6 +120,7 @@ class RecordReader {
   Split inHand_;
   RecordModels models_;
   Ancestry ancestry_;
+  WorkMeter meter_;
 };
 
 }  // namespace qtet

@@ -1,5 +1,5 @@
 // The input's own numbering of points, cells and cells' vertices, for the decoder's mesh of the
-// last level (FORMAT.md, "Input order").
+// last level (CLOSING.md, "Input order").
 #pragma once
 
 #include <span>

@@ -18,6 +18,7 @@ struct NodeCells {
 
   /// Adds the slots from `first` to `end`. REQUIRES: above those that it has.
   void add(const Slots& first, const Slots& end);
+  [[nodiscard]] std::size_t size() const { return tetrahedra.size() + triangles.size(); }
   [[nodiscard]] bool empty() const { return tetrahedra.empty() && triangles.empty(); }
   /// Calls visit(ref) with every cell, tetrahedra first.
   template <class Visit>
