@@ -108,7 +108,8 @@ const char* brokenClosing(const LogIndex& index, const ClosingBlock& closing) {
     return "a closing block of a field that the log does not have; build the log again";
   const bool ofMesh = closing.kind == ClosingKind::kPointOrder ||
                       closing.kind == ClosingKind::kCellOrder ||
-                      closing.kind == ClosingKind::kExactPositions;
+                      closing.kind == ClosingKind::kExactPositions ||
+                      closing.kind == ClosingKind::kOriginalCells;
   if (ofMesh && closing.field != 0)
     return "a closing block of points or cells that names a field; build the log again";
   if (index.closingBlock(closing.kind, closing.field) != &closing)
@@ -116,6 +117,9 @@ const char* brokenClosing(const LogIndex& index, const ClosingBlock& closing) {
   if (closing.kind == ClosingKind::kCellOrder &&
       index.closingBlock(ClosingKind::kPointOrder) == nullptr)
     return "the input's numbering of cells without that of its points; build the log again";
+  if (closing.kind == ClosingKind::kOriginalCells &&
+      index.closingBlock(ClosingKind::kCellOrder) == nullptr)
+    return "the cells' original cells without the cells' numbering; build the log again";
   return nullptr;
 }
 
