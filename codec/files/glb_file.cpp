@@ -32,7 +32,8 @@ Json document(const GlbContent& content, std::size_t bytes) {
   if (!content.extensions.is_null()) primitive["extensions"] = content.extensions;
   Json out = {{"asset", {{"version", "2.0"}, {"generator", "qtet " QTET_VERSION}}}};
   if (!content.requiredExtensions.empty())
-    out["extensionsUsed"] = out["extensionsRequired"] = content.requiredExtensions;
+    for (const char* list : {"extensionsUsed", "extensionsRequired"})
+      out[list] = content.requiredExtensions;
   out["scene"] = 0;
   out["scenes"] = {{{"nodes", {0}}}};
   out["nodes"] = {{{"mesh", 0}}};
