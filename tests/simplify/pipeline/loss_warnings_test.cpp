@@ -71,7 +71,7 @@ void expectWarning(const std::vector<std::string>& warnings,
 }
 
 TEST(LossWarnings, anOrdinaryMeshHasNone) {
-  EXPECT_EQ(warningsOf(ball(12), 0.2), std::vector<std::string>{});
+  EXPECT_EQ(warningsOf(ball(12), 0.5), std::vector<std::string>{});
 }
 
 TEST(LossWarnings, tooFewCellsAreTheReasonWhereNothingElseIs) {
