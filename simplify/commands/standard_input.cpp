@@ -1,12 +1,15 @@
 #include "simplify/commands/standard_input.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <vector>
 
 namespace qtet {
@@ -14,15 +17,41 @@ namespace {
 
 constexpr std::size_t kPieceBytes = std::size_t{1} << 20;
 
-/// The places of "-" as an input.
+/// Whether the word names what can be read once alone: a pipe, or a device such as a terminal.
+bool isPipe(const std::string& word) {
+  if (word.empty() || word.starts_with('-')) return false;
+  std::error_code code;
+  const std::filesystem::file_type type = std::filesystem::status(word, code).type();
+  return type == std::filesystem::file_type::fifo || type == std::filesystem::file_type::character;
+}
+
+/// The places of "-" and of pipes as an input.
 std::vector<std::size_t> placesOf(const Words& words) {
+  constexpr std::array<std::string_view, 6> kOthersFiles{"-o",       "--output",     "--against",
+                                                         "--plot3d", "--token-file", "--from"};
   std::vector<std::size_t> out;
   for (std::size_t i = 0; i < words.size(); ++i) {
-    const bool isOutput = i > 0 && (words[i - 1] == "-o" || words[i - 1] == "--output");
-    if (words[i] == "-" && !isOutput) out.push_back(i);
+    const bool isOption =
+        i > 0 && std::ranges::find(kOthersFiles, words[i - 1]) != kOthersFiles.end();
+    if (!isOption && (words[i] == "-" || isPipe(words[i]))) out.push_back(i);
   }
   return out;
 }
+
+/// A file that is open for reading while this lives.
+class OpenFile {
+ public:
+  explicit OpenFile(const std::string& name) : file_(::open(name.c_str(), O_RDONLY | O_CLOEXEC)) {}
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+  ~OpenFile() {
+    if (file_ >= 0) ::close(file_);
+  }
+  [[nodiscard]] int file() const { return file_; }
+
+ private:
+  int file_;
+};
 
 /// What --format says, in either way of writing it.
 std::string formatAmong(const Words& words) {
@@ -67,14 +96,25 @@ Result<std::unique_ptr<GuardedFolder>> spoolStandardInput(Words& words, std::str
   const std::vector<std::size_t> places = placesOf(words);
   if (places.empty()) return nullptr;
   if (places.size() > 1)
-    return fail(ErrorCode::kBadInput, "- stands for the standard input and can be given once");
+    return fail(ErrorCode::kBadInput,
+                "- stands for the standard input and can be given once, as any pipe");
+  const std::string named = words[places.front()] == "-" ? "" : words[places.front()];
   std::string kind = ending.empty() ? formatAmong(words) : std::string(ending);
+  if (kind.empty()) kind = std::filesystem::path(named).extension().string();
   if (kind.starts_with('.')) kind.erase(0, 1);
   if (kind.empty() ||
       !std::ranges::all_of(kind, [](unsigned char c) { return std::isalnum(c) != 0; }))
     return fail(ErrorCode::kBadInput,
-                "- is the standard input, which has no name: say with --format what kind of file "
-                "it is, for example --format vtu");
+                (named.empty() ? "- is the standard input, which has no name"
+                               : named + " is a pipe whose name does not tell what it gives") +
+                    std::string(": say with --format what kind of file it is, for example "
+                                "--format vtu"));
+  std::optional<OpenFile> pipe;
+  if (!named.empty()) {
+    input = pipe.emplace(named).file();
+    if (input < 0)
+      return fail(ErrorCode::kIo, "cannot read " + named + ": " + std::strerror(errno));
+  }
   if (::isatty(input) == 1)
     return fail(
         ErrorCode::kIo,

@@ -187,6 +187,23 @@ class FastParser : public vtkXMLDataParser {
     return blocks == 0 ? last == 0 : size > 0 && last <= size && blocks <= left / wordBytes;
   }
 
+  /// Numbers in the text that was read last.
+  [[nodiscard]] std::size_t textNumbers() const { return this->AsciiDataBufferLength; }
+
+  /// The word at which that text's numbers end; empty: at the element's end, or it was read before.
+  [[nodiscard]] std::string wordBehindText() {
+    this->Stream->clear();
+    if (this->TellG() == this->AsciiDataPosition) return {};
+    constexpr std::size_t kShown = 24;
+    std::string word;
+    *this->Stream >> std::ws;
+    for (int c = this->Stream->get(); c > ' ' && c != '<' && word.size() < kShown;
+         c = this->Stream->get())
+      word += static_cast<char>(c);
+    this->Stream->clear();
+    return word;
+  }
+
  protected:
   FastParser() {
     setStream<FastBase64>(this->InlineDataStream);
@@ -221,6 +238,19 @@ std::size_t Guarded<Stream>::Read(void* data, std::size_t length) {
 vtkStandardNewMacro(FastParser);
 
 }  // namespace
+
+std::string faultOfTextArray(vtkXMLDataParser& parser, vtkXMLDataElement& array, vtkIdType told) {
+  auto& ours = dynamic_cast<FastParser&>(parser);
+  const char* name = array.GetAttribute("Name");
+  if (!name && array.GetParent()) name = array.GetParent()->GetName();
+  const std::string found = std::to_string(ours.textNumbers()),
+                    called = std::string("the ascii array ") + (name ? name : "without a name");
+  if (const std::string word = ours.wordBehindText(); !word.empty())
+    return called + " has '" + word + "' behind its first " + found + " numbers, which is no " +
+           "number that VTK reads";
+  if (std::cmp_equal(ours.textNumbers(), told)) return {};
+  return called + " has " + found + " numbers, but the file's counts tell " + std::to_string(told);
+}
 
 vtkXMLDataParser* newFastXmlParser() { return FastParser::New(); }
 

@@ -187,7 +187,41 @@ constexpr Run kRuns[] = {{29, 31, kLagrangeTetrahedronCell, 3},
                          {kFirstTriangle, 46, 0, 6},
                          {47, 51, 0, 6}};
 
+/// The complete cell's nodes.
+std::uint32_t nodesOf(std::uint8_t type, std::uint32_t degree) {
+  const std::uint32_t n = degree + 1, inTriangle = n * (n + 1) / 2;
+  switch (type) {
+    case kLagrangeTetrahedronCell: return inTriangle * (n + 2) / 3;
+    case kLagrangeWedgeCell: return inTriangle * n;
+    case kLagrangePyramidCell: return inTriangle * (2 * n + 1) / 3;
+    default: return n * n * n;
+  }
+}
+
+std::uint8_t lagrangeOf(std::uint8_t linear) {
+  switch (linear) {
+    case kTetrahedronCell: return kLagrangeTetrahedronCell;
+    case kHexahedronCell: return kLagrangeHexahedronCell;
+    case kWedgeCell: return kLagrangeWedgeCell;
+    case kPyramidCell: return kLagrangePyramidCell;
+    default: return 0;
+  }
+}
+
 }  // namespace
+
+GmshElement higherGmshElement(std::uint8_t linear, std::uint32_t nodes) {
+  const std::uint8_t type = lagrangeOf(linear);
+  for (const Run& run : kRuns) {
+    if (type == 0 || run.type != type) continue;
+    for (std::int64_t number = run.first; number <= run.last; ++number) {
+      const auto degree = static_cast<int>(number - run.first) + run.degree;
+      if (nodesOf(type, static_cast<std::uint32_t>(degree)) == nodes)
+        return higherElement(type, degree);
+    }
+  }
+  return {};
+}
 
 GmshElement gmshElement(std::int64_t number) {
   switch (number) {

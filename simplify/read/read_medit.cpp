@@ -2,6 +2,7 @@
 #include <array>
 #include <optional>
 
+#include "simplify/read/gmsh_elements.h"
 #include "simplify/read/mesh_readers.h"
 #include "simplify/read/mesh_scanner.h"
 #include "simplify/read/select_fields.h"
@@ -28,6 +29,8 @@ constexpr std::array<Kind, 11> kKinds{{{"Tetrahedra", 8, kTetrahedronCell, 4},
                                        {"Triangles", 6, 0, 3},
                                        {"Quadrilaterals", 7, 0, 4},
                                        {"Vertices", 4, 0, 0}}};
+/// A cell's numbers in text at most: a hexahedron of Gmsh's highest order has 1,000 nodes.
+constexpr std::uint64_t kMostNumbers = 1001;
 constexpr std::uint32_t kDimensionCode = 3, kVerticesCode = 4, kEndCode = 54;
 /// Where a .meshb keeps its numbers' widths.
 constexpr std::int32_t kDoubles = 2, kWidePlaces = 3, kWideIds = 4;
@@ -60,8 +63,27 @@ class Medit {
         readVertices(in_.number<std::uint64_t>("the number of vertices"));
       } else if (const Kind* kind = kindOf([&](const Kind& k) { return k.word == word; })) {
         readCells(*kind, in_.number<std::uint64_t>("the number of cells"));
+      } else if (isCurvedVolume(word)) {
+        refuseCurved(word);
       }  // any other word or number belongs to a list that nobody needs here
     }
+  }
+
+  /// A list of curved volume cells that is not read: HexahedraQ2, TetrahedraP3 and so on. Their
+  /// other lists, as TetrahedraP3Ordering, are no cells.
+  static bool isCurvedVolume(std::string_view word) {
+    for (const std::string_view kind : {"Tetrahedra", "Hexahedra", "Prisms", "Pyramids"})
+      if (word.starts_with(kind) && word.size() == kind.size() + 2 &&
+          (word[kind.size()] == 'P' || word[kind.size()] == 'Q'))
+        return true;
+    return false;
+  }
+
+  void refuseCurved(std::string_view word) {
+    if (in_.number<std::uint64_t>("the number of cells") == 0 || in_.failed()) return;
+    in_.fail(ErrorCode::kBadInput, "cells of the kind " + std::string(word) +
+                                       " are not read, and leaving them out would leave holes; "
+                                       "save the mesh as .msh, or of order 1");
   }
 
   void readBytes() {
@@ -140,9 +162,50 @@ class Medit {
     if (!bytes_) in_.endsList(number, "vertices");
   }
 
+  /// The integers from here to the next word.
+  std::uint64_t integersAhead() {
+    const std::uint64_t place = in_.place();
+    std::uint64_t count = 0;
+    for (std::string_view word = in_.word();
+         !word.empty() && word.find_first_not_of("0123456789+-") == std::string_view::npos;
+         word = in_.word())
+      ++count;
+    in_.seek(place);
+    return count;
+  }
+
+  /// Whether the next line of text has more words.
+  bool nextLineHasMore(std::uint64_t words) {
+    if (in_.atEnd()) return false;
+    const std::uint64_t place = in_.place();
+    std::string_view line = in_.line();
+    in_.seek(place);
+    std::uint64_t count = 0;
+    while (!line.empty()) {
+      const std::size_t end = line.find_first_of(" \t"), next = line.find_first_not_of(" \t", end);
+      line.remove_prefix(std::min(next, line.size()));
+      ++count;
+    }
+    return count > words;
+  }
+
+  /// Gmsh writes cells of order 3 and more under the words of linear ones, with all their nodes.
+  /// Without nodes: the cells are what the word says.
+  GmshElement elementAhead(const Kind& kind, std::uint64_t number) {
+    const std::uint64_t expected = kind.nodes + 1;
+    if (bytes_ || number == 0 || !nextLineHasMore(expected)) return {};
+    const std::uint64_t each = integersAhead() / number;
+    if (each <= expected || each > kMostNumbers) return {};
+    const auto nodes = static_cast<std::uint32_t>(each - 1);
+    // of lines, triangles and quadrilaterals the number of nodes alone counts
+    return kind.type == 0 ? GmshElement{nodes} : higherGmshElement(kind.type, nodes);
+  }
+
   void readCells(const Kind& kind, std::uint64_t number) {
-    if (!in_.fits(number, (kind.nodes + 1) * integerBytes() - (bytes_ ? 0 : 1), "cells")) return;
-    std::vector<VertexId> ids(kind.nodes);
+    const GmshElement higher = elementAhead(kind, number);
+    const std::uint32_t nodes = higher.nodes > 0 ? higher.nodes : kind.nodes;
+    if (!in_.fits(number, (nodes + 1) * integerBytes() - (bytes_ ? 0 : 1), "cells")) return;
+    std::vector<VertexId> ids(nodes), ordered;
     for (std::uint64_t i = 0; i < number && !in_.failed(); ++i) {
       for (VertexId& id : ids) {
         const std::int64_t fromOne = integer("a vertex id");
@@ -154,7 +217,9 @@ class Medit {
         ++report_.ignoredCells;
         continue;
       }
-      out_.addCell(kind.type, ids);
+      ordered = ids;
+      for (std::size_t k = 0; k < higher.nodeOf.size(); ++k) ordered[k] = ids[higher.nodeOf[k]];
+      out_.addCell(higher.nodes > 0 ? higher.type : kind.type, ordered);
       cellReferences_.push_back(static_cast<double>(reference));
     }
     if (!bytes_) in_.endsList(number, "cells");

@@ -11,6 +11,7 @@
 #include "simplify/read/run_meshio.h"
 #include "simplify/read/select_fields.h"
 #include "simplify/read/time_steps.h"
+#include "simplify/read/unused_points.h"
 #include "simplify/read/vtk_grid.h"
 #include "simplify/read/weld_points.h"
 
@@ -138,6 +139,7 @@ Result<CellMesh> readCells(const std::filesystem::path& path, const ReadOptions&
   if (report.ignoredCells > 0 && cells->cells() > 0)
     report.notes.push_back(std::to_string(report.ignoredCells) +
                            " points, lines and faces among the cells were ignored");
+  dropUnusedPoints(*cells, report.notes);
   if (Status checked = checkCellMesh(*cells, path); !checked)
     return std::unexpected(checked.error());
   if (Status done = leaveOutWideIntegers(withThresholdField(options).fields, path, cells->fields,

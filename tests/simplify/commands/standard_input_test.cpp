@@ -2,9 +2,14 @@
 #include "simplify/commands/standard_input.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <filesystem>
 #include <fstream>
+#include <thread>
+
+#include "tests/support/meshes.h"
 
 namespace qtet {
 namespace {
@@ -37,6 +42,23 @@ TEST(StandardInput, isAFileUpToTheLimitAndNoFurther) {
     EXPECT_TRUE(words[1].ends_with(".vtu"));
     EXPECT_EQ(words[3], "-") << "the output is no input";
   }
+}
+
+TEST(StandardInput, aPipesNameMeansWhatItGives) {
+  const std::filesystem::path pipe = testing::freshFolder("named-pipe") / "named.vtu";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  std::thread writer([&] { std::ofstream(pipe) << "12345"; });
+  Words words{"check", pipe.string(), "-o", pipe.string(), "--plot3d", pipe.string()};
+  const auto spooled = spoolStandardInput(words, "", -1);
+  writer.join();
+  ASSERT_TRUE(spooled) << spooled.error().text();
+  std::ifstream file(words[1]);
+  std::string text;
+  file >> text;
+  EXPECT_EQ(text, "12345");
+  EXPECT_TRUE(words[1].ends_with(".vtu")) << "its own name says what kind of file it is";
+  EXPECT_EQ(words[3], pipe.string()) << "the output is no input";
+  EXPECT_EQ(words[5], pipe.string()) << "an option's file is no input";
 }
 
 TEST(StandardInput, isNotReadWhereNobodyAsksForIt) {

@@ -641,6 +641,31 @@ TEST(OwnReaders, moreEntriesThanToldAreRefused) {
   EXPECT_NE(read.error().message.find("announced"), std::string::npos) << read.error().text();
 }
 
+TEST(ReadMedit, curvedCellsThatAreNotReadAreRefused) {
+  const std::string text = meditText("0");
+  const auto with = [&](const std::string& list) {
+    return cellsIn(fileWith("curved.mesh", text.substr(0, text.find("End")) + list + "End\n"));
+  };
+  EXPECT_TRUE(with("HexahedraQ2\n0\n"));
+  EXPECT_TRUE(with("TetrahedraP3Ordering\n2\n0 0 0 1\n1 0 0 0\n"));
+  for (const std::string word : {"HexahedraQ2", "PrismsP2", "PyramidsP2", "TetrahedraP3"}) {
+    const Result<CellMesh> read = with(word + "\n1\n1 2 3 4 0\n");
+    ASSERT_FALSE(read) << word;
+    EXPECT_EQ(read.error().code, ErrorCode::kBadInput);
+    EXPECT_NE(read.error().message.find(word), std::string::npos) << read.error().text();
+  }
+}
+
+TEST(ReadMedit, severalCellsMayStandOnALine) {
+  std::string text = meditText("0");
+  const std::string one = "Tetrahedra\n1\n1 2 3 4 0\n";
+  text.replace(text.find(one), one.size(),
+               "Edges\n4\n1 2 0 2 3 0\n3 4 0 4 1 0\nTetrahedra\n2\n1 2 3 4 0 2 1 3 4 0\n");
+  const Result<CellMesh> read = cellsIn(fileWith("line.mesh", text));
+  ASSERT_TRUE(read) << read.error().text();
+  EXPECT_EQ(read->cells(), 2u);
+}
+
 TEST(ReadMesh, aPipeIsNotWaitedFor) {
   const fs::path pipe = testing::freshFolder("pipe") / "pipe.inp";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);

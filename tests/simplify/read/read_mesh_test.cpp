@@ -1,4 +1,5 @@
 #include "simplify/read/read_mesh.h"
+#include "simplify/read/unused_points.h"
 
 #include <gtest/gtest.h>
 
@@ -218,6 +219,73 @@ TEST(ReadMesh, coordinatesThatAreNotFiniteAreCounted) {
   mesh.points[9][2] = INFINITY;
   EXPECT_EQ(refused("nan.vtu", asText(vtuBytes(mesh)), "2 points"), ErrorCode::kBadInput);
   EXPECT_EQ(refused("nan2.vtu", asText(vtuBytes(mesh)), "point 5"), ErrorCode::kBadInput);
+}
+
+TEST(ReadMesh, aPointThatIsNotFiniteAndThatNoCellUsesIsDropped) {
+  TetMesh mesh = testing::twoCells();
+  mesh.points.insert(mesh.points.begin() + 1, Position{0, std::nan(""), 0});
+  mesh.points.push_back({INFINITY, 0, 0});
+  for (Tetrahedron& cell : mesh.tetrahedra)
+    for (VertexId& v : cell) v += v > 0 ? 1 : 0;
+  mesh.fields = {{"T", 1, "float64", {0, 9, 1, 2, 3, 4, 9}, "point"}};
+  const Result<ReadMesh> read = readMesh(fileWith("unused.vtu", asText(vtuBytes(mesh))));
+  ASSERT_TRUE(read) << read.error().text();
+  EXPECT_EQ(read->mesh.points, testing::twoCells().points);
+  EXPECT_EQ(read->mesh.tetrahedra, testing::twoCells().tetrahedra);
+  EXPECT_EQ(read->mesh.fields[0].values, (std::vector<double>{0, 1, 2, 3, 4}));
+  ASSERT_EQ(read->report.notes.size(), 1u);
+  EXPECT_TRUE(read->report.notes[0].starts_with("2 points that no cell uses"));
+  mesh.points[3][0] = INFINITY;
+  EXPECT_EQ(refused("used.vtu", asText(vtuBytes(mesh)), "NaN or infinite"), ErrorCode::kBadInput);
+}
+
+TEST(ReadMesh, aPolyhedronUsesThePointsOfItsFacesAndNotTheirNumbers) {
+  // A tetrahedron as a polyhedron of four triangles on points 0, 1, 2 and 5.
+  CellMesh mesh;
+  const double nan = std::nan("");
+  mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {nan, 0, 0}, {nan, 0, 0}, {0, 0, 1}};
+  mesh.addCell(kPolyhedronCell,
+               std::vector<VertexId>{4, 3, 0, 2, 1, 3, 0, 1, 5, 3, 1, 2, 5, 3, 0, 5, 2});
+  std::vector<std::string> notes;
+  dropUnusedPoints(mesh, notes);
+  EXPECT_EQ(mesh.points.size(), 4u);
+  EXPECT_EQ(mesh.vertices,
+            (std::vector<VertexId>{4, 3, 0, 2, 1, 3, 0, 1, 3, 3, 1, 2, 3, 3, 0, 3, 2}));
+  EXPECT_EQ(notes.size(), 1u);
+}
+
+TEST(ReadMesh, asciiArraysOfOtherLengthsThanToldAreRefused) {
+  const auto text = [](std::array<std::string, 6> arrays) {
+    const auto field = [](const char* name, const std::string& values) {
+      return std::string("<DataArray type=\"Float32\" Name=\"") + name + "\" format=\"ascii\">" +
+             values + "</DataArray>";
+    };
+    return asciiVtu(arrays[0], arrays[1], arrays[2], arrays[3], 4, 1, field("T", arrays[4]),
+                    field("c", arrays[5]));
+  };
+  const std::array<std::string, 6> good{kFourPoints, "0 1 2 3", "4", "10", "1 2 3 4", "5"};
+  const std::array<std::array<const char*, 4>, 6> told{{{"Points", "11", "13", "12"},
+                                                        {"connectivity", "3", "5", "4"},
+                                                        {"offsets", "0", "2", "1"},
+                                                        {"types", "0", "2", "1"},
+                                                        {"T", "3", "5", "4"},
+                                                        {"c", "0", "2", "1"}}};
+  ASSERT_TRUE(readMesh(fileWith("counted.vtu", text(good))));
+  for (std::size_t i = 0; i < good.size(); ++i) {
+    const auto [name, fewer, more, right] = told[i];
+    const auto says = [&](const std::string& values, const std::string& what) {
+      std::array<std::string, 6> arrays = good;
+      arrays[i] = values;
+      EXPECT_EQ(refused("counted.vtu", text(arrays), std::string("the ascii array ") + name + what),
+                ErrorCode::kBadInput);
+    };
+    const std::size_t last = good[i].find_last_of(' ');
+    const std::string less = last == std::string::npos ? "" : good[i].substr(0, last);
+    const std::string counts = std::string(" numbers, but the file's counts tell ") + right;
+    says(less, " has " + std::string(fewer) + counts);
+    says(good[i] + " 7", " has " + std::string(more) + counts);
+    says(good[i] + " x", " has 'x' behind its first " + std::string(right));
+  }
 }
 
 TEST(ReadMesh, hexahedraAreSplitAndTheirNumberKept) {
