@@ -152,7 +152,7 @@ struct Ending {
   MeshFormat format;
 };
 
-constexpr std::array<Ending, 27> kEndings{{
+constexpr std::array<Ending, 30> kEndings{{
     {".vtu", MeshFormat::kVtu},       {".pvtu", MeshFormat::kPvtu},
     {".vtm", MeshFormat::kVtm},       {".vtmu", MeshFormat::kVtm},
     {".vtmb", MeshFormat::kVtm},      {".pvd", MeshFormat::kPvd},
@@ -166,17 +166,35 @@ constexpr std::array<Ending, 27> kEndings{{
     {".msh", MeshFormat::kGmsh},      {".mesh", MeshFormat::kMedit},
     {".meshb", MeshFormat::kMedit},   {".node", MeshFormat::kTetgen},
     {".ele", MeshFormat::kTetgen},    {".su2", MeshFormat::kSu2},
-    {".xyz", MeshFormat::kPlot3d},
+    {".xyz", MeshFormat::kPlot3d},    {".series", MeshFormat::kSeries},
+    {".cas", MeshFormat::kFluent},    {".vtkhdf", MeshFormat::kVtkHdf},
 }};
+
+/// NAME.e.4.0 and the like.
+bool isExodusPiece(const fs::path& path) {
+  const auto isNumber = [](const std::string& ending) {
+    return ending.size() > 1 && ending.find_first_not_of("0123456789", 1) == std::string::npos;
+  };
+  return isNumber(path.extension().string()) && isNumber(path.stem().extension().string()) &&
+         formatOf(path.stem().stem()) == MeshFormat::kExodus;
+}
 
 }  // namespace
 
 MeshFormat formatOf(const fs::path& path) {
+  if (isExodusPiece(path)) return MeshFormat::kExodusPieces;
   std::string ending = path.extension().string();
   std::ranges::transform(ending, ending.begin(),
                          [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   const auto at = std::ranges::find(kEndings, ending, &Ending::text);
   return at == kEndings.end() ? MeshFormat::kOther : at->format;
+}
+
+std::string knownEndings() {
+  std::string out;
+  for (const Ending& ending : kEndings)
+    out += (out.empty() ? "" : ", ") + std::string(ending.text.substr(1));
+  return out;
 }
 
 Status checkMeshFile(const fs::path& path, MeshFormat format) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "proto/error.h"
 
@@ -13,15 +14,19 @@ enum class MeshFormat {
   kPvtu,
   kVtm,
   kPvd,
+  kSeries,
   kVts,
   kVtr,
   kVti,
   kLegacyVtk,  // VTK's own
   kExodus,
+  kExodusPieces,
   kEnSight,
   kCgns,
   kAvsUcd,
   kOpenFoam,
+  kFluent,
+  kVtkHdf,
   kPlot3d,  // through VTK
   kGmsh,
   kMedit,
@@ -31,8 +36,12 @@ enum class MeshFormat {
   kOther,
 };
 
-/// By the name's ending, in small or capital letters.
+/// By the name's ending, in small or capital letters; kExodusPieces: by the last two
+/// (piece_files.h).
 [[nodiscard]] MeshFormat formatOf(const std::filesystem::path& path);
+
+/// The endings that formatOf knows, as --format takes them: "vtu, pvtu, ...".
+[[nodiscard]] std::string knownEndings();
 
 /// Looks at existence, size, first and last bytes. Errors: not-found (no such file), io (not
 /// readable, a folder), truncated (empty, or the XML's closing tag is missing), bad-input (not what

@@ -5,6 +5,7 @@
 
 #include "proto/field_key.h"
 #include "simplify/clean/mend_faces.h"
+#include "simplify/read/inflate_file.h"
 #include "simplify/read/join_blocks.h"
 #include "simplify/read/mesh_format.h"
 #include "simplify/read/mesh_readers.h"
@@ -34,28 +35,109 @@ bool isAbaqus(const std::filesystem::path& path) {
   return file >> first && first == '*';
 }
 
-Result<CellMesh> readThroughMeshio(const std::filesystem::path& path, const ReadOptions& options,
-                                   ReadReport& report) {
-  CellMesh out;
-  const Status done = throughMeshio(path, [&](const std::filesystem::path& vtu) -> Status {
-    Result<std::vector<TimedCells>> steps = readVtk(vtu, MeshFormat::kVtu, options, report);
-    if (!steps) return std::unexpected(steps.error());
-    out = std::move(steps->front().cells);
-    return {};
+/// Fluent and Gmsh share the ending .msh; Fluent's begins with a parenthesis.
+bool isFluent(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  char first = 0;
+  return file >> first && first == '(';
+}
+
+/// Fluent's own files tell cells by their faces, which VTK reads; other programs list the cells'
+/// nodes, which meshio reads.
+bool hasFaces(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  for (std::string line; std::getline(file, line);) {
+    const std::size_t begin = line.find_first_not_of(" \t(");
+    const std::string_view section =
+        begin == std::string::npos ? std::string_view() : std::string_view(line).substr(begin);
+    for (const std::string_view faces : {"13", "2013", "3013"})
+      if (line.starts_with('(') && section.starts_with(faces) &&
+          section.substr(faces.size()).find_first_not_of(" \t(") != std::string_view::npos &&
+          std::string_view(" \t(").find(section[faces.size()]) != std::string_view::npos)
+        return true;
+  }
+  return false;
+}
+
+Result<CellMesh> joined(Result<std::vector<TimedCells>> steps, const std::filesystem::path& path) {
+  if (!steps) return std::unexpected(steps.error());
+  if (steps->size() == 1) return std::move(steps->front().cells);
+  return joinSteps(std::move(*steps), path);
+}
+
+Result<CellMesh> readThroughMeshio(const std::filesystem::path& path, const std::string& kind,
+                                   const ReadOptions& options, ReadReport& report) {
+  Result<CellMesh> out = CellMesh{};
+  const Status done =
+      throughMeshio({path, kind, options.time}, [&](const std::filesystem::path& file) -> Status {
+        out = joined(readVtk(file, formatOf(file), options, report), path);
+        if (!out) return std::unexpected(out.error());
+        return {};
+      });
+  if (!done) return std::unexpected(done.error());
+  return out;
+}
+
+Result<CellMesh> readFluent(const std::filesystem::path& path, const ReadOptions& options,
+                            ReadReport& report) {
+  if (!hasFaces(path)) return readThroughMeshio(path, "ansys", options, report);
+  return joined(readVtk(path, MeshFormat::kFluent, options, report), path);
+}
+
+Result<CellMesh> readFile(const std::filesystem::path& path, const ReadOptions& options,
+                          ReadReport& report);
+
+bool isCompressed(const std::filesystem::path& path) { return path.extension() == ".gz"; }
+
+/// A file that names no other file can be read wherever it lies.
+bool standsAlone(MeshFormat format) {
+  switch (format) {
+    case MeshFormat::kVtu:
+    case MeshFormat::kVts:
+    case MeshFormat::kVtr:
+    case MeshFormat::kVti:
+    case MeshFormat::kLegacyVtk:
+    case MeshFormat::kAvsUcd:
+    case MeshFormat::kGmsh:
+    case MeshFormat::kMedit:
+    case MeshFormat::kSu2: return true;
+    default: return false;
+  }
+}
+
+Result<CellMesh> readCompressed(const std::filesystem::path& path, const ReadOptions& options,
+                                ReadReport& report) {
+  const MeshFormat format = formatOf(
+      options.format.empty() ? path.stem() : std::filesystem::path("mesh." + options.format));
+  if (!standsAlone(format))
+    return fail(ErrorCode::kBadInput,
+                path.string() +
+                    " is compressed, which is read of .vtu, .vts, .vtr, .vti, .vtk, .inp, .msh, "
+                    ".mesh, .meshb and .su2 alone; inflate it with gunzip");
+  if (Status checked = checkMeshFile(path, MeshFormat::kOther); !checked)
+    return std::unexpected(checked.error());
+  Result<CellMesh> out = CellMesh{};
+  std::string inner;
+  const Status done = inflated(path, [&](const std::filesystem::path& file) -> Status {
+    inner = file.string();
+    out = readFile(file, options, report);
+    return out ? Status{} : Status(std::unexpected(out.error()));
   });
   if (!done) return std::unexpected(done.error());
+  for (std::string& note : report.notes) note = withName(note, inner, path.string());
   return out;
 }
 
 Result<CellMesh> readFile(const std::filesystem::path& path, const ReadOptions& options,
                           ReadReport& report) {
+  if (isCompressed(path) && !options.plot3d) return readCompressed(path, options, report);
   const MeshFormat format =
       options.plot3d
           ? MeshFormat::kPlot3d
           : formatOf(options.format.empty() ? path
                                             : std::filesystem::path("mesh." + options.format));
   if (format == MeshFormat::kAvsUcd && isAbaqus(path))
-    return readThroughMeshio(path, options, report);
+    return readThroughMeshio(path, "abaqus", options, report);
   if (Status checked = checkMeshFile(path, format); !checked)
     return std::unexpected(checked.error());
   // they have no steps
@@ -69,17 +151,16 @@ Result<CellMesh> readFile(const std::filesystem::path& path, const ReadOptions& 
                     " is a log, which holds a mesh that is simplified already: qtet info tells of "
                     "it, qtet convert gives the mesh back");
   switch (format) {
-    case MeshFormat::kGmsh: return readGmsh(path, options.time, report);
+    case MeshFormat::kGmsh:
+      return isFluent(path) ? readFluent(path, options, report)
+                            : readGmsh(path, options.time, report);
     case MeshFormat::kMedit: return readMedit(path, report);
     case MeshFormat::kTetgen: return readTetgen(path, report);
     case MeshFormat::kSu2: return readSu2(path, report);
-    case MeshFormat::kOther: return readThroughMeshio(path, options, report);
+    case MeshFormat::kOther: return readThroughMeshio(path, options.format, options, report);
     default: break;
   }
-  Result<std::vector<TimedCells>> steps = readVtk(path, format, options, report);
-  if (!steps) return std::unexpected(steps.error());
-  if (steps->size() == 1) return std::move(steps->front().cells);
-  return joinSteps(std::move(*steps), path);
+  return joined(readVtk(path, format, options, report), path);
 }
 
 /// "of its 12 cells, 8 hexahedron and 4 wedge were split"

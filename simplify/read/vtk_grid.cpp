@@ -2,29 +2,19 @@
 
 #include <sys/mman.h>
 #include <unistd.h>
-#include <vtkAVSucdReader.h>
 #include <vtkAlgorithm.h>
-#include <vtkCGNSReader.h>
 #include <vtkCompositeDataIterator.h>
 #include <vtkCompositeDataSet.h>
 #include <vtkDataSet.h>
-#include <vtkDataSetReader.h>
-#include <vtkExodusIIReader.h>
-#include <vtkGenericEnSightReader.h>
 #include <vtkInformation.h>
 #include <vtkLogger.h>
-#include <vtkMultiBlockPLOT3DReader.h>
 #include <vtkNew.h>
 #include <vtkObjectFactory.h>
-#include <vtkOpenFOAMReader.h>
 #include <vtkOutputWindow.h>
 #include <vtkSmartPointer.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
+#include <vtkUnstructuredGrid.h>
 #include <vtkXMLDataElement.h>
-#include <vtkXMLImageDataReader.h>
-#include <vtkXMLRectilinearGridReader.h>
-#include <vtkXMLStructuredGridReader.h>
-#include <vtkXMLUnstructuredGridReader.h>
 #include <vtkXMLUtilities.h>
 
 #include <algorithm>
@@ -35,13 +25,17 @@
 #include <new>
 
 #include "simplify/read/cell_transfer.h"
-#include "simplify/read/fast_xml_parser.h"
+#include "simplify/read/file_series.h"
 #include "simplify/read/foam_fields.h"
+#include "simplify/read/guarded_folder.h"
+#include "simplify/read/inflate_file.h"
 #include "simplify/read/join_blocks.h"
 #include "simplify/read/mesh_format.h"
+#include "simplify/read/piece_files.h"
 #include "simplify/read/time_steps.h"
 #include "simplify/read/trial_process.h"
 #include "simplify/read/vtk_cells.h"
+#include "simplify/read/vtk_readers.h"
 
 namespace qtet {
 namespace {
@@ -105,105 +99,12 @@ class MessageCapture {
 /// Files that name files that name files: a series of .vtm of .pvtu has three.
 constexpr int kMaxDepth = 8;
 
+bool isSeries(MeshFormat format) {
+  return format == MeshFormat::kPvd || format == MeshFormat::kSeries;
+}
+
 std::unexpected<Error> bad(const std::filesystem::path& path, const std::string& what) {
   return fail(ErrorCode::kBadInput, path.string() + ": " + what);
-}
-
-template <class Reader>
-vtkSmartPointer<vtkAlgorithm> xmlReader(const std::filesystem::path& path) {
-  const auto reader = vtkSmartPointer<FastXmlReader<Reader>>::New();
-  reader->SetFileName(path.c_str());
-  return reader;
-}
-
-vtkSmartPointer<vtkAlgorithm> legacyReader(const std::filesystem::path& path) {
-  const auto reader = vtkSmartPointer<vtkDataSetReader>::New();
-  reader->SetFileName(path.c_str());
-  reader->ReadAllScalarsOn();
-  reader->ReadAllVectorsOn();
-  reader->ReadAllNormalsOn();
-  reader->ReadAllTensorsOn();
-  reader->ReadAllTCoordsOn();
-  reader->ReadAllFieldsOn();
-  return reader;
-}
-
-vtkSmartPointer<vtkAlgorithm> exodusReader(const std::filesystem::path& path) {
-  const auto reader = vtkSmartPointer<vtkExodusIIReader>::New();
-  reader->SetFileName(path.c_str());
-  reader->SetSqueezePoints(false);  // every block has all points, so that blocks hang together
-  reader->ApplyDisplacementsOff();  // the mesh is one over all steps
-  reader->GenerateGlobalElementIdArrayOff();
-  reader->GenerateGlobalNodeIdArrayOff();
-  reader->UpdateInformation();
-  reader->SetAllArrayStatus(vtkExodusIIReader::NODAL, 1);
-  reader->SetAllArrayStatus(vtkExodusIIReader::ELEM_BLOCK, 1);
-  return reader;
-}
-
-vtkSmartPointer<vtkAlgorithm> cgnsReader(const std::filesystem::path& path) {
-  const auto reader = vtkSmartPointer<vtkCGNSReader>::New();
-  reader->SetFileName(path.c_str());
-  reader->UpdateInformation();
-  reader->EnableAllBases();
-  reader->EnableAllPointArrays();
-  reader->EnableAllCellArrays();
-  return reader;
-}
-
-vtkSmartPointer<vtkAlgorithm> enSightReader(const std::filesystem::path& path) {
-  const auto reader = vtkSmartPointer<vtkGenericEnSightReader>::New();
-  reader->SetCaseFileName(path.c_str());
-  reader->ReadAllVariablesOn();
-  return reader;
-}
-
-vtkSmartPointer<vtkAlgorithm> foamReader(const std::filesystem::path& path,
-                                         const FieldNames& fields) {
-  const auto reader = vtkSmartPointer<vtkOpenFOAMReader>::New();
-  reader->SetFileName(path.c_str());
-  reader->SetCreateCellToPoint(asksForPointFields(fields));
-  reader->DecomposePolyhedraOff();
-  reader->UpdateInformation();
-  reader->EnableAllCellArrays();
-  reader->EnableAllPointArrays();
-  return reader;
-}
-
-vtkSmartPointer<vtkAlgorithm> plot3dReader(const std::filesystem::path& path,
-                                           const std::string& solution) {
-  // of vtkMultiBlockPLOT3DReader's functions, beside density, momentum and energy
-  constexpr int kPressure = 110, kVelocity = 200;
-  const auto reader = vtkSmartPointer<vtkMultiBlockPLOT3DReader>::New();
-  reader->SetXYZFileName(path.c_str());
-  reader->AutoDetectFormatOn();
-  if (!solution.empty()) {
-    reader->SetQFileName(solution.c_str());
-    reader->AddFunction(kPressure);
-    reader->AddFunction(kVelocity);
-  }
-  return reader;
-}
-
-vtkSmartPointer<vtkAlgorithm> readerOf(const std::filesystem::path& path, MeshFormat format,
-                                       const ReadOptions& options) {
-  switch (format) {
-    case MeshFormat::kVtu: return xmlReader<vtkXMLUnstructuredGridReader>(path);
-    case MeshFormat::kVts: return xmlReader<vtkXMLStructuredGridReader>(path);
-    case MeshFormat::kVtr: return xmlReader<vtkXMLRectilinearGridReader>(path);
-    case MeshFormat::kVti: return xmlReader<vtkXMLImageDataReader>(path);
-    case MeshFormat::kLegacyVtk: return legacyReader(path);
-    case MeshFormat::kExodus: return exodusReader(path);
-    case MeshFormat::kCgns: return cgnsReader(path);
-    case MeshFormat::kEnSight: return enSightReader(path);
-    case MeshFormat::kOpenFoam: return foamReader(path, options.fields);
-    case MeshFormat::kPlot3d: return plot3dReader(path, options.plot3dSolution);
-    default: {
-      const auto reader = vtkSmartPointer<vtkAVSucdReader>::New();
-      reader->SetFileName(path.c_str());
-      return reader;
-    }
-  }
 }
 
 /// VTK's XML readers stood every damage that was tried; its others write outside their arrays on
@@ -240,6 +141,28 @@ Result<CellMesh> cellsOfOutput(vtkDataObject* output, const ReadOptions& options
   return joinBlocks(std::move(blocks), options.joinPieces, report);
 }
 
+/// What the reader has now. The partitions of a .vtkhdf file are read one by one and joined: VTK
+/// makes one grid of all, unless it is asked for one piece of very many.
+Result<CellMesh> cellsNow(vtkAlgorithm& reader, MeshFormat format, const ReadOptions& options,
+                          const std::filesystem::path& path, ReadReport& report) {
+  constexpr int kMostPartitions = 1 << 20;
+  auto* all = vtkUnstructuredGrid::SafeDownCast(reader.GetOutputDataObject(0));
+  if (format != MeshFormat::kVtkHdf || !all)
+    return cellsOfOutput(reader.GetOutputDataObject(0), options, path, report);
+  std::vector<CellMesh> blocks;
+  vtkIdType left = all->GetNumberOfPoints() + all->GetNumberOfCells();
+  for (int piece = 0; left > 0 && piece < kMostPartitions; ++piece) {
+    reader.UpdatePiece(piece, kMostPartitions, 0);
+    auto* grid = vtkUnstructuredGrid::SafeDownCast(reader.GetOutputDataObject(0));
+    if (!grid) break;
+    left -= grid->GetNumberOfPoints() + grid->GetNumberOfCells();
+    Result<CellMesh> cells = cellsOf(*grid, options.fields, path, report);
+    if (!cells) return cells;
+    blocks.push_back(std::move(*cells));
+  }
+  return joinBlocks(std::move(blocks), options.joinPieces, report);
+}
+
 std::vector<double> timesOf(vtkAlgorithm& reader) {
   vtkInformation* info = reader.GetOutputInformation(0);
   if (!info || !info->Has(vtkStreamingDemandDrivenPipeline::TIME_STEPS())) return {};
@@ -269,7 +192,7 @@ void addStep(ReadReport&& step, bool isFirst, ReadReport& report) {
 /// Runs one reader over the steps that are meant.
 Result<std::vector<TimedCells>> runReader(const std::filesystem::path& path, MeshFormat format,
                                           const ReadOptions& options, ReadReport& report) {
-  const auto reader = readerOf(path, format, options);
+  const auto reader = vtkReaderOf(path, format, options);
   reader->UpdateInformation();
   const std::vector<double> times = timesOf(*reader);
   const auto steps = chosenSteps(times, options.time, path, report.notes);
@@ -282,7 +205,7 @@ Result<std::vector<TimedCells>> runReader(const std::filesystem::path& path, Mes
     else
       reader->Update();
     ReadReport step;
-    Result<CellMesh> cells = cellsOfOutput(reader->GetOutputDataObject(0), options, path, step);
+    Result<CellMesh> cells = cellsNow(*reader, format, options, path, step);
     if (!cells) return std::unexpected(cells.error());
     if (format == MeshFormat::kOpenFoam) keepFoamFields(options.fields, *cells, step.notes);
     addStep(std::move(step), s == 0, report);
@@ -311,6 +234,12 @@ std::unexpected<Error> trialFailed(TrialEnd end, const std::filesystem::path& pa
   }
 }
 
+/// A Fluent mesh alone is no fault; VTK looks for a file of results beside it.
+bool isOfMissingResults(MeshFormat format, const std::string& message) {
+  return format == MeshFormat::kFluent && (message.starts_with("Could not open data file") ||
+                                           message.starts_with("Unable to open dat file"));
+}
+
 /// VTK's readers with their messages and exceptions as values.
 Result<std::vector<TimedCells>> readHere(const std::filesystem::path& path, MeshFormat format,
                                          const ReadOptions& options, ReadReport& report) {
@@ -325,12 +254,13 @@ Result<std::vector<TimedCells>> readHere(const std::filesystem::path& path, Mesh
   } catch (const std::exception& error) {
     return bad(path, std::string("VTK could not read it: ") + error.what());
   }
-  if (!capture.messages().errors.empty()) {
-    return bad(path, "VTK could not read it: " + capture.messages().errors.front() +
-                         "; export the mesh again or open it in ParaView to see what it holds");
+  for (const std::string& error : capture.messages().errors) {
+    if (!isOfMissingResults(format, error))
+      return bad(path, "VTK could not read it: " + error +
+                           "; export the mesh again or open it in ParaView to see what it holds");
   }
   for (const std::string& warning : capture.messages().warnings)
-    report.notes.push_back("VTK: " + warning);
+    if (!isOfMissingResults(format, warning)) report.notes.push_back("VTK: " + warning);
   return steps;
 }
 
@@ -356,13 +286,7 @@ Result<std::vector<TimedCells>> readApart(const std::filesystem::path& path, Mes
   return out;
 }
 
-/// One <DataSet> of a .pvd file.
-struct SeriesEntry {
-  double time = 0;
-  int number = 0;  ///< in the file
-  std::filesystem::path file;
-};
-
+/// The files that a .pvd file names.
 Result<std::vector<SeriesEntry>> entriesOf(const std::filesystem::path& path) {
   const MessageCapture capture;
   const auto root =
@@ -381,9 +305,7 @@ Result<std::vector<SeriesEntry>> entriesOf(const std::filesystem::path& path) {
     entries.push_back(std::move(entry));
   }
   if (entries.empty()) return bad(path, "its <Collection> is empty; save the series again");
-  std::ranges::sort(entries, [](const SeriesEntry& a, const SeriesEntry& b) {
-    return a.time != b.time ? a.time < b.time : a.number < b.number;
-  });
+  sortByTime(entries);
   return entries;
 }
 
@@ -402,7 +324,7 @@ Result<CellMesh> cellsOfParts(std::span<const std::filesystem::path> parts,
   ofPart.time = "last";  // the step is chosen already, and a part knows no times
   for (const std::filesystem::path& part : parts) {
     const MeshFormat format = formatOf(part);
-    if (format == MeshFormat::kPvd || format >= MeshFormat::kGmsh)
+    if (isSeries(format) || format >= MeshFormat::kGmsh)
       return bad(path, "it names " + part.string() +
                            ", but may name VTK's files alone; convert that to .vtu first");
     if (Status checked = checkMeshFile(part, format); !checked)
@@ -491,9 +413,9 @@ Result<std::vector<TimedCells>> readParts(const std::filesystem::path& path, Mes
   return out;
 }
 
-Result<std::vector<TimedCells>> readSeries(const std::filesystem::path& path,
+Result<std::vector<TimedCells>> readSeries(const std::filesystem::path& path, MeshFormat format,
                                            const ReadOptions& options, ReadReport& report) {
-  const auto entries = entriesOf(path);
+  const auto entries = format == MeshFormat::kPvd ? entriesOf(path) : entriesOfJson(path);
   if (!entries) return std::unexpected(entries.error());
   std::vector<double> times;
   std::vector<std::size_t> begins;
@@ -518,9 +440,89 @@ Result<std::vector<TimedCells>> readSeries(const std::filesystem::path& path,
   return out;
 }
 
+/// The steps of one result's pieces, step by step in one mesh.
+Result<std::vector<TimedCells>> joinedPieces(std::vector<std::vector<TimedCells>> pieces,
+                                             const std::filesystem::path& path,
+                                             const ReadOptions& options, ReadReport& report) {
+  const auto timesDiffer = [&](const std::vector<TimedCells>& piece) {
+    return !std::ranges::equal(piece, pieces.front(), {}, &TimedCells::time, &TimedCells::time);
+  };
+  if (std::ranges::any_of(pieces, timesDiffer))
+    return bad(path, "its pieces have different time steps; name one that all have with --time");
+  std::vector<TimedCells> out;
+  for (std::size_t s = 0; s < pieces.front().size(); ++s) {
+    std::vector<CellMesh> blocks;
+    for (std::vector<TimedCells>& piece : pieces) blocks.push_back(std::move(piece[s].cells));
+    ReadReport step;
+    CellMesh cells = joinBlocks(std::move(blocks), options.joinPieces, step);
+    addStep(std::move(step), s == 0, report);
+    out.push_back({pieces.front()[s].time, std::move(cells)});
+  }
+  return out;
+}
+
+/// One piece of a result.
+Result<std::vector<TimedCells>> readPiece(const std::filesystem::path& path, MeshFormat format,
+                                          const ReadOptions& options, ReadReport& report) {
+  ReadReport ofOne;
+  Result<std::vector<TimedCells>> steps = readApart(path, format, options, ofOne);
+  if (!steps) return steps;
+  report.ignoredCells += ofOne.ignoredCells;
+  addNew(ofOne.ignoredFields, report.ignoredFields);
+  addNew(ofOne.notes, report.notes);
+  return steps;
+}
+
+Result<std::vector<TimedCells>> readExodusPieces(const std::filesystem::path& path,
+                                                 const ReadOptions& options, ReadReport& report) {
+  const auto files = exodusPieces(path);
+  if (!files) return std::unexpected(files.error());
+  std::vector<std::vector<TimedCells>> pieces;
+  for (const std::filesystem::path& file : *files) {
+    Result<std::vector<TimedCells>> steps = readPiece(file, MeshFormat::kExodus, options, report);
+    if (!steps) return steps;
+    pieces.push_back(std::move(*steps));
+  }
+  return joinedPieces(std::move(pieces), path, options, report);
+}
+
+/// A decomposed case of OpenFOAM: each processor's folder is read as a case of its own.
+Result<std::vector<TimedCells>> readProcessors(const std::vector<std::filesystem::path>& processors,
+                                               const std::filesystem::path& path,
+                                               const ReadOptions& options, ReadReport& report) {
+  const GuardedFolder folder("foam");
+  if (folder.failure())
+    return fail(ErrorCode::kIo, "no temporary folder could be made (" + folder.failure().message() +
+                                    "); let TMPDIR name one with room");
+  std::vector<std::vector<TimedCells>> pieces;
+  for (const std::filesystem::path& processor : processors) {
+    const auto marker = caseOfProcessor(processor, folder.path() / processor.filename());
+    if (!marker) return std::unexpected(marker.error());
+    Result<std::vector<TimedCells>> steps =
+        readPiece(*marker, MeshFormat::kOpenFoam, options, report);
+    if (!steps)
+      return fail(steps.error().code,
+                  withName(steps.error().message, marker->string(), processor.string()));
+    pieces.push_back(std::move(*steps));
+  }
+  report.notes.push_back("the case was read from the folders of its " +
+                         std::to_string(processors.size()) + " processors");
+  return joinedPieces(std::move(pieces), path, options, report);
+}
+
+Result<std::vector<TimedCells>> readFoam(const std::filesystem::path& path,
+                                         const ReadOptions& options, ReadReport& report) {
+  const auto processors = processorFolders(path);
+  if (!processors) return std::unexpected(processors.error());
+  if (processors->empty()) return readApart(path, MeshFormat::kOpenFoam, options, report);
+  return readProcessors(*processors, path, options, report);
+}
+
 Result<std::vector<TimedCells>> readAt(const std::filesystem::path& path, MeshFormat format,
                                        const ReadOptions& options, ReadReport& report, int depth) {
-  if (format == MeshFormat::kPvd) return readSeries(path, options, report);
+  if (isSeries(format)) return readSeries(path, format, options, report);
+  if (format == MeshFormat::kExodusPieces) return readExodusPieces(path, options, report);
+  if (format == MeshFormat::kOpenFoam) return readFoam(path, options, report);
   if (format == MeshFormat::kPvtu || format == MeshFormat::kVtm)
     return readParts(path, format, options, report, depth);
   return standsDamage(format) ? readHere(path, format, options, report)

@@ -1,0 +1,35 @@
+// Results of parallel programs that lie in a file or a folder for each process, with no file that
+// lists them.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "proto/error.h"
+
+namespace qtet {
+
+/// Pieces of one result at most: more than the largest machines have processes.
+inline constexpr std::uint64_t kMaxPieceFiles = 1U << 24;
+
+/// All N pieces of an Exodus result, whichever of them is given: NAME.e.N.M is number M of N.
+/// Errors: not-found (a piece is missing: its name), bad-input (no such name; M is not below N; too
+/// many).
+[[nodiscard]] Result<std::vector<std::filesystem::path>> exodusPieces(
+    const std::filesystem::path& path);
+
+/// The folders processor0, processor1 ... beside an OpenFOAM case's marker, where the case is to be
+/// read from them: it has no mesh of its own, or no time that they do not have, and they have more.
+/// Empty: it is to be read as a whole. Errors: not-found (one of them is missing), bad-input (all
+/// processes write into one folder).
+[[nodiscard]] Result<std::vector<std::filesystem::path>> processorFolders(
+    const std::filesystem::path& marker);
+
+/// Makes a case of its own of a processor's folder, in the new folder `into`, and gives its marker.
+/// Errors: io.
+[[nodiscard]] Result<std::filesystem::path> caseOfProcessor(const std::filesystem::path& processor,
+                                                            const std::filesystem::path& into);
+
+}  // namespace qtet

@@ -1,0 +1,497 @@
+"""What meshio, Gmsh and VTK write is read by qtet, or refused with advice.
+other_programs_test.py QTET-PROGRAM MESHES-FOLDER FOLDER-TO-WRITE-TO"""
+
+import gzip
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+
+try:
+    import meshio
+except ImportError:
+    meshio = None
+try:
+    import h5py
+except ImportError:
+    h5py = None
+try:
+    import vtk
+except ImportError:
+    vtk = None
+
+qtet, meshes, out = sys.argv[1], pathlib.Path(sys.argv[2]).resolve(), pathlib.Path(sys.argv[3])
+shutil.rmtree(out, ignore_errors=True)
+out.mkdir(parents=True)
+
+BALL = 'SetFactory("OpenCASCADE"); Sphere(1) = {0, 0, 0, 1}; Mesh.MeshSizeMax = 0.7;'
+# The corners of a cube from the origin to (1, 1, 1), and six tetrahedra round its diagonal.
+CORNERS = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], float)
+TETRAHEDRA = np.array(
+    [[0, 1, 3, 7], [0, 3, 2, 7], [0, 2, 6, 7], [0, 6, 4, 7], [0, 4, 5, 7], [0, 5, 1, 7]]
+)
+
+
+def run(*words, **options):
+    return subprocess.run([qtet, *map(str, words)], capture_output=True, text=True, **options)
+
+
+def refused(*words):
+    """What the tool says where it refuses."""
+    done = run(*words)
+    assert done.returncode != 0, (words, done.stdout)
+    return done.stdout + done.stderr
+
+
+def read(path, *words):
+    """The mesh as numpy arrays, and the tool's notes."""
+    made = out / "read.npz"
+    made.unlink(missing_ok=True)
+    done = run("convert", path, *words, "-o", made)
+    assert done.returncode == 0, (path, done.stderr)
+    return np.load(made), done.stderr
+
+
+def volume(mesh):
+    a, b, c, d = (mesh["points"][mesh["tetrahedra"][:, k]] for k in range(4))
+    sizes = np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a) / 6
+    assert (sizes > 0).all(), sizes.min()
+    return sizes.sum()
+
+
+def is_whole(mesh, size):
+    """One body of this size: each face is one of two cells', or the boundary's."""
+    assert abs(volume(mesh) - size) < 1e-9 * max(1, size), volume(mesh)
+    faces = {}
+    for cell in mesh["tetrahedra"]:
+        for k in range(4):
+            face = tuple(sorted(np.delete(cell, k)))
+            faces[face] = faces.get(face, 0) + 1
+    middle = mesh["points"][[f for f, n in faces.items() if n == 1]].mean(axis=1)
+    low, high = mesh["points"].min(axis=0), mesh["points"].max(axis=0)
+    assert (np.isclose(middle, low) | np.isclose(middle, high)).any(axis=1).all(), "torn"
+
+
+def cube(x=0):
+    return CORNERS + [x, 0, 0]
+
+
+def grid_of(points, fields=()):
+    grid, places = vtk.vtkUnstructuredGrid(), vtk.vtkPoints()
+    places.SetDataTypeToDouble()
+    for point in points:
+        places.InsertNextPoint(*point)
+    grid.SetPoints(places)
+    for cell in TETRAHEDRA:
+        grid.InsertNextCell(vtk.VTK_TETRA, 4, [int(v) for v in cell])
+    for name, values in fields:
+        array = vtk.vtkDoubleArray()
+        array.SetName(name)
+        for value in values:
+            array.InsertNextValue(value)
+        grid.GetPointData().AddArray(array)
+    return grid
+
+
+def write_vtu(grid, path):
+    writer = vtk.vtkXMLUnstructuredGridWriter()
+    writer.SetFileName(str(path))
+    writer.SetInputData(grid)
+    assert writer.Write() == 1
+
+
+def gmsh(name, geometry, *words):
+    (out / f"{name}.geo").write_text(geometry)
+    subprocess.run(
+        ["gmsh", out / f"{name}.geo", "-3", *words], check=True, capture_output=True, cwd=out
+    )
+
+
+def medit_files_of_order_three_are_read():
+    if not shutil.which("gmsh"):
+        return "no gmsh"
+    for order in (3, 4):
+        made = out / f"ball{order}.mesh"
+        gmsh("ball", BALL, "-order", str(order), "-o", made)
+        assert abs(volume(read(made)[0]) - 4 * np.pi / 3) < 0.02, order
+    text = (out / "ball3.mesh").read_text().split("\n")
+    at = next(i for i, line in enumerate(text) if "Tetrahedra" in line)
+    text[at + 2] = " ".join(text[at + 2].split()[1:])
+    (out / "less.mesh").write_text("\n".join(text))
+    assert "line" in refused("check", out / "less.mesh")
+
+
+def compressed_files_are_read():
+    whole, _ = read(meshes / "p_0.vtu")
+    for kind, name in (("vtu", "p_0.vtu"), ("vtk", "box.vtk"), ("msh", "gmsh-mixed1.msh")):
+        plain = meshes / name
+        if kind == "vtk":
+            plain = out / name
+            assert run("convert", meshes / "p_0.vtu", "-o", plain).returncode == 0
+        packed = out / f"{plain.name}.gz"
+        packed.write_bytes(gzip.compress(plain.read_bytes()))
+        expected, got = read(plain)[0], read(packed)[0]
+        assert (got["points"] == expected["points"]).all()
+        assert (got["tetrahedra"] == expected["tetrahedra"]).all()
+    packed = (out / "p_0.vtu.gz").read_bytes()
+    (out / "cut.vtu.gz").write_bytes(packed[:-20])
+    assert "was cut off" in refused("check", out / "cut.vtu.gz")
+    (out / "plain.vtu.gz").write_bytes((meshes / "p_0.vtu").read_bytes())
+    assert "not compressed" in refused("check", out / "plain.vtu.gz")
+    (out / "case.foam.gz").write_bytes(packed)
+    assert "gunzip" in refused("check", out / "case.foam.gz")
+    (out / "bad.vtu.gz").write_bytes(gzip.compress(b"<VTKFile"))
+    assert "bad.vtu.gz" in refused("check", out / "bad.vtu.gz")
+    assert "qtet-inflate" not in refused("check", out / "bad.vtu.gz")
+
+
+def a_list_of_files_is_a_series():
+    files = [{"name": f"at{i}.vtu", "time": i / 2} for i in range(3)]
+    for i in range(3):
+        write_vtu(grid_of(cube(), [("T", cube()[:, 0] + i)]), out / f"at{i}.vtu")
+    listed = out / "run.vtu.series"
+    listed.write_text(json.dumps({"file-series-version": "1.0", "files": files[::-1]}))
+    mesh, notes = read(listed)
+    assert (mesh["point_T"] == mesh["points"][:, 0] + 2).all() and "the last is read" in notes
+    mesh, _ = read(listed, "--time", "0.5")
+    assert (mesh["point_T"] == mesh["points"][:, 0] + 1).all()
+    mesh, _ = read(listed, "--time", "all")
+    assert {"point_T@0", "point_T@0.5", "point_T@1"} <= set(mesh.files), mesh.files
+    assert "it has 0, 0.5, 1" in refused("check", listed, "--time", "7")
+    for text in ("no JSON", "{}", '{"file-series-version": "1.0", "files": [{"name": "at0.vtu"}]}'):
+        listed.write_text(text)
+        assert "save the series again" in refused("check", listed), text
+
+
+def write_vtkhdf(path, pieces):
+    with h5py.File(path, "w") as file:
+        root = file.create_group("VTKHDF")
+        root.attrs["Version"] = np.array([1, 0], "i8")
+        kind = b"UnstructuredGrid"
+        root.attrs.create("Type", kind, dtype=h5py.string_dtype("ascii", len(kind)))
+        cells = [TETRAHEDRA for _ in pieces]
+        for name, values in (
+            ("NumberOfPoints", [len(p) for p in pieces]),
+            ("NumberOfCells", [len(c) for c in cells]),
+            ("NumberOfConnectivityIds", [c.size for c in cells]),
+            ("Connectivity", np.concatenate([c.ravel() for c in cells])),
+            ("Offsets", np.concatenate([np.arange(0, c.size + 1, 4) for c in cells])),
+        ):
+            root[name] = np.array(values, "i8")
+        root["Points"] = np.concatenate(pieces)
+        root["Types"] = np.full(sum(map(len, cells)), 10, "u1")
+        root["PointData/T"] = np.concatenate(pieces)[:, 0].copy()
+
+
+def partitions_of_vtkhdf_become_one_mesh():
+    if not h5py:
+        return "no h5py"
+    write_vtkhdf(out / "one.vtkhdf", [cube()])
+    is_whole(read(out / "one.vtkhdf")[0], 1)
+    write_vtkhdf(out / "two.vtkhdf", [cube(), cube(1), cube(2)])
+    mesh, notes = read(out / "two.vtkhdf")
+    is_whole(mesh, 3)
+    assert "3 pieces were joined at 8 points" in notes, notes
+    assert np.allclose(mesh["point_T"], mesh["points"][:, 0])
+    bytes_ = (out / "two.vtkhdf").read_bytes()
+    for at in range(0, len(bytes_), 397):
+        (out / "damaged.vtkhdf").write_bytes(bytes_[:at] + b"\xff" * 8 + bytes_[at + 8 :])
+        done = run("check", out / "damaged.vtkhdf", "--read-seconds", 10)
+        assert done.returncode in (0, 1), (at, done.returncode, done.stderr)
+    (out / "cut.vtkhdf").write_bytes(bytes_[:1000])
+    assert refused("check", out / "cut.vtkhdf")
+
+
+def fluent_meshes_are_read():
+    if meshio:
+        meshio.write(
+            out / "nodes.msh", meshio.Mesh(cube(), [("tetra", TETRAHEDRA)]), "ansys", binary=False
+        )
+        assert (out / "nodes.msh").read_bytes().startswith(b"(")
+        is_whole(read(out / "nodes.msh")[0], 1)
+    faces = {}
+    for number, cell in enumerate(TETRAHEDRA):
+        a, b, c, d = cell
+        for face in ((a, b, c), (a, c, d), (a, d, b), (b, d, c)):
+            faces.setdefault(frozenset(face), []).append((face, number + 1))
+    inner = [sides for sides in faces.values() if len(sides) == 2]
+    outer = [sides for sides in faces.values() if len(sides) == 1]
+
+    def section(zone, kind, first, listed):
+        lines = [
+            " ".join("%x" % (v + 1) for v in sides[0][0][::-1])
+            + " %x %x" % (sides[0][1], sides[1][1] if len(sides) == 2 else 0)
+            for sides in listed
+        ]
+        last = first + len(listed) - 1
+        return "(13 (%x %x %x %x 3)(\n%s\n))\n" % (zone, first, last, kind, "\n".join(lines))
+
+    text = '(0 "by hand")\n(2 3)\n(10 (0 1 8 0 3))\n(10 (1 1 8 1 3)(\n'
+    text += "\n".join("%g %g %g" % tuple(p) for p in cube()) + "\n))\n"
+    text += "(12 (0 1 6 0 0))\n(12 (2 1 6 1 2))\n(13 (0 1 %x 0 0))\n" % len(faces)
+    text += section(3, 2, 1, inner) + section(4, 3, len(inner) + 1, outer)
+    text += "(45 (2 fluid fluid)())\n(45 (3 interior inside)())\n(45 (4 wall hull)())\n"
+    for name in ("faces.msh", "faces.cas"):
+        (out / name).write_text(text)
+        is_whole(read(out / name)[0], 1)
+
+
+def med_files_with_families_are_read():
+    if not meshio or not h5py:
+        return "no meshio with h5py"
+    families = {-1: ["inlet"], -2: ["body", "steel"]}
+    mesh = meshio.Mesh(
+        cube(),
+        [("tetra", TETRAHEDRA), ("triangle", TETRAHEDRA[:1, :3])],
+        point_data={"T": cube()[:, 0], "point_tags": np.zeros(8, int)},
+        cell_data={"cell_tags": [np.full(6, -2), np.full(1, -1)]},
+    )
+    mesh.point_tags, mesh.cell_tags = {}, families
+    meshio.write(out / "families.med", mesh)
+    got, _ = read(out / "families.med")
+    is_whole(got, 1)
+    assert np.allclose(got["point_T"], got["points"][:, 0])
+    assert (got["cell_cell_tags"] == -2).all()
+    if shutil.which("gmsh"):
+        try:  # not every Gmsh has MED
+            gmsh("physical", BALL + ' Physical Volume("ball") = {1};', "-o", out / "physical.med")
+        except subprocess.CalledProcessError:
+            return
+        assert abs(volume(read(out / "physical.med")[0]) - 4.19) < 0.6
+
+
+def a_series_of_xdmf_is_read():
+    if not meshio:
+        return "no meshio"
+    for form in ("XML", "HDF"):
+        if form == "HDF" and not h5py:
+            continue
+        path = out / f"series-{form}.xdmf"
+        before = os.getcwd()
+        os.chdir(out)
+        with meshio.xdmf.TimeSeriesWriter(path.name, data_format=form) as writer:
+            writer.write_points_cells(cube(), [("tetra", TETRAHEDRA)])
+            for i in range(3):
+                writer.write_data(i / 4, point_data={"T": cube()[:, 0] + i})
+        os.chdir(before)
+        mesh, notes = read(path)
+        assert (mesh["point_T"] == mesh["points"][:, 0] + 2).all() and "3 time steps" in notes
+        mesh, _ = read(path, "--time", "0.25")
+        assert (mesh["point_T"] == mesh["points"][:, 0] + 1).all()
+        mesh, _ = read(path, "--time", "all")
+        assert {"point_T@0", "point_T@0.25", "point_T@0.5"} <= set(mesh.files), mesh.files
+        assert "it has 0, 0.25, 0.5" in refused("check", path, "--time", "9")
+
+
+def abaqus_of_second_order_is_read():
+    if not meshio or not shutil.which("gmsh"):
+        return "no meshio with gmsh"
+    gmsh("second", BALL, "-order", "2", "-o", out / "second.inp")
+    assert "C3D10" in (out / "second.inp").read_text()
+    assert abs(volume(read(out / "second.inp")[0]) - 4 * np.pi / 3) < 0.05
+
+
+def an_unknown_ending_is_told_what_there_is():
+    (out / "mesh.nonsense").write_text("nothing")
+    said = refused("check", out / "mesh.nonsense")
+    assert "--format" in said and "vtu" in said and "su2" in said, said
+    (out / "named.data").write_bytes((meshes / "p_0.vtu").read_bytes())
+    is_whole(read(out / "named.data", "--format", "vtu")[0], 2)
+    if meshio:
+        text = "*NODE\n1, 0, 0, 0\n2, 1, 0, 0\n3, 0, 1, 0\n4, 0, 0, 1\n"
+        text += "*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 4\n"
+        (out / "abaqus.data").write_text(text)
+        assert len(read(out / "abaqus.data", "--format", "inp")[0]["tetrahedra"]) == 1
+
+
+def write_exodus(path, x):
+    writer = vtk.vtkExodusIIWriter()
+    writer.SetFileName(str(path))
+    writer.SetInputData(grid_of(cube(x), [("T", cube(x)[:, 0])]))
+    writer.Write()
+
+
+def pieces_of_exodus_are_read_together():
+    for x in range(3):
+        write_exodus(out / f"part.e.3.{x}", x)
+    for given in range(3):
+        mesh, notes = read(out / f"part.e.3.{given}")
+        is_whole(mesh, 3)
+        assert "joined at 8 points" in notes, notes
+        assert np.allclose(mesh["point_T"], mesh["points"][:, 0])
+    (out / "part.e.3.3").write_bytes((out / "part.e.3.0").read_bytes())
+    assert "from 0 to N - 1" in refused("check", out / "part.e.3.3")
+    (out / "part.e.3.1").unlink()
+    said = refused("check", out / "part.e.3.0")
+    assert "part.e.3.1 is missing" in said, said
+
+
+def foam(kind, name, body, place):
+    place.mkdir(parents=True, exist_ok=True)
+    (place / name).write_text(
+        "FoamFile\n{\n version 2.0;\n format ascii;\n class %s;\n object %s;\n}\n%s\n"
+        % (kind, name, body)
+    )
+
+
+def foam_list(values):
+    return "%d\n(\n%s\n)\n" % (len(values), "\n".join(values))
+
+
+def write_processor(folder, x):
+    """Two cubes of the six from x on; the second shares a face with the next processor."""
+    points = np.array([[x + i, j, k] for i in range(3) for k in (0, 1) for j in (0, 1)], float)
+    inner, low, high = [4, 5, 7, 6], [0, 2, 3, 1], [8, 9, 11, 10]
+    sides = []
+    for c in (0, 1):
+        b = 4 * c
+        for quad in ([0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3]):
+            sides.append(([b + v for v in quad], c))
+    faces = [inner, low] + [quad for quad, _ in sides] + [high]
+    owner = [0, 0] + [c for _, c in sides] + [1]
+    mesh = folder / "constant" / "polyMesh"
+    listed = foam_list(["(%g %g %g)" % tuple(p) for p in points])
+    foam("vectorField", "points", listed, mesh)
+    foam("faceList", "faces", foam_list(["4(%d %d %d %d)" % tuple(q) for q in faces]), mesh)
+    foam("labelList", "owner", foam_list([str(c) for c in owner]), mesh)
+    foam("labelList", "neighbour", foam_list(["1"]), mesh)
+    patches = "2\n(\n walls { type wall; nFaces %d; startFace 1; }\n" % (len(faces) - 2)
+    patches += " procBoundary0to1 { type processor; nFaces 1; startFace %d;" % (len(faces) - 1)
+    patches += " myProcNo 0; neighbProcNo 1; }\n)\n"
+    foam("polyBoundaryMesh", "boundary", patches, mesh)
+    sides = "boundaryField { walls { type zeroGradient; } procBoundary0to1 { type processor; } }\n"
+    for time_ in ("0", "0.5"):
+        body = "dimensions [0 0 0 1 0 0 0];\ninternalField nonuniform List<scalar> 2(%g %g);\n" % (
+            x + float(time_),
+            x + 1 + float(time_),
+        )
+        foam("volScalarField", "T", body + sides, folder / time_)
+
+
+def a_decomposed_case_is_read_from_its_processors():
+    case = out / "decomposed"
+    control = "startTime 0;\nendTime 0.5;\ndeltaT 0.5;\nwriteControl timeStep;\nwriteInterval 1;\n"
+    foam("dictionary", "controlDict", control, case / "system")
+    for number, x in enumerate((0, 2, 4)):
+        write_processor(case / f"processor{number}", x)
+    (case / "case.foam").write_text("")
+    mesh, notes = read(case / "case.foam")
+    is_whole(mesh, 6)
+    assert "3 processors" in notes and "joined at 8 points" in notes, notes
+    for words, at in ((), 0.5), (("--time", "0"), 0):
+        mesh, _ = read(case / "case.foam", *words)
+        middle = mesh["points"][mesh["tetrahedra"]].mean(axis=1)[:, 0]
+        assert np.allclose(mesh["cell_T"], np.floor(middle) + at), (words, mesh["cell_T"])
+    shutil.rmtree(case / "processor1")
+    assert "processor1 is missing" in refused("check", case / "case.foam")
+
+
+def an_interrupt_ends_a_reader_that_hangs():
+    """A foreign reader that waits for ever goes with the tool."""
+    case = out / "hangs.case"
+    case.write_text("FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: hangs.geo\n")
+    os.mkfifo(out / "hangs.geo")
+    fake = out / "fake"
+    fake.mkdir()
+    (fake / "python3").write_text(f"#!/bin/sh\necho $$ >{out.resolve()}/fake/id\nexec sleep 60\n")
+    (fake / "python3").chmod(0o755)
+    (out / "hangs.med").write_text("nothing")
+    environment = dict(os.environ, PATH=f"{fake.resolve()}:{os.environ['PATH']}")
+    for words in (
+        ("check", "hangs.case"),
+        ("convert", "hangs.case", "-o", "hung.vtu"),
+        ("simplify", "hangs.case", "-o", "hung.qtet"),
+        ("check", "hangs.med"),
+        ("simplify", "hangs.med", "-o", "hung.qtet"),
+    ):
+        tool = subprocess.Popen(
+            [qtet, *words], cwd=out, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+        )
+        readers = []
+        for _ in range(100):
+            time.sleep(0.05)
+            readers = [p for p in os.listdir("/proc") if p.isdigit() and parent_of(p) == tool.pid]
+            if readers:
+                break
+        time.sleep(0.3)
+        assert tool.poll() is None and readers, (words, tool.communicate())
+        tool.send_signal(signal.SIGINT)
+        began = time.monotonic()
+        tool.wait(5)
+        assert time.monotonic() - began < 2, words
+        deadline = time.monotonic() + 5
+        while any(is_running(reader) for reader in readers) and time.monotonic() < deadline:
+            time.sleep(0.05)
+        assert not any(is_running(reader) for reader in readers), (words, readers)
+    assert not (out / "hung.vtu").exists() and not (out / "hung.qtet").exists()
+
+
+def status_of(process):
+    """Its state and its parent; a zombie has ended."""
+    try:
+        words = pathlib.Path(f"/proc/{process}/stat").read_text().rsplit(")", 1)[1].split()
+    except (FileNotFoundError, ProcessLookupError):
+        return "Z", 0
+    return words[0], int(words[1])
+
+
+def parent_of(process):
+    return status_of(process)[1]
+
+
+def is_running(process):
+    return status_of(process)[0] != "Z"
+
+
+def pipes_are_read_like_files():
+    text = (meshes / "p_0.vtu").read_bytes()
+    for words in (("/dev/stdin", "--format", "vtu"), ("-", "--format", "vtu")):
+        done = subprocess.run([qtet, "check", *words], input=text, capture_output=True)
+        assert done.returncode == 0 and b"simplify takes it" in done.stdout, done
+    command = f'"{qtet}" check <(cat "{meshes}/p_0.vtu") --format vtu'
+    done = subprocess.run(["bash", "-c", command], capture_output=True, text=True)
+    assert done.returncode == 0, done
+    pipe = out / "named.vtu"
+    os.mkfifo(pipe)
+    writer = subprocess.Popen(["cp", meshes / "p_0.vtu", pipe])
+    assert run("check", pipe, timeout=60).returncode == 0
+    writer.wait()
+    said = subprocess.run(
+        ["bash", "-c", f'"{qtet}" check <(cat "{meshes}/p_0.vtu")'], capture_output=True, text=True
+    )
+    assert said.returncode == 2 and "--format" in said.stderr, said
+
+
+TESTS = [
+    medit_files_of_order_three_are_read,
+    compressed_files_are_read,
+    fluent_meshes_are_read,
+    med_files_with_families_are_read,
+    partitions_of_vtkhdf_become_one_mesh,
+    a_series_of_xdmf_is_read,
+    abaqus_of_second_order_is_read,
+    an_unknown_ending_is_told_what_there_is,
+    a_decomposed_case_is_read_from_its_processors,
+    an_interrupt_ends_a_reader_that_hangs,
+    pipes_are_read_like_files,
+]
+if vtk:
+    TESTS += [a_list_of_files_is_a_series, pieces_of_exodus_are_read_together]
+chosen = sys.argv[4:]
+failed = 0
+for test in TESTS:
+    if chosen and test.__name__ not in chosen:
+        continue
+    try:
+        missing = test()
+        print(test.__name__, f"skipped: {missing}" if missing else "done")
+    except Exception as error:
+        failed += 1
+        print(test.__name__, "FAILED", type(error).__name__, str(error)[:600])
+sys.exit(failed)
