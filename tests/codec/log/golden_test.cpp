@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <fstream>
 #include <map>
+#include <numeric>
 
 #include "codec/log/log_file.h"
 #include "codec/log/log_manifest.h"
 #include "proto/checksum.h"
+#include "tests/support/closing_contents.h"
 
 namespace qtet {
 namespace {
@@ -52,6 +54,17 @@ Result<Digests> decode(const std::filesystem::path& path) {
   return out;
 }
 
+/// As Refiner::digest(), of a mesh taken out of it.
+std::string meshDigest(const LatticeMesh& mesh) {
+  ByteWriter w;
+  const auto feed = [&w](const auto& tuples) {
+    for (const auto& tuple : tuples)
+      for (const auto value : tuple) w.write(static_cast<std::uint32_t>(value));
+  };
+  feed(mesh.points), feed(mesh.tetrahedra), feed(mesh.boundary);
+  return sha256Hex(w.bytes());
+}
+
 /// "DIGEST  NAME" a line, as sha256sum writes.
 std::map<std::string, std::string> digestsIn(const char* file) {
   std::ifstream in(std::filesystem::path(QTET_GOLDEN_DIR) / file);
@@ -78,6 +91,47 @@ TEST(Golden, validFilesDecodeToTheirDigests) {
     }
   }
   EXPECT_EQ(fields, expectedFields.size());
+}
+
+TEST(Golden, closingBlocksHoldWhatTheirDigestsSay) {
+  const auto expected = digestsIn("closing-digests.txt");
+  std::size_t blocks = 0;
+  for (const auto& path : filesIn("valid")) {
+    const LogFile log = LogFile::open(path).value();
+    Refiner refiner(log.index());
+    std::vector<std::uint32_t> fields(log.index().fields.size());
+    std::iota(fields.begin(), fields.end(), 0u);
+    for (std::uint32_t c = 0; c < log.index().chunks.size(); ++c)
+      ASSERT_TRUE(applyChunk(log, refiner, c, fields)) << path;
+    for (const auto& [block, bytes] : testing::closingContents(log, refiner)) {
+      const std::string name = path.filename().string() + "#" + block;
+      ASSERT_TRUE(expected.contains(name)) << name;
+      EXPECT_EQ(sha256Hex(bytes), expected.at(name)) << name;
+      ++blocks;
+    }
+  }
+  EXPECT_GE(blocks, 4u);
+  EXPECT_EQ(blocks, expected.size());
+}
+
+TEST(Golden, everyLevelDecodesToItsDigest) {
+  const auto expected = digestsIn("level-digests.txt");
+  std::size_t levels = 0;
+  for (const auto& path : filesIn("valid")) {
+    const auto log = LogFile::open(path);
+    ASSERT_TRUE(log) << path;
+    const std::uint32_t last = log->index().chunks.back().lastLevel;
+    // before its last level a log of regions has holes, which a digest would count
+    std::uint32_t level = log->index().layout == Layout::kRegions ? last : 0;
+    for (; level <= last; ++level, ++levels) {
+      const auto mesh = meshAtLevel(*log, level);
+      ASSERT_TRUE(mesh) << path << " level " << level << ": " << mesh.error().text();
+      const std::string name = path.filename().string() + "@" + std::to_string(level);
+      ASSERT_TRUE(expected.contains(name)) << name;
+      EXPECT_EQ(meshDigest(*mesh), expected.at(name)) << name;
+    }
+  }
+  EXPECT_EQ(levels, expected.size());
 }
 
 TEST(Golden, brokenFilesFailWithTheCodeInTheirName) {

@@ -1,0 +1,97 @@
+"""Header, manifest and chunk table, and where the blocks lie."""
+import struct
+
+from coder import Stream
+from conventions import LEVEL_END, Reader, refuse_unless
+
+
+class Row:
+    """A row of the chunk table; a packet has a node."""
+
+
+class Log:
+    def __init__(self, data, misreading=""):
+        self.data, self.misreading = data, misreading
+        header = struct.unpack("<8sHHBBHQIIIIIIIIII", data[:64])
+        (_, major, _, self.layout, self.bits, _, size, manifest, table) = header[:9]
+        self.chunks, self.fields = header[11], header[12]
+        closing = header[14]
+        refuse_unless(major == 2 and size == len(data), "another version or length")
+        self.manifest = data[64 : 64 + manifest]
+        self.offset = 64 + manifest + table
+        reader = Reader(data[64 + manifest : self.offset])
+        self.shapes = [reader.unpack("BB") for _ in range(self.fields)]
+        self.rows = []
+        for _ in range(self.chunks):
+            self.rows.append(self.read_row(reader))
+        self.closing = {}
+        for _ in range(closing):
+            kind, field, count = reader.varint(), reader.varint(), reader.varint()
+            reader.take(4)
+            self.closing[kind, field] = data[self.offset : self.offset + count]
+            self.offset += count
+        refuse_unless(self.offset == len(data), "blocks do not end with the file")
+        self.read_manifest()
+
+    def read_row(self, reader):
+        row = Row()
+        before = self.rows[-1] if self.rows else None
+        row.node = reader.varint() if self.layout == 1 else 0
+        if row.node:
+            reader.take(6)
+        if before is None:
+            row.first = 0
+        elif row.node and row.node & (row.node - 1):
+            row.first = before.first
+        else:
+            row.first = before.last + (before.end is LEVEL_END)
+        row.last = row.first + reader.varint()
+        end = reader.varint()
+        row.end = LEVEL_END if end == 0 else end - 1
+        if end and self.misreading == "slot e is visited too":
+            row.end = end
+        row.records = reader.varint()
+        row.vertices, row.tetrahedra, row.triangles = (reader.varint() for _ in range(3))
+        row.codec = reader.u8() >> 4
+        sizes = [reader.varint() for _ in range(2 + self.fields)]
+        reader.take(4 * len(sizes))
+        row.blocks = []
+        for size in sizes:
+            row.blocks.append(self.data[self.offset : self.offset + size])
+            self.offset += size
+        return row
+
+    def read_manifest(self):
+        reader = Reader(self.manifest)
+        reader.text()
+        reader.text()
+        self.step, *self.origin = reader.unpack("4d")
+        self.infos = []
+        for components, _ in self.shapes:
+            reader.text()
+            kind, bits, step = reader.unpack("BBd")
+            minimum = reader.unpack(f"{components}d")
+            reader.unpack("2d")
+            self.infos.append((kind & 127, bits, step, minimum))
+        has_errors = reader.u8()
+        levels = self.rows[-1].last + 1
+        columns = 3 + (1 + 2 * (2 + self.fields) if has_errors else 0)
+        stream = Stream(reader.take(len(self.manifest) - reader.at), None, self.misreading)
+        self.columns = []
+        for column in range(columns):
+            told = []
+            for level in range(levels):
+                predicted = told[-1] if told else 0
+                is_max = column > 3 and column % 2 == 1
+                if self.misreading == "a max is predicted like a mean":
+                    is_max = False
+                if level > 1 and not is_max:
+                    predicted = 2 * told[-1] - told[-2]
+                code = stream.number(column)
+                difference = code // 2 if code % 2 == 0 else -(code + 1) // 2
+                told.append((predicted + difference) % 2**32)
+            self.columns.append(told)
+        refuse_unless(stream.at_end(), "level columns are too long")
+        for column in range(4, columns, 2):
+            for mean, most in zip(self.columns[column], self.columns[column + 1]):
+                refuse_unless(mean <= most <= 17100, "a mean above its maximum")

@@ -1,0 +1,16 @@
+// What closing blocks give, as bytes to be compared with another decoder's.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "codec/log/log_file.h"
+
+namespace qtet::testing {
+
+/// By "KIND/FIELD" of the kinds 1 to 4: slots of points; slots of cells and then their vertices
+/// (u32); exact numbers (float64). REQUIRES `finest` has all chunks and fields of a sound log.
+[[nodiscard]] std::map<std::string, Bytes> closingContents(const LogFile& log,
+                                                           const Refiner& finest);
+
+}  // namespace qtet::testing
