@@ -151,6 +151,8 @@ def main(library, program, logs, out):
             keepsInput = path.stem in ("kept-input", "original-cells")
             last = [] if keepsInput else [log.info.levels - 1]
             for level in [*last, 2, 3, 0]:
+                if level >= log.info.levels:  # some logs have one level
+                    continue
                 extracted = pathlib.Path(out) / "ctypes.vtu"
                 subprocess.run(
                     [program, "extract", path, "--level", str(level), "-o", extracted],

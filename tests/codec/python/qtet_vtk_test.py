@@ -91,6 +91,8 @@ def every_log_is_what_extract_writes():
             # Where slots are empty.
             between = range(3, log.last_level, 3) if path.stem == "regions" else []
             for level in [*last, 2, *between, 0]:
+                if level > log.last_level:  # some logs have one level
+                    continue
                 log.refine(level)
                 compare(
                     qtet_vtk.grid_of(log), extracted(path, level), f"{path.name}, level {level}"
