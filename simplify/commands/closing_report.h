@@ -13,8 +13,8 @@
 
 namespace qtet {
 
-/// {"point order": bytes, "cell order": bytes, "original cells": bytes, "exact positions": bytes, "exact NAME": bytes}, as
-/// far as they are there.
+/// {"point order": bytes, "cell order": bytes, "original cells": bytes, "exact positions": bytes,
+/// "exact NAME": bytes}, as far as they are there.
 [[nodiscard]] nlohmann::ordered_json closingJson(const LogIndex& index, const Manifest& manifest);
 
 /// Holds what the log kept against the input: `placed` is the cleaned input on the log's lattice,
