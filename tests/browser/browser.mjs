@@ -87,9 +87,10 @@ export class Browser {
     };
   }
 
-  /** Opens a page that is not ours. */
-  async page(url) {
+  /** Opens a page that is not ours; `heard` is told of the console's errors. */
+  async page(url, heard = () => undefined) {
     const page = await (await this.#browser.newContext(kDesktop)).newPage();
+    page.on('console', (message) => message.type() === 'error' && heard(message.text()));
     await page.goto(url);
     return page;
   }

@@ -216,13 +216,15 @@ async function keepsWhatIsAskedForBeforeThereIsAMesh({server, browser}) {
     late.setAttribute('mesh', 'fin');
     document.querySelector('qtet-viewer').replaceWith(late);
     late.look('+z');
+    late.pause();
     window.qtetRange = new Promise((chosen) => {
       const choose = setInterval(() => {
         const select = late.shadowRoot.querySelector('select[name=range]');
-        if (!select || late.manifest) return;
+        if (!late.viewing?.panels) return;
         clearInterval(choose);
         select.value = 'fixed';
         select.dispatchEvent(new Event('change'));
+        late.resume();
         chosen();
       });
     });

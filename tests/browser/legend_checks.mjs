@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import {execFileSync} from 'node:child_process';
-import {writeFileSync} from 'node:fs';
+import {readFileSync, writeFileSync} from 'node:fs';
 import {join} from 'node:path';
 import {kPhone} from './browser.mjs';
 import {linearBox} from './volume_checks.mjs';
@@ -200,7 +200,84 @@ async function saysWhatIsHidden({server, browser}) {
   assert.ok(seen.includes(true) && seen.at(-1) === false, `the volume said ${seen}`);
 }
 
+/** What a mouse does with two buttons and a wheel, the keyboard does too. */
+async function movesAndCentresByKeys({server, browser}) {
+  const viewer = await browser.open(`${server.url}?mesh=box`);
+  await viewer.waitForState('complete');
+  await viewer.waitForPicture();
+  const {page} = viewer;
+  const places = () =>
+    page.evaluate(() => {
+      const {meshView, viewing} = window.qtetViewer;
+      const {bounds} = viewing.mesh;
+      const {point} = viewing.requests;
+      const [x, y] = viewing.panels.cards.middle;
+      return {
+        mesh: meshView.project([0, 1, 2].map((axis) => (bounds[axis] + bounds[axis + 3]) / 2)),
+        point: point && meshView.project(point),
+        middle: {x: x * meshView.canvas.clientWidth, y: y * meshView.canvas.clientHeight},
+        fitted: meshView.pose.fitted,
+      };
+    });
+  await page.locator('qtet-viewer .scene').focus();
+  const before = await places();
+  await page.keyboard.press('Shift+ArrowRight');
+  await page.keyboard.press('Shift+ArrowUp');
+  await viewer.settle();
+  const moved = await places();
+  const share = 0.08 * 800;
+  assert.ok(Math.abs(moved.mesh.x - before.mesh.x - share) < 12, JSON.stringify([before, moved]));
+  assert.ok(Math.abs(before.mesh.y - moved.mesh.y - share) < 12, JSON.stringify([before, moved]));
+  await page.keyboard.press('i');
+  await viewer.settle();
+  await page.keyboard.press('Shift+ArrowLeft');
+  await page.keyboard.press('f');
+  await viewer.settle();
+  const {point, middle} = await places();
+  const away = Math.hypot(point.x - middle.x, point.y - middle.y);
+  assert.ok(away < 3, `what was pointed at lies ${away} pixels from the middle`);
+  await page.keyboard.press('Home');
+  await viewer.settle();
+  assert.equal((await places()).fitted, true);
+  assert.deepEqual(viewer.problems, []);
+}
+
+/** What is pointed at can be taken along. */
+async function givesItsNumbersAway({server, browser}) {
+  const viewer = await browser.open(`${server.url}?mesh=fin&field=Density`);
+  await viewer.waitForState('complete');
+  await viewer.waitForPicture();
+  const {page} = viewer;
+  await page.evaluate(() => {
+    window.qtetCopied = [];
+    Object.defineProperty(navigator, 'clipboard', {
+      value: {writeText: async (text) => void window.qtetCopied.push(text)},
+    });
+  });
+  await page.getByText('Line', {exact: true}).click();
+  const {x, y} = await page.evaluate(() => {
+    const {bounds} = window.qtetViewer.viewing.mesh;
+    const middle = [0, 1, 2].map((axis) => (bounds[axis] + bounds[axis + 3]) / 2);
+    return window.qtetViewer.meshView.project(middle);
+  });
+  await page.mouse.click(x - 40, y);
+  await viewer.settle();
+  await page.mouse.click(x + 40, y);
+  await page.locator('qtet-viewer .plot canvas').waitFor();
+  const saved = page.waitForEvent('download');
+  await page.getByRole('button', {name: 'Save as CSV'}).click();
+  const rows = readFileSync(await (await saved).path(), 'utf8').split('\r\n');
+  assert.equal(rows[0], '"distance","Density"');
+  assert.ok(rows.length > 2, `${rows.length} rows`);
+  for (const row of rows.slice(1)) assert.match(row, /^[-\d.e]+,[-\d.e]*$/);
+  await page.getByRole('button', {name: 'Copy', exact: true}).click();
+  const copied = await page.evaluate(() => window.qtetCopied);
+  assert.match(copied[0], /^Distance\t[\d.]+\nDifference\t/);
+}
+
 export const legendChecks = {
+  movesAndCentresByKeys,
+  givesItsNumbersAway,
   showsAwkwardFieldsLegibly,
   keepsTheMeshOutOfTheLegend,
   followsTheField,

@@ -14,6 +14,7 @@ const kTypes = {
   '.js': 'text/javascript',
   '.wasm': 'application/wasm',
   '.css': 'text/css',
+  '.svg': 'image/svg+xml',
 };
 
 /**
@@ -30,9 +31,9 @@ export function makeSite(folder, viewer, log) {
 
 /**
  * Returns {name, url, requests, close()}. Without `ranges` the server answers every request with
- * the whole file.
+ * the whole file. `headers` go with each answer of node.
  */
-export async function hostFolder(folder, {ranges = true, nginx = true} = {}) {
+export async function hostFolder(folder, {ranges = true, nginx = true, headers = {}} = {}) {
   if (nginx && ranges && !spawnSync(kNginx, ['-v']).error) return hostByNginx(folder);
   const requests = [];
   const server = createServer((request, response) => {
@@ -45,11 +46,12 @@ export async function hostFolder(folder, {ranges = true, nginx = true} = {}) {
     if (size === undefined || size === false) return void response.writeHead(404).end();
     requests.push(`${request.url} ${request.headers.range ?? ''}`);
     const [, from, to] = (ranges && /^bytes=(\d+)-(\d+)$/.exec(request.headers.range ?? '')) || [];
-    const type = {'content-type': kTypes[extname(path)] ?? 'application/octet-stream'};
+    const type = {...headers, 'content-type': kTypes[extname(path)] ?? 'application/octet-stream'};
     if (from === undefined)
       return void createReadStream(path).pipe(
         response.writeHead(200, {...type, 'content-length': size}),
       );
+    if (Number(from) >= size) return void response.writeHead(416).end();
     const end = Math.min(Number(to), size - 1);
     response.writeHead(206, {
       ...type,

@@ -3,8 +3,9 @@
 import assert from 'node:assert/strict';
 import {writeFileSync} from 'node:fs';
 import {join} from 'node:path';
-import {kDesktop} from './browser.mjs';
+import {kDesktop, kTimeoutMs} from './browser.mjs';
 import {expectWhole} from './expect.mjs';
+import {coloredShare} from './png.mjs';
 import {PoorLine} from './poor_line.mjs';
 import {makeLog, Server} from './programs.mjs';
 import {hostFolder, makeSite} from './static_host.mjs';
@@ -198,7 +199,7 @@ async function showsWhatATokenOpens({browser, logs, viewer: files, out, bin}) {
 }
 
 /** Each fault ends with a sentence that says what and where, not with waiting. */
-async function saysWhatIsWrong({server, browser, logs, viewer: files, out}) {
+async function namesEachFault({server, browser, logs, viewer: files, out}) {
   const wrong = 'clip=w:0.5&range=5,1&quality=best&field=Nope&iso=Nope=1&colormap=rainbow';
   const viewer = await browser.open(`${server.url}?mesh=fin&${wrong}`);
   await viewer.waitForState('complete');
@@ -233,8 +234,47 @@ async function saysWhatIsWrong({server, browser, logs, viewer: files, out}) {
   }
 }
 
+/** As strict as a policy can be for a page with workers and WebAssembly. */
+const kPolicy =
+  "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; " +
+  "object-src 'none'; base-uri 'none'; trusted-types qtet default; " +
+  "require-trusted-types-for 'script'";
+
+async function worksUnderAStrictPolicy({browser, logs, viewer: files, out}) {
+  const folder = makeSite(join(out, 'strict-site'), files, logs.fin);
+  const headers = {'content-security-policy': kPolicy};
+  const host = await hostFolder(folder, {nginx: false, headers});
+  const heard = [];
+  try {
+    const url = `${host.url}?src=fin.qtet&clip=x:0.5`;
+    const page = await browser.page(url, (text) => heard.push(text));
+    const isThere = () =>
+      page.evaluate(
+        () => window.qtetViewer?.state === 'complete' && window.qtetViewer.matches('.loaded'),
+      );
+    for (const end = Date.now() + kTimeoutMs; !(await isThere());) {
+      assert.ok(Date.now() < end, `the mesh does not come: ${heard.join('; ')}`);
+      await page.waitForTimeout(50);
+    }
+    await page.evaluate(() => window.qtetViewer.viewing.actions.share());
+    const styled = await page.evaluate(() => {
+      const {shadowRoot} = window.qtetViewer;
+      const of = (selector) => getComputedStyle(shadowRoot.querySelector(selector));
+      return [of('.panel').position, of('.swatch span').backgroundImage.slice(0, 15)];
+    });
+    assert.deepEqual(styled, ['absolute', 'linear-gradient']);
+    const seen = await browser.picture(page, 'strict-policy');
+    assert.ok(coloredShare(seen) > 0.02, 'the picture is blank');
+    assert.deepEqual(heard, []);
+    await page.context().close();
+  } finally {
+    host.close();
+  }
+}
+
 export const transportChecks = {
-  saysWhatIsWrong,
+  worksUnderAStrictPolicy,
+  namesEachFault,
   showsWhatATokenOpens,
   readsAFileOnlySoFar,
   refinesWhatIsLookedAtFirst,

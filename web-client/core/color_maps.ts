@@ -4,8 +4,9 @@
 // Color Maps for Scientific Visualization": Msh interpolation from (59, 76, 192) to (180, 4, 38)
 // over white). turbo: the published polynomials (Mikhailov and Du 2019).
 
-export type ColorMapName = 'viridis' | 'cividis' | 'cool-warm' | 'turbo' | 'grey';
+export type ColorMapName = 'viridis' | 'cividis' | 'cool-warm' | 'turbo' | 'grey' | 'labels';
 
+/** Those that are continuous. `labels` has kMostLabels colours for as many whole numbers. */
 export const kColorMapNames: readonly ColorMapName[] = [
   'viridis',
   'cividis',
@@ -58,7 +59,7 @@ const kTables: Record<'viridis' | 'cividis' | 'cool-warm', string> = {
 };
 
 export function isColorMapName(name: string | null): name is ColorMapName {
-  return name !== null && (kColorMapNames as readonly string[]).includes(name);
+  return name === 'labels' || (kColorMapNames as readonly string[]).includes(name ?? '');
 }
 
 /** Polynomials in x from 0 to 1, lowest power first: red, green, blue. */
@@ -67,6 +68,13 @@ const kTurbo = [
   [0.09140261, 2.19418839, 4.84296658, -14.18503333, 4.27729857, 2.82956604],
   [0.1066733, 12.64194608, -60.58204836, 110.36276771, -89.90310912, 27.34824973],
 ];
+/** Twenty colours that are easy to tell apart, neighbours most of all: two of each of ten hues. */
+const kLabels = (
+  '1f77b4 ff7f0e 2ca02c d62728 9467bd 8c564b e377c2 17becf bcbd22 7f7f7f ' +
+  'aec7e8 ffbb78 98df8a ff9896 c5b0d5 c49c94 f7b6d2 9edae5 dbdb8d c7c7c7'
+)
+  .split(' ')
+  .map((hex) => [0, 2, 4].map((at) => parseInt(hex.slice(at, at + 2), 16)));
 /** So neither end is the colour of a background. */
 const kGreyFrom = 26;
 const kGreyTo = 236;
@@ -82,6 +90,8 @@ export function colorTable(name: ColorMapName, reversed = false): Uint8Array {
 }
 
 function entriesOf(name: ColorMapName): (i: number) => number[] {
+  if (name === 'labels')
+    return (i) => kLabels[Math.floor((i * kLabels.length) / kColorMapEntries)]!;
   if (name === 'grey') {
     return (i) =>
       Array<number>(3).fill(
@@ -100,6 +110,15 @@ function entriesOf(name: ColorMapName): (i: number) => number[] {
   }
   const packed = atob(kTables[name]);
   return (i) => [0, 1, 2].map((c) => packed.charCodeAt(3 * i + c));
+}
+
+/** A CSS gradient of the first `count` labels' colours, without transitions. */
+export function labelGradient(count: number, reversed = false): string {
+  const stops = Array.from({length: count}, (_, i) => {
+    const color = kLabels[reversed ? kLabels.length - 1 - i : i]!.join(' ');
+    return `rgb(${color}) ${(100 * i) / count}% ${(100 * (i + 1)) / count}%`;
+  });
+  return `linear-gradient(90deg, ${stops.join(', ')})`;
 }
 
 /** A CSS gradient from left to right through `stops` evenly spaced entries. */

@@ -83,20 +83,29 @@ export class FieldScale {
    * (cells whose first two vertices are equal) do not count.
    */
   extent(tetrahedra: Uint32Array): [number, number] {
+    let low = Infinity;
+    let high = -Infinity;
+    for (const value of this.occurring(tetrahedra)) {
+      if (value < low) low = value;
+      if (value > high) high = value;
+    }
+    return low <= high ? [low, high] : [0, 1];
+  }
+
+  /** The values of these cells, one a vertex or cell, without missing ones and without holes. */
+  occurring(tetrahedra: Uint32Array): Float64Array {
     const occurs = new Uint8Array(this.size);
     for (let cell = 0, at = 0; at < tetrahedra.length; ++cell, at += 4) {
       if (tetrahedra[at] === tetrahedra[at + 1]) continue;
       if (this.ofCells) occurs[cell] = 1;
       else for (let i = at; i < at + 4; ++i) occurs[tetrahedra[i]!] = 1;
     }
-    let low = Infinity;
-    let high = -Infinity;
+    const values = new Float64Array(occurs.length);
+    let count = 0;
     for (let i = 0; i < occurs.length; ++i) {
-      if (occurs[i] === 0) continue;
-      const value = this.at(i);
-      if (value < low) low = value;
-      if (value > high) high = value;
+      const value = occurs[i] === 0 ? NaN : this.at(i);
+      if (!Number.isNaN(value)) values[count++] = value;
     }
-    return low <= high ? [low, high] : [0, 1];
+    return values.subarray(0, count);
   }
 }

@@ -10,8 +10,11 @@ import type {Wanted} from './wanted';
  */
 const kWindowBytes = 1 << 20;
 
-/** Where the stream ends: behind the head, at the limit, or at a limit that was set since. */
-type End = 'head' | 'limit' | 'later limit';
+/**
+ * Where the stream ends: behind the head, behind the base mesh, at the limit, or at a limit that
+ * was set since.
+ */
+type End = 'head' | 'base' | 'limit' | 'later limit';
 
 export class LogStream {
   /** SHA-256 of the log; empty until the server tells it. */
@@ -41,9 +44,9 @@ export class LogStream {
     return this.transport?.isConnected === true;
   }
 
-  /** The server may report the end of the earlier limit before it hears of the later one. */
+  /** The server may report an end before it hears that more is wanted. */
   get mayEndEarly(): boolean {
-    return this.end === 'later limit';
+    return this.end === 'later limit' || this.end === 'base';
   }
 
   get endsAtHead(): boolean {
@@ -62,10 +65,10 @@ export class LogStream {
     this.transport?.disconnect();
   }
 
-  open(mesh: string, {needsHead, keys, have, view, goal}: Wanted): void {
+  open(mesh: string, {comparing, needsHead, keys, have, view, goal}: Wanted): void {
     const fields = keys.filter((name) => name !== '');
     this.keys = fields;
-    this.end = needsHead ? 'head' : 'limit';
+    this.end = needsHead ? 'head' : comparing ? 'base' : 'limit';
     this.unapplied = 0;
     this.transport?.open({
       mesh,

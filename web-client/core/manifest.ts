@@ -9,6 +9,8 @@ export interface FieldInfo {
   /** value of component c = minimum[c] + step * integer */
   step: number;
   minimum: number[];
+  /** The input held whole numbers. */
+  isWhole?: boolean;
   /** of the values; of the magnitudes if components > 1 */
   range: [number, number];
 }
@@ -73,6 +75,7 @@ const kOfCells = 1;
 /** codec/FORMAT.md, "Manifest" and "Level columns". */
 const kMaxNameBytes = 256;
 const kFieldTypes = 10;
+const kFirstWholeType = 2;
 const kMaxFieldBits = 28;
 const kCountColumns = 3;
 const kVolumeFigure = 1e6;
@@ -130,6 +133,7 @@ function readField(
     name,
     components,
     association,
+    isWhole: (type & ~kMissingFlag) >= kFirstWholeType,
     step: reader.step(),
     minimum: reader.numbers(components),
     range: reader.numbers(2) as [number, number],

@@ -13,8 +13,9 @@ import {
   type Display,
   type MeshNow,
 } from './display';
-import {scalarRange} from './field_scale';
+import {scalarRange, type FieldScale, type Scalar} from './field_scale';
 import {meshNow} from './mesh_now';
+import {spreadOf, type Spread} from './spread';
 import {noSoup, pointBounds} from './triangle_soup';
 import {volumeCells, type VolumeCells} from './volume';
 import type {Snapshot} from './worker_messages';
@@ -64,6 +65,8 @@ export class Publisher {
   /** The page has said what to draw. */
   private wanted = false;
   private bounds: number[] = [];
+  /** By colour, from the mesh with which it was first drawn. */
+  private readonly spreads = new Map<string, Spread>();
   private onScreen = true;
   /** When the last picture was sent, and how many bytes it was made of. */
   private sentAt = 0;
@@ -141,6 +144,7 @@ export class Publisher {
     this.meshChanged = this.cutChanged = this.wanted = this.hasPublished = this.isLast = false;
     this.onScreen = true; // nobody waits for the previous mesh's picture
     this.bounds = [];
+    this.spreads.clear();
     this.bytes = this.tookMs = 0;
     this.display = kPlainDisplay;
     clearTimeout(this.timer);
@@ -218,6 +222,15 @@ export class Publisher {
     return scale ? volumeCells(mesh, scale, kept) : null;
   }
 
+  private spreadOf(color: Scalar, scale: FieldScale, {tetrahedra}: MeshNow): Spread {
+    const key = `${color.field} ${color.component}`;
+    const known = this.spreads.get(key);
+    if (known) return known;
+    const spread = spreadOf(scale, tetrahedra);
+    this.spreads.set(key, spread);
+    return spread;
+  }
+
   private frame(mesh: MeshNow): Omit<Snapshot, 'cuts' | 'planes'> {
     const {color} = this.display;
     const scale = color && mesh.scale(color);
@@ -234,6 +247,7 @@ export class Publisher {
         scale && info && info.components > 1 && color.component >= 0
           ? scale.extent(mesh.tetrahedra)
           : [0, 1],
+      middle: scale ? this.spreadOf(color, scale, mesh).middle : [0, 1],
       scaleRange: scale && info ? scalarRange(info, color.component) : [0, 1],
     };
   }

@@ -2,19 +2,21 @@
 // far as is asked for, and reports its state.
 
 import type {Assembler} from './assembler';
+import {baseFigures} from './base_figures';
 import type {CoarseVolume} from './coarse_volume';
 import {Decoding} from './decoding';
 import {errorCode, errorText, QtetError} from './errors';
 import {kFull, type Limit} from './limit';
 import {LogStream} from './log_stream';
+import {meshNow} from './mesh_now';
 import {ProgressTeller} from './progress_teller';
 import type {Frame, ServerMessage} from './protocol';
 import type {Publisher} from './publisher';
 import {canPause, isAtRest, stateMessage, type SessionState} from './session_state';
+import {mostContrast} from './spread';
 import {asksForTheSame, surfaceRequest, surfaceRequestOf} from './surface_request';
 import type {LogTable, Transport, TransportHandlers} from './transport';
 import {makeTransport} from './transports';
-import {pointBounds} from './triangle_soup';
 import type {ViewRequest} from './view_request';
 import {Wanted} from './wanted';
 import type {FromWorker, Source} from './worker_messages';
@@ -84,7 +86,9 @@ export class Session implements TransportHandlers {
 
   /** Brings these fields (indexes into the manifest) instead of the previous ones. */
   want(fields: readonly number[]): void {
-    if (!this.assembler.manifest || !this.wanted.changeFields(fields)) return;
+    if (!this.assembler.manifest) return;
+    const wasComparing = this.wanted.endComparing();
+    if (!this.wanted.changeFields(fields) && !wasComparing) return;
     this.sendPlan();
     this.progress.changed();
     if (this.state.name === 'failed') return;
@@ -97,6 +101,7 @@ export class Session implements TransportHandlers {
   setLimit(limit: Limit): void {
     this.wanted.limit = limit;
     if (!this.assembler.manifest || this.state.name === 'failed') return;
+    if (this.wanted.comparing) return; // the display comes soon, and asks for the rest
     const wasPaused = this.endPause();
     this.guarded(() => {
       if (this.wanted.isReached) this.goBack();
@@ -260,6 +265,7 @@ export class Session implements TransportHandlers {
       if (hasChanged) this.publisher.changed(this.wanted.isComplete);
       this.progress.changed();
       if (this.wanted.isComplete) this.complete();
+      else if (this.wanted.comparing) return;
       else if (this.wanted.isReached) this.hold();
       else if (this.state.name !== 'paused') this.stream.giveCredit();
     });
@@ -375,7 +381,9 @@ export class Session implements TransportHandlers {
     if (this.baseTold || codec.chunksApplied === 0) return;
     if (this.wanted.fields.some((field) => codec.fieldChunksApplied(field) === 0)) return;
     this.baseTold = true;
-    this.send({type: 'base', bounds: pointBounds(codec.points(), codec.boundary())});
+    const mesh = meshNow(this.assembler)!;
+    const field = mostContrast(mesh, this.wanted.fields);
+    this.send({type: 'base', figures: baseFigures(mesh), field});
   }
 
   private sendPlan(): void {

@@ -88,6 +88,15 @@ export function logTicks(low: number, high: number, most: number): Ticks {
   }
 }
 
+/** Whole numbers from `first` on, in the middles of `count` equal parts; every n-th of many. */
+export function labelTicks(first: number, count: number, most: number): Ticks {
+  const every = Math.ceil(count / most);
+  const ticks: Tick[] = [];
+  for (let i = 0; i < count; i += every)
+    ticks.push({at: (i + 0.5) / count, label: label(first + i, 0, false)});
+  return {ticks, factor: ''};
+}
+
 function powerLabel(factor: number, power: number): string {
   if (power >= kPlainFrom && power < kPlainBelow)
     return label(factor * 10 ** power, Math.max(0, -power), false);

@@ -6,7 +6,7 @@ import {colorTable, kColorMapEntries, type ColorMapName} from './color_maps';
 /** Opacities apply to a path of this share of the mesh's diagonal. */
 export const kOpacityPath = 0.1;
 /** A higher opacity would need an almost infinite density. */
-const kMaxOpacity = 0.99;
+export const kMaxOpacity = 0.99;
 /** Fine enough to take the nearest step. */
 export const kTransferSteps = 1023;
 

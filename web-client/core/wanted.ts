@@ -11,7 +11,14 @@ import {kNoSurfaceRequest, type SurfaceRequest} from './surface_request';
 import {kNoViewRequest, type ViewRequest} from './view_request';
 import type {Source} from './worker_messages';
 
+/** The most fields that are compared for the opening view: each costs about a kilobyte. */
+export const kMostCompared = 6;
+/** The base mesh alone. */
+const kBaseGoal: Goal = {chunks: 1, level: 0};
+
 export class Wanted {
+  /** The fields are candidates for the opening view: only the base mesh is wanted yet. */
+  comparing = false;
   /**
    * Names of the fields, for use before the head tells which there are; null means the first field.
    */
@@ -23,7 +30,8 @@ export class Wanted {
 
   constructor(private readonly assembler: Assembler) {}
 
-  begin({fields, limit}: Source): void {
+  begin({compare, fields, limit}: Source): void {
+    this.comparing = compare === true && (fields === null || fields.length > 1);
     this.names = fields;
     this.limit = limit;
   }
@@ -43,8 +51,17 @@ export class Wanted {
     const unknown = this.names?.find((name) => !keys.includes(name));
     this.fields = (this.names ?? []).map((name) => keys.indexOf(name)).filter((i) => i >= 0);
     const wantsFirst = this.names === null || unknown !== undefined;
-    if (this.fields.length === 0 && keys.length > 0 && wantsFirst) this.fields = [0];
+    if (this.fields.length === 0 && keys.length > 0 && wantsFirst)
+      this.fields = this.comparing ? [...keys.keys()].slice(0, kMostCompared) : [0];
+    this.comparing &&= this.fields.length > 1 && this.assembler.packets.length === 0;
     return unknown;
+  }
+
+  /** Returns true if that ends a comparison. */
+  endComparing(): boolean {
+    const was = this.comparing;
+    this.comparing = false;
+    return was;
   }
 
   /** Returns false if these are wanted already. REQUIRES: the head is here. */
@@ -74,7 +91,7 @@ export class Wanted {
 
   /** Where the limit lies; null means at the end, or unknown. */
   get goal(): Goal | null {
-    return this.assembler.goal(this.limit, this.fields);
+    return this.comparing ? kBaseGoal : this.assembler.goal(this.limit, this.fields);
   }
 
   /** Only the head can tell which fields there are or where the limit lies. */
@@ -102,6 +119,7 @@ export class Wanted {
   /** The decoded mesh has reached the limit. Without a limit this is never true. */
   get isReached(): boolean {
     const {codec, manifest} = this.assembler;
+    if (this.comparing) return codec.chunksApplied > 0;
     if (this.limit.kind === 'full' || !manifest || codec.chunksApplied === 0) return false;
     const {statistics, fields} = this;
     const error = errorOfLevel(manifest.levels[statistics.level], fields);

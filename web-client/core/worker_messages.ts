@@ -2,6 +2,7 @@
 // copied.
 
 import type {TransportKind} from './auto_transport';
+import type {BaseFigures} from './base_figures';
 import type {Ray, Vector} from './cell_ray';
 import type {Display} from './display';
 import type {Scalar} from './field_scale';
@@ -38,6 +39,11 @@ export interface Source {
   /** Keys of the fields to begin with; null: the first one; empty: none. */
   fields: string[] | null;
   limit: Limit;
+  /**
+   * The fields are only candidates: the stream brings their values for the base mesh, and then
+   * those of the display. With null the candidates are the first ones.
+   */
+  compare?: boolean;
   /** The network stays idle until `resume`. */
   paused?: boolean;
   /** A display follows soon: decoding sends a first picture before it refines. */
@@ -84,6 +90,11 @@ export interface Snapshot {
   /** The values that 0 and 1 stand for; `extent` is the part of [0, 1] that occurs. */
   scaleRange: [number, number];
   extent: [number, number];
+  /**
+   * Spread.middle of the values, as they were when the colour was first drawn: it stays while the
+   * mesh refines.
+   */
+  middle: [number, number];
   statistics: Statistics;
   /** How long the worker took to make it. */
   costMs: number;
@@ -100,10 +111,11 @@ export type FromWorker =
    */
   | {type: 'plan'; plan: LevelBytes[]}
   /**
-   * The base mesh is decoded with the values of the fields. `bounds` are those of Snapshot. Each
-   * log sends it once, so that the first display can hold planes that stand at shares of them.
+   * The base mesh is decoded with the values of the fields. Each log sends it once, so that the
+   * first display can hold planes that stand at shares of its bounds. `field` is the one with most
+   * contrast.
    */
-  | {type: 'base'; bounds: number[]}
+  | {type: 'base'; figures: BaseFigures; field: number}
   | {type: 'snapshot'; snapshot: Snapshot}
   | {type: 'progress'; statistics: Statistics; received: number}
   | {type: 'state'; state: StreamState; attempt: number; delayMs: number}

@@ -71,6 +71,7 @@ describe('a manifest', () => {
       name,
       components: 1,
       association,
+      isWhole: false,
       step: 1,
       minimum: [0],
       range: [0, 255],

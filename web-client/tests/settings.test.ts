@@ -1,10 +1,13 @@
 import {describe, expect, test} from 'vitest';
 import {kMagnitude} from '../core/field_scale';
 import type {FieldInfo} from '../core/manifest';
-import {logTicks} from '../core/ticks';
+import {labelTicks, logTicks} from '../core/ticks';
+import {kOpacityPath} from '../core/transfer';
 import {
   clipText,
   fieldValuesText,
+  firstOpacities,
+  labelRange,
   parseClip,
   parseFieldValues,
   parseScalar,
@@ -92,11 +95,23 @@ describe('settings', () => {
       parallel: false,
       camera: null,
       volume: null,
+      hasFirstOpacities: false,
     });
   });
   test('aVolumeIsOpacitiesOrTheFirstOnes', () => {
     expect(of({volume: '0,0.5,1'}).volume).toEqual([0, 0.5, 1]);
-    for (const text of ['', 'on', '0.5', '0,2']) expect(of({volume: text}).volume).toHaveLength(9);
+    for (const text of ['auto', 'on', '0.5', '0,2']) {
+      expect(of({volume: text}).volume).toHaveLength(9);
+      expect(of({volume: text}).hasFirstOpacities).toBe(true);
+    }
+  });
+  test('aVolumesFirstOpacitiesAreDenserTheThinnerTheMesh', () => {
+    const mean = (chord: number): number => {
+      const depths = firstOpacities(chord).map((opacity) => -Math.log(1 - opacity) / kOpacityPath);
+      return (chord * depths.reduce((sum, depth) => sum + depth, 0)) / depths.length;
+    };
+    for (const chord of [0.15, 0.3, 0.5]) expect(mean(chord)).toBeCloseTo(0.9, 1);
+    expect(Math.max(...firstOpacities(0.001))).toBe(0.99);
   });
   test('areReadFromTheirAttributes', () => {
     expect(
@@ -158,6 +173,32 @@ describe('the range of the colours', () => {
     expect(of(1, 100)).toEqual({low: 1, high: 100, logarithmic: true, hides: 'none'});
     expect(of(-1, 100)).toEqual({low: 0.01, high: 100, logarithmic: true, hides: 'low'});
     expect(of(-5, -1)).toEqual({low: -5, high: -1, logarithmic: false, hides: 'all'});
+  });
+});
+
+describe('an automatic range', () => {
+  const auto = (
+    middle: [number, number],
+    settings: Partial<Settings> = {},
+  ): ReturnType<typeof shownRange> =>
+    shownRange({...readSettings(() => null), ...settings}, [0, 100], middle);
+  test('leavesTheTailsOutIfTheyWouldHideTheRest', () => {
+    expect(auto([10, 20])).toMatchObject({low: 10, high: 20, isMiddle: true});
+    expect(auto([10, 60])).toMatchObject({low: 0, high: 100});
+    expect(auto([5, 5])).toMatchObject({low: 0, high: 100});
+  });
+  test('isWholeIfThatIsAskedFor', () => {
+    expect(auto([10, 20], {range: 'full'})).toMatchObject({low: 0, high: 100});
+    expect(auto([10, 20], {logarithmic: true}).high).toBe(100);
+  });
+  test('ofLabelsHasEachInTheMiddleOfItsColour', () => {
+    expect(labelRange([3, 4])).toMatchObject({low: 2.5, high: 22.5, labels: 4});
+    expect(labelTicks(3, 4, 20).ticks.map(({at, label}) => [at, label])).toEqual([
+      [0.125, '3'],
+      [0.375, '4'],
+      [0.625, '5'],
+      [0.875, '6'],
+    ]);
   });
 });
 

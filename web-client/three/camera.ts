@@ -14,8 +14,10 @@ const kParallelDegrees = 0.1;
 /** The first direction to a mesh: front right, from above. */
 const kFirstDirection = new Vector3(0.62, -1, 0.55).normalize();
 const kUp = new Vector3(0, 0, 1);
-/** Leaves some air round a fitted mesh. */
-const kMargin = 1.16;
+/** The share of the free width or height that a fitted mesh fills. */
+const kFill = 0.88;
+/** The least distance of the eye from the target of a fitted view, in radii. */
+const kLeastDistance = 0.05;
 /** The least distance of the near plane from the eye, in radii. */
 export const kLeastNear = 0.01;
 /** The largest distance of anything from the middle, in radii. */
@@ -23,6 +25,12 @@ const kDepth = 2.5;
 
 /** A view as six numbers: the eye (at the distance of a perspective view) and the target. */
 export type CameraState = [number, number, number, number, number, number];
+
+/** Where a camera stands: at `distance` from `target`, against its direction. */
+export interface Framing {
+  distance: number;
+  target: Vector3;
+}
 
 export class OrbitCamera {
   readonly camera = new PerspectiveCamera(kFieldOfViewDegrees, 1, kLeastNear, 100);
@@ -44,6 +52,17 @@ export class OrbitCamera {
       if (held) this.fitted = false; // a tap alone moves nothing
       changed();
     });
+  }
+
+  /** A fitted view looks along an axis. */
+  get isStandard(): boolean {
+    return this.direction !== kFirstDirection;
+  }
+
+  /** The eye of a view that is fitted so. */
+  eyeOf({distance, target}: Framing): Vector3 {
+    const seen = (distance * this.tangent()) / tangentOf(kFieldOfViewDegrees);
+    return target.clone().addScaledVector(this.direction, seen);
   }
 
   get parallel(): boolean {
@@ -72,10 +91,10 @@ export class OrbitCamera {
   }
 
   /**
-   * Looks along `direction`, or as a mesh is first seen. `distance` gives the distance at which
-   * everything fits.
+   * Looks along `direction`, or as a mesh is first seen. `framing` is called once the camera has
+   * turned.
    */
-  look(direction: Direction | null, distance: () => number): void {
+  look(direction: Direction | null, framing: () => Framing): void {
     this.direction = kFirstDirection;
     if (direction) {
       const along = new Vector3().setComponent(
@@ -85,15 +104,17 @@ export class OrbitCamera {
       // A little tilt tells the controls that x points right, seen from straight above or below.
       this.direction = along.z === 0 ? along : along.add(new Vector3(0, -1e-4, 0)).normalize();
     }
-    this.fit(distance);
+    this.fit(framing);
   }
 
-  fit(distance: () => number): void {
+  fit(framing: () => Framing): void {
     this.fitted = true;
     this.controls.target.set(0, 0, 0);
     this.camera.position.copy(this.direction);
     this.camera.lookAt(0, 0, 0);
-    this.moveTo(this.direction.clone().multiplyScalar(distance()));
+    const {distance, target} = framing();
+    this.controls.target.copy(target);
+    this.moveTo(this.direction.clone().multiplyScalar(distance));
   }
 
   /** Turns round the target by these radians. */
@@ -107,6 +128,30 @@ export class OrbitCamera {
     this.moveTo(new Vector3().setFromSpherical(spherical).applyQuaternion(toYUp.invert()));
   }
 
+  /** Moves by shares of the picture's height at the target: what is seen goes right and up. */
+  pan(right: number, up: number): void {
+    this.camera.updateMatrixWorld();
+    const along = new Vector3(),
+      above = new Vector3();
+    this.camera.matrixWorld.extractBasis(along, above, new Vector3());
+    const height = 2 * this.offset().length() * this.tangent();
+    const {target} = this.controls;
+    this.aimAt(
+      target
+        .clone()
+        .addScaledVector(along, -right * height)
+        .addScaledVector(above, -up * height),
+    );
+  }
+
+  /** Moves without turning, so that the target is here. */
+  aimAt(point: Vector3): void {
+    this.fitted = false;
+    const offset = this.offset();
+    this.controls.target.copy(point);
+    this.moveTo(offset);
+  }
+
   /** A factor below 1 moves nearer, above 1 farther. */
   zoom(factor: number): void {
     this.fitted = false;
@@ -114,23 +159,39 @@ export class OrbitCamera {
   }
 
   /**
-   * The distance at which every corner is within the free shares of the picture's width and height.
+   * Where the camera stands so that all points are in the free shares of the picture's width and
+   * height, fill them in one direction, and are centred in both.
+   *
+   * A point with coordinates a (to the right) and c (to the eye) is in sight of an eye at distance
+   * D, above t, if |a - t| <= k (D - c); k is the tangent of half the angle of view. So D is at
+   * least (max(a + k c) - min(a - k c)) / 2k, and t lies in the middle of the two.
    */
-  fittingDistance(corners: Vector3[], freeWidth: number, freeHeight: number): number {
-    const tanHeight = this.tangent() * freeHeight;
-    const tanWidth = this.tangent() * this.camera.aspect * freeWidth;
+  framing(points: Vector3[], freeWidth: number, freeHeight: number): Framing {
     const right = new Vector3(),
       up = new Vector3(),
       near = new Vector3();
     this.camera.updateMatrixWorld();
     this.camera.matrixWorld.extractBasis(right, up, near);
-    const distances = corners.map(
-      (corner) =>
-        Math.max(Math.abs(corner.dot(right)) / tanWidth, Math.abs(corner.dot(up)) / tanHeight) *
-          kMargin +
-        corner.dot(near),
-    );
-    return Math.max(1, ...distances);
+    const target = new Vector3();
+    let distance = (kLeastDistance * tangentOf(kFieldOfViewDegrees)) / this.tangent();
+    for (const [axis, free] of [
+      [right, freeWidth * this.camera.aspect],
+      [up, freeHeight],
+    ] as const) {
+      const k = kFill * this.tangent() * free;
+      let low = Infinity,
+        high = -Infinity;
+      for (const point of points) {
+        const a = point.dot(axis),
+          c = k * point.dot(near);
+        low = Math.min(low, a - c);
+        high = Math.max(high, a + c);
+      }
+      if (!(low <= high)) continue;
+      distance = Math.max(distance, (high - low) / (2 * k));
+      target.addScaledVector(axis, (low + high) / 2);
+    }
+    return {distance, target};
   }
 
   /** Must be called before every frame. Tight depths keep the digits of a parallel view. */

@@ -164,6 +164,9 @@ class FarView implements View {
   setInsets(insets: Insets): void {
     this.command('setInsets', insets);
   }
+  setFocus(focus: number[] | null): void {
+    this.command('setFocus', focus);
+  }
   look(direction: Direction | null): void {
     this.command('look', checkedDirection(direction));
   }
@@ -172,6 +175,12 @@ class FarView implements View {
   }
   turn(horizontal: number, vertical: number): void {
     this.command('turn', horizontal, vertical);
+  }
+  pan(right: number, up: number): void {
+    this.command('pan', right, up);
+  }
+  centre(point: Vector): void {
+    this.command('centre', point);
   }
   zoom(factor: number): void {
     this.command('zoom', factor);

@@ -67,14 +67,14 @@ const kFragmentShader = /* glsl */ `
     return texture(colorMap, vec2(at, 0.5)).rgb;
   }
 
-  // 1 on an edge, 0 inside. Edges fade where triangles are only a few pixels large, which would
-  // turn dark.
+  // 1 on an edge, 0 inside. Edges fade from triangles of 25 pixels on and are gone at 4: a dense
+  // mesh would turn dark, and its colours would not be the legend's.
   float edge() {
     vec3 perPixel = max(fwidth(vCorner), 1e-6);
     vec3 distance = smoothstep(vec3(0.0), perPixel * 0.85 * pixelRatio, vCorner);
     float coverage = 1.0 - min(min(distance.x, distance.y), distance.z);
     float density = max(max(perPixel.x, perPixel.y), perPixel.z) * pixelRatio;
-    return coverage * (1.0 - smoothstep(0.16, 0.8, density));
+    return coverage * (1.0 - smoothstep(0.05, 0.3, density));
   }
 
   void main() {
@@ -86,7 +86,7 @@ const kFragmentShader = /* glsl */ `
       vec3 normal = normalize(cross(dFdx(vView), dFdy(vView)));
       vec3 light = normalize(vec3(0.25, 0.45, 1.0));
       float facing = abs(dot(normal, light));
-      color *= 0.64 + 0.40 * facing;
+      color *= 0.80 + 0.20 * facing;
       if (!gl_FrontFacing && !twoSided) color = mix(color, vec3(0.24, 0.26, 0.30), 0.55);
     }
     color = mix(color, color * 0.22, edgeStrength * edge());

@@ -6,10 +6,12 @@ import type {Ray, Vector} from '../core/cell_ray';
 import {kMaxPlanes} from '../core/display';
 import {transferTables} from '../core/transfer';
 import type {VolumeCells} from '../core/volume';
+import type {TriangleSoup} from '../core/triangle_soup';
 import type {Snapshot} from '../core/worker_messages';
 import {kRow, mostRows} from './cell_textures';
-import {OrbitCamera, type CameraState} from './camera';
+import {OrbitCamera, type CameraState, type Framing} from './camera';
 import {checkedDirection, type Direction} from './directions';
+import {cornersOf, outlineOf} from './outline';
 import {pixelRatioOf, surfaceOf, watchSize, type ViewCanvas} from './far_canvas';
 import {whenDrawn} from './frame_budget';
 import {checkedCamera, project, rayAt, type Pose} from './pose';
@@ -19,6 +21,8 @@ import {VolumeView, type Picture} from './volume_view';
 
 /** The darkness of cell edges: enough to follow them, too little to change what a colour says. */
 const kEdgeStrength = 0.52;
+/** An eye at this distance from the middle, in radii of the bounds, is hardly in the mesh. */
+const kOutside = 0.6;
 /** More than two pixels a point cost more than they show. */
 const kMaxPixelRatio = 2;
 
@@ -41,6 +45,9 @@ export class MeshView implements View {
   private readonly endWatch: () => void;
   private readonly surfaceCanvas: HTMLCanvasElement | OffscreenCanvas;
   private bounds: number[] = [];
+  /** Lattice points that the mesh lies between. */
+  private outline: Vector[] = [];
+  private focus: number[] | null = null;
   private insets: Insets = {left: 0, right: 0, top: 0, bottom: 0};
   /** What the next mesh is seen from first; null: its first view. */
   private start: CameraState | Direction | null = null;
@@ -90,7 +97,7 @@ export class MeshView implements View {
       );
       mesh.material.setClip(snapshot.planes.filter((_, k) => k !== i));
     });
-    if (snapshot.bounds.length > 0) this.growTo(snapshot.bounds);
+    if (snapshot.bounds.length > 0) this.growTo(snapshot.bounds, snapshot.surface);
   }
 
   /**
@@ -98,16 +105,17 @@ export class MeshView implements View {
    * the line decides which one comes first. So only the whole mesh gives a state, or a link, the
    * same picture everywhere.
    */
-  private growTo(seen: number[]): void {
+  private growTo(seen: number[], surface: TriangleSoup | undefined): void {
     const isFirst = this.bounds.length === 0;
     const bounds = isFirst
       ? seen
       : this.bounds.map((end, i) => (i < 3 ? Math.min : Math.max)(end, seen[i]!));
     if (!isFirst && bounds.every((end, i) => end === this.bounds[i])) return;
     this.bounds = bounds;
+    this.outline = outlineOf(surface, bounds);
     this.placeLattice();
     if (!isFirst) {
-      if (this.orbit.fitted) this.orbit.fit(() => this.fittingDistance());
+      if (this.orbit.fitted) this.orbit.fit(() => this.framing());
       return;
     }
     if (Array.isArray(this.start)) this.orbit.state = this.start;
@@ -167,6 +175,10 @@ export class MeshView implements View {
     this.resize();
   }
 
+  setFocus(focus: number[] | null): void {
+    this.focus = focus;
+  }
+
   // ---- camera
 
   /**
@@ -179,7 +191,7 @@ export class MeshView implements View {
       this.start = direction;
       return;
     }
-    this.orbit.look(direction, () => this.fittingDistance());
+    this.orbit.look(direction, () => this.framing());
     this.invalidate();
   }
 
@@ -203,6 +215,19 @@ export class MeshView implements View {
   /** Turns the camera round its target, in radians. */
   turn(horizontal: number, vertical: number): void {
     this.orbit.orbit(horizontal, vertical);
+    this.invalidate();
+  }
+
+  /** Moves the camera by shares of the picture's height: the mesh goes right and up. */
+  pan(right: number, up: number): void {
+    this.orbit.pan(right, up);
+    this.invalidate();
+  }
+
+  /** Moves the camera so that this lattice point is in the middle of the free area. */
+  centre([x, y, z]: Vector): void {
+    const {position, scale} = this.lattice;
+    this.orbit.aimAt(new Vector3(x, y, z).multiply(scale).add(position));
     this.invalidate();
   }
 
@@ -300,21 +325,20 @@ export class MeshView implements View {
     this.lattice.position.copy(low.add(high)).multiplyScalar(-0.5 * scale);
   }
 
-  private fittingDistance(): number {
-    const corners = Array.from({length: 8}, (_, i) =>
-      new Vector3(
-        this.bounds[i & 1 ? 3 : 0],
-        this.bounds[i & 2 ? 4 : 1],
-        this.bounds[i & 4 ? 5 : 2],
-      )
-        .multiply(this.lattice.scale)
-        .add(this.lattice.position),
-    );
-    return this.orbit.fittingDistance(
-      corners,
-      1 - this.insets.left - this.insets.right,
-      1 - this.insets.top - this.insets.bottom,
-    );
+  /** Of the mesh itself, not of its box: a box leaves its corners empty. */
+  private framing(): Framing {
+    const whole = this.framed(this.outline);
+    if (!this.focus || this.orbit.isStandard) return whole;
+    const near = this.framed(cornersOf(this.focus));
+    // From inside of the mesh one would see nothing but its walls.
+    return this.orbit.eyeOf(near).length() > kOutside ? near : whole;
+  }
+
+  private framed(corners: Vector[]): Framing {
+    const {position, scale} = this.lattice;
+    const points = corners.map(([x, y, z]) => new Vector3(x, y, z).multiply(scale).add(position));
+    const {left, right, top, bottom} = this.insets;
+    return this.orbit.framing(points, 1 - left - right, 1 - top - bottom);
   }
 
   private resize(): void {
@@ -330,7 +354,7 @@ export class MeshView implements View {
     const right = ((this.insets.right - this.insets.left) / 2) * width;
     const down = ((this.insets.bottom - this.insets.top) / 2) * height;
     camera.setViewOffset(width, height, right, down, width, height);
-    if (this.orbit.fitted && this.bounds.length > 0) this.orbit.fit(() => this.fittingDistance());
+    if (this.orbit.fitted && this.bounds.length > 0) this.orbit.fit(() => this.framing());
     // Draws at once: a resized canvas is empty until it is drawn.
     if (!this.volume.hasCells) return this.draw();
     this.volume.present(this.renderer);

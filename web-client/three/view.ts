@@ -64,12 +64,21 @@ export interface View {
   setRange(low: number, high: number, scaleRange: [number, number], logarithmic: boolean): void;
   setInsets(insets: Insets): void;
   /**
+   * The place that the first view of the next mesh looks at: bounds in lattice coordinates; null:
+   * all of it.
+   */
+  setFocus(focus: number[] | null): void;
+  /**
    * Shows a standard view, or (null) the first view of a mesh, as near as its bounding box allows.
    */
   look(direction: Direction | null): void;
   setParallel(parallel: boolean): void;
   /** Turns the camera round its target, in radians. */
   turn(horizontal: number, vertical: number): void;
+  /** Moves the camera by shares of the picture's height: the mesh goes right and up. */
+  pan(right: number, up: number): void;
+  /** Moves the camera so that this lattice point is in the middle of the free area. */
+  centre(point: Vector): void;
   /** Moves the camera: below 1 nearer, above 1 farther. */
   zoom(factor: number): void;
   /** The line of sight through a point of the canvas, in CSS pixels from its corner. */

@@ -9,7 +9,17 @@ import type {View} from './view';
 
 /** Methods of View without a result. */
 export type Command =
-  'clear' | 'setLook' | 'setRange' | 'setInsets' | 'look' | 'setParallel' | 'turn' | 'zoom';
+  | 'clear'
+  | 'setLook'
+  | 'setRange'
+  | 'setInsets'
+  | 'setFocus'
+  | 'pan'
+  | 'centre'
+  | 'look'
+  | 'setParallel'
+  | 'turn'
+  | 'zoom';
 
 export type ToView =
   /** The first message. */

@@ -7,10 +7,8 @@ import {find} from './find';
 import type {KeyActions} from './keys';
 import type {Page} from './page';
 import type {Settings} from './settings';
+import {save} from './save';
 import {ShareDialog} from './share_dialog';
-
-/** How long the browser may still read a picture that is being saved. */
-const kSavingMs = 1000;
 
 export interface ActionsHost {
   readonly settings: Settings;
@@ -19,6 +17,8 @@ export interface ActionsHost {
   togglePause(): void;
   /** Moves the first clip plane by a share of the extent. */
   moveClip(step: number): void;
+  /** Brings what was pointed at into the middle, or all of the mesh. */
+  centre(): void;
   /** Picks what lies in the middle. */
   inspect(): void;
   endTool(): void;
@@ -58,10 +58,7 @@ export class Actions {
         this.host.failed('no-picture', `The picture cannot be taken: ${errorText(thrown)}.`),
       );
     if (!picture) return;
-    const href = URL.createObjectURL(picture);
-    const download = `${find(this.page.root, '.mesh-name').textContent}.png`;
-    Object.assign(document.createElement('a'), {href, download}).click();
-    setTimeout(() => URL.revokeObjectURL(href), kSavingMs);
+    save(picture, `${find(this.page.root, '.mesh-name').textContent}.png`);
   }
 
   toggleFullscreen(): void {
@@ -81,6 +78,8 @@ export class Actions {
   keys(view: View): KeyActions {
     return {
       turn: (horizontal, vertical) => view.turn(horizontal, vertical),
+      pan: (right, up) => view.pan(right, up),
+      centre: () => this.host.centre(),
       zoom: (factor) => view.zoom(factor),
       look: (direction) => view.look(direction === null ? null : kDirections[direction]!),
       toggle: (what) => this.toggle(what),

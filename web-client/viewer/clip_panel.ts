@@ -5,6 +5,7 @@ import {kMaxPlanes} from '../core/display';
 import {formatCoordinate} from './format';
 import type {Attributes} from './page';
 import type {Panel, Scene} from './panel';
+import {setMarkup} from './trusted';
 import {axisNormal, axisOf, clipText, type ClipSetting, type Settings} from './settings';
 
 export class ClipPanel implements Panel {
@@ -55,7 +56,9 @@ export class ClipPanel implements Panel {
   private row(i: number): HTMLElement {
     const row = document.createElement('fieldset');
     row.className = 'plane';
-    row.innerHTML = `<legend class="visually-hidden">Clip plane ${i + 1}</legend>
+    setMarkup(
+      row,
+      `<legend class="visually-hidden">Clip plane ${i + 1}</legend>
       <div class="row">
         <select name="axis" aria-label="Direction of clip plane ${i + 1}">
           <option value="x">X</option><option value="y">Y</option><option value="z">Z</option>
@@ -70,7 +73,8 @@ export class ClipPanel implements Panel {
         <input type="range" name="position" min="0" max="1000"
           aria-label="Position of clip plane ${i + 1}">
         <output class="position"></output>
-      </div>`;
+      </div>`,
+    );
     row
       .querySelector('select')!
       .addEventListener('change', (event) =>

@@ -1,8 +1,20 @@
 // Field, colour map, scale, range, edges, surface and opacity.
 
+import {colorGradient, labelGradient, type ColorMapName} from '../core/color_maps';
+import {labelsOf} from '../core/labels';
+import {roundTo} from './format';
 import type {Attributes} from './page';
 import {fillScalars, type Panel, type Scene} from './panel';
 import {parseNumbers, shownScalar, type Settings} from './settings';
+
+/** The labels in their map's swatch. */
+const kShownLabels = 5;
+/** The ends of the range are shown to this share of it. */
+const kRangeShare = 1e-4;
+
+function gradientOf(map: string): string {
+  return map === 'labels' ? labelGradient(kShownLabels) : colorGradient(map as ColorMapName);
+}
 
 export class ColorPanel implements Panel {
   /** The fixed ranges of fields that were left. */
@@ -16,6 +28,8 @@ export class ColorPanel implements Panel {
     private readonly root: ParentNode,
     private readonly attributes: Attributes,
   ) {
+    for (const swatch of root.querySelectorAll<HTMLInputElement>('input[name=colormap]'))
+      (swatch.nextElementSibling as HTMLElement).style.background = gradientOf(swatch.value);
     this.on('select[name=field]', (select) => this.chooseField(select.value));
     this.on('.swatches', () => this.writeMap());
     this.on('input[name=reversed]', () => this.writeMap());
@@ -37,9 +51,8 @@ export class ColorPanel implements Panel {
   }
 
   update(settings: Settings, scene: Scene | null): void {
-    this.root.querySelector<HTMLInputElement>(
-      `input[name=colormap][value=${settings.map}]`,
-    )!.checked = true;
+    for (const swatch of this.root.querySelectorAll<HTMLInputElement>('input[name=colormap]'))
+      swatch.checked = swatch.value === settings.map;
     this.input('reversed').checked = settings.reversed;
     this.input('log').checked = settings.logarithmic;
     this.input('edges').checked = settings.edges;
@@ -52,7 +65,9 @@ export class ColorPanel implements Panel {
       : String(settings.range);
     this.find('.range-fixed').hidden = !fixed;
     const fields = scene?.manifest.fields ?? [];
-    const chosen = shownScalar(this.attributes.read('field'), fields);
+    const chosen = shownScalar(this.attributes.read('field'), fields, scene?.firstField ?? 0);
+    const labels = chosen && labelsOf(fields[chosen.field]!);
+    this.find('.swatch.labels').hidden = !labels;
     const menu = this.find<HTMLSelectElement>('select[name=field]');
     fillScalars(menu, fields, chosen);
     this.field = menu.value;
@@ -66,7 +81,7 @@ export class ColorPanel implements Panel {
       ['range-high', high],
     ] as const) {
       if (this.input(name) !== active)
-        this.input(name).value = String(Number(value.toPrecision(5)));
+        this.input(name).value = String(roundTo(value, kRangeShare * (high - low)));
     }
     if (!this.awaitsRange) return;
     this.awaitsRange = false;

@@ -1,6 +1,8 @@
 // Numbers for people: grouped digits, bytes in decimal units, and percentages that never reach 100
 // too early.
 
+import type {FieldInfo} from '../core/manifest';
+
 const kCounts = new Intl.NumberFormat('en', {maximumFractionDigits: 0});
 const kByteUnits = ['B', 'kB', 'MB', 'GB', 'TB'];
 
@@ -41,30 +43,52 @@ export function formatDuration(seconds: number): string {
   return `${(seconds / 3600).toFixed(1)}\u202fh`;
 }
 
-/** A value of a field or a position, to five digits. */
-export function formatValue(value: number): string {
-  if (Number.isNaN(value)) return 'missing';
-  const magnitude = Math.abs(value);
-  const text =
-    magnitude !== 0 && (magnitude >= 1e5 || magnitude < 1e-3)
-      ? value.toExponential(4)
-      : String(Number(value.toPrecision(5)));
-  return text.replaceAll('-', '\u2212');
-}
+/** Larger numbers are written with a power of ten, and those that need more decimals. */
+const kPlainBelow = 1e9;
+const kMostDecimals = 8;
+/** A double holds no more digits. */
+const kMostDigits = 15;
+/** Fields and places are shown to this share of their extent. */
+const kShownShare = 1e-4;
+
+const decimalsOf = (resolution: number): number =>
+  Math.min(20, Math.max(0, Math.ceil(-Math.log10(resolution) - 1e-9)));
 
 /**
- * A coordinate on an axis of length `span`, to a thousandth of it, however far from the origin it
- * lies. Almost zero is written as zero.
+ * A number with the decimals that `resolution` (above 0) needs: 101325.03 of values that differ by
+ * 0.01. Less than half of the resolution is written as zero.
  */
+export function formatTo(value: number, resolution: number): string {
+  if (Number.isNaN(value)) return 'missing';
+  const magnitude = Math.abs(value) < resolution / 2 ? 0 : Math.abs(value);
+  const decimals = decimalsOf(resolution);
+  const isPlain = magnitude < kPlainBelow && (decimals <= kMostDecimals || magnitude === 0);
+  const digits = Math.floor(Math.log10(Math.max(magnitude / resolution, 10)) + 1e-9);
+  const text = isPlain
+    ? magnitude.toFixed(Math.min(decimals, kMostDecimals))
+    : magnitude.toExponential(Math.min(digits, kMostDigits)).replaceAll('-', '\u2212');
+  return value < 0 && Number(magnitude.toFixed(decimals)) !== 0 ? `\u2212${text}` : text;
+}
+
+/** The number for a box that is edited: no more decimals than formatTo's, and no zeros behind. */
+export function roundTo(value: number, resolution: number): number {
+  return resolution > 0 ? Number(value.toFixed(decimalsOf(resolution))) : value;
+}
+
+/** How fine the values of a field are shown: as fine as they differ. Labels are whole. */
+export function resolutionOf({association, components, isWhole, range, step}: FieldInfo): number {
+  const span = components > 1 ? range[1] : range[1] - range[0];
+  if (isWhole) return association === 'cell' ? 1 : 0.01;
+  return Math.max(step, kShownShare * span, Number.MIN_VALUE);
+}
+
+/** A number of unknown extent, to five digits. */
+export function formatValue(value: number): string {
+  const magnitude = Math.abs(value);
+  return formatTo(value, magnitude > 0 ? 10 ** (Math.floor(Math.log10(magnitude)) - 4) : 1);
+}
+
+/** A coordinate on an axis of length `span`, to a thousandth of it. */
 export function formatCoordinate(value: number, span: number): string {
-  const magnitude = Math.max(Math.abs(value), span);
-  if (span >= 1e5 || magnitude < 1e-2) {
-    const more = Math.max(0, Math.ceil(Math.log10(magnitude / span) - 1e-9));
-    return (Math.abs(value) < span / 2000 ? 0 : value)
-      .toExponential(Math.min(2 + more, 16))
-      .replaceAll('-', '\u2212');
-  }
-  const decimals = Math.max(0, Math.ceil(-Math.log10(span / 1000) - 1e-9));
-  const text = Math.abs(value).toFixed(Math.min(decimals, 8));
-  return value < 0 && Number(text) !== 0 ? `\u2212${text}` : text;
+  return formatTo(value, span / 1000);
 }

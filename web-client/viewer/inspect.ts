@@ -6,12 +6,15 @@ import type {Client} from '../core/client';
 import type {Pick, Probe} from '../core/inspector';
 import type {Manifest} from '../core/manifest';
 import type {View} from '../three/view';
-import {formatCoordinate, formatCount, formatValue} from './format';
+import {formatCount, formatTo, formatValue, resolutionOf} from './format';
+import {save} from './save';
 
 export type Tool = 'none' | 'point' | 'line';
 
 /** A press that moves farther than this turns the mesh instead. */
 const kClickPixels = 5;
+/** Places are shown to this share of the lattice's span. */
+const kPlaceShare = 1e-4;
 
 export interface InspectHost {
   readonly client: Client | null;
@@ -33,6 +36,9 @@ export class Inspect {
   private readonly card: HTMLElement;
   private readonly marks: SVGSVGElement;
   private plot: {destroy(): void} | null = null;
+  /** What is copied, and the plot as CSV. */
+  private text = '';
+  private table = '';
 
   /** Listens on the root, because another canvas may replace this one. */
   constructor(
@@ -57,11 +63,16 @@ export class Inspect {
       if (moved <= kClickPixels && this.tool !== 'none')
         void this.click(event.offsetX, event.offsetY);
     });
+    root.addEventListener('dblclick', (event) => {
+      if ((event.target as Element).matches('.scene')) void this.centre(event as MouseEvent);
+    });
     root
       .querySelector('.tools')!
       .addEventListener('change', (event) =>
         this.use((event.target as HTMLInputElement).value as Tool),
       );
+    root.querySelector('.copy-result')!.addEventListener('click', () => void this.copy());
+    root.querySelector('.save-table')!.addEventListener('click', () => this.saveTable());
     root.querySelector('.close-result')!.addEventListener('click', () => this.clear());
   }
 
@@ -109,6 +120,13 @@ export class Inspect {
     for (const {x, y} of at) this.marks.append(shape('circle', {cx: x, cy: y, r: 5}));
   }
 
+  /** Brings the place under a double click into the middle. */
+  private async centre({offsetX, offsetY}: MouseEvent): Promise<void> {
+    const {client, view} = this.host;
+    const pick = view && (await client?.pick(view.rayAt(offsetX, offsetY)));
+    if (pick) view.centre(pick.lattice);
+  }
+
   private async click(x: number, y: number): Promise<void> {
     const {client, view} = this.host;
     if (!client || !view || view.canvas.clientWidth === 0) return; // a page may hide the viewer
@@ -136,9 +154,10 @@ export class Inspect {
     const fields = this.host.manifest!.fields;
     const rows: [string, string][] = [['Position', this.placeText(pick.position)]];
     for (const {field, values} of pick.fields) {
-      rows.push([fields[field]!.name, values.map(formatValue).join(', ')]);
-      if (values.length > 1)
-        rows.push([`${fields[field]!.name}, magnitude`, formatValue(Math.hypot(...values))]);
+      const info = fields[field]!;
+      const format = (value: number): string => formatTo(value, resolutionOf(info));
+      rows.push([info.name, values.map(format).join(', ')]);
+      if (values.length > 1) rows.push([`${info.name}, magnitude`, format(Math.hypot(...values))]);
     }
     rows.push(['Vertices', pick.corners.map(formatCount).join(', ')]);
     this.showText(`Cell ${formatCount(pick.cell)}`, rows);
@@ -155,10 +174,10 @@ export class Inspect {
     if (probe.values.length > 1) await this.drawPlot(probe);
   }
 
-  /** With a precision of a ten-thousandth of the lattice's span. */
+  /** To a ten-thousandth of the lattice's span. */
   private placeText(place: Vector): string {
     const {bits, step} = this.host.manifest!.lattice;
-    return place.map((x) => formatCoordinate(x, (step * 2 ** bits) / 10)).join(', ');
+    return place.map((x) => formatTo(x, kPlaceShare * step * 2 ** bits)).join(', ');
   }
 
   /** uPlot is loaded with the first plot. */
@@ -171,12 +190,35 @@ export class Inspect {
       probe,
       this.host.fieldTitle,
     );
+    this.table = [
+      ['distance', this.host.fieldTitle],
+      ...probe.at.map((at, i) => [at, probe.values[i]!]),
+    ]
+      .map((row) => row.map(csvCell).join(','))
+      .join('\r\n');
+    this.card.querySelector<HTMLElement>('.save-table')!.hidden = false;
+  }
+
+  /** Pages without https have no clipboard. */
+  private async copy(): Promise<void> {
+    const clipboard = navigator.clipboard as Clipboard | undefined;
+    const copied = await clipboard?.writeText(this.text).then(
+      () => true,
+      () => false,
+    );
+    this.host.announce(copied ? 'Copied' : 'The browser does not let this page copy');
+  }
+
+  private saveTable(): void {
+    save(new Blob([this.table], {type: 'text/csv'}), 'line.csv');
   }
 
   private showText(title: string, rows: [string, string][], hint = ''): void {
     this.plot?.destroy();
     this.plot = null;
     this.card.hidden = false;
+    this.card.querySelector<HTMLElement>('.save-table')!.hidden = true;
+    this.text = rows.map((row) => row.join('\t').replaceAll('\u2212', '-')).join('\n');
     this.card.querySelector('h2')!.textContent = title;
     this.card.querySelector('.hint')!.textContent = hint;
     this.card.querySelector('dl')!.replaceChildren(
@@ -191,6 +233,12 @@ export class Inspect {
     );
     this.host.announce([title, ...rows.map((row) => row.join(' ')), hint].join('. '));
   }
+}
+
+/** A missing value is an empty cell. */
+function csvCell(value: string | number): string {
+  if (typeof value === 'string') return `"${value.replaceAll('"', '""')}"`;
+  return Number.isNaN(value) ? '' : String(value);
 }
 
 function shape(name: string, attributes: Record<string, number>): SVGElement {

@@ -2,7 +2,9 @@
 
 export const kKeyHelp: readonly (readonly [string, string])[] = [
   ['← → ↑ ↓', 'turn'],
+  ['⇧ ← → ↑ ↓', 'move'],
   ['+ −', 'nearer, farther'],
+  ['F', 'centre what was pointed at, or all'],
   ['Home', 'first view'],
   ['1 … 6', 'from ±x ±y ±z'],
   ['O', 'parallel or perspective'],
@@ -12,16 +14,21 @@ export const kKeyHelp: readonly (readonly [string, string])[] = [
   ['Space', 'pause, continue'],
   ['I', 'what lies in the middle'],
   ['P', 'save the picture'],
-  ['F', 'full screen'],
+  ['W', 'whole screen'],
   ['?', 'this list'],
   ['Esc', 'end a tool'],
 ];
 
 const kTurn = Math.PI / 24;
 const kZoom = 1.12;
+/** A share of the picture's height. */
+const kPan = 0.08;
 
 export interface KeyActions {
   turn(horizontal: number, vertical: number): void;
+  /** By shares of the picture's height, to the right and up. */
+  pan(right: number, up: number): void;
+  centre(): void;
   zoom(factor: number): void;
   look(direction: number | null): void;
   toggle(what: 'parallel' | 'edges' | 'clip' | 'pause' | 'fullscreen'): void;
@@ -39,6 +46,10 @@ export function bindKeys(canvas: HTMLElement, actions: KeyActions): void {
     ArrowRight: () => actions.turn(kTurn, 0),
     ArrowUp: () => actions.turn(0, -kTurn),
     ArrowDown: () => actions.turn(0, kTurn),
+    'shift ArrowLeft': () => actions.pan(-kPan, 0),
+    'shift ArrowRight': () => actions.pan(kPan, 0),
+    'shift ArrowUp': () => actions.pan(0, kPan),
+    'shift ArrowDown': () => actions.pan(0, -kPan),
     '+': () => actions.zoom(1 / kZoom),
     '=': () => actions.zoom(1 / kZoom),
     '-': () => actions.zoom(kZoom),
@@ -51,16 +62,16 @@ export function bindKeys(canvas: HTMLElement, actions: KeyActions): void {
     ' ': () => actions.toggle('pause'),
     i: () => actions.inspect(),
     p: () => actions.picture(),
-    f: () => actions.toggle('fullscreen'),
+    f: () => actions.centre(),
+    w: () => actions.toggle('fullscreen'),
     '?': () => actions.help(),
     Escape: () => actions.escape(),
   };
   for (let i = 0; i < 6; ++i) keys[String(i + 1)] = () => actions.look(i);
   canvas.addEventListener('keydown', (event) => {
-    const action =
-      event.ctrlKey || event.metaKey || event.altKey
-        ? undefined
-        : keys[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+    const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
+    const pressed = event.shiftKey && key.startsWith('Arrow') ? `shift ${key}` : key;
+    const action = event.ctrlKey || event.metaKey || event.altKey ? undefined : keys[pressed];
     if (!action) return;
     event.preventDefault();
     action();

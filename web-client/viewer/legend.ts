@@ -1,24 +1,16 @@
 // The colour bar with its numbers.
 
-import {colorGradient} from '../core/color_maps';
+import {colorGradient, labelGradient} from '../core/color_maps';
 import type {Scalar} from '../core/field_scale';
 import type {FieldInfo} from '../core/manifest';
-import {logTicks, niceTicks} from '../core/ticks';
+import {labelTicks, logTicks, niceTicks, type Ticks} from '../core/ticks';
 import {formatValue} from './format';
 import {scalarTitle} from './panel';
-import type {Settings} from './settings';
+import type {Settings, ShownRange} from './settings';
 
 const kMaxTicks = 6;
-
-export interface ShownRange {
-  low: number;
-  high: number;
-  logarithmic: boolean;
-  /** What a logarithmic scale hides: nothing, the values below `low`, or all of them. */
-  hides: 'none' | 'low' | 'all';
-  /** Some values are missing: the legend explains their colour. */
-  hasMissing: boolean;
-}
+/** Whole numbers are short. */
+const kMaxLabelTicks = 20;
 
 export class Legend {
   private readonly figure: HTMLElement;
@@ -42,9 +34,7 @@ export class Legend {
     const wanted = JSON.stringify([scalar, range, map, reversed, scalarTitle(scalar, fields)]);
     if (wanted === this.shown) return; // every picture asks, but few change it
     this.shown = wanted;
-    const {ticks, factor} = range.logarithmic
-      ? logTicks(range.low, range.high, kMaxTicks)
-      : niceTicks(range.low, range.high, kMaxTicks);
+    const {ticks, factor} = ticksOf(range);
     const name = this.part('.legend-name');
     name.textContent = name.title = scalarTitle(scalar, fields);
     this.part('.legend-missing').hidden = !range.hasMissing;
@@ -52,7 +42,9 @@ export class Legend {
     const note = noteOf(range);
     this.part('.legend-note').hidden = note === '';
     this.part('.legend-note').textContent = note;
-    this.part('.legend-bar').style.background = colorGradient(map, reversed, 33);
+    this.part('.legend-bar').style.background = range.labels
+      ? labelGradient(range.labels, reversed)
+      : colorGradient(map, reversed, 33);
     this.part('.legend-ticks').replaceChildren(
       ...ticks.map(({at, label}) => {
         const tick = document.createElement('span');
@@ -68,8 +60,14 @@ export class Legend {
   }
 }
 
+function ticksOf({labels, logarithmic, low, high}: ShownRange): Ticks {
+  if (labels) return labelTicks(low + 0.5, labels, kMaxLabelTicks);
+  return (logarithmic ? logTicks : niceTicks)(low, high, kMaxTicks);
+}
+
 /** What the colours do not tell apart. */
-function noteOf({hides, low}: ShownRange): string {
+function noteOf({hides, isMiddle, low}: ShownRange): string {
+  if (isMiddle) return '2nd to 98th percentile; a few values lie outside';
   if (hides === 'all') return 'No values above 0: the scale is linear';
   return hides === 'low' ? `Values below ${formatValue(low)} have the first colour` : '';
 }

@@ -5,6 +5,7 @@ import './element';
 import type {QtetViewer} from './qtet_viewer';
 import {kViewAttributes} from './settings';
 import {linkTo} from './share';
+import {trustOwnWorkers} from './trusted';
 
 declare global {
   interface Window {
@@ -12,6 +13,7 @@ declare global {
   }
 }
 
+trustOwnWorkers();
 const viewer = document.createElement('qtet-viewer');
 /** `qtet publish` puts it into the page: where the list of the folder's meshes is. */
 const published = document.querySelector<HTMLMetaElement>('meta[name=qtet-src]');

@@ -9,6 +9,8 @@ import {scalarText, type Settings} from './settings';
 export interface Scene {
   manifest: Manifest;
   bounds: number[];
+  /** The field that is shown if no attribute names one. */
+  firstField: number;
 }
 
 export interface Panel {

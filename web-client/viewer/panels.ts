@@ -12,12 +12,12 @@ import {ClipPanel} from './clip_panel';
 import {ColorPanel} from './color_panel';
 import {find} from './find';
 import {Inspect} from './inspect';
-import {Legend, type ShownRange} from './legend';
+import {Legend} from './legend';
 import {LevelPanel} from './level_panel';
 import type {Page} from './page';
 import {scalarTitle, type Scene} from './panel';
 import {ProgressPanel} from './progress_panel';
-import {shownScalar, type Settings} from './settings';
+import {shownScalar, type Settings, type ShownRange} from './settings';
 import type {ShownMesh} from './shown_mesh';
 import {StatisticsPanel} from './statistics_panel';
 import {ValuePanel} from './value_panel';
@@ -104,8 +104,9 @@ export class Panels {
   }
 
   /** Brings all panels in line with the attributes and the mesh. */
-  update(settings: Settings, {manifest, bounds, snapshot}: ShownMesh): void {
-    const known: Scene | null = manifest && {manifest, bounds};
+  update(settings: Settings, mesh: ShownMesh): void {
+    const {manifest, bounds, firstField, snapshot} = mesh;
+    const known: Scene | null = manifest && {manifest, bounds, firstField};
     for (const panel of this.simple) panel.update(settings, known);
     this.clip.update(settings, bounds.length > 0 ? known : null);
     this.handles.update(settings.planes, snapshot ? bounds : []);
@@ -159,16 +160,16 @@ export class Panels {
   }
 }
 
-function fieldTitle({read}: Pick<Page, 'read'>, {manifest}: ShownMesh): string {
-  const color = manifest && shownScalar(read('field'), manifest.fields);
+function fieldTitle({read}: Pick<Page, 'read'>, {manifest, firstField}: ShownMesh): string {
+  const color = manifest && shownScalar(read('field'), manifest.fields, firstField);
   return manifest && color ? scalarTitle(color, manifest.fields) : '';
 }
 
 /** The mesh as it is now: coarser and finer start from it. */
 function standing(
   {read}: Pick<Page, 'read'>,
-  {statistics, manifest}: ShownMesh,
+  {statistics, manifest, firstField}: ShownMesh,
 ): ReturnType<ConstructorParameters<typeof LevelPanel>[2]> {
-  const color = shownScalar(read('field'), manifest?.fields ?? []);
+  const color = shownScalar(read('field'), manifest?.fields ?? [], firstField);
   return {statistics, manifest, fields: color ? [color.field] : []};
 }

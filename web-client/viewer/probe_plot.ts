@@ -3,9 +3,12 @@
 import uPlot from 'uplot';
 import plotStyles from 'uplot/dist/uPlot.min.css?inline';
 import type {Probe} from '../core/inspector';
-import {formatValue} from './format';
+import {formatTo} from './format';
+import {adopt} from './trusted';
 
 const kHeight = 170;
+/** The readout shows this share of the line and of the values' range. */
+const kShare = 1e-4;
 
 /**
  * Two values at one distance are a jump. The distances ascend, as uPlot requires. Missing values
@@ -17,14 +20,9 @@ export function drawProbe(
   probe: Probe,
   title: string,
 ): {destroy(): void} {
-  if (!root.querySelector('style.plot-style')) {
-    root.append(
-      Object.assign(document.createElement('style'), {
-        className: 'plot-style',
-        textContent: plotStyles,
-      }),
-    );
-  }
+  adopt(root, plotStyles);
+  const known = probe.values.filter((value) => !Number.isNaN(value));
+  const resolution = kShare * (Math.max(...known) - Math.min(...known)) || kShare;
   const style = getComputedStyle(root.host);
   const ink = style.getPropertyValue('--ink-soft').trim();
   const axis: uPlot.Axis = {
@@ -32,7 +30,7 @@ export function drawProbe(
     grid: {stroke: style.getPropertyValue('--line').trim(), width: 1},
     ticks: {show: false},
     font: '12px system-ui',
-    values: (_, ticks) => ticks.map((tick) => formatValue(tick)),
+    values: (_self, ticks, _axis, _space, step) => ticks.map((tick) => formatTo(tick, step)),
   };
   const data: uPlot.AlignedData = [
     probe.at,
@@ -66,7 +64,8 @@ export function drawProbe(
             readout.textContent =
               i == null
                 ? title
-                : `${title} ${formatValue(probe.values[i]!)} at ${formatValue(probe.at[i]!)}`;
+                : `${title} ${formatTo(probe.values[i]!, resolution)} at ` +
+                  formatTo(probe.at[i]!, kShare * probe.length);
           },
         ],
       },

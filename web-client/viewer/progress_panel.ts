@@ -7,6 +7,7 @@ import {errorOfLevel, type Limit} from '../core/limit';
 import type {Manifest} from '../core/manifest';
 import type {Statistics} from '../core/statistics';
 import type {StreamState} from '../core/worker_messages';
+import {find, onClick} from './find';
 import {formatBytes, formatCount, formatDuration, formatError, percentOf} from './format';
 
 const kStateTexts: Record<StreamState, string> = {
@@ -28,6 +29,9 @@ const kFiguresMs = 250;
  */
 const kRateWindowMs = 4000;
 
+/** Figures of a finished mesh stay so long before they fold up. */
+const kFoldMs = 1500;
+
 /** The curve spans errors from the first one down to at most this fraction of it. */
 const kLeastSpan = 10;
 
@@ -37,6 +41,7 @@ type Point = [number, number];
 export class ProgressPanel {
   private readonly root: HTMLElement;
   private readonly curveFigure: HTMLElement;
+  private foldTimer: ReturnType<typeof setTimeout> | undefined;
   private timer: ReturnType<typeof setTimeout> | undefined;
   private drawnAt = -kFiguresMs;
   private statistics: Statistics | null = null;
@@ -54,6 +59,7 @@ export class ProgressPanel {
   ) {
     this.root = root.querySelector('.progress')!;
     this.curveFigure = root.querySelector('.curve')!;
+    onClick(this.root, '.unfold', () => this.fold(!this.root.classList.contains('finished')));
   }
 
   begin(manifest: Manifest | null): void {
@@ -87,6 +93,9 @@ export class ProgressPanel {
   showState(state: StreamState, attempt = 0, delayMs = 0): void {
     this.state = state;
     this.root.dataset.state = state;
+    clearTimeout(this.foldTimer);
+    if (state === 'complete') this.foldTimer = setTimeout(() => this.fold(true), kFoldMs);
+    else this.fold(false);
     const retry =
       state === 'reconnecting'
         ? `Connection lost, trying again in ${formatDuration(delayMs / 1000)}`
@@ -102,6 +111,14 @@ export class ProgressPanel {
     return this.manifest && this.statistics
       ? errorOfLevel(this.manifest.levels[this.statistics.level], this.fields)
       : null;
+  }
+
+  /** Folds the figures of a finished mesh up, to make room for the controls. */
+  private fold(folded: boolean): void {
+    this.root.classList.toggle('finished', folded);
+    const button = find(this.root, '.unfold');
+    button.hidden = this.state !== 'complete';
+    button.setAttribute('aria-expanded', String(!folded));
   }
 
   private draw(): void {

@@ -5,9 +5,9 @@
 //                folder's index.json that `qtet publish` made, on any web server
 //   transport    auto (default), websocket, range or chunks: how a server's logs come
 //   mesh         id of the mesh; without it the viewer offers a menu and starts with the first
-//   field        name of the field, "NAME[0]" for a component; by default the first
-//   colormap     viridis (default), cividis, cool-warm, turbo or grey; "turbo reversed"
-//   range        "auto" (default), "symmetric" or "LOW,HIGH"
+//   field        name of the field, "NAME[0]" for a component; by default that with most contrast
+//   colormap     viridis (default), cividis, cool-warm, turbo, grey or labels; "turbo reversed"
+//   range        "auto" (default), "full", "symmetric" or "LOW,HIGH"
 //   scale        "log"
 //   edges        "off" hides them
 //   surface      "off" hides it
@@ -18,7 +18,7 @@
 //   iso          "FIELD=VALUE,VALUE..."
 //   threshold    "FIELD=LOW,HIGH"
 //   volume       opacities at even shares of the colours' range, "0,0.1,0.5": the cells are seen
-//                through instead of the surface
+//                through instead of the surface; "auto" suits the mesh
 //   quality      full (default), "error:0.01" or "1%", "cells:N", "bytes:N": how far to refine
 //   projection   "parallel"
 //   camera       six numbers, as the property `cameraState` gives them
@@ -45,6 +45,7 @@ import type {Kept, Page} from './page';
 import {kViewAttributes, type ViewAttribute} from './settings';
 import styles from './style.css?inline';
 import {kTemplate} from './template';
+import {adopt, setMarkup} from './trusted';
 import {Viewing} from './viewing';
 
 export class QtetViewer extends HTMLElement {
@@ -177,7 +178,8 @@ export class QtetViewer extends HTMLElement {
     this.client = client;
     const steps = [
       (): void => {
-        this.root.innerHTML = `<style>${styles}</style>${kTemplate}`;
+        adopt(this.root, styles);
+        setMarkup(this.root, kTemplate);
         this.viewing = new Viewing(this.page, client, this.kept);
       },
       (): void => this.viewing?.buildPanels(),

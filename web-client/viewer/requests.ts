@@ -55,7 +55,7 @@ export function displayOf(
   const threshold = fieldValuesOf('threshold', read('threshold'), fields);
   const [low, high] = threshold ? sharesOf(threshold, fields) : [];
   return {
-    color: shownScalar(read('field'), fields),
+    color: shownScalar(read('field'), fields, mesh.firstField),
     body: settings.surface && settings.volume === null,
     mode: settings.planes.length > 0 ? settings.mode : 'cut',
     planes: planesOf(settings, mesh),

@@ -4,8 +4,10 @@
 import {isColorMapName, type ColorMapName} from '../core/color_maps';
 import {kClipModes, kMaxPlanes, type ClipMode} from '../core/display';
 import {kMagnitude, scalarRange, type Scalar} from '../core/field_scale';
+import {kMostLabels} from '../core/labels';
 import {kFull, parseLimit, type Limit} from '../core/limit';
 import {fieldKeys, type FieldInfo} from '../core/manifest';
+import {kMaxOpacity, kOpacityPath} from '../core/transfer';
 import type {CameraState} from '../three/camera';
 
 /** The attributes of a view, in the order of a link. */
@@ -41,13 +43,15 @@ export interface ClipSetting {
 export interface Settings {
   map: ColorMapName;
   reversed: boolean;
-  range: 'auto' | 'symmetric' | [number, number];
+  range: 'auto' | 'full' | 'symmetric' | [number, number];
   logarithmic: boolean;
   edges: boolean;
   surface: boolean;
   opacity: number;
   /** Opacities at even shares of the shown range; null: the volume is not shown. */
   volume: number[] | null;
+  /** The volume's opacities are for the mesh to choose. */
+  hasFirstOpacities: boolean;
   planes: ClipSetting[];
   mode: ClipMode;
   limit: Limit;
@@ -67,7 +71,7 @@ export function readSettings(get: (name: ViewAttribute) => string | null): Setti
     edges: get('edges') !== 'off',
     surface: get('surface') !== 'off',
     opacity: opacity > 0 && opacity <= 1 ? opacity : 1,
-    volume: parseVolume(get('volume')),
+    ...readVolume(get('volume')),
     planes: parseClip(get('clip')),
     mode: kClipModes.includes(mode) ? mode : 'cut',
     limit: parseLimit(get('quality')) ?? kFull,
@@ -77,28 +81,43 @@ export function readSettings(get: (name: ViewAttribute) => string | null): Setti
 }
 
 function parseRange(text: string | null): Settings['range'] {
-  if (text === 'symmetric') return 'symmetric';
+  if (text === 'symmetric' || text === 'full') return text;
   const numbers = parseNumbers(text ?? '');
   return numbers.length === 2 && numbers[0]! < numbers[1]! ? [numbers[0]!, numbers[1]!] : 'auto';
 }
 
 /**
- * The first opacities of a volume: low values are faint, so that its whole shape is visible, and
- * high ones dense.
+ * The shape of a volume's first opacities: low values are faint, so that its whole shape is
+ * visible, and high ones dense.
  */
-export const kFirstOpacities: readonly number[] = [0.03, 0.04, 0.06, 0.1, 0.2, 0.35, 0.5, 0.7, 0.9];
+const kFirstOpacities: readonly number[] = [0.03, 0.04, 0.06, 0.1, 0.2, 0.35, 0.5, 0.7, 0.9];
 
 /** The most opacities of a volume: more cannot be told apart in the picture. */
 export const kMaxOpacities = 33;
 
-function parseVolume(text: string | null): number[] | null {
-  if (text === null) return null;
+/** What stands in the attribute if the mesh is to choose. */
+export const kAutoVolume = 'auto';
+/** The mean optical depth of a volume that is seen at first: its inside shows, and its shape. */
+const kFirstDepth = 0.9;
+
+/** `chord` is the mean length of lines through the mesh, as a share of the diagonal; 0: unknown. */
+export function firstOpacities(chord: number): number[] {
+  const depths = kFirstOpacities.map((opacity) => -Math.log(1 - opacity));
+  const mean = depths.reduce((sum, depth) => sum + depth, 0) / depths.length;
+  const factor = chord > 0 ? (kFirstDepth * kOpacityPath) / (mean * chord) : 1;
+  return depths.map((depth) =>
+    Number(Math.min(kMaxOpacity, 1 - Math.exp(-factor * depth)).toFixed(3)),
+  );
+}
+
+function readVolume(text: string | null): Pick<Settings, 'volume' | 'hasFirstOpacities'> {
+  if (text === null) return {volume: null, hasFirstOpacities: false};
   const numbers = parseNumbers(text);
-  return numbers.length >= 2 &&
+  const isRight =
+    numbers.length >= 2 &&
     numbers.length <= kMaxOpacities &&
-    numbers.every((value) => value >= 0 && value <= 1)
-    ? numbers
-    : [...kFirstOpacities];
+    numbers.every((value) => value >= 0 && value <= 1);
+  return {volume: isRight ? numbers : firstOpacities(0), hasFirstOpacities: !isRight};
 }
 
 function parseCamera(text: string | null): CameraState | null {
@@ -182,9 +201,13 @@ export function parseScalar(text: string | null, fields: readonly FieldInfo[]): 
   return {field, component: component < fields[field]!.components ? component : kMagnitude};
 }
 
-/** The scalar that colours: the named field, or the first one; null if there is none. */
-export function shownScalar(text: string | null, fields: readonly FieldInfo[]): Scalar | null {
-  const first = fields.length > 0 ? {field: 0, component: kMagnitude} : null;
+/** The scalar that colours: the named field, or `firstField`; null if there is none. */
+export function shownScalar(
+  text: string | null,
+  fields: readonly FieldInfo[],
+  firstField: number,
+): Scalar | null {
+  const first = fields.length > 0 ? {field: firstField, component: kMagnitude} : null;
   return parseScalar(text, fields) ?? first;
 }
 
@@ -234,11 +257,14 @@ export function fieldValuesOf(
   return fits ? value : null;
 }
 
+/** Small differences of large values stay: 101325.03. */
+const kLinkDigits = 9;
+
 export function fieldValuesText(
   {scalar, values}: FieldValues,
   fields: readonly FieldInfo[],
 ): string {
-  const numbers = values.map((value) => Number(value.toPrecision(6)));
+  const numbers = values.map((value) => Number(value.toPrecision(kLinkDigits)));
   return `${scalarText(scalar, fields)}=${numbers.join(',')}`;
 }
 
@@ -250,16 +276,46 @@ export function sharesOf({scalar, values}: FieldValues, fields: readonly FieldIn
 
 // ---- the range that the colours span
 
+/** The map `labels` spans kMostLabels numbers, with each in the middle of its colour. */
+export function labelRange([first, count]: [number, number]): Omit<ShownRange, 'hasMissing'> {
+  const low = first - 0.5;
+  return {low, high: low + kMostLabels, logarithmic: false, hides: 'none', labels: count};
+}
+
+/** If the middle 96 % of the values take less of the range, the tails hide them. */
+const kLeastMiddle = 0.4;
+
+export interface ShownRange {
+  low: number;
+  high: number;
+  logarithmic: boolean;
+  /** What a logarithmic scale hides: nothing, the values below `low`, or all of them. */
+  hides: 'none' | 'low' | 'all';
+  /** Whole numbers from low + 0.5 on, each with a colour of its own. */
+  labels?: number;
+  /** A few values lie outside. */
+  isMiddle?: boolean;
+  /** Some values are missing: the legend explains their colour. */
+  hasMissing: boolean;
+}
+
 /**
- * `extent` is the range of the values that occur. A logarithmic range starts above 0, if necessary
- * at a ten-thousandth of its end; `hides` then says what this hides, or why there is none.
+ * `extent` is the range of the values that occur, `middle` that of most of them: an automatic range
+ * ends there (`isMiddle`) if the few others would take most of the colours. A logarithmic range
+ * starts above 0, if necessary at a ten-thousandth of its end; `hides` then says what this hides,
+ * or why there is none.
  */
 export function shownRange(
   {range, logarithmic}: Settings,
   extent: [number, number],
-): {low: number; high: number; logarithmic: boolean; hides: 'none' | 'low' | 'all'} {
+  middle: [number, number] = extent,
+): Omit<ShownRange, 'hasMissing'> {
+  const tailsHide = middle[1] - middle[0] < kLeastMiddle * (extent[1] - extent[0]);
+  if (range === 'auto' && !logarithmic && tailsHide && middle[0] < middle[1])
+    return {low: middle[0], high: middle[1], logarithmic, hides: 'none', isMiddle: true};
   const most = Math.max(Math.abs(extent[0]), Math.abs(extent[1]));
-  const [low, high] = range === 'auto' ? extent : range === 'symmetric' ? [-most, most] : range;
+  const isWhole = range === 'auto' || range === 'full';
+  const [low, high] = isWhole ? extent : range === 'symmetric' ? [-most, most] : range;
   if (!logarithmic) return {low, high, logarithmic: false, hides: 'none'};
   if (high <= 0) return {low, high, logarithmic: false, hides: 'all'};
   const kDecades = 1e-4;

@@ -1,15 +1,30 @@
 // What a viewer knows about the mesh that it shows. Another mesh gets another object.
 
+import type {BaseFigures} from '../core/base_figures';
+import {labelsOf} from '../core/labels';
 import type {LevelBytes} from '../core/goal';
 import type {Manifest} from '../core/manifest';
 import {kNoStatistics, type Statistics} from '../core/statistics';
 import type {Snapshot} from '../core/worker_messages';
+import {
+  firstOpacities,
+  readSettings,
+  shownScalar,
+  type Settings,
+  type ViewAttribute,
+} from './settings';
 
 export class ShownMesh {
   /** Null before the head of the log is here. */
   manifest: Manifest | null = null;
   /** The base mesh's, in lattice coordinates; empty before it is decoded. */
   bounds: number[] = [];
+  /** The place to look at first, in lattice coordinates; null: all of the mesh. */
+  focus: number[] | null = null;
+  /** The mean length of lines through the mesh, as a share of its diagonal. */
+  chord = 0;
+  /** The field that is shown if no attribute names one. */
+  firstField = 0;
   /** The levels ahead. */
   plan: LevelBytes[] = [];
   /** The newest figures. */
@@ -22,6 +37,10 @@ export class ShownMesh {
   hasMissing = false;
   /** The figures of the picture on the screen; null if there is none. */
   drawn: Statistics | null = null;
+
+  takeBase({bounds, chord, focus}: BaseFigures, field: number): void {
+    Object.assign(this, {bounds, chord, focus, firstField: field});
+  }
 
   take(snapshot: Snapshot): void {
     // Other figures are newer than a picture that waited for a view.
@@ -37,4 +56,17 @@ export class ShownMesh {
   get isDrawn(): boolean {
     return this.drawn !== null && this.drawn.bytes >= this.statistics.bytesNeeded;
   }
+}
+
+/** The settings of the attributes, with what the mesh decides where they say nothing. */
+export function settingsFor(
+  {manifest, firstField, chord}: ShownMesh,
+  read: (name: ViewAttribute) => string | null,
+): Settings {
+  const settings = readSettings(read);
+  const fields = manifest?.fields ?? [];
+  const shown = shownScalar(read('field'), fields, firstField);
+  if (read('colormap') === null && shown && labelsOf(fields[shown.field]!)) settings.map = 'labels';
+  if (settings.hasFirstOpacities) settings.volume = firstOpacities(chord);
+  return settings;
 }

@@ -5,6 +5,7 @@ import {kTransportKinds} from '../core/auto_transport';
 import type {Client} from '../core/client';
 import {errorCode, errorText, QtetError} from '../core/errors';
 import {kFull, type Limit} from '../core/limit';
+import {kMostCompared} from '../core/wanted';
 import type {StreamState} from '../core/worker_messages';
 import {fetchCatalog, isLogFile, logUrl, meshOfLog, streamUrl, type MeshEntry} from './catalog';
 import {MeshMenu} from './mesh_menu';
@@ -128,12 +129,14 @@ export class StreamControl {
     this.menu.name(mesh);
     const file = isLogFile(base) ? base.href : this.catalog.find(({id}) => id === mesh)?.log;
     const transport = page.element.getAttribute('transport');
+    const {fields, compare} = this.firstFields(mesh);
     client.start({
       url: file === undefined ? streamUrl(base) : '',
       log: file ?? logUrl(base, mesh),
       transport: kTransportKinds.find((kind) => kind === transport) ?? 'auto',
       mesh,
-      fields: this.firstFields(mesh),
+      fields,
+      compare,
       limit: listeners.limit(),
       pictureFirst: true,
       paused: kept.paused,
@@ -144,10 +147,10 @@ export class StreamControl {
   }
 
   /**
-   * The keys of the fields that the attributes name, or else of the first field; null if that is
-   * unknown.
+   * The keys of the fields that the attributes name, or else of those that are compared for the
+   * opening view; null if they are unknown.
    */
-  private firstFields(mesh: string): string[] | null {
+  private firstFields(mesh: string): {fields: string[] | null; compare: boolean} {
     const {page} = this;
     const fields = this.catalog.find(({id}) => id === mesh)?.fields ?? [];
     const withValues = (['iso', 'threshold'] as const).map((name) =>
@@ -156,8 +159,9 @@ export class StreamControl {
     const named = [page.read('field') ?? undefined, ...withValues]
       .filter((text) => text !== undefined)
       .map((text) => (fields.includes(text) ? text : scalarKey(text)));
-    if (named.length > 0) return [...new Set(named)];
-    return isLogFile(this.base) ? null : fields.slice(0, 1);
+    if (named.length > 0) return {fields: [...new Set(named)], compare: false};
+    const candidates = isLogFile(this.base) ? null : fields.slice(0, kMostCompared);
+    return {fields: candidates, compare: true};
   }
 
   /** If memory was the limit, there is no `quality` to remove: refining is tried again. */

@@ -1,6 +1,6 @@
 // The viewer's markup. All controls are native: they work with keyboard, touch and screen readers.
 
-import {colorGradient, kColorMapNames} from '../core/color_maps';
+import {kColorMapNames} from '../core/color_maps';
 import {kDirections} from '../three/directions';
 import {kKeyHelp} from './keys';
 
@@ -10,17 +10,18 @@ const kMapTitles = {
   'cool-warm': 'Cool-warm',
   turbo: 'Turbo',
   grey: 'Grey',
+  labels: 'One colour a label',
 };
 const kModeTitles = {cut: 'Flat', cells: 'Cells', slice: 'Slice'};
 const kToolTitles = {none: 'Turn', point: 'Point', line: 'Line'};
 
-const swatches = kColorMapNames
+const swatches = [...kColorMapNames, 'labels' as const]
   .map((name) => {
     const title = kMapTitles[name];
     return `
-  <label class="swatch" title="${title}">
+  <label class="swatch ${name}" title="${title}"${name === 'labels' ? ' hidden' : ''}>
     <input type="radio" name="colormap" value="${name}" aria-label="${title}">
-    <span style="background:${colorGradient(name)}"></span>
+    <span></span>
   </label>`;
   })
   .join('');
@@ -84,6 +85,10 @@ export const kTemplate = `
   <dl></dl>
   <div class="plot"></div>
   <p class="hint"></p>
+  <div class="buttons">
+    <button type="button" class="copy-result">Copy</button>
+    <button type="button" class="save-table" hidden>Save as CSV</button>
+  </div>
 </section>
 
 <aside class="card panel" part="panel" aria-label="Mesh and display">
@@ -107,7 +112,10 @@ export const kTemplate = `
   <slot name="progress"><section class="progress" part="progress" aria-label="Progress">
     <div class="row">
       <span class="state"><i class="dot"></i><span class="state-text">Connecting</span></span>
-      <output class="percent">0 %</output>
+      <span class="row"><output class="percent">0 %</output>
+        <button type="button" class="icon unfold" aria-label="Figures" aria-expanded="true" hidden>
+          <svg viewBox="0 0 20 20" aria-hidden="true"><path d="M6 8l4 4 4-4"/></svg>
+        </button></span>
     </div>
     <div class="bar" role="progressbar" aria-label="Part of the mesh that is here"
       aria-valuemin="0" aria-valuemax="100" aria-valuenow="0"><i></i></div>
@@ -134,6 +142,7 @@ export const kTemplate = `
         <span class="name">Range</span>
         <select name="range" class="small" aria-label="Range of the colours">
           <option value="auto">Automatic</option>
+          <option value="full">All values</option>
           <option value="symmetric">Symmetric</option>
           <option value="fixed">Fixed</option>
         </select>

@@ -2,6 +2,7 @@
 
 import {scalarRange, kMagnitude, type Scalar} from '../core/field_scale';
 import type {FieldInfo} from '../core/manifest';
+import {roundTo} from './format';
 import type {Attributes} from './page';
 import {fillScalars, type Panel, type Scene} from './panel';
 import {
@@ -15,6 +16,8 @@ import {
 } from './settings';
 
 const kSteps = 1000;
+/** Values are shown to this share of the field's range. */
+const kShownShare = 1e-4;
 /** The surface's opacity through which isosurfaces are seen well. */
 const kSeeThrough = '0.25';
 
@@ -62,14 +65,14 @@ export class ValuePanel implements Panel {
     if (!now) return;
     fillScalars(this.select, this.fields, now.scalar, this.kind === 'iso');
     if (this.root.activeElement !== this.numbers)
-      this.numbers.value = now.values.map((value) => Number(value.toPrecision(4))).join(', ');
+      this.numbers.value = now.values.map((value) => this.rounded(value, now.scalar)).join(', ');
     sharesOf(now, this.fields)
       .slice(0, this.sliders.length)
       .forEach((share, i) => {
         this.sliders[i]!.value = String(Math.round(kSteps * share));
         this.sliders[i]!.setAttribute(
           'aria-valuetext',
-          String(Number(now.values[i]!.toPrecision(4))),
+          String(this.rounded(now.values[i]!, now.scalar)),
         );
       });
   }
@@ -77,6 +80,11 @@ export class ValuePanel implements Panel {
   /** The value of the attribute; null if it is empty or does not fit the mesh. */
   value(): FieldValues | null {
     return fieldValuesOf(this.kind, this.attributes.read(this.kind), this.fields);
+  }
+
+  private rounded(value: number, {field, component}: Scalar): number {
+    const [low, high] = scalarRange(this.fields[field]!, component);
+    return roundTo(value, kShownShare * (high - low));
   }
 
   private toggle(): void {

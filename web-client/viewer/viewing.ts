@@ -1,7 +1,9 @@
 // A viewer while it is in a document: connects the stream, the graphics and the panels.
 
+import type {BaseFigures} from '../core/base_figures';
 import type {Vector} from '../core/cell_ray';
 import type {Client} from '../core/client';
+import {labelsOf} from '../core/labels';
 import type {Manifest} from '../core/manifest';
 import type {Statistics} from '../core/statistics';
 import type {FromWorker, Snapshot, StreamState} from '../core/worker_messages';
@@ -11,13 +13,12 @@ import {CameraWatch} from './camera_watch';
 import {find} from './find';
 import {Graphics, type ViewStart} from './graphics';
 import {bindKeys} from './keys';
-import type {ShownRange} from './legend';
 import {Notices} from './notices';
 import type {Kept, Page} from './page';
 import {Panels, type PanelsHost} from './panels';
 import {displayOf, planesOf, Requests} from './requests';
-import {readSettings, shownRange, type Settings} from './settings';
-import {ShownMesh} from './shown_mesh';
+import {labelRange, readSettings, shownRange, type Settings, type ShownRange} from './settings';
+import {settingsFor, ShownMesh} from './shown_mesh';
 import {StreamControl} from './stream_control';
 import {unfittingParts, wrongParts} from './wrong_parts';
 
@@ -105,7 +106,7 @@ export class Viewing implements ActionsHost, PanelsHost {
     const {mesh, page, panels, view} = this;
     if (!panels) return;
     const before = this.settings;
-    this.settings = readSettings((name) => page.read(name));
+    this.settings = settingsFor(mesh, (name) => page.read(name));
     this.tellWrongParts();
     panels.update(this.settings, mesh);
     view?.setLook(this.settings);
@@ -130,6 +131,12 @@ export class Viewing implements ActionsHost, PanelsHost {
   moveClip(step: number): void {
     const [plane] = this.settings.planes;
     if (plane) this.panels?.clip.move(0, plane.share + step);
+  }
+
+  centre(): void {
+    const {point} = this.requests;
+    if (point) this.view?.centre(point);
+    else this.view?.look(null);
   }
 
   inspect(): void {
@@ -161,8 +168,7 @@ export class Viewing implements ActionsHost, PanelsHost {
         this.mesh.plan = message.plan;
         return this.panels?.progress.takePlan(message.plan);
       case 'base':
-        this.mesh.bounds = message.bounds;
-        return this.apply();
+        return this.takeBase(message.figures, message.field);
       case 'snapshot':
         return this.takePicture(message.snapshot);
       case 'progress':
@@ -170,6 +176,8 @@ export class Viewing implements ActionsHost, PanelsHost {
       case 'state':
         return this.stream.enter(message.state, message.attempt, message.delayMs);
       case 'error':
+        // A wrong name is a wrong attribute, and named as such.
+        if (message.code === 'unknown-field') return this.page.tell('error', message);
         return this.failed(message.code, message.message);
     }
   }
@@ -178,6 +186,12 @@ export class Viewing implements ActionsHost, PanelsHost {
     if (this.mesh.manifest) this.forget(true); // another log has taken its name
     this.mesh.manifest = manifest;
     this.panels?.progress.begin(manifest);
+    this.apply();
+  }
+
+  private takeBase(figures: BaseFigures, field: number): void {
+    this.mesh.takeBase(figures, field);
+    this.view?.setFocus(figures.focus);
     this.apply();
   }
 
@@ -197,6 +211,7 @@ export class Viewing implements ActionsHost, PanelsHost {
   /** The view is ready: show what has been waiting for it. */
   private begin(view: View): void {
     this.panels?.attach(view);
+    view.setFocus(this.mesh.focus);
     bindKeys(find(this.page.root, '.scene'), this.actions.keys(view));
     this.apply();
     this.panels?.cards.arrange();
@@ -283,7 +298,7 @@ export class Viewing implements ActionsHost, PanelsHost {
   private showRange(): void {
     const {mesh, panels, settings} = this;
     if (!panels) return;
-    const range = mesh.manifest && mesh.snapshot && rangeOf(mesh.snapshot, settings);
+    const range = mesh.manifest && mesh.snapshot && rangeOf(mesh.snapshot, mesh.manifest, settings);
     if (range && mesh.snapshot) {
       const {low, high, logarithmic} = range;
       this.view?.setRange(low, high, mesh.snapshot.scaleRange, logarithmic);
@@ -312,11 +327,15 @@ export class Viewing implements ActionsHost, PanelsHost {
 
 /** The range of the colours; null if nothing is coloured. */
 function rangeOf(
-  {color, scaleRange, extent}: Snapshot,
+  {color, scaleRange, extent, middle}: Snapshot,
+  {fields}: Manifest,
   settings: Settings,
 ): Omit<ShownRange, 'hasMissing'> | null {
   if (!color) return null;
+  const labels = settings.map === 'labels' && labelsOf(fields[color.field]!);
+  if (labels) return labelRange(labels);
   const [low, high] = scaleRange;
   const valueAt = (share: number): number => low + share * (high - low);
-  return shownRange(settings, [valueAt(extent[0]), valueAt(extent[1])]);
+  const valuesAt = ([from, to]: [number, number]): [number, number] => [valueAt(from), valueAt(to)];
+  return shownRange(settings, valuesAt(extent), valuesAt(middle));
 }

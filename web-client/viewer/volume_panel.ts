@@ -4,7 +4,7 @@
 import {colorGradient} from '../core/color_maps';
 import type {Attributes} from './page';
 import type {Panel, Scene} from './panel';
-import {kFirstOpacities, type Settings} from './settings';
+import {kAutoVolume, type Settings} from './settings';
 
 const kSteps = 100;
 
@@ -22,7 +22,7 @@ export class VolumePanel implements Panel {
     this.body = root.querySelector('.volume')!;
     this.bars = this.body.querySelector('.bars')!;
     this.on.addEventListener('change', () =>
-      attributes.write('volume', this.on.checked ? kFirstOpacities.join() : null),
+      attributes.write('volume', this.on.checked ? kAutoVolume : null),
     );
     this.body.querySelector('.fainter')!.addEventListener('click', () => this.scale(0.7));
     this.body.querySelector('.denser')!.addEventListener('click', () => this.scale(1 / 0.7));

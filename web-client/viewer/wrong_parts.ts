@@ -8,6 +8,7 @@ import {parseLimit} from '../core/limit';
 import {fieldKeys, type Manifest} from '../core/manifest';
 import {
   fieldValuesOf,
+  kAutoVolume,
   kMaxOpacities,
   parseClip,
   parseNumbers,
@@ -33,7 +34,11 @@ function isRange(text: string): boolean {
 function areOpacities(text: string): boolean {
   const numbers = parseNumbers(text);
   const isShort = numbers.length >= 2 && numbers.length <= kMaxOpacities;
-  return text === '' || (isShort && numbers.every((value) => value >= 0 && value <= 1));
+  return (
+    text === '' ||
+    text === kAutoVolume ||
+    (isShort && numbers.every((value) => value >= 0 && value <= 1))
+  );
 }
 
 const kValues = 'a field, "=" and numbers with commas between them';
@@ -47,8 +52,8 @@ const kRules: Partial<Record<Name, Rule>> = {
     `${kColorMapNames.join(', ')}, and " reversed" behind it`,
   ],
   range: [
-    (text) => ['auto', 'symmetric'].includes(text) || isRange(text),
-    'auto, symmetric, or two numbers, the smaller first: 0.5,2',
+    (text) => ['auto', 'full', 'symmetric'].includes(text) || isRange(text),
+    'auto, full, symmetric, or two numbers, the smaller first: 0.5,2',
   ],
   scale: oneOf('log', 'linear'),
   edges: oneOf('on', 'off'),
@@ -70,7 +75,7 @@ const kRules: Partial<Record<Name, Rule>> = {
     (text) => parseNumbers(text.replace(/^.*=/s, '')).length === 2 && text.includes('='),
     'a field, "=" and two numbers: Density=1,2',
   ],
-  volume: [areOpacities, `2 to ${kMaxOpacities} opacities from 0 to 1, or nothing`],
+  volume: [areOpacities, `2 to ${kMaxOpacities} opacities from 0 to 1, or ${kAutoVolume}`],
   quality: [
     (text) => parseLimit(text) !== null,
     'full, 1%, error:0.01, cells:20000 or bytes:100000',
@@ -95,7 +100,7 @@ export function unfittingParts(read: Read, {fields, levels}: Manifest): string[]
   const has = `It has ${fieldKeys(fields).join(', ') || 'none'}.`;
   const field = read('field');
   if (field !== null && !parseScalar(field, fields))
-    sentences.push(`The mesh has no field "${field}"; the first one is shown instead. ${has}`);
+    sentences.push(`The mesh has no field "${field}". The first field is shown instead. ${has}`);
   for (const kind of ['iso', 'threshold'] as const) {
     const text = read(kind);
     if (text === null || !kRules[kind]![0](text)) continue;

@@ -1,0 +1,162 @@
+// What decides the opening view: the field, the range, the place and the camera.
+
+import {Vector3} from 'three';
+import {describe, expect, test} from 'vitest';
+import {baseFigures} from '../core/base_figures';
+import {colorTable} from '../core/color_maps';
+import type {MeshNow} from '../core/display';
+import {FieldScale} from '../core/field_scale';
+import {kMostLabels, labelsOf} from '../core/labels';
+import type {FieldInfo} from '../core/manifest';
+import {mostContrast, spreadOf} from '../core/spread';
+import {OrbitCamera} from '../three/camera';
+import {FarCanvas} from '../three/far_canvas';
+import {outlineOf} from '../three/outline';
+import {allVertices, cubes} from './cubes';
+
+const field: FieldInfo = {
+  name: 'p',
+  components: 1,
+  association: 'point',
+  isWhole: true,
+  step: 1,
+  minimum: [0],
+  range: [0, 1000],
+};
+const {points, tetrahedra} = cubes(4, 10);
+const scaleOf = (value: (vertex: number) => number): FieldScale =>
+  new FieldScale(
+    Int32Array.from({length: points.length / 3}, (_, v) => value(v)),
+    field,
+  );
+
+describe('the spread of values', () => {
+  test('isMostForValuesThatAreAllDifferentAndNoneForOne', () => {
+    expect(
+      spreadOf(
+        scaleOf(() => 7),
+        tetrahedra,
+      ).entropy,
+    ).toBe(0);
+    expect(
+      spreadOf(
+        scaleOf((v) => (v % 2) * 1000),
+        tetrahedra,
+      ).entropy,
+    ).toBeCloseTo(1, 2);
+    expect(
+      spreadOf(
+        scaleOf((v) => 8 * v),
+        tetrahedra,
+      ).entropy,
+    ).toBeGreaterThan(6);
+  });
+  test('leavesTwoPerCentOutAtEachEnd', () => {
+    const {middle} = spreadOf(
+      scaleOf((v) => (v < 2 ? 1000 * v : 400 + v)),
+      tetrahedra,
+    );
+    expect(middle[0]).toBeGreaterThanOrEqual(0.4);
+    expect(middle[1]).toBeLessThan(0.53);
+  });
+  test('choosesTheFieldWithMostContrast', () => {
+    const scales = [scaleOf(() => 7), scaleOf((v) => 8 * v), null, scaleOf((v) => v % 2)];
+    const mesh = {tetrahedra, scale: (scalar: {field: number}) => scales[scalar.field]!};
+    expect(mostContrast(mesh as unknown as MeshNow, [0, 1, 2, 3])).toBe(1);
+    expect(mostContrast(mesh as unknown as MeshNow, [2])).toBe(2);
+    expect(mostContrast(mesh as unknown as MeshNow, [])).toBe(0);
+  });
+});
+
+describe('labels', () => {
+  test('areFewWholeNumbers', () => {
+    expect(labelsOf({...field, range: [1, 4]})).toEqual([1, 4]);
+    expect(labelsOf({...field, range: [0, kMostLabels - 1]})).toEqual([0, kMostLabels]);
+    for (const other of [
+      {range: [0, kMostLabels]},
+      {range: [3, 3]},
+      {isWhole: false, range: [1, 4]},
+      {components: 3, range: [1, 4]},
+    ] as Partial<FieldInfo>[])
+      expect(labelsOf({...field, ...other})).toBeNull();
+  });
+  test('haveEachAColourOfItsOwn', () => {
+    const table = colorTable('labels');
+    const colors = Array.from({length: kMostLabels}, (_, label) => {
+      const entry = 4 * Math.round(((label + 0.5) / kMostLabels) * 255);
+      return table.subarray(entry, entry + 3).join();
+    });
+    expect(new Set(colors).size).toBe(kMostLabels);
+  });
+});
+
+describe('the figures of a base mesh', () => {
+  const mesh = (places: Int32Array): MeshNow => ({
+    points: places,
+    tetrahedra,
+    boundary: allVertices(places),
+    scale: () => null,
+  });
+  test('haveNoFocusInAnEvenMesh', () => {
+    const figures = baseFigures(mesh(points));
+    expect(figures.bounds).toEqual([0, 0, 0, 40, 40, 40]);
+    expect(figures.focus).toBeNull();
+  });
+  test('haveTheirFocusWhereSmallCellsAreDwarfed', () => {
+    // The outermost layer lies far out, as the walls of a wind tunnel do.
+    const far = points.map((x) => (x === 0 ? -100000 : x === 40 ? 100000 : 10 * x));
+    const inner = tetrahedra.filter((_, i) =>
+      [0, 1, 2, 3].every((k) => {
+        const v = tetrahedra[4 * Math.floor(i / 4) + k]!;
+        return [0, 1, 2].every((axis) => Math.abs(far[3 * v + axis]!) < 1000);
+      }),
+    );
+    const dense = Uint32Array.from([
+      ...tetrahedra,
+      ...Array<Uint32Array>(80)
+        .fill(inner)
+        .flatMap((one) => [...one]),
+    ]);
+    const {focus} = baseFigures({...mesh(far), tetrahedra: dense});
+    expect(focus).not.toBeNull();
+    expect(Math.max(...focus!.map(Math.abs))).toBeLessThan(1000);
+  });
+});
+
+describe('a fitted camera', () => {
+  const canvas = new FarCanvas({} as OffscreenCanvas);
+  const places = (camera: OrbitCamera, at: Vector3[]): Vector3[] => {
+    camera.camera.updateMatrixWorld();
+    camera.camera.updateProjectionMatrix();
+    return at.map((point) => point.clone().project(camera.camera));
+  };
+  test.each([false, true])('fillsTheFreeAreaAndIsCentred (parallel %s)', (parallel) => {
+    const camera = new OrbitCamera(canvas as unknown as HTMLCanvasElement, () => undefined);
+    camera.parallel = parallel;
+    camera.camera.aspect = 1.6;
+    const corners = [0, 1, 2, 3, 4, 5, 6, 7].map(
+      (i) => new Vector3(i & 1 ? 0.7 : -0.2, i & 2 ? 0.3 : -0.6, i & 4 ? 0.5 : -0.1),
+    );
+    for (const direction of [null, '+x', '-z'] as const) {
+      camera.look(direction, () => camera.framing(corners, 0.75, 1));
+      const seen = places(camera, corners);
+      const range = (axis: 'x' | 'y'): [number, number] => [
+        Math.min(...seen.map((place) => place[axis])),
+        Math.max(...seen.map((place) => place[axis])),
+      ];
+      const [left, right] = range('x');
+      const [bottom, top] = range('y');
+      const filled = Math.max((right - left) / 2 / 0.75, (top - bottom) / 2);
+      expect(filled).toBeGreaterThan(0.8);
+      expect(filled).toBeLessThan(0.9);
+      expect(Math.max(-left, right) / 0.75).toBeLessThan(0.9);
+      expect(Math.max(-bottom, top)).toBeLessThan(0.9);
+    }
+  });
+  test('standsByTheMeshAndNotByItsBox', () => {
+    const positions = Float32Array.from([0, 0, 0, 10, 0, 0, 0, 10, 10]);
+    const surface = {positions, values: new Float32Array(0), firstHalf: 1};
+    expect(outlineOf(surface, [0, 0, 0, 10, 10, 10])).toHaveLength(3);
+    expect(outlineOf(undefined, [0, 0, 0, 10, 10, 10])).toHaveLength(8);
+  });
+});
