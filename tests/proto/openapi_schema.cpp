@@ -23,7 +23,7 @@ class Check {
       : schemas_(schemas), shortened_(shortened) {}
 
   void value(const Json& given, const Json& value, const std::string& at) {
-    const Json& schema = meant(given);
+    const Json& schema = given.contains("$ref") ? referenced(given) : given;
     if (schema.contains("enum") && std::ranges::find(schema["enum"], value) == schema["enum"].end())
       return blame(at, "is none of " + schema["enum"].dump());
     if (schema.contains("type") && !isOfType(schema["type"], value))
@@ -36,8 +36,7 @@ class Check {
   [[nodiscard]] const std::string& complaint() const { return complaint_; }
 
  private:
-  [[nodiscard]] const Json& meant(const Json& schema) const {
-    if (!schema.contains("$ref")) return schema;
+  [[nodiscard]] const Json& referenced(const Json& schema) const {
     const auto reference = schema["$ref"].get<std::string>();
     return schemas_.at(reference.substr(reference.rfind('/') + 1));
   }
