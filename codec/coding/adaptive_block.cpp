@@ -46,9 +46,9 @@ class AdaptiveCoder {
     int length = 0;
     for (; length <= kMaxBits; ++length) {
       const std::size_t i = std::min(static_cast<std::size_t>(length), kLengths - 1);
-      const std::array<BitModel*, 3> models{&before_model_[axis][before][i],
-                                            &beside_model_[axis][beside][i],
-                                            &usual_model_[axis][usual][i]};
+      const std::array<BitModel*, 3> models{&beforeModel_[axis][before][i],
+                                            &besideModel_[axis][beside][i],
+                                            &usualModel_[axis][usual][i]};
       if (!mixedBit(coder_, wanted > length, models, mixer_[axis][i])) break;
     }
     return length;
@@ -79,8 +79,8 @@ class AdaptiveCoder {
   Coder& coder_;
   std::vector<std::size_t> before_;   // lengths of the tuple before
   std::array<int, kAxes> running_{};  // mean length, in sixteenths
-  Lengths<kLengths> before_model_, beside_model_;
-  Lengths<2 * kLengths> usual_model_;
+  Lengths<kLengths> beforeModel_, besideModel_;
+  Lengths<2 * kLengths> usualModel_;
   std::array<std::array<Mixer<3>, kLengths>, kAxes> mixer_;
   std::array<std::array<std::array<BitModel, 4>, kLengths>, kAxes> top_;
   std::array<std::array<BitModel, kLengths>, kAxes> sign_;
