@@ -159,16 +159,16 @@ Reply Upload::publish(const std::string& digest) {
   if (const Status synced = syncFolder(uploads_.store_.folder()); !synced)
     spdlog::warn("after an upload: {}", synced.error().message);
   ++uploads_.published_;
-  const Result<FolderChange> change = uploads_.store_.rescan();
+  const Result<FolderChange> change = uploads_.store_.rescan(request_.id);
   const MeshPointer mesh = uploads_.store_.find(request_.id);
   if (!change || !mesh || mesh->log.digest() != digest)
     return problem(500, "internal", "the log was published but cannot be served now");
   spdlog::info("{}: uploaded, {} bytes", mesh->id, mesh->log.bytes().size());
   Reply out =
       beginReply(replaced ? 200 : 201,
-                 {{mesh->description.etag, mesh->modified}, "application/json", "no-store", {}});
+                 {{mesh->description().etag, mesh->modified}, "application/json", "no-store", {}});
   out.headers.emplace_back("Location", "/v1/meshes/" + percentEncode(mesh->id));
-  out.body = mesh->description.text;
+  out.body = mesh->description().text;
   return out;
 }
 
@@ -179,12 +179,12 @@ std::optional<Reply> Uploads::precondition(const UploadRequest& request) const {
   if (request.ifNoneMatch) view.ifNoneMatch = *request.ifNoneMatch;
   // What is not there has no tag at all: If-Match fails and If-None-Match holds.
   const bool fails =
-      mesh ? evaluateConditions(view, {mesh->description.etag, mesh->modified}) != Verdict::kSend
+      mesh ? evaluateConditions(view, {mesh->description().etag, mesh->modified}) != Verdict::kSend
            : request.ifMatch.has_value();
   if (!fails) return std::nullopt;
   return problem(
       412, "precondition-failed",
-      mesh ? "the mesh's ETag is " + mesh->description.etag : "there is no mesh of that name");
+      mesh ? "the mesh's ETag is " + mesh->description().etag : "there is no mesh of that name");
 }
 
 fs::path Uploads::partOf(const UploadRequest& request) {

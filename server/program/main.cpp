@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <iostream>
 #include <optional>
+#include <thread>
 
 #include "codec/files/temporary_folder.h"
 #include "server/program/command_line.h"
@@ -64,10 +65,12 @@ void logRefused(const std::vector<Catalogue::Refused>& refused) {
 }
 
 void logChange(const FolderChange& change) {
-  for (const MeshPointer& mesh : change.added)
-    spdlog::info("{}: {} tetrahedra in {} levels, {} bytes", mesh->id,
-                 mesh->manifest.levels.back().tetrahedra, mesh->manifest.levels.size(),
-                 mesh->log.bytes().size());
+  if (change.added.size() > limits::kMaxLoggedMeshes)
+    spdlog::info("{} logs more are served", change.added.size());
+  else
+    for (const EntryPointer& mesh : change.added)
+      spdlog::info("{}: {} tetrahedra in {} levels, {} bytes", mesh->id, mesh->tetrahedra,
+                   mesh->levels, mesh->bytes);
   for (const std::string& id : change.removed) spdlog::info("{}: removed", id);
   logRefused(change.refused);
 }
@@ -76,6 +79,16 @@ void lookAgain(const MeshStore& store) {
   const Result<FolderChange> change = store.rescan();
   if (!change) return spdlog::error("{}; what was served is served on", change.error().message);
   logChange(*change);
+}
+
+/// Reads on in a folder that was not read to its end at the start, beside the serving.
+std::jthread readOn(const MeshStore& store) {
+  return std::jthread([&store](const std::stop_token& stop) {
+    while (!stop.stop_requested() && store.catalogue()->unread > 0) {
+      lookAgain(store);
+      std::this_thread::sleep_for(limits::kFolderReadRest);
+    }
+  });
 }
 
 Result<std::optional<FolderWatch>> watchFolder(const CommandLine& options, const MeshStore& store) {
@@ -175,12 +188,13 @@ int serve(const CommandLine& options) {
   if (const Status listening = server.listen(); !listening) return cannotServe(listening.error());
   const Result<std::optional<FolderWatch>> watch = watchFolder(options, *store);
   if (!watch) return cannotServe(watch.error());
-  const std::size_t count = catalogue->meshes.size();
+  const std::size_t count = catalogue->meshes.size() + catalogue->unread;
   std::cout << "qtet-server: listening on " << server.url() << " (" << count
             << (count == 1 ? " mesh)" : " meshes)") << std::endl;
   if (options.adminHost)
     std::cout << "qtet-server: operators' address is " << *options.adminHost << ":"
               << server.adminPort() << std::endl;
+  const std::jthread reading = readOn(*store);
   server.run();
   return 0;
 }

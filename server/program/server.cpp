@@ -223,6 +223,8 @@ std::vector<Metrics::Figure> Server::State::figures() const {
           counter("tls_handshakes_displaced_total",
                   "TLS handshakes given up, unfinished, for others that waited.", hands.displaced),
           gauge("meshes", "Meshes that are served.", catalogue->meshes.size()),
+          gauge("meshes_unread", "Files of the folder that nobody has looked into yet.",
+                catalogue->unread),
           gauge("meshes_refused", "Files that are not served because they are damaged.",
                 catalogue->refused.size()),
           gauge("levels_wanted", "Requests that wait for a level.", levels.wanted),

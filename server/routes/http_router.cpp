@@ -100,7 +100,7 @@ std::optional<std::string> readableName(const MayRead& mayRead, const ServedMesh
                                         const Catalogue& catalogue) {
   if (mayRead(mesh.id)) return mesh.id;
   const auto found = std::ranges::find_if(catalogue.meshes, [&](const auto& entry) {
-    return entry.second->log.digest() == mesh.log.digest() && mayRead(entry.first);
+    return entry.second->digest == mesh.log.digest() && mayRead(entry.first);
   });
   return found == catalogue.meshes.end() ? std::nullopt : std::optional(found->first);
 }
@@ -194,6 +194,8 @@ Answer Router::api(const RequestView& request, const RequestTarget& target) cons
 /// has it.
 Answer Router::logs(const RequestView& request, const RequestTarget& target) const {
   const MeshPointer mesh = store_.findLog(target.segments[2]);
+  if (!mesh && !writing_ && store_.mayHaveLog(target.segments[2]))
+    return busyReply("this log cannot be opened now, or the folder is still being read; try again");
   std::optional<std::string> name = mesh ? std::optional(mesh->id) : std::nullopt;
   bool open = true;
   if (mesh && writing_) {
@@ -226,9 +228,11 @@ Reply Router::meshes(const RequestView& request, const RequestTarget& target) co
         request, target, store_.catalogue(),
         writing_ ? writing_->access.readerOf(bearerDigest(request.authorization)) : MayRead());
   const MeshPointer mesh = path.back().empty() ? nullptr : store_.find(path[2]);
+  if (!mesh && !path.back().empty() && store_.mayHave(path[2]))
+    return busyReply("this log cannot be opened now, or the folder is still being read; try again");
   if (!mesh) return notFound("there is no mesh of that name; the list is at /v1/meshes");
   if (path.size() > 3) return toLog(target, *mesh);
-  const Document& text = mesh->description;
+  const Document& text = mesh->description();
   return variantReply(request, {{text.etag, mesh->modified}, "application/json", kRevalidate, {}},
                       {viewOf(text.text), text.gzip, text.zstd}, mesh);
 }

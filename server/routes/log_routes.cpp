@@ -72,7 +72,7 @@ Answer routeLog(const RequestView& request, const RequestTarget& target, const N
   if (path.size() == 1 && what == "base")
     return part(request, mesh, "base", 0, endOf(index.block(0, kPositionsPart)));
   if (path.size() == 1 && what == "manifest") {
-    const Document& text = mesh->manifestText;
+    const Document& text = mesh->manifestText();
     return variantReply(request, {{text.etag, mesh->modified}, "application/json", kForEver, {}},
                         {viewOf(text.text), text.gzip, text.zstd}, mesh);
   }

@@ -1,5 +1,7 @@
 #include "server/store/mesh_store.h"
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <mutex>
 
@@ -31,7 +33,8 @@ Result<std::vector<fs::path>> listLogs(const fs::path& folder) {
       std::error_code gone;
       const bool candidate =
           it->path().extension() == kSuffix && !it->path().filename().native().starts_with('.');
-      if (candidate && it->is_regular_file(gone) && liesIn(it->path(), root))
+      if (candidate && it->is_regular_file(gone) &&
+          (!it->is_symlink(gone) || liesIn(it->path(), root)))
         out.push_back(it->path());
     }
   if (ec)
@@ -44,22 +47,25 @@ Result<std::vector<fs::path>> listLogs(const fs::path& folder) {
 /// The tag of a list: what stands in it decides.
 std::string listTag(const Catalogue::Meshes& meshes) {
   std::string all;
-  for (const auto& [id, mesh] : meshes)
-    all += std::to_string(id.size()) + ':' + id + mesh->log.digest();
+  for (const auto& [id, mesh] : meshes) all += std::to_string(id.size()) + ':' + id + mesh->digest;
   return hexDigestOf(all);
 }
 
 /// Builds a catalogue out of the one before and the folder.
 class Scan {
  public:
-  explicit Scan(const Catalogue& before) : before_(before), next_(std::make_shared<Catalogue>()) {}
+  Scan(const Catalogue& before, std::chrono::milliseconds time, std::shared_ptr<OpenMeshes> open)
+      : before_(before),
+        open_(std::move(open)),
+        end_(Clock::now() + time),
+        next_(std::make_shared<Catalogue>()) {}
 
   void look(const fs::path& path) {
     const std::optional<FileIdentity> file = identityOf(path);
     if (!file) return;  // gone since the folder was read
     const std::string id = path.stem().string();
     const auto known = before_.meshes.find(id);
-    const MeshPointer old = known == before_.meshes.end() ? nullptr : known->second;
+    const EntryPointer old = known == before_.meshes.end() ? nullptr : known->second;
     if (old && old->file == *file) return keep(old);
     // What could not be read may be readable now; what is damaged stays so.
     const auto refused = std::ranges::find_if(before_.refused, [&](const auto& r) {
@@ -69,12 +75,13 @@ class Scan {
       next_->refused.push_back(*refused);
       return keepSound(old, *file);
     }
-    Result<MeshPointer> mesh = openMesh(path, id);
-    if (mesh) {
-      next_->meshes[id] = *mesh;
-      change_.added.push_back(std::move(*mesh));
-      return;
+    if (++read_ > limits::kLogsReadAtOnce && Clock::now() > end_) {
+      ++next_->unread;
+      return old ? keepSound(old, *file) : void();
     }
+    const bool holds = !open_->full();
+    Result<MeshPointer> mesh = openMesh(path, id, holds);
+    if (mesh) return add(path, std::move(*mesh), holds);
     next_->refused.push_back({path, *file, mesh.error()});
     change_.refused.push_back(next_->refused.back());
     keepSound(old, *file);
@@ -83,7 +90,7 @@ class Scan {
   void finish() {
     for (const auto& [id, mesh] : before_.meshes)
       if (!next_->meshes.contains(id)) change_.removed.push_back(id);
-    for (const auto& [id, mesh] : next_->meshes) next_->logs.emplace(mesh->log.digest(), mesh);
+    for (const auto& [id, mesh] : next_->meshes) next_->logs.emplace(mesh->digest, mesh);
     next_->etag = listTag(next_->meshes);
     const bool first = before_.etag.empty();
     next_->changed = first || change_.any()
@@ -95,14 +102,23 @@ class Scan {
   [[nodiscard]] FolderChange& change() { return change_; }
 
  private:
-  void keep(const MeshPointer& mesh) { next_->meshes[mesh->id] = mesh; }
-  /// The old log goes on under its name if its own file is untouched: renamed over, not written
-  /// into.
-  void keepSound(const MeshPointer& old, const FileIdentity& file) {
-    if (old && old->file.inode != file.inode) keep(old);
+  void add(const fs::path& path, MeshPointer mesh, bool holds) {
+    const auto entry = std::make_shared<const MeshEntry>(*mesh, path, open_);
+    if (holds) entry->hold(std::move(mesh));
+    next_->meshes[entry->id] = entry;
+    change_.added.push_back(entry);
+  }
+  void keep(const EntryPointer& mesh) { next_->meshes[mesh->id] = mesh; }
+  /// The old log goes on under its name if its own file is untouched (renamed over, not written
+  /// into) and still open.
+  void keepSound(const EntryPointer& old, const FileIdentity& file) {
+    if (old && old->file.inode != file.inode && old->pin()) keep(old);
   }
 
   const Catalogue& before_;
+  const std::shared_ptr<OpenMeshes> open_;
+  const Clock::time_point end_;
+  std::size_t read_ = 0;  // files that were looked into
   std::shared_ptr<Catalogue> next_;
   FolderChange change_;
 };
@@ -111,9 +127,11 @@ class Scan {
 
 struct MeshStore::State {
   fs::path folder;
+  std::chrono::milliseconds readTime{};
+  std::shared_ptr<OpenMeshes> open = std::make_shared<OpenMeshes>(1);
   std::mutex scanning;  // one rescan at a time
   /// Replaced logs, and until when they are to be had under their digests. Guarded by `scanning`.
-  std::vector<std::pair<Clock::time_point, MeshPointer>> retired;
+  std::vector<std::pair<Clock::time_point, EntryPointer>> retired;
   mutable std::mutex mutex;
   CataloguePointer current = std::make_shared<Catalogue>();  // guarded by `mutex`
 
@@ -129,11 +147,12 @@ void MeshStore::State::retire(const Catalogue& before, Catalogue& next) {
   std::erase_if(retired, [now](const auto& entry) { return entry.first <= now; });
   for (const auto& [id, mesh] : before.meshes) {
     const auto it = next.meshes.find(id);
-    if (it != next.meshes.end() && it->second != mesh)
+    // its file has gone: unless it is open it cannot be had any more
+    if (it != next.meshes.end() && it->second != mesh && mesh->pin())
       retired.emplace_back(now + limits::kReplacedLogTime, mesh);
   }
   while (retired.size() > limits::kMaxReplacedLogs) retired.erase(retired.begin());
-  for (const auto& [until, mesh] : retired) next.logs.emplace(mesh->log.digest(), mesh);
+  for (const auto& [until, mesh] : retired) next.logs.emplace(mesh->digest, mesh);
 }
 
 MeshStore::MeshStore() : state_(std::make_unique<State>()) {}
@@ -141,19 +160,28 @@ MeshStore::MeshStore(MeshStore&&) noexcept = default;
 MeshStore& MeshStore::operator=(MeshStore&&) noexcept = default;
 MeshStore::~MeshStore() = default;
 
-Result<MeshStore> MeshStore::open(const fs::path& folder) {
+std::size_t StoreOptions::descriptorsForLogs() {
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return limits::kMaxOpenLogs;
+  return std::clamp<std::size_t>(limit.rlim_cur / 4, 1, limits::kMaxOpenLogs);
+}
+
+Result<MeshStore> MeshStore::open(const fs::path& folder, const StoreOptions& options) {
   MeshStore out;
   out.state_->folder = folder;
+  out.state_->readTime = options.readTime;
+  out.state_->open = std::make_shared<OpenMeshes>(options.mostOpen);
   if (Result<FolderChange> found = out.rescan(); !found) return std::unexpected(found.error());
   return out;
 }
 
-Result<FolderChange> MeshStore::rescan() const {
+Result<FolderChange> MeshStore::rescan(std::string_view first) const {
   const std::scoped_lock lock(state_->scanning);
-  const Result<std::vector<fs::path>> paths = listLogs(state_->folder);
+  Result<std::vector<fs::path>> paths = listLogs(state_->folder);
   if (!paths) return std::unexpected(paths.error());
+  std::ranges::stable_partition(*paths, [&](const fs::path& p) { return p.stem() == first; });
   const CataloguePointer before = state_->snapshot();
-  Scan scan(*before);
+  Scan scan(*before, state_->readTime, state_->open);
   for (const fs::path& path : *paths) scan.look(path);
   scan.finish();
   state_->retire(*before, *scan.next());
@@ -168,13 +196,23 @@ CataloguePointer MeshStore::catalogue() const { return state_->snapshot(); }
 MeshPointer MeshStore::find(std::string_view id) const {
   const CataloguePointer now = catalogue();
   const auto it = now->meshes.find(id);
-  return it == now->meshes.end() ? nullptr : it->second;
+  return it == now->meshes.end() ? nullptr : it->second->open();
 }
 
 MeshPointer MeshStore::findLog(std::string_view digest) const {
   const CataloguePointer now = catalogue();
   const auto it = now->logs.find(digest);
-  return it == now->logs.end() ? nullptr : it->second;
+  return it == now->logs.end() ? nullptr : it->second->open();
+}
+
+bool MeshStore::mayHave(std::string_view id) const {
+  const CataloguePointer now = catalogue();
+  return now->unread > 0 || now->meshes.contains(id);
+}
+
+bool MeshStore::mayHaveLog(std::string_view digest) const {
+  const CataloguePointer now = catalogue();
+  return now->unread > 0 || now->logs.contains(digest);
 }
 
 std::optional<fs::path> pathOfMesh(const fs::path& folder, std::string_view id) {

@@ -1,5 +1,5 @@
-// What is served: the logs of one folder, opened and checked, as immutable snapshots that follow
-// the folder (folder_watch.h).
+// What is served: the logs of one folder, checked and opened on demand, as immutable snapshots that
+// follow the folder (folder_watch.h).
 #pragma once
 
 #include <chrono>
@@ -11,7 +11,9 @@
 #include <string_view>
 #include <vector>
 
+#include "server/store/mesh_entry.h"
 #include "server/store/served_mesh.h"
+#include "server/wire/limits.h"
 
 namespace qtet {
 
@@ -23,11 +25,13 @@ struct Catalogue {
     FileIdentity file;
     Error error;
   };
-  using Meshes = std::map<std::string, MeshPointer, std::less<>>;
+  using Meshes = std::map<std::string, EntryPointer, std::less<>>;
 
   Meshes meshes;  ///< by id
   Meshes logs;    ///< by digest, with those that were replaced a short while ago
   std::vector<Refused> refused;
+  /// Files that nobody has looked into yet; the next rescans do.
+  std::size_t unread = 0;
   std::string etag;         ///< changes with the ids and their logs; without quotes
   std::time_t changed = 0;  ///< seconds since 1970
 };
@@ -35,10 +39,22 @@ using CataloguePointer = std::shared_ptr<const Catalogue>;
 
 /// What `rescan` found.
 struct FolderChange {
-  std::vector<MeshPointer> added;  ///< new or replaced
+  std::vector<EntryPointer> added;  ///< new or replaced
   std::vector<std::string> removed;
   std::vector<Catalogue::Refused> refused;  ///< newly
   [[nodiscard]] bool any() const { return !added.empty() || !removed.empty(); }
+};
+
+struct StoreOptions {
+  /// Logs held open at a time, but for those that clients are reading: a descriptor each.
+  std::size_t mostOpen = descriptorsForLogs();
+  /// After which a look at the folder leaves the files that it has not looked into to the next one;
+  /// the first limits::kLogsReadAtOnce are looked into in any case.
+  std::chrono::milliseconds readTime = limits::kFolderReadTime;
+
+  /// A quarter of what the process may open, and at most limits::kMaxOpenLogs: the rest is for
+  /// clients.
+  [[nodiscard]] static std::size_t descriptorsForLogs();
 };
 
 /// Thread-safe but for moves.
@@ -50,21 +66,27 @@ class MeshStore {
   MeshStore& operator=(MeshStore&&) noexcept;
   ~MeshStore();
 
-  /// Opens every `*.qtet` of `folder` (not below it, and no link that leads out of it). Damaged
-  /// ones end up in `refused`. Errors: io (the folder cannot be read).
-  [[nodiscard]] static Result<MeshStore> open(const std::filesystem::path& folder);
+  /// Checks every `*.qtet` of `folder` (not below it, and no link that leads out of it), as far as
+  /// the time allows. Damaged ones end up in `refused`. Errors: io (the folder cannot be read).
+  [[nodiscard]] static Result<MeshStore> open(const std::filesystem::path& folder,
+                                              const StoreOptions& options = {});
 
   /// Looks at the folder again; opens what is new or has changed. A damaged file that took the
-  /// place of a sound one leaves the sound one served. Errors: io (the folder cannot be read;
-  /// everything stays as it was).
-  [[nodiscard]] Result<FolderChange> rescan() const;
+  /// place of a sound one leaves the sound one served, if it is open. `first` is the id that is
+  /// looked at before all others. Errors: io (the folder cannot be read; everything stays as it
+  /// was).
+  [[nodiscard]] Result<FolderChange> rescan(std::string_view first = "") const;
 
   [[nodiscard]] const std::filesystem::path& folder() const;
   [[nodiscard]] CataloguePointer catalogue() const;
-  /// nullptr when there is none of that name.
+  /// nullptr when there is none of that name, or it cannot be opened now.
   [[nodiscard]] MeshPointer find(std::string_view id) const;
   /// nullptr when there is none of that digest.
   [[nodiscard]] MeshPointer findLog(std::string_view digest) const;
+  /// Whether what find() and findLog() did not find may be found in a moment: the log is known but
+  /// cannot be opened now, or not all of the folder was read yet.
+  [[nodiscard]] bool mayHave(std::string_view id) const;
+  [[nodiscard]] bool mayHaveLog(std::string_view digest) const;
 
  private:
   struct State;

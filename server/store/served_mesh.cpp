@@ -10,6 +10,7 @@
 #include <cassert>
 #include <cerrno>
 #include <cstring>
+#include <mutex>
 #include <optional>
 
 #include "codec/log/log_levels.h"
@@ -27,6 +28,25 @@ Descriptor::~Descriptor() {
 std::uint64_t ServedMesh::prefixBytes(std::uint32_t level) const {
   assert(level < manifest.levels.size());
   return qtet::prefixBytes(manifest, log.index(), level);
+}
+
+struct ServedMesh::Texts {
+  std::once_flag describedOnce, manifestOnce;
+  Document description, manifest;
+};
+
+std::shared_ptr<ServedMesh::Texts> ServedMesh::makeTexts() { return std::make_shared<Texts>(); }
+
+const Document& ServedMesh::description() const {
+  std::call_once(texts->describedOnce,
+                 [this] { texts->description = Document(describeMesh(*this)); });
+  return texts->description;
+}
+
+const Document& ServedMesh::manifestText() const {
+  std::call_once(texts->manifestOnce,
+                 [this] { texts->manifest = Document(manifestToJson(manifest)); });
+  return texts->manifest;
 }
 
 std::optional<FileIdentity> identityOf(const std::filesystem::path& path) {
@@ -88,37 +108,57 @@ Result<std::unique_ptr<Descriptor>> openFile(const std::filesystem::path& path,
   return file;
 }
 
-Result<LogFile> openLog(const Descriptor& file, const std::filesystem::path& path) {
+/// A LogFile takes a plain function for its digest: what it is to give where it is known.
+thread_local const std::string* knownDigest = nullptr;
+
+Result<LogFile> openLog(const Descriptor& file, const std::filesystem::path& path,
+                        const std::string* digest) {
   const std::string alias = "/proc/self/fd/" + std::to_string(file.number);
-  const auto digest = [](ByteView bytes) { return hexDigestOf(bytes); };
-  Result<LogFile> log = LogFile::open(alias, digest);
+  const auto digestOf = [](ByteView bytes) {
+    return knownDigest != nullptr ? *knownDigest : hexDigestOf(bytes);
+  };
+  knownDigest = digest;
+  Result<LogFile> log = LogFile::open(alias, digestOf);
+  knownDigest = nullptr;
   if (!log && log.error().message.starts_with(alias))
     log.error().message.replace(0, alias.size(), path.string());
   return log;
 }
 
-}  // namespace
-
-Result<MeshPointer> openMesh(const std::filesystem::path& path, std::string id) {
-  // Asked first: a file that changes while it is read differs from this identity, and is opened
-  // again.
-  const FileIdentity file = identityOf(path).value_or(FileIdentity());
+/// `digest` is nullptr where it is to be found out, and the checksums are to be compared.
+Result<MeshPointer> openAs(const std::filesystem::path& path, std::string id,
+                           const FileIdentity& file, const std::string* digest, bool copy) {
   const auto size = static_cast<std::uintmax_t>(file.bytes);
-  std::shared_ptr<void> copied = size > 0 ? takeCopy(size) : nullptr;
+  std::shared_ptr<void> copied = copy && size > 0 ? takeCopy(size) : nullptr;
   auto descriptor = openFile(path, copied ? std::optional(size) : std::nullopt);
   if (!descriptor) return std::unexpected(descriptor.error());
-  Result<LogFile> log = openLog(**descriptor, path);
+  Result<LogFile> log = openLog(**descriptor, path, digest);
   if (!log) return std::unexpected(log.error());
-  if (const Status whole = log->verifyChecksums(); !whole) return std::unexpected(whole.error());
+  if (digest == nullptr)
+    if (const Status whole = log->verifyChecksums(); !whole) return std::unexpected(whole.error());
   Result<Manifest> manifest = manifestOf(log->index());
   if (!manifest) return std::unexpected(manifest.error());
   auto out = std::make_shared<ServedMesh>(
       ServedMesh{std::move(id), std::move(*log), std::move(*manifest), file.modified.tv_sec, file});
   out->descriptor = std::move(*descriptor);
   out->copied = std::move(copied);
-  out->listEntry = describeEntry(*out);
-  out->description = Document(describeMesh(*out));
-  out->manifestText = Document(manifestToJson(out->manifest));
+  return out;
+}
+
+}  // namespace
+
+Result<MeshPointer> openMesh(const std::filesystem::path& path, std::string id, bool copy) {
+  // Asked first: a file that changes while it is read differs from this identity, and is opened
+  // again.
+  return openAs(path, std::move(id), identityOf(path).value_or(FileIdentity()), nullptr, copy);
+}
+
+Result<MeshPointer> reopenMesh(const std::filesystem::path& path, std::string id,
+                               const std::string& digest, const FileIdentity& file) {
+  Result<MeshPointer> out = openAs(path, std::move(id), file, &digest, true);
+  // Asked last: what was opened is what has this identity, before it was opened and behind it.
+  if (out && identityOf(path) != file)
+    return fail(ErrorCode::kIo, path.string() + ": has changed since the folder was read");
   return out;
 }
 

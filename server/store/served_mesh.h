@@ -46,9 +46,6 @@ struct ServedMesh {
   Manifest manifest;
   std::time_t modified;  ///< the file's, in seconds since 1970
   FileIdentity file{};
-  std::string listEntry{};  ///< its object in the list of meshes
-  Document description{};   ///< `GET /v1/meshes/{id}`
-  Document manifestText{};  ///< `GET /v1/logs/{sha256}/manifest`
   /// Of the bytes of `log`, for the kernel to send them from.
   std::unique_ptr<Descriptor> descriptor{};
   /// Of its packets, once a view has asked for them.
@@ -56,8 +53,19 @@ struct ServedMesh {
   /// Its part of limits::kMaxCopiedBytes; nullptr: the file is mapped.
   std::shared_ptr<void> copied{};
 
+  /// `GET /v1/meshes/{id}`, made when it is first asked for, since compressing it takes ten times as
+  /// long as opening a small log. Thread-safe, as the next one.
+  [[nodiscard]] const Document& description() const;
+  /// `GET /v1/logs/{sha256}/manifest`
+  [[nodiscard]] const Document& manifestText() const;
+  struct Texts;
+  std::shared_ptr<Texts> texts = makeTexts();
+
   /// Length of the file's prefix that holds level `level`. REQUIRES: such a level.
   [[nodiscard]] std::uint64_t prefixBytes(std::uint32_t level) const;
+
+ private:
+  static std::shared_ptr<Texts> makeTexts();
 };
 
 /// Whoever holds one keeps the log mapped, also after the file was replaced or removed.
@@ -68,8 +76,16 @@ using MeshPointer = std::shared_ptr<const ServedMesh>;
 /// (copied over, truncated) changes nothing of what stands under its digest. Others are mapped.
 /// Opens a log as mesh `id` and checks everything that can be checked without decoding: header,
 /// table, manifest, every CRC-32C. Reads the whole file. Errors: those of LogFile::open,
-/// verifyChecksums and manifestOf.
-[[nodiscard]] Result<MeshPointer> openMesh(const std::filesystem::path& path, std::string id);
+/// verifyChecksums and manifestOf. Without `copy` it is mapped in any case: for a look at it.
+[[nodiscard]] Result<MeshPointer> openMesh(const std::filesystem::path& path, std::string id,
+                                           bool copy = true);
+
+/// The log that openMesh() has given as mesh `id` with this digest, out of the same file: neither
+/// its digest nor its checksums are computed again, so this takes as long for large logs as for
+/// small ones, but for those that are copied. Errors: io (the file is not `file` any more, among
+/// others).
+[[nodiscard]] Result<MeshPointer> reopenMesh(const std::filesystem::path& path, std::string id,
+                                             const std::string& digest, const FileIdentity& file);
 
 /// nullopt: there is no such file, or it is no regular one.
 [[nodiscard]] std::optional<FileIdentity> identityOf(const std::filesystem::path& path);

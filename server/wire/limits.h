@@ -73,6 +73,17 @@ inline constexpr std::size_t kLingerBytes = 1u << 20;
 
 // ---- the store
 
+/// Logs held open beside those that are being read, a descriptor and a mapping each: as many as are
+/// popular at a time. Opening another takes a millisecond or so.
+inline constexpr std::size_t kMaxOpenLogs = 256;
+/// How long one look at a folder goes on looking into files, and how many are looked into however
+/// long it takes: the start waits for it, a folder of 100,000 logs is read in many looks.
+inline constexpr auto kFolderReadTime = 1s;
+inline constexpr std::size_t kLogsReadAtOnce = 64;
+/// Between them.
+inline constexpr auto kFolderReadRest = 50ms;
+/// Logs that came at a time and are told of one by one.
+inline constexpr std::size_t kMaxLoggedMeshes = 20;
 /// Meshes of one page of the list: about 1 KB each.
 inline constexpr std::size_t kMaxListPage = 1000;
 /// Bytes of a mesh's name: with `.qtet` and what an upload appends, below the 255 that file systems

@@ -24,7 +24,8 @@ TEST_F(SampleServer, everyLevelIsServedAsEveryKindOfFile) {
   ASSERT_TRUE(store_) << store_.error().message;
   const CataloguePointer catalogue = store_->catalogue();
   ASSERT_EQ(catalogue->meshes.size(), 1u);
-  const ServedMesh& mesh = *catalogue->meshes.begin()->second;
+  const MeshPointer served = catalogue->meshes.begin()->second->open();
+  const ServedMesh& mesh = *served;
   test::RunningServer server(*store_, viewer_);
   test::RawClient client(server.port());
   for (const ManifestLevel& level : mesh.manifest.levels) {

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
+#include <string>
+#include <vector>
 
 #include "server/store/bus_guard.h"
 #include "server/wire/limits.h"
@@ -128,6 +131,72 @@ TEST(MeshStore, aDamagedReplacementLeavesTheSoundLogServed) {
   EXPECT_TRUE(store->rescan()->refused.empty()) << "it is told of once";
   EXPECT_EQ(store->catalogue()->refused.size(), 1u);
   EXPECT_EQ(store->find("a"), old);
+}
+
+std::size_t openDescriptors() {
+  const std::filesystem::directory_iterator files("/proc/self/fd");
+  return static_cast<std::size_t>(std::distance(begin(files), end(files)));
+}
+
+TEST(MeshStore, moreLogsThanMayBeOpenAreServedAllTheSame) {
+  constexpr std::size_t kLogs = 20, kMostOpen = 3;
+  test::TempFolder folder;
+  std::vector<Bytes> logs;
+  for (std::uint32_t i = 0; i < kLogs; ++i) {
+    logs.push_back(test::makeLog({.seed = i + 1}));
+    folder.write(std::to_string(i) + ".qtet", logs.back());
+  }
+  const std::size_t before = openDescriptors();
+  const auto store = MeshStore::open(folder.path(), {.mostOpen = kMostOpen});
+  ASSERT_TRUE(store);
+  EXPECT_EQ(store->catalogue()->meshes.size(), kLogs);
+  EXPECT_LE(openDescriptors(), before + kMostOpen);
+  const MeshPointer kept = store->find("7");
+  for (int round = 0; round < 2; ++round)
+    for (std::size_t i = 0; i < kLogs; ++i) {
+      const MeshPointer mesh = store->find(std::to_string(i));
+      ASSERT_TRUE(mesh) << i;
+      EXPECT_TRUE(std::ranges::equal(mesh->log.bytes(), logs[i]));
+      EXPECT_EQ(store->findLog(mesh->log.digest()), mesh);
+      EXPECT_LE(openDescriptors(), before + kMostOpen + 2) << "the one kept, and the one in use";
+    }
+  EXPECT_EQ(store->find("7"), kept) << "not opened twice";
+}
+
+TEST(MeshStore, whatThereWasNoTimeForIsReadByTheNextLooks) {
+  constexpr std::size_t kMore = 5;
+  test::TempFolder folder;
+  for (std::size_t i = 0; i < limits::kLogsReadAtOnce + kMore; ++i)
+    folder.write(std::to_string(1000 + i) + ".qtet",
+                 test::makeLog({.chunks = 1, .fields = {}, .seed = static_cast<std::uint32_t>(i)}));
+  const auto store =
+      MeshStore::open(folder.path(), {.readTime = std::chrono::milliseconds::zero()});
+  ASSERT_TRUE(store);
+  EXPECT_EQ(store->catalogue()->meshes.size(), limits::kLogsReadAtOnce);
+  EXPECT_EQ(store->catalogue()->unread, kMore);
+  EXPECT_EQ(store->find("1066"), nullptr);
+  EXPECT_TRUE(store->mayHave("1066"));
+  EXPECT_EQ(store->rescan("1068")->added.size(), kMore);
+  EXPECT_EQ(store->catalogue()->unread, 0u);
+  EXPECT_NE(store->find("1066"), nullptr);
+  EXPECT_FALSE(store->mayHave("nothing"));
+}
+
+TEST(MeshStore, aLogThatWasChangedSinceItWasCheckedIsNotServedUnderItsDigest) {
+  test::TempFolder folder;
+  folder.write("a.qtet", test::makeLog({.seed = 1}));
+  folder.write("b.qtet", test::makeLog({.seed = 2}));
+  const auto store = MeshStore::open(folder.path(), {.mostOpen = 1});
+  ASSERT_TRUE(store);
+  const std::string digest = store->find("b")->log.digest();
+  ASSERT_TRUE(store->find("a")) << "and so b is let go";
+  folder.write("b.qtet", test::makeLog({.chunks = 5, .seed = 3}));
+  EXPECT_EQ(store->find("b"), nullptr);
+  EXPECT_EQ(store->findLog(digest), nullptr);
+  EXPECT_TRUE(store->mayHave("b")) << "it is known, and to be asked for again";
+  EXPECT_EQ(store->rescan()->added.size(), 1u);
+  ASSERT_TRUE(store->find("b"));
+  EXPECT_NE(store->find("b")->log.digest(), digest);
 }
 
 TEST(MeshStore, linksOutOfTheFolderAreNotFollowed) {
