@@ -14,6 +14,7 @@
 
 #include "proto/json_reader.h"
 #include "server/http/http_resource.h"
+#include "server/http/part_lock.h"
 #include "server/wire/limits.h"
 #include "server/wire/request_target.h"
 
@@ -22,42 +23,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Hidden, so that no scan of the folder takes one for a mesh. Those of a digest may be gone on
-// with.
-constexpr std::string_view kPrefix = ".upload-";
-constexpr std::string_view kSuffix = ".part";
-
-Reply diskTrouble(const std::string& what, int number) {
+Reply troubleOf(const std::string& what, int number) {
   if (number == ENOSPC || number == EDQUOT)
     return problem(507, "insufficient-storage", "the server's disk is full; nothing was changed");
   spdlog::error("an upload: {}: {}", what, std::strerror(number));
   return problem(500, "internal", what + ": " + std::strerror(number));
 }
 
-bool isDigest(std::string_view text) {
-  return text.size() == 64 && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
-}
-
 constexpr std::string_view kSomebodySends = "somebody is sending this log at the moment";
-
-/// Whether somebody else has the file locked; else it is now, until it is closed. Where the file
-/// system has no locks nobody has.
-bool isLocked(int file) { return ::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK; }
-
-/// Whether the file has its name still: between our opening and our locking it another server may
-/// have published or removed it.
-bool isAt(const fs::path& path, int file) {
-  struct stat opened{}, named{};
-  return ::fstat(file, &opened) == 0 && ::lstat(path.c_str(), &named) == 0 &&
-         opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
-}
-
-/// Unless an upload under way has it, of this server or another one.
-void removePart(const fs::path& path) {
-  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
-  if (file >= 0 && !isLocked(file) && isAt(path, file)) ::unlink(path.c_str());
-  if (file >= 0) ::close(file);
-}
 
 class Counted {
  public:
@@ -85,7 +58,13 @@ Upload::~Upload() {
   if (remove_) ::unlink(part_.c_str());
   ::close(file_);
   const std::scoped_lock lock(uploads_.mutex_);
-  uploads_.active_.erase(part_);
+  uploads_.parts_.end(part_);
+}
+
+Reply Upload::diskTrouble(const std::string& what, int number) {
+  Reply out = troubleOf(what, number);
+  if (out.status == 507) remove_ = true;
+  return out;
 }
 
 std::optional<Reply> Upload::append(ByteView bytes) {
@@ -187,18 +166,6 @@ std::optional<Reply> Uploads::precondition(const UploadRequest& request) const {
       mesh ? "the mesh's ETag is " + mesh->description().etag : "there is no mesh of that name");
 }
 
-fs::path Uploads::partOf(const UploadRequest& request) {
-  if (request.digest) return resumablePart(request.id, *request.digest);
-  return store_.folder() / (std::string(kPrefix) + std::to_string(::getpid()) + "." +
-                            std::to_string(next_++) + std::string(kSuffix));
-}
-
-// The mesh's name is a part of it: who may write one mesh neither sees nor touches what is sent for
-// another.
-fs::path Uploads::resumablePart(const std::string& id, const std::string& digest) const {
-  return store_.folder() / (std::string(kPrefix) + digest + "-" + id + std::string(kSuffix));
-}
-
 std::expected<std::unique_ptr<Upload>, Reply> Uploads::begin(const UploadRequest& request) {
   const auto refuse = [](Reply reply) { return std::unexpected(std::move(reply)); };
   if (request.totalBytes > options_.mostBytes)
@@ -208,16 +175,19 @@ std::expected<std::unique_ptr<Upload>, Reply> Uploads::begin(const UploadRequest
   if (std::optional<Reply> refusal = precondition(request)) return refuse(std::move(*refusal));
 
   const std::scoped_lock lock(mutex_);
-  const fs::path part = partOf(request);
-  if (active_.contains(part)) return refuse(problem(409, "upload-conflict", kSomebodySends));
-  if (active_.size() >= limits::kMaxUploads)
+  const fs::path part =
+      request.digest ? parts_.resumable(request.id, *request.digest) : parts_.nameless();
+  if (parts_.underWay(part)) return refuse(problem(409, "upload-conflict", kSomebodySends));
+  if (parts_.countUnderWay() >= limits::kMaxUploads)
     return refuse(busyReply("too many uploads; try again"));
-  removeOldParts(limits::kPartialUploadTime);
+  if (parts_.countUnderWay(request.token) >= limits::kMaxUploadsOfToken)
+    return refuse(busyReply("too many uploads of this token; try again"));
+  parts_.removeOld(limits::kPartialUploadTime);
   const int flags = O_WRONLY | O_APPEND | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK |
                     (request.first == 0 ? O_CREAT : 0);
   const int file = ::open(part.c_str(), flags, 0644);
   if (file < 0 && (request.first == 0 || errno != ENOENT))
-    return refuse(diskTrouble("the upload cannot be written", errno));
+    return refuse(troubleOf("the upload cannot be written", errno));
   const auto refuseOpened = [&](Reply reply) {
     if (file >= 0) ::close(file);
     return refuse(std::move(reply));
@@ -226,21 +196,25 @@ std::expected<std::unique_ptr<Upload>, Reply> Uploads::begin(const UploadRequest
   if (file >= 0 && (isLocked(file) || !isAt(part, file)))
     return refuseOpened(problem(409, "upload-conflict", kSomebodySends));
   if (file >= 0 && request.first == 0 && ::ftruncate(file, 0) != 0)
-    return refuseOpened(diskTrouble("the upload cannot be written", errno));
+    return refuseOpened(troubleOf("the upload cannot be written", errno));
   if (file < 0 || ::fstat(file, &info) != 0 ||
       static_cast<std::uint64_t>(info.st_size) != request.first)
     return refuseOpened(problem(
         409, "upload-conflict",
         "there are " + std::to_string(info.st_size) + " bytes of this log; go on from there"));
-  active_.insert(part);
+  if (std::optional<Reply> refusal = parts_.begin(request, part)) {
+    if (request.first == 0) ::unlink(part.c_str());  // it was empty
+    return refuseOpened(std::move(*refusal));
+  }
   return std::unique_ptr<Upload>(new Upload(*this, request, part, file));
 }
 
 std::optional<std::uint64_t> Uploads::partialBytes(const std::string& id,
                                                    const std::string& digest) const {
   assert(pathOfMesh("", id));
-  if (!isDigest(digest)) return std::nullopt;
-  const auto file = identityOf(resumablePart(id, digest));
+  if (!isLogDigest(digest)) return std::nullopt;
+  const std::scoped_lock lock(mutex_);
+  const auto file = identityOf(parts_.resumable(id, digest));
   return file ? std::optional(static_cast<std::uint64_t>(file->bytes)) : std::nullopt;
 }
 
@@ -250,7 +224,7 @@ Reply Uploads::remove(const UploadRequest& request) {
   if (!store_.find(request.id))
     return problem(404, "not-found", "there is no mesh of that name; the list is at /v1/meshes");
   if (::unlink(pathOfMesh(store_.folder(), request.id)->c_str()) != 0 && errno != ENOENT)
-    return diskTrouble("the mesh cannot be removed", errno);
+    return troubleOf("the mesh cannot be removed", errno);
   if (const Result<FolderChange> change = store_.rescan(); !change)
     return problem(500, "internal", change.error().message);
   spdlog::info("{}: removed by request", request.id);
@@ -262,27 +236,12 @@ Reply Uploads::remove(const UploadRequest& request) {
 
 void Uploads::sweep() const {
   const std::scoped_lock lock(mutex_);
-  removeOldParts(-limits::kPartialUploadTime);  // of any age, and whatever the clock was set to
-}
-
-void Uploads::removeOldParts(std::chrono::seconds ofNoDigest) const {
-  std::error_code ec;
-  for (fs::directory_iterator it(store_.folder(), ec), end; !ec && it != end; it.increment(ec)) {
-    const std::string name = it->path().filename().string();
-    if (!name.starts_with(kPrefix) || !name.ends_with(kSuffix)) continue;
-    const std::string_view middle = std::string_view(name).substr(
-        kPrefix.size(), name.size() - kPrefix.size() - kSuffix.size());
-    std::error_code gone;
-    const auto age = fs::file_time_type::clock::now() - it->last_write_time(gone);
-    const std::chrono::seconds most =
-        isDigest(middle.substr(0, middle.find('-'))) ? limits::kPartialUploadTime : ofNoDigest;
-    if (!gone && age > most && !active_.contains(store_.folder() / name)) removePart(it->path());
-  }
+  parts_.removeOld(-limits::kPartialUploadTime);  // of any age, and whatever the clock was set to
 }
 
 std::size_t Uploads::active() const {
   const std::scoped_lock lock(mutex_);
-  return active_.size();
+  return parts_.countUnderWay();
 }
 
 }  // namespace qtet

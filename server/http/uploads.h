@@ -11,12 +11,12 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <set>
 #include <stop_token>
 #include <string>
 
 #include "server/http/http_message.h"
 #include "server/http/log_check.h"
+#include "server/http/upload_parts.h"
 #include "server/store/mesh_store.h"
 #include "server/wire/upload_request.h"
 
@@ -32,7 +32,8 @@ class Upload {
   /// What came stays for going on with it if the request named its digest; else it goes.
   ~Upload();
 
-  /// nullopt: the bytes are written; else the answer that ends the upload: 507 (disk full) or 500.
+  /// nullopt: the bytes are written; else the answer that ends the upload: 507 (the disk is full;
+  /// what came goes) or 500.
   [[nodiscard]] std::optional<Reply> append(ByteView bytes);
   /// 202: this part is kept, and more is missing; nullopt: all bytes are there. Or 500.
   [[nodiscard]] std::optional<Reply> partial();
@@ -50,6 +51,8 @@ class Upload {
         part_(std::move(part)),
         file_(file),
         remove_(!request_.digest) {}
+  /// After 507 what came goes: kept it would keep the disk full.
+  Reply diskTrouble(const std::string& what, int number);
   /// nullopt: the log is sound, and `mesh` it; else the answer.
   std::optional<Reply> verify(const std::stop_token& stop, MeshPointer& mesh);
   Reply publish(const std::string& digest);
@@ -65,6 +68,7 @@ struct UploadOptions {
   std::uintmax_t mostBytes = limits::kMaxUploadBytes;  ///< of a log
   CheckLimits checkLimits{};
   LogCheck check = checkLog;
+  PartQuota parts{};  ///< of those that are kept
 };
 
 /// Thread-safe. Several servers may share the folder: each lets the parts of the others' uploads
@@ -73,7 +77,7 @@ class Uploads {
  public:
   /// `store` must outlive it.
   Uploads(const MeshStore& store, UploadOptions options)
-      : store_(store), options_(std::move(options)) {}
+      : store_(store), options_(std::move(options)), parts_(store.folder(), options_.parts) {}
 
   /// Opens the place where the bytes go; or the answer: 404 (no such name), 409 (the range does not
   /// go on where it stopped, or somebody is sending the same), 412, 413, 500, 503, 507.
@@ -97,22 +101,14 @@ class Uploads {
 
  private:
   friend class Upload;
-  /// Parts of no upload under way that nobody wrote to for kPartialUploadTime, or where they cannot
-  /// be gone on with for so long. REQUIRES: mutex_ is held.
-  void removeOldParts(std::chrono::seconds ofNoDigest) const;
   /// nullopt, or the 412 that If-Match and If-None-Match demand as things stand.
   [[nodiscard]] std::optional<Reply> precondition(const UploadRequest& request) const;
-  [[nodiscard]] std::filesystem::path partOf(const UploadRequest& request);
-  [[nodiscard]] std::filesystem::path resumablePart(const std::string& id,
-                                                    const std::string& digest) const;
-
   const MeshStore& store_;
   const UploadOptions options_;
   std::stop_source ending_;
   std::mutex publishing_;  // between the check of a condition and the rename nothing changes
   mutable std::mutex mutex_;
-  std::set<std::filesystem::path> active_;
-  std::uint64_t next_ = 0;
+  UploadParts parts_;  // guarded by `mutex_`
   std::atomic<std::size_t> checking_ = 0;
   std::atomic<std::uint64_t> published_ = 0;
 };

@@ -52,7 +52,9 @@ po::options_description settings() {
       "max-check-bytes", text(),
       "memory that checking an upload may take; more is 413 (default: 4 GiB)")(
       "max-check-seconds", text(), "time that it may take (default: 600)")(
-      "max-connections", text(), "at a time, in all (default: 4000)")(
+      "disk-reserve-bytes", text(),
+      "of the disk below which no upload is begun and no level kept (default: 256 MiB)")("max-connections", text(),
+                                                         "at a time, in all (default: 4000)")(
       "max-connections-per-address", text(),
       "at a time; 0 = no bound, as behind a proxy (default: 256)")(
       "max-levels-per-address", text(),
@@ -60,8 +62,8 @@ po::options_description settings() {
       "max-requests-per-second", text(),
       "of one address; 0 = no bound, as behind a proxy (default: 2000)")(
       "allow-origins", text(),
-      "origins between commas, like https://viewer.example, whose pages may open streams (default: "
-      "any)");
+      "origins between commas, like https://viewer.example, whose pages may open streams, ask "
+      "for tickets and change meshes (default: any)");
   return out;
 }
 
@@ -167,6 +169,7 @@ Result<CommandLine> toCommandLine(const po::variables_map& values) {
   reader.number("max-upload-bytes", out.maxUploadBytes, 1, kAny);
   reader.number("max-check-bytes", out.maxCheckBytes, 1, kAny);
   reader.seconds("max-check-seconds", out.maxCheckTime, 1, 1'000'000);
+  reader.number("disk-reserve-bytes", out.diskReserve, 0, kAny);
   reader.number("max-connections", out.maxConnections, 1, 1'000'000);
   reader.number("max-connections-per-address", out.maxConnectionsPerAddress, 0, 1'000'000);
   reader.number("max-levels-per-address", out.maxLevelsPerAddress, 0, 1'000'000);
@@ -280,6 +283,7 @@ std::string configText(const CommandLine& options) {
   out << "max-upload-bytes = " << options.maxUploadBytes
       << "\nmax-check-bytes = " << options.maxCheckBytes
       << "\nmax-check-seconds = " << options.maxCheckTime.count()
+      << "\ndisk-reserve-bytes = " << options.diskReserve
       << "\nmax-connections = " << options.maxConnections
       << "\nmax-connections-per-address = " << options.maxConnectionsPerAddress
       << "\nmax-levels-per-address = " << options.maxLevelsPerAddress

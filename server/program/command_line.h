@@ -34,6 +34,7 @@ struct CommandLine {
   std::uintmax_t maxUploadBytes = limits::kMaxUploadBytes;
   std::uintmax_t maxCheckBytes = limits::kMaxCheckBytes;
   std::chrono::seconds maxCheckTime = limits::kCheckTime;
+  std::uintmax_t diskReserve = limits::kDiskReserve;
   std::size_t maxConnections = limits::kMaxConnections;
   std::size_t maxConnectionsPerAddress = limits::kMaxConnectionsPerAddress;  ///< 0: no bound
   std::size_t maxLevelsPerAddress = limits::kMaxLevelJobsPerAddress;         ///< 0: no bound

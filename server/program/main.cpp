@@ -157,7 +157,8 @@ ServerOptions serverOptions(const CommandLine& options, LevelCache* cache, Acces
           .reload = [&options, &secrets] { reload(options, secrets); },
           .allowedOrigins = options.allowedOrigins,
           .uploads = {.mostBytes = options.maxUploadBytes,
-                      .checkLimits = {options.maxCheckBytes, options.maxCheckTime}}};
+                      .checkLimits = {options.maxCheckBytes, options.maxCheckTime},
+                      .parts = {.reserve = options.diskReserve}}};
 }
 
 int serve(const CommandLine& options) {
@@ -174,8 +175,9 @@ int serve(const CommandLine& options) {
   std::optional<TemporaryFolder> temporary;
   const std::optional<fs::path> cacheFolder = wantedCache(options);
   if (!cacheFolder) temporary.emplace("server");
-  const Result<std::unique_ptr<LevelCache>> cache = LevelCache::open(
-      cacheFolder.value_or(temporary ? temporary->path() : fs::path()), options.cacheBytes);
+  const Result<std::unique_ptr<LevelCache>> cache =
+      LevelCache::open(cacheFolder.value_or(temporary ? temporary->path() : fs::path()),
+                       options.cacheBytes, options.diskReserve);
   if (!cache) return cannotServe(cache.error());
   Result<std::unique_ptr<AccessLog>> accessLog = nullptr;
   if (options.accessLog) accessLog = AccessLog::open(*options.accessLog);

@@ -90,6 +90,8 @@ Answer routeWriting(const RequestView& request, const RequestTarget& target, con
     return problem(404, "not-found",
                    "this cannot be the name of a mesh: a file name, not hidden, in UTF-8");
   UploadRequest out{.id = id};
+  if (const auto bearer = bearerDigest(request.authorization))
+    out.token.assign(bearer->begin(), bearer->end());
   if (request.ifMatch) out.ifMatch = *request.ifMatch;
   if (request.ifNoneMatch) out.ifNoneMatch = *request.ifNoneMatch;
   if (request.method == "PUT") return routePut(request, target, std::move(out));

@@ -71,7 +71,9 @@ bool isKey(std::string_view text) {
 }  // namespace
 
 Result<std::unique_ptr<LevelCache>> LevelCache::open(const fs::path& folder,
-                                                     std::uintmax_t mostBytes) {
+                                                     std::uintmax_t mostBytes,
+                                                     std::uintmax_t reserve,
+                                                     FreeDiskBytes freeBytes) {
   std::error_code ec;
   fs::create_directories(folder, ec);
   std::vector<std::tuple<fs::file_time_type, std::string, std::uintmax_t>> found;
@@ -91,7 +93,7 @@ Result<std::unique_ptr<LevelCache>> LevelCache::open(const fs::path& folder,
     return name.ends_with(kSuffix) && isKey(name.substr(0, name.size() - kSuffix.size()));
   });
   std::ranges::sort(found);
-  std::unique_ptr<LevelCache> out(new LevelCache(folder, mostBytes));
+  std::unique_ptr<LevelCache> out(new LevelCache(folder, mostBytes, reserve, std::move(freeBytes)));
   for (const auto& [time, key, bytes] : found) out->add(key, bytes);
   return out;
 }
@@ -139,7 +141,9 @@ std::optional<LevelFile> LevelCache::find(const std::string& key) {
 }
 
 LevelFile LevelCache::put(const std::string& key, Bytes bytes) {
-  if (bytes.empty() || bytes.size() > mostBytes_) return fromMemory(std::move(bytes));
+  if (bytes.empty() || bytes.size() > mostBytes_ ||
+      freeBytes_(folder_) < reserve_ + bytes.size() + kSealBytes)
+    return fromMemory(std::move(bytes));
   const std::size_t size = bytes.size();
   const Bytes seal = sealOf(bytes);
   bytes.insert(bytes.end(), seal.begin(), seal.end());

@@ -11,7 +11,9 @@
 #include <string>
 
 #include "proto/error.h"
+#include "server/store/free_disk.h"
 #include "server/store/level_file.h"
+#include "server/wire/limits.h"
 
 namespace qtet {
 
@@ -20,14 +22,15 @@ class LevelCache {
  public:
   /// Makes the folder if it is not there, takes over what an earlier run left in it, and removes
   /// what one that was killed did not finish. Errors: io.
-  [[nodiscard]] static Result<std::unique_ptr<LevelCache>> open(const std::filesystem::path& folder,
-                                                                std::uintmax_t mostBytes);
+  [[nodiscard]] static Result<std::unique_ptr<LevelCache>> open(
+      const std::filesystem::path& folder, std::uintmax_t mostBytes,
+      std::uintmax_t reserve = limits::kDiskReserve, FreeDiskBytes freeBytes = freeDiskBytes);
 
   /// nullopt: there is none, or its file is not what was written (its length or its CRC-32C differs),
   /// which then goes. Reads the whole level. `key` is hexadecimal.
   [[nodiscard]] std::optional<LevelFile> find(const std::string& key);
   /// Keeps the bytes and gives them back; where the disk refuses, or they alone are more than there
-  /// may be, from memory.
+  /// may be, or less than the reserve would be left on the disk, from memory.
   [[nodiscard]] LevelFile put(const std::string& key, Bytes bytes);
   [[nodiscard]] std::uintmax_t bytes() const;
 
@@ -36,14 +39,19 @@ class LevelCache {
     std::string key;
     std::uintmax_t bytes;
   };
-  LevelCache(std::filesystem::path folder, std::uintmax_t mostBytes)
-      : folder_(std::move(folder)), mostBytes_(mostBytes) {}
+  LevelCache(std::filesystem::path folder, std::uintmax_t mostBytes, std::uintmax_t reserve,
+             FreeDiskBytes freeBytes)
+      : folder_(std::move(folder)),
+        mostBytes_(mostBytes),
+        reserve_(reserve),
+        freeBytes_(std::move(freeBytes)) {}
   [[nodiscard]] std::filesystem::path pathOf(const std::string& key) const;
   void add(const std::string& key, std::uintmax_t bytes);
   void forget(const std::string& key);
 
   const std::filesystem::path folder_;
-  const std::uintmax_t mostBytes_;
+  const std::uintmax_t mostBytes_, reserve_;
+  const FreeDiskBytes freeBytes_;
   mutable std::mutex mutex_;
   std::uintmax_t bytes_ = 0;
   std::list<Entry> entries_;  // the most recently used first

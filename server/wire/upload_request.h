@@ -10,7 +10,8 @@ namespace qtet {
 struct UploadRequest {
   enum class Kind : std::uint8_t { kPut, kDelete };
   Kind kind = Kind::kPut;
-  std::string id;  ///< a name that pathOfMesh takes
+  std::string id{};     ///< a name that pathOfMesh takes
+  std::string token{};  ///< the digest of the token that it comes with, "" where nobody asks
   /// 64 lower-case hexadecimal digits, where the request names it.
   std::optional<std::string> digest{};
   std::optional<std::string> ifMatch{}, ifNoneMatch{};

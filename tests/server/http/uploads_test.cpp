@@ -48,6 +48,7 @@ using test::HttpResponse;
 using test::RawClient;
 
 constexpr const char* kToken = "aSecretOfTwentyTwoChars";
+constexpr const char* kOtherToken = "anotherSecretOfManyChars";
 
 class UploadTest : public ::testing::Test {
  protected:
@@ -88,7 +89,7 @@ class UploadTest : public ::testing::Test {
   test::ServedFolder folder_;
   test::HeldCheck check_;
   Access access_{*Tokens::parse(std::string("write new* ") + kToken + "\nwrite noise " + kToken +
-                                "\n# nobody\n")};
+                                "\nwrite theirs " + kOtherToken + "\n# nobody\n")};
   std::unique_ptr<MeshStore> store_ =
       std::make_unique<MeshStore>(*MeshStore::open(folder_.logFolder()));
   const std::string log_ = textOf(testing::logBytes(testing::soundMesh(8, 77)));
@@ -219,7 +220,7 @@ TEST_F(UploadTest, aClientThatGoesEndsTheCheckAndMayAskForItAgain) {
 TEST_F(UploadTest, othersAreServedWhileALogIsChecked) {
   check_.hold(true);
   std::vector<std::unique_ptr<RawClient>> clients;
-  for (std::size_t i = 0; i + 1 < limits::kMaxUploads; ++i) {
+  for (std::size_t i = 0; i + 1 < limits::kMaxUploadsOfToken; ++i) {
     clients.push_back(std::make_unique<RawClient>(server_.port()));
     clients.back()->send(wholeUpload("/v1/meshes/new" + std::to_string(i)));
   }
@@ -235,7 +236,7 @@ TEST_F(UploadTest, othersAreServedWhileALogIsChecked) {
   EXPECT_EQ(remover.receive().status, 204u);
   clients.push_back(std::make_unique<RawClient>(server_.port()));
   clients.back()->send(wholeUpload("/v1/meshes/new9"));
-  EXPECT_TRUE(server_.comesTo("uploads_open", limits::kMaxUploads));
+  EXPECT_TRUE(server_.comesTo("uploads_open", limits::kMaxUploadsOfToken));
   const HttpResponse refused = put("/v1/meshes/new99", log_);
   EXPECT_EQ(refused.status, 503u) << "those that wait have their places";
   EXPECT_EQ(refused.header("retry-after"), "2");
@@ -458,23 +459,102 @@ TEST_F(UploadTest, aBodyThatDoesNotComeEndsInTime) {
   EXPECT_EQ(leftovers(), 0u);
 }
 
-TEST_F(UploadTest, thereAreAsManyUploadsAsTheLimitAllowsAndOneOfANameAndDigest) {
+TEST_F(UploadTest, oneTokenHasSoManyUploadsAndLeavesPlacesToOthers) {
   std::vector<std::unique_ptr<RawClient>> clients;
-  for (std::size_t i = 0; i < limits::kMaxUploads; ++i) {
+  for (std::size_t i = 0; i < limits::kMaxUploadsOfToken; ++i) {
     clients.push_back(std::make_unique<RawClient>(server_.port()));
     const std::string digest = i == 0 ? "?digest=" + digestOf(log_) : "";
     clients.back()->send(head("PUT", "/v1/meshes/new" + std::to_string(i) + digest, log_.size()) +
                          log_.substr(0, 10));
   }
-  EXPECT_TRUE(server_.comesTo("uploads_open", limits::kMaxUploads));
+  EXPECT_TRUE(server_.comesTo("uploads_open", limits::kMaxUploadsOfToken));
   EXPECT_EQ(put("/v1/meshes/new0?digest=" + digestOf(log_), log_).status, 409u);
   const HttpResponse refused = put("/v1/meshes/new9", log_);
   EXPECT_EQ(refused.status, 503u);
   EXPECT_EQ(refused.header("retry-after"), "2");
+  RawClient other(server_.port());
+  other.send("PUT /v1/meshes/theirs HTTP/1.1\r\nHost: a\r\nAuthorization: Bearer " +
+             std::string(kOtherToken) + "\r\nContent-Length: " + std::to_string(log_.size()) +
+             "\r\n\r\n" + log_);
+  EXPECT_EQ(other.receive().status, 201u) << "trickling bytes keep nobody else out";
   for (auto& client : clients) {
     client->send(log_.substr(10));
     EXPECT_EQ(client->receive().status, 201u);
   }
+}
+
+/// An upload of four bytes under a digest of that digit.
+UploadRequest fourBytes(char digit, const std::string& token = "one") {
+  return {.id = "wing",
+          .token = token,
+          .digest = std::string(64, digit),
+          .bodyBytes = 4,
+          .totalBytes = 4};
+}
+
+/// Begins it and breaks it off behind its first byte.
+unsigned beginAndBreakOff(Uploads& uploads, const UploadRequest& request) {
+  const auto begun = uploads.begin(request);
+  if (!begun) return begun.error().status;
+  EXPECT_FALSE((*begun)->append(ByteView(Bytes{1})));
+  return 0;
+}
+
+TEST(Uploads, theOldestPartsOfATokenMakeRoomForItsNextOne) {
+  const test::ServedFolder folder;
+  Uploads uploads(folder.store(), {.parts = {.mostOfToken = 2}});
+  const auto has = [&](char digit) {
+    return uploads.partialBytes("wing", std::string(64, digit)).has_value();
+  };
+  const auto age = [&](char digit, int minutes) {
+    fs::last_write_time(folder.logFolder() / (".upload-" + std::string(64, digit) + "-wing.part"),
+                        fs::file_time_type::clock::now() - std::chrono::minutes(minutes));
+  };
+  EXPECT_EQ(beginAndBreakOff(uploads, fourBytes('f', "other")), 0u);
+  age('f', 90);
+  for (const char digit : {'a', 'b'}) EXPECT_EQ(beginAndBreakOff(uploads, fourBytes(digit)), 0u);
+  age('b', 60);
+  EXPECT_EQ(beginAndBreakOff(uploads, fourBytes('c')), 0u);
+  EXPECT_TRUE(has('a') && has('c'));
+  EXPECT_FALSE(has('b')) << "the oldest of this token";
+  EXPECT_TRUE(has('f')) << "somebody else's";
+}
+
+TEST(Uploads, bytesOfATokensPartsAreBoundedLikewise) {
+  const test::ServedFolder folder;
+  Uploads uploads(folder.store(), {.parts = {.bytesOfToken = 5}});
+  for (const char digit : {'a', 'b'}) EXPECT_EQ(beginAndBreakOff(uploads, fourBytes(digit)), 0u);
+  EXPECT_EQ(beginAndBreakOff(uploads, fourBytes('c')), 0u);
+  EXPECT_FALSE(uploads.partialBytes("wing", std::string(64, 'a')) &&
+               uploads.partialBytes("wing", std::string(64, 'b')));
+  UploadRequest large = fourBytes('d');
+  large.totalBytes = 6;
+  EXPECT_EQ(beginAndBreakOff(uploads, large), 507u) << "alone beyond the bound";
+}
+
+TEST(Uploads, partsOfAllTogetherAreBoundedAndNobodyElsesGo) {
+  const test::ServedFolder folder;
+  Uploads uploads(folder.store(), {.parts = {.most = 2}});
+  EXPECT_EQ(beginAndBreakOff(uploads, fourBytes('a', "one")), 0u);
+  EXPECT_EQ(beginAndBreakOff(uploads, fourBytes('b', "two")), 0u);
+  EXPECT_EQ(beginAndBreakOff(uploads, fourBytes('c', "three")), 507u);
+  EXPECT_EQ(uploads.partialBytes("wing", std::string(64, 'c')), std::nullopt);
+  EXPECT_TRUE(uploads.partialBytes("wing", std::string(64, 'a')));
+  EXPECT_EQ(beginAndBreakOff(uploads, fourBytes('d', "two")), 0u) << "in the place of its own";
+}
+
+TEST(Uploads, aDiskWithTooLittleLeftTakesNothing) {
+  const test::ServedFolder folder;
+  std::uintmax_t left = 103;
+  Uploads uploads(folder.store(),
+                  {.parts = {.reserve = 100, .freeBytes = [&](const fs::path&) { return left; }}});
+  EXPECT_EQ(beginAndBreakOff(uploads, fourBytes('a')), 507u);
+  left = 104;
+  const auto first = uploads.begin(fourBytes('a'));
+  EXPECT_TRUE(first);
+  EXPECT_EQ(beginAndBreakOff(uploads, fourBytes('b')), 507u) << "what is to come counts";
+  left = 108;
+  EXPECT_EQ(beginAndBreakOff(uploads, fourBytes('b')), 0u);
 }
 
 TEST(Uploads, anotherServersPartsAreLetAlone) {

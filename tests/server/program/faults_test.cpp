@@ -254,6 +254,9 @@ TEST_F(FaultsTest, aFullDiskRefusesAnUploadAndLeavesWhatWasThere) {
   EXPECT_EQ(refused.status, 507u) << refused.body;
   EXPECT_EQ(get("/v1/meshes/kept").header("etag"), before);
   EXPECT_EQ(put("new", other).status, 507u);
+  const std::string digest =
+      sha256Hex({reinterpret_cast<const std::uint8_t*>(other.data()), other.size()});
+  EXPECT_EQ(put("new?digest=" + digest, other).status, 507u) << "and its part goes";
   EXPECT_EQ(get("/v1/meshes/new").status, 404u);
   EXPECT_EQ(get("/v1/logs/" + digest_ + "/log").body, log_) << "reading goes on";
   for (const auto& entry : std::filesystem::directory_iterator(logs()))

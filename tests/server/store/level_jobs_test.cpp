@@ -298,6 +298,20 @@ TEST(LevelCache, aDamagedLevelIsNoticedAndMadeAnew) {
     }
 }
 
+TEST(LevelCache, aDiskWithTooLittleLeftKeepsNothing) {
+  const test::TempFolder folder;
+  std::uintmax_t left = 0;
+  const auto cache =
+      LevelCache::open(folder.path(), 100, 50, [&](const std::filesystem::path&) { return left; });
+  const std::string key(64, 'c');
+  const Bytes level(10, 1);
+  EXPECT_TRUE(std::ranges::equal((*cache)->put(key, level).bytes, level)) << "from memory";
+  EXPECT_FALSE((*cache)->find(key));
+  left = 100;
+  (void)(*cache)->put(key, level);
+  EXPECT_TRUE((*cache)->find(key));
+}
+
 TEST(LevelCache, aFolderThatCannotBeIsAnError) {
   EXPECT_EQ(LevelCache::open("/proc/nothing", 1).error().code, ErrorCode::kIo);
 }

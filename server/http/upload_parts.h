@@ -1,0 +1,82 @@
+// The parts of uploads that lie in the folder until somebody goes on with them, and how many of
+// them there may be.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/http/http_message.h"
+#include "server/store/free_disk.h"
+#include "server/wire/limits.h"
+#include "server/wire/upload_request.h"
+
+namespace qtet {
+
+/// Bounds on parts that are kept, one under way among them.
+struct PartQuota {
+  std::size_t most = limits::kMaxParts, mostOfToken = limits::kMaxPartsOfToken;
+  std::uintmax_t bytes = limits::kMaxPartBytes, bytesOfToken = limits::kMaxPartBytesOfToken;
+  /// Of the disk, below which nothing is begun.
+  std::uintmax_t reserve = limits::kDiskReserve;
+  FreeDiskBytes freeBytes = freeDiskBytes;
+};
+
+/// Not thread-safe. Which token a part belongs to is known of those that came since the start; the
+/// others count for all together.
+class UploadParts {
+ public:
+  UploadParts(std::filesystem::path folder, PartQuota quota)
+      : folder_(std::move(folder)), quota_(std::move(quota)) {}
+
+  /// Where the bytes go that can be gone on with.
+  [[nodiscard]] std::filesystem::path resumable(const std::string& id,
+                                                const std::string& digest) const;
+  /// Where those go that cannot; another place each time.
+  [[nodiscard]] std::filesystem::path nameless();
+
+  /// Makes room for an upload into `part`: beyond the bounds of its token the oldest parts of the
+  /// same token go. nullopt: there is room, and `part` is under way; else 507, and nothing has
+  /// changed for others.
+  [[nodiscard]] std::optional<Reply> begin(const UploadRequest& request,
+                                           const std::filesystem::path& part);
+  /// The upload into `part` has ended.
+  void end(const std::filesystem::path& part);
+  [[nodiscard]] bool underWay(const std::filesystem::path& part) const {
+    return underWay_.contains(part);
+  }
+  [[nodiscard]] std::size_t countUnderWay() const { return underWay_.size(); }
+  [[nodiscard]] std::size_t countUnderWay(const std::string& token) const;
+
+  /// Removes parts of no upload under way that nobody wrote to for limits::kPartialUploadTime, or
+  /// where they cannot be gone on with for `ofNoDigest`.
+  void removeOld(std::chrono::seconds ofNoDigest) const;
+
+ private:
+  struct Part {
+    std::filesystem::path path;
+    std::uintmax_t bytes = 0;
+    std::filesystem::file_time_type written;
+    std::string token;
+  };
+  struct UnderWay {
+    std::string token;
+    std::uintmax_t toCome = 0;  ///< bytes, when it was begun
+  };
+  /// Those that nobody sends at the moment, the oldest first, without `except`.
+  [[nodiscard]] std::vector<Part> kept(const std::filesystem::path& except) const;
+
+  const std::filesystem::path folder_;
+  const PartQuota quota_;
+  std::map<std::filesystem::path, UnderWay> underWay_;
+  std::map<std::filesystem::path, std::string> tokens_;  // of parts of this run
+  std::uint64_t next_ = 0;
+};
+
+}  // namespace qtet
