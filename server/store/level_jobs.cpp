@@ -39,12 +39,18 @@ struct LevelJobs::State {
   std::uint64_t nextSubscription = 0;
   std::map<std::string, JobPointer> jobs;  // wanted by somebody, waiting or running
   std::deque<JobPointer> waiting;
+  /// When a job last began that this address wanted, counted in jobs; of those that wait alone.
+  std::map<Address, std::uint64_t> turns;
+  std::uint64_t begun = 0;
   std::vector<JobPointer> running;
   LevelJobCounts counts;
   std::vector<std::jthread> threads;
 
   void work();
   void finish(const JobPointer& job, Result<Bytes> bytes);
+  /// The first job of the address that has waited longest since one of its own began. REQUIRES:
+  /// mutex is held, and some job waits.
+  [[nodiscard]] JobPointer takeNext();
   void withdraw(const JobPointer& job, std::uint64_t subscription);
   /// Why there is no place for another job. REQUIRES: mutex is held.
   [[nodiscard]] std::optional<LevelRefusal> refusalOf(Address from) const;
@@ -57,12 +63,36 @@ void LevelJobs::State::work() {
       std::unique_lock lock(mutex);
       news.wait(lock, [this] { return ending || !waiting.empty(); });
       if (ending) return;
-      job = waiting.front();
-      waiting.pop_front();
+      job = takeNext();
       running.push_back(job);
     }
     finish(job, options.maker(job->request, job->stop.get_token()));
   }
+}
+
+JobPointer LevelJobs::State::takeNext() {
+  // an address that wants nothing may have gone, and another one lie in its place
+  std::erase_if(turns, [this](const auto& entry) {
+    return std::ranges::none_of(waiting, [&](const JobPointer& job) {
+      return std::ranges::any_of(job->subscribers, [&](const auto& subscription) {
+        return subscription.second.from == entry.first;
+      });
+    });
+  });
+  const auto turnOf = [this](const JobPointer& job) {
+    std::uint64_t out = ~std::uint64_t{0};
+    for (const auto& [number, wanted] : job->subscribers) {
+      const auto turn = turns.find(wanted.from);
+      out = std::min(out, turn == turns.end() ? 0 : turn->second);
+    }
+    return out;
+  };
+  const auto next = std::ranges::min_element(waiting, {}, turnOf);  // the first of equals
+  JobPointer out = *next;
+  waiting.erase(next);
+  ++begun;
+  for (const auto& [number, wanted] : out->subscribers) turns[wanted.from] = begun;
+  return out;
 }
 
 void LevelJobs::State::finish(const JobPointer& job, Result<Bytes> bytes) {

@@ -30,6 +30,7 @@ enum class LevelRefusal : std::uint8_t {
   kGone,
 };
 
+/// Addresses take turns: a job of one waits for one of each other at most, beside those that run.
 class LevelJobs {
  public:
   /// Where a subscription comes from, told from others by where the object lies; nullptr: from

@@ -108,8 +108,9 @@ inline constexpr auto kFolderInterval = 60s;
 
 // ---- levels
 
-/// Levels being made or waiting at a time; each may hold a whole mesh in memory.
-inline constexpr std::size_t kMaxLevelJobs = 8;
+/// Levels being made or waiting at a time: one that waits holds its log open, one that is made a
+/// whole mesh in memory.
+inline constexpr std::size_t kMaxLevelJobs = 64;
 /// Of them that one address may want: a browser's connections to one server are six, so that no
 /// page is refused, and other addresses find places all the same.
 inline constexpr std::size_t kMaxLevelJobsPerAddress = 6;

@@ -17,6 +17,8 @@
 #include <fstream>
 #include <functional>
 #include <future>
+#include <latch>
+#include <mutex>
 #include <thread>
 #include <vector>
 
@@ -310,6 +312,34 @@ TEST(LevelCache, aDiskWithTooLittleLeftKeepsNothing) {
   left = 100;
   (void)(*cache)->put(key, level);
   EXPECT_TRUE((*cache)->find(key));
+}
+
+TEST_F(LevelJobsTest, addressesTakeTurns) {
+  const int one = 0, two = 0, three = 0;
+  std::mutex mutex;
+  std::vector<std::uint32_t> made;
+  LevelJobs::Options turns = options(20);
+  turns.maker = [&](const LevelRequest& request, const std::stop_token& stop) {
+    Result<Bytes> out = maker_(request, stop);
+    const std::scoped_lock lock(mutex);
+    made.push_back(request.level);
+    return out;
+  };
+  std::vector<LevelJobs::Subscription> wanted;
+  std::latch all(8);
+  LevelJobs jobs(turns);
+  const auto want = [&](std::uint32_t k, LevelJobs::Address from) {
+    wanted.push_back(
+        *jobs.submit(level(k), [&](const Result<LevelFile>&) { all.count_down(); }, from));
+  };
+  want(0, &one);
+  maker_.waitForBegun(1);
+  for (const std::uint32_t k : {1u, 2u, 3u}) want(k, &one);
+  for (const std::uint32_t k : {4u, 5u, 6u}) want(k, &two);
+  want(7, &three);
+  maker_.release();
+  all.wait();
+  EXPECT_EQ(made, (std::vector<std::uint32_t>{0, 4, 7, 1, 5, 2, 6, 3}));
 }
 
 TEST(LevelCache, aFolderThatCannotBeIsAnError) {
