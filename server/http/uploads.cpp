@@ -8,6 +8,7 @@
 
 #include <cassert>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <exception>
 #include <new>
@@ -31,6 +32,36 @@ Reply troubleOf(const std::string& what, int number) {
 }
 
 constexpr std::string_view kSomebodySends = "somebody is sending this log at the moment";
+
+/// While it lives no other server that shares the folder changes what is published in it. Where the
+/// file system has no locks, what RENAME_NOREPLACE guards is guarded alone.
+class FolderLock {
+ public:
+  explicit FolderLock(const fs::path& folder)
+      : file_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    while (file_ >= 0 && ::flock(file_, LOCK_EX) != 0 && errno == EINTR) {
+    }
+  }
+  ~FolderLock() {
+    if (file_ >= 0) ::close(file_);
+  }
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  const int file_;
+};
+
+/// 0 or errno. `newly`: EEXIST where there is something of that name.
+int publishAs(const fs::path& part, const fs::path& target, bool newly) {
+  if (newly) {
+    if (::renameat2(AT_FDCWD, part.c_str(), AT_FDCWD, target.c_str(), RENAME_NOREPLACE) == 0)
+      return 0;
+    // EINVAL: the file system does not know how
+    if (errno != EINVAL && errno != ENOSYS) return errno;
+  }
+  return ::rename(part.c_str(), target.c_str()) == 0 ? 0 : errno;
+}
 
 class Counted {
  public:
@@ -129,11 +160,17 @@ Reply Upload::finish(const std::stop_token& stop) {
 
 Reply Upload::publish(const std::string& digest) {
   const std::scoped_lock lock(uploads_.publishing_);
+  std::optional<FolderLock> folder(uploads_.store_.folder());
+  if (request_.ifMatch || request_.ifNoneMatch)
+    (void)uploads_.store_.rescan(request_.id);  // what another server has published counts
   if (std::optional<Reply> refusal = uploads_.precondition(request_)) return std::move(*refusal);
   const bool replaced = uploads_.store_.find(request_.id) != nullptr;
   const fs::path target = *pathOfMesh(uploads_.store_.folder(), request_.id);
-  if (::rename(part_.c_str(), target.c_str()) != 0)
-    return diskTrouble("the upload cannot be published", errno);
+  const int failed = publishAs(part_, target, request_.ifNoneMatch && !replaced);
+  if (failed == EEXIST)
+    return problem(412, "precondition-failed", "there is a file of that name by now");
+  if (failed != 0) return diskTrouble("the upload cannot be published", failed);
+  folder.reset();
   remove_ = false;
   if (const Status synced = syncFolder(uploads_.store_.folder()); !synced)
     spdlog::warn("after an upload: {}", synced.error().message);
@@ -220,6 +257,8 @@ std::optional<std::uint64_t> Uploads::partialBytes(const std::string& id,
 
 Reply Uploads::remove(const UploadRequest& request) {
   const std::scoped_lock lock(publishing_);
+  const FolderLock folder(store_.folder());
+  if (request.ifMatch || request.ifNoneMatch) (void)store_.rescan(request.id);
   if (std::optional<Reply> refusal = precondition(request)) return std::move(*refusal);
   if (!store_.find(request.id))
     return problem(404, "not-found", "there is no mesh of that name; the list is at /v1/meshes");

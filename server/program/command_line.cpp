@@ -53,7 +53,12 @@ po::options_description settings() {
       "memory that checking an upload may take; more is 413 (default: 4 GiB)")(
       "max-check-seconds", text(), "time that it may take (default: 600)")(
       "disk-reserve-bytes", text(),
-      "of the disk below which no upload is begun and no level kept (default: 256 MiB)")("max-connections", text(),
+      "of the disk below which no upload is begun and no level kept (default: 256 MiB)")(
+      "drain-seconds", text(),
+      "how long /readyz is 503, and all is served, between SIGTERM and the end (default: 0)")(
+      "ticket-key", text(),
+      "file of the key that signs tickets, the same for servers of one folder (default: "
+      ".qtet-tickets.key in the folder, which is made)")("max-connections", text(),
                                                          "at a time, in all (default: 4000)")(
       "max-connections-per-address", text(),
       "at a time; 0 = no bound, as behind a proxy (default: 256)")(
@@ -170,6 +175,8 @@ Result<CommandLine> toCommandLine(const po::variables_map& values) {
   reader.number("max-check-bytes", out.maxCheckBytes, 1, kAny);
   reader.seconds("max-check-seconds", out.maxCheckTime, 1, 1'000'000);
   reader.number("disk-reserve-bytes", out.diskReserve, 0, kAny);
+  reader.seconds("drain-seconds", out.drainTime, 0, 86'400);
+  reader.path("ticket-key", out.ticketKey);
   reader.number("max-connections", out.maxConnections, 1, 1'000'000);
   reader.number("max-connections-per-address", out.maxConnectionsPerAddress, 0, 1'000'000);
   reader.number("max-levels-per-address", out.maxLevelsPerAddress, 0, 1'000'000);
@@ -280,10 +287,12 @@ std::string configText(const CommandLine& options) {
   path("tokens", options.tokens);
   path("tls-certificate", options.tlsCertificate);
   path("tls-key", options.tlsKey);
+  path("ticket-key", options.ticketKey);
   out << "max-upload-bytes = " << options.maxUploadBytes
       << "\nmax-check-bytes = " << options.maxCheckBytes
       << "\nmax-check-seconds = " << options.maxCheckTime.count()
       << "\ndisk-reserve-bytes = " << options.diskReserve
+      << "\ndrain-seconds = " << options.drainTime.count()
       << "\nmax-connections = " << options.maxConnections
       << "\nmax-connections-per-address = " << options.maxConnectionsPerAddress
       << "\nmax-levels-per-address = " << options.maxLevelsPerAddress

@@ -35,6 +35,8 @@ struct CommandLine {
   std::uintmax_t maxCheckBytes = limits::kMaxCheckBytes;
   std::chrono::seconds maxCheckTime = limits::kCheckTime;
   std::uintmax_t diskReserve = limits::kDiskReserve;
+  std::chrono::seconds drainTime{0};
+  std::optional<std::filesystem::path> ticketKey;
   std::size_t maxConnections = limits::kMaxConnections;
   std::size_t maxConnectionsPerAddress = limits::kMaxConnectionsPerAddress;  ///< 0: no bound
   std::size_t maxLevelsPerAddress = limits::kMaxLevelJobsPerAddress;         ///< 0: no bound

@@ -27,6 +27,8 @@ namespace fs = std::filesystem;
 
 constexpr int kCannotServe = 1;
 constexpr int kWrongUsage = 2;
+/// In the folder of the logs, hidden.
+constexpr const char* kTicketKey = ".qtet-tickets.key";
 
 /// A socket a connection: the usual soft limit of 1,024 files is far below what the server is made
 /// for.
@@ -104,12 +106,25 @@ struct Secrets {
   std::unique_ptr<CurrentTls> tls{};
 };
 
+/// That which all servers of the folder have. Where nobody may write there, tickets are for the
+/// server that gave them.
+Result<std::string> ticketKeyOf(const CommandLine& options) {
+  if (options.action == CommandLine::Action::kCheckConfig && !options.ticketKey)
+    return std::string();
+  Result<std::string> out = loadTicketKey(options.ticketKey.value_or(options.folder / kTicketKey));
+  if (out || options.ticketKey || out.error().code != ErrorCode::kIo) return out;
+  spdlog::info("{}; tickets are for this server alone", out.error().message);
+  return std::string();
+}
+
 Result<Secrets> loadSecrets(const CommandLine& options) {
   Secrets out;
   if (options.tokens) {
     Result<Tokens> tokens = Tokens::load(*options.tokens);
     if (!tokens) return std::unexpected(tokens.error());
-    out.access = std::make_unique<Access>(std::move(*tokens));
+    const Result<std::string> key = ticketKeyOf(options);
+    if (!key) return std::unexpected(key.error());
+    out.access = std::make_unique<Access>(std::move(*tokens), *key);
   }
   if (options.tlsCertificate) {
     auto context = TlsContext::load(*options.tlsCertificate, *options.tlsKey);
@@ -158,7 +173,8 @@ ServerOptions serverOptions(const CommandLine& options, LevelCache* cache, Acces
           .allowedOrigins = options.allowedOrigins,
           .uploads = {.mostBytes = options.maxUploadBytes,
                       .checkLimits = {options.maxCheckBytes, options.maxCheckTime},
-                      .parts = {.reserve = options.diskReserve}}};
+                      .parts = {.reserve = options.diskReserve}},
+          .drain = options.drainTime};
 }
 
 int serve(const CommandLine& options) {

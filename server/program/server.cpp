@@ -94,6 +94,7 @@ struct Server::State {
                               std::uint16_t port);
   [[nodiscard]] std::vector<Metrics::Figure> figures() const;
   void end();
+  void drain();
   void stopLanes() {
     for (Lane& lane : lanes) lane.context.stop();
   }
@@ -103,8 +104,8 @@ struct Server::State {
   const MeshStore& store;
   ServerOptions options;
   Metrics metrics;
-  std::atomic<bool> ending = false;
-  AdminRoutes admin{metrics, [this] { return !ending; }, [this] { return figures(); }};
+  std::atomic<bool> draining = false, ending = false;
+  AdminRoutes admin{metrics, [this] { return !draining && !ending; }, [this] { return figures(); }};
   Uploads uploads;
   Router router;
   Connections connections{options.maxConnections};
@@ -113,7 +114,7 @@ struct Server::State {
   std::vector<Lane> lanes;
   tcp::acceptor acceptor{mainContext()};
   tcp::acceptor adminAcceptor{mainContext()};
-  asio::steady_timer grace{mainContext()};
+  asio::steady_timer grace{mainContext()}, drained{mainContext()};
   asio::signal_set signals{mainContext()};
   LevelJobs jobs{{limits::kLevelThreads, limits::kMaxLevelJobs, options.cache, options.makeLevel,
                   options.maxLevelsPerAddress}};
@@ -239,7 +240,18 @@ std::vector<Metrics::Figure> Server::State::figures() const {
           counter("levels_failed_total", "Levels that could not be made.", levels.failed)};
 }
 
+void Server::State::drain() {
+  if (draining.exchange(true) || options.drain.count() == 0) return end();
+  spdlog::info("not ready any more; the end begins in {} s",
+               std::chrono::duration_cast<std::chrono::seconds>(options.drain).count());
+  drained.expires_after(options.drain);
+  drained.async_wait([this](error_code cancelled) {
+    if (!cancelled && !ending) end();
+  });
+}
+
 void Server::State::end() {
+  drained.cancel();
   if (ending) return stopLanes();  // asked twice: at once
   ending = true;
   spdlog::info("ending; responses under way have {} s",
@@ -263,7 +275,7 @@ void Server::State::watchSignals() {
   *wait = [this, weak = std::weak_ptr(wait)] {
     signals.async_wait([this, wait = weak.lock()](error_code ec, int signal) {
       if (ec) return;
-      if (signal != SIGHUP) end();
+      if (signal != SIGHUP) drain();
       if (signal == SIGHUP) options.reload();
       (*wait)();
     });
@@ -354,6 +366,10 @@ void Server::run() {
   for (std::size_t i = 1; i < state_->lanes.size(); ++i)
     others.emplace_back([&lane = state_->lanes[i]] { lane.context.run(); });
   state_->mainContext().run();
+}
+
+void Server::drain() {
+  asio::post(state_->mainContext(), [this] { state_->drain(); });
 }
 
 void Server::stop() {

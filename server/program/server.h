@@ -1,6 +1,7 @@
 // The listening server: accepts connections, spreads them over its threads, and ends in good order.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -44,6 +45,9 @@ struct ServerOptions {
   std::vector<std::string> allowedOrigins{};
   LevelJobs::Maker makeLevel = qtet::makeLevel;
   UploadOptions uploads{};
+  /// From the first signal to the end, all is served on, and /readyz is 503: for whoever spreads
+  /// requests over several servers.
+  std::chrono::milliseconds drain{0};
 };
 
 /// Store, viewer, cache, access log, TLS and access must outlive it.
@@ -67,6 +71,9 @@ class Server {
   /// Serves until stop() or a signal, then as long as responses under way need, at most the time of
   /// grace. REQUIRES: listen() succeeded.
   void run();
+  /// As a signal does: not ready any more, and after the time of draining, or when asked again,
+  /// stop(). Thread-safe; returns at once.
+  void drain();
   /// Accepts nothing new, closes WebSockets with 1001, lets responses finish. Thread-safe; returns
   /// at once.
   void stop();

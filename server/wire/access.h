@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
@@ -23,7 +24,9 @@ class Access {
   /// Of a system's clock nothing is asked: its jumps neither end a ticket nor keep one.
   using Clock = std::chrono::steady_clock;
 
-  explicit Access(Tokens tokens) : tokens_(std::make_shared<const Tokens>(std::move(tokens))) {}
+  /// Tickets are signed with `ticketKey`, and taken from every other server that has it; "": from
+  /// this one alone.
+  explicit Access(Tokens tokens, std::string ticketKey = "");
   [[nodiscard]] std::shared_ptr<const Tokens> tokens() const;
   /// Requests from now on are judged by these; so are the tickets of tokens that are not among them
   /// any more.
@@ -31,7 +34,8 @@ class Access {
 
   /// A secret that stands for the token of that digest once, for limits::kTicketTime: browsers
   /// cannot send a header with a WebSocket. nullopt: that token has limits::kMaxTickets of them
-  /// unused.
+  /// unused. Each server takes a ticket once: its own by the steady clock, those of others by the
+  /// system's.
   [[nodiscard]] std::optional<std::string> giveTicket(const SecretDigest& token,
                                                       Clock::time_point now = Clock::now());
   /// The digest of the token that it stands for, for which it is no good any more; nullopt: it is
@@ -47,10 +51,19 @@ class Access {
     SecretDigest token{};
     Clock::time_point end{};
   };
+  [[nodiscard]] std::optional<SecretDigest> takeForeign(std::string_view ticket,
+                                                        Clock::time_point now);
+
+  const std::string ticketKey_, issuer_;
   mutable std::mutex mutex_;
   std::shared_ptr<const Tokens> tokens_;
   /// By their own digests, so that the time of looking one up tells nothing of it.
   std::map<SecretDigest, Ticket> tickets_;
+  std::map<SecretDigest, Clock::time_point> usedForeign_;  ///< until when
 };
+
+/// The key that servers of one folder share: what stands in `file`, which is made, readable for its
+/// owner alone, where it is not there. Errors: io, bad-value (it has less than 32 bytes).
+[[nodiscard]] Result<std::string> loadTicketKey(const std::filesystem::path& file);
 
 }  // namespace qtet

@@ -557,6 +557,35 @@ TEST(Uploads, aDiskWithTooLittleLeftTakesNothing) {
   EXPECT_EQ(beginAndBreakOff(uploads, fourBytes('b')), 0u);
 }
 
+TEST(Uploads, ofTwoServersOnOneFolderOneMakesANewMesh) {
+  const test::ServedFolder folder;
+  const MeshStore others = *MeshStore::open(folder.logFolder());
+  Uploads first(folder.store(), {}), second(others, {});
+  const Bytes log = testing::logBytes(testing::soundMesh(8, 77)),
+              another = testing::logBytes(testing::soundMesh(8, 78));
+  const auto send = [](Uploads& uploads, const Bytes& bytes, const UploadRequest& conditions) {
+    UploadRequest request = conditions;
+    request.id = "wing";
+    request.digest = sha256Hex(bytes);
+    request.bodyBytes = request.totalBytes = bytes.size();
+    auto begun = uploads.begin(request);
+    EXPECT_TRUE(begun);
+    EXPECT_FALSE((*begun)->append(bytes));
+    return std::move(*begun);
+  };
+  auto one = send(first, log, {.ifNoneMatch = "*"}),
+       two = send(second, another, {.ifNoneMatch = "*"});
+  EXPECT_EQ(one->finish({}).status, 201u);
+  EXPECT_EQ(two->finish({}).status, 412u);
+  one.reset(), two.reset();
+  const std::string tag = folder.store().find("wing")->description().etag;
+  (void)others.rescan();
+  const auto third = send(first, another, {.ifMatch = tag}),
+             fourth = send(second, log, {.ifMatch = tag});
+  EXPECT_EQ(third->finish({}).status, 200u);
+  EXPECT_EQ(fourth->finish({}).status, 412u) << "the other server has changed it meanwhile";
+}
+
 TEST(Uploads, anotherServersPartsAreLetAlone) {
   const test::ServedFolder folder;
   const auto old =

@@ -48,6 +48,7 @@ class RunningServer {
   [[nodiscard]] std::uint16_t port() const { return server_.port(); }
   [[nodiscard]] std::uint16_t adminPort() const { return server_.adminPort(); }
   void stop() { server_.stop(); }
+  void drain() { server_.drain(); }
   /// Waits for run() to return.
   void join();
   /// Whether the figure of /metrics, named without "qtet_", comes to `value` within kPatience.

@@ -128,6 +128,26 @@ TEST(Operators, anAddressOfTheirOwnHasTheirPathsAlone) {
   EXPECT_EQ(test::StreamClient(server.adminPort()).httpStatus(), 404u);
 }
 
+TEST(Operators, aServerThatDrainsServesOnAndIsNotReady) {
+  const test::ServedFolder folder;
+  test::RunningServer server(folder.store(), folder.viewer(), {.drain = test::kNever});
+  EXPECT_EQ(test::RawClient(server.port()).get("/readyz").status, 200u);
+  server.drain();
+  EXPECT_TRUE(test::eventually(
+      [&] { return test::RawClient(server.port()).get("/readyz").status == 503; }));
+  EXPECT_EQ(test::RawClient(server.port()).get("/v1/meshes").status, 200u) << "new ones are let in";
+  EXPECT_EQ(test::RawClient(server.port()).get("/livez").status, 200u);
+  server.drain();
+  server.join();
+}
+
+TEST(Operators, theTimeOfDrainingEndsByItself) {
+  const test::ServedFolder folder;
+  test::RunningServer server(folder.store(), folder.viewer(), {.drain = test::kShort});
+  server.drain();
+  server.join();
+}
+
 TEST(Operators, theFiguresAreWhatPrometheusReads) {
   if (std::system("command -v promtool > /dev/null") != 0)
     GTEST_SKIP() << "promtool (Debian: prometheus) is not installed";

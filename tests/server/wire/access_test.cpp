@@ -85,6 +85,40 @@ TEST(Tickets, areForOnceForThirtySecondsAndForTheirTokenAlone) {
   EXPECT_EQ(access.takeTicket("", now), std::nullopt);
 }
 
+TEST(Tickets, ofOneServerAreTakenOnceByEveryOtherThatHasItsKey) {
+  const std::string key(32, 'k');
+  Access one(*Tokens::parse("read * " + kReader), key),
+      two(*Tokens::parse("read * " + kReader), key),
+      stranger(*Tokens::parse("read * " + kReader), std::string(32, 'x'));
+  const auto now = Access::Clock::now();
+  const std::string ticket = *one.giveTicket(*digestOf(kReader), now);
+  EXPECT_EQ(stranger.takeTicket(ticket, now), std::nullopt);
+  for (std::size_t at = 0; at < ticket.size(); at += 7) {
+    std::string forged = ticket;
+    forged[at] = forged[at] == 'a' ? 'b' : 'a';
+    EXPECT_EQ(two.takeTicket(forged, now), std::nullopt) << at;
+  }
+  EXPECT_EQ(two.takeTicket(ticket.substr(0, ticket.size() - 1), now), std::nullopt);
+  EXPECT_EQ(two.takeTicket(ticket, now), digestOf(kReader));
+  EXPECT_EQ(two.takeTicket(ticket, now), std::nullopt) << "used";
+  EXPECT_EQ(one.takeTicket(ticket, now), digestOf(kReader));
+  EXPECT_EQ(one.takeTicket(ticket, now), std::nullopt) << "used, and its own is no foreign one";
+}
+
+TEST(Tickets, theKeyOfAFolderIsMadeOnceAndForItsOwnerAlone) {
+  const test::TempFolder folder;
+  const auto file = folder.path() / "key";
+  const auto made = loadTicketKey(file);
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_GE(made->size(), 32u);
+  EXPECT_EQ(loadTicketKey(file), *made);
+  EXPECT_EQ(std::filesystem::status(file).permissions(),
+            std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+  folder.write("short", std::string_view("abc\n"));
+  EXPECT_EQ(loadTicketKey(folder.path() / "short").error().code, ErrorCode::kBadValue);
+  EXPECT_EQ(loadTicketKey("/proc/nothing/key").error().code, ErrorCode::kIo);
+}
+
 TEST(Tickets, ofOneTokenAreBoundedAndOfAnotherStillToBeHad) {
   Access access(*Tokens::parse("read * " + kReader));
   const auto now = Access::Clock::now();
