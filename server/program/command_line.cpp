@@ -68,7 +68,10 @@ po::options_description settings() {
       "of one address; 0 = no bound, as behind a proxy (default: 2000)")(
       "allow-origins", text(),
       "origins between commas, like https://viewer.example, whose pages may open streams, ask "
-      "for tickets and change meshes (default: any)");
+      "for tickets and change meshes (default: any)")(
+      "frame-ancestors", text(),
+      "pages that may show the viewer in a frame, as CSP writes them: * , 'none', 'self' "
+      "https://a.example (default: *)");
   return out;
 }
 
@@ -154,6 +157,15 @@ void readOrigins(Reader& reader, CommandLine& out) {
   }
 }
 
+void readFrameAncestors(Reader& reader, CommandLine& out) {
+  out.frameAncestors = reader.text("frame-ancestors").value_or(out.frameAncestors);
+  const bool odd = std::ranges::any_of(
+      out.frameAncestors, [](char c) { return c < ' ' || c > '~' || c == ';' || c == ','; });
+  if (odd || out.frameAncestors.empty())
+    reader.refuse("--frame-ancestors " + out.frameAncestors +
+                  " is no list of sources between spaces, like 'self' https://a.example");
+}
+
 Result<CommandLine> toCommandLine(const po::variables_map& values) {
   CommandLine out;
   if (values.contains("check-config")) out.action = CommandLine::Action::kCheckConfig;
@@ -192,6 +204,7 @@ Result<CommandLine> toCommandLine(const po::variables_map& values) {
   out.accessLog = reader.text("access-log");
   readAdmin(reader, out);
   readOrigins(reader, out);
+  readFrameAncestors(reader, out);
   if (reader.error()) return std::unexpected(*reader.error());
   return out;
 }
@@ -300,6 +313,7 @@ std::string configText(const CommandLine& options) {
   for (std::size_t i = 0; i < options.allowedOrigins.size(); ++i)
     out << (i == 0 ? "allow-origins = " : ",") << options.allowedOrigins[i];
   if (!options.allowedOrigins.empty()) out << "\n";
+  out << "frame-ancestors = " << options.frameAncestors << "\n";
   return out.str();
 }
 

@@ -43,6 +43,7 @@ struct CommandLine {
   unsigned maxRequestsPerSecond = limits::kMaxRequestsPerSecond;             ///< 0: no bound
   /// Of pages that may open streams; empty: any.
   std::vector<std::string> allowedOrigins;
+  std::string frameAncestors = "*";
 };
 
 /// `environment` is what `environ` points to: NAME=VALUE texts and a nullptr. An option

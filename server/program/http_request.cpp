@@ -145,12 +145,23 @@ bool isStreamHandshake(const RequestHeader& header) {
          http::token_list{header[http::field::connection]}.exists("upgrade");
 }
 
-std::optional<Reply> handshakeRefusal(const RequestHeader& header,
-                                      const std::vector<std::string>* origins) {
+std::optional<Reply> originRefusal(const RequestHeader& header,
+                                   const std::vector<std::string>* origins) {
   const auto origin = headerValue(header, http::field::origin);
-  if (origins != nullptr && !origins->empty() && origin &&
-      std::ranges::find(*origins, *origin) == origins->end())
-    return closing(403, "forbidden", "pages of this origin may not open streams here");
+  if (origins == nullptr || origins->empty() || !origin ||
+      std::ranges::find(*origins, *origin) != origins->end())
+    return std::nullopt;
+  return closing(
+      403, "forbidden",
+      "pages of this origin may not open streams, ask for tickets or change meshes here");
+}
+
+bool isReading(const RequestHeader& header) {
+  const http::verb method = header.method();
+  return method == http::verb::get || method == http::verb::head || method == http::verb::options;
+}
+
+std::optional<Reply> handshakeRefusal(const RequestHeader& header) {
   if (header[http::field::sec_websocket_version] != "13") {
     Reply out =
         closing(426, "upgrade-required", "this server speaks version 13 of the WebSocket protocol");

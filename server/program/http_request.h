@@ -28,10 +28,13 @@ void joinLists(RequestHeader& header);
 
 /// Whether the request is a WebSocket handshake on the stream's path.
 [[nodiscard]] bool isStreamHandshake(const RequestHeader& header);
-/// The answer to a handshake that is not answered by 101: another version, no key, no subprotocol,
-/// or of a page whose origin is not among `origins` (unless that is nullptr or empty; whoever names
-/// no origin is no browser, and whoever is none may name any).
-[[nodiscard]] std::optional<Reply> handshakeRefusal(const RequestHeader& header,
-                                                    const std::vector<std::string>* origins);
+/// 403 for a page whose origin is not among `origins` (unless that is nullptr or empty; whoever
+/// names no origin is no browser, and whoever is none may name any). It closes the connection.
+[[nodiscard]] std::optional<Reply> originRefusal(const RequestHeader& header,
+                                                 const std::vector<std::string>* origins);
+/// GET, HEAD and OPTIONS.
+[[nodiscard]] bool isReading(const RequestHeader& header);
+/// The answer to a handshake that is not answered by 101: another version, no key, no subprotocol.
+[[nodiscard]] std::optional<Reply> handshakeRefusal(const RequestHeader& header);
 
 }  // namespace qtet

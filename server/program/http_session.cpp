@@ -24,6 +24,9 @@ namespace asio = boost::asio;
 namespace http = boost::beast::http;
 using Parser = HttpInput::Parser;
 
+/// A browser that has read it asks by https alone for a year (RFC 6797).
+constexpr const char* kStrictTransport = "max-age=31536000";
+
 /// Whether bytes follow the head. Unless they are read, what comes after them cannot be told from
 /// them, and the connection must end.
 bool hasBody(const RequestView& request) {
@@ -136,6 +139,9 @@ std::optional<Reply> HttpSession::earlyAnswer(const RequestHeader& header) {
     refusal->close = true;
     return refusal;
   }
+  if (!isReading(header))
+    if (std::optional<Reply> refusal = originRefusal(header, services_.allowedOrigins))
+      return refusal;
   if (!peer_.client || peer_.client->countRequest()) return std::nullopt;
   Reply out =
       problem(429, "too-many-requests", "this address asks too often; come back in a moment");
@@ -145,7 +151,11 @@ std::optional<Reply> HttpSession::earlyAnswer(const RequestHeader& header) {
 }
 
 asio::awaitable<bool> HttpSession::becomeStream(Parser& parser) {
-  if (std::optional<Reply> refusal = handshakeRefusal(parser.get(), services_.allowedOrigins)) {
+  if (std::optional<Reply> refusal = originRefusal(parser.get(), services_.allowedOrigins)) {
+    co_await refuse(std::move(*refusal));
+    co_return false;
+  }
+  if (std::optional<Reply> refusal = handshakeRefusal(parser.get())) {
     co_await refuse(std::move(*refusal));
     co_return false;
   }
@@ -187,6 +197,8 @@ asio::awaitable<bool> HttpSession::send(Reply reply, bool keepAlive) {
     co_return false;
   }
   keepAlive = keepAlive && !reply.close && !peer_.connection->ending();
+  if (peer_.socket.isTls())
+    reply.headers.emplace_back("Strict-Transport-Security", kStrictTransport);
   report_.addHeaders(reply);
   const std::string head = headerText(reply, keepAlive);
   ByteView body;

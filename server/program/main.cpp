@@ -171,6 +171,7 @@ ServerOptions serverOptions(const CommandLine& options, LevelCache* cache, Acces
           .access = secrets.access.get(),
           .reload = [&options, &secrets] { reload(options, secrets); },
           .allowedOrigins = options.allowedOrigins,
+          .frameAncestors = options.frameAncestors,
           .uploads = {.mostBytes = options.maxUploadBytes,
                       .checkLimits = {options.maxCheckBytes, options.maxCheckTime},
                       .parts = {.reserve = options.diskReserve}},

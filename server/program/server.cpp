@@ -83,7 +83,8 @@ struct Server::State {
         uploads(meshes, options.uploads),
         router(meshes, viewer, options.adminHost ? nullptr : &admin,
                options.access != nullptr ? std::optional<Writing>({*options.access, uploads})
-                                         : std::nullopt),
+                                         : std::nullopt,
+               options.frameAncestors),
         lanes(std::max<std::size_t>(options.threads, 1)) {}
 
   asio::awaitable<void> acceptConnections(tcp::acceptor& acceptor, const Services& services);

@@ -41,8 +41,11 @@ struct ServerOptions {
   Access* access = nullptr;
   /// With endOnSignals what SIGHUP does; empty: it ends the process, as usual.
   std::function<void()> reload{};
-  /// Of pages that may open streams, as browsers write them; empty: any.
+  /// Of pages that may open streams, ask for tickets and change meshes, as browsers write them;
+  /// empty: any.
   std::vector<std::string> allowedOrigins{};
+  /// Pages that may show the viewer in a frame, as CSP writes them.
+  std::string frameAncestors = "*";
   LevelJobs::Maker makeLevel = qtet::makeLevel;
   UploadOptions uploads{};
   /// From the first signal to the end, all is served on, and /readyz is 503: for whoever spreads

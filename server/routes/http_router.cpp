@@ -24,6 +24,8 @@ constexpr std::string_view kPagePolicy =
     "img-src 'self' data: blob:; connect-src 'self' http: https: ws: wss: blob: data:; object-src "
     "'none'; base-uri 'none'; form-action "
     "'none'";
+/// Where a link from the page leads tells nobody else which mesh was looked at.
+constexpr const char* kReferrerPolicy = "same-origin";
 
 Reply optionsReply(std::string_view allow = kAllow) {
   Reply out;
@@ -126,13 +128,14 @@ Answer answer(const RequestView& request, Find find) {
 }  // namespace
 
 Router::Router(const MeshStore& store, const ViewerFiles& viewer, const AdminRoutes* admin,
-               std::optional<Writing> writing)
+               std::optional<Writing> writing, const std::string& frameAncestors)
     : store_(store),
       viewer_(viewer),
       admin_(admin),
       writing_(std::move(writing)),
       started_(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())),
-      openApi_(openApiJson()) {}
+      openApi_(openApiJson()),
+      pagePolicy_(std::string(kPagePolicy) + "; frame-ancestors " + frameAncestors) {}
 
 /// What only a server with tokens answers: changes, and tickets.
 std::optional<Answer> Router::routeWithTokens(const RequestView& request,
@@ -247,8 +250,10 @@ Reply Router::viewerReply(const RequestView& request, const RequestTarget& targe
   if (file == nullptr) return notFound("the viewer has no file of that name; its page is at /");
   Resource resource{
       {file->etag, file->modified}, file->type, file->immutable ? kForEver : kRevalidate, {}};
-  if (file->type.starts_with("text/html"))
-    resource.headers.emplace_back("Content-Security-Policy", kPagePolicy);
+  if (file->type.starts_with("text/html")) {
+    resource.headers.emplace_back("Content-Security-Policy", pagePolicy_);
+    resource.headers.emplace_back("Referrer-Policy", kReferrerPolicy);
+  }
   return variantReply(request, std::move(resource), {file->bytes, file->gzip, file->zstd}, nullptr);
 }
 

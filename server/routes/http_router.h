@@ -25,8 +25,9 @@ class Router {
  public:
   /// With `admin`, which must outlive it, the operators' paths are answered too; with `writing`,
   /// whose parts must, meshes may be changed and read by those who have a token for it.
+  /// `frameAncestors` are the pages that may show the viewer's in a frame, as CSP writes them.
   Router(const MeshStore& store, const ViewerFiles& viewer, const AdminRoutes* admin = nullptr,
-         std::optional<Writing> writing = std::nullopt);
+         std::optional<Writing> writing = std::nullopt, const std::string& frameAncestors = "*");
 
   [[nodiscard]] Answer route(const RequestView& request) const;
 
@@ -45,6 +46,7 @@ class Router {
   std::optional<Writing> writing_;
   std::time_t started_;
   Document openApi_;
+  std::string pagePolicy_;
 };
 
 /// The operators' paths and nothing else, for an address of their own.

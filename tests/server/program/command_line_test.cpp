@@ -144,6 +144,8 @@ TEST(CommandLine, wrongUsageIsExplained) {
                           {"a", "--threads", "0"},
                           {"a", "--threads", "257"},
                           {"a", "--watch", "perhaps"},
+                          {"a", "--frame-ancestors", "a; script-src *"},
+                          {"a", "--frame-ancestors", ""},
                           {"a", "--admin", "9090"},
                           {"a", "--admin", ":9090"},
                           {"a", "--admin", "h:65536"},

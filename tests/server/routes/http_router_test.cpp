@@ -296,6 +296,17 @@ TEST_F(RouterTest, theViewerAndNothingElseOfItsFolderIsServed) {
     expectProblem(get(target), 404, "not-found");
 }
 
+TEST_F(RouterTest, thePageSaysWhoMayFrameItAndTellsNobodyWhereItWas) {
+  const Reply page = get("/");
+  EXPECT_TRUE(header(page, "Content-Security-Policy").ends_with("; frame-ancestors *"));
+  EXPECT_EQ(header(page, "Referrer-Policy"), "same-origin");
+  const Router strict(folder_.store(), folder_.viewer(), nullptr, std::nullopt,
+                      "'self' https://a.example");
+  EXPECT_TRUE(
+      header(strict.route({.method = "GET", .target = "/"}).reply, "Content-Security-Policy")
+          .ends_with("; frame-ancestors 'self' https://a.example"));
+}
+
 TEST_F(RouterTest, aCompressedFileGoesToWhoeverTakesIt) {
   const Reply plain = get("/assets/app-1a2b.js");
   const Reply gzip =

@@ -261,5 +261,25 @@ TEST_F(GuardedTest, whoMayReadMayNotWrite) {
   EXPECT_EQ(get("/v1/meshes/noise", bearer(kReader)).status, 200u);
 }
 
+TEST(Origins, ofOtherPagesGetNoTicketsAndChangeNothing) {
+  const test::ServedFolder folder;
+  Access access(*Tokens::parse("write * " + kWriter + "\n"));
+  test::RunningServer server(folder.store(), folder.viewer(),
+                             {.access = &access, .allowedOrigins = {"https://a.example"}});
+  const auto ask = [&](const std::string& line, const std::string& origin) {
+    RawClient client(server.port());
+    client.send(line + " HTTP/1.1\r\nHost: a\r\n" + bearer(kWriter) + "Content-Length: 0\r\n" +
+                (origin.empty() ? "" : "Origin: " + origin + "\r\n") + "\r\n");
+    return client.receive().status;
+  };
+  EXPECT_EQ(ask("POST /v1/tickets", "https://b.example"), 403u);
+  EXPECT_EQ(ask("PUT /v1/meshes/new", "https://b.example"), 403u);
+  EXPECT_EQ(ask("DELETE /v1/meshes/noise", "https://b.example"), 403u);
+  EXPECT_EQ(ask("GET /v1/meshes/noise", "https://b.example"), 200u) << "reading is for every page";
+  EXPECT_EQ(ask("POST /v1/tickets", "https://a.example"), 201u);
+  EXPECT_EQ(ask("POST /v1/tickets", ""), 201u) << "no browser";
+  EXPECT_EQ(ask("DELETE /v1/meshes/noise", "https://a.example"), 204u);
+}
+
 }  // namespace
 }  // namespace qtet

@@ -174,6 +174,14 @@ TEST_F(TlsTest, aKeyOfAnotherKindThanItsCertificateIsRefused) {
   }
 }
 
+TEST_F(TlsTest, everyAnswerSaysThatPlainHttpIsOver) {
+  TlsClient client(port(), file("a.crt"));
+  ASSERT_TRUE(client.send("GET /livez HTTP/1.1\r\nHost: a\r\n\r\n"));
+  EXPECT_EQ(client.receive().header("strict-transport-security"), "max-age=31536000");
+  test::RunningServer plain(store_, files_.viewer());
+  EXPECT_EQ(test::RawClient(plain.port()).get("/livez").header("strict-transport-security"), "");
+}
+
 TEST_F(TlsTest, whoSpeaksPlainHttpIsTold) {
   test::RawClient plain(port());
   const test::HttpResponse answer = plain.get("/v1/meshes");
