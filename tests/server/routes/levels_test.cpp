@@ -24,8 +24,8 @@ TEST_F(SampleServer, everyLevelIsServedAsEveryKindOfFile) {
   ASSERT_TRUE(store_) << store_.error().message;
   const CataloguePointer catalogue = store_->catalogue();
   ASSERT_EQ(catalogue->meshes.size(), 1u);
-  const MeshPointer served = catalogue->meshes.begin()->second->open();
-  const ServedMesh& mesh = *served;
+  const MeshPointer sample = catalogue->meshes.begin()->second->open();
+  const ServedMesh& mesh = *sample;
   test::RunningServer server(*store_, viewer_);
   test::RawClient client(server.port());
   for (const ManifestLevel& level : mesh.manifest.levels) {
