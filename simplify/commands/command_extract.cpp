@@ -99,7 +99,9 @@ Result<Bytes> inputFile(const OpenedLog& log, const LatticeMesh& finest,
              : meshFileBytes(input->lattice, output.ending, output.options);
 }
 
+/// `known`: the fields that the numbers of `wanted` mean, those of the manifest first.
 MeshOutputReport reportOf(const Manifest& manifest, std::uint32_t level,
+                          const std::vector<ManifestField>& known,
                           const std::vector<std::uint32_t>& wanted, const std::string& ending) {
   const ManifestLevel& told = manifest.levels[level];
   const std::size_t last = manifest.levels.size() - 1;
@@ -115,9 +117,9 @@ MeshOutputReport reportOf(const Manifest& manifest, std::uint32_t level,
   LevelError error = told.error.value_or(LevelError());
   error.fields.clear();
   for (const std::uint32_t f : wanted) {
-    if (!holdsFields(ending, manifest.fields[f].association)) continue;
-    fields.push_back(manifest.fields[f]);
-    if (told.error) error.fields.push_back(told.error->fields[f]);
+    if (!holdsFields(ending, known[f].association)) continue;
+    fields.push_back(known[f]);
+    if (told.error && f < told.error->fields.size()) error.fields.push_back(told.error->fields[f]);
   }
   out.json["fields"] = writtenFieldsJson(fields, ending);
   if (told.error) out.json["error"] = toJson(error);
@@ -135,7 +137,8 @@ Status extract(const ParsedWords& parsed, Console& console) {
   if (!level) return std::unexpected(level.error());
   const bool restores =
       *level + 1 == log->manifest.levels.size() && !log->file.index().closing.empty();
-  const Result<std::vector<std::uint32_t>> wanted = wantedFields(parsed, fieldsOf(*log, restores));
+  const std::vector<ManifestField> known = fieldsOf(*log, restores);
+  const Result<std::vector<std::uint32_t>> wanted = wantedFields(parsed, known);
   if (!wanted) return std::unexpected(wanted.error());
   const Result<LatticeMesh> mesh =
       meshAtLevel(log->file, *level, restores ? std::nullopt : std::optional(*wanted));
@@ -143,7 +146,7 @@ Status extract(const ParsedWords& parsed, Console& console) {
   const Result<Bytes> bytes = restores ? inputFile(*log, *mesh, *wanted, *output)
                                        : meshFileBytes(*mesh, output->ending, output->options);
   if (!bytes) return std::unexpected(bytes.error());
-  MeshOutputReport report = reportOf(log->manifest, *level, *wanted, output->ending);
+  MeshOutputReport report = reportOf(log->manifest, *level, known, *wanted, output->ending);
   report.json["input"] = input;
   return writeMeshOutput(*output, *bytes, report, console);
 }

@@ -141,7 +141,8 @@ int refuseCommand(const std::string& name, Console& console) {
 
 /// `qtet help`, `qtet help COMMAND`.
 int runHelp(const Words& words, Console& console) {
-  if (words.empty()) {
+  const bool ofItself = words.size() == 1 && (words[0] == "help" || words[0] == "--help");
+  if (words.empty() || ofItself) {
     printHelp(console.out);
     return kExitOk;
   }

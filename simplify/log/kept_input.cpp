@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "codec/log/exact_values.h"
+#include "codec/mesh/boundary.h"
 #include "codec/mesh/original_cells.h"
 #include "simplify/split/split_cells.h"
 
@@ -167,7 +168,10 @@ Result<RestoredInput> restoreInput(const LogFile& log, const LatticeMesh& finest
   out.lattice = finest;
   for (std::size_t i = 0; i < out.points.size(); ++i)
     out.lattice.points[i] = finest.points[out.points[i]];
-  if (out.order) out.lattice.tetrahedra = out.order->tetrahedra;
+  if (out.order) {
+    out.lattice.tetrahedra = out.order->tetrahedra;
+    out.lattice.boundary = boundaryOf(out.lattice.tetrahedra);
+  }
   out.mesh.tetrahedra = out.lattice.tetrahedra;
 
   std::vector<double> positions;

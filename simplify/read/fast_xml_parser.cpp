@@ -190,18 +190,25 @@ class FastParser : public vtkXMLDataParser {
   /// Numbers in the text that was read last.
   [[nodiscard]] std::size_t textNumbers() const { return this->AsciiDataBufferLength; }
 
-  /// The word at which that text's numbers end; empty: at the element's end, or it was read before.
-  [[nodiscard]] std::string wordBehindText() {
-    this->Stream->clear();
-    if (this->TellG() == this->AsciiDataPosition) return {};
+  /// Where that text's words are no longer what VTK has read as numbers: the first word too many.
+  /// Empty: nowhere.
+  [[nodiscard]] std::string wordBehindNumbers() {
+    constexpr int kEnd = std::char_traits<char>::eof();
     constexpr std::size_t kShown = 24;
-    std::string word;
-    *this->Stream >> std::ws;
-    for (int c = this->Stream->get(); c > ' ' && c != '<' && word.size() < kShown;
-         c = this->Stream->get())
-      word += static_cast<char>(c);
     this->Stream->clear();
-    return word;
+    this->SeekG(this->AsciiDataPosition);
+    std::streambuf& text = *this->Stream->rdbuf();
+    const auto isBlank = [](int c) { return c <= ' '; };
+    int c = text.sgetc();
+    for (std::size_t words = 0;; ++words) {
+      while (c != kEnd && isBlank(c)) c = text.snextc();
+      if (c == kEnd || c == '<') return {};
+      const bool isTooMany = words == textNumbers();
+      std::string word;
+      for (; c != kEnd && c != '<' && !isBlank(c); c = text.snextc())
+        if (isTooMany && word.size() < kShown) word += static_cast<char>(c);
+      if (isTooMany) return word;
+    }
   }
 
  protected:
@@ -245,7 +252,7 @@ std::string faultOfTextArray(vtkXMLDataParser& parser, vtkXMLDataElement& array,
   if (!name && array.GetParent()) name = array.GetParent()->GetName();
   const std::string found = std::to_string(ours.textNumbers()),
                     called = std::string("the ascii array ") + (name ? name : "without a name");
-  if (const std::string word = ours.wordBehindText(); !word.empty())
+  if (const std::string word = ours.wordBehindNumbers(); !word.empty())
     return called + " has '" + word + "' behind its first " + found + " numbers, which is no " +
            "number that VTK reads";
   if (std::cmp_equal(ours.textNumbers(), told)) return {};

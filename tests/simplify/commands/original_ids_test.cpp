@@ -125,12 +125,14 @@ TEST_F(OriginalIds, areChosenByName) {
   EXPECT_EQ(made["bytesOf"]["fields"].size(), 1u);
 }
 
-TEST_F(OriginalIds, takeAThirdOfWhatTheFieldTakesOrLess) {
+TEST_F(OriginalIds, takeHalfOfWhatTheFieldTakesOrLess) {
+  // large enough for orders to be coded in runs
+  std::ofstream(folder_ / "voxels.vtk") << voxelBall(20);
   const nlohmann::json field = json("simplify voxels.vtk -o field.qtet --fields OriginalCellId"),
                        kept = json("simplify voxels.vtk -o ids.qtet --original-ids");
   std::size_t bytes = 0;
   for (const auto& [name, size] : kept["kept"].items()) bytes += size.get<std::size_t>();
-  EXPECT_LE(3 * bytes, field["bytesOf"]["fields"].begin()->get<std::size_t>()) << kept["kept"];
+  EXPECT_LE(2 * bytes, field["bytesOf"]["fields"].begin()->get<std::size_t>()) << kept["kept"];
   EXPECT_LE(kept["kept"]["original cells"], 100);
 }
 

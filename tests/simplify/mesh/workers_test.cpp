@@ -141,10 +141,10 @@ std::chrono::duration<double, std::milli> processorTime() {
 
 constexpr std::chrono::milliseconds kLongWait{300};
 
-/// Of the threads that wait. Sleeping between looks takes a tenth of it; spinning would take all of
-/// the wait, or a part of it on a busy machine.
+/// Of the threads that wait. Sleeping between looks takes a sixth of the wait; spinning would take
+/// all of it, and no less than half on a busy machine.
 double mostMilliseconds(const Workers& workers) {
-  return 40.0 * static_cast<double>(std::max<std::size_t>(1, workers.count() - 1));
+  return 100.0 * static_cast<double>(std::max<std::size_t>(1, workers.count() - 1));
 }
 
 TEST_P(OfThreads, whoWaitsLongForTheOwnerSleeps) {

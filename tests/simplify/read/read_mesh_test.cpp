@@ -346,7 +346,7 @@ TEST(ReadMesh, vertexIdsOutsideThePointsAreRefused) {
 }
 
 TEST(ReadMesh, offsetsThatContradictTheTypeAreRefused) {
-  EXPECT_EQ(refused("offsets.vtu", asciiVtu(kFourPoints, "0 1 2 3", "3", "10", 4, 1), "cell 0"),
+  EXPECT_EQ(refused("offsets.vtu", asciiVtu(kFourPoints, "0 1 2 3", "3", "10", 4, 1), "counts"),
             ErrorCode::kBadInput);
 }
 
