@@ -16,8 +16,8 @@ inline constexpr const char* kWrittenEndings = ".vtu .vtk .msh .stl .ply .obj .g
 /// Whether this kind of file is made of a mesh on the lattice alone.
 [[nodiscard]] bool needsLattice(std::string_view ending);
 
-/// Whether this kind of file holds fields of points, or of cells ("point", "cell"). REQUIRES: one of
-/// kWrittenEndings.
+/// Whether this kind of file holds fields of points, or of cells ("point", "cell"). REQUIRES: one
+/// of kWrittenEndings.
 [[nodiscard]] bool holdsFields(std::string_view ending, std::string_view association);
 
 /// What a kind of file leaves open.

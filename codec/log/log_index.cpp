@@ -106,10 +106,9 @@ Result<Header> readHeader(ByteView bytes) {
 const char* brokenClosing(const LogIndex& index, const ClosingBlock& closing) {
   if (closing.kind == ClosingKind::kExactField && closing.field >= index.fields.size())
     return "a closing block of a field that the log does not have; build the log again";
-  const bool ofMesh = closing.kind == ClosingKind::kPointOrder ||
-                      closing.kind == ClosingKind::kCellOrder ||
-                      closing.kind == ClosingKind::kExactPositions ||
-                      closing.kind == ClosingKind::kOriginalCells;
+  const bool ofMesh =
+      closing.kind == ClosingKind::kPointOrder || closing.kind == ClosingKind::kCellOrder ||
+      closing.kind == ClosingKind::kExactPositions || closing.kind == ClosingKind::kOriginalCells;
   if (ofMesh && closing.field != 0)
     return "a closing block of points or cells that names a field; build the log again";
   if (index.closingBlock(closing.kind, closing.field) != &closing)

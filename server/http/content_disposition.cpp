@@ -5,7 +5,7 @@
 namespace qtet {
 namespace {
 
-/// Some browsers take a % for the beginning of a percent code, which RFC 6266, appendix D, warns of.
+/// Some browsers take a % for the beginning of a percent code: RFC 6266, appendix D.
 bool isPlain(char c) { return c >= ' ' && c <= '~' && c != '"' && c != '\\' && c != '%'; }
 
 bool continuesCharacter(char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; }

@@ -26,8 +26,8 @@ class LevelCache {
       const std::filesystem::path& folder, std::uintmax_t mostBytes,
       std::uintmax_t reserve = limits::kDiskReserve, FreeDiskBytes freeBytes = freeDiskBytes);
 
-  /// nullopt: there is none, or its file is not what was written (its length or its CRC-32C differs),
-  /// which then goes. Reads the whole level. `key` is hexadecimal.
+  /// nullopt: there is none, or its file is not what was written (its length or its CRC-32C
+  /// differs), which then goes. Reads the whole level. `key` is hexadecimal.
   [[nodiscard]] std::optional<LevelFile> find(const std::string& key);
   /// Keeps the bytes and gives them back; where the disk refuses, or they alone are more than there
   /// may be, or less than the reserve would be left on the disk, from memory.

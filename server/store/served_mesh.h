@@ -53,8 +53,8 @@ struct ServedMesh {
   /// Its part of limits::kMaxCopiedBytes; nullptr: the file is mapped.
   std::shared_ptr<void> copied{};
 
-  /// `GET /v1/meshes/{id}`, made when it is first asked for, since compressing it takes ten times as
-  /// long as opening a small log. Thread-safe, as the next one.
+  /// `GET /v1/meshes/{id}`, made when it is first asked for, since compressing it takes ten times
+  /// as long as opening a small log. Thread-safe, as the next one.
   [[nodiscard]] const Document& description() const;
   /// `GET /v1/logs/{sha256}/manifest`
   [[nodiscard]] const Document& manifestText() const;

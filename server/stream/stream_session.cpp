@@ -216,8 +216,8 @@ asio::awaitable<void> StreamSession::waitForNews() {
   co_await wake_.async_wait(redirect_error(use_awaitable, ec));
 }
 
-/// Pings a silent client, closes on one that stays so, and cuts one that takes nothing of what waits
-/// for it, or does not close.
+/// Pings a silent client, closes on one that stays so, and cuts one that takes nothing of what
+/// waits for it, or does not close.
 asio::awaitable<void> StreamSession::keepTime() {
   while (peer_.socket.isOpen()) {
     error_code ec;

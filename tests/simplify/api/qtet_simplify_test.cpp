@@ -380,7 +380,8 @@ TEST(QtetSimplify, aNullHandleOrStructIsRefused) {
   EXPECT_EQ(qtet_simplify(log.get(), sizeof mesh, nullptr, 0, nullptr), QTET_BAD_ARGUMENT);
   EXPECT_EQ(qtet_simplify(log.get(), sizeof mesh - 1, &mesh, 0, nullptr), QTET_BAD_ARGUMENT);
   EXPECT_NE(errorOf(log).find("pass sizeof"), std::string::npos);
-  EXPECT_EQ(qtet_simplify(log.get(), sizeof mesh, &mesh, kLastOfFirst, &options), QTET_BAD_ARGUMENT);
+  EXPECT_EQ(qtet_simplify(log.get(), sizeof mesh, &mesh, kLastOfFirst, &options),
+            QTET_BAD_ARGUMENT);
   EXPECT_EQ(qtet_simplify_defaults(sizeof options, nullptr), QTET_BAD_ARGUMENT);
   qtet_simplify_options none{};
   EXPECT_EQ(qtet_simplify_defaults(kLastOfFirst, &none), QTET_BAD_ARGUMENT);
