@@ -5,6 +5,7 @@
 #include "codec/log/exact_values.h"
 #include "codec/log/log_manifest.h"
 #include "codec/mesh/input_order.h"
+#include "codec/mesh/original_cells.h"
 
 namespace qtet::testing {
 namespace {
@@ -56,6 +57,10 @@ std::map<std::string, Bytes> closingContents(const LogFile& log, const Refiner& 
       content = bytesOf(
           decodeExact({finest.fieldValues(c.field), f.components, f.minimum, f.step, f.type}, block)
               .value());
+    } else if (c.kind == ClosingKind::kOriginalCells) {
+      const auto ids = decodeOriginalCells(block, mesh.tetrahedra.size()).value();
+      for (const std::uint32_t id : ids) w.write(id);
+      content = w.take();
     } else {
       out.erase(name);
     }

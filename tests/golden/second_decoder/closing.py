@@ -90,6 +90,26 @@ def cell_order(mesh, slots, data):
     return cells, out
 
 
+def original_cells(count, data, wrong):
+    """The number of the file's cell that each cell of the input was split from."""
+    stream, out = Stream(data, None, wrong), []
+    run = last_run = 0
+    for i in range(count):
+        if i and stream.bit("same", run, last_run):
+            run = min(run + 1, 63)
+            out.append(out[-1])
+            continue
+        step = 1
+        if not stream.bit("next"):
+            negative = stream.bit("negative")
+            step = stream.number("step") * (-1 if negative else 1)
+        out.append((out[-1] if i else -1) + step)
+        refuse_unless(0 <= out[-1] < 1 << 31, "no number of a cell")
+        last_run, run = run, 1
+    refuse_unless(stream.at_end(), "a block of original cells is too long")
+    return out
+
+
 class Order:
     """Numbers of a type as integers in the same order."""
 
@@ -183,4 +203,7 @@ def closing_blocks(mesh, fields):
             flat = [x for i in range(len(values)) for x in values[i]]
             numbers = exact(flat, type_, step, minimum, data, mesh.wrong)
             out[kind, field] = struct.pack(f"<{len(numbers)}d", *numbers)
+        elif kind == 5:
+            numbers = original_cells(len(mesh.tetrahedra), data, mesh.wrong)
+            out[kind, field] = struct.pack(f"<{len(numbers)}I", *numbers)
     return out
