@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <iterator>
 #include <mutex>
 
 #include "proto/json_reader.h"
@@ -179,7 +180,9 @@ Result<FolderChange> MeshStore::rescan(std::string_view first) const {
   const std::scoped_lock lock(state_->scanning);
   Result<std::vector<fs::path>> paths = listLogs(state_->folder);
   if (!paths) return std::unexpected(paths.error());
-  std::ranges::stable_partition(*paths, [&](const fs::path& p) { return p.stem() == first; });
+  const auto wanted =
+      std::ranges::find_if(*paths, [&](const fs::path& p) { return p.stem() == first; });
+  if (wanted != paths->end()) std::rotate(paths->begin(), wanted, std::next(wanted));
   const CataloguePointer before = state_->snapshot();
   Scan scan(*before, state_->readTime, state_->open);
   for (const fs::path& path : *paths) scan.look(path);
