@@ -110,6 +110,23 @@ async function keepsTheMeshOutOfTheLegend({server, browser}) {
   await viewer.screenshot('legend-low');
 }
 
+/** The plot along a short line across the middle of the mesh, once it is drawn. */
+async function plotAcrossTheMiddle(viewer) {
+  const {page} = viewer;
+  await page.getByText('Line', {exact: true}).click();
+  const {x, y} = await page.evaluate(() => {
+    const {bounds} = window.qtetViewer.viewing.mesh;
+    const middle = [0, 1, 2].map((axis) => (bounds[axis] + bounds[axis + 3]) / 2);
+    return window.qtetViewer.meshView.project(middle);
+  });
+  await page.mouse.click(x - 40, y);
+  await viewer.settle();
+  await page.mouse.click(x + 40, y);
+  const plot = page.locator('qtet-viewer .plot');
+  await plot.locator('canvas').waitFor();
+  return plot;
+}
+
 /** A range's numbers and a plot's curve belong to the field that is shown. */
 async function followsTheField({server, browser}) {
   const viewer = await browser.open(`${server.url}?mesh=fin&field=Density&range=1,2`);
@@ -124,17 +141,7 @@ async function followsTheField({server, browser}) {
   assert.equal(await attribute('range'), '1,2');
   await viewer.settle();
 
-  await page.getByText('Line', {exact: true}).click();
-  const {x, y} = await page.evaluate(() => {
-    const {bounds} = window.qtetViewer.viewing.mesh;
-    const middle = [0, 1, 2].map((axis) => (bounds[axis] + bounds[axis + 3]) / 2);
-    return window.qtetViewer.meshView.project(middle);
-  });
-  await page.mouse.click(x - 40, y);
-  await viewer.settle();
-  await page.mouse.click(x + 40, y);
-  const plot = page.locator('qtet-viewer .plot');
-  await plot.locator('canvas').waitFor();
+  const plot = await plotAcrossTheMiddle(viewer);
   await viewer.settle();
   assert.equal(await plot.getAttribute('aria-label'), 'Density along the line');
   const covered = await page.evaluate(() => {
@@ -254,16 +261,7 @@ async function givesItsNumbersAway({server, browser}) {
       value: {writeText: async (text) => void window.qtetCopied.push(text)},
     });
   });
-  await page.getByText('Line', {exact: true}).click();
-  const {x, y} = await page.evaluate(() => {
-    const {bounds} = window.qtetViewer.viewing.mesh;
-    const middle = [0, 1, 2].map((axis) => (bounds[axis] + bounds[axis + 3]) / 2);
-    return window.qtetViewer.meshView.project(middle);
-  });
-  await page.mouse.click(x - 40, y);
-  await viewer.settle();
-  await page.mouse.click(x + 40, y);
-  await page.locator('qtet-viewer .plot canvas').waitFor();
+  await plotAcrossTheMiddle(viewer);
   const saved = page.waitForEvent('download');
   await page.getByRole('button', {name: 'Save as CSV'}).click();
   const rows = readFileSync(await (await saved).path(), 'utf8').split('\r\n');
