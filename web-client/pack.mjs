@@ -5,6 +5,7 @@ import {execFileSync} from 'node:child_process';
 import {copyFileSync, readdirSync, readFileSync, writeFileSync} from 'node:fs';
 import {dirname, join, resolve} from 'node:path';
 import {fileURLToPath} from 'node:url';
+import {originOf, repositoryOf} from './repository.mjs';
 import {addEndings} from './typed_paths.mjs';
 
 const here = dirname(fileURLToPath(import.meta.url));
@@ -50,6 +51,7 @@ writeFileSync(
       version: own.version,
       description: own.description,
       license: 'Apache-2.0',
+      repository: repositoryOf(originOf(here)), // left out where it is undefined
       type: 'module',
       keywords: [
         'tetrahedral mesh',

@@ -53,11 +53,12 @@ void addColours(draco::Mesh& target, std::span<const std::array<std::uint8_t, 3>
                                             colours[slots[i]].data());
 }
 
-int addPositions(draco::Mesh& target, const LatticeMesh& mesh, const std::vector<VertexId>& slots) {
+int addPositions(draco::Mesh& target, const Lattice& lattice,
+                 const std::vector<LatticePoint>& points, const std::vector<VertexId>& slots) {
   std::vector<float> values;
   values.reserve(slots.size() * 3);
   for (const VertexId v : slots)
-    for (const double x : mesh.lattice.position(mesh.points[v])) values.push_back(toFloat(x));
+    for (const double x : lattice.position(points[v])) values.push_back(toFloat(x));
   return addFloats(target, draco::GeometryAttribute::POSITION, 3, values);
 }
 
@@ -117,11 +118,12 @@ bool isQuantisable(const FieldInfo& field, std::span<const std::int32_t> integer
 
 }  // namespace
 
-Result<Bytes> boundaryDrc(const LatticeMesh& mesh,
-                          std::span<const std::array<std::uint8_t, 3>> colours) {
+Result<Bytes> boundaryDrc(const LatticeMesh& mesh, const DrcOptions& options) {
   if (mesh.boundary.empty())
     return fail(ErrorCode::kBadInput, "the mesh has no boundary triangle to encode");
-  if (!fitsFloats(mesh.lattice.origin, mesh.lattice.bits, mesh.lattice.step))
+  Lattice lattice = mesh.lattice;
+  for (std::size_t a = 0; a < 3; ++a) lattice.origin[a] -= options.from[a];
+  if (!fitsFloats(mesh.lattice.origin, lattice.bits, lattice.step))
     return fail(ErrorCode::kBadInput,
                 "the mesh's coordinates are beyond what float32 holds, and Draco knows no other; "
                 "take the level as .vtu");
@@ -131,7 +133,7 @@ Result<Bytes> boundaryDrc(const LatticeMesh& mesh,
 
   draco::Mesh target;
   target.set_num_points(static_cast<std::uint32_t>(surface.vertices.size()));
-  const int positions = addPositions(target, mesh, surface.vertices);
+  const int positions = addPositions(target, lattice, mesh.points, surface.vertices);
   std::vector<std::pair<int, std::size_t>> fields;
   for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
     if (isCellField(mesh.fields[f])) continue;
@@ -139,11 +141,11 @@ Result<Bytes> boundaryDrc(const LatticeMesh& mesh,
     assert(mesh.fields[f].bits >= kMinFieldBits && mesh.fields[f].bits <= kMaxFieldBits);
     fields.emplace_back(addField(target, mesh.fields[f], mesh.values[f], surface.vertices), f);
   }
-  if (!colours.empty()) addColours(target, colours, surface.vertices);
+  if (!options.colours.empty()) addColours(target, options.colours, surface.vertices);
   addTriangles(target, surface.triangles);
 
   draco::ExpertEncoder encoder(target);
-  quantise(encoder, positions, mesh.lattice.bits, mesh.lattice.step, toFloats(mesh.lattice.origin));
+  quantise(encoder, positions, lattice.bits, lattice.step, toFloats(lattice.origin));
   for (const auto& [attribute, f] : fields)
     if (const FieldInfo& info = mesh.fields[f]; isQuantisable(info, mesh.values[f]))
       quantise(encoder, attribute, info.bits, info.step, toFloats(info.minimum));
@@ -154,6 +156,13 @@ Result<Bytes> boundaryDrc(const LatticeMesh& mesh,
                 std::string("Draco cannot encode the boundary: ") + status.error_msg());
   const auto* bytes = reinterpret_cast<const std::uint8_t*>(buffer.data());
   return Bytes(bytes, bytes + buffer.size());
+}
+
+bool floatsHold(const Lattice& lattice) {
+  constexpr double kMostSteps = 1 << 19;
+  return std::ranges::all_of(lattice.origin, [&](double x) {
+    return std::abs(x / lattice.step) + std::ldexp(1.0, lattice.bits) <= kMostSteps;
+  });
 }
 
 }  // namespace qtet

@@ -24,6 +24,12 @@ constexpr const char* kExtension = "KHR_draco_mesh_compression";
 /// More than the frame of a file can have: a manifest's fields have shorter names together.
 constexpr std::uint64_t kMaxFrameBytes = std::uint64_t{64} << 20;
 
+/// Where positions are told from: float32 holds six to seven digits, and a map's coordinates have
+/// more.
+std::array<double, 3> placeOf(const Lattice& lattice) {
+  return floatsHold(lattice) ? std::array<double, 3>{} : lattice.origin;
+}
+
 /// POSITION must tell its bounds (glTF 2.0, 3.7.2.1): of what a reader decodes, not of what was put
 /// in.
 Json positionAccessor(const draco::PointAttribute& attribute, std::uint32_t points) {
@@ -60,7 +66,8 @@ std::vector<std::array<std::uint8_t, 3>> coloursOf(const LatticeMesh& mesh) {
 
 /// What the Draco bytes hold, in glTF's words. Draco may split vertices where the surface is not
 /// manifold, so it is asked for its counts.
-GlbContent describe(const draco::Mesh& mesh, std::span<const FieldInfo> fields, std::size_t bytes) {
+GlbContent describe(const draco::Mesh& mesh, std::span<const FieldInfo> fields,
+                    const std::array<double, 3>& place, std::size_t bytes) {
   Json accessors = {
       {{"componentType", kGlbUnsignedInt}, {"count", mesh.num_faces() * 3}, {"type", "SCALAR"}}};
   Json attributes = Json::object(), ids = Json::object();
@@ -102,13 +109,15 @@ GlbContent describe(const draco::Mesh& mesh, std::span<const FieldInfo> fields, 
           .bufferViews = Json::array({{{"buffer", 0}, {"byteLength", bytes}}}),
           .attributes = attributes,
           .extensions = {{kExtension, {{"bufferView", 0}, {"attributes", ids}}}},
-          .requiredExtensions = {kExtension}};
+          .requiredExtensions = {kExtension},
+          .translation = place};
 }
 
 /// A .glb's buffer and what is in it, array by array.
 class PlainArrays {
  public:
-  explicit PlainArrays(std::size_t points) : points_(points) {
+  PlainArrays(std::size_t points, const std::array<double, 3>& place) : points_(points) {
+    content_.translation = place;
     content_.accessors = content_.bufferViews = Json::array();
     content_.attributes = Json::object();
   }
@@ -219,7 +228,10 @@ Result<Bytes> plainBoundaryGlb(const LatticeMesh& mesh) {
                 "the boundary has more bytes than a .glb can count; choose a "
                 "coarser level or fewer fields");
 
-  PlainArrays arrays(points.size());
+  const std::array<double, 3> place = placeOf(mesh.lattice);
+  for (auto& point : points)
+    for (std::size_t a = 0; a < 3; ++a) point[a] -= place[a];
+  PlainArrays arrays(points.size(), place);
   arrays.addIndices(surface.triangles);
   addPositions(arrays, points);
   for (std::size_t f = 0; f < mesh.fields.size(); ++f)
@@ -230,7 +242,9 @@ Result<Bytes> plainBoundaryGlb(const LatticeMesh& mesh) {
 }
 
 Result<Bytes> boundaryGlb(const LatticeMesh& mesh) {
-  const Result<Bytes> drc = boundaryDrc(mesh, coloursOf(mesh));
+  const auto colours = coloursOf(mesh);
+  const std::array<double, 3> place = placeOf(mesh.lattice);
+  const Result<Bytes> drc = boundaryDrc(mesh, {.colours = colours, .from = place});
   if (!drc) return drc;
   draco::DecoderBuffer buffer;
   buffer.Init(reinterpret_cast<const char*>(drc->data()), drc->size());
@@ -240,7 +254,7 @@ Result<Bytes> boundaryGlb(const LatticeMesh& mesh) {
     return fail(ErrorCode::kBadCodec,
                 std::string("Draco cannot read what it wrote: ") + decoded.status().error_msg());
 
-  return glbBytes(describe(*decoded.value(), mesh.fields, drc->size()), *drc);
+  return glbBytes(describe(*decoded.value(), mesh.fields, place, drc->size()), *drc);
 }
 
 }  // namespace qtet

@@ -36,7 +36,9 @@ Json document(const GlbContent& content, std::size_t bytes) {
       out[list] = content.requiredExtensions;
   out["scene"] = 0;
   out["scenes"] = {{{"nodes", {0}}}};
-  out["nodes"] = {{{"mesh", 0}}};
+  Json node = {{"mesh", 0}};
+  if (content.translation != std::array<double, 3>{}) node["translation"] = content.translation;
+  out["nodes"] = Json::array({node});
   out["meshes"] = {{{"primitives", {primitive}}}};
   out["materials"] = {
       {{"doubleSided", true},

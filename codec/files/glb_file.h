@@ -2,6 +2,7 @@
 // nlohmann-json in.
 #pragma once
 
+#include <array>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -28,6 +29,7 @@ struct GlbContent {
   nlohmann::ordered_json attributes;    ///< of the primitive
   nlohmann::ordered_json extensions{};  ///< of the primitive; null without any
   std::vector<std::string> requiredExtensions{};
+  std::array<double, 3> translation{};  ///< of the node: what is added to every position
 };
 
 /// The file: two-sided, not shiny, one buffer. REQUIRES: fewer than kMaxGlbBytes with the frame.

@@ -59,7 +59,7 @@ void addReadOptions(boost::program_options::options_description& options) {
       "only cells where a field lies within bounds: FIELD=LOW:HIGH, either side may be empty")(
       "plot3d", po::value<std::string>(), "the input is a PLOT3D grid; its solution file, or none")(
       "read-seconds", po::value<int>()->default_value(60),
-      "how long a reader of VTK's may read nothing of the file before it is given up")(
+      "how long VTK's readers and meshio may read nothing before they are given up")(
       "format", po::value<std::string>(),
       "the kind of file, where the name does not say it or is - (the standard input): vtu, msh, "
       "...");

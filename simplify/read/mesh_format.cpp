@@ -59,20 +59,6 @@ std::string attribute(std::string_view text, std::size_t tag, std::string_view n
   }
 }
 
-/// The type that an XML file's root names, by format; nothing: no XML.
-std::string_view rootType(MeshFormat format) {
-  switch (format) {
-    case MeshFormat::kVtu: return "UnstructuredGrid";
-    case MeshFormat::kPvtu: return "PUnstructuredGrid";
-    case MeshFormat::kVtm: return "vtkMultiBlockDataSet";
-    case MeshFormat::kPvd: return "Collection";
-    case MeshFormat::kVts: return "StructuredGrid";
-    case MeshFormat::kVtr: return "RectilinearGrid";
-    case MeshFormat::kVti: return "ImageData";
-    default: return {};
-  }
-}
-
 Status checkXml(const fs::path& path, const FileEnds& ends, std::string_view wanted) {
   const std::size_t root = ends.front.find("<VTKFile");
   if (root == std::string::npos) {
@@ -152,22 +138,24 @@ struct Ending {
   MeshFormat format;
 };
 
-constexpr std::array<Ending, 30> kEndings{{
+constexpr std::array<Ending, 33> kEndings{{
     {".vtu", MeshFormat::kVtu},       {".pvtu", MeshFormat::kPvtu},
-    {".vtm", MeshFormat::kVtm},       {".vtmu", MeshFormat::kVtm},
-    {".vtmb", MeshFormat::kVtm},      {".pvd", MeshFormat::kPvd},
-    {".vts", MeshFormat::kVts},       {".vtr", MeshFormat::kVtr},
-    {".vti", MeshFormat::kVti},       {".vtk", MeshFormat::kLegacyVtk},
-    {".e", MeshFormat::kExodus},      {".ex2", MeshFormat::kExodus},
-    {".exo", MeshFormat::kExodus},    {".exii", MeshFormat::kExodus},
-    {".g", MeshFormat::kExodus},      {".case", MeshFormat::kEnSight},
-    {".encas", MeshFormat::kEnSight}, {".cgns", MeshFormat::kCgns},
-    {".inp", MeshFormat::kAvsUcd},    {".foam", MeshFormat::kOpenFoam},
-    {".msh", MeshFormat::kGmsh},      {".mesh", MeshFormat::kMedit},
-    {".meshb", MeshFormat::kMedit},   {".node", MeshFormat::kTetgen},
-    {".ele", MeshFormat::kTetgen},    {".su2", MeshFormat::kSu2},
-    {".xyz", MeshFormat::kPlot3d},    {".series", MeshFormat::kSeries},
-    {".cas", MeshFormat::kFluent},    {".vtkhdf", MeshFormat::kVtkHdf},
+    {".pvts", MeshFormat::kPvts},     {".pvtr", MeshFormat::kPvtr},
+    {".pvti", MeshFormat::kPvti},     {".vtm", MeshFormat::kVtm},
+    {".vtmu", MeshFormat::kVtm},      {".vtmb", MeshFormat::kVtm},
+    {".pvd", MeshFormat::kPvd},       {".vts", MeshFormat::kVts},
+    {".vtr", MeshFormat::kVtr},       {".vti", MeshFormat::kVti},
+    {".vtk", MeshFormat::kLegacyVtk}, {".e", MeshFormat::kExodus},
+    {".ex2", MeshFormat::kExodus},    {".exo", MeshFormat::kExodus},
+    {".exii", MeshFormat::kExodus},   {".g", MeshFormat::kExodus},
+    {".case", MeshFormat::kEnSight},  {".encas", MeshFormat::kEnSight},
+    {".cgns", MeshFormat::kCgns},     {".inp", MeshFormat::kAvsUcd},
+    {".foam", MeshFormat::kOpenFoam}, {".msh", MeshFormat::kGmsh},
+    {".mesh", MeshFormat::kMedit},    {".meshb", MeshFormat::kMedit},
+    {".node", MeshFormat::kTetgen},   {".ele", MeshFormat::kTetgen},
+    {".su2", MeshFormat::kSu2},       {".xyz", MeshFormat::kPlot3d},
+    {".series", MeshFormat::kSeries}, {".cas", MeshFormat::kFluent},
+    {".vtkhdf", MeshFormat::kVtkHdf},
 }};
 
 /// NAME.e.4.0 and the like.
@@ -195,6 +183,26 @@ std::string knownEndings() {
   for (const Ending& ending : kEndings)
     out += (out.empty() ? "" : ", ") + std::string(ending.text.substr(1));
   return out;
+}
+
+bool namesPieces(MeshFormat format) {
+  return format >= MeshFormat::kPvtu && format <= MeshFormat::kPvti;
+}
+
+std::string_view rootType(MeshFormat format) {
+  switch (format) {
+    case MeshFormat::kVtu: return "UnstructuredGrid";
+    case MeshFormat::kPvtu: return "PUnstructuredGrid";
+    case MeshFormat::kPvts: return "PStructuredGrid";
+    case MeshFormat::kPvtr: return "PRectilinearGrid";
+    case MeshFormat::kPvti: return "PImageData";
+    case MeshFormat::kVtm: return "vtkMultiBlockDataSet";
+    case MeshFormat::kPvd: return "Collection";
+    case MeshFormat::kVts: return "StructuredGrid";
+    case MeshFormat::kVtr: return "RectilinearGrid";
+    case MeshFormat::kVti: return "ImageData";
+    default: return {};
+  }
 }
 
 Status checkMeshFile(const fs::path& path, MeshFormat format) {

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "proto/error.h"
 
@@ -12,6 +13,9 @@ namespace qtet {
 enum class MeshFormat {
   kVtu,
   kPvtu,
+  kPvts,
+  kPvtr,
+  kPvti,
   kVtm,
   kPvd,
   kSeries,
@@ -42,6 +46,12 @@ enum class MeshFormat {
 
 /// The endings that formatOf knows, as --format takes them: "vtu, pvtu, ...".
 [[nodiscard]] std::string knownEndings();
+
+/// Whether it is a summary of VTK's XML, which names the pieces of one mesh.
+[[nodiscard]] bool namesPieces(MeshFormat format);
+
+/// The type that the root of VTK's XML tells, such as UnstructuredGrid; empty: no such format.
+[[nodiscard]] std::string_view rootType(MeshFormat format);
 
 /// Looks at existence, size, first and last bytes. Errors: not-found (no such file), io (not
 /// readable, a folder), truncated (empty, or the XML's closing tag is missing), bad-input (not what

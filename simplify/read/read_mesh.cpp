@@ -69,11 +69,12 @@ Result<CellMesh> readThroughMeshio(const std::filesystem::path& path, const std:
                                    const ReadOptions& options, ReadReport& report) {
   Result<CellMesh> out = CellMesh{};
   const Status done =
-      throughMeshio({path, kind, options.time}, [&](const std::filesystem::path& file) -> Status {
-        out = joined(readVtk(file, formatOf(file), options, report), path);
-        if (!out) return std::unexpected(out.error());
-        return {};
-      });
+      throughMeshio({path, kind, options.time, options.patience},
+                    [&](const std::filesystem::path& file) -> Status {
+                      out = joined(readVtk(file, formatOf(file), options, report), path);
+                      if (!out) return std::unexpected(out.error());
+                      return {};
+                    });
   if (!done) return std::unexpected(done.error());
   return out;
 }

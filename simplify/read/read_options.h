@@ -37,7 +37,7 @@ struct ReadOptions {
   /// The Q file beside a PLOT3D grid; empty: the file is no PLOT3D grid.
   std::string plot3dSolution;
   bool plot3d = false;
-  /// How long a foreign reader may read nothing before it is given up (trial_process.h).
+  /// How long a foreign reader may read nothing before it is given up (watch_process.h).
   std::chrono::seconds patience{60};
 };
 

@@ -6,13 +6,14 @@
 #include <unistd.h>
 
 #include <array>
-#include <cerrno>
 #include <csignal>
 #include <fstream>
+#include <optional>
 #include <string>
 
 #include "simplify/read/guarded_folder.h"
 #include "simplify/read/mesh_format.h"
+#include "simplify/read/watch_process.h"
 
 namespace qtet {
 namespace {
@@ -20,6 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kNoProgram = 127, kNoMeshio = 77, kUnknownKind = 78;  ///< what the child ends with
+constexpr int kKilled = -1, kStuck = -2;                            ///< not by itself
 /// Reads, drops what a .vtu cannot hold, and writes. Python would look for meshio in the working
 /// folder first, where a mesh's sender may have put one. Words: input, folder, kind, time.
 constexpr const char* kScript = R"python(
@@ -108,7 +110,7 @@ except BaseException as error:
     sys.exit(1)
 )python";
 
-/// What the program ends with; -1: it was killed, or could not be started.
+/// What the program ends with; kKilled also where it could not be started.
 int run(const char* python, const MeshioInput& input, const fs::path& folder,
         const fs::path& words) {
   const std::string in = fs::absolute(input.path).string();
@@ -120,16 +122,15 @@ int run(const char* python, const MeshioInput& input, const fs::path& folder,
     ::dup2(nothing, STDIN_FILENO);
     ::dup2(file, STDOUT_FILENO);
     ::dup2(file, STDERR_FILENO);
+    boundMemory();
     ::execlp(python, python, "-c", kScript, in.c_str(), folder.c_str(), input.kind.c_str(),
              input.time.c_str(), static_cast<char*>(nullptr));
     ::_exit(kNoProgram);
   }
-  if (child < 0) return -1;
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0) {
-    if (errno != EINTR) return -1;
-  }
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  if (child < 0) return kKilled;
+  const std::optional<int> status = watchProcess(child, input.patience);
+  if (!status) return kStuck;
+  return WIFEXITED(*status) ? WEXITSTATUS(*status) : kKilled;
 }
 
 std::string lastLineOf(const fs::path& path) {
@@ -164,6 +165,13 @@ Status throughMeshio(const MeshioInput& input, const std::function<Status(const 
                     "python3-meshio, or pip install meshio), or save the mesh as .vtu; if it is "
                     "one of another kind, say which with --format: " +
                     knownEndings());
+  }
+  if (ended == kStuck) {
+    return fail(ErrorCode::kBadInput,
+                path + ": meshio has neither read nor written anything for " +
+                    std::to_string(input.patience.count()) +
+                    " s; if the file is only large, give it longer with --read-seconds, else "
+                    "export the mesh again, best as .vtu");
   }
   if (ended == kUnknownKind)
     return fail(ErrorCode::kBadInput, path + ": files of type '" + kind +

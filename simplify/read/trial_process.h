@@ -16,7 +16,7 @@ enum class TrialEnd : std::uint8_t {
 
 /// Runs `work` in a copy of this process, whose output goes nowhere, and tells how it ended. What
 /// `work` finds it must write to a file: its memory goes with the copy. The copy may take as much
-/// memory as the machine has. It is ended once it has read nothing from any file for `patience`,
+/// memory as the machine has. It is ended once it has moved no byte of any file for `patience`,
 /// and it ends with this process. REQUIRES: no other thread of this process holds a lock that
 /// `work` needs.
 [[nodiscard]] TrialEnd tryOut(const std::function<void()>& work, std::chrono::seconds patience);

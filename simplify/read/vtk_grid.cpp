@@ -343,13 +343,15 @@ Result<CellMesh> cellsOfParts(std::span<const std::filesystem::path> parts,
   return out;
 }
 
-/// The Source of each Piece of a .pvtu file.
-Result<std::vector<std::filesystem::path>> piecesOf(const std::filesystem::path& path) {
+/// The Source of each Piece that a summary names.
+Result<std::vector<std::filesystem::path>> piecesOf(const std::filesystem::path& path,
+                                                    MeshFormat format) {
   const MessageCapture capture;
   const auto root =
       vtkSmartPointer<vtkXMLDataElement>::Take(vtkXMLUtilities::ReadElementFromFile(path.c_str()));
-  vtkXMLDataElement* grid = root ? root->FindNestedElementWithName("PUnstructuredGrid") : nullptr;
-  if (!grid) return bad(path, "it holds no <PUnstructuredGrid>; save it again");
+  const std::string type(rootType(format));
+  vtkXMLDataElement* grid = root ? root->FindNestedElementWithName(type.c_str()) : nullptr;
+  if (!grid) return bad(path, "it holds no <" + type + ">; save it again");
   std::vector<std::filesystem::path> out;
   for (int i = 0; i < grid->GetNumberOfNestedElements(); ++i) {
     vtkXMLDataElement* element = grid->GetNestedElement(i);
@@ -368,7 +370,8 @@ Result<std::vector<std::filesystem::path>> piecesOf(const std::filesystem::path&
 /// tables) are noted.
 void addBlockFiles(vtkXMLDataElement& element, const std::filesystem::path& path,
                    std::vector<std::filesystem::path>& out, ReadReport& report) {
-  constexpr std::array kVolumes{".vtu", ".pvtu", ".vts", ".vtr", ".vti", ".vtk", ".vtm"};
+  constexpr std::array kVolumes{".vtu", ".vts",  ".vtr",  ".vti",  ".vtk",
+                                ".vtm", ".pvtu", ".pvts", ".pvtr", ".pvti"};
   for (int i = 0; i < element.GetNumberOfNestedElements(); ++i) {
     vtkXMLDataElement& child = *element.GetNestedElement(i);
     if (const char* file = child.GetAttribute("file")) {
@@ -404,7 +407,7 @@ Result<std::vector<TimedCells>> readParts(const std::filesystem::path& path, Mes
                          "; does one name itself?");
   if (const auto steps = chosenSteps({}, options.time, path, report.notes); !steps)
     return std::unexpected(steps.error());
-  const auto parts = format == MeshFormat::kPvtu ? piecesOf(path) : blocksOf(path, report);
+  const auto parts = namesPieces(format) ? piecesOf(path, format) : blocksOf(path, report);
   if (!parts) return std::unexpected(parts.error());
   Result<CellMesh> cells = cellsOfParts(*parts, path, options, report, depth);
   if (!cells) return std::unexpected(cells.error());
@@ -523,7 +526,7 @@ Result<std::vector<TimedCells>> readAt(const std::filesystem::path& path, MeshFo
   if (isSeries(format)) return readSeries(path, format, options, report);
   if (format == MeshFormat::kExodusPieces) return readExodusPieces(path, options, report);
   if (format == MeshFormat::kOpenFoam) return readFoam(path, options, report);
-  if (format == MeshFormat::kPvtu || format == MeshFormat::kVtm)
+  if (namesPieces(format) || format == MeshFormat::kVtm)
     return readParts(path, format, options, report, depth);
   return standsDamage(format) ? readHere(path, format, options, report)
                               : readApart(path, format, options, report);

@@ -11,6 +11,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <set>
 
 #include "codec/files/boundary_glb.h"
 
@@ -367,6 +368,36 @@ TEST(BoundaryGlb, withoutDracoTheNumbersStandThere) {
   for (const auto& view : read.json["bufferViews"]) EXPECT_EQ(view["byteOffset"].get<int>() % 4, 0);
   mesh.fields[0].hasMissing = true;
   EXPECT_FALSE(ReadGlb(*plainBoundaryGlb(mesh)).primitive["attributes"].contains("_density"));
+}
+
+// float32 has a step of 0.5 there.
+TEST(BoundaryGlb, positionsOfAMapAreToldFromThePlaceOfTheNode) {
+  const LatticeMesh mesh = wavySquare(8, 12, 0.001, {500000.25, 4649776.5, 120});
+  const auto plain = plainBoundaryGlb(mesh), packed = boundaryGlb(mesh);
+  ASSERT_TRUE(plain && packed);
+  const ReadGlb read(*plain);
+  const auto place = read.json["nodes"][0]["translation"].get<std::array<double, 3>>();
+  EXPECT_EQ(place, mesh.lattice.origin);
+  EXPECT_EQ(ReadGlb(*packed).json["nodes"][0]["translation"].get<std::vector<double>>(),
+            std::vector<double>(place.begin(), place.end()));
+  const auto positions = read.attribute<float>("POSITION");
+  for (std::size_t i = 0; i + 1 < mesh.points.size(); ++i) {
+    const auto wanted = mesh.lattice.position(mesh.points[i]);
+    for (std::size_t a = 0; a < 3; ++a)
+      EXPECT_NEAR(place[a] + double{positions[3 * i + a]}, wanted[a], 1e-6);
+  }
+  const auto decoded = decodeGlb(*packed);
+  ASSERT_TRUE(decoded);
+  const auto* stored = decoded->GetNamedAttribute(draco::GeometryAttribute::POSITION);
+  std::set<std::vector<std::int32_t>> places;
+  for (std::uint32_t p = 0; p < decoded->num_points(); ++p)
+    places.insert(gridValue(*stored, p, {0, 0, 0}, 0.001));
+  for (std::size_t i = 0; i + 1 < mesh.points.size(); ++i)
+    EXPECT_TRUE(places.contains({mesh.points[i].begin(), mesh.points[i].end()})) << i;
+  EXPECT_FALSE(ReadGlb(*plainBoundaryGlb(wavySquare(8, 12, 0.5, {10, -3, 0})))
+                   .json["nodes"][0]
+                   .contains("translation"))
+      << "where float32 does";
 }
 
 TEST(BoundaryGlb, withoutDracoTheSameIsRefused) {

@@ -142,9 +142,10 @@ TEST_F(TlsTest, theProgramSpeaksItAndReadsItsCertificateAgainOnSighup) {
 }
 
 TEST_F(TlsTest, whatIsNoPairIsNamed) {
-  (void)std::system(("openssl ec -aes128 -passout pass:secret -in '" + file("a.key").string() +
-                     "' -out '" + file("locked.key").string() + "' 2> /dev/null")
-                        .c_str());
+  ASSERT_EQ(std::system(("openssl ec -aes128 -passout pass:secret -in '" + file("a.key").string() +
+                         "' -out '" + file("locked.key").string() + "' 2> /dev/null")
+                            .c_str()),
+            0);
   folder_.write("text", std::string_view("nonsense"));
   for (const auto& [certificate, key, named] : {std::tuple("a.crt", "b.key", "b.key"),
                                                 {"a.crt", "locked.key", "locked.key"},

@@ -49,6 +49,20 @@ TEST(VtkFormats, structuredRectilinearAndImageDataAreRead) {
   for (const char* name : {"s.vts", "r.vtr", "i.vti"}) expectABar(given(name), 2);
 }
 
+// Two pieces with a common cell, which the second one marks as a ghost.
+TEST(VtkFormats, piecesOfStructuredDataAreJoined) {
+  for (const char* name : {"ps.pvts", "pr.pvtr", "pi.pvti"}) {
+    ReadMesh joined = expectABar(given(name), 2);
+    EXPECT_EQ(joined.mesh.points.size(), 20u) << name;
+    EXPECT_EQ(cleanMesh(joined.mesh)->components, 1u) << name;
+  }
+  const fs::path wrong = fileWith("wrong.pvts", "<VTKFile type=\"PImageData\"></VTKFile>\n");
+  const Result<ReadMesh> read = readMesh(wrong);
+  ASSERT_FALSE(read);
+  EXPECT_NE(read.error().message.find("PStructuredGrid"), std::string::npos)
+      << read.error().message;
+}
+
 TEST(VtkFormats, cellsWithinAThresholdAreKept) {
   for (const char* name : {"s.vts", "r.vtr", "i.vti", "p.pvtu"}) {
     ReadOptions options;
