@@ -1,4 +1,4 @@
-// The words of `/v1/stream` (PROTOCOL.md, "WebSocket"): JSON messages both ways and the header of a
+// The words of `/v1/stream` (STREAM.md): JSON messages both ways and the header of a
 // binary frame. Parsers trust nothing; every count and length is compared with a limit.
 #pragma once
 

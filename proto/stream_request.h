@@ -1,4 +1,4 @@
-// What a client of `/v1/stream` has and what it wants (PROTOCOL.md, "What a client has", "Target",
+// What a client of `/v1/stream` has and what it wants (STREAM.md, "What a client has", "Target",
 // "View"), as plain values.
 #pragma once
 

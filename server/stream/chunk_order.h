@@ -1,4 +1,4 @@
-// In which order the chunks of a log go to a client: a pure function (PROTOCOL.md, "Order").
+// In which order the chunks of a log go to a client: a pure function (STREAM.md, "Order").
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // Which blocks a client gets, and in which order: a pure function of the log's front, of what the
-// client has and of what it wants (PROTOCOL.md, "Binary frame", "Order").
+// client has and of what it wants (STREAM.md, "Binary frame", "Order").
 #pragma once
 
 #include <cstdint>

@@ -93,7 +93,7 @@ bool StreamProtocol::countMessage(Clock::time_point now) {
 
 bool StreamProtocol::count(unsigned& counter, unsigned most, const char* what) {
   if (++counter <= most) return true;
-  refuse(kTooManyMessages, std::string(what) + "; PROTOCOL.md has the bounds");
+  refuse(kTooManyMessages, std::string(what) + "; STREAM.md has the bounds");
   closing_ = true;
   return false;
 }

@@ -1,4 +1,4 @@
-// What a session on `/v1/stream` says, and when (PROTOCOL.md, "WebSocket"): the state behind the
+// What a session on `/v1/stream` says, and when (STREAM.md): the state behind the
 // socket, without the socket.
 #pragma once
 

@@ -1,4 +1,4 @@
-// Where a stream stops (PROTOCOL.md, "Target"), as bounds on what is sent.
+// Where a stream stops (STREAM.md, "Target"), as bounds on what is sent.
 #pragma once
 
 #include <cstdint>

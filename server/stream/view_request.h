@@ -1,4 +1,4 @@
-// What a view wants of a packet, from its box and its values (PROTOCOL.md, "View").
+// What a view wants of a packet, from its box and its values (STREAM.md, "View").
 #pragma once
 
 #include <array>

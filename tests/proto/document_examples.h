@@ -1,5 +1,5 @@
-// The examples of PROTOCOL.md: fenced blocks whose first line says what they hold, `json KIND` or
-// `text transcript`, each judged by the parser of its kind.
+// The examples of PROTOCOL.md, STREAM.md and SESSION.md: fenced blocks whose first line says what
+// they hold, `json KIND` or `text transcript`, each judged by the parser of its kind.
 #pragma once
 
 #include <string>

@@ -20,7 +20,7 @@ using testing::Not;
 /// Both pages, one after the other.
 std::string protocolDocument() {
   std::string both;
-  for (const char* page : {"/proto/PROTOCOL.md", "/proto/SESSION.md"}) {
+  for (const char* page : {"/proto/PROTOCOL.md", "/proto/STREAM.md", "/proto/SESSION.md"}) {
     std::ifstream file(std::string(QTET_SOURCE_DIR) + page);
     both.append(std::istreambuf_iterator<char>(file), {});
   }

@@ -1,5 +1,5 @@
 // A log over plain HTTP. A few requests run at a time. Blocks are delivered in order, as the frames
-// of proto/PROTOCOL.md, and within the credit.
+// of proto/STREAM.md, and within the credit.
 
 import {kFirstFieldPart, kHeadPart, kStructurePart} from './parts';
 import {reconnectDelayMs} from './backoff';
@@ -210,7 +210,7 @@ export class HttpTransport implements Transport {
 const kMaxPieces = 256;
 
 /**
- * The pieces that `request` lacks, in the order of proto/PROTOCOL.md: chunk by chunk, structure
+ * The pieces that `request` lacks, in the order of proto/STREAM.md: chunk by chunk, structure
  * before fields. A log of regions has its head first, then its packets in the order of the view
  * request.
  */

@@ -1,4 +1,4 @@
-// The messages and the binary frame of proto/PROTOCOL.md. Every count that is read is checked.
+// The messages and the binary frame of proto/STREAM.md. Every count that is read is checked.
 
 import {QtetError} from './errors';
 import type {Goal} from './goal';

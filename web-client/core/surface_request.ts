@@ -7,7 +7,7 @@ import {fieldKeys, type FieldInfo} from './manifest';
 import {surfaceBoxesOf} from './surface_boxes';
 import type {Isovalue, ViewRequest} from './view_request';
 
-/** The protocol allows no more (proto/PROTOCOL.md, "View"). */
+/** The protocol allows no more (proto/STREAM.md, "View"). */
 const kMaxIsovalues = 8;
 
 export type SurfaceRequest = Required<Pick<ViewRequest, 'surfaceBoxes' | 'isovalue'>>;

@@ -1,5 +1,5 @@
 // What a session needs from a transport of blocks: a WebSocket, byte ranges of a file, or numbered
-// chunks. All of them use the frames and messages of proto/PROTOCOL.md, and each can continue where
+// chunks. All of them use the frames and messages of proto/STREAM.md, and each can continue where
 // another stopped.
 
 import type {Packet} from './packet';

@@ -22,7 +22,7 @@ export interface ViewRequest {
   isovalue?: Isovalue | null;
 }
 
-/** Defined by proto/PROTOCOL.md. */
+/** Defined by proto/STREAM.md. */
 export interface Isovalue {
   field: string;
   component?: number;
@@ -107,7 +107,7 @@ export interface WireLattice {
 }
 
 /**
- * The request as proto/PROTOCOL.md defines it, in the mesh's own unit; null if it asks for nothing.
+ * The request as proto/STREAM.md defines it, in the mesh's own unit; null if it asks for nothing.
  */
 export function wireView(
   {frustum, planes, point, surfaceBoxes, isovalue}: ViewRequest,
