@@ -165,7 +165,9 @@ step "the plugin in ParaView"
 install paraview python3-paraview xvfb xauth
 cp "$source/tests/codec/python/qtet_paraview_test.py" "$root/tmp/"
 plugin=$(inside dpkg -L python3-qtet | grep '/qtet_paraview\.py$')
-inside xvfb-run -a pvbatch --force-offscreen-rendering /tmp/qtet_paraview_test.py "$plugin" \
+# Without -noreset a window that is opened while the server gets over the last one's end fails.
+inside xvfb-run -a -s "-screen 0 1280x1024x24 -noreset" \
+  pvbatch --force-offscreen-rendering /tmp/qtet_paraview_test.py "$plugin" \
   /tmp/fin.qtet /tmp "http://127.0.0.1:$port/?mesh=fin" >"$work/paraview.log" 2>&1 ||
   failWith "$work/paraview.log" "the plugin in ParaView"
 

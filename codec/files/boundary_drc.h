@@ -20,8 +20,9 @@ struct DrcOptions {
 };
 
 /// Encodes `mesh.boundary` and its vertices: POSITION as float32 in world coordinates less `from`,
-/// quantised on the mesh's own lattice, then one GENERIC float32 attribute a point field, its name in the
-/// attribute's metadata under "name", quantised on the field's own steps. Cell fields are left out.
+/// quantised on the mesh's own lattice, then one GENERIC float32 attribute a point field, its name
+/// in the attribute's metadata under "name", quantised on the field's own steps. Cell fields are
+/// left out.
 /// The decoder orders vertices and triangles anew. Lattice points survive (round((x - origin) /
 /// step) gives them back) while |origin / step| + 2^bits <= 2^19: the float then loses at most 2^-5
 /// of a step, twice, and Draco's three roundings at most 2^-2 together. Further out float32 itself

@@ -13,7 +13,8 @@ namespace qtet {
 /// underscore); others are in the Draco bytes and not named. The first point field is the colours,
 /// too: COLOR_0, viridis over the field's range, grey where it has missing values. Axes and units
 /// are the mesh's own. Where float32 is too coarse for the mesh's places, positions are told from
-/// the lattice's origin, and the node's translation is the origin. REQUIRES and errors: those of boundaryDrc.
+/// the lattice's origin, and the node's translation is the origin. REQUIRES and errors: those of
+/// boundaryDrc.
 [[nodiscard]] Result<Bytes> boundaryGlb(const LatticeMesh& mesh);
 
 /// The same without Draco, for readers that do not know the extension (VTK): points, triangles,

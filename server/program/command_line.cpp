@@ -24,8 +24,8 @@ std::size_t defaultThreads() {
 /// What may stand in all three places.
 po::options_description settings() {
   po::options_description out(
-      "Settings, also in the environment (--max-connections as QTET_SERVER_MAX_CONNECTIONS) and in "
-      "the file of --config");
+      "Settings, also in the environment (--max-connections as QTET_SERVER_MAX_CONNECTIONS) and\n"
+      "in the file of --config");
   const auto text = [] { return po::value<std::string>(); };
   out.add_options()("folder", text(),
                     "folder that holds the .qtet files (may stand without its name)")(
@@ -272,8 +272,7 @@ Result<CommandLine> parseCommandLine(int argc, const char* const* argv,
 std::string usageText() {
   std::ostringstream out;
   out << "Usage: qtet-server DIR [options]\n\nServes the .qtet files of DIR: levels of detail over "
-         "HTTP, refinement over a WebSocket, and "
-         "the viewer's page.\n\n"
+         "HTTP, refinement over a WebSocket,\nand the viewer's page.\n\n"
       << settings() << "\n"
       << commands()
       << "\nExit codes: 0 ended by SIGINT or SIGTERM, 1 cannot serve, 2 wrong usage.\n";

@@ -186,8 +186,8 @@ int runExtract(const Words& words, Console& console) {
        "  qtet extract fin.qtet --ratio 0.1 -o coarse.vtu\n  qtet extract fin.qtet --error "
        "Density=0.01 -o near.vtu\n"
        "  qtet extract fin.qtet --tets 20000 --fields Density -o skin.glb\n"
-       "  curl -s http://127.0.0.1:8080/v1/meshes/fin/log -L | qtet extract - --ratio 0.1 --to vtu "
-       "-o - >coarse.vtu\n"},
+       "  curl -sL http://HOST/v1/meshes/fin/log | qtet extract - --ratio 0.1 --to vtu -o - "
+       ">c.vtu\n"},
       options, {"LOG"});
   if (parsed.helped(console)) return kExitOk;
   const auto given = static_cast<int>(parsed.has("level")) + parsed.has("tets") +

@@ -124,8 +124,8 @@ bool ParsedWords::helped(Console& console) const {
     return true;
   }
   if (!has("help")) return false;
-  console.out << "usage: qtet " << help_.usage << "\n\n"
-              << help_.text << "\n\n"
+  console.out << filled("usage: qtet " + help_.usage, "       ") << "\n\n"
+              << filled(help_.text) << "\n\n"
               << options_ << "\nexamples:\n"
               << help_.examples;
   return true;

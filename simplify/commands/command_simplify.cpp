@@ -262,7 +262,7 @@ int runSimplify(const Words& words, Console& console) {
       "field-bits", po::value<int>()->default_value(12),
       "bits of a float field's values, 1 to 28; integer fields are stored exactly")(
       "geometry-codec", po::value<std::string>()->default_value("draco"),
-      "how positions and fields are coded: draco, or adaptive, which is 1 to 3 % smaller and which "
+      "how positions and fields are coded: draco, or adaptive, which is 1 to 6 % smaller and which "
       "only qtet can read")("keep-order",
                             "keep the input's numbering of points, cells and their vertices: "
                             "extract gives it back at the last level")(

@@ -43,8 +43,8 @@ void printHelp(std::ostream& out) {
     out << "  " << std::left << std::setw(13) << command.name << command.summary << "\n";
   out << "  help         say more about one of them, as --help after it does\n";
   out << "\n  qtet --version tells the version.\n"
-         "  - instead of a mesh's or a log's name is the standard input, -o - the standard output "
-         "of extract and convert.\n"
+         "  - instead of a mesh's or a log's name is the standard input, -o - the standard output\n"
+         "  of extract and convert.\n"
          "  Every command knows --quiet and --verbose. NO_COLOR in the environment keeps colours "
          "away.\n"
          "\nexamples:\n"

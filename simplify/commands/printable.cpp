@@ -1,6 +1,7 @@
 #include "simplify/commands/printable.h"
 
 #include <algorithm>
+#include <sstream>
 
 namespace qtet {
 namespace {
@@ -32,6 +33,34 @@ std::size_t textWidth(std::string_view text) {
     return (static_cast<unsigned char>(c) & 0xC0) != 0x80;
   };
   return static_cast<std::size_t>(std::ranges::count_if(text, beginsCharacter));
+}
+
+std::string filled(std::string_view text, std::string_view indent) {
+  std::string out;
+  std::size_t column = 0;
+  const auto newLine = [&](std::string_view begin) {
+    out += '\n';
+    out += begin;
+    column = textWidth(begin);
+  };
+  std::istringstream lines{std::string(text)};
+  bool inParagraph = false;
+  for (std::string line, word; std::getline(lines, line);) {
+    const bool begins = !inParagraph || line.starts_with('-');
+    inParagraph = !line.empty();
+    if (begins && !out.empty()) newLine("");
+    bool first = begins;
+    for (std::istringstream words(line); words >> word; first = false) {
+      if (!first && column + 1 + textWidth(word) > kHelpColumns) {
+        newLine(indent);
+      } else if (!first) {
+        out += ' ', ++column;
+      }
+      out += word;
+      column += textWidth(word);
+    }
+  }
+  return out;
 }
 
 std::string grouped(std::uint64_t number) {

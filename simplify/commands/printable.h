@@ -17,6 +17,14 @@ namespace qtet {
 /// a combining one.
 [[nodiscard]] std::size_t textWidth(std::string_view text);
 
+/// A line of help has at most so many columns, as wide as a terminal may well be.
+inline constexpr std::size_t kHelpColumns = 100;
+
+/// The text's paragraphs, filled to lines of at most kHelpColumns; a longer word has a line to
+/// itself. A paragraph begins at the text's start, behind an empty line, and at a line that begins
+/// with a dash. Its lines from the second on begin with `indent`.
+[[nodiscard]] std::string filled(std::string_view text, std::string_view indent = "");
+
 /// 1234567 as "1,234,567".
 [[nodiscard]] std::string grouped(std::uint64_t number);
 

@@ -1,5 +1,5 @@
 // The fusions of a level: decided on first, and done afterwards by all threads. What is decided in
-// a level depends on none of them (ALGORITHM.md, "Threads").
+// a level depends on none of them (THREADS.md).
 #pragma once
 
 #include <cstddef>

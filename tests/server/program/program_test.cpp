@@ -6,6 +6,7 @@
 #include <csignal>
 #include <filesystem>
 #include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,8 @@ using test::Program;
 TEST(Program, helpAndVersionGoToStandardOutput) {
   Program help({"--help"});
   EXPECT_NE(help.output().find("Usage: qtet-server DIR"), std::string::npos);
+  std::istringstream lines(help.output());
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100u) << line;
   EXPECT_EQ(help.exitCode(), 0);
   Program version({"--version"});
   EXPECT_EQ(version.output(), "qtet-server " QTET_VERSION "\n");

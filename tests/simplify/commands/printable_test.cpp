@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <sstream>
+#include <string>
+
 namespace qtet {
 namespace {
 
@@ -25,6 +29,22 @@ TEST(Printable, widthIsOfCharactersAndCountsHaveTheirWord) {
   EXPECT_EQ(counted(1234567, "vertex", "vertices"), "1,234,567 vertices");
   EXPECT_EQ(grouped(999), "999");
   EXPECT_EQ(grouped(1000), "1,000");
+}
+
+TEST(Printable, paragraphsAreFilledAndKeptApart) {
+  EXPECT_EQ(filled("one\ntwo\n\nthree\n--json: four\nfive"), "one two\n\nthree\n--json: four five");
+  EXPECT_EQ(filled(""), "");
+  std::string words;
+  for (int i = 0; i < 60; ++i) words += "w\u00F6rd ";
+  const std::string text = filled(words + std::string(120, 'x') + " end", "  ");
+  std::istringstream lines(text);
+  std::size_t longest = 0;
+  for (std::string line; std::getline(lines, line);)
+    if (line.find('x') == std::string::npos) longest = std::max(longest, textWidth(line));
+  EXPECT_LE(longest, kHelpColumns);
+  EXPECT_GT(longest, kHelpColumns - 5);
+  EXPECT_NE(text.find("\n  w\u00F6rd"), std::string::npos);
+  EXPECT_NE(text.find("\n  " + std::string(120, 'x') + "\n  end"), std::string::npos);
 }
 
 }  // namespace
