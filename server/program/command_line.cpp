@@ -71,7 +71,13 @@ po::options_description settings() {
       "for tickets and change meshes (default: any)")(
       "frame-ancestors", text(),
       "pages that may show the viewer in a frame, as CSP writes them: * , 'none', 'self' "
-      "https://a.example (default: *)");
+      "https://a.example (default: *)")(
+      "trust-proxy", text(),
+      "addresses and blocks between commas, like 10.0.0.0/8, of proxies that may say for whom "
+      "they ask; the bounds of an address and the access log heed it (default: none)")(
+      "proxy-header", text(),
+      "how they say it: x-forwarded-for, forwarded (RFC 7239), or proxy-protocol (version 2) "
+      "(default: x-forwarded-for)");
   return out;
 }
 
@@ -166,6 +172,27 @@ void readFrameAncestors(Reader& reader, CommandLine& out) {
                   " is no list of sources between spaces, like 'self' https://a.example");
 }
 
+constexpr std::array<std::pair<std::string_view, ProxyHeader>, 3> kProxyHeaders{
+    {{"x-forwarded-for", ProxyHeader::kForwardedFor},
+     {"forwarded", ProxyHeader::kForwarded},
+     {"proxy-protocol", ProxyHeader::kProxyProtocol}}};
+
+void readProxies(Reader& reader, CommandLine& out) {
+  out.proxyList = reader.text("trust-proxy").value_or("");
+  Result<Networks> networks = Networks::parse(out.proxyList);
+  if (!networks) return reader.refuse("--trust-proxy: " + networks.error().message);
+  out.proxies.networks = std::move(*networks);
+  const std::string header = reader.text("proxy-header").value_or("x-forwarded-for");
+  const auto at =
+      std::ranges::find(kProxyHeaders, header, &decltype(kProxyHeaders)::value_type::first);
+  if (at == kProxyHeaders.end())
+    return reader.refuse("--proxy-header " + header +
+                         " is neither x-forwarded-for nor forwarded nor proxy-protocol");
+  if (reader.text("proxy-header") && out.proxies.networks.empty())
+    return reader.refuse("--proxy-header counts only with --trust-proxy, which names the proxies");
+  out.proxies.header = at->second;
+}
+
 Result<CommandLine> toCommandLine(const po::variables_map& values) {
   CommandLine out;
   if (values.contains("check-config")) out.action = CommandLine::Action::kCheckConfig;
@@ -205,6 +232,7 @@ Result<CommandLine> toCommandLine(const po::variables_map& values) {
   readAdmin(reader, out);
   readOrigins(reader, out);
   readFrameAncestors(reader, out);
+  readProxies(reader, out);
   if (reader.error()) return std::unexpected(*reader.error());
   return out;
 }
@@ -313,6 +341,11 @@ std::string configText(const CommandLine& options) {
     out << (i == 0 ? "allow-origins = " : ",") << options.allowedOrigins[i];
   if (!options.allowedOrigins.empty()) out << "\n";
   out << "frame-ancestors = " << options.frameAncestors << "\n";
+  if (!options.proxyList.empty()) {
+    const auto at = std::ranges::find(kProxyHeaders, options.proxies.header,
+                                      &decltype(kProxyHeaders)::value_type::second);
+    out << "trust-proxy = " << options.proxyList << "\nproxy-header = " << at->first << "\n";
+  }
   return out.str();
 }
 

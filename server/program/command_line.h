@@ -11,6 +11,7 @@
 
 #include "proto/error.h"
 #include "server/wire/limits.h"
+#include "server/wire/trusted_proxies.h"
 
 namespace qtet {
 
@@ -44,6 +45,8 @@ struct CommandLine {
   /// Of pages that may open streams; empty: any.
   std::vector<std::string> allowedOrigins;
   std::string frameAncestors = "*";
+  TrustedProxies proxies;
+  std::string proxyList;  ///< the networks as they were given
 };
 
 /// `environment` is what `environ` points to: NAME=VALUE texts and a nullptr. An option

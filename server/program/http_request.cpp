@@ -116,6 +116,17 @@ RequestView viewOf(const RequestHeader& header) {
       .traceparent = headerValue(header, "traceparent")};
 }
 
+std::string forwardedOf(const RequestHeader& header, const TrustedProxies& proxies) {
+  const char* name = proxies.header == ProxyHeader::kForwarded ? "Forwarded" : "X-Forwarded-For";
+  std::string out;
+  const auto [first, end] = header.equal_range(name);
+  for (auto line = first; line != end; ++line) {
+    if (!out.empty()) out += ',';
+    out += toView(line->value());
+  }
+  return out;
+}
+
 std::optional<Reply> refusalOf(const RequestHeader& header) {
   if (header.version() != 11 && header.version() != 10)
     return closing(505, "version-not-supported", "this server speaks HTTP/1.1 and HTTP/1.0");

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "server/http/http_message.h"
+#include "server/wire/trusted_proxies.h"
 
 namespace qtet {
 
@@ -20,6 +21,9 @@ void joinLists(RequestHeader& header);
 /// The views live as long as `header`. A `Range` that stands there twice is none, as one that makes
 /// no sense is none.
 [[nodiscard]] RequestView viewOf(const RequestHeader& header);
+
+/// What a proxy says in the header that `proxies` names, all of its lines as one list.
+[[nodiscard]] std::string forwardedOf(const RequestHeader& header, const TrustedProxies& proxies);
 
 /// The answer to a request that must not be understood: no or several hosts, twice what may stand
 /// there once, an odd version, a body where none is taken. Such an answer closes the connection,

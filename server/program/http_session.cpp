@@ -36,17 +36,26 @@ bool hasBody(const RequestView& request) {
 
 class HttpSession {
  public:
-  HttpSession(Peer peer, const Services& services)
+  HttpSession(Peer peer, const Services& services, bool ofProxy)
       : peer_(std::move(peer)),
         services_(services),
         input_(peer_, services.timeouts),
         // asked now: who leaves at once has no address afterwards
         report_(services.metrics, services.accessLog,
-                services.accessLog != nullptr ? peer_.socket.peer() : "") {}
+                services.accessLog != nullptr ? peer_.socket.peer() : ""),
+        proxies_(ofProxy ? services.proxies : nullptr) {}
 
   asio::awaitable<void> run();
 
  private:
+  /// Reads for whom a proxy has connected; false: it does not say so as it has to.
+  asio::awaitable<bool> greetProxy();
+  [[nodiscard]] bool asksProxyOnce() const {
+    return proxies_ != nullptr && proxies_->header == ProxyHeader::kProxyProtocol;
+  }
+  /// From now on the connection is that client's; nullopt: the proxy's own. False: the client has
+  /// as many as it may have.
+  bool belongsTo(std::optional<asio::ip::address> client);
   asio::awaitable<bool> shakeHands();
   /// False: no place came free in the time for a handshake, or the connection ends.
   asio::awaitable<bool> waitForPlace(Handshakes::Client& handshake, const Deadline& deadline);
@@ -54,7 +63,8 @@ class HttpSession {
   /// of its own, so that a silent client holds none of what a request needs.
   asio::awaitable<bool> serveRequest();
   /// The answer to a request if nothing of what it asks for matters.
-  std::optional<Reply> earlyAnswer(const RequestHeader& header);
+  /// `placed`: the client has a place among those of its address.
+  std::optional<Reply> earlyAnswer(const RequestHeader& header, bool placed);
   asio::awaitable<bool> becomeStream(Parser& parser);
   /// Answers one request; false: the connection is not to be used further.
   asio::awaitable<bool> answer(const RequestHeader& request, bool keepAlive);
@@ -65,8 +75,28 @@ class HttpSession {
   const Services& services_;
   HttpInput input_;
   RequestReport report_;
-  bool headOnly_ = false;  // the request under way is a HEAD: its answer has no body
+  const TrustedProxies* proxies_;  // nullptr: the client is the peer
+  bool headOnly_ = false;          // the request under way is a HEAD: its answer has no body
 };
+
+bool HttpSession::belongsTo(std::optional<asio::ip::address> client) {
+  peer_.client.reset();
+  if (!client) return true;
+  peer_.client = services_.addresses->enter(*client);
+  if (services_.accessLog != nullptr) report_.setAddress(client->to_string());
+  return peer_.client != nullptr;
+}
+
+asio::awaitable<bool> HttpSession::greetProxy() {
+  if (!asksProxyOnce()) co_return true;
+  std::optional<ProxyHead> head;
+  {
+    const Deadline deadline(peer_.socket, services_.timeouts.header);
+    const IdleScope idle(peer_);
+    head = co_await peer_.socket.takeProxyHead();
+  }
+  co_return head&& belongsTo(head->client);
+}
 
 asio::awaitable<bool> HttpSession::shakeHands() {
   if (!peer_.socket.isTls()) co_return true;
@@ -101,6 +131,8 @@ asio::awaitable<bool> HttpSession::waitForPlace(Handshakes::Client& handshake,
 }
 
 asio::awaitable<void> HttpSession::run() {
+  const bool known = co_await greetProxy();
+  if (!known) co_return;
   const bool greeted = co_await shakeHands();
   if (!greeted) co_return;
   for (;;) {
@@ -121,20 +153,23 @@ asio::awaitable<bool> HttpSession::serveRequest() {
     co_return false;
   }
   joinLists(parser.get());
+  const bool placed = proxies_ == nullptr || asksProxyOnce() ||
+                      belongsTo(forwardedClient(*proxies_, forwardedOf(parser.get(), *proxies_)));
   report_.identify(viewOf(parser.get()));
   const bool keepAlive = parser.get().keep_alive();
   bool again = false;
-  if (std::optional<Reply> early = earlyAnswer(parser.get())) {
+  if (std::optional<Reply> early = earlyAnswer(parser.get(), placed)) {
     again = co_await send(std::move(*early), keepAlive);
   } else if (services_.streams && isStreamHandshake(parser.get())) {
     co_await becomeStream(parser);
   } else {
     again = co_await answer(parser.get(), keepAlive);
   }
+  if (proxies_ != nullptr && !asksProxyOnce()) peer_.client.reset();  // the next may be another's
   co_return again;
 }
 
-std::optional<Reply> HttpSession::earlyAnswer(const RequestHeader& header) {
+std::optional<Reply> HttpSession::earlyAnswer(const RequestHeader& header, bool placed) {
   if (std::optional<Reply> refusal = refusalOf(header)) {
     refusal->close = true;
     return refusal;
@@ -142,7 +177,7 @@ std::optional<Reply> HttpSession::earlyAnswer(const RequestHeader& header) {
   if (!isReading(header))
     if (std::optional<Reply> refusal = originRefusal(header, services_.allowedOrigins))
       return refusal;
-  if (!peer_.client || peer_.client->countRequest()) return std::nullopt;
+  if (placed && (!peer_.client || peer_.client->countRequest())) return std::nullopt;
   Reply out =
       problem(429, "too-many-requests", "this address asks too often; come back in a moment");
   out.headers.emplace_back("Retry-After", "1");
@@ -171,10 +206,13 @@ asio::awaitable<bool> HttpSession::becomeStream(Parser& parser) {
                             services_.timeouts.silence,
                             services_.timeouts.write,
                             &services_.jobs,
-                            services_.unpaced};
+                            services_.unpaced,
+                            report_.streamRequest()};
   // A coroutine of its own, so that what a request needed goes.
   const auto executor = peer_.socket.get_executor();
-  asio::co_spawn(executor, serveStream(std::move(peer_), std::move(handshake), services_.store),
+  asio::co_spawn(executor,
+                 serveStream(std::move(peer_), std::move(handshake), services_.store,
+                             services_.metrics, services_.accessLog),
                  [](const std::exception_ptr& thrown) {
                    if (thrown) spdlog::error("a stream ended by an exception");
                  });
@@ -226,10 +264,10 @@ asio::awaitable<void> HttpSession::refuse(Reply reply) {
 
 asio::awaitable<void> serveHttp(asio::ip::tcp::socket socket, std::shared_ptr<const TlsContext> tls,
                                 const Services& services, std::shared_ptr<Connection> connection,
-                                std::unique_ptr<AddressLimits::Client> client) {
+                                std::unique_ptr<AddressLimits::Client> client, bool ofProxy) {
   HttpSession session(
       Peer{ClientSocket(std::move(socket), tls.get()), std::move(connection), std::move(client)},
-      services);
+      services, ofProxy);
   co_await session.run();
 }
 

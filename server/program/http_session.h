@@ -13,12 +13,13 @@
 
 namespace qtet {
 
-/// Serves until the connection ends, over TLS where there is a context. Runs on the socket's
+/// Serves until the connection ends, over TLS where there is a context. With `ofProxy` it is that
+/// of a trusted proxy, whose clients are counted as it names them. Runs on the socket's
 /// executor, which must be a single thread or a strand.
 boost::asio::awaitable<void> serveHttp(boost::asio::ip::tcp::socket socket,
                                        std::shared_ptr<const TlsContext> tls,
                                        const Services& services,
                                        std::shared_ptr<Connection> connection,
-                                       std::unique_ptr<AddressLimits::Client> client);
+                                       std::unique_ptr<AddressLimits::Client> client, bool ofProxy);
 
 }  // namespace qtet

@@ -172,6 +172,7 @@ ServerOptions serverOptions(const CommandLine& options, LevelCache* cache, Acces
           .reload = [&options, &secrets] { reload(options, secrets); },
           .allowedOrigins = options.allowedOrigins,
           .frameAncestors = options.frameAncestors,
+          .proxies = options.proxies,
           .uploads = {.mostBytes = options.maxUploadBytes,
                       .checkLimits = {options.maxCheckBytes, options.maxCheckTime},
                       .parts = {.reserve = options.diskReserve}},

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "server/http/http_message.h"
+#include "server/stream/stream_report.h"
 #include "server/wire/access_log.h"
 #include "server/wire/metrics.h"
 #include "server/wire/request_trace.h"
@@ -21,12 +22,16 @@ class RequestReport {
     begin();
   }
 
+  /// The client turns out to be another: the peer is a proxy.
+  void setAddress(std::string address) { address_ = std::move(address); }
   /// A request of which nothing is known yet.
   void begin();
   /// Its head has come.
   void identify(const RequestView& request);
   /// X-Request-Id, and traceparent if the client has sent one.
   void addHeaders(Reply& reply) const;
+  /// What a stream tells of it that it becomes.
+  [[nodiscard]] StreamRequest streamRequest() const { return {address_, target_, trace_}; }
   /// Its answer was sent, or nobody waits for it any more. `bytes` of the body went out.
   void end(unsigned status, std::uint64_t bytes, bool whole) const;
 

@@ -27,6 +27,7 @@
 
 #include "server/program/http_session.h"
 #include "server/routes/http_router.h"
+#include "server/wire/process_figures.h"
 
 namespace qtet {
 namespace {
@@ -85,7 +86,10 @@ struct Server::State {
                options.access != nullptr ? std::optional<Writing>({*options.access, uploads})
                                          : std::nullopt,
                options.frameAncestors),
-        lanes(std::max<std::size_t>(options.threads, 1)) {}
+        lanes(std::max<std::size_t>(options.threads, 1)) {
+    services.addresses = &addresses;
+    if (!options.proxies.networks.empty()) services.proxies = &options.proxies;
+  }
 
   asio::awaitable<void> acceptConnections(tcp::acceptor& acceptor, const Services& services);
   void handOver(tcp::socket socket, const tcp::endpoint& peer, asio::io_context& context,
@@ -177,15 +181,17 @@ asio::awaitable<void> Server::State::acceptConnections(tcp::acceptor& from, cons
 void Server::State::handOver(tcp::socket socket, const tcp::endpoint& peer,
                              asio::io_context& context, const Services& whose) {
   const bool ofOperators = &whose == &adminServices;
+  const bool ofProxy = whose.proxies != nullptr && whose.proxies->networks.contains(peer.address());
+  const bool bounded = !ofOperators && !ofProxy;
   std::unique_ptr<AddressLimits::Client> client =
-      ofOperators ? nullptr : addresses.enter(peer.address());
+      bounded ? addresses.enter(peer.address()) : nullptr;
   std::shared_ptr<Connection> connection =
-      client || ofOperators ? connections.enter(context.get_executor()) : nullptr;
+      client || !bounded ? connections.enter(context.get_executor()) : nullptr;
   if (!connection) {
     metrics.countRefusedConnection();
     // a handshake costs more than there is for who is turned away
     if (options.tls != nullptr && !ofOperators) return;
-    if (!client && !ofOperators)
+    if (!client && bounded)
       return turnAway(std::move(socket), 429, "too-many-requests",
                       "too many connections from this address; close some");
     return turnAway(std::move(socket), 503, "busy", "too many connections; try again");
@@ -193,14 +199,14 @@ void Server::State::handOver(tcp::socket socket, const tcp::endpoint& peer,
   metrics.countConnection();
   auto tls = options.tls != nullptr && !ofOperators ? options.tls->now() : nullptr;
   // Posted first: co_spawn would begin the coroutine on this thread.
-  asio::post(context,
-             [&whose, socket = std::move(socket), tls = std::move(tls),
-              connection = std::move(connection), client = std::move(client), &context]() mutable {
-               asio::co_spawn(context,
-                              serveHttp(std::move(socket), std::move(tls), whose,
-                                        std::move(connection), std::move(client)),
-                              logEnd);
-             });
+  asio::post(context, [&whose, socket = std::move(socket), tls = std::move(tls),
+                       connection = std::move(connection), client = std::move(client), ofProxy,
+                       &context]() mutable {
+    asio::co_spawn(context,
+                   serveHttp(std::move(socket), std::move(tls), whose, std::move(connection),
+                             std::move(client), ofProxy),
+                   logEnd);
+  });
 }
 
 std::vector<Metrics::Figure> Server::State::figures() const {
@@ -213,32 +219,40 @@ std::vector<Metrics::Figure> Server::State::figures() const {
   const auto counter = [](const char* name, const char* help, auto value) {
     return Metrics::Figure{name, help, true, static_cast<double>(value)};
   };
-  return {gauge("uploads_open", "Uploads under way.", uploads.active()),
-          gauge("uploads_checking", "Uploads whose logs are being decoded.", uploads.checking()),
-          counter("uploads_published_total", "Logs that were uploaded and published.",
-                  uploads.published()),
-          gauge("connections_open", "Connections that are open, HTTP and WebSocket.",
-                connections.open()),
-          gauge("tls_handshakes_open", "TLS handshakes under way.", hands.open),
-          gauge("tls_handshakes_waiting", "Connections that wait for the place of a TLS handshake.",
-                hands.waiting),
-          counter("tls_handshakes_displaced_total",
-                  "TLS handshakes given up, unfinished, for others that waited.", hands.displaced),
-          gauge("meshes", "Meshes that are served.", catalogue->meshes.size()),
-          gauge("meshes_unread", "Files of the folder that nobody has looked into yet.",
-                catalogue->unread),
-          gauge("meshes_refused", "Files that are not served because they are damaged.",
-                catalogue->refused.size()),
-          gauge("levels_wanted", "Requests that wait for a level.", levels.wanted),
-          gauge("levels_waiting", "Levels that wait for being made.", levels.waiting),
-          gauge("levels_running", "Levels that are being made.", levels.running),
-          counter("levels_made_total", "Levels made.", levels.made),
-          counter("levels_found_total", "Levels that were kept from before.", levels.found),
-          counter("levels_cancelled_total", "Levels that nobody waited for any more.",
-                  levels.cancelled),
-          counter("levels_refused_total", "Levels refused because there were too many.",
-                  levels.refused),
-          counter("levels_failed_total", "Levels that could not be made.", levels.failed)};
+  std::vector<Metrics::Figure> out = processFigures();
+  if (options.tls != nullptr)
+    out.push_back(gauge("tls_certificate_expiry_timestamp_seconds",
+                        "When the certificate ends, since 1970.",
+                        std::chrono::system_clock::to_time_t(options.tls->now()->expires())));
+  const std::vector<Metrics::Figure> ours = {
+      gauge("uploads_open", "Uploads under way.", uploads.active()),
+      gauge("uploads_checking", "Uploads whose logs are being decoded.", uploads.checking()),
+      counter("uploads_published_total", "Logs that were uploaded and published.",
+              uploads.published()),
+      gauge("connections_open", "Connections that are open, HTTP and WebSocket.",
+            connections.open()),
+      gauge("tls_handshakes_open", "TLS handshakes under way.", hands.open),
+      gauge("tls_handshakes_waiting", "Connections that wait for the place of a TLS handshake.",
+            hands.waiting),
+      counter("tls_handshakes_displaced_total",
+              "TLS handshakes given up, unfinished, for others that waited.", hands.displaced),
+      gauge("meshes", "Meshes that are served.", catalogue->meshes.size()),
+      gauge("meshes_unread", "Files of the folder that nobody has looked into yet.",
+            catalogue->unread),
+      gauge("meshes_refused", "Files that are not served because they are damaged.",
+            catalogue->refused.size()),
+      gauge("levels_wanted", "Requests that wait for a level.", levels.wanted),
+      gauge("levels_waiting", "Levels that wait for being made.", levels.waiting),
+      gauge("levels_running", "Levels that are being made.", levels.running),
+      counter("levels_made_total", "Levels made.", levels.made),
+      counter("levels_found_total", "Levels that were kept from before.", levels.found),
+      counter("levels_cancelled_total", "Levels that nobody waited for any more.",
+              levels.cancelled),
+      counter("levels_refused_total", "Levels refused because there were too many.",
+              levels.refused),
+      counter("levels_failed_total", "Levels that could not be made.", levels.failed)};
+  out.insert(out.end(), ours.begin(), ours.end());
+  return out;
 }
 
 void Server::State::drain() {

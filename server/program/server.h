@@ -15,6 +15,7 @@
 #include "server/store/level_maker.h"
 #include "server/wire/access.h"
 #include "server/wire/tls_context.h"
+#include "server/wire/trusted_proxies.h"
 
 namespace qtet {
 
@@ -46,6 +47,8 @@ struct ServerOptions {
   std::vector<std::string> allowedOrigins{};
   /// Pages that may show the viewer in a frame, as CSP writes them.
   std::string frameAncestors = "*";
+  /// Whose clients count as their own.
+  TrustedProxies proxies{};
   LevelJobs::Maker makeLevel = qtet::makeLevel;
   UploadOptions uploads{};
   /// From the first signal to the end, all is served on, and /readyz is 503: for whoever spreads

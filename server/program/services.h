@@ -15,9 +15,11 @@
 #include "server/store/mesh_store.h"
 #include "server/wire/access.h"
 #include "server/wire/access_log.h"
+#include "server/wire/address_limits.h"
 #include "server/wire/handshakes.h"
 #include "server/wire/limits.h"
 #include "server/wire/metrics.h"
+#include "server/wire/trusted_proxies.h"
 
 namespace qtet {
 
@@ -52,6 +54,9 @@ struct Services {
   Handshakes* handshakes = nullptr;  ///< where there is TLS
   /// All clients are on this machine, and what is sent to them waits for no timer.
   bool unpaced = false;
+  /// Where the clients of trusted proxies count.
+  AddressLimits* addresses = nullptr;
+  const TrustedProxies* proxies = nullptr;  ///< nullptr: there are none
 };
 
 }  // namespace qtet

@@ -32,10 +32,13 @@ class ControlFrames {
   void close(CloseCode code, std::string_view reason = "") {
     assert(reason.size() <= 123);
     const auto number = static_cast<std::uint16_t>(code);
-    if (!closing())
-      close_ = Due{std::string{static_cast<char>(number >> 8), static_cast<char>(number & 0xFF)} +
-                   std::string(reason)};
+    if (closing()) return;
+    ownCode_ = code;
+    close_ = Due{std::string{static_cast<char>(number >> 8), static_cast<char>(number & 0xFF)} +
+                 std::string(reason)};
   }
+  /// That of a close frame by our own decision; nullopt: there is none.
+  [[nodiscard]] std::optional<CloseCode> ownCode() const { return ownCode_; }
   /// Answers the client's close frame with the client's own code, as RFC 6455 suggests.
   void answerClose(std::string_view payload) {
     if (!closed()) close_ = Due{std::string(payload.substr(0, 2))};
@@ -70,6 +73,7 @@ class ControlFrames {
 
   std::optional<std::string> pong_;  ///< the payload of the last ping that is not answered
   bool ping_ = false;                ///< one is due
+  std::optional<CloseCode> ownCode_;
   std::variant<Open, Due, Closed> close_;
 };
 

@@ -57,6 +57,11 @@ class FrameGather {
     return items_.size() == limits::kFramesPerWrite || bytes_ >= limits::kBytesPerWrite;
   }
   [[nodiscard]] bool empty() const { return items_.empty(); }
+  /// Binary ones that were added.
+  [[nodiscard]] std::size_t frames() const {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(items_, [](const Item& item) { return item.mesh != nullptr; }));
+  }
   [[nodiscard]] bool several() const { return items_.size() > 1; }
   [[nodiscard]] bool written() const { return parts_.empty(); }
   /// Gives the socket what it takes by one call: parts in memory up to the next that lies in a

@@ -43,6 +43,16 @@ class StreamProtocol {
   /// nothing follows.
   [[nodiscard]] std::optional<Outgoing> next();
 
+  /// `open`s so far.
+  [[nodiscard]] std::uint32_t opens() const { return opens_; }
+  /// That of the stream under way; nullptr: none is.
+  [[nodiscard]] MeshPointer mesh() const { return stream_ ? stream_->mesh : nullptr; }
+  /// There is more to send, and credit alone is wanting.
+  [[nodiscard]] bool lacksCredit() const {
+    return stream_ && stream_->nextRun < stream_->plan.size() && !stream_->paused &&
+           stream_->credit <= 0;
+  }
+
   /// The mesh whose packets' intervals the view asks for and nobody knows yet; nullptr: none. Until
   /// they are there an isovalue counts for nothing.
   [[nodiscard]] MeshPointer lacksIntervals() const;

@@ -63,13 +63,24 @@ class Cork {
   bool held_ = false;
 };
 
+/// Why a stream ended, in the access log's words.
+std::string_view reasonOf(CloseCode code) {
+  switch (code) {
+    case CloseCode::kGoingAway: return "server-ends";
+    case CloseCode::kPolicy: return "refused";
+    case CloseCode::kInternal: return "fault";
+    default: return "wrong-frame";
+  }
+}
+
 /// A reader, a writer and a clock on one executor. The writer alone writes, also pongs and closes,
 /// so that nothing comes between the parts of a frame; the reader wakes it when there is something
 /// to say. All hold the session, so it ends with the last of them. Once the socket is closed
 /// nothing is read or written any more.
 class StreamSession : public std::enable_shared_from_this<StreamSession> {
  public:
-  StreamSession(Peer peer, StreamProtocol protocol, const StreamHandshake& handshake)
+  StreamSession(Peer peer, StreamProtocol protocol, const StreamHandshake& handshake,
+                Metrics& metrics, AccessLog* log)
       : peer_(std::move(peer)),
         wake_(peer_.socket.get_executor()),
         clock_(peer_.socket.get_executor()),
@@ -81,7 +92,16 @@ class StreamSession : public std::enable_shared_from_this<StreamSession> {
                      wake_.cancel();
                    }),
         patience_(handshake.silence, handshake.write, Clock::now()),
-        cork_(peer_.socket, handshake.unpaced) {}
+        cork_(peer_.socket, handshake.unpaced),
+        report_(metrics, log, handshake.request, Clock::now()) {}
+  ~StreamSession() {
+    if (const auto code = control_.ownCode())
+      report_.ends(reasonOf(*code));
+    else if (control_.closing())
+      report_.ends("closed-by-client");
+  }
+  StreamSession(const StreamSession&) = delete;
+  StreamSession& operator=(const StreamSession&) = delete;
 
   asio::awaitable<void> run(StreamHandshake handshake);
   /// Ends the session by the server's own fault.
@@ -115,6 +135,7 @@ class StreamSession : public std::enable_shared_from_this<StreamSession> {
   IntervalSearch intervals_;
   Patience patience_;
   Cork cork_;
+  StreamReport report_;
 };
 
 std::string handshakeAnswer(const std::string& key) {
@@ -127,7 +148,9 @@ std::string handshakeAnswer(const std::string& key) {
 void StreamSession::hear(std::string_view bytes) {
   const auto now = Clock::now();
   if (input_.listens()) patience_.heard(now);
+  const std::uint32_t opens = protocol_.opens();
   input_.take(bytes, now);
+  if (protocol_.opens() != opens && protocol_.mesh()) report_.opened(protocol_.mesh()->id, now);
   if (input_.listens()) intervals_.want(protocol_.lacksIntervals());
 }
 
@@ -190,6 +213,7 @@ asio::awaitable<void> StreamSession::write() {
     }
     if (!idle) continue;
     cork_.release();
+    if (protocol_.lacksCredit()) report_.lacksCredit();
     co_await waitForNews();
   }
   if (peer_.socket.isOpen()) cork_.release();
@@ -202,9 +226,15 @@ asio::awaitable<void> StreamSession::flush(FrameGather& gather) {
     error_code ec;
     const std::size_t count = gather.write(peer_.socket, ec);
     if (count > 0) patience_.took(Clock::now());
-    if (ec == asio::error::would_block) ec = co_await peer_.socket.waitToWrite();
+    report_.took(count);
+    if (ec == asio::error::would_block) {
+      const auto since = Clock::now();
+      ec = co_await peer_.socket.waitToWrite();
+      report_.stalled(Clock::now() - since);
+    }
     if (ec) cut();
   }
+  if (gather.written()) report_.wroteFrames(gather.frames(), Clock::now());
   patience_.wrote();
 }
 
@@ -227,8 +257,10 @@ asio::awaitable<void> StreamSession::keepTime() {
     if (ec) continue;  // the writer has closed, or the session was cut
     const Patience::Verdict verdict = patience_.at(Clock::now());
     if (closing || verdict == Patience::Verdict::kStuck) {
+      if (!closing) report_.ends("stuck");
       cut();  // in the midst of a frame nothing can be said
     } else if (verdict == Patience::Verdict::kSilent) {
+      report_.ends("silent");
       control_.close(CloseCode::kPolicy, kSilenceReason);
       wake_.cancel();
     } else if (verdict == Patience::Verdict::kPing) {
@@ -260,9 +292,11 @@ asio::awaitable<void> StreamSession::run(StreamHandshake handshake) {
 
 }  // namespace
 
-asio::awaitable<void> serveStream(Peer peer, StreamHandshake handshake, const MeshStore& store) {
+asio::awaitable<void> serveStream(Peer peer, StreamHandshake handshake, const MeshStore& store,
+                                  Metrics& metrics, AccessLog* log) {
   const auto session = std::make_shared<StreamSession>(
-      std::move(peer), StreamProtocol(store, std::move(handshake.mayRead)), handshake);
+      std::move(peer), StreamProtocol(store, std::move(handshake.mayRead)), handshake, metrics,
+      log);
   co_await session->run(std::move(handshake));
 }
 

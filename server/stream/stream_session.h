@@ -10,6 +10,7 @@
 
 #include "server/store/level_jobs.h"
 #include "server/store/mesh_store.h"
+#include "server/stream/stream_report.h"
 #include "server/wire/access.h"
 #include "server/wire/limits.h"
 #include "server/wire/peer.h"
@@ -26,11 +27,13 @@ struct StreamHandshake {
   /// Where the intervals of packets are found; nullptr: they stay unknown.
   LevelJobs* jobs = nullptr;
   bool unpaced = false;  ///< as Services has it
+  StreamRequest request{};
 };
 
 /// Answers the handshake and serves until the socket ends. Runs on the socket's executor, which
 /// must be a single thread or a strand.
+/// `log` may be nullptr.
 boost::asio::awaitable<void> serveStream(Peer peer, StreamHandshake handshake,
-                                         const MeshStore& store);
+                                         const MeshStore& store, Metrics& metrics, AccessLog* log);
 
 }  // namespace qtet

@@ -8,6 +8,23 @@
 #include "proto/json_reader.h"
 
 namespace qtet {
+namespace {
+
+constexpr unsigned kSwitchingProtocols = 101;
+
+double milliseconds(std::chrono::nanoseconds time) {
+  return std::chrono::duration<double, std::milli>(time).count();
+}
+
+void addTrace(Json& line, const RequestTrace& trace) {
+  line["id"] = trace.id;
+  if (trace.traceId.empty()) return;
+  line["traceId"] = trace.traceId;
+  line["parentId"] = trace.parentId;
+  line["spanId"] = trace.spanId;
+}
+
+}  // namespace
 
 AccessLog::AccessLog(std::shared_ptr<spdlog::logger> logger) : logger_(std::move(logger)) {}
 AccessLog::~AccessLog() { logger_->flush(); }
@@ -31,19 +48,27 @@ Result<std::unique_ptr<AccessLog>> AccessLog::open(const std::string& path) {
 }
 
 void AccessLog::write(const AccessEntry& entry, const RequestTrace& trace) {
-  Json line = {{"id", trace.id},
-               {"client", entry.client},
-               {"method", entry.method},
-               {"target", entry.target},
-               {"status", entry.status},
-               {"bytes", entry.bytes},
-               {"ms", std::chrono::duration<double, std::milli>(entry.time).count()},
+  Json line = {{"client", entry.client}, {"method", entry.method}, {"target", entry.target},
+               {"status", entry.status}, {"bytes", entry.bytes},   {"ms", milliseconds(entry.time)},
                {"whole", entry.whole}};
-  if (!trace.traceId.empty()) {
-    line["traceId"] = trace.traceId;
-    line["parentId"] = trace.parentId;
-    line["spanId"] = trace.spanId;
-  }
+  addTrace(line, trace);
+  logger_->info(dumpJson(line).substr(1));
+}
+
+void AccessLog::write(const StreamEntry& entry, std::string_view client, std::string_view target,
+                      const RequestTrace& trace) {
+  Json stream = {{"mesh", entry.mesh},
+                 {"opens", entry.opens},
+                 {"frames", entry.frames},
+                 {"stalledMs", milliseconds(entry.stalled)},
+                 {"creditWaits", entry.creditWaits},
+                 {"end", entry.end}};
+  if (entry.firstFrame) stream["firstFrameMs"] = milliseconds(*entry.firstFrame);
+  Json line = {{"client", client},     {"method", "GET"},
+               {"target", target},     {"status", kSwitchingProtocols},
+               {"bytes", entry.bytes}, {"ms", milliseconds(entry.time)},
+               {"stream", stream}};
+  addTrace(line, trace);
   logger_->info(dumpJson(line).substr(1));
 }
 

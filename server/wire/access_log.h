@@ -1,8 +1,10 @@
-// One line of JSON for every request, in a file or on the standard output.
+// One line of JSON for every request and every stream, in a file or on the standard output.
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -25,6 +27,16 @@ struct AccessEntry {
   bool whole = true;  ///< the answer was sent to its end
 };
 
+/// A stream, when it has ended.
+struct StreamEntry {
+  std::string_view mesh{};  ///< of the last `open`; "" without any
+  std::string_view end{};   ///< why it ended
+  std::uint64_t opens = 0, frames = 0, creditWaits = 0;
+  std::uint64_t bytes = 0;  ///< that the network took
+  std::chrono::nanoseconds time{}, stalled{};
+  std::optional<std::chrono::nanoseconds> firstFrame{};  ///< of the first `open`
+};
+
 /// Thread-safe.
 class AccessLog {
  public:
@@ -33,6 +45,9 @@ class AccessLog {
   ~AccessLog();
 
   void write(const AccessEntry& entry, const RequestTrace& trace);
+  /// `client` and `target` as an AccessEntry has them.
+  void write(const StreamEntry& entry, std::string_view client, std::string_view target,
+             const RequestTrace& trace);
 
  private:
   explicit AccessLog(std::shared_ptr<spdlog::logger> logger);

@@ -75,6 +75,32 @@ void ClientSocket::explain(int result, bool& wantsOther, int wanted, error_code&
   }
 }
 
+/// A plain function: a buffer in a coroutine would be held while it waits.
+ProxyHead ClientSocket::lookForProxyHead() {
+  std::array<std::uint8_t, kMaxProxyHeadBytes> bytes;
+  const ssize_t count = ::recv(socket_.native_handle(), bytes.data(), bytes.size(), MSG_PEEK);
+  if (count <= 0) return {ProxyHead::State::kWrong};
+  ProxyHead out = readProxyHead(std::span(bytes).first(static_cast<std::size_t>(count)));
+  if (out.state == ProxyHead::State::kWhole &&
+      ::recv(socket_.native_handle(), bytes.data(), out.bytes, 0) < 0)
+    out.state = ProxyHead::State::kWrong;
+  return out;
+}
+
+asio::awaitable<std::optional<ProxyHead>> ClientSocket::takeProxyHead() {
+  cancelled_ = false;
+  for (asio::steady_timer timer(get_executor());;) {
+    error_code ec = co_await wait(tcp::socket::wait_read);
+    if (ec) co_return std::nullopt;
+    const ProxyHead head = lookForProxyHead();
+    if (head.state == ProxyHead::State::kWrong) co_return std::nullopt;
+    if (head.state == ProxyHead::State::kWhole) co_return head;
+    timer.expires_after(kHelloWait);  // what was looked at keeps the socket readable
+    co_await timer.async_wait(asio::redirect_error(asio::use_awaitable, ec));
+    if (cancelled_ || !socket_.is_open()) co_return std::nullopt;
+  }
+}
+
 asio::awaitable<bool> ClientSocket::announcesSoundHello() {
   for (asio::steady_timer timer(get_executor());;) {
     error_code ec = co_await wait(tcp::socket::wait_read);

@@ -10,11 +10,13 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "proto/bytes.h"
 #include "server/wire/file_part.h"
 #include "server/wire/tls_context.h"
+#include "server/wire/trusted_proxies.h"
 
 namespace qtet {
 
@@ -42,6 +44,9 @@ class ClientSocket {
   /// The client's address; "" where it has gone.
   [[nodiscard]] std::string peer() const;
 
+  /// Takes the head of the PROXY protocol, which comes before everything else. Nothing: it is none,
+  /// or the peer has gone, or cancel().
+  [[nodiscard]] boost::asio::awaitable<std::optional<ProxyHead>> takeProxyHead();
   /// Waits for the head of TLS's handshake and looks at the length that it tells, before OpenSSL
   /// makes room for it. False: too long, or the client has gone.
   [[nodiscard]] boost::asio::awaitable<bool> announcesSoundHello();
@@ -93,6 +98,8 @@ class ClientSocket {
     void operator()(ssl_st* session) const;
   };
   boost::asio::awaitable<boost::system::error_code> wait(boost::asio::socket_base::wait_type what);
+  /// Takes it from the socket if it is whole.
+  ProxyHead lookForProxyHead();
   /// What OpenSSL says of a result that is not positive.
   void explain(int result, bool& wantsOther, int wanted, boost::system::error_code& ec);
 

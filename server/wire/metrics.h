@@ -17,9 +17,25 @@ class Metrics {
   void countConnection() { connections_.fetch_add(1, std::memory_order_relaxed); }
   void countRefusedConnection() { refused_.fetch_add(1, std::memory_order_relaxed); }
 
+  void beginStream() {
+    streams_.fetch_add(1, std::memory_order_relaxed);
+    openStreams_.fetch_add(1, std::memory_order_relaxed);
+  }
+  void endStream() { openStreams_.fetch_sub(1, std::memory_order_relaxed); }
+  void countStreamBytes(std::uint64_t bytes) {
+    streamBytes_.fetch_add(bytes, std::memory_order_relaxed);
+  }
+  /// From an `open` to the end of its first frame.
+  void countFirstFrame(std::chrono::nanoseconds time) { firstFrames_.count(time); }
+  /// The network took nothing of a stream's bytes for so long.
+  void countStreamStall(std::chrono::nanoseconds time) {
+    stalled_.fetch_add(static_cast<std::uint64_t>(time.count()), std::memory_order_relaxed);
+  }
+  void countCreditWait() { creditWaits_.fetch_add(1, std::memory_order_relaxed); }
+
   /// A figure that somebody else keeps.
   struct Figure {
-    const char* name;  ///< without "qtet_"
+    const char* name;  ///< without "qtet_"; one that begins with "process_" stands as it is
     const char* help;
     bool counter = false;  ///< else a gauge
     double value = 0;
@@ -27,14 +43,27 @@ class Metrics {
   [[nodiscard]] std::string text(const std::vector<Figure>& figures) const;
 
  private:
-  /// Seconds; the last bucket has no bound.
-  static constexpr std::array<double, 9> kBounds = {0.0005, 0.001, 0.005, 0.01, 0.05,
-                                                    0.1,    0.5,   1,     10};
   static constexpr std::size_t kStatuses = 600;
 
+  /// Times by their length.
+  class Histogram {
+   public:
+    void count(std::chrono::nanoseconds time);
+    [[nodiscard]] std::string text(const std::string& name, const char* help) const;
+
+   private:
+    /// Seconds; the last bucket has no bound.
+    static constexpr std::array<double, 9> kBounds = {0.0005, 0.001, 0.005, 0.01, 0.05,
+                                                      0.1,    0.5,   1,     10};
+    std::array<std::atomic<std::uint64_t>, kBounds.size() + 1> byTime_{};
+    std::atomic<std::uint64_t> nanoseconds_ = 0;
+  };
+
   std::array<std::atomic<std::uint64_t>, kStatuses> byStatus_{};
-  std::array<std::atomic<std::uint64_t>, kBounds.size() + 1> byTime_{};
-  std::atomic<std::uint64_t> bytes_ = 0, nanoseconds_ = 0, connections_ = 0, refused_ = 0;
+  Histogram requests_, firstFrames_;
+  std::atomic<std::uint64_t> bytes_ = 0, connections_ = 0, refused_ = 0;
+  std::atomic<std::uint64_t> streams_ = 0, openStreams_ = 0, streamBytes_ = 0, stalled_ = 0,
+                             creditWaits_ = 0;
 };
 
 }  // namespace qtet

@@ -8,6 +8,7 @@
 #include <boost/asio/ssl/context.hpp>
 #include <boost/asio/ssl/error.hpp>
 #include <cstdint>
+#include <ctime>
 #include <new>
 #include <string>
 #include <string_view>
@@ -72,6 +73,13 @@ class OpenSslContext : public TlsContext {
     }
     ::SSL_set_accept_state(out);
     return out;
+  }
+  [[nodiscard]] std::chrono::system_clock::time_point expires() const override {
+    const X509* certificate = ::SSL_CTX_get0_certificate(context_.native_handle());
+    std::tm end{};
+    if (certificate == nullptr || ::ASN1_TIME_to_tm(::X509_get0_notAfter(certificate), &end) != 1)
+      return {};
+    return std::chrono::system_clock::from_time_t(::timegm(&end));
   }
 
  private:

@@ -1,6 +1,7 @@
 // The server's certificate and key, and what of TLS is spoken with them.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <mutex>
@@ -24,6 +25,8 @@ class TlsContext {
   /// The server's side of one connection over that socket, which goes on with this context's
   /// certificate, also when the context has gone. Throws std::bad_alloc.
   [[nodiscard]] virtual ssl_st* newSession(int socket) const = 0;
+  /// When the server's own certificate ends.
+  [[nodiscard]] virtual std::chrono::system_clock::time_point expires() const = 0;
 };
 
 /// The context for new connections; SIGHUP brings another one. Thread-safe.

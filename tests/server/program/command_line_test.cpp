@@ -115,7 +115,8 @@ TEST(CommandLine, optionsComeBeforeTheEnvironmentAndThatBeforeTheFile) {
 
 TEST(CommandLine, whatIsPrintedIsAFileThatSaysTheSame) {
   const auto line = parse({"logs", "--port", "5", "--admin", "[::1]:9090", "--watch", "off",
-                           "--tokens", "t", "--check-config"});
+                           "--tokens", "t", "--trust-proxy", "10.0.0.0/8,::1", "--proxy-header",
+                           "forwarded", "--check-config"});
   ASSERT_TRUE(line);
   EXPECT_EQ(line->action, CommandLine::Action::kCheckConfig);
   const test::TempFolder folder;
@@ -146,6 +147,9 @@ TEST(CommandLine, wrongUsageIsExplained) {
                           {"a", "--watch", "perhaps"},
                           {"a", "--frame-ancestors", "a; script-src *"},
                           {"a", "--frame-ancestors", ""},
+                          {"a", "--trust-proxy", "10.0.0.0/40"},
+                          {"a", "--trust-proxy", "::1", "--proxy-header", "via"},
+                          {"a", "--proxy-header", "forwarded"},
                           {"a", "--admin", "9090"},
                           {"a", "--admin", ":9090"},
                           {"a", "--admin", "h:65536"},

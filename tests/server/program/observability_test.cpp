@@ -80,6 +80,73 @@ TEST(AccessLog, aLineOfJsonForEveryRequest) {
   EXPECT_EQ(lines[1]["status"], 404);
 }
 
+TEST(AccessLog, aStreamHasALineAtItsEnd) {
+  const Logged logged;
+  ASSERT_TRUE(logged.log);
+  std::size_t bytes = 0, frames = 0;
+  {
+    test::RunningServer server(logged.folder.store(), logged.folder.viewer(),
+                               {.accessLog = logged.log->get()});
+    test::StreamClient client(server.port());
+    const std::string mesh = logged.folder.store().catalogue()->meshes.begin()->first;
+    ASSERT_TRUE(client.send(R"({"type":"open","mesh":")" + mesh + R"(","credit":1})"));
+    while (const auto message = client.receive(frames == 1 ? test::kQuiet : test::kPatience)) {
+      bytes += message->bytes.size();
+      frames += message->binary;
+    }
+    EXPECT_TRUE(server.comesTo("stream_credit_waits_total", 1));
+    EXPECT_TRUE(server.comesTo("streams_open", 1));
+    client.close();
+    EXPECT_TRUE(server.comesTo("streams_open", 0));
+    EXPECT_TRUE(server.comesTo("streams_total", 1));
+    EXPECT_TRUE(server.comesTo("stream_first_frame_seconds_count", 1));
+  }
+  std::ifstream in(logged.path);
+  Json stream;
+  for (std::string line; std::getline(in, line);)
+    if (const Json one = Json::parse(line); one.contains("stream")) stream = one;
+  ASSERT_FALSE(stream.is_null());
+  EXPECT_EQ(stream["client"], "127.0.0.1");
+  EXPECT_EQ(stream["target"], "/v1/stream");
+  EXPECT_EQ(stream["status"], 101);
+  EXPECT_GT(stream["bytes"], bytes) << "with the heads of frames";
+  EXPECT_LT(stream["bytes"], bytes + 1000);
+  EXPECT_GT(stream["ms"], 0);
+  EXPECT_EQ(stream["stream"]["opens"], 1);
+  EXPECT_EQ(stream["stream"]["frames"], frames);
+  EXPECT_EQ(stream["stream"]["creditWaits"], 1);
+  EXPECT_EQ(stream["stream"]["end"], "closed-by-client");
+  EXPECT_GE(stream["stream"]["firstFrameMs"], 0);
+  EXPECT_LE(stream["stream"]["firstFrameMs"], stream["ms"]);
+}
+
+TEST(AccessLog, aStreamsLineSaysWhyItEnded) {
+  const Logged logged;
+  ASSERT_TRUE(logged.log);
+  {
+    test::RunningServer server(
+        logged.folder.store(), logged.folder.viewer(),
+        {.timeouts = {.silence = test::kShort}, .accessLog = logged.log->get()});
+    test::StreamClient wrong(server.port());
+    ASSERT_TRUE(wrong.send("no json"));
+    EXPECT_EQ(wrong.closeCode(), 1008u);
+    EXPECT_TRUE(server.comesTo("streams_open", 0));
+    test::StreamClient(server.port()).vanish();
+    EXPECT_TRUE(server.comesTo("streams_total", 2));
+    EXPECT_TRUE(server.comesTo("streams_open", 0));
+    const test::StreamClient staying(server.port());
+    EXPECT_TRUE(server.comesTo("streams_open", 1));
+    server.stop();
+    server.join();
+  }
+  std::ifstream in(logged.path);
+  std::vector<std::string> ends;
+  for (std::string line; std::getline(in, line);)
+    if (const Json one = Json::parse(line); one.contains("stream"))
+      ends.push_back(one["stream"]["end"]);
+  EXPECT_EQ(ends, (std::vector<std::string>{"refused", "client-gone", "server-ends"}));
+}
+
 TEST(AccessLog, noTicketIsWrittenDownHoweverItWasSent) {
   const Logged logged;
   ASSERT_TRUE(logged.log);
@@ -115,6 +182,13 @@ TEST(Operators, theirPathsAreAnsweredBesideEverythingElse) {
   EXPECT_NE(metrics.find("qtet_connections_open 1\n"), std::string::npos);
   EXPECT_NE(metrics.find("qtet_http_request_duration_seconds_bucket{le=\"+Inf\"} 3\n"),
             std::string::npos);
+  for (const char* name : {"cpu_seconds_total", "resident_memory_bytes", "open_fds", "max_fds",
+                           "start_time_seconds"}) {
+    const std::size_t at = metrics.find("\nprocess_" + std::string(name) + " ");
+    ASSERT_NE(at, std::string::npos) << name;
+    EXPECT_GT(std::stod(metrics.substr(metrics.find(' ', at))), 0) << name;
+  }
+  EXPECT_EQ(metrics.find("certificate"), std::string::npos) << "there is none";
 }
 
 TEST(Operators, anAddressOfTheirOwnHasTheirPathsAlone) {

@@ -89,6 +89,19 @@ TEST_F(TlsTest, oldVersionsAreRefused) {
       << "the same client, but for the version";
 }
 
+TEST_F(TlsTest, theFiguresTellWhenTheCertificateEnds) {
+  TlsClient client(port(), file("a.crt"));
+  const std::string metrics = client.get("/metrics");
+  const std::string name = "\nqtet_tls_certificate_expiry_timestamp_seconds ";
+  const std::size_t at = metrics.find(name);
+  ASSERT_NE(at, std::string::npos) << metrics;
+  const auto now =
+      std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch());
+  const double days = (std::stod(metrics.substr(at + name.size())) - now.count()) / 86'400;
+  EXPECT_GT(days, 0);
+  EXPECT_LT(days, 3651);
+}
+
 TEST_F(TlsTest, aStreamBringsTheLogByteForByte) {
   TlsClient client(port(), file("a.crt"));
   EXPECT_TRUE(client.stream("large") == large_);

@@ -1,0 +1,14 @@
+// What every program can tell of itself, under the names that Prometheus' own clients give.
+#pragma once
+
+#include <vector>
+
+#include "server/wire/metrics.h"
+
+namespace qtet {
+
+/// Processor time, memory, open files and their bound, and when the process began. A figure that
+/// the system does not tell is left out.
+[[nodiscard]] std::vector<Metrics::Figure> processFigures();
+
+}  // namespace qtet

@@ -1,0 +1,168 @@
+#include "server/wire/trusted_proxies.h"
+
+#include <algorithm>
+#include <array>
+#include <boost/system/error_code.hpp>
+
+namespace qtet {
+namespace {
+
+namespace ip = boost::asio::ip;
+using boost::system::error_code;
+
+constexpr std::string_view kBlanks = " \t";
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(kBlanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+}
+
+ip::address plain(const ip::address& address) {
+  if (!address.is_v6() || !address.to_v6().is_v4_mapped()) return address;
+  return ip::make_address_v4(ip::v4_mapped, address.to_v6());
+}
+
+/// "192.0.2.1", "192.0.2.1:4711", "2001:db8::1", "[2001:db8::1]:4711".
+std::optional<ip::address> addressOf(std::string_view text) {
+  if (text.starts_with('[')) {
+    const std::size_t close = text.find(']');
+    if (close == std::string_view::npos) return std::nullopt;
+    text = text.substr(1, close - 1);
+  } else if (std::ranges::count(text, ':') == 1) {
+    text = text.substr(0, text.find(':'));
+  }
+  error_code ec;
+  const ip::address out = ip::make_address(std::string(text), ec);
+  if (ec) return std::nullopt;
+  return plain(out);
+}
+
+/// The value of `for` in an element of Forwarded, such as `for="[2001:db8::1]:4711";proto=https`.
+std::string_view forOf(std::string_view element) {
+  while (!element.empty()) {
+    const std::size_t end = std::min(element.find(';'), element.size());
+    const std::string_view pair = trimmed(element.substr(0, end));
+    element.remove_prefix(std::min(end + 1, element.size()));
+    const std::size_t equals = std::min(pair.find('='), pair.size());
+    if (equals != 3 || !std::ranges::equal(pair.substr(0, 3), std::string_view("for"), {},
+                                           [](char c) { return c | 0x20; }))
+      continue;
+    std::string_view value = pair.substr(equals + 1);
+    if (value.size() >= 2 && value.starts_with('"') && value.ends_with('"'))
+      value = value.substr(1, value.size() - 2);
+    return value;
+  }
+  return {};
+}
+
+std::optional<ip::network_v6> network6(const ip::address_v6& address, unsigned bits) {
+  if (bits > 128) return std::nullopt;
+  return ip::network_v6(address, static_cast<unsigned short>(bits)).canonical();
+}
+
+std::optional<unsigned> bitsOf(std::string_view text) {
+  if (text.empty() || text.size() > 3 ||
+      text.find_first_not_of("0123456789") != std::string_view::npos)
+    return std::nullopt;
+  unsigned out = 0;
+  for (const char c : text) out = 10 * out + static_cast<unsigned>(c - '0');
+  return out;
+}
+
+std::uint16_t u16(std::span<const std::uint8_t> bytes, std::size_t at) {
+  return static_cast<std::uint16_t>(bytes[at] << 8 | bytes[at + 1]);
+}
+
+}  // namespace
+
+Result<Networks> Networks::parse(std::string_view list) {
+  Networks out;
+  while (!list.empty()) {
+    const std::size_t end = std::min(list.find(','), list.size());
+    const std::string_view one = trimmed(list.substr(0, end));
+    list.remove_prefix(std::min(end + 1, list.size()));
+    const auto refused = [&] {
+      return fail(ErrorCode::kBadValue, "'" + std::string(one) +
+                                            "' is no address and no block of addresses, like "
+                                            "10.0.0.0/8 or 2001:db8::/32");
+    };
+    const std::size_t slash = std::min(one.find('/'), one.size());
+    error_code ec;
+    const ip::address address = ip::make_address(std::string(one.substr(0, slash)), ec);
+    if (ec) return refused();
+    const auto bits = slash == one.size() ? std::optional<unsigned>(address.is_v4() ? 32 : 128)
+                                          : bitsOf(one.substr(slash + 1));
+    if (!bits) return refused();
+    if (address.is_v4()) {
+      if (*bits > 32) return refused();
+      out.v4_.push_back(
+          ip::network_v4(address.to_v4(), static_cast<unsigned short>(*bits)).canonical());
+    } else if (const auto network = network6(address.to_v6(), *bits)) {
+      out.v6_.push_back(*network);
+    } else {
+      return refused();
+    }
+  }
+  return out;
+}
+
+bool Networks::contains(const ip::address& address) const {
+  const ip::address one = plain(address);
+  if (one.is_v4())
+    return std::ranges::any_of(v4_, [&](const ip::network_v4& network) {
+      return ip::network_v4(one.to_v4(), network.prefix_length()).canonical() == network;
+    });
+  return std::ranges::any_of(v6_, [&](const ip::network_v6& network) {
+    return ip::network_v6(one.to_v6(), network.prefix_length()).canonical() == network;
+  });
+}
+
+std::optional<ip::address> forwardedClient(const TrustedProxies& proxies, std::string_view value) {
+  std::optional<ip::address> last;
+  while (!value.empty()) {
+    const std::size_t comma = value.rfind(',');
+    const bool isFirst = comma == std::string_view::npos;
+    std::string_view one = trimmed(isFirst ? value : value.substr(comma + 1));
+    value = isFirst ? std::string_view() : value.substr(0, comma);
+    if (proxies.header == ProxyHeader::kForwarded) one = forOf(one);
+    const std::optional<ip::address> address = addressOf(one);
+    if (!address) return last;  // nobody before it can be believed
+    last = address;
+    if (!proxies.networks.contains(*address)) break;
+  }
+  return last;
+}
+
+ProxyHead readProxyHead(std::span<const std::uint8_t> bytes) {
+  using State = ProxyHead::State;
+  constexpr std::array<std::uint8_t, 12> kSignature = {0x0D, 0x0A, 0x0D, 0x0A, 0x00, 0x0D,
+                                                       0x0A, 0x51, 0x55, 0x49, 0x54, 0x0A};
+  constexpr std::size_t kFixedBytes = 16;
+  constexpr std::uint8_t kLocal = 0x20, kProxy = 0x21, kTcp4 = 0x11, kTcp6 = 0x21;
+  const std::size_t known = std::min(bytes.size(), kSignature.size());
+  if (!std::ranges::equal(bytes.first(known), std::span(kSignature).first(known)))
+    return {State::kWrong};
+  if (bytes.size() < kFixedBytes) return {};
+  const std::uint8_t command = bytes[12], family = bytes[13];
+  const std::size_t whole = kFixedBytes + u16(bytes, 14);
+  if ((command != kLocal && command != kProxy) || whole > kMaxProxyHeadBytes)
+    return {State::kWrong};
+  if (bytes.size() < whole) return {};
+  ProxyHead out{State::kWhole, whole};
+  const auto at = bytes.subspan(kFixedBytes);
+  if (command == kProxy && family == kTcp4) {
+    ip::address_v4::bytes_type v4;
+    if (whole < kFixedBytes + 12) return {State::kWrong};
+    std::ranges::copy(at.first(v4.size()), v4.begin());
+    out.client = ip::make_address_v4(v4);
+  } else if (command == kProxy && family == kTcp6) {
+    ip::address_v6::bytes_type v6;
+    if (whole < kFixedBytes + 36) return {State::kWrong};
+    std::ranges::copy(at.first(v6.size()), v6.begin());
+    out.client = plain(ip::make_address_v6(v6));
+  }
+  return out;
+}
+
+}  // namespace qtet
