@@ -60,7 +60,7 @@ class _Field(ctypes.Structure):
         ("association", _u32),
         ("type", _u32),
         ("components", _u32),
-        ("reserved", _u32),
+        ("baseCells", _u32),
         ("values", _address),
     ]
 
@@ -290,6 +290,7 @@ def simplify(
     progress=None,
     source="",
     target_ratio=None,
+    base_cells=None,
     boundary_weight=None,
     shape_weight=None,
     envelope_tolerance=None,
@@ -318,7 +319,8 @@ def simplify(
     progress    called about ten times a second with the stage's name and the fraction of it that
                 is done, 0 to 1; the answer False ends the work with Cancelled
     source      what the log calls its input
-    target_ratio          of the base mesh's tetrahedra to the input's; 0.01
+    target_ratio          of the base mesh's tetrahedra to the input's; 0.01, and 30,000 at most
+    base_cells            tetrahedra of the base mesh, instead of a ratio
     boundary_weight       what the boundary's place counts beside the fields; chosen by the mesh
     shape_weight          what badly shaped cells cost; 0.5
     envelope_tolerance    how far the boundary may leave the solid, over the box's diagonal; 0
@@ -358,6 +360,7 @@ def simplify(
     options.valueCodec = _choice(_CODECS, value_codec, "value_codec")
     options.keepOrder, options.lossless = bool(keep_order), bool(lossless)
     options.originalIds = bool(original_ids)
+    options.baseCells = int(base_cells or 0)
     options.cellsPerPacket, options.threads = cells_per_packet, threads
     options.maxFieldErrors, options.maxFieldErrorCount = _named(max_field_errors)
     options.fieldWeights, options.fieldWeightCount = _named(field_weights)

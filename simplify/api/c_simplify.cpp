@@ -41,7 +41,7 @@ constexpr std::size_t kFirstOptionsBytes =
 qtet_simplify_options defaults() {
   const PipelineOptions usual;
   qtet_simplify_options out{};
-  out.targetRatio = usual.fusion.targetRatio;
+  out.targetRatio = kUnset;
   out.boundaryWeight = kUnset;
   out.shapeWeight = usual.fusion.shapeWeight;
   out.envelopeTolerance = usual.fusion.envelopeTolerance;
@@ -118,7 +118,8 @@ qtet::FusionOptions fusionOptionsOf(const qtet_simplify_options& from) {
   constexpr std::array kPlacements{qtet::PlacementRule::kAuto, qtet::PlacementRule::kOptimal,
                                    qtet::PlacementRule::kVertex};
   qtet::FusionOptions out;
-  out.targetRatio = from.targetRatio;
+  out.targetRatio = setNumber(from.targetRatio);
+  if (from.baseCells != 0) out.baseCells = from.baseCells;
   out.cost.boundaryWeight = setNumber(from.boundaryWeight);
   out.envelopeTolerance = from.envelopeTolerance;
   out.shapeWeight = from.shapeWeight;

@@ -92,7 +92,8 @@ typedef struct {
 
 /* qtet_simplify_defaults sets all of them. `qtet simplify --help` says more of each. */
 typedef struct {
-  double targetRatio;       /* the base mesh's tetrahedra over the input's, 0.01 */
+  double targetRatio;       /* the base mesh's tetrahedra over the input's; NaN: 0.01, but no more
+                             * than 30,000 tetrahedra */
   double boundaryWeight;    /* beside the fields; NaN: chosen by the mesh */
   double shapeWeight;       /* 0.5 */
   double envelopeTolerance; /* over the diagonal of the mesh's box, 0 */
@@ -117,7 +118,8 @@ typedef struct {
   /* Since 0.3. 1: the cell field OriginalCellId (int32, not negative) is kept for the last level
    * alone instead of a stream, and the numbering with it; 0 */
   uint32_t originalIds;
-  uint32_t reserved; /* 0 */
+  /* Since 0.3. The base mesh's tetrahedra, instead of targetRatio; 0: as that says */
+  uint32_t baseCells;
 } qtet_simplify_options;
 
 QTET_API qtet_status qtet_simplify_defaults(size_t optionsBytes, qtet_simplify_options* options);

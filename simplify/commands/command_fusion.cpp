@@ -43,8 +43,10 @@ std::size_t cellsPerPacketOf(const ParsedWords& parsed) {
 
 void addFusionOptions(boost::program_options::options_description& options) {
   namespace po = boost::program_options;
-  options.add_options()("target-ratio", po::value<double>()->default_value(0.01, "0.01"),
-                        "stop when the base mesh has this fraction of the tetrahedra")(
+  options.add_options()("target-ratio", po::value<double>(),
+                        "stop when the base mesh has this fraction of the tetrahedra; 0.01, and "
+                        "30,000 tetrahedra at most, without")(
+      "base-cells", po::value<int>(), "stop when the base mesh has so many tetrahedra")(
       "boundary-weight", po::value<double>(),
       "what the boundary's place counts beside the fields: 0 to 1 for the fields first, 4,000 to "
       "40,000 for the shape first; without, a weight from 0.05 to 200 by how "
@@ -77,7 +79,12 @@ void addFusionOptions(boost::program_options::options_description& options) {
 
 void takeFusionOptions(const ParsedWords& parsed, PipelineOptions& out) {
   FusionOptions& fusion = out.fusion;
-  fusion.targetRatio = parsed.number("target-ratio", 0, 1);
+  if (parsed.has("target-ratio") && parsed.has("base-cells"))
+    throw UsageError("give --target-ratio or --base-cells, not both");
+  if (parsed.has("target-ratio")) fusion.targetRatio = parsed.number("target-ratio", 0, 1);
+  if (parsed.has("base-cells"))
+    fusion.baseCells =
+        static_cast<std::size_t>(parsed.integer("base-cells", 1, std::numeric_limits<int>::max()));
   if (parsed.has("boundary-weight"))
     fusion.cost.boundaryWeight = parsed.number("boundary-weight", 0, kMaxBoundaryWeight);
   fusion.shapeWeight = parsed.number("shape-weight", 0, kMaxWeight);

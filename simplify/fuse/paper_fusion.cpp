@@ -78,8 +78,8 @@ class PaperSimplifier {
         cost_(mesh_, mesh, planesOnly(mesh)),
         test_(mesh_, FusionLimits{0, 0, kNormalCosine}),
         cells_(mesh.tetrahedra.size()),
-        target_(
-            static_cast<std::size_t>(std::ceil(options.targetRatio * static_cast<double>(cells_)))),
+        target_(options.baseCells.value_or(static_cast<std::size_t>(
+            std::ceil(options.targetRatio.value_or(kBaseRatio) * static_cast<double>(cells_))))),
         handles_(cells_),
         queued_(cells_, 1),
         nextLevel_(mesh.points.size(), 0) {
@@ -249,7 +249,8 @@ class PaperSimplifier {
 
 Result<PaperFusion> simplifyAsThePaper(const LatticeMesh& mesh, const FusionOptions& options) {
   if (mesh.tetrahedra.empty()) return fail(ErrorCode::kBadInput, "the mesh has no tetrahedra");
-  if (!(options.targetRatio >= 0 && options.targetRatio <= 1))
+  const double ratio = options.targetRatio.value_or(kBaseRatio);
+  if (!(ratio >= 0 && ratio <= 1))
     return fail(ErrorCode::kBadInput, "the target ratio must lie in 0..1");
   return orCancelled([&] { return PaperSimplifier(mesh, options).run(); });
 }

@@ -41,8 +41,8 @@ struct PaperFusion {
   PaperFigures figures;
 };
 
-/// Of the options only targetRatio, progress and stop count: no field is in the cost, and one
-/// thread does it all. REQUIRES: `mesh` cleaned and quantised. Errors: as simplify().
+/// Of the options only targetRatio, baseCells, progress and stop count: no field is in the cost,
+/// and one thread does it all. REQUIRES: `mesh` cleaned and quantised. Errors: as simplify().
 [[nodiscard]] Result<PaperFusion> simplifyAsThePaper(const LatticeMesh& mesh,
                                                      const FusionOptions& options);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -27,6 +28,10 @@ namespace {
 constexpr double kLevelQuantile = 0.35;
 // A pass over all candidates that removes less than this fraction of the cells is the last.
 constexpr double kWorthAnotherPass = 0.002;
+// So many levels that together remove less than this fraction of the cells are the last: what is
+// left is thin, or of a topology that must stay.
+constexpr std::size_t kLevelsOfAStall = 8;
+constexpr double kWorthAStallsLevels = 0.02;
 // A level of a band that removes less than this fraction of the cells is its last: what is left is
 // dear, and waits for larger nodes.
 constexpr double kWorthAnotherLevel = 0.015;
@@ -51,7 +56,7 @@ class Simplifier {
   Simplifier(const LatticeMesh& mesh, const FusionOptions& options)
       : options_(options),
         original_(mesh.tetrahedra.size()),
-        target_(static_cast<std::size_t>(options.targetRatio * static_cast<double>(original_))),
+        target_(baseCellsOf(options, original_)),
         workers_(options.threads, options.stop),
         state_(mesh, options.regionField.value_or(FusionMesh::kNoRegions), options.cost, workers_),
         band_(options.bands.cellsPerPacket == 0
@@ -65,11 +70,11 @@ class Simplifier {
     bool isRelaxed = false;  // the limits of validity alone remain, those of beauty do not
     while (live() > target_) {
       const std::size_t before = live();
-      runLevels({target_});
+      const bool stalls = !runLevels({target_});
       if (levels_ == kMaxLevels && live() > target_)
         return fail(ErrorCode::kLimitExceeded,
-                    "4,096 levels do not reach the target; ask for more cells with --target-ratio");
-      if (isWorth(kWorthAnotherPass, before)) continue;
+                    "4,096 levels do not reach the target; ask for more cells with --base-cells");
+      if (!stalls && isWorth(kWorthAnotherPass, before)) continue;
       if (isRelaxed) break;
       isRelaxed = true;
       limitBy({0, envelopeTolerance(), -1});
@@ -95,11 +100,18 @@ class Simplifier {
   }
 
   // From all candidates anew to the goal, or until nothing is left to try.
-  void runLevels(const LevelGoal& goal) {
+  /// False: it stalls, and all candidates anew would not help.
+  bool runLevels(const LevelGoal& goal) {
     open_.findAll();
-    for (std::size_t before = live();
-         before > goal.tetrahedra && levels_ < kMaxLevels && runLevel(goal); before = live())
-      if (goal.isBand() && !isWorth(kWorthAnotherLevel, before)) return;
+    std::deque<std::size_t> before{live()};
+    while (live() > goal.tetrahedra && levels_ < kMaxLevels && runLevel(goal)) {
+      if (goal.isBand() && !isWorth(kWorthAnotherLevel, before.back())) return true;
+      if (before.size() == kLevelsOfAStall && !isWorth(kWorthAStallsLevels, before.front()))
+        return false;
+      before.push_back(live());
+      if (before.size() > kLevelsOfAStall) before.pop_front();
+    }
+    return true;
   }
 
   /// False when nothing is left to try.
@@ -187,7 +199,11 @@ Status checkRegions(const LatticeMesh& mesh, const FusionOptions& options) {
 
 Status check(const LatticeMesh& mesh, const FusionOptions& options) {
   if (mesh.tetrahedra.empty()) return fail(ErrorCode::kBadInput, "the mesh has no tetrahedra");
-  if (!(options.targetRatio >= 0 && options.targetRatio <= 1))
+  const double ratio = options.targetRatio.value_or(kBaseRatio);
+  if (options.targetRatio && options.baseCells)
+    return fail(ErrorCode::kBadInput,
+                "give a ratio or a number of cells for the base mesh, not both");
+  if (!(ratio >= 0 && ratio <= 1))
     return fail(ErrorCode::kBadInput, "the target ratio must lie in 0..1");
   if (!(options.envelopeTolerance >= 0))
     return fail(ErrorCode::kBadInput, "the envelope tolerance must not be negative");
@@ -196,6 +212,13 @@ Status check(const LatticeMesh& mesh, const FusionOptions& options) {
 }
 
 }  // namespace
+
+std::size_t baseCellsOf(const FusionOptions& options, std::size_t cells) {
+  if (options.baseCells) return *options.baseCells;
+  const double of = static_cast<double>(cells);
+  if (options.targetRatio) return static_cast<std::size_t>(*options.targetRatio * of);
+  return std::min(static_cast<std::size_t>(kBaseRatio * of), kMaxBaseCells);
+}
 
 Result<FusionHistory> simplify(const LatticeMesh& mesh, const FusionOptions& options) {
   if (Status checked = check(mesh, options); !checked) return std::unexpected(checked.error());

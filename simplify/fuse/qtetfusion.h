@@ -29,9 +29,16 @@ struct BandOptions {
   double levelQuantile = 0.5;
 };
 
+/// Cells of the base mesh where nothing else is asked for: this fraction, and no more than so many,
+/// which a viewer has within the first hundred kilobytes.
+inline constexpr double kBaseRatio = 0.01;
+inline constexpr std::size_t kMaxBaseCells = 30'000;
+
 struct FusionOptions {
   /// Stop when this fraction of the cells remains, 0..1.
-  double targetRatio = 0.01;
+  std::optional<double> targetRatio{};
+  /// Stop when so many cells remain. Not beside targetRatio.
+  std::optional<std::size_t> baseCells{};
   CostOptions cost;
   /// How far the boundary may leave the original solid, over the diagonal of its bounding box, >=
   /// 0.
@@ -47,9 +54,13 @@ struct FusionOptions {
   std::stop_token stop{};                         ///< asked many times a second
 };
 
+/// How many of `cells` are to remain; more do where no fusion is left.
+[[nodiscard]] std::size_t baseCellsOf(const FusionOptions& options, std::size_t cells);
+
 /// REQUIRES: `mesh` cleaned and quantised (clean_mesh.h, quantise.h). Vertices that no cell uses
-/// stay out of the history. Errors: bad-input (no tetrahedra, a ratio outside 0..1, weights that
-/// are negative or not one a field), limit-exceeded (too many levels), cancelled.
+/// stay out of the history. Errors: bad-input (no tetrahedra, a ratio outside 0..1, or beside a
+/// number of cells; weights that are negative or not one a field), limit-exceeded (too many
+/// levels), cancelled.
 [[nodiscard]] Result<FusionHistory> simplify(const LatticeMesh& mesh, const FusionOptions& options);
 /// The same for a mesh that is not needed any more: its memory is given back before the first
 /// fusion.

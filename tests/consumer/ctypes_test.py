@@ -34,7 +34,7 @@ class FieldInfo(ctypes.Structure):
         ("components", u32),
         ("association", u32),
         ("bits", u32),
-        ("reserved", u32),
+        ("baseCells", u32),
         ("step", f64),
         ("minimum", f64 * 16),
         ("range", f64 * 2),

@@ -17,6 +17,7 @@
 #include "codec/coding/number_type.h"
 #include "codec/files/atomic_file.h"
 #include "codec/log/log_index.h"
+#include "codec/log/log_manifest.h"
 #include "proto/manifest.h"
 #include "simplify/log/write_mesh.h"
 #include "simplify/read/read_mesh.h"
@@ -274,6 +275,25 @@ TEST(QtetSimplify, originalIdsAreKeptForTheLastLevelAlone) {
   EXPECT_EQ(closingKinds(), (std::vector<std::uint32_t>{1, 2, 5}));
 }
 
+TEST(QtetSimplify, theBaseMeshHasAsManyCellsAsAreAskedFor) {
+  const Arrays arrays(testing::boxWithFields());
+  const Made log = made();
+  const auto baseOf = [&](const qtet_simplify_options& options) {
+    EXPECT_EQ(simplified(log, arrays, options), QTET_OK) << errorOf(log);
+    return manifestOf(LogIndex::parse(bytesOf(log)).value())->levels.front().tetrahedra;
+  };
+  qtet_simplify_options options = usual();
+  EXPECT_TRUE(std::isnan(options.targetRatio));
+  options.baseCells = 200;
+  const auto base = baseOf(options);
+  EXPECT_LE(base, 200u);
+  EXPECT_GT(base, 150u);
+  options.targetRatio = 0.5;
+  EXPECT_EQ(simplified(log, arrays, options), QTET_BAD_INPUT) << "one of the two";
+  options.baseCells = 0;
+  EXPECT_GT(baseOf(options), 200u);
+}
+
 TEST(QtetSimplify, theLogIsOpenedFromMemoryAndWrittenAsAFile) {
   TetMesh mesh = testing::boxWithFields();
   std::swap(mesh.tetrahedra[3][0], mesh.tetrahedra[3][1]);
@@ -353,7 +373,7 @@ TEST(QtetSimplify, noExceptionAndNoCrashWhateverIsGiven) {
   refused(QTET_BAD_VALUE, "position bits", [](Arrays&, O& o) { o.positionBits = ~0u; });
   refused(QTET_BAD_VALUE, "field bits", [](Arrays&, O& o) { o.fieldBits = 0; });
   refused(QTET_BAD_VALUE, "below 100", [](Arrays&, O& o) { o.cellsPerPacket = 1; });
-  refused(QTET_BAD_INPUT, "0..1", [](Arrays&, O& o) { o.targetRatio = NAN; });
+  refused(QTET_BAD_INPUT, "0..1", [](Arrays&, O& o) { o.targetRatio = INFINITY; });
   refused(QTET_BAD_INPUT, "weights", [](Arrays&, O& o) { o.shapeWeight = NAN; });
   refused(QTET_BAD_INPUT, "tolerance", [](Arrays&, O& o) { o.envelopeTolerance = -1; });
   refused(QTET_BAD_VALUE, "needs measuring",

@@ -255,9 +255,49 @@ TEST(Fused, finestLatticesWithoutFieldsAreFusedAsFar) {
               static_cast<double>(meshOfHistory(*coarse, 0).tetrahedra.size()), 16);
 }
 
+TEST(Fused, theBaseMeshHasAHundredthOfTheCellsOrAsManyAsAreAskedFor) {
+  FusionOptions options;
+  EXPECT_EQ(baseCellsOf(options, 200'000), 2'000u);
+  EXPECT_EQ(baseCellsOf(options, 61'600'000), 30'000u) << "a first picture waits for all of them";
+  options.targetRatio = 0.01;
+  EXPECT_EQ(baseCellsOf(options, 61'600'000), 616'000u);
+  options = {};
+  options.baseCells = 700;
+  EXPECT_EQ(baseCellsOf(options, 61'600'000), 700u);
+  const LatticeMesh mesh = gridMesh(8, 3);
+  const auto history = simplify(mesh, options);
+  ASSERT_TRUE(history);
+  const std::size_t base = meshOfHistory(*history, 0).tetrahedra.size();
+  EXPECT_LE(base, 700u);
+  EXPECT_GT(base, 650u);
+}
+
+/// A plate full of holes, each of which stays: what is left of it cannot become much less.
+TEST(Fused, endsWhereLevelsBringNextToNothing) {
+  const LatticeMesh mesh =
+      gridMesh(12, 5, [](int x, int y, int z) { return z < 2 && (x % 2 == 0 || y % 2 == 0); });
+  FusionOptions options;
+  options.targetRatio = 0;
+  const auto history = simplify(mesh, options);
+  ASSERT_TRUE(history);
+  std::vector<std::size_t> cells;
+  for (std::uint32_t level = 0; level <= history->levels; ++level)
+    cells.push_back(meshOfHistory(*history, level).tetrahedra.size());
+  EXPECT_GT(cells.front(), 300u) << "25 holes";
+  // Two passes may each end with eight levels of less than 2 %.
+  std::size_t slow = 0;
+  for (std::size_t i = 0; i + 1 < cells.size(); ++i)
+    slow += static_cast<double>(cells[i + 1] - cells[i]) < 0.0025 * static_cast<double>(cells[i]);
+  EXPECT_LE(slow, 16u) << cells.size() << " levels";
+}
+
 TEST(Fused, refusesWhatItCannotDo) {
   EXPECT_EQ(simplify({}, {}).error().code, ErrorCode::kBadInput);
   FusionOptions options;
+  options.targetRatio = 0.5;
+  options.baseCells = 100;
+  EXPECT_EQ(simplify(gridMesh(2, 1), options).error().code, ErrorCode::kBadInput);
+  options.baseCells.reset();
   options.targetRatio = 1.5;
   EXPECT_EQ(simplify(gridMesh(2, 1), options).error().code, ErrorCode::kBadInput);
   options = {};

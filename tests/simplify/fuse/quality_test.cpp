@@ -71,7 +71,7 @@ Figures figuresOf(const Floor& floor) {
   const Result<FusionHistory> history = simplify(quantised->mesh, options);
   const LatticeMesh level = testing::meshOfHistory(*history, 0);
   const double target =
-      options.targetRatio * static_cast<double>(quantised->mesh.tetrahedra.size());
+      *options.targetRatio * static_cast<double>(quantised->mesh.tetrahedra.size());
   EXPECT_LE(static_cast<double>(level.tetrahedra.size()), std::ceil(target));
   const testing::PlainError error = testing::plainError(quantised->mesh, level, kSamples);
   return {100 * error.field, 100 * error.wall, 100 * error.hausdorff,
