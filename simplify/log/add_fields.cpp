@@ -139,6 +139,7 @@ Result<AddedFields> addFields(const LogFile& log, const TetMesh& mesh,
     return out;
   MeasureOptions measure;
   measure.effort = options.effort;
+  measure.countsRounding = true;
   measure.threads = options.threads;
   measure.progress = [&](double fraction) {
     if (options.progress) options.progress((1 + fraction) / 2);

@@ -3,16 +3,19 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <functional>
+#include <limits>
 
 #include "simplify/mesh/workers.h"
 
 namespace qtet {
 namespace {
 
-/// Parts of a triangle's edge in the grid that is searched for the farthest point: two give corners
-/// and middles; with sixteen a grid is as fine as needed, since the distance changes by less than
-/// the step.
-constexpr double kFewestParts = 2, kMaxParts = 16;
+/// Squared shares of the diagonal that are no distance: what doubles make of none.
+constexpr double kNothing = 0x1p-82;
+/// Triangles that a thread takes at a time, and those that are bounded first: a maximum found early
+/// spares the others.
+constexpr std::size_t kTrianglesPerRun = 64, kFirstTriangles = 128;
 
 }  // namespace
 
@@ -34,111 +37,119 @@ BoundaryMeter::BoundaryMeter(const MeasuredMesh& mesh, const BoundaryOptions& op
                                           options.samples, options.seed))
     samples_.push_back(onIt(s.at, s.cell));
   triangleBounds_.assign(mesh.originalBoundary().size(), 0);
-  std::vector<std::uint8_t> met(history.points.size(), 0);
   for (const std::uint32_t ghost : mesh.originalBoundary())
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      const VertexId v = history.cells[ghost][corner];
-      if (!met[v]) vertices_.push_back(onIt(toVector(history.points[v]), ghost));
-      met[v] = 1;
-    }
+    triangles_.push_back({ghost, 0, std::numeric_limits<double>::infinity(), {}});
 }
+
+double BoundaryMeter::nothing() const { return kNothing * mesh_.diagonal() * mesh_.diagonal(); }
 
 void BoundaryMeter::follow() {
-  const auto followAll = [&](std::vector<Followed>& places, bool searching) {
-    options_.workers->forRuns(places.size(), kPlacesPerRun,
-                              [&, searching](std::size_t begin, std::size_t end) {
-                                for (std::size_t i = begin; i < end; ++i) {
-                                  Followed& place = places[i];
-                                  const Fusion* fusion = mesh_.fusionOf(place.nearest.triangle);
-                                  if (fusion == nullptr) continue;
-                                  followFusion(mesh_, *fusion, place.at, place.nearest);
-                                  if (searching)
-                                    mesh_.boundaryTree().nearest(place.at, place.nearest);
-                                }
-                              });
-  };
-  followAll(samples_, true);
-  followAll(vertices_, false);
+  options_.workers->forRuns(samples_.size(), kPlacesPerRun,
+                            [&](std::size_t begin, std::size_t end) {
+                              for (std::size_t i = begin; i < end; ++i) {
+                                auto& [at, nearest] = samples_[i];
+                                const Fusion* fusion = mesh_.fusionOf(nearest.triangle);
+                                if (fusion == nullptr) continue;
+                                followFusion(mesh_, *fusion, at, nearest);
+                                mesh_.boundaryTree().nearest(at, nearest);
+                              }
+                            });
+  options_.workers->forRuns(triangles_.size(), kPlacesPerRun,
+                            [&](std::size_t begin, std::size_t end) {
+                              for (std::size_t i = begin; i < end; ++i)
+                                follow(static_cast<std::uint32_t>(i));
+                            });
 }
 
-// The vertices with the largest bounds are searched exactly until no bound is above what was found.
-double BoundaryMeter::farthestVertex(double squared) {
-  std::vector<std::uint32_t> candidates;
-  for (std::uint32_t i = 0; i < vertices_.size(); ++i)
-    if (vertices_[i].nearest.point.squared > squared) candidates.push_back(i);
-  const auto isNearer = [&](std::uint32_t a, std::uint32_t b) {
-    const double da = vertices_[a].nearest.point.squared, db = vertices_[b].nearest.point.squared;
-    return da < db || (da == db && a > b);
-  };
-  std::ranges::make_heap(candidates, isNearer);
-  while (!candidates.empty()) {
-    Followed& farthest = vertices_[candidates.front()];
-    if (farthest.nearest.point.squared <= squared) break;
-    std::ranges::pop_heap(candidates, isNearer);
-    candidates.pop_back();
-    mesh_.boundaryTree().nearest(farthest.at, farthest.nearest, squared);
-    squared = std::max(squared, farthest.nearest.point.squared);
+void BoundaryMeter::follow(std::uint32_t triangle) {
+  FollowedTriangle& followed = triangles_[triangle];
+  for (std::size_t i = 0; i < followed.cover.count; ++i)
+    if (mesh_.fusionOf(followed.cover.triangles[i]) != nullptr) followed.cover.isAll = false;
+  if (!followed.cover.isAll) followed.coveredBound = std::numeric_limits<double>::infinity();
+  const Fusion* fusion = mesh_.fusionOf(followed.near);
+  if (fusion == nullptr) return;
+  const Corners corners = mesh_.originalTree().corners(triangle);
+  followed.bound = std::numeric_limits<double>::infinity();
+  for (const std::uint32_t cell : mesh_.affected(*fusion)) {
+    if (!mesh_.isGhost(cell)) continue;
+    const double bound = farthestCorner(corners, mesh_.boundaryTree().corners(cell));
+    if (bound < followed.bound) followed.near = cell, followed.bound = bound;
   }
-  return squared;
+}
+
+BoundaryMeter::Maximum BoundaryMeter::farthestOf(std::span<const std::uint32_t> triangles,
+                                                 double squared) {
+  std::vector<Maximum> of(triangles.size());
+  options_.workers->forRuns(
+      triangles.size(), kTrianglesPerRun, [&](std::size_t begin, std::size_t end) {
+        double farthest = squared;
+        for (std::size_t i = begin; i < end; ++i) {
+          FollowedTriangle& followed = triangles_[triangles[i]];
+          of[i].bound = followed.best();
+          if (followed.best() <= withTolerance(farthest)) continue;
+          const Corners corners = mesh_.originalTree().corners(triangles[i]);
+          const FarthestPoint point =
+              farthestPoint(mesh_.boundaryTree(), corners, followed.near, farthest);
+          of[i] = {point.found, point.bound};
+          farthest = std::max(farthest, point.found);
+          const double bound = farthestCorner(corners, mesh_.boundaryTree().corners(point.nearest));
+          if (bound < followed.bound) followed.near = point.nearest, followed.bound = bound;
+          followed.coveredBound = point.bound;
+          followed.cover = point.cover;
+        }
+      });
+  Maximum out{squared, 0};
+  for (const Maximum& m : of) out = {std::max(out.found, m.found), std::max(out.bound, m.bound)};
+  return out;
+}
+
+// A bound by one triangle of the level is enough for most; the others are cut into pieces, the
+// farthest first.
+double BoundaryMeter::boundToLevel(double squared) {
+  squared = std::max(squared, nothing());
+  double bound = squared;
+  std::vector<std::uint32_t> far;
+  for (std::uint32_t i = 0; i < triangles_.size(); ++i)
+    if (triangles_[i].best() > withTolerance(squared)) {
+      far.push_back(i);
+    } else {
+      bound = std::max(bound, triangles_[i].best());
+    }
+  std::ranges::stable_sort(far, std::greater{},
+                           [&](std::uint32_t i) { return triangles_[i].best(); });
+  const std::span<const std::uint32_t> all(far);
+  const std::size_t first = std::min(kFirstTriangles, all.size());
+  const Maximum farthest = farthestOf(all.first(first), squared);
+  const Maximum others = farthestOf(all.subspan(first), farthest.found);
+  return std::max({bound, others.found, farthest.bound, others.bound});
 }
 
 OneSidedDistance BoundaryMeter::toLevel() {
   double sum = 0, farthest = 0;
   for (const Followed& sample : samples_) {
-    sum += std::sqrt(sample.nearest.point.squared);
+    sum += std::sqrt(sample.nearest.point.squared + options_.squaredRounding);
     farthest = std::max(farthest, sample.nearest.point.squared);
   }
   const double mean = samples_.empty() ? 0 : sum / static_cast<double>(samples_.size());
-  return {mean / mesh_.diagonal(), std::sqrt(farthestVertex(farthest)) / mesh_.diagonal()};
+  return {mean / mesh_.diagonal(), std::sqrt(boundToLevel(farthest)) / mesh_.diagonal()};
 }
 
-double BoundaryMeter::farthestOnTriangle(std::uint32_t ghost, int parts, double enough) const {
-  const FusionHistory& history = mesh_.history();
-  std::array<Vector3, 3> corners;
-  for (std::size_t c = 0; c < 3; ++c)
-    corners[c] = toVector(history.points[history.cells[ghost][c]]);
-  std::uint32_t guess = mesh_.originalTriangle(ghost);  // it lay there once
-  const auto squaredAt = [&](const Vector3& at, double limit) {
-    NearestTriangle nearest;
-    mesh_.originalTree().tryTriangle(at, guess, nearest);
-    mesh_.originalTree().nearest(at, nearest, limit);
-    guess = nearest.triangle;
-    return nearest.point.squared;
-  };
-  const Vector3 middle = blend(corners, {1 / 3.0, 1 / 3.0, 1 / 3.0});
-  double radius = 0;
-  for (const Vector3& corner : corners)
-    radius = std::max(radius, dot(corner - middle, corner - middle));
-  radius = std::sqrt(radius);
-  // No point of the triangle is further than its middle by more than the radius: small triangles
-  // near the original are done with here.
-  const double spare = std::sqrt(enough) - radius;
-  double farthest = squaredAt(middle, spare > 0 ? spare * spare : enough);
-  if (spare > 0 && farthest <= spare * spare) return enough;
-  for (int i = 0; i <= parts; ++i)
-    for (int j = 0; i + j <= parts; ++j) {
-      const double s = static_cast<double>(i) / parts, t = static_cast<double>(j) / parts;
-      farthest = std::max(farthest,
-                          squaredAt(blend(corners, {1 - s - t, s, t}), std::max(enough, farthest)));
-    }
-  return farthest;
-}
-
-// What was found for a triangle, an upper bound, holds until the triangle changes; it need not be
-// exact while it is not above the maximum.
-double BoundaryMeter::farthestOfTriangles(double squared) {
+// What was proven for a triangle holds until the triangle changes; it need not be sharp while it is
+// not above the maximum.
+double BoundaryMeter::boundToOriginal(double squared) {
+  squared = std::max(squared, nothing());
   const std::vector<std::uint32_t>& boundary = mesh_.boundary();
-  const double affordable =
-      std::sqrt(static_cast<double>(options_.gridPoints) / static_cast<double>(boundary.size()));
-  const int parts = static_cast<int>(std::clamp(affordable, kFewestParts, kMaxParts));
   options_.workers->forRuns(
       boundary.size(), kPlacesPerRun, [&](std::size_t begin, std::size_t end) {
         double farthest = squared;
         for (std::size_t i = begin; i < end; ++i) {
-          double& bound = triangleBounds_[mesh_.originalTriangle(boundary[i])];
-          if (mesh_.fusionOf(boundary[i]) == nullptr && bound <= farthest) continue;
-          bound = farthestOnTriangle(boundary[i], parts, farthest);
-          farthest = std::max(farthest, bound);
+          const std::uint32_t was = mesh_.originalTriangle(boundary[i]);
+          double& bound = triangleBounds_[was];
+          if (mesh_.fusionOf(boundary[i]) == nullptr && bound <= withTolerance(farthest)) continue;
+          const FarthestPoint point = farthestPoint(
+              mesh_.originalTree(), mesh_.boundaryTree().corners(boundary[i]), was, farthest);
+          bound = point.bound;
+          farthest = std::max(farthest, point.found);
         }
       });
   for (const std::uint32_t ghost : boundary)
@@ -164,11 +175,11 @@ OneSidedDistance BoundaryMeter::toOriginal() {
   });
   double sum = 0, farthest = 0;
   for (const double s : squared) {
-    sum += std::sqrt(s);
+    sum += std::sqrt(s + options_.squaredRounding);
     farthest = std::max(farthest, s);
   }
   const double mean = samples.empty() ? 0 : sum / static_cast<double>(samples.size());
-  return {mean / mesh_.diagonal(), std::sqrt(farthestOfTriangles(farthest)) / mesh_.diagonal()};
+  return {mean / mesh_.diagonal(), std::sqrt(boundToOriginal(farthest)) / mesh_.diagonal()};
 }
 
 }  // namespace qtet

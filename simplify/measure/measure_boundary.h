@@ -1,10 +1,13 @@
 // How far the boundary of a level and that of the original are apart, both ways.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "proto/level_error.h"
+#include "simplify/measure/farthest_point.h"
 #include "simplify/measure/measure_samples.h"
 #include "simplify/measure/measured_mesh.h"
 
@@ -16,9 +19,8 @@ struct BoundaryOptions {
   std::uint32_t samples = 0;  ///< places on the original's boundary, uniform by area
   /// The same on a level's: dearer, because they are searched anew.
   std::uint32_t levelSamples = 0;
-  /// For the maximum, on all triangles of a level; each has its corners, edge middles and centroid
-  /// at least.
-  std::uint32_t gridPoints = 0;
+  /// What each place counts as further off in the mean, in squared lattice steps.
+  double squaredRounding = 0;
   std::uint64_t seed = 0;
   Workers* workers = nullptr;  ///< not null; the result does not depend on how many they are
 };
@@ -33,9 +35,9 @@ class BoundaryMeter {
 
   /// The step that `mesh` has just done.
   void follow();
-  /// Mean over the samples; maximum over them and every vertex of the original's boundary.
+  /// Mean over the samples; no point of the original's boundary is further than the maximum.
   [[nodiscard]] OneSidedDistance toLevel();
-  /// Mean over samples of its own; maximum over them and a grid on every triangle of the level.
+  /// Mean over samples of its own; no point of the level's boundary is further than the maximum.
   [[nodiscard]] OneSidedDistance toOriginal();
 
  private:
@@ -43,19 +45,35 @@ class BoundaryMeter {
     Vector3 at;
     NearestTriangle nearest;
   };
+  /// A triangle of the original and one of the level.
+  struct FollowedTriangle {
+    std::uint32_t near;
+    double bound;  ///< the square of how far its farthest corner is from `near`
+    /// A sharper bound that rests on more triangles of the level.
+    double coveredBound;
+    Cover cover;
 
-  [[nodiscard]] double farthestVertex(double squared);
-  [[nodiscard]] double farthestOfTriangles(double squared);
-  /// At least the largest squared distance of the triangle's grid to the original; exact where it
-  /// is above `enough`.
-  [[nodiscard]] double farthestOnTriangle(std::uint32_t ghost, int parts, double enough) const;
+    [[nodiscard]] double best() const { return std::min(bound, coveredBound); }
+  };
+  /// Squared: of the farthest place found, and what none is further than.
+  struct Maximum {
+    double found = 0, bound = 0;
+  };
+
+  void follow(std::uint32_t triangle);
+  /// Upper bounds of the squared maximum, where some place is as far as `squared`.
+  [[nodiscard]] double boundToLevel(double squared);
+  [[nodiscard]] double boundToOriginal(double squared);
+  [[nodiscard]] Maximum farthestOf(std::span<const std::uint32_t> triangles, double squared);
+  /// What counts as no distance, squared.
+  [[nodiscard]] double nothing() const;
 
   const MeasuredMesh& mesh_;
   BoundaryOptions options_;
   std::vector<Followed> samples_;
-  // their distances are upper bounds; farthestVertex() searches where it matters
-  std::vector<Followed> vertices_;
-  // a triangle of the original: how far it is by now, an upper bound of the square
+  std::vector<FollowedTriangle> triangles_;  // of the original, in the order of its boundary
+  // a triangle of the level, by what it was in the original: how far it is by now, an upper bound
+  // of the square
   std::vector<double> triangleBounds_;
 };
 

@@ -10,13 +10,14 @@
 #include "simplify/measure/measure_boundary.h"
 #include "simplify/measure/measure_fields.h"
 #include "simplify/mesh/stopping.h"
+#include "simplify/mesh/tet_mesh.h"
 #include "simplify/mesh/workers.h"
 
 namespace qtet {
 namespace {
 
 struct Samples {
-  std::uint32_t volume, vertices, surface, levelSurface, grid;
+  std::uint32_t volume, vertices, surface, levelSurface;
 };
 
 /// Cells that pay for one place in the volume: measured, ALGORITHM.md, "Known error".
@@ -24,7 +25,7 @@ constexpr std::size_t kCellsPerSample = 10;
 constexpr std::size_t kFewest = 3000, kMax = 50000;
 /// On a level's boundary, where nothing is kept from level to level and a search takes the longest.
 constexpr std::uint32_t kFewestOnLevel = 300;
-constexpr Samples kAllSamples{200000, 200000, 200000, 200000, 1000000};
+constexpr Samples kAllSamples{200000, 200000, 200000, 200000};
 
 Samples samplesFor(Effort effort, const FusionHistory& history) {
   if (effort == Effort::kAll) return kAllSamples;
@@ -33,7 +34,7 @@ Samples samplesFor(Effort effort, const FusionHistory& history) {
       std::ranges::partition_point(history.cells, isTetrahedron) - history.cells.begin());
   const auto volume =
       static_cast<std::uint32_t>(std::clamp(cells / kCellsPerSample, kFewest, kMax));
-  return {volume, volume / 4, volume / 4, std::max(volume / 24, kFewestOnLevel), volume / 4};
+  return {volume, volume / 4, volume / 4, std::max(volume / 24, kFewestOnLevel)};
 }
 
 /// Distances over the diagonal below this are what doubles make of none: a lattice step is a
@@ -45,14 +46,46 @@ OneSidedDistance rounded(const OneSidedDistance& d) {
   return {roundedDistance(d.mean), roundedDistance(d.max)};
 }
 double roundedVolume(double kept) { return std::round(kept * kVolumeFigure) / kVolumeFigure; }
+LevelError rounded(const LevelError& error) {
+  LevelError out{
+      rounded(error.toLevel), rounded(error.toOriginal), roundedVolume(error.volumeKept), {}};
+  for (const FieldError& field : error.fields)
+    out.fields.push_back({roundedUp(field.rms), roundedUp(field.max)});
+  return out;
+}
+
+/// Squared shares of the range and of the diagonal.
+double squaredRounding(double steps, double of) { return of > 0 ? steps / (of * of) : 0; }
+
+/// Of a surface, in squared lattice steps: on a triangle with corners that are each off on their own
+/// half the variance of rounding is left, 1 / 24, and the mean distance along its normal is 0.8 of
+/// the root of that.
+constexpr double kSquaredRounding = 0.64 / 24;
+
+/// Half a step along each axis: as far as the lattice moves a point at most, and so any place of a
+/// surface between them.
+void addRounding(OneSidedDistance& distance, double diagonal) {
+  distance.max += std::sqrt(squaredRounding(3 * 0.25, diagonal));
+}
+
+/// A value rounded to a step is off by step^2 / 12 in the mean of squares, and between the four
+/// corners of a cell, each off on its own, by 0.4 of that: the sum of the squares of their weights.
+void addRounding(FieldError& error, const FieldInfo& field, double range) {
+  if (!isFloatType(field.type) && field.step == 1) return;  // stored exactly
+  const double components = field.components;
+  const double mean = isCellField(field) ? 1.0 / 12 : 0.4 / 12;
+  error.rms = std::sqrt(error.rms * error.rms + squaredRounding(components * mean, range));
+  error.max += std::sqrt(squaredRounding(components * 0.25, range));
+}
 
 class ErrorMeter {
  public:
   ErrorMeter(HistoryLevels& levels, const MeasureOptions& options, const Samples& samples)
-      : workers_(options.threads, options.stop),
+      : countsRounding_(options.countsRounding),
+        workers_(options.threads, options.stop),
         mesh_(levels),
-        boundary_(mesh_,
-                  {samples.surface, samples.levelSurface, samples.grid, options.seed, &workers_}),
+        boundary_(mesh_, {samples.surface, samples.levelSurface,
+                          options.countsRounding ? kSquaredRounding : 0, options.seed, &workers_}),
         fields_(mesh_, {samples.volume, samples.vertices, options.seed ^ kFieldSeed, &workers_}) {}
 
   void coarsen() {
@@ -62,18 +95,31 @@ class ErrorMeter {
   }
 
   [[nodiscard]] LevelError measure() {
-    LevelError out{rounded(boundary_.toLevel()),
-                   rounded(boundary_.toOriginal()),
-                   roundedVolume(mesh_.volumeKept()),
-                   {}};
-    for (const FieldError& error : fields_.errors())
-      out.fields.push_back({roundedUp(error.rms), roundedUp(error.max)});
-    return out;
+    LevelError out{boundary_.toLevel(), boundary_.toOriginal(), mesh_.volumeKept(),
+                   fields_.errors()};
+    if (countsRounding_) addRounding(out);
+    return rounded(out);
+  }
+
+  /// What the finest level has.
+  [[nodiscard]] LevelError rounding() const {
+    LevelError out;
+    out.fields.resize(mesh_.history().fields.size());
+    if (countsRounding_) addRounding(out);
+    return rounded(out);
   }
 
  private:
   static constexpr std::uint64_t kFieldSeed = 0x5EEDF1E1D5u;  // other numbers than the surface's
 
+  void addRounding(LevelError& error) const {
+    qtet::addRounding(error.toLevel, mesh_.diagonal());
+    qtet::addRounding(error.toOriginal, mesh_.diagonal());
+    for (std::size_t f = 0; f < error.fields.size(); ++f)
+      qtet::addRounding(error.fields[f], mesh_.history().fields[f], fields_.ranges()[f]);
+  }
+
+  bool countsRounding_;
   Workers workers_;
   MeasuredMesh mesh_;
   BoundaryMeter boundary_;
@@ -99,17 +145,19 @@ Result<std::vector<FieldBound>> fieldBounds(const FusionHistory& history,
 Result<std::vector<LevelError>> measured(FusionHistory& history, const MeasureOptions& options) {
   const Result<std::vector<FieldBound>> bounds = fieldBounds(history, options.bounds);
   if (!bounds) return std::unexpected(bounds.error());
-  const auto isWithin = [&](const LevelError& error) {
-    const auto keeps = [&](const FieldBound& bound) {
-      return error.fields[bound.first].rms <= bound.second;
-    };
-    return error.boundaryDistance() <= options.bounds.boundary.value_or(error.boundaryDistance()) &&
-           std::ranges::all_of(*bounds, keeps);
-  };
-
   HistoryLevels levels(history);
   for (; levels.level() < levels.finest(); levels.refine()) throwIfStopped(options.stop);
   ErrorMeter meter(levels, options, samplesFor(options.effort, history));
+  const LevelError least = meter.rounding();
+  const auto isWithin = [&](const LevelError& error) {
+    const auto keeps = [&](const FieldBound& bound) {
+      return error.fields[bound.first].rms <= std::max(bound.second, least.fields[bound.first].rms);
+    };
+    const double distance = error.boundaryDistance();
+    return distance <=
+               std::max(options.bounds.boundary.value_or(distance), least.boundaryDistance()) &&
+           std::ranges::all_of(*bounds, keeps);
+  };
   std::vector<LevelError> out{meter.measure()};
   while (levels.level() > 0) {
     meter.coarsen();

@@ -32,13 +32,17 @@ struct ErrorBounds {
 struct MeasureOptions {
   Effort effort = Effort::kLevels;
   ErrorBounds bounds;
+  /// Whether what the lattice and the fields' steps have moved counts too: the original is then the
+  /// input, not the input on the lattice. A bound below what they may move is taken as that.
+  bool countsRounding = false;
   int threads = 1;  ///< the result does not depend on it
   std::uint64_t seed = 1;
   std::function<void(double fraction)> progress;  ///< 0..1, called once a level
   std::stop_token stop{};                         ///< asked many times a second
 };
 
-/// The error of each level, coarse-first, the last one (the original itself) all zero. Figures are
+/// The error of each level, coarse-first, the last one (the original itself) all zero, or what
+/// rounding alone makes of it. Figures are
 /// those that a log can tell (errors rounded up to three significant digits, volumeKept to 10^-6)
 /// and depend on the history and the options only. With bounds, `history` forgets the coarse levels
 /// from the first one on, counted from the finest, that passes a bound; level 0 is then the

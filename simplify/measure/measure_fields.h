@@ -37,6 +37,8 @@ class FieldMeter {
   void follow();
   /// One a field of the history, in its order.
   [[nodiscard]] std::vector<FieldError> errors() const;
+  /// What their errors are over, in steps; one a field.
+  [[nodiscard]] const std::vector<double>& ranges() const { return ranges_; }
 
  private:
   struct Place {

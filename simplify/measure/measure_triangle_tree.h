@@ -36,6 +36,10 @@ class TriangleTree {
   /// any more. Linear time without slabs, n log n with them.
   void refit(std::span<const std::uint8_t> live);
   [[nodiscard]] std::size_t builtOver() const { return ids_.size(); }
+  [[nodiscard]] std::array<Vector3, 3> corners(std::uint32_t triangle) const {
+    const Cell& cell = cells_[triangle];
+    return {toVector(points_[cell[0]]), toVector(points_[cell[1]]), toVector(points_[cell[2]])};
+  }
 
   /// Puts the nearest triangle into `best` if it is nearer than what stands there: a good guess
   /// makes the search short. A search for a maximum may end at any triangle whose squared distance

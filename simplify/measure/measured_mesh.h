@@ -43,6 +43,10 @@ class MeasuredMesh {
     return originalBoundary_;
   }
   [[nodiscard]] const TriangleTree& originalTree() const { return *originalTree_; }
+  /// The triangles of originalTree() as they were.
+  [[nodiscard]] std::span<const TriangleTree::Cell> originalTriangles() const {
+    return originalTriangles_;
+  }
   /// Index of a ghost cell in originalBoundary().
   [[nodiscard]] std::uint32_t originalTriangle(std::uint32_t ghost) const;
 

@@ -125,6 +125,7 @@ Result<std::vector<LevelError>> measure(FusionHistory& history, Run& run) {
   if (!run.options.measure) return {};
   if (Status s = run.stages.begin(Stage::kMeasure); !s) return std::unexpected(s.error());
   MeasureOptions options = *run.options.measure;
+  options.countsRounding = true;
   options.threads = run.options.fusion.threads;
   options.progress = run.stages.progress();
   options.stop = run.options.stop;

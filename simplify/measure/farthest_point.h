@@ -1,0 +1,49 @@
+// How far the farthest point of a triangle is from a surface: between what was found and what is
+// proven.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "simplify/measure/measure_triangle_tree.h"
+
+namespace qtet {
+
+/// The share by which a proven maximum may be above the one that was found.
+inline constexpr double kFarthestTolerance = 0.03;
+
+/// A few triangles of a surface; `isAll` is false where there were more.
+struct Cover {
+  std::array<std::uint32_t, 6> triangles{};
+  std::uint8_t count = 0;
+  bool isAll = true;
+
+  void add(std::uint32_t triangle);
+};
+
+/// Squared distances.
+struct FarthestPoint {
+  double found = 0;  ///< of some point of the triangle, or what was enough
+  double bound = 0;  ///< of no point of it is it more
+  /// The surface's triangle that is nearest to the middle, or near enough.
+  std::uint32_t nearest = 0;
+  /// What the bound rests on: it holds while these triangles stay.
+  Cover cover{};
+};
+
+using Corners = std::array<Vector3, 3>;
+
+/// The largest squared distance of the corners to triangle `to`: the distance to a convex set is
+/// convex, so no point between them is further from it.
+[[nodiscard]] double farthestCorner(const Corners& corners, const Corners& to);
+
+/// At most so far may a proven squared distance be where `found` was found.
+[[nodiscard]] double withTolerance(double found);
+
+/// The triangle is cut into pieces until each has a bound of at most withTolerance(max(found,
+/// enough)), or until they are many: then the bound is what it is by then. `guess` makes the first
+/// search short. REQUIRES: a tree over one triangle at least.
+[[nodiscard]] FarthestPoint farthestPoint(const TriangleTree& tree, const Corners& corners,
+                                          std::uint32_t guess, double enough);
+
+}  // namespace qtet
