@@ -57,9 +57,9 @@ LevelError rounded(const LevelError& error) {
 /// Squared shares of the range and of the diagonal.
 double squaredRounding(double steps, double of) { return of > 0 ? steps / (of * of) : 0; }
 
-/// Of a surface, in squared lattice steps: on a triangle with corners that are each off on their own
-/// half the variance of rounding is left, 1 / 24, and the mean distance along its normal is 0.8 of
-/// the root of that.
+/// Of a surface, in squared lattice steps: on a triangle with corners that are each off on their
+/// own half the variance of rounding is left, 1 / 24, and the mean distance along its normal is 0.8
+/// of the root of that.
 constexpr double kSquaredRounding = 0.64 / 24;
 
 /// Half a step along each axis: as far as the lattice moves a point at most, and so any place of a
