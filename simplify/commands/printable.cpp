@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <sstream>
+#include <utility>
 
 namespace qtet {
 namespace {
@@ -46,8 +47,11 @@ std::string filled(std::string_view text, std::string_view indent) {
   std::istringstream lines{std::string(text)};
   bool inParagraph = false;
   for (std::string line, word; std::getline(lines, line);) {
-    const bool begins = !inParagraph || line.starts_with('-');
-    inParagraph = !line.empty();
+    if (line.empty()) {
+      if (std::exchange(inParagraph, false)) out += '\n';
+      continue;
+    }
+    const bool begins = !std::exchange(inParagraph, true) || line.starts_with('-');
     if (begins && !out.empty()) newLine("");
     bool first = begins;
     for (std::istringstream words(line); words >> word; first = false) {

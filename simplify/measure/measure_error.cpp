@@ -10,7 +10,6 @@
 #include "simplify/measure/measure_boundary.h"
 #include "simplify/measure/measure_fields.h"
 #include "simplify/mesh/stopping.h"
-#include "simplify/mesh/tet_mesh.h"
 #include "simplify/mesh/workers.h"
 
 namespace qtet {
@@ -54,9 +53,6 @@ LevelError rounded(const LevelError& error) {
   return out;
 }
 
-/// Squared shares of the range and of the diagonal.
-double squaredRounding(double steps, double of) { return of > 0 ? steps / (of * of) : 0; }
-
 /// Of a surface, in squared lattice steps: on a triangle with corners that are each off on their
 /// own half the variance of rounding is left, 1 / 24, and the mean distance along its normal is 0.8
 /// of the root of that.
@@ -65,17 +61,7 @@ constexpr double kSquaredRounding = 0.64 / 24;
 /// Half a step along each axis: as far as the lattice moves a point at most, and so any place of a
 /// surface between them.
 void addRounding(OneSidedDistance& distance, double diagonal) {
-  distance.max += std::sqrt(squaredRounding(3 * 0.25, diagonal));
-}
-
-/// A value rounded to a step is off by step^2 / 12 in the mean of squares, and between the four
-/// corners of a cell, each off on its own, by 0.4 of that: the sum of the squares of their weights.
-void addRounding(FieldError& error, const FieldInfo& field, double range) {
-  if (!isFloatType(field.type) && field.step == 1) return;  // stored exactly
-  const double components = field.components;
-  const double mean = isCellField(field) ? 1.0 / 12 : 0.4 / 12;
-  error.rms = std::sqrt(error.rms * error.rms + squaredRounding(components * mean, range));
-  error.max += std::sqrt(squaredRounding(components * 0.25, range));
+  if (diagonal > 0) distance.max += std::sqrt(3 * 0.25) / diagonal;
 }
 
 class ErrorMeter {
@@ -86,7 +72,8 @@ class ErrorMeter {
         mesh_(levels),
         boundary_(mesh_, {samples.surface, samples.levelSurface,
                           options.countsRounding ? kSquaredRounding : 0, options.seed, &workers_}),
-        fields_(mesh_, {samples.volume, samples.vertices, options.seed ^ kFieldSeed, &workers_}) {}
+        fields_(mesh_, {samples.volume, samples.vertices, options.countsRounding,
+                        options.seed ^ kFieldSeed, &workers_}) {}
 
   void coarsen() {
     mesh_.coarsen();
@@ -104,7 +91,7 @@ class ErrorMeter {
   /// What the finest level has.
   [[nodiscard]] LevelError rounding() const {
     LevelError out;
-    out.fields.resize(mesh_.history().fields.size());
+    out.fields = fields_.roundings();
     if (countsRounding_) addRounding(out);
     return rounded(out);
   }
@@ -115,8 +102,6 @@ class ErrorMeter {
   void addRounding(LevelError& error) const {
     qtet::addRounding(error.toLevel, mesh_.diagonal());
     qtet::addRounding(error.toOriginal, mesh_.diagonal());
-    for (std::size_t f = 0; f < error.fields.size(); ++f)
-      qtet::addRounding(error.fields[f], mesh_.history().fields[f], fields_.ranges()[f]);
   }
 
   bool countsRounding_;

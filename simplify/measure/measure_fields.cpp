@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "simplify/measure/measure_boundary.h"
+#include "simplify/mesh/tet_mesh.h"
 #include "simplify/mesh/workers.h"
 
 namespace qtet {
@@ -187,16 +188,41 @@ void FieldMeter::measure(std::size_t place) {
   }
 }
 
+bool FieldMeter::isOriginal(const Place& place, std::size_t field) const {
+  return isCellField(mesh_.history().fields[field])
+             ? squaredErrors_[field][static_cast<std::size_t>(&place - places_.data())] == 0
+             : mesh_.isOriginal(place.sample.cell);
+}
+
+// Where a level has other values than the original's, these do not know how those were rounded:
+// then the difference that was measured has the error of rounding in it.
 std::vector<FieldError> FieldMeter::errors() const {
+  const std::vector<FieldError> rounding = roundings();
   std::vector<FieldError> out;
-  for (const std::vector<double>& squared : squaredErrors_) {
+  for (std::size_t f = 0; f < squaredErrors_.size(); ++f) {
+    const std::vector<double>& squared = squaredErrors_[f];
+    const double added = rounding[f].rms * rounding[f].rms;
     double sum = 0, worst = 0;
     for (std::size_t i = 0; i < squared.size(); ++i) {
-      if (i < uniform_) sum += squared[i];
+      if (i < uniform_) sum += squared[i] + (isOriginal(places_[i], f) ? added : 0);
       worst = std::max(worst, squared[i]);
     }
-    out.push_back(
-        {uniform_ == 0 ? 0 : std::sqrt(sum / static_cast<double>(uniform_)), std::sqrt(worst)});
+    out.push_back({uniform_ == 0 ? 0 : std::sqrt(sum / static_cast<double>(uniform_)),
+                   std::sqrt(worst) + rounding[f].max});
+  }
+  return out;
+}
+
+// A value rounded to a step is off by step^2 / 12 in the mean of squares, and between the four
+// corners of a cell, each off on its own, by 0.4 of that: the sum of the squares of their weights.
+std::vector<FieldError> FieldMeter::roundings() const {
+  std::vector<FieldError> out(ranges_.size());
+  for (std::size_t f = 0; f < ranges_.size() && options_.countsRounding; ++f) {
+    const FieldInfo& field = mesh_.history().fields[f];
+    const bool isExact = !isFloatType(field.type) && field.step == 1;
+    if (isExact || !(ranges_[f] > 0)) continue;
+    const double components = std::sqrt(static_cast<double>(field.components)) / ranges_[f];
+    out[f] = {components * std::sqrt((isCellField(field) ? 1 : 0.4) / 12), components * 0.5};
   }
   return out;
 }

@@ -17,6 +17,8 @@ struct FieldOptions {
   /// Of the original at most, for the maximum: an error is largest at a vertex of one of the
   /// meshes.
   std::uint32_t vertices = 0;
+  /// Whether what rounding has moved counts (MeasureOptions::countsRounding).
+  bool countsRounding = false;
   std::uint64_t seed = 0;
   Workers* workers = nullptr;  ///< not null; the result does not depend on how many they are
 };
@@ -37,8 +39,8 @@ class FieldMeter {
   void follow();
   /// One a field of the history, in its order.
   [[nodiscard]] std::vector<FieldError> errors() const;
-  /// What their errors are over, in steps; one a field.
-  [[nodiscard]] const std::vector<double>& ranges() const { return ranges_; }
+  /// What rounding alone makes of the original's.
+  [[nodiscard]] std::vector<FieldError> roundings() const;
 
  private:
   struct Place {
@@ -57,6 +59,8 @@ class FieldMeter {
   [[nodiscard]] bool findIn(const Fusion& fusion, Place& place) const;
   void leave(const Fusion& fusion, Place& place) const;
   void measure(std::size_t place);
+  /// Whether the level has at the place what the original has.
+  [[nodiscard]] bool isOriginal(const Place& place, std::size_t field) const;
 
   const MeasuredMesh& mesh_;
   FieldOptions options_;
