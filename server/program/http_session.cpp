@@ -83,7 +83,12 @@ bool HttpSession::belongsTo(std::optional<asio::ip::address> client) {
   peer_.client.reset();
   if (!client) return true;
   peer_.client = services_.addresses->enter(*client);
-  if (services_.accessLog != nullptr) report_.setAddress(client->to_string());
+  if (services_.accessLog != nullptr) {
+    if (asksProxyOnce())
+      report_.setPeer(client->to_string());
+    else
+      report_.setClient(client->to_string());
+  }
   return peer_.client != nullptr;
 }
 

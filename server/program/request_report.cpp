@@ -6,6 +6,7 @@ namespace qtet {
 
 void RequestReport::begin() {
   trace_ = traceOf(std::nullopt, std::nullopt);
+  client_ = peer_;
   method_.clear();
   target_.clear();
   begun_ = std::chrono::steady_clock::now();
@@ -29,8 +30,7 @@ void RequestReport::addHeaders(Reply& reply) const {
 void RequestReport::end(unsigned status, std::uint64_t bytes, bool whole) const {
   const auto time = std::chrono::steady_clock::now() - begun_;
   metrics_.countRequest(status, bytes, time);
-  if (log_ != nullptr)
-    log_->write({address_, method_, target_, status, bytes, time, whole}, trace_);
+  if (log_ != nullptr) log_->write({client_, method_, target_, status, bytes, time, whole}, trace_);
 }
 
 }  // namespace qtet

@@ -18,12 +18,13 @@ class RequestReport {
  public:
   /// `address` is the client's, "" where there is no log. Its first request begins.
   RequestReport(Metrics& metrics, AccessLog* log, std::string address)
-      : metrics_(metrics), log_(log), address_(std::move(address)) {
+      : metrics_(metrics), log_(log), peer_(std::move(address)) {
     begin();
   }
 
-  /// The client turns out to be another: the peer is a proxy.
-  void setAddress(std::string address) { address_ = std::move(address); }
+  /// The peer is a proxy, and the client another: for the whole connection, or for this request.
+  void setPeer(std::string address) { client_ = peer_ = std::move(address); }
+  void setClient(std::string address) { client_ = std::move(address); }
   /// A request of which nothing is known yet.
   void begin();
   /// Its head has come.
@@ -31,14 +32,14 @@ class RequestReport {
   /// X-Request-Id, and traceparent if the client has sent one.
   void addHeaders(Reply& reply) const;
   /// What a stream tells of it that it becomes.
-  [[nodiscard]] StreamRequest streamRequest() const { return {address_, target_, trace_}; }
+  [[nodiscard]] StreamRequest streamRequest() const { return {client_, target_, trace_}; }
   /// Its answer was sent, or nobody waits for it any more. `bytes` of the body went out.
   void end(unsigned status, std::uint64_t bytes, bool whole) const;
 
  private:
   Metrics& metrics_;
   AccessLog* log_;
-  std::string address_;
+  std::string peer_, client_;
   RequestTrace trace_;
   std::string method_, target_;
   std::chrono::steady_clock::time_point begun_;

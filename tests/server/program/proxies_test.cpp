@@ -50,8 +50,10 @@ TEST_F(Proxies, eachClientOfAProxyHasBoundsOfItsOwn) {
   }
   EXPECT_EQ(ask(other, "203.0.113.1"), 429u) << "by whatever connection of the proxy's";
   EXPECT_EQ(ask(one, "203.0.113.3"), 200u);
+  EXPECT_EQ(one.get("/livez").status, 200u);
   const auto listed = clients();
   ASSERT_GE(listed.size(), 4u);
+  EXPECT_EQ(listed.back(), "127.0.0.1") << "a request for which the proxy names nobody";
   EXPECT_EQ(listed[0], "203.0.113.1");
   EXPECT_EQ(listed[1], "203.0.113.2");
 }
