@@ -115,8 +115,8 @@ double BoundaryMeter::boundToLevel(double squared) {
     } else {
       bound = std::max(bound, triangles_[i].best());
     }
-  std::ranges::stable_sort(far, std::greater{},
-                           [&](std::uint32_t i) { return triangles_[i].best(); });
+  std::ranges::sort(far, std::less{},
+                    [&](std::uint32_t i) { return std::pair(-triangles_[i].best(), i); });
   const std::span<const std::uint32_t> all(far);
   const std::size_t first = std::min(kFirstTriangles, all.size());
   const Maximum farthest = farthestOf(all.first(first), squared);

@@ -114,9 +114,9 @@ TEST(CommandLine, optionsComeBeforeTheEnvironmentAndThatBeforeTheFile) {
 }
 
 TEST(CommandLine, whatIsPrintedIsAFileThatSaysTheSame) {
-  const auto line = parse({"logs", "--port", "5", "--admin", "[::1]:9090", "--watch", "off",
-                           "--tokens", "t", "--trust-proxy", "10.0.0.0/8,::1", "--proxy-header",
-                           "forwarded", "--check-config"});
+  const auto line =
+      parse({"logs", "--port", "5", "--admin", "[::1]:9090", "--watch", "off", "--tokens", "t",
+             "--trust-proxy", "10.0.0.0/8,::1", "--proxy-header", "forwarded", "--check-config"});
   ASSERT_TRUE(line);
   EXPECT_EQ(line->action, CommandLine::Action::kCheckConfig);
   const test::TempFolder folder;
