@@ -179,7 +179,7 @@ std::size_t ClientSocket::write(std::span<const iovec> parts, bool more, error_c
   for (std::size_t i = 1; i < parts.size() && bytes < kRecordBytes; ++i) {
     if (i == 1) std::memcpy(gathered.data(), record, bytes), record = gathered.data();
     const std::size_t taken = std::min(parts[i].iov_len, kRecordBytes - bytes);
-    std::memcpy(gathered.data() + bytes, parts[i].iov_base, taken);
+    if (taken > 0) std::memcpy(gathered.data() + bytes, parts[i].iov_base, taken);
     bytes += taken;
   }
   std::size_t count = 0;

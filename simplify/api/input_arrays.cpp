@@ -37,7 +37,7 @@ static_assert(kFieldTypes[QTET_FLOAT32 - 1] == "float32" && kFieldTypes[QTET_INT
 std::vector<Position> pointsOf(const qtet_input_mesh& mesh) {
   std::vector<Position> out(mesh.pointCount);
   if (mesh.pointType == QTET_FLOAT64) {
-    std::memcpy(out.data(), mesh.points, out.size() * sizeof(Position));
+    if (!out.empty()) std::memcpy(out.data(), mesh.points, out.size() * sizeof(Position));
   } else {
     const auto* from = static_cast<const float*>(mesh.points);
     for (Position& p : out)

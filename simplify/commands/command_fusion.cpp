@@ -60,10 +60,9 @@ void addFusionOptions(boost::program_options::options_description& options) {
       "where fused vertices go: optimal (least error a cell), vertex (only where vertices were: "
       "fewest bits a cell), or auto (least error a byte)")(
       "envelope-tolerance", po::value<double>()->default_value(0, "0"),
-      "how far the boundary may leave the original solid, over all fusions, as a fraction of the "
-      "diagonal; parts of the boundary that are "
-      "closer to "
-      "each other than twice this may come to touch")(
+      "how far the solid may leave the original one, as a fraction of the diagonal; 0: each level "
+      "is "
+      "part of the finer one. 0.005 keeps the volume of thin parts")(
       "preserve-regions", po::value<std::string>(),
       "a cell field of one component whose values are regions such as tissues or materials: they "
       "and their interfaces keep their topology")(

@@ -6,6 +6,8 @@
 #include <limits>
 #include <span>
 
+#include "simplify/legality/lattice_rounding.h"
+
 namespace qtet {
 namespace {
 
@@ -122,17 +124,18 @@ Pair FusionPointFinder::keysOf(VertexId v, std::array<VertexId, 2> w) const {
   return factor * (cheap > ideal && cheap <= dearnessOfFree(options_.rule) * ideal ? cheap : ideal);
 }
 
-void FusionPointFinder::offer(const LatticePoint& p, double dearness) {
+void FusionPointFinder::offer(const LatticePoint& p, bool isOutside, double dearness) {
   for (const Choice& c : choices_)
     if (((c.point[0] ^ p[0]) | (c.point[1] ^ p[1]) | (c.point[2] ^ p[2])) == 0) return;
   const double cost = quadric_.at(toVector(p) - origin_);
-  choices_.push_back({p, cost, dearness * cost});
+  choices_.push_back({p, cost, dearness * cost, isOutside});
 }
 
 // What takes few bits comes first, so that a free point which falls on one of them is that one.
 void FusionPointFinder::offerCheap(const Prey& prey, const FusionCheck& test) {
   const auto offerInside = [&](const LatticePoint& p) {
-    if (!deciding_.boundary || test.insideEnvelope(p)) offer(p);
+    const bool isInside = !deciding_.boundary || test.insideEnvelope(p);
+    if (isInside || test.mayLeave()) offer(p, !isInside);
   };
   for (std::size_t i = 0; i < deciding_.count; ++i) offerInside(mesh_.point(deciding_.vertex[i]));
   if (options_.rule == PlacementRule::kVertex || !deciding_.isAll) return;
@@ -148,14 +151,17 @@ void FusionPointFinder::offerCheap(const Prey& prey, const FusionCheck& test) {
 void FusionPointFinder::offerFree(const FusionCheck& test) {
   const Vector3 middle = origin_ + deciding_.centre;
   const Vector3 best = origin_ + ideal_;
+  const double dearness = dearnessOfFree(options_.rule);
   const std::array<Vector3, 3> points{best, 0.5 * (best + middle), middle};
   // The middle of one vertex is its place, which is known to be inside.
   for (const Vector3& p : std::span(points).first(best == middle         ? 1
                                                   : deciding_.count == 1 ? 2
                                                                          : 3)) {
-    LatticePoint inside = rounded(p);
-    if (!deciding_.boundary || test.projectInside(p, inside))
-      offer(inside, dearnessOfFree(options_.rule));
+    const LatticePoint there = rounded(p);
+    LatticePoint inside = there;
+    if (!deciding_.boundary || test.projectInside(p, inside)) offer(inside, false, dearness);
+    if (inside != there && test.mayLeave() && isOnLattice(there, mesh_.latticeBits()))
+      offer(there, true, dearness);
   }
   leastFree_ = std::numeric_limits<double>::infinity();
 }
@@ -209,7 +215,6 @@ std::optional<FusionPoint> FusionPointFinder::choose(const FusionCheck& test) {
     std::ranges::sort(free, comesFirst);
     choose(free, test);
   }
-  if (found_) found_->outside = test.outsideAt(found_->point);
   count(!found_);
   return found_;
 }
@@ -231,8 +236,9 @@ void FusionPointFinder::choose(std::span<const Choice> choices, const FusionChec
     const double factor =
         shape < wanted ? 1 + options_.shapeWeight * (wanted / std::max(shape, kFlat) - 1) : 1;
     if (found_ && choice.compared * factor >= least_) continue;
+    if (choice.isOutside && !test.staysNear(choice.point)) continue;
     least_ = choice.compared * factor;
-    found_ = FusionPoint{choice.point, choice.cost * factor, 0};
+    found_ = FusionPoint{choice.point, choice.cost * factor, choice.isOutside};
   }
 }
 

@@ -12,8 +12,8 @@ namespace qtet {
 
 struct FusionPoint {
   LatticePoint point{};
-  double cost = 0;    ///< by which the prey's error grows, the shape's share included
-  float outside = 0;  ///< FusedVertex::outside
+  double cost = 0;           ///< by which the prey's error grows, the shape's share included
+  bool goesOutside = false;  ///< of the boundary as it is, into what the tolerance allows
 };
 
 /// Which points are looked at. A free point takes twice the bits of one that follows from its prey.
@@ -73,6 +73,7 @@ class FusionPointFinder {
     LatticePoint point;
     double cost;
     double compared;  // the cost, times what makes a point dearer than others in the log
+    bool isOutside;   // of the envelope
   };
   [[nodiscard]] static bool comesFirst(const Choice& a, const Choice& b) {
     return a.compared != b.compared ? a.compared < b.compared : a.point < b.point;
@@ -82,7 +83,7 @@ class FusionPointFinder {
   [[nodiscard]] Deciding deciding(const Prey& prey) const;
   [[nodiscard]] Ideal idealOf(const Prey& prey, const Deciding& deciding,
                               const PreyQuadric& of) const;
-  void offer(const LatticePoint& p, double dearness = 1);
+  void offer(const LatticePoint& p, bool isOutside, double dearness = 1);
   void offerCheap(const Prey& prey, const FusionCheck& test);
   void offerFree(const FusionCheck& test);
   [[nodiscard]] bool isFreeToCome() const { return std::isfinite(leastFree_); }
@@ -99,7 +100,7 @@ class FusionPointFinder {
   Vector3 ideal_{};  // where the quadric is least, relative to origin_
   // what a free point compares as at best; infinity once they are among the choices
   double leastFree_ = 0;
-  std::vector<Choice> choices_;  // those inside the envelope, cheapest first as compared
+  std::vector<Choice> choices_;  // cheapest first as compared
   std::optional<FusionPoint> found_;
   double least_ = 0;  // found_ as compared, shape included
   // the share of the last fusions that had no legal point, but for inner vertices that would go to

@@ -39,7 +39,7 @@ void LevelDecider::process(VertexId owner, LevelQueue& queue, LevelFusions& fusi
   // Dearer than this, it waits for what costs less.
   const float most = std::min(queue.limit(), std::max(kDearer * candidate.key, queue.nextKey()));
   const Outcome outcome = propose(owner, candidate.partner, most);
-  if (outcome.cost <= most && outcome.proposal) {
+  if (outcome.cost <= most && outcome.proposal && !fusions.isMet(*outcome.proposal)) {
     fusions.decideOn(*outcome.proposal);
     if (workers_.count() > 1) return;
     fusions.carryOut();  // while the processor has the star near

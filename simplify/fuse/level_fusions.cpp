@@ -6,6 +6,7 @@ namespace qtet {
 
 void LevelFusions::begin(std::uint32_t level) {
   level_ = level;
+  if (boundary_) boundary_->beginLevel();
   fused_.clear(), links_.clear(), linkEnds_.clear();
 }
 
@@ -20,9 +21,10 @@ void LevelFusions::decideOn(const Proposal& proposal) {
   state_.touched().next();
   going_ += proposal.tetrahedra;
   fused_.push_back(static_cast<VertexId>(state_.mesh().vertexSlots() + planned_.size()));
+  if (boundary_) boundary_->decideOn(proposal, fused_.back());
   links_.insert(links_.end(), link.begin(), link.end());
   linkEnds_.push_back(links_.size());
-  planned_.push_back({proposal.prey, proposal.where.point, proposal.where.outside, &proposal.star});
+  planned_.push_back({proposal.prey, proposal.where.point, &proposal.star});
 }
 
 void LevelFusions::carryOut() {

@@ -10,15 +10,21 @@
 #include "simplify/fuse/band_nodes.h"
 #include "simplify/fuse/fusion_proposer.h"
 #include "simplify/fuse/fusion_state.h"
+#include "simplify/fuse/live_boundary.h"
 
 namespace qtet {
 
 class LevelFusions {
  public:
-  /// REQUIRES: both outlive this.
-  LevelFusions(FusionState& state, BandNodes& band) : state_(state), band_(band) {}
+  /// `boundary`: null where no fusion goes outside. REQUIRES: all outlive this.
+  LevelFusions(FusionState& state, BandNodes& band, LiveBoundary* boundary)
+      : state_(state), band_(band), boundary_(boundary) {}
 
   void begin(std::uint32_t level);
+  /// The fusion would make the boundary meet itself.
+  [[nodiscard]] bool isMet(const Proposal& proposal) const {
+    return proposal.where.goesOutside && boundary_->isMetBy(proposal);
+  }
   /// Touches the fusion's star. REQUIRES: no vertex of the prey is locked, and the proposal stays
   /// until carryOut.
   void decideOn(const Proposal& proposal);
@@ -38,6 +44,7 @@ class LevelFusions {
  private:
   FusionState& state_;
   BandNodes& band_;
+  LiveBoundary* boundary_;
   std::uint32_t level_ = 0;
   std::vector<PlannedFusion> planned_;
   std::size_t going_ = 0;

@@ -76,7 +76,7 @@ class PaperSimplifier {
       : options_(options),
         mesh_(mesh),
         cost_(mesh_, mesh, planesOnly(mesh)),
-        test_(mesh_, FusionLimits{0, 0, kNormalCosine}),
+        test_(mesh_, FusionLimits{0, 0, nullptr, kNormalCosine}),
         cells_(mesh.tetrahedra.size()),
         target_(options.baseCells.value_or(static_cast<std::size_t>(
             std::ceil(options.targetRatio.value_or(kBaseRatio) * static_cast<double>(cells_))))),
@@ -183,7 +183,7 @@ class PaperSimplifier {
     figures_.interiorFusions += interior(prey);
     ++figures_.fusions;
     valuesAt(prey, point);
-    const VertexId fused = mesh_.fuse(prey, {point, integers_, 0}, test_.star(), level);
+    const VertexId fused = mesh_.fuse(prey, {point, integers_}, test_.star(), level);
     cost_.makeRoom(mesh_.vertexSlots());
     cost_.fuse(prey, fused, point, {});
     return true;

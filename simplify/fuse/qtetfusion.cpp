@@ -15,7 +15,9 @@
 #include "simplify/fuse/level_decider.h"
 #include "simplify/fuse/level_fusions.h"
 #include "simplify/fuse/level_queue.h"
+#include "simplify/fuse/live_boundary.h"
 #include "simplify/fuse/open_vertices.h"
+#include "simplify/legality/original_surface.h"
 #include "simplify/mesh/stopping.h"
 #include "simplify/mesh/tet_mesh.h"
 #include "simplify/mesh/workers.h"
@@ -55,14 +57,14 @@ class Simplifier {
  public:
   Simplifier(const LatticeMesh& mesh, const FusionOptions& options)
       : options_(options),
-        original_(mesh.tetrahedra.size()),
-        target_(baseCellsOf(options, original_)),
+        cells_(mesh.tetrahedra.size()),
+        target_(baseCellsOf(options, cells_)),
         workers_(options.threads, options.stop),
         state_(mesh, options.regionField.value_or(FusionMesh::kNoRegions), options.cost, workers_),
         band_(options.bands.cellsPerPacket == 0
                   ? BandNodes()
                   : BandNodes(state_.mesh(), mesh, options.bands.cellsPerPacket)) {
-    limitBy({kShapeFloor, envelopeTolerance(), kNormalCosine});
+    limitBy(kShapeFloor, kNormalCosine);
   }
 
   Result<FusionHistory> run() {
@@ -77,7 +79,7 @@ class Simplifier {
       if (!stalls && isWorth(kWorthAnotherPass, before)) continue;
       if (isRelaxed) break;
       isRelaxed = true;
-      limitBy({0, envelopeTolerance(), -1});
+      limitBy(0, -1);
     }
     FusionHistory history = state_.takeHistory(levels_);
     history.bands = band_.take();
@@ -136,11 +138,10 @@ class Simplifier {
     return static_cast<double>(before - live()) >= fraction * static_cast<double>(before);
   }
 
-  [[nodiscard]] double envelopeTolerance() const {
-    return options_.envelopeTolerance * state_.cost().diagonal();
-  }
-
-  void limitBy(const FusionLimits& limits) {
+  /// By the worst shape of a cell, and the cosine of the largest turn of a boundary triangle.
+  void limitBy(double shapeFloor, double normalCosine) {
+    const FusionLimits limits{shapeFloor, options_.envelopeTolerance * state_.cost().diagonal(),
+                              original_.get(), normalCosine};
     proposers_.clear();
     for (std::size_t i = 0; i < workers_.count(); ++i)
       proposers_.push_back(std::make_unique<FusionProposer>(
@@ -149,23 +150,28 @@ class Simplifier {
   }
 
   [[nodiscard]] double progress() const {
-    const double all = static_cast<double>(original_ - target_);
+    const double all = static_cast<double>(cells_ - target_);
     // Removal is geometric, so is the bar: the logarithm of what is left.
     if (all <= 0 || target_ == 0) return 1;
-    return std::log(static_cast<double>(original_) /
-                    static_cast<double>(std::max(live(), target_))) /
-           std::log(static_cast<double>(original_) / static_cast<double>(target_));
+    return std::log(static_cast<double>(cells_) / static_cast<double>(std::max(live(), target_))) /
+           std::log(static_cast<double>(cells_) / static_cast<double>(target_));
   }
 
   const FusionOptions& options_;
-  std::size_t original_, target_;  // tetrahedra
+  std::size_t cells_, target_;  // tetrahedra: at first, and as few as these
   Workers workers_;
   FusionState state_;
   BandNodes band_;
+  // where fusions may go outside
+  const bool mayLeave_ = options_.envelopeTolerance > 0;
+  std::unique_ptr<OriginalSurface> original_ =
+      mayLeave_ ? std::make_unique<OriginalSurface>(state_.mesh()) : nullptr;
+  std::unique_ptr<LiveBoundary> boundary_ =
+      mayLeave_ ? std::make_unique<LiveBoundary>(state_.mesh()) : nullptr;
   Proposers proposers_;  // one a worker
   OpenVertices open_{state_, workers_, proposers_};
   LevelQueue queue_;
-  LevelFusions fusions_{state_, band_};
+  LevelFusions fusions_{state_, band_, boundary_.get()};
   LevelDecider decider_{state_, workers_, proposers_};
   std::uint32_t levels_ = 0;
 };

@@ -40,8 +40,7 @@ struct FusionOptions {
   /// Stop when so many cells remain. Not beside targetRatio.
   std::optional<std::size_t> baseCells{};
   CostOptions cost;
-  /// How far the boundary may leave the original solid, over the diagonal of its bounding box, >=
-  /// 0.
+  /// How far the solid may leave the original one, over the diagonal of its bounding box, >= 0.
   double envelopeTolerance = 0;
   /// The cell field of one component whose values are regions that keep their topology.
   std::optional<std::size_t> regionField;

@@ -10,7 +10,6 @@
 
 #include "codec/mesh/predicates.h"
 #include "simplify/legality/lattice_rounding.h"
-#include "simplify/mesh/measure_geometry.h"
 
 namespace qtet {
 namespace {
@@ -20,11 +19,6 @@ namespace {
 constexpr int kProjections = 8;
 constexpr int kExactProjections = 4;
 constexpr double kRoundingReach = 0.87;  // sqrt(3) / 2 lattice steps
-
-bool isOnLattice(const LatticePoint& p, int bits) {
-  const auto end = std::int64_t{1} << bits;
-  return std::ranges::all_of(p, [&](std::int32_t x) { return x >= 0 && x < end; });
-}
 
 }  // namespace
 
@@ -56,9 +50,7 @@ void BoundaryEnvelope::addFaces(const Prey& prey) {
 // the same plane.
 inline void BoundaryEnvelope::addFace(const Face& face, const Vector3& from) {
   const BoundaryPlane& plane = mesh_.plane(face.ghost);
-  const double allowed = !(plane.inverseLength > 0) ? -std::numeric_limits<double>::infinity()
-                         : tolerance_ == 0          ? 0
-                                           : std::max(0.0, tolerance_ - mesh_.outside(face.ghost));
+  const double allowed = plane.inverseLength > 0 ? 0 : -std::numeric_limits<double>::infinity();
   double height = dot(plane.normal, from);
   if (mesh_.latticeBits() > kExactBits) {
     const auto cornerAt = [&](std::size_t i) {
@@ -103,34 +95,24 @@ bool BoundaryEnvelope::turnsTooFar(const LatticePoint& p) const {
 inline bool BoundaryEnvelope::isOutside(const Face& face, double side, const Probe& probe) const {
   const auto& t = mesh_.cell(face.ghost);
   const bool isSure = std::abs(side) > probe.error || probe.error == 0;
-  const bool isBeyond = isSure ? side > 0
-                               : orientation(mesh_.point(t[0]), mesh_.point(t[1]),
-                                             mesh_.point(t[2]), probe.point) > 0;
-  return isBeyond &&
-         (tolerance_ == 0 || distance(face, probe.point) + mesh_.outside(face.ghost) > tolerance_);
+  return isSure ? side > 0
+                : orientation(mesh_.point(t[0]), mesh_.point(t[1]), mesh_.point(t[2]),
+                              probe.point) > 0;
 }
 
-// From p to the triangle. The convex hull of both is all that the solid gains there, and no point
-// of it is further away.
-double BoundaryEnvelope::distance(const Face& face, const LatticePoint& p) const {
-  const auto& t = mesh_.cell(face.ghost);
-  const Vector3 place = toVector(p);
-  return std::sqrt(
-      nearestOnTriangle({}, {mesh_.position(t[0]) - place, mesh_.position(t[1]) - place,
-                             mesh_.position(t[2]) - place})
-          .squared);
-}
-
-float BoundaryEnvelope::outsideAt(const LatticePoint& p) const {
-  if (tolerance_ == 0) return 0;
+// The tetrahedra of p and each triangle that it is beyond are all that the solid gains.
+bool BoundaryEnvelope::staysNear(const OriginalSurface& original, double tolerance,
+                                 const LatticePoint& p, DistanceCells& known) const {
   const Probe probe = probeOf(p);
-  double most = 0;
   for (std::size_t i = 0; i < faces_.size(); ++i) {
-    const bool beyond = heightsOf(planes_[i / 2], probe)[i % 2] > -probe.error;
-    most = std::max(most, mesh_.outside(faces_[i].ghost) + (beyond ? distance(faces_[i], p) : 0));
+    if (outsideOf(i / 2, probe)[i % 2] == 0) continue;
+    const auto& t = mesh_.cell(faces_[i].ghost);
+    if (!original.holds(
+            {mesh_.position(t[0]), mesh_.position(t[1]), mesh_.position(t[2]), toVector(p)},
+            tolerance, known))
+      return false;
   }
-  const auto bound = static_cast<float>(most);
-  return bound < most ? std::nextafter(bound, std::numeric_limits<float>::infinity()) : bound;
+  return true;
 }
 
 BoundaryEnvelope::Probe BoundaryEnvelope::probeOf(const LatticePoint& p) const {
@@ -147,7 +129,7 @@ inline Pair BoundaryEnvelope::heightsOf(const Planes& planes, const Probe& probe
 inline BoundaryEnvelope::Lanes BoundaryEnvelope::outsideOf(std::size_t i,
                                                            const Probe& probe) const {
   const Pair side = heightsOf(planes_[i], probe);
-  if (mesh_.latticeBits() <= kExactBits && tolerance_ == 0) return side > 0;
+  if (mesh_.latticeBits() <= kExactBits) return side > 0;
   Lanes out = probe.error > 0 ? side >= -probe.error : side > 0;
   for (std::size_t lane = 0; lane < 2; ++lane)
     if (out[lane] != 0 && !isOutside(faces_[2 * i + lane], side[lane], probe)) out[lane] = 0;

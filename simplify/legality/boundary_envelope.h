@@ -9,6 +9,7 @@
 
 #include "simplify/legality/fixed_list.h"
 #include "simplify/legality/local_star.h"
+#include "simplify/legality/original_surface.h"
 #include "simplify/mesh/fusion_mesh.h"
 #include "simplify/mesh/two_vectors.h"
 
@@ -16,22 +17,23 @@ namespace qtet {
 
 class BoundaryEnvelope {
  public:
-  /// FusionLimits::envelopeTolerance and normalCosine.
-  BoundaryEnvelope(const FusionMesh& mesh, double tolerance, double normalCosine)
-      : mesh_(mesh), tolerance_(tolerance), normalCosine_(normalCosine) {}
+  /// FusionLimits::normalCosine.
+  BoundaryEnvelope(const FusionMesh& mesh, double normalCosine)
+      : mesh_(mesh), normalCosine_(normalCosine) {}
 
   /// Collects the triangles. REQUIRES: the stars of the prey's vertices have kMaxStarCells cells at
   /// most, all together.
   void gather(const Prey& prey);
 
-  /// p lies on the inner side of (or on) every triangle, or within what is left of the tolerance.
+  /// p lies on the inner side of (or on) every triangle.
   [[nodiscard]] bool holds(const LatticePoint& p) const;
   /// Moves p onto the planes of the triangles that it lies outside of, one after the other, until
   /// its lattice point is inside.
   [[nodiscard]] bool project(Vector3 p, LatticePoint& inside) const;
-  /// How far the star's boundary may lie outside the original solid with the prey at p, in lattice
-  /// steps. REQUIRES: holds(p).
-  [[nodiscard]] float outsideAt(const LatticePoint& p) const;
+  /// With the prey at p the solid gains nothing that lies further outside the original one than
+  /// `tolerance`, in lattice steps, if nothing of it does yet.
+  [[nodiscard]] bool staysNear(const OriginalSurface& original, double tolerance,
+                               const LatticePoint& p, DistanceCells& known) const;
   /// With the prey at p a triangle turns further than it may.
   [[nodiscard]] bool turnsTooFar(const LatticePoint& p) const;
 
@@ -47,8 +49,8 @@ class BoundaryEnvelope {
   struct Planes {
     TwoVectors normal;
     Pair height, inverseLength;
-    // What is left of the tolerance. -infinity: a sliver whose plane doubles do not know, so that
-    // whatever lies outside of it lies outside of no other face further.
+    // 0, or -infinity of a sliver whose plane doubles do not know, so that whatever lies outside of
+    // it lies outside of no other face further.
     Pair allowed;
   };
   // A point as two faces at a time ask for it.
@@ -70,7 +72,6 @@ class BoundaryEnvelope {
                                    const TwoVectors& past);
   [[nodiscard]] Lanes outsideOf(std::size_t i, const Probe& probe) const;
   [[nodiscard]] bool isOutside(const Face& face, double side, const Probe& probe) const;
-  [[nodiscard]] double distance(const Face& face, const LatticePoint& p) const;
   [[nodiscard]] std::optional<std::size_t> farthestFace(const Probe& probe,
                                                         const Vector3& past) const;
   [[nodiscard]] Vector3 wayBack(std::size_t face, const Probe& probe, const Vector3& past,
@@ -78,7 +79,7 @@ class BoundaryEnvelope {
   [[nodiscard]] bool turnsTooFar(const Face& face, const LatticePoint& p) const;
 
   const FusionMesh& mesh_;
-  double tolerance_, normalCosine_;
+  double normalCosine_;
   FixedList<Face, kMaxStarCells> faces_;
   std::array<Planes, kMaxStarCells / 2> planes_;  // of faces_
   Vector3 origin_{};                              // the first prey vertex

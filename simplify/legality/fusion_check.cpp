@@ -1,15 +1,20 @@
 #include "simplify/legality/fusion_check.h"
 
+#include <cassert>
+
 #include "simplify/legality/edge_link_check.h"
 
 namespace qtet {
 
 FusionCheck::FusionCheck(const FusionMesh& mesh, const FusionLimits& limits)
     : mesh_(mesh),
-      envelope_(mesh, limits.envelopeTolerance, limits.normalCosine),
+      limits_(limits),
+      envelope_(mesh, limits.normalCosine),
       flips_(mesh),
       star_(mesh),
-      shapes_(mesh, star_, limits.shapeFloor) {}
+      shapes_(mesh, star_, limits.shapeFloor) {
+  assert(!mayLeave() || limits.original);
+}
 
 bool FusionCheck::gatherBoundary(const Prey& prey) {
   if (starCellsOf(mesh_, prey) > kMaxStarCells) return false;

@@ -19,8 +19,10 @@ struct FusionLimits {
   /// No new cell may be shaped worse than this or than a fifth of its star's worst, whichever is
   /// lower.
   double shapeFloor = 0;
-  /// How far the boundary may leave the original solid, all fusions together, in lattice steps.
+  /// How far the boundary may leave the original solid, in lattice steps. Above 0 REQUIRES
+  /// `original`.
   double envelopeTolerance = 0;
+  const OriginalSurface* original = nullptr;
   /// Cosine of the largest angle by which a boundary triangle may turn in one fusion; negative:
   /// any.
   double normalCosine = -1;
@@ -45,8 +47,9 @@ class FusionCheck {
   /// can describe it. REQUIRES gather.
   [[nodiscard]] bool keepsTopology();
 
-  /// p lies on the inner side of (or on) every boundary face of the star, or within what is left of
-  /// the tolerance. REQUIRES gatherBoundary.
+  /// Fusion points may lie outside the envelope, where staysNear(p).
+  [[nodiscard]] bool mayLeave() const { return limits_.envelopeTolerance > 0; }
+  /// p lies on the inner side of (or on) every boundary face of the star. REQUIRES gatherBoundary.
   [[nodiscard]] bool insideEnvelope(const LatticePoint& p) const { return envelope_.holds(p); }
   /// Moves p onto the planes of the boundary faces that it lies outside of, one after the other,
   /// until its lattice point is inside. REQUIRES gatherBoundary.
@@ -58,9 +61,11 @@ class FusionCheck {
   [[nodiscard]] bool flipsAt(const LatticePoint& p, std::uint32_t moving) const {
     return flips_.flipsAt(prey_, p, moving);
   }
-  /// How far the star's boundary may lie outside the original solid with the prey at p, in lattice
-  /// steps. REQUIRES gatherBoundary, p inside the envelope.
-  [[nodiscard]] float outsideAt(const LatticePoint& p) const { return envelope_.outsideAt(p); }
+  /// With the prey at p the solid gains nothing that lies further outside the original one than the
+  /// tolerance. REQUIRES gatherBoundary, mayLeave, p on the lattice.
+  [[nodiscard]] bool staysNear(const LatticePoint& p) const {
+    return envelope_.staysNear(*limits_.original, limits_.envelopeTolerance, p, distances_);
+  }
   /// The worst shape among the affected cells with the prey at p (1 = regular, 0 = flat), or a
   /// negative number where p is not legal: a cell would flip or be squashed, or a boundary triangle
   /// turn too far; or where the shape is worse than `least`. REQUIRES gather, p on the lattice.
@@ -74,8 +79,10 @@ class FusionCheck {
 
  private:
   const FusionMesh& mesh_;
+  FusionLimits limits_;
   Prey prey_;
   BoundaryEnvelope envelope_;
+  mutable DistanceCells distances_;  // from limits_.original
   FlipCheck flips_;
   LocalStar star_;
   StarShapes shapes_;

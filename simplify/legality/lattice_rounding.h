@@ -21,4 +21,9 @@ inline constexpr double kRounding = 0x1p-47;
   return farthest < 1 << kExactBits ? 0 : kRounding * farthest * farthest * farthest;
 }
 
+[[nodiscard]] inline bool isOnLattice(const LatticePoint& p, int bits) {
+  const auto end = std::int64_t{1} << bits;
+  return std::ranges::all_of(p, [&](std::int32_t x) { return x >= 0 && x < end; });
+}
+
 }  // namespace qtet

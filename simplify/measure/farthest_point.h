@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "simplify/measure/measure_triangle_tree.h"
+#include "simplify/mesh/triangle_tree.h"
 
 namespace qtet {
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "simplify/measure/measure_triangle_tree.h"
+#include "simplify/mesh/triangle_tree.h"
 #include "simplify/mesh/history_levels.h"
 
 namespace qtet {

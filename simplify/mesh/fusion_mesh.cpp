@@ -198,15 +198,9 @@ void FusionMesh::findPlane(CellId ghost) {
   planes_[ghost - firstGhost_] = {normal, squared > 0 ? 1 / std::sqrt(squared) : 0};
 }
 
-// The boundary triangles that stay get the bound of the whole star.
-void FusionMesh::pushOutside(const Star& star, float outside) {
-  for (const CellId c : star.affected)
-    if (c >= firstGhost_) outside_[c - firstGhost_] = outside;
-}
-
 VertexId FusionMesh::fuse(const Prey& prey, const FusedVertex& what, const Star& star,
                           std::uint32_t level) {
-  const PlannedFusion planned{prey, what.point, what.outside, &star};
+  const PlannedFusion planned{prey, what.point, &star};
   fuse(std::span(&planned, 1), level, [&](std::size_t, VertexId) { return what.values; });
   return history_.fusions.back().fused;
 }
@@ -238,7 +232,6 @@ void FusionMesh::fuse(std::span<const PlannedFusion> planned, std::uint32_t leve
 void FusionMesh::makeRoom(std::span<const PlannedFusion> planned, std::uint32_t level) {
   std::uint64_t affected = history_.affectedCells.size(), deleted = history_.deletedCells.size();
   std::size_t vertices = history_.points.size();
-  bool isOutside = false;
   for (const PlannedFusion& p : planned) {
     Fusion& record = history_.fusions.emplace_back();
     record.level = level;
@@ -248,7 +241,6 @@ void FusionMesh::makeRoom(std::span<const PlannedFusion> planned, std::uint32_t 
     record.firstDeleted = deleted,
     record.deletedCount = static_cast<std::uint32_t>(p.star->deleted.size());
     affected += record.affectedCount, deleted += record.deletedCount;
-    isOutside |= p.outside > 0;
   }
   pool_.resize(pool_.size() + (affected - history_.affectedCells.size()));
   livePool_ += affected - history_.affectedCells.size();
@@ -261,7 +253,6 @@ void FusionMesh::makeRoom(std::span<const PlannedFusion> planned, std::uint32_t 
   onBoundary_.resize(vertices), singular_.resize(vertices), aliveVertex_.resize(vertices),
       stars_.resize(vertices);
   if (hasRegions()) onInterface_.resize(vertices);
-  if (isOutside && outside_.empty()) outside_.assign(history_.cells.size() - firstGhost_, 0);
 }
 
 void FusionMesh::prefetchLists(const Star& star) {
@@ -332,7 +323,6 @@ FusionMesh::Gone FusionMesh::fuse(Fusion& fusion, const PlannedFusion& planned,
   const VertexId fused = fusion.fused;
   Gone gone;
   record(fusion, prey, placed(prey, planned.point), star);
-  if (planned.outside > 0) pushOutside(star, planned.outside);
   history_.points[fused] = planned.point;
   for (const VertexId v : prey.vertices()) {
     assert(aliveVertex_[v] && !singular(v));

@@ -49,15 +49,12 @@ struct FusedVertex {
   LatticePoint point{};
   /// The integers of every point field, one field after the other.
   std::span<const std::int32_t> values;
-  /// How far the boundary round it may lie outside the original solid, in lattice steps.
-  float outside = 0;
 };
 
 /// A fusion that is decided on and not done yet: all but the values of what the prey becomes.
 struct PlannedFusion {
   Prey prey;
   LatticePoint point{};
-  float outside = 0;           ///< FusedVertex::outside
   const Star* star = nullptr;  ///< the prey's
 };
 
@@ -140,12 +137,9 @@ class FusionMesh {
     assert(isGhost(c));
     return planes_[c - firstGhost_];
   }
-  /// How far boundary triangle `c` may lie outside the original solid, in lattice steps. REQUIRES:
-  /// a ghost cell.
-  [[nodiscard]] float outside(CellId c) const {
-    assert(isGhost(c));
-    return outside_.empty() ? 0 : outside_[c - firstGhost_];
-  }
+  /// Boundary triangles at first: the ghost cells from firstGhost() on.
+  [[nodiscard]] std::size_t boundaryTriangles() const { return planes_.size(); }
+  [[nodiscard]] CellId firstGhost() const { return firstGhost_; }
   [[nodiscard]] std::size_t liveTetrahedra() const { return liveTetrahedra_; }
   [[nodiscard]] int latticeBits() const { return history_.lattice.bits; }
   [[nodiscard]] std::span<const FieldInfo> fields() const { return history_.fields; }
@@ -218,13 +212,11 @@ class FusionMesh {
   FusionHistory history_;
   void findInterfaces();
   void findPlane(CellId ghost);
-  void pushOutside(const Star& star, float outside);
 
   std::size_t regionField_;
   CellId firstGhost_;
   // by ghost cell, kept up to date: asked for a hundred times as often as one changes
   std::vector<BoundaryPlane> planes_;
-  std::vector<float> outside_;  // by ghost cell; empty while nothing has left the original solid
   std::vector<std::uint8_t> aliveVertex_, onBoundary_, onInterface_, singular_;
   /// A vertex with more cells keeps where each one stands: looking through all of them for every
   /// cell that goes took time in proportion to the square.

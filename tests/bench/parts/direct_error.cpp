@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "simplify/measure/measure_samples.h"
-#include "simplify/measure/measure_triangle_tree.h"
+#include "simplify/mesh/triangle_tree.h"
 
 namespace qtet::bench {
 namespace {

@@ -149,7 +149,7 @@ TEST(FusionCost, aFusedVertexCarriesThePreysQuadrics) {
   const LatticePoint middle = mesh.points[t[0]];
   cost.valuesAt(edge, middle, atEdge);
   const std::vector<std::int32_t> integers(4, 0);
-  const VertexId fused = live.fuse(edge, {middle, integers, 0}, {}, 0);
+  const VertexId fused = live.fuse(edge, {middle, integers}, {}, 0);
   cost.makeRoom(live.vertexSlots());
   cost.fuse(edge, fused, middle, atEdge);
   const Prey rest{3, {fused, t[2], t[3], 0}};

@@ -105,7 +105,7 @@ TEST_F(Proposed, whatAVertexIsOffByAlreadyIsNoFusionsCost) {
     if (!(cost > 0)) continue;
     std::vector<std::int32_t> integers(5 * values.size());
     const VertexId fused =
-        mesh_.fuse(proposal.prey, {proposal.where.point, integers, 0}, proposal.star, 0);
+        mesh_.fuse(proposal.prey, {proposal.where.point, integers}, proposal.star, 0);
     cost_.makeRoom(mesh_.vertexSlots());
     cost_.fuse(proposal.prey, fused, proposal.where.point, values);
     EXPECT_NEAR(cost_.of(fused), cost, 1e-9 * cost);

@@ -90,7 +90,7 @@ TEST(BoundaryEnvelope, ofEquallyFarFacesTheFirstOneCounts) {
     const LatticeMesh lattice = cone(seed);
     const FusionMesh mesh(lattice);
     const Prey prey{2, {1, 0, 0, 0}};
-    BoundaryEnvelope envelope(mesh, 0, -1);
+    BoundaryEnvelope envelope(mesh, -1);
     envelope.gather(prey);
     for (int z = 151; z < 200; ++z) {
       const Vector3 above{1000, 1000, z + 0.25};
@@ -110,7 +110,7 @@ TEST(BoundaryEnvelope, projectsAsThePlainOneDoes) {
   const LatticeMesh lattice =
       testing::gridMesh(4, 5, [](int i, int j, int k) { return (i + j + k) % 4 != 0; });
   const FusionMesh mesh(lattice);
-  BoundaryEnvelope envelope(mesh, 0, -1);
+  BoundaryEnvelope envelope(mesh, -1);
   std::mt19937 random(3);
   const auto coordinate = [&] { return 0.001 * static_cast<double>(random() % 256000); };
   std::size_t inside = 0, projected = 0, lost = 0;

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "simplify/measure/measure_samples.h"
-#include "simplify/measure/measure_triangle_tree.h"
+#include "simplify/mesh/triangle_tree.h"
 #include "simplify/mesh/split_mix64.h"
 #include "tests/support/meshes.h"
 

@@ -1,6 +1,7 @@
-#include "simplify/measure/measure_triangle_tree.h"
+#include "simplify/mesh/triangle_tree.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace qtet {
@@ -8,8 +9,6 @@ namespace {
 
 /// Triangles of a leaf: boxes are cheaper to test than triangles, but each one is a cache line.
 constexpr std::uint32_t kLeafTriangles = 2;
-/// Nodes that wait during a search: one a level of a tree that halves 2^29 triangles, and one more.
-constexpr std::size_t kMaxWaiting = 32;
 /// Middles of triangles at which the tree is tried, and how many boxes may hold one on average
 /// before there are slabs: 23 to 28 do on the boundaries of comb, bluntfin-welded, fea-kiefer and
 /// linkrods-1m, 2,500 on that of a fan of 20,000 tetrahedra.
@@ -124,6 +123,38 @@ void TriangleTree::build(std::uint32_t first, std::uint32_t count) {
   build(first, half);
   nodes_[index].right = static_cast<std::uint32_t>(nodes_.size());
   build(first + half, count - half);
+}
+
+void TriangleTree::allowGrowth() {
+  parents_.assign(nodes_.size(), kNoNode);
+  leaves_.assign(cells_.size(), kNoNode);
+  for (std::uint32_t i = 0; i < nodes_.size(); ++i)
+    if (nodes_[i].right != 0) {
+      parents_[i + 1] = parents_[nodes_[i].right] = i;
+    } else {
+      for (const std::uint32_t id : std::span(ids_).subspan(nodes_[i].first, nodes_[i].count))
+        leaves_[id] = i;
+    }
+}
+
+void TriangleTree::grow(std::uint32_t triangle) {
+  assert(!parents_.empty() && leaves_[triangle] != kNoNode);
+  LatticePoint low = points_[cells_[triangle][0]], high = low;
+  for (std::size_t corner = 1; corner < 3; ++corner)
+    for (std::size_t k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], points_[cells_[triangle][corner]][k]);
+      high[k] = std::max(high[k], points_[cells_[triangle][corner]][k]);
+    }
+  bool grows = true;
+  for (std::uint32_t i = leaves_[triangle]; grows && i != kNoNode; i = parents_[i]) {
+    grows = false;
+    Node& node = nodes_[i];
+    for (std::size_t k = 0; k < 3; ++k) {
+      grows |= low[k] < node.low[k] || high[k] > node.high[k];
+      node.low[k] = std::min(node.low[k], low[k]);
+      node.high[k] = std::max(node.high[k], high[k]);
+    }
+  }
 }
 
 void TriangleTree::refit(std::span<const std::uint8_t> live) {

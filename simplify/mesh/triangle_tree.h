@@ -32,6 +32,16 @@ class TriangleTree {
   TriangleTree(std::span<const LatticePoint> points, std::span<const Cell> cells,
                std::vector<std::uint32_t> ids);
 
+  /// From now on grow() may be called.
+  void allowGrowth();
+  /// A vertex of the triangle has changed: the boxes that hold the triangle do so again, and until
+  /// the next refit hold where it was as well. Slabs do not: nearest() is not for such a tree.
+  /// REQUIRES: allowGrowth().
+  void grow(std::uint32_t triangle);
+  /// Calls visit(id) for the triangles of every leaf whose box touches the one from low to high.
+  template <class Visit>
+  void touching(const LatticePoint& low, const LatticePoint& high, const Visit& visit) const;
+
   /// Fits the boxes to the vertices as they are now and leaves out the triangles that do not live
   /// any more. Linear time without slabs, n log n with them.
   void refit(std::span<const std::uint8_t> live);
@@ -56,6 +66,11 @@ class TriangleTree {
     std::uint32_t first = 0, count = 0;  // of a leaf, into ids_
   };
 
+  static constexpr std::uint32_t kNoNode = ~std::uint32_t{0};
+  // Nodes that wait during a search: one a level of a tree that halves 2^29 triangles, and
+  // one more.
+  static constexpr std::size_t kMaxWaiting = 32;
+
   /// What lies between two planes, twice: along the surface across its triangles, and away from it.
   struct Slabs {
     std::array<Vector3, 2> axis;      // unit vectors
@@ -75,6 +90,33 @@ class TriangleTree {
   std::vector<std::uint32_t> ids_;
   std::vector<Node> nodes_;
   std::vector<Slabs> slabs_;  // one a node, or none
+  // of grow(): by node its parent, by triangle its leaf
+  std::vector<std::uint32_t> parents_, leaves_;
 };
+
+template <class Visit>
+void TriangleTree::touching(const LatticePoint& low, const LatticePoint& high,
+                            const Visit& visit) const {
+  const auto isApart = [&](const Node& node) {
+    bool apart = false;
+    for (std::size_t k = 0; k < 3; ++k) apart |= node.high[k] < low[k] || node.low[k] > high[k];
+    return apart;
+  };
+  std::array<std::uint32_t, kMaxWaiting> waiting;
+  std::size_t size = 0;
+  for (std::uint32_t index = 0;;) {
+    const Node& node = nodes_[index];
+    const bool apart = isApart(node);
+    if (!apart && node.right != 0) {
+      waiting[size++] = node.right;
+      ++index;
+      continue;
+    }
+    if (!apart)
+      for (std::uint32_t i = node.first; i < node.first + node.count; ++i) visit(ids_[i]);
+    if (size == 0) return;
+    index = waiting[--size];
+  }
+}
 
 }  // namespace qtet

@@ -1,0 +1,55 @@
+// The boundary as it was before the first fusion, and whether a triangle leaves the solid behind it
+// by more than a tolerance (ALGORITHM.md, "The envelope").
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "simplify/legality/distance_cells.h"
+#include "simplify/mesh/fusion_mesh.h"
+#include "simplify/mesh/triangle_tree.h"
+
+namespace qtet {
+
+/// Reading is safe from any thread.
+class OriginalSurface {
+ public:
+  using Corners = std::array<Vector3, 4>;
+
+  /// Of the mesh as it is now.
+  explicit OriginalSurface(const FusionMesh& mesh);
+
+  /// No point of the tetrahedron is outside the solid and further from its surface than
+  /// `tolerance`, in lattice steps. False also where that was not proved within a bounded number of
+  /// steps. `known`: of this surface alone. REQUIRES: corners in [0, 2^30)^3.
+  [[nodiscard]] bool holds(const Corners& tetrahedron, double tolerance,
+                           DistanceCells& known) const;
+  /// p is inside the solid, as far as doubles can tell, `nearest` being its nearest triangle. False
+  /// where the surface is not a manifold at the nearest point.
+  [[nodiscard]] bool isInside(const Vector3& p, const NearestTriangle& nearest) const;
+  [[nodiscard]] const TriangleTree& tree() const { return *tree_; }
+
+ private:
+  static constexpr std::uint32_t kNobody = ~std::uint32_t{0};
+
+  void collect(const FusionMesh& mesh, std::vector<VertexId>& vertices);
+  void findNeighbours();
+  void findVertexNormals();
+  [[nodiscard]] SignedDistance distanceOf(const LatticeCube& cube) const;
+  [[nodiscard]] Vector3 unitNormal(std::uint32_t triangle) const;
+  [[nodiscard]] Vector3 normalAt(const NearestTriangle& nearest) const;
+
+  std::vector<LatticePoint> points_;
+  std::vector<TriangleTree::Cell> triangles_;  // three of points_, and the ghost
+  // by triangle, across the edge from corner i to the next; kNobody where other than two triangles
+  // meet
+  std::vector<std::array<std::uint32_t, 3>> neighbours_;
+  // by point: the normals of its triangles, each as long as its angle there; zero where the point
+  // is singular
+  std::vector<Vector3> vertexNormals_;
+  std::unique_ptr<TriangleTree> tree_;
+};
+
+}  // namespace qtet
