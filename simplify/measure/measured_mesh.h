@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "simplify/mesh/triangle_tree.h"
 #include "simplify/mesh/history_levels.h"
+#include "simplify/mesh/triangle_tree.h"
 
 namespace qtet {
 

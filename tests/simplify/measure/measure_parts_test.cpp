@@ -6,8 +6,8 @@
 #include <numeric>
 
 #include "simplify/measure/measure_samples.h"
-#include "simplify/mesh/triangle_tree.h"
 #include "simplify/mesh/split_mix64.h"
+#include "simplify/mesh/triangle_tree.h"
 #include "tests/support/meshes.h"
 
 namespace qtet {
