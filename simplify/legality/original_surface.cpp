@@ -7,9 +7,7 @@
 #include <numeric>
 #include <tuple>
 
-#include <cstdio>
 namespace qtet {
-long gPieces, gMiss;
 namespace {
 
 /// Cuts of one tetrahedron. A flat one is then in pieces a thirtieth as long; what needs more is
