@@ -117,7 +117,7 @@ bool LiveBoundary::isMetBy(const Proposal& proposal) {
     for (const PlacedTriangle& t : *triangles) std::ranges::for_each(t.at, enclose);
   bool meets = false;
   tree_.touching(low, high,
-                 [&](std::uint32_t other) { meets = meets || isMetBy(proposal, other); });
+                 [&](std::uint32_t other) { return !(meets = isMetBy(proposal, other)); });
   return meets;
 }
 

@@ -3,15 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <vector>
+
+#include "simplify/measure/surface_over.h"
 
 namespace qtet {
 namespace {
 
 /// Searches for one triangle. Measured: nearly all take fewer than twenty.
 constexpr std::size_t kMaxSearches = 400;
-/// Corners of a piece: those with more are halved along a diagonal.
-constexpr std::size_t kMaxCorners = 8;
 /// A cut leaves out what is nearer to the plane, in lattice steps: less is rounding.
 constexpr double kLeastCut = 0x1p-16;
 
@@ -52,7 +53,8 @@ class Search {
   FarthestPoint of(const Corners& corners, std::uint32_t guess) {
     Piece whole{{}, 0, guess, std::numeric_limits<double>::infinity()};
     for (const Vector3& corner : corners) whole.add(corner);
-    cover_.add(guess);
+    normal_ =
+        planeThrough(corners[0], cross(corners[1] - corners[0], corners[2] - corners[0])).normal;
     examine(whole);
     const std::uint32_t nearest = nearest_;
     while (!waiting_.empty() && waiting_.front().bound > acceptable() && searches_ < kMaxSearches) {
@@ -81,6 +83,7 @@ class Search {
   }
 
   void examine(Piece piece) {
+    if (isUnder(piece)) return;
     const Vector3 middle = piece.middle();
     double radius = 0;
     for (std::size_t i = 0; i < piece.count; ++i)
@@ -91,6 +94,17 @@ class Search {
     piece.guess = nearest_;
     piece.bound = std::min({piece.bound, away * away, boundBy(piece)});
     if (!isDone(piece)) split(piece, middle);
+  }
+
+  // What lies between the surface and the piece is nowhere higher than acceptable.
+  bool isUnder(const Piece& piece) {
+    const SurfaceOver over = surfaceOver(tree_, std::span(piece.corners).first(piece.count),
+                                         normal_, std::sqrt(acceptable()));
+    if (std::isinf(over.height)) return false;
+    nearest_ = over.triangle;
+    cover_.add(over.cover);
+    accepted_ = std::max(accepted_, over.height * over.height);
+    return true;
   }
 
   /// That of the piece's distance to its triangle alone.
@@ -176,6 +190,7 @@ class Search {
   }
 
   const TriangleTree& tree_;
+  Vector3 normal_{};  // of the triangle, a unit vector
   double enough_, found_ = 0, accepted_ = 0;
   std::size_t searches_ = 0;
   std::uint32_t nearest_ = 0;
@@ -184,16 +199,6 @@ class Search {
 };
 
 }  // namespace
-
-void Cover::add(std::uint32_t triangle) {
-  const auto end = triangles.begin() + count;
-  if (std::find(triangles.begin(), end, triangle) != end) return;
-  if (count == triangles.size()) {
-    isAll = false;
-  } else {
-    triangles[count++] = triangle;
-  }
-}
 
 double farthestCorner(const Corners& corners, const Corners& to) {
   double out = 0;

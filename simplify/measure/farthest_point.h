@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 
+#include "simplify/measure/cover.h"
 #include "simplify/mesh/triangle_tree.h"
 
 namespace qtet {
@@ -12,26 +13,15 @@ namespace qtet {
 /// The share by which a proven maximum may be above the one that was found.
 inline constexpr double kFarthestTolerance = 0.03;
 
-/// A few triangles of a surface; `isAll` is false where there were more.
-struct Cover {
-  std::array<std::uint32_t, 6> triangles{};
-  std::uint8_t count = 0;
-  bool isAll = true;
-
-  void add(std::uint32_t triangle);
-};
-
 /// Squared distances.
 struct FarthestPoint {
   double found = 0;  ///< of some point of the triangle, or what was enough
   double bound = 0;  ///< of no point of it is it more
-  /// The surface's triangle that is nearest to the middle, or near enough.
+  /// The surface's triangle that is nearest to the middle, or near enough, or over most of it.
   std::uint32_t nearest = 0;
   /// What the bound rests on: it holds while these triangles stay.
   Cover cover{};
 };
-
-using Corners = std::array<Vector3, 3>;
 
 /// The largest squared distance of the corners to triangle `to`: the distance to a convex set is
 /// convex, so no point between them is further from it.

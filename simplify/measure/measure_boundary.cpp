@@ -115,10 +115,12 @@ double BoundaryMeter::boundToLevel(double squared) {
     } else {
       bound = std::max(bound, triangles_[i].best());
     }
-  std::ranges::sort(far, std::less{},
-                    [&](std::uint32_t i) { return std::pair(-triangles_[i].best(), i); });
+  const std::size_t first = std::min(kFirstTriangles, far.size());
+  const auto rest = far.begin() + static_cast<std::ptrdiff_t>(first);
+  std::ranges::partial_sort(far, rest, std::less{},
+                            [&](std::uint32_t i) { return std::pair(-triangles_[i].best(), i); });
+  std::sort(rest, far.end());  // neighbours in the mesh are neighbours in memory
   const std::span<const std::uint32_t> all(far);
-  const std::size_t first = std::min(kFirstTriangles, all.size());
   const Maximum farthest = farthestOf(all.first(first), squared);
   const Maximum others = farthestOf(all.subspan(first), farthest.found);
   return std::max({bound, others.found, farthest.bound, others.bound});

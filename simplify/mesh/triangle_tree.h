@@ -38,7 +38,8 @@ class TriangleTree {
   /// the next refit hold where it was as well. Slabs do not: nearest() is not for such a tree.
   /// REQUIRES: allowGrowth().
   void grow(std::uint32_t triangle);
-  /// Calls visit(id) for the triangles of every leaf whose box touches the one from low to high.
+  /// Calls visit(id) for the triangles of every leaf whose box touches the one from low to high,
+  /// until it returns false.
   template <class Visit>
   void touching(const LatticePoint& low, const LatticePoint& high, const Visit& visit) const;
 
@@ -113,7 +114,8 @@ void TriangleTree::touching(const LatticePoint& low, const LatticePoint& high,
       continue;
     }
     if (!apart)
-      for (std::uint32_t i = node.first; i < node.first + node.count; ++i) visit(ids_[i]);
+      for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
+        if (!visit(ids_[i])) return;
     if (size == 0) return;
     index = waiting[--size];
   }

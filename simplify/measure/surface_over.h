@@ -1,0 +1,37 @@
+// Whether a closed surface passes over the whole of a flat piece, and how far from it: a bound for
+// a whole piece that needs no nearest point.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include "simplify/measure/cover.h"
+#include "simplify/mesh/triangle_tree.h"
+
+namespace qtet {
+
+/// The surface between two planes that are as far above the piece as below it.
+struct SurfaceOver {
+  /// No line along the piece's normal is without a place of the surface so near the piece, in
+  /// lattice steps; infinite where that is not proven.
+  double height = std::numeric_limits<double>::infinity();
+  /// Of the surface: the triangle over the largest share of the piece.
+  std::uint32_t triangle = 0;
+  /// What the height rests on.
+  Cover cover{};
+};
+
+/// The surface's parts over the piece are cut out. Where none of them crosses the planes at +-`most`
+/// lattice steps, the signed area of their projections is a multiple of the piece's area, the same
+/// number of layers over each of its points; where that is not 0 the surface is over all of it.
+/// REQUIRES: `piece` flat and convex with `normal` as its unit normal, seen anticlockwise, of at
+/// most kMaxCorners corners; the tree's surface is closed: the number of triangles on each side of
+/// an edge is even with their directions, as those of a mesh's boundary are.
+[[nodiscard]] SurfaceOver surfaceOver(const TriangleTree& surface, std::span<const Vector3> piece,
+                                      const Vector3& normal, double most);
+
+/// Corners of a piece.
+inline constexpr std::size_t kMaxCorners = 8;
+
+}  // namespace qtet
