@@ -22,7 +22,7 @@ struct SurfaceOver {
   Cover cover{};
 };
 
-/// The surface's parts over the piece are cut out. Where none of them crosses the planes at +-`most`
+/// The parts over the piece are cut out of the surface. Where none crosses the planes at +-`most`
 /// lattice steps, the signed area of their projections is a multiple of the piece's area, the same
 /// number of layers over each of its points; where that is not 0 the surface is over all of it.
 /// REQUIRES: `piece` flat and convex with `normal` as its unit normal, seen anticlockwise, of at
