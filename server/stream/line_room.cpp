@@ -15,17 +15,18 @@ using std::chrono::microseconds;
 using std::chrono::milliseconds;
 using Seconds = duration<double>;
 
-/// Of data that may lie before the line: with the block that is begun last, under 150 ms from
-/// 2 Mbit/s on, and a server that looks a little late still keeps the line busy.
-constexpr Seconds kAhead = milliseconds(60);
-/// The round trip is longer than the least by so much: something waits in the network.
-constexpr Seconds kQueued = kAhead / 2;
+/// Of data that may wait before the next frame: with the block that is begun last, under 150 ms
+/// from 2 Mbit/s on. A server that looks a little late still keeps the line busy.
+constexpr Seconds kAhead = milliseconds(40);
+/// The round trip is longer than the least by so much: something waits in the network. Above the
+/// jitter of acknowledgements; taking jitter for a queue only bounds what is under way.
+constexpr Seconds kQueued = milliseconds(15);
 /// Packets that may be under way however slow the line is: fewer would leave it idle while the
 /// client holds its acknowledgement back.
 constexpr std::uint64_t kLeastPackets = 6;
 /// A sample of the rate: some packets even at 0.4 Mbit/s. Of kSamples the largest counts.
 constexpr Seconds kLeastSample = milliseconds(50);
-/// Between two looks at a line without room: a timer's grain, and a third of kAhead.
+/// Between two looks at a line without room: a timer's grain, and half of kAhead.
 constexpr auto kLeastWait = milliseconds(1), kMostWait = milliseconds(20);
 
 }  // namespace
@@ -62,8 +63,11 @@ void LineRoom::measure(const LineFigures& line, Clock::time_point now) {
 
 std::size_t LineRoom::room(const LineFigures& line, Clock::time_point now) {
   measure(line, now);
-  const double rate = *std::ranges::max_element(samples_);  // bytes a second
   const bool queued = line.rtt - line.leastRtt > kQueued;
+  double rate = *std::ranges::max_element(samples_);  // bytes a second
+  // while congestion control tries out more, samples come too late
+  if (!queued && line.rtt.count() > 0)
+    rate = std::max(rate, static_cast<double>(line.underWay) / Seconds(line.rtt).count());
   const Seconds held = queued ? kAhead + Seconds(line.leastRtt) : kAhead;
   const double bound =
       std::max(rate * held.count(), static_cast<double>(kLeastPackets * line.packetBytes));

@@ -32,20 +32,26 @@ struct MeasuredLine {
 
 TEST(LineRoom, withoutAQueueOnlyUnsentBytesCount) {
   MeasuredLine m;
-  m.figures.underWay = 1'000'000;
-  EXPECT_EQ(m.room(), 15'000u) << "60 ms";
+  m.figures.underWay = 12'500;
+  EXPECT_EQ(m.room(), 10'000u) << "40 ms";
   m.figures.unsent = 6000;
-  EXPECT_EQ(m.room(), 9000u);
-  m.figures.unsent = 15'000;
+  EXPECT_EQ(m.room(), 4000u);
+  m.figures.unsent = 10'000;
   EXPECT_EQ(m.room(), 0u);
+}
+
+TEST(LineRoom, withoutAQueueWhatIsUnderWayTellsOfAFasterLine) {
+  MeasuredLine m;
+  m.figures.underWay = 50'000;
+  EXPECT_EQ(m.room(), 40'000u) << "40 ms of 1 MB/s";
 }
 
 TEST(LineRoom, withAQueueWhatIsUnderWayCountsToo) {
   MeasuredLine m;
   m.figures.rtt = 200ms;
   m.figures.underWay = 12'500;
-  EXPECT_EQ(m.room(), 15'000u) << "110 ms less the 50 that the line itself holds";
-  m.figures.underWay = 27'500;
+  EXPECT_EQ(m.room(), 10'000u) << "90 ms less the 50 that the line itself holds";
+  m.figures.underWay = 22'500;
   EXPECT_EQ(m.room(), 0u);
 }
 
@@ -59,13 +65,13 @@ TEST(LineRoom, aSlowLineHoldsSixPackets) {
 
 TEST(LineRoom, waitsAsLongAsTheLineNeedsForTheExcess) {
   MeasuredLine m;
-  m.figures.unsent = 17'500;
+  m.figures.unsent = 12'500;
   ASSERT_EQ(m.room(), 0u);
   EXPECT_EQ(m.line.wait(), 10ms);
   m.figures.unsent = 1'000'000;
   ASSERT_EQ(m.room(), 0u);
   EXPECT_EQ(m.line.wait(), 20ms) << "at most";
-  m.figures.unsent = 15'000;
+  m.figures.unsent = 10'000;
   ASSERT_EQ(m.room(), 0u);
   EXPECT_EQ(m.line.wait(), 1ms) << "at least";
 }
@@ -75,13 +81,13 @@ TEST(LineRoom, aRestTellsNothingOfTheLine) {
   m.line.rests();
   m.now += 1h;
   for (int i = 0; i < 7; ++i) m.line.rests(), m.pass(1000ms, 0);
-  EXPECT_EQ(m.room(), 15'000u);
+  EXPECT_EQ(m.room(), 10'000u);
 }
 
 TEST(LineRoom, aLineThatBecomesSlowerIsBelieved) {
   MeasuredLine m;
-  for (int i = 0; i < 100; ++i) m.pass(10ms, kRate * 4 / 5);
-  EXPECT_EQ(m.room(), 12'000u);
+  for (int i = 0; i < 100; ++i) m.pass(10ms, kRate * 9 / 10);
+  EXPECT_EQ(m.room(), 9000u);
 }
 
 TEST(LineRoom, tellsWhetherSomethingWasAcknowledged) {
