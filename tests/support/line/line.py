@@ -1,5 +1,6 @@
-"""A line between two network namespaces that needs no netem: a program forwards the packets of two
-TUN devices, each way at a rate, after a delay, through a queue of so many packets.
+"""Lines between two network namespaces, without netem: a veth pair, as fast as the machine; or two
+TUN devices whose packets a program forwards, each way at a rate, after a delay, through a queue of
+so many packets.
 
     inNamespaces()                      # once, first: skips where namespaces are not allowed
     with Line(rate=250_000, delay=0.025, queue=100) as line:
@@ -96,11 +97,11 @@ def forward(ways):
                 way.take(now)
 
 
-class Line:
-    """`rate` in bytes a second and `delay` in seconds are each way's, `queue` is in packets. The
-    server's side is the namespace of the program, with `congestion` as its congestion control."""
+class Ends:
+    """The server's side is the namespace of the program, with `congestion` as its congestion
+    control; the client's is a new one."""
 
-    def __init__(self, rate, delay, queue, congestion=None):
+    def __init__(self, congestion=None):
         if congestion:
             CONGESTION.write_text(congestion)
         self.own = os.open("/proc/self/ns/net", os.O_RDONLY)
@@ -108,7 +109,9 @@ class Line:
         while os.readlink(f"/proc/{self.peer.pid}/ns/net") == os.readlink("/proc/self/ns/net"):
             time.sleep(0.01)
         self.other = os.open(f"/proc/{self.peer.pid}/ns/net", os.O_RDONLY)
-        ends = [tun("line0"), tun("line1")]
+
+    def address(self):
+        """The devices line0 here and line1 there are up from now on."""
         ip("link", "set", "line1", "netns", self.peer.pid)
         for name, own, other, of in (
             ("line0", SERVER, CLIENT, None),
@@ -116,6 +119,42 @@ class Line:
         ):
             ip("link", "set", name, "mtu", MTU, "up", of=of)
             ip("addr", "add", own, "peer", other, "dev", name, of=of)
+
+    @contextlib.contextmanager
+    def client(self):
+        """Sockets made within, and programs begun within, are the client's."""
+        libc.setns(self.other, CLONE_NEWNET)
+        try:
+            yield
+        finally:
+            libc.setns(self.own, CLONE_NEWNET)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.peer.kill()
+        self.peer.wait()
+        os.close(self.own)
+        os.close(self.other)
+
+
+class Pair(Ends):
+    """A veth pair."""
+
+    def __init__(self, congestion=None):
+        super().__init__(congestion)
+        ip("link", "add", "line0", "type", "veth", "peer", "name", "line1")
+        self.address()
+
+
+class Line(Ends):
+    """`rate` in bytes a second and `delay` in seconds are each way's, `queue` is in packets."""
+
+    def __init__(self, rate, delay, queue, congestion=None):
+        super().__init__(congestion)
+        ends = [tun("line0"), tun("line1")]
+        self.address()
         ways = [
             Way(ends[0], ends[1], rate, delay, queue),
             Way(ends[1], ends[0], rate, delay, queue),
@@ -127,22 +166,7 @@ class Line:
         for end in ends:
             os.close(end)
 
-    @contextlib.contextmanager
-    def client(self):
-        """Sockets made within are the client's."""
-        libc.setns(self.other, CLONE_NEWNET)
-        try:
-            yield
-        finally:
-            libc.setns(self.own, CLONE_NEWNET)
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
+    def __exit__(self, *exception):
         self.forwarder.kill()
         self.forwarder.join()
-        self.peer.kill()
-        self.peer.wait()
-        os.close(self.own)
-        os.close(self.other)
+        super().__exit__(*exception)
