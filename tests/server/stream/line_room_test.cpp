@@ -86,8 +86,14 @@ TEST(LineRoom, aRestTellsNothingOfTheLine) {
 
 TEST(LineRoom, aLineThatBecomesSlowerIsBelieved) {
   MeasuredLine m;
-  for (int i = 0; i < 100; ++i) m.pass(10ms, kRate * 9 / 10);
+  for (int i = 0; i < 200; ++i) m.pass(10ms, kRate * 9 / 10);
   EXPECT_EQ(m.room(), 9000u);
+}
+
+TEST(LineRoom, aBurstOfAcknowledgementsIsNoFasterLine) {
+  MeasuredLine m;
+  for (int i = 0; i < 20; ++i) m.pass(50ms, i % 4 == 0 ? 4 * kRate : 0);
+  EXPECT_EQ(m.room(), 10'000u) << "the mean of 200 ms is the same";
 }
 
 TEST(LineRoom, tellsWhetherSomethingWasAcknowledged) {
