@@ -17,8 +17,10 @@ class Patience {
 
   /// Bytes came.
   void heard(Clock::time_point now) { heard_ = now; }
-  /// Writing begins.
-  void begins(Clock::time_point now) { writing_ = now; }
+  /// Writing begins, or what is to be written waits until the client has taken more.
+  void begins(Clock::time_point now) {
+    if (!writing_) writing_ = now;
+  }
   /// The client took some of what is written, which is a sign of life like any other: its pong
   /// waits behind the data.
   void took(Clock::time_point now) { writing_ = heard_ = now; }
@@ -32,8 +34,9 @@ class Patience {
     kStuck,   ///< it took nothing of what is being written for too long
   };
   [[nodiscard]] Verdict at(Clock::time_point now) const {
-    if (writing_ && now - *writing_ >= write_) return Verdict::kStuck;
-    if (!writing_ && now - heard_ >= silence_) return Verdict::kSilent;
+    // a ping would wait behind the data
+    if (writing_) return now - *writing_ >= write_ ? Verdict::kStuck : Verdict::kWait;
+    if (now - heard_ >= silence_) return Verdict::kSilent;
     return now - heard_ >= silence_ / 2 ? Verdict::kPing : Verdict::kWait;
   }
   /// How often at() is to be asked.

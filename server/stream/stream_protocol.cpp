@@ -217,7 +217,7 @@ void StreamProtocol::refuse(const char* code, std::string detail) {
   answerError(code, std::move(detail));
 }
 
-std::optional<Outgoing> StreamProtocol::next() {
+std::optional<Outgoing> StreamProtocol::next(std::size_t room) {
   catchUp();
   if (!answers_.empty()) {
     std::string text = std::move(answers_.front());
@@ -227,17 +227,23 @@ std::optional<Outgoing> StreamProtocol::next() {
   if (closing_) return CloseCode::kPolicy;
   if (!stream_) return std::nullopt;
   if (stream_->nextRun < stream_->plan.size()) {
-    if (stream_->paused || stream_->credit <= 0) return std::nullopt;
-    return nextFrame(*stream_);
+    if (stream_->paused || stream_->credit <= 0 || room == 0) return std::nullopt;
+    return nextFrame(*stream_, room);
   }
   if (stream_->planState == Stream::PlanState::kDone) return std::nullopt;
   stream_->planState = Stream::PlanState::kDone;
   return toJson(DoneMessage{opens_});
 }
 
-OutgoingFrame StreamProtocol::nextFrame(Stream& stream) const {
-  const BlockRun& run = stream.plan[stream.nextRun++];
-  const FileSlice slice = sliceOf(stream.mesh->log.index(), run);
+OutgoingFrame StreamProtocol::nextFrame(Stream& stream, std::size_t room) const {
+  const LogIndex& index = stream.mesh->log.index();
+  BlockRun& planned = stream.plan[stream.nextRun];
+  BlockRun run = planned;
+  while (run.parts > 1 && sliceOf(index, run).size > room) --run.parts;
+  planned.firstPart += run.parts;
+  planned.parts -= run.parts;
+  if (planned.parts == 0) ++stream.nextRun;
+  const FileSlice slice = sliceOf(index, run);
   stream.credit -= slice.size;
   if (run.firstPart == FrameHeader::kHead) {
     stream.hasHead = true;

@@ -39,14 +39,20 @@ class StreamProtocol {
   void receive(std::string_view json, Clock::time_point now);
   /// Clients send no binary messages.
   void receiveBinary();
-  /// The next thing to send; nullopt: nothing before the next message arrives. After a CloseCode
-  /// nothing follows.
-  [[nodiscard]] std::optional<Outgoing> next();
+  /// The next thing to send; nullopt: nothing before the next message arrives, or nothing but
+  /// hasFrame(). After a CloseCode nothing follows. A frame's payload has at most `room` bytes, or
+  /// is one block or the head; without room there is none.
+  [[nodiscard]] std::optional<Outgoing> next(std::size_t room = limits::kFramePayload);
 
   /// `open`s so far.
   [[nodiscard]] std::uint32_t opens() const { return opens_; }
   /// That of the stream under way; nullptr: none is.
   [[nodiscard]] MeshPointer mesh() const { return stream_ ? stream_->mesh : nullptr; }
+  /// There is a frame to send, and credit for it.
+  [[nodiscard]] bool hasFrame() const {
+    return !closing_ && stream_ && stream_->nextRun < stream_->plan.size() && !stream_->paused &&
+           stream_->credit > 0;
+  }
   /// There is more to send, and credit alone is wanting.
   [[nodiscard]] bool lacksCredit() const {
     return stream_ && stream_->nextRun < stream_->plan.size() && !stream_->paused &&
@@ -92,7 +98,7 @@ class StreamProtocol {
   static std::uint64_t plan(Stream& stream);
   /// Plans anew where the request has changed, and says so.
   void catchUp();
-  OutgoingFrame nextFrame(Stream& stream) const;
+  OutgoingFrame nextFrame(Stream& stream, std::size_t room) const;
   /// Ends the stream, or leaves it as it is.
   void refuse(const char* code, std::string detail);
   void answerError(const char* code, std::string detail);

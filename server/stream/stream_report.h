@@ -39,7 +39,7 @@ class StreamReport {
   void took(std::size_t bytes);
   /// So many binary frames are written to their end.
   void wroteFrames(std::size_t frames, Clock::time_point now);
-  /// The network took nothing for so long though there was something to write.
+  /// There was something to write for so long, and the line had no room.
   void stalled(Clock::duration time);
   /// There is more to send and no credit for it. Counts once between two frames.
   void lacksCredit();

@@ -5,6 +5,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <array>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/redirect_error.hpp>
@@ -17,6 +18,7 @@
 #include "server/stream/control_frames.h"
 #include "server/stream/frame_gather.h"
 #include "server/stream/interval_search.h"
+#include "server/stream/line_room.h"
 #include "server/stream/patience.h"
 #include "server/stream/stream_input.h"
 #include "server/stream/stream_protocol.h"
@@ -93,6 +95,7 @@ class StreamSession : public std::enable_shared_from_this<StreamSession> {
                    }),
         patience_(handshake.silence, handshake.write, Clock::now()),
         cork_(peer_.socket, handshake.unpaced),
+        bounded_(!handshake.unpaced),
         report_(metrics, log, handshake.request, Clock::now()) {}
   ~StreamSession() {
     if (const auto code = control_.ownCode())
@@ -118,7 +121,9 @@ class StreamSession : public std::enable_shared_from_this<StreamSession> {
   asio::awaitable<void> write();
   asio::awaitable<void> keepTime();
   asio::awaitable<void> waitForNews();
+  asio::awaitable<void> waitForRoom();
   asio::awaitable<void> flush(FrameGather& gather);
+  std::size_t room();
   void collect(FrameGather& gather);
   /// Ends reading and writing at once.
   void cut() {
@@ -135,6 +140,8 @@ class StreamSession : public std::enable_shared_from_this<StreamSession> {
   IntervalSearch intervals_;
   Patience patience_;
   Cork cork_;
+  const bool bounded_;  // by line_; a client of this machine has no line
+  LineRoom line_;
   StreamReport report_;
 };
 
@@ -176,12 +183,23 @@ asio::awaitable<void> StreamSession::read() {
   cut();
 }
 
+/// Bytes that the line has room for.
+std::size_t StreamSession::room() {
+  const auto figures = bounded_ ? lineFigures(peer_.socket.number()) : std::nullopt;
+  if (!figures) return LineRoom::kUnbounded;
+  const std::size_t bytes = line_.room(*figures, Clock::now());
+  if (line_.progressed()) patience_.took(Clock::now());
+  return bytes;
+}
+
 void StreamSession::collect(FrameGather& gather) {
+  std::size_t left = protocol_.hasFrame() ? room() : LineRoom::kUnbounded;
   while (std::optional<ControlFrame> sign = control_.takeSign())
     gather.add(sign->kind, std::move(sign->payload));
   while (!gather.full() && !control_.closing()) {
-    std::optional<Outgoing> outgoing = protocol_.next();
+    std::optional<Outgoing> outgoing = protocol_.next(left);
     if (!outgoing) {
+      if (protocol_.hasFrame()) break;
       // What the credit allows is still sent; the rest comes elsewhere, after an `open` with
       // `have`.
       if (peer_.connection->ending()) control_.close(CloseCode::kGoingAway);
@@ -190,6 +208,7 @@ void StreamSession::collect(FrameGather& gather) {
     if (auto* text = std::get_if<std::string>(&*outgoing)) {
       gather.add(WebSocketHeader::kText, std::move(*text));
     } else if (auto* frame = std::get_if<OutgoingFrame>(&*outgoing)) {
+      left -= std::min(left, frame->payload.size());
       gather.add(std::move(*frame));
     } else {
       control_.close(std::get<CloseCode>(*outgoing));
@@ -213,6 +232,12 @@ asio::awaitable<void> StreamSession::write() {
     }
     if (!idle) continue;
     cork_.release();
+    if (protocol_.hasFrame()) {
+      co_await waitForRoom();
+      continue;
+    }
+    line_.rests();
+    patience_.wrote();
     if (protocol_.lacksCredit()) report_.lacksCredit();
     co_await waitForNews();
   }
@@ -244,6 +269,16 @@ asio::awaitable<void> StreamSession::waitForNews() {
   error_code ec;
   wake_.expires_at(asio::steady_timer::time_point::max());
   co_await wake_.async_wait(redirect_error(use_awaitable, ec));
+}
+
+/// Until the line may have taken enough, or there is news: a changed view is answered at once.
+asio::awaitable<void> StreamSession::waitForRoom() {
+  const auto since = Clock::now();
+  patience_.begins(since);
+  error_code ec;
+  wake_.expires_after(line_.wait());
+  co_await wake_.async_wait(redirect_error(use_awaitable, ec));
+  report_.stalled(Clock::now() - since);
 }
 
 /// Pings a silent client, closes on one that stays so, and cuts one that takes nothing of what

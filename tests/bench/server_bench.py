@@ -7,12 +7,19 @@ alternate between the servers, so that whatever else the machine does hits them 
 wrk, taskset and, for the last peer, a folder in which `npm install ws` was run.
 
   server_bench.py --bin build/release/bin --log LOG.qtet [--ws FOLDER] [--rounds 5] [--seconds 2]
+
+`--veth bbr` measures the rows beside nginx over a veth pair between two network namespaces, with
+that congestion control on both servers. Without it everything is on loopback, where qtet-server
+chooses reno.
 """
-import argparse, atexit, json, os, pathlib, re, resource, selectors, signal, socket, statistics
-import subprocess, sys, tempfile, time
+import argparse, atexit, contextlib, json, os, pathlib, re, resource, selectors, signal, socket
+import statistics, subprocess, sys, tempfile, time
 
 TICK = os.sysconf("SC_CLK_TCK")
 HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent / "support" / "line"))
+import line as lines
+
 CHUNK = 32 << 10
 
 
@@ -53,11 +60,19 @@ def start(command, ready=None):
     return process, (re.search(ready, process.stdout.readline())[1] if ready else None)
 
 
+class Place:
+    """Where the servers listen, and in what clients are begun."""
+
+    host, client = "127.0.0.1", contextlib.nullcontext
+
+
 def start_qtet(args, folder):
     process, port = start(
         [
             args.bin / "qtet-server",
             folder,
+            "--host",
+            Place.host,
             "--threads",
             1,
             "--port",
@@ -76,7 +91,7 @@ def start_qtet(args, folder):
 
 def start_nginx(folder, scratch):
     with socket.socket() as s:
-        s.bind(("127.0.0.1", 0))
+        s.bind((Place.host, 0))
         port = s.getsockname()[1]
     conf = scratch / "nginx.conf"
     conf.write_text(
@@ -85,12 +100,12 @@ events {{ worker_connections 20000; }}
 http {{ access_log off; sendfile on; tcp_nopush off; keepalive_requests 1000000000;
 client_body_temp_path {scratch}/a; proxy_temp_path {scratch}/b;
 fastcgi_temp_path {scratch}/c; uwsgi_temp_path {scratch}/d; scgi_temp_path {scratch}/e;
-server {{ listen 127.0.0.1:{port}; root {folder}; default_type application/json; }} }}"""
+server {{ listen {Place.host}:{port}; root {folder}; default_type application/json; }} }}"""
     )
     process, _ = start(["nginx", "-c", conf])
     for _ in range(100):
         with socket.socket() as s:
-            if s.connect_ex(("127.0.0.1", port)) == 0:
+            if s.connect_ex((Place.host, port)) == 0:
                 return process, port
         time.sleep(0.05)
     sys.exit("nginx does not start")
@@ -122,7 +137,8 @@ def wrk(pid, url, connections, seconds, header=None):
         + (["-H", header] if header else [])
         + [url]
     )
-    out = subprocess.run(command, capture_output=True, text=True).stdout
+    with Place.client():
+        out = subprocess.run(command, capture_output=True, text=True).stdout
     if "Non-2xx" in out:
         sys.exit(f"{url}: {out}")
     return meter.rates(int(re.search(r"(\d+) requests in", out)[1]))
@@ -247,7 +263,13 @@ def main():
     options.add_argument("--rounds", type=int, default=5)
     options.add_argument("--seconds", type=int, default=2)
     options.add_argument("--idle", type=int, default=10000)
+    options.add_argument("--veth", metavar="CONGESTION")
     args = options.parse_args()
+    if args.veth:
+        lines.inNamespaces()
+        pair = lines.Pair(args.veth)
+        atexit.register(pair.__exit__)
+        Place.host, Place.client = lines.SERVER, pair.client
     resource.setrlimit(resource.RLIMIT_NOFILE, (resource.getrlimit(resource.RLIMIT_NOFILE)[1],) * 2)
     os.sched_setaffinity(0, {1})
     scratch = pathlib.Path(tempfile.mkdtemp())
@@ -257,7 +279,7 @@ def main():
     qtet, port = start_qtet(args, folder)
 
     def get(path):
-        with socket.create_connection(("127.0.0.1", port)) as s:
+        with socket.create_connection((Place.host, port)) as s:
             s.sendall(
                 f"GET {path} HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n".encode()
             )
@@ -307,16 +329,35 @@ def main():
         ),
         ("whole files, 4 connections", log, "/bench.qtet", 4, None, "MB", 1e6 / size),
         ("1 KB JSON, 64 connections", "/v1/meshes", "/meshes.json", 64, None, "thousand", 1e3),
+        (
+            "1 KB JSON, a connection each",
+            "/v1/meshes",
+            "/meshes.json",
+            64,
+            "Connection: close",
+            "thousand",
+            1e3,
+        ),
     ]:
         ours, theirs = [], []
         for _ in range(args.rounds):
             ours.append(
-                wrk(qtet.pid, f"http://127.0.0.1:{port}{path}", connections, args.seconds, header)
+                wrk(
+                    qtet.pid, f"http://{Place.host}:{port}{path}", connections, args.seconds, header
+                )
             )
             theirs.append(
-                wrk(nginx.pid, f"http://127.0.0.1:{other}{peer}", connections, args.seconds, header)
+                wrk(
+                    nginx.pid,
+                    f"http://{Place.host}:{other}{peer}",
+                    connections,
+                    args.seconds,
+                    header,
+                )
             )
         row(name + " (nginx)", ours, theirs, unit, scale)
+    if args.veth:
+        return
     if args.ws:
         ws, ws_port = start(
             ["node", HERE / "server_peer.mjs", args.ws.resolve(), args.log, CHUNK], r"(\d+)"

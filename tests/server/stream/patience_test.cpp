@@ -34,6 +34,13 @@ TEST(Patience, whoTakesNothingIsGivenUpHoweverMuchItSays) {
   EXPECT_EQ(patience.at(kBegin + seconds(40)), Verdict::kWait) << "nothing is being written";
 }
 
+TEST(Patience, waitingForRoomAnewDoesNotBeginThePatienceAnew) {
+  Patience patience(seconds(1000), seconds(30), kBegin);
+  patience.begins(kBegin);
+  patience.begins(kBegin + seconds(29));
+  EXPECT_EQ(patience.at(kBegin + seconds(30)), Verdict::kStuck);
+}
+
 TEST(Patience, whoeverTakesBytesSteadilyIsAliveThoughNoPongComes) {
   Patience patience(seconds(30), seconds(30), kBegin);
   patience.begins(kBegin);
@@ -50,7 +57,7 @@ TEST(Patience, whoeverTakesBytesSteadilyIsAliveThoughNoPongComes) {
 TEST(Patience, aWriteThatHasJustBegunIsWaitedForHoweverLongTheClientWasSilent) {
   Patience patience(seconds(30), seconds(30), kBegin);
   patience.begins(kBegin + seconds(29));
-  EXPECT_EQ(patience.at(kBegin + seconds(58)), Verdict::kPing);
+  EXPECT_EQ(patience.at(kBegin + seconds(58)), Verdict::kWait) << "a ping would come behind it";
   EXPECT_EQ(patience.at(kBegin + seconds(59)), Verdict::kStuck);
 }
 

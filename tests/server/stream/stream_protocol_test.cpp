@@ -114,6 +114,36 @@ TEST_F(StreamProtocolTest, noFrameIsSentWithoutCredit) {
   EXPECT_TRUE(frame());
 }
 
+TEST_F(StreamProtocolTest, aFrameHasNoMoreThanThereIsRoomForOrOneBlock) {
+  open(kMaxCredit, R"(,"fields":["velocity","density"])");
+  EXPECT_EQ(opened().stream, 1u);
+  EXPECT_FALSE(protocol_->next(0));
+  EXPECT_TRUE(protocol_->hasFrame());
+  Bytes all;
+  std::size_t blocks = 0;
+  while (protocol_->hasFrame()) {
+    const auto out = protocol_->next(1);
+    ASSERT_TRUE(out && std::holds_alternative<OutgoingFrame>(*out));
+    const auto& frame = std::get<OutgoingFrame>(*out);
+    if (frame.header.firstPart != FrameHeader::kHead) {
+      EXPECT_TRUE(frame.header.parts == 1 || frame.payload.size() <= 1) << "blocks may be empty";
+      ++blocks;
+    }
+    all.insert(all.end(), frame.payload.begin(), frame.payload.end());
+  }
+  EXPECT_GT(blocks, mesh().log.index().chunks.size());
+  EXPECT_TRUE(std::ranges::equal(all, mesh().log.bytes()));
+  EXPECT_EQ(text(), R"({"stream":1,"type":"done"})");
+}
+
+TEST_F(StreamProtocolTest, withoutRoomAnswersStillCome) {
+  open(kMaxCredit);
+  EXPECT_EQ(opened().stream, 1u);
+  say(R"({"type":"view","view":{"point":[0,0,1]}})");
+  EXPECT_EQ(planned().view, 1u);
+  EXPECT_FALSE(protocol_->next(0));
+}
+
 TEST_F(StreamProtocolTest, doneNeedsNoCredit) {
   open(1, R"(,"have":{"chunks":5})");
   EXPECT_EQ(opened().stream, 1u);
