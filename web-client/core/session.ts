@@ -377,11 +377,12 @@ export class Session implements TransportHandlers {
   // ---- to the page
 
   private tellOfBase(): void {
+    if (this.baseTold) return;
     const {codec} = this.assembler;
-    if (this.baseTold || codec.chunksApplied === 0) return;
+    const mesh = meshNow(this.assembler);
+    if (!mesh) return; // also between two logs, while the codec has the last one's
     if (this.wanted.fields.some((field) => codec.fieldChunksApplied(field) === 0)) return;
     this.baseTold = true;
-    const mesh = meshNow(this.assembler)!;
     const field = mostContrast(mesh, this.wanted.fields);
     this.send({type: 'base', figures: baseFigures(mesh), field});
   }

@@ -436,6 +436,18 @@ describe('a target', () => {
     expect(opens().map(({credit}) => credit)).toEqual([1, 1 << 20]);
   });
 
+  test('aPauseBeforeTheHeadOfAnotherLogIsHereHasNoMeshToShow', () => {
+    const socket = start();
+    opened(socket, 1);
+    socket.deliver(headFrame(1, kLog));
+    sendAll(socket, 1, 0);
+    start({mesh: 'n'});
+    session.pause();
+    session.resume();
+    expect(errors()).toEqual([]);
+    expect(states().at(-1)).not.toBe('failed');
+  });
+
   test('aPauseInWhichAnotherFieldWasAskedForEndsWithAnOpen', () => {
     const socket = start();
     opened(socket, 1, 'stream');
