@@ -49,15 +49,9 @@ class StreamProtocol {
   /// That of the stream under way; nullptr: none is.
   [[nodiscard]] MeshPointer mesh() const { return stream_ ? stream_->mesh : nullptr; }
   /// There is a frame to send, and credit for it.
-  [[nodiscard]] bool hasFrame() const {
-    return !closing_ && stream_ && stream_->nextRun < stream_->plan.size() && !stream_->paused &&
-           stream_->credit > 0;
-  }
+  [[nodiscard]] bool hasFrame() const { return !closing_ && hasRun() && stream_->credit > 0; }
   /// There is more to send, and credit alone is wanting.
-  [[nodiscard]] bool lacksCredit() const {
-    return stream_ && stream_->nextRun < stream_->plan.size() && !stream_->paused &&
-           stream_->credit <= 0;
-  }
+  [[nodiscard]] bool lacksCredit() const { return hasRun() && stream_->credit <= 0; }
 
   /// The mesh whose packets' intervals the view asks for and nobody knows yet; nullptr: none. Until
   /// they are there an isovalue counts for nothing.
@@ -98,6 +92,10 @@ class StreamProtocol {
   static std::uint64_t plan(Stream& stream);
   /// Plans anew where the request has changed, and says so.
   void catchUp();
+  /// There is more to send, credit or not.
+  [[nodiscard]] bool hasRun() const {
+    return stream_ && stream_->nextRun < stream_->plan.size() && !stream_->paused;
+  }
   OutgoingFrame nextFrame(Stream& stream, std::size_t room) const;
   /// Ends the stream, or leaves it as it is.
   void refuse(const char* code, std::string detail);

@@ -61,8 +61,7 @@ void addFusionOptions(boost::program_options::options_description& options) {
       "fewest bits a cell), or auto (least error a byte)")(
       "envelope-tolerance", po::value<double>()->default_value(0, "0"),
       "how far the solid may leave the original one, as a fraction of the diagonal; 0: each level "
-      "is "
-      "part of the finer one. 0.005 keeps the volume of thin parts")(
+      "is part of the finer one. 0.005 keeps the volume of thin parts")(
       "preserve-regions", po::value<std::string>(),
       "a cell field of one component whose values are regions such as tissues or materials: they "
       "and their interfaces keep their topology")(

@@ -1,5 +1,5 @@
-// The boundary as it was before the first fusion, and whether a triangle leaves the solid behind it
-// by more than a tolerance (ALGORITHM.md, "The envelope").
+// The boundary as it was before the first fusion, and whether a tetrahedron leaves the solid behind
+// it by more than a tolerance (ALGORITHM.md, "The envelope").
 #pragma once
 
 #include <array>

@@ -6,13 +6,12 @@ evenly many clients share a line. The lines are tests/support/line's, so no nete
 
 `--before` is an older qtet-server, measured in turns with the new one. Needs what Line needs.
 """
-import argparse, contextlib, json, pathlib, re, select, shutil, statistics, subprocess, sys
-import tempfile, time
-import urllib.request
+import argparse, pathlib, select, shutil, statistics, sys, tempfile, time
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "support" / "line"))
 import line as lines
+from server import running
 from stream import BINARY, Stream
 
 RTT = 0.05  # seconds
@@ -21,33 +20,17 @@ QUEUES = (100, 1000)  # packets
 SHARED, CLIENTS = "20", 20
 SETTLE = 3.0  # seconds until a stream is measured
 VIEW_EVERY = 1.5
-
-
-@contextlib.contextmanager
-def running(program, folder):
-    """Yields the port and the mesh: its name and its fields."""
-    server = subprocess.Popen(
-        [program, folder, "--host", "0.0.0.0", "--port", "0", "--threads", "1"]
-        + ["--max-connections-per-address", "0", "--max-requests-per-second", "0"],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
-        text=True,
-    )
-    try:
-        port = int(re.search(r":(\d+)/", server.stdout.readline())[1])
-        with urllib.request.urlopen(f"http://127.0.0.1:{port}/v1/meshes") as answer:
-            mesh = json.load(answer)["meshes"][0]
-        yield port, (mesh["id"], mesh["fields"])
-    finally:
-        server.terminate()
-        server.wait()
+# the server measured
+OPTIONS = "--threads 1 --max-connections-per-address 0 --max-requests-per-second 0".split()
 
 
 def view_changes(program, folder, rate, queue, congestion, seconds):
     """For each view that is changed: ms to the first byte of the first frame of the new order and to
     its last, KB that came meanwhile before it. And bytes a second of the whole stream."""
     out = []
-    with lines.Line(rate, RTT / 2, queue, congestion) as line, running(program, folder) as (
+    with lines.Line(rate, RTT / 2, queue, congestion) as line, running(
+        program, folder, *OPTIONS
+    ) as (
         port,
         mesh,
     ):
@@ -72,7 +55,9 @@ def view_changes(program, folder, rate, queue, congestion, seconds):
 
 def share(program, folder, rate, queue, congestion, seconds):
     """Jain's index of the clients' bytes, and bytes a second of all."""
-    with lines.Line(rate, RTT / 2, queue, congestion) as line, running(program, folder) as (
+    with lines.Line(rate, RTT / 2, queue, congestion) as line, running(
+        program, folder, *OPTIONS
+    ) as (
         port,
         mesh,
     ):

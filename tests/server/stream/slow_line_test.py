@@ -5,10 +5,11 @@ machine is.
 
   slow_line_test.py FOLDER_OF_PROGRAMS SCRATCH     exit code 77: namespaces are not allowed here
 """
-import json, pathlib, re, shutil, statistics, subprocess, sys, urllib.request
+import pathlib, shutil, statistics, subprocess, sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support" / "line"))
 import line as lines
+from server import running
 from stream import BINARY, Stream
 
 RATE, DELAY, QUEUE = 250_000, 0.025, 1000  # 2 Mbit/s, a round trip of 50 ms, 6 s of packets
@@ -26,36 +27,24 @@ for command in (
 ):
     subprocess.run([programs / "qtet", *command], check=True, capture_output=True)
 
-with lines.Line(RATE, DELAY, QUEUE, "reno") as line:
-    server = subprocess.Popen(
-        [programs / "qtet-server", logs, "--host", "0.0.0.0", "--port", "0"],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
-        text=True,
-    )
-    try:
-        port = int(re.search(r":(\d+)/", server.stdout.readline())[1])
-        with urllib.request.urlopen(f"http://127.0.0.1:{port}/v1/meshes") as answer:
-            mesh = json.load(answer)["meshes"][0]
-        with line.client():
-            stream = Stream(lines.SERVER, port)
-        ahead = []
-        for _ in range(VIEWS):
-            begun = stream.received
-            stream.open(mesh["id"], mesh["fields"])
-            stream.until(lambda f: f.kind == BINARY and f.first > begun + RATE / 2, 120)
-            had = stream.received
-            stream.say(type="view", view={"point": [1, 0, 0]})
-            stream.until(lambda f: f.text and f.text.get("view") == 1, 60)
-            # `done` where the whole log was on its way already
-            first = stream.until(
-                lambda f: f.kind == BINARY or f.text and f.text["type"] == "done", 60
-            )
-            ahead.append(first.first - had)
-        stream.close()
-    finally:
-        server.terminate()
-        server.wait()
+with lines.Line(RATE, DELAY, QUEUE, "reno") as line, running(programs / "qtet-server", logs) as (
+    port,
+    mesh,
+):
+    with line.client():
+        stream = Stream(lines.SERVER, port)
+    ahead = []
+    for _ in range(VIEWS):
+        begun = stream.received
+        stream.open(*mesh)
+        stream.until(lambda f: f.kind == BINARY and f.first > begun + RATE / 2, 120)
+        had = stream.received
+        stream.say(type="view", view={"point": [1, 0, 0]})
+        stream.until(lambda f: f.text and f.text.get("view") == 1, 60)
+        # `done` where the whole log was on its way already
+        first = stream.until(lambda f: f.kind == BINARY or f.text and f.text["type"] == "done", 60)
+        ahead.append(first.first - had)
+    stream.close()
 
 bound = RATE * (2 * DELAY + AHEAD)
 median = statistics.median(ahead)

@@ -85,6 +85,14 @@ Vector3 normalOf(const Corners& t) {
   return 1 / std::sqrt(dot(n, n)) * n;
 }
 
+// Shrunk to a share of its size, about its middle.
+Corners shrunk(const Corners& t, double share) {
+  const Vector3 middle = 1 / 3.0 * (t[0] + t[1] + t[2]);
+  Corners out;
+  for (std::size_t i = 0; i < 3; ++i) out[i] = middle + share * (t[i] - middle);
+  return out;
+}
+
 SurfaceOver over(const TriangleTree& tree, const Corners& t, double most) {
   return surfaceOver(tree, t, normalOf(t), most);
 }
@@ -131,10 +139,9 @@ TEST(SurfaceOver, ofAFlatSurfaceItIsTheFarthestCornersDistance) {
   const Surface surface = sphere(0, 0);
   const TriangleTree tree = surface.tree();
   const Corners face = tree.corners(0);
-  const Vector3 n = normalOf(face), middle = 1 / 3.0 * (face[0] + face[1] + face[2]);
-  Corners t;
-  for (std::size_t i = 0; i < 3; ++i)
-    t[i] = middle + 0.3 * (face[i] - middle) + (100.0 * static_cast<double>(i)) * n;
+  const Vector3 n = normalOf(face);
+  Corners t = shrunk(face, 0.3);
+  for (std::size_t i = 0; i < 3; ++i) t[i] = t[i] + (100.0 * static_cast<double>(i)) * n;
   const SurfaceOver found = over(tree, t, 1000);
   EXPECT_NEAR(found.height, 200, 1);
   EXPECT_EQ(found.triangle, 0u);
@@ -146,8 +153,7 @@ TEST(SurfaceOver, whereTheSurfaceEndsNothingIsProven) {
   const TriangleTree tree = surface.tree();
   const Corners face = tree.corners(0);
   const Vector3 n = normalOf(face), middle = 1 / 3.0 * (face[0] + face[1] + face[2]);
-  Corners t;
-  for (std::size_t i = 0; i < 3; ++i) t[i] = middle + 0.4 * (face[i] - middle);
+  Corners t = shrunk(face, 0.4);
   EXPECT_LT(over(tree, t, 10).height, 1);
   for (Vector3& corner : t) corner = corner + 2000 * n;
   EXPECT_TRUE(std::isinf(over(tree, t, 1000).height)) << "higher than asked for";
