@@ -14,7 +14,7 @@ using Normal = std::array<std::int64_t, 3>;
 
 int signOf(std::int64_t x) { return (x > 0) - (x < 0); }
 
-// Differences are below 2^30, so that each component is below 2^61.
+// Differences are below 2^kMaxPositionBits = 2^28, so each component is below 2^57.
 Normal normalOf(const LatticePoint& a, const LatticePoint& b, const LatticePoint& c) {
   const detail::Difference u = detail::difference(a, b), v = detail::difference(a, c);
   return {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};

@@ -13,20 +13,13 @@ import {join} from 'node:path';
 import {setTimeout as sleep} from 'node:timers/promises';
 import {fileURLToPath} from 'node:url';
 import {parseArgs} from 'node:util';
+import {freePort} from '../support/free_port.mjs';
 import {kToken, prepare, startServer} from './server.mjs';
 
 const {values: options} = parseArgs({options: {bin: {type: 'string'}, out: {type: 'string'}}});
 const kNginx = '/usr/sbin/nginx';
 for (const program of [kNginx, 'openssl'])
   if (spawnSync(program, [program === kNginx ? '-v' : 'version']).error) process.exit(77);
-
-const freePort = () =>
-  new Promise((done) => {
-    const server = net.createServer().listen(0, '127.0.0.1', () => {
-      const {port} = server.address();
-      server.close(() => done(port));
-    });
-  });
 
 /**
  * The example with this machine's ports and a certificate of its own; everything else as it stands.
@@ -147,7 +140,7 @@ async function check(port) {
 
 prepare(options);
 const server = await startServer(options);
-const port = await freePort();
+const port = freePort();
 const folder = join(options.out, 'nginx');
 mkdirSync(folder, {recursive: true});
 configure(folder, server.port, port);

@@ -7,11 +7,11 @@ import assert from 'node:assert/strict';
 import {execFileSync, spawn, spawnSync} from 'node:child_process';
 import {mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
 import http from 'node:http';
-import net from 'node:net';
 import {join} from 'node:path';
 import {setTimeout as sleep} from 'node:timers/promises';
 import {parseArgs} from 'node:util';
 import {gunzipSync} from 'node:zlib';
+import {freePort} from '../support/free_port.mjs';
 
 const {values: options} = parseArgs({options: {bin: {type: 'string'}, out: {type: 'string'}}});
 const kNginx = process.env.QTET_NGINX ?? '/usr/sbin/nginx';
@@ -30,17 +30,8 @@ function serverBlock(site, port) {
   return block.replace('listen 80;', `listen 127.0.0.1:${port};`).replace('/var/www/meshes', site);
 }
 
-function freePort() {
-  return new Promise((done) => {
-    const probe = net.createServer().listen(0, '127.0.0.1', () => {
-      const {port} = probe.address();
-      probe.close(() => done(port));
-    });
-  });
-}
-
 async function serve(site, state) {
-  const port = await freePort();
+  const port = freePort();
   mkdirSync(state, {recursive: true});
   const temporary = ['client_body', 'proxy', 'fastcgi', 'uwsgi', 'scgi']
     .map((kind) => `${kind}_temp_path ${state}/${kind};`)

@@ -13,9 +13,9 @@ import {
   symlinkSync,
   writeFileSync,
 } from 'node:fs';
-import {createServer} from 'node:net';
 import {delimiter, join} from 'node:path';
 import {fileURLToPath} from 'node:url';
+import {freePort} from '../support/free_port.mjs';
 
 const kTimeoutMs = 300_000;
 const kRooms = ['codec', 'proto', 'server', 'simplify', 'tests', 'web-client'];
@@ -84,7 +84,7 @@ export class Scratch {
     // Debian's g++-12 brings no cc.
     const compiler = kCompilers.map(onPath).find((path) => path !== undefined);
     if (compiler) symlinkSync(compiler, join(folder, 'build/release/bin/cc'));
-    return new Scratch({root, build, folder, port: await freePort()});
+    return new Scratch({root, build, folder, port: freePort()});
   }
 
   constructor({root, build, folder, port}) {
@@ -153,14 +153,4 @@ function linkAll(from, to, except) {
 function onPath(program) {
   const folders = process.env.PATH.split(delimiter);
   return folders.map((folder) => join(folder, program)).find((path) => existsSync(path));
-}
-
-function freePort() {
-  return new Promise((resolve, reject) => {
-    const probe = createServer().once('error', reject);
-    probe.listen(0, '127.0.0.1', () => {
-      const {port} = probe.address();
-      probe.close(() => resolve(port));
-    });
-  });
 }

@@ -16,23 +16,35 @@ unset "${!QTET_SERVER_@}"
 pid=
 trap '[[ -z $pid ]] || kill "$pid" 2>/dev/null || true' EXIT
 fail() { echo "docker_health: $1" >&2; exit 1; }
-# A port that nobody had a moment ago; another program may still take it.
-freePort() {
-  local port
-  while port=$((20000 + RANDOM)); (exec 3<>"/dev/tcp/127.0.0.1/$port") 2>/dev/null; do :; done
-  echo "$port"
-}
+freePort() { "$here/../../support/free_port.sh"; }
 
-# NAME WORDS...: a server that is started so is healthy once it listens, and not when it is gone.
-healthy() {
+# NAME WORDS...: starts the server that the words say. Returns 1 where its port is taken.
+start() {
   local name=$1
   shift
   "$@" >"$out/$name.txt" 2>&1 &
   pid=$!
   until grep -qs 'listening on' "$out/$name.txt"; do
-    kill -0 "$pid" 2>/dev/null || fail "$name: $(<"$out/$name.txt")"
+    kill -0 "$pid" 2>/dev/null || {
+      grep -q 'in use' "$out/$name.txt" || fail "$name: $(<"$out/$name.txt")"
+      return 1
+    }
     sleep 0.05
   done
+}
+
+# NAME WORDS...: a server that is started so is healthy once it listens, and not when it is gone.
+# PORT and ADMIN in the words, the configuration and the environment stand for free ports.
+healthy() {
+  local name=$1
+  shift
+  until
+    port=$(freePort) admin=$(freePort)
+    printf 'folder = %s\nport = %s\n' "$out/logs" "$port" >"$out/conf"
+    [[ -z ${QTET_SERVER_PORT:-} ]] || QTET_SERVER_PORT=$port
+    words=("${@//PORT/$port}")
+    start "$name" "${words[@]//ADMIN/$admin}"
+  do :; done
   "$health" "$pid" || fail "$name: not healthy"
   kill -STOP "$pid"
   ! timeout 1 "$health" "$pid" 2>/dev/null || fail "$name: healthy while it hangs"
@@ -42,16 +54,13 @@ healthy() {
   echo "$name: healthy"
 }
 
-port=$(freePort)
-healthy option "$server" "$out/logs" --port "$port"
+healthy option "$server" "$out/logs" --port PORT
 export QTET_SERVER_HOST=0.0.0.0
-healthy host "$server" "$out/logs" --port "$port"
-QTET_SERVER_PORT=$port
-export QTET_SERVER_PORT
+healthy host "$server" "$out/logs" --port PORT
+export QTET_SERVER_PORT=PORT
 healthy environment "$server" "$out/logs"
-healthy both "$server" "$out/logs" --port "$(freePort)"
+healthy both "$server" "$out/logs" --port ADMIN
 unset QTET_SERVER_PORT
-printf 'folder = %s\nport = %s\n' "$out/logs" "$port" >"$out/conf"
 healthy file "$server" --config "$out/conf"
 healthy tls "$server" --config "$out/conf" --tls-certificate "$out/crt" --tls-key "$out/key"
-healthy admin "$server" --config "$out/conf" --admin "127.0.0.1:$(freePort)"
+healthy admin "$server" --config "$out/conf" --admin 127.0.0.1:ADMIN

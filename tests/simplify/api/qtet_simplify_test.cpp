@@ -254,8 +254,10 @@ TEST(QtetSimplify, whatIsLeftOutIsTheDefault) {
 TEST(QtetSimplify, originalIdsAreKeptForTheLastLevelAlone) {
   TetMesh mesh = testing::boxWithFields();
   MeshField ids{"OriginalCellId", 1, "int32", {}, "cell"};
-  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
-    ids.values.push_back(static_cast<double>(t / 6));
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+    const std::size_t cube = t / 6;
+    ids.values.push_back(static_cast<double>(cube));
+  }
   mesh.fields.push_back(ids);
   const Arrays arrays(mesh);
   const Made log = made();

@@ -127,9 +127,9 @@ TEST(BoundaryEnvelope, projectsAsThePlainOneDoes) {
         ASSERT_EQ(ours, plain);
         EXPECT_TRUE(envelope.holds(ours));
       }
-      const LatticePoint start{static_cast<std::int32_t>(p[0] + 0.5),
-                               static_cast<std::int32_t>(p[1] + 0.5),
-                               static_cast<std::int32_t>(p[2] + 0.5)};
+      const LatticePoint start{static_cast<std::int32_t>(std::lround(p[0])),
+                               static_cast<std::int32_t>(std::lround(p[1])),
+                               static_cast<std::int32_t>(std::lround(p[2]))};
       ASSERT_EQ(envelope.holds(start), is && plain == start);
       inside += is && plain == start, projected += is && plain != start, lost += !is;
     }

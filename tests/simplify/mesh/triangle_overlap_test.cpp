@@ -6,6 +6,7 @@
 #include <array>
 #include <random>
 
+#include "proto/limits.h"
 #include "tests/support/exact_geometry.h"
 
 namespace qtet {
@@ -106,7 +107,7 @@ TEST(TriangleOverlap, ofTheSameVerticesOrWithoutAreaIsTrueWhereTheyAreNear) {
 }
 
 TEST(TriangleOverlap, isExactAtTheLatticesEnd) {
-  constexpr std::int32_t kEnd = (1 << 30) - 1;
+  constexpr std::int32_t kEnd = (1 << kMaxPositionBits) - 1;
   const PlacedTriangle flat{{1, 2, 3}, {{{0, 0, kEnd}, {kEnd, 0, 0}, {0, kEnd, 0}}}};
   // the plane x + y + z = kEnd, and a segment that ends one step before it, on it, or beyond
   const auto needle = [](std::int32_t z) {
