@@ -26,6 +26,7 @@
 #include "tests/bench/parts/direct_error.h"
 #include "tests/bench/parts/rate_curves.h"
 #include "tests/support/meshes.h"
+#include "tests/support/paths/test_paths.h"
 
 namespace qtet::bench {
 namespace {
@@ -81,7 +82,7 @@ std::filesystem::path fileOf(const std::string& mesh, const std::filesystem::pat
 OpenedLog logOf(const std::filesystem::path& mesh, const std::string& field,
                 const std::string& options, const std::filesystem::path& folder) {
   const std::filesystem::path log = folder / (mesh.stem().string() + ".qtet");
-  const std::string command = quoted(QTET_TOOL) + " simplify " + quoted(mesh) + " -o " +
+  const std::string command = quoted(testing::kTool) + " simplify " + quoted(mesh) + " -o " +
                               quoted(log) + " --fields " + quoted("point:" + field) + " " +
                               options + " >/dev/null";
   if (std::system(command.c_str()) != 0)

@@ -35,6 +35,7 @@
 #include "simplify/samples/samples.h"
 #include "tests/bench/vtk_decimation.h"
 #include "tests/support/meshes.h"
+#include "tests/support/paths/test_paths.h"
 
 namespace qtet::bench {
 namespace {
@@ -184,7 +185,7 @@ struct Finished {
 
 /// Runs the tool with its standard output thrown away, and waits for it.
 Finished runTool(std::vector<std::string> words) {
-  words.insert(words.begin(), QTET_TOOL);
+  words.insert(words.begin(), testing::kTool);
   std::vector<char*> pointers;
   for (std::string& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
@@ -193,7 +194,7 @@ Finished runTool(std::vector<std::string> words) {
   if (child == 0) {
     const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
     if (nowhere >= 0) dup2(nowhere, STDOUT_FILENO);
-    execv(QTET_TOOL, pointers.data());
+    execv(testing::kTool, pointers.data());
     _exit(127);
   }
   int status = 0;

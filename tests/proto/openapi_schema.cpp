@@ -4,6 +4,8 @@
 #include <fstream>
 #include <regex>
 
+#include "tests/support/paths/test_paths.h"
+
 namespace qtet::test {
 namespace {
 
@@ -94,7 +96,7 @@ class Check {
 }  // namespace
 
 OpenapiSchemas::OpenapiSchemas() {
-  std::ifstream file(QTET_SOURCE_DIR "/proto/openapi.json");
+  std::ifstream file(testing::kSourceFolder + std::string("/proto/openapi.json"));
   schemas_ = Json::parse(file).at("components").at("schemas");
 }
 

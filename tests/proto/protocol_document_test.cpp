@@ -6,6 +6,7 @@
 #include <string>
 
 #include "tests/proto/document_examples.h"
+#include "tests/support/paths/test_paths.h"
 
 namespace qtet {
 namespace {
@@ -21,7 +22,7 @@ using testing::Not;
 std::string protocolDocument() {
   std::string both;
   for (const char* page : {"/proto/PROTOCOL.md", "/proto/STREAM.md", "/proto/SESSION.md"}) {
-    std::ifstream file(std::string(QTET_SOURCE_DIR) + page);
+    std::ifstream file(std::string(testing::kSourceFolder) + page);
     both.append(std::istreambuf_iterator<char>(file), {});
   }
   return both;

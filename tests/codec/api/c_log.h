@@ -14,6 +14,7 @@
 #include "codec/api/qtet.h"
 #include "codec/log/log_file.h"
 #include "tests/support/meshes.h"
+#include "tests/support/paths/test_paths.h"
 
 namespace qtet::testing {
 
@@ -29,7 +30,7 @@ inline const std::filesystem::path& smallChunks() {
   return path;
 }
 inline std::filesystem::path golden(const char* name) {
-  return std::filesystem::path(QTET_GOLDEN_DIR) / name;
+  return std::filesystem::path(testing::kGoldenFolder) / name;
 }
 
 inline Handle opened(const std::filesystem::path& path) {

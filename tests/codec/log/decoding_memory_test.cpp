@@ -9,6 +9,7 @@
 #include "simplify/fuse/qtetfusion.h"
 #include "tests/support/allocation_meter.h"
 #include "tests/support/meshes.h"
+#include "tests/support/paths/test_paths.h"
 
 namespace qtet {
 namespace {
@@ -47,7 +48,7 @@ TEST(DecodingBytes, areAtLeastWhatDecodingTakesAndNotFarFromIt) {
 
 TEST(DecodingBytes, areEnoughForEveryGoldenLog) {
   for (const auto& entry :
-       std::filesystem::directory_iterator(std::filesystem::path(QTET_GOLDEN_DIR) / "valid"))
+       std::filesystem::directory_iterator(std::filesystem::path(testing::kGoldenFolder) / "valid"))
     if (entry.path().extension() == ".qtet")
       compare(LogFile::open(entry.path()).value(), entry.path().filename(), 1e9);
 }

@@ -8,12 +8,13 @@
 
 #include "codec/log/log_file.h"
 #include "codec/log/value_block.h"
+#include "tests/support/paths/test_paths.h"
 
 namespace qtet {
 namespace {
 
 std::string section() {
-  std::ifstream file(QTET_SOURCE_DIR "/codec/EXAMPLE.md");
+  std::ifstream file(testing::kSourceFolder + std::string("/codec/EXAMPLE.md"));
   std::stringstream text;
   text << file.rdbuf();
   const std::string page = text.str();

@@ -11,6 +11,7 @@
 #include "codec/log/log_manifest.h"
 #include "proto/checksum.h"
 #include "tests/support/closing_contents.h"
+#include "tests/support/paths/test_paths.h"
 
 namespace qtet {
 namespace {
@@ -18,7 +19,7 @@ namespace {
 std::vector<std::filesystem::path> filesIn(const char* folder) {
   std::vector<std::filesystem::path> files;
   for (const auto& entry :
-       std::filesystem::directory_iterator(std::filesystem::path(QTET_GOLDEN_DIR) / folder))
+       std::filesystem::directory_iterator(std::filesystem::path(testing::kGoldenFolder) / folder))
     files.push_back(entry.path());
   std::ranges::sort(files);
   return files;
@@ -67,7 +68,7 @@ std::string meshDigest(const LatticeMesh& mesh) {
 
 /// "DIGEST  NAME" a line, as sha256sum writes.
 std::map<std::string, std::string> digestsIn(const char* file) {
-  std::ifstream in(std::filesystem::path(QTET_GOLDEN_DIR) / file);
+  std::ifstream in(std::filesystem::path(testing::kGoldenFolder) / file);
   std::map<std::string, std::string> out;
   for (std::string digest, name; in >> digest >> name;) out[name] = digest;
   return out;

@@ -10,6 +10,7 @@
 #include "codec/log/log_file.h"
 #include "codec/log/value_block.h"
 #include "codec/record/record_coder.h"
+#include "tests/support/paths/test_paths.h"
 
 namespace qtet {
 namespace {
@@ -65,7 +66,7 @@ std::vector<std::string> linesOf(const std::filesystem::path& path) {
 }
 
 TEST(DecisionTrace, isThatOfTheGoldenFile) {
-  const std::filesystem::path folder = QTET_GOLDEN_DIR;
+  const std::filesystem::path folder = testing::kGoldenFolder;
   const LogFile log = LogFile::open(folder / "valid" / "dice-traced.qtet").value();
   Refiner refiner(log.index());
   ASSERT_TRUE(applyChunk(log, refiner, 0, {}));

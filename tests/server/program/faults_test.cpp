@@ -18,6 +18,7 @@
 #include "tests/server/stream/swarm.h"
 #include "tests/server/wire/tls_client.h"
 #include "tests/support/faults/fault_plan.h"
+#include "tests/support/paths/test_paths.h"
 #include "tests/support/sample_log.h"
 #include "tests/support/written_log.h"
 
@@ -67,7 +68,7 @@ class FaultsTest : public ::testing::Test {
       words.insert(words.end(),
                    {"--tls-certificate", certificate(), "--tls-key", folder_.path() / "a.key"});
     program_ = std::make_unique<Program>(
-        words, std::vector<std::string>{std::string("LD_PRELOAD=") + QTET_FAULTS_LIBRARY,
+        words, std::vector<std::string>{std::string("LD_PRELOAD=") + testing::kFaultsLibrary,
                                         "QTET_FAULTS=" + plan});
     port_ = program_->port();
     digest_ = sha256Hex({reinterpret_cast<const std::uint8_t*>(log_.data()), log_.size()});

@@ -15,6 +15,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "tests/support/paths/test_paths.h"
+
 namespace qtet::test {
 namespace {
 
@@ -45,7 +47,7 @@ Program::Program(std::vector<std::string> arguments, const std::vector<std::stri
   err_ = ::memfd_create("errors", MFD_CLOEXEC);
   if (::pipe2(out.data(), O_CLOEXEC) != 0 || err_ < 0) throw std::runtime_error("no pipe");
   const char* other = std::getenv("QTET_TESTED_SERVER");
-  arguments.insert(arguments.begin(), other != nullptr ? other : QTET_SERVER);
+  arguments.insert(arguments.begin(), other != nullptr ? other : testing::kServerProgram);
   std::vector<char*> argv, more;
   for (std::string& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);

@@ -6,11 +6,13 @@
 #include <array>
 #include <cstdio>
 
+#include "tests/support/paths/test_paths.h"
+
 namespace qtet::test {
 
 PushOutcome runPush(const std::filesystem::path& file, const std::string& words,
                     const std::string& token, const std::function<void(const std::string&)>& hear) {
-  const std::string command = "QTET_TOKEN='" + token + "' " + QTET_TOOL + " push '" +
+  const std::string command = "QTET_TOKEN='" + token + "' " + testing::kTool + " push '" +
                               file.string() + "' " + words + " 2>&1";
   PushOutcome out;
   FILE* pipe = ::popen(command.c_str(), "r");

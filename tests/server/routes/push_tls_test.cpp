@@ -16,6 +16,7 @@
 #include "tests/server/routes/push_run.h"
 #include "tests/server/wire/tls_client.h"
 #include "tests/support/meshes.h"
+#include "tests/support/paths/test_paths.h"
 #include "tests/support/written_log.h"
 
 namespace qtet {
@@ -125,13 +126,13 @@ TEST_F(PushTlsTest, aPushToAServerThatHangsEndsWithCtrlC) {
     const MuteServer server;
     const std::string url = scheme + "://localhost:" + std::to_string(server.port()) + "/";
     const std::string log = (mine_.path() / "wing.qtet").string();
-    std::string words[] = {QTET_TOOL, "push", log, url, "--quiet"};
+    std::string words[] = {testing::kTool, "push", log, url, "--quiet"};
     char* arguments[] = {words[0].data(), words[1].data(), words[2].data(),
                          words[3].data(), words[4].data(), nullptr};
     std::string token = std::string("QTET_TOKEN=") + test::kPushToken;
     char* environment[] = {token.data(), nullptr};
     pid_t child = -1;
-    ASSERT_EQ(::posix_spawn(&child, QTET_TOOL, nullptr, nullptr, arguments, environment), 0);
+    ASSERT_EQ(::posix_spawn(&child, testing::kTool, nullptr, nullptr, arguments, environment), 0);
     const int client = server.awaitClient();
     EXPECT_GE(client, 0);
     ::kill(child, SIGINT);

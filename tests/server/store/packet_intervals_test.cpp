@@ -13,6 +13,7 @@
 #include "tests/server/program/loopback.h"
 #include "tests/server/program/served_folder.h"
 #include "tests/support/meshes.h"
+#include "tests/support/paths/test_paths.h"
 #include "tests/support/written_log.h"
 
 namespace qtet {
@@ -169,7 +170,8 @@ TEST_F(PacketIntervalsTest, whoIsToldToStopStops) {
 
 TEST(PacketIntervals, ofCellsThereAreNone) {
   const LogFile log =
-      LogFile::open(std::filesystem::path(QTET_GOLDEN_DIR) / "valid/cell-fields.qtet").value();
+      LogFile::open(std::filesystem::path(testing::kGoldenFolder) / "valid/cell-fields.qtet")
+          .value();
   const Manifest manifest = manifestOf(log.index()).value();
   const PacketIntervals table = packetIntervals(log, manifest).value();
   for (std::size_t f = 0; f < manifest.fields.size(); ++f)

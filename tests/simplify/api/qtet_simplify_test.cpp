@@ -23,6 +23,7 @@
 #include "simplify/read/read_mesh.h"
 #include "tests/simplify/pipeline/field_meshes.h"
 #include "tests/support/meshes.h"
+#include "tests/support/paths/test_paths.h"
 
 namespace qtet {
 namespace {
@@ -105,8 +106,8 @@ struct ToolsLog {
 ToolsLog toolsLog(const std::string& name, const TetMesh& mesh, const std::string& words) {
   const fs::path folder = testing::freshFolder("c-simplify-" + name);
   EXPECT_TRUE(writeFileAtomically(folder / "mesh.vtu", vtuBytes(mesh)));
-  const std::string command =
-      "cd '" + folder.string() + "' && '" QTET_TOOL "' simplify mesh.vtu -o log.qtet -q " + words;
+  const std::string command = "cd '" + folder.string() + "' && '" + testing::kTool +
+                              "' simplify mesh.vtu -o log.qtet -q " + words;
   EXPECT_EQ(std::system(command.c_str()), 0) << command;
   Result<ReadMesh> read = readMesh(folder / "mesh.vtu");
   EXPECT_TRUE(read);

@@ -11,6 +11,7 @@
 
 #include "simplify/read/read_mesh.h"
 #include "tests/support/meshes.h"
+#include "tests/support/paths/test_paths.h"
 
 namespace qtet {
 namespace {
@@ -65,8 +66,8 @@ class OriginalIds : public ::testing::Test {
   OriginalIds() { std::ofstream(folder_ / "voxels.vtk") << voxelBall(10); }
 
   int run(const std::string& words) {
-    const std::string command =
-        "cd '" + folder_.string() + "' && '" QTET_TOOL "' " + words + " >out.txt 2>err.txt";
+    const std::string command = "cd '" + folder_.string() + "' && '" + testing::kTool + "' " +
+                                words + " >out.txt 2>err.txt";
     const int status = std::system(command.c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }

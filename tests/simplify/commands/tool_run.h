@@ -15,6 +15,7 @@
 #include "codec/files/atomic_file.h"
 #include "simplify/log/write_mesh.h"
 #include "tests/support/meshes.h"
+#include "tests/support/paths/test_paths.h"
 
 namespace qtet {
 
@@ -35,8 +36,8 @@ class Tool : public ::testing::Test {
  protected:
   /// Runs `qtet WORDS` in the test's folder.
   Ran run(const std::string& words) {
-    const std::string command =
-        "cd '" + folder_.string() + "' && '" QTET_TOOL "' " + words + " >out.txt 2>err.txt";
+    const std::string command = "cd '" + folder_.string() + "' && '" + testing::kTool + "' " +
+                                words + " >out.txt 2>err.txt";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contentOf(folder_ / "out.txt"),
             contentOf(folder_ / "err.txt")};

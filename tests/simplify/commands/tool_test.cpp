@@ -10,6 +10,7 @@
 #include "simplify/commands/printable.h"
 #include "simplify/read/read_mesh.h"
 #include "tests/simplify/mesh/tet_meshes.h"
+#include "tests/support/paths/test_paths.h"
 
 namespace qtet {
 namespace {
@@ -97,9 +98,8 @@ TEST_F(Tool, infoShowsTwentyLevelsOrAll) {
     for (const char* words : {"    0  ", "     3,072 ", "\nScalar"})
       EXPECT_NE(ran.out.find(words), std::string::npos) << ran.out;
   EXPECT_EQ(few.out.find('\033'), std::string::npos) << "colours where there is no terminal";
-  const std::string onTerminal = "cd '" + folder_.string() +
-                                 "' && TERM=xterm %s script -qec \"'" QTET_TOOL
-                                 "' info box.qtet\" tty.txt >out.txt </dev/null";
+  const std::string onTerminal = "cd '" + folder_.string() + "' && TERM=xterm %s script -qec \"'" +
+                                 testing::kTool + "' info box.qtet\" tty.txt >out.txt </dev/null";
   for (const auto& [word, coloured] :
        {std::pair{std::string("NO_COLOR="), true}, {std::string("NO_COLOR=1"), false}}) {
     if (std::system("command -v script >/dev/null") != 0)
@@ -659,7 +659,7 @@ TEST_F(Tool, columnsStandUnderEachOtherWhateverALetterTakesInBytes) {
 }
 
 TEST_F(Tool, ofASeriesFieldsAreChosenByTheNameOfEveryStep) {
-  ASSERT_EQ(run("simplify '" QTET_SOURCE_DIR
+  ASSERT_EQ(run(std::string("simplify '") + testing::kSourceFolder +
                 "/tests/simplify/read/meshes/run.pvd' -o run.qtet --time all --fields T")
                 .code,
             0);

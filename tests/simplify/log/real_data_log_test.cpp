@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tests/support/meshes.h"
+#include "tests/support/paths/test_paths.h"
 
 namespace qtet {
 namespace {
@@ -23,7 +24,7 @@ TEST(RealDataLog, everyMeshIsVerifiedAgainstItself) {
   const auto out = testing::freshFolder("real-data");
   for (const auto& mesh : meshes) {
     const std::string log = (out / "log.qtet").string();
-    const std::string tool = std::string("\"") + QTET_TOOL + "\" ";
+    const std::string tool = std::string("\"") + testing::kTool + "\" ";
     ASSERT_EQ(std::system((tool + "simplify \"" + mesh.string() + "\" -o \"" + log +
                            "\" 2>/dev/null >/dev/null")
                               .c_str()),

@@ -12,6 +12,7 @@
 #include "simplify/read/read_mesh.h"
 #include "tests/simplify/mesh/tet_meshes.h"
 #include "tests/simplify/pipeline/field_meshes.h"
+#include "tests/support/paths/test_paths.h"
 
 namespace qtet {
 namespace {
@@ -74,8 +75,8 @@ TEST(Pipeline, logsAreTheToolsByteForByte) {
                   o.measure->bounds = {0.02, {{"Scalar", 0.05}}};
                 }},
        }) {
-    const std::string command = "cd '" + folder.string() +
-                                "' && '" QTET_TOOL "' simplify mesh.vtu -o log.qtet -q " + c.words;
+    const std::string command = "cd '" + folder.string() + "' && '" + testing::kTool +
+                                "' simplify mesh.vtu -o log.qtet -q " + c.words;
     ASSERT_EQ(std::system(command.c_str()), 0) << c.words;
     Result<ReadMesh> read = readMesh(folder / "mesh.vtu");
     ASSERT_TRUE(read);

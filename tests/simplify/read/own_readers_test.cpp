@@ -16,6 +16,7 @@
 #include "simplify/split/higher_cells.h"
 #include "tests/simplify/mesh/tet_meshes.h"
 #include "tests/simplify/split/cell_grids.h"
+#include "tests/support/paths/test_paths.h"
 
 namespace qtet {
 namespace {
@@ -339,8 +340,9 @@ TEST(ReadGmsh, textAndBytesOfBothVersionsGiveOneMesh) {
 TEST(ReadGmsh, gmshsOwnSecondOrderNodesLieWhereVtkHasThem) {
   for (const char* name :
        {"gmsh-hexahedron27", "gmsh-hexahedron20", "gmsh-prism18", "gmsh-prism15"}) {
-    const Result<CellMesh> read = cellsIn(fs::path(QTET_SOURCE_DIR) / "tests/simplify/read/meshes" /
-                                          (std::string(name) + ".msh"));
+    const Result<CellMesh> read =
+        cellsIn(fs::path(testing::kSourceFolder) / "tests/simplify/read/meshes" /
+                (std::string(name) + ".msh"));
     ASSERT_TRUE(read) << read.error().text();
     for (std::size_t i = 0; i < read->cells(); ++i) {
       const auto c = read->cell(i);
@@ -364,8 +366,9 @@ TEST(ReadGmsh, gmshsOwnSecondOrderNodesLieWhereVtkHasThem) {
               << name << " face " << f;
       }
     }
-    const Result<ReadMesh> mesh = readMesh(
-        fs::path(QTET_SOURCE_DIR) / "tests/simplify/read/meshes" / (std::string(name) + ".msh"));
+    const Result<ReadMesh> mesh =
+        readMesh(fs::path(testing::kSourceFolder) / "tests/simplify/read/meshes" /
+                 (std::string(name) + ".msh"));
     ASSERT_TRUE(mesh);
     EXPECT_NEAR(filledBy(mesh->mesh).volume, 1, 1e-9);
     EXPECT_EQ(filledBy(mesh->mesh).openEdges, 0u);
@@ -399,7 +402,7 @@ Position placedIn(const CellMesh& mesh, std::size_t cell, int n, const NodePlace
 // hexahedron, which Gmsh gave its nodes (SetOrder).
 TEST(ReadGmsh, gmshsOwnNodesOfHigherDegreesLieWhereTheyBelong) {
   for (const int degree : {3, 4}) {
-    const fs::path path = fs::path(QTET_SOURCE_DIR) / "tests/simplify/read/meshes" /
+    const fs::path path = fs::path(testing::kSourceFolder) / "tests/simplify/read/meshes" /
                           ("gmsh-mixed" + std::to_string(degree) + ".msh");
     const Result<CellMesh> read = cellsIn(path);
     ASSERT_TRUE(read) << read.error().text();

@@ -12,6 +12,7 @@
 #include "simplify/read/read_mesh.h"
 #include "tests/simplify/mesh/tet_meshes.h"
 #include "tests/simplify/split/cell_grids.h"
+#include "tests/support/paths/test_paths.h"
 
 namespace qtet {
 namespace {
@@ -21,7 +22,7 @@ using testing::fileWith;
 using testing::filledBy;
 
 fs::path given(const std::string& name) {
-  return fs::path(QTET_SOURCE_DIR) / "tests/simplify/read/meshes" / name;
+  return fs::path(testing::kSourceFolder) / "tests/simplify/read/meshes" / name;
 }
 
 const MeshField* field(const ReadMesh& read, const std::string& name) {
