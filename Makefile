@@ -19,8 +19,9 @@ SHELL := /bin/bash
 .ONESHELL:
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
-.PHONY: help setup build build-checked demo demo-port demo-log test test-units test-system check soak
-.PHONY: format format-check lint tidy sanitize fuzz fresh bench results sizes rate deb test-deb clean
+.PHONY: help setup build build-checked demo demo-port demo-log test test-units test-system check
+.PHONY: soak format format-check lint tidy sanitize fuzz fresh bench results sizes rate deb test-deb
+.PHONY: clean
 .DEFAULT_GOAL := help
 
 help:

@@ -11,7 +11,8 @@ since=${3:-}
 # Only sources that the build compiles.
 known=$(grep -o '"file": "[^"]*"' "$build/compile_commands.json" | cut -d'"' -f4 | sort -u)
 mapfile -t sources < <(
-  .ci/changed.sh "$since" '*.h' '*.cpp' | sed 's/[.]h$/.cpp/' | sort -u | while IFS= read -r file; do grep -xF "$PWD/$file" <<<"$known" || true; done
+  .ci/changed.sh "$since" '*.h' '*.cpp' | sed 's/[.]h$/.cpp/' | sort -u |
+    while IFS= read -r file; do grep -xF "$PWD/$file" <<<"$known" || true; done
 )
 echo "tidy: ${#sources[@]} sources changed${since:+ since $since}"
 [[ ${#sources[@]} == 0 ]] && exit 0

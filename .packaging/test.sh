@@ -1,19 +1,15 @@
 #!/usr/bin/env bash
-# The Debian packages in a Debian of their own: installed, started, used, removed. Needs root,
-# debootstrap and a Debian mirror: debootstrap's own default, or the one of the environment variable
-# QTET_DEBIAN_MIRROR.
+# The Debian packages in a Debian of their own (.ci/debian_root.sh): installed, started, used,
+# removed. Needs root.
 #   test.sh FOLDER-OF-PACKAGES FOLDER-TO-WORK-IN      77 = skipped
 set -euo pipefail
 packages=$(realpath "$1")
 mkdir -p "$2"
 work=$(realpath "$2")
 source=$(realpath "$(dirname "${BASH_SOURCE[0]}")/..")
-mirror=${QTET_DEBIAN_MIRROR:-}
-port=${QTET_TEST_PORT:-18087}
+port=$("$source/tests/support/free_port.sh")
+adminPort=$("$source/tests/support/free_port.sh")
 
-skip() { echo "skipped: $1"; exit 77; }
-[[ $(id -u) == 0 ]] || skip "a chroot needs root"
-command -v debootstrap >/dev/null || skip "debootstrap is not installed"
 [[ -n $(compgen -G "$packages/*.deb") ]] || {
   echo "there are no packages in $packages; make deb first" >&2
   exit 1
@@ -52,21 +48,7 @@ fi
 
 # ---- a bare Debian 12; the first run downloads it, later ones copy it
 
-if [[ ! -d $work/base ]]; then
-  step "making a Debian 12"
-  rm -rf "$work/base.part"
-  debootstrap --variant=minbase bookworm "$work/base.part" ${mirror:+"$mirror"} \
-    >"$work/debootstrap.log" 2>&1 || {
-    tail -5 "$work/debootstrap.log" >&2
-    mirror=${mirror:-its default mirror; QTET_DEBIAN_MIRROR=URL names another}
-    skip "debootstrap could not fetch Debian from $mirror"
-  }
-  mv "$work/base.part" "$work/base"
-fi
-cleanUp
-rm -rf --one-file-system "$root"
-cp -a "$work/base" "$root"
-cp /etc/resolv.conf "$root/etc/resolv.conf"
+"$source/.ci/debian_root.sh" "$work" || exit $?
 mount -t proc proc "$root/proc"
 mount --bind /dev "$root/dev"
 mkdir "$root/packages"
@@ -100,7 +82,7 @@ chmod 640 "$root/etc/qtet/tokens"
 (exec chroot "$root" env -i PATH=/usr/sbin:/usr/bin LC_ALL=C.UTF-8 \
   setpriv --reuid=qtet --regid=qtet --clear-groups \
   qtet-server --config /etc/qtet/server.conf --tokens /etc/qtet/tokens --port "$port" \
-  --admin 127.0.0.1:$((port + 1)) >"$work/server.log" 2>&1) &
+  --admin "127.0.0.1:$adminPort" >"$work/server.log" 2>&1) &
 server=$!
 for _ in {1..50}; do
   get /v1/meshes >/dev/null 2>&1 && break

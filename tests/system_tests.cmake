@@ -25,6 +25,8 @@ set(out ${CMAKE_CURRENT_BINARY_DIR})
 set(bin ${CMAKE_BINARY_DIR}/bin)
 
 qtet_system_test(arrows ROOM house COMMAND ${here}/arrows/check.sh ${PROJECT_SOURCE_DIR})
+# What .ci/packages.txt has to name.
+qtet_system_test(packages ROOM house COMMAND ${here}/packages/check.py ${PROJECT_SOURCE_DIR})
 foreach(script IN ITEMS view pipes completion)
   qtet_system_test(${script} ROOM simplify
     COMMAND ${here}/simplify/commands/${script}.sh $<TARGET_FILE:qtet> ${out}/${script})
@@ -120,7 +122,8 @@ if(QTET_WEB)
   endif()
   # The whole of it: the tool's logs, the server, the viewer in a real browser, a list of checks
   # after the other.
-  foreach(list IN ITEMS baseline checks edge element legend monkey publish recovery transport volume)
+  foreach(list IN ITEMS
+      baseline checks edge element legend monkey publish recovery transport volume)
     qtet_system_test(browser.${list} ROOM browser CHANCE SECONDS 1200
       COMMAND ${QTET_NODE} ${here}/browser/run.mjs --list ${list} --bin ${bin}
       --viewer ${QTET_VIEWER_DIR} --out ${CMAKE_BINARY_DIR}/browser-${list})

@@ -4,6 +4,7 @@
 import {execFileSync, spawn} from 'node:child_process';
 import {mkdirSync} from 'node:fs';
 import {join} from 'node:path';
+import {freePort} from '../support/free_port.mjs';
 
 const kStartTimeoutMs = 20000;
 
@@ -40,32 +41,46 @@ export class Server {
     return `http://127.0.0.1:${this.port}/`;
   }
 
-  /** Starts the server on its port, if it is not running. */
+  /** Starts the server, always on the same port, if it is not running. */
   async start() {
     if (this.#process) return;
     await this.#gone;
+    if (this.port !== 0) return this.#listen();
+    // The port must be below those of outgoing connections, to be free when the server comes back.
+    for (;;) {
+      this.port = freePort();
+      try {
+        return await this.#listen();
+      } catch (error) {
+        if (!/in use/.test(error.message)) throw error;
+        this.#process = null;
+      }
+    }
+  }
+
+  async #listen() {
     const started = spawn(this.command, [...this.arguments, '--port', String(this.port)], {
       stdio: ['ignore', 'pipe', 'pipe'],
     });
     this.#process = started;
     let said = '';
-    this.port = await new Promise((resolve, reject) => {
+    await new Promise((resolve, reject) => {
       const timer = setTimeout(
         () => reject(new Error(`qtet-server does not listen; it said: ${said}`)),
         kStartTimeoutMs,
       );
       const hear = (text) => {
         said += text;
-        const port = /listening on http:\/\/[^:]+:(\d+)/.exec(said)?.[1];
-        if (port === undefined) return;
+        if (!said.includes('listening on http')) return;
         clearTimeout(timer);
-        resolve(Number(port));
+        resolve();
       };
       started.stdout.setEncoding('utf8').on('data', hear);
       started.stderr.setEncoding('utf8').on('data', (text) => void (said += text));
-      started.once('exit', (code) =>
-        reject(new Error(`qtet-server ended with ${code}; it said: ${said}`)),
-      );
+      started.once('exit', (code) => {
+        clearTimeout(timer);
+        reject(new Error(`qtet-server ended with ${code}; it said: ${said}`));
+      });
     });
   }
 

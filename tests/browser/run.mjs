@@ -1,8 +1,5 @@
 // The whole system: the tool's log, the server, and the viewer in Chromium with software WebGL.
-//   node run.mjs --bin DIR --viewer DIR --out DIR [--only REGEX] [--retries N]
-// A check that fails is tried up to N times more (default 0). If it passes then, it is called
-// "flaky": on a shared machine a browser may stall for longer than any check foresees. The first
-// failure is printed all the same, for it may be a fault that shows only sometimes.
+//   node run.mjs --bin DIR --viewer DIR --out DIR [--list NAME] [--only REGEX]
 // Needs web-client/node_modules (playwright-core) and a Chromium: /usr/bin/chromium, or the one
 // that QTET_CHROMIUM names.
 
@@ -27,33 +24,34 @@ const {values: options} = parseArgs({
     viewer: {type: 'string'},
     out: {type: 'string'},
     only: {type: 'string', default: ''},
-    retries: {type: 'string', default: '0'},
+    list: {type: 'string', default: ''},
   },
 });
-const retries = Number(options.retries);
-if (!Number.isInteger(retries) || retries < 0) {
-  console.error(`--retries ${options.retries}: give a number of tries, 0 or more`);
-  process.exit(2);
-}
 if (!options.bin || !options.viewer || !options.out) {
   console.error(
-    'Usage: node run.mjs --bin DIR --viewer DIR --out DIR [--only REGEX] [--retries N]',
+    'Usage: node run.mjs --bin DIR --viewer DIR --out DIR [--list NAME] [--only REGEX]',
   );
   process.exit(2);
 }
 
-const all = {
-  ...checks,
-  ...elementChecks,
-  ...transportChecks,
-  ...publishChecks,
-  ...volumeChecks,
-  ...edgeChecks,
-  ...legendChecks,
-  ...recoveryChecks,
-  ...monkeyChecks,
-  ...baselineChecks,
+/** Each list is a test of its own (tests/system_tests.cmake), beside the others. */
+const lists = {
+  checks,
+  element: elementChecks,
+  transport: transportChecks,
+  publish: publishChecks,
+  volume: volumeChecks,
+  edge: edgeChecks,
+  legend: legendChecks,
+  recovery: recoveryChecks,
+  monkey: monkeyChecks,
+  baseline: baselineChecks,
 };
+if (options.list && !(options.list in lists)) {
+  console.error(`no list is called ${options.list}; the lists: ${Object.keys(lists).join(', ')}`);
+  process.exit(2);
+}
+const all = options.list ? lists[options.list] : Object.assign({}, ...Object.values(lists));
 const chosen = Object.entries(all).filter(([name]) => new RegExp(options.only).test(name));
 if (chosen.length === 0) {
   console.error(`no check's name matches --only ${options.only}`);
@@ -88,31 +86,24 @@ async function run(name, check) {
   }
 }
 
-const failed = [],
-  flaky = [];
+const failed = [];
 try {
   for (const [name, check] of chosen) {
-    for (let tries = 0; tries <= retries; ++tries) {
-      const start = Date.now();
-      try {
-        const note = await run(name, check);
-        console.log(`ok    ${name} (${Date.now() - start} ms)${note ? `: ${note}` : ''}`);
-        if (tries > 0) flaky.push(name);
-        break;
-      } catch (thrown) {
-        const again = tries < retries;
-        const because = thrown.cause ? `\nbecause ${thrown.cause.stack}` : '';
-        console.log(`${again ? 'AGAIN' : 'FAIL '} ${name}: ${thrown.stack}${because}`);
-        if (!again) failed.push(name);
-        else server.kill(); // the server starts again, too
-      }
+    const start = Date.now();
+    try {
+      const note = await run(name, check);
+      console.log(`ok    ${name} (${Date.now() - start} ms)${note ? `: ${note}` : ''}`);
+    } catch (thrown) {
+      const because = thrown.cause ? `\nbecause ${thrown.cause.stack}` : '';
+      console.log(`FAIL  ${name}: ${thrown.stack}${because}`);
+      failed.push(name);
+      server.kill(); // the next check starts it again
     }
   }
 } finally {
   await browser.close();
   server.kill();
 }
-if (flaky.length > 0) console.log(`passed, but not at once: ${flaky.join(', ')}`);
 const failures = failed.length > 0 ? `${failed.length} failed: ${failed.join(', ')}; ` : '';
 console.log(`${failures}screenshots are in ${options.out}`);
 process.exit(failed.length === 0 ? 0 : 1);

@@ -4,17 +4,14 @@
 // Exit code 77: nginx or openssl is not installed.
 
 import assert from 'node:assert';
-import {spawn, spawnSync} from 'node:child_process';
+import {spawnSync} from 'node:child_process';
 import {mkdirSync, readFileSync, writeFileSync} from 'node:fs';
 import http2 from 'node:http2';
 import https from 'node:https';
-import net from 'node:net';
 import {join} from 'node:path';
-import {setTimeout as sleep} from 'node:timers/promises';
 import {fileURLToPath} from 'node:url';
 import {parseArgs} from 'node:util';
-import {freePort} from '../support/free_port.mjs';
-import {kToken, prepare, startServer} from './server.mjs';
+import {kToken, prepare, startNginx, startServer} from './server.mjs';
 
 const {values: options} = parseArgs({options: {bin: {type: 'string'}, out: {type: 'string'}}});
 const kNginx = '/usr/sbin/nginx';
@@ -140,27 +137,14 @@ async function check(port) {
 
 prepare(options);
 const server = await startServer(options);
-const port = freePort();
 const folder = join(options.out, 'nginx');
 mkdirSync(folder, {recursive: true});
-configure(folder, server.port, port);
-const nginx = spawn(
-  kNginx,
-  ['-e', join(folder, 'error.log'), '-p', folder, '-c', join(folder, 'nginx.conf')],
-  {stdio: 'inherit'},
-);
+const nginx = await startNginx(kNginx, folder, (port) => configure(folder, server.port, port));
 try {
-  for (let i = 0; i < 1200; ++i) {
-    const up = await new Promise((done) =>
-      net.connect(port, '127.0.0.1', () => done(true)).on('error', () => done(false)),
-    );
-    if (up) break;
-    await sleep(50);
-  }
-  await check(port);
+  await check(nginx.port);
   console.log('nginx.conf: HTTP/2, ranges, conditions, an upload and the WebSocket work behind it');
 } finally {
   server.child.removeAllListeners('exit');
-  nginx.kill('SIGTERM');
+  nginx.child.kill('SIGTERM');
   server.child.kill('SIGTERM');
 }

@@ -4,14 +4,13 @@
 // QTET_NGINX names an nginx that is not installed. Exit code 77: there is none.
 
 import assert from 'node:assert/strict';
-import {execFileSync, spawn, spawnSync} from 'node:child_process';
+import {execFileSync, spawnSync} from 'node:child_process';
 import {mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
 import http from 'node:http';
 import {join} from 'node:path';
-import {setTimeout as sleep} from 'node:timers/promises';
 import {parseArgs} from 'node:util';
 import {gunzipSync} from 'node:zlib';
-import {freePort} from '../support/free_port.mjs';
+import {startNginx} from './server.mjs';
 
 const {values: options} = parseArgs({options: {bin: {type: 'string'}, out: {type: 'string'}}});
 const kNginx = process.env.QTET_NGINX ?? '/usr/sbin/nginx';
@@ -31,23 +30,21 @@ function serverBlock(site, port) {
 }
 
 async function serve(site, state) {
-  const port = freePort();
   mkdirSync(state, {recursive: true});
   const temporary = ['client_body', 'proxy', 'fastcgi', 'uwsgi', 'scgi']
     .map((kind) => `${kind}_temp_path ${state}/${kind};`)
     .join(' ');
-  writeFileSync(
-    join(state, 'nginx.conf'),
-    `user root; daemon off; worker_processes 1; pid ${state}/pid; error_log ${state}/error.log;
+  const configure = (port) =>
+    writeFileSync(
+      join(state, 'nginx.conf'),
+      `user root; daemon off; worker_processes 1; pid ${state}/pid; error_log ${state}/error.log;
 events { worker_connections 64; }
 http { ${kTypes} access_log off; ${temporary}
 ${serverBlock(site, port)}}
 `,
-  );
-  const nginx = spawn(kNginx, ['-p', state, '-c', join(state, 'nginx.conf')], {stdio: 'ignore'});
-  for (let tries = 0; tries < 100 && !(await ask(port, '/').catch(() => null)); ++tries)
-    await sleep(50);
-  return {port, close: () => nginx.kill()};
+    );
+  const {child, port} = await startNginx(kNginx, state, configure);
+  return {port, close: () => child.kill()};
 }
 
 function ask(port, path, headers = {}) {

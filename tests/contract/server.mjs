@@ -1,8 +1,11 @@
 // A folder with a small mesh, and a qtet-server over it, for the scripts of this folder.
 
 import {spawn, spawnSync} from 'node:child_process';
-import {mkdirSync, rmSync, writeFileSync} from 'node:fs';
+import {mkdirSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
+import net from 'node:net';
 import {join} from 'node:path';
+import {setTimeout as sleep} from 'node:timers/promises';
+import {freePort} from '../support/free_port.mjs';
 
 /**
  * May write meshes whose names begin with "up"; those that begin with "s" nobody may read, all
@@ -50,4 +53,35 @@ export function startServer({bin, out}) {
     child.stdout.once('data', (line) => ready({child, port: Number(/:(\d+)\//.exec(line)?.[1])}));
     child.once('exit', (code) => failed(new Error(`qtet-server ended with ${code}`)));
   });
+}
+
+const answers = (port) =>
+  new Promise((done) =>
+    net
+      .connect(port, '127.0.0.1', function () {
+        this.destroy();
+        done(true);
+      })
+      .on('error', () => done(false)),
+  );
+
+/**
+ * Starts nginx in `folder` with the nginx.conf that `configure(port)` writes there, and again with
+ * another port where that one is taken. Gives the process and the port.
+ */
+export async function startNginx(program, folder, configure) {
+  const errors = join(folder, 'error.log');
+  for (;;) {
+    const port = freePort();
+    rmSync(errors, {force: true});
+    configure(port);
+    const words = ['-e', errors, '-p', folder, '-c', join(folder, 'nginx.conf')];
+    const child = spawn(program, words, {stdio: 'inherit'});
+    while (child.exitCode === null) {
+      if (await answers(port)) return {child, port};
+      await sleep(50);
+    }
+    const said = readFileSync(errors, 'utf8');
+    if (!said.includes('Address already in use')) throw new Error(`nginx ended: ${said}`);
+  }
 }

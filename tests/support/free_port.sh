@@ -19,5 +19,5 @@ for _ in {1..1000}; do
   echo "$port"
   exit 0
 done
-echo "free_port: a thousand ports from $first to $((outgoing - 1)) are claimed; look in $claims" >&2
+echo "free_port: a thousand ports from $first to $((outgoing - 1)) are claimed in $claims" >&2
 exit 1

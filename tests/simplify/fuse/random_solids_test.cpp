@@ -29,7 +29,7 @@ using testing::SolidReport;
 using testing::topologyChange;
 using testing::whatIsOutside;
 
-constexpr std::uint32_t kSeeds = 64;
+constexpr std::uint32_t kSeeds = 16;
 
 double latticeDiagonal(const LatticeMesh& mesh) {
   LatticePoint low = mesh.points[0], high = low;

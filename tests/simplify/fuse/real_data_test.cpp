@@ -9,6 +9,7 @@
 #include "simplify/clean/quantise.h"
 #include "simplify/clean/verify.h"
 #include "simplify/read/read_mesh.h"
+#include "tests/support/block_grid.h"
 #include "tests/support/meshes.h"
 
 namespace qtet {
@@ -82,6 +83,39 @@ TEST(RealDataWeld, thePostsSlitClosesToASolidOfGenusOne) {
   EXPECT_EQ(quantised->mesh.boundary.size(), 22200u);
   // A closed orientable surface of Euler characteristic 0 is a torus.
   EXPECT_EQ(testing::eulerCharacteristics(quantised->mesh), (std::array<std::int64_t, 2>{0, 0}));
+}
+
+/// The same on a small scale, and with the flaws that the other meshes have.
+TEST(RealDataStandIn, aSlitRingClosesToASolidOfGenusOne) {
+  constexpr int kRound = 15, kAcross = 5;
+  const auto folder = testing::freshFolder("slit-ring");
+  TetMesh ring = testing::slitRing(kRound, kAcross);
+  ring.tetrahedra.push_back({1, 1, 2, 21});  // spx has such a cell
+  ASSERT_TRUE(writeFileAtomically(folder / "ring.vtu", vtuBytes(ring)));
+  ReadOptions options;
+  options.weld = 0;
+  Result<ReadMesh> read = readMesh(folder / "ring.vtu", options);
+  ASSERT_TRUE(read) << read.error().text();
+  EXPECT_EQ(read->report.weldedPoints, 36u);
+  EXPECT_EQ(read->report.mendedFaces, 25u);
+  const Result<CleanReport> report = cleanMesh(read->mesh);
+  ASSERT_TRUE(report) << report.error().text();
+  EXPECT_EQ(report->repeatedVertexCells.count, 1u);
+  EXPECT_EQ(read->mesh.tetrahedra.size(), 5u * 15 * 25 + 25);
+  EXPECT_EQ(read->mesh.points.size(), 15u * 36);
+  EXPECT_EQ(report->flatCells.count + report->invertedCells.count + report->coincidentPoints.count,
+            0u);
+  EXPECT_EQ(report->nonManifoldEdges.count + report->nonManifoldVertices.count, 0u);
+  EXPECT_EQ(report->components, 1u);
+  const Result<QuantisedMesh> quantised = quantise(read->mesh);
+  ASSERT_TRUE(quantised);
+  EXPECT_EQ(quantised->report.worseCells.count, 0u);
+  EXPECT_EQ(quantised->mesh.boundary.size(), 4u * 5 * 15 * 2);
+  EXPECT_EQ(testing::eulerCharacteristics(quantised->mesh), (std::array<std::int64_t, 2>{0, 0}));
+  const Result<OnLattice> put =
+      putOnLattice(read->mesh, quantised->mesh.lattice, quantised->mesh.fields);
+  ASSERT_TRUE(put) << put.error().text();
+  EXPECT_TRUE(sameMesh(quantised->mesh, put->mesh));
 }
 
 INSTANTIATE_TEST_SUITE_P(Meshes, RealData,
