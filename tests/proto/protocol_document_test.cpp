@@ -12,11 +12,11 @@ namespace qtet {
 namespace {
 
 using test::faultsOfExamples;
-using testing::AllOf;
-using testing::Contains;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
 
 /// Both pages, one after the other.
 std::string protocolDocument() {
