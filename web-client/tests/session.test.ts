@@ -663,6 +663,8 @@ test('whatIsosurfacesAreShownIsToldByFieldAndValue', () => {
   expect(views.at(-1)!.isovalue).toEqual({field: 'p', values: [0, 127.5]});
   show(0, [0, 0.5]);
   expect(views).toHaveLength(1);
+  publishing.onIsosurface(Float32Array.of(60000, 1, 1)); // the same one, after refining
+  expect(views).toHaveLength(2);
   show(0, [0.2]);
   expect(views.at(-1)!.isovalue).toEqual({field: 'p', values: [51]});
   show(

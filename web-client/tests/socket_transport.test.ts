@@ -77,6 +77,33 @@ test('aViewIsToldOnceAndOnlyWhereItMatters', () => {
   ]);
 });
 
+test('aViewThatTheOpenHasToldIsNotToldAgain', () => {
+  const socket = new FakeSocket();
+  const seeing = new SocketTransport(
+    'ws://x/v1/stream',
+    handlers,
+    () => socket,
+    () => 0.5,
+    {lattice: {origin: [0, 0, 0], step: 1, size: 256}},
+  );
+  seeing.connect();
+  socket.accept();
+  const view: ViewRequest = {...kNoViewRequest, point: [4, 0, 0]};
+  const openedAgain = (stream: number): void => {
+    seeing.open({...kOpen, view});
+    const about = {mesh: 'm', digest: 'd', bytes: 1, planned: 1, layout: 'regions'};
+    socket.deliver(JSON.stringify({type: 'opened', stream, ...about}));
+    seeing.look({...view});
+  };
+  openedAgain(1);
+  openedAgain(2);
+  expect(socket.sentOf('open').map((open) => open.view)).toEqual([
+    {point: [4, 0, 0]},
+    {point: [4, 0, 0]},
+  ]);
+  expect(socket.sentOf('view')).toEqual([]);
+});
+
 test('creditGoesBackInPortionsOfAnEighthOfTheWindow', () => {
   sockets[0]!.accept();
   transport.open(kOpen);
