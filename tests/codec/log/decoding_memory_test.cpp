@@ -112,5 +112,26 @@ TEST(DecodeVerified, endsBeforeTheNextLevelWhereNobodyWaits) {
   }
 }
 
+TEST(DecodeVerified, aFieldsIntegersLieWithinTheBitsThatTheManifestSays) {
+  constexpr int kBits = 7;
+  constexpr std::int32_t kEnd = 1 << kBits;
+  for (const std::int32_t integer : {-1, 0, kEnd - 1, kEnd, kEnd + 1}) {
+    LatticeMesh mesh = testing::soundMesh(2, 1);
+    for (std::int32_t& value : mesh.values[0]) value %= kEnd / 2;
+    mesh.values[0][0] = integer;
+    mesh.fields[0].bits = kBits;
+    const Result<EncodedLog> encoded = encodeLog(simplify(mesh, {}).value(), {});
+    ASSERT_TRUE(encoded) << encoded.error().text();
+    const LogFile log = LogFile::fromBytes(encoded->bytes).value();
+    const Result<Refiner> decoded = decodeVerified(log, manifestOf(log.index()).value());
+    ASSERT_EQ(decoded.has_value(), 0 <= integer && integer < kEnd) << integer;
+    if (decoded) continue;
+    EXPECT_EQ(decoded.error().code, ErrorCode::kBadValue);
+    EXPECT_NE(decoded.error().message.find("the integer " + std::to_string(integer) + ","),
+              std::string::npos)
+        << decoded.error().text();
+  }
+}
+
 }  // namespace
 }  // namespace qtet
