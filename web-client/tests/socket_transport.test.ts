@@ -59,6 +59,7 @@ test('aViewIsToldOnceAndOnlyWhereItMatters', () => {
   seeing.open(kOpen);
   const near = (x: number): ViewRequest => ({...kNoViewRequest, point: [x, 0, 0]});
   seeing.look(near(1));
+  expect(socket.sentOf('view')).toEqual([]); // the layout is not known yet
   socket.deliver(
     '{"type":"opened","stream":1,"mesh":"m","digest":"d","bytes":1,"planned":1,"layout":"regions"}',
   );
@@ -71,6 +72,7 @@ test('aViewIsToldOnceAndOnlyWhereItMatters', () => {
       isovalue: {field: 'p', values: [1]},
     });
   expect(socket.sentOf('view').map(({view}) => view)).toEqual([
+    {point: [1, 0, 0]},
     {point: [2, 0, 0]},
     {point: [3, 0, 0]},
     {isovalue: {field: 'p', values: [1]}},
