@@ -318,7 +318,7 @@ TEST(LevelCache, aDiskWithTooLittleLeftKeepsNothing) {
   }
 }
 
-TEST(LevelCache, afterARestartTheOldestLevelGoesFirst) {
+TEST(LevelCache, afterARestartTheLeastRecentlyUsedStillGoesFirst) {
   const test::TempFolder folder;
   const std::string byAge = "2b7a05";  // the oldest first, in no order of names
   const auto keyOf = [](char c) { return std::string(64, c); };
@@ -327,9 +327,9 @@ TEST(LevelCache, afterARestartTheOldestLevelGoesFirst) {
     const auto cache = LevelCache::open(folder.path(), 60);
     for (const char c : std::string("05ba27")) (void)(*cache)->put(keyOf(c), Bytes(10, 1));
   }
+  const auto hourAgo = std::filesystem::file_time_type::clock::now() - std::chrono::hours(1);
   for (std::size_t age = 0; age < byAge.size(); ++age)
-    std::filesystem::last_write_time(fileOf(byAge[age]),
-                                     std::filesystem::file_time_type() + std::chrono::seconds(age));
+    std::filesystem::last_write_time(fileOf(byAge[age]), hourAgo + std::chrono::seconds(age));
   const auto expectKept = [&](std::size_t gone) {
     for (std::size_t age = 0; age < byAge.size(); ++age)
       EXPECT_EQ(std::filesystem::exists(fileOf(byAge[age])), age >= gone) << gone << ", " << age;
@@ -344,6 +344,10 @@ TEST(LevelCache, afterARestartTheOldestLevelGoesFirst) {
   (void)(*cache)->put(keyOf('e'), Bytes(10, 1));
   EXPECT_TRUE(std::filesystem::exists(fileOf(byAge[3]))) << "used since";
   EXPECT_FALSE(std::filesystem::exists(fileOf(byAge[4])));
+  EXPECT_TRUE((*cache)->find(keyOf(byAge[5])));
+  cache = LevelCache::open(folder.path(), 10);
+  EXPECT_TRUE((*cache)->find(keyOf(byAge[5]))) << "used last";
+  EXPECT_EQ((*cache)->bytes(), 10u);
 }
 
 TEST_F(LevelJobsTest, addressesTakeTurns) {
