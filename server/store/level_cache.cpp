@@ -137,6 +137,9 @@ std::optional<LevelFile> LevelCache::find(const std::string& key) {
     forget(key);
     return std::nullopt;
   }
+  // the next run orders them by these times
+  std::error_code ec;
+  fs::last_write_time(pathOf(key), fs::file_time_type::clock::now(), ec);
   return out;
 }
 

@@ -234,7 +234,10 @@ export class Session implements TransportHandlers {
     const {fields} = this.wanted;
     this.send({type: 'manifest', manifest, digest: this.stream.digest, fields: [...fields]});
     this.sendPlan();
-    if (!this.stream.endsAtHead && this.stream.brings(this.wanted.keys)) return false;
+    if (!this.stream.endsAtHead && this.stream.brings(this.wanted.keys)) {
+      this.follow(); // the `open` could not tell the view: its lattice was unknown
+      return false;
+    }
     this.open();
     return true;
   }

@@ -187,7 +187,10 @@ export class SocketTransport implements Transport {
     try {
       if (typeof data === 'string') {
         const message = parseServerMessage(data);
-        if (message?.type === 'opened') this.layout = message.layout ?? '';
+        if (message?.type === 'opened') {
+          this.layout = message.layout ?? '';
+          this.look(this.view); // it may have changed since the `open`
+        }
         // Replies to an earlier `open` do not concern the current one.
         if (message && (message.type === 'error' || message.stream === this.stream))
           this.handlers.message(message);

@@ -2,9 +2,9 @@ import {beforeEach, describe, expect, test} from 'vitest';
 import {Assembler} from '../core/assembler';
 import {parseFrame} from '../core/protocol';
 import {kNoViewRequest} from '../core/view_request';
-import {FakeCodec, headFrame, kFakeValues, meshFrame, type FakeLog} from './fakes';
+import {FakeCodec, fieldFrame, headFrame, kFakeValues, meshFrame, type FakeLog} from './fakes';
 
-const kLog: FakeLog = {fields: [], chunks: 6};
+const kLog: FakeLog = {fields: ['p'], chunks: 6};
 const kHeadChunks = 2;
 
 /** Two chunks of the head; packets 2 to the left and 3 to the right, 4 within 2, 5 within 3. */
@@ -26,6 +26,16 @@ class PacketCodec extends FakeCodec {
   }
   override applied(chunk = 0): boolean {
     return this.order.includes(chunk);
+  }
+  readonly fieldOrder: number[] = [];
+  override applyField(_: number, chunk: number): void {
+    this.fieldOrder.push(chunk);
+  }
+  override fieldChunksApplied(): number {
+    return this.fieldOrder.length;
+  }
+  override fieldApplied(_: number, chunk: number): boolean {
+    return this.fieldOrder.includes(chunk);
   }
 }
 
@@ -58,5 +68,18 @@ describe('what is here', () => {
   test('waitsForTheChunkThatItDependsOn', () => {
     expect(decoded([0, 1, 4, 5])).toEqual([0, 1]);
     expect(decoded([3])).toEqual([0, 1, 3, 5]);
+  });
+
+  test('ofAFieldWaitsForItsOwnBlockOfTheParent', () => {
+    const fieldOrder = (arriving: number[]): number[] => {
+      for (const chunk of arriving) assembler.take(parseFrame(fieldFrame(1, chunk, 0)));
+      while (assembler.step([0], true)) continue;
+      return codec.fieldOrder;
+    };
+    expect(decoded([0, 1, 2, 3, 4, 5])).toEqual([0, 1, 2, 3, 4, 5]);
+    expect(fieldOrder([0, 4, 5])).toEqual([0]);
+    expect(fieldOrder([1])).toEqual([0, 1]); // 2 and 3 are missing
+    expect(fieldOrder([3])).toEqual([0, 1, 3, 5]);
+    expect(fieldOrder([2])).toEqual([0, 1, 3, 5, 2, 4]);
   });
 });

@@ -6,7 +6,9 @@ import {Publisher} from '../core/publisher';
 import {Session} from '../core/session';
 import {SocketTransport} from '../core/socket_transport';
 import {kFull} from '../core/limit';
+import type {Plane} from '../core/slice';
 import type {Posted, ToWorker} from '../core/worker_messages';
+import {Requests} from '../viewer/requests';
 import {FakeCodec, FakeSocket, fieldFrame, headFrame, kFakeValues, meshFrame} from './fakes';
 
 vi.mock('qtet-codec.wasm?url', () => ({default: 'codec.wasm'}));
@@ -95,4 +97,24 @@ test('theFirstPictureOfAMeshDoesNotWaitForThatOfTheMeshBefore', () => {
     vi.advanceTimersByTime(1000);
   }
   expect(pictures).toBe(2);
+});
+
+test('aRequestThatHasNotChangedIsNotSentAgain', () => {
+  const requests = new Requests(new Client(() => undefined));
+  const sent = (type: string): number =>
+    FakeWorker.last.posted.filter((message) => message.type === type).length;
+  const plane = (offset: number): Plane => ({normal: [1, 0, 0], offset});
+  const looks = (frustum: Plane[], planes: Plane[]): number => {
+    requests.look(frustum, planes);
+    return sent('look');
+  };
+  expect([looks([], []), looks([], [])]).toEqual([1, 1]);
+  expect([looks([plane(1)], []), looks([plane(1)], [])]).toEqual([2, 2]);
+  expect([looks([plane(1)], [plane(2)]), looks([plane(1)], [plane(2)])]).toEqual([3, 3]);
+  requests.point = [1, 2, 3];
+  expect([looks([plane(1)], [plane(2)]), looks([plane(1)], [plane(2)])]).toEqual([4, 4]);
+  expect([requests.show(kPlainDisplay), requests.show({...kPlainDisplay})]).toEqual([true, false]);
+  expect(sent('display')).toBe(1);
+  requests.forget();
+  expect([looks([plane(1)], [plane(2)]), requests.show(kPlainDisplay)]).toEqual([5, true]);
 });

@@ -8,7 +8,7 @@ import {parseFrame} from '../core/protocol';
 import {Session} from '../core/session';
 import {SocketTransport} from '../core/socket_transport';
 import type {Transport} from '../core/transport';
-import type {ViewRequest} from '../core/view_request';
+import {kNoViewRequest, type ViewRequest} from '../core/view_request';
 import type {FromWorker, Snapshot, Source} from '../core/worker_messages';
 import {
   errorsOf,
@@ -632,20 +632,19 @@ test('creditIsGivenBackOnceForWhatWasApplied', () => {
 });
 
 /** Chunk 0 is the head, the others are packets. The transport only notes view requests. */
-test('whatIsosurfacesAreShownIsToldByFieldAndValue', () => {
-  const log: FakeLog = {fields: ['p'], cellFields: ['p'], chunks: 3};
+function telling(log: FakeLog): {session: Session; publisher: Publisher; views: ViewRequest[]} {
   const parts = new FakeCodec(log);
   Object.defineProperty(parts, 'headChunks', {value: 1});
   const assembler = new Assembler(parts, kFakeValues);
-  const publishing = new Publisher(assembler, () => undefined);
+  const its = new Publisher(assembler, () => undefined);
   const views: ViewRequest[] = [];
-  const telling = new Session(
+  const started = new Session(
     assembler,
-    publishing,
+    its,
     () => undefined,
     () => carrier({look: (view) => views.push(view)}),
   );
-  telling.start({
+  started.start({
     url: 'ws://x',
     log: '',
     transport: 'auto',
@@ -653,7 +652,24 @@ test('whatIsosurfacesAreShownIsToldByFieldAndValue', () => {
     fields: ['p'],
     limit: kFull,
   });
-  telling.frame(parseFrame(headFrame(1, log)));
+  started.connected();
+  return {session: started, publisher: its, views};
+}
+
+test('aViewFromBeforeTheHeadIsToldBehindIt', () => {
+  const log: FakeLog = {fields: ['p'], chunks: 3};
+  const {session: its, views} = telling(log);
+  its.look({...kNoViewRequest, point: [1, 2, 3]});
+  expect(views).toEqual([]);
+  its.frame(parseFrame(headFrame(1, log)));
+  expect(views).toMatchObject([{point: [1, 2, 3]}]);
+});
+
+test('whatIsosurfacesAreShownIsToldByFieldAndValue', () => {
+  const log: FakeLog = {fields: ['p'], cellFields: ['p'], chunks: 3};
+  const {session: its, publisher: publishing, views} = telling(log);
+  its.frame(parseFrame(headFrame(1, log)));
+  views.length = 0; // without that of the head
   const show = (field: number, values: number[]): void => {
     publishing.show({...kPlainDisplay, isosurfaces: {scalar: {field, component: -1}, values}});
     publishing.onIsosurface(Float32Array.of(1, 1, 1));
@@ -663,6 +679,8 @@ test('whatIsosurfacesAreShownIsToldByFieldAndValue', () => {
   expect(views.at(-1)!.isovalue).toEqual({field: 'p', values: [0, 127.5]});
   show(0, [0, 0.5]);
   expect(views).toHaveLength(1);
+  publishing.onIsosurface(Float32Array.of(60000, 1, 1)); // the same one, after refining
+  expect(views).toHaveLength(2);
   show(0, [0.2]);
   expect(views.at(-1)!.isovalue).toEqual({field: 'p', values: [51]});
   show(

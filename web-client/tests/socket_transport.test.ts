@@ -59,6 +59,7 @@ test('aViewIsToldOnceAndOnlyWhereItMatters', () => {
   seeing.open(kOpen);
   const near = (x: number): ViewRequest => ({...kNoViewRequest, point: [x, 0, 0]});
   seeing.look(near(1));
+  expect(socket.sentOf('view')).toEqual([]); // the layout is not known yet
   socket.deliver(
     '{"type":"opened","stream":1,"mesh":"m","digest":"d","bytes":1,"planned":1,"layout":"regions"}',
   );
@@ -71,10 +72,38 @@ test('aViewIsToldOnceAndOnlyWhereItMatters', () => {
       isovalue: {field: 'p', values: [1]},
     });
   expect(socket.sentOf('view').map(({view}) => view)).toEqual([
+    {point: [1, 0, 0]},
     {point: [2, 0, 0]},
     {point: [3, 0, 0]},
     {isovalue: {field: 'p', values: [1]}},
   ]);
+});
+
+test('aViewThatTheOpenHasToldIsNotToldAgain', () => {
+  const socket = new FakeSocket();
+  const seeing = new SocketTransport(
+    'ws://x/v1/stream',
+    handlers,
+    () => socket,
+    () => 0.5,
+    {lattice: {origin: [0, 0, 0], step: 1, size: 256}},
+  );
+  seeing.connect();
+  socket.accept();
+  const view: ViewRequest = {...kNoViewRequest, point: [4, 0, 0]};
+  const openedAgain = (stream: number): void => {
+    seeing.open({...kOpen, view});
+    const about = {mesh: 'm', digest: 'd', bytes: 1, planned: 1, layout: 'regions'};
+    socket.deliver(JSON.stringify({type: 'opened', stream, ...about}));
+    seeing.look({...view});
+  };
+  openedAgain(1);
+  openedAgain(2);
+  expect(socket.sentOf('open').map((open) => open.view)).toEqual([
+    {point: [4, 0, 0]},
+    {point: [4, 0, 0]},
+  ]);
+  expect(socket.sentOf('view')).toEqual([]);
 });
 
 test('creditGoesBackInPortionsOfAnEighthOfTheWindow', () => {

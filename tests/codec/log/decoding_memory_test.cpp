@@ -6,6 +6,8 @@
 #include "codec/log/log_manifest.h"
 #include "codec/log/log_writer.h"
 #include "codec/log/verify_log.h"
+#include "codec/mesh/growing_mesh.h"
+#include "proto/limits.h"
 #include "simplify/fuse/qtetfusion.h"
 #include "tests/support/allocation_meter.h"
 #include "tests/support/meshes.h"
@@ -53,6 +55,37 @@ TEST(DecodingBytes, areEnoughForEveryGoldenLog) {
       compare(LogFile::open(entry.path()).value(), entry.path().filename(), 1e9);
 }
 
+/// What decoding takes of a table with a base mesh alone, whose structure has so many bytes.
+std::uint64_t bytesOfBase(std::uint32_t structureBytes, std::uint32_t elements,
+                          std::uint32_t fieldComponents = 0) {
+  LogIndex index;
+  index.chunks.resize(1);
+  if (fieldComponents > 0) index.fields.push_back({fieldComponents});
+  index.chunks[0].blocks.resize(index.parts());
+  index.chunks[0].blocks[kStructurePart].size = structureBytes;
+  index.chunks[0].newVertices = index.chunks[0].newTetrahedra =
+      index.chunks[0].newBoundaryTriangles = elements;
+  return decodingBytes(index);
+}
+
+TEST(DecodingBytes, countAMeshThriceWhereItsBytesAreTooFewToMakeRoomForIt) {
+  constexpr std::uint32_t kBytes = 1000, kMost = kMaxElementsPerPacketByte * kBytes;
+  for (const std::uint32_t elements : {kMost - 1, kMost, kMost + 1}) {
+    const std::uint64_t roomy = bytesOfBase(2 * kBytes, elements);
+    const std::uint64_t grown = elements > kMost ? 2 : 0;
+    EXPECT_EQ(bytesOfBase(kBytes, elements),
+              roomy + grown * GrowingMesh::roomFor({elements, elements, elements}))
+        << elements;
+  }
+}
+
+TEST(DecodingBytes, countAFieldsIntegersThriceAndItsBlock) {
+  constexpr std::uint32_t kVertices = 100;
+  constexpr std::uint64_t kBlockInteger = 24;
+  EXPECT_EQ(bytesOfBase(1000, kVertices, 3) - bytesOfBase(1000, kVertices, 2),
+            kVertices * (3 * sizeof(std::int32_t) + kBlockInteger));
+}
+
 // The base mesh and a level of one chunk each, so that whoever asks for the end is asked in the
 // midst of a chunk.
 TEST(DecodeVerified, endsBeforeTheNextLevelWhereNobodyWaits) {
@@ -76,6 +109,27 @@ TEST(DecodeVerified, endsBeforeTheNextLevelWhereNobodyWaits) {
       EXPECT_EQ(decoded.error().code, ErrorCode::kIo);
       EXPECT_EQ(left, -1) << "it was asked again";
     }
+  }
+}
+
+TEST(DecodeVerified, aFieldsIntegersLieWithinTheBitsThatTheManifestSays) {
+  constexpr int kBits = 7;
+  constexpr std::int32_t kEnd = 1 << kBits;
+  for (const std::int32_t integer : {-1, 0, kEnd - 1, kEnd, kEnd + 1}) {
+    LatticeMesh mesh = testing::soundMesh(2, 1);
+    for (std::int32_t& value : mesh.values[0]) value %= kEnd / 2;
+    mesh.values[0][0] = integer;
+    mesh.fields[0].bits = kBits;
+    const Result<EncodedLog> encoded = encodeLog(simplify(mesh, {}).value(), {});
+    ASSERT_TRUE(encoded) << encoded.error().text();
+    const LogFile log = LogFile::fromBytes(encoded->bytes).value();
+    const Result<Refiner> decoded = decodeVerified(log, manifestOf(log.index()).value());
+    ASSERT_EQ(decoded.has_value(), 0 <= integer && integer < kEnd) << integer;
+    if (decoded) continue;
+    EXPECT_EQ(decoded.error().code, ErrorCode::kBadValue);
+    EXPECT_NE(decoded.error().message.find("the integer " + std::to_string(integer) + ","),
+              std::string::npos)
+        << decoded.error().text();
   }
 }
 

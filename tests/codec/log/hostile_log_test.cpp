@@ -1,12 +1,14 @@
 // The decoder trusts nothing: every truncation, every flipped bit, every count that lies.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <functional>
 
 #include "codec/coding/draco_block.h"
 #include "codec/log/log_file.h"
 #include "codec/record/base_coder.h"
+#include "proto/limits.h"
 #include "tests/support/forged_log.h"
 #include "tests/support/meshes.h"
 
@@ -152,6 +154,27 @@ TEST_F(HostileLog, countsThatLieAreNoticed) {
                 [](LogIndex& i) { i.chunks[1].newTetrahedra = 0x7FFFFFFF; });
   expectRefused(ErrorCode::kLimitExceeded,
                 [](LogIndex& i) { i.chunks[1].newVertices = 0xFFFFFFFF; });
+}
+
+TEST_F(HostileLog, countsMayReachWhatTheirBytesCanHoldAndNoMore) {
+  const std::uint64_t steps =
+      kMaxStepsPerByte * (index_.block(1, kStructurePart).size + kFreeCountBytes);
+  const auto expectLimit = [&](std::uint32_t ChunkEntry::* member, std::uint64_t most) {
+    for (const int by : {-1, 0, 1}) {
+      const auto parsed = LogIndex::parse(forged([&](LogIndex& i) {
+        i.chunks[1].*member = static_cast<std::uint32_t>(most) + static_cast<std::uint32_t>(by);
+        i.chunks[1].newVertices = std::max(i.chunks[1].newVertices, i.chunks[1].records);
+      }));
+      ASSERT_EQ(parsed.has_value(), by <= 0) << most << " and " << by;
+      if (!parsed) {
+        EXPECT_EQ(parsed.error().code, ErrorCode::kLimitExceeded) << parsed.error().text();
+      }
+    }
+  };
+  expectLimit(&ChunkEntry::records, steps);
+  expectLimit(&ChunkEntry::newVertices, 4 * steps);
+  expectLimit(&ChunkEntry::newTetrahedra, 8 * steps);
+  expectLimit(&ChunkEntry::newBoundaryTriangles, 8 * steps);
 }
 
 TEST_F(HostileLog, aTableThatContradictsItselfIsRefused) {

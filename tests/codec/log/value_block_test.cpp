@@ -11,6 +11,7 @@
 #include "codec/coding/adaptive_block.h"
 #include "codec/coding/draco_block.h"
 #include "codec/coding/value_digits.h"
+#include "proto/limits.h"
 
 namespace qtet {
 namespace {
@@ -134,6 +135,20 @@ TEST(ValueBlock, everyTruncationIsRefused) {
 
 TEST(AdaptiveBlock, aPromiseBeyondItsBytesAllocatesNothing) {
   EXPECT_EQ(decodeAdaptiveBlock(Bytes(8, 0), 16, 1u << 29).error().code, ErrorCode::kLimitExceeded);
+}
+
+TEST(AdaptiveBlock, mayPromiseAsManyValuesAsItsBytesHoldDecisionsAndNoMore) {
+  constexpr std::size_t kBytes = 6;
+  constexpr std::uint32_t kMost = kMaxDecisionsPerByte * (kBytes + 4);
+  for (const std::uint32_t components : {1u, 16u})
+    for (const std::uint32_t tuples : {kMost / components - 1, kMost / components}) {
+      const auto decoded = decodeAdaptiveBlock(Bytes(kBytes, 0), components, tuples);
+      EXPECT_TRUE(decoded || decoded.error().code != ErrorCode::kLimitExceeded) << tuples;
+    }
+  for (const std::uint32_t components : {1u, 16u})
+    EXPECT_EQ(
+        decodeAdaptiveBlock(Bytes(kBytes, 0), components, kMost / components + 1).error().code,
+        ErrorCode::kLimitExceeded);
 }
 
 TEST(AdaptiveBlock, isSmallerThanDracosOnWhatAMeshHas) {

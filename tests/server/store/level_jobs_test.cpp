@@ -309,9 +309,45 @@ TEST(LevelCache, aDiskWithTooLittleLeftKeepsNothing) {
   const Bytes level(10, 1);
   EXPECT_TRUE(std::ranges::equal((*cache)->put(key, level).bytes, level)) << "from memory";
   EXPECT_FALSE((*cache)->find(key));
-  left = 100;
-  (void)(*cache)->put(key, level);
-  EXPECT_TRUE((*cache)->find(key));
+  constexpr std::uintmax_t kNeeded = 50 + 10 + 8;  // the reserve, the level, its seal
+  for (const std::uintmax_t bytes : {kNeeded - 1, kNeeded, kNeeded + 1}) {
+    left = bytes;
+    const std::string own(64, static_cast<char>('0' + bytes - kNeeded + 1));
+    EXPECT_TRUE(std::ranges::equal((*cache)->put(own, level).bytes, level));
+    EXPECT_EQ((*cache)->find(own).has_value(), bytes >= kNeeded) << bytes;
+  }
+}
+
+TEST(LevelCache, afterARestartTheLeastRecentlyUsedStillGoesFirst) {
+  const test::TempFolder folder;
+  const std::string byAge = "2b7a05";  // the oldest first, in no order of names
+  const auto keyOf = [](char c) { return std::string(64, c); };
+  const auto fileOf = [&](char c) { return folder.path() / (keyOf(c) + ".level"); };
+  {
+    const auto cache = LevelCache::open(folder.path(), 60);
+    for (const char c : std::string("05ba27")) (void)(*cache)->put(keyOf(c), Bytes(10, 1));
+  }
+  const auto hourAgo = std::filesystem::file_time_type::clock::now() - std::chrono::hours(1);
+  for (std::size_t age = 0; age < byAge.size(); ++age)
+    std::filesystem::last_write_time(fileOf(byAge[age]), hourAgo + std::chrono::seconds(age));
+  const auto expectKept = [&](std::size_t gone) {
+    for (std::size_t age = 0; age < byAge.size(); ++age)
+      EXPECT_EQ(std::filesystem::exists(fileOf(byAge[age])), age >= gone) << gone << ", " << age;
+  };
+  auto cache = LevelCache::open(folder.path(), 60);
+  expectKept(0);
+  cache = LevelCache::open(folder.path(), 59);
+  expectKept(1);
+  for (const char next : {'c', 'd'}) (void)(*cache)->put(keyOf(next), Bytes(10, 1));
+  expectKept(3);
+  EXPECT_TRUE((*cache)->find(keyOf(byAge[3])));
+  (void)(*cache)->put(keyOf('e'), Bytes(10, 1));
+  EXPECT_TRUE(std::filesystem::exists(fileOf(byAge[3]))) << "used since";
+  EXPECT_FALSE(std::filesystem::exists(fileOf(byAge[4])));
+  EXPECT_TRUE((*cache)->find(keyOf(byAge[5])));
+  cache = LevelCache::open(folder.path(), 10);
+  EXPECT_TRUE((*cache)->find(keyOf(byAge[5]))) << "used last";
+  EXPECT_EQ((*cache)->bytes(), 10u);
 }
 
 TEST_F(LevelJobsTest, addressesTakeTurns) {

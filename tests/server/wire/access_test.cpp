@@ -2,9 +2,15 @@
 #include "server/wire/access.h"
 
 #include <gtest/gtest.h>
+#include <openssl/evp.h>
+#include <openssl/hmac.h>
 
+#include <array>
+#include <chrono>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <span>
 
 #include "proto/checksum.h"
 #include "server/wire/limits.h"
@@ -103,6 +109,63 @@ TEST(Tickets, ofOneServerAreTakenOnceByEveryOtherThatHasItsKey) {
   EXPECT_EQ(two.takeTicket(ticket, now), std::nullopt) << "used";
   EXPECT_EQ(one.takeTicket(ticket, now), digestOf(kReader));
   EXPECT_EQ(one.takeTicket(ticket, now), std::nullopt) << "used, and its own is no foreign one";
+}
+
+std::int64_t systemSeconds() {
+  return std::chrono::duration_cast<std::chrono::seconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+/// What a server that has `key` writes into a ticket which ends at that second of the system's
+/// clock.
+std::string ticketUntil(std::int64_t end, const std::string& key) {
+  std::array<char, 17> hex{};
+  std::snprintf(hex.data(), hex.size(), "%016llx", static_cast<unsigned long long>(end));
+  std::string out = std::string(16, 'f') + hex.data() + std::string(64, '0');
+  const auto addHex = [&](std::span<const std::uint8_t> bytes) {
+    for (const std::uint8_t byte : bytes) {
+      std::snprintf(hex.data(), hex.size(), "%02x", unsigned{byte});
+      out += hex.data();
+    }
+  };
+  addHex(*digestOf(kReader));
+  SecretDigest mac{};
+  unsigned bytes = 0;
+  EXPECT_NE(
+      ::HMAC(::EVP_sha256(), key.data(), static_cast<int>(key.size()),
+             reinterpret_cast<const std::uint8_t*>(out.data()), out.size(), mac.data(), &bytes),
+      nullptr);
+  addHex(mac);
+  return out;
+}
+
+TEST(Tickets, ofAnotherServerEndWithinThirtySeconds) {
+  const std::string key(32, 'k');
+  constexpr std::int64_t kMost = limits::kTicketTime.count();
+  for (const std::int64_t left : {std::int64_t{-1}, std::int64_t{0}, std::int64_t{1}, kMost - 1,
+                                  kMost, kMost + 1, std::int64_t{1} << 40}) {
+    std::optional<SecretDigest> taken;
+    std::int64_t now = 0;
+    do {  // again where a second has passed meanwhile
+      Access access(*Tokens::parse("read * " + kReader), key);
+      now = systemSeconds();
+      taken = access.takeTicket(ticketUntil(now + left, key));
+    } while (systemSeconds() != now);
+    EXPECT_EQ(taken, 0 < left && left <= kMost ? digestOf(kReader) : std::nullopt) << left;
+  }
+}
+
+// The steady clock alone goes on here, so that the ticket itself is still good when its mark goes.
+TEST(Tickets, ofAnotherServerAreRememberedAsUsedAsLongAsOneMayLast) {
+  const std::string key(32, 'k');
+  Access access(*Tokens::parse("read * " + kReader), key);
+  const std::string ticket = ticketUntil(systemSeconds() + limits::kTicketTime.count(), key);
+  const auto now = Access::Clock::now();
+  EXPECT_EQ(access.takeTicket(ticket, now), digestOf(kReader));
+  EXPECT_EQ(access.takeTicket(ticket, now + limits::kTicketTime - std::chrono::nanoseconds(1)),
+            std::nullopt);
+  EXPECT_EQ(access.takeTicket(ticket, now + limits::kTicketTime), digestOf(kReader));
 }
 
 TEST(Tickets, theKeyOfAFolderIsMadeOnceAndForItsOwnerAlone) {

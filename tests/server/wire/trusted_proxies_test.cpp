@@ -111,6 +111,19 @@ TEST(TrustedProxies, theProxyProtocolsHeadIsReadOnceItIsWhole) {
   EXPECT_FALSE(readProxyHead(local).client) << "the proxy asks for itself";
 }
 
+TEST(TrustedProxies, aHeadHasAtMost4096Bytes) {
+  for (const std::string& address : {std::string("203.0.113.9"), std::string("2001:db8::7")})
+    for (const std::size_t bytes : {4095, 4096, 4097}) {
+      const auto whole = headFor(address, bytes - headFor(address).size());
+      ASSERT_EQ(whole.size(), bytes);
+      using State = ProxyHead::State;
+      EXPECT_EQ(readProxyHead(whole).state, bytes <= 4096 ? State::kWhole : State::kWrong) << bytes;
+      EXPECT_EQ(readProxyHead(std::span(whole).first(16)).state,
+                bytes <= 4096 ? State::kIncomplete : State::kWrong)
+          << bytes << ", which its first 16 tell";
+    }
+}
+
 TEST(TrustedProxies, whatIsNoHeadOfTheProxyProtocolIsTold) {
   for (const std::size_t at : {0, 5, 11, 12}) {
     auto bytes = headFor("203.0.113.9");
