@@ -211,6 +211,8 @@ test: setup build build-checked test-units test-system
 
 test-units:
 	@ctest --preset checked --parallel $(JOBS)
+	echo "skipped:"
+	sed -n 's/^\[  SKIPPED \] \([^ ]*\) (.*/  \1/p' $(CHECKED)/Testing/Temporary/LastTest.log
 
 # A browser or a network namespace on a busy machine may stall for longer than any test foresees:
 # only tests with the label `chance` are tried a second time, and the run lists them.

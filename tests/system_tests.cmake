@@ -31,6 +31,11 @@ foreach(script IN ITEMS view pipes completion)
   qtet_system_test(${script} ROOM simplify
     COMMAND ${here}/simplify/commands/${script}.sh $<TARGET_FILE:qtet> ${out}/${script})
 endforeach()
+if(NOT QTET_SANITIZE)
+  qtet_system_test(same_bytes ROOM simplify COMMAND ${here}/simplify/commands/same_bytes.sh
+    $<TARGET_FILE:qtet> ${PROJECT_SOURCE_DIR}/build/checked/bin/qtet ${here}/golden
+    ${out}/same_bytes)
+endif()
 foreach(script IN ITEMS slow_clients docker_health)
   qtet_system_test(${script} ROOM server
     COMMAND ${here}/server/program/${script}.sh ${bin} ${out}/${script})

@@ -168,7 +168,7 @@ TEST(QtetSimplify, logsAreTheToolsByteForByte) {
 }
 
 TEST(QtetSimplify, soAreThoseOfALargeMeshAndItsProgressIsTold) {
-  const ToolsLog tool = toolsLog("fin", finSample(), "--measure none");
+  const ToolsLog tool = toolsLog("fin", finSample(20'000), "--measure none");
   const Arrays arrays(tool.mesh);
   struct Told {
     std::thread::id thread = std::this_thread::get_id();
@@ -194,7 +194,7 @@ TEST(QtetSimplify, soAreThoseOfALargeMeshAndItsProgressIsTold) {
 }
 
 TEST(QtetSimplify, aCallbackThatSaysSoEndsTheWork) {
-  const Arrays arrays(finSample());
+  const Arrays arrays(finSample(50'000));
   int calls = 0;
   qtet_simplify_options options = usual();
   options.user = &calls;

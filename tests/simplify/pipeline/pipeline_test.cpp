@@ -2,90 +2,19 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <fstream>
 #include <limits>
 
-#include "codec/files/atomic_file.h"
 #include "codec/log/log_file.h"
-#include "simplify/log/write_mesh.h"
-#include "simplify/read/read_mesh.h"
 #include "tests/simplify/mesh/tet_meshes.h"
 #include "tests/simplify/pipeline/field_meshes.h"
-#include "tests/support/paths/test_paths.h"
 
 namespace qtet {
 namespace {
-
-namespace fs = std::filesystem;
-
-Bytes contentOf(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 PipelineOptions usual() {
   PipelineOptions options;
   options.source = "mesh.vtu";
   return options;
-}
-
-struct Case {
-  const char* words;
-  void (*change)(PipelineOptions&);
-};
-
-// What a caller sets is what the tool's option of that name does.
-TEST(Pipeline, logsAreTheToolsByteForByte) {
-  const fs::path folder = testing::freshFolder("pipeline-tool");
-  ASSERT_TRUE(writeFileAtomically(folder / "mesh.vtu", vtuBytes(testing::boxWithFields())));
-  for (const Case& c : {
-           Case{"", [](PipelineOptions&) {}},
-           Case{"--algorithm paper --measure none",
-                [](PipelineOptions& o) {
-                  o.algorithm = Algorithm::kPaper;
-                  o.measure.reset();
-                }},
-           Case{"--target-ratio 0.3 --position-bits 18 --field-bits 9 --threads 2",
-                [](PipelineOptions& o) {
-                  o.fusion.targetRatio = 0.3;
-                  o.quantise = {18, 9};
-                  o.fusion.threads = 2;
-                }},
-           Case{"--lossless --keep-order --geometry-codec adaptive",
-                [](PipelineOptions& o) {
-                  o.keep = {true, true};
-                  o.valueCodec = CodecId::kAdaptive;
-                }},
-           Case{"--field-weight Swirl=3 --boundary-weight 20 --shape-weight 1 --placement optimal "
-                "--envelope-tolerance 0.01 --preserve-regions Label",
-                [](PipelineOptions& o) {
-                  o.fieldWeights = {{"Swirl", 3}};
-                  o.regions = "Label";
-                  o.fusion.cost.boundaryWeight = 20;
-                  o.fusion.shapeWeight = 1;
-                  o.fusion.placement = PlacementRule::kOptimal;
-                  o.fusion.envelopeTolerance = 0.01;
-                }},
-           Case{"--layout regions --cells-per-packet 300",
-                [](PipelineOptions& o) { o.fusion.bands.cellsPerPacket = 300; }},
-           Case{"--measure all --max-boundary-error 0.02 --max-field-error Scalar=0.05",
-                [](PipelineOptions& o) {
-                  o.measure->effort = Effort::kAll;
-                  o.measure->bounds = {0.02, {{"Scalar", 0.05}}};
-                }},
-       }) {
-    const std::string command = "cd '" + folder.string() + "' && '" + testing::kTool +
-                                "' simplify mesh.vtu -o log.qtet -q " + c.words;
-    ASSERT_EQ(std::system(command.c_str()), 0) << c.words;
-    Result<ReadMesh> read = readMesh(folder / "mesh.vtu");
-    ASSERT_TRUE(read);
-    PipelineOptions options = usual();
-    c.change(options);
-    const Result<PipelineOutput> made = simplifyToLog(std::move(read->mesh), options);
-    ASSERT_TRUE(made) << made.error().text();
-    EXPECT_EQ(made->log, contentOf(folder / "log.qtet")) << c.words;
-  }
 }
 
 TEST(Pipeline, theReportIsOfTheBytes) {
