@@ -15,7 +15,9 @@
 #include "server/program/request_report.h"
 #include "server/routes/access_routes.h"
 #include "server/stream/stream_session.h"
+#include "server/wire/handshakes.h"
 #include "server/wire/peer.h"
+#include "server/wire/trusted_proxies.h"
 
 namespace qtet {
 namespace {

@@ -16,6 +16,7 @@
 #include <boost/asio/redirect_error.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <boost/asio/thread_pool.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <cassert>
 #include <chrono>
@@ -27,6 +28,7 @@
 
 #include "server/program/http_session.h"
 #include "server/routes/http_router.h"
+#include "server/wire/handshakes.h"
 #include "server/wire/process_figures.h"
 
 namespace qtet {

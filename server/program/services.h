@@ -1,9 +1,6 @@
 // What every connection needs. The objects outlive all connections.
 #pragma once
 
-#include <utility>  // before any Asio header: 1.74 uses std::exchange without it
-
-#include <boost/asio/thread_pool.hpp>
 #include <chrono>
 #include <functional>
 #include <string>
@@ -15,13 +12,19 @@
 #include "server/store/mesh_store.h"
 #include "server/wire/access.h"
 #include "server/wire/access_log.h"
-#include "server/wire/address_limits.h"
-#include "server/wire/handshakes.h"
 #include "server/wire/limits.h"
 #include "server/wire/metrics.h"
-#include "server/wire/trusted_proxies.h"
+
+// Only declared, like the three classes below: the tests of a running server compile without Asio.
+namespace boost::asio {
+class thread_pool;
+}
 
 namespace qtet {
+
+class AddressLimits;
+class Handshakes;
+struct TrustedProxies;
 
 /// How long a client may take.
 struct Timeouts {

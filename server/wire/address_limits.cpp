@@ -3,6 +3,7 @@
 #include "server/wire/address_limits.h"
 
 #include <algorithm>
+#include <boost/asio/ip/address.hpp>
 
 #include "server/wire/limits.h"
 

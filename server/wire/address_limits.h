@@ -2,12 +2,15 @@
 #pragma once
 
 #include <array>
-#include <boost/asio/ip/address.hpp>
 #include <chrono>
 #include <cstdint>
 #include <map>
 #include <memory>
 #include <mutex>
+
+namespace boost::asio::ip {
+class address;
+}
 
 namespace qtet {
 

@@ -15,8 +15,8 @@
 
 #include "proto/bytes.h"
 #include "server/wire/file_part.h"
+#include "server/wire/proxy_head.h"
 #include "server/wire/tls_context.h"
-#include "server/wire/trusted_proxies.h"
 
 namespace qtet {
 

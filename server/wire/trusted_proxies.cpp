@@ -1,8 +1,14 @@
+#include <utility>  // before any Asio header: 1.74 uses std::exchange without it
+
 #include "server/wire/trusted_proxies.h"
 
 #include <algorithm>
-#include <array>
+#include <boost/asio/ip/address.hpp>
+#include <boost/asio/ip/network_v4.hpp>
+#include <boost/asio/ip/network_v6.hpp>
 #include <boost/system/error_code.hpp>
+#include <string>
+#include <vector>
 
 namespace qtet {
 namespace {
@@ -18,11 +24,6 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
 }
 
-ip::address plain(const ip::address& address) {
-  if (!address.is_v6() || !address.to_v6().is_v4_mapped()) return address;
-  return ip::make_address_v4(ip::v4_mapped, address.to_v6());
-}
-
 /// "192.0.2.1", "192.0.2.1:4711", "2001:db8::1", "[2001:db8::1]:4711".
 std::optional<ip::address> addressOf(std::string_view text) {
   if (text.starts_with('[')) {
@@ -35,7 +36,7 @@ std::optional<ip::address> addressOf(std::string_view text) {
   error_code ec;
   const ip::address out = ip::make_address(std::string(text), ec);
   if (ec) return std::nullopt;
-  return plain(out);
+  return plainAddress(out);
 }
 
 /// The value of `for` in an element of Forwarded, such as `for="[2001:db8::1]:4711";proto=https`.
@@ -70,14 +71,20 @@ std::optional<unsigned> bitsOf(std::string_view text) {
   return out;
 }
 
-std::uint16_t u16(std::span<const std::uint8_t> bytes, std::size_t at) {
-  return static_cast<std::uint16_t>(bytes[at] << 8 | bytes[at + 1]);
-}
-
 }  // namespace
 
+struct Networks::Blocks {
+  std::vector<ip::network_v4> v4;
+  std::vector<ip::network_v6> v6;
+};
+
+ip::address plainAddress(const ip::address& address) {
+  if (!address.is_v6() || !address.to_v6().is_v4_mapped()) return address;
+  return ip::make_address_v4(ip::v4_mapped, address.to_v6());
+}
+
 Result<Networks> Networks::parse(std::string_view list) {
-  Networks out;
+  Blocks blocks;
   while (!list.empty()) {
     const std::size_t end = std::min(list.find(','), list.size());
     const std::string_view one = trimmed(list.substr(0, end));
@@ -96,24 +103,28 @@ Result<Networks> Networks::parse(std::string_view list) {
     if (!bits) return refused();
     if (address.is_v4()) {
       if (*bits > 32) return refused();
-      out.v4_.push_back(
+      blocks.v4.push_back(
           ip::network_v4(address.to_v4(), static_cast<unsigned short>(*bits)).canonical());
     } else if (const auto network = network6(address.to_v6(), *bits)) {
-      out.v6_.push_back(*network);
+      blocks.v6.push_back(*network);
     } else {
       return refused();
     }
   }
+  Networks out;
+  if (!blocks.v4.empty() || !blocks.v6.empty())
+    out.blocks_ = std::make_shared<const Blocks>(std::move(blocks));
   return out;
 }
 
 bool Networks::contains(const ip::address& address) const {
-  const ip::address one = plain(address);
+  if (!blocks_) return false;
+  const ip::address one = plainAddress(address);
   if (one.is_v4())
-    return std::ranges::any_of(v4_, [&](const ip::network_v4& network) {
+    return std::ranges::any_of(blocks_->v4, [&](const ip::network_v4& network) {
       return ip::network_v4(one.to_v4(), network.prefix_length()).canonical() == network;
     });
-  return std::ranges::any_of(v6_, [&](const ip::network_v6& network) {
+  return std::ranges::any_of(blocks_->v6, [&](const ip::network_v6& network) {
     return ip::network_v6(one.to_v6(), network.prefix_length()).canonical() == network;
   });
 }
@@ -132,37 +143,6 @@ std::optional<ip::address> forwardedClient(const TrustedProxies& proxies, std::s
     if (!proxies.networks.contains(*address)) break;
   }
   return last;
-}
-
-ProxyHead readProxyHead(std::span<const std::uint8_t> bytes) {
-  using State = ProxyHead::State;
-  constexpr std::array<std::uint8_t, 12> kSignature = {0x0D, 0x0A, 0x0D, 0x0A, 0x00, 0x0D,
-                                                       0x0A, 0x51, 0x55, 0x49, 0x54, 0x0A};
-  constexpr std::size_t kFixedBytes = 16;
-  constexpr std::uint8_t kLocal = 0x20, kProxy = 0x21, kTcp4 = 0x11, kTcp6 = 0x21;
-  const std::size_t known = std::min(bytes.size(), kSignature.size());
-  if (!std::ranges::equal(bytes.first(known), std::span(kSignature).first(known)))
-    return {State::kWrong};
-  if (bytes.size() < kFixedBytes) return {};
-  const std::uint8_t command = bytes[12], family = bytes[13];
-  const std::size_t whole = kFixedBytes + u16(bytes, 14);
-  if ((command != kLocal && command != kProxy) || whole > kMaxProxyHeadBytes)
-    return {State::kWrong};
-  if (bytes.size() < whole) return {};
-  ProxyHead out{State::kWhole, whole};
-  const auto at = bytes.subspan(kFixedBytes);
-  if (command == kProxy && family == kTcp4) {
-    ip::address_v4::bytes_type v4;
-    if (whole < kFixedBytes + 12) return {State::kWrong};
-    std::ranges::copy(at.first(v4.size()), v4.begin());
-    out.client = ip::make_address_v4(v4);
-  } else if (command == kProxy && family == kTcp6) {
-    ip::address_v6::bytes_type v6;
-    if (whole < kFixedBytes + 36) return {State::kWrong};
-    std::ranges::copy(at.first(v6.size()), v6.begin());
-    out.client = plain(ip::make_address_v6(v6));
-  }
-  return out;
 }
 
 }  // namespace qtet

@@ -10,7 +10,6 @@
 #include <fstream>
 #include <functional>
 #include <new>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <tuple>
 #include <vector>
@@ -21,6 +20,7 @@
 #include "tests/server/http/held_check.h"
 #include "tests/server/program/loopback.h"
 #include "tests/server/program/served_folder.h"
+#include "tests/server/support/json.h"
 #include "tests/support/forged_log.h"
 #include "tests/support/meshes.h"
 #include "tests/support/written_log.h"
@@ -43,8 +43,8 @@ namespace qtet {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
 using test::HttpResponse;
+using test::Json;
 using test::RawClient;
 
 constexpr const char* kToken = "aSecretOfTwentyTwoChars";

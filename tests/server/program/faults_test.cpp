@@ -8,7 +8,6 @@
 
 #include <csignal>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "proto/checksum.h"
@@ -16,6 +15,7 @@
 #include "tests/server/program/program.h"
 #include "tests/server/program/served_folder.h"
 #include "tests/server/stream/swarm.h"
+#include "tests/server/support/json.h"
 #include "tests/server/wire/tls_client.h"
 #include "tests/support/faults/fault_plan.h"
 #include "tests/support/paths/test_paths.h"
@@ -278,7 +278,7 @@ TEST_F(FaultsTest, theSystemsClockMayJumpAndEndsNothingAndHoldsNothing) {
   RawClient poster(port_);
   poster.send("POST /v1/tickets HTTP/1.1\r\nHost: a\r\nAuthorization: Bearer " + kToken +
               "\r\nContent-Length: 0\r\n\r\n");
-  const std::string ticket = nlohmann::json::parse(poster.receive().body)["ticket"];
+  const std::string ticket = test::Json::parse(poster.receive().body)["ticket"].string();
   constexpr std::int64_t kYears = 20LL * 366 * 86400;
   for (const std::int64_t shift : {kYears, -kYears, std::int64_t{0}}) {
     plan_->clockShift = shift;

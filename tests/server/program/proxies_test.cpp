@@ -4,18 +4,18 @@
 #include <algorithm>
 #include <chrono>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "tests/server/program/loopback.h"
 #include "tests/server/program/served_folder.h"
+#include "tests/server/support/json.h"
 
 namespace qtet {
 namespace {
 
-using Json = nlohmann::json;
+using test::Json;
 
 class Proxies : public ::testing::Test {
  protected:
@@ -32,13 +32,13 @@ class Proxies : public ::testing::Test {
   /// response has left, so those of two connections may change places and come after the client.
   std::vector<std::string> clients(std::size_t count) const {
     std::vector<std::string> out;
-    for (int wait = 0; wait < 1000 && out.size() < count; ++wait) {
-      if (wait > 0) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    (void)test::eventually([&] {
       out.clear();
       std::ifstream in(path_);
       for (std::string line; std::getline(in, line) && !in.eof();)
-        out.push_back(Json::parse(line)["client"]);
-    }
+        out.push_back(Json::parse(line)["client"].string());
+      return out.size() >= count;
+    });
     std::sort(out.begin(), out.end());
     return out;
   }

@@ -1,5 +1,3 @@
-#include <utility>  // before any Asio header: 1.74 uses std::exchange without it
-
 #include "server/store/level_jobs.h"
 
 #include <fcntl.h>
@@ -7,68 +5,20 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-#include <array>
 #include <atomic>
-#include <boost/asio/co_spawn.hpp>
-#include <boost/asio/detached.hpp>
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/write.hpp>
-#include <condition_variable>
 #include <fstream>
 #include <functional>
 #include <future>
 #include <latch>
-#include <mutex>
 #include <thread>
 #include <vector>
 
-#include "server/http/level_wait.h"
 #include "tests/server/program/loopback.h"
 #include "tests/server/program/served_folder.h"
+#include "tests/server/store/held_maker.h"
 
 namespace qtet {
 namespace {
-
-/// Makes levels when it is told to, and hears of being stopped.
-class HeldMaker {
- public:
-  Result<Bytes> operator()(const LevelRequest& request, const std::stop_token& stop) {
-    const std::stop_callback wake(stop, [this] { changed_.notify_all(); });
-    std::unique_lock lock(mutex_);
-    ++begun_;
-    changed_.notify_all();
-    changed_.wait(lock, [&] { return free_ || stop.stop_requested(); });
-    if (stop.stop_requested()) ++stopped_;
-    changed_.notify_all();
-    return Bytes(request.level + 1, 0x42);
-  }
-  void release() {
-    const std::scoped_lock lock(mutex_);
-    free_ = true;
-    changed_.notify_all();
-  }
-  void waitForBegun(int count) {
-    wait([&] { return begun_ >= count; });
-  }
-  void waitForStopped(int count) {
-    wait([&] { return stopped_ >= count; });
-  }
-  [[nodiscard]] int begun() {
-    const std::scoped_lock lock(mutex_);
-    return begun_;
-  }
-
- private:
-  template <class Condition>
-  void wait(Condition condition) {
-    std::unique_lock lock(mutex_);
-    ASSERT_TRUE(changed_.wait_for(lock, test::kPatience, condition));
-  }
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  bool free_ = false;
-  int begun_ = 0, stopped_ = 0;
-};
 
 class LevelJobsTest : public testing::Test {
  protected:
@@ -77,7 +27,7 @@ class LevelJobsTest : public testing::Test {
   LevelJobs::Options options(std::size_t most) { return {1, most, nullptr, std::ref(maker_)}; }
 
   test::ServedFolder folder_;
-  HeldMaker maker_;
+  test::HeldMaker maker_;
 };
 
 TEST_F(LevelJobsTest, aLevelIsMadeElsewhere) {
@@ -161,40 +111,6 @@ TEST_F(LevelJobsTest, withTheLastSubscriptionTheJobEnds) {
   second.reset();
   maker_.waitForStopped(1);
   EXPECT_EQ(jobs.counts().cancelled, 1u);
-}
-
-// Asio's reactor hands readiness on later than it hears of it; bytes that were read between the two
-// wake the watch up for nothing.
-TEST_F(LevelJobsTest, aWakeUpForNothingLeavesTheClientWatched) {
-  namespace asio = boost::asio;
-  using asio::ip::tcp;
-  LevelJobs jobs(options(1));
-  asio::io_context context;
-  tcp::acceptor acceptor(context, {asio::ip::address_v4::loopback(), 0});
-  std::optional<tcp::socket> client(context);
-  client->connect(acceptor.local_endpoint());
-  ClientSocket socket(acceptor.accept());
-  asio::write(*client, asio::buffer("request", 7));
-  while (socket.arrived() == Arrived::kNothing) std::this_thread::yield();
-  std::optional<LevelAnswer> answer;
-  asio::co_spawn(
-      context,
-      [&]() -> asio::awaitable<void> {
-        std::array<char, 16> bytes;
-        boost::system::error_code ec;
-        EXPECT_EQ(socket.read(bytes, ec), 7u);
-        answer = co_await waitForLevel(socket, jobs, level(2));
-      },
-      asio::detached);
-  while (maker_.begun() == 0) context.run_one_for(std::chrono::milliseconds(10));
-  while (context.run_one_for(test::kQuiet) != 0) continue;  // the wake-up
-  EXPECT_FALSE(answer);
-  client.reset();
-  ASSERT_TRUE(test::eventually([&] { return context.poll(), answer.has_value(); }))
-      << "the client's end was not seen";
-  EXPECT_TRUE(std::holds_alternative<LevelRefusal>(*answer) &&
-              std::get<LevelRefusal>(*answer) == LevelRefusal::kGone);
-  maker_.waitForStopped(1);
 }
 
 TEST_F(LevelJobsTest, aSubscriptionMayOutliveTheJobs) {

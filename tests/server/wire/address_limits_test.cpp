@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <boost/asio/ip/address.hpp>
 #include <vector>
 
 namespace qtet {

@@ -1,3 +1,5 @@
+#include <utility>  // before any Asio header: 1.74 uses std::exchange without it
+
 #include "tests/server/wire/tls_client.h"
 
 #include <openssl/pem.h>
@@ -6,6 +8,10 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/ssl/context.hpp>
+#include <boost/asio/ssl/stream.hpp>
 #include <boost/asio/write.hpp>
 #include <cstdlib>
 #include <memory>
@@ -60,13 +66,20 @@ std::string clientHello() {
   return bytes;
 }
 
+struct TlsClient::Line {
+  asio::io_context context;
+  ssl::context tls{ssl::context::tls_client};
+  ssl::stream<asio::ip::tcp::socket> stream{context, tls};
+};
+
 TlsClient::TlsClient(std::uint16_t port, const std::filesystem::path& certificate,
                      const TlsChoice& choice)
-    : stream_(context_, tls_) {
-  SSL* session = stream_.native_handle();
-  tls_.load_verify_file(certificate.string());
-  ::SSL_set1_verify_cert_store(session, ::SSL_CTX_get_cert_store(tls_.native_handle()));
-  stream_.set_verify_mode(ssl::verify_peer);
+    : line_(std::make_unique<Line>()) {
+  auto& [context, tls, stream] = *line_;
+  SSL* session = stream.native_handle();
+  tls.load_verify_file(certificate.string());
+  ::SSL_set1_verify_cert_store(session, ::SSL_CTX_get_cert_store(tls.native_handle()));
+  stream.set_verify_mode(ssl::verify_peer);
   // Level 0 lets a client offer what is forbidden here, too.
   ::SSL_set_cipher_list(session, "ALL:@SECLEVEL=0");
   ::SSL_set_min_proto_version(session, choice.least);
@@ -75,28 +88,28 @@ TlsClient::TlsClient(std::uint16_t port, const std::filesystem::path& certificat
     ::SSL_set_alpn_protos(session, reinterpret_cast<const unsigned char*>(choice.alpn.data()),
                           static_cast<unsigned>(choice.alpn.size()));
   error_code ec;
-  stream_.next_layer().connect({asio::ip::address_v4::loopback(), port}, ec);
+  stream.next_layer().connect({asio::ip::address_v4::loopback(), port}, ec);
   const timeval patience{std::chrono::seconds(kPatience).count(), 0};
-  ::setsockopt(stream_.next_layer().native_handle(), SOL_SOCKET, SO_RCVTIMEO, &patience,
+  ::setsockopt(stream.next_layer().native_handle(), SOL_SOCKET, SO_RCVTIMEO, &patience,
                sizeof(patience));
-  if (!ec) stream_.handshake(ssl::stream_base::client, ec);
+  if (!ec) stream.handshake(ssl::stream_base::client, ec);
   connected_ = !ec;
 }
 
-std::string TlsClient::version() const {
-  return ::SSL_get_version(const_cast<TlsClient*>(this)->stream_.native_handle());
-}
+TlsClient::~TlsClient() = default;
+
+std::string TlsClient::version() const { return ::SSL_get_version(line_->stream.native_handle()); }
 
 std::string TlsClient::alpn() const {
   const unsigned char* name = nullptr;
   unsigned bytes = 0;
-  ::SSL_get0_alpn_selected(const_cast<TlsClient*>(this)->stream_.native_handle(), &name, &bytes);
+  ::SSL_get0_alpn_selected(line_->stream.native_handle(), &name, &bytes);
   return {reinterpret_cast<const char*>(name), bytes};
 }
 
 bool TlsClient::send(std::string_view bytes) {
   error_code ec;
-  asio::write(stream_, asio::buffer(bytes), ec);
+  asio::write(line_->stream, asio::buffer(bytes), ec);
   return !ec;
 }
 
@@ -104,7 +117,7 @@ bool TlsClient::fill() {
   std::array<char, 16384> piece;
   error_code ec;
   std::size_t count = 0;
-  do count = stream_.read_some(asio::buffer(piece), ec);
+  do count = line_->stream.read_some(asio::buffer(piece), ec);
   while (ec == asio::error::interrupted);
   buffer_.append(piece.data(), count);
   return count > 0;
@@ -157,7 +170,7 @@ std::string TlsClient::stream(const std::string& mesh) {
 }
 
 void TlsClient::updateKey(int times) {
-  SSL* session = stream_.native_handle();
+  SSL* session = line_->stream.native_handle();
   for (int i = 0; i < times; ++i) {
     ::SSL_key_update(session, SSL_KEY_UPDATE_NOT_REQUESTED);
     ::SSL_do_handshake(session);
@@ -166,7 +179,7 @@ void TlsClient::updateKey(int times) {
 
 void TlsClient::shutdown() {
   error_code ec;
-  stream_.shutdown(ec);
+  line_->stream.shutdown(ec);
 }
 
 }  // namespace qtet::test

@@ -1,14 +1,9 @@
 // A client over TLS that says what it is told, and certificates to serve it with.
 #pragma once
 
-#include <utility>  // before any Asio header: 1.74 uses std::exchange without it
-
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/tcp.hpp>
-#include <boost/asio/ssl/context.hpp>
-#include <boost/asio/ssl/stream.hpp>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -40,6 +35,10 @@ class TlsClient {
   TlsClient(std::uint16_t port, const std::filesystem::path& certificate,
             const TlsChoice& choice = {});
 
+  ~TlsClient();
+  TlsClient(const TlsClient&) = delete;
+  TlsClient& operator=(const TlsClient&) = delete;
+
   [[nodiscard]] bool connected() const { return connected_; }
   [[nodiscard]] std::string version() const;
   [[nodiscard]] std::string alpn() const;
@@ -62,9 +61,8 @@ class TlsClient {
  private:
   bool fill();
 
-  boost::asio::io_context context_;
-  boost::asio::ssl::context tls_{boost::asio::ssl::context::tls_client};
-  boost::asio::ssl::stream<boost::asio::ip::tcp::socket> stream_;
+  struct Line;
+  std::unique_ptr<Line> line_;
   bool connected_ = false;
   std::string buffer_;  // what came and was not asked for yet
 };

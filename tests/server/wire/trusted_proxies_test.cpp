@@ -1,11 +1,16 @@
+#include <utility>  // before any Asio header: 1.74 uses std::exchange without it
+
 #include "server/wire/trusted_proxies.h"
 
 #include <gtest/gtest.h>
 
+#include <boost/asio/ip/address.hpp>
 #include <initializer_list>
 #include <random>
 #include <string>
 #include <vector>
+
+#include "server/wire/proxy_head.h"
 
 namespace qtet {
 namespace {
