@@ -161,7 +161,7 @@ TEST(RandomSolids, haveTunnelsCavitiesPartsAndPinches) {
     count["singular edges"] += !report.singularEdges.empty();
     count["manifold"] += report.singularVertices.empty();
   }
-  for (const auto& [what, seeds] : count) EXPECT_GE(seeds, 5) << what;
+  for (const auto& [what, seeds] : count) EXPECT_GE(seeds, 2) << what;
 }
 
 }  // namespace

@@ -5,9 +5,11 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "codec/files/atomic_file.h"
 #include "simplify/clean/clean_mesh.h"
 #include "simplify/clean/quantise.h"
 #include "simplify/clean/verify.h"
+#include "simplify/log/write_mesh.h"
 #include "simplify/read/read_mesh.h"
 #include "tests/support/block_grid.h"
 #include "tests/support/meshes.h"
