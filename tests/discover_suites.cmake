@@ -1,6 +1,6 @@
-# qtet_discover_suites(TARGET ROOM): a test of CTest for each suite of a GoogleTest program, long ones
-# in runs of tests. One process a test would cost more than most tests: the sanitized program needs
-# a quarter of a second to start.
+# qtet_discover_suites(TARGET ROOM): a test of CTest for each suite of a GoogleTest program, long
+# suites in several. One process a test would cost more than most tests: a sanitized program needs a
+# tenth of a second to start.
 function(qtet_discover_suites target room)
   set(list ${CMAKE_CURRENT_BINARY_DIR}/${target}_suites.cmake)
   add_custom_command(TARGET ${target} POST_BUILD
@@ -9,6 +9,7 @@ function(qtet_discover_suites target room)
       -P ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/list_suites.cmake
     VERBATIM)
   file(WRITE ${list}.none "add_test(${room}.not_built NOT_BUILT)\n")
-  file(WRITE ${list}.in "if(EXISTS \"${list}\")\n  include(\"${list}\")\nelse()\n  include(\"${list}.none\")\nendif()\n")
+  file(WRITE ${list}.in "if(EXISTS \"${list}\")\n  include(\"${list}\")\n"
+    "else()\n  include(\"${list}.none\")\nendif()\n")
   set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${list}.in)
 endfunction()

@@ -19,7 +19,8 @@ macro(finish)
     if(run GREATER 0)
       string(APPEND name ".${run}")
     endif()
-    string(APPEND tests "add_test([=[${ROOM}.${name}]=] ${PROGRAM} [=[--gtest_filter=${filter}]=])\n"
+    string(APPEND tests
+      "add_test([=[${ROOM}.${name}]=] ${PROGRAM} [=[--gtest_filter=${filter}]=])\n"
       "set_tests_properties([=[${ROOM}.${name}]=] PROPERTIES LABELS ${ROOM} TIMEOUT ${HANGS}"
       " WORKING_DIRECTORY [=[${FOLDER}]=])\n")
   endif()

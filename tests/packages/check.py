@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Compares the programs that Makefile, .ci and the test scripts call with .ci/packages.txt: a program
-that is installed here by chance alone would be missing on a bare machine.
+"""Compares the programs that Makefile, .ci and the test scripts call with .ci/packages.txt: what is
+installed here by chance alone would be missing on a bare machine.
     check.py [ROOT]      exit code 77: no Debian, nothing to compare with"""
 
 import pathlib
@@ -90,10 +90,9 @@ def main():
         if line.endswith(" required")
     ]
     known = with_dependencies([*listed, *always, "apt", "nodejs", "npm"])
-    scripts = [root / "Makefile", *sorted((root / ".ci").glob("*")), *sorted((root / ".packaging").glob("*.sh"))]
-    for ending in ("sh", "py", "mjs"):
-        scripts += sorted((root / "tests").glob(f"**/*.{ending}"))
-    scripts = [s for s in scripts if "node_modules" not in s.parts and s.suffix != ".txt" and s.is_file()]
+    patterns = ["Makefile", ".ci/run", ".ci/*.sh", ".packaging/*.sh"]
+    patterns += [f"tests/**/*.{ending}" for ending in ("sh", "py", "mjs")]
+    scripts = [s for p in patterns for s in sorted(root.glob(p)) if "node_modules" not in s.parts]
     calls = {script.relative_to(root): words(script) - OPTIONAL.keys() for script in scripts}
     brought = owners(set().union(*calls.values()))
     wrong = [
@@ -105,7 +104,7 @@ def main():
     for line in wrong:
         print(line)
     if wrong:
-        print("packages: add the package to .ci/packages.txt, or the program to OPTIONAL with a reason")
+        print("packages: add the package to .ci/packages.txt, or the program to OPTIONAL")
         return 1
     print(f"packages: {len(scripts)} scripts call {len(brought)} programs of listed packages")
     # A pattern that finds nothing would find no fault.

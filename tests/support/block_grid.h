@@ -1,4 +1,4 @@
-// Block-structured meshes cut into tetrahedra, as the paper's data sets are: small stand-ins for them.
+// Block-structured meshes cut into tetrahedra: small stand-ins for the paper's data sets.
 #pragma once
 
 #include <array>
@@ -8,9 +8,9 @@
 
 namespace qtet::testing {
 
-/// A grid of cells[0] x cells[1] x cells[2] hexahedra, each cut into five tetrahedra; neighbours
-/// alternate, so that their faces fit. `place` puts grid point (i, j, k) into space. One scalar point
-/// field, "Distance" from the origin. All cells are positive where `place` keeps the orientation.
+/// A grid of cells[0] x cells[1] x cells[2] hexahedra, each cut into five positive tetrahedra;
+/// neighbours alternate, so that their faces fit. `place` puts grid point (i, j, k) into space. One
+/// scalar point field, "Distance" from the origin.
 [[nodiscard]] TetMesh blockGrid(std::array<int, 3> cells,
                                 const std::function<Position(int, int, int)>& place);
 

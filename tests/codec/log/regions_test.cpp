@@ -161,7 +161,7 @@ TEST_P(Regions, anyOrderGivesMeshesOnTheWayAndTheSameSlotsInTheEnd) {
   const auto expected = outcome(refined(*log_, fileOrder(index())));
   const auto chi = eulerCharacteristics(mesh_);
   std::mt19937 random(1);
-  for (int trial = 0; trial < 8; ++trial) {
+  for (int trial = 0; trial < 3; ++trial) {
     Refiner refiner(index());
     for (const std::uint32_t chunk : randomOrder(index(), random)) {
       const Status s = applyChunk(*log_, refiner, chunk, allFields(*log_));
@@ -350,7 +350,7 @@ TEST(RegionsHistory, fusionsThatReachBeyondANodeAreRefused) {
 
 TEST(RegionsOfRandomSolids, areSolidsAfterEveryChunkInEveryOrder) {
   std::size_t withPackets = 0;
-  for (std::uint32_t seed = 0; seed < 40; ++seed) {
+  for (std::uint32_t seed = 0; seed < 16; ++seed) {
     const auto solid = testing::randomSolid(seed);
     SCOPED_TRACE("seed " + std::to_string(seed) + ": " + solid.description);
     const FusionHistory history = historyOf(solid.mesh, 100);
@@ -371,7 +371,7 @@ TEST(RegionsOfRandomSolids, areSolidsAfterEveryChunkInEveryOrder) {
     const auto same = sameMesh(meshOf(refiner, solid.mesh), solid.mesh);
     EXPECT_TRUE(same) << same.error().text();
   }
-  EXPECT_GT(withPackets, 10u);
+  EXPECT_GT(withPackets, 4u);
 }
 
 }  // namespace

@@ -180,10 +180,10 @@ TEST(Fused, regionsAndTheirInterfacesKeepTheirTopology) {
 TEST(Fused, theEnvelopeGivesWayByItsToleranceAndNoMore) {
   // A cylinder-like notch makes the boundary concave and convex; the outside distance is measured
   // by brute force, which shares nothing with the bound.
-  const LatticeMesh mesh = gridMesh(9, 3, [](int i, int j, int) {
-    return (i - 4) * (i - 4) + (j - 4) * (j - 4) <= 17 && (i != 4 || j != 4);
+  const LatticeMesh mesh = gridMesh(7, 3, [](int i, int j, int) {
+    return (i - 3) * (i - 3) + (j - 3) * (j - 3) <= 10 && (i != 3 || j != 3);
   });
-  const double diagonal = std::sqrt(3.0) * 9 * 64;
+  const double diagonal = std::sqrt(3.0) * 7 * 64;
   double farthest[2]{};
   for (const double tolerance : {0.0, 0.01}) {
     FusionOptions options;

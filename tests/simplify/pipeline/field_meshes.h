@@ -8,8 +8,7 @@
 namespace qtet::testing {
 
 /// The sample box with a vector on its points, and on its cells a label and a value.
-[[nodiscard]] inline TetMesh boxWithFields() {
-  TetMesh mesh = boxSample();
+[[nodiscard]] inline TetMesh boxWithFields(TetMesh mesh = boxSample()) {
   MeshField swirl{"Swirl", 3, "float32", {}, "point"}, label{"Label", 1, "int32", {}, "cell"},
       height{"Height", 1, "float64", {}, "cell"};
   for (const Position& p : mesh.points)
