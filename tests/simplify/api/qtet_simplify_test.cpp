@@ -99,10 +99,15 @@ qtet_status simplified(const Made& log, const Arrays& arrays,
   return qtet_simplify(log.get(), sizeof arrays.input, &arrays.input, sizeof options, &options);
 }
 
-/// 625 cells, where what is made does not matter.
+TetMesh gridOf(int n) {
+  return testing::blockGrid({n, n, n}, [n](int i, int j, int k) {
+    return Position{1.0 * i / n, 1.0 * j / n, 1.0 * k / n};
+  });
+}
+
+/// 625 cells, where what is made of them does not matter.
 TetMesh smallBox() {
-  TetMesh grid = testing::blockGrid(
-      {5, 5, 5}, [](int i, int j, int k) { return Position{0.2 * i, 0.2 * j, 0.2 * k}; });
+  TetMesh grid = gridOf(5);
   grid.fields.front().name = "Scalar";
   return testing::boxWithFields(std::move(grid));
 }
@@ -177,7 +182,7 @@ TEST(QtetSimplify, logsAreTheToolsByteForByte) {
 }
 
 TEST(QtetSimplify, soAreThoseOfALargeMeshAndItsProgressIsTold) {
-  const ToolsLog tool = toolsLog("fin", finSample(4'000), "--measure none");
+  const ToolsLog tool = toolsLog("grid", gridOf(12), "--measure none");
   const Arrays arrays(tool.mesh);
   struct Told {
     std::thread::id thread = std::this_thread::get_id();
@@ -203,7 +208,7 @@ TEST(QtetSimplify, soAreThoseOfALargeMeshAndItsProgressIsTold) {
 }
 
 TEST(QtetSimplify, aCallbackThatSaysSoEndsTheWork) {
-  const Arrays arrays(finSample(50'000));
+  const Arrays arrays(gridOf(20));
   int calls = 0;
   qtet_simplify_options options = usual();
   options.user = &calls;

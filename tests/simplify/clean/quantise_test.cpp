@@ -41,7 +41,7 @@ TEST(Quantise, theLongestAxisFillsTheLattice) {
 }
 
 TEST(Quantise, positionsAreWithinHalfAStep) {
-  const TetMesh mesh = finSample(20'000);
+  const TetMesh mesh = finSample();
   const QuantisedMesh out = quantised(mesh);
   for (std::size_t v = 0; v < mesh.points.size(); ++v) {
     const Position back = out.mesh.lattice.position(out.mesh.points[v]);
