@@ -10,6 +10,7 @@
 
 #include "codec/api/qtet.h"
 #include "codec/log/log_file.h"
+#include "codec/log/refiner.h"
 #include "proto/manifest.h"
 
 namespace qtet {

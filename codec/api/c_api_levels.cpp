@@ -4,6 +4,7 @@
 
 #include "codec/api/c_api_handle.h"
 #include "codec/log/level_choice.h"
+#include "codec/log/refiner.h"
 
 using qtet::Result;
 using qtet::withLog;

@@ -4,8 +4,10 @@
 #include <cstring>
 
 #include "codec/api/c_api_handle.h"
+#include "codec/log/log_index.h"
 #include "codec/log/log_levels.h"
 #include "codec/log/log_manifest.h"
+#include "codec/log/refiner.h"
 #include "proto/limits.h"
 
 using qtet::Bytes;

@@ -6,6 +6,8 @@
 #include <span>
 
 #include "codec/api/c_api_handle.h"
+#include "codec/log/log_index.h"
+#include "codec/log/refiner.h"
 
 using qtet::FieldShape;
 using qtet::kMissing;

@@ -8,6 +8,8 @@
 #include "codec/coding/adaptive_block.h"
 #include "codec/coding/level_columns.h"
 #include "codec/coding/value_digits.h"
+#include "codec/log/codec_id.h"
+#include "codec/log/log_index.h"
 #include "codec/log/refiner.h"
 #include "proto/crc32c.h"
 

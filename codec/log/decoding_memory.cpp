@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "codec/log/log_index.h"
 #include "codec/mesh/growing_mesh.h"
 #include "codec/record/point_values.h"
 #include "proto/limits.h"

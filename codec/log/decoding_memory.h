@@ -4,9 +4,9 @@
 
 #include <cstdint>
 
-#include "codec/log/log_index.h"
-
 namespace qtet {
+
+struct LogIndex;
 
 /// Bytes that a refiner and the block in hand hold at most while the whole log is decoded, with
 /// every field: what decodeVerified() and a viewer of the finest level need beside the log itself.

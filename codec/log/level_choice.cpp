@@ -4,6 +4,8 @@
 #include <string>
 
 #include "codec/log/log_levels.h"
+#include "proto/level_error.h"
+#include "proto/manifest.h"
 
 namespace qtet {
 namespace {

@@ -4,10 +4,12 @@
 
 #include <cstdint>
 
-#include "codec/log/log_index.h"
-#include "proto/manifest.h"
+#include "proto/error.h"
 
 namespace qtet {
+
+struct LogIndex;
+struct Manifest;
 
 /// The finest level of at most so many tetrahedra; 0 if there is none.
 [[nodiscard]] std::uint32_t levelOfTetrahedra(const Manifest& manifest, double most);

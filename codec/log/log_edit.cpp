@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "codec/log/log_file.h"
 #include "codec/log/log_manifest.h"
 #include "proto/crc32c.h"
 #include "proto/limits.h"

@@ -5,10 +5,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "codec/log/log_file.h"
+#include "codec/log/log_index.h"
 #include "proto/manifest.h"
 
 namespace qtet {
+
+class LogFile;
 
 /// A field for a log, its blocks those of encodeFieldBlocks.
 struct NewField {

@@ -10,22 +10,28 @@
 #include <string>
 #include <utility>
 
+#include "codec/log/log_index.h"
 #include "codec/log/log_manifest.h"
+#include "codec/log/refiner.h"
 #include "codec/log/value_block.h"
 #include "codec/mesh/compact_mesh.h"
+#include "codec/mesh/mesh.h"
 #include "proto/crc32c.h"
+#include "proto/manifest.h"
 
 namespace qtet {
 
-struct LogFile::Mapping {
+struct LogFile::State {
   void* address = nullptr;
   std::size_t bytes = 0;
   Bytes owned;  // of a log that came as bytes; nothing is mapped then
+  LogIndex index;
+  std::string digest;
 
-  Mapping() = default;
-  Mapping(const Mapping&) = delete;
-  Mapping& operator=(const Mapping&) = delete;
-  ~Mapping() {
+  State() = default;
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+  ~State() {
     if (address != nullptr) munmap(address, bytes);
   }
 };
@@ -33,6 +39,10 @@ struct LogFile::Mapping {
 LogFile::LogFile(LogFile&&) noexcept = default;
 LogFile& LogFile::operator=(LogFile&&) noexcept = default;
 LogFile::~LogFile() = default;
+LogFile::LogFile(std::unique_ptr<State> state) : state_(std::move(state)) {}
+
+const LogIndex& LogFile::index() const { return state_->index; }
+const std::string& LogFile::digest() const { return state_->digest; }
 
 Result<LogFile> LogFile::open(const std::filesystem::path& path, DigestOf digestOf) {
   const auto io = [&](const char* what) {
@@ -42,35 +52,34 @@ Result<LogFile> LogFile::open(const std::filesystem::path& path, DigestOf digest
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (file < 0) return io("cannot be opened");
   struct stat info{};
-  auto mapping = std::make_unique<Mapping>();
+  auto state = std::make_unique<State>();
   const bool known = fstat(file, &info) == 0;
   if (known && S_ISREG(info.st_mode) && info.st_size > 0) {
     void* address =
         mmap(nullptr, static_cast<std::size_t>(info.st_size), PROT_READ, MAP_PRIVATE, file, 0);
     if (address != MAP_FAILED)
-      mapping->address = address, mapping->bytes = static_cast<std::size_t>(info.st_size);
+      state->address = address, state->bytes = static_cast<std::size_t>(info.st_size);
   }
   ::close(file);
   if (!known) return io("cannot be read");
   if (!S_ISREG(info.st_mode)) return fail(ErrorCode::kIo, path.string() + ": not a regular file");
   if (info.st_size == 0)
     return fail(ErrorCode::kTruncated, path.string() + ": the file is empty", 0);
-  if (mapping->address == nullptr) return io("cannot be mapped into memory");
+  if (state->address == nullptr) return io("cannot be mapped into memory");
 
-  Result<LogFile> log = checked(std::move(mapping), digestOf);
+  Result<LogFile> log = checked(std::move(state), digestOf);
   if (!log) log.error().message = path.string() + ": " + log.error().message;
   return log;
 }
 
 Result<LogFile> LogFile::fromBytes(Bytes bytes) {
-  auto mapping = std::make_unique<Mapping>();
-  mapping->owned = std::move(bytes);
-  return checked(std::move(mapping));
+  auto state = std::make_unique<State>();
+  state->owned = std::move(bytes);
+  return checked(std::move(state));
 }
 
-Result<LogFile> LogFile::checked(std::unique_ptr<Mapping> mapping, DigestOf digestOf) {
-  LogFile log;
-  log.mapping_ = std::move(mapping);
+Result<LogFile> LogFile::checked(std::unique_ptr<State> state, DigestOf digestOf) {
+  LogFile log(std::move(state));
   Result<LogIndex> index = LogIndex::parse(log.bytes());
   if (!index) return std::unexpected(index.error());
   if (index->fileBytes != log.bytes().size())
@@ -79,18 +88,18 @@ Result<LogFile> LogFile::checked(std::unique_ptr<Mapping> mapping, DigestOf dige
         "the file has " + std::to_string(log.bytes().size()) + " bytes, its header says " +
             std::to_string(index->fileBytes) + "; copy or fetch it again",
         log.bytes().size());
-  log.index_ = std::move(*index);
-  log.digest_ = digestOf(log.bytes());
+  log.state_->index = std::move(*index);
+  log.state_->digest = digestOf(log.bytes());
   return log;
 }
 
 ByteView LogFile::bytes() const {
-  if (mapping_->address == nullptr) return mapping_->owned;
-  return {static_cast<const std::uint8_t*>(mapping_->address), mapping_->bytes};
+  if (state_->address == nullptr) return state_->owned;
+  return {static_cast<const std::uint8_t*>(state_->address), state_->bytes};
 }
 
 ByteView LogFile::block(std::uint32_t chunk, std::uint32_t part) const {
-  const BlockEntry& b = index_.block(chunk, part);
+  const BlockEntry& b = state_->index.block(chunk, part);
   return bytes().subspan(static_cast<std::size_t>(b.offset), b.size);
 }
 
@@ -120,16 +129,16 @@ FieldInfo fieldInfo(const ManifestField& f) {
 }  // namespace
 
 Status LogFile::verifyChecksums() const {
-  for (std::uint32_t chunk = 0; chunk < index_.chunks.size(); ++chunk)
-    for (std::uint32_t part = 0; part < index_.parts(); ++part)
+  for (std::uint32_t chunk = 0; chunk < state_->index.chunks.size(); ++chunk)
+    for (std::uint32_t part = 0; part < state_->index.parts(); ++part)
       if (Status s = checkBlock(*this, chunk, part); !s) return s;
-  for (const ClosingBlock& c : index_.closing)
+  for (const ClosingBlock& c : state_->index.closing)
     if (const auto bytes = closing(c.kind, c.field); !bytes) return std::unexpected(bytes.error());
   return {};
 }
 
 Result<ByteView> LogFile::closing(ClosingKind kind, std::uint32_t field) const {
-  const ClosingBlock* c = index_.closingBlock(kind, field);
+  const ClosingBlock* c = state_->index.closingBlock(kind, field);
   if (c == nullptr)
     return fail(ErrorCode::kNotFound,
                 "the log has no closing block of kind " + std::to_string(static_cast<int>(kind)));

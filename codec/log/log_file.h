@@ -1,19 +1,26 @@
 // A log on disk or in memory: opened with every checksum available, refined to any level natively.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
 #include <stop_token>
+#include <string>
+#include <vector>
 
-#include "codec/log/log_index.h"
-#include "codec/log/refiner.h"
-#include "codec/mesh/mesh.h"
+#include "proto/bytes.h"
 #include "proto/checksum.h"
-#include "proto/manifest.h"
+#include "proto/error.h"
 
 namespace qtet {
+
+class Refiner;
+enum class ClosingKind : std::uint32_t;
+struct LatticeMesh;
+struct LogIndex;
+struct Manifest;
 
 /// A log mapped read-only into memory, or held there. Immutable, so safe to share between threads;
 /// views live as long as the object.
@@ -33,9 +40,9 @@ class LogFile {
   ~LogFile();
 
   [[nodiscard]] ByteView bytes() const;
-  [[nodiscard]] const LogIndex& index() const { return index_; }
+  [[nodiscard]] const LogIndex& index() const;
   /// SHA-256 of the whole file, lower-case hexadecimal; computed once at open.
-  [[nodiscard]] const std::string& digest() const { return digest_; }
+  [[nodiscard]] const std::string& digest() const;
   [[nodiscard]] ByteView block(std::uint32_t chunk, std::uint32_t part) const;
   /// The bytes of a closing block after comparing them with its CRC-32C. Errors: not-found (the log
   /// has none of the kind), bad-checksum.
@@ -45,13 +52,11 @@ class LogFile {
   [[nodiscard]] Status verifyChecksums() const;
 
  private:
-  struct Mapping;
-  LogFile() = default;
-  [[nodiscard]] static Result<LogFile> checked(std::unique_ptr<Mapping> mapping,
+  struct State;
+  explicit LogFile(std::unique_ptr<State> state);
+  [[nodiscard]] static Result<LogFile> checked(std::unique_ptr<State> state,
                                                DigestOf digestOf = sha256Hex);
-  std::unique_ptr<Mapping> mapping_;
-  LogIndex index_;
-  std::string digest_;
+  std::unique_ptr<State> state_;
 };
 
 /// Decodes one chunk's blocks (checksum, range coder, Draco) into the refiner: the mesh, and the

@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "codec/log/log_file.h"
+#include "codec/log/log_index.h"
 #include "codec/log/log_manifest.h"
 #include "codec/log/refiner.h"
 #include "codec/log/value_block.h"

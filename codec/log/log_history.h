@@ -8,13 +8,15 @@
 #include <span>
 #include <vector>
 
-#include "codec/log/log_file.h"
+#include "codec/log/codec_id.h"
 #include "codec/record/base_coder.h"
 #include "codec/record/cell_values.h"
 #include "codec/record/fusion_history.h"
 #include "codec/record/point_values.h"
 
 namespace qtet {
+
+class LogFile;
 
 /// The geometry of a log; its fields are left out.
 struct LogHistory {

@@ -8,20 +8,13 @@
 #include <cstdint>
 #include <vector>
 
+#include "codec/log/codec_id.h"
 #include "proto/bytes.h"
 #include "proto/error.h"
 
 namespace qtet {
 
 enum class Layout : std::uint8_t { kStream = 0, kRegions = 1 };
-
-/// How a block's bytes are coded (FORMAT.md, "Codec ids").
-enum class CodecId : std::uint8_t {
-  kEmpty = 0,     ///< no bytes
-  kRange = 1,     ///< structure: the adaptive binary range coder
-  kDraco = 2,     ///< values: one Draco point cloud, sequential, one int32 attribute, and digits
-  kAdaptive = 3,  ///< values: the adaptive binary range coder
-};
 
 /// What the values of a field belong to.
 enum class Association : std::uint8_t { kPoint = 0, kCell = 1 };

@@ -2,7 +2,9 @@
 
 #include <cassert>
 
+#include "codec/log/log_index.h"
 #include "proto/level_error_json.h"
+#include "proto/manifest.h"
 
 namespace qtet {
 

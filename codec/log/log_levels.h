@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 
-#include "codec/log/log_index.h"
-#include "proto/manifest.h"
-
 namespace qtet {
+
+struct LogIndex;
+struct Manifest;
 
 /// Length of the file's prefix that holds `level`. REQUIRES: a manifest that manifestOf(index)
 /// gave, and one of its levels.

@@ -9,6 +9,7 @@
 
 #include "codec/coding/error_figure.h"
 #include "codec/coding/level_columns.h"
+#include "codec/log/log_index.h"
 #include "proto/limits.h"
 #include "proto/utf8.h"
 

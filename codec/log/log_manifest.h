@@ -3,10 +3,13 @@
 // both.
 #pragma once
 
-#include "codec/log/log_index.h"
+#include "proto/bytes.h"
+#include "proto/error.h"
 #include "proto/manifest.h"
 
 namespace qtet {
+
+struct LogIndex;
 
 /// The bytes of LogIndex::manifest. Errors are rounded up to three significant digits
 /// (codec/coding/error_figure.h); either no level has one or every level has. Errors: bad-value (an

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "codec/log/log_index.h"
+#include "codec/log/codec_id.h"
 #include "codec/record/fusion_history.h"
 #include "proto/bytes.h"
 #include "proto/error.h"

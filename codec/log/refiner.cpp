@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "codec/log/log_index.h"
 #include "codec/log/refiner_state.h"
 #include "proto/checksum.h"
 

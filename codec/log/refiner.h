@@ -2,18 +2,21 @@
 // exception-free; compiled natively and to WebAssembly.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
 
-#include "codec/log/log_index.h"
 #include "codec/mesh/mesh.h"
+#include "proto/bytes.h"
+#include "proto/error.h"
 
 namespace qtet {
 
 class GrowingMesh;
 class Link;
+struct LogIndex;
 struct Split;
 
 /// Hears of every split just before it is applied: link labelled, ids those of `mesh`.

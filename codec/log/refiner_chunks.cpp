@@ -5,6 +5,8 @@
 #include <cassert>
 #include <utility>
 
+#include "codec/log/log_index.h"
+
 namespace qtet {
 namespace {
 

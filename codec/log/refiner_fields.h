@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "codec/log/log_index.h"
 #include "codec/log/refiner_chunks.h"
 
 namespace qtet {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "codec/log/log_index.h"
 #include "codec/log/refiner.h"
 #include "codec/log/work_meter.h"
 #include "codec/mesh/growing_mesh.h"

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "codec/log/log_index.h"
 #include "codec/log/refiner.h"
 #include "codec/log/refiner_chunks.h"
 #include "codec/log/refiner_fields.h"

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "codec/log/log_index.h"
+#include "codec/log/codec_id.h"
 #include "proto/bytes.h"
 #include "proto/error.h"
 

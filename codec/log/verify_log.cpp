@@ -5,6 +5,11 @@
 #include <numeric>
 #include <string>
 
+#include "codec/log/log_file.h"
+#include "codec/log/log_index.h"
+#include "codec/log/refiner.h"
+#include "proto/manifest.h"
+
 namespace qtet {
 namespace {
 

@@ -3,10 +3,12 @@
 
 #include <functional>
 
-#include "codec/log/log_file.h"
-#include "proto/manifest.h"
+#include "codec/log/refiner.h"
 
 namespace qtet {
+
+class LogFile;
+struct Manifest;
 
 /// Compares every block with its checksum, decodes every chunk with every field, and compares what
 /// came out with what manifest and table say: levels, their counts and chunks, the bits of the

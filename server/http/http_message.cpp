@@ -5,7 +5,7 @@
 #include "proto/json_reader.h"
 #include "proto/sentence.h"
 #include "server/http/http_conditions.h"
-#include "server/wire/limits.h"
+#include "server/wire/connection_limits.h"
 
 namespace qtet {
 namespace {

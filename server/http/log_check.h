@@ -9,8 +9,8 @@
 #include <stop_token>
 
 #include "server/http/http_message.h"
+#include "server/http/upload_limits.h"
 #include "server/store/served_mesh.h"
-#include "server/wire/limits.h"
 
 namespace qtet {
 

@@ -10,6 +10,7 @@
 #include <iterator>
 
 #include "server/http/part_lock.h"
+#include "server/http/upload_limits.h"
 
 namespace qtet {
 namespace {

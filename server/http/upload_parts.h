@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "server/http/http_message.h"
+#include "server/http/upload_limits.h"
 #include "server/store/free_disk.h"
-#include "server/wire/limits.h"
 #include "server/wire/upload_request.h"
 
 namespace qtet {

@@ -16,7 +16,7 @@
 #include "proto/json_reader.h"
 #include "server/http/http_resource.h"
 #include "server/http/part_lock.h"
-#include "server/wire/limits.h"
+#include "server/http/upload_limits.h"
 #include "server/wire/request_target.h"
 
 namespace qtet {

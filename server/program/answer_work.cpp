@@ -13,6 +13,8 @@
 #include "server/http/http_resource.h"
 #include "server/http/level_wait.h"
 #include "server/program/http_output.h"
+#include "server/wire/connection_limits.h"
+#include "server/wire/http_limits.h"
 
 namespace qtet {
 namespace {

@@ -10,7 +10,10 @@
 #include <vector>
 
 #include "proto/error.h"
-#include "server/wire/limits.h"
+#include "server/http/upload_limits.h"
+#include "server/store/free_disk.h"
+#include "server/store/store_limits.h"
+#include "server/wire/connection_limits.h"
 #include "server/wire/trusted_proxies.h"
 
 namespace qtet {

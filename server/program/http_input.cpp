@@ -6,6 +6,7 @@
 
 #include "server/http/deadline.h"
 #include "server/wire/http_gate.h"
+#include "server/wire/http_limits.h"
 
 namespace qtet {
 namespace {

@@ -15,7 +15,7 @@
 
 #include "server/http/http_message.h"
 #include "server/program/services.h"
-#include "server/wire/limits.h"
+#include "server/wire/http_limits.h"
 #include "server/wire/peer.h"
 
 namespace qtet {

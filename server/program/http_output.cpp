@@ -6,7 +6,7 @@
 #include <span>
 
 #include "server/http/deadline.h"
-#include "server/wire/limits.h"
+#include "server/wire/http_limits.h"
 
 namespace qtet {
 namespace {

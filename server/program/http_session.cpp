@@ -16,6 +16,7 @@
 #include "server/routes/access_routes.h"
 #include "server/stream/stream_session.h"
 #include "server/wire/handshakes.h"
+#include "server/wire/http_limits.h"
 #include "server/wire/peer.h"
 #include "server/wire/trusted_proxies.h"
 

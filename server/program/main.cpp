@@ -19,6 +19,7 @@
 #include "server/program/server.h"
 #include "server/store/bus_guard.h"
 #include "server/store/folder_watch.h"
+#include "server/store/store_limits.h"
 
 namespace {
 

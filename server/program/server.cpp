@@ -26,8 +26,11 @@
 #include <thread>
 #include <vector>
 
+#include "server/http/upload_limits.h"
 #include "server/program/http_session.h"
 #include "server/routes/http_router.h"
+#include "server/store/store_limits.h"
+#include "server/wire/connection_limits.h"
 #include "server/wire/handshakes.h"
 #include "server/wire/process_figures.h"
 

@@ -13,7 +13,9 @@
 #include "server/program/services.h"
 #include "server/routes/viewer_files.h"
 #include "server/store/level_maker.h"
+#include "server/store/store_limits.h"
 #include "server/wire/access.h"
+#include "server/wire/connection_limits.h"
 #include "server/wire/tls_context.h"
 #include "server/wire/trusted_proxies.h"
 

@@ -10,9 +10,11 @@
 #include "server/routes/answer.h"
 #include "server/store/level_jobs.h"
 #include "server/store/mesh_store.h"
+#include "server/stream/stream_limits.h"
 #include "server/wire/access.h"
 #include "server/wire/access_log.h"
-#include "server/wire/limits.h"
+#include "server/wire/connection_limits.h"
+#include "server/wire/http_limits.h"
 #include "server/wire/metrics.h"
 
 // Only declared, like the three classes below: the tests of a running server compile without Asio.
@@ -21,6 +23,12 @@ class thread_pool;
 }
 
 namespace qtet {
+
+namespace limits {
+/// From SIGTERM to the end: what responses under way, and closing handshakes, have left. Below the
+/// 10 s of common supervisors.
+inline constexpr std::chrono::seconds kGraceTime{8};
+}  // namespace limits
 
 class AddressLimits;
 class Handshakes;

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "proto/json_reader.h"
-#include "server/wire/limits.h"
+#include "server/wire/token_limits.h"
 
 namespace qtet {
 namespace {

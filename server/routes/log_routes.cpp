@@ -4,6 +4,7 @@
 #include <charconv>
 #include <span>
 
+#include "codec/log/log_index.h"
 #include "server/http/http_resource.h"
 
 namespace qtet {

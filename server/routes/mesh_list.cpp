@@ -4,8 +4,8 @@
 
 #include "proto/json_reader.h"
 #include "server/http/http_resource.h"
+#include "server/store/store_limits.h"
 #include "server/wire/digest.h"
-#include "server/wire/limits.h"
 
 namespace qtet {
 namespace {

@@ -7,9 +7,9 @@
 #include <fstream>
 #include <utility>
 
+#include "server/routes/viewer_limits.h"
 #include "server/wire/content_coding.h"
 #include "server/wire/digest.h"
-#include "server/wire/limits.h"
 
 namespace qtet {
 namespace {

@@ -1,5 +1,6 @@
 #include "server/store/descriptions.h"
 
+#include "codec/log/log_index.h"
 #include "codec/log/log_levels.h"
 #include "proto/json_reader.h"
 #include "server/store/served_mesh.h"

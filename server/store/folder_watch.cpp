@@ -9,7 +9,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "server/wire/limits.h"
+#include "server/store/store_limits.h"
 
 namespace qtet {
 

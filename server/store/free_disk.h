@@ -9,6 +9,12 @@
 
 namespace qtet {
 
+namespace limits {
+/// Bytes of a disk below which no upload is begun and no level is kept: for the access log, and for
+/// what else lives there.
+inline constexpr std::uintmax_t kDiskReserve = std::uintmax_t{256} << 20;
+}  // namespace limits
+
 /// Bytes that may still be written where `path` lies; as many as there can be where it cannot be
 /// found out.
 [[nodiscard]] inline std::uintmax_t freeDiskBytes(const std::filesystem::path& path) {

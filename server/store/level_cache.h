@@ -13,7 +13,6 @@
 #include "proto/error.h"
 #include "server/store/free_disk.h"
 #include "server/store/level_file.h"
-#include "server/wire/limits.h"
 
 namespace qtet {
 

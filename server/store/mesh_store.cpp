@@ -7,8 +7,8 @@
 #include <mutex>
 
 #include "proto/json_reader.h"
+#include "server/store/store_limits.h"
 #include "server/wire/digest.h"
-#include "server/wire/limits.h"
 
 namespace qtet {
 namespace {

@@ -13,9 +13,15 @@
 
 #include "server/store/mesh_entry.h"
 #include "server/store/served_mesh.h"
-#include "server/wire/limits.h"
 
 namespace qtet {
+
+namespace limits {
+/// How long one look at a folder goes on looking into files, and how many are looked into however
+/// long it takes: the start waits for it, a folder of 100,000 logs is read in many looks.
+inline constexpr auto kFolderReadTime = std::chrono::seconds(1);
+inline constexpr std::size_t kLogsReadAtOnce = 64;
+}  // namespace limits
 
 /// What is served at one moment.
 struct Catalogue {

@@ -13,11 +13,15 @@
 #include <stop_token>
 #include <vector>
 
-#include "codec/log/log_file.h"
-#include "proto/manifest.h"
-#include "proto/stream_request.h"
+#include "proto/bytes.h"
+#include "proto/error.h"
 
 namespace qtet {
+
+class LogFile;
+struct Isovalue;
+struct LogIndex;
+struct Manifest;
 
 /// Both ends included; empty at first.
 struct ValueInterval {

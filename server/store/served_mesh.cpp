@@ -16,8 +16,8 @@
 #include "codec/log/log_levels.h"
 #include "codec/log/log_manifest.h"
 #include "server/store/descriptions.h"
+#include "server/store/store_limits.h"
 #include "server/wire/digest.h"
-#include "server/wire/limits.h"
 
 namespace qtet {
 

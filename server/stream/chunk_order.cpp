@@ -4,6 +4,7 @@
 #include <cmath>
 #include <queue>
 
+#include "proto/manifest.h"
 #include "server/stream/view_request.h"
 
 namespace qtet {

@@ -3,6 +3,8 @@
 #include <cassert>
 #include <span>
 
+#include "server/stream/stream_limits.h"
+
 namespace qtet {
 
 void FrameGather::consume(std::size_t bytes) {

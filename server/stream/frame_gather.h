@@ -13,10 +13,11 @@
 #include <string>
 #include <vector>
 
+#include "server/stream/stream_limits.h"
 #include "server/stream/stream_protocol.h"
 #include "server/wire/client_socket.h"
 #include "server/wire/file_part.h"
-#include "server/wire/limits.h"
+#include "server/wire/http_limits.h"
 #include "server/wire/web_socket_reader.h"
 
 namespace qtet {

@@ -1,11 +1,11 @@
 // What a plan needs to know of a log.
 #pragma once
 
-#include "codec/log/log_index.h"
-#include "proto/manifest.h"
-#include "server/store/packet_intervals.h"
-
 namespace qtet {
+
+class PacketIntervals;
+struct LogIndex;
+struct Manifest;
 
 /// All of it outlives the call that it is given to.
 struct LogFront {

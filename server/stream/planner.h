@@ -5,13 +5,13 @@
 #include <cstdint>
 #include <vector>
 
-#include "codec/log/log_index.h"
-#include "proto/manifest.h"
-#include "server/stream/client_blocks.h"
 #include "server/stream/log_front.h"
 #include "server/stream/stream_target.h"
 
 namespace qtet {
+
+class ClientBlocks;
+struct LogIndex;
 
 /// Consecutive blocks of one chunk, one binary frame; or the head.
 struct BlockRun {

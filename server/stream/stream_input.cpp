@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "server/wire/limits.h"
+#include "server/stream/stream_limits.h"
 
 namespace qtet {
 

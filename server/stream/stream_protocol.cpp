@@ -3,9 +3,16 @@
 #include <algorithm>
 
 #include "proto/sentence.h"
-#include "server/wire/limits.h"
+#include "server/stream/stream_limits.h"
 
 namespace qtet {
+
+namespace limits {
+/// Tetrahedra of a log whose packets' values are looked at for a view with an isovalue: its finest
+/// mesh takes 100 to 150 bytes each, 3 GB in all.
+constexpr std::uint32_t kMaxIntervalTetrahedra = 20'000'000;
+}  // namespace limits
+
 namespace {
 
 /// The `error` message that answers.

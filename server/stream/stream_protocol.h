@@ -13,7 +13,9 @@
 
 #include "proto/messages.h"
 #include "server/store/mesh_store.h"
+#include "server/stream/client_blocks.h"
 #include "server/stream/planner.h"
+#include "server/stream/stream_limits.h"
 #include "server/wire/access.h"
 #include "server/wire/web_socket_reader.h"
 

@@ -21,8 +21,9 @@
 #include "server/stream/line_room.h"
 #include "server/stream/patience.h"
 #include "server/stream/stream_input.h"
+#include "server/stream/stream_limits.h"
 #include "server/stream/stream_protocol.h"
-#include "server/wire/limits.h"
+#include "server/wire/http_limits.h"
 
 namespace qtet {
 namespace {

@@ -10,9 +10,10 @@
 
 #include "server/store/level_jobs.h"
 #include "server/store/mesh_store.h"
+#include "server/stream/stream_limits.h"
 #include "server/stream/stream_report.h"
 #include "server/wire/access.h"
-#include "server/wire/limits.h"
+#include "server/wire/http_limits.h"
 #include "server/wire/peer.h"
 
 namespace qtet {

@@ -4,6 +4,8 @@
 #include <cassert>
 
 #include "codec/log/level_choice.h"
+#include "codec/log/log_index.h"
+#include "proto/manifest.h"
 
 namespace qtet {
 namespace {

@@ -3,11 +3,12 @@
 
 #include <cstdint>
 
-#include "codec/log/log_index.h"
-#include "proto/manifest.h"
 #include "proto/stream_request.h"
 
 namespace qtet {
+
+struct LogIndex;
+struct Manifest;
 
 struct StopAt {
   std::uint32_t lastChunk = 0xFFFFFFFFu;  ///< chunks behind it are not sent

@@ -5,6 +5,10 @@
 #include <cmath>
 #include <utility>
 
+#include "codec/log/log_index.h"
+#include "proto/manifest.h"
+#include "server/store/packet_intervals.h"
+
 namespace qtet {
 namespace {
 

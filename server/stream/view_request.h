@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "codec/log/log_index.h"
 #include "proto/stream_request.h"
 #include "server/stream/log_front.h"
 

@@ -18,7 +18,7 @@
 #include <span>
 #include <stdexcept>
 
-#include "server/wire/limits.h"
+#include "server/wire/token_limits.h"
 
 namespace qtet {
 namespace {

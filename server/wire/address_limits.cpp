@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <boost/asio/ip/address.hpp>
 
-#include "server/wire/limits.h"
+#include "server/wire/connection_limits.h"
 
 namespace qtet {
 namespace {

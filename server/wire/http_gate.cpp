@@ -2,7 +2,7 @@
 
 #include <cassert>
 
-#include "server/wire/limits.h"
+#include "server/wire/http_limits.h"
 
 namespace qtet {
 namespace {

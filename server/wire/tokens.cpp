@@ -5,7 +5,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "server/wire/limits.h"
+#include "server/wire/token_limits.h"
 
 namespace qtet {
 namespace {

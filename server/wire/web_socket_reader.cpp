@@ -7,7 +7,6 @@
 
 #include "proto/messages.h"
 #include "proto/utf8.h"
-#include "server/wire/limits.h"
 
 namespace qtet {
 namespace {

@@ -14,6 +14,11 @@
 
 namespace qtet {
 
+namespace limits {
+/// Fragments of one message: nobody needs more than one for 64 KiB.
+inline constexpr std::size_t kMaxFragments = 256;
+}  // namespace limits
+
 /// Close codes of RFC 6455, 7.4.1, that this server uses by its own decision.
 enum class CloseCode : std::uint16_t {
   kGoingAway = 1001,

@@ -8,6 +8,7 @@
 
 #include "codec/api/c_api_handle.h"
 #include "codec/files/atomic_file.h"
+#include "codec/log/refiner.h"
 #include "simplify/api/input_arrays.h"
 #include "simplify/api/told_work.h"
 #include "simplify/mesh/workers.h"

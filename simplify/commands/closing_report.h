@@ -7,11 +7,14 @@
 #include <optional>
 #include <vector>
 
-#include "codec/log/log_file.h"
-#include "proto/manifest.h"
+#include "proto/error.h"
 #include "simplify/mesh/tet_mesh.h"
 
 namespace qtet {
+
+class LogFile;
+struct LogIndex;
+struct Manifest;
 
 /// {"point order": bytes, "cell order": bytes, "original cells": bytes, "exact positions": bytes,
 /// "exact NAME": bytes}, as far as they are there.

@@ -3,6 +3,7 @@
 #include <numeric>
 
 #include "codec/log/level_choice.h"
+#include "codec/log/log_index.h"
 #include "proto/field_key.h"
 #include "proto/level_error_json.h"
 #include "simplify/commands/command_measure.h"

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "codec/files/atomic_file.h"
+#include "codec/log/log_index.h"
 #include "codec/log/log_levels.h"
 #include "simplify/commands/closing_report.h"
 #include "simplify/commands/command_line.h"

@@ -2,6 +2,7 @@
 #include <numeric>
 #include <sstream>
 
+#include "codec/log/log_index.h"
 #include "codec/log/verify_log.h"
 #include "proto/checksum.h"
 #include "simplify/clean/clean_mesh.h"

@@ -14,6 +14,7 @@
 #include "codec/coding/prefetch.h"
 #include "codec/mesh/mesh.h"
 #include "simplify/cost/cost_basis.h"
+#include "simplify/cost/cost_options.h"
 #include "simplify/cost/cost_parts.h"
 #include "simplify/cost/edge_quadric.h"
 #include "simplify/cost/line_allocator.h"
@@ -22,18 +23,6 @@
 #include "simplify/mesh/two_vectors.h"
 
 namespace qtet {
-
-struct CostOptions {
-  /// One a field: what its squared error, over its range, counts. 0 leaves it out; so does a
-  /// constant field. Empty: 1 for each point field of floats.
-  std::vector<double> fieldWeights;
-  /// What the squared distance of the boundary counts beside the fields, areas and distances over
-  /// the mesh's diagonal. Without: balancedBoundaryWeight (boundary_weight.h).
-  std::optional<double> boundaryWeight;
-  /// Without fields: how many times its area a boundary plane counts, the paper's "weighted planar
-  /// quadric error metrics".
-  double boundaryFactor = 10;
-};
 
 struct PreyQuadric {
   Quadric quadric;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "simplify/cost/fusion_cost.h"
+#include "simplify/fuse/placement_rule.h"
 #include "simplify/legality/fusion_check.h"
 
 namespace qtet {
@@ -14,15 +15,6 @@ struct FusionPoint {
   LatticePoint point{};
   double cost = 0;           ///< by which the prey's error grows, the shape's share included
   bool goesOutside = false;  ///< of the boundary as it is, into what the tolerance allows
-};
-
-/// Which points are looked at. A free point takes twice the bits of one that follows from its prey.
-enum class PlacementRule : std::uint8_t {
-  kOptimal,  ///< the quadric's minimum (Eq. 6-7), and what lies between it and the prey's middle
-  kVertex,   ///< the prey vertices alone, which keeps every vertex of every level an original one
-  /// Prey vertices, middle and quarters; a free point only where it adds less than a quarter of
-  /// their error.
-  kAuto,
 };
 
 struct FusionPointOptions {

@@ -10,8 +10,8 @@
 #include "codec/mesh/mesh.h"
 #include "codec/record/fusion_history.h"
 #include "proto/error.h"
-#include "simplify/cost/fusion_cost.h"
-#include "simplify/fuse/fusion_point.h"
+#include "simplify/cost/cost_options.h"
+#include "simplify/fuse/placement_rule.h"
 
 namespace qtet {
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "codec/log/log_file.h"
 #include "codec/log/log_manifest.h"
 #include "codec/mesh/predicates.h"
 #include "simplify/clean/quantise_field.h"

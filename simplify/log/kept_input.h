@@ -7,14 +7,16 @@
 #include <stop_token>
 #include <vector>
 
-#include "codec/log/log_edit.h"
-#include "codec/log/log_file.h"
-#include "codec/log/log_writer.h"
 #include "codec/mesh/input_order.h"
+#include "proto/bytes.h"
+#include "proto/error.h"
 #include "simplify/clean/clean_mesh.h"
 #include "simplify/mesh/tet_mesh.h"
 
 namespace qtet {
+
+class LogFile;
+struct EncodedLog;
 
 struct KeepOptions {
   bool order = false;

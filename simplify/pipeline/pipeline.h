@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "codec/log/log_index.h"
 #include "codec/log/log_writer.h"
 #include "proto/manifest.h"
 #include "simplify/clean/clean_mesh.h"

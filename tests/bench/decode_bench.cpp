@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "codec/log/log_file.h"
+#include "codec/log/log_index.h"
 #include "codec/log/refiner.h"
 #include "codec/log/value_block.h"
 #include "proto/checksum.h"

@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 
+#include "codec/log/log_index.h"
 #include "codec/log/refiner.h"
 
 namespace qtet::fuzz {

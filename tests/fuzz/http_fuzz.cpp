@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "server/wire/http_gate.h"
-#include "server/wire/limits.h"
+#include "server/wire/http_limits.h"
 #include "server/wire/request_target.h"
 
 using qtet::HttpGate;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstdlib>
 
+#include "codec/log/log_index.h"
 #include "codec/log/log_manifest.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -127,8 +127,15 @@ int main(int argc, char** argv) {
                   static_cast<std::uint8_t>(shortest.index.chunks.back().lastLevel));
   write(folder / "manifest" / "two-fields", manifest);
   write(folder / "manifest" / "known-errors", knownErrorsSeed());
-  OpenMessage open{"fin", std::string(64, 'a'), {"Velocity", "cell:Region"},
-                   3,     {{"Velocity", 2}},    1 << 20};
+  OpenMessage open{.mesh = "fin",
+                   .digest = std::string(64, 'a'),
+                   .fields = {"Velocity", "cell:Region"},
+                   .have = {},
+                   .target = {},
+                   .view = {},
+                   .credit = 1 << 20};
+  open.have.mesh.leading = 3;
+  open.have.fields = {{"Velocity", HeldChunks{2}}};
   write(folder / "message" / "open", toJson(ClientMessage(open)));
   write(folder / "message" / "credit", toJson(ClientMessage(CreditMessage{65536})));
   write(folder / "message" / "stop", toJson(ClientMessage(StopMessage{})));

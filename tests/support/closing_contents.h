@@ -4,7 +4,12 @@
 #include <map>
 #include <string>
 
-#include "codec/log/log_file.h"
+#include "proto/bytes.h"
+
+namespace qtet {
+class LogFile;
+class Refiner;
+}  // namespace qtet
 
 namespace qtet::testing {
 

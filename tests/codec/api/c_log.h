@@ -13,6 +13,8 @@
 
 #include "codec/api/qtet.h"
 #include "codec/log/log_file.h"
+#include "codec/log/log_index.h"
+#include "codec/log/refiner.h"
 #include "tests/support/meshes.h"
 #include "tests/support/paths/test_paths.h"
 

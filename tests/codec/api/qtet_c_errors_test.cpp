@@ -4,6 +4,7 @@
 #include <new>
 
 #include "codec/api/c_api_handle.h"
+#include "codec/log/log_index.h"
 #include "tests/codec/api/c_log.h"
 
 namespace qtet {

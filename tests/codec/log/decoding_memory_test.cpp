@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "codec/log/log_file.h"
+#include "codec/log/log_index.h"
 #include "codec/log/log_manifest.h"
 #include "codec/log/log_writer.h"
 #include "codec/log/verify_log.h"

@@ -8,7 +8,10 @@
 #include <numeric>
 
 #include "codec/log/log_file.h"
+#include "codec/log/log_index.h"
 #include "codec/log/log_manifest.h"
+#include "codec/log/refiner.h"
+#include "codec/mesh/mesh.h"
 #include "proto/checksum.h"
 #include "tests/support/closing_contents.h"
 #include "tests/support/paths/test_paths.h"

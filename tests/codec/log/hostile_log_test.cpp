@@ -7,6 +7,7 @@
 
 #include "codec/coding/draco_block.h"
 #include "codec/log/log_file.h"
+#include "codec/log/refiner.h"
 #include "codec/record/base_coder.h"
 #include "proto/limits.h"
 #include "tests/support/forged_log.h"

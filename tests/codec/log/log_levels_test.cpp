@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "codec/coding/error_figure.h"
+#include "codec/log/log_index.h"
 #include "codec/log/log_manifest.h"
 #include "codec/log/log_writer.h"
 #include "simplify/fuse/qtetfusion.h"

@@ -8,6 +8,7 @@
 
 #include "codec/coding/error_figure.h"
 #include "codec/coding/level_columns.h"
+#include "codec/log/log_index.h"
 #include "proto/limits.h"
 #include "tests/support/allocation_meter.h"
 #include "tests/support/sample_manifest.h"

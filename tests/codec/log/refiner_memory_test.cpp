@@ -4,7 +4,9 @@
 #include <sys/resource.h>
 
 #include "codec/log/log_file.h"
+#include "codec/log/log_index.h"
 #include "codec/log/log_writer.h"
+#include "codec/log/refiner.h"
 #include "codec/log/value_block.h"
 #include "proto/limits.h"
 #include "simplify/fuse/qtetfusion.h"

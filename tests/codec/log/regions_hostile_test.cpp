@@ -8,6 +8,7 @@
 
 #include "codec/log/log_file.h"
 #include "codec/log/log_writer.h"
+#include "codec/log/refiner.h"
 #include "simplify/fuse/qtetfusion.h"
 #include "tests/support/forged_log.h"
 #include "tests/support/meshes.h"

@@ -10,6 +10,7 @@
 #include "codec/log/log_file.h"
 #include "codec/log/log_manifest.h"
 #include "codec/log/log_writer.h"
+#include "codec/log/refiner.h"
 #include "codec/log/value_block.h"
 #include "codec/mesh/compact_mesh.h"
 #include "simplify/clean/verify.h"

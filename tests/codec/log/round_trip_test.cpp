@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include "codec/log/log_file.h"
+#include "codec/log/log_index.h"
 #include "codec/log/log_manifest.h"
 #include "codec/log/log_writer.h"
+#include "codec/log/refiner.h"
 #include "codec/log/value_block.h"
 #include "simplify/clean/verify.h"
 #include "simplify/fuse/qtetfusion.h"

@@ -6,6 +6,7 @@
 
 #include <optional>
 
+#include "codec/log/log_index.h"
 #include "codec/log/log_writer.h"
 #include "codec/log/refiner.h"
 #include "codec/log/value_block.h"

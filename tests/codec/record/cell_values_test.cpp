@@ -6,6 +6,7 @@
 
 #include <functional>
 
+#include "codec/log/log_index.h"
 #include "codec/log/log_manifest.h"
 #include "codec/log/log_writer.h"
 #include "codec/log/refiner.h"

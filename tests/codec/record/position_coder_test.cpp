@@ -7,7 +7,6 @@
 #include <limits>
 #include <random>
 
-#include "proto/limits.h"
 #include "tests/support/star_mesh.h"
 
 namespace qtet {

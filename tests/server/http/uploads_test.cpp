@@ -16,7 +16,7 @@
 
 #include "codec/log/decoding_memory.h"
 #include "proto/checksum.h"
-#include "server/wire/limits.h"
+#include "server/http/upload_limits.h"
 #include "tests/server/http/held_check.h"
 #include "tests/server/program/loopback.h"
 #include "tests/server/program/served_folder.h"

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "server/wire/connection_limits.h"
 #include "tests/server/store/synthetic_log.h"
 
 namespace qtet {

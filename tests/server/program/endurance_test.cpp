@@ -8,6 +8,8 @@
 #include <cstdlib>
 #include <thread>
 
+#include "server/stream/stream_limits.h"
+#include "server/wire/connection_limits.h"
 #include "tests/server/program/loopback.h"
 #include "tests/server/program/program.h"
 #include "tests/server/program/served_folder.h"

@@ -9,7 +9,8 @@
 #include <thread>
 #include <vector>
 
-#include "server/wire/limits.h"
+#include "server/store/store_limits.h"
+#include "server/wire/http_limits.h"
 #include "tests/server/program/loopback.h"
 #include "tests/server/program/served_folder.h"
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "server/wire/limits.h"
+#include "server/routes/viewer_limits.h"
 #include "tests/server/store/synthetic_log.h"
 
 namespace qtet {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "server/store/bus_guard.h"
-#include "server/wire/limits.h"
+#include "server/store/store_limits.h"
 #include "tests/server/store/synthetic_log.h"
 
 namespace qtet {

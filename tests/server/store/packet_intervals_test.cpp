@@ -9,6 +9,8 @@
 #include <set>
 
 #include "codec/log/log_manifest.h"
+#include "codec/log/refiner.h"
+#include "server/stream/client_blocks.h"
 #include "server/stream/planner.h"
 #include "tests/server/program/loopback.h"
 #include "tests/server/program/served_folder.h"

@@ -8,6 +8,8 @@
 
 #include "codec/log/log_manifest.h"
 #include "proto/messages.h"
+#include "server/store/packet_intervals.h"
+#include "server/stream/client_blocks.h"
 #include "tests/server/store/synthetic_log.h"
 
 namespace qtet {

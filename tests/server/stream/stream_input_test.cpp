@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "server/wire/limits.h"
+#include "server/stream/stream_limits.h"
 
 namespace qtet {
 namespace {

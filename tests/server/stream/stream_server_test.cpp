@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-#include "server/wire/limits.h"
+#include "server/stream/stream_limits.h"
 #include "tests/server/program/loopback.h"
 #include "tests/server/program/served_folder.h"
 

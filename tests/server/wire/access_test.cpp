@@ -12,7 +12,7 @@
 #include <span>
 
 #include "proto/checksum.h"
-#include "server/wire/limits.h"
+#include "server/wire/token_limits.h"
 #include "tests/server/program/loopback.h"
 #include "tests/server/program/served_folder.h"
 #include "tests/server/support/json.h"

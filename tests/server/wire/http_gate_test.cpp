@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "server/wire/limits.h"
+#include "server/wire/http_limits.h"
 
 namespace qtet {
 namespace {

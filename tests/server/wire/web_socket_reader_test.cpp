@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "proto/messages.h"
-#include "server/wire/limits.h"
 
 namespace qtet {
 namespace {

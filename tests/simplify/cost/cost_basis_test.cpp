@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "simplify/fuse/qtetfusion.h"
+#include "simplify/mesh/vector3.h"
 #include "tests/support/meshes.h"
 #include "tests/support/plain_error.h"
 

@@ -1,0 +1,35 @@
+// What the server allows uploads and their checks, with units and reasons.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+
+namespace qtet::limits {
+
+using namespace std::chrono_literals;
+
+/// Bytes of one log that is taken: the format's own end is at 16 GB or so (proto/limits.h,
+/// kMaxChunks).
+inline constexpr std::uintmax_t kMaxUploadBytes = std::uintmax_t{16} << 30;
+/// Uploads at a time, those that wait for their check included: each holds a file and 64 KB. And of
+/// one token: a client that trickles its bytes keeps nobody else out.
+inline constexpr std::size_t kMaxUploads = 32;
+inline constexpr std::size_t kMaxUploadsOfToken = 4;
+/// Parts that are kept for going on with them, with the one that comes, and their bytes: two of the
+/// largest logs for one token, and for all together as much as four tokens may have.
+inline constexpr std::size_t kMaxParts = 32;
+inline constexpr std::size_t kMaxPartsOfToken = 8;
+inline constexpr std::uintmax_t kMaxPartBytes = std::uintmax_t{128} << 30;
+inline constexpr std::uintmax_t kMaxPartBytesOfToken = std::uintmax_t{32} << 30;
+/// Threads that check what came, decoding it whole, beside those that make levels.
+inline constexpr std::size_t kCheckThreads = 1;
+/// Bytes of memory that one check may take, as codec/log/decoding_memory.h foretells them: 80 each
+/// for a log of 50 million tetrahedra with a field.
+inline constexpr std::uintmax_t kMaxCheckBytes = std::uintmax_t{4} << 30;
+/// From a check's beginning to its end: so many tetrahedra take a minute.
+inline constexpr auto kCheckTime = 10min;
+/// What came of an upload that broke off is kept so long for going on with it.
+inline constexpr auto kPartialUploadTime = 24h;
+
+}  // namespace qtet::limits

@@ -1,0 +1,54 @@
+// How much the store holds and how often it looks, with units and reasons.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+
+namespace qtet::limits {
+
+using namespace std::chrono_literals;
+
+/// Logs held open beside those that are being read, a descriptor and a mapping each: as many as are
+/// popular at a time. Opening another takes a millisecond or so.
+inline constexpr std::size_t kMaxOpenLogs = 256;
+/// Between two looks at a folder that is not read to its end.
+inline constexpr auto kFolderReadRest = 50ms;
+/// Logs that came at a time and are told of one by one.
+inline constexpr std::size_t kMaxLoggedMeshes = 20;
+/// Meshes of one page of the list: about 1 KB each.
+inline constexpr std::size_t kMaxListPage = 1000;
+/// Bytes of a mesh's name: with `.qtet` and what an upload appends, below the 255 that file systems
+/// allow.
+inline constexpr std::size_t kMaxIdBytes = 150;
+/// Bytes of one log that is served from a nameless copy, and of all of them: people copy files over
+/// others in place, which changes a mapping under its digest. Most logs are smaller; larger ones
+/// are replaced by renaming (`qtet`, uploads).
+inline constexpr std::uintmax_t kMaxCopiedLogBytes = 64u << 20;
+inline constexpr std::uintmax_t kMaxCopiedBytes = 1u << 30;
+/// How long, and how many, replaced logs are still to be had under their digests, for those who are
+/// reading them piece by piece.
+inline constexpr auto kReplacedLogTime = 10min;
+inline constexpr std::size_t kMaxReplacedLogs = 16;
+/// How long the folder must be quiet before it is read again: a copy tells of itself many times.
+inline constexpr auto kFolderRest = 200ms;
+/// A folder that never rests is read all the same after so many changes.
+inline constexpr int kMaxFolderRests = 25;
+/// It is read this often in any case, for folders on a network that tell nothing, and to let
+/// replaced logs go.
+inline constexpr auto kFolderInterval = 60s;
+
+// ---- levels
+
+/// Levels being made or waiting at a time: one that waits holds its log open, one that is made a
+/// whole mesh in memory.
+inline constexpr std::size_t kMaxLevelJobs = 64;
+/// Of them that one address may want: a browser's connections to one server are six, so that no
+/// page is refused, and other addresses find places all the same.
+inline constexpr std::size_t kMaxLevelJobsPerAddress = 6;
+/// Threads that make them, beside the I/O threads.
+inline constexpr std::size_t kLevelThreads = 1;
+/// Bytes of finished levels kept on disk: some hundred of a mesh of a million cells.
+inline constexpr std::uintmax_t kMaxCacheBytes = std::uintmax_t{2} << 30;
+
+}  // namespace qtet::limits

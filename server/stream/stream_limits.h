@@ -1,0 +1,38 @@
+// What the server allows a stream, with units and reasons.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+
+namespace qtet::limits {
+
+using namespace std::chrono_literals;
+
+/// Messages a second: a client that grants credit for every block of 16 KB reaches it at 32 MB/s.
+inline constexpr unsigned kMaxMessagesPerSecond = 2000;
+/// `open`s a second: each makes a plan over the whole chunk table; a person cannot choose fields as
+/// fast.
+inline constexpr unsigned kMaxOpensPerSecond = 50;
+/// `view`s, `target`s and `resume`s with `have` a second: each makes a plan, too; nobody turns a
+/// picture faster than a screen of 240 Hz shows it.
+inline constexpr unsigned kMaxViewRequestsPerSecond = 250;
+/// Answers waiting for a client that sends but does not read.
+inline constexpr std::size_t kMaxQueuedAnswers = 256;
+/// Pings a second: browsers send none.
+inline constexpr unsigned kMaxPingsPerSecond = 20;
+/// Frames of one write, and payload bytes behind which no further frame joins it: a system call a
+/// chunk costs as much as the chunk; what has been given away belongs to the old order when a view
+/// changes.
+inline constexpr std::size_t kFramesPerWrite = 16;
+inline constexpr std::size_t kBytesPerWrite = 128u << 10;
+/// Bytes of a frame's payload beyond which no further block is put into it: frequent enough for
+/// progress on a slow line (2 s at 1 Mbit/s), large enough that the cost of a frame vanishes.
+inline constexpr std::uint32_t kFramePayload = 256u << 10;
+/// How long a client may take to close behind the server's closing: within the grace time of the
+/// server's end.
+inline constexpr auto kClosingTime = 5s;
+/// Silence after which a client is given up; a ping goes out at half of it.
+inline constexpr auto kSilenceTime = 30s;
+
+}  // namespace qtet::limits
