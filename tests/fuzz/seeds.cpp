@@ -138,7 +138,7 @@ int main(int argc, char** argv) {
   open.have.fields = {{"Velocity", HeldChunks{2}}};
   write(folder / "message" / "open", toJson(ClientMessage(open)));
   write(folder / "message" / "credit", toJson(ClientMessage(CreditMessage{65536})));
-  write(folder / "message" / "stop", toJson(ClientMessage(StopMessage{})));
+  write(folder / "message" / "cancel", toJson(ClientMessage(CancelMessage{})));
   write(folder / "message" / "opened",
         toJson(ServerMessage(OpenedMessage{1, "fin", std::string(64, 'b'), 1000, 900})));
   write(folder / "message" / "error",
