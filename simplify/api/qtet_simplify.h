@@ -4,6 +4,7 @@
  *   qtet_input_mesh mesh = {0};
  *   mesh.points = xyz, mesh.pointType = QTET_FLOAT64, mesh.pointCount = 729;
  *   mesh.tetrahedra = ids, mesh.idType = QTET_UINT32, mesh.tetrahedronCount = 3072;
+ *
  *   qtet_simplified* made = qtet_simplified_create();
  *   if (qtet_simplify(made, sizeof mesh, &mesh, 0, NULL) ||
  *       qtet_simplified_write(made, "part.qtet"))
@@ -147,9 +148,9 @@ QTET_API qtet_status qtet_simplify(qtet_simplified* made, size_t meshBytes,
 QTET_API const void* qtet_simplified_log(const qtet_simplified* made, size_t* bytes);
 /* Writes the log as a file, whole or not at all: after a failure what was there is there still. */
 QTET_API qtet_status qtet_simplified_write(qtet_simplified* made, const char* path);
-/* What was changed or is unusual about the mesh, a line each; "" if nothing is. A line that begins
- * with "warning: " says that the base mesh has lost much of the shape, and which options help.
- * Until the next qtet_simplify or destroy. */
+/* Changes to the mesh and unusual things about it, a line each; "" if there are none. A line that
+ * begins with "warning: " says that the base mesh has lost much of the shape, and which options
+ * help. Valid until the next qtet_simplify or destroy. */
 QTET_API const char* qtet_simplified_notes(const qtet_simplified* made);
 
 #ifdef __cplusplus

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kInterval{100};
 
-/// What the two threads know of each other.
+/// The state that the two threads share.
 struct Shared {
   std::mutex mutex;
   std::condition_variable changed;

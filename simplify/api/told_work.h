@@ -1,4 +1,4 @@
-// Work in a thread of its own, while the caller's thread tells somebody how far it has come.
+// Work in a thread of its own, while the caller's thread reports how far it has come.
 #pragma once
 
 #include <functional>

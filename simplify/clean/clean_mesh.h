@@ -40,7 +40,7 @@ struct CleanReport {
   Occurrences nonManifoldVertices;
   std::uint64_t components = 0;  ///< sets of cells that hang together by faces
 
-  /// What was changed or is unusual, one sentence each; empty for a flawless mesh.
+  /// Changes made and unusual findings, one sentence each; empty for a flawless mesh.
   [[nodiscard]] std::vector<std::string> sentences() const;
 };
 

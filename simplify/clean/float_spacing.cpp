@@ -40,7 +40,8 @@ double spacingAt(double magnitude) {
          static_cast<double>(x);
 }
 
-/// Of the cells' edges, which count once a cell, those shorter than the length.
+/// The share of the cells' edges that are shorter than `length`. An edge counts once for each cell
+/// that has it.
 double shareBelow(const TetMesh& mesh, double length) {
   std::uint64_t count = 0;
   for (const Tetrahedron& t : mesh.tetrahedra)

@@ -39,12 +39,12 @@ struct QuantisedMesh {
 };
 
 /// Puts `mesh` on a lattice whose step is the largest extent / (2^bits - 1) and whose origin is the
-/// lowest corner, with as many bits above `positionBits` as it takes for no cell to become worse:
-/// positive volume to zero or less, zero to less. Float fields take `fieldBits`: step = largest
-/// component's extent / (2^bits - 1) and a minimum a component. Integer fields take step 1 and lose
-/// nothing where kMaxFieldBits bits hold their range. Points and cells keep their order; the
-/// boundary is boundaryOf's. Errors: bad-value (bits outside their limits), bad-input (extents that
-/// a double cannot hold or divide), cancelled. REQUIRES: a mesh that cleanMesh has passed.
+/// lowest corner. It takes as many bits above `positionBits` as it needs for no cell to become
+/// worse: positive volume to zero or less, zero to less. Float fields take `fieldBits`: step =
+/// largest component's extent / (2^bits - 1) and a minimum a component. Integer fields take step 1
+/// and lose nothing where kMaxFieldBits bits hold their range. Points and cells keep their order;
+/// the boundary is boundaryOf's. Errors: bad-value (bits outside their limits), bad-input (extents
+/// that a double cannot hold or divide), cancelled. REQUIRES: a mesh that cleanMesh has passed.
 [[nodiscard]] Result<QuantisedMesh> quantise(const TetMesh& mesh,
                                              const QuantiseOptions& options = {},
                                              const std::stop_token& stop = {});

@@ -55,7 +55,7 @@ void addValues(const LatticeMesh& mesh, bool ofCells, std::size_t i, Hasher& has
   }
 }
 
-/// What a vertex carries by itself.
+/// The hash of a vertex' own place and values.
 Hash ownHash(const LatticeMesh& mesh, std::size_t v) {
   Hasher hasher;
   for (const std::int32_t x : mesh.points[v]) hasher.add(static_cast<std::uint32_t>(x));

@@ -21,12 +21,12 @@ struct VerifyReport {
 };
 
 /// Whether the meshes are equal up to the numbering of vertices and cells and up to even
-/// permutations within a cell: lattice points and field integers of every vertex, and every cell
-/// with its orientation and field integers. Vertices are matched by 128-bit hashes of what they
-/// carry, refined over the cells round them, so coincident points with equal values are told apart
-/// by their neighbourhoods; a wrong mesh passes by accident with a probability of about 2^-100.
-/// Errors: bad-value, with the first difference found. Of the lattice and of FieldInfo only name,
-/// components and association are compared.
+/// permutations within a cell. Compares lattice points and field integers of every vertex, and
+/// every cell with its orientation and field integers. Vertices are matched by 128-bit hashes of
+/// their data, refined over the cells round them. So neighbourhoods tell coincident points with
+/// equal values apart. A wrong mesh passes by accident with a probability of about 2^-100.
+/// Errors: bad-value, with the first difference found. Only name, components and association of
+/// FieldInfo are compared, and nothing of the lattice.
 [[nodiscard]] Result<VerifyReport> sameMesh(const LatticeMesh& decoded,
                                             const LatticeMesh& expected);
 
@@ -36,9 +36,9 @@ struct OnLattice {
   std::vector<double> largestFieldErrors;  ///< in field steps, one a field
 };
 
-/// `mesh` put on the lattice and the field scales that a log states, by the nearest integers, every
-/// error measured on the way: what the log must hold, worked out without the encoder's own
-/// quantiser. `fields` name those of `mesh` by name and association, in any order.
+/// Puts `mesh` on the lattice and the field scales that a log states, by the nearest integers, and
+/// measures every error on the way. The result is what the log must hold, worked out without the
+/// encoder's own quantiser. `fields` name those of `mesh` by name and association, in any order.
 /// Errors: bad-value (a position or value further than half a step, and a billionth, from its
 /// integer, or outside the bits), not-found.
 [[nodiscard]] Result<OnLattice> putOnLattice(const TetMesh& mesh, const Lattice& lattice,

@@ -1,5 +1,5 @@
-// What a log keeps of its input, told and proved: sizes for reports, exact comparison for `qtet
-// verify`. For .cpp files only: it drags nlohmann-json in.
+// Reports and proofs of what a log keeps of its input: sizes for reports, exact comparison for
+// `qtet verify`. For .cpp files only: it drags nlohmann-json in.
 #pragma once
 
 #include <cstdint>
@@ -20,11 +20,11 @@ struct Manifest;
 /// "exact NAME": bytes}, as far as they are there.
 [[nodiscard]] nlohmann::ordered_json closingJson(const LogIndex& index, const Manifest& manifest);
 
-/// Holds what the log kept against the input: `placed` is the cleaned input on the log's lattice,
-/// `input` the same in floats, its cells' vertices as read, `cells` takeOriginalCells' of it. What
-/// was proved: {"order": bool, "positions": bool, "fields": {NAME: bool}}, and "originalCells":
-/// true where the log has them. Errors: bad-value (the first point, cell or value that differs),
-/// and restoreInput's. REQUIRES: sameMesh(finest, placed).
+/// Compares what the log kept with the input. `placed` is the cleaned input on the log's lattice.
+/// `input` is the same in floats, with its cells' vertices as read. `cells` is takeOriginalCells'
+/// result for it. Returns the proofs: {"order": bool, "positions": bool, "fields": {NAME: bool}},
+/// and "originalCells": true where the log has them. Errors: bad-value (the first point, cell or
+/// value that differs), and restoreInput's. REQUIRES: sameMesh(finest, placed).
 [[nodiscard]] Result<nlohmann::ordered_json> compareKept(
     const LogFile& log, const LatticeMesh& finest, const LatticeMesh& placed, const TetMesh& input,
     const std::optional<std::vector<std::uint32_t>>& cells);

@@ -80,7 +80,7 @@ OrderedJson toJson(const NewField& field) {
   return out;
 }
 
-/// What add-field and remove-field tell alike: {input, output, digest, bytes, bytesBefore,
+/// The report that add-field and remove-field share: {input, output, digest, bytes, bytesBefore,
 /// tetrahedra, vertices, levels, fields}. `fields` are the keys of those that the new log holds.
 /// Errors: those of LogIndex::parse and manifestOf.
 Result<OrderedJson> newLogJson(const ParsedWords& parsed, const LogFile& before,

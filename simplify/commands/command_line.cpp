@@ -36,7 +36,8 @@ constexpr const char* kTooMany = "one too many";
 /// "LOG..." stands for one word and more.
 bool takesMore(const std::string& name) { return name.ends_with("..."); }
 
-/// What is wrong with the first word of `more`, and where it was meant to go, most probably.
+/// The error for the first word of `more`: it says what is wrong, and where the word was most
+/// probably meant to go.
 UsageError oneTooMany(const CommandHelp& help, const std::vector<std::string>& positional,
                       const std::vector<std::string>& more, bool wantsOutput) {
   std::string places;
@@ -51,7 +52,7 @@ UsageError oneTooMany(const CommandHelp& help, const std::vector<std::string>& p
 ParsedWords::ParsedWords(const Words& words, CommandHelp help, po::options_description options,
                          const std::vector<std::string>& positional)
     : help_(std::move(help)), positional_(positional) {
-  // What runTool takes away before, named here for help.
+  // runTool takes these away before; they are named here for help.
   options.add_options()("quiet,q", "print nothing but errors, warnings and what was asked for")(
       "verbose,v", "tell how long each stage takes, and the memory at most")("help,h",
                                                                              "show this and stop");

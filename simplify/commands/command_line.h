@@ -1,4 +1,4 @@
-// What the tool's commands share: parsing their words, refusing them with a hint, reporting
+// Shared by the tool's commands: parsing their words, refusing them with a hint, reporting
 // failures, checking outputs early.
 #pragma once
 
@@ -63,7 +63,7 @@ class ParsedWords {
   boost::program_options::variables_map values_;
 };
 
-/// What every option --fields of a mesh or a log takes (proto/field_key.h).
+/// The help of every option --fields of a mesh or a log (proto/field_key.h).
 inline constexpr const char* kFieldsHelp =
     "all, none, or names between commas: NAME means every field of that name, of a series (--time "
     "all) every step's, NAME@TIME; point:NAME or cell:NAME is one of two with the same name; \\, "
@@ -73,8 +73,8 @@ inline constexpr const char* kFieldsHelp =
 /// "all" is nullopt, "none" the empty list. Throws UsageError.
 [[nodiscard]] std::optional<std::vector<std::string>> parseFieldNames(const std::string& text);
 
-/// Refuses an output before the work is done: an ending that is none of `extensions`, between
-/// blanks (UsageError), a folder that does not exist or cannot be written, the input itself.
+/// Refuses an output before the work is done. Its ending must be one of `extensions`, separated by
+/// blanks (UsageError); its folder must exist and be writable; it must not be the input itself.
 [[nodiscard]] Status checkOutput(const std::filesystem::path& output, const std::string& extensions,
                                  const std::optional<std::filesystem::path>& input = std::nullopt);
 
@@ -83,24 +83,24 @@ struct MeshOutput {
   std::filesystem::path file;
   std::string ending;  ///< with its dot
   bool isStandardOutput = false;
-  bool asJson = false;  ///< tells of it as one JSON object
+  bool asJson = false;  ///< reports it as one JSON object
   MeshFileOptions options{};
 };
 
 /// -o, --to, --no-draco and --json for meshOutputOf.
 void addMeshOutputOptions(boost::program_options::options_description& options);
 
-/// What becomes known of a mesh that was written.
+/// The report about a mesh that was written.
 struct MeshOutputReport {
   std::string sentence;
   OrderedJson json;  ///< the members beside `output`, `kind` and `bytes`
 };
 
-/// Of -o and --to, checked as checkOutput does. Throws UsageError, also where --json and the file
-/// both want the standard output.
+/// The output that -o and --to name, checked as checkOutput does. Throws UsageError, also where
+/// --json and the file both want the standard output.
 [[nodiscard]] Result<MeshOutput> meshOutputOf(const ParsedWords& parsed, const std::string& input);
 
-/// Writes the file whole or not at all, and tells of it on the standard output: the sentence, or
+/// Writes the file whole or not at all, and reports it on the standard output: the sentence, or
 /// with --json one object. Where the file is the standard output the sentence is a note.
 [[nodiscard]] Status writeMeshOutput(const MeshOutput& output, std::span<const std::uint8_t> bytes,
                                      const MeshOutputReport& report, Console& console);

@@ -28,7 +28,7 @@ void addMeasureOptions(boost::program_options::options_description& options);
 /// {measure, base}: the word given and the error of the base mesh, where it was measured.
 [[nodiscard]] OrderedJson measureReport(const std::optional<MeasureOptions>& options,
                                         const std::optional<LevelError>& base);
-/// What measureReport says as a line for people, a line feed in front; empty where nothing was
+/// The figures of measureReport in a line for people, a line feed in front; empty where nothing was
 /// measured. `fields`: an object with their names, in order.
 [[nodiscard]] std::string measureSentence(const OrderedJson& report, const OrderedJson& fields);
 

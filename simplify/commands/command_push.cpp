@@ -18,7 +18,7 @@ constexpr std::chrono::milliseconds kFirstPause{500};
 /// For the answer to a whole log: the server decodes it first, and others before it.
 constexpr std::chrono::hours kCheckTime{1};
 
-/// What is sent, where to, and by whom.
+/// The log to send, its destination and its sender.
 struct Push {
   const LogFile& log;
   HttpUrl server;

@@ -14,7 +14,7 @@ void addReadOptions(boost::program_options::options_description& options);
 /// The words that say the same once more, for another command.
 [[nodiscard]] Words readWordsOf(const ParsedWords& parsed);
 
-/// What was asked for; the fields stay to be set. Throws UsageError.
+/// The reading options that the words ask for; the fields stay to be set. Throws UsageError.
 [[nodiscard]] ReadOptions readOptionsOf(const ParsedWords& parsed);
 
 /// How many cells of which kind were split, points welded and so on.

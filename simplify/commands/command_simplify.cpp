@@ -57,8 +57,8 @@ Request requestOf(const ParsedWords& parsed) {
   return request;
 }
 
-/// What a stage is called in JSON, and what it does, for people who wait; kKeep goes on with what
-/// kEncode began.
+/// A stage's name in JSON, and its description for people who wait; kKeep continues what kEncode
+/// began.
 struct StageName {
   const char* name;
   const char* doing;

@@ -12,7 +12,7 @@
 
 namespace qtet {
 
-/// What a process ends with.
+/// Exit codes of the process.
 inline constexpr int kExitOk = 0;
 inline constexpr int kExitFailed = 1;  ///< an input, a file or the machine is at fault
 inline constexpr int kExitUsage = 2;   ///< the words given are not understood
@@ -42,7 +42,7 @@ struct Console {
   void note(const std::string& text) const {
     if (!quiet) err << "qtet: note: " << shown(text) << "\n";
   }
-  /// Of what was done as asked and is most probably not what was wanted: also with --quiet.
+  /// Warns that the result, made as asked, is most probably not what was wanted; also with --quiet.
   void warn(const std::string& text) const { err << "qtet: warning: " << shown(text) << "\n"; }
 };
 
@@ -52,7 +52,7 @@ struct Command {
   std::string_view name;
   std::string_view summary;
   int (*run)(const Words& words, Console& console);
-  /// What it prints is no more than that the file was made: nothing with --quiet.
+  /// The command prints only that it made the file, so it prints nothing with --quiet.
   bool makesFile = false;
   /// Whether "-" among its words is the standard input, and what that holds.
   enum class Pipe { kNone, kMesh, kLog } pipe = Pipe::kNone;

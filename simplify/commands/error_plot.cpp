@@ -122,7 +122,7 @@ class ErrorPlot {
 
  private:
   [[nodiscard]] double xOf(double bytes) const { return kLeft + kPlotWidth * x_.part(bytes); }
-  /// What is too small for the axis, 0 above all, lies on its end.
+  /// A value that is too small for the axis, above all 0, lies on the axis' end.
   [[nodiscard]] double yOf(double error) const {
     return kTop + kPlotHeight * (1 - y_.part(std::max(error, y_.low)));
   }

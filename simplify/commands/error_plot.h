@@ -24,8 +24,8 @@ struct ErrorCurve {
 };
 
 /// The boundary's distance and the rms error of each field, over the prefix lengths `bytes`, one a
-/// level. Of levels that end with the same byte only the finest counts. Errors: not-found where the
-/// manifest has no errors.
+/// level. If several levels end with the same byte, only the finest counts. Errors: not-found where
+/// the manifest has no errors.
 [[nodiscard]] Result<std::vector<ErrorCurve>> errorCurves(const Manifest& manifest,
                                                           const std::vector<std::uint64_t>& bytes);
 

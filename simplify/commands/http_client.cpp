@@ -11,7 +11,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Of an answer: a mesh's description with thousands of levels takes some 100 KB.
+/// The limit of an answer: a mesh's description with thousands of levels takes some 100 KB.
 constexpr std::size_t kMaxAnswerBytes = 4u << 20;
 /// Seconds after which the system is asked whether a silent peer is still there: a server that
 /// checks a log says nothing for minutes.
@@ -30,7 +30,7 @@ using Handle = std::unique_ptr<CURL, Release<curl_easy_cleanup>>;
 using Lines = std::unique_ptr<curl_slist, Release<curl_slist_free_all>>;
 using ParsedUrl = std::unique_ptr<CURLU, Release<curl_url_cleanup>>;
 
-/// What the callbacks of one transfer share.
+/// The state that the callbacks of one transfer share.
 struct Transfer {
   CURL* handle;
   const HttpRequest& request;
@@ -104,7 +104,7 @@ struct Options {
   }
 };
 
-/// What is true of every request: which protocols, whom to trust, how long to wait.
+/// Sets the rules of every request: which protocols, whom to trust, how long to wait.
 void setRules(Options& options, const HttpUrl& server, const HttpRequest& request) {
   const bool secure = server.origin.starts_with("https:");
   options.set(CURLOPT_NOSIGNAL, 1L);

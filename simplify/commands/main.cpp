@@ -13,7 +13,7 @@
 namespace {
 
 // Blocks of this many bytes and more go back to the system when they are freed. Left alone, glibc
-// raises the bound to the largest block that was freed (32 MB at most): then the arrays of reading
+// raises the bound to the largest block that was freed (32 MB at most). Then the arrays of reading
 // stay as holes among those of the simplifier, a fifth of the peak with a million cells.
 [[maybe_unused]] constexpr int kReturnedBytes = 1 << 20;
 

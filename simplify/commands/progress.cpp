@@ -11,7 +11,7 @@ constexpr std::chrono::milliseconds kRedraw{100};
 /// Between two lines where there is no terminal.
 constexpr std::chrono::seconds kLineInterval{2};
 constexpr int kBarCells = 30;
-/// Of a stage, before its end is foretold.
+/// The fraction of a stage that must be done before its end is foretold.
 constexpr double kEnoughToSay = 0.05;
 
 }  // namespace
@@ -73,8 +73,8 @@ void Progress::working() {
   out_ << "qtet: " << line << "\n" << std::flush;
 }
 
-/// What the stage will still take if it goes on as it did; nothing while too little of it is done
-/// to say.
+/// The time that the stage still takes if it goes on as it did; empty while too little of it is
+/// done to say.
 std::string Progress::timeLeft(double fraction) const {
   const double spent = std::chrono::duration<double>(Clock::now() - stageStart_).count();
   if (fraction < kEnoughToSay || fraction >= 1) return {};

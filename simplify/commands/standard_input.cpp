@@ -53,7 +53,7 @@ class OpenFile {
   int file_;
 };
 
-/// What --format says, in either way of writing it.
+/// The value of --format, in either way of writing it.
 std::string formatAmong(const Words& words) {
   for (std::size_t i = 0; i < words.size(); ++i) {
     if (words[i].starts_with("--format=")) return words[i].substr(std::strlen("--format="));

@@ -1,4 +1,4 @@
-// What comes through a pipe, as a file: VTK's readers, and logs, want to be read from any place.
+// Puts the contents of a pipe into a file: VTK's readers, and logs, want to be read from any place.
 #pragma once
 
 #include <memory>
@@ -10,7 +10,7 @@
 
 namespace qtet {
 
-/// What the file is called, without its ending.
+/// The file's name, without its ending.
 inline constexpr const char* kPipedFile = "standard-input";
 
 /// Bytes of the standard input at most: more than a mesh of kMaxElements cells has as .vtu, and an

@@ -12,14 +12,16 @@
 namespace qtet {
 namespace {
 
-// Of what the fields change over the distance that the boundary is off by: "a few times", squared.
+// The factor on the fields' change over the distance that the boundary is off by: "a few times",
+// squared.
 constexpr double kBoundaryToFields = 6;
 // More puts the shape before the fields, which is a user's choice; less would give the shape away
 // where fields are so smooth that they hardly need cells.
 constexpr double kMaxWeight = 200;
 constexpr double kLeastWeight = 0.05;
 
-// Of the fields in the cost: the sum of their squared gradients in a cell of positive volume.
+// The steepness of the fields in the cost: the sum of their squared gradients in a cell of positive
+// volume.
 class Steepness {
  public:
   Steepness(const LatticeMesh& mesh, std::span<const CostPart> parts)

@@ -1,5 +1,5 @@
-// What the boundary's place counts beside the fields where nobody says (ALGORITHM.md, "The boundary
-// weight").
+// The weight of the boundary's place beside the fields where nobody gives one (ALGORITHM.md, "The
+// boundary weight").
 #pragma once
 
 #include <span>
@@ -9,15 +9,15 @@
 
 namespace qtet {
 
-/// Of the bounding box, in lattice steps, at least 1.
+/// The diagonal of the bounding box, in lattice steps, at least 1.
 [[nodiscard]] double diagonalOf(const LatticeMesh& mesh);
 
 /// The weight (CostOptions::boundaryWeight). By its worth, a boundary that is off by d on average
-/// counts like fields that are off, on average over the volume, by a few times what they change
-/// over d at the boundary. By the balance, the boundary's expected error counts as much as the
-/// fields' (expected_error.h). The weight is the geometric mean of both, or the worth if that is
-/// less. No unit and no field's range has a say. REQUIRES: `parts` of point fields of `mesh`, whose
-/// boundary is boundaryOf's.
+/// counts like fields that are off by a few times what they change over d at the boundary. The
+/// fields' error is the average over the volume. By the balance, the boundary's expected error
+/// counts as much as the fields' (expected_error.h). The weight is the geometric mean of both, or
+/// the worth if that is less. No unit and no field's range has a say. REQUIRES: `parts` of point
+/// fields of `mesh`, whose boundary is boundaryOf's.
 [[nodiscard]] double balancedBoundaryWeight(const LatticeMesh& mesh,
                                             std::span<const CostPart> parts);
 

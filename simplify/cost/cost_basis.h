@@ -1,5 +1,5 @@
-// What the values in the cost stand for (ALGORITHM.md, "Many fields"): the components of the fields
-// themselves or, where these are many, the few directions in which they vary together.
+// The values in the cost (ALGORITHM.md, "Many fields"): the components of the fields themselves or,
+// where these are many, the few directions in which they vary together.
 #pragma once
 
 #include <array>
@@ -20,17 +20,17 @@ using CostValues = std::array<double, kMaxCostComponents>;
 
 class CostBasis {
  public:
-  /// Up to kMaxCostComponents components of `parts` stand for themselves. Of more, the cost takes
-  /// orthonormal directions that hold kVarianceKept of the components' variance, scaled as in
-  /// `parts`, or as much as kMaxCostComponents directions hold. REQUIRES: `parts` of point fields
-  /// of `mesh`.
+  /// Up to kMaxCostComponents components of `parts` stand for themselves. With more of them, the
+  /// cost takes orthonormal directions that hold kVarianceKept of the components' variance, scaled
+  /// as in `parts`, or as much as kMaxCostComponents directions hold. REQUIRES: `parts` of point
+  /// fields of `mesh`.
   CostBasis(const LatticeMesh& mesh, std::span<const CostPart> parts);
 
   /// Values in the cost.
   [[nodiscard]] std::size_t components() const { return components_; }
   /// The fields' components stand for themselves.
   [[nodiscard]] bool isDirect() const { return directions_.empty(); }
-  /// Of the fields' components, scaled: what of their variance the values hold; 1 if isDirect().
+  /// The share of the scaled field components' variance that the values hold; 1 if isDirect().
   [[nodiscard]] double varianceKept() const { return varianceKept_; }
 
   /// Adds `value`, the scaled component number `i` of all parts, to the values that it is part of.

@@ -1,4 +1,4 @@
-// What a caller may choose of a fusion's cost (ALGORITHM.md, "Cost").
+// The options that a caller has for a fusion's cost (ALGORITHM.md, "Cost").
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@ struct CostOptions {
   /// One a field: what its squared error, over its range, counts. 0 leaves it out; so does a
   /// constant field. Empty: 1 for each point field of floats.
   std::vector<double> fieldWeights;
-  /// What the squared distance of the boundary counts beside the fields, areas and distances over
+  /// The weight of the boundary's squared distance beside the fields, with areas and distances over
   /// the mesh's diagonal. Without: balancedBoundaryWeight (boundary_weight.h).
   std::optional<double> boundaryWeight;
   /// Without fields: how many times its area a boundary plane counts, the paper's "weighted planar

@@ -22,8 +22,8 @@ std::vector<CostPart> costPartsOf(const LatticeMesh& mesh, std::span<const doubl
   }
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const FieldInfo& info = mesh.fields[parts[i].field];
-    // Of a vector the larger of its lengths' range and its components': directions may turn while
-    // their lengths stay.
+    // A vector takes the larger of its lengths' range and its components' range: directions may
+    // turn while their lengths stay.
     const double extent = info.step * (std::ldexp(1.0, info.bits) - 1);
     const double range = info.components == 1 ? info.range[1] - info.range[0]
                                               : std::max(info.range[1] - info.range[0], extent);

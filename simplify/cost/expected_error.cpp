@@ -78,8 +78,8 @@ std::vector<Side<3>> sidesOfFaces(const LatticeMesh& mesh) {
   return sides;
 }
 
-/// What the corners of a cell count in its linear fields at p, and its volume six times; nothing of
-/// a cell without positive volume.
+/// The weights of a cell's corners in its linear fields at p, and six times the cell's volume;
+/// nothing for a cell without positive volume.
 struct LinearCell {
   std::array<double, 4> share{};
   double volume6 = 0;

@@ -9,11 +9,11 @@
 
 namespace qtet {
 
-/// The mean square, over the volume, of what a cell's linear fields miss at the far corner of the
-/// cell beyond each face, in the cost's unit (CostPart::scale), all components together. What the
-/// fields' integers are rounded by is taken off. Of a large mesh some faces speak for all; which,
-/// follows from their places, so neither numbering nor order has a say. REQUIRES: `parts` of point
-/// fields of `mesh`.
+/// The mean square error of a cell's linear fields at the far corner of the cell beyond each face,
+/// averaged over the volume. It is in the cost's unit (CostPart::scale), all components together.
+/// The error of rounding the fields to integers is subtracted. In a large mesh some faces stand for
+/// all. Their places decide which, so neither numbering nor order matters. REQUIRES: `parts` of
+/// point fields of `mesh`.
 [[nodiscard]] double expectedFieldError(const LatticeMesh& mesh, std::span<const CostPart> parts);
 
 /// The mean square, over the area, of the distance between a boundary triangle's plane and the far

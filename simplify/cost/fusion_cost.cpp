@@ -14,9 +14,9 @@
 namespace qtet {
 namespace {
 
-// The boundary's field counts like that of a layer this thick (of the diagonal): the thin cells at
-// a wall have no volume to speak for them, yet there the field is steepest, and it is what a viewer
-// shows.
+// The boundary's field counts like that of a layer this thick (of the diagonal). The thin cells at
+// a wall have no volume to give them weight, yet the field is steepest there, and a viewer shows
+// it.
 constexpr double kWallLayer = 3e-5;
 
 // Most cells, of some, have all of their vertices in one run of so many ids.
@@ -54,9 +54,9 @@ FusionCost::FusionCost(const FusionMesh& mesh, const LatticeMesh& lattice,
 }
 
 // Each worker adds to vertices of its own, in the order of the cells, so that every sum is that of
-// one worker. Ids that lie near one another mostly lie near one another in the mesh, too, and few
-// cells are looked into by two; where that is not so, one worker alone is quicker. What the
-// boundary weighs is found meanwhile.
+// one worker. Ids that lie near one another mostly lie near one another in the mesh, too, so few
+// cells are visited by two workers. Where that is not so, one worker alone is quicker. Meanwhile
+// the boundary's weight is found.
 void FusionCost::addSlopes(const LatticeMesh& lattice, std::optional<double> boundaryWeight,
                            Workers* workers) {
   const std::vector<Triangle> interfaces = interfacesOf(lattice);

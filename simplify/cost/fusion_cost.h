@@ -1,6 +1,6 @@
-// What a fusion costs (ALGORITHM.md, "Cost"): the residual of the fields over the volume and the
-// distance of the boundary, as one quadric in the fusion point and its values; without fields the
-// paper's planar quadric error (Eq. 1-7).
+// The cost of a fusion (ALGORITHM.md, "Cost"): one quadric in the fusion point and its values. It
+// sums the residual of the fields over the volume and the distance of the boundary. Without fields
+// it is the paper's planar quadric error (Eq. 1-7).
 #pragma once
 
 #include <algorithm>
@@ -47,7 +47,7 @@ class FusionCost {
     TwoVectors along;  // from v
   };
   [[nodiscard]] TwoEdges ofEdges(VertexId v, std::array<VertexId, 2> w) const;
-  /// What v itself is off by already: its quadric at its own place and values.
+  /// The error that v has already: its quadric at its own place and values.
   [[nodiscard]] double of(VertexId v) const { return quadrics_[at(v) + kConstant]; }
   /// Asks the memory for where v's quadric is.
   void prefetchSlot(VertexId v) const { qtet::prefetch(&slot_[v]); }
@@ -58,17 +58,17 @@ class FusionCost {
 
   /// The fields in the cost.
   [[nodiscard]] std::span<const CostPart> parts() const { return parts_; }
-  /// What the values stand for, in the order of parts().
+  /// The meaning of the values, in the order of parts().
   [[nodiscard]] const CostBasis& basis() const { return basis_; }
-  /// Of the bounding box, in lattice steps.
+  /// The diagonal of the bounding box, in lattice steps.
   [[nodiscard]] double diagonal() const { return diagonal_; }
   [[nodiscard]] std::size_t components() const { return components_; }
 
   /// The best values at p in the cost's unit (components() numbers), within the fields' limits if
   /// basis().isDirect(), and E there.
   double valuesAt(const Prey& prey, const LatticePoint& p, std::span<double> values) const;
-  /// How much each prey vertex has to say in what the fused vertex at p takes from their values:
-  /// by its place on an edge, else by the volume that it stands for. The shares sum to 1.
+  /// The share of each prey vertex in the values of the fused vertex at p: by its place on an edge,
+  /// else by the volume that it stands for. The shares sum to 1.
   [[nodiscard]] std::array<double, 4> sharesOf(const Prey& prey, const LatticePoint& p) const;
   /// A vertex's value number f.
   [[nodiscard]] double value(VertexId v, std::size_t f) const {
@@ -82,9 +82,9 @@ class FusionCost {
   void makeRoom(std::size_t vertices) { slot_.resize(vertices); }
 
  private:
-  // Of one vertex, relative to its place and values: A (6), b (3), c, W, then the G of each
-  // component, x, y and z apart, each one's h and each one's value: E(d, e) = d^T A d + 2 b.d + c +
-  // sum_f (W e_f^2 - 2 e_f (G_f.d + h_f)).
+  // The quadric of one vertex, relative to its place and values. It consists of A (6), b (3), c, W,
+  // then the G of each component, x, y and z apart, each one's h and each one's value. E(d, e) =
+  // d^T A d + 2 b.d + c + sum_f (W e_f^2 - 2 e_f (G_f.d + h_f)).
   static constexpr std::size_t kConstant = 9;
   static constexpr std::size_t kWeight = 10;
   static constexpr std::size_t kHead = kWeight + 1;

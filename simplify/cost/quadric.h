@@ -28,7 +28,7 @@ struct Symmetric3 {
   [[nodiscard]] double trace() const { return xx + yy + zz; }
 };
 
-/// E(d) = d^T A d + 2 b.d + c, d relative to an origin that the owner knows: Eq. 3-5 with the
+/// E(d) = d^T A d + 2 b.d + c, d relative to an origin that the owner knows. It is Eq. 3-5 with the
 /// plane's offset kept small, so that nothing cancels.
 struct Quadric {
   Symmetric3 a;

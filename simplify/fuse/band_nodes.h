@@ -33,7 +33,7 @@ class BandNodes {
   [[nodiscard]] bool allows(VertexId a, VertexId b) const {
     return nodes_.empty() || (nodes_[a] == nodes_[b] && nodes_[a] != kBetween);
   }
-  /// REQUIRES: told of every fusion, in order.
+  /// REQUIRES: every fusion was reported to it, in order.
   void fused(VertexId prey) {
     if (!nodes_.empty()) nodes_.push_back(nodes_[prey]);
   }

@@ -1,4 +1,4 @@
-// The candidates of each vertex: the edges that it owns, cheapest first. What was tried and failed
+// The candidates of each vertex: the edges that it owns, cheapest first. A candidate that failed
 // stays, to be tried again.
 #pragma once
 
@@ -147,8 +147,8 @@ class Candidates {
   }
 
  private:
-  // What was not legal is tried again later than its cost says: what forbade it is seldom gone
-  // after one change nearby.
+  // A candidate that was not legal is tried again later than its cost says: one change nearby
+  // seldom removes the obstacle.
   static constexpr float kFailed = 4;
   // Owners whose candidates a thread takes over at a time.
   static constexpr std::size_t kSetAtOnce = 256;

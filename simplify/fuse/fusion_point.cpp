@@ -18,14 +18,14 @@ constexpr double kReach = 1.5;
 constexpr double kGoodShape = 0.3;
 // Clear of what rounding does to a bound.
 constexpr double kSurelyWorse = 1 - 1e-9;
-// An edge of the boundary costs more than its quadric says, since the envelope leaves it less room:
-// by 1.5 nearly half of the proposals that come to nothing are spared, by 2 the boundary begins to
-// suffer, for what is flat costs no more and waits too long.
+// An edge of the boundary costs more than its quadric says, since the envelope leaves it less room.
+// A factor of 1.5 spares nearly half of the proposals that come to nothing. With 2 the boundary
+// begins to suffer: flat parts cost no more and wait too long.
 constexpr double kEnvelopeFactor = 1.5;
-// Where so large a share of what got as far as its star had no legal point there, it pays to ask
-// for flips before.
+// If this share of the proposals that got as far as their star had no legal point there, it pays to
+// test for flips before.
 constexpr double kOftenRefused = 0.125;
-// Of the last one: what happens in a part of the mesh decides there.
+// The weight of the last proposal in that share: so the part of the mesh at hand decides.
 constexpr double kLastShare = 1.0 / 64;
 // Flat cells that were flat before cost no more than this shape does.
 constexpr double kFlat = 1e-6;
@@ -131,7 +131,8 @@ void FusionPointFinder::offer(const LatticePoint& p, bool isOutside, double dear
   choices_.push_back({p, cost, dearness * cost, isOutside});
 }
 
-// What takes few bits comes first, so that a free point which falls on one of them is that one.
+// Points that take few bits come first, so that a free point which falls on one of them is that
+// one.
 void FusionPointFinder::offerCheap(const Prey& prey, const FusionCheck& test) {
   const auto offerInside = [&](const LatticePoint& p) {
     const bool isInside = !deciding_.boundary || test.insideEnvelope(p);

@@ -35,17 +35,16 @@ class FusionPointFinder {
     double cost = 0;
   };
   [[nodiscard]] Ideal ideal(const Prey& prey) const;
-  /// What fusing v with either w costs, by all that is known without the star: what the queue is
-  /// ordered by.
+  /// The costs of fusing v with each w, by all that is known without the star. They order the
+  /// queue.
   [[nodiscard]] Pair keysOf(VertexId v, std::array<VertexId, 2> w) const;
 
-  /// What the fusion would cost if flips, shapes and topology had no say: the envelope alone, which
-  /// is known long before them. Nothing: it leaves no point. REQUIRES: test.gatherBoundary(prey)
-  /// was true.
+  /// The fusion's cost if only the envelope had a say. Flips, shapes and topology are known much
+  /// later. Empty if the envelope leaves no point. REQUIRES: test.gatherBoundary(prey) was true.
   [[nodiscard]] std::optional<double> price(const Prey& prey, const FusionCheck& test);
-  /// A cell flips at every point: asked where that is likely, since it is cheaper to ask than the
-  /// star is to collect. So it is where an inner vertex would go to the boundary, and where many of
-  /// the last fusions had no legal point. REQUIRES: price(prey, test).
+  /// Whether a cell flips at every point. The test is made only where that is likely, since it is
+  /// cheaper than collecting the star. It is likely where an inner vertex would go to the boundary,
+  /// and where many of the last fusions had no legal point. REQUIRES: price(prey, test).
   [[nodiscard]] bool isHopeless(const FusionCheck& test);
   /// The fusion point. REQUIRES: price(prey, test), then test.gatherRest(), was true.
   [[nodiscard]] std::optional<FusionPoint> choose(const FusionCheck& test);

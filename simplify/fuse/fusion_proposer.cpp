@@ -11,8 +11,8 @@ namespace {
 // A prey that costs more than this many times what its edge does is not worth looking at.
 constexpr double kMaxLarger = 4;
 
-// How many cells go where an edge is not fused alone: those of its star that hold two prey vertices
-// or more, and those beside it that hold the other two.
+// Counts the cells that go where an edge is not fused alone. These are the cells of its star that
+// hold two prey vertices or more, and the cells beside it that hold the other two.
 class CellsGoing {
  public:
   CellsGoing(const FusionMesh& mesh, const Star& edge)
@@ -126,7 +126,7 @@ bool FusionProposer::propose(VertexId owner, std::span<const Candidate> candidat
   return true;
 }
 
-// What costs more than `most` comes back, whatever it takes along.
+// A fusion that costs more than `most` comes back, whatever it takes along.
 void FusionProposer::takeAlong(std::span<const Candidate> others, float most, Proposal& out) {
   const double below = std::min(out.where.cost, static_cast<double>(most));
   findCompanions(out, others, below);

@@ -1,5 +1,5 @@
-// What could be fused: the edges of a vertex with what they would cost, and the proposal that comes
-// of one of them. Reads the mesh, changes nothing.
+// Proposals of fusions: the edges of a vertex with their costs, and the proposal that comes of one
+// of them. Reads the mesh, changes nothing.
 #pragma once
 
 #include <algorithm>
@@ -20,24 +20,25 @@
 
 namespace qtet {
 
-/// What is known of an owner's candidates: those that are not legal, and what comes of the first
-/// that is.
+/// The results for an owner's candidates: those that are not legal, and the proposal of the first
+/// one that is.
 struct Proposal {
   struct Illegal {
     VertexId partner;
     float price;  ///< below it nobody needed to know
   };
   std::vector<Illegal> illegal;
-  /// Of the edge that the rest is about; kGhost: none is known to be legal.
+  /// The partner in the edge that the rest is about; kGhost: none is known to be legal.
   VertexId partner = kGhost;
   float price = 0;          ///< FusionPointFinder::price
   bool isPriceAll = false;  ///< it was too dear, so that nobody looked further
   Prey prey;
   FusionPoint where;
-  /// Of the edge alone; what it was asked for: nothing dearer was looked for in larger prey.
+  /// The cost of the edge alone; and the bound asked for: nothing dearer was looked for in larger
+  /// prey.
   float edgeCost = 0, most = 0;
   Star star;
-  /// That could be taken along: which of them were free was part of the decision.
+  /// The vertices that could be taken along; which of them were free was part of the decision.
   std::vector<VertexId> companions;
   std::uint32_t madeAfter = 0;   ///< fusions decided on before
   std::uint32_t tetrahedra = 0;  ///< that go
@@ -68,11 +69,11 @@ class FusionProposer {
   /// perhaps among them.
   void candidatesOf(VertexId v, std::span<const VertexId> link, std::vector<Candidate>& found);
 
-  /// The fusion of the first edge of `candidates`, which are `owner`'s, cheapest first; or of a
-  /// triangle or tetrahedron that holds it where that is cheaper for what it removes. Of an edge
-  /// whose price is above `most`, the price. False, and noted as illegal, when it cannot be. No
-  /// locked vertex is taken along. `now`: fusions decided on. REQUIRES: neither end of the edge is
-  /// locked.
+  /// Proposes the fusion of the first edge of `candidates`, which are `owner`'s, cheapest first. A
+  /// triangle or tetrahedron that holds the edge takes its place where that is cheaper for what it
+  /// removes. If the edge's price is above `most`, only the price is found. Returns false, and
+  /// notes the edge as illegal, when it cannot be fused. No locked vertex is taken along. `now`:
+  /// fusions decided on. REQUIRES: neither end of the edge is locked.
   [[nodiscard]] bool propose(VertexId owner, std::span<const Candidate> candidates, float most,
                              std::uint32_t now, Proposal& out);
 

@@ -8,7 +8,7 @@
 namespace qtet {
 namespace {
 
-/// Of a tree: twice as many packets as leaves stay below kMaxChunks.
+/// The depth of a tree at most: twice as many packets as leaves stay below kMaxChunks.
 constexpr std::uint32_t kMaxDepth = 18;
 
 /// Four times the barycentre, and whose it is.

@@ -56,8 +56,8 @@ void LevelDecider::process(VertexId owner, LevelQueue& queue, LevelFusions& fusi
     proposals_.giveBack(owner);
 }
 
-// What comes of the owner's best candidate, made now unless what was found in this level still
-// holds.
+// The outcome for the owner's best candidate. It is made now, unless the one found in this level
+// still holds.
 LevelDecider::Outcome LevelDecider::propose(VertexId owner, VertexId partner, float most) {
   Proposal& proposal = proposals_.of(owner);
   if (const auto illegal =

@@ -1,5 +1,5 @@
-// What is fused in a level: the candidates within its limit, cheapest first, each that is legal and
-// whose star no other one has touched (ALGORITHM.md, "Levels").
+// Decides what is fused in a level: the candidates within its limit, cheapest first, each that is
+// legal and whose star no other one has touched (ALGORITHM.md, "Levels").
 #pragma once
 
 #include <cstddef>

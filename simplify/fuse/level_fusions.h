@@ -1,5 +1,5 @@
-// The fusions of a level: decided on first, and done afterwards by all threads. What is decided in
-// a level depends on none of them (THREADS.md).
+// The fusions of a level: decided on first, and done afterwards by all threads. No decision of a
+// level depends on its fusions having been done (THREADS.md).
 #pragma once
 
 #include <cstddef>

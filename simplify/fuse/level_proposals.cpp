@@ -40,8 +40,8 @@ void LevelProposals::serve(std::size_t worker) {
   }
 }
 
-// Of the entries that the worker has claimed. False where there is none, or too many are made
-// already.
+// Makes a proposal for the next entry that the worker has claimed. False where there is none, or
+// too many are made already.
 bool LevelProposals::makeNext(std::size_t number) {
   Worker& worker = workers_[number];
   claimMore(worker);

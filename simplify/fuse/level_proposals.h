@@ -30,7 +30,7 @@ class LevelProposals {
   /// A level begins with these entries, sorted, and this limit of its keys. `proposers`: one a
   /// worker. All of them outlive the level. REQUIRES: Touched::beginLevel.
   void begin(std::span<const QueueEntry> entries, float limit, const Proposers& proposers);
-  /// What another worker does until stop().
+  /// The work of another worker until stop().
   void serve(std::size_t worker);
   void stop() { isOver_.store(true, std::memory_order_relaxed); }
   /// REQUIRES: all others have left serve().
@@ -45,9 +45,9 @@ class LevelProposals {
   void giveBack(VertexId owner);
 
  private:
-  // Entries that a worker has claimed and not made yet, while the memory is asked for what they
-  // need; and proposals of its that are not decided on yet, at most: the more, the more are spoilt
-  // by fusions of their neighbours.
+  // kClaimed: the entries that a worker has claimed and not made yet, while the memory is asked for
+  // their data. kMaxMade: its proposals that are not decided on yet, at most. The more there are,
+  // the more are spoilt by fusions of their neighbours.
   static constexpr std::size_t kClaimed = 7, kMaxMade = 32;
   struct Claim {
     std::size_t at = 0;                         // into entries_

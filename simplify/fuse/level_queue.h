@@ -29,7 +29,7 @@ class LevelQueue {
   [[nodiscard]] std::span<const QueueEntry> entries() const { return entries_; }
   /// The key where the level ends.
   [[nodiscard]] float limit() const { return limit_; }
-  /// Of the next one; infinity when there is none.
+  /// The key of the next entry; infinity when there is none.
   [[nodiscard]] float nextKey() const {
     const float key =
         next_ < entries_.size() ? entries_[next_].key : std::numeric_limits<float>::infinity();

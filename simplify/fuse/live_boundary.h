@@ -14,12 +14,12 @@ namespace qtet {
 
 class LiveBoundary {
  public:
-  /// Of the mesh as it is now. REQUIRES: it outlives this.
+  /// The boundary of the mesh as it is now. REQUIRES: `mesh` outlives this.
   explicit LiveBoundary(const FusionMesh& mesh);
   LiveBoundary(const LiveBoundary&) = delete;
   LiveBoundary& operator=(const LiveBoundary&) = delete;
 
-  /// Fits the boxes anew.
+  /// Fits the boxes again.
   void beginLevel() { tree_.refit(live_); }
   /// With the proposal's prey at its point a new triangle of the boundary would meet another one,
   /// or a part of the boundary would end inside the solid. Never false where it would. REQUIRES:
@@ -45,8 +45,8 @@ class LiveBoundary {
   std::vector<std::array<VertexId, 3>> vertices_;
   std::vector<std::uint8_t> live_;
   TriangleTree tree_;
-  // Of the proposal that is being looked at: its boundary triangles with the prey at its point, and
-  // those of the prey as it is which that point is outside of.
+  // The boundary triangles of the proposal in hand with the prey at its point, and those of the
+  // prey as it is which that point is outside of.
   std::vector<PlacedTriangle> new_, left_;
 };
 

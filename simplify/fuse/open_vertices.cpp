@@ -17,12 +17,12 @@ constexpr std::size_t kListsAhead = 8;
 // Candidates a vertex, most of the time: 7 in a large mesh, and gaps of as many.
 constexpr std::size_t kMaxCandidates = 16;
 
-/// Of a run of vertices: where what is left of it ends.
+/// Where the remaining part of a run of vertices ends.
 struct Filled {
   std::size_t vertices = 0, entries = 0;
 };
 
-// What is left of each run of kFilled moves up to the one before.
+// Moves the remaining part of each run of kFilled up to the one before.
 template <class T>
 void joinRuns(std::vector<T>& all, std::span<const Filled> filled, std::size_t Filled::* end) {
   const auto place = [&](std::size_t i) { return all.begin() + static_cast<std::ptrdiff_t>(i); };

@@ -19,9 +19,9 @@ class OpenVertices {
   OpenVertices(FusionState& state, Workers& workers, const Proposers& proposers)
       : state_(state), workers_(workers), proposers_(proposers) {}
 
-  /// Looks for all candidates anew.
+  /// Looks for all candidates again.
   void findAll();
-  /// What a level fused comes in, with its candidates. REQUIRES: carried out.
+  /// Takes in the vertices that a level fused, with their candidates. REQUIRES: carried out.
   void add(const LevelFusions& level);
 
   /// The key that this fraction of the vertices' best candidates does not pass.

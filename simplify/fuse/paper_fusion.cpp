@@ -189,8 +189,8 @@ class PaperSimplifier {
     return true;
   }
 
-  /// What is deleted leaves the heap; an affected tetrahedron gets the key of its new PQEM, if it
-  /// is still there.
+  /// Deleted cells leave the heap; an affected tetrahedron gets the key of its new PQEM, if it is
+  /// still there.
   void updateHeap() {
     for (const CellId c : test_.star().deleted) {
       if (!isQueued(c)) continue;

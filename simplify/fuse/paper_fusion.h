@@ -11,16 +11,17 @@
 
 namespace qtet {
 
-/// Section 3.2 a: what the fusion of an interior tetrahedron removes at least. It removes the prey,
-/// its four face neighbours and, for each of the six edges, the edge's other cells: 5 + the sum of
-/// (cells round the edge - 3), 11 where no edge has but three cells. The paper takes that for
-/// granted; where it does not hold (thirteen cells can do it) the tetrahedron is not fused.
+/// Section 3.2 a: the least that the fusion of an interior tetrahedron removes. It removes the
+/// prey, its four face neighbours and the other cells of each of the six edges. That is 5 + the sum
+/// of (cells round the edge - 3), at least 11 if every edge has more than three cells. The paper
+/// takes that for granted. Where it does not hold (thirteen cells can do it) the tetrahedron is not
+/// fused.
 inline constexpr std::size_t kLeastOfInterior = 11;
 
-/// What the paper's Table 1 states of a run, and why the other tetrahedra stayed.
+/// The figures of a run that the paper's Table 1 states, and why the other tetrahedra stayed.
 struct PaperFigures {
   std::uint64_t fusions = 0, removed = 0;  ///< removed: tetrahedra, Table 1(b)'s n_decim
-  /// Of `fusions`, those with no prey vertex on the boundary.
+  /// Those of `fusions` with no prey vertex on the boundary.
   std::uint64_t interiorFusions = 0;
   /// Wall time of the quadrics and the heap, Table 1(a)'s initHeap.
   double initialiseSeconds = 0;
@@ -41,8 +42,8 @@ struct PaperFusion {
   PaperFigures figures;
 };
 
-/// Of the options only targetRatio, baseCells, progress and stop count: no field is in the cost,
-/// and one thread does it all. REQUIRES: `mesh` cleaned and quantised. Errors: as simplify().
+/// Only the options targetRatio, baseCells, progress and stop count: no field is in the cost, and
+/// one thread does it all. REQUIRES: `mesh` cleaned and quantised. Errors: as simplify().
 [[nodiscard]] Result<PaperFusion> simplifyAsThePaper(const LatticeMesh& mesh,
                                                      const FusionOptions& options);
 

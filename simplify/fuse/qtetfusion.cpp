@@ -101,8 +101,8 @@ class Simplifier {
     }
   }
 
-  // From all candidates anew to the goal, or until nothing is left to try.
-  /// False: it stalls, and all candidates anew would not help.
+  // From all candidates to the goal, or until nothing is left to try.
+  /// False: it stalls, and starting from all candidates again would not help.
   bool runLevels(const LevelGoal& goal) {
     open_.findAll();
     std::deque<std::size_t> before{live()};
@@ -120,7 +120,7 @@ class Simplifier {
   bool runLevel(const LevelGoal& goal) {
     open_.fill(queue_.refill(), std::min(goal.dearest, std::numeric_limits<float>::max()));
     if (queue_.entries().empty()) return false;
-    // What a band can afford it will do, so that the order counts for less there than the number of
+    // A band will do whatever it can afford, so the order counts for less there than the number of
     // levels.
     queue_.begin(goal.isBand() ? options_.bands.levelQuantile : kLevelQuantile);
     fusions_.begin(levels_);

@@ -17,9 +17,9 @@ namespace qtet {
 
 /// ALGORITHM.md, "Bands".
 struct BandOptions {
-  /// Of the input, a leaf of the tree that bands keep to; 0: no bands.
+  /// Cells of the input in a leaf of the tree that bands keep to; 0: no bands.
   std::size_t cellsPerPacket = 0;
-  /// With each more, small boxes take fewer bytes and coarse levels get worse.
+  /// Bands at most. With each more, small boxes take fewer bytes and coarse levels get worse.
   std::size_t most = 6;
   /// A band ends at the key that this fraction of the vertices' best edges does not pass at its
   /// start. 0.9 to 1 trades the error of coarse levels for the bytes of a box
@@ -44,7 +44,7 @@ struct FusionOptions {
   double envelopeTolerance = 0;
   /// The cell field of one component whose values are regions that keep their topology.
   std::optional<std::size_t> regionField;
-  /// What badly shaped new cells add to the cost, >= 0 (ALGORITHM.md, "Shape").
+  /// The weight of badly shaped new cells in the cost, >= 0 (ALGORITHM.md, "Shape").
   double shapeWeight = 0.5;
   PlacementRule placement = PlacementRule::kAuto;
   BandOptions bands;

@@ -1,5 +1,5 @@
-// When each vertex was last touched by a fusion. What a proposal relies on must not be touched
-// after it was made, and levels are independent sets.
+// When each vertex was last touched by a fusion. Vertices that a proposal relies on must not be
+// touched after it was made, and levels are independent sets.
 #pragma once
 
 #include <atomic>

@@ -44,8 +44,8 @@ class BoundaryEnvelope {
     bool stays;           // one of its vertices is prey
     std::uint8_t moving;  // of a face that stays: which
   };
-  // Of two faces, relative to the first prey vertex; where there is no second one, nothing is
-  // beyond it.
+  // The planes of two faces, relative to the first prey vertex. Where there is no second one,
+  // nothing is beyond it.
   struct Planes {
     TwoVectors normal;
     Pair height, inverseLength;

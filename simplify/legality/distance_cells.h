@@ -32,7 +32,7 @@ struct LatticeCube {
 /// One thread's own. When it is full it forgets all, so that memory has a bound.
 class DistanceCells {
  public:
-  /// Of the cube's middle: `measure()`, unless it is known.
+  /// The signed distance of the cube's middle: `measure()`, unless it is known.
   template <class Measure>
   [[nodiscard]] SignedDistance at(const LatticeCube& cube, const Measure& measure) {
     Slot& slot = slotOf(cube);

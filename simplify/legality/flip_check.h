@@ -22,7 +22,8 @@ class FlipCheck {
   static constexpr CellId kNoCell = ~CellId{0};
 
   const FusionMesh& mesh_;
-  // What forbade the last point is asked first about the next: a cell of each prey vertex.
+  // The cells that forbade the last point, one of each prey vertex. They are asked first about the
+  // next one.
   mutable std::array<CellId, 4> last_;
 };
 

@@ -66,9 +66,9 @@ class FusionCheck {
   [[nodiscard]] bool staysNear(const LatticePoint& p) const {
     return envelope_.staysNear(*limits_.original, limits_.envelopeTolerance, p, distances_);
   }
-  /// The worst shape among the affected cells with the prey at p (1 = regular, 0 = flat), or a
-  /// negative number where p is not legal: a cell would flip or be squashed, or a boundary triangle
-  /// turn too far; or where the shape is worse than `least`. REQUIRES gather, p on the lattice.
+  /// The worst shape among the affected cells with the prey at p (1 = regular, 0 = flat). Negative
+  /// where p is not legal, since a cell would flip or be squashed or a boundary triangle turn too
+  /// far. Also negative where the shape is worse than `least`. REQUIRES gather, p on the lattice.
   [[nodiscard]] double shapeAt(const LatticePoint& p, double least = 0) const;
   /// The worst shape in the star as it is. REQUIRES gather.
   [[nodiscard]] double oldShape() const { return shapes_.old(); }

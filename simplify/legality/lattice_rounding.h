@@ -9,12 +9,12 @@
 namespace qtet {
 
 /// In a star whose coordinates stay below 2^16 every volume is an integer under 2^53, exact in
-/// doubles; where they reach r, it is off by less than 2^5 r^3 2^-52.
+/// doubles. Where they reach r, it is off by less than 2^5 r^3 2^-52.
 inline constexpr int kExactBits = 16;
 inline constexpr double kRounding = 0x1p-47;
 
-/// What volumes with an apex at d over triangles of this reach may be off by, on a lattice of so
-/// many bits. Both relative to the same origin.
+/// A bound on the rounding errors of volumes with an apex at d over triangles of this reach, on a
+/// lattice of so many bits. Both relative to the same origin.
 [[nodiscard]] inline double roundingAt(const Vector3& d, double reach, int latticeBits) {
   if (latticeBits <= kExactBits) return 0;
   const double farthest = std::max({reach, std::abs(d[0]), std::abs(d[1]), std::abs(d[2])});

@@ -59,7 +59,8 @@ class LocalStar {
   struct Counts {
     std::size_t vertices = 0, affected = 0;
   };
-  /// What the first prey vertex' star has; what only the second one's has comes after it.
+  /// The counts of the first prey vertex' star; those that only the second one's star has come
+  /// after them.
   /// REQUIRES: prey().k == 2.
   [[nodiscard]] const Counts& ofFirst() const {
     assert(prey_.k == 2);

@@ -40,7 +40,7 @@ class LocalVertices {
     /// or v among them.
     [[nodiscard]] std::uint32_t intern(VertexId v) {
       std::size_t at = (v * 0x9E3779B1u) >> (32 - kLogSlots);
-      // What an earlier star left in a slot is a number that is none here; whether v is new is no
+      // A slot that an earlier star filled holds a number that is none here. Whether v is new is no
       // branch, since a processor could not foresee it.
       std::uint32_t known = all_.slots_[at].number - base_;
       while ((unsigned{known < count_} & unsigned{all_.slots_[at].id != v}) != 0) [[unlikely]] {

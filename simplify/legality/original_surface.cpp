@@ -175,9 +175,9 @@ SignedDistance OriginalSurface::distanceOf(const LatticeCube& cube) const {
       nearest.triangle};
 }
 
-// The tetrahedron is halved until each piece is near one triangle of the surface, or in a ball
-// round the middle of a cube that is near the solid or inside it. The piece that lies furthest
-// outside comes first: where one lies too far, it is soon found.
+// The tetrahedron is halved until each piece is near one triangle of the surface, or lies in a
+// ball. Such a ball is round the middle of a cube that is near the solid or inside it. The piece
+// that lies furthest outside comes first: where one lies too far, it is soon found.
 bool OriginalSurface::holds(const Corners& tetrahedron, double tolerance,
                             DistanceCells& known) const {
   struct Piece {

@@ -18,7 +18,7 @@ class OriginalSurface {
  public:
   using Corners = std::array<Vector3, 4>;
 
-  /// Of the mesh as it is now.
+  /// The surface of the mesh as it is now.
   explicit OriginalSurface(const FusionMesh& mesh);
 
   /// No point of the tetrahedron is outside the solid and further from its surface than

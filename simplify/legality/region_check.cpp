@@ -12,10 +12,11 @@ constexpr VertexId kNoVertex = kGhost - 1;
 }  // namespace
 
 // After the fusion each region of the star is the cone from the fused vertex over its triangles of
-// the link, and any regions that the star holds meet in the cone over what they share there: all of
+// the link. Any regions that the star holds meet in the cone over what they share there. All of
 // these are contractible. The star is replaced by something of the same topology, region by region,
-// if the same holds before (any regions that the star holds meet in one contractible set), and if
-// on the link nothing changes: no region touches it but where it has triangles there.
+// on two conditions. The same holds before: any regions that the star holds meet in one
+// contractible set. Nothing changes on the link: no region touches it but where it has
+// triangles there.
 bool RegionCheck::passes(const FusionMesh& mesh, const Prey& prey, const Star& star) {
   assert(mesh.hasRegions());
   regions_.clear();
@@ -76,9 +77,9 @@ std::uint32_t RegionCheck::root(std::uint32_t i) {
   return i;
 }
 
-// What all these regions share, a subcomplex of the star: not empty, connected, Euler
-// characteristic 1. In a ball that leaves no room for a hole and a void that cancel out, unless the
-// regions themselves have them, and each of those is looked at alone, too.
+// Whether the subcomplex of the star that all these regions share is contractible: not empty,
+// connected, Euler characteristic 1. In a ball that leaves no room for a hole and a void that
+// cancel out, unless the regions themselves have them. Each region is looked at alone, too.
 bool RegionCheck::isContractible(Mask regions) {
   int characteristic = 0;
   corners_.clear();

@@ -23,7 +23,7 @@ T shapeSquared(const T& volume6, const T& squares) {
   return kShapeSquared * volume6 * volume6 / (squares * squares * squares);
 }
 
-// Of two cells.
+// The worse squared shape of two cells.
 double worstSquared(const Pair& volume6, const Pair& squares) {
   const Pair shape = shapeSquared(volume6, squares);
   return std::min(volume6[0] > 0 ? shape[0] : 0, volume6[1] > 0 ? shape[1] : 0);

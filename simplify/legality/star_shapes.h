@@ -24,9 +24,9 @@ class StarShapes {
   void measure();
   /// The worst shape in the star as it is. REQUIRES: measure.
   [[nodiscard]] double old() const { return old_; }
-  /// The worst shape among the affected cells with the prey at p, or a negative number where a cell
-  /// would flip or be squashed, or where the shape is worse than `least`. REQUIRES: measure, and
-  /// the star not taken since.
+  /// The worst shape among the affected cells with the prey at p. Negative where a cell would flip
+  /// or be squashed, or where the shape is worse than `least`. REQUIRES: measure, and the star not
+  /// taken since.
   [[nodiscard]] double at(const LatticePoint& p, double least) const;
 
  private:
@@ -52,7 +52,8 @@ class StarShapes {
   Vector3 origin_{};  // the first prey vertex
   double reach_ = 0;  // the star's largest coordinate
   double old_ = 1;
-  // What forbade the last point is asked first about the next: of bases_.
+  // The index in bases_ of the cells that forbade the last point. They are asked first about the
+  // next one.
   mutable std::size_t suspect_ = 0;
 };
 

@@ -16,8 +16,8 @@
 namespace qtet {
 namespace {
 
-/// Of each vertex of the last level, a quarter of the volume of its cells; what a fused vertex
-/// stands for is the sum of its prey's.
+/// For each vertex of the last level, a quarter of the volume of its cells; a fused vertex stands
+/// for the sum of its prey's volumes.
 std::vector<double> volumesOf(const LogHistory& log) {
   const FusionHistory& h = log.history;
   std::vector<Tetrahedron> cells(h.cells.begin(), h.cells.begin() + log.tetrahedra);
@@ -38,9 +38,9 @@ std::vector<double> volumesOf(const LogHistory& log) {
   return out;
 }
 
-/// How much each prey vertex counts in the fused vertex's value. What lies on the edge fits the
-/// prediction along the step: on comb 20 % fewer bytes than the mean by volume for 10 % more rms
-/// error of the base mesh; the nearest prey's value is worse in both.
+/// How much each prey vertex counts in the fused vertex's value. Values by the place on the edge
+/// fit the prediction along the step. On comb they take 20 % fewer bytes than the mean by volume,
+/// for 10 % more rms error of the base mesh. The nearest prey's value is worse in both.
 std::array<double, 4> sharesOf(const Fusion& fusion, const FusionHistory& h,
                                const std::vector<double>& volumes) {
   std::array<double, 4> out{};

@@ -32,8 +32,8 @@ struct AddedFields {
                                             const AddFieldsOptions& options = {});
 
 /// Values of all of the history's vertices from those of the last level's, `components` integers
-/// each: a fused vertex takes what its prey's values are at its place on their edge; of more than
-/// two prey, their mean by the volume that they stand for.
+/// each. A fused vertex on an edge takes the values of its two prey at its place there. With more
+/// than two prey it takes their mean by the volume that they stand for.
 [[nodiscard]] std::vector<std::int32_t> fusedValues(const LogHistory& log,
                                                     std::vector<std::int32_t> values,
                                                     std::uint32_t components);

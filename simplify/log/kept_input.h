@@ -29,7 +29,7 @@ struct KeepOptions {
   [[nodiscard]] bool any() const { return keepsOrder() || exact; }
 };
 
-/// What has to be remembered of the input until its log is encoded.
+/// The data of the input that are kept until its log is encoded.
 struct KeptInput {
   KeepOptions options;
   TetMesh mesh;  ///< cleaned, but the cells' vertices in the order of the file
@@ -50,7 +50,8 @@ struct KeptInput {
 [[nodiscard]] Result<Bytes> withInput(const EncodedLog& log, const KeptInput& input,
                                       const std::stop_token& stop = {});
 
-/// What a log knows of its input, in the input's numbering where it has that, else in slot order.
+/// The data that a log has of its input, in the input's numbering where it has that, else in slot
+/// order.
 struct RestoredInput {
   std::optional<InputOrder> order;
   std::vector<VertexId> points;  ///< slot of point i

@@ -119,7 +119,7 @@ class Matcher {
     return {};
   }
 
-  // Of two cells that are the same by their places.
+  // Matches the vertices of two cells that are the same by their places.
   Status matchVertices(CellId mine, CellId theirs) {
     for (const VertexId v : mesh_.tetrahedra[mine]) {
       VertexId found = kGhost;

@@ -18,7 +18,7 @@ struct MeshMatch {
 };
 
 /// Matches exactly: every point by its lattice place, points that share a place by the cells that
-/// hold them, every cell by its vertices; the order of a cell's vertices does not matter. Errors:
+/// hold them, every cell by its vertices. The order of a cell's vertices does not matter. Errors:
 /// bad-value (other counts; a point or cell that the log has not, named; twins that nothing tells
 /// apart).
 [[nodiscard]] Result<MeshMatch> matchMesh(const LatticeMesh& mesh,

@@ -10,7 +10,7 @@
 namespace qtet {
 namespace {
 
-/// Of positions and fields where a format needs a lattice and the mesh has none.
+/// Bits of positions and fields where a format needs a lattice and the mesh has none.
 constexpr int kExportBits = 16;
 
 }  // namespace

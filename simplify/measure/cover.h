@@ -8,7 +8,7 @@
 
 namespace qtet {
 
-/// Of a triangle.
+/// The corners of a triangle.
 using Corners = std::array<Vector3, 3>;
 
 /// A few triangles of a surface; `isAll` is false where there were more.

@@ -96,7 +96,7 @@ class Search {
     if (!isDone(piece)) split(piece, middle);
   }
 
-  // What lies between the surface and the piece is nowhere higher than acceptable.
+  // Whether the surface is over all of the piece, nowhere higher than acceptable.
   bool isUnder(const Piece& piece) {
     const SurfaceOver over = surfaceOver(tree_, std::span(piece.corners).first(piece.count),
                                          normal_, std::sqrt(acceptable()));
@@ -122,8 +122,9 @@ class Search {
     return true;
   }
 
-  // What lies over the nearest triangle is cut off along one of its edges, so that a flat surface
-  // needs no more pieces than triangles. Over it the corners tell; then the piece is halved.
+  // Cuts off the part over the nearest triangle along one of its edges, so that a flat surface
+  // needs no more pieces than triangles. The corners bound a piece that is all over the triangle;
+  // after that it is halved.
   void split(Piece& piece, const Vector3& middle) {
     if (piece.count == kMaxCorners) {
       halve(piece);

@@ -19,7 +19,7 @@ struct FarthestPoint {
   double bound = 0;  ///< of no point of it is it more
   /// The surface's triangle that is nearest to the middle, or near enough, or over most of it.
   std::uint32_t nearest = 0;
-  /// What the bound rests on: it holds while these triangles stay.
+  /// The triangles that the bound rests on: it holds while they stay.
   Cover cover{};
 };
 

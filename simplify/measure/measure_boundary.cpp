@@ -136,7 +136,7 @@ OneSidedDistance BoundaryMeter::toLevel() {
   return {mean / mesh_.diagonal(), std::sqrt(boundToLevel(farthest)) / mesh_.diagonal()};
 }
 
-// What was proven for a triangle holds until the triangle changes; it need not be sharp while it is
+// A bound proven for a triangle holds until the triangle changes. It need not be sharp while it is
 // not above the maximum.
 double BoundaryMeter::boundToOriginal(double squared) {
   squared = std::max(squared, nothing());

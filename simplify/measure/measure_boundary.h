@@ -17,17 +17,17 @@ class Workers;
 
 struct BoundaryOptions {
   std::uint32_t samples = 0;  ///< places on the original's boundary, uniform by area
-  /// The same on a level's: dearer, because they are searched anew.
+  /// The same on a level's: dearer, because they are searched again.
   std::uint32_t levelSamples = 0;
-  /// What each place counts as further off in the mean, in squared lattice steps.
+  /// Added to the squared distance of each place in the mean, in squared lattice steps.
   double squaredRounding = 0;
   std::uint64_t seed = 0;
   Workers* workers = nullptr;  ///< not null; the result does not depend on how many they are
 };
 
 /// Distances are over the original's diagonal. From the original, the same places are followed from
-/// level to level; a place whose nearest triangle has not changed keeps its distance, which is
-/// exact while each level is a subset of the one before, and an upper bound otherwise.
+/// level to level. A place whose nearest triangle has not changed keeps its distance. That is exact
+/// while each level is a subset of the one before, and an upper bound otherwise.
 class BoundaryMeter {
  public:
   /// REQUIRES: `mesh` at its finest level. It must outlive this.
@@ -65,7 +65,7 @@ class BoundaryMeter {
   [[nodiscard]] double boundToLevel(double squared);
   [[nodiscard]] double boundToOriginal(double squared);
   [[nodiscard]] Maximum farthestOf(std::span<const std::uint32_t> triangles, double squared);
-  /// What counts as no distance, squared.
+  /// The squared distance that counts as none.
   [[nodiscard]] double nothing() const;
 
   const MeasuredMesh& mesh_;

@@ -53,9 +53,9 @@ LevelError rounded(const LevelError& error) {
   return out;
 }
 
-/// Of a surface, in squared lattice steps: on a triangle with corners that are each off on their
-/// own half the variance of rounding is left, 1 / 24, and the mean distance along its normal is 0.8
-/// of the root of that.
+/// The squared rounding error of a surface, in squared lattice steps. On a triangle with corners
+/// that are each off on their own half the variance of rounding is left, 1 / 24. The mean distance
+/// along its normal is 0.8 of the root of that.
 constexpr double kSquaredRounding = 0.64 / 24;
 
 /// Half a step along each axis: as far as the lattice moves a point at most, and so any place of a
@@ -88,7 +88,7 @@ class ErrorMeter {
     return rounded(out);
   }
 
-  /// What the finest level has.
+  /// The error of the finest level, from rounding alone.
   [[nodiscard]] LevelError rounding() const {
     LevelError out;
     out.fields = fields_.roundings();

@@ -21,7 +21,7 @@ enum class Effort : std::uint8_t {
   kAll,     ///< 200,000 in the volume and on each boundary, whatever that costs
 };
 
-/// What a level may be off by. A level beyond is no level.
+/// The largest errors that a level may have. A mesh beyond them is no level.
 struct ErrorBounds {
   std::optional<double> boundary;                      ///< LevelError::boundaryDistance()
   std::vector<std::pair<std::string, double>> fields;  ///< name and rms
@@ -41,14 +41,13 @@ struct MeasureOptions {
   std::stop_token stop{};                         ///< asked many times a second
 };
 
-/// The error of each level, coarse-first, the last one (the original itself) all zero, or what
-/// rounding alone makes of it. Figures are
-/// those that a log can tell (errors rounded up to three significant digits, volumeKept to 10^-6)
-/// and depend on the history and the options only. With bounds, `history` forgets the coarse levels
-/// from the first one on, counted from the finest, that passes a bound; level 0 is then the
-/// coarsest such that it and all finer ones keep them. Errors: not-found (a bound names no field of
-/// the history), cancelled (the history is unspecified then). REQUIRES: as HistoryLevels; it stands
-/// at level 0 before and after.
+/// The error of each level, coarse-first. The last one (the original itself) has all zero, or the
+/// error of rounding alone. Figures are those that a log can state (errors rounded up to three
+/// significant digits, volumeKept to 10^-6) and depend on the history and the options only. With
+/// bounds, `history` forgets the coarse levels from the first one on, counted from the finest, that
+/// passes a bound. Level 0 is then the coarsest such that it and all finer ones keep them. Errors:
+/// not-found (a bound names no field of the history), cancelled (the history is unspecified then).
+/// REQUIRES: as HistoryLevels; it stands at level 0 before and after.
 [[nodiscard]] Result<std::vector<LevelError>> measureLevels(FusionHistory& history,
                                                             const MeasureOptions& options);
 

@@ -213,8 +213,8 @@ std::vector<FieldError> FieldMeter::errors() const {
   return out;
 }
 
-// A value rounded to a step is off by step^2 / 12 in the mean of squares, and between the four
-// corners of a cell, each off on its own, by 0.4 of that: the sum of the squares of their weights.
+// A value rounded to a step is off by step^2 / 12 in the mean of squares. Between the four corners
+// of a cell, each off on its own, it is 0.4 of that: the sum of the squares of their weights.
 std::vector<FieldError> FieldMeter::roundings() const {
   std::vector<FieldError> out(ranges_.size());
   for (std::size_t f = 0; f < ranges_.size() && options_.countsRounding; ++f) {

@@ -14,8 +14,8 @@ class Workers;
 
 struct FieldOptions {
   std::uint32_t samples = 0;  ///< places in the original's volume, uniform
-  /// Of the original at most, for the maximum: an error is largest at a vertex of one of the
-  /// meshes.
+  /// Vertices of the original at most, for the maximum: an error is largest at a vertex of one of
+  /// the meshes.
   std::uint32_t vertices = 0;
   /// Whether what rounding has moved counts (MeasureOptions::countsRounding).
   bool countsRounding = false;
@@ -24,12 +24,12 @@ struct FieldOptions {
 };
 
 /// The error of a field at a place is the Euclidean norm of the difference over the diagonal of the
-/// box that the original's values fill (for one component: over their range), 0 for a constant
-/// field. Where the level's solid does not cover a place, its value is that at the nearest point of
-/// its boundary. A cell field's value there is that of the cell that held the place last. Places
-/// are followed from cell to cell through the fusions. A place that the solid has left stays
-/// outside: true while each level is a subset of the one before it, otherwise the value at the
-/// boundary differs from the one inside by what the field changes within the tolerance.
+/// box that the original's values fill. For one component it is over their range; for a constant
+/// field it is 0. Where the level's solid does not cover a place, its value is that at the nearest
+/// point of its boundary. A cell field's value there is that of the cell that held the place last.
+/// Places are followed from cell to cell through the fusions. A place that the solid has left stays
+/// outside. That is true while each level is a subset of the one before it. Otherwise the value at
+/// the boundary differs from the one inside by what the field changes within the tolerance.
 class FieldMeter {
  public:
   /// REQUIRES: `mesh` at its finest level. It must outlive this.
@@ -39,7 +39,7 @@ class FieldMeter {
   void follow();
   /// One a field of the history, in its order.
   [[nodiscard]] std::vector<FieldError> errors() const;
-  /// What rounding alone makes of the original's.
+  /// The errors of the original from rounding alone.
   [[nodiscard]] std::vector<FieldError> roundings() const;
 
  private:

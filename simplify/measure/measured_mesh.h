@@ -53,7 +53,7 @@ class MeasuredMesh {
   /// Six times the volume inside this level's boundary, over that of the original; 1 where the
   /// original has none.
   [[nodiscard]] double volumeKept() const;
-  /// Of the original's bounding box, in lattice steps.
+  /// The diagonal of the original's bounding box, in lattice steps.
   [[nodiscard]] double diagonal() const { return diagonal_; }
 
  private:

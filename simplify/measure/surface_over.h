@@ -16,18 +16,19 @@ struct SurfaceOver {
   /// No line along the piece's normal is without a place of the surface so near the piece, in
   /// lattice steps; infinite where that is not proven.
   double height = std::numeric_limits<double>::infinity();
-  /// Of the surface: the triangle over the largest share of the piece.
+  /// The surface's triangle over the largest share of the piece.
   std::uint32_t triangle = 0;
-  /// What the height rests on.
+  /// The triangles that the height rests on.
   Cover cover{};
 };
 
 /// The parts over the piece are cut out of the surface. Where none crosses the planes at +-`most`
-/// lattice steps, the signed area of their projections is a multiple of the piece's area, the same
-/// number of layers over each of its points; where that is not 0 the surface is over all of it.
-/// REQUIRES: `piece` flat and convex with `normal` as its unit normal, seen anticlockwise, of at
-/// most kMaxCorners corners; the tree's surface is closed: the number of triangles on each side of
-/// an edge is even with their directions, as those of a mesh's boundary are.
+/// lattice steps, the signed area of their projections is a multiple of the piece's area. The
+/// factor is the number of layers, the same over each point of the piece. If it is not 0, the
+/// surface is over all of it.
+/// REQUIRES: `piece` is flat and convex with `normal` as its unit normal, seen anticlockwise, and
+/// has at most kMaxCorners corners. The tree's surface is closed: the number of triangles on each
+/// side of an edge is even with their directions, as for a mesh's boundary.
 [[nodiscard]] SurfaceOver surfaceOver(const TriangleTree& surface, std::span<const Vector3> piece,
                                       const Vector3& normal, double most);
 

@@ -45,8 +45,8 @@ FusionMesh::FusionMesh(const LatticeMesh& mesh, std::size_t regionField, Workers
   if (hasRegions()) findInterfaces();
 }
 
-// For all that will ever be where a bound is known, else for what is likely: arrays do not move
-// while they grow, and what stays unused the system never hands out.
+// Reserves room for all that will ever be where a bound is known, else for what is likely. So
+// arrays do not move while they grow, and the system never hands out what stays unused.
 void FusionMesh::reserve(const LatticeMesh& mesh) {
   // each fusion leaves a vertex less
   const std::size_t fusions = mesh.points.size(), vertices = mesh.points.size() + fusions;

@@ -44,7 +44,7 @@ struct alignas(32) BoundaryPlane {  // in one cache line
   double inverseLength;             ///< 1 over that, 0 for a triangle without area
 };
 
-/// What a prey becomes.
+/// The vertex that a prey becomes.
 struct FusedVertex {
   LatticePoint point{};
   /// The integers of every point field, one field after the other.
@@ -181,7 +181,8 @@ class FusionMesh {
     VertexId vertex;
     CellId cell;
   };
-  /// Of neighbouring fusions, in their order, by losers(vertex): a star's losses are one thread's.
+  /// The losses of neighbouring fusions, in their order, by losers(vertex): a star's losses are one
+  /// thread's.
   static constexpr std::size_t kLosers = 16;
   using Losses = std::array<std::vector<Loss>, kLosers>;
   // most who share a cache line of stars_ are together

@@ -30,7 +30,8 @@ void useLargePages(const std::vector<T, Allocator>& vector) {
   large_pages::advise(vector.data(), vector.data() + vector.capacity(), MADV_HUGEPAGE);
 }
 
-/// What the vector has reserved and does not use is the system's until it is used again.
+/// Gives the memory that the vector has reserved and does not use to the system, until it is used
+/// again.
 template <class T, class Allocator>
 void giveBackRoom(const std::vector<T, Allocator>& vector) {
   large_pages::advise(vector.data() + vector.size(), vector.data() + vector.capacity(),

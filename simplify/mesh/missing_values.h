@@ -11,9 +11,9 @@
 
 namespace qtet {
 
-/// Gives each missing value the value of a point or cell that is nearest along the mesh, by steps
-/// from point to point of one cell, or from cell to cell over a point; 0 where none is to be
-/// reached. `missing` has one flag a value.
+/// Gives each missing value the value of the nearest point or cell along the mesh. A step leads
+/// from point to point of one cell, or from cell to cell over a point. The value is 0 where none is
+/// within reach. `missing` has one flag a value.
 void fillMissing(std::span<const Tetrahedron> cells, const FieldInfo& field,
                  std::span<const std::uint8_t> missing, std::vector<std::int32_t>& values);
 

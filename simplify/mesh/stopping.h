@@ -15,7 +15,7 @@ inline void throwIfStopped(const std::stop_token& stop) {
   if (stop.stop_requested()) throw Stopped();
 }
 
-/// What work() gives, a Result; ErrorCode::kCancelled where it threw Stopped.
+/// The Result of work(), or ErrorCode::kCancelled where it threw Stopped.
 template <class Work>
 [[nodiscard]] auto orCancelled(const Work& work) -> decltype(work()) {
   try {

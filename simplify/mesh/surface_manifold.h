@@ -10,9 +10,10 @@
 namespace qtet {
 
 struct NonManifoldParts {
-  /// Of a number of triangles other than two, lower vertex first, ascending.
+  /// Edges of other than two triangles, lower vertex first, ascending.
   std::vector<std::array<VertexId, 2>> edges;
-  /// Whose triangles are not one closed fan, ascending; the ends of such edges are among them.
+  /// Vertices whose triangles are not one closed fan, ascending; the ends of such edges are among
+  /// them.
   std::vector<VertexId> vertices;
 };
 

@@ -1,5 +1,5 @@
-// A tetrahedral mesh as its file has it: positions in floats, fields on points and cells. What is
-// read, cleaned, written; simplifying needs a lattice (quantise.h).
+// A tetrahedral mesh as its file has it: positions in floats, fields on points and cells. It is
+// read, cleaned and written; simplifying needs a lattice (quantise.h).
 #pragma once
 
 #include <array>

@@ -40,7 +40,7 @@ bool isBetween(const LatticePoint& p, const LatticePoint& a, const LatticePoint&
   return true;
 }
 
-// Of two closed segments in one plane.
+// Whether two closed segments in one plane meet.
 bool segmentsMeet(const LatticePoint& a, const LatticePoint& b, const LatticePoint& c,
                   const LatticePoint& d, std::size_t axis) {
   const int ofC = sideOf(a, b, c, axis), ofD = sideOf(a, b, d, axis), ofA = sideOf(c, d, a, axis),
@@ -61,7 +61,7 @@ bool meetsInPlane(const LatticePoint& a, const LatticePoint& b, const Corners& t
   return left || right;
 }
 
-// Of a closed segment and a closed triangle.
+// Whether a closed segment and a closed triangle meet.
 bool meets(const LatticePoint& a, const LatticePoint& b, const Corners& t) {
   const int ofA = orientation(t[0], t[1], t[2], a), ofB = orientation(t[0], t[1], t[2], b);
   if (ofA * ofB > 0) return false;

@@ -9,9 +9,9 @@ namespace {
 
 /// Triangles of a leaf: boxes are cheaper to test than triangles, but each one is a cache line.
 constexpr std::uint32_t kLeafTriangles = 2;
-/// Middles of triangles at which the tree is tried, and how many boxes may hold one on average
-/// before there are slabs: 23 to 28 do on the boundaries of comb, bluntfin-welded, fea-kiefer and
-/// linkrods-1m, 2,500 on that of a fan of 20,000 tetrahedra.
+/// The tree is tried at the middles of kTrials triangles. If more than kCrowd boxes hold one on
+/// average, there are slabs. On the boundaries of comb, bluntfin-welded, fea-kiefer and linkrods-1m
+/// 23 to 28 boxes do, on that of a fan of 20,000 tetrahedra 2,500.
 constexpr std::size_t kTrials = 64, kCrowd = 150;
 /// Lattice steps that a slab's distance may be too large by, from rounding: coordinates below 2^30
 /// times unit vectors in doubles.

@@ -18,17 +18,17 @@ struct NearestTriangle {
   NearestPoint point{std::numeric_limits<double>::infinity(), {}};
 };
 
-/// Beside the boxes the nodes of a surface whose triangles are long and thin and askew have slabs
-/// along one of their triangles, since there boxes hold one another: in a fan of n triangles every
-/// box holds a place of a share of all others. Slabs leave out of a search what boxes do not, never
+/// If a surface's triangles are long and thin and askew, its nodes have slabs along one of their
+/// triangles beside the boxes. Boxes hold one another there: in a fan of n triangles every box
+/// holds a place of a share of all others. Slabs leave out of a search what boxes do not, never
 /// what is nearest. Triangle i has the first three vertices of cells[i]: a ghost cell, or a copy of
 /// one. Reading is safe from any thread.
 class TriangleTree {
  public:
   using Cell = std::array<VertexId, 4>;
 
-  /// A tree over the triangles `ids`. What the spans show must outlive it; vertices may change
-  /// between two refits.
+  /// A tree over the triangles `ids`. The data behind the spans must outlive it; vertices may
+  /// change between two refits.
   TriangleTree(std::span<const LatticePoint> points, std::span<const Cell> cells,
                std::vector<std::uint32_t> ids);
 
@@ -72,7 +72,7 @@ class TriangleTree {
   // one more.
   static constexpr std::size_t kMaxWaiting = 32;
 
-  /// What lies between two planes, twice: along the surface across its triangles, and away from it.
+  /// Two slabs, each between two planes: along the surface across its triangles, and away from it.
   struct Slabs {
     std::array<Vector3, 2> axis;      // unit vectors
     std::array<double, 2> low, high;  // low > high where nothing lives

@@ -16,7 +16,7 @@
 
 namespace qtet {
 
-/// Of the threads that were asked for as many as the machine runs at once: more would wait for one
+/// As many of the threads that were asked for as the machine runs at once. More would wait for one
 /// another, ten times as long with 256 on two cores.
 [[nodiscard]] int threadsAtOnce(int asked);
 
@@ -55,7 +55,7 @@ class Workers {
               const std::function<void()>& own);
 
   /// Calls work(worker, i) for every i below `n`, each once, `grain` neighbours at a time; workers
-  /// are numbered 0..count()-1. Returns when all are done. What work does must not depend on the
+  /// are numbered 0..count()-1. Returns when all are done. The work's result must not depend on the
   /// worker. An exception of work's is thrown on, after the others have ended.
   void forEach(std::size_t n, std::size_t grain,
                const std::function<void(std::size_t worker, std::size_t i)>& work);

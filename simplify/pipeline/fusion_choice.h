@@ -11,7 +11,7 @@ namespace qtet {
 
 /// `options.fusion` with the fields of this mesh. A point field counts by its weight, 1 where none
 /// is given; one of integers counts only where one is. Constant fields do not count, nor those
-/// after kMaxCostComponents components; `notes` tells which. Errors: not-found (a name is no such
+/// after kMaxCostComponents components; `notes` says which. Errors: not-found (a name is no such
 /// field's).
 [[nodiscard]] Result<FusionOptions> fusionOptionsFor(const PipelineOptions& options,
                                                      const QuantisedMesh& quantised,

@@ -1,5 +1,5 @@
-// What to warn of when a base mesh has lost too much of the shape: how much, the most probable
-// reason, and which options help.
+// Warnings of a base mesh that has lost too much of the shape: how much, the most probable reason,
+// and which options help.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace qtet {
 
-/// Of the volume a base mesh may lose (or gain) this fraction without a warning. Real meshes lose
+/// A base mesh may lose (or gain) this fraction of the volume without a warning. Real meshes lose
 /// at most 1 % where the base mesh has enough cells, and 25 % and more where it has not.
 inline constexpr double kVolumeLossWarned = 0.02;
 /// The same for the boundary's greatest distance, a fraction of the diagonal: some 15 pixels of a
@@ -32,7 +32,7 @@ inline constexpr std::uint64_t kManyParts = 8, kEnoughCellsAPart = 100;
 /// of the diagonal of its box. 0 for a mesh without area.
 [[nodiscard]] double wallThicknessOf(const LatticeMesh& mesh);
 
-/// What the reason is looked for in.
+/// The facts in which the reason is looked for.
 struct LossFacts {
   const CleanReport& clean;
   double wallThickness = 0;  ///< wallThicknessOf the original

@@ -15,7 +15,7 @@ namespace {
 // Fewer, and most vertices lie between two leaves, where nothing fuses.
 constexpr std::size_t kLeastCellsPerPacket = 100;
 
-/// The stage in hand: tells the caller of it, and notes how long it took.
+/// The stage in hand: reports it to the caller, and notes how long it took.
 class Stages {
  public:
   Stages(const PipelineOptions& options, PipelineReport& report)
@@ -56,7 +56,7 @@ class Stages {
   std::optional<Stage> stage_;
 };
 
-/// What a run knows from its first stage to its last.
+/// The state of a run from its first stage to its last.
 struct Run {
   const PipelineOptions& options;
   PipelineReport report{};
@@ -149,7 +149,7 @@ Result<Bytes> encode(const FusionHistory& history, std::vector<LevelError> error
   return withInput(*log, run.kept, run.options.stop);
 }
 
-/// What the log says of itself.
+/// Reads the figures of the report from the log itself.
 Status readBack(const Bytes& log, PipelineReport& report) {
   Result<LogIndex> index = LogIndex::parse(log);
   if (!index) return std::unexpected(index.error());

@@ -1,5 +1,5 @@
 // From a mesh in arrays to the bytes of its log, in one call: clean, put on the lattice, simplify,
-// measure, encode (ALGORITHM.md). What `qtet simplify`, the C API and Python share.
+// measure, encode (ALGORITHM.md). Shared by `qtet simplify`, the C API and Python.
 #pragma once
 
 #include <cstdint>
@@ -40,7 +40,7 @@ struct PipelineOptions {
   std::vector<std::pair<std::string, double>> fieldWeights{};
   /// The name of the cell field whose values are regions that keep their topology.
   std::optional<std::string> regions{};
-  /// Of these only effort and bounds count; without them nothing is measured.
+  /// Only its effort and bounds count; without it nothing is measured.
   std::optional<MeasureOptions> measure{std::in_place};
   CodecId valueCodec = CodecId::kDraco;
   KeepOptions keep{};
@@ -62,9 +62,9 @@ struct PipelineReport {
   /// Read from the bytes of the log, not from what was meant to be written.
   LogIndex index;
   Manifest manifest;
-  /// What was changed or is unusual, one sentence each, in the order of doing.
+  /// Changes made and unusual findings, one sentence each, in the order of doing.
   std::vector<std::string> notes;
-  /// What the base mesh has lost, where that is much (loss_warnings.h); one sentence each.
+  /// Large losses of the base mesh (loss_warnings.h); one sentence each.
   std::vector<std::string> warnings;
   std::vector<std::pair<Stage, double>> seconds;  ///< wall time, in the order of doing
 };

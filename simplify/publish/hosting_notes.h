@@ -1,4 +1,4 @@
-// What a web server should do with a published folder, for whoever runs it.
+// Advice on how a web server should serve a published folder, for whoever runs it.
 #pragma once
 
 #include <string>

@@ -21,12 +21,12 @@ struct PublishedSite {
   std::uint64_t bytes = 0;
 };
 
-/// Makes `folder` of the viewer's files and the logs: each file of the viewer with NAME.gz and
-/// NAME.br beside it where that is smaller, NAME.qtet for each log, index.json (a list as `GET
-/// /v1/meshes` gives it, PROTOCOL.md, with `links.log` relative to it, and `files`), README.txt
-/// (hosting_notes.h) and .nojekyll. The page learns from a meta element that index.json is its
-/// list. The same inputs give the same bytes. The folder appears whole or not at all
-/// (site_folder.h). Errors: not-found and io (of files), those of openLog and
+/// Makes `folder` of the viewer's files and the logs. It holds each file of the viewer with NAME.gz
+/// and NAME.br beside it where that is smaller, NAME.qtet for each log, index.json, README.txt
+/// (hosting_notes.h) and .nojekyll. index.json is a list as `GET /v1/meshes` gives it
+/// (PROTOCOL.md), with `links.log` relative to it, and `files`. A meta element gives the page
+/// index.json as its list. The same inputs give the same bytes. The folder appears whole or not at
+/// all (site_folder.h). Errors: not-found and io (of files), those of openLog and
 /// LogFile::verifyChecksums, bad-input (two logs of one name; a viewer without a page).
 [[nodiscard]] Result<PublishedSite> publishSite(const std::filesystem::path& folder,
                                                 const std::filesystem::path& viewer,

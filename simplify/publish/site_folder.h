@@ -11,15 +11,15 @@
 
 namespace qtet {
 
-/// What stands in the folder's list of files, which publishing makes and a later one asks for.
+/// The folder's list of files, which publishing makes and a later one asks for.
 inline constexpr const char* kSiteList = "index.json";
 
 /// Written beside its place under a hidden name, which is removed with the object; a process that
 /// is killed leaves `.NAME.XXXXXX`.
 class SiteFolder {
  public:
-  /// For a folder at `place`: there is nothing yet, or an empty folder, or one that an earlier
-  /// publication made and that holds nothing else: its kSiteList names every file in `files`. A
+  /// Begins a folder at `place`: there is nothing yet, or an empty folder, or one that an earlier
+  /// publication made. The last holds nothing else: its kSiteList names every file in `files`. A
   /// symbolic link stays, and the folder behind it is made. Errors: io (something else is there,
   /// with its name; nothing can be written beside it), not-found (no folder to be in).
   [[nodiscard]] static Result<SiteFolder> begin(const std::filesystem::path& place);

@@ -1,5 +1,5 @@
-// What a process of its own has read, on its way back: a reader that has written beyond its arrays
-// has spoilt the memory of that process alone.
+// Brings back the mesh that a process of its own has read. A reader that has written beyond its
+// arrays has spoilt the memory of that process alone.
 #pragma once
 
 #include <vector>

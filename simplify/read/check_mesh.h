@@ -38,8 +38,8 @@ struct CheckReport {
   [[nodiscard]] bool refused() const;
 };
 
-/// Reads the file as the options say, splits its cells and looks at everything. What cannot be read
-/// is a finding too, so nothing fails.
+/// Reads the file as the options say, splits its cells and looks at everything. A file that cannot
+/// be read is a finding too, so nothing fails.
 [[nodiscard]] CheckReport checkMesh(const std::filesystem::path& path, const ReadOptions& options);
 
 }  // namespace qtet

@@ -170,8 +170,9 @@ class FastParser : public vtkXMLDataParser {
       Superclass::SetCompressor(compressor);
   }
 
-  /// Of the first that is read of an array, compressed: the number of blocks, whose sizes stand in
-  /// the `left` bytes behind, the size of one, that of the last if it is a smaller one.
+  /// Whether the first header of a compressed array is sound. It has the number of blocks, the size
+  /// of one, and the size of the last if it is a smaller one. The blocks' sizes stand in the `left`
+  /// bytes behind.
   [[nodiscard]] bool isSound(const void* data, std::size_t length, std::uint64_t left) const {
     const auto wordBytes = static_cast<std::size_t>(this->HeaderType) / 8;
     if (!this->Compressor || length != 3 * wordBytes) return true;

@@ -15,12 +15,13 @@
 namespace qtet {
 
 /// A new parser, which the caller owns. It reads what vtkXMLDataParser reads, to the byte, and
-/// fails where that fails; also where base64 ends within an array, which VTK passes over, and where
-/// the sizes of compressed blocks contradict each other, which VTK does not survive.
+/// fails where that fails. It also fails where base64 ends within an array, which VTK passes over.
+/// And it fails where the sizes of compressed blocks contradict each other, which VTK does not
+/// survive.
 [[nodiscard]] vtkXMLDataParser* newFastXmlParser();
 
-/// What is wrong with the text of the array that the parser has read last: it holds other than
-/// `told` numbers, or something else stands behind them. Empty: nothing. REQUIRES: a parser of
+/// The fault of the text of the array that the parser has read last: it holds other than `told`
+/// numbers, or something else stands behind them. Empty: nothing. REQUIRES: a parser of
 /// newFastXmlParser; `array` was read last, and is text.
 [[nodiscard]] std::string faultOfTextArray(vtkXMLDataParser& parser, vtkXMLDataElement& array,
                                            vtkIdType told);

@@ -13,7 +13,7 @@
 namespace qtet {
 namespace {
 
-/// What there is to be read until the other side closes the pipe, or until `most` bytes.
+/// Reads until the other side closes the pipe, or until `most` bytes.
 std::string readAll(int pipe, std::size_t most) {
   std::string text;
   char piece[512];

@@ -13,9 +13,9 @@
 namespace qtet {
 
 /// A TemporaryFolder that belongs to a small process of its own session, the guard. The guard makes
-/// it, waits for this process to end, however that comes about, and then removes it with everything
-/// in it: at no moment is there a folder without a guard. Where no guard can be started the folder
-/// is this process' own. REQUIRES: made while this process has one thread.
+/// the folder, waits for this process to end, however that comes about, and then removes it with
+/// everything in it. So at no moment is there a folder without a guard. Where no guard can be
+/// started the folder is this process' own. REQUIRES: made while this process has one thread.
 class GuardedFolder {
  public:
   /// `purpose` stands in its name: qtet-PURPOSE-XXXXXX. After a failure path() is empty.

@@ -124,9 +124,9 @@ bool isBefore(const Position& a, const Position& b) {
   return false;
 }
 
-/// Where a piece has several points at one place, what belongs together is told by faces: two cells
-/// of different pieces that have all corners of a face at the same places are neighbours, and each
-/// point of one is that of the other at its place.
+/// Where a piece has several points at one place, faces decide which belong together. Two cells of
+/// different pieces that have all corners of a face at the same places are neighbours. Each point
+/// of one is then that of the other at its place.
 class Neighbours {
  public:
   /// `runs` are the points at one place, where there are several.

@@ -50,7 +50,7 @@ enum class MeshFormat {
 /// Whether it is a summary of VTK's XML, which names the pieces of one mesh.
 [[nodiscard]] bool namesPieces(MeshFormat format);
 
-/// The type that the root of VTK's XML tells, such as UnstructuredGrid; empty: no such format.
+/// The type that the root of VTK's XML states, such as UnstructuredGrid; empty: no such format.
 [[nodiscard]] std::string_view rootType(MeshFormat format);
 
 /// Looks at existence, size, first and last bytes. Errors: not-found (no such file), io (not

@@ -95,8 +95,8 @@ void MeshScanner::fail(ErrorCode code, const std::string& what) {
   error_ = Error{code, path_.string() + ", " + where + ": " + what, Error::kNoOffset};
 }
 
-/// Of a number that no double comes near: too large, unless its exponent is negative, or it has
-/// none and begins with 0.
+/// The value of a number that no double comes near: too large, unless its exponent is negative, or
+/// it has none and begins with 0.
 double MeshScanner::beyondRange(std::string_view number) {
   const std::size_t exponent = number.find_first_of("eE"), digit = number.find_first_not_of("+-");
   const bool small = exponent != std::string_view::npos

@@ -21,9 +21,9 @@ inline constexpr std::uint64_t kMaxPieceFiles = 1U << 24;
     const std::filesystem::path& path);
 
 /// The folders processor0, processor1 ... beside an OpenFOAM case's marker, where the case is to be
-/// read from them: it has no mesh of its own, or no time that they do not have, and they have more.
-/// Empty: it is to be read as a whole. Errors: not-found (one of them is missing), bad-input (all
-/// processes write into one folder).
+/// read from them. It has no mesh of its own then; or it has no time that they lack, and they have
+/// more. Empty: it is to be read as a whole. Errors: not-found (one of them is missing), bad-input
+/// (all processes write into one folder).
 [[nodiscard]] Result<std::vector<std::filesystem::path>> processorFolders(
     const std::filesystem::path& marker);
 

@@ -15,8 +15,8 @@
 namespace qtet {
 namespace {
 
-/// Numbers in a file may be any, also multiples of the size of the library's table, whose own hash
-/// of an integer is the integer: all would lie in one bucket.
+/// Numbers in a file may be any, also multiples of the size of the library's table. The library's
+/// own hash of an integer is the integer, so all of these would lie in one bucket.
 struct MixedHash {
   std::size_t operator()(std::uint64_t tag) const { return SplitMix64(tag).next(); }
 };
@@ -351,8 +351,8 @@ class Gmsh {
     if (any) out_.fields.push_back(std::move(field));
   }
 
-  /// Of fields that the file has at several times those of the steps that are meant stay; of all
-  /// steps they are called NAME@TIME, as those of other series.
+  /// Keeps the steps that are meant of each field that the file has at several times. If all steps
+  /// are meant, they are called NAME@TIME, as those of other series.
   Status chooseSteps() {
     std::map<std::pair<std::string, std::string>, std::size_t> count;
     for (const MeshField& field : out_.fields) ++count[{field.association, field.name}];

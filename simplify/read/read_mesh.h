@@ -24,9 +24,9 @@ struct ReadMesh {
 [[nodiscard]] Result<TetMesh> tetrahedraOf(CellMesh&& cells, const std::filesystem::path& path,
                                            const ReadOptions& options, ReadReport& report);
 
-/// Reads volume cells as tetrahedra (split_cells.h), points and fields, with the file's numbering:
-/// of tetrahedra alone `mesh.tetrahedra[i]` is the i-th of them; cells of lower dimension are
-/// skipped, with their values. Vertex ids are checked. Field values keep NaN and infinity;
+/// Reads volume cells as tetrahedra (split_cells.h), points and fields, with the file's numbering.
+/// In a file of tetrahedra alone `mesh.tetrahedra[i]` is the i-th of them. Cells of lower dimension
+/// are skipped, with their values. Vertex ids are checked. Field values keep NaN and infinity;
 /// coordinates must be finite. After welding, faces that two tetrahedra's cells cut differently are
 /// cut alike (mend_faces.h). Errors: those of checkMeshFile; bad-input (the reader's own message; a
 /// kind of cell that is not read; no volume cells; a coordinate that is not finite; a vertex id

@@ -1,4 +1,4 @@
-// What a mesh file is read with, and what is said of the reading.
+// The options of reading a mesh file, and the report about it.
 #pragma once
 
 #include <chrono>
@@ -41,7 +41,7 @@ struct ReadOptions {
   std::chrono::seconds patience{60};
 };
 
-/// What was in the file and is not in the mesh, and what was done to it; `notes` says it in
+/// Reports what was in the file and is not in the mesh, and what was done to it; `notes` says it in
 /// sentences for people.
 struct ReadReport {
   std::uint64_t ignoredCells = 0;          ///< of dimension 0, 1 or 2

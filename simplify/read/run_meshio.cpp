@@ -110,7 +110,7 @@ except BaseException as error:
     sys.exit(1)
 )python";
 
-/// What the program ends with; kKilled also where it could not be started.
+/// Returns the program's exit code; kKilled also where it could not be started.
 int run(const char* python, const MeshioInput& input, const fs::path& folder,
         const fs::path& words) {
   const std::string in = fs::absolute(input.path).string();

@@ -11,7 +11,7 @@
 
 namespace qtet {
 
-/// What meshio is to read.
+/// The input that meshio is to read.
 struct MeshioInput {
   std::filesystem::path path;
   /// An ending without dot, or one of meshio's own words such as ansys; empty: as the name says.
@@ -21,10 +21,10 @@ struct MeshioInput {
 };
 
 /// Runs meshio as a program of its own, which writes the input as a .vtu file in a folder of its
-/// own, a series of XDMF as a .pvd file that names all steps, with the .vtu files of those that
-/// `time` means; hands the file to `use`, then removes the folder. Errors: not-found (no Python, or
-/// no meshio: the message says what to install), bad-input (meshio's own last words; a kind of file
-/// that nothing reads; no byte moved for `patience`), io, those of `use`.
+/// own. It writes a series of XDMF as a .pvd file that names all steps, with the .vtu files of
+/// those that `time` means. Hands the file to `use`, then removes the folder. Errors: not-found (no
+/// Python, or no meshio: the message says what to install), bad-input (meshio's own last words; a
+/// kind of file that nothing reads; no byte moved for `patience`), io, those of `use`.
 [[nodiscard]] Status throughMeshio(const MeshioInput& input,
                                    const std::function<Status(const std::filesystem::path&)>& use);
 

@@ -14,7 +14,7 @@
 namespace qtet {
 namespace {
 
-/// What to do about integers that no double holds.
+/// Advice on integers that no double holds.
 const std::string kLabelsInstead =
     "number its different values 0, 1, 2 ... and store these labels as int32";
 

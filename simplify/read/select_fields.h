@@ -10,7 +10,8 @@
 namespace qtet {
 
 /// Whether a field of a file may be one of those asked for, before all of the file's fields are
-/// known: by field_key.h, of a series also where a step's is asked for (NAME@TIME of NAME).
+/// known. It goes by field_key.h; a series is also meant where one of its steps is asked for
+/// (NAME@TIME of NAME).
 [[nodiscard]] bool isMeant(const FieldNames& names, const std::string& association,
                            const std::string& name);
 

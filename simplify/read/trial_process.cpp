@@ -15,7 +15,7 @@
 namespace qtet {
 namespace {
 
-/// What the copy ends with where memory was refused.
+/// The copy's exit code where memory was refused.
 constexpr int kRefusedMemory = 3;
 
 [[noreturn]] void runQuietly(const std::function<void()>& work, pid_t parent) {

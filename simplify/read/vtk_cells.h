@@ -1,4 +1,4 @@
-// What VTK's data sets hold, as a CellMesh.
+// Makes a CellMesh of VTK's data sets.
 #pragma once
 
 #include <vtkDataSet.h>

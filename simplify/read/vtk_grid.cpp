@@ -141,8 +141,8 @@ Result<CellMesh> cellsOfOutput(vtkDataObject* output, const ReadOptions& options
   return joinBlocks(std::move(blocks), options.joinPieces, report);
 }
 
-/// What the reader has now. The partitions of a .vtkhdf file are read one by one and joined: VTK
-/// makes one grid of all, unless it is asked for one piece of very many.
+/// The mesh that the reader has now. The partitions of a .vtkhdf file are read one by one and
+/// joined: VTK makes one grid of all, unless it is asked for one piece of very many.
 Result<CellMesh> cellsNow(vtkAlgorithm& reader, MeshFormat format, const ReadOptions& options,
                           const std::filesystem::path& path, ReadReport& report) {
   constexpr int kMostPartitions = 1 << 20;
@@ -176,8 +176,8 @@ void addNew(std::vector<std::string>& from, std::vector<std::string>& to) {
     if (std::ranges::find(to, text) == to.end()) to.push_back(std::move(text));
 }
 
-/// What reading one step more has told: every step has the same mesh, so that counts are those of
-/// one, and what was said before need not be said again.
+/// Adds the report on one step more. Every step has the same mesh, so counts are those of one, and
+/// earlier notes need not be repeated.
 void addStep(ReadReport&& step, bool isFirst, ReadReport& report) {
   report.pieces = step.pieces;
   report.joinedPoints = step.joinedPoints;
@@ -264,8 +264,8 @@ Result<std::vector<TimedCells>> readHere(const std::filesystem::path& path, Mesh
   return steps;
 }
 
-/// The same in a process of its own, for readers that do not stand damage: they may write beyond
-/// their arrays without a crash, and what is spoilt then is not ours.
+/// The same in a process of its own, for readers that damage can break. They may write beyond their
+/// arrays without a crash, but they spoil no memory of ours.
 Result<std::vector<TimedCells>> readApart(const std::filesystem::path& path, MeshFormat format,
                                           const ReadOptions& options, ReadReport& report) {
   const int file = ::memfd_create("qtet-read", MFD_CLOEXEC);
@@ -313,9 +313,9 @@ Result<std::vector<SeriesEntry>> entriesOf(const std::filesystem::path& path) {
 Result<std::vector<TimedCells>> readAt(const std::filesystem::path& path, MeshFormat format,
                                        const ReadOptions& options, ReadReport& report, int depth);
 
-/// The files that the file at `path` names as parts of one mesh, each read alone and by a reader of
-/// its own: VTK's readers of such files believe what the summary says of types and components, and
-/// write beyond their arrays where a part has others.
+/// The cells of the files that the file at `path` names as parts of one mesh. Each is read alone
+/// and by a reader of its own. VTK's readers of such files believe what the summary says of types
+/// and components, and write beyond their arrays where a part has others.
 Result<CellMesh> cellsOfParts(std::span<const std::filesystem::path> parts,
                               const std::filesystem::path& path, const ReadOptions& options,
                               ReadReport& report, int depth) {

@@ -33,7 +33,7 @@ constexpr bool kBoundsMemory = true;
 constexpr bool kBoundsMemory = true;
 #endif
 
-/// Bytes that the process has read and written so far; 0 where the system does not tell.
+/// Bytes that the process has read and written so far; 0 where the system does not report them.
 std::uint64_t bytesMovedBy(pid_t process) {
   std::ifstream file("/proc/" + std::to_string(process) + "/io");
   std::uint64_t bytes = 0, moved = 0;

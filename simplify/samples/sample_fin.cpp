@@ -5,8 +5,8 @@
 #include "simplify/samples/fin_flow.h"
 #include "simplify/samples/samples.h"
 
-// The grid: a surface of triangles over half a cube, blown up to the fin (inner shell) and to the
-// domain's edge (outer shell), and layers of prisms between them, three tetrahedra each.
+// The grid is a surface of triangles over half a cube, blown up to the fin (inner shell) and to the
+// domain's edge (outer shell). Between the shells lie layers of prisms, three tetrahedra each.
 
 namespace qtet {
 namespace {

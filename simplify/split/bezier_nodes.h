@@ -5,9 +5,9 @@
 
 namespace qtet {
 
-/// Moves every control point of a Bezier cell to the point of the cell at its node's place, and
-/// gives floating-point fields of points the values there; the cell is then split as a Lagrange
-/// cell is. A control point of several cells depends on what they share alone, and is moved once.
+/// Moves every control point of a Bezier cell to the point of the cell at its node's place.
+/// Floating-point fields of points get the values there. The cell is then split as a Lagrange cell
+/// is. A control point of several cells depends on what they share alone, and is moved once.
 /// kWeightsField, if it is there, holds the weights of rational cells. Errors: bad-input (a number
 /// of nodes that no such cell has; weights that are not positive). REQUIRES: a mesh that
 /// checkCellMesh has passed.

@@ -1,5 +1,5 @@
-// A mesh of any volume cells as its file has it, before its cells are split (split_cells.h). What
-// every reader makes.
+// A mesh of any volume cells as its file has it, before its cells are split (split_cells.h). Every
+// reader makes one.
 #pragma once
 
 #include <algorithm>
@@ -77,7 +77,8 @@ struct CellMesh {
   std::vector<MeshField> fields;         ///< one tuple a point, or a cell of `types`
   std::vector<std::string> otherFields;  ///< names of fields of the file that nobody asked for
   std::string pointType{};               ///< as TetMesh's
-  /// What the file calls each point in all of its pieces (GlobalNodeIds and the like); empty: none.
+  /// The file's own number of each point in all of its pieces (GlobalNodeIds and the like); empty:
+  /// none.
   std::vector<std::uint64_t> pointIds{};
 
   [[nodiscard]] std::size_t cells() const { return types.size(); }
@@ -104,9 +105,9 @@ struct CellMesh {
 /// a kind that is not read.
 [[nodiscard]] std::uint32_t verticesOf(std::uint8_t type);
 
-/// Errors: bad-input naming the first cell of a kind that is not read, with too few or too many
+/// Errors: bad-input (the first cell, named, of a kind that is not read, with too few or too many
 /// vertices, or with an id outside the points; no points; no cells; a coordinate that is not
-/// finite; a field of a wrong length. limit-exceeded (points, the faces of a polyhedron).
+/// finite; a field of a wrong length). limit-exceeded (points, the faces of a polyhedron).
 [[nodiscard]] Status checkCellMesh(const CellMesh& mesh, const std::filesystem::path& path);
 
 }  // namespace qtet

@@ -20,7 +20,7 @@ inline constexpr int kMaxDegree = 10;
 inline constexpr const char* kDegreesField = "HigherOrderDegrees";
 inline constexpr const char* kWeightsField = "RationalWeights";
 
-/// Of a tetrahedron all three are alike, of a wedge those of its triangles.
+/// A tetrahedron's three are alike, as are those of a wedge's triangles.
 using Degrees = std::array<int, 3>;
 /// A node's place: steps of 1 / degree along each direction from corner 0. A pyramid of degree n
 /// has (n - k + 1)^2 of them at height k, of which (i, j, k + 1) lies over the middle of (i, j, k)

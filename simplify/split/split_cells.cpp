@@ -27,7 +27,7 @@ constexpr std::array<std::array<std::uint8_t, 6>, 3> kOctahedronCuts{
 constexpr std::array<Tetrahedron, 4> kCornerTetrahedra{
     {{0, 4, 6, 7}, {4, 1, 5, 8}, {6, 5, 2, 9}, {7, 8, 9, 3}}};
 
-/// Of a hexahedron: the places of the three faces (kHexahedronFaces) that do not have corner i.
+/// The places of the three faces of a hexahedron (kHexahedronFaces) that do not have corner i.
 constexpr std::array<std::array<std::uint8_t, 3>, 8> kFarFaces{
     {{1, 3, 5}, {0, 3, 5}, {0, 2, 5}, {1, 2, 5}, {1, 3, 4}, {0, 3, 4}, {0, 2, 4}, {1, 2, 4}}};
 /// The extents between which the cheap bound on a volume's sign neither underflows nor overflows.
@@ -44,7 +44,8 @@ std::size_t expectedTetrahedra(const std::vector<std::uint8_t>& types) {
   return sum;
 }
 
-/// What belongs to the shape of cells of higher degree, and means nothing of tetrahedra.
+/// Whether the field belongs to the shape of cells of higher degree, and means nothing for
+/// tetrahedra.
 bool isShapeField(const MeshField& field) {
   return field.name == (isCellField(field) ? kDegreesField : kWeightsField);
 }
@@ -121,8 +122,8 @@ class Splitter {
     return addLinear(shape, ids), Status{};
   }
 
-  /// What addLinear does for a hexahedron of eight vertices whose first cone fits without doubt, in
-  /// a fifth of the time (tests/bench/read_bench.cpp).
+  /// Does what addLinear does for a hexahedron of eight vertices whose first cone fits without
+  /// doubt, in a fifth of the time (tests/bench/read_bench.cpp).
   bool addUsualHexahedron(std::span<const VertexId> ids) {
     const auto corner = static_cast<std::size_t>(std::ranges::min_element(ids) - ids.begin());
     const VertexId apex = ids[corner];

@@ -10,7 +10,7 @@
 
 namespace qtet {
 
-/// What becomes of quadratic and higher cells: all of their nodes are vertices, or their corners
+/// How quadratic and higher cells are read: all of their nodes are vertices, or their corners
 /// alone.
 enum class CurvedCells { kSplit, kLinear };
 
@@ -33,13 +33,13 @@ struct SplitReport {
 /// request, where a cell was split and no field has the name.
 inline constexpr const char* kOriginalCellField = "OriginalCellId";
 
-/// Every quadrilateral is cut from its smallest vertex id, every polygon of more corners from the
-/// smallest that leaves no flat triangle: a rule of the face alone, so that both its cells follow
-/// it. A cell is then a cone from its smallest vertex that fits the faces' cuts, else from a new
-/// point at the mean of its vertices. Tetrahedra stay as they are. Points keep their numbers, new
-/// ones follow. Cell fields are inherited; point fields take the mean at new points, integers the
-/// value of one of its vertices. Errors: limit-exceeded; bad-input (with kSplit, a number of nodes
-/// that no degree has). REQUIRES: a mesh that checkCellMesh has passed.
+/// Every quadrilateral is cut from its smallest vertex id. Every polygon of more corners is cut
+/// from the smallest that leaves no flat triangle. This rule depends on the face alone, so that
+/// both its cells follow it. A cell is then a cone from its smallest vertex that fits the faces'
+/// cuts, else from a new point at the mean of its vertices. Tetrahedra stay as they are. Points
+/// keep their numbers, new ones follow. Cell fields are inherited; point fields take the mean at
+/// new points, integers the value of one of its vertices. Errors: limit-exceeded; bad-input (with
+/// kSplit, a number of nodes that no degree has). REQUIRES: a mesh that checkCellMesh has passed.
 [[nodiscard]] Result<TetMesh> splitCells(CellMesh&& mesh, const SplitOptions& options,
                                          SplitReport& report);
 
