@@ -1,4 +1,4 @@
-// What the opening view needs to know of the base mesh.
+// The figures of the base mesh that the opening view needs.
 
 import type {MeshNow} from './display';
 import {pointBounds} from './triangle_soup';

@@ -69,7 +69,7 @@ export class Client {
   setLimit(limit: Limit): void {
     this.post({type: 'limit', limit});
   }
-  /** What the user looks at: logs of regions refine it first. */
+  /** Sets the user's view: logs of regions refine it first. */
   look(view: ViewRequest): void {
     this.post({type: 'look', view});
   }

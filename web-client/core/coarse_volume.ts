@@ -10,7 +10,7 @@ import {kCoarseCells, volumeCells, type CoarseCells, type VolumeCells} from './v
 export class CoarseVolume {
   private version = 0;
   private frames: Frame[] = [];
-  /** What the cells were made for; empty if there are none. */
+  /** The request that the cells were made for; empty if there are none. */
   private key = '';
   private assembler: Promise<Assembler> | null = null;
 

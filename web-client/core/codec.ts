@@ -5,7 +5,7 @@ import {QtetError} from './errors';
 import type {Counts} from './counts';
 import type {PacketBox} from './packet';
 
-/** What the session needs from a codec. Tests bring their own. */
+/** The codec as the session needs it. Tests bring their own. */
 export interface Codec {
   open(head: Uint8Array): void;
   /** Starts again with an empty codec after `out-of-memory`; the browser gets the memory back. */

@@ -1,4 +1,4 @@
-// What the page wants to see, and how it is made from the mesh: plain data in, triangles out.
+// The display that the page wants, and how it is made from the mesh: plain data in, triangles out.
 
 import {keepBelow, keepWithin} from './cell_choice';
 import {facesSoup, surfaceFaces} from './cell_surface';

@@ -9,7 +9,7 @@ const kMissing = -2147483648;
 export const kMagnitude = -1;
 
 /**
- * What a colour, an isosurface or a threshold refers to: a field of the manifest, and a component
+ * The quantity of a colour, an isosurface or a threshold: a field of the manifest, and a component
  * of it or kMagnitude.
  */
 export interface Scalar {

@@ -1,5 +1,5 @@
-// What the chunks of a `stream` log reach, one after the other. This tells where a stream may stop,
-// so that nothing behind a limit is sent or fetched.
+// The goals that the chunks of a `stream` log reach, one after the other. They decide where a
+// stream may stop, so that nothing behind a limit is sent or fetched.
 
 import type {Codec} from './codec';
 import {errorOfLevel, limitReached, type Limit} from './limit';

@@ -28,7 +28,7 @@ export class HttpTransport implements Transport {
   private stream = 0;
   private credit = 0;
   private goal: Goal | null = null;
-  /** What remains to be fetched, in this order. */
+  /** The pieces that remain to be fetched, in this order. */
   private pieces: Piece[] = [];
   private attempt = 0;
   private source: BlockSource;

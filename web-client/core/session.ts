@@ -111,7 +111,7 @@ export class Session implements TransportHandlers {
     });
   }
 
-  /** What the user looks at. */
+  /** Sets the user's view. */
   look(view: ViewRequest): void {
     this.wanted.look(view, surfaceRequestOf(this.wanted.view));
     this.follow();

@@ -15,7 +15,10 @@ export interface Spread {
   entropy: number;
 }
 
-/** Of the values that occur in these cells. Each vertex, or cell of a cell field, counts once. */
+/**
+ * The spread of the values that occur in these cells. Each vertex, or cell of a cell field, counts
+ * once.
+ */
 export function spreadOf(scale: FieldScale, tetrahedra: Uint32Array): Spread {
   const values = scale.occurring(tetrahedra).sort();
   const {length} = values;

@@ -22,7 +22,7 @@ const kPlainFrom = -3;
 const kPlainBelow = 5;
 const kMinus = '\u2212';
 
-/** The most digits of a label. What labels share is written once instead. */
+/** The most digits of a label. A part that all labels share is written once instead. */
 const kMaxDigits = 5;
 
 /**

@@ -1,4 +1,4 @@
-// What a session needs from a transport of blocks: a WebSocket, byte ranges of a file, or numbered
+// A transport of blocks as a session needs it: a WebSocket, byte ranges of a file, or numbered
 // chunks. All of them use the frames and messages of proto/STREAM.md, and each can continue where
 // another stopped.
 

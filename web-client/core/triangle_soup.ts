@@ -1,4 +1,4 @@
-// What the renderer draws: triangles without shared corners. A shader can tell the corner from the
+// The renderer draws triangles without shared corners. A shader can tell the corner from the
 // vertex's number and draw edges of even width.
 
 import type {FieldScale} from './field_scale';

@@ -1,5 +1,5 @@
-// What the viewer looks at, and the order in which a log of regions brings its packets for it. All
-// places are lattice coordinates; a packet's box is in 256ths of the lattice.
+// The part of the mesh that the viewer looks at, and the order in which a log of regions brings its
+// packets for it. All places are lattice coordinates; a packet's box is in 256ths of the lattice.
 
 import type {Vector} from './cell_ray';
 import {boundsOfBoxes, meets} from './surface_boxes';

@@ -1,4 +1,4 @@
-// What is wanted of a log, and how far receiving and decoding have come.
+// The wanted part of a log, and how far receiving and decoding have come.
 
 import type {Assembler} from './assembler';
 import type {Goal} from './goal';

@@ -85,7 +85,7 @@ export interface Snapshot {
   planes: Plane[];
   /** Bounds of the surface in lattice coordinates: [x0, y0, z0, x1, y1, z1]. */
   bounds: number[];
-  /** What the soups' values are; null if there are none yet. */
+  /** The quantity that the soups' values show; null if there are none yet. */
   color: Scalar | null;
   /** The values that 0 and 1 stand for; `extent` is the part of [0, 1] that occurs. */
   scaleRange: [number, number];

@@ -162,9 +162,9 @@ export class OrbitCamera {
    * Where the camera stands so that all points are in the free shares of the picture's width and
    * height, fill them in one direction, and are centred in both.
    *
-   * A point with coordinates a (to the right) and c (to the eye) is in sight of an eye at distance
-   * D, above t, if |a - t| <= k (D - c); k is the tangent of half the angle of view. So D is at
-   * least (max(a + k c) - min(a - k c)) / 2k, and t lies in the middle of the two.
+   * A point has the coordinates a (to the right) and c (to the eye). An eye at distance D, above t,
+   * sees it if |a - t| <= k (D - c); k is the tangent of half the angle of view. So D is at least
+   * (max(a + k c) - min(a - k c)) / 2k, and t lies in the middle of the two.
    */
   framing(points: Vector3[], freeWidth: number, freeHeight: number): Framing {
     const right = new Vector3(),

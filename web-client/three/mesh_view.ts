@@ -49,7 +49,7 @@ export class MeshView implements View {
   private outline: Vector[] = [];
   private focus: number[] | null = null;
   private insets: Insets = {left: 0, right: 0, top: 0, bottom: 0};
-  /** What the next mesh is seen from first; null: its first view. */
+  /** The next mesh is seen from here first; null: its first view. */
   private start: CameraState | Direction | null = null;
   private frame = 0;
   private afterFrame: ((ms: number) => void)[] = [];
@@ -325,7 +325,7 @@ export class MeshView implements View {
     this.lattice.position.copy(low.add(high)).multiplyScalar(-0.5 * scale);
   }
 
-  /** Of the mesh itself, not of its box: a box leaves its corners empty. */
+  /** Frames the mesh itself, not its box: a box leaves its corners empty. */
   private framing(): Framing {
     const whole = this.framed(this.outline);
     if (!this.focus || this.orbit.isStandard) return whole;

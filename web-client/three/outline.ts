@@ -5,7 +5,7 @@ import type {TriangleSoup} from '../core/triangle_soup';
 
 /** So many directions bound a mesh to a few per cent. */
 const kDirections = 128;
-/** Of a larger surface every n-th corner is regarded: 2.5 million products take 5 ms. */
+/** Only every n-th corner of a larger surface counts: 2.5 million products take 5 ms. */
 const kMostCorners = 20000;
 
 /**

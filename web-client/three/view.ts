@@ -1,4 +1,4 @@
-// What a viewer needs from a picture, whether it is drawn on the page's thread (MeshView) or in a
+// A picture as a viewer needs it, whether it is drawn on the page's thread (MeshView) or in a
 // worker (FarView).
 
 import type {Ray, Vector} from '../core/cell_ray';

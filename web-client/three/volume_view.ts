@@ -22,7 +22,7 @@ const kStripGrowth = 2;
 /** A picture rests so long after its last change. */
 const kRestMs = 150;
 /**
- * The most times that a line of sight enters the mesh. What lies behind hundreds of walls cannot be
+ * The most times that a line of sight enters the mesh. Cells behind hundreds of walls cannot be
  * told apart, and every layer takes its passes.
  */
 const kMaxLayers = 256;

@@ -1,4 +1,4 @@
-// What buttons and keys do.
+// The actions of buttons and keys.
 
 import {errorText} from '../core/errors';
 import {kDirections, type Direction} from '../three/directions';

@@ -36,7 +36,7 @@ export class Inspect {
   private readonly card: HTMLElement;
   private readonly marks: SVGSVGElement;
   private plot: {destroy(): void} | null = null;
-  /** What is copied, and the plot as CSV. */
+  /** The text to copy, and the plot as CSV. */
   private text = '';
   private table = '';
 

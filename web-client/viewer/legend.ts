@@ -65,7 +65,7 @@ function ticksOf({labels, logarithmic, low, high}: ShownRange): Ticks {
   return (logarithmic ? logTicks : niceTicks)(low, high, kMaxTicks);
 }
 
-/** What the colours do not tell apart. */
+/** A note on values that the colours do not tell apart. */
 function noteOf({hides, isMiddle, low}: ShownRange): string {
   if (isMiddle) return '2nd to 98th percentile; a few values lie outside';
   if (hides === 'all') return 'No values above 0: the scale is linear';

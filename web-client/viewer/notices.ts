@@ -3,8 +3,8 @@
 import {find, onClick} from './find';
 
 /**
- * What a notice concerns. Trying again restarts the stream or the graphics; for the page there is
- * no trying again.
+ * The part of the viewer that a notice concerns. Trying again restarts the stream or the graphics;
+ * for the page there is no trying again.
  */
 export type NoticeSource = 'stream' | 'graphics' | 'page';
 

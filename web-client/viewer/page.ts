@@ -23,7 +23,7 @@ export interface Page extends Attributes {
   announce(text: string): void;
 }
 
-/** What survives when the element leaves a document, and what it was asked for before. */
+/** The state that survives when the element leaves a document, and the requests before it. */
 export interface Kept {
   /** The next view begins with this camera or standard view; null: as the attributes say. */
   start: CameraState | Direction | null;

@@ -1,4 +1,4 @@
-// What the panels share: their update, and the fields in their menus.
+// Shared by the panels: their update, and the fields in their menus.
 
 import {kMagnitude, type Scalar} from '../core/field_scale';
 import type {FieldInfo, Manifest} from '../core/manifest';

@@ -2,33 +2,34 @@
 //
 // Attributes
 //   src          address of the server, by default the page's own; or of a .qtet file, or of a
-//                folder's index.json that `qtet publish` made, on any web server
-//   transport    auto (default), websocket, range or chunks: how a server's logs come
-//   mesh         id of the mesh; without it the viewer offers a menu and starts with the first
-//   field        name of the field, "NAME[0]" for a component; by default that with most contrast
-//   colormap     viridis (default), cividis, cool-warm, turbo, grey or labels; "turbo reversed"
-//   range        "auto" (default), "full", "symmetric" or "LOW,HIGH"
-//   scale        "log"
-//   edges        "off" hides them
-//   surface      "off" hides it
-//   opacity      of the surface: above 0, at most 1
-//   clip         up to three planes: axis x, y or z or a direction "1,0,1", a share of the extent
-//                after a colon, "-" before an axis for the other side: "y", "-x:0.3 z:0.5"
-//   clip-mode    cut (default), cells, slice
-//   iso          "FIELD=VALUE,VALUE..."
-//   threshold    "FIELD=LOW,HIGH"
+//                folder's index.json that `qtet publish` made, on any web server.
+//   transport    auto (default), websocket, range or chunks: how a server's logs come.
+//   mesh         id of the mesh; without it the viewer offers a menu and starts with the first.
+//   field        name of the field, "NAME[0]" for a component; by default that with most contrast.
+//   colormap     viridis (default), cividis, cool-warm, turbo, grey or labels; "turbo reversed".
+//   range        "auto" (default), "full", "symmetric" or "LOW,HIGH".
+//   scale        "log".
+//   edges        "off" hides them.
+//   surface      "off" hides it.
+//   opacity      of the surface: above 0, at most 1.
+//   clip         up to three planes. Each is an axis x, y or z or a direction "1,0,1", then a share
+//                of the extent after a colon. "-" before an axis means the other side: "y",
+//                "-x:0.3 z:0.5".
+//   clip-mode    cut (default), cells, slice.
+//   iso          "FIELD=VALUE,VALUE...".
+//   threshold    "FIELD=LOW,HIGH".
 //   volume       opacities at even shares of the colours' range, "0,0.1,0.5": the cells are seen
-//                through instead of the surface; "auto" suits the mesh
-//   quality      full (default), "error:0.01" or "1%", "cells:N", "bytes:N": how far to refine
-//   projection   "parallel"
-//   camera       six numbers, as the property `cameraState` gives them
+//                through instead of the surface; "auto" suits the mesh.
+//   quality      full (default), "error:0.01" or "1%", "cells:N", "bytes:N": how far to refine.
+//   projection   "parallel".
+//   camera       six numbers, as the property `cameraState` gives them.
 // Events         load (first picture), progress, refine (a finer picture), complete (the whole mesh
-//                is on the screen), error, camera-change, view-change (an attribute of the view);
-//                `detail` holds the figures, the error, the camera or the attribute
-// Slots          poster (shown until the first picture), progress (instead of the viewer's own)
-// Parts          canvas, panel, progress, legend, result, notice
-// Methods        digest(), pause(), resume(), resetView(), look(direction), picture()
-// Properties     counts, statistics, state, view, cameraState, token
+//                is on the screen), error, camera-change, view-change (an attribute of the view).
+//                `detail` holds the figures, the error, the camera or the attribute.
+// Slots          poster (shown until the first picture), progress (instead of the viewer's own).
+// Parts          canvas, panel, progress, legend, result, notice.
+// Methods        digest(), pause(), resume(), resetView(), look(direction), picture().
+// Properties     counts, statistics, state, view, cameraState, token.
 
 import {Client} from '../core/client';
 import type {Counts} from '../core/counts';

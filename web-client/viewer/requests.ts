@@ -1,4 +1,4 @@
-// What a viewer asks of its worker: what to show, and what to refine first. Each request is sent
+// A viewer's requests to its worker: what to show, and what to refine first. Each request is sent
 // only if it has changed.
 
 import type {Vector} from '../core/cell_ray';

@@ -1,4 +1,4 @@
-// What the viewer shows, read from its attributes. Every control writes an attribute, and every
+// The viewer's settings, read from its attributes. Every control writes an attribute, and every
 // attribute can be part of a link.
 
 import {isColorMapName, type ColorMapName} from '../core/color_maps';
@@ -95,7 +95,7 @@ const kFirstOpacities: readonly number[] = [0.03, 0.04, 0.06, 0.1, 0.2, 0.35, 0.
 /** The most opacities of a volume: more cannot be told apart in the picture. */
 export const kMaxOpacities = 33;
 
-/** What stands in the attribute if the mesh is to choose. */
+/** The attribute's value if the mesh is to choose. */
 export const kAutoVolume = 'auto';
 /** The mean optical depth of a volume that is seen at first: its inside shows, and its shape. */
 const kFirstDepth = 0.9;
@@ -289,7 +289,7 @@ export interface ShownRange {
   low: number;
   high: number;
   logarithmic: boolean;
-  /** What a logarithmic scale hides: nothing, the values below `low`, or all of them. */
+  /** The values that a logarithmic scale hides: none, those below `low`, or all of them. */
   hides: 'none' | 'low' | 'all';
   /** Whole numbers from low + 0.5 on, each with a colour of its own. */
   labels?: number;
@@ -300,8 +300,8 @@ export interface ShownRange {
 }
 
 /**
- * `extent` is the range of the values that occur, `middle` that of most of them: an automatic range
- * ends there (`isMiddle`) if the few others would take most of the colours. A logarithmic range
+ * `extent` is the range of the values that occur, `middle` that of most of them. An automatic range
+ * is `middle` (`isMiddle`) if the few others would take most of the colours. A logarithmic range
  * starts above 0, if necessary at a ten-thousandth of its end; `hides` then says what this hides,
  * or why there is none.
  */

@@ -1,4 +1,4 @@
-// What a viewer knows about the mesh that it shows. Another mesh gets another object.
+// A viewer's state of the mesh that it shows. Another mesh gets another object.
 
 import type {BaseFigures} from '../core/base_figures';
 import {labelsOf} from '../core/labels';

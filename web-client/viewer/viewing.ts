@@ -246,7 +246,7 @@ export class Viewing implements ActionsHost, PanelsHost {
     void this.graphics.restart(() => (view ? moved : this.takeStart()));
   }
 
-  /** What was asked for before there was a view counts once. */
+  /** Requests made before there was a view count once. */
   private takeStart(): ViewStart {
     const {start} = this.kept;
     this.kept.start = null;
