@@ -15,11 +15,11 @@ struct MendReport {
   std::uint64_t left = 0;
 };
 
-/// Finds four boundary triangles that are the two cuts of one quadrilateral, and recuts one side: the
-/// tetrahedra round its diagonal become tetrahedra round the other's. The surface on that side
+/// Finds four boundary triangles that are the two cuts of one quadrilateral, and recuts one side.
+/// The tetrahedra round its diagonal become tetrahedra round the other's. The surface on that side
 /// becomes the other side's; every new tetrahedron has a positive volume. Cell fields are inherited
-/// from the tetrahedron that has most of the same vertices. New tetrahedra stand in the place of old
-/// ones, then at the end. REQUIRES: vertex ids below the number of points.
+/// from the tetrahedron that has most of the same vertices. New tetrahedra take the places of old
+/// ones, then follow at the end. REQUIRES: vertex ids below the number of points.
 MendReport mendCrossedFaces(TetMesh& mesh);
 
 }  // namespace qtet

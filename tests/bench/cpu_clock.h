@@ -21,7 +21,7 @@ struct Seconds {
          1e-6 * static_cast<double>(usage.ru_utime.tv_usec);
 }
 
-/// Of this process with all its threads, while `work` ran.
+/// Returns the seconds of this process with all its threads, while `work` ran.
 template <class Work>
 [[nodiscard]] Seconds timeOf(const Work& work) {
   const auto userNow = [] {
@@ -47,7 +47,7 @@ inline bool pinToCores(int count) {
   return sched_setaffinity(0, sizeof chosen, &chosen) == 0;
 }
 
-/// REQUIRES: not empty. Of an even number the upper one.
+/// The median; of an even number of values the upper one. REQUIRES: not empty.
 [[nodiscard]] inline double medianOf(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::ranges::nth_element(values, middle);

@@ -100,8 +100,7 @@ BENCHMARK(dracoBlocksOfFin)->Unit(benchmark::kMillisecond);
 void adaptiveBlocksOfFin(benchmark::State& state) { valueBlocks(state, encodedAdaptively()); }
 BENCHMARK(adaptiveBlocksOfFin)->Unit(benchmark::kMillisecond);
 
-// What Draco alone takes for the same points, as one cloud without cells, in the order of the log's
-// slots.
+// Draco alone on the same points, as one cloud without cells, in the order of the log's slots.
 void dracoPointsOfFin(benchmark::State& state) {
   std::vector<std::int32_t> points;
   for (const LatticePoint& p : fin().points) points.insert(points.end(), p.begin(), p.end());

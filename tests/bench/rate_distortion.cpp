@@ -1,14 +1,14 @@
 // Error against bytes: the prefixes of a log beside what one would send without it. Writes RATE.md
 // and a picture a mesh.
 //   rate_distortion [--out FOLDER] [--curve NAME=OPTIONS]... [MESH...]
-//     MESH: a sample's name, a .vtu, or the name of one in the folder QTET_DATA; without any: fin,
-//     comb and bluntfin-welded
+//     MESH: a sample's name, a .vtu, or the name of one in the folder QTET_DATA. Without any: fin,
+//     comb and bluntfin-welded.
 //     --curve: a log made with these options of `qtet simplify` (several in one word: --curve
-//     "shape=--boundary-weight 15000"); may be given several times;
-//     without, one log of the default options. The ladder is made of the first log's levels.
-// Every log has the first point field alone. The errors are those that the log's manifest tells; on
-// a few levels they are held against errors measured from the decoded meshes
-// (parts/direct_error.h), and where the two differ nothing is written.
+//     "shape=--boundary-weight 15000"). It may be given several times. Without it there is one log
+//     of the default options. The ladder is made of the first log's levels.
+// Every log has the first point field alone. The errors are those that the log's manifest states.
+// On a few levels they are compared with errors measured from the decoded meshes
+// (parts/direct_error.h). If the two differ, nothing is written.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>

@@ -1,8 +1,9 @@
-// What reading and splitting costs beside what VTK alone takes to read the same .vtu file:
+// The cost of reading and splitting a .vtu file, beside the cost of VTK alone to read it:
 // `read_bench [FILE.vtu]`. Without a file two of a million cells are made: hexahedra and
-// tetrahedra, written by VTK as it writes them by default. User and system CPU seconds of all
-// threads, medians of seven runs, the two in turn, each in a process of its own that has no memory
-// from the run before; with pages of 2 MB where the code asks for them, and without.
+// tetrahedra, written by VTK as it writes them by default. The figures are user and system CPU
+// seconds of all threads, medians of seven runs. The two programs take turns, each run in a process
+// of its own that has no memory from the run before. They run with pages of 2 MB where the code
+// asks for them, and without.
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -32,7 +33,7 @@ namespace {
 
 constexpr int kRuns = 7;
 
-/// Of one run, or medians of several.
+/// The cost of one run, or medians of several.
 struct Cost {
   double user = 0, system = 0;
   std::size_t tetrahedra = 0;
@@ -53,7 +54,7 @@ Cost medianOf(const std::vector<Cost>& runs) {
     for (const Cost& run : runs) values.push_back(part(run));
     return qtet::bench::medianOf(values);
   };
-  // Of the sum, so that it is one run's; the parts need not add up to it.
+  // The median of the sum, so that it is one run's; the parts need not add up to it.
   const double cpu = median([](const Cost& run) { return run.cpu(); }),
                system = median([](const Cost& run) { return run.system; });
   return {cpu - system, system, runs.back().tetrahedra};

@@ -1,9 +1,9 @@
-// What a place costs: the bytes of a log of layout `regions` that bring a box with 10, 1 and 0.1 %
-// of the cells to full resolution, and the whole file beside the same mesh's `stream`. Boxes are
-// cubes round cells taken at even steps through the finest mesh, as large as it takes; slabs lie
-// round planes through the same cells across each axis in turn; isosurfaces have values of vertices
-// at even steps through their order. The bytes are those that the server plans for such a view up
-// to the last level.
+// The cost of a place: the bytes of a log of layout `regions` that bring a box with 10, 1 and 0.1 %
+// of the cells to full resolution. The whole file is compared with the same mesh's `stream`. Boxes
+// are cubes round cells taken at even steps through the finest mesh, as large as it takes. Slabs
+// lie round planes through the same cells across each axis in turn. Isosurfaces have values of
+// vertices at even steps through their order. The bytes are those that the server plans for such a
+// view up to the last level.
 //
 //   region_bytes REGIONS.qtet [STREAM.qtet]
 
@@ -58,7 +58,7 @@ View boxRound(const Manifest& manifest, const std::vector<LatticePoint>& middles
   return {.box = box};
 }
 
-/// What lies within half of `thickness` from the plane through `centre` across an axis.
+/// The region within half of `thickness` from the plane through `centre` across an axis.
 View slabRound(const Manifest& manifest, const LatticePoint& centre, std::size_t axis,
                double thickness) {
   const double at = manifest.latticeOrigin[axis] + manifest.latticeStep * centre[axis] / 4;
@@ -85,7 +85,7 @@ std::uint64_t bytesOf(const LogFront& log, const View& view,
   return bytes;
 }
 
-/// Of the first field's vertices; of several components their length.
+/// The sorted values of the first field's vertices; with several components their lengths.
 std::vector<double> sortedValues(const LatticeMesh& mesh) {
   const FieldInfo& field = mesh.fields[0];
   std::vector<double> out;

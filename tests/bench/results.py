@@ -26,8 +26,9 @@ import sys
 import tempfile
 import threading
 
-# What is compared: name in the table, program, and for qtet its options ({field}: the field that is
-# judged; --position-bits here goes before the one below), for VTK the scale (vtk_decimation.h).
+# The settings to compare: name in the table, program, and for qtet its options, for VTK the scale
+# (vtk_decimation.h). In the options {field} is the field that is judged, and --position-bits here
+# goes before the one below.
 SETTINGS = [
     ("qtet", "qtet", ["--fields", "{field}", "--field-bits", "16", "--measure", "none"]),
     (

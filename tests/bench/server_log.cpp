@@ -1,6 +1,6 @@
 // Writes the log that server_bench.py serves: a grid of 44 cubes a side (or others), half a million
-// cells, with two fields of noise, in some 300 chunks of 32 KB or so. It is a sound one: a server
-// decodes nothing that it sends, but whoever asks it for a level gets one.
+// cells, with two fields of noise. It has some 300 chunks of 32 KB or so. It is a sound one: a
+// server decodes nothing that it sends, but whoever asks it for a level gets one.
 //
 //   server_log OUT.qtet [CUBES A SIDE]
 #include <cstdio>

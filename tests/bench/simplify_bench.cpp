@@ -1,19 +1,19 @@
 // The simplifier's speed beside VTK's decimation: one program, one input in memory, pinned to as
 // many cores as threads, the programs taking turns, medians of five. Prints Markdown tables.
 //   simplify_bench [--threads N] [--repeats N] [--reduction R] [--fields all|one] [NAME...]
-//     NAME: a mesh file, or a sample's name; without any, every .vtu of the folder QTET_DATA, and
-//     where that is not set the samples box and fin
+//     NAME: a mesh file, or a sample's name. Without any: every .vtu of the folder QTET_DATA, and
+//     where that is not set the samples box and fin.
 //   simplify_bench --speedup [--threads N] [--repeats N] [--reduction R] [NAME...]
 //     ours alone, with one thread and with N (two unless given) in turns: wall seconds, and their
-//     ratio
+//     ratio.
 //   simplify_bench --growth [CELLS|FILE...]
 //     the whole tool on `qtet sample fin --cells CELLS` (200,000 and 10,000,000 unless given) or on
-//     files: seconds and peak memory a cell
-// On the clock: for ours simplify(), from a cleaned mesh on the lattice to the history of fusions,
-// every field optimised and carried along, or with `--fields one` the one scalar that VTK's filter
-// keeps, which is like for like; for VTK the filter's Update(), from an unstructured grid to
-// another, always with that one scalar. Off the clock: reading, cleaning, quantising (its own
-// column), building VTK's grid and scaling it, encoding.
+//     files: seconds and peak memory a cell.
+// On the clock for ours is simplify(), from a cleaned mesh on the lattice to the history of
+// fusions. Every field is optimised and carried along, or with `--fields one` the one scalar that
+// VTK's filter keeps, which is like for like. On the clock for VTK is the filter's Update(), from
+// an unstructured grid to another, always with that one scalar. Off the clock: reading, cleaning,
+// quantising (its own column), building VTK's grid and scaling it, encoding.
 #include <fcntl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -71,8 +71,8 @@ std::vector<std::string> defaultNames() {
   return out;
 }
 
-/// What one program did on one mesh, over all repeats. VTK's filter draws random numbers, so what
-/// it removes varies a little: the last run's counts.
+/// The results of one program on one mesh, over all repeats. VTK's filter draws random numbers, so
+/// what it removes varies a little: the last run's counts.
 struct Runs {
   std::size_t removed = 0;
   std::vector<double> user, wall;
@@ -110,7 +110,7 @@ void addVtk(vtkUnstructuredGrid* grid, double scale, const Request& request, Run
            out.seconds);
 }
 
-/// Of the fields only the one that VTK's filter keeps, if there is one.
+/// Leaves only the field that VTK's filter keeps, if there is one.
 void leaveScalar(TetMesh& mesh) {
   const MeshField* scalar = scalarOf(mesh);
   mesh.fields = scalar ? std::vector{*scalar} : std::vector<MeshField>{};

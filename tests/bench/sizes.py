@@ -22,9 +22,9 @@ import tempfile
 HERE = pathlib.Path(__file__).resolve().parent
 OPTIONS = ["--position-bits", "16", "--field-bits", "12"]
 SAMPLES = ["box", "fin"]
-# Data sets, each with two reference figures in bits a cell that were measured elsewhere on the same
-# mesh and that nothing here recomputes: cells and points in Hilbert order, differences, zstd -19; a
-# single-rate coder guided by the geometry. None: not known.
+# Data sets, each with two reference figures in bits a cell. They were measured elsewhere on the
+# same mesh, and nothing here recomputes them. The first is for cells and points in Hilbert order,
+# differences, zstd -19; the second for a single-rate coder guided by the geometry. None: not known.
 DATA = {
     "spx-welded": (28, 10.7),
     "aneurysm": (24, 8.0),

@@ -1,8 +1,8 @@
 // VTK's decimation as a program, for results.py:
 //   vtk_decimate IN OUT_PREFIX SCALE REDUCTION...
-// reads IN (.vtu or .vtk), multiplies its points and scalar, and the boundary weight, by SCALE,
-// removes the fraction REDUCTION of its cells for each of them, divides by SCALE and writes
-// OUT_PREFIX_REDUCTION.vtu. Prints a JSON object a reduction: reduction, cellsIn, cellsOut,
+// It reads IN (.vtu or .vtk) and multiplies its points and scalar, and the boundary weight, by
+// SCALE. For each REDUCTION it removes that fraction of the cells, divides by SCALE and writes
+// OUT_PREFIX_REDUCTION.vtu. It prints a JSON object a reduction: reduction, cellsIn, cellsOut,
 // userSeconds and wallSeconds of the filter alone.
 #include <cstdlib>
 #include <iostream>

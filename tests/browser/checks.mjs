@@ -1,4 +1,4 @@
-// What the viewer must do in a real browser. Each check gets a running server and throws if the
+// The checks of the viewer in a real browser. Each check gets a running server and throws if the
 // viewer does something else.
 
 import assert from 'node:assert/strict';

@@ -39,7 +39,7 @@ async function showsNothingOfTheMeshBefore({server, browser}) {
   assert.deepEqual(loads, [total.tetrahedra]);
 }
 
-/** What the first picture is made of, and what the view hears before it. */
+/** Looks at the contents of the first picture, and at the view's commands before it. */
 async function holdsTheAddressFromTheFirstPictureOn({server, browser}) {
   const view = 'clip=y:0.5&iso=Density=1.3&threshold=Density=0.5,4&range=1,3&projection=parallel';
   const viewer = await browser.open(`${server.url}?mesh=fin&${view}`, undefined, () => {
@@ -207,7 +207,7 @@ async function pausesInTheTaskThatAppendsIt({server, browser}) {
   assert.deepEqual(viewer.problems, []);
 }
 
-/** What a page asks for in the task that appends the element is kept until it can be done. */
+/** Requests of a page in the task that appends the element are kept until they can be done. */
 async function keepsWhatIsAskedForBeforeThereIsAMesh({server, browser}) {
   const viewer = await browser.open(`${server.url}?mesh=box`);
   await viewer.waitForState('complete');

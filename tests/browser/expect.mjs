@@ -1,4 +1,4 @@
-// What every check expects of a complete mesh.
+// The expectations of every check of a complete mesh.
 
 import assert from 'node:assert/strict';
 

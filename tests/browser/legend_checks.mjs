@@ -167,7 +167,7 @@ async function followsTheField({server, browser}) {
   await viewer.screenshot('plot-follows');
 }
 
-/** What a scale or a surface hides is told where it is chosen. */
+/** The legend states what a scale or a surface hides, at the place where it is chosen. */
 async function saysWhatIsHidden({server, browser}) {
   const viewer = await browser.open(
     `${server.url}?mesh=fin&field=Velocity[1]&scale=log&iso=Density=1.5&clip=1,1,0:0.9`,
@@ -207,7 +207,7 @@ async function saysWhatIsHidden({server, browser}) {
   assert.ok(seen.includes(true) && seen.at(-1) === false, `the volume said ${seen}`);
 }
 
-/** What a mouse does with two buttons and a wheel, the keyboard does too. */
+/** The keyboard does everything that a mouse does with two buttons and a wheel. */
 async function movesAndCentresByKeys({server, browser}) {
   const viewer = await browser.open(`${server.url}?mesh=box`);
   await viewer.waitForState('complete');
@@ -249,7 +249,7 @@ async function movesAndCentresByKeys({server, browser}) {
   assert.deepEqual(viewer.problems, []);
 }
 
-/** What is pointed at can be taken along. */
+/** The numbers at the pointer can be taken along. */
 async function givesItsNumbersAway({server, browser}) {
   const viewer = await browser.open(`${server.url}?mesh=fin&field=Density`);
   await viewer.waitForState('complete');

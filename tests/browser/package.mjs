@@ -115,7 +115,7 @@ run(
   '--prefer-offline',
   '--loglevel=error',
 );
-// What every such project has is here already, so that nothing is downloaded twice.
+// Packages that every such project has are here already, so that nothing is downloaded twice.
 for (const name of ['three', '@kitware', 'vite', 'typescript', '@types'])
   symlinkSync(join(client, 'node_modules', name), join(project, 'node_modules', name));
 run(project, process.execPath, 'node_modules/typescript/bin/tsc');

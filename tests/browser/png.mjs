@@ -88,8 +88,8 @@ export function largestDifference(a, b) {
 
 const kBlockPixels = 4;
 /**
- * A visible difference, of 255, between the means of two blocks. What antialiasing moves within a
- * block does not count.
+ * A visible difference, of 255, between the means of two blocks. Changes by antialiasing within a
+ * block do not count.
  */
 const kVisibleStep = 10;
 

@@ -15,7 +15,7 @@ export class PoorLine {
 
   /**
    * `bytesPerSecond` towards the browser on each connection, or on those of /v1/stream only;
-   * `delayMs` is added each way. Of the first connection of /v1/stream byte `damageAt` arrives
+   * `delayMs` is added each way. On the first connection of /v1/stream byte `damageAt` arrives
    * changed, or nothing at all behind the first `holdAt` bytes, however slow this machine is.
    */
   static async open(

@@ -83,7 +83,7 @@ assert.deepEqual(
 );
 assert.equal(numbers('primvars:Scalar', 1).length, points);
 
-// What a viewer shows of it: the boundary as one mesh.
+// The mesh as a viewer shows it: the boundary as one mesh.
 const {USDLoader} = await import(
   pathToFileURL(require.resolve('three/examples/jsm/loaders/USDLoader.js')).href
 );

@@ -1,4 +1,4 @@
-// What a document shows: its fenced blocks, and the commands that its sentences name.
+// The examples of a document: its fenced blocks, and the commands that its sentences name.
 
 const kFence = /^ *```(.*)$/;
 const kNoRun = /^no-run(?:: *(.*))?$/;

@@ -1,5 +1,5 @@
-// What is done with an example of each language. `check` looks without running, `run` runs. Both
-// throw what is wrong. `run` may return why it could only check, `check` why it could not.
+// How an example of each language is tested. `check` looks without running, `run` runs. Both throw
+// the fault. `run` may return why it could only check, `check` why it could not.
 
 import {existsSync, mkdirSync, readdirSync, writeFileSync} from 'node:fs';
 import {dirname, join} from 'node:path';
@@ -56,7 +56,7 @@ function checkTokens({text}, {scratch}) {
 
 // ---- C and CMake, against the library as it is installed
 
-/** What the document's other examples build: its first program in C. */
+/** The source that the document's other examples build: its first program in C. */
 export function writeSource(blocks, scratch) {
   const program = blocks.find(({language}) => language === 'c');
   writeFileSync(scratch.path('mine.c'), program?.text ?? kEmptyMain);

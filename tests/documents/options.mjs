@@ -8,7 +8,7 @@ import {join} from 'node:path';
 export class Options {
   #bin;
   #root;
-  /** What the programs answer to --help, by the words before it. */
+  /** The programs' answers to --help, by the words before it. */
   #help = new Map();
 
   constructor(bin, root) {
@@ -16,7 +16,7 @@ export class Options {
     this.#root = root;
   }
 
-  /** What the commands of a shell text name and is not there, a sentence each. */
+  /** The names in a shell text's commands that do not exist, a sentence each. */
   strangersIn(text) {
     return commandsIn(text).flatMap(([program, ...words]) => {
       if (program === 'make') return this.#strangeTargets(words);

@@ -3,9 +3,10 @@
 // Without documents it takes every .md of the repository.
 //
 // A document's blocks run in their order, in one folder that has meshes and logs (scratch.mjs). Its
-// fences say the language, or `text` where there is nothing to run. A block that cannot run in a
-// test says so with its reason, ```sh no-run: needs root, and is checked all the same: its syntax,
-// and the options that it names. Commands in sentences (`qtet info --plot`) are checked likewise.
+// fences say the language, or `text` where there is nothing to run. If a block cannot run in a
+// test, its fence gives the reason, ```sh no-run: needs root. It is checked all the same: its
+// syntax, and the options that it names. Commands in sentences (`qtet info --plot`) are checked
+// likewise.
 
 import {resolve} from 'node:path';
 import {fileURLToPath} from 'node:url';

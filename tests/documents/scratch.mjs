@@ -36,7 +36,7 @@ CELL_TYPES 2
 12 12
 `;
 
-/** What every document's examples find: made once, from a built-in sample. */
+/** The files that every document's examples find: made once, from a built-in sample. */
 export function makeInputs(bin, folder) {
   rmSync(folder, {recursive: true, force: true});
   mkdirSync(join(folder, 'served'), {recursive: true});

@@ -13,7 +13,7 @@ import {makeInputs} from './scratch.mjs';
 
 const fenced = (info, ...lines) => ['```' + info, ...lines, '```', ''].join('\n');
 
-/** What is wrong, the document, and a part of the verdict on its last example. */
+/** The broken thing, the document, and a part of the verdict on its last example. */
 const kBroken = [
   ['a command that fails', fenced('sh', 'qtet info nobody.qtet'), 'nobody.qtet'],
   ['a failure inside a pipe', fenced('sh', 'false | cat'), 'ended with 1'],
@@ -65,7 +65,7 @@ const kBroken = [
   ['a script in a page', fenced('html', '<script type="module">const = 1</script>'), 'SyntaxError'],
 ];
 
-/** What is sound, the document, and the last example's state. */
+/** The sound thing, the document, and the last example's state. */
 const kSound = [
   ['a shell block', fenced('sh', 'qtet info part.qtet >/tmp/a', 'test -s /tmp/a'), 'ran'],
   ['blocks that share a folder', fenced('sh', 'touch x') + fenced('sh', 'rm x'), 'ran'],

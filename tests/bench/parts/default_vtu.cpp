@@ -23,7 +23,7 @@ Result<DefaultVtu> defaultVtu(const std::filesystem::path& path) {
   vtkPointData* fields = grid->GetPointData();
   while (fields->GetNumberOfArrays() > 1) fields->RemoveArray(fields->GetNumberOfArrays() - 1);
   if (fields->GetNumberOfArrays() == 1) out.field = fields->GetArrayName(0);
-  // What a filter or a mesher makes has 64-bit ids; the reader keeps those of the file.
+  // Filters and meshers make 64-bit ids; the reader keeps those of the file.
   grid->GetCells()->ConvertTo64BitStorage();
 
   vtkNew<vtkXMLUnstructuredGridWriter> writer;

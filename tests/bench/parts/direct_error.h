@@ -1,6 +1,6 @@
 // The error of one decoded mesh against another, measured without knowing how it came about: every
-// place is looked for among all cells. What the known errors of a log, which are followed from
-// level to level, are held against.
+// place is looked for among all cells. It is the reference for the known errors of a log, which are
+// followed from level to level.
 #pragma once
 
 #include <cstddef>

@@ -1,13 +1,13 @@
-// What a simplifier asks of its priority queue, as a list of operations: recorded from a model of
-// the simplifier on a grid of vertices, without a mesh.
+// The operations that a simplifier asks of its priority queue: recorded from a model of the
+// simplifier on a grid of vertices, without a mesh.
 //
-// As in simplify/: one entry a vertex, its cheapest candidate; the least is popped; a candidate
-// that is gone or illegal gives way to the vertex's next, dearer one; one whose vertices are locked
-// waits for the level's end; a fusion kills its vertices and enters the fused one, dearer, at the
-// level's end; a level ends at the 35 % quantile of the keys at its start. On the meshes comb and
-// bluntfin the simplifier made 6 to 10 pops a vertex: 7-12 % of vertices that are dead, 30 % of
-// candidates that are gone, 46-53 % locked, 1-3 % illegal, 7-11 % fused; the model is within these
-// or close to them.
+// As in simplify/, each vertex has one entry, its cheapest candidate, and the least is popped. A
+// candidate that is gone or illegal gives way to the vertex's next, dearer one. One whose vertices
+// are locked waits for the level's end. A fusion kills its vertices and enters the fused one,
+// dearer, at the level's end. A level ends at the 35 % quantile of the keys at its start. On the
+// meshes comb and bluntfin the simplifier made 6 to 10 pops a vertex. Among these, 7-12 % of the
+// vertices were dead and 30 % of the candidates gone; 46-53 % were locked, 1-3 % illegal, 7-11 %
+// fused. The model is within these figures or close to them.
 #pragma once
 
 #include <cstdint>
@@ -38,7 +38,7 @@ struct QueueTrace {
   return checksum * 0x9E3779B97F4A7C15u + owner;
 }
 
-/// Of a mesh of `vertices` vertices, simplified to one in a hundred.
+/// Records the trace of a mesh of `vertices` vertices, simplified to one in a hundred.
 [[nodiscard]] QueueTrace recordQueueTrace(std::uint32_t vertices);
 
 }  // namespace qtet::bench

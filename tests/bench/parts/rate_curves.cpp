@@ -29,7 +29,7 @@ RatePoint pointOf(const ManifestLevel& level, double bytes) {
   return {bytes, level.level, level.error->boundaryMean(), level.error->fields[0].rms};
 }
 
-/// What is there at `bytes`, nullptr before the first point.
+/// The point that is reached at `bytes`, nullptr before the first point.
 const RatePoint* at(const RateCurve& curve, double bytes) {
   const auto next = std::ranges::upper_bound(curve, bytes, {}, &RatePoint::bytes);
   return next == curve.begin() ? nullptr : &*std::prev(next);

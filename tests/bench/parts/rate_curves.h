@@ -13,7 +13,7 @@
 
 namespace qtet::bench {
 
-/// What is there to look at once so many bytes have been fetched.
+/// The mesh to look at once so many bytes have been fetched.
 struct RatePoint {
   double bytes = 0;
   std::uint32_t level = 0;  ///< of the log that the mesh is a level of
@@ -23,15 +23,15 @@ struct RatePoint {
 /// Bytes and quality rise from point to point; a point stands until the next.
 using RateCurve = std::vector<RatePoint>;
 
-/// The known errors of a log's levels at the lengths of its prefixes. Of levels that end with the
-/// same byte only the finest counts. Errors: not-found (a log without known errors or without a
-/// field).
+/// The known errors of a log's levels at the lengths of its prefixes. If several levels end with
+/// the same byte, only the finest counts. Errors: not-found (a log without known errors or without
+/// a field).
 [[nodiscard]] Result<RateCurve> logCurve(const OpenedLog& log);
 
-/// Meshes at 1/64, 1/16, 1/4 and 1 of the cells, fetched one after the other: the log's own finest
-/// levels of at most so many cells (level 0 where none is so small), each encoded by itself as a
-/// base mesh without records. REQUIRES: a log that logCurve takes. Errors: those of decoding and
-/// encoding.
+/// Meshes at 1/64, 1/16, 1/4 and 1 of the cells, fetched one after the other. They are the log's
+/// own finest levels of at most so many cells (level 0 where none is so small). Each is encoded by
+/// itself as a base mesh without records. REQUIRES: a log that logCurve takes. Errors: those of
+/// decoding and encoding.
 [[nodiscard]] Result<RateCurve> ladderCurve(const OpenedLog& log);
 
 using Measure = double RatePoint::*;

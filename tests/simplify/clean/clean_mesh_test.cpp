@@ -170,7 +170,7 @@ TEST(CleanMesh, threeCellsOnOneFaceAreRefusedByName) {
 }
 
 /// A closed chain of tetrahedra (w, w+1, w+2, w+3), each glued to the next by the face that they
-/// share; `twisted` exchanges two vertices of the face that closes it, as a Moebius strip's ends
+/// share. `twisted` exchanges two vertices of the face that closes it, as a Moebius strip's ends
 /// are glued.
 TetMesh ringOf(VertexId n, bool twisted) {
   TetMesh mesh;

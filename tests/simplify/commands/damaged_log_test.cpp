@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::TakenApart;
 
-/// What `qtet verify` does with a log; the tool prints the error and ends with 1.
+/// Checks a log as `qtet verify` does; the tool prints the error and ends with 1.
 Status verify(const fs::path& path) {
   const Result<OpenedLog> log = openLog(path);
   if (!log) return std::unexpected(log.error());

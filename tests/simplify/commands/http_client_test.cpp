@@ -1,4 +1,4 @@
-// What requests do with servers that lie, wander or hang. (With a real one: tests/server/routes.)
+// Requests to servers that lie, wander or hang. (With a real one: tests/server/routes.)
 #include "simplify/commands/http_client.h"
 
 #include <gtest/gtest.h>

@@ -17,7 +17,7 @@ refuses() {
     fail "${*:3} ended with $code"
   }
 }
-# What --json says of a member.
+# The line of --json that states a member.
 member() { "$qtet" "${@:2}" --json | grep "\"$1\""; }
 
 "$qtet" sample box -o box.vtu >/dev/null

@@ -61,7 +61,7 @@ class Publish : public Tool {
             contentOf(entry.path());
     return out;
   }
-  /// What hidden folders were left beside the site.
+  /// The number of hidden folders that were left beside the site.
   std::size_t leftovers() {
     std::size_t out = 0;
     for (const auto& entry : fs::directory_iterator(folder_))

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Same input, same options, same bytes, whatever the compiler, its optimisation and the number of
-# threads: the tool that users run (g++) against the one of the unit tests (clang, sanitizers), and
-# both against the golden files' digests.
+# threads. The tool that users run (g++) is compared with the one of the unit tests (clang,
+# sanitizers), and both with the golden files' digests.
 #   same_bytes.sh QTET CHECKED-QTET GOLDEN-FOLDER FOLDER-TO-WRITE-TO     77: no CHECKED-QTET
 set -euo pipefail
 qtet=$1 checked=$2 golden=$(realpath "$3")

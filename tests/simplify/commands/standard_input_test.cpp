@@ -1,4 +1,4 @@
-// The standard input as a file: the limit on its bytes. (What commands do with it: pipes.sh.)
+// The standard input as a file: the limit on its bytes. (Its use by commands: pipes.sh.)
 #include "simplify/commands/standard_input.h"
 
 #include <gtest/gtest.h>

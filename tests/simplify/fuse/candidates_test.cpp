@@ -1,4 +1,4 @@
-// What is left of a vertex' candidates after some failed, died or turned out dearer.
+// The candidates of a vertex that remain after some failed, died or turned out dearer.
 #include "simplify/fuse/candidates.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// What candidates and proposals are compared by: the error that a fusion adds, by the tetrahedra
-// and boundary triangles that it removes.
+// The measure that compares candidates and proposals: the error that a fusion adds, by the
+// tetrahedra and boundary triangles that it removes.
 #include "simplify/fuse/fusion_proposer.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// What must not matter to a simplification: the unit of length, where the mesh lies, and how its
-// points and cells are numbered.
+// Changes that must not matter to a simplification: the unit of length, where the mesh lies, and
+// how its points and cells are numbered.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,9 +19,9 @@ namespace {
 using testing::gridMesh;
 using testing::meshOfHistory;
 
-// How much figures may differ. Another unit or place rounds a few points otherwise; another
-// numbering turns every tie, which on a small mesh with flat sides are most of its fusions, so that
-// it ends in another mesh of the same cost.
+// How much figures may differ. Another unit or place rounds a few points otherwise. Another
+// numbering turns every tie, and on a small mesh with flat sides most fusions are ties. So it ends
+// in another mesh of the same cost.
 constexpr double kRounded = 0.01, kRenumbered = 0.04;
 // The last fusion overshoots the target by less than what it removes.
 constexpr double kLastFusion = 12;

@@ -170,7 +170,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"twoParts", [] { return gridMesh(9, 4, [](int i, int, int) { return i != 4; }); }}),
     [](const auto& shape) { return std::string(shape.param.name); });
 
-/// A tetrahedron, a vertex put into it, and the next ones each into the cell of the last four: the
+/// A tetrahedron, a vertex put into it, and the next ones each into the cell of the last four. The
 /// cell of the last four has three edges of three cells, and its fusion would remove nine cells.
 LatticeMesh nestedCells() {
   LatticeMesh mesh;

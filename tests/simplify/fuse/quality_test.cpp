@@ -1,4 +1,4 @@
-// What simplification may lose at most, on samples that the tool makes itself: committed figures,
+// The most that simplification may lose, on samples that the tool makes itself: committed figures,
 // measured by tests/support/plain_error.h. The same bits everywhere, so a figure that gets worse is
 // a decision that changed. Better figures: commit them.
 #include <gtest/gtest.h>

@@ -10,7 +10,7 @@
 namespace qtet {
 namespace {
 
-// What a comparison of all with all would keep.
+// The entries that a comparison of all with all would keep.
 std::vector<QueueEntry> cheapestOf(std::vector<QueueEntry> entries, float limit) {
   std::erase_if(entries, [&](const QueueEntry& e) { return e.key > limit; });
   std::ranges::sort(entries, [](const QueueEntry& a, const QueueEntry& b) { return b < a; });

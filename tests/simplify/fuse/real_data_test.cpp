@@ -17,7 +17,7 @@
 namespace qtet {
 namespace {
 
-/// What is known about a mesh from other tools.
+/// The figures of a mesh that other tools report.
 struct Known {
   const char* name;
   std::size_t tetrahedra, points, boundaryTriangles;

@@ -61,9 +61,9 @@ bool plainProject(const FusionMesh& mesh, const std::vector<Triangle>& faces, Ve
   return false;
 }
 
-/// A cone over an octagon with corners at (2, 1), (1, 2), ...: of eight side faces every second one
-/// has the same slope, so that what lies on the axis is equally far from four of them. The cells
-/// are in an order that the seed says.
+/// A cone over an octagon with corners at (2, 1), (1, 2), ... Every second one of its eight side
+/// faces has the same slope, so points on the axis are equally far from four of them. The seed
+/// decides the order of the cells.
 LatticeMesh cone(std::uint32_t seed) {
   LatticeMesh mesh;
   mesh.lattice.bits = 16;

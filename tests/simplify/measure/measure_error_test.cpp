@@ -102,7 +102,7 @@ TEST(MeasureLevels, aCornerPulledInIsAsFarAsItsOldPlaceIs) {
   FusionHistory h = cube();
   displace(h, 1, {90, 0, 0}, 0);  // the corner at (120, 0, 0)
   const LevelError error = measured(h)[0];
-  // Of the old corner from the plane 4 x - y = 360 of the new triangle with 3 and 7.
+  // The distance of the old corner from the plane 4 x - y = 360 of the new triangle with 3 and 7.
   const double distance = 120 / std::sqrt(17.0) / kDiagonal;
   EXPECT_GE(error.toLevel.max, roundedUp(distance));
   EXPECT_LE(error.toLevel.max, roundedUp((1 + kFarthestTolerance) * distance));

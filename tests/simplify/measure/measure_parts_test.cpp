@@ -1,5 +1,5 @@
-// What measuring is made of: nearest points against brute force, samples against what they must
-// average to.
+// The parts of measuring: nearest points against brute force, samples against the averages that
+// they must have.
 #include <gtest/gtest.h>
 
 #include <cmath>

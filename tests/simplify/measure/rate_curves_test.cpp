@@ -145,7 +145,7 @@ TEST(DirectError, ofAFlatSideMovedByAFifthIsWhatGeometrySays) {
   // Not covered is a fifth of the volume, where the error is z - 96 of 120.
   const double field = std::sqrt(0.2 * 0.2 * 0.2 / 3);
   EXPECT_NEAR(direct.field, field, 0.02 * field);
-  // From the old boundary: 24 on the top, 12 on the mean of four strips of 120 x 24; from the new
+  // From the old boundary: 24 on the top, 12 on the mean of four strips of 120 x 24. From the new
   // one it is less, for the sides are near.
   const double boundary =
       (120 * 120 * 24.0 + 4 * 120 * 24 * 12.0) / (6 * 120 * 120) / (120 * std::sqrt(3.0));

@@ -26,7 +26,7 @@ struct Surface {
   }
 };
 
-// Of 0..1.
+// A random number of 0..1.
 double share(std::mt19937& random) { return static_cast<double>(random() % 1001) / 1000; }
 
 constexpr std::int32_t kSize = 1 << 16;

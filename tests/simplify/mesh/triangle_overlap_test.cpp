@@ -48,8 +48,8 @@ bool plainOverlap(const PlacedTriangle& one, const PlacedTriangle& other) {
     check(one, other), check(other, one);
     return meets;
   }
-  // With an edge in common: one's third corner lies in the other's plane, and one of the two third
-  // corners is joined to a point of the other triangle by a segment that stays off the edge.
+  // With an edge in common: the third corner of one lies in the other's plane. A segment that stays
+  // off the edge joins one of the two third corners to a point of the other triangle.
   std::array<Point, 2> edge{};
   Point ours{}, theirs{};
   std::size_t n = 0;

@@ -141,8 +141,8 @@ std::chrono::duration<double, std::milli> processorTime() {
 
 constexpr std::chrono::milliseconds kLongWait{300};
 
-/// Of the threads that wait. Sleeping between looks takes a sixth of the wait; spinning would take
-/// all of it, and no less than half on a busy machine.
+/// The most CPU time that the waiting threads may take. Sleeping between looks takes a sixth of the
+/// wait; spinning would take all of it, and no less than half on a busy machine.
 double mostMilliseconds(const Workers& workers) {
   return 100.0 * static_cast<double>(std::max<std::size_t>(1, workers.count() - 1));
 }

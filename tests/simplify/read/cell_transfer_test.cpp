@@ -77,7 +77,7 @@ TEST_F(CellTransfer, anErrorArrives) {
   EXPECT_EQ(back.error().message, "no such step");
 }
 
-// What wrote them may have been spoilt by the file that it read.
+// The process that wrote them may have been spoilt by the file that it read.
 TEST_F(CellTransfer, bytesCutAnywhereAreRefused) {
   ReadReport report;
   sendCells(file_, twoSteps(), report);

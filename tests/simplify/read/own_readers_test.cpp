@@ -729,7 +729,7 @@ TEST(ReadTetgen, aMissingPartnerAndWrongNumbersAreRefused) {
       << order.error().text();
 }
 
-/// What a damaged file gives must be a mesh that passes the checks, or an error with a message.
+/// A damaged file must give a mesh that passes the checks, or an error with a message.
 void expectNoCrash(const std::string& name, const std::string& whole) {
   const fs::path path = fileWith(name, whole);
   const auto read = [&](const std::string& text) {
