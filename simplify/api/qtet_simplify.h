@@ -1,4 +1,4 @@
-/* From a mesh in arrays to its log: what `qtet simplify` does, for C and for every language that
+/* Makes the log of a mesh in arrays, as `qtet simplify` does, for C and for every language that
  * calls C. C99.
  *
  *   qtet_input_mesh mesh = {0};
@@ -81,8 +81,9 @@ enum {
   QTET_STAGE_KEEP = 5
 };
 
-/* Called about ten times a second, in the thread that called qtet_simplify: which stage is in hand,
- * and how much of it is done, 0 to 1. Anything but 0 ends the work soon, with QTET_CANCELLED. */
+/* Called about ten times a second, in the thread that called qtet_simplify. It receives the stage
+ * in hand, and how much of it is done, 0 to 1. Anything but 0 ends the work soon, with
+ * QTET_CANCELLED. */
 typedef int (*qtet_progress)(void* user, uint32_t stage, double fraction);
 
 /* A field and what is said of it. */

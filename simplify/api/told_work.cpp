@@ -38,7 +38,7 @@ struct Shared {
     changed.notify_one();
   }
 
-  /// Until the work is over, or nobody wants it.
+  /// Reports until the work is over, or nobody wants it.
   void follow(const Tell& tell) {
     std::unique_lock lock(mutex);
     for (bool goesOn = true; goesOn && !isOver;) {

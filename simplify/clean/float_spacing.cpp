@@ -33,7 +33,7 @@ Extents extentsOf(const std::vector<Position>& points) {
   return out;
 }
 
-/// From a magnitude to the next one that float32 has.
+/// The distance from a magnitude to the next one that float32 has.
 double spacingAt(double magnitude) {
   const auto x = static_cast<float>(magnitude);
   return static_cast<double>(std::nextafter(x, std::numeric_limits<float>::infinity())) -

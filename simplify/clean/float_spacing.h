@@ -1,4 +1,4 @@
-// Whether a mesh's coordinates were stored in floats too coarse for it: far from the origin, as in
+// Whether a mesh's coordinates were stored in floats too coarse for it. Far from the origin, as in
 // a map's coordinates, float32 has few digits left for the shape.
 #pragma once
 
@@ -9,16 +9,16 @@
 
 namespace qtet {
 
-/// An edge has lost its shape where it is shorter than so many spacings of its coordinates: then
-/// rounding has turned it by up to an eighth.
+/// An edge has lost its shape where it is shorter than so many spacings of its coordinates.
+/// Rounding has then turned it by up to an eighth.
 inline constexpr double kSpacingsOfAnEdge = 8;
 /// Coordinates are too coarse where more than this fraction of the edges has lost its shape; a few
 /// short ones, as at seams, are usual.
 inline constexpr double kLostEdges = 0.01;
 
 /// A sentence on what float32 has lost: the spacing at the largest coordinate, how many edges it
-/// spoils, and what to do. None where the points are no float32, or fine enough. The spacing counts
-/// as too coarse as well where it is above the step of a lattice of 16 bits.
+/// spoils, and what to do. Empty where the points are no float32, or fine enough. The spacing
+/// counts as too coarse as well where it is above the step of a lattice of 16 bits.
 [[nodiscard]] std::optional<std::string> lostToFloats(const TetMesh& mesh);
 
 }  // namespace qtet

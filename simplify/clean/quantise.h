@@ -1,4 +1,4 @@
-// From floats to the lattice: positions and fields become integers, and everything after this is
+// Puts floats on the lattice: positions and fields become integers, and everything after this is
 // exact.
 #pragma once
 

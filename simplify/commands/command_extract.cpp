@@ -38,8 +38,7 @@ Result<std::uint32_t> chosenLevel(const ParsedWords& parsed, const Manifest& man
                            parsed.number("ratio", 0, 1) * manifest.levels.back().tetrahedra);
 }
 
-/// A mesh of the two kinds without the fields that nobody asked for: the numbers of the others,
-/// ascending.
+/// Leaves a mesh of either kind only the `wanted` fields: their numbers, ascending.
 void keepFields(LatticeMesh& mesh, const std::vector<std::uint32_t>& wanted) {
   for (std::size_t f = mesh.fields.size(); f-- > 0;) {
     if (std::ranges::binary_search(wanted, f)) continue;

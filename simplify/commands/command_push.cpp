@@ -15,7 +15,7 @@ constexpr const char* kTokenVariable = "QTET_TOKEN";
 /// After a lost connection: so often, and so long after the first; twice as long each time.
 constexpr int kMaxAttempts = 6;
 constexpr std::chrono::milliseconds kFirstPause{500};
-/// For the answer to a whole log: the server decodes it first, and others before it.
+/// The time for the answer to a whole log: the server decodes it first, and others before it.
 constexpr std::chrono::hours kCheckTime{1};
 
 /// The log to send, its destination and its sender.

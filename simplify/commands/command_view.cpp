@@ -126,9 +126,9 @@ void followServer(int words, const std::string& name, bool open, Console& consol
   }
 }
 
-/// Puts the log of `input` into the folder: the file itself under another name, a copy where the
-/// folder is on another disk, or a log made of a mesh. (A symbolic link would not do: the server
-/// follows none out of its folder.)
+/// Puts the log of `input` into the folder. That is the file itself under another name, a copy
+/// where the folder is on another disk, or a log made of a mesh. (A symbolic link would not do: the
+/// server follows none out of its folder.)
 int provideLog(const fs::path& input, const fs::path& log, const ParsedWords& parsed,
                Console& console) {
   if (input.extension() == ".qtet") {

@@ -24,7 +24,7 @@ constexpr std::array kColours = {"#e69f00", "#3a9bdc", "#00a37a", "#d55e00",
 /// Errors this far below the largest are not worth the room that a logarithmic axis gives them.
 constexpr double kShown = 1e-5;
 
-/// With more curves than colours the strokes change.
+/// If there are more curves than colours, the strokes change.
 constexpr std::array kDashes = {"none", "7 3", "2 3", "9 3 2 3"};
 
 /// Part of a logarithmic axis: whole decades, or the 1-2-5 steps round what is shown where that is

@@ -9,8 +9,8 @@
 namespace qtet {
 
 /// A line a level with its counts and bytes (`levels` as levelsJson gives them) and, where the
-/// manifest has them, its errors in per cent. `most`: of more levels only so many are shown, the
-/// first, the last and those whose counts of cells are evenly apart on a scale of ratios.
+/// manifest has them, its errors in per cent. `most`: of more levels only so many are shown. These
+/// are the first, the last and those whose counts of cells are evenly apart on a scale of ratios.
 [[nodiscard]] std::string levelTable(const Manifest& manifest, const nlohmann::ordered_json& levels,
                                      std::size_t most);
 

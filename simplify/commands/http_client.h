@@ -23,18 +23,18 @@ struct HttpUrl {
 /// Everything but RFC 3986's unreserved characters as %XX.
 [[nodiscard]] std::string encodedSegment(const std::string& text);
 
-/// For the name, TCP and the handshake of TLS together: a lost packet is sent again after 1, 3, 7
-/// and 15 s.
+/// The time for the name, TCP and the handshake of TLS together: a lost packet is sent again after
+/// 1, 3, 7 and 15 s.
 inline constexpr std::chrono::seconds kConnectTime{30};
-/// Without a byte either way: longer than a mobile network's gaps.
+/// The time without a byte either way: longer than a mobile network's gaps.
 inline constexpr std::chrono::seconds kStallTime{30};
 
 /// How long an exchange waits before it gives up.
 struct HttpPatience {
   std::chrono::milliseconds connecting = kConnectTime;
-  /// For the next piece of the body to be taken.
+  /// The time for the next piece of the body to be taken.
   std::chrono::milliseconds moving = kStallTime;
-  /// For the next bytes of the answer, after the whole request was sent.
+  /// The time for the next bytes of the answer, after the whole request was sent.
   std::chrono::milliseconds answering = kStallTime;
 };
 

@@ -13,8 +13,8 @@ namespace qtet {
 /// Writes to `out` only, and nothing at all in the first second: quick commands stay silent.
 class Progress {
  public:
-  /// Draws a bar where the console's `err` is a terminal, nothing if it is quiet, and tells how
-  /// long each stage took if it is verbose.
+  /// Draws a bar where the console's `err` is a terminal, nothing if it is quiet. If it is verbose,
+  /// reports how long each stage took.
   explicit Progress(const Console& console);
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;

@@ -15,7 +15,7 @@ namespace {
 // The factor on the fields' change over the distance that the boundary is off by: "a few times",
 // squared.
 constexpr double kBoundaryToFields = 6;
-// More puts the shape before the fields, which is a user's choice; less would give the shape away
+// More puts the shape before the fields, which is a user's choice. Less would give the shape away
 // where fields are so smooth that they hardly need cells.
 constexpr double kMaxWeight = 200;
 constexpr double kLeastWeight = 0.05;

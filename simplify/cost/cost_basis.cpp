@@ -10,8 +10,8 @@ namespace {
 
 // More takes time and leaves errors as they are.
 constexpr double kVarianceKept = 0.99;
-// Steps of the subspace iteration that follow the elimination: each turns the directions towards
-// the principal ones, and what these hold no longer changes in its third digit.
+// Steps of the subspace iteration that follow the elimination. Each turns the directions towards
+// the principal ones; the variance that these hold no longer changes in its third digit.
 constexpr int kTurns = 4;
 // Products of two components that are summed at most, a tenth of a second of work; beyond it, a
 // part of the vertices speaks for all.

@@ -28,7 +28,7 @@ class CostBasis {
 
   /// Values in the cost.
   [[nodiscard]] std::size_t components() const { return components_; }
-  /// The fields' components stand for themselves.
+  /// Whether the fields' components stand for themselves.
   [[nodiscard]] bool isDirect() const { return directions_.empty(); }
   /// The share of the scaled field components' variance that the values hold; 1 if isDirect().
   [[nodiscard]] double varianceKept() const { return varianceKept_; }

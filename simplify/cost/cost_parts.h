@@ -1,4 +1,4 @@
-// Which fields the cost of a fusion counts, and in what unit (ALGORITHM.md, "Cost").
+// Decides which fields the cost of a fusion counts, and in what unit (ALGORITHM.md, "Cost").
 #pragma once
 
 #include <span>

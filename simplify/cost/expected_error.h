@@ -1,5 +1,5 @@
-// By how much fields and boundary are off linear from one cell to the next: what each is likely to
-// lose when cells are fused, before any is (ALGORITHM.md, "The boundary weight").
+// By how much fields and boundary differ from linear between one cell and the next. It predicts
+// what each is likely to lose when cells are fused (ALGORITHM.md, "The boundary weight").
 #pragma once
 
 #include <span>
@@ -16,9 +16,9 @@ namespace qtet {
 /// point fields of `mesh`.
 [[nodiscard]] double expectedFieldError(const LatticeMesh& mesh, std::span<const CostPart> parts);
 
-/// The mean square, over the area, of the distance between a boundary triangle's plane and the far
-/// corner of the triangle beyond each edge, in lattice steps. Creases do not count: fusions keep
-/// them, or pay for them alone.
+/// The mean square of the distance between a boundary triangle's plane and the far corner of the
+/// triangle beyond each edge. The mean is over the area, the distance in lattice steps. Creases do
+/// not count: fusions keep them, or pay for them alone.
 [[nodiscard]] double expectedBoundaryError(const LatticeMesh& mesh);
 
 }  // namespace qtet

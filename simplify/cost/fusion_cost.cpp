@@ -97,8 +97,8 @@ void FusionCost::takeValues(const LatticeMesh& lattice) {
   }
 }
 
-// Adds weight (s - s_v - g.(x - x_v))^2 and x^T a x for each corner v: no b, c or h, since the
-// plane passes through the corner.
+// Adds weight (s - s_v - g.(x - x_v))^2 and x^T a x for each corner v. It adds no b, c or h, since
+// the plane passes through the corner.
 void FusionCost::addSlope(std::span<const VertexId> corners, std::span<const Vector3> slopes,
                           double weight, Symmetric3 a, const Vertices& own) {
   for (const Vector3& g : slopes) a.addOuter(g, weight);

@@ -104,7 +104,7 @@ class FusionCost {
     [[nodiscard]] Quadric reduced(std::size_t components) const;
   };
 
-  /// Those whose quadrics are added to; unless told otherwise all.
+  /// The vertices whose quadrics are added to; by default all.
   struct Vertices {
     VertexId begin = 0, end = kGhost;
     [[nodiscard]] bool holds(VertexId v) const { return v - begin < end - begin; }

@@ -1,5 +1,5 @@
-// Which fusions a band allows (ALGORITHM.md, "Bands"): those whose whole star belongs to one node
-// of the k-d tree.
+// The rule for which fusions a band allows (ALGORITHM.md, "Bands"): those whose whole star belongs
+// to one node of the k-d tree.
 #pragma once
 
 #include <cstdint>

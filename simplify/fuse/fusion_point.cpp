@@ -42,8 +42,8 @@ LatticePoint rounded(const Vector3& p) {
 
 }  // namespace
 
-// By how much the prey is off more than its vertices are now: what the fusion adds to the error of
-// the mesh. Only that decides; of the rest no fusion can take anything away.
+// The error that the fusion adds to the mesh: how much the prey is off more than its vertices are
+// now. Only that decides; of the rest no fusion can take anything away.
 PreyQuadric FusionPointFinder::growth(const Prey& prey) const {
   PreyQuadric out = cost_.of(prey);
   for (const VertexId v : prey.vertices()) out.quadric.c -= cost_.of(v);

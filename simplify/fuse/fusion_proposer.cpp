@@ -143,9 +143,9 @@ void FusionProposer::takeAlong(std::span<const Candidate> others, float most, Pr
   test_.takeStar(out.star);
 }
 
-// Vertices round the edge that would not cost too much: a prey costs no less than any edge in it,
-// and those of the owner are known. The ones that are not free are among them at the end, since
-// they may have been touched because of this edge's neighbours.
+// Finds vertices round the edge that would not cost too much. A prey costs no less than any edge in
+// it, and the costs of the owner's edges are known. The ones that are not free are among them at
+// the end, since they may have been touched because of this edge's neighbours.
 void FusionProposer::findCompanions(const Proposal& edge, std::span<const Candidate> others,
                                     double below) {
   companions_.clear();

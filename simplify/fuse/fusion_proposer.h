@@ -44,8 +44,8 @@ struct Proposal {
   std::uint32_t tetrahedra = 0;  ///< that go
 };
 
-/// By the cells that a fusion removes, boundary triangles among them: what its cost is multiplied
-/// by (ALGORITHM.md, "Cost a cell").
+/// The factor on a fusion's cost, by the cells that it removes, boundary triangles among them
+/// (ALGORITHM.md, "Cost a cell").
 class CellShares {
  public:
   CellShares();

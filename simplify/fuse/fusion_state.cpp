@@ -22,8 +22,8 @@ std::size_t valuesOfAPoint(std::span<const FieldInfo> fields) {
   return count;
 }
 
-// The fields of a fused vertex where the cost's values stand for many components: the mean of what
-// the prey vertices have, changed as the values change.
+// The fields of a fused vertex where the cost's values stand for many components. They are the mean
+// of what the prey vertices have, changed as the values change.
 class ManyFields {
  public:
   ManyFields(const FusionState& state, const PlannedFusion& planned, std::span<const double> values)

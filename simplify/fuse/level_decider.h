@@ -1,5 +1,5 @@
-// Decides what is fused in a level: the candidates within its limit, cheapest first, each that is
-// legal and whose star no other one has touched (ALGORITHM.md, "Levels").
+// Decides which candidates are fused in a level: those within its limit, cheapest first, each legal
+// and with a star that no other one has touched (ALGORITHM.md, "Levels").
 #pragma once
 
 #include <cstddef>

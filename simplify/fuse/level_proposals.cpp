@@ -83,8 +83,8 @@ bool LevelProposals::claim(Worker& worker) {
   return true;
 }
 
-// The queue's order has nothing to do with where things lie: what a proposal needs is asked for in
-// steps, each of which needs the one before.
+// The queue's order has nothing to do with where things lie in memory. So the memory is asked for a
+// proposal's data in steps, each of which needs the one before.
 void LevelProposals::askMemory(Worker& worker) const {
   const auto stepsAgo = [&](std::size_t steps) {
     return worker.end - worker.first > steps

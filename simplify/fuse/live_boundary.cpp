@@ -80,8 +80,8 @@ bool LiveBoundary::foldsOnItself() const {
   return false;
 }
 
-// A corner of the triangle that no new one has lies in what the solid gains: between a triangle
-// that the prey leaves and the fused vertex.
+// Whether a corner of the triangle that no new one has lies in what the solid gains. The gain lies
+// between a triangle that the prey leaves and the fused vertex.
 bool LiveBoundary::swallows(const LatticePoint& p, const PlacedTriangle& other) const {
   const auto isNew = [&](VertexId v) {
     return std::ranges::any_of(new_, [&](const PlacedTriangle& t) {

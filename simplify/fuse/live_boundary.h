@@ -21,9 +21,9 @@ class LiveBoundary {
 
   /// Fits the boxes again.
   void beginLevel() { tree_.refit(live_); }
-  /// With the proposal's prey at its point a new triangle of the boundary would meet another one,
-  /// or a part of the boundary would end inside the solid. Never false where it would. REQUIRES:
-  /// nothing in the prey's star has changed since the level began.
+  /// Whether, with the proposal's prey at its point, a new triangle of the boundary would meet
+  /// another one. Also true where a part of the boundary would end inside the solid. Never false
+  /// where it would. REQUIRES: nothing in the prey's star has changed since the level began.
   [[nodiscard]] bool isMetBy(const Proposal& proposal);
   /// The proposal is decided on and becomes this vertex.
   void decideOn(const Proposal& proposal, VertexId fused);
@@ -45,8 +45,8 @@ class LiveBoundary {
   std::vector<std::array<VertexId, 3>> vertices_;
   std::vector<std::uint8_t> live_;
   TriangleTree tree_;
-  // The boundary triangles of the proposal in hand with the prey at its point, and those of the
-  // prey as it is which that point is outside of.
+  // The boundary triangles of the proposal in hand with the prey at its point. And the prey's
+  // triangles as they are which that point is outside of.
   std::vector<PlacedTriangle> new_, left_;
 };
 

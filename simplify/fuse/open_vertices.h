@@ -26,8 +26,8 @@ class OpenVertices {
 
   /// The key that this fraction of the vertices' best candidates does not pass.
   [[nodiscard]] float keyAt(double fraction) const;
-  /// The vertices whose best candidate costs no more than `most`, in order of the vertices. Those
-  /// that have none and will have none are left out for good.
+  /// The vertices whose best candidate costs no more than `most`, in order of the vertices.
+  /// Vertices without candidates now and later are left out for good.
   void fill(std::vector<QueueEntry>& entries, float most);
 
  private:

@@ -110,7 +110,7 @@ class PaperSimplifier {
     figures_.removed = cells_ - mesh_.liveTetrahedra();
     figures_.fuseSeconds = secondsSince(start);
     PaperFusion out{mesh_.takeHistory(levels_), figures_};
-    // Independent fusions may change places; the fused vertices tell the order of doing.
+    // Independent fusions may change places; the fused vertices give the order of doing.
     std::ranges::sort(out.history.fusions, {},
                       [](const Fusion& f) { return std::pair(f.level, f.fused); });
     return out;

@@ -25,29 +25,29 @@
 namespace qtet {
 namespace {
 
-// A level ends where the next key passes this quantile of the keys at its start: about 5 % growth a
-// level, as good as strict order.
+// A level ends where the next key passes this quantile of the keys at its start. That gives about 5
+// % growth a level, as good as strict order.
 constexpr double kLevelQuantile = 0.35;
 // A pass over all candidates that removes less than this fraction of the cells is the last.
 constexpr double kWorthAnotherPass = 0.002;
-// So many levels that together remove less than this fraction of the cells are the last: what is
-// left is thin, or of a topology that must stay.
+// So many levels that together remove less than this fraction of the cells are the last. The rest
+// is thin, or of a topology that must stay.
 constexpr std::size_t kLevelsOfAStall = 8;
 constexpr double kWorthAStallsLevels = 0.02;
-// A level of a band that removes less than this fraction of the cells is its last: what is left is
+// A level of a band that removes less than this fraction of the cells is its last. The rest is
 // dear, and waits for larger nodes.
 constexpr double kWorthAnotherLevel = 0.015;
 // No new cell may be shaped worse than this, or than a fifth of its star's worst (1 = regular, 0 =
 // flat).
 constexpr double kShapeFloor = 1e-4;
-// Cosine of the largest angle by which a boundary triangle may turn in one fusion: more, and a fold
-// could hide what the quadric does not see.
+// Cosine of the largest angle by which a boundary triangle may turn in one fusion. If it turned
+// more, a fold could hide what the quadric does not see.
 constexpr double kNormalCosine = 0.3;
 
 /// Where levels stop.
 struct LevelGoal {
   std::size_t tetrahedra = 0;  ///< as few as these
-  /// In a band the key of what it can still afford.
+  /// The key of the dearest fusion that a band can still afford.
   float dearest = std::numeric_limits<float>::infinity();
 
   [[nodiscard]] bool isBand() const { return !std::isinf(dearest); }
@@ -87,7 +87,7 @@ class Simplifier {
   }
 
  private:
-  // A band halves the mesh, or does what its nodes leave it at a fair price: inside small nodes
+  // A band halves the mesh, or does what its nodes leave it at a fair price. Inside small nodes
   // half would cost far more than it does in the whole.
   void runBands() {
     while (live() > target_ &&
@@ -133,12 +133,13 @@ class Simplifier {
 
   [[nodiscard]] std::size_t live() const { return state_.mesh().liveTetrahedra(); }
 
-  /// At least this fraction of the cells that were there before is gone.
+  /// Whether at least this fraction of the cells that were there before is gone.
   [[nodiscard]] bool isWorth(double fraction, std::size_t before) const {
     return static_cast<double>(before - live()) >= fraction * static_cast<double>(before);
   }
 
-  /// By the worst shape of a cell, and the cosine of the largest turn of a boundary triangle.
+  /// Limits fusions by the worst shape of a cell, and the cosine of the largest turn of a boundary
+  /// triangle.
   void limitBy(double shapeFloor, double normalCosine) {
     const FusionLimits limits{shapeFloor, options_.envelopeTolerance * state_.cost().diagonal(),
                               original_.get(), normalCosine};

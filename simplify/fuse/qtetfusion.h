@@ -1,5 +1,5 @@
-// QTetFusion (Chopra & Meyer, sections 3.2-3.5): fuses tetrahedra, triangles and edges into points
-// in order of what it costs, in levels of independent fusions, and keeps what undoes each of them
+// QTetFusion (Chopra & Meyer, sections 3.2-3.5) fuses tetrahedra, triangles and edges into points,
+// in order of cost, in levels of independent fusions. It keeps what undoes each of them
 // (ALGORITHM.md).
 #pragma once
 
@@ -29,8 +29,8 @@ struct BandOptions {
   double levelQuantile = 0.5;
 };
 
-/// Cells of the base mesh where nothing else is asked for: this fraction, and no more than so many,
-/// which a viewer has within the first hundred kilobytes.
+/// Cells of the base mesh where nothing else is asked for: this fraction, but no more than so many.
+/// A viewer has these within the first hundred kilobytes.
 inline constexpr double kBaseRatio = 0.01;
 inline constexpr std::size_t kMaxBaseCells = 30'000;
 

@@ -48,7 +48,7 @@ float EntrySorter::keepCheapest(std::vector<QueueEntry>& entries, double quantil
   return key;
 }
 
-// From the last digit to the first, each time in the order of the one before.
+// Sorts from the last digit to the first, each time in the order of the one before.
 void EntrySorter::sort(std::vector<QueueEntry>& entries) {
   room_.resize(entries.size());
   for (int shift = 0; shift < 32; shift += kDigitBits) {

@@ -12,7 +12,7 @@
 
 namespace qtet {
 
-/// Times are fusions since the start. One thread touches, others may look on: a thread that knows
+/// Times are fusions since the start. One thread touches, others may look on. A thread that knows
 /// of a fusion (acquired) sees what it touched, and perhaps some of what later ones did.
 class Touched {
  public:
@@ -21,7 +21,7 @@ class Touched {
   [[nodiscard]] std::uint32_t now() const { return now_.load(std::memory_order_acquire); }
   /// REQUIRES: no other thread looks on.
   void beginLevel() { levelStart_ = now_.load(std::memory_order_relaxed); }
-  /// By the fusion that is being decided on.
+  /// The fusion that is being decided on touches v.
   void touch(VertexId v) {
     std::atomic_ref(at_[v]).store(now_.load(std::memory_order_relaxed) + 1,
                                   std::memory_order_relaxed);
@@ -32,7 +32,7 @@ class Touched {
   [[nodiscard]] bool since(VertexId v, std::uint32_t fusion) const {
     return std::atomic_ref(at_[v]).load(std::memory_order_relaxed) > fusion;
   }
-  /// By a fusion of this level: the vertex waits for the next one.
+  /// Whether a fusion of this level has touched it: the vertex waits for the next one.
   [[nodiscard]] bool isLocked(VertexId v) const { return since(v, levelStart_); }
 
  private:

@@ -187,8 +187,8 @@ inline std::optional<std::size_t> BoundaryEnvelope::farthestFace(const Probe& pr
   return 2 * static_cast<std::size_t>(where[isSecond]) + isSecond;
 }
 
-// From the point back onto the plane of this face; to keep a distance, also away from it and from
-// every later face that the point lies outside of.
+// Leads from the point back onto the plane of this face. To keep a distance, it also leads away
+// from it and from every later face that the point lies outside of.
 Vector3 BoundaryEnvelope::wayBack(std::size_t face, const Probe& probe, const Vector3& past,
                                   bool keepsDistance) const {
   const auto normalOf = [&](std::size_t i) -> Vector3 {

@@ -30,11 +30,11 @@ class BoundaryEnvelope {
   /// Moves p onto the planes of the triangles that it lies outside of, one after the other, until
   /// its lattice point is inside.
   [[nodiscard]] bool project(Vector3 p, LatticePoint& inside) const;
-  /// With the prey at p the solid gains nothing that lies further outside the original one than
-  /// `tolerance`, in lattice steps, if nothing of it does yet.
+  /// Whether with the prey at p the solid gains nothing that lies further outside the original one
+  /// than `tolerance`, in lattice steps. It presumes that nothing of it does yet.
   [[nodiscard]] bool staysNear(const OriginalSurface& original, double tolerance,
                                const LatticePoint& p, DistanceCells& known) const;
-  /// With the prey at p a triangle turns further than it may.
+  /// Whether with the prey at p a triangle turns further than it may.
   [[nodiscard]] bool turnsTooFar(const LatticePoint& p) const;
 
  private:

@@ -22,7 +22,7 @@ struct LatticeCube {
   std::uint8_t bits = 0;  ///< 2^bits steps long
   std::array<std::uint32_t, 3> number{};
 
-  /// That of this size which holds p. REQUIRES: p in [0, 2^30)^3.
+  /// The cube of this size that holds p. REQUIRES: p in [0, 2^30)^3.
   [[nodiscard]] static LatticeCube at(const Vector3& p, int bits);
   [[nodiscard]] double length() const { return static_cast<double>(std::uint32_t{1} << bits); }
   [[nodiscard]] Vector3 middle() const;

@@ -49,9 +49,9 @@ bool hasCommonTriangle(const LocalStar& star, std::span<const RingVertex> vertic
 
 }  // namespace
 
-// The link condition of Dey, Edelsbrunner, Guha and Nekhayev in the complex completed by the ghost:
-// the links of the two vertices meet in the edge's link and nowhere else. That link is one cycle,
-// since neither vertex is singular.
+// The link condition of Dey, Edelsbrunner, Guha and Nekhayev, in the complex completed by the
+// ghost. It says that the links of the two vertices meet in the edge's link and nowhere else. That
+// link is one cycle, since neither vertex is singular.
 bool edgeKeepsTopology(const LocalStar& star) {
   const auto ring = star.ring();
   assert(star.prey().k == 2 && ring.size() <= kMaxRing);

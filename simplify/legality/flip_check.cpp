@@ -9,8 +9,8 @@
 namespace qtet {
 namespace {
 
-// The cell of prey vertex i turns from positive to flat or inverted, further than `error`. Nothing
-// is said of one that goes.
+// Whether the cell of prey vertex i turns from positive to flat or inverted, further than `error`.
+// The result is unspecified for a cell that goes.
 inline bool flips(const FusionMesh& mesh, const Prey& prey, std::uint32_t i, CellId c,
                   const Vector3& place, double error) {
   const auto& cell = mesh.cell(c);

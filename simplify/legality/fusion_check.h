@@ -1,6 +1,7 @@
-// Whether a fusion keeps the mesh what it is: topology exactly (the link condition with the ghost
-// vertex), no cell flipped, inside the boundary envelope, and how well shaped the new cells are
-// (ALGORITHM.md, "Legality"). Topology, flips and the envelope without tolerance are exact.
+// Whether a fusion keeps the mesh what it is (ALGORITHM.md, "Legality"). Topology is kept exactly
+// (the link condition with the ghost vertex), no cell flips, and the solid stays inside the
+// boundary envelope. Also how well shaped the new cells are. Topology, flips and the envelope
+// without tolerance are exact.
 #pragma once
 
 #include <cstdint>
@@ -56,13 +57,13 @@ class FusionCheck {
   [[nodiscard]] bool projectInside(const Vector3& p, LatticePoint& inside) const {
     return envelope_.project(p, inside);
   }
-  /// With the prey at p a cell of one of these prey vertices, one bit each, would flip or go flat,
-  /// as far as doubles can tell. REQUIRES gatherBoundary.
+  /// Whether with the prey at p a cell of one of these prey vertices (one bit each) would flip or
+  /// go flat, as far as doubles can tell. REQUIRES gatherBoundary.
   [[nodiscard]] bool flipsAt(const LatticePoint& p, std::uint32_t moving) const {
     return flips_.flipsAt(prey_, p, moving);
   }
-  /// With the prey at p the solid gains nothing that lies further outside the original one than the
-  /// tolerance. REQUIRES gatherBoundary, mayLeave, p on the lattice.
+  /// Whether with the prey at p the solid gains nothing that lies further outside the original one
+  /// than the tolerance. REQUIRES gatherBoundary, mayLeave, p on the lattice.
   [[nodiscard]] bool staysNear(const LatticePoint& p) const {
     return envelope_.staysNear(*limits_.original, limits_.envelopeTolerance, p, distances_);
   }

@@ -13,7 +13,7 @@
 
 namespace qtet {
 
-/// Cells in the stars of a prey beyond which a fusion is not tried: a hub of a graded mesh would
+/// Cells in the stars of a prey beyond which a fusion is not tried. A hub of a graded mesh would
 /// make every fusion near it expensive.
 inline constexpr std::size_t kMaxStarCells = 800;
 

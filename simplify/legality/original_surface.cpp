@@ -10,8 +10,8 @@
 namespace qtet {
 namespace {
 
-/// Cuts of one tetrahedron. A flat one is then in pieces a thirtieth as long; what needs more is
-/// too large for the tolerance, and there are other places to fuse to.
+/// Cuts of one tetrahedron. A flat one is then in pieces a thirtieth as long. A piece that needs
+/// more is too large for the tolerance, and there are other places to fuse to.
 constexpr int kMaxCuts = 1 << 10;
 /// A surface so near the middle of a cube, over its length, is as good as one through it.
 constexpr double kNear = 0.25;
@@ -25,7 +25,8 @@ Vector3 unit(const Vector3& v) {
   return length > 0 ? 1 / length * v : Vector3{};
 }
 
-// By halving until the series of the arc tangent is short: the same on every machine, unlike acos.
+// The angle, by halving until the series of the arc tangent is short: the same on every machine,
+// unlike acos.
 double angleBetween(const Vector3& a, const Vector3& b) {
   constexpr double kShort = 0.1;
   const Vector3 u = unit(a), v = unit(b), apart = u - v, together = u + v;

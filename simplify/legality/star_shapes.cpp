@@ -14,8 +14,8 @@ namespace {
 // lower.
 constexpr double kShapeLoss = 0.2;
 
-// Shape = 6 sqrt(2) V / l^3, l the root mean square edge. With v = 6 V and s = the sum of the
-// squared edges its square is 432 v^2 / s^3.
+// Shape = 6 sqrt(2) V / l^3, l the root mean square edge. If v = 6 V and s is the sum of the
+// squared edges, its square is 432 v^2 / s^3.
 constexpr double kShapeSquared = 432;
 
 template <class T>
@@ -118,8 +118,8 @@ double StarShapes::at(const LatticePoint& p, double least) const {
   return std::sqrt(worst);
 }
 
-/// For what is too close to call in doubles, flat or inverted. The latter two are allowed only
-/// where the cell was no better.
+/// The exact volume, for what is too close to call in doubles, flat or inverted. The latter two are
+/// allowed only where the cell was no better.
 double StarShapes::exactVolume6(std::uint32_t affected, const LatticePoint& p,
                                 bool& allowed) const {
   const Star& star = star_.star();

@@ -36,7 +36,7 @@ struct KeptInput {
   std::optional<std::vector<std::uint32_t>> originalCells{};  ///< takeOriginalCells'
 };
 
-/// Takes the field kOriginalCellField out of a mesh: one number a cell. None where there is none,
+/// Takes the field kOriginalCellField out of a mesh: one number a cell. Empty where there is none,
 /// or where it is no int32 of one component without negative values: then the field stays.
 [[nodiscard]] std::optional<std::vector<std::uint32_t>> takeOriginalCells(TetMesh& mesh);
 

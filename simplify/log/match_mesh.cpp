@@ -74,8 +74,8 @@ class Matcher {
     return {};
   }
 
-  // By the places of their vertices, where these say enough, to tell apart points that share a
-  // place; at last by the points themselves.
+  // Matches cells by the places of their vertices, where these say enough, to tell apart points
+  // that share a place. At last it matches them by the points themselves.
   Status matchCells(bool byPlace) {
     struct Keyed {
       Tetrahedron key{};

@@ -1,5 +1,5 @@
-// Which point and cell of a log each point and cell of a mesh file is: same lattice places, same
-// connectivity, whatever the numbering.
+// Finds the point and cell of a log for each point and cell of a mesh file: same lattice places,
+// same connectivity, whatever the numbering.
 #pragma once
 
 #include <cstdint>

@@ -107,7 +107,7 @@ class Search {
     return true;
   }
 
-  /// That of the piece's distance to its triangle alone.
+  /// The bound from the piece's distance to its triangle alone.
   [[nodiscard]] double boundBy(const Piece& piece) const {
     const Corners to = tree_.corners(piece.guess);
     double out = 0;

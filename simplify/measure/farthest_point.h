@@ -23,15 +23,15 @@ struct FarthestPoint {
   Cover cover{};
 };
 
-/// The largest squared distance of the corners to triangle `to`: the distance to a convex set is
-/// convex, so no point between them is further from it.
+/// The largest squared distance of the corners to triangle `to`. The distance to a convex set is
+/// convex, so no point between the corners is further from it.
 [[nodiscard]] double farthestCorner(const Corners& corners, const Corners& to);
 
-/// At most so far may a proven squared distance be where `found` was found.
+/// The largest value that a proven squared distance may have where `found` was found.
 [[nodiscard]] double withTolerance(double found);
 
 /// The triangle is cut into pieces until each has a bound of at most withTolerance(max(found,
-/// enough)), or until they are many: then the bound is what it is by then. `guess` makes the first
+/// enough)), or until they are many. Then the bound is what it is by then. `guess` makes the first
 /// search short. REQUIRES: a tree over one triangle at least.
 [[nodiscard]] FarthestPoint farthestPoint(const TriangleTree& tree, const Corners& corners,
                                           std::uint32_t guess, double enough);

@@ -22,7 +22,8 @@ struct Samples {
 /// Cells that pay for one place in the volume: measured, ALGORITHM.md, "Known error".
 constexpr std::size_t kCellsPerSample = 10;
 constexpr std::size_t kFewest = 3000, kMax = 50000;
-/// On a level's boundary, where nothing is kept from level to level and a search takes the longest.
+/// Fewest places on a level's boundary, where nothing is kept from level to level and a search
+/// takes the longest.
 constexpr std::uint32_t kFewestOnLevel = 300;
 constexpr Samples kAllSamples{200000, 200000, 200000, 200000};
 

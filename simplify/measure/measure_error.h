@@ -15,7 +15,7 @@
 
 namespace qtet {
 
-/// How many places stand for the surfaces and the volume.
+/// The number of places that stand for the surfaces and the volume.
 enum class Effort : std::uint8_t {
   kLevels,  ///< as many as keep measuring well below the cost of simplifying
   kAll,     ///< 200,000 in the volume and on each boundary, whatever that costs

@@ -194,8 +194,8 @@ bool FieldMeter::isOriginal(const Place& place, std::size_t field) const {
              : mesh_.isOriginal(place.sample.cell);
 }
 
-// Where a level has other values than the original's, these do not know how those were rounded:
-// then the difference that was measured has the error of rounding in it.
+// Where a level has other values than the original's, these do not know how those were rounded. The
+// difference that was measured then has the error of rounding in it.
 std::vector<FieldError> FieldMeter::errors() const {
   const std::vector<FieldError> rounding = roundings();
   std::vector<FieldError> out;

@@ -23,7 +23,7 @@ struct Sample {
 using CellSpan = std::span<const std::array<VertexId, 4>>;
 
 /// `count` places uniform by area on the triangles `ids` (the first three vertices of these cells),
-/// by strata along their order. None where all triangles are degenerate.
+/// by strata along their order. Empty where all triangles are degenerate.
 [[nodiscard]] std::vector<Sample> samplesOnSurface(std::span<const LatticePoint> points,
                                                    CellSpan cells,
                                                    std::span<const std::uint32_t> ids,

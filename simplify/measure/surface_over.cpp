@@ -15,7 +15,7 @@ constexpr double kApart = 0x1p-10;
 /// Area over circumference, in lattice steps, of the narrowest piece: rounding is then below a
 /// hundredth of its area.
 constexpr double kLeastWidth = 0x1p-8;
-/// By how much of the piece's area the sum of the layers may miss a whole number.
+/// The part of the piece's area by which the sum of the layers may miss a whole number.
 constexpr double kMissing = 0x1p-5;
 /// Triangles over one piece: with more of them searching for nearest ones is cheaper.
 constexpr std::size_t kMaxTriangles = 1 << 12;
@@ -59,7 +59,7 @@ class Prism {
 
   [[nodiscard]] bool isWide() const { return isWide_; }
 
-  /// False: it crosses a plane at `most`, or the layers cannot be told.
+  /// False: the surface crosses a plane at `most`, or the layers cannot be counted.
   bool add(std::uint32_t id, const Corners& corners) {
     Polygon polygon;
     bool isAbove = true, isBelow = true;

@@ -1,5 +1,5 @@
-// Whether a closed surface passes over the whole of a flat piece, and how far from it: a bound for
-// a whole piece that needs no nearest point.
+// Whether a closed surface passes over the whole of a flat piece, and how far from it. This bounds
+// a whole piece without a search for nearest points.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Which corners of a cell are a vertex: asked of every cell of every star, so all four at once
-// where the processor can.
+// Finds which corners of a cell are a vertex. It is asked of every cell of every star, so it
+// compares all four at once where the processor can.
 #pragma once
 
 #include <array>

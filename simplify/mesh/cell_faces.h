@@ -1,4 +1,4 @@
-// Which cells share faces, and whether they agree on what is inside and outside.
+// Finds which cells share faces, and whether they agree on what is inside and outside.
 #pragma once
 
 #include <array>

@@ -13,8 +13,9 @@
 namespace qtet {
 namespace {
 
-// By cells of the input, boundary triangles among them: of what fusions affect until 1 % is left,
-// and of the stars with their gaps. Seen were 3 and 5.6; with more the arrays move.
+// Room for each cell of the input, boundary triangles among them: for the cells that fusions affect
+// until 1 % is left, and for the stars with their gaps. Seen were 3 and 5.6; with more the arrays
+// move.
 constexpr std::size_t kAffectedACell = 4;
 constexpr std::size_t kPoolACell = 6;
 
@@ -175,7 +176,7 @@ std::uint32_t FusionMesh::placeInStar(VertexId v, CellId c) {
   return places.extract(c).mapped();
 }
 
-/// Those of a hub, null where they are not kept and not wanted.
+/// The places in a hub, null where they are not kept and not wanted.
 FusionMesh::Places* FusionMesh::placesInHub(VertexId v, bool wanted) {
   const std::lock_guard lock(hubMutex_);
   if (wanted) return &placesInHub_[v];

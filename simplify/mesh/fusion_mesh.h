@@ -127,8 +127,8 @@ class FusionMesh {
     assert(hasRegions());
     return onInterface_[v];
   }
-  /// On the boundary or, where there are regions, between two of them: what the vertex stands for
-  /// is a surface.
+  /// Whether v stands for a surface: it lies on the boundary or, where there are regions, between
+  /// two of them.
   [[nodiscard]] bool onSurface(VertexId v) const {
     return onBoundary_[v] || (hasRegions() && onInterface_[v]);
   }
@@ -219,7 +219,7 @@ class FusionMesh {
   // by ghost cell, kept up to date: asked for a hundred times as often as one changes
   std::vector<BoundaryPlane> planes_;
   std::vector<std::uint8_t> aliveVertex_, onBoundary_, onInterface_, singular_;
-  /// A vertex with more cells keeps where each one stands: looking through all of them for every
+  /// A vertex with more cells keeps where each one stands. A search through all of them for every
   /// cell that goes took time in proportion to the square.
   static constexpr std::size_t kHubCells = 1024;
   // no longer kept once a star, which only shrinks, is smaller

@@ -1,4 +1,4 @@
-// The pages that large arrays lie in. Those of 2 MB a system hands out in a tenth of the time, and
+// The pages that large arrays lie in. A system hands out those of 2 MB in a tenth of the time, and
 // a processor finds its way among few of them.
 #pragma once
 

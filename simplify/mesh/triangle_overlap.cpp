@@ -29,7 +29,7 @@ std::size_t largest(const Normal& normal) {
   return axis;
 }
 
-// On which side of the line through a and b c lies, all in one plane, seen along this axis.
+// The side of the line through a and b on which c lies, all in one plane, seen along this axis.
 int sideOf(const LatticePoint& a, const LatticePoint& b, const LatticePoint& c, std::size_t axis) {
   return signOf(normalOf(a, b, c)[axis]);
 }

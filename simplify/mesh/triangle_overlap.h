@@ -14,8 +14,8 @@ struct PlacedTriangle {
 };
 
 /// The triangles share a place that is not on a vertex or edge they have in common by number. Also
-/// true where they have all three vertices in common, or where one has no area: such a surface
-/// cannot be told from one that meets itself. REQUIRES: points as orientation() does.
+/// true where they have all three vertices in common, or where one has no area. Such a surface
+/// cannot be distinguished from one that meets itself. REQUIRES: points as orientation() does.
 [[nodiscard]] bool overlap(const PlacedTriangle& one, const PlacedTriangle& other);
 
 }  // namespace qtet

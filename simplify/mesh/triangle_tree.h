@@ -34,8 +34,8 @@ class TriangleTree {
 
   /// From now on grow() may be called.
   void allowGrowth();
-  /// A vertex of the triangle has changed: the boxes that hold the triangle do so again, and until
-  /// the next refit hold where it was as well. Slabs do not: nearest() is not for such a tree.
+  /// A vertex of the triangle has changed. The boxes that hold the triangle do so again, and until
+  /// the next refit they hold where it was as well. Slabs do not: nearest() is not for such a tree.
   /// REQUIRES: allowGrowth().
   void grow(std::uint32_t triangle);
   /// Calls visit(id) for the triangles of every leaf whose box touches the one from low to high,

@@ -16,8 +16,8 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::microseconds kMoment{50};
 // Looks between two looks at the clock, which takes as long as some pauses.
 constexpr int kLooksAClock = 16;
-// How long a thread sleeps between two looks where nobody wakes it. The kernel adds half of it, and
-// a look takes a thirtieth.
+// The time that a thread sleeps between two looks where nobody wakes it. The kernel adds half of
+// it, and a look takes a thirtieth.
 constexpr std::chrono::microseconds kNap{100};
 
 inline void pause() {

@@ -43,7 +43,7 @@ class Workers {
   Workers(const Workers&) = delete;
   Workers& operator=(const Workers&) = delete;
 
-  /// For work between two calls that takes long.
+  /// For callers whose work between two calls takes long.
   void throwIfStopped() const { qtet::throwIfStopped(stop_); }
 
   [[nodiscard]] std::size_t count() const { return threads_.size() + 1; }

@@ -9,7 +9,7 @@
 namespace qtet {
 namespace {
 
-/// Integers beyond are not told from their neighbours by a double.
+/// Doubles do not distinguish larger integers from their neighbours.
 constexpr double kMaxExactInteger = 9007199254740992.0;
 
 std::unexpected<Error> bad(std::string what) { return fail(ErrorCode::kBadInput, std::move(what)); }

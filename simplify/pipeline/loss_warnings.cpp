@@ -10,8 +10,8 @@
 namespace qtet {
 namespace {
 
-/// How many times the cells a base mesh should have that is too coarse: on real meshes a loss of
-/// 25 % becomes one of 1 to 7 %.
+/// How many times the cells a base mesh should have that is too coarse. On real meshes a loss of 25
+/// % then becomes one of 1 to 7 %.
 constexpr double kMoreCells = 5;
 
 std::string percent(double fraction) {

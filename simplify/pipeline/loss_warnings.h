@@ -40,7 +40,7 @@ struct LossFacts {
   double allowedBoundaryError = 0;
 };
 
-/// One sentence or none. None either where no error was measured. REQUIRES: a manifest with levels.
+/// One sentence or none. Empty too where no error was measured. REQUIRES: a manifest with levels.
 [[nodiscard]] std::vector<std::string> lossWarnings(const Manifest& manifest,
                                                     const LossFacts& facts);
 

@@ -1,4 +1,4 @@
-// From a mesh in arrays to the bytes of its log, in one call: clean, put on the lattice, simplify,
+// Makes the bytes of a log from a mesh in arrays, in one call: clean, put on the lattice, simplify,
 // measure, encode (ALGORITHM.md). Shared by `qtet simplify`, the C API and Python.
 #pragma once
 
@@ -55,7 +55,7 @@ struct PipelineReport {
   std::uint64_t tetrahedraIn = 0;  ///< before cleaning
   CleanReport clean;
   QuantiseReport quantise;
-  /// That the fusions were ordered by, where there were fields to weigh it against.
+  /// The weight that the fusions were ordered by, where there were fields to weigh it against.
   std::optional<double> boundaryWeight;
   std::optional<PaperFigures> paper;  ///< with Algorithm::kPaper
   LogStatistics statistics;
@@ -77,9 +77,9 @@ struct PipelineOutput {
 /// Whether the options go together and lie in their ranges. Errors: bad-value.
 [[nodiscard]] Status checkOptions(const PipelineOptions& options);
 
-/// Whether what cleanMesh and quantise require holds, and whether a log can hold the fields: for a
-/// mesh that comes from outside and was not read by readMesh. Errors: bad-input (the first point,
-/// tetrahedron or field at fault, by its number), limit-exceeded.
+/// Whether what cleanMesh and quantise require holds, and whether a log can hold the fields. It is
+/// for a mesh that comes from outside and was not read by readMesh. Errors: bad-input (the first
+/// point, tetrahedron or field at fault, by its number), limit-exceeded.
 [[nodiscard]] Status checkArrays(const TetMesh& mesh);
 
 /// Makes the log of a mesh; the mesh is given back before the first fusion. The same mesh and

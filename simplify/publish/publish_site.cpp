@@ -60,7 +60,7 @@ struct Site {
     bytes += content.size();
     return folder.write(name, content);
   }
-  /// With what compresses to less beside it.
+  /// Also writes each coding beside it that takes fewer bytes.
   Status writeWithCodings(const std::string& name, ByteView content) {
     if (Status written = write(name, content); !written) return written;
     for (const auto& [ending, coded] : {Coding{".gz", gzipped}, Coding{".br", brotlied}}) {
@@ -73,8 +73,8 @@ struct Site {
   }
 };
 
-/// Relative names of the viewer's files, ascending; those that are compressed already are made
-/// anew.
+/// Relative names of the viewer's files, ascending, without those that are compressed already:
+/// these are made again.
 Result<std::vector<std::string>> viewerFiles(const fs::path& viewer) {
   std::vector<std::string> names;
   std::error_code code;

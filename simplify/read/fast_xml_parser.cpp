@@ -116,7 +116,7 @@ class FastInflate : public vtkDataCompressor {
             LIBDEFLATE_SUCCESS &&
         written == space)
       return written;
-    // so that what is damaged is told as VTK tells it
+    // so that damage is reported as VTK reports it
     return zlib_->Uncompress(from, size, to, space);
   }
 

@@ -22,7 +22,7 @@ constexpr std::uint16_t kPyramid13[] = {0, 1, 2, 3, 4, 5, 8, 10, 6, 7, 9, 11, 12
 constexpr std::uint16_t kPyramid14[] = {0, 1, 2, 3, 4, 5, 8, 10, 6, 7, 9, 11, 12, 13};
 
 /// Gmsh's order of nodes of any degree, as places from corner 0 on: corners, edges, faces and the
-/// inside, each of the last two in this same order.
+/// inside. Faces and the inside each follow this same order.
 class GmshOrder {
  public:
   std::vector<NodePlace> places;

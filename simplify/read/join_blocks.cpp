@@ -26,8 +26,9 @@ std::string widerType(const std::string& a, const std::string& b) {
   return a.size() != b.size() ? (a.size() > b.size() ? a : b) : std::max(a, b);
 }
 
-/// The field of all blocks, without values; no name: it is not in every block that must have it, or
-/// no type holds the values of all. NaN stands for what a block lacks, which integers have not.
+/// The field of all blocks, without values. Its name is empty where it is not in every block that
+/// must have it, or where no type holds the values of all. NaN stands for what a block lacks, which
+/// integers have not.
 MeshField commonField(const MeshField& field, const std::vector<CellMesh>& blocks) {
   MeshField out{field.name, field.components, field.type, {}, field.association};
   for (const CellMesh& block : blocks) {

@@ -36,7 +36,7 @@ class PointSets {
   std::vector<VertexId> parent_;
 };
 
-/// Which piece a point is of.
+/// The piece of each point.
 class PieceOf {
  public:
   explicit PieceOf(std::span<const VertexId> ends) : ends_(ends) {}

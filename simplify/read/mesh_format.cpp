@@ -103,8 +103,8 @@ Status checkLegacy(const fs::path& path, const FileEnds& ends) {
                                         "its header; save the volume mesh as .vtu");
 }
 
-/// VTK's reader of AVS UCD takes what a cut file lacks for zeros: a text file must have a line for
-/// each point, cell and tuple that it announces.
+/// VTK's reader of AVS UCD takes what a cut file lacks for zeros. So a text file must have a line
+/// for each point, cell and tuple that it announces.
 Status checkAvs(const fs::path& path) {
   std::ifstream file(path);
   std::string line;

@@ -1,5 +1,5 @@
-// The kinds of mesh files, told by their names, and what can be told about a file before a reader
-// that trusts its input parses it.
+// The kinds of mesh files by their names, and what can be said about a file before a reader that
+// trusts its input parses it.
 #pragma once
 
 #include <filesystem>
@@ -40,7 +40,7 @@ enum class MeshFormat {
   kOther,
 };
 
-/// By the name's ending, in small or capital letters; kExodusPieces: by the last two
+/// Decides by the name's ending, in small or capital letters; kExodusPieces: by the last two
 /// (piece_files.h).
 [[nodiscard]] MeshFormat formatOf(const std::filesystem::path& path);
 

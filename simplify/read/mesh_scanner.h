@@ -1,5 +1,5 @@
-// Numbers and words of a mesh file that is in memory whole, as text or as bytes; what is wrong is
-// said with the file and the line or byte.
+// Reads numbers and words of a mesh file that is in memory whole, as text or as bytes. Errors name
+// the file and the line or byte.
 #pragma once
 
 #include <bit>
@@ -66,12 +66,12 @@ class MeshScanner {
     return value;
   }
 
-  /// Whether `count` things of at least `bytesEach` can follow; an error if not. To be asked before
+  /// Whether `count` things of at least `bytesEach` can follow; an error if not. Ask it before
   /// anything is allocated or looped over.
   bool fits(std::uint64_t count, std::uint64_t bytesEach, const char* what);
 
-  /// After a list of `count` things as text: an error if a number follows, for then the file holds
-  /// more of them than it told.
+  /// Ends a list of `count` things as text. If a number follows, it is an error, for then the file
+  /// holds more of them than it announced.
   void endsList(std::uint64_t count, const char* what);
 
   /// Passes the rest of a line that bytes follow.

@@ -11,7 +11,7 @@
 
 namespace qtet {
 
-/// Which fields to read: all (nullopt: those of points first), or those that these names mean
+/// The fields to read: all (nullopt: those of points first), or those that these names mean
 /// (proto/field_key.h), in this order.
 using FieldNames = std::optional<std::vector<std::string>>;
 
@@ -27,8 +27,8 @@ struct ReadOptions {
   CurvedCells curved = CurvedCells::kSplit;
   std::optional<double> weld;  ///< points within this distance become one (weld_points.h)
   bool joinPieces = true;      ///< at the points that they share (join_pieces.h)
-  /// With the cell field kOriginalCellField (split_cells.h), beside those asked for by name; naming
-  /// it does the same.
+  /// Adds the cell field kOriginalCellField (split_cells.h) to those asked for by name; naming it
+  /// does the same.
   bool originalIds = false;
   std::optional<Threshold> threshold;
   std::string time = "last";  ///< of a series: "first", "last", "all", or the step's time

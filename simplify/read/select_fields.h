@@ -1,4 +1,4 @@
-// Which of a file's fields were asked for, and which of its cells.
+// Selects the fields of a file that were asked for, and the cells.
 #pragma once
 
 #include <filesystem>
@@ -26,9 +26,9 @@ namespace qtet {
 [[nodiscard]] Status applyThreshold(const Threshold& threshold, const std::filesystem::path& path,
                                     CellMesh& mesh);
 
-/// Integers of 2^53 or more in magnitude, which a double cannot tell from their neighbours: where
-/// all fields are meant, one that holds them is left out, with a note. Errors: bad-input (such a
-/// field is asked for by name).
+/// Integers of 2^53 or more in magnitude, which a double cannot distinguish from their neighbours.
+/// Where all fields are meant, one that holds them is left out, with a note. Errors: bad-input
+/// (such a field is asked for by name).
 [[nodiscard]] Status leaveOutWideIntegers(const FieldNames& names,
                                           const std::filesystem::path& path,
                                           std::vector<MeshField>& fields,

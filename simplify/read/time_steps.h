@@ -12,8 +12,8 @@ namespace qtet {
 /// The shortest text that gives the number back.
 [[nodiscard]] std::string timeText(double time);
 
-/// The numbers of the steps that `asked` means: "first", "last", "all", or the time of one; for the
-/// words, all of them where there is one or none. A note says that the last was taken of several.
+/// The numbers of the steps that `asked` means: "first", "last", "all", or the time of one. A word
+/// means all of them where there is one or none. A note says that the last was taken of several.
 /// `times` ascend. Errors: not-found (neither a word nor a time), with the times that there are.
 [[nodiscard]] Result<std::vector<std::size_t>> chosenSteps(const std::vector<double>& times,
                                                            const std::string& asked,

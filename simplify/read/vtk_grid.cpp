@@ -142,7 +142,7 @@ Result<CellMesh> cellsOfOutput(vtkDataObject* output, const ReadOptions& options
 }
 
 /// The mesh that the reader has now. The partitions of a .vtkhdf file are read one by one and
-/// joined: VTK makes one grid of all, unless it is asked for one piece of very many.
+/// joined. VTK makes one grid of all, unless it is asked for one piece of very many.
 Result<CellMesh> cellsNow(vtkAlgorithm& reader, MeshFormat format, const ReadOptions& options,
                           const std::filesystem::path& path, ReadReport& report) {
   constexpr int kMostPartitions = 1 << 20;

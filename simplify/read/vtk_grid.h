@@ -19,9 +19,9 @@ struct TimedCells {
   CellMesh cells;
 };
 
-/// The meshes that VTK makes of the file, unchecked beyond what VTK itself checks: the step or
-/// steps that `options.time` asks for, all blocks of each in one mesh (join_blocks.h). Warnings
-/// become notes.
+/// The meshes that VTK makes of the file, unchecked beyond what VTK itself checks. They are the
+/// step or steps that `options.time` asks for, all blocks of each in one mesh (join_blocks.h).
+/// Warnings become notes.
 /// Errors: bad-input with VTK's first error, or where VTK crashes or runs out of memory; not-found
 /// (a time that is none; a file that the file names); those of cellsOf. REQUIRES: a file that
 /// checkMeshFile has passed.

@@ -8,7 +8,7 @@
 
 namespace qtet {
 
-/// Waits for the child process `child`: its status as waitpid gives it. Nothing: for `patience` it
+/// Waits for the child process `child`: its status as waitpid gives it. Empty: for `patience` it
 /// neither read from nor wrote to any file, and was ended.
 /// REQUIRES: nobody else waits for it.
 [[nodiscard]] std::optional<int> watchProcess(pid_t child, std::chrono::seconds patience);

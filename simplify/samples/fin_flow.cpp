@@ -22,7 +22,7 @@ double ramp(double x, double width) { return 0.5 * (x + std::sqrt(x * x + width 
 /// A bump of height 1 and half-width `width`, in place of a Gaussian.
 double bump(double x, double width) { return 1 / square(1 + square(x / width)); }
 
-/// From 0 to 1 around x = 0 within about `width`.
+/// Rises from 0 to 1 around x = 0 within about `width`.
 double step(double x, double width) { return 0.5 * (1 + x / std::sqrt(width * width + x * x)); }
 
 /// A sine of period 2, in parabolas.

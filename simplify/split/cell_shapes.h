@@ -17,7 +17,7 @@ struct ShapeFace {
 struct CellShape {
   std::uint8_t corners = 0;
   std::span<const ShapeFace> faces;
-  /// In the order in which a quadratic cell's nodes follow the corners.
+  /// The order in which a quadratic cell's nodes follow the corners.
   std::span<const std::array<std::uint8_t, 2>> edges;
 };
 

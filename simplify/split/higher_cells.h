@@ -27,7 +27,7 @@ using Degrees = std::array<int, 3>;
 /// and (i + 1, j + 1, k).
 using NodePlace = std::array<int, 3>;
 
-/// A linear part of a cell of higher degree: node numbers as in VTK's linear cell, or an
+/// A linear part of a cell of higher degree. Its node numbers are as in VTK's linear cell, or an
 /// octahedron's six in the order of a quadratic tetrahedron's edge nodes.
 struct LinearPart {
   enum Kind : std::uint8_t { kTetrahedron, kOctahedron, kWedge, kHexahedron, kPyramid } kind{};

@@ -282,7 +282,7 @@ class Splitter {
     }
   }
 
-  /// VTK's quadratic kinds with a node in the middle of each triangle and in the cell: those nodes
+  /// VTK's quadratic kinds with a node in the middle of each triangle and in the cell. Those nodes
   /// are left out, on both sides of a face.
   bool addSevenNodeFaces(std::uint8_t type, std::span<const VertexId> ids) {
     if (type == kLagrangeTetrahedronCell && ids.size() == 15)
@@ -437,8 +437,8 @@ class Splitter {
     return dot(normal, normal) <= kFlatTriangle * kFlatTriangle * longest * longest;
   }
 
-  /// From the smallest vertex that is the apex of all of its faces and leaves no bad tetrahedron;
-  /// else from a new centre, if that is better.
+  /// Adds the cone from the smallest vertex that is the apex of all of its faces and leaves no bad
+  /// tetrahedron. Else it adds that from a new centre, if it is better.
   void addCone() {
     std::ranges::sort(corners_);
     corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());

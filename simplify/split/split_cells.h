@@ -29,8 +29,8 @@ struct SplitReport {
   [[nodiscard]] bool onlyTetrahedra() const;
 };
 
-/// The field that says which cell of the file a tetrahedron comes from; there on
-/// request, where a cell was split and no field has the name.
+/// The field that says which cell of the file a tetrahedron comes from. It is there on request,
+/// where a cell was split and no field has the name.
 inline constexpr const char* kOriginalCellField = "OriginalCellId";
 
 /// Every quadrilateral is cut from its smallest vertex id. Every polygon of more corners is cut
