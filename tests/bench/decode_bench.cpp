@@ -1,8 +1,8 @@
 // Decoding logs from memory, in user CPU time: the records alone, and everything from bytes to mesh
 // and all fields (checksums and Draco included).
 //   decode_bench [--runs N] LOG.qtet...
-// Results in TABLE.md. Prints medians, tetrahedra a second, and digests of what came out, by which
-// two builds are compared: `digest` is that of tests/golden, `values` a CRC-32C of all fields.
+// Results in TABLE.md. Prints medians, tetrahedra a second, and digests of the results, by which
+// two builds are compared. `digest` is that of tests/golden, `values` a CRC-32C of all fields.
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>

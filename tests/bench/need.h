@@ -1,5 +1,4 @@
-// For benchmarks, which cannot go on after an error: its text on standard error, and the program
-// ends with 1.
+// For benchmarks: an error ends the program with 1, and its text goes to standard error.
 #pragma once
 
 #include <cstdio>

@@ -142,7 +142,7 @@ void refineFin(benchmark::State& state) {
 }
 BENCHMARK(refineFin)->Unit(benchmark::kMillisecond);
 
-// From bytes to the mesh and all fields: checksums, Draco, records, values.
+// Decodes bytes to the mesh and all fields: checksums, Draco, records, values.
 void decodeFin(benchmark::State& state) {
   const LogFile log = need(LogFile::fromBytes(encoded().bytes));
   std::vector<std::uint32_t> fields(log.index().fields.size());

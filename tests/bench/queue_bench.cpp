@@ -1,6 +1,6 @@
-// Which priority queue suits the simplifier: Boost's Fibonacci heap (the paper's choice), pairing
-// and d-ary heaps, and bucket queues, under the operations of queue_trace.h. Prints a Markdown
-// table of ns an operation, a push or a pop; results in QUEUES.md.
+// Finds the priority queue that suits the simplifier: Boost's Fibonacci heap (the paper's choice),
+// pairing and d-ary heaps, and bucket queues, under the operations of queue_trace.h. Prints a
+// Markdown table of ns an operation, a push or a pop; results in QUEUES.md.
 //   queue_bench [--repeats N] [VERTICES...] (without any: 50000 200000; 2000000 takes 600 MB and
 //   some minutes)
 #include <algorithm>

@@ -1,9 +1,9 @@
-// The cost of a place: the bytes of a log of layout `regions` that bring a box with 10, 1 and 0.1 %
-// of the cells to full resolution. The whole file is compared with the same mesh's `stream`. Boxes
-// are cubes round cells taken at even steps through the finest mesh, as large as it takes. Slabs
-// lie round planes through the same cells across each axis in turn. Isosurfaces have values of
-// vertices at even steps through their order. The bytes are those that the server plans for such a
-// view up to the last level.
+// The cost of a place: the bytes of a log of layout `regions`. They bring a box with 10, 1 and 0.1
+// % of the cells to full resolution. The whole file is compared with the same mesh's `stream`.
+// Boxes are cubes round cells taken at even steps through the finest mesh, as large as it takes.
+// Slabs lie round planes through the same cells across each axis in turn. Isosurfaces have values
+// of vertices at even steps through their order. The bytes are those that the server plans for such
+// a view up to the last level.
 //
 //   region_bytes REGIONS.qtet [STREAM.qtet]
 

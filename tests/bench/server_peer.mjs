@@ -14,7 +14,7 @@ server.on('connection', (socket) => {
   socket.on('message', async () => {
     for (let at = 0; at < bytes.length; at += step) {
       const sent = new Promise((resolve) => socket.send(bytes.subarray(at, at + step), resolve));
-      // A server must not let what nobody reads pile up.
+      // A server must not let unread data pile up.
       if (socket.bufferedAmount > 1 << 18) await sent;
     }
     socket.send('{"stream":1,"type":"done"}');

@@ -87,7 +87,7 @@ export class Browser {
     };
   }
 
-  /** Opens a page that is not ours; `heard` is told of the console's errors. */
+  /** Opens a page that is not ours; `heard` receives the console's errors. */
   async page(url, heard = () => undefined) {
     const page = await (await this.#browser.newContext(kDesktop)).newPage();
     page.on('console', (message) => message.type() === 'error' && heard(message.text()));
@@ -155,8 +155,9 @@ export class ViewerPage {
   }
 
   /**
-   * Waits until the last change has been computed and drawn: for a while, then for the decoder,
-   * then for frames of the page and of the worker that draws. All of them are late under load.
+   * Waits until the last change has been computed and drawn. It waits for a while, then for the
+   * decoder, then for frames of the page and of the worker that draws. All of them are late under
+   * load.
    */
   async settle() {
     await this.page.waitForTimeout(kSettleMs);

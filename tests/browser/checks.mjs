@@ -509,7 +509,7 @@ async function obeysTheKeyboard({server, browser}) {
     differingShare(before, await viewer.screenshot('keys-home')) < 0.005,
     'Home does not bring the first view back',
   );
-  // The middle is that of the free part of the picture. A view that was turned is not fitted anew
+  // The middle is that of the free part of the picture. A view that was turned is not fitted again
   // beside the card.
   await viewer.page.keyboard.press('ArrowLeft');
   await viewer.settle();

@@ -84,8 +84,8 @@ async function showsAwkwardFieldsLegibly({server, browser, logs, out, bin}) {
 }
 
 /**
- * In a low window, or one at 200 %, the legend is nearly as wide as the free space, so that the
- * mesh must stand above it.
+ * In a low window, or one at 200 %, the legend is nearly as wide as the free space. So the mesh
+ * must stand above it.
  */
 async function keepsTheMeshOutOfTheLegend({server, browser}) {
   const viewer = await browser.open(`${server.url}?mesh=box`, {

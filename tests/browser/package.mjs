@@ -1,6 +1,6 @@
-// The npm package as a stranger uses it: packed, installed into an empty Vite project, checked by
-// the compiler, built, and viewed in Chromium with two viewers on one page. The same project runs
-// the examples.
+// The npm package as a stranger uses it. It is packed, installed into an empty Vite project,
+// checked by the compiler, built, and viewed in Chromium with two viewers on one page. The same
+// project runs the examples.
 //   node package.mjs --bin DIR --wasm FILE --out DIR
 
 import assert from 'node:assert/strict';

@@ -52,8 +52,8 @@ async function triesAgainWithTheSameView({server, browser, logs}) {
 const drawers = ({page}) => page.workers().filter((worker) => worker.url().includes('view_worker'));
 
 /**
- * The worker that draws ends without a word, then another one hangs. The user is told, and gets the
- * same picture from a new worker.
+ * The worker that draws ends without a word, then another one hangs. The user sees a message, and
+ * gets the same picture from a new worker.
  */
 async function drawsAnewWhereTheDrawingWorkerEnded({server, browser}) {
   const viewer = await browser.open(`${server.url}?mesh=fin&clip=y`, undefined, () => {
@@ -78,8 +78,8 @@ async function drawsAnewWhereTheDrawingWorkerEnded({server, browser}) {
     await viewer.inView(end);
     await viewer.page.getByText('does not answer').waitFor();
     await viewer.page.getByRole('button', {name: 'Try again'}).click();
-    // The browser may report the old worker's end after the new one is there, and nobody answers in
-    // it.
+    // The browser may report the old worker's end after the new one is there, and that report gets
+    // no answer.
     while (drawers(viewer).length !== 1 || old.includes(drawers(viewer)[0]))
       await viewer.page.waitForTimeout(50);
     await viewer.page.waitForFunction(
@@ -97,7 +97,7 @@ async function drawsAnewWhereTheDrawingWorkerEnded({server, browser}) {
     const differing = differingShare(before, await viewer.screenshot(`drawing-${what}`));
     assert.ok(differing < 0.005, `${what}: ${differing} of the picture is another`);
   }
-  // The new canvas hears keys and pointers as the first one did.
+  // The new canvas receives keys and pointers as the first one did.
   await viewer.page.getByText('Point', {exact: true}).click();
   await viewer.page.mouse.click(560, 400);
   await viewer.page.locator('qtet-viewer .result').waitFor();

@@ -98,8 +98,8 @@ async function goesOnOverHttpWhereTheSocketIsBlocked({server, browser, logs}) {
 
 /**
  * A log of regions first refines where it is cut and where an isosurface passes. In every order it
- * ends as the same mesh. All bytes have come before the mesh is decoded again, from nothing to
- * 100,000 cells: then only the order decides what it has, and not the network or the processors.
+ * ends as the same mesh. All bytes have arrived before the mesh is decoded again, from nothing to
+ * 100,000 cells. So only the order decides what it has, and not the network or the processors.
  */
 async function refinesWhatIsLookedAtFirst({server, browser, out, bin}) {
   const log = makeLog(bin, 'regions', out, 'fin', [
@@ -160,8 +160,8 @@ async function refinesWhatIsLookedAtFirst({server, browser, out, bin}) {
   await cutting.settle();
   await expectWhole(cutting, log);
   assert.equal(await lookedAt(cutting), whole.looked);
-  // An isosurface passes more cells than that. A bit more of it must be here than if nobody asked
-  // for it.
+  // An isosurface passes more cells than that. A bit more of it must be here than without any
+  // request for it.
   const iso = await coarser(await open('surface=off&iso=Density=2.5'));
   const unasked = await coarser(await open('surface=off'), ['iso', 'Density=2.5']);
   const more = iso.looked / unasked.looked;

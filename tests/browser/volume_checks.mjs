@@ -267,8 +267,8 @@ async function drawsFewCellsWhileSomethingMoves({server, browser}) {
 }
 
 /**
- * Runs in the worker that draws. Returns the RGBA of the volume alone in some pixels, as drawn, and
- * as the sum of all cells on the line of sight, searched one by one.
+ * Runs in the worker that draws. Returns the RGBA of the volume alone in some pixels: once as
+ * drawn, and once as the sum of all cells on the line of sight, searched one by one.
  */
 function compareWithEveryCell(view, level) {
   const {

@@ -181,7 +181,7 @@ function runScript(block, context) {
   scratch.run(process.execPath, ['example.mjs']);
 }
 
-/** As a module of the page's own sources, which stand for the package. */
+/** Checks it as a module of the page's own sources, which stand for the package. */
 function checkTypes({text}, {scratch}) {
   const page = join(scratch.root, 'web-client');
   const compiler = join(page, 'node_modules/typescript/bin/tsc');

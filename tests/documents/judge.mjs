@@ -1,5 +1,5 @@
-// Judges the examples of documents: each one ran, was only checked for a reason that is told, is a
-// text, or is wrong.
+// Judges the examples of documents: each one ran, was only checked for a stated reason, is a text,
+// or is wrong.
 
 import {readFileSync, readdirSync} from 'node:fs';
 import {join, resolve} from 'node:path';

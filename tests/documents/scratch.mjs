@@ -1,6 +1,6 @@
 // The folder that a document's examples run in. It looks like the repository's root after a build,
-// with meshes and logs under the names that the examples use. In an example /tmp and /opt stand for
-// places in the folder, and port 8080 for a free one.
+// with meshes and logs under the names that the examples use. In an example /tmp and /opt mean
+// places in the folder, and port 8080 a free one.
 
 import {execFileSync, spawnSync} from 'node:child_process';
 import {
@@ -125,7 +125,7 @@ export class Scratch {
     throw new Error(`${done.stdout}${done.stderr}${program} ended with ${done.status}`);
   }
 
-  /** For an example that asks the port for something, where none before it has started a server. */
+  /** Serves an example that uses the port, where none before it has started a server. */
   ensureServer() {
     if (existsSync(this.path('server.pid'))) return;
     const tokens = existsSync(this.path('tokens')) ? ['--tokens', 'tokens'] : [];

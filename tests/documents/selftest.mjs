@@ -1,5 +1,5 @@
-// Proves that the judge can tell: each forged document is wrong in one place, and the verdict must
-// say why; and a sound example of each language is taken. Usage:
+// Proves that the judge finds faults. Each forged document is wrong in one place, and the verdict
+// must say why. A sound example of each language is accepted. Usage:
 //   node selftest.mjs --build build/release --out FOLDER [--python python3]
 
 import {mkdirSync, rmSync, writeFileSync} from 'node:fs';

@@ -17,7 +17,7 @@ export interface BaseFigures {
 
 /** The share of the cells on each side, along each axis, that `focus` leaves out. */
 const kOutside = 0.1;
-/** A focus is told if it is this much smaller than the bounds. */
+/** A focus is reported if it is this much smaller than the bounds. */
 const kDwarfed = 0.25;
 /** It gets this much room round it, of its own extent on each side. */
 const kRoom = 0.25;

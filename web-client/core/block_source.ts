@@ -23,7 +23,7 @@ export interface BlockSource {
   together(pieces: readonly Piece[], bytes: number): number;
   /** The bytes of each piece. Throws `network`, `not-found`, `http`, `log-changed`. */
   fetch(pieces: readonly Piece[], signal: AbortSignal): Promise<Uint8Array[]>;
-  /** SHA-256 of the log if the server tells it, else the response's tag. */
+  /** SHA-256 of the log if the server states it, else the response's tag. */
   readonly digest: string;
 }
 
@@ -106,7 +106,7 @@ export class RangeSource implements BlockSource {
 
 export class ChunkSource implements BlockSource {
   digest = '';
-  /** The base of the log's own addresses, once a redirection has told it. */
+  /** The base of the log's own addresses, once a redirection has given it. */
   private base: string;
 
   /** `url`: /v1/meshes/{id}/log of a server. */

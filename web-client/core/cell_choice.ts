@@ -1,5 +1,5 @@
-// Which cells are shown whole: those within a threshold of a field, and those that reach below
-// every plane ("crinkle" clipping).
+// Decides which cells are shown whole: those within a threshold of a field, and those that reach
+// below every plane ("crinkle" clipping).
 
 import type {FieldScale} from './field_scale';
 import {planeDistances, type Plane} from './slice';

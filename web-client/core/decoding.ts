@@ -26,7 +26,7 @@ export class Decoding {
     this.slices = new Slices(again);
   }
 
-  /** `again` will be called soon, so that nobody else needs to decode. */
+  /** `again` will be called soon, so no other code needs to decode. */
   get isDue(): boolean {
     return this.slices.isDue;
   }

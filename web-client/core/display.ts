@@ -8,8 +8,8 @@ import {isosurface, slice, type Plane} from './slice';
 import {boundarySoup, joinSoups, type TriangleSoup} from './triangle_soup';
 
 /**
- * cut: the part above a plane is removed, and flat caps close the hole; cells: whole cells stay or
- * go; slice: only the cuts are shown, each whole.
+ * cut: the part above a plane is removed, and flat caps close the hole. cells: whole cells stay or
+ * go. slice: only the cuts are shown, each whole.
  */
 export type ClipMode = 'cut' | 'cells' | 'slice';
 export const kClipModes: readonly ClipMode[] = ['cut', 'cells', 'slice'];

@@ -5,7 +5,7 @@ import type {FieldInfo} from './manifest';
 
 /** The integer that marks a missing value (codec/mesh.h). */
 const kMissing = -2147483648;
-/** In place of a component: the magnitude of a vector, or the value of a scalar. */
+/** The component that means the magnitude of a vector, or the value of a scalar. */
 export const kMagnitude = -1;
 
 /**

@@ -17,7 +17,7 @@ const kWindowBytes = 1 << 20;
 type End = 'head' | 'base' | 'limit' | 'later limit';
 
 export class LogStream {
-  /** SHA-256 of the log; empty until the server tells it. */
+  /** SHA-256 of the log; empty until the server states it. */
   digest = '';
   /** Payload bytes received of this log. */
   receivedBytes = 0;
@@ -44,7 +44,7 @@ export class LogStream {
     return this.transport?.isConnected === true;
   }
 
-  /** The server may report an end before it hears that more is wanted. */
+  /** The server may report an end before it receives the request for more. */
   get mayEndEarly(): boolean {
     return this.end === 'later limit' || this.end === 'base';
   }

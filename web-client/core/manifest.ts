@@ -67,7 +67,7 @@ const kPositionBitsAt = 13;
 const kManifestBytesAt = 24;
 const kFieldsAt = 44;
 /**
- * Added to a field's association and to its type if values may be missing. FieldScale tells which
+ * Added to a field's association and to its type if values may be missing. FieldScale says which
  * ones.
  */
 const kMissingFlag = 128;

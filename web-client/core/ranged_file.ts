@@ -1,4 +1,4 @@
-// A file on any web server, read by byte ranges. From a server without ranges the whole file is
+// A file on any web server, read by byte ranges. If a server has no ranges, the whole file is
 // read as it comes.
 
 import {QtetError} from './errors';

@@ -5,7 +5,7 @@ import {QtetError} from './errors';
 
 /**
  * An error that names CORS if the host of `url` answers but does not allow this page's origin; else
- * null. To be called after a failed fetch.
+ * null. Must be called after a failed fetch.
  */
 export async function refusedOrigin(url: string): Promise<QtetError | null> {
   const here = globalThis.location as Location | undefined;

@@ -1,4 +1,4 @@
-// The state of a session. It is always exactly one of these, and the page hears of every change.
+// The state of a session. It is always exactly one of these, and the page receives every change.
 
 import type {FromWorker, StreamState} from './worker_messages';
 

@@ -1,6 +1,6 @@
-// Runs work in slices: between two of them the worker hears the page's commands.
+// Runs work in slices: between two of them the worker receives the page's commands.
 
-/** `dropped`: the message that starts the next slice is under way, but nobody wants the slice. */
+/** `dropped`: the message that starts the next slice is under way, but the slice is unwanted. */
 type SliceState = 'none' | 'due' | 'dropped';
 
 export class Slices {

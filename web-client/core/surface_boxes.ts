@@ -1,5 +1,5 @@
-// The boxes of a grid over the lattice that a surface passes through: the parts of a log of regions
-// that an isosurface needs, as far as is known.
+// The boxes of a grid over the lattice that a surface passes through. They are the parts of a log
+// of regions that an isosurface needs, as far as is known.
 
 import {kBoxSteps, type PacketBox} from './packet';
 

@@ -1,4 +1,4 @@
-// Which transports a source can be read by, and how they are made.
+// Decides which transports can read a source, and makes them.
 
 import {AutoTransport, kTransportKinds, type TransportKind} from './auto_transport';
 import {ChunkSource, RangeSource} from './block_source';

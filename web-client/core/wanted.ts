@@ -20,7 +20,7 @@ export class Wanted {
   /** The fields are candidates for the opening view: only the base mesh is wanted yet. */
   comparing = false;
   /**
-   * Names of the fields, for use before the head tells which there are; null means the first field.
+   * Names of the fields, for use before the head says which there are; null means the first field.
    */
   names: string[] | null = null;
   /** Indexes into the manifest. */
@@ -94,7 +94,7 @@ export class Wanted {
     return this.comparing ? kBaseGoal : this.assembler.goal(this.limit, this.fields);
   }
 
-  /** Only the head can tell which fields there are or where the limit lies. */
+  /** Only the head says which fields there are or where the limit lies. */
   get needsHead(): boolean {
     return !this.assembler.manifest && (this.names === null || this.limit.kind !== 'full');
   }

@@ -69,7 +69,7 @@ function start(source: Partial<Source> = {}): FakeSocket {
   return sockets.at(-1)!;
 }
 
-/** Servers that know targets and pauses tell the layout. */
+/** Servers that know targets and pauses report the layout. */
 function opened(socket: FakeSocket, stream: number, layout?: string): void {
   socket.deliver(
     JSON.stringify({

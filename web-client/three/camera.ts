@@ -101,7 +101,7 @@ export class OrbitCamera {
         'xyz'.indexOf(direction[1]!),
         direction[0] === '+' ? 1 : -1,
       );
-      // A little tilt tells the controls that x points right, seen from straight above or below.
+      // From straight above or below, a little tilt lets the controls know that x points right.
       this.direction = along.z === 0 ? along : along.add(new Vector3(0, -1e-4, 0)).normalize();
     }
     this.fit(framing);
@@ -159,8 +159,8 @@ export class OrbitCamera {
   }
 
   /**
-   * Where the camera stands so that all points are in the free shares of the picture's width and
-   * height, fill them in one direction, and are centred in both.
+   * The place of the camera so that all points lie in the free shares of the picture's width and
+   * height. They fill them in one direction, and are centred in both.
    *
    * A point has the coordinates a (to the right) and c (to the eye). An eye at distance D, above t,
    * sees it if |a - t| <= k (D - c); k is the tangent of half the angle of view. So D is at least

@@ -58,7 +58,7 @@ export class FrameBudget {
   }
 
   /**
-   * Two pictures of different sizes tell how much depends on pixels. Until then all of it is
+   * Two pictures of different sizes show how much depends on pixels. Until then all of it is
    * assumed to.
    */
   learn(share: number, ms: number): void {

@@ -31,7 +31,7 @@ export class MeshView implements View {
   private frameMs = 0;
   private readonly renderer: WebGLRenderer;
   private readonly scene = new Scene();
-  /** From lattice coordinates to a ball of radius 1 round the origin. */
+  /** Maps lattice coordinates to a ball of radius 1 round the origin. */
   private readonly lattice = new Group();
   private readonly surface = new SoupMesh(true);
   private readonly isosurface = new SoupMesh(true, true);
@@ -123,7 +123,7 @@ export class MeshView implements View {
     this.start = null;
   }
 
-  /** Forgets the mesh; the next one is fitted anew. */
+  /** Forgets the mesh; the next one is fitted again. */
   clear(): void {
     this.bounds = [];
     for (const mesh of this.meshes()) mesh.show(null);
@@ -411,8 +411,8 @@ export class MeshView implements View {
     const start = performance.now();
     const done = this.afterFrame;
     this.afterFrame = [];
-    // Graphics without a GPU draw long after the call. Failures are told, too, or somebody would
-    // wait for ever.
+    // Graphics without a GPU draw long after the call. Failures are reported, too, or a caller
+    // would wait for ever.
     const tell = (ms: number): void => done.forEach((drawn) => drawn(ms));
     try {
       this.orbit.setDepths();

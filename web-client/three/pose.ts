@@ -9,7 +9,7 @@ import type {CameraState} from './camera';
 export type Matrix = readonly number[];
 
 export interface Pose {
-  /** From lattice coordinates to the canvas's cube [-1, 1]^3, and back. */
+  /** Maps lattice coordinates to the canvas's cube [-1, 1]^3, and back. */
   toCanvas: Matrix;
   fromCanvas: Matrix;
   /** The camera's, as a quaternion. */

@@ -1,6 +1,6 @@
 // Casts rays through tetrahedra, from face to face. Two directions across the ray span a plane. In
 // this plane the ray is the origin, and a face that it passes is a triangle round the origin. The
-// signs of three areas tell by which face the ray leaves a cell. Each area belongs to two corners
+// signs of three areas decide by which face the ray leaves a cell. Each area belongs to two corners
 // of the triangle, or to one and the fourth. Signs are the same from both sides of a face, so that
 // no ray is lost between cells.
 //

@@ -1,6 +1,6 @@
 // The lines of sight through a canvas, in lattice coordinates, for shaders. They begin at the near
-// plane. The eye of a parallel view is a thousand times as far away as the mesh is large, so that
-// single floats relative to it would be wrong.
+// plane. The eye of a parallel view is a thousand times as far away as the mesh is large. Single
+// floats relative to it would be wrong.
 
 import type {Vector} from '../core/cell_ray';
 import type {Matrix} from './pose';

@@ -57,7 +57,7 @@ export interface View {
    * drawing. The snapshot's arrays may be gone afterwards.
    */
   show(snapshot: Snapshot, drawn: (ms: number) => void): void;
-  /** Forgets the mesh; the next one is fitted anew. */
+  /** Forgets the mesh; the next one is fitted again. */
   clear(): void;
   setLook(look: Look): void;
   /** FieldMaterial.setRange for all materials. */

@@ -1,6 +1,6 @@
-// Draws for a page: a MeshView in a worker, so that the page never waits for the graphics, which
-// may take seconds to start and to compile. If workers cannot draw, the page loads this script
-// itself and gets its MeshView (far_view.ts).
+// Draws for a page, as a MeshView in a worker. So the page never waits for the graphics, which may
+// take seconds to start and to compile. If workers cannot draw, the page loads this script itself
+// and gets its MeshView (far_view.ts).
 
 import {errorText} from '../core/errors';
 import type {CoarseCells} from '../core/volume';

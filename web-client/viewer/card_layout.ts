@@ -13,7 +13,7 @@ export class CardLayout {
   private readonly panel: HTMLElement;
   private readonly resizes = new ResizeObserver(() => this.arrange());
 
-  /** `changed` is told what the cards cover. */
+  /** `changed` receives the area that the cards cover. */
   constructor(
     private readonly element: HTMLElement,
     private readonly root: ShadowRoot,

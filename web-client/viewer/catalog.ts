@@ -49,7 +49,7 @@ export async function fetchCatalog(base: URL, token = ''): Promise<MeshEntry[]> 
   }));
 }
 
-/** An entry as it comes: every member is somebody else's word. */
+/** An entry as it arrives: no member has been checked. */
 type Listed = Partial<Record<keyof MeshEntry, unknown>> & {links?: {log?: unknown}};
 
 /** Whether the address names a list that `qtet publish` made. */

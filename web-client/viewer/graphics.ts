@@ -20,7 +20,7 @@ export interface GraphicsListeners {
   opened(view: View): void;
   /** After each frame. */
   drawn(): void;
-  /** For failures that the page should hear of, too. */
+  /** A failure that the page should see, too. */
   failed(code: string, message: string): void;
   /** Client.coarse. */
   coarse(have: number): Promise<CoarseCells>;

@@ -174,7 +174,7 @@ export class Inspect {
     if (probe.values.length > 1) await this.drawPlot(probe);
   }
 
-  /** To a ten-thousandth of the lattice's span. */
+  /** Rounds to a ten-thousandth of the lattice's span. */
   private placeText(place: Vector): string {
     const {bits, step} = this.host.manifest!.lattice;
     return place.map((x) => formatTo(x, kPlaceShare * step * 2 ** bits)).join(', ');

@@ -7,7 +7,7 @@ import type {Statistics} from '../core/statistics';
 import {parseNumbers, type Settings} from './settings';
 
 const kUnits = {full: '', cells: 'cells', bytes: 'kB', error: '%'};
-/** From the shown unit to the limit's own. */
+/** Factors from the shown unit to the limit's own. */
 const kFactors = {full: 1, cells: 1, bytes: 1000, error: 0.01};
 
 export class LevelPanel {

@@ -1,4 +1,4 @@
-// A field along a line, drawn by uPlot. It is loaded when somebody first asks for it.
+// A field along a line, drawn by uPlot. It is loaded at the first request.
 
 import uPlot from 'uplot';
 import plotStyles from 'uplot/dist/uPlot.min.css?inline';

@@ -19,7 +19,7 @@ const kStateTexts: Record<StreamState, string> = {
   held: 'At this level',
   failed: 'Stopped',
 };
-/** Screen readers are told at every multiple of so many per cent. */
+/** Screen readers get a message at every multiple of so many per cent. */
 const kAnnouncedPercent = 25;
 /** Nobody reads figures that change faster, and each change makes the browser redraw the page. */
 const kFiguresMs = 250;

@@ -17,7 +17,7 @@ export class Requests {
 
   constructor(private readonly client: Client) {}
 
-  /** Must be called before another mesh: the worker has been told nothing about it. */
+  /** Must be called before another mesh: the worker knows nothing about it. */
   forget(): void {
     this.display = this.view = '';
   }

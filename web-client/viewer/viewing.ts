@@ -33,7 +33,7 @@ export class Viewing implements ActionsHost, PanelsHost {
   private readonly actions: Actions;
   /** They are built a task later than the rest. */
   private panels: Panels | null = null;
-  /** The sentences about attributes that were told last. */
+  /** The sentences about attributes that were shown last. */
   private wrong = '';
   /** The `complete` event has been dispatched. */
   private completeTold = false;

@@ -1,5 +1,5 @@
-// A mesh in the file that VTK writes when nobody asks for anything special: what a web page would
-// send without qtet.
+// Writes a mesh as VTK does when nobody asks for anything special: a web page would send this file
+// without qtet.
 #pragma once
 
 #include <cstdint>

@@ -39,7 +39,7 @@ using Measure = double RatePoint::*;
 /// How a curve compares with another at every byte count at which either of them improves.
 struct Comparison {
   std::size_t places = 0;  ///< such byte counts
-  /// At so many the curve's error is larger, or it has nothing to show while the other has.
+  /// Places where the curve's error is larger, or it has nothing to show while the other has.
   std::size_t above = 0;
   /// The largest error over the other's, where both show something that has an error.
   double worst = 0;

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# `qtet view` of a mesh and of a log: a URL is printed, the log is served there, and a signal ends
+# `qtet view` of a mesh and of a log. A URL is printed, the log is served there, and a signal ends
 # it all and leaves nothing behind.
 #   view.sh QTET-PROGRAM FOLDER-TO-WRITE-TO
 set -euo pipefail
@@ -56,7 +56,7 @@ leavesNothing() {
   until compgen -G "$pattern" >/dev/null; do isAlive; sleep 0.02; done
   [[ -n $(ls temporary) ]] || fail "$* made no folder"
   kill -"$signal" $view
-  # With a URL it serves already, and ends well; and then it leaves nothing, either.
+  # Once it has printed a URL it serves, and ends well. It leaves nothing then, either.
   wait $view && [[ ! -s url.txt ]] && fail "$* ended well before it was killed"
   view=
   for _ in {1..600}; do [[ -n $(ls temporary) ]] || return 0; sleep 0.1; done

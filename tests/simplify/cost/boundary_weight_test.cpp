@@ -31,8 +31,8 @@ double weightOf(const LatticeMesh& mesh) {
   return balancedBoundaryWeight(mesh, costPartsOf(mesh, {}));
 }
 
-// A field over its range that is x over the side L: squared gradient 1 / L^2, diagonal sqrt 3 L,
-// volume over area L / 6. A cube has creases alone, so the balance has no say.
+// The field over its range is x over the side L. So its squared gradient is 1 / L^2, the diagonal
+// sqrt 3 L, volume over area L / 6. A cube has creases alone, so the balance has no say.
 TEST(BoundaryWeight, isAtMostSixTimesDiagonalVolumeAndSquaredGradientOverArea) {
   const LatticeMesh mesh = cubeWith([](const LatticePoint& p, std::int32_t) { return p[0]; });
   EXPECT_NEAR(weightOf(mesh), std::sqrt(3.0), 1e-9);

@@ -74,7 +74,7 @@ TEST(FusionCost, isTheVolumeWeightedSquaredResidualOfTheField) {
   const FusionCost cost(live, mesh, options);
   ASSERT_EQ(cost.components(), 1u);
   EXPECT_DOUBLE_EQ(cost.parts()[0].scale, 0.5 / 100);
-  // At a vertex's own place and value its cells' residuals vanish: the cost of a prey is then that
+  // At a vertex's own place and value its cells' residuals vanish. The cost of a prey is then that
   // of the other vertex's quadric alone.
   std::array<double, 1> value{};
   const Prey apexes{2, {3, 4, 0, 0}};

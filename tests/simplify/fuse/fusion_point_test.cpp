@@ -1,5 +1,5 @@
-// Which points a placement rule allows, what the history says of them, and what the rules cost
-// beside each other.
+// The points that a placement rule allows, their record in the history, and the rules' costs beside
+// each other.
 #include "simplify/fuse/fusion_point.h"
 
 #include <gtest/gtest.h>

@@ -20,7 +20,7 @@ namespace {
 constexpr double kMargin = 1.03;
 constexpr std::size_t kSamples = 5000;
 
-/// In per cent of the fields' ranges and of the diagonal; angles in degrees.
+/// The figures are in per cent of the fields' ranges and of the diagonal; angles in degrees.
 struct Figures {
   double field, wall, hausdorff;
   double thinAngle;  ///< a thousandth of all angles between faces is smaller

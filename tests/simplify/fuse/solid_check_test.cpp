@@ -111,8 +111,8 @@ TEST(SolidCheck, tellsOverlapFromContact) {
 }
 
 TEST(SolidCheck, findsTrianglesThatFoldBackOnTheirNeighbour) {
-  // Both cells stand on one plane, on either side of it; the lower one's face, all of which lies in
-  // the upper one's, shares one edge with it.
+  // Both cells stand on one plane, on either side of it. The lower one's face lies all in the upper
+  // one's face and shares one edge with it.
   LatticeMesh mesh;
   mesh.points = {{10, 10, 10}, {20, 10, 10}, {10, 20, 10}, {12, 12, 20}, {12, 14, 10}, {12, 12, 0}};
   mesh.tetrahedra = {{0, 1, 2, 3}, {0, 4, 1, 5}};

@@ -59,8 +59,8 @@ TEST(FusionCheck, theEnvelopeIsClosedButNothingOutsideBelongsToIt) {
   }
 }
 
-/// How many edges of the mesh may be fused; the link condition on edges is held against the test of
-/// the whole link, which shares nothing with it.
+/// How many edges of the mesh may be fused. The link condition on edges is compared with the test
+/// of the whole link, which shares nothing with it.
 std::size_t legalEdges(const LatticeMesh& mesh) {
   const FusionMesh live(mesh);
   FusionCheck test(live);

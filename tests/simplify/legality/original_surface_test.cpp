@@ -92,7 +92,7 @@ TEST(OriginalSurface, whatHoldsDoesNotDependOnWhatWasAskedBefore) {
   }
 }
 
-// Beside an edge and a corner the nearest triangle's plane alone tells the wrong side.
+// Beside an edge and a corner the nearest triangle's plane alone gives the wrong side.
 TEST(OriginalSurface, insideIsToldBesideSharpEdgesToo) {
   const LatticeMesh mesh = testing::gridMesh(
       6, 1, [](int i, int j, int k) { return i == 2 || (j == 3 && k > 1) || (i > 2 && k == 4); });

@@ -31,8 +31,8 @@ double share(std::mt19937& random) { return static_cast<double>(random() % 1001)
 
 constexpr std::int32_t kSize = 1 << 16;
 
-// An octahedron whose triangles are quartered `times`, its points blown up to a sphere of a radius
-// that differs by `bumps` at most from place to place.
+// An octahedron whose triangles are quartered `times`. Its points are blown up to a sphere of a
+// radius that differs by `bumps` at most from place to place.
 Surface sphere(int times, double bumps) {
   Surface out{{}, {}};
   std::mt19937 random(5);

@@ -28,7 +28,7 @@ bool isFlat(const PlacedTriangle& t) {
          testing::sideOf(a, b, c, {43, -37, 101}) == 0;
 }
 
-/// From the definition: the edges that are not common to both, against the other triangle.
+/// Follows the definition: the edges that are not common to both, against the other triangle.
 bool plainOverlap(const PlacedTriangle& one, const PlacedTriangle& other) {
   const auto isIn = [](VertexId v, const PlacedTriangle& t) {
     return std::ranges::find(t.vertex, v) != t.vertex.end();

@@ -59,7 +59,7 @@ TEST(JoinPieces, onePieceStaysAsItIs) {
   EXPECT_EQ(mesh.points.size(), 16u) << "a slit in a piece is meant";
 }
 
-/// Four cubes round the z axis; the two pieces are x < 0 and x > 0, and a slit runs through both
+/// Four cubes round the z axis. The two pieces are x < 0 and x > 0, and a slit runs through both
 /// along y = 0.
 TEST(JoinPieces, aSlitThatCrossesTheSeamStaysOpenAlongItsWholeLength) {
   CellMesh mesh;

@@ -17,8 +17,8 @@
 
 namespace qtet::testing {
 
-/// n x n x n hexahedra in [0, 1]^3, their inner points moved at random by up to `jitter` of a cell,
-/// all points numbered at random.
+/// n x n x n hexahedra in [0, 1]^3. Their inner points are moved at random by up to `jitter` of a
+/// cell, and all points are numbered at random.
 inline CellMesh hexGrid(int n, std::uint32_t seed, double jitter = 0.15) {
   std::mt19937 random(seed);
   const auto side = static_cast<VertexId>(n + 1);
