@@ -53,7 +53,7 @@ struct HttpRequest {
 struct HttpAnswer {
   unsigned status = 0;
   std::string body;
-  std::string location;  ///< where a redirection leads that was not followed; else empty
+  std::string location;  ///< the target of a redirection that was not followed; else empty
 };
 
 /// Sends and reads the answer, at most kMaxAnswerBytes of it. Certificates are checked, TLS is 1.2

@@ -11,7 +11,7 @@ namespace qtet {
 /// A field that counts.
 struct CostPart {
   std::size_t field = 0;
-  double scale = 1;  ///< of an integer of the field to the unit that residuals are measured in
+  double scale = 1;  ///< from the field's integers to the unit of residuals
 };
 
 /// `weights` is CostOptions::fieldWeights.

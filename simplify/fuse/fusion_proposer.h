@@ -41,7 +41,7 @@ struct Proposal {
   /// The vertices that could be taken along; which of them were free was part of the decision.
   std::vector<VertexId> companions;
   std::uint32_t madeAfter = 0;   ///< fusions decided on before
-  std::uint32_t tetrahedra = 0;  ///< that go
+  std::uint32_t tetrahedra = 0;  ///< those that the fusion removes
 };
 
 /// The factor on a fusion's cost, by the cells that it removes, boundary triangles among them

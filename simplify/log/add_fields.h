@@ -15,7 +15,7 @@ namespace qtet {
 
 struct AddFieldsOptions {
   int fieldBits = 12;
-  Effort effort = Effort::kLevels;  ///< of measuring, where the log knows the errors of its levels
+  Effort effort = Effort::kLevels;  ///< for measuring, where the log knows the errors of its levels
   int threads = 1;
   std::function<void(double)> progress;  ///< fraction done
 };

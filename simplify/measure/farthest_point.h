@@ -16,7 +16,7 @@ inline constexpr double kFarthestTolerance = 0.03;
 /// Squared distances.
 struct FarthestPoint {
   double found = 0;  ///< of some point of the triangle, or what was enough
-  double bound = 0;  ///< of no point of it is it more
+  double bound = 0;  ///< at least that of every point of the triangle
   /// The surface's triangle that is nearest to the middle, or near enough, or over most of it.
   std::uint32_t nearest = 0;
   /// The triangles that the bound rests on: it holds while they stay.

@@ -22,7 +22,7 @@ struct Finding {
   std::string kind;  ///< "invertedCells": stable, for scripts
   Verdict verdict = Verdict::kKept;
   std::string text;  ///< what it is, for people
-  std::string what;  ///< of what the numbers are: "cell", "point", "value", ""
+  std::string what;  ///< the kind of the numbers: "cell", "point", "value", ""
   /// Cells as numbered in the file, points too; empty where a sentence is all there is.
   Occurrences found;
   std::string advice;  ///< what to do, or empty

@@ -11,7 +11,7 @@ namespace qtet {
 /// One file of a series.
 struct SeriesEntry {
   double time = 0;
-  int number = 0;  ///< in the list
+  int number = 0;  ///< its place in the list
   std::filesystem::path file;
 };
 
