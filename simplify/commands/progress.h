@@ -1,5 +1,5 @@
-// How far a long command has come, for the person who waits: a bar on a terminal, a line now and
-// then in a log file.
+// Shows how far a long command has come, for the person who waits. It is a bar on a terminal, a
+// line now and then in a log file.
 #pragma once
 
 #include <chrono>

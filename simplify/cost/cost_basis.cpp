@@ -13,8 +13,8 @@ constexpr double kVarianceKept = 0.99;
 // Steps of the subspace iteration that follow the elimination. Each turns the directions towards
 // the principal ones; the variance that these hold no longer changes in its third digit.
 constexpr int kTurns = 4;
-// Products of two components that are summed at most, a tenth of a second of work; beyond it, a
-// part of the vertices speaks for all.
+// Products of two components that are summed at most, a tenth of a second of work. Beyond it, a
+// part of the vertices stands for all.
 constexpr std::uint64_t kMaxProducts = 100'000'000;
 // Relative to the largest variance: what is below it is rounding.
 constexpr double kNothing = 1e-12;

@@ -22,8 +22,8 @@ class CostBasis {
  public:
   /// Up to kMaxCostComponents components of `parts` stand for themselves. With more of them, the
   /// cost takes orthonormal directions that hold kVarianceKept of the components' variance, scaled
-  /// as in `parts`, or as much as kMaxCostComponents directions hold. REQUIRES: `parts` of point
-  /// fields of `mesh`.
+  /// as in `parts`. If that takes too many, there are kMaxCostComponents. REQUIRES: `parts` of
+  /// point fields of `mesh`.
   CostBasis(const LatticeMesh& mesh, std::span<const CostPart> parts);
 
   /// Values in the cost.

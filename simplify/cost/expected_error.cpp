@@ -21,8 +21,8 @@ constexpr double kCrease = 0.766;
 // The variance of what rounding to integers changes, in steps.
 constexpr double kRounding = 1.0 / 12;
 
-/// A simplex of N vertices less, on one side of what it shares with another: sorted, so that two
-/// sides of one lie side by side.
+/// A simplex of N vertices less, on one side of what it shares with another. Sides are sorted, so
+/// that two of one simplex lie side by side.
 template <std::size_t N>
 struct Side {
   std::array<VertexId, N> shared;

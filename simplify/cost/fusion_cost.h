@@ -67,8 +67,8 @@ class FusionCost {
   /// The best values at p in the cost's unit (components() numbers), within the fields' limits if
   /// basis().isDirect(), and E there.
   double valuesAt(const Prey& prey, const LatticePoint& p, std::span<double> values) const;
-  /// The share of each prey vertex in the values of the fused vertex at p: by its place on an edge,
-  /// else by the volume that it stands for. The shares sum to 1.
+  /// The share of each prey vertex in the values of the fused vertex at p. It follows from the
+  /// place on an edge, else from the volume that the vertex stands for. The shares sum to 1.
   [[nodiscard]] std::array<double, 4> sharesOf(const Prey& prey, const LatticePoint& p) const;
   /// A vertex's value number f.
   [[nodiscard]] double value(VertexId v, std::size_t f) const {
@@ -83,8 +83,8 @@ class FusionCost {
 
  private:
   // The quadric of one vertex, relative to its place and values. It consists of A (6), b (3), c, W,
-  // then the G of each component, x, y and z apart, each one's h and each one's value. E(d, e) =
-  // d^T A d + 2 b.d + c + sum_f (W e_f^2 - 2 e_f (G_f.d + h_f)).
+  // then the G of each component, x, y and z apart. Then come each one's h and each one's value.
+  // E(d, e) = d^T A d + 2 b.d + c + sum_f (W e_f^2 - 2 e_f (G_f.d + h_f)).
   static constexpr std::size_t kConstant = 9;
   static constexpr std::size_t kWeight = 10;
   static constexpr std::size_t kHead = kWeight + 1;

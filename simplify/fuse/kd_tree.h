@@ -15,7 +15,8 @@ namespace qtet {
 
 /// One of 2^depth leaves a tetrahedron; the topmost bit says which half of the whole. Each node is
 /// split at the median barycentre along the longest axis of the box of its barycentres, ties by
-/// index: in integers, the same everywhere. REQUIRES: lattice coordinates below 2^28, depth <= 18.
+/// index. All of this is in integers, the same everywhere. REQUIRES: lattice coordinates below
+/// 2^28, depth <= 18.
 [[nodiscard]] std::vector<std::uint32_t> kdLeaves(std::span<const LatticePoint> points,
                                                   std::span<const Tetrahedron> tetrahedra,
                                                   std::uint32_t depth);

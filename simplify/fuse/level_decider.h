@@ -1,5 +1,5 @@
-// Decides which candidates are fused in a level: those within its limit, cheapest first, each legal
-// and with a star that no other one has touched (ALGORITHM.md, "Levels").
+// Decides which candidates are fused in a level (ALGORITHM.md, "Levels"): those within its limit,
+// cheapest first. Each must be legal, with a star that no other one has touched.
 #pragma once
 
 #include <cstddef>

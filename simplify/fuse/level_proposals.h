@@ -1,5 +1,5 @@
-// The proposals of a level: for the queue's entries made by threads ahead of the one that decides,
-// for what comes back by that one itself.
+// The proposals of a level. Threads ahead of the one that decides make those for the queue's
+// entries; that one itself makes those for what comes back.
 #pragma once
 
 #include <array>

@@ -49,8 +49,8 @@ class BoundaryEnvelope {
   struct Planes {
     TwoVectors normal;
     Pair height, inverseLength;
-    // 0, or -infinity of a sliver whose plane doubles do not know, so that whatever lies outside of
-    // it lies outside of no other face further.
+    // 0, or -infinity of a sliver whose plane doubles do not know. So whatever lies outside of it
+    // lies outside of no other face further.
     Pair allowed;
   };
   // A point as two faces at a time ask for it.

@@ -16,7 +16,7 @@
 namespace qtet {
 namespace {
 
-/// For each vertex of the last level, a quarter of the volume of its cells; a fused vertex stands
+/// For each vertex of the last level, a quarter of the volume of its cells. A fused vertex stands
 /// for the sum of its prey's volumes.
 std::vector<double> volumesOf(const LogHistory& log) {
   const FusionHistory& h = log.history;

@@ -23,13 +23,14 @@ struct FieldOptions {
   Workers* workers = nullptr;  ///< not null; the result does not depend on how many they are
 };
 
-/// The error of a field at a place is the Euclidean norm of the difference over the diagonal of the
-/// box that the original's values fill. For one component it is over their range; for a constant
-/// field it is 0. Where the level's solid does not cover a place, its value is that at the nearest
-/// point of its boundary. A cell field's value there is that of the cell that held the place last.
-/// Places are followed from cell to cell through the fusions. A place that the solid has left stays
-/// outside. That is true while each level is a subset of the one before it. Otherwise the value at
-/// the boundary differs from the one inside by what the field changes within the tolerance.
+/// The error of a field at a place is the Euclidean norm of the difference. It is relative to the
+/// diagonal of the box that the original's values fill. For one component that is their range; for
+/// a constant field the error is 0. Where the level's solid does not cover a place, its value is
+/// that at the nearest point of its boundary. A cell field's value there is that of the cell that
+/// held the place last. Places are followed from cell to cell through the fusions. A place that the
+/// solid has left stays outside. That is true while each level is a subset of the one before it.
+/// Otherwise the value at the boundary differs from the one inside by what the field changes within
+/// the tolerance.
 class FieldMeter {
  public:
   /// REQUIRES: `mesh` at its finest level. It must outlive this.

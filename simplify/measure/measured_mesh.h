@@ -23,7 +23,7 @@ class MeasuredMesh {
   /// One level coarser. REQUIRES: level() > 0.
   void coarsen();
 
-  /// The fusion of the last step whose star holds the cell, nullptr if there is none: then the cell
+  /// The fusion of the last step whose star holds the cell, nullptr if there is none. The cell then
   /// is what and where it was before.
   [[nodiscard]] const Fusion* fusionOf(std::uint32_t cell) const;
   /// Whether the cell is what and where it is in the original.

@@ -13,8 +13,8 @@ namespace qtet {
 
 /// The surface between two planes that are as far above the piece as below it.
 struct SurfaceOver {
-  /// No line along the piece's normal is without a place of the surface so near the piece, in
-  /// lattice steps; infinite where that is not proven.
+  /// Every line along the piece's normal has a place of the surface so near the piece, in lattice
+  /// steps. Infinite where that is not proven.
   double height = std::numeric_limits<double>::infinity();
   /// The surface's triangle over the largest share of the piece.
   std::uint32_t triangle = 0;

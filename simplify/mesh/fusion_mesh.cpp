@@ -13,9 +13,9 @@
 namespace qtet {
 namespace {
 
-// Room for each cell of the input, boundary triangles among them: for the cells that fusions affect
-// until 1 % is left, and for the stars with their gaps. Seen were 3 and 5.6; with more the arrays
-// move.
+// Room for each cell of the input, boundary triangles among them. It is for the cells that fusions
+// affect until 1 % is left, and for the stars with their gaps. Seen were 3 and 5.6; with more the
+// arrays move.
 constexpr std::size_t kAffectedACell = 4;
 constexpr std::size_t kPoolACell = 6;
 
@@ -274,7 +274,7 @@ void FusionMesh::prefetch(const PlannedFusion& planned) const {
     qtet::prefetch(&history_.cells[c]), qtet::prefetch(&history_.live[c]);
 }
 
-// Cells, prey and what is fused are one fusion's own; the stars round them are not, and change
+// Cells, prey and what is fused are one fusion's own. The stars round them are not; they change
 // after all of that, each by one thread.
 void FusionMesh::fuseByThreads(std::span<const PlannedFusion> planned, std::uint64_t toPool,
                                const ValuesOf& valuesOf, Workers& workers) {

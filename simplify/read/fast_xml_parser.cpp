@@ -134,7 +134,7 @@ vtkStandardNewMacro(FastInflate);
 class FastParser;
 
 /// One of VTK's streams, which reads nothing more where the sizes of a compressed array's blocks
-/// contradict each other: VTK would read beyond its own arrays.
+/// contradict each other. There VTK would read beyond its own arrays.
 template <class Stream>
 class Guarded : public Stream {
  public:

@@ -20,8 +20,8 @@ namespace qtet {
 /// survive.
 [[nodiscard]] vtkXMLDataParser* newFastXmlParser();
 
-/// The fault of the text of the array that the parser has read last: it holds other than `told`
-/// numbers, or something else stands behind them. Empty: nothing. REQUIRES: a parser of
+/// The fault of the text of the array that the parser has read last. Either it holds other than
+/// `told` numbers, or something else stands behind them. Empty: nothing. REQUIRES: a parser of
 /// newFastXmlParser; `array` was read last, and is text.
 [[nodiscard]] std::string faultOfTextArray(vtkXMLDataParser& parser, vtkXMLDataElement& array,
                                            vtkIdType told);

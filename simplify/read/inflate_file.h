@@ -10,11 +10,11 @@
 
 namespace qtet {
 
-/// The bytes that the machine's memory has: a mesh whose file is larger cannot be read here, and
+/// The bytes that the machine's memory has. A mesh whose file is larger cannot be read here, and
 /// what inflates to more may be a bomb.
 [[nodiscard]] std::uint64_t mostInflatedBytes();
 
-/// Inflates the gzip file into a folder of its own, under its name without the last ending; hands
+/// Inflates the gzip file into a folder of its own, under its name without the last ending. Hands
 /// the file to `use`, then removes the folder. Errors: io (not readable, no room), bad-input (no
 /// gzip, damaged), truncated, limit-exceeded (more than `most` bytes), those of `use`, in which the
 /// file has the name of the compressed one.

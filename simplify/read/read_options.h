@@ -15,8 +15,8 @@ namespace qtet {
 /// (proto/field_key.h), in this order.
 using FieldNames = std::optional<std::vector<std::string>>;
 
-/// Only cells where the field lies within [low, high]: of a cell field its own value, of a point
-/// field those of all of its vertices.
+/// Only cells where the field lies within [low, high]. For a cell field its own value counts, for a
+/// point field those of all of its vertices.
 struct Threshold {
   std::string field;
   double low = 0, high = 0;

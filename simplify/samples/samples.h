@@ -38,9 +38,9 @@ struct Sample {
 /// Scalar = sin(2 pi x) cos(pi y) + z^2.
 [[nodiscard]] TetMesh boxSample();
 
-/// A supersonic stream round a swept blunt fin on a plate, an algebraic model of one: bow shock,
-/// boundary layers, tip and horseshoe vortices, a meandering wake. 212,544 tetrahedra, or as many
-/// as asked for, in layers that grow from the wall; fields Density, Pressure, Velocity (free
+/// A supersonic stream round a swept blunt fin on a plate, an algebraic model of one. It has bow
+/// shock, boundary layers, tip and horseshoe vortices, a meandering wake. 212,544 tetrahedra, or as
+/// many as asked for, in layers that grow from the wall; fields Density, Pressure, Velocity (free
 /// stream: 1, 1/1.4, Mach 2.95).
 [[nodiscard]] TetMesh finSample(std::uint64_t cells = kFinCells);
 

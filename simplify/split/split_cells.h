@@ -36,10 +36,11 @@ inline constexpr const char* kOriginalCellField = "OriginalCellId";
 /// Every quadrilateral is cut from its smallest vertex id. Every polygon of more corners is cut
 /// from the smallest that leaves no flat triangle. This rule depends on the face alone, so that
 /// both its cells follow it. A cell is then a cone from its smallest vertex that fits the faces'
-/// cuts, else from a new point at the mean of its vertices. Tetrahedra stay as they are. Points
-/// keep their numbers, new ones follow. Cell fields are inherited; point fields take the mean at
-/// new points, integers the value of one of its vertices. Errors: limit-exceeded; bad-input (with
-/// kSplit, a number of nodes that no degree has). REQUIRES: a mesh that checkCellMesh has passed.
+/// cuts. If none does, it is one from a new point at the mean of its vertices. Tetrahedra stay as
+/// they are. Points keep their numbers, new ones follow. Cell fields are inherited; point fields
+/// take the mean at new points, integers the value of one of its vertices. Errors: limit-exceeded;
+/// bad-input (with kSplit, a number of nodes that no degree has). REQUIRES: a mesh that
+/// checkCellMesh has passed.
 [[nodiscard]] Result<TetMesh> splitCells(CellMesh&& mesh, const SplitOptions& options,
                                          SplitReport& report);
 

@@ -35,7 +35,7 @@ namespace {
 constexpr double kRecognisableBoundary = 0.01, kRecognisableField = 0.05;
 constexpr std::array kCheckedRatios = {0.02, 0.1, 0.3};
 constexpr std::size_t kDirectSamples = 4000;
-/// How far the two measurements may be apart: what so few samples leave open, seldom 10 %; errors
+/// How far the two measurements may be apart: so few samples leave this open, seldom 10 %. Errors
 /// below the floor are as good as none.
 constexpr double kTolerance = 0.25, kFloor = 2e-6;
 

@@ -1,5 +1,6 @@
-// The simplifier's speed beside VTK's decimation: one program, one input in memory, pinned to as
-// many cores as threads, the programs taking turns, medians of five. Prints Markdown tables.
+// The simplifier's speed beside VTK's decimation. Each run is one program and one input in memory,
+// pinned to as many cores as threads. The programs take turns; figures are medians of five. Prints
+// Markdown tables.
 //   simplify_bench [--threads N] [--repeats N] [--reduction R] [--fields all|one] [NAME...]
 //     NAME: a mesh file, or a sample's name. Without any: every .vtu of the folder QTET_DATA, and
 //     where that is not set the samples box and fin.

@@ -268,7 +268,7 @@ async function drawsFewCellsWhileSomethingMoves({server, browser}) {
 
 /**
  * Runs in the worker that draws. Returns the RGBA of the volume alone in some pixels: once as
- * drawn, and once as the sum of all cells on the line of sight, searched one by one.
+ * drawn, and once as a sum. The sum is that of all cells on the line of sight, searched one by one.
  */
 function compareWithEveryCell(view, level) {
   const {

@@ -1,5 +1,5 @@
-// Where blocks come from over HTTP: from a file, by byte ranges; or from a qtet-server or a cache
-// in front of it, by their numbers.
+// Brings blocks over HTTP: from a file, by byte ranges; or from a qtet-server or a cache in front
+// of it, by their numbers.
 
 import {emptyFile, fetchChecked, RangedFile, type Fetch} from './ranged_file';
 import {QtetError} from './errors';

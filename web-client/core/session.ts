@@ -1,5 +1,5 @@
-// Brings one mesh into the page: opens the stream, keeps it going over lost connections, refines as
-// far as is asked for, and reports its state.
+// Brings one mesh into the page. It opens the stream, keeps it going over lost connections, refines
+// as far as is asked for, and reports its state.
 
 import type {Assembler} from './assembler';
 import {baseFigures} from './base_figures';

@@ -163,8 +163,8 @@ export class OrbitCamera {
    * height. They fill them in one direction, and are centred in both.
    *
    * A point has the coordinates a (to the right) and c (to the eye). An eye at distance D, above t,
-   * sees it if |a - t| <= k (D - c); k is the tangent of half the angle of view. So D is at least
-   * (max(a + k c) - min(a - k c)) / 2k, and t lies in the middle of the two.
+   * sees it if |a - t| <= k (D - c). Here k is the tangent of half the angle of view. So D is at
+   * least (max(a + k c) - min(a - k c)) / 2k, and t lies in the middle of the two.
    */
   framing(points: Vector3[], freeWidth: number, freeHeight: number): Framing {
     const right = new Vector3(),

@@ -1,5 +1,5 @@
-// The cells of a volume as textures for a ray caster's shaders, one texel a vertex and a cell, and
-// the faces by which rays enter.
+// The cells of a volume as textures for a ray caster's shaders. They have one texel a vertex and a
+// cell, and the faces by which rays enter.
 
 import {
   BufferGeometry,

@@ -1,5 +1,5 @@
 // The meshes of a server, GET /v1/meshes of proto/PROTOCOL.md, or of a folder that `qtet publish`
-// made: the same list in its index.json, with addresses of files.
+// made. The latter has the same list in its index.json, with addresses of files.
 
 import {QtetError} from '../core/errors';
 import {refusedOrigin} from '../core/refused_origin';

@@ -6,7 +6,7 @@
 // are locked waits for the level's end. A fusion kills its vertices and enters the fused one,
 // dearer, at the level's end. A level ends at the 35 % quantile of the keys at its start. On the
 // meshes comb and bluntfin the simplifier made 6 to 10 pops a vertex. Among these, 7-12 % of the
-// vertices were dead and 30 % of the candidates gone; 46-53 % were locked, 1-3 % illegal, 7-11 %
+// vertices were dead and 30 % of the candidates gone. 46-53 % were locked, 1-3 % illegal, 7-11 %
 // fused. The model is within these figures or close to them.
 #pragma once
 
