@@ -37,7 +37,7 @@ std::string namesOf(const Manifest& manifest) {
   return out.empty() ? "none" : out;
 }
 
-/// The log's fields without those that `mesh` brings anew. Errors: bad-value (a name that is there,
+/// The log's fields without those that `mesh` replaces. Errors: bad-value (a name that is there,
 /// without --replace).
 Result<std::vector<std::uint32_t>> keptBeside(const OpenedLog& log, const TetMesh& mesh,
                                               bool replace) {

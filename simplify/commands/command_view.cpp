@@ -101,7 +101,7 @@ std::string urlIn(const std::string& line) {
   return line.substr(from, line.find(' ', from) - from);
 }
 
-/// Until the server ends. Its words are shown if somebody asked for them.
+/// Returns when the server ends. The server's words are shown on request.
 void followServer(int words, const std::string& name, bool open, Console& console) {
   std::string line;
   bool told = false;

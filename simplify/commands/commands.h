@@ -23,7 +23,7 @@ struct Console {
   std::ostream& out;
   std::ostream& err;
   bool errIsTerminal = false;
-  /// Whether `out` may be coloured: a terminal, and nobody said NO_COLOR (https://no-color.org).
+  /// Whether `out` may be coloured: a terminal, and NO_COLOR is not set (https://no-color.org).
   bool colours = false;
   bool quiet = false;    ///< --quiet: errors and warnings alone
   bool verbose = false;  ///< --verbose: how long each stage takes, and the memory at most

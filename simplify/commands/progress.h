@@ -24,7 +24,7 @@ class Progress {
   void stage(std::string_view name);
   /// 0..1 of the stage; cheap enough to be called often.
   void update(double fraction);
-  /// The same where nobody knows how much of the stage is done.
+  /// The same where the share of the stage that is done is unknown.
   void working();
   /// Takes the bar away, so that other lines can follow.
   void clear();

@@ -35,7 +35,7 @@ class CostBasis {
 
   /// Adds `value`, the scaled component number `i` of all parts, to the values that it is part of.
   void add(std::size_t i, double value, std::span<double> values) const;
-  /// By how much the scaled component number `i` changes with the values. REQUIRES: !isDirect().
+  /// The change of the scaled component number `i` with the values. REQUIRES: !isDirect().
   [[nodiscard]] double changeOf(std::size_t i, std::span<const double> values) const;
 
  private:

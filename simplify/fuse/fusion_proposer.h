@@ -31,7 +31,7 @@ struct Proposal {
   /// The partner in the edge that the rest is about; kGhost: none is known to be legal.
   VertexId partner = kGhost;
   float price = 0;          ///< FusionPointFinder::price
-  bool isPriceAll = false;  ///< it was too dear, so that nobody looked further
+  bool isPriceAll = false;  ///< it was too dear, so nothing else is known
   Prey prey;
   FusionPoint where;
   /// The cost of the edge alone; and the bound asked for: nothing dearer was looked for in larger

@@ -45,8 +45,8 @@ class LiveBoundary {
   std::vector<std::array<VertexId, 3>> vertices_;
   std::vector<std::uint8_t> live_;
   TriangleTree tree_;
-  // The boundary triangles of the proposal in hand with the prey at its point. And the prey's
-  // triangles as they are which that point is outside of.
+  // new_: the boundary triangles of the proposal in hand with the prey at its point. left_: the
+  // triangles of the prey as it is which that point is outside of.
   std::vector<PlacedTriangle> new_, left_;
 };
 

@@ -1,4 +1,4 @@
-// Work that is broken off because nobody waits for it any more.
+// Work that is broken off because its result is no longer wanted.
 #pragma once
 
 #include <atomic>

@@ -94,7 +94,7 @@ Result<QuantisedMesh> prepare(TetMesh&& given, Run& run) {
   return out;
 }
 
-/// By the algorithm asked for; the paper's leaves its figures in the report.
+/// Simplifies by the algorithm asked for; the paper's leaves its figures in the report.
 Result<FusionHistory> fuse(LatticeMesh&& mesh, const FusionOptions& options, Run& run) {
   if (run.options.algorithm != Algorithm::kPaper) return simplify(std::move(mesh), options);
   Result<PaperFusion> fused = simplifyAsThePaper(mesh, options);

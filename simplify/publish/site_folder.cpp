@@ -72,7 +72,7 @@ Status checkPlace(const fs::path& place) {
 /// "site/" names what "site" does, but neither a link nor a last name are seen in it.
 fs::path withoutSlash(fs::path path) { return path.has_filename() ? path : path.parent_path(); }
 
-/// mkdtemp's folders are for their owner alone; a web server is somebody else.
+/// mkdtemp's folders are for their owner alone; a web server is another user.
 mode_t folderMode() {
   const mode_t mask = ::umask(0);
   ::umask(mask);

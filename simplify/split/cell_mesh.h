@@ -75,7 +75,7 @@ struct CellMesh {
   std::vector<VertexId> vertices;        ///< kGhost stands for an id that the file must not hold
   std::vector<std::uint64_t> cellIds;    ///< each cell's number in the file; empty: 0, 1, 2 ...
   std::vector<MeshField> fields;         ///< one tuple a point, or a cell of `types`
-  std::vector<std::string> otherFields;  ///< names of fields of the file that nobody asked for
+  std::vector<std::string> otherFields;  ///< names of the file's fields that are not wanted
   std::string pointType{};               ///< as TetMesh's
   /// The file's own number of each point in all of its pieces (GlobalNodeIds and the like); empty:
   /// none.
