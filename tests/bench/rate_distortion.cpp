@@ -117,8 +117,8 @@ std::string checkedLevels(const OpenedLog& log) {
                                  ", and measured directly " + percent(measured));
       return what + " " + percent(known) + " (" + percent(measured) + ")";
     };
-    out += (out.empty() ? "" : ";\n") + std::string("level ") + std::to_string(level.level) + ": " +
-           compared("field", level.error->fields[0].rms, direct.field) + ", " +
+    out += (out.empty() ? "" : "\n") + std::string("- level ") + std::to_string(level.level) +
+           ": " + compared("field", level.error->fields[0].rms, direct.field) + ", " +
            compared("boundary", level.error->boundaryMean(), direct.boundary);
   }
   return out;
@@ -212,16 +212,16 @@ std::string section(const Request& request, const std::string& meshName,
   for (const auto& [label, curve] : curves.logs)
     out << row(label, curve, curves.vtuBytes) << comparisonCells(curve, curves.ladder) << "\n";
   out << row("ladder", curves.ladder, curves.vtuBytes)
-      << " | | | |\n\nKnown errors and, in brackets, those of the decoded meshes:\n"
-      << checked << ".\n\n![Error against bytes](rate_" << name << ".svg)\n";
+      << " | | | |\n\nKnown errors and, in brackets, those of the decoded meshes:\n\n"
+      << checked << "\n\n![Error against bytes](rate_" << name << ".svg)\n";
   return out.str();
 }
 
 constexpr const char* kHead = R"(# Rate and distortion
 
-Made by `make rate`; do not edit. What a viewer has to live with after so many bytes: the rms error
-of the first point field over its range, and the mean distance of the boundaries over the diagonal
-(of both ways the larger), as the log's manifest tells them.
+Made by `make rate`; do not edit. The errors that a viewer shows after so many bytes, as the log's
+manifest has them. *Field* is the rms error of the first point field over its range. *Boundary* is
+the mean distance of the boundaries over the diagonal, the larger of both ways.
 
 - *log*: `qtet simplify` with its default options and the first point field alone, at every prefix
   that ends a level.
@@ -229,9 +229,9 @@ of the first point field over its range, and the mean distance of the boundaries
   alone by the same coder (a base mesh without records) and fetched one after the other.
 - *.vtu*: as VTK writes it by default, with the same field.
 - *recognisable*: boundary within 1 %, field within 5 %. The bar is 2 % of the .vtu.
-- *above the ladder*: of all byte counts at which one of the two improves, those at which the log
-  has the larger error, or nothing to show yet while the ladder has. *Worst*: how many times as
-  large its error is, and at which byte, where both show something.
+- *above the ladder*: the log has the larger error, or nothing to show yet while the ladder has. It
+  is counted over all byte counts at which one of the two improves. *Worst*: how many times as large
+  its error is, and at which byte, where both show something.
 )";
 
 void makeAll(const Request& request) {
