@@ -1,6 +1,6 @@
-// Integers as a symbol and a few digits (FORMAT.md, "Value blocks"): the symbol, of which there are
-// less than a hundred for values of 12 bits, is worth an entropy coder's table; the digits below
-// are noise and stand as they are.
+// Splits integers into a symbol and a few digits (FORMAT.md, "Value blocks"). Values of 12 bits
+// have fewer than a hundred symbols, so an entropy coder's table pays for them. The digits below
+// are noise and are stored as they are.
 #pragma once
 
 #include <bit>

@@ -64,8 +64,8 @@ std::vector<std::array<std::uint8_t, 3>> coloursOf(const LatticeMesh& mesh) {
   return out;
 }
 
-/// What the Draco bytes hold, in glTF's words. Draco may split vertices where the surface is not
-/// manifold, so it is asked for its counts.
+/// Describes the Draco bytes in glTF's terms. The counts are Draco's, since it may split vertices
+/// where the surface is not manifold.
 GlbContent describe(const draco::Mesh& mesh, std::span<const FieldInfo> fields,
                     const std::array<double, 3>& place, std::size_t bytes) {
   Json accessors = {

@@ -24,7 +24,7 @@ struct FileField {
   std::optional<std::array<double, 2>> range{};
 };
 
-/// What a file is made of; the views must outlive whoever writes it.
+/// The contents of a mesh file. The viewed arrays must outlive the writer.
 struct FileMesh {
   std::span<const std::array<double, 3>> points;
   std::span<const Tetrahedron> tetrahedra;

@@ -20,7 +20,7 @@ inline constexpr const char* kWrittenEndings = ".vtu .vtk .msh .stl .ply .obj .g
 /// of kWrittenEndings.
 [[nodiscard]] bool holdsFields(std::string_view ending, std::string_view association);
 
-/// What a kind of file leaves open.
+/// Choices that the kind of file leaves open.
 struct MeshFileOptions {
   bool draco = true;  ///< .glb: triangles and fields in Draco, else as plain numbers
 };

@@ -18,7 +18,7 @@ class ChunkWriter {
   /// Chunk 0 is open. `fields` must outlive it.
   ChunkWriter(std::span<const FieldInfo> fields, CodecId valueCodec);
 
-  /// What the open chunk holds so far. These objects stay the same for every chunk.
+  /// The content of the open chunk so far. These objects stay the same for every chunk.
   [[nodiscard]] RangeEncoder& structure() { return open_.structure; }
   [[nodiscard]] Values& positions() { return open_.values.front(); }
   [[nodiscard]] std::span<Values> fields() { return std::span(open_.values).subspan(1); }
@@ -32,7 +32,7 @@ class ChunkWriter {
   Status close(std::uint32_t lastLevel, std::uint32_t endSlot, const Slots& end);
   void begin(std::uint32_t firstLevel, std::uint32_t node = 0);
 
-  /// Of the closed chunks.
+  /// The closed chunks only.
   [[nodiscard]] std::vector<ChunkEntry>& rows() { return rows_; }
   [[nodiscard]] const Bytes& body() const { return body_; }
 

@@ -12,8 +12,8 @@
 
 namespace qtet {
 
-/// What both sides know of an attribute: integers in slot order, and the number that each stands
-/// for.
+/// An attribute as encoder and decoder know it: integers in slot order, and the number that each
+/// stands for.
 struct Approximation {
   std::span<const std::int32_t> integers;  ///< components a point or cell; kMissing for NaN
   std::uint32_t components = 1;

@@ -49,8 +49,8 @@ class LevelRuns {
     return std::min(chunkBytes_, std::max(kLeastChunkBytes, chunks_.body().size() / kGrowth));
   }
 
-  // Near enough, if another level like the one that began at `begun` bytes would go further beyond
-  // the target than this one stays below it: let the next chunk begin with a level.
+  // Whether the next chunk should begin with the next level. It should if another level, like the
+  // one that began at `begun` bytes, would overshoot the target by more than this one falls short.
   [[nodiscard]] bool endsNearTarget(std::optional<std::uint64_t> begun) const {
     const std::uint64_t bytes = chunks_.estimatedBytes();
     const std::uint64_t levelBytes = begun ? bytes - *begun : target();

@@ -1,5 +1,5 @@
-// The manifest in a log, both ways (FORMAT.md, "Manifest"). What header and chunk table say already
-// is not stored, so nothing contradicts them; only whether a field has missing values stands in
+// The manifest in a log, both ways (FORMAT.md, "Manifest"). The manifest does not repeat header and
+// chunk table, so it cannot contradict them. Only whether a field has missing values is stored in
 // both.
 #pragma once
 

@@ -121,9 +121,9 @@ Status PacketReader::children(ChunkInHand& chunk, std::uint32_t node, const Node
   return {};
 }
 
-// Reads nothing that another packet of this band or a finer one could have changed: stars that lie
-// in the node, and vertices beside them, which have cells of the node and so are split by its
-// packets alone.
+// Reads nothing that another packet of this band or a finer one could have changed. It reads only
+// stars that lie in the node, and vertices beside them. These have cells of the node, so only the
+// node's packets split them.
 Result<Extent> PacketReader::read(ChunkInHand& packet) {
   const ChunkEntry& entry = packet.entry;
   records_.models() = head_.records;

@@ -1,6 +1,6 @@
-// The mesh that grows in place, in the refiner and in the encoder's mirror of it: slots never move,
+// The mesh that grows in place, in the refiner and in the encoder's mirror of it. Slots never move,
 // an affected cell changes one index, and the stars of all vertices stay up to date (FORMAT.md,
-// "Refinement"). Chunks may fill their slots in any order: until then these are holes.
+// "Refinement"). Chunks may fill their slots in any order; until then the slots are holes.
 #pragma once
 
 #include <algorithm>
@@ -93,8 +93,8 @@ class GrowingMesh {
   [[nodiscard]] bool onBoundary(VertexId v) const { return states_[v].onBoundary; }
   /// Level at which a vertex got its present position; 0 in the base mesh.
   [[nodiscard]] std::uint32_t born(VertexId v) const { return states_[v].born; }
-  /// How long the edges of a star are: squared lengths along each axis, summed over the edges at v
-  /// of its cells, each edge as often as it is in a cell, in units of 4^spreadShift() squared
+  /// The length of a star's edges: squared lengths along each axis, summed over the edges at v of
+  /// its cells. An edge counts once for each of its cells. The unit is 4^spreadShift() squared
   /// lattice steps.
   struct Spread {
     std::array<std::uint64_t, 3> squares{};

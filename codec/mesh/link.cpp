@@ -39,8 +39,8 @@ void Link::makeRoom(std::size_t triangles) {
   order_.resize(room);
 }
 
-// Without branches on whether a vertex is new: half of them are, in no order that a processor could
-// guess. What is written for one that is not is overwritten by the next.
+// Does not branch on whether a vertex is new: half of them are, in no order that a processor could
+// guess. An entry written for a known vertex is overwritten by the next.
 void Link::add(std::span<const Triangle> triangles) {
   makeRoom(triangleCount_ + triangles.size());
   std::uint32_t count = vertexCount_, f = triangleCount_;

@@ -15,14 +15,14 @@
 
 namespace qtet {
 
-/// Where a base vertex's values are predicted from: the face (a, b, c) that its first cell was
-/// grown over and the apex d behind it; a == kGhost for a vertex of a seed cell, predicted from the
-/// vertex before it.
+/// The vertices that predict a base vertex's values: the face (a, b, c) over which its first cell
+/// was grown, and the apex d behind it. a == kGhost for a vertex of a seed cell, which the vertex
+/// before it predicts.
 struct BaseBirth {
   std::array<VertexId, 4> from{kGhost, kGhost, kGhost, kGhost};
 };
 
-/// What an encoder knows: the oriented cells, and which cell lies across which face.
+/// The encoder's knowledge: the oriented cells, and which cell lies across which face.
 class BaseTruth {
  public:
   explicit BaseTruth(std::span<const Tetrahedron> cells);

@@ -17,9 +17,9 @@
 
 namespace qtet {
 
-/// How much a field changes over a step through a star, as a weighted sum of differences to the
-/// fused vertex's value: of the corners of the two link triangles that the line along the step
-/// passes.
+/// How much a field changes over a step through a star. It is a weighted sum of differences to the
+/// fused vertex's value, taken at the corners of the two link triangles that the line along the
+/// step passes.
 struct Slope {
   static constexpr int kWeightBits = 12;
 
@@ -35,7 +35,8 @@ struct Slope {
   }
 };
 
-/// What a field needs to follow a record without its connectivity, so that it may come later.
+/// The data with which a field follows a record without its connectivity, so that the field may
+/// arrive later.
 struct Birth {
   VertexId slot = 0;      ///< the vertex that split
   VertexId firstNew = 0;  ///< its k - 1 new vertices start here

@@ -1,6 +1,6 @@
-// Where the prey vertices of a record lie (FORMAT.md, "Positions"): the leading digits of each
-// difference go to the positions block, as small integers of one and the same distribution whatever
-// the size of the star; the digits below, which are noise, ride in the structure block.
+// Codes where the prey vertices of a record lie (FORMAT.md, "Positions"). The leading digits of
+// each difference go to the positions block, as small integers with the same distribution whatever
+// the size of the star. The digits below are noise and go to the structure block.
 #pragma once
 
 #include <algorithm>
@@ -117,8 +117,8 @@ class PositionCoder {
       }
   }
 
-  // What lies nearer to the fused vertex tells which prey vertex it stands at, and how much nearer
-  // whether it stands at one.
+  // The label whose middle is nearest to the fused vertex predicts the prey vertex at which it
+  // stands. The ratio to the second nearest predicts whether it stands at one at all.
   void placement(Split& split) {
     const auto n = static_cast<std::size_t>(split.k);
     std::array<int, 4> distance{};

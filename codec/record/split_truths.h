@@ -1,4 +1,4 @@
-// What the history knows of each split of the way back, in the terms of the record coder.
+// Describes each split of the way back, as the history has it, in the record coder's terms.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ class SplitTruths {
   /// order of first appearance along the link. False: the history's cells are not those of v's
   /// star. REQUIRES: `link` is v's and a sphere.
   [[nodiscard]] bool describe(VertexId v, const Link& link, Fusion& fusion, RecordTruth& truth);
-  /// The history's cells of what the split described last brings back, in that order.
+  /// The history's cells that the split described last brings back, in that order.
   [[nodiscard]] const std::vector<std::uint32_t>& restored(const Split& split);
 
  private:

@@ -56,7 +56,7 @@ class Values {
     return hasMissing ? codeOrMissing<kEncoding>(predicted, truth)
                       : code<kEncoding>(predicted, truth);
   }
-  /// What was made of the values is out of range.
+  /// Marks the values as bad: a result is out of range.
   void spoil() { bad_ = true; }
   [[nodiscard]] bool bad() const { return bad_; }
   [[nodiscard]] bool atEnd() const { return next_ == given_.size(); }
