@@ -30,8 +30,9 @@ namespace qtet {
           key[association.size()] == ':' && key.ends_with(name));
 }
 
-/// The fields that `key` means where several may be meant, ascending: those of that name; else with
-/// "point:" or "cell:" before it the one; else of a series' fields every step's, NAME@TIME.
+/// The fields that `key` means where it may mean several, ascending. First choice: the fields of
+/// that name. Second: the one field of that name after "point:" or "cell:". Third: every step of a
+/// series, NAME@TIME.
 template <std::ranges::random_access_range Fields>
 [[nodiscard]] std::vector<std::uint32_t> fieldsOfKey(const Fields& fields, std::string_view key) {
   std::vector<std::uint32_t> out;
@@ -51,7 +52,7 @@ template <std::ranges::random_access_range Fields>
 }
 
 /// The one field that `key` means: the point field of that name, else the cell field of that name,
-/// else with "point:" or "cell:" before it; of a series a step's whole name.
+/// else the one after "point:" or "cell:". A step of a series needs its whole name.
 template <std::ranges::random_access_range Fields>
 [[nodiscard]] std::optional<std::uint32_t> fieldOfKey(const Fields& fields, std::string_view key) {
   std::optional<std::uint32_t> out;

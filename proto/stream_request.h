@@ -1,5 +1,5 @@
-// What a client of `/v1/stream` has and what it wants (STREAM.md, "What a client has", "Target",
-// "View"), as plain values.
+// Plain values for the blocks that a client of `/v1/stream` has, and for its wishes (STREAM.md,
+// "What a client has", "Target", "View").
 #pragma once
 
 #include <array>
