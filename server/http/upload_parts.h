@@ -23,13 +23,13 @@ namespace qtet {
 struct PartQuota {
   std::size_t most = limits::kMaxParts, mostOfToken = limits::kMaxPartsOfToken;
   std::uintmax_t bytes = limits::kMaxPartBytes, bytesOfToken = limits::kMaxPartBytesOfToken;
-  /// Of the disk, below which nothing is begun.
+  /// No upload begins if the disk has less free space than this.
   std::uintmax_t reserve = limits::kDiskReserve;
   FreeDiskBytes freeBytes = freeDiskBytes;
 };
 
-/// Not thread-safe. Which token a part belongs to is known of those that came since the start; the
-/// others count for all together.
+/// Not thread-safe. The token is known only for parts that arrived since the start. Earlier parts
+/// count for all tokens together.
 class UploadParts {
  public:
   UploadParts(std::filesystem::path folder, PartQuota quota)

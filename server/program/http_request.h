@@ -22,12 +22,12 @@ void joinLists(RequestHeader& header);
 /// no sense is none.
 [[nodiscard]] RequestView viewOf(const RequestHeader& header);
 
-/// What a proxy says in the header that `proxies` names, all of its lines as one list.
+/// A proxy's statement in the header that `proxies` names, with all of its lines as one list.
 [[nodiscard]] std::string forwardedOf(const RequestHeader& header, const TrustedProxies& proxies);
 
-/// The answer to a request that must not be understood: no or several hosts, twice what may stand
-/// there once, an odd version, a body where none is taken. Such an answer closes the connection,
-/// since where the next request would begin is in doubt.
+/// The answer to a request that the server must not interpret. Reasons are no or several hosts, a
+/// repeated header that may occur only once, an odd version, and a body where none is accepted.
+/// Such an answer closes the connection, since the beginning of the next request is in doubt.
 [[nodiscard]] std::optional<Reply> refusalOf(const RequestHeader& header);
 
 /// Whether the request is a WebSocket handshake on the stream's path.

@@ -124,7 +124,7 @@ asio::awaitable<bool> HttpSession::shakeHands() {
   co_return false;
 }
 
-/// What the client has sent stays in the kernel meanwhile.
+/// The client's bytes stay in the kernel meanwhile.
 asio::awaitable<bool> HttpSession::waitForPlace(Handshakes::Client& handshake,
                                                 const Deadline& deadline) {
   while (const auto again = handshake.enter()) {

@@ -79,9 +79,8 @@ void logEnd(const std::exception_ptr& thrown) {
 
 }  // namespace
 
-// The order of the members is the order of their lives: connections outlast the lanes that hold
-// their coroutines, and the jobs, whose last handler may still be on its way into a lane, end
-// first.
+// The members' order is the order of their lives. Connections outlast the lanes that hold their
+// coroutines. The jobs end first, since their last handler may still be on its way into a lane.
 struct Server::State {
   State(const MeshStore& meshes, const ViewerFiles& viewer, ServerOptions given)
       : store(meshes),

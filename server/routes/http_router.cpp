@@ -107,7 +107,7 @@ std::optional<std::string> readableName(const MayRead& mayRead, const ServedMesh
   return found == catalogue.meshes.end() ? std::nullopt : std::optional(found->first);
 }
 
-/// What is the same for every path: methods, and targets that are none.
+/// Handles the part that is the same for every path: methods, and invalid targets.
 template <class Find>
 Answer answer(const RequestView& request, Find find) {
   const std::optional<RequestTarget> target = parseTarget(request.target);
@@ -137,7 +137,7 @@ Router::Router(const MeshStore& store, const ViewerFiles& viewer, const AdminRou
       openApi_(openApiJson()),
       pagePolicy_(std::string(kPagePolicy) + "; frame-ancestors " + frameAncestors) {}
 
-/// What only a server with tokens answers: changes, and tickets.
+/// Routes that only a server with tokens answers: changes, and tickets.
 std::optional<Answer> Router::routeWithTokens(const RequestView& request,
                                               const RequestTarget& target) const {
   const bool ofTickets =

@@ -9,7 +9,7 @@
 
 namespace qtet {
 
-/// What the router needs for writing; both outlive it.
+/// The router's parts for writing; both outlive it.
 struct Writing {
   Access& access;
   Uploads& uploads;

@@ -28,8 +28,9 @@ class LevelCache {
   /// nullopt: there is none, or its file is not what was written (its length or its CRC-32C
   /// differs), which then goes. Reads the whole level. `key` is hexadecimal.
   [[nodiscard]] std::optional<LevelFile> find(const std::string& key);
-  /// Keeps the bytes and gives them back; where the disk refuses, or they alone are more than there
-  /// may be, or less than the reserve would be left on the disk, from memory.
+  /// Keeps the bytes on disk and returns them from there. Returns them from memory if the disk
+  /// refuses, if they alone exceed the cache's size, or if less than the reserve would be left on
+  /// the disk.
   [[nodiscard]] LevelFile put(const std::string& key, Bytes bytes);
   [[nodiscard]] std::uintmax_t bytes() const;
 

@@ -68,7 +68,7 @@ class Scan {
     const auto known = before_.meshes.find(id);
     const EntryPointer old = known == before_.meshes.end() ? nullptr : known->second;
     if (old && old->file == *file) return keep(old);
-    // What could not be read may be readable now; what is damaged stays so.
+    // A file that could not be read may be readable now; a damaged one stays damaged.
     const auto refused = std::ranges::find_if(before_.refused, [&](const auto& r) {
       return r.path == path && r.file == *file && r.error.code != ErrorCode::kIo;
     });

@@ -66,11 +66,11 @@ class PacketIntervals {
   std::vector<ValueInterval> values_;
 };
 
-/// Of a packet: before and after it, at every corner of every cell that it changes, and the same of
-/// all packets below it. So an isosurface that changes where a packet or one below it comes has its
-/// value within; a parent's interval holds its children's. Of other chunks: empty. Decodes the
-/// whole log; holds the finest mesh. Errors: those of decoding; io (`stop` was requested; looked at
-/// after every chunk).
+/// A packet's interval covers the values before and after it, at every corner of every cell that it
+/// changes, and the intervals of all packets below it. So if a packet or one below it changes an
+/// isosurface, the interval contains the isosurface's value. Other chunks have empty intervals.
+/// Decodes the whole log; holds the finest mesh. Errors: those of decoding; io (`stop` was
+/// requested; looked at after every chunk).
 [[nodiscard]] Result<PacketIntervals> packetIntervals(const LogFile& log, const Manifest& manifest,
                                                       const std::stop_token& stop = {});
 

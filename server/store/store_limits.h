@@ -43,8 +43,8 @@ inline constexpr auto kFolderInterval = 60s;
 /// Levels being made or waiting at a time: one that waits holds its log open, one that is made a
 /// whole mesh in memory.
 inline constexpr std::size_t kMaxLevelJobs = 64;
-/// Of them that one address may want: a browser's connections to one server are six, so that no
-/// page is refused, and other addresses find places all the same.
+/// The part of them that one address may want. A browser opens six connections to one server, so no
+/// page is refused, and other addresses still find places.
 inline constexpr std::size_t kMaxLevelJobsPerAddress = 6;
 /// Threads that make them, beside the I/O threads.
 inline constexpr std::size_t kLevelThreads = 1;

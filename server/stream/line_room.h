@@ -1,5 +1,5 @@
-// How many bytes the kernel should hold for one client: what the line takes in a fraction of a
-// second, so that a changed view takes effect soon on slow lines too.
+// How many bytes the kernel should hold for one client: as many as the line carries in a fraction
+// of a second. So a changed view takes effect soon on slow lines too.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace qtet {
 
-/// What the kernel knows of a connection.
+/// The kernel's figures of a connection.
 struct LineFigures {
   std::uint64_t acknowledged = 0;  ///< bytes so far
   std::uint64_t underWay = 0;      ///< bytes sent and not acknowledged, by whole packets

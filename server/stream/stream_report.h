@@ -1,4 +1,4 @@
-// What operators learn of a stream: the figures while it lasts, and a line of the access log at its
+// Reports a stream to operators: the figures while it lasts, and a line of the access log at its
 // end.
 #pragma once
 

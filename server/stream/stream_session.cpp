@@ -39,7 +39,7 @@ constexpr std::size_t kReadBytes = 4096;
 /// Bytes that the kernel may hold unsent: so a superseded order stops soon, and a stalled client
 /// costs little.
 constexpr int kUnsentBytes = 80 << 10;
-/// What a client reads that is given up.
+/// The close reason that a silent client receives.
 constexpr std::string_view kSilenceReason = "no message and no pong came for too long";
 /// Before other connections of the thread have their turn.
 constexpr int kReadsInARow = 8;
@@ -201,8 +201,8 @@ void StreamSession::collect(FrameGather& gather) {
     std::optional<Outgoing> outgoing = protocol_.next(left);
     if (!outgoing) {
       if (protocol_.hasFrame()) break;
-      // What the credit allows is still sent; the rest comes elsewhere, after an `open` with
-      // `have`.
+      // The server still sends as much as the credit allows. The client gets the rest elsewhere,
+      // after an `open` with `have`.
       if (peer_.connection->ending()) control_.close(CloseCode::kGoingAway);
       break;
     }

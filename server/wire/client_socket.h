@@ -20,18 +20,18 @@
 
 namespace qtet {
 
-/// What has come of the client.
+/// The client's bytes that wait to be read, if any.
 enum class Arrived : std::uint8_t {
   kNothing,
   kBytes,
   kEnd,  ///< it has closed its half, or the connection is lost
 };
 
-/// TLS runs on the socket itself, by SSL_read and SSL_write: Asio's ssl::stream would keep 34 KB of
-/// buffers a connection, and make two kinds of everything that is done with a connection. So a
-/// plain connection pays one branch a call. Only for its executor, a single thread or a strand. An
-/// `ec` of would_block means: wait, and call again with the same bytes (and perhaps more behind
-/// them).
+/// A client's connection, plain or with TLS. TLS runs on the socket itself, by SSL_read and
+/// SSL_write. Asio's ssl::stream would keep 34 KB of buffers a connection, and would need two
+/// versions of all code for connections. Here a plain connection pays one branch a call. Only for
+/// its executor, a single thread or a strand. If `ec` is would_block, wait and call again with the
+/// same bytes (and perhaps more behind them).
 class ClientSocket {
  public:
   /// Plain where `tls` is nullptr.
@@ -80,7 +80,7 @@ class ClientSocket {
   void whenReadable(Handler handler) {
     socket_.async_wait(boost::asio::socket_base::wait_read, std::move(handler));
   }
-  /// What the next read() would find; it is left where it is.
+  /// Looks at what the next read() would find. The bytes stay in the socket.
   [[nodiscard]] Arrived arrived();
 
   void cancel();
@@ -100,7 +100,7 @@ class ClientSocket {
   boost::asio::awaitable<boost::system::error_code> wait(boost::asio::socket_base::wait_type what);
   /// Takes it from the socket if it is whole.
   ProxyHead lookForProxyHead();
-  /// What OpenSSL says of a result that is not positive.
+  /// Translates OpenSSL's reason for a result that is not positive.
   void explain(int result, bool& wantsOther, int wanted, boost::system::error_code& ec);
 
   boost::asio::ip::tcp::socket socket_;

@@ -1,4 +1,4 @@
-// What the server allows connections and handshakes, with units and reasons.
+// Limits on connections and handshakes, with units and reasons.
 #pragma once
 
 #include <chrono>
@@ -8,9 +8,9 @@ namespace qtet::limits {
 
 using namespace std::chrono_literals;
 
-/// Connections at a time, HTTP and WebSocket together: 3 KB (HTTP) or 7 KB (WebSocket) each when
-/// idle (measured), 28 MB in all, more with TLS; and below the usual hard limit of 4,096 or more
-/// open files once some are set aside for the logs.
+/// Connections at a time, HTTP and WebSocket together. An idle one takes 3 KB (HTTP) or 7 KB
+/// (WebSocket) (measured), 28 MB in all, more with TLS. The number stays below the usual hard limit
+/// of 4,096 or more open files, less some for the logs.
 inline constexpr std::size_t kMaxConnections = 4000;
 /// Connections at a time of one address: browsers open 6 and one WebSocket a page; a company behind
 /// one address has some pages open.
@@ -31,9 +31,8 @@ inline constexpr auto kAcceptWarningInterval = 10s;
 
 // ---- TLS
 
-/// Handshakes under way, from the server's answer to the hello until the client's last word: 43 KB
-/// each (measured), 22 MB in all; who comes later waits in line, which holds nothing but the
-/// connection.
+/// Handshakes under way, from the server's answer to the hello until the client's last message: 43
+/// KB each (measured), 22 MB in all. Later clients wait in line, which takes only the connection.
 inline constexpr std::size_t kMaxHandshakes = 512;
 /// How long a handshake keeps its place when others want it: a round trip of a poor line with a
 /// packet lost and sent again.

@@ -1,4 +1,4 @@
-// What the server allows requests and responses, with units and reasons.
+// Limits on requests and responses, with units and reasons.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,4 @@
-// What every program can tell of itself, under the names that Prometheus' own clients give.
+// Figures of this process, under the names that Prometheus' own clients give.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
-// What a WebSocket client sends (RFC 6455, 5), out of a stream of bytes cut anywhere: messages,
-// pings and closes, or the code to close with.
+// Reads a WebSocket client's frames (RFC 6455, 5) from a stream of bytes cut anywhere. It gives
+// messages, pings and closes, or the code to close with.
 #pragma once
 
 #include <cassert>
