@@ -239,8 +239,8 @@ TEST_F(AtomicFileCrash, theTemporaryFileOfALivingWriterIsLetAlone) {
 }
 
 TEST_F(AtomicFileCrash, aNameThatIsTakenIsNotWrittenOver) {
-  // What a process of this number would be writing on another machine of the same disk: locked, so
-  // not stale.
+  // A file that a process of this number is writing on another machine with the same disk. It is
+  // locked, so not stale.
   ChosenCall counting(-1, ChosenCall::Fate::kFail);
   ASSERT_TRUE(writeFileAtomically(path_, newBytes(), counting));
   // .a.qtet.PROCESS.NUMBER.tmp

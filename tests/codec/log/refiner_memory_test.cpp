@@ -1,5 +1,5 @@
-// What a refiner needs beyond the mesh that it makes, which on a phone decides how large that may
-// be.
+// Measures a refiner's memory beyond the mesh that it makes. On a phone this limits the mesh's
+// size.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 

@@ -22,8 +22,8 @@ bool derives(testing::StarMesh& star, int k) {
 
 class EveryPrey : public ::testing::TestWithParam<int> {};
 
-// Of such a vertex later levels cost time and no bytes: of three hundred bytes more it would become
-// a million.
+// A vertex without cells costs later levels time but no bytes: three hundred bytes more would give
+// a million of them.
 TEST_P(EveryPrey, hasACell) {
   const int k = GetParam();
   for (int used = 1; used < (k == 4 ? 3 : k); ++used) {

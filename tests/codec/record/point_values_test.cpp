@@ -45,7 +45,7 @@ Field fieldOn(const StarMesh& star) {
   return field;
 }
 
-/// What is told of each prey vertex when the field is linear.
+/// The values coded for each prey vertex when the field is linear.
 std::vector<std::int32_t> residuals(const StarMesh& star, const Split& split) {
   PointAncestry ancestry(true);
   ancestry.add(0, star.mesh, star.link, split);

@@ -1,4 +1,4 @@
-// What a connection notices of its client while it waits for a level.
+// Tests what a connection notices of its client while it waits for a level.
 #include <utility>  // before any Asio header: 1.74 uses std::exchange without it
 
 #include "server/http/level_wait.h"

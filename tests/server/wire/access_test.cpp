@@ -117,8 +117,7 @@ std::int64_t systemSeconds() {
       .count();
 }
 
-/// What a server that has `key` writes into a ticket which ends at that second of the system's
-/// clock.
+/// The ticket of a server with `key`, which ends at that second of the system clock.
 std::string ticketUntil(std::int64_t end, const std::string& key) {
   std::array<char, 17> hex{};
   std::snprintf(hex.data(), hex.size(), "%016llx", static_cast<unsigned long long>(end));

@@ -49,9 +49,8 @@ class TlsClient {
   std::string read(std::size_t bytes);
   /// The body of the answer to a GET; "" where it is no 200 or 206.
   std::string get(std::string_view target, std::string_view headers = "");
-  /// Opens `mesh` on `/v1/stream` and reads the payloads of its frames, one behind the other, until
-  /// the server says that this was all; less where the connection ended, and nothing can be said
-  /// behind it.
+  /// Opens `mesh` on `/v1/stream` and joins the payloads of its frames until the server says that
+  /// the stream is complete. Returns fewer if the connection ended. Nothing can be sent after this.
   std::string stream(const std::string& mesh);
   /// Changes the key so often; sent with the next bytes. REQUIRES: TLS 1.3.
   void updateKey(int times);

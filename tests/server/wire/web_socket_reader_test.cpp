@@ -37,7 +37,7 @@ struct Heard {
   bool operator==(const Heard&) const = default;
 };
 
-/// What a reader makes of the bytes when they come in pieces.
+/// Feeds a reader the bytes in pieces and collects its events.
 Heard hear(std::string_view bytes, std::size_t step = 1u << 20) {
   Heard out;
   WebSocketReader reader;
