@@ -163,12 +163,12 @@ QTET_API qtet_status qtet_log_field_error(qtet_log* log, uint32_t level, uint32_
 
 /* ---- choosing a level */
 
-/* The finest level of at most so many tetrahedra, or of which the log's front has at most so many
- * bytes; 0 if there is none. */
+/* The finest level within a bound: of at most `most` tetrahedra, or decodable from the log's first
+ * `most` bytes. 0 if there is none. */
 QTET_API qtet_status qtet_log_level_of_tetrahedra(qtet_log* log, uint64_t most, uint32_t* level);
 QTET_API qtet_status qtet_log_level_of_bytes(qtet_log* log, uint64_t most, uint32_t* level);
 /* The coarsest level within a bound: of boundaryDistance, or of a field's rms error. QTET_NOT_FOUND
- * if the log does not tell. */
+ * if the log does not state it. */
 QTET_API qtet_status qtet_log_level_of_boundary_error(qtet_log* log, double bound, uint32_t* level);
 QTET_API qtet_status qtet_log_level_of_field_error(qtet_log* log, uint32_t field, double bound,
                                                    uint32_t* level);
@@ -176,9 +176,10 @@ QTET_API qtet_status qtet_log_level_of_field_error(qtet_log* log, uint32_t field
 /* ---- the mesh */
 
 /* Makes the mesh that of `level`, or the whole one (QTET_FULL); levels may be asked for in any
- * order. Going on from the present level costs what lies between; a coarser level, or going on from
- * one that ends inside a chunk, costs decoding from the front. Fields wait until somebody asks for
- * them. Ends the pointers below. If it fails, there is no mesh. */
+ * order. A finer level than the present one costs only the levels between. A coarser level costs
+ * decoding from the front, and so does a finer one if the present level ends inside a chunk.
+ * Fields are decoded when somebody asks for them. Ends the pointers below. If it fails, there is
+ * no mesh. */
 QTET_API qtet_status qtet_log_refine(qtet_log* log, uint32_t level);
 /* The mesh's level, QTET_NO_LEVEL without a mesh; its sizes, 0 without one. */
 QTET_API uint32_t qtet_log_level(const qtet_log* log);

@@ -12,9 +12,9 @@ extern "C" {
 void* qtet_alloc(std::uint32_t bytes);
 void qtet_free(void* memory);
 
-/// Starts with the log whose header, manifest and table are `head` (LogIndex::headBytesOf tells how
-/// many bytes that is). A coarser level is made by a new instance that is given the same blocks up
-/// to it: an instance's memory never shrinks.
+/// Starts with the log whose header, manifest and table are `head` (LogIndex::headBytesOf gives
+/// their size). A coarser level is made by a new instance that is given the same blocks up to it:
+/// an instance's memory never shrinks.
 int qtet_open(const std::uint8_t* head, std::uint32_t bytes);
 /// NUL-terminated text of the last failure.
 const char* qtet_error();
@@ -63,7 +63,8 @@ int qtet_apply_field(std::uint32_t field, std::uint32_t chunk, const std::int32_
                      std::uint32_t count, const std::uint8_t* digits, std::uint32_t digitBytes);
 
 std::uint32_t qtet_chunks_applied();
-/// Whether this one is applied, of the mesh and of a field: of packets the count does not tell.
+/// Whether this chunk is applied, for the mesh and for a field. The counts do not say which packets
+/// are.
 bool qtet_applied(std::uint32_t chunk);
 bool qtet_field_applied(std::uint32_t field, std::uint32_t chunk);
 std::uint32_t qtet_field_chunks_applied(std::uint32_t field);

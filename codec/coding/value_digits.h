@@ -62,7 +62,7 @@ struct Split {
 }  // namespace digits
 
 /// The symbols of all values, and their digits back to back from the lowest bit of the first byte
-/// on, ones that are left over 0.
+/// on. Unused bits are 0.
 struct SymbolsAndDigits {
   std::vector<std::int32_t> symbols;
   Bytes digits;

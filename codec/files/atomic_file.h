@@ -30,7 +30,7 @@ namespace qtet {
 
 /// Removes from `folder` the unfinished files of writers that were killed, if `isOurs` accepts
 /// their names, of at most 190 bytes. Each writer locks its own file, so the files of running
-/// writers stay, whatever their process. A file that cannot be removed does no harm.
+/// writers stay, in every process. A file that cannot be removed does no harm.
 void removeUnfinished(const std::filesystem::path& folder,
                       const std::function<bool(std::string_view name)>& isOurs,
                       FileCalls& calls = systemFileCalls());

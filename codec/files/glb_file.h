@@ -1,5 +1,5 @@
-// The frame of a binary glTF 2.0 file: one mesh of one primitive. For .cpp files only: it drags
-// nlohmann-json in.
+// The frame of a binary glTF 2.0 file: one mesh of one primitive. For .cpp files only, because it
+// includes nlohmann-json.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
-// A log's chunks as they are written: what goes into the open one, the rows of those that are
-// closed, and the bytes of their blocks.
+// A log's chunks as they are written: the content of the open one, the rows of the closed ones, and
+// the bytes of their blocks.
 #pragma once
 
 #include <cstdint>
@@ -27,8 +27,9 @@ class ChunkWriter {
   /// Bytes of the open chunk's blocks, about.
   [[nodiscard]] std::uint64_t estimatedBytes() const;
 
-  /// Ends the open chunk, after which the mesh has slots up to `end`, and opens the next one, which
-  /// begins in `nextLevel`; of a packet also its node. Errors: limit-exceeded, bad-codec.
+  /// close() ends the open chunk, after which the mesh has slots up to `end`. begin() opens the
+  /// next one, which begins in `firstLevel`; a packet also needs its node. Errors: limit-exceeded,
+  /// bad-codec.
   Status close(std::uint32_t lastLevel, std::uint32_t endSlot, const Slots& end);
   void begin(std::uint32_t firstLevel, std::uint32_t node = 0);
 

@@ -1,5 +1,5 @@
-// How much memory it takes to decode a log, foretold from its front: whoever decodes what a
-// stranger sent asks before the first block.
+// Predicts from a log's front how much memory decoding takes. A program that decodes a stranger's
+// log asks before the first block.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// The input's own numbers, bit for bit, told as corrections to what the lattice or a field's scale
-// gives (CLOSING.md, "Exact values").
+// The input's own numbers, bit for bit, coded as corrections to the values of the lattice or of a
+// field's scale (CLOSING.md, "Exact values").
 #pragma once
 
 #include <cstdint>

@@ -7,7 +7,7 @@ namespace qtet {
 namespace {
 
 // A picture sharpens when a chunk is whole, so that each is a share of what a viewer has already
-// waited for, up to LogWriterOptions::chunkBytes. Smaller ones cost more than they give: a row of
+// waited for, up to LogWriterOptions::chunkBytes. Smaller chunks cost more than they gain. A row of
 // the table and Draco's fixed bytes are 130 bytes a chunk with one field, 3 % of 4 KB.
 constexpr std::uint64_t kLeastChunkBytes = 4 << 10;
 constexpr std::uint64_t kGrowth = 3;

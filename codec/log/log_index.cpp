@@ -136,7 +136,7 @@ Status checkClosing(const LogIndex& index, std::uint64_t offset, std::uint64_t f
   return {};
 }
 
-// Packets come in the order of their nodes, 2^firstDepth to 2^(lastDepth + 1) - 1: each band is
+// Packets stand in the order of their nodes, 2^firstDepth to 2^(lastDepth + 1) - 1. Each band is
 // whole, and one bit deeper than the one before it.
 const char* brokenPacket(const LogIndex& index, std::uint32_t i, std::uint32_t head,
                          std::uint32_t firstNode) {

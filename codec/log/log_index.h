@@ -136,8 +136,8 @@ struct LogIndex {
   [[nodiscard]] bool hasCellField() const;
   /// Chunks before the first packet: all of them in `stream`.
   [[nodiscard]] std::uint32_t headChunks() const;
-  /// Depth of the first packets' nodes: how many bits the head's end tells of each cell. 0 in
-  /// `stream`.
+  /// Depth of the first packets' nodes: the number of bits that the head's end codes for each cell.
+  /// 0 in `stream`.
   [[nodiscard]] std::uint32_t firstDepth() const;
   /// Depth of the last packets' nodes. 0 in `stream`.
   [[nodiscard]] std::uint32_t lastDepth() const;

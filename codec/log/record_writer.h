@@ -27,7 +27,7 @@ class RecordWriter {
   /// Writes the base mesh into chunk 0, which stays open. Errors: bad-value, cancelled. REQUIRES:
   /// called once and first.
   Status base();
-  /// Writes the split flag of v in the level in hand (GrowingMesh::beginLevel). The fusion that its
+  /// Writes the split flag of v in the current level (GrowingMesh::beginLevel). The fusion that its
   /// split undoes, or nullptr. REQUIRES: v may split.
   [[nodiscard]] const Fusion* flag(VertexId v);
   /// Writes the record of v and splits it. Errors: bad-value, cancelled. REQUIRES: flag(v) gave

@@ -19,7 +19,8 @@ class Link;
 struct LogIndex;
 struct Split;
 
-/// Hears of every split just before it is applied: link labelled, ids those of `mesh`.
+/// Notified of every split just before it is applied. The link is labelled, and ids are those of
+/// `mesh`.
 class SplitObserver {
  public:
   virtual void beforeSplit(VertexId v, const GrowingMesh& mesh, const Link& link,
@@ -29,8 +30,8 @@ class SplitObserver {
   ~SplitObserver() = default;
 };
 
-/// Asked whether decoding goes on: whoever checks a log that a stranger sent does not wait for the
-/// end of a chunk, which may be the whole of it.
+/// Asked whether decoding goes on. So a check of a stranger's log can stop inside a chunk, which
+/// may be the whole log.
 class LevelGate {
  public:
   virtual bool goOn() = 0;
@@ -78,7 +79,7 @@ class Refiner {
   void observe(SplitObserver* observer);
 
   /// From now on `gate` is asked before every level, of a packet as well; nullptr: nobody. False
-  /// ends the chunk in hand with the error io. It must outlive the chunks applied.
+  /// ends the current chunk with the error io. It must outlive the chunks applied.
   void askBeforeLevels(LevelGate* gate);
 
   [[nodiscard]] const LogIndex& index() const;

@@ -10,8 +10,7 @@
 namespace qtet {
 namespace {
 
-// Stars are fetched so many vertices before they are read: one in twelve splits. 4 to 16 measured
-// alike.
+// Stars are prefetched so many vertices ahead. One vertex in twelve splits. 4 to 16 measured alike.
 constexpr std::uint32_t kVerticesAhead = 8;
 
 constexpr const char* kEmptyLevel = "a level without a record";

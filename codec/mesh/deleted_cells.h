@@ -1,5 +1,5 @@
 // From labels to the cells that a split brings back (FORMAT.md, "Deleted cells"). The labels of a
-// link imply them in nearly every record; an escape flag and a few decisions tell the rest.
+// link imply them in nearly every record; an escape flag and a few decisions code the rest.
 #pragma once
 
 #include <algorithm>
@@ -44,8 +44,8 @@ class DeletedCells {
     assert(link.triangles().size() <= kMaxLinkTriangles && k >= 2 && k <= 4);
   }
 
-  /// `escape` = the labels alone do not tell everything. False when the link is not what a split
-  /// can leave.
+  /// `escape`: the labels alone do not determine the cells. False when no split can leave this
+  /// link.
   [[nodiscard]] bool derive(bool escape) {
     out_.clear();
     escape_ = escape;

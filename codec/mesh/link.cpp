@@ -76,8 +76,8 @@ bool Link::close() {
   return vertexCount_ <= kSmall ? closeSmall() : closeLarge();
 }
 
-// An entry of this turn is not below `first` and less than 2^kPlaceBits above it, one of an earlier
-// turn is below: the sign of the difference tells.
+// An entry of this turn is at least `first` and less than 2^kPlaceBits above it. One of an earlier
+// turn is below, so the sign of the difference decides.
 bool Link::closeSmall() {
   constexpr std::int32_t kPlaces = 1 << kPlaceBits;
   static_assert(4 * kSmall * kSmall / 3 < kPlaces);

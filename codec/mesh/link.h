@@ -140,8 +140,8 @@ class Link {
   std::uint32_t reached_ = 0;  // triangles that the traversal found
   std::vector<Local> locals_;  // by localSlot()
   std::uint32_t generation_ = 0;
-  // For a link of at most kSmall vertices. Entry a * kSmall + b holds the place (4 * triangle +
-  // edge) of the directed edge a -> b, and above it the turn in which it was noted.
+  // For a link of at most kSmall vertices. Entry a * kSmall + b is the place (4 * triangle + edge)
+  // of the directed edge a -> b. Its upper bits are the turn in which it was noted.
   static constexpr std::size_t kSmall = 64;
   static constexpr int kPlaceBits = 16;
   static constexpr std::int32_t kTurns = 1 << 15;

@@ -25,7 +25,7 @@ using Triangle = std::array<VertexId, 3>;
 /// Lattice coordinates, each in [0, 2^bits).
 using LatticePoint = std::array<std::int32_t, 3>;
 
-/// So many slots of each kind: a place in all three at once, or counts.
+/// Numbers of slots of each kind: a place in all three arrays, or counts.
 struct Slots {
   std::uint32_t vertices = 0, tetrahedra = 0, triangles = 0;
 

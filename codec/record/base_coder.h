@@ -1,4 +1,4 @@
-// The base mesh in both directions: cells grown face by face, each told by its apex (FORMAT.md,
+// The base mesh in both directions: cells grown face by face, each given by its apex (FORMAT.md,
 // "Base mesh").
 #pragma once
 
@@ -196,8 +196,8 @@ template <class At>
   return position ? (2 * sum + 1) / 3 - at(f[3], c) : (sum + 1) / 3;
 }
 
-/// The same of a field with missing values: the mean of the face's values that are there; of a
-/// seed's vertex the one before, if it is there; else 0.
+/// The same for a field with missing values: the mean of the face's values that are present. For a
+/// seed's vertex, the value before it if present. Else 0.
 template <class At>
 [[nodiscard]] std::int64_t predictBaseBesideMissing(const BaseBirth& birth, VertexId v,
                                                     std::uint32_t c, const At& at) {

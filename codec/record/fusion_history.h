@@ -25,7 +25,7 @@ struct Fusion {
 
 /// For the layout `regions`: a binary tree over the cells, and the levels in which fusions kept to
 /// its nodes. Node n at depth d is the set of leaves whose topmost d bits are n. Band b (0 = the
-/// finest) keeps to the nodes at depth `depth` - b: all cells of a star belong to one of them, the
+/// finest) keeps to the nodes at depth `depth` - b. All cells of a star belong to one of them, the
 /// deleted ones included.
 struct Bands {
   std::uint32_t depth = 0;          ///< the tree has 2^depth leaves

@@ -88,8 +88,8 @@ class LabelCoder {
     // log of the squared distance to the middle of the triangles that carry it
     std::array<int, 4> distance{};
     std::array<int, 4> score{};
-    // 16 bits a label: the highest, third and fifth highest tell whether the first, second and
-    // third corner has met it
+    // 16 bits a label: the highest, third and fifth highest say whether the first, second and third
+    // corner has met it
     Link::LabelCounts met = 0;
   };
 

@@ -89,13 +89,13 @@ class PositionCoder {
   }
 
  private:
-  // How many digits of a difference go to the positions block: an edge of the star's mean length
-  // along the axis is about 2^kWholeEdge of its units.
+  // How many digits of a difference go to the positions block. In their units, an edge of the
+  // star's mean length along the axis is about 2^kWholeEdge.
   static constexpr int kWholeEdge = 2, kHalfEdge = 3, kQuarterEdge = 4;
   static constexpr std::size_t kShared = 4;
 
-  // The middle of the link's vertices that only one prey vertex's triangles hold, for each prey
-  // vertex, and of all the others; from the fused vertex.
+  // For each prey vertex, the mean of the link's vertices that only its triangles have; then the
+  // mean of all others. Relative to the fused vertex.
   void findMiddles() {
     std::array<Link::Offset, 5> sum{};
     std::array<std::int64_t, 5> count{};
