@@ -1,6 +1,6 @@
 // Reads parsed JSON the way ByteReader reads bytes. It keeps the first error, with the JSON pointer
-// of its place, so that a parser is a straight line with one check at the end. For the .cpp files
-// of this room only, because it includes nlohmann-json.
+// of its place. So a parser is a straight line with one check at the end. For the .cpp files of
+// this room only, because it includes nlohmann-json.
 #pragma once
 
 #include <cmath>
