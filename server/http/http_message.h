@@ -37,8 +37,8 @@ struct RequestView {
   std::optional<std::string_view> traceparent = std::nullopt;
 };
 
-/// `body` is text of the reply's own, or bytes that live as long as `owner`, or left open: it is
-/// not there yet, and nobody knows its length.
+/// `body` is text that the reply owns, or bytes that live as long as `owner`. std::monostate leaves
+/// it open: it does not exist yet, and its length is unknown.
 struct Reply {
   unsigned status = 200;
   /// Without Content-Length, Date and Connection.

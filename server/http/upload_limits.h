@@ -24,10 +24,10 @@ inline constexpr std::uintmax_t kMaxPartBytes = std::uintmax_t{128} << 30;
 inline constexpr std::uintmax_t kMaxPartBytesOfToken = std::uintmax_t{32} << 30;
 /// Threads that check complete uploads by decoding them whole, beside those that make levels.
 inline constexpr std::size_t kCheckThreads = 1;
-/// Bytes of memory that one check may take, as codec/log/decoding_memory.h foretells them: 80 each
-/// for a log of 50 million tetrahedra with a field.
+/// Bytes of memory that one check may take, as predicted by codec/log/decoding_memory.h: 80 for
+/// each tetrahedron of a log of 50 million with a field.
 inline constexpr std::uintmax_t kMaxCheckBytes = std::uintmax_t{4} << 30;
-/// From a check's beginning to its end: so many tetrahedra take a minute.
+/// From a check's beginning to its end. That many tetrahedra take a minute.
 inline constexpr auto kCheckTime = 10min;
 /// The part of an interrupted upload is kept for so long, so that the upload can be resumed.
 inline constexpr auto kPartialUploadTime = 24h;

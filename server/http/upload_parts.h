@@ -1,5 +1,5 @@
-// The parts of uploads that lie in the folder until somebody goes on with them, and how many of
-// them there may be.
+// The parts of uploads that stay in the folder until somebody resumes them, and the limits on their
+// number.
 #pragma once
 
 #include <chrono>
@@ -35,7 +35,7 @@ class UploadParts {
   UploadParts(std::filesystem::path folder, PartQuota quota)
       : folder_(std::move(folder)), quota_(std::move(quota)) {}
 
-  /// Where the bytes go that can be gone on with.
+  /// The file for the bytes of an upload that can be resumed.
   [[nodiscard]] std::filesystem::path resumable(const std::string& id,
                                                 const std::string& digest) const;
   /// Where those go that cannot; another place each time.
@@ -54,8 +54,8 @@ class UploadParts {
   [[nodiscard]] std::size_t countUnderWay() const { return underWay_.size(); }
   [[nodiscard]] std::size_t countUnderWay(const std::string& token) const;
 
-  /// Removes parts of no upload under way that nobody wrote to for limits::kPartialUploadTime, or
-  /// where they cannot be gone on with for `ofNoDigest`.
+  /// Removes old parts of inactive uploads: those that nobody wrote to for
+  /// limits::kPartialUploadTime, or for `ofNoDigest` if they cannot be resumed.
   void removeOld(std::chrono::seconds ofNoDigest) const;
 
  private:

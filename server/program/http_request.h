@@ -14,8 +14,8 @@ namespace qtet {
 
 using RequestHeader = boost::beast::http::request_header<>;
 
-/// Lists that stand on several lines on one, as RFC 9110, 5.3 reads them: else whoever looks at a
-/// header sees its first line alone.
+/// Joins the lines of lists into one, as RFC 9110, 5.3 reads them. Otherwise a look at a header
+/// would find its first line only.
 void joinLists(RequestHeader& header);
 
 /// The views live as long as `header`. A `Range` that stands there twice is none, as one that makes
@@ -32,8 +32,9 @@ void joinLists(RequestHeader& header);
 
 /// Whether the request is a WebSocket handshake on the stream's path.
 [[nodiscard]] bool isStreamHandshake(const RequestHeader& header);
-/// 403 for a page whose origin is not among `origins` (unless that is nullptr or empty; whoever
-/// names no origin is no browser, and whoever is none may name any). It closes the connection.
+/// 403 for a page whose origin is not among `origins`, unless that is nullptr or empty. A client
+/// that names no origin is no browser, and other programs may name any origin. It closes the
+/// connection.
 [[nodiscard]] std::optional<Reply> originRefusal(const RequestHeader& header,
                                                  const std::vector<std::string>* origins);
 /// GET, HEAD and OPTIONS.

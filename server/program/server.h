@@ -53,8 +53,8 @@ struct ServerOptions {
   TrustedProxies proxies{};
   LevelJobs::Maker makeLevel = qtet::makeLevel;
   UploadOptions uploads{};
-  /// From the first signal to the end, all is served on, and /readyz is 503: for whoever spreads
-  /// requests over several servers.
+  /// From the first signal to the end. Meanwhile the server serves everything, and /readyz is 503,
+  /// so that a load balancer takes it out.
   std::chrono::milliseconds drain{0};
 };
 

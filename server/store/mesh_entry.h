@@ -1,4 +1,4 @@
-// A log of the folder. The entry keeps the results of its check and opens the log on demand, so a
+// A log of the folder. The entry keeps the results of its check and opens the log on demand. So a
 // folder may have many more logs than a process may have open files.
 #pragma once
 

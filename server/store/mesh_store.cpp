@@ -110,8 +110,8 @@ class Scan {
     change_.added.push_back(entry);
   }
   void keep(const EntryPointer& mesh) { next_->meshes[mesh->id] = mesh; }
-  /// The old log goes on under its name if its own file is untouched (renamed over, not written
-  /// into) and still open.
+  /// The old log stays under its name if its own file is untouched (renamed over, not written into)
+  /// and still open.
   void keepSound(const EntryPointer& old, const FileIdentity& file) {
     if (old && old->file.inode != file.inode && old->pin()) keep(old);
   }

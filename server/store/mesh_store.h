@@ -17,8 +17,8 @@
 namespace qtet {
 
 namespace limits {
-/// One look at a folder reads files for so long, and at least so many of them. The start waits for
-/// one look; a folder of 100,000 logs takes many.
+/// One scan of a folder reads files for this time, and at least this many of them. The start waits
+/// for one scan; a folder of 100,000 logs takes many.
 inline constexpr auto kFolderReadTime = std::chrono::seconds(1);
 inline constexpr std::size_t kLogsReadAtOnce = 64;
 }  // namespace limits
@@ -54,8 +54,8 @@ struct FolderChange {
 struct StoreOptions {
   /// Logs held open at a time, but for those that clients are reading: a descriptor each.
   std::size_t mostOpen = descriptorsForLogs();
-  /// After which a look at the folder leaves the files that it has not looked into to the next one;
-  /// the first limits::kLogsReadAtOnce are looked into in any case.
+  /// After this time a scan of the folder leaves the remaining files to the next scan. It always
+  /// reads the first limits::kLogsReadAtOnce.
   std::chrono::milliseconds readTime = limits::kFolderReadTime;
 
   /// A quarter of what the process may open, and at most limits::kMaxOpenLogs: the rest is for
@@ -99,8 +99,8 @@ class MeshStore {
   std::unique_ptr<State> state_;
 };
 
-/// The mesh's file in `folder`; nullopt where `id` cannot be a file's name there: empty, with a
-/// slash, a control byte or a leading dot, too long, or not UTF-8.
+/// The mesh's file in `folder`; nullopt if `id` cannot be a file's name there. Such ids are empty,
+/// too long or not UTF-8, or have a slash, a control byte or a leading dot.
 [[nodiscard]] std::optional<std::filesystem::path> pathOfMesh(const std::filesystem::path& folder,
                                                               std::string_view id);
 

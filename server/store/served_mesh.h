@@ -68,7 +68,7 @@ struct ServedMesh {
   static std::shared_ptr<Texts> makeTexts();
 };
 
-/// Whoever holds one keeps the log mapped, also after the file was replaced or removed.
+/// Each of these pointers keeps the log mapped, even after the file was replaced or removed.
 using MeshPointer = std::shared_ptr<const ServedMesh>;
 
 /// Opens a log as mesh `id` and checks everything that can be checked without decoding: header,

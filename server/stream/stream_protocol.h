@@ -92,7 +92,7 @@ class StreamProtocol {
   };
   /// Returns the payload bytes to come.
   static std::uint64_t plan(Stream& stream);
-  /// Plans anew where the request has changed, and says so.
+  /// Makes a new plan if the request has changed, and announces it.
   void catchUp();
   /// There is more to send, credit or not.
   [[nodiscard]] bool hasRun() const {

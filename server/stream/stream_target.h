@@ -19,7 +19,7 @@ struct StopAt {
   bool ofWantedOnly = false;  ///< satisfied once the view's wishes are fulfilled
 };
 
-/// A level beyond the last is the last. Where the log does not tell the errors of its levels, only
+/// A level beyond the last is the last. If the log does not state the errors of its levels, only
 /// the last level is known to be good enough. REQUIRES: the manifest is that of the index; `field`
 /// is the target's, if it names one, and one of the manifest.
 [[nodiscard]] StopAt stopAt(const LogIndex& index, const Manifest& manifest, const Target& target,

@@ -58,7 +58,7 @@ class Access {
   const std::string ticketKey_, issuer_;
   mutable std::mutex mutex_;
   std::shared_ptr<const Tokens> tokens_;
-  /// By their own digests, so that the time of looking one up tells nothing of it.
+  /// Keyed by the tickets' digests, so that the time of a look-up reveals nothing about a ticket.
   std::map<SecretDigest, Ticket> tickets_;
   std::map<SecretDigest, Clock::time_point> usedForeign_;  ///< until when
 };

@@ -22,11 +22,11 @@ inline constexpr unsigned kMaxRequestsPerSecond = 2000;
 inline constexpr std::size_t kMaxRememberedAddresses = 100'000;
 /// Seconds after which a client that was turned away (503) is asked to come back.
 inline constexpr unsigned kRetryAfterSeconds = 2;
-/// How long `accept` rests when the system has no file or memory left for one more connection:
-/// after the first failure, and while they go on.
+/// How long `accept` rests when the system has no file or memory left for another connection: after
+/// the first failure, and after each further one.
 inline constexpr auto kFirstAcceptRest = 1ms;
 inline constexpr auto kAcceptRest = 100ms;
-/// How often that is told.
+/// How often this is logged.
 inline constexpr auto kAcceptWarningInterval = 10s;
 
 // ---- TLS

@@ -25,7 +25,7 @@ struct ProxyHead {
   std::optional<boost::asio::ip::address> client{};
 };
 
-/// A head has at most so many bytes: 16, the addresses, and what proxies add about TLS.
+/// A head has at most this many bytes: 16, the addresses, and additions of proxies about TLS.
 inline constexpr std::size_t kMaxProxyHeadBytes = 4096;
 
 /// Reads the first bytes of a connection ("The PROXY protocol", haproxy.org, section 2.2).

@@ -28,7 +28,7 @@ class Networks {
   std::shared_ptr<const Blocks> blocks_;  // nullptr: none
 };
 
-/// How proxies tell the client's address.
+/// The header in which proxies report the client's address.
 enum class ProxyHeader : std::uint8_t {
   kForwardedFor,   ///< X-Forwarded-For
   kForwarded,      ///< Forwarded (RFC 7239)

@@ -70,7 +70,7 @@ class WebSocketReader {
   [[nodiscard]] std::expected<std::optional<Event>, CloseCode> takeEvent();
   [[nodiscard]] std::expected<std::optional<Frame>, CloseCode> takeFrame();
   [[nodiscard]] std::expected<std::optional<Event>, CloseCode> control(Frame frame) const;
-  /// nullopt: the message goes on.
+  /// nullopt: the message continues in another frame.
   [[nodiscard]] std::expected<std::optional<Event>, CloseCode> data(Frame frame);
 
   State state_ = State::kHungry;
