@@ -65,7 +65,7 @@ inline void labelAs(StarMesh& star, std::span<const std::uint8_t> labels) {
   return out;
 }
 
-/// Gives each triangle of the link the nearest of `prey`, and numbers these anew in order of first
+/// Gives each triangle of the link the nearest of `prey`, and renumbers these in order of first
 /// appearance along the traversal, as records do. Returns how many have triangles: the first of
 /// `prey`, which is put into the same order.
 inline std::size_t labelByNearest(StarMesh& star, std::vector<LatticePoint>& prey) {

@@ -1,5 +1,5 @@
-// A writer that fails, or is killed, at any of its calls to the operating system; a disk that is
-// full; what a killed one leaves.
+// Tests a writer that fails, or is killed, at any of its system calls; a full disk; and the files
+// that a killed writer leaves.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sched.h>

@@ -39,8 +39,8 @@ TEST_P(EveryPrey, mayHaveItsOnlyCellsAmongTheDeleted) {
   testing::StarMesh star = testing::starMesh({64, 64, 64}, {8, 8, 8}, 8);
   const int k = GetParam();
   std::vector<std::uint8_t> labels(star.link.triangles().size());
-  // One triangle and a neighbour: the three labels meet at two vertices, and behind one of them
-  // lies a fourth prey vertex of k = 4, which no triangle carries.
+  // One triangle and a neighbour have labels of their own, so the three labels meet at two
+  // vertices. Behind one of them lies a fourth prey vertex of k = 4, which no triangle carries.
   labels.front() = 1;
   if (k > 2) labels[star.link.triangles().front().neighbour[0]] = 2;
   testing::labelAs(star, labels);

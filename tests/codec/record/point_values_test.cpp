@@ -1,5 +1,5 @@
-// Point fields along a split: what a linear field leaves to be told, there and back, and values at
-// the limits.
+// Tests point fields along a split: the residuals of a linear field, both ways, and values at the
+// limits.
 #include "codec/record/point_values.h"
 
 #include <gtest/gtest.h>

@@ -155,7 +155,8 @@ TEST(Tickets, ofAnotherServerEndWithinThirtySeconds) {
   }
 }
 
-// The steady clock alone goes on here, so that the ticket itself is still good when its mark goes.
+// Only the steady clock advances here, so the ticket itself is still valid when its mark is
+// removed.
 TEST(Tickets, ofAnotherServerAreRememberedAsUsedAsLongAsOneMayLast) {
   const std::string key(32, 'k');
   Access access(*Tokens::parse("read * " + kReader), key);

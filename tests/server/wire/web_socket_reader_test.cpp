@@ -87,7 +87,7 @@ TEST(WebSocketReader, aFrameThatBreaksTheRulesClosesWith1002) {
       << "a negative length";
 }
 
-/// RFC 6455, 5.2: a length is told in as few bytes as it takes.
+/// RFC 6455, 5.2: a length is written in as few bytes as possible.
 TEST(WebSocketReader, aLengthInMoreBytesThanItNeedsClosesWith1002) {
   const auto framed = [](std::uint64_t size, unsigned lengthBytes) {
     std::string out = "\x82";
