@@ -149,10 +149,9 @@ endef
 # The demo waits for nothing that it does not show, the tests least of all.
 demo: TARGETS := --target qtet qtet-server qtet_viewer
 
-# Makes build/demo/NAME.qtet, unless it is there already, newer than the mesh and the tool, and from
-# this very mesh: what an older tool wrote need not be what this viewer reads, nor as good as what
-# this tool writes. The tool writes its files whole or not at all, so an interrupted run leaves
-# nothing half done.
+# Makes build/demo/NAME.qtet, unless it is there already, from this very mesh and newer than mesh
+# and tool. This viewer may not read an older tool's log, and this tool may write a better one. The
+# tool writes its files whole or not at all, so an interrupted run leaves nothing half done.
 demo-log: demo-port setup build
 	@$(demo_name)
 	log=build/demo/$$name.qtet
@@ -214,8 +213,8 @@ test-units:
 	echo "skipped:"
 	sed -n 's/^\[  SKIPPED \] \([^ ]*\) (.*/  \1/p' $(CHECKED)/Testing/Temporary/LastTest.log
 
-# A browser or a network namespace on a busy machine may stall for longer than any test foresees:
-# only tests with the label `chance` are tried a second time, and the run lists them.
+# A browser or a network namespace on a busy machine may stall for longer than a test allows. So
+# tests with the label `chance`, and no others, get a second try, and the run lists them.
 test-system:
 	@ctest --preset release --parallel $(JOBS) -LE chance
 	log=$(BUILD)/Testing/chance.txt
@@ -283,7 +282,7 @@ tidy: setup
 	@$(call configure,checked)
 	.ci/tidy.sh $(CHECKED) $(JOBS) $(TIDY_SINCE)
 
-# What a fuzzer finds stays in build/checked/fuzz/found.
+# A fuzzer's finds stay in build/checked/fuzz/found.
 fuzz: CHECKED_TARGETS := --target qtet_fuzzers
 fuzz: setup build-checked
 	@ctest --preset checked --parallel $(JOBS) -L fuzz
@@ -325,8 +324,8 @@ bench: setup build
 	  "$$program"
 	done
 
-# tests/bench/RESULTS.md. What is known already is kept in build/results, so it may be stopped and
-# started again.
+# Writes tests/bench/RESULTS.md. Finished results stay in build/results, so the run may be stopped
+# and started again.
 results: TARGETS := --target qtet vtk_decimate
 results: setup build
 	@python3 tests/bench/results.py --cache build/results $(RESULTS)

@@ -31,7 +31,7 @@ for mounted in $(awk -v root="$work/root/" 'index($2, root) == 1 {print $2}' /pr
   sort -r); do umount "$mounted"; done
 rm -rf --one-file-system "$work/root"
 cp -a "$work/base" "$work/root"
-# What this machine needs to reach the network: names, and certificates of its own.
+# Names and local certificates, which this machine needs to reach the network.
 cp --dereference /etc/resolv.conf /etc/hosts "$work/root/etc/"
 mkdir -p "$work/root/usr/local/share"
 [[ ! -d /usr/local/share/ca-certificates ]] ||

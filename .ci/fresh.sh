@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Continuous integration in a bare Debian 12 of its own, from a clean clone of the last commit: what
-# is installed there comes from .ci/packages.txt alone. Needs root, and mmdebstrap or debootstrap.
+# Continuous integration in a separate bare Debian 12, from a clean clone of the last commit. Only
+# the packages of .ci/packages.txt are installed there. Needs root, and mmdebstrap or debootstrap.
 #   fresh.sh [FOLDER]      the log is FOLDER/fresh.log; FOLDER is build/fresh unless given
 set -euo pipefail
 source=$(realpath "$(dirname "${BASH_SOURCE[0]}")/..")
@@ -29,7 +29,7 @@ inside() {
   chroot "$root" env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LC_ALL=C.UTF-8 \
     DEBIAN_FRONTEND=noninteractive "$@"
 }
-# Whoever has the clone has git; whoever runs it has make.
+# A user needs git to clone and make to build.
 inside sh -c 'apt-get update -qq && apt-get install -y -qq --no-install-recommends git make' \
   >"$work/apt.log" 2>&1 || { tail -20 "$work/apt.log" >&2; exit 1; }
 echo "fresh: $(git -C "$source" log -1 --format='%h %s')" | tee "$work/fresh.log"

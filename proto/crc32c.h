@@ -18,8 +18,8 @@ struct Crc32cPath {
   const char* name;
   std::uint32_t (*run)(ByteView bytes);
 };
-/// The ways that this machine can go, the fastest first, which is the one that crc32c takes; the
-/// last one is the tables, which all can.
+/// The implementations that this machine supports, the fastest first; crc32c uses that one. The
+/// last one uses tables, which every machine supports.
 [[nodiscard]] std::span<const Crc32cPath> crc32cPaths();
 
 }  // namespace qtet

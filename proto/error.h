@@ -1,5 +1,5 @@
-// What goes wrong, as a value: every decoder of outside bytes returns Result<T>, and only a
-// caller's mistake asserts.
+// Errors as values: every decoder of outside bytes returns Result<T>, and only a caller's mistake
+// asserts.
 #pragma once
 
 #include <cstdint>
@@ -50,7 +50,7 @@ using Status = std::expected<void, Error>;
   return std::unexpected<Error>(Error{code, std::move(message), offset});
 }
 
-/// What work answers that was told to stop.
+/// The error of work that was asked to stop.
 [[nodiscard]] inline std::unexpected<Error> cancelled() {
   return fail(ErrorCode::kCancelled, "stopped, as the caller asked");
 }

@@ -1,5 +1,5 @@
-// Which field a name means: one rule for options, URLs, messages and the C library, over any list
-// of things with a name and an association.
+// Which field a name means. Options, URLs, messages and the C library share this rule. It works on
+// any list of things with a name and an association.
 #pragma once
 
 #include <charconv>
@@ -11,8 +11,8 @@
 
 namespace qtet {
 
-/// "T" of "T@0.5", the name of a field in a step of a series (simplify/read/join_blocks.h); nothing
-/// of a name that does not end in a number.
+/// "T" for "T@0.5", the name of a field in a step of a series (simplify/read/join_blocks.h).
+/// nullopt for a name that does not end in a number.
 [[nodiscard]] inline std::optional<std::string_view> nameWithoutStep(std::string_view name) {
   const std::size_t at = name.rfind('@');
   if (at == std::string_view::npos || at == 0) return std::nullopt;
@@ -30,8 +30,9 @@ namespace qtet {
           key[association.size()] == ':' && key.ends_with(name));
 }
 
-/// The fields that `key` means where several may be meant, ascending: those of that name; else with
-/// "point:" or "cell:" before it the one; else of a series' fields every step's, NAME@TIME.
+/// The fields that `key` means where it may mean several, ascending. First choice: the fields of
+/// that name. Second: the one field of that name after "point:" or "cell:". Third: every step of a
+/// series, NAME@TIME.
 template <std::ranges::random_access_range Fields>
 [[nodiscard]] std::vector<std::uint32_t> fieldsOfKey(const Fields& fields, std::string_view key) {
   std::vector<std::uint32_t> out;
@@ -50,8 +51,8 @@ template <std::ranges::random_access_range Fields>
   return out;
 }
 
-/// The one field that `key` means: the point field of that name, else the cell field of that name,
-/// else with "point:" or "cell:" before it; of a series a step's whole name.
+/// The one field that `key` means: the point field of that name, else the cell field of that name.
+/// Else the field named after "point:" or "cell:". A step of a series needs its whole name.
 template <std::ranges::random_access_range Fields>
 [[nodiscard]] std::optional<std::uint32_t> fieldOfKey(const Fields& fields, std::string_view key) {
   std::optional<std::uint32_t> out;

@@ -1,6 +1,6 @@
-// Reading parsed JSON the way ByteReader reads bytes: the first error stays, with the JSON pointer
-// of its place, so that a parser is a straight line with one check at the end. For the .cpp files
-// of this room only: it drags nlohmann-json in.
+// Reads parsed JSON the way ByteReader reads bytes. It keeps the first error, with the JSON pointer
+// of its place. So a parser is a straight line with one check at the end. For the .cpp files of
+// this room only, because it includes nlohmann-json.
 #pragma once
 
 #include <cmath>

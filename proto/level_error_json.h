@@ -1,4 +1,5 @@
-// A LevelError as JSON (FORMAT.md, "Known error"). For .cpp files only: it drags nlohmann-json in.
+// A LevelError as JSON (FORMAT.md, "Known error"). For .cpp files only, because it includes
+// nlohmann-json.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -51,8 +51,8 @@ struct Manifest {
   std::vector<ManifestLevel> levels;  ///< level 0 = base mesh, the last = the input's mesh
 };
 
-/// What names field `f` among the others: its name, or "cell:NAME" for a cell field where a point
-/// field has the same name.
+/// The unique name of field `f`: its name, or "cell:NAME" for a cell field if a point field has the
+/// same name.
 [[nodiscard]] std::string fieldKey(const Manifest& manifest, std::size_t f);
 /// The one field that `key` means (field_key.h).
 [[nodiscard]] std::optional<std::uint32_t> fieldOfKey(const Manifest& manifest,

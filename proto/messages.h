@@ -16,7 +16,7 @@
 
 namespace qtet {
 
-/// What a client must offer in Sec-WebSocket-Protocol.
+/// The subprotocol that a client must offer in Sec-WebSocket-Protocol.
 inline constexpr std::string_view kStreamSubprotocol = "qtet.v1";
 /// Bytes of one JSON message: an `open` that names kMaxFields fields twice, in names of ordinary
 /// length, needs under half of it.

@@ -6,11 +6,11 @@
 
 namespace qtet {
 
-/// What a Boost.Program_options error says, whatever words were given. Its what() puts the words
-/// into a template for as long as their placeholder is found, and so never ends when a word holds
-/// the placeholder itself: `--x%original_token%`. Here each % of a word is masked meanwhile.
-/// `Named` is boost::program_options::error_with_option_name: this room knows no Boost, which those
-/// that have options bring.
+/// The text of a Boost.Program_options error, safe for any words of the user. Its own what()
+/// replaces placeholders until none is left. It never ends if a word holds the placeholder itself:
+/// `--x%original_token%`. This function masks each % of a word meanwhile. `Named` is
+/// boost::program_options::error_with_option_name. It is a parameter because this room does not
+/// include Boost.
 template <class Named, class Error>
 std::string optionErrorText(Error& error) {
   struct Open : Named {

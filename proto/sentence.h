@@ -1,4 +1,4 @@
-// How what went wrong is told to people: as a whole sentence, whoever wrote it.
+// Turns any error message into a whole sentence for people.
 #pragma once
 
 #include <string>

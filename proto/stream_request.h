@@ -1,5 +1,5 @@
-// What a client of `/v1/stream` has and what it wants (STREAM.md, "What a client has", "Target",
-// "View"), as plain values.
+// Plain values for the blocks that a client of `/v1/stream` has, and for its wishes (STREAM.md,
+// "What a client has", "Target", "View").
 #pragma once
 
 #include <array>
@@ -13,8 +13,8 @@
 
 namespace qtet {
 
-/// Planes of a frustum, clip planes, isovalues: as many as a camera has sides, as the viewer cuts
-/// with, and as anybody tells apart.
+/// Most planes of a frustum, clip planes and isovalues. A camera has six sides, the viewer cuts
+/// with three planes, and nobody distinguishes more isovalues.
 inline constexpr std::size_t kMaxFrustumPlanes = 6;
 inline constexpr std::size_t kMaxClipPlanes = 3;
 inline constexpr std::size_t kMaxIsovalues = 8;

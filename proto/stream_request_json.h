@@ -1,5 +1,5 @@
-// What a client has and asks for as JSON, both ways. For the .cpp files of this room only, like
-// json_reader.h.
+// Converts a client's blocks and requests to JSON and back. For the .cpp files of this room only,
+// like json_reader.h.
 #pragma once
 
 #include "proto/json_reader.h"

@@ -25,7 +25,7 @@ set(out ${CMAKE_CURRENT_BINARY_DIR})
 set(bin ${CMAKE_BINARY_DIR}/bin)
 
 qtet_system_test(arrows ROOM house COMMAND ${here}/arrows/check.sh ${PROJECT_SOURCE_DIR})
-# What .ci/packages.txt has to name.
+# Checks that .ci/packages.txt names every package needed.
 qtet_system_test(packages ROOM house COMMAND ${here}/packages/check.py ${PROJECT_SOURCE_DIR})
 foreach(script IN ITEMS view pipes completion)
   qtet_system_test(${script} ROOM simplify
@@ -57,8 +57,8 @@ if(QTET_PYTHON)
   endforeach()
 endif()
 
-# VTK's Python modules come with libvtk9-dev, for Debian's own python3; ParaView excludes that
-# package on Debian 12, so there its test skips, and `make test-deb` runs it in a Debian of its own.
+# VTK's Python modules are part of libvtk9-dev, for Debian's own python3. ParaView excludes that
+# package on Debian 12, so there its test is skipped. `make test-deb` runs it in a separate Debian.
 find_program(QTET_VTK_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
 if(QTET_VTK_PYTHON AND NOT QTET_SANITIZE)
   set(modules ${PROJECT_SOURCE_DIR}/codec/python)

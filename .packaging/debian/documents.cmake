@@ -1,5 +1,5 @@
-# What a Debian package has beside its program, compressed, into the working folder: changelog.gz
-# (the project's own), changelog.Debian.gz (of the packages) and qtet-server.1.gz.
+# Writes a Debian package's compressed documents into the working folder: changelog.gz (the
+# project's own), changelog.Debian.gz (of the packages) and qtet-server.1.gz.
 #   cmake -DSOURCE=. -DVERSION=1.2.3-1 -DMAINTAINER="NAME <ADDRESS>" -P documents.cmake
 cmake_minimum_required(VERSION 3.25)
 

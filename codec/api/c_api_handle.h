@@ -1,4 +1,4 @@
-// What stands behind the handles of the C API (codec/api/qtet.h, simplify/api/qtet_simplify.h), and
+// The objects behind the handles of the C API (codec/api/qtet.h, simplify/api/qtet_simplify.h), and
 // the border that no exception crosses. For the library's own .cpp files.
 #pragma once
 
@@ -40,7 +40,7 @@ struct qtet_log : qtet::Failure {
   qtet::Manifest manifest;               // of `file`
   std::optional<qtet::Refiner> refiner;  // of `file`, with a complete level
 
-  // What a call needs; each gives QTET_OK or refuses.
+  // Checks of a call's arguments. Each returns QTET_OK or refuses.
   qtet_status needField(std::uint32_t field);
   qtet_status needLevel(std::uint32_t level);
   qtet_status needPlace(const void* place) {

@@ -55,8 +55,8 @@ template <>
 constexpr std::size_t kFirstBytes<qtet_level_info> =
     offsetof(qtet_level_info, volumeKept) + sizeof(qtet_level_info::volumeKept);
 
-/// A caller of an earlier version has a shorter struct and gets no more than that; one of a later
-/// version a longer one: what this library does not know is 0.
+/// A caller built against an earlier version has a shorter struct and gets only that much. A later
+/// one has a longer struct; the members that this library does not know become 0.
 template <class Info>
 qtet_status give(qtet_log* log, const Info& info, std::size_t infoBytes, Info* out) {
   if (out == nullptr) return log->refuse(QTET_BAD_ARGUMENT, "info is null");

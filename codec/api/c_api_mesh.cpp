@@ -117,7 +117,7 @@ qtet_status qtet_log_refine(qtet_log* log, uint32_t level) {
   return withLog(log, [&]() -> qtet_status {
     if (level == QTET_FULL) level = static_cast<std::uint32_t>(log->manifest.levels.size()) - 1;
     if (const qtet_status status = log->needLevel(level)) return status;
-    // Only a mesh of a complete level is put back, whatever happens on the way.
+    // The log gets its refiner back only with a complete level; after an error it has none.
     std::optional<Refiner> refiner = std::move(log->refiner);
     log->refiner.reset();
     if (!refiner || !canGoOn(*refiner, level)) refiner.emplace(log->file->index());

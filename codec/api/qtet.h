@@ -7,21 +7,21 @@
  *   ... qtet_log_tetrahedra(log) ...
  *   qtet_log_destroy(log);
  *
- * Errors    A function that can fail returns a qtet_status; qtet_log_error then tells what, where
- *           and what to do. No exception leaves.
+ * Errors    A function that can fail returns a qtet_status; qtet_log_error then says what failed,
+ *           where, and what to do. No exception leaves.
  * Threads   One thread at a time may use a qtet_log; different ones have nothing in common and need
  *           no lock.
- * Pointers  What a function gives back belongs to the qtet_log; each says how long it stays. What
- *           is handed in is not kept.
+ * Pointers  Returned memory belongs to the qtet_log; each function says how long it stays valid.
+ *           No function keeps a pointer that the caller passes.
  * Structs   The caller passes sizeof his struct first: later versions append members, and fill no
  *           more than he has.
  * Sizes     Arrays are packed in slots of codec/FORMAT.md: a slot's number never changes while a
- *           mesh is refined. There are no gaps, but in logs of layout `regions` at levels within a
- *           band: there a cell of four (a triangle of three) times the same vertex is none, and no
- *           cell has the vertices that belong to it.
+ *           mesh is refined. Gaps occur only in logs of layout `regions`, at levels within a band.
+ *           There a cell of four (a triangle of three) times the same vertex is a gap, and no
+ *           other cell has the vertices that belong to it.
  *
  * The browser has functions of its own (codec/api/wasm_api.h in the sources). There a page fetches
- * blocks and Draco decodes them outside, so a module is one refiner that is fed integers; here a
+ * blocks and Draco decodes them outside, so a module is one refiner that is fed integers. Here a
  * log is a file or memory, and everything is decoded inside. No name is in both. */
 #ifndef QTET_H
 #define QTET_H
@@ -35,8 +35,8 @@
 #define QTET_API
 #endif
 
-/* Of this header. Below 1.0 a new minor version may break callers, and the library's SOVERSION then
- * grows. */
+/* The version of this header. Below 1.0 a new minor version may break callers, and the library's
+ * SOVERSION then grows. */
 #define QTET_VERSION_MAJOR 0
 #define QTET_VERSION_MINOR 2
 #define QTET_VERSION_PATCH 0
@@ -77,7 +77,7 @@ enum {
   QTET_INTERNAL = 104 /* a defect of the library; please report it */
 };
 
-/* What the values of a field belong to. */
+/* The kind of element that a field's values belong to. */
 enum { QTET_POINT = 0, QTET_CELL = 1 };
 
 typedef struct qtet_log qtet_log;
@@ -163,12 +163,12 @@ QTET_API qtet_status qtet_log_field_error(qtet_log* log, uint32_t level, uint32_
 
 /* ---- choosing a level */
 
-/* The finest level of at most so many tetrahedra, or of which the log's front has at most so many
- * bytes; 0 if there is none. */
+/* The finest level within a bound: of at most `most` tetrahedra, or decodable from the log's first
+ * `most` bytes. 0 if there is none. */
 QTET_API qtet_status qtet_log_level_of_tetrahedra(qtet_log* log, uint64_t most, uint32_t* level);
 QTET_API qtet_status qtet_log_level_of_bytes(qtet_log* log, uint64_t most, uint32_t* level);
 /* The coarsest level within a bound: of boundaryDistance, or of a field's rms error. QTET_NOT_FOUND
- * if the log does not tell. */
+ * if the log does not state it. */
 QTET_API qtet_status qtet_log_level_of_boundary_error(qtet_log* log, double bound, uint32_t* level);
 QTET_API qtet_status qtet_log_level_of_field_error(qtet_log* log, uint32_t field, double bound,
                                                    uint32_t* level);
@@ -176,9 +176,10 @@ QTET_API qtet_status qtet_log_level_of_field_error(qtet_log* log, uint32_t field
 /* ---- the mesh */
 
 /* Makes the mesh that of `level`, or the whole one (QTET_FULL); levels may be asked for in any
- * order. Going on from the present level costs what lies between; a coarser level, or going on from
- * one that ends inside a chunk, costs decoding from the front. Fields wait until somebody asks for
- * them. Ends the pointers below. If it fails, there is no mesh. */
+ * order. A finer level than the present one costs only the levels between. A coarser level costs
+ * decoding from the front, and so does a finer one if the present level ends inside a chunk.
+ * Fields are decoded when somebody asks for them. Ends the pointers below. If it fails, there is
+ * no mesh. */
 QTET_API qtet_status qtet_log_refine(qtet_log* log, uint32_t level);
 /* The mesh's level, QTET_NO_LEVEL without a mesh; its sizes, 0 without one. */
 QTET_API uint32_t qtet_log_level(const qtet_log* log);

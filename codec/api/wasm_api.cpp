@@ -19,7 +19,7 @@ using qtet::ErrorCode;
 using qtet::LogIndex;
 
 #if defined(__wasm__)
-// What libc++ and libc++abi call when they give up; their own versions bring all of printf.
+// libc++ and libc++abi call these when they give up. Their own versions bring all of printf.
 extern "C" [[noreturn]] void abort_message(const char*, ...) { __builtin_trap(); }
 _LIBCPP_BEGIN_NAMESPACE_STD
 void __libcpp_verbose_abort(const char*, ...) { __builtin_trap(); }

@@ -12,9 +12,9 @@ extern "C" {
 void* qtet_alloc(std::uint32_t bytes);
 void qtet_free(void* memory);
 
-/// Starts with the log whose header, manifest and table are `head` (LogIndex::headBytesOf tells how
-/// many bytes that is). A coarser level is made by a new instance that is given the same blocks up
-/// to it: an instance's memory never shrinks.
+/// Starts with the log whose header, manifest and table are `head` (LogIndex::headBytesOf gives
+/// their size). A coarser level is made by a new instance that is given the same blocks up to it:
+/// an instance's memory never shrinks.
 int qtet_open(const std::uint8_t* head, std::uint32_t bytes);
 /// NUL-terminated text of the last failure.
 const char* qtet_error();
@@ -29,10 +29,10 @@ const std::uint32_t* qtet_level_numbers();
 /// positions, 2 + f field f.
 double qtet_block_offset(std::uint32_t chunk, std::uint32_t part);
 std::uint32_t qtet_block_size(std::uint32_t chunk, std::uint32_t part);
-/// Tuples in a value block: of the positions and of point fields as many, of cell fields one a
-/// tetrahedron that the chunk brings.
+/// Tuples in a value block. Positions and point fields have equally many; a cell field has one for
+/// each tetrahedron that the chunk brings.
 std::uint32_t qtet_block_values(std::uint32_t chunk, std::uint32_t part);
-/// What the values of a field belong to: 0 points, 1 tetrahedra (Association of
+/// The kind of element that a field's values belong to: 0 points, 1 tetrahedra (Association of
 /// codec/log/log_index.h).
 std::uint32_t qtet_field_association(std::uint32_t field);
 /// CodecId of a block.
@@ -53,16 +53,18 @@ int qtet_check_block(std::uint32_t chunk, std::uint32_t part, const std::uint8_t
 
 /// Refiner::apply; `symbols` are the positions block's `count` integers (3 a tuple) as the Draco
 /// decoder gave them, `digits` the `digitBytes` bytes behind the Draco stream
-/// (codec/coding/value_digits.h). Of an adaptive block, no symbols and the whole block as digits.
+/// (codec/coding/value_digits.h). For an adaptive block, pass no symbols, and the whole block as
+/// digits.
 int qtet_apply(std::uint32_t chunk, const std::uint8_t* structure, std::uint32_t size,
                const std::int32_t* symbols, std::uint32_t count, const std::uint8_t* digits,
                std::uint32_t digitBytes);
-/// Refiner::applyField, of a field's block in the same two parts.
+/// Refiner::applyField, with the field's block in the same two parts.
 int qtet_apply_field(std::uint32_t field, std::uint32_t chunk, const std::int32_t* symbols,
                      std::uint32_t count, const std::uint8_t* digits, std::uint32_t digitBytes);
 
 std::uint32_t qtet_chunks_applied();
-/// Whether this one is applied, of the mesh and of a field: of packets the count does not tell.
+/// Whether this chunk is applied, for the mesh and for a field. The counts do not say which packets
+/// are.
 bool qtet_applied(std::uint32_t chunk);
 bool qtet_field_applied(std::uint32_t field, std::uint32_t chunk);
 std::uint32_t qtet_field_chunks_applied(std::uint32_t field);

@@ -18,8 +18,8 @@ constexpr std::size_t kAxes = 4;
 constexpr std::size_t kLengths = 17;
 constexpr int kMaxBits = 31;
 
-/// A value as the number of its magnitude's bits, told by what the tuple before and the component
-/// before had, and the bits below the leading one.
+/// Codes a value as the number of its magnitude's bits and the bits below the leading one. The
+/// number's model depends on the lengths of the tuple before and of the component before.
 template <class Coder>
 class AdaptiveCoder {
  public:

@@ -40,10 +40,10 @@ Result<Bytes> encode(std::span<const std::int32_t> values, std::uint32_t compone
   return Bytes(buffer.data(), buffer.data() + buffer.size());
 }
 
-// The start of a Draco point cloud: "DRACO", version (2 bytes), geometry type, method, flags (u16),
-// number of points (i32), then of attribute decoders, of attributes, and the attribute's type, data
-// type and components (u8 each). A constant costs Draco no bits and an attribute a few bytes, so
-// only this tells how much a block of any length would allocate.
+// The start of a Draco point cloud holds "DRACO", version (2 bytes), geometry type, method, flags
+// (u16) and number of points (i32). Then come the numbers of attribute decoders and of attributes,
+// and the attribute's type, data type and components (u8 each). A constant costs Draco no bits and
+// an attribute a few bytes, so only these fields show how much a block would allocate.
 bool announces(ByteView bytes, std::uint32_t components, std::uint32_t tuples) {
   constexpr std::size_t kMajorAt = 5, kTypeAt = 7, kMethodAt = 8, kMetadataAt = 10, kPointsAt = 11,
                         kAttributesAt = 15;

@@ -9,8 +9,8 @@
 
 namespace qtet {
 
-/// 0 is 0; from 1 on n - 1 = 900 e + (m - 100) stands for m * 10^(e - kErrorFigureDigits), m from
-/// 100 to 999: no value between 0 and 10^-12.
+/// Figure 0 is 0. Figure n >= 1, with n - 1 = 900 e + (m - 100) and m from 100 to 999, is m * 10^(e
+/// - kErrorFigureDigits). There is no value between 0 and 10^-12.
 inline constexpr std::uint32_t kErrorFigureDigits = 14;
 /// Up to 9.99 * 10^6; an error is a fraction of the diagonal or of a field's range, seldom above 1.
 inline constexpr std::uint32_t kMaxErrorFigure = 900 * 19;

@@ -14,7 +14,7 @@
 
 namespace qtet {
 
-/// Appends `value` in the order of bytes that `order` says, whatever the machine's.
+/// Appends `value` in the byte order `order`, independent of the machine's.
 template <std::endian order = std::endian::little, class T>
 void appendNumber(Bytes& out, T value) {
   if constexpr (sizeof(T) == 1) {

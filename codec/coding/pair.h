@@ -1,6 +1,6 @@
 // Two numbers at once: GNU's vectors, the processor's where it has some (SSE2, WebAssembly's), and
-// the same numbers one by one elsewhere, to the bit. What is read as a pair has to be written as
-// one: a processor waits for two numbers that it wrote one by one.
+// the same numbers one by one elsewhere, to the bit. Numbers that are read as a pair must be
+// written as one. A processor stalls when it loads a pair whose numbers it stored one by one.
 #pragma once
 
 #include <cstring>

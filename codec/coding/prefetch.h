@@ -1,5 +1,5 @@
-// Asking for memory before it is needed: a mesh's cells and vertices lie anywhere in it, and
-// waiting for them one after the other would take a third of a decoder's time.
+// Prefetches memory. A mesh's cells and vertices lie scattered in memory, and waiting for one after
+// the other would take a third of a decoder's time.
 #pragma once
 
 #include <cstddef>
@@ -14,10 +14,10 @@ inline constexpr bool kPrefetchIsFree = false;
 inline constexpr bool kPrefetchIsFree = true;
 #endif
 
-/// A hint that `*at` is read soon. Where it is not free a byte is read: nothing uses it, but a
-/// processor looks only some hundred instructions beyond a load that it waits for, so this pays for
-/// what is read in any case and close behind. REQUIRES: at points to an object or, where it is
-/// free, behind the last one of an array.
+/// A hint that `*at` is read soon. Where prefetching is not free, this reads a byte that nothing
+/// uses. A processor looks only some hundred instructions beyond a load that it waits for. So the
+/// read pays only if `*at` is certainly read, and soon. REQUIRES: at points to an object or, where
+/// it is free, behind the last one of an array.
 template <class T>
 [[gnu::always_inline]] inline void prefetch(const T* at) {
 #if defined(__wasm__)

@@ -82,10 +82,10 @@ class RangeEncoder {
     cost_ += 64 * static_cast<std::uint64_t>(bits);
     return value;
   }
-  /// What all so far took, in 64ths of a bit: about, for statistics.
+  /// The approximate cost of everything so far, in 64ths of a bit; for statistics.
   [[nodiscard]] std::uint64_t cost() const { return cost_; }
   [[nodiscard]] std::size_t size() const { return writer_.bytes().size() + raw_.size(); }
-  /// Ends the stream and starts afresh.
+  /// Ends the stream and begins the next one.
   [[nodiscard]] Bytes finish() {
     for (int i = 0; i < 4; ++i) writer_.write(static_cast<std::uint8_t>(low_ >> (24 - 8 * i)));
     low_ = 0, high_ = ~0u;

@@ -1,6 +1,6 @@
-// Integers as a symbol and a few digits (FORMAT.md, "Value blocks"): the symbol, of which there are
-// less than a hundred for values of 12 bits, is worth an entropy coder's table; the digits below
-// are noise and stand as they are.
+// Splits integers into a symbol and a few digits (FORMAT.md, "Value blocks"). Values of 12 bits
+// have fewer than a hundred symbols, so an entropy coder's table pays for them. The digits below
+// are noise and are stored as they are.
 #pragma once
 
 #include <bit>
@@ -62,7 +62,7 @@ struct Split {
 }  // namespace digits
 
 /// The symbols of all values, and their digits back to back from the lowest bit of the first byte
-/// on, ones that are left over 0.
+/// on. Unused bits are 0.
 struct SymbolsAndDigits {
   std::vector<std::int32_t> symbols;
   Bytes digits;

@@ -13,14 +13,14 @@
 namespace qtet {
 
 /// Writes a new file beside `path`, flushes it to the disk, renames it over `path` and flushes the
-/// folder. After an error `path` is as it was and nothing is left beside it; only if the very last
-/// step fails, the flush of the folder, `path` is the whole new file, and the message says so. A
-/// process that is killed on its way leaves at most `.NAME.*.tmp`, which the next write of the same
-/// `path` removes (each writer holds a lock on its own, so those of writers at work are let alone).
-/// Several processes may write the same `path`: one of the whole files wins. A file that is
-/// replaced hands on its permissions. A symbolic link stays: the file that it leads to is replaced,
-/// or made. Errors: not-found (the folder does not exist), io (no regular file is there; with the
-/// file and the operating system's reason).
+/// folder. After an error `path` is as it was and nothing is left beside it. There is one
+/// exception: if the last step fails, the flush of the folder, `path` is the whole new file, and
+/// the message says so. A process that is killed meanwhile leaves at most `.NAME.*.tmp`, which the
+/// next write of the same `path` removes. Each writer locks its own file, so the files of running
+/// writers stay. Several processes may write the same `path`: one of the whole files wins. The new
+/// file takes the permissions of the one that it replaces. A symbolic link stays: the file that it
+/// leads to is replaced, or made. Errors: not-found (the folder does not exist), io (no regular
+/// file is there; with the file and the operating system's reason).
 [[nodiscard]] Status writeFileAtomically(const std::filesystem::path& path, ByteView bytes,
                                          FileCalls& calls = systemFileCalls());
 
@@ -28,9 +28,9 @@ namespace qtet {
 /// there or not. Errors: io (a circle of links).
 [[nodiscard]] Result<std::filesystem::path> fileBehindLinks(const std::filesystem::path& path);
 
-/// Removes what writers that were killed left in `folder` of the files whose names `isOurs`
-/// accepts, of at most 190 bytes. Those of writers at work are let alone, whichever process they
-/// belong to: each holds a lock on its own. What cannot be removed does no harm.
+/// Removes from `folder` the unfinished files of writers that were killed, if `isOurs` accepts
+/// their names, of at most 190 bytes. Each writer locks its own file, so the files of running
+/// writers stay, in every process. A file that cannot be removed does no harm.
 void removeUnfinished(const std::filesystem::path& folder,
                       const std::function<bool(std::string_view name)>& isOurs,
                       FileCalls& calls = systemFileCalls());

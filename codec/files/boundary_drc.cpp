@@ -20,10 +20,10 @@
 namespace qtet {
 namespace {
 
-// Draco crashes on what float32 cannot hold, and on quantised values far outside their range.
+// Draco crashes on values that float32 cannot hold, and on quantised values far outside their
+// range.
 constexpr double kLargestFloat = std::numeric_limits<float>::max();
-// a float's 24 bits hold the grid point of an integer of so many, and rounding again would only
-// lose more
+// bits of an integer whose grid point fits a float's 24 bits; another rounding would only lose more
 constexpr int kMaxQuantisedBits = 20;
 constexpr std::int32_t kLargestQuantised = 1 << kMaxQuantisedBits;
 

@@ -24,14 +24,14 @@ constexpr const char* kExtension = "KHR_draco_mesh_compression";
 /// More than the frame of a file can have: a manifest's fields have shorter names together.
 constexpr std::uint64_t kMaxFrameBytes = std::uint64_t{64} << 20;
 
-/// Where positions are told from: float32 holds six to seven digits, and a map's coordinates have
+/// The origin of the positions. float32 holds six to seven digits, and a map's coordinates have
 /// more.
 std::array<double, 3> placeOf(const Lattice& lattice) {
   return floatsHold(lattice) ? std::array<double, 3>{} : lattice.origin;
 }
 
-/// POSITION must tell its bounds (glTF 2.0, 3.7.2.1): of what a reader decodes, not of what was put
-/// in.
+/// POSITION must state its bounds (glTF 2.0, 3.7.2.1). They are those of the decoded values, not of
+/// the input.
 Json positionAccessor(const draco::PointAttribute& attribute, std::uint32_t points) {
   std::array<float, 3> least{}, most{};
   least.fill(std::numeric_limits<float>::max());
@@ -64,8 +64,8 @@ std::vector<std::array<std::uint8_t, 3>> coloursOf(const LatticeMesh& mesh) {
   return out;
 }
 
-/// What the Draco bytes hold, in glTF's words. Draco may split vertices where the surface is not
-/// manifold, so it is asked for its counts.
+/// Describes the Draco bytes in glTF's terms. The counts are Draco's, since it may split vertices
+/// where the surface is not manifold.
 GlbContent describe(const draco::Mesh& mesh, std::span<const FieldInfo> fields,
                     const std::array<double, 3>& place, std::size_t bytes) {
   Json accessors = {

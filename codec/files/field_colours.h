@@ -18,14 +18,14 @@ using Colour = std::array<double, 3>;
 /// sRGB's numbers as linear light (IEC 61966-2-1), which glTF and OpenUSD mean by a colour.
 [[nodiscard]] Colour linearLight(const Colour& colour);
 
-/// What of a range a value is (of several components the magnitude): 0.5 where the range is one
-/// value, NaN where the value is.
+/// The value's place in the range, 0 to 1; several components count by their magnitude. 0.5 if the
+/// range is one value, NaN if the value is NaN.
 [[nodiscard]] double rangeFraction(std::span<const double> components,
                                    const std::array<double, 2>& range);
 
-/// What of a field's range a vertex's value (of vectors the magnitude) is: 0.5 where the range is
-/// one value, NaN where there is no value, or no point field of this number. `mesh` must outlive
-/// it.
+/// The place of a vertex's value in its field's range; vectors count by their magnitude. 0.5 if the
+/// range is one value. NaN if there is no value, or no point field of this number. `mesh` must
+/// outlive it.
 class RangeFractions {
  public:
   RangeFractions(const LatticeMesh& mesh, std::size_t field)

@@ -1,5 +1,4 @@
-// The calls to the operating system that writing a file is made of, so that a test can let any one
-// of them fail or be the last.
+// The system calls that write a file, so that a test can let any one of them fail or be the last.
 #pragma once
 
 #include <sys/types.h>

@@ -24,7 +24,7 @@ struct FileField {
   std::optional<std::array<double, 2>> range{};
 };
 
-/// What a file is made of; the views must outlive whoever writes it.
+/// The contents of a mesh file. The viewed arrays must outlive the writer.
 struct FileMesh {
   std::span<const std::array<double, 3>> points;
   std::span<const Tetrahedron> tetrahedra;
@@ -40,15 +40,15 @@ struct LatticeFileMesh {
 };
 
 /// Fields keep their types; a missing value is NaN. Coordinates are float32 if each of them still
-/// rounds to its lattice point, round((x - origin) / step), else float64, which always does: so the
-/// lattice survives exactly. `mesh` must outlive the answer.
+/// rounds to its lattice point, round((x - origin) / step). Else they are float64, which always
+/// does. So the lattice survives exactly. `mesh` must outlive the answer.
 [[nodiscard]] LatticeFileMesh fileMesh(const LatticeMesh& mesh);
 
 /// Errors: bad-input (a coordinate that float32 does not hold, for formats of nothing else;
 /// `format` is ".stl").
 [[nodiscard]] Status fitsFloats(std::span<const std::array<double, 3>> points, const char* format);
 
-/// The boundary of a mesh with the points that it uses, numbered anew in their order, and its point
+/// The boundary of a mesh with the points that it uses, renumbered in their order, and its point
 /// fields.
 struct FileSurface {
   std::vector<std::array<double, 3>> points;

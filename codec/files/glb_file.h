@@ -1,5 +1,5 @@
-// The frame of a binary glTF 2.0 file: one mesh of one primitive. For .cpp files only: it drags
-// nlohmann-json in.
+// The frame of a binary glTF 2.0 file: one mesh of one primitive. For .cpp files only, because it
+// includes nlohmann-json.
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@ inline constexpr std::uint64_t kMaxGlbBytes = std::uint64_t{1} << 32;
 /// have.
 [[nodiscard]] const char* glbType(std::size_t components);
 
-/// What is in the file besides its frame, in glTF's words. Accessor 0 are the indices.
+/// The file's content without its frame, in glTF's terms. Accessor 0 is the indices.
 struct GlbContent {
   nlohmann::ordered_json accessors, bufferViews;
   nlohmann::ordered_json attributes;    ///< of the primitive

@@ -10,7 +10,7 @@ constexpr std::int32_t kGmshTetrahedron = 4;
 constexpr std::size_t kMaxEntities = 0x7FFFFFFF;  ///< ids are signed 32-bit integers
 constexpr std::uint32_t kMaxComponents = 9;
 
-/// What Gmsh shows: scalars, vectors of 3, tensors of 9.
+/// Gmsh shows scalars, vectors of 3 and tensors of 9 components.
 std::uint32_t gmshComponents(std::uint32_t components) {
   return components == 1 ? 1 : components <= 3 ? 3 : kMaxComponents;
 }

@@ -20,7 +20,7 @@ inline constexpr const char* kWrittenEndings = ".vtu .vtk .msh .stl .ply .obj .g
 /// of kWrittenEndings.
 [[nodiscard]] bool holdsFields(std::string_view ending, std::string_view association);
 
-/// What a kind of file leaves open.
+/// Choices that the kind of file leaves open.
 struct MeshFileOptions {
   bool draco = true;  ///< .glb: triangles and fields in Draco, else as plain numbers
 };
@@ -52,10 +52,10 @@ struct MeshFileOptions {
 
 /// OpenUSD text: an Xform `mesh` of two prims. `tetrahedra` is a TetMesh with its surface faces;
 /// fields are primvars, of points `vertex`, of cells `uniform`. Its purpose is `guide`, because
-/// `boundary` is what programs draw: a Mesh of the boundary's points alone, with their fields, and
+/// programs draw `boundary`. That is a Mesh of the boundary's points alone, with their fields, and
 /// the first of these as displayColor (viridis over its range, grey where it is missing). Names
-/// become USD identifiers as in PLY, and are told in full as displayName. Errors: bad-input
-/// (coordinates that its floats do not hold).
+/// become USD identifiers as in PLY; displayName has them in full. Errors: bad-input (coordinates
+/// that its floats do not hold).
 [[nodiscard]] Result<Bytes> usdaBytes(const FileMesh& mesh);
 
 /// numpy's archive: `points` (n, 3), `tetrahedra` (m, 4), `boundary` (k, 3) and each field as

@@ -13,10 +13,10 @@ namespace {
 constexpr std::uint32_t kLocalHeader = 0x04034B50, kCentralHeader = 0x02014B50,
                         kEndOfCentral = 0x06054B50;
 constexpr std::uint16_t kZipVersion = 20, kUtf8Names = 1 << 11;
-/// 1980-01-01, the earliest date there is: the bytes tell no time.
+/// 1980-01-01, the earliest date of the format: the bytes do not depend on the time.
 constexpr std::uint16_t kFirstDay = (1 << 5) | 1;
-/// Arrays begin at multiples of this in a .npy, and so in the archive: what numpy promises to
-/// whoever maps it.
+/// Arrays begin at multiples of this in a .npy, as numpy promises to programs that map it, and so
+/// in the archive.
 constexpr std::size_t kAlignment = 64;
 
 constexpr std::array<std::uint32_t, 256> kCrcTable = [] {

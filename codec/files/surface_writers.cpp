@@ -22,7 +22,7 @@ Status countable(const FileSurface& surface, const char* format) {
                                         format + " file can count; choose a coarser level");
 }
 
-/// Of length 1, outwards; zero for a triangle without area.
+/// The outward normal, of length 1; zero for a triangle without area.
 Point normalOf(const Point& a, const Point& b, const Point& c) {
   Point u{}, v{};
   for (std::size_t k = 0; k < 3; ++k) u[k] = b[k] - a[k], v[k] = c[k] - a[k];

@@ -7,9 +7,9 @@
 
 namespace qtet {
 
-/// Made where TMPDIR says (else /tmp), readable by nobody else, removed with everything in it. What
-/// a process that was killed left there is removed by the next one of the same user and purpose:
-/// each holds a lock on its folder as long as it lives.
+/// A folder in TMPDIR (else /tmp), readable by nobody else, removed with everything in it. Each
+/// process locks its folder as long as it lives. So the next process of the same user and purpose
+/// can remove the folder of one that was killed.
 class TemporaryFolder {
  public:
   /// `purpose` stands in its name: qtet-PURPOSE-XXXXXX. After a failure path() is empty.

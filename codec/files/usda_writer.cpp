@@ -50,10 +50,11 @@ std::string quoted(const std::string& text) {
   return out + "\"";
 }
 
-/// Of what stands in a prim in the first prim.
+/// The indent of a prim's content, two levels deep.
 constexpr const char* kIndent = "        ";
 
-/// Numbers of 1 to 4 components are a type of USD's own, others a flat array with elementSize.
+/// Values of 1 to 4 components have a USD type of their own; others are a flat array with
+/// elementSize.
 std::string primvarText(const FileField& field, const char* interpolation,
                         std::set<std::string>& names) {
   const bool isDouble = field.type != "float32";
@@ -78,7 +79,7 @@ std::string attribute(const std::string& name, const std::string& value) {
   return kIndent + name + " = " + value + "\n";
 }
 
-/// What both prims have: orientation, extent and points.
+/// The attributes that both prims have: orientation, extent and points.
 std::string shapeText(std::span<const std::array<double, 3>> points) {
   std::string out = attribute("uniform token orientation", "\"rightHanded\"");
   if (points.empty()) return out + attribute("point3f[] points", "[]");
@@ -108,7 +109,7 @@ std::span<const double> valueOf(const FileField& field, std::size_t point) {
   return std::span(field.values).subspan(point * field.components, field.components);
 }
 
-/// Of the values, or of the magnitude where components > 1; those that are missing do not count.
+/// The range of the values, or of their magnitude if components > 1. Missing values do not count.
 std::array<double, 2> rangeOf(const FileField& field) {
   if (field.range) return *field.range;
   std::array<double, 2> range{std::numeric_limits<double>::max(),

@@ -28,8 +28,8 @@ void readLevels(ByteReader& r, const LogIndex& index, ChunkEntry& e) {
   e.endSlot = r.readVarint() - 1;  // 0 stands for kLevelEnd
 }
 
-/// How far back the chunk is that a row depends on. Nodes are numbered in the order of the rows,
-/// which check() of the index sees to.
+/// How far back the chunk is that a row depends on. Nodes are numbered in the order of the rows;
+/// the index's check() enforces this.
 std::uint32_t stepsBack(const LogIndex& index, std::size_t chunk, std::uint32_t node) {
   if (node == 0) return 1;
   const std::uint32_t toParent = node - node / 2;

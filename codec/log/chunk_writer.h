@@ -1,5 +1,5 @@
-// A log's chunks as they are written: what goes into the open one, the rows of those that are
-// closed, and the bytes of their blocks.
+// A log's chunks as they are written: the content of the open one, the rows of the closed ones, and
+// the bytes of their blocks.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ class ChunkWriter {
   /// Chunk 0 is open. `fields` must outlive it.
   ChunkWriter(std::span<const FieldInfo> fields, CodecId valueCodec);
 
-  /// What the open chunk holds so far. These objects stay the same for every chunk.
+  /// The content of the open chunk so far. These objects stay the same for every chunk.
   [[nodiscard]] RangeEncoder& structure() { return open_.structure; }
   [[nodiscard]] Values& positions() { return open_.values.front(); }
   [[nodiscard]] std::span<Values> fields() { return std::span(open_.values).subspan(1); }
@@ -27,12 +27,13 @@ class ChunkWriter {
   /// Bytes of the open chunk's blocks, about.
   [[nodiscard]] std::uint64_t estimatedBytes() const;
 
-  /// Ends the open chunk, after which the mesh has slots up to `end`, and opens the next one, which
-  /// begins in `nextLevel`; of a packet also its node. Errors: limit-exceeded, bad-codec.
+  /// close() ends the open chunk, after which the mesh has slots up to `end`. begin() opens the
+  /// next one, which begins in `firstLevel`; a packet also needs its node. Errors: limit-exceeded,
+  /// bad-codec.
   Status close(std::uint32_t lastLevel, std::uint32_t endSlot, const Slots& end);
   void begin(std::uint32_t firstLevel, std::uint32_t node = 0);
 
-  /// Of the closed chunks.
+  /// The closed chunks only.
   [[nodiscard]] std::vector<ChunkEntry>& rows() { return rows_; }
   [[nodiscard]] const Bytes& body() const { return body_; }
 

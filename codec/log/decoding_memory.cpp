@@ -13,9 +13,9 @@ namespace {
 // A vector that grows by doubling holds twice what is in it at most, and half as much again while
 // it moves.
 constexpr std::uint64_t kDoubling = 3;
-// The models of probabilities, twice, and other things of one size.
+// The probability models, twice, and other things of fixed size.
 constexpr std::uint64_t kFixed = 1u << 20;
-// Of the base mesh alone: the faces that are open while it is grown, and those that are paired up
+// For the base mesh only: the faces that are open while it is grown, and those that are paired up
 // to find its boundary.
 constexpr std::uint64_t kBaseTetrahedron = 300;
 // A refiner's own figures of a chunk, beside its row of the table.
@@ -79,8 +79,8 @@ std::uint64_t decodingBytes(const LogIndex& index) {
       index.fields, [](const FieldShape& f) { return f.association == Association::kPoint; });
   const std::uint64_t mesh = GrowingMesh::roomFor(all.slots) +
                              PointAncestry(withPointField).roomFor(all.records, all.slots.vertices);
-  // What a refiner makes room for at once, and what it lets grow because so many elements of so few
-  // bytes are not credible.
+  // A refiner reserves room for all elements at once if their number is credible for so few bytes.
+  // Otherwise it lets its arrays grow.
   const bool roomy = std::max({all.slots.vertices, all.slots.tetrahedra, all.slots.triangles}) <=
                      kMaxElementsPerPacketByte * all.structureBytes;
   const std::uint64_t table =

@@ -1,5 +1,5 @@
-// How much memory it takes to decode a log, foretold from its front: whoever decodes what a
-// stranger sent asks before the first block.
+// Predicts from a log's front how much memory decoding takes. A program that decodes a stranger's
+// log asks before the first block.
 #pragma once
 
 #include <cstdint>
@@ -8,11 +8,11 @@ namespace qtet {
 
 struct LogIndex;
 
-/// Bytes that a refiner and the block in hand hold at most while the whole log is decoded, with
-/// every field: what decodeVerified() and a viewer of the finest level need beside the log itself.
-/// Logs that qtet wrote take half of it or more (measured); one that was forged to scatter its
-/// stars may take up to three times as much. A log whose blocks bring more than its table says ends
-/// in an error, and not in more memory.
+/// An upper bound of the bytes that a refiner and the block in hand hold while the whole log is
+/// decoded, with every field. decodeVerified() and a viewer of the finest level need this beside
+/// the log itself. Logs that qtet wrote take at least half of it (measured). A log forged to
+/// scatter its stars may take up to three times as much. A log whose blocks bring more than its
+/// table says ends in an error, and not in more memory.
 [[nodiscard]] std::uint64_t decodingBytes(const LogIndex& index);
 
 }  // namespace qtet

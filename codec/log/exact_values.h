@@ -1,5 +1,5 @@
-// The input's own numbers, bit for bit, told as corrections to what the lattice or a field's scale
-// gives (CLOSING.md, "Exact values").
+// The input's own numbers, bit for bit, coded as corrections to the values of the lattice or of a
+// field's scale (CLOSING.md, "Exact values").
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@
 
 namespace qtet {
 
-/// What both sides know of an attribute: integers in slot order, and the number that each stands
-/// for.
+/// An attribute as encoder and decoder know it: integers in slot order, and the number that each
+/// stands for.
 struct Approximation {
   std::span<const std::int32_t> integers;  ///< components a point or cell; kMissing for NaN
   std::uint32_t components = 1;

@@ -11,9 +11,9 @@ namespace qtet {
 struct LogIndex;
 struct Manifest;
 
-/// The finest level of at most so many tetrahedra; 0 if there is none.
+/// The finest level of at most `most` tetrahedra; 0 if there is none.
 [[nodiscard]] std::uint32_t levelOfTetrahedra(const Manifest& manifest, double most);
-/// The finest level that a prefix of at most so many bytes of the file holds; 0 if there is none.
+/// The finest level that a prefix of at most `most` bytes of the file holds; 0 if there is none.
 /// REQUIRES: a manifest that manifestOf(index) gave.
 [[nodiscard]] std::uint32_t levelOfBytes(const Manifest& manifest, const LogIndex& index,
                                          std::uint64_t most);

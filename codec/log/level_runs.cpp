@@ -7,7 +7,7 @@ namespace qtet {
 namespace {
 
 // A picture sharpens when a chunk is whole, so that each is a share of what a viewer has already
-// waited for, up to LogWriterOptions::chunkBytes. Smaller ones cost more than they give: a row of
+// waited for, up to LogWriterOptions::chunkBytes. Smaller chunks cost more than they gain. A row of
 // the table and Draco's fixed bytes are 130 bytes a chunk with one field, 3 % of 4 KB.
 constexpr std::uint64_t kLeastChunkBytes = 4 << 10;
 constexpr std::uint64_t kGrowth = 3;
@@ -49,8 +49,8 @@ class LevelRuns {
     return std::min(chunkBytes_, std::max(kLeastChunkBytes, chunks_.body().size() / kGrowth));
   }
 
-  // Near enough, if another level like the one that began at `begun` bytes would go further beyond
-  // the target than this one stays below it: let the next chunk begin with a level.
+  // Whether the next chunk should begin with the next level. It should if another level, like the
+  // one that began at `begun` bytes, would overshoot the target by more than this one falls short.
   [[nodiscard]] bool endsNearTarget(std::optional<std::uint64_t> begun) const {
     const std::uint64_t bytes = chunks_.estimatedBytes();
     const std::uint64_t levelBytes = begun ? bytes - *begun : target();

@@ -1,5 +1,5 @@
-// Levels as runs of whole chunks, which split every vertex of the mesh that may split: all of the
-// layout `stream`, and the head of `regions`.
+// Writes levels as runs of whole chunks, which split every vertex of the mesh that may split. These
+// are all chunks of the layout `stream`, and the head of `regions`.
 #pragma once
 
 #include <cstdint>

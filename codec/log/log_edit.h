@@ -1,5 +1,5 @@
-// Logs put together anew from blocks that are there already: fields added, left out or replaced,
-// the other blocks byte for byte.
+// Makes a log from another log's blocks: fields are added, left out or replaced, and the other
+// blocks stay byte for byte.
 #pragma once
 
 #include <cstdint>
@@ -33,8 +33,8 @@ struct NewClosing {
 /// The log with the fields `kept` (numbers of its own fields, in the order wanted) and then
 /// `added`. Errors: limit-exceeded (too many fields, a block too large), bad-value (the log's
 /// manifest). REQUIRES: fields of the log; a block of each added field for every chunk; errors of
-/// each for every level, if any level of the log has some. Closing blocks stay, those of fields
-/// left out do not.
+/// each for every level, if any level of the log has some. Closing blocks stay, except those of
+/// fields left out.
 [[nodiscard]] Result<Bytes> withFields(const LogFile& log, const std::vector<std::uint32_t>& kept,
                                        const std::vector<NewField>& added);
 

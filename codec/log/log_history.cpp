@@ -71,9 +71,9 @@ Status decodeBase(const LogFile& log, LogHistory& out) {
   return {};
 }
 
-/// Gives every split's vertices their numbers in the history and leaves the fusions in the order of
-/// doing: level by level, from the last split to the first. (Packets come node by node, each with
-/// all of its levels; those of one level have nothing to do with one another.)
+/// Gives every split's vertices their numbers in the history, and sorts the fusions in the order of
+/// execution: level by level, from the last split to the first. (Packets arrive node by node, each
+/// with all of its levels. Those of one level are independent of one another.)
 void number(const SplitRecorder& recorder, LogHistory& out) {
   FusionHistory& h = out.history;
   std::vector<std::uint32_t> order(h.fusions.size());

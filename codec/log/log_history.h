@@ -36,8 +36,8 @@ struct LogHistory {
   std::vector<CodecId> valueCodecs;  ///< of each chunk
 };
 
-/// Of the layout `regions`, too, but for its bands. Errors: all that decoding gives. `progress`
-/// hears the fraction done.
+/// Reads logs of the layout `regions` too, but leaves out their bands. Errors: all that decoding
+/// gives. `progress` receives the fraction done.
 [[nodiscard]] Result<LogHistory> historyOf(const LogFile& log,
                                            const std::function<void(double)>& progress = {});
 

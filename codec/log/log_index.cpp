@@ -102,7 +102,7 @@ Result<Header> readHeader(ByteView bytes) {
   return h;
 }
 
-// What is wrong with a closing row beside the others, or nullptr.
+// The reason why a closing row contradicts the others, or nullptr.
 const char* brokenClosing(const LogIndex& index, const ClosingBlock& closing) {
   if (closing.kind == ClosingKind::kExactField && closing.field >= index.fields.size())
     return "a closing block of a field that the log does not have; build the log again";
@@ -136,7 +136,7 @@ Status checkClosing(const LogIndex& index, std::uint64_t offset, std::uint64_t f
   return {};
 }
 
-// Packets come in the order of their nodes, 2^firstDepth to 2^(lastDepth + 1) - 1: each band is
+// Packets stand in the order of their nodes, 2^firstDepth to 2^(lastDepth + 1) - 1. Each band is
 // whole, and one bit deeper than the one before it.
 const char* brokenPacket(const LogIndex& index, std::uint32_t i, std::uint32_t head,
                          std::uint32_t firstNode) {
@@ -181,8 +181,8 @@ Status checkLayout(const LogIndex& index, std::uint64_t tableEnd) {
   return {};
 }
 
-// What every later step relies on: blocks that end where the file does, levels in order, counts
-// within limits, packets in order.
+// Checks everything that later steps rely on: blocks that end where the file does, levels in order,
+// counts within limits, packets in order.
 Status check(const LogIndex& index, const Header& header) {
   std::uint64_t offset = header.headBytes();
   std::uint64_t vertices = 0;
@@ -210,8 +210,8 @@ Status check(const LogIndex& index, const Header& header) {
     if (i == 0 ? e.firstLevel != 0 || e.lastLevel != 0 || e.records != 0 || e.endSlot != kLevelEnd
                : e.firstLevel == 0)
       return bad(ErrorCode::kBadValue, "levels out of order");
-    // A split takes at least one step and brings at most four vertices back; the cells that it
-    // brings are less than eight for each cell of its star, which is a step.
+    // A split takes at least one step and brings at most four vertices back. It brings fewer than
+    // eight cells for each cell of its star, and each of these is a step.
     const std::uint64_t steps =
         kMaxStepsPerByte * (std::uint64_t{e.blocks[kStructurePart].size} + kFreeCountBytes);
     if (e.records > steps || e.newVertices > 4 * steps || e.newTetrahedra > 8 * steps ||

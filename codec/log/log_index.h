@@ -1,6 +1,6 @@
-// The front of a log: header, manifest and chunk table (FORMAT.md, "Header", "Chunk table"). What a
-// server, a viewer and a verifier need to know before they touch a block. Trusts nothing: every
-// count is checked against limits and against the bytes.
+// The front of a log: header, manifest and chunk table (FORMAT.md, "Header", "Chunk table"). A
+// server, a viewer and a verifier read it before they touch a block. Trusts nothing: every count is
+// checked against limits and against the bytes.
 #pragma once
 
 #include <array>
@@ -16,10 +16,10 @@ namespace qtet {
 
 enum class Layout : std::uint8_t { kStream = 0, kRegions = 1 };
 
-/// What the values of a field belong to.
+/// The kind of element that a field's values belong to.
 enum class Association : std::uint8_t { kPoint = 0, kCell = 1 };
 
-/// What decoding needs to know of a field; the manifest has the rest.
+/// The part of a field's description that decoding needs; the manifest has the rest.
 struct FieldShape {
   std::uint32_t components = 1;  ///< 1..kMaxFieldComponents
   Association association = Association::kPoint;
@@ -65,13 +65,14 @@ struct ChunkEntry {
   std::uint32_t newVertices = 0;
   std::uint32_t newTetrahedra = 0;
   std::uint32_t newBoundaryTriangles = 0;
-  /// Into LogIndex::dependencies; derived: the chunk before, alone; of a packet its parent's.
+  /// Index into LogIndex::dependencies. Derived: a packet depends on its parent's chunk, any other
+  /// chunk on the one before it.
   std::uint32_t firstDependency = 0;
   std::uint32_t dependencyCount = 0;
-  /// Of a packet (layout `regions`): 2^depth + its place at that depth, so that its parent is node
-  /// / 2; else 0.
+  /// A packet's node (layout `regions`): 2^depth + its place at that depth, so that its parent is
+  /// node / 2. 0 for other chunks.
   std::uint32_t node = 0;
-  /// Of a packet: where its node's cells lie in the finest mesh; else zeros.
+  /// The box of a packet's node: where its cells lie in the finest mesh. Zeros for other chunks.
   PacketBox box;
   CodecId structureCodec = CodecId::kRange;
   CodecId valueCodec = CodecId::kDraco;
@@ -82,7 +83,7 @@ struct ChunkEntry {
   }
 };
 
-/// What a closing block holds (FORMAT.md, "Closing blocks").
+/// The content of a closing block (FORMAT.md, "Closing blocks").
 enum class ClosingKind : std::uint32_t {
   kPointOrder = 1,      ///< the input's numbering of points
   kCellOrder = 2,       ///< the input's numbering of cells and of their vertices; needs the points'
@@ -103,7 +104,7 @@ struct ClosingBlock {
 struct LogIndex {
   static constexpr std::uint32_t kHeaderBytes = 64;
   static constexpr std::uint16_t kVersionMajor = 2;
-  /// Of a log with original cells; any other says 0.
+  /// Written in a log with original cells; any other log has 0.
   static constexpr std::uint16_t kVersionMinor = 1;
 
   Layout layout = Layout::kStream;
@@ -135,8 +136,8 @@ struct LogIndex {
   [[nodiscard]] bool hasCellField() const;
   /// Chunks before the first packet: all of them in `stream`.
   [[nodiscard]] std::uint32_t headChunks() const;
-  /// Depth of the first packets' nodes: how many bits the head's end tells of each cell. 0 in
-  /// `stream`.
+  /// Depth of the first packets' nodes: the number of bits that the head's end codes for each cell.
+  /// 0 in `stream`.
   [[nodiscard]] std::uint32_t firstDepth() const;
   /// Depth of the last packets' nodes. 0 in `stream`.
   [[nodiscard]] std::uint32_t lastDepth() const;
@@ -147,8 +148,8 @@ struct LogIndex {
   /// Reads the front of a log; `bytes` holds at least headBytesOf() bytes, the rest is not looked
   /// at.
   [[nodiscard]] static Result<LogIndex> parse(ByteView bytes);
-  /// Header, manifest and table as they stand in the file. What the rows imply (offsets, first
-  /// levels, dependencies) is not looked at.
+  /// Header, manifest and table as they stand in the file. Ignores the values that the rows imply
+  /// (offsets, first levels, dependencies).
   [[nodiscard]] Bytes encode() const;
 };
 

@@ -1,5 +1,5 @@
-// What the levels of a log cost and how good they are, as the tool and the server tell it. Drags
-// nlohmann-json in.
+// The cost and quality of a log's levels, as the tool and the server report them. Includes
+// nlohmann-json.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// The manifest in a log, both ways (FORMAT.md, "Manifest"). What header and chunk table say already
-// is not stored, so nothing contradicts them; only whether a field has missing values stands in
+// The manifest in a log, both ways (FORMAT.md, "Manifest"). The manifest does not repeat header and
+// chunk table, so it cannot contradict them. Only whether a field has missing values is stored in
 // both.
 #pragma once
 
@@ -17,8 +17,8 @@ struct LogIndex;
 /// kMaxManifestBytes).
 [[nodiscard]] Result<Bytes> manifestBlock(const Manifest& manifest);
 
-/// Reads index.manifest; layout, bits of the lattice, shapes of the fields, the number of levels
-/// and each level's chunk come from the rest of the index. Errors: truncated; limit-exceeded (found
+/// Reads index.manifest. The rest of the index gives layout, bits of the lattice, shapes of the
+/// fields, the number of levels and each level's chunk. Errors: truncated; limit-exceeded (found
 /// before anything is allocated); bad-value with what is out of range, and for bytes left over.
 [[nodiscard]] Result<Manifest> manifestOf(const LogIndex& index);
 

@@ -81,7 +81,7 @@ std::vector<ManifestLevel> levelsOf(const std::vector<Slots>& added,
   for (std::uint32_t level = 0; level < added.size(); ++level) {
     sum = {sum.vertices + added[level].vertices, sum.tetrahedra + added[level].tetrahedra,
            sum.triangles + added[level].triangles};
-    // the table tells the chunk
+    // the table has the chunk
     out.push_back({level, sum.tetrahedra, sum.vertices, sum.triangles, 0, std::nullopt});
     if (!errors.empty()) out.back().error = errors[level];
   }

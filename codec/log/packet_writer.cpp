@@ -140,8 +140,8 @@ bool PacketWriter::inNode(const NodeCells& cells, std::uint32_t node) const {
   return all;
 }
 
-// Of the leaves the boxes of their cells, which are all there now; of the other nodes the boxes of
-// their children.
+// A leaf's box is that of its cells, which are all there now. The box of any other node is that of
+// its children.
 void PacketWriter::findBoxes() {
   std::vector<ChunkEntry>& rows = writer_.chunks().rows();
   const auto first =

@@ -33,7 +33,7 @@ class PacketWriter {
   Status write(const Band& band);
   /// Fills in the boxes of the packets' rows. REQUIRES: all bands written.
   void findBoxes();
-  /// What the child bits of all nodes took, to a byte a node.
+  /// The bytes of all nodes' child bits, accurate to a byte a node.
   [[nodiscard]] std::uint64_t childBytes() const { return childBytes_; }
 
  private:

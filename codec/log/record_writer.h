@@ -1,5 +1,5 @@
-// What the encoders of both layouts share: the base mesh and one record after the other, written
-// into the open chunk and applied to the mirror of the decoder's mesh.
+// The part that the encoders of both layouts share. It writes the base mesh and one record after
+// the other into the open chunk, and applies them to the mirror of the decoder's mesh.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,7 @@ class RecordWriter {
   /// Writes the base mesh into chunk 0, which stays open. Errors: bad-value, cancelled. REQUIRES:
   /// called once and first.
   Status base();
-  /// Writes the split flag of v in the level in hand (GrowingMesh::beginLevel). The fusion that its
+  /// Writes the split flag of v in the current level (GrowingMesh::beginLevel). The fusion that its
   /// split undoes, or nullptr. REQUIRES: v may split.
   [[nodiscard]] const Fusion* flag(VertexId v);
   /// Writes the record of v and splits it. Errors: bad-value, cancelled. REQUIRES: flag(v) gave
@@ -38,16 +38,16 @@ class RecordWriter {
   Status closeChunk(std::uint32_t lastLevel, std::uint32_t endSlot);
 
   [[nodiscard]] ChunkWriter& chunks() { return chunks_; }
-  /// Of what is written; levels and child bits are the caller's to count.
+  /// Counts the work that is written. The caller counts levels and child bits.
   [[nodiscard]] WorkMeter& meter() { return meter_; }
   [[nodiscard]] RecordModels& models() { return models_; }
   [[nodiscard]] GrowingMesh& mesh() { return mirror_.mesh(); }
   [[nodiscard]] const MirrorMesh& mirror() const { return mirror_; }
-  /// What each level brought so far, the base mesh first.
+  /// The slots that each level has added so far, the base mesh first.
   [[nodiscard]] const std::vector<Slots>& added() const { return added_; }
-  /// What positions took of the structure blocks, in 64ths of a bit.
+  /// The positions' share of the structure blocks, in 64ths of a bit.
   [[nodiscard]] std::uint64_t positionCost() const { return coder_.positionCost(); }
-  /// Fraction of the history's cells that have come.
+  /// Fraction of the history's cells that are written.
   [[nodiscard]] double done() const {
     return static_cast<double>(mirror_.tetrahedra().size()) /
            static_cast<double>(history_.cells.size());

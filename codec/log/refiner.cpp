@@ -55,10 +55,10 @@ Status Refiner::State::mayCome(std::uint32_t chunk) const {
   return {};
 }
 
-// Memory for everything at once, as soon as the bytes that came make it credible: growing by
-// doubling would hold up to three times as much. Where that cannot be had, the mesh still grows as
-// far as it goes: a reader may stop long before the end, and without exceptions a failed reserve()
-// is the end.
+// Reserves memory for everything as soon as the bytes received make that credible; growing by
+// doubling would hold up to three times as much. If the memory is not available, the mesh still
+// grows as far as it can, since a reader may stop long before the end. Without exceptions a failed
+// reserve() would end the program.
 void Refiner::State::makeRoom(std::size_t bytes) {
   if (!structureBytes) return;
   *structureBytes += bytes;

@@ -19,7 +19,8 @@ class Link;
 struct LogIndex;
 struct Split;
 
-/// Hears of every split just before it is applied: link labelled, ids those of `mesh`.
+/// Notified of every split just before it is applied. The link is labelled, and ids are those of
+/// `mesh`.
 class SplitObserver {
  public:
   virtual void beforeSplit(VertexId v, const GrowingMesh& mesh, const Link& link,
@@ -29,8 +30,8 @@ class SplitObserver {
   ~SplitObserver() = default;
 };
 
-/// Asked whether decoding goes on: whoever checks a log that a stranger sent does not wait for the
-/// end of a chunk, which may be the whole of it.
+/// Asked whether decoding goes on. So a check of a stranger's log can stop inside a chunk, which
+/// may be the whole log.
 class LevelGate {
  public:
   virtual bool goOn() = 0;
@@ -39,18 +40,19 @@ class LevelGate {
   ~LevelGate() = default;
 };
 
-/// What a mesh held when a level was complete.
+/// The size of the mesh when a level was complete.
 struct LevelCounts {
   std::size_t vertices = 0, tetrahedra = 0, boundaryTriangles = 0;
 };
 
-/// Applies the chunks of one log, each after the chunk that it depends on: in `stream` that is file
-/// order, in `regions` packets may come in any order in which parents come first, and end in the
-/// same slots whatever the order. Vertices and cells keep their slots for ever; an affected cell
-/// changes one index. A chunk's slots follow from the chunk table (firstSlots); below the highest
-/// chunk applied, those of chunks that have not come are holes: points kHolePoint, cells of one
-/// vertex (mesh.h), field values 0. In file order there are none. Not thread-safe. After an error
-/// no further chunk is accepted; ids stay in range, but the mesh is a part of a chunk's.
+/// Applies the chunks of one log, each after the chunk that it depends on. In `stream` that is file
+/// order. In `regions` packets may arrive in any order in which parents precede their children, and
+/// they fill the same slots whatever the order. Vertices and cells keep their slots for ever; an
+/// affected cell changes one index. A chunk's slots follow from the chunk table (firstSlots). Below
+/// the highest chunk applied, the slots of missing chunks are holes: points are kHolePoint, cells
+/// have one vertex (mesh.h), field values are 0. In file order there are no holes. Not thread-safe.
+/// After an error no further chunk is accepted; ids stay in range, but the mesh is a part of a
+/// chunk's.
 class Refiner {
  public:
   explicit Refiner(LogIndex index);
@@ -67,17 +69,17 @@ class Refiner {
   /// the mesh.
   Status applyField(std::uint32_t field, std::uint32_t chunk, std::span<const std::int32_t> values);
 
-  /// Makes a chunk that goes beyond `level` end there, and chunks that begin beyond it are refused:
-  /// once level() is `level`, the mesh is that level's, with holes in the slots that packets were
+  /// A chunk that goes beyond `level` then ends there, and chunks that begin beyond it are refused.
+  /// Once level() is `level`, the mesh is that level's, with holes in the slots that packets were
   /// not allowed to fill.
   void stopAtLevel(std::uint32_t level);
 
-  /// From now on `observer` hears of every split; nullptr: nobody. It must outlive the chunks
-  /// applied.
+  /// From now on `observer` is notified of every split; nullptr turns this off. It must outlive the
+  /// chunks applied.
   void observe(SplitObserver* observer);
 
   /// From now on `gate` is asked before every level, of a packet as well; nullptr: nobody. False
-  /// ends the chunk in hand with the error io. It must outlive the chunks applied.
+  /// ends the current chunk with the error io. It must outlive the chunks applied.
   void askBeforeLevels(LevelGate* gate);
 
   [[nodiscard]] const LogIndex& index() const;
@@ -95,14 +97,15 @@ class Refiner {
 
   /// Work so far, which limit-exceeded bounds (kMaxStepsPerByte).
   [[nodiscard]] std::uint64_t steps() const;
-  /// Of the complete levels, 0 first; several may have come with one chunk.
+  /// The counts of the complete levels, 0 first. One chunk may complete several.
   [[nodiscard]] std::span<const LevelCounts> levelCounts() const;
 
   [[nodiscard]] std::span<const LatticePoint> points() const;
   [[nodiscard]] std::span<const Tetrahedron> tetrahedra() const;
   [[nodiscard]] std::span<const Triangle> boundary() const;
-  /// components * points integers, or components * tetrahedra of a cell field. Of chunks that the
-  /// field lacks, vertices carry their fused vertex's value and tetrahedra their prediction.
+  /// components * points integers, or components * tetrahedra for a cell field. Until the field's
+  /// block of a chunk arrives, the chunk's vertices carry their fused vertex's value and its
+  /// tetrahedra their prediction.
   [[nodiscard]] std::span<const std::int32_t> fieldValues(std::uint32_t field) const;
 
   /// SHA-256 over points, tetrahedra and boundary in slot order, little-endian (FORMAT.md,

@@ -10,8 +10,7 @@
 namespace qtet {
 namespace {
 
-// Stars are fetched so many vertices before they are read: one in twelve splits. 4 to 16 measured
-// alike.
+// Stars are prefetched so many vertices ahead. One vertex in twelve splits. 4 to 16 measured alike.
 constexpr std::uint32_t kVerticesAhead = 8;
 
 constexpr const char* kEmptyLevel = "a level without a record";
@@ -121,9 +120,9 @@ Status PacketReader::children(ChunkInHand& chunk, std::uint32_t node, const Node
   return {};
 }
 
-// Reads nothing that another packet of this band or a finer one could have changed: stars that lie
-// in the node, and vertices beside them, which have cells of the node and so are split by its
-// packets alone.
+// Reads nothing that another packet of this band or a finer one could have changed. It reads only
+// stars that lie in the node, and vertices beside them. These have cells of the node, so only the
+// node's packets split them.
 Result<Extent> PacketReader::read(ChunkInHand& packet) {
   const ChunkEntry& entry = packet.entry;
   records_.models() = head_.records;

@@ -11,7 +11,7 @@
 
 namespace qtet {
 
-/// What a chunk has brought to the mesh.
+/// The elements that a chunk has added to the mesh.
 struct Brought {
   Extent extent = Extent::kNothing;
   std::size_t firstBirth = 0, endBirth = 0;
@@ -24,10 +24,10 @@ class RefinerFields {
   RefinerFields(const ChunkPlan& plan, const RecordReader& records,
                 const std::vector<Brought>& brought);
 
-  /// What Refiner::applyField does.
+  /// Implements Refiner::applyField.
   Status apply(std::uint32_t field, std::uint32_t chunk, std::span<const std::int32_t> values);
-  /// What a chunk brought to the mesh carries stand-ins in every field, until the field's own
-  /// block comes.
+  /// Gives a chunk's new elements stand-in values in every field, until the field's own block
+  /// arrives.
   void inherit(std::uint32_t chunk);
 
   [[nodiscard]] bool applied(std::uint32_t field, std::uint32_t chunk) const {

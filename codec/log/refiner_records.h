@@ -41,7 +41,7 @@ struct ChunkPlan {
   }
 };
 
-/// What the caller asked for.
+/// The caller's requests: where to stop, whom to notify.
 struct RefinerOrders {
   std::uint32_t stopLevel = kMaxLevels + 1;
   SplitObserver* observer = nullptr;
@@ -53,7 +53,7 @@ struct RefinerOrders {
   }
 };
 
-/// What fields need to know of the mesh's past, so that they may come later.
+/// The part of the mesh's past that fields need, so that their blocks may arrive later.
 struct Ancestry {
   std::vector<BaseBirth> base;
   PointAncestry points;
@@ -88,7 +88,7 @@ class RecordReader {
   void makeRoomForAll();
   /// Reads the base mesh. REQUIRES: called once and first.
   Status base(ChunkInHand& chunk);
-  /// What vertex() reads the chunk's records with.
+  /// The coder with which vertex() reads the chunk's records.
   [[nodiscard]] RecordCoder<RangeDecoder> coderOf(ChunkInHand& chunk) {
     return {chunk.decoder, models_, mesh_, link_, chunk.positions};
   }

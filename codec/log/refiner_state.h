@@ -1,4 +1,4 @@
-// What a refiner keeps: its mesh, its fields, and which chunks have come. For refiner.cpp alone.
+// A refiner's state: its mesh, its fields, and which chunks have arrived. For refiner.cpp only.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// The bytes of a value block (FORMAT.md, "Value blocks"): a Draco stream of symbols, the digits
-// behind it, and how many bytes of digits there are; or an adaptive block.
+// The bytes of a value block (FORMAT.md, "Value blocks"). It is a Draco stream of symbols, the
+// digits behind it, and the number of bytes of digits; or an adaptive block.
 #pragma once
 
 #include <cstdint>

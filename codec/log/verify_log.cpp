@@ -18,7 +18,7 @@ std::string countsText(std::size_t tetrahedra, std::size_t vertices, std::size_t
          " vertices and " + std::to_string(boundary) + " boundary triangles";
 }
 
-/// What the manifest states of every level, against what the refiner met on its way.
+/// Compares the manifest's statement of every level with the counts that the refiner met.
 Status checkLevels(const std::vector<ManifestLevel>& levels, std::span<const LevelCounts> met) {
   if (levels.size() != met.size())
     return fail(ErrorCode::kBadValue, "the log holds " + std::to_string(met.size()) +

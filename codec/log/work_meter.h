@@ -1,5 +1,5 @@
-// How much work a reader does for the bytes that came (FORMAT.md, "Security"): decisions that cost
-// next to nothing must not make it work for minutes on a small file.
+// Bounds a reader's work by the bytes received (FORMAT.md, "Security"). Decisions that cost next to
+// nothing must not make it work for minutes on a small file.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// A mesh without the slots that nothing has filled yet: what a file or a measurement wants of a
+// A mesh without the slots that nothing has filled yet. Files and measurements need it from a
 // refiner that has only some of the packets.
 #pragma once
 

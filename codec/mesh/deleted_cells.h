@@ -1,5 +1,5 @@
 // From labels to the cells that a split brings back (FORMAT.md, "Deleted cells"). The labels of a
-// link imply them in nearly every record; an escape flag and a few decisions tell the rest.
+// link imply them in nearly every record; an escape flag and a few decisions code the rest.
 #pragma once
 
 #include <algorithm>
@@ -44,8 +44,8 @@ class DeletedCells {
     assert(link.triangles().size() <= kMaxLinkTriangles && k >= 2 && k <= 4);
   }
 
-  /// `escape` = the labels alone do not tell everything. False when the link is not what a split
-  /// can leave.
+  /// `escape`: the labels alone do not determine the cells. False when no split can leave this
+  /// link.
   [[nodiscard]] bool derive(bool escape) {
     out_.clear();
     escape_ = escape;
@@ -58,8 +58,8 @@ class DeletedCells {
   }
 
  private:
-  // Letters met round a vertex: in each triangle of its fan a label, and behind it at most two prey
-  // vertices of a detour; one triangle more before a walk that does not end is noticed.
+  // The most letters of a walk round a vertex. Each triangle of its fan gives a label and then at
+  // most two prey vertices of a detour. A walk that does not end is noticed one triangle later.
   static constexpr std::size_t kLongestWord = std::size_t{3} * (kMaxLinkTriangles + 1);
   // by edge: prey vertices between the two labels, 0 = none, else 1 + prey
   using Detour = std::array<std::array<std::uint8_t, 2>, 3>;
@@ -70,7 +70,7 @@ class DeletedCells {
   }
   [[nodiscard]] std::size_t K() const { return static_cast<std::size_t>(k_); }
 
-  /// A vertex of no cell costs no bits later on, but the time to look at it in every level: no mesh
+  /// A vertex without cells costs no bits later, but every level takes time to look at it. No mesh
   /// has one, and a log of a kilobyte could bring millions.
   [[nodiscard]] bool everyPreyHasCells() const {
     const unsigned all = (1u << k_) - 1;
@@ -177,9 +177,9 @@ class DeletedCells {
     return true;
   }
 
-  // A word pinched at a prey vertex is two words: the inner one is done first, by a call that is at
-  // most four deep (it holds its first letter once), the outer one by going on, since a hostile
-  // word has thousands of pinches.
+  // A word pinched at a prey vertex is two words. A recursive call does the inner one first; it
+  // holds its first letter once, so the depth is at most four. The loop goes on with the outer one,
+  // since a hostile word has thousands of pinches.
   void triangulate(std::span<std::uint8_t> word, std::uint32_t x) {
     for (;;) {
       while (word.size() > 1 && word.front() == word.back()) word = word.first(word.size() - 1);
@@ -248,7 +248,7 @@ class DeletedCells {
 };
 
 /// Codes the deleted cells of one record. An encoder passes the true cells (sorted list of sorted
-/// cells) and gets false when no coding of this format describes them; a decoder passes none and
+/// cells). It gets false when no coding of this format describes them. A decoder passes none, and
 /// gets false for a link that no split leaves.
 template <class Coder>
 [[nodiscard]] bool codeDeletedCells(Coder& coder, DeletedModels& models, const Link& link, int k,

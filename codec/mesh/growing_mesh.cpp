@@ -76,7 +76,7 @@ void GrowingMesh::add(VertexId v, CellRef cell) {
   s.onBoundary |= (cell & kBoundaryBit) != 0;
 }
 
-// A run of its own for what the star holds, and for so many cells.
+// Moves the star into a new run with room for `cells` cells.
 void GrowingMesh::makeRoom(State& state, std::uint32_t cells) {
   const std::uint32_t units = StarPool::unitsFor(cells);
   const std::uint32_t first = pool_.take(units);
@@ -138,9 +138,9 @@ void GrowingMesh::addCell(CellRef ref) {
     addTo(std::span<const VertexId, 4>(tetrahedra[ref]));
 }
 
-// The edges from the link to the fused vertex go to the prey vertices: as many as there are
-// triangles of each label at a vertex. Labels that are not there count 0 times: to ask would cost
-// more.
+// The edges from the link to the fused vertex go to the prey vertices. Each label's share at a
+// vertex is the number of its triangles there. Labels that are not there count 0 times: to ask
+// would cost more.
 template <bool kShifted>
 void GrowingMesh::moveEdges(const Link& link, std::span<const VertexId> prey) {
   std::array<Spread, 4> ofPrey{};
@@ -170,8 +170,8 @@ void GrowingMesh::moveEdges(const Link& link, std::span<const VertexId> prey) {
   for (std::size_t i = 0; i < prey.size(); ++i) states_[prey[i]].spread = ofPrey[i];
 }
 
-// A star's cells and vertices lie anywhere in memory: all are asked for before the first is waited
-// for, which halves the time of a refinement.
+// A star's cells and vertices lie scattered in memory. Prefetching all before the first is read
+// halves the time of a refinement.
 bool GrowingMesh::enter(VertexId v, Link& link) {
   link.clear(points.size());
   const std::span<const CellRef> star = this->star(v);

@@ -1,6 +1,6 @@
-// The mesh that grows in place, in the refiner and in the encoder's mirror of it: slots never move,
+// The mesh that grows in place, in the refiner and in the encoder's mirror of it. Slots never move,
 // an affected cell changes one index, and the stars of all vertices stay up to date (FORMAT.md,
-// "Refinement"). Chunks may fill their slots in any order: until then these are holes.
+// "Refinement"). Chunks may fill their slots in any order; until then the slots are holes.
 #pragma once
 
 #include <algorithm>
@@ -55,12 +55,12 @@ class GrowingMesh {
   /// Takes points, tetrahedra and boundary as the base mesh. REQUIRES: called once, ids in range,
   /// coordinates below 2^positionBits.
   void start(int positionBits);
-  /// A hint: the mesh will have so many slots, of which nothing needs to be moved on the way.
-  /// REQUIRES: there is memory for it (roomFor).
+  /// A hint: reserves memory for `total` slots, so that growing moves nothing. REQUIRES: there is
+  /// memory for it (roomFor).
   void reserve(const Slots& total);
   /// Bytes that reserve() takes.
   [[nodiscard]] static std::uint64_t roomFor(const Slots& total);
-  /// Where the next split puts what it brings: at the end, or from where continueAt() said.
+  /// The slots that the next split fills first: at the end, or where continueAt() said.
   [[nodiscard]] const Slots& next() const { return next_; }
   /// The next splits fill slots from `first` on; all below `end` exist from now on, holes unless
   /// filled. REQUIRES: those from `first` to `end` are holes or do not exist, and no split goes
@@ -72,7 +72,7 @@ class GrowingMesh {
   /// Frees all present vertices for splitting. REQUIRES: 1 to kMaxLevels; upwards in `stream` and
   /// within a packet of `regions`, which no vertex of another packet of its band meets.
   void beginLevel(std::uint32_t level);
-  /// The level in hand.
+  /// The current level.
   [[nodiscard]] std::uint32_t level() const { return level_; }
   /// Vertices that the level may split: those present at its beginning.
   [[nodiscard]] std::uint32_t levelVertices() const { return levelVertices_; }
@@ -93,8 +93,8 @@ class GrowingMesh {
   [[nodiscard]] bool onBoundary(VertexId v) const { return states_[v].onBoundary; }
   /// Level at which a vertex got its present position; 0 in the base mesh.
   [[nodiscard]] std::uint32_t born(VertexId v) const { return states_[v].born; }
-  /// How long the edges of a star are: squared lengths along each axis, summed over the edges at v
-  /// of its cells, each edge as often as it is in a cell, in units of 4^spreadShift() squared
+  /// The length of a star's edges: squared lengths along each axis, summed over the edges at v of
+  /// its cells. An edge counts once for each of its cells. The unit is 4^spreadShift() squared
   /// lattice steps.
   struct Spread {
     std::array<std::uint64_t, 3> squares{};
@@ -151,7 +151,7 @@ class GrowingMesh {
   // by vertex: the last level in which it was in the star of a split
   std::vector<std::uint16_t> marked_;
   StarPool pool_;
-  // The split in hand: the star, which corner of each of its cells the fused vertex is, the
+  // The current split: the star, which corner of each of its cells the fused vertex is, the
   // triangles opposite, and where it was.
   std::vector<CellRef> entered_;
   std::vector<std::uint8_t> places_;

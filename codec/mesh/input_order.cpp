@@ -159,9 +159,8 @@ struct RowModel {
   }
 };
 
-/// Cells by their ranks among all cells in the order of their vertices' input numbers; the steps
-/// between ranks repeat themselves where cells were made in a pattern, and so do the orders of
-/// vertices.
+/// Codes each cell by its rank among all cells in the order of their vertices' input numbers. Where
+/// cells were made in a pattern, the steps between ranks repeat, and so do the orders of vertices.
 template <class Coder>
 class CellOrderCoder {
  public:

@@ -39,8 +39,8 @@ void Link::makeRoom(std::size_t triangles) {
   order_.resize(room);
 }
 
-// Without branches on whether a vertex is new: half of them are, in no order that a processor could
-// guess. What is written for one that is not is overwritten by the next.
+// Does not branch on whether a vertex is new: half of them are, in no order that a processor could
+// guess. An entry written for a known vertex is overwritten by the next.
 void Link::add(std::span<const Triangle> triangles) {
   makeRoom(triangleCount_ + triangles.size());
   std::uint32_t count = vertexCount_, f = triangleCount_;
@@ -76,8 +76,8 @@ bool Link::close() {
   return vertexCount_ <= kSmall ? closeSmall() : closeLarge();
 }
 
-// An entry of this turn is not below `first` and less than 2^kPlaceBits above it, one of an earlier
-// turn is below: the sign of the difference tells.
+// An entry of this turn is at least `first` and less than 2^kPlaceBits above it. One of an earlier
+// turn is below, so the sign of the difference decides.
 bool Link::closeSmall() {
   constexpr std::int32_t kPlaces = 1 << kPlaceBits;
   static_assert(4 * kSmall * kSmall / 3 < kPlaces);

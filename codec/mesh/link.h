@@ -34,10 +34,11 @@ struct alignas(16) LinkTriangle {
 
 class Link {
  public:
-  /// Of a vertex: vertex less centre, whole numbers, and a fourth that is 0; all 0 for the ghost.
+  /// A vertex's offset: vertex less centre in whole numbers, and a fourth that is 0. All 0 for the
+  /// ghost.
   using Offset = std::array<double, 4>;
-  /// Of a triangle: six times the middle of its corners, or of the two beside the ghost, less the
-  /// centre. Whole numbers.
+  /// A triangle's middle: six times the mean of its corners, or of the two beside the ghost, less
+  /// the centre. Whole numbers.
   struct Middle {
     std::array<double, 3> place{};
     int logSquare = 0;  ///< L(1 + |place|^2) of FORMAT.md, "Label stream"
@@ -77,9 +78,9 @@ class Link {
     assert(reached_ == triangleCount_);
     return {order_.data(), triangleCount_};
   }
-  /// Notes where the vertices lie with respect to the centre, and makes the triangle that is
-  /// furthest from it the start of the traversal: the surest guess of which way the prey lay.
-  /// REQUIRES ids below points.size(), and isSphere() not asked before.
+  /// Notes where the vertices lie relative to the centre. The traversal then starts at the triangle
+  /// furthest from it, which best indicates the direction of the prey. REQUIRES ids below
+  /// points.size(), and isSphere() not asked before.
   void place(std::span<const LatticePoint> points, const LatticePoint& centre);
   /// By local id. REQUIRES place().
   [[nodiscard]] std::span<const Offset> offsets() const { return {offsets_.data(), vertexCount_}; }
@@ -95,7 +96,7 @@ class Link {
     t.label = static_cast<std::uint8_t>(label);
     for (const std::uint32_t v : t.vertex) labelsRound_[v] += LabelCounts{1} << (16 * label);
   }
-  /// Of the triangles round a local vertex.
+  /// The label counts of the triangles round a local vertex.
   [[nodiscard]] LabelCounts labelsRound(std::uint32_t local) const { return labelsRound_[local]; }
 
   [[nodiscard]] std::span<const LinkTriangle> triangles() const {
@@ -139,8 +140,8 @@ class Link {
   std::uint32_t reached_ = 0;  // triangles that the traversal found
   std::vector<Local> locals_;  // by localSlot()
   std::uint32_t generation_ = 0;
-  // Of a link of at most kSmall vertices, by a * kSmall + b: the place (4 * triangle + edge) of the
-  // directed edge a -> b, and above it the turn in which it was noted.
+  // For a link of at most kSmall vertices. Entry a * kSmall + b is the place (4 * triangle + edge)
+  // of the directed edge a -> b. Its upper bits are the turn in which it was noted.
   static constexpr std::size_t kSmall = 64;
   static constexpr int kPlaceBits = 16;
   static constexpr std::int32_t kTurns = 1 << 15;

@@ -25,7 +25,7 @@ using Triangle = std::array<VertexId, 3>;
 /// Lattice coordinates, each in [0, 2^bits).
 using LatticePoint = std::array<std::int32_t, 3>;
 
-/// So many slots of each kind: a place in all three at once, or counts.
+/// Numbers of slots of each kind: a place in all three arrays, or counts.
 struct Slots {
   std::uint32_t vertices = 0, tetrahedra = 0, triangles = 0;
 
@@ -35,8 +35,8 @@ struct Slots {
   bool operator==(const Slots&) const = default;
 };
 
-/// What fills slots whose chunk has not come: a place off the lattice, and cells of one vertex,
-/// which are nothing when drawn.
+/// The values of slots whose chunk has not arrived: a point off the lattice, and cells of one
+/// vertex, which draw nothing.
 inline constexpr LatticePoint kHolePoint{-1, -1, -1};
 inline constexpr Tetrahedron kHoleTetrahedron{0, 0, 0, 0};
 inline constexpr Triangle kHoleTriangle{0, 0, 0};
@@ -52,22 +52,22 @@ struct Lattice {
   }
 };
 
-/// What stands for a value that is missing (NaN) among the integers of a field with missing values;
-/// beyond what any value can be.
+/// Stands for a missing value (NaN) among the integers of a field with missing values. No value can
+/// be this small.
 inline constexpr std::int32_t kMissing = std::numeric_limits<std::int32_t>::min();
 
-/// What a field's numbers mean: value of component c = minimum[c] + step * integer. Integer fields
-/// have step 1 and lose nothing.
+/// The meaning of a field's integers: value of component c = minimum[c] + step * integer. Integer
+/// fields have step 1 and lose nothing.
 struct FieldInfo {
   std::string name;
   std::uint32_t components = 1;
   std::string type = "float32";  ///< of the input: float32, float64, int8 ... uint64
-  /// What a value belongs to: point or cell (a tetrahedron).
+  /// The element that a value belongs to: point or cell (a tetrahedron).
   std::string association = "point";
   int bits = 12;  ///< integers lie in [0, 2^bits)
   double step = 1;
   std::vector<double> minimum;  ///< one a component
-  /// Of the values, or of the magnitude where components > 1.
+  /// The range of the values, or of their magnitude if components > 1.
   std::array<double, 2> range{0, 0};
   /// An integer may be kMissing: a value that is NaN.
   bool hasMissing = false;

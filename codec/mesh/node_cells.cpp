@@ -12,8 +12,8 @@ void NodeCells::add(const Slots& first, const Slots& end) {
   for (CellId t = first.triangles; t < end.triangles; ++t) triangles.push_back(t);
 }
 
-// A vertex between two nodes has cells of both for good, however far either is refined: its star is
-// never a node's, whatever has arrived.
+// A vertex between two nodes always has cells of both, however far either is refined. So its star
+// never lies in one node.
 std::vector<VertexId> innerVertices(const GrowingMesh& mesh, const NodeCells& cells,
                                     VertexCounts& counts) {
   counts.makeRoom(mesh.points.size());

@@ -1,5 +1,5 @@
 // The live cells of one node of the tree in the layout `regions`, and the vertices whose whole star
-// lies in it (FORMAT.md, "Packets"): those that its packet may split. Found from the node's own
+// lies in it (FORMAT.md, "Packets"). Its packet may split these vertices. Found from the node's own
 // cells, so that the work is the packet's, not the mesh's.
 #pragma once
 

@@ -1,5 +1,5 @@
-// Memory for the stars of a growing mesh: runs of cells that are given back and taken again while
-// vertices split, without a call to the allocator.
+// Memory for the stars of a growing mesh. Runs of cells are released and reused while vertices
+// split, without a call to the allocator.
 #pragma once
 
 #include <algorithm>
@@ -13,12 +13,12 @@ namespace qtet {
 using CellRef = std::uint32_t;
 inline constexpr CellRef kBoundaryBit = 0x80000000u;
 
-/// Runs are whole units of kUnit cells, named by the unit that they begin with. A run that was
-/// given back serves a later request, cut to its size.
+/// Runs are whole units of kUnit cells, named by the unit that they begin with. A released run
+/// serves a later request, cut to its size.
 class StarPool {
  public:
   static constexpr std::uint32_t kUnit = 8;
-  /// Units that hold so many cells, at least 1.
+  /// Units that hold `cells` cells, at least 1.
   [[nodiscard]] static std::uint32_t unitsFor(std::uint32_t cells) { return cells / kUnit + 1; }
 
   /// The first unit of a run. REQUIRES units > 0.
@@ -37,7 +37,7 @@ class StarPool {
     cells_.resize(cells_.size() + std::size_t{units} * kUnit);
     return first;
   }
-  /// Gives a run back. REQUIRES taken with so many units, and not given back yet.
+  /// Releases a run. REQUIRES taken with `units` units, and not released yet.
   void give(std::uint32_t first, std::uint32_t units) {
     assert(units > 0 && (std::size_t{first} + units) * kUnit <= cells_.size());
     if (free_.size() <= units) free_.resize(units + 1, kNone);

@@ -38,7 +38,7 @@ _TYPES = {
     "uint32": 9,
     "uint64": 10,
 }
-# What is stored as another type that holds it.
+# Types that are stored as a wider one.
 _WIDENED = {"bool": "uint8", "float16": "float32"}
 _ALGORITHMS = {"qtet": 0, "paper": 1}
 _PLACEMENTS = {"auto": 0, "optimal": 1, "vertex": 2}
@@ -46,7 +46,7 @@ _MEASURES = {"none": 0, "levels": 1, "all": 2}
 _CODECS = {"draco": 0, "adaptive": 1}
 _STAGES = ("clean", "quantise", "simplify", "measure", "encode", "keep")
 _MAX_COMPONENTS = 16
-# Between two looks at how far the work has come, and at Ctrl-C.
+# Between two checks of the progress and of Ctrl-C.
 _INTERVAL_S = 0.1
 
 

@@ -284,7 +284,7 @@ class Log:
         if not 0 <= level <= self.last_level:
             raise QtetError(f"there is no level {level}; the last is {self.last_level}")
         if self.remote and self.remote.need(self.level_info(level).prefixBytes):
-            # Anew: the library must not see a file change that it has open.
+            # Reopens the file: the library must not see a change of a file that it has open.
             self._open(self.remote.file.name)
         self.check(self.c.qtet_log_refine(self.handle, _u32(level)))
         return level

@@ -22,7 +22,7 @@ __all__ = ["Log", "QtetError", "grid_of", "read", "surface_of"]
 
 # A float keeps a lattice of this many bits apart where the origin is not far off.
 _FLOAT_BITS = 20
-# What stands in a slot whose chunk has not come (qtet.h, "Sizes").
+# The content of a slot whose chunk has not arrived (qtet.h, "Sizes").
 _NO_POINT, _NO_TETRAHEDRON, _NO_TRIANGLE = b"\xff" * 12, bytes(16), bytes(12)
 _ARRAYS = {
     "float32": core.vtkFloatArray,

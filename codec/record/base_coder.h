@@ -1,4 +1,4 @@
-// The base mesh in both directions: cells grown face by face, each told by its apex (FORMAT.md,
+// The base mesh in both directions: cells grown face by face, each given by its apex (FORMAT.md,
 // "Base mesh").
 #pragma once
 
@@ -15,14 +15,14 @@
 
 namespace qtet {
 
-/// Where a base vertex's values are predicted from: the face (a, b, c) that its first cell was
-/// grown over and the apex d behind it; a == kGhost for a vertex of a seed cell, predicted from the
-/// vertex before it.
+/// The vertices that predict a base vertex's values: the face (a, b, c) over which its first cell
+/// was grown, and the apex d behind it. a == kGhost for a vertex of a seed cell, which the vertex
+/// before it predicts.
 struct BaseBirth {
   std::array<VertexId, 4> from{kGhost, kGhost, kGhost, kGhost};
 };
 
-/// What an encoder knows: the oriented cells, and which cell lies across which face.
+/// The encoder's knowledge: the oriented cells, and which cell lies across which face.
 class BaseTruth {
  public:
   explicit BaseTruth(std::span<const Tetrahedron> cells);
@@ -196,8 +196,8 @@ template <class At>
   return position ? (2 * sum + 1) / 3 - at(f[3], c) : (sum + 1) / 3;
 }
 
-/// The same of a field with missing values: the mean of the face's values that are there; of a
-/// seed's vertex the one before, if it is there; else 0.
+/// The same for a field with missing values: the mean of the face's values that are present. For a
+/// seed's vertex, the value before it if present. Else 0.
 template <class At>
 [[nodiscard]] std::int64_t predictBaseBesideMissing(const BaseBirth& birth, VertexId v,
                                                     std::uint32_t c, const At& at) {

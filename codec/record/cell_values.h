@@ -17,8 +17,8 @@
 namespace qtet {
 
 /// For each tetrahedron the earlier ones that its values are predicted from: those that shared a
-/// face with it when it came. Takes 16 bytes a tetrahedron, whatever the number of fields, so that
-/// a field may lag behind the mesh.
+/// face with it when it came. Takes 16 bytes a tetrahedron for any number of fields. It lets a
+/// field lag behind the mesh.
 class CellAncestry {
  public:
   /// Adds the base mesh's tetrahedra. REQUIRES: called once and first; four different vertices a

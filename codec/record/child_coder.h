@@ -1,6 +1,6 @@
-// Which half of a node each of its cells belongs to (FORMAT.md, "Child bits"): one adaptive bit a
-// cell, guessed from the side of a plane that the encoder chose, and from the cells round its
-// vertices that were told before.
+// Codes which half of a node each of its cells belongs to (FORMAT.md, "Child bits"). Each cell
+// costs one adaptive bit. It is predicted from the cell's side of a plane that the encoder chose,
+// and from the cells round its vertices that were coded before.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What a simplifier did, in its own numbering: all that an encoder needs to write the way back.
+// A simplifier's fusions, in its own numbering: all that an encoder needs to write the way back.
 #pragma once
 
 #include <array>
@@ -24,14 +24,14 @@ struct Fusion {
 };
 
 /// For the layout `regions`: a binary tree over the cells, and the levels in which fusions kept to
-/// its nodes. Node n at depth d is the leaves that share their topmost d bits; band b (0 = the
-/// finest) keeps to the nodes at depth `depth` - b: all cells of a star, those that go included,
-/// belong to one of them.
+/// its nodes. Node n at depth d is the set of leaves whose topmost d bits are n. Band b (0 = the
+/// finest) keeps to the nodes at depth `depth` - b. All cells of a star belong to one of them, the
+/// deleted ones included.
 struct Bands {
   std::uint32_t depth = 0;          ///< the tree has 2^depth leaves
   std::vector<std::uint32_t> leaf;  ///< of every cell of the history, for life
-  /// Of each band, one past its last level (FusionHistory's numbers); ascending, no more than
-  /// `depth`; empty: no bands.
+  /// For each band, one past its last level (FusionHistory's numbers); ascending, at most `depth`
+  /// of them. Empty: no bands.
   std::vector<std::uint32_t> ends;
 
   [[nodiscard]] std::uint32_t node(std::uint32_t cell, std::uint32_t atDepth) const {

@@ -1,7 +1,7 @@
-// Which prey vertex each cell of a star belongs to: one label a link triangle, in breadth-first
-// order, predicted from the labels given so far and from where their triangles lie (FORMAT.md,
-// "Label stream"). Nothing is known yet of where the prey vertices lie: labels help to predict
-// that.
+// Codes which prey vertex each cell of a star belongs to: one label a link triangle, in
+// breadth-first order (FORMAT.md, "Label stream"). A label is predicted from the earlier labels and
+// from where their triangles lie. The places of the prey vertices are not known yet: labels help to
+// predict them.
 #pragma once
 
 #include <algorithm>
@@ -81,15 +81,15 @@ class LabelCoder {
                                                  {Pair{0, 0}, Pair{1, 0}},
                                                  {Pair{0, 0}, Pair{0, 1}}}};
 
-  /// Of each candidate, for the triangle in hand.
+  /// The scores of every candidate label for the current triangle, and their parts.
   struct Candidates {
     std::array<int, 4> neighbours{};  // triangles across an edge that carry this label
     std::array<int, 4> shared{};      // of the labels round the three corners, in eighths
     // log of the squared distance to the middle of the triangles that carry it
     std::array<int, 4> distance{};
     std::array<int, 4> score{};
-    // 16 bits a label: the highest, third and fifth highest tell whether the first, second and
-    // third corner has met it
+    // 16 bits a label: the highest, third and fifth highest say whether the first, second and third
+    // corner has met it
     Link::LabelCounts met = 0;
   };
 
@@ -134,7 +134,7 @@ class LabelCoder {
     if (labels_ < K) expectNext<K>(place);
   }
 
-  // Of the label that is to come, while there is one.
+  // Prepares the figures of the next new label, while there is one.
   template <std::size_t K>
   void expectNext(const std::array<double, 3>& place) {
     ++triangles_;
@@ -203,7 +203,8 @@ class LabelCoder {
     return order[candidates - 1];
   }
 
-  // Of two candidates without a branch, which would go either way at random, and without memory.
+  // Selects a candidate's number. Between two candidates it uses neither a branch, which nobody
+  // could predict, nor memory.
   template <std::size_t K>
   static int of(const std::array<int, 4>& numbers, std::size_t candidate) {
     if constexpr (K == 2)

@@ -1,4 +1,4 @@
-// The encoder's mirror of the decoder's mesh: it grows in the same slots, and knows which vertex
+// The encoder's mirror of the decoder's mesh. It grows in the same slots, and knows which vertex
 // and which cell of the history each slot holds.
 #pragma once
 

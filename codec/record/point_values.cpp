@@ -27,8 +27,8 @@ Vector between(const LatticePoint& from, const LatticePoint& to) {
 // A star that ends after less than this share of the step says nothing of it.
 constexpr double kLeastReach = 0.25;
 
-// A fused vertex lies near its edge: further along than this is as far, which keeps a prediction
-// within 64 bits whatever the values.
+// A fused vertex lies near its edge. A step further along than this is cut to it, which keeps every
+// prediction within 64 bits.
 constexpr double kMaxSteps = 4;
 
 /// Where a line through the fused vertex leaves the star.

@@ -17,9 +17,9 @@
 
 namespace qtet {
 
-/// How much a field changes over a step through a star, as a weighted sum of differences to the
-/// fused vertex's value: of the corners of the two link triangles that the line along the step
-/// passes.
+/// How much a field changes over a step through a star. It is a weighted sum of differences to the
+/// fused vertex's value. They are taken at the corners of the two link triangles that the line
+/// along the step passes.
 struct Slope {
   static constexpr int kWeightBits = 12;
 
@@ -35,7 +35,8 @@ struct Slope {
   }
 };
 
-/// What a field needs to follow a record without its connectivity, so that it may come later.
+/// The data with which a field follows a record without its connectivity, so that the field may
+/// arrive later.
 struct Birth {
   VertexId slot = 0;      ///< the vertex that split
   VertexId firstNew = 0;  ///< its k - 1 new vertices start here
@@ -56,8 +57,8 @@ class PointAncestry {
   /// `withSlopes`: there is a point field.
   explicit PointAncestry(bool withSlopes = false) : withSlopes_(withSlopes) {}
 
-  /// A hint: so many records are to come, which bring at most so many vertices. REQUIRES: there is
-  /// memory for it (roomFor).
+  /// A hint: `records` records are to come, with at most `vertices` new vertices. REQUIRES: there
+  /// is memory for it (roomFor).
   void reserve(std::uint64_t records, std::uint64_t vertices);
   /// Bytes that reserve() takes.
   [[nodiscard]] std::uint64_t roomFor(std::uint64_t records, std::uint64_t vertices) const {
@@ -110,8 +111,8 @@ class PointAncestry {
     return std::clamp(fused + ((change * steps + (std::int64_t{1} << (kBits - 1))) >> kBits),
                       -kFurthest, kFurthest);
   }
-  // A steep field over a long step leads far beyond any value: no further than what a value block's
-  // difference to it can tell.
+  // A steep field over a long step predicts far beyond any value. The bound is the largest
+  // difference that a value block can code.
   static constexpr std::int64_t kFurthest = kMaxDracoMagnitude / 2;
 
   bool withSlopes_;

@@ -1,6 +1,6 @@
-// Where the prey vertices of a record lie (FORMAT.md, "Positions"): the leading digits of each
-// difference go to the positions block, as small integers of one and the same distribution whatever
-// the size of the star; the digits below, which are noise, ride in the structure block.
+// Codes where the prey vertices of a record lie (FORMAT.md, "Positions"). The leading digits of
+// each difference go to the positions block, as small integers with the same distribution whatever
+// the size of the star. The digits below are noise and go to the structure block.
 #pragma once
 
 #include <algorithm>
@@ -89,13 +89,13 @@ class PositionCoder {
   }
 
  private:
-  // How many digits of a difference go to the positions block: an edge of the star's mean length
-  // along the axis is about 2^kWholeEdge of its units.
+  // How many digits of a difference go to the positions block. In their units, an edge of the
+  // star's mean length along the axis is about 2^kWholeEdge.
   static constexpr int kWholeEdge = 2, kHalfEdge = 3, kQuarterEdge = 4;
   static constexpr std::size_t kShared = 4;
 
-  // The middle of the link's vertices that only one prey vertex's triangles hold, for each prey
-  // vertex, and of all the others; from the fused vertex.
+  // For each prey vertex, the mean of the link's vertices that only its triangles have; then the
+  // mean of all others. Relative to the fused vertex.
   void findMiddles() {
     std::array<Link::Offset, 5> sum{};
     std::array<std::int64_t, 5> count{};
@@ -117,8 +117,8 @@ class PositionCoder {
       }
   }
 
-  // What lies nearer to the fused vertex tells which prey vertex it stands at, and how much nearer
-  // whether it stands at one.
+  // The label whose middle is nearest to the fused vertex predicts the prey vertex at which it
+  // stands. The ratio to the second nearest predicts whether it stands at one at all.
   void placement(Split& split) {
     const auto n = static_cast<std::size_t>(split.k);
     std::array<int, 4> distance{};

@@ -21,7 +21,7 @@
 
 namespace qtet {
 
-/// What an encoder knows of a record; a decoder leaves it empty. Prey 0 keeps the slot.
+/// The encoder's knowledge of a record; a decoder leaves it empty. Prey 0 keeps the slot.
 struct RecordTruth {
   int k = 2;
   Placement placement = Placement::kAtPrey;

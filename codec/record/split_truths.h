@@ -1,4 +1,4 @@
-// What the history knows of each split of the way back, in the terms of the record coder.
+// Describes each split of the way back, as the history has it, in the record coder's terms.
 #pragma once
 
 #include <cstdint>
@@ -17,13 +17,13 @@ class SplitTruths {
   /// Both must outlive it.
   SplitTruths(const FusionHistory& history, const MirrorMesh& mirror);
 
-  /// The fusion that a split of v undoes in the level in hand, or nullptr.
+  /// The fusion that a split of v undoes in the current level, or nullptr.
   [[nodiscard]] const Fusion* fusionAt(VertexId v) const;
   /// Describes the split of v that undoes `fusion`, and numbers its prey as the record does: in
   /// order of first appearance along the link. False: the history's cells are not those of v's
   /// star. REQUIRES: `link` is v's and a sphere.
   [[nodiscard]] bool describe(VertexId v, const Link& link, Fusion& fusion, RecordTruth& truth);
-  /// The history's cells of what the split described last brings back, in that order.
+  /// The history's cells that the split described last brings back, in that order.
   [[nodiscard]] const std::vector<std::uint32_t>& restored(const Split& split);
 
  private:
@@ -34,7 +34,7 @@ class SplitTruths {
   const MirrorMesh& mirror_;
   std::vector<std::uint32_t> fusionOf_;  // by vertex of the history: the fusion that made it
   std::vector<std::uint8_t> labelOf_;    // by cell of the history; kNoLabel between two uses
-  // of the split in hand, sorted: the record's cell, the history's cell
+  // of the current split, sorted: the record's cell, the history's cell
   std::vector<std::pair<LocalCell, std::uint32_t>> deleted_;
   std::vector<std::uint32_t> restored_;
 };

@@ -27,15 +27,15 @@ class Values {
       return 0;
     }
   }
-  /// A value that is told as the difference to a prediction.
+  /// Codes a value as the difference to a prediction.
   template <bool kEncoding>
   std::int32_t code(std::int64_t predicted, std::int32_t truth) {
     const std::int64_t value = predicted + code<kEncoding>(truth - predicted);
     bad_ |= value < -kLargest || value > kLargest;
     return bad_ ? 0 : static_cast<std::int32_t>(value);
   }
-  /// The same of a field with missing values: 0 tells that the value is missing, and a difference
-  /// that is not negative is told as one more.
+  /// The same for a field with missing values. 0 means that the value is missing, and a difference
+  /// that is not negative is coded as one more.
   template <bool kEncoding>
   std::int32_t codeOrMissing(std::int64_t predicted, std::int32_t truth) {
     if constexpr (kEncoding) {
@@ -56,7 +56,7 @@ class Values {
     return hasMissing ? codeOrMissing<kEncoding>(predicted, truth)
                       : code<kEncoding>(predicted, truth);
   }
-  /// What was made of the values is out of range.
+  /// Marks the values as bad: a result is out of range.
   void spoil() { bad_ = true; }
   [[nodiscard]] bool bad() const { return bad_; }
   [[nodiscard]] bool atEnd() const { return next_ == given_.size(); }

@@ -8,10 +8,10 @@
 
 namespace qtet {
 
-/// Calls gone() once when the client has closed, also only its sending half. One that sends its
-/// next request meanwhile is not watched any further: the end lies behind those bytes. Runs on the
-/// socket's executor, until socket.cancel(). pending() tells whether anybody still wants to know:
-/// as long as it does, the socket is there and used by nobody else.
+/// Calls gone() once when the client has closed, even if only its sending half. If the client sends
+/// its next request meanwhile, the watch stops: the end lies behind those bytes. Runs on the
+/// socket's executor, until socket.cancel(). While pending() is true, somebody still waits, the
+/// socket exists, and nobody else uses it.
 template <class Pending, class Gone>
 void watchForEnd(ClientSocket& socket, Pending pending, Gone gone) {
   socket.whenReadable([&socket, pending = std::move(pending),

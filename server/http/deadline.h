@@ -1,4 +1,4 @@
-// An end to waiting that leaves the socket open, so that the client can be told.
+// A time limit for waiting that leaves the socket open, so that the client can get an answer.
 #pragma once
 
 #include <utility>  // before any Asio header: 1.74 uses std::exchange without it

@@ -119,7 +119,7 @@ std::string ofRfc850(std::string_view text) {
          std::string(rest.substr(5, 3)) + " " + std::to_string(full) + std::string(rest.substr(11));
 }
 
-/// "Sun Nov  6 08:49:37 1994", likewise.
+/// The same for "Sun Nov  6 08:49:37 1994".
 std::string ofAscTime(std::string_view text) {
   if (text.size() != kAscTimeCharacters || text[3] != ' ' || text[7] != ' ') return "";
   std::string day(text.substr(8, 2));

@@ -17,12 +17,12 @@ namespace qtet {
 /// GMT" and "Sun Nov  6 08:49:37 1994". Anything else is no date.
 [[nodiscard]] std::optional<std::time_t> parseHttpDate(std::string_view text);
 
-/// What a resource is compared by. `etag` is strong and has its quotes.
+/// The values by which conditions compare a resource. `etag` is strong and has its quotes.
 struct Validators {
   std::string etag;
   std::time_t modified = 0;
-  /// Of a coded variant: the tag of the uncoded one, which If-Match accepts as well, since both
-  /// stand for the same state of the resource. Else empty.
+  /// For a coded variant, the tag of the uncoded one; else empty. If-Match accepts this tag too,
+  /// since both stand for the same state of the resource.
   std::string plainEtag{};
 };
 

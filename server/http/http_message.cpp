@@ -10,7 +10,7 @@
 namespace qtet {
 namespace {
 
-/// What a page of another origin may read besides the few headers that it always may.
+/// Headers that a page of another origin may read, besides the few that it always may.
 constexpr const char* kExposedHeaders =
     "Accept-Ranges, Allow, Content-Disposition, Content-Encoding, Content-Location, Content-Range, "
     "ETag, Link, Location, "

@@ -16,7 +16,8 @@
 
 namespace qtet {
 
-/// What the router looks at. The views belong to the request that was parsed.
+/// The parts of a request that the router looks at. The views belong to the request that was
+/// parsed.
 struct RequestView {
   std::string_view method;
   std::string_view target;
@@ -36,16 +37,16 @@ struct RequestView {
   std::optional<std::string_view> traceparent = std::nullopt;
 };
 
-/// `body` is text of the reply's own, or bytes that live as long as `owner`, or left open: it is
-/// not there yet, and nobody knows its length.
+/// `body` is text that the reply owns, or bytes that live as long as `owner`. std::monostate leaves
+/// it open: it does not exist yet, and its length is unknown.
 struct Reply {
   unsigned status = 200;
   /// Without Content-Length, Date and Connection.
   std::vector<std::pair<std::string, std::string>> headers;
   std::variant<std::string, ByteView, std::monostate> body;
-  /// Of the bytes, where they are not the router's or the viewer's.
+  /// Owner of the body's bytes, unless they are the router's or the viewer's.
   std::shared_ptr<const void> owner{};
-  /// Where the bytes of the body, a view, stand in an open file as well.
+  /// The place of the body's bytes in an open file, if they are in one too.
   std::optional<FilePart> file{};
   bool sendBody = true;  ///< false for HEAD: the headers speak of the body that is left out
   bool close = false;    ///< the connection cannot be used any further

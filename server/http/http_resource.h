@@ -18,7 +18,7 @@ namespace qtet {
 inline constexpr std::string_view kRevalidate = "no-cache";
 inline constexpr std::string_view kForEver = "public, max-age=31536000, immutable";
 
-/// What bytes are, and how long they may be kept.
+/// Describes bytes, and how long they may be cached.
 struct Resource {
   Validators validators;
   std::string type;

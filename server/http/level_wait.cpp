@@ -16,7 +16,7 @@ namespace {
 
 namespace asio = boost::asio;
 
-/// A coroutine's continuation, called by whoever comes first; only on the connection's executor.
+/// A coroutine's continuation, called once by the first event. Only on the connection's executor.
 template <class Handler>
 class FirstAnswer {
  public:

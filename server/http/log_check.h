@@ -15,15 +15,15 @@
 namespace qtet {
 
 struct CheckLimits {
-  /// Of memory, as codec/log/decoding_memory.h foretells them.
+  /// Memory, as predicted by codec/log/decoding_memory.h.
   std::uintmax_t bytes = limits::kMaxCheckBytes;
   std::chrono::milliseconds time = limits::kCheckTime;  ///< of one check, from its own beginning
 };
 
-/// nullopt: every record and the values of every field decode, and are what the manifest says. Else
-/// what is answered: 413 (beyond the limits, with the figure), 422 (bad-log, with what is wrong and
-/// where), 503 (there is no memory just now, or `stop` was requested; looked at before every level
-/// and after every chunk).
+/// Returns nullopt if every record and the values of every field decode and agree with the
+/// manifest. Else returns the answer: 413 (beyond the limits, with the figure), 422 (bad-log, with
+/// the fault and its place), 503 (there is no memory just now, or `stop` was requested; looked at
+/// before every level and after every chunk).
 [[nodiscard]] std::optional<Reply> checkLog(const ServedMesh& mesh, const CheckLimits& limits,
                                             const std::stop_token& stop);
 using LogCheck = std::function<std::optional<Reply>(const ServedMesh&, const CheckLimits&,

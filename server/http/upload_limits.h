@@ -1,4 +1,4 @@
-// What the server allows uploads and their checks, with units and reasons.
+// Limits on uploads and their checks, with units and reasons.
 #pragma once
 
 #include <chrono>
@@ -16,20 +16,20 @@ inline constexpr std::uintmax_t kMaxUploadBytes = std::uintmax_t{16} << 30;
 /// one token: a client that trickles its bytes keeps nobody else out.
 inline constexpr std::size_t kMaxUploads = 32;
 inline constexpr std::size_t kMaxUploadsOfToken = 4;
-/// Parts that are kept for going on with them, with the one that comes, and their bytes: two of the
-/// largest logs for one token, and for all together as much as four tokens may have.
+/// Parts kept so that their uploads can be resumed, with the one under way, and their bytes. One
+/// token may have two of the largest logs, and all tokens together as much as four.
 inline constexpr std::size_t kMaxParts = 32;
 inline constexpr std::size_t kMaxPartsOfToken = 8;
 inline constexpr std::uintmax_t kMaxPartBytes = std::uintmax_t{128} << 30;
 inline constexpr std::uintmax_t kMaxPartBytesOfToken = std::uintmax_t{32} << 30;
-/// Threads that check what came, decoding it whole, beside those that make levels.
+/// Threads that check complete uploads by decoding them whole, beside those that make levels.
 inline constexpr std::size_t kCheckThreads = 1;
-/// Bytes of memory that one check may take, as codec/log/decoding_memory.h foretells them: 80 each
-/// for a log of 50 million tetrahedra with a field.
+/// Bytes of memory that one check may take, as predicted by codec/log/decoding_memory.h: 80 for
+/// each tetrahedron of a log of 50 million with a field.
 inline constexpr std::uintmax_t kMaxCheckBytes = std::uintmax_t{4} << 30;
-/// From a check's beginning to its end: so many tetrahedra take a minute.
+/// From a check's beginning to its end. That many tetrahedra take a minute.
 inline constexpr auto kCheckTime = 10min;
-/// What came of an upload that broke off is kept so long for going on with it.
+/// The part of an interrupted upload is kept for so long, so that the upload can be resumed.
 inline constexpr auto kPartialUploadTime = 24h;
 
 }  // namespace qtet::limits

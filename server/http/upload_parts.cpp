@@ -17,8 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Hidden, so that no scan of the folder takes one for a mesh. Those of a digest may be gone on
-// with.
+// Hidden, so that no scan of the folder takes one for a mesh. Parts with a digest in their names
+// can be resumed.
 constexpr std::string_view kPrefix = ".upload-";
 constexpr std::string_view kSuffix = ".part";
 

@@ -1,5 +1,5 @@
-// The parts of uploads that lie in the folder until somebody goes on with them, and how many of
-// them there may be.
+// The parts of uploads that stay in the folder until somebody resumes them, and the limits on their
+// number.
 #pragma once
 
 #include <chrono>
@@ -23,19 +23,19 @@ namespace qtet {
 struct PartQuota {
   std::size_t most = limits::kMaxParts, mostOfToken = limits::kMaxPartsOfToken;
   std::uintmax_t bytes = limits::kMaxPartBytes, bytesOfToken = limits::kMaxPartBytesOfToken;
-  /// Of the disk, below which nothing is begun.
+  /// No upload begins if the disk has less free space than this.
   std::uintmax_t reserve = limits::kDiskReserve;
   FreeDiskBytes freeBytes = freeDiskBytes;
 };
 
-/// Not thread-safe. Which token a part belongs to is known of those that came since the start; the
-/// others count for all together.
+/// Not thread-safe. The token is known only for parts that arrived since the start. Earlier parts
+/// count for all tokens together.
 class UploadParts {
  public:
   UploadParts(std::filesystem::path folder, PartQuota quota)
       : folder_(std::move(folder)), quota_(std::move(quota)) {}
 
-  /// Where the bytes go that can be gone on with.
+  /// The file for the bytes of an upload that can be resumed.
   [[nodiscard]] std::filesystem::path resumable(const std::string& id,
                                                 const std::string& digest) const;
   /// Where those go that cannot; another place each time.
@@ -54,8 +54,8 @@ class UploadParts {
   [[nodiscard]] std::size_t countUnderWay() const { return underWay_.size(); }
   [[nodiscard]] std::size_t countUnderWay(const std::string& token) const;
 
-  /// Removes parts of no upload under way that nobody wrote to for limits::kPartialUploadTime, or
-  /// where they cannot be gone on with for `ofNoDigest`.
+  /// Removes old parts of inactive uploads: those that nobody wrote to for
+  /// limits::kPartialUploadTime, or for `ofNoDigest` if they cannot be resumed.
   void removeOld(std::chrono::seconds ofNoDigest) const;
 
  private:

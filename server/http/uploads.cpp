@@ -193,7 +193,7 @@ std::optional<Reply> Uploads::precondition(const UploadRequest& request) const {
   RequestView view{.method = "PUT", .target = ""};
   if (request.ifMatch) view.ifMatch = *request.ifMatch;
   if (request.ifNoneMatch) view.ifNoneMatch = *request.ifNoneMatch;
-  // What is not there has no tag at all: If-Match fails and If-None-Match holds.
+  // A mesh that does not exist has no tag at all: If-Match fails and If-None-Match succeeds.
   const bool fails =
       mesh ? evaluateConditions(view, {mesh->description().etag, mesh->modified}) != Verdict::kSend
            : request.ifMatch.has_value();

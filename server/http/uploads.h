@@ -1,6 +1,6 @@
-// PUT and DELETE of meshes: a log comes into a hidden file beside the others, is verified and
-// decoded whole, and gets its name by a rename; so it is there as a whole or not at all, whatever
-// happens on the way (PROTOCOL.md, "Uploads").
+// PUT and DELETE of meshes. A log is written to a hidden file beside the others, verified and
+// decoded whole, and renamed to its name. So the log is there whole or not at all, whatever happens
+// meanwhile (PROTOCOL.md, "Uploads").
 #pragma once
 
 #include <atomic>
@@ -30,18 +30,18 @@ class Upload {
  public:
   Upload(const Upload&) = delete;
   Upload& operator=(const Upload&) = delete;
-  /// What came stays for going on with it if the request named its digest; else it goes.
+  /// Keeps the received bytes for resuming if the request named its digest; else removes them.
   ~Upload();
 
-  /// nullopt: the bytes are written; else the answer that ends the upload: 507 (the disk is full;
-  /// what came goes) or 500.
+  /// nullopt: the bytes are written. Else the answer that ends the upload: 507 (the disk is full;
+  /// the received bytes are removed) or 500.
   [[nodiscard]] std::optional<Reply> append(ByteView bytes);
   /// 202: this part is kept, and more is missing; nullopt: all bytes are there. Or 500.
   [[nodiscard]] std::optional<Reply> partial();
   /// After the last byte: verifies, decodes and publishes. Reads the whole file and takes as long
   /// as its check may, so not for a thread that serves others. 201 (new), 200 (replaced), or 412,
-  /// 413, 422, 500, 503 (`stop` was requested, or there is no memory, among others), 507. What is
-  /// refused by 413 or 422 cannot be gone on with.
+  /// 413, 422, 500, 503 (`stop` was requested, or there is no memory, among others), 507. After 413
+  /// or 422 the upload cannot be resumed.
   [[nodiscard]] Reply finish(const std::stop_token& stop);
 
  private:
@@ -72,31 +72,31 @@ struct UploadOptions {
   PartQuota parts{};  ///< of those that are kept
 };
 
-/// Thread-safe. Several servers may share the folder: each lets the parts of the others' uploads
-/// under way alone, by their locks.
+/// Thread-safe. Several servers may share the folder: each recognises the others' active uploads by
+/// their locks and leaves their parts alone.
 class Uploads {
  public:
   /// `store` must outlive it.
   Uploads(const MeshStore& store, UploadOptions options)
       : store_(store), options_(std::move(options)), parts_(store.folder(), options_.parts) {}
 
-  /// Opens the place where the bytes go; or the answer: 404 (no such name), 409 (the range does not
-  /// go on where it stopped, or somebody is sending the same), 412, 413, 500, 503, 507.
+  /// Opens the file for the bytes, or returns the answer: 404 (no such name), 409 (the range does
+  /// not begin where the upload stopped, or somebody is sending the same), 412, 413, 500, 503, 507.
   [[nodiscard]] std::expected<std::unique_ptr<Upload>, Reply> begin(const UploadRequest& request);
-  /// Bytes that are there of an upload of this log under this name that broke off; nullopt: none.
+  /// Bytes received of an interrupted upload of this log under this name; nullopt: there is none.
   /// REQUIRES: a name that a mesh may have.
   [[nodiscard]] std::optional<std::uint64_t> partialBytes(const std::string& id,
                                                           const std::string& digest) const;
   /// 204, 404 or 412.
   [[nodiscard]] Reply remove(const UploadRequest& request);
-  /// Removes what uploads left behind: those that cannot be gone on with, and those that nobody
-  /// went on with for limits::kPartialUploadTime.
+  /// Removes the parts of uploads that cannot be resumed, and of those that nobody resumed for
+  /// limits::kPartialUploadTime.
   void sweep() const;
-  /// From now on checks break off, those under way as well.
+  /// Stops all checks: those under way and all later ones.
   void stopChecks() { ending_.request_stop(); }
 
   [[nodiscard]] std::size_t active() const;
-  /// Of them, those whose logs are being decoded.
+  /// The active uploads whose logs are being decoded.
   [[nodiscard]] std::size_t checking() const { return checking_; }
   [[nodiscard]] std::uint64_t published() const { return published_; }
 

@@ -21,7 +21,7 @@ std::size_t defaultThreads() {
   return std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, kMaxThreads);
 }
 
-/// What may stand in all three places.
+/// Options allowed in all three places: command line, environment and configuration file.
 po::options_description settings() {
   po::options_description out(
       "Settings, also in the environment (--max-connections as QTET_SERVER_MAX_CONNECTIONS) and\n"

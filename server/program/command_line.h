@@ -45,7 +45,7 @@ struct CommandLine {
   std::size_t maxConnectionsPerAddress = limits::kMaxConnectionsPerAddress;  ///< 0: no bound
   std::size_t maxLevelsPerAddress = limits::kMaxLevelJobsPerAddress;         ///< 0: no bound
   unsigned maxRequestsPerSecond = limits::kMaxRequestsPerSecond;             ///< 0: no bound
-  /// Of pages that may open streams; empty: any.
+  /// Origins of pages that may open streams; empty: any.
   std::vector<std::string> allowedOrigins;
   std::string frameAncestors = "*";
   TrustedProxies proxies;

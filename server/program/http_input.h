@@ -1,4 +1,4 @@
-// What a client sends over HTTP: heads and bodies, taken out of the bytes that have come.
+// Takes a client's HTTP heads and bodies out of the bytes that have arrived.
 #pragma once
 
 #include <utility>  // before any Asio header: 1.74 uses std::exchange without it
@@ -37,16 +37,16 @@ class HttpInput {
   boost::asio::awaitable<std::expected<void, std::optional<Reply>>> readHead(Parser& parser);
   /// Fills `into` with what follows the head. Bytes read; fewer: they did not come, or not in time.
   boost::asio::awaitable<std::size_t> readBody(std::span<std::uint8_t> into);
-  /// Reads and throws away what still comes, within bounds: closing while bytes of the client's lie
-  /// unread would reset the connection, and the answer might be lost on its way.
+  /// Reads and discards the client's further bytes, within bounds. Closing with unread bytes would
+  /// reset the connection, and the answer might be lost on its way.
   boost::asio::awaitable<void> drain();
-  /// What was read behind the head.
+  /// The bytes that were read beyond the head.
   [[nodiscard]] std::string_view buffered() const {
     return {static_cast<const char*>(buffer_.data().data()), buffer_.size()};
   }
 
  private:
-  /// What has come, without waiting.
+  /// Reads the bytes that have arrived, without waiting.
   void readSome(boost::beast::error_code& ec, std::size_t max);
 
   Peer& peer_;

@@ -14,8 +14,8 @@ namespace {
 namespace asio = boost::asio;
 using boost::system::error_code;
 
-/// Gives the socket what it takes by one call: the head with the first bytes of the body behind it,
-/// or some of the body alone.
+/// Writes as much as the socket accepts in one call: the head and the first bytes of the body, or a
+/// part of the body alone.
 std::size_t writeSome(ClientSocket& socket, const OutgoingReply& reply, bool headWaits,
                       error_code& ec) {
   const auto& [head, body, file] = reply;
@@ -33,8 +33,8 @@ std::size_t writeSome(ClientSocket& socket, const OutgoingReply& reply, bool hea
 asio::awaitable<Sent> sendReply(ClientSocket& socket, OutgoingReply reply,
                                 std::chrono::milliseconds patience, bool unpaced) {
   Sent out;
-  // The head goes with the first bytes, but for much to somebody on this machine: its own packet
-  // costs less than what follows lying across all of them.
+  // The head goes with the first bytes, except before a large body for a client on this machine.
+  // There its own packet costs less than misaligning all further packets.
   const bool headWaits = reply.file && !(unpaced && reply.body.size() >= limits::kMaxFromFile);
   std::optional<Deadline> deadline;  // for a piece; most answers are taken at once
   for (std::size_t taken = 0; !reply.head.empty() || !reply.body.empty();) {

@@ -15,7 +15,7 @@
 
 namespace qtet {
 
-/// What goes out; all of it outlives the call.
+/// A reply to send; all of it outlives the call.
 struct OutgoingReply {
   std::string_view head{};
   ByteView body{};

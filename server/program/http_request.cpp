@@ -40,8 +40,9 @@ Reply closing(unsigned status, std::string_view type, std::string_view detail) {
   return out;
 }
 
-/// Of these a proxy may take another line than we do, and so let through another token, another
-/// part of a log, or an answer to another question.
+/// Headers that may occur only once. If one occurs twice, a proxy may use the other line than we
+/// do. It could then let through another token, another part of a log, or the answer to another
+/// question.
 constexpr std::array kSingles = {http::field::authorization,
                                  http::field::content_range,
                                  http::field::if_range,

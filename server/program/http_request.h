@@ -14,26 +14,27 @@ namespace qtet {
 
 using RequestHeader = boost::beast::http::request_header<>;
 
-/// Lists that stand on several lines on one, as RFC 9110, 5.3 reads them: else whoever looks at a
-/// header sees its first line alone.
+/// Joins the lines of lists into one, as RFC 9110, 5.3 reads them. Otherwise a look at a header
+/// would find its first line only.
 void joinLists(RequestHeader& header);
 
 /// The views live as long as `header`. A `Range` that stands there twice is none, as one that makes
 /// no sense is none.
 [[nodiscard]] RequestView viewOf(const RequestHeader& header);
 
-/// What a proxy says in the header that `proxies` names, all of its lines as one list.
+/// A proxy's statement in the header that `proxies` names, with all of its lines as one list.
 [[nodiscard]] std::string forwardedOf(const RequestHeader& header, const TrustedProxies& proxies);
 
-/// The answer to a request that must not be understood: no or several hosts, twice what may stand
-/// there once, an odd version, a body where none is taken. Such an answer closes the connection,
-/// since where the next request would begin is in doubt.
+/// The answer to a request that the server must not interpret. Reasons are no or several hosts, a
+/// repeated header that may occur only once, an odd version, and a body where none is accepted.
+/// Such an answer closes the connection, since the beginning of the next request is in doubt.
 [[nodiscard]] std::optional<Reply> refusalOf(const RequestHeader& header);
 
 /// Whether the request is a WebSocket handshake on the stream's path.
 [[nodiscard]] bool isStreamHandshake(const RequestHeader& header);
-/// 403 for a page whose origin is not among `origins` (unless that is nullptr or empty; whoever
-/// names no origin is no browser, and whoever is none may name any). It closes the connection.
+/// 403 for a page whose origin is not among `origins`, unless that is nullptr or empty. A client
+/// that names no origin is no browser, and other programs may name any origin. It closes the
+/// connection.
 [[nodiscard]] std::optional<Reply> originRefusal(const RequestHeader& header,
                                                  const std::vector<std::string>* origins);
 /// GET, HEAD and OPTIONS.

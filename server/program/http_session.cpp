@@ -30,8 +30,8 @@ using Parser = HttpInput::Parser;
 /// A browser that has read it asks by https alone for a year (RFC 6797).
 constexpr const char* kStrictTransport = "max-age=31536000";
 
-/// Whether bytes follow the head. Unless they are read, what comes after them cannot be told from
-/// them, and the connection must end.
+/// Whether bytes follow the head. Unless the server reads them, it cannot distinguish them from the
+/// next request, and the connection must end.
 bool hasBody(const RequestView& request) {
   return request.contentLength &&
          request.contentLength->find_first_not_of('0') != std::string_view::npos;
@@ -124,7 +124,7 @@ asio::awaitable<bool> HttpSession::shakeHands() {
   co_return false;
 }
 
-/// What the client has sent stays in the kernel meanwhile.
+/// The client's bytes stay in the kernel meanwhile.
 asio::awaitable<bool> HttpSession::waitForPlace(Handshakes::Client& handshake,
                                                 const Deadline& deadline) {
   while (const auto again = handshake.enter()) {

@@ -101,14 +101,14 @@ Result<std::optional<FolderWatch>> watchFolder(const CommandLine& options, const
   return std::optional<FolderWatch>(std::move(*watch));
 }
 
-/// What SIGHUP reads again; nullptr: there is none.
+/// The secrets that SIGHUP reloads; nullptr: there is none.
 struct Secrets {
   std::unique_ptr<Access> access{};
   std::unique_ptr<CurrentTls> tls{};
 };
 
-/// That which all servers of the folder have. Where nobody may write there, tickets are for the
-/// server that gave them.
+/// The key that all servers of the folder share. If the server cannot write there, its tickets are
+/// valid for itself only.
 Result<std::string> ticketKeyOf(const CommandLine& options) {
   if (options.action == CommandLine::Action::kCheckConfig && !options.ticketKey)
     return std::string();
@@ -135,7 +135,8 @@ Result<Secrets> loadSecrets(const CommandLine& options) {
   return out;
 }
 
-/// SIGHUP. What is wrong is told, and then all that held holds on.
+/// Handles SIGHUP: reads the secrets again. If one is invalid, logs the reason and keeps the old
+/// ones.
 void reload(const CommandLine& options, const Secrets& secrets) {
   if (!secrets.access && !secrets.tls)
     return spdlog::info("SIGHUP: there are no tokens and no certificate to read again");
@@ -220,7 +221,7 @@ int serve(const CommandLine& options) {
   return 0;
 }
 
-/// What serve() would stumble over, without serving.
+/// Checks folder, viewer and secrets as serve() does, without serving.
 int checkConfig(const CommandLine& options) {
   std::cout << configText(options);
   std::error_code ec;

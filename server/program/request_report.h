@@ -1,4 +1,4 @@
-// What the figures and the access log tell of the request under way.
+// Records the current request in the figures and in the access log.
 #pragma once
 
 #include <chrono>
@@ -13,7 +13,7 @@
 
 namespace qtet {
 
-/// Of one connection, request by request. `metrics` and `log` outlive it.
+/// Reports on one connection, request by request. `metrics` and `log` outlive it.
 class RequestReport {
  public:
   /// `address` is the client's, "" where there is no log. Its first request begins.
@@ -31,7 +31,7 @@ class RequestReport {
   void identify(const RequestView& request);
   /// X-Request-Id, and traceparent if the client has sent one.
   void addHeaders(Reply& reply) const;
-  /// What a stream tells of it that it becomes.
+  /// The request's data for the report of the stream that it becomes.
   [[nodiscard]] StreamRequest streamRequest() const { return {client_, target_, trace_}; }
   /// Its answer was sent, or nobody waits for it any more. `bytes` of the body went out.
   void end(unsigned status, std::uint64_t bytes, bool whole) const;

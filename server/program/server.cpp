@@ -48,9 +48,9 @@ struct Lane {
   asio::executor_work_guard<asio::io_context::executor_type> work = asio::make_work_guard(context);
 };
 
-/// Takes congestion control without pacing for all that is accepted; false: it stays as the system
-/// has it. BBR would send each 64 KB by a timer of its own, which between two programs of one
-/// machine (a proxy in front of this one, say) is most of what sending costs.
+/// Selects congestion control without pacing for all accepted connections. False: the system's
+/// choice stays. BBR would send each 64 KB by a timer of its own. Between two programs of one
+/// machine (a proxy in front of this one, say) that is most of the cost of sending.
 bool endPacing(tcp::acceptor& on) {
   constexpr std::string_view kReno = "reno";  // there in every kernel, and allowed to everybody
   return ::setsockopt(on.native_handle(), IPPROTO_TCP, TCP_CONGESTION, kReno.data(),
@@ -79,9 +79,8 @@ void logEnd(const std::exception_ptr& thrown) {
 
 }  // namespace
 
-// The order of the members is the order of their lives: connections outlast the lanes that hold
-// their coroutines, and the jobs, whose last handler may still be on its way into a lane, end
-// first.
+// The members' order is the order of their lives. Connections outlast the lanes that hold their
+// coroutines. The jobs end first, since their last handler may still be on its way into a lane.
 struct Server::State {
   State(const MeshStore& meshes, const ViewerFiles& viewer, ServerOptions given)
       : store(meshes),
@@ -326,8 +325,8 @@ Status Server::State::listen(tcp::acceptor& on, Services& whose, const std::stri
   const tcp::endpoint endpoint = *found.begin();
   on.open(endpoint.protocol(), ec);
   if (!ec) on.set_option(tcp::acceptor::reuse_address(true), ec);
-  // Else Asio waits for the next client after one that went before it was accepted, whoever else is
-  // waiting already.
+  // Without this, Asio waits for the next client if one left before it was accepted, even though
+  // others are waiting already.
   if (!ec) on.set_option(tcp::acceptor::enable_connection_aborted(true), ec);
   if (!ec) on.set_option(tcp::no_delay(true), ec);  // what is accepted inherits it (tcp(7))
   if (!ec) whose.unpaced = endpoint.address().is_loopback() && endPacing(on);

@@ -27,9 +27,9 @@ struct ServerOptions {
   std::size_t threads = 1;    ///< for connections; at least 1
   std::size_t maxConnections = limits::kMaxConnections;
   std::size_t maxConnectionsPerAddress = limits::kMaxConnectionsPerAddress;  ///< 0: no bound
-  /// Of one address; 0: no bound.
+  /// For one address; 0: no bound.
   unsigned maxRequestsPerSecond = limits::kMaxRequestsPerSecond;
-  /// Made or waiting; 0: no bound.
+  /// For one address, being made or waiting; 0: no bound.
   std::size_t maxLevelsPerAddress = limits::kMaxLevelJobsPerAddress;
   std::size_t maxHandshakes = limits::kMaxHandshakes;
   Timeouts timeouts{};
@@ -42,19 +42,19 @@ struct ServerOptions {
   CurrentTls* tls = nullptr;
   /// Who may read and change meshes; nullptr: everybody may read, nobody change.
   Access* access = nullptr;
-  /// With endOnSignals what SIGHUP does; empty: it ends the process, as usual.
+  /// SIGHUP calls this if endOnSignals is set. Empty: SIGHUP ends the process, as usual.
   std::function<void()> reload{};
-  /// Of pages that may open streams, ask for tickets and change meshes, as browsers write them;
-  /// empty: any.
+  /// Origins of pages that may open streams, ask for tickets and change meshes, as browsers write
+  /// them; empty: any.
   std::vector<std::string> allowedOrigins{};
   /// Pages that may show the viewer in a frame, as CSP writes them.
   std::string frameAncestors = "*";
-  /// Whose clients count as their own.
+  /// Proxies whose clients count by their own addresses.
   TrustedProxies proxies{};
   LevelJobs::Maker makeLevel = qtet::makeLevel;
   UploadOptions uploads{};
-  /// From the first signal to the end, all is served on, and /readyz is 503: for whoever spreads
-  /// requests over several servers.
+  /// From the first signal to the end. Meanwhile the server serves everything, and /readyz is 503,
+  /// so that a load balancer takes it out.
   std::chrono::milliseconds drain{0};
 };
 

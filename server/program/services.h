@@ -1,4 +1,4 @@
-// What every connection needs. The objects outlive all connections.
+// The services that every connection needs. The objects outlive all connections.
 #pragma once
 
 #include <chrono>
@@ -36,7 +36,7 @@ struct TrustedProxies;
 
 /// How long a client may take.
 struct Timeouts {
-  /// Of a request, or of a handshake with its wait for a place.
+  /// For a request, or for a handshake with its wait for a place.
   std::chrono::milliseconds header = limits::kHeaderTime;
   std::chrono::milliseconds handshake = limits::kHandshakePatience;
   std::chrono::milliseconds idle = limits::kIdleTime;
@@ -60,12 +60,12 @@ struct Services {
   boost::asio::thread_pool* checkers = nullptr;
   /// Who may read what; nullptr: everybody everything.
   Access* access = nullptr;
-  /// Of pages that may open streams; nullptr or empty: any.
+  /// Origins of pages that may open streams; nullptr or empty: any.
   const std::vector<std::string>* allowedOrigins = nullptr;
   Handshakes* handshakes = nullptr;  ///< where there is TLS
-  /// All clients are on this machine, and what is sent to them waits for no timer.
+  /// All clients are on this machine, and data for them waits for no timer.
   bool unpaced = false;
-  /// Where the clients of trusted proxies count.
+  /// Counts the clients of trusted proxies.
   AddressLimits* addresses = nullptr;
   const TrustedProxies* proxies = nullptr;  ///< nullptr: there are none
 };

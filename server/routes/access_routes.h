@@ -18,11 +18,11 @@ namespace qtet {
 /// `POST /v1/tickets`: 201 with {"ticket","seconds"}, 401, or 429.
 [[nodiscard]] Reply ticketReply(const RequestView& request, Access& access);
 
-/// What a WebSocket may read: by its `ticket` parameter, or by its Authorization where it can send
-/// one; or 401. `access` nullptr: everything.
+/// The meshes that a WebSocket may read, by its `ticket` parameter, or by its Authorization if it
+/// can send one. Else 401. With `access` nullptr it may read everything.
 [[nodiscard]] std::expected<MayRead, Reply> admitStream(const RequestView& request, Access* access);
 
-/// No shared cache may give it to others.
+/// Keeps shared caches from giving the reply to others.
 void keepPrivate(Reply& reply);
 
 }  // namespace qtet

@@ -1,4 +1,4 @@
-// What operators ask: /livez, /readyz, /metrics and /version (PROTOCOL.md, "For operators").
+// The operators' paths: /livez, /readyz, /metrics and /version (PROTOCOL.md, "For operators").
 #pragma once
 
 #include <functional>

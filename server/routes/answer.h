@@ -1,4 +1,4 @@
-// What the router says to a request: a reply as it stands, or one whose body takes work first.
+// The router's answer to a request: a finished reply, or one whose body takes work first.
 #pragma once
 
 #include <utility>

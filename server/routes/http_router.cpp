@@ -24,7 +24,7 @@ constexpr std::string_view kPagePolicy =
     "img-src 'self' data: blob:; connect-src 'self' http: https: ws: wss: blob: data:; object-src "
     "'none'; base-uri 'none'; form-action "
     "'none'";
-/// Where a link from the page leads tells nobody else which mesh was looked at.
+/// A link from the page does not reveal to its target which mesh was looked at.
 constexpr const char* kReferrerPolicy = "same-origin";
 
 Reply optionsReply(std::string_view allow = kAllow) {
@@ -107,7 +107,7 @@ std::optional<std::string> readableName(const MayRead& mayRead, const ServedMesh
   return found == catalogue.meshes.end() ? std::nullopt : std::optional(found->first);
 }
 
-/// What is the same for every path: methods, and targets that are none.
+/// Handles the part that is the same for every path: methods, and invalid targets.
 template <class Find>
 Answer answer(const RequestView& request, Find find) {
   const std::optional<RequestTarget> target = parseTarget(request.target);
@@ -137,7 +137,7 @@ Router::Router(const MeshStore& store, const ViewerFiles& viewer, const AdminRou
       openApi_(openApiJson()),
       pagePolicy_(std::string(kPagePolicy) + "; frame-ancestors " + frameAncestors) {}
 
-/// What only a server with tokens answers: changes, and tickets.
+/// Routes that only a server with tokens answers: changes, and tickets.
 std::optional<Answer> Router::routeWithTokens(const RequestView& request,
                                               const RequestTarget& target) const {
   const bool ofTickets =
@@ -193,8 +193,8 @@ Answer Router::api(const RequestView& request, const RequestTarget& target) cons
   return logs(request, target);
 }
 
-/// To whoever may not read it a log is not there: its digest alone tells nobody whether somebody
-/// has it.
+/// A log does not exist for a client that may not read it: nobody learns from a digest alone
+/// whether the server has the log.
 Answer Router::logs(const RequestView& request, const RequestTarget& target) const {
   const MeshPointer mesh = store_.findLog(target.segments[2]);
   if (!mesh && !writing_ && store_.mayHaveLog(target.segments[2]))

@@ -23,9 +23,9 @@ inline constexpr std::string_view kStreamPath = "/v1/stream";
 /// must outlive them, and keep the logs that they are about.
 class Router {
  public:
-  /// With `admin`, which must outlive it, the operators' paths are answered too; with `writing`,
-  /// whose parts must, meshes may be changed and read by those who have a token for it.
-  /// `frameAncestors` are the pages that may show the viewer's in a frame, as CSP writes them.
+  /// `admin` adds the operators' paths. `writing` restricts meshes to those who have a token for
+  /// reading or changing them. `admin` and the parts of `writing` must outlive the router.
+  /// `frameAncestors` are the pages that may show the viewer in a frame, as CSP writes them.
   Router(const MeshStore& store, const ViewerFiles& viewer, const AdminRoutes* admin = nullptr,
          std::optional<Writing> writing = std::nullopt, const std::string& frameAncestors = "*");
 

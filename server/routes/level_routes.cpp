@@ -46,7 +46,7 @@ std::string_view mediaType(LevelForm form) {
   }
 }
 
-/// What is small already is sent as it stands.
+/// Whether the form is compressed already and is sent as it is.
 bool isCompressed(LevelForm form) {
   return form == LevelForm::kGlb || form == LevelForm::kDrc || form == LevelForm::kPng;
 }

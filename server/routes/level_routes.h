@@ -8,7 +8,7 @@
 
 namespace qtet {
 
-/// A log, and a name of it that whoever asks may know: what is saved is called by it.
+/// A log, and one of its names that the client may know. Saved files get this name.
 struct NamedLog {
   MeshPointer mesh;
   std::string name;

@@ -23,8 +23,7 @@ std::optional<std::uint32_t> parseIndex(std::string_view text) {
   return out;
 }
 
-/// Bytes [first, end) of the log. `name` tells the part from the others in the tag; "" is the
-/// whole.
+/// Bytes [first, end) of the log. `name` identifies the part in the tag; "" is the whole.
 Reply part(const RequestView& request, const MeshPointer& mesh, const std::string& name,
            std::uint64_t first, std::uint64_t end) {
   const std::string tag = '"' + mesh->log.digest() + (name.empty() ? "" : "-" + name) + '"';

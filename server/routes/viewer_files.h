@@ -1,5 +1,5 @@
-// The viewer's files, read into memory once at the start: what is not in the list cannot be asked
-// for, whatever a path looks like.
+// The viewer's files, read into memory once at the start. No path can reach a file that is not in
+// the list.
 #pragma once
 
 #include <ctime>

@@ -1,4 +1,4 @@
-// What the viewer's folder may hold; it is kept in memory.
+// Limits on the viewer's folder, which is kept in memory.
 #pragma once
 
 #include <cstddef>

@@ -9,7 +9,7 @@
 
 namespace qtet {
 
-/// What the router needs for writing; both outlive it.
+/// The router's parts for writing; both outlive it.
 struct Writing {
   Access& access;
   Uploads& uploads;
@@ -23,8 +23,8 @@ struct Writing {
 [[nodiscard]] Answer routeWriting(const RequestView& request, const RequestTarget& target,
                                   const Access& access);
 
-/// `/v1/meshes/{id}/upload?digest=HEX` to whoever may write the mesh: {"digest","bytes"}, 400, 401,
-/// 403 or 404. REQUIRES: such a path.
+/// `/v1/meshes/{id}/upload?digest=HEX` for clients that may write the mesh: {"digest","bytes"},
+/// 400, 401, 403 or 404. REQUIRES: such a path.
 [[nodiscard]] Reply partialReply(const RequestView& request, const RequestTarget& target,
                                  const Writing& writing);
 

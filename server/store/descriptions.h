@@ -1,5 +1,5 @@
-// What the server says about its meshes: the JSON of `/v1/meshes` and `/v1/meshes/{id}`
-// (PROTOCOL.md, "HTTP").
+// Describes the server's meshes: the JSON of `/v1/meshes` and `/v1/meshes/{id}` (PROTOCOL.md,
+// "HTTP").
 #pragma once
 
 #include <string>

@@ -34,7 +34,7 @@ struct FolderWatch::State {
     news = (files[0].revents & POLLIN) != 0;
     return (files[1].revents & POLLIN) == 0;
   }
-  /// What the events say does not matter: the folder is read anyway.
+  /// The events' content does not matter: the folder is read anyway.
   void forgetEvents() const {
     alignas(inotify_event) std::array<char, 4096> scrap;
     while (::read(events, scrap.data(), scrap.size()) > 0) {

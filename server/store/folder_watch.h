@@ -11,9 +11,9 @@
 
 namespace qtet {
 
-/// Runs `changed` on a thread of its own: after something in the folder has changed and
-/// limits::kFolderRest passed since, and every limits::kFolderInterval in any case, for network
-/// folders tell nothing. Ends with the object, after a call that runs.
+/// Runs `changed` on a thread of its own, limits::kFolderRest after something in the folder has
+/// changed. Runs it every limits::kFolderInterval in any case, since network folders report no
+/// changes. Ends with the object, after a running call.
 class FolderWatch {
  public:
   /// Errors: io (no inotify left, or no such folder).

@@ -19,8 +19,8 @@ namespace qtet {
 /// Thread-safe. The folder is this object's alone: nobody else may write into its files.
 class LevelCache {
  public:
-  /// Makes the folder if it is not there, takes over what an earlier run left in it, and removes
-  /// what one that was killed did not finish. Errors: io.
+  /// Makes the folder if it does not exist. Takes over the levels of an earlier run, and removes
+  /// unfinished files of one that was killed. Errors: io.
   [[nodiscard]] static Result<std::unique_ptr<LevelCache>> open(
       const std::filesystem::path& folder, std::uintmax_t mostBytes,
       std::uintmax_t reserve = limits::kDiskReserve, FreeDiskBytes freeBytes = freeDiskBytes);
@@ -28,8 +28,8 @@ class LevelCache {
   /// nullopt: there is none, or its file is not what was written (its length or its CRC-32C
   /// differs), which then goes. Reads the whole level. `key` is hexadecimal.
   [[nodiscard]] std::optional<LevelFile> find(const std::string& key);
-  /// Keeps the bytes and gives them back; where the disk refuses, or they alone are more than there
-  /// may be, or less than the reserve would be left on the disk, from memory.
+  /// Keeps the bytes on disk and returns them from there. Returns them from memory in three cases:
+  /// the disk refuses, they alone exceed the cache's size, or the disk's reserve would be touched.
   [[nodiscard]] LevelFile put(const std::string& key, Bytes bytes);
   [[nodiscard]] std::uintmax_t bytes() const;
 

@@ -27,7 +27,7 @@ using JobPointer = std::shared_ptr<Job>;
 
 }  // namespace
 
-// A `done` owns whatever waits for it and may take the lock when it goes, so none is destroyed
+// A `done` owns its waiting client and may take the lock in its destructor, so none is destroyed
 // while the lock is held.
 struct LevelJobs::State {
   explicit State(Options given) : options(std::move(given)) {}

@@ -1,5 +1,5 @@
-// Levels are made on threads of their own, a few at a time: one job for all who want the same one,
-// ended when nobody wants it any more.
+// Makes levels on threads of their own, a few at a time. All clients of the same level share one
+// job, which ends when nobody wants it any more.
 #pragma once
 
 #include <cstdint>
@@ -33,8 +33,8 @@ enum class LevelRefusal : std::uint8_t {
 /// Addresses take turns: a job of one waits for one of each other at most, beside those that run.
 class LevelJobs {
  public:
-  /// Where a subscription comes from, told from others by where the object lies; nullptr: from
-  /// nowhere that is bounded.
+  /// The origin of a subscription, identified by an object's address in memory; nullptr: an origin
+  /// without a bound.
   using Address = const void*;
   using Done = std::move_only_function<void(Result<LevelFile>)>;
   using Maker = std::function<Result<Bytes>(const LevelRequest&, const std::stop_token&)>;
@@ -48,8 +48,8 @@ class LevelJobs {
   };
 
   explicit LevelJobs(Options options);
-  /// Drops what waits (its `done` is destroyed uncalled) and waits for what runs, which is told to
-  /// stop.
+  /// Drops the waiting jobs (their `done` is destroyed uncalled). Asks the running ones to stop,
+  /// and waits for them.
   ~LevelJobs();
   LevelJobs(const LevelJobs&) = delete;
   LevelJobs& operator=(const LevelJobs&) = delete;

@@ -9,7 +9,7 @@
 
 namespace qtet {
 
-/// The whole file. Looks at `stop` after every chunk; what it gives back then is of no use.
+/// The whole file. Looks at `stop` after every chunk; if it was requested, the result is useless.
 /// Errors: those of applyChunk and of the writers; io when there is not enough memory.
 [[nodiscard]] Result<Bytes> makeLevel(const LevelRequest& request, const std::stop_token& stop);
 

@@ -1,5 +1,5 @@
-// A log of the folder that is known by what was found out when it was checked, and opened when
-// somebody wants it: so a folder may hold many more logs than a process may hold files.
+// A log of the folder. The entry keeps the results of its check and opens the log on demand. So a
+// folder may have many more logs than a process may have open files.
 #pragma once
 
 #include <atomic>
@@ -43,7 +43,8 @@ class OpenMeshes {
 /// Thread-safe. About 2 KB while its log is not open.
 class MeshEntry : public std::enable_shared_from_this<MeshEntry> {
  public:
-  /// Of a log that was checked, which it does not hold. `open` is where it counts when it does.
+  /// `mesh` is a checked log; the entry does not keep it open. `open` counts the log whenever the
+  /// entry opens it.
   MeshEntry(const ServedMesh& mesh, std::filesystem::path path, std::shared_ptr<OpenMeshes> open);
 
   const std::filesystem::path path;

@@ -68,7 +68,7 @@ class Scan {
     const auto known = before_.meshes.find(id);
     const EntryPointer old = known == before_.meshes.end() ? nullptr : known->second;
     if (old && old->file == *file) return keep(old);
-    // What could not be read may be readable now; what is damaged stays so.
+    // A file that could not be read may be readable now; a damaged one stays damaged.
     const auto refused = std::ranges::find_if(before_.refused, [&](const auto& r) {
       return r.path == path && r.file == *file && r.error.code != ErrorCode::kIo;
     });
@@ -110,8 +110,8 @@ class Scan {
     change_.added.push_back(entry);
   }
   void keep(const EntryPointer& mesh) { next_->meshes[mesh->id] = mesh; }
-  /// The old log goes on under its name if its own file is untouched (renamed over, not written
-  /// into) and still open.
+  /// The old log stays under its name if its own file is untouched (renamed over, not written into)
+  /// and still open.
   void keepSound(const EntryPointer& old, const FileIdentity& file) {
     if (old && old->file.inode != file.inode && old->pin()) keep(old);
   }

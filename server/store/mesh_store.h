@@ -1,5 +1,5 @@
-// What is served: the logs of one folder, checked and opened on demand, as immutable snapshots that
-// follow the folder (folder_watch.h).
+// The logs of one folder that are served, checked and opened on demand. Immutable snapshots follow
+// the folder's changes (folder_watch.h).
 #pragma once
 
 #include <chrono>
@@ -17,13 +17,13 @@
 namespace qtet {
 
 namespace limits {
-/// How long one look at a folder goes on looking into files, and how many are looked into however
-/// long it takes: the start waits for it, a folder of 100,000 logs is read in many looks.
+/// One scan of a folder reads files for this time, and at least this many of them. The start waits
+/// for one scan; a folder of 100,000 logs takes many.
 inline constexpr auto kFolderReadTime = std::chrono::seconds(1);
 inline constexpr std::size_t kLogsReadAtOnce = 64;
 }  // namespace limits
 
-/// What is served at one moment.
+/// The meshes that are served at one moment.
 struct Catalogue {
   /// A file that is not served, and why.
   struct Refused {
@@ -43,7 +43,7 @@ struct Catalogue {
 };
 using CataloguePointer = std::shared_ptr<const Catalogue>;
 
-/// What `rescan` found.
+/// The result of `rescan`.
 struct FolderChange {
   std::vector<EntryPointer> added;  ///< new or replaced
   std::vector<std::string> removed;
@@ -54,8 +54,8 @@ struct FolderChange {
 struct StoreOptions {
   /// Logs held open at a time, but for those that clients are reading: a descriptor each.
   std::size_t mostOpen = descriptorsForLogs();
-  /// After which a look at the folder leaves the files that it has not looked into to the next one;
-  /// the first limits::kLogsReadAtOnce are looked into in any case.
+  /// After this time a scan of the folder leaves the remaining files to the next scan. It always
+  /// reads the first limits::kLogsReadAtOnce.
   std::chrono::milliseconds readTime = limits::kFolderReadTime;
 
   /// A quarter of what the process may open, and at most limits::kMaxOpenLogs: the rest is for
@@ -89,8 +89,8 @@ class MeshStore {
   [[nodiscard]] MeshPointer find(std::string_view id) const;
   /// nullptr when there is none of that digest.
   [[nodiscard]] MeshPointer findLog(std::string_view digest) const;
-  /// Whether what find() and findLog() did not find may be found in a moment: the log is known but
-  /// cannot be opened now, or not all of the folder was read yet.
+  /// Whether a mesh that find() or findLog() did not find may be found soon. Either the log is
+  /// known but cannot be opened now, or the folder was not read completely yet.
   [[nodiscard]] bool mayHave(std::string_view id) const;
   [[nodiscard]] bool mayHaveLog(std::string_view digest) const;
 
@@ -99,8 +99,8 @@ class MeshStore {
   std::unique_ptr<State> state_;
 };
 
-/// The mesh's file in `folder`; nullopt where `id` cannot be a file's name there: empty, with a
-/// slash, a control byte or a leading dot, too long, or not UTF-8.
+/// The mesh's file in `folder`; nullopt if `id` cannot be a file's name there. Such ids are empty,
+/// too long or not UTF-8, or have a slash, a control byte or a leading dot.
 [[nodiscard]] std::optional<std::filesystem::path> pathOfMesh(const std::filesystem::path& folder,
                                                               std::string_view id);
 

@@ -1,6 +1,6 @@
-// Between which values the fields of points lie where a packet of a log of regions refines the
-// mesh: what tells whether an isosurface meets it. No log holds that; it comes of decoding the
-// whole of it once.
+// The intervals of the point fields' values where a packet of a `regions` log refines the mesh.
+// They show whether an isosurface meets the packet. No log stores them; decoding it whole gives
+// them.
 #pragma once
 
 #include <cassert>
@@ -66,11 +66,11 @@ class PacketIntervals {
   std::vector<ValueInterval> values_;
 };
 
-/// Of a packet: before and after it, at every corner of every cell that it changes, and the same of
-/// all packets below it. So an isosurface that changes where a packet or one below it comes has its
-/// value within; a parent's interval holds its children's. Of other chunks: empty. Decodes the
-/// whole log; holds the finest mesh. Errors: those of decoding; io (`stop` was requested; looked at
-/// after every chunk).
+/// A packet's interval covers the values before and after it, at every corner of every cell that it
+/// changes. It contains the intervals of all packets below. So if a packet or one below it changes
+/// an isosurface, the interval contains the isosurface's value. Other chunks have empty intervals.
+/// Decodes the whole log; holds the finest mesh. Errors: those of decoding; io (`stop` was
+/// requested; looked at after every chunk).
 [[nodiscard]] Result<PacketIntervals> packetIntervals(const LogFile& log, const Manifest& manifest,
                                                       const std::stop_token& stop = {});
 

@@ -18,10 +18,10 @@ using Vector = std::array<double, 3>;
 constexpr int kSamples = 2;
 constexpr int kColumns = kPreviewWidth * kSamples;
 constexpr int kRows = kPreviewHeight * kSamples;
-/// Of the picture's width and height that the mesh may take.
+/// The fraction of the picture's width and height that the mesh may take.
 constexpr double kFill = 0.92;
 constexpr Vector kEye = {1, -1.3, 0.8};
-/// What a face that turns away from the light still has.
+/// The light that a face turned away from the lamp still has.
 constexpr double kAmbient = 0.35;
 
 double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }

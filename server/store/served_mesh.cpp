@@ -82,9 +82,9 @@ bool copyInto(int copy, int file, std::uintmax_t bytes) {
   return true;
 }
 
-/// A file without a name, which nobody else can change, with the bytes of another one: beside it,
-/// where the kernel can drop its pages and sends them twice as fast as memory's, else in memory. -1
-/// and errno.
+/// Copies a file into one without a name, which nobody else can change. The copy lies beside the
+/// original if possible: there the kernel can drop its pages, and sends them twice as fast as those
+/// of memory. Else it lies in memory. Returns -1 and errno after an error.
 int copyOf(int file, const std::filesystem::path& folder, std::uintmax_t bytes) {
   for (const bool beside : {true, false}) {
     const int copy = beside

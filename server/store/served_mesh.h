@@ -16,7 +16,7 @@
 
 namespace qtet {
 
-/// What tells a file from the one that had its name before.
+/// Distinguishes a file from the one that had its name before.
 struct FileIdentity {
   dev_t device = 0;
   ino_t inode = 0;
@@ -46,9 +46,9 @@ struct ServedMesh {
   Manifest manifest;
   std::time_t modified;  ///< the file's, in seconds since 1970
   FileIdentity file{};
-  /// Of the bytes of `log`, for the kernel to send them from.
+  /// The file of `log`'s bytes, from which the kernel sends them.
   std::unique_ptr<Descriptor> descriptor{};
-  /// Of its packets, once a view has asked for them.
+  /// The intervals of its packets, once a view has asked for them.
   std::shared_ptr<KnownIntervals> intervals = std::make_shared<KnownIntervals>();
   /// Its part of limits::kMaxCopiedBytes; nullptr: the file is mapped.
   std::shared_ptr<void> copied{};
@@ -68,22 +68,21 @@ struct ServedMesh {
   static std::shared_ptr<Texts> makeTexts();
 };
 
-/// Whoever holds one keeps the log mapped, also after the file was replaced or removed.
+/// Each of these pointers keeps the log mapped, even after the file was replaced or removed.
 using MeshPointer = std::shared_ptr<const ServedMesh>;
 
-/// A log of at most limits::kMaxCopiedLogBytes is served from a copy of its own, without a name, as
-/// long as all of them together stay within limits::kMaxCopiedBytes: whatever happens to its file
-/// (copied over, truncated) changes nothing of what stands under its digest. Others are mapped.
 /// Opens a log as mesh `id` and checks everything that can be checked without decoding: header,
-/// table, manifest, every CRC-32C. Reads the whole file. Errors: those of LogFile::open,
-/// verifyChecksums and manifestOf. Without `copy` it is mapped in any case: for a look at it.
+/// table, manifest, every CRC-32C. Reads the whole file. A log of at most
+/// limits::kMaxCopiedLogBytes is served from a nameless copy, while all copies together stay within
+/// limits::kMaxCopiedBytes. If its file is overwritten or truncated, the bytes under its digest do
+/// not change. Other logs are mapped. Errors: those of LogFile::open, verifyChecksums and
+/// manifestOf. Without `copy` it is always mapped, just for a look at it.
 [[nodiscard]] Result<MeshPointer> openMesh(const std::filesystem::path& path, std::string id,
                                            bool copy = true);
 
-/// The log that openMesh() has given as mesh `id` with this digest, out of the same file: neither
-/// its digest nor its checksums are computed again, so this takes as long for large logs as for
-/// small ones, but for those that are copied. Errors: io (the file is not `file` any more, among
-/// others).
+/// Opens again, from the same file, a log that openMesh() has opened as mesh `id` with this digest.
+/// It computes neither digest nor checksums, so a large log takes no longer than a small one,
+/// unless it is copied. Errors: io (the file is not `file` any more, among others).
 [[nodiscard]] Result<MeshPointer> reopenMesh(const std::filesystem::path& path, std::string id,
                                              const std::string& digest, const FileIdentity& file);
 

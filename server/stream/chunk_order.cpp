@@ -12,8 +12,8 @@ namespace {
 
 double square(double x) { return x * x; }
 
-/// What is wrong with each level: of the fields that go out with it and of the boundary, as squares
-/// of fractions. Where nothing was measured, the square of what interpolation on n cells leaves,
+/// The error of each level: that of the boundary and of the fields sent with it, as squares of
+/// fractions. If nothing was measured, the square of the interpolation error on n cells,
 /// O(n^(-2/3)) in space.
 std::vector<double> squaredErrors(const Manifest& manifest,
                                   const std::vector<std::uint32_t>& fields) {

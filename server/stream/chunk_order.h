@@ -10,9 +10,9 @@
 
 namespace qtet {
 
-/// In `stream`, and for the head of `regions`: the file's order. Packets: what the view wants, then
-/// what is seen, then the rest; in each of them the blocks of meshes that are there already first,
-/// then by error per byte. A packet waits for its parent.
+/// The file's order in `stream`, and for the head of `regions`. Packets are sorted into three
+/// groups: wanted by the view, visible, and the rest. In each group packets whose mesh the client
+/// has come first, then they are sorted by error per byte. A packet waits for its parent.
 [[nodiscard]] std::vector<std::uint32_t> chunkOrder(const LogFront& log, const ClientBlocks& blocks,
                                                     const View& view, const StopAt& stop);
 

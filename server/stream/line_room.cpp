@@ -15,17 +15,18 @@ using std::chrono::microseconds;
 using std::chrono::milliseconds;
 using Seconds = duration<double>;
 
-/// Of data that may wait before the next frame: with the block that is begun last, under 150 ms
-/// from 2 Mbit/s on. A server that looks a little late still keeps the line busy.
+/// The line time of data that may wait before the next frame. With the block begun last this stays
+/// under 150 ms from 2 Mbit/s on. A server that looks a little late still keeps the line busy.
 constexpr Seconds kAhead = milliseconds(40);
-/// The round trip is longer than the least by so much: something waits in the network. Above the
-/// jitter of acknowledgements; taking jitter for a queue only bounds what is under way.
+/// If the round trip exceeds the least one by so much, data waits in the network. Above the jitter
+/// of acknowledgements; taking jitter for a queue only bounds what is under way.
 constexpr Seconds kQueued = milliseconds(15);
 /// Packets that may be under way however slow the line is: fewer would leave it idle while the
 /// client holds its acknowledgement back.
 constexpr std::uint64_t kLeastPackets = 6;
-/// A sample of the rate. Of kSamples the largest counts, so a short one of few packets says too
-/// much: with 50 ms nothing bounded 20 clients of reno on 20 Mbit/s, and their shares were unequal.
+/// The shortest sample of the rate. The largest of kSamples counts, so a short sample of few
+/// packets overstates the rate. With 50 ms nothing bounded 20 clients of reno on 20 Mbit/s, and
+/// their shares were unequal.
 constexpr Seconds kLeastSample = milliseconds(200);
 /// Between two looks at a line without room: a timer's grain, and half of kAhead.
 constexpr auto kLeastWait = milliseconds(1), kMostWait = milliseconds(20);

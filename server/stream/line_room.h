@@ -1,5 +1,5 @@
-// How many bytes the kernel should hold for one client: what the line takes in a fraction of a
-// second, so that a changed view takes effect soon on slow lines too.
+// How many bytes the kernel should hold for one client: as many as the line carries in a fraction
+// of a second. So a changed view takes effect soon on slow lines too.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace qtet {
 
-/// What the kernel knows of a connection.
+/// The kernel's figures of a connection.
 struct LineFigures {
   std::uint64_t acknowledged = 0;  ///< bytes so far
   std::uint64_t underWay = 0;      ///< bytes sent and not acknowledged, by whole packets
@@ -19,14 +19,14 @@ struct LineFigures {
   std::uint64_t packetBytes = 0;   ///< payload of a full packet
   std::chrono::microseconds rtt{}, leastRtt{};  ///< smoothed now, and the least that was seen
 };
-/// Nothing where the kernel does not tell.
+/// nullopt if the kernel does not report them.
 [[nodiscard]] std::optional<LineFigures> lineFigures(int socket);
 
 /// Measures the rate by what is acknowledged, and bounds what is ahead of the next frame. Without a
 /// queue in the network the kernel may send as much as it wants, and only the unsent bytes are
-/// bounded. With one (the round trip has become longer), the bytes under way are bounded as well:
-/// else congestion control that fills queues would put seconds of data before the next frame.
-/// Plain arithmetic on times: whoever holds it looks at the clock and at the socket.
+/// bounded. With one (the round trip has become longer), the bytes under way are bounded as well.
+/// Else congestion control that fills queues would put seconds of data before the next frame.
+/// Plain arithmetic on times: the owner looks at the clock and at the socket.
 class LineRoom {
  public:
   using Clock = std::chrono::steady_clock;
@@ -38,8 +38,7 @@ class LineRoom {
   [[nodiscard]] Clock::duration wait() const { return wait_; }
   /// Whether something was acknowledged between the last two calls of room().
   [[nodiscard]] bool progressed() const { return progressed_; }
-  /// There is nothing to send: what is acknowledged until the next room() tells nothing of the
-  /// line.
+  /// There is nothing to send. Acknowledgements until the next room() say nothing about the line.
   void rests() { since_.reset(); }
 
  private:

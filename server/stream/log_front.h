@@ -1,4 +1,4 @@
-// What a plan needs to know of a log.
+// The parts of a log that a plan needs.
 #pragma once
 
 namespace qtet {

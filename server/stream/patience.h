@@ -7,7 +7,7 @@
 
 namespace qtet {
 
-/// Plain arithmetic on times: whoever holds it looks at the clock.
+/// Plain arithmetic on times: the owner looks at the clock.
 class Patience {
  public:
   using Clock = std::chrono::steady_clock;

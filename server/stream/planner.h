@@ -1,5 +1,5 @@
-// Which blocks a client gets, and in which order: a pure function of the log's front, of what the
-// client has and of what it wants (STREAM.md, "Binary frame", "Order").
+// Plans which blocks a client gets, and in which order (STREAM.md, "Binary frame", "Order"). The
+// plan is a pure function of the log's front, the client's blocks and its requests.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// What a client of `/v1/stream` sends, handed on to whom it concerns: messages to the protocol,
-// pings and closes to the control frames.
+// Passes on the input from a client of `/v1/stream`: messages to the protocol, pings and closes to
+// the control frames.
 #pragma once
 
 #include <chrono>

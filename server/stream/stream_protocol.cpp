@@ -8,8 +8,8 @@
 namespace qtet {
 
 namespace limits {
-/// Tetrahedra of a log whose packets' values are looked at for a view with an isovalue: its finest
-/// mesh takes 100 to 150 bytes each, 3 GB in all.
+/// Most tetrahedra of a log whose packets' values are computed for a view with an isovalue. Its
+/// finest mesh takes 100 to 150 bytes each, 3 GB in all.
 constexpr std::uint32_t kMaxIntervalTetrahedra = 20'000'000;
 }  // namespace limits
 

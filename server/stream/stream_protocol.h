@@ -1,4 +1,4 @@
-// What a session on `/v1/stream` says, and when (STREAM.md): the state behind the
+// Decides what a session on `/v1/stream` sends, and when (STREAM.md). It is the state behind the
 // socket, without the socket.
 #pragma once
 
@@ -70,8 +70,8 @@ class StreamProtocol {
   void handle(const ResumeMessage& message);
   void handle(const CancelMessage& message);
 
-  /// What an `open` that was understood has begun. It stays, also when everything was sent, until
-  /// the next `open` or `cancel`: the request may change.
+  /// A stream that a valid `open` has begun. It stays until the next `open` or `cancel`, even when
+  /// everything was sent, because the request may change.
   struct Stream {
     MeshPointer mesh;  ///< a stream finishes on the log that it began with
     ClientBlocks blocks;
@@ -92,7 +92,7 @@ class StreamProtocol {
   };
   /// Returns the payload bytes to come.
   static std::uint64_t plan(Stream& stream);
-  /// Plans anew where the request has changed, and says so.
+  /// Makes a new plan if the request has changed, and announces it.
   void catchUp();
   /// There is more to send, credit or not.
   [[nodiscard]] bool hasRun() const {

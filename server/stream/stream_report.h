@@ -1,4 +1,4 @@
-// What operators learn of a stream: the figures while it lasts, and a line of the access log at its
+// Reports a stream to operators: the figures while it lasts, and a line of the access log at its
 // end.
 #pragma once
 
@@ -21,7 +21,7 @@ struct StreamRequest {
   RequestTrace trace;
 };
 
-/// Plain arithmetic on times: whoever holds it looks at the clock. `metrics` and `log` outlive it.
+/// Plain arithmetic on times: the owner looks at the clock. `metrics` and `log` outlive it.
 class StreamReport {
  public:
   using Clock = std::chrono::steady_clock;
@@ -35,9 +35,9 @@ class StreamReport {
 
   /// An `open` was understood; its first frame is awaited from now on.
   void opened(std::string_view mesh, Clock::time_point now);
-  /// The network took so many bytes, heads of frames included.
+  /// The network took `bytes` bytes, heads of frames included.
   void took(std::size_t bytes);
-  /// So many binary frames are written to their end.
+  /// `frames` binary frames are written to their end.
   void wroteFrames(std::size_t frames, Clock::time_point now);
   /// There was something to write for so long, and the line had no room.
   void stalled(Clock::duration time);

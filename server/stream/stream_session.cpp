@@ -34,12 +34,12 @@ using asio::use_awaitable;
 using boost::system::error_code;
 using Clock = std::chrono::steady_clock;
 
-/// On the stack of whoever reads, so that a silent client has no buffer.
+/// The read buffer is on the stack, so that a silent client has none.
 constexpr std::size_t kReadBytes = 4096;
 /// Bytes that the kernel may hold unsent: so a superseded order stops soon, and a stalled client
 /// costs little.
 constexpr int kUnsentBytes = 80 << 10;
-/// What a client reads that is given up.
+/// The close reason that a silent client receives.
 constexpr std::string_view kSilenceReason = "no message and no pong came for too long";
 /// Before other connections of the thread have their turn.
 constexpr int kReadsInARow = 8;
@@ -76,10 +76,10 @@ std::string_view reasonOf(CloseCode code) {
   }
 }
 
-/// A reader, a writer and a clock on one executor. The writer alone writes, also pongs and closes,
-/// so that nothing comes between the parts of a frame; the reader wakes it when there is something
-/// to say. All hold the session, so it ends with the last of them. Once the socket is closed
-/// nothing is read or written any more.
+/// A reader, a writer and a clock on one executor. Only the writer writes, pongs and closes
+/// included, so that nothing separates the parts of a frame. The reader wakes it when there is
+/// something to send. All three keep the session alive, so it ends with the last of them. Nothing
+/// is read or written after the socket is closed.
 class StreamSession : public std::enable_shared_from_this<StreamSession> {
  public:
   StreamSession(Peer peer, StreamProtocol protocol, const StreamHandshake& handshake,
@@ -201,8 +201,8 @@ void StreamSession::collect(FrameGather& gather) {
     std::optional<Outgoing> outgoing = protocol_.next(left);
     if (!outgoing) {
       if (protocol_.hasFrame()) break;
-      // What the credit allows is still sent; the rest comes elsewhere, after an `open` with
-      // `have`.
+      // The server still sends as much as the credit allows. The client gets the rest elsewhere,
+      // after an `open` with `have`.
       if (peer_.connection->ending()) control_.close(CloseCode::kGoingAway);
       break;
     }

@@ -1,4 +1,4 @@
-// What a view wants of a packet, from its box and its values (STREAM.md, "View").
+// How much a view wants a packet, judged by its box and its values (STREAM.md, "View").
 #pragma once
 
 #include <array>
@@ -29,8 +29,8 @@ class ViewRequest {
 
   /// REQUIRES: a chunk of the log.
   [[nodiscard]] Tier tierOf(std::uint32_t packet) const;
-  /// What error in the box counts: 1 at the view's point and without one, falling with the square
-  /// of the distance like what is seen of it.
+  /// The weight of an error in the box. It is 1 at the view's point and without a point. It falls
+  /// with the square of the distance, like the visible size.
   [[nodiscard]] double weightOf(const PacketBox& box) const;
 
  private:

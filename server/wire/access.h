@@ -21,11 +21,11 @@ using MayRead = std::function<bool(const std::string& mesh)>;
 /// Thread-safe. Must outlive the MayRead that it gives.
 class Access {
  public:
-  /// Of a system's clock nothing is asked: its jumps neither end a ticket nor keep one.
+  /// Not the system clock: its jumps would end a ticket early or keep it too long.
   using Clock = std::chrono::steady_clock;
 
-  /// Tickets are signed with `ticketKey`, and taken from every other server that has it; "": from
-  /// this one alone.
+  /// Tickets are signed with `ticketKey`, and those of every server with the same key are accepted.
+  /// With "" only this server's own tickets are.
   explicit Access(Tokens tokens, std::string ticketKey = "");
   [[nodiscard]] std::shared_ptr<const Tokens> tokens() const;
   /// Requests from now on are judged by these; so are the tickets of tokens that are not among them
@@ -43,7 +43,8 @@ class Access {
   [[nodiscard]] std::optional<SecretDigest> takeTicket(std::string_view ticket,
                                                        Clock::time_point now = Clock::now());
 
-  /// What whoever has the token may read, by the tokens that hold when it is asked.
+  /// The meshes that the token's owner may read. Each question is answered by the tokens valid at
+  /// that time.
   [[nodiscard]] MayRead readerOf(const std::optional<SecretDigest>& bearer) const;
 
  private:
@@ -57,7 +58,7 @@ class Access {
   const std::string ticketKey_, issuer_;
   mutable std::mutex mutex_;
   std::shared_ptr<const Tokens> tokens_;
-  /// By their own digests, so that the time of looking one up tells nothing of it.
+  /// Keyed by the tickets' digests, so that the time of a look-up reveals nothing about a ticket.
   std::map<SecretDigest, Ticket> tickets_;
   std::map<SecretDigest, Clock::time_point> usedForeign_;  ///< until when
 };

@@ -36,7 +36,7 @@ struct AddressLimits::Client::Address {
   double spent = 0;  ///< requests that have not been forgiven yet
   Clock::time_point last{};
 
-  /// What a second allows is forgiven every second.
+  /// Forgives as many requests as the passed time allows.
   void forgive(Clock::time_point now, unsigned requestsPerSecond) {
     const std::chrono::duration<double> passed = now - last;
     spent = std::max(0.0, spent - passed.count() * requestsPerSecond);

@@ -1,4 +1,4 @@
-// What one address may take of the server: connections at a time, and requests a second.
+// Limits for one address: connections at a time, and requests a second.
 #pragma once
 
 #include <array>

@@ -29,11 +29,11 @@ constexpr std::size_t kRecordBytes = SSL3_RT_MAX_PLAIN_LENGTH;
 /// Changes of a key that bring no byte of data, in a row: each costs the server a key schedule and
 /// the client 27 bytes.
 constexpr std::uintptr_t kMaxKeyUpdates = 32;
-/// Of a ClientHello; OpenSSL makes room for as much as its header announces, up to 131,396 bytes.
-/// Those of browsers have 0.5 to 2 KB.
+/// Bytes of a ClientHello. OpenSSL makes room for as many as its header announces, up to 131,396. A
+/// browser's hello has 0.5 to 2 KB.
 constexpr std::size_t kMaxHelloBytes = 16u << 10;
 constexpr std::size_t kRecordHead = 5, kHelloHead = kRecordHead + 4;
-/// Between two looks at a head of which less has come: almost always it comes in one packet.
+/// Between two looks at an incomplete head: almost always it arrives in one packet.
 constexpr auto kHelloWait = std::chrono::milliseconds(50);
 
 /// Bytes of a system call that failed: none, and why. EINTR and EAGAIN are the same to who waits.

@@ -20,18 +20,18 @@
 
 namespace qtet {
 
-/// What has come of the client.
+/// The client's bytes that wait to be read, if any.
 enum class Arrived : std::uint8_t {
   kNothing,
   kBytes,
   kEnd,  ///< it has closed its half, or the connection is lost
 };
 
-/// TLS runs on the socket itself, by SSL_read and SSL_write: Asio's ssl::stream would keep 34 KB of
-/// buffers a connection, and make two kinds of everything that is done with a connection. So a
-/// plain connection pays one branch a call. Only for its executor, a single thread or a strand. An
-/// `ec` of would_block means: wait, and call again with the same bytes (and perhaps more behind
-/// them).
+/// A client's connection, plain or with TLS. TLS runs on the socket itself, by SSL_read and
+/// SSL_write. Asio's ssl::stream would keep 34 KB of buffers a connection, and would need two
+/// versions of all code for connections. Here a plain connection pays one branch a call. Only for
+/// its executor, a single thread or a strand. If `ec` is would_block, wait and call again with the
+/// same bytes (and perhaps more behind them).
 class ClientSocket {
  public:
   /// Plain where `tls` is nullptr.
@@ -47,8 +47,8 @@ class ClientSocket {
   /// Takes the head of the PROXY protocol, which comes before everything else. Nothing: it is none,
   /// or the peer has gone, or cancel().
   [[nodiscard]] boost::asio::awaitable<std::optional<ProxyHead>> takeProxyHead();
-  /// Waits for the head of TLS's handshake and looks at the length that it tells, before OpenSSL
-  /// makes room for it. False: too long, or the client has gone.
+  /// Waits for the head of TLS's handshake and checks the announced length before OpenSSL makes
+  /// room for it. False: too long, or the client has gone.
   [[nodiscard]] boost::asio::awaitable<bool> announcesSoundHello();
   /// TLS's handshake. False: the client broke off, or speaks no TLS that is spoken here; or
   /// cancel().
@@ -65,7 +65,7 @@ class ClientSocket {
   /// there, uncopied. EIO: it has become shorter.
   std::size_t writeFile(FilePart file, ByteView bytes, boost::system::error_code& ec);
 
-  /// Holds back what fills no packet, until told to let it go: at most 200 ms. Not for a paced
+  /// Holds back data that fills no packet until `hold` is false, at most 200 ms. Not for a paced
   /// connection, which would wait for a timer each time.
   void holdBack(bool hold);
 
@@ -74,13 +74,13 @@ class ClientSocket {
   [[nodiscard]] boost::asio::awaitable<boost::system::error_code> waitToWrite();
   /// Until cancel(): true; or the connection breaks.
   [[nodiscard]] boost::asio::awaitable<bool> waitForCancel();
-  /// For whoever waits for something else meanwhile: calls once when bytes or the end have come, or
-  /// for nothing: the reactor may report a readiness whose bytes were read since.
+  /// For callers that wait for something else too. Calls once when bytes or the end have arrived.
+  /// It may also call for nothing: the reactor may report bytes that were read since.
   template <class Handler>
   void whenReadable(Handler handler) {
     socket_.async_wait(boost::asio::socket_base::wait_read, std::move(handler));
   }
-  /// What the next read() would find; it is left where it is.
+  /// Looks at what the next read() would find. The bytes stay in the socket.
   [[nodiscard]] Arrived arrived();
 
   void cancel();
@@ -100,7 +100,7 @@ class ClientSocket {
   boost::asio::awaitable<boost::system::error_code> wait(boost::asio::socket_base::wait_type what);
   /// Takes it from the socket if it is whole.
   ProxyHead lookForProxyHead();
-  /// What OpenSSL says of a result that is not positive.
+  /// Translates OpenSSL's reason for a result that is not positive.
   void explain(int result, bool& wantsOther, int wanted, boost::system::error_code& ec);
 
   boost::asio::ip::tcp::socket socket_;

@@ -1,4 +1,4 @@
-// What the server allows connections and handshakes, with units and reasons.
+// Limits on connections and handshakes, with units and reasons.
 #pragma once
 
 #include <chrono>
@@ -8,9 +8,9 @@ namespace qtet::limits {
 
 using namespace std::chrono_literals;
 
-/// Connections at a time, HTTP and WebSocket together: 3 KB (HTTP) or 7 KB (WebSocket) each when
-/// idle (measured), 28 MB in all, more with TLS; and below the usual hard limit of 4,096 or more
-/// open files once some are set aside for the logs.
+/// Connections at a time, HTTP and WebSocket together. An idle one takes 3 KB (HTTP) or 7 KB
+/// (WebSocket) (measured), 28 MB in all, more with TLS. The number stays below the usual hard limit
+/// of 4,096 or more open files, less some for the logs.
 inline constexpr std::size_t kMaxConnections = 4000;
 /// Connections at a time of one address: browsers open 6 and one WebSocket a page; a company behind
 /// one address has some pages open.
@@ -22,18 +22,17 @@ inline constexpr unsigned kMaxRequestsPerSecond = 2000;
 inline constexpr std::size_t kMaxRememberedAddresses = 100'000;
 /// Seconds after which a client that was turned away (503) is asked to come back.
 inline constexpr unsigned kRetryAfterSeconds = 2;
-/// How long `accept` rests when the system has no file or memory left for one more connection:
-/// after the first failure, and while they go on.
+/// How long `accept` rests when the system has no file or memory left for another connection: after
+/// the first failure, and after each further one.
 inline constexpr auto kFirstAcceptRest = 1ms;
 inline constexpr auto kAcceptRest = 100ms;
-/// How often that is told.
+/// How often this is logged.
 inline constexpr auto kAcceptWarningInterval = 10s;
 
 // ---- TLS
 
-/// Handshakes under way, from the server's answer to the hello until the client's last word: 43 KB
-/// each (measured), 22 MB in all; who comes later waits in line, which holds nothing but the
-/// connection.
+/// Handshakes under way, from the server's answer to the hello until the client's last message: 43
+/// KB each (measured), 22 MB in all. Later clients wait in line, which takes only the connection.
 inline constexpr std::size_t kMaxHandshakes = 512;
 /// How long a handshake keeps its place when others want it: a round trip of a poor line with a
 /// packet lost and sent again.

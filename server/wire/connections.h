@@ -1,4 +1,4 @@
-// The connections that are open: how many there may be, and how each is told that the server ends.
+// The open connections. Bounds their number, and notifies each when the server ends.
 #pragma once
 
 #include <boost/asio/any_io_executor.hpp>
@@ -38,7 +38,7 @@ class Connections {
   /// nullptr: there are as many as there may be, or the server ends.
   [[nodiscard]] std::shared_ptr<Connection> enter(boost::asio::any_io_executor executor);
   [[nodiscard]] std::size_t open() const;
-  /// Tells every connection to end, lets no other in, and calls `whenEmpty` once when the last has
+  /// Asks every connection to end, admits no other, and calls `whenEmpty` once when the last has
   /// gone (perhaps at once).
   void endAll(std::function<void()> whenEmpty);
 

@@ -9,8 +9,8 @@ Handshakes::Counts Handshakes::counts() const {
   return {open_.size(), waiting_.size(), displaced_};
 }
 
-/// Later, and only if nothing has changed for it meanwhile: a place that it took of itself must not
-/// be cut short by the call to come and take one.
+/// Wakes the entry later, and only if its state has not changed meanwhile. If it took a place by
+/// itself, the call to take one must not interrupt it.
 void Handshakes::wake(const EntryPointer& entry) {
   boost::asio::post(entry->executor, [entry, as = entry->state.load()] {
     if (entry->wake && entry->state == as) entry->wake();

@@ -16,9 +16,9 @@
 
 namespace qtet {
 
-/// A line in order of coming, and a bounded number of places. Where none is free, whoever has held
-/// one for longer than `patience` loses it to the first in line: so clients that begin and do not
-/// go on cannot keep the others out for longer than that. Thread-safe; must outlive its clients.
+/// A queue for a bounded number of places, first come, first served. If no place is free, a client
+/// that has kept one for longer than `patience` loses it to the first in line. So clients that
+/// begin and do not go on cannot block others for longer. Thread-safe; must outlive its clients.
 class Handshakes {
  public:
   using Clock = std::chrono::steady_clock;

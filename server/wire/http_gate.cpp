@@ -7,7 +7,7 @@
 namespace qtet {
 namespace {
 
-/// What a method may begin with; a TLS handshake begins with 0x16.
+/// Whether a method may begin with `c`; a TLS handshake begins with 0x16.
 bool isMethodCharacter(char c) {
   return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '-' || c == '_' || c == '!' ||
          c == '*';

@@ -1,6 +1,6 @@
 // A look at the bytes of a request's head before Beast's parser sees them. That parser joins folded
-// lines and so lets through what a proxy in front may have read in another way, which is how
-// requests are smuggled (RFC 9112, 2.2, 5.2 and 11.2).
+// lines, which a proxy in front may have read in another way. This is how requests are smuggled
+// (RFC 9112, 2.2, 5.2 and 11.2).
 #pragma once
 
 #include <cassert>

@@ -1,4 +1,4 @@
-// What the server allows requests and responses, with units and reasons.
+// Limits on requests and responses, with units and reasons.
 #pragma once
 
 #include <chrono>
@@ -27,8 +27,8 @@ inline constexpr auto kIdleTime = 75s;
 /// served (9 KB/s suffice), a dead one is not.
 inline constexpr std::size_t kWritePiece = 256u << 10;
 inline constexpr auto kWriteTime = 30s;
-/// Bytes of a log from which on the kernel sends them out of the file, and how many at once before
-/// other connections have their turn.
+/// The kernel sends a log's bytes directly from the file if there are at least this many. The
+/// second figure is the most at once before other connections have their turn.
 inline constexpr std::size_t kLeastFromFile = 16u << 10;
 inline constexpr std::size_t kMaxFromFile = 1u << 20;
 /// After a refusal that closes, how long and how much is still read, so that the answer is not lost

@@ -1,4 +1,4 @@
-// What the server counts, and its text for Prometheus (exposition format 0.0.4).
+// The server's counters, and their text for Prometheus (exposition format 0.0.4).
 #pragma once
 
 #include <array>

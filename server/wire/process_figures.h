@@ -1,4 +1,4 @@
-// What every program can tell of itself, under the names that Prometheus' own clients give.
+// Figures of this process, under the names that Prometheus' own clients give.
 #pragma once
 
 #include <vector>
@@ -7,8 +7,8 @@
 
 namespace qtet {
 
-/// Processor time, memory, open files and their bound, and when the process began. A figure that
-/// the system does not tell is left out.
+/// Processor time, memory, open files and their bound, and when the process began. Figures that the
+/// system does not report are left out.
 [[nodiscard]] std::vector<Metrics::Figure> processFigures();
 
 }  // namespace qtet

@@ -11,7 +11,7 @@
 
 namespace qtet {
 
-/// What has come of the head of the PROXY protocol, version 2.
+/// The head of the PROXY protocol, version 2, as far as it has arrived.
 struct ProxyHead {
   enum class State : std::uint8_t {
     kIncomplete,  ///< more bytes are needed
@@ -19,13 +19,13 @@ struct ProxyHead {
     kWhole,
   };
   State state = State::kIncomplete;
-  /// Of the head, if it is whole: so many are to be taken from the connection.
+  /// The head's size if it is whole: take so many bytes from the connection.
   std::size_t bytes = 0;
-  /// Nothing: the proxy speaks for itself (LOCAL), or for somebody without an IP address.
+  /// nullopt: the proxy speaks for itself (LOCAL), or for a client without an IP address.
   std::optional<boost::asio::ip::address> client{};
 };
 
-/// A head has at most so many bytes: 16, the addresses, and what proxies add about TLS.
+/// A head has at most this many bytes: 16, the addresses, and additions of proxies about TLS.
 inline constexpr std::size_t kMaxProxyHeadBytes = 4096;
 
 /// Reads the first bytes of a connection ("The PROXY protocol", haproxy.org, section 2.2).

@@ -1,4 +1,4 @@
-// What follows a request through logs of several programs: an id of its own, and W3C Trace Context
+// Identifies a request in the logs of several programs: an id of its own, and W3C Trace Context
 // (traceparent).
 #pragma once
 

@@ -20,12 +20,12 @@ namespace asio = boost::asio;
 namespace ssl = asio::ssl;
 using boost::system::error_code;
 
-/// Of TLS 1.2; those of 1.3 are all of this kind.
+/// For TLS 1.2; all ciphers of TLS 1.3 are of this kind.
 constexpr const char* kCiphers = "ECDHE+AESGCM:ECDHE+CHACHA20";
 /// As ALPN writes it: its length, then the name.
 constexpr std::string_view kHttp11 = "\x08http/1.1";
 
-/// HTTP/1.1 if the client knows it, else nothing: then it is spoken all the same.
+/// Chooses HTTP/1.1 if the client offers it, else nothing; HTTP/1.1 is spoken in any case.
 int chooseProtocol(SSL*, const unsigned char** out, unsigned char* outBytes,
                    const unsigned char* offered, unsigned offeredBytes, void*) {
   unsigned char* chosen = nullptr;
@@ -37,8 +37,8 @@ int chooseProtocol(SSL*, const unsigned char** out, unsigned char* outBytes,
   return SSL_TLSEXT_ERR_OK;
 }
 
-/// Of TLS 1.3, whose client may send any number of them; the session's application data is how many
-/// have come since the last bytes.
+/// A client of TLS 1.3 may send any number of key updates. The session's application data counts
+/// those that have arrived since the last bytes of data.
 void countKeyUpdates(int sent, int, int type, const void* bytes, std::size_t count, SSL* session,
                      void*) {
   if (sent != 0 || type != SSL3_RT_HANDSHAKE || count == 0 ||

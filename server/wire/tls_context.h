@@ -22,8 +22,8 @@ class TlsContext {
       const std::filesystem::path& certificate, const std::filesystem::path& key);
   virtual ~TlsContext() = default;
 
-  /// The server's side of one connection over that socket, which goes on with this context's
-  /// certificate, also when the context has gone. Throws std::bad_alloc.
+  /// The server's side of one connection over that socket. It keeps this context's certificate,
+  /// even when the context has gone. Throws std::bad_alloc.
   [[nodiscard]] virtual ssl_st* newSession(int socket) const = 0;
   /// When the server's own certificate ends.
   [[nodiscard]] virtual std::chrono::system_clock::time_point expires() const = 0;

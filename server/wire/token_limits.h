@@ -1,4 +1,4 @@
-// What the server allows tokens and tickets, with units and reasons.
+// Limits on tokens and tickets, with units and reasons.
 #pragma once
 
 #include <chrono>

@@ -21,10 +21,10 @@ using SecretDigest = Digest;
 [[nodiscard]] std::optional<SecretDigest> bearerDigest(
     std::optional<std::string_view> authorization);
 
-/// A file of lines `SCOPE PATTERN TOKEN` or `SCOPE PATTERN sha256:HEX`: SCOPE is read or write
-/// (which reads, too), PATTERN a shell pattern of mesh names such as `lab-*`; `read PATTERN anyone`
-/// needs no token. Blank lines and those that begin with # are left out; at least one other is
-/// there. Without a line that begins with read everybody may read everything. Immutable.
+/// A file of lines `SCOPE PATTERN TOKEN` or `SCOPE PATTERN sha256:HEX`. SCOPE is read or write
+/// (which reads, too). PATTERN is a shell pattern of mesh names such as `lab-*`. `read PATTERN
+/// anyone` needs no token. Blank lines and those that begin with # are left out; at least one other
+/// is there. Without a line that begins with read everybody may read everything. Immutable.
 class Tokens {
  public:
   /// Nobody may change anything, everybody may read.
@@ -41,7 +41,7 @@ class Tokens {
   };
   /// Whether reading needs a token.
   [[nodiscard]] bool guardReading() const { return guardReading_; }
-  /// Compares digests, all of them and every byte, so that its time tells nothing of a token.
+  /// Compares digests, all of them and every byte, so that its time reveals nothing about a token.
   [[nodiscard]] Verdict may(Scope scope, const std::optional<SecretDigest>& bearer,
                             const std::string& mesh) const;
   [[nodiscard]] bool knows(const std::optional<SecretDigest>& bearer) const;

@@ -28,7 +28,7 @@ class Networks {
   std::shared_ptr<const Blocks> blocks_;  // nullptr: none
 };
 
-/// How proxies tell the client's address.
+/// The header in which proxies report the client's address.
 enum class ProxyHeader : std::uint8_t {
   kForwardedFor,   ///< X-Forwarded-For
   kForwarded,      ///< Forwarded (RFC 7239)
@@ -40,9 +40,9 @@ struct TrustedProxies {
   ProxyHeader header = ProxyHeader::kForwardedFor;
 };
 
-/// Whose request a trusted proxy hands on. `value` is the header's whole list: each proxy adds at
-/// its end from whom the request came, so the last address that is no proxy's is the client's;
-/// what stands before it anybody may have written. Nothing: that place names no address.
+/// The client whose request a trusted proxy forwards. `value` is the header's whole list. Each
+/// proxy appends the sender's address, so the last address that is no proxy's is the client's.
+/// Anybody may have written the part before it. nullopt: that place names no address.
 [[nodiscard]] std::optional<boost::asio::ip::address> forwardedClient(const TrustedProxies& proxies,
                                                                       std::string_view value);
 

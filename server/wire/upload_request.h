@@ -1,4 +1,4 @@
-// What a PUT or DELETE asks for, read off its head.
+// A PUT's or DELETE's request, read from its head.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// What a WebSocket client sends (RFC 6455, 5), out of a stream of bytes cut anywhere: messages,
-// pings and closes, or the code to close with.
+// Reads a WebSocket client's frames (RFC 6455, 5) from a stream of bytes cut anywhere. It gives
+// messages, pings and closes, or the code to close with.
 #pragma once
 
 #include <cassert>
@@ -70,7 +70,7 @@ class WebSocketReader {
   [[nodiscard]] std::expected<std::optional<Event>, CloseCode> takeEvent();
   [[nodiscard]] std::expected<std::optional<Frame>, CloseCode> takeFrame();
   [[nodiscard]] std::expected<std::optional<Event>, CloseCode> control(Frame frame) const;
-  /// nullopt: the message goes on.
+  /// nullopt: the message continues in another frame.
   [[nodiscard]] std::expected<std::optional<Event>, CloseCode> data(Frame frame);
 
   State state_ = State::kHungry;

@@ -1,6 +1,6 @@
-# What is installed is what other programs can use: installs into a folder of its own, builds
-# levels.c and simplify.c against it with find_package and with pkg-config, and compares what they
-# print and write with what `qtet info`, `qtet extract` and `qtet simplify` do.
+# Checks that other programs can use the installed files. Installs into a folder of its own, and
+# builds levels.c and simplify.c against it with find_package and with pkg-config. Compares their
+# output with that of `qtet info`, `qtet extract` and `qtet simplify`.
 #   cmake -DBUILD=build/release -DSOURCE=. -DOUT=folder [-DPYTHON=python3] [-DNM=nm] -P check.cmake
 cmake_minimum_required(VERSION 3.25)
 set(here ${CMAKE_CURRENT_LIST_DIR})

@@ -146,7 +146,7 @@ def main(library, program, logs, out):
     for path in sorted(pathlib.Path(logs).glob("*.qtet")):
         with Log(c, path) as log:
             # Backwards and forwards again: the mesh must not remember where it was.
-            # Of a log that keeps its input, extract gives the input itself at the last level, the
+            # If a log keeps its input, extract returns the input itself at the last level, but the
             # library the mesh on the lattice.
             keepsInput = path.stem in ("kept-input", "original-cells")
             last = [] if keepsInput else [log.info.levels - 1]

@@ -1,4 +1,4 @@
-/* What a program of somebody else's looks like: tells a log's levels, then the volume and the
+/* An example of a program that uses the library: prints a log's levels, then the volume and the
  * fields' ranges at one of them.
  *   levels LOG.qtet LEVEL     "full" is the last level */
 #include <qtet/qtet.h>

@@ -1,5 +1,5 @@
-/* What a program of somebody else's looks like that makes a log: takes the whole mesh of one, with
- * its fields, and simplifies it anew.
+/* An example of a program that makes a log with the library: takes the whole mesh of another log,
+ * with its fields, and simplifies it again.
  *   simplify LOG.qtet NEW.qtet NAME RATIO     NAME: what the new log calls its input */
 #include <qtet/qtet_simplify.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
-// The npm package's types as a stranger's compiler sees them: packed, unpacked into an empty
-// project, and compiled strictly, libraries included, with every module resolution that knows
-// `exports`.
+// Checks the npm package's types as another project's compiler sees them. The package is packed,
+// unpacked into an empty project and compiled strictly, libraries included, with every module
+// resolution that knows `exports`.
 //   node types.mjs --wasm FILE --out DIR
 
 import assert from 'node:assert/strict';

@@ -20,7 +20,7 @@ const source = join(import.meta.dirname ?? new URL('.', import.meta.url).pathnam
 const description = parse(readFileSync(join(source, 'proto/openapi.yaml'), 'utf8'), {
   maxAliasCount: -1,
 });
-/** What cannot be had from a healthy server by asking. */
+/** Answers that no request gets from a healthy server. */
 const kUnasked = new Set([
   'readLevel 500',
   'readLevel 503',

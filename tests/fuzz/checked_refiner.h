@@ -1,5 +1,5 @@
-// What holds of a refiner whatever it was given: every id in its range, every field as long as what
-// it belongs to.
+// Checks a refiner's invariants after any input: every id is in its range, and every field is as
+// long as the points or cells that it belongs to.
 #pragma once
 
 #include <cstdlib>

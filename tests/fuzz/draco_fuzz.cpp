@@ -1,4 +1,4 @@
-// Fuzzes a value block: components, tuples, then Draco's bytes. What is accepted is encoded and
+// Fuzzes a value block: components, tuples, then Draco's bytes. An accepted block is encoded and
 // decoded again and must be the same.
 #include <algorithm>
 #include <cstdint>

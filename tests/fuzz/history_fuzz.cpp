@@ -1,6 +1,6 @@
 // Fuzzes by structure: the input chooses a mesh, the simplifier's options and where chunks end.
-// Every level that is decoded must be the mesh that the simplifier had; then the rest of the input
-// damages blocks below their checksums, and no id may leave its range.
+// Every decoded level must be the mesh that the simplifier had. Then the rest of the input damages
+// blocks below their checksums, and no id may leave its range.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>

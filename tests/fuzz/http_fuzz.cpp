@@ -1,5 +1,5 @@
-// Fuzzes the gate before HTTP's parser: a head that grows byte by byte gets the verdict that it
-// gets whole, and never a line end or control byte through.
+// Fuzzes the gate before HTTP's parser: a head that grows byte by byte gets the same verdict as the
+// whole one. No stray line end or control byte passes.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
@@ -32,7 +32,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       std::abort();
     if (std::ranges::count(head, '\r') != std::ranges::count(head, '\n')) std::abort();
   }
-  // A target written anew means the same.
+  // A target that is written again means the same.
   if (const auto target = qtet::parseTarget(bytes)) {
     std::string again;
     for (const std::string& segment : target->segments) again += "/" + qtet::percentEncode(segment);

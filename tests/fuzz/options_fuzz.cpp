@@ -1,5 +1,5 @@
-// Fuzzes the server's options: arguments, an empty line, variables. What is understood is
-// understood again as `--check-config` prints it.
+// Fuzzes the server's options: arguments, an empty line, variables. Valid options, printed by
+// `--check-config`, must parse to the same again.
 #include <cstdint>
 #include <cstdlib>
 #include <sstream>

@@ -1,5 +1,5 @@
-// Runs a fuzz target without libFuzzer, so that every build replays what the fuzzer would see: each
-// file named on the command line (or below a folder named there) as it is, then pseudo-random
+// Runs a fuzz target without libFuzzer, so that every build replays the fuzzer's inputs. It runs
+// each file named on the command line (or below a folder named there) as it is, then pseudo-random
 // mutations of it. The same seed gives the same bytes on every machine.
 //   NAME_replay [--mutations=N] [--seed=S] FILE|FOLDER...
 // Bytes that end the program are left in ./replay-crash.bin; NAME_replay replay-crash.bin repeats
@@ -49,7 +49,7 @@ class Random {
 };
 
 constexpr const char* kCrashFile = "replay-crash.bin";
-/// What the target is reading, for the crash file.
+/// The target's current input, for the crash file.
 std::span<const std::uint8_t> current;
 
 /// Only calls that are allowed in a signal handler.

@@ -1,4 +1,4 @@
-// Writes the fuzzers' seeds anew: `qtet_seeds tests/fuzz/seeds`. Run it when the format changes;
+// Rewrites the fuzzers' seeds: `qtet_seeds tests/fuzz/seeds`. Run it when the format changes;
 // log_fuzz and chunk_fuzz take the golden files.
 #include <cstdio>
 #include <random>

@@ -1,6 +1,6 @@
-# fuzz/NAME_fuzz.cpp holds LLVMFuzzerTestOneInput. With QTET_FUZZ it is libFuzzer's, and a test runs
-# it for 20 seconds; in every other build a small main replays the golden files, the seeds and a
-# fixed run of mutations through it, so that no target rots between two fuzzing runs.
+# fuzz/NAME_fuzz.cpp defines LLVMFuzzerTestOneInput. With QTET_FUZZ libFuzzer calls it, and a test
+# runs it for 20 seconds. In every other build a small main replays the golden files, the seeds and
+# a fixed run of mutations through it. So no target rots between two fuzzing runs.
 file(GLOB golden golden)
 if(QTET_FUZZ)
   add_custom_target(qtet_fuzzers)

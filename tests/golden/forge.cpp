@@ -74,7 +74,7 @@ EncodedLog encodedLog(const LatticeMesh& mesh) {
   return encodeLog(simplify(mesh, {}).value(), options).value();
 }
 
-/// Of hexahedra that were each cut into six cells; the file has every third of them.
+/// A log of hexahedra that were each cut into six cells. The file numbers them in steps of three.
 Bytes logWithOriginalCells() {
   const LatticeMesh mesh = testing::gridMesh(2, 8);
   KeptInput kept{{false, false, true}, besideTheLattice(mesh)};
@@ -115,7 +115,7 @@ void write(const std::filesystem::path& path, const Bytes& bytes) {
     std::fprintf(stderr, "%s\n", s.error().text().c_str());
 }
 
-/// What the head says of levels and fields, broken below right checksums.
+/// Breaks the head's statements about levels and fields, with correct checksums.
 void writeBadHeads(const std::filesystem::path& folder, const Bytes& good) {
   const auto manifest = [&](const std::function<void(Bytes&)>& change) {
     testing::TakenApart parts = testing::takeApart(good);

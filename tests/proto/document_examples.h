@@ -7,8 +7,8 @@
 
 namespace qtet::test {
 
-/// What is wrong with the document's examples, one text a fault, with its line: a block of no known
-/// kind, a value that the kind's parser refuses or of which it leaves a member out, a kind without
+/// The faults of the document's examples, one text each, with its line. A fault is a block of
+/// unknown kind, a value that the kind's parser refuses or does not read in full, or a kind without
 /// an example.
 [[nodiscard]] std::vector<std::string> faultsOfExamples(const std::string& document);
 

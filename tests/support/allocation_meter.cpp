@@ -40,8 +40,8 @@ std::size_t roundedUp(std::size_t bytes, std::size_t alignment) {
 
 }  // namespace
 
-// All forms: a sanitizer's own do not call one another, and it minds what one form allocates and
-// another gives back.
+// Replaces all forms. A sanitizer's own forms do not call one another, and it reports memory that
+// one form allocates and another frees.
 void* operator new(std::size_t bytes) {
   failInTurn();
   return taken(std::malloc(bytes == 0 ? 1 : bytes));

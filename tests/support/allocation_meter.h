@@ -1,4 +1,5 @@
-// What a piece of work allocates. A program that uses it has its operators new and delete replaced.
+// Measures the allocations of a piece of work. It replaces operators new and delete of a program
+// that uses it.
 #pragma once
 
 #include <cstddef>

@@ -15,7 +15,7 @@ class AuthorCoder {
   static constexpr bool kEncoding = false;
   /// The answer to a question whose probability of 1 is known, in 1/65536.
   using Answer = std::function<int(std::uint32_t probability)>;
-  /// A raw number of so many bits.
+  /// A raw number of `bits` bits.
   using Raw = std::function<std::uint32_t(int bits)>;
 
   AuthorCoder(Answer answer, Raw raw) : answer_(std::move(answer)), raw_(std::move(raw)) {}

@@ -6,7 +6,7 @@
 namespace qtet::testing {
 namespace {
 
-// Corner 4 i + 2 j + k of the cube; the middle cell first. Of an odd cube i is mirrored.
+// Corner 4 i + 2 j + k of the cube; the middle cell first. In an odd cube i is mirrored.
 constexpr std::array<std::array<int, 4>, 5> kFive{
     {{0, 3, 5, 6}, {1, 0, 3, 5}, {2, 3, 0, 6}, {4, 0, 5, 6}, {7, 5, 3, 6}}};
 

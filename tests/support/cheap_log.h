@@ -37,7 +37,7 @@ class CheapLog {
     refine(levels);
   }
 
-  /// What a refiner says of all of it.
+  /// Decodes everything with the refiner.
   [[nodiscard]] Status decode(Refiner& refiner) const {
     for (std::uint32_t chunk = 0; chunk < 2; ++chunk)
       if (Status s = refiner.apply(chunk, structure[chunk], positions[chunk]); !s) return s;

@@ -1,4 +1,4 @@
-// What closing blocks give, as bytes to be compared with another decoder's.
+// The content of closing blocks, as bytes to compare with another decoder's.
 #pragma once
 
 #include <map>

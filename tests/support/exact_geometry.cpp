@@ -14,7 +14,7 @@ Wide dot(const Point& a, const Point& b) {
 }
 int sign(Wide x) { return (x > 0) - (x < 0); }
 
-/// Of a, b, c in the plane that is left without axis `drop`: +1 counter-clockwise, 0 in line.
+/// The turn of a, b, c, projected along axis `drop`: +1 counter-clockwise, 0 in line.
 int turn(const Point& a, const Point& b, const Point& c, std::size_t drop) {
   const std::size_t x = (drop + 1) % 3, y = (drop + 2) % 3;
   return sign(Wide{b[x] - a[x]} * (c[y] - a[y]) - Wide{b[y] - a[y]} * (c[x] - a[x]));

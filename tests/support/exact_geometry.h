@@ -28,8 +28,8 @@ using Point = std::array<std::int64_t, 3>;
                                         const std::array<Point, 3>& triangle);
 
 /// Whether the open tetrahedron and the closed convex hull of `other` (3 or 4 points, not
-/// degenerate) have a point in common. Separating axes: of a polyhedron with an inside and another
-/// convex one, the axes are the face normals of both and the products of their edges.
+/// degenerate) have a point in common. Uses separating axes. For a polyhedron with an inside and
+/// another convex one, these are the face normals of both and the products of their edges.
 [[nodiscard]] bool insideMeets(const std::array<Point, 4>& tetrahedron,
                                std::span<const Point> other);
 

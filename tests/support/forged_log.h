@@ -1,5 +1,5 @@
-// Logs that lie: taken apart, changed, and put together with every offset and checksum right, so
-// that only what checks the sense can tell.
+// Makes logs that lie: taken apart, changed, and put together with every offset and checksum right.
+// Only a check of the meaning can notice.
 #pragma once
 
 #include <cstdint>

@@ -12,8 +12,8 @@
 namespace qtet::testing {
 
 /// A grid of n cubes a side, six tetrahedra each, its inner points moved at random by up to a
-/// quarter of a cube; cubes for which `keep(i, j, k)` is false are left out, so that tunnels, voids
-/// and several components can be cut. Two point fields: "Height" (a scalar) and "Swirl" (a vector).
+/// quarter of a cube. Cubes for which `keep(i, j, k)` is false are left out. This gives tunnels,
+/// voids and several components. Two point fields: "Height" (a scalar) and "Swirl" (a vector).
 [[nodiscard]] LatticeMesh gridMesh(
     int n, std::uint32_t seed,
     const std::function<bool(int, int, int)>& keep = [](int, int, int) { return true; });

@@ -1,5 +1,5 @@
-// What a simplified mesh has lost, measured from the definitions: every sample is looked for among
-// all cells and all boundary triangles. Shares nothing with simplify/measure.
+// The error of a simplified mesh, measured by the definitions: every sample is compared with all
+// cells and all boundary triangles. Shares nothing with simplify/measure.
 #pragma once
 
 #include <cstddef>

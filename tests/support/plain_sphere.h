@@ -7,8 +7,8 @@
 
 namespace qtet::testing {
 
-/// There are four at least, every edge joins two vertices and is met once in each direction, all
-/// hang together by edges, and the Euler characteristic is 2.
+/// There are at least four triangles, and edges connect all of them. Every edge joins two vertices
+/// and occurs once in each direction. The Euler characteristic is 2.
 [[nodiscard]] bool isPlainSphere(std::span<const Triangle> triangles);
 
 }  // namespace qtet::testing

@@ -1,4 +1,4 @@
-// What the tests of manifests begin with: lattice and a first field whose figures are no short
+// A manifest for tests to begin with: a lattice and a first field whose figures are no short
 // decimals.
 #pragma once
 

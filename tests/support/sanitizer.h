@@ -15,9 +15,9 @@ inline constexpr bool kSanitized =
 inline constexpr bool kSanitized = false;
 #endif
 
-/// Of cases that are all alike every so-many-th is tried, and meshes of millions of cells are so
-/// much smaller: a sanitizer takes 10 to 50 times as long, and what it finds needs no more. A
-/// prime, so that it meets every bit of a byte and every part of a row.
+/// Tests run only every kStride-th of many similar cases, and divide the size of meshes of millions
+/// of cells by it. A sanitizer takes 10 to 50 times as long, and needs no more cases for its finds.
+/// It is a prime, so that it meets every bit of a byte and every part of a row.
 inline constexpr std::size_t kStride = kSanitized ? 17 : 1;
 
 }  // namespace qtet::testing

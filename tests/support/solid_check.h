@@ -1,6 +1,6 @@
-// What a solid of tetrahedra is, checked from the definitions: validity, topology, singularities,
-// embedding and containment. Exact, and independent of the simplifier: it shares with it only the
-// mesh's types. Near-linear time; for meshes of up to some ten thousand cells.
+// Checks a solid of tetrahedra by the definitions: validity, topology, singularities, embedding and
+// containment. Exact, and independent of the simplifier: they share only the mesh's types.
+// Near-linear time; for meshes of up to some ten thousand cells.
 #pragma once
 
 #include <array>
@@ -25,9 +25,9 @@ struct SolidReport {
   std::array<std::int64_t, 4> betti{};  ///< over Z/2: components, tunnels, cavities, 0
   /// Euler characteristic of each connected part of the boundary, ascending.
   std::vector<std::int64_t> boundaryEuler;
-  /// Of the boundary, whose triangles are not one closed fan; ascending.
+  /// Boundary vertices whose triangles are not one closed fan; ascending.
   std::vector<LatticePoint> singularVertices;
-  /// Of the boundary, of more than two triangles; ascending.
+  /// Boundary edges of more than two triangles; ascending.
   std::vector<std::array<LatticePoint, 2>> singularEdges;
   std::int64_t volume6 = 0;  ///< six times the cells' volume
 

@@ -18,9 +18,10 @@ struct StarMesh {
   Link link;         ///< of vertex 0, placed
 };
 
-/// The centre of an octahedron whose corners lie 2 * `scale` away on the axes, each of its faces
-/// cut in four: 32 cells round an inner vertex, or, of the upper half alone, 16 and 8 boundary
-/// triangles round one on the boundary. REQUIRES: every corner within [0, 2^bits).
+/// The star of an octahedron's centre. The corners lie 2 * `scale` away on the axes, and each face
+/// is cut in four. This gives 32 cells round an inner vertex. `half` keeps the upper half only: 16
+/// cells, and 8 boundary triangles round a vertex on the boundary. REQUIRES: every corner within
+/// [0, 2^bits).
 [[nodiscard]] inline StarMesh starMesh(const LatticePoint& centre, const LatticePoint& scale,
                                        int bits, bool half = false) {
   StarMesh out;
@@ -64,7 +65,7 @@ inline void labelAs(StarMesh& star, std::span<const std::uint8_t> labels) {
   return out;
 }
 
-/// Gives each triangle of the link the nearest of `prey`, and numbers these anew in order of first
+/// Gives each triangle of the link the nearest of `prey`, and renumbers these in order of first
 /// appearance along the traversal, as records do. Returns how many have triangles: the first of
 /// `prey`, which is put into the same order.
 inline std::size_t labelByNearest(StarMesh& star, std::vector<LatticePoint>& prey) {

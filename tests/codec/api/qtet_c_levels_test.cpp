@@ -13,8 +13,8 @@ namespace {
 
 using namespace testing;
 
-/// A log of which the errors are known: those of field 0 fall as 1 / (level + 1), of field 1 four
-/// times as fast, of the boundary as twice that.
+/// A log with known errors. Those of field 0 fall as 1 / (level + 1), those of field 1 four times
+/// as fast. The boundary's are twice that.
 class QtetCKnownErrors : public ::testing::Test {
  protected:
   void SetUp() override {

@@ -1,4 +1,4 @@
-// codec/api/qtet.h from outside: what it tells and decodes is what the C++ codec has.
+// Tests codec/api/qtet.h from outside: it reports and decodes the same as the C++ codec.
 #include <gtest/gtest.h>
 
 #include <thread>

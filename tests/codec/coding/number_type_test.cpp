@@ -23,7 +23,7 @@ std::vector<T> written(const char* type, const std::vector<double>& values) {
   return out;
 }
 
-/// Of a field whose step is a half: every second value lies in the middle.
+/// The field's step is a half, so every second value lies midway between two integers.
 TEST(NumberType, integersAreTheNearestAndHalvesGoUp) {
   EXPECT_EQ(written<std::int8_t>("int8", {-2.5, -2, -1.5, -1, -0.5, 0, 0.5, 1, 1.5, 2, 2.5}),
             (std::vector<std::int8_t>{-2, -2, -1, -1, 0, 0, 1, 1, 2, 2, 3}));

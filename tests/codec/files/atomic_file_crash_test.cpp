@@ -1,5 +1,5 @@
-// A writer that fails, or is killed, at any of its calls to the operating system; a disk that is
-// full; what a killed one leaves.
+// Tests a writer that fails, or is killed, at any of its system calls; a full disk; and the files
+// that a killed writer leaves.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sched.h>
@@ -239,8 +239,8 @@ TEST_F(AtomicFileCrash, theTemporaryFileOfALivingWriterIsLetAlone) {
 }
 
 TEST_F(AtomicFileCrash, aNameThatIsTakenIsNotWrittenOver) {
-  // What a process of this number would be writing on another machine of the same disk: locked, so
-  // not stale.
+  // A file that a process of this number is writing on another machine with the same disk. It is
+  // locked, so not stale.
   ChosenCall counting(-1, ChosenCall::Fate::kFail);
   ASSERT_TRUE(writeFileAtomically(path_, newBytes(), counting));
   // .a.qtet.PROCESS.NUMBER.tmp

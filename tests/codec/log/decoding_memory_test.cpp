@@ -1,4 +1,4 @@
-// What decoding takes, held against what was foretold; and that it ends when it is told to.
+// Compares the memory of decoding with its prediction, and checks that decoding stops on request.
 #include "codec/log/decoding_memory.h"
 
 #include <gtest/gtest.h>
@@ -57,7 +57,7 @@ TEST(DecodingBytes, areEnoughForEveryGoldenLog) {
       compare(LogFile::open(entry.path()).value(), entry.path().filename(), 1e9);
 }
 
-/// What decoding takes of a table with a base mesh alone, whose structure has so many bytes.
+/// The predicted bytes for a table with a base mesh only, whose structure has so many bytes.
 std::uint64_t bytesOfBase(std::uint32_t structureBytes, std::uint32_t elements,
                           std::uint32_t fieldComponents = 0) {
   LogIndex index;

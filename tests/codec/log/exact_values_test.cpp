@@ -95,7 +95,7 @@ TEST(ExactValues, theOddOnesComeBack) {
   }
   expectBack({std::vector<std::int32_t>(4, 3), 1, {-5e15}, 1e8, "int64"},
              {-9007199254740991.0, 9007199254740991.0, 0, -1});
-  // What is alike in all, so that only their low digits are told.
+  // The values agree in their high digits, so only the low ones are coded.
   expectBack({std::vector<std::int32_t>(5, 0), 1, {0}, 1, "float64"}, {-0.5, 0.25, -0.75, 1, -1});
 }
 

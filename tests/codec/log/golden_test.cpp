@@ -35,13 +35,13 @@ std::string fieldDigest(std::span<const std::int32_t> values) {
   return sha256Hex(w.bytes());
 }
 
-/// Of a log's finest mesh.
+/// Digests of a log's finest mesh.
 struct Digests {
   std::string mesh;
   std::vector<std::string> fields;
 };
 
-/// Opens, checks and decodes the whole log, or says what is wrong.
+/// Opens, checks and decodes the whole log, or returns the fault.
 Result<Digests> decode(const std::filesystem::path& path) {
   const auto log = LogFile::open(path);
   if (!log) return std::unexpected(log.error());

@@ -1,5 +1,5 @@
-// What a refiner needs beyond the mesh that it makes, which on a phone decides how large that may
-// be.
+// Measures a refiner's memory beyond the mesh that it makes. On a phone this limits the mesh's
+// size.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
@@ -51,8 +51,8 @@ TEST(Refiner, holdsLittleBesideTheMesh) {
   EXPECT_EQ(tetrahedra, 6.0 * 20 * 20 * 20);
 }
 
-/// No more than so many bytes of addresses while this lives; a sanitizer needs more for itself and
-/// is left alone.
+/// Limits the address space to `bytes` while this object lives. Does nothing under a sanitizer,
+/// which needs more for itself.
 class AddressLimit {
  public:
   explicit AddressLimit(rlim_t bytes) {
@@ -83,7 +83,7 @@ TEST(Refiner, takesInTheBeginningOfALogThatNoMemoryHolds) {
   Refiner refiner(std::move(index));
   const auto positions =
       decodeValueBlock(file->block(0, kPositionsPart), 3, file->index().tuples(0, kPositionsPart));
-  // so many bytes that such a log may be true, though they hold nothing
+  // enough bytes to make such a log credible, though they contain nothing
   const Bytes credible(kMaxElements / kMaxElementsPerPacketByte + 1);
   const AddressLimit limit(rlim_t{4} << 30);
   EXPECT_NO_THROW(EXPECT_FALSE(refiner.apply(0, credible, *positions)));

@@ -195,8 +195,8 @@ TEST_P(Regions, fieldsThatLagBehindInAnOrderOfTheirOwnEndTheSame) {
   }
 }
 
-// The check itself is checked: a decoder that carries something from one packet to the next in
-// order of arrival, as a coder's models would be, is right in file order and is told apart in any
+// Checks the check itself. The planted decoder carries state from one packet to the next in order
+// of arrival, as a coder's models might. It is right in file order, and the check catches it in any
 // other.
 TEST_P(Regions, aPlantedDependenceOnTheOrderOfArrivalIsCaught) {
   const auto planted = [&](const std::vector<std::uint32_t>& order) {
@@ -284,8 +284,8 @@ bool meet(const PacketBox& a, const PacketBox& b) {
   return true;
 }
 
-/// What brings every cell that meets the box to full resolution: the head, and packets whose boxes
-/// meet it. The chunk table tells it.
+/// The chunks that bring every cell that meets the box to full resolution: the head, and packets
+/// whose boxes meet it. The chunk table suffices to find them.
 std::vector<std::uint32_t> chunksOfBox(const LogIndex& index, const PacketBox& box) {
   std::vector<std::uint32_t> out;
   for (std::uint32_t i = 0; i < index.chunks.size(); ++i)

@@ -1,4 +1,4 @@
-// A reader's work is bounded by the bytes that came, whatever decisions of next to no cost ask for.
+// The bytes received bound a reader's work, however much work decisions of almost no cost ask for.
 #include <gtest/gtest.h>
 
 #include "codec/log/log_file.h"

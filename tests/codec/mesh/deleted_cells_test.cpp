@@ -22,8 +22,8 @@ bool derives(testing::StarMesh& star, int k) {
 
 class EveryPrey : public ::testing::TestWithParam<int> {};
 
-// Of such a vertex later levels cost time and no bytes: of three hundred bytes more it would become
-// a million.
+// A vertex without cells costs later levels time but no bytes: three hundred bytes more would give
+// a million of them.
 TEST_P(EveryPrey, hasACell) {
   const int k = GetParam();
   for (int used = 1; used < (k == 4 ? 3 : k); ++used) {
@@ -39,8 +39,8 @@ TEST_P(EveryPrey, mayHaveItsOnlyCellsAmongTheDeleted) {
   testing::StarMesh star = testing::starMesh({64, 64, 64}, {8, 8, 8}, 8);
   const int k = GetParam();
   std::vector<std::uint8_t> labels(star.link.triangles().size());
-  // One triangle and a neighbour: the three labels meet at two vertices, and behind one of them
-  // lies a fourth prey vertex of k = 4, which no triangle carries.
+  // One triangle and a neighbour have labels of their own, so the three labels meet at two
+  // vertices. Behind one of them lies a fourth prey vertex of k = 4, which no triangle carries.
   labels.front() = 1;
   if (k > 2) labels[star.link.triangles().front().neighbour[0]] = 2;
   testing::labelAs(star, labels);

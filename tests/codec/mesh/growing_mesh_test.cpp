@@ -1,5 +1,4 @@
-// The mesh that grows in place, held against one that is built anew after every split of a real
-// log.
+// Compares the mesh that grows in place with one that is rebuilt after every split of a real log.
 #include "codec/mesh/growing_mesh.h"
 
 #include <gtest/gtest.h>

@@ -158,7 +158,7 @@ TEST_F(CellFieldLog, labelsCostLittle) {
     bytes += index_.block(chunk, kRegionPart).size;
   std::uint64_t cells = 0;
   for (const ChunkEntry& e : index_.chunks) cells += e.newTetrahedra;
-  // what Draco takes for a block of one attribute, whatever it holds
+  // Draco's fixed cost for a block of one attribute
   const std::uint64_t fixedBytes = 48 * index_.chunks.size();
   EXPECT_LT(8 * (bytes - std::min(bytes, fixedBytes)), cells / 2)
       << bytes << " bytes for " << cells << " cells";

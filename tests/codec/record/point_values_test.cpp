@@ -1,5 +1,5 @@
-// Point fields along a split: what a linear field leaves to be told, there and back, and values at
-// the limits.
+// Tests point fields along a split: the residuals of a linear field, both ways, and values at the
+// limits.
 #include "codec/record/point_values.h"
 
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ Field fieldOn(const StarMesh& star) {
   return field;
 }
 
-/// What is told of each prey vertex when the field is linear.
+/// The values coded for each prey vertex when the field is linear.
 std::vector<std::int32_t> residuals(const StarMesh& star, const Split& split) {
   PointAncestry ancestry(true);
   ancestry.add(0, star.mesh, star.link, split);

@@ -11,8 +11,8 @@
 namespace qtet {
 namespace {
 
-/// Of the coarsest fusion, which the log undoes first, a cell that goes: one of its vertices is
-/// made one that the finest fusions took and that comes last.
+/// Changes a deleted cell of the coarsest fusion, which the log undoes first. One of its vertices
+/// becomes one that the finest fusions took, and that the log restores last.
 TEST(SplitTruths, aCellWithAVertexThatHasNotComeIsNoneOfTheStar) {
   FusionHistory history = simplify(testing::gridMesh(3, 1), {}).value();
   ASSERT_TRUE(encodeLog(history, {}));

@@ -8,7 +8,7 @@
 
 namespace qtet::test {
 
-/// The real check; once it is told to hold, a check waits for being let go or stopped first.
+/// The real check. After a hold, each check first waits until it is released or stopped.
 class HeldCheck {
  public:
   std::optional<Reply> operator()(const ServedMesh& mesh, const CheckLimits& limits,

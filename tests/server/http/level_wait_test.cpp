@@ -1,4 +1,4 @@
-// What a connection notices of its client while it waits for a level.
+// Tests what a connection notices of its client while it waits for a level.
 #include <utility>  // before any Asio header: 1.74 uses std::exchange without it
 
 #include "server/http/level_wait.h"
@@ -20,7 +20,7 @@
 namespace qtet {
 namespace {
 
-// Asio's reactor hands readiness on later than it hears of it; bytes that were read between the two
+// Asio's reactor reports readiness some time after it learns of it. Bytes that were read in between
 // wake the watch up for nothing.
 TEST(LevelWait, aWakeUpForNothingLeavesTheClientWatched) {
   namespace asio = boost::asio;

@@ -1,4 +1,4 @@
-// What is answered to a log by its check alone: sound or not, and at each limit and past it.
+// Tests the check's answer to a log: sound or not, and at each limit and past it.
 #include "server/http/log_check.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The container's health check follows the settings: by option, by environment, by file, with TLS,
-# with the operators' address apart; and it fails where no server answers.
+# with a separate operators' address. It fails if no server answers.
 #   docker_health.sh FOLDER_OF_PROGRAMS SCRATCH      exit code 77: openssl is missing
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)

@@ -1,6 +1,6 @@
-// The program under load that would bring a careless one down: an end with hundreds of streams,
-// stalled and vanished clients, no more files to open. QTET_STALL_SECONDS=60 makes the run with
-// stalled clients the long one.
+// Tests the program under heavy load: an end with hundreds of streams, stalled and vanished
+// clients, no more files to open. QTET_STALL_SECONDS=60 makes the run with stalled clients the long
+// one.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
@@ -146,8 +146,8 @@ TEST_F(EnduranceTest, aThousandStalledClientsHoldUpNobodyAndLoseNothing) {
   if (ownProgram && !testing::kSanitized) {
     EXPECT_LT(each, 64u << 10);
   }
-  // Whoever stalls for longer than the server waits is cut, perhaps since the machine did; the
-  // others get everything.
+  // The server cuts a client that stalls for longer than it waits, perhaps because the machine
+  // stalled. The others get everything.
   ASSERT_TRUE(stalled.run(
       [&](const Swarm& s) {
         return s.count([](const Swarm::Client& client) { return client.done || client.ended; }) ==

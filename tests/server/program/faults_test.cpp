@@ -1,6 +1,6 @@
-// The program while system calls fail under it: every N-th of a kind, the disk full, the system's
-// clock jumping. Whatever comes is right or is told to be missing; nothing dies, and all is well
-// again once the faults stop.
+// Tests the program while its system calls fail: every N-th of a kind, a full disk, a jumping
+// system clock. Each answer is right or reports that something is missing. Nothing dies, and all
+// works again once the faults stop.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/mman.h>
@@ -142,7 +142,7 @@ class FaultsTest : public ::testing::Test {
       expectRightOrTold(get(level_), vtu_, "level");
       stream();
       const HttpResponse uploaded = put("up" + std::to_string(round % 3), sound_);
-      // 408: its body did not come, as far as the server could tell.
+      // 408: the server did not receive the body.
       EXPECT_TRUE(uploaded.status == 0 || uploaded.status == 200 || uploaded.status == 201 ||
                   uploaded.status == 408 || uploaded.status >= 500)
           << uploaded.status << uploaded.body;

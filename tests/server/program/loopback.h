@@ -1,5 +1,4 @@
-// A real server on a free port of this machine, and clients that send exactly the bytes they are
-// told to.
+// A real server on a free port of this machine, and clients that send exactly the given bytes.
 #pragma once
 
 #include <chrono>
@@ -17,8 +16,9 @@
 
 namespace qtet::test {
 
-/// How long a test waits for what must come: only one that fails does, on whatever machine; below
-/// limits::kFolderInterval, in which a folder is read in any case. And for what must not.
+/// How long a test waits for an event that must happen, and for one that must not. Only a failing
+/// test waits for the first, even on a slow machine. It is below limits::kFolderInterval, since
+/// then every folder is read anyway.
 inline constexpr auto kPatience = std::chrono::seconds(50);
 inline constexpr auto kQuiet = std::chrono::milliseconds(150);
 /// A server's time-out that a test waits for. A machine may stall for longer than this, so nothing
@@ -115,7 +115,7 @@ class StreamClient {
     [[nodiscard]] std::string text() const { return {bytes.begin(), bytes.end()}; }
   };
 
-  /// Connects and shakes hands; `httpStatus` tells of a refusal.
+  /// Connects and shakes hands; `httpStatus` reports a refusal.
   explicit StreamClient(std::uint16_t port, const std::string& subprotocol = "qtet.v1",
                         const std::string& path = "/v1/stream");
   ~StreamClient();

@@ -40,7 +40,7 @@ TEST(RequestTrace, aTraceGoesOnUnderASpanOfItsOwn) {
     EXPECT_EQ(traceOf(std::nullopt, wrong).traceparent(), "") << wrong;
 }
 
-/// What a server needs to serve a folder and to write its access log.
+/// A served folder, and an access log for its server.
 struct Logged {
   test::ServedFolder folder;
   test::TempFolder out;

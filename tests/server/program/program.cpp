@@ -96,7 +96,7 @@ std::string Program::errors() {
 }
 
 std::size_t Program::complaints(std::string_view text) const {
-  // opened anew: a place of its own in the file
+  // opened again, for a position of its own in the file
   std::ifstream in("/proc/self/fd/" + std::to_string(err_));
   std::stringstream told;
   told << in.rdbuf();

@@ -1,4 +1,5 @@
-// qtet-server as a child process, its standard output and error in pipes.
+// qtet-server as a child process, with its standard output in a pipe and its standard error in a
+// file.
 #pragma once
 
 #include <sys/types.h>
@@ -21,12 +22,12 @@ class Program {
   Program& operator=(const Program&) = delete;
 
   [[nodiscard]] pid_t id() const { return child_; }
-  /// Of standard output.
+  /// The next line of standard output.
   std::string line();
   /// The port that its first line names, 0 where there is none.
   std::uint16_t port();
-  /// All of it, up to its end. Errors are read from the beginning on, so that nobody waits for a
-  /// full pipe.
+  /// The rest of standard output, up to its end. Standard error goes to a file, so that a full pipe
+  /// blocks nobody.
   std::string output();
   std::string errors();
   /// How often `text` stands in the errors so far.

@@ -28,8 +28,9 @@ class Proxies : public ::testing::Test {
                                 .accessLog = log_->get(),
                                 .proxies = {*Networks::parse(networks), header}});
   }
-  /// Whom the log's `count` lines name, in the alphabet's order: a line is written when its
-  /// response has left, so those of two connections may change places and come after the client.
+  /// The clients that the log's `count` lines name, sorted. A line is written after its response
+  /// was sent, so the lines of two connections may change places, and may be later than the
+  /// client's read.
   std::vector<std::string> clients(std::size_t count) const {
     std::vector<std::string> out;
     (void)test::eventually([&] {

@@ -1,4 +1,4 @@
-// What most server tests need: a folder with two logs and a viewer, opened.
+// A folder with two logs and a viewer, opened, as most server tests need it.
 #pragma once
 
 #include <stdexcept>

@@ -14,8 +14,7 @@ struct PushOutcome {
   std::string text;  ///< standard output and error
 };
 
-/// Pushes `file` with the shell's words behind it. `hear` is called with what the program has said
-/// so far.
+/// Pushes `file` with the shell's words behind it. `hear` receives the program's output so far.
 [[nodiscard]] PushOutcome runPush(const std::filesystem::path& file, const std::string& words,
                                   const std::string& token = kPushToken,
                                   const std::function<void(const std::string&)>& hear = {});

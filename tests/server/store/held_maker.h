@@ -12,7 +12,7 @@
 
 namespace qtet::test {
 
-/// Makes levels when it is told to, and hears of being stopped.
+/// Makes levels on command, and notices when it is stopped.
 class HeldMaker {
  public:
   Result<Bytes> operator()(const LevelRequest& request, const std::stop_token& stop) {

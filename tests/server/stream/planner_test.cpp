@@ -112,8 +112,8 @@ TEST(Planner, aRunStaysWithinThePayloadOrIsOneBlock) {
   }
 }
 
-/// Every state that a client of a small log can be in: what it has and what it gets make the whole,
-/// each block once, and no field runs ahead.
+/// Tries every state of a client of a small log. The blocks that it has and those that it gets make
+/// the whole log, each block once, and no field runs ahead.
 void expectExactlyWhatIsMissing(const Planned& log, const ClientBlocks& before,
                                 std::uint32_t payload, const View& view) {
   ClientBlocks blocks = before;
@@ -217,7 +217,7 @@ TEST(Planner, errorPerByteDecidesWithoutAViewRequest) {
   EXPECT_GT(seconds, 0) << "the file's order would do as well";
 }
 
-/// Gives a chunk so many records, in so many bytes with all its fields.
+/// Gives a chunk `records` records, in `bytes` bytes with all its fields.
 void setSize(Planned& log, std::uint32_t chunk, std::uint32_t records, std::uint32_t bytes) {
   ChunkEntry& entry = log.index.chunks[chunk];
   entry.records = records;

@@ -19,7 +19,7 @@ class StreamInputTest : public testing::Test {
            payload;
   }
   void take(const std::string& bytes) { input_.take(bytes, now_); }
-  /// What the protocol says next; "" where it says nothing.
+  /// The protocol's next message; "" if there is none.
   std::string said() {
     const std::optional<Outgoing> out = protocol_.next();
     const auto* text = out ? std::get_if<std::string>(&*out) : nullptr;

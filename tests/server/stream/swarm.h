@@ -28,9 +28,9 @@ class Swarm {
     }
   };
 
-  /// Connects so many; each opens `mesh`, a log of layout stream without fields, whose bytes are
-  /// `log`, with credit for all of it. A receive buffer of few KB (`receiveBytes`) lets the
-  /// server's side fill up.
+  /// Connects `count` clients. Each opens `mesh`, a log of layout stream without fields, whose
+  /// bytes are `log`, with credit for all of it. A receive buffer of few KB (`receiveBytes`) lets
+  /// the server's side fill up.
   Swarm(std::uint16_t port, std::string mesh, const std::string& log, std::size_t count,
         int receiveBytes = 0);
   ~Swarm();

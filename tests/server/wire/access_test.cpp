@@ -117,8 +117,7 @@ std::int64_t systemSeconds() {
       .count();
 }
 
-/// What a server that has `key` writes into a ticket which ends at that second of the system's
-/// clock.
+/// The ticket of a server with `key`, which ends at that second of the system clock.
 std::string ticketUntil(std::int64_t end, const std::string& key) {
   std::array<char, 17> hex{};
   std::snprintf(hex.data(), hex.size(), "%016llx", static_cast<unsigned long long>(end));
@@ -156,7 +155,8 @@ TEST(Tickets, ofAnotherServerEndWithinThirtySeconds) {
   }
 }
 
-// The steady clock alone goes on here, so that the ticket itself is still good when its mark goes.
+// Only the steady clock advances here, so the ticket itself is still valid when its mark is
+// removed.
 TEST(Tickets, ofAnotherServerAreRememberedAsUsedAsLongAsOneMayLast) {
   const std::string key(32, 'k');
   Access access(*Tokens::parse("read * " + kReader), key);

@@ -1,5 +1,5 @@
-// How the kernel is told to send: without pacing to clients of this machine, as the system does it
-// to others. Looks at the server's sockets, which are this process's.
+// Tests how the kernel sends: without pacing to clients of this machine, and with the system's
+// choice to others. Looks at the server's sockets, which are this process's.
 #include <gtest/gtest.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>

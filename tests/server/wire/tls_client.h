@@ -1,4 +1,4 @@
-// A client over TLS that says what it is told, and certificates to serve it with.
+// A TLS client that sends the given bytes, and certificates to serve it with.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ namespace qtet::test {
     const std::filesystem::path& folder, const std::string& name,
     const std::string& algorithm = "ec -pkeyopt ec_paramgen_curve:prime256v1");
 
-/// Signs NAME.crt of `folder` anew with NAME.key, for a day that is over. False: it did not go.
+/// Signs NAME.crt of `folder` again with NAME.key, for a day in the past. False: it did not go.
 [[nodiscard]] bool expireCertificate(const std::filesystem::path& folder, const std::string& name);
 
 /// The first bytes of a handshake over TLS 1.3, whole.
@@ -45,13 +45,12 @@ class TlsClient {
   bool send(std::string_view bytes);
   /// The answer to what was sent; status 0: it did not come, or not whole.
   HttpResponse receive();
-  /// So many bytes; fewer where the connection ended.
+  /// Reads `bytes` bytes; fewer if the connection ended.
   std::string read(std::size_t bytes);
   /// The body of the answer to a GET; "" where it is no 200 or 206.
   std::string get(std::string_view target, std::string_view headers = "");
-  /// Opens `mesh` on `/v1/stream` and reads the payloads of its frames, one behind the other, until
-  /// the server says that this was all; less where the connection ended, and nothing can be said
-  /// behind it.
+  /// Opens `mesh` on `/v1/stream` and joins the payloads of its frames until the server says that
+  /// the stream is complete. Returns fewer if the connection ended. Nothing can be sent after this.
   std::string stream(const std::string& mesh);
   /// Changes the key so often; sent with the next bytes. REQUIRES: TLS 1.3.
   void updateKey(int times);

@@ -77,7 +77,7 @@ TEST(TrustedProxies, forwardedIsReadAsRfc7239WritesIt) {
     EXPECT_EQ(of(nobody), "") << nobody;
 }
 
-/// A head that tells `address`, with `more` bytes behind the addresses.
+/// A head that names `address`, with `more` bytes behind the addresses.
 std::vector<std::uint8_t> headFor(const std::string& address, std::size_t more = 0) {
   std::vector<std::uint8_t> out = {0x0D, 0x0A, 0x0D, 0x0A, 0x00, 0x0D, 0x0A,
                                    0x51, 0x55, 0x49, 0x54, 0x0A, 0x21};

@@ -37,7 +37,7 @@ struct Heard {
   bool operator==(const Heard&) const = default;
 };
 
-/// What a reader makes of the bytes when they come in pieces.
+/// Feeds a reader the bytes in pieces and collects its events.
 Heard hear(std::string_view bytes, std::size_t step = 1u << 20) {
   Heard out;
   WebSocketReader reader;
@@ -87,7 +87,7 @@ TEST(WebSocketReader, aFrameThatBreaksTheRulesClosesWith1002) {
       << "a negative length";
 }
 
-/// RFC 6455, 5.2: a length is told in as few bytes as it takes.
+/// RFC 6455, 5.2: a length is written in as few bytes as possible.
 TEST(WebSocketReader, aLengthInMoreBytesThanItNeedsClosesWith1002) {
   const auto framed = [](std::uint64_t size, unsigned lengthBytes) {
     std::string out = "\x82";

@@ -1,5 +1,5 @@
-// What fails, how often, and how: shared, by a mapped file, between a test and the program that it
-// has loaded libqtet_faults.so into.
+// States which calls fail, how often, and how. A mapped file shares the plan between a test and the
+// program into which it has loaded libqtet_faults.so.
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
-// libqtet_faults.so, for LD_PRELOAD: system calls of a program that fail as a FaultPlan says. What
-// is not a socket or a regular file (timers, events, pipes) is left alone, and so is everything
-// where there is no plan.
+// libqtet_faults.so, for LD_PRELOAD: lets a program's system calls fail as a FaultPlan says. It
+// affects only sockets and regular files, not timers, events and pipes. Without a plan it does
+// nothing.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <stdarg.h>
