@@ -3,27 +3,20 @@
 # the packages of .ci/packages.txt are installed there. Needs root, and mmdebstrap or debootstrap.
 #   fresh.sh [FOLDER]      the log is FOLDER/fresh.log; FOLDER is build/fresh unless given
 set -euo pipefail
+# The mounts are this process's own and go with it.
+[[ -n ${QTET_OWN_MOUNTS:-} ]] ||
+  QTET_OWN_MOUNTS=1 exec unshare --mount --propagation private "$0" "$@"
 source=$(realpath "$(dirname "${BASH_SOURCE[0]}")/..")
 work=${1:-$source/build/fresh}
 mkdir -p "$work"
 work=$(realpath "$work")
 "$source/.ci/debian_root.sh" "$work"
 root=$work/root
-mounted=()
-cleanUp() {
-  for ((i = ${#mounted[@]} - 1; i >= 0; --i)); do umount -l "${mounted[$i]}" || true; done
-}
-trap cleanUp EXIT
-mountIn() {
-  local place=$root/${!#}
-  mkdir -p "$place"
-  mount "${@:1:$#-1}" "$place"
-  mounted+=("$place")
-}
-mountIn -t proc proc proc
-mountIn --rbind /sys sys
-mountIn --bind /dev dev
-mountIn -t tmpfs -o mode=1777 tmpfs dev/shm
+mount -t proc proc "$root/proc"
+mount --rbind /sys "$root/sys"
+mount --rbind /dev "$root/dev"
+mkdir -p "$root/dev/shm"
+mount -t tmpfs -o mode=1777 tmpfs "$root/dev/shm"
 git clone -q --no-local --no-hardlinks "$source" "$root/qtet"
 inside() {
   chroot "$root" env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LC_ALL=C.UTF-8 \

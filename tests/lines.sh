@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# No line of code or prose is over 100 columns, but for those that cannot be broken: a table's row,
-# a link, a word without blanks, an example of a protocol's message.
+# No line of code or prose is over 100 columns. Exceptions are lines that cannot be broken: a
+# table's row, a link, a word without blanks, an example of a protocol's message.
 #   lines.sh [ROOT]   0 = none; 1 = each is named
 set -euo pipefail
 cd "${1:-$(dirname "${BASH_SOURCE[0]}")/..}"

@@ -47,6 +47,9 @@ if(QTET_PYTHON)
   # Network namespaces, and time.
   qtet_system_test(slow_line ROOM server CHANCE
     COMMAND ${QTET_PYTHON} ${here}/server/stream/slow_line_test.py ${bin} ${out}/slow_line)
+  # Plain words in comments and documents.
+  qtet_system_test(prose ROOM house COMMAND ${QTET_PYTHON} ${here}/prose/check.py
+    ${PROJECT_SOURCE_DIR})
   # The golden files, judged by a decoder that was written from the documents alone.
   qtet_system_test(second_decoder ROOM codec
     COMMAND ${QTET_PYTHON} ${here}/golden/second_decoder/judge.py)

@@ -105,9 +105,9 @@ TetMesh gridOf(int n) {
   });
 }
 
-/// 625 cells, where what is made of them does not matter.
+/// A mesh of 135 cells. `--measure all` takes a minute for 625 under a sanitizer.
 TetMesh smallBox() {
-  TetMesh grid = gridOf(5);
+  TetMesh grid = gridOf(3);
   grid.fields.front().name = "Scalar";
   return testing::boxWithFields(std::move(grid));
 }
@@ -182,7 +182,7 @@ TEST(QtetSimplify, logsAreTheToolsByteForByte) {
 }
 
 TEST(QtetSimplify, soAreThoseOfALargeMeshAndItsProgressIsTold) {
-  const ToolsLog tool = toolsLog("grid", gridOf(12), "--measure none");
+  const ToolsLog tool = toolsLog("grid", gridOf(20), "--measure none");
   const Arrays arrays(tool.mesh);
   struct Told {
     std::thread::id thread = std::this_thread::get_id();
@@ -360,7 +360,7 @@ TEST(QtetSimplify, noExceptionAndNoCrashWhateverIsGiven) {
   refused(QTET_BAD_INPUT, "null", [](Arrays& a, O&) { a.input.fields = nullptr; });
   refused(QTET_BAD_INPUT, "no points", [](Arrays& a, O&) { a.input.pointCount = 0; });
   refused(QTET_BAD_INPUT, "no tetrahedra", [](Arrays& a, O&) { a.input.tetrahedronCount = 0; });
-  refused(QTET_BAD_INPUT, "outside the 200", [](Arrays& a, O&) { a.input.pointCount = 200; });
+  refused(QTET_BAD_INPUT, "outside the 60", [](Arrays& a, O&) { a.input.pointCount = 60; });
   refused(QTET_LIMIT_EXCEEDED, "2^29",
           [](Arrays& a, O&) { a.input.pointCount = std::uint64_t{1} << 60; });
   refused(QTET_LIMIT_EXCEEDED, "2^29",
