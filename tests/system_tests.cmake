@@ -2,9 +2,9 @@
 # have the label `system` beside their room's. A test that needs what is missing here ends with 77
 # and says "skipped".
 
-# ROOM, COMMAND ...; SERIAL: alone on the machine; SECONDS: the longest it may take.
+# ROOM, COMMAND ...; SECONDS: the longest it may take; CHANCE: may be tried a second time.
 function(qtet_system_test name)
-  cmake_parse_arguments(PARSE_ARGV 1 test "CHANCE" "ROOM;SECONDS;COST" "COMMAND")
+  cmake_parse_arguments(PARSE_ARGV 1 test "CHANCE" "ROOM;SECONDS" "COMMAND")
   if(NOT test_SECONDS)
     set(test_SECONDS ${hangs})
   endif()
@@ -15,9 +15,6 @@ function(qtet_system_test name)
   add_test(NAME ${name} COMMAND ${test_COMMAND})
   set_tests_properties(${name} PROPERTIES LABELS "${labels}" TIMEOUT ${test_SECONDS}
     SKIP_RETURN_CODE 77)
-  if(test_COST)
-    set_tests_properties(${name} PROPERTIES COST ${test_COST})
-  endif()
 endfunction()
 
 set(here ${CMAKE_CURRENT_SOURCE_DIR})
