@@ -150,7 +150,7 @@ TEST(QtetSimplify, logsAreTheToolsByteForByte) {
                 }},
            Case{"--target-ratio 0.2 --boundary-weight 7 --shape-weight 0.1 "
                 "--envelope-tolerance 0.02 --position-bits 17 --field-bits 11 "
-                "--placement optimal --measure all --preserve-regions Label",
+                "--placement optimal --preserve-regions Label",
                 [](qtet_simplify_options& o) {
                   o.targetRatio = 0.2;
                   o.boundaryWeight = 7;
@@ -159,8 +159,13 @@ TEST(QtetSimplify, logsAreTheToolsByteForByte) {
                   o.positionBits = 17;
                   o.fieldBits = 11;
                   o.placement = QTET_PLACEMENT_OPTIMAL;
-                  o.measure = QTET_MEASURE_ALL;
                   o.regions = "Label";
+                }},
+           // Few levels: each takes 600,000 samples.
+           Case{"--target-ratio 0.9 --measure all",
+                [](qtet_simplify_options& o) {
+                  o.targetRatio = 0.9;
+                  o.measure = QTET_MEASURE_ALL;
                 }},
            Case{"--layout regions --cells-per-packet 300 --field-weight Swirl=3 "
                 "--max-boundary-error 0.05 --max-field-error Scalar=0.05",

@@ -48,7 +48,7 @@ TEST(InflateFile, isAFileUpToTheLimitAndNoFurther) {
 
 TEST(InflateFile, everyTruncationIsAnErrorAndDamageIsRefused) {
   std::string text;
-  for (int i = 0; i < 300; ++i) text += std::to_string(i * i);
+  for (int i = 0; i < 60; ++i) text += std::to_string(i * i);
   const fs::path path = gzipOf(text);
   std::ifstream file(path, std::ios::binary);
   const std::string whole{std::istreambuf_iterator<char>(file), {}};
