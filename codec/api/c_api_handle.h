@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "codec/api/qtet.h"
-#include "codec/log/log_file.h"
-#include "codec/log/refiner.h"
+#include "codec/refine/log_file.h"
+#include "codec/refine/refiner.h"
 #include "proto/manifest.h"
 
 namespace qtet {

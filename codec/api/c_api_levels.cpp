@@ -4,7 +4,7 @@
 
 #include "codec/api/c_api_handle.h"
 #include "codec/log/level_choice.h"
-#include "codec/log/refiner.h"
+#include "codec/refine/refiner.h"
 
 using qtet::Result;
 using qtet::withLog;
@@ -26,7 +26,7 @@ constexpr std::uint32_t versionNumber(std::string_view text) {
   return parts[0] * 10000 + parts[1] * 100 + parts[2];
 }
 static_assert(versionNumber(kVersionText) == QTET_VERSION_NUMBER,
-              "codec/api/qtet.h and the project tell different versions");
+              "codec/api/qtet.h and the project have different versions");
 
 qtet_status answer(qtet_log* log, const Result<std::uint32_t>& level, std::uint32_t* out) {
   if (!level) return log->refuse(level.error());
@@ -79,7 +79,7 @@ qtet_status qtet_log_field_error(qtet_log* log, uint32_t level, uint32_t field, 
     const auto& error = log->manifest.levels[level].error;
     if (!error)
       return log->refuse(QTET_NOT_FOUND,
-                         "the log does not tell the error of level " + std::to_string(level));
+                         "the log does not have the error of level " + std::to_string(level));
     *rms = error->fields[field].rms;
     *max = error->fields[field].max;
     return QTET_OK;

@@ -7,7 +7,7 @@
 #include "codec/log/log_index.h"
 #include "codec/log/log_levels.h"
 #include "codec/log/log_manifest.h"
-#include "codec/log/refiner.h"
+#include "codec/refine/refiner.h"
 #include "proto/limits.h"
 
 using qtet::Bytes;

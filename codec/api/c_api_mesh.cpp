@@ -7,7 +7,7 @@
 
 #include "codec/api/c_api_handle.h"
 #include "codec/log/log_index.h"
-#include "codec/log/refiner.h"
+#include "codec/refine/refiner.h"
 
 using qtet::FieldShape;
 using qtet::kMissing;

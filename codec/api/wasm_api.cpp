@@ -10,7 +10,7 @@
 #include "codec/coding/value_digits.h"
 #include "codec/log/codec_id.h"
 #include "codec/log/log_index.h"
-#include "codec/log/refiner.h"
+#include "codec/refine/refiner.h"
 #include "proto/crc32c.h"
 
 using qtet::ByteView;

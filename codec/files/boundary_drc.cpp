@@ -159,9 +159,9 @@ Result<Bytes> boundaryDrc(const LatticeMesh& mesh, const DrcOptions& options) {
 }
 
 bool floatsHold(const Lattice& lattice) {
-  constexpr double kMostSteps = 1 << 19;
+  constexpr double kMaxSteps = 1 << 19;
   return std::ranges::all_of(lattice.origin, [&](double x) {
-    return std::abs(x / lattice.step) + std::ldexp(1.0, lattice.bits) <= kMostSteps;
+    return std::abs(x / lattice.step) + std::ldexp(1.0, lattice.bits) <= kMaxSteps;
   });
 }
 

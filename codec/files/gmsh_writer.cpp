@@ -49,7 +49,7 @@ Result<Bytes> gmshBytes(const FileMesh& mesh) {
         return fail(ErrorCode::kBadInput,
                     "field '" + field.name + "' has " + std::to_string(field.components) +
                         " components, a .msh file at most " + std::to_string(kMaxComponents) +
-                        "; leave it out with --fields, or write .vtu");
+                        "; leave it out with `fields`, or write .vtu");
   Bytes out;
   appendText(out, "$MeshFormat\n2.2 1 8\n");
   appendNumber(out, std::int32_t{1});  // tells the order of bytes

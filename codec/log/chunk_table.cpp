@@ -67,7 +67,7 @@ void writeNode(ByteWriter& w, const ChunkEntry& e) {
 }  // namespace
 
 void readChunkRows(ByteReader& r, LogIndex& index, std::uint32_t chunks, std::uint64_t offset) {
-  assert(r.failed() || chunks * leastRowBytes(index.parts()) <= r.remaining());
+  assert(r.failed() || chunks * minRowBytes(index.parts()) <= r.remaining());
   index.chunks.reserve(chunks);
   while (index.chunks.size() < chunks && !r.failed()) {
     ChunkEntry e;

@@ -80,7 +80,7 @@ Status ChunkWriter::close(std::uint32_t lastLevel, std::uint32_t endSlot, const 
 Status ChunkWriter::addBlock(const Bytes& block) {
   if (block.size() > kMaxBlockBytes)
     return fail(ErrorCode::kLimitExceeded,
-                "a block above 256 MiB; let the simplifier go further (--target-ratio)");
+                "a block above 256 MiB; let the simplifier go further (`targetRatio`)");
   open_.row.blocks.push_back({0, static_cast<std::uint32_t>(block.size()), crc32c(block)});
   body_.insert(body_.end(), block.begin(), block.end());
   return {};

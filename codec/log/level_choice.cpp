@@ -16,8 +16,8 @@ Result<std::uint32_t> coarsestWithin(const Manifest& manifest, double bound,
   for (const ManifestLevel& level : manifest.levels) {
     if (!level.error)
       return fail(ErrorCode::kNotFound,
-                  "the log does not tell the error of level " + std::to_string(level.level) +
-                      "; choose by size, or make it again with qtet simplify --measure levels");
+                  "the log does not have the error of level " + std::to_string(level.level) +
+                      "; choose by size, or simplify again with `measure` levels");
     if (errorOf(*level.error) <= bound) return level.level;
   }
   return manifest.levels.back().level;

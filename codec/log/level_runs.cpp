@@ -9,7 +9,7 @@ namespace {
 // A picture sharpens when a chunk is whole, so that each is a share of what a viewer has already
 // waited for, up to LogWriterOptions::chunkBytes. Smaller chunks cost more than they gain. A row of
 // the table and Draco's fixed bytes are 130 bytes a chunk with one field, 3 % of 4 KB.
-constexpr std::uint64_t kLeastChunkBytes = 4 << 10;
+constexpr std::uint64_t kMinChunkBytes = 4 << 10;
 constexpr std::uint64_t kGrowth = 3;
 
 class LevelRuns {
@@ -46,7 +46,7 @@ class LevelRuns {
 
  private:
   [[nodiscard]] std::uint64_t target() const {
-    return std::min(chunkBytes_, std::max(kLeastChunkBytes, chunks_.body().size() / kGrowth));
+    return std::min(chunkBytes_, std::max(kMinChunkBytes, chunks_.body().size() / kGrowth));
   }
 
   // Whether the next chunk should begin with the next level. It should if another level, like the

@@ -26,10 +26,10 @@ struct Header {
   Layout layout = Layout::kStream;
   std::uint8_t positionBits = 0;
 
-  [[nodiscard]] std::uint64_t leastTableBytes() const {
+  [[nodiscard]] std::uint64_t minTableBytes() const {
     return std::uint64_t{fields} * 2 +
-           std::uint64_t{chunks} * leastRowBytes(kFirstFieldPart + fields) +
-           std::uint64_t{closing} * kLeastClosingRowBytes;
+           std::uint64_t{chunks} * minRowBytes(kFirstFieldPart + fields) +
+           std::uint64_t{closing} * kMinClosingRowBytes;
   }
   [[nodiscard]] std::uint64_t headBytes() const {
     return std::uint64_t{LogIndex::kHeaderBytes} + manifestBytes + tableBytes;
@@ -92,7 +92,7 @@ Result<Header> readHeader(ByteView bytes) {
   if (h.fields > kMaxFields) return fail(ErrorCode::kLimitExceeded, "more than 256 fields", 44);
   if (h.closing > kMaxClosingBlocks)
     return fail(ErrorCode::kLimitExceeded, "more than 1,024 closing blocks", 52);
-  if (h.leastTableBytes() > h.tableBytes)
+  if (h.minTableBytes() > h.tableBytes)
     return fail(ErrorCode::kBadValue,
                 "the chunk table is too short for the counts of chunks, fields and closing blocks; "
                 "fetch the file again",

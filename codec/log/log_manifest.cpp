@@ -120,7 +120,7 @@ Status checkErrors(const Manifest& manifest) {
     };
     if (outside(kMaxVolumeFigure / kVolumeFigure)(level.error->volumeKept) ||
         std::ranges::any_of(pairsOf(*level.error), outside(errorOfFigure(kMaxErrorFigure))))
-      return bad("holds what is no number, below 0 or beyond what a log can tell; measure again");
+      return bad("holds what is no number, below 0 or beyond what a log can hold; measure again");
   }
   return {};
 }
@@ -217,7 +217,7 @@ Result<Bytes> manifestBlock(const Manifest& manifest) {
       encodeLevelColumns(columnsOf(manifest), static_cast<std::uint32_t>(manifest.levels.size())));
   if (w.bytes().size() > kMaxManifestBytes)
     return fail(ErrorCode::kLimitExceeded,
-                "the manifest is above 8 MiB; choose some fields with --fields");
+                "the manifest is above 8 MiB; choose some fields with `fields`");
   return w.take();
 }
 

@@ -15,7 +15,7 @@ RecordWriter::RecordWriter(const FusionHistory& history, CodecId valueCodec, std
       stop_(std::move(stop)),
       chunks_(history.fields, valueCodec),
       mirror_(history),
-      truths_(history, mirror_),
+      describer_(history, mirror_),
       fields_(history, mirror_),
       coder_(chunks_.structure(), models_, mirror_.mesh(), link_, chunks_.positions()),
       added_(history.levels + 1u) {}
@@ -66,12 +66,12 @@ Status RecordWriter::closeChunk(std::uint32_t lastLevel, std::uint32_t endSlot) 
   if (!meter_.isExceeded()) return {};
   return fail(ErrorCode::kLimitExceeded,
               "too many levels of too few fusions, which readers refuse as too much work; simplify "
-              "less (--target-ratio)");
+              "less (`targetRatio`)");
 }
 
 const Fusion* RecordWriter::flag(VertexId v) {
   assert(mesh().maysplit(v));
-  const Fusion* fusion = truths_.fusionAt(v);
+  const Fusion* fusion = describer_.fusionAt(v);
   coder_.splits(v, mesh().level(), fusion != nullptr);
   meter_.spend(1 + (fusion != nullptr ? mesh().star(v).size() : 0));
   return fusion;
@@ -87,13 +87,13 @@ Status RecordWriter::record(VertexId v, Fusion fusion) {
   if (mesh().star(v).size() > kMaxLinkTriangles) return bad("its star has too many cells");
   if (!mesh().enter(v, link_)) return bad("its link is not a closed surface");
   RecordTruth truth;
-  if (!truths_.describe(v, link_, fusion, truth))
+  if (!describer_.describe(v, link_, fusion, truth))
     return bad("the history's cells are not those of its star");
   Split split;
   if (!coder_.code(v, truth, split)) return bad("its cells cannot be described by labels");
   const Slots before = mesh().next();
   fields_.beforeSplit(v, link_, split);
-  mirror_.apply(v, link_, split, fusion, truths_.restored(split));
+  mirror_.apply(v, link_, split, fusion, describer_.restored(split));
   fields_.afterSplit(fusion, before.tetrahedra, chunks_.fields());
   chunks_.endRecord();
   const Slots& after = mesh().next();

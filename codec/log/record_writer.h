@@ -13,7 +13,7 @@
 #include "codec/record/fusion_history.h"
 #include "codec/record/mirror_mesh.h"
 #include "codec/record/record_coder.h"
-#include "codec/record/split_truths.h"
+#include "codec/record/split_describer.h"
 
 namespace qtet {
 
@@ -58,7 +58,7 @@ class RecordWriter {
   std::stop_token stop_;
   ChunkWriter chunks_;
   MirrorMesh mirror_;
-  SplitTruths truths_;
+  SplitDescriber describer_;
   FieldWriter fields_;
   Link link_;
   RecordModels models_;

@@ -25,7 +25,7 @@ Vector between(const LatticePoint& from, const LatticePoint& to) {
 }
 
 // A star that ends after less than this share of the step says nothing of it.
-constexpr double kLeastReach = 0.25;
+constexpr double kMinReach = 0.25;
 
 // A fused vertex lies near its edge. A step further along than this is cut to it, which keeps every
 // prediction within 64 bits.
@@ -93,7 +93,7 @@ void PointAncestry::addSlope(const Link& link, const std::array<double, 3>& step
   }
   Slope slope;
   const double reach = exits[1].reach - exits[0].reach;
-  if (reach >= kLeastReach)
+  if (reach >= kMinReach)
     for (std::size_t side = 0; side < 2; ++side)
       for (std::size_t i = 0; i < 3 && exits[side].reach != 0; ++i) {
         const double weight = (side == 0 ? -1 : 1) * exits[side].share[i] / reach;

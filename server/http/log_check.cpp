@@ -5,7 +5,7 @@
 #include <string>
 
 #include "codec/log/decoding_memory.h"
-#include "codec/log/verify_log.h"
+#include "codec/refine/verify_log.h"
 
 namespace qtet {
 namespace {

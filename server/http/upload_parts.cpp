@@ -82,7 +82,7 @@ std::optional<Reply> UploadParts::begin(const UploadRequest& request, const fs::
   std::vector<Part> own;
   std::ranges::copy_if(others, std::back_inserter(own), isOwn);
   const auto tooMuch = [&] {
-    return own.size() >= quota_.mostOfToken || bytesOf(own) + toCome > quota_.bytesOfToken ||
+    return own.size() >= quota_.maxOfToken || bytesOf(own) + toCome > quota_.bytesOfToken ||
            others.size() >= quota_.most || bytesOf(others) + toCome > quota_.bytes ||
            quota_.freeBytes(folder_) < promised;
   };

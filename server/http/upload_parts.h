@@ -21,7 +21,7 @@ namespace qtet {
 
 /// Bounds on parts that are kept, one under way among them.
 struct PartQuota {
-  std::size_t most = limits::kMaxParts, mostOfToken = limits::kMaxPartsOfToken;
+  std::size_t most = limits::kMaxParts, maxOfToken = limits::kMaxPartsOfToken;
   std::uintmax_t bytes = limits::kMaxPartBytes, bytesOfToken = limits::kMaxPartBytesOfToken;
   /// No upload begins if the disk has less free space than this.
   std::uintmax_t reserve = limits::kDiskReserve;

@@ -205,10 +205,10 @@ std::optional<Reply> Uploads::precondition(const UploadRequest& request) const {
 
 std::expected<std::unique_ptr<Upload>, Reply> Uploads::begin(const UploadRequest& request) {
   const auto refuse = [](Reply reply) { return std::unexpected(std::move(reply)); };
-  if (request.totalBytes > options_.mostBytes)
+  if (request.totalBytes > options_.maxBytes)
     return refuse(
         problem(413, "content-too-large",
-                "a log has at most " + std::to_string(options_.mostBytes) + " bytes here"));
+                "a log has at most " + std::to_string(options_.maxBytes) + " bytes here"));
   if (std::optional<Reply> refusal = precondition(request)) return refuse(std::move(*refusal));
 
   const std::scoped_lock lock(mutex_);

@@ -66,7 +66,7 @@ class Upload {
 };
 
 struct UploadOptions {
-  std::uintmax_t mostBytes = limits::kMaxUploadBytes;  ///< of a log
+  std::uintmax_t maxBytes = limits::kMaxUploadBytes;  ///< of a log
   CheckLimits checkLimits{};
   LogCheck check = checkLog;
   PartQuota parts{};  ///< of those that are kept

@@ -21,70 +21,80 @@ std::size_t defaultThreads() {
   return std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, kMaxThreads);
 }
 
-/// Options allowed in all three places: command line, environment and configuration file.
-po::options_description settings() {
-  po::options_description out(
-      "Settings, also in the environment (--max-connections as QTET_SERVER_MAX_CONNECTIONS) and\n"
-      "in the file of --config");
+/// Options allowed in all three places: command line, environment and configuration file. Those of
+/// the first group are in --help, the others in --help-all.
+std::vector<po::options_description> settingGroups() {
+  std::vector<po::options_description> groups;
+  const auto group = [&](const char* title) { return groups.emplace_back(title).add_options(); };
   const auto text = [] { return po::value<std::string>(); };
-  out.add_options()("folder", text(),
-                    "folder that holds the .qtet files (may stand without its name)")(
+  group(
+      "Settings, also in the environment (--access-log as QTET_SERVER_ACCESS_LOG) and in the file\n"
+      "of --config")("folder", text(),
+                     "folder that holds the .qtet files (may be given without its name)")(
       "host", text(), "address to listen on; 0.0.0.0 = every network (default: 127.0.0.1)")(
       "port", text(), "TCP port; 0 = any free one (default: 8080)")(
+      "tls-certificate", text(),
+      "PEM file, its own certificate first: HTTPS instead of HTTP (default: none)")(
+      "tls-key", text(), "PEM file of its key")(
+      "tokens", text(),
+      "file of bearer tokens that may read, PUT and DELETE meshes (default: everybody may read, "
+      "nobody change)")("cache", text(),
+                        "folder for finished levels (default: $CACHE_DIRECTORY, else a temporary "
+                        "one)")("access-log", text(),
+                                "file for a line of JSON a request; - = standard output")(
+      "trust-proxy", text(),
+      "addresses and blocks between commas, like 10.0.0.0/8, of proxies that may say for whom "
+      "they ask; the bounds of an address and the access log heed it (default: none)");
+  group("Running")("threads", text(), "threads for connections (default: one a core)")(
+      "watch", text(), "on, off: whether logs that come, change and go are noticed (default: on)")(
+      "cache-bytes", text(), "how much the cache may hold (default: 2 GiB)")(
+      "viewer", text(),
+      "folder of the built viewer (default: ../share/qtet/viewer beside this program)")(
       "admin", text(),
       "HOST:PORT where alone /livez, /readyz, /metrics and /version are answered (default: beside "
       "everything else)")(
-      "viewer", text(),
-      "folder of the built viewer (default: ../share/qtet/viewer beside this program)")(
-      "threads", text(), "threads for connections (default: one a core)")(
-      "watch", text(), "on, off: whether logs that come, change and go are noticed (default: on)")(
-      "cache", text(),
-      "folder for finished levels (default: $CACHE_DIRECTORY, else a temporary one)")(
-      "cache-bytes", text(), "how much it may hold (default: 2 GiB)")(
-      "access-log", text(), "file for a line of JSON a request; - = standard output")(
-      "tokens", text(),
-      "file of bearer tokens that may read, PUT and DELETE meshes (default: everybody may read, "
-      "nobody change)")(
-      "tls-certificate", text(),
-      "PEM file, its own certificate first: HTTPS instead of HTTP (default: none)")(
-      "tls-key", text(), "PEM file of its key")("max-upload-bytes", text(),
-                                                "the largest log that is taken (default: 16 GiB)")(
-      "max-check-bytes", text(),
-      "memory that checking an upload may take; more is 413 (default: 4 GiB)")(
-      "max-check-seconds", text(), "time that it may take (default: 600)")(
-      "disk-reserve-bytes", text(),
-      "of the disk below which no upload is begun and no level kept (default: 256 MiB)")(
       "drain-seconds", text(),
       "how long /readyz is 503, and all is served, between SIGTERM and the end (default: 0)")(
       "ticket-key", text(),
       "file of the key that signs tickets, the same for servers of one folder (default: "
-      ".qtet-tickets.key in the folder, which is made)")("max-connections", text(),
-                                                         "at a time, in all (default: 4000)")(
+      ".qtet-tickets.key in the folder, which is made)");
+  group("Uploads")("max-upload-bytes", text(), "the largest log that is taken (default: 16 GiB)")(
+      "max-check-bytes", text(),
+      "memory that checking an upload may take; more is 413 (default: 4 GiB)")(
+      "max-check-seconds", text(), "time that it may take (default: 600)")(
+      "disk-reserve-bytes", text(),
+      "of the disk below which no upload is begun and no level kept (default: 256 MiB)");
+  group("Limits")("max-connections", text(), "at a time, in all (default: 4000)")(
       "max-connections-per-address", text(),
       "at a time; 0 = no bound, as behind a proxy (default: 256)")(
       "max-levels-per-address", text(),
       "made or waiting at a time; 0 = no bound, as behind a proxy (default: 6)")(
       "max-requests-per-second", text(),
-      "of one address; 0 = no bound, as behind a proxy (default: 2000)")(
+      "of one address; 0 = no bound, as behind a proxy (default: 2000)");
+  group("Other pages and proxies")(
       "allow-origins", text(),
       "origins between commas, like https://viewer.example, whose pages may open streams, ask "
       "for tickets and change meshes (default: any)")(
       "frame-ancestors", text(),
       "pages that may show the viewer in a frame, as CSP writes them: * , 'none', 'self' "
       "https://a.example (default: *)")(
-      "trust-proxy", text(),
-      "addresses and blocks between commas, like 10.0.0.0/8, of proxies that may say for whom "
-      "they ask; the bounds of an address and the access log heed it (default: none)")(
       "proxy-header", text(),
-      "how they say it: x-forwarded-for, forwarded (RFC 7239), or proxy-protocol (version 2) "
-      "(default: x-forwarded-for)");
+      "how the proxies of --trust-proxy say it: x-forwarded-for, forwarded (RFC 7239), or "
+      "proxy-protocol (version 2) (default: x-forwarded-for)");
+  return groups;
+}
+
+po::options_description settings() {
+  po::options_description out;
+  for (const po::options_description& group : settingGroups()) out.add(group);
   return out;
 }
 
 po::options_description commands() {
   po::options_description out("Commands");
   out.add_options()("config", po::value<std::string>(), "file of settings, lines NAME = VALUE")(
-      "check-config", "print every setting as it holds, and end")("help", "this text")(
+      "check-config", "print every setting as it holds, and end")(
+      "help", "this text, with the settings that most need")("help-all", "every setting")(
       "version", "the version");
   return out;
 }
@@ -197,8 +207,9 @@ Result<CommandLine> toCommandLine(const po::variables_map& values) {
   CommandLine out;
   if (values.contains("check-config")) out.action = CommandLine::Action::kCheckConfig;
   if (values.contains("help")) out.action = CommandLine::Action::kHelp;
+  if (values.contains("help-all")) out.action = CommandLine::Action::kHelpAll;
   if (values.contains("version")) out.action = CommandLine::Action::kVersion;
-  if (out.action == CommandLine::Action::kHelp || out.action == CommandLine::Action::kVersion)
+  if (out.action != CommandLine::Action::kServe && out.action != CommandLine::Action::kCheckConfig)
     return out;
   Reader reader(values);
   if (!values.contains("folder"))
@@ -297,12 +308,14 @@ Result<CommandLine> parseCommandLine(int argc, const char* const* argv,
   }
 }
 
-std::string usageText() {
+std::string usageText(bool all) {
   std::ostringstream out;
   out << "Usage: qtet-server DIR [options]\n\nServes the .qtet files of DIR: levels of detail over "
-         "HTTP, refinement over a WebSocket,\nand the viewer's page.\n\n"
-      << settings() << "\n"
-      << commands()
+         "HTTP, refinement over a WebSocket,\nand the viewer's page.\n\n";
+  const std::vector<po::options_description> groups = settingGroups();
+  for (const po::options_description& group : groups)
+    if (all || &group == &groups.front()) out << group << "\n";
+  out << commands()
       << "\nExit codes: 0 ended by SIGINT or SIGTERM, 1 cannot serve, 2 wrong usage.\n";
   return out.str();
 }

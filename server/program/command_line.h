@@ -19,7 +19,7 @@
 namespace qtet {
 
 struct CommandLine {
-  enum class Action { kServe, kCheckConfig, kHelp, kVersion };
+  enum class Action { kServe, kCheckConfig, kHelp, kHelpAll, kVersion };
   Action action = Action::kServe;
   std::filesystem::path folder;
   std::string host = "127.0.0.1";
@@ -58,7 +58,7 @@ struct CommandLine {
 /// sentence for the user.
 [[nodiscard]] Result<CommandLine> parseCommandLine(int argc, const char* const* argv,
                                                    const char* const* environment = nullptr);
-[[nodiscard]] std::string usageText();
+[[nodiscard]] std::string usageText(bool all);
 /// Every option as it holds, in the form of the file.
 [[nodiscard]] std::string configText(const CommandLine& options);
 

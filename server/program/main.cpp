@@ -142,13 +142,14 @@ void reload(const CommandLine& options, const Secrets& secrets) {
     return spdlog::info("SIGHUP: there are no tokens and no certificate to read again");
   Result<Secrets> read = loadSecrets(options);
   if (!read)
-    return spdlog::error("SIGHUP: {}; the tokens and the certificate that were read before hold on",
-                         read.error().message);
+    return spdlog::error(
+        "SIGHUP: {}; the tokens and the certificate that were read before are kept",
+        read.error().message);
   if (secrets.access && secrets.access->tokens()->guardReading() &&
       !read->access->tokens()->guardReading())
     return spdlog::error(
         "SIGHUP: {} has no line that begins with read any more, which would open every mesh; if "
-        "that is meant, write 'read * anyone'. The tokens that were read before hold on",
+        "that is meant, write 'read * anyone'. The tokens that were read before are kept",
         options.tokens->string());
   if (secrets.access) secrets.access->replace(*read->access->tokens());
   if (secrets.tls) secrets.tls->replace(read->tls->now());
@@ -175,7 +176,7 @@ ServerOptions serverOptions(const CommandLine& options, LevelCache* cache, Acces
           .allowedOrigins = options.allowedOrigins,
           .frameAncestors = options.frameAncestors,
           .proxies = options.proxies,
-          .uploads = {.mostBytes = options.maxUploadBytes,
+          .uploads = {.maxBytes = options.maxUploadBytes,
                       .checkLimits = {options.maxCheckBytes, options.maxCheckTime},
                       .parts = {.reserve = options.diskReserve}},
           .drain = options.drainTime};
@@ -244,7 +245,8 @@ int run(int argc, char** argv) {
     return kWrongUsage;
   }
   switch (options->action) {
-    case CommandLine::Action::kHelp: std::cout << usageText(); return 0;
+    case CommandLine::Action::kHelp: std::cout << usageText(false); return 0;
+    case CommandLine::Action::kHelpAll: std::cout << usageText(true); return 0;
     case CommandLine::Action::kVersion: std::cout << "qtet-server " QTET_VERSION "\n"; return 0;
     case CommandLine::Action::kCheckConfig: return checkConfig(*options);
     case CommandLine::Action::kServe: break;

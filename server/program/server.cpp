@@ -27,8 +27,8 @@
 #include <vector>
 
 #include "server/http/upload_limits.h"
-#include "server/program/http_session.h"
 #include "server/routes/http_router.h"
+#include "server/session/http_session.h"
 #include "server/store/store_limits.h"
 #include "server/wire/connection_limits.h"
 #include "server/wire/handshakes.h"

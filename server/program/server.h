@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "server/program/services.h"
 #include "server/routes/viewer_files.h"
+#include "server/session/services.h"
 #include "server/store/level_maker.h"
 #include "server/store/store_limits.h"
 #include "server/wire/access.h"

@@ -54,7 +54,7 @@ Reply meshListReply(const RequestView& request, const RequestTarget& target,
                     "application/json",
                     kRevalidate,
                     std::move(headers)};
-  const ContentCoding coding = page->size() < kLeastCompressedBytes
+  const ContentCoding coding = page->size() < kMinCompressedBytes
                                    ? ContentCoding::kIdentity
                                    : chooseCoding(request.acceptEncoding.value_or(""), true, true);
   becomeVariant(resource, coding);

@@ -130,7 +130,7 @@ void ViewerFiles::compressText() {
     const bool text = file.type.starts_with("text/") || file.type == "application/json" ||
                       file.type == "image/svg+xml" || file.type == "application/wasm" ||
                       file.type == "application/manifest+json";
-    if (!text || file.bytes.size() < kLeastCompressedBytes) continue;
+    if (!text || file.bytes.size() < kMinCompressedBytes) continue;
     if (file.gzip.empty()) file.gzip = compressed(file.bytes, ContentCoding::kGzip);
     file.zstd = compressed(file.bytes, ContentCoding::kZstd);
   }

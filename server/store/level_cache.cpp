@@ -71,7 +71,7 @@ bool isKey(std::string_view text) {
 }  // namespace
 
 Result<std::unique_ptr<LevelCache>> LevelCache::open(const fs::path& folder,
-                                                     std::uintmax_t mostBytes,
+                                                     std::uintmax_t maxBytes,
                                                      std::uintmax_t reserve,
                                                      FreeDiskBytes freeBytes) {
   std::error_code ec;
@@ -93,7 +93,7 @@ Result<std::unique_ptr<LevelCache>> LevelCache::open(const fs::path& folder,
     return name.ends_with(kSuffix) && isKey(name.substr(0, name.size() - kSuffix.size()));
   });
   std::ranges::sort(found);
-  std::unique_ptr<LevelCache> out(new LevelCache(folder, mostBytes, reserve, std::move(freeBytes)));
+  std::unique_ptr<LevelCache> out(new LevelCache(folder, maxBytes, reserve, std::move(freeBytes)));
   for (const auto& [time, key, bytes] : found) out->add(key, bytes);
   return out;
 }
@@ -107,7 +107,7 @@ void LevelCache::add(const std::string& key, std::uintmax_t bytes) {
   entries_.push_front({key, bytes});
   byKey_[key] = entries_.begin();
   bytes_ += bytes;
-  while (bytes_ > mostBytes_) {
+  while (bytes_ > maxBytes_) {
     const std::string oldest = entries_.back().key;
     std::error_code ec;
     fs::remove(pathOf(oldest), ec);  // whoever is sending it has it mapped
@@ -144,7 +144,7 @@ std::optional<LevelFile> LevelCache::find(const std::string& key) {
 }
 
 LevelFile LevelCache::put(const std::string& key, Bytes bytes) {
-  if (bytes.empty() || bytes.size() > mostBytes_ ||
+  if (bytes.empty() || bytes.size() > maxBytes_ ||
       freeBytes_(folder_) < reserve_ + bytes.size() + kSealBytes)
     return fromMemory(std::move(bytes));
   const std::size_t size = bytes.size();

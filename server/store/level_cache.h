@@ -22,7 +22,7 @@ class LevelCache {
   /// Makes the folder if it does not exist. Takes over the levels of an earlier run, and removes
   /// unfinished files of one that was killed. Errors: io.
   [[nodiscard]] static Result<std::unique_ptr<LevelCache>> open(
-      const std::filesystem::path& folder, std::uintmax_t mostBytes,
+      const std::filesystem::path& folder, std::uintmax_t maxBytes,
       std::uintmax_t reserve = limits::kDiskReserve, FreeDiskBytes freeBytes = freeDiskBytes);
 
   /// nullopt: there is none, or its file is not what was written (its length or its CRC-32C
@@ -38,10 +38,10 @@ class LevelCache {
     std::string key;
     std::uintmax_t bytes;
   };
-  LevelCache(std::filesystem::path folder, std::uintmax_t mostBytes, std::uintmax_t reserve,
+  LevelCache(std::filesystem::path folder, std::uintmax_t maxBytes, std::uintmax_t reserve,
              FreeDiskBytes freeBytes)
       : folder_(std::move(folder)),
-        mostBytes_(mostBytes),
+        maxBytes_(maxBytes),
         reserve_(reserve),
         freeBytes_(std::move(freeBytes)) {}
   [[nodiscard]] std::filesystem::path pathOf(const std::string& key) const;
@@ -49,7 +49,7 @@ class LevelCache {
   void forget(const std::string& key);
 
   const std::filesystem::path folder_;
-  const std::uintmax_t mostBytes_, reserve_;
+  const std::uintmax_t maxBytes_, reserve_;
   const FreeDiskBytes freeBytes_;
   mutable std::mutex mutex_;
   std::uintmax_t bytes_ = 0;

@@ -132,13 +132,13 @@ void LevelJobs::State::withdraw(const JobPointer& job, std::uint64_t subscriptio
 
 std::optional<LevelRefusal> LevelJobs::State::refusalOf(Address from) const {
   if (waiting.size() + running.size() >= options.most) return LevelRefusal::kBusy;
-  if (from == nullptr || options.mostOfAddress == 0) return std::nullopt;
+  if (from == nullptr || options.maxOfAddress == 0) return std::nullopt;
   const auto wants = [from](const auto& entry) {
     return std::ranges::any_of(entry.second->subscribers, [from](const auto& subscription) {
       return subscription.second.from == from;
     });
   };
-  if (static_cast<std::size_t>(std::ranges::count_if(jobs, wants)) >= options.mostOfAddress)
+  if (static_cast<std::size_t>(std::ranges::count_if(jobs, wants)) >= options.maxOfAddress)
     return LevelRefusal::kAddress;
   return std::nullopt;
 }

@@ -44,7 +44,7 @@ class LevelJobs {
     std::size_t most = 1;         ///< jobs waiting or running; each may hold a whole mesh in memory
     LevelCache* cache = nullptr;  ///< nullptr: nothing is kept; else it outlives the jobs
     Maker maker{};
-    std::size_t mostOfAddress = 0;  ///< of these jobs, that one address may want; 0: no bound
+    std::size_t maxOfAddress = 0;  ///< of these jobs, that one address may want; 0: no bound
   };
 
   explicit LevelJobs(Options options);

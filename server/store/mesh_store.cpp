@@ -171,7 +171,7 @@ Result<MeshStore> MeshStore::open(const fs::path& folder, const StoreOptions& op
   MeshStore out;
   out.state_->folder = folder;
   out.state_->readTime = options.readTime;
-  out.state_->open = std::make_shared<OpenMeshes>(options.mostOpen);
+  out.state_->open = std::make_shared<OpenMeshes>(options.maxOpen);
   if (Result<FolderChange> found = out.rescan(); !found) return std::unexpected(found.error());
   return out;
 }

@@ -53,7 +53,7 @@ struct FolderChange {
 
 struct StoreOptions {
   /// Logs held open at a time, but for those that clients are reading: a descriptor each.
-  std::size_t mostOpen = descriptorsForLogs();
+  std::size_t maxOpen = descriptorsForLogs();
   /// After this time a scan of the folder leaves the remaining files to the next scan. It always
   /// reads the first limits::kLogsReadAtOnce.
   std::chrono::milliseconds readTime = limits::kFolderReadTime;

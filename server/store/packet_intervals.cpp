@@ -6,10 +6,10 @@
 #include <cmath>
 #include <utility>
 
-#include "codec/log/log_file.h"
 #include "codec/log/log_index.h"
-#include "codec/log/refiner.h"
 #include "codec/mesh/growing_mesh.h"
+#include "codec/refine/log_file.h"
+#include "codec/refine/refiner.h"
 #include "proto/manifest.h"
 #include "proto/stream_request.h"
 

@@ -9,7 +9,7 @@
 #include <memory>
 #include <string>
 
-#include "codec/log/log_file.h"
+#include "codec/refine/log_file.h"
 #include "proto/manifest.h"
 #include "server/store/packet_intervals.h"
 #include "server/wire/document.h"

@@ -87,7 +87,7 @@ class FrameGather {
   void append(const Item& item, boost::asio::const_buffer payload, FilePart file = {}) {
     parts_.push_back({boost::asio::buffer(item.head.data(), item.headBytes)});
     if (payload.size() > 0)
-      parts_.push_back({payload, payload.size() >= limits::kLeastFromFile ? file : FilePart()});
+      parts_.push_back({payload, payload.size() >= limits::kMinFromFile ? file : FilePart()});
     bytes_ += payload.size();
   }
   void consume(std::size_t bytes);

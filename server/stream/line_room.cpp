@@ -23,13 +23,13 @@ constexpr Seconds kAhead = milliseconds(40);
 constexpr Seconds kQueued = milliseconds(15);
 /// Packets that may be under way however slow the line is: fewer would leave it idle while the
 /// client holds its acknowledgement back.
-constexpr std::uint64_t kLeastPackets = 6;
+constexpr std::uint64_t kMinPackets = 6;
 /// The shortest sample of the rate. The largest of kSamples counts, so a short sample of few
 /// packets overstates the rate. With 50 ms nothing bounded 20 clients of reno on 20 Mbit/s, and
 /// their shares were unequal.
-constexpr Seconds kLeastSample = milliseconds(200);
+constexpr Seconds kMinSample = milliseconds(200);
 /// Between two looks at a line without room: a timer's grain, and half of kAhead.
-constexpr auto kLeastWait = milliseconds(1), kMostWait = milliseconds(20);
+constexpr auto kMinWait = milliseconds(1), kMaxWait = milliseconds(20);
 
 }  // namespace
 
@@ -46,7 +46,7 @@ std::optional<LineFigures> lineFigures(int socket) {
       .unsent = info.tcpi_notsent_bytes,
       .packetBytes = info.tcpi_snd_mss,
       .rtt = rtt,
-      .leastRtt = std::min(rtt, microseconds(info.tcpi_min_rtt)),
+      .minRtt = std::min(rtt, microseconds(info.tcpi_min_rtt)),
   };
 }
 
@@ -55,7 +55,7 @@ void LineRoom::measure(const LineFigures& line, Clock::time_point now) {
   acknowledged_ = line.acknowledged;
   if (since_) {
     const Seconds passed = now - since_->time;
-    if (passed < std::max(kLeastSample, Seconds(line.leastRtt))) return;
+    if (passed < std::max(kMinSample, Seconds(line.minRtt))) return;
     samples_[next_] =
         static_cast<double>(line.acknowledged - since_->acknowledged) / passed.count();
     next_ = (next_ + 1) % kSamples;
@@ -65,19 +65,19 @@ void LineRoom::measure(const LineFigures& line, Clock::time_point now) {
 
 std::size_t LineRoom::room(const LineFigures& line, Clock::time_point now) {
   measure(line, now);
-  const bool queued = line.rtt - line.leastRtt > kQueued;
+  const bool queued = line.rtt - line.minRtt > kQueued;
   double rate = *std::ranges::max_element(samples_);  // bytes a second
   // while congestion control tries out more, samples come too late
   if (!queued && line.rtt.count() > 0)
     rate = std::max(rate, static_cast<double>(line.underWay) / Seconds(line.rtt).count());
-  const Seconds held = queued ? kAhead + Seconds(line.leastRtt) : kAhead;
+  const Seconds held = queued ? kAhead + Seconds(line.minRtt) : kAhead;
   const double bound =
-      std::max(rate * held.count(), static_cast<double>(kLeastPackets * line.packetBytes));
+      std::max(rate * held.count(), static_cast<double>(kMinPackets * line.packetBytes));
   const auto holds = static_cast<double>(queued ? line.underWay + line.unsent : line.unsent);
   if (holds < bound) return static_cast<std::size_t>(std::ceil(bound - holds));
   const auto excess = std::chrono::ceil<microseconds>(
-      Seconds(std::min((holds - bound) / std::max(rate, 1.0), Seconds(kMostWait).count())));
-  wait_ = std::clamp<Clock::duration>(excess, kLeastWait, kMostWait);
+      Seconds(std::min((holds - bound) / std::max(rate, 1.0), Seconds(kMaxWait).count())));
+  wait_ = std::clamp<Clock::duration>(excess, kMinWait, kMaxWait);
   return 0;
 }
 

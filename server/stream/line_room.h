@@ -13,11 +13,11 @@ namespace qtet {
 
 /// The kernel's figures of a connection.
 struct LineFigures {
-  std::uint64_t acknowledged = 0;  ///< bytes so far
-  std::uint64_t underWay = 0;      ///< bytes sent and not acknowledged, by whole packets
-  std::uint64_t unsent = 0;        ///< bytes
-  std::uint64_t packetBytes = 0;   ///< payload of a full packet
-  std::chrono::microseconds rtt{}, leastRtt{};  ///< smoothed now, and the least that was seen
+  std::uint64_t acknowledged = 0;             ///< bytes so far
+  std::uint64_t underWay = 0;                 ///< bytes sent and not acknowledged, by whole packets
+  std::uint64_t unsent = 0;                   ///< bytes
+  std::uint64_t packetBytes = 0;              ///< payload of a full packet
+  std::chrono::microseconds rtt{}, minRtt{};  ///< smoothed now, and the least that was seen
 };
 /// nullopt if the kernel does not report them.
 [[nodiscard]] std::optional<LineFigures> lineFigures(int socket);

@@ -45,7 +45,7 @@ std::string randomSecret() {
 constexpr std::size_t kIssuerText = 16, kEndText = 16, kNonceText = 64, kTokenText = 64,
                       kMacText = 64;
 constexpr std::size_t kSignedText = kIssuerText + kEndText + kNonceText + kTokenText;
-constexpr std::size_t kLeastKeyBytes = 32;
+constexpr std::size_t kMinKeyBytes = 32;
 
 std::optional<SecretDigest> digestOfHex(std::string_view text) {
   SecretDigest out{};
@@ -157,10 +157,10 @@ Result<std::string> loadTicketKey(const std::filesystem::path& file) {
   std::string out{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
   if (!in.good() && !in.eof()) return refused();
   while (!out.empty() && (out.back() == '\n' || out.back() == '\r')) out.pop_back();
-  if (out.size() >= kLeastKeyBytes) return out;
+  if (out.size() >= kMinKeyBytes) return out;
   return fail(ErrorCode::kBadValue, file.string() + " holds " + std::to_string(out.size()) +
                                         " bytes; a key of tickets has at least " +
-                                        std::to_string(kLeastKeyBytes));
+                                        std::to_string(kMinKeyBytes));
 }
 
 MayRead Access::readerOf(const std::optional<SecretDigest>& bearer) const {

@@ -65,7 +65,7 @@ std::unique_ptr<AddressLimits::Client> AddressLimits::enter(
   auto& ofClient = state_->addresses[keyOf(address)];
   if (!ofClient) ofClient = std::make_shared<Client::Address>();
   const std::scoped_lock one(ofClient->mutex);
-  if (mostConnections_ != 0 && ofClient->connections >= mostConnections_) return nullptr;
+  if (maxConnections_ != 0 && ofClient->connections >= maxConnections_) return nullptr;
   ++ofClient->connections;
   return std::unique_ptr<Client>(new Client(ofClient, requestsPerSecond_));
 }

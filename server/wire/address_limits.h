@@ -21,8 +21,8 @@ class AddressLimits {
   using Key = std::array<std::uint8_t, 16>;
 
   /// 0: no bound. A second's worth of requests may come at once, twice over.
-  AddressLimits(std::size_t mostConnections, unsigned requestsPerSecond)
-      : mostConnections_(mostConnections),
+  AddressLimits(std::size_t maxConnections, unsigned requestsPerSecond)
+      : maxConnections_(maxConnections),
         requestsPerSecond_(requestsPerSecond),
         state_(std::make_shared<State>()) {}
 
@@ -58,7 +58,7 @@ class AddressLimits {
   };
   void forgetQuietAddresses();
 
-  std::size_t mostConnections_;
+  std::size_t maxConnections_;
   unsigned requestsPerSecond_;
   std::shared_ptr<State> state_;
 };

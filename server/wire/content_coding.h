@@ -12,7 +12,7 @@ namespace qtet {
 enum class ContentCoding : std::uint8_t { kIdentity, kGzip, kZstd };
 
 /// Below this a packet holds the text either way.
-inline constexpr std::size_t kLeastCompressedBytes = 1024;
+inline constexpr std::size_t kMinCompressedBytes = 1024;
 
 /// "gzip", "zstd"; "" for identity.
 [[nodiscard]] std::string_view codingName(ContentCoding coding);

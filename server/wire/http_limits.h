@@ -29,7 +29,7 @@ inline constexpr std::size_t kWritePiece = 256u << 10;
 inline constexpr auto kWriteTime = 30s;
 /// The kernel sends a log's bytes directly from the file if there are at least this many. The
 /// second figure is the most at once before other connections have their turn.
-inline constexpr std::size_t kLeastFromFile = 16u << 10;
+inline constexpr std::size_t kMinFromFile = 16u << 10;
 inline constexpr std::size_t kMaxFromFile = 1u << 20;
 /// After a refusal that closes, how long and how much is still read, so that the answer is not lost
 /// to a reset.

@@ -12,7 +12,7 @@ namespace {
 
 /// Characters of a token that is given as it is: as many as 16 random bytes in base64, below which
 /// it could be guessed.
-constexpr std::size_t kLeastTokenCharacters = 22;
+constexpr std::size_t kMinTokenCharacters = 22;
 constexpr std::string_view kDigestMark = "sha256:";
 constexpr std::string_view kAnyone = "anyone";
 constexpr std::string_view kScheme = "bearer ";
@@ -96,8 +96,8 @@ Result<Tokens> Tokens::parse(std::string_view text) {
     } else if (token == kAnyone) {
       if (rule.scope == Scope::kWrite) return wrong("anyone may read, but not write");
     } else {
-      if (token.size() < kLeastTokenCharacters)
-        return wrong("the token has fewer than " + std::to_string(kLeastTokenCharacters) +
+      if (token.size() < kMinTokenCharacters)
+        return wrong("the token has fewer than " + std::to_string(kMinTokenCharacters) +
                      " characters; 'openssl rand -base64 24' makes a good one");
       rule.digest = secretDigest(token);
     }

@@ -8,9 +8,9 @@
 
 #include "codec/api/c_api_handle.h"
 #include "codec/files/atomic_file.h"
-#include "codec/log/refiner.h"
+#include "codec/refine/refiner.h"
 #include "simplify/api/input_arrays.h"
-#include "simplify/api/told_work.h"
+#include "simplify/api/reported_work.h"
 #include "simplify/mesh/workers.h"
 
 struct qtet_simplified : qtet::Failure {
@@ -165,7 +165,7 @@ Result<PipelineOutput> make(const qtet_input_mesh& arrays, const qtet_simplify_o
   if (!mesh) return std::unexpected(mesh.error());
   if (Status checked = checkArrays(*mesh); !checked) return std::unexpected(checked.error());
   if (given.progress == nullptr) return simplifyToLog(std::move(*mesh), *options);
-  return simplifyAndTell(std::move(*mesh), *options, [&](qtet::Stage stage, double fraction) {
+  return simplifyAndReport(std::move(*mesh), *options, [&](qtet::Stage stage, double fraction) {
     return given.progress(given.user, static_cast<std::uint32_t>(stage), fraction) == 0;
   });
 }

@@ -78,7 +78,7 @@ Result<QuantisedField> quantiseField(const MeshField& field, int bits) {
   if (!std::isfinite(extents.largest)) {
     return fail(
         ErrorCode::kBadInput,
-        "field " + field.name + " spans more than the largest float64; leave it out with --fields");
+        "field " + field.name + " spans more than the largest float64; leave it out with `fields`");
   }
   QuantisedField out;
   out.nonFinite = extents.nonFinite;

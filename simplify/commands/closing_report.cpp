@@ -4,8 +4,8 @@
 #include <bit>
 #include <string>
 
-#include "codec/log/log_file.h"
 #include "codec/log/log_index.h"
+#include "codec/refine/log_file.h"
 #include "proto/manifest.h"
 #include "simplify/log/kept_input.h"
 #include "simplify/log/match_mesh.h"

@@ -18,7 +18,7 @@ OrderedJson toJson(const CheckReport& report, const std::string& input, const Co
     if (finding.found.count > 0)
       one.update(
           {{"what", finding.what}, {"count", finding.found.count}, {"first", finding.found.first}});
-    if (!finding.advice.empty()) one["advice"] = finding.advice;
+    if (!finding.advice.empty()) one["advice"] = withOptionNames(finding.advice);
     findings.push_back(std::move(one));
   }
   return {{"input", console.named(input)},
@@ -28,7 +28,7 @@ OrderedJson toJson(const CheckReport& report, const std::string& input, const Co
           {"fields", report.fields},
           {"components", report.components},
           {"read", readReport(report.read)},
-          {"notes", report.read.notes},
+          {"notes", withOptionNames(report.read.notes)},
           {"findings", findings}};
 }
 

@@ -17,7 +17,7 @@ MeshOutputReport reportOf(const std::string& input, const ReadMesh& read,
            {"vertices", mesh.points.size()},
            {"fields", writtenFieldsJson(mesh.fields, ending)},
            {"input", input},
-           {"notes", read.report.notes}}};
+           {"notes", withOptionNames(read.report.notes)}}};
 }
 
 }  // namespace
@@ -36,7 +36,7 @@ int runConvert(const Words& words, Console& console) {
        "Reads a mesh of any format that simplify reads, or the last level of a log, and writes its "
        "tetrahedra and fields otherwise as they are: neither\n"
        "cleaned nor put on a lattice (but for .glb and .drc, whose coordinates and fields have 16 "
-       "bits). The kind of file is told by its name, as for\n"
+       "bits). The kind of file follows from its name, as for\n"
        "extract; .qtet files are made by simplify.\n"
        "--json: output, kind, bytes, tetrahedra, vertices, fields [{name, association, components, "
        "type}] that the file holds, input, notes; of a log what extract says.",

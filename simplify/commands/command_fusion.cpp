@@ -24,7 +24,7 @@ PlacementRule placementRuleOf(const std::string& name) {
 // 8,000 cells are packets of about 4 KB.
 constexpr int kCellsPerPacket = 8000;
 // Fewer, and most vertices lie between two leaves, where nothing fuses.
-constexpr int kLeastCellsPerPacket = 100;
+constexpr int kMinCellsPerPacket = 100;
 
 std::size_t cellsPerPacketOf(const ParsedWords& parsed) {
   const auto layout = parsed.get<std::string>("layout");
@@ -34,7 +34,7 @@ std::size_t cellsPerPacketOf(const ParsedWords& parsed) {
     throw UsageError("--cells-per-packet is for --layout regions; leave it out, or give that");
   if (layout == "stream") return 0;
   return parsed.has("cells-per-packet")
-             ? static_cast<std::size_t>(parsed.integer("cells-per-packet", kLeastCellsPerPacket,
+             ? static_cast<std::size_t>(parsed.integer("cells-per-packet", kMinCellsPerPacket,
                                                        std::numeric_limits<int>::max()))
              : kCellsPerPacket;
 }

@@ -6,7 +6,7 @@
 namespace qtet {
 
 /// {name, usage, text, examples, words: [...], options: [{name, letter, takesValue, parameter,
-/// text}]}, as `qtet COMMAND --help-json` prints it.
+/// group, text}]}, as `qtet COMMAND --help-json` prints it.
 [[nodiscard]] OrderedJson helpOf(const Command& command);
 
 /// The beginning of a sentence, up to its first full stop, semicolon or line end: what a menu has

@@ -54,8 +54,9 @@ ParsedWords::ParsedWords(const Words& words, CommandHelp help, po::options_descr
     : help_(std::move(help)), positional_(positional) {
   // runTool takes these away before; they are named here for help.
   options.add_options()("quiet,q", "print nothing but errors, warnings and what was asked for")(
-      "verbose,v", "tell how long each stage takes, and the memory at most")("help,h",
-                                                                             "show this and stop");
+      "verbose,v", "report how long each stage takes, and the memory at most")(
+      "help,h", "show this and stop");
+  if (!help_.rareOptions.empty()) options.add_options()("help-all", "show every option and stop");
   options_.add(options);
 
   po::options_description all, hidden;
@@ -72,6 +73,7 @@ ParsedWords::ParsedWords(const Words& words, CommandHelp help, po::options_descr
   if (positional_.empty() || !takesMore(positional_.back())) places.add(kTooMany, -1);
   hidden.add_options()("help-json", "help for programs")(kTooMany,
                                                          po::value<std::vector<std::string>>());
+  if (help_.rareOptions.empty()) hidden.add_options()("help-all", "the same as --help");
   all.add(options_).add(hidden);
   try {
     const auto style = po::command_line_style::unix_style & ~po::command_line_style::allow_guessing;
@@ -85,7 +87,7 @@ ParsedWords::ParsedWords(const Words& words, CommandHelp help, po::options_descr
   } catch (po::error& error) {
     throw UsageError(optionErrorText<po::error_with_option_name>(error));
   }
-  if (has("help") || has("help-json")) return;
+  if (has("help") || has("help-all") || has("help-json")) return;
   if (has(kTooMany))
     throw oneTooMany(help_, positional_, get<std::vector<std::string>>(kTooMany),
                      isRequired("output") && !has("output"));
@@ -104,6 +106,33 @@ bool ParsedWords::isRequired(const std::string& option) const {
   return found != nullptr && found->description().starts_with("required: ");
 }
 
+std::string ParsedWords::titleOf(const std::string& option) const {
+  for (const OptionGroup& group : help_.rareOptions)
+    if (std::ranges::find(group.options, option) != group.options.end()) return group.title;
+  return "";
+}
+
+std::string ParsedWords::optionText(bool all) const {
+  std::ostringstream out;
+  const auto add = [&](const std::string& title) {
+    po::options_description shown(title.empty() ? "options" : title);
+    for (const auto& option : options_.options())
+      if (titleOf(option->long_name()) == title) shown.add(option);
+    out << shown << "\n";
+  };
+  add("");
+  if (help_.rareOptions.empty()) return out.str();
+  std::size_t rare = 0;
+  for (const OptionGroup& group : help_.rareOptions) {
+    rare += group.options.size();
+    if (all) add(group.title);
+  }
+  if (!all)
+    out << "'qtet " << help_.name << " --help-all' shows " << rare
+        << " more, for special inputs, sizes and qualities.\n\n";
+  return out.str();
+}
+
 bool ParsedWords::helped(Console& console) const {
   if (has("help-json")) {
     OrderedJson options = OrderedJson::array();
@@ -113,6 +142,7 @@ bool ParsedWords::helped(Console& console) const {
                          {"letter", brief.size() > 1 && brief[1] != '-' ? brief.substr(1, 1) : ""},
                          {"takesValue", option->semantic()->max_tokens() > 0},
                          {"parameter", option->format_parameter()},
+                         {"group", titleOf(option->long_name())},
                          {"text", option->description()}});
     }
     printJson({{"name", help_.name},
@@ -124,10 +154,10 @@ bool ParsedWords::helped(Console& console) const {
               console);
     return true;
   }
-  if (!has("help")) return false;
+  if (!has("help") && !has("help-all")) return false;
   console.out << filled("usage: qtet " + help_.usage, "       ") << "\n\n"
               << filled(help_.text) << "\n\n"
-              << options_ << "\nexamples:\n"
+              << optionText(has("help-all")) << "examples:\n"
               << help_.examples;
   return true;
 }

@@ -25,12 +25,20 @@ class UsageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Options under one heading.
+struct OptionGroup {
+  std::string title;
+  std::vector<std::string> options;  ///< long names
+};
+
 /// One command's help: usage line, what it does, options, examples.
 struct CommandHelp {
   std::string name;
   std::string usage;  ///< "simplify IN -o OUT.qtet [options]"
   std::string text;
   std::string examples;  ///< one a line
+  /// Where a command has many options: --help shows those that are in no group, --help-all all.
+  std::vector<OptionGroup> rareOptions{};
 };
 
 /// One command's words, parsed. Options may be given once, abbreviations are refused.
@@ -42,8 +50,8 @@ class ParsedWords {
               boost::program_options::options_description options,
               const std::vector<std::string>& positional);
 
-  /// Whether --help was asked for (or --help-json, for the manual and completions); it is printed
-  /// then.
+  /// Whether --help, --help-all or, for the manual and completions, --help-json was asked for; it is
+  /// printed then.
   [[nodiscard]] bool helped(Console& console) const;
   [[nodiscard]] bool has(const std::string& name) const { return values_.count(name) > 0; }
   template <class T>
@@ -56,6 +64,9 @@ class ParsedWords {
 
  private:
   [[nodiscard]] bool isRequired(const std::string& option) const;
+  /// The heading of a rare option, "" of any other.
+  [[nodiscard]] std::string titleOf(const std::string& option) const;
+  [[nodiscard]] std::string optionText(bool all) const;
 
   CommandHelp help_;
   boost::program_options::options_description options_;

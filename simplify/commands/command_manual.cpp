@@ -40,17 +40,27 @@ std::string verbatim(const std::string& text) {
 constexpr const char* kExits =
     ".SH EXIT STATUS\n0 done, 1 an input or a file is at fault, 2 the command line is.\n";
 
+std::string entryOf(const OrderedJson& option) {
+  const auto letter = option["letter"].get<std::string>();
+  std::string out = ".TP\n.B " + roff((letter.empty() ? "" : "-" + letter + ", ") + "--" +
+                                      option["name"].get<std::string>());
+  if (option["takesValue"]) out += roff(" " + option["parameter"].get<std::string>());
+  return out + "\n" + roff(option["text"]) + "\n";
+}
+
 std::string commandPage(const Command& command) {
   const OrderedJson help = helpOf(command);
   std::string out = head("qtet-" + std::string(command.name), std::string(command.summary)) +
                     ".SH SYNOPSIS\n.B qtet\n" + roff(help["usage"]) + "\n.SH DESCRIPTION\n" +
                     roff(help["text"]) + "\n.SH OPTIONS\n";
-  for (const OrderedJson& option : help["options"]) {
-    const auto letter = option["letter"].get<std::string>();
-    out += ".TP\n.B " + roff((letter.empty() ? "" : "-" + letter + ", ") + "--" +
-                             option["name"].get<std::string>());
-    if (option["takesValue"]) out += roff(" " + option["parameter"].get<std::string>());
-    out += "\n" + roff(option["text"]) + "\n";
+  std::vector<std::string> groups{""};
+  for (const OrderedJson& option : help["options"])
+    if (std::ranges::find(groups, option["group"]) == groups.end())
+      groups.push_back(option["group"]);
+  for (const std::string& group : groups) {
+    if (!group.empty()) out += ".SS " + roff(group) + "\n";
+    for (const OrderedJson& option : help["options"])
+      if (option["group"] == group) out += entryOf(option);
   }
   return out + ".SH EXAMPLES\n" + verbatim(help["examples"]) + kExits +
          ".SH SEE ALSO\n.BR qtet (1)\n";

@@ -48,7 +48,7 @@ int runPublish(const Words& words, Console& console) {
   const ParsedWords parsed(
       words,
       {"publish", "publish FOLDER LOG.qtet... [--viewer DIR] [--json]",
-       "Writes a folder that any web server can serve as it stands, without a program of ours: the "
+       "Writes a folder that any web server can serve as it is, without a program of ours: the "
        "viewer, compressed too, the logs,\n"
        "index.json with their list, and README.txt with the settings for nginx, Caddy, S3 with "
        "CloudFront, and GitHub Pages.\n"

@@ -3,7 +3,7 @@
 #include <fstream>
 #include <thread>
 
-#include "codec/log/log_file.h"
+#include "codec/refine/log_file.h"
 #include "simplify/commands/command_line.h"
 #include "simplify/commands/http_client.h"
 #include "simplify/commands/progress.h"

@@ -4,7 +4,7 @@
 #include <boost/program_options.hpp>
 
 #include "simplify/commands/command_line.h"
-#include "simplify/read/read_options.h"
+#include "simplify/read/options/read_options.h"
 
 namespace qtet {
 

@@ -49,7 +49,8 @@ Request requestOf(const ParsedWords& parsed) {
       parsed.integer("position-bits", kMinPositionBits, kMaxPositionBits);
   options.quantise.fieldBits = parsed.integer("field-bits", kMinFieldBits, kMaxFieldBits);
   takeFusionOptions(parsed, options);
-  if (Status checked = checkOptions(options); !checked) throw UsageError(checked.error().message);
+  if (Status checked = checkOptions(options); !checked)
+    throw UsageError(withOptionNames(checked.error().message));
   options.measure = measureOptionsOf(parsed);
   options.valueCodec = valueCodecOf(parsed.get<std::string>("geometry-codec"));
   request.read.originalIds = parsed.has("original-ids");
@@ -203,9 +204,9 @@ OrderedJson reportOf(const Request& request, const ReadReport& read, const Pipel
   report["ignoredFields"] = read.ignoredFields;
   report["nonFiniteValues"] = from.quantise.nonFiniteValues;
   report["seconds"] = watch.seconds();
-  report["notes"] = read.notes;
-  for (const std::string& note : from.notes) report["notes"].push_back(note);
-  report["warnings"] = from.warnings;
+  report["notes"] = withOptionNames(read.notes);
+  for (const std::string& note : withOptionNames(from.notes)) report["notes"].push_back(note);
+  report["warnings"] = withOptionNames(from.warnings);
   if (from.paper) report["paper"] = toJson(*from.paper);
   return report;
 }
@@ -277,7 +278,8 @@ int runSimplify(const Words& words, Console& console) {
   addMeasureOptions(options);
   const ParsedWords parsed(
       words,
-      {"simplify", "simplify IN -o OUT.qtet [options]",
+      {"simplify",
+       "simplify IN -o OUT.qtet [options]",
        "Reads a volume mesh with its fields (.vtu, .vtk, .msh, Exodus, EnSight, CGNS, ...:\n"
        "simplify/INPUT.md has them all), splits its cells into tetrahedra, cleans them,\n"
        "simplifies them level by level and writes the log, from which every level and the whole\n"
@@ -285,7 +287,14 @@ int runSimplify(const Words& words, Console& console) {
        "  qtet simplify fin.vtu -o fin.qtet\n  qtet simplify fin.vtu -o fin.qtet --fields "
        "Density,Velocity --field-bits 10 --json\n"
        "  qtet simplify ogrid.xyz --plot3d ogrid.q --weld 0 -o ogrid.qtet\n  qtet simplify run.pvd "
-       "--time all -o run.qtet\n"},
+       "--time all -o run.qtet\n",
+       {{"input", {"format", "time", "curved", "weld", "threshold", "plot3d", "read-seconds"}},
+        {"fields", {"field-bits", "field-weight"}},
+        {"quality and base mesh",
+         {"base-cells", "envelope-tolerance", "placement", "shape-weight", "preserve-regions",
+          "position-bits"}},
+        {"output", {"cells-per-packet", "geometry-codec", "keep-order", "original-ids", "measure"}},
+        {"rare", {"algorithm"}}}},
       options, {"IN"});
   if (parsed.helped(console)) return kExitOk;
   const Request request = requestOf(parsed);

@@ -3,7 +3,7 @@
 #include <sstream>
 
 #include "codec/log/log_index.h"
-#include "codec/log/verify_log.h"
+#include "codec/refine/verify_log.h"
 #include "proto/checksum.h"
 #include "simplify/clean/clean_mesh.h"
 #include "simplify/clean/verify.h"

@@ -10,7 +10,7 @@
 
 #include "simplify/commands/command_line.h"
 #include "simplify/commands/command_read.h"
-#include "simplify/read/guarded_folder.h"
+#include "simplify/read/process/guarded_folder.h"
 
 namespace qtet {
 namespace {

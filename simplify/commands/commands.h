@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "simplify/commands/option_names.h"
 #include "simplify/commands/printable.h"
 
 namespace qtet {
@@ -29,11 +30,12 @@ struct Console {
   bool verbose = false;  ///< --verbose: how long each stage takes, and the memory at most
   std::string piped{};   ///< the temporary file that holds the standard input, where a word was "-"
 
-  /// The text, in which what came through a pipe is called so and not by its temporary name.
+  /// The text with options for members of the library, and in which a file that came through a pipe
+  /// is called so and not by its temporary name.
   [[nodiscard]] std::string named(std::string text) const {
     for (std::size_t at = 0; !piped.empty() && (at = text.find(piped)) != std::string::npos;)
       text.replace(at, piped.size(), "the standard input");
-    return text;
+    return withOptionNames(std::move(text));
   }
   /// named() for a terminal.
   [[nodiscard]] std::string shown(const std::string& text, bool keepLines = false) const {

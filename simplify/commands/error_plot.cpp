@@ -204,7 +204,7 @@ Result<std::vector<ErrorCurve>> errorCurves(const Manifest& manifest,
   }
   if (!any)
     return fail(ErrorCode::kNotFound,
-                "the log does not tell its levels' errors; make it again with qtet simplify "
+                "the log does not have its levels' errors; make it again with qtet simplify "
                 "--measure levels");
   return out;
 }

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kCountWidth = 12, kPercentWidth = 10;
 /// Below this many per cent, zeros behind the point would hide how small it is.
-constexpr double kLeastPlain = 0.001;
+constexpr double kMinPlain = 0.001;
 
 /// A heading over two columns of figures, at the right like them.
 void heading(std::ostream& out, const std::string& text, std::size_t width) {
@@ -47,7 +47,7 @@ std::vector<std::size_t> shownLevels(const Manifest& manifest, std::size_t most)
 std::string percentCell(double fraction) {
   const double percent = 100 * fraction;
   std::ostringstream out;
-  if (percent != 0 && percent < kLeastPlain) {
+  if (percent != 0 && percent < kMinPlain) {
     out << std::scientific << std::setprecision(1) << percent;
     return out.str();
   }

@@ -97,7 +97,7 @@ Result<std::unique_ptr<GuardedFolder>> spoolStandardInput(Words& words, std::str
   if (places.empty()) return nullptr;
   if (places.size() > 1)
     return fail(ErrorCode::kBadInput,
-                "- stands for the standard input and can be given once, as any pipe");
+                "- means the standard input and can be given once, as any pipe");
   const std::string named = words[places.front()] == "-" ? "" : words[places.front()];
   std::string kind = ending.empty() ? formatAmong(words) : std::string(ending);
   if (kind.empty()) kind = std::filesystem::path(named).extension().string();
@@ -106,7 +106,7 @@ Result<std::unique_ptr<GuardedFolder>> spoolStandardInput(Words& words, std::str
       !std::ranges::all_of(kind, [](unsigned char c) { return std::isalnum(c) != 0; }))
     return fail(ErrorCode::kBadInput,
                 (named.empty() ? "- is the standard input, which has no name"
-                               : named + " is a pipe whose name does not tell what it gives") +
+                               : named + " is a pipe whose name does not say what it gives") +
                     std::string(": say with --format what kind of file it is, for example "
                                 "--format vtu"));
   std::optional<OpenFile> pipe;

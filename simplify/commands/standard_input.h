@@ -6,7 +6,7 @@
 
 #include "proto/error.h"
 #include "simplify/commands/commands.h"
-#include "simplify/read/guarded_folder.h"
+#include "simplify/read/process/guarded_folder.h"
 
 namespace qtet {
 

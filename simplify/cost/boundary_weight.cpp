@@ -18,7 +18,7 @@ constexpr double kBoundaryToFields = 6;
 // More puts the shape before the fields, which is a user's choice. Less would give the shape away
 // where fields are so smooth that they hardly need cells.
 constexpr double kMaxWeight = 200;
-constexpr double kLeastWeight = 0.05;
+constexpr double kMinWeight = 0.05;
 
 // The steepness of the fields in the cost: the sum of their squared gradients in a cell of positive
 // volume.
@@ -108,7 +108,7 @@ double balancedBoundaryWeight(const LatticeMesh& mesh, std::span<const CostPart>
   const double boundary = expectedBoundaryError(mesh);
   const double balance =
       boundary > 0 ? scale * expectedFieldError(mesh, parts) / boundary : kMaxWeight;
-  return std::clamp(std::min(worth, std::sqrt(worth * balance)), kLeastWeight, kMaxWeight);
+  return std::clamp(std::min(worth, std::sqrt(worth * balance)), kMinWeight, kMaxWeight);
 }
 
 }  // namespace qtet

@@ -164,7 +164,7 @@ void FusionPointFinder::offerFree(const FusionCheck& test) {
     if (inside != there && test.mayLeave() && isOnLattice(there, mesh_.latticeBits()))
       offer(there, true, dearness);
   }
-  leastFree_ = std::numeric_limits<double>::infinity();
+  minFree_ = std::numeric_limits<double>::infinity();
 }
 
 std::optional<double> FusionPointFinder::price(const Prey& prey, const FusionCheck& test) {
@@ -176,11 +176,11 @@ std::optional<double> FusionPointFinder::price(const Prey& prey, const FusionChe
   deciding_ = deciding(prey);
   const Ideal ideal = idealOf(prey, deciding_, of);
   ideal_ = ideal.offset;
-  leastFree_ = options_.rule == PlacementRule::kVertex ? std::numeric_limits<double>::infinity()
-                                                       : dearnessOfFree(options_.rule) * ideal.cost;
+  minFree_ = options_.rule == PlacementRule::kVertex ? std::numeric_limits<double>::infinity()
+                                                     : dearnessOfFree(options_.rule) * ideal.cost;
   offerCheap(prey, test);
   std::ranges::sort(choices_, comesFirst);
-  if (isFreeToCome() && (choices_.empty() || choices_[0].compared > leastFree_)) {
+  if (isFreeToCome() && (choices_.empty() || choices_[0].compared > minFree_)) {
     offerFree(test);
     std::ranges::sort(choices_, comesFirst);
   }
@@ -209,7 +209,7 @@ bool FusionPointFinder::isHopeless(const FusionCheck& test) {
 std::optional<FusionPoint> FusionPointFinder::choose(const FusionCheck& test) {
   found_.reset();
   choose(choices_, test);
-  if (isFreeToCome() && (!found_ || least_ > leastFree_)) {
+  if (isFreeToCome() && (!found_ || least_ > minFree_)) {
     const std::size_t cheap = choices_.size();
     offerFree(test);
     const auto free = std::span(choices_).subspan(cheap);
@@ -230,9 +230,9 @@ void FusionPointFinder::choose(std::span<const Choice> choices, const FusionChec
     if (found_ && choice.compared >= least_) break;
     // Below this shape the point would cost more than what was found.
     const bool isBeaten = found_ && choice.compared > 0 && options_.shapeWeight > 0;
-    const double leastShape =
+    const double minShape =
         isBeaten ? wanted / (1 + (least_ / choice.compared - 1) / options_.shapeWeight) : 0;
-    const double shape = test.shapeAt(choice.point, kSurelyWorse * leastShape);
+    const double shape = test.shapeAt(choice.point, kSurelyWorse * minShape);
     if (shape < 0) continue;
     const double factor =
         shape < wanted ? 1 + options_.shapeWeight * (wanted / std::max(shape, kFlat) - 1) : 1;

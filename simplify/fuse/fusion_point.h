@@ -77,7 +77,7 @@ class FusionPointFinder {
   void offer(const LatticePoint& p, bool isOutside, double dearness = 1);
   void offerCheap(const Prey& prey, const FusionCheck& test);
   void offerFree(const FusionCheck& test);
-  [[nodiscard]] bool isFreeToCome() const { return std::isfinite(leastFree_); }
+  [[nodiscard]] bool isFreeToCome() const { return std::isfinite(minFree_); }
   void choose(std::span<const Choice> choices, const FusionCheck& test);
   void count(bool isRefused);
 
@@ -90,7 +90,7 @@ class FusionPointFinder {
   Deciding deciding_;
   Vector3 ideal_{};  // where the quadric is least, relative to origin_
   // what a free point compares as at best; infinity once they are among the choices
-  double leastFree_ = 0;
+  double minFree_ = 0;
   std::vector<Choice> choices_;  // cheapest first as compared
   std::optional<FusionPoint> found_;
   double least_ = 0;  // found_ as compared, shape included

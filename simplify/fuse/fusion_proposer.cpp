@@ -48,11 +48,11 @@ CellShares::CellShares() {
 }
 
 FusionProposer::FusionProposer(const FusionMesh& mesh, const FusionCost& cost,
-                               const Touched& touched, const BandNodes& band,
+                               const ChangeTimes& changes, const BandNodes& band,
                                const FusionLimits& limits, const FusionPointOptions& options)
     : mesh_(mesh),
       cost_(cost),
-      touched_(touched),
+      changes_(changes),
       band_(band),
       test_(mesh, limits),
       finder_(mesh, cost, options) {}
@@ -158,7 +158,7 @@ void FusionProposer::findCompanions(const Proposal& edge, std::span<const Candid
     if (!mesh_.alive(other.partner) || !std::ranges::any_of(edge.star.deleted, holds)) continue;
     companions_.push_back(other.partner);
     cost_.prefetch(other.partner);
-    if (!touched_.isLocked(other.partner)) std::swap(companions_[free++], companions_.back());
+    if (!changes_.isLocked(other.partner)) std::swap(companions_[free++], companions_.back());
   }
   freeCompanions_ = free;
 }

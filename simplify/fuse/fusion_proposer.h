@@ -12,8 +12,8 @@
 #include "simplify/cost/fusion_cost.h"
 #include "simplify/fuse/band_nodes.h"
 #include "simplify/fuse/candidates.h"
+#include "simplify/fuse/change_times.h"
 #include "simplify/fuse/fusion_point.h"
-#include "simplify/fuse/touched.h"
 #include "simplify/fuse/vertex_counts.h"
 #include "simplify/legality/fusion_check.h"
 #include "simplify/mesh/fusion_mesh.h"
@@ -59,7 +59,7 @@ class CellShares {
 
 class FusionProposer {
  public:
-  FusionProposer(const FusionMesh& mesh, const FusionCost& cost, const Touched& touched,
+  FusionProposer(const FusionMesh& mesh, const FusionCost& cost, const ChangeTimes& changes,
                  const BandNodes& band, const FusionLimits& limits,
                  const FusionPointOptions& options);
 
@@ -89,7 +89,7 @@ class FusionProposer {
 
   const FusionMesh& mesh_;
   const FusionCost& cost_;
-  const Touched& touched_;
+  const ChangeTimes& changes_;
   const BandNodes& band_;
   FusionCheck test_;
   FusionPointFinder finder_;

@@ -63,7 +63,7 @@ FusionState::FusionState(const LatticeMesh& lattice, std::size_t regionField,
     : workers_(workers),
       mesh_(lattice, regionField, &workers),
       cost_(mesh_, lattice, cost, &workers) {
-  touched_.resize(mesh_.vertexSlots());
+  changes_.resize(mesh_.vertexSlots());
 }
 
 const Candidate* FusionState::bestAlive(VertexId owner) {
@@ -79,7 +79,7 @@ void FusionState::fuse(std::span<const PlannedFusion> planned, std::uint32_t lev
   const std::size_t pointValues = valuesOfAPoint(mesh_.fields());
   integers_.resize(planned.size() * pointValues);
   cost_.makeRoom(slots);
-  touched_.resize(slots);
+  changes_.resize(slots);
   const auto valuesOf = [&](std::size_t i, VertexId fused) -> std::span<const std::int32_t> {
     if (i + kAhead < planned.size()) prefetch(planned[i + kAhead].prey);
     for (const VertexId v : planned[i].prey.vertices()) candidates_.forget(v);

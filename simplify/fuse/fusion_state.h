@@ -1,5 +1,5 @@
 // Everything that a fusion changes: the mesh, what its vertices cost, their candidates, and when
-// each was touched. All of them are as long as the mesh has vertex slots, and dead vertices have no
+// each was changed. All of them are as long as the mesh has vertex slots, and dead vertices have no
 // candidates.
 #pragma once
 
@@ -9,7 +9,7 @@
 
 #include "simplify/cost/fusion_cost.h"
 #include "simplify/fuse/candidates.h"
-#include "simplify/fuse/touched.h"
+#include "simplify/fuse/change_times.h"
 #include "simplify/mesh/fusion_mesh.h"
 #include "simplify/mesh/workers.h"
 
@@ -25,8 +25,8 @@ class FusionState {
 
   [[nodiscard]] const FusionMesh& mesh() const { return mesh_; }
   [[nodiscard]] const FusionCost& cost() const { return cost_; }
-  [[nodiscard]] const Touched& touched() const { return touched_; }
-  [[nodiscard]] Touched& touched() { return touched_; }
+  [[nodiscard]] const ChangeTimes& changes() const { return changes_; }
+  [[nodiscard]] ChangeTimes& changes() { return changes_; }
   [[nodiscard]] const Candidates& candidates() const { return candidates_; }
   [[nodiscard]] Candidates& candidates() { return candidates_; }
 
@@ -52,7 +52,7 @@ class FusionState {
   Workers& workers_;
   FusionMesh mesh_;
   FusionCost cost_;
-  Touched touched_;
+  ChangeTimes changes_;
   Candidates candidates_;
   std::vector<std::int32_t> integers_;  // fuse's own
 };

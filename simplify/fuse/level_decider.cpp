@@ -7,7 +7,7 @@ namespace qtet {
 
 void LevelDecider::run(LevelQueue& queue, LevelFusions& fusions, std::size_t goal) {
   assert(proposers_.size() == workers_.count() && fusions.fused().empty());
-  state_.touched().beginLevel();
+  state_.changes().beginLevel();
   proposals_.begin(queue.entries(), queue.limit(), proposers_);
   workers_.beside([this](std::size_t worker) { proposals_.serve(worker); },
                   [&] { decide(queue, fusions, goal); });
@@ -26,7 +26,7 @@ void LevelDecider::decide(LevelQueue& queue, LevelFusions& fusions, std::size_t 
          state_.mesh().liveTetrahedra() - fusions.going() > goal) {
     workers_.throwIfStopped();
     const auto [owner, entry] = queue.pop();
-    if (state_.touched().isLocked(owner)) continue;
+    if (state_.changes().isLocked(owner)) continue;
     if (entry != LevelQueue::kBack) proposals_.comeTo(entry);
     process(owner, queue, fusions);
   }
@@ -35,7 +35,7 @@ void LevelDecider::decide(LevelQueue& queue, LevelFusions& fusions, std::size_t 
 void LevelDecider::process(VertexId owner, LevelQueue& queue, LevelFusions& fusions) {
   const Candidate candidate = *state_.candidates().best(owner);
   assert(state_.mesh().alive(candidate.partner));  // or the owner would be locked
-  if (state_.touched().isLocked(candidate.partner)) return;
+  if (state_.changes().isLocked(candidate.partner)) return;
   // Dearer than this, it waits for what costs less.
   const float most = std::min(queue.limit(), std::max(kDearer * candidate.key, queue.nextKey()));
   const Outcome outcome = propose(owner, candidate.partner, most);
@@ -64,14 +64,14 @@ LevelDecider::Outcome LevelDecider::propose(VertexId owner, VertexId partner, fl
           std::ranges::find(proposal.illegal, partner, &Proposal::Illegal::partner);
       illegal != proposal.illegal.end())
     return {nullptr, illegal->price};
-  const auto changed = [&](VertexId v) { return state_.touched().since(v, proposal.madeAfter); };
+  const auto changed = [&](VertexId v) { return state_.changes().since(v, proposal.madeAfter); };
   const auto isWhole = [&] { return std::min(proposal.edgeCost, most) <= proposal.most; };
   const bool holds =
       proposal.partner == partner &&
       (proposal.isPriceAll ? proposal.price > most
                            : isWhole() && std::ranges::none_of(proposal.companions, changed));
   if (!holds && !proposers_[0]->propose(owner, state_.candidates().remaining(owner), most,
-                                        state_.touched().now(), proposal))
+                                        state_.changes().now(), proposal))
     return {nullptr, proposal.illegal.back().price};
   return {&proposal,
           proposal.price > most ? proposal.price : static_cast<float>(proposal.where.cost)};

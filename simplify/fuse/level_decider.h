@@ -1,5 +1,5 @@
 // Decides which candidates are fused in a level (ALGORITHM.md, "Levels"): those within its limit,
-// cheapest first. Each must be legal, with a star that no other one has touched.
+// cheapest first. Each must be legal, with a star that no other one has changed.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ class LevelDecider {
       : state_(state),
         workers_(workers),
         proposers_(proposers),
-        proposals_(state.mesh(), state.cost(), state.candidates(), state.touched()) {}
+        proposals_(state.mesh(), state.cost(), state.candidates(), state.changes()) {}
 
   /// Decides on the fusions of a level and carries them out, until so many tetrahedra are left or
   /// the queue is through. REQUIRES: both have begun the level, a proposer a worker.

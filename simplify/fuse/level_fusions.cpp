@@ -13,12 +13,12 @@ void LevelFusions::begin(std::uint32_t level) {
 void LevelFusions::decideOn(const Proposal& proposal) {
   const std::vector<VertexId>& link = proposal.star.link;
   for (const VertexId v : proposal.prey.vertices()) {
-    assert(!state_.touched().isLocked(v));
-    state_.touched().touch(v);
+    assert(!state_.changes().isLocked(v));
+    state_.changes().touch(v);
   }
   for (const VertexId v : link)
-    if (v != kGhost) state_.touched().touch(v);
-  state_.touched().next();
+    if (v != kGhost) state_.changes().touch(v);
+  state_.changes().next();
   going_ += proposal.tetrahedra;
   fused_.push_back(static_cast<VertexId>(state_.mesh().vertexSlots() + planned_.size()));
   if (boundary_) boundary_->decideOn(proposal, fused_.back());

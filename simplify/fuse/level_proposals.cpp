@@ -32,11 +32,11 @@ void LevelProposals::end() {
 }
 
 void LevelProposals::serve(std::size_t worker) {
-  for (Waiting waiting; !isOver_.load(std::memory_order_relaxed);) {
+  for (SpinWait waiting; !isOver_.load(std::memory_order_relaxed);) {
     if (makeNext(worker))
       waiting = {};
     else
-      waiting.once();
+      waiting.wait();
   }
 }
 
@@ -73,8 +73,8 @@ bool LevelProposals::claim(Worker& worker) {
   std::size_t first = claimed_.load(std::memory_order_relaxed), at;
   do {
     for (at = first; at < entries_.size(); ++at) {
-      if (at + kLocksAhead < entries_.size()) touched_.prefetch(entries_[at + kLocksAhead].owner);
-      if (!touched_.isLocked(entries_[at].owner)) break;
+      if (at + kLocksAhead < entries_.size()) changes_.prefetch(entries_[at + kLocksAhead].owner);
+      if (!changes_.isLocked(entries_[at].owner)) break;
     }
   } while (!claimed_.compare_exchange_weak(first, std::min(at + 1, entries_.size()),
                                            std::memory_order_relaxed));
@@ -102,7 +102,7 @@ void LevelProposals::askMemory(Worker& worker) const {
     askStar(claim->owner), cost_.prefetch(claim->owner);
     if (const Candidate* best = candidates_.best(claim->owner)) {
       claim->partner = best->partner;
-      touched_.prefetch(claim->partner), askPlace(claim->partner);
+      changes_.prefetch(claim->partner), askPlace(claim->partner);
     }
   }
   if (const Claim* claim = stepsAgo(5); claim && claim->partner != kGhost)
@@ -123,14 +123,14 @@ void LevelProposals::comeTo(std::size_t at) {
 }
 
 Proposal* LevelProposals::make(const Claim& claim, std::size_t worker) {
-  const std::uint32_t now = touched_.now();
+  const std::uint32_t now = changes_.now();
   auto rest = candidates_.remaining(claim.owner);
-  if (touched_.isLocked(claim.owner) || rest.empty() || touched_.isLocked(rest[0].partner))
+  if (changes_.isLocked(claim.owner) || rest.empty() || changes_.isLocked(rest[0].partner))
     return &nothing_;
   Proposal& proposal = newOf(workers_[worker]);
   // Where the best is not legal, the next one is wanted soon.
   for (; !rest.empty() && rest[0].key <= limit_; rest = rest.subspan(1)) {
-    if (!mesh_.alive(rest[0].partner) || touched_.isLocked(rest[0].partner)) break;
+    if (!mesh_.alive(rest[0].partner) || changes_.isLocked(rest[0].partner)) break;
     // No dearer than one thread would go on with at once: later the owner's other candidates are
     // not what they are now.
     const float most = std::min(limit_, kDearer * rest[0].key);
@@ -141,12 +141,12 @@ Proposal* LevelProposals::make(const Claim& claim, std::size_t worker) {
 
 // While another thread makes it, worker 0 makes others.
 Proposal* LevelProposals::await(std::size_t at) {
-  for (Waiting waiting;;) {
+  for (SpinWait waiting;;) {
     if (Proposal* made = std::atomic_ref(made_[at]).load(std::memory_order_acquire)) return made;
     if (makeNext(0))
       waiting = {};
     else
-      waiting.once();
+      waiting.wait();
   }
 }
 

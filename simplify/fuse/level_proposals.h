@@ -24,11 +24,11 @@ inline constexpr float kDearer = 1.25f;
 class LevelProposals {
  public:
   LevelProposals(const FusionMesh& mesh, const FusionCost& cost, const Candidates& candidates,
-                 const Touched& touched)
-      : mesh_(mesh), cost_(cost), candidates_(candidates), touched_(touched) {}
+                 const ChangeTimes& changes)
+      : mesh_(mesh), cost_(cost), candidates_(candidates), changes_(changes) {}
 
   /// A level begins with these entries, sorted, and this limit of its keys. `proposers`: one a
-  /// worker. All of them outlive the level. REQUIRES: Touched::beginLevel.
+  /// worker. All of them outlive the level. REQUIRES: ChangeTimes::beginLevel.
   void begin(std::span<const QueueEntry> entries, float limit, const Proposers& proposers);
   /// The work of another worker until stop().
   void serve(std::size_t worker);
@@ -78,7 +78,7 @@ class LevelProposals {
   const FusionMesh& mesh_;
   const FusionCost& cost_;
   const Candidates& candidates_;
-  const Touched& touched_;
+  const ChangeTimes& changes_;
   std::span<const QueueEntry> entries_;
   float limit_ = 0;
   const Proposers* proposers_ = nullptr;

@@ -100,7 +100,7 @@ void OpenVertices::fill(std::vector<QueueEntry>& entries, float most) {
       if (i + kListsAhead < end) candidates.prefetchBest(vertices_[i + kListsAhead]);
       const VertexId v = vertices_[i];
       // what its old neighbours forbade the new ones may allow
-      if (candidates.hasFailed(v) && state_.touched().isLocked(v)) candidates.restart(v);
+      if (candidates.hasFailed(v) && state_.changes().isLocked(v)) candidates.restart(v);
       const Candidate* best = state_.bestAlive(v);
       vertices_[left.vertices] = v;
       left.vertices += !candidates.isEmpty(v);

@@ -103,7 +103,7 @@ class PaperSimplifier {
         if (!fuse(preyOf(cell), *point))
           return fail(
               ErrorCode::kLimitExceeded,
-              "4,096 levels do not reach the target; ask for more cells with --target-ratio");
+              "4,096 levels do not reach the target; ask for more cells with `targetRatio`");
         updateHeap();
       }
     }
@@ -167,7 +167,7 @@ class PaperSimplifier {
     if (!point || !test_.insideEnvelope(*point)) return no(refused.envelope);
     if (test_.shapeAt(*point) < 0) return no(refused.flip);
     if (!test_.keepsTopology()) return no(refused.topology);
-    if (interior(prey) && test_.star().deleted.size() < kLeastOfInterior) return no(refused.few);
+    if (interior(prey) && test_.star().deleted.size() < kMinOfInterior) return no(refused.few);
     return point;
   }
 

@@ -16,7 +16,7 @@ namespace qtet {
 /// of (cells round the edge - 3), at least 11 if every edge has more than three cells. The paper
 /// takes that for granted. Where it does not hold (thirteen cells can do it) the tetrahedron is not
 /// fused.
-inline constexpr std::size_t kLeastOfInterior = 11;
+inline constexpr std::size_t kMinOfInterior = 11;
 
 /// The figures of a run that the paper's Table 1 states, and why the other tetrahedra stayed.
 struct PaperFigures {
@@ -32,7 +32,7 @@ struct PaperFigures {
     std::uint64_t envelope = 0;  ///< 3.2 c
     /// 3.2 d; singular vertices, too large stars and what the log cannot describe among them.
     std::uint64_t topology = 0;
-    /// 3.2 a: an interior one that would remove fewer than kLeastOfInterior.
+    /// 3.2 a: an interior one that would remove fewer than kMinOfInterior.
     std::uint64_t few = 0;
   } refused;
 };

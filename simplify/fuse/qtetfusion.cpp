@@ -75,7 +75,7 @@ class Simplifier {
       const bool stalls = !runLevels({target_});
       if (levels_ == kMaxLevels && live() > target_)
         return fail(ErrorCode::kLimitExceeded,
-                    "4,096 levels do not reach the target; ask for more cells with --base-cells");
+                    "4,096 levels do not reach the target; ask for more cells with `baseCells`");
       if (!stalls && isWorth(kWorthAnotherPass, before)) continue;
       if (isRelaxed) break;
       isRelaxed = true;
@@ -146,7 +146,7 @@ class Simplifier {
     proposers_.clear();
     for (std::size_t i = 0; i < workers_.count(); ++i)
       proposers_.push_back(std::make_unique<FusionProposer>(
-          state_.mesh(), state_.cost(), state_.touched(), band_, limits,
+          state_.mesh(), state_.cost(), state_.changes(), band_, limits,
           FusionPointOptions{options_.placement, options_.shapeWeight}));
   }
 

@@ -70,7 +70,7 @@ inline void LocalStar::addAffected(std::size_t before, std::uint32_t from) {
 // More than one of their vertices is prey.
 template <std::uint32_t k>
 inline bool LocalStar::addDeleted(std::span<const CellId> cells) {
-  std::size_t mostSingular = 0;
+  std::size_t maxSingular = 0;
   LocalVertices::Adding adding(vertices_);
   for (std::size_t at = 0; at < cells.size(); ++at) {
     const auto& cell = mesh_.cell(cells[at]);
@@ -90,12 +90,12 @@ inline bool LocalStar::addDeleted(std::span<const CellId> cells) {
       local[j] = other[i] = adding.intern(cell[j]);
       singular += cell[j] != kGhost && mesh_.singular(cell[j]);
     }
-    mostSingular = std::max(mostSingular, singular);
+    maxSingular = std::max(maxSingular, singular);
     if (k == 2) ring_[at] = other;
     innerDeleted_.addIf(!mesh_.isGhost(cells[at]), {local[0], local[1], local[2], local[3]});
   }
   star_.deleted.insert(star_.deleted.end(), cells.begin(), cells.end());
-  return mostSingular <= 1;  // else an edge that is not a manifold's could be fused away unseen
+  return maxSingular <= 1;  // else an edge that is not a manifold's could be fused away unseen
 }
 
 }  // namespace qtet

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "codec/log/log_file.h"
 #include "codec/log/log_manifest.h"
 #include "codec/mesh/predicates.h"
+#include "codec/refine/log_file.h"
 #include "simplify/clean/quantise_field.h"
 #include "simplify/clean/verify.h"
 #include "simplify/log/match_mesh.h"

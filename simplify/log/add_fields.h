@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "codec/log/log_edit.h"
-#include "codec/log/log_history.h"
+#include "codec/refine/log_edit.h"
+#include "codec/refine/log_history.h"
 #include "simplify/measure/measure_error.h"
 #include "simplify/mesh/tet_mesh.h"
 

@@ -6,12 +6,12 @@
 #include <utility>
 
 #include "codec/log/exact_values.h"
-#include "codec/log/log_edit.h"
-#include "codec/log/log_file.h"
 #include "codec/log/log_index.h"
 #include "codec/log/log_writer.h"
 #include "codec/mesh/boundary.h"
 #include "codec/mesh/original_cells.h"
+#include "codec/refine/log_edit.h"
+#include "codec/refine/log_file.h"
 #include "simplify/split/split_cells.h"
 
 namespace qtet {

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "codec/log/log_file.h"
+#include "codec/refine/log_file.h"
 #include "proto/manifest.h"
 
 namespace qtet {

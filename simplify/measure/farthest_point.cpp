@@ -14,7 +14,7 @@ namespace {
 /// Searches for one triangle. Measured: nearly all take fewer than twenty.
 constexpr std::size_t kMaxSearches = 400;
 /// A cut leaves out what is nearer to the plane, in lattice steps: less is rounding.
-constexpr double kLeastCut = 0x1p-16;
+constexpr double kMinCut = 0x1p-16;
 
 /// A convex piece of the triangle.
 struct Piece {
@@ -64,7 +64,7 @@ class Search {
       examine(piece);
     }
     if (!waiting_.empty()) accepted_ = std::max(accepted_, waiting_.front().bound);
-    return {found_, std::max(found_, accepted_), nearest, cover_};
+    return {found_, std::max(found_, accepted_), nearest, bound_};
   }
 
  private:
@@ -77,7 +77,7 @@ class Search {
     tree_.tryTriangle(at, guess, nearest);
     tree_.nearest(at, nearest, limit);
     nearest_ = nearest.triangle;
-    cover_.add(nearest_);
+    bound_.add(nearest_);
     if (nearest.point.squared > limit) found_ = std::max(found_, nearest.point.squared);
     return nearest.point.squared;
   }
@@ -102,7 +102,7 @@ class Search {
                                          normal_, std::sqrt(acceptable()));
     if (std::isinf(over.height)) return false;
     nearest_ = over.triangle;
-    cover_.add(over.cover);
+    bound_.add(over.cover);
     accepted_ = std::max(accepted_, over.height * over.height);
     return true;
   }
@@ -133,7 +133,7 @@ class Search {
     const Corners to = tree_.corners(piece.guess);
     const Vector3 normal = cross(to[1] - to[0], to[2] - to[0]);
     Plane best{};
-    double deepest = kLeastCut;
+    double deepest = kMinCut;
     for (std::size_t i = 0; i < 3; ++i) {
       const Plane edge = planeThrough(to[i], cross(normal, to[(i + 1) % 3] - to[i]));
       double in = 0, out = 0;
@@ -143,7 +143,7 @@ class Search {
       }
       if (std::min(in, out) > deepest) deepest = std::min(in, out), best = edge;
     }
-    if (deepest > kLeastCut) {
+    if (deepest > kMinCut) {
       cut(piece, best);
       return;
     }
@@ -195,7 +195,7 @@ class Search {
   double enough_, found_ = 0, accepted_ = 0;
   std::size_t searches_ = 0;
   std::uint32_t nearest_ = 0;
-  Cover cover_;
+  BoundTriangles bound_;
   std::vector<Piece> waiting_;  // a heap, the largest bound in front
 };
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "simplify/measure/cover.h"
+#include "simplify/measure/bound_triangles.h"
 #include "simplify/mesh/triangle_tree.h"
 
 namespace qtet {
@@ -20,7 +20,7 @@ struct FarthestPoint {
   /// The surface's triangle that is nearest to the middle, or near enough, or over most of it.
   std::uint32_t nearest = 0;
   /// The triangles that the bound rests on: it holds while they stay.
-  Cover cover{};
+  BoundTriangles cover{};
 };
 
 /// The largest squared distance of the corners to triangle `to`. The distance to a convex set is

@@ -51,7 +51,7 @@ class BoundaryMeter {
     double bound;  ///< the square of how far its farthest corner is from `near`
     /// A sharper bound that rests on more triangles of the level.
     double coveredBound;
-    Cover cover;
+    BoundTriangles cover;
 
     [[nodiscard]] double best() const { return std::min(bound, coveredBound); }
   };

@@ -14,7 +14,7 @@ constexpr double kNone = std::numeric_limits<double>::infinity();
 constexpr double kApart = 0x1p-10;
 /// Area over circumference, in lattice steps, of the narrowest piece: rounding is then below a
 /// hundredth of its area.
-constexpr double kLeastWidth = 0x1p-8;
+constexpr double kMinWidth = 0x1p-8;
 /// The part of the piece's area by which the sum of the layers may miss a whole number.
 constexpr double kMissing = 0x1p-5;
 /// Triangles over one piece: with more of them searching for nearest ones is cheaper.
@@ -54,7 +54,7 @@ class Prism {
       const Vector3 inward = 1 / length * cross(normal_, edge);
       sides_[sideCount_++] = {inward, dot(inward, from)};
     }
-    isWide_ = area_ >= 2 * kLeastWidth * circumference;
+    isWide_ = area_ >= 2 * kMinWidth * circumference;
   }
 
   [[nodiscard]] bool isWide() const { return isWide_; }
@@ -76,7 +76,7 @@ class Prism {
   [[nodiscard]] SurfaceOver result() const {
     const double layers = sum_ / area_, whole = std::round(layers);
     if (whole == 0 || !(std::abs(layers - whole) < kMissing)) return {};
-    return {highest_, triangle_, cover_};
+    return {highest_, triangle_, bound_};
   }
 
  private:
@@ -138,7 +138,7 @@ class Prism {
     highest_ = std::max({highest_, -low, high});
     sum_ += area;
     if (std::abs(area) > largest_) largest_ = std::abs(area), triangle_ = id;
-    cover_.add(id);
+    bound_.add(id);
     return true;
   }
 
@@ -151,7 +151,7 @@ class Prism {
 
   double sum_ = 0, highest_ = 0, largest_ = -1;  // areas: twice
   std::uint32_t triangle_ = 0;
-  Cover cover_;
+  BoundTriangles bound_;
 };
 
 }  // namespace

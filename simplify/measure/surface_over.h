@@ -6,7 +6,7 @@
 #include <limits>
 #include <span>
 
-#include "simplify/measure/cover.h"
+#include "simplify/measure/bound_triangles.h"
 #include "simplify/mesh/triangle_tree.h"
 
 namespace qtet {
@@ -19,7 +19,7 @@ struct SurfaceOver {
   /// The surface's triangle over the largest share of the piece.
   std::uint32_t triangle = 0;
   /// The triangles that the height rests on.
-  Cover cover{};
+  BoundTriangles cover{};
 };
 
 /// The parts over the piece are cut out of the surface. Where none crosses the planes at +-`most`

@@ -214,11 +214,11 @@ std::size_t TriangleTree::nearest(const Vector3& p, NearestTriangle& best, doubl
   };
   std::array<Waiting, kMaxWaiting> waiting;
   std::size_t size = 0, looked = 0;
-  const auto leastSquared = [&](std::uint32_t node) {
+  const auto minSquared = [&](std::uint32_t node) {
     const double squared = squaredDistance(p, nodes_[node]);
     return slabs_.empty() ? squared : std::max(squared, squaredDistance(p, slabs_[node]));
   };
-  waiting[size++] = {leastSquared(0), 0};
+  waiting[size++] = {minSquared(0), 0};
   while (size > 0 && best.point.squared > enough) {
     auto [squared, index] = waiting[--size];
     while (squared < best.point.squared) {
@@ -229,7 +229,7 @@ std::size_t TriangleTree::nearest(const Vector3& p, NearestTriangle& best, doubl
           tryTriangle(p, ids_[i], best);
         break;
       }
-      Waiting near{leastSquared(index + 1), index + 1}, far{leastSquared(node.right), node.right};
+      Waiting near{minSquared(index + 1), index + 1}, far{minSquared(node.right), node.right};
       if (far.squared < near.squared) std::swap(near, far);
       if (far.squared < best.point.squared) waiting[size++] = far;
       squared = near.squared;

@@ -40,7 +40,7 @@ void spinUntil(const Done& done) {
 
 }  // namespace
 
-void Waiting::once() {
+void SpinWait::wait() {
   if (isLong_) return std::this_thread::sleep_for(kNap);
   if (looks_ == 0) end_ = Clock::now() + kMoment;
   pause();

@@ -23,10 +23,10 @@ namespace qtet {
 /// One wait of a thread that looks at something again and again until another thread has done it.
 /// It keeps the processor for a moment and then sleeps between the looks, so that a busy machine
 /// has the processor for others.
-class Waiting {
+class SpinWait {
  public:
   /// Between two looks.
-  void once();
+  void wait();
 
  private:
   std::chrono::steady_clock::time_point end_{};  // of the moment

@@ -26,7 +26,7 @@ Result<std::vector<std::optional<double>>> namedWeights(const PipelineOptions& o
     const std::vector<std::uint32_t> meant = meantBy(name, false, fields);
     if (meant.empty())
       return fail(ErrorCode::kNotFound,
-                  "--field-weight: the mesh carries no point field '" + name + "'");
+                  "`fieldWeights`: the mesh carries no point field '" + name + "'");
     for (const std::uint32_t f : meant) named[f] = weight;
   }
   return named;
@@ -39,7 +39,7 @@ std::string whyNot(const QuantisedMesh& quantised, std::size_t f, bool isNamed) 
   if (values.empty() || std::ranges::all_of(values, [&](std::int32_t v) { return v == values[0]; }))
     return "is constant";
   if (!isFloatType(info.type) && !isNamed)
-    return "is one of integers, which may be labels (--field-weight " + info.name +
+    return "is one of integers, which may be labels (`fieldWeights` " + info.name +
            "=1 makes it count)";
   return {};
 }
@@ -67,9 +67,9 @@ Result<std::size_t> regionFieldOf(const std::string& name, const std::vector<Fie
   if (meant.size() == 1) return meant.front();
   return fail(
       ErrorCode::kNotFound,
-      "--preserve-regions: the mesh carries " +
+      "`regions`: the mesh carries " +
           std::string(meant.empty() ? "no cell field '" : "several steps of the cell field '") +
-          name + (meant.empty() ? "'; see that --fields includes it" : "'; name one, NAME@TIME"));
+          name + (meant.empty() ? "'; see that `fields` includes it" : "'; name one, NAME@TIME"));
 }
 
 }  // namespace

@@ -55,23 +55,23 @@ std::string reasonOf(const Counts& counts, const LossFacts& facts) {
   if (static_cast<double>(coincident) >= kSeamPoints * static_cast<double>(counts.points))
     return std::to_string(coincident) +
            " points lie at the place of another one and are not joined with it, so the seams "
-           "between pieces count as boundary: join them with --weld 0";
+           "between pieces count as boundary: join them with `weld` 0";
   const std::string ratio =
-      "--target-ratio " +
+      "`targetRatio` " +
       roundedUp(kMoreCells * static_cast<double>(counts.base) / static_cast<double>(counts.full));
   if (counts.parts >= kManyParts && counts.base < kEnoughCellsAPart * counts.parts)
     return "the mesh falls into " + std::to_string(counts.parts) + " parts, of which each keeps " +
-           std::to_string(counts.base / counts.parts) + " cells on average: give --target-ratio " +
+           std::to_string(counts.base / counts.parts) + " cells on average: give `targetRatio` " +
            roundedUp(static_cast<double>(kEnoughCellsAPart * counts.parts) /
                      static_cast<double>(counts.full)) +
-           ", or join parts that nearly touch with --weld DISTANCE";
+           ", or join parts that nearly touch with `weld` DISTANCE";
   if (facts.wallThickness < kThinWall)
     return "its walls are thin, " + percent(facts.wallThickness) +
-           " of the diagonal on average: put the shape first with --boundary-weight 15000, or "
+           " of the diagonal on average: put the shape first with `boundaryWeight` 15000, or "
            "give " +
            ratio;
   return "too few cells are left for this shape, " + std::to_string(counts.base) + ": give " +
-         ratio + ", or --max-boundary-error " + roundedUp(kBoundaryErrorWarned);
+         ratio + ", or `maxBoundaryError` " + roundedUp(kBoundaryErrorWarned);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace qtet {
 namespace {
 
 // Fewer, and most vertices lie between two leaves, where nothing fuses.
-constexpr std::size_t kLeastCellsPerPacket = 100;
+constexpr std::size_t kMinCellsPerPacket = 100;
 
 /// The stage in hand: reports it to the caller, and notes how long it took.
 class Stages {
@@ -115,7 +115,7 @@ Result<FusionHistory> simplify(QuantisedMesh& quantised, Run& run) {
   Result<FusionHistory> history = fuse(std::move(quantised.mesh), *options, run);
   if (history && options->bands.cellsPerPacket > 0 && history->bands.ends.empty())
     run.note(
-        {"the mesh is too small for more than one packet (--cells-per-packet): the log has the "
+        {"the mesh is too small for more than one packet (`cellsPerPacket`): the log has the "
          "layout stream"});
   return history;
 }
@@ -176,15 +176,15 @@ Status checkOptions(const PipelineOptions& options) {
   const bool isPaper = options.algorithm == Algorithm::kPaper;
   if (isPaper && (options.regions || fusion.envelopeTolerance > 0 || !options.fieldWeights.empty()))
     return bad(
-        "--algorithm paper knows no --preserve-regions, --envelope-tolerance or --field-weight; "
+        "`algorithm` paper knows no `regions`, `envelopeTolerance` or `fieldWeights`; "
         "leave them out");
   if (isPaper && fusion.bands.cellsPerPacket > 0)
-    return bad("--algorithm paper knows no --layout regions; leave it out");
-  if (fusion.bands.cellsPerPacket > 0 && fusion.bands.cellsPerPacket < kLeastCellsPerPacket)
-    return bad("--cells-per-packet is below " + std::to_string(kLeastCellsPerPacket));
+    return bad("`algorithm` paper knows no `layout` regions; leave it out");
+  if (fusion.bands.cellsPerPacket > 0 && fusion.bands.cellsPerPacket < kMinCellsPerPacket)
+    return bad("`cellsPerPacket` is below " + std::to_string(kMinCellsPerPacket));
   for (const auto& [name, weight] : options.fieldWeights)
     if (!(weight >= 0) || std::isinf(weight))
-      return bad("--field-weight of " + name + " is negative or not finite");
+      return bad("`fieldWeights` of " + name + " is negative or not finite");
   return {};
 }
 

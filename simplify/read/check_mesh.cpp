@@ -109,7 +109,7 @@ class Checking {
     add({"crossedFaces", Verdict::kKept,
          "quadrilaterals that their two cells cut along different diagonals, where the mesh is "
          "open",
-         "quadrilateral", crossed, "--weld 0 cuts them alike"});
+         "quadrilateral", crossed, "`weld` 0 cuts them alike"});
   }
 
   void addClean(const CleanReport& clean) {
@@ -127,10 +127,10 @@ class Checking {
          ""});
     add({"invertedCells", Verdict::kKept, "tetrahedra inside out against their neighbours",
          "tetrahedron", clean.invertedCells,
-         "fields and volumes are wrong there; mesh the place anew"});
+         "fields and volumes are wrong there; mesh the place again"});
     add({"coincidentPoints", Verdict::kKept,
          "points where an earlier one lies: a slit, or parts that do not hang together", "point",
-         clean.coincidentPoints, "--weld 0 joins them"});
+         clean.coincidentPoints, "`weld` 0 joins them"});
     add({"nonManifoldEdges", Verdict::kKept, "boundary edges of more than two boundary faces",
          "point", clean.nonManifoldEdges, ""});
     add({"nonManifoldVertices", Verdict::kKept,

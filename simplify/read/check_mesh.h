@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "simplify/clean/clean_mesh.h"
-#include "simplify/read/read_options.h"
+#include "simplify/read/options/read_options.h"
 
 namespace qtet {
 

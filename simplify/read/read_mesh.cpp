@@ -5,16 +5,16 @@
 
 #include "proto/field_key.h"
 #include "simplify/clean/mend_faces.h"
-#include "simplify/read/inflate_file.h"
-#include "simplify/read/join_blocks.h"
-#include "simplify/read/mesh_format.h"
-#include "simplify/read/mesh_readers.h"
-#include "simplify/read/run_meshio.h"
-#include "simplify/read/select_fields.h"
-#include "simplify/read/time_steps.h"
+#include "simplify/read/options/mesh_format.h"
+#include "simplify/read/options/select_fields.h"
+#include "simplify/read/options/time_steps.h"
+#include "simplify/read/parts/weld_points.h"
+#include "simplify/read/process/inflate_file.h"
+#include "simplify/read/process/run_meshio.h"
+#include "simplify/read/text/text_readers.h"
 #include "simplify/read/unused_points.h"
-#include "simplify/read/vtk_grid.h"
-#include "simplify/read/weld_points.h"
+#include "simplify/read/vtk/join_blocks.h"
+#include "simplify/read/vtk/vtk_grid.h"
 
 namespace qtet {
 namespace {
@@ -191,8 +191,8 @@ void meanOriginalIds(const std::vector<MeshField>& fields, FieldNames& names,
   const std::string key = "cell:" + std::string(kOriginalCellField);
   if (fieldsOfKey(fields, key).empty())
     notes.emplace_back(
-        "--original-ids: no cell was split, so that each tetrahedron is one of the file's; "
-        "--keep-order keeps their numbering");
+        "`originalIds`: no cell was split, so that each tetrahedron is one of the file's; "
+        "`keepOrder` keeps their numbering");
   else if (names)
     names->push_back(key);
 }
@@ -234,7 +234,7 @@ Result<CellMesh> readCells(const std::filesystem::path& path, const ReadOptions&
   }
   if (options.weld) {
     report.weldedPoints = weldPoints(*cells, *options.weld);
-    report.notes.push_back("points joined with an earlier one (--weld): " +
+    report.notes.push_back("points joined with an earlier one (`weld`): " +
                            std::to_string(report.weldedPoints));
   }
   return cells;

@@ -6,7 +6,7 @@
 
 #include "proto/error.h"
 #include "simplify/mesh/tet_mesh.h"
-#include "simplify/read/read_options.h"
+#include "simplify/read/options/read_options.h"
 
 namespace qtet {
 

@@ -24,13 +24,13 @@ Result<TetMesh> makeSample(std::string_view name, std::optional<std::uint64_t> c
   for (const Sample& sample : kSamples) {
     if (sample.name == name) {
       const std::uint64_t count = cells.value_or(sample.cells);
-      if (sample.cells == sample.mostCells && count != sample.cells)
+      if (sample.cells == sample.maxCells && count != sample.cells)
         return fail(ErrorCode::kBadValue, "the sample " + std::string(name) +
                                               " comes in one size, " +
                                               std::to_string(sample.cells) + " cells");
-      if (count > sample.mostCells)
+      if (count > sample.maxCells)
         return fail(ErrorCode::kBadValue, "the sample " + std::string(name) + " comes with " +
-                                              std::to_string(sample.mostCells) + " cells at most");
+                                              std::to_string(sample.maxCells) + " cells at most");
       return sample.make(count);
     }
     known += (known.empty() ? "" : ", ") + std::string(sample.name);

@@ -23,7 +23,7 @@ struct Sample {
   /// A mesh of at least so many cells, the next size that there is.
   TetMesh (*make)(std::uint64_t cells);
   /// Its own size, which is the smallest, and the largest; equal: there is but one.
-  std::uint64_t cells, mostCells;
+  std::uint64_t cells, maxCells;
 };
 
 /// All samples, in the order in which help shows them.

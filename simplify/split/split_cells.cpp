@@ -75,7 +75,7 @@ class Splitter {
         return fail(ErrorCode::kLimitExceeded,
                     "split into tetrahedra, the mesh has more than " +
                         std::to_string(kMaxElements) + " cells or points" +
-                        (curved_ == CurvedCells::kSplit ? "; --curved linear makes fewer" : ""));
+                        (curved_ == CurvedCells::kSplit ? "; `curved` linear makes fewer" : ""));
       }
       ends_.push_back(static_cast<CellId>(out_.tetrahedra.size()));
     }
@@ -306,7 +306,7 @@ class Splitter {
       return fail(ErrorCode::kBadInput,
                   "cell " + std::to_string(mesh_.cellId(cell)) + " is a " + cellTypeName(type) +
                       " of " + std::to_string(ids.size()) + " nodes, which no degree up to " +
-                      std::to_string(kMaxDegree) + " has; --curved linear takes its corners alone");
+                      std::to_string(kMaxDegree) + " has; `curved` linear takes its corners alone");
     }
     const HigherCell& higher = higherCell(type, *degrees);
     const std::uint64_t insideOut = report_.insideOut;

@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "codec/log/log_file.h"
 #include "codec/log/log_index.h"
-#include "codec/log/refiner.h"
 #include "codec/log/value_block.h"
+#include "codec/refine/log_file.h"
+#include "codec/refine/refiner.h"
 #include "proto/checksum.h"
 #include "proto/crc32c.h"
 #include "tests/bench/cpu_clock.h"

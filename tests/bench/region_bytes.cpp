@@ -16,10 +16,10 @@
 #include <utility>
 #include <vector>
 
-#include "codec/log/log_file.h"
 #include "codec/log/log_index.h"
 #include "codec/log/log_manifest.h"
 #include "codec/mesh/mesh.h"
+#include "codec/refine/log_file.h"
 #include "server/store/packet_intervals.h"
 #include "server/stream/client_blocks.h"
 #include "server/stream/planner.h"

@@ -8,7 +8,7 @@ import {join} from 'node:path';
 export class Options {
   #bin;
   #root;
-  /** The programs' answers to --help, by the words before it. */
+  /** The programs' answers to --help or --help-all, by the words before it. */
   #help = new Map();
 
   constructor(bin, root) {
@@ -45,7 +45,8 @@ export class Options {
     const key = [program, ...words].join(' ');
     if (!this.#help.has(key)) {
       const path = join(this.#bin, program);
-      this.#help.set(key, execFileSync(path, [...words, '--help'], {encoding: 'utf8'}));
+      const asked = key === 'qtet' ? '--help' : '--help-all';
+      this.#help.set(key, execFileSync(path, [...words, asked], {encoding: 'utf8'}));
     }
     return this.#help.get(key);
   }

@@ -5,7 +5,7 @@
 #include <cstdlib>
 
 #include "codec/log/log_index.h"
-#include "codec/log/refiner.h"
+#include "codec/refine/refiner.h"
 
 namespace qtet::fuzz {
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "codec/log/log_manifest.h"
-#include "codec/log/refiner.h"
 #include "codec/log/value_block.h"
+#include "codec/refine/refiner.h"
 #include "tests/fuzz/checked_refiner.h"
 #include "tests/support/forged_log.h"
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "codec/log/refiner.h"
+#include "codec/refine/refiner.h"
 #include "tests/fuzz/byte_source.h"
 #include "tests/fuzz/checked_refiner.h"
 

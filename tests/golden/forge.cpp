@@ -7,9 +7,9 @@
 
 #include "codec/coding/level_columns.h"
 #include "codec/files/atomic_file.h"
-#include "codec/log/log_file.h"
 #include "codec/log/log_manifest.h"
 #include "codec/log/log_writer.h"
+#include "codec/refine/log_file.h"
 #include "proto/limits.h"
 #include "simplify/fuse/qtetfusion.h"
 #include "simplify/log/kept_input.h"

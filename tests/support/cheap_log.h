@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "codec/log/log_manifest.h"
-#include "codec/log/refiner.h"
 #include "codec/log/value_block.h"
 #include "codec/mesh/boundary.h"
 #include "codec/record/base_coder.h"
 #include "codec/record/record_coder.h"
+#include "codec/refine/refiner.h"
 #include "tests/support/author_coder.h"
 #include "tests/support/forged_log.h"
 

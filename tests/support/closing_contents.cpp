@@ -3,12 +3,12 @@
 #include <bit>
 
 #include "codec/log/exact_values.h"
-#include "codec/log/log_file.h"
 #include "codec/log/log_index.h"
 #include "codec/log/log_manifest.h"
-#include "codec/log/refiner.h"
 #include "codec/mesh/input_order.h"
 #include "codec/mesh/original_cells.h"
+#include "codec/refine/log_file.h"
+#include "codec/refine/refiner.h"
 
 namespace qtet::testing {
 namespace {

@@ -42,7 +42,7 @@ Result<RateCurve> logCurve(const OpenedLog& log) {
   RateCurve out;
   for (const ManifestLevel& level : levels) {
     if (!level.error || level.error->fields.empty())
-      return fail(ErrorCode::kNotFound, "the log does not tell the error of level " +
+      return fail(ErrorCode::kNotFound, "the log does not have the error of level " +
                                             std::to_string(level.level) +
                                             " for a field; make it with one and --measure levels");
     const RatePoint point = pointOf(level, static_cast<double>(log.prefixBytes(level.level)));

@@ -12,9 +12,9 @@
 #include <numeric>
 
 #include "codec/api/qtet.h"
-#include "codec/log/log_file.h"
 #include "codec/log/log_index.h"
-#include "codec/log/refiner.h"
+#include "codec/refine/log_file.h"
+#include "codec/refine/refiner.h"
 #include "tests/support/meshes.h"
 #include "tests/support/paths/test_paths.h"
 

@@ -107,7 +107,7 @@ TEST(QtetC, errorsThatWereNotMeasuredAreNotFound) {
   std::uint32_t level = 99;
   double rms = 0, max = 0;
   EXPECT_EQ(qtet_log_level_of_boundary_error(log.get(), 0.5, &level), QTET_NOT_FOUND);
-  EXPECT_NE(errorOf(log).find("--measure levels"), std::string::npos) << errorOf(log);
+  EXPECT_NE(errorOf(log).find("`measure` levels"), std::string::npos) << errorOf(log);
   EXPECT_EQ(qtet_log_level_of_field_error(log.get(), 0, 0.5, &level), QTET_NOT_FOUND);
   EXPECT_EQ(qtet_log_field_error(log.get(), 0, 0, &rms, &max), QTET_NOT_FOUND);
   EXPECT_EQ(level, 99u);

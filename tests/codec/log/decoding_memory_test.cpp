@@ -3,12 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include "codec/log/log_file.h"
 #include "codec/log/log_index.h"
 #include "codec/log/log_manifest.h"
 #include "codec/log/log_writer.h"
-#include "codec/log/verify_log.h"
 #include "codec/mesh/growing_mesh.h"
+#include "codec/refine/log_file.h"
+#include "codec/refine/verify_log.h"
 #include "proto/limits.h"
 #include "simplify/fuse/qtetfusion.h"
 #include "tests/support/allocation_meter.h"
@@ -18,7 +18,7 @@
 namespace qtet {
 namespace {
 
-void compare(const LogFile& log, const std::string& what, double mostTimes) {
+void compare(const LogFile& log, const std::string& what, double maxTimes) {
   const Result<Manifest> manifest = manifestOf(log.index());
   ASSERT_TRUE(manifest) << what;
   const auto foretold = static_cast<double>(decodingBytes(log.index()));
@@ -27,7 +27,7 @@ void compare(const LogFile& log, const std::string& what, double mostTimes) {
     ASSERT_TRUE(decoded) << what << decoded.error().text();
   }));
   EXPECT_LE(taken, foretold) << what;
-  EXPECT_LE(foretold, mostTimes * taken) << what;
+  EXPECT_LE(foretold, maxTimes * taken) << what;
 }
 
 TEST(DecodingBytes, areAtLeastWhatDecodingTakesAndNotFarFromIt) {

@@ -6,10 +6,10 @@
 #include <regex>
 #include <sstream>
 
-#include "codec/log/log_file.h"
 #include "codec/log/log_index.h"
-#include "codec/log/refiner.h"
 #include "codec/log/value_block.h"
+#include "codec/refine/log_file.h"
+#include "codec/refine/refiner.h"
 #include "tests/support/paths/test_paths.h"
 
 namespace qtet {

@@ -7,10 +7,10 @@
 
 #include "codec/log/log_index.h"
 #include "codec/log/log_writer.h"
-#include "codec/log/refiner.h"
 #include "codec/log/value_block.h"
 #include "codec/mesh/boundary.h"
 #include "codec/record/record_coder.h"
+#include "codec/refine/refiner.h"
 #include "simplify/fuse/qtetfusion.h"
 #include "tests/support/meshes.h"
 

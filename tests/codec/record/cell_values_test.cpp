@@ -9,8 +9,8 @@
 #include "codec/log/log_index.h"
 #include "codec/log/log_manifest.h"
 #include "codec/log/log_writer.h"
-#include "codec/log/refiner.h"
 #include "codec/log/value_block.h"
+#include "codec/refine/refiner.h"
 #include "simplify/fuse/qtetfusion.h"
 #include "tests/support/meshes.h"
 

@@ -7,11 +7,11 @@
 #include <set>
 #include <sstream>
 
-#include "codec/log/log_file.h"
 #include "codec/log/log_index.h"
-#include "codec/log/refiner.h"
 #include "codec/log/value_block.h"
 #include "codec/record/record_coder.h"
+#include "codec/refine/log_file.h"
+#include "codec/refine/refiner.h"
 #include "tests/support/paths/test_paths.h"
 
 namespace qtet {

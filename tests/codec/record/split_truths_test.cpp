@@ -1,4 +1,4 @@
-#include "codec/record/split_truths.h"
+#include "codec/record/split_describer.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ namespace {
 
 /// Changes a deleted cell of the coarsest fusion, which the log undoes first. One of its vertices
 /// becomes one that the finest fusions took, and that the log restores last.
-TEST(SplitTruths, aCellWithAVertexThatHasNotComeIsNoneOfTheStar) {
+TEST(SplitDescriber, aCellWithAVertexThatHasNotComeIsNoneOfTheStar) {
   FusionHistory history = simplify(testing::gridMesh(3, 1), {}).value();
   ASSERT_TRUE(encodeLog(history, {}));
   const Fusion& coarsest = history.fusions.back();

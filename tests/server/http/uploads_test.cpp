@@ -98,7 +98,7 @@ class UploadTest : public ::testing::Test {
                               {.threads = 2,
                                .timeouts = {.body = test::kNever},
                                .access = &access_,
-                               .uploads = {.mostBytes = 1 << 20, .check = std::ref(check_)}}};
+                               .uploads = {.maxBytes = 1 << 20, .check = std::ref(check_)}}};
 };
 
 TEST_F(UploadTest, aSoundLogIsServedOnceItIsWhole) {
@@ -502,7 +502,7 @@ unsigned beginAndBreakOff(Uploads& uploads, const UploadRequest& request) {
 
 TEST(Uploads, theOldestPartsOfATokenMakeRoomForItsNextOne) {
   const test::ServedFolder folder;
-  Uploads uploads(folder.store(), {.parts = {.mostOfToken = 2}});
+  Uploads uploads(folder.store(), {.parts = {.maxOfToken = 2}});
   const auto has = [&](char digit) {
     return uploads.partialBytes("wing", std::string(64, digit)).has_value();
   };
@@ -593,7 +593,7 @@ TEST(Uploads, anotherServersPartsAreLetAlone) {
   const std::string digest(64, 'a');
   const UploadRequest named{.id = "wing", .digest = digest, .bodyBytes = 4, .totalBytes = 4},
       nameless{.id = "wing", .bodyBytes = 4, .totalBytes = 4};
-  Uploads first(folder.store(), {.mostBytes = 100}), second(folder.store(), {.mostBytes = 100});
+  Uploads first(folder.store(), {.maxBytes = 100}), second(folder.store(), {.maxBytes = 100});
   auto one = first.begin(named), other = first.begin(nameless);
   ASSERT_TRUE(one && other);
   EXPECT_FALSE((*one)->append(ByteView(Bytes{1, 2})));
@@ -616,7 +616,7 @@ TEST(Uploads, whatAKilledServerLeftIsSweptUnlessItCanBeGoneOnWith) {
   const fs::path resumable = folder.logFolder() / (".upload-" + digest + "-wing.part"),
                  lost = folder.logFolder() / ".upload-12.0.part";
   for (const fs::path& path : {resumable, lost}) std::ofstream(path) << "half";
-  Uploads uploads(folder.store(), {.mostBytes = 100});
+  Uploads uploads(folder.store(), {.maxBytes = 100});
   uploads.sweep();
   EXPECT_TRUE(fs::exists(resumable));
   EXPECT_FALSE(fs::exists(lost));
@@ -640,7 +640,7 @@ TEST(Uploads, aServerThatRunsForYearsKeepsNoOldParts) {
                  young = folder.logFolder() / (".upload-" + std::string(64, 'b') + "-wing.part");
   for (const fs::path& path : {lost, resumable, others, young}) std::ofstream(path) << "half";
   for (const fs::path& path : {lost, resumable}) fs::last_write_time(path, old);
-  Uploads uploads(folder.store(), {.mostBytes = 100});
+  Uploads uploads(folder.store(), {.maxBytes = 100});
   const auto begin = [&](char digit) {
     return uploads.begin(
         {.id = "wing", .digest = std::string(64, digit), .bodyBytes = 4, .totalBytes = 4});

@@ -130,6 +130,7 @@ TEST(CommandLine, whatIsPrintedIsAFileThatSaysTheSame) {
 
 TEST(CommandLine, helpAndVersionNeedNoFolder) {
   EXPECT_EQ(parse({"--help"})->action, CommandLine::Action::kHelp);
+  EXPECT_EQ(parse({"--help-all"})->action, CommandLine::Action::kHelpAll);
   EXPECT_EQ(parse({"--version"})->action, CommandLine::Action::kVersion);
 }
 

@@ -24,9 +24,11 @@ namespace {
 using test::Program;
 
 TEST(Program, helpAndVersionGoToStandardOutput) {
-  Program help({"--help"});
+  Program help({"--help"}), all({"--help-all"});
   EXPECT_NE(help.output().find("Usage: qtet-server DIR"), std::string::npos);
-  std::istringstream lines(help.output());
+  EXPECT_EQ(help.output().find("--max-check-bytes"), std::string::npos);
+  EXPECT_NE(all.output().find("--max-check-bytes"), std::string::npos);
+  std::istringstream lines(help.output() + all.output());
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100u) << line;
   EXPECT_EQ(help.exitCode(), 0);
   Program version({"--version"});
@@ -201,7 +203,7 @@ TEST(Program, readsTokensAgainOnSighupAndKeepsThemWhereTheFileIsWrong) {
     folder.write("tokens", text);
     program.signal(SIGHUP);
     ++told;
-    EXPECT_TRUE(test::eventually([&] { return program.complaints("hold on") == told; })) << text;
+    EXPECT_TRUE(test::eventually([&] { return program.complaints("are kept") == told; })) << text;
     EXPECT_EQ(status(second), 200u) << text;
     EXPECT_EQ(status("anotherSecretOfManyChars"), 401u) << text;
   }

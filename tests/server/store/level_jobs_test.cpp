@@ -80,7 +80,7 @@ TEST_F(LevelJobsTest, thereAreAsManyJobsAsItWasTold) {
 TEST_F(LevelJobsTest, anAddressHasAsManyAsItMayHaveAndOthersHaveTheirs) {
   const int one = 0, other = 0;
   LevelJobs::Options few = options(4);
-  few.mostOfAddress = 2;
+  few.maxOfAddress = 2;
   LevelJobs jobs(few);
   const auto submit = [&](std::uint32_t k, LevelJobs::Address from) {
     return jobs.submit(level(k), [](const Result<LevelFile>&) {}, from);

@@ -139,7 +139,7 @@ std::size_t openDescriptors() {
 }
 
 TEST(MeshStore, moreLogsThanMayBeOpenAreServedAllTheSame) {
-  constexpr std::size_t kLogs = 20, kMostOpen = 3;
+  constexpr std::size_t kLogs = 20, kMaxOpen = 3;
   test::TempFolder folder;
   std::vector<Bytes> logs;
   for (std::uint32_t i = 0; i < kLogs; ++i) {
@@ -147,10 +147,10 @@ TEST(MeshStore, moreLogsThanMayBeOpenAreServedAllTheSame) {
     folder.write(std::to_string(i) + ".qtet", logs.back());
   }
   const std::size_t before = openDescriptors();
-  const auto store = MeshStore::open(folder.path(), {.mostOpen = kMostOpen});
+  const auto store = MeshStore::open(folder.path(), {.maxOpen = kMaxOpen});
   ASSERT_TRUE(store);
   EXPECT_EQ(store->catalogue()->meshes.size(), kLogs);
-  EXPECT_LE(openDescriptors(), before + kMostOpen);
+  EXPECT_LE(openDescriptors(), before + kMaxOpen);
   const MeshPointer kept = store->find("7");
   for (int round = 0; round < 2; ++round)
     for (std::size_t i = 0; i < kLogs; ++i) {
@@ -158,7 +158,7 @@ TEST(MeshStore, moreLogsThanMayBeOpenAreServedAllTheSame) {
       ASSERT_TRUE(mesh) << i;
       EXPECT_TRUE(std::ranges::equal(mesh->log.bytes(), logs[i]));
       EXPECT_EQ(store->findLog(mesh->log.digest()), mesh);
-      EXPECT_LE(openDescriptors(), before + kMostOpen + 2) << "the one kept, and the one in use";
+      EXPECT_LE(openDescriptors(), before + kMaxOpen + 2) << "the one kept, and the one in use";
     }
   EXPECT_EQ(store->find("7"), kept) << "not opened twice";
 }
@@ -186,7 +186,7 @@ TEST(MeshStore, aLogThatWasChangedSinceItWasCheckedIsNotServedUnderItsDigest) {
   test::TempFolder folder;
   folder.write("a.qtet", test::makeLog({.seed = 1}));
   folder.write("b.qtet", test::makeLog({.seed = 2}));
-  const auto store = MeshStore::open(folder.path(), {.mostOpen = 1});
+  const auto store = MeshStore::open(folder.path(), {.maxOpen = 1});
   ASSERT_TRUE(store);
   const std::string digest = store->find("b")->log.digest();
   ASSERT_TRUE(store->find("a")) << "and so b is let go";
@@ -245,7 +245,7 @@ TEST(ServedMesh, aFileThatIsChangedInPlaceStaysWhatItsDigestSays) {
   EXPECT_TRUE((*mesh)->log.verifyChecksums());
 }
 
-TEST(BusGuard, whatIsLostOfAMappedFileReadsAsZeros) {
+TEST(MappedFileLoss, whatIsLostOfAMappedFileReadsAsZeros) {
   guardAgainstBusErrors();
   const test::TempFolder folder;
   folder.write("noise.qtet", test::makeLog({.chunks = 20}));

@@ -9,7 +9,7 @@
 #include <set>
 
 #include "codec/log/log_manifest.h"
-#include "codec/log/refiner.h"
+#include "codec/refine/refiner.h"
 #include "server/stream/client_blocks.h"
 #include "server/stream/planner.h"
 #include "tests/server/program/loopback.h"

@@ -25,7 +25,7 @@ struct MeasuredLine {
   }
   std::size_t room() { return line.room(figures, now); }
 
-  LineFigures figures{.packetBytes = kPacket, .rtt = 50ms, .leastRtt = 50ms};
+  LineFigures figures{.packetBytes = kPacket, .rtt = 50ms, .minRtt = 50ms};
   LineRoom::Clock::time_point now{1h};
   LineRoom line;
 };
@@ -57,7 +57,7 @@ TEST(LineRoom, withAQueueWhatIsUnderWayCountsToo) {
 
 TEST(LineRoom, aSlowLineHoldsSixPackets) {
   LineRoom line;
-  LineFigures figures{.unsent = 0, .packetBytes = kPacket, .rtt = 50ms, .leastRtt = 50ms};
+  LineFigures figures{.unsent = 0, .packetBytes = kPacket, .rtt = 50ms, .minRtt = 50ms};
   EXPECT_EQ(line.room(figures, LineRoom::Clock::time_point(1h)), 6 * kPacket);
   figures.unsent = 6 * kPacket;
   EXPECT_EQ(line.room(figures, LineRoom::Clock::time_point(2h)), 0u);

@@ -143,7 +143,7 @@ TEST_F(TlsTest, theProgramSpeaksItAndReadsItsCertificateAgainOnSighup) {
   EXPECT_TRUE(test::eventually([&] { return TlsClient(port, file("b.crt")).connected(); }));
   folder_.write("live.key", std::string_view("nonsense"));
   program.signal(SIGHUP);
-  EXPECT_TRUE(test::eventually([&] { return program.complaints("hold on") == 1; }));
+  EXPECT_TRUE(test::eventually([&] { return program.complaints("are kept") == 1; }));
   EXPECT_TRUE(TlsClient(port, file("b.crt")).connected()) << "what was sound holds on";
   EXPECT_NE(before.get("/v1/meshes").find("large"), std::string::npos)
       << "the old connection goes on";

@@ -7,10 +7,10 @@
 #include <functional>
 
 #include "codec/coding/draco_block.h"
-#include "codec/log/log_file.h"
 #include "codec/log/log_manifest.h"
 #include "codec/log/log_writer.h"
-#include "codec/log/verify_log.h"
+#include "codec/refine/log_file.h"
+#include "codec/refine/verify_log.h"
 #include "proto/checksum.h"
 #include "simplify/fuse/qtetfusion.h"
 #include "simplify/log/opened_log.h"

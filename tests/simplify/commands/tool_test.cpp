@@ -29,10 +29,18 @@ TEST_F(Tool, helpAndVersionSucceed) {
     EXPECT_EQ(own.code, 0);
     EXPECT_NE(own.out.find("examples:"), std::string::npos);
     EXPECT_TRUE(own.err.empty());
-    std::istringstream lines(help.out + own.out);
+    const Ran all = run(std::string(command) + " --help-all");
+    EXPECT_EQ(all.code, 0);
+    std::istringstream lines(help.out + own.out + all.out);
     for (std::string line; std::getline(lines, line);) EXPECT_LE(textWidth(line), 100u) << line;
   }
-  EXPECT_NE(run("simplify --help").out.find("simplify/INPUT.md"), std::string::npos);
+  const std::string often = run("simplify --help").out, all = run("simplify --help-all").out;
+  EXPECT_NE(often.find("simplify/INPUT.md"), std::string::npos);
+  EXPECT_LE(std::ranges::count(often, '\n'), 50);
+  EXPECT_EQ(often.find("--plot3d arg"), std::string::npos);
+  for (const char* words :
+       {"\ninput:\n", "\nquality and base mesh:\n", "--plot3d arg", "--fields arg"})
+    EXPECT_NE(all.find(words), std::string::npos) << words;
 }
 
 TEST_F(Tool, completionsAndManualPagesSayWhatHelpSays) {

@@ -20,7 +20,7 @@ double share(std::size_t cells) {
 
 class Proposed : public ::testing::Test {
  protected:
-  FusionProposer proposer() const { return {mesh_, cost_, touched_, band_, {}, kOptions}; }
+  FusionProposer proposer() const { return {mesh_, cost_, changes_, band_, {}, kOptions}; }
   /// Tetrahedra and boundary triangles.
   std::size_t cellsRound(VertexId v, VertexId w) const {
     const auto holdsBoth = [&](const auto& cell) {
@@ -35,10 +35,10 @@ class Proposed : public ::testing::Test {
   std::vector<Triangle> boundary_ = boundaryOf(lattice_.tetrahedra);
   FusionMesh mesh_{lattice_};
   FusionCost cost_{mesh_, lattice_, {}};
-  Touched touched_;
+  ChangeTimes changes_;
   BandNodes band_;
 
-  Proposed() { touched_.resize(mesh_.vertexSlots()); }
+  Proposed() { changes_.resize(mesh_.vertexSlots()); }
 };
 
 TEST_F(Proposed, keysAreWhatTheEdgeCostsByTheCellsRoundIt) {

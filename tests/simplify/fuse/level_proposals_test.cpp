@@ -19,7 +19,7 @@ class ALevel : public ::testing::TestWithParam<int> {
   static constexpr float kLimit = std::numeric_limits<float>::infinity();
 
   ALevel() {
-    touched_.resize(mesh_.vertexSlots());
+    changes_.resize(mesh_.vertexSlots());
     for (std::size_t i = 0; i < workers_.count(); ++i) proposers_.push_back(newProposer());
     Workers one(1);
     std::vector<Candidate> found;
@@ -32,21 +32,21 @@ class ALevel : public ::testing::TestWithParam<int> {
   }
 
   [[nodiscard]] std::unique_ptr<FusionProposer> newProposer() const {
-    return std::make_unique<FusionProposer>(mesh_, cost_, touched_, band_, FusionLimits{},
+    return std::make_unique<FusionProposer>(mesh_, cost_, changes_, band_, FusionLimits{},
                                             FusionPointOptions{});
   }
   /// Worker 0 walks through the entries that are not locked and calls decide(owner, its proposal)
   /// for each; as in a level, others serve meanwhile.
   template <class Decide>
   void walk(const Decide& decide) {
-    touched_.beginLevel();
+    changes_.beginLevel();
     proposals_.begin(entries_, kLimit, proposers_);
     workers_.beside(
         [this](std::size_t worker) { proposals_.serve(worker); },
         [&] {
           for (std::size_t i = 0; i < entries_.size(); ++i) {
             const VertexId owner = entries_[i].owner;
-            if (touched_.isLocked(owner) || touched_.isLocked(candidates_.best(owner)->partner))
+            if (changes_.isLocked(owner) || changes_.isLocked(candidates_.best(owner)->partner))
               continue;
             proposals_.comeTo(i);
             decide(owner, proposals_.of(owner));
@@ -59,13 +59,13 @@ class ALevel : public ::testing::TestWithParam<int> {
   LatticeMesh lattice_ = testing::gridMesh(8, 1);
   FusionMesh mesh_{lattice_};
   FusionCost cost_{mesh_, lattice_, {}};
-  Touched touched_;
+  ChangeTimes changes_;
   BandNodes band_;
   Candidates candidates_;
   Workers workers_{GetParam()};
   Proposers proposers_;
   std::vector<QueueEntry> entries_;
-  LevelProposals proposals_{mesh_, cost_, candidates_, touched_};
+  LevelProposals proposals_{mesh_, cost_, candidates_, changes_};
 };
 
 TEST_P(ALevel, proposalsAreWhatTheOneThatDecidesWouldMake) {
@@ -80,7 +80,7 @@ TEST_P(ALevel, proposalsAreWhatTheOneThatDecidesWouldMake) {
       auto rest = candidates_.remaining(owner);
       while (rest[0].partner != proposal.partner) rest = rest.subspan(1);
       ASSERT_TRUE(alone->propose(owner, rest, std::min(kLimit, kDearer * rest[0].key),
-                                 touched_.now(), expected));
+                                 changes_.now(), expected));
       EXPECT_EQ(proposal.price, expected.price);
       EXPECT_EQ(proposal.isPriceAll, expected.isPriceAll);
       if (proposal.isPriceAll) return;
@@ -99,20 +99,20 @@ TEST_P(ALevel, proposalsAreWhatTheOneThatDecidesWouldMake) {
 
 TEST_P(ALevel, whatIsMadeBeforeATouchIsSeenToBeOld) {
   walk([&](VertexId owner, const Proposal& proposal) {
-    EXPECT_LE(proposal.madeAfter, touched_.now());
+    EXPECT_LE(proposal.madeAfter, changes_.now());
     if (proposal.partner != kGhost && !proposal.isPriceAll) {
       for (const VertexId v : proposal.star.link)  // its own star is nobody else's in this level
-        if (v != kGhost) touched_.touch(v);
-      for (const VertexId v : proposal.prey.vertices()) touched_.touch(v);
+        if (v != kGhost) changes_.touch(v);
+      for (const VertexId v : proposal.prey.vertices()) changes_.touch(v);
     }
-    touched_.touch(owner);
-    touched_.next();
-    EXPECT_TRUE(touched_.since(owner, proposal.madeAfter));
+    changes_.touch(owner);
+    changes_.next();
+    EXPECT_TRUE(changes_.since(owner, proposal.madeAfter));
   });
 }
 
 TEST_P(ALevel, aLevelMayEndBeforeItsEntriesDo) {
-  touched_.beginLevel();
+  changes_.beginLevel();
   proposals_.begin(entries_, kLimit, proposers_);
   workers_.beside([this](std::size_t worker) { proposals_.serve(worker); },
                   [&] {

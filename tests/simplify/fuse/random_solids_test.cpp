@@ -10,8 +10,8 @@
 #include <string>
 
 #include "codec/files/atomic_file.h"
-#include "codec/log/log_file.h"
 #include "codec/log/log_writer.h"
+#include "codec/refine/log_file.h"
 #include "simplify/clean/verify.h"
 #include "simplify/fuse/qtetfusion.h"
 #include "tests/support/meshes.h"

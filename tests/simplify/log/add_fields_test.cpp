@@ -6,10 +6,10 @@
 #include <numeric>
 #include <random>
 
-#include "codec/log/log_file.h"
 #include "codec/log/log_manifest.h"
 #include "codec/log/log_writer.h"
-#include "codec/log/refiner.h"
+#include "codec/refine/log_file.h"
+#include "codec/refine/refiner.h"
 #include "simplify/clean/verify.h"
 #include "simplify/fuse/qtetfusion.h"
 #include "simplify/log/add_fields.h"

@@ -7,10 +7,10 @@
 #include <numeric>
 #include <random>
 
-#include "codec/log/log_file.h"
 #include "codec/log/log_writer.h"
 #include "codec/log/value_block.h"
 #include "codec/record/values.h"
+#include "codec/refine/log_file.h"
 #include "simplify/clean/verify.h"
 #include "simplify/fuse/qtetfusion.h"
 #include "simplify/mesh/missing_values.h"

@@ -86,13 +86,13 @@ TEST_P(OfThreads, othersWorkBesideTheirOwnerUntilHeIsDone) {
     std::vector<std::atomic<int>> times(workers.count());
     const auto others = [&](std::size_t worker) {
       ++times.at(worker), ++come;
-      for (Waiting waiting; !isOver;) waiting.once();
+      for (SpinWait waiting; !isOver;) waiting.wait();
       ++gone;
     };
     workers.beside(others, [&] {
       ++times[0];
       // once with all of them
-      for (Waiting waiting; round == 0 && come + 1 < workers.count();) waiting.once();
+      for (SpinWait waiting; round == 0 && come + 1 < workers.count();) waiting.wait();
       isOver = true;
     });
     EXPECT_EQ(gone, come) << "nobody is left behind";
@@ -107,7 +107,7 @@ TEST_P(OfThreads, anExceptionOfEitherSideIsThrownOnWhenTheOthersHaveEnded) {
   std::atomic<int> inside{0};
   const auto waits = [&](std::size_t) {
     ++inside;
-    for (Waiting waiting; !isOver;) waiting.once();
+    for (SpinWait waiting; !isOver;) waiting.wait();
     --inside;
   };
   const auto fails = [&] {
@@ -124,7 +124,7 @@ TEST_P(OfThreads, anExceptionOfEitherSideIsThrownOnWhenTheOthersHaveEnded) {
   };
   EXPECT_THROW(workers.beside(othersFail,
                               [&] {
-                                for (Waiting waiting; come == 0;) waiting.once();
+                                for (SpinWait waiting; come == 0;) waiting.wait();
                               }),
                std::runtime_error);
   std::atomic<int> done{0};
@@ -143,7 +143,7 @@ constexpr std::chrono::milliseconds kLongWait{300};
 
 /// The most CPU time that the waiting threads may take. Sleeping between looks takes a sixth of the
 /// wait; spinning would take all of it, and no less than half on a busy machine.
-double mostMilliseconds(const Workers& workers) {
+double maxMilliseconds(const Workers& workers) {
   return 100.0 * static_cast<double>(std::max<std::size_t>(1, workers.count() - 1));
 }
 
@@ -153,13 +153,13 @@ TEST_P(OfThreads, whoWaitsLongForTheOwnerSleeps) {
   const auto before = processorTime();
   workers.beside(
       [&](std::size_t) {
-        for (Waiting waiting; !isOver;) waiting.once();
+        for (SpinWait waiting; !isOver;) waiting.wait();
       },
       [&] {
         std::this_thread::sleep_for(kLongWait);
         isOver = true;
       });
-  EXPECT_LT((processorTime() - before).count(), mostMilliseconds(workers));
+  EXPECT_LT((processorTime() - before).count(), maxMilliseconds(workers));
 }
 
 TEST_P(OfThreads, anOwnerThatWaitsLongForTheOthersSleeps) {
@@ -172,9 +172,9 @@ TEST_P(OfThreads, anOwnerThatWaitsLongForTheOthersSleeps) {
         std::this_thread::sleep_for(kLongWait);
       },
       [&] {
-        for (Waiting waiting; !isThere;) waiting.once();
+        for (SpinWait waiting; !isThere;) waiting.wait();
       });
-  EXPECT_LT((processorTime() - before).count(), mostMilliseconds(workers));
+  EXPECT_LT((processorTime() - before).count(), maxMilliseconds(workers));
 }
 
 INSTANTIATE_TEST_SUITE_P(Workers, OfThreads, ::testing::Values(1, 2, 5),

@@ -77,7 +77,7 @@ TEST(LossWarnings, anOrdinaryMeshHasNone) {
 TEST(LossWarnings, tooFewCellsAreTheReasonWhereNothingElseIs) {
   expectWarning(warningsOf(ball(12), 0.002),
                 {"has lost ", " % of the volume", "too few cells are left for this shape",
-                 "--max-boundary-error 0.02"});
+                 "`maxBoundaryError` 0.02"});
 }
 
 TEST(LossWarnings, piecesThatAreNotJoinedAreTheReason) {
@@ -87,7 +87,7 @@ TEST(LossWarnings, piecesThatAreNotJoinedAreTheReason) {
       addBlock(mesh, {6, 6, 12},
                [&](double u, double v, double w) { return onBall(x + u / 2, y + v / 2, w); });
   expectWarning(warningsOf(std::move(mesh), 0.004),
-                {"points lie at the place of another one", "--weld 0"});
+                {"points lie at the place of another one", "`weld` 0"});
 }
 
 TEST(LossWarnings, manyPartsAreTheReason) {
@@ -98,7 +98,7 @@ TEST(LossWarnings, manyPartsAreTheReason) {
       return Position{p[0] + 3 * (part % 3), p[1] + 3 * (part / 3 % 3), p[2] + 3 * (part / 9)};
     });
   expectWarning(warningsOf(std::move(mesh), 0.01),
-                {"falls into 27 parts", "--target-ratio 0.27", "--weld DISTANCE"});
+                {"falls into 27 parts", "`targetRatio` 0.27", "`weld` DISTANCE"});
 }
 
 TEST(LossWarnings, thinWallsAreTheReason) {
@@ -107,7 +107,7 @@ TEST(LossWarnings, thinWallsAreTheReason) {
     return Position{x, y, 0.1 * std::sin(9 * x) * std::cos(9 * y) + 0.01 * z};
   });
   expectWarning(warningsOf(std::move(mesh), 0.01),
-                {"its walls are thin", "--boundary-weight 15000"});
+                {"its walls are thin", "`boundaryWeight` 15000"});
 }
 
 Manifest manifestOf(double volumeKept, double boundary) {

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "codec/log/log_file.h"
+#include "codec/refine/log_file.h"
 #include "tests/simplify/mesh/tet_meshes.h"
 #include "tests/simplify/pipeline/field_meshes.h"
 

@@ -10,9 +10,9 @@
 #include <unordered_map>
 
 #include "simplify/clean/clean_mesh.h"
-#include "simplify/read/gmsh_elements.h"
-#include "simplify/read/mesh_scanner.h"
 #include "simplify/read/read_mesh.h"
+#include "simplify/read/text/gmsh_elements.h"
+#include "simplify/read/text/mesh_scanner.h"
 #include "simplify/split/higher_cells.h"
 #include "tests/simplify/mesh/tet_meshes.h"
 #include "tests/simplify/split/cell_grids.h"
@@ -465,9 +465,9 @@ TEST(ReadGmsh, whatIsWrongIsSaidWithItsLine) {
   refused(gmsh22(false), "$Nodes\n15", "$Nodes\n99999999999", ErrorCode::kTruncated,
           "99999999999 nodes are announced, but only");
   refused(gmsh22(false), "$Nodes\n15", "$Nodes\n14", ErrorCode::kBadInput,
-          "$EndNodes should stand here");
+          "$EndNodes should be here");
   refused(gmsh22(false), "$Nodes\n15", "$Nodes\nfifteen", ErrorCode::kBadInput,
-          "line 5: 'fifteen' stands where the number of nodes should");
+          "line 5: 'fifteen' is where the number of nodes should be");
   refused(gmsh22(false), "1000 2 2", "1000 99 2", ErrorCode::kBadInput, "elements of type 99");
   refused(gmsh22(false), "$MeshFormat", "$Mesh", ErrorCode::kBadInput,
           "does not begin with $MeshFormat");
@@ -725,7 +725,7 @@ TEST(ReadTetgen, aMissingPartnerAndWrongNumbersAreRefused) {
       << outside.error().text();
   const Result<CellMesh> order = cellsIn(tetgenFiles("2 3 0 0\n1 0 0 0\n3 0 0 0\n", kEle));
   ASSERT_FALSE(order);
-  EXPECT_NE(order.error().message.find("point 3 stands where point 2 should"), std::string::npos)
+  EXPECT_NE(order.error().message.find("point 3 is where point 2 should be"), std::string::npos)
       << order.error().text();
 }
 
@@ -790,7 +790,7 @@ TEST(MeshScanner, theFirstErrorStays) {
   EXPECT_EQ(in.number<int>("a number"), 0);
   EXPECT_TRUE(in.failed());
   EXPECT_EQ(in.number<int>("another"), 0);
-  EXPECT_NE(in.status().error().message.find("f.txt, line 1: 'x' stands where a number should"),
+  EXPECT_NE(in.status().error().message.find("f.txt, line 1: 'x' is where a number should be"),
             std::string::npos);
   MeshScanner range("300", "f.txt");
   EXPECT_EQ(range.number<std::uint8_t>("a byte"), 0);

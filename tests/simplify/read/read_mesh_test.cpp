@@ -281,7 +281,7 @@ TEST(ReadMesh, asciiArraysOfOtherLengthsThanToldAreRefused) {
     };
     const std::size_t last = good[i].find_last_of(' ');
     const std::string less = last == std::string::npos ? "" : good[i].substr(0, last);
-    const std::string counts = std::string(" numbers, but the file's counts tell ") + right;
+    const std::string counts = std::string(" numbers, but the file's counts say ") + right;
     says(less, " has " + std::string(fewer) + counts);
     says(good[i] + " 7", " has " + std::string(more) + counts);
     says(good[i] + " x", " has 'x' behind its first " + std::string(right));

@@ -95,7 +95,7 @@ TEST(VtkFormats, piecesAndBlocksBecomeOneMesh) {
       return note.find(what) != std::string::npos;
     });
   };
-  EXPECT_TRUE(says(apart->report, "its 2 pieces stay apart (--weld none)"));
+  EXPECT_TRUE(says(apart->report, "its 2 pieces stay apart (`weld` none)"));
   ReadOptions withIds;
   withIds.originalIds = true;
   ReadMesh joined = expectABar(given("m.vtm"), 4, "T", 0, withIds);
@@ -310,7 +310,7 @@ TEST(VtkFormats, aTimeThatAFileWithoutStepsDoesNotHaveIsRefused) {
       const Result<ReadMesh> read = readMesh(path, options);
       ASSERT_FALSE(read) << path << word;
       EXPECT_EQ(read.error().code, ErrorCode::kNotFound);
-      EXPECT_NE(read.error().message.find("--time"), std::string::npos) << read.error().message;
+      EXPECT_NE(read.error().message.find("`time`"), std::string::npos) << read.error().message;
     }
   }
 }
@@ -386,8 +386,7 @@ TEST(VtkFormats, anEnSightCaseThatVtkNeverComesToTheEndOfIsGivenUp) {
     const Result<ReadMesh> read = readMesh(fileWith(name, text), options);
     ASSERT_FALSE(read) << name;
     EXPECT_EQ(read.error().code, ErrorCode::kBadInput);
-    EXPECT_NE(read.error().message.find("--read-seconds"), std::string::npos)
-        << read.error().text();
+    EXPECT_NE(read.error().message.find("`readSeconds`"), std::string::npos) << read.error().text();
   }
 }
 
@@ -533,7 +532,7 @@ TEST(VtkFormats, ofOpenFoamTheSolversCellValuesAreReadAndPointValuesByName) {
   const Result<ReadMesh> all = readMesh(file);
   ASSERT_TRUE(all);
   EXPECT_TRUE(std::ranges::any_of(all->report.notes, [](const std::string& note) {
-    return note.find("--fields p,point:p adds the means at points") != std::string::npos;
+    return note.find("`fields` p,point:p adds the means at points") != std::string::npos;
   }));
   const Result<ReadMesh> means = readMesh(file, Names{"point:p"});
   ASSERT_TRUE(means);

@@ -6,7 +6,7 @@
 
 #include "simplify/clean/clean_mesh.h"
 #include "simplify/clean/mend_faces.h"
-#include "simplify/read/weld_points.h"
+#include "simplify/read/parts/weld_points.h"
 #include "tests/simplify/split/cell_grids.h"
 #include "tests/support/homology.h"
 

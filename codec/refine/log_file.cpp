@@ -1,0 +1,221 @@
+#include "codec/refine/log_file.h"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <string>
+#include <utility>
+
+#include "codec/log/log_index.h"
+#include "codec/log/log_manifest.h"
+#include "codec/log/value_block.h"
+#include "codec/mesh/compact_mesh.h"
+#include "codec/mesh/mesh.h"
+#include "codec/refine/refiner.h"
+#include "proto/crc32c.h"
+#include "proto/manifest.h"
+
+namespace qtet {
+
+struct LogFile::State {
+  void* address = nullptr;
+  std::size_t bytes = 0;
+  Bytes owned;  // of a log that came as bytes; nothing is mapped then
+  LogIndex index;
+  std::string digest;
+
+  State() = default;
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+  ~State() {
+    if (address != nullptr) munmap(address, bytes);
+  }
+};
+
+LogFile::LogFile(LogFile&&) noexcept = default;
+LogFile& LogFile::operator=(LogFile&&) noexcept = default;
+LogFile::~LogFile() = default;
+LogFile::LogFile(std::unique_ptr<State> state) : state_(std::move(state)) {}
+
+const LogIndex& LogFile::index() const { return state_->index; }
+const std::string& LogFile::digest() const { return state_->digest; }
+
+Result<LogFile> LogFile::open(const std::filesystem::path& path, DigestOf digestOf) {
+  const auto io = [&](const char* what) {
+    return fail(ErrorCode::kIo, path.string() + ": " + what + ": " + std::strerror(errno));
+  };
+  // of a pipe, without waiting for who writes
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (file < 0) return io("cannot be opened");
+  struct stat info{};
+  auto state = std::make_unique<State>();
+  const bool known = fstat(file, &info) == 0;
+  if (known && S_ISREG(info.st_mode) && info.st_size > 0) {
+    void* address =
+        mmap(nullptr, static_cast<std::size_t>(info.st_size), PROT_READ, MAP_PRIVATE, file, 0);
+    if (address != MAP_FAILED)
+      state->address = address, state->bytes = static_cast<std::size_t>(info.st_size);
+  }
+  ::close(file);
+  if (!known) return io("cannot be read");
+  if (!S_ISREG(info.st_mode)) return fail(ErrorCode::kIo, path.string() + ": not a regular file");
+  if (info.st_size == 0)
+    return fail(ErrorCode::kTruncated, path.string() + ": the file is empty", 0);
+  if (state->address == nullptr) return io("cannot be mapped into memory");
+
+  Result<LogFile> log = checked(std::move(state), digestOf);
+  if (!log) log.error().message = path.string() + ": " + log.error().message;
+  return log;
+}
+
+Result<LogFile> LogFile::fromBytes(Bytes bytes) {
+  auto state = std::make_unique<State>();
+  state->owned = std::move(bytes);
+  return checked(std::move(state));
+}
+
+Result<LogFile> LogFile::checked(std::unique_ptr<State> state, DigestOf digestOf) {
+  LogFile log(std::move(state));
+  Result<LogIndex> index = LogIndex::parse(log.bytes());
+  if (!index) return std::unexpected(index.error());
+  if (index->fileBytes != log.bytes().size())
+    return fail(
+        index->fileBytes > log.bytes().size() ? ErrorCode::kTruncated : ErrorCode::kBadValue,
+        "the file has " + std::to_string(log.bytes().size()) + " bytes, its header says " +
+            std::to_string(index->fileBytes) + "; copy or fetch it again",
+        log.bytes().size());
+  log.state_->index = std::move(*index);
+  log.state_->digest = digestOf(log.bytes());
+  return log;
+}
+
+ByteView LogFile::bytes() const {
+  if (state_->address == nullptr) return state_->owned;
+  return {static_cast<const std::uint8_t*>(state_->address), state_->bytes};
+}
+
+ByteView LogFile::block(std::uint32_t chunk, std::uint32_t part) const {
+  const BlockEntry& b = state_->index.block(chunk, part);
+  return bytes().subspan(static_cast<std::size_t>(b.offset), b.size);
+}
+
+namespace {
+
+Status checkBlock(const LogFile& log, std::uint32_t chunk, std::uint32_t part) {
+  const BlockEntry& b = log.index().block(chunk, part);
+  if (crc32c(log.block(chunk, part)) == b.crc) return {};
+  return fail(ErrorCode::kBadChecksum,
+              "chunk " + std::to_string(chunk) + ", part " + std::to_string(part) +
+                  ": the CRC-32C does not match; fetch the file again",
+              b.offset);
+}
+
+Result<std::vector<std::int32_t>> blockValues(const LogFile& log, std::uint32_t chunk,
+                                              std::uint32_t part) {
+  if (Status s = checkBlock(log, chunk, part); !s) return std::unexpected(s.error());
+  return decodeValueBlock(log.block(chunk, part), log.index().components(part),
+                          log.index().tuples(chunk, part), log.index().chunks[chunk].valueCodec);
+}
+
+FieldInfo fieldInfo(const ManifestField& f) {
+  return {f.name, f.components, f.type,  f.association, f.bits,
+          f.step, f.minimum,    f.range, f.hasMissing};
+}
+
+}  // namespace
+
+Status LogFile::verifyChecksums() const {
+  for (std::uint32_t chunk = 0; chunk < state_->index.chunks.size(); ++chunk)
+    for (std::uint32_t part = 0; part < state_->index.parts(); ++part)
+      if (Status s = checkBlock(*this, chunk, part); !s) return s;
+  for (const ClosingBlock& c : state_->index.closing)
+    if (const auto bytes = closing(c.kind, c.field); !bytes) return std::unexpected(bytes.error());
+  return {};
+}
+
+Result<ByteView> LogFile::closing(ClosingKind kind, std::uint32_t field) const {
+  const ClosingBlock* c = state_->index.closingBlock(kind, field);
+  if (c == nullptr)
+    return fail(ErrorCode::kNotFound,
+                "the log has no closing block of kind " + std::to_string(static_cast<int>(kind)));
+  const ByteView view = bytes().subspan(static_cast<std::size_t>(c->block.offset), c->block.size);
+  if (crc32c(view) != c->block.crc)
+    return fail(ErrorCode::kBadChecksum,
+                "closing block of kind " + std::to_string(static_cast<int>(kind)) +
+                    ": the CRC-32C does not match; fetch the file again",
+                c->block.offset);
+  return view;
+}
+
+Status applyChunk(const LogFile& log, Refiner& refiner, std::uint32_t chunk,
+                  std::span<const std::uint32_t> fields) {
+  if (chunk >= log.index().chunks.size())
+    return fail(ErrorCode::kNotFound, "there is no chunk " + std::to_string(chunk));
+  if (Status s = checkBlock(log, chunk, kStructurePart); !s) return s;
+  const auto positions = blockValues(log, chunk, kPositionsPart);
+  if (!positions) return std::unexpected(positions.error());
+  if (Status s = refiner.apply(chunk, log.block(chunk, kStructurePart), *positions); !s) return s;
+  for (const std::uint32_t f : fields)
+    if (Status s = applyFieldBlock(log, refiner, chunk, f); !s) return s;
+  return {};
+}
+
+Status applyFieldBlock(const LogFile& log, Refiner& refiner, std::uint32_t chunk,
+                       std::uint32_t field) {
+  if (chunk >= log.index().chunks.size())
+    return fail(ErrorCode::kNotFound, "there is no chunk " + std::to_string(chunk));
+  if (field >= log.index().fields.size())
+    return fail(ErrorCode::kNotFound, "there is no field " + std::to_string(field));
+  const auto values = blockValues(log, chunk, kFirstFieldPart + field);
+  if (!values) return std::unexpected(values.error());
+  return refiner.applyField(field, chunk, *values);
+}
+
+LatticeMesh latticeMesh(const Manifest& manifest, const Refiner& refiner,
+                        std::span<const std::uint32_t> fields) {
+  LatticeMesh mesh;
+  mesh.lattice = {manifest.latticeBits, manifest.latticeStep, manifest.latticeOrigin};
+  mesh.points.assign(refiner.points().begin(), refiner.points().end());
+  mesh.tetrahedra.assign(refiner.tetrahedra().begin(), refiner.tetrahedra().end());
+  mesh.boundary.assign(refiner.boundary().begin(), refiner.boundary().end());
+  for (const std::uint32_t f : fields) {
+    mesh.fields.push_back(fieldInfo(manifest.fields[f]));
+    mesh.values.emplace_back(refiner.fieldValues(f).begin(), refiner.fieldValues(f).end());
+  }
+  return mesh;
+}
+
+Result<LatticeMesh> meshAtLevel(const LogFile& log, std::uint32_t level,
+                                const std::optional<std::vector<std::uint32_t>>& fields,
+                                const std::stop_token& stop) {
+  const Result<Manifest> manifest = manifestOf(log.index());
+  if (!manifest) return std::unexpected(manifest.error());
+  const std::uint32_t last = log.index().chunks.back().lastLevel;
+  if (level > last)
+    return fail(ErrorCode::kNotFound, "there is no level " + std::to_string(level) +
+                                          "; the last is " + std::to_string(last));
+  std::vector<std::uint32_t> wanted;
+  if (fields)
+    wanted = *fields;
+  else
+    for (std::uint32_t f = 0; f < manifest->fields.size(); ++f) wanted.push_back(f);
+
+  Refiner refiner(log.index());
+  refiner.stopAtLevel(level);
+  for (std::uint32_t chunk = 0;
+       chunk < log.index().chunks.size() && (chunk == 0 || refiner.level() < level); ++chunk) {
+    if (stop.stop_requested())
+      return fail(ErrorCode::kIo, "stopped, because nobody waits for the level any more");
+    if (Status s = applyChunk(log, refiner, chunk, wanted); !s) return std::unexpected(s.error());
+  }
+  LatticeMesh mesh = latticeMesh(*manifest, refiner, wanted);
+  // of packets that had to stop within their band
+  if (log.index().layout == Layout::kRegions) dropHoles(mesh);
+  return mesh;
+}
+
+}  // namespace qtet

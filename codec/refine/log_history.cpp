@@ -1,0 +1,206 @@
+#include "codec/refine/log_history.h"
+
+#include <algorithm>
+#include <functional>
+#include <numeric>
+#include <string>
+#include <utility>
+
+#include "codec/log/log_index.h"
+#include "codec/log/log_manifest.h"
+#include "codec/log/value_block.h"
+#include "codec/refine/log_file.h"
+#include "codec/refine/refiner.h"
+
+namespace qtet {
+namespace {
+
+/// Writes down every split of a log on its way to the last level, with slots in place of the
+/// history's vertices.
+class SplitRecorder final : public SplitObserver {
+ public:
+  explicit SplitRecorder(LogHistory& out) : out_(out) {}
+
+  void beforeSplit(VertexId v, const GrowingMesh& mesh, const Link& link,
+                   const Split& split) override {
+    FusionHistory& h = out_.history;
+    Fusion fusion;
+    fusion.k = static_cast<std::uint8_t>(split.k);
+    fusion.placement = split.placement;
+    fusion.level = mesh.level();
+    fusion.fused = v;
+    fusion.firstAffected = h.affectedCells.size();
+    fusion.firstDeleted = h.deletedCells.size();
+    fusion.affectedCount = static_cast<std::uint32_t>(mesh.star(v).size());
+    fusion.deletedCount = static_cast<std::uint32_t>(split.deleted.size());
+    near.push_back(static_cast<std::uint8_t>(split.near));
+    fusedPoints.push_back(mesh.points[v]);
+    for (std::size_t f = 0; f < fusion.affectedCount; ++f) {
+      const CellRef cell = mesh.star(v)[f];
+      h.affectedCells.push_back(cell & kBoundaryBit ? out_.tetrahedra + (cell & ~kBoundaryBit)
+                                                    : cell);
+      h.affectedLabels.push_back(link.triangles()[f].label);
+    }
+    std::uint32_t tetrahedron = mesh.next().tetrahedra,
+                  triangle = out_.tetrahedra + mesh.next().triangles;
+    for (const LocalCell& cell : split.deleted) {
+      const bool ghost = std::ranges::any_of(
+          cell, [&](LocalVertex x) { return !(x & kPreyBit) && link.vertices()[x] == kGhost; });
+      h.deletedCells.push_back(ghost ? triangle++ : tetrahedron++);
+    }
+    h.fusions.push_back(fusion);
+    out_.points.add(v, mesh, link, split);
+    out_.cells.addRestored(mesh.star(v), link, split.deleted, mesh.next().tetrahedra);
+  }
+
+  std::vector<std::uint8_t> near;
+  std::vector<LatticePoint> fusedPoints;
+
+ private:
+  LogHistory& out_;
+};
+
+Status decodeBase(const LogFile& log, LogHistory& out) {
+  const ChunkEntry& entry = log.index().chunks.front();
+  RangeDecoder decoder(log.block(0, kStructurePart));
+  BaseCoder<RangeDecoder> coder(decoder, entry.newVertices, entry.newTetrahedra);
+  if (!coder.run(nullptr, [&] { return decoder.overrun(); }))
+    return fail(ErrorCode::kBadValue, "the base mesh's structure contradicts itself");
+  out.baseBirths = std::move(coder.births);
+  out.cells.addBase(coder.tetrahedra);
+  return {};
+}
+
+/// Gives every split's vertices their numbers in the history, and sorts the fusions in the order of
+/// execution: level by level, from the last split to the first. (Packets arrive node by node, each
+/// with all of its levels. Those of one level are independent of one another.)
+void number(const SplitRecorder& recorder, LogHistory& out) {
+  FusionHistory& h = out.history;
+  std::vector<std::uint32_t> order(h.fusions.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::ranges::sort(order, std::greater(),
+                    [&](std::uint32_t b) { return std::pair(h.fusions[b].level, b); });
+  std::vector<VertexId> vertexOf(out.vertices);  // slot -> the vertex that is there
+  for (VertexId v = 0; v < out.vertices; ++v) vertexOf[v] = v;
+  out.prey.resize(h.fusions.size());
+  for (const std::uint32_t b : order) {
+    Fusion& fusion = h.fusions[b];
+    const Birth& birth = out.points.births()[b];
+    std::array<VertexId, 4>& prey = out.prey[b];
+    for (std::size_t i = 0; i < birth.k; ++i)
+      prey[i] = vertexOf[i == 0 ? birth.slot : birth.firstNew + i - 1];
+    fusion.prey = prey;
+    const std::uint8_t near = recorder.near[b];
+    std::swap(fusion.prey[0], fusion.prey[near]);
+    for (std::uint64_t i = fusion.firstAffected; i < fusion.firstAffected + fusion.affectedCount;
+         ++i)
+      if (std::uint8_t& label = h.affectedLabels[i]; label == 0 || label == near)
+        label = static_cast<std::uint8_t>(near - label);
+    fusion.level = h.levels - fusion.level;
+    fusion.fused = vertexOf[birth.slot] = static_cast<VertexId>(h.points.size());
+    h.points.push_back(recorder.fusedPoints[b]);
+  }
+  out.baseVertices.assign(vertexOf.begin(),
+                          vertexOf.begin() + static_cast<std::ptrdiff_t>(out.baseBirths.size()));
+  std::vector<Fusion> fusions;
+  fusions.reserve(order.size());
+  for (const std::uint32_t b : order) fusions.push_back(h.fusions[b]);
+  h.fusions = std::move(fusions);
+}
+
+/// From the last level's cells to those of the base mesh.
+void fuseAll(FusionHistory& h) {
+  for (const Fusion& fusion : h.fusions) {
+    for (std::uint64_t i = fusion.firstAffected; i < fusion.firstAffected + fusion.affectedCount;
+         ++i)
+      std::ranges::replace(h.cells[h.affectedCells[i]], fusion.prey[h.affectedLabels[i]],
+                           fusion.fused);
+    for (std::uint64_t i = fusion.firstDeleted; i < fusion.firstDeleted + fusion.deletedCount; ++i)
+      h.live[h.deletedCells[i]] = 0;
+  }
+}
+
+void codePoints(const LogHistory& log, std::uint32_t chunk, const FieldInfo& field,
+                std::span<const std::int32_t> truth, std::vector<std::int32_t>& now, Values& out) {
+  const std::uint32_t n = field.components;
+  const auto at = [&](VertexId v, std::uint32_t c) -> std::int32_t& {
+    return now[std::size_t{v} * n + c];
+  };
+  if (chunk == 0)
+    for (VertexId v = 0; v < log.baseBirths.size(); ++v)
+      for (std::uint32_t c = 0; c < n; ++c)
+        at(v, c) = out.codeField<true>(
+            field.hasMissing, predictBaseField(log.baseBirths[v], v, c, field.hasMissing, at),
+            truth[std::size_t{log.baseVertices[v]} * n + c]);
+  for (std::uint32_t b = log.chunkBirths[chunk]; b < log.chunkBirths[chunk + 1]; ++b)
+    log.points.code<true>(
+        log.points.births()[b], out, n, at,
+        [&](std::size_t i, std::uint32_t c) { return truth[std::size_t{log.prey[b][i]} * n + c]; },
+        field.hasMissing);
+}
+
+void codeCells(const LogHistory& log, std::uint32_t chunk, const FieldInfo& field,
+               std::span<const std::int32_t> truth, Values& out) {
+  const std::uint32_t n = field.components;
+  for (CellId t = log.chunkCells[chunk]; t < log.chunkCells[chunk + 1]; ++t)
+    for (std::uint32_t c = 0; c < n; ++c) {
+      const auto at = [&](CellId u) { return truth[std::size_t{u} * n + c]; };
+      out.codeField<true>(field.hasMissing, log.cells.predict(t, at), at(t));
+    }
+}
+
+}  // namespace
+
+Result<LogHistory> historyOf(const LogFile& log, const std::function<void(double)>& progress) {
+  const Result<Manifest> manifest = manifestOf(log.index());
+  if (!manifest) return std::unexpected(manifest.error());
+  LogHistory out;
+  for (const ChunkEntry& e : log.index().chunks) out.tetrahedra += e.newTetrahedra;
+  Refiner refiner(log.index());
+  SplitRecorder recorder(out);
+  refiner.observe(&recorder);
+  out.chunkBirths.push_back(0);
+  out.chunkCells.push_back(0);
+  const auto chunks = static_cast<std::uint32_t>(log.index().chunks.size());
+  for (std::uint32_t chunk = 0; chunk < chunks; ++chunk) {
+    if (Status s = applyChunk(log, refiner, chunk, {}); !s) return std::unexpected(s.error());
+    if (chunk == 0)
+      if (Status s = decodeBase(log, out); !s) return std::unexpected(s.error());
+    out.chunkBirths.push_back(static_cast<std::uint32_t>(out.points.births().size()));
+    out.chunkCells.push_back(refiner.firstSlots(chunk + 1).tetrahedra);
+    out.valueCodecs.push_back(log.index().chunks[chunk].valueCodec);
+    if (progress) progress((chunk + 1.0) / chunks);
+  }
+  FusionHistory& h = out.history;
+  h.lattice = {manifest->latticeBits, manifest->latticeStep, manifest->latticeOrigin};
+  h.levels = refiner.level();
+  out.vertices = static_cast<std::uint32_t>(refiner.points().size());
+  h.points.assign(refiner.points().begin(), refiner.points().end());
+  h.cells.assign(refiner.tetrahedra().begin(), refiner.tetrahedra().end());
+  for (const Triangle& t : refiner.boundary()) h.cells.push_back({t[0], t[1], t[2], kGhost});
+  h.live.assign(h.cells.size(), 1);
+  number(recorder, out);
+  fuseAll(h);
+  return out;
+}
+
+Result<std::vector<Bytes>> encodeFieldBlocks(const LogHistory& log, const FieldInfo& field,
+                                             std::span<const std::int32_t> values) {
+  std::vector<Bytes> out;
+  std::vector<std::int32_t> now(isCellField(field) ? 0
+                                                   : std::size_t{log.vertices} * field.components);
+  for (std::uint32_t chunk = 0; chunk + 1 < log.chunkBirths.size(); ++chunk) {
+    Values coded;
+    if (isCellField(field))
+      codeCells(log, chunk, field, values, coded);
+    else
+      codePoints(log, chunk, field, values, now, coded);
+    Result<Bytes> block =
+        encodeValueBlock(coded.written(), field.components, log.valueCodecs[chunk]);
+    if (!block) return std::unexpected(block.error());
+    out.push_back(std::move(*block));
+  }
+  return out;
+}
+
+}  // namespace qtet

@@ -1,0 +1,124 @@
+#include "codec/refine/refiner_fields.h"
+
+namespace qtet {
+
+RefinerFields::RefinerFields(const ChunkPlan& plan, const RecordReader& records,
+                             const std::vector<AddedElements>& added)
+    : plan_(plan), records_(records), added_(added), fields_(plan.index.fields.size()) {
+  for (Field& f : fields_) f.applied.resize(plan.index.chunks.size());
+}
+
+// A cell stands in with its prediction, a vertex with its fused vertex's value.
+void RefinerFields::inherit(std::uint32_t chunk) {
+  for (std::size_t f = 0; f < fields_.size(); ++f) {
+    const FieldShape& shape = plan_.index.fields[f];
+    if (fields_[f].chunks == 0) continue;
+    if (shape.association == Association::kPoint)
+      inheritPoints(fields_[f], shape.components, added_[chunk].firstBirth);
+    else
+      inheritCells(fields_[f], shape, plan_.slots[chunk].tetrahedra, added_[chunk].endTetrahedron);
+  }
+}
+
+void RefinerFields::inheritCells(Field& field, const FieldShape& shape, CellId first,
+                                 CellId end) const {
+  const std::size_t n = shape.components;
+  const CellAncestry& ancestry = *records_.ancestry().cells;
+  field.values.resize(records_.mesh().tetrahedra.size() * n);
+  for (CellId t = first; t < end; ++t)
+    for (std::size_t c = 0; c < n; ++c) {
+      const auto at = [&](CellId u) { return field.values[u * n + c]; };
+      field.values[t * n + c] = shape.hasMissing && ancestry.onlyMissing(t, at)
+                                    ? kMissing
+                                    : static_cast<std::int32_t>(ancestry.predict(t, at));
+    }
+}
+
+void RefinerFields::inheritPoints(Field& field, std::uint32_t components,
+                                  std::size_t firstBirth) const {
+  const std::size_t n = components;
+  field.values.resize(records_.mesh().points.size() * n);
+  for (const Birth& b : records_.ancestry().points.births().subspan(firstBirth))
+    for (std::size_t j = 0; j + 1 < b.k; ++j)
+      for (std::size_t c = 0; c < n; ++c)
+        field.values[(b.firstNew + j) * n + c] = field.values[b.slot * n + c];
+}
+
+Status RefinerFields::mayCome(std::uint32_t field, std::uint32_t chunk, std::size_t values) const {
+  if (field >= fields_.size())
+    return refuseChunk(ErrorCode::kNotFound, chunk, "there is no such field");
+  const Field& f = fields_[field];
+  if (f.broken)
+    return refuseChunk(ErrorCode::kBadOrder, chunk,
+                       "an earlier block of this field failed; start again from chunk 0");
+  if (chunk >= added_.size() || added_[chunk].extent == Extent::kNothing)
+    return refuseChunk(ErrorCode::kBadOrder, chunk, "a field cannot run ahead of the mesh");
+  if (f.applied[chunk]) return refuseChunk(ErrorCode::kBadOrder, chunk, "the field has it already");
+  if (chunk > 0 && !f.applied[plan_.dependencyOf(chunk)])
+    return refuseChunk(
+        ErrorCode::kBadOrder, chunk,
+        "the field needs chunk " + std::to_string(plan_.dependencyOf(chunk)) + " first");
+  if (values != std::size_t{plan_.index.tuples(chunk, kFirstFieldPart + field)} *
+                    plan_.index.fields[field].components)
+    return refuseChunk(ErrorCode::kBadValue, chunk, "wrong number of field values");
+  return {};
+}
+
+Status RefinerFields::apply(std::uint32_t field, std::uint32_t chunk,
+                            std::span<const std::int32_t> values) {
+  if (Status order = mayCome(field, chunk, values.size()); !order) return order;
+  Field& f = fields_[field];
+  const FieldShape shape = plan_.index.fields[field];
+  Values coded(values);
+  if (shape.association == Association::kPoint)
+    codePoints(f, shape, chunk, coded);
+  else
+    codeCells(f, shape, chunk, coded);
+  f.broken = coded.bad() || !(coded.atEnd() || added_[chunk].extent == Extent::kPartial);
+  if (f.broken)
+    return refuseChunk(ErrorCode::kBadValue, chunk, "field values out of range or left over");
+  f.applied[chunk] = true;
+  ++f.chunks;
+  return {};
+}
+
+void RefinerFields::codePoints(Field& f, const FieldShape& shape, std::uint32_t chunk,
+                               Values& residuals) const {
+  if (chunk == 0) codeBase(f, shape, residuals);
+  const std::size_t n = shape.components;
+  const auto at = [&](VertexId v, std::uint32_t c) -> std::int32_t& { return f.values[v * n + c]; };
+  const PointAncestry& ancestry = records_.ancestry().points;
+  const AddedElements& b = added_[chunk];
+  for (const Birth& birth : ancestry.births().subspan(b.firstBirth, b.endBirth - b.firstBirth))
+    ancestry.code<false>(
+        birth, residuals, shape.components, at, [](std::size_t, std::uint32_t) { return 0; },
+        shape.hasMissing);
+}
+
+void RefinerFields::codeBase(Field& f, const FieldShape& shape, Values& residuals) const {
+  const std::size_t n = shape.components;
+  f.values.assign(records_.mesh().points.size() * n, 0);
+  const auto at = [&](VertexId u, std::uint32_t c) { return f.values[u * n + c]; };
+  const std::vector<BaseBirth>& births = records_.ancestry().base;
+  for (VertexId v = 0; v < births.size(); ++v)
+    for (std::uint32_t c = 0; c < n; ++c)
+      f.values[v * n + c] = residuals.codeField<false>(
+          shape.hasMissing, predictBaseField(births[v], v, c, shape.hasMissing, at), 0);
+  inheritPoints(f, shape.components, 0);
+}
+
+void RefinerFields::codeCells(Field& f, const FieldShape& shape, std::uint32_t chunk,
+                              Values& residuals) const {
+  const std::size_t n = shape.components;
+  const CellAncestry& ancestry = *records_.ancestry().cells;
+  f.values.resize(records_.mesh().tetrahedra.size() * n);
+  for (CellId t = plan_.slots[chunk].tetrahedra; t < added_[chunk].endTetrahedron; ++t)
+    for (std::size_t c = 0; c < n; ++c)
+      f.values[t * n + c] = residuals.codeField<false>(
+          shape.hasMissing, ancestry.predict(t, [&](CellId u) { return f.values[u * n + c]; }), 0);
+  if (chunk == 0)
+    inheritCells(f, shape, plan_.slots[1].tetrahedra,
+                 static_cast<CellId>(records_.mesh().tetrahedra.size()));
+}
+
+}  // namespace qtet

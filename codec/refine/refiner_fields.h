@@ -1,0 +1,64 @@
+// A refiner's fields: blocks that follow the chunks of the mesh, at once or later. For refiner*.cpp
+// and nobody else.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "codec/log/log_index.h"
+#include "codec/refine/refiner_chunks.h"
+
+namespace qtet {
+
+/// The elements that a chunk has added to the mesh.
+struct AddedElements {
+  Extent extent = Extent::kNothing;
+  std::size_t firstBirth = 0, endBirth = 0;
+  CellId endTetrahedron = 0;  // of the slots that it filled
+};
+
+class RefinerFields {
+ public:
+  /// All must outlive it. `added`: of each chunk, which the mesh has before a field has it.
+  RefinerFields(const ChunkPlan& plan, const RecordReader& records,
+                const std::vector<AddedElements>& added);
+
+  /// Implements Refiner::applyField.
+  Status apply(std::uint32_t field, std::uint32_t chunk, std::span<const std::int32_t> values);
+  /// Gives a chunk's new elements stand-in values in every field, until the field's own block
+  /// arrives.
+  void inherit(std::uint32_t chunk);
+
+  [[nodiscard]] bool applied(std::uint32_t field, std::uint32_t chunk) const {
+    return field < fields_.size() && chunk < added_.size() && fields_[field].applied[chunk];
+  }
+  [[nodiscard]] std::uint32_t chunks(std::uint32_t field) const { return fields_[field].chunks; }
+  [[nodiscard]] std::span<const std::int32_t> values(std::uint32_t field) const {
+    return fields_[field].values;
+  }
+
+ private:
+  struct Field {
+    std::vector<std::int32_t> values;
+    std::vector<bool> applied;  // by chunk
+    std::uint32_t chunks = 0;
+    bool broken = false;  // a block failed half-way: what it wrote is noise
+  };
+
+  [[nodiscard]] Status mayCome(std::uint32_t field, std::uint32_t chunk, std::size_t values) const;
+  void inheritPoints(Field& field, std::uint32_t components, std::size_t firstBirth) const;
+  void inheritCells(Field& field, const FieldShape& shape, CellId first, CellId end) const;
+  void codePoints(Field& field, const FieldShape& shape, std::uint32_t chunk,
+                  Values& residuals) const;
+  void codeBase(Field& field, const FieldShape& shape, Values& residuals) const;
+  void codeCells(Field& field, const FieldShape& shape, std::uint32_t chunk,
+                 Values& residuals) const;
+
+  const ChunkPlan& plan_;
+  const RecordReader& records_;
+  const std::vector<AddedElements>& added_;
+  std::vector<Field> fields_;
+};
+
+}  // namespace qtet

@@ -1,0 +1,170 @@
+#include "server/session/answer_work.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <boost/asio/async_result.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/thread_pool.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <span>
+
+#include "server/http/client_watch.h"
+#include "server/http/http_resource.h"
+#include "server/http/level_wait.h"
+#include "server/session/http_output.h"
+#include "server/wire/connection_limits.h"
+#include "server/wire/http_limits.h"
+
+namespace qtet {
+namespace {
+
+namespace asio = boost::asio;
+using asio::use_awaitable;
+
+constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
+
+Reply clientGone(Reply reply = {}) {
+  reply.status = kClientGone;
+  return reply;
+}
+
+Reply refusedLevel(LevelRefusal refusal) {
+  if (refusal != LevelRefusal::kAddress)
+    return busyReply("too many levels are being made; try again");
+  Reply out = problem(429, "too-many-requests",
+                      "as many levels are being made for this address as may be; try again");
+  out.headers.emplace_back("Retry-After", std::to_string(limits::kRetryAfterSeconds));
+  return out;
+}
+
+Reply failedLevel(const Error& error) {
+  const std::string why = error.code == ErrorCode::kIo
+                              ? "the level cannot be made: "
+                              : "this log cannot be decoded, though its checksums hold; qtet "
+                                "verify says the same, and it has to be written again: ";
+  return problem(500, "internal", why + error.text());
+}
+
+/// The level's bytes behind `head`, or the range of them that is asked for.
+asio::awaitable<Reply> makeReply(Reply head, const LevelRequest& level, const RequestView& request,
+                                 Peer& peer, LevelJobs& jobs) {
+  std::optional<LevelFile> file = jobs.find(level);
+  if (!file && head.sendBody) {
+    LevelAnswer answered = co_await waitForLevel(peer.socket, jobs, level, peer.address());
+    if (const auto* refusal = std::get_if<LevelRefusal>(&answered))
+      co_return *refusal == LevelRefusal::kGone ? clientGone(std::move(head))
+                                                : refusedLevel(*refusal);
+    Result<LevelFile>& made = std::get<Result<LevelFile>>(answered);
+    if (!made) {
+      spdlog::error("{}: level {} cannot be made: {}", level.mesh->id, level.level,
+                    made.error().text());
+      co_return failedLevel(made.error());
+    }
+    file = std::move(*made);
+  }
+  if (!file) co_return head;
+  const bool sendBody = head.sendBody;
+  Reply out = rangeReply(request, std::move(head), file->bytes, file->owner);
+  out.sendBody = sendBody;
+  co_return out;
+}
+
+/// Reads the body into the upload; the answer, if it ends before its time.
+asio::awaitable<std::optional<Reply>> receiveBody(HttpInput& input, Upload& upload,
+                                                  std::uint64_t bytes) {
+  Bytes piece(limits::kBodyPiece);
+  while (bytes > 0) {
+    const std::size_t wanted = std::min<std::uint64_t>(bytes, piece.size());
+    const std::size_t have = co_await input.readBody(std::span(piece).first(wanted));
+    if (std::optional<Reply> trouble = upload.append(ByteView(piece).first(have)))
+      co_return trouble;
+    if (have < wanted)
+      co_return problem(408, "request-timeout",
+                        "the request's body did not arrive, or not in time");
+    bytes -= have;
+  }
+  co_return std::nullopt;
+}
+
+asio::awaitable<Reply> remove(const UploadRequest& upload, ClientSocket& socket,
+                              const Services& services) {
+  auto start = [&services, &upload, executor = socket.get_executor()](auto handler) {
+    asio::post(
+        *services.writers, [&services, &upload, executor, handler = std::move(handler)]() mutable {
+          Reply reply = services.uploads->remove(upload);
+          asio::post(executor, [handler = std::move(handler), reply = std::move(reply)]() mutable {
+            handler(std::move(reply));
+          });
+        });
+  };
+  co_return co_await asio::async_initiate<const asio::use_awaitable_t<>, void(Reply)>(
+      std::move(start), use_awaitable);
+}
+
+/// Has the log checked and published. kClientGone: the check was broken off.
+asio::awaitable<Reply> finish(Upload& upload, ClientSocket& socket, const Services& services) {
+  std::stop_source stop;
+  auto start = [&services, &socket, &upload, &stop,
+                executor = socket.get_executor()](auto handler) {
+    // while it is, the coroutine waits here, and with it the socket
+    const auto pending = std::make_shared<bool>(true);
+    watchForEnd(socket, [pending] { return *pending; }, [&stop] { stop.request_stop(); });
+    asio::post(*services.checkers, [&upload, token = stop.get_token(), pending, executor,
+                                    handler = std::move(handler)]() mutable {
+      Reply reply = upload.finish(token);
+      asio::post(executor,
+                 [pending, handler = std::move(handler), reply = std::move(reply)]() mutable {
+                   *pending = false;
+                   handler(std::move(reply));
+                 });
+    });
+  };
+  Reply out = co_await asio::async_initiate<const asio::use_awaitable_t<>, void(Reply)>(
+      std::move(start), use_awaitable);
+  socket.cancel();  // the watch, if it still stands
+  co_return stop.stop_requested() ? clientGone() : std::move(out);
+}
+
+asio::awaitable<std::optional<Reply>> takeUpload(const UploadRequest& upload, bool awaitsContinue,
+                                                 Peer& peer, HttpInput& input,
+                                                 const Services& services) {
+  auto begun = services.uploads->begin(upload);
+  if (!begun) {
+    begun.error().close = true;  // the body is not read
+    co_return std::move(begun.error());
+  }
+  if (awaitsContinue) {
+    const Sent sent = co_await sendReply(peer.socket, {.head = kContinue}, services.timeouts.write,
+                                         services.unpaced);
+    if (!sent.whole) co_return std::nullopt;
+  }
+  std::optional<Reply> out = co_await receiveBody(input, **begun, upload.bodyBytes);
+  if (out)
+    out->close = true;  // some of the body may still come
+  else
+    out = (*begun)->partial();
+  if (!out) out = co_await finish(**begun, peer.socket, services);
+  begun->reset();  // its place is free before the client hears of the end
+  co_return out;
+}
+
+}  // namespace
+
+asio::awaitable<std::optional<Reply>> workOn(Answer answer, const RequestView& request, Peer& peer,
+                                             HttpInput& input, const Services& services) {
+  std::optional<Reply> out;
+  if (const auto* level = std::get_if<LevelRequest>(&answer.work)) {
+    out = co_await makeReply(std::move(answer.reply), *level, request, peer, services.jobs);
+  } else if (const auto* upload = std::get_if<UploadRequest>(&answer.work)) {
+    if (upload->kind == UploadRequest::Kind::kDelete)
+      out = co_await remove(*upload, peer.socket, services);
+    else
+      out = co_await takeUpload(*upload, request.expect.has_value(), peer, input, services);
+  } else {
+    out = std::move(answer.reply);
+  }
+  co_return out;
+}
+
+}  // namespace qtet

@@ -1,0 +1,57 @@
+// Takes a client's HTTP heads and bodies out of the bytes that have arrived.
+#pragma once
+
+#include <utility>  // before any Asio header: 1.74 uses std::exchange without it
+
+#include <boost/asio/awaitable.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/http/empty_body.hpp>
+#include <boost/beast/http/parser.hpp>
+#include <cstdint>
+#include <expected>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "server/http/http_message.h"
+#include "server/session/services.h"
+#include "server/wire/http_limits.h"
+#include "server/wire/peer.h"
+
+namespace qtet {
+
+/// Holds the bytes that were read and not taken yet; a silent client has none. Both references
+/// outlive it.
+class HttpInput {
+ public:
+  using Parser = boost::beast::http::request_parser<boost::beast::http::empty_body>;
+
+  HttpInput(Peer& peer, const Timeouts& timeouts)
+      : peer_(peer), timeouts_(timeouts), buffer_(limits::kMaxHeaderBytes) {}
+
+  /// Waits for the first byte of a request. False: the client has gone or said nothing for too
+  /// long, or the server ends.
+  boost::asio::awaitable<bool> waitForRequest();
+  /// Has the whole head parsed. Else what is answered, and the connection ends; nullopt: the client
+  /// has gone.
+  boost::asio::awaitable<std::expected<void, std::optional<Reply>>> readHead(Parser& parser);
+  /// Fills `into` with what follows the head. Bytes read; fewer: they did not come, or not in time.
+  boost::asio::awaitable<std::size_t> readBody(std::span<std::uint8_t> into);
+  /// Reads and discards the client's further bytes, within bounds. Closing with unread bytes would
+  /// reset the connection, and the answer might be lost on its way.
+  boost::asio::awaitable<void> drain();
+  /// The bytes that were read beyond the head.
+  [[nodiscard]] std::string_view buffered() const {
+    return {static_cast<const char*>(buffer_.data().data()), buffer_.size()};
+  }
+
+ private:
+  /// Reads the bytes that have arrived, without waiting.
+  void readSome(boost::beast::error_code& ec, std::size_t max);
+
+  Peer& peer_;
+  const Timeouts& timeouts_;
+  boost::beast::flat_buffer buffer_;
+};
+
+}  // namespace qtet

@@ -1,0 +1,48 @@
+#include "simplify/commands/option_names.h"
+
+#include <string_view>
+#include <utility>
+
+namespace qtet {
+namespace {
+
+/// Those of SimplifyOptions, ReadOptions and qtet_simplify_options that messages name.
+constexpr std::pair<std::string_view, std::string_view> kOptions[] = {
+    {"`algorithm`", "--algorithm"},
+    {"`baseCells`", "--base-cells"},
+    {"`boundaryWeight`", "--boundary-weight"},
+    {"`cellsPerPacket`", "--cells-per-packet"},
+    {"`curved`", "--curved"},
+    {"`envelopeTolerance`", "--envelope-tolerance"},
+    {"`fields`", "--fields"},
+    {"`fieldWeights`", "--field-weight"},
+    {"`format`", "--format"},
+    {"`keepOrder`", "--keep-order"},
+    {"`layout`", "--layout"},
+    {"`lossless`", "--lossless"},
+    {"`maxBoundaryError`", "--max-boundary-error"},
+    {"`measure`", "--measure"},
+    {"`originalIds`", "--original-ids"},
+    {"`readSeconds`", "--read-seconds"},
+    {"`regions`", "--preserve-regions"},
+    {"`targetRatio`", "--target-ratio"},
+    {"`threshold`", "--threshold"},
+    {"`time`", "--time"},
+    {"`weld`", "--weld"},
+};
+
+}  // namespace
+
+std::string withOptionNames(std::string text) {
+  for (const auto& [member, option] : kOptions)
+    for (std::size_t at = 0; (at = text.find(member, at)) != std::string::npos; at += option.size())
+      text.replace(at, member.size(), option);
+  return text;
+}
+
+std::vector<std::string> withOptionNames(std::vector<std::string> texts) {
+  for (std::string& text : texts) text = withOptionNames(std::move(text));
+  return texts;
+}
+
+}  // namespace qtet

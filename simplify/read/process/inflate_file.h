@@ -1,0 +1,29 @@
+// Mesh files that were compressed whole: NAME.vtu.gz and so on.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "proto/error.h"
+
+namespace qtet {
+
+/// The bytes that the machine's memory has. A mesh whose file is larger cannot be read here, and
+/// what inflates to more may be a bomb.
+[[nodiscard]] std::uint64_t maxInflatedBytes();
+
+/// Inflates the gzip file into a folder of its own, under its name without the last ending. Hands
+/// the file to `use`, then removes the folder. Errors: io (not readable, no room), bad-input (no
+/// gzip, damaged), truncated, limit-exceeded (more than `most` bytes), those of `use`, in which the
+/// file has the name of the compressed one.
+[[nodiscard]] Status inflated(const std::filesystem::path& path,
+                              const std::function<Status(const std::filesystem::path&)>& use,
+                              std::uint64_t most = maxInflatedBytes());
+
+/// The text, in which each `from` is `to`.
+[[nodiscard]] std::string withName(std::string text, const std::string& from,
+                                   const std::string& to);
+
+}  // namespace qtet

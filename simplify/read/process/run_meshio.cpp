@@ -1,0 +1,188 @@
+#include "simplify/read/process/run_meshio.h"
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <csignal>
+#include <fstream>
+#include <optional>
+#include <string>
+
+#include "simplify/read/options/mesh_format.h"
+#include "simplify/read/process/guarded_folder.h"
+#include "simplify/read/process/watch_process.h"
+
+namespace qtet {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kNoProgram = 127, kNoMeshio = 77, kUnknownKind = 78;  ///< what the child ends with
+constexpr int kKilled = -1, kStuck = -2;                            ///< not by itself
+/// Reads, drops what a .vtu cannot hold, and writes. Python would look for meshio in the working
+/// folder first, where a mesh's sender may have put one. Words: input, folder, kind, time.
+constexpr const char* kScript = R"python(
+import sys
+sys.path[:] = [folder for folder in sys.path if folder]
+try:
+    import meshio
+except ImportError:
+    sys.exit(77)
+import os
+import xml.etree.ElementTree as tree
+
+source, folder, kind, wanted = sys.argv[1:5]
+
+# faces and lines of second order, which Gmsh writes beside the volume
+OTHERS = {"CPS6": "triangle6", "CPS8": "quad8", "T3D3": "line3", "B32": "line3", "S8": "quad8"}
+try:
+    from meshio.abaqus import _abaqus
+    _abaqus.abaqus_to_meshio_type.update(OTHERS)
+except (ImportError, AttributeError):
+    pass
+
+def write(mesh, name):
+    mesh.cell_sets, mesh.point_sets, mesh.field_data, mesh.info = {}, {}, {}, None
+    meshio.write(folder + "/" + name, mesh, file_format="vtu", binary=True)
+
+def is_meant(time, number, count):
+    if wanted in ("first", "last", "all"):
+        return wanted == "all" or count == 1 or number == (0 if wanted == "first" else count - 1)
+    try:
+        other = float(wanted)
+    except ValueError:
+        return False
+    return abs(time - other) <= 1e-9 * max(abs(time), abs(other))
+
+def formats_of(ending):
+    helpers = meshio._helpers
+    if ending in helpers.reader_map:
+        return [ending]
+    # a dictionary of lists, or of single formats in older versions
+    older = getattr(helpers, "extension_to_filetype", {})
+    known = getattr(helpers, "extension_to_filetypes", older)
+    formats = known.get("." + ending, [])
+    return [formats] if isinstance(formats, str) else formats
+
+def formats_of_name():
+    # the longest ending that is known, as in .post.gz
+    endings = os.path.basename(source).lower().split(".")[1:]
+    return next(filter(None, (formats_of(".".join(endings[i:])) for i in range(len(endings)))), [])
+
+def is_series(formats):
+    if formats[:1] != ["xdmf"]:
+        return False
+    domain = tree.parse(source).getroot().find("Domain")
+    grids = [] if domain is None else domain.findall("Grid")
+    return any(grid.get("CollectionType") == "Temporal" for grid in grids)
+
+def write_series():
+    with meshio.xdmf.TimeSeriesReader(source) as reader:
+        points, cells = reader.read_points_cells()
+        series, count = tree.Element("VTKFile", type="Collection"), reader.num_steps
+        collection = tree.SubElement(series, "Collection")
+        for number in range(count):
+            # of another step the time alone counts
+            time = reader.collection[number].find("Time")
+            time = float(number if time is None else time.get("Value"))
+            name = "%d.vtu" % number
+            tree.SubElement(collection, "DataSet", timestep=repr(time), file=name)
+            if is_meant(time, number, count):
+                _, point_data, cell_data = reader.read_data(number)
+                write(meshio.Mesh(points, cells, point_data, cell_data), name)
+        tree.ElementTree(series).write(folder + "/mesh.pvd")
+
+try:
+    formats = formats_of(kind) if kind else formats_of_name()
+    if not formats:
+        sys.exit(78)
+    if is_series(formats):
+        write_series()
+    else:
+        write(meshio.read(source, formats[0] if kind else None), "mesh.vtu")
+except SystemExit as end:  # meshio has said why
+    sys.exit(end.code if end.code == 78 else 1)
+except BaseException as error:
+    sys.stderr.write("\n" + (str(error) or type(error).__name__).replace("\n", " "))
+    sys.exit(1)
+)python";
+
+/// Returns the program's exit code; kKilled also where it could not be started.
+int run(const char* python, const MeshioInput& input, const fs::path& folder,
+        const fs::path& words) {
+  const std::string in = fs::absolute(input.path).string();
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody would wait for it
+    const int file = ::open(words.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600),
+              nothing = ::open("/dev/null", O_RDWR);
+    ::dup2(nothing, STDIN_FILENO);
+    ::dup2(file, STDOUT_FILENO);
+    ::dup2(file, STDERR_FILENO);
+    boundMemory();
+    ::execlp(python, python, "-c", kScript, in.c_str(), folder.c_str(), input.kind.c_str(),
+             input.time.c_str(), static_cast<char*>(nullptr));
+    ::_exit(kNoProgram);
+  }
+  if (child < 0) return kKilled;
+  const std::optional<int> status = watchProcess(child, input.patience);
+  if (!status) return kStuck;
+  return WIFEXITED(*status) ? WEXITSTATUS(*status) : kKilled;
+}
+
+std::string lastLineOf(const fs::path& path) {
+  std::ifstream file(path);
+  std::string last;
+  for (std::string line; std::getline(file, line);) {
+    if (line.find_first_not_of(" \t\r") != std::string::npos) last = line;
+  }
+  return last.empty() ? "it ended without a word" : last;
+}
+
+}  // namespace
+
+Status throughMeshio(const MeshioInput& input, const std::function<Status(const fs::path&)>& use) {
+  const GuardedFolder folder("meshio");
+  if (folder.failure())
+    return fail(ErrorCode::kIo, "no temporary folder could be made (" + folder.failure().message() +
+                                    "); let TMPDIR name one with room");
+  const fs::path words = folder.path() / "words.txt";
+  // The first python3 may be one of the user's own; Debian's has Debian's meshio.
+  int ended = kNoProgram;
+  for (const char* python : {"python3", "/usr/bin/python3"}) {
+    ended = run(python, input, folder.path(), words);
+    if (ended != kNoProgram && ended != kNoMeshio) break;
+  }
+  const std::string path = input.path.string(),
+                    kind = input.kind.empty() ? input.path.extension().string() : input.kind;
+  if (ended == kNoProgram || ended == kNoMeshio) {
+    return fail(ErrorCode::kNotFound,
+                path + ": files of type '" + kind +
+                    "' are read through meshio, which is not installed; install it (apt install "
+                    "python3-meshio, or pip install meshio), or save the mesh as .vtu; if it is "
+                    "one of another kind, say which with `format`: " +
+                    knownEndings());
+  }
+  if (ended == kStuck) {
+    return fail(ErrorCode::kBadInput,
+                path + ": meshio has neither read nor written anything for " +
+                    std::to_string(input.patience.count()) +
+                    " s; if the file is only large, give it longer with `readSeconds`, else "
+                    "export the mesh again, best as .vtu");
+  }
+  if (ended == kUnknownKind)
+    return fail(ErrorCode::kBadInput, path + ": files of type '" + kind +
+                                          "' are not read; say with `format` what it is: " +
+                                          knownEndings() + ", or an ending that meshio knows");
+  if (ended != 0)
+    return fail(ErrorCode::kBadInput, path + ": meshio could not read it: " + lastLineOf(words) +
+                                          "; save the mesh as .vtu");
+  const fs::path series = folder.path() / "mesh.pvd";
+  std::error_code code;
+  return use(fs::exists(series, code) ? series : folder.path() / "mesh.vtu");
+}
+
+}  // namespace qtet

@@ -1,0 +1,35 @@
+// Our own readers of formats that Debian's VTK does not read. Their results are still to be checked
+// (checkCellMesh); counts are held against the bytes that remain before anything is allocated.
+// Errors: io; truncated, bad-input, with the line, in binary files the byte.
+#pragma once
+
+#include <filesystem>
+
+#include "simplify/read/options/read_options.h"
+#include "simplify/split/cell_mesh.h"
+
+namespace qtet {
+
+/// Gmsh 2.2 and 4.1, text and binary (little-endian): nodes, elements, NodeData and ElementData. A
+/// field given at several times has the steps that `time` means (time_steps.h). The first physical
+/// group of a volume is the cell field gmsh:physical. Nodes keep the file's order, cells that of
+/// the volume elements. https://gmsh.info/doc/texinfo/gmsh.html#File-formats
+[[nodiscard]] Result<CellMesh> readGmsh(const std::filesystem::path& path, const std::string& time,
+                                        ReadReport& report);
+
+/// Medit .mesh, and .meshb of versions 1 to 4: vertices, tetrahedra, hexahedra, prisms, pyramids,
+/// second-degree tetrahedra; references other than 0 are the fields medit:ref.
+/// https://www.ljll.fr/frey/publications/RT-0253.pdf, and libMeshb's keywords.
+[[nodiscard]] Result<CellMesh> readMedit(const std::filesystem::path& path, ReadReport& report);
+
+/// TetGen NAME.node and NAME.ele (either is given, both are read), numbered from 0 or 1: attributes
+/// are the point fields attribute-I and the cell fields attribute-I. A ten-node tetrahedron is read
+/// by its corners: TetGen sets the other nodes on straight edges.
+/// https://wias-berlin.de/software/tetgen/fformats.html
+[[nodiscard]] Result<CellMesh> readTetgen(const std::filesystem::path& path, ReadReport& report);
+
+/// SU2 of three dimensions and one zone; the markers are skipped.
+/// https://su2code.github.io/docs_v7/Mesh-File/
+[[nodiscard]] Result<CellMesh> readSu2(const std::filesystem::path& path, ReadReport& report);
+
+}  // namespace qtet

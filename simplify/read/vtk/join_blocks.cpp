@@ -1,0 +1,174 @@
+#include "simplify/read/vtk/join_blocks.h"
+
+#include <algorithm>
+#include <limits>
+#include <span>
+
+#include "simplify/read/parts/join_pieces.h"
+
+namespace qtet {
+namespace {
+
+const MeshField* find(const CellMesh& mesh, const MeshField& like) {
+  for (const MeshField& field : mesh.fields) {
+    if (field.name == like.name && field.association == like.association) return &field;
+  }
+  return nullptr;
+}
+
+/// The type that holds the values of both: the wider of two floats, of two signed or two unsigned
+/// integers; empty: there is none.
+std::string widerType(const std::string& a, const std::string& b) {
+  const auto kind = [](const std::string& type) {
+    return type.substr(0, type.find_first_of("0123456789"));
+  };
+  if (kind(a) != kind(b)) return "";
+  return a.size() != b.size() ? (a.size() > b.size() ? a : b) : std::max(a, b);
+}
+
+/// The field of all blocks, without values. Its name is empty where it is not in every block that
+/// must have it, or where no type holds the values of all. NaN stands for what a block lacks, which
+/// integers have not.
+MeshField commonField(const MeshField& field, const std::vector<CellMesh>& blocks) {
+  MeshField out{field.name, field.components, field.type, {}, field.association};
+  for (const CellMesh& block : blocks) {
+    const MeshField* there = find(block, field);
+    const bool agrees = there ? there->components == out.components : isFloatType(out.type);
+    if (there && agrees) out.type = widerType(out.type, there->type);
+    if (!agrees || out.type.empty()) return {};
+  }
+  return out;
+}
+
+/// The fields that the joined mesh has, without values.
+std::vector<MeshField> commonFields(const std::vector<CellMesh>& blocks,
+                                    std::vector<std::string>& notes) {
+  std::vector<MeshField> out;
+  std::vector<std::string> leftOut;
+  for (const CellMesh& block : blocks) {
+    for (const MeshField& field : block.fields) {
+      const std::string key = field.association + " field " + field.name;
+      const bool known = std::ranges::any_of(out, [&](const MeshField& f) {
+        return f.name == field.name && f.association == field.association;
+      });
+      if (known || std::ranges::find(leftOut, key) != leftOut.end()) continue;
+      MeshField common = commonField(field, blocks);
+      if (!common.name.empty()) {
+        out.push_back(std::move(common));
+      } else {
+        leftOut.push_back(key);
+        notes.push_back(key +
+                        " was left out: it is not in every block, or its components or types "
+                        "differ between blocks");
+      }
+    }
+  }
+  return out;
+}
+
+void appendValues(MeshField& field, const CellMesh& block, std::size_t tuples) {
+  if (const MeshField* there = find(block, field)) {
+    field.values.insert(field.values.end(), there->values.begin(), there->values.end());
+  } else {
+    field.values.resize(field.values.size() + tuples * field.components,
+                        std::numeric_limits<double>::quiet_NaN());
+  }
+}
+
+void appendCells(CellMesh& out, const CellMesh& block, VertexId firstPoint) {
+  const auto shift = [&](VertexId& v) {
+    v = v >= block.points.size() || v + std::uint64_t{firstPoint} >= kGhost ? kGhost
+                                                                            : v + firstPoint;
+  };
+  for (std::size_t i = 0; i < block.cells(); ++i) {
+    out.addCell(block.types[i], block.cell(i));
+    forEachId(block.types[i], std::span(out.vertices).subspan(out.begins[out.cells() - 1]), shift);
+  }
+}
+
+/// "its 8 pieces were joined at 1234 points that they share"
+void join(CellMesh& mesh, std::span<const VertexId> ends, bool isWanted, ReadReport& report) {
+  report.pieces = ends.size();
+  if (ends.size() < 2) return;
+  const std::string pieces = "its " + std::to_string(ends.size()) + " pieces ";
+  if (!isWanted) {
+    report.notes.push_back(pieces + "stay apart (`weld` none)");
+    return;
+  }
+  const JoinedPieces joined = joinPieces(mesh, ends);
+  report.joinedPoints = joined.points;
+  report.notes.push_back(
+      joined.points == 0
+          ? pieces + "have no points in common, and stay apart; `weld` D joins points within D"
+          : pieces + "were joined at " + std::to_string(joined.points) + " points that they share" +
+                (joined.byIds ? ", by their global ids" : "") +
+                "; `weld` none would keep them apart");
+}
+
+}  // namespace
+
+CellMesh joinBlocks(std::vector<CellMesh> blocks, bool joinShared, ReadReport& report) {
+  std::erase_if(blocks, [](const CellMesh& block) { return block.cells() == 0; });
+  if (blocks.empty()) return {};
+  if (blocks.size() == 1) return std::move(blocks.front());
+  CellMesh out;
+  out.pointType = blocks.front().pointType;
+  out.fields = commonFields(blocks, report.notes);
+  const bool haveIds = std::ranges::all_of(
+      blocks, [](const CellMesh& b) { return b.pointIds.size() == b.points.size(); });
+  std::uint64_t firstCell = 0;
+  std::size_t firstPoint = 0;
+  std::vector<VertexId> ends;
+  const std::vector<Position>* last = nullptr;
+  for (const CellMesh& block : blocks) {
+    const bool shares = last && *last == block.points;
+    if (!shares) {
+      firstPoint = out.points.size();
+      out.points.insert(out.points.end(), block.points.begin(), block.points.end());
+      if (haveIds)
+        out.pointIds.insert(out.pointIds.end(), block.pointIds.begin(), block.pointIds.end());
+      ends.emplace_back();
+    }
+    ends.back() = static_cast<VertexId>(std::min<std::size_t>(out.points.size(), kGhost));
+    last = &block.points;
+    appendCells(out, block, static_cast<VertexId>(std::min<std::size_t>(firstPoint, kGhost)));
+    for (std::size_t i = 0; i < block.cells(); ++i)
+      out.cellIds.push_back(firstCell + block.cellId(i));
+    firstCell = out.cellIds.back() + 1;
+    for (MeshField& field : out.fields) {
+      if (isCellField(field) || !shares)
+        appendValues(field, block, isCellField(field) ? block.cells() : block.points.size());
+    }
+    if (block.pointType != out.pointType) out.pointType = "float64";
+    out.otherFields.insert(out.otherFields.end(), block.otherFields.begin(),
+                           block.otherFields.end());
+  }
+  // More points than ids can name: checkCellMesh refuses them.
+  const bool canBeNamed = out.points.size() < kGhost;
+  join(out, ends, joinShared && canBeNamed, report);
+  return out;
+}
+
+Result<CellMesh> joinSteps(std::vector<TimedCells> steps, const std::filesystem::path& path) {
+  CellMesh out = std::move(steps.front().cells);
+  std::vector<MeshField> fields;
+  for (std::size_t s = 0; s < steps.size(); ++s) {
+    const CellMesh& step = s == 0 ? out : steps[s].cells;
+    if (s > 0 &&
+        (step.points != out.points || step.types != out.types || step.vertices != out.vertices)) {
+      return fail(ErrorCode::kBadInput, path.string() + ": the mesh at time " + steps[s].time +
+                                            " is not that of time " + steps[0].time +
+                                            "; make a log of each step, with `time` " +
+                                            steps[s].time + " and so on");
+    }
+    for (const MeshField& field : step.fields) {
+      fields.push_back(field);
+      fields.back().name += "@" + steps[s].time;
+    }
+    if (s > 0) steps[s].cells = {};
+  }
+  out.fields = std::move(fields);
+  return out;
+}
+
+}  // namespace qtet

@@ -1,0 +1,25 @@
+// Blocks and time steps of one file as one mesh.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "simplify/read/vtk/vtk_grid.h"
+#include "simplify/split/cell_mesh.h"
+
+namespace qtet {
+
+/// The blocks one after the other, cells numbered on. A block whose points are those of the one
+/// before (as Exodus has them) shares them. The others are pieces of their own, which are joined at
+/// the points that they share (join_pieces.h) where `joinShared` says so. A field of floats that a
+/// block lacks is NaN there, and one whose types differ takes the wider. A field of integers that a
+/// block lacks, or whose components differ, is left out. The report's notes say so.
+[[nodiscard]] CellMesh joinBlocks(std::vector<CellMesh> blocks, bool joinShared,
+                                  ReadReport& report);
+
+/// The first step's mesh with every step's fields, called NAME@TIME. Errors: bad-input where a step
+/// has other points or cells than the first.
+[[nodiscard]] Result<CellMesh> joinSteps(std::vector<TimedCells> steps,
+                                         const std::filesystem::path& path);
+
+}  // namespace qtet

@@ -1,0 +1,152 @@
+#include "simplify/read/parts/join_pieces.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+namespace qtet {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// Adds a unit cube with points of its own, its least corner at `at`, as a hexahedron.
+void addCube(CellMesh& mesh, const Position& at) {
+  const auto first = static_cast<VertexId>(mesh.points.size());
+  const Position corners[] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
+                              {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+  for (const Position& c : corners)
+    mesh.points.push_back({at[0] + c[0], at[1] + c[1], at[2] + c[2]});
+  std::array<VertexId, 8> ids{};
+  for (VertexId i = 0; i < 8; ++i) ids[i] = first + i;
+  mesh.addCell(kHexahedronCell, ids);
+}
+
+std::set<VertexId> pointsOf(const CellMesh& mesh, std::size_t cell) {
+  const auto ids = mesh.cell(cell);
+  return {ids.begin(), ids.end()};
+}
+
+std::size_t shared(const CellMesh& mesh, std::size_t a, std::size_t b) {
+  const std::set<VertexId> one = pointsOf(mesh, a), other = pointsOf(mesh, b);
+  return static_cast<std::size_t>(
+      std::ranges::count_if(one, [&](VertexId v) { return other.contains(v); }));
+}
+
+TEST(JoinPieces, piecesHangTogetherAtTheirSeam) {
+  CellMesh mesh;
+  addCube(mesh, {0, 0, 0});
+  addCube(mesh, {1, 0, 0});
+  mesh.fields.push_back({"T", 1, "float64", {}, "point"});
+  for (const Position& p : mesh.points) mesh.fields[0].values.push_back(p[0]);
+  const JoinedPieces joined = joinPieces(mesh, std::vector<VertexId>{8, 16});
+  EXPECT_EQ(joined.points, 4u);
+  EXPECT_FALSE(joined.byIds);
+  ASSERT_EQ(mesh.points.size(), 12u);
+  EXPECT_EQ(shared(mesh, 0, 1), 4u);
+  for (std::size_t i = 0; i < 12; ++i) EXPECT_EQ(mesh.fields[0].values[i], mesh.points[i][0]);
+  for (std::size_t c = 0; c < 2; ++c)
+    for (const VertexId v : mesh.cell(c)) EXPECT_NEAR(mesh.points[v][0], double(c) + 0.5, 0.5);
+}
+
+TEST(JoinPieces, onePieceStaysAsItIs) {
+  CellMesh mesh;
+  addCube(mesh, {0, 0, 0});
+  addCube(mesh, {1, 0, 0});
+  EXPECT_EQ(joinPieces(mesh, std::vector<VertexId>{16}).points, 0u);
+  EXPECT_EQ(mesh.points.size(), 16u) << "a slit in a piece is meant";
+}
+
+/// Four cubes round the z axis. The two pieces are x < 0 and x > 0, and a slit runs through both
+/// along y = 0.
+TEST(JoinPieces, aSlitThatCrossesTheSeamStaysOpenAlongItsWholeLength) {
+  CellMesh mesh;
+  addCube(mesh, {-1, -1, 0});
+  addCube(mesh, {-1, 0, 0});
+  addCube(mesh, {0, -1, 0});
+  addCube(mesh, {0, 0, 0});
+  EXPECT_EQ(joinPieces(mesh, std::vector<VertexId>{16, 32}).points, 8u);
+  EXPECT_EQ(shared(mesh, 0, 2), 4u) << "below the slit the pieces hang together";
+  EXPECT_EQ(shared(mesh, 1, 3), 4u) << "above it, too";
+  EXPECT_EQ(shared(mesh, 0, 1), 0u);
+  EXPECT_EQ(shared(mesh, 2, 3), 0u);
+  EXPECT_EQ(shared(mesh, 0, 3), 0u);
+}
+
+TEST(JoinPieces, noPointJoinsTwoOfOnePiece) {
+  CellMesh mesh;  // the slit of the first piece ends at the second, which has none
+  addCube(mesh, {-1, -1, 0});
+  addCube(mesh, {-1, 0, 0});
+  const auto second = static_cast<VertexId>(mesh.points.size());
+  addCube(mesh, {0, -1, 0});
+  addCube(mesh, {0, 0, 0});
+  std::vector<VertexId> names(mesh.points.size());
+  for (VertexId v = 0; v < names.size(); ++v) {
+    names[v] = v;
+    for (VertexId w = second; w < v; ++w)
+      if (v > second && mesh.points[w] == mesh.points[v]) names[v] = w;
+  }
+  mesh.renamePoints(names);
+  joinPieces(mesh, std::vector<VertexId>{second, 32});
+  EXPECT_EQ(shared(mesh, 0, 1), 0u);
+  EXPECT_EQ(shared(mesh, 2, 3), 4u);
+}
+
+TEST(JoinPieces, idsDecideWhereTheyHoldForAllPieces) {
+  CellMesh mesh;
+  addCube(mesh, {0, 0, 0});
+  addCube(mesh, {1, 0, 0});
+  mesh.points[8][1] += 1e-9;  // rounded otherwise by the other process
+  mesh.pointIds = {0, 1, 2, 3, 4, 5, 6, 7, 1, 8, 9, 2, 5, 10, 11, 6};
+  const JoinedPieces joined = joinPieces(mesh, std::vector<VertexId>{8, 16});
+  EXPECT_TRUE(joined.byIds);
+  EXPECT_EQ(joined.points, 4u);
+  EXPECT_EQ(mesh.pointIds, (std::vector<std::uint64_t>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}));
+}
+
+TEST(JoinPieces, idsThatEachPieceCountsForItselfAreNoIds) {
+  CellMesh mesh;
+  addCube(mesh, {0, 0, 0});
+  addCube(mesh, {1, 0, 0});
+  mesh.pointIds = {0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7};
+  const JoinedPieces joined = joinPieces(mesh, std::vector<VertexId>{8, 16});
+  EXPECT_FALSE(joined.byIds);
+  EXPECT_EQ(shared(mesh, 0, 1), 4u);
+}
+
+TEST(JoinPieces, aValueThatThePointsOwnPieceMissesIsTheOthers) {
+  CellMesh mesh;
+  addCube(mesh, {0, 0, 0});
+  addCube(mesh, {1, 0, 0});
+  mesh.fields.push_back({"T", 1, "float64", std::vector<double>(16, 7), "point"});
+  std::fill_n(mesh.fields[0].values.begin(), 8, kNan);
+  joinPieces(mesh, std::vector<VertexId>{8, 16});
+  for (const VertexId v : mesh.cell(1)) EXPECT_EQ(mesh.fields[0].values[v], 7);
+}
+
+TEST(JoinPieces, minusZeroIsZeroAndWhatIsNoNumberJoinsNothing) {
+  CellMesh mesh;
+  addCube(mesh, {-1, 0, 0});
+  addCube(mesh, {0, 0, 0});
+  for (const VertexId v : mesh.cell(0))
+    if (mesh.points[v][0] == 0) mesh.points[v][0] = -0.0;
+  mesh.points[0] = {kNan, kNan, kNan};
+  mesh.points[15] = {-kNan, 1, kNan};
+  EXPECT_EQ(joinPieces(mesh, std::vector<VertexId>{8, 16}).points, 3u);
+}
+
+TEST(JoinPieces, idsOutsideThePointsStayWhatTheyAre) {
+  CellMesh mesh;
+  addCube(mesh, {0, 0, 0});
+  addCube(mesh, {1, 0, 0});
+  mesh.vertices[3] = kGhost;
+  mesh.addCell(kPolyhedronCell, std::vector<VertexId>{kGhost, 3, kGhost, 1, 2, kGhost});
+  joinPieces(mesh, std::vector<VertexId>{8, 16});
+  EXPECT_EQ(mesh.cell(0)[3], kGhost);
+  EXPECT_EQ(mesh.cell(2)[0], kGhost) << "a polyhedron's counts are no ids";
+}
+
+}  // namespace
+}  // namespace qtet
