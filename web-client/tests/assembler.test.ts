@@ -1,7 +1,7 @@
 import {beforeEach, describe, expect, test} from 'vitest';
-import {Assembler} from '../core/assembler';
-import {parseFrame} from '../core/protocol';
-import {kNoViewRequest} from '../core/view_request';
+import {Assembler} from '../core/decode/assembler';
+import {parseFrame} from '../core/protocol/messages';
+import {kNoViewRequest} from '../core/protocol/view_request';
 import {FakeCodec, fieldFrame, headFrame, kFakeValues, meshFrame, type FakeLog} from './fakes';
 
 const kLog: FakeLog = {fields: ['p'], chunks: 6};

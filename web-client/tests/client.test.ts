@@ -1,13 +1,13 @@
 import {afterEach, beforeEach, expect, test, vi} from 'vitest';
-import {Client} from '../core/client';
-import {kPlainDisplay} from '../core/display';
-import {Assembler} from '../core/assembler';
-import {Publisher} from '../core/publisher';
-import {Session} from '../core/session';
-import {SocketTransport} from '../core/socket_transport';
-import {kFull} from '../core/limit';
-import type {Plane} from '../core/slice';
-import type {Posted, ToWorker} from '../core/worker_messages';
+import type {Plane} from '../core/protocol/geometry';
+import {Client} from '../core/session/client';
+import {kPlainDisplay} from '../core/picture/display';
+import {Assembler} from '../core/decode/assembler';
+import {Publisher} from '../core/session/publisher';
+import {Session} from '../core/session/session';
+import {SocketTransport} from '../core/transport/socket_transport';
+import {kFull} from '../core/protocol/limit';
+import type {Posted, ToWorker} from '../core/session/worker_messages';
 import {Requests} from '../viewer/requests';
 import {FakeCodec, FakeSocket, fieldFrame, headFrame, kFakeValues, meshFrame} from './fakes';
 

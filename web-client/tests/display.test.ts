@@ -1,6 +1,6 @@
 import {describe, expect, test} from 'vitest';
-import {keepBelow, keepWithin} from '../core/cell_choice';
-import {facesSoup, surfaceFaces} from '../core/cell_surface';
+import {keepBelow, keepWithin} from '../core/picture/cell_choice';
+import {facesSoup, surfaceFaces} from '../core/picture/cell_surface';
 import {
   cutsOf,
   fieldsOf,
@@ -10,11 +10,11 @@ import {
   surfaceOf,
   type Display,
   type MeshNow,
-} from '../core/display';
-import {FieldScale, kMagnitude, scalarRange, type Scalar} from '../core/field_scale';
-import type {FieldInfo} from '../core/manifest';
-import {isosurface} from '../core/slice';
-import {joinSoups, type TriangleSoup} from '../core/triangle_soup';
+} from '../core/picture/display';
+import {FieldScale, kMagnitude, scalarRange, type Scalar} from '../core/picture/field_scale';
+import type {FieldInfo} from '../core/protocol/manifest';
+import {isosurface} from '../core/picture/slice';
+import {joinSoups, type TriangleSoup} from '../core/picture/triangle_soup';
 import {allVertices, cubes, soupArea, soupVolume} from './cubes';
 
 const {points, tetrahedra} = cubes(4, 10);

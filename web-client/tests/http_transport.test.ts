@@ -2,18 +2,18 @@
 // answers are functions.
 
 import {afterEach, beforeEach, describe, expect, test, vi} from 'vitest';
-import {Assembler} from '../core/assembler';
-import {AutoTransport, type TransportKind} from '../core/auto_transport';
-import {kLongestDelayMs} from '../core/backoff';
-import {ChunkSource, RangeSource} from '../core/block_source';
-import {HttpTransport, piecesOf} from '../core/http_transport';
-import {kFull} from '../core/limit';
-import {Publisher} from '../core/publisher';
-import type {Fetch} from '../core/ranged_file';
-import {Session} from '../core/session';
-import {SocketTransport} from '../core/socket_transport';
-import {kindsOf} from '../core/transports';
-import type {FromWorker} from '../core/worker_messages';
+import {Assembler} from '../core/decode/assembler';
+import {AutoTransport, type TransportKind} from '../core/transport/auto_transport';
+import {kLongestDelayMs} from '../core/transport/backoff';
+import {ChunkSource, RangeSource} from '../core/transport/block_source';
+import {HttpTransport, piecesOf} from '../core/transport/http_transport';
+import {kFull} from '../core/protocol/limit';
+import {Publisher} from '../core/session/publisher';
+import type {Fetch} from '../core/transport/ranged_file';
+import {Session} from '../core/session/session';
+import {SocketTransport} from '../core/transport/socket_transport';
+import {kindsOf} from '../core/transport/transports';
+import type {FromWorker} from '../core/session/worker_messages';
 import {
   errorsOf,
   FakeCodec,

@@ -2,13 +2,13 @@
 
 import {Vector3} from 'three';
 import {describe, expect, test} from 'vitest';
-import {baseFigures} from '../core/base_figures';
-import {colorTable} from '../core/color_maps';
-import type {MeshNow} from '../core/display';
-import {FieldScale} from '../core/field_scale';
-import {kMostLabels, labelsOf} from '../core/labels';
-import type {FieldInfo} from '../core/manifest';
-import {mostContrast, spreadOf} from '../core/spread';
+import {baseFigures} from '../core/picture/base_figures';
+import {colorTable} from '../core/picture/color_maps';
+import type {MeshNow} from '../core/picture/display';
+import {FieldScale} from '../core/picture/field_scale';
+import {kMostLabels, labelsOf} from '../core/picture/labels';
+import type {FieldInfo} from '../core/protocol/manifest';
+import {mostContrast, spreadOf} from '../core/picture/spread';
 import {OrbitCamera} from '../three/camera';
 import {FarCanvas} from '../three/far_canvas';
 import {outlineOf} from '../three/outline';

@@ -1,15 +1,15 @@
 import {afterEach, beforeEach, describe, expect, test, vi} from 'vitest';
-import {Assembler} from '../core/assembler';
-import {kLongestDelayMs} from '../core/backoff';
-import {kPlainDisplay} from '../core/display';
-import {kFull} from '../core/limit';
-import {Publisher} from '../core/publisher';
-import {parseFrame} from '../core/protocol';
-import {Session} from '../core/session';
-import {SocketTransport} from '../core/socket_transport';
-import type {Transport} from '../core/transport';
-import {kNoViewRequest, type ViewRequest} from '../core/view_request';
-import type {FromWorker, Snapshot, Source} from '../core/worker_messages';
+import {Assembler} from '../core/decode/assembler';
+import {kLongestDelayMs} from '../core/transport/backoff';
+import {kPlainDisplay} from '../core/picture/display';
+import {kFull} from '../core/protocol/limit';
+import {Publisher} from '../core/session/publisher';
+import {parseFrame} from '../core/protocol/messages';
+import {Session} from '../core/session/session';
+import {SocketTransport} from '../core/transport/socket_transport';
+import type {Transport} from '../core/transport/transport';
+import {kNoViewRequest, type ViewRequest} from '../core/protocol/view_request';
+import type {FromWorker, Snapshot, Source} from '../core/session/worker_messages';
 import {
   errorsOf,
   FakeCodec,

@@ -1,8 +1,8 @@
 import {describe, expect, test} from 'vitest';
-import {kMagnitude} from '../core/field_scale';
-import type {FieldInfo} from '../core/manifest';
-import {labelTicks, logTicks} from '../core/ticks';
-import {kOpacityPath} from '../core/transfer';
+import {kMagnitude} from '../core/picture/field_scale';
+import type {FieldInfo} from '../core/protocol/manifest';
+import {labelTicks, logTicks} from '../core/picture/ticks';
+import {kOpacityPath} from '../core/picture/transfer';
 import {
   clipText,
   fieldValuesText,
@@ -16,7 +16,7 @@ import {
   sharesOf,
   shownRange,
   type Settings,
-} from '../viewer/settings';
+} from '../viewer/settings/settings';
 
 const field = (
   name: string,

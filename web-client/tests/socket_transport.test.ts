@@ -1,9 +1,9 @@
 import {afterEach, beforeEach, expect, test, vi} from 'vitest';
-import {kFirstDelayMs, kLongestDelayMs, reconnectDelayMs} from '../core/backoff';
-import type {OpenRequest} from '../core/protocol';
-import {SocketTransport} from '../core/socket_transport';
-import type {TransportHandlers} from '../core/transport';
-import {kNoViewRequest, type ViewRequest} from '../core/view_request';
+import {kFirstDelayMs, kLongestDelayMs, reconnectDelayMs} from '../core/transport/backoff';
+import type {OpenRequest} from '../core/protocol/messages';
+import {SocketTransport} from '../core/transport/socket_transport';
+import type {TransportHandlers} from '../core/transport/transport';
+import {kNoViewRequest, type ViewRequest} from '../core/protocol/view_request';
 import {FakeSocket, frame} from './fakes';
 
 const kOpen: OpenRequest = {mesh: 'm', fields: [], have: {chunks: 0, fields: {}}, credit: 80};

@@ -1,5 +1,5 @@
 import {expect, test} from 'vitest';
-import {niceTicks} from '../core/ticks';
+import {niceTicks} from '../core/picture/ticks';
 
 const labels = (low: number, high: number, most = 6): string[] =>
   niceTicks(low, high, most).ticks.map(({label}) => label);

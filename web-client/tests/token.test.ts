@@ -1,8 +1,8 @@
 import {afterEach, beforeEach, expect, test, vi} from 'vitest';
-import {reconnectDelayMs} from '../core/backoff';
-import {SocketTransport} from '../core/socket_transport';
-import {fetchWith, ticketUrl} from '../core/token';
-import type {Fetch} from '../core/ranged_file';
+import {reconnectDelayMs} from '../core/transport/backoff';
+import {SocketTransport} from '../core/transport/socket_transport';
+import {fetchWith, ticketUrl} from '../core/transport/token';
+import type {Fetch} from '../core/transport/ranged_file';
 import {FakeSocket} from './fakes';
 
 const kStream = 'wss://x/v1/stream';

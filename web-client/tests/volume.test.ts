@@ -1,8 +1,8 @@
 import {expect, test} from 'vitest';
-import {cellAround} from '../core/cell_entry';
-import type {Vector} from '../core/cell_ray';
-import type {FieldScale} from '../core/field_scale';
-import {kHiddenCell, volumeCells} from '../core/volume';
+import type {Vector} from '../core/protocol/geometry';
+import {cellAround} from '../core/picture/cell_entry';
+import type {FieldScale} from '../core/picture/field_scale';
+import {kHiddenCell, volumeCells} from '../core/picture/volume';
 import {kRow, mostRows} from '../three/cell_textures';
 import {raysOf} from '../three/rays';
 import {Matrix4, PerspectiveCamera, Vector3} from 'three';

@@ -1,11 +1,12 @@
 // The page's side of a view that a worker draws: commands out, poses in. It needs no three; the
 // worker does.
 
-import type {Ray, Vector} from '../core/cell_ray';
-import {retry} from '../core/retry';
-import {buffersOf} from '../core/snapshot_buffers';
-import {buffersOfVolume} from '../core/volume';
-import type {Snapshot} from '../core/worker_messages';
+import type {Vector} from '../core/protocol/geometry';
+import type {Ray} from '../core/picture/cell_ray';
+import {retry} from '../core/transport/retry';
+import {buffersOf} from '../core/session/snapshot_buffers';
+import {buffersOfVolume} from '../core/picture/volume';
+import type {Snapshot} from '../core/session/worker_messages';
 import type {CameraState} from './camera';
 import {watchDensity} from './density';
 import {checkedDirection, type Direction} from './directions';

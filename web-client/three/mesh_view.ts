@@ -2,12 +2,13 @@
 // changes.
 
 import {Frustum, Group, Matrix4, Scene, Vector3, WebGLRenderer} from 'three';
-import type {Ray, Vector} from '../core/cell_ray';
-import {kMaxPlanes} from '../core/display';
-import {transferTables} from '../core/transfer';
-import type {VolumeCells} from '../core/volume';
-import type {TriangleSoup} from '../core/triangle_soup';
-import type {Snapshot} from '../core/worker_messages';
+import type {Vector} from '../core/protocol/geometry';
+import type {Ray} from '../core/picture/cell_ray';
+import {kMaxPlanes} from '../core/picture/display';
+import {transferTables} from '../core/picture/transfer';
+import type {VolumeCells} from '../core/picture/volume';
+import type {TriangleSoup} from '../core/picture/triangle_soup';
+import type {Snapshot} from '../core/session/worker_messages';
 import {kRow, mostRows} from './cell_textures';
 import {OrbitCamera, type CameraState, type Framing} from './camera';
 import {checkedDirection, type Direction} from './directions';

@@ -1,7 +1,7 @@
 // Points that stand for a mesh when a camera is fitted to it.
 
-import type {Vector} from '../core/cell_ray';
-import type {TriangleSoup} from '../core/triangle_soup';
+import type {Vector} from '../core/protocol/geometry';
+import type {TriangleSoup} from '../core/picture/triangle_soup';
 
 /** So many directions bound a mesh to a few per cent. */
 const kDirections = 128;

@@ -24,8 +24,8 @@ import {
   type DataTexture,
   type WebGLRenderer,
 } from 'three';
-import type {Vector} from '../core/cell_ray';
-import type {TransferTables} from '../core/transfer';
+import type {Vector} from '../core/protocol/geometry';
+import type {TransferTables} from '../core/picture/transfer';
 import {kLeastNear} from './camera';
 import {tableTexture, type CellTextures} from './cell_textures';
 import type {DeepTarget} from './deep_target';

@@ -7,7 +7,7 @@
 // After R. Marmitt and P. Slusallek, "Fast ray traversal of tetrahedral and hexahedral meshes for
 // direct volume rendering", EuroVis 2006.
 
-import {kTransferSteps} from '../core/transfer';
+import {kTransferSteps} from '../core/picture/transfer';
 import {kRow, kRowBits} from './cell_textures';
 
 /** This opacity hides the rest: less than a step of 255 is missing. */

@@ -1,7 +1,7 @@
 // Messages between a page and the worker that draws for it. A snapshot's arrays are transferred.
 
-import type {CoarseCells} from '../core/volume';
-import type {Snapshot} from '../core/worker_messages';
+import type {CoarseCells} from '../core/picture/volume';
+import type {Snapshot} from '../core/session/worker_messages';
 import type {CameraState} from './camera';
 import type {FarEvent, FarSize} from './far_canvas';
 import type {Pose} from './pose';

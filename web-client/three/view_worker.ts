@@ -2,8 +2,8 @@
 // take seconds to start and to compile. If workers cannot draw, the page loads this script itself
 // and gets its MeshView (far_view.ts).
 
-import {errorText} from '../core/errors';
-import type {CoarseCells} from '../core/volume';
+import {errorText} from '../core/protocol/errors';
+import type {CoarseCells} from '../core/picture/volume';
 import {FarCanvas} from './far_canvas';
 import {MeshView} from './mesh_view';
 import type {FromView, ToView} from './view_messages';

@@ -3,8 +3,8 @@
 // pixels, so that the next movement waits for a strip and not for the picture.
 
 import type {PerspectiveCamera, Scene, WebGLRenderer} from 'three';
-import type {TransferTables} from '../core/transfer';
-import {kCoarseCells, type CoarseCells, type VolumeCells} from '../core/volume';
+import type {TransferTables} from '../core/picture/transfer';
+import {kCoarseCells, type CoarseCells, type VolumeCells} from '../core/picture/volume';
 import {CellTextures} from './cell_textures';
 import {DeepTarget} from './deep_target';
 import {FrameBudget, kMovingMs, reachesPixels, whenDrawn} from './frame_budget';

@@ -1,14 +1,14 @@
 // The graphics of a viewer: they start, may be lost, come back, and can be restarted.
 
-import {errorText} from '../core/errors';
-import type {CoarseCells} from '../core/volume';
+import type {CoarseCells} from '../core/picture/volume';
+import {errorText} from '../core/protocol/errors';
 import type {CameraState} from '../three/camera';
 import type {Direction} from '../three/directions';
 import {openView} from '../three/far_view';
 import type {View} from '../three/view';
-import {find} from './find';
-import type {Notices} from './notices';
-import {Triad} from './triad';
+import {find} from './page/find';
+import type {Notices} from './page/notices';
+import {Triad} from './panels/triad';
 
 /** Where a view begins: a camera, a standard view, or null for the first view of a mesh. */
 export type ViewStart = CameraState | Direction | null;

@@ -1,13 +1,18 @@
 // A viewer's requests to its worker: what to show, and what to refine first. Each request is sent
 // only if it has changed.
 
-import type {Vector} from '../core/cell_ray';
-import type {Client} from '../core/client';
-import type {Display} from '../core/display';
-import type {Plane} from '../core/slice';
-import {planeOf} from './clip_plane';
-import {fieldValuesOf, sharesOf, shownScalar, type Settings, type ViewAttribute} from './settings';
-import type {ShownMesh} from './shown_mesh';
+import type {Display} from '../core/picture/display';
+import type {Vector, Plane} from '../core/protocol/geometry';
+import type {Client} from '../core/session/client';
+import type {ShownMesh} from './page/shown_mesh';
+import {planeOf} from './settings/clip_plane';
+import {
+  fieldValuesOf,
+  sharesOf,
+  shownScalar,
+  type Settings,
+  type ViewAttribute,
+} from './settings/settings';
 
 export class Requests {
   /** The place that is pointed at, on the lattice. */

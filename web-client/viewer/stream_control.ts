@@ -1,16 +1,23 @@
 // Decides which mesh of which server comes to a viewer, and whether it comes: opens, pauses,
 // refines.
 
-import {kTransportKinds} from '../core/auto_transport';
-import type {Client} from '../core/client';
-import {errorCode, errorText, QtetError} from '../core/errors';
-import {kFull, type Limit} from '../core/limit';
-import {kMostCompared} from '../core/wanted';
-import type {StreamState} from '../core/worker_messages';
-import {fetchCatalog, isLogFile, logUrl, meshOfLog, streamUrl, type MeshEntry} from './catalog';
-import {MeshMenu} from './mesh_menu';
-import type {Kept, Page} from './page';
-import {scalarKey} from './settings';
+import {errorCode, errorText, QtetError} from '../core/protocol/errors';
+import {kFull, type Limit} from '../core/protocol/limit';
+import type {Client} from '../core/session/client';
+import {kMostCompared} from '../core/session/wanted';
+import type {StreamState} from '../core/session/worker_messages';
+import {kTransportKinds} from '../core/transport/auto_transport';
+import {
+  fetchCatalog,
+  isLogFile,
+  logUrl,
+  meshOfLog,
+  streamUrl,
+  type MeshEntry,
+} from './page/catalog';
+import type {Kept, Page} from './page/page';
+import {MeshMenu} from './panels/mesh_menu';
+import {scalarKey} from './settings/settings';
 
 /** Attributes that belong to one mesh: another one has other fields, places and values. */
 const kOfOneMesh = ['field', 'range', 'iso', 'threshold', 'camera', 'quality'] as const;

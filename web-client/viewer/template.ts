@@ -1,8 +1,8 @@
 // The viewer's markup. All controls are native: they work with keyboard, touch and screen readers.
 
-import {kColorMapNames} from '../core/color_maps';
+import {kColorMapNames} from '../core/picture/color_maps';
 import {kDirections} from '../three/directions';
-import {kKeyHelp} from './keys';
+import {kKeyHelp} from './page/keys';
 
 const kMapTitles = {
   viridis: 'Viridis',

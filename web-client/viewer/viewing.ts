@@ -1,26 +1,32 @@
 // A viewer while it is in a document: connects the stream, the graphics and the panels.
 
-import type {BaseFigures} from '../core/base_figures';
-import type {Vector} from '../core/cell_ray';
-import type {Client} from '../core/client';
-import {labelsOf} from '../core/labels';
-import type {Manifest} from '../core/manifest';
-import type {Statistics} from '../core/statistics';
-import type {FromWorker, Snapshot, StreamState} from '../core/worker_messages';
+import type {Statistics} from '../core/decode/statistics';
+import type {BaseFigures} from '../core/picture/base_figures';
+import {labelsOf} from '../core/picture/labels';
+import type {Vector} from '../core/protocol/geometry';
+import type {Manifest} from '../core/protocol/manifest';
+import type {Client} from '../core/session/client';
+import type {FromWorker, Snapshot, StreamState} from '../core/session/worker_messages';
 import type {View} from '../three/view';
-import {Actions, type ActionsHost} from './actions';
-import {CameraWatch} from './camera_watch';
-import {find} from './find';
 import {Graphics, type ViewStart} from './graphics';
-import {bindKeys} from './keys';
-import {Notices} from './notices';
-import type {Kept, Page} from './page';
-import {Panels, type PanelsHost} from './panels';
+import {Actions, type ActionsHost} from './page/actions';
+import {CameraWatch} from './page/camera_watch';
+import {find} from './page/find';
+import {bindKeys} from './page/keys';
+import {Notices} from './page/notices';
+import type {Kept, Page} from './page/page';
+import {settingsFor, ShownMesh} from './page/shown_mesh';
+import {Panels, type PanelsHost} from './panels/panels';
 import {displayOf, planesOf, Requests} from './requests';
-import {labelRange, readSettings, shownRange, type Settings, type ShownRange} from './settings';
-import {settingsFor, ShownMesh} from './shown_mesh';
+import {
+  labelRange,
+  readSettings,
+  shownRange,
+  type Settings,
+  type ShownRange,
+} from './settings/settings';
+import {unfittingParts, wrongParts} from './settings/wrong_parts';
 import {StreamControl} from './stream_control';
-import {unfittingParts, wrongParts} from './wrong_parts';
 
 export class Viewing implements ActionsHost, PanelsHost {
   mesh = new ShownMesh();

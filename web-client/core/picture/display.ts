@@ -1,0 +1,105 @@
+// The display that the page wants, and how it is made from the mesh: plain data in, triangles out.
+
+import type {Plane} from '../protocol/geometry';
+import {keepBelow, keepWithin} from './cell_choice';
+import {facesSoup, surfaceFaces} from './cell_surface';
+import type {FieldScale, Scalar} from './field_scale';
+import type {Cells} from './section';
+import {isosurface, slice} from './slice';
+import {boundarySoup, joinSoups, type TriangleSoup} from './triangle_soup';
+
+/**
+ * cut: the part above a plane is removed, and flat caps close the hole. cells: whole cells stay or
+ * go. slice: only the cuts are shown, each whole.
+ */
+export type ClipMode = 'cut' | 'cells' | 'slice';
+export const kClipModes: readonly ClipMode[] = ['cut', 'cells', 'slice'];
+export const kMaxPlanes = 3;
+
+export interface Display {
+  color: Scalar | null;
+  /** False: only cuts and isosurfaces are drawn. */
+  body: boolean;
+  mode: ClipMode;
+  /** The parts above any of them are cut away. */
+  planes: Plane[];
+  /** The values are in [0, 1] over the point field's scalarRange. */
+  isosurfaces: {scalar: Scalar; values: number[]} | null;
+  /** Hides cells outside [low, high]. Both are in [0, 1] over the scalarRange. */
+  threshold: {scalar: Scalar; low: number; high: number} | null;
+  /** Shows the cells themselves, translucent, coloured by `color`. */
+  volume: boolean;
+}
+
+export const kPlainDisplay: Display = {
+  color: null,
+  body: true,
+  mode: 'cut',
+  planes: [],
+  isosurfaces: null,
+  threshold: null,
+  volume: false,
+};
+
+/** The fields that a display needs, each once. */
+export function fieldsOf(display: Display): number[] {
+  const scalars = [display.color, display.isosurfaces?.scalar, display.threshold?.scalar];
+  return [...new Set(scalars.filter((scalar) => scalar != null).map(({field}) => field))];
+}
+
+/** The mesh as it is now. `scale` is null while a field has no values. */
+export interface MeshNow {
+  points: Int32Array;
+  tetrahedra: Uint32Array;
+  boundary: Uint32Array;
+  scale(scalar: Scalar): FieldScale | null;
+}
+
+/** The cells that the threshold and the `cells` mode leave; null means all. */
+export function keptCells(mesh: MeshNow, display: Display): Uint8Array | null {
+  const scale = display.threshold && mesh.scale(display.threshold.scalar);
+  const planes = display.mode === 'cells' ? display.planes : [];
+  if (!scale && planes.length === 0) return null;
+  const kept = new Uint8Array(mesh.tetrahedra.length / 4).fill(1);
+  if (scale)
+    keepWithin(kept, mesh.tetrahedra, scale, display.threshold!.low, display.threshold!.high);
+  for (const plane of planes) keepBelow(kept, mesh.points, mesh.tetrahedra, plane);
+  return kept;
+}
+
+/**
+ * The planes that the renderer must cut by. The `cells` mode has cut already, and slices cut
+ * nothing.
+ */
+export function cuttingPlanes(display: Display): Plane[] {
+  return display.mode === 'cut' ? display.planes : [];
+}
+
+export function surfaceOf(mesh: MeshNow, display: Display, kept: Uint8Array | null): TriangleSoup {
+  const scale = display.color && mesh.scale(display.color);
+  if (!kept && !scale?.ofCells) return boundarySoup(mesh.points, mesh.boundary, scale);
+  const cells: Cells = {...mesh, kept};
+  return facesSoup(cells, surfaceFaces(cells, mesh.boundary), scale);
+}
+
+/**
+ * One soup a plane. The renderer hides the parts of each that lie above the other cutting planes.
+ */
+export function cutsOf(mesh: MeshNow, display: Display, kept: Uint8Array | null): TriangleSoup[] {
+  const scale = display.color && mesh.scale(display.color);
+  const planes = display.mode === 'cells' ? [] : display.planes;
+  return planes.map((plane) => slice({...mesh, kept}, scale, plane));
+}
+
+export function isosurfacesOf(
+  mesh: MeshNow,
+  display: Display,
+  kept: Uint8Array | null,
+): TriangleSoup | null {
+  const levels = display.isosurfaces && mesh.scale(display.isosurfaces.scalar);
+  if (!levels || levels.ofCells) return null;
+  const scale = display.color && mesh.scale(display.color);
+  return joinSoups(
+    display.isosurfaces!.values.map((value) => isosurface({...mesh, kept}, levels, value, scale)),
+  );
+}
