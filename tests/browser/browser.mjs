@@ -87,10 +87,10 @@ export class Browser {
     };
   }
 
-  /** Opens a page that is not ours; `heard` receives the console's errors. */
-  async page(url, heard = () => undefined) {
+  /** Opens a page that is not ours; `receive` receives the console's errors. */
+  async page(url, receive = () => undefined) {
     const page = await (await this.#browser.newContext(kDesktop)).newPage();
-    page.on('console', (message) => message.type() === 'error' && heard(message.text()));
+    page.on('console', (message) => message.type() === 'error' && receive(message.text()));
     await page.goto(url);
     return page;
   }

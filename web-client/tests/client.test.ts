@@ -43,18 +43,18 @@ const state = (run?: number): Posted => ({
 });
 
 test('whatTheWorkerSaysOfTheMeshBeforeIsNotHeard', () => {
-  const heard: unknown[] = [];
-  const client = new Client((message) => heard.push(message));
+  const received: unknown[] = [];
+  const client = new Client((message) => received.push(message));
   const worker = FakeWorker.last;
   client.start({mesh: 'a'});
   client.start({mesh: 'b'});
   const runs = worker.posted.flatMap((message) => (message.type === 'start' ? [message.run] : []));
   worker.say(state(runs[0]));
-  expect(heard).toEqual([]);
+  expect(received).toEqual([]);
   worker.say(state(runs[1]));
-  expect(heard).toHaveLength(1);
+  expect(received).toHaveLength(1);
   worker.say(state()); // a decoder that could not be loaded has no run
-  expect(heard).toHaveLength(2);
+  expect(received).toHaveLength(2);
 });
 
 test('anAnswerComesWhicheverMeshItWasAskedOf', async () => {

@@ -9,7 +9,7 @@ import {
   kPlainDisplay,
   surfaceOf,
   type Display,
-  type MeshNow,
+  type MeshArrays,
 } from '../core/picture/display';
 import {FieldScale, kMagnitude, scalarRange, type Scalar} from '../core/picture/field_scale';
 import type {FieldInfo} from '../core/protocol/manifest';
@@ -38,7 +38,7 @@ const xs = new FieldScale(
 );
 const cubeOf = Int32Array.from({length: cells}, (_, cell) => 10 * Math.floor(cell / (6 * 16)));
 const cellXs = new FieldScale(cubeOf, info('cell', [0, 30]));
-const mesh: MeshNow = {
+const mesh: MeshArrays = {
   points,
   tetrahedra,
   boundary: allVertices(points),

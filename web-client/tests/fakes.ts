@@ -10,10 +10,10 @@ import type {Socket} from '../core/transport/socket_transport';
 import type {FromWorker} from '../core/session/worker_messages';
 
 /** The states that a session has reported. */
-export const statesOf = (heard: FromWorker[]): string[] =>
-  heard.flatMap((message) => (message.type === 'state' ? [message.state] : []));
-export const errorsOf = (heard: FromWorker[]): string[] =>
-  heard.flatMap((message) => (message.type === 'error' ? [message.code] : []));
+export const statesOf = (received: FromWorker[]): string[] =>
+  received.flatMap((message) => (message.type === 'state' ? [message.state] : []));
+export const errorsOf = (received: FromWorker[]): string[] =>
+  received.flatMap((message) => (message.type === 'error' ? [message.code] : []));
 
 export class FakeSocket implements Socket {
   binaryType = '';

@@ -84,11 +84,11 @@ function host(bytes: () => Uint8Array): Host {
 
 let codec: FakeCodec;
 let assembler: Assembler;
-let heard: FromWorker[];
+let received: FromWorker[];
 
 beforeEach(() => {
   vi.useFakeTimers();
-  heard = [];
+  received = [];
   expectLog(kLog);
 });
 afterEach(() => void vi.useRealTimers());
@@ -102,7 +102,7 @@ function session(it: Host, kind: 'range' | 'chunks', fields: string[] | null = [
   const made = new Session(
     assembler,
     new Publisher(assembler, () => undefined),
-    (message) => heard.push(message),
+    (message) => received.push(message),
     ({log}, table, handlers) =>
       new HttpTransport(
         () =>
@@ -126,8 +126,8 @@ function session(it: Host, kind: 'range' | 'chunks', fields: string[] | null = [
 }
 
 const settle = (ms = 200): Promise<unknown> => vi.advanceTimersByTimeAsync(ms);
-const states = (): string[] => statesOf(heard);
-const errors = (): string[] => errorsOf(heard);
+const states = (): string[] => statesOf(received);
+const errors = (): string[] => errorsOf(received);
 
 describe('ranges', () => {
   test('aFileOnAnyWebServerComesWholeInFewRequests', async () => {
@@ -162,7 +162,7 @@ describe('ranges', () => {
     expect(last).toBe(bytes.length - kFakeBlockBytes - 1);
   });
 
-  test('whatLiesBehindTheGoalIsNotFetchedBeforeItIsWanted', async () => {
+  test('whatLiesBehindTheTargetIsNotFetchedBeforeItIsRequested', async () => {
     const log = {...kLog, chunks: 9000};
     expectLog(log);
     const bytes = file(log);
@@ -329,7 +329,7 @@ describe('the choice among transports', () => {
     const made = new Session(
       assembler,
       new Publisher(assembler, () => undefined),
-      (message) => heard.push(message),
+      (message) => received.push(message),
       ({url, log}, table, handlers) =>
         new AutoTransport(
           ['websocket', 'range'],

@@ -35,9 +35,9 @@ function grow(to: number, isLast = false): void {
 }
 
 /** Milliseconds until the next picture. */
-function untilNext(most = 10000): number {
+function untilNext(maxMs = 10000): number {
   const before = pictures.length;
-  for (let ms = 0; ms <= most; ++ms) {
+  for (let ms = 0; ms <= maxMs; ++ms) {
     if (pictures.length > before) return ms;
     vi.advanceTimersByTime(1);
   }

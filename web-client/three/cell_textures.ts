@@ -71,7 +71,7 @@ export class CellTextures {
 }
 
 /** The rows of the largest texture of these cells. */
-export function mostRows({vertices, links, entries}: VolumeCells): number {
+export function maxRows({vertices, links, entries}: VolumeCells): number {
   return Math.max(heightOf(vertices, 4), heightOf(links, 2), heightOf(entries, 4));
 }
 

@@ -9,11 +9,11 @@ import {transferTables} from '../core/picture/transfer';
 import type {VolumeCells} from '../core/picture/volume';
 import type {TriangleSoup} from '../core/picture/triangle_soup';
 import type {Snapshot} from '../core/session/worker_messages';
-import {kRow, mostRows} from './cell_textures';
+import {kRow, maxRows} from './cell_textures';
 import {OrbitCamera, type CameraState, type Framing} from './camera';
 import {checkedDirection, type Direction} from './directions';
 import {cornersOf, outlineOf} from './outline';
-import {pixelRatioOf, surfaceOf, watchSize, type ViewCanvas} from './far_canvas';
+import {pixelRatioOf, surfaceOf, watchSize, type ViewCanvas} from './worker_canvas';
 import {whenDrawn} from './frame_budget';
 import {checkedCamera, project, rayAt, type Pose} from './pose';
 import {SoupMesh} from './soup_mesh';
@@ -132,8 +132,8 @@ export class MeshView implements View {
     this.invalidate();
   }
 
-  setLook(wanted: Look): void {
-    const {map, reversed, edges, opacity, volume} = wanted;
+  setLook(next: Look): void {
+    const {map, reversed, edges, opacity, volume} = next;
     const look = JSON.stringify([map, reversed, edges, opacity, volume]);
     // it is called with every attribute change, and a picture costs more than a comparison
     if (look === this.shownLook) return;
@@ -394,11 +394,11 @@ export class MeshView implements View {
 
   /** Returns null and reports an error if the cells do not fit into the graphics' textures. */
   private fitting(cells: VolumeCells | null): VolumeCells | null {
-    const most = this.renderer.capabilities.maxTextureSize;
-    if (!cells || mostRows(cells) <= most) return cells;
+    const maxSize = this.renderer.capabilities.maxTextureSize;
+    if (!cells || maxRows(cells) <= maxSize) return cells;
     reportError(
       new Error(
-        `the graphics take no volume of more than ${((most * kRow) / 4e6).toFixed(1)} million ` +
+        `the graphics take no volume of more than ${((maxSize * kRow) / 4e6).toFixed(1)} million ` +
           'cells; set Refine to fewer',
       ),
     );

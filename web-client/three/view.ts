@@ -1,5 +1,5 @@
 // A picture as a viewer needs it, whether it is drawn on the page's thread (MeshView) or in a
-// worker (FarView).
+// worker (WorkerView).
 
 import type {Vector} from '../core/protocol/geometry';
 import type {Ray} from '../core/picture/cell_ray';

@@ -217,7 +217,7 @@ export class QtetViewer extends HTMLElement {
     const {settings, view} = viewing;
     if (name === 'camera' && settings.camera && view) view.cameraState = settings.camera;
     if (name === 'transport') viewing.apply();
-    if (!isOfStream) this.page.tell('view-change', {name, value: after});
+    if (!isOfStream) this.page.dispatch('view-change', {name, value: after});
   }
 }
 
@@ -236,7 +236,7 @@ function pageOf(element: QtetViewer, root: ShadowRoot): Page {
       else element.setAttribute(name, value);
     },
     read: (name: string) => element.getAttribute(name),
-    tell: (type: string, detail: unknown) =>
+    dispatch: (type: string, detail: unknown) =>
       void element.dispatchEvent(new CustomEvent(type, {detail})),
     announce: (text: string) => {
       const live = root.querySelector('.live');

@@ -4,7 +4,7 @@
 import {errorCode, errorText, QtetError} from '../core/protocol/errors';
 import {kFull, type Limit} from '../core/protocol/limit';
 import type {Client} from '../core/session/client';
-import {kMostCompared} from '../core/session/wanted';
+import {kMaxCompared} from '../core/session/requested_part';
 import type {StreamState} from '../core/session/worker_messages';
 import {kTransportKinds} from '../core/transport/auto_transport';
 import {
@@ -110,8 +110,8 @@ export class StreamControl {
   /** Fills the menu. Throws `not-found`. */
   private firstMesh(): string {
     const names = this.catalog.map(({id}) => id);
-    const wanted = isLogFile(this.base) ? null : this.page.read('mesh');
-    const mesh = wanted ?? names[0];
+    const named = isLogFile(this.base) ? null : this.page.read('mesh');
+    const mesh = named ?? names[0];
     if (mesh === undefined) {
       throw new QtetError(
         'not-found',
@@ -167,7 +167,7 @@ export class StreamControl {
       .filter((text) => text !== undefined)
       .map((text) => (fields.includes(text) ? text : scalarKey(text)));
     if (named.length > 0) return {fields: [...new Set(named)], compare: false};
-    const candidates = isLogFile(this.base) ? null : fields.slice(0, kMostCompared);
+    const candidates = isLogFile(this.base) ? null : fields.slice(0, kMaxCompared);
     return {fields: candidates, compare: true};
   }
 

@@ -66,7 +66,7 @@ export const kTemplate = `
 <slot name="poster"></slot>
 <canvas class="scene" part="canvas" tabindex="0" role="application" aria-label="3D view"></canvas>
 <div class="layer" aria-hidden="true"><svg class="marks"></svg></div>
-<svg class="triad" viewBox="-30 -30 60 60" aria-hidden="true"></svg>
+<svg class="orientation-axes" viewBox="-30 -30 60 60" aria-hidden="true"></svg>
 <div class="visually-hidden live" role="status" aria-live="polite"></div>
 
 <figure class="card legend" part="legend" hidden>

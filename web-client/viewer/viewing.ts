@@ -61,7 +61,7 @@ export class Viewing implements ActionsHost, PanelsHost {
       () => (this.view && this.mesh.snapshot ? this.view.cameraState : null),
       (state) => {
         this.lookAt();
-        page.tell('camera-change', state);
+        page.dispatch('camera-change', state);
       },
     );
     this.graphics = new Graphics(page.root, this.notices, {
@@ -161,7 +161,7 @@ export class Viewing implements ActionsHost, PanelsHost {
   failed(code: string, message: string): void {
     if (!this.page.element.isConnected) return;
     this.notices.add(code, message);
-    this.page.tell('error', {code, message});
+    this.page.dispatch('error', {code, message});
   }
 
   // ---- from the worker
@@ -183,7 +183,7 @@ export class Viewing implements ActionsHost, PanelsHost {
         return this.stream.enter(message.state, message.attempt, message.delayMs);
       case 'error':
         // A wrong name is a wrong attribute, and named as such.
-        if (message.code === 'unknown-field') return this.page.tell('error', message);
+        if (message.code === 'unknown-field') return this.page.dispatch('error', message);
         return this.failed(message.code, message.message);
     }
   }
@@ -204,7 +204,7 @@ export class Viewing implements ActionsHost, PanelsHost {
   private takeProgress(statistics: Statistics): void {
     this.mesh.statistics = statistics;
     this.panels?.progress.show(statistics);
-    this.page.tell('progress', statistics);
+    this.page.dispatch('progress', statistics);
   }
 
   private takePicture(snapshot: Snapshot): void {
@@ -236,7 +236,7 @@ export class Viewing implements ActionsHost, PanelsHost {
     view.show(snapshot, (drawingMs) => {
       if (mesh !== this.mesh) return; // it belongs to the previous mesh
       this.client.shown(drawingMs);
-      page.tell(mesh.drawn ? 'refine' : 'load', snapshot.statistics);
+      page.dispatch(mesh.drawn ? 'refine' : 'load', snapshot.statistics);
       mesh.drawn = snapshot.statistics;
       page.element.classList.add('loaded');
       this.tellComplete();
@@ -327,7 +327,7 @@ export class Viewing implements ActionsHost, PanelsHost {
     const {mesh, stream} = this;
     if (stream.state !== 'complete' || this.completeTold || !mesh.isDrawn) return;
     this.completeTold = true;
-    this.page.tell('complete', mesh.drawn);
+    this.page.dispatch('complete', mesh.drawn);
   }
 }
 

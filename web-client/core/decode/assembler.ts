@@ -6,7 +6,7 @@ import {QtetError} from '../protocol/errors';
 import type {Limit} from '../protocol/limit';
 import type {LogTable} from '../protocol/log_table';
 import {fieldKeys, readManifest, type Manifest} from '../protocol/manifest';
-import type {Frame, Goal} from '../protocol/messages';
+import type {Frame, Target} from '../protocol/messages';
 import type {Packet} from '../protocol/packet';
 import {kFirstFieldPart, kHeadPart, kPositionsPart, kStructurePart} from '../protocol/parts';
 import {
@@ -17,7 +17,7 @@ import {
 } from '../protocol/view_request';
 import type {BlockValues, Codec} from './codec';
 import type {ValueDecoder} from './draco';
-import {goalOf, planOf, type LevelBytes} from './goal';
+import {targetOf, planOf, type LevelBytes} from './plan';
 import {Ledger, kNoStatistics, statisticsOf, type Statistics} from './statistics';
 import {readValueBlock} from './value_block';
 
@@ -90,9 +90,9 @@ export class Assembler implements LogTable {
   }
 
   /** Where the limit lies for these fields; null means at the end. */
-  goal(limit: Limit, fields: readonly number[]): Goal | null {
+  target(limit: Limit, fields: readonly number[]): Target | null {
     return this.manifest && this.head
-      ? goalOf(limit, this.codec, this.manifest, fields, this.head.length)
+      ? targetOf(limit, this.codec, this.manifest, fields, this.head.length)
       : null;
   }
 

@@ -1,6 +1,6 @@
 // The figures of the base mesh that the opening view needs.
 
-import type {MeshNow} from './display';
+import type {MeshArrays} from './display';
 import {pointBounds} from './triangle_soup';
 
 export interface BaseFigures {
@@ -23,7 +23,7 @@ const kDwarfed = 0.25;
 const kRoom = 0.25;
 
 /** REQUIRES: at least one cell. */
-export function baseFigures(mesh: MeshNow): BaseFigures {
+export function baseFigures(mesh: MeshArrays): BaseFigures {
   const bounds = pointBounds(mesh.points, mesh.boundary);
   const extents = [0, 1, 2].map((axis) => bounds[axis + 3]! - bounds[axis]!);
   return {
@@ -34,7 +34,7 @@ export function baseFigures(mesh: MeshNow): BaseFigures {
 }
 
 /** Four volumes over the surface: exact for convex bodies (Cauchy), less for others. */
-function meanChord({points, tetrahedra, boundary}: MeshNow): number {
+function meanChord({points, tetrahedra, boundary}: MeshArrays): number {
   let volume = 0;
   for (let at = 0; at < tetrahedra.length; at += 4) {
     const [a, b, c] = edgesFrom(points, tetrahedra, at, 3);
@@ -48,7 +48,7 @@ function meanChord({points, tetrahedra, boundary}: MeshNow): number {
   return surface > 0 ? (4 * volume) / surface : 0;
 }
 
-function focusOf({points, tetrahedra}: MeshNow, largest: number): number[] | null {
+function focusOf({points, tetrahedra}: MeshArrays, largest: number): number[] | null {
   const sides = [0, 1, 2].map((axis) => {
     const middles: number[] = [];
     for (let at = 0; at < tetrahedra.length; at += 4) {

@@ -4,7 +4,7 @@
 import type {Assembler} from '../decode/assembler';
 import type {Frame} from '../protocol/messages';
 import {fieldsOf, keptCells, type Display} from './display';
-import {meshNow} from './mesh_now';
+import {meshArrays} from './mesh_arrays';
 import {kCoarseCells, volumeCells, type CoarseCells, type VolumeCells} from './volume';
 
 export class CoarseVolume {
@@ -59,7 +59,7 @@ export class CoarseVolume {
       );
     };
     while (assembler.step(fields, hasRoom())) continue;
-    const mesh = meshNow(assembler);
+    const mesh = meshArrays(assembler);
     const scale = display.color && mesh?.scale(display.color);
     if (!mesh || !scale) throw new Error('there are no values yet');
     return volumeCells(mesh, scale, keptCells(mesh, display));

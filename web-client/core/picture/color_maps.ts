@@ -6,7 +6,7 @@
 
 export type ColorMapName = 'viridis' | 'cividis' | 'cool-warm' | 'turbo' | 'grey' | 'labels';
 
-/** Those that are continuous. `labels` has kMostLabels colours for as many whole numbers. */
+/** Those that are continuous. `labels` has kMaxLabels colours for as many whole numbers. */
 export const kColorMapNames: readonly ColorMapName[] = [
   'viridis',
   'cividis',

@@ -48,7 +48,7 @@ export function fieldsOf(display: Display): number[] {
 }
 
 /** The mesh as it is now. `scale` is null while a field has no values. */
-export interface MeshNow {
+export interface MeshArrays {
   points: Int32Array;
   tetrahedra: Uint32Array;
   boundary: Uint32Array;
@@ -56,7 +56,7 @@ export interface MeshNow {
 }
 
 /** The cells that the threshold and the `cells` mode leave; null means all. */
-export function keptCells(mesh: MeshNow, display: Display): Uint8Array | null {
+export function keptCells(mesh: MeshArrays, display: Display): Uint8Array | null {
   const scale = display.threshold && mesh.scale(display.threshold.scalar);
   const planes = display.mode === 'cells' ? display.planes : [];
   if (!scale && planes.length === 0) return null;
@@ -75,7 +75,11 @@ export function cuttingPlanes(display: Display): Plane[] {
   return display.mode === 'cut' ? display.planes : [];
 }
 
-export function surfaceOf(mesh: MeshNow, display: Display, kept: Uint8Array | null): TriangleSoup {
+export function surfaceOf(
+  mesh: MeshArrays,
+  display: Display,
+  kept: Uint8Array | null,
+): TriangleSoup {
   const scale = display.color && mesh.scale(display.color);
   if (!kept && !scale?.ofCells) return boundarySoup(mesh.points, mesh.boundary, scale);
   const cells: Cells = {...mesh, kept};
@@ -85,14 +89,18 @@ export function surfaceOf(mesh: MeshNow, display: Display, kept: Uint8Array | nu
 /**
  * One soup a plane. The renderer hides the parts of each that lie above the other cutting planes.
  */
-export function cutsOf(mesh: MeshNow, display: Display, kept: Uint8Array | null): TriangleSoup[] {
+export function cutsOf(
+  mesh: MeshArrays,
+  display: Display,
+  kept: Uint8Array | null,
+): TriangleSoup[] {
   const scale = display.color && mesh.scale(display.color);
   const planes = display.mode === 'cells' ? [] : display.planes;
   return planes.map((plane) => slice({...mesh, kept}, scale, plane));
 }
 
 export function isosurfacesOf(
-  mesh: MeshNow,
+  mesh: MeshArrays,
   display: Display,
   kept: Uint8Array | null,
 ): TriangleSoup | null {

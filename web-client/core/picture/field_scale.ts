@@ -23,8 +23,8 @@ export interface Scalar {
  */
 export function scalarRange(info: FieldInfo, component: number): [number, number] {
   if (component === kMagnitude || info.components === 1) return info.range;
-  const most = Math.max(Math.abs(info.range[0]), Math.abs(info.range[1]));
-  return [-most, most];
+  const max = Math.max(Math.abs(info.range[0]), Math.abs(info.range[1]));
+  return [-max, max];
 }
 
 export class FieldScale {

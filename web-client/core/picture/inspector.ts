@@ -5,9 +5,9 @@ import type {Assembler} from '../decode/assembler';
 import type {Vector} from '../protocol/geometry';
 import type {FieldInfo} from '../protocol/manifest';
 import {along, barycentric, below, dot, stretches, type Ray, type Stretch} from './cell_ray';
-import {cuttingPlanes, keptCells, type Display, type MeshNow} from './display';
+import {cuttingPlanes, keptCells, type Display, type MeshArrays} from './display';
 import {FieldScale, kMagnitude, scalarRange} from './field_scale';
-import {meshNow} from './mesh_now';
+import {meshArrays} from './mesh_arrays';
 import type {Cells} from './section';
 
 /** The values of one field at a place, one a component; NaN if missing. */
@@ -42,7 +42,7 @@ export class Inspector {
 
   /** The first visible thing that `ray` (lattice coordinates) meets; null if there is none. */
   pick(ray: Ray, display: Display): Pick | null {
-    const mesh = meshNow(this.assembler);
+    const mesh = meshArrays(this.assembler);
     if (!mesh) return null;
     const cells: Cells = {...mesh, kept: keptCells(mesh, display)};
     let best: {cell: number; t: number} | null = null;
@@ -55,7 +55,7 @@ export class Inspector {
 
   /** The coloured field from one lattice point to another; null while there is none. */
   probe(from: Vector, to: Vector, display: Display): Probe | null {
-    const mesh = meshNow(this.assembler);
+    const mesh = meshArrays(this.assembler);
     const manifest = this.assembler.manifest;
     if (!mesh || !manifest) return null;
     const ray: Ray = {origin: from, direction: [to[0] - from[0], to[1] - from[1], to[2] - from[2]]};
@@ -107,7 +107,7 @@ export class Inspector {
 }
 
 /** The t at which the ray first sees something of this stretch; Infinity if it never does. */
-function firstSeen(mesh: MeshNow, ray: Ray, stretch: Stretch, display: Display): number {
+function firstSeen(mesh: MeshArrays, ray: Ray, stretch: Stretch, display: Display): number {
   const planes = cuttingPlanes(display);
   const visible = below(planes, ray, stretch);
   let t = Infinity;

@@ -1,6 +1,6 @@
 // How the values of a field are spread: where most of them lie, and how much they tell apart.
 
-import type {MeshNow} from './display';
+import type {MeshArrays} from './display';
 import {kMagnitude, type FieldScale} from './field_scale';
 
 /** A colour map's entries: more differences cannot be seen. */
@@ -37,7 +37,7 @@ export function spreadOf(scale: FieldScale, tetrahedra: Uint32Array): Spread {
 }
 
 /** The field among these whose values have most entropy; the first one of equals, 0 of none. */
-export function mostContrast(mesh: MeshNow, fields: readonly number[]): number {
+export function fieldOfMaxContrast(mesh: MeshArrays, fields: readonly number[]): number {
   let best = {field: fields[0] ?? 0, entropy: -1};
   if (fields.length < 2) return best.field;
   for (const field of fields) {

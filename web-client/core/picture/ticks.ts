@@ -22,26 +22,26 @@ const kPlainFrom = -3;
 const kPlainBelow = 5;
 const kMinus = '\u2212';
 
-/** The most digits of a label. A part that all labels share is written once instead. */
+/** The max digits of a label. A part that all labels share is written once instead. */
 const kMaxDigits = 5;
 
 /**
- * At most `most` (2 or more) ticks inside [low, high]. A range without width gives one tick, at the
+ * At max `max` (2 or more) ticks inside [low, high]. A range without width gives one tick, at the
  * beginning, where its colour is.
  */
-export function niceTicks(low: number, high: number, most: number): Ticks {
+export function niceTicks(low: number, high: number, max: number): Ticks {
   const largest = Math.max(Math.abs(low), Math.abs(high));
   const exponent = largest > 0 ? Math.floor(Math.log10(largest) + 1e-9) : 0;
   const power = exponent < kPlainFrom || exponent >= kPlainBelow ? exponent : 0;
   const unit = 10 ** power;
   const factor = power === 0 ? '' : `× 10${superscript(power)}`;
   if (!(high > low)) return {ticks: [{at: 0, label: label(low / unit, 3, true)}], factor};
-  const step = niceStep(low / unit, high / unit, most);
+  const step = niceStep(low / unit, high / unit, max);
   const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
   const digits = Math.floor(Math.log10(Math.max(largest / unit, 1))) + 1 + decimals;
   if (digits > kMaxDigits) {
     const base = firstTick(low / unit, step) * step * unit;
-    const {ticks, factor: small} = niceTicks(low - base, high - base, most);
+    const {ticks, factor: small} = niceTicks(low - base, high - base, max);
     const sign = base < 0 ? kMinus : '+';
     const common = label(Math.abs(base), Math.max(0, Math.min(decimals - power, 20)), true);
     if (base !== 0) return {ticks, factor: `${small} ${sign} ${common}`.trim()};
@@ -58,13 +58,13 @@ export function niceTicks(low: number, high: number, most: number): Ticks {
  * The same for a logarithmic bar: powers of ten, and 2 and 5 times them if these are few. REQUIRES:
  * 0 < low < high.
  */
-export function logTicks(low: number, high: number, most: number): Ticks {
+export function logTicks(low: number, high: number, max: number): Ticks {
   const from = Math.floor(Math.log10(low) - 1e-9);
   const to = Math.ceil(Math.log10(high) + 1e-9);
   const at = (value: number): number => Math.log(value / low) / Math.log(high / low);
   if (high < 10 * low) {
     // hardly curved: the numbers of a linear bar, at their logarithmic places
-    const {ticks, factor} = niceTicks(low, high, most);
+    const {ticks, factor} = niceTicks(low, high, max);
     return {ticks: ticks.map((tick) => ({...tick, at: at(low + tick.at * (high - low))})), factor};
   }
   const choose = (factors: number[], every: number): Tick[] => {
@@ -80,17 +80,17 @@ export function logTicks(low: number, high: number, most: number): Ticks {
     return ticks;
   };
   const fine = choose([1, 2, 5], 1);
-  if (fine.length <= most && fine.length > 0) return {ticks: fine, factor: ''};
+  if (fine.length <= max && fine.length > 0) return {ticks: fine, factor: ''};
   for (let every = 1; ; ++every) {
     const ticks = choose([1], every);
-    if (ticks.length <= most)
-      return {ticks: ticks.length > 0 ? ticks : choose([1], 1).slice(0, most), factor: ''};
+    if (ticks.length <= max)
+      return {ticks: ticks.length > 0 ? ticks : choose([1], 1).slice(0, max), factor: ''};
   }
 }
 
 /** Whole numbers from `first` on, in the middles of `count` equal parts; every n-th of many. */
-export function labelTicks(first: number, count: number, most: number): Ticks {
-  const every = Math.ceil(count / most);
+export function labelTicks(first: number, count: number, max: number): Ticks {
+  const every = Math.ceil(count / max);
   const ticks: Tick[] = [];
   for (let i = 0; i < count; i += every)
     ticks.push({at: (i + 0.5) / count, label: label(first + i, 0, false)});
@@ -104,14 +104,14 @@ function powerLabel(factor: number, power: number): string {
 }
 
 /**
- * The smallest step of 1, 2 or 5 times a power of ten with at most `most` ticks inside [low, high].
+ * The smallest step of 1, 2 or 5 times a power of ten with at max `max` ticks inside [low, high].
  */
-function niceStep(low: number, high: number, most: number): number {
-  const power = 10 ** (Math.floor(Math.log10((high - low) / most)) - 1);
+function niceStep(low: number, high: number, max: number): number {
+  const power = 10 ** (Math.floor(Math.log10((high - low) / max)) - 1);
   for (let unit = power; ; unit *= 10) {
     for (const factor of [1, 2, 5]) {
       const step = factor * unit;
-      if (lastTick(high, step) - firstTick(low, step) + 1 <= most) return step;
+      if (lastTick(high, step) - firstTick(low, step) + 1 <= max) return step;
     }
   }
 }

@@ -1,7 +1,7 @@
 // The cells for a renderer that looks through them.
 
 import {entryFaces} from './cell_entry';
-import type {MeshNow} from './display';
+import type {MeshArrays} from './display';
 import type {FieldScale} from './field_scale';
 import {isHole, neighboursOf} from './neighbours';
 
@@ -42,7 +42,7 @@ export const kCoarseCells = 8000;
  * keeps all) or a corner's value is missing.
  */
 export function volumeCells(
-  mesh: MeshNow,
+  mesh: MeshArrays,
   scale: FieldScale,
   kept: Uint8Array | null,
 ): VolumeCells {

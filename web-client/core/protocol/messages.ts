@@ -17,7 +17,7 @@ export interface HaveChunks {
 }
 
 /** Where a stream may stop. */
-export interface Goal {
+export interface Target {
   /** How many leading chunks. */
   chunks: number;
   /** The first level that contains all of them: the target of qtet.v1. */
@@ -32,7 +32,7 @@ export interface OpenRequest {
   digest?: string;
   view?: ViewRequest;
   /** Where the stream may stop; null means at its end. */
-  goal?: Goal | null;
+  target?: Target | null;
 }
 
 export type ServerMessage =
@@ -61,7 +61,7 @@ export function openMessage(
   request: OpenRequest,
   view: Record<string, unknown> | null = null,
 ): string {
-  const {mesh, fields, credit, have, digest, goal} = request;
+  const {mesh, fields, credit, have, digest, target} = request;
   return JSON.stringify({
     type: 'open',
     mesh,
@@ -69,16 +69,16 @@ export function openMessage(
     credit,
     have,
     digest,
-    ...(goal ? {target: targetOf(goal)} : {}),
+    ...(target ? {target: wireTarget(target)} : {}),
     ...(view ? {view} : {}),
   });
 }
 
-export function targetMessage(goal: Goal | null): string {
-  return JSON.stringify({type: 'target', target: goal && targetOf(goal)});
+export function targetMessage(target: Target | null): string {
+  return JSON.stringify({type: 'target', target: target && wireTarget(target)});
 }
 
-function targetOf({level}: Goal): {level: number} {
+function wireTarget({level}: Target): {level: number} {
   return {level};
 }
 

@@ -2,8 +2,8 @@
 // pace.
 
 import type {Assembler} from '../decode/assembler';
+import type {RequestedPart} from './requested_part';
 import {Slices} from './slices';
-import type {Wanted} from './wanted';
 
 /** How long a slice takes. The page's commands come between two slices. */
 const kSliceMs = 25;
@@ -20,7 +20,7 @@ export class Decoding {
   /** `again` is called when there may be more to decode. */
   constructor(
     private readonly assembler: Assembler,
-    private readonly wanted: Wanted,
+    private readonly requested: RequestedPart,
     private readonly again: () => void,
   ) {
     this.slices = new Slices(again);
@@ -38,7 +38,7 @@ export class Decoding {
   advance(pictureFirst: boolean): boolean {
     this.slices.drop();
     const start = performance.now();
-    const {bytes} = this.wanted.statistics;
+    const {bytes} = this.requested.statistics;
     let applied = false;
     while (!(pictureFirst && this.awaitsPicture()) && this.step()) {
       applied = true;
@@ -48,7 +48,7 @@ export class Decoding {
     }
     if (!applied) return false;
     this.pace.ms += performance.now() - start;
-    this.pace.bytes += this.wanted.statistics.bytes - bytes;
+    this.pace.bytes += this.requested.statistics.bytes - bytes;
     return true;
   }
 
@@ -75,13 +75,13 @@ export class Decoding {
   }
 
   private step(): boolean {
-    return this.assembler.step(this.wanted.fields, !this.wanted.isReached);
+    return this.assembler.step(this.requested.fields, !this.requested.isReached);
   }
 
   private awaitsPicture(): boolean {
     const {codec} = this.assembler;
     if (codec.chunksApplied === 0) return false;
-    if (this.wanted.fields.some((field) => codec.fieldChunksApplied(field) === 0)) return false;
+    if (this.requested.fields.some((field) => codec.fieldChunksApplied(field) === 0)) return false;
     const now = performance.now();
     if (this.firstPictureBy === null) {
       this.firstPictureBy = now + kFirstPictureMs;

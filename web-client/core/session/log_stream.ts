@@ -2,7 +2,7 @@
 
 import type {ViewRequest} from '../protocol/view_request';
 import type {Transport} from '../transport/transport';
-import type {Wanted} from './wanted';
+import type {RequestedPart} from './requested_part';
 
 /**
  * How many payload bytes may be under way. It is enough for 80 Mbit/s at 100 ms; a click waits for
@@ -65,7 +65,7 @@ export class LogStream {
     this.transport?.disconnect();
   }
 
-  open(mesh: string, {comparing, needsHead, keys, have, view, goal}: Wanted): void {
+  open(mesh: string, {comparing, needsHead, keys, have, view, target}: RequestedPart): void {
     const fields = keys.filter((name) => name !== '');
     this.keys = fields;
     this.end = needsHead ? 'head' : comparing ? 'base' : 'limit';
@@ -76,15 +76,15 @@ export class LogStream {
       credit: needsHead ? 1 : kWindowBytes, // one byte buys the head and nothing more
       have,
       view,
-      goal,
+      target,
       ...(this.digest ? {digest: this.digest} : {}),
     });
   }
 
   /** Moves the end of the stream to the limit of now. */
-  aim({goal}: Wanted): void {
+  aim({target}: RequestedPart): void {
     if (!this.endsAtHead) this.end = 'later limit';
-    this.transport?.aim(goal);
+    this.transport?.aim(target);
   }
 
   look(view: ViewRequest): void {

@@ -11,10 +11,10 @@ import {
   kPlainDisplay,
   surfaceOf,
   type Display,
-  type MeshNow,
+  type MeshArrays,
 } from '../picture/display';
 import {scalarRange, type FieldScale, type Scalar} from '../picture/field_scale';
-import {meshNow} from '../picture/mesh_now';
+import {meshArrays} from '../picture/mesh_arrays';
 import {spreadOf, type Spread} from '../picture/spread';
 import {noSoup, pointBounds} from '../picture/triangle_soup';
 import {volumeCells, type VolumeCells} from '../picture/volume';
@@ -63,7 +63,7 @@ export class Publisher {
   /** Nothing finer will follow by itself. */
   private isLast = false;
   /** The page has said what to draw. */
-  private wanted = false;
+  private isRequested = false;
   private bounds: number[] = [];
   /** By colour, from the mesh with which it was first drawn. */
   private readonly spreads = new Map<string, Spread>();
@@ -109,8 +109,8 @@ export class Publisher {
       before.volume !== display.volume ||
       JSON.stringify([before.color, before.threshold, before.isosurfaces]) !==
         JSON.stringify([display.color, display.threshold, display.isosurfaces]);
-    if (whole || !this.wanted) this.meshChanged = true;
-    this.wanted = this.cutChanged = true;
+    if (whole || !this.isRequested) this.meshChanged = true;
+    this.isRequested = this.cutChanged = true;
     this.schedule();
   }
 
@@ -141,7 +141,7 @@ export class Publisher {
 
   /** Begins with an empty mesh and waits for a display. */
   reset(): void {
-    this.meshChanged = this.cutChanged = this.wanted = this.hasPublished = this.isLast = false;
+    this.meshChanged = this.cutChanged = this.isRequested = this.hasPublished = this.isLast = false;
     this.onScreen = true; // nobody waits for the previous mesh's picture
     this.bounds = [];
     this.spreads.clear();
@@ -152,7 +152,7 @@ export class Publisher {
   }
 
   private schedule(): void {
-    if (!this.onScreen || !this.wanted || !(this.meshChanged || this.cutChanged)) return;
+    if (!this.onScreen || !this.isRequested || !(this.meshChanged || this.cutChanged)) return;
     const now = performance.now();
     const due = this.dueFrom(now);
     if (this.timer !== undefined && this.dueAt <= due) return;
@@ -186,7 +186,7 @@ export class Publisher {
   }
 
   private publish(): void {
-    const mesh = meshNow(this.assembler);
+    const mesh = meshArrays(this.assembler);
     if (!mesh) return;
     const start = performance.now();
     const {display} = this;
@@ -216,13 +216,13 @@ export class Publisher {
     this.onFirst();
   }
 
-  private volumeOf(mesh: MeshNow, kept: Uint8Array | null): VolumeCells | null {
+  private volumeOf(mesh: MeshArrays, kept: Uint8Array | null): VolumeCells | null {
     const {color, volume} = this.display;
     const scale = volume && color && mesh.scale(color);
     return scale ? volumeCells(mesh, scale, kept) : null;
   }
 
-  private spreadOf(color: Scalar, scale: FieldScale, {tetrahedra}: MeshNow): Spread {
+  private spreadOf(color: Scalar, scale: FieldScale, {tetrahedra}: MeshArrays): Spread {
     const key = `${color.field} ${color.component}`;
     const known = this.spreads.get(key);
     if (known) return known;
@@ -231,7 +231,7 @@ export class Publisher {
     return spread;
   }
 
-  private frame(mesh: MeshNow): Omit<Snapshot, 'cuts' | 'planes'> {
+  private frame(mesh: MeshArrays): Omit<Snapshot, 'cuts' | 'planes'> {
     const {color} = this.display;
     const scale = color && mesh.scale(color);
     const info = color && this.assembler.manifest!.fields[color.field];

@@ -4,8 +4,8 @@
 import type {Assembler} from '../decode/assembler';
 import {baseFigures} from '../picture/base_figures';
 import type {CoarseVolume} from '../picture/coarse_volume';
-import {meshNow} from '../picture/mesh_now';
-import {mostContrast} from '../picture/spread';
+import {meshArrays} from '../picture/mesh_arrays';
+import {fieldOfMaxContrast} from '../picture/spread';
 import {asksForTheSame, surfaceRequest, surfaceRequestOf} from '../picture/surface_request';
 import {errorCode, errorText, QtetError} from '../protocol/errors';
 import {kFull, type Limit} from '../protocol/limit';
@@ -16,10 +16,10 @@ import type {Transport, TransportHandlers} from '../transport/transport';
 import {makeTransport} from '../transport/transports';
 import {Decoding} from './decoding';
 import {LogStream} from './log_stream';
-import {ProgressTeller} from './progress_teller';
+import {ProgressReporter} from './progress_reporter';
 import type {Publisher} from './publisher';
+import {RequestedPart} from './requested_part';
 import {canPause, isAtRest, stateMessage, type SessionState} from './session_state';
-import {Wanted} from './wanted';
 import type {FromWorker, Source} from './worker_messages';
 
 /** The share of the cells at which memory ended that is kept: pictures need memory, too. */
@@ -53,12 +53,12 @@ export class Session implements TransportHandlers {
   coarse: Pick<CoarseVolume, 'note' | 'forget'> | null = null;
   private state: SessionState = {name: 'connecting'};
   private source = kNoSource;
-  /** The page has heard of this log's base mesh. */
-  private baseTold = false;
+  /** The page has received this log's base mesh. */
+  private baseReported = false;
   private readonly stream = new LogStream();
-  private readonly wanted: Wanted;
+  private readonly requested: RequestedPart;
   private readonly decoding: Decoding;
-  private readonly progress: ProgressTeller;
+  private readonly progress: ProgressReporter;
 
   constructor(
     private readonly assembler: Assembler,
@@ -66,9 +66,9 @@ export class Session implements TransportHandlers {
     private readonly send: (message: FromWorker) => void,
     private readonly newTransport: TransportFactory = makeTransport,
   ) {
-    this.wanted = new Wanted(assembler);
-    this.decoding = new Decoding(assembler, this.wanted, () => this.advance());
-    this.progress = new ProgressTeller(() => this.sendProgress());
+    this.requested = new RequestedPart(assembler);
+    this.decoding = new Decoding(assembler, this.requested, () => this.advance());
+    this.progress = new ProgressReporter(() => this.sendProgress());
     publisher.onFirst = () => this.advance();
     publisher.untilLast = () => this.untilDecoded();
     publisher.onIsosurface = (positions) => this.lookAtSurface(positions);
@@ -78,7 +78,7 @@ export class Session implements TransportHandlers {
     this.stream.disconnect();
     this.source = source;
     this.forget();
-    this.wanted.begin(source);
+    this.requested.begin(source);
     this.stream.use(this.newTransport(source, this.assembler, this));
     if (source.paused) return this.enter({name: 'paused'});
     this.enter({name: 'connecting'});
@@ -88,25 +88,25 @@ export class Session implements TransportHandlers {
   /** Brings these fields (indexes into the manifest) instead of the previous ones. */
   want(fields: readonly number[]): void {
     if (!this.assembler.manifest) return;
-    const wasComparing = this.wanted.endComparing();
-    if (!this.wanted.changeFields(fields) && !wasComparing) return;
+    const wasComparing = this.requested.endComparing();
+    if (!this.requested.changeFields(fields) && !wasComparing) return;
     this.sendPlan();
     this.progress.changed();
     if (this.state.name === 'failed') return;
     this.advance();
-    if (this.state.name === 'paused' || this.wanted.isComplete) return;
-    if (!this.wanted.isReceived()) this.reopen();
+    if (this.state.name === 'paused' || this.requested.isComplete) return;
+    if (!this.requested.isReceived()) this.reopen();
   }
 
   /** Refines up to this limit. A coarser limit goes back. */
   setLimit(limit: Limit): void {
-    this.wanted.limit = limit;
+    this.requested.limit = limit;
     if (!this.assembler.manifest || this.state.name === 'failed') return;
-    if (this.wanted.comparing) return; // the display comes soon, and asks for the rest
+    if (this.requested.comparing) return; // the display comes soon, and asks for the rest
     const wasPaused = this.endPause();
     this.guarded(() => {
-      if (this.wanted.isReached) this.goBack();
-      if (this.wanted.isReached) this.hold();
+      if (this.requested.isReached) this.goBack();
+      if (this.requested.isReached) this.hold();
       else this.goOn(wasPaused);
       this.progress.changed();
     });
@@ -114,7 +114,7 @@ export class Session implements TransportHandlers {
 
   /** Sets the user's view. */
   look(view: ViewRequest): void {
-    this.wanted.look(view, surfaceRequestOf(this.wanted.view));
+    this.requested.look(view, surfaceRequestOf(this.requested.view));
     this.follow();
   }
 
@@ -124,7 +124,7 @@ export class Session implements TransportHandlers {
 
   /** Continues after a pause, or tries again after an error. */
   resume(): void {
-    const {names, limit} = this.wanted;
+    const {names, limit} = this.requested;
     if (this.state.name === 'failed')
       this.start({...this.source, fields: names, limit, paused: false});
     else if (this.endPause()) this.goOn(true);
@@ -158,7 +158,7 @@ export class Session implements TransportHandlers {
       this.stream.received(frame.payload.length);
       if (isFirst && this.takeManifest()) return;
       const {name} = this.state;
-      if (name !== 'streaming' && name !== 'paused' && !this.wanted.isReached)
+      if (name !== 'streaming' && name !== 'paused' && !this.requested.isReached)
         this.enter({name: 'streaming'});
       this.advanceSoon();
     });
@@ -178,7 +178,7 @@ export class Session implements TransportHandlers {
   }
 
   private done(): void {
-    if (this.wanted.isReceived(this.wanted.goal?.chunks)) {
+    if (this.requested.isReceived(this.requested.target?.chunks)) {
       this.advanceSoon();
     } else if (this.stream.mayEndEarly) {
       this.open();
@@ -202,7 +202,7 @@ export class Session implements TransportHandlers {
     if (code === 'unknown-field' && !this.assembler.manifest) {
       const message = `${detail.replace(/\.?$/, '.')} The first field is shown instead.`;
       this.send({type: 'error', code, message});
-      this.wanted.names = null;
+      this.requested.names = null;
       this.open();
       return;
     }
@@ -212,7 +212,7 @@ export class Session implements TransportHandlers {
   // ---- the stream
 
   private open(): void {
-    this.stream.open(this.source.mesh, this.wanted);
+    this.stream.open(this.source.mesh, this.requested);
   }
 
   /** Opens a stream on the present connection, or connects first. */
@@ -226,16 +226,16 @@ export class Session implements TransportHandlers {
   /** Returns true if the stream was opened again, now that the fields are known. */
   private takeManifest(): boolean {
     const manifest = this.assembler.manifest!;
-    const unknown = this.wanted.findFields();
+    const unknown = this.requested.findFields();
     if (unknown !== undefined) {
       const message = `The mesh has no field "${unknown}". The first one is shown instead.`;
       this.send({type: 'error', code: 'unknown-field', message});
     }
-    this.assembler.look(this.wanted.view);
-    const {fields} = this.wanted;
+    this.assembler.look(this.requested.view);
+    const {fields} = this.requested;
     this.send({type: 'manifest', manifest, digest: this.stream.digest, fields: [...fields]});
     this.sendPlan();
-    if (!this.stream.endsAtHead && this.stream.brings(this.wanted.keys)) {
+    if (!this.stream.endsAtHead && this.stream.brings(this.requested.keys)) {
       this.follow(); // the `open` could not tell the view: its lattice was unknown
       return false;
     }
@@ -248,15 +248,15 @@ export class Session implements TransportHandlers {
     if (packets.length === 0 || !lattice || !manifest) return;
     const {display} = this.publisher;
     const request = surfaceRequest(positions, display, manifest.fields, lattice.size);
-    if (asksForTheSame(request, surfaceRequestOf(this.wanted.view))) return;
-    this.wanted.look(this.wanted.view, request);
+    if (asksForTheSame(request, surfaceRequestOf(this.requested.view))) return;
+    this.requested.look(this.requested.view, request);
     this.follow();
   }
 
   private follow(): void {
     if (this.assembler.packets.length === 0) return;
-    this.assembler.look(this.wanted.view);
-    if (this.state.name !== 'paused') this.stream.look(this.wanted.view);
+    this.assembler.look(this.requested.view);
+    if (this.state.name !== 'paused') this.stream.look(this.requested.view);
   }
 
   // ---- decoding
@@ -266,11 +266,11 @@ export class Session implements TransportHandlers {
       const pictureFirst = this.source.pictureFirst === true && !this.publisher.hasPublished;
       const hasChanged = this.decoding.advance(pictureFirst);
       this.tellOfBase();
-      if (hasChanged) this.publisher.changed(this.wanted.isComplete);
+      if (hasChanged) this.publisher.changed(this.requested.isComplete);
       this.progress.changed();
-      if (this.wanted.isComplete) this.complete();
-      else if (this.wanted.comparing) return;
-      else if (this.wanted.isReached) this.hold();
+      if (this.requested.isComplete) this.complete();
+      else if (this.requested.comparing) return;
+      else if (this.requested.isReached) this.hold();
       else if (this.state.name !== 'paused') this.stream.giveCredit();
     });
   }
@@ -291,8 +291,8 @@ export class Session implements TransportHandlers {
 
   /** In ms. Infinity until everything is received. */
   private untilDecoded(): number {
-    if (this.wanted.limit.kind !== 'full' || !this.wanted.isReceived()) return Infinity;
-    const {bytes, bytesNeeded} = this.wanted.statistics;
+    if (this.requested.limit.kind !== 'full' || !this.requested.isReceived()) return Infinity;
+    const {bytes, bytesNeeded} = this.requested.statistics;
     return this.decoding.msFor(bytesNeeded - bytes);
   }
 
@@ -325,11 +325,11 @@ export class Session implements TransportHandlers {
   private goOn(wasPaused: boolean): void {
     this.state = {name: 'streaming'}; // reported below, unless decoding ends it at once
     this.advance();
-    if (this.wanted.isComplete || this.wanted.isReached) return;
-    if (this.wanted.isReceived()) return this.enter({name: 'streaming'});
-    if (!this.stream.isConnected || !this.stream.brings(this.wanted.keys)) return this.reopen();
+    if (this.requested.isComplete || this.requested.isReached) return;
+    if (this.requested.isReceived()) return this.enter({name: 'streaming'});
+    if (!this.stream.isConnected || !this.stream.brings(this.requested.keys)) return this.reopen();
     this.enter({name: 'streaming'});
-    this.stream.aim(this.wanted);
+    this.stream.aim(this.requested);
     if (wasPaused && !this.stream.resume()) this.open();
   }
 
@@ -348,12 +348,12 @@ export class Session implements TransportHandlers {
    * mesh fits.
    */
   private stayAtWhatFits(): boolean {
-    const {tetrahedra} = this.wanted.statistics;
+    const {tetrahedra} = this.requested.statistics;
     if (tetrahedra === 0) return false;
     this.decoding.stop();
     this.stream.disconnect();
     const value = Math.max(1, Math.floor(kFittingShare * tetrahedra));
-    this.wanted.limit = {kind: 'cells', value};
+    this.requested.limit = {kind: 'cells', value};
     this.guarded(() => {
       this.assembler.codec.restart();
       this.goBack();
@@ -369,10 +369,10 @@ export class Session implements TransportHandlers {
 
   /** Must be called before another log. */
   private forget(): void {
-    this.baseTold = false;
+    this.baseReported = false;
     this.decoding.forget();
     this.stream.forget();
-    this.wanted.forget();
+    this.requested.forget();
     this.assembler.forget();
     this.coarse?.forget();
     this.publisher.reset();
@@ -381,22 +381,22 @@ export class Session implements TransportHandlers {
   // ---- to the page
 
   private tellOfBase(): void {
-    if (this.baseTold) return;
+    if (this.baseReported) return;
     const {codec} = this.assembler;
-    const mesh = meshNow(this.assembler);
+    const mesh = meshArrays(this.assembler);
     if (!mesh) return; // also between two logs, while the codec has the last one's
-    if (this.wanted.fields.some((field) => codec.fieldChunksApplied(field) === 0)) return;
-    this.baseTold = true;
-    const field = mostContrast(mesh, this.wanted.fields);
+    if (this.requested.fields.some((field) => codec.fieldChunksApplied(field) === 0)) return;
+    this.baseReported = true;
+    const field = fieldOfMaxContrast(mesh, this.requested.fields);
     this.send({type: 'base', figures: baseFigures(mesh), field});
   }
 
   private sendPlan(): void {
-    this.send({type: 'plan', plan: this.assembler.plan(this.wanted.fields)});
+    this.send({type: 'plan', plan: this.assembler.plan(this.requested.fields)});
   }
 
   private sendProgress(): void {
-    const statistics = this.wanted.statistics;
+    const statistics = this.requested.statistics;
     this.send({type: 'progress', statistics, received: this.stream.receivedBytes});
   }
 }

@@ -113,11 +113,11 @@ function obey(
       });
     case 'coarse': {
       const {id, have} = message;
-      const tell = (answer: CoarseCells | null): void =>
+      const reply = (answer: CoarseCells | null): void =>
         self.postMessage({type: 'answer', id, answer} satisfies FromWorker, {
           transfer: answer?.cells ? buffersOfVolume(answer.cells) : [],
         });
-      return void coarse.cells(have, publisher.display).then(tell, () => tell(null));
+      return void coarse.cells(have, publisher.display).then(reply, () => reply(null));
     }
   }
 }

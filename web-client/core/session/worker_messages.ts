@@ -1,7 +1,7 @@
 // Messages between the page and the worker that decodes. Typed arrays are transferred, never
 // copied.
 
-import type {LevelBytes} from '../decode/goal';
+import type {LevelBytes} from '../decode/plan';
 import type {Statistics} from '../decode/statistics';
 import type {BaseFigures} from '../picture/base_figures';
 import type {Ray} from '../picture/cell_ray';

@@ -2,7 +2,7 @@
 // fails for good, the next takes over. Any of them can continue where another stopped.
 
 import type {QtetError} from '../protocol/errors';
-import type {Frame, OpenRequest, ServerMessage, Goal} from '../protocol/messages';
+import type {Frame, OpenRequest, ServerMessage, Target} from '../protocol/messages';
 import type {ViewRequest} from '../protocol/view_request';
 import type {Transport, TransportHandlers} from './transport';
 
@@ -49,8 +49,8 @@ export class AutoTransport implements Transport, TransportHandlers {
   resume(): boolean {
     return this.current.resume();
   }
-  aim(goal: Goal | null): void {
-    this.current.aim(goal);
+  aim(target: Target | null): void {
+    this.current.aim(target);
   }
   applied(bytes: number): void {
     this.current.applied(bytes);

@@ -3,7 +3,7 @@
 
 import {errorCode, errorText, QtetError} from '../protocol/errors';
 import type {LogTable} from '../protocol/log_table';
-import type {ChunkRange, OpenRequest, Goal} from '../protocol/messages';
+import type {ChunkRange, OpenRequest, Target} from '../protocol/messages';
 import {kFirstFieldPart, kHeadPart, kStructurePart} from '../protocol/parts';
 import {inOrder, kNoViewRequest, type ViewRequest} from '../protocol/view_request';
 import {reconnectDelayMs} from './backoff';
@@ -20,14 +20,14 @@ const kAhead = 3;
  * few, and progress is steady.
  */
 const kRequestSeconds = 0.4;
-const kLeastBytes = 32 << 10;
+const kMinBytes = 32 << 10;
 const kMaxBytes = 512 << 10;
 
 export class HttpTransport implements Transport {
   isConnected = false;
   private stream = 0;
   private credit = 0;
-  private goal: Goal | null = null;
+  private target: Target | null = null;
   /** The pieces that remain to be fetched, in this order. */
   private pieces: Piece[] = [];
   private attempt = 0;
@@ -35,7 +35,7 @@ export class HttpTransport implements Transport {
   private abort = new AbortController();
   private timer: ReturnType<typeof setTimeout> | undefined;
   private creditCame: () => void = () => undefined;
-  private requestBytes = kLeastBytes;
+  private requestBytes = kMinBytes;
   private arrived = {at: 0, bytes: 0};
 
   /** `makeSource` is called again when the log has been replaced. */
@@ -61,7 +61,7 @@ export class HttpTransport implements Transport {
     this.stop();
     this.abort = new AbortController();
     this.credit = request.credit;
-    this.goal = request.goal ?? null;
+    this.target = request.target ?? null;
     this.run(++this.stream, request, this.abort.signal).catch((thrown: unknown) => {
       if (!this.abort.signal.aborted) this.lost(thrown);
     });
@@ -77,8 +77,8 @@ export class HttpTransport implements Transport {
     return false;
   }
 
-  aim(goal: Goal | null): void {
-    this.goal = goal;
+  aim(target: Target | null): void {
+    this.target = target;
     this.creditCame();
   }
 
@@ -163,11 +163,11 @@ export class HttpTransport implements Transport {
     }
   }
 
-  /** The next pieces before the goal. */
+  /** The next pieces before the target. */
   private wantedNext(): Piece[] {
     const near = this.pieces.slice(0, kMaxPieces);
-    const {goal} = this;
-    return goal ? near.filter(({chunk}) => chunk < goal.chunks) : near;
+    const {target} = this;
+    return target ? near.filter(({chunk}) => chunk < target.chunks) : near;
   }
 
   /** Adapts the size of requests to the line. */
@@ -178,7 +178,7 @@ export class HttpTransport implements Transport {
       const fitting = (bytes / seconds) * kRequestSeconds;
       this.requestBytes = Math.min(
         kMaxBytes,
-        Math.max(kLeastBytes, (this.requestBytes + fitting) / 2),
+        Math.max(kMinBytes, (this.requestBytes + fitting) / 2),
       );
     }
     this.arrived = {at: now, bytes};

@@ -15,7 +15,7 @@ import {
   targetMessage,
   viewMessage,
   type OpenRequest,
-  type Goal,
+  type Target,
 } from '../protocol/messages';
 import {kNoViewRequest, wireView, type ViewRequest} from '../protocol/view_request';
 import {reconnectDelayMs} from './backoff';
@@ -59,7 +59,7 @@ export class SocketTransport implements Transport {
   private isPaused = false;
   private view: ViewRequest = kNoViewRequest;
   /** The last view that the server was sent. */
-  private told = '';
+  private sentView = '';
 
   /**
    * A function as `url` is called before every connection: its address is good for one connection.
@@ -119,15 +119,15 @@ export class SocketTransport implements Transport {
     this.isPaused = false;
     this.view = request.view ?? this.view;
     const wire = this.wire();
-    this.told = viewMessage(wire);
+    this.sentView = viewMessage(wire);
     this.socket?.send(openMessage(request, wire));
   }
 
   look(view: ViewRequest): void {
     this.view = view;
     const text = viewMessage(this.wire());
-    if (!this.connected || this.layout !== 'regions' || text === this.told) return;
-    this.told = text;
+    if (!this.connected || this.layout !== 'regions' || text === this.sentView) return;
+    this.sentView = text;
     this.socket?.send(text);
   }
 
@@ -148,8 +148,8 @@ export class SocketTransport implements Transport {
     return true;
   }
 
-  aim(goal: Goal | null): void {
-    if (this.connected && this.layout !== '') this.socket?.send(targetMessage(goal));
+  aim(target: Target | null): void {
+    if (this.connected && this.layout !== '') this.socket?.send(targetMessage(target));
   }
 
   /**

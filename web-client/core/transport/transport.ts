@@ -3,7 +3,7 @@
 // another stopped.
 
 import type {QtetError} from '../protocol/errors';
-import type {Frame, OpenRequest, ServerMessage, Goal} from '../protocol/messages';
+import type {Frame, OpenRequest, ServerMessage, Target} from '../protocol/messages';
 import type {ViewRequest} from '../protocol/view_request';
 
 export interface TransportHandlers {
@@ -29,7 +29,7 @@ export interface Transport {
   /** Returns false if the stream cannot continue; it must be opened again. */
   resume(): boolean;
   /** Moves the place to stop at; null means the end. */
-  aim(goal: Goal | null): void;
+  aim(target: Target | null): void;
   /** Returns the credit of `bytes` applied payload bytes. */
   applied(bytes: number): void;
   /** Changes the order in which the packets of a log of regions come. */

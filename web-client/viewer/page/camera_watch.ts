@@ -6,7 +6,7 @@ const kRestMs = 250;
 
 export class CameraWatch {
   private timer: ReturnType<typeof setTimeout> | undefined;
-  private told = '';
+  private reported = '';
 
   /** `now` gives the camera, or null if there is nothing to report. */
   constructor(
@@ -17,17 +17,17 @@ export class CameraWatch {
   /** Must be called after every frame. */
   frame(): void {
     clearTimeout(this.timer);
-    this.timer = setTimeout(() => this.tell(), kRestMs);
+    this.timer = setTimeout(() => this.report(), kRestMs);
   }
 
   dispose(): void {
     clearTimeout(this.timer);
   }
 
-  private tell(): void {
+  private report(): void {
     const state = this.now();
-    if (!state || state.join() === this.told) return;
-    this.told = state.join();
+    if (!state || state.join() === this.reported) return;
+    this.reported = state.join();
     this.rests(state);
   }
 }

@@ -45,9 +45,9 @@ export function formatDuration(seconds: number): string {
 
 /** Larger numbers are written with a power of ten, and those that need more decimals. */
 const kPlainBelow = 1e9;
-const kMostDecimals = 8;
+const kMaxDecimals = 8;
 /** A double holds no more digits. */
-const kMostDigits = 15;
+const kMaxDigits = 15;
 /** Fields and places are shown to this share of their extent. */
 const kShownShare = 1e-4;
 
@@ -62,11 +62,11 @@ export function formatTo(value: number, resolution: number): string {
   if (Number.isNaN(value)) return 'missing';
   const magnitude = Math.abs(value) < resolution / 2 ? 0 : Math.abs(value);
   const decimals = decimalsOf(resolution);
-  const isPlain = magnitude < kPlainBelow && (decimals <= kMostDecimals || magnitude === 0);
+  const isPlain = magnitude < kPlainBelow && (decimals <= kMaxDecimals || magnitude === 0);
   const digits = Math.floor(Math.log10(Math.max(magnitude / resolution, 10)) + 1e-9);
   const text = isPlain
-    ? magnitude.toFixed(Math.min(decimals, kMostDecimals))
-    : magnitude.toExponential(Math.min(digits, kMostDigits)).replaceAll('-', '\u2212');
+    ? magnitude.toFixed(Math.min(decimals, kMaxDecimals))
+    : magnitude.toExponential(Math.min(digits, kMaxDigits)).replaceAll('-', '\u2212');
   return value < 0 && Number(magnitude.toFixed(decimals)) !== 0 ? `\u2212${text}` : text;
 }
 

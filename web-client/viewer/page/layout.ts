@@ -7,7 +7,7 @@ const kMaxCovered = 0.6;
 /** Share of the free width: a wider legend leaves no corner. */
 const kWide = 0.6;
 /** Beside the panel and the card of a point this share of the width stays for the mesh. */
-const kLeastFree = 0.35;
+const kMinFree = 0.35;
 
 /** `result` stands above the sheet on narrow screens, and the mesh above both. */
 export function insetsOf(
@@ -36,7 +36,7 @@ export function insetsOf(
   // hardly any width.
   const bottom = bare ? 0 : (whole.bottom - bar.top) / height / (bar.width > kWide * free ? 1 : 2);
   const pointed = result.hidden ? 0 : (result.getBoundingClientRect().right - whole.left) / width;
-  const left = pointed < free / width - kLeastFree ? pointed : 0;
+  const left = pointed < free / width - kMinFree ? pointed : 0;
   return {
     left,
     right: hidden ? 0 : Math.min(kMaxCovered, (whole.right - card.left) / width),

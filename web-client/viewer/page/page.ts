@@ -18,7 +18,7 @@ export interface Page extends Attributes {
   /** The attributes that show the same picture again. */
   readonly view: Map<string, string>;
   /** Dispatches an event. */
-  tell(type: string, detail: unknown): void;
+  dispatch(type: string, detail: unknown): void;
   /** Tells screen readers. */
   announce(text: string): void;
 }

@@ -1,6 +1,6 @@
 // A viewer's state of the mesh that it shows. Another mesh gets another object.
 
-import type {LevelBytes} from '../../core/decode/goal';
+import type {LevelBytes} from '../../core/decode/plan';
 import {kNoStatistics, type Statistics} from '../../core/decode/statistics';
 import type {BaseFigures} from '../../core/picture/base_figures';
 import {labelsOf} from '../../core/picture/labels';

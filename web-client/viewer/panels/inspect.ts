@@ -49,10 +49,10 @@ export class Inspect {
     this.marks = root.querySelector('.marks')!;
     const onCanvas = (
       type: 'pointerdown' | 'pointerup',
-      heard: (event: PointerEvent) => void,
+      receive: (event: PointerEvent) => void,
     ): void =>
       root.addEventListener(type, (event) => {
-        if ((event.target as Element).matches('.scene')) heard(event as PointerEvent);
+        if ((event.target as Element).matches('.scene')) receive(event as PointerEvent);
       });
     onCanvas('pointerdown', (event) => void (this.pressed = {x: event.clientX, y: event.clientY}));
     onCanvas('pointerup', (event) => {

@@ -31,9 +31,9 @@ export class Legend {
     {map, reversed}: Settings,
   ): void {
     this.figure.hidden = false;
-    const wanted = JSON.stringify([scalar, range, map, reversed, scalarTitle(scalar, fields)]);
-    if (wanted === this.shown) return; // every picture asks, but few change it
-    this.shown = wanted;
+    const requested = JSON.stringify([scalar, range, map, reversed, scalarTitle(scalar, fields)]);
+    if (requested === this.shown) return; // every picture asks, but few change it
+    this.shown = requested;
     const {ticks, factor} = ticksOf(range);
     const name = this.part('.legend-name');
     name.textContent = name.title = scalarTitle(scalar, fields);

@@ -45,11 +45,11 @@ export class LevelPanel {
     });
     const scale = (factor: number): void => {
       const {statistics} = now();
-      const goal = Math.round(statistics.tetrahedra * factor);
+      const cells = Math.round(statistics.tetrahedra * factor);
       this.set(
-        goal >= statistics.total.tetrahedra
+        cells >= statistics.total.tetrahedra
           ? {kind: 'full'}
-          : {kind: 'cells', value: Math.max(1, goal)},
+          : {kind: 'cells', value: Math.max(1, cells)},
       );
     };
     root.querySelector('.coarser')!.addEventListener('click', () => scale(0.5));

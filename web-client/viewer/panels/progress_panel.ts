@@ -2,7 +2,7 @@
 // The bar shows bytes: the share of what the whole mesh with the shown fields needs. The curve
 // below shows the known error against bytes, and the point that is reached.
 
-import type {LevelBytes} from '../../core/decode/goal';
+import type {LevelBytes} from '../../core/decode/plan';
 import type {Statistics} from '../../core/decode/statistics';
 import {errorOfLevel, type Limit} from '../../core/protocol/limit';
 import type {Manifest} from '../../core/protocol/manifest';
@@ -33,7 +33,7 @@ const kRateWindowMs = 4000;
 const kFoldMs = 1500;
 
 /** The curve spans errors from the first one down to at most this fraction of it. */
-const kLeastSpan = 10;
+const kMinSpan = 10;
 
 /** Bytes, and the error that is left with them. */
 type Point = [number, number];
@@ -157,18 +157,18 @@ export class ProgressPanel {
     );
     const first = this.arrivals[0]!;
     const rate = ((bytes - first.bytes) / Math.max(now - first.at, 1)) * 1000;
-    const goal =
+    const targetBytes =
       this.limit.kind === 'bytes' ? Math.min(this.limit.value, bytesNeeded) : bytesNeeded;
     // With a limit of errors or cells, the byte at which it ends is unknown.
     if (
       this.state !== 'streaming' ||
       rate <= 0 ||
-      bytes >= goal ||
+      bytes >= targetBytes ||
       this.limit.kind === 'cells' ||
       this.limit.kind === 'error'
     )
       return null;
-    return (goal - bytes) / rate;
+    return (targetBytes - bytes) / rate;
   }
 
   /**
@@ -188,10 +188,11 @@ export class ProgressPanel {
     figure.hidden = line.length < 2 || firstError === 0;
     if (figure.hidden) return;
     const [lastBytes] = line.at(-1)!;
-    const least = Math.min(...line.map(([, error]) => error || Infinity), firstError / kLeastSpan);
+    const minError = Math.min(...line.map(([, error]) => error || Infinity), firstError / kMinSpan);
     const place = ([at, error]: Point): string => {
       const x = Math.log(at / firstBytes) / Math.log(Math.max(lastBytes / firstBytes, 1.01));
-      const y = error > 0 ? (0.9 * Math.log(firstError / error)) / Math.log(firstError / least) : 1;
+      const y =
+        error > 0 ? (0.9 * Math.log(firstError / error)) / Math.log(firstError / minError) : 1;
       return `${(100 * Math.min(1, Math.max(0, x))).toFixed(2)} ${(40 * y).toFixed(2)}`;
     };
     const reached = points

@@ -4,7 +4,7 @@
 import {isColorMapName, type ColorMapName} from '../../core/picture/color_maps';
 import {kClipModes, kMaxPlanes, type ClipMode} from '../../core/picture/display';
 import {kMagnitude, scalarRange, type Scalar} from '../../core/picture/field_scale';
-import {kMostLabels} from '../../core/picture/labels';
+import {kMaxLabels} from '../../core/picture/labels';
 import {kMaxOpacity, kOpacityPath} from '../../core/picture/transfer';
 import {kFull, parseLimit, type Limit} from '../../core/protocol/limit';
 import {fieldKeys, type FieldInfo} from '../../core/protocol/manifest';
@@ -276,14 +276,14 @@ export function sharesOf({scalar, values}: FieldValues, fields: readonly FieldIn
 
 // ---- the range that the colours span
 
-/** The map `labels` spans kMostLabels numbers, with each in the middle of its colour. */
+/** The map `labels` spans kMaxLabels numbers, with each in the middle of its colour. */
 export function labelRange([first, count]: [number, number]): Omit<ShownRange, 'hasMissing'> {
   const low = first - 0.5;
-  return {low, high: low + kMostLabels, logarithmic: false, hides: 'none', labels: count};
+  return {low, high: low + kMaxLabels, logarithmic: false, hides: 'none', labels: count};
 }
 
 /** If the middle 96 % of the values take less of the range, the tails hide them. */
-const kLeastMiddle = 0.4;
+const kMinMiddle = 0.4;
 
 export interface ShownRange {
   low: number;
@@ -310,12 +310,12 @@ export function shownRange(
   extent: [number, number],
   middle: [number, number] = extent,
 ): Omit<ShownRange, 'hasMissing'> {
-  const tailsHide = middle[1] - middle[0] < kLeastMiddle * (extent[1] - extent[0]);
+  const tailsHide = middle[1] - middle[0] < kMinMiddle * (extent[1] - extent[0]);
   if (range === 'auto' && !logarithmic && tailsHide && middle[0] < middle[1])
     return {low: middle[0], high: middle[1], logarithmic, hides: 'none', isMiddle: true};
-  const most = Math.max(Math.abs(extent[0]), Math.abs(extent[1]));
+  const max = Math.max(Math.abs(extent[0]), Math.abs(extent[1]));
   const isWhole = range === 'auto' || range === 'full';
-  const [low, high] = isWhole ? extent : range === 'symmetric' ? [-most, most] : range;
+  const [low, high] = isWhole ? extent : range === 'symmetric' ? [-max, max] : range;
   if (!logarithmic) return {low, high, logarithmic: false, hides: 'none'};
   if (high <= 0) return {low, high, logarithmic: false, hides: 'all'};
   const kDecades = 1e-4;

@@ -1,11 +1,11 @@
 // The codec's mesh in the form that display.ts needs.
 
 import type {Assembler} from '../decode/assembler';
-import type {MeshNow} from './display';
+import type {MeshArrays} from './display';
 import {FieldScale} from './field_scale';
 
 /** Views into the codec's memory, valid until the next step; null while there is no mesh. */
-export function meshNow({codec, manifest}: Assembler): MeshNow | null {
+export function meshArrays({codec, manifest}: Assembler): MeshArrays | null {
   if (!manifest || codec.chunksApplied === 0) return null;
   return {
     points: codec.points(),

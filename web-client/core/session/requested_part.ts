@@ -5,17 +5,17 @@ import type {Statistics} from '../decode/statistics';
 import {kNoSurfaceRequest, type SurfaceRequest} from '../picture/surface_request';
 import {errorOfLevel, kFull, limitReached, type Limit} from '../protocol/limit';
 import {fieldKeys} from '../protocol/manifest';
-import type {OpenRequest, Goal} from '../protocol/messages';
+import type {OpenRequest, Target} from '../protocol/messages';
 import {kFirstFieldPart, kStructurePart} from '../protocol/parts';
 import {kNoViewRequest, type ViewRequest} from '../protocol/view_request';
 import type {Source} from './worker_messages';
 
 /** The most fields that are compared for the opening view: each costs about a kilobyte. */
-export const kMostCompared = 6;
+export const kMaxCompared = 6;
 /** The base mesh alone. */
-const kBaseGoal: Goal = {chunks: 1, level: 0};
+const kBaseTarget: Target = {chunks: 1, level: 0};
 
-export class Wanted {
+export class RequestedPart {
   /** The fields are candidates for the opening view: only the base mesh is wanted yet. */
   comparing = false;
   /**
@@ -51,7 +51,7 @@ export class Wanted {
     this.fields = (this.names ?? []).map((name) => keys.indexOf(name)).filter((i) => i >= 0);
     const wantsFirst = this.names === null || unknown !== undefined;
     if (this.fields.length === 0 && keys.length > 0 && wantsFirst)
-      this.fields = this.comparing ? [...keys.keys()].slice(0, kMostCompared) : [0];
+      this.fields = this.comparing ? [...keys.keys()].slice(0, kMaxCompared) : [0];
     this.comparing &&= this.fields.length > 1 && this.assembler.packets.length === 0;
     return unknown;
   }
@@ -89,8 +89,8 @@ export class Wanted {
   }
 
   /** Where the limit lies; null means at the end, or unknown. */
-  get goal(): Goal | null {
-    return this.comparing ? kBaseGoal : this.assembler.goal(this.limit, this.fields);
+  get target(): Target | null {
+    return this.comparing ? kBaseTarget : this.assembler.target(this.limit, this.fields);
   }
 
   /** Only the head says which fields there are or where the limit lies. */

@@ -6,15 +6,15 @@
  */
 const kProgressMs = 100;
 
-export class ProgressTeller {
+export class ProgressReporter {
   private timer: ReturnType<typeof setTimeout> | undefined;
-  private toldAt = -kProgressMs;
+  private reportedAt = -kProgressMs;
 
-  constructor(private readonly tell: () => void) {}
+  constructor(private readonly report: () => void) {}
 
   /** The last change of a burst is reported late, but never lost. */
   changed(): void {
-    const wait = Math.max(0, this.toldAt + kProgressMs - performance.now());
+    const wait = Math.max(0, this.reportedAt + kProgressMs - performance.now());
     this.timer ??= setTimeout(() => this.send(), wait);
   }
 
@@ -26,7 +26,7 @@ export class ProgressTeller {
   private send(): void {
     clearTimeout(this.timer);
     this.timer = undefined;
-    this.toldAt = performance.now();
-    this.tell();
+    this.reportedAt = performance.now();
+    this.report();
   }
 }

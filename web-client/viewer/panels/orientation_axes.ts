@@ -3,7 +3,7 @@
 const kNames = ['x', 'y', 'z'];
 const kLength = 19;
 
-export class Triad {
+export class OrientationAxes {
   private readonly axes: {line: SVGLineElement; text: SVGTextElement}[];
 
   constructor(private readonly svg: SVGSVGElement) {

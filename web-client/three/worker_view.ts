@@ -10,7 +10,7 @@ import type {Snapshot} from '../core/session/worker_messages';
 import type {CameraState} from './camera';
 import {watchDensity} from './density';
 import {checkedDirection, type Direction} from './directions';
-import type {FarEvent, FarSize} from './far_canvas';
+import type {CanvasEvent, CanvasSize} from './worker_canvas';
 import {checkedCamera, project, rayAt, type Pose} from './pose';
 import type {Insets, Look, View, ViewListeners} from './view';
 import type {Command, FromView, ToView} from './view_messages';
@@ -43,7 +43,7 @@ const kMaxUnanswered = 6;
 export async function openView(canvas: HTMLCanvasElement, listeners: ViewListeners): Promise<View> {
   const {worker, url, draws} = await retry(startWorker);
   if (draws && 'transferControlToOffscreen' in canvas)
-    return FarView.begin(worker, canvas, listeners);
+    return WorkerView.begin(worker, canvas, listeners);
   worker.terminate();
   // the same script again, so that nobody downloads it in two builds
   await import(/* @vite-ignore */ url);
@@ -71,7 +71,7 @@ function answerOf(worker: Worker): Promise<FromView> {
   });
 }
 
-class FarView implements View {
+class WorkerView implements View {
   private readonly shown = new Map<number, (ms: number) => void>();
   private readonly pictures = new Map<
     number,
@@ -88,7 +88,7 @@ class FarView implements View {
     worker: Worker,
     canvas: HTMLCanvasElement,
     listeners: ViewListeners,
-  ): Promise<FarView> {
+  ): Promise<WorkerView> {
     const surface = canvas.transferControlToOffscreen();
     const begin: ToView = {
       type: 'begin',
@@ -104,7 +104,7 @@ class FarView implements View {
         first.type === 'failed' ? first.message : 'the worker that draws does not answer',
       );
     }
-    return new FarView(worker, canvas, listeners, first.pose);
+    return new WorkerView(worker, canvas, listeners, first.pose);
   }
 
   private constructor(
@@ -114,7 +114,7 @@ class FarView implements View {
     public pose: Pose,
   ) {
     worker.onmessage = (event: MessageEvent<FromView>) => {
-      this.hear(0);
+      this.noteUnanswered(0);
       this.receive(event.data);
     };
     worker.onerror = (event) => listeners.failed?.(event.message);
@@ -209,11 +209,11 @@ class FarView implements View {
 
   private ping(): void {
     if (document.hidden) return;
-    this.hear(this.unanswered + 1);
+    this.noteUnanswered(this.unanswered + 1);
     this.send({type: 'ping'});
   }
 
-  private hear(unanswered: number): void {
+  private noteUnanswered(unanswered: number): void {
     const was = this.unanswered > kMaxUnanswered,
       is = unanswered > kMaxUnanswered;
     this.unanswered = unanswered;
@@ -277,7 +277,7 @@ function taken<Waiting>(asked: Map<number, Waiting>, id = -1): Waiting | undefin
   return waiting;
 }
 
-function sizeOf({clientWidth, clientHeight}: HTMLCanvasElement): FarSize {
+function sizeOf({clientWidth, clientHeight}: HTMLCanvasElement): CanvasSize {
   return {
     width: Math.max(1, clientWidth),
     height: Math.max(1, clientHeight),
@@ -288,7 +288,7 @@ function sizeOf({clientWidth, clientHeight}: HTMLCanvasElement): FarSize {
 function farEvent(
   event: Partial<PointerEvent & WheelEvent & KeyboardEvent> & {type: string},
   canvas: HTMLElement,
-): FarEvent {
+): CanvasEvent {
   const {left, top} = canvas.getBoundingClientRect();
   const clientX = (event.clientX ?? 0) - left,
     clientY = (event.clientY ?? 0) - top;

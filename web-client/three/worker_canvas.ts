@@ -4,7 +4,7 @@
 import {watchDensity} from './density';
 
 /** The forwarded part of a pointer, wheel or key event. Places count from the canvas's corner. */
-export interface FarEvent {
+export interface CanvasEvent {
   type: string;
   clientX: number;
   clientY: number;
@@ -21,14 +21,14 @@ export interface FarEvent {
   key: string;
 }
 
-export interface FarSize {
+export interface CanvasSize {
   width: number;
   height: number;
   pixelRatio: number;
 }
 
 /** The part of an element that OrbitControls needs. */
-export class FarCanvas extends EventTarget {
+export class WorkerCanvas extends EventTarget {
   clientWidth = 1;
   clientHeight = 1;
   pixelRatio = 1;
@@ -41,12 +41,12 @@ export class FarCanvas extends EventTarget {
     super();
   }
 
-  resize({width, height, pixelRatio}: FarSize): void {
+  resize({width, height, pixelRatio}: CanvasSize): void {
     Object.assign(this, {clientWidth: width, clientHeight: height, pixelRatio});
     this.onresize();
   }
 
-  receive(event: FarEvent): void {
+  receive(event: CanvasEvent): void {
     const {type, ...rest} = event;
     this.dispatchEvent(Object.assign(new Event(type, {cancelable: true}), rest));
   }
@@ -66,16 +66,16 @@ export class FarCanvas extends EventTarget {
   }
 }
 
-export type ViewCanvas = HTMLCanvasElement | FarCanvas;
+export type ViewCanvas = HTMLCanvasElement | WorkerCanvas;
 
 export const surfaceOf = (canvas: ViewCanvas): HTMLCanvasElement | OffscreenCanvas =>
-  canvas instanceof FarCanvas ? canvas.surface : canvas;
+  canvas instanceof WorkerCanvas ? canvas.surface : canvas;
 export const pixelRatioOf = (canvas: ViewCanvas): number =>
-  canvas instanceof FarCanvas ? canvas.pixelRatio : window.devicePixelRatio;
+  canvas instanceof WorkerCanvas ? canvas.pixelRatio : window.devicePixelRatio;
 
 /** Calls `resized` whenever the canvas's size changes. Returns a function that ends this. */
 export function watchSize(canvas: ViewCanvas, resized: () => void): () => void {
-  if (canvas instanceof FarCanvas) {
+  if (canvas instanceof WorkerCanvas) {
     canvas.onresize = resized;
     return () => void (canvas.onresize = () => undefined);
   }

@@ -1,5 +1,5 @@
 import {afterEach, beforeEach, expect, test, vi} from 'vitest';
-import {openView} from '../three/far_view';
+import {openView} from '../three/worker_view';
 import type {Pose} from '../three/pose';
 import type {View, ViewListeners} from '../three/view';
 import type {FromView, ToView} from '../three/view_messages';
@@ -64,10 +64,10 @@ function open(listeners: ViewListeners = {}): Promise<View> {
 }
 
 test('anErrorWhileDrawingIsToldAndTheWorkerGoesOn', async () => {
-  const told: string[] = [];
-  const view = await open({failed: (message) => told.push(message)});
+  const reported: string[] = [];
+  const view = await open({failed: (message) => reported.push(message)});
   FakeWorker.last.onerror!({message: 'too much'});
-  expect([told, FakeWorker.last.terminated]).toEqual([['too much'], false]);
+  expect([reported, FakeWorker.last.terminated]).toEqual([['too much'], false]);
   view.dispose();
 });
 
@@ -110,22 +110,22 @@ test('anotherScreensDensityIsToldEveryTime', async () => {
 
 test('aWorkerThatDoesNotAnswerIsToldOfUntilItDoes', async () => {
   vi.useFakeTimers();
-  const told: boolean[] = [];
-  const view = await open({silent: (silent) => told.push(silent)});
+  const reported: boolean[] = [];
+  const view = await open({silent: (silent) => reported.push(silent)});
   vi.advanceTimersByTime(29000);
   FakeWorker.last.say({type: 'pong'});
   vi.advanceTimersByTime(30000);
-  expect(told).toEqual([]);
+  expect(reported).toEqual([]);
   vi.advanceTimersByTime(10000);
-  expect(told).toEqual([true]);
+  expect(reported).toEqual([true]);
   FakeWorker.last.say({type: 'lost', lost: false});
-  expect(told).toEqual([true, false]);
+  expect(reported).toEqual([true, false]);
   Object.assign(document, {hidden: true}); // browsers stop workers of pages that nobody sees
   vi.advanceTimersByTime(600000);
-  expect(told).toEqual([true, false]);
+  expect(reported).toEqual([true, false]);
   view.dispose();
   Object.assign(document, {hidden: false});
   vi.advanceTimersByTime(600000);
-  expect(told).toEqual([true, false]);
+  expect(reported).toEqual([true, false]);
   vi.useRealTimers();
 });

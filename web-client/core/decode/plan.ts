@@ -1,9 +1,9 @@
-// The goals that the chunks of a `stream` log reach, one after the other. They decide where a
+// The targets that the chunks of a `stream` log reach, one after the other. They decide where a
 // stream may stop, so that nothing behind a limit is sent or fetched.
 
 import {errorOfLevel, limitReached, type Limit} from '../protocol/limit';
 import type {Manifest} from '../protocol/manifest';
-import type {Goal} from '../protocol/messages';
+import type {Target} from '../protocol/messages';
 import {kFirstFieldPart} from '../protocol/parts';
 import type {Codec} from './codec';
 
@@ -20,13 +20,13 @@ export interface LevelBytes {
  * Returns null if everything is wanted. That includes logs of regions: their limits concern what
  * the user looks at. `headBytes` is the size of the log's head.
  */
-export function goalOf(
+export function targetOf(
   limit: Limit,
   codec: Codec,
   {levels}: Manifest,
   fields: readonly number[],
   headBytes: number,
-): Goal | null {
+): Target | null {
   if (limit.kind === 'full' || codec.headChunks < codec.chunkCount) return null;
   for (const {chunks, tetrahedra, bytes, level} of stepsOf(codec, levels, fields, headBytes)) {
     if (!limitReached(limit, {tetrahedra, bytes}, errorOfLevel(levels[level], fields))) continue;
