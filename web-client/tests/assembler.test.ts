@@ -83,3 +83,54 @@ describe('what is here', () => {
     expect(fieldOrder([2])).toEqual([0, 1, 3, 5, 2, 4]);
   });
 });
+
+/** Counts the questions about what is applied: each is a call into the codec. */
+class CountingCodec extends PacketCodec {
+  questions = 0;
+  private readonly done = new Set<number>();
+  private readonly valuesDone = new Set<number>();
+  override dependency(chunk: number): number {
+    ++this.questions;
+    return chunk < kHeadChunks ? chunk - 1 : Math.max(kHeadChunks - 1, chunk >> 1);
+  }
+  override apply(chunk: number): void {
+    this.done.add(chunk);
+    ++this.chunksApplied;
+  }
+  override applied(chunk = 0): boolean {
+    ++this.questions;
+    return this.done.has(chunk);
+  }
+  override applyField(_: number, chunk: number): void {
+    this.valuesDone.add(chunk);
+  }
+  override fieldChunksApplied(): number {
+    return this.valuesDone.size;
+  }
+  override fieldApplied(_: number, chunk: number): boolean {
+    ++this.questions;
+    return this.valuesDone.has(chunk);
+  }
+}
+
+describe('the work for a log', () => {
+  /** Questions a chunk, if all chunks arrive before the first step, the last one first. */
+  function questionsPerChunk(chunks: number): number {
+    const log: FakeLog = {fields: ['p'], chunks};
+    const counting = new CountingCodec(log);
+    const its = new Assembler(counting, kFakeValues);
+    its.take(parseFrame(headFrame(1, log)));
+    for (let chunk = chunks - 1; chunk >= 0; --chunk) {
+      its.take(parseFrame(fieldFrame(1, chunk, 0)));
+      its.take(parseFrame(meshFrame(1, chunk)));
+    }
+    while (its.step([0], true)) continue;
+    expect([counting.chunksApplied, counting.fieldChunksApplied()]).toEqual([chunks, chunks]);
+    return counting.questions / chunks;
+  }
+
+  test('growsNoFasterThanItsPackets', () => {
+    expect(questionsPerChunk(500)).toBeLessThan(30);
+    expect(questionsPerChunk(8000)).toBeLessThan(30);
+  });
+});

@@ -15,6 +15,7 @@ import {
   type WireLattice,
   type ViewRequest,
 } from '../protocol/view_request';
+import {ChunkQueue} from './chunk_queue';
 import type {BlockValues, Codec} from './codec';
 import type {ValueDecoder} from './draco';
 import {targetOf, planOf, type LevelBytes} from './plan';
@@ -30,8 +31,16 @@ export class Assembler implements LogTable {
   private received: number[] = [];
   private packetList: Packet[] = [];
   private rank = new Map<number, number>();
-  /** Chunks whose structure and positions are here but not applied, in the order of arrival. */
-  private readonly ready = new Set<number>();
+  /** By chunk: those that depend on it. */
+  private dependents: number[][] = [];
+  /**
+   * Chunks of a log of regions that can be applied now: their blocks are here, and what they depend
+   * on is applied. A chunk is examined only when one of the two becomes true, so that the work for
+   * a log is linear in its chunks.
+   */
+  private readonly ready = new ChunkQueue((chunk) => this.rankOf(chunk));
+  /** The same by field: packets whose values can be applied now. */
+  private readyValues: ChunkQueue[] = [];
 
   constructor(
     readonly codec: Codec,
@@ -43,7 +52,7 @@ export class Assembler implements LogTable {
     this.blocks = [];
     this.received = [];
     this.packetList = [];
-    this.ready.clear();
+    this.clearQueues();
   }
 
   // ---- LogTable
@@ -113,8 +122,8 @@ export class Assembler implements LogTable {
     if (chunk < 0) return false;
     const [structure, positions] = this.blocks[chunk] as [Uint8Array, Uint8Array];
     this.codec.apply(chunk, structure, this.decode(chunk, kPositionsPart, positions, 3));
-    this.ready.delete(chunk);
     this.ledger!.addChunk(chunk);
+    this.afterChunk(chunk);
     return true;
   }
 
@@ -123,9 +132,8 @@ export class Assembler implements LogTable {
     if (!this.head) return;
     this.codec.open(this.head);
     this.ledger!.clear();
-    this.blocks.forEach((parts, chunk) => {
-      if (parts[kStructurePart] && parts[kPositionsPart]) this.ready.add(chunk);
-    });
+    this.clearQueues();
+    this.considerChunk(0);
   }
 
   /** The chunks from `count` on that are here, as ranges [first, end). */
@@ -146,6 +154,7 @@ export class Assembler implements LogTable {
     this.rank = new Map(
       lattice ? inOrder(packets, view, lattice.size).map(({chunk}, i) => [chunk, i]) : [],
     );
+    this.ready.reorder();
   }
 
   /** Chunks of the head come before every packet. */
@@ -153,17 +162,55 @@ export class Assembler implements LogTable {
     return this.rank.get(chunk) ?? chunk - this.codec.chunkCount;
   }
 
+  /** The layout `stream`: each chunk follows the one before it. */
+  private get isStream(): boolean {
+    return this.codec.headChunks === this.codec.chunkCount;
+  }
+
+  /** Structure and positions are here. */
+  private isHere(chunk: number): boolean {
+    const parts = this.blocks[chunk];
+    return parts?.[kStructurePart] !== undefined && parts[kPositionsPart] !== undefined;
+  }
+
   /** The most urgent chunk that is here and whose parent is applied; -1 if there is none. */
   private nextChunk(): number {
+    if (!this.isStream) return this.ready.first;
+    const next = this.codec.chunksApplied;
+    return this.isHere(next) ? next : -1;
+  }
+
+  private clearQueues(): void {
+    this.ready.clear();
+    for (const queue of this.readyValues) queue.clear();
+  }
+
+  /** Queues the chunk if it can be applied now. */
+  private considerChunk(chunk: number): void {
     const {codec} = this;
-    if (codec.headChunks === codec.chunkCount)
-      return this.ready.has(codec.chunksApplied) ? codec.chunksApplied : -1;
-    let best = -1;
-    for (const chunk of this.ready) {
-      if (chunk > 0 && !codec.applied(codec.dependency(chunk))) continue;
-      if (best < 0 || this.rankOf(chunk) < this.rankOf(best)) best = chunk;
-    }
-    return best;
+    if (this.isStream || !this.isHere(chunk) || codec.applied(chunk)) return;
+    if (chunk === 0 || codec.applied(codec.dependency(chunk))) this.ready.add(chunk);
+  }
+
+  /** The chunk has been applied: its values and its dependents may have waited for it. */
+  private afterChunk(chunk: number): void {
+    if (this.isStream) return;
+    this.ready.removeFirst();
+    for (const dependent of this.dependents[chunk]!) this.considerChunk(dependent);
+    this.readyValues.forEach((_, field) => this.considerValues(field, chunk));
+  }
+
+  /** Queues the packet's values of the field if they can be applied now. */
+  private considerValues(field: number, chunk: number): void {
+    const {codec} = this;
+    if (
+      chunk >= codec.headChunks &&
+      this.blocks[chunk]![kFirstFieldPart + field] &&
+      codec.applied(chunk) &&
+      !codec.fieldApplied(field, chunk) &&
+      codec.fieldApplied(field, codec.dependency(chunk))
+    )
+      this.readyValues[field]!.add(chunk);
   }
 
   /**
@@ -203,23 +250,19 @@ export class Assembler implements LogTable {
     this.ledger = new Ledger(this.codec, head.length);
     this.head = head.slice();
     this.packetList = packetsOf(this.codec);
-    this.look(kNoViewRequest);
+    this.dependents = dependentsOf(this.codec);
     this.ready.clear();
+    this.readyValues = this.manifest.fields.map(() => new ChunkQueue((chunk) => chunk));
+    this.look(kNoViewRequest);
     this.blocks = Array.from({length: this.codec.chunkCount}, () => []);
     this.received = Array<number>(kFirstFieldPart + this.manifest.fields.length).fill(0);
   }
 
   private keep(chunk: number, part: number, bytes: Uint8Array): void {
     this.codec.checkBlock(chunk, part, bytes);
-    const parts = this.blocks[chunk]!;
-    parts[part] = bytes;
-    if (
-      part < kFirstFieldPart &&
-      parts[kStructurePart] &&
-      parts[kPositionsPart] &&
-      !this.codec.applied(chunk)
-    )
-      this.ready.add(chunk);
+    this.blocks[chunk]![part] = bytes;
+    if (part < kFirstFieldPart) this.considerChunk(chunk);
+    else this.considerValues(part - kFirstFieldPart, chunk);
   }
 
   private leading(part: number): number {
@@ -243,6 +286,8 @@ export class Assembler implements LogTable {
       ),
     );
     this.ledger!.addField(field, chunk);
+    if (chunk >= this.codec.headChunks) this.readyValues[field]!.removeFirst();
+    for (const dependent of this.dependents[chunk]!) this.considerValues(field, dependent);
     return true;
   }
 
@@ -256,17 +301,7 @@ export class Assembler implements LogTable {
     const count = codec.fieldChunksApplied(field);
     if (count < codec.headChunks)
       return count < codec.chunksApplied && this.blocks[count]?.[part] ? count : -1;
-    if (count === codec.chunksApplied) return -1;
-    for (let chunk = codec.headChunks; chunk < codec.chunkCount; ++chunk) {
-      if (
-        this.blocks[chunk]![part] &&
-        codec.applied(chunk) &&
-        !codec.fieldApplied(field, chunk) &&
-        codec.fieldApplied(field, codec.dependency(chunk))
-      )
-        return chunk;
-    }
-    return -1;
+    return this.readyValues[field]!.first;
   }
 }
 
@@ -277,4 +312,12 @@ function packetsOf(codec: Codec): Packet[] {
     packets.push({chunk, depth: parent ? parent.depth + 1 : 0, box: codec.packetBox(chunk)});
   }
   return packets;
+}
+
+/** Linear in the chunks. Chunk 0 depends on itself and is nobody's dependent. */
+function dependentsOf(codec: Codec): number[][] {
+  const dependents = Array.from({length: codec.chunkCount}, (): number[] => []);
+  for (let chunk = 1; chunk < codec.chunkCount; ++chunk)
+    dependents[codec.dependency(chunk)]!.push(chunk);
+  return dependents;
 }
