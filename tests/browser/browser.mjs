@@ -135,7 +135,7 @@ export class ViewerPage {
    * If the viewer fails instead, throws its message.
    */
   async waitForState(wanted) {
-    await this.#hearDecoder();
+    await this.#flushCommands();
     await this.page.waitForFunction(
       (state) => [state, 'failed'].includes(window.qtetViewer.state),
       wanted,
@@ -161,7 +161,7 @@ export class ViewerPage {
    */
   async settle() {
     await this.page.waitForTimeout(kSettleMs);
-    await this.#hearDecoder();
+    await this.#flushCommands();
     await this.#waitForDecoder();
     const frame = () =>
       new Promise((drawn) => {
@@ -177,7 +177,7 @@ export class ViewerPage {
    * Waits until the decoder has received the page's commands, and the page the immediate answers.
    * Does nothing for a decoder that never started.
    */
-  async #hearDecoder() {
+  async #flushCommands() {
     await this.page.evaluate(
       (ms) =>
         Promise.race([

@@ -111,8 +111,8 @@ async function refinesWhatIsLookedAtFirst({server, browser, out, bin}) {
   server.kill();
   await server.start();
   const lookedAt = (viewer) =>
-    viewer.inView(({cuts, isosurface}) =>
-      [cuts[0], isosurface].reduce(
+    viewer.inView(({cuts, layers}) =>
+      [cuts[0], ...layers.map(({mesh}) => mesh)].reduce(
         (sum, mesh) => sum + (mesh.visible ? mesh.geometry.drawRange.count : 0),
         0,
       ),

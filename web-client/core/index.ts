@@ -12,8 +12,8 @@ export {
   type ColorMapName,
 } from './picture/color_maps';
 export type {Counts} from './protocol/counts';
+export {fieldsOf} from './layers/shown';
 export {
-  fieldsOf,
   kClipModes,
   kMaxPlanes,
   kPlainDisplay,
@@ -22,7 +22,7 @@ export {
 } from './picture/display';
 export {errorCode, errorText, QtetError} from './protocol/errors';
 export {kMagnitude, scalarRange, type Scalar} from './picture/field_scale';
-export type {FieldValue, Pick, Probe} from './picture/inspector';
+export type {FieldValue, Pick, Probe} from './session/inspector';
 export {errorOfLevel, kFull, limitText, parseLimit, type Limit} from './protocol/limit';
 export {
   fieldKeys,

@@ -1,6 +1,6 @@
 import {beforeEach, expect, test} from 'vitest';
 import {Assembler} from '../core/decode/assembler';
-import {CoarseVolume} from '../core/picture/coarse_volume';
+import {CoarseVolume} from '../core/session/coarse_volume';
 import {kPlainDisplay, type Display} from '../core/picture/display';
 import {parseFrame} from '../core/protocol/messages';
 import {kCoarseCells} from '../core/picture/volume';

@@ -3,14 +3,13 @@ import {keepBelow, keepWithin} from '../core/picture/cell_choice';
 import {facesSoup, surfaceFaces} from '../core/picture/cell_surface';
 import {
   cutsOf,
-  fieldsOf,
-  isosurfacesOf,
-  keptCells,
   kPlainDisplay,
   surfaceOf,
   type Display,
   type MeshArrays,
 } from '../core/picture/display';
+import {isosurfaces} from '../core/layers/isosurfaces';
+import {fieldsOf, keptCells} from '../core/layers/shown';
 import {FieldScale, kMagnitude, scalarRange, type Scalar} from '../core/picture/field_scale';
 import type {FieldInfo} from '../core/protocol/manifest';
 import {isosurface} from '../core/picture/slice';
@@ -125,7 +124,7 @@ describe('isosurfaces', () => {
   });
 
   test('ofSeveralValuesAreOneSoupColouredByAnotherField', () => {
-    const soup = isosurfacesOf(
+    const soup = isosurfaces.make(
       mesh,
       display({
         color: {field: 1, component: kMagnitude},

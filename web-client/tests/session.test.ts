@@ -672,14 +672,14 @@ test('whatIsosurfacesAreShownIsToldByFieldAndValue', () => {
   views.length = 0; // without that of the head
   const show = (field: number, values: number[]): void => {
     publishing.show({...kPlainDisplay, isosurfaces: {scalar: {field, component: -1}, values}});
-    publishing.onIsosurface(Float32Array.of(1, 1, 1));
+    publishing.onLayers(Float32Array.of(1, 1, 1));
   };
   show(0, [0, 0.5]);
   // the field's range is 0 to 255
   expect(views.at(-1)!.isovalue).toEqual({field: 'p', values: [0, 127.5]});
   show(0, [0, 0.5]);
   expect(views).toHaveLength(1);
-  publishing.onIsosurface(Float32Array.of(60000, 1, 1)); // the same one, after refining
+  publishing.onLayers(Float32Array.of(60000, 1, 1)); // the same one, after refining
   expect(views).toHaveLength(2);
   show(0, [0.2]);
   expect(views.at(-1)!.isovalue).toEqual({field: 'p', values: [51]});

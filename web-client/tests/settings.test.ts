@@ -4,19 +4,15 @@ import type {FieldInfo} from '../core/protocol/manifest';
 import {labelTicks, logTicks} from '../core/picture/ticks';
 import {kOpacityPath} from '../core/picture/transfer';
 import {
-  clipText,
   fieldValuesText,
-  firstOpacities,
-  labelRange,
-  parseClip,
   parseFieldValues,
   parseScalar,
-  readSettings,
   scalarText,
   sharesOf,
-  shownRange,
-  type Settings,
-} from '../viewer/settings/settings';
+} from '../core/layers/field_values';
+import {clipText, parseClip} from '../core/layers/clip';
+import {firstOpacities} from '../core/layers/volume';
+import {labelRange, readSettings, shownRange, type Settings} from '../viewer/settings/settings';
 
 const field = (
   name: string,

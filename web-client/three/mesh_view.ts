@@ -1,9 +1,11 @@
-// A canvas that shows a progressive mesh: surface, cuts and isosurfaces. It draws only after
+// A canvas that shows a progressive mesh: surface, cuts and layers. It draws only after
 // changes.
 
 import {Frustum, Group, Matrix4, Scene, Vector3, WebGLRenderer} from 'three';
 import type {Vector} from '../core/protocol/geometry';
 import type {Ray} from '../core/picture/cell_ray';
+import {kLayers} from '../core/layers/layers';
+import {soupOf} from '../core/layers/shown';
 import {kMaxPlanes} from '../core/picture/display';
 import {transferTables} from '../core/picture/transfer';
 import type {VolumeCells} from '../core/picture/volume';
@@ -35,7 +37,9 @@ export class MeshView implements View {
   /** Maps lattice coordinates to a ball of radius 1 round the origin. */
   private readonly lattice = new Group();
   private readonly surface = new SoupMesh(true);
-  private readonly isosurface = new SoupMesh(true, true);
+  private readonly layers = kLayers.flatMap((layer) =>
+    layer.draw ? [{layer, draw: layer.draw, mesh: new SoupMesh(true, true)}] : [],
+  );
   private readonly cuts = Array.from({length: kMaxPlanes}, () => new SoupMesh(false));
   private readonly volume: VolumeView;
   /** The user has changed something since the last picture; new levels alone do not count. */
@@ -74,7 +78,7 @@ export class MeshView implements View {
       (working) => listeners.works?.(working),
     );
     this.orbit = new OrbitCamera(canvas as HTMLCanvasElement, () => this.invalidate());
-    this.lattice.add(this.surface, this.isosurface, ...this.cuts);
+    this.lattice.add(...this.meshes());
     this.scene.add(this.lattice);
     this.surfaceCanvas.addEventListener('webglcontextlost', this.onLost);
     this.surfaceCanvas.addEventListener('webglcontextrestored', this.onRestored);
@@ -87,8 +91,12 @@ export class MeshView implements View {
     this.afterFrame.push(drawn);
     this.invalidate(snapshot.volume == null);
     if (snapshot.surface) this.surface.show(snapshot.surface);
-    if (snapshot.isosurface) this.isosurface.show(snapshot.isosurface);
-    for (const mesh of [this.surface, this.isosurface]) mesh.material.setClip(snapshot.planes);
+    for (const {layer, mesh} of this.layers) {
+      const soup = soupOf(snapshot, layer);
+      if (soup) mesh.show(soup);
+      mesh.material.setClip(snapshot.planes);
+    }
+    this.surface.material.setClip(snapshot.planes);
     if (snapshot.volume !== undefined) this.volume.take(this.fitting(snapshot.volume));
     this.volume.setClip(snapshot.planes);
     this.cuts.forEach((mesh, i) => {
@@ -140,10 +148,9 @@ export class MeshView implements View {
     this.shownLook = look;
     for (const mesh of this.meshes()) {
       mesh.material.setColorMap(map, reversed);
-      // An isosurface's polygons are sections of cells, not the mesh. Their edges would hide its
-      // shape.
-      mesh.material.setEdges(edges && mesh !== this.isosurface ? kEdgeStrength : 0);
+      mesh.material.setEdges(edges ? kEdgeStrength : 0);
     }
+    for (const {draw, mesh} of this.layers) if (!draw.edges) mesh.material.setEdges(0);
     this.surface.material.setOpacity(opacity);
     const transfer = volume ? `${map} ${reversed} ${volume.join()}` : '';
     if (volume && transfer !== this.transfer)
@@ -315,7 +322,7 @@ export class MeshView implements View {
   };
 
   private meshes(): SoupMesh[] {
-    return [this.surface, this.isosurface, ...this.cuts];
+    return [this.surface, ...this.layers.map(({mesh}) => mesh), ...this.cuts];
   }
 
   private placeLattice(): void {

@@ -1,6 +1,8 @@
 // Decides which mesh of which server comes to a viewer, and whether it comes: opens, pauses,
 // refines.
 
+import {scalarKey} from '../core/layers/field_values';
+import {fieldLayers} from '../core/layers/layers';
 import {errorCode, errorText, QtetError} from '../core/protocol/errors';
 import {kFull, type Limit} from '../core/protocol/limit';
 import type {Client} from '../core/session/client';
@@ -17,10 +19,15 @@ import {
 } from './page/catalog';
 import type {Kept, Page} from './page/page';
 import {MeshMenu} from './panels/mesh_menu';
-import {scalarKey} from './settings/settings';
 
 /** Attributes that belong to one mesh: another one has other fields, places and values. */
-const kOfOneMesh = ['field', 'range', 'iso', 'threshold', 'camera', 'quality'] as const;
+const kOfOneMesh = [
+  'field',
+  'range',
+  ...fieldLayers().map(({name}) => name),
+  'camera',
+  'quality',
+] as const;
 
 export interface StreamListeners {
   /** The limit to begin with. */
@@ -160,11 +167,12 @@ export class StreamControl {
   private firstFields(mesh: string): {fields: string[] | null; compare: boolean} {
     const {page} = this;
     const fields = this.catalog.find(({id}) => id === mesh)?.fields ?? [];
-    const withValues = (['iso', 'threshold'] as const).map((name) =>
-      page.read(name)?.replace(/=[^=]*$/, ''),
-    );
-    const named = [page.read('field') ?? undefined, ...withValues]
-      .filter((text) => text !== undefined)
+    const ofLayers = fieldLayers().map((layer) => {
+      const text = page.read(layer.name);
+      return text === null ? null : layer.fieldOf(text);
+    });
+    const named = [page.read('field'), ...ofLayers]
+      .filter((text) => text !== null)
       .map((text) => (fields.includes(text) ? text : scalarKey(text)));
     if (named.length > 0) return {fields: [...new Set(named)], compare: false};
     const candidates = isLogFile(this.base) ? null : fields.slice(0, kMaxCompared);

@@ -2,6 +2,7 @@
 // has its own stretch of the line, and nothing is sampled.
 
 import type {Plane, Vector} from '../protocol/geometry';
+import type {FieldScale} from './field_scale';
 import type {Cells} from './section';
 
 /** origin + t * direction, in lattice coordinates. */
@@ -136,4 +137,14 @@ function cross(a: Vector, b: Vector): Vector {
 }
 function volume(a: Vector, b: Vector, c: Vector, d: Vector): number {
   return dot(minus(b, a), cross(minus(c, a), minus(d, a)));
+}
+
+/** The value at a point of the cell. */
+export function valueAt(mesh: Cells, scale: FieldScale, cell: number, point: Vector): number {
+  if (scale.ofCells) return scale.at(cell);
+  const shares = barycentric(mesh, cell, point);
+  return shares.reduce(
+    (sum, share, i) => sum + share * scale.at(mesh.tetrahedra[4 * cell + i]!),
+    0,
+  );
 }

@@ -1,12 +1,11 @@
 // The display that the page wants, and how it is made from the mesh: plain data in, triangles out.
 
 import type {Plane} from '../protocol/geometry';
-import {keepBelow, keepWithin} from './cell_choice';
 import {facesSoup, surfaceFaces} from './cell_surface';
 import type {FieldScale, Scalar} from './field_scale';
 import type {Cells} from './section';
-import {isosurface, slice} from './slice';
-import {boundarySoup, joinSoups, type TriangleSoup} from './triangle_soup';
+import {slice} from './slice';
+import {boundarySoup, type TriangleSoup} from './triangle_soup';
 
 /**
  * cut: the part above a plane is removed, and flat caps close the hole. cells: whole cells stay or
@@ -29,6 +28,8 @@ export interface Display {
   threshold: {scalar: Scalar; low: number; high: number} | null;
   /** Shows the cells themselves, translucent, coloured by `color`. */
   volume: boolean;
+  /** Layers without a member of their own, by name; the values are in [0, 1], too. */
+  layers?: Record<string, {scalar: Scalar; values: number[]}>;
 }
 
 export const kPlainDisplay: Display = {
@@ -41,30 +42,12 @@ export const kPlainDisplay: Display = {
   volume: false,
 };
 
-/** The fields that a display needs, each once. */
-export function fieldsOf(display: Display): number[] {
-  const scalars = [display.color, display.isosurfaces?.scalar, display.threshold?.scalar];
-  return [...new Set(scalars.filter((scalar) => scalar != null).map(({field}) => field))];
-}
-
 /** The mesh as it is now. `scale` is null while a field has no values. */
 export interface MeshArrays {
   points: Int32Array;
   tetrahedra: Uint32Array;
   boundary: Uint32Array;
   scale(scalar: Scalar): FieldScale | null;
-}
-
-/** The cells that the threshold and the `cells` mode leave; null means all. */
-export function keptCells(mesh: MeshArrays, display: Display): Uint8Array | null {
-  const scale = display.threshold && mesh.scale(display.threshold.scalar);
-  const planes = display.mode === 'cells' ? display.planes : [];
-  if (!scale && planes.length === 0) return null;
-  const kept = new Uint8Array(mesh.tetrahedra.length / 4).fill(1);
-  if (scale)
-    keepWithin(kept, mesh.tetrahedra, scale, display.threshold!.low, display.threshold!.high);
-  for (const plane of planes) keepBelow(kept, mesh.points, mesh.tetrahedra, plane);
-  return kept;
 }
 
 /**
@@ -97,17 +80,4 @@ export function cutsOf(
   const scale = display.color && mesh.scale(display.color);
   const planes = display.mode === 'cells' ? [] : display.planes;
   return planes.map((plane) => slice({...mesh, kept}, scale, plane));
-}
-
-export function isosurfacesOf(
-  mesh: MeshArrays,
-  display: Display,
-  kept: Uint8Array | null,
-): TriangleSoup | null {
-  const levels = display.isosurfaces && mesh.scale(display.isosurfaces.scalar);
-  if (!levels || levels.ofCells) return null;
-  const scale = display.color && mesh.scale(display.color);
-  return joinSoups(
-    display.isosurfaces!.values.map((value) => isosurface({...mesh, kept}, levels, value, scale)),
-  );
 }

@@ -3,11 +3,11 @@
 import codecUrl from 'qtet-codec.wasm?url';
 import type {Ray} from '../picture/cell_ray';
 import type {Display} from '../picture/display';
-import type {Pick, Probe} from '../picture/inspector';
 import type {CoarseCells} from '../picture/volume';
 import type {Vector} from '../protocol/geometry';
 import {kFull, type Limit} from '../protocol/limit';
 import type {ViewRequest} from '../protocol/view_request';
+import type {Pick, Probe} from './inspector';
 import type {FromWorker, Posted, Question, Source, ToWorker} from './worker_messages';
 
 export type Listener = (message: Exclude<FromWorker, {type: 'answer'}>) => void;

@@ -2,12 +2,10 @@
 // decoding can spare.
 
 import type {Assembler} from '../decode/assembler';
+import {fieldsOf, keptCells, layerSoups, refinedCorners} from '../layers/shown';
 import {
   cutsOf,
   cuttingPlanes,
-  fieldsOf,
-  isosurfacesOf,
-  keptCells,
   kPlainDisplay,
   surfaceOf,
   type Display,
@@ -54,8 +52,8 @@ export class Publisher {
   hasPublished = false;
   /** Called after the first picture of a mesh has been sent. */
   onFirst: () => void = () => undefined;
-  /** Called with the corners of each new isosurface; no corners if there is none. */
-  onIsosurface: (positions: Float32Array) => void = () => undefined;
+  /** Called with refinedCorners of each new mesh. */
+  onLayers: (positions: Float32Array) => void = () => undefined;
   /** How long until everything wanted is decoded, in ms; Infinity if unknown. */
   untilLast: () => number = () => Infinity;
   private meshChanged = false;
@@ -102,13 +100,9 @@ export class Publisher {
   show(display: Display): void {
     const before = this.display;
     this.display = display;
-    const whole =
-      display.mode === 'cells' ||
-      before.mode !== display.mode ||
-      before.body !== display.body ||
-      before.volume !== display.volume ||
-      JSON.stringify([before.color, before.threshold, before.isosurfaces]) !==
-        JSON.stringify([display.color, display.threshold, display.isosurfaces]);
+    // Planes alone make another cut of the same surface, unless they hide whole cells.
+    const withoutPlanes = (its: Display): string => JSON.stringify({...its, planes: []});
+    const whole = display.mode === 'cells' || withoutPlanes(before) !== withoutPlanes(display);
     if (whole || !this.isRequested) this.meshChanged = true;
     this.isRequested = this.cutChanged = true;
     this.schedule();
@@ -200,8 +194,8 @@ export class Publisher {
     if (this.meshChanged) {
       snapshot.surface =
         display.body && display.mode !== 'slice' ? surfaceOf(mesh, display, kept) : noSoup();
-      snapshot.isosurface = isosurfacesOf(mesh, display, kept) ?? noSoup();
-      this.onIsosurface(snapshot.isosurface.positions);
+      Object.assign(snapshot, layerSoups(mesh, display, kept));
+      this.onLayers(refinedCorners(snapshot));
       snapshot.volume = this.volumeOf(mesh, kept);
     }
     this.meshChanged = this.cutChanged = this.onScreen = this.isLast = false;

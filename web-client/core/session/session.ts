@@ -2,8 +2,8 @@
 // as far as is asked for, and reports its state.
 
 import type {Assembler} from '../decode/assembler';
+import {isovalueOf} from '../layers/shown';
 import {baseFigures} from '../picture/base_figures';
-import type {CoarseVolume} from '../picture/coarse_volume';
 import {meshArrays} from '../picture/mesh_arrays';
 import {fieldOfMaxContrast} from '../picture/spread';
 import {asksForTheSame, surfaceRequest, surfaceRequestOf} from '../picture/surface_request';
@@ -14,6 +14,7 @@ import type {Frame, ServerMessage} from '../protocol/messages';
 import type {ViewRequest} from '../protocol/view_request';
 import type {Transport, TransportHandlers} from '../transport/transport';
 import {makeTransport} from '../transport/transports';
+import type {CoarseVolume} from './coarse_volume';
 import {Decoding} from './decoding';
 import {LogStream} from './log_stream';
 import {ProgressReporter} from './progress_reporter';
@@ -71,7 +72,7 @@ export class Session implements TransportHandlers {
     this.progress = new ProgressReporter(() => this.sendProgress());
     publisher.onFirst = () => this.advance();
     publisher.untilLast = () => this.untilDecoded();
-    publisher.onIsosurface = (positions) => this.lookAtSurface(positions);
+    publisher.onLayers = (positions) => this.lookAtSurface(positions);
   }
 
   start(source: Source): void {
@@ -247,7 +248,8 @@ export class Session implements TransportHandlers {
     const {lattice, packets, manifest} = this.assembler;
     if (packets.length === 0 || !lattice || !manifest) return;
     const {display} = this.publisher;
-    const request = surfaceRequest(positions, display, manifest.fields, lattice.size);
+    const isovalue = isovalueOf(display, manifest.fields);
+    const request = surfaceRequest(positions, isovalue, lattice.size);
     if (asksForTheSame(request, surfaceRequestOf(this.requested.view))) return;
     this.requested.look(this.requested.view, request);
     this.follow();

@@ -1,10 +1,15 @@
 // The buffers that a snapshot transfers when it travels between threads.
 
+import {kLayers} from '../layers/layers';
+import {soupOf} from '../layers/shown';
 import {buffersOfVolume} from '../picture/volume';
 import type {Snapshot} from './worker_messages';
 
-export function buffersOf({surface, cuts, isosurface, volume}: Snapshot): ArrayBuffer[] {
-  const soups = [surface, ...cuts, isosurface].filter((soup) => soup !== undefined);
+export function buffersOf(snapshot: Snapshot): ArrayBuffer[] {
+  const {surface, cuts, volume} = snapshot;
+  const soups = [surface, ...cuts, ...kLayers.map((layer) => soupOf(snapshot, layer))].filter(
+    (soup) => soup !== undefined,
+  );
   const arrays: ArrayBufferView[] = soups.flatMap(({positions, values}) => [positions, values]);
   return [
     ...arrays.map(({buffer}) => buffer as ArrayBuffer),

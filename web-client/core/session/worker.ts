@@ -3,12 +3,12 @@
 import {Assembler} from '../decode/assembler';
 import {WasmCodec} from '../decode/codec';
 import {kDraco} from '../decode/draco';
-import {CoarseVolume} from '../picture/coarse_volume';
-import {fieldsOf} from '../picture/display';
-import {Inspector} from '../picture/inspector';
+import {fieldsOf} from '../layers/shown';
 import {buffersOfVolume, type CoarseCells} from '../picture/volume';
 import {errorText} from '../protocol/errors';
 import {retry} from '../transport/retry';
+import {CoarseVolume} from './coarse_volume';
+import {Inspector} from './inspector';
 import {Publisher} from './publisher';
 import {Session} from './session';
 import {buffersOf} from './snapshot_buffers';

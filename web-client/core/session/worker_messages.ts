@@ -3,11 +3,11 @@
 
 import type {LevelBytes} from '../decode/plan';
 import type {Statistics} from '../decode/statistics';
+import type {LayerSoups} from '../layers/shown';
 import type {BaseFigures} from '../picture/base_figures';
 import type {Ray} from '../picture/cell_ray';
 import type {Display} from '../picture/display';
 import type {Scalar} from '../picture/field_scale';
-import type {Pick, Probe} from '../picture/inspector';
 import type {TriangleSoup} from '../picture/triangle_soup';
 import type {CoarseCells, VolumeCells} from '../picture/volume';
 import type {Vector, Plane} from '../protocol/geometry';
@@ -15,6 +15,7 @@ import type {Limit} from '../protocol/limit';
 import type {Manifest} from '../protocol/manifest';
 import type {ViewRequest} from '../protocol/view_request';
 import type {LogAddress} from '../transport/transports';
+import type {Pick, Probe} from './inspector';
 
 /** The state of the stream. `paused`: by the user; `held`: it has reached the limit. */
 export type StreamState =
@@ -61,9 +62,8 @@ export type Question =
   | {type: 'coarse'; have: number};
 
 /** One consistent picture. Parts that have not changed are absent. */
-export interface Snapshot {
+export interface Snapshot extends LayerSoups {
   surface?: TriangleSoup;
-  isosurface?: TriangleSoup;
   /** Null if none is wanted or there are no values yet. */
   volume?: VolumeCells | null;
   /** One a plane. The parts above the other planes must be hidden, as for the surface. */

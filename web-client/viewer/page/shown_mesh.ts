@@ -2,17 +2,12 @@
 
 import type {LevelBytes} from '../../core/decode/plan';
 import {kNoStatistics, type Statistics} from '../../core/decode/statistics';
+import {firstOpacities} from '../../core/layers/volume';
 import type {BaseFigures} from '../../core/picture/base_figures';
 import {labelsOf} from '../../core/picture/labels';
 import type {Manifest} from '../../core/protocol/manifest';
 import type {Snapshot} from '../../core/session/worker_messages';
-import {
-  firstOpacities,
-  readSettings,
-  shownScalar,
-  type Settings,
-  type ViewAttribute,
-} from '../settings/settings';
+import {readSettings, shownScalar, type Settings, type ViewAttribute} from '../settings/settings';
 
 export class ShownMesh {
   /** Null before the head of the log is here. */

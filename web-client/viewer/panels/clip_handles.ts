@@ -1,9 +1,9 @@
 // A handle in the picture for each clip plane: a dot in the plane's middle, which is dragged along
 // the normal.
 
+import {axisOf, type ClipSetting} from '../../core/layers/clip';
 import type {View} from '../../three/view';
 import {extentAlong, planeOf} from '../settings/clip_plane';
-import {axisOf, type ClipSetting} from '../settings/settings';
 
 const kArrowPixels = 34;
 

@@ -1,11 +1,12 @@
 // Up to three clip planes, across an axis or facing the camera. Sliders here and handles in the
 // picture move them.
 
+import {axisNormal, axisOf, clipText, type ClipSetting} from '../../core/layers/clip';
 import {kMaxPlanes} from '../../core/picture/display';
 import {formatCoordinate} from '../page/format';
 import type {Attributes} from '../page/page';
 import {setMarkup} from '../page/trusted';
-import {axisNormal, axisOf, clipText, type ClipSetting, type Settings} from '../settings/settings';
+import type {Settings} from '../settings/settings';
 import type {Panel, Scene} from './panel';
 
 export class ClipPanel implements Panel {

@@ -1,10 +1,11 @@
 // Field, colour map, scale, range, edges, surface and opacity.
 
+import {parseNumbers} from '../../core/layers/field_values';
 import {colorGradient, labelGradient, type ColorMapName} from '../../core/picture/color_maps';
 import {labelsOf} from '../../core/picture/labels';
 import {roundTo} from '../page/format';
 import type {Attributes} from '../page/page';
-import {parseNumbers, shownScalar, type Settings} from '../settings/settings';
+import {shownScalar, type Settings} from '../settings/settings';
 import {fillScalars, type Panel, type Scene} from './panel';
 
 /** The labels in their map's swatch. */

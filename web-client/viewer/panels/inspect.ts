@@ -1,10 +1,10 @@
 // Pointing at the mesh: shows a cell with its values, or two points with their distance and the
 // field between them.
 
-import type {Pick, Probe} from '../../core/picture/inspector';
 import type {Vector} from '../../core/protocol/geometry';
 import type {Manifest} from '../../core/protocol/manifest';
 import type {Client} from '../../core/session/client';
+import type {Pick, Probe} from '../../core/session/inspector';
 import type {View} from '../../three/view';
 import {formatCount, formatTo, formatValue, resolutionOf} from '../page/format';
 import {save} from '../page/save';

@@ -2,9 +2,10 @@
 // change the cells by a factor of two.
 
 import type {Statistics} from '../../core/decode/statistics';
+import {parseNumbers} from '../../core/layers/field_values';
 import {errorOfLevel, limitText, type Limit} from '../../core/protocol/limit';
 import type {Manifest} from '../../core/protocol/manifest';
-import {parseNumbers, type Settings} from '../settings/settings';
+import type {Settings} from '../settings/settings';
 
 const kUnits = {full: '', cells: 'cells', bytes: 'kB', error: '%'};
 /** Factors from the shown unit to the limit's own. */

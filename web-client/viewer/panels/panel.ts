@@ -1,9 +1,10 @@
 // Shared by the panels: their update, and the fields in their menus.
 
+import {scalarText} from '../../core/layers/field_values';
 import {kMagnitude, type Scalar} from '../../core/picture/field_scale';
 import type {FieldInfo, Manifest} from '../../core/protocol/manifest';
 import {fillSelect} from '../page/select';
-import {scalarText, type Settings} from '../settings/settings';
+import type {Settings} from '../settings/settings';
 
 /** The mesh, as far as a panel needs it. */
 export interface Scene {

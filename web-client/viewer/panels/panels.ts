@@ -1,5 +1,6 @@
 // The cards over the picture. Each panel is a component of its own; this updates them together.
 
+import {fieldLayers} from '../../core/layers/layers';
 import {kMaxPlanes} from '../../core/picture/display';
 import type {Vector} from '../../core/protocol/geometry';
 import type {Client} from '../../core/session/client';
@@ -70,8 +71,7 @@ export class Panels {
     );
     this.simple = [
       this.color,
-      new ValuePanel(root, page, 'iso'),
-      new ValuePanel(root, page, 'threshold'),
+      ...fieldLayers().map((layer) => new ValuePanel(root, page, layer)),
       new VolumePanel(root, page),
       level,
       this.view,

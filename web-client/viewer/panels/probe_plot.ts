@@ -2,7 +2,7 @@
 
 import uPlot from 'uplot';
 import plotStyles from 'uplot/dist/uPlot.min.css?inline';
-import type {Probe} from '../../core/picture/inspector';
+import type {Probe} from '../../core/session/inspector';
 import {formatTo} from '../page/format';
 import {adopt} from '../page/trusted';
 

@@ -1,18 +1,18 @@
-// Isosurfaces and the threshold. Both are a field and values of it.
+// The controls of a layer: a field and values of it.
 
-import {scalarRange, kMagnitude, type Scalar} from '../../core/picture/field_scale';
-import type {FieldInfo} from '../../core/protocol/manifest';
-import {roundTo} from '../page/format';
-import type {Attributes} from '../page/page';
 import {
   fieldValuesText,
-  fieldValuesOf,
   parseNumbers,
   parseScalar,
   sharesOf,
   type FieldValues,
-  type Settings,
-} from '../settings/settings';
+} from '../../core/layers/field_values';
+import type {ListedFieldLayer} from '../../core/layers/layers';
+import {scalarRange, kMagnitude, type Scalar} from '../../core/picture/field_scale';
+import type {FieldInfo} from '../../core/protocol/manifest';
+import {roundTo} from '../page/format';
+import type {Attributes} from '../page/page';
+import type {Settings} from '../settings/settings';
 import {fillScalars, type Panel, type Scene} from './panel';
 
 const kSteps = 1000;
@@ -29,14 +29,14 @@ export class ValuePanel implements Panel {
   private readonly numbers: HTMLInputElement;
   private readonly sliders: HTMLInputElement[];
 
-  /** Isosurfaces have one slider, for their first value; a threshold has two, for its ends. */
   constructor(
     private readonly root: ShadowRoot,
     private readonly attributes: Attributes,
-    private readonly kind: 'iso' | 'threshold',
+    private readonly layer: ListedFieldLayer,
   ) {
-    this.on = root.querySelector(`input[name=${kind}]`)!;
-    this.body = root.querySelector(`.${kind}`)!;
+    const {name} = layer;
+    this.on = root.querySelector(`input[name=${name}]`)!;
+    this.body = root.querySelector(`.${name}`)!;
     this.select = this.body.querySelector('select')!;
     this.numbers = this.body.querySelector('input[type=text]')!;
     this.sliders = [...this.body.querySelectorAll<HTMLInputElement>('input[type=range]')];
@@ -53,17 +53,15 @@ export class ValuePanel implements Panel {
 
   update(settings: Settings, scene: Scene | null): void {
     this.fields = scene?.manifest.fields ?? [];
-    const usable = this.fields.some(
-      (info) => this.kind === 'threshold' || info.association === 'point',
-    );
+    const usable = this.fields.some((info) => this.canShow(info));
     const now = this.value();
     this.on.disabled = !usable;
     this.on.checked = now !== null;
     this.body.hidden = now === null;
-    const hidden = this.body.querySelector<HTMLElement>('.iso-hidden');
+    const hidden = this.body.querySelector<HTMLElement>('.hint');
     if (hidden) hidden.hidden = !hidesInside(settings);
     if (!now) return;
-    fillScalars(this.select, this.fields, now.scalar, this.kind === 'iso');
+    fillScalars(this.select, this.fields, now.scalar, this.layer.control.pointsOnly);
     if (this.root.activeElement !== this.numbers)
       this.numbers.value = now.values.map((value) => this.rounded(value, now.scalar)).join(', ');
     sharesOf(now, this.fields)
@@ -79,7 +77,11 @@ export class ValuePanel implements Panel {
 
   /** The value of the attribute; null if it is empty or does not fit the mesh. */
   value(): FieldValues | null {
-    return fieldValuesOf(this.kind, this.attributes.read(this.kind), this.fields);
+    return this.layer.read(this.attributes.read(this.layer.name), this.fields);
+  }
+
+  private canShow({association}: FieldInfo): boolean {
+    return !this.layer.control.pointsOnly || association === 'point';
   }
 
   private rounded(value: number, {field, component}: Scalar): number {
@@ -88,36 +90,26 @@ export class ValuePanel implements Panel {
   }
 
   private toggle(): void {
-    if (!this.on.checked) return this.attributes.write(this.kind, null);
+    if (!this.on.checked) return this.attributes.write(this.layer.name, null);
     const shown = parseScalar(this.attributes.read('field'), this.fields);
-    const fits =
-      shown && (this.kind === 'threshold' || this.fields[shown.field]!.association === 'point');
-    const first = this.fields.findIndex(
-      (info) => this.kind === 'threshold' || info.association === 'point',
-    );
+    const fits = shown && this.canShow(this.fields[shown.field]!);
+    const first = this.fields.findIndex((info) => this.canShow(info));
     this.choose(fits ? shown : {field: first, component: kMagnitude});
   }
 
   private choose(scalar: Scalar | null): void {
     if (!scalar) return;
     const [low, high] = scalarRange(this.fields[scalar.field]!, scalar.component);
-    const shares = this.kind === 'iso' ? [0.5] : [0.25, 1];
-    this.write({scalar, values: shares.map((share) => low + share * (high - low))});
+    const values = this.layer.control.firstShares.map((share) => low + share * (high - low));
+    this.write({scalar, values});
   }
 
   private type(): void {
     const now = this.value();
     const values = parseNumbers(this.numbers.value);
-    const valid =
-      values.length > 0 &&
-      (this.kind === 'iso' || (values.length === 2 && values[0]! <= values[1]!));
-    this.numbers.setCustomValidity(
-      valid
-        ? ''
-        : this.kind === 'iso'
-          ? 'Numbers with commas between them: 0.2, 0.5'
-          : 'Two numbers, the smaller first: 0.2, 0.5',
-    );
+    const {control} = this.layer;
+    const valid = control.areRight(values);
+    this.numbers.setCustomValidity(valid ? '' : control.expected);
     if (valid && now) this.write({scalar: now.scalar, values});
     else this.numbers.reportValidity();
   }
@@ -128,7 +120,7 @@ export class ValuePanel implements Panel {
     const [low, high] = scalarRange(this.fields[now.scalar.field]!, now.scalar.component);
     const at = (slider: HTMLInputElement): number =>
       low + (Number(slider.value) / kSteps) * (high - low);
-    if (this.kind === 'iso')
+    if (this.sliders.length === 1)
       return this.write({scalar: now.scalar, values: [at(moved), ...now.values.slice(1)]});
     const i = this.sliders.indexOf(moved);
     const other = at(this.sliders[1 - i]!);
@@ -139,7 +131,7 @@ export class ValuePanel implements Panel {
   }
 
   private write(values: FieldValues): void {
-    this.attributes.write(this.kind, fieldValuesText(values, this.fields));
+    this.attributes.write(this.layer.name, fieldValuesText(values, this.fields));
   }
 }
 

@@ -1,9 +1,10 @@
 // The transfer function: a row of opacities over the colours. Each is a slider, so that keyboard,
 // touch and screen readers can edit it.
 
+import {kAutoVolume} from '../../core/layers/volume';
 import {colorGradient} from '../../core/picture/color_maps';
 import type {Attributes} from '../page/page';
-import {kAutoVolume, type Settings} from '../settings/settings';
+import type {Settings} from '../settings/settings';
 import type {Panel, Scene} from './panel';
 
 const kSteps = 100;

@@ -1,8 +1,8 @@
 // Turns clip planes of the attributes, which stand at a share of the mesh's extent, into lattice
 // planes.
 
+import {axisOf, type ClipSetting} from '../../core/layers/clip';
 import type {Plane} from '../../core/protocol/geometry';
-import {axisOf, type ClipSetting} from './settings';
 
 /** The extent of the bounds along a normal, in lattice units. */
 export function extentAlong(bounds: number[], normal: readonly number[]): [number, number] {

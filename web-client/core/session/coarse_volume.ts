@@ -2,10 +2,11 @@
 // volume is drawn with it while something moves.
 
 import type {Assembler} from '../decode/assembler';
+import {fieldsOf, hidingKey, keptCells} from '../layers/shown';
+import type {Display} from '../picture/display';
+import {meshArrays} from '../picture/mesh_arrays';
+import {kCoarseCells, volumeCells, type CoarseCells, type VolumeCells} from '../picture/volume';
 import type {Frame} from '../protocol/messages';
-import {fieldsOf, keptCells, type Display} from './display';
-import {meshArrays} from './mesh_arrays';
-import {kCoarseCells, volumeCells, type CoarseCells, type VolumeCells} from './volume';
 
 export class CoarseVolume {
   private version = 0;
@@ -33,11 +34,7 @@ export class CoarseVolume {
    */
   async cells(have: number, display: Display): Promise<CoarseCells> {
     const assembler = await (this.assembler ??= this.makeAssembler());
-    const key = JSON.stringify([
-      display.color,
-      display.threshold,
-      display.mode === 'cells' && display.planes,
-    ]);
+    const key = JSON.stringify([display.color, hidingKey(display)]);
     if (key === this.key && have === this.version) return {version: have};
     this.key = '';
     const cells = this.take(assembler, display);

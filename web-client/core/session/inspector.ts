@@ -2,13 +2,23 @@
 // field along a line.
 
 import type {Assembler} from '../decode/assembler';
+import {kLayers} from '../layers/layers';
+import {keptCells} from '../layers/shown';
+import {
+  along,
+  barycentric,
+  below,
+  stretches,
+  valueAt,
+  type Ray,
+  type Stretch,
+} from '../picture/cell_ray';
+import {cuttingPlanes, type Display, type MeshArrays} from '../picture/display';
+import {FieldScale, kMagnitude, scalarRange} from '../picture/field_scale';
+import {meshArrays} from '../picture/mesh_arrays';
+import type {Cells} from '../picture/section';
 import type {Vector} from '../protocol/geometry';
 import type {FieldInfo} from '../protocol/manifest';
-import {along, barycentric, below, dot, stretches, type Ray, type Stretch} from './cell_ray';
-import {cuttingPlanes, keptCells, type Display, type MeshArrays} from './display';
-import {FieldScale, kMagnitude, scalarRange} from './field_scale';
-import {meshArrays} from './mesh_arrays';
-import type {Cells} from './section';
 
 /** The values of one field at a place, one a component; NaN if missing. */
 export interface FieldValue {
@@ -108,34 +118,11 @@ export class Inspector {
 
 /** The t at which the ray first sees something of this stretch; Infinity if it never does. */
 function firstSeen(mesh: MeshArrays, ray: Ray, stretch: Stretch, display: Display): number {
-  const planes = cuttingPlanes(display);
-  const visible = below(planes, ray, stretch);
-  let t = Infinity;
-  if (visible && (display.volume || (display.body && display.mode !== 'slice'))) t = visible.from;
-  if (display.mode === 'slice') {
-    for (const {normal, offset} of display.planes) {
-      const at = (offset - dot(normal, ray.origin)) / dot(normal, ray.direction);
-      if (at >= stretch.from && at <= stretch.to) t = Math.min(t, at);
-    }
-  }
-  const levels = display.isosurfaces && mesh.scale(display.isosurfaces.scalar);
-  if (!levels || levels.ofCells || !visible) return t;
-  const first = valueAt(mesh, levels, stretch.cell, along(ray, visible.from));
-  const last = valueAt(mesh, levels, stretch.cell, along(ray, visible.to));
-  for (const value of display.isosurfaces!.values) {
-    const share = (value - first) / (last - first);
-    if (share >= 0 && share <= 1)
-      t = Math.min(t, visible.from + share * (visible.to - visible.from));
-  }
-  return t;
-}
-
-function valueAt(mesh: Cells, scale: FieldScale, cell: number, point: Vector): number {
-  if (scale.ofCells) return scale.at(cell);
-  const shares = barycentric(mesh, cell, point);
-  return shares.reduce(
-    (sum, share, i) => sum + share * scale.at(mesh.tetrahedra[4 * cell + i]!),
-    0,
+  const visible = below(cuttingPlanes(display), ray, stretch);
+  if (!visible) return Infinity;
+  return Math.min(
+    display.body && display.mode !== 'slice' ? visible.from : Infinity,
+    ...kLayers.map((layer) => layer.seenFrom?.(mesh, display, ray, visible) ?? Infinity),
   );
 }
 
