@@ -84,6 +84,12 @@ soundTree; printf "import type { A } from './mesh'\n" >web-client/core/bits.ts
 refuses "a circle of types" 'these modules stand in a circle'
 soundTree; printf "export * from '../viewer/page'\n" >web-client/core/other.ts
 refuses "core importing the viewer" 'web-client/core/ must not import from web-client/viewer/'
+soundTree; mkdir web-client/core/{protocol,decode}; : >web-client/core/decode/codec.ts
+printf "import '../decode/codec'\n" >web-client/core/protocol/limit.ts
+refuses "the protocol importing a decoder" \
+  'web-client/core/protocol/ must not import from web-client/core/decode/'
+soundTree; mkdir web-client/core/attic; printf "import '../bits'\n" >web-client/core/attic/old.ts
+refuses "a folder without a place" 'web-client/core/attic/ has no place yet'
 soundTree; mkdir server/utils
 refuses "a folder called utils" 'server/utils: no folder may be called'
 soundTree; mkdir common

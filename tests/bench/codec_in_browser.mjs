@@ -22,11 +22,11 @@ if (!args.includes('--wasm') || logs.length === 0) {
 }
 
 const page = `
-import {headBytesOf} from './block_source';
-import {WasmCodec, kDracoCodec} from './codec';
-import {kDraco} from './draco';
-import {readManifest} from './manifest';
-import {readValueBlock} from './value_block';
+import {headBytesOf} from './transport/block_source';
+import {WasmCodec, kDracoCodec} from './decode/codec';
+import {kDraco} from './decode/draco';
+import {readManifest} from './protocol/manifest';
+import {readValueBlock} from './decode/value_block';
 const bytesOf = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
 
 globalThis.measure = async (module, log, runs) => {

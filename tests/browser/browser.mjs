@@ -87,10 +87,10 @@ export class Browser {
     };
   }
 
-  /** Opens a page that is not ours; `heard` receives the console's errors. */
-  async page(url, heard = () => undefined) {
+  /** Opens a page that is not ours; `receive` receives the console's errors. */
+  async page(url, receive = () => undefined) {
     const page = await (await this.#browser.newContext(kDesktop)).newPage();
-    page.on('console', (message) => message.type() === 'error' && heard(message.text()));
+    page.on('console', (message) => message.type() === 'error' && receive(message.text()));
     await page.goto(url);
     return page;
   }
@@ -135,7 +135,7 @@ export class ViewerPage {
    * If the viewer fails instead, throws its message.
    */
   async waitForState(wanted) {
-    await this.#hearDecoder();
+    await this.#flushCommands();
     await this.page.waitForFunction(
       (state) => [state, 'failed'].includes(window.qtetViewer.state),
       wanted,
@@ -161,7 +161,7 @@ export class ViewerPage {
    */
   async settle() {
     await this.page.waitForTimeout(kSettleMs);
-    await this.#hearDecoder();
+    await this.#flushCommands();
     await this.#waitForDecoder();
     const frame = () =>
       new Promise((drawn) => {
@@ -177,7 +177,7 @@ export class ViewerPage {
    * Waits until the decoder has received the page's commands, and the page the immediate answers.
    * Does nothing for a decoder that never started.
    */
-  async #hearDecoder() {
+  async #flushCommands() {
     await this.page.evaluate(
       (ms) =>
         Promise.race([

@@ -82,30 +82,30 @@ async function holdsTheAddressFromTheFirstPictureOn({server, browser}) {
  */
 async function tellsOfTheWholeMeshOnceItIsDrawn({server, browser}) {
   const viewer = await browser.open(`${server.url}?mesh=fin`, undefined, () => {
-    const told = (window.qtetTold = {complete: [], last: null});
+    const reported = (window.qtetReported = {complete: [], last: null});
     document.addEventListener('DOMContentLoaded', () => {
       const viewer = document.querySelector('qtet-viewer');
-      viewer.addEventListener('complete', ({detail}) => told.complete.push(detail.tetrahedra));
-      viewer.addEventListener('refine', ({detail}) => void (told.last = detail));
+      viewer.addEventListener('complete', ({detail}) => reported.complete.push(detail.tetrahedra));
+      viewer.addEventListener('refine', ({detail}) => void (reported.last = detail));
     });
     window.Worker = class extends window.Worker {
       constructor(url, options) {
         super(url, options);
         this.isView = options?.name === 'qtet-view';
       }
-      set onmessage(hear) {
+      set onmessage(listener) {
         const held = [];
         super.onmessage = !this.isView
-          ? hear
+          ? listener
           : (event) => {
               const viewer = document.querySelector('qtet-viewer');
               const isDecoded = () => viewer.viewing?.stream.state === 'complete';
-              if (event.data.type !== 'shown' || isDecoded()) return hear(event);
+              if (event.data.type !== 'shown' || isDecoded()) return listener(event);
               if (held.push(event) > 1) return undefined;
               const wait = setInterval(() => {
                 if (!isDecoded()) return;
                 clearInterval(wait);
-                for (const event of held) hear(event);
+                for (const event of held) listener(event);
               }, 5);
               return undefined;
             };
@@ -114,12 +114,12 @@ async function tellsOfTheWholeMeshOnceItIsDrawn({server, browser}) {
   });
   await viewer.page.waitForFunction(
     () =>
-      window.qtetTold.last?.tetrahedra === window.qtetTold.last?.total.tetrahedra &&
-      window.qtetTold.last,
+      window.qtetReported.last?.tetrahedra === window.qtetReported.last?.total.tetrahedra &&
+      window.qtetReported.last,
     null,
     {timeout: kTimeoutMs},
   );
-  const {complete, last} = await viewer.page.evaluate(() => window.qtetTold);
+  const {complete, last} = await viewer.page.evaluate(() => window.qtetReported);
   assert.deepEqual(complete, [last.total.tetrahedra]);
 }
 
@@ -142,18 +142,18 @@ async function tellsTheNewestFiguresWithAnOldPicture({server, browser, logs}) {
         super(url, options);
         if (options?.name === 'qtet-view') this.wait = [];
       }
-      set onmessage(hear) {
+      set onmessage(listener) {
         super.onmessage = (event) => {
           const viewer = document.querySelector('qtet-viewer');
           const isDecoded = () => viewer.viewing?.stream.state === 'complete';
-          if (!this.wait || isDecoded()) return hear(event);
+          if (!this.wait || isDecoded()) return listener(event);
           states.push(viewer.state);
           if (this.wait.push(event) > 1) return undefined;
           const timer = setInterval(() => {
             if (!isDecoded()) return;
             states.push(viewer.state);
             clearInterval(timer);
-            for (const held of this.wait) hear(held);
+            for (const held of this.wait) listener(held);
           }, 5);
           return undefined;
         };
@@ -161,12 +161,12 @@ async function tellsTheNewestFiguresWithAnOldPicture({server, browser, logs}) {
     };
   });
   await viewer.page.waitForFunction(() => window.qtetLoad, null, {timeout: kTimeoutMs});
-  const [shown, told] = await viewer.page.evaluate(() => window.qtetLoad);
+  const [shown, reported] = await viewer.page.evaluate(() => window.qtetLoad);
   const {total} = await viewer.statistics();
   assert.ok(shown < total.tetrahedra, 'the first picture is no old one');
   const blank = await viewer.page.evaluate(() => window.qtetStates);
   assert.ok(blank.length > 0 && !blank.includes('complete'), 'a blank canvas is called complete');
-  assert.equal(told, total.tetrahedra);
+  assert.equal(reported, total.tetrahedra);
   await viewer.waitForState('complete');
   await expectWhole(viewer, logs.fin);
 }
@@ -246,7 +246,7 @@ async function keepsCameraAndMeshWhereverItMoves({server, browser}) {
   await viewer.waitForState('complete');
   await viewer.waitForPicture();
   const camera = [1, -2, 1.5, 0.1, 0, 0];
-  const told = await viewer.page.evaluate(async (state) => {
+  const reported = await viewer.page.evaluate(async (state) => {
     const {qtetViewer} = window;
     qtetViewer.cameraState = state;
     const {client} = qtetViewer;
@@ -258,7 +258,7 @@ async function keepsCameraAndMeshWhereverItMoves({server, browser}) {
     });
     return {isSame: qtetViewer.client === client, state: qtetViewer.state};
   }, camera);
-  assert.deepEqual(told, {isSame: true, state: 'complete'});
+  assert.deepEqual(reported, {isSame: true, state: 'complete'});
   await viewer.page.evaluate(async () => {
     const {qtetViewer} = window;
     qtetViewer.remove();

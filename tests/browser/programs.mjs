@@ -29,7 +29,7 @@ export function makeLog(bin, name, out, sample = name, options = []) {
 export class Server {
   #process = null;
   /** Resolves when the previous server has left its port. */
-  #gone = Promise.resolve();
+  #exited = Promise.resolve();
   port = 0;
 
   constructor(bin, folder, viewer, options = []) {
@@ -44,7 +44,7 @@ export class Server {
   /** Starts the server, always on the same port, if it is not running. */
   async start() {
     if (this.#process) return;
-    await this.#gone;
+    await this.#exited;
     if (this.port !== 0) return this.#listen();
     // The port must be below those of outgoing connections, to be free when the server comes back.
     for (;;) {
@@ -69,13 +69,13 @@ export class Server {
         () => reject(new Error(`qtet-server does not listen; it said: ${said}`)),
         kStartTimeoutMs,
       );
-      const hear = (text) => {
+      const receive = (text) => {
         said += text;
         if (!said.includes('listening on http')) return;
         clearTimeout(timer);
         resolve();
       };
-      started.stdout.setEncoding('utf8').on('data', hear);
+      started.stdout.setEncoding('utf8').on('data', receive);
       started.stderr.setEncoding('utf8').on('data', (text) => void (said += text));
       started.once('exit', (code) => {
         clearTimeout(timer);
@@ -90,7 +90,7 @@ export class Server {
     if (!ending) return;
     ending.removeAllListeners('exit');
     if (ending.exitCode === null)
-      this.#gone = new Promise((resolve) => void ending.once('exit', resolve));
+      this.#exited = new Promise((resolve) => void ending.once('exit', resolve));
     ending.kill('SIGKILL');
     this.#process = null;
   }

@@ -111,8 +111,8 @@ async function refinesWhatIsLookedAtFirst({server, browser, out, bin}) {
   server.kill();
   await server.start();
   const lookedAt = (viewer) =>
-    viewer.inView(({cuts, isosurface}) =>
-      [cuts[0], isosurface].reduce(
+    viewer.inView(({cuts, layers}) =>
+      [cuts[0], ...layers.map(({mesh}) => mesh)].reduce(
         (sum, mesh) => sum + (mesh.visible ? mesh.geometry.drawRange.count : 0),
         0,
       ),
@@ -245,16 +245,16 @@ async function worksUnderAStrictPolicy({browser, logs, viewer: files, out}) {
   const folder = makeSite(join(out, 'strict-site'), files, logs.fin);
   const headers = {'content-security-policy': kPolicy};
   const host = await hostFolder(folder, {nginx: false, headers});
-  const heard = [];
+  const messages = [];
   try {
     const url = `${host.url}?src=fin.qtet&clip=x:0.5`;
-    const page = await browser.page(url, (text) => heard.push(text));
+    const page = await browser.page(url, (text) => messages.push(text));
     const isThere = () =>
       page.evaluate(
         () => window.qtetViewer?.state === 'complete' && window.qtetViewer.matches('.loaded'),
       );
     for (const end = Date.now() + kTimeoutMs; !(await isThere());) {
-      assert.ok(Date.now() < end, `the mesh does not come: ${heard.join('; ')}`);
+      assert.ok(Date.now() < end, `the mesh does not come: ${messages.join('; ')}`);
       await page.waitForTimeout(50);
     }
     await page.evaluate(() => window.qtetViewer.viewing.actions.share());
@@ -266,7 +266,7 @@ async function worksUnderAStrictPolicy({browser, logs, viewer: files, out}) {
     assert.deepEqual(styled, ['absolute', 'linear-gradient']);
     const seen = await browser.picture(page, 'strict-policy');
     assert.ok(coloredShare(seen) > 0.02, 'the picture is blank');
-    assert.deepEqual(heard, []);
+    assert.deepEqual(messages, []);
     await page.context().close();
   } finally {
     host.close();

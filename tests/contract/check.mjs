@@ -134,7 +134,7 @@ function judgeBody(what, method, reply, place) {
   const validate = validatorAt([...parts, 'content', type, 'schema']);
   if (!validate(body)) complain(what, ajv.errorsText(validate.errors));
   if (type === 'application/problem+json' && body.status !== reply.status)
-    complain(what, 'the problem tells another status');
+    complain(what, 'the problem has another status');
 }
 
 // ---- the questions

@@ -36,7 +36,7 @@ const documents = positionals.length > 0 ? positionals : documentsIn(root);
 for (const document of documents) {
   for (const verdict of await judge(document, context)) {
     ++counts[verdict.state];
-    tell(document, verdict);
+    report(document, verdict);
   }
 }
 const {ran, checked, text, named, wrong} = counts;
@@ -47,7 +47,7 @@ console.log(
 );
 process.exit(wrong === 0 ? 0 : 1);
 
-function tell(document, {line, language, state, note, did}) {
+function report(document, {line, language, state, note, did}) {
   const where = `${document}:${line}: ${language}`;
   if (state === 'ran') console.log(`${where} ${did}`);
   if (state === 'checked') console.log(`${where} only checked: ${note}`);

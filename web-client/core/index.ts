@@ -1,7 +1,8 @@
 // qtet/core: a progressive mesh in a worker, without a rendering engine. Client in, Snapshots out.
 
-export {Client, type Listener} from './client';
-export type {Ray, Stretch, Vector} from './cell_ray';
+export type {Vector, Plane} from './protocol/geometry';
+export {Client, type Listener} from './session/client';
+export type {Ray, Stretch} from './picture/cell_ray';
 export {
   colorGradient,
   colorTable,
@@ -9,20 +10,20 @@ export {
   kColorMapEntries,
   kColorMapNames,
   type ColorMapName,
-} from './color_maps';
-export type {Counts} from './counts';
+} from './picture/color_maps';
+export type {Counts} from './protocol/counts';
+export {fieldsOf} from './layers/shown';
 export {
-  fieldsOf,
   kClipModes,
   kMaxPlanes,
   kPlainDisplay,
   type ClipMode,
   type Display,
-} from './display';
-export {errorCode, errorText, QtetError} from './errors';
-export {kMagnitude, scalarRange, type Scalar} from './field_scale';
-export type {FieldValue, Pick, Probe} from './inspector';
-export {errorOfLevel, kFull, limitText, parseLimit, type Limit} from './limit';
+} from './picture/display';
+export {errorCode, errorText, QtetError} from './protocol/errors';
+export {kMagnitude, scalarRange, type Scalar} from './picture/field_scale';
+export type {FieldValue, Pick, Probe} from './session/inspector';
+export {errorOfLevel, kFull, limitText, parseLimit, type Limit} from './protocol/limit';
 export {
   fieldKeys,
   type FieldInfo,
@@ -30,15 +31,14 @@ export {
   type LevelInfo,
   type Manifest,
   type Spread,
-} from './manifest';
-export type {Plane} from './slice';
-export type {Statistics} from './statistics';
-export {logTicks, niceTicks, type Tick, type Ticks} from './ticks';
-export {kOpacityPath, transferTables, type TransferTables} from './transfer';
-export type {TriangleSoup} from './triangle_soup';
-export type {CoarseCells, VolumeCells} from './volume';
-export {kNoViewRequest, type ViewRequest} from './view_request';
+} from './protocol/manifest';
+export type {Statistics} from './decode/statistics';
+export {logTicks, niceTicks, type Tick, type Ticks} from './picture/ticks';
+export {kOpacityPath, transferTables, type TransferTables} from './picture/transfer';
+export type {TriangleSoup} from './picture/triangle_soup';
+export type {CoarseCells, VolumeCells} from './picture/volume';
+export {kNoViewRequest, type ViewRequest} from './protocol/view_request';
 // Aliases of version 0.1.
-export {kMaxPlanes as kMostPlanes} from './display';
-export {kNoViewRequest as kNoWishes, type ViewRequest as Wishes} from './view_request';
-export type {FromWorker, Snapshot, Source, StreamState} from './worker_messages';
+export {kMaxPlanes as kMostPlanes} from './picture/display';
+export {kNoViewRequest as kNoWishes, type ViewRequest as Wishes} from './protocol/view_request';
+export type {FromWorker, Snapshot, Source, StreamState} from './session/worker_messages';

@@ -1,7 +1,7 @@
 import {beforeEach, describe, expect, test} from 'vitest';
-import {Assembler} from '../core/assembler';
-import {parseFrame} from '../core/protocol';
-import {kNoViewRequest} from '../core/view_request';
+import {Assembler} from '../core/decode/assembler';
+import {parseFrame} from '../core/protocol/messages';
+import {kNoViewRequest} from '../core/protocol/view_request';
 import {FakeCodec, fieldFrame, headFrame, kFakeValues, meshFrame, type FakeLog} from './fakes';
 
 const kLog: FakeLog = {fields: ['p'], chunks: 6};
@@ -81,5 +81,56 @@ describe('what is here', () => {
     expect(fieldOrder([1])).toEqual([0, 1]); // 2 and 3 are missing
     expect(fieldOrder([3])).toEqual([0, 1, 3, 5]);
     expect(fieldOrder([2])).toEqual([0, 1, 3, 5, 2, 4]);
+  });
+});
+
+/** Counts the questions about what is applied: each is a call into the codec. */
+class CountingCodec extends PacketCodec {
+  questions = 0;
+  private readonly done = new Set<number>();
+  private readonly valuesDone = new Set<number>();
+  override dependency(chunk: number): number {
+    ++this.questions;
+    return chunk < kHeadChunks ? chunk - 1 : Math.max(kHeadChunks - 1, chunk >> 1);
+  }
+  override apply(chunk: number): void {
+    this.done.add(chunk);
+    ++this.chunksApplied;
+  }
+  override applied(chunk = 0): boolean {
+    ++this.questions;
+    return this.done.has(chunk);
+  }
+  override applyField(_: number, chunk: number): void {
+    this.valuesDone.add(chunk);
+  }
+  override fieldChunksApplied(): number {
+    return this.valuesDone.size;
+  }
+  override fieldApplied(_: number, chunk: number): boolean {
+    ++this.questions;
+    return this.valuesDone.has(chunk);
+  }
+}
+
+describe('the work for a log', () => {
+  /** Questions a chunk, if all chunks arrive before the first step, the last one first. */
+  function questionsPerChunk(chunks: number): number {
+    const log: FakeLog = {fields: ['p'], chunks};
+    const counting = new CountingCodec(log);
+    const its = new Assembler(counting, kFakeValues);
+    its.take(parseFrame(headFrame(1, log)));
+    for (let chunk = chunks - 1; chunk >= 0; --chunk) {
+      its.take(parseFrame(fieldFrame(1, chunk, 0)));
+      its.take(parseFrame(meshFrame(1, chunk)));
+    }
+    while (its.step([0], true)) continue;
+    expect([counting.chunksApplied, counting.fieldChunksApplied()]).toEqual([chunks, chunks]);
+    return counting.questions / chunks;
+  }
+
+  test('growsNoFasterThanItsPackets', () => {
+    expect(questionsPerChunk(500)).toBeLessThan(30);
+    expect(questionsPerChunk(8000)).toBeLessThan(30);
   });
 });

@@ -1,5 +1,5 @@
 import {afterEach, expect, test, vi} from 'vitest';
-import {fetchCatalog, isMeshList} from '../viewer/catalog';
+import {fetchCatalog, isMeshList} from '../viewer/page/catalog';
 
 const answer = (meshes: unknown): void => {
   vi.stubGlobal(

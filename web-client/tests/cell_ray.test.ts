@@ -1,5 +1,6 @@
 import {describe, expect, test} from 'vitest';
-import {along, barycentric, below, stretches, type Ray, type Vector} from '../core/cell_ray';
+import type {Vector} from '../core/protocol/geometry';
+import {along, barycentric, below, stretches, type Ray} from '../core/picture/cell_ray';
 import {cubes} from './cubes';
 
 const {points, tetrahedra} = cubes(4, 10);

@@ -1,13 +1,13 @@
 import {afterEach, beforeEach, expect, test, vi} from 'vitest';
-import {Client} from '../core/client';
-import {kPlainDisplay} from '../core/display';
-import {Assembler} from '../core/assembler';
-import {Publisher} from '../core/publisher';
-import {Session} from '../core/session';
-import {SocketTransport} from '../core/socket_transport';
-import {kFull} from '../core/limit';
-import type {Plane} from '../core/slice';
-import type {Posted, ToWorker} from '../core/worker_messages';
+import type {Plane} from '../core/protocol/geometry';
+import {Client} from '../core/session/client';
+import {kPlainDisplay} from '../core/picture/display';
+import {Assembler} from '../core/decode/assembler';
+import {Publisher} from '../core/session/publisher';
+import {Session} from '../core/session/session';
+import {SocketTransport} from '../core/transport/socket_transport';
+import {kFull} from '../core/protocol/limit';
+import type {Posted, ToWorker} from '../core/session/worker_messages';
 import {Requests} from '../viewer/requests';
 import {FakeCodec, FakeSocket, fieldFrame, headFrame, kFakeValues, meshFrame} from './fakes';
 
@@ -43,18 +43,18 @@ const state = (run?: number): Posted => ({
 });
 
 test('whatTheWorkerSaysOfTheMeshBeforeIsNotHeard', () => {
-  const heard: unknown[] = [];
-  const client = new Client((message) => heard.push(message));
+  const received: unknown[] = [];
+  const client = new Client((message) => received.push(message));
   const worker = FakeWorker.last;
   client.start({mesh: 'a'});
   client.start({mesh: 'b'});
   const runs = worker.posted.flatMap((message) => (message.type === 'start' ? [message.run] : []));
   worker.say(state(runs[0]));
-  expect(heard).toEqual([]);
+  expect(received).toEqual([]);
   worker.say(state(runs[1]));
-  expect(heard).toHaveLength(1);
+  expect(received).toHaveLength(1);
   worker.say(state()); // a decoder that could not be loaded has no run
-  expect(heard).toHaveLength(2);
+  expect(received).toHaveLength(2);
 });
 
 test('anAnswerComesWhicheverMeshItWasAskedOf', async () => {

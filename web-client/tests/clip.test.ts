@@ -1,6 +1,6 @@
 import {describe, expect, test} from 'vitest';
-import {extentAlong, planeOf} from '../viewer/clip_plane';
-import {axisNormal} from '../viewer/settings';
+import {extentAlong, planeOf} from '../viewer/settings/clip_plane';
+import {axisNormal} from '../core/layers/clip';
 
 const kBounds = [0, 0, 0, 100, 200, 50];
 

@@ -1,9 +1,9 @@
 import {beforeEach, expect, test} from 'vitest';
-import {Assembler} from '../core/assembler';
-import {CoarseVolume} from '../core/coarse_volume';
-import {kPlainDisplay, type Display} from '../core/display';
-import {parseFrame} from '../core/protocol';
-import {kCoarseCells} from '../core/volume';
+import {Assembler} from '../core/decode/assembler';
+import {CoarseVolume} from '../core/session/coarse_volume';
+import {kPlainDisplay, type Display} from '../core/picture/display';
+import {parseFrame} from '../core/protocol/messages';
+import {kCoarseCells} from '../core/picture/volume';
 import {FakeCodec, fieldFrame, headFrame, kFakeValues, meshFrame, type FakeLog} from './fakes';
 
 /** Each chunk brings one cell. */

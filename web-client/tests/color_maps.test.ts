@@ -5,7 +5,7 @@ import {
   isColorMapName,
   kColorMapNames,
   type ColorMapName,
-} from '../core/color_maps';
+} from '../core/picture/color_maps';
 
 const entry = (name: ColorMapName, i: number): number[] => [
   ...colorTable(name).subarray(4 * i, 4 * i + 3),

@@ -1,20 +1,19 @@
 import {describe, expect, test} from 'vitest';
-import {keepBelow, keepWithin} from '../core/cell_choice';
-import {facesSoup, surfaceFaces} from '../core/cell_surface';
+import {keepBelow, keepWithin} from '../core/picture/cell_choice';
+import {facesSoup, surfaceFaces} from '../core/picture/cell_surface';
 import {
   cutsOf,
-  fieldsOf,
-  isosurfacesOf,
-  keptCells,
   kPlainDisplay,
   surfaceOf,
   type Display,
-  type MeshNow,
-} from '../core/display';
-import {FieldScale, kMagnitude, scalarRange, type Scalar} from '../core/field_scale';
-import type {FieldInfo} from '../core/manifest';
-import {isosurface} from '../core/slice';
-import {joinSoups, type TriangleSoup} from '../core/triangle_soup';
+  type MeshArrays,
+} from '../core/picture/display';
+import {isosurfaces} from '../core/layers/isosurfaces';
+import {fieldsOf, keptCells} from '../core/layers/shown';
+import {FieldScale, kMagnitude, scalarRange, type Scalar} from '../core/picture/field_scale';
+import type {FieldInfo} from '../core/protocol/manifest';
+import {isosurface} from '../core/picture/slice';
+import {joinSoups, type TriangleSoup} from '../core/picture/triangle_soup';
 import {allVertices, cubes, soupArea, soupVolume} from './cubes';
 
 const {points, tetrahedra} = cubes(4, 10);
@@ -38,7 +37,7 @@ const xs = new FieldScale(
 );
 const cubeOf = Int32Array.from({length: cells}, (_, cell) => 10 * Math.floor(cell / (6 * 16)));
 const cellXs = new FieldScale(cubeOf, info('cell', [0, 30]));
-const mesh: MeshNow = {
+const mesh: MeshArrays = {
   points,
   tetrahedra,
   boundary: allVertices(points),
@@ -125,7 +124,7 @@ describe('isosurfaces', () => {
   });
 
   test('ofSeveralValuesAreOneSoupColouredByAnotherField', () => {
-    const soup = isosurfacesOf(
+    const soup = isosurfaces.make(
       mesh,
       display({
         color: {field: 1, component: kMagnitude},

@@ -3,8 +3,8 @@
 import draco3d, {type Draco} from 'draco3d';
 import {readdirSync, readFileSync} from 'node:fs';
 import {describe, expect, test} from 'vitest';
-import {kDraco} from '../core/draco';
-import {errorCode} from '../core/errors';
+import {kDraco} from '../core/decode/draco';
+import {errorCode} from '../core/protocol/errors';
 import {kTestWasm, takeWholeLog} from './whole_log';
 
 const kGolden = new URL('../../tests/golden/valid/', import.meta.url);

@@ -1,19 +1,19 @@
 // Fakes of the network and the codec. They are small, and strict about order, so that a wrong call
 // fails a test.
 
-import {kFirstFieldPart, kHeadPart} from '../core/parts';
-import type {Codec} from '../core/codec';
-import type {ValueDecoder} from '../core/draco';
-import {QtetError} from '../core/errors';
-import {kFrameHeaderBytes} from '../core/protocol';
-import type {Socket} from '../core/socket_transport';
-import type {FromWorker} from '../core/worker_messages';
+import {kFirstFieldPart, kHeadPart} from '../core/protocol/parts';
+import type {Codec} from '../core/decode/codec';
+import type {ValueDecoder} from '../core/decode/draco';
+import {QtetError} from '../core/protocol/errors';
+import {kFrameHeaderBytes} from '../core/protocol/messages';
+import type {Socket} from '../core/transport/socket_transport';
+import type {FromWorker} from '../core/session/worker_messages';
 
 /** The states that a session has reported. */
-export const statesOf = (heard: FromWorker[]): string[] =>
-  heard.flatMap((message) => (message.type === 'state' ? [message.state] : []));
-export const errorsOf = (heard: FromWorker[]): string[] =>
-  heard.flatMap((message) => (message.type === 'error' ? [message.code] : []));
+export const statesOf = (received: FromWorker[]): string[] =>
+  received.flatMap((message) => (message.type === 'state' ? [message.state] : []));
+export const errorsOf = (received: FromWorker[]): string[] =>
+  received.flatMap((message) => (message.type === 'error' ? [message.code] : []));
 
 export class FakeSocket implements Socket {
   binaryType = '';

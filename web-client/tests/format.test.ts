@@ -1,5 +1,5 @@
 import {expect, test} from 'vitest';
-import type {FieldInfo} from '../core/manifest';
+import type {FieldInfo} from '../core/protocol/manifest';
 import {
   formatBytes,
   formatCoordinate,
@@ -9,7 +9,7 @@ import {
   percentOf,
   resolutionOf,
   roundTo,
-} from '../viewer/format';
+} from '../viewer/page/format';
 
 const plain = (text: string): string => text.replaceAll(/[\u00a0\u202f]/g, ' ');
 

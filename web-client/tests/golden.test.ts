@@ -4,8 +4,8 @@
 import {createHash} from 'node:crypto';
 import {readdirSync, readFileSync} from 'node:fs';
 import {describe, expect, test} from 'vitest';
-import {kDraco} from '../core/draco';
-import {errorCode} from '../core/errors';
+import {kDraco} from '../core/decode/draco';
+import {errorCode} from '../core/protocol/errors';
 import {kTestWasm, takeWholeLog} from './whole_log';
 
 const kGolden = new URL('../../tests/golden/', import.meta.url);

@@ -2,18 +2,18 @@
 // answers are functions.
 
 import {afterEach, beforeEach, describe, expect, test, vi} from 'vitest';
-import {Assembler} from '../core/assembler';
-import {AutoTransport, type TransportKind} from '../core/auto_transport';
-import {kLongestDelayMs} from '../core/backoff';
-import {ChunkSource, RangeSource} from '../core/block_source';
-import {HttpTransport, piecesOf} from '../core/http_transport';
-import {kFull} from '../core/limit';
-import {Publisher} from '../core/publisher';
-import type {Fetch} from '../core/ranged_file';
-import {Session} from '../core/session';
-import {SocketTransport} from '../core/socket_transport';
-import {kindsOf} from '../core/transports';
-import type {FromWorker} from '../core/worker_messages';
+import {Assembler} from '../core/decode/assembler';
+import {AutoTransport, type TransportKind} from '../core/transport/auto_transport';
+import {kLongestDelayMs} from '../core/transport/backoff';
+import {ChunkSource, RangeSource} from '../core/transport/block_source';
+import {HttpTransport, piecesOf} from '../core/transport/http_transport';
+import {kFull} from '../core/protocol/limit';
+import {Publisher} from '../core/session/publisher';
+import type {Fetch} from '../core/transport/ranged_file';
+import {Session} from '../core/session/session';
+import {SocketTransport} from '../core/transport/socket_transport';
+import {kindsOf} from '../core/transport/transports';
+import type {FromWorker} from '../core/session/worker_messages';
 import {
   errorsOf,
   FakeCodec,
@@ -84,11 +84,11 @@ function host(bytes: () => Uint8Array): Host {
 
 let codec: FakeCodec;
 let assembler: Assembler;
-let heard: FromWorker[];
+let received: FromWorker[];
 
 beforeEach(() => {
   vi.useFakeTimers();
-  heard = [];
+  received = [];
   expectLog(kLog);
 });
 afterEach(() => void vi.useRealTimers());
@@ -102,7 +102,7 @@ function session(it: Host, kind: 'range' | 'chunks', fields: string[] | null = [
   const made = new Session(
     assembler,
     new Publisher(assembler, () => undefined),
-    (message) => heard.push(message),
+    (message) => received.push(message),
     ({log}, table, handlers) =>
       new HttpTransport(
         () =>
@@ -126,8 +126,8 @@ function session(it: Host, kind: 'range' | 'chunks', fields: string[] | null = [
 }
 
 const settle = (ms = 200): Promise<unknown> => vi.advanceTimersByTimeAsync(ms);
-const states = (): string[] => statesOf(heard);
-const errors = (): string[] => errorsOf(heard);
+const states = (): string[] => statesOf(received);
+const errors = (): string[] => errorsOf(received);
 
 describe('ranges', () => {
   test('aFileOnAnyWebServerComesWholeInFewRequests', async () => {
@@ -162,7 +162,7 @@ describe('ranges', () => {
     expect(last).toBe(bytes.length - kFakeBlockBytes - 1);
   });
 
-  test('whatLiesBehindTheGoalIsNotFetchedBeforeItIsWanted', async () => {
+  test('whatLiesBehindTheTargetIsNotFetchedBeforeItIsRequested', async () => {
     const log = {...kLog, chunks: 9000};
     expectLog(log);
     const bytes = file(log);
@@ -329,7 +329,7 @@ describe('the choice among transports', () => {
     const made = new Session(
       assembler,
       new Publisher(assembler, () => undefined),
-      (message) => heard.push(message),
+      (message) => received.push(message),
       ({url, log}, table, handlers) =>
         new AutoTransport(
           ['websocket', 'range'],

@@ -1,7 +1,7 @@
 import {expect, test} from 'vitest';
-import {errorOfLevel, kFull, limitReached, limitText, parseLimit} from '../core/limit';
-import type {Spread} from '../core/manifest';
-import {kNoStatistics} from '../core/statistics';
+import {errorOfLevel, kFull, limitReached, limitText, parseLimit} from '../core/protocol/limit';
+import type {Spread} from '../core/protocol/manifest';
+import {kNoStatistics} from '../core/decode/statistics';
 
 test.each([
   ['full', kFull],

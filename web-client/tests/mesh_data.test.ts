@@ -1,8 +1,8 @@
 import {describe, expect, test} from 'vitest';
-import {FieldScale} from '../core/field_scale';
-import {errorOf, fieldKeys, readManifest, type FieldInfo} from '../core/manifest';
+import {FieldScale} from '../core/picture/field_scale';
+import {errorOf, fieldKeys, readManifest, type FieldInfo} from '../core/protocol/manifest';
 import {fakeHead} from './fakes';
-import {boundarySoup, pointBounds} from '../core/triangle_soup';
+import {boundarySoup, pointBounds} from '../core/picture/triangle_soup';
 
 const info = (components: number, minimum: number[], range: [number, number]): FieldInfo => ({
   name: 'f',

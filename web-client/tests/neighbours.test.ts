@@ -1,5 +1,5 @@
 import {expect, test} from 'vitest';
-import {neighboursOf} from '../core/neighbours';
+import {neighboursOf} from '../core/picture/neighbours';
 import {cubes} from './cubes';
 
 test('aNeighbourSharesThreeCornersAndHolesAreNobodys', () => {

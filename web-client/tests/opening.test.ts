@@ -2,15 +2,15 @@
 
 import {Vector3} from 'three';
 import {describe, expect, test} from 'vitest';
-import {baseFigures} from '../core/base_figures';
-import {colorTable} from '../core/color_maps';
-import type {MeshNow} from '../core/display';
-import {FieldScale} from '../core/field_scale';
-import {kMostLabels, labelsOf} from '../core/labels';
-import type {FieldInfo} from '../core/manifest';
-import {mostContrast, spreadOf} from '../core/spread';
+import {baseFigures} from '../core/picture/base_figures';
+import {colorTable} from '../core/picture/color_maps';
+import type {MeshArrays} from '../core/picture/display';
+import {FieldScale} from '../core/picture/field_scale';
+import {kMaxLabels, labelsOf} from '../core/picture/labels';
+import type {FieldInfo} from '../core/protocol/manifest';
+import {fieldOfMaxContrast, spreadOf} from '../core/picture/spread';
 import {OrbitCamera} from '../three/camera';
-import {FarCanvas} from '../three/far_canvas';
+import {WorkerCanvas} from '../three/worker_canvas';
 import {outlineOf} from '../three/outline';
 import {allVertices, cubes} from './cubes';
 
@@ -63,18 +63,18 @@ describe('the spread of values', () => {
   test('choosesTheFieldWithMostContrast', () => {
     const scales = [scaleOf(() => 7), scaleOf((v) => 8 * v), null, scaleOf((v) => v % 2)];
     const mesh = {tetrahedra, scale: (scalar: {field: number}) => scales[scalar.field]!};
-    expect(mostContrast(mesh as unknown as MeshNow, [0, 1, 2, 3])).toBe(1);
-    expect(mostContrast(mesh as unknown as MeshNow, [2])).toBe(2);
-    expect(mostContrast(mesh as unknown as MeshNow, [])).toBe(0);
+    expect(fieldOfMaxContrast(mesh as unknown as MeshArrays, [0, 1, 2, 3])).toBe(1);
+    expect(fieldOfMaxContrast(mesh as unknown as MeshArrays, [2])).toBe(2);
+    expect(fieldOfMaxContrast(mesh as unknown as MeshArrays, [])).toBe(0);
   });
 });
 
 describe('labels', () => {
   test('areFewWholeNumbers', () => {
     expect(labelsOf({...field, range: [1, 4]})).toEqual([1, 4]);
-    expect(labelsOf({...field, range: [0, kMostLabels - 1]})).toEqual([0, kMostLabels]);
+    expect(labelsOf({...field, range: [0, kMaxLabels - 1]})).toEqual([0, kMaxLabels]);
     for (const other of [
-      {range: [0, kMostLabels]},
+      {range: [0, kMaxLabels]},
       {range: [3, 3]},
       {isWhole: false, range: [1, 4]},
       {components: 3, range: [1, 4]},
@@ -83,16 +83,16 @@ describe('labels', () => {
   });
   test('haveEachAColourOfItsOwn', () => {
     const table = colorTable('labels');
-    const colors = Array.from({length: kMostLabels}, (_, label) => {
-      const entry = 4 * Math.round(((label + 0.5) / kMostLabels) * 255);
+    const colors = Array.from({length: kMaxLabels}, (_, label) => {
+      const entry = 4 * Math.round(((label + 0.5) / kMaxLabels) * 255);
       return table.subarray(entry, entry + 3).join();
     });
-    expect(new Set(colors).size).toBe(kMostLabels);
+    expect(new Set(colors).size).toBe(kMaxLabels);
   });
 });
 
 describe('the figures of a base mesh', () => {
-  const mesh = (places: Int32Array): MeshNow => ({
+  const mesh = (places: Int32Array): MeshArrays => ({
     points: places,
     tetrahedra,
     boundary: allVertices(places),
@@ -125,7 +125,7 @@ describe('the figures of a base mesh', () => {
 });
 
 describe('a fitted camera', () => {
-  const canvas = new FarCanvas({} as OffscreenCanvas);
+  const canvas = new WorkerCanvas({} as OffscreenCanvas);
   const places = (camera: OrbitCamera, at: Vector3[]): Vector3[] => {
     camera.camera.updateMatrixWorld();
     camera.camera.updateProjectionMatrix();

@@ -1,7 +1,12 @@
 import {describe, expect, test} from 'vitest';
-import {kHeadPart} from '../core/parts';
-import {QtetError} from '../core/errors';
-import {kFrameHeaderBytes, openMessage, parseFrame, parseServerMessage} from '../core/protocol';
+import {kHeadPart} from '../core/protocol/parts';
+import {QtetError} from '../core/protocol/errors';
+import {
+  kFrameHeaderBytes,
+  openMessage,
+  parseFrame,
+  parseServerMessage,
+} from '../core/protocol/messages';
 
 function frameBytes(payload: number[], size = payload.length): ArrayBuffer {
   const bytes = new Uint8Array(kFrameHeaderBytes + payload.length);

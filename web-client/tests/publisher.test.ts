@@ -1,9 +1,9 @@
 import {afterEach, beforeEach, expect, test, vi} from 'vitest';
-import type {Assembler} from '../core/assembler';
-import {kPlainDisplay} from '../core/display';
-import {Publisher} from '../core/publisher';
-import {kNoStatistics} from '../core/statistics';
-import type {Snapshot} from '../core/worker_messages';
+import type {Assembler} from '../core/decode/assembler';
+import {kPlainDisplay} from '../core/picture/display';
+import {Publisher} from '../core/session/publisher';
+import {kNoStatistics} from '../core/decode/statistics';
+import type {Snapshot} from '../core/session/worker_messages';
 import {FakeCodec} from './fakes';
 
 let bytes: number;
@@ -35,9 +35,9 @@ function grow(to: number, isLast = false): void {
 }
 
 /** Milliseconds until the next picture. */
-function untilNext(most = 10000): number {
+function untilNext(maxMs = 10000): number {
   const before = pictures.length;
-  for (let ms = 0; ms <= most; ++ms) {
+  for (let ms = 0; ms <= maxMs; ++ms) {
     if (pictures.length > before) return ms;
     vi.advanceTimersByTime(1);
   }

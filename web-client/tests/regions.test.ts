@@ -3,16 +3,22 @@
 
 import {readFileSync} from 'node:fs';
 import {describe, expect, test, vi} from 'vitest';
-import type {Packet} from '../core/packet';
-import {kFirstFieldPart, kHeadPart, kStructurePart} from '../core/parts';
-import {Assembler} from '../core/assembler';
-import {ChunkSource} from '../core/block_source';
-import {WasmCodec} from '../core/codec';
-import {kDraco} from '../core/draco';
-import {HttpTransport, piecesOf} from '../core/http_transport';
-import {surfaceBoxesOf} from '../core/surface_boxes';
-import type {OpenRequest} from '../core/protocol';
-import {inOrder, kNoViewRequest, urgency, wireView, type ViewRequest} from '../core/view_request';
+import type {Packet} from '../core/protocol/packet';
+import {kFirstFieldPart, kHeadPart, kStructurePart} from '../core/protocol/parts';
+import {Assembler} from '../core/decode/assembler';
+import {ChunkSource} from '../core/transport/block_source';
+import {WasmCodec} from '../core/decode/codec';
+import {kDraco} from '../core/decode/draco';
+import {HttpTransport, piecesOf} from '../core/transport/http_transport';
+import {surfaceBoxesOf} from '../core/protocol/surface_boxes';
+import type {OpenRequest} from '../core/protocol/messages';
+import {
+  inOrder,
+  kNoViewRequest,
+  urgency,
+  wireView,
+  type ViewRequest,
+} from '../core/protocol/view_request';
 import {kTestWasm} from './whole_log';
 
 const kLog = new URL('../../tests/golden/valid/regions.qtet', import.meta.url);

@@ -1,7 +1,7 @@
 import {afterEach, beforeEach, expect, test, vi} from 'vitest';
-import {kLongestDelayMs} from '../core/backoff';
-import {errorText} from '../core/errors';
-import {kMaxAttempts, retry} from '../core/retry';
+import {kLongestDelayMs} from '../core/transport/backoff';
+import {errorText} from '../core/protocol/errors';
+import {kMaxAttempts, retry} from '../core/transport/retry';
 
 beforeEach(() => void vi.useFakeTimers());
 afterEach(() => void vi.useRealTimers());

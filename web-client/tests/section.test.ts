@@ -1,5 +1,5 @@
 import {expect, test} from 'vitest';
-import {section} from '../core/section';
+import {section} from '../core/picture/section';
 
 /**
  * The crossing is halfway between two 32-bit floats, so that the last bit of a 64-bit float

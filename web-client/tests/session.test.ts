@@ -1,15 +1,15 @@
 import {afterEach, beforeEach, describe, expect, test, vi} from 'vitest';
-import {Assembler} from '../core/assembler';
-import {kLongestDelayMs} from '../core/backoff';
-import {kPlainDisplay} from '../core/display';
-import {kFull} from '../core/limit';
-import {Publisher} from '../core/publisher';
-import {parseFrame} from '../core/protocol';
-import {Session} from '../core/session';
-import {SocketTransport} from '../core/socket_transport';
-import type {Transport} from '../core/transport';
-import {kNoViewRequest, type ViewRequest} from '../core/view_request';
-import type {FromWorker, Snapshot, Source} from '../core/worker_messages';
+import {Assembler} from '../core/decode/assembler';
+import {kLongestDelayMs} from '../core/transport/backoff';
+import {kPlainDisplay} from '../core/picture/display';
+import {kFull} from '../core/protocol/limit';
+import {Publisher} from '../core/session/publisher';
+import {parseFrame} from '../core/protocol/messages';
+import {Session} from '../core/session/session';
+import {SocketTransport} from '../core/transport/socket_transport';
+import type {Transport} from '../core/transport/transport';
+import {kNoViewRequest, type ViewRequest} from '../core/protocol/view_request';
+import type {FromWorker, Snapshot, Source} from '../core/session/worker_messages';
 import {
   errorsOf,
   FakeCodec,
@@ -29,14 +29,14 @@ const kLog: FakeLog = {fields: ['p', 'v'], chunks: 3};
 let codec: FakeCodec;
 let session: Session;
 let sockets: FakeSocket[];
-let heard: FromWorker[];
+let received: FromWorker[];
 let publisher: Publisher;
 let pictures: Snapshot[];
 
 beforeEach(() => {
   vi.useFakeTimers();
   sockets = [];
-  heard = [];
+  received = [];
   codec = new FakeCodec(kLog);
   const assembler = new Assembler(codec, kFakeValues);
   pictures = [];
@@ -48,7 +48,7 @@ beforeEach(() => {
   session = new Session(
     assembler,
     publisher,
-    (message) => heard.push(message),
+    (message) => received.push(message),
     ({url}, _, handlers) => new SocketTransport(url, handlers, makeSocket, () => 0),
   );
 });
@@ -84,9 +84,9 @@ function opened(socket: FakeSocket, stream: number, layout?: string): void {
   );
 }
 
-const states = (): string[] => statesOf(heard);
+const states = (): string[] => statesOf(received);
 const opens = (): Record<string, unknown>[] => sockets.flatMap((socket) => socket.sentOf('open'));
-const errors = (): string[] => errorsOf(heard);
+const errors = (): string[] => errorsOf(received);
 
 function sendAll(socket: FakeSocket, stream: number, field: number, from = 0): void {
   for (let chunk = from; chunk < kLog.chunks; ++chunk) {
@@ -148,7 +148,7 @@ test('whatLiesAheadIsToldWithTheHeadAndAnewForOtherFields', () => {
   opened(socket, 1);
   socket.deliver(headFrame(1, kLog));
   session.want([0, 1]);
-  const plans = heard.flatMap((message) => (message.type === 'plan' ? [message.plan] : []));
+  const plans = received.flatMap((message) => (message.type === 'plan' ? [message.plan] : []));
   const head = fakeHead(kLog).length;
   expect(plans).toEqual(
     [3, 4].map((blocks) =>
@@ -168,7 +168,7 @@ describe('a stream', () => {
     vi.advanceTimersByTime(0);
     sendAll(socket, 1, 0);
     expect(states()).toEqual(['connecting', 'streaming', 'complete']);
-    const progress = heard.flatMap((message) =>
+    const progress = received.flatMap((message) =>
       message.type === 'progress' ? [message.statistics] : [],
     );
     const needed = fakeHead(kLog).length + 9 * kFakeBlockBytes;
@@ -233,7 +233,7 @@ describe('a stream', () => {
     socket.deliver(headFrame(1, kLog));
     sendAll(socket, 1, 0);
     expect(errors()).toEqual(['bad-checksum']);
-    expect(heard.find(({type}) => type === 'error')).toMatchObject({
+    expect(received.find(({type}) => type === 'error')).toMatchObject({
       message: expect.stringMatching(
         /chunk 1 is damaged\. What came before is sound and stays/,
       ) as string,
@@ -291,7 +291,7 @@ describe('fields', () => {
     const socket = start({fields: ['cell:p']});
     socket.deliver(headFrame(1, {...kLog, cellFields: ['p']}));
     expect(opens()).toHaveLength(1);
-    expect(heard.find(({type}) => type === 'manifest')).toMatchObject({fields: [2]});
+    expect(received.find(({type}) => type === 'manifest')).toMatchObject({fields: [2]});
   });
 
   test('ofWhichSeveralAreWantedAllCome', () => {
@@ -509,7 +509,7 @@ describe('pausing', () => {
 
   test('fromTheStartAsksNothingBeforeItEnds', () => {
     session.pause();
-    expect(heard).toEqual([]); // about what is not there yet
+    expect(received).toEqual([]); // about what is not there yet
     session.start({
       url: 'ws://x',
       log: '',
@@ -672,14 +672,14 @@ test('whatIsosurfacesAreShownIsToldByFieldAndValue', () => {
   views.length = 0; // without that of the head
   const show = (field: number, values: number[]): void => {
     publishing.show({...kPlainDisplay, isosurfaces: {scalar: {field, component: -1}, values}});
-    publishing.onIsosurface(Float32Array.of(1, 1, 1));
+    publishing.onLayers(Float32Array.of(1, 1, 1));
   };
   show(0, [0, 0.5]);
   // the field's range is 0 to 255
   expect(views.at(-1)!.isovalue).toEqual({field: 'p', values: [0, 127.5]});
   show(0, [0, 0.5]);
   expect(views).toHaveLength(1);
-  publishing.onIsosurface(Float32Array.of(60000, 1, 1)); // the same one, after refining
+  publishing.onLayers(Float32Array.of(60000, 1, 1)); // the same one, after refining
   expect(views).toHaveLength(2);
   show(0, [0.2]);
   expect(views.at(-1)!.isovalue).toEqual({field: 'p', values: [51]});

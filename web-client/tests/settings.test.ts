@@ -1,22 +1,18 @@
 import {describe, expect, test} from 'vitest';
-import {kMagnitude} from '../core/field_scale';
-import type {FieldInfo} from '../core/manifest';
-import {labelTicks, logTicks} from '../core/ticks';
-import {kOpacityPath} from '../core/transfer';
+import {kMagnitude} from '../core/picture/field_scale';
+import type {FieldInfo} from '../core/protocol/manifest';
+import {labelTicks, logTicks} from '../core/picture/ticks';
+import {kOpacityPath} from '../core/picture/transfer';
 import {
-  clipText,
   fieldValuesText,
-  firstOpacities,
-  labelRange,
-  parseClip,
   parseFieldValues,
   parseScalar,
-  readSettings,
   scalarText,
   sharesOf,
-  shownRange,
-  type Settings,
-} from '../viewer/settings';
+} from '../core/layers/field_values';
+import {clipText, parseClip} from '../core/layers/clip';
+import {firstOpacities} from '../core/layers/volume';
+import {labelRange, readSettings, shownRange, type Settings} from '../viewer/settings/settings';
 
 const field = (
   name: string,

@@ -1,5 +1,5 @@
 import {expect, test} from 'vitest';
-import {embedSnippet, linkTo} from '../viewer/share';
+import {embedSnippet, linkTo} from '../viewer/settings/share';
 
 test('aLinkHoldsTheViewAndNothingOfWhatStoodThereBefore', () => {
   const link = linkTo(

@@ -1,7 +1,8 @@
 import {describe, expect, test} from 'vitest';
-import {FieldScale} from '../core/field_scale';
-import {slice, type Plane} from '../core/slice';
-import type {TriangleSoup} from '../core/triangle_soup';
+import type {Plane} from '../core/protocol/geometry';
+import {FieldScale} from '../core/picture/field_scale';
+import {slice} from '../core/picture/slice';
+import type {TriangleSoup} from '../core/picture/triangle_soup';
 import {cubes, soupArea} from './cubes';
 
 type Point = [number, number, number];

@@ -1,5 +1,5 @@
 import {expect, test, vi} from 'vitest';
-import {Slices} from '../core/slices';
+import {Slices} from '../core/session/slices';
 
 /** Messages between channels take a few tasks. */
 async function rest(): Promise<void> {

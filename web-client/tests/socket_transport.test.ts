@@ -1,28 +1,28 @@
 import {afterEach, beforeEach, expect, test, vi} from 'vitest';
-import {kFirstDelayMs, kLongestDelayMs, reconnectDelayMs} from '../core/backoff';
-import type {OpenRequest} from '../core/protocol';
-import {SocketTransport} from '../core/socket_transport';
-import type {TransportHandlers} from '../core/transport';
-import {kNoViewRequest, type ViewRequest} from '../core/view_request';
+import {kFirstDelayMs, kLongestDelayMs, reconnectDelayMs} from '../core/transport/backoff';
+import type {OpenRequest} from '../core/protocol/messages';
+import {SocketTransport} from '../core/transport/socket_transport';
+import type {TransportHandlers} from '../core/transport/transport';
+import {kNoViewRequest, type ViewRequest} from '../core/protocol/view_request';
 import {FakeSocket, frame} from './fakes';
 
 const kOpen: OpenRequest = {mesh: 'm', fields: [], have: {chunks: 0, fields: {}}, credit: 80};
 
 let sockets: FakeSocket[];
-let heard: string[];
+let received: string[];
 let handlers: TransportHandlers;
 let transport: SocketTransport;
 
 beforeEach(() => {
   vi.useFakeTimers();
   sockets = [];
-  heard = [];
+  received = [];
   handlers = {
-    connected: () => heard.push('connected'),
-    message: (message) => heard.push(message.type),
-    frame: ({chunk}) => heard.push(`chunk ${chunk}`),
-    down: (attempt, delayMs) => heard.push(`down ${attempt} ${delayMs}`),
-    failed: (error) => heard.push(`failed ${error.code}`),
+    connected: () => received.push('connected'),
+    message: (message) => received.push(message.type),
+    frame: ({chunk}) => received.push(`chunk ${chunk}`),
+    down: (attempt, delayMs) => received.push(`down ${attempt} ${delayMs}`),
+    failed: (error) => received.push(`failed ${error.code}`),
   };
   const makeSocket = (): FakeSocket => {
     sockets.push(new FakeSocket());
@@ -42,7 +42,7 @@ test('framesAndRepliesOfASupersededStreamAreDropped', () => {
   sockets[0]!.deliver('{"type":"done","stream":1}');
   sockets[0]!.deliver(frame({stream: 2, chunk: 6}));
   sockets[0]!.deliver('{"type":"done","stream":2}');
-  expect(heard).toEqual(['connected', 'chunk 6', 'done']);
+  expect(received).toEqual(['connected', 'chunk 6', 'done']);
 });
 
 test('aViewIsToldOnceAndOnlyWhereItMatters', () => {
@@ -117,27 +117,27 @@ test('aLostConnectionComesBackLaterEachTimeAndCountsStreamsFromOneAgain', () => 
   sockets[0]!.accept();
   transport.open(kOpen);
   sockets[0]!.lose(1006);
-  expect(heard.at(-1)).toBe(`down 1 ${reconnectDelayMs(0, 0.5)}`);
+  expect(received.at(-1)).toBe(`down 1 ${reconnectDelayMs(0, 0.5)}`);
   vi.advanceTimersByTime(reconnectDelayMs(0, 0.5) - 1);
   expect(sockets).toHaveLength(1);
   vi.advanceTimersByTime(1);
   expect(sockets).toHaveLength(2);
   sockets[1]!.lose(1006);
-  expect(heard.at(-1)).toBe(`down 2 ${reconnectDelayMs(1, 0.5)}`);
+  expect(received.at(-1)).toBe(`down 2 ${reconnectDelayMs(1, 0.5)}`);
   vi.advanceTimersByTime(kLongestDelayMs);
   sockets[2]!.accept();
   transport.open(kOpen);
   sockets[2]!.deliver(frame({stream: 1, chunk: 0}));
-  expect(heard.at(-1)).toBe('chunk 0');
+  expect(received.at(-1)).toBe('chunk 0');
   sockets[2]!.lose(1006);
-  expect(heard.at(-1)).toBe(`down 1 ${reconnectDelayMs(0, 0.5)}`);
+  expect(received.at(-1)).toBe(`down 1 ${reconnectDelayMs(0, 0.5)}`);
 });
 
 test('aServerThatDoesNotUnderstandUsIsNotAskedAgain', () => {
   sockets[0]!.accept();
   sockets[0]!.lose(1008);
   vi.advanceTimersByTime(10 * kLongestDelayMs);
-  expect(heard).toEqual(['connected', 'failed bad-message']);
+  expect(received).toEqual(['connected', 'failed bad-message']);
   expect(sockets).toHaveLength(1);
 });
 
@@ -145,7 +145,7 @@ test('aFrameThatCannotBeReadEndsTheConversation', () => {
   sockets[0]!.accept();
   transport.open(kOpen);
   sockets[0]!.deliver(new ArrayBuffer(3));
-  expect(heard.at(-1)).toBe('failed bad-message');
+  expect(received.at(-1)).toBe('failed bad-message');
   expect(sockets[0]!.closed).toBe(true);
 });
 

@@ -1,7 +1,7 @@
 import {describe, expect, test} from 'vitest';
-import type {Packet} from '../core/packet';
-import {boundsOfBoxes, surfaceBoxesOf, meets} from '../core/surface_boxes';
-import {inOrder, kNoViewRequest, wireView} from '../core/view_request';
+import type {Packet} from '../core/protocol/packet';
+import {boundsOfBoxes, surfaceBoxesOf, meets} from '../core/protocol/surface_boxes';
+import {inOrder, kNoViewRequest, wireView} from '../core/protocol/view_request';
 
 const kSize = 65536;
 /** A triangle in the middle of the 8th 16th along each axis. */

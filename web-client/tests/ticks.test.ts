@@ -1,8 +1,8 @@
 import {expect, test} from 'vitest';
-import {niceTicks} from '../core/ticks';
+import {niceTicks} from '../core/picture/ticks';
 
-const labels = (low: number, high: number, most = 6): string[] =>
-  niceTicks(low, high, most).ticks.map(({label}) => label);
+const labels = (low: number, high: number, max = 6): string[] =>
+  niceTicks(low, high, max).ticks.map(({label}) => label);
 
 test('stepsAreRound', () => {
   expect(labels(0, 1)).toEqual(['0.0', '0.2', '0.4', '0.6', '0.8', '1.0']);

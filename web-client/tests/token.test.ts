@@ -1,8 +1,8 @@
 import {afterEach, beforeEach, expect, test, vi} from 'vitest';
-import {reconnectDelayMs} from '../core/backoff';
-import {SocketTransport} from '../core/socket_transport';
-import {fetchWith, ticketUrl} from '../core/token';
-import type {Fetch} from '../core/ranged_file';
+import {reconnectDelayMs} from '../core/transport/backoff';
+import {SocketTransport} from '../core/transport/socket_transport';
+import {fetchWith, ticketUrl} from '../core/transport/token';
+import type {Fetch} from '../core/transport/ranged_file';
 import {FakeSocket} from './fakes';
 
 const kStream = 'wss://x/v1/stream';
@@ -65,20 +65,20 @@ test('aServerWithoutTokensNeedsNoTicketAndARefusalIsFinal', async () => {
 function transportOver(fetch: Fetch): {
   urls: string[];
   sockets: FakeSocket[];
-  heard: string[];
+  received: string[];
   transport: SocketTransport;
 } {
   const urls: string[] = [],
     sockets: FakeSocket[] = [],
-    heard: string[] = [];
+    received: string[] = [];
   const transport = new SocketTransport(
     () => ticketUrl(kStream, 'secret', fetch),
     {
-      connected: () => heard.push('connected'),
+      connected: () => received.push('connected'),
       message: () => undefined,
       frame: () => undefined,
-      down: (attempt) => heard.push(`down ${attempt}`),
-      failed: ({code}) => heard.push(`failed ${code}`),
+      down: (attempt) => received.push(`down ${attempt}`),
+      failed: ({code}) => received.push(`failed ${code}`),
     },
     (url) => {
       urls.push(url);
@@ -87,12 +87,12 @@ function transportOver(fetch: Fetch): {
     },
     () => 0.5,
   );
-  return {urls, sockets, heard, transport};
+  return {urls, sockets, received, transport};
 }
 
 test('everyConnectionHasATicketOfItsOwn', async () => {
   vi.useFakeTimers();
-  const {urls, sockets, heard, transport} = transportOver(
+  const {urls, sockets, received, transport} = transportOver(
     fake(ticket('t1'), new Error('offline'), ticket('t2')),
   );
   transport.connect();
@@ -100,7 +100,7 @@ test('everyConnectionHasATicketOfItsOwn', async () => {
   sockets[0]!.accept();
   sockets[0]!.lose(1006);
   await vi.advanceTimersByTimeAsync(reconnectDelayMs(0, 0.5));
-  expect(heard).toEqual(['connected', 'down 1', 'down 2']);
+  expect(received).toEqual(['connected', 'down 1', 'down 2']);
   await vi.advanceTimersByTimeAsync(reconnectDelayMs(1, 0.5));
   expect(urls).toEqual([`${kStream}?ticket=t1`, `${kStream}?ticket=t2`]);
 });
@@ -108,7 +108,7 @@ test('everyConnectionHasATicketOfItsOwn', async () => {
 test('aTicketThatIsRefusedEndsItAndOneThatComesTooLateIsNotUsed', async () => {
   const refused = transportOver(fake(new Response('', {status: 401})));
   refused.transport.connect();
-  await vi.waitFor(() => expect(refused.heard).toEqual(['failed http']));
+  await vi.waitFor(() => expect(refused.received).toEqual(['failed http']));
   const late = transportOver(fake(ticket('t1')));
   late.transport.connect();
   late.transport.disconnect();

@@ -1,5 +1,5 @@
 import {expect, test} from 'vitest';
-import {extinctionOf, kOpacityPath, kTransferSteps, transferTables} from '../core/transfer';
+import {extinctionOf, kOpacityPath, kTransferSteps, transferTables} from '../core/picture/transfer';
 
 test('theTablesHoldExtinctionAndItsIntegral', () => {
   const {density, integral} = transferTables([0, 0.5], 'grey', false);

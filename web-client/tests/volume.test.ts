@@ -1,9 +1,9 @@
 import {expect, test} from 'vitest';
-import {cellAround} from '../core/cell_entry';
-import type {Vector} from '../core/cell_ray';
-import type {FieldScale} from '../core/field_scale';
-import {kHiddenCell, volumeCells} from '../core/volume';
-import {kRow, mostRows} from '../three/cell_textures';
+import type {Vector} from '../core/protocol/geometry';
+import {cellAround} from '../core/picture/cell_entry';
+import type {FieldScale} from '../core/picture/field_scale';
+import {kHiddenCell, volumeCells} from '../core/picture/volume';
+import {kRow, maxRows} from '../three/cell_textures';
 import {raysOf} from '../three/rays';
 import {Matrix4, PerspectiveCamera, Vector3} from 'three';
 import {allVertices, cubes} from './cubes';
@@ -136,9 +136,9 @@ test('rowsAreThoseOfTheLargestTexture', () => {
     valued((v) => v),
     null,
   );
-  expect(mostRows(cells)).toBe(1);
+  expect(maxRows(cells)).toBe(1);
   const of = (links: number, vertices: number, entries: number): number =>
-    mostRows({
+    maxRows({
       ...cells,
       links: {length: links} as Uint32Array,
       vertices: {length: vertices} as Float32Array,

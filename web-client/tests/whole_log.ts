@@ -2,12 +2,12 @@
 // codec, which QTET_WASM names (ctest sets it).
 
 import {readFileSync} from 'node:fs';
-import {Assembler} from '../core/assembler';
-import {headBytesOf} from '../core/block_source';
-import {WasmCodec} from '../core/codec';
-import type {ValueDecoder} from '../core/draco';
-import {QtetError} from '../core/errors';
-import {kFirstFieldPart, kHeadPart} from '../core/parts';
+import {Assembler} from '../core/decode/assembler';
+import {headBytesOf} from '../core/transport/block_source';
+import {WasmCodec} from '../core/decode/codec';
+import type {ValueDecoder} from '../core/decode/draco';
+import {QtetError} from '../core/protocol/errors';
+import {kFirstFieldPart, kHeadPart} from '../core/protocol/parts';
 
 /** If empty, tests that need it are skipped. */
 export const kTestWasm = process.env.QTET_WASM ?? '';

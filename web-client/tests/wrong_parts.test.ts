@@ -1,6 +1,6 @@
 import {expect, test} from 'vitest';
-import type {FieldInfo, Manifest} from '../core/manifest';
-import {unfittingParts, wrongParts} from '../viewer/wrong_parts';
+import type {FieldInfo, Manifest} from '../core/protocol/manifest';
+import {unfittingParts, wrongParts} from '../viewer/settings/wrong_parts';
 
 const reading =
   (attributes: Record<string, string>) =>

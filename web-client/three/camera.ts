@@ -17,9 +17,9 @@ const kUp = new Vector3(0, 0, 1);
 /** The share of the free width or height that a fitted mesh fills. */
 const kFill = 0.88;
 /** The least distance of the eye from the target of a fitted view, in radii. */
-const kLeastDistance = 0.05;
+const kMinDistance = 0.05;
 /** The least distance of the near plane from the eye, in radii. */
-export const kLeastNear = 0.01;
+export const kMinNear = 0.01;
 /** The largest distance of anything from the middle, in radii. */
 const kDepth = 2.5;
 
@@ -33,7 +33,7 @@ export interface Framing {
 }
 
 export class OrbitCamera {
-  readonly camera = new PerspectiveCamera(kFieldOfViewDegrees, 1, kLeastNear, 100);
+  readonly camera = new PerspectiveCamera(kFieldOfViewDegrees, 1, kMinNear, 100);
   readonly controls: OrbitControls;
   /** Until the user turns or zooms, the mesh stays fitted to the free space. */
   fitted = true;
@@ -173,7 +173,7 @@ export class OrbitCamera {
     this.camera.updateMatrixWorld();
     this.camera.matrixWorld.extractBasis(right, up, near);
     const target = new Vector3();
-    let distance = (kLeastDistance * tangentOf(kFieldOfViewDegrees)) / this.tangent();
+    let distance = (kMinDistance * tangentOf(kFieldOfViewDegrees)) / this.tangent();
     for (const [axis, free] of [
       [right, freeWidth * this.camera.aspect],
       [up, freeHeight],
@@ -197,7 +197,7 @@ export class OrbitCamera {
   /** Must be called before every frame. Tight depths keep the digits of a parallel view. */
   setDepths(): void {
     const distance = this.camera.position.length();
-    this.camera.near = Math.max(kLeastNear, distance - kDepth);
+    this.camera.near = Math.max(kMinNear, distance - kDepth);
     this.camera.far = distance + kDepth;
     this.camera.updateProjectionMatrix();
   }

@@ -16,9 +16,9 @@ import {
   type PixelFormat,
   type TextureDataType,
 } from 'three';
-import {cellAround} from '../core/cell_entry';
-import type {Vector} from '../core/cell_ray';
-import type {VolumeCells} from '../core/volume';
+import type {Vector} from '../core/protocol/geometry';
+import {cellAround} from '../core/picture/cell_entry';
+import type {VolumeCells} from '../core/picture/volume';
 
 /**
  * Texels in a row: a power of two. Nearly every GPU with WebGL 2 takes such rows, most of them four
@@ -71,7 +71,7 @@ export class CellTextures {
 }
 
 /** The rows of the largest texture of these cells. */
-export function mostRows({vertices, links, entries}: VolumeCells): number {
+export function maxRows({vertices, links, entries}: VolumeCells): number {
   return Math.max(heightOf(vertices, 4), heightOf(links, 2), heightOf(entries, 4));
 }
 

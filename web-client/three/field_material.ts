@@ -13,7 +13,7 @@ import {
   type ColorRepresentation,
   Color,
 } from 'three';
-import {colorTable, kColorMapEntries, type ColorMapName} from '../core/color_maps';
+import {colorTable, kColorMapEntries, type ColorMapName} from '../core/picture/color_maps';
 
 const kVertexShader = /* glsl */ `
   in float value;

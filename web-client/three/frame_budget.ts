@@ -4,7 +4,7 @@
 /** The most time for a picture while something moves. */
 export const kMovingMs = 60;
 /** The least share of the canvas's pixels, each way: with fewer, nothing is recognisable. */
-const kLeastShare = 0.2;
+const kMinShare = 0.2;
 /** Polling takes time from the workers. It is rarer the longer a picture takes. */
 const kPollMs = 4;
 const kPollShare = 0.125;
@@ -52,7 +52,7 @@ export class FrameBudget {
   share(): number {
     if (this.fixed + this.perPicture <= kMovingMs) return 1;
     return Math.max(
-      kLeastShare,
+      kMinShare,
       Math.min(1, Math.sqrt(Math.max(0, kMovingMs - this.fixed) / this.perPicture)),
     );
   }

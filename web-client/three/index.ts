@@ -4,7 +4,7 @@
 export {OrbitCamera, type CameraState} from './camera';
 export {kDirections, type Direction} from './directions';
 export {FieldMaterial} from './field_material';
-export {openView} from './far_view';
+export {openView} from './worker_view';
 export {MeshView} from './mesh_view';
 export type {Pose} from './pose';
 export {SoupMesh} from './soup_mesh';

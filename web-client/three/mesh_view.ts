@@ -1,18 +1,21 @@
-// A canvas that shows a progressive mesh: surface, cuts and isosurfaces. It draws only after
+// A canvas that shows a progressive mesh: surface, cuts and layers. It draws only after
 // changes.
 
 import {Frustum, Group, Matrix4, Scene, Vector3, WebGLRenderer} from 'three';
-import type {Ray, Vector} from '../core/cell_ray';
-import {kMaxPlanes} from '../core/display';
-import {transferTables} from '../core/transfer';
-import type {VolumeCells} from '../core/volume';
-import type {TriangleSoup} from '../core/triangle_soup';
-import type {Snapshot} from '../core/worker_messages';
-import {kRow, mostRows} from './cell_textures';
+import type {Vector} from '../core/protocol/geometry';
+import type {Ray} from '../core/picture/cell_ray';
+import {kLayers} from '../core/layers/layers';
+import {soupOf} from '../core/layers/shown';
+import {kMaxPlanes} from '../core/picture/display';
+import {transferTables} from '../core/picture/transfer';
+import type {VolumeCells} from '../core/picture/volume';
+import type {TriangleSoup} from '../core/picture/triangle_soup';
+import type {Snapshot} from '../core/session/worker_messages';
+import {kRow, maxRows} from './cell_textures';
 import {OrbitCamera, type CameraState, type Framing} from './camera';
 import {checkedDirection, type Direction} from './directions';
 import {cornersOf, outlineOf} from './outline';
-import {pixelRatioOf, surfaceOf, watchSize, type ViewCanvas} from './far_canvas';
+import {pixelRatioOf, surfaceOf, watchSize, type ViewCanvas} from './worker_canvas';
 import {whenDrawn} from './frame_budget';
 import {checkedCamera, project, rayAt, type Pose} from './pose';
 import {SoupMesh} from './soup_mesh';
@@ -34,7 +37,9 @@ export class MeshView implements View {
   /** Maps lattice coordinates to a ball of radius 1 round the origin. */
   private readonly lattice = new Group();
   private readonly surface = new SoupMesh(true);
-  private readonly isosurface = new SoupMesh(true, true);
+  private readonly layers = kLayers.flatMap((layer) =>
+    layer.draw ? [{layer, draw: layer.draw, mesh: new SoupMesh(true, true)}] : [],
+  );
   private readonly cuts = Array.from({length: kMaxPlanes}, () => new SoupMesh(false));
   private readonly volume: VolumeView;
   /** The user has changed something since the last picture; new levels alone do not count. */
@@ -73,7 +78,7 @@ export class MeshView implements View {
       (working) => listeners.works?.(working),
     );
     this.orbit = new OrbitCamera(canvas as HTMLCanvasElement, () => this.invalidate());
-    this.lattice.add(this.surface, this.isosurface, ...this.cuts);
+    this.lattice.add(...this.meshes());
     this.scene.add(this.lattice);
     this.surfaceCanvas.addEventListener('webglcontextlost', this.onLost);
     this.surfaceCanvas.addEventListener('webglcontextrestored', this.onRestored);
@@ -86,8 +91,12 @@ export class MeshView implements View {
     this.afterFrame.push(drawn);
     this.invalidate(snapshot.volume == null);
     if (snapshot.surface) this.surface.show(snapshot.surface);
-    if (snapshot.isosurface) this.isosurface.show(snapshot.isosurface);
-    for (const mesh of [this.surface, this.isosurface]) mesh.material.setClip(snapshot.planes);
+    for (const {layer, mesh} of this.layers) {
+      const soup = soupOf(snapshot, layer);
+      if (soup) mesh.show(soup);
+      mesh.material.setClip(snapshot.planes);
+    }
+    this.surface.material.setClip(snapshot.planes);
     if (snapshot.volume !== undefined) this.volume.take(this.fitting(snapshot.volume));
     this.volume.setClip(snapshot.planes);
     this.cuts.forEach((mesh, i) => {
@@ -131,18 +140,17 @@ export class MeshView implements View {
     this.invalidate();
   }
 
-  setLook(wanted: Look): void {
-    const {map, reversed, edges, opacity, volume} = wanted;
+  setLook(next: Look): void {
+    const {map, reversed, edges, opacity, volume} = next;
     const look = JSON.stringify([map, reversed, edges, opacity, volume]);
     // it is called with every attribute change, and a picture costs more than a comparison
     if (look === this.shownLook) return;
     this.shownLook = look;
     for (const mesh of this.meshes()) {
       mesh.material.setColorMap(map, reversed);
-      // An isosurface's polygons are sections of cells, not the mesh. Their edges would hide its
-      // shape.
-      mesh.material.setEdges(edges && mesh !== this.isosurface ? kEdgeStrength : 0);
+      mesh.material.setEdges(edges ? kEdgeStrength : 0);
     }
+    for (const {draw, mesh} of this.layers) if (!draw.edges) mesh.material.setEdges(0);
     this.surface.material.setOpacity(opacity);
     const transfer = volume ? `${map} ${reversed} ${volume.join()}` : '';
     if (volume && transfer !== this.transfer)
@@ -314,7 +322,7 @@ export class MeshView implements View {
   };
 
   private meshes(): SoupMesh[] {
-    return [this.surface, this.isosurface, ...this.cuts];
+    return [this.surface, ...this.layers.map(({mesh}) => mesh), ...this.cuts];
   }
 
   private placeLattice(): void {
@@ -393,11 +401,11 @@ export class MeshView implements View {
 
   /** Returns null and reports an error if the cells do not fit into the graphics' textures. */
   private fitting(cells: VolumeCells | null): VolumeCells | null {
-    const most = this.renderer.capabilities.maxTextureSize;
-    if (!cells || mostRows(cells) <= most) return cells;
+    const maxSize = this.renderer.capabilities.maxTextureSize;
+    if (!cells || maxRows(cells) <= maxSize) return cells;
     reportError(
       new Error(
-        `the graphics take no volume of more than ${((most * kRow) / 4e6).toFixed(1)} million ` +
+        `the graphics take no volume of more than ${((maxSize * kRow) / 4e6).toFixed(1)} million ` +
           'cells; set Refine to fewer',
       ),
     );

@@ -1,12 +1,12 @@
 // Points that stand for a mesh when a camera is fitted to it.
 
-import type {Vector} from '../core/cell_ray';
-import type {TriangleSoup} from '../core/triangle_soup';
+import type {Vector} from '../core/protocol/geometry';
+import type {TriangleSoup} from '../core/picture/triangle_soup';
 
 /** So many directions bound a mesh to a few per cent. */
 const kDirections = 128;
 /** Only every n-th corner of a larger surface counts: 2.5 million products take 5 ms. */
-const kMostCorners = 20000;
+const kMaxCorners = 20000;
 
 /**
  * The farthest points of a surface in many directions; the corners of its bounds if there is no
@@ -15,7 +15,7 @@ const kMostCorners = 20000;
 export function outlineOf(surface: TriangleSoup | undefined, bounds: number[]): Vector[] {
   const positions = surface?.positions ?? new Float32Array(0);
   if (positions.length === 0) return cornersOf(bounds);
-  const stride = 3 * Math.ceil(positions.length / 3 / kMostCorners);
+  const stride = 3 * Math.ceil(positions.length / 3 / kMaxCorners);
   const farthest = new Map<number, Vector>();
   for (const [x, y, z] of directions()) {
     let best = -Infinity;

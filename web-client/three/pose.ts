@@ -1,8 +1,8 @@
 // The pose of a view: it turns points of the lattice into places on the canvas and back. It is
 // plain data, so that it can pass between threads.
 
-import type {Ray, Vector} from '../core/cell_ray';
-import type {Plane} from '../core/slice';
+import type {Vector, Plane} from '../core/protocol/geometry';
+import type {Ray} from '../core/picture/cell_ray';
 import type {CameraState} from './camera';
 
 /** 16 numbers, column by column. */

@@ -24,9 +24,9 @@ import {
   type DataTexture,
   type WebGLRenderer,
 } from 'three';
-import type {Vector} from '../core/cell_ray';
-import type {TransferTables} from '../core/transfer';
-import {kLeastNear} from './camera';
+import type {Vector} from '../core/protocol/geometry';
+import type {TransferTables} from '../core/picture/transfer';
+import {kMinNear} from './camera';
 import {tableTexture, type CellTextures} from './cell_textures';
 import type {DeepTarget} from './deep_target';
 import type {Matrix} from './pose';
@@ -193,7 +193,7 @@ export class RayCaster {
     its.picture!.value = deep.volume.texture;
     its.isFirst!.value = true;
     // starts at the eye if that is close
-    its.distances!.value = [Math.max(0, from - kLeastNear), to];
+    its.distances!.value = [Math.max(0, from - kMinNear), to];
     its.middle!.value = [deep.width / 2, deep.height / 2];
     (its.toCanvas!.value as Matrix4).fromArray(toCanvas);
     for (const target of this.targets) target.setSize(deep.width, deep.height);

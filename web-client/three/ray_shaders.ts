@@ -7,7 +7,7 @@
 // After R. Marmitt and P. Slusallek, "Fast ray traversal of tetrahedral and hexahedral meshes for
 // direct volume rendering", EuroVis 2006.
 
-import {kTransferSteps} from '../core/transfer';
+import {kTransferSteps} from '../core/picture/transfer';
 import {kRow, kRowBits} from './cell_textures';
 
 /** This opacity hides the rest: less than a step of 255 is missing. */
@@ -206,17 +206,17 @@ export const kRayFragmentShader = /* glsl */ `${kHead}
     vec4 p[4] = vec4[4](seen(ids.x), seen(ids.y), seen(ids.z), seen(ids.w));
     int found = 0;
     float nearest = 0.0;
-    float most = -1e30;
+    float maxInside = -1e30;
     for (int i = 0; i < 4; ++i) {
       vec4 a = p[(i + 1) & 3], b = p[(i + 2) & 3], c = p[(i + 3) & 3];
       vec3 shares = areasOf(a, b, c);
       shares /= shares.x + shares.y + shares.z;
       float inside = min(min(shares.x, shares.y), shares.z);
       float depth = through(a, b, c, shares).x;
-      if (inside >= 0.0 && most >= 0.0 ? depth < nearest : inside > most) {
+      if (inside >= 0.0 && maxInside >= 0.0 ? depth < nearest : inside > maxInside) {
         found = i;
         nearest = depth;
-        most = inside;
+        maxInside = inside;
       }
     }
     ids = uvec4(ids[(found + 1) & 3], ids[(found + 2) & 3], ids[(found + 3) & 3], ids[found]);

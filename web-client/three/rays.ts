@@ -2,7 +2,7 @@
 // plane. The eye of a parallel view is a thousand times as far away as the mesh is large. Single
 // floats relative to it would be wrong.
 
-import type {Vector} from '../core/cell_ray';
+import type {Vector} from '../core/protocol/geometry';
 import type {Matrix} from './pose';
 
 export interface Rays {

@@ -2,7 +2,7 @@
 // that differ are uploaded.
 
 import {BufferAttribute, BufferGeometry, DynamicDrawUsage, Mesh, Sphere, Vector3} from 'three';
-import type {TriangleSoup} from '../core/triangle_soup';
+import type {TriangleSoup} from '../core/picture/triangle_soup';
 import {copyChanged} from './changed_ranges';
 import {FieldMaterial} from './field_material';
 

@@ -1,10 +1,11 @@
 // A picture as a viewer needs it, whether it is drawn on the page's thread (MeshView) or in a
-// worker (FarView).
+// worker (WorkerView).
 
-import type {Ray, Vector} from '../core/cell_ray';
-import type {ColorMapName} from '../core/color_maps';
-import type {CoarseCells} from '../core/volume';
-import type {Snapshot} from '../core/worker_messages';
+import type {Vector} from '../core/protocol/geometry';
+import type {Ray} from '../core/picture/cell_ray';
+import type {ColorMapName} from '../core/picture/color_maps';
+import type {CoarseCells} from '../core/picture/volume';
+import type {Snapshot} from '../core/session/worker_messages';
 import type {CameraState} from './camera';
 import type {Direction} from './directions';
 import type {Pose, Size} from './pose';

@@ -1,9 +1,9 @@
 // Messages between a page and the worker that draws for it. A snapshot's arrays are transferred.
 
-import type {CoarseCells} from '../core/volume';
-import type {Snapshot} from '../core/worker_messages';
+import type {CoarseCells} from '../core/picture/volume';
+import type {Snapshot} from '../core/session/worker_messages';
 import type {CameraState} from './camera';
-import type {FarEvent, FarSize} from './far_canvas';
+import type {CanvasEvent, CanvasSize} from './worker_canvas';
 import type {Pose} from './pose';
 import type {View} from './view';
 
@@ -23,11 +23,11 @@ export type Command =
 
 export type ToView =
   /** The first message. */
-  | {type: 'begin'; canvas: OffscreenCanvas; size: FarSize; answers: boolean}
+  | {type: 'begin'; canvas: OffscreenCanvas; size: CanvasSize; answers: boolean}
   | {[Name in Command]: {type: 'command'; name: Name; words: Parameters<View[Name]>}}[Command]
   | {type: 'camera'; state: CameraState}
-  | {type: 'size'; size: FarSize}
-  | {type: 'event'; event: FarEvent}
+  | {type: 'size'; size: CanvasSize}
+  | {type: 'event'; event: CanvasEvent}
   | {type: 'show'; id: number; snapshot: Snapshot}
   | {type: 'picture'; id: number; background: string}
   /** Asks whether the worker responds. */

@@ -1,21 +1,21 @@
 // Draws for a page, as a MeshView in a worker. So the page never waits for the graphics, which may
 // take seconds to start and to compile. If workers cannot draw, the page loads this script itself
-// and gets its MeshView (far_view.ts).
+// and gets its MeshView (worker_view.ts).
 
-import {errorText} from '../core/errors';
-import type {CoarseCells} from '../core/volume';
-import {FarCanvas} from './far_canvas';
+import {errorText} from '../core/protocol/errors';
+import type {CoarseCells} from '../core/picture/volume';
+import {WorkerCanvas} from './worker_canvas';
 import {MeshView} from './mesh_view';
 import type {FromView, ToView} from './view_messages';
 
 declare global {
-  /** On a page, the class for far_view.ts. */
+  /** On a page, the class for worker_view.ts. */
   var qtetMeshView: typeof MeshView | undefined;
   /** For debugging and tests. */
   var qtetView: MeshView | undefined;
 }
 
-let canvas: FarCanvas | null = null;
+let canvas: WorkerCanvas | null = null;
 let view: MeshView | null = null;
 let nextId = 0;
 const asked = new Map<number, {resolve(cells: CoarseCells): void; reject(why: Error): void}>();
@@ -32,7 +32,7 @@ function coarse(have: number): Promise<CoarseCells> {
 }
 
 function begin({canvas: surface, size, answers}: Extract<ToView, {type: 'begin'}>): void {
-  canvas = new FarCanvas(surface);
+  canvas = new WorkerCanvas(surface);
   canvas.resize(size);
   try {
     view = globalThis.qtetView = new MeshView(canvas, {

@@ -3,8 +3,8 @@
 // pixels, so that the next movement waits for a strip and not for the picture.
 
 import type {PerspectiveCamera, Scene, WebGLRenderer} from 'three';
-import type {TransferTables} from '../core/transfer';
-import {kCoarseCells, type CoarseCells, type VolumeCells} from '../core/volume';
+import type {TransferTables} from '../core/picture/transfer';
+import {kCoarseCells, type CoarseCells, type VolumeCells} from '../core/picture/volume';
 import {CellTextures} from './cell_textures';
 import {DeepTarget} from './deep_target';
 import {FrameBudget, kMovingMs, reachesPixels, whenDrawn} from './frame_budget';
@@ -30,7 +30,7 @@ const kMaxLayers = 256;
 /** A mesh of cells. */
 interface Layered {
   /** May differ from `shown`: a picture that is being drawn keeps its cells. */
-  wanted: VolumeCells | null;
+  requested: VolumeCells | null;
   of: VolumeCells | null;
   shown: CellTextures | null;
   /**
@@ -47,7 +47,7 @@ export interface Picture extends Sight {
   camera: PerspectiveCamera;
 }
 
-const layered = (): Layered => ({wanted: null, of: null, shown: null, layers: 1});
+const layered = (): Layered => ({requested: null, of: null, shown: null, layers: 1});
 
 export class VolumeView {
   private readonly fine = layered();
@@ -78,7 +78,7 @@ export class VolumeView {
   ) {}
 
   get hasCells(): boolean {
-    return this.fine.wanted !== null;
+    return this.fine.requested !== null;
   }
   /** The graphics are drawing. */
   get busy(): boolean {
@@ -90,11 +90,11 @@ export class VolumeView {
   }
 
   take(cells: VolumeCells | null): void {
-    this.fine.wanted = cells;
+    this.fine.requested = cells;
     this.whole = false;
     this.coarseState = 'stale'; // it may belong to another field now; its next answer tells
     if (cells) return;
-    this.coarse.wanted = null;
+    this.coarse.requested = null;
     this.coarseVersion = -1;
     this.interrupt();
     if (!this.busy) this.update();
@@ -156,7 +156,7 @@ export class VolumeView {
 
   dispose(): void {
     this.interrupt();
-    this.fine.wanted = this.coarse.wanted = null;
+    this.fine.requested = this.coarse.requested = null;
     this.update();
     this.deep.dispose();
     this.caster.dispose();
@@ -165,9 +165,9 @@ export class VolumeView {
   /** Takes the new cells. REQUIRES: no picture is being drawn. */
   private update(): void {
     for (const its of [this.fine, this.coarse]) {
-      if (its.wanted === its.of) continue;
+      if (its.requested === its.of) continue;
       its.shown?.dispose();
-      its.of = its.wanted;
+      its.of = its.requested;
       its.shown = its.of && new CellTextures(its.of);
     }
   }
@@ -182,9 +182,9 @@ export class VolumeView {
     if (!this.askCoarse) return end('none');
     this.askCoarse(this.coarseVersion).then(
       ({version, cells}) => {
-        if (cells) this.coarse.wanted = cells;
+        if (cells) this.coarse.requested = cells;
         this.coarseVersion = version;
-        end(this.coarse.wanted ? 'here' : 'none');
+        end(this.coarse.requested ? 'here' : 'none');
       },
       () => end('none'),
     );
@@ -258,8 +258,8 @@ export class VolumeView {
       const reaches = layer < 0 || reachesPixels(gl, () => caster.enter(renderer));
       if (layer > 0 && !(await reaches)) break;
       for (let row = 0; row < deep.height;) {
-        const most = rate > 0 ? Math.min(rate * kStripMs, kStripGrowth * last) : kFirstPixels;
-        const rows = Math.min(deep.height - row, Math.ceil(most / deep.width));
+        const maxPixels = rate > 0 ? Math.min(rate * kStripMs, kStripGrowth * last) : kFirstPixels;
+        const rows = Math.min(deep.height - row, Math.ceil(maxPixels / deep.width));
         last = rows * deep.width;
         const start = performance.now();
         caster.cast(renderer, deep, row, rows);

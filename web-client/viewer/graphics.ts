@@ -1,14 +1,14 @@
 // The graphics of a viewer: they start, may be lost, come back, and can be restarted.
 
-import {errorText} from '../core/errors';
-import type {CoarseCells} from '../core/volume';
+import type {CoarseCells} from '../core/picture/volume';
+import {errorText} from '../core/protocol/errors';
 import type {CameraState} from '../three/camera';
 import type {Direction} from '../three/directions';
-import {openView} from '../three/far_view';
 import type {View} from '../three/view';
-import {find} from './find';
-import type {Notices} from './notices';
-import {Triad} from './triad';
+import {openView} from '../three/worker_view';
+import {find} from './page/find';
+import type {Notices} from './page/notices';
+import {OrientationAxes} from './panels/orientation_axes';
 
 /** Where a view begins: a camera, a standard view, or null for the first view of a mesh. */
 export type ViewStart = CameraState | Direction | null;
@@ -78,10 +78,10 @@ export class Graphics {
   }
 
   private openOn(canvas: HTMLCanvasElement): Promise<View> {
-    const triad = new Triad(find<SVGSVGElement>(this.root, '.triad'));
+    const axes = new OrientationAxes(find<SVGSVGElement>(this.root, '.orientation-axes'));
     return openView(canvas, {
       drawn: ({rotation}) => {
-        triad.turn(rotation);
+        axes.turn(rotation);
         this.listeners.drawn();
       },
       lost: (lost) => this.tellOfLoss(lost),

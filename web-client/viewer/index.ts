@@ -1,6 +1,6 @@
 // qtet: the viewer's class; qtet/element also defines <qtet-viewer>.
 
-export type {QtetViewerAttributes, QtetViewerEventMap} from './events';
+export type {QtetViewerAttributes, QtetViewerEventMap} from './page/events';
 export {QtetViewer} from './qtet_viewer';
-export {kViewAttributes, type ViewAttribute} from './settings';
-export {embedSnippet, linkTo} from './share';
+export {kViewAttributes, type ViewAttribute} from './settings/settings';
+export {embedSnippet, linkTo} from './settings/share';

@@ -2,10 +2,10 @@
 // so that a link is a picture.
 
 import './element';
+import {trustOwnWorkers} from './page/trusted';
 import type {QtetViewer} from './qtet_viewer';
-import {kViewAttributes} from './settings';
-import {linkTo} from './share';
-import {trustOwnWorkers} from './trusted';
+import {kViewAttributes} from './settings/settings';
+import {linkTo} from './settings/share';
 
 declare global {
   interface Window {

@@ -31,22 +31,22 @@
 // Methods        digest(), pause(), resume(), resetView(), look(direction), picture().
 // Properties     counts, statistics, state, view, cameraState, token.
 
-import {Client} from '../core/client';
-import type {Counts} from '../core/counts';
-import type {Manifest} from '../core/manifest';
-import {kNoStatistics, type Statistics} from '../core/statistics';
-import type {StreamState} from '../core/worker_messages';
+import {kNoStatistics, type Statistics} from '../core/decode/statistics';
+import type {Counts} from '../core/protocol/counts';
+import type {Manifest} from '../core/protocol/manifest';
+import {Client} from '../core/session/client';
+import type {StreamState} from '../core/session/worker_messages';
 import type {CameraState} from '../three/camera';
 import {checkedDirection, type Direction} from '../three/directions';
 import {checkedCamera} from '../three/pose';
 import type {View} from '../three/view';
-import type {QtetViewerEventMap} from './events';
-import {chosenMesh} from './mesh_menu';
-import type {Kept, Page} from './page';
-import {kViewAttributes, type ViewAttribute} from './settings';
+import type {QtetViewerEventMap} from './page/events';
+import type {Kept, Page} from './page/page';
+import {adopt, setMarkup} from './page/trusted';
+import {chosenMesh} from './panels/mesh_menu';
+import {kViewAttributes, type ViewAttribute} from './settings/settings';
 import styles from './style.css?inline';
 import {kTemplate} from './template';
-import {adopt, setMarkup} from './trusted';
 import {Viewing} from './viewing';
 
 export class QtetViewer extends HTMLElement {
@@ -217,7 +217,7 @@ export class QtetViewer extends HTMLElement {
     const {settings, view} = viewing;
     if (name === 'camera' && settings.camera && view) view.cameraState = settings.camera;
     if (name === 'transport') viewing.apply();
-    if (!isOfStream) this.page.tell('view-change', {name, value: after});
+    if (!isOfStream) this.page.dispatch('view-change', {name, value: after});
   }
 }
 
@@ -236,7 +236,7 @@ function pageOf(element: QtetViewer, root: ShadowRoot): Page {
       else element.setAttribute(name, value);
     },
     read: (name: string) => element.getAttribute(name),
-    tell: (type: string, detail: unknown) =>
+    dispatch: (type: string, detail: unknown) =>
       void element.dispatchEvent(new CustomEvent(type, {detail})),
     announce: (text: string) => {
       const live = root.querySelector('.live');

@@ -1,13 +1,14 @@
 // A viewer's requests to its worker: what to show, and what to refine first. Each request is sent
 // only if it has changed.
 
-import type {Vector} from '../core/cell_ray';
-import type {Client} from '../core/client';
-import type {Display} from '../core/display';
-import type {Plane} from '../core/slice';
-import {planeOf} from './clip_plane';
-import {fieldValuesOf, sharesOf, shownScalar, type Settings, type ViewAttribute} from './settings';
-import type {ShownMesh} from './shown_mesh';
+import {sharesOf} from '../core/layers/field_values';
+import {fieldLayers} from '../core/layers/layers';
+import {kPlainDisplay, type Display} from '../core/picture/display';
+import type {Vector, Plane} from '../core/protocol/geometry';
+import type {Client} from '../core/session/client';
+import type {ShownMesh} from './page/shown_mesh';
+import {planeOf} from './settings/clip_plane';
+import {shownScalar, type Settings, type ViewAttribute} from './settings/settings';
 
 export class Requests {
   /** The place that is pointed at, on the lattice. */
@@ -51,16 +52,17 @@ export function displayOf(
   read: (name: ViewAttribute) => string | null,
 ): Display {
   const {fields} = mesh.manifest!;
-  const iso = fieldValuesOf('iso', read('iso'), fields);
-  const threshold = fieldValuesOf('threshold', read('threshold'), fields);
-  const [low, high] = threshold ? sharesOf(threshold, fields) : [];
-  return {
+  const display: Display = {
+    ...kPlainDisplay,
     color: shownScalar(read('field'), fields, mesh.firstField),
     body: settings.surface && settings.volume === null,
     mode: settings.planes.length > 0 ? settings.mode : 'cut',
     planes: planesOf(settings, mesh),
-    isosurfaces: iso && {scalar: iso.scalar, values: sharesOf(iso, fields)},
     volume: settings.volume !== null,
-    threshold: threshold && {scalar: threshold.scalar, low: low!, high: high!},
   };
+  for (const layer of fieldLayers()) {
+    const request = layer.read(read(layer.name), fields);
+    layer.put(display, request && {...request, values: sharesOf(request, fields)});
+  }
+  return display;
 }

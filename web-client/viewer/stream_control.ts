@@ -1,19 +1,33 @@
 // Decides which mesh of which server comes to a viewer, and whether it comes: opens, pauses,
 // refines.
 
-import {kTransportKinds} from '../core/auto_transport';
-import type {Client} from '../core/client';
-import {errorCode, errorText, QtetError} from '../core/errors';
-import {kFull, type Limit} from '../core/limit';
-import {kMostCompared} from '../core/wanted';
-import type {StreamState} from '../core/worker_messages';
-import {fetchCatalog, isLogFile, logUrl, meshOfLog, streamUrl, type MeshEntry} from './catalog';
-import {MeshMenu} from './mesh_menu';
-import type {Kept, Page} from './page';
-import {scalarKey} from './settings';
+import {scalarKey} from '../core/layers/field_values';
+import {fieldLayers} from '../core/layers/layers';
+import {errorCode, errorText, QtetError} from '../core/protocol/errors';
+import {kFull, type Limit} from '../core/protocol/limit';
+import type {Client} from '../core/session/client';
+import {kMaxCompared} from '../core/session/requested_part';
+import type {StreamState} from '../core/session/worker_messages';
+import {kTransportKinds} from '../core/transport/auto_transport';
+import {
+  fetchCatalog,
+  isLogFile,
+  logUrl,
+  meshOfLog,
+  streamUrl,
+  type MeshEntry,
+} from './page/catalog';
+import type {Kept, Page} from './page/page';
+import {MeshMenu} from './panels/mesh_menu';
 
 /** Attributes that belong to one mesh: another one has other fields, places and values. */
-const kOfOneMesh = ['field', 'range', 'iso', 'threshold', 'camera', 'quality'] as const;
+const kOfOneMesh = [
+  'field',
+  'range',
+  ...fieldLayers().map(({name}) => name),
+  'camera',
+  'quality',
+] as const;
 
 export interface StreamListeners {
   /** The limit to begin with. */
@@ -103,8 +117,8 @@ export class StreamControl {
   /** Fills the menu. Throws `not-found`. */
   private firstMesh(): string {
     const names = this.catalog.map(({id}) => id);
-    const wanted = isLogFile(this.base) ? null : this.page.read('mesh');
-    const mesh = wanted ?? names[0];
+    const named = isLogFile(this.base) ? null : this.page.read('mesh');
+    const mesh = named ?? names[0];
     if (mesh === undefined) {
       throw new QtetError(
         'not-found',
@@ -153,14 +167,15 @@ export class StreamControl {
   private firstFields(mesh: string): {fields: string[] | null; compare: boolean} {
     const {page} = this;
     const fields = this.catalog.find(({id}) => id === mesh)?.fields ?? [];
-    const withValues = (['iso', 'threshold'] as const).map((name) =>
-      page.read(name)?.replace(/=[^=]*$/, ''),
-    );
-    const named = [page.read('field') ?? undefined, ...withValues]
-      .filter((text) => text !== undefined)
+    const ofLayers = fieldLayers().map((layer) => {
+      const text = page.read(layer.name);
+      return text === null ? null : layer.fieldOf(text);
+    });
+    const named = [page.read('field'), ...ofLayers]
+      .filter((text) => text !== null)
       .map((text) => (fields.includes(text) ? text : scalarKey(text)));
     if (named.length > 0) return {fields: [...new Set(named)], compare: false};
-    const candidates = isLogFile(this.base) ? null : fields.slice(0, kMostCompared);
+    const candidates = isLogFile(this.base) ? null : fields.slice(0, kMaxCompared);
     return {fields: candidates, compare: true};
   }
 

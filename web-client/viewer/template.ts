@@ -1,8 +1,10 @@
 // The viewer's markup. All controls are native: they work with keyboard, touch and screen readers.
 
-import {kColorMapNames} from '../core/color_maps';
+import type {FieldLayer} from '../core/layers/layer';
+import {fieldLayers} from '../core/layers/layers';
+import {kColorMapNames} from '../core/picture/color_maps';
 import {kDirections} from '../three/directions';
-import {kKeyHelp} from './keys';
+import {kKeyHelp} from './page/keys';
 
 const kMapTitles = {
   viridis: 'Viridis',
@@ -39,6 +41,26 @@ const toggle = (name: string, title: string, checked = false): string =>
   `<label class="switch"><span class="name">${title}</span>` +
   `<input type="checkbox" role="switch" name="${name}"${checked ? ' checked' : ''}></label>`;
 
+/** The controls of a layer (value_panel.ts). */
+function controls({name, control}: FieldLayer): string {
+  const {title, fieldLabel, sliders, valuesLabel, hiddenHint} = control;
+  const ranges = sliders
+    .map((label) => `<input type="range" min="0" max="1000" aria-label="${label}">`)
+    .join('\n        ');
+  const hint = `
+        <p class="hint ${name}-hidden" hidden>${hiddenHint}
+          <button type="button" class="see-through">See through it</button></p>`;
+  return `${toggle(name, title)}
+      <div class="${name} sub" hidden>
+        <select name="${name}-field" aria-label="${fieldLabel}"></select>
+        ${ranges}
+        <label class="row">
+          <span class="name">${valuesLabel}</span>
+          <input type="text" name="${name}-values" autocomplete="off">
+        </label>${hiddenHint === undefined ? '' : hint}
+      </div>`;
+}
+
 const directions = kDirections
   .map((direction) => {
     const text = direction.replace('-', '\u2212');
@@ -66,7 +88,7 @@ export const kTemplate = `
 <slot name="poster"></slot>
 <canvas class="scene" part="canvas" tabindex="0" role="application" aria-label="3D view"></canvas>
 <div class="layer" aria-hidden="true"><svg class="marks"></svg></div>
-<svg class="triad" viewBox="-30 -30 60 60" aria-hidden="true"></svg>
+<svg class="orientation-axes" viewBox="-30 -30 60 60" aria-hidden="true"></svg>
 <div class="visually-hidden live" role="status" aria-live="polite"></div>
 
 <figure class="card legend" part="legend" hidden>
@@ -176,17 +198,10 @@ export const kTemplate = `
         <div class="planes"></div>
         <button type="button" class="add-plane">Add a plane</button>
       </div>
-      ${toggle('iso', 'Isosurfaces')}
-      <div class="iso sub" hidden>
-        <select name="iso-field" aria-label="Field of the isosurfaces"></select>
-        <input type="range" min="0" max="1000" aria-label="First isovalue">
-        <label class="row">
-          <span class="name">Values</span>
-          <input type="text" name="iso-values" autocomplete="off">
-        </label>
-        <p class="hint iso-hidden" hidden>The surface hides them.
-          <button type="button" class="see-through">See through it</button></p>
-      </div>
+      ${fieldLayers()
+        .filter(({draw}) => draw)
+        .map(controls)
+        .join('')}
       ${toggle('volume', 'Volume')}
       <div class="volume sub" hidden>
         <div class="bars" role="group" aria-label="Transfer function"></div>
@@ -196,16 +211,10 @@ export const kTemplate = `
           <button type="button" class="denser">Denser</button>
         </div>
       </div>
-      ${toggle('threshold', 'Threshold')}
-      <div class="threshold sub" hidden>
-        <select name="threshold-field" aria-label="Field of the threshold"></select>
-        <input type="range" min="0" max="1000" aria-label="Least value">
-        <input type="range" min="0" max="1000" aria-label="Largest value">
-        <label class="row">
-          <span class="name">From, to</span>
-          <input type="text" name="threshold-values" autocomplete="off">
-        </label>
-      </div>
+      ${fieldLayers()
+        .filter(({draw}) => !draw)
+        .map(controls)
+        .join('')}
     </section>
 
     <section>

@@ -1,26 +1,32 @@
 // A viewer while it is in a document: connects the stream, the graphics and the panels.
 
-import type {BaseFigures} from '../core/base_figures';
-import type {Vector} from '../core/cell_ray';
-import type {Client} from '../core/client';
-import {labelsOf} from '../core/labels';
-import type {Manifest} from '../core/manifest';
-import type {Statistics} from '../core/statistics';
-import type {FromWorker, Snapshot, StreamState} from '../core/worker_messages';
+import type {Statistics} from '../core/decode/statistics';
+import type {BaseFigures} from '../core/picture/base_figures';
+import {labelsOf} from '../core/picture/labels';
+import type {Vector} from '../core/protocol/geometry';
+import type {Manifest} from '../core/protocol/manifest';
+import type {Client} from '../core/session/client';
+import type {FromWorker, Snapshot, StreamState} from '../core/session/worker_messages';
 import type {View} from '../three/view';
-import {Actions, type ActionsHost} from './actions';
-import {CameraWatch} from './camera_watch';
-import {find} from './find';
 import {Graphics, type ViewStart} from './graphics';
-import {bindKeys} from './keys';
-import {Notices} from './notices';
-import type {Kept, Page} from './page';
-import {Panels, type PanelsHost} from './panels';
+import {Actions, type ActionsHost} from './page/actions';
+import {CameraWatch} from './page/camera_watch';
+import {find} from './page/find';
+import {bindKeys} from './page/keys';
+import {Notices} from './page/notices';
+import type {Kept, Page} from './page/page';
+import {settingsFor, ShownMesh} from './page/shown_mesh';
+import {Panels, type PanelsHost} from './panels/panels';
 import {displayOf, planesOf, Requests} from './requests';
-import {labelRange, readSettings, shownRange, type Settings, type ShownRange} from './settings';
-import {settingsFor, ShownMesh} from './shown_mesh';
+import {
+  labelRange,
+  readSettings,
+  shownRange,
+  type Settings,
+  type ShownRange,
+} from './settings/settings';
+import {unfittingParts, wrongParts} from './settings/wrong_parts';
 import {StreamControl} from './stream_control';
-import {unfittingParts, wrongParts} from './wrong_parts';
 
 export class Viewing implements ActionsHost, PanelsHost {
   mesh = new ShownMesh();
@@ -55,7 +61,7 @@ export class Viewing implements ActionsHost, PanelsHost {
       () => (this.view && this.mesh.snapshot ? this.view.cameraState : null),
       (state) => {
         this.lookAt();
-        page.tell('camera-change', state);
+        page.dispatch('camera-change', state);
       },
     );
     this.graphics = new Graphics(page.root, this.notices, {
@@ -155,7 +161,7 @@ export class Viewing implements ActionsHost, PanelsHost {
   failed(code: string, message: string): void {
     if (!this.page.element.isConnected) return;
     this.notices.add(code, message);
-    this.page.tell('error', {code, message});
+    this.page.dispatch('error', {code, message});
   }
 
   // ---- from the worker
@@ -177,7 +183,7 @@ export class Viewing implements ActionsHost, PanelsHost {
         return this.stream.enter(message.state, message.attempt, message.delayMs);
       case 'error':
         // A wrong name is a wrong attribute, and named as such.
-        if (message.code === 'unknown-field') return this.page.tell('error', message);
+        if (message.code === 'unknown-field') return this.page.dispatch('error', message);
         return this.failed(message.code, message.message);
     }
   }
@@ -198,7 +204,7 @@ export class Viewing implements ActionsHost, PanelsHost {
   private takeProgress(statistics: Statistics): void {
     this.mesh.statistics = statistics;
     this.panels?.progress.show(statistics);
-    this.page.tell('progress', statistics);
+    this.page.dispatch('progress', statistics);
   }
 
   private takePicture(snapshot: Snapshot): void {
@@ -230,7 +236,7 @@ export class Viewing implements ActionsHost, PanelsHost {
     view.show(snapshot, (drawingMs) => {
       if (mesh !== this.mesh) return; // it belongs to the previous mesh
       this.client.shown(drawingMs);
-      page.tell(mesh.drawn ? 'refine' : 'load', snapshot.statistics);
+      page.dispatch(mesh.drawn ? 'refine' : 'load', snapshot.statistics);
       mesh.drawn = snapshot.statistics;
       page.element.classList.add('loaded');
       this.tellComplete();
@@ -321,7 +327,7 @@ export class Viewing implements ActionsHost, PanelsHost {
     const {mesh, stream} = this;
     if (stream.state !== 'complete' || this.completeTold || !mesh.isDrawn) return;
     this.completeTold = true;
-    this.page.tell('complete', mesh.drawn);
+    this.page.dispatch('complete', mesh.drawn);
   }
 }
 

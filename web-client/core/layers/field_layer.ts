@@ -1,0 +1,35 @@
+// The common part of layers whose attribute is a field and values of it.
+
+import type {Display} from '../picture/display';
+import type {Scalar} from '../picture/field_scale';
+import type {FieldInfo} from '../protocol/manifest';
+import {parseFieldValues, parseNumbers, type FieldValues} from './field_values';
+import type {Control, FieldLayer} from './layer';
+
+type Common = Pick<FieldLayer, 'isRight' | 'read' | 'fieldOf' | 'put' | 'requestOf'>;
+
+/**
+ * Reads "FIELD=VALUE,VALUE" as the control allows. The request is in the display's `layers`, where
+ * a layer finds it if it has no member of its own.
+ */
+export function fieldLayer(name: string, {pointsOnly}: Control, count?: number): Common {
+  return {
+    isRight(text: string): boolean {
+      const {length} = parseNumbers(text.replace(/^.*=/s, ''));
+      return text.includes('=') && (count === undefined ? length > 0 : length === count);
+    },
+    read(text: string | null, fields: readonly FieldInfo[]): FieldValues | null {
+      const request = parseFieldValues(text, fields);
+      if (!request) return null;
+      const fits =
+        (!pointsOnly || fields[request.scalar.field]!.association === 'point') &&
+        (count === undefined || request.values.length === count);
+      return fits ? request : null;
+    },
+    fieldOf: (text) => text.replace(/=[^=]*$/s, ''),
+    put(display: Display, request: FieldValues | null): void {
+      if (request) display.layers = {...display.layers, [name]: request};
+    },
+    requestOf: (display: Display): {scalar: Scalar} | null => display.layers?.[name] ?? null,
+  };
+}

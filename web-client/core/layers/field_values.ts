@@ -1,0 +1,70 @@
+// The words of attributes that name fields: "Velocity" (its magnitude), "Velocity[0]" (a
+// component), "Density=0.5,0.7" (values of it).
+
+import {kMagnitude, scalarRange, type Scalar} from '../picture/field_scale';
+import {fieldKeys, type FieldInfo} from '../protocol/manifest';
+
+/** Reads "1, 2.5 3e-4" as numbers. The result is empty if anything in it is no number. */
+export function parseNumbers(text: string): number[] {
+  const numbers = text
+    .replaceAll('\u2212', '-')
+    .split(/[\s,;]+/)
+    .filter((word) => word !== '')
+    .map(Number);
+  return numbers.every(Number.isFinite) ? numbers : [];
+}
+
+export function parseScalar(text: string | null, fields: readonly FieldInfo[]): Scalar | null {
+  if (text === null) return null;
+  const keys = fieldKeys(fields);
+  const whole = keys.indexOf(text);
+  if (whole >= 0) return {field: whole, component: kMagnitude};
+  const match = /^(.*)\[(\d+)\]$/s.exec(text);
+  const field = match ? keys.indexOf(match[1]!) : -1;
+  if (field < 0) return null;
+  const component = Number(match![2]);
+  return {field, component: component < fields[field]!.components ? component : kMagnitude};
+}
+
+/** The field's key without a component, to ask a server before its fields are known. */
+export function scalarKey(text: string): string {
+  return text.replace(/\[\d+\]$/, '');
+}
+
+export function scalarText(scalar: Scalar, fields: readonly FieldInfo[]): string {
+  const key = fieldKeys(fields)[scalar.field] ?? '';
+  return scalar.component === kMagnitude ? key : `${key}[${scalar.component}]`;
+}
+
+export interface FieldValues {
+  scalar: Scalar;
+  values: number[];
+}
+
+export function parseFieldValues(
+  text: string | null,
+  fields: readonly FieldInfo[],
+): FieldValues | null {
+  const at = text?.lastIndexOf('=') ?? -1;
+  if (at < 0) return null;
+  const scalar = parseScalar(text!.slice(0, at), fields);
+  const values = parseNumbers(text!.slice(at + 1));
+  return scalar && values.length > 0 ? {scalar, values} : null;
+}
+
+/** Small differences of large values stay: 101325.03. */
+const kLinkDigits = 9;
+
+export function fieldValuesText(
+  {scalar, values}: FieldValues,
+  fields: readonly FieldInfo[],
+): string {
+  const numbers = values.map((value) => Number(value.toPrecision(kLinkDigits)));
+  return `${scalarText(scalar, fields)}=${numbers.join(',')}`;
+}
+
+/** The values as shares of the field's scalarRange. */
+export function sharesOf({scalar, values}: FieldValues, fields: readonly FieldInfo[]): number[] {
+  const [low, high] = scalarRange(fields[scalar.field]!, scalar.component);
+  return values.map((value) => (high > low ? (value - low) / (high - low) : 0));
+}

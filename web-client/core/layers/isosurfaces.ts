@@ -1,0 +1,75 @@
+// Isosurfaces: where a field of points has one of some values.
+
+import {along, valueAt, type Ray, type Stretch} from '../picture/cell_ray';
+import type {Display, MeshArrays} from '../picture/display';
+import {scalarRange} from '../picture/field_scale';
+import {isosurface} from '../picture/slice';
+import {joinSoups, type TriangleSoup} from '../picture/triangle_soup';
+import {fieldKeys, type FieldInfo} from '../protocol/manifest';
+import type {Isovalue} from '../protocol/view_request';
+import {fieldLayer} from './field_layer';
+import type {FieldValues} from './field_values';
+import type {Control, FieldLayer} from './layer';
+
+/** The protocol allows no more (proto/STREAM.md, "View"). */
+const kMaxIsovalues = 8;
+
+const control: Control = {
+  title: 'Isosurfaces',
+  fieldLabel: 'Field of the isosurfaces',
+  sliders: ['First isovalue'],
+  valuesLabel: 'Values',
+  pointsOnly: true,
+  firstShares: [0.5],
+  areRight: (values) => values.length > 0,
+  expected: 'Numbers with commas between them: 0.2, 0.5',
+  hiddenHint: 'The surface hides them.',
+};
+
+export const isosurfaces = {
+  ...fieldLayer('iso', control),
+  name: 'iso',
+  expected: 'a field, "=" and numbers with commas between them',
+  control,
+  // The polygons are sections of cells, not the mesh. Their edges would hide the shape.
+  draw: {edges: false, member: 'isosurface'},
+
+  put(display: Display, request: FieldValues | null): void {
+    display.isosurfaces = request;
+  },
+  requestOf: ({isosurfaces: request}: Display) => request,
+
+  make(mesh: MeshArrays, display: Display, kept: Uint8Array | null): TriangleSoup | null {
+    const levels = display.isosurfaces && mesh.scale(display.isosurfaces.scalar);
+    if (!levels || levels.ofCells) return null;
+    const scale = display.color && mesh.scale(display.color);
+    return joinSoups(
+      display.isosurfaces!.values.map((value) => isosurface({...mesh, kept}, levels, value, scale)),
+    );
+  },
+
+  seenFrom(mesh: MeshArrays, {isosurfaces: request}: Display, ray: Ray, seen: Stretch): number {
+    const levels = request && mesh.scale(request.scalar);
+    if (!levels || levels.ofCells) return Infinity;
+    const first = valueAt(mesh, levels, seen.cell, along(ray, seen.from));
+    const last = valueAt(mesh, levels, seen.cell, along(ray, seen.to));
+    let t = Infinity;
+    for (const value of request.values) {
+      const share = (value - first) / (last - first);
+      if (share >= 0 && share <= 1) t = Math.min(t, seen.from + share * (seen.to - seen.from));
+    }
+    return t;
+  },
+
+  isovalueOf({isosurfaces: request}: Display, fields: readonly FieldInfo[]): Isovalue | null {
+    const info = request && fields[request.scalar.field];
+    if (!info || info.association === 'cell' || request.values.length > kMaxIsovalues) return null;
+    const {field, component} = request.scalar;
+    const [low, high] = scalarRange(info, component);
+    return {
+      field: fieldKeys(fields)[field]!,
+      ...(component >= 0 && {component}),
+      values: request.values.map((share) => low + share * (high - low)),
+    };
+  },
+} as const satisfies FieldLayer;

@@ -1,0 +1,83 @@
+// A layer is one way of drawing the mesh, beside its surface. It holds the meaning of its
+// attribute, the worker's part, and how it is drawn and controlled. The list is in layers.ts.
+
+import type {Ray, Stretch} from '../picture/cell_ray';
+import type {Display, MeshArrays} from '../picture/display';
+import type {Scalar} from '../picture/field_scale';
+import type {TriangleSoup} from '../picture/triangle_soup';
+import type {FieldInfo} from '../protocol/manifest';
+import type {Isovalue} from '../protocol/view_request';
+import type {FieldValues} from './field_values';
+
+export interface Attribute {
+  readonly name: string;
+  /** Whether the text means something, whatever the mesh is. */
+  isRight(text: string): boolean;
+  /** The texts that it takes, for people. */
+  readonly expected: string;
+}
+
+export interface Layer extends Attribute {
+  /** Further attributes. */
+  readonly more?: readonly Attribute[];
+
+  // ---- in the worker
+
+  /** The display's request to the layer; null if there is none. */
+  requestOf(display: Display): unknown;
+  /** Clears the cells that it hides; null if it hides none. */
+  hiding?(mesh: MeshArrays, display: Display): ((kept: Uint8Array) => void) | null;
+  /** Its triangles, of the kept cells only; null if there are none. */
+  make?(mesh: MeshArrays, display: Display, kept: Uint8Array | null): TriangleSoup | null;
+  /** The t at which the ray first sees its triangles in this stretch; Infinity if it never does. */
+  seenFrom?(mesh: MeshArrays, display: Display, ray: Ray, stretch: Stretch): number;
+  /**
+   * For layers near whose triangles a log of regions is refined first: the same in the server's
+   * terms; null if it would not understand.
+   */
+  isovalueOf?(display: Display, fields: readonly FieldInfo[]): Isovalue | null;
+
+  // ---- in the page
+
+  /** How its triangles are drawn. */
+  readonly draw?: Drawing;
+}
+
+/** A layer whose attribute is a field and values of it; its controls are made from `control`. */
+export interface FieldLayer extends Layer {
+  /** Reads the request, in the field's own values; null if the text does not fit the mesh. */
+  read(text: string | null, fields: readonly FieldInfo[]): FieldValues | null;
+  /** The field that the text names, before the mesh is known. */
+  fieldOf(text: string): string;
+  /** Puts a request with values in [0, 1] over the scalarRange into the display. */
+  put(display: Display, request: FieldValues | null): void;
+
+  /** With the quantity that it needs. */
+  requestOf(display: Display): {scalar: Scalar} | null;
+  readonly control: Control;
+}
+
+export interface Drawing {
+  /** The edges of its triangles are edges of cells. */
+  edges: boolean;
+  /** The published name of its triangles in a snapshot; without one they are in `layers`. */
+  member?: 'isosurface';
+}
+
+/** A switch, and below it a menu of fields, sliders and a line of values. */
+export interface Control {
+  title: string;
+  fieldLabel: string;
+  /** One label a slider: one slider moves the first value, two are the ends of a range. */
+  sliders: readonly [string] | readonly [string, string];
+  valuesLabel: string;
+  /** Only fields of points can be chosen. */
+  pointsOnly: boolean;
+  /** The first values, as shares of the field's range. */
+  firstShares: readonly number[];
+  areRight(values: readonly number[]): boolean;
+  /** Shown for values that are not. */
+  expected: string;
+  /** Shown while an opaque surface hides it. */
+  hiddenHint?: string;
+}

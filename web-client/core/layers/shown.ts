@@ -1,0 +1,85 @@
+// The layers of a display together: the fields that they need, and what they hide and make.
+
+import type {Display, MeshArrays} from '../picture/display';
+import {noSoup, type TriangleSoup} from '../picture/triangle_soup';
+import type {FieldInfo} from '../protocol/manifest';
+import type {Isovalue} from '../protocol/view_request';
+import type {Layer} from './layer';
+import {fieldLayers, kLayers} from './layers';
+
+/** The part of a snapshot that layers make. Parts that have not changed are absent. */
+export interface LayerSoups {
+  isosurface?: TriangleSoup;
+  /** By name, those that have no member of their own. */
+  layers?: Record<string, TriangleSoup>;
+}
+
+/** The fields that a display needs, each once. */
+export function fieldsOf(display: Display): number[] {
+  const scalars = [
+    display.color,
+    ...fieldLayers().map((layer) => layer.requestOf(display)?.scalar),
+  ];
+  return [...new Set(scalars.filter((scalar) => scalar != null).map(({field}) => field))];
+}
+
+/** The cells that no layer hides; null means all. */
+export function keptCells(mesh: MeshArrays, display: Display): Uint8Array | null {
+  const hiding = kLayers
+    .map((layer) => layer.hiding?.(mesh, display) ?? null)
+    .filter((hide) => hide !== null);
+  if (hiding.length === 0) return null;
+  const kept = new Uint8Array(mesh.tetrahedra.length / 4).fill(1);
+  for (const hide of hiding) hide(kept);
+  return kept;
+}
+
+/** Two displays with the same key hide the same cells. */
+export function hidingKey(display: Display): string {
+  return JSON.stringify(kLayers.map((layer) => layer.hiding && layer.requestOf(display)));
+}
+
+/** The triangles of all layers that have some; no triangles for those that are not shown. */
+export function layerSoups(
+  mesh: MeshArrays,
+  display: Display,
+  kept: Uint8Array | null,
+): LayerSoups {
+  const soups: LayerSoups = {};
+  for (const layer of kLayers) {
+    if (!layer.make || !layer.draw) continue;
+    const soup = layer.make(mesh, display, kept) ?? noSoup();
+    const {member} = layer.draw;
+    if (member) soups[member] = soup;
+    else soups.layers = {...soups.layers, [layer.name]: soup};
+  }
+  return soups;
+}
+
+export function soupOf(soups: LayerSoups, {name, draw}: Layer): TriangleSoup | undefined {
+  return draw?.member ? soups[draw.member] : soups.layers?.[name];
+}
+
+/** The corners of the triangles near which a log of regions is refined first. */
+export function refinedCorners(soups: LayerSoups): Float32Array {
+  const parts = kLayers
+    .filter((layer) => layer.isovalueOf !== undefined)
+    .flatMap((layer) => soupOf(soups, layer)?.positions ?? []);
+  if (parts.length === 1) return parts[0]!;
+  const corners = new Float32Array(parts.reduce((sum, {length}) => sum + length, 0));
+  let at = 0;
+  for (const part of parts) {
+    corners.set(part, at);
+    at += part.length;
+  }
+  return corners;
+}
+
+/** The same in the server's terms. It takes one; of several layers the first counts. */
+export function isovalueOf(display: Display, fields: readonly FieldInfo[]): Isovalue | null {
+  for (const layer of kLayers) {
+    const isovalue = layer.isovalueOf?.(display, fields);
+    if (isovalue) return isovalue;
+  }
+  return null;
+}

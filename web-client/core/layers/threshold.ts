@@ -1,0 +1,38 @@
+// The threshold hides cells whose values lie outside of a range.
+
+import {keepWithin} from '../picture/cell_choice';
+import type {Display, MeshArrays} from '../picture/display';
+import {fieldLayer} from './field_layer';
+import type {FieldValues} from './field_values';
+import type {Control, FieldLayer} from './layer';
+
+const control: Control = {
+  title: 'Threshold',
+  fieldLabel: 'Field of the threshold',
+  sliders: ['Least value', 'Largest value'],
+  valuesLabel: 'From, to',
+  pointsOnly: false,
+  firstShares: [0.25, 1],
+  areRight: (values) => values.length === 2 && values[0]! <= values[1]!,
+  expected: 'Two numbers, the smaller first: 0.2, 0.5',
+};
+
+export const threshold = {
+  ...fieldLayer('threshold', control, 2),
+  name: 'threshold',
+  expected: 'a field, "=" and two numbers: Density=1,2',
+  control,
+
+  put(display: Display, request: FieldValues | null): void {
+    const [low, high] = request?.values ?? [];
+    display.threshold = request && {scalar: request.scalar, low: low!, high: high!};
+  },
+  requestOf: ({threshold: request}: Display) => request,
+
+  hiding(mesh: MeshArrays, {threshold: request}: Display): ((kept: Uint8Array) => void) | null {
+    const scale = request && mesh.scale(request.scalar);
+    return scale
+      ? (kept) => keepWithin(kept, mesh.tetrahedra, scale, request.low, request.high)
+      : null;
+  },
+} as const satisfies FieldLayer;

@@ -1,0 +1,150 @@
+// A straight line through the cells, for picking and for probing a field. It is exact: each cell
+// has its own stretch of the line, and nothing is sampled.
+
+import type {Plane, Vector} from '../protocol/geometry';
+import type {FieldScale} from './field_scale';
+import type {Cells} from './section';
+
+/** origin + t * direction, in lattice coordinates. */
+export interface Ray {
+  origin: Vector;
+  direction: Vector;
+}
+
+/** The line is inside `cell` for t in [from, to]. */
+export interface Stretch {
+  cell: number;
+  from: number;
+  to: number;
+}
+
+/** Every kept cell that the line passes between t = `first` and t = `last`, in no order. */
+export function stretches(cells: Cells, ray: Ray, first: number, last: number): Stretch[] {
+  const {points, tetrahedra, kept} = cells;
+  const [across, up] = sideways(ray.direction);
+  const s = new Float64Array(points.length / 3);
+  const u = new Float64Array(points.length / 3);
+  // Project along the line, so that it becomes the origin of a plane. Cells that do not surround
+  // the origin are skipped.
+  for (let v = 0; v < s.length; ++v) {
+    const x = points[3 * v]! - ray.origin[0],
+      y = points[3 * v + 1]! - ray.origin[1],
+      z = points[3 * v + 2]! - ray.origin[2];
+    s[v] = x * across[0] + y * across[1] + z * across[2];
+    u[v] = x * up[0] + y * up[1] + z * up[2];
+  }
+  const found: Stretch[] = [];
+  for (let cell = 0, at = 0; at < tetrahedra.length; ++cell, at += 4) {
+    if (kept?.[cell] === 0) continue;
+    const a = tetrahedra[at]!,
+      b = tetrahedra[at + 1]!,
+      c = tetrahedra[at + 2]!,
+      d = tetrahedra[at + 3]!;
+    if (s[a]! > 0 && s[b]! > 0 && s[c]! > 0 && s[d]! > 0) continue;
+    if (s[a]! < 0 && s[b]! < 0 && s[c]! < 0 && s[d]! < 0) continue;
+    if (u[a]! > 0 && u[b]! > 0 && u[c]! > 0 && u[d]! > 0) continue;
+    if (u[a]! < 0 && u[b]! < 0 && u[c]! < 0 && u[d]! < 0) continue;
+    const inside = insideOf(points, [a, b, c, d], ray, first, last);
+    if (inside) found.push({cell, ...inside});
+  }
+  return found;
+}
+
+/** Shortens a stretch to the part below every plane; null if nothing is left. */
+export function below(planes: readonly Plane[], ray: Ray, stretch: Stretch): Stretch | null {
+  let {from, to} = stretch;
+  for (const {normal, offset} of planes) {
+    const rate = dot(normal, ray.direction);
+    const start = offset - dot(normal, ray.origin);
+    if (rate > 0) to = Math.min(to, start / rate);
+    else if (rate < 0) from = Math.max(from, start / rate);
+    else if (start < 0) return null;
+  }
+  return from < to ? {cell: stretch.cell, from, to} : null;
+}
+
+/** Barycentric coordinates of `point`: the shares of the four corners, which add up to 1. */
+export function barycentric(
+  {points, tetrahedra}: Cells,
+  cell: number,
+  point: Vector,
+): [number, number, number, number] {
+  const corners = [0, 1, 2, 3].map((i) => pointOf(points, tetrahedra[4 * cell + i]!)) as [
+    Vector,
+    Vector,
+    Vector,
+    Vector,
+  ];
+  const whole = volume(...corners);
+  const share = (i: number): number =>
+    volume(...(corners.map((corner, k) => (k === i ? point : corner)) as typeof corners)) / whole;
+  return [share(0), share(1), share(2), share(3)];
+}
+
+export function along({origin, direction}: Ray, t: number): Vector {
+  return [origin[0] + t * direction[0], origin[1] + t * direction[1], origin[2] + t * direction[2]];
+}
+
+function insideOf(
+  points: Int32Array,
+  corners: Vector4,
+  ray: Ray,
+  first: number,
+  last: number,
+): {from: number; to: number} | null {
+  let from = first;
+  let to = last;
+  for (let i = 0; i < 4; ++i) {
+    const inner = pointOf(points, corners[i]!);
+    const p = pointOf(points, corners[(i + 1) & 3]!);
+    const normal = cross(
+      minus(pointOf(points, corners[(i + 2) & 3]!), p),
+      minus(pointOf(points, corners[(i + 3) & 3]!), p),
+    );
+    const side = dot(normal, minus(inner, p)) < 0 ? -1 : 1;
+    const height = side * dot(normal, minus(ray.origin, p));
+    const rate = side * dot(normal, ray.direction);
+    if (rate > 0) from = Math.max(from, -height / rate);
+    else if (rate < 0) to = Math.min(to, -height / rate);
+    else if (height < 0) return null;
+    if (from >= to) return null;
+  }
+  return {from, to};
+}
+
+type Vector4 = [number, number, number, number];
+
+/** Two directions perpendicular to the given one and to each other. */
+function sideways(direction: Vector): [Vector, Vector] {
+  const smallest = [0, 1, 2].sort((a, b) => Math.abs(direction[a]!) - Math.abs(direction[b]!))[0]!;
+  const axis: Vector = [0, 0, 0];
+  axis[smallest] = 1;
+  const across = cross(direction, axis);
+  return [across, cross(direction, across)];
+}
+
+function pointOf(points: Int32Array, vertex: number): Vector {
+  return [points[3 * vertex]!, points[3 * vertex + 1]!, points[3 * vertex + 2]!];
+}
+function minus(a: Vector, b: Vector): Vector {
+  return [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+}
+export function dot(a: Vector, b: Vector): number {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+function cross(a: Vector, b: Vector): Vector {
+  return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+}
+function volume(a: Vector, b: Vector, c: Vector, d: Vector): number {
+  return dot(minus(b, a), cross(minus(c, a), minus(d, a)));
+}
+
+/** The value at a point of the cell. */
+export function valueAt(mesh: Cells, scale: FieldScale, cell: number, point: Vector): number {
+  if (scale.ofCells) return scale.at(cell);
+  const shares = barycentric(mesh, cell, point);
+  return shares.reduce(
+    (sum, share, i) => sum + share * scale.at(mesh.tetrahedra[4 * cell + i]!),
+    0,
+  );
+}

@@ -1,0 +1,83 @@
+// The display that the page wants, and how it is made from the mesh: plain data in, triangles out.
+
+import type {Plane} from '../protocol/geometry';
+import {facesSoup, surfaceFaces} from './cell_surface';
+import type {FieldScale, Scalar} from './field_scale';
+import type {Cells} from './section';
+import {slice} from './slice';
+import {boundarySoup, type TriangleSoup} from './triangle_soup';
+
+/**
+ * cut: the part above a plane is removed, and flat caps close the hole. cells: whole cells stay or
+ * go. slice: only the cuts are shown, each whole.
+ */
+export type ClipMode = 'cut' | 'cells' | 'slice';
+export const kClipModes: readonly ClipMode[] = ['cut', 'cells', 'slice'];
+export const kMaxPlanes = 3;
+
+export interface Display {
+  color: Scalar | null;
+  /** False: only cuts and isosurfaces are drawn. */
+  body: boolean;
+  mode: ClipMode;
+  /** The parts above any of them are cut away. */
+  planes: Plane[];
+  /** The values are in [0, 1] over the point field's scalarRange. */
+  isosurfaces: {scalar: Scalar; values: number[]} | null;
+  /** Hides cells outside [low, high]. Both are in [0, 1] over the scalarRange. */
+  threshold: {scalar: Scalar; low: number; high: number} | null;
+  /** Shows the cells themselves, translucent, coloured by `color`. */
+  volume: boolean;
+  /** Layers without a member of their own, by name; the values are in [0, 1], too. */
+  layers?: Record<string, {scalar: Scalar; values: number[]}>;
+}
+
+export const kPlainDisplay: Display = {
+  color: null,
+  body: true,
+  mode: 'cut',
+  planes: [],
+  isosurfaces: null,
+  threshold: null,
+  volume: false,
+};
+
+/** The mesh as it is now. `scale` is null while a field has no values. */
+export interface MeshArrays {
+  points: Int32Array;
+  tetrahedra: Uint32Array;
+  boundary: Uint32Array;
+  scale(scalar: Scalar): FieldScale | null;
+}
+
+/**
+ * The planes that the renderer must cut by. The `cells` mode has cut already, and slices cut
+ * nothing.
+ */
+export function cuttingPlanes(display: Display): Plane[] {
+  return display.mode === 'cut' ? display.planes : [];
+}
+
+export function surfaceOf(
+  mesh: MeshArrays,
+  display: Display,
+  kept: Uint8Array | null,
+): TriangleSoup {
+  const scale = display.color && mesh.scale(display.color);
+  if (!kept && !scale?.ofCells) return boundarySoup(mesh.points, mesh.boundary, scale);
+  const cells: Cells = {...mesh, kept};
+  return facesSoup(cells, surfaceFaces(cells, mesh.boundary), scale);
+}
+
+/**
+ * One soup a plane. The renderer hides the parts of each that lie above the other cutting planes.
+ */
+export function cutsOf(
+  mesh: MeshArrays,
+  display: Display,
+  kept: Uint8Array | null,
+): TriangleSoup[] {
+  const scale = display.color && mesh.scale(display.color);
+  const planes = display.mode === 'cells' ? [] : display.planes;
+  return planes.map((plane) => slice({...mesh, kept}, scale, plane));
+}

@@ -1,0 +1,131 @@
+// The page's side of the worker: commands out, messages in. Holds no mesh.
+
+import codecUrl from 'qtet-codec.wasm?url';
+import type {Ray} from '../picture/cell_ray';
+import type {Display} from '../picture/display';
+import type {CoarseCells} from '../picture/volume';
+import type {Vector} from '../protocol/geometry';
+import {kFull, type Limit} from '../protocol/limit';
+import type {ViewRequest} from '../protocol/view_request';
+import type {Pick, Probe} from './inspector';
+import type {FromWorker, Posted, Question, Source, ToWorker} from './worker_messages';
+
+export type Listener = (message: Exclude<FromWorker, {type: 'answer'}>) => void;
+
+const kAnySource: Source = {
+  url: '',
+  log: '',
+  mesh: '',
+  fields: null,
+  limit: kFull,
+  transport: 'auto',
+};
+
+export class Client {
+  private readonly worker = new Worker(new URL('./worker.ts', import.meta.url), {
+    type: 'module',
+    name: 'qtet',
+  });
+  private readonly asked = new Map<number, (answer: never) => void>();
+  private nextId = 0;
+  private run = 0;
+
+  constructor(listen: Listener) {
+    // The page knows where its build put the codec. The worker's own file may have moved without
+    // the files that it refers to.
+    this.post({type: 'load', codecUrl: new URL(codecUrl, import.meta.url).href});
+    this.worker.onmessage = (event: MessageEvent<Posted>) => {
+      const message = event.data;
+      if (message.type !== 'answer') {
+        if (message.run === undefined || message.run === this.run) listen(message);
+        return;
+      }
+      this.asked.get(message.id)?.(message.answer as never);
+      this.asked.delete(message.id);
+    };
+    this.worker.onerror = (event) => {
+      listen({
+        type: 'error',
+        code: 'internal',
+        message: `The decoder stopped: ${event.message || 'unknown cause'}. Reload the page.`,
+      });
+      listen({type: 'state', state: 'failed', attempt: 0, delayMs: 0});
+    };
+  }
+
+  /**
+   * `url` and `mesh` must be given, or `log` alone. By default the session takes the first field,
+   * no limit, and any transport that works. Messages of an earlier start are dropped.
+   */
+  start(source: Partial<Source>): void {
+    this.post({type: 'start', source: {...kAnySource, ...source}, run: ++this.run});
+  }
+  /**
+   * REQUIRES: the display's fields are in the last `manifest` message. Fields that are missing are
+   * fetched.
+   */
+  show(display: Display): void {
+    this.post({type: 'display', display});
+  }
+  setLimit(limit: Limit): void {
+    this.post({type: 'limit', limit});
+  }
+  /** Sets the user's view: logs of regions refine it first. */
+  look(view: ViewRequest): void {
+    this.post({type: 'look', view});
+  }
+  pause(): void {
+    this.post({type: 'pause'});
+  }
+  resume(): void {
+    this.post({type: 'resume'});
+  }
+  /**
+   * Must be called when a snapshot is on the screen; the next one waits for it. `drawingMs` says
+   * how long drawing took, if known.
+   */
+  shown(drawingMs?: number): void {
+    this.post({type: 'shown', drawingMs});
+  }
+  /** Asks for the whole picture again, because its receiver is gone. */
+  repeat(): void {
+    this.post({type: 'repeat'});
+  }
+
+  /** SHA-256 of the mesh in the worker, lower-case hexadecimal; empty before there is a mesh. */
+  digest(): Promise<string> {
+    return this.ask({type: 'digest'});
+  }
+  pick(ray: Ray): Promise<Pick | null> {
+    return this.ask({type: 'pick', ray});
+  }
+  probe(from: Vector, to: Vector): Promise<Probe | null> {
+    return this.ask({type: 'probe', from, to});
+  }
+
+  /**
+   * The last snapshot's volume with few cells. The cells are left out if the caller has version
+   * `have`. Rejects if there are none.
+   */
+  async coarse(have: number): Promise<CoarseCells> {
+    const answer = await this.ask<CoarseCells | null>({type: 'coarse', have});
+    if (!answer) throw new Error('there are no coarse cells');
+    return answer;
+  }
+
+  dispose(): void {
+    this.worker.terminate();
+  }
+
+  private ask<Answer>(question: Question): Promise<Answer> {
+    const id = this.nextId++;
+    return new Promise((resolve) => {
+      this.asked.set(id, resolve);
+      this.post({...question, id});
+    });
+  }
+
+  private post(message: ToWorker): void {
+    this.worker.postMessage(message);
+  }
+}

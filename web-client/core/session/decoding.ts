@@ -1,0 +1,92 @@
+// Decodes in slices: applies the blocks that are here, as far as they are wanted, and measures its
+// pace.
+
+import type {Assembler} from '../decode/assembler';
+import type {RequestedPart} from './requested_part';
+import {Slices} from './slices';
+
+/** How long a slice takes. The page's commands come between two slices. */
+const kSliceMs = 25;
+/** How long decoding waits for the first picture: the page sends a display soon. */
+const kFirstPictureMs = 500;
+
+export class Decoding {
+  private readonly slices: Slices;
+  /** When decoding continues without a first picture; null: it does not wait. */
+  private firstPictureBy: number | null = null;
+  /** Bytes decoded so far, and the time that took. */
+  private pace = {bytes: 0, ms: 0};
+
+  /** `again` is called when there may be more to decode. */
+  constructor(
+    private readonly assembler: Assembler,
+    private readonly requested: RequestedPart,
+    private readonly again: () => void,
+  ) {
+    this.slices = new Slices(again);
+  }
+
+  /** `again` will be called soon, so no other code needs to decode. */
+  get isDue(): boolean {
+    return this.slices.isDue;
+  }
+
+  /**
+   * Decodes one slice. Returns true if there was anything to decode. With `pictureFirst` the first
+   * mesh goes to the page before anything finer is decoded. Throws the codec's errors.
+   */
+  advance(pictureFirst: boolean): boolean {
+    this.slices.drop();
+    const start = performance.now();
+    const {bytes} = this.requested.statistics;
+    let applied = false;
+    while (!(pictureFirst && this.awaitsPicture()) && this.step()) {
+      applied = true;
+      if (performance.now() < start + kSliceMs) continue;
+      this.slices.call();
+      break;
+    }
+    if (!applied) return false;
+    this.pace.ms += performance.now() - start;
+    this.pace.bytes += this.requested.statistics.bytes - bytes;
+    return true;
+  }
+
+  /** Decodes from the empty mesh to the limit, in one go. Throws the codec's errors. */
+  goBack(): void {
+    this.assembler.rewind();
+    while (this.step()) continue;
+  }
+
+  /** How long `bytes` will take at the pace so far; Infinity if unknown. */
+  msFor(bytes: number): number {
+    return this.pace.bytes > 0 ? (bytes * this.pace.ms) / this.pace.bytes : Infinity;
+  }
+
+  stop(): void {
+    this.slices.drop();
+  }
+
+  /** Must be called before another log. */
+  forget(): void {
+    this.stop();
+    this.firstPictureBy = null;
+    this.pace = {bytes: 0, ms: 0};
+  }
+
+  private step(): boolean {
+    return this.assembler.step(this.requested.fields, !this.requested.isReached);
+  }
+
+  private awaitsPicture(): boolean {
+    const {codec} = this.assembler;
+    if (codec.chunksApplied === 0) return false;
+    if (this.requested.fields.some((field) => codec.fieldChunksApplied(field) === 0)) return false;
+    const now = performance.now();
+    if (this.firstPictureBy === null) {
+      this.firstPictureBy = now + kFirstPictureMs;
+      setTimeout(this.again, kFirstPictureMs);
+    }
+    return now < this.firstPictureBy;
+  }
+}

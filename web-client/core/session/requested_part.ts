@@ -1,0 +1,143 @@
+// The wanted part of a log, and how far receiving and decoding have come.
+
+import type {Assembler} from '../decode/assembler';
+import type {Statistics} from '../decode/statistics';
+import {kNoSurfaceRequest, type SurfaceRequest} from '../picture/surface_request';
+import {errorOfLevel, kFull, limitReached, type Limit} from '../protocol/limit';
+import {fieldKeys} from '../protocol/manifest';
+import type {OpenRequest, Target} from '../protocol/messages';
+import {kFirstFieldPart, kStructurePart} from '../protocol/parts';
+import {kNoViewRequest, type ViewRequest} from '../protocol/view_request';
+import type {Source} from './worker_messages';
+
+/** The most fields that are compared for the opening view: each costs about a kilobyte. */
+export const kMaxCompared = 6;
+/** The base mesh alone. */
+const kBaseTarget: Target = {chunks: 1, level: 0};
+
+export class RequestedPart {
+  /** The fields are candidates for the opening view: only the base mesh is wanted yet. */
+  comparing = false;
+  /**
+   * Names of the fields, for use before the head says which there are; null means the first field.
+   */
+  names: string[] | null = null;
+  /** Indexes into the manifest. */
+  fields: readonly number[] = [];
+  limit: Limit = kFull;
+  view: ViewRequest = kNoViewRequest;
+
+  constructor(private readonly assembler: Assembler) {}
+
+  begin({compare, fields, limit}: Source): void {
+    this.comparing = compare === true && (fields === null || fields.length > 1);
+    this.names = fields;
+    this.limit = limit;
+  }
+
+  /** Must be called before another log: its fields and surfaces may be elsewhere. */
+  forget(): void {
+    this.fields = [];
+    this.look(this.view, kNoSurfaceRequest);
+  }
+
+  /**
+   * Finds the fields by their names. The first field replaces an unknown name, which is returned.
+   * REQUIRES: the head is here.
+   */
+  findFields(): string | undefined {
+    const keys = fieldKeys(this.assembler.manifest!.fields);
+    const unknown = this.names?.find((name) => !keys.includes(name));
+    this.fields = (this.names ?? []).map((name) => keys.indexOf(name)).filter((i) => i >= 0);
+    const wantsFirst = this.names === null || unknown !== undefined;
+    if (this.fields.length === 0 && keys.length > 0 && wantsFirst)
+      this.fields = this.comparing ? [...keys.keys()].slice(0, kMaxCompared) : [0];
+    this.comparing &&= this.fields.length > 1 && this.assembler.packets.length === 0;
+    return unknown;
+  }
+
+  /** Returns true if that ends a comparison. */
+  endComparing(): boolean {
+    const was = this.comparing;
+    this.comparing = false;
+    return was;
+  }
+
+  /** Returns false if these are wanted already. REQUIRES: the head is here. */
+  changeFields(fields: readonly number[]): boolean {
+    const {fields: now} = this;
+    if (fields.length === now.length && fields.every((field) => now.includes(field))) return false;
+    this.fields = fields;
+    this.names = this.keys;
+    return true;
+  }
+
+  look(page: ViewRequest, {surfaceBoxes, isovalue}: SurfaceRequest): void {
+    this.view = {...page, surfaceBoxes, isovalue};
+  }
+
+  /** The server's keys of the fields. */
+  get keys(): string[] {
+    const {manifest} = this.assembler;
+    if (!manifest) return this.names ?? [];
+    const keys = fieldKeys(manifest.fields);
+    return this.fields.map((field) => keys[field]!);
+  }
+
+  get statistics(): Statistics {
+    return this.assembler.statistics(this.fields);
+  }
+
+  /** Where the limit lies; null means at the end, or unknown. */
+  get target(): Target | null {
+    return this.comparing ? kBaseTarget : this.assembler.target(this.limit, this.fields);
+  }
+
+  /** Only the head says which fields there are or where the limit lies. */
+  get needsHead(): boolean {
+    return !this.assembler.manifest && (this.names === null || this.limit.kind !== 'full');
+  }
+
+  /** The leading chunks, by default all, are here with the fields. */
+  isReceived(chunks = this.assembler.codec.chunkCount): boolean {
+    const {assembler} = this;
+    return (
+      assembler.manifest !== null &&
+      assembler.receivedChunks >= chunks &&
+      this.fields.every((field) => assembler.receivedOfField(field) >= chunks)
+    );
+  }
+
+  /** The whole mesh is decoded with the fields. */
+  get isComplete(): boolean {
+    const {codec, manifest} = this.assembler;
+    if (!manifest || codec.chunksApplied < codec.chunkCount) return false;
+    return this.fields.every((field) => codec.fieldChunksApplied(field) === codec.chunkCount);
+  }
+
+  /** The decoded mesh has reached the limit. Without a limit this is never true. */
+  get isReached(): boolean {
+    const {codec, manifest} = this.assembler;
+    if (this.comparing) return codec.chunksApplied > 0;
+    if (this.limit.kind === 'full' || !manifest || codec.chunksApplied === 0) return false;
+    const {statistics, fields} = this;
+    const error = errorOfLevel(manifest.levels[statistics.level], fields);
+    return limitReached(this.limit, statistics, error);
+  }
+
+  /** The `have` of an `open` message. */
+  get have(): OpenRequest['have'] {
+    const {assembler, keys} = this;
+    if (!assembler.manifest) return {chunks: 0, fields: {}};
+    const beyond = (count: number, part: number): [number, number][] =>
+      assembler.packets.length > 0 ? assembler.rangesBeyond(count, part) : [];
+    const chunks = assembler.receivedChunks;
+    const ranges = beyond(chunks, kStructurePart);
+    const fields = this.fields.map((field, i) => {
+      const count = assembler.receivedOfField(field);
+      const its = beyond(count, kFirstFieldPart + field);
+      return [keys[i]!, its.length > 0 ? {chunks: count, ranges: its} : count] as const;
+    });
+    return {chunks, ...(ranges.length > 0 ? {ranges} : {}), fields: Object.fromEntries(fields)};
+  }
+}

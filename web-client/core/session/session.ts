@@ -1,0 +1,404 @@
+// Brings one mesh into the page. It opens the stream, keeps it going over lost connections, refines
+// as far as is asked for, and reports its state.
+
+import type {Assembler} from '../decode/assembler';
+import {isovalueOf} from '../layers/shown';
+import {baseFigures} from '../picture/base_figures';
+import {meshArrays} from '../picture/mesh_arrays';
+import {fieldOfMaxContrast} from '../picture/spread';
+import {asksForTheSame, surfaceRequest, surfaceRequestOf} from '../picture/surface_request';
+import {errorCode, errorText, QtetError} from '../protocol/errors';
+import {kFull, type Limit} from '../protocol/limit';
+import type {LogTable} from '../protocol/log_table';
+import type {Frame, ServerMessage} from '../protocol/messages';
+import type {ViewRequest} from '../protocol/view_request';
+import type {Transport, TransportHandlers} from '../transport/transport';
+import {makeTransport} from '../transport/transports';
+import type {CoarseVolume} from './coarse_volume';
+import {Decoding} from './decoding';
+import {LogStream} from './log_stream';
+import {ProgressReporter} from './progress_reporter';
+import type {Publisher} from './publisher';
+import {RequestedPart} from './requested_part';
+import {canPause, isAtRest, stateMessage, type SessionState} from './session_state';
+import type {FromWorker, Source} from './worker_messages';
+
+/** The share of the cells at which memory ended that is kept: pictures need memory, too. */
+const kFittingShare = 0.7;
+
+/** Appended to the codec's message: what the user sees now, and what to do. */
+const kWaysOut: Record<string, string> = {
+  'bad-checksum':
+    '. What came before is sound and stays on the screen. Try again to fetch the rest anew; if ' +
+    'it fails at the same chunk, the file itself is damaged: "qtet verify" says where.',
+  'out-of-memory': ' It stays at a level that fits. Close other tabs and try again for more.',
+};
+
+export type TransportFactory = (
+  source: Source,
+  table: LogTable,
+  handlers: TransportHandlers,
+) => Transport;
+
+const kNoSource: Source = {
+  url: '',
+  log: '',
+  mesh: '',
+  fields: null,
+  limit: kFull,
+  transport: 'auto',
+};
+
+export class Session implements TransportHandlers {
+  /** Receives every frame of the log. */
+  coarse: Pick<CoarseVolume, 'note' | 'forget'> | null = null;
+  private state: SessionState = {name: 'connecting'};
+  private source = kNoSource;
+  /** The page has received this log's base mesh. */
+  private baseReported = false;
+  private readonly stream = new LogStream();
+  private readonly requested: RequestedPart;
+  private readonly decoding: Decoding;
+  private readonly progress: ProgressReporter;
+
+  constructor(
+    private readonly assembler: Assembler,
+    private readonly publisher: Publisher,
+    private readonly send: (message: FromWorker) => void,
+    private readonly newTransport: TransportFactory = makeTransport,
+  ) {
+    this.requested = new RequestedPart(assembler);
+    this.decoding = new Decoding(assembler, this.requested, () => this.advance());
+    this.progress = new ProgressReporter(() => this.sendProgress());
+    publisher.onFirst = () => this.advance();
+    publisher.untilLast = () => this.untilDecoded();
+    publisher.onLayers = (positions) => this.lookAtSurface(positions);
+  }
+
+  start(source: Source): void {
+    this.stream.disconnect();
+    this.source = source;
+    this.forget();
+    this.requested.begin(source);
+    this.stream.use(this.newTransport(source, this.assembler, this));
+    if (source.paused) return this.enter({name: 'paused'});
+    this.enter({name: 'connecting'});
+    this.stream.connect();
+  }
+
+  /** Brings these fields (indexes into the manifest) instead of the previous ones. */
+  want(fields: readonly number[]): void {
+    if (!this.assembler.manifest) return;
+    const wasComparing = this.requested.endComparing();
+    if (!this.requested.changeFields(fields) && !wasComparing) return;
+    this.sendPlan();
+    this.progress.changed();
+    if (this.state.name === 'failed') return;
+    this.advance();
+    if (this.state.name === 'paused' || this.requested.isComplete) return;
+    if (!this.requested.isReceived()) this.reopen();
+  }
+
+  /** Refines up to this limit. A coarser limit goes back. */
+  setLimit(limit: Limit): void {
+    this.requested.limit = limit;
+    if (!this.assembler.manifest || this.state.name === 'failed') return;
+    if (this.requested.comparing) return; // the display comes soon, and asks for the rest
+    const wasPaused = this.endPause();
+    this.guarded(() => {
+      if (this.requested.isReached) this.goBack();
+      if (this.requested.isReached) this.hold();
+      else this.goOn(wasPaused);
+      this.progress.changed();
+    });
+  }
+
+  /** Sets the user's view. */
+  look(view: ViewRequest): void {
+    this.requested.look(view, surfaceRequestOf(this.requested.view));
+    this.follow();
+  }
+
+  pause(): void {
+    if (canPause(this.state) && this.stream.pause()) this.enter({name: 'paused'});
+  }
+
+  /** Continues after a pause, or tries again after an error. */
+  resume(): void {
+    const {names, limit} = this.requested;
+    if (this.state.name === 'failed')
+      this.start({...this.source, fields: names, limit, paused: false});
+    else if (this.endPause()) this.goOn(true);
+  }
+
+  // ---- TransportHandlers
+
+  connected(): void {
+    if (this.state.name !== 'paused') this.open();
+  }
+
+  message(message: ServerMessage): void {
+    switch (message.type) {
+      case 'opened':
+        this.stream.digest = message.digest;
+        return;
+      case 'done':
+        return this.done();
+      case 'error':
+        return this.refused(message);
+      case 'stopped':
+        return;
+    }
+  }
+
+  frame(frame: Frame): void {
+    this.guarded(() => {
+      const isFirst = !this.assembler.manifest;
+      this.assembler.take(frame);
+      this.coarse?.note(frame);
+      this.stream.received(frame.payload.length);
+      if (isFirst && this.takeManifest()) return;
+      const {name} = this.state;
+      if (name !== 'streaming' && name !== 'paused' && !this.requested.isReached)
+        this.enter({name: 'streaming'});
+      this.advanceSoon();
+    });
+  }
+
+  down(attempt: number, delayMs: number): void {
+    // If nothing is missing, the connection may end. Asking for more connects again.
+    if (isAtRest(this.state)) this.stream.disconnect();
+    else this.enter({name: 'reconnecting', attempt, delayMs});
+  }
+
+  failed(error: QtetError): void {
+    this.decoding.stop();
+    this.stream.disconnect();
+    this.send({type: 'error', code: error.code, message: error.message});
+    this.enter({name: 'failed'});
+  }
+
+  private done(): void {
+    if (this.requested.isReceived(this.requested.target?.chunks)) {
+      this.advanceSoon();
+    } else if (this.stream.mayEndEarly) {
+      this.open();
+    } else {
+      this.failed(
+        new QtetError(
+          'incomplete',
+          'The server says that everything was sent, but parts of the mesh are missing. Try again.',
+        ),
+      );
+    }
+  }
+
+  private refused({code, detail}: {code: string; detail: string}): void {
+    // Another mesh has taken this name: what was decoded is useless.
+    if (code === 'log-changed' && this.stream.digest) {
+      this.forget();
+      this.open();
+      return;
+    }
+    if (code === 'unknown-field' && !this.assembler.manifest) {
+      const message = `${detail.replace(/\.?$/, '.')} The first field is shown instead.`;
+      this.send({type: 'error', code, message});
+      this.requested.names = null;
+      this.open();
+      return;
+    }
+    this.failed(new QtetError(code, detail));
+  }
+
+  // ---- the stream
+
+  private open(): void {
+    this.stream.open(this.source.mesh, this.requested);
+  }
+
+  /** Opens a stream on the present connection, or connects first. */
+  private reopen(): void {
+    const {isConnected} = this.stream;
+    this.enter({name: isConnected ? 'streaming' : 'connecting'});
+    if (isConnected) this.open();
+    else this.stream.connect();
+  }
+
+  /** Returns true if the stream was opened again, now that the fields are known. */
+  private takeManifest(): boolean {
+    const manifest = this.assembler.manifest!;
+    const unknown = this.requested.findFields();
+    if (unknown !== undefined) {
+      const message = `The mesh has no field "${unknown}". The first one is shown instead.`;
+      this.send({type: 'error', code: 'unknown-field', message});
+    }
+    this.assembler.look(this.requested.view);
+    const {fields} = this.requested;
+    this.send({type: 'manifest', manifest, digest: this.stream.digest, fields: [...fields]});
+    this.sendPlan();
+    if (!this.stream.endsAtHead && this.stream.brings(this.requested.keys)) {
+      this.follow(); // the `open` could not tell the view: its lattice was unknown
+      return false;
+    }
+    this.open();
+    return true;
+  }
+
+  private lookAtSurface(positions: Float32Array): void {
+    const {lattice, packets, manifest} = this.assembler;
+    if (packets.length === 0 || !lattice || !manifest) return;
+    const {display} = this.publisher;
+    const isovalue = isovalueOf(display, manifest.fields);
+    const request = surfaceRequest(positions, isovalue, lattice.size);
+    if (asksForTheSame(request, surfaceRequestOf(this.requested.view))) return;
+    this.requested.look(this.requested.view, request);
+    this.follow();
+  }
+
+  private follow(): void {
+    if (this.assembler.packets.length === 0) return;
+    this.assembler.look(this.requested.view);
+    if (this.state.name !== 'paused') this.stream.look(this.requested.view);
+  }
+
+  // ---- decoding
+
+  private advance(): void {
+    this.guarded(() => {
+      const pictureFirst = this.source.pictureFirst === true && !this.publisher.hasPublished;
+      const hasChanged = this.decoding.advance(pictureFirst);
+      this.tellOfBase();
+      if (hasChanged) this.publisher.changed(this.requested.isComplete);
+      this.progress.changed();
+      if (this.requested.isComplete) this.complete();
+      else if (this.requested.comparing) return;
+      else if (this.requested.isReached) this.hold();
+      else if (this.state.name !== 'paused') this.stream.giveCredit();
+    });
+  }
+
+  /**
+   * Frames come in crowds. If each took a slice, the page's commands and the pictures would wait
+   * for all of them.
+   */
+  private advanceSoon(): void {
+    if (!this.decoding.isDue) this.advance();
+  }
+
+  /** Shows no picture on the way. */
+  private goBack(): void {
+    this.decoding.goBack();
+    this.publisher.changed(true);
+  }
+
+  /** In ms. Infinity until everything is received. */
+  private untilDecoded(): number {
+    if (this.requested.limit.kind !== 'full' || !this.requested.isReceived()) return Infinity;
+    const {bytes, bytesNeeded} = this.requested.statistics;
+    return this.decoding.msFor(bytesNeeded - bytes);
+  }
+
+  // ---- states
+
+  private enter(state: SessionState): void {
+    this.state = state;
+    this.progress.flush();
+    this.send(stateMessage(state));
+  }
+
+  private hold(): void {
+    if (this.state.name === 'held' || this.state.name === 'paused') return;
+    this.publisher.changed(true);
+    this.enter({name: 'held'});
+  }
+
+  private complete(): void {
+    if (this.state.name !== 'complete') this.enter({name: 'complete'});
+  }
+
+  /** Returns true if there was a pause. The caller reports the next state. */
+  private endPause(): boolean {
+    const wasPaused = this.state.name === 'paused';
+    if (wasPaused) this.state = {name: 'streaming'};
+    return wasPaused;
+  }
+
+  /** Continues after a pause or a new limit: first with what is here, then with the network. */
+  private goOn(wasPaused: boolean): void {
+    this.state = {name: 'streaming'}; // reported below, unless decoding ends it at once
+    this.advance();
+    if (this.requested.isComplete || this.requested.isReached) return;
+    if (this.requested.isReceived()) return this.enter({name: 'streaming'});
+    if (!this.stream.isConnected || !this.stream.brings(this.requested.keys)) return this.reopen();
+    this.enter({name: 'streaming'});
+    this.stream.aim(this.requested);
+    if (wasPaused && !this.stream.resume()) this.open();
+  }
+
+  private guarded(action: () => void): void {
+    try {
+      action();
+    } catch (thrown) {
+      const code = errorCode(thrown);
+      if (code === 'out-of-memory' && this.stayAtWhatFits()) return;
+      this.failed(new QtetError(code, `${errorText(thrown)}${kWaysOut[code] ?? ''}`));
+    }
+  }
+
+  /**
+   * Starts again in a fresh codec, at a limit that leaves room. Returns false if not even the base
+   * mesh fits.
+   */
+  private stayAtWhatFits(): boolean {
+    const {tetrahedra} = this.requested.statistics;
+    if (tetrahedra === 0) return false;
+    this.decoding.stop();
+    this.stream.disconnect();
+    const value = Math.max(1, Math.floor(kFittingShare * tetrahedra));
+    this.requested.limit = {kind: 'cells', value};
+    this.guarded(() => {
+      this.assembler.codec.restart();
+      this.goBack();
+      const message =
+        'The whole mesh needs more memory than the browser gives to a page.' +
+        kWaysOut['out-of-memory']!;
+      this.send({type: 'error', code: 'out-of-memory', message});
+      this.progress.changed();
+      this.hold();
+    });
+    return true;
+  }
+
+  /** Must be called before another log. */
+  private forget(): void {
+    this.baseReported = false;
+    this.decoding.forget();
+    this.stream.forget();
+    this.requested.forget();
+    this.assembler.forget();
+    this.coarse?.forget();
+    this.publisher.reset();
+  }
+
+  // ---- to the page
+
+  private tellOfBase(): void {
+    if (this.baseReported) return;
+    const {codec} = this.assembler;
+    const mesh = meshArrays(this.assembler);
+    if (!mesh) return; // also between two logs, while the codec has the last one's
+    if (this.requested.fields.some((field) => codec.fieldChunksApplied(field) === 0)) return;
+    this.baseReported = true;
+    const field = fieldOfMaxContrast(mesh, this.requested.fields);
+    this.send({type: 'base', figures: baseFigures(mesh), field});
+  }
+
+  private sendPlan(): void {
+    this.send({type: 'plan', plan: this.assembler.plan(this.requested.fields)});
+  }
+
+  private sendProgress(): void {
+    const statistics = this.requested.statistics;
+    this.send({type: 'progress', statistics, received: this.stream.receivedBytes});
+  }
+}

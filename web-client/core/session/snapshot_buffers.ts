@@ -1,0 +1,18 @@
+// The buffers that a snapshot transfers when it travels between threads.
+
+import {kLayers} from '../layers/layers';
+import {soupOf} from '../layers/shown';
+import {buffersOfVolume} from '../picture/volume';
+import type {Snapshot} from './worker_messages';
+
+export function buffersOf(snapshot: Snapshot): ArrayBuffer[] {
+  const {surface, cuts, volume} = snapshot;
+  const soups = [surface, ...cuts, ...kLayers.map((layer) => soupOf(snapshot, layer))].filter(
+    (soup) => soup !== undefined,
+  );
+  const arrays: ArrayBufferView[] = soups.flatMap(({positions, values}) => [positions, values]);
+  return [
+    ...arrays.map(({buffer}) => buffer as ArrayBuffer),
+    ...(volume ? buffersOfVolume(volume) : []),
+  ];
+}

@@ -1,0 +1,109 @@
+// Messages between the page and the worker that decodes. Typed arrays are transferred, never
+// copied.
+
+import type {LevelBytes} from '../decode/plan';
+import type {Statistics} from '../decode/statistics';
+import type {LayerSoups} from '../layers/shown';
+import type {BaseFigures} from '../picture/base_figures';
+import type {Ray} from '../picture/cell_ray';
+import type {Display} from '../picture/display';
+import type {Scalar} from '../picture/field_scale';
+import type {TriangleSoup} from '../picture/triangle_soup';
+import type {CoarseCells, VolumeCells} from '../picture/volume';
+import type {Vector, Plane} from '../protocol/geometry';
+import type {Limit} from '../protocol/limit';
+import type {Manifest} from '../protocol/manifest';
+import type {ViewRequest} from '../protocol/view_request';
+import type {LogAddress} from '../transport/transports';
+import type {Pick, Probe} from './inspector';
+
+/** The state of the stream. `paused`: by the user; `held`: it has reached the limit. */
+export type StreamState =
+  'connecting' | 'streaming' | 'complete' | 'reconnecting' | 'paused' | 'held' | 'failed';
+
+export interface Source extends LogAddress {
+  mesh: string;
+  /** Keys of the fields to begin with; null: the first one; empty: none. */
+  fields: string[] | null;
+  limit: Limit;
+  /**
+   * The fields are only candidates: the stream brings their values for the base mesh, and then
+   * those of the display. With null the candidates are the first ones.
+   */
+  compare?: boolean;
+  /** The network stays idle until `resume`. */
+  paused?: boolean;
+  /** A display follows soon: decoding sends a first picture before it refines. */
+  pictureFirst?: boolean;
+}
+
+export type ToWorker =
+  /** The first message: where the codec's WebAssembly lies. */
+  | {type: 'load'; codecUrl: string}
+  /** `run` counts the starts. Messages of an earlier run concern another mesh. */
+  | {type: 'start'; source: Source; run: number}
+  | {type: 'display'; display: Display}
+  | {type: 'limit'; limit: Limit}
+  | {type: 'look'; view: ViewRequest}
+  | {type: 'pause'}
+  | {type: 'resume'}
+  /** The last snapshot is on the screen, so that the next may come. */
+  | {type: 'shown'; drawingMs?: number | undefined}
+  /** The last snapshot is lost: send it again. */
+  | {type: 'repeat'}
+  | ({id: number} & Question);
+
+/** The worker answers each by an `answer` with the same id. */
+export type Question =
+  | {type: 'digest'}
+  | {type: 'pick'; ray: Ray}
+  | {type: 'probe'; from: Vector; to: Vector}
+  /** Asks for a volume with few cells. The page has version `have`. */
+  | {type: 'coarse'; have: number};
+
+/** One consistent picture. Parts that have not changed are absent. */
+export interface Snapshot extends LayerSoups {
+  surface?: TriangleSoup;
+  /** Null if none is wanted or there are no values yet. */
+  volume?: VolumeCells | null;
+  /** One a plane. The parts above the other planes must be hidden, as for the surface. */
+  cuts: TriangleSoup[];
+  planes: Plane[];
+  /** Bounds of the surface in lattice coordinates: [x0, y0, z0, x1, y1, z1]. */
+  bounds: number[];
+  /** The quantity that the soups' values show; null if there are none yet. */
+  color: Scalar | null;
+  /** The values that 0 and 1 stand for; `extent` is the part of [0, 1] that occurs. */
+  scaleRange: [number, number];
+  extent: [number, number];
+  /**
+   * Spread.middle of the values, as they were when the colour was first drawn: it stays while the
+   * mesh refines.
+   */
+  middle: [number, number];
+  statistics: Statistics;
+  /** How long the worker took to make it. */
+  costMs: number;
+}
+
+/** With its run. Messages without one come from before the first start. */
+export type Posted = FromWorker & {run?: number};
+
+export type FromWorker =
+  | {type: 'manifest'; manifest: Manifest; digest: string; fields: number[]}
+  /**
+   * The result of planOf for the current fields. It is sent after `manifest` and whenever the
+   * fields change.
+   */
+  | {type: 'plan'; plan: LevelBytes[]}
+  /**
+   * The base mesh is decoded with the values of the fields. Each log sends it once, so that the
+   * first display can hold planes that stand at shares of its bounds. `field` is the one with most
+   * contrast.
+   */
+  | {type: 'base'; figures: BaseFigures; field: number}
+  | {type: 'snapshot'; snapshot: Snapshot}
+  | {type: 'progress'; statistics: Statistics; received: number}
+  | {type: 'state'; state: StreamState; attempt: number; delayMs: number}
+  | {type: 'error'; code: string; message: string}
+  | {type: 'answer'; id: number; answer: string | Pick | Probe | CoarseCells | null};

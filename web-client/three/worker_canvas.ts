@@ -1,0 +1,89 @@
+// The page's canvas, as the worker that draws into it sees it: its surface, its size, and the
+// pointer events that the page forwards.
+
+import {watchDensity} from './density';
+
+/** The forwarded part of a pointer, wheel or key event. Places count from the canvas's corner. */
+export interface CanvasEvent {
+  type: string;
+  clientX: number;
+  clientY: number;
+  pageX: number;
+  pageY: number;
+  button: number;
+  pointerId: number;
+  pointerType: string;
+  deltaY: number;
+  deltaMode: number;
+  ctrlKey: boolean;
+  metaKey: boolean;
+  shiftKey: boolean;
+  key: string;
+}
+
+export interface CanvasSize {
+  width: number;
+  height: number;
+  pixelRatio: number;
+}
+
+/** The part of an element that OrbitControls needs. */
+export class WorkerCanvas extends EventTarget {
+  clientWidth = 1;
+  clientHeight = 1;
+  pixelRatio = 1;
+  readonly style: Record<string, string> = {};
+  /** Moves and keys arrive here, too: the page forwards only the canvas's events. */
+  readonly ownerDocument = this;
+  onresize: () => void = () => undefined;
+
+  constructor(readonly surface: OffscreenCanvas) {
+    super();
+  }
+
+  resize({width, height, pixelRatio}: CanvasSize): void {
+    Object.assign(this, {clientWidth: width, clientHeight: height, pixelRatio});
+    this.onresize();
+  }
+
+  receive(event: CanvasEvent): void {
+    const {type, ...rest} = event;
+    this.dispatchEvent(Object.assign(new Event(type, {cancelable: true}), rest));
+  }
+
+  getBoundingClientRect(): {left: number; top: number; width: number; height: number} {
+    return {left: 0, top: 0, width: this.clientWidth, height: this.clientHeight};
+  }
+  getRootNode(): this {
+    return this;
+  }
+  /** The page has captured the pointer already. */
+  setPointerCapture(): void {
+    return;
+  }
+  releasePointerCapture(): void {
+    return;
+  }
+}
+
+export type ViewCanvas = HTMLCanvasElement | WorkerCanvas;
+
+export const surfaceOf = (canvas: ViewCanvas): HTMLCanvasElement | OffscreenCanvas =>
+  canvas instanceof WorkerCanvas ? canvas.surface : canvas;
+export const pixelRatioOf = (canvas: ViewCanvas): number =>
+  canvas instanceof WorkerCanvas ? canvas.pixelRatio : window.devicePixelRatio;
+
+/** Calls `resized` whenever the canvas's size changes. Returns a function that ends this. */
+export function watchSize(canvas: ViewCanvas, resized: () => void): () => void {
+  if (canvas instanceof WorkerCanvas) {
+    canvas.onresize = resized;
+    return () => void (canvas.onresize = () => undefined);
+  }
+  const observer = new ResizeObserver(resized);
+  observer.observe(canvas);
+  const endDensity = watchDensity(resized);
+  return () => {
+    observer.disconnect();
+    endDensity();
+  };
+}

@@ -1,0 +1,110 @@
+// The actions of buttons and keys.
+
+import {errorText} from '../../core/protocol/errors';
+import {kDirections, type Direction} from '../../three/directions';
+import type {View} from '../../three/view';
+import type {Settings} from '../settings/settings';
+import {find} from './find';
+import type {KeyActions} from './keys';
+import type {Page} from './page';
+import {save} from './save';
+import {ShareDialog} from './share_dialog';
+
+export interface ActionsHost {
+  readonly settings: Settings;
+  readonly view: View | null;
+  picture(): Promise<Blob | null>;
+  togglePause(): void;
+  /** Moves the first clip plane by a share of the extent. */
+  moveClip(step: number): void;
+  /** Brings what was pointed at into the middle, or all of the mesh. */
+  centre(): void;
+  /** Picks what lies in the middle. */
+  inspect(): void;
+  endTool(): void;
+  failed(code: string, message: string): void;
+}
+
+export class Actions {
+  private readonly shareDialog: ShareDialog;
+
+  constructor(
+    private readonly page: Page,
+    private readonly host: ActionsHost,
+  ) {
+    this.shareDialog = new ShareDialog(page);
+  }
+
+  look(direction: Direction | null): void {
+    this.host.view?.look(direction);
+  }
+
+  togglePause(): void {
+    this.host.togglePause();
+  }
+
+  share(): void {
+    this.shareDialog.show();
+  }
+
+  help(): void {
+    find<HTMLDialogElement>(this.page.root, '.help-dialog').showModal();
+  }
+
+  async savePicture(): Promise<void> {
+    const picture = await this.host
+      .picture()
+      .catch((thrown: unknown) =>
+        this.host.failed('no-picture', `The picture cannot be taken: ${errorText(thrown)}.`),
+      );
+    if (!picture) return;
+    save(picture, `${find(this.page.root, '.mesh-name').textContent}.png`);
+  }
+
+  toggleFullscreen(): void {
+    if (document.fullscreenElement) {
+      void document.exitFullscreen();
+      return;
+    }
+    this.page.element.requestFullscreen().catch(() => {
+      this.host.failed(
+        'no-fullscreen',
+        'The browser does not give the whole screen to this page. Its own menu may.',
+      );
+    });
+  }
+
+  /** Key actions for the canvas of `view`. */
+  keys(view: View): KeyActions {
+    return {
+      turn: (horizontal, vertical) => view.turn(horizontal, vertical),
+      pan: (right, up) => view.pan(right, up),
+      centre: () => this.host.centre(),
+      zoom: (factor) => view.zoom(factor),
+      look: (direction) => view.look(direction === null ? null : kDirections[direction]!),
+      toggle: (what) => this.toggle(what),
+      moveClip: (step) => this.host.moveClip(step),
+      inspect: () => this.host.inspect(),
+      picture: () => void this.savePicture(),
+      help: () => this.help(),
+      escape: () => this.host.endTool(),
+    };
+  }
+
+  private toggle(what: Parameters<KeyActions['toggle']>[0]): void {
+    const {page} = this;
+    const {parallel, edges, planes} = this.host.settings;
+    switch (what) {
+      case 'parallel':
+        return page.write('projection', parallel ? null : 'parallel');
+      case 'edges':
+        return page.write('edges', edges ? 'off' : null);
+      case 'clip':
+        return page.write('clip', planes.length > 0 ? null : 'x:0.5');
+      case 'pause':
+        return this.togglePause();
+      case 'fullscreen':
+        return this.toggleFullscreen();
+    }
+  }
+}

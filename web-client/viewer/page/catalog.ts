@@ -1,0 +1,80 @@
+// The meshes of a server, GET /v1/meshes of proto/PROTOCOL.md, or of a folder that `qtet publish`
+// made. The latter has the same list in its index.json, with addresses of files.
+
+import {QtetError} from '../../core/protocol/errors';
+import {refusedOrigin} from '../../core/transport/refused_origin';
+import {fetchWith} from '../../core/transport/token';
+
+export interface MeshEntry {
+  id: string;
+  tetrahedra: number;
+  fields: string[];
+  /** The address of the log as a file, from a published list; without it the server has it. */
+  log?: string;
+}
+
+/** Throws a QtetError whose text says what to do. `token` is empty if the server asks for none. */
+export async function fetchCatalog(base: URL, token = ''): Promise<MeshEntry[]> {
+  const isList = isMeshList(base);
+  const url = isList ? base : new URL('v1/meshes', base);
+  let response: Response;
+  try {
+    response = await (fetchWith(token) ?? fetch)(url.href, {});
+  } catch {
+    const refused = await refusedOrigin(url.href);
+    if (refused) throw refused;
+    throw new QtetError(
+      'offline',
+      `The server at ${base.host} does not answer. Check the connection and try again.`,
+    );
+  }
+  if (!response.ok)
+    throw new QtetError(
+      'http',
+      `The server at ${base.host} answers "${response.status} ${response.statusText}" instead ` +
+        'of its meshes. For a .qtet file on a plain web server, give its address: ?src=FILE.qtet',
+    );
+  const body = (await response.json().catch(() => null)) as {meshes?: unknown} | null;
+  if (!Array.isArray(body?.meshes))
+    throw new QtetError(
+      'bad-message',
+      `${url.href} is not a list of meshes. Is this a qtet server? For a .qtet file on another ` +
+        'one, give its address: ?src=FILE.qtet',
+    );
+  return (body.meshes as Listed[]).map((mesh) => ({
+    id: String(mesh.id),
+    tetrahedra: Number(mesh.tetrahedra ?? 0),
+    fields: Array.isArray(mesh.fields) ? mesh.fields.map(String) : [],
+    ...(isList && {log: new URL(String(mesh.links?.log), url).href}),
+  }));
+}
+
+/** An entry as it arrives: no member has been checked. */
+type Listed = Partial<Record<keyof MeshEntry, unknown>> & {links?: {log?: unknown}};
+
+/** Whether the address names a list that `qtet publish` made. */
+export function isMeshList(base: URL): boolean {
+  return base.pathname.endsWith('.json');
+}
+
+/** Whether the address names a log on any web server. */
+export function isLogFile(base: URL): boolean {
+  return base.pathname.endsWith('.qtet');
+}
+
+/** The file's name, as a mesh's id. */
+export function meshOfLog(base: URL): string {
+  return decodeURIComponent(base.pathname.replace(/^.*\//, '').replace(/\.qtet$/, ''));
+}
+
+/** The address of a server's log as a file. */
+export function logUrl(base: URL, mesh: string): string {
+  return new URL(`v1/meshes/${encodeURIComponent(mesh)}/log`, base).href;
+}
+
+/** The address of the stream that belongs to an HTTP address. */
+export function streamUrl(base: URL): string {
+  const url = new URL('v1/stream', base);
+  url.protocol = base.protocol === 'https:' ? 'wss:' : 'ws:';
+  return url.href;
+}

@@ -1,0 +1,67 @@
+// A viewer's state of the mesh that it shows. Another mesh gets another object.
+
+import type {LevelBytes} from '../../core/decode/plan';
+import {kNoStatistics, type Statistics} from '../../core/decode/statistics';
+import {firstOpacities} from '../../core/layers/volume';
+import type {BaseFigures} from '../../core/picture/base_figures';
+import {labelsOf} from '../../core/picture/labels';
+import type {Manifest} from '../../core/protocol/manifest';
+import type {Snapshot} from '../../core/session/worker_messages';
+import {readSettings, shownScalar, type Settings, type ViewAttribute} from '../settings/settings';
+
+export class ShownMesh {
+  /** Null before the head of the log is here. */
+  manifest: Manifest | null = null;
+  /** The base mesh's, in lattice coordinates; empty before it is decoded. */
+  bounds: number[] = [];
+  /** The place to look at first, in lattice coordinates; null: all of the mesh. */
+  focus: number[] | null = null;
+  /** The mean length of lines through the mesh, as a share of its diagonal. */
+  chord = 0;
+  /** The field that is shown if no attribute names one. */
+  firstField = 0;
+  /** The levels ahead. */
+  plan: LevelBytes[] = [];
+  /** The newest figures. */
+  statistics: Statistics = kNoStatistics;
+  /** The newest picture. */
+  snapshot: Snapshot | null = null;
+  /** A picture that waits for a view. */
+  waiting: Snapshot | null = null;
+  /** Some values in the picture are missing. */
+  hasMissing = false;
+  /** The figures of the picture on the screen; null if there is none. */
+  drawn: Statistics | null = null;
+
+  takeBase({bounds, chord, focus}: BaseFigures, field: number): void {
+    Object.assign(this, {bounds, chord, focus, firstField: field});
+  }
+
+  take(snapshot: Snapshot): void {
+    // Other figures are newer than a picture that waited for a view.
+    if (this.statistics === kNoStatistics) this.statistics = snapshot.statistics;
+    this.snapshot = snapshot;
+    if (!snapshot.surface) return; // a new cut of the same mesh
+    this.hasMissing = [snapshot.surface, ...snapshot.cuts].some(({values}) =>
+      values.some(Number.isNaN),
+    );
+  }
+
+  /** The whole mesh is on the screen. The decoder may have finished long before. */
+  get isDrawn(): boolean {
+    return this.drawn !== null && this.drawn.bytes >= this.statistics.bytesNeeded;
+  }
+}
+
+/** The settings of the attributes, with what the mesh decides where they say nothing. */
+export function settingsFor(
+  {manifest, firstField, chord}: ShownMesh,
+  read: (name: ViewAttribute) => string | null,
+): Settings {
+  const settings = readSettings(read);
+  const fields = manifest?.fields ?? [];
+  const shown = shownScalar(read('field'), fields, firstField);
+  if (read('colormap') === null && shown && labelsOf(fields[shown.field]!)) settings.map = 'labels';
+  if (settings.hasFirstOpacities) settings.volume = firstOpacities(chord);
+  return settings;
+}

@@ -1,0 +1,141 @@
+// Field, colour map, scale, range, edges, surface and opacity.
+
+import {parseNumbers} from '../../core/layers/field_values';
+import {colorGradient, labelGradient, type ColorMapName} from '../../core/picture/color_maps';
+import {labelsOf} from '../../core/picture/labels';
+import {roundTo} from '../page/format';
+import type {Attributes} from '../page/page';
+import {shownScalar, type Settings} from '../settings/settings';
+import {fillScalars, type Panel, type Scene} from './panel';
+
+/** The labels in their map's swatch. */
+const kShownLabels = 5;
+/** The ends of the range are shown to this share of it. */
+const kRangeShare = 1e-4;
+
+function gradientOf(map: string): string {
+  return map === 'labels' ? labelGradient(kShownLabels) : colorGradient(map as ColorMapName);
+}
+
+export class ColorPanel implements Panel {
+  /** The fixed ranges of fields that were left. */
+  private readonly ranges = new Map<string, string>();
+  /** The field in the menu. */
+  private field = '';
+  /** A fixed range was chosen before there were values: the first one is kept. */
+  private awaitsRange = false;
+
+  constructor(
+    private readonly root: ParentNode,
+    private readonly attributes: Attributes,
+  ) {
+    for (const swatch of root.querySelectorAll<HTMLInputElement>('input[name=colormap]'))
+      (swatch.nextElementSibling as HTMLElement).style.background = gradientOf(swatch.value);
+    this.on('select[name=field]', (select) => this.chooseField(select.value));
+    this.on('.swatches', () => this.writeMap());
+    this.on('input[name=reversed]', () => this.writeMap());
+    this.on('input[name=log]', (input) =>
+      attributes.write('scale', (input as HTMLInputElement).checked ? 'log' : null),
+    );
+    this.on('select[name=range]', (select) => this.writeRange(select.value));
+    for (const end of ['low', 'high'])
+      this.on(`input[name=range-${end}]`, () => this.writeRange('fixed'));
+    this.on('input[name=edges]', (input) =>
+      attributes.write('edges', (input as HTMLInputElement).checked ? null : 'off'),
+    );
+    this.on('input[name=surface]', (input) =>
+      attributes.write('surface', (input as HTMLInputElement).checked ? null : 'off'),
+    );
+    this.input('opacity').addEventListener('input', () =>
+      attributes.write('opacity', String(Number(this.input('opacity').value) / 100)),
+    );
+  }
+
+  update(settings: Settings, scene: Scene | null): void {
+    for (const swatch of this.root.querySelectorAll<HTMLInputElement>('input[name=colormap]'))
+      swatch.checked = swatch.value === settings.map;
+    this.input('reversed').checked = settings.reversed;
+    this.input('log').checked = settings.logarithmic;
+    this.input('edges').checked = settings.edges;
+    this.input('surface').checked = settings.surface;
+    this.input('opacity').value = String(Math.round(100 * settings.opacity));
+    this.find('.opacity-text').textContent = `${Math.round(100 * settings.opacity)}\u202f%`;
+    const fixed = typeof settings.range !== 'string' || this.awaitsRange;
+    this.find<HTMLSelectElement>('select[name=range]').value = fixed
+      ? 'fixed'
+      : String(settings.range);
+    this.find('.range-fixed').hidden = !fixed;
+    const fields = scene?.manifest.fields ?? [];
+    const chosen = shownScalar(this.attributes.read('field'), fields, scene?.firstField ?? 0);
+    const labels = chosen && labelsOf(fields[chosen.field]!);
+    this.find('.swatch.labels').hidden = !labels;
+    const menu = this.find<HTMLSelectElement>('select[name=field]');
+    fillScalars(menu, fields, chosen);
+    this.field = menu.value;
+  }
+
+  /** Shows the current range, which a fixed one starts from. */
+  showRange(low: number, high: number): void {
+    const active = (this.root as ShadowRoot).activeElement;
+    for (const [name, value] of [
+      ['range-low', low],
+      ['range-high', high],
+    ] as const) {
+      if (this.input(name) !== active)
+        this.input(name).value = String(roundTo(value, kRangeShare * (high - low)));
+    }
+    if (!this.awaitsRange) return;
+    this.awaitsRange = false;
+    this.writeRange('fixed');
+  }
+
+  /** Numbers mean nothing for another field: a fixed range stays behind, and comes back. */
+  private chooseField(field: string): void {
+    const range = this.attributes.read('range');
+    if (range !== null && parseNumbers(range).length === 2) {
+      this.ranges.set(this.field, range);
+      this.attributes.write('range', null);
+    }
+    this.attributes.write('field', field);
+    const kept = this.ranges.get(field);
+    if (kept !== undefined) this.attributes.write('range', kept);
+  }
+
+  private writeMap(): void {
+    const map = this.root.querySelector<HTMLInputElement>('input[name=colormap]:checked')!.value;
+    this.attributes.write('colormap', this.input('reversed').checked ? `${map} reversed` : map);
+  }
+
+  private writeRange(kind: string): void {
+    const isUnknown = ['low', 'high'].every((end) => this.input(`range-${end}`).value === '');
+    this.awaitsRange = kind === 'fixed' && isUnknown;
+    if (this.awaitsRange) return void (this.find('.range-fixed').hidden = false);
+    if (kind !== 'fixed') {
+      this.attributes.write('range', kind === 'auto' ? null : kind);
+      return;
+    }
+    const text = `${this.input('range-low').value},${this.input('range-high').value}`;
+    const [low, high] = parseNumbers(text);
+    const valid = low !== undefined && high !== undefined && low < high;
+    this.input('range-high').setCustomValidity(
+      valid ? '' : 'The end of the range has to be above its start.',
+    );
+    if (valid) this.attributes.write('range', `${low},${high}`);
+    else this.input('range-high').reportValidity();
+  }
+
+  private on(
+    selector: string,
+    action: (control: HTMLInputElement | HTMLSelectElement) => void,
+  ): void {
+    this.find(selector).addEventListener('change', (event) =>
+      action(event.currentTarget as HTMLInputElement),
+    );
+  }
+  private find<T extends HTMLElement = HTMLElement>(selector: string): T {
+    return this.root.querySelector<T>(selector)!;
+  }
+  private input(name: string): HTMLInputElement {
+    return this.find<HTMLInputElement>(`input[name=${name}]`);
+  }
+}

@@ -1,0 +1,66 @@
+// Shared by the panels: their update, and the fields in their menus.
+
+import {scalarText} from '../../core/layers/field_values';
+import {kMagnitude, type Scalar} from '../../core/picture/field_scale';
+import type {FieldInfo, Manifest} from '../../core/protocol/manifest';
+import {fillSelect} from '../page/select';
+import type {Settings} from '../settings/settings';
+
+/** The mesh, as far as a panel needs it. */
+export interface Scene {
+  manifest: Manifest;
+  bounds: number[];
+  /** The field that is shown if no attribute names one. */
+  firstField: number;
+}
+
+export interface Panel {
+  /** `scene` is null while there is no mesh. */
+  update(settings: Settings, scene: Scene | null): void;
+}
+
+const kAxes = ['x', 'y', 'z'];
+
+/** "Velocity, x", or "Velocity, magnitude" for a vector without a component. */
+export function scalarTitle({field, component}: Scalar, fields: readonly FieldInfo[]): string {
+  const info = fields[field]!;
+  const twins = fields.filter(({name}) => name === info.name).length > 1;
+  const name = twins && info.association === 'cell' ? `${info.name} (cells)` : info.name;
+  if (info.components === 1) return name;
+  if (component === kMagnitude) return `${name}, magnitude`;
+  return `${name}, ${info.components <= 3 ? kAxes[component] : `component ${component + 1}`}`;
+}
+
+/**
+ * Offers every field, and the components of vectors. Fields of points and of cells are in groups if
+ * there are both.
+ */
+export function fillScalars(
+  select: HTMLSelectElement,
+  fields: readonly FieldInfo[],
+  chosen: Scalar | null,
+  pointsOnly = false,
+): void {
+  const usable = fields
+    .map((info, field) => ({info, field}))
+    .filter(({info}) => !pointsOnly || info.association === 'point');
+  const options = usable.flatMap(({info, field}) =>
+    [kMagnitude, ...(info.components > 1 ? info.minimum.keys() : [])].map((component) => {
+      const scalar = {field, component};
+      return {
+        value: scalarText(scalar, fields),
+        title: scalarTitle(scalar, fields),
+        group: info.association === 'cell' ? 'Fields of cells' : 'Fields of points',
+      };
+    }),
+  );
+  const grouped = new Set(options.map(({group}) => group)).size > 1;
+  fillSelect(
+    select,
+    options.length > 0
+      ? options.map(({group, ...rest}) => (grouped ? {...rest, group} : rest))
+      : [{value: '', title: 'No fields'}],
+    chosen ? scalarText(chosen, fields) : '',
+  );
+  select.disabled = options.length < 2;
+}

@@ -1,0 +1,175 @@
+// The cards over the picture. Each panel is a component of its own; this updates them together.
+
+import {fieldLayers} from '../../core/layers/layers';
+import {kMaxPlanes} from '../../core/picture/display';
+import type {Vector} from '../../core/protocol/geometry';
+import type {Client} from '../../core/session/client';
+import type {StreamState} from '../../core/session/worker_messages';
+import type {View} from '../../three/view';
+import type {Actions} from '../page/actions';
+import {CardLayout} from '../page/card_layout';
+import {find} from '../page/find';
+import type {Page} from '../page/page';
+import type {ShownMesh} from '../page/shown_mesh';
+import {shownScalar, type Settings, type ShownRange} from '../settings/settings';
+import {ClipHandles} from './clip_handles';
+import {ClipPanel} from './clip_panel';
+import {ColorPanel} from './color_panel';
+import {Inspect} from './inspect';
+import {Legend} from './legend';
+import {LevelPanel} from './level_panel';
+import {scalarTitle, type Scene} from './panel';
+import {ProgressPanel} from './progress_panel';
+import {StatisticsPanel} from './statistics_panel';
+import {ValuePanel} from './value_panel';
+import {ViewPanel} from './view_panel';
+import {VolumePanel} from './volume_panel';
+
+export interface PanelsHost {
+  readonly client: Client;
+  readonly view: View | null;
+  readonly mesh: ShownMesh;
+  /** The place that is pointed at, in lattice coordinates, is refined first; null for none. */
+  pointAt(point: Vector | null): void;
+}
+
+export class Panels {
+  readonly progress: ProgressPanel;
+  readonly cards: CardLayout;
+  readonly clip: ClipPanel;
+  readonly inspect: Inspect;
+  private readonly color: ColorPanel;
+  /** Panels that need only the attributes and the mesh's fields. */
+  private readonly simple: readonly {update(settings: Settings, known: Scene | null): void}[];
+  private readonly handles: ClipHandles;
+  private readonly legend: Legend;
+  private readonly statistics: StatisticsPanel;
+  private readonly view: ViewPanel;
+  /** The field and the level that a line's plot shows. */
+  private plotted = '';
+
+  constructor(page: Page, host: PanelsHost, actions: Actions) {
+    const {root} = page;
+    const announce = (text: string): void => page.announce(text);
+    this.progress = new ProgressPanel(root, announce);
+    this.legend = new Legend(root);
+    this.statistics = new StatisticsPanel(root);
+    this.view = new ViewPanel(page, actions);
+    this.color = new ColorPanel(root, page);
+    this.clip = new ClipPanel(
+      root,
+      page,
+      () => (host.view?.pose.direction ?? [0, -1, 0]).map((x) => -x) as Vector,
+    );
+    this.handles = new ClipHandles(find(root, '.layer'), kMaxPlanes, (i, share) =>
+      this.clip.move(i, share),
+    );
+    const level = new LevelPanel(
+      root,
+      (quality) => page.write('quality', quality),
+      () => standing(page, host.mesh),
+    );
+    this.simple = [
+      this.color,
+      ...fieldLayers().map((layer) => new ValuePanel(root, page, layer)),
+      new VolumePanel(root, page),
+      level,
+      this.view,
+    ];
+    const cards = new CardLayout(page.element, root, (insets) => host.view?.setInsets(insets));
+    this.cards = cards;
+    this.inspect = new Inspect(root, {
+      get client() {
+        return host.client;
+      },
+      get view() {
+        return host.view;
+      },
+      get manifest() {
+        return host.mesh.manifest;
+      },
+      get middle() {
+        return cards.middle;
+      },
+      get fieldTitle() {
+        return fieldTitle(page, host.mesh);
+      },
+      announce,
+      pointAt: (point) => host.pointAt(point),
+    });
+  }
+
+  attach(view: View): void {
+    this.handles.attach(view);
+  }
+
+  /** Brings all panels in line with the attributes and the mesh. */
+  update(settings: Settings, mesh: ShownMesh): void {
+    const {manifest, bounds, firstField, snapshot} = mesh;
+    const known: Scene | null = manifest && {manifest, bounds, firstField};
+    for (const panel of this.simple) panel.update(settings, known);
+    this.clip.update(settings, bounds.length > 0 ? known : null);
+    this.handles.update(settings.planes, snapshot ? bounds : []);
+  }
+
+  /** Must be called after every frame: handles and marks follow the picture. */
+  follow(): void {
+    this.handles.place();
+    this.inspect.place();
+  }
+
+  showState(state: StreamState, attempt: number, delayMs: number): void {
+    this.progress.showState(state, attempt, delayMs);
+    this.view.showState(state);
+  }
+
+  /** Shows the picture's figures. `frameMs` is the time of drawing. */
+  showFigures(
+    {color, statistics, costMs}: NonNullable<ShownMesh['snapshot']>,
+    frameMs: number,
+  ): void {
+    this.statistics.show(statistics, costMs, frameMs);
+    const isWhole = statistics.bytes >= statistics.bytesNeeded;
+    const plotted = JSON.stringify([color, isWhole]);
+    if (plotted !== this.plotted) this.inspect.refresh();
+    this.plotted = plotted;
+  }
+
+  /** Shows the legend; null if nothing is coloured. */
+  showRange(range: ShownRange | null, {snapshot, manifest}: ShownMesh, settings: Settings): void {
+    if (range && snapshot?.color && manifest) {
+      this.legend.show(snapshot.color, manifest.fields, range, settings);
+      this.color.showRange(range.low, range.high);
+    } else {
+      this.legend.hide();
+    }
+    this.cards.arrange();
+  }
+
+  /** Must be called before another mesh. */
+  clear(): void {
+    this.progress.begin(null);
+    this.statistics.clear();
+    this.inspect.clear();
+    this.legend.hide();
+    this.handles.update([], []);
+  }
+
+  dispose(): void {
+    this.cards.dispose();
+  }
+}
+
+function fieldTitle({read}: Pick<Page, 'read'>, {manifest, firstField}: ShownMesh): string {
+  const color = manifest && shownScalar(read('field'), manifest.fields, firstField);
+  return manifest && color ? scalarTitle(color, manifest.fields) : '';
+}
+
+/** The mesh as it is now: coarser and finer start from it. */
+function standing(
+  {read}: Pick<Page, 'read'>,
+  {statistics, manifest, firstField}: ShownMesh,
+): ReturnType<ConstructorParameters<typeof LevelPanel>[2]> {
+  const color = shownScalar(read('field'), manifest?.fields ?? [], firstField);
+  return {statistics, manifest, fields: color ? [color.field] : []};
+}

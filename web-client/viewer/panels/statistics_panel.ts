@@ -1,0 +1,36 @@
+// The figures about the pictures: their cost, and the rate of new cells.
+
+import type {Statistics} from '../../core/decode/statistics';
+import {find} from '../page/find';
+import {formatCount} from '../page/format';
+
+export class StatisticsPanel {
+  /** The previous picture; there was none if `at` is 0. */
+  private last = {at: 0, cells: 0};
+
+  constructor(private readonly root: ParentNode) {}
+
+  clear(): void {
+    this.last = {at: 0, cells: 0};
+  }
+
+  /** `costMs` is the time of making the picture, `frameMs` of drawing it. */
+  show(statistics: Statistics, costMs: number, frameMs: number): void {
+    const now = performance.now();
+    const {at, cells} = this.last;
+    if (at > 0 && statistics.tetrahedra > cells) {
+      const rate = ((statistics.tetrahedra - cells) / (now - at)) * 1000;
+      this.write('.cell-rate', `${formatCount(Math.round(rate))} cells/s`);
+    }
+    this.last = {at: now, cells: statistics.tetrahedra};
+    this.write('.frame-ms', `${frameMs.toFixed(1)} ms`);
+    this.write('.cost-ms', `${costMs.toFixed(1)} ms`);
+    this.write('.level', `${statistics.level} of ${statistics.lastLevel}`);
+    this.write('.vertices', formatCount(statistics.vertices));
+    this.write('.triangles', formatCount(statistics.boundaryTriangles));
+  }
+
+  private write(selector: string, text: string): void {
+    find(this.root, selector).textContent = text;
+  }
+}

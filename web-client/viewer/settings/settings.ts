@@ -1,0 +1,151 @@
+// The viewer's settings, read from its attributes. Every control writes an attribute, and every
+// attribute can be part of a link.
+
+import {parseClip, type ClipSetting} from '../../core/layers/clip';
+import {parseNumbers, parseScalar} from '../../core/layers/field_values';
+import {kLayers, type LayerAttribute} from '../../core/layers/layers';
+import {readVolume} from '../../core/layers/volume';
+import {isColorMapName, type ColorMapName} from '../../core/picture/color_maps';
+import {kClipModes, type ClipMode} from '../../core/picture/display';
+import {kMagnitude, type Scalar} from '../../core/picture/field_scale';
+import {kMaxLabels} from '../../core/picture/labels';
+import {kFull, parseLimit, type Limit} from '../../core/protocol/limit';
+import type {FieldInfo} from '../../core/protocol/manifest';
+import type {CameraState} from '../../three/camera';
+
+const kBeforeLayers = [
+  'mesh',
+  'field',
+  'colormap',
+  'range',
+  'scale',
+  'edges',
+  'surface',
+  'opacity',
+] as const;
+const kAfterLayers = ['quality', 'projection', 'camera'] as const;
+export type ViewAttribute =
+  (typeof kBeforeLayers)[number] | LayerAttribute | (typeof kAfterLayers)[number];
+
+/** The attributes of a view, in the order of a link. */
+export const kViewAttributes: readonly ViewAttribute[] = [
+  ...kBeforeLayers,
+  ...kLayers.flatMap(({name, more = []}) => [
+    name,
+    ...more.map((its) => its.name as LayerAttribute),
+  ]),
+  ...kAfterLayers,
+];
+
+export interface Settings {
+  map: ColorMapName;
+  reversed: boolean;
+  range: 'auto' | 'full' | 'symmetric' | [number, number];
+  logarithmic: boolean;
+  edges: boolean;
+  surface: boolean;
+  opacity: number;
+  /** Opacities at even shares of the shown range; null: the volume is not shown. */
+  volume: number[] | null;
+  /** The volume's opacities are for the mesh to choose. */
+  hasFirstOpacities: boolean;
+  planes: ClipSetting[];
+  mode: ClipMode;
+  limit: Limit;
+  parallel: boolean;
+  camera: CameraState | null;
+}
+
+export function readSettings(get: (name: ViewAttribute) => string | null): Settings {
+  const [map = '', reversed] = (get('colormap') ?? '').split(/[\s+]+/);
+  const mode = get('clip-mode') as ClipMode;
+  const opacity = Number(get('opacity') ?? 1);
+  return {
+    map: isColorMapName(map) ? map : 'viridis',
+    reversed: reversed === 'reversed',
+    range: parseRange(get('range')),
+    logarithmic: get('scale') === 'log',
+    edges: get('edges') !== 'off',
+    surface: get('surface') !== 'off',
+    opacity: opacity > 0 && opacity <= 1 ? opacity : 1,
+    ...readVolume(get('volume')),
+    planes: parseClip(get('clip')),
+    mode: kClipModes.includes(mode) ? mode : 'cut',
+    limit: parseLimit(get('quality')) ?? kFull,
+    parallel: get('projection') === 'parallel',
+    camera: parseCamera(get('camera')),
+  };
+}
+
+function parseRange(text: string | null): Settings['range'] {
+  if (text === 'symmetric' || text === 'full') return text;
+  const numbers = parseNumbers(text ?? '');
+  return numbers.length === 2 && numbers[0]! < numbers[1]! ? [numbers[0]!, numbers[1]!] : 'auto';
+}
+
+function parseCamera(text: string | null): CameraState | null {
+  const numbers = parseNumbers(text ?? '');
+  return numbers.length === 6 ? (numbers as CameraState) : null;
+}
+
+// ---- the field that colours
+
+/** The scalar that colours: the named field, or `firstField`; null if there is none. */
+export function shownScalar(
+  text: string | null,
+  fields: readonly FieldInfo[],
+  firstField: number,
+): Scalar | null {
+  const first = fields.length > 0 ? {field: firstField, component: kMagnitude} : null;
+  return parseScalar(text, fields) ?? first;
+}
+
+// ---- the range that the colours span
+
+/** The map `labels` spans kMaxLabels numbers, with each in the middle of its colour. */
+export function labelRange([first, count]: [number, number]): Omit<ShownRange, 'hasMissing'> {
+  const low = first - 0.5;
+  return {low, high: low + kMaxLabels, logarithmic: false, hides: 'none', labels: count};
+}
+
+/** If the middle 96 % of the values take less of the range, the tails hide them. */
+const kMinMiddle = 0.4;
+
+export interface ShownRange {
+  low: number;
+  high: number;
+  logarithmic: boolean;
+  /** The values that a logarithmic scale hides: none, those below `low`, or all of them. */
+  hides: 'none' | 'low' | 'all';
+  /** Whole numbers from low + 0.5 on, each with a colour of its own. */
+  labels?: number;
+  /** A few values lie outside. */
+  isMiddle?: boolean;
+  /** Some values are missing: the legend explains their colour. */
+  hasMissing: boolean;
+}
+
+/**
+ * `extent` is the range of the values that occur, `middle` that of most of them. An automatic range
+ * is `middle` (`isMiddle`) if the few others would take most of the colours. A logarithmic range
+ * starts above 0, if necessary at a ten-thousandth of its end; `hides` then says what this hides,
+ * or why there is none.
+ */
+export function shownRange(
+  {range, logarithmic}: Settings,
+  extent: [number, number],
+  middle: [number, number] = extent,
+): Omit<ShownRange, 'hasMissing'> {
+  const tailsHide = middle[1] - middle[0] < kMinMiddle * (extent[1] - extent[0]);
+  if (range === 'auto' && !logarithmic && tailsHide && middle[0] < middle[1])
+    return {low: middle[0], high: middle[1], logarithmic, hides: 'none', isMiddle: true};
+  const max = Math.max(Math.abs(extent[0]), Math.abs(extent[1]));
+  const isWhole = range === 'auto' || range === 'full';
+  const [low, high] = isWhole ? extent : range === 'symmetric' ? [-max, max] : range;
+  if (!logarithmic) return {low, high, logarithmic: false, hides: 'none'};
+  if (high <= 0) return {low, high, logarithmic: false, hides: 'all'};
+  const kDecades = 1e-4;
+  const from = low > 0 ? low : high * kDecades;
+  if (from >= high) return {low, high, logarithmic: false, hides: 'all'};
+  return {low: from, high, logarithmic: true, hides: low > 0 ? 'none' : 'low'};
+}

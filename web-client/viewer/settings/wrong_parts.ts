@@ -1,0 +1,90 @@
+// Attributes that say nothing the viewer understands: a sentence for each, with what may stand
+// there. A viewer ignores them otherwise, and a link with a slip would show another picture.
+
+import {parseNumbers, parseScalar} from '../../core/layers/field_values';
+import {fieldLayers, kLayers} from '../../core/layers/layers';
+import {isColorMapName, kColorMapNames} from '../../core/picture/color_maps';
+import {parseLimit} from '../../core/protocol/limit';
+import {fieldKeys, type Manifest} from '../../core/protocol/manifest';
+import {kTransportKinds} from '../../core/transport/auto_transport';
+import type {ViewAttribute} from './settings';
+
+type Name = ViewAttribute | 'transport';
+type Read = (name: Name) => string | null;
+/** Whether the text means something, and what may stand there. */
+type Rule = [isRight: (text: string) => boolean, expected: string];
+
+const oneOf = (...words: readonly string[]): Rule => [
+  (text) => words.includes(text),
+  words.join(', '),
+];
+
+function isRange(text: string): boolean {
+  const [low, high, more] = parseNumbers(text);
+  return low !== undefined && high !== undefined && more === undefined && low < high;
+}
+
+const kRules: Partial<Record<Name, Rule>> = {
+  transport: oneOf('auto', ...kTransportKinds),
+  colormap: [
+    (text) => {
+      const [map = '', reversed = 'reversed', ...more] = text.split(/[\s+]+/);
+      return isColorMapName(map) && reversed === 'reversed' && more.length === 0;
+    },
+    `${kColorMapNames.join(', ')}, and " reversed" behind it`,
+  ],
+  range: [
+    (text) => ['auto', 'full', 'symmetric'].includes(text) || isRange(text),
+    'auto, full, symmetric, or two numbers, the smaller first: 0.5,2',
+  ],
+  scale: oneOf('log', 'linear'),
+  edges: oneOf('on', 'off'),
+  surface: oneOf('on', 'off'),
+  opacity: [(text) => Number(text) > 0 && Number(text) <= 1, 'a number above 0, at most 1'],
+  ...Object.fromEntries(
+    kLayers
+      .flatMap((layer) => [layer, ...(layer.more ?? [])])
+      .map((its): [string, Rule] => [its.name, [(text) => its.isRight(text), its.expected]]),
+  ),
+  quality: [
+    (text) => parseLimit(text) !== null,
+    'full, 1%, error:0.01, cells:20000 or bytes:100000',
+  ],
+  projection: oneOf('parallel', 'perspective'),
+  camera: [(text) => parseNumbers(text).length === 6, 'six numbers'],
+};
+
+/** A sentence for each attribute that cannot be understood. */
+export function wrongParts(read: Read): string[] {
+  return Object.entries(kRules).flatMap(([name, [isRight, expected]]) => {
+    const text = read(name as Name);
+    return text === null || isRight(text)
+      ? []
+      : [`${name}="${text}" is not understood. It takes ${expected}.`];
+  });
+}
+
+/** A sentence for each attribute that does not fit this mesh. */
+export function unfittingParts(read: Read, {fields, levels}: Manifest): string[] {
+  const sentences: string[] = [];
+  const has = `It has ${fieldKeys(fields).join(', ') || 'none'}.`;
+  const field = read('field');
+  if (field !== null && !parseScalar(field, fields))
+    sentences.push(`The mesh has no field "${field}". The first field is shown instead. ${has}`);
+  for (const layer of fieldLayers()) {
+    const text = read(layer.name);
+    if (text === null || !layer.isRight(text)) continue;
+    const name = layer.fieldOf(text);
+    const what = `${layer.name}="${text}" is not shown`;
+    if (!parseScalar(name, fields))
+      sentences.push(`${what}: the mesh has no field "${name}". ${has}`);
+    else if (!layer.read(text, fields)) sentences.push(`${what}: it takes a field of points.`);
+  }
+  const quality = read('quality');
+  if (parseLimit(quality)?.kind === 'error' && !levels.some(({error}) => error))
+    sentences.push(
+      `quality="${quality}" ends nowhere: this log does not know its errors, because it was made ` +
+        'without measuring. All of it is refined.',
+    );
+  return sentences;
+}
