@@ -54,9 +54,10 @@ std::string commandPage(const Command& command) {
                     ".SH SYNOPSIS\n.B qtet\n" + roff(help["usage"]) + "\n.SH DESCRIPTION\n" +
                     roff(help["text"]) + "\n.SH OPTIONS\n";
   std::vector<std::string> groups{""};
-  for (const OrderedJson& option : help["options"])
-    if (std::ranges::find(groups, option["group"]) == groups.end())
-      groups.push_back(option["group"]);
+  for (const OrderedJson& option : help["options"]) {
+    const auto group = option["group"].get<std::string>();
+    if (std::ranges::find(groups, group) == groups.end()) groups.push_back(group);
+  }
   for (const std::string& group : groups) {
     if (!group.empty()) out += ".SS " + roff(group) + "\n";
     for (const OrderedJson& option : help["options"])

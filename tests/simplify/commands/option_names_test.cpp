@@ -24,8 +24,9 @@ TEST(OptionNames, areKnownForEveryMemberThatAMessageNames) {
   for (const char* room : {"codec", "simplify"}) {
     for (const auto& entry : std::filesystem::recursive_directory_iterator(
              std::filesystem::path(testing::kSourceFolder) / room)) {
-      if (entry.path().extension() != ".cpp" || entry.path().filename() == "option_names.cpp")
-        continue;
+      const std::filesystem::path folder = entry.path().parent_path().filename();
+      if (entry.path().extension() != ".cpp" || folder == "commands" || folder == "publish")
+        continue;  // the tool's own words
       std::ifstream file(entry.path());
       for (std::string line; std::getline(file, line);) {
         if (line.find_first_not_of(' ') == line.find("//")) continue;  // a comment
