@@ -50,8 +50,8 @@ class ParsedWords {
               boost::program_options::options_description options,
               const std::vector<std::string>& positional);
 
-  /// Whether --help, --help-all or, for the manual and completions, --help-json was asked for; it is
-  /// printed then.
+  /// Whether --help, --help-all or, for the manual and completions, --help-json was asked for. It
+  /// is printed then.
   [[nodiscard]] bool helped(Console& console) const;
   [[nodiscard]] bool has(const std::string& name) const { return values_.count(name) > 0; }
   template <class T>
