@@ -45,7 +45,7 @@ export class Options {
     const key = [program, ...words].join(' ');
     if (!this.#help.has(key)) {
       const path = join(this.#bin, program);
-      const asked = key === 'qtet' ? '--help' : '--help-all';
+      const asked = /^qtet( help)?$/.test(key) ? '--help' : '--help-all';
       this.#help.set(key, execFileSync(path, [...words, asked], {encoding: 'utf8'}));
     }
     return this.#help.get(key);
