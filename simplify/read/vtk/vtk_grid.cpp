@@ -294,14 +294,18 @@ Result<std::vector<TimedCells>> readUnstructured(const std::filesystem::path& pa
   const Result<VtuDocument> document = readVtuDocument(*file);
   if (!document) return std::unexpected(document.error());
   if (document->hasTimeSteps) return readApart(path, MeshFormat::kVtu, options, report);
-  if (const auto steps = chosenSteps({}, options.time, path, report.notes); !steps)
+  const auto time = readVtuTime(*file, *document);
+  if (!time) return std::unexpected(time.error());
+  std::vector<double> times;
+  if (*time) times.push_back(**time);
+  if (const auto steps = chosenSteps(times, options.time, path, report.notes); !steps)
     return std::unexpected(steps.error());
   ReadReport step;
   Result<CellMesh> cells = readVtu(*file, *document, options.fields, step);
   if (!cells) return std::unexpected(cells.error());
   addStep(std::move(step), true, report);
   std::vector<TimedCells> out;
-  out.push_back({"", std::move(*cells)});
+  out.push_back({*time ? timeText(**time) : "", std::move(*cells)});
   return out;
 }
 

@@ -18,6 +18,7 @@ std::string typeName(const VtuArray& array) {
   if (array.isIdType) return "int64";
   switch (array.type) {
     case NumberType::kInt8: return "int8";
+    case NumberType::kBit:
     case NumberType::kUInt8: return "uint8";
     case NumberType::kInt16: return "int16";
     case NumberType::kUInt16: return "uint16";
@@ -287,6 +288,17 @@ Result<CellMesh> readVtu(const VtuFile& file, const VtuDocument& document, const
   return file.bad(
       "an array's stated length does not fit in memory; the file is damaged, or the machine too "
       "small for it");
+}
+
+Result<std::optional<double>> readVtuTime(const VtuFile& file, const VtuDocument& document) {
+  std::optional<double> time;
+  if (!document.time || bytesOf(document.time->type) == 0) return time;
+  const Status done =
+      readReals(file, document, *document.time, {1, 0, 1}, [&](std::span<const double> numbers) {
+        if (!numbers.empty()) time = numbers.front();
+      });
+  if (!done) return std::unexpected(done.error());
+  return time;
 }
 
 }  // namespace qtet

@@ -18,4 +18,8 @@ namespace qtet {
 [[nodiscard]] Result<CellMesh> readVtu(const VtuFile& file, const VtuDocument& document,
                                        const FieldNames& fields, ReadReport& report);
 
+/// The time of the document's one step; nullopt: it has none. Errors: those of readReals.
+[[nodiscard]] Result<std::optional<double>> readVtuTime(const VtuFile& file,
+                                                        const VtuDocument& document);
+
 }  // namespace qtet

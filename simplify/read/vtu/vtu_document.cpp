@@ -25,6 +25,8 @@ constexpr std::size_t kMaxArrays = 1'000'000;
 constexpr std::size_t kChunkBytes = std::size_t{1} << 16;
 /// The highest version of the format that VTK 9 writes.
 constexpr std::uint64_t kMaxVersion = 2;
+/// The array that ParaView and VTK take for the time.
+constexpr const char* kTimeName = "TimeValue";
 /// VTK counts in 64 bits with a sign.
 constexpr std::uint64_t kMaxCount = ~std::uint64_t{0} >> 1;
 
@@ -94,7 +96,7 @@ class DocumentParser {
   struct Free {
     void operator()(XML_Parser parser) const { XML_ParserFree(parser); }
   };
-  enum class Section : std::uint8_t { kNone, kPoints, kCells, kPointData, kCellData };
+  enum class Section : std::uint8_t { kNone, kPoints, kCells, kPointData, kCellData, kFieldData };
 
   Status parse() {
     std::vector<char> chunk(kChunkBytes);
@@ -265,11 +267,12 @@ class DocumentParser {
   VtuPiece& piece() { return isInPiece_ ? out_.pieces.back() : implicit_; }
 
   void startSection(std::string_view name, const Attributes& attributes) {
-    constexpr std::array<std::pair<std::string_view, Section>, 4> kSections{
+    constexpr std::array<std::pair<std::string_view, Section>, 5> kSections{
         {{"Points", Section::kPoints},
          {"Cells", Section::kCells},
          {"PointData", Section::kPointData},
-         {"CellData", Section::kCellData}}};
+         {"CellData", Section::kCellData},
+         {"FieldData", Section::kFieldData}}};
     const auto* at = std::ranges::find(kSections, name, [](const auto& s) { return s.first; });
     section_ = at == kSections.end() ? Section::kNone : at->second;
     sectionName_ = name;
@@ -293,11 +296,17 @@ class DocumentParser {
       piece().coordinates = std::move(arrays_.front());
     else if (section_ == Section::kCells && !arrays_.empty())
       piece().cellArrays = std::move(arrays_);
+    else if (section_ == Section::kFieldData && !isInPiece_ && !arrays_.empty() && !out_.time)
+      out_.time = std::move(arrays_.front());
     arrays_.clear();
     section_ = Section::kNone;
   }
 
   void startArray(std::string_view name, const Attributes& attributes) {
+    // of the whole file's data the time alone counts
+    if (section_ == Section::kFieldData &&
+        (name != "DataArray" || attributes.text("Name") != kTimeName))
+      return;
     const std::string of = "<" + std::string(name.substr(0, 40)) + "> in <" + sectionName_ + ">";
     if (name != "DataArray" && name != "Array")
       return refuse(of + " is no array; the file is damaged, export it again");

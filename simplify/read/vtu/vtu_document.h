@@ -26,7 +26,7 @@ enum class NumberType : std::uint8_t {
   kBit,   ///< numbers in single bits
   kText,  ///< no numbers
 };
-/// 0 of bits and texts.
+/// The bytes of one number; 0 for bits and texts.
 [[nodiscard]] std::uint32_t bytesOf(NumberType type);
 
 enum class VtuCompressor : std::uint8_t { kNone, kZlib, kLz4, kLzma };
@@ -69,7 +69,8 @@ struct VtuDocument {
   bool isBigEndian = false;
   std::uint32_t wordBytes = 4;  ///< of the numbers in front of binary data
   VtuCompressor compressor = VtuCompressor::kNone;
-  bool hasTimeSteps = false;  ///< several steps in one file, of which arrays tell theirs
+  bool hasTimeSteps = false;     ///< several steps in one file, of which arrays tell theirs
+  std::optional<VtuArray> time;  ///< of <FieldData>: the time of this one step
   bool appendedIsBase64 = true;
   std::optional<std::uint64_t> appendedBegin;  ///< the first byte of appended data
   std::vector<VtuPiece> pieces;                ///< at least one

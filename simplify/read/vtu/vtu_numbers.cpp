@@ -46,6 +46,7 @@ template <class Visit>
 Status visitType(NumberType type, const Visit& visit) {
   switch (type) {
     case NumberType::kInt8: return visit(std::int8_t{});
+    case NumberType::kBit:  // as text
     case NumberType::kUInt8: return visit(std::uint8_t{});
     case NumberType::kInt16: return visit(std::int16_t{});
     case NumberType::kUInt16: return visit(std::uint16_t{});
@@ -148,8 +149,8 @@ class ArrayNumbers {
       : file_(file), document_(document), array_(array) {}
 
   Result<std::uint64_t> certain(std::uint64_t told) {
-    if (bytesOf(array_.type) == 0)
-      return bad("holds no numbers, or single bits, where numbers are needed; save it as Float64");
+    if (array_.type == NumberType::kText)
+      return bad("holds no numbers where numbers are needed; export the mesh again");
     if (array_.place == VtuArray::Place::kAscii) {
       const std::uint64_t most = (array_.end - array_.begin + 1) / 2;
       return std::min(told, most);  // what is missing is counted as it is read
@@ -157,11 +158,11 @@ class ArrayNumbers {
     if (told == 0) return 0;
     Result<ArrayBytes> bytes = ArrayBytes::open(file_, document_, array_);
     if (!bytes) return std::unexpected(bytes.error());
-    const std::uint64_t held = bytes->size() / bytesOf(array_.type);
+    const std::uint64_t held = numbersIn(bytes->size());
     if (held < told)
       return bad("has " + std::to_string(held) + " numbers, but the file's counts say " +
                  std::to_string(told) + "; the file is damaged, export it again");
-    return std::min(told, bytes->certain() / bytesOf(array_.type));
+    return std::min(told, numbersIn(bytes->certain()));
   }
 
   template <class To>
@@ -169,6 +170,8 @@ class ArrayNumbers {
     assert(range.first <= range.told && range.count <= range.told - range.first);
     if (const auto certainly = certain(range.told); !certainly)
       return std::unexpected(certainly.error());
+    if (array_.type == NumberType::kBit && array_.place != VtuArray::Place::kAscii)
+      return readBits<To>(range, take);
     return visitType(array_.type, [&]<class T>(T) {
       return array_.place == VtuArray::Place::kAscii ? readText<To, T>(range, take)
                                                      : readBytes<To, T>(range, take);
@@ -178,6 +181,33 @@ class ArrayNumbers {
  private:
   [[nodiscard]] std::unexpected<Error> bad(const std::string& what) const {
     return file_.bad(array_.called() + " " + what, array_.begin);
+  }
+
+  /// How many numbers so many bytes hold.
+  [[nodiscard]] std::uint64_t numbersIn(std::uint64_t bytes) const {
+    if (array_.type != NumberType::kBit) return bytes / bytesOf(array_.type);
+    return std::min(bytes, ~std::uint64_t{0} / 8) * 8;
+  }
+
+  /// Eight a byte, the highest first.
+  template <class To>
+  Status readBits(const NumberRange& range, const TakeNumbers<To>& take) {
+    if (range.count == 0) return {};
+    Result<ArrayBytes> bytes = ArrayBytes::open(file_, document_, array_);
+    if (!bytes) return std::unexpected(bytes.error());
+    std::vector<std::uint8_t> eights;
+    std::vector<To> out;
+    for (std::uint64_t at = range.first, end = at + range.count; at < end;) {
+      const std::uint64_t last = std::min<std::uint64_t>(end, (at / 8 + kBatch / 8) * 8);
+      eights.resize((last + 7) / 8 - at / 8);
+      if (Status read = bytes->read(at / 8, std::as_writable_bytes(std::span(eights))); !read)
+        return read;
+      out.clear();
+      for (const std::uint64_t begin = at / 8 * 8; at < last; ++at)
+        out.push_back(static_cast<To>(eights[(at - begin) / 8] >> (7 - at % 8) & 1));
+      take(out);
+    }
+    return {};
   }
 
   template <class To, class T>

@@ -2,6 +2,7 @@
 #include "simplify/read/vtu/read_vtu.h"
 
 #include <gtest/gtest.h>
+#include <vtkBitArray.h>
 #include <vtkCellData.h>
 #include <vtkCellType.h>
 #include <vtkDoubleArray.h>
@@ -25,6 +26,7 @@
 #include <random>
 
 #include "simplify/log/write_mesh.h"
+#include "simplify/read/read_mesh.h"
 #include "simplify/read/vtu/grid_parts.h"
 #include "simplify/samples/samples.h"
 #include "tests/simplify/read/vtu/vtk_written.h"
@@ -97,6 +99,10 @@ vtkNew<vtkUnstructuredGrid> everything(bool isText) {
   words->SetName("words");
   for (vtkIdType i = 0; i < kPoints; ++i) words->InsertNextValue("some");
   grid->GetPointData()->AddArray(words);
+  vtkNew<vtkBitArray> bits;
+  bits->SetName("bits");
+  for (vtkIdType i = 0; i < kPoints; ++i) bits->InsertNextValue(i % 3 == 0 ? 1 : 0);
+  grid->GetPointData()->AddArray(bits);
   addArray<vtkShortArray>(*grid->GetCellData(), "int16", 1, cells, isText);
   addArray<vtkUnsignedIntArray>(*grid->GetCellData(), "uint32", 1, cells, isText);
   addArray<vtkUnsignedLongLongArray>(*grid->GetCellData(), "uint64", 2, cells, isText);
@@ -124,7 +130,7 @@ TEST(ReadVtu, everyEncodingOfVtkGivesWhatVtkGives) {
                                  std::to_string(compressor) + ", block " + std::to_string(as.block);
         const testing::Way vtk = readByVtk(path);
         ASSERT_TRUE(vtk.mesh);
-        ASSERT_EQ(vtk.mesh->fields.size(), 9u);
+        ASSERT_EQ(vtk.mesh->fields.size(), 10u);
         ASSERT_GT(vtk.mesh->cellIds.size(), 40u);
         expectSame(readByOurs(path), vtk, what);
         const FieldNames some = std::vector<std::string>{"cell:float", "int8"};
@@ -210,6 +216,18 @@ TEST(ReadVtu, polyhedraOfNewerFilesShareTheirFaces) {
                "<DataArray type=\"Int64\" Name=\"polyhedron_to_faces\">3 2 1 0</DataArray>"
                "<DataArray type=\"Int64\" Name=\"polyhedron_offsets\">4</DataArray>");
   expectSame(readByOurs(fileWith("new.vtu", text)), readByOurs(old), "shared faces");
+}
+
+TEST(ReadVtu, aTimeOfTheFileIsAStepsTime) {
+  const std::filesystem::path path = fileWith("time.vtu", twoPieces());
+  ReadOptions options;
+  options.time = "0.5";
+  EXPECT_TRUE(readMesh(path, options));
+  options.time = "0.25";
+  const Result<ReadMesh> read = readMesh(path, options);
+  ASSERT_FALSE(read);
+  EXPECT_EQ(read.error().code, ErrorCode::kNotFound);
+  EXPECT_NE(read.error().message.find("it has 0.5"), std::string::npos) << read.error().text();
 }
 
 TEST(ReadVtu, dimensionsOfCellsAreThoseOfVtk) {
