@@ -148,6 +148,21 @@ TEST(DamagedVtu, countsThatKilledTheToolAreRefusedWithASentence) {
   }
 }
 
+TEST(DamagedVtu, aBlockThatPromisesMoreThanItsBytesCanHoldIsRefusedBeforeAllocating) {
+  for (const Encoding& as : encodings()) {
+    if (as.compressor == vtkXMLWriter::NONE || as.base64) continue;
+    // raw words in front of the first array: blocks, the size of one, of the last, compressed
+    for (const int compressor : {vtkXMLWriter::ZLIB, vtkXMLWriter::LZ4}) {
+      Encoding raw = as;
+      raw.compressor = compressor;
+      std::string file = testing::writtenByVtk(smallGrid(), raw);
+      const std::size_t words = file.find('_', file.find("<AppendedData")) + 1;
+      file[words + 8 + 3] = file[words + 16 + 3] = 0x7F;  // 2 GB in the one block
+      EXPECT_NE(endOf(file, "block").find("inflate to"), std::string::npos);
+    }
+  }
+}
+
 TEST(DamagedVtu, entitiesAndDeepElementsAreRefused) {
   std::string text = testing::writtenByVtk(smallGrid(), encodings()[0]);
   const std::size_t root = text.find("<VTKFile");

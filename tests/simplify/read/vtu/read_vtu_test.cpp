@@ -107,10 +107,10 @@ vtkNew<vtkUnstructuredGrid> everything(bool isText) {
   addArray<vtkUnsignedIntArray>(*grid->GetCellData(), "uint32", 1, cells, isText);
   addArray<vtkUnsignedLongLongArray>(*grid->GetCellData(), "uint64", 2, cells, isText);
   addArray<vtkFloatArray>(*grid->GetCellData(), "float", 3, cells, isText);
-  vtkNew<vtkUnsignedCharArray> ghosts;
+  vtkNew<vtkUnsignedCharArray> ghosts;  // cell 8 is a polyhedron, before others
   ghosts->SetName("vtkGhostType");
   for (vtkIdType i = 0; i < cells; ++i)
-    ghosts->InsertNextValue(i % 11 == 0 ? 1 : i % 13 == 0 ? 32 : i % 17 == 0 ? 2 : 0);
+    ghosts->InsertNextValue(i % 11 == 0 || i == 8 ? 1 : i % 13 == 0 ? 32 : i % 17 == 0 ? 2 : 0);
   grid->GetCellData()->AddArray(ghosts);
   return grid;
 }
