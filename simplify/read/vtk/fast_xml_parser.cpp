@@ -188,30 +188,6 @@ class FastParser : public vtkXMLDataParser {
     return blocks == 0 ? last == 0 : size > 0 && last <= size && blocks <= left / wordBytes;
   }
 
-  /// Numbers in the text that was read last.
-  [[nodiscard]] std::size_t textNumbers() const { return this->AsciiDataBufferLength; }
-
-  /// Where that text's words are no longer what VTK has read as numbers: the first word too many.
-  /// Empty: nowhere.
-  [[nodiscard]] std::string wordBehindNumbers() {
-    constexpr int kEnd = std::char_traits<char>::eof();
-    constexpr std::size_t kShown = 24;
-    this->Stream->clear();
-    this->SeekG(this->AsciiDataPosition);
-    std::streambuf& text = *this->Stream->rdbuf();
-    const auto isBlank = [](int c) { return c <= ' '; };
-    int c = text.sgetc();
-    for (std::size_t words = 0;; ++words) {
-      while (c != kEnd && isBlank(c)) c = text.snextc();
-      if (c == kEnd || c == '<') return {};
-      const bool isTooMany = words == textNumbers();
-      std::string word;
-      for (; c != kEnd && c != '<' && !isBlank(c); c = text.snextc())
-        if (isTooMany && word.size() < kShown) word += static_cast<char>(c);
-      if (isTooMany) return word;
-    }
-  }
-
  protected:
   FastParser() {
     setStream<FastBase64>(this->InlineDataStream);
@@ -246,19 +222,6 @@ std::size_t Guarded<Stream>::Read(void* data, std::size_t length) {
 vtkStandardNewMacro(FastParser);
 
 }  // namespace
-
-std::string faultOfTextArray(vtkXMLDataParser& parser, vtkXMLDataElement& array, vtkIdType told) {
-  auto& ours = dynamic_cast<FastParser&>(parser);
-  const char* name = array.GetAttribute("Name");
-  if (!name && array.GetParent()) name = array.GetParent()->GetName();
-  const std::string found = std::to_string(ours.textNumbers()),
-                    called = std::string("the ascii array ") + (name ? name : "without a name");
-  if (const std::string word = ours.wordBehindNumbers(); !word.empty())
-    return called + " has '" + word + "' behind its first " + found + " numbers, which is no " +
-           "number that VTK reads";
-  if (std::cmp_equal(ours.textNumbers(), told)) return {};
-  return called + " has " + found + " numbers, but the file's counts say " + std::to_string(told);
-}
 
 vtkXMLDataParser* newFastXmlParser() { return FastParser::New(); }
 

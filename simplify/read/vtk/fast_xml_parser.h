@@ -1,16 +1,8 @@
-// VTK's parser of its XML files (.vtu and its kin) with quicker ways through base64 and zlib, on
+// VTK's parser of its XML files (.vts and its kin) with quicker ways through base64 and zlib, on
 // which VTK spends most of its time (tests/bench/TABLE.md).
 #pragma once
 
-#include <vtkBitArray.h>
-#include <vtkDataArray.h>
-#include <vtkXMLDataElement.h>
 #include <vtkXMLDataParser.h>
-#include <vtkXMLUnstructuredDataReader.h>
-
-#include <cstring>
-#include <string>
-#include <type_traits>
 
 namespace qtet {
 
@@ -20,14 +12,7 @@ namespace qtet {
 /// survive.
 [[nodiscard]] vtkXMLDataParser* newFastXmlParser();
 
-/// The fault of the text of the array that the parser has read last. Either it holds other than
-/// `told` numbers, or something else stands behind them. Empty: nothing. REQUIRES: a parser of
-/// newFastXmlParser; `array` was read last, and is text.
-[[nodiscard]] std::string faultOfTextArray(vtkXMLDataParser& parser, vtkXMLDataElement& array,
-                                           vtkIdType told);
-
-/// One of VTK's XML readers, with that parser. An unstructured array that is text must hold as many
-/// numbers as the file's counts tell: VTK passes over those that are too many.
+/// One of VTK's XML readers, with that parser.
 template <class Reader>
 class FastXmlReader : public Reader {
  public:
@@ -45,24 +30,6 @@ class FastXmlReader : public Reader {
   void CreateXMLParser() override {
     if (this->XMLParser) this->DestroyXMLParser();
     this->XMLParser = newFastXmlParser();
-  }
-  int ReadArrayValues(vtkXMLDataElement* element, vtkIdType arrayIndex, vtkAbstractArray* array,
-                      vtkIdType startIndex, vtkIdType told, vtkXMLReader::FieldType type) override {
-    const int done = Reader::ReadArrayValues(element, arrayIndex, array, startIndex, told, type);
-    // a structured array may be read in parts
-    if constexpr (std::is_base_of_v<vtkXMLUnstructuredDataReader, Reader>) {
-      const char* format = element->GetAttribute("format");
-      // VTK counts bits in bytes, and has no numbers for texts
-      const bool countable = vtkDataArray::SafeDownCast(array) && !vtkBitArray::SafeDownCast(array);
-      const bool isText =
-          !element->GetAttribute("offset") && (!format || std::strcmp(format, "binary") != 0);
-      if (!countable || !isText) return done;
-      const std::string fault = faultOfTextArray(*this->XMLParser, *element, told);
-      if (fault.empty()) return done;
-      vtkErrorMacro(<< fault);
-      return 0;
-    }
-    return done;
   }
 };
 

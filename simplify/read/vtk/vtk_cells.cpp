@@ -1,20 +1,17 @@
 #include "simplify/read/vtk/vtk_cells.h"
 
 #include <vtkAOSDataArrayTemplate.h>
-#include <vtkCell.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkCellType.h>
 #include <vtkDataArray.h>
 #include <vtkDataSetAttributes.h>
-#include <vtkGenericCell.h>
 #include <vtkIdList.h>
 #include <vtkIdTypeArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPointSet.h>
 #include <vtkPoints.h>
-#include <vtkSmartPointer.h>
 #include <vtkStructuredGrid.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
@@ -22,11 +19,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <type_traits>
 
 #include "codec/coding/float_bits.h"
-#include "proto/limits.h"
-#include "simplify/read/options/select_fields.h"
+#include "simplify/read/vtu/grid_parts.h"
 #include "simplify/split/higher_cells.h"
 
 namespace qtet {
@@ -34,10 +31,6 @@ namespace {
 
 std::unexpected<Error> bad(const std::filesystem::path& path, const std::string& what) {
   return fail(ErrorCode::kBadInput, path.string() + ": " + what);
-}
-
-std::uint32_t narrowed(vtkIdType id) {
-  return id >= 0 && id < vtkIdType{kGhost} ? static_cast<VertexId>(id) : kGhost;
 }
 
 template <class T>
@@ -78,30 +71,8 @@ std::vector<Position> pointsOf(vtkDataSet& data) {
   return points;
 }
 
-/// The dimension of VTK's types of cells; unknown types count as volumes, so that checkCellMesh
-/// refuses them by name.
-class Dimensions {
- public:
-  Dimensions() {
-    for (int type = 0; type < 256; ++type) {
-      const auto cell = type == VTK_EMPTY_CELL
-                            ? nullptr
-                            : vtkSmartPointer<vtkCell>::Take(vtkGenericCell::InstantiateCell(type));
-      of_[static_cast<std::size_t>(type)] = cell                     ? cell->GetCellDimension()
-                                            : type == VTK_EMPTY_CELL ? 0
-                                                                     : 3;
-    }
-  }
-  [[nodiscard]] int operator[](int type) const {
-    return of_[static_cast<std::size_t>(type & 0xFF)];
-  }
-
- private:
-  std::array<int, 256> of_{};
-};
-
-/// The marks of ghost cells in files of VTK before version 7: how many layers away they lie.
-constexpr const char* kGhostLevels = "vtkGhostLevels";
+static_assert(kElsewhere ==
+              (vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL));
 
 /// Cells that are another piece's, or blanked out.
 class Hidden {
@@ -113,8 +84,6 @@ class Hidden {
     if (levels_ && levels_->GetNumberOfTuples() < data.GetNumberOfCells()) levels_ = nullptr;
   }
   [[nodiscard]] bool operator[](vtkIdType cell) const {
-    constexpr unsigned kElsewhere =
-        vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL;
     if (ghosts_ && (ghosts_->GetValue(cell) & kElsewhere)) return true;
     if (levels_ && levels_->GetComponent(cell, 0) > 0) return true;
     return grid_ && !grid_->IsCellVisible(cell);
@@ -130,7 +99,7 @@ class Hidden {
 std::vector<std::uint64_t> globalIdsOf(vtkDataSet& data) {
   vtkPointData& fields = *data.GetPointData();
   vtkDataArray* ids = fields.GetGlobalIds();
-  for (const char* name : {"GlobalPointIds", "GlobalNodeIds", "GlobalNodeId"})
+  for (const char* name : kGlobalIdNames)
     if (!ids) ids = fields.GetArray(name);
   const vtkIdType points = data.GetNumberOfPoints();
   if (!ids || ids->GetNumberOfComponents() != 1 || ids->GetNumberOfTuples() != points ||
@@ -149,7 +118,7 @@ class GridCells {
   GridCells(vtkUnstructuredGrid& grid, const std::filesystem::path& path)
       : grid_(grid), path_(path), hidden_(grid) {}
 
-  Status into(CellMesh& out, std::vector<vtkIdType>& rows, ReadReport& report) {
+  Status into(CellMesh& out, std::vector<std::uint64_t>& rows, ReadReport& report) {
     const vtkIdType count = grid_.GetNumberOfCells();
     vtkUnsignedCharArray* types = grid_.GetCellTypesArray();
     vtkCellArray* cells = grid_.GetCells();
@@ -169,33 +138,29 @@ class GridCells {
 
  private:
   template <class Array>
-  Status copy(Array& offsets, Array& ids, CellMesh& out, std::vector<vtkIdType>& rows,
+  Status copy(Array& offsets, Array& ids, CellMesh& out, std::vector<std::uint64_t>& rows,
               ReadReport& report) {
-    static const Dimensions dimensions;
     const vtkIdType count = grid_.GetNumberOfCells(), idCount = ids.GetNumberOfTuples();
     const unsigned char* types = grid_.GetCellTypesArray()->GetPointer(0);
     const auto* begin = offsets.GetPointer(0);
     const auto* id = ids.GetPointer(0);
     for (vtkIdType i = 0; i < count; ++i) {
-      if (dimensions[types[i]] < 3) {
+      if (dimensionOf(types[i]) < 3) {
         ++report.ignoredCells;
         continue;
       }
       if (hidden_[i]) continue;
       if (begin[i] < 0 || begin[i + 1] < begin[i] || begin[i + 1] > idCount) {
-        return bad(
-            path_,
-            "cell " + std::to_string(i) +
-                " has vertices outside the list of vertices; the file is damaged, export it again");
+        return bad(path_, verticesOutside(static_cast<std::uint64_t>(i)));
       }
       if (types[i] == VTK_POLYHEDRON) {
         if (Status added = addPolyhedron(i, out); !added) return added;
       } else {
-        for (auto k = begin[i]; k < begin[i + 1]; ++k) out.vertices.push_back(narrowed(id[k]));
+        for (auto k = begin[i]; k < begin[i + 1]; ++k) out.vertices.push_back(narrowedId(id[k]));
       }
       out.types.push_back(types[i]);
       out.begins.push_back(out.vertices.size());
-      rows.push_back(i);
+      rows.push_back(static_cast<std::uint64_t>(i));
     }
     return {};
   }
@@ -203,26 +168,17 @@ class GridCells {
   Status addPolyhedron(vtkIdType i, CellMesh& out) {
     vtkIdTypeArray* places = grid_.GetFaceLocations();
     vtkIdTypeArray* faces = grid_.GetFaces();
-    const auto damaged = [&] {
-      return bad(path_,
-                 "cell " + std::to_string(i) +
-                     " is a polyhedron without its faces; the file is damaged, export it again");
-    };
-    if (!places || !faces || i >= places->GetNumberOfTuples()) return damaged();
-    const vtkIdType end = faces->GetNumberOfTuples();
-    vtkIdType at = places->GetValue(i);
-    if (at < 0 || at >= end) return damaged();
-    const vtkIdType faceCount = faces->GetValue(at++);
-    out.vertices.push_back(narrowed(faceCount));
-    for (vtkIdType face = 0; face < faceCount; ++face) {
-      if (at >= end) return damaged();
-      const vtkIdType corners = faces->GetValue(at++);
-      if (corners < 0 || corners > end - at) return damaged();
-      out.vertices.push_back(narrowed(corners));
-      for (vtkIdType k = 0; k < corners; ++k)
-        out.vertices.push_back(narrowed(faces->GetValue(at++)));
+    if (places && faces && i < places->GetNumberOfTuples() && places->GetValue(i) >= 0) {
+      auto at = static_cast<std::size_t>(places->GetValue(i));
+      if (appendFaces(facesOf(*faces), at, out)) return {};
     }
-    return {};
+    return bad(path_, withoutFaces(static_cast<std::uint64_t>(i)));
+  }
+
+  static std::span<const std::int64_t> facesOf(vtkIdTypeArray& faces) {
+    static_assert(sizeof(vtkIdType) == sizeof(std::int64_t));
+    return {reinterpret_cast<const std::int64_t*>(faces.GetPointer(0)),
+            static_cast<std::size_t>(faces.GetNumberOfTuples())};
   }
 
   vtkUnstructuredGrid& grid_;
@@ -231,23 +187,23 @@ class GridCells {
 };
 
 /// Any other data set (structured, rectilinear, image), cell by cell.
-void copyCells(vtkDataSet& data, CellMesh& out, std::vector<vtkIdType>& rows, ReadReport& report) {
-  static const Dimensions dimensions;
+void copyCells(vtkDataSet& data, CellMesh& out, std::vector<std::uint64_t>& rows,
+               ReadReport& report) {
   const Hidden hidden(data);
   vtkNew<vtkIdList> ids;
   for (vtkIdType i = 0; i < data.GetNumberOfCells(); ++i) {
     const int type = data.GetCellType(i);
     if (hidden[i]) continue;
-    if (dimensions[type] < 3) {
+    if (dimensionOf(static_cast<std::uint8_t>(type)) < 3) {
       ++report.ignoredCells;
       continue;
     }
     data.GetCellPoints(i, ids);
     for (vtkIdType k = 0; k < ids->GetNumberOfIds(); ++k)
-      out.vertices.push_back(narrowed(ids->GetId(k)));
+      out.vertices.push_back(narrowedId(ids->GetId(k)));
     out.types.push_back(static_cast<std::uint8_t>(type));
     out.begins.push_back(out.vertices.size());
-    rows.push_back(i);
+    rows.push_back(static_cast<std::uint64_t>(i));
   }
 }
 
@@ -260,56 +216,31 @@ std::string typeName(vtkDataArray& array) {
   return (isSigned ? "int" : "uint") + std::to_string(8 * array.GetDataTypeSize());
 }
 
-/// Takes the tuples of `rows` alone, which ascend.
-void keepRows(MeshField& field, const std::vector<vtkIdType>& rows) {
-  const std::size_t n = field.components;
-  if (rows.size() * n == field.values.size()) return;
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    std::copy_n(field.values.data() + static_cast<std::size_t>(rows[i]) * n, n,
-                field.values.data() + i * n);
-  field.values.resize(rows.size() * n);
-}
-
-/// The array's name, or "unnamed-I" where the manifest could not hold it.
-std::string nameOf(vtkAbstractArray& array, const std::string& association, int number,
-                   ReadReport& report) {
-  const std::string name = array.GetName() ? array.GetName() : "";
-  if (isStorableName(name)) return name;
-  const std::string substitute = "unnamed-" + std::to_string(number);
-  report.notes.push_back(association + " field number " + std::to_string(number) +
-                         " has no name, or none of at most " + std::to_string(kMaxNameBytes) +
-                         " bytes of UTF-8, and is called " + substitute);
-  return substitute;
-}
-
 class GridFields {
  public:
   GridFields(const FieldNames& wanted, const std::filesystem::path& path, ReadReport& report)
-      : wanted_(wanted), path_(path), report_(report) {}
+      : choice_(wanted, report), path_(path) {}
 
   /// The fields of `data` that are wanted, with the tuples of `rows` (nullptr: all); `tuples` is
   /// what an array must have.
   Status add(vtkFieldData& data, const std::string& association, vtkIdType tuples,
-             const std::vector<vtkIdType>* rows, CellMesh& out) {
+             const std::vector<std::uint64_t>* rows, CellMesh& out) {
     for (int i = 0; i < data.GetNumberOfArrays(); ++i) {
-      const std::string name = nameOf(*data.GetAbstractArray(i), association, i, report_);
+      vtkAbstractArray& any = *data.GetAbstractArray(i);
       vtkDataArray* array = data.GetArray(i);
-      if (name == vtkDataSetAttributes::GhostArrayName() || name == kGhostLevels) continue;
-      if (!array || array->GetNumberOfComponents() < 1 ||
-          array->GetNumberOfComponents() > static_cast<int>(kMaxFieldComponents)) {
-        ignore(association, name, array != nullptr);
-        continue;
-      }
-      if (!isOfTheShape(data, array, name) && !isMeant(wanted_, association, name)) {
-        out.otherFields.push_back(name);
-        continue;
-      }
+      const char* given = any.GetName();
+      const auto name =
+          choice_.nameOf({given ? given : "", i,
+                          static_cast<std::uint64_t>(std::max(0, any.GetNumberOfComponents())),
+                          array != nullptr, given && isOfTheShape(data, array, given)},
+                         association, out);
+      if (!name) continue;
       if (array->GetNumberOfTuples() != tuples) {
-        return bad(path_, association + " field " + name + " has " +
+        return bad(path_, association + " field " + *name + " has " +
                               std::to_string(array->GetNumberOfTuples()) + " tuples for " +
                               std::to_string(tuples) + " " + association + "s; export it again");
       }
-      MeshField field{name,
+      MeshField field{*name,
                       static_cast<std::uint32_t>(array->GetNumberOfComponents()),
                       typeName(*array),
                       {},
@@ -330,17 +261,8 @@ class GridFields {
                           (array == attributes->GetRationalWeights() && name == kWeightsField));
   }
 
-  void ignore(const std::string& association, const std::string& name, bool hasNumbers) {
-    report_.ignoredFields.push_back(name);
-    report_.notes.push_back(
-        association + " field " + name + " was ignored: " +
-        (hasNumbers ? "more than " + std::to_string(kMaxFieldComponents) + " components"
-                    : std::string("it holds no numbers")));
-  }
-
-  const FieldNames& wanted_;
+  FieldChoice choice_;
   const std::filesystem::path& path_;
-  ReadReport& report_;
 };
 
 }  // namespace
@@ -354,15 +276,14 @@ Result<CellMesh> cellsOf(vtkDataSet& data, const FieldNames& fields,
   out.pointType = set && set->GetPoints() && set->GetPoints()->GetDataType() == VTK_FLOAT
                       ? "float32"
                       : "float64";
-  std::vector<vtkIdType> rows;
+  std::vector<std::uint64_t> rows;
   if (auto* grid = vtkUnstructuredGrid::SafeDownCast(&data)) {
     if (Status done = GridCells(*grid, path).into(out, rows, report); !done)
       return std::unexpected(done.error());
   } else {
     copyCells(data, out, rows, report);
   }
-  if (rows.size() != static_cast<std::size_t>(data.GetNumberOfCells()))
-    out.cellIds.assign(rows.begin(), rows.end());
+  if (rows.size() != static_cast<std::size_t>(data.GetNumberOfCells())) out.cellIds = rows;
 
   GridFields read(fields, path, report);
   if (Status done = read.add(*data.GetPointData(), "point", data.GetNumberOfPoints(), nullptr, out);

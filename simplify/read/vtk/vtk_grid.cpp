@@ -36,6 +36,7 @@
 #include "simplify/read/vtk/join_blocks.h"
 #include "simplify/read/vtk/vtk_cells.h"
 #include "simplify/read/vtk/vtk_readers.h"
+#include "simplify/read/vtu/read_vtu.h"
 
 namespace qtet {
 namespace {
@@ -107,11 +108,10 @@ std::unexpected<Error> bad(const std::filesystem::path& path, const std::string&
   return fail(ErrorCode::kBadInput, path.string() + ": " + what);
 }
 
-/// VTK's XML readers stood every damage that was tried; its others write outside their arrays on
-/// counts that contradict each other.
+/// VTK's structured XML readers stood every damage that was tried; its others write outside their
+/// arrays on counts that contradict each other.
 bool standsDamage(MeshFormat format) {
-  return format == MeshFormat::kVtu || format == MeshFormat::kVts || format == MeshFormat::kVtr ||
-         format == MeshFormat::kVti;
+  return format == MeshFormat::kVts || format == MeshFormat::kVtr || format == MeshFormat::kVti;
 }
 
 /// The volume blocks of what a reader gave, in one mesh.
@@ -283,6 +283,29 @@ Result<std::vector<TimedCells>> readApart(const std::filesystem::path& path, Mes
                                             ? receiveCells(file, report)
                                             : trialFailed(end, path, options.patience);
   ::close(file);
+  return out;
+}
+
+/// Reads a .vtu file without VTK, unless it holds several steps, which no program writes any more.
+Result<std::vector<TimedCells>> readUnstructured(const std::filesystem::path& path,
+                                                 const ReadOptions& options, ReadReport& report) {
+  const Result<VtuFile> file = VtuFile::open(path);
+  if (!file) return std::unexpected(file.error());
+  const Result<VtuDocument> document = readVtuDocument(*file);
+  if (!document) return std::unexpected(document.error());
+  if (document->hasTimeSteps) return readApart(path, MeshFormat::kVtu, options, report);
+  const auto time = readVtuTime(*file, *document);
+  if (!time) return std::unexpected(time.error());
+  std::vector<double> times;
+  if (*time) times.push_back(**time);
+  if (const auto steps = chosenSteps(times, options.time, path, report.notes); !steps)
+    return std::unexpected(steps.error());
+  ReadReport step;
+  Result<CellMesh> cells = readVtu(*file, *document, options.fields, step);
+  if (!cells) return std::unexpected(cells.error());
+  addStep(std::move(step), true, report);
+  std::vector<TimedCells> out;
+  out.push_back({*time ? timeText(**time) : "", std::move(*cells)});
   return out;
 }
 
@@ -524,6 +547,7 @@ Result<std::vector<TimedCells>> readFoam(const std::filesystem::path& path,
 Result<std::vector<TimedCells>> readAt(const std::filesystem::path& path, MeshFormat format,
                                        const ReadOptions& options, ReadReport& report, int depth) {
   if (isSeries(format)) return readSeries(path, format, options, report);
+  if (format == MeshFormat::kVtu) return readUnstructured(path, options, report);
   if (format == MeshFormat::kExodusPieces) return readExodusPieces(path, options, report);
   if (format == MeshFormat::kOpenFoam) return readFoam(path, options, report);
   if (namesPieces(format) || format == MeshFormat::kVtm)

@@ -27,6 +27,13 @@ vtkSmartPointer<vtkAlgorithm> xmlReader(const std::filesystem::path& path) {
   return reader;
 }
 
+/// For the rare file that holds several steps (readAt).
+vtkSmartPointer<vtkAlgorithm> stepsReader(const std::filesystem::path& path) {
+  const auto reader = vtkSmartPointer<vtkXMLUnstructuredGridReader>::New();
+  reader->SetFileName(path.c_str());
+  return reader;
+}
+
 vtkSmartPointer<vtkAlgorithm> legacyReader(const std::filesystem::path& path) {
   const auto reader = vtkSmartPointer<vtkDataSetReader>::New();
   reader->SetFileName(path.c_str());
@@ -116,7 +123,7 @@ vtkSmartPointer<vtkAlgorithm> plot3dReader(const std::filesystem::path& path,
 vtkSmartPointer<vtkAlgorithm> vtkReaderOf(const std::filesystem::path& path, MeshFormat format,
                                           const ReadOptions& options) {
   switch (format) {
-    case MeshFormat::kVtu: return xmlReader<vtkXMLUnstructuredGridReader>(path);
+    case MeshFormat::kVtu: return stepsReader(path);
     case MeshFormat::kVts: return xmlReader<vtkXMLStructuredGridReader>(path);
     case MeshFormat::kVtr: return xmlReader<vtkXMLRectilinearGridReader>(path);
     case MeshFormat::kVti: return xmlReader<vtkXMLImageDataReader>(path);

@@ -355,9 +355,9 @@ TEST(ReadMesh, arraysOfAWrongLengthAreRefused) {
       refused(
           "short.vtu",
           oneCellVtu("<DataArray type=\"Float32\" Name=\"s\" format=\"ascii\">1 2 3</DataArray>"),
-          "VTK"),
+          "counts"),
       ErrorCode::kBadInput);
-  EXPECT_EQ(refused("few.vtu", asciiVtu("0 0 0 1 0 0", "0 1 2 3", "4", "10", 4, 1), "VTK"),
+  EXPECT_EQ(refused("few.vtu", asciiVtu("0 0 0 1 0 0", "0 1 2 3", "4", "10", 4, 1), "counts"),
             ErrorCode::kBadInput);
 }
 
@@ -427,7 +427,7 @@ TEST(ReadMesh, aVtuWithAPieceMissingIsRefused) {
   const std::string whole = boxFile();
   // The closing tags are there, but raw bytes before them are not.
   const std::string text = whole.substr(0, 20000) + whole.substr(whole.size() - 40);
-  EXPECT_EQ(refused("hole.vtu", text, "VTK"), ErrorCode::kBadInput);
+  EXPECT_EQ(refused("hole.vtu", text, "line 14: the array types"), ErrorCode::kBadInput);
 }
 
 /// Reads `rounds` damaged copies of `whole`: bits flipped, bytes that became digits. Whatever

@@ -1,0 +1,25 @@
+// Reads an unstructured grid in VTK's XML (.vtu) without VTK. No file harms the process: every
+// count is compared with the bytes that remain before anything is allocated.
+#pragma once
+
+#include "simplify/read/options/read_options.h"
+#include "simplify/read/vtu/vtu_document.h"
+#include "simplify/split/cell_mesh.h"
+
+namespace qtet {
+
+/// The volume cells that are visible and no other piece's (ghosts), with the points as they are and
+/// the fields meant by `fields`; the document's pieces one after the other. Arrays of other fields
+/// are not decoded. Cells of lower dimension are counted in the report, fields of texts or too many
+/// components noted. Ids are narrowed, not checked (checkCellMesh). Errors: bad-input (arrays that
+/// are missing, contradict each other or the counts, or cannot be decoded; the message names the
+/// array and its line), truncated, io, and bad-input where an array does not fit in memory.
+/// REQUIRES: a document of this file, without time steps.
+[[nodiscard]] Result<CellMesh> readVtu(const VtuFile& file, const VtuDocument& document,
+                                       const FieldNames& fields, ReadReport& report);
+
+/// The time of the document's one step; nullopt: it has none. Errors: those of readReals.
+[[nodiscard]] Result<std::optional<double>> readVtuTime(const VtuFile& file,
+                                                        const VtuDocument& document);
+
+}  // namespace qtet

@@ -1,0 +1,244 @@
+// Our own reader of .vtu beside VTK's, on files of every encoding.
+#include "simplify/read/vtu/read_vtu.h"
+
+#include <gtest/gtest.h>
+#include <vtkBitArray.h>
+#include <vtkCellData.h>
+#include <vtkCellType.h>
+#include <vtkDoubleArray.h>
+#include <vtkFloatArray.h>
+#include <vtkGenericCell.h>
+#include <vtkIdTypeArray.h>
+#include <vtkIntArray.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkShortArray.h>
+#include <vtkSignedCharArray.h>
+#include <vtkSmartPointer.h>
+#include <vtkStringArray.h>
+#include <vtkUnsignedCharArray.h>
+#include <vtkUnsignedIntArray.h>
+#include <vtkUnsignedLongLongArray.h>
+#include <vtkUnsignedShortArray.h>
+
+#include <array>
+#include <limits>
+#include <random>
+
+#include "simplify/log/write_mesh.h"
+#include "simplify/read/read_mesh.h"
+#include "simplify/read/vtu/grid_parts.h"
+#include "simplify/samples/samples.h"
+#include "tests/simplify/read/vtu/vtk_written.h"
+#include "tests/support/paths/test_paths.h"
+
+namespace qtet {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::Encoding;
+using testing::expectSame;
+using testing::fileWith;
+using testing::readByOurs;
+using testing::readByVtk;
+
+template <class Array>
+void addArray(vtkFieldData& to, const char* name, int components, vtkIdType tuples, bool isText) {
+  std::mt19937 random(7);
+  vtkNew<Array> array;
+  array->SetName(name);
+  array->SetNumberOfComponents(components);
+  array->SetNumberOfTuples(tuples);
+  for (vtkIdType i = 0; i < array->GetNumberOfValues(); ++i)
+    array->SetComponent(i / components, static_cast<int>(i % components),
+                        static_cast<double>(random() % 120) / 3);
+  if (array->GetDataType() == VTK_FLOAT && !isText && tuples > 3)
+    array->SetComponent(3, 0, std::numeric_limits<double>::quiet_NaN());
+  to.AddArray(array);
+}
+
+/// Cells of every dimension, a polyhedron, ghosts, and fields of every kind. VTK reads no NaN from
+/// text.
+vtkNew<vtkUnstructuredGrid> everything(bool isText) {
+  std::mt19937 random(5);
+  vtkNew<vtkUnstructuredGrid> grid;
+  vtkNew<vtkPoints> points;
+  constexpr vtkIdType kPoints = 151;
+  for (vtkIdType i = 0; i < kPoints; ++i)
+    points->InsertNextPoint(static_cast<double>(random() % 9000) / 7,
+                            static_cast<double>(random() % 9000) / 7,
+                            static_cast<double>(random() % 9000) / 7);
+  grid->SetPoints(points);
+  constexpr std::array<std::pair<int, int>, 8> kKinds{{{VTK_TETRA, 4},
+                                                       {VTK_TRIANGLE, 3},
+                                                       {VTK_HEXAHEDRON, 8},
+                                                       {VTK_VERTEX, 1},
+                                                       {VTK_WEDGE, 6},
+                                                       {VTK_QUADRATIC_TETRA, 10},
+                                                       {VTK_PYRAMID, 5},
+                                                       {VTK_LAGRANGE_HEXAHEDRON, 27}}};
+  for (vtkIdType i = 0; i < 120; ++i) {
+    const auto [type, nodes] = kKinds[static_cast<std::size_t>(i) % kKinds.size()];
+    std::array<vtkIdType, 27> ids{};
+    for (int k = 0; k < nodes; ++k) ids[static_cast<std::size_t>(k)] = (i + 3 * k) % kPoints;
+    grid->InsertNextCell(type, nodes, ids.data());
+    if (i % 20 != 7) continue;
+    const std::array<vtkIdType, 4> corners{i, i + 1, i + 2, i + 3};
+    const std::array<vtkIdType, 16> faces{3, i, i + 1, i + 2, 3, i,     i + 1, i + 3,
+                                          3, i, i + 2, i + 3, 3, i + 1, i + 2, i + 3};
+    grid->InsertNextCell(VTK_POLYHEDRON, 4, corners.data(), 4, faces.data());
+  }
+  const vtkIdType cells = grid->GetNumberOfCells();
+  addArray<vtkDoubleArray>(*grid->GetPointData(), "double", 3, kPoints, isText);
+  addArray<vtkFloatArray>(*grid->GetPointData(), "float", 1, kPoints, isText);
+  addArray<vtkSignedCharArray>(*grid->GetPointData(), "int8", 1, kPoints, isText);
+  addArray<vtkUnsignedShortArray>(*grid->GetPointData(), "uint16", 2, kPoints, isText);
+  addArray<vtkIntArray>(*grid->GetPointData(), "seventeen", 17, kPoints, isText);
+  addArray<vtkIdTypeArray>(*grid->GetPointData(), "GlobalPointIds", 1, kPoints, isText);
+  vtkNew<vtkStringArray> words;
+  words->SetName("words");
+  for (vtkIdType i = 0; i < kPoints; ++i) words->InsertNextValue("some");
+  grid->GetPointData()->AddArray(words);
+  vtkNew<vtkBitArray> bits;
+  bits->SetName("bits");
+  for (vtkIdType i = 0; i < kPoints; ++i) bits->InsertNextValue(i % 3 == 0 ? 1 : 0);
+  grid->GetPointData()->AddArray(bits);
+  addArray<vtkShortArray>(*grid->GetCellData(), "int16", 1, cells, isText);
+  addArray<vtkUnsignedIntArray>(*grid->GetCellData(), "uint32", 1, cells, isText);
+  addArray<vtkUnsignedLongLongArray>(*grid->GetCellData(), "uint64", 2, cells, isText);
+  addArray<vtkFloatArray>(*grid->GetCellData(), "float", 3, cells, isText);
+  vtkNew<vtkUnsignedCharArray> ghosts;  // cell 8 is a polyhedron, before others
+  ghosts->SetName("vtkGhostType");
+  for (vtkIdType i = 0; i < cells; ++i)
+    ghosts->InsertNextValue(i % 11 == 0 || i == 8 ? 1 : i % 13 == 0 ? 32 : i % 17 == 0 ? 2 : 0);
+  grid->GetCellData()->AddArray(ghosts);
+  return grid;
+}
+
+TEST(ReadVtu, everyEncodingOfVtkGivesWhatVtkGives) {
+  for (const int mode : {vtkXMLWriter::Appended, vtkXMLWriter::Binary, vtkXMLWriter::Ascii}) {
+    const auto grid = everything(mode == vtkXMLWriter::Ascii);
+    for (const int compressor :
+         {vtkXMLWriter::NONE, vtkXMLWriter::ZLIB, vtkXMLWriter::LZ4, vtkXMLWriter::LZMA}) {
+      for (const Encoding& as :
+           {Encoding{mode, compressor},
+            Encoding{mode, compressor, vtkXMLWriter::BigEndian, vtkXMLWriter::UInt64, false, 1600},
+            Encoding{mode, compressor, vtkXMLWriter::BigEndian, vtkXMLWriter::UInt32, true, 5000},
+            Encoding{mode, compressor, vtkXMLWriter::LittleEndian, vtkXMLWriter::UInt64, false}}) {
+        const fs::path path = fileWith("every.vtu", testing::writtenByVtk(grid, as));
+        const std::string what = "mode " + std::to_string(mode) + ", compressor " +
+                                 std::to_string(compressor) + ", block " + std::to_string(as.block);
+        const testing::Way vtk = readByVtk(path);
+        ASSERT_TRUE(vtk.mesh);
+        ASSERT_EQ(vtk.mesh->fields.size(), 10u);
+        ASSERT_GT(vtk.mesh->cellIds.size(), 40u);
+        expectSame(readByOurs(path), vtk, what);
+        const FieldNames some = std::vector<std::string>{"cell:float", "int8"};
+        expectSame(readByOurs(path, some), readByVtk(path, some), what);
+      }
+    }
+  }
+}
+
+TEST(ReadVtu, theMeshesOfTheTestsAndTheSamplesAreThoseOfVtk) {
+  std::size_t files = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(fs::path(testing::kSourceFolder) /
+                                                            "tests/simplify/read/meshes")) {
+    if (entry.path().extension() != ".vtu") continue;
+    expectSame(readByOurs(entry.path()), readByVtk(entry.path()), entry.path().string());
+    ++files;
+  }
+  EXPECT_GE(files, 3u);
+  for (const Sample& sample : samples()) {
+    const Bytes bytes = vtuBytes(sample.make(sample.cells));
+    const fs::path path =
+        fileWith(std::string(sample.name) + ".vtu", std::string(bytes.begin(), bytes.end()));
+    expectSame(readByOurs(path), readByVtk(path), std::string(sample.name));
+  }
+}
+
+/// Two pieces of text, the second with a polyhedron and in the order of the first.
+std::string twoPieces() {
+  const auto array = [](const char* type, const std::string& attributes, const char* numbers) {
+    return std::string("<DataArray type=\"") + type + "\" " + attributes + " format=\"ascii\">" +
+           numbers + "</DataArray>";
+  };
+  const std::string points =
+      "<Points>" + array("Float32", "NumberOfComponents=\"3\"", "0 0 0 1 0 0 0 1 0 0 0 1") +
+      "</Points>";
+  const std::string fields =
+      "<PointData GlobalIds=\"gid\">" + array("Int32", "Name=\"gid\"", "5 6 7 8") +
+      array("Int32", "Name=\"gid\"", "5 6 7 8") +
+      array("Float32", "Name=\"" + std::string(300, 'n') + "\"", "1 2 3 4e-40") +
+      "</PointData><CellData>" + array("Int8", "Name=\"c\" NumberOfComponents=\"0\"", "-5") +
+      "</CellData>";
+  const auto cells = [&](const char* type, const std::string& more) {
+    return "<Cells>" + array("Int32", "Name=\"connectivity\"", "3 2 1 0") +
+           array("Int64", "Name=\"offsets\"", "4") + array("UInt8", "Name=\"types\"", type) + more +
+           "</Cells>";
+  };
+  const std::string faces = array("Int64", "Name=\"faces\"", "4 3 0 1 2 3 0 1 3 3 0 2 3 3 1 2 3") +
+                            array("Int64", "Name=\"faceoffsets\"", "17");
+  const std::string piece = "<Piece NumberOfPoints=\"4\" NumberOfCells=\"1\">";
+  return "<?xml version=\"1.0\"?><VTKFile type=\"UnstructuredGrid\" version=\"0.1\" "
+         "byte_order=\"LittleEndian\"><UnstructuredGrid><FieldData>" +
+         array("Float64", "Name=\"TimeValue\" NumberOfTuples=\"1\"", "0.5") + "</FieldData>" +
+         piece + points + fields + cells("10", "") + "</Piece>" + piece + fields + points +
+         cells("42", faces) + "</Piece></UnstructuredGrid></VTKFile>";
+}
+
+TEST(ReadVtu, piecesFollowOneAnotherAsVtkJoinsThem) {
+  const fs::path path = fileWith("pieces.vtu", twoPieces());
+  const testing::Way ours = readByOurs(path);
+  ASSERT_TRUE(ours.mesh) << ours.mesh.error().text();
+  ASSERT_EQ(ours.mesh->cells(), 2u);
+  EXPECT_EQ(ours.mesh->vertices[4 + 2], 4u) << "the second piece's points follow the first's";
+  std::string once = twoPieces();  // VTK itself confuses arrays of one name
+  const std::string twice =
+      "<DataArray type=\"Int32\" Name=\"gid\" format=\"ascii\">5 6 7 8"
+      "</DataArray>";
+  for (std::size_t at = once.find(twice + twice); at != std::string::npos;
+       at = once.find(twice + twice))
+    once.erase(at, twice.size());
+  const fs::path without = fileWith("pieces-once.vtu", once);
+  expectSame(readByOurs(without), readByVtk(without), "once");
+  expectSame(ours, readByOurs(without), "twice");
+}
+
+TEST(ReadVtu, polyhedraOfNewerFilesShareTheirFaces) {
+  const fs::path old = fileWith("old.vtu", twoPieces());
+  std::string text = twoPieces();
+  const std::string from = text.substr(text.find("<DataArray type=\"Int64\" Name=\"faces\""));
+  const std::string faces = from.substr(0, from.find("</Cells>"));
+  text.replace(text.find(faces), faces.size(),
+               "<DataArray type=\"Int64\" Name=\"face_connectivity\">1 2 3 0 2 3 0 1 3 0 1 2"
+               "</DataArray><DataArray type=\"Int64\" Name=\"face_offsets\">3 6 9 12</DataArray>"
+               "<DataArray type=\"Int64\" Name=\"polyhedron_to_faces\">3 2 1 0</DataArray>"
+               "<DataArray type=\"Int64\" Name=\"polyhedron_offsets\">4</DataArray>");
+  expectSame(readByOurs(fileWith("new.vtu", text)), readByOurs(old), "shared faces");
+}
+
+TEST(ReadVtu, aTimeOfTheFileIsAStepsTime) {
+  const std::filesystem::path path = fileWith("time.vtu", twoPieces());
+  ReadOptions options;
+  options.time = "0.5";
+  EXPECT_TRUE(readMesh(path, options));
+  options.time = "0.25";
+  const Result<ReadMesh> read = readMesh(path, options);
+  ASSERT_FALSE(read);
+  EXPECT_EQ(read.error().code, ErrorCode::kNotFound);
+  EXPECT_NE(read.error().message.find("it has 0.5"), std::string::npos) << read.error().text();
+}
+
+TEST(ReadVtu, dimensionsOfCellsAreThoseOfVtk) {
+  for (int type = 0; type < 256; ++type) {
+    const auto cell = type == VTK_EMPTY_CELL
+                          ? nullptr
+                          : vtkSmartPointer<vtkCell>::Take(vtkGenericCell::InstantiateCell(type));
+    const int vtks = cell ? cell->GetCellDimension() : type == VTK_EMPTY_CELL ? 0 : 3;
+    EXPECT_EQ(dimensionOf(static_cast<std::uint8_t>(type)), vtks) << type;
+  }
+}
+
+}  // namespace
+}  // namespace qtet
