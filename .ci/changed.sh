@@ -16,7 +16,8 @@ if [[ -z $since ]]; then
   fi
 fi
 code() {
-  grep -v '^#include "' | g++-12 -fpreprocessed -dD -E -P -w -x c++ - 2>/dev/null | tr -s ' \t\n' ' '
+  grep -v '^#include "' | g++-12 -fpreprocessed -dD -E -P -w -x c++ - 2>/dev/null |
+    tr -s ' \t\n' ' '
 }
 {
   git diff --name-status -M --diff-filter=d "$since" -- "$@"
