@@ -127,10 +127,11 @@ template <class T>
 std::optional<T> numberOf(std::string_view word) {
   if (word.size() > kMaxWord) return std::nullopt;
   if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
-  // VTK reads neither NaN nor infinity from text
-  const std::size_t first = word.starts_with('-') ? 1 : 0;
-  if (word.size() == first || (word[first] != '.' && (word[first] < '0' || word[first] > '9')))
-    return std::nullopt;
+  // from_chars takes a second sign for none; nan, inf and infinity it knows, in either case
+  if constexpr (std::integral<T>) {
+    const std::size_t first = word.starts_with('-') ? 1 : 0;
+    if (word.size() == first || word[first] < '0' || word[first] > '9') return std::nullopt;
+  }
   T value{};
   const auto read = std::from_chars(word.data(), word.data() + word.size(), value);
   if (read.ptr != word.data() + word.size()) return std::nullopt;

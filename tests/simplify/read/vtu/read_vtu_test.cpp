@@ -21,7 +21,9 @@
 #include <vtkUnsignedLongLongArray.h>
 #include <vtkUnsignedShortArray.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <random>
 
@@ -203,6 +205,21 @@ TEST(ReadVtu, piecesFollowOneAnotherAsVtkJoinsThem) {
   const fs::path without = fileWith("pieces-once.vtu", once);
   expectSame(readByOurs(without), readByVtk(without), "once");
   expectSame(ours, readByOurs(without), "twice");
+}
+
+TEST(ReadVtu, textMayHaveValuesThatAreNotFinite) {
+  std::string text = twoPieces();
+  for (std::size_t at = 0; (at = text.find("1 2 3 4e-40")) != std::string::npos;)
+    text.replace(at, 11, "NaN nan -inf Infinity");
+  const testing::Way read = readByOurs(fileWith("not-finite.vtu", text));
+  ASSERT_TRUE(read.mesh) << read.mesh.error().text();
+  const auto field = std::ranges::find(read.mesh->fields, "float32", &MeshField::type);
+  ASSERT_NE(field, read.mesh->fields.end());
+  EXPECT_TRUE(std::isnan(field->values[0]) && std::isnan(field->values[1]));
+  EXPECT_EQ(field->values[2], -std::numeric_limits<double>::infinity());
+  EXPECT_EQ(field->values[3], std::numeric_limits<double>::infinity());
+  text.replace(text.find("5 6 7 8"), 7, "nan 6 7");
+  EXPECT_FALSE(readByOurs(fileWith("no-integer.vtu", text)).mesh);
 }
 
 TEST(ReadVtu, polyhedraOfNewerFilesShareTheirFaces) {
