@@ -118,7 +118,7 @@ Status checkErrors(const Manifest& manifest) {
     const auto outside = [](double most) {
       return [most](double number) { return !(number >= 0 && number <= most); };
     };
-    if (outside(kMaxVolumeFigure / kVolumeFigure)(level.error->volumeKept) ||
+    if (outside(static_cast<double>(kMaxVolumeFigure) / kVolumeFigure)(level.error->volumeKept) ||
         std::ranges::any_of(pairsOf(*level.error), outside(errorOfFigure(kMaxErrorFigure))))
       return bad("holds what is no number, below 0 or beyond what a log can hold; measure again");
   }

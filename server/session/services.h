@@ -19,8 +19,9 @@
 
 // Only declared, like the three classes below: the tests of a running server compile without Asio.
 namespace boost::asio {
+// NOLINTNEXTLINE(readability-identifier-naming): Asio's
 class thread_pool;
-}
+}  // namespace boost::asio
 
 namespace qtet {
 

@@ -9,8 +9,9 @@
 #include <mutex>
 
 namespace boost::asio::ip {
+// NOLINTNEXTLINE(readability-identifier-naming): Asio's
 class address;
-}
+}  // namespace boost::asio::ip
 
 namespace qtet {
 

@@ -95,7 +95,8 @@ TEST(LossWarnings, manyPartsAreTheReason) {
   for (int part = 0; part < 27; ++part)
     addBlock(mesh, {4, 4, 4}, [&](double x, double y, double z) {
       const Position p = onBall(x, y, z);
-      return Position{p[0] + 3 * (part % 3), p[1] + 3 * (part / 3 % 3), p[2] + 3 * (part / 9)};
+      const int row = part / 3 % 3, layer = part / 9;
+      return Position{p[0] + 3 * (part % 3), p[1] + 3 * row, p[2] + 3 * layer};
     });
   expectWarning(warningsOf(std::move(mesh), 0.01),
                 {"falls into 27 parts", "`targetRatio` 0.27", "`weld` DISTANCE"});

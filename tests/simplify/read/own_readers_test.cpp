@@ -22,7 +22,6 @@ namespace qtet {
 namespace {
 
 using testing::fileWith;
-using testing::Filled;
 using testing::filledBy;
 namespace fs = std::filesystem;
 

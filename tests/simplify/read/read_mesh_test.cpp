@@ -12,8 +12,10 @@
 
 // VTK's XML reader leaks a few small objects when it gives up on a damaged file; the leak sanitizer
 // reads this, other builds do not.
+// NOLINTBEGIN(readability-identifier-naming): the sanitizer's name
 extern "C" const char* __lsan_default_suppressions();
 extern "C" const char* __lsan_default_suppressions() { return "leak:libvtk"; }
+// NOLINTEND(readability-identifier-naming)
 
 namespace qtet {
 namespace {
