@@ -12,24 +12,12 @@
 #include <array>
 #include <istream>
 #include <memory>
-#include <string_view>
 #include <utility>
+
+#include "simplify/read/vtu/base64_digits.h"
 
 namespace qtet {
 namespace {
-
-constexpr std::uint8_t kNoDigit = 0xFF;
-
-/// Values of base64's digits. The filler '=' is none: what has it goes VTK's way.
-constexpr auto kDigits = [] {
-  std::array<std::uint8_t, 256> out{};
-  out.fill(kNoDigit);
-  constexpr std::string_view kAlphabet =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  for (std::size_t i = 0; i < kAlphabet.size(); ++i)
-    out[static_cast<std::uint8_t>(kAlphabet[i])] = static_cast<std::uint8_t>(i);
-  return out;
-}();
 
 /// Takes from the file by the thousand what VTK's takes four characters at a time. Data that end
 /// too early are an error here: VTK's leaves the rest of an uncompressed array as the memory was,
@@ -71,8 +59,9 @@ class FastBase64 : public vtkBase64InputStream {
   std::size_t decode(std::size_t groups, unsigned char* out) const {
     for (std::size_t i = 0; i < groups; ++i, out += 3) {
       const unsigned char* c = characters_.data() + 4 * i;
-      const unsigned a = kDigits[c[0]], b = kDigits[c[1]], d = kDigits[c[2]], e = kDigits[c[3]];
-      if ((a | b | d | e) > 63) {
+      const unsigned a = kBase64Digits[c[0]], b = kBase64Digits[c[1]], d = kBase64Digits[c[2]],
+                     e = kBase64Digits[c[3]];
+      if ((a | b | d | e) > 63) {  // the filler among them: VTK's way
         const auto bytes = static_cast<std::size_t>(
             vtkBase64Utilities::DecodeTriplet(c[0], c[1], c[2], c[3], out, out + 1, out + 2));
         if (bytes < 3) return 3 * i + bytes;

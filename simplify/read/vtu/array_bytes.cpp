@@ -1,26 +1,13 @@
 #include "simplify/read/vtu/array_bytes.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cstring>
-#include <string_view>
+
+#include "simplify/read/vtu/base64_digits.h"
 
 namespace qtet {
 namespace {
-
-constexpr std::uint8_t kNoDigit = 0xFF;
-
-/// Values of base64's digits.
-constexpr auto kDigits = [] {
-  std::array<std::uint8_t, 256> out{};
-  out.fill(kNoDigit);
-  constexpr std::string_view kAlphabet =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  for (std::size_t i = 0; i < kAlphabet.size(); ++i)
-    out[static_cast<std::uint8_t>(kAlphabet[i])] = static_cast<std::uint8_t>(i);
-  return out;
-}();
 
 /// Groups of four characters that are decoded at once.
 constexpr std::size_t kGroupsAtOnce = 16384;
@@ -30,9 +17,9 @@ constexpr std::uint64_t kBlockWords = 3;
 /// Decodes a group of four characters; how many bytes it gives: 3, before the end of the data
 /// fewer; 0: it is no base64.
 std::size_t decodeGroup(const unsigned char* c, std::byte* out) {
-  const unsigned a = kDigits[c[0]], b = kDigits[c[1]];
-  const unsigned d = c[2] == '=' && c[3] == '=' ? 0u : kDigits[c[2]];
-  const unsigned e = c[3] == '=' ? 0u : kDigits[c[3]];
+  const unsigned a = kBase64Digits[c[0]], b = kBase64Digits[c[1]];
+  const unsigned d = c[2] == '=' && c[3] == '=' ? 0u : kBase64Digits[c[2]];
+  const unsigned e = c[3] == '=' ? 0u : kBase64Digits[c[3]];
   if ((a | b | d | e) > 63) return 0;
   const unsigned bits = a << 18 | b << 12 | d << 6 | e;
   out[0] = static_cast<std::byte>(bits >> 16);
@@ -167,7 +154,7 @@ Status ArrayBytes::openBlocks() {
                  " bytes, of which at most " + std::to_string(run_.room() - end) +
                  " are left in the file");
     const std::uint64_t inflated = i + 1 == blocks ? lastBytes_ : blockBytes_;
-    if (inflated > mostInflated(document_->compressor, bytes))
+    if (inflated > maxInflated(document_->compressor, bytes))
       return bad("says that the " + std::to_string(bytes) + " bytes of its block " +
                  std::to_string(i) + " inflate to " + std::to_string(inflated) +
                  ", which they cannot");

@@ -11,15 +11,15 @@ namespace qtet {
 namespace {
 
 /// zlib: 258 bytes by two bits. LZ4: a byte more of a length stands for 255 bytes.
-constexpr std::uint64_t kMostByZlib = 1032, kMostByLz4 = 255;
+constexpr std::uint64_t kMaxByZlib = 1032, kMaxByLz4 = 255;
 /// Memory of LZMA's dictionary: the method's highest level takes 65 MiB.
 constexpr std::uint64_t kLzmaBytes = std::uint64_t{128} << 20;
 /// Bytes that LZMA inflates at once.
 constexpr std::size_t kLzmaStep = std::size_t{1} << 16;
 
 bool inflateLz4(std::span<const std::byte> block, std::span<std::byte> into) {
-  constexpr std::size_t kMost = std::numeric_limits<int>::max();
-  if (block.size() > kMost || into.size() > kMost) return false;
+  constexpr std::size_t kMax = std::numeric_limits<int>::max();
+  if (block.size() > kMax || into.size() > kMax) return false;
   const int got = LZ4_decompress_safe(
       reinterpret_cast<const char*>(block.data()), reinterpret_cast<char*>(into.data()),
       static_cast<int>(block.size()), static_cast<int>(into.size()));
@@ -51,11 +51,11 @@ bool inflateLzma(std::span<const std::byte> block, std::uint64_t bytes,
 
 }  // namespace
 
-std::uint64_t mostInflated(VtuCompressor compressor, std::uint64_t compressedBytes) {
+std::uint64_t maxInflated(VtuCompressor compressor, std::uint64_t compressedBytes) {
   constexpr std::uint64_t kAll = ~std::uint64_t{0};
   if (compressor == VtuCompressor::kNone) return compressedBytes;
   if (compressor == VtuCompressor::kLzma) return compressedBytes == 0 ? 0 : kAll;
-  const std::uint64_t most = compressor == VtuCompressor::kZlib ? kMostByZlib : kMostByLz4;
+  const std::uint64_t most = compressor == VtuCompressor::kZlib ? kMaxByZlib : kMaxByLz4;
   return compressedBytes > kAll / most ? kAll : compressedBytes * most;
 }
 

@@ -12,7 +12,7 @@
 namespace qtet {
 
 /// The most bytes that so many compressed ones can hold; 2^64 - 1 where the method has no bound.
-[[nodiscard]] std::uint64_t mostInflated(VtuCompressor compressor, std::uint64_t compressedBytes);
+[[nodiscard]] std::uint64_t maxInflated(VtuCompressor compressor, std::uint64_t compressedBytes);
 
 /// Keeps what the method needs between blocks. Not for several threads at once.
 class BlockInflater {
@@ -25,7 +25,7 @@ class BlockInflater {
   ~BlockInflater();
 
   /// Whether the block inflates to exactly `bytes`, which `into` then holds. It grows with what
-  /// is inflated where the method has no bound. REQUIRES: bytes <= mostInflated.
+  /// is inflated where the method has no bound. REQUIRES: bytes <= maxInflated.
   [[nodiscard]] bool inflate(std::span<const std::byte> block, std::uint64_t bytes,
                              std::vector<std::byte>& into);
 

@@ -334,8 +334,8 @@ class DocumentParser {
 
   void readComponents(const Attributes& attributes, const std::string& of) {
     const std::uint64_t components = count(attributes, "NumberOfComponents", of);
-    constexpr std::uint64_t kMost = ~std::uint32_t{0} >> 1;
-    if (components > kMost)
+    constexpr std::uint64_t kMax = ~std::uint32_t{0} >> 1;
+    if (components > kMax)
       return refuse("NumberOfComponents of " + of + " is " + std::to_string(components) +
                     "; at most 2147483647 are allowed");
     array_->components = std::max(1u, static_cast<std::uint32_t>(components));

@@ -122,7 +122,7 @@ class Words {
   Status status_;
 };
 
-/// The word as VTK reads it; nullopt: it is no number of this type.
+/// The word's number; nullopt: it is none of this type.
 template <class T>
 std::optional<T> numberOf(std::string_view word) {
   if (word.size() > kMaxWord) return std::nullopt;

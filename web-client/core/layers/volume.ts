@@ -40,27 +40,26 @@ export function firstOpacities(chord: number): number[] {
 
 export function readVolume(text: string | null): VolumeSetting {
   if (text === null) return {volume: null, hasFirstOpacities: false};
+  const given = opacitiesIn(text);
+  return {volume: given ?? firstOpacities(0), hasFirstOpacities: !given};
+}
+
+function opacitiesIn(text: string): number[] | null {
   const numbers = parseNumbers(text);
-  const isRight =
+  const areOpacities =
     numbers.length >= 2 &&
     numbers.length <= kMaxOpacities &&
     numbers.every((value) => value >= 0 && value <= 1);
-  return {volume: isRight ? numbers : firstOpacities(0), hasFirstOpacities: !isRight};
+  return areOpacities ? numbers : null;
 }
 
-function areOpacities(text: string): boolean {
-  const numbers = parseNumbers(text);
-  const isShort = numbers.length >= 2 && numbers.length <= kMaxOpacities;
-  return (
-    text === '' ||
-    text === kAutoVolume ||
-    (isShort && numbers.every((value) => value >= 0 && value <= 1))
-  );
+function isRight(text: string): boolean {
+  return text === '' || text === kAutoVolume || opacitiesIn(text) !== null;
 }
 
 export const volume = {
   name: 'volume',
-  isRight: areOpacities,
+  isRight,
   expected: `2 to ${kMaxOpacities} opacities from 0 to 1, or ${kAutoVolume}`,
   requestOf: (display: Display): true | null => display.volume || null,
   seenFrom: (_: MeshArrays, display: Display, __: Ray, stretch: Stretch): number =>

@@ -20,7 +20,7 @@ using testing::Encoding;
 using testing::fileWith;
 
 /// A small file may take its bytes, inflated a thousand times.
-constexpr std::size_t kMostBytes = std::size_t{16} << 20;
+constexpr std::size_t kMaxBytes = std::size_t{16} << 20;
 
 vtkNew<vtkUnstructuredGrid> smallGrid() {
   vtkNew<vtkUnstructuredGrid> grid;
@@ -65,7 +65,7 @@ std::string endOf(const std::string& text, const std::string& what) {
     const testing::Way read = testing::readByOurs(path);
     if (!read.mesh) out = read.mesh.error().message;
   });
-  EXPECT_LT(peak, kMostBytes) << what;
+  EXPECT_LT(peak, kMaxBytes) << what;
   return out;
 }
 
