@@ -108,12 +108,6 @@ std::unexpected<Error> bad(const std::filesystem::path& path, const std::string&
   return fail(ErrorCode::kBadInput, path.string() + ": " + what);
 }
 
-/// VTK's structured XML readers stood every damage that was tried; its others write outside their
-/// arrays on counts that contradict each other.
-bool standsDamage(MeshFormat format) {
-  return format == MeshFormat::kVts || format == MeshFormat::kVtr || format == MeshFormat::kVti;
-}
-
 /// The volume blocks of what a reader gave, in one mesh.
 Result<CellMesh> cellsOfOutput(vtkDataObject* output, const ReadOptions& options,
                                const std::filesystem::path& path, ReadReport& report) {
@@ -552,8 +546,7 @@ Result<std::vector<TimedCells>> readAt(const std::filesystem::path& path, MeshFo
   if (format == MeshFormat::kOpenFoam) return readFoam(path, options, report);
   if (namesPieces(format) || format == MeshFormat::kVtm)
     return readParts(path, format, options, report, depth);
-  return standsDamage(format) ? readHere(path, format, options, report)
-                              : readApart(path, format, options, report);
+  return readApart(path, format, options, report);
 }
 
 }  // namespace

@@ -14,7 +14,6 @@
 #include <vtkXMLStructuredGridReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
-#include "simplify/read/vtk/fast_xml_parser.h"
 #include "simplify/read/vtk/foam_fields.h"
 
 namespace qtet {
@@ -22,14 +21,7 @@ namespace {
 
 template <class Reader>
 vtkSmartPointer<vtkAlgorithm> xmlReader(const std::filesystem::path& path) {
-  const auto reader = vtkSmartPointer<FastXmlReader<Reader>>::New();
-  reader->SetFileName(path.c_str());
-  return reader;
-}
-
-/// For the rare file that holds several steps (readAt).
-vtkSmartPointer<vtkAlgorithm> stepsReader(const std::filesystem::path& path) {
-  const auto reader = vtkSmartPointer<vtkXMLUnstructuredGridReader>::New();
+  const auto reader = vtkSmartPointer<Reader>::New();
   reader->SetFileName(path.c_str());
   return reader;
 }
@@ -123,7 +115,8 @@ vtkSmartPointer<vtkAlgorithm> plot3dReader(const std::filesystem::path& path,
 vtkSmartPointer<vtkAlgorithm> vtkReaderOf(const std::filesystem::path& path, MeshFormat format,
                                           const ReadOptions& options) {
   switch (format) {
-    case MeshFormat::kVtu: return stepsReader(path);
+    // our own reader takes all .vtu files but the rare ones that hold several steps
+    case MeshFormat::kVtu: return xmlReader<vtkXMLUnstructuredGridReader>(path);
     case MeshFormat::kVts: return xmlReader<vtkXMLStructuredGridReader>(path);
     case MeshFormat::kVtr: return xmlReader<vtkXMLRectilinearGridReader>(path);
     case MeshFormat::kVti: return xmlReader<vtkXMLImageDataReader>(path);

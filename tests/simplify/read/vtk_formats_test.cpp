@@ -51,6 +51,22 @@ TEST(VtkFormats, structuredRectilinearAndImageDataAreRead) {
 }
 
 // Two pieces with a common cell, which the second one marks as a ghost.
+TEST(VtkFormats, extentsOfStructuredDataThatNoFileHoldsAreRefused) {
+  for (const char* name : {"s.vts", "r.vtr", "i.vti"}) {
+    std::ifstream file(given(name), std::ios::binary);
+    const std::string sound{std::istreambuf_iterator<char>(file), {}};
+    for (const char* end : {"-1", "2147483646", "2147483647", "4294967296", "NaN"}) {
+      std::string text = sound;
+      for (std::size_t at = 0; (at = text.find("Extent=\"0 2", at)) != std::string::npos; ++at)
+        text.replace(at + 10, 1, end);
+      ASSERT_NE(text, sound) << name;
+      const Result<ReadMesh> read = readMesh(fileWith(name, text));
+      ASSERT_FALSE(read) << name << ' ' << end;
+      EXPECT_EQ(read.error().code, ErrorCode::kBadInput) << read.error().text();
+    }
+  }
+}
+
 TEST(VtkFormats, piecesOfStructuredDataAreJoined) {
   for (const char* name : {"ps.pvts", "pr.pvtr", "pi.pvti"}) {
     ReadMesh joined = expectABar(given(name), 2);
