@@ -14,6 +14,7 @@
 #include <vtkXMLStructuredGridReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
+#include "simplify/read/vtk/fast_xml_parser.h"
 #include "simplify/read/vtk/foam_fields.h"
 
 namespace qtet {
@@ -21,7 +22,7 @@ namespace {
 
 template <class Reader>
 vtkSmartPointer<vtkAlgorithm> xmlReader(const std::filesystem::path& path) {
-  const auto reader = vtkSmartPointer<Reader>::New();
+  const auto reader = vtkSmartPointer<FastXmlReader<Reader>>::New();
   reader->SetFileName(path.c_str());
   return reader;
 }

@@ -50,7 +50,6 @@ TEST(VtkFormats, structuredRectilinearAndImageDataAreRead) {
   for (const char* name : {"s.vts", "r.vtr", "i.vti"}) expectABar(given(name), 2);
 }
 
-// Two pieces with a common cell, which the second one marks as a ghost.
 TEST(VtkFormats, extentsOfStructuredDataThatNoFileHoldsAreRefused) {
   for (const char* name : {"s.vts", "r.vtr", "i.vti"}) {
     std::ifstream file(given(name), std::ios::binary);
@@ -67,6 +66,27 @@ TEST(VtkFormats, extentsOfStructuredDataThatNoFileHoldsAreRefused) {
   }
 }
 
+// VTK alone would leave the rest of the field as the memory was, and report nothing.
+TEST(VtkFormats, aFieldWhoseBase64EndsTooEarlyIsRefused) {
+  const auto grid = [](const std::string& base64) {
+    return "<VTKFile type=\"ImageData\" version=\"0.1\" byte_order=\"LittleEndian\" "
+           "header_type=\"UInt32\"><ImageData WholeExtent=\"0 1 0 1 0 1\" Origin=\"0 0 0\" "
+           "Spacing=\"1 1 1\"><Piece Extent=\"0 1 0 1 0 1\"><PointData><DataArray "
+           "type=\"UInt8\" Name=\"T\" format=\"appended\" offset=\"0\"/></PointData></Piece>"
+           "</ImageData><AppendedData encoding=\"base64\">_" +
+           base64 + "</AppendedData></VTKFile>\n";
+  };
+  // the count 8, then the bytes 1 to 8
+  const Result<ReadMesh> sound = readMesh(fileWith("sound.vti", grid("CAAAAAECAwQFBgcI")));
+  ASSERT_TRUE(sound) << sound.error().text();
+  ASSERT_TRUE(field(*sound, "T"));
+  EXPECT_EQ(field(*sound, "T")->values, (std::vector<double>{1, 2, 3, 4, 5, 6, 7, 8}));
+  const Result<ReadMesh> cut = readMesh(fileWith("cut.vti", grid("CAAAAAECAw==BgcI")));
+  ASSERT_FALSE(cut);
+  EXPECT_EQ(cut.error().code, ErrorCode::kBadInput) << cut.error().text();
+}
+
+// Two pieces with a common cell, which the second one marks as a ghost.
 TEST(VtkFormats, piecesOfStructuredDataAreJoined) {
   for (const char* name : {"ps.pvts", "pr.pvtr", "pi.pvti"}) {
     ReadMesh joined = expectABar(given(name), 2);
