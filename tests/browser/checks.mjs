@@ -327,7 +327,7 @@ async function showsTheSamePictureFromItsLink({server, browser}) {
   const first = await viewer.screenshot('link-from');
   // A link's camera is relative to the whole mesh, which spans its lattice of 16 bits, not to the
   // coarse mesh that came first.
-  assert.equal(await viewer.inView(({bounds}) => bounds[3] - bounds[0]), 65535);
+  assert.equal(await viewer.inView(({camera: {bounds}}) => bounds[3] - bounds[0]), 65535);
   const again = await browser.open(viewer.page.url());
   await again.waitForState('complete');
   await again.waitForPicture();

@@ -18,10 +18,12 @@ const isInSponge = (x, y, z) => (x + y + z) % 2 === 0 || (7 * x + 3 * y + 5 * z)
 function compareWithCubes(view, sizes, cubes) {
   const {
     volume: {
-      deep,
-      caster: {
-        ray: {
-          material: {uniforms},
+      drawer: {
+        deep,
+        caster: {
+          ray: {
+            material: {uniforms},
+          },
         },
       },
       fine: {

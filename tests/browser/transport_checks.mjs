@@ -111,7 +111,7 @@ async function refinesWhatIsLookedAtFirst({server, browser, out, bin}) {
   server.kill();
   await server.start();
   const lookedAt = (viewer) =>
-    viewer.inView(({cuts, layers}) =>
+    viewer.inView(({parts: {cuts, layers}}) =>
       [cuts[0], ...layers.map(({mesh}) => mesh)].reduce(
         (sum, mesh) => sum + (mesh.visible ? mesh.geometry.drawRange.count : 0),
         0,

@@ -227,13 +227,14 @@ async function drawsFewCellsWhileSomethingMoves({server, browser}) {
   const before = await viewer.screenshot('volume-rest');
   await viewer.inView(({volume}) => {
     const seen = (globalThis.qtetSeen = {coarse: 0, cells: 0, strips: 0});
-    const {caster, drawAtOnce} = volume;
+    const {drawer} = volume;
+    const {caster, drawAtOnce} = drawer;
     const {cast} = caster;
     volume.wholeMs = Infinity; // a machine may be faster than that on such a small canvas
-    volume.drawAtOnce = (picture, its, share) => {
+    drawer.drawAtOnce = (picture, its, share) => {
       if (its === volume.coarse) ++seen.coarse;
       seen.cells = its.shown.count;
-      return drawAtOnce.call(volume, picture, its, share);
+      return drawAtOnce.call(drawer, picture, its, share);
     };
     caster.cast = (...words) => {
       if (volume.fine.shown.links === caster.ray.material.uniforms.links.value) ++seen.strips;
@@ -277,10 +278,12 @@ function compareWithEveryCell(view, level) {
     pose: {fromCanvas: m},
   } = view;
   const {
-    deep,
-    caster: {
-      ray: {
-        material: {uniforms},
+    drawer: {
+      deep,
+      caster: {
+        ray: {
+          material: {uniforms},
+        },
       },
     },
     fine: {

@@ -6,7 +6,7 @@ import type {Codec} from '../core/decode/codec';
 import type {ValueDecoder} from '../core/decode/draco';
 import {QtetError} from '../core/protocol/errors';
 import {kFrameHeaderBytes} from '../core/protocol/messages';
-import type {Socket} from '../core/transport/socket_transport';
+import type {Socket} from '../core/transport/reconnecting_socket';
 import type {FromWorker} from '../core/session/worker_messages';
 
 /** The states that a session has reported. */

@@ -115,7 +115,7 @@ test('aPictureThatWouldHardlyBeSeenBeforeTheLastOneIsLeftOut', () => {
   shownAfter(150, 2000);
   vi.advanceTimersByTime(2000);
   let end = performance.now() + 310;
-  publisher.untilLast = () => Math.max(0, end - performance.now());
+  publisher.pace.untilLast = () => Math.max(0, end - performance.now());
   grow(5000);
   expect(untilNext()).toBeLessThanOrEqual(1); // it will be seen for as long as it takes
   publisher.shown();
@@ -138,7 +138,7 @@ test('whatDrawingTookTellsOfTheFirstPictureWhichWaitedForTheGraphics', () => {
   untilNext();
   vi.advanceTimersByTime(900);
   publisher.shown(20);
-  publisher.untilLast = () => 50;
+  publisher.pace.untilLast = () => 50;
   vi.advanceTimersByTime(4000);
   grow(2000);
   expect(untilNext()).toBeLessThanOrEqual(1);

@@ -71,7 +71,7 @@ export class Session implements TransportHandlers {
     this.decoding = new Decoding(assembler, this.requested, () => this.advance());
     this.progress = new ProgressReporter(() => this.sendProgress());
     publisher.onFirst = () => this.advance();
-    publisher.untilLast = () => this.untilDecoded();
+    publisher.pace.untilLast = () => this.untilDecoded();
     publisher.onLayers = (positions) => this.lookAtSurface(positions);
   }
 

@@ -1,7 +1,6 @@
-// One WebSocket to /v1/stream that reconnects by itself. It counts streams and credit, and does not
-// look into the blocks.
+// Streams from one WebSocket to /v1/stream. It counts streams and credit, and does not look into
+// the blocks.
 
-import {errorCode, errorText, QtetError} from '../protocol/errors';
 import type {LogTable} from '../protocol/log_table';
 import {
   creditMessage,
@@ -18,7 +17,7 @@ import {
   type Target,
 } from '../protocol/messages';
 import {kNoViewRequest, wireView, type ViewRequest} from '../protocol/view_request';
-import {reconnectDelayMs} from './backoff';
+import {ReconnectingSocket, type SocketFactory} from './reconnecting_socket';
 import type {Transport, TransportHandlers} from './transport';
 
 /**
@@ -26,130 +25,96 @@ import type {Transport, TransportHandlers} from './transport';
  * never waits for one.
  */
 const kCreditShare = 8;
-/**
- * The server closes with this code after a message that it does not understand. Trying again would
- * not help.
- */
-const kPolicyViolation = 1008;
 
-/** The part of WebSocket that is used here. Tests bring their own. */
-export interface Socket {
-  binaryType: string;
-  onopen: ((event: never) => void) | null;
-  onmessage: ((event: {data: unknown}) => void) | null;
-  onclose: ((event: {code: number; reason: string}) => void) | null;
-  send(data: string): void;
-  close(code?: number): void;
+/** One stream, from its `open` to the next. */
+interface Stream {
+  /** Bytes that the server may send without credit. */
+  window: number;
+  /** Applied bytes whose credit has not been returned. */
+  owed: number;
+  /** Empty if the server has not said. It then knows no views, targets and pauses. */
+  layout: string;
+  isPaused: boolean;
+  /** The last view that the server was sent. */
+  sentView: string;
 }
 
-export type SocketFactory = (url: string, subprotocol: string) => Socket;
+const kNoStream: Stream = {window: 0, owed: 0, layout: '', isPaused: false, sentView: ''};
 
 export class SocketTransport implements Transport {
-  private socket: Socket | null = null;
-  private connected = false;
-  private stream = 0;
-  private attempt = 0;
-  /** Counts disconnections, so that an address that comes too late is not used. */
-  private turn = 0;
-  private timer: ReturnType<typeof setTimeout> | undefined;
-  private window = 0;
-  private owed = 0;
-  /** Empty if the server has not said. It then knows no views, targets and pauses. */
-  private layout = '';
-  private isPaused = false;
+  private readonly socket: ReconnectingSocket;
+  private stream: Stream = {...kNoStream};
+  /** The number of the stream in this connection; 0: none was opened. */
+  private number = 0;
   private view: ViewRequest = kNoViewRequest;
-  /** The last view that the server was sent. */
-  private sentView = '';
 
-  /**
-   * A function as `url` is called before every connection: its address is good for one connection.
-   */
+  /** As ReconnectingSocket. */
   constructor(
-    private readonly url: string | (() => Promise<string>),
+    url: string | (() => Promise<string>),
     private readonly handlers: TransportHandlers,
-    private readonly makeSocket: SocketFactory = (address, protocol) =>
-      new WebSocket(address, protocol) as unknown as Socket,
-    private readonly random: () => number = Math.random,
+    makeSocket?: SocketFactory,
+    random?: () => number,
     private readonly table: Pick<LogTable, 'lattice'> | null = null,
-  ) {}
+  ) {
+    const socketHandlers = {
+      connected: () => {
+        this.number = 0;
+        this.stream = {...this.stream, isPaused: false};
+        handlers.connected();
+      },
+      received: (data: unknown) => this.receive(data),
+      down: handlers.down.bind(handlers),
+      failed: handlers.failed.bind(handlers),
+    };
+    this.socket = new ReconnectingSocket(url, kSubprotocol, socketHandlers, makeSocket, random);
+  }
 
   get isConnected(): boolean {
-    return this.connected;
+    return this.socket.isConnected;
   }
 
   connect(): void {
-    this.disconnect();
-    if (typeof this.url === 'string') {
-      this.connectTo(this.url);
-      return;
-    }
-    const {turn} = this;
-    this.url().then(
-      (url) => {
-        if (turn === this.turn) this.connectTo(url);
-      },
-      (thrown: unknown) => {
-        if (turn !== this.turn) return;
-        if (errorCode(thrown) === 'network') this.lost(0, '');
-        else this.fail(thrown);
-      },
-    );
-  }
-
-  private connectTo(url: string): void {
-    const socket = this.makeSocket(url, kSubprotocol);
-    socket.binaryType = 'arraybuffer';
-    this.socket = socket;
-    socket.onopen = () => {
-      this.connected = true;
-      this.stream = 0;
-      this.handlers.connected();
-    };
-    socket.onmessage = (event) => this.receive(event.data);
-    socket.onclose = (event) => this.lost(event.code, event.reason);
+    this.socket.connect();
   }
 
   /** Starts a stream. Late frames of the previous one are dropped. */
   open(request: OpenRequest): void {
-    if (!this.connected) return;
-    ++this.stream;
-    this.window = request.credit;
-    this.owed = 0;
-    this.layout = '';
-    this.isPaused = false;
+    if (!this.isConnected) return;
+    ++this.number;
     this.view = request.view ?? this.view;
     const wire = this.wire();
-    this.sentView = viewMessage(wire);
-    this.socket?.send(openMessage(request, wire));
+    this.stream = {...kNoStream, window: request.credit, sentView: viewMessage(wire)};
+    this.socket.send(openMessage(request, wire));
   }
 
   look(view: ViewRequest): void {
     this.view = view;
     const text = viewMessage(this.wire());
-    if (!this.connected || this.layout !== 'regions' || text === this.sentView) return;
-    this.sentView = text;
-    this.socket?.send(text);
+    const {layout, sentView} = this.stream;
+    if (!this.isConnected || layout !== 'regions' || text === sentView) return;
+    this.stream.sentView = text;
+    this.socket.send(text);
   }
 
   stop(): void {
-    if (this.connected) this.socket?.send(stopMessage());
+    this.socket.send(stopMessage());
   }
 
   pause(): void {
-    if (!this.connected || this.layout === '') return this.stop();
-    this.isPaused = true;
-    this.socket?.send(pauseMessage());
+    if (!this.isConnected || this.stream.layout === '') return this.stop();
+    this.stream.isPaused = true;
+    this.socket.send(pauseMessage());
   }
 
   resume(): boolean {
-    if (!this.connected || !this.isPaused) return false;
-    this.isPaused = false;
-    this.socket?.send(resumeMessage());
+    if (!this.isConnected || !this.stream.isPaused) return false;
+    this.stream.isPaused = false;
+    this.socket.send(resumeMessage());
     return true;
   }
 
   aim(target: Target | null): void {
-    if (this.connected && this.layout !== '') this.socket?.send(targetMessage(target));
+    if (this.stream.layout !== '') this.socket.send(targetMessage(target));
   }
 
   /**
@@ -157,20 +122,17 @@ export class SocketTransport implements Transport {
    * together.
    */
   applied(bytes: number): void {
-    this.owed += bytes;
-    if (this.owed * kCreditShare >= this.window) this.grant();
+    const {stream} = this;
+    stream.owed += bytes;
+    if (stream.owed * kCreditShare < stream.window) return;
+    if (!this.isConnected || stream.owed <= 0) return;
+    this.socket.send(creditMessage(stream.owed));
+    stream.owed = 0;
   }
 
   /** Disconnects; `connect` may be called again. */
   disconnect(): void {
-    clearTimeout(this.timer);
-    ++this.turn;
-    const socket = this.socket;
-    this.socket = null;
-    this.connected = this.isPaused = false;
-    if (!socket) return;
-    socket.onopen = socket.onmessage = socket.onclose = null;
-    socket.close(1000);
+    this.socket.disconnect();
   }
 
   private wire(): Record<string, unknown> | null {
@@ -178,55 +140,21 @@ export class SocketTransport implements Transport {
     return lattice ? wireView(this.view, lattice) : null;
   }
 
-  private grant(): void {
-    if (!this.connected || this.owed <= 0) return;
-    this.socket?.send(creditMessage(this.owed));
-    this.owed = 0;
-  }
-
   private receive(data: unknown): void {
-    try {
-      if (typeof data === 'string') {
-        const message = parseServerMessage(data);
-        if (message?.type === 'opened') {
-          this.layout = message.layout ?? '';
-          this.look(this.view); // it may have changed since the `open`
-        }
-        // Replies to an earlier `open` do not concern the current one.
-        if (message && (message.type === 'error' || message.stream === this.stream))
-          this.handlers.message(message);
-        return;
+    if (typeof data === 'string') {
+      const message = parseServerMessage(data);
+      if (message?.type === 'opened') {
+        this.stream.layout = message.layout ?? '';
+        this.look(this.view); // it may have changed since the `open`
       }
-      const frame = parseFrame(data as ArrayBuffer);
-      if (frame.stream !== this.stream) return;
-      this.attempt = 0; // only bytes prove that the connection works
-      this.handlers.frame(frame);
-    } catch (thrown) {
-      this.fail(thrown);
-    }
-  }
-
-  private fail(thrown: unknown): void {
-    this.disconnect();
-    this.handlers.failed(
-      thrown instanceof QtetError ? thrown : new QtetError('internal', errorText(thrown)),
-    );
-  }
-
-  private lost(code: number, reason: string): void {
-    this.disconnect();
-    if (code === kPolicyViolation) {
-      this.handlers.failed(
-        new QtetError(
-          'bad-message',
-          `The server ended the stream: ${reason || 'a message was not understood'}.`,
-        ),
-      );
+      // Replies to an earlier `open` do not concern the current one.
+      if (message && (message.type === 'error' || message.stream === this.number))
+        this.handlers.message(message);
       return;
     }
-    const delayMs = reconnectDelayMs(this.attempt, this.random());
-    ++this.attempt;
-    this.timer = setTimeout(() => this.connect(), delayMs);
-    this.handlers.down(this.attempt, delayMs);
+    const frame = parseFrame(data as ArrayBuffer);
+    if (frame.stream !== this.number) return;
+    this.socket.works(); // only bytes prove it
+    this.handlers.frame(frame);
   }
 }

@@ -1,0 +1,187 @@
+// The camera of one mesh: where the mesh lies, and from where it is seen.
+
+import {Frustum, Group, Matrix4, Vector3} from 'three';
+import type {TriangleSoup} from '../core/picture/triangle_soup';
+import type {Vector} from '../core/protocol/geometry';
+import {OrbitCamera, type CameraState, type Framing} from './camera';
+import {checkedDirection, type Direction} from './directions';
+import {cornersOf, outlineOf} from './outline';
+import {checkedCamera, type Pose} from './pose';
+import type {Insets} from './view';
+import type {ViewCanvas} from './worker_canvas';
+
+/** An eye at this distance from the middle, in radii of the bounds, is hardly in the mesh. */
+const kOutside = 0.6;
+
+export class MeshCamera {
+  readonly orbit: OrbitCamera;
+  /** Maps lattice coordinates to a ball of radius 1 round the origin. */
+  readonly lattice = new Group();
+  /** Of the largest mesh so far, in lattice coordinates; empty: there is no mesh. */
+  bounds: number[] = [];
+  focus: number[] | null = null;
+  /** Lattice points that the mesh lies between. */
+  private outline: Vector[] = [];
+  private insets: Insets = {left: 0, right: 0, top: 0, bottom: 0};
+  /** The next mesh is seen from here first; null: its first view. */
+  private start: CameraState | Direction | null = null;
+
+  constructor(
+    canvas: ViewCanvas,
+    private readonly changed: () => void,
+  ) {
+    this.orbit = new OrbitCamera(canvas as HTMLCanvasElement, changed);
+  }
+
+  get hasMesh(): boolean {
+    return this.bounds.length > 0;
+  }
+
+  /**
+   * A camera's state is relative to the largest mesh so far. A coarse mesh is a little smaller, and
+   * the line decides which one comes first. So only the whole mesh gives a state, or a link, the
+   * same picture everywhere.
+   */
+  growTo(seen: number[], surface: TriangleSoup | undefined): void {
+    const isFirst = !this.hasMesh;
+    const bounds = isFirst
+      ? seen
+      : this.bounds.map((end, i) => (i < 3 ? Math.min : Math.max)(end, seen[i]!));
+    if (!isFirst && bounds.every((end, i) => end === this.bounds[i])) return;
+    this.bounds = bounds;
+    this.outline = outlineOf(surface, bounds);
+    this.placeLattice();
+    if (!isFirst) {
+      this.refit();
+      return;
+    }
+    if (Array.isArray(this.start)) this.orbit.state = this.start;
+    else this.look(this.start);
+    this.start = null;
+  }
+
+  /** Forgets the mesh; the next one is fitted again. */
+  clear(): void {
+    this.bounds = [];
+  }
+
+  /** Returns false if they are the same as before. */
+  setInsets(insets: Insets): boolean {
+    const sides = Object.keys(insets) as (keyof Insets)[];
+    if (sides.every((side) => insets[side] === this.insets[side])) return false;
+    this.insets = insets;
+    return true;
+  }
+
+  /** Shifts the picture's centre into the middle of the free area of a canvas of this size. */
+  resize(width: number, height: number): void {
+    const {camera} = this.orbit;
+    camera.aspect = width / height;
+    const right = ((this.insets.right - this.insets.left) / 2) * width;
+    const down = ((this.insets.bottom - this.insets.top) / 2) * height;
+    camera.setViewOffset(width, height, right, down, width, height);
+    this.refit();
+  }
+
+  /**
+   * Shows a standard view, or (null) the first view of a mesh, as near as its bounding box allows.
+   * Waits for a mesh if there is none.
+   */
+  look(direction: Direction | null): void {
+    checkedDirection(direction);
+    if (!this.hasMesh) {
+      this.start = direction;
+      return;
+    }
+    this.orbit.look(direction, () => this.framing());
+    this.changed();
+  }
+
+  /** Waits for a mesh if there is none. */
+  moveTo(state: CameraState): void {
+    checkedCamera(state);
+    if (this.hasMesh) this.orbit.state = state;
+    else this.start = state;
+    this.changed();
+  }
+
+  /** Moves the camera so that this lattice point is in the middle of the free area. */
+  centre(point: Vector): void {
+    this.orbit.aimAt(this.placed(point));
+    this.changed();
+  }
+
+  /** The pose of now, drawn or not. `frameMs` is the time of the last frame. */
+  pose(frameMs: number): Pose {
+    const {camera, fitted} = this.orbit;
+    camera.updateMatrixWorld();
+    this.lattice.updateMatrixWorld();
+    const toCanvas = new Matrix4().multiplyMatrices(
+      camera.projectionMatrix,
+      camera.matrixWorldInverse,
+    );
+    // A point is in sight if normal . (scale p + position) + constant >= 0.
+    const scale = this.lattice.scale.x;
+    const frustum =
+      fitted || !this.hasMesh
+        ? []
+        : new Frustum().setFromProjectionMatrix(toCanvas).planes.map(({normal, constant}) => ({
+            normal: normal.toArray(),
+            offset: -(constant + normal.dot(this.lattice.position)) / scale,
+          }));
+    toCanvas.multiply(this.lattice.matrixWorld);
+    const {x, y, z, w} = camera.quaternion;
+    return {
+      toCanvas: toCanvas.toArray(),
+      fromCanvas: toCanvas.clone().invert().toArray(),
+      rotation: {x, y, z, w},
+      camera: this.orbit.state,
+      fitted,
+      direction: camera.getWorldDirection(new Vector3()).toArray(),
+      frustum,
+      frameMs,
+    };
+  }
+
+  /** The eye in lattice coordinates. */
+  get eye(): Vector {
+    const {position, scale} = this.lattice;
+    return this.orbit.camera.position.clone().sub(position).divide(scale).toArray();
+  }
+  /** The length of the bounds' diagonal, in lattice steps. */
+  get diagonal(): number {
+    return 2 / this.lattice.scale.x;
+  }
+
+  private refit(): void {
+    if (this.orbit.fitted && this.hasMesh) this.orbit.fit(() => this.framing());
+  }
+
+  private placeLattice(): void {
+    const low = new Vector3(...(this.bounds.slice(0, 3) as Vector));
+    const high = new Vector3(...(this.bounds.slice(3, 6) as Vector));
+    const scale = 2 / Math.max(low.distanceTo(high), 1);
+    this.lattice.scale.setScalar(scale);
+    this.lattice.position.copy(low.add(high)).multiplyScalar(-0.5 * scale);
+  }
+
+  /** A lattice point's place in the scene. */
+  private placed([x, y, z]: Vector): Vector3 {
+    return new Vector3(x, y, z).multiply(this.lattice.scale).add(this.lattice.position);
+  }
+
+  /** Frames the mesh itself, not its box: a box leaves its corners empty. */
+  private framing(): Framing {
+    const whole = this.framed(this.outline);
+    if (!this.focus || this.orbit.isStandard) return whole;
+    const near = this.framed(cornersOf(this.focus));
+    // From inside of the mesh one would see nothing but its walls.
+    return this.orbit.eyeOf(near).length() > kOutside ? near : whole;
+  }
+
+  private framed(corners: Vector[]): Framing {
+    const {left, right, top, bottom} = this.insets;
+    const points = corners.map((corner) => this.placed(corner));
+    return this.orbit.framing(points, 1 - left - right, 1 - top - bottom);
+  }
+}
