@@ -275,7 +275,7 @@ async function keepsCameraAndMeshWhereverItMoves({server, browser}) {
 /** After an error in one picture, the next ones are drawn. */
 async function drawsOnAfterAPictureThatFailed({server, browser}) {
   for (const breakOnce of [
-    ({surface}) =>
+    ({parts: {surface}}) =>
       void (surface.show = () => {
         delete surface.show;
         throw new Error('broken on purpose');

@@ -16,28 +16,48 @@ const MeshField* find(const CellMesh& mesh, const MeshField& like) {
   return nullptr;
 }
 
-/// The type that holds the values of both: the wider of two floats, of two signed or two unsigned
-/// integers; empty: there is none.
-std::string widerType(const std::string& a, const std::string& b) {
-  const auto kind = [](const std::string& type) {
-    return type.substr(0, type.find_first_of("0123456789"));
-  };
-  if (kind(a) != kind(b)) return "";
-  return a.size() != b.size() ? (a.size() > b.size() ? a : b) : std::max(a, b);
+/// A type of numbers by its name: "uint8" is {'u', 8}.
+struct NumberType {
+  char kind;
+  int bits;
+};
+
+NumberType numberType(const std::string& name) {
+  const std::size_t digits = name.find_first_of("0123456789");
+  return {name.front(), digits == std::string::npos ? 0 : std::stoi(name.substr(digits))};
 }
 
-/// The field of all blocks, without values. Its name is empty where it is not in every block that
-/// must have it, or where no type holds the values of all. NaN stands for what a block lacks, which
-/// integers have not.
+/// The wider of a float's and an integer's type. A float32 holds integers of 16 bits exactly, a
+/// float64 all that a mesh may hold (kMaxExactInteger).
+std::string withInteger(const std::string& floats, NumberType integers) {
+  return integers.bits <= 16 ? floats : "float64";
+}
+
+/// The narrowest type that holds the values of both.
+std::string commonType(const std::string& a, const std::string& b) {
+  const NumberType first = numberType(a), second = numberType(b);
+  if (first.kind == second.kind) return first.bits >= second.bits ? a : b;
+  if (first.kind == 'f') return withInteger(a, second);
+  if (second.kind == 'f') return withInteger(b, first);
+  const int unsignedBits = first.kind == 'u' ? first.bits : second.bits;
+  const int signedBits = first.kind == 'u' ? second.bits : first.bits;
+  // No mesh holds an integer that int64 does not.
+  return "int" + std::to_string(std::min(std::max(signedBits, 2 * unsignedBits), 64));
+}
+
+/// The field of all blocks, without values. Its name is empty if blocks differ in its components,
+/// or if some block lacks a field of integers: NaN stands for missing values.
 MeshField commonField(const MeshField& field, const std::vector<CellMesh>& blocks) {
   MeshField out{field.name, field.components, field.type, {}, field.association};
+  bool isInAll = true;
   for (const CellMesh& block : blocks) {
     const MeshField* there = find(block, field);
-    const bool agrees = there ? there->components == out.components : isFloatType(out.type);
-    if (there && agrees) out.type = widerType(out.type, there->type);
-    if (!agrees || out.type.empty()) return {};
+    isInAll = isInAll && there;
+    if (!there) continue;
+    if (there->components != out.components) return {};
+    out.type = commonType(out.type, there->type);
   }
-  return out;
+  return isInAll || isFloatType(out.type) ? out : MeshField{};
 }
 
 /// The fields that the joined mesh has, without values.
@@ -58,8 +78,8 @@ std::vector<MeshField> commonFields(const std::vector<CellMesh>& blocks,
       } else {
         leftOut.push_back(key);
         notes.push_back(key +
-                        " was left out: it is not in every block, or its components or types "
-                        "differ between blocks");
+                        " was left out: it is not in every block, or its components differ "
+                        "between blocks");
       }
     }
   }

@@ -269,6 +269,27 @@ TEST(VtkFormats, piecesThatDisagreeWithTheirSummaryAndOneAnotherAreReadOneByOne)
   }));
 }
 
+TEST(VtkFormats, aFieldTakesTheNarrowestTypeThatHoldsTheValuesOfAllPieces) {
+  struct Case {
+    std::string left, right, both;
+  };
+  for (const auto& [left, right, both] : {Case{"UInt8", "Int32", "int32"},
+                                          {"UInt8", "Int8", "int16"},
+                                          {"UInt16", "UInt8", "uint16"},
+                                          {"Int32", "UInt32", "int64"},
+                                          {"Int64", "UInt64", "int64"},
+                                          {"UInt8", "Float32", "float32"},
+                                          {"Float32", "Int32", "float64"}}) {
+    const fs::path path = summaryOf({pieceAt(-1, "Float32", fieldOf(left, "T", 1)),
+                                     pieceAt(0, "Float32", fieldOf(right, "T", 1))},
+                                    "types");
+    Result<ReadMesh> read = readMesh(path);
+    ASSERT_TRUE(read) << read.error().text();
+    ASSERT_TRUE(field(*read, "T")) << left << " beside " << right;
+    EXPECT_EQ(field(*read, "T")->type, both) << left << " beside " << right;
+  }
+}
+
 TEST(VtkFormats, anArrayThatOnlySomePiecesHaveIsMissingInTheOthers) {
   const fs::path path = summaryOf({pieceAt(-1, "Float32", fieldOf("Float32", "T", 1)),
                                    pieceAt(0, "Float32", fieldOf("Float32", "U", 1))},
