@@ -303,7 +303,7 @@ async function drawsOnAfterAPictureThatFailed({server, browser}) {
       viewer.setAttribute('clip', 'x:0.3');
       viewer.look('-y');
     });
-    await viewer.waitInView(({cuts}) => cuts[0].visible);
+    await viewer.waitInView(({parts: {cuts}}) => cuts[0].visible);
     await viewer.settle();
     const other = await viewer.screenshot('broken-after');
     assert.ok(

@@ -17,7 +17,7 @@ export class MeshCamera {
   readonly orbit: OrbitCamera;
   /** Maps lattice coordinates to a ball of radius 1 round the origin. */
   readonly lattice = new Group();
-  /** Of the largest mesh so far, in lattice coordinates; empty: there is no mesh. */
+  /** Bounds of the largest mesh so far, in lattice coordinates; empty: there is no mesh. */
   bounds: number[] = [];
   focus: number[] | null = null;
   /** Lattice points that the mesh lies between. */

@@ -6,9 +6,10 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <sstream>
 #include <string>
 #include <string_view>
+
+#include "simplify/read/options/check_avs.h"
 
 namespace qtet {
 namespace {
@@ -101,36 +102,6 @@ Status checkLegacy(const fs::path& path, const FileEnds& ends) {
   return fail(ErrorCode::kBadInput, path.string() +
                                         " has no 'DATASET UNSTRUCTURED_GRID' or structured one in "
                                         "its header; save the volume mesh as .vtu");
-}
-
-/// VTK's reader of AVS UCD takes what a cut file lacks for zeros. So a text file must have a line
-/// for each point, cell and tuple that it announces.
-Status checkAvs(const fs::path& path) {
-  std::ifstream file(path);
-  std::string line;
-  while (std::getline(file, line) && (line.empty() || line[0] == '#')) {
-  }
-  constexpr char kBinary = 7;
-  if (!line.empty() && line[0] == kBinary) return {};
-  std::istringstream header(line);
-  std::uint64_t points = 0, cells = 0, pointData = 0, cellData = 0;
-  if (!(header >> points >> cells >> pointData >> cellData))
-    return fail(ErrorCode::kBadInput, path.string() +
-                                          " is no AVS UCD file: its first line is not the numbers "
-                                          "of points, cells and data; export the mesh again");
-  std::uint64_t lines = 0;
-  while (std::getline(file, line))
-    lines += line.find_first_not_of(" \t\r") == std::string::npos ? 0 : 1;
-  constexpr std::uint64_t kDataHeader = 2;  // sizes of the components, and the name of one at least
-  const auto tuples = [](std::uint64_t data, std::uint64_t count) {
-    return data > 0 ? count + kDataHeader : 0;
-  };
-  const std::uint64_t wanted = points + cells + tuples(pointData, points) + tuples(cellData, cells);
-  if (lines >= wanted) return {};
-  return fail(ErrorCode::kTruncated,
-              path.string() + " has " + std::to_string(lines) +
-                  " lines after its first, which announces " + std::to_string(wanted) +
-                  " at least: the file was cut off; copy or export it again");
 }
 
 struct Ending {

@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "simplify/clean/clean_mesh.h"
+#include "simplify/read/options/mesh_format.h"
 #include "simplify/read/read_mesh.h"
 #include "tests/simplify/mesh/tet_meshes.h"
 #include "tests/simplify/split/cell_grids.h"
@@ -463,6 +464,32 @@ TEST(VtkFormats, avsUcdIsRead) {
   expectABar(fileWith("bar.inp", text), 2);
   for (std::size_t length = 0; length < 200; length += 40)
     EXPECT_FALSE(readMesh(fileWith("cut.inp", text.substr(0, length)))) << length;
+}
+
+TEST(VtkFormats, countsOfAvsUcdThatItsLinesContradictAreRefused) {
+  const std::string points = "1 0 0 0\n2 nan 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n",
+                    cells = "1 1 TET 1 2 3 4\n2 1 tet 2 3 4 5\n",
+                    data = "1 1\nT, none\n1 0\n2 1\n3 2\n4 nan\n5 0\n";
+  const auto errorOf = [&](const std::string& header, const std::string& body) {
+    const Status status =
+        checkMeshFile(fileWith("c.inp", header + "\n" + body), MeshFormat::kAvsUcd);
+    return status ? std::string() : status.error().message;
+  };
+  const std::string whole = points + cells + data;
+  EXPECT_EQ(errorOf("# made by hand\n5 2 1 0 0", whole + "\n \n"), "");
+  const auto names = [](const std::string& error, const std::string& part) {
+    EXPECT_NE(error.find(part), std::string::npos) << error;
+  };
+  names(errorOf("4 2 1 0 0", whole), "line 6 is not cell 1 of 2");
+  names(errorOf("6 2 1 0 0", whole), "line 7 is not point 6 of 6");
+  names(errorOf("5 1 1 0 0", whole), "line 8 is not the sizes of point data whose sum is 1");
+  names(errorOf("5 3 1 0 0", whole), "line 9 is not cell 3 of 3");
+  names(errorOf("5 2 2 0 0", whole), "line 9 is not the sizes of point data whose sum is 2");
+  names(errorOf("5 2 0 0 0", whole), "line 9 stands behind the last value");
+  names(errorOf("5 2 1 0 0", points + cells + data.substr(0, data.size() - 4)),
+        "ends before point tuple 5 of 5");
+  names(errorOf("5 2 1 0 0", points + cells + "1 1\nT, none\n1\n2 1\n3 2\n4 0\n5 0\n"),
+        "line 11 is not point tuple 1 of 5");
 }
 
 /// PLOT3D's numbers: C order of bytes, no record marks; `blank` marks the points of the second
