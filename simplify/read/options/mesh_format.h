@@ -53,9 +53,9 @@ enum class MeshFormat {
 /// The type that the root of VTK's XML states, such as UnstructuredGrid; empty: no such format.
 [[nodiscard]] std::string_view rootType(MeshFormat format);
 
-/// Looks at existence, size, first and last bytes. Errors: not-found (no such file), io (not
-/// readable, a folder), truncated (empty, or the XML's closing tag is missing), bad-input (not what
-/// the ending promises).
+/// Looks at existence, size, first and last bytes; all lines of AVS UCD (check_avs.h). Errors:
+/// not-found (no such file), io (not readable, a folder), truncated (empty, or its end is missing),
+/// bad-input (not what the ending promises).
 [[nodiscard]] Status checkMeshFile(const std::filesystem::path& path, MeshFormat format);
 
 }  // namespace qtet
