@@ -12,26 +12,17 @@
 namespace qtet {
 namespace {
 
-constexpr std::string_view kBlanks = " \t\r,";
+constexpr std::string_view kBlanks = " \t\r";
 
 /// The first byte of a binary file.
 constexpr char kBinary = 7;
 
-std::vector<std::string_view> wordsOf(std::string_view line) {
-  std::vector<std::string_view> words;
-  for (std::size_t at = line.find_first_not_of(kBlanks); at != std::string_view::npos;) {
-    const std::size_t end = std::min(line.find_first_of(kBlanks, at), line.size());
-    words.push_back(line.substr(at, end - at));
-    at = line.find_first_not_of(kBlanks, end);
-  }
-  return words;
-}
-
 /// The third word of a cell's line is its kind: tet, hex and so on. A point's may be "nan".
 bool isCell(const std::vector<std::string_view>& words) {
-  if (words.size() < 4 || !std::isalpha(static_cast<unsigned char>(words[2].front()))) return false;
-  const char first = static_cast<char>(std::tolower(static_cast<unsigned char>(words[2].front())));
-  return first != 'n' && first != 'i';  // not nan, not inf; no kind begins so
+  if (words.size() < 4) return false;
+  const auto first = static_cast<unsigned char>(words[2].front());
+  const int small = std::tolower(first);
+  return std::isalpha(first) && small != 'n' && small != 'i';  // not nan, not inf
 }
 
 class AvsLines {
@@ -52,12 +43,9 @@ class AvsLines {
                                             "numbers of points, cells and data; export the mesh "
                                             "again");
     header >> modelData;
-    for (std::uint64_t i = 0; i < points; ++i)
-      if (Status done = expect("point", i, points, !next() || (count() >= 4 && !isCell(words_)));
-          !done)
-        return done;
-    for (std::uint64_t i = 0; i < cells; ++i)
-      if (Status done = expect("cell", i, cells, !next() || isCell(words_)); !done) return done;
+    const auto isPoint = [&] { return words_.size() >= 4 && !isCell(words_); };
+    if (Status done = checkLines("point", points, isPoint); !done) return done;
+    if (Status done = checkLines("cell", cells, [&] { return isCell(words_); }); !done) return done;
     if (Status done = checkData("point", points, pointData); !done) return done;
     if (Status done = checkData("cell", cells, cellData); !done) return done;
     if (modelData > 0 || !next()) return {};
@@ -80,9 +68,17 @@ class AvsLines {
       return bad("is not the sizes of " + whose + " data whose sum is " + std::to_string(width));
     for (std::uint64_t i = 0; i < components; ++i)
       if (!next()) return ended(whose + " data");
-    for (std::uint64_t i = 0; i < tuples; ++i)
-      if (Status done = expect(whose + " tuple", i, tuples, !next() || count() > width); !done)
-        return done;
+    return checkLines(whose + " tuple", tuples, [&] { return words_.size() > width; });
+  }
+
+  /// One line for each of `count`, which `isSound` looks at in words_.
+  Status checkLines(const std::string& what, std::uint64_t count, auto isSound) {
+    for (std::uint64_t i = 0; i < count; ++i) {
+      const bool isThere = next();
+      if (isThere && isSound()) continue;
+      const std::string which = what + " " + std::to_string(i + 1) + " of " + std::to_string(count);
+      return isThere ? bad("is not " + which) : ended(which);
+    }
     return {};
   }
 
@@ -90,19 +86,20 @@ class AvsLines {
   bool next() {
     while (std::getline(file_, line_)) {
       ++number_;
-      words_ = wordsOf(line_);
+      splitLine();
       if (!words_.empty()) return true;
     }
-    hasEnded_ = true;
     return false;
   }
 
-  [[nodiscard]] std::uint64_t count() const { return words_.size(); }
-
-  Status expect(const std::string& what, std::uint64_t at, std::uint64_t of, bool isSound) const {
-    const std::string which = what + " " + std::to_string(at + 1) + " of " + std::to_string(of);
-    if (hasEnded_) return ended(which);
-    return isSound ? Status{} : bad("is not " + which);
+  void splitLine() {
+    const std::string_view line = line_;
+    words_.clear();
+    for (std::size_t at = line.find_first_not_of(kBlanks); at != line.npos;) {
+      const std::size_t end = std::min(line.find_first_of(kBlanks, at), line.size());
+      words_.push_back(line.substr(at, end - at));
+      at = line.find_first_not_of(kBlanks, end);
+    }
   }
 
   [[nodiscard]] std::unexpected<Error> ended(const std::string& before) const {
@@ -122,9 +119,9 @@ class AvsLines {
   const std::filesystem::path& path_;
   std::ifstream file_;
   std::string line_;
+  /// Those of line_.
   std::vector<std::string_view> words_;
   std::uint64_t number_ = 0;
-  bool hasEnded_ = false;
 };
 
 }  // namespace

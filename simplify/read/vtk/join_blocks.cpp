@@ -4,6 +4,7 @@
 #include <limits>
 #include <span>
 
+#include "codec/coding/number_type.h"
 #include "simplify/read/parts/join_pieces.h"
 
 namespace qtet {
@@ -16,33 +17,20 @@ const MeshField* find(const CellMesh& mesh, const MeshField& like) {
   return nullptr;
 }
 
-/// A type of numbers by its name: "uint8" is {'u', 8}.
-struct NumberType {
-  char kind;
-  int bits;
-};
-
-NumberType numberType(const std::string& name) {
-  const std::size_t digits = name.find_first_of("0123456789");
-  return {name.front(), digits == std::string::npos ? 0 : std::stoi(name.substr(digits))};
-}
-
-/// The wider of a float's and an integer's type. A float32 holds integers of 16 bits exactly, a
-/// float64 all that a mesh may hold (kMaxExactInteger).
-std::string withInteger(const std::string& floats, NumberType integers) {
-  return integers.bits <= 16 ? floats : "float64";
-}
-
-/// The narrowest type that holds the values of both.
+/// The narrowest type that holds the values of both. A float32 holds integers of 16 bits exactly, a
+/// float64 and an int64 all that a mesh may hold (kMaxExactInteger).
 std::string commonType(const std::string& a, const std::string& b) {
-  const NumberType first = numberType(a), second = numberType(b);
-  if (first.kind == second.kind) return first.bits >= second.bits ? a : b;
-  if (first.kind == 'f') return withInteger(a, second);
-  if (second.kind == 'f') return withInteger(b, first);
-  const int unsignedBits = first.kind == 'u' ? first.bits : second.bits;
-  const int signedBits = first.kind == 'u' ? second.bits : first.bits;
-  // No mesh holds an integer that int64 does not.
-  return "int" + std::to_string(std::min(std::max(signedBits, 2 * unsignedBits), 64));
+  const std::uint64_t bytesOfA = numberType(a).sizeBytes, bytesOfB = numberType(b).sizeBytes;
+  const bool isFloatA = isFloatType(a), isFloatB = isFloatType(b);
+  if (isFloatA != isFloatB) {
+    const std::uint64_t bytesOfInteger = isFloatA ? bytesOfB : bytesOfA;
+    return bytesOfInteger > 2 ? "float64" : isFloatA ? a : b;
+  }
+  const bool isUnsignedA = a.starts_with('u'), isUnsignedB = b.starts_with('u');
+  if (isUnsignedA == isUnsignedB) return bytesOfA >= bytesOfB ? a : b;
+  const std::uint64_t bytes =
+      isUnsignedA ? std::max(2 * bytesOfA, bytesOfB) : std::max(bytesOfA, 2 * bytesOfB);
+  return "int" + std::to_string(8 * std::min<std::uint64_t>(bytes, 8));
 }
 
 /// The field of all blocks, without values. Its name is empty if blocks differ in its components,

@@ -477,6 +477,8 @@ TEST(VtkFormats, countsOfAvsUcdThatItsLinesContradictAreRefused) {
   };
   const std::string whole = points + cells + data;
   EXPECT_EQ(errorOf("# made by hand\n5 2 1 0 0", whole + "\n \n"), "");
+  EXPECT_EQ(errorOf("5 2 1 0 0", points + cells + "1 1\n,\n1 0\n2 1\n3 2\n4 0\n5 0\n"), "")
+      << "a name may be empty";
   const auto names = [](const std::string& error, const std::string& part) {
     EXPECT_NE(error.find(part), std::string::npos) << error;
   };
