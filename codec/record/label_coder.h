@@ -252,8 +252,8 @@ class LabelCoder {
   Coder& coder_;
   LabelModels& models_;
   Link& link_;
-  // By axis and label: the sum of the middles; the same, or of the next label to come, of which
-  // there is none, less that of all.
+  // By axis and label: the sum of the middles, and what a middle is compared with. That is the sum
+  // itself, or for the next label to come the sum of the other labels, negated.
   std::array<Numbers, 3> sum_{}, from_{};
   std::array<double, 3> all_{};
   // By label: the triangles that carry it; those that `from_` sums up, twice the log of that, and

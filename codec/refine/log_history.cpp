@@ -71,7 +71,7 @@ Status decodeBase(const LogFile& log, LogHistory& out) {
   return {};
 }
 
-/// Gives every split's vertices their numbers in the history, and sorts the fusions in the order of
+/// Gives every split's vertices their numbers in the history. Sorts the fusions in the order of
 /// execution: level by level, from the last split to the first. (Packets arrive node by node, each
 /// with all of its levels. Those of one level are independent of one another.)
 void number(const SplitRecorder& recorder, LogHistory& out) {

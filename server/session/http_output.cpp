@@ -14,8 +14,8 @@ namespace {
 namespace asio = boost::asio;
 using boost::system::error_code;
 
-/// Writes as much as the socket accepts in one call: the head and the first bytes of the body, or a
-/// part of the body alone.
+/// Writes as much as the socket accepts in one call. That is the head with the first bytes of the
+/// body, or a part of the body alone.
 std::size_t writeSome(ClientSocket& socket, const OutgoingReply& reply, bool headWaits,
                       error_code& ec) {
   const auto& [head, body, file] = reply;

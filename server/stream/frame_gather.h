@@ -65,9 +65,9 @@ class FrameGather {
   }
   [[nodiscard]] bool several() const { return items_.size() > 1; }
   [[nodiscard]] bool written() const { return parts_.empty(); }
-  /// Writes as much as the socket accepts in one call: parts in memory up to the next part in a
-  /// file, or one part in a file. With TLS all parts are in memory. Returns the bytes taken; `ec`
-  /// is would_block, or another error. REQUIRES: not written().
+  /// Writes as much as the socket accepts in one call. That is the parts in memory up to the next
+  /// part in a file, or one part in a file. With TLS all parts are in memory. Returns the bytes
+  /// taken; `ec` is would_block, or another error. REQUIRES: not written().
   std::size_t write(ClientSocket& socket, boost::system::error_code& ec);
 
  private:

@@ -30,8 +30,8 @@ struct Console {
   bool verbose = false;  ///< --verbose: how long each stage takes, and the memory at most
   std::string piped{};   ///< the temporary file that holds the standard input, where a word was "-"
 
-  /// The text with options for members of the library, and in which a file that came through a pipe
-  /// is called so and not by its temporary name.
+  /// The text with options for members of the library. A file that came through a pipe is called
+  /// so, and not by its temporary name.
   [[nodiscard]] std::string named(std::string text) const {
     for (std::size_t at = 0; !piped.empty() && (at = text.find(piped)) != std::string::npos;)
       text.replace(at, piped.size(), "the standard input");

@@ -12,12 +12,12 @@ namespace qtet {
 /// The diagonal of the bounding box, in lattice steps, at least 1.
 [[nodiscard]] double diagonalOf(const LatticeMesh& mesh);
 
-/// The weight (CostOptions::boundaryWeight). By its worth, a boundary that is off by d on average
-/// counts like fields that are off by a few times their change over d. The change is that at the
-/// boundary, the fields' error the average over the volume. By the balance, the boundary's expected
-/// error counts as much as the fields' (expected_error.h). The weight is the geometric mean of
-/// both, or the worth if that is less. It depends on no unit and on no field's range. REQUIRES:
-/// `parts` of point fields of `mesh`, whose boundary is boundaryOf's.
+/// The weight (CostOptions::boundaryWeight). By its worth, a boundary off by d on average counts
+/// like fields off by a few times their change over d. The change is that at the boundary, the
+/// fields' error the average over the volume. By the balance, the boundary's expected error counts
+/// as much as the fields' (expected_error.h). The weight is the geometric mean of both, or the
+/// worth if that is less. It depends on no unit and on no field's range. REQUIRES: `parts` of point
+/// fields of `mesh`, whose boundary is boundaryOf's.
 [[nodiscard]] double balancedBoundaryWeight(const LatticeMesh& mesh,
                                             std::span<const CostPart> parts);
 

@@ -13,8 +13,8 @@ BandNodes::BandNodes(const FusionMesh& mesh, const LatticeMesh& lattice,
   bands_.depth = kdDepth(lattice.tetrahedra.size(), cellsPerPacket);
   if (bands_.depth == 0) return;
   bands_.leaf = kdLeaves(lattice.points, lattice.tetrahedra, bands_.depth);
-  // A boundary triangle goes with the tetrahedron behind it, which is round each of its vertices:
-  // one of them may be the hub of a wheel.
+  // A boundary triangle goes with the tetrahedron behind it. That one is in the star of each of its
+  // vertices. The smallest star is searched: a vertex may be the hub of a wheel.
   for (const Triangle& t : lattice.boundary) {
     const VertexId least =
         *std::ranges::min_element(t, {}, [&](VertexId v) { return mesh.star(v).size(); });

@@ -1,5 +1,5 @@
 // The paper's own loop (Chopra & Meyer, section 3.5), to compare with its Table 1: tetrahedra only,
-// planar quadric error, one strictly greedy queue (ALGORITHM.md, "The paper, reproduced").
+// planar quadric error, one strictly greedy queue (PAPER.md).
 #pragma once
 
 #include <cstdint>

@@ -14,9 +14,9 @@ class FlipCheck {
 
   /// Another prey, or another mesh, from here on.
   void forget() { last_.fill(kNoCell); }
-  /// Whether with the prey at p a cell of one of these prey vertices (one bit each) would flip or
-  /// go flat, as far as doubles can tell. REQUIRES: forget, when the last one was asked about
-  /// another prey.
+  /// Whether a cell of one of these prey vertices (one bit each) would flip or go flat with the
+  /// prey at p, as far as doubles tell. REQUIRES: forget, when the last one was asked about another
+  /// prey.
   [[nodiscard]] bool flipsAt(const Prey& prey, const LatticePoint& p, std::uint32_t moving) const;
 
  private:

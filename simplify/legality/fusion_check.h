@@ -57,8 +57,8 @@ class FusionCheck {
   [[nodiscard]] bool projectInside(const Vector3& p, LatticePoint& inside) const {
     return envelope_.project(p, inside);
   }
-  /// Whether with the prey at p a cell of one of these prey vertices (one bit each) would flip or
-  /// go flat, as far as doubles can tell. REQUIRES gatherBoundary.
+  /// Whether a cell of one of these prey vertices (one bit each) would flip or go flat with the
+  /// prey at p, as far as doubles tell. REQUIRES gatherBoundary.
   [[nodiscard]] bool flipsAt(const LatticePoint& p, std::uint32_t moving) const {
     return flips_.flipsAt(prey_, p, moving);
   }

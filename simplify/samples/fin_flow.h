@@ -6,7 +6,7 @@
 
 namespace qtet {
 
-/// The fin: a superellipsoid |x / a|^4 + |y / b|^4 + |z / c|^4 = 1 on the plate z = 0, sheared
+/// The fin: a superellipsoid (|x / a|^4 + |y / b|^4 + |z / c|^4 = 1) on the plate z = 0, sheared
 /// downstream by kFinSweep * z.
 inline constexpr Position kFinHalfAxes{1.0, 0.2, 1.5};
 inline constexpr double kFinSweep = 0.55;

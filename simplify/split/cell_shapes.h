@@ -21,8 +21,8 @@ struct CellShape {
   std::span<const std::array<std::uint8_t, 2>> edges;
 };
 
-/// The shape of a linear cell's type, or of the corners of a curved one's; no corners: a
-/// polyhedron, or a kind that is not read.
+/// The shape of a linear cell's type, or of the corners of a curved one's. A polyhedron, and a kind
+/// that is not read, have no corners.
 [[nodiscard]] CellShape shapeOf(std::uint8_t type);
 
 inline constexpr std::uint8_t kNoNode = 0xFF;

@@ -15,8 +15,8 @@ namespace qtet {
 /// The highest degree that VTK knows; a hexahedron of it has 1,331 nodes.
 inline constexpr int kMaxDegree = 10;
 
-/// The cell field that tells degrees which differ by direction, three a cell, and the point field
-/// of a rational Bezier cell's weights: in VTK's files attributes of these names.
+/// A cell field tells degrees that differ by direction, three a cell. A point field has a rational
+/// Bezier cell's weights. Both are attributes of these names in VTK's files.
 inline constexpr const char* kDegreesField = "HigherOrderDegrees";
 inline constexpr const char* kWeightsField = "RationalWeights";
 

@@ -225,8 +225,8 @@ the mean distance of the boundaries over the diagonal, the larger of both ways.
 
 - *log*: `qtet simplify` with its default options and the first point field alone, at every prefix
   that ends a level.
-- *ladder*: separate meshes at 1/64, 1/16, 1/4 and 1 of the cells, the log's own levels, each coded
-  alone by the same coder (a base mesh without records) and fetched one after the other.
+- *ladder*: separate meshes, the log's own levels at 1/64, 1/16, 1/4 and 1 of the cells. The same
+  coder codes each alone (a base mesh without records). They are fetched one after the other.
 - *.vtu*: as VTK writes it by default, with the same field.
 - *recognisable*: boundary within 1 %, field within 5 %. The bar is 2 % of the .vtu.
 - *above the ladder*: the log has the larger error, or nothing to show yet while the ladder has. It

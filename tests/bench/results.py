@@ -434,7 +434,7 @@ def document(args, facts, results):
         " weight times 1000; it keeps one scalar.",
         "",
         "*Verdicts*: V valid, T topology preserved, E inside the boundary envelope to one lattice"
-        " step, S no new self-intersections, P no new pinches; a dash where it does not hold."
+        " step, S no new self-intersections, P no new pinches. A dash: it does not hold."
         " *rms*, *p99*, *max*: error of the first scalar in per cent of its range. *Hausdorff*,"
         " *outside*: of the boundary, over the diagonal. *Volume kept*: fraction of the original"
         " volume still covered. *Dihedral*: 1st percentile and median of the cells' smallest angle,"

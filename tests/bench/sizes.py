@@ -55,9 +55,8 @@ OLD = " (old)"  # behind the name of a mesh whose row comes from an earlier run
 
 HEAD = f"""# Sizes
 
-Made by `make sizes`; do not edit. A test compares the byte counts with what the tool makes: a
-change of them is made by the same command, and told in [CHANGELOG.md](../../CHANGELOG.md) with its
-reason.
+Made by `make sizes`; do not edit. A test compares the byte counts with what the tool makes. The
+same command makes a change of them; [CHANGELOG.md](../../CHANGELOG.md) has its reason.
 
 Logs with the default options of `qtet simplify` (16-bit lattice, 12-bit fields) and the first point
 field alone.
@@ -66,7 +65,7 @@ field alone.
 
 *Head*: header, manifest (with the known errors) and chunk table. *.vtu*: as VTK writes it by
 default, with the same field (`vtu_size`). Two figures for the same meshes were measured elsewhere
-and are not recomputed here: *zstd*, Hilbert order, differences and zstd -19; *single-rate*, a
+and are not recomputed here. *zstd*: Hilbert order, differences and zstd -19. *Single-rate*: a
 geometry-guided coder without levels. *Ratio*: the log's total over the latter; the bar is {BAR}.
 *Vertex*: the same with `--placement vertex`, fused vertices only where vertices were, whose levels
 have larger errors (RATE.md); the whole mesh is the same.

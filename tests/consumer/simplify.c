@@ -1,5 +1,5 @@
-/* An example of a program that makes a log with the library: takes the whole mesh of another log,
- * with its fields, and simplifies it again.
+/* An example of a program that makes a log with the library. It takes the whole mesh of another
+ * log, with its fields, and simplifies it again.
  *   simplify LOG.qtet NEW.qtet NAME RATIO     NAME: what the new log calls its input */
 #include <qtet/qtet_simplify.h>
 #include <stdio.h>

@@ -4,8 +4,8 @@ const kFence = /^ *```(.*)$/;
 const kNoRun = /^no-run(?:: *(.*))?$/;
 
 /**
- * The fenced blocks of a text: `line` of the fence, `language`, `note` (its other words),
- * `reason` where the note says why it is not run here, and `text`.
+ * The fenced blocks of a text: `line` of the fence, `language`, `note` (its other words), `text`.
+ * `reason` is there if the note says why it is not run here.
  */
 export function blocksOf(document) {
   const blocks = [];

@@ -1,6 +1,5 @@
-// Checks a refiner's invariants after any input: every id is in its range, and every field is as
-// long as the points or cells that it belongs to.
-#pragma once
+// Checks a refiner's invariants after any input. Every id is in its range, and every field is as
+// long as its points or cells. pragma once
 
 #include <cstdlib>
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Finds sentences in comments and documents that are read twice: those that begin with "Of" or
-"What" (but questions), and those of more than 30 words.
+"What" (but questions), and those of more than 25 words.
     check.py [ROOT [PATH...]]"""
 
 import pathlib
@@ -8,7 +8,7 @@ import re
 import subprocess
 import sys
 
-MOST_WORDS = 30
+MOST_WORDS = 25
 
 CODE = (".h", ".cpp", ".c", ".ts", ".mjs", ".css")
 HASH = (".py", ".sh", ".cmake", ".txt", ".yml")

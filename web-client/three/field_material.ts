@@ -67,8 +67,8 @@ const kFragmentShader = /* glsl */ `
     return texture(colorMap, vec2(at, 0.5)).rgb;
   }
 
-  // 1 on an edge, 0 inside. Edges fade from triangles of 25 pixels on and are gone at 4: a dense
-  // mesh would turn dark, and its colours would not be the legend's.
+  // 1 on an edge, 0 inside. Edges fade from triangles of 25 pixels on and are gone at 4. Else a
+  // dense mesh would turn dark, and its colours would not be the legend's.
   float edge() {
     vec3 perPixel = max(fwidth(vCorner), 1e-6);
     vec3 distance = smoothstep(vec3(0.0), perPixel * 0.85 * pixelRatio, vCorner);

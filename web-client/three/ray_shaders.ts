@@ -61,8 +61,8 @@ export const kEntryVertexShader = /* glsl */ `${kHead}${kSide}
   uniform mat4 toCanvas;
   uniform vec2 middle;       // of the canvas, in pixels
   flat out uint vEntry;
-  // Two corners, and the third, in pixels from the middle, in the order of their ids: the faces at
-  // both sides of an edge take it the same way.
+  // Two corners, and the third, in pixels from the middle. They are in the order of their ids: the
+  // faces at both sides of an edge take it the same way.
   flat out vec4 vFirst;
   flat out vec2 vThird;
   out float vDistance;       // from the eye; its inverse if vTurn is not 0

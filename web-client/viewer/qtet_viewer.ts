@@ -1,8 +1,8 @@
 // <qtet-viewer>: a progressive tetrahedral mesh in a web page.
 //
 // Attributes
-//   src          address of the server, by default the page's own; or of a .qtet file, or of a
-//                folder's index.json that `qtet publish` made, on any web server.
+//   src          address of the server, by default the page's own. It may be that of a .qtet file
+//                or of an index.json by `qtet publish`, on any web server.
 //   transport    auto (default), websocket, range or chunks: how a server's logs come.
 //   mesh         id of the mesh; without it the viewer offers a menu and starts with the first.
 //   field        name of the field, "NAME[0]" for a component; by default that with most contrast.

@@ -169,8 +169,8 @@ GmshElement higherElement(std::uint8_t type, int degree) {
   return {static_cast<std::uint32_t>(cell.places.size()), type, nodeOf};
 }
 
-/// Gmsh's numbers of complete elements of higher degree, which ascend with it (GmshDefines.h); type
-/// 0: of lower dimension, of which only the number of nodes counts.
+/// Gmsh's numbers of complete elements of higher degree, which ascend with it (GmshDefines.h). Type
+/// 0 is of lower dimension: only its number of nodes counts.
 constexpr std::int64_t kFirstLine = 62, kFirstTriangle = 42;
 struct Run {
   std::int64_t first, last;

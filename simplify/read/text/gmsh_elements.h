@@ -15,8 +15,8 @@ struct GmshElement {
 
 [[nodiscard]] GmshElement gmshElement(std::int64_t number);
 
-/// The complete element of order 3 and more that has so many nodes and the corners of `linear`, a
-/// CellType; one without nodes: there is none.
+/// The complete element of order 3 or more with so many nodes and the corners of `linear`, a
+/// CellType. It has no nodes if there is none.
 [[nodiscard]] GmshElement higherGmshElement(std::uint8_t linear, std::uint32_t nodes);
 
 }  // namespace qtet

@@ -12,9 +12,9 @@ namespace qtet {
 /// Whether a name asks for a field of points ("point:T"), so that VTK has to make the means.
 [[nodiscard]] bool asksForPointFields(const FieldNames& names);
 
-/// Leaves of the point fields that share a cell field's name those that are asked for as
-/// "point:NAME", and notes how they are had where none is. Fields that the solver itself wrote at
-/// points have names of their own.
+/// Leaves out the point fields that share a cell field's name, except those asked for as
+/// "point:NAME". Where none is asked for, a note says how to. Fields that the solver itself wrote
+/// at points have names of their own.
 void keepFoamFields(const FieldNames& names, CellMesh& mesh, std::vector<std::string>& notes);
 
 }  // namespace qtet

@@ -40,8 +40,8 @@ class ArrayBytes {
 
   /// How many there are, as the header says.
   [[nodiscard]] std::uint64_t size() const { return size_; }
-  /// A bound of size() that follows from what the file holds, for what is reserved at once; smaller
-  /// than size() where the method of compression has no bound.
+  /// A bound of size() that follows from what the file holds, for what is reserved at once. It is
+  /// smaller than size() if the method of compression has no bound.
   [[nodiscard]] std::uint64_t certain() const;
   /// Bytes `at` and on. Errors: bad-input (a block that does not inflate to its size), truncated,
   /// io. REQUIRES: at + into.size() <= size().

@@ -8,9 +8,9 @@
 
 namespace qtet {
 
-/// The volume cells that are visible and no other piece's (ghosts), with the points as they are and
-/// the fields meant by `fields`; the document's pieces one after the other. Arrays of other fields
-/// are not decoded. Cells of lower dimension are counted in the report, fields of texts or too many
+/// The document's pieces one after the other: visible volume cells that are no other piece's
+/// (ghosts), points as they are, the fields meant by `fields`. Arrays of other fields are not
+/// decoded. Cells of lower dimension are counted in the report, fields of texts or too many
 /// components noted. Ids are narrowed, not checked (checkCellMesh). Errors: bad-input (arrays that
 /// are missing, contradict each other or the counts, or cannot be decoded; the message names the
 /// array and its line), truncated, io, and bad-input where an array does not fit in memory.

@@ -19,8 +19,8 @@ template <class T>
 using TakeNumbers = std::function<void(std::span<const T>)>;
 
 /// How many of the numbers may be reserved before any is read: all, unless a compressed array
-/// promises more than can be known yet. Errors: bad-input, where the array has fewer than `told`
-/// numbers or says so, or its bytes cannot hold as many; a kind without numbers; truncated, io.
+/// promises more than can be known yet. Errors: bad-input (fewer than `told` numbers, by its own
+/// words or by its bytes; a kind without numbers), truncated, io.
 [[nodiscard]] Result<std::uint64_t> certainNumbers(const VtuFile& file, const VtuDocument& document,
                                                    const VtuArray& array, std::uint64_t told);
 

@@ -138,7 +138,7 @@ TEST(PointAncestry, aDecoderGetsWhatTheEncoderTold) {
   }
 }
 
-// The steepest field that a log can hold, prey far beyond the star: what is predicted must leave a
+// The steepest field that a log can hold, prey far beyond the star: the prediction must leave a
 // difference that a value block can carry.
 TEST(PointAncestry, theLargestValuesOverTheLongestStepComeBack) {
   constexpr std::int32_t kLargest = (1 << kMaxFieldBits) - 1;

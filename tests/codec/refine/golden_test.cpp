@@ -1,6 +1,5 @@
-// Golden files: what version 2.0 wrote must decode to the same mesh and values for ever, and what
-// is broken must fail with the code in its name.
-#include <gtest/gtest.h>
+// Golden files: those of version 2.0 must decode to the same mesh and values for ever. Broken ones
+// must fail with the code in their names. include <gtest/gtest.h>
 
 #include <algorithm>
 #include <fstream>

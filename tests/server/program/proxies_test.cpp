@@ -29,8 +29,8 @@ class Proxies : public ::testing::Test {
                                 .proxies = {*Networks::parse(networks), header}});
   }
   /// The clients that the log's `count` lines name, sorted. A line is written after its response
-  /// was sent, so the lines of two connections may change places, and may be later than the
-  /// client's read.
+  /// was sent. So the lines of two connections may change places, or come later than the client's
+  /// read.
   std::vector<std::string> clients(std::size_t count) const {
     std::vector<std::string> out;
     (void)test::eventually([&] {

@@ -289,7 +289,7 @@ TEST_P(Table1, isReachedAndNotPassedByMuch) {
                          static_cast<double>(mesh.tetrahedra.size());
   EXPECT_GE(percent, GetParam().percentRemoved);
   EXPECT_LE(percent, GetParam().percentRemoved + 6)
-      << "ALGORITHM.md says why ours goes a little further";
+      << "PAPER.md says why ours goes a little further";
   EXPECT_NEAR(static_cast<double>(result.figures.fusions), GetParam().fusions,
               0.25 * GetParam().fusions);
   EXPECT_GE(std::ranges::min(removedByInterior(mesh, result.history)), 11u);

@@ -106,8 +106,8 @@ TEST(MeasureLevels, aCornerPulledInIsAsFarAsItsOldPlaceIs) {
   const double distance = 120 / std::sqrt(17.0) / kDiagonal;
   EXPECT_GE(error.toLevel.max, roundedUp(distance));
   EXPECT_LE(error.toLevel.max, roundedUp((1 + kFarthestTolerance) * distance));
-  // The tetrahedra (0, 1, 3, 7) and (0, 5, 1, 7) of a sixth each lose a quarter of their height
-  // over the plane through 0, 3, 7 or 0, 5, 7.
+  // The tetrahedra (0, 1, 3, 7) and (0, 5, 1, 7) are a sixth each. They lose a quarter of their
+  // height over the plane through 0, 3, 7 or 0, 5, 7.
   EXPECT_EQ(error.volumeKept, 0.916667);
   // The new corner lies on the original's boundary, the inside of the new triangles does not.
   EXPECT_GT(error.toOriginal.max, 0);
@@ -164,8 +164,8 @@ TEST(MeasureLevels, aConstantFieldHasNoErrorAtAll) {
   EXPECT_EQ(measured(h)[0].fields[0].max, 0);
 }
 
-/// Simplified with the field x + 2 y + 3 z, where nothing has moved and every value is linear
-/// between vertices, on a convex solid.
+/// Simplified with the field x + 2 y + 3 z on a convex solid. Nothing has moved, and every value is
+/// linear between vertices.
 TEST(MeasureLevels, aLinearFieldOnAConvexSolidLosesNothingWhileTheBoundaryStays) {
   LatticeMesh mesh = gridMesh(6, 5);
   mesh.fields.resize(1);
