@@ -1,7 +1,9 @@
-#!/usr/bin/env bash Keeps the arrows between the rooms: proto <- codec <- simplify, and proto, codec
-# <- server. In the page they are core <- three <- viewer, and the folders in them. Inside a room
-# neither files nor folders may stand in a circle. check.sh [ROOT]   0 = all hold 1 = every arrow
-# that breaks is named as file:line, with what to do
+#!/usr/bin/env bash
+# Keeps the arrows between the rooms: proto <- codec <- simplify, and proto, codec <- server. In the
+# page they are core <- three <- viewer, and the folders in them. Inside a room neither files nor
+# folders may stand in a circle.
+#   check.sh [ROOT]   0 = all hold
+#                     1 = every arrow that breaks is named as file:line, with what to do
 set -euo pipefail
 shopt -s nullglob globstar
 

@@ -1,5 +1,6 @@
 // Checks a refiner's invariants after any input. Every id is in its range, and every field is as
-// long as its points or cells. pragma once
+// long as its points or cells.
+#pragma once
 
 #include <cstdlib>
 

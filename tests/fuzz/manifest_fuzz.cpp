@@ -1,6 +1,8 @@
 // Fuzzes the manifest of a log with two fields and up to 256 levels. The first byte is the number
 // of levels beyond the base mesh, the rest the manifest. An accepted manifest is written again and
-// must say the same. include <cstdint> include <cstdlib>
+// must say the same.
+#include <cstdint>
+#include <cstdlib>
 
 #include "codec/log/log_index.h"
 #include "codec/log/log_manifest.h"

@@ -1,5 +1,6 @@
 // The examples of PROTOCOL.md, STREAM.md and SESSION.md: fenced blocks whose first line says what
-// they hold. `json KIND` or `text transcript`: each is judged by its kind's parser. pragma once
+// they hold. `json KIND` or `text transcript`: each is judged by its kind's parser.
+#pragma once
 
 #include <string>
 #include <vector>

@@ -1,6 +1,6 @@
 // The decisions of one chunk, one by one, against tests/golden/trace.txt. The range decoder is
-// written here from FORMAT.md, so that the trace does not rest on RangeDecoder. include
-// <gtest/gtest.h>
+// written here from FORMAT.md, so that the trace does not rest on RangeDecoder.
+#include <gtest/gtest.h>
 
 #include <cstdio>
 #include <fstream>

@@ -1,5 +1,6 @@
 // Golden files: those of version 2.0 must decode to the same mesh and values for ever. Broken ones
-// must fail with the code in their names. include <gtest/gtest.h>
+// must fail with the code in their names.
+#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <fstream>
