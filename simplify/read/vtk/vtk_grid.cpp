@@ -13,7 +13,6 @@
 #include <vtkOutputWindow.h>
 #include <vtkSmartPointer.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
-#include <vtkUnstructuredGrid.h>
 #include <vtkXMLDataElement.h>
 #include <vtkXMLUtilities.h>
 
@@ -24,6 +23,7 @@
 #include <exception>
 #include <new>
 
+#include "simplify/read/hdf/read_vtkhdf.h"
 #include "simplify/read/options/mesh_format.h"
 #include "simplify/read/options/time_steps.h"
 #include "simplify/read/parts/file_series.h"
@@ -135,28 +135,6 @@ Result<CellMesh> cellsOfOutput(vtkDataObject* output, const ReadOptions& options
   return joinBlocks(std::move(blocks), options.joinPieces, report);
 }
 
-/// The mesh that the reader has now. The partitions of a .vtkhdf file are read one by one and
-/// joined. VTK makes one grid of all, unless it is asked for one piece of very many.
-Result<CellMesh> cellsNow(vtkAlgorithm& reader, MeshFormat format, const ReadOptions& options,
-                          const std::filesystem::path& path, ReadReport& report) {
-  constexpr int kMaxPartitions = 1 << 20;
-  auto* all = vtkUnstructuredGrid::SafeDownCast(reader.GetOutputDataObject(0));
-  if (format != MeshFormat::kVtkHdf || !all)
-    return cellsOfOutput(reader.GetOutputDataObject(0), options, path, report);
-  std::vector<CellMesh> blocks;
-  vtkIdType left = all->GetNumberOfPoints() + all->GetNumberOfCells();
-  for (int piece = 0; left > 0 && piece < kMaxPartitions; ++piece) {
-    reader.UpdatePiece(piece, kMaxPartitions, 0);
-    auto* grid = vtkUnstructuredGrid::SafeDownCast(reader.GetOutputDataObject(0));
-    if (!grid) break;
-    left -= grid->GetNumberOfPoints() + grid->GetNumberOfCells();
-    Result<CellMesh> cells = cellsOf(*grid, options.fields, path, report);
-    if (!cells) return cells;
-    blocks.push_back(std::move(*cells));
-  }
-  return joinBlocks(std::move(blocks), options.joinPieces, report);
-}
-
 std::vector<double> timesOf(vtkAlgorithm& reader) {
   vtkInformation* info = reader.GetOutputInformation(0);
   if (!info || !info->Has(vtkStreamingDemandDrivenPipeline::TIME_STEPS())) return {};
@@ -183,9 +161,34 @@ void addStep(ReadReport&& step, bool isFirst, ReadReport& report) {
   addNew(step.notes, report.notes);
 }
 
+/// Reads the steps that are meant of a grid in HDF5, each one's partitions in one mesh.
+Result<std::vector<TimedCells>> readHdfGrid(const VtkHdfFile& file,
+                                            const std::filesystem::path& path,
+                                            const ReadOptions& options, ReadReport& report) {
+  const auto steps = chosenSteps(file.times(), options.time, path, report.notes);
+  if (!steps) return std::unexpected(steps.error());
+  std::vector<TimedCells> out;
+  for (std::size_t s = 0; s < std::max<std::size_t>(1, steps->size()); ++s) {
+    const bool timed = !steps->empty();
+    ReadReport step;
+    Result<std::vector<CellMesh>> blocks =
+        file.partitions(timed ? (*steps)[s] : 0, options.fields, step);
+    if (!blocks) return std::unexpected(blocks.error());
+    CellMesh cells = joinBlocks(std::move(*blocks), options.joinPieces, step);
+    addStep(std::move(step), s == 0, report);
+    out.push_back({timed ? timeText(file.times()[(*steps)[s]]) : "", std::move(cells)});
+  }
+  return out;
+}
+
 /// Runs one reader over the steps that are meant.
 Result<std::vector<TimedCells>> runReader(const std::filesystem::path& path, MeshFormat format,
                                           const ReadOptions& options, ReadReport& report) {
+  if (format == MeshFormat::kVtkHdf) {
+    const Result<VtkHdfFile> file = VtkHdfFile::open(path);
+    if (!file) return std::unexpected(file.error());
+    if (file->isGrid()) return readHdfGrid(*file, path, options, report);
+  }
   const auto reader = vtkReaderOf(path, format, options);
   reader->UpdateInformation();
   const std::vector<double> times = timesOf(*reader);
@@ -199,7 +202,7 @@ Result<std::vector<TimedCells>> runReader(const std::filesystem::path& path, Mes
     else
       reader->Update();
     ReadReport step;
-    Result<CellMesh> cells = cellsNow(*reader, format, options, path, step);
+    Result<CellMesh> cells = cellsOfOutput(reader->GetOutputDataObject(0), options, path, step);
     if (!cells) return std::unexpected(cells.error());
     if (format == MeshFormat::kOpenFoam) keepFoamFields(options.fields, *cells, step.notes);
     addStep(std::move(step), s == 0, report);

@@ -171,10 +171,11 @@ def a_list_of_files_is_a_series():
         assert "save the series again" in refused("check", listed), text
 
 
-def write_vtkhdf(path, pieces):
+def write_vtkhdf(path, pieces, steps=None):
+    """The pieces' cubes, with T = x. `steps`: the datasets of the group Steps."""
     with h5py.File(path, "w") as file:
         root = file.create_group("VTKHDF")
-        root.attrs["Version"] = np.array([1, 0], "i8")
+        root.attrs["Version"] = np.array([1, 0] if steps is None else [2, 0], "i8")
         kind = b"UnstructuredGrid"
         root.attrs.create("Type", kind, dtype=h5py.string_dtype("ascii", len(kind)))
         cells = [TETRAHEDRA for _ in pieces]
@@ -189,6 +190,12 @@ def write_vtkhdf(path, pieces):
         root["Points"] = np.concatenate(pieces)
         root["Types"] = np.full(sum(map(len, cells)), 10, "u1")
         root["PointData/T"] = np.concatenate(pieces)[:, 0].copy()
+        if steps is None:
+            return
+        group = root.create_group("Steps")
+        group.attrs["NSteps"] = len(steps["Values"])
+        for name, values in steps.items():
+            group[name] = np.array(values, "f8" if name == "Values" else "i8")
 
 
 def partitions_of_vtkhdf_become_one_mesh():
@@ -208,6 +215,62 @@ def partitions_of_vtkhdf_become_one_mesh():
         assert done.returncode in (0, 1), (at, done.returncode, done.stderr)
     (out / "cut.vtkhdf").write_bytes(bytes_[:1000])
     assert refused("check", out / "cut.vtkhdf")
+
+
+def steps_of_vtkhdf_are_read_by_their_offsets():
+    if not h5py:
+        return "no h5py"
+    path = out / "steps.vtkhdf"
+    n, m = len(cube()), len(TETRAHEDRA)
+    # three steps of two partitions each: the mesh moves in z
+    moved = [cube(x) + [0, 0, 5 * s] for s in range(3) for x in range(2)]
+    moving = {
+        "Values": [0, 0.5, 2],
+        "PartOffsets": [0, 2, 4],
+        "NumberOfParts": [2, 2, 2],
+        "PointOffsets": [0, 2 * n, 4 * n],
+        "CellOffsets": [[0], [2 * m], [4 * m]],
+        "ConnectivityIdOffsets": [[0], [8 * m], [16 * m]],
+    }
+    for without in (None, "NumberOfParts"):  # version 2.0 does not have it
+        write_vtkhdf(path, moved, {k: v for k, v in moving.items() if k != without})
+        for asked, z in (("last", 10), ("0.5", 5), ("first", 0)):
+            mesh, notes = read(path, "--time", asked)
+            is_whole(mesh, 2)
+            assert mesh["points"][:, 2].min() == z and "2 pieces were joined" in notes, notes
+        assert "is not that of time 0" in refused("check", path, "--time", "all")
+    # one mesh of one partition, whose field alone changes
+    static = {
+        "Values": [0, 1, 2],
+        **{name: [0, 0, 0] for name in ("PartOffsets", "PointOffsets", "CellOffsets")},
+        "ConnectivityIdOffsets": [0, 0, 0],
+        "NumberOfParts": [1, 1, 1],
+        "PointDataOffsets/T": [0, n, 2 * n],
+    }
+    write_vtkhdf(path, [cube()], static)
+    with h5py.File(path, "a") as file:
+        del file["VTKHDF/PointData/T"]
+        file["VTKHDF/PointData/T"] = np.concatenate([cube()[:, 0] + s for s in range(3)])
+    mesh, _ = read(path, "--time", "all")
+    is_whole(mesh, 1)
+    for s in range(3):
+        assert (mesh[f"point_T@{s}"] == mesh["points"][:, 0] + s).all()
+    # each number that lies leaves a sentence
+    for name, row, value, said in (
+        ("PartOffsets", 2, 9, "partitions"),
+        ("NumberOfParts", 0, 7, "partitions"),
+        ("NumberOfParts", 0, -1, "NumberOfParts"),
+        ("PointOffsets", 0, 1 << 62, "Points"),
+        ("CellOffsets", 0, m + 1, "Types"),
+        ("ConnectivityIdOffsets", 0, 1 << 40, "Connectivity"),
+        ("PointDataOffsets/T", 0, 3 * n, "PointData/T"),
+        ("Values", 1, float("nan"), "time of its step 1"),
+    ):
+        changed = {key: list(values) for key, values in static.items()}
+        changed[name][row] = value
+        write_vtkhdf(path, [cube()], changed)
+        wrong = refused("check", path, "--time", "last" if row else "first")
+        assert said in wrong, (name, value, wrong)
 
 
 def fluent_meshes_are_read():
@@ -476,6 +539,7 @@ TESTS = [
     fluent_meshes_are_read,
     med_files_with_families_are_read,
     partitions_of_vtkhdf_become_one_mesh,
+    steps_of_vtkhdf_are_read_by_their_offsets,
     a_series_of_xdmf_is_read,
     abaqus_of_second_order_is_read,
     an_unknown_ending_is_told_what_there_is,
