@@ -48,6 +48,18 @@ MeshField commonField(const MeshField& field, const std::vector<CellMesh>& block
   return isInAll || isFloatType(out.type) ? out : MeshField{};
 }
 
+/// Says of a field in how many blocks its values are missing.
+void noteMissing(const MeshField& field, const std::vector<CellMesh>& blocks,
+                 std::vector<std::string>& notes) {
+  const auto lacks = [&](const CellMesh& block) { return !find(block, field); };
+  const auto count = std::ranges::count_if(blocks, lacks);
+  if (count == 0) return;
+  notes.push_back(
+      field.association + " field " + field.name + " is not in " + std::to_string(count) + " of " +
+      std::to_string(blocks.size()) + " blocks, where its values are missing; block " +
+      std::to_string(std::ranges::find_if(blocks, lacks) - blocks.begin()) + " is the first");
+}
+
 /// The fields that the joined mesh has, without values.
 std::vector<MeshField> commonFields(const std::vector<CellMesh>& blocks,
                                     std::vector<std::string>& notes) {
@@ -62,6 +74,7 @@ std::vector<MeshField> commonFields(const std::vector<CellMesh>& blocks,
       if (known || std::ranges::find(leftOut, key) != leftOut.end()) continue;
       MeshField common = commonField(field, blocks);
       if (!common.name.empty()) {
+        noteMissing(common, blocks, notes);
         out.push_back(std::move(common));
       } else {
         leftOut.push_back(key);

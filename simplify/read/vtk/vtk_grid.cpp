@@ -204,6 +204,10 @@ Result<std::vector<TimedCells>> runReader(const std::filesystem::path& path, Mes
     ReadReport step;
     Result<CellMesh> cells = cellsOfOutput(reader->GetOutputDataObject(0), options, path, step);
     if (!cells) return std::unexpected(cells.error());
+    if (const std::string name = missingVariable(*reader); !name.empty())
+      return bad(path, "its variable " + name +
+                           " has no values: its file is cut off, or of another mesh; export the "
+                           "case again, or take the variable out of it");
     if (format == MeshFormat::kOpenFoam) keepFoamFields(options.fields, *cells, step.notes);
     addStep(std::move(step), s == 0, report);
     out.push_back({timed ? timeText(times[(*steps)[s]]) : "", std::move(*cells)});

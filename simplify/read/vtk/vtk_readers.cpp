@@ -2,7 +2,12 @@
 
 #include <vtkAVSucdReader.h>
 #include <vtkCGNSReader.h>
+#include <vtkCompositeDataIterator.h>
+#include <vtkCompositeDataSet.h>
+#include <vtkDataObject.h>
+#include <vtkDataSetAttributes.h>
 #include <vtkDataSetReader.h>
+#include <vtkEnSightReader.h>
 #include <vtkExodusIIReader.h>
 #include <vtkFLUENTReader.h>
 #include <vtkGenericEnSightReader.h>
@@ -111,7 +116,44 @@ vtkSmartPointer<vtkAlgorithm> plot3dReader(const std::filesystem::path& path,
   return reader;
 }
 
+/// Whether some block of what a reader gave has the array.
+bool hasArray(vtkDataObject* output, int association, const char* name) {
+  const auto has = [&](vtkDataObject* object) {
+    return object && object->GetAttributes(association) &&
+           object->GetAttributes(association)->HasArray(name) != 0;
+  };
+  auto* composite = vtkCompositeDataSet::SafeDownCast(output);
+  if (!composite) return has(output);
+  const auto each = vtkSmartPointer<vtkCompositeDataIterator>::Take(composite->NewIterator());
+  for (each->InitTraversal(); !each->IsDoneWithTraversal(); each->GoToNextItem())
+    if (has(each->GetCurrentDataObject())) return true;
+  return false;
+}
+
 }  // namespace
+
+std::string missingVariable(vtkAlgorithm& reader) {
+  auto* enSight = vtkGenericEnSightReader::SafeDownCast(&reader);
+  if (!enSight) return {};
+  for (int i = 0; i < enSight->GetNumberOfVariables(); ++i) {
+    const char* name = enSight->GetDescription(i);
+    int association = -1;
+    switch (enSight->GetVariableType(i)) {
+      case vtkEnSightReader::SCALAR_PER_NODE:
+      case vtkEnSightReader::VECTOR_PER_NODE:
+      case vtkEnSightReader::TENSOR_SYMM_PER_NODE:
+      case vtkEnSightReader::TENSOR_ASYM_PER_NODE: association = vtkDataObject::POINT; break;
+      case vtkEnSightReader::SCALAR_PER_ELEMENT:
+      case vtkEnSightReader::VECTOR_PER_ELEMENT:
+      case vtkEnSightReader::TENSOR_SYMM_PER_ELEMENT:
+      case vtkEnSightReader::TENSOR_ASYM_PER_ELEMENT: association = vtkDataObject::CELL; break;
+      default: break;  // of measured points, which are no mesh
+    }
+    if (name && association >= 0 && !hasArray(reader.GetOutputDataObject(0), association, name))
+      return name;
+  }
+  return {};
+}
 
 vtkSmartPointer<vtkAlgorithm> vtkReaderOf(const std::filesystem::path& path, MeshFormat format,
                                           const ReadOptions& options) {

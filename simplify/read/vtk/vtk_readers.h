@@ -5,6 +5,7 @@
 #include <vtkSmartPointer.h>
 
 #include <filesystem>
+#include <string>
 
 #include "simplify/read/options/mesh_format.h"
 #include "simplify/read/options/read_options.h"
@@ -16,5 +17,10 @@ namespace qtet {
 [[nodiscard]] vtkSmartPointer<vtkAlgorithm> vtkReaderOf(const std::filesystem::path& path,
                                                         MeshFormat format,
                                                         const ReadOptions& options);
+
+/// A variable that an EnSight case names for points or elements and of which the step that was read
+/// has no value in any block: VTK says nothing of a file that is cut off before its first part.
+/// Empty: there is none, or the reader is another one.
+[[nodiscard]] std::string missingVariable(vtkAlgorithm& reader);
 
 }  // namespace qtet

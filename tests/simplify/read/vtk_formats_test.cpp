@@ -430,6 +430,22 @@ TEST(VtkFormats, exodusBlocksHaveTheirFieldsAndNumbers) {
 
 TEST(VtkFormats, enSightIsRead) { expectABar(given("ens.0.case"), 2, "T_n"); }
 
+TEST(VtkFormats, anEnSightVariableThatIsCutOffIsRefused) {
+  const fs::path folder = testing::freshFolder("cut-ensight");
+  for (const char* name : {"ens.0.case", "ens.0.00000.geo", "ens.0.00000_c.mat", "ens.0.00000_n.T"})
+    fs::copy_file(given(name), folder / name);
+  expectABar(folder / "ens.0.case", 2, "T_n");
+  const std::uintmax_t size = fs::file_size(folder / "ens.0.00000_n.T");
+  for (std::uintmax_t left = 0; left < size; left += left == 80 ? 20 : 40) {
+    fs::copy_file(given("ens.0.00000_n.T"), folder / "ens.0.00000_n.T",
+                  fs::copy_options::overwrite_existing);
+    fs::resize_file(folder / "ens.0.00000_n.T", left);
+    const Result<ReadMesh> read = readMesh(folder / "ens.0.case");
+    ASSERT_FALSE(read) << left;
+    EXPECT_EQ(read.error().code, ErrorCode::kBadInput);
+  }
+}
+
 // VTK looks for what stands behind "number of steps" until it is there.
 TEST(VtkFormats, anEnSightCaseThatVtkNeverComesToTheEndOfIsGivenUp) {
   const std::string front =
