@@ -23,6 +23,7 @@
 #include <exception>
 #include <new>
 
+#include "simplify/read/foam/poly_mesh.h"
 #include "simplify/read/hdf/read_vtkhdf.h"
 #include "simplify/read/options/mesh_format.h"
 #include "simplify/read/options/time_steps.h"
@@ -159,6 +160,13 @@ void addStep(ReadReport&& step, bool isFirst, ReadReport& report) {
                                 step.ignoredFields.end());
   }
   addNew(step.notes, report.notes);
+}
+
+/// Adds the report on one piece of a result.
+void addPiece(ReadReport&& piece, ReadReport& report) {
+  report.ignoredCells += piece.ignoredCells;
+  addNew(piece.ignoredFields, report.ignoredFields);
+  addNew(piece.notes, report.notes);
 }
 
 /// Reads the steps that are meant of a grid in HDF5, each one's partitions in one mesh.
@@ -356,9 +364,7 @@ Result<CellMesh> cellsOfParts(std::span<const std::filesystem::path> parts,
     ReadReport ofOne;
     Result<std::vector<TimedCells>> read = readAt(part, format, ofPart, ofOne, depth + 1);
     if (!read) return std::unexpected(read.error());
-    report.ignoredCells += ofOne.ignoredCells;
-    addNew(ofOne.ignoredFields, report.ignoredFields);
-    addNew(ofOne.notes, report.notes);
+    addPiece(std::move(ofOne), report);
     blocks.push_back(std::move(read->back().cells));
   }
   const bool isOne = blocks.size() == 1;
@@ -488,29 +494,35 @@ Result<std::vector<TimedCells>> joinedPieces(std::vector<std::vector<TimedCells>
   return out;
 }
 
-/// One piece of a result.
-Result<std::vector<TimedCells>> readPiece(const std::filesystem::path& path, MeshFormat format,
-                                          const ReadOptions& options, ReadReport& report) {
-  ReadReport ofOne;
-  Result<std::vector<TimedCells>> steps = readApart(path, format, options, ofOne);
-  if (!steps) return steps;
-  report.ignoredCells += ofOne.ignoredCells;
-  addNew(ofOne.ignoredFields, report.ignoredFields);
-  addNew(ofOne.notes, report.notes);
-  return steps;
-}
-
 Result<std::vector<TimedCells>> readExodusPieces(const std::filesystem::path& path,
                                                  const ReadOptions& options, ReadReport& report) {
   const auto files = exodusPieces(path);
   if (!files) return std::unexpected(files.error());
   std::vector<std::vector<TimedCells>> pieces;
   for (const std::filesystem::path& file : *files) {
-    Result<std::vector<TimedCells>> steps = readPiece(file, MeshFormat::kExodus, options, report);
+    ReadReport ofOne;
+    Result<std::vector<TimedCells>> steps = readApart(file, MeshFormat::kExodus, options, ofOne);
     if (!steps) return steps;
+    addPiece(std::move(ofOne), report);
     pieces.push_back(std::move(*steps));
   }
   return joinedPieces(std::move(pieces), path, options, report);
+}
+
+/// A case of OpenFOAM in one folder. `marker` is the file that VTK opens for it.
+Result<std::vector<TimedCells>> readFoamCase(const std::filesystem::path& folder,
+                                             const std::filesystem::path& marker,
+                                             const ReadOptions& options, ReadReport& report) {
+  const auto cells = checkPolyMeshes(folder);
+  if (!cells) return std::unexpected(cells.error());
+  Result<std::vector<TimedCells>> steps = readApart(marker, MeshFormat::kOpenFoam, options, report);
+  if (!steps) return steps;
+  for (const TimedCells& step : *steps)
+    if (*cells && step.cells.cells() != **cells)
+      return bad(folder, "VTK found " + std::to_string(step.cells.cells()) + " of its " +
+                             std::to_string(**cells) +
+                             " cells; run checkMesh on the case, and write it again");
+  return steps;
 }
 
 /// A decomposed case of OpenFOAM: each processor's folder is read as a case of its own.
@@ -525,8 +537,9 @@ Result<std::vector<TimedCells>> readProcessors(const std::vector<std::filesystem
   for (const std::filesystem::path& processor : processors) {
     const auto marker = caseOfProcessor(processor, folder.path() / processor.filename());
     if (!marker) return std::unexpected(marker.error());
-    Result<std::vector<TimedCells>> steps =
-        readPiece(*marker, MeshFormat::kOpenFoam, options, report);
+    ReadReport ofOne;
+    Result<std::vector<TimedCells>> steps = readFoamCase(processor, *marker, options, ofOne);
+    addPiece(std::move(ofOne), report);
     if (!steps)
       return fail(steps.error().code,
                   withName(steps.error().message, marker->string(), processor.string()));
@@ -541,7 +554,10 @@ Result<std::vector<TimedCells>> readFoam(const std::filesystem::path& path,
                                          const ReadOptions& options, ReadReport& report) {
   const auto processors = processorFolders(path);
   if (!processors) return std::unexpected(processors.error());
-  if (processors->empty()) return readApart(path, MeshFormat::kOpenFoam, options, report);
+  if (processors->empty()) {
+    const std::filesystem::path folder = path.parent_path();
+    return readFoamCase(folder.empty() ? "." : folder, path, options, report);
+  }
   return readProcessors(*processors, path, options, report);
 }
 

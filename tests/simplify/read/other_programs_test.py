@@ -440,12 +440,7 @@ def write_processor(folder, x):
 
 
 def a_decomposed_case_is_read_from_its_processors():
-    case = out / "decomposed"
-    control = "startTime 0;\nendTime 0.5;\ndeltaT 0.5;\nwriteControl timeStep;\nwriteInterval 1;\n"
-    foam("dictionary", "controlDict", control, case / "system")
-    for number, x in enumerate((0, 2, 4)):
-        write_processor(case / f"processor{number}", x)
-    (case / "case.foam").write_text("")
+    case = write_case(out / "decomposed").parent
     mesh, notes = read(case / "case.foam")
     is_whole(mesh, 6)
     assert "3 processors" in notes and "joined at 8 points" in notes, notes
@@ -455,6 +450,90 @@ def a_decomposed_case_is_read_from_its_processors():
         assert np.allclose(mesh["cell_T"], np.floor(middle) + at), (words, mesh["cell_T"])
     shutil.rmtree(case / "processor1")
     assert "processor1 is missing" in refused("check", case / "case.foam")
+
+
+def write_case(case, processors=(0, 2, 4)):
+    control = "startTime 0;\nendTime 0.5;\ndeltaT 0.5;\nwriteControl timeStep;\nwriteInterval 1;\n"
+    shutil.rmtree(case, ignore_errors=True)
+    foam("dictionary", "controlDict", control, case / "system")
+    for number, x in enumerate(processors):
+        write_processor(case / f"processor{number}", x)
+    (case / "case.foam").write_text("")
+    return case / "case.foam"
+
+
+def meshes_of_openfoam_are_checked():
+    case = out / "checked"
+    mesh = case / "processor1" / "constant" / "polyMesh"
+
+    def swap(lines, i, j):
+        first = lines.index("(") + 1
+        lines[first + i], lines[first + j] = lines[first + j], lines[first + i]
+
+    def drop(lines, i):
+        del lines[lines.index("(") + 1 + i]
+
+    for name, change, said in (
+        ("boundary", lambda lines: lines.clear(), "does not begin with FoamFile"),
+        ("boundary", lambda lines: swap(lines, 0, 1), None),
+        ("boundary", lambda lines: drop(lines, 1), "1 patches"),
+        ("faces", lambda lines: swap(lines, 0, 1), "do not close"),
+        ("faces", lambda lines: swap(lines, 2, 7), "do not close"),
+        ("faces", lambda lines: drop(lines, 3), "is not an index"),
+        ("owner", lambda lines: swap(lines, 2, 6), "do not close"),
+        ("owner", lambda lines: drop(lines, 2), "is not an index"),
+        ("neighbour", lambda lines: lines.__setitem__(lines.index("(") + 1, "0"), "do not close"),
+        ("neighbour", lambda lines: lines.__setitem__(lines.index("(") + 1, "70"), "number 70"),
+        ("points", lambda lines: drop(lines, 3), None),
+        ("points", lambda lines: lines.clear(), "does not begin with FoamFile"),
+    ):
+        marker = write_case(case)
+        lines = (mesh / name).read_text().split("\n")
+        change(lines)
+        (mesh / name).write_text("\n".join(lines))
+        if said:
+            wrong = refused("check", marker)
+            assert said in wrong and "processor1/constant/polyMesh/" in wrong, (name, wrong)
+    for name in ("points", "faces", "owner", "neighbour", "boundary"):
+        marker = write_case(case)
+        (mesh / name).unlink()
+        assert f"polyMesh/{name}" in refused("check", marker), name
+    marker = write_case(case)
+    for time_ in ("0", "0.5"):
+        (case / "processor1" / time_ / "T").unlink()
+    notes = read(marker)[1]
+    assert "cell field T is not in 1 of 3 blocks" in notes and "block 1 is the first" in notes, notes
+    # one folder, compressed and binary
+    marker = write_case(case, ())
+    write_processor(case, 0)
+    mesh = case / "constant" / "polyMesh"
+    for name in ("points", "faces", "owner", "neighbour"):
+        packed = gzip.compress((mesh / name).read_bytes())
+        (mesh / name).unlink()
+        (mesh / f"{name}.gz").write_bytes(packed)
+    is_whole(read(marker)[0], 2)
+    write_processor(case, 0)
+    faces = [[int(v) for v in line[2:-1].split()] for line in (mesh / "faces").read_text().split("\n")
+             if line.startswith("4(")]
+
+    def labels(values):
+        return b"%d\n(%s)\n" % (len(values), np.array(values, "<i4").tobytes())
+
+    ends = np.cumsum([0] + [len(face) for face in faces])
+    for name, kind, body in (
+        ("faces", "faceCompactList", labels(ends) + labels(np.concatenate(faces))),
+        ("neighbour", "labelList", labels([1])),
+    ):
+        (mesh / f"{name}.gz").unlink()
+        head = 'FoamFile\n{\n version 2.0;\n format binary;\n class %s;\n object %s;\n'
+        head += ' arch "LSB;label=32;scalar=64";\n}\n'
+        (mesh / name).write_bytes((head % (kind, name)).encode() + body)
+    is_whole(read(marker)[0], 2)
+    damaged = (mesh / "faces").read_bytes()
+    at = damaged.index(np.array(faces[2], "<i4").tobytes())
+    (mesh / "faces").write_bytes(damaged[:at] + damaged[at + 4 : at + 8] + damaged[at : at + 4]
+                                 + damaged[at + 8 :])
+    assert "do not close" in refused("check", marker)
 
 
 def an_interrupt_ends_a_reader_that_hangs():
@@ -544,6 +623,7 @@ TESTS = [
     abaqus_of_second_order_is_read,
     an_unknown_ending_is_told_what_there_is,
     a_decomposed_case_is_read_from_its_processors,
+    meshes_of_openfoam_are_checked,
     an_interrupt_ends_a_reader_that_hangs,
     pipes_are_read_like_files,
 ]
