@@ -15,6 +15,7 @@
 #include "simplify/read/unused_points.h"
 #include "simplify/read/vtk/join_blocks.h"
 #include "simplify/read/vtk/vtk_grid.h"
+#include "simplify/read/vtu/grid_parts.h"
 
 namespace qtet {
 namespace {
@@ -211,6 +212,22 @@ void mend(TetMesh& mesh, ReadReport& report) {
         std::to_string(mended.left));
 }
 
+/// The ids that joined the pieces are numbers of the file's own points. Nobody looks at them.
+void leaveOutIds(CellMesh& cells, std::vector<std::string>& notes) {
+  std::string left;
+  std::erase_if(cells.fields, [&](const MeshField& field) {
+    const std::string_view name = nameWithoutStep(field.name).value_or(field.name);
+    if (isCellField(field) || std::ranges::find(kGlobalIdNames, name) == std::end(kGlobalIdNames))
+      return false;
+    left = name;
+    cells.otherFields.push_back(field.name);
+    return true;
+  });
+  if (!left.empty())
+    notes.push_back("point field " + left +
+                    " joined the pieces and is left out; `fields` reads it, too");
+}
+
 }  // namespace
 
 Result<CellMesh> readCells(const std::filesystem::path& path, const ReadOptions& options,
@@ -218,6 +235,7 @@ Result<CellMesh> readCells(const std::filesystem::path& path, const ReadOptions&
   Result<CellMesh> cells = readFile(path, withThresholdField(options), report);
   if (!cells) return cells;
   nameFields(cells->fields, report.notes);
+  if (report.joinedByIds && !options.fields) leaveOutIds(*cells, report.notes);
   if (report.ignoredCells > 0 && cells->cells() > 0)
     report.notes.push_back(std::to_string(report.ignoredCells) +
                            " points, lines and faces among the cells were ignored");

@@ -49,6 +49,7 @@ struct ReadReport {
   SplitReport split;
   std::uint64_t pieces = 0;        ///< with points of their own, in the step that was read last
   std::uint64_t joinedPoints = 0;  ///< points of pieces, joined with one of an earlier piece
+  bool joinedByIds = false;        ///< they were found by ids that hold for all pieces
   std::uint64_t weldedPoints = 0;  ///< joined with an earlier one
   std::uint64_t mendedFaces = 0;   ///< quadrilaterals that both sides cut alike after welding
   std::vector<std::string> notes;  ///< also VTK's warnings

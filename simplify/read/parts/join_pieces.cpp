@@ -9,6 +9,8 @@
 #include <numeric>
 #include <vector>
 
+#include "simplify/read/parts/near_points.h"
+#include "simplify/read/parts/point_sets.h"
 #include "simplify/split/cell_shapes.h"
 
 namespace qtet {
@@ -16,37 +18,6 @@ namespace {
 
 /// Points with one id lie at one place up to rounding: this fraction of the box's diagonal.
 constexpr double kSamePlace = 1e-6;
-
-/// Sets of points that are one, each known by its earliest point.
-class PointSets {
- public:
-  explicit PointSets(std::size_t points) : parent_(points) {
-    std::iota(parent_.begin(), parent_.end(), VertexId{0});
-  }
-  [[nodiscard]] VertexId find(VertexId v) {
-    while (parent_[v] != v) v = parent_[v] = parent_[parent_[v]];
-    return v;
-  }
-  void unite(VertexId a, VertexId b) {
-    a = find(a), b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<VertexId> parent_;
-};
-
-/// The piece of each point.
-class PieceOf {
- public:
-  explicit PieceOf(std::span<const VertexId> ends) : ends_(ends) {}
-  [[nodiscard]] std::size_t operator()(VertexId v) const {
-    return static_cast<std::size_t>(std::ranges::upper_bound(ends_, v) - ends_.begin());
-  }
-
- private:
-  std::span<const VertexId> ends_;
-};
 
 /// The points in runs of those that `same` calls one; runs of one point are left out. Within a run
 /// they ascend, and so do their pieces.
@@ -183,14 +154,32 @@ class Neighbours {
   std::map<std::vector<VertexId>, std::vector<std::size_t>> faces_;  ///< cells, by corners' places
 };
 
-void uniteByPlaces(const CellMesh& mesh, const PieceOf& pieceOf, PointSets& sets) {
-  const Runs runs(mesh.points.size(),
-                  [&](VertexId a, VertexId b) { return isBefore(mesh.points[a], mesh.points[b]); });
+/// Unites the points in each run where no piece has two; elsewhere faces decide.
+template <class Less>
+void uniteRuns(const CellMesh& mesh, const PieceOf& pieceOf, const Less& less, PointSets& sets) {
+  const Runs runs(mesh.points.size(), less);
   bool isClear = true;
   runs.each([&](std::span<const VertexId> run) {
     everyPieceOnce(run, pieceOf) ? uniteAll(run, sets) : static_cast<void>(isClear = false);
   });
   if (!isClear) Neighbours(mesh, pieceOf, runs).uniteIn(sets);
+}
+
+/// The points at exactly the same place, and those nearby where the pieces fit together.
+PointSets unitedByPlaces(const CellMesh& mesh, const PieceOf& pieceOf, JoinedPieces& out) {
+  PointSets exact(mesh.points.size());
+  uniteRuns(
+      mesh, pieceOf,
+      [&](VertexId a, VertexId b) { return isBefore(mesh.points[a], mesh.points[b]); }, exact);
+  const NearPoints nearby = nearPoints(mesh, pieceOf);
+  PointSets near = exact;
+  uniteRuns(
+      mesh, pieceOf, [&](VertexId a, VertexId b) { return nearby.groups[a] < nearby.groups[b]; },
+      near);
+  for (VertexId v = 0; v < mesh.points.size(); ++v)
+    out.nearPoints += near.find(v) != v && exact.find(v) == v ? 1 : 0;
+  out.apartPoints = nearby.apart;
+  return near;
 }
 
 /// Fills in what the point of its own piece has not.
@@ -239,7 +228,7 @@ JoinedPieces joinPieces(CellMesh& mesh, std::span<const VertexId> pieceEnds) {
   const PieceOf pieceOf(pieceEnds);
   PointSets sets(mesh.points.size());
   out.byIds = uniteByIds(mesh, pieceOf, sets);
-  if (!out.byIds) uniteByPlaces(mesh, pieceOf, sets);
+  if (!out.byIds) sets = unitedByPlaces(mesh, pieceOf, out);
   std::vector<VertexId> names(mesh.points.size());
   for (VertexId v = 0; v < names.size(); ++v) {
     names[v] = sets.find(v);

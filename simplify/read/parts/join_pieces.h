@@ -11,12 +11,17 @@ namespace qtet {
 
 struct JoinedPieces {
   std::uint64_t points = 0;  ///< joined with a point of an earlier piece
-  bool byIds = false;        ///< by CellMesh::pointIds, else by equal coordinates
+  bool byIds = false;        ///< by CellMesh::pointIds, else by their places
+  /// Those of `points` that do not lie at exactly the same place (near_points.h).
+  std::uint64_t nearPoints = 0;
+  /// Near points that were not joined: the pieces do not fit together there.
+  std::uint64_t apartPoints = 0;
 };
 
 /// Points of different pieces that are one point become one. These have the same id where every
-/// piece has ids and equal ids lie at one place, else they lie at exactly the same place. Two
-/// points of one piece never do, so that a slit in a piece stays. Where a piece has several points
+/// piece has ids and equal ids lie at one place, else they lie at exactly the same place. Points that lie within
+/// kNearShare of their shortest edges are one too, where faces of two pieces fit together then. Two points of
+/// one piece never are, so that a slit in a piece stays. Where a piece has several points
 /// at one place, whole faces decide: a point is joined with that of the cell on the other side. All
 /// cells name the earliest point then, which takes what values it misses from the others; these go,
 /// and the points behind them move up. `pieceEnds` are behind each piece's last point. REQUIRES:

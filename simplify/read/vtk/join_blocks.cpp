@@ -1,11 +1,13 @@
 #include "simplify/read/vtk/join_blocks.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <span>
 
 #include "codec/coding/number_type.h"
 #include "simplify/read/parts/join_pieces.h"
+#include "simplify/read/parts/near_points.h"
 
 namespace qtet {
 namespace {
@@ -107,6 +109,17 @@ void appendCells(CellMesh& out, const CellMesh& block, VertexId firstPoint) {
   }
 }
 
+/// "1 % of their shortest edge"
+std::string shareOfEdges() {
+  return std::to_string(std::lround(100 * kNearShare)) + " % of their shortest edge";
+}
+
+std::string howJoined(const JoinedPieces& joined) {
+  if (joined.byIds) return ", by their global ids";
+  if (joined.nearPoints == 0) return {};
+  return ", " + std::to_string(joined.nearPoints) + " of them apart by at most " + shareOfEdges();
+}
+
 /// "its 8 pieces were joined at 1234 points that they share"
 void join(CellMesh& mesh, std::span<const VertexId> ends, bool isWanted, ReadReport& report) {
   report.pieces = ends.size();
@@ -118,12 +131,19 @@ void join(CellMesh& mesh, std::span<const VertexId> ends, bool isWanted, ReadRep
   }
   const JoinedPieces joined = joinPieces(mesh, ends);
   report.joinedPoints = joined.points;
-  report.notes.push_back(
-      joined.points == 0
-          ? pieces + "have no points in common, and stay apart; `weld` D joins points within D"
-          : pieces + "were joined at " + std::to_string(joined.points) + " points that they share" +
-                (joined.byIds ? ", by their global ids" : "") +
-                "; `weld` none would keep them apart");
+  report.joinedByIds = joined.byIds;
+  if (joined.points == 0)
+    report.notes.push_back(
+        pieces + "have no points in common, and stay apart; `weld` D joins points within D");
+  else
+    report.notes.push_back(pieces + "were joined at " + std::to_string(joined.points) +
+                           " points that they share" + howJoined(joined) +
+                           "; `weld` none would keep them apart");
+  if (joined.apartPoints > 0)
+    report.notes.push_back(std::to_string(joined.apartPoints) + " points lie within " +
+                           shareOfEdges() +
+                           " of a point of another piece, and were not joined with it: no faces "
+                           "fit together there; `weld` D joins points within D");
 }
 
 }  // namespace

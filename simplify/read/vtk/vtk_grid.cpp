@@ -154,6 +154,7 @@ void addNew(std::vector<std::string>& from, std::vector<std::string>& to) {
 void addStep(ReadReport&& step, bool isFirst, ReadReport& report) {
   report.pieces = step.pieces;
   report.joinedPoints = step.joinedPoints;
+  report.joinedByIds = step.joinedByIds;
   if (isFirst) {
     report.ignoredCells += step.ignoredCells;
     report.ignoredFields.insert(report.ignoredFields.end(), step.ignoredFields.begin(),

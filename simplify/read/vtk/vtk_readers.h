@@ -18,9 +18,9 @@ namespace qtet {
                                                         MeshFormat format,
                                                         const ReadOptions& options);
 
-/// A variable that an EnSight case names for points or elements and of which the step that was read
-/// has no value in any block: VTK says nothing of a file that is cut off before its first part.
-/// Empty: there is none, or the reader is another one.
+/// A variable of points or elements that an EnSight case names and no block has after reading. Its
+/// file is cut off before the first part, of which VTK says nothing. Empty: there is none, or the
+/// reader is another one.
 [[nodiscard]] std::string missingVariable(vtkAlgorithm& reader);
 
 }  // namespace qtet

@@ -502,7 +502,7 @@ def meshes_of_openfoam_are_checked():
     for time_ in ("0", "0.5"):
         (case / "processor1" / time_ / "T").unlink()
     notes = read(marker)[1]
-    assert "cell field T is not in 1 of 3 blocks" in notes and "block 1 is the first" in notes, notes
+    assert "T is not in 1 of 3 blocks" in notes and "block 1 is the first" in notes, notes
     # one folder, compressed and binary
     marker = write_case(case, ())
     write_processor(case, 0)
@@ -513,8 +513,8 @@ def meshes_of_openfoam_are_checked():
         (mesh / f"{name}.gz").write_bytes(packed)
     is_whole(read(marker)[0], 2)
     write_processor(case, 0)
-    faces = [[int(v) for v in line[2:-1].split()] for line in (mesh / "faces").read_text().split("\n")
-             if line.startswith("4(")]
+    lines = (mesh / "faces").read_text().split("\n")
+    faces = [[int(v) for v in line[2:-1].split()] for line in lines if line.startswith("4(")]
 
     def labels(values):
         return b"%d\n(%s)\n" % (len(values), np.array(values, "<i4").tobytes())

@@ -51,6 +51,46 @@ TEST(JoinPieces, piecesHangTogetherAtTheirSeam) {
     for (const VertexId v : mesh.cell(c)) EXPECT_NEAR(mesh.points[v][0], double(c) + 0.5, 0.5);
 }
 
+TEST(JoinPieces, pointsThatRoundingMovedApartAreOneIfAllSeamsCloseThen) {
+  for (const auto& [gap, near] : {std::pair{1e-7, 4u}, std::pair{0.009, 4u},
+                                  std::pair{0.011, 0u}, std::pair{-1e-7, 4u}}) {
+    CellMesh mesh;
+    addCube(mesh, {0, 0, 0});
+    addCube(mesh, {1 + gap, 0, 0});
+    addCube(mesh, {0, 1, 0});  // exactly
+    const JoinedPieces joined = joinPieces(mesh, std::vector<VertexId>{8, 16, 24});
+    EXPECT_EQ(joined.nearPoints, near) << gap;
+    EXPECT_EQ(joined.points, 4 + near) << gap;
+    EXPECT_EQ(joined.apartPoints, 0u) << gap;
+    EXPECT_EQ(shared(mesh, 0, 1), near) << gap;
+    EXPECT_EQ(shared(mesh, 0, 2), 4u) << gap;
+  }
+}
+
+TEST(JoinPieces, nearPointsOfPiecesThatDoNotFitStayApart) {
+  // a face of 2 x 2 x 2 cubes against a face of one cube of twice the size
+  CellMesh mesh;
+  for (int i = 0; i < 4; ++i) addCube(mesh, {0, double(i % 2), double(i / 2)});
+  // one piece: its cubes share their points
+  std::vector<VertexId> names(mesh.points.size());
+  for (VertexId v = 0; v < names.size(); ++v)
+    names[v] = static_cast<VertexId>(std::ranges::find(mesh.points, mesh.points[v]) -
+                                     mesh.points.begin());
+  mesh.renamePoints(names);
+  const std::size_t first = mesh.points.size();
+  addCube(mesh, {0, 0, 0});
+  for (std::size_t v = first; v < mesh.points.size(); ++v) {
+    const Position p = mesh.points[v];
+    mesh.points[v] = {1 + 1e-7 + 2 * p[0], 2 * p[1], 2 * p[2]};
+  }
+  const auto ends = std::vector{static_cast<VertexId>(first),
+                                static_cast<VertexId>(mesh.points.size())};
+  const JoinedPieces joined = joinPieces(mesh, ends);
+  EXPECT_EQ(joined.points, 0u);
+  EXPECT_EQ(joined.nearPoints, 0u);
+  EXPECT_EQ(joined.apartPoints, 4u);
+}
+
 TEST(JoinPieces, onePieceStaysAsItIs) {
   CellMesh mesh;
   addCube(mesh, {0, 0, 0});
