@@ -23,8 +23,8 @@ std::uint64_t hashOf(Label a, Label b) {
   return x ^ x >> 31;
 }
 
-/// Sums up the directed edges of a face. An edge and its reverse give 0 together, so the sum over
-/// the faces of a closed cell is 0; that of an open one is by a chance of 2^-64.
+/// Sums up the directed edges of a face. An edge and its reverse give 0 together. So the sum over
+/// the faces of a closed cell is 0. That of an open cell is 0 by a chance of 2^-64.
 std::uint64_t edgesOf(std::span<const Label> corners) {
   std::uint64_t sum = 0;
   for (std::size_t i = 0; i < corners.size(); ++i) {

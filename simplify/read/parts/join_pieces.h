@@ -19,14 +19,14 @@ struct JoinedPieces {
 };
 
 /// Points of different pieces that are one point become one. These have the same id where every
-/// piece has ids and equal ids lie at one place, else they lie at exactly the same place. Points that lie within
-/// kNearShare of their shortest edges are one too, where faces of two pieces fit together then. Two points of
-/// one piece never are, so that a slit in a piece stays. Where a piece has several points
-/// at one place, whole faces decide: a point is joined with that of the cell on the other side. All
-/// cells name the earliest point then, which takes what values it misses from the others; these go,
-/// and the points behind them move up. `pieceEnds` are behind each piece's last point. REQUIRES:
-/// they ascend to the number of points; vertex ids below that or kGhost; pointIds empty or one a
-/// point.
+/// piece has ids and equal ids lie at one place, else they lie at exactly the same place. Points
+/// that lie within kNearShare of their shortest edges are one too, where faces of two pieces fit
+/// together then. Two points of one piece never are, so that a slit in a piece stays. Where a piece
+/// has several points at one place, whole faces decide: a point is joined with that of the cell on
+/// the other side. All cells name the earliest point then, which takes what values it misses from
+/// the others; these go, and the points behind them move up. `pieceEnds` are behind each piece's
+/// last point. REQUIRES: they ascend to the number of points; vertex ids below that or kGhost;
+/// pointIds empty or one a point.
 JoinedPieces joinPieces(CellMesh& mesh, std::span<const VertexId> pieceEnds);
 
 }  // namespace qtet

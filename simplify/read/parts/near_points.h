@@ -1,4 +1,4 @@
-// Points of different pieces that rounding has moved apart: where each process moves or writes its
+// Points of different pieces that rounding has moved apart. Where each process moves or writes its
 // piece by itself, the points on a seam differ in the last digits.
 #pragma once
 

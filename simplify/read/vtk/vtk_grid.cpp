@@ -474,6 +474,15 @@ Result<std::vector<TimedCells>> readSeries(const std::filesystem::path& path, Me
   return out;
 }
 
+/// "0, 0.5", at most some of them.
+std::string timesIn(std::span<const TimedCells> steps) {
+  constexpr std::size_t kShown = 6;
+  std::string out;
+  for (const TimedCells& step : steps.first(std::min(kShown, steps.size())))
+    out += (out.empty() ? "" : ", ") + (step.time.empty() ? "none" : step.time);
+  return out + (steps.size() > kShown ? " and so on" : "");
+}
+
 /// The steps of one result's pieces, step by step in one mesh.
 Result<std::vector<TimedCells>> joinedPieces(std::vector<std::vector<TimedCells>> pieces,
                                              const std::filesystem::path& path,
@@ -481,8 +490,11 @@ Result<std::vector<TimedCells>> joinedPieces(std::vector<std::vector<TimedCells>
   const auto timesDiffer = [&](const std::vector<TimedCells>& piece) {
     return !std::ranges::equal(piece, pieces.front(), {}, &TimedCells::time, &TimedCells::time);
   };
-  if (std::ranges::any_of(pieces, timesDiffer))
-    return bad(path, "its pieces have different time steps; name one that all have with `time`");
+  if (const auto other = std::ranges::find_if(pieces, timesDiffer); other != pieces.end())
+    return bad(path, "its pieces have different time steps, " + timesIn(pieces.front()) +
+                         " in piece 0 and " + timesIn(*other) + " in piece " +
+                         std::to_string(other - pieces.begin()) +
+                         "; name one that all have with `time`, or write the missing ones");
   std::vector<TimedCells> out;
   for (std::size_t s = 0; s < pieces.front().size(); ++s) {
     std::vector<CellMesh> blocks;
@@ -540,10 +552,13 @@ Result<std::vector<TimedCells>> readProcessors(const std::vector<std::filesystem
     if (!marker) return std::unexpected(marker.error());
     ReadReport ofOne;
     Result<std::vector<TimedCells>> steps = readFoamCase(processor, *marker, options, ofOne);
+    const auto named = [&](const std::string& text) {
+      return withName(withName(text, marker->string(), processor.string()),
+                      marker->parent_path().string(), processor.string());
+    };
+    for (std::string& note : ofOne.notes) note = named(note);
     addPiece(std::move(ofOne), report);
-    if (!steps)
-      return fail(steps.error().code,
-                  withName(steps.error().message, marker->string(), processor.string()));
+    if (!steps) return fail(steps.error().code, named(steps.error().message));
     pieces.push_back(std::move(*steps));
   }
   report.notes.push_back("the case was read from the folders of its " +

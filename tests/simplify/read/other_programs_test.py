@@ -503,6 +503,13 @@ def meshes_of_openfoam_are_checked():
         (case / "processor1" / time_ / "T").unlink()
     notes = read(marker)[1]
     assert "T is not in 1 of 3 blocks" in notes and "block 1 is the first" in notes, notes
+    shutil.rmtree(case / "processor1" / "0.5")
+    wrong = refused("check", marker)
+    assert "0.5 in piece 0 and 0 in piece 1" in wrong, wrong
+    field = case / "processor0" / "0" / "T"
+    field.write_text(field.read_text().replace("2(0 1)", "3(0 1)"))
+    wrong = refused("check", marker, "--time", 0)
+    assert str(case / "processor0") in wrong and "/qtet-" not in wrong, wrong
     # one folder, compressed and binary
     marker = write_case(case, ())
     write_processor(case, 0)
