@@ -7,6 +7,7 @@
 #include "codec/log/log_index.h"
 #include "codec/log/log_levels.h"
 #include "simplify/commands/closing_report.h"
+#include "simplify/commands/columns.h"
 #include "simplify/commands/command_line.h"
 #include "simplify/commands/error_plot.h"
 #include "simplify/commands/error_table.h"
@@ -89,23 +90,8 @@ void line(const Console& console, const std::string& what, const std::string& sa
               << "\n";
 }
 
-/// Columns as wide as their widest cell; the first stands at the left, the others at the right.
-void printColumns(const std::vector<std::vector<std::string>>& rows, const Console& console) {
-  std::vector<std::size_t> widths;
-  for (const auto& row : rows) {
-    widths.resize(std::max(widths.size(), row.size()));
-    for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], textWidth(row[c]));
-  }
-  for (const auto& row : rows) {
-    for (std::size_t c = 0; c < row.size(); ++c) {
-      const std::string space(widths[c] - textWidth(row[c]), ' ');
-      console.out << (c == 0 ? row[c] + space : "  " + space + row[c]);
-    }
-    console.out << "\n";
-  }
-}
-
-void printHead(const OpenedLog& log, const OrderedJson& info, const Console& console) {
+void printHead(const OpenedLog& log, const OrderedJson& info, std::size_t mostFields,
+               const Console& console) {
   const ManifestLevel& last = log.manifest.levels.back();
   const std::uint64_t bytes = info["bytes"];
   line(console, "source", log.manifest.source + "  (" + log.manifest.generator + ")");
@@ -131,6 +117,7 @@ void printHead(const OpenedLog& log, const OrderedJson& info, const Console& con
   std::vector<std::vector<std::string>> rows{
       {"field", "of", "type", "least", "most", "bits", "step", "bytes"}};
   for (const OrderedJson& field : info["fields"]) {
+    if (rows.size() > mostFields) break;
     const auto components = field["components"].get<std::uint32_t>();
     rows.push_back({printable(field["name"].get<std::string>()),
                     field["association"] == "cell" ? "cells" : "points",
@@ -140,7 +127,9 @@ void printHead(const OpenedLog& log, const OrderedJson& info, const Console& con
                     std::to_string(field["bits"].get<int>()), brief(field["step"]),
                     grouped(field["bytes"])});
   }
-  printColumns(rows, console);
+  console.out << columns(rows);
+  if (mostFields == kShownFields)
+    console.out << moreFields(info["fields"].size(), "--all shows them");
 }
 
 Status writePlot(const OpenedLog& log, const std::filesystem::path& file,
@@ -159,7 +148,8 @@ Status writePlot(const OpenedLog& log, const std::filesystem::path& file,
 int runInfo(const Words& words, Console& console) {
   namespace po = boost::program_options;
   po::options_description options("options");
-  options.add_options()("json", "print one JSON object")("all", "show every level, not 20 of them")(
+  options.add_options()("json", "print one JSON object")(
+      "all", "show every level and field, not 20 and 10 of them")(
       "plot", po::value<std::string>(), "draw error against bytes into this file, NAME.svg");
   const ParsedWords parsed(
       words,
@@ -197,9 +187,11 @@ int runInfo(const Words& words, Console& console) {
   if (asJson) {
     printJson(info, console);
   } else {
-    printHead(*log, info, console);
-    const std::size_t most = parsed.has("all") ? log->manifest.levels.size() : kShownLevels;
-    console.out << "\n" << levelTable(log->manifest, info["levels"], most);
+    const bool all = parsed.has("all");
+    const std::size_t most = all ? log->manifest.levels.size() : kShownLevels;
+    const std::size_t mostFields = all ? log->manifest.fields.size() : kShownFields;
+    printHead(*log, info, mostFields, console);
+    console.out << "\n" << levelTable(log->manifest, info["levels"], most, mostFields);
     if (log->manifest.levels.size() > most)
       console.out << "\n--all shows all " << log->manifest.levels.size() << " levels\n";
   }

@@ -76,18 +76,13 @@ std::string percentText(double fraction) {
   return out.str();
 }
 
-std::string measureSentence(const OrderedJson& report, const OrderedJson& fields) {
+std::string measureSentence(const OrderedJson& report) {
   if (!report.contains("base")) return {};
   const OrderedJson& base = report["base"];
   const auto farthest = [&](const char* way) { return base["boundary"][way]["max"].get<double>(); };
-  std::string out = "\nbase mesh: boundary within " +
-                    percentText(std::max(farthest("toLevel"), farthest("toOriginal"))) +
-                    " of the diagonal, " + percentText(base["volumeKept"].get<double>()) +
-                    " of the volume";
-  std::size_t f = 0;
-  for (const auto& [name, ignored] : fields.items())
-    out += ", " + printable(name) + " rms " + percentText(base["fields"][f++]["rms"].get<double>());
-  return out;
+  return "base mesh: boundary within " +
+         percentText(std::max(farthest("toLevel"), farthest("toOriginal"))) + " of the diagonal, " +
+         percentText(base["volumeKept"].get<double>()) + " of the volume";
 }
 
 }  // namespace qtet

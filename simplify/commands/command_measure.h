@@ -28,9 +28,8 @@ void addMeasureOptions(boost::program_options::options_description& options);
 /// {measure, base}: the word given and the error of the base mesh, where it was measured.
 [[nodiscard]] OrderedJson measureReport(const std::optional<MeasureOptions>& options,
                                         const std::optional<LevelError>& base);
-/// The figures of measureReport in a line for people, a line feed in front; empty where nothing was
-/// measured. `fields`: an object with their names, in order.
-[[nodiscard]] std::string measureSentence(const OrderedJson& report, const OrderedJson& fields);
+/// The shape's figures of measureReport in a line for people; empty where nothing was measured.
+[[nodiscard]] std::string measureSentence(const OrderedJson& report);
 
 /// "0.012 %": a fraction for people, three significant digits.
 [[nodiscard]] std::string percentText(double fraction);

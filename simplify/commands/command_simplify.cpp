@@ -7,10 +7,12 @@
 #include "proto/checksum.h"
 #include "proto/limits.h"
 #include "simplify/commands/closing_report.h"
+#include "simplify/commands/columns.h"
 #include "simplify/commands/command_fusion.h"
 #include "simplify/commands/command_line.h"
 #include "simplify/commands/command_measure.h"
 #include "simplify/commands/command_read.h"
+#include "simplify/commands/error_table.h"
 #include "simplify/commands/progress.h"
 #include "simplify/pipeline/pipeline.h"
 #include "simplify/read/read_mesh.h"
@@ -228,8 +230,29 @@ Result<OrderedJson> run(const Request& request, Progress& progress) {
   return reportOf(request, read->report, *made, watch);
 }
 
+/// A row a field: its bits a tetrahedron, and the base mesh's error where it was measured.
+std::string fieldTable(const OrderedJson& fields, const OrderedJson& error) {
+  const auto text = [](double number) {
+    std::ostringstream out;
+    out << std::fixed << std::setprecision(2) << number;
+    return out.str();
+  };
+  const bool isMeasured = error.contains("base");
+  std::vector<std::vector<std::string>> rows{{"field", "bits a tetrahedron"}};
+  if (isMeasured) rows[0].emplace_back("rms of the base mesh, %");
+  std::size_t f = 0;
+  for (const auto& [name, bits] : fields.items()) {
+    if (rows.size() > kShownFields) break;
+    rows.push_back({printable(name), text(bits.get<double>())});
+    if (isMeasured)
+      rows.back().push_back(percentCell(error["base"]["fields"][f++]["rms"].get<double>()));
+  }
+  return columns(rows) + moreFields(fields.size(), "'qtet info --all' shows them");
+}
+
 void printReport(const OrderedJson& report, std::ostream& out) {
   const OrderedJson& bits = report["bitsPerTetrahedron"];
+  const std::size_t fields = bits["fields"].size();
   out << std::fixed << std::setprecision(1) << printable(report["output"].get<std::string>())
       << ": " << counted(report["tetrahedra"]["full"], "tetrahedron", "tetrahedra")
       << ", of which the base mesh keeps " << grouped(report["tetrahedra"]["base"]) << " ("
@@ -238,10 +261,20 @@ void printReport(const OrderedJson& report, std::ostream& out) {
       << grouped(report["bytes"]) << " bytes, " << std::setprecision(2)
       << bits["total"].get<double>() << " bits a tetrahedron: connectivity "
       << bits["connectivity"].get<double>() << ", positions " << bits["positions"].get<double>();
-  for (const auto& [name, value] : bits["fields"].items())
-    out << ", " << printable(name) << " " << value.get<double>();
-  out << measureSentence(report["error"], report["bitsPerTetrahedron"]["fields"]);
-  out << "\nlattice of " << report["lattice"]["bits"] << " bits an axis, step "
+  if (fields == 1)
+    out << ", " << printable(bits["fields"].begin().key()) << " "
+        << bits["fields"].begin()->get<double>();
+  out << "\n";
+  const OrderedJson& error = report["error"];
+  if (const std::string measured = measureSentence(error); !measured.empty()) {
+    out << measured;
+    if (fields == 1)
+      out << ", " << printable(bits["fields"].begin().key()) << " rms "
+          << percentText(error["base"]["fields"][0]["rms"].get<double>());
+    out << "\n";
+  }
+  if (fields > 1) out << fieldTable(bits["fields"], error);
+  out << "lattice of " << report["lattice"]["bits"] << " bits an axis, step "
       << report["lattice"]["step"] << "; ";
   if (report.contains("boundaryWeight"))
     out << "boundary weight " << report["boundaryWeight"].get<double>() << "; ";

@@ -6,12 +6,13 @@
 #include <sstream>
 #include <utility>
 
+#include "simplify/commands/columns.h"
 #include "simplify/commands/printable.h"
 
 namespace qtet {
 namespace {
 
-constexpr int kCountWidth = 12, kPercentWidth = 10;
+constexpr int kLevelWidth = 5, kCountWidth = 12, kPercentWidth = 8;
 /// Below this many per cent, zeros behind the point would hide how small it is.
 constexpr double kMinPlain = 0.001;
 
@@ -42,6 +43,49 @@ std::vector<std::size_t> shownLevels(const Manifest& manifest, std::size_t most)
   return out;
 }
 
+/// The columns of fields [first, last) of the levels' errors.
+class FieldColumns {
+ public:
+  FieldColumns(const Manifest& manifest, std::size_t first, std::size_t last)
+      : manifest_(manifest), first_(first), last_(last) {}
+
+  void names(std::ostream& out) const {
+    each([&](std::size_t f, std::size_t width) { heading(out, manifest_.fields[f].name, width); });
+  }
+  void kinds(std::ostream& out) const {
+    each([&](std::size_t, std::size_t width) { pair(out, width, "rms %", "max %"); });
+  }
+  void values(std::ostream& out, const LevelError& error) const {
+    each([&](std::size_t f, std::size_t width) {
+      pair(out, width, percentCell(error.fields[f].rms), percentCell(error.fields[f].max));
+    });
+  }
+
+ private:
+  template <class Visit>
+  void each(const Visit& visit) const {
+    for (std::size_t f = first_; f < last_; ++f) visit(f, fieldWidth(manifest_.fields[f]));
+  }
+  static void pair(std::ostream& out, std::size_t width, const std::string& a,
+                   const std::string& b) {
+    out << std::setw(static_cast<int>(width) - kPercentWidth) << a << std::setw(kPercentWidth) << b;
+  }
+
+  const Manifest& manifest_;
+  std::size_t first_, last_;
+};
+
+/// The field behind the last for which `room` columns are left; one at least if `atLeastOne`.
+std::size_t lastThatFits(const Manifest& manifest, std::size_t first, std::size_t end,
+                         std::size_t used, bool atLeastOne) {
+  std::size_t last = first;
+  for (; last < end; ++last) {
+    used += fieldWidth(manifest.fields[last]);
+    if (used > kLineColumns && !(atLeastOne && last == first)) break;
+  }
+  return last;
+}
+
 }  // namespace
 
 std::string percentCell(double fraction) {
@@ -58,15 +102,20 @@ std::string percentCell(double fraction) {
 }
 
 std::string levelTable(const Manifest& manifest, const nlohmann::ordered_json& levels,
-                       std::size_t most) {
+                       std::size_t most, std::size_t mostFields) {
   const bool hasErrors = std::ranges::any_of(
       manifest.levels, [](const ManifestLevel& level) { return level.error.has_value(); });
+  const std::size_t end = std::min(mostFields, manifest.fields.size());
+  const std::vector<std::size_t> rows = shownLevels(manifest, most);
   std::ostringstream out;
+  std::size_t shown =
+      lastThatFits(manifest, 0, end, kLevelWidth + 4 * kCountWidth + 3 * kPercentWidth, false);
+  const FieldColumns beside(manifest, 0, shown);
   if (hasErrors) {
-    out << std::string(5 + 4 * kCountWidth, ' ');
+    out << std::string(kLevelWidth + 4 * kCountWidth, ' ');
     heading(out, "boundary, %", 2 * kPercentWidth);
     heading(out, "volume", kPercentWidth);
-    for (const ManifestField& field : manifest.fields) heading(out, field.name, fieldWidth(field));
+    beside.names(out);
     out << "\n";
   }
   out << "level" << std::setw(kCountWidth) << "tetrahedra" << std::setw(kCountWidth) << "vertices"
@@ -74,30 +123,42 @@ std::string levelTable(const Manifest& manifest, const nlohmann::ordered_json& l
   if (hasErrors) {
     out << std::setw(kPercentWidth) << "mean" << std::setw(kPercentWidth) << "max"
         << std::setw(kPercentWidth) << "%";
-    for (const ManifestField& field : manifest.fields)
-      out << std::setw(static_cast<int>(fieldWidth(field)) - kPercentWidth) << "rms %"
-          << std::setw(kPercentWidth) << "max %";
+    beside.kinds(out);
   }
   out << "\n";
   std::uint64_t before = 0;
-  for (const std::size_t shown : shownLevels(manifest, most)) {
-    const ManifestLevel& level = manifest.levels[shown];
+  for (const std::size_t row : rows) {
+    const ManifestLevel& level = manifest.levels[row];
     const auto cumulative = levels[level.level]["cumulativeBytes"].get<std::uint64_t>();
-    out << std::setw(5) << level.level << std::setw(kCountWidth) << grouped(level.tetrahedra)
-        << std::setw(kCountWidth) << grouped(level.vertices) << std::setw(kCountWidth)
-        << grouped(cumulative - std::exchange(before, cumulative)) << std::setw(kCountWidth)
-        << grouped(cumulative);
+    out << std::setw(kLevelWidth) << level.level << std::setw(kCountWidth)
+        << grouped(level.tetrahedra) << std::setw(kCountWidth) << grouped(level.vertices)
+        << std::setw(kCountWidth) << grouped(cumulative - std::exchange(before, cumulative))
+        << std::setw(kCountWidth) << grouped(cumulative);
     if (level.error) {
       out << std::setw(kPercentWidth) << percentCell(level.error->boundaryMean())
           << std::setw(kPercentWidth) << percentCell(level.error->boundaryDistance())
           << std::setw(kPercentWidth) << std::fixed << std::setprecision(3)
           << 100 * level.error->volumeKept;
-      for (std::size_t f = 0; f < manifest.fields.size(); ++f)
-        out << std::setw(static_cast<int>(fieldWidth(manifest.fields[f])) - kPercentWidth)
-            << percentCell(level.error->fields[f].rms) << std::setw(kPercentWidth)
-            << percentCell(level.error->fields[f].max);
+      beside.values(out, *level.error);
     }
     out << "\n";
+  }
+  while (hasErrors && shown < end) {
+    const std::size_t first = shown;
+    shown = lastThatFits(manifest, first, end, kLevelWidth, true);
+    const FieldColumns fields(manifest, first, shown);
+    out << "\n" << std::string(kLevelWidth, ' ');
+    fields.names(out);
+    out << "\nlevel";
+    fields.kinds(out);
+    out << "\n";
+    for (const std::size_t row : rows) {
+      const ManifestLevel& level = manifest.levels[row];
+      if (!level.error) continue;
+      out << std::setw(kLevelWidth) << level.level;
+      fields.values(out, *level.error);
+      out << "\n";
+    }
   }
   return out.str();
 }

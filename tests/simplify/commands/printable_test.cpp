@@ -6,6 +6,8 @@
 #include <sstream>
 #include <string>
 
+#include "simplify/commands/columns.h"
+
 namespace qtet {
 namespace {
 
@@ -45,6 +47,13 @@ TEST(Printable, paragraphsAreFilledAndKeptApart) {
   EXPECT_GT(longest, kHelpColumns - 5);
   EXPECT_NE(text.find("\n  w\u00F6rd"), std::string::npos);
   EXPECT_NE(text.find("\n  " + std::string(120, 'x') + "\n  end"), std::string::npos);
+}
+
+TEST(Columns, areAsWideAsTheirWidestCell) {
+  EXPECT_EQ(columns({{"field", "bits"}, {"T", "1.25"}, {"\u00E4ther", "12.50"}}),
+            "field   bits\nT       1.25\n\u00E4ther  12.50\n");
+  EXPECT_EQ(moreFields(kShownFields, "--all"), "");
+  EXPECT_EQ(moreFields(kShownFields + 1, "--all"), "and 1 more field: --all\n");
 }
 
 }  // namespace
