@@ -6,38 +6,10 @@
 #include <limits>
 #include <span>
 
-#include "simplify/split/cell_shapes.h"
+#include "simplify/split/each_face.h"
 
 namespace qtet {
 namespace {
-
-/// Calls visit(corners) for each face of a cell, without those that name a point that is none.
-template <class Visit>
-void forEachFace(const CellMesh& mesh, std::size_t cell, const Visit& visit) {
-  const std::span<const VertexId> ids = mesh.cell(cell);
-  std::vector<VertexId> corners;
-  const auto give = [&] {
-    if (std::ranges::all_of(corners, [&](VertexId v) { return v < mesh.points.size(); }))
-      visit(std::span<const VertexId>(corners));
-  };
-  if (mesh.types[cell] == kPolyhedronCell) {
-    for (std::size_t at = 1; at < ids.size();) {
-      const std::size_t count = std::min<std::size_t>(ids[at], ids.size() - at - 1);
-      corners.assign(ids.begin() + static_cast<std::ptrdiff_t>(at + 1),
-                     ids.begin() + static_cast<std::ptrdiff_t>(at + 1 + count));
-      at += 1 + count;
-      give();
-    }
-    return;
-  }
-  const CellShape shape = shapeOf(mesh.types[cell]);
-  if (shape.corners > ids.size()) return;
-  for (const ShapeFace& face : shape.faces) {
-    corners.clear();
-    for (std::size_t k = 0; k < face.corners; ++k) corners.push_back(ids[face.corner[k]]);
-    give();
-  }
-}
 
 /// A number that looks random for each set of corners (SplitMix64's last step on each).
 std::uint64_t hashOf(std::span<const VertexId> corners) {

@@ -23,6 +23,7 @@
 #include <exception>
 #include <new>
 
+#include "simplify/read/foam/foam_fields.h"
 #include "simplify/read/foam/poly_mesh.h"
 #include "simplify/read/hdf/read_vtkhdf.h"
 #include "simplify/read/options/mesh_format.h"
@@ -33,7 +34,6 @@
 #include "simplify/read/process/inflate_file.h"
 #include "simplify/read/process/trial_process.h"
 #include "simplify/read/vtk/cell_transfer.h"
-#include "simplify/read/vtk/foam_fields.h"
 #include "simplify/read/vtk/join_blocks.h"
 #include "simplify/read/vtk/vtk_cells.h"
 #include "simplify/read/vtk/vtk_readers.h"
@@ -217,7 +217,6 @@ Result<std::vector<TimedCells>> runReader(const std::filesystem::path& path, Mes
       return bad(path, "its variable " + name +
                            " has no values: its file is cut off, or of another mesh; export the "
                            "case again, or take the variable out of it");
-    if (format == MeshFormat::kOpenFoam) keepFoamFields(options.fields, *cells, step.notes);
     addStep(std::move(step), s == 0, report);
     out.push_back({timed ? timeText(times[(*steps)[s]]) : "", std::move(*cells)});
   }
@@ -570,11 +569,17 @@ Result<std::vector<TimedCells>> readFoam(const std::filesystem::path& path,
                                          const ReadOptions& options, ReadReport& report) {
   const auto processors = processorFolders(path);
   if (!processors) return std::unexpected(processors.error());
-  if (processors->empty()) {
-    const std::filesystem::path folder = path.parent_path();
-    return readFoamCase(folder.empty() ? "." : folder, path, options, report);
-  }
-  return readProcessors(*processors, path, options, report);
+  ReadOptions ofCells = options;
+  ofCells.fields = foamFieldsToRead(options.fields);
+  const std::filesystem::path folder = path.parent_path().empty() ? "." : path.parent_path();
+  Result<std::vector<TimedCells>> steps = processors->empty()
+                                              ? readFoamCase(folder, path, ofCells, report)
+                                              : readProcessors(*processors, path, ofCells, report);
+  if (!steps) return steps;
+  std::vector<std::string> notes;
+  for (TimedCells& step : *steps) foamFieldsAtPoints(options.fields, step.cells, notes);
+  addNew(notes, report.notes);
+  return steps;
 }
 
 Result<std::vector<TimedCells>> readAt(const std::filesystem::path& path, MeshFormat format,

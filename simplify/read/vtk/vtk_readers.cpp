@@ -20,7 +20,6 @@
 #include <vtkXMLUnstructuredGridReader.h>
 
 #include "simplify/read/vtk/fast_xml_parser.h"
-#include "simplify/read/vtk/foam_fields.h"
 
 namespace qtet {
 namespace {
@@ -75,11 +74,10 @@ vtkSmartPointer<vtkAlgorithm> enSightReader(const std::filesystem::path& path) {
   return reader;
 }
 
-vtkSmartPointer<vtkAlgorithm> foamReader(const std::filesystem::path& path,
-                                         const FieldNames& fields) {
+vtkSmartPointer<vtkAlgorithm> foamReader(const std::filesystem::path& path) {
   const auto reader = vtkSmartPointer<vtkOpenFOAMReader>::New();
   reader->SetFileName(path.c_str());
-  reader->SetCreateCellToPoint(asksForPointFields(fields));
+  reader->CreateCellToPointOff();  // its means do not know the cells of other processes
   reader->DecomposePolyhedraOff();
   reader->UpdateInformation();
   reader->EnableAllCellArrays();
@@ -167,7 +165,7 @@ vtkSmartPointer<vtkAlgorithm> vtkReaderOf(const std::filesystem::path& path, Mes
     case MeshFormat::kExodus: return exodusReader(path);
     case MeshFormat::kCgns: return cgnsReader(path);
     case MeshFormat::kEnSight: return enSightReader(path);
-    case MeshFormat::kOpenFoam: return foamReader(path, options.fields);
+    case MeshFormat::kOpenFoam: return foamReader(path);
     case MeshFormat::kFluent: return fluentReader(path);
     case MeshFormat::kVtkHdf: return hdfReader(path);
     case MeshFormat::kPlot3d: return plot3dReader(path, options.plot3dSolution);

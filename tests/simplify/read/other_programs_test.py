@@ -445,7 +445,11 @@ def a_decomposed_case_is_read_from_its_processors():
     is_whole(mesh, 6)
     assert "3 processors" in notes and "joined at 8 points" in notes, notes
     for words, at in ((), 0.5), (("--time", "0"), 0):
-        mesh, _ = read(case / "case.foam", *words)
+        mesh, notes = read(case / "case.foam", *words)
+        x = mesh["points"][:, 0]  # the mean of the cells at both sides, across the seams, too
+        assert np.allclose(mesh["point_T"], np.clip(x - 0.5, 0, 5) + at), (words, mesh["point_T"])
+        assert "--fields cell:T keeps those of cells" in notes, notes
+        mesh, _ = read(case / "case.foam", "--fields", "cell:T", *words)
         middle = mesh["points"][mesh["tetrahedra"]].mean(axis=1)[:, 0]
         assert np.allclose(mesh["cell_T"], np.floor(middle) + at), (words, mesh["cell_T"])
     shutil.rmtree(case / "processor1")
