@@ -75,6 +75,9 @@ ReadOptions readOptionsOf(const ParsedWords& parsed) {
   if (parsed.has("format")) {
     options.format = parsed.get<std::string>("format");
     if (options.format.starts_with('.')) options.format.erase(0, 1);
+    constexpr std::string_view kCompressed = ".gz";  // which the file itself shows
+    if (options.format.ends_with(kCompressed))
+      options.format.resize(options.format.size() - kCompressed.size());
   }
   options.time = parsed.get<std::string>("time");
   if (parsed.has("threshold"))

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace qtet {
@@ -89,6 +90,11 @@ Status copyTo(const std::filesystem::path& file, int input, std::uint64_t most) 
   return {};
 }
 
+bool isGzip(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return in.get() == 0x1F && in.get() == 0x8B;  // RFC 1952, 2.3.1
+}
+
 }  // namespace
 
 Result<std::unique_ptr<GuardedFolder>> spoolStandardInput(Words& words, std::string_view ending,
@@ -101,7 +107,9 @@ Result<std::unique_ptr<GuardedFolder>> spoolStandardInput(Words& words, std::str
   const std::string named = words[places.front()] == "-" ? "" : words[places.front()];
   std::string kind = ending.empty() ? formatAmong(words) : std::string(ending);
   if (kind.empty()) kind = std::filesystem::path(named).extension().string();
+  if (kind == ".gz") kind = std::filesystem::path(named).stem().extension().string();
   if (kind.starts_with('.')) kind.erase(0, 1);
+  if (kind.ends_with(".gz")) kind.resize(kind.size() - std::strlen(".gz"));
   if (kind.empty() ||
       !std::ranges::all_of(kind, [](unsigned char c) { return std::isalnum(c) != 0; }))
     return fail(ErrorCode::kBadInput,
@@ -123,8 +131,12 @@ Result<std::unique_ptr<GuardedFolder>> spoolStandardInput(Words& words, std::str
   if (folder->failure())
     return fail(ErrorCode::kIo, "no temporary folder can be made (" + folder->failure().message() +
                                     "); let TMPDIR name one with room");
-  const std::filesystem::path file = folder->path() / (std::string(kPipedFile) + "." + kind);
+  std::filesystem::path file = folder->path() / (std::string(kPipedFile) + "." + kind);
   if (Status copied = copyTo(file, input, most); !copied) return std::unexpected(copied.error());
+  if (ending.empty() && isGzip(file)) {
+    const std::filesystem::path plain = std::exchange(file, file.string() + ".gz");
+    std::filesystem::rename(plain, file);
+  }
   words[places.front()] = file.string();
   return folder;
 }

@@ -72,6 +72,19 @@ def formats_of_name():
     endings = os.path.basename(source).lower().split(".")[1:]
     return next(filter(None, (formats_of(".".join(endings[i:])) for i in range(len(endings)))), [])
 
+def with_bulk(formats):
+    """Gmsh writes the bulk data of Nastran alone, without the line before them."""
+    if formats[:1] != ["nastran"]:
+        return source
+    with open(source, errors="replace") as file:
+        text = file.read()
+    if any(line.strip().upper().startswith("BEGIN BULK") for line in text.splitlines()):
+        return source
+    whole = folder + "/whole.bdf"
+    with open(whole, "w") as file:
+        file.write("BEGIN BULK\n" + text)
+    return whole
+
 def is_series(formats):
     if formats[:1] != ["xdmf"]:
         return False
@@ -102,7 +115,7 @@ try:
     if is_series(formats):
         write_series()
     else:
-        write(meshio.read(source, formats[0] if kind else None), "mesh.vtu")
+        write(meshio.read(with_bulk(formats), formats[0] if kind else None), "mesh.vtu")
 except SystemExit as end:  # meshio has said why
     sys.exit(end.code if end.code == 78 else 1)
 except BaseException as error:

@@ -10,8 +10,12 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <cstdint>
 #include <istream>
 #include <memory>
+#include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "simplify/read/vtu/base64_digits.h"
@@ -120,6 +124,15 @@ class FastInflate : public vtkDataCompressor {
 };
 vtkStandardNewMacro(FastInflate);
 
+/// Of an array of a file. VTK makes a name for each, which takes minutes for 2^32.
+constexpr std::uint32_t kMaxComponents = 1 << 16;
+
+bool isComponentCount(std::string_view text) {
+  std::uint32_t count = 0;
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), count);
+  return read.ec == std::errc{} && read.ptr == text.data() + text.size() && count <= kMaxComponents;
+}
+
 class FastParser;
 
 /// One of VTK's streams, which reads nothing more where the sizes of a compressed array's blocks
@@ -183,6 +196,12 @@ class FastParser : public vtkXMLDataParser {
     setStream<FastBase64>(this->AppendedDataStream);
   }
   void StartElement(const char* name, const char** attributes) override {
+    for (const char** at = attributes; at[0] && at[1]; at += 2)
+      if (std::string_view(at[0]) == "NumberOfComponents" && !isComponentCount(at[1])) {
+        vtkErrorMacro(<< "an element <" << name << "> has NumberOfComponents=\"" << at[1]
+                      << "\", which is no number from 0 to " << kMaxComponents);
+        at[1] = "1";  // VTK goes on, and would name each component
+      }
     Superclass::StartElement(name, attributes);  // gives raw data a stream of its own
     if (!FastBase64::SafeDownCast(this->AppendedDataStream) &&
         !dynamic_cast<Guarded<vtkInputStream>*>(this->AppendedDataStream))

@@ -41,6 +41,17 @@ grep -q 'note: level' err.txt || fail "extract says nothing beside its output"
 "$qtet" convert box.vtu -o straight.vtu >/dev/null 2>&1
 [[ $(member tetrahedra check back.vtu) == $(member tetrahedra check straight.vtu) ]] ||
   fail "convert through two pipes"
+gzip -c box.vtu >box.vtu.gz
+for format in vtu vtu.gz; do
+  "$qtet" convert - --format $format -o back.vtu <box.vtu.gz >/dev/null 2>&1
+  cmp back.vtu straight.vtu || fail "a compressed mesh as $format"
+done
+"$qtet" convert <(cat box.vtu.gz) --format vtu -o back.vtu >/dev/null 2>&1
+cmp back.vtu straight.vtu || fail "a compressed mesh of a pipe"
+mkfifo box.again.vtu.gz
+cat box.vtu.gz >box.again.vtu.gz &
+"$qtet" check box.again.vtu.gz | grep -q "simplify takes it" || fail "a named pipe of gzip"
+wait
 cp box.vtu nameless
 "$qtet" check nameless --format vtu >/dev/null 2>&1 ||
   fail "--format of a file whose name says nothing"

@@ -362,6 +362,21 @@ def abaqus_of_second_order_is_read():
     assert abs(volume(read(out / "second.inp")[0]) - 4 * np.pi / 3) < 0.05
 
 
+def nastrans_bulk_data_need_no_line_before_them():
+    if not meshio:
+        return "no meshio"
+    points = "".join(
+        "GRID    %-8d0       %-8.3f%-8.3f%-8.3f\n" % (i + 1, *p) for i, p in enumerate(cube())
+    )
+    cells = "".join(
+        "CTETRA  %-8d1       %-8d%-8d%-8d%-8d\n" % (i + 1, *(c + 1))
+        for i, c in enumerate(TETRAHEDRA)
+    )
+    for head in ("$ Created by Gmsh\n", "SOL 101\nCEND\nBEGIN BULK\n"):
+        (out / "bulk.bdf").write_text(head + points + cells + "ENDDATA\n")
+        is_whole(read(out / "bulk.bdf")[0], 1)
+
+
 def an_unknown_ending_is_told_what_there_is():
     (out / "mesh.nonsense").write_text("nothing")
     said = refused("check", out / "mesh.nonsense")
@@ -632,6 +647,7 @@ TESTS = [
     steps_of_vtkhdf_are_read_by_their_offsets,
     a_series_of_xdmf_is_read,
     abaqus_of_second_order_is_read,
+    nastrans_bulk_data_need_no_line_before_them,
     an_unknown_ending_is_told_what_there_is,
     a_decomposed_case_is_read_from_its_processors,
     meshes_of_openfoam_are_checked,
