@@ -16,6 +16,7 @@
 #include "simplify/read/vtk/join_blocks.h"
 #include "simplify/read/vtk/vtk_grid.h"
 #include "simplify/read/vtu/grid_parts.h"
+#include "simplify/read/xdmf/read_xdmf.h"
 
 namespace qtet {
 namespace {
@@ -159,6 +160,12 @@ Result<CellMesh> readFile(const std::filesystem::path& path, const ReadOptions& 
     case MeshFormat::kMedit: return readMedit(path, report);
     case MeshFormat::kTetgen: return readTetgen(path, report);
     case MeshFormat::kSu2: return readSu2(path, report);
+    case MeshFormat::kXdmf: {
+      const Result<XdmfFile> file = XdmfFile::open(path);
+      if (!file) return std::unexpected(file.error());
+      if (!file->isUnderstood()) return readThroughMeshio(path, "xdmf", options, report);
+      break;
+    }
     case MeshFormat::kOther: return readThroughMeshio(path, options.format, options, report);
     default: break;
   }

@@ -45,7 +45,8 @@ export function makeInputs(bin, folder) {
   withFields(folder, 'part.vtu', ['Density']);
   withFields(folder, 'part-with-stress.vtu', ['Stress']);
   withFields(folder, 'step.vtu', ['T', 'U']);
-  const steps = [0, 0.25, 0.5].map((time) => `<DataSet timestep="${time}" file="step.vtu"/>`).join('');
+  const step = (time) => `<DataSet timestep="${time}" file="step.vtu"/>`;
+  const steps = [0, 0.25, 0.5].map(step).join('');
   const series = `<VTKFile type="Collection"><Collection>${steps}</Collection></VTKFile>\n`;
   writeFileSync(join(folder, 'run.pvd'), series);
   writeFileSync(join(folder, 'voxels.vtk'), kVoxels);

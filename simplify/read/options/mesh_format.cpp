@@ -109,7 +109,7 @@ struct Ending {
   MeshFormat format;
 };
 
-constexpr std::array<Ending, 33> kEndings{{
+constexpr std::array<Ending, 35> kEndings{{
     {".vtu", MeshFormat::kVtu},       {".pvtu", MeshFormat::kPvtu},
     {".pvts", MeshFormat::kPvts},     {".pvtr", MeshFormat::kPvtr},
     {".pvti", MeshFormat::kPvti},     {".vtm", MeshFormat::kVtm},
@@ -126,7 +126,8 @@ constexpr std::array<Ending, 33> kEndings{{
     {".node", MeshFormat::kTetgen},   {".ele", MeshFormat::kTetgen},
     {".su2", MeshFormat::kSu2},       {".xyz", MeshFormat::kPlot3d},
     {".series", MeshFormat::kSeries}, {".cas", MeshFormat::kFluent},
-    {".vtkhdf", MeshFormat::kVtkHdf},
+    {".vtkhdf", MeshFormat::kVtkHdf}, {".xdmf", MeshFormat::kXdmf},
+    {".xmf", MeshFormat::kXdmf},
 }};
 
 /// NAME.e.4.0 and the like.

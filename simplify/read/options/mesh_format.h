@@ -31,6 +31,7 @@ enum class MeshFormat {
   kOpenFoam,
   kFluent,
   kVtkHdf,
+  kXdmf,    // our own reader, or meshio
   kPlot3d,  // through VTK
   kGmsh,
   kMedit,

@@ -124,7 +124,8 @@ class FastInflate : public vtkDataCompressor {
 };
 vtkStandardNewMacro(FastInflate);
 
-/// Of an array of a file. VTK makes a name for each, which takes minutes for 2^32.
+/// The most components of an array in a file. VTK makes a name for each, which takes minutes for
+/// 2^32.
 constexpr std::uint32_t kMaxComponents = 1 << 16;
 
 bool isComponentCount(std::string_view text) {

@@ -38,6 +38,7 @@
 #include "simplify/read/vtk/vtk_cells.h"
 #include "simplify/read/vtk/vtk_readers.h"
 #include "simplify/read/vtu/read_vtu.h"
+#include "simplify/read/xdmf/read_xdmf.h"
 
 namespace qtet {
 namespace {
@@ -170,24 +171,34 @@ void addPiece(ReadReport&& piece, ReadReport& report) {
   addNew(piece.notes, report.notes);
 }
 
-/// Reads the steps that are meant of a grid in HDF5, each one's partitions in one mesh.
-Result<std::vector<TimedCells>> readHdfGrid(const VtkHdfFile& file,
-                                            const std::filesystem::path& path,
-                                            const ReadOptions& options, ReadReport& report) {
-  const auto steps = chosenSteps(file.times(), options.time, path, report.notes);
+/// Reads the steps that are meant. `readStep(number, report)` gives the mesh of one of `times`, or
+/// of the file without times.
+template <class ReadStep>
+Result<std::vector<TimedCells>> readSteps(const std::vector<double>& times,
+                                          const std::filesystem::path& path,
+                                          const ReadOptions& options, ReadReport& report,
+                                          const ReadStep& readStep) {
+  const auto steps = chosenSteps(times, options.time, path, report.notes);
   if (!steps) return std::unexpected(steps.error());
   std::vector<TimedCells> out;
   for (std::size_t s = 0; s < std::max<std::size_t>(1, steps->size()); ++s) {
     const bool timed = !steps->empty();
+    const std::size_t number = timed ? (*steps)[s] : 0;
     ReadReport step;
-    Result<std::vector<CellMesh>> blocks =
-        file.partitions(timed ? (*steps)[s] : 0, options.fields, step);
-    if (!blocks) return std::unexpected(blocks.error());
-    CellMesh cells = joinBlocks(std::move(*blocks), options.joinPieces, step);
+    Result<CellMesh> cells = readStep(number, step);
+    if (!cells) return std::unexpected(cells.error());
     addStep(std::move(step), s == 0, report);
-    out.push_back({timed ? timeText(file.times()[(*steps)[s]]) : "", std::move(cells)});
+    out.push_back({timed ? timeText(times[number]) : "", std::move(*cells)});
   }
   return out;
+}
+
+/// The step's partitions in one mesh.
+Result<CellMesh> joinedPartitions(const VtkHdfFile& file, std::size_t step,
+                                  const ReadOptions& options, ReadReport& report) {
+  Result<std::vector<CellMesh>> blocks = file.partitions(step, options.fields, report);
+  if (!blocks) return std::unexpected(blocks.error());
+  return joinBlocks(std::move(*blocks), options.joinPieces, report);
 }
 
 /// Runs one reader over the steps that are meant.
@@ -196,31 +207,38 @@ Result<std::vector<TimedCells>> runReader(const std::filesystem::path& path, Mes
   if (format == MeshFormat::kVtkHdf) {
     const Result<VtkHdfFile> file = VtkHdfFile::open(path);
     if (!file) return std::unexpected(file.error());
-    if (file->isGrid()) return readHdfGrid(*file, path, options, report);
+    if (file->isGrid())
+      return readSteps(file->times(), path, options, report,
+                       [&](std::size_t step, ReadReport& ofStep) {
+                         return joinedPartitions(*file, step, options, ofStep);
+                       });
+  }
+  if (format == MeshFormat::kXdmf) {
+    Result<XdmfFile> file = XdmfFile::open(path);
+    if (!file) return std::unexpected(file.error());
+    return readSteps(file->times(), path, options, report,
+                     [&](std::size_t step, ReadReport& ofStep) {
+                       return file->read(step, options.fields, ofStep);
+                     });
   }
   const auto reader = vtkReaderOf(path, format, options);
   reader->UpdateInformation();
   const std::vector<double> times = timesOf(*reader);
-  const auto steps = chosenSteps(times, options.time, path, report.notes);
-  if (!steps) return std::unexpected(steps.error());
-  std::vector<TimedCells> out;
-  for (std::size_t s = 0; s < std::max<std::size_t>(1, steps->size()); ++s) {
-    const bool timed = !steps->empty();
-    if (timed)
-      reader->UpdateTimeStep(times[(*steps)[s]]);
-    else
-      reader->Update();
-    ReadReport step;
-    Result<CellMesh> cells = cellsOfOutput(reader->GetOutputDataObject(0), options, path, step);
-    if (!cells) return std::unexpected(cells.error());
-    if (const std::string name = missingVariable(*reader); !name.empty())
-      return bad(path, "its variable " + name +
-                           " has no values: its file is cut off, or of another mesh; export the "
-                           "case again, or take the variable out of it");
-    addStep(std::move(step), s == 0, report);
-    out.push_back({timed ? timeText(times[(*steps)[s]]) : "", std::move(*cells)});
-  }
-  return out;
+  return readSteps(times, path, options, report,
+                   [&](std::size_t step, ReadReport& ofStep) -> Result<CellMesh> {
+                     if (times.empty())
+                       reader->Update();
+                     else
+                       reader->UpdateTimeStep(times[step]);
+                     Result<CellMesh> cells =
+                         cellsOfOutput(reader->GetOutputDataObject(0), options, path, ofStep);
+                     const std::string lacking = cells ? missingVariable(*reader) : "";
+                     if (lacking.empty()) return cells;
+                     return bad(path, "its variable " + lacking +
+                                          " has no values: its file is cut off, or of another "
+                                          "mesh; export the case again, or take the variable out "
+                                          "of it");
+                   });
 }
 
 /// Why the trial of a reader did not come to its end; what to do about it.

@@ -354,6 +354,88 @@ def a_series_of_xdmf_is_read():
         assert "it has 0, 0.25, 0.5" in refused("check", path, "--time", "9")
 
 
+def xdmf(path, body, head=""):
+    body = f'<Xdmf Version="3.0"><Domain>{body}</Domain></Xdmf>'
+    path.write_text(f'<?xml version="1.0"?>{head}{body}')
+
+
+def item(values, kind="Float", precision=8):
+    rows = np.asarray(values)
+    text = " ".join(repr(x) for x in rows.ravel().tolist())
+    return '<DataItem Dimensions="%s" NumberType="%s" Precision="%d" Format="XML">%s</DataItem>' % (
+        " ".join(map(str, rows.shape)), kind, precision, text)
+
+
+def xdmf_of_fenics_is_read_here():
+    """As dolfinx and dolfin write it: one mesh, and series that include it."""
+    path = out / "fenics.xdmf"
+    mesh = '<Topology TopologyType="Tetrahedron" NumberOfElements="6" NodesPerElement="4">'
+    mesh += item(TETRAHEDRA, "Int") + '</Topology><Geometry GeometryType="XYZ">'
+    mesh += item(cube()) + "</Geometry>"
+
+    def series(name, pointer, values, first=""):
+        grids = ""
+        for step in range(3):
+            inner = first if step == 0 and first else (
+                f'<xi:include xpointer="xpointer({pointer}/*[self::Topology or self::Geometry])"/>')
+            grids += f'<Grid Name="{name}" GridType="Uniform">{inner}<Time Value="{step / 2}"/>'
+            grids += f'<Attribute Name="{name}" AttributeType="Scalar" Center="Node">'
+            grids += item(values + step) + "</Attribute></Grid>"
+        kind = 'GridType="Collection" CollectionType="Temporal"'
+        return f'<Grid Name="{name}" {kind}>{grids}</Grid>'
+
+    x, y = cube()[:, 0], cube()[:, 1:2]
+    alone = f'<Grid Name="mesh" GridType="Uniform">{mesh}</Grid>'
+    path_x = "/Xdmf/Domain/Grid[@GridType='Uniform'][1]"
+    doctype = '<!DOCTYPE Xdmf SYSTEM "Xdmf.dtd" []>'
+    xdmf(path, alone + series("u", path_x, x) + series("p", path_x, y), doctype)
+    got, notes = read(path)
+    is_whole(got, 1)
+    assert "of its 3 time steps the last is read, 1" in notes, notes
+    assert (got["point_u"] == got["points"][:, 0] + 2).all()
+    assert (got["point_p"].ravel() == got["points"][:, 1] + 2).all()
+    got, _ = read(path, "--time", "all")
+    assert {"point_u@0.5", "point_p@1"} <= set(got.files), got.files
+    # dolfin: the first step has the mesh itself
+    path_x = "//Grid[@Name=&quot;u&quot;]/Grid[1]"
+    xdmf(path, series("u", path_x, x, mesh))
+    assert (read(path)[0]["point_u"] == got["points"][:, 0] + 2).all()
+    # two kinds of cells and a triangle in one list
+    points = np.concatenate([cube(), [[0.5, 0.5, 2]]])
+    top = [v for v in range(8) if cube()[v, 2] == 1]
+    ring = sorted(top, key=lambda v: np.arctan2(*(cube()[v, :2] - 0.5)), reverse=True)
+    mixed = [n for cell in TETRAHEDRA for n in (6, *cell)] + [4, 0, 1, 2] + [7, *ring, 8]
+    body = '<Grid><Topology TopologyType="Mixed" NumberOfElements="8">' + item(mixed, "Int")
+    body += "</Topology><Geometry>" + item(points) + "</Geometry>"
+    for name, values in ("a", np.arange(8)), ("v", np.ones((8, 3))):
+        body += f'<Attribute Name="{name}" Center="Cell">' + item(values) + "</Attribute>"
+    xdmf(path, body + "</Grid>")
+    got, notes = read(path)
+    assert len(got["tetrahedra"]) == 8 and abs(volume(got) - 4 / 3) < 1e-12
+    assert sorted(set(got["cell_a"])) == [0, 1, 2, 3, 4, 5, 7] and "were ignored" in notes
+    # what lies, and what XML must not do
+    sound = f'<Grid Name="mesh">{mesh}<Attribute Name="u" Center="Node">{item(x)}</Attribute>'
+    sound += "</Grid>"
+    xdmf(path, sound)
+    is_whole(read(path)[0], 1)
+    for old, new, said in (
+        ('NumberOfElements="6"', 'NumberOfElements="7"', "says 7 cells"),
+        ('"6 4"', '"7 4"', "Dimensions"),
+        ('"8"', '"-8"', "Dimensions"),
+        ("<Geometry", "<Geometry2", None),
+        ("0.0 ", "zero ", "is no number"),
+        ('Format="XML">0', 'Format="HDF">none.h5:/0', "none.h5"),
+        ('Format="XML">0', 'Format="HDF">0', "no FILE.h5:ARRAY"),
+        ("</Topology>", "", "mismatched tag"),
+    ):
+        assert old in sound, old
+        xdmf(path, sound.replace(old, new))
+        wrong = refused("check", path)
+        assert said is None or said in wrong, (old, wrong)
+    xdmf(path, sound, '<!DOCTYPE Xdmf [<!ENTITY a "b">]>')
+    assert "declares an entity" in refused("check", path)
+
+
 def abaqus_of_second_order_is_read():
     if not meshio or not shutil.which("gmsh"):
         return "no meshio with gmsh"
@@ -646,6 +728,7 @@ TESTS = [
     partitions_of_vtkhdf_become_one_mesh,
     steps_of_vtkhdf_are_read_by_their_offsets,
     a_series_of_xdmf_is_read,
+    xdmf_of_fenics_is_read_here,
     abaqus_of_second_order_is_read,
     nastrans_bulk_data_need_no_line_before_them,
     an_unknown_ending_is_told_what_there_is,
