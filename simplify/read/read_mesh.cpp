@@ -103,7 +103,8 @@ bool standsAlone(MeshFormat format) {
     case MeshFormat::kAvsUcd:
     case MeshFormat::kGmsh:
     case MeshFormat::kMedit:
-    case MeshFormat::kSu2: return true;
+    case MeshFormat::kSu2:
+    case MeshFormat::kUnv: return true;
     default: return false;
   }
 }
@@ -116,7 +117,7 @@ Result<CellMesh> readCompressed(const std::filesystem::path& path, const ReadOpt
     return fail(ErrorCode::kBadInput,
                 path.string() +
                     " is compressed, which is read of .vtu, .vts, .vtr, .vti, .vtk, .inp, .msh, "
-                    ".mesh, .meshb and .su2 alone; inflate it with gunzip");
+                    ".mesh, .meshb, .su2 and .unv alone; inflate it with gunzip");
   if (Status checked = checkMeshFile(path, MeshFormat::kOther); !checked)
     return std::unexpected(checked.error());
   Result<CellMesh> out = CellMesh{};
@@ -144,7 +145,7 @@ Result<CellMesh> readFile(const std::filesystem::path& path, const ReadOptions& 
   if (Status checked = checkMeshFile(path, format); !checked)
     return std::unexpected(checked.error());
   // they have no steps
-  if (format == MeshFormat::kMedit || format == MeshFormat::kTetgen || format == MeshFormat::kSu2) {
+  if (format >= MeshFormat::kMedit && format <= MeshFormat::kUnv) {
     if (const auto steps = chosenSteps({}, options.time, path, report.notes); !steps)
       return std::unexpected(steps.error());
   }
@@ -160,6 +161,7 @@ Result<CellMesh> readFile(const std::filesystem::path& path, const ReadOptions& 
     case MeshFormat::kMedit: return readMedit(path, report);
     case MeshFormat::kTetgen: return readTetgen(path, report);
     case MeshFormat::kSu2: return readSu2(path, report);
+    case MeshFormat::kUnv: return readUnv(path, report);
     case MeshFormat::kXdmf: {
       const Result<XdmfFile> file = XdmfFile::open(path);
       if (!file) return std::unexpected(file.error());

@@ -109,7 +109,7 @@ struct Ending {
   MeshFormat format;
 };
 
-constexpr std::array<Ending, 35> kEndings{{
+constexpr std::array<Ending, 36> kEndings{{
     {".vtu", MeshFormat::kVtu},       {".pvtu", MeshFormat::kPvtu},
     {".pvts", MeshFormat::kPvts},     {".pvtr", MeshFormat::kPvtr},
     {".pvti", MeshFormat::kPvti},     {".vtm", MeshFormat::kVtm},
@@ -127,7 +127,7 @@ constexpr std::array<Ending, 35> kEndings{{
     {".su2", MeshFormat::kSu2},       {".xyz", MeshFormat::kPlot3d},
     {".series", MeshFormat::kSeries}, {".cas", MeshFormat::kFluent},
     {".vtkhdf", MeshFormat::kVtkHdf}, {".xdmf", MeshFormat::kXdmf},
-    {".xmf", MeshFormat::kXdmf},
+    {".xmf", MeshFormat::kXdmf},      {".unv", MeshFormat::kUnv},
 }};
 
 /// NAME.e.4.0 and the like.

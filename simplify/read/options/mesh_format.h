@@ -36,7 +36,8 @@ enum class MeshFormat {
   kGmsh,
   kMedit,
   kTetgen,
-  kSu2,  // our own readers
+  kSu2,
+  kUnv,  // our own readers
   // through meshio, if it knows them
   kOther,
 };

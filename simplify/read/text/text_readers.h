@@ -28,6 +28,11 @@ namespace qtet {
 /// https://wias-berlin.de/software/tetgen/fformats.html
 [[nodiscard]] Result<CellMesh> readTetgen(const std::filesystem::path& path, ReadReport& report);
 
+/// I-DEAS universal files (.unv) as Salome and Gmsh write them: datasets 2411 and 781 of nodes,
+/// 2412 and 780 of elements. Groups and results are skipped.
+/// https://www.ceas3.uc.edu/sdrluff (datasets by number)
+[[nodiscard]] Result<CellMesh> readUnv(const std::filesystem::path& path, ReadReport& report);
+
 /// SU2 of three dimensions and one zone; the markers are skipped.
 /// https://su2code.github.io/docs_v7/Mesh-File/
 [[nodiscard]] Result<CellMesh> readSu2(const std::filesystem::path& path, ReadReport& report);

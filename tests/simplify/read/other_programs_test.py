@@ -444,6 +444,68 @@ def abaqus_of_second_order_is_read():
     assert abs(volume(read(out / "second.inp")[0]) - 4 * np.pi / 3) < 0.05
 
 
+def unv(path, points, elements, beams=""):
+    text = "    -1\n   164\n         1  SI\n    -1\n    -1\n  2411\n"
+    for i, p in enumerate(points):
+        text += "%10d%10d%10d%10d\n" % (2 * i + 5, 1, 1, 11)
+        text += "".join("%25.16E" % x for x in p).replace("E", "D") + "\n"
+    text += "    -1\n    -1\n  2412\n" + beams
+    for i, (descriptor, nodes) in enumerate(elements):
+        text += "%10d%10d%10d%10d%10d%10d\n" % (i + 1, descriptor, 1, 1, 7, len(nodes))
+        labels = ["%10d" % (2 * n + 5) for n in nodes]
+        text += "".join("".join(labels[k : k + 8]) + "\n" for k in range(0, len(labels), 8))
+    path.write_text(text + "    -1\n    -1\n  2467\n         1         0\nwall\n    -1\n")
+
+
+def universal_files_are_read():
+    path = out / "salome.unv"
+    beams = "%10d%10d%10d%10d%10d%10d\n%10d%10d%10d\n%10d%10d\n" % (
+        99, 11, 2, 1, 7, 2, 0, 0, 0, 5, 7)
+    unv(path, cube(), [(111, cell) for cell in TETRAHEDRA] + [(91, (0, 1, 2))], beams)
+    mesh, notes = read(path)
+    is_whole(mesh, 1)
+    assert "2 points, lines and faces" in notes, notes
+    square, triangle = [(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 0), (1, 0), (0, 1)]
+
+    def ring(corners, z):
+        """Corner and middle in turn."""
+        for i, a in enumerate(corners):
+            b = corners[(i + 1) % len(corners)]
+            yield from ((*a, z), ((a[0] + b[0]) / 2, (a[1] + b[1]) / 2, z))
+
+    def between(corners, share):
+        return [(*c, share) for c in corners]
+
+    tetrahedron = [*ring(triangle, 0), *[(x / 2, y / 2, 0.5) for x, y in triangle], (0, 0, 1)]
+    for descriptor, nodes, wanted in (
+        (115, between(square, 0) + between(square, 1), 1),
+        (112, between(triangle, 0) + between(triangle, 1), 1 / 2),
+        (118, tetrahedron, 1 / 6),
+        (113, [*ring(triangle, 0), *between(triangle, 0.5), *ring(triangle, 1)], 1 / 2),
+        (116, [*ring(square, 0), *between(square, 0.5), *ring(square, 1)], 1),
+    ):
+        unv(path, nodes, [(descriptor, range(len(nodes)))])
+        mesh, _ = read(path)
+        assert abs(volume(mesh) - wanted) < 1e-6, descriptor
+        corners = mesh["points"][mesh["tetrahedra"]]
+        edges = corners[:, 1:] - corners[:, :1]
+        assert (np.linalg.det(edges) > 0).all(), descriptor
+    for elements, said in (
+        ([(114, range(5))], "descriptor 114"),
+        ([(111, range(5))], "descriptor 111"),
+        ([(111, [0, 1, 2, 77])], "without 4 vertices"),
+        ([(111, [0, 1, 2, -9])], "no number of a node"),
+    ):
+        unv(path, cube(), elements)
+        assert said in refused("check", path), (said, refused("check", path))
+    unv(path, cube(), [(111, cell) for cell in TETRAHEDRA])
+    whole = path.read_text()
+    at = whole.index("  2412")
+    for length in range(at + 10, whole.index("  2467") - 20, 37):
+        path.write_text(whole[:length])
+        refused("check", path)
+
+
 def nastrans_bulk_data_need_no_line_before_them():
     if not meshio:
         return "no meshio"
@@ -730,6 +792,7 @@ TESTS = [
     a_series_of_xdmf_is_read,
     xdmf_of_fenics_is_read_here,
     abaqus_of_second_order_is_read,
+    universal_files_are_read,
     nastrans_bulk_data_need_no_line_before_them,
     an_unknown_ending_is_told_what_there_is,
     a_decomposed_case_is_read_from_its_processors,
