@@ -1,6 +1,7 @@
 #include "simplify/split/cell_mesh.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 
@@ -121,8 +122,17 @@ Status checkCellMesh(const CellMesh& mesh, const std::filesystem::path& path) {
   if (Status checked = checkPoints(mesh, path); !checked) return checked;
   if (mesh.cells() == 0)
     return bad(path, "it holds no volume cells; export the volume mesh, not its surface");
+  // the vertices of each kind that is read and has a fixed number of them, or 0
+  std::array<std::uint32_t, 256> fixed{};
+  for (std::size_t type = 0; type < fixed.size(); ++type)
+    if (const auto t = static_cast<std::uint8_t>(type); isRead(t) && t != kPolyhedronCell)
+      fixed[type] = verticesOf(t);
+  const bool areAllThere =
+      std::ranges::none_of(mesh.types, [](std::uint8_t type) { return type == kPolyhedronCell; }) &&
+      !mesh.vertices.empty() && std::ranges::max(mesh.vertices) < mesh.points.size();
   for (std::size_t i = 0; i < mesh.cells(); ++i) {
     const std::uint8_t type = mesh.types[i];
+    if (areAllThere && fixed[type] > 0 && mesh.cell(i).size() == fixed[type]) continue;
     if (type == kVtkLagrangePyramid || type == kVtkBezierPyramid) {
       return bad(path, "cell " + std::to_string(mesh.cellId(i)) + " is of VTK type " +
                            std::to_string(type) +

@@ -1,9 +1,9 @@
 // The cost of reading and splitting a .vtu file, beside the cost of VTK alone to read it:
-// `read_bench [FILE.vtu]`. Without a file two of a million cells are made: hexahedra and
+// `read_bench [FILE.vtu...]`. Without a file two of a million cells are made: hexahedra and
 // tetrahedra, written by VTK as it writes them by default. The figures are user and system CPU
-// seconds of all threads, medians of seven runs. The two programs take turns, each run in a process
-// of its own that has no memory from the run before. They run with pages of 2 MB where the code
-// asks for them, and without.
+// seconds of all threads, seconds of the clock, and memory at most beyond that before: medians of
+// seven runs. The two programs take turns, each run in a process of its own that has no memory from
+// the run before. They run with pages of 2 MB where the code asks for them, and without.
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -18,6 +18,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -35,7 +36,7 @@ constexpr int kRuns = 7;
 
 /// The cost of one run, or medians of several.
 struct Cost {
-  double user = 0, system = 0;
+  double user = 0, system = 0, clock = 0, megabytes = 0;
   std::size_t tetrahedra = 0;
   [[nodiscard]] double cpu() const { return user + system; }
 };
@@ -43,9 +44,12 @@ struct Cost {
 Cost costSoFar() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  return {qtet::bench::userSecondsOf(usage),
-          static_cast<double>(usage.ru_stime.tv_sec) +
-              1e-6 * static_cast<double>(usage.ru_stime.tv_usec)};
+  return {
+      qtet::bench::userSecondsOf(usage),
+      static_cast<double>(usage.ru_stime.tv_sec) +
+          1e-6 * static_cast<double>(usage.ru_stime.tv_usec),
+      std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(),
+      static_cast<double>(usage.ru_maxrss) / 1024};
 }
 
 Cost medianOf(const std::vector<Cost>& runs) {
@@ -57,7 +61,8 @@ Cost medianOf(const std::vector<Cost>& runs) {
   // The median of the sum, so that it is one run's; the parts need not add up to it.
   const double cpu = median([](const Cost& run) { return run.cpu(); }),
                system = median([](const Cost& run) { return run.system; });
-  return {cpu - system, system, runs.back().tetrahedra};
+  return {cpu - system, system, median([](const Cost& run) { return run.clock; }),
+          median([](const Cost& run) { return run.megabytes; }), runs.back().tetrahedra};
 }
 
 /// `work` in a process of its own, which ends without giving its memory back piece by piece; it
@@ -72,7 +77,8 @@ Cost costOf(bool hugePages, const std::function<std::size_t()>& work) {
     const Cost before = costSoFar();
     const std::size_t tetrahedra = work();
     const Cost after = costSoFar();
-    const Cost cost{after.user - before.user, after.system - before.system, tetrahedra};
+    const Cost cost{after.user - before.user, after.system - before.system,
+                    after.clock - before.clock, after.megabytes - before.megabytes, tetrahedra};
     _exit(write(ends[1], &cost, sizeof cost) == sizeof cost ? 0 : 1);
   }
   close(ends[1]);
@@ -153,10 +159,11 @@ void compare(const std::filesystem::path& path, bool hugePages) {
   }
   const Cost vtk = medianOf(vtkRuns), ours = medianOf(ourRuns);
   std::printf(
-      "%s, pages of %s: %zu tetrahedra; VTK alone %.3f s (%.3f of it system), read and split %.3f "
-      "s (%.3f), %.2f times\n",
+      "%s, pages of %s: %zu tetrahedra; VTK alone %.3f s (%.3f of it system, %.3f by the clock, "
+      "%.0f MB), read and split %.3f s (%.3f, %.3f, %.0f MB), %.2f times, by the clock %.2f\n",
       path.filename().c_str(), hugePages ? "2 MB" : "4 KB", ours.tetrahedra, vtk.cpu(), vtk.system,
-      ours.cpu(), ours.system, ours.cpu() / vtk.cpu());
+      vtk.clock, vtk.megabytes, ours.cpu(), ours.system, ours.clock, ours.megabytes,
+      ours.cpu() / vtk.cpu(), ours.clock / vtk.clock);
   std::fflush(stdout);
 }
 
@@ -164,7 +171,8 @@ void compare(const std::filesystem::path& path, bool hugePages) {
 
 int main(int count, char** words) {
   if (count > 1) {
-    for (const bool hugePages : {true, false}) compare(words[1], hugePages);
+    for (int i = 1; i < count; ++i)
+      for (const bool hugePages : {true, false}) compare(words[i], hugePages);
     return 0;
   }
   for (const bool tetrahedra : {false, true}) {

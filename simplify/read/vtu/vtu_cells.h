@@ -17,6 +17,10 @@ class KeptRows {
     if (isPartial_) rows_.push_back(next_);
     ++next_;
   }
+  void keep(std::uint64_t count) {
+    for (std::uint64_t i = 0; isPartial_ && i < count; ++i) rows_.push_back(next_ + i);
+    next_ += count;
+  }
   void drop() {
     if (!isPartial_) {
       isPartial_ = true;
