@@ -52,8 +52,8 @@ TEST(JoinPieces, piecesHangTogetherAtTheirSeam) {
 }
 
 TEST(JoinPieces, pointsThatRoundingMovedApartAreOneIfAllSeamsCloseThen) {
-  for (const auto& [gap, near] : {std::pair{1e-7, 4u}, std::pair{0.009, 4u},
-                                  std::pair{0.011, 0u}, std::pair{-1e-7, 4u}}) {
+  for (const auto& [gap, near] :
+       {std::pair{1e-7, 4u}, std::pair{0.009, 4u}, std::pair{0.011, 0u}, std::pair{-1e-7, 4u}}) {
     CellMesh mesh;
     addCube(mesh, {0, 0, 0});
     addCube(mesh, {1 + gap, 0, 0});
@@ -74,8 +74,8 @@ TEST(JoinPieces, nearPointsOfPiecesThatDoNotFitStayApart) {
   // one piece: its cubes share their points
   std::vector<VertexId> names(mesh.points.size());
   for (VertexId v = 0; v < names.size(); ++v)
-    names[v] = static_cast<VertexId>(std::ranges::find(mesh.points, mesh.points[v]) -
-                                     mesh.points.begin());
+    names[v] =
+        static_cast<VertexId>(std::ranges::find(mesh.points, mesh.points[v]) - mesh.points.begin());
   mesh.renamePoints(names);
   const std::size_t first = mesh.points.size();
   addCube(mesh, {0, 0, 0});
@@ -83,8 +83,8 @@ TEST(JoinPieces, nearPointsOfPiecesThatDoNotFitStayApart) {
     const Position p = mesh.points[v];
     mesh.points[v] = {1 + 1e-7 + 2 * p[0], 2 * p[1], 2 * p[2]};
   }
-  const auto ends = std::vector{static_cast<VertexId>(first),
-                                static_cast<VertexId>(mesh.points.size())};
+  const auto ends =
+      std::vector{static_cast<VertexId>(first), static_cast<VertexId>(mesh.points.size())};
   const JoinedPieces joined = joinPieces(mesh, ends);
   EXPECT_EQ(joined.points, 0u);
   EXPECT_EQ(joined.nearPoints, 0u);
