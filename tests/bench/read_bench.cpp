@@ -1,8 +1,9 @@
 // The cost of reading and splitting a .vtu file, beside the cost of VTK alone to read it:
 // `read_bench [FILE.vtu...]`. Without a file two of a million cells are made: hexahedra and
-// tetrahedra, written by VTK as it writes them by default. The figures are medians of seven
-// runs: CPU seconds of all threads, seconds of the clock, and memory at most beyond that before. The two programs take turns, each run in a process of its own that has no memory from
-// the run before. They run with pages of 2 MB where the code asks for them, and without.
+// tetrahedra, written by VTK as it writes them by default. The figures are medians of seven runs:
+// CPU seconds of all threads, seconds of the clock, and memory at most beyond that before. The two
+// programs take turns, each run in a process of its own that has no memory from the run before.
+// They run with pages of 2 MB where the code asks for them, and without.
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
