@@ -70,7 +70,8 @@ TEST(JoinPieces, pointsThatRoundingMovedApartAreOneIfAllSeamsCloseThen) {
 TEST(JoinPieces, nearPointsOfPiecesThatDoNotFitStayApart) {
   // a face of 2 x 2 x 2 cubes against a face of one cube of twice the size
   CellMesh mesh;
-  for (int i = 0; i < 4; ++i) addCube(mesh, {0, double(i % 2), double(i / 2)});
+  for (const double z : {0.0, 1.0})
+    for (const double y : {0.0, 1.0}) addCube(mesh, {0, y, z});
   // one piece: its cubes share their points
   std::vector<VertexId> names(mesh.points.size());
   for (VertexId v = 0; v < names.size(); ++v)

@@ -25,8 +25,9 @@ vtkNew<vtkUnstructuredGrid> row() {
   field->SetNumberOfComponents(2);
   constexpr vtkIdType kPoints = kSide * kSide * kSide;
   for (vtkIdType i = 0; i < kPoints; ++i) {
-    points->InsertNextPoint(static_cast<double>(i % kSide), static_cast<double>(i / kSide % kSide),
-                            static_cast<double>(i / kSide / kSide));
+    const vtkIdType y = i / kSide % kSide, z = i / kSide / kSide;
+    points->InsertNextPoint(static_cast<double>(i % kSide), static_cast<double>(y),
+                            static_cast<double>(z));
     field->InsertNextTuple2(static_cast<double>(i), static_cast<double>(-i));
   }
   grid->SetPoints(points);
