@@ -1,6 +1,5 @@
-// Ranges of a piece's points and cells, for a caller that cannot hold the whole file. Arrays are
-// read from the file as far as the range goes; of ascii, and of compressed blocks that the range
-// cuts, more is decoded than is given.
+// Ranges of a piece's points and cells, for a caller that cannot hold the whole file. Only the bytes
+// of the range are read. Text, and compressed blocks that the range cuts, are decoded whole.
 #pragma once
 
 #include <cstdint>
