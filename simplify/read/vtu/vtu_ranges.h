@@ -1,5 +1,5 @@
-// Ranges of a piece's points and cells, for a caller that cannot hold the whole file. Only the bytes
-// of the range are read. Text, and compressed blocks that the range cuts, are decoded whole.
+// Ranges of a piece's points and cells, for a caller that cannot hold the whole file. Only the
+// bytes of the range are read. Text, and compressed blocks that the range cuts, are decoded whole.
 #pragma once
 
 #include <cstdint>
