@@ -4,6 +4,8 @@
 #include <array>
 #include <optional>
 
+#include "simplify/mesh/split_mix64.h"
+
 namespace qtet {
 namespace {
 
@@ -21,13 +23,6 @@ struct Hash {
     return *this;
   }
 };
-
-/// A bijection that mixes 64 bits (splitmix64's finaliser).
-std::uint64_t mixed(std::uint64_t x) {
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-  return x ^ (x >> 31);
-}
 
 /// The hash of a sequence, one element after the other; the two halves mix with different
 /// constants.

@@ -6,6 +6,7 @@
 #include <system_error>
 #include <vector>
 
+#include "simplify/mesh/split_mix64.h"
 #include "simplify/read/foam/foam_list.h"
 
 namespace qtet {
@@ -14,13 +15,9 @@ namespace {
 namespace fs = std::filesystem;
 using Label = FoamList::Label;
 
-/// A number that looks random for each pair of points (SplitMix64's last step).
+/// A number that looks random for each pair of points.
 std::uint64_t hashOf(Label a, Label b) {
-  std::uint64_t x = static_cast<std::uint64_t>(a) << 32 ^ static_cast<std::uint64_t>(b);
-  x += 0x9E3779B97F4A7C15u;
-  x = (x ^ x >> 30) * 0xBF58476D1CE4E5B9u;
-  x = (x ^ x >> 27) * 0x94D049BB133111EBu;
-  return x ^ x >> 31;
+  return SplitMix64(static_cast<std::uint64_t>(a) << 32 ^ static_cast<std::uint64_t>(b)).next();
 }
 
 /// Sums up the directed edges of a face. An edge and its reverse give 0 together. So the sum over

@@ -6,20 +6,16 @@
 #include <limits>
 #include <span>
 
+#include "simplify/mesh/split_mix64.h"
 #include "simplify/split/each_face.h"
 
 namespace qtet {
 namespace {
 
-/// A number that looks random for each set of corners (SplitMix64's last step on each).
+/// A number that looks random for each set of corners.
 std::uint64_t hashOf(std::span<const VertexId> corners) {
   std::uint64_t sum = 0;
-  for (const VertexId v : corners) {
-    std::uint64_t x = (v + std::uint64_t{1}) * 0x9E3779B97F4A7C15u;
-    x = (x ^ x >> 30) * 0xBF58476D1CE4E5B9u;
-    x = (x ^ x >> 27) * 0x94D049BB133111EBu;
-    sum += x ^ x >> 31;
-  }
+  for (const VertexId v : corners) sum += SplitMix64(v).next();
   return sum;
 }
 

@@ -32,7 +32,7 @@ class CellIntake {
     out.begins.reserve(out.begins.size() + types_.size());
     if (areAllAlike()) return readAlike();
     if (!ends_.empty() && ends_.back() > 0) {
-      if (Status done = readVertices(); !done) return done;
+      if (Status done = readVertices([&](auto ids) { take(ids); }); !done) return done;
     }
     while (cell_ < types_.size() && status_) close();
     return status_;
@@ -176,14 +176,14 @@ class CellIntake {
                      "damaged, export it again");
   }
 
-  Status readVertices() {
+  Status readVertices(const TakeNumbers<std::int64_t>& taking) {
     const auto from = array("connectivity");
     if (!from) return std::unexpected(from.error());
     const auto told = static_cast<std::uint64_t>(ends_.back());
     const auto certain = certainNumbers(file_, document_, **from, told);
     if (!certain) return std::unexpected(certain.error());
     out_->vertices.reserve(out_->vertices.size() + *certain);
-    return readIntegers(file_, document_, **from, {told, 0, told}, [&](auto ids) { take(ids); });
+    return readIntegers(file_, document_, **from, {told, 0, told}, taking);
   }
 
   /// Whether all cells are kept, of one kind and of one number of vertices, one behind the other.
@@ -191,7 +191,8 @@ class CellIntake {
     if (types_.empty() || !hidden_.empty() || !hasFaces_.empty() || !isKept(0)) return false;
     const std::uint8_t type = types_.front();
     const std::int64_t vertices = ends_.front();
-    if (vertices <= 0 || type == kPolyhedronCell) return false;
+    const auto cells = static_cast<std::int64_t>(ends_.size());
+    if (vertices <= 0 || vertices > INT64_MAX / cells || type == kPolyhedronCell) return false;
     std::int64_t end = 0;
     return std::ranges::all_of(types_, [&](std::uint8_t t) { return t == type; }) &&
            std::ranges::all_of(ends_, [&](std::int64_t e) { return e == (end += vertices); });
@@ -199,18 +200,11 @@ class CellIntake {
 
   /// The same as readVertices and close of each cell, in bulk.
   Status readAlike() {
-    const auto from = array("connectivity");
-    if (!from) return std::unexpected(from.error());
-    const auto told = static_cast<std::uint64_t>(ends_.back());
-    const auto certain = certainNumbers(file_, document_, **from, told);
-    if (!certain) return std::unexpected(certain.error());
     const std::uint64_t first = out_->vertices.size();
-    out_->vertices.reserve(first + *certain);
-    const Status done = readIntegers(
-        file_, document_, **from, {told, 0, told}, [&](std::span<const std::int64_t> ids) {
-          const auto names = ids | std::views::transform([this](auto id) { return shifted(id); });
-          out_->vertices.insert(out_->vertices.end(), names.begin(), names.end());
-        });
+    const Status done = readVertices([&](std::span<const std::int64_t> ids) {
+      const auto names = ids | std::views::transform([this](auto id) { return shifted(id); });
+      out_->vertices.insert(out_->vertices.end(), names.begin(), names.end());
+    });
     if (!done) return done;
     out_->types.insert(out_->types.end(), types_.begin(), types_.end());
     for (const std::int64_t end : ends_)

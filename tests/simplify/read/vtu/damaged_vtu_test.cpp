@@ -163,6 +163,20 @@ TEST(DamagedVtu, aBlockThatPromisesMoreThanItsBytesCanHoldIsRefusedBeforeAllocat
   }
 }
 
+TEST(DamagedVtu, cellsOfSixtyTwoBitsOfVerticesEachAreRefused) {
+  const Result<ReadMesh> read = readMesh(fileWith(
+      "long.vtu",
+      "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\">"
+      "<UnstructuredGrid><Piece NumberOfPoints=\"1\" NumberOfCells=\"2\"><Points><DataArray "
+      "type=\"Float32\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0</DataArray></Points>"
+      "<Cells><DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">0 0</DataArray>"
+      "<DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">4611686018427387904 "
+      "9223372036854775807</DataArray><DataArray type=\"UInt8\" Name=\"types\" "
+      "format=\"ascii\">10 10</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>\n"));
+  ASSERT_FALSE(read);
+  EXPECT_EQ(read.error().code, ErrorCode::kBadInput) << read.error().text();
+}
+
 TEST(DamagedVtu, entitiesAndDeepElementsAreRefused) {
   std::string text = testing::writtenByVtk(smallGrid(), encodings()[0]);
   const std::size_t root = text.find("<VTKFile");
