@@ -254,6 +254,12 @@ async function showsIsosurfacesAndThresholds({server, browser}) {
     'there are no isosurfaces',
   );
   assert.equal(new URL(page.url()).searchParams.get('iso'), 'Pressure=1,2.5');
+  await page.locator('qtet-viewer select[name=field]').selectOption('Pressure');
+  await viewer.waitForState('complete');
+  await viewer.settle();
+  const marks = page.locator('qtet-viewer .legend-bar i');
+  const [first, second] = await marks.evaluateAll((all) => all.map((it) => it.style.left));
+  assert.ok(parseFloat(first) < parseFloat(second), `marks at ${first} and ${second}`);
   assert.deepEqual(viewer.problems, []);
 }
 

@@ -3,7 +3,7 @@
 import {readdirSync, readFileSync} from 'node:fs';
 import {expect, test, vi} from 'vitest';
 import {fieldLayers} from '../core/layers/layers';
-import {fieldsOf, layerSoups, soupOf} from '../core/layers/shown';
+import {fieldsOf, layerSoups, markedValues, soupOf} from '../core/layers/shown';
 import type {MeshArrays} from '../core/picture/display';
 import {FieldScale} from '../core/picture/field_scale';
 import type {FieldInfo, Manifest} from '../core/protocol/manifest';
@@ -65,6 +65,13 @@ test('askedForItsTrianglesTravelToThePage', () => {
   const soup = soupOf(snapshot, toy)!;
   expect(soup.positions[0]).toBe(0.5);
   expect(buffersOf(snapshot)).toContain(soup.positions.buffer);
+});
+
+test('itsValuesAreMarkedOnTheLegendOfItsField', () => {
+  const marked = (field: number): number[] =>
+    markedValues({field, component: -1}, read({toy: 'p=5', iso: 'p=2,3'}), kFields);
+  expect(marked(0)).toEqual([2, 3, 5]);
+  expect(marked(1)).toEqual([]);
 });
 
 test('notAskedForItIsNotInTheDisplay', () => {

@@ -1,11 +1,12 @@
 // The layers of a display together: the fields that they need, and what they hide and make.
 
 import type {Display, MeshArrays} from '../picture/display';
+import type {Scalar} from '../picture/field_scale';
 import {noSoup, type TriangleSoup} from '../picture/triangle_soup';
 import type {FieldInfo} from '../protocol/manifest';
 import type {Isovalue} from '../protocol/view_request';
 import type {Layer} from './layer';
-import {fieldLayers, kLayers} from './layers';
+import {fieldLayers, kLayers, type LayerAttribute} from './layers';
 
 /** The part of a snapshot that layers make. Parts that have not changed are absent. */
 export interface LayerSoups {
@@ -21,6 +22,19 @@ export function fieldsOf(display: Display): number[] {
     ...fieldLayers().map((layer) => layer.requestOf(display)?.scalar),
   ];
   return [...new Set(scalars.filter((scalar) => scalar != null).map(({field}) => field))];
+}
+
+/** The values of the scalar at which layers draw or hide, to be marked on its legend. */
+export function markedValues(
+  {field, component}: Scalar,
+  read: (name: LayerAttribute) => string | null,
+  fields: readonly FieldInfo[],
+): number[] {
+  return fieldLayers().flatMap((layer) => {
+    const request = layer.read(read(layer.name), fields);
+    const isSame = request?.scalar.field === field && request.scalar.component === component;
+    return isSame ? request.values : [];
+  });
 }
 
 /** The cells that no layer hides; null means all. */

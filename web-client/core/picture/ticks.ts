@@ -54,6 +54,11 @@ export function niceTicks(low: number, high: number, max: number): Ticks {
   return {ticks, factor};
 }
 
+/** The value's place along the bar, in [0, 1] if it lies inside [low, high]. */
+export function placeOn(low: number, high: number, logarithmic: boolean, value: number): number {
+  return logarithmic ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low);
+}
+
 /**
  * The same for a logarithmic bar: powers of ten, and 2 and 5 times them if these are few. REQUIRES:
  * 0 < low < high.
@@ -61,7 +66,7 @@ export function niceTicks(low: number, high: number, max: number): Ticks {
 export function logTicks(low: number, high: number, max: number): Ticks {
   const from = Math.floor(Math.log10(low) - 1e-9);
   const to = Math.ceil(Math.log10(high) + 1e-9);
-  const at = (value: number): number => Math.log(value / low) / Math.log(high / low);
+  const at = (value: number): number => placeOn(low, high, true, value);
   if (high < 10 * low) {
     // hardly curved: the numbers of a linear bar, at their logarithmic places
     const {ticks, factor} = niceTicks(low, high, max);

@@ -101,7 +101,7 @@ export class ClipPanel implements Panel {
     row.querySelector<HTMLInputElement>('[name=flip]')!.checked = flipped;
     const slider = row.querySelector<HTMLInputElement>('[name=position]')!;
     slider.value = String(Math.round(1000 * plane.share));
-    if (!scene) return;
+    if (!scene || scene.bounds.length === 0) return;
     const text = positionText(plane, scene);
     row.querySelector('.position')!.textContent = text;
     slider.setAttribute('aria-valuetext', text);

@@ -1,8 +1,8 @@
-// The colour bar with its numbers.
+// The colour bar with its numbers, and marks where layers draw or hide.
 
 import {colorGradient, labelGradient} from '../../core/picture/color_maps';
 import type {Scalar} from '../../core/picture/field_scale';
-import {labelTicks, logTicks, niceTicks, type Ticks} from '../../core/picture/ticks';
+import {labelTicks, logTicks, niceTicks, placeOn, type Ticks} from '../../core/picture/ticks';
 import type {FieldInfo} from '../../core/protocol/manifest';
 import {formatValue} from '../page/format';
 import type {Settings, ShownRange} from '../settings/settings';
@@ -29,14 +29,16 @@ export class Legend {
     fields: readonly FieldInfo[],
     range: ShownRange,
     {map, reversed}: Settings,
+    marked: readonly number[],
   ): void {
     this.figure.hidden = false;
-    const requested = JSON.stringify([scalar, range, map, reversed, scalarTitle(scalar, fields)]);
+    const title = scalarTitle(scalar, fields);
+    const requested = JSON.stringify([scalar, range, map, reversed, marked, title]);
     if (requested === this.shown) return; // every picture asks, but few change it
     this.shown = requested;
     const {ticks, factor} = ticksOf(range);
     const name = this.part('.legend-name');
-    name.textContent = name.title = scalarTitle(scalar, fields);
+    name.textContent = name.title = title;
     this.part('.legend-missing').hidden = !range.hasMissing;
     this.part('.legend-factor').textContent = range.logarithmic ? 'logarithmic' : factor;
     const note = noteOf(range);
@@ -45,19 +47,28 @@ export class Legend {
     this.part('.legend-bar').style.background = range.labels
       ? labelGradient(range.labels, reversed)
       : colorGradient(map, reversed, 33);
+    this.part('.legend-bar').replaceChildren(
+      ...marked
+        .map((value) => placeOn(range.low, range.high, range.logarithmic, value))
+        .filter((at) => at >= 0 && at <= 1)
+        .map((at) => placed('i', at)),
+    );
     this.part('.legend-ticks').replaceChildren(
-      ...ticks.map(({at, label}) => {
-        const tick = document.createElement('span');
-        tick.style.left = `${100 * at}%`;
-        tick.textContent = label;
-        return tick;
-      }),
+      ...ticks.map(({at, label}) => placed('span', at, label)),
     );
   }
 
   private part(selector: string): HTMLElement {
     return this.figure.querySelector<HTMLElement>(selector)!;
   }
+}
+
+/** An element at a share of the bar. */
+function placed(tag: 'i' | 'span', at: number, text = ''): HTMLElement {
+  const element = document.createElement(tag);
+  element.style.left = `${100 * at}%`;
+  element.textContent = text;
+  return element;
 }
 
 function ticksOf({labels, logarithmic, low, high}: ShownRange): Ticks {

@@ -1,6 +1,7 @@
 // The cards over the picture. Each panel is a component of its own; this updates them together.
 
 import {fieldLayers} from '../../core/layers/layers';
+import {markedValues} from '../../core/layers/shown';
 import {kMaxPlanes} from '../../core/picture/display';
 import type {Vector} from '../../core/protocol/geometry';
 import type {Client} from '../../core/session/client';
@@ -18,7 +19,7 @@ import {ColorPanel} from './color_panel';
 import {Inspect} from './inspect';
 import {Legend} from './legend';
 import {LevelPanel} from './level_panel';
-import {scalarTitle, type Scene} from './panel';
+import {scalarTitle, type Panel, type Scene} from './panel';
 import {ProgressPanel} from './progress_panel';
 import {StatisticsPanel} from './statistics_panel';
 import {ValuePanel} from './value_panel';
@@ -39,8 +40,8 @@ export class Panels {
   readonly clip: ClipPanel;
   readonly inspect: Inspect;
   private readonly color: ColorPanel;
-  /** Panels that need only the attributes and the mesh's fields. */
-  private readonly simple: readonly {update(settings: Settings, known: Scene | null): void}[];
+  /** Panels that need only the attributes and the mesh. */
+  private readonly simple: readonly Panel[];
   private readonly handles: ClipHandles;
   private readonly legend: Legend;
   private readonly statistics: StatisticsPanel;
@@ -48,7 +49,11 @@ export class Panels {
   /** The field and the level that a line's plot shows. */
   private plotted = '';
 
-  constructor(page: Page, host: PanelsHost, actions: Actions) {
+  constructor(
+    private readonly page: Page,
+    host: PanelsHost,
+    actions: Actions,
+  ) {
     const {root} = page;
     const announce = (text: string): void => page.announce(text);
     this.progress = new ProgressPanel(root, announce);
@@ -71,6 +76,7 @@ export class Panels {
     );
     this.simple = [
       this.color,
+      this.clip,
       ...fieldLayers().map((layer) => new ValuePanel(root, page, layer)),
       new VolumePanel(root, page),
       level,
@@ -108,7 +114,6 @@ export class Panels {
     const {manifest, bounds, firstField, snapshot} = mesh;
     const known: Scene | null = manifest && {manifest, bounds, firstField};
     for (const panel of this.simple) panel.update(settings, known);
-    this.clip.update(settings, bounds.length > 0 ? known : null);
     this.handles.update(settings.planes, snapshot ? bounds : []);
   }
 
@@ -138,7 +143,8 @@ export class Panels {
   /** Shows the legend; null if nothing is coloured. */
   showRange(range: ShownRange | null, {snapshot, manifest}: ShownMesh, settings: Settings): void {
     if (range && snapshot?.color && manifest) {
-      this.legend.show(snapshot.color, manifest.fields, range, settings);
+      const marked = markedValues(snapshot.color, (name) => this.page.read(name), manifest.fields);
+      this.legend.show(snapshot.color, manifest.fields, range, settings, marked);
       this.color.showRange(range.low, range.high);
     } else {
       this.legend.hide();
