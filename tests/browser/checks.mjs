@@ -278,9 +278,8 @@ async function pointsAndProbes({server, browser}) {
     said,
   );
   await page.getByText('Line', {exact: true}).click();
-  await viewer.settle(); // the mesh takes the place of the card
   await page.mouse.click(520, 420); // beside the handle of the plane
-  await page.getByText('Now point at the other end.', {exact: true}).waitFor();
+  await page.locator('qtet-viewer .tool-hint', {hasText: 'Now point at the other end.'}).waitFor();
   await page.mouse.click(700, 400);
   await page.locator('qtet-viewer .plot canvas').waitFor();
   await page.mouse.move(700, 700);
@@ -297,6 +296,75 @@ async function pointsAndProbes({server, browser}) {
   assert.deepEqual(viewer.problems, []);
   return said.replaceAll('\n', ' ');
 }
+
+/** Cards open over the picture. They leave the camera, the fit and the point alone. */
+async function cardsNeverMoveTheMesh({server, browser}, device, name) {
+  const viewer = await browser.open(`${server.url}?mesh=fin`, device);
+  await viewer.waitForState('complete');
+  await viewer.waitForPicture();
+  const {page} = viewer;
+  const bare = async (shot) => {
+    await viewer.settle();
+    const style = await page.addStyleTag({
+      content:
+        'qtet-viewer::part(panel), qtet-viewer::part(legend), qtet-viewer::part(hint), ' +
+        'qtet-viewer::part(marks), qtet-viewer::part(result) { display: none }',
+    });
+    const picture = await viewer.screenshot(shot);
+    await style.evaluate((its) => its.remove());
+    return picture;
+  };
+  const tool = (its) =>
+    page.evaluate(
+      (value) => window.qtetViewer.shadowRoot.querySelector(`.tools input[value=${value}]`).click(),
+      its,
+    );
+  const before = await bare(`${name}-before`);
+  await tool('point');
+  assert.equal(await viewer.text('.tool-hint'), 'Point at a place on the mesh.');
+  const [x, y] = await page.evaluate(() => {
+    const {meshView, viewing} = window.qtetViewer;
+    const {bounds} = viewing.mesh;
+    const at = meshView.project([0, 1, 2].map((axis) => (bounds[axis] + bounds[axis + 3]) / 2));
+    return [at.x, at.y];
+  });
+  await page.mouse.click(x, y);
+  await page.locator('qtet-viewer .result').waitFor();
+  await viewer.screenshot(`${name}-point`);
+  const mark = await page.evaluate(() => {
+    const circle = window.qtetViewer.shadowRoot.querySelector('.marks circle');
+    return ['cx', 'cy'].map((axis) => Number(circle.getAttribute(axis)));
+  });
+  assert.ok(Math.hypot(mark[0] - x, mark[1] - y) < 1, `clicked ${[x, y]}, marked ${mark}`);
+  assert.equal(differingShare(before, await bare(`${name}-point-bare`)), 0);
+  await page.locator('qtet-viewer .fold').click();
+  assert.equal(differingShare(before, await bare(`${name}-folded`)), 0);
+  await page.locator('qtet-viewer .fold').click();
+
+  const title = page.locator('qtet-viewer .result h2');
+  const box = async () => page.locator('qtet-viewer .result').boundingBox();
+  const from = await box();
+  const hold = await title.boundingBox();
+  await page.mouse.move(hold.x + 9, hold.y + 9);
+  await page.mouse.down();
+  await page.mouse.move(hold.x + 9, hold.y + 9 + (from.y > 100 ? -60 : 60), {steps: 3});
+  await page.mouse.up();
+  assert.equal(Math.abs((await box()).y - from.y), 60, 'the card cannot be dragged');
+
+  await tool('line');
+  await page.mouse.click(x - 30, y);
+  await page.locator('qtet-viewer .tool-hint', {hasText: 'Now point at the other end.'}).waitFor();
+  await page.mouse.click(x + 30, y);
+  await page.locator('qtet-viewer .plot canvas').waitFor();
+  await viewer.screenshot(`${name}-line`);
+  assert.equal(differingShare(before, await bare(`${name}-line-bare`)), 0);
+  await tool('none');
+  assert.equal(differingShare(before, await bare(`${name}-closed`)), 0);
+  assert.deepEqual(viewer.problems, []);
+}
+
+const cardsMoveNothing = (context) => cardsNeverMoveTheMesh(context, kDesktop, 'cards');
+const cardsMoveNothingOnAPhone = (context) => cardsNeverMoveTheMesh(context, kPhone, 'cards-phone');
 
 async function goesCoarserAndStopsAtAnError({server, browser, logs}) {
   const viewer = await browser.open(`${server.url}?mesh=fin&quality=1%`);
@@ -606,6 +674,8 @@ export const checks = {
   clipsWithACap,
   showsIsosurfacesAndThresholds,
   pointsAndProbes,
+  cardsMoveNothing,
+  cardsMoveNothingOnAPhone,
   goesCoarserAndStopsAtAnError,
   showsTheSamePictureFromItsLink,
   comesBackFromLostGraphics,

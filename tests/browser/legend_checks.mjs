@@ -145,17 +145,21 @@ async function followsTheField({server, browser}) {
   await viewer.settle();
   assert.equal(await plot.getAttribute('aria-label'), 'Density along the line');
   const covered = await page.evaluate(() => {
-    const {right} = window.qtetViewer.shadowRoot.querySelector('.result').getBoundingClientRect();
+    const {shadowRoot} = window.qtetViewer;
+    const {left, top, right, bottom} = shadowRoot.querySelector('.result').getBoundingClientRect();
     return {
-      right,
-      marks: [...window.qtetViewer.shadowRoot.querySelectorAll('.marks circle')].map((mark) =>
-        Number(mark.getAttribute('cx')),
+      card: {left, top, right, bottom},
+      marks: [...shadowRoot.querySelectorAll('.marks circle')].map((mark) =>
+        ['cx', 'cy'].map((name) => Number(mark.getAttribute(name))),
       ),
     };
   });
   assert.equal(covered.marks.length, 2);
+  const {card} = covered;
   assert.ok(
-    covered.marks.every((mark) => mark > covered.right),
+    covered.marks.every(
+      ([x, y]) => x < card.left || x > card.right || y < card.top || y > card.bottom,
+    ),
     JSON.stringify(covered),
   );
   await field.selectOption('Pressure');

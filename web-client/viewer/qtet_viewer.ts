@@ -27,7 +27,7 @@
 //                is on the screen), error, camera-change, view-change (an attribute of the view).
 //                `detail` holds the figures, the error, the camera or the attribute.
 // Slots          poster (shown until the first picture), progress (instead of the viewer's own).
-// Parts          canvas, panel, progress, legend, result, notice.
+// Parts          canvas, panel, progress, legend, hint, marks, result, notice.
 // Methods        digest(), pause(), resume(), resetView(), look(direction), picture().
 // Properties     counts, statistics, state, view, cameraState, token.
 
@@ -134,11 +134,11 @@ export class QtetViewer extends HTMLElement {
   }
   resetView(): void {
     this.kept.start = null;
-    this.meshView?.look(null);
+    if (this.meshView) this.viewing!.look(null);
   }
   /** Before there is a picture, the first one is seen from there. */
   look(direction: Direction): void {
-    if (this.meshView) this.meshView.look(direction);
+    if (this.meshView) this.viewing!.look(direction);
     else this.kept.start = checkedDirection(direction);
   }
   /** The scene as a PNG; null before there is one. */

@@ -87,7 +87,7 @@ const closeIcon =
 export const kTemplate = `
 <slot name="poster"></slot>
 <canvas class="scene" part="canvas" tabindex="0" role="application" aria-label="3D view"></canvas>
-<div class="layer" aria-hidden="true"><svg class="marks"></svg></div>
+<div class="layer" aria-hidden="true"><svg class="marks" part="marks"></svg></div>
 <svg class="orientation-axes" viewBox="-30 -30 60 60" aria-hidden="true"></svg>
 <div class="visually-hidden live" role="status" aria-live="polite"></div>
 
@@ -99,6 +99,7 @@ export const kTemplate = `
   <div class="legend-missing" hidden><i></i>No value</div>
 </figure>
 
+<p class="card tool-hint" part="hint" hidden></p>
 <section class="card result" part="result" aria-label="What was pointed at" hidden>
   <div class="row">
     <h2></h2>

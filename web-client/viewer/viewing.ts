@@ -7,6 +7,7 @@ import type {Vector} from '../core/protocol/geometry';
 import type {Manifest} from '../core/protocol/manifest';
 import type {Client} from '../core/session/client';
 import type {FromWorker, Snapshot, StreamState} from '../core/session/worker_messages';
+import type {Direction} from '../three/directions';
 import type {View} from '../three/view';
 import {Graphics, type ViewStart} from './graphics';
 import {Actions, type ActionsHost} from './page/actions';
@@ -142,7 +143,12 @@ export class Viewing implements ActionsHost, PanelsHost {
   centre(): void {
     const {point} = this.requests;
     if (point) this.view?.centre(point);
-    else this.view?.look(null);
+    else this.look(null);
+  }
+
+  look(direction: Direction | null): void {
+    this.panels?.cards.refit();
+    this.view?.look(direction);
   }
 
   inspect(): void {
@@ -220,7 +226,7 @@ export class Viewing implements ActionsHost, PanelsHost {
     view.setFocus(this.mesh.focus);
     bindKeys(find(this.page.root, '.scene'), this.actions.keys(view));
     this.apply();
-    this.panels?.cards.arrange();
+    this.panels?.cards.repeat();
     const {waiting} = this.mesh;
     this.mesh.waiting = null;
     if (waiting) this.draw(waiting, view);

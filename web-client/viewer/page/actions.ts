@@ -14,6 +14,8 @@ export interface ActionsHost {
   readonly settings: Settings;
   readonly view: View | null;
   picture(): Promise<Blob | null>;
+  /** Shows a standard view, or (null) the first one, beside the cards that are open now. */
+  look(direction: Direction | null): void;
   togglePause(): void;
   /** Moves the first clip plane by a share of the extent. */
   moveClip(step: number): void;
@@ -36,7 +38,7 @@ export class Actions {
   }
 
   look(direction: Direction | null): void {
-    this.host.view?.look(direction);
+    this.host.look(direction);
   }
 
   togglePause(): void {
@@ -81,7 +83,7 @@ export class Actions {
       pan: (right, up) => view.pan(right, up),
       centre: () => this.host.centre(),
       zoom: (factor) => view.zoom(factor),
-      look: (direction) => view.look(direction === null ? null : kDirections[direction]!),
+      look: (direction) => this.look(direction === null ? null : kDirections[direction]!),
       toggle: (what) => this.toggle(what),
       moveClip: (step) => this.host.moveClip(step),
       inspect: () => this.host.inspect(),

@@ -8,12 +8,20 @@ import {insetsOf} from './layout';
 const kSheetPixels = 640;
 
 export class CardLayout {
-  /** The middle of the free area, as shares of the canvas. */
+  /** The middle of the area for the mesh, as shares of the canvas. */
   middle: [number, number] = [0.5, 0.5];
+  private insets: Insets | null = null;
   private readonly panel: HTMLElement;
-  private readonly resizes = new ResizeObserver(() => this.arrange());
+  private readonly resizes = new ResizeObserver((entries) => {
+    // The panel's own size moves nothing but what lies above it.
+    if (entries.some(({target}) => target === this.element)) this.refit();
+    this.placeAboveSheet();
+  });
 
-  /** `changed` receives the area that the cards cover. */
+  /**
+   * `changed` receives the area that the cards cover. It is what they covered at the mesh's first
+   * picture. A card that opens or closes later must not move the mesh.
+   */
   constructor(
     private readonly element: HTMLElement,
     private readonly root: ShadowRoot,
@@ -22,16 +30,22 @@ export class CardLayout {
     this.panel = find(root, '.panel');
     onClick(root, '.fold', () => this.fold(!this.panel.classList.contains('folded')));
     this.fold(this.isNarrow);
-    for (const box of [this.panel, find(root, '.result'), element]) this.resizes.observe(box);
+    for (const box of [this.panel, element]) this.resizes.observe(box);
   }
 
-  arrange(): void {
-    const {element, panel, root, isNarrow} = this;
-    const cards = {panel, legend: find(root, '.legend'), result: find(root, '.result')};
-    const insets = insetsOf(element, cards, isNarrow);
-    element.style.setProperty('--sheet', `${isNarrow ? panel.offsetHeight : 0}px`);
-    this.middle = [(1 + insets.left - insets.right) / 2, (1 + insets.top - insets.bottom) / 2];
-    this.changed(insets);
+  /** Gives the mesh the area that is free now: for a first picture, and when the user asks. */
+  refit(): void {
+    const {panel, root} = this;
+    const cards = {panel, legend: find(root, '.legend')};
+    this.insets = insetsOf(this.element, cards, this.isNarrow);
+    const {left, right, top, bottom} = this.insets;
+    this.middle = [(1 + left - right) / 2, (1 + top - bottom) / 2];
+    this.changed(this.insets);
+  }
+
+  /** Reports the area again, to another view. */
+  repeat(): void {
+    if (this.insets) this.changed(this.insets);
   }
 
   dispose(): void {
@@ -40,6 +54,11 @@ export class CardLayout {
 
   private get isNarrow(): boolean {
     return this.element.clientWidth <= kSheetPixels;
+  }
+
+  private placeAboveSheet(): void {
+    const height = this.isNarrow ? this.panel.offsetHeight : 0;
+    this.element.style.setProperty('--sheet', `${height}px`);
   }
 
   private fold(folded: boolean): void {

@@ -6,13 +6,10 @@ import type {Insets} from '../../three/view';
 const kMaxCovered = 0.6;
 /** Share of the free width: a wider legend leaves no corner. */
 const kWide = 0.6;
-/** Beside the panel and the card of a point this share of the width stays for the mesh. */
-const kMinFree = 0.35;
-
-/** `result` stands above the sheet on narrow screens, and the mesh above both. */
+/** On narrow screens the panel is a sheet at the foot. */
 export function insetsOf(
   host: HTMLElement,
-  {panel, legend, result}: {panel: HTMLElement; legend: HTMLElement; result: HTMLElement},
+  {panel, legend}: {panel: HTMLElement; legend: HTMLElement},
   sheet: boolean,
 ): Insets {
   const whole = host.getBoundingClientRect();
@@ -22,23 +19,19 @@ export function insetsOf(
   const height = Math.max(whole.height, 1);
   const hidden = card.width === 0; // a page may hide the panel, and the legend
   const bare = bar.width === 0;
-  if (sheet) {
-    const covered = result.hidden ? card.top : result.getBoundingClientRect().top;
+  if (sheet)
     return {
       left: 0,
       right: 0,
       top: bare ? 0 : Math.min(kMaxCovered, (bar.bottom - whole.top) / height),
-      bottom: hidden ? 0 : Math.min(kMaxCovered, (whole.bottom - covered) / height),
+      bottom: hidden ? 0 : Math.min(kMaxCovered, (whole.bottom - card.top) / height),
     };
-  }
   const free = (hidden ? whole.right : card.left) - whole.left;
   // The legend only takes a corner, so that half of its height is enough room, unless it leaves
   // hardly any width.
   const bottom = bare ? 0 : (whole.bottom - bar.top) / height / (bar.width > kWide * free ? 1 : 2);
-  const pointed = result.hidden ? 0 : (result.getBoundingClientRect().right - whole.left) / width;
-  const left = pointed < free / width - kMinFree ? pointed : 0;
   return {
-    left,
+    left: 0,
     right: hidden ? 0 : Math.min(kMaxCovered, (whole.right - card.left) / width),
     top: 0,
     bottom: Math.min(kMaxCovered, bottom),

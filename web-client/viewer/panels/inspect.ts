@@ -4,13 +4,21 @@
 import type {Vector} from '../../core/protocol/geometry';
 import type {Manifest} from '../../core/protocol/manifest';
 import type {Client} from '../../core/session/client';
-import type {Pick, Probe} from '../../core/session/inspector';
+import type {Pick} from '../../core/session/inspector';
+import {cornersOf} from '../../three/outline';
 import type {View} from '../../three/view';
 import {formatCount, formatTo, formatValue, resolutionOf} from '../page/format';
-import {save} from '../page/save';
+import type {Point} from '../page/card_place';
+import {ResultCard} from './result_card';
 
 export type Tool = 'none' | 'point' | 'line';
 
+/** The text before the first click. */
+const kFirstHints: Record<Tool, string> = {
+  none: '',
+  point: 'Point at a place on the mesh.',
+  line: 'Point at one end of the line.',
+};
 /** A press that moves farther than this turns the mesh instead. */
 const kClickPixels = 5;
 /** Places are shown to this share of the lattice's span. */
@@ -20,6 +28,8 @@ export interface InspectHost {
   readonly client: Client | null;
   readonly view: View | null;
   readonly manifest: Manifest | null;
+  /** The mesh's, in lattice coordinates. */
+  readonly bounds: number[];
   /** The middle of the free area, as shares of the canvas. */
   readonly middle: [number, number];
   /** The title of the coloured field, for the plot. */
@@ -33,19 +43,19 @@ export class Inspect {
   private tool: Tool = 'none';
   private points: Pick[] = [];
   private pressed: {x: number; y: number} | null = null;
-  private readonly card: HTMLElement;
+  private readonly card: ResultCard;
   private readonly marks: SVGSVGElement;
-  private plot: {destroy(): void} | null = null;
-  /** The text to copy, and the plot as CSV. */
-  private text = '';
-  private table = '';
 
   /** Listens on the root, because another canvas may replace this one. */
   constructor(
     private readonly root: ShadowRoot,
     private readonly host: InspectHost,
   ) {
-    this.card = root.querySelector('.result')!;
+    this.card = new ResultCard(
+      root,
+      (text) => host.announce(text),
+      () => this.clear(),
+    );
     this.marks = root.querySelector('.marks')!;
     const onCanvas = (
       type: 'pointerdown' | 'pointerup',
@@ -71,9 +81,6 @@ export class Inspect {
       .addEventListener('change', (event) =>
         this.use((event.target as HTMLInputElement).value as Tool),
       );
-    root.querySelector('.copy-result')!.addEventListener('click', () => void this.copy());
-    root.querySelector('.save-table')!.addEventListener('click', () => this.saveTable());
-    root.querySelector('.close-result')!.addEventListener('click', () => this.clear());
   }
 
   use(tool: Tool): void {
@@ -96,9 +103,8 @@ export class Inspect {
 
   clear(): void {
     this.points = [];
-    this.plot?.destroy();
-    this.plot = null;
-    this.card.hidden = true;
+    this.card.hide();
+    this.hint(kFirstHints[this.tool]);
     this.place();
     this.host.pointAt(null);
   }
@@ -107,6 +113,11 @@ export class Inspect {
   refresh(): void {
     const [from, to] = this.points;
     if (this.tool === 'line' && from && to) void this.showLine(from, to);
+  }
+
+  /** Must be called when the viewer has another size. */
+  arrange(): void {
+    this.placeCard();
   }
 
   /** Must be called after every frame, so that the marks follow their points. */
@@ -140,14 +151,11 @@ export class Inspect {
       this.tool === 'line' && this.points.length === 1 ? [this.points[0]!, pick] : [pick];
     this.place();
     this.host.pointAt(pick.lattice);
+    const [from, to] = this.points;
+    this.hint(this.tool === 'line' && !to ? 'Now point at the other end.' : '');
     if (this.tool === 'point') this.showPick(pick);
-    else if (this.points.length === 2) await this.showLine(this.points[0]!, pick);
-    else
-      this.showText(
-        'Line',
-        [['Start', this.placeText(pick.position)]],
-        'Now point at the other end.',
-      );
+    else if (!to) this.card.hide();
+    else await this.showLine(from!, to);
   }
 
   private showPick(pick: Pick): void {
@@ -160,18 +168,23 @@ export class Inspect {
       if (values.length > 1) rows.push([`${info.name}, magnitude`, format(Math.hypot(...values))]);
     }
     rows.push(['Vertices', pick.corners.map(formatCount).join(', ')]);
-    this.showText(`Cell ${formatCount(pick.cell)}`, rows);
+    this.card.show(`Cell ${formatCount(pick.cell)}`, rows, false);
+    this.placeCard();
   }
 
   private async showLine(from: Pick, to: Pick): Promise<void> {
     const probe = await this.host.client!.probe(from.lattice, to.lattice);
     if (!probe) return;
     const delta = to.position.map((x, axis) => x - from.position[axis]!) as Vector;
-    this.showText('Line', [
+    const hasPlot = probe.values.length > 1;
+    const rows: [string, string][] = [
       ['Distance', formatValue(probe.length)],
       ['Difference', this.placeText(delta)],
-    ]);
-    if (probe.values.length > 1) await this.drawPlot(probe);
+    ];
+    const opens = !this.card.isOpen;
+    this.card.show('Line', rows, hasPlot);
+    if (opens) this.placeCard();
+    if (hasPlot) await this.card.drawPlot(probe, this.host.fieldTitle);
   }
 
   /** Rounds to a ten-thousandth of the lattice's span. */
@@ -180,65 +193,38 @@ export class Inspect {
     return place.map((x) => formatTo(x, kPlaceShare * step * 2 ** bits)).join(', ');
   }
 
-  /** uPlot is loaded with the first plot. */
-  private async drawPlot(probe: Probe): Promise<void> {
-    const {drawProbe} = await import('./probe_plot');
-    this.plot?.destroy();
-    this.plot = drawProbe(
-      this.root,
-      this.card.querySelector('.plot')!,
-      probe,
-      this.host.fieldTitle,
+  /** Puts the card beside the last point, where the mesh and the other cards are not. */
+  private placeCard(): void {
+    const {view, bounds} = this.host;
+    if (!view) return;
+    const at = ({lattice}: Pick): Point => view.project(lattice);
+    const whole = this.root.host.getBoundingClientRect();
+    const cards = ['.panel', '.legend', '.tool-hint'].map((name) =>
+      this.root.querySelector(name)!.getBoundingClientRect(),
     );
-    this.table = [
-      ['distance', this.host.fieldTitle],
-      ...probe.at.map((at, i) => [at, probe.values[i]!]),
-    ]
-      .map((row) => row.map(csvCell).join(','))
-      .join('\r\n');
-    this.card.querySelector<HTMLElement>('.save-table')!.hidden = false;
+    this.card.place({
+      width: whole.width,
+      height: whole.height,
+      cards: cards
+        .filter(({width}) => width > 0)
+        .map(({left, top, right, bottom}) => ({
+          left: left - whole.left,
+          top: top - whole.top,
+          right: right - whole.left,
+          bottom: bottom - whole.top,
+        })),
+      picked: this.points.map(at),
+      mesh: cornersOf(bounds).map((corner) => view.project(corner)),
+    });
   }
 
-  /** Pages without https have no clipboard. */
-  private async copy(): Promise<void> {
-    const clipboard = navigator.clipboard as Clipboard | undefined;
-    const copied = await clipboard?.writeText(this.text).then(
-      () => true,
-      () => false,
-    );
-    this.host.announce(copied ? 'Copied' : 'The browser does not let this page copy');
+  /** Says the next step, in the picture and to screen readers; empty: nothing. */
+  private hint(text: string): void {
+    const hint = this.root.querySelector<HTMLElement>('.tool-hint')!;
+    hint.hidden = text === '';
+    if (hint.textContent !== text && text !== '') this.host.announce(text);
+    hint.textContent = text;
   }
-
-  private saveTable(): void {
-    save(new Blob([this.table], {type: 'text/csv'}), 'line.csv');
-  }
-
-  private showText(title: string, rows: [string, string][], hint = ''): void {
-    this.plot?.destroy();
-    this.plot = null;
-    this.card.hidden = false;
-    this.card.querySelector<HTMLElement>('.save-table')!.hidden = true;
-    this.text = rows.map((row) => row.join('\t').replaceAll('\u2212', '-')).join('\n');
-    this.card.querySelector('h2')!.textContent = title;
-    this.card.querySelector('.hint')!.textContent = hint;
-    this.card.querySelector('dl')!.replaceChildren(
-      ...rows.map(([name, value]) => {
-        const row = document.createElement('div');
-        row.append(
-          Object.assign(document.createElement('dt'), {textContent: name}),
-          Object.assign(document.createElement('dd'), {textContent: value}),
-        );
-        return row;
-      }),
-    );
-    this.host.announce([title, ...rows.map((row) => row.join(' ')), hint].join('. '));
-  }
-}
-
-/** A missing value is an empty cell. */
-function csvCell(value: string | number): string {
-  if (typeof value === 'string') return `"${value.replaceAll('"', '""')}"`;
-  return Number.isNaN(value) ? '' : String(value);
 }
 
 function shape(name: string, attributes: Record<string, number>): SVGElement {

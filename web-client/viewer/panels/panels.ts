@@ -46,6 +46,8 @@ export class Panels {
   private readonly legend: Legend;
   private readonly statistics: StatisticsPanel;
   private readonly view: ViewPanel;
+  /** The mesh has its place beside the cards. */
+  private hasFit = false;
   /** The field and the level that a line's plot shows. */
   private plotted = '';
 
@@ -93,6 +95,9 @@ export class Panels {
       },
       get manifest() {
         return host.mesh.manifest;
+      },
+      get bounds() {
+        return host.mesh.bounds;
       },
       get middle() {
         return cards.middle;
@@ -149,11 +154,14 @@ export class Panels {
     } else {
       this.legend.hide();
     }
-    this.cards.arrange();
+    if (this.hasFit || !snapshot) return;
+    this.hasFit = true;
+    this.cards.refit();
   }
 
   /** Must be called before another mesh. */
   clear(): void {
+    this.hasFit = false;
     this.progress.begin(null);
     this.statistics.clear();
     this.inspect.clear();
