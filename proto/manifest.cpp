@@ -1,5 +1,8 @@
 #include "proto/manifest.h"
 
+#include <cmath>
+#include <limits>
+
 #include "proto/field_key.h"
 #include "proto/json_reader.h"
 #include "proto/level_error_json.h"
@@ -11,8 +14,31 @@ std::string fieldKey(const Manifest& manifest, std::size_t f) {
   return fieldOfKey(manifest, field.name) == f ? field.name : field.association + ":" + field.name;
 }
 
+std::string firstField(const Manifest& manifest) {
+  return manifest.fields.empty() ? ""
+                                 : fieldKey(manifest, manifest.opening.value_or(Opening{}).field);
+}
+
 std::optional<std::uint32_t> fieldOfKey(const Manifest& manifest, std::string_view key) {
   return fieldOfKey(manifest.fields, key);
+}
+
+std::array<double, 6> focusCorners(const Manifest& manifest) {
+  std::array<double, 6> out{};
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const double share =
+        std::ldexp(manifest.focus->at(i), -std::numeric_limits<Focus::value_type>::digits);
+    out[i] = manifest.latticeOrigin[i % 3] +
+             std::ldexp(manifest.latticeStep * share, manifest.latticeBits);
+  }
+  return out;
+}
+
+Json openingJson(const Manifest& manifest) {
+  const auto& [field, cut] = *manifest.opening;
+  Json out = {{"field", fieldKey(manifest, field)}};
+  if (cut) out["cut"] = std::string(1, static_cast<char>('x' + *cut));
+  return out;
 }
 
 std::string manifestToJson(const Manifest& manifest) {
@@ -23,6 +49,8 @@ std::string manifestToJson(const Manifest& manifest) {
   out["lattice"] = {{"bits", manifest.latticeBits},
                     {"step", manifest.latticeStep},
                     {"origin", manifest.latticeOrigin}};
+  if (manifest.focus) out["focus"] = focusCorners(manifest);
+  if (manifest.opening) out["opening"] = openingJson(manifest);
   out["fields"] = Json::array();
   for (const ManifestField& f : manifest.fields)
     out["fields"].push_back({{"name", f.name},

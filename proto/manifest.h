@@ -40,6 +40,19 @@ struct ManifestLevel {
   std::optional<LevelError> error = std::nullopt;
 };
 
+/// A box where the original's cells are small, if it is small against the mesh. Low corner, high
+/// corner, in 2^-16 of the lattice's span; each low end is below the high one.
+using Focus = std::array<std::uint16_t, 6>;
+
+/// The first picture that shows something.
+struct Opening {
+  std::uint8_t field = 0;  ///< that colours it
+  /// The axis across which the mesh is cut open in the middle, 0..2.
+  std::optional<std::uint8_t> cut = std::nullopt;
+
+  [[nodiscard]] bool operator==(const Opening&) const = default;
+};
+
 struct Manifest {
   std::string generator;
   std::string layout = "stream";
@@ -47,6 +60,9 @@ struct Manifest {
   int latticeBits = 0;
   double latticeStep = 1;
   std::array<double, 3> latticeOrigin{};
+  std::optional<Focus> focus = std::nullopt;
+  /// None: the first field on the boundary.
+  std::optional<Opening> opening = std::nullopt;
   std::vector<ManifestField> fields;
   std::vector<ManifestLevel> levels;  ///< level 0 = base mesh, the last = the input's mesh
 };
@@ -54,9 +70,14 @@ struct Manifest {
 /// The unique name of field `f`: its name, or "cell:NAME" for a cell field if a point field has the
 /// same name.
 [[nodiscard]] std::string fieldKey(const Manifest& manifest, std::size_t f);
+/// The key of the field that a viewer shows first. Empty without fields.
+[[nodiscard]] std::string firstField(const Manifest& manifest);
 /// The one field that `key` means (field_key.h).
 [[nodiscard]] std::optional<std::uint32_t> fieldOfKey(const Manifest& manifest,
                                                       std::string_view key);
+
+/// The corners of the manifest's focus in the mesh's own coordinates. REQUIRES: there is one.
+[[nodiscard]] std::array<double, 6> focusCorners(const Manifest& manifest);
 
 [[nodiscard]] std::string manifestToJson(const Manifest& manifest);
 

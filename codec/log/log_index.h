@@ -104,13 +104,16 @@ struct ClosingBlock {
 struct LogIndex {
   static constexpr std::uint32_t kHeaderBytes = 64;
   static constexpr std::uint16_t kVersionMajor = 2;
-  /// Written in a log with original cells; any other log has 0.
-  static constexpr std::uint16_t kVersionMinor = 1;
+  /// The minor version of a log with original cells; one without is of 0.
+  static constexpr std::uint16_t kMinorOfOriginalCells = 1;
+  /// The minor version of a log whose manifest has a focus or an opening.
+  static constexpr std::uint16_t kMinorOfFirstView = 2;
 
   Layout layout = Layout::kStream;
   std::uint8_t positionBits = 0;
   std::uint64_t fileBytes = 0;
-  Bytes manifest;  ///< as it stands in the file; codec/log/log_manifest.h reads it
+  Bytes manifest;             ///< as it stands in the file; codec/log/log_manifest.h reads it
+  bool hasFirstView = false;  ///< the manifest has a focus or an opening
   std::vector<FieldShape> fields;
   std::vector<ChunkEntry> chunks;
   std::vector<std::uint32_t> dependencies;

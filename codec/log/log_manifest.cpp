@@ -95,6 +95,57 @@ ManifestField readField(ByteReader& r, const FieldShape& shape) {
   return out;
 }
 
+// ---- what follows the fields
+
+constexpr unsigned kErrorsFollow = 1, kFocusFollows = 2, kOpeningFollows = 4;
+constexpr std::uint8_t kNoCut = 3;
+
+void writeFirstView(ByteWriter& w, const Manifest& manifest) {
+  const bool hasErrors = manifest.levels.front().error.has_value();
+  w.write(static_cast<std::uint8_t>((hasErrors ? kErrorsFollow : 0) |
+                                    (manifest.focus ? kFocusFollows : 0) |
+                                    (manifest.opening ? kOpeningFollows : 0)));
+  if (manifest.focus)
+    for (const std::uint16_t end : *manifest.focus) w.write(end);
+  if (!manifest.opening) return;
+  w.write(manifest.opening->field);
+  w.write(manifest.opening->cut.value_or(kNoCut));
+}
+
+Focus readFocus(ByteReader& r) {
+  Focus focus{};
+  for (std::uint16_t& end : focus) end = r.read<std::uint16_t>();
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (focus[axis] >= focus[axis + 3])
+      r.fail(ErrorCode::kBadValue, "the manifest's focus is an empty box; build the log again");
+  return focus;
+}
+
+Opening readOpening(ByteReader& r, std::size_t fields) {
+  Opening opening{r.read<std::uint8_t>()};
+  if (const auto cut = r.read<std::uint8_t>(); cut != kNoCut) opening.cut = cut;
+  if (opening.field >= fields || opening.cut.value_or(0) > kNoCut)
+    r.fail(
+        ErrorCode::kBadValue,
+        "the manifest's opening names a field or an axis that is not there; build the log again");
+  return opening;
+}
+
+/// Returns the flags.
+unsigned readFirstView(ByteReader& r, const LogIndex& index, Manifest& out) {
+  const unsigned flags = r.read<std::uint8_t>();
+  if (flags > (kErrorsFollow | kFocusFollows | kOpeningFollows))
+    r.fail(ErrorCode::kBadValue,
+           "the manifest's flags say what this build does not know; use a newer qtet");
+  if ((flags > kErrorsFollow) != index.hasFirstView)
+    r.fail(ErrorCode::kBadValue,
+           "header and manifest contradict each other in whether there is a first view; fetch or "
+           "build the log again");
+  if ((flags & kFocusFollows) != 0) out.focus = readFocus(r);
+  if ((flags & kOpeningFollows) != 0) out.opening = readOpening(r, index.fields.size());
+  return flags;
+}
+
 // ---- levels
 
 std::vector<double> pairsOf(const LevelError& error) {
@@ -180,17 +231,14 @@ std::vector<std::uint32_t> completingChunks(const LogIndex& index) {
 }
 
 Status readLevels(ByteReader& r, const LogIndex& index, Manifest& out) {
-  const auto hasErrors = r.read<std::uint8_t>();
-  if (hasErrors > 1)
-    r.fail(ErrorCode::kBadValue,
-           "the manifest's word on known errors is neither 0 nor 1; use a newer qtet");
+  const bool hasErrors = (readFirstView(r, index, out) & kErrorsFollow) != 0;
   const ByteView bytes = r.take(r.remaining());
   if (r.failed()) return std::unexpected(r.error());
   const std::vector<std::uint32_t> chunks = completingChunks(index);
   const auto levels = static_cast<std::uint32_t>(chunks.size());
   const auto fields = static_cast<std::uint32_t>(index.fields.size());
   const Result<LevelColumns> numbers =
-      decodeLevelColumns(bytes, levels, levelColumnCount(fields, hasErrors != 0));
+      decodeLevelColumns(bytes, levels, levelColumnCount(fields, hasErrors));
   if (!numbers) return std::unexpected(numbers.error());
   for (std::uint32_t l = 0; l < levels; ++l) {
     LevelReader reader(*numbers, levels, l);
@@ -212,7 +260,7 @@ Result<Bytes> manifestBlock(const Manifest& manifest) {
   writeNumber(w, manifest.latticeStep);
   for (const double value : manifest.latticeOrigin) writeNumber(w, value);
   for (const ManifestField& field : manifest.fields) writeField(w, field);
-  w.write(static_cast<std::uint8_t>(manifest.levels.front().error.has_value()));
+  writeFirstView(w, manifest);
   w.append(
       encodeLevelColumns(columnsOf(manifest), static_cast<std::uint32_t>(manifest.levels.size())));
   if (w.bytes().size() > kMaxManifestBytes)

@@ -96,6 +96,8 @@ Result<Bytes> manifestBytes(const FusionHistory& history, const LogWriterOptions
   m.latticeBits = history.lattice.bits;
   m.latticeStep = history.lattice.step;
   m.latticeOrigin = history.lattice.origin;
+  m.focus = options.focus;
+  m.opening = options.opening;
   for (const FieldInfo& f : history.fields)
     m.fields.push_back({f.name, f.components, f.type, f.association, f.bits, f.step, f.minimum,
                         f.range, f.hasMissing});
@@ -112,6 +114,7 @@ Result<LogIndex> indexOf(const FusionHistory& history, const LogWriterOptions& o
   Result<Bytes> manifest = manifestBytes(history, options, writer.added());
   if (!manifest) return std::unexpected(manifest.error());
   index.manifest = std::move(*manifest);
+  index.hasFirstView = options.focus || options.opening;
   for (const FieldInfo& f : history.fields)
     index.fields.push_back(
         {f.components, isCellField(f) ? Association::kCell : Association::kPoint, f.hasMissing});

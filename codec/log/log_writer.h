@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "proto/bytes.h"
 #include "proto/error.h"
 #include "proto/level_error.h"
+#include "proto/manifest.h"
 
 namespace qtet {
 
@@ -24,8 +26,10 @@ struct LogWriterOptions {
   CodecId valueCodec = CodecId::kDraco;  ///< kDraco or kAdaptive
   /// For the manifest: none, or one a level, coarse-first, the input's mesh included.
   std::vector<LevelError> errors;
-  std::function<void(double)> progress;  ///< fraction done, 0..1
-  std::stop_token stop{};                ///< asked at every record
+  std::optional<Focus> focus = std::nullopt;      ///< for the manifest
+  std::optional<Opening> opening = std::nullopt;  ///< the same
+  std::function<void(double)> progress;           ///< fraction done, 0..1
+  std::stop_token stop{};                         ///< asked at every record
 };
 
 struct LogStatistics {

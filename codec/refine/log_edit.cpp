@@ -51,6 +51,17 @@ void keepErrors(LevelError& error, std::size_t level, const std::vector<std::uin
   }
 }
 
+/// The opening follows its field, or goes with it.
+void keepOpening(Manifest& manifest, const std::vector<std::uint32_t>& kept) {
+  if (!manifest.opening) return;
+  const auto place = std::ranges::find(kept, manifest.opening->field);
+  if (place == kept.end()) {
+    manifest.opening.reset();
+  } else {
+    manifest.opening->field = static_cast<std::uint8_t>(place - kept.begin());
+  }
+}
+
 }  // namespace
 
 Result<Bytes> withFields(const LogFile& log, const std::vector<std::uint32_t>& kept,
@@ -77,6 +88,8 @@ Result<Bytes> withFields(const LogFile& log, const std::vector<std::uint32_t>& k
          field.info.hasMissing});
   }
   manifest->fields = std::move(fields);
+  keepOpening(*manifest, kept);
+  index.hasFirstView = manifest->focus || manifest->opening;
   for (ManifestLevel& level : manifest->levels)
     if (level.error) keepErrors(*level.error, level.level, kept, added);
   Result<Bytes> manifestBytes = manifestBlock(*manifest);

@@ -58,6 +58,7 @@ std::string describeEntry(const ServedMesh& mesh) {
   out["fields"] = Json::array();
   for (std::size_t f = 0; f < mesh.manifest.fields.size(); ++f)
     out["fields"].push_back(fieldKey(mesh.manifest, f));
+  out["firstField"] = firstField(mesh.manifest);
   out["links"] = links(mesh);
   return dumpJson(out);
 }

@@ -1,4 +1,6 @@
 #include "simplify/pipeline/pipeline.h"
+#include "simplify/measure/focus.h"
+#include "simplify/measure/opening.h"
 
 #include <chrono>
 #include <cmath>
@@ -61,8 +63,10 @@ struct Run {
   const PipelineOptions& options;
   PipelineReport report{};
   Stages stages{options, report};
-  KeptInput kept{};          ///< empty where nothing of the input is kept
-  double wallThickness = 0;  ///< of the mesh before the first fusion
+  KeptInput kept{};                  ///< empty where nothing of the input is kept
+  double wallThickness = 0;          ///< of the mesh before the first fusion
+  std::optional<Focus> focus{};      ///< the same
+  std::optional<Opening> opening{};  ///< the same
 
   void note(const std::vector<std::string>& sentences) {
     report.notes.insert(report.notes.end(), sentences.begin(), sentences.end());
@@ -87,6 +91,8 @@ Result<QuantisedMesh> prepare(TetMesh&& given, Run& run) {
   run.report.quantise = out->report;
   run.note(out->report.notes);
   run.wallThickness = wallThicknessOf(out->mesh);
+  run.focus = focusOf(out->mesh);
+  run.opening = openingOf(out->mesh, run.focus);
   if (keeps) {
     run.kept.options = run.options.keep;
     run.kept.mesh = asRead(mesh, asStored, run.report.clean);
@@ -140,6 +146,8 @@ Result<Bytes> encode(const FusionHistory& history, std::vector<LevelError> error
   options.progress = run.stages.progress();
   options.stop = run.options.stop;
   options.errors = std::move(errors);
+  options.focus = run.focus;
+  options.opening = run.opening;
   options.valueCodec = run.options.valueCodec;
   Result<EncodedLog> log = encodeLog(history, options);
   if (!log) return std::unexpected(log.error());

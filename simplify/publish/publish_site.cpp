@@ -141,6 +141,7 @@ Result<Json> writeLog(Site& site, const fs::path& path) {
               {"tetrahedra", whole.tetrahedra},
               {"vertices", whole.vertices},
               {"fields", fields},
+              {"firstField", firstField(log->manifest)},
               {"links", {{"log", percentEncoded(name) + ".qtet"}}}};
 }
 

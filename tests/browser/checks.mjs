@@ -182,8 +182,12 @@ async function clipsWithACap({server, browser}) {
   const viewer = await browser.open(`${server.url}?mesh=fin`, {...kDesktop, colorScheme: 'dark'});
   await viewer.waitForState('complete');
   await viewer.waitForPicture();
-  const whole = await viewer.screenshot('unclipped');
   const {page} = viewer;
+  assert.ok(await page.getByRole('switch', {name: 'Clip'}).isChecked(), 'the fin opens whole');
+  await page.getByRole('switch', {name: 'Clip'}).uncheck();
+  assert.equal(new URL(page.url()).searchParams.get('clip'), 'none');
+  await viewer.settle();
+  const whole = await viewer.screenshot('unclipped');
   await page.getByRole('switch', {name: 'Clip'}).check();
   await viewer.settle();
   const clipped = await viewer.screenshot('clipped');

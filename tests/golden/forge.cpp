@@ -115,6 +115,21 @@ void write(const std::filesystem::path& path, const Bytes& bytes) {
     std::fprintf(stderr, "%s\n", s.error().text().c_str());
 }
 
+constexpr Focus kSomeFocus{1, 2, 3, 0x8001, 0x8002, 0xffff};
+constexpr Opening kSomeOpening{1, 2};
+
+/// `inHeader`: the header says so, too.
+Bytes withFirstView(const Bytes& log, const Focus& focus, const Opening& opening,
+                    bool inHeader = true) {
+  testing::TakenApart parts = testing::takeApart(log);
+  Manifest m = manifestOf(parts.index).value();
+  m.focus = focus;
+  m.opening = opening;
+  parts.index.manifest = manifestBlock(m).value();
+  parts.index.hasFirstView = inHeader;
+  return parts.together();
+}
+
 /// Breaks the head's statements about levels and fields, with correct checksums.
 void writeBadHeads(const std::filesystem::path& folder, const Bytes& good) {
   const auto manifest = [&](const std::function<void(Bytes&)>& change) {
@@ -152,6 +167,14 @@ void writeBadHeads(const std::filesystem::path& folder, const Bytes& good) {
         manifested([](Manifest& m) { m.fields[0].name.clear(); }));
   write(folder / "bad-value.manifest-count.qtet",
         manifested([](Manifest& m) { m.levels[1].vertices = kMaxElements + 1; }));
+  write(folder / "bad-value.manifest-empty-focus.qtet",
+        withFirstView(good, {1, 2, 3, 4, 2, 4}, kSomeOpening));
+  write(folder / "bad-value.manifest-opening-field.qtet",
+        withFirstView(good, kSomeFocus, Opening{2, 2}));
+  write(folder / "bad-value.manifest-opening-cut.qtet",
+        withFirstView(good, kSomeFocus, Opening{1, 4}));
+  write(folder / "bad-value.first-view-in-the-manifest-alone.qtet",
+        withFirstView(good, kSomeFocus, kSomeOpening, false));
   // The figures of all levels in the bytes of none.
   const Manifest m = manifestOf(testing::takeApart(good).index).value();
   LevelColumns columns;
@@ -279,6 +302,8 @@ int main(int argc, char** argv) {
   using qtet::testing::gridMesh;
   const qtet::Bytes solid = qtet::logOf(gridMesh(3, 1), 150);
   qtet::write(folder / "valid" / "solid.qtet", solid);
+  qtet::write(folder / "valid" / "first-view.qtet",
+              qtet::withFirstView(solid, qtet::kSomeFocus, qtet::kSomeOpening));
   qtet::write(folder / "valid" / "tunnel.qtet",
               qtet::logOf(gridMesh(3, 2, [](int i, int j, int) { return i != 1 || j != 1; }), 300));
   qtet::write(

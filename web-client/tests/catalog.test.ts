@@ -10,11 +10,17 @@ const answer = (meshes: unknown): void => {
 afterEach(() => vi.unstubAllGlobals());
 
 test('aPublishedListHasTheAddressesOfItsFiles', async () => {
-  answer([{id: 'a b', tetrahedra: 7, fields: ['T'], links: {log: 'a%20b.qtet'}}]);
+  answer([{id: 'a b', tetrahedra: 7, fields: ['T'], firstField: 'T', links: {log: 'a%20b.qtet'}}]);
   const list = new URL('https://a.org/meshes/index.json');
   expect(isMeshList(list)).toBe(true);
   expect(await fetchCatalog(list)).toEqual([
-    {id: 'a b', tetrahedra: 7, fields: ['T'], log: 'https://a.org/meshes/a%20b.qtet'},
+    {
+      id: 'a b',
+      tetrahedra: 7,
+      fields: ['T'],
+      firstField: 'T',
+      log: 'https://a.org/meshes/a%20b.qtet',
+    },
   ]);
   expect(vi.mocked(fetch).mock.calls[0]![0]).toBe(list.href);
 });
@@ -23,6 +29,8 @@ test('aServersListHasNoneBecauseItsAddressesAreKnown', async () => {
   answer([{id: 'fin', tetrahedra: 7, fields: [], links: {log: '/v1/meshes/fin/log'}}]);
   const server = new URL('https://a.org/');
   expect(isMeshList(server)).toBe(false);
-  expect(await fetchCatalog(server)).toEqual([{id: 'fin', tetrahedra: 7, fields: []}]);
+  expect(await fetchCatalog(server)).toEqual([
+    {id: 'fin', tetrahedra: 7, fields: [], firstField: ''},
+  ]);
   expect(vi.mocked(fetch).mock.calls[0]![0]).toBe('https://a.org/v1/meshes');
 });

@@ -8,7 +8,7 @@ import type {MeshArrays} from '../core/picture/display';
 import {FieldScale} from '../core/picture/field_scale';
 import {kMaxLabels, labelsOf} from '../core/picture/labels';
 import type {FieldInfo} from '../core/protocol/manifest';
-import {fieldOfMaxContrast, spreadOf} from '../core/picture/spread';
+import {middleOf} from '../core/picture/spread';
 import {OrbitCamera} from '../three/camera';
 import {WorkerCanvas} from '../three/worker_canvas';
 import {outlineOf} from '../three/outline';
@@ -30,42 +30,15 @@ const scaleOf = (value: (vertex: number) => number): FieldScale =>
     field,
   );
 
-describe('the spread of values', () => {
-  test('isMostForValuesThatAreAllDifferentAndNoneForOne', () => {
-    expect(
-      spreadOf(
-        scaleOf(() => 7),
-        tetrahedra,
-      ).entropy,
-    ).toBe(0);
-    expect(
-      spreadOf(
-        scaleOf((v) => (v % 2) * 1000),
-        tetrahedra,
-      ).entropy,
-    ).toBeCloseTo(1, 2);
-    expect(
-      spreadOf(
-        scaleOf((v) => 8 * v),
-        tetrahedra,
-      ).entropy,
-    ).toBeGreaterThan(6);
-  });
+describe('the middle of the values', () => {
   test('leavesTwoPerCentOutAtEachEnd', () => {
     // of 101 values two lie below the 2nd percentile, and two above the 98th
     const cells = Uint32Array.from({length: 4 * 26}, (_, corner) => corner % 101);
-    const {middle} = spreadOf(
+    const middle = middleOf(
       scaleOf((v) => (v < 2 ? v : v > 98 ? 900 + v : 400 + v)),
       cells,
     );
     expect(middle).toEqual([0.402, 0.498]);
-  });
-  test('choosesTheFieldWithMostContrast', () => {
-    const scales = [scaleOf(() => 7), scaleOf((v) => 8 * v), null, scaleOf((v) => v % 2)];
-    const mesh = {tetrahedra, scale: (scalar: {field: number}) => scales[scalar.field]!};
-    expect(fieldOfMaxContrast(mesh as unknown as MeshArrays, [0, 1, 2, 3])).toBe(1);
-    expect(fieldOfMaxContrast(mesh as unknown as MeshArrays, [2])).toBe(2);
-    expect(fieldOfMaxContrast(mesh as unknown as MeshArrays, [])).toBe(0);
   });
 });
 
@@ -98,29 +71,8 @@ describe('the figures of a base mesh', () => {
     boundary: allVertices(places),
     scale: () => null,
   });
-  test('haveNoFocusInAnEvenMesh', () => {
-    const figures = baseFigures(mesh(points));
-    expect(figures.bounds).toEqual([0, 0, 0, 40, 40, 40]);
-    expect(figures.focus).toBeNull();
-  });
-  test('haveTheirFocusWhereSmallCellsAreDwarfed', () => {
-    // The outermost layer lies far out, as the walls of a wind tunnel do.
-    const far = points.map((x) => (x === 0 ? -100000 : x === 40 ? 100000 : 10 * x));
-    const inner = tetrahedra.filter((_, i) =>
-      [0, 1, 2, 3].every((k) => {
-        const v = tetrahedra[4 * Math.floor(i / 4) + k]!;
-        return [0, 1, 2].every((axis) => Math.abs(far[3 * v + axis]!) < 1000);
-      }),
-    );
-    const dense = Uint32Array.from([
-      ...tetrahedra,
-      ...Array<Uint32Array>(80)
-        .fill(inner)
-        .flatMap((one) => [...one]),
-    ]);
-    const {focus} = baseFigures({...mesh(far), tetrahedra: dense});
-    expect(focus).not.toBeNull();
-    expect(Math.max(...focus!.map(Math.abs))).toBeLessThan(1000);
+  test('haveBounds', () => {
+    expect(baseFigures(mesh(points)).bounds).toEqual([0, 0, 0, 40, 40, 40]);
   });
 });
 

@@ -10,7 +10,7 @@ import {
   scalarText,
   sharesOf,
 } from '../core/layers/field_values';
-import {clipText, parseClip} from '../core/layers/clip';
+import {clip, clipText, parseClip} from '../core/layers/clip';
 import {firstOpacities} from '../core/layers/volume';
 import {labelRange, readSettings, shownRange, type Settings} from '../viewer/settings/settings';
 
@@ -34,7 +34,13 @@ describe('clip planes', () => {
     ['-y:0.3', '-y:0.3'],
     ['x:0.2 z:1 -y', 'x:0.2 z:1 -y:0.5'],
     ['3,0,4:0.25', '0.6,0,0.8:0.25'],
-  ])('%s comeBackAs %s', (text, back) => expect(clipText(parseClip(text))).toBe(back));
+  ])('%s comeBackAs %s', (text, back) => expect(clipText(parseClip(text), true)).toBe(back));
+  test('areNone', () => {
+    expect(clipText([], false)).toBeNull();
+    expect(clipText([], true)).toBe('none');
+    expect(parseClip('none')).toEqual([]);
+    expect(clip.isRight('none')).toBe(true);
+  });
   test.each(['', 'w', 'x:', 'x:2', '0,0,0:0.5', '1,2:0.5'])('%s isNone', (text) =>
     expect(parseClip(text)).toEqual([]),
   );
@@ -86,6 +92,7 @@ describe('settings', () => {
       surface: true,
       opacity: 1,
       planes: [],
+      hasFirstCut: false,
       mode: 'cut',
       limit: {kind: 'full'},
       parallel: false,

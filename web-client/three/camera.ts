@@ -37,8 +37,8 @@ export class OrbitCamera {
   readonly controls: OrbitControls;
   /** Until the user turns or zooms, the mesh stays fitted to the free space. */
   fitted = true;
-  /** The direction of a fitted view: the first one's, or a standard view's. */
-  private direction = kFirstDirection;
+  /** From the mesh to the eye of a fitted view: the first one's, or a standard view's. */
+  direction = kFirstDirection;
 
   constructor(canvas: HTMLCanvasElement, changed: () => void) {
     this.camera.up.copy(kUp);

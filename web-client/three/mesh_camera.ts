@@ -10,9 +10,6 @@ import {checkedCamera, type Pose} from './pose';
 import type {Insets} from './view';
 import type {ViewCanvas} from './worker_canvas';
 
-/** An eye at this distance from the middle, in radii of the bounds, is hardly in the mesh. */
-const kOutside = 0.6;
-
 export class MeshCamera {
   readonly orbit: OrbitCamera;
   /** Maps lattice coordinates to a ball of radius 1 round the origin. */
@@ -174,9 +171,8 @@ export class MeshCamera {
   private framing(): Framing {
     const whole = this.framed(this.outline);
     if (!this.focus || this.orbit.isStandard) return whole;
-    const near = this.framed(cornersOf(this.focus));
-    // From inside of the mesh one would see nothing but its walls.
-    return this.orbit.eyeOf(near).length() > kOutside ? near : whole;
+    const seen = seenPart(this.focus, this.bounds, this.orbit.direction);
+    return seen ? this.framed(cornersOf(seen)) : whole;
   }
 
   private framed(corners: Vector[]): Framing {
@@ -184,4 +180,19 @@ export class MeshCamera {
     const points = corners.map((corner) => this.placed(corner));
     return this.orbit.framing(points, 1 - left - right, 1 - top - bottom);
   }
+}
+
+/**
+ * The part of the focus that is seen from outside: its side at a face of the bounds that faces the
+ * eye. Null if no such face is near: walls would hide the focus.
+ */
+function seenPart(focus: number[], bounds: number[], {x, y, z}: Vector3): number[] | null {
+  const seen = [...focus];
+  [x, y, z].forEach((towardsEye, axis) => {
+    const side = towardsEye > 0 ? axis + 3 : axis;
+    const extent = focus[axis + 3]! - focus[axis]!;
+    if (Math.abs(bounds[side]! - focus[side]!) < extent)
+      seen[axis] = seen[axis + 3] = bounds[side]!;
+  });
+  return seen.some((end, i) => end !== focus[i]) ? seen : null;
 }

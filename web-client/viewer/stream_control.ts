@@ -6,7 +6,6 @@ import {fieldLayers} from '../core/layers/layers';
 import {errorCode, errorText, QtetError} from '../core/protocol/errors';
 import {kFull, type Limit} from '../core/protocol/limit';
 import type {Client} from '../core/session/client';
-import {kMaxCompared} from '../core/session/requested_part';
 import type {StreamState} from '../core/session/worker_messages';
 import {kTransportKinds} from '../core/transport/auto_transport';
 import {
@@ -110,7 +109,7 @@ export class StreamControl {
 
   private async list(): Promise<MeshEntry[]> {
     const {base} = this;
-    if (isLogFile(base)) return [{id: meshOfLog(base), tetrahedra: 0, fields: []}];
+    if (isLogFile(base)) return [{id: meshOfLog(base), tetrahedra: 0, fields: [], firstField: ''}];
     return fetchCatalog(base, this.page.token);
   }
 
@@ -143,14 +142,13 @@ export class StreamControl {
     this.menu.name(mesh);
     const file = isLogFile(base) ? base.href : this.catalog.find(({id}) => id === mesh)?.log;
     const transport = page.element.getAttribute('transport');
-    const {fields, compare} = this.firstFields(mesh);
+    const fields = this.firstFields(mesh);
     client.start({
       url: file === undefined ? streamUrl(base) : '',
       log: file ?? logUrl(base, mesh),
       transport: kTransportKinds.find((kind) => kind === transport) ?? 'auto',
       mesh,
       fields,
-      compare,
       limit: listeners.limit(),
       pictureFirst: true,
       paused: kept.paused,
@@ -161,22 +159,19 @@ export class StreamControl {
   }
 
   /**
-   * The keys of the fields that the attributes name, or else of those that are compared for the
-   * opening view; null if they are unknown.
+   * The keys of the fields to begin with: the colours', and those of layers. Null: the opening's.
    */
-  private firstFields(mesh: string): {fields: string[] | null; compare: boolean} {
+  private firstFields(mesh: string): string[] | null {
     const {page} = this;
-    const fields = this.catalog.find(({id}) => id === mesh)?.fields ?? [];
+    const entry = this.catalog.find(({id}) => id === mesh);
     const ofLayers = fieldLayers().map((layer) => {
       const text = page.read(layer.name);
       return text === null ? null : layer.fieldOf(text);
     });
-    const named = [page.read('field'), ...ofLayers]
-      .filter((text) => text !== null)
-      .map((text) => (fields.includes(text) ? text : scalarKey(text)));
-    if (named.length > 0) return {fields: [...new Set(named)], compare: false};
-    const candidates = isLogFile(this.base) ? null : fields.slice(0, kMaxCompared);
-    return {fields: candidates, compare: true};
+    const named = [page.read('field') ?? entry?.firstField ?? '', ...ofLayers]
+      .filter((text) => text !== null && text !== '')
+      .map((text) => (entry?.fields.includes(text!) ? text! : scalarKey(text!)));
+    return named.length > 0 ? [...new Set(named)] : null;
   }
 
   /** If memory was the limit, there is no `quality` to remove: refining is tried again. */

@@ -180,7 +180,7 @@ export class Viewing implements ActionsHost, PanelsHost {
         this.mesh.plan = message.plan;
         return this.panels?.progress.takePlan(message.plan);
       case 'base':
-        return this.takeBase(message.figures, message.field);
+        return this.takeBase(message.figures);
       case 'snapshot':
         return this.takePicture(message.snapshot);
       case 'progress':
@@ -197,13 +197,13 @@ export class Viewing implements ActionsHost, PanelsHost {
   private takeManifest(manifest: Manifest): void {
     if (this.mesh.manifest) this.forget(true); // another log has taken its name
     this.mesh.manifest = manifest;
+    this.view?.setFocus(manifest.focus ?? null);
     this.panels?.progress.begin(manifest);
     this.apply();
   }
 
-  private takeBase(figures: BaseFigures, field: number): void {
-    this.mesh.takeBase(figures, field);
-    this.view?.setFocus(figures.focus);
+  private takeBase(figures: BaseFigures): void {
+    this.mesh.takeBase(figures);
     this.apply();
   }
 
@@ -223,7 +223,7 @@ export class Viewing implements ActionsHost, PanelsHost {
   /** The view is ready: show what has been waiting for it. */
   private begin(view: View): void {
     this.panels?.attach(view);
-    view.setFocus(this.mesh.focus);
+    view.setFocus(this.mesh.manifest?.focus ?? null);
     bindKeys(find(this.page.root, '.scene'), this.actions.keys(view));
     this.apply();
     this.panels?.cards.repeat();

@@ -80,6 +80,53 @@ TEST(LogManifest, comesBackToTheBit) {
   }
 }
 
+TEST(LogManifest, itsFocusComesBack) {
+  Manifest m = sample();
+  m.focus = {0, 1, 2, 1, 0x8000, 0xffff};
+  LogIndex index = indexOf(m);
+  index.hasFirstView = true;
+  const Result<Manifest> read = manifestOf(index);
+  ASSERT_TRUE(read) << read.error().text();
+  EXPECT_EQ(read->focus, m.focus);
+  // half of 2^16 steps of 0.3 each from 1e-17 on
+  EXPECT_DOUBLE_EQ(focusCorners(*read)[4], 0.5 * 65536 * (0.1 + 0.2));
+}
+
+TEST(LogManifest, itsOpeningComesBack) {
+  Manifest m = sample();
+  for (const Opening& opening : {Opening{1, 2}, Opening{0, 0}, Opening{1}}) {
+    m.opening = opening;
+    LogIndex index = indexOf(m);
+    index.hasFirstView = true;
+    const Result<Manifest> read = manifestOf(index);
+    ASSERT_TRUE(read) << read.error().text();
+    EXPECT_EQ(read->opening, m.opening);
+    EXPECT_EQ(read->levels.size(), m.levels.size());
+  }
+  EXPECT_NE(manifestToJson(m).find(R"("opening":{"field":"cell:density"})"), std::string::npos)
+      << manifestToJson(m);
+  for (const Opening& wrong : {Opening{2}, Opening{0, 4}}) {
+    m.opening = wrong;
+    LogIndex index = indexOf(m);
+    index.hasFirstView = true;
+    expectRefused(index, ErrorCode::kBadValue, "opening");
+  }
+}
+
+TEST(LogManifest, aFocusIsABoxThatTheHeaderKnowsOf) {
+  Manifest m = sample();
+  m.focus = {0, 1, 2, 1, 0x8000, 0xffff};
+  expectRefused(indexOf(m), ErrorCode::kBadValue, "contradict");
+  m.focus->at(4) = m.focus->at(1);
+  LogIndex index = indexOf(m);
+  index.hasFirstView = true;
+  expectRefused(index, ErrorCode::kBadValue, "empty box");
+  m.focus.reset();
+  index = indexOf(m);
+  index.hasFirstView = true;
+  expectRefused(index, ErrorCode::kBadValue, "contradict");
+}
+
 TEST(LogManifest, takesAFewBytesALevel) {
   Manifest m = sample();
   m.fields.pop_back();

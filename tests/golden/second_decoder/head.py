@@ -13,7 +13,7 @@ class Log:
     def __init__(self, data, misreading=""):
         self.data, self.misreading = data, misreading
         header = struct.unpack("<8sHHBBHQIIIIIIIIII", data[:64])
-        (_, major, _, self.layout, self.bits, _, size, manifest, table) = header[:9]
+        (_, major, self.minor, self.layout, self.bits, _, size, manifest, table) = header[:9]
         self.chunks, self.fields = header[11], header[12]
         closing = header[14]
         refuse_unless(major == 2 and size == len(data), "another version or length")
@@ -73,9 +73,20 @@ class Log:
             minimum = reader.unpack(f"{components}d")
             reader.unpack("2d")
             self.infos.append((kind & 127, bits, step, minimum))
-        has_errors = reader.u8()
+        flags = reader.u8()
+        refuse_unless(flags < 8, "flags of the manifest")
+        refuse_unless((flags > 1) == (self.minor >= 2), "first view of header and manifest")
+        six = "6B" if self.misreading == "a focus has six bytes" else "6H"
+        self.focus = reader.unpack(six) if flags & 2 else None
+        if self.focus:
+            refuse_unless(
+                all(low < high for low, high in zip(self.focus, self.focus[3:])), "an empty focus"
+            )
+        if flags & 4:
+            field, cut = reader.unpack("BB")
+            refuse_unless(field < self.fields and cut <= 3, "the opening's field or axis")
         levels = self.rows[-1].last + 1
-        columns = 3 + (1 + 2 * (2 + self.fields) if has_errors else 0)
+        columns = 3 + (1 + 2 * (2 + self.fields) if flags & 1 else 0)
         stream = Stream(reader.take(len(self.manifest) - reader.at), None, self.misreading)
         self.columns = []
         for column in range(columns):

@@ -16,6 +16,9 @@ export interface ClipSetting {
   share: number;
 }
 
+/** The attribute's value if nothing is cut, where a mesh would open with a plane. */
+export const kNoClip = 'none';
+
 /** The side that is cut away first faces the first camera: front, right and top. */
 const kFirstSides = [1, -1, 1];
 
@@ -53,7 +56,9 @@ export function axisOf({normal}: ClipSetting): {axis: number; flipped: boolean} 
   return {axis, flipped: axis >= 0 && normal[axis] !== kFirstSides[axis]};
 }
 
-export function clipText(planes: ClipSetting[]): string {
+/** The attribute's value. With `hasFirstCut` the mesh opens with a plane if there is none. */
+export function clipText(planes: ClipSetting[], hasFirstCut: boolean): string | null {
+  if (planes.length === 0) return hasFirstCut ? kNoClip : null;
   return planes
     .map((plane) => {
       const {axis, flipped} = axisOf(plane);
@@ -69,10 +74,13 @@ export function clipText(planes: ClipSetting[]): string {
 export const clip = {
   name: 'clip',
   isRight(text: string): boolean {
+    if (text === kNoClip) return true;
     const words = text.trim().split(/\s+/);
     return words.length <= kMaxPlanes && parseClip(text).length === words.length;
   },
-  expected: `at most ${kMaxPlanes} planes with a share of the extent each: "x:0.5 -z:0.3"`,
+  expected:
+    `at most ${kMaxPlanes} planes with a share of the extent each: "x:0.5 -z:0.3", ` +
+    `or ${kNoClip}`,
   more: [
     {
       name: 'clip-mode',

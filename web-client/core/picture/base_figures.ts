@@ -8,19 +8,7 @@ export interface BaseFigures {
   bounds: number[];
   /** The mean length of straight lines through the mesh, as a share of the bounds' diagonal. */
   chord: number;
-  /**
-   * Bounds of the place where the cells are small, if the rest dwarfs it; else null. A far field
-   * has few large cells.
-   */
-  focus: number[] | null;
 }
-
-/** The share of the cells on each side, along each axis, that `focus` leaves out. */
-const kOutside = 0.1;
-/** A focus is reported if it is this much smaller than the bounds. */
-const kDwarfed = 0.25;
-/** It gets this much room round it, of its own extent on each side. */
-const kRoom = 0.25;
 
 /** REQUIRES: at least one cell. */
 export function baseFigures(mesh: MeshArrays): BaseFigures {
@@ -29,7 +17,6 @@ export function baseFigures(mesh: MeshArrays): BaseFigures {
   return {
     bounds,
     chord: meanChord(mesh) / Math.max(Math.hypot(...extents), 1),
-    focus: focusOf(mesh, Math.max(...extents)),
   };
 }
 
@@ -46,27 +33,6 @@ function meanChord({points, tetrahedra, boundary}: MeshArrays): number {
     surface += Math.hypot(...cross(a!, b!)) / 2;
   }
   return surface > 0 ? (4 * volume) / surface : 0;
-}
-
-function focusOf({points, tetrahedra}: MeshArrays, largest: number): number[] | null {
-  const sides = [0, 1, 2].map((axis) => {
-    const middles: number[] = [];
-    for (let at = 0; at < tetrahedra.length; at += 4) {
-      if (tetrahedra[at] === tetrahedra[at + 1]) continue; // a hole
-      let sum = 0;
-      for (let i = at; i < at + 4; ++i) sum += points[3 * tetrahedra[i]! + axis]!;
-      middles.push(sum / 4);
-    }
-    const sorted = Float64Array.from(middles).sort();
-    const place = (share: number): number => sorted[Math.round(share * (sorted.length - 1))]!;
-    return [place(kOutside), place(1 - kOutside)] as const;
-  });
-  const extent = Math.max(...sides.map(([low, high]) => high - low));
-  if (!(extent > 0) || extent > kDwarfed * largest) return null;
-  return [
-    ...sides.map(([low]) => low - kRoom * extent),
-    ...sides.map(([, high]) => high + kRoom * extent),
-  ];
 }
 
 function edgesFrom(

@@ -44,8 +44,22 @@ export interface LevelInfo {
 export interface Manifest {
   source: string;
   lattice: {bits: number; step: number; origin: [number, number, number]};
+  /**
+   * The box round the place where the original's cells are small, in lattice coordinates: low
+   * corner, high corner. Absent if they are spread over the mesh.
+   */
+  focus?: number[];
+  /** The first picture that shows something; absent: the first field on the surface. */
+  opening?: Opening;
   fields: FieldInfo[];
   levels: LevelInfo[];
+}
+
+export interface Opening {
+  /** An index into `fields`. */
+  field: number;
+  /** The axis across which the mesh is cut open in the middle; null for none. */
+  cut: number | null;
 }
 
 /**
@@ -77,6 +91,11 @@ const kMaxNameBytes = 256;
 const kFieldTypes = 10;
 const kFirstWholeType = 2;
 const kMaxFieldBits = 28;
+const kErrorsFollow = 1;
+const kFocusFollows = 2;
+const kOpeningFollows = 4;
+const kNoCut = 3;
+const kShareBytes = 2;
 const kCountColumns = 3;
 const kVolumeFigure = 1e6;
 const kErrorFigureDigits = 14;
@@ -109,10 +128,30 @@ export function readManifest(
   );
   if (new Set(fields.map(({association, name}) => `${association}:${name}`)).size < fields.length)
     throw damaged('has a field twice');
-  const hasErrors = reader.byte();
-  if (hasErrors > 1) throw damaged('tells of errors in a way that this viewer does not know');
+  const flags = reader.byte();
+  if (flags > (kErrorsFollow | kFocusFollows | kOpeningFollows))
+    throw damaged('has flags that this viewer does not know');
+  const focus = flags & kFocusFollows ? readFocus(reader, lattice.bits) : undefined;
+  const opening = flags & kOpeningFollows ? readOpening(reader, fields.length) : undefined;
+  const hasErrors = (flags & kErrorsFollow) !== 0;
   const columns = kCountColumns + (hasErrors ? 1 + 2 * (2 + fields.length) : 0);
-  return {source, lattice, fields, levels: levelsOf(levelColumns(reader.rest(), columns), columns)};
+  const levels = levelsOf(levelColumns(reader.rest(), columns), columns);
+  return {source, lattice, ...(focus && {focus}), ...(opening && {opening}), fields, levels};
+}
+
+function readOpening(reader: ManifestReader, fields: number): Opening {
+  const [field, cut] = [reader.byte(), reader.byte()];
+  if (field >= fields || cut > kNoCut)
+    throw damaged('opens with a field or an axis that is not there');
+  return {field, cut: cut === kNoCut ? null : cut};
+}
+
+/** In shares of the lattice's span in the file. */
+function readFocus(reader: ManifestReader, bits: number): number[] {
+  const corners = Array.from({length: 6}, () => reader.share() * 2 ** bits);
+  if (corners.slice(0, 3).some((low, axis) => low >= corners[axis + 3]!))
+    throw damaged('has a focus that is an empty box');
+  return corners;
 }
 
 function readField(
@@ -178,6 +217,11 @@ class ManifestReader {
 
   byte(): number {
     return this.view.getUint8(this.take(1));
+  }
+
+  /** In [0, 1). */
+  share(): number {
+    return this.view.getUint16(this.take(kShareBytes), true) / 2 ** (8 * kShareBytes);
   }
 
   text(): string {

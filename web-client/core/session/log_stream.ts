@@ -14,7 +14,7 @@ const kWindowBytes = 1 << 20;
  * Where the stream ends: behind the head, behind the base mesh, at the limit, or at a limit that
  * was set since.
  */
-type End = 'head' | 'base' | 'limit' | 'later limit';
+type End = 'head' | 'limit' | 'later limit';
 
 export class LogStream {
   /** SHA-256 of the log; empty until the server states it. */
@@ -46,7 +46,7 @@ export class LogStream {
 
   /** The server may report an end before it receives the request for more. */
   get mayEndEarly(): boolean {
-    return this.end === 'later limit' || this.end === 'base';
+    return this.end === 'later limit';
   }
 
   get endsAtHead(): boolean {
@@ -65,10 +65,10 @@ export class LogStream {
     this.transport?.disconnect();
   }
 
-  open(mesh: string, {comparing, needsHead, keys, have, view, target}: RequestedPart): void {
+  open(mesh: string, {needsHead, keys, have, view, target}: RequestedPart): void {
     const fields = keys.filter((name) => name !== '');
     this.keys = fields;
-    this.end = needsHead ? 'head' : comparing ? 'base' : 'limit';
+    this.end = needsHead ? 'head' : 'limit';
     this.unapplied = 0;
     this.transport?.open({
       mesh,

@@ -12,7 +12,7 @@ import {
 } from '../picture/display';
 import {scalarRange, type FieldScale, type Scalar} from '../picture/field_scale';
 import {meshArrays} from '../picture/mesh_arrays';
-import {spreadOf, type Spread} from '../picture/spread';
+import {middleOf} from '../picture/spread';
 import {noSoup, pointBounds} from '../picture/triangle_soup';
 import {volumeCells, type VolumeCells} from '../picture/volume';
 import {PicturePace} from './picture_pace';
@@ -34,8 +34,8 @@ export class Publisher {
   /** The page has said what to draw. */
   private isRequested = false;
   private bounds: number[] = [];
-  /** By colour, from the mesh with which it was first drawn. */
-  private readonly spreads = new Map<string, Spread>();
+  /** middleOf by colour, from the mesh with which it was first drawn. */
+  private readonly middles = new Map<string, [number, number]>();
   private dueAt = 0;
   private timer: ReturnType<typeof setTimeout> | undefined;
 
@@ -88,7 +88,7 @@ export class Publisher {
     this.meshChanged = this.cutChanged = this.isRequested = this.hasPublished = this.isLast = false;
     this.pace.reset();
     this.bounds = [];
-    this.spreads.clear();
+    this.middles.clear();
     this.display = kPlainDisplay;
     clearTimeout(this.timer);
     this.timer = undefined;
@@ -153,13 +153,11 @@ export class Publisher {
     return scale ? volumeCells(mesh, scale, kept) : null;
   }
 
-  private spreadOf(color: Scalar, scale: FieldScale, {tetrahedra}: MeshArrays): Spread {
+  private middleOf(color: Scalar, scale: FieldScale, {tetrahedra}: MeshArrays): [number, number] {
     const key = `${color.field} ${color.component}`;
-    const known = this.spreads.get(key);
-    if (known) return known;
-    const spread = spreadOf(scale, tetrahedra);
-    this.spreads.set(key, spread);
-    return spread;
+    const middle = this.middles.get(key) ?? middleOf(scale, tetrahedra);
+    this.middles.set(key, middle);
+    return middle;
   }
 
   private frame(mesh: MeshArrays): Omit<Snapshot, 'cuts' | 'planes'> {
@@ -178,7 +176,7 @@ export class Publisher {
         scale && info && info.components > 1 && color.component >= 0
           ? scale.extent(mesh.tetrahedra)
           : [0, 1],
-      middle: scale ? this.spreadOf(color, scale, mesh).middle : [0, 1],
+      middle: scale ? this.middleOf(color, scale, mesh) : [0, 1],
       scaleRange: scale && info ? scalarRange(info, color.component) : [0, 1],
     };
   }

@@ -10,16 +10,9 @@ import {kFirstFieldPart, kStructurePart} from '../protocol/parts';
 import {kNoViewRequest, type ViewRequest} from '../protocol/view_request';
 import type {Source} from './worker_messages';
 
-/** The most fields that are compared for the opening view: each costs about a kilobyte. */
-export const kMaxCompared = 6;
-/** The base mesh alone. */
-const kBaseTarget: Target = {chunks: 1, level: 0};
-
 export class RequestedPart {
-  /** The fields are candidates for the opening view: only the base mesh is wanted yet. */
-  comparing = false;
   /**
-   * Names of the fields, for use before the head says which there are; null means the first field.
+   * Names of the fields, for use before the head says which there are; null means the opening's.
    */
   names: string[] | null = null;
   /** Indexes into the manifest. */
@@ -29,8 +22,7 @@ export class RequestedPart {
 
   constructor(private readonly assembler: Assembler) {}
 
-  begin({compare, fields, limit}: Source): void {
-    this.comparing = compare === true && (fields === null || fields.length > 1);
+  begin({fields, limit}: Source): void {
     this.names = fields;
     this.limit = limit;
   }
@@ -46,21 +38,14 @@ export class RequestedPart {
    * REQUIRES: the head is here.
    */
   findFields(): string | undefined {
-    const keys = fieldKeys(this.assembler.manifest!.fields);
+    const {fields, opening} = this.assembler.manifest!;
+    const keys = fieldKeys(fields);
     const unknown = this.names?.find((name) => !keys.includes(name));
     this.fields = (this.names ?? []).map((name) => keys.indexOf(name)).filter((i) => i >= 0);
     const wantsFirst = this.names === null || unknown !== undefined;
     if (this.fields.length === 0 && keys.length > 0 && wantsFirst)
-      this.fields = this.comparing ? [...keys.keys()].slice(0, kMaxCompared) : [0];
-    this.comparing &&= this.fields.length > 1 && this.assembler.packets.length === 0;
+      this.fields = [opening?.field ?? 0];
     return unknown;
-  }
-
-  /** Returns true if that ends a comparison. */
-  endComparing(): boolean {
-    const was = this.comparing;
-    this.comparing = false;
-    return was;
   }
 
   /** Returns false if these are wanted already. REQUIRES: the head is here. */
@@ -90,7 +75,7 @@ export class RequestedPart {
 
   /** Where the limit lies; null means at the end, or unknown. */
   get target(): Target | null {
-    return this.comparing ? kBaseTarget : this.assembler.target(this.limit, this.fields);
+    return this.assembler.target(this.limit, this.fields);
   }
 
   /** Only the head says which fields there are or where the limit lies. */
@@ -118,7 +103,6 @@ export class RequestedPart {
   /** The decoded mesh has reached the limit. Without a limit this is never true. */
   get isReached(): boolean {
     const {codec, manifest} = this.assembler;
-    if (this.comparing) return codec.chunksApplied > 0;
     if (this.limit.kind === 'full' || !manifest || codec.chunksApplied === 0) return false;
     const {statistics, fields} = this;
     const error = errorOfLevel(manifest.levels[statistics.level], fields);

@@ -5,7 +5,6 @@ import type {Assembler} from '../decode/assembler';
 import {isovalueOf} from '../layers/shown';
 import {baseFigures} from '../picture/base_figures';
 import {meshArrays} from '../picture/mesh_arrays';
-import {fieldOfMaxContrast} from '../picture/spread';
 import {asksForTheSame, surfaceRequest, surfaceRequestOf} from '../picture/surface_request';
 import {errorCode, errorText, QtetError} from '../protocol/errors';
 import {kFull, type Limit} from '../protocol/limit';
@@ -89,8 +88,7 @@ export class Session implements TransportHandlers {
   /** Brings these fields (indexes into the manifest) instead of the previous ones. */
   want(fields: readonly number[]): void {
     if (!this.assembler.manifest) return;
-    const wasComparing = this.requested.endComparing();
-    if (!this.requested.changeFields(fields) && !wasComparing) return;
+    if (!this.requested.changeFields(fields)) return;
     this.sendPlan();
     this.progress.changed();
     if (this.state.name === 'failed') return;
@@ -103,7 +101,6 @@ export class Session implements TransportHandlers {
   setLimit(limit: Limit): void {
     this.requested.limit = limit;
     if (!this.assembler.manifest || this.state.name === 'failed') return;
-    if (this.requested.comparing) return; // the display comes soon, and asks for the rest
     const wasPaused = this.endPause();
     this.guarded(() => {
       if (this.requested.isReached) this.goBack();
@@ -271,7 +268,6 @@ export class Session implements TransportHandlers {
       if (hasChanged) this.publisher.changed(this.requested.isComplete);
       this.progress.changed();
       if (this.requested.isComplete) this.complete();
-      else if (this.requested.comparing) return;
       else if (this.requested.isReached) this.hold();
       else if (this.state.name !== 'paused') this.stream.giveCredit();
     });
@@ -389,8 +385,7 @@ export class Session implements TransportHandlers {
     if (!mesh) return; // also between two logs, while the codec has the last one's
     if (this.requested.fields.some((field) => codec.fieldChunksApplied(field) === 0)) return;
     this.baseReported = true;
-    const field = fieldOfMaxContrast(mesh, this.requested.fields);
-    this.send({type: 'base', figures: baseFigures(mesh), field});
+    this.send({type: 'base', figures: baseFigures(mesh)});
   }
 
   private sendPlan(): void {

@@ -26,11 +26,6 @@ export interface Source extends LogAddress {
   /** Keys of the fields to begin with; null: the first one; empty: none. */
   fields: string[] | null;
   limit: Limit;
-  /**
-   * The fields are only candidates: the stream brings their values for the base mesh, and then
-   * those of the display. With null the candidates are the first ones.
-   */
-  compare?: boolean;
   /** The network stays idle until `resume`. */
   paused?: boolean;
   /** A display follows soon: decoding sends a first picture before it refines. */
@@ -98,10 +93,9 @@ export type FromWorker =
   | {type: 'plan'; plan: LevelBytes[]}
   /**
    * The base mesh is decoded with the values of the fields. Each log sends it once, so that the
-   * first display can hold planes that stand at shares of its bounds. `field` is the one with most
-   * contrast.
+   * first display can hold planes that stand at shares of its bounds.
    */
-  | {type: 'base'; figures: BaseFigures; field: number}
+  | {type: 'base'; figures: BaseFigures}
   | {type: 'snapshot'; snapshot: Snapshot}
   | {type: 'progress'; statistics: Statistics; received: number}
   | {type: 'state'; state: StreamState; attempt: number; delayMs: number}

@@ -1,5 +1,6 @@
 // The actions of buttons and keys.
 
+import {clipText} from '../../core/layers/clip';
 import {errorText} from '../../core/protocol/errors';
 import {kDirections, type Direction} from '../../three/directions';
 import type {View} from '../../three/view';
@@ -95,14 +96,14 @@ export class Actions {
 
   private toggle(what: Parameters<KeyActions['toggle']>[0]): void {
     const {page} = this;
-    const {parallel, edges, planes} = this.host.settings;
+    const {parallel, edges, planes, hasFirstCut} = this.host.settings;
     switch (what) {
       case 'parallel':
         return page.write('projection', parallel ? null : 'parallel');
       case 'edges':
         return page.write('edges', edges ? 'off' : null);
       case 'clip':
-        return page.write('clip', planes.length > 0 ? null : 'x:0.5');
+        return page.write('clip', planes.length > 0 ? clipText([], hasFirstCut) : 'x:0.5');
       case 'pause':
         return this.togglePause();
       case 'fullscreen':

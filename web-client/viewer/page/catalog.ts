@@ -9,6 +9,8 @@ export interface MeshEntry {
   id: string;
   tetrahedra: number;
   fields: string[];
+  /** The key of the field to show first; empty if it is unknown or there is none. */
+  firstField: string;
   /** The address of the log as a file, from a published list; without it the server has it. */
   log?: string;
 }
@@ -45,6 +47,7 @@ export async function fetchCatalog(base: URL, token = ''): Promise<MeshEntry[]> 
     id: String(mesh.id),
     tetrahedra: Number(mesh.tetrahedra ?? 0),
     fields: Array.isArray(mesh.fields) ? mesh.fields.map(String) : [],
+    firstField: typeof mesh.firstField === 'string' ? mesh.firstField : '',
     ...(isList && {log: new URL(String(mesh.links?.log), url).href}),
   }));
 }

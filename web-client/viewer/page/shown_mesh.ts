@@ -2,6 +2,8 @@
 
 import type {LevelBytes} from '../../core/decode/plan';
 import {kNoStatistics, type Statistics} from '../../core/decode/statistics';
+import {axisNormal, clip} from '../../core/layers/clip';
+import {kLayers} from '../../core/layers/layers';
 import {firstOpacities} from '../../core/layers/volume';
 import type {BaseFigures} from '../../core/picture/base_figures';
 import {labelsOf} from '../../core/picture/labels';
@@ -14,12 +16,8 @@ export class ShownMesh {
   manifest: Manifest | null = null;
   /** The base mesh's, in lattice coordinates; empty before it is decoded. */
   bounds: number[] = [];
-  /** The place to look at first, in lattice coordinates; null: all of the mesh. */
-  focus: number[] | null = null;
   /** The mean length of lines through the mesh, as a share of its diagonal. */
   chord = 0;
-  /** The field that is shown if no attribute names one. */
-  firstField = 0;
   /** The levels ahead. */
   plan: LevelBytes[] = [];
   /** The newest figures. */
@@ -33,8 +31,13 @@ export class ShownMesh {
   /** The figures of the picture on the screen; null if there is none. */
   drawn: Statistics | null = null;
 
-  takeBase({bounds, chord, focus}: BaseFigures, field: number): void {
-    Object.assign(this, {bounds, chord, focus, firstField: field});
+  /** The field that is shown if no attribute names one. */
+  get firstField(): number {
+    return this.manifest?.opening?.field ?? 0;
+  }
+
+  takeBase({bounds, chord}: BaseFigures): void {
+    Object.assign(this, {bounds, chord});
   }
 
   take(snapshot: Snapshot): void {
@@ -63,5 +66,10 @@ export function settingsFor(
   const shown = shownScalar(read('field'), fields, firstField);
   if (read('colormap') === null && shown && labelsOf(fields[shown.field]!)) settings.map = 'labels';
   if (settings.hasFirstOpacities) settings.volume = firstOpacities(chord);
+  const firstCut = manifest?.opening?.cut ?? null;
+  const saysWhat = kLayers.some(({name}) => name !== clip.name && read(name) !== null);
+  settings.hasFirstCut = firstCut !== null && !saysWhat && read('surface') === null;
+  if (settings.hasFirstCut && read('clip') === null)
+    settings.planes = [{normal: axisNormal(firstCut!, false), share: 0.5}];
   return settings;
 }

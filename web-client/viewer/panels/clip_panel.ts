@@ -11,6 +11,7 @@ import type {Panel, Scene} from './panel';
 
 export class ClipPanel implements Panel {
   private planes: ClipSetting[] = [];
+  private hasFirstCut = false;
 
   /** `viewNormal` points from the mesh to the camera, in lattice coordinates. */
   constructor(
@@ -34,8 +35,9 @@ export class ClipPanel implements Panel {
     rows.replaceChildren(...Array.from({length: kMaxPlanes}, (_, i) => this.row(i)));
   }
 
-  update({planes, mode}: Settings, scene: Scene | null): void {
+  update({planes, mode, hasFirstCut}: Settings, scene: Scene | null): void {
     this.planes = planes;
+    this.hasFirstCut = hasFirstCut;
     this.find<HTMLInputElement>('input[name=clip]').checked = planes.length > 0;
     this.find('.clip').hidden = planes.length === 0;
     this.find<HTMLInputElement>(`.clip-modes input[value=${mode}]`).checked = true;
@@ -130,7 +132,7 @@ export class ClipPanel implements Panel {
   }
 
   private write(planes: ClipSetting[]): void {
-    this.attributes.write('clip', planes.length > 0 ? clipText(planes) : null);
+    this.attributes.write('clip', clipText(planes, this.hasFirstCut));
   }
   private find<T extends HTMLElement = HTMLElement>(selector: string): T {
     return this.root.querySelector<T>(selector)!;

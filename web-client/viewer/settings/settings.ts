@@ -8,6 +8,7 @@ import {readVolume} from '../../core/layers/volume';
 import {isColorMapName, type ColorMapName} from '../../core/picture/color_maps';
 import {kClipModes, type ClipMode} from '../../core/picture/display';
 import {kMagnitude, type Scalar} from '../../core/picture/field_scale';
+import {tailsHide} from '../../core/picture/spread';
 import {kMaxLabels} from '../../core/picture/labels';
 import {kFull, parseLimit, type Limit} from '../../core/protocol/limit';
 import type {FieldInfo} from '../../core/protocol/manifest';
@@ -50,6 +51,8 @@ export interface Settings {
   /** The volume's opacities are for the mesh to choose. */
   hasFirstOpacities: boolean;
   planes: ClipSetting[];
+  /** The mesh opens with a plane; to remove it takes an attribute. */
+  hasFirstCut: boolean;
   mode: ClipMode;
   limit: Limit;
   parallel: boolean;
@@ -70,6 +73,7 @@ export function readSettings(get: (name: ViewAttribute) => string | null): Setti
     opacity: opacity > 0 && opacity <= 1 ? opacity : 1,
     ...readVolume(get('volume')),
     planes: parseClip(get('clip')),
+    hasFirstCut: false,
     mode: kClipModes.includes(mode) ? mode : 'cut',
     limit: parseLimit(get('quality')) ?? kFull,
     parallel: get('projection') === 'parallel',
@@ -108,9 +112,6 @@ export function labelRange([first, count]: [number, number]): Omit<ShownRange, '
   return {low, high: low + kMaxLabels, logarithmic: false, hides: 'none', labels: count};
 }
 
-/** If the middle 96 % of the values take less of the range, the tails hide them. */
-const kMinMiddle = 0.4;
-
 export interface ShownRange {
   low: number;
   high: number;
@@ -136,8 +137,7 @@ export function shownRange(
   extent: [number, number],
   middle: [number, number] = extent,
 ): Omit<ShownRange, 'hasMissing'> {
-  const tailsHide = middle[1] - middle[0] < kMinMiddle * (extent[1] - extent[0]);
-  if (range === 'auto' && !logarithmic && tailsHide && middle[0] < middle[1])
+  if (range === 'auto' && !logarithmic && tailsHide(middle, extent))
     return {low: middle[0], high: middle[1], logarithmic, hides: 'none', isMiddle: true};
   const max = Math.max(Math.abs(extent[0]), Math.abs(extent[1]));
   const isWhole = range === 'auto' || range === 'full';
