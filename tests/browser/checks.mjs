@@ -185,8 +185,8 @@ async function clipsWithACap({server, browser}) {
   const {page} = viewer;
   assert.ok(await page.getByRole('switch', {name: 'Clip'}).isChecked(), 'the fin opens whole');
   await page.getByRole('switch', {name: 'Clip'}).uncheck();
-  assert.equal(new URL(page.url()).searchParams.get('clip'), 'none');
   await viewer.settle();
+  assert.equal(new URL(page.url()).searchParams.get('clip'), 'none');
   const whole = await viewer.screenshot('unclipped');
   await page.getByRole('switch', {name: 'Clip'}).check();
   await viewer.settle();
@@ -303,7 +303,7 @@ async function pointsAndProbes({server, browser}) {
 
 /** Cards open over the picture. They leave the camera, the fit and the point alone. */
 async function cardsNeverMoveTheMesh({server, browser}, device, name) {
-  const viewer = await browser.open(`${server.url}?mesh=fin`, device);
+  const viewer = await browser.open(`${server.url}?mesh=fin&clip=none`, device);
   await viewer.waitForState('complete');
   await viewer.waitForPicture();
   const {page} = viewer;
