@@ -12,7 +12,7 @@ namespace {
 
 /// Cuts of one tetrahedron. A flat one is then in pieces a thirtieth as long. A piece that needs
 /// more is too large for the tolerance, and there are other places to fuse to.
-constexpr int kMaxCuts = 1 << 10;
+constexpr int kMaxCuts = 1 << 6;
 /// A surface so near the middle of a cube, over its length, is as good as one through it.
 constexpr double kNear = 0.25;
 /// The cosine to a pseudonormal that is too small to tell a side, in doubles.
@@ -179,8 +179,8 @@ SignedDistance OriginalSurface::distanceOf(const LatticeCube& cube) const {
 // The tetrahedron is halved until each piece is near one triangle of the surface, or lies in a
 // ball. Such a ball is round the middle of a cube that is near the solid or inside it. The piece
 // that lies furthest outside comes first: where one lies too far, it is soon found.
-bool OriginalSurface::holds(const Corners& tetrahedron, double tolerance,
-                            DistanceCells& known) const {
+bool OriginalSurface::holds(const Corners& tetrahedron, double tolerance, DistanceCells& known,
+                            const std::function<bool(const Corners&)>& isDoubtful) const {
   struct Piece {
     Corners corners;
     double outside;
@@ -188,6 +188,7 @@ bool OriginalSurface::holds(const Corners& tetrahedron, double tolerance,
   std::vector<Piece> waiting;
   // False: it lies too far outside for sure.
   const auto look = [&](const Corners& corners) {
+    if (!isDoubtful(corners)) return true;
     const Vector3 centre = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
     const double radius = radiusOf(corners, centre);
     // neighbours of a small piece share its cube

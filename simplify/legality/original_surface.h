@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -25,7 +26,13 @@ class OriginalSurface {
   /// `tolerance`, in lattice steps. False also where that was not proved within a bounded number of
   /// steps. `known`: of this surface alone. REQUIRES: corners in [0, 2^30)^3.
   [[nodiscard]] bool holds(const Corners& tetrahedron, double tolerance,
-                           DistanceCells& known) const;
+                           DistanceCells& known) const {
+    return holds(tetrahedron, tolerance, known, [](const Corners&) { return true; });
+  }
+  /// The same where some parts are known to hold: `isDoubtful(corners)` is false for a piece that
+  /// lies in them.
+  [[nodiscard]] bool holds(const Corners& tetrahedron, double tolerance, DistanceCells& known,
+                           const std::function<bool(const Corners&)>& isDoubtful) const;
   /// p is inside the solid, as far as doubles can tell, `nearest` being its nearest triangle. False
   /// where the surface is not a manifold at the nearest point.
   [[nodiscard]] bool isInside(const Vector3& p, const NearestTriangle& nearest) const;

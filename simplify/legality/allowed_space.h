@@ -1,0 +1,37 @@
+// Where the solid may grow: the original one and what is near it (ALGORITHM.md, "The envelope's
+// tolerance").
+#pragma once
+
+#include <vector>
+
+#include "simplify/legality/distance_cells.h"
+#include "simplify/legality/near_cells.h"
+#include "simplify/legality/original_surface.h"
+
+namespace qtet {
+
+/// Reading is safe from any thread.
+class AllowedSpace {
+ public:
+  using Corners = OriginalSurface::Corners;
+  /// One thread's knowledge of one space.
+  struct Known {
+    DistanceCells distances;
+    std::vector<NearCells::Cell> doubtful;
+  };
+
+  /// The solid of the mesh as it is now, and `tolerance` lattice steps more.
+  AllowedSpace(const FusionMesh& mesh, double tolerance);
+
+  /// All of the tetrahedron is allowed. False also where that was not proved within a bounded
+  /// number of steps. REQUIRES: corners in [0, 2^30)^3.
+  [[nodiscard]] bool holds(const Corners& tetrahedron, Known& known) const;
+  [[nodiscard]] const OriginalSurface& surface() const { return surface_; }
+
+ private:
+  OriginalSurface surface_;
+  double tolerance_;
+  NearCells cells_;
+};
+
+}  // namespace qtet
