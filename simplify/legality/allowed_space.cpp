@@ -3,31 +3,30 @@
 #include <algorithm>
 #include <cmath>
 
+#include "simplify/legality/local_tolerances.h"
+
 namespace qtet {
-namespace {
 
-/// A tetrahedron that touches more cubes which are not known to be allowed is too large to prove.
-constexpr std::size_t kMaxDoubtful = 16;
-
-float floatBelow(double x) { return std::nextafter(static_cast<float>(x), 0.0f); }
-
-}  // namespace
-
-AllowedSpace::AllowedSpace(const FusionMesh& mesh, double tolerance)
+AllowedSpace::AllowedSpace(const FusionMesh& mesh, double tolerance, const Rules& rules)
     : surface_(mesh),
-      tolerance_(tolerance),
-      cells_(surface_.tree(), std::vector(surface_.tree().builtOver(), floatBelow(tolerance)),
-             tolerance, [this](const Vector3& p) {
-               NearestTriangle nearest;
-               surface_.tree().nearest(p, nearest);
-               return surface_.isInside(p, nearest);
-             }) {}
+      tolerances_(rules.isLocal
+                      ? OriginalSurface::Tolerances(localTolerances(surface_.tree(), tolerance))
+                      : OriginalSurface::Tolerances(surface_, tolerance)),
+      rules_(rules),
+      cells_(surface_.tree(), tolerances_.own, tolerance, [this](const Vector3& p) {
+        NearestTriangle nearest;
+        surface_.tree().nearest(p, nearest);
+        return surface_.isInside(p, nearest);
+      }) {}
 
 bool AllowedSpace::holds(const Corners& tetrahedron, Known& known) const {
-  if (cells_.length() == 0) return surface_.holds(tetrahedron, tolerance_, known.distances);
+  if (cells_.length() == 0) {
+    const auto isAny = [](const Corners&) { return true; };
+    return surface_.holds(tetrahedron, tolerances_, known.distances, isAny, rules_.cuts);
+  }
   known.doubtful.clear();
-  cells_.findDoubtful(tetrahedron, kMaxDoubtful, known.doubtful);
-  if (known.doubtful.size() > kMaxDoubtful) return false;
+  cells_.findDoubtful(tetrahedron, rules_.cubes, known.doubtful);
+  if (known.doubtful.size() > rules_.cubes) return false;
   const auto isDoubtful = [&](const Corners& piece) {
     const auto touches = [&](const NearCells::Cell& cell) {
       bool isMet = true;
@@ -40,7 +39,7 @@ bool AllowedSpace::holds(const Corners& tetrahedron, Known& known) const {
     return std::ranges::any_of(known.doubtful, touches);
   };
   return known.doubtful.empty() ||
-         surface_.holds(tetrahedron, tolerance_, known.distances, isDoubtful);
+         surface_.holds(tetrahedron, tolerances_, known.distances, isDoubtful, rules_.cuts);
 }
 
 }  // namespace qtet

@@ -2,6 +2,7 @@
 // tolerance").
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "simplify/legality/distance_cells.h"
@@ -20,17 +21,28 @@ class AllowedSpace {
     std::vector<NearCells::Cell> doubtful;
   };
 
-  /// The solid of the mesh as it is now, and `tolerance` lattice steps more.
-  AllowedSpace(const FusionMesh& mesh, double tolerance);
+  /// How hard a proof is tried, since there are other places to fuse to; and what is allowed.
+  struct Rules {
+    /// A tetrahedron that touches more cubes which are not known to be allowed is refused.
+    std::size_t cubes = 4;
+    int cuts = 4;         ///< of OriginalSurface::holds
+    bool isLocal = true;  ///< the tolerance: less where another sheet of the boundary is near
+  };
+
+  /// The solid of the mesh as it is now, and `tolerance` lattice steps more at most.
+  AllowedSpace(const FusionMesh& mesh, double tolerance, const Rules& rules);
+  AllowedSpace(const FusionMesh& mesh, double tolerance) : AllowedSpace(mesh, tolerance, Rules()) {}
 
   /// All of the tetrahedron is allowed. False also where that was not proved within a bounded
   /// number of steps. REQUIRES: corners in [0, 2^30)^3.
   [[nodiscard]] bool holds(const Corners& tetrahedron, Known& known) const;
   [[nodiscard]] const OriginalSurface& surface() const { return surface_; }
+  [[nodiscard]] const OriginalSurface::Tolerances& tolerances() const { return tolerances_; }
 
  private:
   OriginalSurface surface_;
-  double tolerance_;
+  OriginalSurface::Tolerances tolerances_;
+  Rules rules_;
   NearCells cells_;
 };
 
