@@ -76,7 +76,7 @@ class PaperSimplifier {
       : options_(options),
         mesh_(mesh),
         cost_(mesh_, mesh, planesOnly(mesh)),
-        test_(mesh_, FusionLimits{0, 0, nullptr, kNormalCosine}),
+        test_(mesh_, FusionLimits{0, nullptr, kNormalCosine}),
         cells_(mesh.tetrahedra.size()),
         target_(options.baseCells.value_or(static_cast<std::size_t>(
             std::ceil(options.targetRatio.value_or(kBaseRatio) * static_cast<double>(cells_))))),

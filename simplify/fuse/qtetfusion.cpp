@@ -17,7 +17,7 @@
 #include "simplify/fuse/level_queue.h"
 #include "simplify/fuse/live_boundary.h"
 #include "simplify/fuse/open_vertices.h"
-#include "simplify/legality/original_surface.h"
+#include "simplify/legality/allowed_space.h"
 #include "simplify/mesh/stopping.h"
 #include "simplify/mesh/tet_mesh.h"
 #include "simplify/mesh/workers.h"
@@ -141,8 +141,7 @@ class Simplifier {
   /// Limits fusions by the worst shape of a cell, and the cosine of the largest turn of a boundary
   /// triangle.
   void limitBy(double shapeFloor, double normalCosine) {
-    const FusionLimits limits{shapeFloor, options_.envelopeTolerance * state_.cost().diagonal(),
-                              original_.get(), normalCosine};
+    const FusionLimits limits{shapeFloor, allowed_.get(), normalCosine};
     proposers_.clear();
     for (std::size_t i = 0; i < workers_.count(); ++i)
       proposers_.push_back(std::make_unique<FusionProposer>(
@@ -165,8 +164,10 @@ class Simplifier {
   BandNodes band_;
   // where fusions may go outside
   const bool mayLeave_ = options_.envelopeTolerance > 0;
-  std::unique_ptr<OriginalSurface> original_ =
-      mayLeave_ ? std::make_unique<OriginalSurface>(state_.mesh()) : nullptr;
+  std::unique_ptr<AllowedSpace> allowed_ =
+      mayLeave_ ? std::make_unique<AllowedSpace>(
+                      state_.mesh(), options_.envelopeTolerance* state_.cost().diagonal())
+                : nullptr;
   std::unique_ptr<LiveBoundary> boundary_ =
       mayLeave_ ? std::make_unique<LiveBoundary>(state_.mesh()) : nullptr;
   Proposers proposers_;  // one a worker

@@ -101,15 +101,14 @@ inline bool BoundaryEnvelope::isOutside(const Face& face, double side, const Pro
 }
 
 // The tetrahedra of p and each triangle that it is beyond are all that the solid gains.
-bool BoundaryEnvelope::staysNear(const OriginalSurface& original, double tolerance,
-                                 const LatticePoint& p, DistanceCells& known) const {
+bool BoundaryEnvelope::staysNear(const AllowedSpace& allowed, const LatticePoint& p,
+                                 AllowedSpace::Known& known) const {
   const Probe probe = probeOf(p);
   for (std::size_t i = 0; i < faces_.size(); ++i) {
     if (outsideOf(i / 2, probe)[i % 2] == 0) continue;
     const auto& t = mesh_.cell(faces_[i].ghost);
-    if (!original.holds(
-            {mesh_.position(t[0]), mesh_.position(t[1]), mesh_.position(t[2]), toVector(p)},
-            tolerance, known))
+    if (!allowed.holds(
+            {mesh_.position(t[0]), mesh_.position(t[1]), mesh_.position(t[2]), toVector(p)}, known))
       return false;
   }
   return true;

@@ -7,9 +7,9 @@
 #include <optional>
 #include <span>
 
+#include "simplify/legality/allowed_space.h"
 #include "simplify/legality/fixed_list.h"
 #include "simplify/legality/local_star.h"
-#include "simplify/legality/original_surface.h"
 #include "simplify/mesh/fusion_mesh.h"
 #include "simplify/mesh/two_vectors.h"
 
@@ -31,9 +31,9 @@ class BoundaryEnvelope {
   /// its lattice point is inside.
   [[nodiscard]] bool project(Vector3 p, LatticePoint& inside) const;
   /// Whether with the prey at p the solid gains nothing that lies further outside the original one
-  /// than `tolerance`, in lattice steps. It presumes that nothing of it does yet.
-  [[nodiscard]] bool staysNear(const OriginalSurface& original, double tolerance,
-                               const LatticePoint& p, DistanceCells& known) const;
+  /// than allowed. It presumes that nothing of it does yet.
+  [[nodiscard]] bool staysNear(const AllowedSpace& allowed, const LatticePoint& p,
+                               AllowedSpace::Known& known) const;
   /// Whether with the prey at p a triangle turns further than it may.
   [[nodiscard]] bool turnsTooFar(const LatticePoint& p) const;
 

@@ -1,7 +1,5 @@
 #include "simplify/legality/fusion_check.h"
 
-#include <cassert>
-
 #include "simplify/legality/edge_link_check.h"
 
 namespace qtet {
@@ -12,9 +10,7 @@ FusionCheck::FusionCheck(const FusionMesh& mesh, const FusionLimits& limits)
       envelope_(mesh, limits.normalCosine),
       flips_(mesh),
       star_(mesh),
-      shapes_(mesh, star_, limits.shapeFloor) {
-  assert(!mayLeave() || limits.original);
-}
+      shapes_(mesh, star_, limits.shapeFloor) {}
 
 bool FusionCheck::gatherBoundary(const Prey& prey) {
   if (starCellsOf(mesh_, prey) > kMaxStarCells) return false;

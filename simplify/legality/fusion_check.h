@@ -20,10 +20,8 @@ struct FusionLimits {
   /// No new cell may be shaped worse than this or than a fifth of its star's worst, whichever is
   /// lower.
   double shapeFloor = 0;
-  /// How far the boundary may leave the original solid, in lattice steps. Above 0 REQUIRES
-  /// `original`.
-  double envelopeTolerance = 0;
-  const OriginalSurface* original = nullptr;
+  /// Where the solid may leave the boundary envelope for; null: nowhere.
+  const AllowedSpace* allowed = nullptr;
   /// Cosine of the largest angle by which a boundary triangle may turn in one fusion; negative:
   /// any.
   double normalCosine = -1;
@@ -49,7 +47,7 @@ class FusionCheck {
   [[nodiscard]] bool keepsTopology();
 
   /// Fusion points may lie outside the envelope, where staysNear(p).
-  [[nodiscard]] bool mayLeave() const { return limits_.envelopeTolerance > 0; }
+  [[nodiscard]] bool mayLeave() const { return limits_.allowed != nullptr; }
   /// p lies on the inner side of (or on) every boundary face of the star. REQUIRES gatherBoundary.
   [[nodiscard]] bool insideEnvelope(const LatticePoint& p) const { return envelope_.holds(p); }
   /// Moves p onto the planes of the boundary faces that it lies outside of, one after the other,
@@ -65,7 +63,7 @@ class FusionCheck {
   /// Whether with the prey at p the solid gains nothing that lies further outside the original one
   /// than the tolerance. REQUIRES gatherBoundary, mayLeave, p on the lattice.
   [[nodiscard]] bool staysNear(const LatticePoint& p) const {
-    return envelope_.staysNear(*limits_.original, limits_.envelopeTolerance, p, distances_);
+    return envelope_.staysNear(*limits_.allowed, p, known_);
   }
   /// The worst shape among the affected cells with the prey at p (1 = regular, 0 = flat). Negative
   /// where p is not legal, since a cell would flip or be squashed or a boundary triangle turn too
@@ -83,7 +81,7 @@ class FusionCheck {
   FusionLimits limits_;
   Prey prey_;
   BoundaryEnvelope envelope_;
-  mutable DistanceCells distances_;  // from limits_.original
+  mutable AllowedSpace::Known known_;  // about limits_.allowed
   FlipCheck flips_;
   LocalStar star_;
   StarShapes shapes_;

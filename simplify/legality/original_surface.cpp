@@ -10,9 +10,6 @@
 namespace qtet {
 namespace {
 
-/// Cuts of one tetrahedron. A flat one is then in pieces a thirtieth as long. A piece that needs
-/// more is too large for the tolerance, and there are other places to fuse to.
-constexpr int kMaxCuts = 1 << 10;
 /// A surface so near the middle of a cube, over its length, is as good as one through it.
 constexpr double kNear = 0.25;
 /// The cosine to a pseudonormal that is too small to tell a side, in doubles.
@@ -36,6 +33,8 @@ double angleBetween(const Vector3& a, const Vector3& b) {
   const double t = tangent * tangent;
   return halvings * tangent * (1 - t * (1.0 / 3 - t * (1.0 / 5 - t / 7)));
 }
+
+float floatBelow(double x) { return std::nextafter(static_cast<float>(x), 0.0f); }
 
 double radiusOf(const OriginalSurface::Corners& corners, const Vector3& middle) {
   double squared = 0;
@@ -67,6 +66,15 @@ std::array<OriginalSurface::Corners, 2> halves(const OriginalSurface::Corners& c
 }
 
 }  // namespace
+
+OriginalSurface::Tolerances::Tolerances(const OriginalSurface& surface, double everywhere)
+    : Tolerances(std::vector(surface.tree().builtOver(), floatBelow(everywhere))) {}
+
+OriginalSurface::Tolerances::Tolerances(std::vector<float> each) : own(std::move(each)) {
+  if (own.empty()) return;
+  const auto [low, high] = std::ranges::minmax_element(own);
+  least = *low, most = *high;
+}
 
 OriginalSurface::OriginalSurface(const FusionMesh& mesh) {
   std::vector<VertexId> vertices;
@@ -177,10 +185,14 @@ SignedDistance OriginalSurface::distanceOf(const LatticeCube& cube) const {
 }
 
 // The tetrahedron is halved until each piece is near one triangle of the surface, or lies in a
-// ball. Such a ball is round the middle of a cube that is near the solid or inside it. The piece
-// that lies furthest outside comes first: where one lies too far, it is soon found.
-bool OriginalSurface::holds(const Corners& tetrahedron, double tolerance,
-                            DistanceCells& known) const {
+// ball. Such a ball is round the middle of a cube that is near the solid or inside it. The triangle
+// nearest to that middle says how near. A ball that passes the surface may leave it anywhere, so
+// that the least tolerance counts. The piece that lies furthest outside comes first: where one lies
+// too far, it is soon found.
+bool OriginalSurface::holds(const Corners& tetrahedron, const Tolerances& tolerances,
+                            DistanceCells& known,
+                            const std::function<bool(const Corners&)>& isDoubtful,
+                            int maxCuts) const {
   struct Piece {
     Corners corners;
     double outside;
@@ -188,16 +200,19 @@ bool OriginalSurface::holds(const Corners& tetrahedron, double tolerance,
   std::vector<Piece> waiting;
   // False: it lies too far outside for sure.
   const auto look = [&](const Corners& corners) {
+    if (!isDoubtful(corners)) return true;
     const Vector3 centre = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
     const double radius = radiusOf(corners, centre);
     // neighbours of a small piece share its cube
-    const auto size = static_cast<std::uint32_t>(std::max(radius, 0.5 * (tolerance - radius)));
+    const auto size =
+        static_cast<std::uint32_t>(std::max(radius, 0.5 * (tolerances.most - radius)));
     const LatticeCube cube =
         LatticeCube::at(centre, static_cast<int>(std::bit_width(size | 1)) - 1);
     const SignedDistance from = known.at(cube, [&] { return distanceOf(cube); });
     const double reach = radiusOf(corners, cube.middle());
+    const double tolerance = tolerances.own[from.nearest];
     if (from.outside - reach > tolerance + kRounding) return false;
-    if (from.outside + reach > tolerance &&
+    if (from.outside + reach > (from.outside < 0 ? tolerances.least : tolerance) &&
         !isNear(corners, tree_->corners(from.nearest), tolerance - kRounding)) {
       waiting.push_back({corners, from.outside});
       std::ranges::push_heap(waiting, {}, &Piece::outside);
@@ -206,7 +221,7 @@ bool OriginalSurface::holds(const Corners& tetrahedron, double tolerance,
   };
   if (!look(tetrahedron)) return false;
   for (int cuts = 0; !waiting.empty(); ++cuts) {
-    if (cuts == kMaxCuts) return false;
+    if (cuts == maxCuts) return false;
     std::ranges::pop_heap(waiting, {}, &Piece::outside);
     const auto parts = halves(waiting.back().corners);
     waiting.pop_back();

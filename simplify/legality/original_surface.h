@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -17,15 +18,36 @@ namespace qtet {
 class OriginalSurface {
  public:
   using Corners = std::array<Vector3, 4>;
+  /// Cuts of one tetrahedron, unless said otherwise. A flat one is then in pieces a thirtieth as
+  /// long. A piece that needs more is too large for the tolerance.
+  static constexpr int kMaxCuts = 1 << 6;
 
   /// The surface of the mesh as it is now.
   explicit OriginalSurface(const FusionMesh& mesh);
 
-  /// No point of the tetrahedron is outside the solid and further from its surface than
-  /// `tolerance`, in lattice steps. False also where that was not proved within a bounded number of
+  /// By triangle, how far the solid may grow there, in lattice steps.
+  struct Tolerances {
+    std::vector<float> own;
+    float least = 0, most = 0;  ///< of them
+
+    /// The same at every triangle.
+    Tolerances(const OriginalSurface& surface, double everywhere);
+    explicit Tolerances(std::vector<float> own);
+  };
+
+  /// No point of the tetrahedron is outside the solid and further from every triangle than that
+  /// one's tolerance. False also where that was not proved within a bounded number of
   /// steps. `known`: of this surface alone. REQUIRES: corners in [0, 2^30)^3.
-  [[nodiscard]] bool holds(const Corners& tetrahedron, double tolerance,
-                           DistanceCells& known) const;
+  [[nodiscard]] bool holds(const Corners& tetrahedron, const Tolerances& tolerances,
+                           DistanceCells& known) const {
+    return holds(tetrahedron, tolerances, known, [](const Corners&) { return true; });
+  }
+  /// The same where some parts are known to hold: `isDoubtful(corners)` is false for a piece that
+  /// lies in them. After `maxCuts` it was not proved.
+  [[nodiscard]] bool holds(const Corners& tetrahedron, const Tolerances& tolerances,
+                           DistanceCells& known,
+                           const std::function<bool(const Corners&)>& isDoubtful,
+                           int maxCuts = kMaxCuts) const;
   /// p is inside the solid, as far as doubles can tell, `nearest` being its nearest triangle. False
   /// where the surface is not a manifold at the nearest point.
   [[nodiscard]] bool isInside(const Vector3& p, const NearestTriangle& nearest) const;

@@ -2,6 +2,8 @@
 // which is being simplified.
 #pragma once
 
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -42,6 +44,10 @@ class TriangleTree {
   /// until it returns false.
   template <class Visit>
   void touching(const LatticePoint& low, const LatticePoint& high, const Visit& visit) const;
+  /// Calls visit(id) for the triangles of every leaf whose box the segment passes, and perhaps a
+  /// few more.
+  template <class Visit>
+  void crossing(const Vector3& from, const Vector3& to, const Visit& visit) const;
 
   /// Fits the boxes to the vertices as they are now and leaves out the triangles that do not live
   /// any more. Linear time without slabs, n log n with them.
@@ -78,6 +84,9 @@ class TriangleTree {
     std::array<double, 2> low, high;  // low > high where nothing lives
   };
 
+  /// Calls visit(id), until it returns false, for the leaves under nodes that are not apart.
+  template <class IsApart, class Visit>
+  void walk(const IsApart& isApart, const Visit& visit) const;
   void build(std::uint32_t first, std::uint32_t count);
   void fit(Node& leaf) const;
   [[nodiscard]] bool isCrowded() const;
@@ -95,14 +104,8 @@ class TriangleTree {
   std::vector<std::uint32_t> parents_, leaves_;
 };
 
-template <class Visit>
-void TriangleTree::touching(const LatticePoint& low, const LatticePoint& high,
-                            const Visit& visit) const {
-  const auto isApart = [&](const Node& node) {
-    bool apart = false;
-    for (std::size_t k = 0; k < 3; ++k) apart |= node.high[k] < low[k] || node.low[k] > high[k];
-    return apart;
-  };
+template <class IsApart, class Visit>
+void TriangleTree::walk(const IsApart& isApart, const Visit& visit) const {
   std::array<std::uint32_t, kMaxWaiting> waiting;
   std::size_t size = 0;
   for (std::uint32_t index = 0;;) {
@@ -119,6 +122,38 @@ void TriangleTree::touching(const LatticePoint& low, const LatticePoint& high,
     if (size == 0) return;
     index = waiting[--size];
   }
+}
+
+template <class Visit>
+void TriangleTree::touching(const LatticePoint& low, const LatticePoint& high,
+                            const Visit& visit) const {
+  const auto isApart = [&](const Node& node) {
+    bool apart = false;
+    for (std::size_t k = 0; k < 3; ++k) apart |= node.high[k] < low[k] || node.low[k] > high[k];
+    return apart;
+  };
+  walk(isApart, visit);
+}
+
+// Neither their boxes are apart, nor what they are like seen along an axis (separating axes).
+template <class Visit>
+void TriangleTree::crossing(const Vector3& from, const Vector3& to, const Visit& visit) const {
+  const Vector3 middle = 0.5 * (from + to), half = 0.5 * (to - from);
+  const Vector3 size{std::abs(half[0]), std::abs(half[1]), std::abs(half[2])};
+  constexpr double kSlack = 1e-6;  // lattice steps, for rounding and a flat box
+  const auto isApart = [&](const Node& node) {
+    const Vector3 low = toVector(node.low), high = toVector(node.high);
+    const Vector3 off = 0.5 * (low + high) - middle, box = 0.5 * (high - low);
+    bool apart = false;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t l = (k + 1) % 3;
+      apart |= std::abs(off[k]) > box[k] + size[k] + kSlack;
+      apart |= std::abs(off[k] * half[l] - off[l] * half[k]) >
+               box[k] * size[l] + box[l] * size[k] + kSlack * (size[k] + size[l]);
+    }
+    return apart;
+  };
+  walk(isApart, [&](std::uint32_t id) { return visit(id), true; });
 }
 
 }  // namespace qtet

@@ -60,7 +60,7 @@ TEST_P(Near, noPlaceOfATetrahedronThatHoldsIsFurtherOutside) {
       for (std::size_t k = 0; k < 3; ++k)
         corner[k] = std::floor(std::clamp(from[k] + upTo(size) - size / 2, 0.0, length));
     const double outside = sampledOutside(solid.mesh, t);
-    const bool holds = surface.holds(t, tolerance, known);
+    const bool holds = surface.holds(t, {surface, tolerance}, known);
     // places are rounded to the lattice
     if (holds) {
       ASSERT_LE(outside, tolerance + 0.87) << "trial " << trial;
@@ -83,12 +83,13 @@ TEST(OriginalSurface, whatHoldsDoesNotDependOnWhatWasAskedBefore) {
   DistanceCells known;
   std::mt19937 random(1);
   const double length = lengthOf(solid.mesh);
+  const OriginalSurface::Tolerances tolerances(surface, length / 10);
   for (int trial = 0; trial < 500; ++trial) {
     Corners t;
     for (Vector3& corner : t)
       for (double& x : corner) x = length * static_cast<double>(random() % 1024) / 1024;
     DistanceCells fresh;
-    ASSERT_EQ(surface.holds(t, length / 10, known), surface.holds(t, length / 10, fresh));
+    ASSERT_EQ(surface.holds(t, tolerances, known), surface.holds(t, tolerances, fresh));
   }
 }
 

@@ -1,0 +1,85 @@
+#include "simplify/legality/local_tolerances.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace qtet {
+namespace {
+
+/// Two sheets that both grow by this share of their distance keep half of it.
+constexpr double kShare = 0.25;
+/// Weights of the middle in the places near a large triangle's corners from which it looks too.
+constexpr double kFromCorner = 0.125;
+/// A line that passes beside a triangle by less, over its length, hits it: none slips between two.
+constexpr double kEdge = 1e-9;
+
+float floatBelow(double x) { return std::nextafter(static_cast<float>(x), 0.0f); }
+
+/// Where the line at + t * along passes the triangle; infinity where it does not.
+double passingAt(const Vector3& at, const Vector3& along, const std::array<Vector3, 3>& triangle) {
+  constexpr double kNowhere = std::numeric_limits<double>::infinity();
+  const Vector3 u = triangle[1] - triangle[0], v = triangle[2] - triangle[0];
+  const Vector3 across = cross(along, v), from = at - triangle[0];
+  const double scale = dot(u, across);
+  if (scale == 0) return kNowhere;
+  const double first = dot(from, across) / scale;
+  if (first < -kEdge || first > 1 + kEdge) return kNowhere;
+  const Vector3 turned = cross(from, u);
+  const double second = dot(along, turned) / scale;
+  if (second < -kEdge || first + second > 1 + kEdge) return kNowhere;
+  return dot(v, turned) / scale;
+}
+
+class Lookout {
+ public:
+  Lookout(const TriangleTree& tree, double most)
+      : tree_(tree), reach_(most / kShare), most_(most), out_(tree.builtOver(), floatBelow(most)) {}
+
+  void lookFrom(std::uint32_t triangle) {
+    const auto corners = tree_.corners(triangle);
+    const Vector3 u = corners[1] - corners[0], v = corners[2] - corners[0], normal = cross(u, v);
+    const double length = std::sqrt(dot(normal, normal));
+    if (!(length > 0)) {
+      out_[triangle] = 0;
+      return;
+    }
+    const Vector3 along = reach_ / length * normal,
+                  middle = 1 / 3.0 * (corners[0] + corners[1] + corners[2]);
+    look(triangle, middle, along);
+    if (std::max(dot(u, u), dot(v, v)) <= most_ * most_) return;
+    for (const Vector3& c : corners)
+      look(triangle, kFromCorner * middle + (1 - kFromCorner) * c, along);
+  }
+  [[nodiscard]] std::vector<float> take() { return std::move(out_); }
+
+ private:
+  // The nearest triangle on each side.
+  void look(std::uint32_t triangle, const Vector3& from, const Vector3& along) {
+    std::array<double, 2> nearest{1, 1};
+    std::array<std::uint32_t, 2> hit{triangle, triangle};
+    tree_.crossing(from - along, from + along, [&](std::uint32_t other) {
+      if (other == triangle) return;
+      const double at = passingAt(from, along, tree_.corners(other));
+      const std::size_t side = at < 0 ? 1 : 0;
+      if (std::abs(at) < nearest[side]) nearest[side] = std::abs(at), hit[side] = other;
+    });
+    for (std::size_t side = 0; side < 2; ++side)
+      for (const std::uint32_t t : {triangle, hit[side]})
+        out_[t] = std::min(out_[t], floatBelow(nearest[side] * most_));
+  }
+
+  const TriangleTree& tree_;
+  double reach_, most_;
+  std::vector<float> out_;
+};
+
+}  // namespace
+
+std::vector<float> localTolerances(const TriangleTree& tree, double most) {
+  Lookout lookout(tree, most);
+  for (std::uint32_t t = 0; t < tree.builtOver(); ++t) lookout.lookFrom(t);
+  return lookout.take();
+}
+
+}  // namespace qtet

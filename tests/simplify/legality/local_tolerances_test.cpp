@@ -1,0 +1,69 @@
+// How far a solid may grow at each triangle, where another sheet is near and where none is.
+#include "simplify/legality/local_tolerances.h"
+
+#include <gtest/gtest.h>
+
+namespace qtet {
+namespace {
+
+/// The tolerances of triangles of three places each.
+std::vector<float> tolerancesOf(const std::vector<std::array<LatticePoint, 3>>& triangles,
+                                double most) {
+  std::vector<LatticePoint> points;
+  std::vector<TriangleTree::Cell> cells;
+  std::vector<std::uint32_t> ids;
+  for (const auto& t : triangles) {
+    const auto first = static_cast<VertexId>(points.size());
+    points.insert(points.end(), t.begin(), t.end());
+    ids.push_back(static_cast<std::uint32_t>(cells.size()));
+    cells.push_back({first, first + 1, first + 2, kGhost});
+  }
+  return localTolerances(TriangleTree(points, cells, ids), most);
+}
+
+std::array<LatticePoint, 3> level(std::int32_t corner, std::int32_t size, std::int32_t height) {
+  return {LatticePoint{corner, corner, height}, LatticePoint{corner + size, corner, height},
+          LatticePoint{corner, corner + size, height}};
+}
+
+TEST(LocalTolerances, areAQuarterOfTheWayToTheNextSheetOnEitherSide) {
+  const auto found = tolerancesOf({level(0, 90, 100), level(0, 90, 140), level(0, 90, 400)}, 50);
+  EXPECT_FLOAT_EQ(found[0], 10);
+  EXPECT_FLOAT_EQ(found[1], 10) << "the other one is above";
+  EXPECT_LE(found[0], 10.0f);
+  EXPECT_FLOAT_EQ(found[2], 50) << "260 steps are more than it could use up";
+}
+
+TEST(LocalTolerances, areAtMostTheGivenOne) {
+  for (const std::int32_t gap : {199, 200, 201}) {
+    const auto found = tolerancesOf({level(0, 90, 100), level(0, 90, 100 + gap)}, 50);
+    EXPECT_FLOAT_EQ(found[0], std::min(50.0f, 0.25f * static_cast<float>(gap))) << gap;
+    EXPECT_LT(found[0], 50.0f) << "rounded down";
+  }
+}
+
+TEST(LocalTolerances, aLargeTriangleKnowsOfASmallOneInFrontOfIt) {
+  const auto found = tolerancesOf({level(0, 3000, 100), level(700, 4, 140)}, 50);
+  EXPECT_FLOAT_EQ(found[0], 10);
+  EXPECT_FLOAT_EQ(found[1], 10);
+}
+
+TEST(LocalTolerances, aLargeTriangleLooksFromItsCornersToo) {
+  const auto found = tolerancesOf({level(0, 800, 100), level(0, 300, 140)}, 50);
+  EXPECT_FLOAT_EQ(found[0], 10) << "its middle has nothing in front of it";
+}
+
+TEST(LocalTolerances, aWallThatStandsBesideATriangleIsNoSheet) {
+  const std::array<LatticePoint, 3> wall{LatticePoint{100, 0, 0}, LatticePoint{100, 900, 0},
+                                         LatticePoint{100, 0, 900}};
+  const auto found = tolerancesOf({level(0, 90, 100), wall}, 50);
+  EXPECT_FLOAT_EQ(found[0], 50);
+}
+
+TEST(LocalTolerances, aDegenerateTriangleHasNone) {
+  const LatticePoint p{7, 7, 7};
+  EXPECT_EQ(tolerancesOf({level(0, 90, 100), {p, p, p}}, 50)[1], 0);
+}
+
+}  // namespace
+}  // namespace qtet
