@@ -140,7 +140,7 @@ class Scene {
     return palette.colors();
   }
 
-  /// Of the plane across the axis in the middle of the lattice's points.
+  /// On the plane across the axis in the middle of the lattice's points.
   [[nodiscard]] double colorsOnCut(const Values& values, std::size_t axis) const {
     const auto [low, high] =
         std::ranges::minmax(mesh_.points, {}, [&](const LatticePoint& p) { return p[axis]; });

@@ -14,8 +14,9 @@ namespace qtet {
 /// first field shows most without a cut, or nothing does.
 ///
 /// The number of colours is 1 / sum of p^2 (inverse Simpson index), where p is the share of
-/// the area that has one of 256 colours. The colours span the values, or the middle 96 % of them if
-/// these take less than 0.4 of the span: as the viewer's automatic range. + - * / and sqrt decide.
+/// the area that has one of 256 colours. The colours span the values. If the middle 96 % of them
+/// take less than 0.4 of that, they span these, as the viewer's automatic range does. Nothing but
+/// + - * / and sqrt decides.
 [[nodiscard]] std::optional<Opening> openingOf(const LatticeMesh& mesh,
                                                const std::optional<Focus>& focus = std::nullopt);
 

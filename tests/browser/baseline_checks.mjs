@@ -22,7 +22,7 @@ const kPhoneSize = {viewport: {width: 390, height: 844}, isMobile: true, hasTouc
  * the simplifier.
  */
 const kPictures = {
-  boundary: ['mesh=fin&field=Velocity', kScene],
+  boundary: ['mesh=fin&field=Velocity&clip=none', kScene],
   'clip-caps': ['mesh=box&clip=y:0.5', kScene],
   'clip-cells': ['mesh=box&clip=y:0.5&clip-mode=cells', kScene],
   isosurfaces: ['mesh=fin&field=Velocity&colormap=turbo&iso=Density=1.3,2.5&surface=off', kScene],
