@@ -6,7 +6,10 @@ import type {Insets} from '../../three/view';
 const kMaxCovered = 0.6;
 /** Share of the free width: a wider legend leaves no corner. */
 const kWide = 0.6;
-/** On narrow screens the panel is a sheet at the foot. */
+/** Pixels below the last row of a folded sheet (style.css says the same). */
+const kSheetFoot = 16;
+
+/** With `sheet` the panel is a sheet at the foot. */
 export function insetsOf(
   host: HTMLElement,
   {panel, legend}: {panel: HTMLElement; legend: HTMLElement},
@@ -24,7 +27,7 @@ export function insetsOf(
       left: 0,
       right: 0,
       top: bare ? 0 : Math.min(kMaxCovered, (bar.bottom - whole.top) / height),
-      bottom: hidden ? 0 : Math.min(kMaxCovered, (whole.bottom - card.top) / height),
+      bottom: hidden ? 0 : Math.min(kMaxCovered, sheetHeight(panel) / height),
     };
   const free = (hidden ? whole.right : card.left) - whole.left;
   // The legend only takes a corner, so that half of its height is enough room, unless it leaves
@@ -36,4 +39,12 @@ export function insetsOf(
     top: 0,
     bottom: Math.min(kMaxCovered, bottom),
   };
+}
+
+/** A folded sheet counts as it stays: the figures below its row fold away with the last byte. */
+function sheetHeight(panel: HTMLElement): number {
+  const {top, height} = panel.getBoundingClientRect();
+  const row = panel.querySelector('.progress .row')!.getBoundingClientRect();
+  const isFolded = panel.classList.contains('folded') && row.height > 0;
+  return isFolded ? row.bottom + kSheetFoot - top : height;
 }
