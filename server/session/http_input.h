@@ -29,9 +29,13 @@ class HttpInput {
   HttpInput(Peer& peer, const Timeouts& timeouts)
       : peer_(peer), timeouts_(timeouts), buffer_(limits::kMaxHeaderBytes) {}
 
-  /// Waits for the first byte of a request. False: the client has gone or said nothing for too
-  /// long, or the server ends.
-  boost::asio::awaitable<bool> waitForRequest();
+  enum class Begun : std::uint8_t {
+    kNot,     ///< the client has gone or said nothing for too long, or the server ends
+    kAtOnce,  ///< its first byte had come before
+    kWaited,  ///< others had their turn meanwhile
+  };
+  /// Waits for the first byte of a request.
+  boost::asio::awaitable<Begun> waitForRequest();
   /// Has the whole head parsed. Else what is answered, and the connection ends; nullopt: the client
   /// has gone.
   boost::asio::awaitable<std::expected<void, std::optional<Reply>>> readHead(Parser& parser);

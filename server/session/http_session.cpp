@@ -19,6 +19,7 @@
 #include "server/wire/http_limits.h"
 #include "server/wire/peer.h"
 #include "server/wire/trusted_proxies.h"
+#include "server/wire/turns.h"
 
 namespace qtet {
 namespace {
@@ -62,6 +63,11 @@ class HttpSession {
   asio::awaitable<bool> shakeHands();
   /// False: no place came free in the time for a handshake, or the connection ends.
   asio::awaitable<bool> waitForPlace(Handshakes::Client& handshake, const Deadline& deadline);
+  /// Lets other connections of the thread have their turn.
+  asio::awaitable<void> giveWay() {
+    const asio::any_io_executor executor = peer_.socket.get_executor();
+    co_await Turns::of(executor).take(executor);
+  }
   /// Reads a request and answers it; false: the connection is not to be used further. A coroutine
   /// of its own, so that a silent client holds none of what a request needs.
   asio::awaitable<bool> serveRequest();
@@ -143,9 +149,10 @@ asio::awaitable<void> HttpSession::run() {
   if (!known) co_return;
   const bool greeted = co_await shakeHands();
   if (!greeted) co_return;
-  for (;;) {
-    const bool begun = co_await input_.waitForRequest();
-    if (!begun) co_return;
+  for (bool first = true;; first = false) {
+    const HttpInput::Begun begun = co_await input_.waitForRequest();
+    if (begun == HttpInput::Begun::kNot) co_return;
+    if (!first && begun == HttpInput::Begun::kAtOnce) co_await giveWay();
     const bool again = co_await serveRequest();
     if (!again) co_return;
   }
