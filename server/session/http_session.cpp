@@ -15,6 +15,7 @@
 #include "server/session/http_request.h"
 #include "server/session/request_report.h"
 #include "server/stream/stream_session.h"
+#include "server/wire/charge.h"
 #include "server/wire/handshakes.h"
 #include "server/wire/http_limits.h"
 #include "server/wire/peer.h"
@@ -65,12 +66,12 @@ class HttpSession {
   asio::awaitable<bool> waitForPlace(Handshakes::Client& handshake, const Deadline& deadline);
   /// Lets other connections of the thread have their turn.
   asio::awaitable<void> giveWay() {
-    const asio::any_io_executor executor = peer_.socket.get_executor();
-    co_await Turns::of(executor).take(executor);
+    co_await takeTurn(peer_.socket.get_executor(), peer_.client.get());
   }
   /// Reads a request and answers it; false: the connection is not to be used further. A coroutine
-  /// of its own, so that a silent client holds none of what a request needs.
-  asio::awaitable<bool> serveRequest();
+  /// of its own, so that a silent client holds none of what a request needs. `pipelined`: it had
+  /// come before the last one was answered.
+  asio::awaitable<bool> serveRequest(bool pipelined);
   /// The answer to a request if nothing of what it asks for matters.
   /// `placed`: the client has a place among those of its address.
   std::optional<Reply> earlyAnswer(const RequestHeader& header, bool placed);
@@ -121,7 +122,11 @@ asio::awaitable<bool> HttpSession::shakeHands() {
     Handshakes::Client handshake(*services_.handshakes, peer_.socket.get_executor(),
                                  [this] { peer_.socket.cancel(); });
     if (done) done = co_await waitForPlace(handshake, deadline);
-    if (done) done = co_await peer_.socket.shakeHands();
+    if (done && owesTurn(peer_.client.get())) {
+      co_await giveWay();
+      done = !peer_.client->overdrawn() && !deadline.passed();
+    }
+    if (done) done = co_await peer_.socket.shakeHands(peer_.client.get());
     if (done) co_return true;
   }
   if (peer_.socket.becomePlainForPlainHttp())
@@ -152,13 +157,12 @@ asio::awaitable<void> HttpSession::run() {
   for (bool first = true;; first = false) {
     const HttpInput::Begun begun = co_await input_.waitForRequest();
     if (begun == HttpInput::Begun::kNot) co_return;
-    if (!first && begun == HttpInput::Begun::kAtOnce) co_await giveWay();
-    const bool again = co_await serveRequest();
+    const bool again = co_await serveRequest(!first && begun == HttpInput::Begun::kAtOnce);
     if (!again) co_return;
   }
 }
 
-asio::awaitable<bool> HttpSession::serveRequest() {
+asio::awaitable<bool> HttpSession::serveRequest(bool pipelined) {
   report_.begin();
   Parser parser;
   auto head = co_await input_.readHead(parser);
@@ -171,6 +175,7 @@ asio::awaitable<bool> HttpSession::serveRequest() {
   const bool placed = proxies_ == nullptr || asksProxyOnce() ||
                       belongsTo(forwardedClient(*proxies_, forwardedOf(parser.get(), *proxies_)));
   report_.identify(viewOf(parser.get()));
+  if (pipelined || owesTurn(peer_.client.get())) co_await giveWay();
   const bool keepAlive = parser.get().keep_alive();
   bool again = false;
   if (std::optional<Reply> early = earlyAnswer(parser.get(), placed)) {
@@ -236,7 +241,10 @@ asio::awaitable<bool> HttpSession::becomeStream(Parser& parser) {
 
 asio::awaitable<bool> HttpSession::answer(const RequestHeader& request, bool keepAlive) {
   const RequestView view = viewOf(request);
-  Answer answer = services_.route(view);
+  Answer answer = [&] {
+    const Charge charge(peer_.client.get());
+    return services_.route(view);
+  }();
   if (std::holds_alternative<std::monostate>(answer.work))
     co_return co_await send(std::move(answer.reply), keepAlive && !hasBody(view));
   std::optional<Reply> reply = co_await workOn(std::move(answer), view, peer_, input_, services_);

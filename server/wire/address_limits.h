@@ -1,4 +1,4 @@
-// Limits for one address: connections at a time, and requests a second.
+// Limits for one address: connections at a time, requests a second, and processor time.
 #pragma once
 
 #include <array>
@@ -21,7 +21,8 @@ class AddressLimits {
   using Clock = std::chrono::steady_clock;
   using Key = std::array<std::uint8_t, 16>;
 
-  /// 0: no bound. A second's worth of requests may come at once, twice over.
+  /// 0: no bound; without one of requests, there is none of processor time. A second's worth of
+  /// either may come at once, twice over.
   AddressLimits(std::size_t maxConnections, unsigned requestsPerSecond)
       : maxConnections_(maxConnections),
         requestsPerSecond_(requestsPerSecond),
@@ -34,8 +35,14 @@ class AddressLimits {
     ~Client();
     Client(const Client&) = delete;
     Client& operator=(const Client&) = delete;
-    /// false: the address has asked too often.
+    /// false: the address has asked too often, or its answers have cost too much.
     [[nodiscard]] bool countRequest(Clock::time_point now = Clock::now());
+    /// Adds processor time; limits::kProcessorTimePerSecond of it is forgiven each second.
+    void charge(std::chrono::nanoseconds time, Clock::time_point now = Clock::now());
+    /// Processor time that is not forgiven yet; 0 without a bound.
+    [[nodiscard]] std::chrono::nanoseconds debt(Clock::time_point now = Clock::now());
+    /// Whether that is as much as may be.
+    [[nodiscard]] bool overdrawn(Clock::time_point now = Clock::now());
     /// The same for all clients of one address, and another for each other one; lives as long as
     /// one of them.
     [[nodiscard]] const void* address() const { return address_.get(); }

@@ -6,6 +6,8 @@
 #include <boost/asio/post.hpp>
 #include <boost/asio/use_awaitable.hpp>
 
+#include "server/wire/connection_limits.h"
+
 namespace qtet {
 
 namespace asio = boost::asio;
@@ -37,6 +39,15 @@ void Turns::runFirst(const asio::any_io_executor& executor) {
   scheduled_ = false;
   if (!waiting_.empty()) schedule(executor);
   first.mapped()();
+}
+
+bool owesTurn(AddressLimits::Client* client) {
+  return client != nullptr && client->debt() > limits::kMaxFreeTime;
+}
+
+asio::awaitable<void> takeTurn(asio::any_io_executor executor, AddressLimits::Client* client) {
+  const auto owed = client != nullptr ? client->debt() : std::chrono::nanoseconds();
+  co_await Turns::of(executor).take(executor, owed * limits::kTurnsBehind);
 }
 
 }  // namespace qtet

@@ -10,6 +10,8 @@
 #include <functional>
 #include <map>
 
+#include "server/wire/address_limits.h"
+
 namespace qtet {
 
 /// A queue for each io_context. Between two turns the context looks for what has arrived: new
@@ -38,5 +40,12 @@ class Turns : public boost::asio::execution_context::service {
   std::multimap<Clock::time_point, std::move_only_function<void()>> waiting_;
   bool scheduled_ = false;
 };
+
+/// Whether a client's address has taken so much processor time that it waits for a turn. nullptr:
+/// it has no bounds.
+[[nodiscard]] bool owesTurn(AddressLimits::Client* client);
+/// Waits for a turn, behind those that owe less.
+[[nodiscard]] boost::asio::awaitable<void> takeTurn(boost::asio::any_io_executor executor,
+                                                    AddressLimits::Client* client);
 
 }  // namespace qtet

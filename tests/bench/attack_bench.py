@@ -6,8 +6,8 @@ own. The server runs with its defaults on two threads, beside the attackers on t
 
   attack_bench.py --bin build/release/bin [--logs 1000] [--seconds 6] [--attacks list,metrics]
 """
-import argparse, atexit, collections, pathlib, re, selectors, socket, ssl, subprocess, tempfile
-import threading, time
+import argparse, atexit, collections, multiprocessing, pathlib, re, selectors, socket, ssl
+import subprocess, tempfile, threading, time
 
 ADDRESSES, CONNECTIONS, PIPELINED = 8, 8, 8
 READ_BYTES = 1 << 18
@@ -89,8 +89,22 @@ def attack(port, targets, until, statuses):
             selector.register(key.data.socket, selectors.EVENT_READ, key.data)
 
 
-def shake(port, source, until, statuses):
-    """Handshake upon handshake."""
+def shake(port, source, until, results):
+    """Handshake upon handshake, in a process of its own: Python's threads would wait for each
+    other."""
+    statuses = collections.Counter()
+    threads = [
+        threading.Thread(target=shake_in_turns, args=(port, source, until, statuses))
+        for _ in range(CONNECTIONS)
+    ]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    results.put(statuses)
+
+
+def shake_in_turns(port, source, until, statuses):
     context = ssl.create_default_context()
     context.check_hostname, context.verify_mode = False, ssl.CERT_NONE
     while time.monotonic() < until:
@@ -167,6 +181,8 @@ def ready(port, logs):
 
 
 def percentiles(times):
+    if not times:
+        return "none in time"
     times = sorted(times)
     at = [times[min(len(times) - 1, int(len(times) * q))] * 1e3 for q in (0.5, 0.99)]
     return " / ".join(f"{ms:.1f}" for ms in (*at, times[-1] * 1e3))
@@ -198,9 +214,10 @@ def run(options, folder, only):
         if not tls:
             ready(port, options.logs)
         until, statuses = time.monotonic() + options.seconds, collections.Counter()
+        results = multiprocessing.SimpleQueue()
         threads = (
-            [threading.Thread(target=shake, args=(port, f"127.0.0.{11 + i % 8}", until, statuses))
-             for i in range(64)]
+            [multiprocessing.Process(target=shake, args=(port, f"127.0.0.{11 + i}", until, results))
+             for i in range(ADDRESSES)]
             if tls
             else [threading.Thread(target=attack, args=(port, targets, until, statuses))]
         )
@@ -210,6 +227,8 @@ def run(options, folder, only):
         times = measure(port, until, tls)
         for thread in threads:
             thread.join()
+        while not results.empty():
+            statuses.update(results.get())
         server.kill()
         server.wait()
         counts = ", ".join(

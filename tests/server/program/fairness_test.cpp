@@ -55,5 +55,17 @@ TEST_F(FairnessTest, aPipeliningConnectionGivesWayAfterEachAnswer) {
   EXPECT_LT(at, static_cast<std::ptrdiff_t>(2 * kHalf)) << "not behind all that the other sent";
 }
 
+/// Half a second, since that much processor time has to be used up.
+TEST_F(FairnessTest, anAddressThatHasUsedUpItsProcessorTimeIsRefused) {
+  const test::RunningServer server(folder_.store(), folder_.viewer(),
+                                   {.threads = 1, .maxRequestsPerSecond = 1'000'000});
+  test::RawClient client(server.port());
+  EXPECT_TRUE(test::eventually([&] {
+    for (int i = 0; i < 1000; ++i)
+      if (client.get("/metrics").status == 429) return true;
+    return false;
+  }));
+}
+
 }  // namespace
 }  // namespace qtet

@@ -5,7 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <boost/asio/ip/address.hpp>
+#include <thread>
 #include <vector>
+
+#include "server/wire/charge.h"
+#include "server/wire/connection_limits.h"
 
 namespace qtet {
 namespace {
@@ -55,6 +59,44 @@ TEST(AddressLimits, requestsAreForgivenSecondBySecondAndNotByConnectingAnew) {
   EXPECT_TRUE(limits.enter(at("192.0.2.2"))->countRequest(start));
   for (int i = 0; i < 10; ++i) EXPECT_TRUE(client->countRequest(start + 1s)) << i;
   EXPECT_FALSE(client->countRequest(start + 1s));
+}
+
+TEST(AddressLimits, processorTimeIsBoundedAndForgivenSecondBySecond) {
+  constexpr std::chrono::nanoseconds kMost = 2 * limits::kProcessorTimePerSecond;
+  const auto start = AddressLimits::Clock::now();
+  for (const auto& [owed, may] :
+       {std::pair(kMost - 1ns, true), {kMost, false}, {kMost + 1ns, false}}) {
+    AddressLimits limits(0, 1000);
+    auto client = limits.enter(at("192.0.2.1"));
+    client->charge(owed / 2, start);
+    limits.enter(at("192.0.2.1"))->charge(owed - owed / 2, start);
+    EXPECT_EQ(client->debt(start), owed);
+    EXPECT_EQ(client->overdrawn(start), !may);
+    EXPECT_EQ(client->countRequest(start), may);
+    EXPECT_TRUE(limits.enter(at("192.0.2.2"))->countRequest(start));
+    EXPECT_TRUE(client->countRequest(start + 1s));
+    EXPECT_EQ(client->debt(start + 1s), owed - limits::kProcessorTimePerSecond);
+    EXPECT_EQ(client->debt(start + 2s + 1us), 0ns);
+  }
+}
+
+TEST(AddressLimits, whereRequestsHaveNoBoundProcessorTimeHasNone) {
+  AddressLimits limits(0, 0);
+  const auto client = limits.enter(at("192.0.2.1"));
+  client->charge(1h);
+  EXPECT_EQ(client->debt(), 0ns);
+  EXPECT_TRUE(client->countRequest());
+}
+
+TEST(AddressLimits, aChargeIsTheThreadsTimeNotTheWait) {
+  AddressLimits limits(0, 1000);
+  const auto client = limits.enter(at("192.0.2.1"));
+  {
+    const Charge charge(client.get());
+    std::this_thread::sleep_for(30ms);
+  }
+  EXPECT_LT(client->debt(), 20ms);
+  const Charge nobody(nullptr);
 }
 
 TEST(AddressLimits, aPlaceMayOutliveTheLimits) {
