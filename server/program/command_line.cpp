@@ -70,7 +70,8 @@ std::vector<po::options_description> settingGroups() {
       "max-levels-per-address", text(),
       "made or waiting at a time; 0 = no bound, as behind a proxy (default: 6)")(
       "max-requests-per-second", text(),
-      "of one address; 0 = no bound, as behind a proxy (default: 2000)");
+      "of one address, which may also owe 30 s of processor time beyond 0.2 s a second; 0 = "
+      "neither bound, as behind a proxy (default: 2000)");
   group("Other pages and proxies")(
       "allow-origins", text(),
       "origins between commas, like https://viewer.example, whose pages may open streams, ask "

@@ -119,7 +119,9 @@ struct Server::State {
   Router router;
   Connections connections{options.maxConnections};
   Handshakes handshakes{options.maxHandshakes, options.timeouts.handshake};
-  AddressLimits addresses{options.maxConnectionsPerAddress, options.maxRequestsPerSecond};
+  AddressLimits addresses{{.connections = options.maxConnectionsPerAddress,
+                           .requestsPerSecond = options.maxRequestsPerSecond,
+                           .owed = options.maxOwedTime}};
   std::vector<Lane> lanes;
   tcp::acceptor acceptor{mainContext()};
   tcp::acceptor adminAcceptor{mainContext()};

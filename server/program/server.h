@@ -29,6 +29,7 @@ struct ServerOptions {
   std::size_t maxConnectionsPerAddress = limits::kMaxConnectionsPerAddress;  ///< 0: no bound
   /// For one address; 0: no bound.
   unsigned maxRequestsPerSecond = limits::kMaxRequestsPerSecond;
+  std::chrono::nanoseconds maxOwedTime = limits::kMaxOwedTime;  ///< processor time of one address
   /// For one address, being made or waiting; 0: no bound.
   std::size_t maxLevelsPerAddress = limits::kMaxLevelJobsPerAddress;
   std::size_t maxHandshakes = limits::kMaxHandshakes;

@@ -8,6 +8,8 @@
 #include <memory>
 #include <mutex>
 
+#include "server/wire/connection_limits.h"
+
 namespace boost::asio::ip {
 // NOLINTNEXTLINE(readability-identifier-naming): Asio's
 class address;
@@ -22,11 +24,14 @@ class AddressLimits {
   using Key = std::array<std::uint8_t, 16>;
 
   /// 0: no bound; without one of requests, there is none of processor time. A second's worth of
-  /// either may come at once, twice over.
-  AddressLimits(std::size_t maxConnections, unsigned requestsPerSecond)
-      : maxConnections_(maxConnections),
-        requestsPerSecond_(requestsPerSecond),
-        state_(std::make_shared<State>()) {}
+  /// requests may come at once, twice over.
+  struct Bounds {
+    std::size_t connections = 0;
+    unsigned requestsPerSecond = 0;
+    std::chrono::nanoseconds owed = limits::kMaxOwedTime;  ///< processor time
+  };
+  explicit AddressLimits(const Bounds& bounds)
+      : bounds_(bounds), state_(std::make_shared<State>()) {}
 
   /// A connection's place among those of its address, given back when the object goes. May outlive
   /// the limits.
@@ -41,7 +46,7 @@ class AddressLimits {
     void charge(std::chrono::nanoseconds time, Clock::time_point now = Clock::now());
     /// Processor time that is not forgiven yet; 0 without a bound.
     [[nodiscard]] std::chrono::nanoseconds debt(Clock::time_point now = Clock::now());
-    /// Whether that is as much as may be.
+    /// Whether that is as much as may be; below it, an address only waits behind others (turns.h).
     [[nodiscard]] bool overdrawn(Clock::time_point now = Clock::now());
     /// The same for all clients of one address, and another for each other one; lives as long as
     /// one of them.
@@ -50,10 +55,10 @@ class AddressLimits {
    private:
     friend class AddressLimits;
     struct Address;
-    Client(std::shared_ptr<Address> address, unsigned requestsPerSecond)
-        : address_(std::move(address)), requestsPerSecond_(requestsPerSecond) {}
+    Client(std::shared_ptr<Address> address, const Bounds& bounds)
+        : address_(std::move(address)), bounds_(bounds) {}
     std::shared_ptr<Address> address_;
-    unsigned requestsPerSecond_;
+    Bounds bounds_;
   };
 
   /// nullptr: the address has as many connections as it may have.
@@ -66,8 +71,7 @@ class AddressLimits {
   };
   void forgetQuietAddresses();
 
-  std::size_t maxConnections_;
-  unsigned requestsPerSecond_;
+  Bounds bounds_;
   std::shared_ptr<State> state_;
 };
 

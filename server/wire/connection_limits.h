@@ -18,9 +18,12 @@ inline constexpr std::size_t kMaxConnectionsPerAddress = 256;
 /// Requests a second of one address: somebody who reads a log chunk by chunk (16 KB and more) comes
 /// to 30 MB/s.
 inline constexpr unsigned kMaxRequestsPerSecond = 2000;
-/// Processor time of one address for each second, beside requests: of answers, handshakes and
-/// views. A viewer takes some milliseconds to open a mesh. Like requests, twice that at once.
+/// Processor time that an address may use each second without owing any of it: for answers,
+/// handshakes and views. A viewer takes some milliseconds to open a mesh.
 inline constexpr auto kProcessorTimePerSecond = 200ms;
+/// An address that owes this much is refused. A thousand people behind one address owe as much
+/// if they open six meshes of 5 ms each at once. Fewer only wait behind others.
+inline constexpr auto kMaxOwedTime = 30s;
 /// An address that owes more than this waits for its turn behind those that owe less.
 inline constexpr auto kMaxFreeTime = 1ms;
 /// How much later it counts as come for each second that it owes. Its own requests at a time cost

@@ -3,14 +3,19 @@
 
 Each attacker has 8 connections with 8 pipelined requests each, from an address 127.0.0.N of its
 own. The server runs with its defaults on two threads, beside the attackers on the same machine.
+They run in processes of their own at a lower priority, since attackers have their own machines.
 
   attack_bench.py --bin build/release/bin [--logs 1000] [--seconds 6] [--attacks list,metrics]
 """
-import argparse, atexit, collections, multiprocessing, pathlib, re, selectors, socket, ssl
-import subprocess, tempfile, threading, time
+import argparse, atexit, collections, json, multiprocessing, os, pathlib, re, selectors, socket, ssl
+import subprocess, sys, tempfile, threading, time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support" / "line"))
+from stream import Stream
 
 ADDRESSES, CONNECTIONS, PIPELINED = 8, 8, 8
 READ_BYTES = 1 << 18
+VIEWS, VIEWS_EVERY = 8, 0.04  # of a stream at once, and seconds between: below the bound of 250/s
 ANSWER = re.compile(rb"HTTP/1\.1 (\d{3}) ")
 
 
@@ -73,7 +78,9 @@ class Attacker:
         return True
 
 
-def attack(port, targets, until, statuses):
+def attack(port, targets, until, results):
+    os.nice(10)
+    statuses = collections.Counter()
     selector = selectors.DefaultSelector()
     for a in range(ADDRESSES):
         for _ in range(CONNECTIONS):
@@ -87,11 +94,37 @@ def attack(port, targets, until, statuses):
             key.fileobj.close()
             key.data.open()
             selector.register(key.data.socket, selectors.EVENT_READ, key.data)
+    results.put(statuses)
+
+
+def look(port, mesh, until, results):
+    """View upon view, each with another isovalue."""
+    os.nice(10)
+    statuses, streams = collections.Counter(), []
+    for i in range(ADDRESSES * CONNECTIONS):
+        streams.append(Stream("127.0.0.1", port, f"127.0.0.{11 + i % ADDRESSES}"))
+        streams[-1].say(type="open", mesh=mesh["id"], fields=[], credit=1)
+    field = next(f["name"] for f in mesh["fields"] if f["components"] == 1)
+    value = 0
+    while time.monotonic() < until:
+        begun = time.monotonic()
+        for stream in list(streams):
+            try:
+                for _ in range(VIEWS):
+                    value += 1
+                    stream.say(type="view", view={"point": [value % 7, 0, 0], "isovalue":
+                                                  {"field": field, "values": [value % 1000]}})
+                statuses.update(f.text["type"] for f in stream.take() if f.text)
+            except OSError:
+                statuses["broken"] += 1
+                streams.remove(stream)
+        time.sleep(max(0, begun + VIEWS_EVERY - time.monotonic()))
+    results.put(statuses)
 
 
 def shake(port, source, until, results):
-    """Handshake upon handshake, in a process of its own: Python's threads would wait for each
-    other."""
+    """Handshake upon handshake."""
+    os.nice(10)
     statuses = collections.Counter()
     threads = [
         threading.Thread(target=shake_in_turns, args=(port, source, until, statuses))
@@ -157,6 +190,7 @@ def attacks(port, digest, size):
         ],
         "several ranges": [request(log, ranges)],
         "metrics": [request("/metrics")],
+        "views with isovalues": look,
         "TLS handshakes": None,
     }
 
@@ -202,6 +236,7 @@ def run(options, folder, only):
     found = fetch(port, "/v1/meshes/large").decode()
     digest = re.search(r'"digest":"(\w+)"', found)[1]
     size = int(re.search(r'"bytes":(\d+)', found)[1])
+    mesh = json.loads(found.split("\r\n\r\n", 1)[1])
     server.kill()
     print("| attack | kept connection, ms (p50 / p99 / most) | new connection, ms | answers |")
     print("|---|---|---|---|")
@@ -219,7 +254,9 @@ def run(options, folder, only):
             [multiprocessing.Process(target=shake, args=(port, f"127.0.0.{11 + i}", until, results))
              for i in range(ADDRESSES)]
             if tls
-            else [threading.Thread(target=attack, args=(port, targets, until, statuses))]
+            else [multiprocessing.Process(target=look, args=(port, mesh, until, results))]
+            if targets is look
+            else [multiprocessing.Process(target=attack, args=(port, targets, until, results))]
         )
         for thread in threads:
             thread.start()

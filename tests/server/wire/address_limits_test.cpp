@@ -19,7 +19,7 @@ using namespace std::chrono_literals;
 boost::asio::ip::address at(const char* text) { return boost::asio::ip::make_address(text); }
 
 TEST(AddressLimits, oneAddressHasAsManyConnectionsAsItMayHave) {
-  AddressLimits limits(2, 0);
+  AddressLimits limits({2, 0});
   auto first = limits.enter(at("192.0.2.1"));
   const auto second = limits.enter(at("192.0.2.1"));
   EXPECT_TRUE(first && second);
@@ -31,7 +31,7 @@ TEST(AddressLimits, oneAddressHasAsManyConnectionsAsItMayHave) {
 }
 
 TEST(AddressLimits, aNetworkOfIPv6CountsAsOne) {
-  AddressLimits limits(1, 0);
+  AddressLimits limits({1, 0});
   const auto first = limits.enter(at("2001:db8:1:2::1"));
   EXPECT_TRUE(first);
   EXPECT_FALSE(limits.enter(at("2001:db8:1:2:ffff::9")));
@@ -39,7 +39,7 @@ TEST(AddressLimits, aNetworkOfIPv6CountsAsOne) {
 }
 
 TEST(AddressLimits, noBoundIsNoBound) {
-  AddressLimits limits(0, 0);
+  AddressLimits limits({0, 0});
   std::vector<std::unique_ptr<AddressLimits::Client>> all;
   for (int i = 0; i < 1000; ++i) {
     all.push_back(limits.enter(at("192.0.2.1")));
@@ -49,7 +49,7 @@ TEST(AddressLimits, noBoundIsNoBound) {
 }
 
 TEST(AddressLimits, requestsAreForgivenSecondBySecondAndNotByConnectingAnew) {
-  AddressLimits limits(0, 10);
+  AddressLimits limits({0, 10});
   const auto start = AddressLimits::Clock::now();
   auto client = limits.enter(at("192.0.2.1"));
   for (int i = 0; i < 20; ++i) EXPECT_TRUE(client->countRequest(start)) << i;
@@ -62,11 +62,11 @@ TEST(AddressLimits, requestsAreForgivenSecondBySecondAndNotByConnectingAnew) {
 }
 
 TEST(AddressLimits, processorTimeIsBoundedAndForgivenSecondBySecond) {
-  constexpr std::chrono::nanoseconds kMost = 2 * limits::kProcessorTimePerSecond;
+  constexpr std::chrono::nanoseconds kMost = limits::kMaxOwedTime;
   const auto start = AddressLimits::Clock::now();
   for (const auto& [owed, may] :
        {std::pair(kMost - 1ns, true), {kMost, false}, {kMost + 1ns, false}}) {
-    AddressLimits limits(0, 1000);
+    AddressLimits limits({0, 1000});
     auto client = limits.enter(at("192.0.2.1"));
     client->charge(owed / 2, start);
     limits.enter(at("192.0.2.1"))->charge(owed - owed / 2, start);
@@ -76,12 +76,12 @@ TEST(AddressLimits, processorTimeIsBoundedAndForgivenSecondBySecond) {
     EXPECT_TRUE(limits.enter(at("192.0.2.2"))->countRequest(start));
     EXPECT_TRUE(client->countRequest(start + 1s));
     EXPECT_EQ(client->debt(start + 1s), owed - limits::kProcessorTimePerSecond);
-    EXPECT_EQ(client->debt(start + 2s + 1us), 0ns);
+    EXPECT_EQ(client->debt(start + 150s + 1us), 0ns);
   }
 }
 
 TEST(AddressLimits, whereRequestsHaveNoBoundProcessorTimeHasNone) {
-  AddressLimits limits(0, 0);
+  AddressLimits limits({0, 0});
   const auto client = limits.enter(at("192.0.2.1"));
   client->charge(1h);
   EXPECT_EQ(client->debt(), 0ns);
@@ -89,7 +89,7 @@ TEST(AddressLimits, whereRequestsHaveNoBoundProcessorTimeHasNone) {
 }
 
 TEST(AddressLimits, aChargeIsTheThreadsTimeNotTheWait) {
-  AddressLimits limits(0, 1000);
+  AddressLimits limits({0, 1000});
   const auto client = limits.enter(at("192.0.2.1"));
   {
     const Charge charge(client.get());
@@ -102,7 +102,7 @@ TEST(AddressLimits, aChargeIsTheThreadsTimeNotTheWait) {
 TEST(AddressLimits, aPlaceMayOutliveTheLimits) {
   std::unique_ptr<AddressLimits::Client> client;
   {
-    AddressLimits limits(1, 1);
+    AddressLimits limits({1, 1});
     client = limits.enter(at("192.0.2.1"));
   }
   EXPECT_TRUE(client->countRequest());
