@@ -156,6 +156,14 @@ void reload(const CommandLine& options, const Secrets& secrets) {
   spdlog::info("SIGHUP: the tokens and the certificate were read again");
 }
 
+/// After a rotation.
+void reopen(AccessLog* log) {
+  if (log == nullptr) return;
+  if (const Status done = log->reopen(); !done)
+    return spdlog::error("{}; the file that was open before is kept", done.error().message);
+  spdlog::info("the access log was opened again");
+}
+
 ServerOptions serverOptions(const CommandLine& options, LevelCache* cache, AccessLog* accessLog,
                             const Secrets& secrets) {
   return {.host = options.host,
@@ -172,7 +180,12 @@ ServerOptions serverOptions(const CommandLine& options, LevelCache* cache, Acces
           .accessLog = accessLog,
           .tls = secrets.tls.get(),
           .access = secrets.access.get(),
-          .reload = [&options, &secrets] { reload(options, secrets); },
+          .reload =
+              [&options, &secrets, accessLog] {
+                reload(options, secrets);
+                reopen(accessLog);
+              },
+          .reopenLog = [accessLog] { reopen(accessLog); },
           .allowedOrigins = options.allowedOrigins,
           .frameAncestors = options.frameAncestors,
           .proxies = options.proxies,
@@ -258,8 +271,9 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // until the server listens to it: a reload meant for a running one must not end it
+  // until the server listens to them: what is meant for a running one must not end it
   std::signal(SIGHUP, SIG_IGN);
+  std::signal(SIGUSR1, SIG_IGN);
   try {
     return run(argc, argv);
   } catch (const std::exception& e) {

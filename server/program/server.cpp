@@ -292,12 +292,16 @@ void Server::State::end() {
 void Server::State::watchSignals() {
   for (const int signal : {SIGINT, SIGTERM}) signals.add(signal);
   if (options.reload) signals.add(SIGHUP);
+  if (options.reopenLog) signals.add(SIGUSR1);
   auto wait = std::make_shared<std::function<void()>>();
   *wait = [this, weak = std::weak_ptr(wait)] {
     signals.async_wait([this, wait = weak.lock()](error_code ec, int signal) {
       if (ec) return;
-      if (signal != SIGHUP) drain();
-      if (signal == SIGHUP) options.reload();
+      switch (signal) {
+        case SIGHUP: options.reload(); break;
+        case SIGUSR1: options.reopenLog(); break;
+        default: drain();
+      }
       (*wait)();
     });
   };

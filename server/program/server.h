@@ -45,6 +45,8 @@ struct ServerOptions {
   Access* access = nullptr;
   /// SIGHUP calls this if endOnSignals is set. Empty: SIGHUP ends the process, as usual.
   std::function<void()> reload{};
+  /// SIGUSR1 calls this, likewise.
+  std::function<void()> reopenLog{};
   /// Origins of pages that may open streams, ask for tickets and change meshes, as browsers write
   /// them; empty: any.
   std::vector<std::string> allowedOrigins{};

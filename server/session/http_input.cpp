@@ -110,6 +110,7 @@ asio::awaitable<std::size_t> HttpInput::readBody(std::span<std::uint8_t> into) {
         peer_.socket.read({reinterpret_cast<char*>(into.data()) + have, into.size() - have}, ec);
     if (ec == asio::error::would_block) ec = co_await peer_.socket.waitToRead();
   }
+  bodyBytes_ += have;
   co_return have;
 }
 

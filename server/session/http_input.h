@@ -41,6 +41,8 @@ class HttpInput {
   boost::asio::awaitable<std::expected<void, std::optional<Reply>>> readHead(Parser& parser);
   /// Fills `into` with what follows the head. Bytes read; fewer: they did not come, or not in time.
   boost::asio::awaitable<std::size_t> readBody(std::span<std::uint8_t> into);
+  /// The bytes that readBody() has read since the last call.
+  [[nodiscard]] std::uint64_t takeBodyBytes() { return std::exchange(bodyBytes_, 0); }
   /// Reads and discards the client's further bytes, within bounds. Closing with unread bytes would
   /// reset the connection, and the answer might be lost on its way.
   boost::asio::awaitable<void> drain();
@@ -56,6 +58,7 @@ class HttpInput {
   Peer& peer_;
   const Timeouts& timeouts_;
   boost::beast::flat_buffer buffer_;
+  std::uint64_t bodyBytes_ = 0;
 };
 
 }  // namespace qtet

@@ -46,7 +46,7 @@ class HttpSession {
         services_(services),
         input_(peer_, services.timeouts),
         // asked now: who leaves at once has no address afterwards
-        report_(services.metrics, services.accessLog,
+        report_(services.metrics, services.accessLog, services.access,
                 services.accessLog != nullptr ? peer_.socket.peer() : ""),
         proxies_(ofProxy ? services.proxies : nullptr) {}
 
@@ -248,7 +248,8 @@ asio::awaitable<bool> HttpSession::answer(const RequestHeader& request, bool kee
   if (std::holds_alternative<std::monostate>(answer.work))
     co_return co_await send(std::move(answer.reply), keepAlive && !hasBody(view));
   std::optional<Reply> reply = co_await workOn(std::move(answer), view, peer_, input_, services_);
-  if (!reply) co_return false;
+  report_.received(input_.takeBodyBytes());
+  if (!reply) reply = Reply{.status = kClientGone};
   co_return co_await send(std::move(*reply), keepAlive);
 }
 
