@@ -87,7 +87,7 @@ void lookAgain(const MeshStore& store) {
 /// Reads on in a folder that was not read to its end at the start, beside the serving.
 std::jthread readOn(const MeshStore& store) {
   return std::jthread([&store](const std::stop_token& stop) {
-    while (!stop.stop_requested() && store.catalogue()->unread > 0) {
+    while (!stop.stop_requested() && !store.catalogue()->unread.empty()) {
       lookAgain(store);
       std::this_thread::sleep_for(limits::kFolderReadRest);
     }
@@ -175,6 +175,7 @@ ServerOptions serverOptions(const CommandLine& options, LevelCache* cache, Acces
           .maxLevelsPerAddress = options.maxLevelsPerAddress,
           .adminHost = options.adminHost,
           .adminPort = options.adminPort,
+          .readyEarly = options.readyEarly,
           .endOnSignals = true,
           .cache = cache,
           .accessLog = accessLog,
@@ -224,7 +225,7 @@ int serve(const CommandLine& options) {
   if (const Status listening = server.listen(); !listening) return cannotServe(listening.error());
   const Result<std::optional<FolderWatch>> watch = watchFolder(options, *store);
   if (!watch) return cannotServe(watch.error());
-  const std::size_t count = catalogue->meshes.size() + catalogue->unread;
+  const std::size_t count = catalogue->meshes.size() + catalogue->unread.size();
   std::cout << "qtet-server: listening on " << server.url() << " (" << count
             << (count == 1 ? " mesh)" : " meshes)") << std::endl;
   if (options.adminHost)

@@ -102,6 +102,13 @@ struct Server::State {
   [[nodiscard]] Status listen(tcp::acceptor& acceptor, Services& whose, const std::string& host,
                               std::uint16_t port);
   [[nodiscard]] std::vector<Metrics::Figure> figures() const;
+  /// Why new work is not welcome; "": it is.
+  [[nodiscard]] std::string_view unready() const {
+    if (draining || ending) return "the server is ending";
+    return options.readyEarly || store.catalogue()->unread.empty()
+               ? ""
+               : "the folder is still being read";
+  }
   void end();
   void drain();
   void stopLanes() {
@@ -114,7 +121,7 @@ struct Server::State {
   ServerOptions options;
   Metrics metrics;
   std::atomic<bool> draining = false, ending = false;
-  AdminRoutes admin{metrics, [this] { return !draining && !ending; }, [this] { return figures(); }};
+  AdminRoutes admin{metrics, [this] { return unready(); }, [this] { return figures(); }};
   Uploads uploads;
   Router router;
   Connections connections{options.maxConnections};
@@ -244,7 +251,7 @@ std::vector<Metrics::Figure> Server::State::figures() const {
               "TLS handshakes given up, unfinished, for others that waited.", hands.displaced),
       gauge("meshes", "Meshes that are served.", catalogue->meshes.size()),
       gauge("meshes_unread", "Files of the folder that nobody has looked into yet.",
-            catalogue->unread),
+            catalogue->unread.size()),
       gauge("meshes_refused", "Files that are not served because they are damaged.",
             catalogue->refused.size()),
       gauge("levels_wanted", "Requests that wait for a level.", levels.wanted),

@@ -43,6 +43,7 @@ KeptPage makePage(const CataloguePointer& catalogue, PageStart start, const MayR
     next = "/v1/meshes?limit=" + std::to_string(start.limit) + "&after=" + percentEncode(last);
     text += ",\"next\":" + dumpJson(Json(next));
   }
+  if (!catalogue->unread.empty()) text += R"(,"complete":false)";
   text += "}";
   return {Bytes(text.begin(), text.end()), ContentCoding::kIdentity, std::move(next)};
 }
@@ -67,7 +68,8 @@ TaggedPage openPage(const CataloguePointer& catalogue, PageStart start, ContentC
                     KeptPages& kept) {
   const std::string first = start.at == catalogue->meshes.end() ? "" : start.at->first;
   const std::string tag =
-      hexDigestOf(catalogue->etag + ' ' + std::to_string(start.limit) + ' ' + first);
+      hexDigestOf(catalogue->etag + (catalogue->unread.empty() ? " " : " incomplete ") +
+                  std::to_string(start.limit) + ' ' + first);
   const std::string key = tag + std::string(codingName(coding));
   KeptPagePointer page = kept.find(key);
   if (!page) kept.keep(key, page = inCoding(makePage(catalogue, start, {}), coding));

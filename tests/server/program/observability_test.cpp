@@ -263,6 +263,33 @@ TEST(Operators, anAddressOfTheirOwnHasTheirPathsAlone) {
   EXPECT_EQ(test::StreamClient(server.adminPort()).httpStatus(), 404u);
 }
 
+TEST(Operators, aServerThatStillReadsItsFolderSaysSo) {
+  const test::ServedFolder viewer;
+  test::TempFolder folder;
+  const Bytes log = test::makeLog({.chunks = 1, .fields = {}});
+  for (std::size_t i = 0; i < limits::kLogsReadAtOnce + 1; ++i)
+    folder.write(std::to_string(1000 + i) + ".qtet", log);
+  const auto store =
+      MeshStore::open(folder.path(), {.readTime = std::chrono::milliseconds::zero()});
+  ASSERT_TRUE(store);
+  test::RunningServer server(*store, viewer.viewer()),
+      early(*store, viewer.viewer(), {.readyEarly = true});
+  test::RawClient client(server.port());
+  EXPECT_EQ(client.get("/readyz").status, 503u);
+  EXPECT_EQ(test::RawClient(early.port()).get("/readyz").status, 200u);
+  EXPECT_EQ(client.get("/livez").status, 200u);
+  const auto partial = client.get("/v1/meshes?limit=1");
+  EXPECT_NE(partial.body.find(R"("complete":false)"), std::string::npos) << partial.body;
+  EXPECT_EQ(client.get("/v1/meshes/1064").status, 503u);
+  EXPECT_EQ(client.get("/v1/meshes/nothing").status, 404u);
+  ASSERT_TRUE(store->rescan());
+  EXPECT_EQ(client.get("/readyz").status, 200u);
+  const auto whole = client.get("/v1/meshes?limit=1");
+  EXPECT_FALSE(Json::parse(whole.body).contains("complete")) << whole.body;
+  EXPECT_NE(whole.header("etag"), partial.header("etag"));
+  EXPECT_EQ(client.get("/v1/meshes/1064").status, 200u);
+}
+
 TEST(Operators, aServerThatDrainsServesOnAndIsNotReady) {
   const test::ServedFolder folder;
   test::RunningServer server(folder.store(), folder.viewer(), {.drain = test::kNever});
