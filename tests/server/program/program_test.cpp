@@ -221,8 +221,9 @@ TEST(Program, signalsOpenTheAccessLogAgain) {
   ASSERT_NE(port, 0);
   std::size_t opened = 0;
   for (const int number : {SIGHUP, SIGUSR1}) {
+    const auto before = std::filesystem::file_size(log);
     EXPECT_EQ(test::RawClient(port).get("/livez").status, 200u);
-    EXPECT_TRUE(test::eventually([&] { return std::filesystem::file_size(log) > 0; }));
+    EXPECT_TRUE(test::eventually([&] { return std::filesystem::file_size(log) > before; }));
     std::filesystem::rename(log, old);
     const auto size = std::filesystem::file_size(old);
     program.signal(number);

@@ -11,12 +11,12 @@
 namespace qtet {
 namespace {
 
-const std::string kToken = "aSecret+Of/TwentyTwo=Ch";
+const std::string kToken = "aHidden+Of/TwentyTwo=Ch";
 
 TEST(Loggable, aTokenOfTheFileIsFoundWhereverItStands) {
   const auto tokens = Tokens::parse("read * " + kToken);
   ASSERT_TRUE(tokens);
-  const std::string encoded = "aSecret%2BOf%2FTwentyTwo%3DCh";
+  const std::string encoded = "aHidden%2BOf%2FTwentyTwo%3DCh";
   for (const std::string& target :
        {"/" + kToken, "/v1/meshes/" + kToken + "/manifest", "/v1/meshes/" + encoded,
         "/v1/meshes?after=" + kToken + "&limit=1", "http://a/" + encoded, kToken}) {
