@@ -47,6 +47,8 @@ std::vector<po::options_description> settingGroups() {
       "they ask; the bounds of an address and the access log heed it (default: none)");
   group("Running")("threads", text(), "threads for connections (default: one a core)")(
       "watch", text(), "on, off: whether logs that come, change and go are noticed (default: on)")(
+      "ready-early", text(),
+      "on, off: whether /readyz is 200 while the folder is still being read (default: off)")(
       "cache-bytes", text(), "how much the cache may hold (default: 2 GiB)")(
       "viewer", text(),
       "folder of the built viewer (default: ../share/qtet/viewer beside this program)")(
@@ -70,7 +72,8 @@ std::vector<po::options_description> settingGroups() {
       "max-levels-per-address", text(),
       "made or waiting at a time; 0 = no bound, as behind a proxy (default: 6)")(
       "max-requests-per-second", text(),
-      "of one address; 0 = no bound, as behind a proxy (default: 2000)");
+      "of one address, which may also owe 30 s of processor time beyond 0.2 s a second; 0 = "
+      "neither bound, as behind a proxy (default: 2000)");
   group("Other pages and proxies")(
       "allow-origins", text(),
       "origins between commas, like https://viewer.example, whose pages may open streams, ask "
@@ -232,6 +235,7 @@ Result<CommandLine> toCommandLine(const po::variables_map& values) {
   reader.number("max-levels-per-address", out.maxLevelsPerAddress, 0, 1'000'000);
   reader.number("max-requests-per-second", out.maxRequestsPerSecond, 0, 1'000'000'000);
   reader.flag("watch", out.watch);
+  reader.flag("ready-early", out.readyEarly);
   reader.path("viewer", out.viewer);
   reader.path("cache", out.cache);
   reader.path("tokens", out.tokens);
@@ -333,7 +337,8 @@ std::string configText(const CommandLine& options) {
         << options.adminPort << "\n";
   }
   path("viewer", options.viewer);
-  out << "threads = " << options.threads << "\nwatch = " << (options.watch ? "on" : "off") << "\n";
+  out << "threads = " << options.threads << "\nwatch = " << (options.watch ? "on" : "off")
+      << "\nready-early = " << (options.readyEarly ? "on" : "off") << "\n";
   path("cache", options.cache);
   out << "cache-bytes = " << options.cacheBytes << "\n";
   path("access-log", options.accessLog);

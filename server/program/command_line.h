@@ -27,6 +27,7 @@ struct CommandLine {
   std::optional<std::filesystem::path> viewer;
   std::size_t threads = 1;
   bool watch = true;
+  bool readyEarly = false;
   std::optional<std::string> adminHost;
   std::uint16_t adminPort = 0;
   std::optional<std::filesystem::path> cache;

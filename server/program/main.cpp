@@ -87,7 +87,7 @@ void lookAgain(const MeshStore& store) {
 /// Reads on in a folder that was not read to its end at the start, beside the serving.
 std::jthread readOn(const MeshStore& store) {
   return std::jthread([&store](const std::stop_token& stop) {
-    while (!stop.stop_requested() && store.catalogue()->unread > 0) {
+    while (!stop.stop_requested() && !store.catalogue()->unread.empty()) {
       lookAgain(store);
       std::this_thread::sleep_for(limits::kFolderReadRest);
     }
@@ -156,6 +156,14 @@ void reload(const CommandLine& options, const Secrets& secrets) {
   spdlog::info("SIGHUP: the tokens and the certificate were read again");
 }
 
+/// After a rotation.
+void reopen(AccessLog* log) {
+  if (log == nullptr) return;
+  if (const Status done = log->reopen(); !done)
+    return spdlog::error("{}; the file that was open before is kept", done.error().message);
+  spdlog::info("the access log was opened again");
+}
+
 ServerOptions serverOptions(const CommandLine& options, LevelCache* cache, AccessLog* accessLog,
                             const Secrets& secrets) {
   return {.host = options.host,
@@ -167,12 +175,18 @@ ServerOptions serverOptions(const CommandLine& options, LevelCache* cache, Acces
           .maxLevelsPerAddress = options.maxLevelsPerAddress,
           .adminHost = options.adminHost,
           .adminPort = options.adminPort,
+          .readyEarly = options.readyEarly,
           .endOnSignals = true,
           .cache = cache,
           .accessLog = accessLog,
           .tls = secrets.tls.get(),
           .access = secrets.access.get(),
-          .reload = [&options, &secrets] { reload(options, secrets); },
+          .reload =
+              [&options, &secrets, accessLog] {
+                reload(options, secrets);
+                reopen(accessLog);
+              },
+          .reopenLog = [accessLog] { reopen(accessLog); },
           .allowedOrigins = options.allowedOrigins,
           .frameAncestors = options.frameAncestors,
           .proxies = options.proxies,
@@ -211,7 +225,7 @@ int serve(const CommandLine& options) {
   if (const Status listening = server.listen(); !listening) return cannotServe(listening.error());
   const Result<std::optional<FolderWatch>> watch = watchFolder(options, *store);
   if (!watch) return cannotServe(watch.error());
-  const std::size_t count = catalogue->meshes.size() + catalogue->unread;
+  const std::size_t count = catalogue->meshes.size() + catalogue->unread.size();
   std::cout << "qtet-server: listening on " << server.url() << " (" << count
             << (count == 1 ? " mesh)" : " meshes)") << std::endl;
   if (options.adminHost)
@@ -258,8 +272,9 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // until the server listens to it: a reload meant for a running one must not end it
+  // until the server listens to them: what is meant for a running one must not end it
   std::signal(SIGHUP, SIG_IGN);
+  std::signal(SIGUSR1, SIG_IGN);
   try {
     return run(argc, argv);
   } catch (const std::exception& e) {

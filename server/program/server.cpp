@@ -102,6 +102,13 @@ struct Server::State {
   [[nodiscard]] Status listen(tcp::acceptor& acceptor, Services& whose, const std::string& host,
                               std::uint16_t port);
   [[nodiscard]] std::vector<Metrics::Figure> figures() const;
+  /// Why new work is not welcome; "": it is.
+  [[nodiscard]] std::string_view unready() const {
+    if (draining || ending) return "the server is ending";
+    return options.readyEarly || store.catalogue()->unread.empty()
+               ? ""
+               : "the folder is still being read";
+  }
   void end();
   void drain();
   void stopLanes() {
@@ -114,12 +121,14 @@ struct Server::State {
   ServerOptions options;
   Metrics metrics;
   std::atomic<bool> draining = false, ending = false;
-  AdminRoutes admin{metrics, [this] { return !draining && !ending; }, [this] { return figures(); }};
+  AdminRoutes admin{metrics, [this] { return unready(); }, [this] { return figures(); }};
   Uploads uploads;
   Router router;
   Connections connections{options.maxConnections};
   Handshakes handshakes{options.maxHandshakes, options.timeouts.handshake};
-  AddressLimits addresses{options.maxConnectionsPerAddress, options.maxRequestsPerSecond};
+  AddressLimits addresses{{.connections = options.maxConnectionsPerAddress,
+                           .requestsPerSecond = options.maxRequestsPerSecond,
+                           .owed = options.maxOwedTime}};
   std::vector<Lane> lanes;
   tcp::acceptor acceptor{mainContext()};
   tcp::acceptor adminAcceptor{mainContext()};
@@ -242,7 +251,7 @@ std::vector<Metrics::Figure> Server::State::figures() const {
               "TLS handshakes given up, unfinished, for others that waited.", hands.displaced),
       gauge("meshes", "Meshes that are served.", catalogue->meshes.size()),
       gauge("meshes_unread", "Files of the folder that nobody has looked into yet.",
-            catalogue->unread),
+            catalogue->unread.size()),
       gauge("meshes_refused", "Files that are not served because they are damaged.",
             catalogue->refused.size()),
       gauge("levels_wanted", "Requests that wait for a level.", levels.wanted),
@@ -290,12 +299,16 @@ void Server::State::end() {
 void Server::State::watchSignals() {
   for (const int signal : {SIGINT, SIGTERM}) signals.add(signal);
   if (options.reload) signals.add(SIGHUP);
+  if (options.reopenLog) signals.add(SIGUSR1);
   auto wait = std::make_shared<std::function<void()>>();
   *wait = [this, weak = std::weak_ptr(wait)] {
     signals.async_wait([this, wait = weak.lock()](error_code ec, int signal) {
       if (ec) return;
-      if (signal != SIGHUP) drain();
-      if (signal == SIGHUP) options.reload();
+      switch (signal) {
+        case SIGHUP: options.reload(); break;
+        case SIGUSR1: options.reopenLog(); break;
+        default: drain();
+      }
       (*wait)();
     });
   };

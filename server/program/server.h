@@ -29,12 +29,14 @@ struct ServerOptions {
   std::size_t maxConnectionsPerAddress = limits::kMaxConnectionsPerAddress;  ///< 0: no bound
   /// For one address; 0: no bound.
   unsigned maxRequestsPerSecond = limits::kMaxRequestsPerSecond;
+  std::chrono::nanoseconds maxOwedTime = limits::kMaxOwedTime;  ///< processor time of one address
   /// For one address, being made or waiting; 0: no bound.
   std::size_t maxLevelsPerAddress = limits::kMaxLevelJobsPerAddress;
   std::size_t maxHandshakes = limits::kMaxHandshakes;
   Timeouts timeouts{};
   std::optional<std::string> adminHost{};  ///< operators' paths are answered here and nowhere else
   std::uint16_t adminPort = 0;
+  bool readyEarly = false;      ///< /readyz is 200 while the folder is still being read
   bool endOnSignals = false;    ///< SIGINT and SIGTERM do what stop() does
   LevelCache* cache = nullptr;  ///< finished levels; nullptr: none is kept
   AccessLog* accessLog = nullptr;
@@ -44,6 +46,8 @@ struct ServerOptions {
   Access* access = nullptr;
   /// SIGHUP calls this if endOnSignals is set. Empty: SIGHUP ends the process, as usual.
   std::function<void()> reload{};
+  /// SIGUSR1 calls this, likewise.
+  std::function<void()> reopenLog{};
   /// Origins of pages that may open streams, ask for tickets and change meshes, as browsers write
   /// them; empty: any.
   std::vector<std::string> allowedOrigins{};

@@ -22,8 +22,9 @@ std::optional<Reply> AdminRoutes::route(const RequestTarget& target) const {
   const std::string& name = target.segments[0];
   if (name == "livez") return text(200, "text/plain; charset=utf-8", "ok\n");
   if (name == "readyz") {
-    if (ready()) return text(200, "text/plain; charset=utf-8", "ok\n");
-    Reply out = problem(503, "busy", "the server is ending");
+    const std::string_view why = unready();
+    if (why.empty()) return text(200, "text/plain; charset=utf-8", "ok\n");
+    Reply out = problem(503, "busy", why);
     out.headers.emplace_back("Retry-After", "2");
     return out;
   }

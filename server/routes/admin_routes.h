@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <string_view>
 #include <vector>
 
 #include "server/http/http_message.h"
@@ -13,7 +14,7 @@ namespace qtet {
 /// Thread-safe if its sources are.
 struct AdminRoutes {
   const Metrics& metrics;
-  std::function<bool()> ready;                            ///< new work is welcome
+  std::function<std::string_view()> unready;  ///< why new work is not welcome; "": it is
   std::function<std::vector<Metrics::Figure>()> figures;  ///< of now
 
   /// The answer to GET and HEAD; nullopt: the path is nothing of this.

@@ -228,7 +228,7 @@ Reply Router::meshes(const RequestView& request, const RequestTarget& target) co
       return std::move(*refusal);
   if (path.size() == 2)
     return meshListReply(
-        request, target, store_.catalogue(),
+        request, target, store_.catalogue(), *lists_,
         writing_ ? writing_->access.readerOf(bearerDigest(request.authorization)) : MayRead());
   const MeshPointer mesh = path.back().empty() ? nullptr : store_.find(path[2]);
   if (!mesh && !path.back().empty() && store_.mayHave(path[2]))

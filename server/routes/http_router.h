@@ -2,12 +2,14 @@
 // (PROTOCOL.md, "HTTP").
 #pragma once
 
+#include <memory>
 #include <string>
 #include <string_view>
 
 #include "server/http/http_message.h"
 #include "server/routes/admin_routes.h"
 #include "server/routes/answer.h"
+#include "server/routes/kept_pages.h"
 #include "server/routes/viewer_files.h"
 #include "server/routes/write_routes.h"
 #include "server/store/mesh_store.h"
@@ -46,6 +48,7 @@ class Router {
   std::optional<Writing> writing_;
   std::time_t started_;
   Document openApi_;
+  std::unique_ptr<KeptPages> lists_ = std::make_unique<KeptPages>();
   std::string pagePolicy_;
 };
 

@@ -50,10 +50,11 @@ void HttpInput::readSome(error_code& ec, std::size_t max) {
   buffer_.commit(asio::buffer_copy(buffer_.prepare(count), asio::buffer(bytes, count)));
 }
 
-asio::awaitable<bool> HttpInput::waitForRequest() {
+asio::awaitable<HttpInput::Begun> HttpInput::waitForRequest() {
+  Begun out = Begun::kAtOnce;
   buffer_.consume(emptyLinesBefore(buffered()));
   while (buffer_.size() == 0) {
-    if (peer_.connection->ending()) co_return false;
+    if (peer_.connection->ending()) co_return Begun::kNot;
     error_code ec;
     readSome(ec, kReadBytes);
     if (ec == asio::error::would_block) {
@@ -61,11 +62,12 @@ asio::awaitable<bool> HttpInput::waitForRequest() {
       const Deadline deadline(peer_.socket, timeouts_.idle);
       const IdleScope idle(peer_);
       ec = co_await peer_.socket.waitToRead();
+      out = Begun::kWaited;
     }
-    if (ec) co_return false;
+    if (ec) co_return Begun::kNot;
     buffer_.consume(emptyLinesBefore(buffered()));
   }
-  co_return true;
+  co_return out;
 }
 
 asio::awaitable<std::expected<void, std::optional<Reply>>> HttpInput::readHead(Parser& parser) {
@@ -108,6 +110,7 @@ asio::awaitable<std::size_t> HttpInput::readBody(std::span<std::uint8_t> into) {
         peer_.socket.read({reinterpret_cast<char*>(into.data()) + have, into.size() - have}, ec);
     if (ec == asio::error::would_block) ec = co_await peer_.socket.waitToRead();
   }
+  bodyBytes_ += have;
   co_return have;
 }
 

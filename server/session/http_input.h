@@ -29,14 +29,20 @@ class HttpInput {
   HttpInput(Peer& peer, const Timeouts& timeouts)
       : peer_(peer), timeouts_(timeouts), buffer_(limits::kMaxHeaderBytes) {}
 
-  /// Waits for the first byte of a request. False: the client has gone or said nothing for too
-  /// long, or the server ends.
-  boost::asio::awaitable<bool> waitForRequest();
+  enum class Begun : std::uint8_t {
+    kNot,     ///< the client has gone or said nothing for too long, or the server ends
+    kAtOnce,  ///< its first byte had come before
+    kWaited,  ///< others had their turn meanwhile
+  };
+  /// Waits for the first byte of a request.
+  boost::asio::awaitable<Begun> waitForRequest();
   /// Has the whole head parsed. Else what is answered, and the connection ends; nullopt: the client
   /// has gone.
   boost::asio::awaitable<std::expected<void, std::optional<Reply>>> readHead(Parser& parser);
   /// Fills `into` with what follows the head. Bytes read; fewer: they did not come, or not in time.
   boost::asio::awaitable<std::size_t> readBody(std::span<std::uint8_t> into);
+  /// The bytes that readBody() has read since the last call.
+  [[nodiscard]] std::uint64_t takeBodyBytes() { return std::exchange(bodyBytes_, 0); }
   /// Reads and discards the client's further bytes, within bounds. Closing with unread bytes would
   /// reset the connection, and the answer might be lost on its way.
   boost::asio::awaitable<void> drain();
@@ -52,6 +58,7 @@ class HttpInput {
   Peer& peer_;
   const Timeouts& timeouts_;
   boost::beast::flat_buffer buffer_;
+  std::uint64_t bodyBytes_ = 0;
 };
 
 }  // namespace qtet

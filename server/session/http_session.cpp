@@ -15,10 +15,12 @@
 #include "server/session/http_request.h"
 #include "server/session/request_report.h"
 #include "server/stream/stream_session.h"
+#include "server/wire/charge.h"
 #include "server/wire/handshakes.h"
 #include "server/wire/http_limits.h"
 #include "server/wire/peer.h"
 #include "server/wire/trusted_proxies.h"
+#include "server/wire/turns.h"
 
 namespace qtet {
 namespace {
@@ -44,7 +46,7 @@ class HttpSession {
         services_(services),
         input_(peer_, services.timeouts),
         // asked now: who leaves at once has no address afterwards
-        report_(services.metrics, services.accessLog,
+        report_(services.metrics, services.accessLog, services.access,
                 services.accessLog != nullptr ? peer_.socket.peer() : ""),
         proxies_(ofProxy ? services.proxies : nullptr) {}
 
@@ -62,9 +64,14 @@ class HttpSession {
   asio::awaitable<bool> shakeHands();
   /// False: no place came free in the time for a handshake, or the connection ends.
   asio::awaitable<bool> waitForPlace(Handshakes::Client& handshake, const Deadline& deadline);
+  /// Lets other connections of the thread have their turn.
+  asio::awaitable<void> giveWay() {
+    co_await takeTurn(peer_.socket.get_executor(), peer_.client.get());
+  }
   /// Reads a request and answers it; false: the connection is not to be used further. A coroutine
-  /// of its own, so that a silent client holds none of what a request needs.
-  asio::awaitable<bool> serveRequest();
+  /// of its own, so that a silent client holds none of what a request needs. `pipelined`: it had
+  /// come before the last one was answered.
+  asio::awaitable<bool> serveRequest(bool pipelined);
   /// The answer to a request if nothing of what it asks for matters.
   /// `placed`: the client has a place among those of its address.
   std::optional<Reply> earlyAnswer(const RequestHeader& header, bool placed);
@@ -115,7 +122,11 @@ asio::awaitable<bool> HttpSession::shakeHands() {
     Handshakes::Client handshake(*services_.handshakes, peer_.socket.get_executor(),
                                  [this] { peer_.socket.cancel(); });
     if (done) done = co_await waitForPlace(handshake, deadline);
-    if (done) done = co_await peer_.socket.shakeHands();
+    if (done && owesTurn(peer_.client.get())) {
+      co_await giveWay();
+      done = !peer_.client->overdrawn() && !deadline.passed();
+    }
+    if (done) done = co_await peer_.socket.shakeHands(peer_.client.get());
     if (done) co_return true;
   }
   if (peer_.socket.becomePlainForPlainHttp())
@@ -143,15 +154,15 @@ asio::awaitable<void> HttpSession::run() {
   if (!known) co_return;
   const bool greeted = co_await shakeHands();
   if (!greeted) co_return;
-  for (;;) {
-    const bool begun = co_await input_.waitForRequest();
-    if (!begun) co_return;
-    const bool again = co_await serveRequest();
+  for (bool first = true;; first = false) {
+    const HttpInput::Begun begun = co_await input_.waitForRequest();
+    if (begun == HttpInput::Begun::kNot) co_return;
+    const bool again = co_await serveRequest(!first && begun == HttpInput::Begun::kAtOnce);
     if (!again) co_return;
   }
 }
 
-asio::awaitable<bool> HttpSession::serveRequest() {
+asio::awaitable<bool> HttpSession::serveRequest(bool pipelined) {
   report_.begin();
   Parser parser;
   auto head = co_await input_.readHead(parser);
@@ -164,6 +175,7 @@ asio::awaitable<bool> HttpSession::serveRequest() {
   const bool placed = proxies_ == nullptr || asksProxyOnce() ||
                       belongsTo(forwardedClient(*proxies_, forwardedOf(parser.get(), *proxies_)));
   report_.identify(viewOf(parser.get()));
+  if (pipelined || owesTurn(peer_.client.get())) co_await giveWay();
   const bool keepAlive = parser.get().keep_alive();
   bool again = false;
   if (std::optional<Reply> early = earlyAnswer(parser.get(), placed)) {
@@ -229,11 +241,15 @@ asio::awaitable<bool> HttpSession::becomeStream(Parser& parser) {
 
 asio::awaitable<bool> HttpSession::answer(const RequestHeader& request, bool keepAlive) {
   const RequestView view = viewOf(request);
-  Answer answer = services_.route(view);
+  Answer answer = [&] {
+    const Charge charge(peer_.client.get());
+    return services_.route(view);
+  }();
   if (std::holds_alternative<std::monostate>(answer.work))
     co_return co_await send(std::move(answer.reply), keepAlive && !hasBody(view));
   std::optional<Reply> reply = co_await workOn(std::move(answer), view, peer_, input_, services_);
-  if (!reply) co_return false;
+  report_.received(input_.takeBodyBytes());
+  if (!reply) reply = Reply{.status = kClientGone};
   co_return co_await send(std::move(*reply), keepAlive);
 }
 

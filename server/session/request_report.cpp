@@ -1,14 +1,30 @@
 #include "server/session/request_report.h"
 
-#include <algorithm>
+#include "server/routes/write_routes.h"
+#include "server/wire/loggable.h"
 
 namespace qtet {
+
+namespace {
+
+bool isChange(std::string_view method) {
+  return method == "PUT" || method == "DELETE" || method == "POST";
+}
+
+std::string meshOf(std::string_view target) {
+  const std::optional<RequestTarget> parts = parseTarget(target);
+  return parts && isMeshPath(*parts) ? parts->segments[2] : "";
+}
+
+}  // namespace
 
 void RequestReport::begin() {
   trace_ = traceOf(std::nullopt, std::nullopt);
   client_ = peer_;
   method_.clear();
   target_.clear();
+  change_.reset();
+  received_ = 0;
   begun_ = std::chrono::steady_clock::now();
 }
 
@@ -16,10 +32,15 @@ void RequestReport::identify(const RequestView& request) {
   trace_ = traceOf(request.requestId, request.traceparent);
   method_ = request.method;
   target_ = request.target;
-  // A ticket may still be good, wherever it was sent.
-  if (const std::size_t query = target_.find('?');
-      target_.find("ticket", std::min(query, target_.size())) != std::string::npos)
-    target_.erase(query);
+  if (log_ == nullptr) return;
+  const auto tokens = access_ != nullptr ? access_->tokens() : nullptr;
+  const auto hidden = [&](std::string_view text) { return holdsSecret(text, tokens.get()); };
+  target_ = loggableTarget(request.target, tokens.get());
+  if (hidden(method_)) method_ = kWithheld;
+  if (hidden(trace_.id) || hidden(trace_.traceId) || hidden(trace_.parentId))
+    trace_ = traceOf(std::nullopt, std::nullopt);
+  if (isChange(method_))
+    change_ = {tokens ? tokens->nameOf(bearerDigest(request.authorization)) : "", meshOf(target_)};
 }
 
 void RequestReport::addHeaders(Reply& reply) const {
@@ -30,7 +51,11 @@ void RequestReport::addHeaders(Reply& reply) const {
 void RequestReport::end(unsigned status, std::uint64_t bytes, bool whole) const {
   const auto time = std::chrono::steady_clock::now() - begun_;
   metrics_.countRequest(status, bytes, time);
-  if (log_ != nullptr) log_->write({client_, method_, target_, status, bytes, time, whole}, trace_);
+  if (log_ == nullptr) return;
+  AccessEntry entry{client_, method_, target_, status, bytes, time, whole};
+  if (change_) entry.change = &*change_;
+  entry.received = received_;
+  log_->write(entry, trace_);
 }
 
 }  // namespace qtet

@@ -3,10 +3,12 @@
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "server/http/http_message.h"
 #include "server/stream/stream_report.h"
+#include "server/wire/access.h"
 #include "server/wire/access_log.h"
 #include "server/wire/metrics.h"
 #include "server/wire/request_trace.h"
@@ -17,8 +19,9 @@ namespace qtet {
 class RequestReport {
  public:
   /// `address` is the client's, "" where there is no log. Its first request begins.
-  RequestReport(Metrics& metrics, AccessLog* log, std::string address)
-      : metrics_(metrics), log_(log), peer_(std::move(address)) {
+  /// `access` judges tokens; nullptr: there are none.
+  RequestReport(Metrics& metrics, AccessLog* log, const Access* access, std::string address)
+      : metrics_(metrics), log_(log), access_(access), peer_(std::move(address)) {
     begin();
   }
 
@@ -29,6 +32,8 @@ class RequestReport {
   void begin();
   /// Its head has come.
   void identify(const RequestView& request);
+  /// Bytes of the request's body that have come.
+  void received(std::uint64_t bytes) { received_ += bytes; }
   /// X-Request-Id, and traceparent if the client has sent one.
   void addHeaders(Reply& reply) const;
   /// The request's data for the report of the stream that it becomes.
@@ -39,9 +44,12 @@ class RequestReport {
  private:
   Metrics& metrics_;
   AccessLog* log_;
+  const Access* access_;
   std::string peer_, client_;
   RequestTrace trace_;
   std::string method_, target_;
+  std::optional<ChangeEntry> change_;  // the request changes something
+  std::uint64_t received_ = 0;
   std::chrono::steady_clock::time_point begun_;
 };
 

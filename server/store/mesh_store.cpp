@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 #include <mutex>
+#include <set>
 
 #include "proto/json_reader.h"
 #include "server/store/store_limits.h"
@@ -77,7 +78,7 @@ class Scan {
       return keepSound(old, *file);
     }
     if (++read_ > limits::kLogsReadAtOnce && Clock::now() > end_) {
-      ++next_->unread;
+      next_->unread.push_back(id);
       return old ? keepSound(old, *file) : void();
     }
     const bool holds = !open_->full();
@@ -92,6 +93,7 @@ class Scan {
     for (const auto& [id, mesh] : before_.meshes)
       if (!next_->meshes.contains(id)) change_.removed.push_back(id);
     for (const auto& [id, mesh] : next_->meshes) next_->logs.emplace(mesh->digest, mesh);
+    std::ranges::sort(next_->unread);
     next_->etag = listTag(next_->meshes);
     const bool first = before_.etag.empty();
     next_->changed = first || change_.any()
@@ -130,7 +132,8 @@ struct MeshStore::State {
   fs::path folder;
   std::chrono::milliseconds readTime{};
   std::shared_ptr<OpenMeshes> open = std::make_shared<OpenMeshes>(1);
-  std::mutex scanning;  // one rescan at a time
+  std::mutex scanning;                          // one rescan at a time
+  std::set<std::string, std::less<>> wanted{};  // ids, guarded by `mutex`
   /// Replaced logs, and until when they are to be had under their digests. Guarded by `scanning`.
   std::vector<std::pair<Clock::time_point, EntryPointer>> retired;
   mutable std::mutex mutex;
@@ -141,6 +144,14 @@ struct MeshStore::State {
     return current;
   }
   void retire(const Catalogue& before, Catalogue& next);
+  /// Ids to be looked at before all others, which are forgotten by this.
+  std::set<std::string, std::less<>> takeWanted(std::string_view first) {
+    std::set<std::string, std::less<>> out;
+    const std::scoped_lock lock(mutex);
+    out.swap(wanted);
+    if (!first.empty()) out.emplace(first);
+    return out;
+  }
 };
 
 void MeshStore::State::retire(const Catalogue& before, Catalogue& next) {
@@ -180,9 +191,9 @@ Result<FolderChange> MeshStore::rescan(std::string_view first) const {
   const std::scoped_lock lock(state_->scanning);
   Result<std::vector<fs::path>> paths = listLogs(state_->folder);
   if (!paths) return std::unexpected(paths.error());
-  const auto wanted =
-      std::ranges::find_if(*paths, [&](const fs::path& p) { return p.stem() == first; });
-  if (wanted != paths->end()) std::rotate(paths->begin(), wanted, std::next(wanted));
+  if (const auto wanted = state_->takeWanted(first); !wanted.empty())
+    std::ranges::partition(
+        *paths, [&](const fs::path& path) { return wanted.contains(path.stem().native()); });
   const CataloguePointer before = state_->snapshot();
   Scan scan(*before, state_->readTime, state_->open);
   for (const fs::path& path : *paths) scan.look(path);
@@ -210,12 +221,15 @@ MeshPointer MeshStore::findLog(std::string_view digest) const {
 
 bool MeshStore::mayHave(std::string_view id) const {
   const CataloguePointer now = catalogue();
-  return now->unread > 0 || now->meshes.contains(id);
+  if (!std::ranges::binary_search(now->unread, id)) return now->meshes.contains(id);
+  const std::scoped_lock lock(state_->mutex);
+  if (state_->wanted.size() < limits::kMaxWantedLogs) state_->wanted.emplace(id);
+  return true;
 }
 
 bool MeshStore::mayHaveLog(std::string_view digest) const {
   const CataloguePointer now = catalogue();
-  return now->unread > 0 || now->logs.contains(digest);
+  return !now->unread.empty() || now->logs.contains(digest);
 }
 
 std::optional<fs::path> pathOfMesh(const fs::path& folder, std::string_view id) {

@@ -20,6 +20,8 @@ namespace limits {
 /// One scan of a folder reads files for this time, and at least this many of them. The start waits
 /// for one scan; a folder of 100,000 logs takes many.
 inline constexpr auto kFolderReadTime = std::chrono::seconds(1);
+/// Ids that were asked for and are read first: as many as clients may ask for in such a time.
+inline constexpr std::size_t kMaxWantedLogs = 1000;
 inline constexpr std::size_t kLogsReadAtOnce = 64;
 }  // namespace limits
 
@@ -36,8 +38,8 @@ struct Catalogue {
   Meshes meshes;  ///< by id
   Meshes logs;    ///< by digest, with those that were replaced a short while ago
   std::vector<Refused> refused;
-  /// Files that nobody has looked into yet; the next rescans do.
-  std::size_t unread = 0;
+  /// Ids of files that nobody has looked into yet, in order; the next rescans do.
+  std::vector<std::string> unread;
   std::string etag;         ///< changes with the ids and their logs; without quotes
   std::time_t changed = 0;  ///< seconds since 1970
 };
@@ -90,7 +92,8 @@ class MeshStore {
   /// nullptr when there is none of that digest.
   [[nodiscard]] MeshPointer findLog(std::string_view digest) const;
   /// Whether a mesh that find() or findLog() did not find may be found soon. Either the log is
-  /// known but cannot be opened now, or the folder was not read completely yet.
+  /// known but cannot be opened now, or nobody has looked into its file yet. An id that is asked
+  /// for so is among the first that the next rescan looks at.
   [[nodiscard]] bool mayHave(std::string_view id) const;
   [[nodiscard]] bool mayHaveLog(std::string_view digest) const;
 

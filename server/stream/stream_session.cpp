@@ -23,7 +23,10 @@
 #include "server/stream/stream_input.h"
 #include "server/stream/stream_limits.h"
 #include "server/stream/stream_protocol.h"
+#include "server/wire/charge.h"
+#include "server/wire/connection_limits.h"
 #include "server/wire/http_limits.h"
+#include "server/wire/turns.h"
 
 namespace qtet {
 namespace {
@@ -119,6 +122,7 @@ class StreamSession : public std::enable_shared_from_this<StreamSession> {
   Reading readSome();
   void hear(std::string_view bytes);
   asio::awaitable<void> read();
+  asio::awaitable<void> giveWay();
   asio::awaitable<void> write();
   asio::awaitable<void> keepTime();
   asio::awaitable<void> waitForNews();
@@ -154,6 +158,7 @@ std::string handshakeAnswer(const std::string& key) {
 }
 
 void StreamSession::hear(std::string_view bytes) {
+  const Charge charge(peer_.client.get());
   const auto now = Clock::now();
   if (input_.listens()) patience_.heard(now);
   const std::uint32_t opens = protocol_.opens();
@@ -180,8 +185,22 @@ StreamSession::Reading StreamSession::readSome() {
 /// Also behind the last word that counts: closing while bytes of the client's lie unread would
 /// reset the connection, and ours might be lost.
 asio::awaitable<void> StreamSession::read() {
-  while (peer_.socket.isOpen() && readSome() != Reading::kEnded) co_await peer_.socket.waitToRead();
+  while (peer_.socket.isOpen() && readSome() != Reading::kEnded) {
+    co_await peer_.socket.waitToRead();
+    if (owesTurn(peer_.client.get())) co_await giveWay();
+  }
   cut();
+}
+
+/// Views cost the server much more than the client.
+asio::awaitable<void> StreamSession::giveWay() {
+  co_await takeTurn(peer_.socket.get_executor(), peer_.client.get());
+  asio::steady_timer rest(peer_.socket.get_executor());
+  while (peer_.socket.isOpen() && peer_.client->overdrawn()) {
+    error_code ec;
+    rest.expires_after(limits::kOverdrawnRest);
+    co_await rest.async_wait(redirect_error(use_awaitable, ec));
+  }
 }
 
 /// Bytes that the line has room for.
@@ -194,6 +213,7 @@ std::size_t StreamSession::room() {
 }
 
 void StreamSession::collect(FrameGather& gather) {
+  const Charge charge(peer_.client.get());
   std::size_t left = protocol_.hasFrame() ? room() : LineRoom::kUnbounded;
   while (std::optional<ControlFrame> sign = control_.takeSign())
     gather.add(sign->kind, std::move(sign->payload));

@@ -45,6 +45,7 @@ std::string randomSecret() {
 constexpr std::size_t kIssuerText = 16, kEndText = 16, kNonceText = 64, kTokenText = 64,
                       kMacText = 64;
 constexpr std::size_t kSignedText = kIssuerText + kEndText + kNonceText + kTokenText;
+static_assert(kSignedText + kMacText == limits::kTicketCharacters);
 constexpr std::size_t kMinKeyBytes = 32;
 
 std::optional<SecretDigest> digestOfHex(std::string_view text) {

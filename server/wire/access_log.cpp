@@ -24,12 +24,7 @@ void addTrace(Json& line, const RequestTrace& trace) {
   line["spanId"] = trace.spanId;
 }
 
-}  // namespace
-
-AccessLog::AccessLog(std::shared_ptr<spdlog::logger> logger) : logger_(std::move(logger)) {}
-AccessLog::~AccessLog() { logger_->flush(); }
-
-Result<std::unique_ptr<AccessLog>> AccessLog::open(const std::string& path) {
+Result<std::shared_ptr<spdlog::logger>> openLogger(const std::string& path) {
   try {
     std::shared_ptr<spdlog::sinks::sink> sink;
     if (path == "-")
@@ -41,18 +36,46 @@ Result<std::unique_ptr<AccessLog>> AccessLog::open(const std::string& path) {
     logger->set_formatter(std::make_unique<spdlog::pattern_formatter>(
         R"({"time":"%Y-%m-%dT%H:%M:%S.%eZ",%v)", spdlog::pattern_time_type::utc));
     logger->flush_on(spdlog::level::info);
-    return std::unique_ptr<AccessLog>(new AccessLog(std::move(logger)));
+    return logger;
   } catch (const spdlog::spdlog_ex& e) {
     return fail(ErrorCode::kIo, "the access log " + path + " cannot be written: " + e.what());
   }
+}
+
+}  // namespace
+
+AccessLog::AccessLog(std::string path, std::shared_ptr<spdlog::logger> logger)
+    : path_(std::move(path)), logger_(std::move(logger)) {}
+AccessLog::~AccessLog() { logger_->flush(); }
+
+Result<std::unique_ptr<AccessLog>> AccessLog::open(const std::string& path) {
+  Result<std::shared_ptr<spdlog::logger>> logger = openLogger(path);
+  if (!logger) return std::unexpected(logger.error());
+  return std::unique_ptr<AccessLog>(new AccessLog(path, std::move(*logger)));
+}
+
+Status AccessLog::reopen() {
+  Result<std::shared_ptr<spdlog::logger>> fresh = openLogger(path_);
+  if (!fresh) return std::unexpected(fresh.error());
+  const std::scoped_lock lock(mutex_);
+  logger_.swap(*fresh);
+  return {};
+}
+
+std::shared_ptr<spdlog::logger> AccessLog::logger() const {
+  const std::scoped_lock lock(mutex_);
+  return logger_;
 }
 
 void AccessLog::write(const AccessEntry& entry, const RequestTrace& trace) {
   Json line = {{"client", entry.client}, {"method", entry.method}, {"target", entry.target},
                {"status", entry.status}, {"bytes", entry.bytes},   {"ms", milliseconds(entry.time)},
                {"whole", entry.whole}};
+  if (entry.change != nullptr)
+    line["change"] = {
+        {"token", entry.change->token}, {"mesh", entry.change->mesh}, {"received", entry.received}};
   addTrace(line, trace);
-  logger_->info(dumpJson(line).substr(1));
+  logger()->info(dumpJson(line).substr(1));
 }
 
 void AccessLog::write(const StreamEntry& entry, std::string_view client, std::string_view target,
@@ -69,7 +92,7 @@ void AccessLog::write(const StreamEntry& entry, std::string_view client, std::st
                {"bytes", entry.bytes}, {"ms", milliseconds(entry.time)},
                {"stream", stream}};
   addTrace(line, trace);
-  logger_->info(dumpJson(line).substr(1));
+  logger()->info(dumpJson(line).substr(1));
 }
 
 }  // namespace qtet

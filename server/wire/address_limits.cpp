@@ -12,6 +12,8 @@ namespace {
 
 /// A second's requests may come at once this many times over.
 constexpr double kBurstSeconds = 2;
+/// A longer time forgives no more, and its product might not fit: a new address was never seen.
+constexpr std::chrono::duration<double> kForgetting{3600};
 constexpr std::size_t kPrefixBytes = 8;  // of an IPv6 address: its /64
 
 AddressLimits::Key keyOf(const boost::asio::ip::address& address) {
@@ -33,13 +35,19 @@ AddressLimits::Key keyOf(const boost::asio::ip::address& address) {
 struct AddressLimits::Client::Address {
   std::mutex mutex;
   std::size_t connections = 0;
-  double spent = 0;  ///< requests that have not been forgiven yet
+  double spent = 0;                 ///< requests that have not been forgiven yet
+  std::chrono::nanoseconds owed{};  ///< processor time, likewise
   Clock::time_point last{};
 
-  /// Forgives as many requests as the passed time allows.
+  /// Forgives as many requests, and as much processor time, as the passed time allows.
   void forgive(Clock::time_point now, unsigned requestsPerSecond) {
     const std::chrono::duration<double> passed = now - last;
     spent = std::max(0.0, spent - passed.count() * requestsPerSecond);
+    constexpr double kShare =
+        std::chrono::duration<double>(limits::kProcessorTimePerSecond).count();
+    const auto forgiven = std::chrono::duration_cast<std::chrono::nanoseconds>(
+        std::min(passed, kForgetting) * kShare);
+    owed = std::max(std::chrono::nanoseconds(), owed - forgiven);
     last = now;
   }
 };
@@ -50,13 +58,30 @@ AddressLimits::Client::~Client() {
 }
 
 bool AddressLimits::Client::countRequest(Clock::time_point now) {
-  if (requestsPerSecond_ == 0) return true;
+  if (bounds_.requestsPerSecond == 0) return true;
   const std::scoped_lock lock(address_->mutex);
-  address_->forgive(now, requestsPerSecond_);
-  if (address_->spent + 1 > requestsPerSecond_ * kBurstSeconds) return false;
+  address_->forgive(now, bounds_.requestsPerSecond);
+  if (address_->owed >= bounds_.owed) return false;
+  if (address_->spent + 1 > bounds_.requestsPerSecond * kBurstSeconds) return false;
   ++address_->spent;
   return true;
 }
+
+void AddressLimits::Client::charge(std::chrono::nanoseconds time, Clock::time_point now) {
+  if (bounds_.requestsPerSecond == 0) return;
+  const std::scoped_lock lock(address_->mutex);
+  address_->forgive(now, bounds_.requestsPerSecond);
+  address_->owed += time;
+}
+
+std::chrono::nanoseconds AddressLimits::Client::debt(Clock::time_point now) {
+  if (bounds_.requestsPerSecond == 0) return {};
+  const std::scoped_lock lock(address_->mutex);
+  address_->forgive(now, bounds_.requestsPerSecond);
+  return address_->owed;
+}
+
+bool AddressLimits::Client::overdrawn(Clock::time_point now) { return debt(now) >= bounds_.owed; }
 
 std::unique_ptr<AddressLimits::Client> AddressLimits::enter(
     const boost::asio::ip::address& address) {
@@ -65,18 +90,19 @@ std::unique_ptr<AddressLimits::Client> AddressLimits::enter(
   auto& ofClient = state_->addresses[keyOf(address)];
   if (!ofClient) ofClient = std::make_shared<Client::Address>();
   const std::scoped_lock one(ofClient->mutex);
-  if (maxConnections_ != 0 && ofClient->connections >= maxConnections_) return nullptr;
+  if (bounds_.connections != 0 && ofClient->connections >= bounds_.connections) return nullptr;
   ++ofClient->connections;
-  return std::unique_ptr<Client>(new Client(ofClient, requestsPerSecond_));
+  return std::unique_ptr<Client>(new Client(ofClient, bounds_));
 }
 
-/// Those without a connection whose requests are all forgiven are as good as new ones.
+/// Those without a connection whose requests and time are all forgiven are as good as new ones.
 void AddressLimits::forgetQuietAddresses() {
   const auto now = Clock::now();
   std::erase_if(state_->addresses, [&](const auto& entry) {
     const std::scoped_lock lock(entry.second->mutex);
-    entry.second->forgive(now, requestsPerSecond_);
-    return entry.second->connections == 0 && entry.second->spent == 0;
+    entry.second->forgive(now, bounds_.requestsPerSecond);
+    return entry.second->connections == 0 && entry.second->spent == 0 &&
+           entry.second->owed == std::chrono::nanoseconds();
   });
 }
 

@@ -1,4 +1,4 @@
-// Limits for one address: connections at a time, and requests a second.
+// Limits for one address: connections at a time, requests a second, and processor time.
 #pragma once
 
 #include <array>
@@ -7,6 +7,8 @@
 #include <map>
 #include <memory>
 #include <mutex>
+
+#include "server/wire/connection_limits.h"
 
 namespace boost::asio::ip {
 // NOLINTNEXTLINE(readability-identifier-naming): Asio's
@@ -21,11 +23,15 @@ class AddressLimits {
   using Clock = std::chrono::steady_clock;
   using Key = std::array<std::uint8_t, 16>;
 
-  /// 0: no bound. A second's worth of requests may come at once, twice over.
-  AddressLimits(std::size_t maxConnections, unsigned requestsPerSecond)
-      : maxConnections_(maxConnections),
-        requestsPerSecond_(requestsPerSecond),
-        state_(std::make_shared<State>()) {}
+  /// 0: no bound; without one of requests, there is none of processor time. A second's worth of
+  /// requests may come at once, twice over.
+  struct Bounds {
+    std::size_t connections = 0;
+    unsigned requestsPerSecond = 0;
+    std::chrono::nanoseconds owed = limits::kMaxOwedTime;  ///< processor time
+  };
+  explicit AddressLimits(const Bounds& bounds)
+      : bounds_(bounds), state_(std::make_shared<State>()) {}
 
   /// A connection's place among those of its address, given back when the object goes. May outlive
   /// the limits.
@@ -34,8 +40,14 @@ class AddressLimits {
     ~Client();
     Client(const Client&) = delete;
     Client& operator=(const Client&) = delete;
-    /// false: the address has asked too often.
+    /// false: the address has asked too often, or its answers have cost too much.
     [[nodiscard]] bool countRequest(Clock::time_point now = Clock::now());
+    /// Adds processor time; limits::kProcessorTimePerSecond of it is forgiven each second.
+    void charge(std::chrono::nanoseconds time, Clock::time_point now = Clock::now());
+    /// Processor time that is not forgiven yet; 0 without a bound.
+    [[nodiscard]] std::chrono::nanoseconds debt(Clock::time_point now = Clock::now());
+    /// Whether that is as much as may be; below it, an address only waits behind others (turns.h).
+    [[nodiscard]] bool overdrawn(Clock::time_point now = Clock::now());
     /// The same for all clients of one address, and another for each other one; lives as long as
     /// one of them.
     [[nodiscard]] const void* address() const { return address_.get(); }
@@ -43,10 +55,10 @@ class AddressLimits {
    private:
     friend class AddressLimits;
     struct Address;
-    Client(std::shared_ptr<Address> address, unsigned requestsPerSecond)
-        : address_(std::move(address)), requestsPerSecond_(requestsPerSecond) {}
+    Client(std::shared_ptr<Address> address, const Bounds& bounds)
+        : address_(std::move(address)), bounds_(bounds) {}
     std::shared_ptr<Address> address_;
-    unsigned requestsPerSecond_;
+    Bounds bounds_;
   };
 
   /// nullptr: the address has as many connections as it may have.
@@ -59,8 +71,7 @@ class AddressLimits {
   };
   void forgetQuietAddresses();
 
-  std::size_t maxConnections_;
-  unsigned requestsPerSecond_;
+  Bounds bounds_;
   std::shared_ptr<State> state_;
 };
 

@@ -17,6 +17,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "server/wire/charge.h"
+
 namespace qtet {
 namespace {
 
@@ -118,15 +120,20 @@ asio::awaitable<bool> ClientSocket::announcesSoundHello() {
   }
 }
 
-asio::awaitable<bool> ClientSocket::shakeHands() {
+bool ClientSocket::advanceHandshake(AddressLimits::Client* payer, error_code& ec) {
+  const Charge charge(payer);
+  ::ERR_clear_error();
+  errno = 0;
+  const int done = ::SSL_accept(tls_.get());
+  if (done != 1) explain(done, readWantsWrite_, SSL_ERROR_WANT_WRITE, ec);
+  return done == 1;
+}
+
+asio::awaitable<bool> ClientSocket::shakeHands(AddressLimits::Client* payer) {
   cancelled_ = false;
   while (tls_) {
-    ::ERR_clear_error();
-    errno = 0;
-    const int done = ::SSL_accept(tls_.get());
-    if (done == 1) break;
     error_code ec;
-    explain(done, readWantsWrite_, SSL_ERROR_WANT_WRITE, ec);
+    if (advanceHandshake(payer, ec)) break;
     if (ec == asio::error::would_block)
       ec = co_await wait(readWantsWrite_ ? tcp::socket::wait_write : tcp::socket::wait_read);
     if (ec || cancelled_) co_return false;  // perhaps it was cancelled as what it waited for came

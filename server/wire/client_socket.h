@@ -14,6 +14,7 @@
 #include <span>
 
 #include "proto/bytes.h"
+#include "server/wire/address_limits.h"
 #include "server/wire/file_part.h"
 #include "server/wire/proxy_head.h"
 #include "server/wire/tls_context.h"
@@ -50,9 +51,9 @@ class ClientSocket {
   /// Waits for the head of TLS's handshake and checks the announced length before OpenSSL makes
   /// room for it. False: too long, or the client has gone.
   [[nodiscard]] boost::asio::awaitable<bool> announcesSoundHello();
-  /// TLS's handshake. False: the client broke off, or speaks no TLS that is spoken here; or
-  /// cancel().
-  [[nodiscard]] boost::asio::awaitable<bool> shakeHands();
+  /// TLS's handshake, at the cost of `payer`, which may be nullptr. False: the client broke off, or
+  /// speaks no TLS that is spoken here; or cancel().
+  [[nodiscard]] boost::asio::awaitable<bool> shakeHands(AddressLimits::Client* payer = nullptr);
   /// Whether the handshake failed because the client sent plain HTTP. It may be answered so, and is
   /// not secret.
   [[nodiscard]] bool becomePlainForPlainHttp();
@@ -100,6 +101,8 @@ class ClientSocket {
   boost::asio::awaitable<boost::system::error_code> wait(boost::asio::socket_base::wait_type what);
   /// Takes it from the socket if it is whole.
   ProxyHead lookForProxyHead();
+  /// As far as the client's bytes reach; true: to its end.
+  bool advanceHandshake(AddressLimits::Client* payer, boost::system::error_code& ec);
   /// Translates OpenSSL's reason for a result that is not positive.
   void explain(int result, bool& wantsOther, int wanted, boost::system::error_code& ec);
 

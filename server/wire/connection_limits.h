@@ -18,6 +18,19 @@ inline constexpr std::size_t kMaxConnectionsPerAddress = 256;
 /// Requests a second of one address: somebody who reads a log chunk by chunk (16 KB and more) comes
 /// to 30 MB/s.
 inline constexpr unsigned kMaxRequestsPerSecond = 2000;
+/// Processor time that an address may use each second without owing any of it: for answers,
+/// handshakes and views. A viewer takes some milliseconds to open a mesh.
+inline constexpr auto kProcessorTimePerSecond = 200ms;
+/// An address that owes this much is refused. A thousand people behind one address owe as much
+/// if they open six meshes of 5 ms each at once. Fewer only wait behind others.
+inline constexpr auto kMaxOwedTime = 30s;
+/// An address that owes more than this waits for its turn behind those that owe less.
+inline constexpr auto kMaxFreeTime = 1ms;
+/// How much later it counts as come for each second that it owes. Its own requests at a time cost
+/// more than it owes, so this is above one.
+inline constexpr int kTurnsBehind = 8;
+/// How long a stream rests whose address has used up its processor time.
+inline constexpr auto kOverdrawnRest = 50ms;
 /// Addresses remembered before those that do nothing are forgotten: 150 bytes each.
 inline constexpr std::size_t kMaxRememberedAddresses = 100'000;
 /// Seconds after which a client that was turned away (503) is asked to come back.

@@ -2,19 +2,20 @@
 
 #include <fnmatch.h>
 
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 
+#include "proto/checksum.h"
 #include "server/wire/token_limits.h"
 
 namespace qtet {
 namespace {
 
-/// Characters of a token that is given as it is: as many as 16 random bytes in base64, below which
-/// it could be guessed.
-constexpr std::size_t kMinTokenCharacters = 22;
 constexpr std::string_view kDigestMark = "sha256:";
 constexpr std::string_view kAnyone = "anyone";
+constexpr std::string_view kNameMark = "name=";
+constexpr std::size_t kShownDigest = 8;  ///< digits that tell the tokens of one file apart
 constexpr std::string_view kScheme = "bearer ";
 
 std::optional<SecretDigest> digestOfHex(std::string_view hex) {
@@ -41,6 +42,13 @@ std::string_view tokenOf(std::string_view authorization) {
   std::string_view out = authorization.substr(kScheme.size());
   while (out.starts_with(' ')) out.remove_prefix(1);
   return out;
+}
+
+bool isName(std::string_view text) {
+  return !text.empty() && text.size() <= limits::kMaxTokenName &&
+         std::ranges::all_of(text, [](unsigned char c) {
+           return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.' || c == '@';
+         });
 }
 
 bool matches(const std::string& pattern, const std::string& mesh) {
@@ -79,25 +87,29 @@ Result<Tokens> Tokens::parse(std::string_view text) {
   for (std::string line; std::getline(lines, line);) {
     ++number;
     std::istringstream words(line);
-    std::string scope, pattern, token, more;
+    std::string scope, pattern, token, name, more;
     if (!(words >> scope) || scope.starts_with('#')) continue;
-    words >> pattern >> token;
+    words >> pattern >> token >> name;
     const auto wrong = [&](const std::string& what) {
       return fail(ErrorCode::kBadValue, "line " + std::to_string(number) + ": " + what);
     };
-    if ((scope != "write" && scope != "read") || token.empty() || words >> more)
+    if ((scope != "write" && scope != "read") || token.empty() || words >> more ||
+        (!name.empty() && !name.starts_with(kNameMark)))
       return wrong(
-          "a line is: read or write, a PATTERN of mesh names, and a TOKEN or sha256:HEX; or read "
-          "PATTERN anyone");
+          "a line is: read or write, a PATTERN of mesh names, a TOKEN or sha256:HEX, and perhaps "
+          "name=NAME; or read PATTERN anyone");
     Rule rule{scope == "read" ? Scope::kRead : Scope::kWrite, pattern};
+    if (!name.empty() && !isName(rule.name = name.substr(kNameMark.size())))
+      return wrong("a token's name has 1 to " + std::to_string(limits::kMaxTokenName) +
+                   " letters, digits and - _ . @");
     if (token.starts_with(kDigestMark)) {
       rule.digest = digestOfHex(std::string_view(token).substr(kDigestMark.size()));
       if (!rule.digest) return wrong("sha256: is followed by 64 hexadecimal digits in lower case");
     } else if (token == kAnyone) {
       if (rule.scope == Scope::kWrite) return wrong("anyone may read, but not write");
     } else {
-      if (token.size() < kMinTokenCharacters)
-        return wrong("the token has fewer than " + std::to_string(kMinTokenCharacters) +
+      if (token.size() < limits::kMinTokenCharacters)
+        return wrong("the token has fewer than " + std::to_string(limits::kMinTokenCharacters) +
                      " characters; 'openssl rand -base64 24' makes a good one");
       rule.digest = secretDigest(token);
     }
@@ -122,6 +134,14 @@ Tokens::Verdict Tokens::may(Scope scope, const std::optional<SecretDigest>& bear
     allowed |= (same || !rule.digest) && enough && matches(rule.pattern, mesh);
   }
   return allowed ? Verdict::kAllowed : known ? Verdict::kForbidden : Verdict::kUnknown;
+}
+
+std::string Tokens::nameOf(const std::optional<SecretDigest>& bearer) const {
+  std::string out;
+  if (!knows(bearer)) return out;
+  for (const Rule& rule : rules_)
+    if (out.empty() && rule.digest && equalInConstantTime(*bearer, *rule.digest)) out = rule.name;
+  return out.empty() ? std::string(kDigestMark) + toHex(*bearer).substr(0, kShownDigest) : out;
 }
 
 bool Tokens::knows(const std::optional<SecretDigest>& bearer) const {

@@ -21,7 +21,8 @@ using SecretDigest = Digest;
 [[nodiscard]] std::optional<SecretDigest> bearerDigest(
     std::optional<std::string_view> authorization);
 
-/// A file of lines `SCOPE PATTERN TOKEN` or `SCOPE PATTERN sha256:HEX`. SCOPE is read or write
+/// A file of lines `SCOPE PATTERN TOKEN` or `SCOPE PATTERN sha256:HEX`, with `name=NAME` behind it
+/// if the token has a name in logs. SCOPE is read or write
 /// (which reads, too). PATTERN is a shell pattern of mesh names such as `lab-*`. `read PATTERN
 /// anyone` needs no token. Blank lines and those that begin with # are left out; at least one other
 /// is there. Without a line that begins with read everybody may read everything. Immutable.
@@ -45,12 +46,16 @@ class Tokens {
   [[nodiscard]] Verdict may(Scope scope, const std::optional<SecretDigest>& bearer,
                             const std::string& mesh) const;
   [[nodiscard]] bool knows(const std::optional<SecretDigest>& bearer) const;
+  /// The first name that the file gives to the token; without one, `sha256:` and eight digits of
+  /// its digest. "" if nobody has it.
+  [[nodiscard]] std::string nameOf(const std::optional<SecretDigest>& bearer) const;
 
  private:
   struct Rule {
     Scope scope = Scope::kRead;
     std::string pattern;
     std::optional<SecretDigest> digest{};  ///< nullopt: anyone
+    std::string name{};                    ///< "": none
   };
   std::vector<Rule> rules_;
   bool guardReading_ = false;

@@ -26,6 +26,7 @@ TEST(CommandLine, aFolderIsEnough) {
   EXPECT_EQ(line->port, 8080);
   EXPECT_GE(line->threads, 1u);
   EXPECT_TRUE(line->watch);
+  EXPECT_FALSE(line->readyEarly);
   EXPECT_EQ(line->maxConnections, limits::kMaxConnections);
   EXPECT_FALSE(line->viewer || line->tokens || line->cache || line->accessLog || line->adminHost);
 }
@@ -41,6 +42,8 @@ TEST(CommandLine, everyOptionIsUnderstood) {
                            "3",
                            "--watch",
                            "off",
+                           "--ready-early",
+                           "on",
                            "--admin",
                            "[::1]:9090",
                            "--cache",
@@ -76,6 +79,7 @@ TEST(CommandLine, everyOptionIsUnderstood) {
   EXPECT_EQ(line->viewer, "page");
   EXPECT_EQ(line->threads, 3u);
   EXPECT_FALSE(line->watch);
+  EXPECT_TRUE(line->readyEarly);
   EXPECT_EQ(line->adminHost, "::1");
   EXPECT_EQ(line->adminPort, 9090);
   EXPECT_EQ(line->cache, "c");

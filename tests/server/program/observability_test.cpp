@@ -163,6 +163,68 @@ TEST(AccessLog, noTicketIsWrittenDownHoweverItWasSent) {
   EXPECT_EQ(text.str().find("5ecret"), std::string::npos) << text.str();
 }
 
+TEST(AccessLog, noTokenIsWrittenDownWhereverItWasSent) {
+  const std::string token = "a5ecretOfTwentyTwoChars";
+  Access access(*Tokens::parse("write * " + token + "\n"));
+  const Logged logged;
+  ASSERT_TRUE(logged.log);
+  {
+    test::RunningServer server(logged.folder.store(), logged.folder.viewer(),
+                               {.accessLog = logged.log->get(), .access = &access});
+    for (const std::string& target : {"/v1/meshes?token=" + token, "/?a=" + token, "/" + token})
+      EXPECT_NE(test::RawClient(server.port()).get(target).status, 0u) << target;
+    const std::string id = "X-Request-Id: " + token + "\r\n";
+    EXPECT_EQ(test::RawClient(server.port()).get("/livez", id).status, 200u);
+    EXPECT_TRUE(test::RawClient(server.port()).send(token + " / HTTP/1.1\r\nHost: a\r\n\r\n"));
+    EXPECT_EQ(test::RawClient(server.port()).get("/livez").status, 200u);
+  }
+  std::stringstream text;
+  text << std::ifstream(logged.path).rdbuf();
+  EXPECT_NE(text.str().find("/livez"), std::string::npos) << text.str();
+  EXPECT_EQ(text.str().find("5ecret"), std::string::npos) << text.str();
+}
+
+TEST(AccessLog, aChangeIsWrittenDownWithItsTokensName) {
+  const std::string token = "aSecretOfTwentyTwoChars", other = "anotherOfManyCharacters";
+  Access access(*Tokens::parse("write new* " + token + " name=lab@1\nread * " + other));
+  const Logged logged;
+  ASSERT_TRUE(logged.log);
+  const auto bearer = [](const std::string& t) { return "Authorization: Bearer " + t + "\r\n"; };
+  {
+    test::RunningServer server(logged.folder.store(), logged.folder.viewer(),
+                               {.accessLog = logged.log->get(), .access = &access});
+    const auto send = [&](const std::string& head, const std::string& body) {
+      test::RawClient client(server.port());
+      EXPECT_TRUE(client.send(head + "Host: a\r\nConnection: close\r\nContent-Length: " +
+                              std::to_string(body.size()) + "\r\n\r\n" + body));
+      return client.receive().status;
+    };
+    EXPECT_EQ(send("PUT /v1/meshes/new HTTP/1.1\r\n" + bearer(token), "no log"), 422u);
+    EXPECT_EQ(send("DELETE /v1/meshes/new HTTP/1.1\r\n" + bearer(token), ""), 404u);
+    EXPECT_EQ(send("DELETE /v1/meshes/new HTTP/1.1\r\n" + bearer(other), ""), 403u);
+    EXPECT_EQ(send("DELETE /v1/meshes/new HTTP/1.1\r\n" + bearer(token + "x"), ""), 401u);
+    EXPECT_EQ(send("POST /v1/tickets HTTP/1.1\r\n" + bearer(token), ""), 201u);
+    EXPECT_EQ(send("GET /livez HTTP/1.1\r\n" + bearer(token), ""), 200u);
+  }
+  std::ifstream in(logged.path);
+  std::vector<Json> lines;
+  for (std::string line; std::getline(in, line);) lines.push_back(Json::parse(line));
+  ASSERT_EQ(lines.size(), 6u);
+  EXPECT_EQ(lines[0]["change"]["token"], "lab@1");
+  EXPECT_EQ(lines[0]["change"]["mesh"], "new");
+  EXPECT_EQ(lines[0]["change"]["received"], 6);
+  EXPECT_EQ(lines[0]["status"], 422);
+  EXPECT_EQ(lines[1]["change"]["token"], "lab@1");
+  EXPECT_EQ(lines[1]["change"]["received"], 0);
+  EXPECT_EQ(lines[2]["change"]["token"].string().size(), std::string("sha256:12345678").size());
+  EXPECT_EQ(lines[3]["change"]["token"], "");
+  EXPECT_EQ(lines[3]["status"], 401);
+  EXPECT_EQ(lines[4]["change"]["token"], "lab@1");
+  EXPECT_EQ(lines[4]["change"]["mesh"], "");
+  EXPECT_EQ(lines[4]["client"], "127.0.0.1");
+  EXPECT_FALSE(lines[5].contains("change"));
+}
+
 TEST(AccessLog, aFileThatCannotBeWrittenIsAnError) {
   EXPECT_EQ(AccessLog::open("/proc/nothing/log").error().code, ErrorCode::kIo);
 }
@@ -199,6 +261,33 @@ TEST(Operators, anAddressOfTheirOwnHasTheirPathsAlone) {
   EXPECT_EQ(client.get("/metrics").status, 200u);
   EXPECT_EQ(client.get("/v1/meshes").status, 404u);
   EXPECT_EQ(test::StreamClient(server.adminPort()).httpStatus(), 404u);
+}
+
+TEST(Operators, aServerThatStillReadsItsFolderSaysSo) {
+  const test::ServedFolder viewer;
+  test::TempFolder folder;
+  const Bytes log = test::makeLog({.chunks = 1, .fields = {}});
+  for (std::size_t i = 0; i < limits::kLogsReadAtOnce + 1; ++i)
+    folder.write(std::to_string(1000 + i) + ".qtet", log);
+  const auto store =
+      MeshStore::open(folder.path(), {.readTime = std::chrono::milliseconds::zero()});
+  ASSERT_TRUE(store);
+  test::RunningServer server(*store, viewer.viewer()),
+      early(*store, viewer.viewer(), {.readyEarly = true});
+  test::RawClient client(server.port());
+  EXPECT_EQ(client.get("/readyz").status, 503u);
+  EXPECT_EQ(test::RawClient(early.port()).get("/readyz").status, 200u);
+  EXPECT_EQ(client.get("/livez").status, 200u);
+  const auto partial = client.get("/v1/meshes?limit=1");
+  EXPECT_NE(partial.body.find(R"("complete":false)"), std::string::npos) << partial.body;
+  EXPECT_EQ(client.get("/v1/meshes/1064").status, 503u);
+  EXPECT_EQ(client.get("/v1/meshes/nothing").status, 404u);
+  ASSERT_TRUE(store->rescan());
+  EXPECT_EQ(client.get("/readyz").status, 200u);
+  const auto whole = client.get("/v1/meshes?limit=1");
+  EXPECT_FALSE(Json::parse(whole.body).contains("complete")) << whole.body;
+  EXPECT_NE(whole.header("etag"), partial.header("etag"));
+  EXPECT_EQ(client.get("/v1/meshes/1064").status, 200u);
 }
 
 TEST(Operators, aServerThatDrainsServesOnAndIsNotReady) {

@@ -211,6 +211,32 @@ TEST(Program, readsTokensAgainOnSighupAndKeepsThemWhereTheFileIsWrong) {
   EXPECT_EQ(program.exitCode(), 0);
 }
 
+TEST(Program, signalsOpenTheAccessLogAgain) {
+  const test::ServedFolder served;
+  const test::TempFolder folder;
+  const std::filesystem::path log = folder.path() / "access.json", old = folder.path() / "old.json";
+  Program program({served.logFolder(), "--port", "0", "--viewer", served.viewerFolder(),
+                   "--access-log", log.string()});
+  const std::uint16_t port = program.port();
+  ASSERT_NE(port, 0);
+  std::size_t opened = 0;
+  for (const int number : {SIGHUP, SIGUSR1}) {
+    const auto before = std::filesystem::file_size(log);
+    EXPECT_EQ(test::RawClient(port).get("/livez").status, 200u);
+    EXPECT_TRUE(test::eventually([&] { return std::filesystem::file_size(log) > before; }));
+    std::filesystem::rename(log, old);
+    const auto size = std::filesystem::file_size(old);
+    program.signal(number);
+    ++opened;
+    EXPECT_TRUE(test::eventually([&] { return program.complaints("opened again") == opened; }));
+    EXPECT_EQ(test::RawClient(port).get("/readyz").status, 200u);
+    EXPECT_TRUE(test::eventually([&] { return std::filesystem::file_size(log) > 0; }));
+    EXPECT_EQ(std::filesystem::file_size(old), size);
+  }
+  program.signal(SIGTERM);
+  EXPECT_EQ(program.exitCode(), 0);
+}
+
 TEST(Program, withoutTokensOrCertificateOutlivesSighup) {
   const test::ServedFolder served;
   Program program({served.logFolder(), "--port", "0", "--viewer", served.viewerFolder()});

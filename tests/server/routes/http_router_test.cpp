@@ -194,6 +194,24 @@ TEST_F(RouterTest, jsonAndVtuAreCompressedForWhoTakesIt) {
   EXPECT_EQ(levelOf(vtu).coding, ContentCoding::kZstd);
 }
 
+TEST_F(RouterTest, aPageOfTheListIsMadeAndCompressedOnceForEachVersionAndCoding) {
+  std::vector<Reply> replies;  // as long as they live, no two of their bytes are in one place
+  const auto bytesOf = [&](std::string_view target, std::string_view coding) {
+    replies.push_back(route({.method = "GET", .target = target, .acceptEncoding = coding}));
+    return std::get<ByteView>(replies.back().body).data();
+  };
+  const std::uint8_t* gzip = bytesOf("/v1/meshes", "gzip");
+  EXPECT_EQ(bytesOf("/v1/meshes?limit=1000", "gzip"), gzip);
+  EXPECT_EQ(bytesOf("/v1/meshes?after=A", "gzip"), gzip) << "begins with the same mesh";
+  EXPECT_NE(bytesOf("/v1/meshes", "zstd"), gzip);
+  EXPECT_NE(bytesOf("/v1/meshes", ""), gzip);
+  const std::string before = body(get("/v1/meshes"));
+  std::filesystem::remove(folder_.logFolder() / "noise.qtet");
+  ASSERT_TRUE(folder_.store().rescan());
+  EXPECT_NE(bytesOf("/v1/meshes", "gzip"), gzip);
+  EXPECT_NE(body(get("/v1/meshes")), before);
+}
+
 TEST_F(RouterTest, rangesAreCutFromTheMapping) {
   const Reply part = route({.method = "GET", .target = folder_.log(), .range = "bytes=10-19"});
   EXPECT_EQ(part.status, 206u);

@@ -173,13 +173,33 @@ TEST(MeshStore, whatThereWasNoTimeForIsReadByTheNextLooks) {
       MeshStore::open(folder.path(), {.readTime = std::chrono::milliseconds::zero()});
   ASSERT_TRUE(store);
   EXPECT_EQ(store->catalogue()->meshes.size(), limits::kLogsReadAtOnce);
-  EXPECT_EQ(store->catalogue()->unread, kMore);
+  EXPECT_EQ(store->catalogue()->unread,
+            (std::vector<std::string>{"1064", "1065", "1066", "1067", "1068"}));
+  EXPECT_FALSE(store->mayHave("nothing")) << "no file has that name";
   EXPECT_EQ(store->find("1066"), nullptr);
   EXPECT_TRUE(store->mayHave("1066"));
   EXPECT_EQ(store->rescan("1068")->added.size(), kMore);
-  EXPECT_EQ(store->catalogue()->unread, 0u);
+  EXPECT_TRUE(store->catalogue()->unread.empty());
   EXPECT_NE(store->find("1066"), nullptr);
   EXPECT_FALSE(store->mayHave("nothing"));
+}
+
+TEST(MeshStore, aNameThatIsAskedForIsReadFirst) {
+  constexpr std::size_t kMore = limits::kLogsReadAtOnce + 5;  // two more looks
+  test::TempFolder folder;
+  const Bytes log = test::makeLog({.chunks = 1, .fields = {}});
+  for (std::size_t i = 0; i < limits::kLogsReadAtOnce + kMore; ++i)
+    folder.write(std::to_string(1000 + i) + ".qtet", log);
+  const auto store =
+      MeshStore::open(folder.path(), {.readTime = std::chrono::milliseconds::zero()});
+  ASSERT_TRUE(store);
+  ASSERT_EQ(store->catalogue()->unread.size(), kMore);
+  const std::string last = std::to_string(1000 + limits::kLogsReadAtOnce + kMore - 1);
+  EXPECT_TRUE(store->mayHave(last));
+  ASSERT_TRUE(store->rescan());
+  EXPECT_EQ(store->catalogue()->unread.size(), 5u);
+  EXPECT_NE(store->find(last), nullptr);
+  EXPECT_EQ(store->find(std::to_string(1000 + limits::kLogsReadAtOnce + kMore - 2)), nullptr);
 }
 
 TEST(MeshStore, aLogThatWasChangedSinceItWasCheckedIsNotServedUnderItsDigest) {

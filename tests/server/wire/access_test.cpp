@@ -34,6 +34,25 @@ std::optional<SecretDigest> digestOf(const std::string& token) {
   return bearerDigest("Bearer " + token);
 }
 
+TEST(Tokens, theFirstNameOfATokenIsItsName) {
+  const auto tokens =
+      Tokens::parse("write a " + kWriter + "\nwrite b " + kWriter + " name=lab-1.x_y@z\nwrite c " +
+                    kWriter + " name=other\nread * " + kReader);
+  ASSERT_TRUE(tokens) << tokens.error().message;
+  EXPECT_EQ(tokens->nameOf(digestOf(kWriter)), "lab-1.x_y@z");
+  EXPECT_EQ(tokens->nameOf(digestOf(kReader)), "sha256:" + hexDigestOf(kReader).substr(0, 8));
+  EXPECT_EQ(tokens->nameOf(digestOf(kWriter + "x")), "");
+  EXPECT_EQ(tokens->nameOf(std::nullopt), "");
+  const auto named = [](const std::string& name) {
+    return Tokens::parse("read * " + kReader + " name=" + name).has_value();
+  };
+  EXPECT_TRUE(named(std::string(limits::kMaxTokenName - 1, 'a')));
+  EXPECT_TRUE(named(std::string(limits::kMaxTokenName, 'a')));
+  EXPECT_FALSE(named(std::string(limits::kMaxTokenName + 1, 'a')));
+  EXPECT_FALSE(named(""));
+  EXPECT_FALSE(named("a\"b"));
+}
+
 TEST(Tokens, linesAreReadAndWrongOnesNamed) {
   const auto tokens = Tokens::parse("# who\n\nwrite lab-* " + kWriter +
                                     "\nwrite x sha256:" + sha256Hex(ByteView()) + "\n");

@@ -16,8 +16,10 @@ class Frame:
 
 
 class Stream:
-    def __init__(self, host, port):
-        self.socket = socket.create_connection((host, port))
+    def __init__(self, host, port, source=None):
+        """`source`: the address to come from."""
+        source = (source, 0) if source else None
+        self.socket = socket.create_connection((host, port), source_address=source)
         self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         key = base64.b64encode(os.urandom(16)).decode()
         self.socket.sendall(
