@@ -249,7 +249,7 @@ asio::awaitable<bool> HttpSession::answer(const RequestHeader& request, bool kee
     co_return co_await send(std::move(answer.reply), keepAlive && !hasBody(view));
   std::optional<Reply> reply = co_await workOn(std::move(answer), view, peer_, input_, services_);
   report_.received(input_.takeBodyBytes());
-  if (!reply) reply = Reply{.status = kClientGone};
+  if (!reply) reply = Reply{.status = kClientGone, .headers = {}, .body = {}};
   co_return co_await send(std::move(*reply), keepAlive);
 }
 
