@@ -1,5 +1,5 @@
 #!/bin/bash
-# Whether the container's server is ready, wherever its settings make it listen: its own words,
+# Whether the container's server answers, wherever its settings make it listen: its own words,
 # environment and --config are read once more by --check-config.
 #   docker-health.sh [PID]      0 = it answers; of HTTPS only that it does, in words, is asked
 set -euo pipefail
@@ -7,7 +7,7 @@ pid=${1:-$(pidof -s qtet-server)}
 mapfile -d '' words <"/proc/$pid/cmdline"
 settings=$("${words[@]}" --check-config)
 setting() { sed -n "s/^$1 = //p" <<<"$settings"; }
-address=$(setting admin)  # where alone /readyz is answered, never with TLS
+address=$(setting admin)  # where alone /livez is answered, never with TLS
 certificate=
 [[ -n $address ]] || {
   address=$(setting host):$(setting port)
@@ -20,7 +20,7 @@ case $host in  # all addresses: the own one is among them
   ::) host=::1 ;;
 esac
 exec 3<>"/dev/tcp/$host/$port"
-printf 'GET /readyz HTTP/1.0\r\nHost: localhost\r\n\r\n' >&3
+printf 'GET /livez HTTP/1.0\r\nHost: localhost\r\n\r\n' >&3
 read -r _ status _ <&3
 # A port with TLS says 400 to plain HTTP.
 [[ $status == 200 || ($status == 400 && -n $certificate) ]]

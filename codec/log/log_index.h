@@ -113,7 +113,7 @@ struct LogIndex {
   std::uint8_t positionBits = 0;
   std::uint64_t fileBytes = 0;
   Bytes manifest;             ///< as it stands in the file; codec/log/log_manifest.h reads it
-  bool hasFirstView = false;  ///< the manifest has a focus or an opening
+  bool hasFirstView = false;  ///< the manifest may have a focus or an opening
   std::vector<FieldShape> fields;
   std::vector<ChunkEntry> chunks;
   std::vector<std::uint32_t> dependencies;

@@ -137,9 +137,9 @@ unsigned readFirstView(ByteReader& r, const LogIndex& index, Manifest& out) {
   if (flags > (kErrorsFollow | kFocusFollows | kOpeningFollows))
     r.fail(ErrorCode::kBadValue,
            "the manifest's flags say what this build does not know; use a newer qtet");
-  if ((flags > kErrorsFollow) != index.hasFirstView)
+  if (flags > kErrorsFollow && !index.hasFirstView)
     r.fail(ErrorCode::kBadValue,
-           "header and manifest contradict each other in whether there is a first view; fetch or "
+           "the manifest has a first view, of which the header's version knows nothing; fetch or "
            "build the log again");
   if ((flags & kFocusFollows) != 0) out.focus = readFocus(r);
   if ((flags & kOpeningFollows) != 0) out.opening = readOpening(r, index.fields.size());

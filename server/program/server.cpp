@@ -103,11 +103,11 @@ struct Server::State {
                               std::uint16_t port);
   [[nodiscard]] std::vector<Metrics::Figure> figures() const;
   /// Why new work is not welcome; "": it is.
-  [[nodiscard]] std::string_view unready() const {
+  [[nodiscard]] std::string_view unready() {
     if (draining || ending) return "the server is ending";
-    return options.readyEarly || store.catalogue()->unread.empty()
-               ? ""
-               : "the folder is still being read";
+    // Files that come later make no server unready.
+    if (!hasRead && store.catalogue()->unread.empty()) hasRead = true;
+    return options.readyEarly || hasRead ? "" : "the folder is still being read";
   }
   void end();
   void drain();
@@ -121,6 +121,7 @@ struct Server::State {
   ServerOptions options;
   Metrics metrics;
   std::atomic<bool> draining = false, ending = false;
+  std::atomic<bool> hasRead = false;  ///< the folder, once to its end
   AdminRoutes admin{metrics, [this] { return unready(); }, [this] { return figures(); }};
   Uploads uploads;
   Router router;

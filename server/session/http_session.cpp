@@ -119,13 +119,14 @@ asio::awaitable<bool> HttpSession::shakeHands() {
     const Deadline deadline(peer_.socket, services_.timeouts.header);
     const IdleScope idle(peer_);
     bool done = co_await peer_.socket.announcesSoundHello();
+    // Whoever holds a place may lose it. So nobody waits for a turn with one.
+    if (done && owesTurn(peer_.client.get())) {
+      co_await giveWay();
+      done = !peer_.client->overdrawn() && !deadline.passed() && !peer_.connection->ending();
+    }
     Handshakes::Client handshake(*services_.handshakes, peer_.socket.get_executor(),
                                  [this] { peer_.socket.cancel(); });
     if (done) done = co_await waitForPlace(handshake, deadline);
-    if (done && owesTurn(peer_.client.get())) {
-      co_await giveWay();
-      done = !peer_.client->overdrawn() && !deadline.passed();
-    }
     if (done) done = co_await peer_.socket.shakeHands(peer_.client.get());
     if (done) co_return true;
   }
@@ -174,7 +175,10 @@ asio::awaitable<bool> HttpSession::serveRequest(bool pipelined) {
   joinLists(parser.get());
   const bool placed = proxies_ == nullptr || asksProxyOnce() ||
                       belongsTo(forwardedClient(*proxies_, forwardedOf(parser.get(), *proxies_)));
-  report_.identify(viewOf(parser.get()));
+  {
+    const Charge charge(peer_.client.get());
+    report_.identify(viewOf(parser.get()));
+  }
   if (pipelined || owesTurn(peer_.client.get())) co_await giveWay();
   const bool keepAlive = parser.get().keep_alive();
   bool again = false;

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+
+#include "simplify/legality/original_surface.h"
 
 namespace qtet {
 namespace {
@@ -13,8 +16,6 @@ constexpr double kShare = 0.25;
 constexpr double kFromCorner = 0.125;
 /// A line that passes beside a triangle by less, over its length, hits it: none slips between two.
 constexpr double kEdge = 1e-9;
-
-float floatBelow(double x) { return std::nextafter(static_cast<float>(x), 0.0f); }
 
 /// Where the line at + t * along passes the triangle; infinity where it does not.
 double passingAt(const Vector3& at, const Vector3& along, const std::array<Vector3, 3>& triangle) {

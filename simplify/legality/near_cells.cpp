@@ -14,7 +14,8 @@ namespace {
 constexpr double kHalfDiagonal = 0.8660255;
 /// A cube is at most this long, over the tolerance: then all that the surface passes are near.
 constexpr double kLongest = 0.5;
-/// Cubes along an axis, at most: the directory has 128^3 blocks of four bytes.
+/// Half of the cubes along an axis, at most, since lengths are rounded down to powers of two. The
+/// directory has at most 256^3 blocks of four bytes.
 constexpr std::int32_t kMaxAlong = 1024;
 /// Lattice steps that rounding may take from a distance: coordinates below 2^30 in doubles.
 constexpr double kRounding = 0x1p-18;

@@ -34,8 +34,6 @@ double angleBetween(const Vector3& a, const Vector3& b) {
   return halvings * tangent * (1 - t * (1.0 / 3 - t * (1.0 / 5 - t / 7)));
 }
 
-float floatBelow(double x) { return std::nextafter(static_cast<float>(x), 0.0f); }
-
 double radiusOf(const OriginalSurface::Corners& corners, const Vector3& middle) {
   double squared = 0;
   for (const Vector3& c : corners) squared = std::max(squared, dot(c - middle, c - middle));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -14,11 +15,16 @@
 
 namespace qtet {
 
+/// The next smaller float, for bounds from above.
+[[nodiscard]] inline float floatBelow(double x) {
+  return std::nextafter(static_cast<float>(x), 0.0f);
+}
+
 /// Reading is safe from any thread.
 class OriginalSurface {
  public:
   using Corners = std::array<Vector3, 4>;
-  /// Cuts of one tetrahedron, unless said otherwise. A flat one is then in pieces a thirtieth as
+  /// Cuts of one tetrahedron, unless said otherwise. A flat one is then in pieces an eighth as
   /// long. A piece that needs more is too large for the tolerance.
   static constexpr int kMaxCuts = 1 << 6;
 

@@ -1,12 +1,12 @@
 #include "simplify/pipeline/pipeline.h"
-#include "simplify/measure/focus.h"
-#include "simplify/measure/opening.h"
 
 #include <chrono>
 #include <cmath>
 
 #include "codec/log/log_manifest.h"
 #include "simplify/cost/cost_parts.h"
+#include "simplify/measure/focus.h"
+#include "simplify/measure/opening.h"
 #include "simplify/mesh/missing_values.h"
 #include "simplify/pipeline/fusion_choice.h"
 #include "simplify/pipeline/loss_warnings.h"

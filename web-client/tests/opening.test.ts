@@ -1,4 +1,4 @@
-// The choices of the opening view: the field, the range, the place and the camera.
+// The choices of the opening view: the range, the place and the camera.
 
 import {Vector3} from 'three';
 import {describe, expect, test} from 'vitest';

@@ -59,12 +59,6 @@ export class OrbitCamera {
     return this.direction !== kFirstDirection;
   }
 
-  /** The eye of a view that is fitted so. */
-  eyeOf({distance, target}: Framing): Vector3 {
-    const seen = (distance * this.tangent()) / tangentOf(kFieldOfViewDegrees);
-    return target.clone().addScaledVector(this.direction, seen);
-  }
-
   get parallel(): boolean {
     return this.camera.fov === kParallelDegrees;
   }

@@ -187,12 +187,14 @@ export class MeshCamera {
  * eye. Null if no such face is near: walls would hide the focus.
  */
 function seenPart(focus: number[], bounds: number[], {x, y, z}: Vector3): number[] | null {
-  const seen = [...focus];
-  [x, y, z].forEach((towardsEye, axis) => {
-    const side = towardsEye > 0 ? axis + 3 : axis;
+  const sides = [x, y, z].map((towardsEye, axis) => (towardsEye > 0 ? axis + 3 : axis));
+  const gaps = sides.map((side, axis) => {
     const extent = focus[axis + 3]! - focus[axis]!;
-    if (Math.abs(bounds[side]! - focus[side]!) < extent)
-      seen[axis] = seen[axis + 3] = bounds[side]!;
+    return Math.abs(bounds[side]! - focus[side]!) / extent;
   });
-  return seen.some((end, i) => end !== focus[i]) ? seen : null;
+  const axis = gaps.indexOf(Math.min(...gaps));
+  if (gaps[axis]! >= 1) return null;
+  const seen = [...focus];
+  seen[axis] = seen[axis + 3] = bounds[sides[axis]!]!;
+  return seen;
 }

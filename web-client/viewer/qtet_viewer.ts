@@ -5,7 +5,7 @@
 //                or of an index.json by `qtet publish`, on any web server.
 //   transport    auto (default), websocket, range or chunks: how a server's logs come.
 //   mesh         id of the mesh; without it the viewer offers a menu and starts with the first.
-//   field        name of the field, "NAME[0]" for a component; by default that with most contrast.
+//   field        name of the field, "NAME[0]" for a component; by default the log's choice.
 //   colormap     viridis (default), cividis, cool-warm, turbo, grey or labels; "turbo reversed".
 //   range        "auto" (default), "full", "symmetric" or "LOW,HIGH".
 //   scale        "log".
@@ -14,7 +14,7 @@
 //   opacity      of the surface: above 0, at most 1.
 //   clip         up to three planes. Each is an axis x, y or z or a direction "1,0,1", then a share
 //                of the extent after a colon. "-" before an axis means the other side: "y",
-//                "-x:0.3 z:0.5".
+//                "-x:0.3 z:0.5". A mesh may open with a plane; "none" opens it whole.
 //   clip-mode    cut (default), cells, slice.
 //   iso          "FIELD=VALUE,VALUE...".
 //   threshold    "FIELD=LOW,HIGH".

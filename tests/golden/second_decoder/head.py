@@ -75,7 +75,7 @@ class Log:
             self.infos.append((kind & 127, bits, step, minimum))
         flags = reader.u8()
         refuse_unless(flags < 8, "flags of the manifest")
-        refuse_unless((flags > 1) == (self.minor >= 2), "first view of header and manifest")
+        refuse_unless(flags <= 1 or self.minor >= 2, "a first view in an older version")
         six = "6B" if self.misreading == "a focus has six bytes" else "6H"
         self.focus = reader.unpack(six) if flags & 2 else None
         if self.focus:

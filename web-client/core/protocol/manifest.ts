@@ -77,6 +77,8 @@ export function fieldKeys(fields: readonly FieldInfo[]): string[] {
 
 /** Offsets in the front of a log (codec/FORMAT.md, "Header", "Chunk table"). */
 const kHeaderBytes = 64;
+const kMinorAt = 10;
+const kMinorOfFirstView = 2;
 const kPositionBitsAt = 13;
 const kManifestBytesAt = 24;
 const kFieldsAt = 44;
@@ -129,6 +131,8 @@ export function readManifest(
   if (new Set(fields.map(({association, name}) => `${association}:${name}`)).size < fields.length)
     throw damaged('has a field twice');
   const flags = reader.byte();
+  if (flags > kErrorsFollow && header.getUint16(kMinorAt, true) < kMinorOfFirstView)
+    throw damaged('has a first view, of which its version knows nothing');
   if (flags > (kErrorsFollow | kFocusFollows | kOpeningFollows))
     throw damaged('has flags that this viewer does not know');
   const focus = flags & kFocusFollows ? readFocus(reader, lattice.bits) : undefined;

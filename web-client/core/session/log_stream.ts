@@ -10,10 +10,7 @@ import type {RequestedPart} from './requested_part';
  */
 const kWindowBytes = 1 << 20;
 
-/**
- * Where the stream ends: behind the head, behind the base mesh, at the limit, or at a limit that
- * was set since.
- */
+/** Where the stream ends: behind the head, at the limit, or at a limit that was set since. */
 type End = 'head' | 'limit' | 'later limit';
 
 export class LogStream {

@@ -23,7 +23,7 @@ export type StreamState =
 
 export interface Source extends LogAddress {
   mesh: string;
-  /** Keys of the fields to begin with; null: the first one; empty: none. */
+  /** Keys of the fields to begin with; null: the opening's; empty: none. */
   fields: string[] | null;
   limit: Limit;
   /** The network stays idle until `resume`. */

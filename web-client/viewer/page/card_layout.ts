@@ -14,18 +14,22 @@ export class CardLayout {
   private readonly panel: HTMLElement;
   private readonly resizes = new ResizeObserver((entries) => {
     // The panel's own size moves nothing but what lies above it.
-    if (entries.some(({target}) => target === this.element)) this.refit();
+    const isResized = entries.some(({target}) => target === this.element);
+    if (isResized) this.refit();
     this.placeAboveSheet();
+    if (isResized) this.resized();
   });
 
   /**
    * `changed` receives the area that the cards cover. It is what they covered at the mesh's first
-   * picture. A card that opens or closes later must not move the mesh.
+   * picture. A card that opens or closes later must not move the mesh. `resized` is called when the
+   * viewer has another size.
    */
   constructor(
     private readonly element: HTMLElement,
     private readonly root: ShadowRoot,
     private readonly changed: (insets: Insets) => void,
+    private readonly resized: () => void,
   ) {
     this.panel = find(root, '.panel');
     onClick(root, '.fold', () => this.fold(!this.panel.classList.contains('folded')));

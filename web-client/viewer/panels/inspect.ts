@@ -117,7 +117,7 @@ export class Inspect {
 
   /** Must be called when the viewer has another size. */
   arrange(): void {
-    this.placeCard();
+    if (this.card.isOpen) this.placeCard();
   }
 
   /** Must be called after every frame, so that the marks follow their points. */

@@ -84,7 +84,12 @@ export class Panels {
       level,
       this.view,
     ];
-    const cards = new CardLayout(page.element, root, (insets) => host.view?.setInsets(insets));
+    const cards = new CardLayout(
+      page.element,
+      root,
+      (insets) => host.view?.setInsets(insets),
+      () => this.inspect.arrange(),
+    );
     this.cards = cards;
     this.inspect = new Inspect(root, {
       get client() {
