@@ -43,6 +43,8 @@ async function looksAsItDid({server, browser, out}) {
       await viewer.page.addStyleTag({content: 'qtet-viewer::part(panel) { display: none }'});
     await viewer.waitForState('complete');
     await viewer.waitForPicture();
+    // The panel may have been hidden after the mesh was fitted beside it.
+    if (!panels) await viewer.page.evaluate(() => window.qtetViewer.resetView());
     if (query.includes('volume')) await viewer.restVolume();
     await viewer.settle();
     await viewer.settle();

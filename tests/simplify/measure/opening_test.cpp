@@ -34,17 +34,20 @@ LatticeMesh blockWith(const std::vector<ValueAt>& fields) {
 }
 
 std::int32_t constant(const LatticePoint&, bool) { return 7; }
-std::int32_t alongX(const LatticePoint& p, bool) { return p[0] / 8 % 1000; }
+/// Many values on each side of the block.
+std::int32_t varied(const LatticePoint& p, bool) {
+  return (5 * p[0] + 3 * p[1] + 7 * p[2]) * 60 / kSpan;
+}
 std::int32_t hidden(const LatticePoint& p, bool onBoundary) {
   return onBoundary ? 7 : (p[0] + p[2]) / 8 % 1000;
 }
 
 TEST(Opening, isTheFirstFieldWhereItShowsMost) {
-  EXPECT_EQ(openingOf(blockWith({alongX, constant, alongX})), std::nullopt);
+  EXPECT_EQ(openingOf(blockWith({varied, constant, varied})), std::nullopt);
 }
 
 TEST(Opening, isTheFieldWithMostColoursOnTheBoundary) {
-  EXPECT_EQ(openingOf(blockWith({constant, hidden, alongX})), Opening{2});
+  EXPECT_EQ(openingOf(blockWith({constant, hidden, varied})), Opening{2});
 }
 
 TEST(Opening, isACutWhereTheBoundaryLooksUniform) {
