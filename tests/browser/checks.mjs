@@ -268,7 +268,7 @@ async function showsIsosurfacesAndThresholds({server, browser}) {
 }
 
 async function pointsAndProbes({server, browser}) {
-  const viewer = await browser.open(`${server.url}?mesh=fin&clip=y:0.5`);
+  const viewer = await browser.open(`${server.url}?mesh=fin&field=Density&clip=y:0.5`);
   await viewer.waitForState('complete');
   await viewer.waitForPicture();
   const {page} = viewer;
