@@ -19,7 +19,7 @@ namespace qtet {
 class Turns : public boost::asio::execution_context::service {
  public:
   using Clock = std::chrono::steady_clock;
-  using key_type = Turns;
+  using key_type = Turns;  // NOLINT(readability-identifier-naming): asked for by Asio
   static boost::asio::execution_context::id id;
 
   explicit Turns(boost::asio::execution_context& context)
