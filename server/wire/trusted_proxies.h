@@ -9,7 +9,7 @@
 #include "proto/error.h"
 
 namespace boost::asio::ip {
-class address;
+class address;  // NOLINT(readability-identifier-naming): as Asio calls it
 }
 
 namespace qtet {
