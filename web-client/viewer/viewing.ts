@@ -26,7 +26,7 @@ import {
   type Settings,
   type ShownRange,
 } from './settings/settings';
-import {unfittingParts, wrongParts} from './settings/wrong_parts';
+import {unfittingParts, unknownNames, wrongParts} from './settings/wrong_parts';
 import {StreamControl} from './stream_control';
 
 export class Viewing implements ActionsHost, PanelsHost {
@@ -79,6 +79,7 @@ export class Viewing implements ActionsHost, PanelsHost {
       opens: (isSame) => {
         this.forget(isSame);
         this.notices.endOf('stream', 'page');
+        this.wrong = ''; // it is said again once the mesh is known
       },
       changed: (state, attempt, delayMs) => this.showState(state, attempt, delayMs),
       failed: (code, message) => this.failed(code, message),
@@ -283,7 +284,7 @@ export class Viewing implements ActionsHost, PanelsHost {
   private tellWrongParts(): void {
     const {mesh, notices, page} = this;
     const read = page.read.bind(page);
-    const sentences = wrongParts(read);
+    const sentences = [...unknownNames(page.unknown), ...wrongParts(read)];
     if (mesh.manifest) sentences.push(...unfittingParts(read, mesh.manifest));
     const text = sentences.join('\n');
     if (text === this.wrong) return;
