@@ -1,6 +1,7 @@
 // The panel and what lies in the picture's corners: found at once, folded, reached by keyboard.
 
 import assert from 'node:assert/strict';
+import {kDesktop, kPhone} from './browser.mjs';
 import {PoorLine} from './poor_line.mjs';
 
 async function opened({server, browser}, query, device, before) {
@@ -8,6 +9,95 @@ async function opened({server, browser}, query, device, before) {
   await viewer.waitForState('complete');
   await viewer.waitForPicture();
   return viewer;
+}
+
+const kActions = ['Reset view', 'Save picture', 'Share', 'Full screen', 'Keys'];
+
+/** Actions are found without scrolling, with a name and a tooltip, also by keyboard. */
+async function showsItsActionsAtOnce(context) {
+  for (const colorScheme of ['light', 'dark']) {
+    const viewer = await opened(context, 'mesh=fin', {...kDesktop, colorScheme, bypassCSP: true});
+    const {page} = viewer;
+    await viewer.screenshot(`panel-${colorScheme}`);
+    const panel = await page.locator('qtet-viewer .panel').boundingBox();
+    for (const name of kActions) {
+      const button = page.getByRole('button', {name, exact: true});
+      const {y, height} = await button.boundingBox();
+      assert.ok(y + height < panel.y + 120, `${name} lies at ${y}, the panel begins at ${panel.y}`);
+      assert.ok((await button.getAttribute('title')).startsWith(name));
+    }
+    assert.deepEqual(await viewer.accessibilityViolations(), []);
+  }
+  const viewer = await opened(context, 'mesh=fin');
+  const {page} = viewer;
+  await page.getByRole('button', {name: 'Controls'}).focus();
+  await page.keyboard.press('Tab');
+  await page.keyboard.press('Tab');
+  const [saved] = await Promise.all([
+    page.waitForEvent('download'),
+    page.keyboard.press('Enter'), // the second of the row
+  ]);
+  assert.equal(saved.suggestedFilename(), 'fin.png');
+}
+
+const openFolds = (viewer) =>
+  viewer.page.evaluate(() =>
+    [...window.qtetViewer.shadowRoot.querySelectorAll('details')]
+      .filter(({open}) => open)
+      .map((its) => its.dataset.fold),
+  );
+
+/** Every section folds, and is as it was left when the page is loaded again. */
+async function remembersItsFolds(context) {
+  const viewer = await opened(context, 'mesh=box');
+  assert.deepEqual(await openFolds(viewer), ['colours', 'surface', 'inside', 'pointer']);
+  for (const section of ['Surface', 'Pointer', 'View'])
+    await viewer.page.locator('qtet-viewer summary', {hasText: section}).click();
+  await viewer.page.reload();
+  await viewer.waitForState('complete');
+  await viewer.waitForPicture();
+  assert.deepEqual(await openFolds(viewer), ['colours', 'inside', 'view']);
+  await viewer.screenshot('panel-folds');
+  const forgetful = await opened(context, 'mesh=box', kDesktop, () =>
+    Object.defineProperty(window, 'localStorage', {
+      get() {
+        throw new Error('forbidden');
+      },
+    }),
+  );
+  await forgetful.page.locator('qtet-viewer summary', {hasText: 'View'}).click();
+  await forgetful.settle();
+  assert.deepEqual(await openFolds(forgetful), ['colours', 'surface', 'inside', 'pointer', 'view']);
+  assert.deepEqual(forgetful.problems, []);
+}
+
+/** The share of the viewer that neither the panel nor the legend covers. */
+const freeShare = (viewer) =>
+  viewer.page.evaluate(() => {
+    const {shadowRoot, clientWidth, clientHeight} = window.qtetViewer;
+    const covered = ['.panel', '.legend'].map((name) => {
+      const {width, height} = shadowRoot.querySelector(name).getBoundingClientRect();
+      return width * height;
+    });
+    return 1 - (covered[0] + covered[1]) / (clientWidth * clientHeight);
+  });
+
+/** In a low window half of the area is the mesh's, with the sheet pulled up as well. */
+async function keepsHalfOfALowWindow(context) {
+  const viewer = await opened(context, 'mesh=fin', {viewport: {width: 640, height: 400}});
+  await viewer.settle();
+  const folded = await freeShare(viewer);
+  await viewer.screenshot('panel-low');
+  await viewer.page.getByRole('button', {name: 'Controls'}).click();
+  await viewer.settle();
+  const pulled = await freeShare(viewer);
+  await viewer.screenshot('panel-low-pulled');
+  assert.ok(folded >= 0.5 && pulled >= 0.5, `free: ${folded} folded, ${pulled} pulled up`);
+  const phone = await opened(context, 'mesh=fin', kPhone);
+  await phone.page.getByRole('button', {name: 'Controls'}).tap();
+  await phone.settle();
+  await phone.screenshot('panel-phone');
+  return `free: ${folded.toFixed(2)} folded, ${pulled.toFixed(2)} pulled up`;
 }
 
 /** A slip in a link is answered by the word that was probably meant. */
@@ -42,6 +132,9 @@ async function promisesNothingOfADamagedHead({server, browser}) {
 }
 
 export const panelChecks = {
+  showsItsActionsAtOnce,
+  remembersItsFolds,
+  keepsHalfOfALowWindow,
   namesTheNearestWord,
   promisesNothingOfADamagedHead,
 };
