@@ -2,6 +2,7 @@
 
 import assert from 'node:assert/strict';
 import {kDesktop, kPhone} from './browser.mjs';
+import {differingShare} from './png.mjs';
 import {PoorLine} from './poor_line.mjs';
 
 async function opened({server, browser}, query, device, before) {
@@ -100,6 +101,65 @@ async function keepsHalfOfALowWindow(context) {
   return `free: ${folded.toFixed(2)} folded, ${pulled.toFixed(2)} pulled up`;
 }
 
+const cameraOf = (viewer) => viewer.page.evaluate(() => window.qtetViewer.cameraState);
+
+/** A face of the cube looks along its axis, by a click and by the keyboard. */
+async function turnsByTheCube(context) {
+  for (const colorScheme of ['light', 'dark']) {
+    const device = {...kDesktop, colorScheme, bypassCSP: true};
+    const viewer = await opened(context, 'mesh=box', device);
+    const {page} = viewer;
+    await page.getByRole('button', {name: 'View from +x'}).waitFor();
+    await viewer.screenshot(`cube-${colorScheme}`);
+    assert.deepEqual(await viewer.accessibilityViolations(), []);
+    const face = await page.getByRole('button', {name: 'View from +z'}).boundingBox();
+    await page.mouse.click(face.x + face.width / 2, face.y + face.height / 2);
+    await viewer.settle();
+    const [x, y, z, ...target] = await cameraOf(viewer);
+    assert.ok(z > 1 && Math.hypot(x, y) < 0.01 * z, `from ${[x, y, z]} to ${target}`);
+    await page.getByRole('button', {name: 'View from +x'}).focus();
+    await page.keyboard.press('ArrowRight');
+    await viewer.screenshot(`cube-focus-${colorScheme}`);
+    await page.keyboard.press('Enter');
+    await viewer.settle();
+    const from = await cameraOf(viewer);
+    assert.ok(from[0] < -1 && Math.hypot(from[1], from[2]) < 0.01 * -from[0], `from ${from}`);
+    assert.deepEqual(viewer.problems, []);
+  }
+}
+
+/** A pointer that rests shows the value below it, and nothing moves. */
+async function showsTheValueAtThePointer(context) {
+  const viewer = await opened(context, 'mesh=fin&field=Density&clip=none');
+  const {page} = viewer;
+  const label = page.locator('qtet-viewer .hover');
+  const hide = () => page.addStyleTag({content: 'qtet-viewer::part(hint) { display: none }'});
+  const before = await viewer.screenshot('hover-before');
+  const camera = await cameraOf(viewer);
+  await page.mouse.move(500, 340);
+  await label.waitFor();
+  assert.match(await label.innerText(), /^Density [\d.]+$/);
+  await viewer.screenshot('hover');
+  assert.equal(await page.locator('qtet-viewer .result').isVisible(), false);
+  await page.mouse.move(40, 600, {steps: 2}); // beside the mesh
+  await viewer.settle();
+  assert.equal(await label.isVisible(), false);
+  await page.mouse.move(500, 340);
+  await label.waitFor();
+  const style = await hide();
+  assert.equal(differingShare(before, await viewer.screenshot('hover-bare')), 0);
+  assert.deepEqual(await cameraOf(viewer), camera);
+  await style.evaluate((its) => its.remove());
+  await page.mouse.down();
+  assert.equal(await label.isVisible(), false);
+  await page.mouse.up();
+  const phone = await opened(context, 'mesh=fin&clip=none', kPhone);
+  await phone.page.touchscreen.tap(195, 350);
+  await phone.settle();
+  assert.equal(await phone.page.locator('qtet-viewer .hover').isVisible(), false);
+  await phone.screenshot('cube-phone');
+}
+
 /** A slip in a link is answered by the word that was probably meant. */
 async function namesTheNearestWord(context) {
   const viewer = await opened(context, 'mesh=box&colourmap=turbo&utm_source=mail');
@@ -135,6 +195,8 @@ export const panelChecks = {
   showsItsActionsAtOnce,
   remembersItsFolds,
   keepsHalfOfALowWindow,
+  turnsByTheCube,
+  showsTheValueAtThePointer,
   namesTheNearestWord,
   promisesNothingOfADamagedHead,
 };

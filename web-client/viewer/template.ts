@@ -116,7 +116,7 @@ export const kTemplate = `
 <slot name="poster"></slot>
 <canvas class="scene" part="canvas" tabindex="0" role="application" aria-label="3D view"></canvas>
 <div class="layer" aria-hidden="true"><svg class="marks" part="marks"></svg></div>
-<svg class="orientation-axes" viewBox="-30 -30 60 60" aria-hidden="true"></svg>
+<div class="hover" part="hint" aria-hidden="true" hidden></div>
 <div class="visually-hidden live" role="status" aria-live="polite"></div>
 
 <figure class="card legend" part="legend" hidden>
@@ -317,6 +317,9 @@ export const kTemplate = `
   </div>
   </div>
 </aside>
+
+<svg class="orientation-cube" viewBox="-30 -30 60 60" role="toolbar"
+  aria-label="Look along an axis"></svg>
 
 <div class="card notice" part="notice" role="alert" hidden>
   <p></p>
