@@ -323,7 +323,7 @@ def simplify(
     base_cells            tetrahedra of the base mesh, instead of a ratio
     boundary_weight       what the boundary's place counts beside the fields; chosen by the mesh
     shape_weight          what badly shaped cells cost; 0.5
-    envelope_tolerance    how far the boundary may leave the solid, over the box's diagonal; 0
+    envelope_tolerance    how far the boundary may leave the solid, over the box's diagonal; 0.005
     position_bits, field_bits   of the lattice an axis, 16; of a float field's values, 12
     algorithm, placement, measure, value_codec   the words of `qtet simplify --help`
     keep_order, lossless  keep the input's numbering; its own numbers

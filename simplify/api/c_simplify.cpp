@@ -45,7 +45,7 @@ qtet_simplify_options defaults() {
   out.targetRatio = kUnset;
   out.boundaryWeight = kUnset;
   out.shapeWeight = usual.fusion.shapeWeight;
-  out.envelopeTolerance = usual.fusion.envelopeTolerance;
+  out.envelopeTolerance = kUnset;
   out.positionBits = static_cast<std::uint32_t>(usual.quantise.positionBits);
   out.fieldBits = static_cast<std::uint32_t>(usual.quantise.fieldBits);
   out.measure = QTET_MEASURE_LEVELS;
@@ -122,7 +122,7 @@ qtet::FusionOptions fusionOptionsOf(const qtet_simplify_options& from) {
   out.targetRatio = setNumber(from.targetRatio);
   if (from.baseCells != 0) out.baseCells = from.baseCells;
   out.cost.boundaryWeight = setNumber(from.boundaryWeight);
-  out.envelopeTolerance = from.envelopeTolerance;
+  out.envelopeTolerance = setNumber(from.envelopeTolerance);
   out.shapeWeight = from.shapeWeight;
   out.placement = kPlacements[from.placement];
   out.bands.cellsPerPacket = from.cellsPerPacket;

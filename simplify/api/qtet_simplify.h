@@ -98,7 +98,7 @@ typedef struct {
                              * than 30,000 tetrahedra */
   double boundaryWeight;    /* beside the fields; NaN: chosen by the mesh */
   double shapeWeight;       /* 0.5 */
-  double envelopeTolerance; /* over the diagonal of the mesh's box, 0 */
+  double envelopeTolerance; /* over the diagonal of the mesh's box; NaN: 0.005 */
   uint32_t positionBits;    /* of the lattice, an axis: 16 */
   uint32_t fieldBits;       /* of a float field's values: 12 */
   uint32_t algorithm;       /* QTET_ALGORITHM_QTET */

@@ -59,9 +59,9 @@ void addFusionOptions(boost::program_options::options_description& options) {
       "placement", po::value<std::string>()->default_value("auto"),
       "where fused vertices go: optimal (least error a cell), vertex (only where vertices were: "
       "fewest bits a cell), or auto (least error a byte)")(
-      "envelope-tolerance", po::value<double>()->default_value(0, "0"),
-      "how far the solid may leave the original one, as a fraction of the diagonal; 0: each level "
-      "is part of the finer one. 0.005 keeps the volume of thin parts")(
+      "envelope-tolerance", po::value<double>(),
+      "how far the solid may leave the original one, as a fraction of the diagonal; 0.005 without, "
+      "which keeps the volume of thin parts; 0: each level is part of the finer one")(
       "preserve-regions", po::value<std::string>(),
       "a cell field of one component whose values are regions such as tissues or materials: they "
       "and their interfaces keep their topology")(
@@ -87,7 +87,8 @@ void takeFusionOptions(const ParsedWords& parsed, PipelineOptions& out) {
     fusion.cost.boundaryWeight = parsed.number("boundary-weight", 0, kMaxBoundaryWeight);
   fusion.shapeWeight = parsed.number("shape-weight", 0, kMaxWeight);
   fusion.placement = placementRuleOf(parsed.get<std::string>("placement"));
-  fusion.envelopeTolerance = parsed.number("envelope-tolerance", 0, 1);
+  if (parsed.has("envelope-tolerance"))
+    fusion.envelopeTolerance = parsed.number("envelope-tolerance", 0, 1);
   fusion.threads = threadsAtOnce(parsed.integer("threads", 1, kMaxThreads));
   fusion.bands.cellsPerPacket = cellsPerPacketOf(parsed);
   if (parsed.has("field-weight"))

@@ -163,11 +163,12 @@ class Simplifier {
   FusionState state_;
   BandNodes band_;
   // where fusions may go outside
-  const bool mayLeave_ = options_.envelopeTolerance > 0;
+  const double tolerance_ = options_.envelopeTolerance.value_or(kEnvelopeTolerance);
+  const bool mayLeave_ = tolerance_ > 0;
   std::unique_ptr<AllowedSpace> allowed_ =
-      mayLeave_ ? std::make_unique<AllowedSpace>(
-                      state_.mesh(), options_.envelopeTolerance* state_.cost().diagonal())
-                : nullptr;
+      mayLeave_
+          ? std::make_unique<AllowedSpace>(state_.mesh(), tolerance_* state_.cost().diagonal())
+          : nullptr;
   std::unique_ptr<LiveBoundary> boundary_ =
       mayLeave_ ? std::make_unique<LiveBoundary>(state_.mesh()) : nullptr;
   Proposers proposers_;  // one a worker
@@ -213,7 +214,7 @@ Status check(const LatticeMesh& mesh, const FusionOptions& options) {
                 "give a ratio or a number of cells for the base mesh, not both");
   if (!(ratio >= 0 && ratio <= 1))
     return fail(ErrorCode::kBadInput, "the target ratio must lie in 0..1");
-  if (!(options.envelopeTolerance >= 0))
+  if (!(options.envelopeTolerance.value_or(0) >= 0))
     return fail(ErrorCode::kBadInput, "the envelope tolerance must not be negative");
   if (Status weights = checkWeights(mesh, options); !weights) return weights;
   return checkRegions(mesh, options);

@@ -34,6 +34,10 @@ struct BandOptions {
 inline constexpr double kBaseRatio = 0.01;
 inline constexpr std::size_t kMaxBaseCells = 30'000;
 
+/// FusionOptions::envelopeTolerance where nothing else is asked for. Thin parts keep their volume
+/// then, and logs are smaller at equal errors (ALGORITHM.md, "The envelope's tolerance").
+inline constexpr double kEnvelopeTolerance = 0.005;
+
 struct FusionOptions {
   /// Stop when this fraction of the cells remains, 0..1.
   std::optional<double> targetRatio{};
@@ -41,7 +45,7 @@ struct FusionOptions {
   std::optional<std::size_t> baseCells{};
   CostOptions cost;
   /// How far the solid may leave the original one, over the diagonal of its bounding box, >= 0.
-  double envelopeTolerance = 0;
+  std::optional<double> envelopeTolerance{};
   /// The cell field of one component whose values are regions that keep their topology.
   std::optional<std::size_t> regionField;
   /// The weight of badly shaped new cells in the cost, >= 0 (ALGORITHM.md, "Shape").

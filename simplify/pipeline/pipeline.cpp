@@ -182,7 +182,8 @@ Status bad(std::string what) { return fail(ErrorCode::kBadValue, std::move(what)
 Status checkOptions(const PipelineOptions& options) {
   const FusionOptions& fusion = options.fusion;
   const bool isPaper = options.algorithm == Algorithm::kPaper;
-  if (isPaper && (options.regions || fusion.envelopeTolerance > 0 || !options.fieldWeights.empty()))
+  if (isPaper && (options.regions || fusion.envelopeTolerance.value_or(0) > 0 ||
+                  !options.fieldWeights.empty()))
     return bad(
         "`algorithm` paper knows no `regions`, `envelopeTolerance` or `fieldWeights`; "
         "leave them out");

@@ -19,6 +19,7 @@ FusionHistory simplified(PlacementRule rule) {
   FusionOptions options;
   options.placement = rule;
   options.targetRatio = 0.02;
+  options.envelopeTolerance = 0;
   return simplify(gridMesh(5, 1), options).value();
 }
 

@@ -177,6 +177,17 @@ TEST(Fused, regionsAndTheirInterfacesKeepTheirTopology) {
   EXPECT_TRUE(changed) << "this mesh would not show it if regions were ignored";
 }
 
+TEST(Fused, withoutAWordTheEnvelopeGivesWay) {
+  const LatticeMesh mesh = gridMesh(6, 3, [](int i, int j, int) { return i < 2 || j < 2; });
+  FusionOptions usual, given, none;
+  given.envelopeTolerance = kEnvelopeTolerance, none.envelopeTolerance = 0;
+  const auto pointsOf = [&](const FusionOptions& options) {
+    return simplify(mesh, options).value().points;
+  };
+  EXPECT_EQ(pointsOf(usual), pointsOf(given));
+  EXPECT_NE(pointsOf(usual), pointsOf(none));
+}
+
 TEST(Fused, theEnvelopeGivesWayByItsToleranceAndNoMore) {
   // A cylinder-like notch makes the boundary concave and convex; the outside distance is measured
   // by brute force, which shares nothing with the bound.
