@@ -94,8 +94,8 @@ asio::awaitable<std::expected<void, std::optional<Reply>>> HttpInput::readHead(P
   parser.body_limit(std::numeric_limits<std::uint64_t>::max());
   error_code ec;
   parser.put(asio::buffer(buffered().data(), gate.headBytes()), ec);
-  buffer_.consume(gate.headBytes());
   if (ec || !parser.is_header_done()) co_return std::unexpected(answerToParseError(ec));
+  buffer_.consume(gate.headBytes());
   co_return std::expected<void, std::optional<Reply>>();
 }
 

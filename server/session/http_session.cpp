@@ -167,7 +167,8 @@ asio::awaitable<bool> HttpSession::serveRequest(bool pipelined) {
   report_.begin();
   Parser parser;
   auto head = co_await input_.readHead(parser);
-  headOnly_ = parser.get().method() == http::verb::head;
+  headOnly_ =
+      head ? parser.get().method() == http::verb::head : input_.buffered().starts_with("HEAD ");
   if (!head) {
     if (head.error()) co_await refuse(std::move(*head.error()));
     co_return false;
