@@ -96,6 +96,8 @@ class RawClient {
   bool answerBegins();
   /// Whether something has come already, the end included.
   [[nodiscard]] bool hasAnswer() const;
+  /// Whether the server has reset the connection, so that bytes on their way to us may be lost.
+  [[nodiscard]] bool wasReset() const;
   /// Ends the client's half.
   void finishSending();
 

@@ -137,6 +137,12 @@ bool RawClient::hasAnswer() const {
   return !buffer_.empty() || ::recv(socket_, &byte, 1, MSG_PEEK | MSG_DONTWAIT) >= 0;
 }
 
+bool RawClient::wasReset() const {
+  int trouble = 0;
+  socklen_t bytes = sizeof(trouble);
+  return ::getsockopt(socket_, SOL_SOCKET, SO_ERROR, &trouble, &bytes) == 0 && trouble != 0;
+}
+
 void RawClient::finishSending() { ::shutdown(socket_, SHUT_WR); }
 
 }  // namespace qtet::test
