@@ -1,6 +1,7 @@
 // HTTP and WebSocket over TLS in the server's own process.
 #include <gtest/gtest.h>
 #include <openssl/ssl.h>
+#include <openssl/sslerr.h>
 
 #include <atomic>
 #include <csignal>
@@ -87,6 +88,19 @@ TEST_F(TlsTest, oldVersionsAreRefused) {
   EXPECT_TRUE(
       TlsClient(port(), file("a.crt"), {.least = TLS1_VERSION, .most = TLS1_2_VERSION}).connected())
       << "the same client, but for the version";
+}
+
+TEST_F(TlsTest, whoOffersOtherProtocolsAloneIsToldSoByTheAlert) {
+  for (const int version : {TLS1_2_VERSION, TLS1_3_VERSION})
+    for (const std::string alpn : {"\x02h2", "\x02h2\x08http/1.0"}) {
+      const TlsClient client(port(), file("a.crt"),
+                             {.least = version, .most = version, .alpn = alpn});
+      EXPECT_FALSE(client.connected()) << alpn;
+      EXPECT_EQ(client.refusal(), SSL_R_TLSV1_ALERT_NO_APPLICATION_PROTOCOL) << alpn;
+    }
+  TlsClient without(port(), file("a.crt"));
+  EXPECT_EQ(without.alpn(), "");
+  EXPECT_NE(without.get("/v1/meshes").find("large"), std::string::npos);
 }
 
 TEST_F(TlsTest, theFiguresTellWhenTheCertificateEnds) {
