@@ -124,8 +124,9 @@ asio::awaitable<bool> HttpSession::shakeHands() {
       co_await giveWay();
       done = !peer_.client->overdrawn() && !deadline.passed() && !peer_.connection->ending();
     }
-    Handshakes::Client handshake(*services_.handshakes, peer_.socket.get_executor(),
-                                 [this] { peer_.socket.cancel(); });
+    Handshakes::Client handshake(
+        *services_.handshakes, peer_.socket.get_executor(), [this] { peer_.socket.cancel(); },
+        peer_.address());
     if (done) done = co_await waitForPlace(handshake, deadline);
     if (done) done = co_await peer_.socket.shakeHands(peer_.client.get());
     if (done) co_return true;

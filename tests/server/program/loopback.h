@@ -75,7 +75,8 @@ HttpResponse readResponse(std::string& buffer, const std::function<bool()>& fill
 /// A TCP connection with a time-out of kPatience on every read.
 class RawClient {
  public:
-  explicit RawClient(std::uint16_t port);
+  /// `from`: one of the machine's own addresses, 127.0.0.0/8.
+  explicit RawClient(std::uint16_t port, const char* from = "127.0.0.1");
   ~RawClient();
   RawClient(const RawClient&) = delete;
   RawClient& operator=(const RawClient&) = delete;

@@ -264,16 +264,18 @@ TEST_F(TlsTest, aKeyMayChangeOftenButNotForEverWithoutAByteOfData) {
 /// With one place for handshakes.
 class NarrowTlsTest : public TlsTest {
  protected:
-  void begin(std::chrono::milliseconds patience) {
+  void begin(std::chrono::milliseconds patience, std::size_t places = 1,
+             std::size_t ofAddress = limits::kMaxHandshakesPerAddress) {
     server_.emplace(
         store_, files_.viewer(),
         ServerOptions{
             .threads = 2,
-            .maxHandshakes = 1,
+            .maxHandshakes = places,
+            .maxHandshakesPerAddress = ofAddress,
             .timeouts = {.header = test::kNever, .handshake = patience, .grace = test::kNever},
             .adminHost = "127.0.0.1",
             .tls = &*tls_});
-    stalled_.emplace(port());
+    stalled_.emplace(port(), kOtherAddress);
     stalled_->send(test::clientHello());
     wait("tls_handshakes_open 1");
   }
@@ -288,6 +290,7 @@ class NarrowTlsTest : public TlsTest {
     return test::RawClient(server_->adminPort()).get("/metrics").body;
   }
 
+  static constexpr const char* kOtherAddress = "127.0.0.2";
   std::optional<test::RawClient> stalled_;  ///< has the place and does not go on
 };
 
@@ -313,6 +316,16 @@ TEST_F(NarrowTlsTest, aHandshakeThatStallsLosesItsPlaceToWhoeverWaits) {
   EXPECT_FALSE(TlsClient(port(), file("a.crt")).get("/v1/meshes").empty());
   wait("tls_handshakes_displaced_total 1");
   EXPECT_NE(stalled_->readToEnd(), "") << "the server's answer to its hello; then the end";
+}
+
+TEST_F(NarrowTlsTest, anAddressThatStallsLeavesThePlacesOfOthers) {
+  begin(std::chrono::hours(1), 2, 1);
+  test::RawClient second(port(), kOtherAddress);
+  second.send(test::clientHello());
+  wait("tls_handshakes_waiting 1");
+  EXPECT_FALSE(TlsClient(port(), file("a.crt")).get("/v1/meshes").empty());
+  stalled_.reset();
+  EXPECT_TRUE(second.answerBegins());
 }
 
 TEST_F(NarrowTlsTest, theServersEndIsNotHeldUpByThoseWhoWait) {
