@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <numeric>
 
 #include "codec/mesh/predicates.h"
 #include "simplify/mesh/cell_corners.h"
@@ -37,11 +36,24 @@ LiveBoundary::LiveBoundary(const FusionMesh& mesh)
           for (std::size_t corner = 0; corner < 3; ++corner)
             place(firstGhost_ + i, corner, cell[corner], mesh.point(cell[corner]));
         }
-        std::vector<std::uint32_t> ids(count);
-        std::iota(ids.begin(), ids.end(), 0u);
-        return TriangleTree(points_, triangles_, std::move(ids));
-      }()) {
-  tree_.allowGrowth();
+        return treeOfLive();
+      }()) {}
+
+TriangleTree LiveBoundary::treeOfLive() const {
+  std::vector<std::uint32_t> ids;
+  for (std::uint32_t i = 0; i < live_.size(); ++i)
+    if (live_[i] != 0) ids.push_back(i);
+  TriangleTree out(points_, triangles_, std::move(ids));
+  out.allowGrowth();
+  return out;
+}
+
+void LiveBoundary::beginLevel() {
+  const auto live = static_cast<std::size_t>(std::ranges::count(live_, 1));
+  if (live > 0 && live <= tree_.builtOver() / 2)
+    tree_ = treeOfLive();
+  else
+    tree_.refit(live_);
 }
 
 void LiveBoundary::place(CellId ghost, std::size_t corner, VertexId vertex,

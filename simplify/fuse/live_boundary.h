@@ -19,8 +19,8 @@ class LiveBoundary {
   LiveBoundary(const LiveBoundary&) = delete;
   LiveBoundary& operator=(const LiveBoundary&) = delete;
 
-  /// Fits the boxes again.
-  void beginLevel() { tree_.refit(live_); }
+  /// Fits the boxes again. Where half of the tree's triangles are gone, makes a new tree.
+  void beginLevel();
   /// Whether, with the proposal's prey at its point, a new triangle of the boundary would meet
   /// another one. Also true where a part of the boundary would end inside the solid. Never false
   /// where it would. REQUIRES: nothing in the prey's star has changed since the level began.
@@ -33,6 +33,7 @@ class LiveBoundary {
   void place(CellId ghost, std::size_t corner, VertexId vertex, const LatticePoint& at);
   [[nodiscard]] PlacedTriangle triangle(std::uint32_t number) const;
   void collect(const Proposal& proposal);
+  [[nodiscard]] TriangleTree treeOfLive() const;
   [[nodiscard]] bool foldsOnItself() const;
   [[nodiscard]] bool isMetBy(const Proposal& proposal, std::uint32_t other) const;
   [[nodiscard]] bool swallows(const LatticePoint& p, const PlacedTriangle& other) const;

@@ -102,7 +102,7 @@ inline bool BoundaryEnvelope::isOutside(const Face& face, double side, const Pro
 
 // The tetrahedra of p and each triangle that it is beyond are all that the solid gains.
 bool BoundaryEnvelope::staysNear(const AllowedSpace& allowed, const LatticePoint& p,
-                                 AllowedSpace::Known& known) const {
+                                 DistanceCells& known) const {
   const Probe probe = probeOf(p);
   for (std::size_t i = 0; i < faces_.size(); ++i) {
     if (outsideOf(i / 2, probe)[i % 2] == 0) continue;

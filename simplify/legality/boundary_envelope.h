@@ -33,7 +33,7 @@ class BoundaryEnvelope {
   /// Whether with the prey at p the solid gains nothing that lies further outside the original one
   /// than allowed. It presumes that nothing of it does yet.
   [[nodiscard]] bool staysNear(const AllowedSpace& allowed, const LatticePoint& p,
-                               AllowedSpace::Known& known) const;
+                               DistanceCells& known) const;
   /// Whether with the prey at p a triangle turns further than it may.
   [[nodiscard]] bool turnsTooFar(const LatticePoint& p) const;
 

@@ -81,7 +81,7 @@ class FusionCheck {
   FusionLimits limits_;
   Prey prey_;
   BoundaryEnvelope envelope_;
-  mutable AllowedSpace::Known known_;  // about limits_.allowed
+  mutable DistanceCells known_;  // about limits_.allowed
   FlipCheck flips_;
   LocalStar star_;
   StarShapes shapes_;

@@ -12,10 +12,10 @@ namespace {
 
 /// Half of a unit cube's diagonal, rounded up.
 constexpr double kHalfDiagonal = 0.8660255;
-/// A cube is at most this long, over the tolerance: then all that the surface passes are near.
-constexpr double kLongest = 0.5;
-/// Half of the cubes along an axis, at most, since lengths are rounded down to powers of two. The
-/// directory has at most 256^3 blocks of four bytes.
+/// A cube's length over the tolerance: below 0.57 all that the surface passes are near.
+constexpr double kLength = 0.4;
+/// Cubes along an axis, at most, if lengths are not rounded down. The directory has at most 256^3
+/// blocks of four bytes.
 constexpr std::int32_t kMaxAlong = 1024;
 /// Lattice steps that rounding may take from a distance: coordinates below 2^30 in doubles.
 constexpr double kRounding = 0x1p-18;
@@ -42,10 +42,8 @@ NearCells::NearCells(const TriangleTree& tree, std::span<const float> tolerances
   double extent = 1;
   for (std::uint32_t t = 0; t < tolerances.size(); ++t)
     for (const Vector3& c : tree.corners(t)) extent = std::max({extent, c[0], c[1], c[2]});
-  if (!(kLongest * most >= 1) || kMaxAlong * kLongest * most <= extent + most) return;
-  const int bits =
-      std::bit_width(static_cast<std::uint32_t>(std::min(kLongest * most, extent))) - 1;
-  length_ = static_cast<double>(std::uint32_t{1} << bits);
+  if (!(kLength * most >= 1) || kMaxAlong * kLength * most <= extent + most) return;
+  length_ = std::floor(std::min(kLength * most, extent));
   const auto cells = static_cast<std::int32_t>((extent + most) / length_) + 1;
   blockCounts_.fill((cells >> kBlockBits) + 1);
   directory_.assign(placeOf({0, 0, blockCounts_[2]}), kUnknown);
@@ -231,14 +229,15 @@ void NearCells::fillEmpty(const Cell& first, const IsInside& isInside,
   }
 }
 
-void NearCells::findDoubtful(const Corners& tetrahedron, std::size_t atMost,
-                             std::vector<Cell>& doubtful) const {
+// The last corner is where the prey goes: if anything lies too far outside, it often does.
+bool NearCells::holds(const Corners& tetrahedron) const {
   Corners at = tetrahedron;
   for (Vector3& c : at) c = 1 / length_ * c;
-  eachTouchedCell(at, [&](const Cell& cell) {
-    if (!isNear(cell)) doubtful.push_back(cell);
-    return doubtful.size() <= atMost;
-  });
+  Cell last{};
+  for (std::size_t k = 0; k < 3; ++k) last[k] = static_cast<std::int32_t>(at[3][k]);
+  bool areNear = isNear(last);
+  if (areNear) eachTouchedCell(at, [&](const Cell& cell) { return areNear = isNear(cell); });
+  return areNear;
 }
 
 }  // namespace qtet

@@ -14,7 +14,7 @@
 
 namespace qtet {
 
-/// Cubes of 2^bits lattice steps in blocks of 8^3. Reading is safe from any thread.
+/// Cubes of a whole number of lattice steps in blocks of 8^3. Reading is safe from any thread.
 class NearCells {
  public:
   using Cell = std::array<std::int32_t, 3>;
@@ -29,11 +29,10 @@ class NearCells {
   NearCells(const TriangleTree& tree, std::span<const float> tolerances, double most,
             const IsInside& isInside);
 
-  /// The cubes that the tetrahedron touches and that are not known to be near or inside, and
-  /// perhaps a few beside it. Stops above `atMost` of them. REQUIRES: corners in [0, 2^30)^3.
-  void findDoubtful(const Corners& tetrahedron, std::size_t atMost,
-                    std::vector<Cell>& doubtful) const;
-  [[nodiscard]] double length() const { return length_; }
+  /// Every cube that the tetrahedron touches is near or inside. REQUIRES: corners in [0, 2^30)^3,
+  /// and that something is known.
+  [[nodiscard]] bool holds(const Corners& tetrahedron) const;
+  [[nodiscard]] bool isKnown() const { return length_ > 0; }
 
  private:
   static constexpr std::int32_t kBlockBits = 3, kBlockLength = 1 << kBlockBits;

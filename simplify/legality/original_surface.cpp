@@ -188,9 +188,7 @@ SignedDistance OriginalSurface::distanceOf(const LatticeCube& cube) const {
 // that the least tolerance counts. The piece that lies furthest outside comes first: where one lies
 // too far, it is soon found.
 bool OriginalSurface::holds(const Corners& tetrahedron, const Tolerances& tolerances,
-                            DistanceCells& known,
-                            const std::function<bool(const Corners&)>& isDoubtful,
-                            int maxCuts) const {
+                            DistanceCells& known, int maxCuts) const {
   struct Piece {
     Corners corners;
     double outside;
@@ -198,7 +196,6 @@ bool OriginalSurface::holds(const Corners& tetrahedron, const Tolerances& tolera
   std::vector<Piece> waiting;
   // False: it lies too far outside for sure.
   const auto look = [&](const Corners& corners) {
-    if (!isDoubtful(corners)) return true;
     const Vector3 centre = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
     const double radius = radiusOf(corners, centre);
     // neighbours of a small piece share its cube

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <vector>
 
@@ -42,18 +41,10 @@ class OriginalSurface {
   };
 
   /// No point of the tetrahedron is outside the solid and further from every triangle than that
-  /// one's tolerance. False also where that was not proved within a bounded number of
+  /// one's tolerance. False also where that was not proved within `maxCuts`
   /// steps. `known`: of this surface alone. REQUIRES: corners in [0, 2^30)^3.
   [[nodiscard]] bool holds(const Corners& tetrahedron, const Tolerances& tolerances,
-                           DistanceCells& known) const {
-    return holds(tetrahedron, tolerances, known, [](const Corners&) { return true; });
-  }
-  /// The same where some parts are known to hold: `isDoubtful(corners)` is false for a piece that
-  /// lies in them. After `maxCuts` it was not proved.
-  [[nodiscard]] bool holds(const Corners& tetrahedron, const Tolerances& tolerances,
-                           DistanceCells& known,
-                           const std::function<bool(const Corners&)>& isDoubtful,
-                           int maxCuts = kMaxCuts) const;
+                           DistanceCells& known, int maxCuts = kMaxCuts) const;
   /// p is inside the solid, as far as doubles can tell, `nearest` being its nearest triangle. False
   /// where the surface is not a manifold at the nearest point.
   [[nodiscard]] bool isInside(const Vector3& p, const NearestTriangle& nearest) const;

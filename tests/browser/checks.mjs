@@ -532,7 +532,7 @@ async function isAccessible({server, browser}) {
     await viewer.waitForPicture();
     notes.push(await viewer.page.locator('qtet-viewer .live').innerText());
     for (const summary of await viewer.page.locator('qtet-viewer summary').all())
-      await summary.click();
+      if (!(await summary.evaluate(({parentElement}) => parentElement.open))) await summary.click();
     const expectNone = async (what) =>
       assert.deepEqual(await viewer.accessibilityViolations(), [], `${colorScheme}, ${what}`);
     await expectNone('every panel open');

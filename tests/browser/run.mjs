@@ -12,6 +12,7 @@ import {edgeChecks} from './edge_checks.mjs';
 import {elementChecks} from './element_checks.mjs';
 import {legendChecks} from './legend_checks.mjs';
 import {monkeyChecks} from './monkey_checks.mjs';
+import {panelChecks} from './panel_checks.mjs';
 import {publishChecks} from './publish_checks.mjs';
 import {recoveryChecks} from './recovery_checks.mjs';
 import {transportChecks} from './transport_checks.mjs';
@@ -42,7 +43,7 @@ const lists = {
   publish: publishChecks,
   volume: volumeChecks,
   edge: edgeChecks,
-  legend: legendChecks,
+  legend: {...legendChecks, ...panelChecks},
   recovery: recoveryChecks,
   monkey: monkeyChecks,
   baseline: baselineChecks,

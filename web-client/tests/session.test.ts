@@ -242,6 +242,16 @@ describe('a stream', () => {
     expect(socket.closed).toBe(true);
   });
 
+  test('withADamagedBaseDoesNotSayThatSomethingStays', () => {
+    codec.corrupt = 0;
+    const socket = start();
+    socket.deliver(headFrame(1, kLog));
+    socket.deliver(meshFrame(1, 0));
+    expect(received.find(({type}) => type === 'error')).toMatchObject({
+      message: expect.stringMatching(/chunk 0 is damaged\. Nothing can be shown yet\./) as string,
+    });
+  });
+
   test('thatEndsEarlyIsNotCalledComplete', () => {
     const socket = start();
     socket.deliver(headFrame(1, kLog));

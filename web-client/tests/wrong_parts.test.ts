@@ -1,6 +1,6 @@
 import {expect, test} from 'vitest';
 import type {FieldInfo, Manifest} from '../core/protocol/manifest';
-import {unfittingParts, wrongParts} from '../viewer/settings/wrong_parts';
+import {unfittingParts, unknownNames, wrongParts} from '../viewer/settings/wrong_parts';
 
 const reading =
   (attributes: Record<string, string>) =>
@@ -83,4 +83,19 @@ test('whatTheMeshDoesNotHaveIsNamed', () => {
   expect(sentences({iso: 'part=1'})).toContain('takes a field of points');
   expect(sentences({threshold: 'T=1,2'})).toContain('no field "T"');
   expect(sentences({quality: 'cells:10'})).toBe('');
+});
+
+test('aSlipIsAnsweredByTheNearestWord', () => {
+  expect(wrongParts(reading({colormap: 'viridsi'}))[0]).toContain('Did you mean "viridis"?');
+  expect(wrongParts(reading({projection: 'paralel'}))[0]).toContain('Did you mean "parallel"?');
+  expect(wrongParts(reading({scale: 'cubic'}))[0]).not.toContain('Did you mean');
+  expect(unfittingParts(reading({field: 'prat'}), manifest)[0]).toContain('Did you mean "part"?');
+});
+
+test('unknownParametersAreNamed', () => {
+  expect(unknownNames(['mesh', 'src', 'utm_source', 'fbclid'])).toEqual([]);
+  expect(unknownNames(['colourmap', 'palette'])).toEqual([
+    'The address has "colourmap", which means nothing here. Did you mean "colormap"?',
+    'The address has "palette", which means nothing here.',
+  ]);
 });

@@ -8,7 +8,6 @@ import type {View} from '../three/view';
 import {openView} from '../three/worker_view';
 import {find} from './page/find';
 import type {Notices} from './page/notices';
-import {OrientationAxes} from './panels/orientation_axes';
 
 /** Where a view begins: a camera, a standard view, or null for the first view of a mesh. */
 export type ViewStart = CameraState | Direction | null;
@@ -78,12 +77,8 @@ export class Graphics {
   }
 
   private openOn(canvas: HTMLCanvasElement): Promise<View> {
-    const axes = new OrientationAxes(find<SVGSVGElement>(this.root, '.orientation-axes'));
     return openView(canvas, {
-      drawn: ({rotation}) => {
-        axes.turn(rotation);
-        this.listeners.drawn();
-      },
+      drawn: () => this.listeners.drawn(),
       lost: (lost) => this.tellOfLoss(lost),
       failed: (why) =>
         this.listeners.failed(

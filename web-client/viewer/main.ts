@@ -23,6 +23,7 @@ for (const name of ['src', 'transport', ...kViewAttributes]) {
   const value = query.get(name);
   if (value !== null && value !== '') viewer.setAttribute(name, value);
 }
+viewer.unknown = [...query.keys()];
 /** Browsers allow a few hundred changes of the address in half a minute. A slider makes more. */
 const kRestMs = 300;
 let timer: ReturnType<typeof setTimeout> | undefined;

@@ -60,6 +60,8 @@ export class QtetViewer extends HTMLElement {
   /** Exists from the first step on; before it the shadow root is empty. */
   private viewing: Viewing | null = null;
   private bearer = '';
+  /** The names in the page's address: the viewer says which mean nothing to it. */
+  unknown: readonly string[] = [];
 
   // ---- for the page
 
@@ -227,6 +229,9 @@ function pageOf(element: QtetViewer, root: ShadowRoot): Page {
     root,
     get token() {
       return element.token;
+    },
+    get unknown() {
+      return element.unknown;
     },
     get view() {
       return element.view;

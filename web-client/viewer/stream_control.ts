@@ -18,6 +18,7 @@ import {
 } from './page/catalog';
 import type {Kept, Page} from './page/page';
 import {MeshMenu} from './panels/mesh_menu';
+import {hint} from './settings/nearest';
 
 /** Attributes that belong to one mesh: another one has other fields, places and values. */
 const kOfOneMesh = [
@@ -129,7 +130,7 @@ export class StreamControl {
     if (names.includes(mesh)) return mesh;
     throw new QtetError(
       'not-found',
-      `There is no mesh "${mesh}" on this server. ` +
+      `There is no mesh "${mesh}" on this server.${hint(mesh, names)} ` +
         `It has: ${names.join(', ') || 'none that may be seen without a token'}.`,
     );
   }

@@ -84,11 +84,39 @@ const curves = ['ahead', 'reached', 'here']
 const closeIcon =
   '<svg viewBox="0 0 20 20" aria-hidden="true"><path d="M5 5l10 10M15 5 5 15"/></svg>';
 
+/** name: [title, the key that does the same, path of the icon]. */
+const kActions: Record<string, [string, string, string]> = {
+  pause: ['Pause', 'Space', 'M7.5 5v10M12.5 5v10'],
+  reset: ['Reset view', 'Home', 'M3.5 10 10 4l6.5 6M5.5 8.5V16h9V8.5'],
+  picture: ['Save picture', 'P', 'M10 3v9M6.5 8.5 10 12l3.5-3.5M4 16h12'],
+  share: ['Share', '', 'M8 3.5 10 2l2 1.5M10 2v10M6 8H4.5v8.5h11V8H14'],
+  fullscreen: ['Full screen', 'W', 'M4 8V4h4M12 4h4v4M16 12v4h-4M8 16H4v-4'],
+  help: ['Keys', '?', 'M7 7.5a3 3 0 1 1 4.2 2.7c-.8.4-1.2 1-1.2 2M10 15.6v.1'],
+};
+
+const actions = Object.entries(kActions)
+  .map(([name, [title, key, path]]) => {
+    const tip = key === '' ? title : `${title} (${key})`;
+    return `
+    <button type="button" class="icon ${name}" aria-label="${title}" title="${tip}">
+      <svg viewBox="0 0 20 20" aria-hidden="true"><path d="${path}"/></svg>
+    </button>`;
+  })
+  .join('');
+
+/** A section that folds, and keeps its state under `name` (folds.ts). */
+const section = (name: string, title: string, open: boolean, content: string): string => `
+    <details data-fold="${name}"${open ? ' open' : ''}>
+      <summary>${title}</summary>
+      <div class="sub">${content}
+      </div>
+    </details>`;
+
 export const kTemplate = `
 <slot name="poster"></slot>
 <canvas class="scene" part="canvas" tabindex="0" role="application" aria-label="3D view"></canvas>
 <div class="layer" aria-hidden="true"><svg class="marks" part="marks"></svg></div>
-<svg class="orientation-axes" viewBox="-30 -30 60 60" aria-hidden="true"></svg>
+<div class="hover" part="hint" aria-hidden="true" hidden></div>
 <div class="visually-hidden live" role="status" aria-live="polite"></div>
 
 <figure class="card legend" part="legend" hidden>
@@ -130,6 +158,8 @@ export const kTemplate = `
       </svg>
     </button>
   </header>
+  <div class="actions" role="toolbar" aria-label="Actions">${actions}
+  </div>
 
   <div class="body">
   <slot name="progress"><section class="progress" part="progress" aria-label="Progress">
@@ -152,7 +182,11 @@ export const kTemplate = `
   </section></slot>
 
   <div class="controls" id="controls">
-    <section>
+    ${section(
+      'colours',
+      'Field and colours',
+      true,
+      `
       <label class="field">
         <span class="name">Field</span><select name="field" disabled></select>
       </label>
@@ -174,10 +208,13 @@ export const kTemplate = `
         <input type="text" inputmode="decimal" name="range-low" aria-label="Start of the range">
         <span class="name">to</span>
         <input type="text" inputmode="decimal" name="range-high" aria-label="End of the range">
-      </div>
-    </section>
-
-    <section>
+      </div>`,
+    )}
+    ${section(
+      'surface',
+      'Surface',
+      true,
+      `
       ${toggle('edges', 'Cell edges', true)}
       ${toggle('surface', 'Surface', true)}
       <div class="field">
@@ -186,10 +223,13 @@ export const kTemplate = `
         </span>
         <input type="range" name="opacity" min="5" max="100" step="5" value="100"
           aria-labelledby="opacity-name">
-      </div>
-    </section>
-
-    <section>
+      </div>`,
+    )}
+    ${section(
+      'inside',
+      'Inside',
+      true,
+      `
       ${toggle('clip', 'Clip')}
       <div class="clip" hidden>
         <fieldset class="segments clip-modes">
@@ -215,20 +255,23 @@ export const kTemplate = `
       ${fieldLayers()
         .filter(({draw}) => !draw)
         .map(controls)
-        .join('')}
-    </section>
-
-    <section>
-      <span class="name" aria-hidden="true">Pointer</span>
+        .join('')}`,
+    )}
+    ${section(
+      'pointer',
+      'Pointer',
+      true,
+      `
       <fieldset class="segments tools">
         <legend class="visually-hidden">Pointer</legend>
         ${segments('tool', kToolTitles)}
-      </fieldset>
-    </section>
-
-    <details>
-      <summary>Level of detail</summary>
-      <div class="sub">
+      </fieldset>`,
+    )}
+    ${section(
+      'level',
+      'Level of detail',
+      false,
+      `
         <label class="field">
           <span class="name">Refine</span>
           <select name="limit">
@@ -249,25 +292,17 @@ export const kTemplate = `
         <figure class="curve" hidden>
           <svg viewBox="0 -1 100 42" preserveAspectRatio="none" aria-hidden="true">${curves}</svg>
           <figcaption></figcaption>
-        </figure>
-      </div>
-    </details>
-
-    <details>
-      <summary>View</summary>
-      <div class="sub">
+        </figure>`,
+    )}
+    ${section(
+      'view',
+      'View',
+      false,
+      `
         <div class="looks" role="group" aria-label="Standard views">${directions}</div>
-        ${toggle('parallel', 'Parallel projection')}
-        <div class="buttons">
-          <button type="button" class="picture">Save picture</button>
-          <button type="button" class="fullscreen">Full screen</button>
-          <button type="button" class="share">Share</button>
-          <button type="button" class="help">Keys</button>
-        </div>
-      </div>
-    </details>
-
-    <details class="statistics">
+        ${toggle('parallel', 'Parallel projection')}`,
+    )}
+    <details class="statistics" data-fold="statistics">
       <summary>Statistics</summary>
       <dl class="sub">
         <div><dt>Frame</dt><dd class="frame-ms">&ndash;</dd></div>
@@ -279,13 +314,12 @@ export const kTemplate = `
       </dl>
     </details>
 
-    <footer>
-      <button type="button" class="reset">Reset view</button>
-      <button type="button" class="pause" hidden>Pause</button>
-    </footer>
   </div>
   </div>
 </aside>
+
+<svg class="orientation-cube" viewBox="-30 -30 60 60" role="toolbar"
+  aria-label="Look along an axis"></svg>
 
 <div class="card notice" part="notice" role="alert" hidden>
   <p></p>

@@ -26,7 +26,8 @@ import {
   type Settings,
   type ShownRange,
 } from './settings/settings';
-import {unfittingParts, wrongParts} from './settings/wrong_parts';
+import {unfittingParts, unknownNames, wrongParts} from './settings/wrong_parts';
+import type {Later} from './later';
 import {StreamControl} from './stream_control';
 
 export class Viewing implements ActionsHost, PanelsHost {
@@ -40,6 +41,8 @@ export class Viewing implements ActionsHost, PanelsHost {
   private readonly actions: Actions;
   /** They are built a task later than the rest. */
   private panels: Panels | null = null;
+  /** Loaded behind the first picture. */
+  private later: Later | null = null;
   /** The sentences about attributes that were shown last. */
   private wrong = '';
   /** The `complete` event has been dispatched. */
@@ -69,6 +72,7 @@ export class Viewing implements ActionsHost, PanelsHost {
       opened: (view) => this.begin(view),
       drawn: () => {
         this.panels?.follow();
+        this.later?.follow();
         this.camera.frame();
       },
       failed: (code, message) => this.failed(code, message),
@@ -79,6 +83,7 @@ export class Viewing implements ActionsHost, PanelsHost {
       opens: (isSame) => {
         this.forget(isSame);
         this.notices.endOf('stream', 'page');
+        this.wrong = ''; // it is said again once the mesh is known
       },
       changed: (state, attempt, delayMs) => this.showState(state, attempt, delayMs),
       failed: (code, message) => this.failed(code, message),
@@ -245,9 +250,17 @@ export class Viewing implements ActionsHost, PanelsHost {
       page.dispatch(mesh.drawn ? 'refine' : 'load', snapshot.statistics);
       mesh.drawn = snapshot.statistics;
       page.element.classList.add('loaded');
+      void this.loadLater();
       this.tellComplete();
     });
     this.panels?.showFigures(snapshot, view.pose.frameMs);
+  }
+
+  /** The next picture tries again if the server is away. */
+  private async loadLater(): Promise<void> {
+    if (this.later) return;
+    const {Later} = await import('./later').catch(() => ({Later: null}));
+    if (Later && this.panels) this.later ??= new Later(this.page, this);
   }
 
   /** Keeps the camera. The mesh comes again from the worker that decodes. */
@@ -283,7 +296,7 @@ export class Viewing implements ActionsHost, PanelsHost {
   private tellWrongParts(): void {
     const {mesh, notices, page} = this;
     const read = page.read.bind(page);
-    const sentences = wrongParts(read);
+    const sentences = [...unknownNames(page.unknown), ...wrongParts(read)];
     if (mesh.manifest) sentences.push(...unfittingParts(read, mesh.manifest));
     const text = sentences.join('\n');
     if (text === this.wrong) return;

@@ -32,6 +32,13 @@ const kWaysOut: Record<string, string> = {
     'it fails at the same chunk, the file itself is damaged: "qtet verify" says where.',
   'out-of-memory': ' It stays at a level that fits. Close other tabs and try again for more.',
 };
+/** The same while there is no mesh. */
+const kWaysOutOfNothing: Record<string, string> = {
+  'bad-checksum':
+    '. Nothing can be shown yet. Try again to fetch it anew; if it fails again, the file itself ' +
+    'is damaged: "qtet verify" says where.',
+  'out-of-memory': ' Close other tabs and try again.',
+};
 
 export type TransportFactory = (
   source: Source,
@@ -337,7 +344,8 @@ export class Session implements TransportHandlers {
     } catch (thrown) {
       const code = errorCode(thrown);
       if (code === 'out-of-memory' && this.stayAtWhatFits()) return;
-      this.failed(new QtetError(code, `${errorText(thrown)}${kWaysOut[code] ?? ''}`));
+      const waysOut = this.requested.statistics.tetrahedra > 0 ? kWaysOut : kWaysOutOfNothing;
+      this.failed(new QtetError(code, `${errorText(thrown)}${waysOut[code] ?? ''}`));
     }
   }
 

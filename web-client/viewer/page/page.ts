@@ -15,6 +15,8 @@ export interface Page extends Attributes {
   readonly root: ShadowRoot;
   /** Empty if the server asks for none. */
   readonly token: string;
+  /** Names in the page's address, which may be no attributes. */
+  readonly unknown: readonly string[];
   /** The attributes that show the same picture again. */
   readonly view: Map<string, string>;
   /** Dispatches an event. */

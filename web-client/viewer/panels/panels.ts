@@ -10,6 +10,7 @@ import type {View} from '../../three/view';
 import type {Actions} from '../page/actions';
 import {CardLayout} from '../page/card_layout';
 import {find} from '../page/find';
+import {bindFolds} from '../page/folds';
 import type {Page} from '../page/page';
 import type {ShownMesh} from '../page/shown_mesh';
 import {shownScalar, type Settings, type ShownRange} from '../settings/settings';
@@ -58,6 +59,7 @@ export class Panels {
   ) {
     const {root} = page;
     const announce = (text: string): void => page.announce(text);
+    bindFolds(root);
     this.progress = new ProgressPanel(root, announce);
     this.legend = new Legend(root);
     this.statistics = new StatisticsPanel(root);

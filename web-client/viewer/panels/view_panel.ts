@@ -1,5 +1,4 @@
-// Standard views, projection, and the buttons for pictures, sharing and help; and the buttons at
-// the panel's foot.
+// Standard views, projection, and the row of actions at the panel's top.
 
 import type {StreamState} from '../../core/session/worker_messages';
 import type {Direction} from '../../three/directions';
@@ -7,6 +6,9 @@ import type {Actions} from '../page/actions';
 import {find, onClick} from '../page/find';
 import type {Page} from '../page/page';
 import type {Settings} from '../settings/settings';
+
+const kPauseIcon = 'M7.5 5v10M12.5 5v10';
+const kContinueIcon = 'M6.5 4.5v11l9-5.5z';
 
 export class ViewPanel {
   private readonly parallel: HTMLInputElement;
@@ -35,6 +37,11 @@ export class ViewPanel {
 
   showState(state: StreamState): void {
     this.pause.hidden = state === 'complete' || state === 'failed';
-    this.pause.textContent = state === 'paused' || state === 'held' ? 'Continue' : 'Pause';
+    const goesOn = state !== 'paused' && state !== 'held';
+    const title = goesOn ? 'Pause' : 'Continue';
+    this.pause.ariaLabel = title;
+    this.pause.title = `${title} (Space)`;
+    this.pause.classList.toggle('primary', !goesOn);
+    find(this.pause, 'path').setAttribute('d', goesOn ? kPauseIcon : kContinueIcon);
   }
 }

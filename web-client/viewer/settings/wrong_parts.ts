@@ -7,16 +7,21 @@ import {isColorMapName, kColorMapNames} from '../../core/picture/color_maps';
 import {parseLimit} from '../../core/protocol/limit';
 import {fieldKeys, type Manifest} from '../../core/protocol/manifest';
 import {kTransportKinds} from '../../core/transport/auto_transport';
-import type {ViewAttribute} from './settings';
+import {hint} from './nearest';
+import {kViewAttributes, type ViewAttribute} from './settings';
 
 type Name = ViewAttribute | 'transport';
 type Read = (name: Name) => string | null;
-/** Whether the text means something, and what may stand there. */
-type Rule = [isRight: (text: string) => boolean, expected: string];
+/** Whether the text means something, what may stand there, and the words among that. */
+type Rule = [isRight: (text: string) => boolean, expected: string, words?: readonly string[]];
+
+/** Parameters that other sites append to links. */
+const kOfOthers = /^utm_|clid$/;
 
 const oneOf = (...words: readonly string[]): Rule => [
   (text) => words.includes(text),
   words.join(', '),
+  words,
 ];
 
 function isRange(text: string): boolean {
@@ -32,10 +37,12 @@ const kRules: Partial<Record<Name, Rule>> = {
       return isColorMapName(map) && reversed === 'reversed' && more.length === 0;
     },
     `${kColorMapNames.join(', ')}, and " reversed" behind it`,
+    kColorMapNames.flatMap((name) => [name, `${name} reversed`]),
   ],
   range: [
     (text) => ['auto', 'full', 'symmetric'].includes(text) || isRange(text),
     'auto, full, symmetric, or two numbers, the smaller first: 0.5,2',
+    ['auto', 'full', 'symmetric'],
   ],
   scale: oneOf('log', 'linear'),
   edges: oneOf('on', 'off'),
@@ -56,28 +63,40 @@ const kRules: Partial<Record<Name, Rule>> = {
 
 /** A sentence for each attribute that cannot be understood. */
 export function wrongParts(read: Read): string[] {
-  return Object.entries(kRules).flatMap(([name, [isRight, expected]]) => {
+  return Object.entries(kRules).flatMap(([name, [isRight, expected, words = []]]) => {
     const text = read(name as Name);
     return text === null || isRight(text)
       ? []
-      : [`${name}="${text}" is not understood. It takes ${expected}.`];
+      : [`${name}="${text}" is not understood.${hint(text, words)} It takes ${expected}.`];
   });
+}
+
+/** A sentence for each of a page's parameters that the viewer does not know. */
+export function unknownNames(names: readonly string[]): string[] {
+  const known = ['src', 'transport', ...kViewAttributes];
+  return names
+    .filter((name) => !known.includes(name) && !kOfOthers.test(name))
+    .map((name) => `The address has "${name}", which means nothing here.${hint(name, known)}`);
 }
 
 /** A sentence for each attribute that does not fit this mesh. */
 export function unfittingParts(read: Read, {fields, levels}: Manifest): string[] {
   const sentences: string[] = [];
-  const has = `It has ${fieldKeys(fields).join(', ') || 'none'}.`;
+  const keys = fieldKeys(fields);
+  const has = `It has ${keys.join(', ') || 'none'}.`;
   const field = read('field');
   if (field !== null && !parseScalar(field, fields))
-    sentences.push(`The mesh has no field "${field}". The first field is shown instead. ${has}`);
+    sentences.push(
+      `The mesh has no field "${field}".${hint(field, keys)} The first field is shown instead. ` +
+        has,
+    );
   for (const layer of fieldLayers()) {
     const text = read(layer.name);
     if (text === null || !layer.isRight(text)) continue;
     const name = layer.fieldOf(text);
     const what = `${layer.name}="${text}" is not shown`;
     if (!parseScalar(name, fields))
-      sentences.push(`${what}: the mesh has no field "${name}". ${has}`);
+      sentences.push(`${what}: the mesh has no field "${name}".${hint(name, keys)} ${has}`);
     else if (!layer.read(text, fields)) sentences.push(`${what}: it takes a field of points.`);
   }
   const quality = read('quality');

@@ -1,0 +1,202 @@
+// The panel and what lies in the picture's corners: found at once, folded, reached by keyboard.
+
+import assert from 'node:assert/strict';
+import {kDesktop, kPhone} from './browser.mjs';
+import {differingShare} from './png.mjs';
+import {PoorLine} from './poor_line.mjs';
+
+async function opened({server, browser}, query, device, before) {
+  const viewer = await browser.open(`${server.url}?${query}`, device, before);
+  await viewer.waitForState('complete');
+  await viewer.waitForPicture();
+  return viewer;
+}
+
+const kActions = ['Reset view', 'Save picture', 'Share', 'Full screen', 'Keys'];
+
+/** Actions are found without scrolling, with a name and a tooltip, also by keyboard. */
+async function showsItsActionsAtOnce(context) {
+  for (const colorScheme of ['light', 'dark']) {
+    const viewer = await opened(context, 'mesh=fin', {...kDesktop, colorScheme, bypassCSP: true});
+    const {page} = viewer;
+    await viewer.screenshot(`panel-${colorScheme}`);
+    const panel = await page.locator('qtet-viewer .panel').boundingBox();
+    for (const name of kActions) {
+      const button = page.getByRole('button', {name, exact: true});
+      const {y, height} = await button.boundingBox();
+      assert.ok(y + height < panel.y + 120, `${name} lies at ${y}, the panel begins at ${panel.y}`);
+      assert.ok((await button.getAttribute('title')).startsWith(name));
+    }
+    assert.deepEqual(await viewer.accessibilityViolations(), []);
+  }
+  const viewer = await opened(context, 'mesh=fin');
+  const {page} = viewer;
+  await page.getByRole('button', {name: 'Controls'}).focus();
+  await page.keyboard.press('Tab');
+  await page.keyboard.press('Tab');
+  const [saved] = await Promise.all([
+    page.waitForEvent('download'),
+    page.keyboard.press('Enter'), // the second of the row
+  ]);
+  assert.equal(saved.suggestedFilename(), 'fin.png');
+}
+
+const openFolds = (viewer) =>
+  viewer.page.evaluate(() =>
+    [...window.qtetViewer.shadowRoot.querySelectorAll('details')]
+      .filter(({open}) => open)
+      .map((its) => its.dataset.fold),
+  );
+
+/** Every section folds, and is as it was left when the page is loaded again. */
+async function remembersItsFolds(context) {
+  const viewer = await opened(context, 'mesh=box');
+  assert.deepEqual(await openFolds(viewer), ['colours', 'surface', 'inside', 'pointer']);
+  for (const section of ['Surface', 'Pointer', 'View'])
+    await viewer.page.locator('qtet-viewer summary', {hasText: section}).click();
+  await viewer.page.reload();
+  await viewer.waitForState('complete');
+  await viewer.waitForPicture();
+  assert.deepEqual(await openFolds(viewer), ['colours', 'inside', 'view']);
+  await viewer.screenshot('panel-folds');
+  const forgetful = await opened(context, 'mesh=box', kDesktop, () =>
+    Object.defineProperty(window, 'localStorage', {
+      get() {
+        throw new Error('forbidden');
+      },
+    }),
+  );
+  await forgetful.page.locator('qtet-viewer summary', {hasText: 'View'}).click();
+  await forgetful.settle();
+  assert.deepEqual(await openFolds(forgetful), ['colours', 'surface', 'inside', 'pointer', 'view']);
+  assert.deepEqual(forgetful.problems, []);
+}
+
+/** The share of the viewer that neither the panel nor the legend covers. */
+const freeShare = (viewer) =>
+  viewer.page.evaluate(() => {
+    const {shadowRoot, clientWidth, clientHeight} = window.qtetViewer;
+    const covered = ['.panel', '.legend'].map((name) => {
+      const {width, height} = shadowRoot.querySelector(name).getBoundingClientRect();
+      return width * height;
+    });
+    return 1 - (covered[0] + covered[1]) / (clientWidth * clientHeight);
+  });
+
+/** In a low window half of the area is the mesh's, with the sheet pulled up as well. */
+async function keepsHalfOfALowWindow(context) {
+  const viewer = await opened(context, 'mesh=fin', {viewport: {width: 640, height: 400}});
+  await viewer.settle();
+  const folded = await freeShare(viewer);
+  await viewer.screenshot('panel-low');
+  await viewer.page.getByRole('button', {name: 'Controls'}).click();
+  await viewer.settle();
+  const pulled = await freeShare(viewer);
+  await viewer.screenshot('panel-low-pulled');
+  assert.ok(folded >= 0.5 && pulled >= 0.5, `free: ${folded} folded, ${pulled} pulled up`);
+  const phone = await opened(context, 'mesh=fin', kPhone);
+  await phone.page.getByRole('button', {name: 'Controls'}).tap();
+  await phone.settle();
+  await phone.screenshot('panel-phone');
+  return `free: ${folded.toFixed(2)} folded, ${pulled.toFixed(2)} pulled up`;
+}
+
+const cameraOf = (viewer) => viewer.page.evaluate(() => window.qtetViewer.cameraState);
+
+/** A face of the cube looks along its axis, by a click and by the keyboard. */
+async function turnsByTheCube(context) {
+  for (const colorScheme of ['light', 'dark']) {
+    const device = {...kDesktop, colorScheme, bypassCSP: true};
+    const viewer = await opened(context, 'mesh=box', device);
+    const {page} = viewer;
+    await page.getByRole('button', {name: 'View from +x'}).waitFor();
+    await viewer.screenshot(`cube-${colorScheme}`);
+    assert.deepEqual(await viewer.accessibilityViolations(), []);
+    const face = await page.getByRole('button', {name: 'View from +z'}).boundingBox();
+    await page.mouse.click(face.x + face.width / 2, face.y + face.height / 2);
+    await viewer.settle();
+    const [x, y, z, ...target] = await cameraOf(viewer);
+    assert.ok(z > 1 && Math.hypot(x, y) < 0.01 * z, `from ${[x, y, z]} to ${target}`);
+    await page.getByRole('button', {name: 'View from +x'}).focus();
+    await page.keyboard.press('ArrowRight');
+    await viewer.screenshot(`cube-focus-${colorScheme}`);
+    await page.keyboard.press('Enter');
+    await viewer.settle();
+    const from = await cameraOf(viewer);
+    assert.ok(from[0] < -1 && Math.hypot(from[1], from[2]) < 0.01 * -from[0], `from ${from}`);
+    assert.deepEqual(viewer.problems, []);
+  }
+}
+
+/** A pointer that rests shows the value below it, and nothing moves. */
+async function showsTheValueAtThePointer(context) {
+  const viewer = await opened(context, 'mesh=fin&field=Density&clip=none');
+  const {page} = viewer;
+  const label = page.locator('qtet-viewer .hover');
+  const hide = () => page.addStyleTag({content: 'qtet-viewer::part(hint) { display: none }'});
+  const before = await viewer.screenshot('hover-before');
+  const camera = await cameraOf(viewer);
+  await page.mouse.move(500, 340);
+  await label.waitFor();
+  assert.match(await label.innerText(), /^Density [\d.]+$/);
+  await viewer.screenshot('hover');
+  assert.equal(await page.locator('qtet-viewer .result').isVisible(), false);
+  await page.mouse.move(40, 600, {steps: 2}); // beside the mesh
+  await viewer.settle();
+  assert.equal(await label.isVisible(), false);
+  await page.mouse.move(500, 340);
+  await label.waitFor();
+  const style = await hide();
+  assert.equal(differingShare(before, await viewer.screenshot('hover-bare')), 0);
+  assert.deepEqual(await cameraOf(viewer), camera);
+  await style.evaluate((its) => its.remove());
+  await page.mouse.down();
+  assert.equal(await label.isVisible(), false);
+  await page.mouse.up();
+  const phone = await opened(context, 'mesh=fin&clip=none', kPhone);
+  await phone.page.touchscreen.tap(195, 350);
+  await phone.settle();
+  assert.equal(await phone.page.locator('qtet-viewer .hover').isVisible(), false);
+  await phone.screenshot('cube-phone');
+}
+
+/** A slip in a link is answered by the word that was probably meant. */
+async function namesTheNearestWord(context) {
+  const viewer = await opened(context, 'mesh=box&colourmap=turbo&utm_source=mail');
+  const alert = viewer.page.getByRole('alert');
+  assert.match(await alert.innerText(), /"colourmap", which .* Did you mean "colormap"\?/);
+  assert.doesNotMatch(await alert.innerText(), /utm/);
+  await viewer.screenshot('panel-slip');
+  const other = await opened(context, 'mesh=fin&field=Presure&colormap=viridsi');
+  const said = await other.page.getByRole('alert').innerText();
+  assert.match(said, /no field "Presure"\. Did you mean "Pressure"\?/);
+  assert.match(said, /Did you mean "viridis"\?/);
+}
+
+/** Nothing "stays on the screen" if the damage came before the first picture. */
+async function promisesNothingOfADamagedHead({server, browser}) {
+  const notes = [];
+  for (const damageAt of [400, 1200, 4000]) {
+    const line = await PoorLine.open(server.port, {streamsOnly: true, damageAt});
+    try {
+      const viewer = await browser.open(`${line.url}?mesh=fin`);
+      await viewer.waitForState('failed');
+      const said = await viewer.page.getByRole('alert').innerText();
+      assert.doesNotMatch(said, /stays/, `byte ${damageAt}`);
+      notes.push(`byte ${damageAt}: ${said.split('\n')[0]}`);
+    } finally {
+      line.close();
+    }
+  }
+  return notes.join('; ');
+}
+
+export const panelChecks = {
+  showsItsActionsAtOnce,
+  remembersItsFolds,
+  keepsHalfOfALowWindow,
+  turnsByTheCube,
+  showsTheValueAtThePointer,
+  namesTheNearestWord,
+  promisesNothingOfADamagedHead,
+};

@@ -1,0 +1,92 @@
+// The value under a pointer that rests. It is a label at the pointer; nothing else moves.
+
+import type {Pick} from '../../core/session/inspector';
+import {kMagnitude, type Scalar} from '../../core/picture/field_scale';
+import type {FieldInfo} from '../../core/protocol/manifest';
+import type {View} from '../../three/view';
+import {find} from '../page/find';
+import {formatTo, resolutionOf} from '../page/format';
+import {scalarTitle} from './panel';
+
+/** So long the pointer has to rest. */
+const kRestMs = 150;
+/** Pixels between the pointer and the label. */
+const kAway = 14;
+
+export interface HoverHost {
+  readonly view: View | null;
+  pick(x: number, y: number): Promise<Pick | null>;
+  /** The coloured quantity and all fields; null if nothing is coloured. */
+  readonly shown: {scalar: Scalar; fields: readonly FieldInfo[]} | null;
+}
+
+/** "Velocity, x 1.25", or "No value"; null if the field is not here. */
+export function hoverText(
+  {fields: values}: Pick,
+  scalar: Scalar,
+  fields: readonly FieldInfo[],
+): string | null {
+  const found = values.find(({field}) => field === scalar.field)?.values;
+  if (!found) return null;
+  const {component} = scalar;
+  const isVector = found.length > 1;
+  const value = !isVector
+    ? found[0]!
+    : component === kMagnitude
+      ? Math.hypot(...found)
+      : found[component]!;
+  const text = Number.isNaN(value)
+    ? 'no value'
+    : formatTo(value, resolutionOf(fields[scalar.field]!));
+  return `${scalarTitle(scalar, fields)} ${text}`;
+}
+
+export class Hover {
+  private readonly label: HTMLElement;
+  private timer: ReturnType<typeof setTimeout> | undefined;
+  /** Counts the rests: a late answer belongs to none. */
+  private rest = 0;
+
+  constructor(
+    root: ShadowRoot,
+    private readonly host: HoverHost,
+  ) {
+    this.label = find(root, '.hover');
+    root.addEventListener('pointermove', (event) => this.move(event as PointerEvent));
+    for (const type of ['pointerdown', 'wheel', 'keydown', 'pointerout'])
+      root.addEventListener(type, () => this.hide(), {passive: true});
+  }
+
+  /** Must also be called when the picture moves. */
+  hide(): void {
+    clearTimeout(this.timer);
+    ++this.rest;
+    this.label.hidden = true;
+  }
+
+  private move(event: PointerEvent): void {
+    this.hide();
+    const onPicture = (event.target as Element).matches('.scene');
+    if (!onPicture || event.pointerType === 'touch' || event.buttons !== 0) return;
+    const {offsetX, offsetY} = event;
+    this.timer = setTimeout(() => void this.show(offsetX, offsetY), kRestMs);
+  }
+
+  private async show(x: number, y: number): Promise<void> {
+    const {rest} = this;
+    const {shown, view} = this.host;
+    if (!shown || !view) return;
+    const pick = await this.host.pick(x, y);
+    const text = pick && hoverText(pick, shown.scalar, shown.fields);
+    if (!text || rest !== this.rest) return;
+    const {label} = this;
+    label.textContent = text;
+    label.hidden = false;
+    const {clientWidth, clientHeight} = view.canvas;
+    const {offsetWidth, offsetHeight} = label;
+    const left = x + kAway + offsetWidth < clientWidth ? x + kAway : x - kAway - offsetWidth;
+    const top = y + kAway + offsetHeight < clientHeight ? y + kAway : y - kAway - offsetHeight;
+    label.style.left = `${Math.max(0, left)}px`;
+    label.style.top = `${Math.max(0, top)}px`;
+  }
+}

@@ -1,0 +1,156 @@
+// The cube in the corner, which turns with the camera. A face looks along its axis: by a click, or
+// by the keyboard, where arrows go from face to face.
+
+import type {Vector} from '../../core/protocol/geometry';
+import {kDirections, type Direction} from '../../three/directions';
+
+/** Half of an edge. The corners stay inside the picture's 30. */
+const kHalf = 16;
+/** A face that is seen more obliquely than this has no room for its name. */
+const kMinNear = 0.2;
+/** Sideways and upwards on each face as its own view shows it. */
+const kSides: Record<Direction, [Vector, Vector]> = {
+  '+x': [
+    [0, 1, 0],
+    [0, 0, 1],
+  ],
+  '-x': [
+    [0, -1, 0],
+    [0, 0, 1],
+  ],
+  '+y': [
+    [-1, 0, 0],
+    [0, 0, 1],
+  ],
+  '-y': [
+    [1, 0, 0],
+    [0, 0, 1],
+  ],
+  '+z': [
+    [1, 0, 0],
+    [0, 1, 0],
+  ],
+  '-z': [
+    [1, 0, 0],
+    [0, -1, 0],
+  ],
+};
+
+export interface Rotation {
+  x: number;
+  y: number;
+  z: number;
+  w: number;
+}
+
+export interface FacePlace {
+  direction: Direction;
+  /** For the SVG `transform`: the face as seen from its front becomes the face on the screen. */
+  matrix: [number, number, number, number, number, number];
+  /** The cosine between the face's normal and the line of sight; above 0 it is seen. */
+  near: number;
+}
+
+/** The places of all faces; `rotation` is the camera's. */
+export function facePlaces({x, y, z, w}: Rotation): FacePlace[] {
+  // The rows of the inverse rotation: the directions of the world's axes on the screen, and towards
+  // the eye.
+  const right: Vector = [1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)];
+  const up: Vector = [2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)];
+  const near: Vector = [2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)];
+  const dot = (a: Vector, b: Vector): number => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  return kDirections.map((direction) => {
+    const [side, above] = kSides[direction];
+    const normal = [0, 0, 0] as Vector;
+    normal['xyz'.indexOf(direction[1]!)] = direction[0] === '+' ? 1 : -1;
+    return {
+      direction,
+      matrix: [
+        dot(side, right),
+        -dot(side, up),
+        -dot(above, right),
+        dot(above, up),
+        kHalf * dot(normal, right),
+        -kHalf * dot(normal, up),
+      ],
+      near: dot(normal, near),
+    };
+  });
+}
+
+export class OrientationCube {
+  /** Names the face that has the focus, which may lie at the back. */
+  private readonly caption: SVGTextElement;
+  private readonly faces = new Map<Direction, SVGGElement>();
+
+  constructor(
+    private readonly svg: SVGSVGElement,
+    look: (direction: Direction) => void,
+  ) {
+    for (const direction of kDirections) {
+      const face = faceOf(svg, direction);
+      face.addEventListener('click', () => look(direction));
+      face.addEventListener('focus', () => {
+        this.caption.textContent = face.querySelector('text')!.textContent;
+      });
+      face.addEventListener('keydown', (event) => this.press(event, direction, look));
+      this.faces.set(direction, face);
+    }
+    this.rove('+x');
+    this.caption = document.createElementNS(svg.namespaceURI, 'text') as SVGTextElement;
+    this.caption.setAttribute('y', '24');
+    this.caption.classList.add('caption');
+    svg.replaceChildren(...this.faces.values(), this.caption);
+  }
+
+  turn(rotation: Rotation): void {
+    const focused = (this.svg.getRootNode() as ShadowRoot).activeElement;
+    const places = facePlaces(rotation);
+    for (const {direction, matrix, near} of places) {
+      const face = this.faces.get(direction)!;
+      face.setAttribute('transform', `matrix(${matrix.map((x) => x.toFixed(3)).join(' ')})`);
+      face.classList.toggle('back', near <= 0.01);
+      face.classList.toggle('flat', near < kMinNear);
+    }
+    // A child that moves loses the focus: only the others move.
+    if (!focused || !this.svg.contains(focused))
+      this.svg.append(
+        ...places.sort((a, b) => a.near - b.near).map(({direction}) => this.faces.get(direction)!),
+      );
+  }
+
+  private press(event: KeyboardEvent, at: Direction, look: (direction: Direction) => void): void {
+    const step = {ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1}[event.key];
+    if (step !== undefined) {
+      const count = kDirections.length;
+      const next = kDirections[(kDirections.indexOf(at) + step + count) % count]!;
+      this.rove(next);
+      this.faces.get(next)!.focus();
+    } else if (event.key === 'Enter' || event.key === ' ') look(at);
+    else return;
+    event.preventDefault();
+  }
+
+  /** The cube is one stop of the Tab key. */
+  private rove(to: Direction): void {
+    for (const [direction, face] of this.faces)
+      face.setAttribute('tabindex', direction === to ? '0' : '-1');
+  }
+}
+
+function faceOf(svg: SVGSVGElement, direction: Direction): SVGGElement {
+  const make = (name: string): SVGElement =>
+    document.createElementNS(svg.namespaceURI, name) as SVGElement;
+  const face = make('g') as SVGGElement;
+  face.setAttribute('role', 'button');
+  face.setAttribute('aria-label', `View from ${direction}`);
+  const side = make('rect');
+  for (const name of ['x', 'y']) side.setAttribute(name, String(-kHalf));
+  for (const name of ['width', 'height']) side.setAttribute(name, String(2 * kHalf));
+  const text = make('text');
+  text.textContent = direction.replace('-', '\u2212');
+  const title = make('title');
+  title.textContent = `View from ${direction}`;
+  face.append(title, side, text);
+  return face;
+}
