@@ -126,7 +126,9 @@ struct Server::State {
   Uploads uploads;
   Router router;
   Connections connections{options.maxConnections};
-  Handshakes handshakes{options.maxHandshakes, options.timeouts.handshake};
+  Handshakes handshakes{{.most = options.maxHandshakes,
+                         .ofAddress = options.maxHandshakesPerAddress,
+                         .patience = options.timeouts.handshake}};
   AddressLimits addresses{{.connections = options.maxConnectionsPerAddress,
                            .requestsPerSecond = options.maxRequestsPerSecond,
                            .owed = options.maxOwedTime}};

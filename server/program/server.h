@@ -33,6 +33,7 @@ struct ServerOptions {
   /// For one address, being made or waiting; 0: no bound.
   std::size_t maxLevelsPerAddress = limits::kMaxLevelJobsPerAddress;
   std::size_t maxHandshakes = limits::kMaxHandshakes;
+  std::size_t maxHandshakesPerAddress = limits::kMaxHandshakesPerAddress;
   Timeouts timeouts{};
   std::optional<std::string> adminHost{};  ///< operators' paths are answered here and nowhere else
   std::uint16_t adminPort = 0;

@@ -94,8 +94,8 @@ asio::awaitable<std::expected<void, std::optional<Reply>>> HttpInput::readHead(P
   parser.body_limit(std::numeric_limits<std::uint64_t>::max());
   error_code ec;
   parser.put(asio::buffer(buffered().data(), gate.headBytes()), ec);
-  buffer_.consume(gate.headBytes());
   if (ec || !parser.is_header_done()) co_return std::unexpected(answerToParseError(ec));
+  buffer_.consume(gate.headBytes());
   co_return std::expected<void, std::optional<Reply>>();
 }
 
@@ -117,9 +117,10 @@ asio::awaitable<std::size_t> HttpInput::readBody(std::span<std::uint8_t> into) {
 asio::awaitable<void> HttpInput::drain() {
   const Deadline deadline(peer_.socket, limits::kLingerTime);
   error_code ec;
-  for (std::size_t read = 0; !ec && read < limits::kLingerBytes && !deadline.passed();) {
+  std::size_t read = buffer_.size();
+  while (!ec && read < limits::kLingerBytes && !deadline.passed()) {
     buffer_.clear();
-    readSome(ec, kReadBytes);
+    readSome(ec, limits::kLingerBytes - read);
     read += buffer_.size();
     if (ec == asio::error::would_block) ec = co_await peer_.socket.waitToRead();
   }

@@ -37,7 +37,7 @@ class HttpInput {
   /// Waits for the first byte of a request.
   boost::asio::awaitable<Begun> waitForRequest();
   /// Has the whole head parsed. Else what is answered, and the connection ends; nullopt: the client
-  /// has gone.
+  /// has gone. Such a head stays buffered(), as far as it came.
   boost::asio::awaitable<std::expected<void, std::optional<Reply>>> readHead(Parser& parser);
   /// Fills `into` with what follows the head. Bytes read; fewer: they did not come, or not in time.
   boost::asio::awaitable<std::size_t> readBody(std::span<std::uint8_t> into);
@@ -46,7 +46,7 @@ class HttpInput {
   /// Reads and discards the client's further bytes, within bounds. Closing with unread bytes would
   /// reset the connection, and the answer might be lost on its way.
   boost::asio::awaitable<void> drain();
-  /// The bytes that were read beyond the head.
+  /// The bytes that were read and not taken: those beyond the last head.
   [[nodiscard]] std::string_view buffered() const {
     return {static_cast<const char*>(buffer_.data().data()), buffer_.size()};
   }

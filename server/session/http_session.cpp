@@ -124,8 +124,9 @@ asio::awaitable<bool> HttpSession::shakeHands() {
       co_await giveWay();
       done = !peer_.client->overdrawn() && !deadline.passed() && !peer_.connection->ending();
     }
-    Handshakes::Client handshake(*services_.handshakes, peer_.socket.get_executor(),
-                                 [this] { peer_.socket.cancel(); });
+    Handshakes::Client handshake(
+        *services_.handshakes, peer_.socket.get_executor(), [this] { peer_.socket.cancel(); },
+        peer_.address());
     if (done) done = co_await waitForPlace(handshake, deadline);
     if (done) done = co_await peer_.socket.shakeHands(peer_.client.get());
     if (done) co_return true;
@@ -167,7 +168,8 @@ asio::awaitable<bool> HttpSession::serveRequest(bool pipelined) {
   report_.begin();
   Parser parser;
   auto head = co_await input_.readHead(parser);
-  headOnly_ = parser.get().method() == http::verb::head;
+  headOnly_ =
+      head ? parser.get().method() == http::verb::head : input_.buffered().starts_with("HEAD ");
   if (!head) {
     if (head.error()) co_await refuse(std::move(*head.error()));
     co_return false;

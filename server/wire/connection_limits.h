@@ -47,6 +47,9 @@ inline constexpr auto kAcceptWarningInterval = 10s;
 /// Handshakes under way, from the server's answer to the hello until the client's last message: 43
 /// KB each (measured), 22 MB in all. Later clients wait in line, which takes only the connection.
 inline constexpr std::size_t kMaxHandshakes = 512;
+/// Those of one address, with its connections in line: in a round trip of 100 ms they open 640
+/// connections a second. Seven addresses that stall leave places to others.
+inline constexpr std::size_t kMaxHandshakesPerAddress = 64;
 /// How long a handshake keeps its place when others want it: a round trip of a poor line with a
 /// packet lost and sent again.
 inline constexpr auto kHandshakePatience = 3s;

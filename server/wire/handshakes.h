@@ -10,50 +10,72 @@
 #include <cstdint>
 #include <functional>
 #include <list>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
+
+#include "server/wire/connection_limits.h"
 
 namespace qtet {
 
 /// A queue for a bounded number of places, first come, first served. If no place is free, a client
 /// that has kept one for longer than `patience` loses it to the first in line. So clients that
-/// begin and do not go on cannot block others for longer. Thread-safe; must outlive its clients.
+/// begin and do not go on cannot block others for longer. An address has a bounded number of
+/// clients with a place or in line; its further ones stand aside, and block nobody else.
+/// Thread-safe; must outlive its clients.
 class Handshakes {
  public:
   using Clock = std::chrono::steady_clock;
-  Handshakes(std::size_t most, Clock::duration patience) : most_(most), patience_(patience) {}
+  struct Bounds {
+    std::size_t most = limits::kMaxHandshakes;
+    std::size_t ofAddress = limits::kMaxHandshakesPerAddress;
+    Clock::duration patience = limits::kHandshakePatience;
+  };
+  explicit Handshakes(const Bounds& bounds) : bounds_(bounds) {}
 
   struct Counts {
-    std::size_t open = 0, waiting = 0;
-    std::uint64_t displaced = 0;  ///< since the start
+    std::size_t open = 0, waiting = 0;  ///< waiting: also aside
+    std::uint64_t displaced = 0;        ///< since the start
   };
   [[nodiscard]] Counts counts() const;
 
   class Client;
 
  private:
-  enum class State : std::uint8_t { kNew, kWaits, kHolds, kDisplaced };
+  enum class State : std::uint8_t { kNew, kAside, kWaits, kHolds, kDisplaced };
   struct Entry;
   using EntryPointer = std::shared_ptr<Entry>;
   using Line = std::list<EntryPointer>;
   struct Entry {
     boost::asio::any_io_executor executor;
     std::function<void()> wake;  // of the executor
+    const void* address;         // nullptr: no bound
     std::atomic<State> state = State::kNew;
     Clock::time_point since{};  // it holds a place
-    Line::iterator at{};        // in `waiting_`, then in `open_`
+    Line::iterator at{};        // in its address's `aside`, in `waiting_`, then in `open_`
+  };
+  struct Address {
+    std::size_t admitted = 0;  // of its clients are in `waiting_` or `open_`
+    Line aside;                // empty unless that is as many as may be
   };
 
   std::optional<Clock::time_point> enter(const EntryPointer& entry);
   void leave(const EntryPointer& entry);
+  void admit(const EntryPointer& entry);
+  /// nullopt: it is admitted. Else when to try again.
+  std::optional<Clock::time_point> waitAside(const EntryPointer& entry, Clock::time_point now);
+  void displace(const EntryPointer& entry);
+  /// After a client of it has left `waiting_` or `open_`.
+  void admitNextOf(const void* address);
   void wakeFirst();
   static void wake(const EntryPointer& entry);
 
-  const std::size_t most_;
-  const Clock::duration patience_;
+  const Bounds bounds_;
   mutable std::mutex mutex_;
   Line open_, waiting_;  // the oldest first
+  std::map<const void*, Address> addresses_;
+  std::size_t aside_ = 0;
   std::uint64_t displaced_ = 0;
 };
 
@@ -61,8 +83,10 @@ class Handshakes {
 /// connection's executor alone.
 class Handshakes::Client {
  public:
-  /// `wake` runs when it is worth while to enter() again, and when the place is lost.
-  Client(Handshakes& handshakes, boost::asio::any_io_executor executor, std::function<void()> wake);
+  /// `wake` runs when it is worth while to enter() again, and when the place is lost. `address` is
+  /// the same for all clients of one address; nullptr: it has no bound.
+  Client(Handshakes& handshakes, boost::asio::any_io_executor executor, std::function<void()> wake,
+         const void* address = nullptr);
   ~Client();
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;

@@ -31,8 +31,8 @@ inline constexpr auto kWriteTime = 30s;
 /// second figure is the most at once before other connections have their turn.
 inline constexpr std::size_t kMinFromFile = 16u << 10;
 inline constexpr std::size_t kMaxFromFile = 1u << 20;
-/// After a refusal that closes, how long and how much is still read, so that the answer is not lost
-/// to a reset.
+/// For how long, and how many bytes behind the head, are read on after a refusal that closes. So
+/// no reset overtakes the answer.
 inline constexpr auto kLingerTime = 1s;
 inline constexpr std::size_t kLingerBytes = 1u << 20;
 

@@ -25,14 +25,15 @@ constexpr const char* kCiphers = "ECDHE+AESGCM:ECDHE+CHACHA20";
 /// As ALPN writes it: its length, then the name.
 constexpr std::string_view kHttp11 = "\x08http/1.1";
 
-/// Chooses HTTP/1.1 if the client offers it, else nothing; HTTP/1.1 is spoken in any case.
+/// Chooses HTTP/1.1. A client that offers others alone is refused by the alert
+/// no_application_protocol (RFC 7301, 3.2). One without ALPN does not come here, and is served.
 int chooseProtocol(SSL*, const unsigned char** out, unsigned char* outBytes,
                    const unsigned char* offered, unsigned offeredBytes, void*) {
   unsigned char* chosen = nullptr;
   const auto* ours = reinterpret_cast<const unsigned char*>(kHttp11.data());
   if (::SSL_select_next_proto(&chosen, outBytes, ours, kHttp11.size(), offered, offeredBytes) !=
       OPENSSL_NPN_NEGOTIATED)
-    return SSL_TLSEXT_ERR_NOACK;
+    return SSL_TLSEXT_ERR_ALERT_FATAL;
   *out = chosen;
   return SSL_TLSEXT_ERR_OK;
 }

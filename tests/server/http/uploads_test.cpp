@@ -17,6 +17,7 @@
 #include "codec/log/decoding_memory.h"
 #include "proto/checksum.h"
 #include "server/http/upload_limits.h"
+#include "server/wire/http_limits.h"
 #include "tests/server/http/held_check.h"
 #include "tests/server/program/loopback.h"
 #include "tests/server/program/served_folder.h"
@@ -311,6 +312,34 @@ TEST_F(UploadTest, theBodyOfARefusedRequestIsNeverTakenForTheNextOne) {
     EXPECT_EQ(refused.header("connection"), "close") << target;
     EXPECT_TRUE(client.closedByServer()) << target;
   }
+}
+
+TEST_F(UploadTest, aRefusedBodyIsReadUpToABoundSoThatNoResetOvertakesTheAnswer) {
+  for (const int more : {-1, 0, 1}) {
+    RawClient client(server_.port());
+    ASSERT_TRUE(client.send(head("PUT", "/v1/meshes/a%20b", std::size_t{1} << 30) +
+                            std::string(limits::kLingerBytes + more, 'x')))
+        << more;
+    if (more < 0) client.finishSending();
+    EXPECT_EQ(client.receive().status, 403u) << more;
+    EXPECT_TRUE(client.closedByServer()) << more;
+    EXPECT_TRUE(server_.comesTo("connections_open", 1)) << more;
+    if (more > 0)
+      EXPECT_TRUE(test::eventually([&] { return client.wasReset(); }));
+    else
+      EXPECT_FALSE(client.wasReset()) << more;
+  }
+}
+
+TEST_F(UploadTest, aRefusedBodyIsWaitedForASecond) {
+  RawClient client(server_.port());
+  client.send(head("PUT", "/v1/meshes/a%20b", 5));
+  EXPECT_EQ(client.receive().status, 403u);
+  const auto begun = std::chrono::steady_clock::now();
+  EXPECT_TRUE(client.closedByServer()) << "its half";
+  EXPECT_TRUE(server_.comesTo("connections_open", 1));
+  EXPECT_GT(std::chrono::steady_clock::now() - begun,
+            std::chrono::milliseconds(limits::kLingerTime) / 2);
 }
 
 TEST_F(UploadTest, aMeshIsRemovedAndItsDigestWithIt) {

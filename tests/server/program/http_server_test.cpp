@@ -513,6 +513,32 @@ TEST(ServerLimits, everyRefusalOfAHeadIsItsHeadersAlone) {
   }
 }
 
+TEST(ServerLimits, aHeadRefusedBeforeItIsWholeIsAnsweredByHeadersAlone) {
+  const test::ServedFolder folder;
+  const test::RunningServer patient(folder.store(), folder.viewer(), {});
+  const test::RunningServer hasty(folder.store(), folder.viewer(),
+                                  {.timeouts = {.header = test::kShort}});
+  const std::string begin = "HEAD /livez HTTP/1.1\r\nHost: a\r\n";
+  std::string lines = begin;
+  for (std::size_t i = 0; i <= limits::kMaxHeaderLines; ++i) lines += "A: b\r\n";
+  for (const auto& [bytes, status] : std::vector<std::pair<std::string, unsigned>>{
+           {"HEAD /livez HTTP/2.0\r\nHost: a\r\n\r\n", 505},
+           {begin + "A: " + std::string(limits::kMaxHeaderBytes, 'b') + "\r\n\r\n", 431},
+           {lines + "\r\n", 431},
+           {begin + "A: b\nC: d\r\n\r\n", 400},
+           {begin + "no colon\r\n\r\n", 400},
+           {begin, 408}}) {
+    RawClient client(status == 408 ? hasty.port() : patient.port());
+    client.send(bytes);
+    const std::string answer = client.readToEnd();
+    EXPECT_TRUE(answer.starts_with("HTTP/1.1 " + std::to_string(status))) << answer;
+    EXPECT_EQ(answer.find("\r\n\r\n"), answer.size() - 4) << status << answer;
+  }
+  RawClient other(patient.port());
+  other.send("HEADS /livez HTTP/2.0\r\nHost: a\r\n\r\n");
+  EXPECT_NE(other.receive().body, "") << "another method";
+}
+
 TEST(ServerLimits, oneAddressMayAskSoOften) {
   const test::ServedFolder folder;
   test::RunningServer server(folder.store(), folder.viewer(), {.maxRequestsPerSecond = 5});

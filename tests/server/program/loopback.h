@@ -75,7 +75,8 @@ HttpResponse readResponse(std::string& buffer, const std::function<bool()>& fill
 /// A TCP connection with a time-out of kPatience on every read.
 class RawClient {
  public:
-  explicit RawClient(std::uint16_t port);
+  /// `from`: one of the machine's own addresses, 127.0.0.0/8.
+  explicit RawClient(std::uint16_t port, const char* from = "127.0.0.1");
   ~RawClient();
   RawClient(const RawClient&) = delete;
   RawClient& operator=(const RawClient&) = delete;
@@ -96,6 +97,8 @@ class RawClient {
   bool answerBegins();
   /// Whether something has come already, the end included.
   [[nodiscard]] bool hasAnswer() const;
+  /// Whether the server has reset the connection, so that bytes on their way to us may be lost.
+  [[nodiscard]] bool wasReset() const;
   /// Ends the client's half.
   void finishSending();
 

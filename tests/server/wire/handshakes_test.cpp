@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <boost/asio/io_context.hpp>
+#include <memory>
+#include <vector>
 
 namespace qtet {
 namespace {
@@ -13,14 +16,14 @@ using namespace std::chrono_literals;
 class HandshakesTest : public testing::Test {
  protected:
   struct Client {
-    Client(HandshakesTest& test, Handshakes& handshakes)
-        : handshake(handshakes, test.context_.get_executor(), [this] { ++woken; }) {}
+    Client(HandshakesTest& test, Handshakes& handshakes, const void* address)
+        : handshake(handshakes, test.context_.get_executor(), [this] { ++woken; }, address) {}
     [[nodiscard]] bool enters() { return !handshake.enter(); }
     int woken = 0;
     Handshakes::Client handshake;
   };
-  std::unique_ptr<Client> client(Handshakes& handshakes) {
-    return std::make_unique<Client>(*this, handshakes);
+  std::unique_ptr<Client> client(Handshakes& handshakes, const void* address = nullptr) {
+    return std::make_unique<Client>(*this, handshakes, address);
   }
   void settle() {
     context_.restart();
@@ -30,7 +33,7 @@ class HandshakesTest : public testing::Test {
 };
 
 TEST_F(HandshakesTest, thereAreSoManyPlacesAndALineInOrderOfComing) {
-  Handshakes handshakes(2, 1h);
+  Handshakes handshakes({.most = 2, .patience = 1h});
   auto a = client(handshakes), b = client(handshakes), c = client(handshakes),
        d = client(handshakes);
   EXPECT_TRUE(a->enters());
@@ -54,7 +57,7 @@ TEST_F(HandshakesTest, thereAreSoManyPlacesAndALineInOrderOfComing) {
 }
 
 TEST_F(HandshakesTest, whoLeavesTheLineMakesRoomForWhoeverIsBehind) {
-  Handshakes handshakes(1, 1h);
+  Handshakes handshakes({.most = 1, .patience = 1h});
   auto a = client(handshakes), b = client(handshakes), c = client(handshakes);
   EXPECT_TRUE(a->enters());
   EXPECT_FALSE(b->enters());
@@ -70,7 +73,7 @@ TEST_F(HandshakesTest, whoLeavesTheLineMakesRoomForWhoeverIsBehind) {
 }
 
 TEST_F(HandshakesTest, thePlaceOfTheSlowestGoesToTheFirstInLine) {
-  Handshakes handshakes(2, 0h);
+  Handshakes handshakes({.most = 2, .patience = 0h});
   auto a = client(handshakes), b = client(handshakes), c = client(handshakes);
   EXPECT_TRUE(a->enters());
   EXPECT_TRUE(b->enters());
@@ -86,8 +89,60 @@ TEST_F(HandshakesTest, thePlaceOfTheSlowestGoesToTheFirstInLine) {
   EXPECT_EQ(handshakes.counts().open, 2u) << "what it leaves it had lost already";
 }
 
+TEST_F(HandshakesTest, whoStallsFromSixAddressesLeavesPlacesToOthers) {
+  Handshakes handshakes({.patience = 1h});
+  const std::array<int, 6> addresses{};
+  std::vector<std::unique_ptr<Client>> silent;
+  for (const int& address : addresses)
+    for (std::size_t i = 0; i < 200; ++i) {
+      silent.push_back(client(handshakes, &address));
+      EXPECT_EQ(silent.back()->enters(), i < limits::kMaxHandshakesPerAddress) << i;
+    }
+  EXPECT_EQ(handshakes.counts().open, 6 * limits::kMaxHandshakesPerAddress);
+  EXPECT_EQ(handshakes.counts().waiting, 1200 - 6 * limits::kMaxHandshakesPerAddress);
+  EXPECT_TRUE(client(handshakes, &handshakes)->enters());
+  EXPECT_TRUE(client(handshakes)->enters()) << "without an address";
+  settle();
+  silent.clear();
+  EXPECT_EQ(handshakes.counts().open + handshakes.counts().waiting, 0u);
+}
+
+TEST_F(HandshakesTest, whoStandsAsideFollowsInOrderWhenOneOfItsAddressLeaves) {
+  Handshakes handshakes({.most = 2, .ofAddress = 1, .patience = 1h});
+  const int here = 0, there = 0;
+  auto a = client(handshakes, &here), b = client(handshakes, &here), c = client(handshakes, &here),
+       other = client(handshakes, &there);
+  EXPECT_TRUE(a->enters());
+  EXPECT_FALSE(b->enters());
+  EXPECT_EQ(c->handshake.enter(), Handshakes::Clock::time_point::max());
+  EXPECT_TRUE(other->enters());
+  b.reset();
+  settle();
+  EXPECT_EQ(c->woken, 1) << "as the first aside";
+  EXPECT_FALSE(c->enters());
+  a.reset();
+  settle();
+  EXPECT_GT(c->woken, 1);
+  EXPECT_TRUE(c->enters());
+}
+
+TEST_F(HandshakesTest, whoStandsAsideTakesThePlaceOfTheSlowestOfItsOwnAddress) {
+  Handshakes handshakes({.most = 9, .ofAddress = 1, .patience = 0h});
+  const int here = 0, there = 0;
+  auto other = client(handshakes, &there), a = client(handshakes, &here),
+       b = client(handshakes, &here);
+  EXPECT_TRUE(other->enters());
+  EXPECT_TRUE(a->enters());
+  EXPECT_TRUE(b->enters());
+  settle();
+  EXPECT_EQ(a->woken, 1);
+  EXPECT_EQ(other->woken, 0);
+  EXPECT_EQ(handshakes.counts().open, 2u);
+  EXPECT_EQ(handshakes.counts().displaced, 1u);
+}
+
 TEST_F(HandshakesTest, aCallThatComesTooLateIsNotHeard) {
-  Handshakes handshakes(1, 1h);
+  Handshakes handshakes({.most = 1, .patience = 1h});
   auto a = client(handshakes), b = client(handshakes);
   EXPECT_TRUE(a->enters());
   EXPECT_FALSE(b->enters());

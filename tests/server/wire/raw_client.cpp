@@ -70,9 +70,13 @@ HttpResponse readResponse(std::string& buffer, const std::function<bool()>& fill
   return out;
 }
 
-RawClient::RawClient(std::uint16_t port) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
+RawClient::RawClient(std::uint16_t port, const char* from)
+    : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
   sockaddr_in address{};
   address.sin_family = AF_INET;
+  ::inet_pton(AF_INET, from, &address.sin_addr);
+  if (::bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0)
+    throw std::runtime_error("this is no address of this machine");
   address.sin_port = htons(port);
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   const int on = 1;
@@ -135,6 +139,12 @@ bool RawClient::answerBegins() { return !buffer_.empty() || fill(); }
 bool RawClient::hasAnswer() const {
   char byte = 0;
   return !buffer_.empty() || ::recv(socket_, &byte, 1, MSG_PEEK | MSG_DONTWAIT) >= 0;
+}
+
+bool RawClient::wasReset() const {
+  int trouble = 0;
+  socklen_t bytes = sizeof(trouble);
+  return ::getsockopt(socket_, SOL_SOCKET, SO_ERROR, &trouble, &bytes) == 0 && trouble != 0;
 }
 
 void RawClient::finishSending() { ::shutdown(socket_, SHUT_WR); }

@@ -2,6 +2,7 @@
 
 #include "tests/server/wire/tls_client.h"
 
+#include <openssl/err.h>
 #include <openssl/pem.h>
 #include <openssl/ssl.h>
 #include <sys/socket.h>
@@ -94,6 +95,8 @@ TlsClient::TlsClient(std::uint16_t port, const std::filesystem::path& certificat
                sizeof(patience));
   if (!ec) stream.handshake(ssl::stream_base::client, ec);
   connected_ = !ec;
+  if (ec.category() == asio::error::get_ssl_category())
+    refusal_ = ERR_GET_REASON(static_cast<unsigned long>(ec.value()));
 }
 
 TlsClient::~TlsClient() = default;

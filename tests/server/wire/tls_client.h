@@ -40,6 +40,8 @@ class TlsClient {
   TlsClient& operator=(const TlsClient&) = delete;
 
   [[nodiscard]] bool connected() const { return connected_; }
+  /// OpenSSL's reason (SSL_R_...) why it is not; 0: another one.
+  [[nodiscard]] int refusal() const { return refusal_; }
   [[nodiscard]] std::string version() const;
   [[nodiscard]] std::string alpn() const;
   bool send(std::string_view bytes);
@@ -63,6 +65,7 @@ class TlsClient {
   struct Line;
   std::unique_ptr<Line> line_;
   bool connected_ = false;
+  int refusal_ = 0;
   std::string buffer_;  // what came and was not asked for yet
 };
 

@@ -1,6 +1,7 @@
 // HTTP and WebSocket over TLS in the server's own process.
 #include <gtest/gtest.h>
 #include <openssl/ssl.h>
+#include <openssl/sslerr.h>
 
 #include <atomic>
 #include <csignal>
@@ -87,6 +88,19 @@ TEST_F(TlsTest, oldVersionsAreRefused) {
   EXPECT_TRUE(
       TlsClient(port(), file("a.crt"), {.least = TLS1_VERSION, .most = TLS1_2_VERSION}).connected())
       << "the same client, but for the version";
+}
+
+TEST_F(TlsTest, whoOffersOtherProtocolsAloneIsToldSoByTheAlert) {
+  for (const int version : {TLS1_2_VERSION, TLS1_3_VERSION})
+    for (const std::string alpn : {"\x02h2", "\x02h2\x08http/1.0"}) {
+      const TlsClient client(port(), file("a.crt"),
+                             {.least = version, .most = version, .alpn = alpn});
+      EXPECT_FALSE(client.connected()) << alpn;
+      EXPECT_EQ(client.refusal(), SSL_R_TLSV1_ALERT_NO_APPLICATION_PROTOCOL) << alpn;
+    }
+  TlsClient without(port(), file("a.crt"));
+  EXPECT_EQ(without.alpn(), "");
+  EXPECT_NE(without.get("/v1/meshes").find("large"), std::string::npos);
 }
 
 TEST_F(TlsTest, theFiguresTellWhenTheCertificateEnds) {
@@ -250,16 +264,18 @@ TEST_F(TlsTest, aKeyMayChangeOftenButNotForEverWithoutAByteOfData) {
 /// With one place for handshakes.
 class NarrowTlsTest : public TlsTest {
  protected:
-  void begin(std::chrono::milliseconds patience) {
+  void begin(std::chrono::milliseconds patience, std::size_t places = 1,
+             std::size_t ofAddress = limits::kMaxHandshakesPerAddress) {
     server_.emplace(
         store_, files_.viewer(),
         ServerOptions{
             .threads = 2,
-            .maxHandshakes = 1,
+            .maxHandshakes = places,
+            .maxHandshakesPerAddress = ofAddress,
             .timeouts = {.header = test::kNever, .handshake = patience, .grace = test::kNever},
             .adminHost = "127.0.0.1",
             .tls = &*tls_});
-    stalled_.emplace(port());
+    stalled_.emplace(port(), kOtherAddress);
     stalled_->send(test::clientHello());
     wait("tls_handshakes_open 1");
   }
@@ -274,6 +290,7 @@ class NarrowTlsTest : public TlsTest {
     return test::RawClient(server_->adminPort()).get("/metrics").body;
   }
 
+  static constexpr const char* kOtherAddress = "127.0.0.2";
   std::optional<test::RawClient> stalled_;  ///< has the place and does not go on
 };
 
@@ -299,6 +316,16 @@ TEST_F(NarrowTlsTest, aHandshakeThatStallsLosesItsPlaceToWhoeverWaits) {
   EXPECT_FALSE(TlsClient(port(), file("a.crt")).get("/v1/meshes").empty());
   wait("tls_handshakes_displaced_total 1");
   EXPECT_NE(stalled_->readToEnd(), "") << "the server's answer to its hello; then the end";
+}
+
+TEST_F(NarrowTlsTest, anAddressThatStallsLeavesThePlacesOfOthers) {
+  begin(std::chrono::hours(1), 2, 1);
+  test::RawClient second(port(), kOtherAddress);
+  second.send(test::clientHello());
+  wait("tls_handshakes_waiting 1");
+  EXPECT_FALSE(TlsClient(port(), file("a.crt")).get("/v1/meshes").empty());
+  stalled_.reset();
+  EXPECT_TRUE(second.answerBegins());
 }
 
 TEST_F(NarrowTlsTest, theServersEndIsNotHeldUpByThoseWhoWait) {
