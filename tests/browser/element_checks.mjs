@@ -411,7 +411,7 @@ async function drawsOnlyWhatChanges({server, browser}) {
 
 /**
  * Every control that is touched or reached by Tab must be visible then, and the panel's head must
- * stay in place.
+&
  */
 async function showsWhatHasTheFocus({server, browser}) {
   for (const device of [
@@ -443,7 +443,7 @@ async function showsWhatHasTheFocus({server, browser}) {
           name: focused?.name || focused?.className,
           scrolled: panel.scrollTop,
           inPanel: panel.contains(focused),
-          inHead: focused?.closest('header') != null,
+          inHead: focused?.closest('header, .actions') != null,
           seen: top >= shown.top - 1 && bottom <= shown.bottom + 1,
         };
       });
