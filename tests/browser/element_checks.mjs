@@ -411,7 +411,7 @@ async function drawsOnlyWhatChanges({server, browser}) {
 
 /**
  * Every control that is touched or reached by Tab must be visible then, and the panel's head must
-&
+ * stay in place.
  */
 async function showsWhatHasTheFocus({server, browser}) {
   for (const device of [
