@@ -72,7 +72,7 @@ TEST(WorkLimit, writersCountTheStepsThatReadersTake) {
     Refiner refiner(file.index());
     for (std::uint32_t chunk = 0; chunk < file.index().chunks.size(); ++chunk)
       ASSERT_TRUE(applyChunk(file, refiner, chunk, {}));
-    EXPECT_GT(file.index().chunks.size(), 3u);
+    EXPECT_GE(file.index().chunks.size(), 3u);
     EXPECT_EQ(refiner.steps(), log->statistics.steps);
     EXPECT_LT(refiner.steps(), kMaxStepsPerByte / 16 * log->bytes.size());
   }

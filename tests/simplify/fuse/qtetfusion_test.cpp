@@ -47,6 +47,7 @@ TEST_P(Fused, everyLevelIsValidInsideTheOneBeforeAndOfTheSameTopology) {
   const LatticeMesh mesh = gridMesh(6, 11, GetParam().keep);
   FusionOptions options;
   options.targetRatio = 0;
+  options.envelopeTolerance = 0;
   const auto history = simplify(mesh, options);
   ASSERT_TRUE(history) << history.error().text();
   const auto chi = eulerCharacteristics(mesh);

@@ -93,11 +93,11 @@ TEST_P(Quality, isNoWorseThanCommitted) {
 INSTANTIATE_TEST_SUITE_P(Samples, Quality,
                          ::testing::Values(Floor{"box", 50, {0.2198, 0.2896, 0.0009, 18.5, 9}},
                                            Floor{"box", 90, {1.4344, 1.6315, 0.0009, 8.45, 28}},
-                                           Floor{"box", 99, {5.2386, 6.2748, 12.515, 8.10, 50}},
-                                           Floor{"fin", 50, {0.02986, 0.04115, 0.00643, 2.63, 17}},
-                                           Floor{"fin", 90, {0.29749, 0.63314, 0.10998, 0.965, 49}},
+                                           Floor{"box", 99, {5.4774, 6.7253, 12.515, 8.10, 49}},
+                                           Floor{"fin", 50, {0.02883, 0.03406, 0.00569, 2.63, 17}},
+                                           Floor{"fin", 90, {0.31348, 0.41791, 0.08015, 1.058, 48}},
                                            Floor{
-                                               "fin", 99, {1.71614, 3.65906, 0.62098, 0.425, 92}}),
+                                               "fin", 99, {1.59484, 2.87052, 0.69835, 0.605, 89}}),
                          [](const auto& floor) { return ::testing::PrintToString(floor.param); });
 
 }  // namespace
