@@ -112,7 +112,8 @@ class _Options(ctypes.Structure):
         ("progress", _Progress),
         ("user", _address),
         ("originalIds", _u32),
-        ("reserved", _u32),
+        ("baseCells", _u32),
+        ("baseError", _f64),
     ]
 
 
@@ -291,6 +292,7 @@ def simplify(
     source="",
     target_ratio=None,
     base_cells=None,
+    base_error=None,
     boundary_weight=None,
     shape_weight=None,
     envelope_tolerance=None,
@@ -319,8 +321,9 @@ def simplify(
     progress    called about ten times a second with the stage's name and the fraction of it that
                 is done, 0 to 1; the answer False ends the work with Cancelled
     source      what the log calls its input
-    target_ratio          of the base mesh's tetrahedra to the input's; 0.01, and 30,000 at most
+    target_ratio          of the base mesh's tetrahedra to the input's; without, base_error chooses
     base_cells            tetrahedra of the base mesh, instead of a ratio
+    base_error            how far the base mesh's boundary may be, over the diagonal; 0.01
     boundary_weight       what the boundary's place counts beside the fields; chosen by the mesh
     shape_weight          what badly shaped cells cost; 0.5
     envelope_tolerance    how far the boundary may leave the solid, over the box's diagonal; 0.005
@@ -351,6 +354,7 @@ def simplify(
         ("positionBits", position_bits),
         ("fieldBits", field_bits),
         ("maxBoundaryError", max_boundary_error),
+        ("baseError", base_error),
     ):
         if value is not None:
             setattr(options, member, value)

@@ -51,6 +51,7 @@ qtet_simplify_options defaults() {
   out.measure = QTET_MEASURE_LEVELS;
   out.threads = 1;
   out.maxBoundaryError = kUnset;
+  out.baseError = kUnset;
   return out;
 }
 
@@ -109,8 +110,13 @@ Result<std::optional<qtet::MeasureOptions>> measureOptionsOf(const qtet_simplify
   qtet::MeasureOptions out;
   out.effort = from.measure == QTET_MEASURE_ALL ? qtet::Effort::kAll : qtet::Effort::kLevels;
   out.bounds = {setNumber(from.maxBoundaryError), std::move(*fields)};
+  if (const auto error = setNumber(from.baseError)) {
+    if (!(*error >= 0) || std::isinf(*error))
+      return fail(ErrorCode::kBadValue, "baseError is negative or not finite");
+    out.base = {.error = *error};
+  }
   if (from.measure != QTET_MEASURE_NONE) return out;
-  if (out.bounds.any())
+  if (out.bounds.any() || out.base)
     return fail(ErrorCode::kBadValue, "an error bound needs measuring; see measure");
   return std::nullopt;
 }

@@ -94,8 +94,8 @@ typedef struct {
 
 /* qtet_simplify_defaults sets all of them. `qtet simplify --help` says more of each. */
 typedef struct {
-  double targetRatio;       /* the base mesh's tetrahedra over the input's; NaN: 0.01, but no more
-                             * than 30,000 tetrahedra */
+  double targetRatio;       /* the base mesh's tetrahedra over the input's; NaN: baseError chooses,
+                             * from 0.01 and 500 tetrahedra upwards */
   double boundaryWeight;    /* beside the fields; NaN: chosen by the mesh */
   double shapeWeight;       /* 0.5 */
   double envelopeTolerance; /* over the diagonal of the mesh's box; NaN: 0.005 */
@@ -122,6 +122,10 @@ typedef struct {
   uint32_t originalIds;
   /* Since 0.3. The base mesh's tetrahedra, instead of targetRatio; 0: as that says */
   uint32_t baseCells;
+  /* Since 0.3. The base mesh is the coarsest level whose boundary is within this fraction of the
+   * diagonal and whose volume is within twice this fraction. NaN: 0.01, and 30,000 tetrahedra or 64
+   * kB at most, where no other member chooses the base mesh */
+  double baseError;
 } qtet_simplify_options;
 
 QTET_API qtet_status qtet_simplify_defaults(size_t optionsBytes, qtet_simplify_options* options);

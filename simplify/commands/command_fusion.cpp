@@ -44,8 +44,8 @@ std::size_t cellsPerPacketOf(const ParsedWords& parsed) {
 void addFusionOptions(boost::program_options::options_description& options) {
   namespace po = boost::program_options;
   options.add_options()("target-ratio", po::value<double>(),
-                        "stop when the base mesh has this fraction of the tetrahedra; 0.01, and "
-                        "30,000 tetrahedra at most, without")(
+                        "stop when the base mesh has this fraction of the tetrahedra; without, "
+                        "--base-error chooses, from 0.01 and 500 tetrahedra upwards")(
       "base-cells", po::value<int>(), "stop when the base mesh has so many tetrahedra")(
       "boundary-weight", po::value<double>(),
       "what the boundary's place counts beside the fields: 0 to 1 for the fields first, 4,000 to "

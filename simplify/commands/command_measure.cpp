@@ -35,6 +35,10 @@ void addMeasureOptions(boost::program_options::options_description& options) {
                         "the known error of each level, in the log's manifest: none, levels "
                         "(sampled so that it costs less than simplifying), or all "
                         "(200,000 samples of the volume and of each boundary)")(
+      "base-error", po::value<double>(),
+      "the base mesh is the coarsest level whose boundary is within this fraction of the diagonal "
+      "and whose volume is within twice this fraction; 0.01 without, and 30,000 tetrahedra or 64 "
+      "kB at most")(
       "max-boundary-error", po::value<double>(),
       "stop before the boundary is further than this from the original's, either way, as a "
       "fraction of the diagonal")(
@@ -51,11 +55,12 @@ std::optional<MeasureOptions> measureOptionsOf(const ParsedWords& parsed) {
   options.effort = word == "all" ? Effort::kAll : Effort::kLevels;
   if (parsed.has("max-boundary-error"))
     options.bounds.boundary = parsed.number("max-boundary-error", 0, 1);
+  if (parsed.has("base-error")) options.base = {.error = parsed.number("base-error", 0, 1)};
   if (parsed.has("max-field-error"))
     for (const std::string& text : parsed.get<std::vector<std::string>>("max-field-error"))
       options.bounds.fields.push_back(parseNamedError("max-field-error", text));
   if (word != "none") return options;
-  if (options.bounds.any())
+  if (options.bounds.any() || options.base)
     throw UsageError("an error bound needs measuring; leave out --measure none");
   return std::nullopt;
 }

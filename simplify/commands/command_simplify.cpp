@@ -324,8 +324,8 @@ int runSimplify(const Words& words, Console& console) {
        {{"input", {"format", "time", "curved", "weld", "threshold", "plot3d", "read-seconds"}},
         {"fields", {"field-bits", "field-weight"}},
         {"quality and base mesh",
-         {"base-cells", "envelope-tolerance", "placement", "shape-weight", "preserve-regions",
-          "position-bits"}},
+         {"target-ratio", "base-cells", "envelope-tolerance", "placement", "shape-weight",
+          "preserve-regions", "position-bits"}},
         {"output", {"cells-per-packet", "geometry-codec", "keep-order", "original-ids", "measure"}},
         {"rare", {"algorithm"}}}},
       options, {"IN"});

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
+#include <utility>
 
 #include "codec/coding/error_figure.h"
 #include "codec/coding/level_columns.h"
@@ -128,30 +130,86 @@ Result<std::vector<FieldBound>> fieldBounds(const FusionHistory& history,
   return out;
 }
 
+/// How many cells and vertices a level has.
+struct LevelSize {
+  std::size_t tetrahedra = 0, vertices = 0;
+
+  /// REQUIRES: the history at its finest level.
+  explicit LevelSize(const FusionHistory& history) {
+    std::vector<std::uint8_t> isUsed(history.points.size(), 0);
+    for (const Tetrahedron& cell : history.cells) {
+      if (cell[3] == kGhost) break;
+      ++tetrahedra;
+      for (const VertexId v : cell) vertices += std::exchange(isUsed[v], 1) == 0;
+    }
+  }
+  void coarsenBy(const FusionHistory& history, std::span<const Fusion> step) {
+    for (const Fusion& fusion : step) {
+      vertices -= fusion.k - 1u;
+      for (const std::uint32_t cell :
+           std::span(history.deletedCells).subspan(fusion.firstDeleted, fusion.deletedCount))
+        tetrahedra -= history.cells[cell][3] != kGhost;
+    }
+  }
+};
+
+/// Which errors a level may have. None is below what rounding alone may do.
+class LevelBounds {
+ public:
+  LevelBounds(const FusionHistory& history, const MeasureOptions& options,
+              std::vector<FieldBound> fields, LevelError least)
+      : options_(options), fields_(std::move(fields)), least_(std::move(least)) {
+    for (const FieldInfo& field : history.fields)
+      if (!isCellField(field)) components_ += field.components;
+  }
+
+  /// Whether a level with this error may be the base mesh, instead of the finer one of this size.
+  [[nodiscard]] bool hold(const LevelError& error, const LevelSize& size) const {
+    const double distance = error.boundaryDistance();
+    return isNear(distance, options_.bounds.boundary.value_or(distance)) &&
+           std::ranges::all_of(fields_,
+                               [&](const FieldBound& bound) {
+                                 return error.fields[bound.first].rms <=
+                                        std::max(bound.second, least_.fields[bound.first].rms);
+                               }) &&
+           (!options_.base || isBase(*options_.base, error, size));
+  }
+
+ private:
+  [[nodiscard]] bool isNear(double distance, double bound) const {
+    return distance <= std::max(bound, least_.boundaryDistance());
+  }
+  [[nodiscard]] bool isBase(const BaseRule& rule, const LevelError& error,
+                            const LevelSize& size) const {
+    return size.tetrahedra > rule.maxCells ||
+           baseBytesOf(size.vertices, components_) > rule.maxBytes ||
+           (isNear(error.boundaryDistance(), rule.error) &&
+            std::abs(1 - error.volumeKept) <= 2 * rule.error);
+  }
+
+  const MeasureOptions& options_;
+  std::vector<FieldBound> fields_;
+  LevelError least_;
+  std::size_t components_ = 0;
+};
+
 Result<std::vector<LevelError>> measured(FusionHistory& history, const MeasureOptions& options) {
-  const Result<std::vector<FieldBound>> bounds = fieldBounds(history, options.bounds);
-  if (!bounds) return std::unexpected(bounds.error());
+  Result<std::vector<FieldBound>> fields = fieldBounds(history, options.bounds);
+  if (!fields) return std::unexpected(fields.error());
   HistoryLevels levels(history);
   for (; levels.level() < levels.finest(); levels.refine()) throwIfStopped(options.stop);
   ErrorMeter meter(levels, options, samplesFor(options.effort, history));
-  const LevelError least = meter.rounding();
-  const auto isWithin = [&](const LevelError& error) {
-    const auto keeps = [&](const FieldBound& bound) {
-      return error.fields[bound.first].rms <= std::max(bound.second, least.fields[bound.first].rms);
-    };
-    const double distance = error.boundaryDistance();
-    return distance <=
-               std::max(options.bounds.boundary.value_or(distance), least.boundaryDistance()) &&
-           std::ranges::all_of(*bounds, keeps);
-  };
+  LevelSize size(history);
+  const LevelBounds bounds(history, options, std::move(*fields), meter.rounding());
   std::vector<LevelError> out{meter.measure()};
   while (levels.level() > 0) {
     meter.coarsen();
     LevelError error = meter.measure();
-    if (!isWithin(error)) {
+    if (!bounds.hold(error, size)) {
       levels.refine();
       break;
     }
+    size.coarsenBy(history, levels.fusionsInto(levels.level()));
     out.push_back(std::move(error));
     if (options.progress)
       options.progress(static_cast<double>(out.size()) / (levels.finest() + 1.0));
@@ -162,6 +220,13 @@ Result<std::vector<LevelError>> measured(FusionHistory& history, const MeasureOp
 }
 
 }  // namespace
+
+std::size_t baseBytesOf(std::size_t vertices, std::size_t components) {
+  constexpr double kBytesAVertex = 8, kBytesAComponent = 1.3;
+  return static_cast<std::size_t>(
+      static_cast<double>(vertices) *
+      (kBytesAVertex + kBytesAComponent * static_cast<double>(components)));
+}
 
 Result<std::vector<LevelError>> measureLevels(FusionHistory& history,
                                               const MeasureOptions& options) {

@@ -10,6 +10,10 @@
 namespace qtet {
 namespace {
 
+/// Cells of a base mesh at least where nothing else is asked for. They take 2 kB, and fewer are no
+/// picture of a part.
+constexpr std::size_t kMinBaseCells = 500;
+
 /// The fields of one association that a name means.
 std::vector<std::uint32_t> meantBy(const std::string& name, bool ofCells,
                                    const std::vector<FieldInfo>& fields) {
@@ -81,6 +85,8 @@ Result<FusionOptions> fusionOptionsFor(const PipelineOptions& options,
   const auto named = namedWeights(options, mesh.fields);
   if (!named) return std::unexpected(named.error());
   FusionOptions out = options.fusion;
+  if (!out.targetRatio && !out.baseCells)
+    out.baseCells = std::max(baseCellsOf(out, mesh.tetrahedra.size()), kMinBaseCells);
   out.cost.fieldWeights = weightsOf(quantised, *named, notes);
   if (!out.cost.boundaryWeight)
     out.cost.boundaryWeight =

@@ -5,14 +5,12 @@
 #include <cstdint>
 #include <sstream>
 
+#include "simplify/fuse/qtetfusion.h"
+#include "simplify/measure/measure_error.h"
 #include "simplify/mesh/vector3.h"
 
 namespace qtet {
 namespace {
-
-/// How many times the cells a base mesh should have that is too coarse. On real meshes a loss of 25
-/// % then becomes one of 1 to 7 %.
-constexpr double kMoreCells = 5;
 
 std::string percent(double fraction) {
   std::ostringstream out;
@@ -21,57 +19,59 @@ std::string percent(double fraction) {
   return out.str();
 }
 
-/// A number of two digits that is not below it, to be given as an option.
-std::string roundedUp(double ratio) {
-  if (!(ratio < 1)) return "1";
-  double unit = 0.1;
-  while (ratio < unit) unit /= 10;
-  std::ostringstream out;
-  out.precision(2);
-  out << std::ceil(ratio / unit * 10) * unit / 10;
-  return out.str();
-}
-
 /// "the base mesh has lost 4.1 % of the volume, and its boundary is up to 12 % of the diagonal off"
-std::string whatIsLost(const LevelError& error, bool volumeIsOff, bool boundaryIsOff) {
+std::string whatIsLost(const LevelError& error, bool volume, bool boundary) {
   std::string out = "the base mesh ";
-  if (volumeIsOff)
+  if (volume)
     out += (error.volumeKept < 1 ? "has lost " : "has gained ") +
            percent(std::abs(1 - error.volumeKept)) + " of the volume";
-  if (volumeIsOff && boundaryIsOff) out += ", and its boundary ";
-  if (boundaryIsOff)
-    out += std::string(volumeIsOff ? "is" : "has a boundary that is") + " up to " +
+  if (volume && boundary) out += ", and its boundary ";
+  if (boundary)
+    out += std::string(volume ? "is" : "has a boundary that is") + " up to " +
            percent(error.boundaryDistance()) + " of the diagonal off";
   return out;
 }
 
-struct Counts {
-  std::uint64_t full, base, points, parts;
-};
+bool volumeIsOff(const LevelError& error) {
+  return std::abs(1 - error.volumeKept) > kVolumeLossWarned;
+}
+bool boundaryIsOff(const LevelError& error, const LossFacts& facts) {
+  return error.boundaryDistance() > std::max(kBoundaryErrorWarned, facts.allowedBoundaryError);
+}
+bool isOff(const ManifestLevel& level, const LossFacts& facts) {
+  return level.error && (volumeIsOff(*level.error) || boundaryIsOff(*level.error, facts));
+}
+
+/// The option that makes the base mesh the coarsest level of which it and all finer ones lose
+/// little. Fusing ends at that level then, so its errors are the ones in the manifest.
+std::string enoughCells(const Manifest& manifest, const LossFacts& facts) {
+  std::size_t level = manifest.levels.size() - 1;
+  while (level > 0 && !isOff(manifest.levels[level - 1], facts)) --level;
+  const std::string out = "`baseCells` " + std::to_string(manifest.levels[level].tetrahedra);
+  if (facts.hasTargetRatio) return out + " in place of `targetRatio`";
+  return facts.isByRule ? out + " (unasked it takes " + std::to_string(kMaxBaseBytes / 1000) +
+                              " kB or " + std::to_string(kMaxBaseCells) + " tetrahedra at most)"
+                        : out;
+}
 
 /// The most probable reason, and what to do.
-std::string reasonOf(const Counts& counts, const LossFacts& facts) {
-  const std::uint64_t coincident = facts.clean.coincidentPoints.count;
-  if (static_cast<double>(coincident) >= kSeamPoints * static_cast<double>(counts.points))
+std::string reasonOf(const Manifest& manifest, const LossFacts& facts) {
+  const std::uint64_t coincident = facts.clean.coincidentPoints.count,
+                      points = manifest.levels.back().vertices, parts = facts.clean.components,
+                      cells = manifest.levels.front().tetrahedra;
+  if (static_cast<double>(coincident) >= kSeamPoints * static_cast<double>(points))
     return std::to_string(coincident) +
            " points lie at the place of another one and are not joined with it, so the seams "
            "between pieces count as boundary: join them with `weld` 0";
-  const std::string ratio =
-      "`targetRatio` " +
-      roundedUp(kMoreCells * static_cast<double>(counts.base) / static_cast<double>(counts.full));
-  if (counts.parts >= kManyParts && counts.base < kEnoughCellsAPart * counts.parts)
-    return "the mesh falls into " + std::to_string(counts.parts) + " parts, of which each keeps " +
-           std::to_string(counts.base / counts.parts) + " cells on average: give `targetRatio` " +
-           roundedUp(static_cast<double>(kEnoughCellsAPart * counts.parts) /
-                     static_cast<double>(counts.full)) +
+  const std::string enough = "give " + enoughCells(manifest, facts);
+  if (parts >= kManyParts && cells < kEnoughCellsAPart * parts)
+    return "the mesh falls into " + std::to_string(parts) + " parts, of which each keeps " +
+           std::to_string(cells / parts) + " cells on average: " + enough +
            ", or join parts that nearly touch with `weld` DISTANCE";
   if (facts.wallThickness < kThinWall)
     return "its walls are thin, " + percent(facts.wallThickness) +
-           " of the diagonal on average: put the shape first with `boundaryWeight` 15000, or "
-           "give " +
-           ratio;
-  return "too few cells are left for this shape, " + std::to_string(counts.base) + ": give " +
-         ratio + ", or `maxBoundaryError` " + roundedUp(kBoundaryErrorWarned);
+           " of the diagonal on average: " + enough;
+  return "too few cells are left for this shape, " + std::to_string(cells) + ": " + enough;
 }
 
 }  // namespace
@@ -94,15 +94,10 @@ double wallThicknessOf(const LatticeMesh& mesh) {
 }
 
 std::vector<std::string> lossWarnings(const Manifest& manifest, const LossFacts& facts) {
-  const ManifestLevel &base = manifest.levels.front(), &full = manifest.levels.back();
-  if (!base.error) return {};
-  const bool volumeIsOff = std::abs(1 - base.error->volumeKept) > kVolumeLossWarned,
-             boundaryIsOff = base.error->boundaryDistance() >
-                             std::max(kBoundaryErrorWarned, facts.allowedBoundaryError);
-  if (!volumeIsOff && !boundaryIsOff) return {};
-  const Counts counts{full.tetrahedra, base.tetrahedra, full.vertices, facts.clean.components};
-  return {whatIsLost(*base.error, volumeIsOff, boundaryIsOff) +
-          "; the most probable reason: " + reasonOf(counts, facts)};
+  const ManifestLevel& base = manifest.levels.front();
+  if (!isOff(base, facts)) return {};
+  return {whatIsLost(*base.error, volumeIsOff(*base.error), boundaryIsOff(*base.error, facts)) +
+          "; the most probable reason: " + reasonOf(manifest, facts)};
 }
 
 }  // namespace qtet

@@ -38,6 +38,8 @@ struct LossFacts {
   double wallThickness = 0;  ///< wallThicknessOf the original
   /// The boundary error that the user allowed; 0: he said nothing.
   double allowedBoundaryError = 0;
+  bool hasTargetRatio = false;  ///< the user gave one
+  bool isByRule = false;        ///< the base mesh was chosen by the rule that holds unasked
 };
 
 /// One sentence or none. Empty too where no error was measured. REQUIRES: a manifest with levels.

@@ -126,12 +126,22 @@ Result<FusionHistory> simplify(QuantisedMesh& quantised, Run& run) {
   return history;
 }
 
+/// Where the base mesh is: by a rule, unless its size or the error of all levels was asked for.
+std::optional<BaseRule> baseRuleOf(const PipelineOptions& options) {
+  if (options.measure->base) return options.measure->base;
+  if (options.fusion.targetRatio || options.fusion.baseCells || options.measure->bounds.boundary ||
+      options.algorithm == Algorithm::kPaper)
+    return std::nullopt;
+  return BaseRule{kBaseError, kMaxBaseCells, kMaxBaseBytes};
+}
+
 /// The known error of each level; with bounds, the history ends where they would be passed.
 Result<std::vector<LevelError>> measure(FusionHistory& history, Run& run) {
   if (!run.options.measure) return {};
   if (Status s = run.stages.begin(Stage::kMeasure); !s) return std::unexpected(s.error());
   MeasureOptions options = *run.options.measure;
   options.countsRounding = true;
+  options.base = baseRuleOf(run.options);
   options.threads = run.options.fusion.threads;
   options.progress = run.stages.progress();
   options.stop = run.options.stop;
@@ -170,9 +180,11 @@ Status readBack(const Bytes& log, PipelineReport& report) {
 
 void warn(Run& run) {
   const PipelineOptions& options = run.options;
-  const double allowed = options.measure ? options.measure->bounds.boundary.value_or(0) : 0;
-  run.report.warnings =
-      lossWarnings(run.report.manifest, {run.report.clean, run.wallThickness, allowed});
+  if (!options.measure) return;
+  run.report.warnings = lossWarnings(
+      run.report.manifest,
+      {run.report.clean, run.wallThickness, options.measure->bounds.boundary.value_or(0),
+       options.fusion.targetRatio.has_value(), !options.measure->base && baseRuleOf(options)});
 }
 
 Status bad(std::string what) { return fail(ErrorCode::kBadValue, std::move(what)); }

@@ -40,7 +40,8 @@ struct PipelineOptions {
   std::vector<std::pair<std::string, double>> fieldWeights{};
   /// The name of the cell field whose values are regions that keep their topology.
   std::optional<std::string> regions{};
-  /// Only its effort and bounds count; without it nothing is measured.
+  /// Only its effort, bounds and rule for the base mesh count. Without it nothing is measured, and
+  /// no rule chooses the base mesh.
   std::optional<MeasureOptions> measure{std::in_place};
   CodecId valueCodec = CodecId::kDraco;
   KeepOptions keep{};

@@ -130,6 +130,8 @@ def logs_are_the_tools():
             {"cells_per_packet": 200, "measure": "none"},
         ),
         ("--algorithm paper", {"algorithm": "paper"}),
+        ("--base-cells 300", {"base_cells": 300}),
+        ("--base-error 0.02", {"base_error": 0.02}),
     ):
         subprocess.run([program, "simplify", vtu, "-o", log, "-q", *words.split()], check=True)
         made = qtet.simplify(points, cells, point_data, cell_data, source="grid.vtu", **options)

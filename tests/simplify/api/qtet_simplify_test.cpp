@@ -314,6 +314,15 @@ TEST(QtetSimplify, theBaseMeshHasAsManyCellsAsAreAskedFor) {
   EXPECT_EQ(simplified(log, arrays, options), QTET_BAD_INPUT) << "one of the two";
   options.baseCells = 0;
   EXPECT_GT(baseOf(options), 200u);
+
+  options = usual();
+  EXPECT_TRUE(std::isnan(options.baseError));
+  options.targetRatio = 0.01;
+  EXPECT_LT(baseOf(options), 35u);
+  options.baseError = 0.001;
+  EXPECT_GT(baseOf(options), 35u) << "so few cells fill no box";
+  options.baseError = -1;
+  EXPECT_EQ(simplified(log, arrays, options), QTET_BAD_VALUE);
 }
 
 TEST(QtetSimplify, theLogIsOpenedFromMemoryAndWrittenAsAFile) {

@@ -82,15 +82,15 @@ TEST_F(Tool, quietSaysErrorsAloneAndVerboseHowLongItTook) {
 
 TEST_F(Tool, aBaseMeshThatLostMuchIsWarnedOfAlsoWhereItIsToBeQuiet) {
   ASSERT_EQ(run("sample box -o box.vtu").code, 0);
-  const Ran quiet = run("simplify box.vtu -o box.qtet --quiet");
+  const Ran quiet = run("simplify box.vtu -o box.qtet --quiet --target-ratio 0.01");
   EXPECT_EQ(quiet.code, 0);
   EXPECT_EQ(quiet.out, "");
   EXPECT_TRUE(quiet.err.starts_with("qtet: warning: the base mesh has lost ")) << quiet.err;
   EXPECT_EQ(std::ranges::count(quiet.err, '\n'), 1);
-  const nlohmann::json lost = run("simplify box.vtu -o box.qtet --json").json(),
-                       kept = run("simplify box.vtu -o box.qtet --json --target-ratio 0.05").json();
+  const nlohmann::json lost = run("simplify box.vtu -o box.qtet --json --target-ratio 0.01").json(),
+                       kept = run("simplify box.vtu -o box.qtet --json").json();
   ASSERT_EQ(lost["warnings"].size(), 1u);
-  EXPECT_NE(lost["warnings"][0].get<std::string>().find("--target-ratio"), std::string::npos);
+  EXPECT_NE(lost["warnings"][0].get<std::string>().find("--base-cells"), std::string::npos);
   EXPECT_EQ(kept["warnings"], nlohmann::json::array());
 }
 
@@ -99,7 +99,7 @@ TEST_F(Tool, infoShowsTwentyLevelsOrAll) {
   const auto lines = [](const std::string& text) { return std::ranges::count(text, '\n'); };
   const auto levels =
       static_cast<std::ptrdiff_t>(run("info box.qtet --json").json()["levels"].size());
-  ASSERT_GT(levels, 24);
+  ASSERT_GT(levels, 20);
   const Ran few = run("info box.qtet"), all = run("info box.qtet --all");
   EXPECT_EQ(lines(all.out) - lines(few.out), levels - 20 - 2);
   for (const Ran& ran : {few, all})
@@ -249,7 +249,7 @@ TEST_F(Tool, simplifyReportsWhatItDid) {
   const nlohmann::json report = ran.json();
   EXPECT_EQ(report["tetrahedra"]["input"], 3072);
   EXPECT_EQ(report["tetrahedra"]["full"], 3072);
-  EXPECT_GT(report["percentRemoved"], 90.0);
+  EXPECT_GT(report["percentRemoved"], 80.0);
   EXPECT_GT(report["levels"], 5);
   EXPECT_EQ(report["bytes"], fs::file_size(folder_ / "box.qtet"));
   EXPECT_GT(report["bitsPerTetrahedron"]["connectivity"], 0.0);

@@ -1,5 +1,6 @@
 // Whatever the solid, every level of its history is a solid of the same topology: inside the
-// original, or within the envelope's tolerance of it. Its log brings all of it back. QTET_RANDOM_SOLIDS=N tries N more seeds.
+// original, or within the envelope's tolerance of it. Its log brings all of it back.
+// QTET_RANDOM_SOLIDS=N tries N more seeds.
 #include <gtest/gtest.h>
 
 #include <algorithm>

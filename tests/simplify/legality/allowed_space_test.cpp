@@ -82,7 +82,7 @@ TEST_P(Allowed, whatHoldsIsNearATriangleThatAllowsIt) {
   std::mt19937 random(GetParam());
   const auto upTo = [&](double most) { return most * static_cast<double>(random() % 1024) / 1024; };
   int held = 0, found = 0, refused = 0;
-  for (const double share : {10.0, 60.0, 500.0}) {  // the last one is too small for cubes
+  for (const double share : {10.0, 30.0, 500.0}) {  // the last one is too small for cubes
     const AllowedSpace allowed(FusionMesh(solid.mesh), length / share);
     DistanceCells known, distances;
     for (int trial = 0; trial < 100; ++trial) {

@@ -357,6 +357,60 @@ TEST(MeasureLevels, aBoundEndsTheHistoryBeforeTheLevelThatPassesIt) {
   for (const LevelError& error : *exact) EXPECT_EQ(error.boundaryDistance(), 0);
 }
 
+struct Base {
+  std::size_t cells;
+  LevelError error;
+};
+/// The base mesh that a rule chooses.
+Base baseBy(FusionHistory history, const BaseRule& rule) {
+  MeasureOptions options;
+  options.base = rule;
+  const auto errors = measureLevels(history, options);
+  EXPECT_TRUE(errors);
+  return {testing::meshOfHistory(history, 0).tetrahedra.size(), errors->front()};
+}
+
+TEST(MeasureLevels, aRuleChoosesTheCoarsestLevelThatIsNear) {
+  FusionOptions fusion;
+  fusion.envelopeTolerance = 0;
+  const FusionHistory history =
+      simplify(gridMesh(7, 2, [](int i, int j, int) { return i != 3 || j < 2; }), fusion).value();
+  const auto errors = measured(history);
+  const auto isNear = [&](double error) {
+    return [error](const LevelError& level) {
+      return level.boundaryDistance() <= error && std::abs(1 - level.volumeKept) <= 2 * error;
+    };
+  };
+  for (const double error : {0.0, 0.01, 0.05}) {
+    const auto first = std::ranges::find_if_not(errors.rbegin(), errors.rend(), isNear(error));
+    ASSERT_TRUE(first != errors.rbegin() && first != errors.rend()) << error;
+    EXPECT_TRUE(same(baseBy(history, {.error = error}).error, *std::prev(first))) << error;
+  }
+}
+
+TEST(MeasureLevels, aRuleTakesNoLevelAboveItsLimits) {
+  const FusionHistory history = simplify(gridMesh(7, 2), {}).value();
+  const std::uint32_t undone = history.levels / 2;
+  const LatticeMesh level = testing::meshOfHistory(history, undone),
+                    coarser = testing::meshOfHistory(history, undone - 1);
+  const std::size_t cells = level.tetrahedra.size();
+  ASSERT_GT(baseBy(history, {.error = 0}).cells, cells) << "the limits have nothing to do";
+  EXPECT_EQ(baseBy(history, {.error = 0, .maxCells = cells + 1}).cells, cells);
+  EXPECT_EQ(baseBy(history, {.error = 0, .maxCells = cells}).cells, cells);
+  EXPECT_EQ(baseBy(history, {.error = 0, .maxCells = cells - 1}).cells, coarser.tetrahedra.size());
+
+  std::size_t components = 0;
+  for (const FieldInfo& field : history.fields) components += field.components;
+  std::vector<VertexId> used;
+  for (const Tetrahedron& t : level.tetrahedra) used.insert(used.end(), t.begin(), t.end());
+  std::ranges::sort(used);
+  used.erase(std::ranges::unique(used).begin(), used.end());
+  const std::size_t bytes = baseBytesOf(used.size(), components);
+  EXPECT_EQ(baseBy(history, {.error = 0, .maxBytes = bytes + 1}).cells, cells);
+  EXPECT_EQ(baseBy(history, {.error = 0, .maxBytes = bytes}).cells, cells);
+  EXPECT_LT(baseBy(history, {.error = 0, .maxBytes = bytes - 1}).cells, cells);
+}
+
 TEST(MeasureLevels, aBoundOfAFieldThatIsNotThereIsAnError) {
   FusionHistory h = cube();
   MeasureOptions options;

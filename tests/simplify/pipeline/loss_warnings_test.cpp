@@ -55,12 +55,16 @@ TetMesh ball(int side) {
   return mesh;
 }
 
-std::vector<std::string> warningsOf(TetMesh mesh, double targetRatio) {
-  PipelineOptions options;
-  options.fusion.targetRatio = targetRatio;
+std::vector<std::string> warningsOf(TetMesh mesh, const PipelineOptions& options) {
   const Result<PipelineOutput> made = simplifyToLog(std::move(mesh), options);
   EXPECT_TRUE(made) << made.error().text();
   return made ? made->report.warnings : std::vector<std::string>{"none was made"};
+}
+
+std::vector<std::string> warningsOf(TetMesh mesh, double targetRatio) {
+  PipelineOptions options;
+  options.fusion.targetRatio = targetRatio;
+  return warningsOf(std::move(mesh), options);
 }
 
 void expectWarning(const std::vector<std::string>& warnings,
@@ -70,14 +74,50 @@ void expectWarning(const std::vector<std::string>& warnings,
     EXPECT_NE(warnings[0].find(word), std::string::npos) << word << " is not in: " << warnings[0];
 }
 
+/// The text behind the words, up to the next space.
+std::string after(const std::string& words, const std::string& text) {
+  const std::size_t at = text.find(words);
+  EXPECT_NE(at, std::string::npos) << words << " is not in: " << text;
+  return at == std::string::npos
+             ? ""
+             : text.substr(at + words.size(),
+                           text.find(' ', at + words.size()) - at - words.size());
+}
+
+/// The number of cells that a warning tells to give takes it away, and fewer do not.
+void expectItsAdviceToHelp(const TetMesh& mesh, PipelineOptions options) {
+  const std::vector<std::string> warnings = warningsOf(mesh, options);
+  ASSERT_EQ(warnings.size(), 1u);
+  const std::size_t cells = std::stoul(after("give `baseCells` ", warnings[0]));
+  options.fusion.targetRatio.reset();
+  options.fusion.baseCells = cells;
+  EXPECT_EQ(warningsOf(mesh, options), std::vector<std::string>{});
+  options.fusion.baseCells = cells * 4 / 5;
+  EXPECT_EQ(warningsOf(mesh, options).size(), 1u) << "fewer cells would do";
+}
+
+/// A wave of 24 x 24 cubes that is one thick.
+TetMesh thinWave() {
+  TetMesh mesh;
+  addBlock(mesh, {24, 24, 1}, [](double x, double y, double z) {
+    return Position{x, y, 0.1 * std::sin(9 * x) * std::cos(9 * y) + 0.02 * z};
+  });
+  return mesh;
+}
+
 TEST(LossWarnings, anOrdinaryMeshHasNone) {
-  EXPECT_EQ(warningsOf(ball(12), 0.5), std::vector<std::string>{});
+  EXPECT_EQ(warningsOf(ball(8), 0.5), std::vector<std::string>{});
+  EXPECT_EQ(warningsOf(ball(8), PipelineOptions()), std::vector<std::string>{});
+  EXPECT_EQ(warningsOf(thinWave(), PipelineOptions()), std::vector<std::string>{});
 }
 
 TEST(LossWarnings, tooFewCellsAreTheReasonWhereNothingElseIs) {
-  expectWarning(warningsOf(ball(12), 0.002),
+  expectWarning(warningsOf(ball(8), 0.01),
                 {"has lost ", " % of the volume", "too few cells are left for this shape",
-                 "`maxBoundaryError` 0.02"});
+                 " in place of `targetRatio`"});
+  PipelineOptions options;
+  options.fusion.targetRatio = 0.01;
+  expectItsAdviceToHelp(ball(8), options);
 }
 
 TEST(LossWarnings, piecesThatAreNotJoinedAreTheReason) {
@@ -93,22 +133,22 @@ TEST(LossWarnings, piecesThatAreNotJoinedAreTheReason) {
 TEST(LossWarnings, manyPartsAreTheReason) {
   TetMesh mesh;
   for (int part = 0; part < 27; ++part)
-    addBlock(mesh, {4, 4, 4}, [&](double x, double y, double z) {
+    addBlock(mesh, {3, 3, 3}, [&](double x, double y, double z) {
       const Position p = onBall(x, y, z);
       const int row = part / 3 % 3, layer = part / 9;
       return Position{p[0] + 3 * (part % 3), p[1] + 3 * row, p[2] + 3 * layer};
     });
-  expectWarning(warningsOf(std::move(mesh), 0.01),
-                {"falls into 27 parts", "`targetRatio` 0.27", "`weld` DISTANCE"});
+  PipelineOptions options;
+  options.fusion.targetRatio = 0.01;
+  expectWarning(warningsOf(mesh, options), {"falls into 27 parts", "`weld` DISTANCE"});
+  expectItsAdviceToHelp(mesh, options);
 }
 
 TEST(LossWarnings, thinWallsAreTheReason) {
-  TetMesh mesh;
-  addBlock(mesh, {48, 48, 1}, [](double x, double y, double z) {
-    return Position{x, y, 0.1 * std::sin(9 * x) * std::cos(9 * y) + 0.01 * z};
-  });
-  expectWarning(warningsOf(std::move(mesh), 0.01),
-                {"its walls are thin", "`boundaryWeight` 15000"});
+  PipelineOptions options;
+  options.fusion.targetRatio = 0.01;
+  expectWarning(warningsOf(thinWave(), options), {"its walls are thin"});
+  expectItsAdviceToHelp(thinWave(), options);
 }
 
 Manifest manifestOf(double volumeKept, double boundary) {
@@ -122,7 +162,7 @@ Manifest manifestOf(double volumeKept, double boundary) {
 
 TEST(LossWarnings, beginAboveTheLimitsOnly) {
   const CleanReport clean;
-  const LossFacts facts{clean, 0.2, 0};
+  const LossFacts facts{clean, 0.2};
   EXPECT_TRUE(lossWarnings(manifestOf(1 - 0.0199, 0.02), facts).empty());
   EXPECT_TRUE(lossWarnings(manifestOf(1 + 0.0199, 0.02), facts).empty());
   expectWarning(lossWarnings(manifestOf(0.95, 0), facts), {"has lost 5 % of the volume"});
@@ -130,6 +170,8 @@ TEST(LossWarnings, beginAboveTheLimitsOnly) {
   expectWarning(lossWarnings(manifestOf(1, 0.03), facts), {"up to 3 % of the diagonal off"});
   EXPECT_TRUE(lossWarnings(manifestOf(1, 0.03), {clean, 0.2, 0.04}).empty())
       << "the user allowed it";
+  expectWarning(lossWarnings(manifestOf(0.95, 0), {clean, 0.2, 0, false, true}),
+                {"`baseCells` 1000 (unasked it takes 64 kB or 30000 tetrahedra at most)"});
   Manifest unmeasured = manifestOf(0.5, 0.5);
   unmeasured.levels[0].error.reset();
   EXPECT_TRUE(lossWarnings(unmeasured, facts).empty());
