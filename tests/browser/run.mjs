@@ -16,6 +16,7 @@ import {panelChecks} from './panel_checks.mjs';
 import {publishChecks} from './publish_checks.mjs';
 import {recoveryChecks} from './recovery_checks.mjs';
 import {transportChecks} from './transport_checks.mjs';
+import {undoChecks} from './undo_checks.mjs';
 import {volumeChecks} from './volume_checks.mjs';
 import {makeLog, Server} from './programs.mjs';
 
@@ -43,7 +44,7 @@ const lists = {
   publish: publishChecks,
   volume: volumeChecks,
   edge: edgeChecks,
-  legend: {...legendChecks, ...panelChecks},
+  legend: {...legendChecks, ...panelChecks, ...undoChecks},
   recovery: recoveryChecks,
   monkey: monkeyChecks,
   baseline: baselineChecks,

@@ -6,6 +6,7 @@ import type {View} from '../three/view';
 import {find} from './page/find';
 import type {Page} from './page/page';
 import type {ShownMesh} from './page/shown_mesh';
+import {Undo} from './page/undo';
 import {Hover} from './panels/hover';
 import {OrientationCube} from './panels/orientation_cube';
 
@@ -19,6 +20,7 @@ export interface LaterHost {
 export class Later {
   private readonly cube: OrientationCube;
   private readonly hover: Hover;
+  private readonly ends = new AbortController();
   private seen = '';
 
   constructor(
@@ -40,7 +42,19 @@ export class Later {
       },
       pick: (x, y) => host.client.pick(host.view!.rayAt(x, y)),
     });
+    new Undo(
+      page,
+      (camera) => {
+        if (camera && host.view) host.view.cameraState = camera;
+        else host.look(null);
+      },
+      this.ends.signal,
+    );
     this.follow();
+  }
+
+  dispose(): void {
+    this.ends.abort();
   }
 
   /** Must be called after every frame. */

@@ -106,7 +106,8 @@ export class Viewing implements ActionsHost, PanelsHost {
     this.stream.dispose();
     this.graphics.dispose();
     this.panels?.dispose();
-    this.panels = null;
+    this.later?.dispose();
+    this.panels = this.later = null;
   }
 
   get view(): View | null {
