@@ -10,6 +10,7 @@ import {baselineChecks} from './baseline_checks.mjs';
 import {checks} from './checks.mjs';
 import {edgeChecks} from './edge_checks.mjs';
 import {elementChecks} from './element_checks.mjs';
+import {histogramChecks} from './histogram_checks.mjs';
 import {legendChecks} from './legend_checks.mjs';
 import {monkeyChecks} from './monkey_checks.mjs';
 import {panelChecks} from './panel_checks.mjs';
@@ -44,7 +45,7 @@ const lists = {
   publish: publishChecks,
   volume: volumeChecks,
   edge: edgeChecks,
-  legend: {...legendChecks, ...panelChecks, ...undoChecks},
+  legend: {...legendChecks, ...panelChecks, ...undoChecks, ...histogramChecks},
   recovery: recoveryChecks,
   monkey: monkeyChecks,
   baseline: baselineChecks,

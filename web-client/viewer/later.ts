@@ -3,10 +3,12 @@
 import type {Client} from '../core/session/client';
 import type {Direction} from '../three/directions';
 import type {View} from '../three/view';
+import type {Settings, ShownRange} from './settings/settings';
 import {find} from './page/find';
 import type {Page} from './page/page';
 import type {ShownMesh} from './page/shown_mesh';
 import {Undo} from './page/undo';
+import {HistogramPanel} from './panels/histogram_panel';
 import {Hover} from './panels/hover';
 import {OrientationCube} from './panels/orientation_cube';
 
@@ -14,6 +16,8 @@ export interface LaterHost {
   readonly client: Client;
   readonly view: View | null;
   readonly mesh: ShownMesh;
+  readonly settings: Settings;
+  readonly range: ShownRange | null;
   look(direction: Direction | null): void;
 }
 
@@ -50,6 +54,7 @@ export class Later {
       },
       this.ends.signal,
     );
+    new HistogramPanel(page, host, this.ends.signal);
     this.follow();
   }
 
