@@ -237,7 +237,7 @@ function shortText(value: number): string {
     .replace(/\.$/, '');
 }
 
-/** What is written below the two ends. */
+/** The texts below the two ends. */
 function endTexts(extent: Histogram['extent']): [string, string] {
   if (!extent) return ['No values', ''];
   const [low, high] = extent;
