@@ -128,6 +128,19 @@ async function turnsByTheCube(context) {
   }
 }
 
+/** On phones the whole cube is one target; a tap looks along the nearest face. */
+async function turnsByATapOnTheCube(context) {
+  const viewer = await opened(context, 'mesh=box', kPhone);
+  const {page} = viewer;
+  await page.getByRole('button', {name: 'View from +z'}).waitFor();
+  const {x, y, width, height} = await page.locator('qtet-viewer .orientation-cube').boundingBox();
+  assert.ok(width >= 44 && height >= 44, `${width} x ${height}`);
+  await page.touchscreen.tap(x + width / 2, y + 5); // above the cube
+  await viewer.settle();
+  const [from, side, above] = await cameraOf(viewer);
+  assert.ok(above > 1 && Math.hypot(from, side) < 0.01 * above, `from ${[from, side, above]}`);
+}
+
 /** A pointer that rests shows the value below it, and nothing moves. */
 async function showsTheValueAtThePointer(context) {
   const viewer = await opened(context, 'mesh=fin&field=Density&clip=none');
@@ -196,6 +209,7 @@ export const panelChecks = {
   remembersItsFolds,
   keepsHalfOfALowWindow,
   turnsByTheCube,
+  turnsByATapOnTheCube,
   showsTheValueAtThePointer,
   namesTheNearestWord,
   promisesNothingOfADamagedHead,

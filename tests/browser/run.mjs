@@ -10,12 +10,14 @@ import {baselineChecks} from './baseline_checks.mjs';
 import {checks} from './checks.mjs';
 import {edgeChecks} from './edge_checks.mjs';
 import {elementChecks} from './element_checks.mjs';
+import {histogramChecks} from './histogram_checks.mjs';
 import {legendChecks} from './legend_checks.mjs';
 import {monkeyChecks} from './monkey_checks.mjs';
 import {panelChecks} from './panel_checks.mjs';
 import {publishChecks} from './publish_checks.mjs';
 import {recoveryChecks} from './recovery_checks.mjs';
 import {transportChecks} from './transport_checks.mjs';
+import {undoChecks} from './undo_checks.mjs';
 import {volumeChecks} from './volume_checks.mjs';
 import {makeLog, Server} from './programs.mjs';
 
@@ -43,7 +45,7 @@ const lists = {
   publish: publishChecks,
   volume: volumeChecks,
   edge: edgeChecks,
-  legend: {...legendChecks, ...panelChecks},
+  legend: {...legendChecks, ...panelChecks, ...undoChecks, ...histogramChecks},
   recovery: recoveryChecks,
   monkey: monkeyChecks,
   baseline: baselineChecks,

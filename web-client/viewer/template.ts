@@ -208,7 +208,8 @@ export const kTemplate = `
         <input type="text" inputmode="decimal" name="range-low" aria-label="Start of the range">
         <span class="name">to</span>
         <input type="text" inputmode="decimal" name="range-high" aria-label="End of the range">
-      </div>`,
+      </div>
+      <div class="histogram"></div>`,
     )}
     ${section(
       'surface',

@@ -33,6 +33,8 @@ import {StreamControl} from './stream_control';
 export class Viewing implements ActionsHost, PanelsHost {
   mesh = new ShownMesh();
   settings: Settings;
+  /** The values that the colours span; null if nothing is coloured. */
+  range: ShownRange | null = null;
   readonly stream: StreamControl;
   private readonly notices: Notices;
   private readonly graphics: Graphics;
@@ -106,7 +108,8 @@ export class Viewing implements ActionsHost, PanelsHost {
     this.stream.dispose();
     this.graphics.dispose();
     this.panels?.dispose();
-    this.panels = null;
+    this.later?.dispose();
+    this.panels = this.later = null;
   }
 
   get view(): View | null {
@@ -328,7 +331,8 @@ export class Viewing implements ActionsHost, PanelsHost {
       const {low, high, logarithmic} = range;
       this.view?.setRange(low, high, mesh.snapshot.scaleRange, logarithmic);
     }
-    panels.showRange(range && {...range, hasMissing: mesh.hasMissing}, mesh, settings);
+    this.range = range && {...range, hasMissing: mesh.hasMissing};
+    panels.showRange(this.range, mesh, settings);
   }
 
   // ---- the state

@@ -3,6 +3,7 @@
 import codecUrl from 'qtet-codec.wasm?url';
 import type {Ray} from '../picture/cell_ray';
 import type {Display} from '../picture/display';
+import type {Axis, Histogram} from '../picture/histogram';
 import type {CoarseCells} from '../picture/volume';
 import type {Vector} from '../protocol/geometry';
 import {kFull, type Limit} from '../protocol/limit';
@@ -101,6 +102,10 @@ export class Client {
   }
   probe(from: Vector, to: Vector): Promise<Probe | null> {
     return this.ask({type: 'probe', from, to});
+  }
+  /** Counts the values of the coloured field, as they are now; null while there are none. */
+  histogram(axis: Axis): Promise<Histogram | null> {
+    return this.ask({type: 'histogram', axis});
   }
 
   /**

@@ -15,6 +15,7 @@ import {
 } from '../picture/cell_ray';
 import {cuttingPlanes, type Display, type MeshArrays} from '../picture/display';
 import {FieldScale, kMagnitude, scalarRange} from '../picture/field_scale';
+import {histogramOf, type Axis, type Histogram} from '../picture/histogram';
 import {meshArrays} from '../picture/mesh_arrays';
 import type {Cells} from '../picture/section';
 import type {Vector} from '../protocol/geometry';
@@ -84,6 +85,14 @@ export class Inspector {
       end = last;
     }
     return this.unscaled(probe, display);
+  }
+
+  /** Counts the values of the coloured field; null while there are none. */
+  histogram(axis: Axis, {color}: Display): Histogram | null {
+    const mesh = meshArrays(this.assembler);
+    const info = color && this.assembler.manifest?.fields[color.field];
+    const scale = color && mesh?.scale(color);
+    return mesh && info && scale ? histogramOf(scale, mesh.tetrahedra, info, color, axis) : null;
   }
 
   private unscaled(probe: Probe, display: Display): Probe {

@@ -8,6 +8,7 @@ import type {BaseFigures} from '../picture/base_figures';
 import type {Ray} from '../picture/cell_ray';
 import type {Display} from '../picture/display';
 import type {Scalar} from '../picture/field_scale';
+import type {Axis, Histogram} from '../picture/histogram';
 import type {TriangleSoup} from '../picture/triangle_soup';
 import type {CoarseCells, VolumeCells} from '../picture/volume';
 import type {Vector, Plane} from '../protocol/geometry';
@@ -53,6 +54,8 @@ export type Question =
   | {type: 'digest'}
   | {type: 'pick'; ray: Ray}
   | {type: 'probe'; from: Vector; to: Vector}
+  /** Counts the values of the coloured field. */
+  | {type: 'histogram'; axis: Axis}
   /** Asks for a volume with few cells. The page has version `have`. */
   | {type: 'coarse'; have: number};
 
@@ -100,4 +103,4 @@ export type FromWorker =
   | {type: 'progress'; statistics: Statistics; received: number}
   | {type: 'state'; state: StreamState; attempt: number; delayMs: number}
   | {type: 'error'; code: string; message: string}
-  | {type: 'answer'; id: number; answer: string | Pick | Probe | CoarseCells | null};
+  | {type: 'answer'; id: number; answer: string | Pick | Probe | Histogram | CoarseCells | null};

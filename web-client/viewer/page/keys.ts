@@ -16,6 +16,8 @@ export const kKeyHelp: readonly (readonly [string, string])[] = [
   ['P', 'save the picture'],
   ['W', 'whole screen'],
   ['?', 'this list'],
+  ['Ctrl Z', 'undo (on a Mac: ⌘)'],
+  ['Ctrl ⇧ Z', 'redo, also Ctrl Y'],
   ['Esc', 'end a tool'],
 ];
 

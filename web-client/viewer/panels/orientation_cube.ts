@@ -4,10 +4,14 @@
 import type {Vector} from '../../core/protocol/geometry';
 import {kDirections, type Direction} from '../../three/directions';
 
-/** Half of an edge. The corners stay inside the picture's 30. */
+/** Half of an edge. The corners stay inside the picture. */
 const kHalf = 16;
+/** The side of the picture, in its own unit (template.ts). */
+const kSpan = 60;
 /** A face that is seen more obliquely than this has no room for its name. */
 const kMinNear = 0.2;
+/** A face turned away further than this is not seen. */
+const kMinSeen = 0.01;
 /** Sideways and upwards on each face as its own view shows it. */
 const kSides: Record<Direction, [Vector, Vector]> = {
   '+x': [
@@ -78,10 +82,19 @@ export function facePlaces({x, y, z, w}: Rotation): FacePlace[] {
   });
 }
 
+/** The seen face whose middle is nearest to a place in the cube's picture. */
+export function nearestFace(places: readonly FacePlace[], x: number, y: number): Direction {
+  const away = ({matrix}: FacePlace): number => Math.hypot(matrix[4] - x, matrix[5] - y);
+  return places
+    .filter(({near}) => near > kMinSeen)
+    .reduce((best, place) => (away(place) < away(best) ? place : best)).direction;
+}
+
 export class OrientationCube {
   /** Names the face that has the focus, which may lie at the back. */
   private readonly caption: SVGTextElement;
   private readonly faces = new Map<Direction, SVGGElement>();
+  private places: readonly FacePlace[] = [];
 
   constructor(
     private readonly svg: SVGSVGElement,
@@ -96,6 +109,15 @@ export class OrientationCube {
       face.addEventListener('keydown', (event) => this.press(event, direction, look));
       this.faces.set(direction, face);
     }
+    // For fingers the whole cube is one target: its faces are too small.
+    svg.addEventListener('click', (event) => {
+      if (event.target !== svg || this.places.length === 0) return;
+      const {left, top, width, height} = svg.getBoundingClientRect();
+      const at = (place: number, size: number): number => kSpan * (place / size - 0.5);
+      look(
+        nearestFace(this.places, at(event.clientX - left, width), at(event.clientY - top, height)),
+      );
+    });
     this.rove('+x');
     this.caption = document.createElementNS(svg.namespaceURI, 'text') as SVGTextElement;
     this.caption.setAttribute('y', '24');
@@ -106,10 +128,11 @@ export class OrientationCube {
   turn(rotation: Rotation): void {
     const focused = (this.svg.getRootNode() as ShadowRoot).activeElement;
     const places = facePlaces(rotation);
+    this.places = places;
     for (const {direction, matrix, near} of places) {
       const face = this.faces.get(direction)!;
       face.setAttribute('transform', `matrix(${matrix.map((x) => x.toFixed(3)).join(' ')})`);
-      face.classList.toggle('back', near <= 0.01);
+      face.classList.toggle('back', near <= kMinSeen);
       face.classList.toggle('flat', near < kMinNear);
     }
     // A child that moves loses the focus: only the others move.

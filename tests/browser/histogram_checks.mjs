@@ -1,0 +1,151 @@
+// The histogram in the colour panel: its handles set the range, with a pointer and with keys.
+
+import assert from 'node:assert/strict';
+import {execFileSync} from 'node:child_process';
+import {writeFileSync} from 'node:fs';
+import {join} from 'node:path';
+import {kDesktop, kPhone} from './browser.mjs';
+import {differingShare} from './png.mjs';
+import {linearBox} from './volume_checks.mjs';
+
+async function opened({server, browser}, query, device = kDesktop) {
+  const viewer = await browser.open(`${server.url}?${query}`, device);
+  await viewer.waitForState('complete');
+  await viewer.waitForPicture();
+  return viewer;
+}
+
+const handle = (viewer, which) =>
+  viewer.page.getByRole('slider', {name: `Value of the ${which} colour`});
+const rangeOf = (viewer) => viewer.page.evaluate(() => window.qtetViewer.getAttribute('range'));
+
+async function setsTheRangeByItsHandles(context) {
+  const viewer = await opened(context, 'mesh=fin&field=Pressure&clip=none', {
+    ...kDesktop,
+    bypassCSP: true,
+  });
+  const {page} = viewer;
+  const low = handle(viewer, 'first');
+  await low.waitFor();
+  await viewer.settle();
+  const before = {
+    legend: await viewer.text('.legend-ticks'),
+    picture: await viewer.screenshot('histogram-before'),
+  };
+  const {x, y, width, height} = await low.boundingBox();
+  await page.mouse.move(x + width / 2, y + height / 2);
+  await page.mouse.down();
+  await page.mouse.move(x + width / 2 + 90, y + height / 2, {steps: 6});
+  await page.mouse.up();
+  await viewer.settle();
+  const [from, to] = (await rangeOf(viewer)).split(',').map(Number);
+  assert.equal(Number(await low.getAttribute('aria-valuenow')), from);
+  assert.match(await low.getAttribute('aria-valuetext'), /^Pressure .*\d/);
+  assert.notEqual(await viewer.text('.legend-ticks'), before.legend);
+  const differing = differingShare(before.picture, await viewer.screenshot('histogram-dragged'));
+  assert.ok(differing > 0.05, `only ${differing} of the picture changes`);
+  // the handle has the focus: arrows move it, and no key lets it pass the other one
+  await page.keyboard.press('ArrowLeft');
+  await viewer.settle();
+  const [stepped] = (await rangeOf(viewer)).split(',').map(Number);
+  assert.ok(stepped < from, `${stepped} after ${from}`);
+  await page.keyboard.press('End');
+  await viewer.settle();
+  const [last] = (await rangeOf(viewer)).split(',').map(Number);
+  assert.ok(last < to && last > from, `${last} below ${to}`);
+  await page.getByRole('button', {name: 'Middle 98'}).click();
+  await viewer.settle();
+  const middle = await rangeOf(viewer);
+  assert.notEqual(middle, `${last},${to}`);
+  await page.keyboard.press('Control+z');
+  await viewer.settle();
+  assert.equal(await rangeOf(viewer), `${last},${to}`);
+  assert.deepEqual(await viewer.accessibilityViolations(), []);
+  assert.deepEqual(viewer.problems, []);
+  return `${from} to ${to}; the middle: ${middle}`;
+}
+
+/** A double-click takes the middle, too; the picture is also looked at in the dark. */
+async function takesTheMiddleByADoubleClick(context) {
+  const device = {...kDesktop, colorScheme: 'dark', bypassCSP: true};
+  const viewer = await opened(context, 'mesh=fin&field=Pressure&clip=none&scale=log', device);
+  await handle(viewer, 'first').waitFor();
+  await viewer.screenshot('histogram-dark');
+  await viewer.page.locator('qtet-viewer .histogram-plot').dblclick({position: {x: 90, y: 20}});
+  await viewer.settle();
+  assert.match(await rangeOf(viewer), /^[\d.]+,[\d.]+$/);
+  assert.deepEqual(await viewer.accessibilityViolations(), []);
+}
+
+async function hasRoomForFingers(context) {
+  const viewer = await opened(context, 'mesh=fin&field=Pressure&clip=none', kPhone);
+  await viewer.page.getByRole('button', {name: 'Controls'}).tap();
+  for (const which of ['first', 'last']) {
+    await viewer.page.getByRole('button', {name: 'Middle 98'}).scrollIntoViewIfNeeded();
+    const {width, height} = await handle(viewer, which).boundingBox();
+    assert.ok(width >= 44 && height >= 44, `${width} x ${height}`);
+  }
+  await viewer.settle();
+  await viewer.screenshot('histogram-phone');
+  assert.deepEqual(viewer.problems, []);
+}
+
+async function countsAwkwardFields({server, browser, logs, out, bin}) {
+  const mesh = join(out, 'counted.vtu');
+  writeFileSync(
+    mesh,
+    linearBox(4, {
+      Even: (x) => x,
+      Constant: () => 42.5,
+      Missing: (x, y, z) => (z < 1 ? NaN : y),
+      Decades: (x, y) => 10 ** (y / 2),
+    }),
+  );
+  execFileSync(
+    join(bin, 'qtet'),
+    ['simplify', mesh, '-o', join(logs.fin.folder, 'counted.qtet'), '--field-bits', '20'],
+    {stdio: 'pipe'},
+  );
+  server.kill();
+  await server.start();
+  const viewer = await opened({server, browser}, 'mesh=counted&field=Even');
+  const {page} = viewer;
+  const bars = () => page.locator('qtet-viewer .histogram path').getAttribute('d');
+  const countOf = async (field, scale = null) => {
+    await page.evaluate(
+      ([name, text]) => {
+        window.qtetViewer.setAttribute('field', name);
+        if (text) window.qtetViewer.setAttribute('scale', text);
+        else window.qtetViewer.removeAttribute('scale');
+      },
+      [field, scale],
+    );
+    await viewer.settle();
+    await viewer.settle();
+    await viewer.screenshot(`histogram-${field}`);
+    return {
+      bars: (await bars()).split('M').length - 1,
+      text: await viewer.text('.histogram .ends'),
+    };
+  };
+  await handle(viewer, 'first').waitFor();
+  assert.equal((await countOf('Even')).bars, 5);
+  const constant = await countOf('Constant');
+  assert.equal(constant.bars, 1);
+  assert.match(constant.text, /^All 42\.5/);
+  assert.equal(await handle(viewer, 'first').isVisible(), false);
+  const missing = await countOf('Missing');
+  assert.equal(missing.bars, 9);
+  assert.doesNotMatch(missing.text, /NaN|missing/);
+  const decades = await countOf('Decades', 'log');
+  assert.equal(decades.bars, 9);
+  assert.deepEqual(viewer.problems, []);
+  return JSON.stringify({constant, missing, decades});
+}
+
+export const histogramChecks = {
+  setsTheRangeByItsHandles,
+  takesTheMiddleByADoubleClick,
+  hasRoomForFingers,
+  countsAwkwardFields,
+};
