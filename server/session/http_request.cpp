@@ -168,8 +168,7 @@ std::optional<Reply> originRefusal(const RequestHeader& header,
       "pages of this origin may not open streams, ask for tickets or change meshes here");
 }
 
-bool isReading(const RequestHeader& header) {
-  const http::verb method = header.method();
+bool isReading(http::verb method) {
   return method == http::verb::get || method == http::verb::head || method == http::verb::options;
 }
 

@@ -38,7 +38,7 @@ void joinLists(RequestHeader& header);
 [[nodiscard]] std::optional<Reply> originRefusal(const RequestHeader& header,
                                                  const std::vector<std::string>* origins);
 /// GET, HEAD and OPTIONS.
-[[nodiscard]] bool isReading(const RequestHeader& header);
+[[nodiscard]] bool isReading(boost::beast::http::verb method);
 /// The answer to a handshake that is not answered by 101: another version, no key, no subprotocol.
 [[nodiscard]] std::optional<Reply> handshakeRefusal(const RequestHeader& header);
 

@@ -13,6 +13,7 @@
 #include "server/session/http_input.h"
 #include "server/session/http_output.h"
 #include "server/session/http_request.h"
+#include "server/session/preflight.h"
 #include "server/session/request_report.h"
 #include "server/stream/stream_session.h"
 #include "server/wire/charge.h"
@@ -200,7 +201,7 @@ std::optional<Reply> HttpSession::earlyAnswer(const RequestHeader& header, bool 
     refusal->close = true;
     return refusal;
   }
-  if (!isReading(header))
+  if (!isReading(header.method()))
     if (std::optional<Reply> refusal = originRefusal(header, services_.allowedOrigins))
       return refusal;
   if (placed && (!peer_.client || peer_.client->countRequest())) return std::nullopt;
@@ -251,6 +252,7 @@ asio::awaitable<bool> HttpSession::answer(const RequestHeader& request, bool kee
     const Charge charge(peer_.client.get());
     return services_.route(view);
   }();
+  answerForOrigin(answer.reply, request, services_.allowedOrigins);
   if (std::holds_alternative<std::monostate>(answer.work))
     co_return co_await send(std::move(answer.reply), keepAlive && !hasBody(view));
   std::optional<Reply> reply = co_await workOn(std::move(answer), view, peer_, input_, services_);
