@@ -215,14 +215,15 @@ void Server::State::handOver(tcp::socket socket, const tcp::endpoint& peer,
   metrics.countConnection();
   auto tls = options.tls != nullptr && !ofOperators ? options.tls->now() : nullptr;
   // Posted first: co_spawn would begin the coroutine on this thread.
-  asio::post(context, [&whose, socket = std::move(socket), tls = std::move(tls),
-                       connection = std::move(connection), client = std::move(client), ofProxy,
-                       &context]() mutable {
-    asio::co_spawn(context,
-                   serveHttp(std::move(socket), std::move(tls), whose, std::move(connection),
-                             std::move(client), ofProxy),
-                   logEnd);
-  });
+  asio::post(context,
+             [&whose, socket = std::move(socket), tls = std::move(tls),
+              connection = std::move(connection), client = std::move(client),
+              proxy = ofProxy ? std::optional(peer.address()) : std::nullopt, &context]() mutable {
+               asio::co_spawn(context,
+                              serveHttp(std::move(socket), std::move(tls), whose,
+                                        std::move(connection), std::move(client), proxy),
+                              logEnd);
+             });
 }
 
 std::vector<Metrics::Figure> Server::State::figures() const {

@@ -42,14 +42,15 @@ bool hasBody(const RequestView& request) {
 
 class HttpSession {
  public:
-  HttpSession(Peer peer, const Services& services, bool ofProxy)
+  HttpSession(Peer peer, const Services& services, std::optional<asio::ip::address> proxy)
       : peer_(std::move(peer)),
         services_(services),
         input_(peer_, services.timeouts),
         // asked now: who leaves at once has no address afterwards
         report_(services.metrics, services.accessLog, services.access,
                 services.accessLog != nullptr ? peer_.socket.peer() : ""),
-        proxies_(ofProxy ? services.proxies : nullptr) {}
+        proxies_(proxy ? services.proxies : nullptr),
+        proxy_(std::move(proxy)) {}
 
   asio::awaitable<void> run();
 
@@ -86,8 +87,9 @@ class HttpSession {
   const Services& services_;
   HttpInput input_;
   RequestReport report_;
-  const TrustedProxies* proxies_;  // nullptr: the client is the peer
-  bool headOnly_ = false;          // the request under way is a HEAD: its answer has no body
+  const TrustedProxies* proxies_;           // nullptr: the client is the peer
+  std::optional<asio::ip::address> proxy_;  // its own address
+  bool headOnly_ = false;  // the request under way is a HEAD: its answer has no body
 };
 
 bool HttpSession::belongsTo(std::optional<asio::ip::address> client) {
@@ -177,7 +179,7 @@ asio::awaitable<bool> HttpSession::serveRequest(bool pipelined) {
   }
   joinLists(parser.get());
   const bool placed = proxies_ == nullptr || asksProxyOnce() ||
-                      belongsTo(forwardedClient(*proxies_, forwardedOf(parser.get(), *proxies_)));
+                      belongsTo(forwardedClientOf(parser.get(), *proxies_, *proxy_));
   {
     const Charge charge(peer_.client.get());
     report_.identify(viewOf(parser.get()));
@@ -296,10 +298,11 @@ asio::awaitable<void> HttpSession::refuse(Reply reply) {
 
 asio::awaitable<void> serveHttp(asio::ip::tcp::socket socket, std::shared_ptr<const TlsContext> tls,
                                 const Services& services, std::shared_ptr<Connection> connection,
-                                std::unique_ptr<AddressLimits::Client> client, bool ofProxy) {
+                                std::unique_ptr<AddressLimits::Client> client,
+                                std::optional<asio::ip::address> proxy) {
   HttpSession session(
       Peer{ClientSocket(std::move(socket), tls.get()), std::move(connection), std::move(client)},
-      services, ofProxy);
+      services, std::move(proxy));
   co_await session.run();
 }
 
