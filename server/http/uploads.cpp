@@ -24,10 +24,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// The folder of meshes, or its place, does not let this process change it.
+bool isForbidden(int number) {
+  return number == EACCES || number == EPERM || number == EROFS || number == ENOENT ||
+         number == ENOTDIR;
+}
+
 Reply troubleOf(const std::string& what, int number) {
   if (number == ENOSPC || number == EDQUOT)
     return problem(507, "insufficient-storage", "the server's disk is full; nothing was changed");
   spdlog::error("an upload: {}: {}", what, std::strerror(number));
+  if (isForbidden(number))
+    return busyReply(
+        "the server cannot write into its folder of meshes, and nothing was changed; ask its "
+        "operator to make the folder writable (the server's log has the reason), then try again");
   return problem(500, "internal", what + ": " + std::strerror(number));
 }
 
@@ -61,6 +71,15 @@ int publishAs(const fs::path& part, const fs::path& target, bool newly) {
     if (errno != EINVAL && errno != ENOSYS) return errno;
   }
   return ::rename(part.c_str(), target.c_str()) == 0 ? 0 : errno;
+}
+
+/// 409 where a folder has the mesh's name: a log cannot take its place.
+std::optional<Reply> folderInTheWay(const fs::path& target) {
+  std::error_code ec;
+  if (!fs::is_directory(fs::symlink_status(target, ec))) return std::nullopt;
+  return problem(409, "upload-conflict",
+                 "there is a folder of the name " + target.filename().string() +
+                     "; send the log by another name, or ask the server's operator to remove it");
 }
 
 class Counted {
@@ -167,6 +186,8 @@ Reply Upload::publish(const std::string& digest) {
   const bool replaced = uploads_.store_.find(request_.id) != nullptr;
   const fs::path target = *pathOfMesh(uploads_.store_.folder(), request_.id);
   const int failed = publishAs(part_, target, request_.ifNoneMatch && !replaced);
+  if (failed != 0)
+    if (std::optional<Reply> refusal = folderInTheWay(target)) return std::move(*refusal);
   if (failed == EEXIST)
     return problem(412, "precondition-failed", "there is a file of that name by now");
   if (failed != 0) return diskTrouble("the upload cannot be published", failed);
@@ -210,6 +231,8 @@ std::expected<std::unique_ptr<Upload>, Reply> Uploads::begin(const UploadRequest
         problem(413, "content-too-large",
                 "a log has at most " + std::to_string(options_.maxBytes) + " bytes here"));
   if (std::optional<Reply> refusal = precondition(request)) return refuse(std::move(*refusal));
+  if (std::optional<Reply> refusal = folderInTheWay(*pathOfMesh(store_.folder(), request.id)))
+    return refuse(std::move(*refusal));
 
   const std::scoped_lock lock(mutex_);
   const fs::path part =

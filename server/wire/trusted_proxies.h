@@ -40,10 +40,10 @@ struct TrustedProxies {
   ProxyHeader header = ProxyHeader::kForwardedFor;
 };
 
-/// The client whose request the trusted proxy `sender` forwards. `value` is the header's whole list.
-/// Each proxy appends the address that sent it the request, so the last address that is no proxy's
-/// is the client's. Anybody may have written the part before it. Where a proxy names no address, the
-/// request counts as its own.
+/// The client whose request the trusted proxy `sender` forwards. `value` is the header's whole
+/// list. Each proxy appends the address that sent it the request, so the last address that is no
+/// proxy's is the client's. Anybody may have written the part before it. Where a proxy names no
+/// address, the request counts as its own.
 [[nodiscard]] boost::asio::ip::address forwardedClient(const TrustedProxies& proxies,
                                                        const boost::asio::ip::address& sender,
                                                        std::string_view value);
