@@ -29,6 +29,7 @@
 #include "server/http/upload_limits.h"
 #include "server/routes/http_router.h"
 #include "server/session/http_session.h"
+#include "server/store/free_disk.h"
 #include "server/store/store_limits.h"
 #include "server/wire/connection_limits.h"
 #include "server/wire/handshakes.h"
@@ -242,6 +243,8 @@ std::vector<Metrics::Figure> Server::State::figures() const {
                         "When the certificate ends, since 1970.",
                         std::chrono::system_clock::to_time_t(options.tls->now()->expires())));
   const std::vector<Metrics::Figure> ours = {
+      gauge("disk_free_bytes", "Bytes that may still be written where the meshes lie.",
+            freeDiskBytes(store.folder())),
       gauge("uploads_open", "Uploads under way.", uploads.active()),
       gauge("uploads_checking", "Uploads whose logs are being decoded.", uploads.checking()),
       counter("uploads_published_total", "Logs that were uploaded and published.",

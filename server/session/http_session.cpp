@@ -133,6 +133,7 @@ asio::awaitable<bool> HttpSession::shakeHands() {
     if (done) done = co_await waitForPlace(handshake, deadline);
     if (done) done = co_await peer_.socket.shakeHands(peer_.client.get());
     if (done) co_return true;
+    services_.metrics.countFailedHandshake();
   }
   if (peer_.socket.becomePlainForPlainHttp())
     co_await refuse(
