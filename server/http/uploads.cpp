@@ -8,7 +8,6 @@
 
 #include <cassert>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <exception>
 #include <new>
@@ -16,6 +15,7 @@
 #include "proto/json_reader.h"
 #include "server/http/http_resource.h"
 #include "server/http/part_lock.h"
+#include "server/http/publishing.h"
 #include "server/http/upload_limits.h"
 #include "server/wire/request_target.h"
 
@@ -43,36 +43,6 @@ Reply troubleOf(const std::string& what, int number) {
 
 constexpr std::string_view kSomebodySends = "somebody is sending this log at the moment";
 
-/// While it lives no other server that shares the folder changes what is published in it. Where the
-/// file system has no locks, what RENAME_NOREPLACE guards is guarded alone.
-class FolderLock {
- public:
-  explicit FolderLock(const fs::path& folder)
-      : file_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-    while (file_ >= 0 && ::flock(file_, LOCK_EX) != 0 && errno == EINTR) {
-    }
-  }
-  ~FolderLock() {
-    if (file_ >= 0) ::close(file_);
-  }
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
-
- private:
-  const int file_;
-};
-
-/// 0 or errno. `newly`: EEXIST where there is something of that name.
-int publishAs(const fs::path& part, const fs::path& target, bool newly) {
-  if (newly) {
-    if (::renameat2(AT_FDCWD, part.c_str(), AT_FDCWD, target.c_str(), RENAME_NOREPLACE) == 0)
-      return 0;
-    // EINVAL: the file system does not know how
-    if (errno != EINVAL && errno != ENOSYS) return errno;
-  }
-  return ::rename(part.c_str(), target.c_str()) == 0 ? 0 : errno;
-}
-
 /// 409 where a folder has the mesh's name: a log cannot take its place.
 std::optional<Reply> folderInTheWay(const fs::path& target) {
   std::error_code ec;
@@ -92,14 +62,6 @@ class Counted {
  private:
   std::atomic<std::size_t>& count_;
 };
-
-Status syncFolder(const fs::path& folder) {
-  const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  const bool done = file >= 0 && ::fsync(file) == 0;
-  const int number = errno;
-  if (file >= 0) ::close(file);
-  return done ? Status() : fail(ErrorCode::kIo, folder.string() + ": " + std::strerror(number));
-}
 
 }  // namespace
 

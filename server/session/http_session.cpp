@@ -15,9 +15,9 @@
 #include "server/session/http_request.h"
 #include "server/session/preflight.h"
 #include "server/session/request_report.h"
+#include "server/session/tls_greeting.h"
 #include "server/stream/stream_session.h"
 #include "server/wire/charge.h"
-#include "server/wire/handshakes.h"
 #include "server/wire/http_limits.h"
 #include "server/wire/peer.h"
 #include "server/wire/trusted_proxies.h"
@@ -64,8 +64,6 @@ class HttpSession {
   /// as many as it may have.
   bool belongsTo(std::optional<asio::ip::address> client);
   asio::awaitable<bool> shakeHands();
-  /// False: no place came free in the time for a handshake, or the connection ends.
-  asio::awaitable<bool> waitForPlace(Handshakes::Client& handshake, const Deadline& deadline);
   /// Lets other connections of the thread have their turn.
   asio::awaitable<void> giveWay() {
     co_await takeTurn(peer_.socket.get_executor(), peer_.client.get());
@@ -118,41 +116,11 @@ asio::awaitable<bool> HttpSession::greetProxy() {
 
 asio::awaitable<bool> HttpSession::shakeHands() {
   if (!peer_.socket.isTls()) co_return true;
-  {
-    const Deadline deadline(peer_.socket, services_.timeouts.header);
-    const IdleScope idle(peer_);
-    bool done = co_await peer_.socket.announcesSoundHello();
-    // Whoever holds a place may lose it. So nobody waits for a turn with one.
-    if (done && owesTurn(peer_.client.get())) {
-      co_await giveWay();
-      done = !peer_.client->overdrawn() && !deadline.passed() && !peer_.connection->ending();
-    }
-    Handshakes::Client handshake(
-        *services_.handshakes, peer_.socket.get_executor(), [this] { peer_.socket.cancel(); },
-        peer_.address());
-    if (done) done = co_await waitForPlace(handshake, deadline);
-    if (done) done = co_await peer_.socket.shakeHands(peer_.client.get());
-    if (done) co_return true;
-    services_.metrics.countFailedHandshake();
-  }
-  if (peer_.socket.becomePlainForPlainHttp())
+  const bool done = co_await shakeHandsInTurn(peer_, services_);
+  if (!done && peer_.socket.becomePlainForPlainHttp())
     co_await refuse(
         problem(400, "bad-request", "this port speaks TLS; the address begins with https://"));
-  co_return false;
-}
-
-/// The client's bytes stay in the kernel meanwhile.
-asio::awaitable<bool> HttpSession::waitForPlace(Handshakes::Client& handshake,
-                                                const Deadline& deadline) {
-  while (const auto again = handshake.enter()) {
-    std::optional<Deadline> retry;
-    if (*again != Handshakes::Clock::time_point::max())
-      retry.emplace(peer_.socket, std::chrono::ceil<std::chrono::milliseconds>(
-                                      *again - Handshakes::Clock::now()));
-    const bool woken = co_await peer_.socket.waitForCancel();
-    if (!woken || deadline.passed() || peer_.connection->ending()) co_return false;
-  }
-  co_return true;
+  co_return done;
 }
 
 asio::awaitable<void> HttpSession::run() {
