@@ -33,7 +33,7 @@ if(NOT QTET_SANITIZE)
     $<TARGET_FILE:qtet> ${PROJECT_SOURCE_DIR}/build/checked/bin/qtet ${here}/golden
     ${out}/same_bytes)
 endif()
-foreach(script IN ITEMS slow_clients docker_health)
+foreach(script IN ITEMS slow_clients docker_health metrics)
   qtet_system_test(${script} ROOM server
     COMMAND ${here}/server/program/${script}.sh ${bin} ${out}/${script})
 endforeach()

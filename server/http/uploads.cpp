@@ -8,7 +8,6 @@
 
 #include <cassert>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <exception>
 #include <new>
@@ -16,6 +15,7 @@
 #include "proto/json_reader.h"
 #include "server/http/http_resource.h"
 #include "server/http/part_lock.h"
+#include "server/http/publishing.h"
 #include "server/http/upload_limits.h"
 #include "server/wire/request_target.h"
 
@@ -24,43 +24,32 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// The folder of meshes, or its place, does not let this process change it.
+bool isForbidden(int number) {
+  return number == EACCES || number == EPERM || number == EROFS || number == ENOENT ||
+         number == ENOTDIR;
+}
+
 Reply troubleOf(const std::string& what, int number) {
   if (number == ENOSPC || number == EDQUOT)
     return problem(507, "insufficient-storage", "the server's disk is full; nothing was changed");
   spdlog::error("an upload: {}: {}", what, std::strerror(number));
+  if (isForbidden(number))
+    return busyReply(
+        "the server cannot write into its folder of meshes, and nothing was changed; ask its "
+        "operator to make the folder writable (the server's log has the reason), then try again");
   return problem(500, "internal", what + ": " + std::strerror(number));
 }
 
 constexpr std::string_view kSomebodySends = "somebody is sending this log at the moment";
 
-/// While it lives no other server that shares the folder changes what is published in it. Where the
-/// file system has no locks, what RENAME_NOREPLACE guards is guarded alone.
-class FolderLock {
- public:
-  explicit FolderLock(const fs::path& folder)
-      : file_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-    while (file_ >= 0 && ::flock(file_, LOCK_EX) != 0 && errno == EINTR) {
-    }
-  }
-  ~FolderLock() {
-    if (file_ >= 0) ::close(file_);
-  }
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
-
- private:
-  const int file_;
-};
-
-/// 0 or errno. `newly`: EEXIST where there is something of that name.
-int publishAs(const fs::path& part, const fs::path& target, bool newly) {
-  if (newly) {
-    if (::renameat2(AT_FDCWD, part.c_str(), AT_FDCWD, target.c_str(), RENAME_NOREPLACE) == 0)
-      return 0;
-    // EINVAL: the file system does not know how
-    if (errno != EINVAL && errno != ENOSYS) return errno;
-  }
-  return ::rename(part.c_str(), target.c_str()) == 0 ? 0 : errno;
+/// 409 where a folder has the mesh's name: a log cannot take its place.
+std::optional<Reply> folderInTheWay(const fs::path& target) {
+  std::error_code ec;
+  if (!fs::is_directory(fs::symlink_status(target, ec))) return std::nullopt;
+  return problem(409, "upload-conflict",
+                 "there is a folder of the name " + target.filename().string() +
+                     "; send the log by another name, or ask the server's operator to remove it");
 }
 
 class Counted {
@@ -73,14 +62,6 @@ class Counted {
  private:
   std::atomic<std::size_t>& count_;
 };
-
-Status syncFolder(const fs::path& folder) {
-  const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  const bool done = file >= 0 && ::fsync(file) == 0;
-  const int number = errno;
-  if (file >= 0) ::close(file);
-  return done ? Status() : fail(ErrorCode::kIo, folder.string() + ": " + std::strerror(number));
-}
 
 }  // namespace
 
@@ -167,6 +148,8 @@ Reply Upload::publish(const std::string& digest) {
   const bool replaced = uploads_.store_.find(request_.id) != nullptr;
   const fs::path target = *pathOfMesh(uploads_.store_.folder(), request_.id);
   const int failed = publishAs(part_, target, request_.ifNoneMatch && !replaced);
+  if (failed != 0)
+    if (std::optional<Reply> refusal = folderInTheWay(target)) return std::move(*refusal);
   if (failed == EEXIST)
     return problem(412, "precondition-failed", "there is a file of that name by now");
   if (failed != 0) return diskTrouble("the upload cannot be published", failed);
@@ -210,6 +193,8 @@ std::expected<std::unique_ptr<Upload>, Reply> Uploads::begin(const UploadRequest
         problem(413, "content-too-large",
                 "a log has at most " + std::to_string(options_.maxBytes) + " bytes here"));
   if (std::optional<Reply> refusal = precondition(request)) return refuse(std::move(*refusal));
+  if (std::optional<Reply> refusal = folderInTheWay(*pathOfMesh(store_.folder(), request.id)))
+    return refuse(std::move(*refusal));
 
   const std::scoped_lock lock(mutex_);
   const fs::path part =

@@ -29,6 +29,7 @@
 #include "server/http/upload_limits.h"
 #include "server/routes/http_router.h"
 #include "server/session/http_session.h"
+#include "server/store/free_disk.h"
 #include "server/store/store_limits.h"
 #include "server/wire/connection_limits.h"
 #include "server/wire/handshakes.h"
@@ -215,14 +216,15 @@ void Server::State::handOver(tcp::socket socket, const tcp::endpoint& peer,
   metrics.countConnection();
   auto tls = options.tls != nullptr && !ofOperators ? options.tls->now() : nullptr;
   // Posted first: co_spawn would begin the coroutine on this thread.
-  asio::post(context, [&whose, socket = std::move(socket), tls = std::move(tls),
-                       connection = std::move(connection), client = std::move(client), ofProxy,
-                       &context]() mutable {
-    asio::co_spawn(context,
-                   serveHttp(std::move(socket), std::move(tls), whose, std::move(connection),
-                             std::move(client), ofProxy),
-                   logEnd);
-  });
+  asio::post(context,
+             [&whose, socket = std::move(socket), tls = std::move(tls),
+              connection = std::move(connection), client = std::move(client),
+              proxy = ofProxy ? std::optional(peer.address()) : std::nullopt, &context]() mutable {
+               asio::co_spawn(context,
+                              serveHttp(std::move(socket), std::move(tls), whose,
+                                        std::move(connection), std::move(client), proxy),
+                              logEnd);
+             });
 }
 
 std::vector<Metrics::Figure> Server::State::figures() const {
@@ -241,6 +243,8 @@ std::vector<Metrics::Figure> Server::State::figures() const {
                         "When the certificate ends, since 1970.",
                         std::chrono::system_clock::to_time_t(options.tls->now()->expires())));
   const std::vector<Metrics::Figure> ours = {
+      gauge("disk_free_bytes", "Bytes that may still be written where the meshes lie.",
+            freeDiskBytes(store.folder())),
       gauge("uploads_open", "Uploads under way.", uploads.active()),
       gauge("uploads_checking", "Uploads whose logs are being decoded.", uploads.checking()),
       counter("uploads_published_total", "Logs that were uploaded and published.",

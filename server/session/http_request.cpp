@@ -117,15 +117,18 @@ RequestView viewOf(const RequestHeader& header) {
       .traceparent = headerValue(header, "traceparent")};
 }
 
-std::string forwardedOf(const RequestHeader& header, const TrustedProxies& proxies) {
+std::optional<boost::asio::ip::address> forwardedClientOf(const RequestHeader& header,
+                                                          const TrustedProxies& proxies,
+                                                          const boost::asio::ip::address& sender) {
   const char* name = proxies.header == ProxyHeader::kForwarded ? "Forwarded" : "X-Forwarded-For";
-  std::string out;
   const auto [first, end] = header.equal_range(name);
-  for (auto line = first; line != end; ++line) {
-    if (!out.empty()) out += ',';
-    out += toView(line->value());
+  if (first == end) return std::nullopt;
+  std::string list(toView(first->value()));
+  for (auto line = std::next(first); line != end; ++line) {
+    list += ',';
+    list += toView(line->value());
   }
-  return out;
+  return forwardedClient(proxies, sender, list);
 }
 
 std::optional<Reply> refusalOf(const RequestHeader& header) {
@@ -168,8 +171,7 @@ std::optional<Reply> originRefusal(const RequestHeader& header,
       "pages of this origin may not open streams, ask for tickets or change meshes here");
 }
 
-bool isReading(const RequestHeader& header) {
-  const http::verb method = header.method();
+bool isReading(http::verb method) {
   return method == http::verb::get || method == http::verb::head || method == http::verb::options;
 }
 

@@ -2,6 +2,9 @@
 // proxy might read it differently.
 #pragma once
 
+#include <utility>  // before any Asio header: 1.74 uses std::exchange without it
+
+#include <boost/asio/ip/address.hpp>
 #include <boost/beast/http/message.hpp>
 #include <optional>
 #include <string>
@@ -22,8 +25,11 @@ void joinLists(RequestHeader& header);
 /// no sense is none.
 [[nodiscard]] RequestView viewOf(const RequestHeader& header);
 
-/// A proxy's statement in the header that `proxies` names, with all of its lines as one list.
-[[nodiscard]] std::string forwardedOf(const RequestHeader& header, const TrustedProxies& proxies);
+/// The client for whom the trusted proxy `sender` forwards, from all lines of the header that
+/// `proxies` names. nullopt: there is no such header.
+[[nodiscard]] std::optional<boost::asio::ip::address> forwardedClientOf(
+    const RequestHeader& header, const TrustedProxies& proxies,
+    const boost::asio::ip::address& sender);
 
 /// The answer to a request that the server must not interpret. Reasons are no or several hosts, a
 /// repeated header that may occur only once, an odd version, and a body where none is accepted.
@@ -38,7 +44,7 @@ void joinLists(RequestHeader& header);
 [[nodiscard]] std::optional<Reply> originRefusal(const RequestHeader& header,
                                                  const std::vector<std::string>* origins);
 /// GET, HEAD and OPTIONS.
-[[nodiscard]] bool isReading(const RequestHeader& header);
+[[nodiscard]] bool isReading(boost::beast::http::verb method);
 /// The answer to a handshake that is not answered by 101: another version, no key, no subprotocol.
 [[nodiscard]] std::optional<Reply> handshakeRefusal(const RequestHeader& header);
 

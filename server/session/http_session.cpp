@@ -13,10 +13,11 @@
 #include "server/session/http_input.h"
 #include "server/session/http_output.h"
 #include "server/session/http_request.h"
+#include "server/session/preflight.h"
 #include "server/session/request_report.h"
+#include "server/session/tls_greeting.h"
 #include "server/stream/stream_session.h"
 #include "server/wire/charge.h"
-#include "server/wire/handshakes.h"
 #include "server/wire/http_limits.h"
 #include "server/wire/peer.h"
 #include "server/wire/trusted_proxies.h"
@@ -41,14 +42,15 @@ bool hasBody(const RequestView& request) {
 
 class HttpSession {
  public:
-  HttpSession(Peer peer, const Services& services, bool ofProxy)
+  HttpSession(Peer peer, const Services& services, std::optional<asio::ip::address> proxy)
       : peer_(std::move(peer)),
         services_(services),
         input_(peer_, services.timeouts),
         // asked now: who leaves at once has no address afterwards
         report_(services.metrics, services.accessLog, services.access,
                 services.accessLog != nullptr ? peer_.socket.peer() : ""),
-        proxies_(ofProxy ? services.proxies : nullptr) {}
+        proxies_(proxy ? services.proxies : nullptr),
+        proxy_(std::move(proxy)) {}
 
   asio::awaitable<void> run();
 
@@ -62,8 +64,6 @@ class HttpSession {
   /// as many as it may have.
   bool belongsTo(std::optional<asio::ip::address> client);
   asio::awaitable<bool> shakeHands();
-  /// False: no place came free in the time for a handshake, or the connection ends.
-  asio::awaitable<bool> waitForPlace(Handshakes::Client& handshake, const Deadline& deadline);
   /// Lets other connections of the thread have their turn.
   asio::awaitable<void> giveWay() {
     co_await takeTurn(peer_.socket.get_executor(), peer_.client.get());
@@ -85,8 +85,9 @@ class HttpSession {
   const Services& services_;
   HttpInput input_;
   RequestReport report_;
-  const TrustedProxies* proxies_;  // nullptr: the client is the peer
-  bool headOnly_ = false;          // the request under way is a HEAD: its answer has no body
+  const TrustedProxies* proxies_;           // nullptr: the client is the peer
+  std::optional<asio::ip::address> proxy_;  // its own address
+  bool headOnly_ = false;  // the request under way is a HEAD: its answer has no body
 };
 
 bool HttpSession::belongsTo(std::optional<asio::ip::address> client) {
@@ -115,40 +116,11 @@ asio::awaitable<bool> HttpSession::greetProxy() {
 
 asio::awaitable<bool> HttpSession::shakeHands() {
   if (!peer_.socket.isTls()) co_return true;
-  {
-    const Deadline deadline(peer_.socket, services_.timeouts.header);
-    const IdleScope idle(peer_);
-    bool done = co_await peer_.socket.announcesSoundHello();
-    // Whoever holds a place may lose it. So nobody waits for a turn with one.
-    if (done && owesTurn(peer_.client.get())) {
-      co_await giveWay();
-      done = !peer_.client->overdrawn() && !deadline.passed() && !peer_.connection->ending();
-    }
-    Handshakes::Client handshake(
-        *services_.handshakes, peer_.socket.get_executor(), [this] { peer_.socket.cancel(); },
-        peer_.address());
-    if (done) done = co_await waitForPlace(handshake, deadline);
-    if (done) done = co_await peer_.socket.shakeHands(peer_.client.get());
-    if (done) co_return true;
-  }
-  if (peer_.socket.becomePlainForPlainHttp())
+  const bool done = co_await shakeHandsInTurn(peer_, services_);
+  if (!done && peer_.socket.becomePlainForPlainHttp())
     co_await refuse(
         problem(400, "bad-request", "this port speaks TLS; the address begins with https://"));
-  co_return false;
-}
-
-/// The client's bytes stay in the kernel meanwhile.
-asio::awaitable<bool> HttpSession::waitForPlace(Handshakes::Client& handshake,
-                                                const Deadline& deadline) {
-  while (const auto again = handshake.enter()) {
-    std::optional<Deadline> retry;
-    if (*again != Handshakes::Clock::time_point::max())
-      retry.emplace(peer_.socket, std::chrono::ceil<std::chrono::milliseconds>(
-                                      *again - Handshakes::Clock::now()));
-    const bool woken = co_await peer_.socket.waitForCancel();
-    if (!woken || deadline.passed() || peer_.connection->ending()) co_return false;
-  }
-  co_return true;
+  co_return done;
 }
 
 asio::awaitable<void> HttpSession::run() {
@@ -176,7 +148,7 @@ asio::awaitable<bool> HttpSession::serveRequest(bool pipelined) {
   }
   joinLists(parser.get());
   const bool placed = proxies_ == nullptr || asksProxyOnce() ||
-                      belongsTo(forwardedClient(*proxies_, forwardedOf(parser.get(), *proxies_)));
+                      belongsTo(forwardedClientOf(parser.get(), *proxies_, *proxy_));
   {
     const Charge charge(peer_.client.get());
     report_.identify(viewOf(parser.get()));
@@ -200,7 +172,7 @@ std::optional<Reply> HttpSession::earlyAnswer(const RequestHeader& header, bool 
     refusal->close = true;
     return refusal;
   }
-  if (!isReading(header))
+  if (!isReading(header.method()))
     if (std::optional<Reply> refusal = originRefusal(header, services_.allowedOrigins))
       return refusal;
   if (placed && (!peer_.client || peer_.client->countRequest())) return std::nullopt;
@@ -251,6 +223,7 @@ asio::awaitable<bool> HttpSession::answer(const RequestHeader& request, bool kee
     const Charge charge(peer_.client.get());
     return services_.route(view);
   }();
+  answerForOrigin(answer.reply, request, services_.allowedOrigins);
   if (std::holds_alternative<std::monostate>(answer.work))
     co_return co_await send(std::move(answer.reply), keepAlive && !hasBody(view));
   std::optional<Reply> reply = co_await workOn(std::move(answer), view, peer_, input_, services_);
@@ -294,10 +267,11 @@ asio::awaitable<void> HttpSession::refuse(Reply reply) {
 
 asio::awaitable<void> serveHttp(asio::ip::tcp::socket socket, std::shared_ptr<const TlsContext> tls,
                                 const Services& services, std::shared_ptr<Connection> connection,
-                                std::unique_ptr<AddressLimits::Client> client, bool ofProxy) {
+                                std::unique_ptr<AddressLimits::Client> client,
+                                std::optional<asio::ip::address> proxy) {
   HttpSession session(
       Peer{ClientSocket(std::move(socket), tls.get()), std::move(connection), std::move(client)},
-      services, ofProxy);
+      services, std::move(proxy));
   co_await session.run();
 }
 

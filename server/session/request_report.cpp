@@ -21,6 +21,7 @@ std::string meshOf(std::string_view target) {
 void RequestReport::begin() {
   trace_ = traceOf(std::nullopt, std::nullopt);
   client_ = peer_;
+  kind_ = {};
   method_.clear();
   target_.clear();
   change_.reset();
@@ -30,6 +31,7 @@ void RequestReport::begin() {
 
 void RequestReport::identify(const RequestView& request) {
   trace_ = traceOf(request.requestId, request.traceparent);
+  kind_ = kindOf(request.method, request.target);
   method_ = request.method;
   target_ = request.target;
   if (log_ == nullptr) return;
@@ -50,7 +52,7 @@ void RequestReport::addHeaders(Reply& reply) const {
 
 void RequestReport::end(unsigned status, std::uint64_t bytes, bool whole) const {
   const auto time = std::chrono::steady_clock::now() - begun_;
-  metrics_.countRequest(status, bytes, time);
+  metrics_.countRequest(kind_, status, bytes, time);
   if (log_ == nullptr) return;
   AccessEntry entry{client_, method_, target_, status, bytes, time, whole};
   if (change_) entry.change = &*change_;

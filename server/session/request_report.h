@@ -47,6 +47,7 @@ class RequestReport {
   const Access* access_;
   std::string peer_, client_;
   RequestTrace trace_;
+  RequestKind kind_;
   std::string method_, target_;
   std::optional<ChangeEntry> change_;  // the request changes something
   std::uint64_t received_ = 0;

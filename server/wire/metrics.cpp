@@ -1,15 +1,22 @@
 #include "server/wire/metrics.h"
 
 #include <algorithm>
-#include <cstdio>
+#include <charconv>
+#include <cmath>
 
 namespace qtet {
 namespace {
 
+/// The shortest decimal that is read as the same number, written as Prometheus' clients do: "0.005"
+/// and not "0.0050000000000000001".
 std::string number(double value) {
-  std::array<char, 32> out{};
-  std::snprintf(out.data(), out.size(), "%.17g", value);
-  return out.data();
+  constexpr double kLeastFixed = 1e-4, kMostFixed = 1e21;
+  const double size = std::abs(value);
+  const bool fixed = size == 0 || (size >= kLeastFixed && size < kMostFixed);
+  std::array<char, 64> out{};
+  const auto end = std::to_chars(out.data(), out.data() + out.size(), value,
+                                 fixed ? std::chars_format::fixed : std::chars_format::scientific);
+  return {out.data(), end.ptr};
 }
 
 /// Figures of the process have the names that all programs give them.
@@ -35,35 +42,77 @@ void Metrics::Histogram::count(std::chrono::nanoseconds time) {
   byTime_[bucket].fetch_add(1, std::memory_order_relaxed);
 }
 
-std::string Metrics::Histogram::text(const std::string& name, const char* help) const {
-  std::string out = head(name, help, "histogram");
+std::string Metrics::Histogram::text(const std::string& name, const std::string& labels) const {
+  std::string out;
   std::uint64_t sum = 0;
   for (std::size_t i = 0; i < byTime_.size(); ++i) {
     sum += byTime_[i].load(std::memory_order_relaxed);
-    out += "qtet_" + name + "_bucket{le=\"" + (i < kBounds.size() ? number(kBounds[i]) : "+Inf") +
-           "\"} " + std::to_string(sum) + "\n";
+    out += "qtet_" + name + "_bucket{" + labels + "le=\"" +
+           (i < kBounds.size() ? number(kBounds[i]) : "+Inf") + "\"} " + std::to_string(sum) + "\n";
   }
-  out += "qtet_" + name + "_sum " + number(secondsOf(nanoseconds_)) + "\n";
-  out += "qtet_" + name + "_count " + std::to_string(sum) + "\n";
+  if (sum == 0 && !labels.empty()) return "";
+  const std::string all =
+      labels.empty() ? "" : "{" + labels.substr(0, labels.size() - 1) + "}";  // without the comma
+  out += "qtet_" + name + "_sum" + all + " " + number(secondsOf(nanoseconds_)) + "\n";
+  out += "qtet_" + name + "_count" + all + " " + std::to_string(sum) + "\n";
   return out;
 }
 
-void Metrics::countRequest(unsigned status, std::uint64_t bytes, std::chrono::nanoseconds time) {
+void Metrics::countRequest(const RequestKind& kind, unsigned status, std::uint64_t bytes,
+                           std::chrono::nanoseconds time) {
   byStatus_[std::min<std::size_t>(status, kStatuses - 1)].fetch_add(1, std::memory_order_relaxed);
   bytes_.fetch_add(bytes, std::memory_order_relaxed);
-  requests_.count(time);
+  if (kind.isUpload() && status >= 400) failedUploads_.fetch_add(1, std::memory_order_relaxed);
+  countRefusal(kind, status);
+  requests_[static_cast<std::size_t>(kind.route)][kind.method].count(time);
+}
+
+/// The operators' own /readyz refuses nobody by its 503.
+void Metrics::countRefusal(const RequestKind& kind, unsigned status) {
+  const auto count = [this](std::size_t reason) {
+    refusals_[reason].fetch_add(1, std::memory_order_relaxed);
+  };
+  if (status == 401 || status == 403) return count(0);
+  if (status == 429) return count(1);
+  if (status == 413 || status == 431 || status == 507) return count(2);
+  if (status == 503 && kind.route != RouteLabel::kAdmin) count(3);
+}
+
+std::string Metrics::refusalText() const {
+  std::string out = head("refusals_total",
+                         "Requests refused: auth 401 and 403, rate 429, size 413, 431 and 507, "
+                         "busy 503.",
+                         "counter");
+  for (std::size_t i = 0; i < kReasons.size(); ++i)
+    out += "qtet_refusals_total{reason=\"" + std::string(kReasons[i]) + "\"} " +
+           std::to_string(refusals_[i].load(std::memory_order_relaxed)) + "\n";
+  return out;
+}
+
+std::string Metrics::requestText() const {
+  constexpr const char* kName = "http_request_duration_seconds";
+  std::string out =
+      head(kName, "From the end of a request's head to the end of its answer.", "histogram");
+  for (std::size_t route = 0; route < kRouteLabels.size(); ++route)
+    for (std::size_t method = 0; method < kMethodLabels.size(); ++method)
+      out += requests_[route][method].text(kName, "route=\"" + std::string(kRouteLabels[route]) +
+                                                      "\",method=\"" +
+                                                      std::string(kMethodLabels[method]) + "\",");
+  return out;
 }
 
 std::string Metrics::text(const std::vector<Figure>& figures) const {
-  std::string out = head("http_requests_total", "HTTP requests answered, by status.", "counter");
+  std::string out = head("build_info", "1; the label is the version of the server.", "gauge") +
+                    "qtet_build_info{version=\"" QTET_VERSION "\"} 1\n";
+  out += head("http_requests_total", "HTTP requests answered, by status.", "counter");
   for (std::size_t status = 0; status < kStatuses; ++status)
     if (const auto count = byStatus_[status].load(std::memory_order_relaxed); count > 0)
       out += "qtet_http_requests_total{code=\"" + std::to_string(status) + "\"} " +
              std::to_string(count) + "\n";
-  out += requests_.text("http_request_duration_seconds",
-                        "From the end of a request's head to the end of its answer.");
-  out += firstFrames_.text("stream_first_frame_seconds",
-                           "From a stream's open to the end of its first frame.");
+  out += requestText() + refusalText();
+  out += head("stream_first_frame_seconds", "From a stream's open to the end of its first frame.",
+              "histogram") +
+         firstFrames_.text("stream_first_frame_seconds");
 
   const auto counter = [&](const char* name, const char* help,
                            const std::atomic<std::uint64_t>& value) {
@@ -75,6 +124,12 @@ std::string Metrics::text(const std::vector<Figure>& figures) const {
   counter("connections_total", "Connections that were let in.", connections_);
   counter("connections_refused_total",
           "Connections that were turned away: too many in all or from one address.", refused_);
+  counter("tls_handshakes_failed_total",
+          "TLS handshakes that did not end well, also those without a place in time.",
+          failedHandshakes_);
+  counter("uploads_failed_total",
+          "PUT of meshes with a status of 400 or more, or whose client left before the answer.",
+          failedUploads_);
   counter("streams_total", "WebSocket streams that were begun.", streams_);
   counter("stream_bytes_total", "Bytes of streams that the network took.", streamBytes_);
   counter("stream_credit_waits_total", "Times that a stream had more to send than its credit.",

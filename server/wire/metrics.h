@@ -8,12 +8,16 @@
 #include <string>
 #include <vector>
 
+#include "server/wire/request_kind.h"
+
 namespace qtet {
 
 /// Thread-safe; relaxed, since every figure stands for itself.
 class Metrics {
  public:
-  void countRequest(unsigned status, std::uint64_t bytes, std::chrono::nanoseconds time);
+  void countRequest(const RequestKind& kind, unsigned status, std::uint64_t bytes,
+                    std::chrono::nanoseconds time);
+  void countFailedHandshake() { failedHandshakes_.fetch_add(1, std::memory_order_relaxed); }
   void countConnection() { connections_.fetch_add(1, std::memory_order_relaxed); }
   void countRefusedConnection() { refused_.fetch_add(1, std::memory_order_relaxed); }
 
@@ -43,25 +47,36 @@ class Metrics {
   [[nodiscard]] std::string text(const std::vector<Figure>& figures) const;
 
  private:
+  void countRefusal(const RequestKind& kind, unsigned status);
+  [[nodiscard]] std::string requestText() const;
+  [[nodiscard]] std::string refusalText() const;
+
+  static constexpr std::array<const char*, 4> kReasons = {"auth", "rate", "size", "busy"};
+
   static constexpr std::size_t kStatuses = 600;
 
   /// Times by their length.
   class Histogram {
    public:
     void count(std::chrono::nanoseconds time);
-    [[nodiscard]] std::string text(const std::string& name, const char* help) const;
+    /// Its series; `labels` stand in each, such as `route="log",`. "": nothing was counted.
+    [[nodiscard]] std::string text(const std::string& name, const std::string& labels = "") const;
 
    private:
     /// Seconds; the last bucket has no bound.
-    static constexpr std::array<double, 9> kBounds = {0.0005, 0.001, 0.005, 0.01, 0.05,
-                                                      0.1,    0.5,   1,     10};
+    static constexpr std::array<double, 13> kBounds = {0.0005, 0.001, 0.005, 0.01, 0.05, 0.1, 0.5,
+                                                       1,      5,     10,    60,   300,  600};
     std::array<std::atomic<std::uint64_t>, kBounds.size() + 1> byTime_{};
     std::atomic<std::uint64_t> nanoseconds_ = 0;
   };
 
   std::array<std::atomic<std::uint64_t>, kStatuses> byStatus_{};
-  Histogram requests_, firstFrames_;
-  std::atomic<std::uint64_t> bytes_ = 0, connections_ = 0, refused_ = 0;
+  /// By route and method: 10 KB, whatever clients ask for.
+  std::array<std::array<Histogram, kMethodLabels.size()>, kRouteLabels.size()> requests_;
+  Histogram firstFrames_;
+  std::array<std::atomic<std::uint64_t>, kReasons.size()> refusals_{};
+  std::atomic<std::uint64_t> bytes_ = 0, connections_ = 0, refused_ = 0, failedHandshakes_ = 0,
+                             failedUploads_ = 0;
   std::atomic<std::uint64_t> streams_ = 0, openStreams_ = 0, streamBytes_ = 0, stalled_ = 0,
                              creditWaits_ = 0;
 };

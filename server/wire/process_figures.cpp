@@ -18,11 +18,16 @@ double secondsOf(const timeval& time) {
   return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
 }
 
-std::optional<double> residentBytes() {
+struct Memory {
+  std::optional<double> whole, resident;  ///< bytes
+};
+
+Memory memory() {
   std::ifstream file("/proc/self/statm");
   double whole = 0, resident = 0;
-  if (!(file >> whole >> resident)) return std::nullopt;
-  return resident * static_cast<double>(::sysconf(_SC_PAGESIZE));
+  if (!(file >> whole >> resident)) return {};
+  const auto page = static_cast<double>(::sysconf(_SC_PAGESIZE));
+  return {whole * page, resident * page};
 }
 
 std::optional<double> openFiles() {
@@ -49,8 +54,11 @@ std::vector<Metrics::Figure> processFigures() {
   if (::getrusage(RUSAGE_SELF, &used) == 0)
     add("process_cpu_seconds_total", "Processor time of the process, its own and the system's.",
         true, secondsOf(used.ru_utime) + secondsOf(used.ru_stime));
+  const Memory bytes = memory();
   add("process_resident_memory_bytes", "Memory of the process that lies in RAM.", false,
-      residentBytes());
+      bytes.resident);
+  add("process_virtual_memory_bytes", "Addresses of the process that lead to something.", false,
+      bytes.whole);
   add("process_open_fds", "Files and connections that the process has open.", false, openFiles());
   rlimit files{};
   if (::getrlimit(RLIMIT_NOFILE, &files) == 0)

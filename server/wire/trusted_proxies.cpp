@@ -24,18 +24,34 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
 }
 
+/// A port, or what stands for one in RFC 7239: "4711", "_hidden".
+bool isPort(std::string_view text) {
+  constexpr std::string_view kDigits = "0123456789";
+  constexpr std::size_t kMostDigits = 5;  // 65535
+  if (text.starts_with('_')) return text.size() > 1;
+  return !text.empty() && text.size() <= kMostDigits &&
+         text.find_first_not_of(kDigits) == std::string_view::npos;
+}
+
 /// "192.0.2.1", "192.0.2.1:4711", "2001:db8::1", "[2001:db8::1]:4711".
 std::optional<ip::address> addressOf(std::string_view text) {
-  if (text.starts_with('[')) {
+  std::string_view behind;
+  const bool bracketed = text.starts_with('[');
+  if (bracketed) {
     const std::size_t close = text.find(']');
     if (close == std::string_view::npos) return std::nullopt;
+    behind = text.substr(close + 1);
     text = text.substr(1, close - 1);
   } else if (std::ranges::count(text, ':') == 1) {
+    behind = text.substr(text.find(':'));
     text = text.substr(0, text.find(':'));
   }
+  if (!behind.empty() && (behind.front() != ':' || !isPort(behind.substr(1)))) return std::nullopt;
+  // A zone would be another machine's.
+  if (text.find('%') != std::string_view::npos) return std::nullopt;
   error_code ec;
   const ip::address out = ip::make_address(std::string(text), ec);
-  if (ec) return std::nullopt;
+  if (ec || (bracketed && out.is_v4())) return std::nullopt;
   return plainAddress(out);
 }
 
@@ -45,11 +61,10 @@ std::string_view forOf(std::string_view element) {
     const std::size_t end = std::min(element.find(';'), element.size());
     const std::string_view pair = trimmed(element.substr(0, end));
     element.remove_prefix(std::min(end + 1, element.size()));
-    const std::size_t equals = std::min(pair.find('='), pair.size());
-    if (equals != 3 || !std::ranges::equal(pair.substr(0, 3), std::string_view("for"), {},
-                                           [](char c) { return c | 0x20; }))
+    if (pair.find('=') != 3 || !std::ranges::equal(pair.substr(0, 3), std::string_view("for"), {},
+                                                   [](char c) { return c | 0x20; }))
       continue;
-    std::string_view value = pair.substr(equals + 1);
+    std::string_view value = pair.substr(4);
     if (value.size() >= 2 && value.starts_with('"') && value.ends_with('"'))
       value = value.substr(1, value.size() - 2);
     return value;
@@ -129,18 +144,19 @@ bool Networks::contains(const ip::address& address) const {
   });
 }
 
-std::optional<ip::address> forwardedClient(const TrustedProxies& proxies, std::string_view value) {
-  std::optional<ip::address> last;
-  while (!value.empty()) {
+ip::address forwardedClient(const TrustedProxies& proxies, const ip::address& sender,
+                            std::string_view value) {
+  ip::address last = plainAddress(sender);
+  for (bool more = true; more;) {
     const std::size_t comma = value.rfind(',');
-    const bool isFirst = comma == std::string_view::npos;
-    std::string_view one = trimmed(isFirst ? value : value.substr(comma + 1));
-    value = isFirst ? std::string_view() : value.substr(0, comma);
+    more = comma != std::string_view::npos;
+    std::string_view one = trimmed(more ? value.substr(comma + 1) : value);
+    value = value.substr(0, more ? comma : 0);
     if (proxies.header == ProxyHeader::kForwarded) one = forOf(one);
     const std::optional<ip::address> address = addressOf(one);
     if (!address) return last;  // nobody before it can be believed
-    last = address;
-    if (!proxies.networks.contains(*address)) break;
+    last = *address;
+    if (!proxies.networks.contains(last)) return last;
   }
   return last;
 }

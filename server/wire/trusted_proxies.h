@@ -40,11 +40,13 @@ struct TrustedProxies {
   ProxyHeader header = ProxyHeader::kForwardedFor;
 };
 
-/// The client whose request a trusted proxy forwards. `value` is the header's whole list. Each
-/// proxy appends the sender's address, so the last address that is no proxy's is the client's.
-/// Anybody may have written the part before it. nullopt: that place names no address.
-[[nodiscard]] std::optional<boost::asio::ip::address> forwardedClient(const TrustedProxies& proxies,
-                                                                      std::string_view value);
+/// The client whose request the trusted proxy `sender` forwards. `value` is the header's whole
+/// list. Each proxy appends the address that sent it the request, so the last address that is no
+/// proxy's is the client's. Anybody may have written the part before it. Where a proxy names no
+/// address, the request counts as its own.
+[[nodiscard]] boost::asio::ip::address forwardedClient(const TrustedProxies& proxies,
+                                                       const boost::asio::ip::address& sender,
+                                                       std::string_view value);
 
 /// An IPv4 address that is written as IPv6 becomes IPv4; any other stays as it is.
 [[nodiscard]] boost::asio::ip::address plainAddress(const boost::asio::ip::address& address);

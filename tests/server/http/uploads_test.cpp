@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/file.h>
+#include <sys/fsuid.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -12,6 +13,7 @@
 #include <new>
 #include <stdexcept>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "codec/log/decoding_memory.h"
@@ -584,6 +586,97 @@ TEST(Uploads, aDiskWithTooLittleLeftTakesNothing) {
   EXPECT_EQ(beginAndBreakOff(uploads, fourBytes('b')), 507u) << "what is to come counts";
   left = 108;
   EXPECT_EQ(beginAndBreakOff(uploads, fourBytes('b')), 0u);
+}
+
+/// Makes this thread another user's for the file system while it lives, if it is root's: root may
+/// write everywhere.
+class WithoutPrivileges {
+ public:
+  WithoutPrivileges() : user_(static_cast<uid_t>(::setfsuid(kNobody))) {}
+  ~WithoutPrivileges() { ::setfsuid(user_); }
+  WithoutPrivileges(const WithoutPrivileges&) = delete;
+  WithoutPrivileges& operator=(const WithoutPrivileges&) = delete;
+
+ private:
+  static constexpr uid_t kNobody = 65534;
+  const uid_t user_;
+};
+
+/// The refusal of the beginning, and what was logged meanwhile.
+std::pair<Reply, std::string> refusalOfBegin(Uploads& uploads) {
+  ::testing::internal::CaptureStdout();
+  auto begun = uploads.begin(fourBytes('a'));
+  std::string logged = ::testing::internal::GetCapturedStdout();
+  EXPECT_FALSE(begun);
+  return {begun ? Reply{} : std::move(begun.error()), std::move(logged)};
+}
+
+void expectUnwritable(Uploads& uploads, const std::string& reason) {
+  const auto [reply, logged] = refusalOfBegin(uploads);
+  EXPECT_EQ(reply.status, 503u);
+  EXPECT_NE(reply.header("Retry-After"), "");
+  EXPECT_NE(std::get<std::string>(reply.body).find("writable"), std::string::npos)
+      << "the client is told what to do";
+  EXPECT_NE(logged.find("[error]"), std::string::npos) << logged;
+  EXPECT_NE(logged.find(reason), std::string::npos) << logged;
+}
+
+TEST(Uploads, aFolderThatMayNotBeWrittenIs503AndTheReasonIsLogged) {
+  const test::ServedFolder folder;
+  Uploads uploads(folder.store(), {});
+  fs::permissions(folder.logFolder(), fs::perms(0555));
+  {
+    const WithoutPrivileges nobody;
+    expectUnwritable(uploads, "Permission denied");
+    EXPECT_EQ(uploads.remove({.id = "noise"}).status, 503u);
+  }
+  fs::permissions(folder.logFolder(), fs::perms(0755));
+  EXPECT_TRUE(folder.store().find("noise"));
+  EXPECT_EQ(beginAndBreakOff(uploads, fourBytes('a')), 0u) << "writable again, and all is well";
+}
+
+TEST(Uploads, aFolderThatIsGoneOrNoFolderIs503) {
+  const test::ServedFolder folder;
+  Uploads uploads(folder.store(), {});
+  const fs::path away = folder.logFolder().string() + ".away";
+  fs::rename(folder.logFolder(), away);
+  expectUnwritable(uploads, "No such file or directory");
+  std::ofstream(folder.logFolder()) << "no folder";
+  expectUnwritable(uploads, "Not a directory");
+  fs::remove(folder.logFolder());
+  fs::rename(away, folder.logFolder());
+  EXPECT_EQ(beginAndBreakOff(uploads, fourBytes('a')), 0u);
+}
+
+TEST(Uploads, aFolderOfTheMeshsNameIs409BeforeAByteIsTaken) {
+  const test::ServedFolder folder;
+  Uploads uploads(folder.store(), {});
+  fs::create_directory(folder.logFolder() / "wing.qtet");
+  const Reply reply = refusalOfBegin(uploads).first;
+  EXPECT_EQ(reply.status, 409u);
+  EXPECT_NE(std::get<std::string>(reply.body).find("wing.qtet"), std::string::npos);
+  EXPECT_EQ(uploads.partialBytes("wing", std::string(64, 'a')), std::nullopt);
+  fs::remove(folder.logFolder() / "wing.qtet");
+  EXPECT_EQ(beginAndBreakOff(uploads, fourBytes('a')), 0u);
+}
+
+TEST(Uploads, aFolderThatTakesTheNameMeanwhileIs409AndThePartStays) {
+  const test::ServedFolder folder;
+  Uploads uploads(folder.store(), {});
+  const Bytes log = testing::logBytes(testing::soundMesh(8, 77));
+  for (const bool newly : {false, true}) {
+    UploadRequest request{.id = "wing", .digest = sha256Hex(log)};
+    request.bodyBytes = request.totalBytes = log.size();
+    if (newly) request.ifNoneMatch = "*";
+    auto begun = uploads.begin(request);
+    ASSERT_TRUE(begun);
+    ASSERT_FALSE((*begun)->append(log));
+    fs::create_directories(folder.logFolder() / "wing.qtet" / "inside");
+    EXPECT_EQ((*begun)->finish({}).status, 409u);
+    begun->reset();
+    EXPECT_EQ(uploads.partialBytes("wing", sha256Hex(log)), log.size());
+    fs::remove_all(folder.logFolder() / "wing.qtet");
+  }
 }
 
 TEST(Uploads, ofTwoServersOnOneFolderOneMakesANewMesh) {

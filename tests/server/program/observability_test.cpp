@@ -241,10 +241,12 @@ TEST(Operators, theirPathsAreAnsweredBesideEverythingElse) {
       << metrics;
   EXPECT_NE(metrics.find("qtet_meshes 2\n"), std::string::npos);
   EXPECT_NE(metrics.find("qtet_connections_open 1\n"), std::string::npos);
-  EXPECT_NE(metrics.find("qtet_http_request_duration_seconds_bucket{le=\"+Inf\"} 3\n"),
+  EXPECT_NE(metrics.find("qtet_http_request_duration_seconds_bucket{route=\"admin\",method=\"GET\","
+                         "le=\"+Inf\"} 3\n"),
             std::string::npos);
-  for (const char* name : {"cpu_seconds_total", "resident_memory_bytes", "open_fds", "max_fds",
-                           "start_time_seconds"}) {
+  EXPECT_NE(metrics.find("qtet_build_info{version=\"" QTET_VERSION "\"} 1\n"), std::string::npos);
+  for (const char* name : {"cpu_seconds_total", "resident_memory_bytes", "virtual_memory_bytes",
+                           "open_fds", "max_fds", "start_time_seconds"}) {
     const std::size_t at = metrics.find("\nprocess_" + std::string(name) + " ");
     ASSERT_NE(at, std::string::npos) << name;
     EXPECT_GT(std::stod(metrics.substr(metrics.find(' ', at))), 0) << name;

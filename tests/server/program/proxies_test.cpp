@@ -68,6 +68,23 @@ TEST_F(Proxies, eachClientOfAProxyHasBoundsOfItsOwn) {
       << "one request for which the proxy names nobody";
 }
 
+TEST_F(Proxies, whereTheProxyNamesNoAddressTheRequestIsItsOwn) {
+  const auto server = serve(ProxyHeader::kForwardedFor);
+  test::RawClient one(server.port()), other(server.port());
+  const auto ask = [](test::RawClient& proxy, const std::string& lines) {
+    return proxy.get("/livez", lines).status;
+  };
+  const std::string name = "X-Forwarded-For:";
+  EXPECT_EQ(ask(one, name + " unknown\r\n"), 200u);
+  EXPECT_EQ(ask(other, name + "\r\n"), 200u);
+  EXPECT_EQ(ask(one, name + " 203.0.113.7\r\n" + name + " _hidden\r\n"), 429u)
+      << "they share the limits of the proxy's address";
+  EXPECT_EQ(ask(other, name + " 203.0.113.7\r\n"), 200u);
+  EXPECT_EQ(ask(one, ""), 200u) << "a health check of the proxy's";
+  const std::string none = "127.0.0.1";
+  EXPECT_EQ(clients(5), (std::vector<std::string>{none, none, none, none, "203.0.113.7"}));
+}
+
 TEST_F(Proxies, othersAreNotBelieved) {
   const auto server = serve(ProxyHeader::kForwardedFor, "10.0.0.0/8");
   test::RawClient client(server.port());

@@ -365,5 +365,48 @@ TEST(Origins, ofOtherPagesGetNoTicketsAndChangeNothing) {
   EXPECT_EQ(ask("DELETE /v1/meshes/noise", "https://a.example"), 204u);
 }
 
+TEST(Origins, aPreflightSaysWhatTheRequestWouldGet) {
+  const test::ServedFolder folder;
+  Access access(*Tokens::parse("write * " + kWriter + "\n"));
+  const auto serve = [&](std::vector<std::string> origins) {
+    return test::RunningServer(folder.store(), folder.viewer(),
+                               {.access = &access, .allowedOrigins = std::move(origins)});
+  };
+  const auto server = serve({"https://a.example", "https://c.example"}), open = serve({});
+  struct Case {
+    const test::RunningServer& server;
+    std::string target, origin, method, allowOrigin, allowMethods;
+  };
+  const std::string mesh = "/v1/meshes/new", tickets = "/v1/tickets",
+                    reading = "GET, HEAD, OPTIONS";
+  const std::string stranger = "https://b.example", page = "https://c.example";
+  const std::string all = reading + ", PUT, DELETE";
+  for (const Case& one :
+       {Case{server, mesh, stranger, "PUT", "", reading},
+        Case{server, mesh, stranger, "DELETE", "", reading},
+        Case{server, mesh, stranger, "SURPRISE", "", reading},
+        Case{server, mesh, stranger, "GET", "*", reading},
+        Case{server, mesh, "null", "PUT", "", reading}, Case{server, mesh, page, "PUT", page, all},
+        Case{server, tickets, stranger, "POST", "", "OPTIONS"},
+        Case{server, tickets, page, "POST", page, "POST, OPTIONS"},
+        Case{server, "/v1/meshes", stranger, "GET", "*", reading},
+        Case{server, mesh, "", "", "*", all}, Case{open, mesh, stranger, "PUT", "*", all}}) {
+    RawClient client(one.server.port());
+    client.send(
+        "OPTIONS " + one.target + " HTTP/1.1\r\nHost: a\r\n" +
+        (one.origin.empty() ? "" : "Origin: " + one.origin + "\r\n") +
+        (one.method.empty() ? "" : "Access-Control-Request-Method: " + one.method + "\r\n") +
+        "\r\n");
+    const test::HttpResponse answer = client.receive();
+    const std::string what = one.method + " " + one.target + " of " + one.origin;
+    EXPECT_EQ(answer.status, 204u) << what;
+    EXPECT_EQ(answer.header("access-control-allow-origin"), one.allowOrigin) << what;
+    EXPECT_EQ(answer.header("access-control-allow-methods"), one.allowMethods) << what;
+    EXPECT_EQ(answer.header("vary"),
+              &one.server == &open ? "" : "Origin, Access-Control-Request-Method")
+        << what;
+  }
+}
+
 }  // namespace
 }  // namespace qtet

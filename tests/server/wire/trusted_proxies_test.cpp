@@ -44,10 +44,12 @@ TEST(TrustedProxies, whatIsNoBlockIsRefused) {
   }
 }
 
+/// The proxy at the other end of the connection.
+constexpr const char* kSender = "10.0.0.9";
+
 std::string clientOf(std::string_view value, ProxyHeader header = ProxyHeader::kForwardedFor) {
   const TrustedProxies proxies{networks("10.0.0.0/8"), header};
-  const auto client = forwardedClient(proxies, value);
-  return client ? client->to_string() : "";
+  return forwardedClient(proxies, ip::make_address(kSender), value).to_string();
 }
 
 TEST(TrustedProxies, theLastAddressThatIsNoProxysIsTheClients) {
@@ -60,12 +62,68 @@ TEST(TrustedProxies, theLastAddressThatIsNoProxysIsTheClients) {
   EXPECT_EQ(clientOf("2001:db8::7"), "2001:db8::7");
   EXPECT_EQ(clientOf("[2001:db8::7]:4711"), "2001:db8::7");
   EXPECT_EQ(clientOf("::ffff:203.0.113.9"), "203.0.113.9");
+  EXPECT_EQ(clientOf("10.0.0.5"), "10.0.0.5");
 }
 
 TEST(TrustedProxies, whereTheListNamesNoAddressItIsBelievedNoFurther) {
   for (const char* nobody : {"", " ", "unknown", "6.6.6.6, unknown", "6.6.6.6, ", "[::1", "1.2.3"})
-    EXPECT_EQ(clientOf(nobody), "") << nobody;
+    EXPECT_EQ(clientOf(nobody), kSender) << nobody;
   EXPECT_EQ(clientOf("6.6.6.6, unknown, 10.0.0.1"), "10.0.0.1");
+}
+
+TEST(TrustedProxies, aPlaceThatIsNoAddressCountsAsTheProxysOwn) {
+  for (const std::string nobody : {",",
+                                   ", ,",
+                                   "6.6.6.6,",
+                                   "_x",
+                                   "_hidden:4711",
+                                   "unix:",
+                                   "[2001:db8::7]4711",
+                                   "[2001:db8::7]:",
+                                   "[2001:db8::7]:x",
+                                   "[2001:db8::7",
+                                   "2001:db8::7]",
+                                   "[]",
+                                   "[]:1",
+                                   "[203.0.113.9]",
+                                   "[203.0.113.9]:1",
+                                   "203.0.113.9:",
+                                   "203.0.113.9:x",
+                                   "203.0.113.9:123456",
+                                   "203.0.113.9:_",
+                                   "203.0.113.9:1:2",
+                                   "203.0.113.9;203.0.113.8",
+                                   "203.0.113.9 203.0.113.8",
+                                   "203.0.113.256",
+                                   "0x7f.1",
+                                   "fe80::1%1",
+                                   "fe80::1%eth0",
+                                   "\"203.0.113.9\"",
+                                   "\xFF\xFE"}) {
+    EXPECT_EQ(clientOf(nobody), kSender) << nobody;
+    EXPECT_EQ(clientOf("203.0.113.9, " + nobody), kSender) << nobody;
+    EXPECT_EQ(clientOf(nobody + ", 203.0.113.9"), "203.0.113.9") << nobody;
+    EXPECT_EQ(clientOf(nobody + ", 10.0.0.1"), "10.0.0.1") << nobody;
+  }
+  EXPECT_EQ(clientOf("203.0.113.9:_hidden"), "203.0.113.9") << "RFC 7239 lets ports be hidden";
+  EXPECT_EQ(clientOf("203.0.113.9:12345"), "203.0.113.9");
+  for (const char filling : {'1', ':', '[', ',', '.', ' ', '_'})
+    EXPECT_EQ(clientOf(std::string(1'000'000, filling)), kSender) << filling;
+}
+
+TEST(TrustedProxies, anyBytesNameAnAddressOrTheProxy) {
+  std::mt19937 random(2);
+  const std::string alphabet = "0123456789abcdef:.[]%,; \"=_forFOR";
+  for (int i = 0; i < 20'000; ++i) {
+    std::string list;
+    for (unsigned n = random() % 40; n > 0; --n) list += alphabet[random() % alphabet.size()];
+    for (const ProxyHeader header : {ProxyHeader::kForwardedFor, ProxyHeader::kForwarded}) {
+      EXPECT_NE(clientOf(list, header), "");
+      EXPECT_EQ(clientOf(list + ",unknown", header), kSender) << list;
+      EXPECT_EQ(clientOf(list + ",for=203.0.113.9", ProxyHeader::kForwarded), "203.0.113.9")
+          << list;
+    }
+  }
 }
 
 TEST(TrustedProxies, forwardedIsReadAsRfc7239WritesIt) {
@@ -73,8 +131,11 @@ TEST(TrustedProxies, forwardedIsReadAsRfc7239WritesIt) {
   EXPECT_EQ(of("for=203.0.113.9;proto=https;by=10.0.0.1"), "203.0.113.9");
   EXPECT_EQ(of("proto=https; For=\"[2001:db8::7]:4711\", for=10.0.0.1"), "2001:db8::7");
   EXPECT_EQ(of("for=6.6.6.6, for=203.0.113.9"), "203.0.113.9");
-  for (const char* nobody : {"for=_hidden", "for=unknown", "proto=https", "203.0.113.9", "for="})
-    EXPECT_EQ(of(nobody), "") << nobody;
+  for (const char* nobody :
+       {"for=_hidden", "for=unknown", "proto=https", "203.0.113.9", "for=", "for=\"\"", "for=\"",
+        "for=\"203.0.113.9", "for=;for=203.0.113.9", "for =203.0.113.9", ";", "for", ";;for",
+        "for=\"_x\"", "for=\"[::1]x\""})
+    EXPECT_EQ(of(nobody), kSender) << nobody;
 }
 
 /// A head that names `address`, with `more` bytes behind the addresses.
