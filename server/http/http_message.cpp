@@ -98,6 +98,12 @@ Reply busyReply(std::string_view detail) {
   return out;
 }
 
+Reply noPlaceReply(std::string_view detail) {
+  Reply out = busyReply(detail);
+  out.refusal = Refusal::kPlaces;
+  return out;
+}
+
 void addCommonHeaders(Reply& reply) {
   // Logs are public and there are no cookies: any page may read them, also one that isolates itself
   // (COEP).

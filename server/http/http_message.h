@@ -13,6 +13,7 @@
 
 #include "proto/bytes.h"
 #include "server/wire/file_part.h"
+#include "server/wire/refusal.h"
 
 namespace qtet {
 
@@ -50,6 +51,7 @@ struct Reply {
   std::optional<FilePart> file{};
   bool sendBody = true;  ///< false for HEAD: the headers speak of the body that is left out
   bool close = false;    ///< the connection cannot be used any further
+  Refusal refusal = Refusal::kNone;  ///< where the status does not say it
 
   /// The first header of that name, as it is written here; "" where there is none.
   [[nodiscard]] std::string header(std::string_view name) const;
@@ -72,6 +74,8 @@ inline constexpr unsigned kClientGone = 499;
 
 /// 503, to be asked for again in limits::kRetryAfterSeconds.
 [[nodiscard]] Reply busyReply(std::string_view detail);
+/// The same where all places are taken.
+[[nodiscard]] Reply noPlaceReply(std::string_view detail);
 
 /// Headers that every answer of this server carries.
 void addCommonHeaders(Reply& reply);

@@ -1,5 +1,5 @@
-// How a file takes its name in a folder that several servers may share: under the folder's lock, at
-// once, and kept across a power failure.
+// How a file takes its name in a folder that servers share: under the folder's lock, at once, and
+// kept across a power failure.
 #pragma once
 
 #include <filesystem>

@@ -53,8 +53,9 @@ fs::path UploadParts::nameless() {
                     std::to_string(next_++) + std::string(kSuffix));
 }
 
-std::vector<UploadParts::Part> UploadParts::kept(const fs::path& except) const {
+std::vector<UploadParts::Part> UploadParts::kept(const fs::path& except) {
   std::vector<Part> out;
+  seen_.clear();
   std::error_code ec;
   for (fs::directory_iterator it(folder_, ec), end; !ec && it != end; it.increment(ec)) {
     if (middleOf(it->path()).empty() || it->path() == except || underWay(it->path())) continue;
@@ -62,7 +63,9 @@ std::vector<UploadParts::Part> UploadParts::kept(const fs::path& except) const {
     std::error_code gone;
     Part part{it->path(), it->file_size(gone), it->last_write_time(gone),
               token == tokens_.end() ? "" : token->second};
-    if (!gone) out.push_back(std::move(part));
+    if (gone) continue;
+    seen_.insert(part.path);
+    out.push_back(std::move(part));
   }
   std::ranges::sort(out, {}, &Part::written);
   return out;
@@ -105,17 +108,32 @@ std::optional<Reply> UploadParts::begin(const UploadRequest& request, const fs::
   });
   tokens_[part] = request.token;
   underWay_[part] = {request.token, toCome};
+  seen_.erase(part);
   return std::nullopt;
 }
 
-void UploadParts::end(const fs::path& part) { underWay_.erase(part); }
+void UploadParts::end(const fs::path& part) {
+  underWay_.erase(part);
+  seen_.insert(part);
+}
+
+std::uintmax_t UploadParts::bytes() const {
+  std::uintmax_t out = 0;
+  const auto add = [&out](const fs::path& path) {
+    std::error_code gone;
+    if (const std::uintmax_t size = fs::file_size(path, gone); !gone) out += size;
+  };
+  for (const fs::path& path : seen_) add(path);
+  for (const auto& [path, upload] : underWay_) add(path);
+  return out;
+}
 
 std::size_t UploadParts::countUnderWay(const std::string& token) const {
   return static_cast<std::size_t>(std::ranges::count_if(
       underWay_, [&](const auto& entry) { return entry.second.token == token; }));
 }
 
-void UploadParts::removeOld(std::chrono::seconds ofNoDigest) const {
+void UploadParts::removeOld(std::chrono::seconds ofNoDigest) {
   const auto now = fs::file_time_type::clock::now();
   for (const Part& part : kept({})) {
     const std::string middle = middleOf(part.path);

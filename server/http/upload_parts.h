@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -56,7 +57,10 @@ class UploadParts {
 
   /// Removes old parts of inactive uploads: those that nobody wrote to for
   /// limits::kPartialUploadTime, or for `ofNoDigest` if they cannot be resumed.
-  void removeOld(std::chrono::seconds ofNoDigest) const;
+  void removeOld(std::chrono::seconds ofNoDigest);
+  /// Sums the parts under way and those that the last begin() or removeOld() has seen. Asks for
+  /// each file's size, but does not read the folder, which may hold 100,000 logs.
+  [[nodiscard]] std::uintmax_t bytes() const;
 
  private:
   struct Part {
@@ -70,12 +74,13 @@ class UploadParts {
     std::uintmax_t toCome = 0;  ///< bytes, when it was begun
   };
   /// Those that nobody sends at the moment, the oldest first, without `except`.
-  [[nodiscard]] std::vector<Part> kept(const std::filesystem::path& except) const;
+  [[nodiscard]] std::vector<Part> kept(const std::filesystem::path& except);
 
   const std::filesystem::path folder_;
   const PartQuota quota_;
   std::map<std::filesystem::path, UnderWay> underWay_;
   std::map<std::filesystem::path, std::string> tokens_;  // of parts of this run
+  std::set<std::filesystem::path> seen_;                 // without those under way
   std::uint64_t next_ = 0;
 };
 

@@ -201,9 +201,9 @@ std::expected<std::unique_ptr<Upload>, Reply> Uploads::begin(const UploadRequest
       request.digest ? parts_.resumable(request.id, *request.digest) : parts_.nameless();
   if (parts_.underWay(part)) return refuse(problem(409, "upload-conflict", kSomebodySends));
   if (parts_.countUnderWay() >= limits::kMaxUploads)
-    return refuse(busyReply("too many uploads; try again"));
+    return refuse(noPlaceReply("too many uploads; try again"));
   if (parts_.countUnderWay(request.token) >= limits::kMaxUploadsOfToken)
-    return refuse(busyReply("too many uploads of this token; try again"));
+    return refuse(noPlaceReply("too many uploads of this token; try again"));
   parts_.removeOld(limits::kPartialUploadTime);
   const int flags = O_WRONLY | O_APPEND | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK |
                     (request.first == 0 ? O_CREAT : 0);
@@ -258,9 +258,14 @@ Reply Uploads::remove(const UploadRequest& request) {
   return out;
 }
 
-void Uploads::sweep() const {
+void Uploads::sweep() {
   const std::scoped_lock lock(mutex_);
   parts_.removeOld(-limits::kPartialUploadTime);  // of any age, and whatever the clock was set to
+}
+
+std::uintmax_t Uploads::partBytes() const {
+  const std::scoped_lock lock(mutex_);
+  return parts_.bytes();
 }
 
 std::size_t Uploads::active() const {

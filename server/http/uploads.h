@@ -91,11 +91,13 @@ class Uploads {
   [[nodiscard]] Reply remove(const UploadRequest& request);
   /// Removes the parts of uploads that cannot be resumed, and of those that nobody resumed for
   /// limits::kPartialUploadTime.
-  void sweep() const;
+  void sweep();
   /// Stops all checks: those under way and all later ones.
   void stopChecks() { ending_.request_stop(); }
 
   [[nodiscard]] std::size_t active() const;
+  /// Bytes of uploads that are not whole, under way or kept for resuming.
+  [[nodiscard]] std::uintmax_t partBytes() const;
   /// The active uploads whose logs are being decoded.
   [[nodiscard]] std::size_t checking() const { return checking_; }
   [[nodiscard]] std::uint64_t published() const { return published_; }

@@ -237,6 +237,11 @@ std::vector<Metrics::Figure> Server::State::figures() const {
   const auto counter = [](const char* name, const char* help, auto value) {
     return Metrics::Figure{name, help, true, static_cast<double>(value)};
   };
+  const auto cache = [](const char* labels, auto bytes) {
+    return Metrics::Figure{"cache_bytes",
+                           "Bytes that are kept so that they need not be made again.", false,
+                           static_cast<double>(bytes), labels};
+  };
   std::vector<Metrics::Figure> out = processFigures();
   if (options.tls != nullptr)
     out.push_back(gauge("tls_certificate_expiry_timestamp_seconds",
@@ -246,6 +251,11 @@ std::vector<Metrics::Figure> Server::State::figures() const {
       gauge("disk_free_bytes", "Bytes that may still be written where the meshes lie.",
             freeDiskBytes(store.folder())),
       gauge("uploads_open", "Uploads under way.", uploads.active()),
+      gauge("uploads_part_bytes", "Bytes of uploads that are not whole.", uploads.partBytes()),
+      cache("{cache=\"pages\"}", router.pageBytes()),
+      cache("{cache=\"levels\"}", options.cache != nullptr ? options.cache->bytes() : 0),
+      cache("{cache=\"copies\"}", bytesOfCopies()),
+      cache("{cache=\"intervals\"}", KnownIntervals::bytesOfAll()),
       gauge("uploads_checking", "Uploads whose logs are being decoded.", uploads.checking()),
       counter("uploads_published_total", "Logs that were uploaded and published.",
               uploads.published()),

@@ -39,6 +39,7 @@ Reply ticketReply(const RequestView& request, Access& access) {
   if (!ticket) {
     Reply busy = problem(429, "too-many-requests",
                          "there are as many unused tickets of this token as there may be");
+    busy.refusal = Refusal::kPlaces;
     busy.headers.emplace_back("Retry-After", std::to_string(limits::kTicketTime.count()));
     return busy;
   }

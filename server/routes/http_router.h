@@ -32,6 +32,8 @@ class Router {
          std::optional<Writing> writing = std::nullopt, const std::string& frameAncestors = "*");
 
   [[nodiscard]] Answer route(const RequestView& request) const;
+  /// Bytes of the pages that are kept.
+  [[nodiscard]] std::size_t pageBytes() const { return lists_->bytes(); }
 
  private:
   [[nodiscard]] Answer find(const RequestView& request, const RequestTarget& target) const;

@@ -31,9 +31,10 @@ Reply clientGone(Reply reply = {}) {
 
 Reply refusedLevel(LevelRefusal refusal) {
   if (refusal != LevelRefusal::kAddress)
-    return busyReply("too many levels are being made; try again");
+    return noPlaceReply("too many levels are being made; try again");
   Reply out = problem(429, "too-many-requests",
                       "as many levels are being made for this address as may be; try again");
+  out.refusal = Refusal::kPlaces;
   out.headers.emplace_back("Retry-After", std::to_string(limits::kRetryAfterSeconds));
   return out;
 }

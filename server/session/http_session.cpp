@@ -175,9 +175,13 @@ std::optional<Reply> HttpSession::earlyAnswer(const RequestHeader& header, bool 
   if (!isReading(header.method()))
     if (std::optional<Reply> refusal = originRefusal(header, services_.allowedOrigins))
       return refusal;
-  if (placed && (!peer_.client || peer_.client->countRequest())) return std::nullopt;
+  const auto now = AddressLimits::Clock::now();
+  if (placed && (!peer_.client || peer_.client->countRequest(now))) return std::nullopt;
   Reply out =
       problem(429, "too-many-requests", "this address asks too often; come back in a moment");
+  out.refusal = !placed                        ? Refusal::kPlaces
+                : peer_.client->overdrawn(now) ? Refusal::kCredit
+                                               : Refusal::kRate;
   out.headers.emplace_back("Retry-After", "1");
   out.close = hasBody(viewOf(header));
   return out;
@@ -249,7 +253,7 @@ asio::awaitable<bool> HttpSession::send(Reply reply, bool keepAlive) {
   if (body.size() < limits::kMinFromFile) reply.file.reset();
   const Sent sent = co_await sendReply(peer_.socket, {head, body, reply.file},
                                        services_.timeouts.write, services_.unpaced);
-  report_.end(reply.status, sent.bytes, sent.whole);
+  report_.end(reply.status, sent.bytes, sent.whole, reply.refusal);
   if (!sent.whole) co_return false;
   if (!keepAlive) {
     peer_.socket.finishSending();

@@ -50,9 +50,9 @@ void RequestReport::addHeaders(Reply& reply) const {
   if (!trace_.traceId.empty()) reply.headers.emplace_back("traceparent", trace_.traceparent());
 }
 
-void RequestReport::end(unsigned status, std::uint64_t bytes, bool whole) const {
+void RequestReport::end(unsigned status, std::uint64_t bytes, bool whole, Refusal refusal) const {
   const auto time = std::chrono::steady_clock::now() - begun_;
-  metrics_.countRequest(kind_, status, bytes, time);
+  metrics_.countRequest(kind_, status, bytes, time, refusal);
   if (log_ == nullptr) return;
   AccessEntry entry{client_, method_, target_, status, bytes, time, whole};
   if (change_) entry.change = &*change_;

@@ -38,8 +38,10 @@ class RequestReport {
   void addHeaders(Reply& reply) const;
   /// The request's data for the report of the stream that it becomes.
   [[nodiscard]] StreamRequest streamRequest() const { return {client_, target_, trace_}; }
-  /// Its answer was sent, or nobody waits for it any more. `bytes` of the body went out.
-  void end(unsigned status, std::uint64_t bytes, bool whole) const;
+  /// Its answer was sent, or nobody waits for it any more. `bytes` of the body went out. `refusal`
+  /// says more than the status.
+  void end(unsigned status, std::uint64_t bytes, bool whole,
+           Refusal refusal = Refusal::kNone) const;
 
  private:
   Metrics& metrics_;

@@ -1,9 +1,11 @@
 #include "server/store/packet_intervals.h"
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include "codec/log/log_index.h"
@@ -145,5 +147,23 @@ Result<PacketIntervals> packetIntervals(const LogFile& log, const Manifest& mani
   }
   return PacketIntervals(manifest, std::move(values));
 }
+
+namespace {
+std::atomic<std::uintmax_t> knownBytes = 0;
+}  // namespace
+
+void KnownIntervals::put(PacketIntervals table) {
+  const std::size_t bytes = table.bytes();
+  auto owned = std::make_unique<const PacketIntervals>(std::move(table));
+  knownBytes += bytes;
+  std::shared_ptr<const PacketIntervals> known(owned.release(), [bytes](const auto* gone) {
+    knownBytes -= bytes;
+    std::default_delete<const PacketIntervals>()(gone);
+  });
+  const std::scoped_lock lock(mutex_);
+  known_.swap(known);
+}
+
+std::uintmax_t KnownIntervals::bytesOfAll() { return knownBytes; }
 
 }  // namespace qtet

@@ -60,6 +60,7 @@ class PacketIntervals {
   [[nodiscard]] static PacketIntervals decode(ByteView bytes, const LogIndex& index,
                                               const Manifest& manifest);
   [[nodiscard]] static std::size_t columnsOf(const Manifest& manifest);
+  [[nodiscard]] std::size_t bytes() const { return values_.size() * sizeof(ValueInterval); }
 
  private:
   std::size_t columns_ = 0;
@@ -82,11 +83,9 @@ class KnownIntervals {
     const std::scoped_lock lock(mutex_);
     return known_;
   }
-  void put(PacketIntervals table) {
-    auto known = std::make_shared<const PacketIntervals>(std::move(table));
-    const std::scoped_lock lock(mutex_);
-    known_ = std::move(known);
-  }
+  void put(PacketIntervals table);
+  /// Bytes of all tables of this process that somebody holds.
+  [[nodiscard]] static std::uintmax_t bytesOfAll();
 
  private:
   mutable std::mutex mutex_;

@@ -147,6 +147,8 @@ Result<MeshPointer> openAs(const std::filesystem::path& path, std::string id,
 
 }  // namespace
 
+std::uintmax_t bytesOfCopies() { return copiedBytes; }
+
 Result<MeshPointer> openMesh(const std::filesystem::path& path, std::string id, bool copy) {
   // Asked first: a file that changes while it is read differs from this identity, and is opened
   // again.

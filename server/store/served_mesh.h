@@ -86,6 +86,9 @@ using MeshPointer = std::shared_ptr<const ServedMesh>;
 [[nodiscard]] Result<MeshPointer> reopenMesh(const std::filesystem::path& path, std::string id,
                                              const std::string& digest, const FileIdentity& file);
 
+/// Bytes of all copies that this process holds, at most limits::kMaxCopiedBytes.
+[[nodiscard]] std::uintmax_t bytesOfCopies();
+
 /// nullopt: there is no such file, or it is no regular one.
 [[nodiscard]] std::optional<FileIdentity> identityOf(const std::filesystem::path& path);
 

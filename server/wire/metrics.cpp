@@ -59,32 +59,21 @@ std::string Metrics::Histogram::text(const std::string& name, const std::string&
 }
 
 void Metrics::countRequest(const RequestKind& kind, unsigned status, std::uint64_t bytes,
-                           std::chrono::nanoseconds time) {
+                           std::chrono::nanoseconds time, Refusal refusal) {
   byStatus_[std::min<std::size_t>(status, kStatuses - 1)].fetch_add(1, std::memory_order_relaxed);
   bytes_.fetch_add(bytes, std::memory_order_relaxed);
   if (kind.isUpload() && status >= 400) failedUploads_.fetch_add(1, std::memory_order_relaxed);
-  countRefusal(kind, status);
+  if (refusal == Refusal::kNone) refusal = refusalBy(status);
+  // The operators' own /readyz refuses nobody by its 503.
+  if (refusal == Refusal::kBusy && kind.route == RouteLabel::kAdmin) refusal = Refusal::kNone;
+  refusals_[static_cast<std::size_t>(refusal)].fetch_add(1, std::memory_order_relaxed);
   requests_[static_cast<std::size_t>(kind.route)][kind.method].count(time);
 }
 
-/// The operators' own /readyz refuses nobody by its 503.
-void Metrics::countRefusal(const RequestKind& kind, unsigned status) {
-  const auto count = [this](std::size_t reason) {
-    refusals_[reason].fetch_add(1, std::memory_order_relaxed);
-  };
-  if (status == 401 || status == 403) return count(0);
-  if (status == 429) return count(1);
-  if (status == 413 || status == 431 || status == 507) return count(2);
-  if (status == 503 && kind.route != RouteLabel::kAdmin) count(3);
-}
-
 std::string Metrics::refusalText() const {
-  std::string out = head("refusals_total",
-                         "Requests refused: auth 401 and 403, rate 429, size 413, 431 and 507, "
-                         "busy 503.",
-                         "counter");
-  for (std::size_t i = 0; i < kReasons.size(); ++i)
-    out += "qtet_refusals_total{reason=\"" + std::string(kReasons[i]) + "\"} " +
+  std::string out = head("refusals_total", "Requests refused, by reason.", "counter");
+  for (std::size_t i = 1; i < kRefusalLabels.size(); ++i)
+    out += "qtet_refusals_total{reason=\"" + std::string(kRefusalLabels[i]) + "\"} " +
            std::to_string(refusals_[i].load(std::memory_order_relaxed)) + "\n";
   return out;
 }
@@ -140,9 +129,13 @@ std::string Metrics::text(const std::vector<Figure>& figures) const {
       {"stream_stalled_seconds_total", "Time that streams waited for the network.", true,
        secondsOf(stalled_)}};
   all.insert(all.end(), figures.begin(), figures.end());
-  for (const Figure& figure : all)
-    out += head(figure.name, figure.help, figure.counter ? "counter" : "gauge") +
-           nameOf(figure.name) + " " + number(figure.value) + "\n";
+  std::string_view last;
+  for (const Figure& figure : all) {
+    if (figure.name != last)
+      out += head(figure.name, figure.help, figure.counter ? "counter" : "gauge");
+    last = figure.name;
+    out += nameOf(figure.name) + figure.labels + " " + number(figure.value) + "\n";
+  }
   return out;
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "server/wire/refusal.h"
 #include "server/wire/request_kind.h"
 
 namespace qtet {
@@ -15,8 +16,9 @@ namespace qtet {
 /// Thread-safe; relaxed, since every figure stands for itself.
 class Metrics {
  public:
+  /// `refusal`: why it was refused, where the status does not say it.
   void countRequest(const RequestKind& kind, unsigned status, std::uint64_t bytes,
-                    std::chrono::nanoseconds time);
+                    std::chrono::nanoseconds time, Refusal refusal = Refusal::kNone);
   void countFailedHandshake() { failedHandshakes_.fetch_add(1, std::memory_order_relaxed); }
   void countConnection() { connections_.fetch_add(1, std::memory_order_relaxed); }
   void countRefusedConnection() { refused_.fetch_add(1, std::memory_order_relaxed); }
@@ -43,15 +45,13 @@ class Metrics {
     const char* help;
     bool counter = false;  ///< else a gauge
     double value = 0;
+    const char* labels = "";  ///< `{cache="pages"}`; figures of one name follow each other
   };
   [[nodiscard]] std::string text(const std::vector<Figure>& figures) const;
 
  private:
-  void countRefusal(const RequestKind& kind, unsigned status);
   [[nodiscard]] std::string requestText() const;
   [[nodiscard]] std::string refusalText() const;
-
-  static constexpr std::array<const char*, 4> kReasons = {"auth", "rate", "size", "busy"};
 
   static constexpr std::size_t kStatuses = 600;
 
@@ -74,7 +74,8 @@ class Metrics {
   /// By route and method: 10 KB, whatever clients ask for.
   std::array<std::array<Histogram, kMethodLabels.size()>, kRouteLabels.size()> requests_;
   Histogram firstFrames_;
-  std::array<std::atomic<std::uint64_t>, kReasons.size()> refusals_{};
+  /// By Refusal; the first one counts what was not refused.
+  std::array<std::atomic<std::uint64_t>, kRefusalLabels.size()> refusals_{};
   std::atomic<std::uint64_t> bytes_ = 0, connections_ = 0, refused_ = 0, failedHandshakes_ = 0,
                              failedUploads_ = 0;
   std::atomic<std::uint64_t> streams_ = 0, openStreams_ = 0, streamBytes_ = 0, stalled_ = 0,

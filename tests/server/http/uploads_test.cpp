@@ -751,6 +751,30 @@ TEST(Uploads, whatAKilledServerLeftIsSweptUnlessItCanBeGoneOnWith) {
   EXPECT_FALSE(fs::exists(resumable));
 }
 
+TEST(Uploads, bytesOfPartsAreThoseUnderWayAndThoseThatAreKept) {
+  const test::ServedFolder folder;
+  const std::string digest(64, 'a');
+  std::ofstream(folder.logFolder() / (".upload-" + std::string(64, 'b') + "-old.part")) << "half";
+  Uploads uploads(folder.store(), {.maxBytes = 100});
+  uploads.sweep();
+  EXPECT_EQ(uploads.partBytes(), 4u) << "of an earlier run";
+  UploadRequest named{.id = "wing", .digest = digest, .bodyBytes = 9, .totalBytes = 9};
+  auto one = uploads.begin(named);
+  auto other = uploads.begin({.id = "wing", .bodyBytes = 9, .totalBytes = 9});
+  ASSERT_TRUE(one && other);
+  EXPECT_FALSE((*one)->append(ByteView(Bytes{1, 2})));
+  EXPECT_FALSE((*other)->append(ByteView(Bytes{1, 2, 3})));
+  EXPECT_EQ(uploads.partBytes(), 4u + 2 + 3);
+  one->reset();
+  other->reset();
+  EXPECT_EQ(uploads.partBytes(), 4u + 2) << "the nameless one has gone";
+  named.first = 2;
+  one = uploads.begin(named);
+  ASSERT_TRUE(one);
+  EXPECT_FALSE((*one)->append(ByteView(Bytes{3})));
+  EXPECT_EQ(uploads.partBytes(), 4u + 3) << "resumed, and counted once";
+}
+
 TEST(Uploads, aServerThatRunsForYearsKeepsNoOldParts) {
   const test::ServedFolder folder;
   const auto old =

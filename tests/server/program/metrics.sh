@@ -27,7 +27,8 @@ for _ in {1..100}; do grep -q 'listening on' "$out/stdout" && break; sleep 0.1; 
 url=$(sed -n 's/.*listening on \(http[^ ]*\) .*/\1/p' "$out/stdout")
 ask() { curl -s -m 60 -o /dev/null "$@" || true; }
 
-for path in '' v1/meshes v1/meshes/fin v1/meshes/none openapi.json livez readyz version v1/stream; do
+for path in '' v1/meshes v1/meshes/fin v1/meshes/none openapi.json livez readyz version \
+  v1/stream; do
   ask "$url$path"
   ask -I "$url$path"
 done
@@ -46,7 +47,11 @@ curl -s -m 60 "${url}metrics" >"$out/metrics"
 
 judge "$out/metrics" || fail "promtool complains of $out/metrics"
 for line in 'qtet_build_info{version="[^"]*"} 1' 'qtet_uploads_failed_total 2' \
-  'qtet_refusals_total{reason="auth"} 1' 'qtet_disk_free_bytes [0-9]*' \
+  'qtet_refusals_total{reason="auth"} 1' 'qtet_refusals_total{reason="credit"} 0' \
+  'qtet_refusals_total{reason="places"} 0' 'qtet_disk_free_bytes [0-9]*' \
+  'qtet_uploads_part_bytes 0' 'qtet_cache_bytes{cache="pages"} [1-9][0-9]*' \
+  'qtet_cache_bytes{cache="levels"} [1-9][0-9]*' 'qtet_cache_bytes{cache="copies"} [1-9][0-9]*' \
+  'qtet_cache_bytes{cache="intervals"} 0' \
   'qtet_http_request_duration_seconds_bucket{route="mesh",method="PUT",le="0.005"} [0-9]*' \
   'qtet_http_request_duration_seconds_count{route="level",method="GET"} [1-9][0-9]*' \
   'qtet_http_request_duration_seconds_count{route="preview",method="GET"} [1-9][0-9]*' \
@@ -57,3 +62,16 @@ done
 # A warning is a failure: a figure without its help.
 grep -v '^# HELP qtet_meshes ' "$out/metrics" >"$out/warned"
 ! judge "$out/warned" 2>/dev/null || fail "a warning of promtool was not noticed"
+
+# The dashboard and the alert rules ask for nothing that the server does not say.
+here=$(dirname "${BASH_SOURCE[0]}")
+deploy=$here/../../../server/deploy
+for file in grafana.json alerts.yml; do
+  names=$(grep -oE '\b(qtet|process)_[a-z_]+' "$deploy/$file" | sort -u)
+  [[ -n $names ]] || fail "$file asks for no figure"
+  for name in $names; do
+    grep -qE "^$name[{ ]" "$out/metrics" || fail "$file asks for $name, which is no figure"
+  done
+done
+promtool check rules "$deploy/alerts.yml" || fail "promtool complains of alerts.yml"
+promtool test rules "$here/alerts_test.yml" || fail "an alert fires where it must not, or not"

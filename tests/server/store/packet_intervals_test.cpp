@@ -273,5 +273,23 @@ TEST_F(IsovalueStreamTest, theTableIsNoLevelThatSomebodyCouldFetch) {
       404u);
 }
 
+TEST_F(PacketIntervalsTest, bytesOfAllTablesAreThoseThatSomebodyHolds) {
+  const std::uintmax_t before = KnownIntervals::bytesOfAll();
+  const std::size_t one = table_.bytes();
+  EXPECT_GT(one, 0u);
+  {
+    KnownIntervals first, second;
+    first.put(table_);
+    second.put(table_);
+    EXPECT_EQ(KnownIntervals::bytesOfAll(), before + 2 * one);
+    first.put(table_);
+    EXPECT_EQ(KnownIntervals::bytesOfAll(), before + 2 * one) << "the old one has gone";
+    const auto held = second.now();
+    second.put({});
+    EXPECT_EQ(KnownIntervals::bytesOfAll(), before + 2 * one) << "somebody holds it";
+  }
+  EXPECT_EQ(KnownIntervals::bytesOfAll(), before);
+}
+
 }  // namespace
 }  // namespace qtet

@@ -104,5 +104,28 @@ TEST(Metrics, refusalsAreCountedByReason) {
   EXPECT_TRUE(holds(text, "qtet_tls_handshakes_failed_total 1"));
 }
 
+TEST(Metrics, aRefusalWhoseReasonIsKnownIsNotCountedByItsStatus) {
+  Metrics metrics;
+  const RequestKind meshes = kindOf("GET", "/v1/meshes");
+  metrics.countRequest(meshes, 429, 0, 1ms, Refusal::kCredit);
+  metrics.countRequest(meshes, 429, 0, 1ms, Refusal::kPlaces);
+  metrics.countRequest(meshes, 503, 0, 1ms, Refusal::kPlaces);
+  const std::string text = metrics.text({});
+  EXPECT_TRUE(holds(text, "qtet_refusals_total{reason=\"credit\"} 1")) << text;
+  EXPECT_TRUE(holds(text, "qtet_refusals_total{reason=\"places\"} 2"));
+  EXPECT_TRUE(holds(text, "qtet_refusals_total{reason=\"rate\"} 0"));
+  EXPECT_TRUE(holds(text, "qtet_refusals_total{reason=\"busy\"} 0"));
+  EXPECT_EQ(text.find("reason=\"\""), std::string::npos) << "what was not refused has no line";
+}
+
+TEST(Metrics, figuresOfOneNameHaveOneHead) {
+  const std::string text = Metrics().text(
+      {{"kept", "It.", false, 1, "{cache=\"a\"}"}, {"kept", "It.", false, 2, "{cache=\"b\"}"}});
+  EXPECT_TRUE(
+      text.ends_with("\n# HELP qtet_kept It.\n# TYPE qtet_kept gauge\n"
+                     "qtet_kept{cache=\"a\"} 1\nqtet_kept{cache=\"b\"} 2\n"))
+      << text;
+}
+
 }  // namespace
 }  // namespace qtet
