@@ -33,7 +33,7 @@ void addMeasureOptions(boost::program_options::options_description& options) {
   namespace po = boost::program_options;
   options.add_options()("measure", po::value<std::string>()->default_value("levels"),
                         "the known error of each level, in the log's manifest: none, levels "
-                        "(sampled so that it costs less than simplifying), or all "
+                        "(as long as simplifying, on thin parts several times), or all "
                         "(200,000 samples of the volume and of each boundary)")(
       "base-error", po::value<double>(),
       "the base mesh is the coarsest level whose boundary is within this fraction of the diagonal "

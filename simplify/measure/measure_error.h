@@ -18,7 +18,7 @@ namespace qtet {
 
 /// The number of places that stand for the surfaces and the volume.
 enum class Effort : std::uint8_t {
-  kLevels,  ///< as many as keep measuring well below the cost of simplifying
+  kLevels,  ///< in proportion to the cells, from 3,000 to 50,000 in the volume
   kAll,     ///< 200,000 in the volume and on each boundary, whatever that costs
 };
 
@@ -66,8 +66,8 @@ struct MeasureOptions {
 /// significant digits, volumeKept to 10^-6) and depend on the history and the options only. With
 /// bounds or a rule, `history` forgets the coarse levels from the first one on, counted from the
 /// finest, that passes them. Level 0 is then the coarsest such that it and all finer ones keep
-/// them. Errors:
-/// not-found (a bound names no field of the history), cancelled (the history is unspecified then).
+/// them. Errors: not-found (a bound names no field of the history), cancelled (the history is
+/// unspecified then).
 /// REQUIRES: as HistoryLevels; it stands at level 0 before and after.
 [[nodiscard]] Result<std::vector<LevelError>> measureLevels(FusionHistory& history,
                                                             const MeasureOptions& options);

@@ -2,9 +2,7 @@
 // cubes.
 
 import assert from 'node:assert/strict';
-import {execFileSync} from 'node:child_process';
-import {writeFileSync} from 'node:fs';
-import {join} from 'node:path';
+import {serveMesh} from './programs.mjs';
 import {linearBox} from './volume_checks.mjs';
 
 /** Cubes along the shortest side. Below: which cubes are there. */
@@ -85,19 +83,14 @@ function compareWithCubes(view, sizes, cubes) {
 }
 
 /** Shows the box of cubes as a volume of constant opacity, without cards. */
-async function openSponge({server, browser, logs, out, bin}) {
+async function openSponge(context) {
+  const {server, browser} = context;
   const sizes = [kSponge, 2 * kSponge, 3 * kSponge];
   const cubes = [];
   for (let z = 0; z < sizes[2]; ++z)
     for (let y = 0; y < sizes[1]; ++y)
       for (let x = 0; x < sizes[0]; ++x) if (isInSponge(x, y, z)) cubes.push([x, y, z]);
-  const mesh = join(out, 'sponge.vtu');
-  writeFileSync(mesh, linearBox(kSponge, {}, isInSponge));
-  execFileSync(join(bin, 'qtet'), ['simplify', mesh, '-o', join(logs.fin.folder, 'sponge.qtet')], {
-    stdio: 'pipe',
-  });
-  server.kill();
-  await server.start();
+  await serveMesh(context, 'sponge', linearBox(kSponge, {}, isInSponge));
   const viewer = await browser.open(`${server.url}?mesh=sponge&field=x&volume=0.3,0.3`, {
     viewport: {width: 480, height: 320},
     deviceScaleFactor: 1.5,

@@ -1,11 +1,9 @@
 // The histogram in the colour panel: its handles set the range, with a pointer and with keys.
 
 import assert from 'node:assert/strict';
-import {execFileSync} from 'node:child_process';
-import {writeFileSync} from 'node:fs';
-import {join} from 'node:path';
 import {kDesktop, kPhone} from './browser.mjs';
 import {differingShare} from './png.mjs';
+import {serveMesh} from './programs.mjs';
 import {linearBox} from './volume_checks.mjs';
 
 async function opened({server, browser}, query, device = kDesktop) {
@@ -90,24 +88,19 @@ async function hasRoomForFingers(context) {
   assert.deepEqual(viewer.problems, []);
 }
 
-async function countsAwkwardFields({server, browser, logs, out, bin}) {
-  const mesh = join(out, 'counted.vtu');
-  writeFileSync(
-    mesh,
+async function countsAwkwardFields(context) {
+  const {server, browser} = context;
+  await serveMesh(
+    context,
+    'counted',
     linearBox(4, {
       Even: (x) => x,
       Constant: () => 42.5,
       Missing: (x, y, z) => (z < 1 ? NaN : y),
       Decades: (x, y) => 10 ** (y / 2),
     }),
+    ['--field-bits', '20'],
   );
-  execFileSync(
-    join(bin, 'qtet'),
-    ['simplify', mesh, '-o', join(logs.fin.folder, 'counted.qtet'), '--field-bits', '20'],
-    {stdio: 'pipe'},
-  );
-  server.kill();
-  await server.start();
   const viewer = await opened({server, browser}, 'mesh=counted&field=Even');
   const {page} = viewer;
   const bars = () => page.locator('qtet-viewer .histogram path').getAttribute('d');

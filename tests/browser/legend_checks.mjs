@@ -1,10 +1,9 @@
 // Fields that are awkward to show: names, numbers and missing values must stay readable.
 
 import assert from 'node:assert/strict';
-import {execFileSync} from 'node:child_process';
-import {readFileSync, writeFileSync} from 'node:fs';
-import {join} from 'node:path';
+import {readFileSync} from 'node:fs';
 import {kPhone} from './browser.mjs';
+import {serveMesh} from './programs.mjs';
 import {linearBox} from './volume_checks.mjs';
 
 const kLong = 'Turbulent kinetic energy dissipation rate per unit mass, averaged in time';
@@ -23,10 +22,11 @@ const placesOf = (viewer) =>
     };
   });
 
-async function showsAwkwardFieldsLegibly({server, browser, logs, out, bin}) {
-  const mesh = join(out, 'awkward.vtu');
-  writeFileSync(
-    mesh,
+async function showsAwkwardFieldsLegibly(context) {
+  const {server, browser} = context;
+  await serveMesh(
+    context,
+    'awkward',
     linearBox(4, {
       Offset: (x, y, z) => 101325 + 0.03 * z,
       Tiny: (x) => 1e-9 * x,
@@ -34,14 +34,8 @@ async function showsAwkwardFieldsLegibly({server, browser, logs, out, bin}) {
       Missing: (x, y, z) => (z < 1 ? NaN : y),
       [kLong]: (x, y) => y,
     }),
+    ['--field-bits', '20'],
   );
-  execFileSync(
-    join(bin, 'qtet'),
-    ['simplify', mesh, '-o', join(logs.fin.folder, 'awkward.qtet'), '--field-bits', '20'],
-    {stdio: 'pipe'},
-  );
-  server.kill();
-  await server.start();
   const viewer = await browser.open(`${server.url}?mesh=awkward`, kPhone);
   await viewer.waitForState('complete');
   await viewer.waitForPicture();

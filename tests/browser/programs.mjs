@@ -2,7 +2,7 @@
 // again on its port.
 
 import {execFileSync, spawn} from 'node:child_process';
-import {mkdirSync} from 'node:fs';
+import {mkdirSync, writeFileSync} from 'node:fs';
 import {join} from 'node:path';
 import {freePort} from '../support/free_port.mjs';
 
@@ -24,6 +24,16 @@ export function makeLog(bin, name, out, sample = name, options = []) {
   run('simplify', mesh, '-o', log, ...options);
   const report = JSON.parse(run('verify', log, '--json'));
   return {name, folder, meshDigest: report.meshDigest};
+}
+
+/** Serves the mesh of a .vtu file's text as NAME, too; the server is started anew for it. */
+export async function serveMesh({server, logs, out, bin}, name, text, options = []) {
+  const mesh = join(out, `${name}.vtu`);
+  writeFileSync(mesh, text);
+  const log = join(logs.fin.folder, `${name}.qtet`);
+  execFileSync(join(bin, 'qtet'), ['simplify', mesh, '-o', log, ...options], {stdio: 'pipe'});
+  server.kill();
+  await server.start();
 }
 
 export class Server {

@@ -1,11 +1,9 @@
 // The volume, compared with a formula for a box; and the user's controls for it.
 
 import assert from 'node:assert/strict';
-import {execFileSync} from 'node:child_process';
-import {writeFileSync} from 'node:fs';
-import {join} from 'node:path';
 import {kDesktop, kPhone} from './browser.mjs';
 import {coloredShare, differingShare, largestDifference, readPng} from './png.mjs';
+import {serveMesh} from './programs.mjs';
 
 /**
  * A box of 1 x 2 x 3 with the field x, and `others` that are functions of the place. It has n cubes
@@ -82,14 +80,9 @@ function pixelsAt(viewer, places) {
   }, places);
 }
 
-async function drawsAVolumeAsTheFormulaSays({server, browser, logs, out, bin}) {
-  const mesh = join(out, 'linear.vtu');
-  writeFileSync(mesh, linearBox(4));
-  execFileSync(join(bin, 'qtet'), ['simplify', mesh, '-o', join(logs.fin.folder, 'linear.qtet')], {
-    stdio: 'pipe',
-  });
-  server.kill();
-  await server.start();
+async function drawsAVolumeAsTheFormulaSays(context) {
+  const {server, browser} = context;
+  await serveMesh(context, 'linear', linearBox(4));
   const kOpacity = 0.3,
     kPath = 0.1; // the last opacity, and its path as a share of the diagonal
   const extinction = -Math.log(1 - kOpacity) / kPath / Math.hypot(1, 2, 3);
@@ -413,14 +406,9 @@ const kCasts = {
   },
 };
 
-async function castsRaysAsEveryCellSays({server, browser, logs, out, bin}) {
-  const mesh = join(out, 'holes.vtu');
-  writeFileSync(mesh, linearBox(3, {}, isThere));
-  execFileSync(join(bin, 'qtet'), ['simplify', mesh, '-o', join(logs.fin.folder, 'holes.qtet')], {
-    stdio: 'pipe',
-  });
-  server.kill();
-  await server.start();
+async function castsRaysAsEveryCellSays(context) {
+  const {server, browser} = context;
+  await serveMesh(context, 'holes', linearBox(3, {}, isThere));
   const notes = [];
   for (const [query, views] of Object.entries(kCasts)) {
     const viewer = await browser.open(`${server.url}?${query}`, {
