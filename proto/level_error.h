@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 namespace qtet {
@@ -23,7 +24,8 @@ struct FieldError {
 struct LevelError {
   OneSidedDistance toLevel;        ///< from the original's boundary to the level's
   OneSidedDistance toOriginal;     ///< and back
-  double volumeKept = 1;           ///< the level's volume over the original's
+  double volumeLost = 0;           ///< the share of the original's volume that is not covered
+  double volumeGained = 0;         ///< what is covered outside of it, over the original's volume
   std::vector<FieldError> fields;  ///< in the manifest's order
 
   /// The Hausdorff distance of the boundaries: the larger maximum of both ways.
@@ -31,5 +33,8 @@ struct LevelError {
   /// The larger mean of both ways.
   [[nodiscard]] double boundaryMean() const { return std::max(toLevel.mean, toOriginal.mean); }
 };
+
+/// By level; none where it was not measured. Empty where no level was.
+using LevelErrors = std::vector<std::optional<LevelError>>;
 
 }  // namespace qtet

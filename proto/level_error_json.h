@@ -15,7 +15,8 @@ namespace qtet {
   nlohmann::ordered_json out = {
       {"boundary",
        {{"toLevel", distance(error.toLevel)}, {"toOriginal", distance(error.toOriginal)}}},
-      {"volumeKept", error.volumeKept},
+      {"volumeLost", error.volumeLost},
+      {"volumeGained", error.volumeGained},
       {"fields", nlohmann::ordered_json::array()}};
   for (const FieldError& field : error.fields)
     out["fields"].push_back({{"rms", field.rms}, {"max", field.max}});

@@ -124,7 +124,9 @@ qtet_level_info infoOfLevel(const qtet_log& log, std::uint32_t level) {
   info.toLevelMax = l.error->toLevel.max;
   info.toOriginalMean = l.error->toOriginal.mean;
   info.toOriginalMax = l.error->toOriginal.max;
-  info.volumeKept = l.error->volumeKept;
+  info.volumeKept = 1 - l.error->volumeLost + l.error->volumeGained;
+  info.volumeLost = l.error->volumeLost;
+  info.volumeGained = l.error->volumeGained;
   return info;
 }
 

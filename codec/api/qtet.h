@@ -147,6 +147,9 @@ typedef struct {
   double toLevelMean, toLevelMax;
   double toOriginalMean, toOriginalMax; /* and back */
   double volumeKept;                    /* the level's volume over the original's */
+  /* Since 0.3: the part of the original that is not covered, and what is covered outside of it,
+   * over the original's volume. */
+  double volumeLost, volumeGained;
 } qtet_level_info;
 
 QTET_API qtet_status qtet_log_get_info(qtet_log* log, size_t infoBytes, qtet_log_info* info);
@@ -167,8 +170,8 @@ QTET_API qtet_status qtet_log_field_error(qtet_log* log, uint32_t level, uint32_
  * `most` bytes. 0 if there is none. */
 QTET_API qtet_status qtet_log_level_of_tetrahedra(qtet_log* log, uint64_t most, uint32_t* level);
 QTET_API qtet_status qtet_log_level_of_bytes(qtet_log* log, uint64_t most, uint32_t* level);
-/* The coarsest level within a bound: of boundaryDistance, or of a field's rms error. QTET_NOT_FOUND
- * if the log does not state it. */
+/* The coarsest level that is known to be within a bound: of boundaryDistance, or of a field's rms
+ * error. QTET_NOT_FOUND if the log does not state it. */
 QTET_API qtet_status qtet_log_level_of_boundary_error(qtet_log* log, double bound, uint32_t* level);
 QTET_API qtet_status qtet_log_level_of_field_error(qtet_log* log, uint32_t field, double bound,
                                                    uint32_t* level);

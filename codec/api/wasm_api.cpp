@@ -80,14 +80,11 @@ std::uint32_t qtet_level_count() {
   return refiner ? refiner->index().chunks.back().lastLevel + 1 : 0;
 }
 
-int qtet_level_columns(const std::uint8_t* bytes, std::uint32_t size, std::uint32_t columns) {
+int qtet_level_columns(const std::uint8_t* bytes, std::uint32_t size, std::uint32_t errors) {
   if (!refiner) return noLog();
   const auto fields = static_cast<std::uint32_t>(refiner->index().fields.size());
-  if (columns != qtet::levelColumnCount(fields, false) &&
-      columns != qtet::levelColumnCount(fields, true))
-    return report(
-        {ErrorCode::kBadValue, std::to_string(columns) + " level columns are none of this log's"});
-  auto numbers = qtet::decodeLevelColumns(ByteView(bytes, size), qtet_level_count(), columns);
+  auto numbers = qtet::decodeLevelColumns(ByteView(bytes, size), qtet_level_count(), fields,
+                                          static_cast<qtet::KnownErrors>(errors));
   if (!numbers) return report(numbers.error());
   levelNumbers = std::move(*numbers);
   return 0;

@@ -2,6 +2,7 @@
 
 #include <cassert>
 #include <string>
+#include <utility>
 
 #include "codec/coding/error_figure.h"
 #include "codec/coding/range_coder.h"
@@ -16,48 +17,67 @@ constexpr std::uint32_t zigzag(std::uint32_t difference) {
 constexpr std::uint32_t unzigzag(std::uint32_t code) { return code >> 1 ^ (code & 1 ? ~0u : 0u); }
 
 // Maxima stay for some levels and then jump; everything else goes on as it did.
-constexpr bool staysOrJumps(std::uint32_t column) {
-  return column > kCountColumns && (column - kCountColumns) % 2 == 0;
+constexpr bool staysOrJumps(std::uint32_t column, KnownErrors errors) {
+  if (errors == KnownErrors::kSome && column == kKnownColumn) return true;
+  const std::uint32_t first = firstPairColumn(errors);
+  return column >= first && (column - first) % 2 == 1;
 }
 
 // Unsigned arithmetic wraps, so that any number follows any other.
 template <class Coder>
-void code(Coder& coder, LevelColumns& numbers, std::uint32_t levels) {
+void code(Coder& coder, LevelColumns& numbers, std::uint32_t levels, KnownErrors errors) {
+  const auto isThere = [&](std::uint32_t column, std::uint32_t level) {
+    return errors != KnownErrors::kSome || column <= kKnownColumn ||
+           numbers[std::size_t{kKnownColumn} * levels + level] != 0;
+  };
   for (std::uint32_t column = 0; column < numbers.size() / levels; ++column) {
     NumberModel model;
-    std::uint32_t* const at = numbers.data() + std::size_t{column} * levels;
+    const bool stays = staysOrJumps(column, errors);
+    std::uint32_t last = 0, difference = 0;
+    bool isFirst = true;
     for (std::uint32_t level = 0; level < levels; ++level) {
-      std::uint32_t predicted = level > 0 ? at[level - 1] : 0;
-      if (level > 1 && !staysOrJumps(column)) predicted += at[level - 1] - at[level - 2];
-      at[level] = predicted + unzigzag(model.code(coder, zigzag(at[level] - predicted)));
+      if (!isThere(column, level)) continue;
+      std::uint32_t& at = numbers[std::size_t{column} * levels + level];
+      const std::uint32_t predicted = last + (stays ? 0 : difference);
+      at = predicted + unzigzag(model.code(coder, zigzag(at - predicted)));
+      difference = std::exchange(isFirst, false) ? 0 : at - last;
+      last = at;
     }
   }
 }
 
-bool soundLevel(const LevelColumns& numbers, std::uint32_t levels, std::uint32_t level) {
+bool isSoundLevel(const LevelColumns& numbers, std::uint32_t levels, std::uint32_t level,
+                  KnownErrors errors) {
   const auto at = [&](std::uint32_t column) {
     return numbers[std::size_t{column} * levels + level];
   };
   for (std::uint32_t c = 0; c < kCountColumns; ++c)
     if (at(c) > kMaxElements) return false;
-  if (numbers.size() / levels > kCountColumns && at(kCountColumns) > kMaxVolumeFigure) return false;
-  for (std::uint32_t c = kCountColumns + 1; c + 1 < numbers.size() / levels; c += 2)
+  if (errors == KnownErrors::kNone) return true;
+  const std::uint32_t first = firstPairColumn(errors);
+  for (std::uint32_t c = errors == KnownErrors::kSome ? kKnownColumn + 1 : kCountColumns; c < first;
+       ++c)
+    if (at(c) > kMaxVolumeFigure) return false;
+  for (std::uint32_t c = first; c + 1 < numbers.size() / levels; c += 2)
     if (at(c) > at(c + 1) || at(c + 1) > kMaxErrorFigure) return false;
-  return true;
+  if (errors == KnownErrors::kAll) return true;
+  const bool isEnd = level == 0 || level + 1 == levels;
+  return at(kKnownColumn) == 1 || (at(kKnownColumn) == 0 && !isEnd);
 }
 
 }  // namespace
 
-Bytes encodeLevelColumns(const LevelColumns& numbers, std::uint32_t levels) {
+Bytes encodeLevelColumns(const LevelColumns& numbers, std::uint32_t levels, KnownErrors errors) {
   assert(levels > 0 && numbers.size() % levels == 0);
   RangeEncoder coder;
   LevelColumns copy = numbers;
-  code(coder, copy, levels);
+  code(coder, copy, levels, errors);
   return coder.finish();
 }
 
-Result<LevelColumns> decodeLevelColumns(ByteView bytes, std::uint32_t levels,
-                                        std::uint32_t columns) {
+Result<LevelColumns> decodeLevelColumns(ByteView bytes, std::uint32_t levels, std::uint32_t fields,
+                                        KnownErrors errors) {
+  const std::uint32_t columns = levelColumnCount(fields, errors);
   // A number costs at least one decision.
   if (std::uint64_t{levels} * columns > kMaxDecisionsPerByte * bytes.size())
     return fail(ErrorCode::kLimitExceeded,
@@ -65,7 +85,7 @@ Result<LevelColumns> decodeLevelColumns(ByteView bytes, std::uint32_t levels,
                 "log again");
   LevelColumns numbers(std::size_t{levels} * columns);
   RangeDecoder coder(bytes);
-  code(coder, numbers, levels);
+  code(coder, numbers, levels, errors);
   if (coder.overrun())
     return fail(ErrorCode::kTruncated,
                 "the manifest ends within the figures of its levels; fetch or build the log again");
@@ -73,10 +93,11 @@ Result<LevelColumns> decodeLevelColumns(ByteView bytes, std::uint32_t levels,
     return fail(ErrorCode::kBadValue,
                 "bytes behind the manifest's last figure; fetch or build the log again");
   for (std::uint32_t level = 0; level < levels; ++level)
-    if (!soundLevel(numbers, levels, level))
+    if (!isSoundLevel(numbers, levels, level, errors))
       return fail(ErrorCode::kBadValue, "the manifest's figures of level " + std::to_string(level) +
                                             " are out of range (a count above 2^29, a mean above "
-                                            "its maximum); build the log again");
+                                            "its maximum, no error of an end); build the log "
+                                            "again");
   return numbers;
 }
 

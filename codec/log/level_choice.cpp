@@ -1,8 +1,6 @@
 #include "codec/log/level_choice.h"
 
 #include <cassert>
-#include <string>
-
 #include "codec/log/log_levels.h"
 #include "proto/level_error.h"
 #include "proto/manifest.h"
@@ -13,13 +11,12 @@ namespace {
 template <class ErrorOf>
 Result<std::uint32_t> coarsestWithin(const Manifest& manifest, double bound,
                                      const ErrorOf& errorOf) {
-  for (const ManifestLevel& level : manifest.levels) {
-    if (!level.error)
-      return fail(ErrorCode::kNotFound,
-                  "the log does not have the error of level " + std::to_string(level.level) +
-                      "; choose by size, or simplify again with `measure` levels");
-    if (errorOf(*level.error) <= bound) return level.level;
-  }
+  if (!manifest.levels.back().error)
+    return fail(ErrorCode::kNotFound,
+                "the log does not have the errors of its levels; choose by size, or simplify again "
+                "with `measure` levels");
+  for (const ManifestLevel& level : manifest.levels)
+    if (level.error && errorOf(*level.error) <= bound) return level.level;
   return manifest.levels.back().level;
 }
 

@@ -25,7 +25,7 @@ struct Header {
   std::uint64_t fileBytes = 0;
   Layout layout = Layout::kStream;
   std::uint8_t positionBits = 0;
-  bool hasFirstView = false;
+  std::uint16_t minor = 0;
 
   [[nodiscard]] std::uint64_t minTableBytes() const {
     return std::uint64_t{fields} * 2 +
@@ -47,7 +47,7 @@ Result<Header> readHeader(ByteView bytes) {
   ByteReader r(bytes.first(LogIndex::kHeaderBytes));
   r.take(kMagic.size());
   const auto major = r.read<std::uint16_t>();
-  const auto minor = r.read<std::uint16_t>();  // additions that this reader may ignore
+  const auto minor = r.read<std::uint16_t>();
   if (major != LogIndex::kVersionMajor)
     return fail(ErrorCode::kBadVersion,
                 "version " + std::to_string(major) + " of the format; this build reads version " +
@@ -57,7 +57,7 @@ Result<Header> readHeader(ByteView bytes) {
                          : ": use a newer qtet"),
                 8);
   Header h;
-  h.hasFirstView = minor >= LogIndex::kMinorOfFirstView;
+  h.minor = minor;
   const auto layout = r.read<std::uint8_t>();
   h.positionBits = r.read<std::uint8_t>();
   bool reservedAreZero = r.read<std::uint16_t>() == 0;
@@ -306,7 +306,7 @@ Result<LogIndex> LogIndex::parse(ByteView bytes) {
   LogIndex index;
   index.layout = header->layout;
   index.positionBits = header->positionBits;
-  index.hasFirstView = header->hasFirstView;
+  index.manifestMinor = header->minor;
   index.fileBytes = header->fileBytes;
   index.manifest.assign(manifest.begin(), manifest.end());
   ByteReader r(table, kHeaderBytes + std::uint64_t{header->manifestBytes});
@@ -351,7 +351,7 @@ Bytes LogIndex::encode() const {
   w.append(kMagic);
   w.write(kVersionMajor);
   const bool hasCells = closingBlock(ClosingKind::kOriginalCells) != nullptr;
-  w.write(hasFirstView ? kMinorOfFirstView : hasCells ? kMinorOfOriginalCells : std::uint16_t{0});
+  w.write(std::max(manifestMinor, hasCells ? kMinorOfOriginalCells : std::uint16_t{0}));
   w.write(static_cast<std::uint8_t>(layout));
   w.write(positionBits);
   w.write(std::uint16_t{0});

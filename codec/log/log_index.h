@@ -108,12 +108,15 @@ struct LogIndex {
   static constexpr std::uint16_t kMinorOfOriginalCells = 1;
   /// The minor version of a log whose manifest has a focus or an opening.
   static constexpr std::uint16_t kMinorOfFirstView = 2;
+  /// The minor version of a log that has known errors, since not all levels need have one.
+  static constexpr std::uint16_t kMinorOfSomeErrors = 3;
 
   Layout layout = Layout::kStream;
   std::uint8_t positionBits = 0;
   std::uint64_t fileBytes = 0;
-  Bytes manifest;             ///< as it stands in the file; codec/log/log_manifest.h reads it
-  bool hasFirstView = false;  ///< the manifest may have a focus or an opening
+  Bytes manifest;  ///< as it stands in the file; codec/log/log_manifest.h reads it
+  /// The least minor version that has what the manifest holds; when read, the header's.
+  std::uint16_t manifestMinor = 0;
   std::vector<FieldShape> fields;
   std::vector<ChunkEntry> chunks;
   std::vector<std::uint32_t> dependencies;

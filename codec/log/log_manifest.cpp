@@ -97,12 +97,14 @@ ManifestField readField(ByteReader& r, const FieldShape& shape) {
 
 // ---- what follows the fields
 
-constexpr unsigned kErrorsFollow = 1, kFocusFollows = 2, kOpeningFollows = 4;
+constexpr unsigned kAllErrorsFollow = 1, kFocusFollows = 2, kOpeningFollows = 4,
+                   kSomeErrorsFollow = 8;
+constexpr unsigned kKnownFlags = 2 * kSomeErrorsFollow - 1;
 constexpr std::uint8_t kNoCut = 3;
 
 void writeFirstView(ByteWriter& w, const Manifest& manifest) {
   const bool hasErrors = manifest.levels.front().error.has_value();
-  w.write(static_cast<std::uint8_t>((hasErrors ? kErrorsFollow : 0) |
+  w.write(static_cast<std::uint8_t>((hasErrors ? kSomeErrorsFollow : 0) |
                                     (manifest.focus ? kFocusFollows : 0) |
                                     (manifest.opening ? kOpeningFollows : 0)));
   if (manifest.focus)
@@ -131,19 +133,25 @@ Opening readOpening(ByteReader& r, std::size_t fields) {
   return opening;
 }
 
-/// Returns the flags.
-unsigned readFirstView(ByteReader& r, const LogIndex& index, Manifest& out) {
+std::uint16_t minorOfFlags(unsigned flags) {
+  if ((flags & kSomeErrorsFollow) != 0) return LogIndex::kMinorOfSomeErrors;
+  return flags > kAllErrorsFollow ? LogIndex::kMinorOfFirstView : 0;
+}
+
+KnownErrors readFirstView(ByteReader& r, const LogIndex& index, Manifest& out) {
   const unsigned flags = r.read<std::uint8_t>();
-  if (flags > (kErrorsFollow | kFocusFollows | kOpeningFollows))
+  constexpr unsigned kTwice = kAllErrorsFollow | kSomeErrorsFollow;
+  if (flags > kKnownFlags || (flags & kTwice) == kTwice)
     r.fail(ErrorCode::kBadValue,
            "the manifest's flags say what this build does not know; use a newer qtet");
-  if (flags > kErrorsFollow && !index.hasFirstView)
+  if (minorOfFlags(flags) > index.manifestMinor)
     r.fail(ErrorCode::kBadValue,
-           "the manifest has a first view, of which the header's version knows nothing; fetch or "
-           "build the log again");
+           "the manifest's flags say what the header's version does not know; fetch or build the "
+           "log again");
   if ((flags & kFocusFollows) != 0) out.focus = readFocus(r);
   if ((flags & kOpeningFollows) != 0) out.opening = readOpening(r, index.fields.size());
-  return flags;
+  if ((flags & kSomeErrorsFollow) != 0) return KnownErrors::kSome;
+  return (flags & kAllErrorsFollow) != 0 ? KnownErrors::kAll : KnownErrors::kNone;
 }
 
 // ---- levels
@@ -156,39 +164,47 @@ std::vector<double> pairsOf(const LevelError& error) {
 }
 
 Status checkErrors(const Manifest& manifest) {
+  const bool hasErrors = std::ranges::any_of(
+      manifest.levels, [](const ManifestLevel& level) { return level.error.has_value(); });
   for (const ManifestLevel& level : manifest.levels) {
     const auto bad = [&](const char* what) {
       return fail(ErrorCode::kBadValue,
                   "the known error of level " + std::to_string(level.level) + " " + what);
     };
-    if (level.error.has_value() != manifest.levels.front().error.has_value())
-      return bad("is there and others are not, or the other way round");
+    const bool isEnd = level.level == 0 || level.level + 1 == manifest.levels.size();
+    if (hasErrors && isEnd && !level.error) return bad("is not there; measure first and last");
     if (!level.error) continue;
     if (level.error->fields.size() != manifest.fields.size())
       return bad("has another number of fields than the manifest");
     const auto outside = [](double most) {
       return [most](double number) { return !(number >= 0 && number <= most); };
     };
-    if (outside(static_cast<double>(kMaxVolumeFigure) / kVolumeFigure)(level.error->volumeKept) ||
+    const auto outsideVolume = outside(static_cast<double>(kMaxVolumeFigure) / kVolumeFigure);
+    if (outsideVolume(level.error->volumeLost) || outsideVolume(level.error->volumeGained) ||
         std::ranges::any_of(pairsOf(*level.error), outside(errorOfFigure(kMaxErrorFigure))))
       return bad("holds what is no number, below 0 or beyond what a log can hold; measure again");
   }
   return {};
 }
 
-LevelColumns columnsOf(const Manifest& manifest) {
+std::uint32_t volumeFigure(double share) {
+  return static_cast<std::uint32_t>(std::llround(share * kVolumeFigure));
+}
+
+LevelColumns columnsOf(const Manifest& manifest, KnownErrors errors) {
   const std::size_t levels = manifest.levels.size();
   const auto fields = static_cast<std::uint32_t>(manifest.fields.size());
-  const bool hasErrors = manifest.levels.front().error.has_value();
-  LevelColumns out(levels * levelColumnCount(fields, hasErrors));
+  LevelColumns out(levels * levelColumnCount(fields, errors));
   for (std::size_t l = 0; l < levels; ++l) {
     const ManifestLevel& level = manifest.levels[l];
     std::size_t at = l;
     const auto put = [&](std::uint32_t number) { out[at] = number, at += levels; };
     for (const std::uint32_t count : {level.tetrahedra, level.vertices, level.boundaryTriangles})
       put(count);
-    if (!hasErrors) continue;
-    put(static_cast<std::uint32_t>(std::llround(level.error->volumeKept * kVolumeFigure)));
+    if (!level.error) continue;
+    put(1);
+    put(volumeFigure(level.error->volumeLost));
+    put(volumeFigure(level.error->volumeGained));
     for (const double error : pairsOf(*level.error)) put(figureOfError(error));
   }
   return out;
@@ -202,15 +218,25 @@ class LevelReader {
 
   std::uint32_t next() { return columns_[std::exchange(at_, at_ + levels_)]; }
   double error() { return errorOfFigure(next()); }
+  double volume() { return next() / static_cast<double>(kVolumeFigure); }
 
  private:
   const LevelColumns& columns_;
   std::size_t levels_, at_;
 };
 
-LevelError readError(LevelReader& reader, std::size_t fields) {
+std::optional<LevelError> readError(LevelReader& reader, std::size_t fields, KnownErrors errors) {
+  if (errors == KnownErrors::kNone || (errors == KnownErrors::kSome && reader.next() == 0))
+    return std::nullopt;
   LevelError out;
-  out.volumeKept = reader.next() / static_cast<double>(kVolumeFigure);
+  if (errors == KnownErrors::kSome) {
+    out.volumeLost = reader.volume();
+    out.volumeGained = reader.volume();
+  } else {  // what is left of both after they have cancelled each other out
+    const double kept = reader.volume();
+    out.volumeLost = std::max(0.0, 1 - kept);
+    out.volumeGained = std::max(0.0, kept - 1);
+  }
   for (OneSidedDistance* side : {&out.toLevel, &out.toOriginal})
     side->mean = reader.error(), side->max = reader.error();
   out.fields.resize(fields);
@@ -231,26 +257,30 @@ std::vector<std::uint32_t> completingChunks(const LogIndex& index) {
 }
 
 Status readLevels(ByteReader& r, const LogIndex& index, Manifest& out) {
-  const bool hasErrors = (readFirstView(r, index, out) & kErrorsFollow) != 0;
+  const KnownErrors errors = readFirstView(r, index, out);
   const ByteView bytes = r.take(r.remaining());
   if (r.failed()) return std::unexpected(r.error());
   const std::vector<std::uint32_t> chunks = completingChunks(index);
   const auto levels = static_cast<std::uint32_t>(chunks.size());
   const auto fields = static_cast<std::uint32_t>(index.fields.size());
-  const Result<LevelColumns> numbers =
-      decodeLevelColumns(bytes, levels, levelColumnCount(fields, hasErrors));
+  const Result<LevelColumns> numbers = decodeLevelColumns(bytes, levels, fields, errors);
   if (!numbers) return std::unexpected(numbers.error());
   for (std::uint32_t l = 0; l < levels; ++l) {
     LevelReader reader(*numbers, levels, l);
     const std::uint32_t tetrahedra = reader.next(), vertices = reader.next(),
                         triangles = reader.next();
     out.levels.push_back({l, tetrahedra, vertices, triangles, chunks[l], std::nullopt});
-    if (hasErrors) out.levels.back().error = readError(reader, fields);
+    out.levels.back().error = readError(reader, fields, errors);
   }
   return {};
 }
 
 }  // namespace
+
+std::uint16_t minorOf(const Manifest& manifest) {
+  if (manifest.levels.front().error) return LogIndex::kMinorOfSomeErrors;
+  return manifest.focus || manifest.opening ? LogIndex::kMinorOfFirstView : 0;
+}
 
 Result<Bytes> manifestBlock(const Manifest& manifest) {
   if (Status s = checkErrors(manifest); !s) return std::unexpected(s.error());
@@ -261,8 +291,10 @@ Result<Bytes> manifestBlock(const Manifest& manifest) {
   for (const double value : manifest.latticeOrigin) writeNumber(w, value);
   for (const ManifestField& field : manifest.fields) writeField(w, field);
   writeFirstView(w, manifest);
-  w.append(
-      encodeLevelColumns(columnsOf(manifest), static_cast<std::uint32_t>(manifest.levels.size())));
+  const KnownErrors errors =
+      manifest.levels.front().error ? KnownErrors::kSome : KnownErrors::kNone;
+  w.append(encodeLevelColumns(columnsOf(manifest, errors),
+                              static_cast<std::uint32_t>(manifest.levels.size()), errors));
   if (w.bytes().size() > kMaxManifestBytes)
     return fail(ErrorCode::kLimitExceeded,
                 "the manifest is above 8 MiB; choose some fields with `fields`");

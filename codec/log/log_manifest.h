@@ -3,6 +3,8 @@
 // both.
 #pragma once
 
+#include <cstdint>
+
 #include "proto/bytes.h"
 #include "proto/error.h"
 #include "proto/manifest.h"
@@ -12,10 +14,14 @@ namespace qtet {
 struct LogIndex;
 
 /// The bytes of LogIndex::manifest. Errors are rounded up to three significant digits
-/// (codec/coding/error_figure.h); either no level has one or every level has. Errors: bad-value (an
-/// error that is no number or out of range, a name too long), limit-exceeded (above
-/// kMaxManifestBytes).
+/// (codec/coding/error_figure.h). If a level has one, the first and the last have one. Errors:
+/// bad-value (an error that is no number or out of range, a name too long), limit-exceeded (above
+/// kMaxManifestBytes). REQUIRES: at least one level.
 [[nodiscard]] Result<Bytes> manifestBlock(const Manifest& manifest);
+
+/// The least minor version of the format that has what manifestBlock writes.
+/// REQUIRES: at least one level.
+[[nodiscard]] std::uint16_t minorOf(const Manifest& manifest);
 
 /// Reads index.manifest. The rest of the index gives layout, bits of the lattice, shapes of the
 /// fields, the number of levels and each level's chunk. Errors: truncated; limit-exceeded (found

@@ -74,8 +74,7 @@ Status checkRecords(const FusionHistory& history, const std::vector<ChunkEntry>&
                     "vertex is not; simplify the mesh again");
 }
 
-std::vector<ManifestLevel> levelsOf(const std::vector<Slots>& added,
-                                    const std::vector<LevelError>& errors) {
+std::vector<ManifestLevel> levelsOf(const std::vector<Slots>& added, const LevelErrors& errors) {
   std::vector<ManifestLevel> out;
   Slots sum;
   for (std::uint32_t level = 0; level < added.size(); ++level) {
@@ -88,8 +87,8 @@ std::vector<ManifestLevel> levelsOf(const std::vector<Slots>& added,
   return out;
 }
 
-Result<Bytes> manifestBytes(const FusionHistory& history, const LogWriterOptions& options,
-                            const std::vector<Slots>& added) {
+Manifest manifestFor(const FusionHistory& history, const LogWriterOptions& options,
+                     const std::vector<Slots>& added) {
   Manifest m;
   m.generator = options.generator;
   m.source = options.source;
@@ -102,7 +101,7 @@ Result<Bytes> manifestBytes(const FusionHistory& history, const LogWriterOptions
     m.fields.push_back({f.name, f.components, f.type, f.association, f.bits, f.step, f.minimum,
                         f.range, f.hasMissing});
   m.levels = levelsOf(added, options.errors);
-  return manifestBlock(m);
+  return m;
 }
 
 /// Without offsets, which follow from the length of its own bytes.
@@ -111,10 +110,11 @@ Result<LogIndex> indexOf(const FusionHistory& history, const LogWriterOptions& o
   LogIndex index;
   index.layout = layout;
   index.positionBits = static_cast<std::uint8_t>(history.lattice.bits);
-  Result<Bytes> manifest = manifestBytes(history, options, writer.added());
-  if (!manifest) return std::unexpected(manifest.error());
-  index.manifest = std::move(*manifest);
-  index.hasFirstView = options.focus || options.opening;
+  const Manifest manifest = manifestFor(history, options, writer.added());
+  Result<Bytes> block = manifestBlock(manifest);
+  if (!block) return std::unexpected(block.error());
+  index.manifest = std::move(*block);
+  index.manifestMinor = minorOf(manifest);
   for (const FieldInfo& f : history.fields)
     index.fields.push_back(
         {f.components, isCellField(f) ? Association::kCell : Association::kPoint, f.hasMissing});

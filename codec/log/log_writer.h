@@ -25,7 +25,7 @@ struct LogWriterOptions {
   std::uint32_t chunkBytes = 64 << 10;
   CodecId valueCodec = CodecId::kDraco;  ///< kDraco or kAdaptive
   /// For the manifest: none, or one a level, coarse-first, the input's mesh included.
-  std::vector<LevelError> errors;
+  LevelErrors errors;
   std::optional<Focus> focus = std::nullopt;      ///< for the manifest
   std::optional<Opening> opening = std::nullopt;  ///< the same
   std::function<void(double)> progress;           ///< fraction done, 0..1

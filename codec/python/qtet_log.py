@@ -75,6 +75,8 @@ class LevelInfo(ctypes.Structure):
         ("toOriginalMean", _f64),
         ("toOriginalMax", _f64),
         ("volumeKept", _f64),
+        ("volumeLost", _f64),
+        ("volumeGained", _f64),
     ]
 
 

@@ -89,7 +89,7 @@ Result<Bytes> withFields(const LogFile& log, const std::vector<std::uint32_t>& k
   }
   manifest->fields = std::move(fields);
   keepOpening(*manifest, kept);
-  index.hasFirstView = manifest->focus || manifest->opening;
+  index.manifestMinor = minorOf(*manifest);
   for (ManifestLevel& level : manifest->levels)
     if (level.error) keepErrors(*level.error, level.level, kept, added);
   Result<Bytes> manifestBytes = manifestBlock(*manifest);

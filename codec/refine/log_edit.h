@@ -16,7 +16,7 @@ class LogFile;
 struct NewField {
   ManifestField info;
   std::vector<Bytes> blocks;       ///< one a chunk
-  std::vector<FieldError> errors;  ///< one a level; none where the log knows no errors
+  std::vector<FieldError> errors;  ///< one a level; unused where the log has none of the level
 };
 
 /// A closing block for a log.

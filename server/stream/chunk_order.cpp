@@ -13,11 +13,12 @@ namespace {
 double square(double x) { return x * x; }
 
 /// The error of each level: that of the boundary and of the fields sent with it, as squares of
-/// fractions. If nothing was measured, the square of the interpolation error on n cells,
-/// O(n^(-2/3)) in space.
+/// fractions. Between two levels of which it is known it changes evenly. If nothing was measured,
+/// the square of the interpolation error on n cells, O(n^(-2/3)) in space.
 std::vector<double> squaredErrors(const Manifest& manifest,
                                   const std::vector<std::uint32_t>& fields) {
   std::vector<double> out;
+  std::size_t known = 0;  // the last level before
   for (const ManifestLevel& level : manifest.levels) {
     if (!level.error) {
       out.push_back(std::pow(std::max(level.tetrahedra, 1u), -4.0 / 3));
@@ -25,6 +26,11 @@ std::vector<double> squaredErrors(const Manifest& manifest,
     }
     double sum = square(level.error->boundaryMean());
     for (const std::uint32_t f : fields) sum += square(level.error->fields[f].rms);
+    const std::size_t between = out.size() - known;
+    for (std::size_t i = 1; i < between; ++i)
+      out[known + i] =
+          std::lerp(out[known], sum, static_cast<double>(i) / static_cast<double>(between));
+    known = out.size();
     out.push_back(sum);
   }
   return out;

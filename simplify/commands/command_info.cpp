@@ -160,13 +160,14 @@ int runInfo(const Words& words, Console& console) {
        "holds a level, `bytes` what it is above that of the row before. Where the log tells them,\n"
        "the errors against the original follow: of the boundary in per cent of the diagonal (the "
        "worse one of both ways), the volume that is\n"
-       "left, and of each field in per cent of its range.\n"
+       "lost and gained in per cent of the original's, and of each field in per cent of its range: "
+       "its max is sampled.\n"
        "--json: digest, generator, source, layout, bytes, headBytes, chunks, lattice {bits, step, "
        "origin}, fields [{name, components, type, association, bits,\n"
        "step, minimum, range, missingValues, bytes}], kept, and levels [{level, tetrahedra, "
        "vertices, boundaryTriangles, bytes, cumulativeBytes, error}]; error, as\n"
-       "fractions: boundary {toLevel {mean, max}, toOriginal {mean, max}}, volumeKept, fields "
-       "[{rms, max}] in the order of the fields above.",
+       "fractions and of some levels only: boundary {toLevel {mean, max}, toOriginal {mean, max}}, "
+       "volumeLost, volumeGained, fields [{rms, max}] in the order of the fields above.",
        "  qtet info fin.qtet\n  qtet info fin.qtet --plot fin.svg\n  qtet info fin.qtet --json | "
        "jq '.levels[0]'\n"},
       options, {"LOG"});

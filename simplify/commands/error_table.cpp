@@ -27,9 +27,12 @@ std::size_t fieldWidth(const ManifestField& field) {
   return std::max<std::size_t>(2 * kPercentWidth, textWidth(printable(field.name)) + 2);
 }
 
-/// Numbers of the levels to show, ascending.
+bool isKnown(const ManifestLevel& level) { return level.error.has_value(); }
+
+/// Numbers of the levels to show, ascending. Some of them are such with a known error, if any is.
 std::vector<std::size_t> shownLevels(const Manifest& manifest, std::size_t most) {
   std::vector<std::size_t> out;
+  const bool hasErrors = std::ranges::any_of(manifest.levels, isKnown);
   const std::size_t count = manifest.levels.size();
   const auto scale = [&](std::size_t level) {
     return std::log2(1.0 + manifest.levels[level].tetrahedra);
@@ -38,7 +41,8 @@ std::vector<std::size_t> shownLevels(const Manifest& manifest, std::size_t most)
                step = most > 1 ? (scale(count - 1) - low) / static_cast<double>(most - 1) : 0;
   for (std::size_t level = 0; level < count; ++level)
     if (count <= most || level + 1 == count ||
-        scale(level) >= low + step * static_cast<double>(out.size()))
+        (scale(level) >= low + step * static_cast<double>(out.size()) &&
+         isKnown(manifest.levels[level]) == hasErrors))
       out.push_back(level);
   return out;
 }
@@ -103,18 +107,17 @@ std::string percentCell(double fraction) {
 
 std::string levelTable(const Manifest& manifest, const nlohmann::ordered_json& levels,
                        std::size_t most, std::size_t mostFields) {
-  const bool hasErrors = std::ranges::any_of(
-      manifest.levels, [](const ManifestLevel& level) { return level.error.has_value(); });
+  const bool hasErrors = std::ranges::any_of(manifest.levels, isKnown);
   const std::size_t end = std::min(mostFields, manifest.fields.size());
   const std::vector<std::size_t> rows = shownLevels(manifest, most);
   std::ostringstream out;
   std::size_t shown =
-      lastThatFits(manifest, 0, end, kLevelWidth + 4 * kCountWidth + 3 * kPercentWidth, false);
+      lastThatFits(manifest, 0, end, kLevelWidth + 4 * kCountWidth + 4 * kPercentWidth, false);
   const FieldColumns beside(manifest, 0, shown);
   if (hasErrors) {
     out << std::string(kLevelWidth + 4 * kCountWidth, ' ');
     heading(out, "boundary, %", 2 * kPercentWidth);
-    heading(out, "volume", kPercentWidth);
+    heading(out, "volume, %", 2 * kPercentWidth);
     beside.names(out);
     out << "\n";
   }
@@ -122,7 +125,7 @@ std::string levelTable(const Manifest& manifest, const nlohmann::ordered_json& l
       << std::setw(kCountWidth) << "bytes" << std::setw(kCountWidth) << "cumulative";
   if (hasErrors) {
     out << std::setw(kPercentWidth) << "mean" << std::setw(kPercentWidth) << "max"
-        << std::setw(kPercentWidth) << "%";
+        << std::setw(kPercentWidth) << "lost" << std::setw(kPercentWidth) << "gained";
     beside.kinds(out);
   }
   out << "\n";
@@ -137,8 +140,8 @@ std::string levelTable(const Manifest& manifest, const nlohmann::ordered_json& l
     if (level.error) {
       out << std::setw(kPercentWidth) << percentCell(level.error->boundaryMean())
           << std::setw(kPercentWidth) << percentCell(level.error->boundaryDistance())
-          << std::setw(kPercentWidth) << std::fixed << std::setprecision(3)
-          << 100 * level.error->volumeKept;
+          << std::setw(kPercentWidth) << percentCell(level.error->volumeLost)
+          << std::setw(kPercentWidth) << percentCell(level.error->volumeGained);
       beside.values(out, *level.error);
     }
     out << "\n";

@@ -159,6 +159,32 @@ bool NearCells::isNear(const Cell& cell) const {
   return (blocks_[own - kFirstBlock][cell[2] & 7] >> ((cell[1] & 7) * 8 + (cell[0] & 7)) & 1) != 0;
 }
 
+bool NearCells::areNear(const Cell& low, const Cell& high) const {
+  // the bits from `from` to `to`
+  const auto run = [](int from, int to) { return (2u << to) - (1u << from); };
+  Cell block{};
+  for (block[2] = low[2] >> kBlockBits; block[2] <= high[2] >> kBlockBits; ++block[2])
+    for (block[1] = low[1] >> kBlockBits; block[1] <= high[1] >> kBlockBits; ++block[1])
+      for (block[0] = low[0] >> kBlockBits; block[0] <= high[0] >> kBlockBits; ++block[0]) {
+        if (!isBlock(block)) return false;
+        const std::uint32_t own = directory_[placeOf(block)];
+        if (own == kInside) continue;
+        if (own == kUnknown) return false;
+        Cell first{}, last{};
+        for (std::size_t k = 0; k < 3; ++k) {
+          const std::int32_t origin = block[k] * kBlockLength;
+          first[k] = std::max(low[k] - origin, 0);
+          last[k] = std::min(high[k] - origin, kBlockLength - 1);
+        }
+        std::uint64_t square = 0;
+        for (std::int32_t y = first[1]; y <= last[1]; ++y)
+          square |= std::uint64_t{run(first[0], last[0])} << 8 * y;
+        for (std::int32_t z = first[2]; z <= last[2]; ++z)
+          if ((blocks_[own - kFirstBlock][z] & square) != square) return false;
+      }
+  return true;
+}
+
 // No surface passes between two cubes side by side which it does not pass.
 void NearCells::findInside(const IsInside& isInside) {
   std::vector<std::uint8_t> isSeen(directory_.size());
@@ -229,15 +255,23 @@ void NearCells::fillEmpty(const Cell& first, const IsInside& isInside,
   }
 }
 
-// The last corner is where the prey goes: if anything lies too far outside, it often does.
+// The last corner is where the prey goes: if anything lies too far outside, it often does. Most
+// tetrahedra have nothing but near cubes in their whole box.
 bool NearCells::holds(const Corners& tetrahedron) const {
   Corners at = tetrahedron;
   for (Vector3& c : at) c = 1 / length_ * c;
-  Cell last{};
-  for (std::size_t k = 0; k < 3; ++k) last[k] = static_cast<std::int32_t>(at[3][k]);
-  bool areNear = isNear(last);
-  if (areNear) eachTouchedCell(at, [&](const Cell& cell) { return areNear = isNear(cell); });
-  return areNear;
+  Cell last{}, low{}, high{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    last[k] = static_cast<std::int32_t>(at[3][k]);
+    const auto [least, largest] = std::minmax({at[0][k], at[1][k], at[2][k], at[3][k]});
+    low[k] = static_cast<std::int32_t>(std::max(least - kTouchSlack, 0.0));
+    high[k] = static_cast<std::int32_t>(largest + kTouchSlack);
+  }
+  if (!isNear(last)) return false;
+  if (areNear(low, high)) return true;
+  bool isHeld = true;
+  eachTouchedCell(at, [&](const Cell& cell) { return isHeld = isNear(cell); });
+  return isHeld;
 }
 
 }  // namespace qtet

@@ -57,6 +57,8 @@ class NearCells {
   [[nodiscard]] bool isAllNear(const Node& node) const;
   [[nodiscard]] std::uint32_t blockOf(const Cell& cell);
   [[nodiscard]] bool isNear(const Cell& cell) const;
+  /// All cubes from low to high, both included.
+  [[nodiscard]] bool areNear(const Cell& low, const Cell& high) const;
   [[nodiscard]] std::size_t placeOf(const Cell& block) const;
   [[nodiscard]] bool isBlock(const Cell& block) const;
   [[nodiscard]] Vector3 middleOf(const Cell& low, double cells) const;

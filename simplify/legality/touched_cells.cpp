@@ -3,15 +3,15 @@
 namespace qtet {
 namespace {
 
-/// Clear of what rounding does to a range, in cubes; and to a height, over the squared extent.
-constexpr double kRangeSlack = 1e-6, kHeightSlack = 1e-9;
+/// Clear of what rounding does to a height, over the squared extent.
+constexpr double kHeightSlack = 1e-9;
 
 // The range of n x where x <= limit / n, or x >= limit / n.
 void narrow(double n, double limit, CellRows::Range& range) {
   if (n > 0)
-    range[1] = std::min(range[1], limit / n + kRangeSlack);
+    range[1] = std::min(range[1], limit / n + kTouchSlack);
   else if (n < 0)
-    range[0] = std::max(range[0], limit / n - kRangeSlack);
+    range[0] = std::max(range[0], limit / n - kTouchSlack);
   else if (limit < 0)
     range[1] = range[0] - 2;
 }
@@ -37,7 +37,7 @@ CellRows::CellRows(const Corners& corners) {
       high_[k] = std::max(high_[k], corners[i][axes_[k]]);
       at_[i][k] = corners[i][axes_[k]] - origin_[k];
     }
-    low_[k] = std::max(low_[k] - kRangeSlack, 0.0), high_[k] += kRangeSlack;
+    low_[k] = std::max(low_[k] - kTouchSlack, 0.0), high_[k] += kTouchSlack;
     extent = std::max(extent, high_[k] - low_[k]);
   }
   slack_ = kHeightSlack * extent * extent;

@@ -12,6 +12,9 @@
 
 namespace qtet {
 
+/// Clear of what rounding does to a range, in cubes.
+inline constexpr double kTouchSlack = 1e-6;
+
 /// A tetrahedron as what half spaces share, relative to its first corner. Its axes are in an order
 /// in which rows along the first one pass its largest face.
 class CellRows {

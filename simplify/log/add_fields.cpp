@@ -135,20 +135,21 @@ Result<AddedFields> addFields(const LogFile& log, const TetMesh& mesh,
     h.fields.push_back(info);
     h.values.push_back(std::move(values));
   }
-  if (std::ranges::none_of(manifest->levels,
-                           [](const ManifestLevel& level) { return level.error.has_value(); }))
-    return out;
   MeasureOptions measure;
+  for (const ManifestLevel& level : manifest->levels)
+    measure.levels.push_back(level.error.has_value());
+  if (std::ranges::count(measure.levels, 1) == 0) return out;
   measure.effort = options.effort;
   measure.countsRounding = true;
   measure.threads = options.threads;
   measure.progress = [&](double fraction) {
     if (options.progress) options.progress((1 + fraction) / 2);
   };
-  const Result<std::vector<LevelError>> errors = measureLevels(h, measure);
+  const Result<LevelErrors> errors = measureLevels(h, measure);
   if (!errors) return std::unexpected(errors.error());
   for (std::size_t f = 0; f < out.fields.size(); ++f)
-    for (const LevelError& level : *errors) out.fields[f].errors.push_back(level.fields[f]);
+    for (const std::optional<LevelError>& level : *errors)
+      out.fields[f].errors.push_back(level ? level->fields[f] : FieldError());
   return out;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <utility>
 
 #include "simplify/mesh/workers.h"
 
@@ -16,6 +17,8 @@ constexpr double kNothing = 0x1p-82;
 /// Triangles that a thread takes at a time, and those that are bounded first: a maximum found early
 /// spares the others.
 constexpr std::size_t kTrianglesPerRun = 64, kFirstTriangles = 128;
+/// Fusions that a thread takes at a time.
+constexpr std::size_t kFusionsPerRun = 64;
 
 }  // namespace
 
@@ -47,11 +50,11 @@ void BoundaryMeter::follow() {
   options_.workers->forRuns(samples_.size(), kPlacesPerRun,
                             [&](std::size_t begin, std::size_t end) {
                               for (std::size_t i = begin; i < end; ++i) {
-                                auto& [at, nearest] = samples_[i];
+                                auto& [at, nearest, isNear] = samples_[i];
                                 const Fusion* fusion = mesh_.fusionOf(nearest.triangle);
                                 if (fusion == nullptr) continue;
                                 followFusion(mesh_, *fusion, at, nearest);
-                                mesh_.boundaryTree().nearest(at, nearest);
+                                isNear = false;
                               }
                             });
   options_.workers->forRuns(triangles_.size(), kPlacesPerRun,
@@ -59,6 +62,45 @@ void BoundaryMeter::follow() {
                               for (std::size_t i = begin; i < end; ++i)
                                 follow(static_cast<std::uint32_t>(i));
                             });
+  const std::span<const Fusion> step = mesh_.step();
+  options_.workers->forRuns(step.size(), kFusionsPerRun, [&](std::size_t begin, std::size_t end) {
+    for (const Fusion& fusion : step.subspan(begin, end - begin)) followTriangles(fusion);
+  });
+}
+
+// A triangle keeps an edge, and its third corner becomes the fused vertex. The distance to the
+// triangle as it was is convex and 0 along the edge, so it is the largest at that vertex.
+void BoundaryMeter::followTriangles(const Fusion& fusion) {
+  const FusionHistory& history = mesh_.history();
+  const Vector3 fused = toVector(history.points[fusion.fused]);
+  for (std::size_t i = fusion.firstAffected; i < fusion.firstAffected + fusion.affectedCount; ++i) {
+    const std::uint32_t ghost = history.affectedCells[i];
+    if (!mesh_.isGhost(ghost)) continue;
+    Tetrahedron was = history.cells[ghost];
+    std::ranges::replace(was, fusion.fused, fusion.prey[history.affectedLabels[i]]);
+    const Corners corners{toVector(history.points[was[0]]), toVector(history.points[was[1]]),
+                          toVector(history.points[was[2]])};
+    double& bound = triangleBounds_[mesh_.originalTriangle(ghost)];
+    const double distance = std::sqrt(bound) + std::sqrt(nearestOnTriangle(fused, corners).squared);
+    bound = distance * distance;
+  }
+}
+
+void BoundaryMeter::search() {
+  options_.workers->forRuns(samples_.size(), kPlacesPerRun,
+                            [&](std::size_t begin, std::size_t end) {
+                              for (std::size_t i = begin; i < end; ++i)
+                                if (!std::exchange(samples_[i].isNear, true))
+                                  mesh_.boundaryTree().nearest(samples_[i].at, samples_[i].nearest);
+                            });
+  options_.workers->forRuns(
+      triangles_.size(), kPlacesPerRun, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+          if (std::isinf(triangles_[i].bound))
+            triangles_[i].bound =
+                farthestCorner(mesh_.originalTree().corners(static_cast<std::uint32_t>(i)),
+                               mesh_.boundaryTree().corners(triangles_[i].near));
+      });
 }
 
 void BoundaryMeter::follow(std::uint32_t triangle) {
@@ -68,13 +110,11 @@ void BoundaryMeter::follow(std::uint32_t triangle) {
   if (!followed.cover.isAll) followed.coveredBound = std::numeric_limits<double>::infinity();
   const Fusion* fusion = mesh_.fusionOf(followed.near);
   if (fusion == nullptr) return;
-  const Corners corners = mesh_.originalTree().corners(triangle);
+  const auto [a, b, c] = mesh_.originalTree().corners(triangle);
+  NearestTriangle nearest;
+  followFusion(mesh_, *fusion, 1.0 / 3 * (a + b + c), nearest);
+  followed.near = nearest.triangle;
   followed.bound = std::numeric_limits<double>::infinity();
-  for (const std::uint32_t cell : mesh_.affected(*fusion)) {
-    if (!mesh_.isGhost(cell)) continue;
-    const double bound = farthestCorner(corners, mesh_.boundaryTree().corners(cell));
-    if (bound < followed.bound) followed.near = cell, followed.bound = bound;
-  }
 }
 
 BoundaryMeter::Maximum BoundaryMeter::farthestOf(std::span<const std::uint32_t> triangles,
@@ -136,8 +176,7 @@ OneSidedDistance BoundaryMeter::toLevel() {
   return {mean / mesh_.diagonal(), std::sqrt(boundToLevel(farthest)) / mesh_.diagonal()};
 }
 
-// A bound proven for a triangle holds until the triangle changes. It need not be sharp while it is
-// not above the maximum.
+// A triangle's bound need not be sharp while it is not above the maximum.
 double BoundaryMeter::boundToOriginal(double squared) {
   squared = std::max(squared, nothing());
   const std::vector<std::uint32_t>& boundary = mesh_.boundary();
@@ -147,7 +186,7 @@ double BoundaryMeter::boundToOriginal(double squared) {
         for (std::size_t i = begin; i < end; ++i) {
           const std::uint32_t was = mesh_.originalTriangle(boundary[i]);
           double& bound = triangleBounds_[was];
-          if (mesh_.fusionOf(boundary[i]) == nullptr && bound <= withTolerance(farthest)) continue;
+          if (bound <= withTolerance(farthest)) continue;
           const FarthestPoint point = farthestPoint(
               mesh_.originalTree(), mesh_.boundaryTree().corners(boundary[i]), was, farthest);
           bound = point.bound;

@@ -35,6 +35,8 @@ class BoundaryMeter {
 
   /// The step that `mesh` has just done.
   void follow();
+  /// After follow(), before the distances are asked for. REQUIRES: the mesh's tree fits.
+  void search();
   /// Mean over the samples; no point of the original's boundary is further than the maximum.
   [[nodiscard]] OneSidedDistance toLevel();
   /// Mean over samples of its own; no point of the level's boundary is further than the maximum.
@@ -44,11 +46,13 @@ class BoundaryMeter {
   struct Followed {
     Vector3 at;
     NearestTriangle nearest;
+    bool isNear = true;  ///< else another triangle may be nearer
   };
   /// A triangle of the original and one of the level.
   struct FollowedTriangle {
     std::uint32_t near;
-    double bound;  ///< the square of how far its farthest corner is from `near`
+    double
+        bound;  ///< the square of how far its farthest corner is from `near`; infinite if unknown
     /// A sharper bound that rests on more triangles of the level.
     double coveredBound;
     BoundTriangles cover;
@@ -61,6 +65,7 @@ class BoundaryMeter {
   };
 
   void follow(std::uint32_t triangle);
+  void followTriangles(const Fusion& fusion);
   /// Upper bounds of the squared maximum, where some place is as far as `squared`.
   [[nodiscard]] double boundToLevel(double squared);
   [[nodiscard]] double boundToOriginal(double squared);

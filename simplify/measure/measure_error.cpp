@@ -47,10 +47,13 @@ double roundedDistance(double d) { return d < kNoDistance ? 0 : roundedUp(d); }
 OneSidedDistance rounded(const OneSidedDistance& d) {
   return {roundedDistance(d.mean), roundedDistance(d.max)};
 }
-double roundedVolume(double kept) { return std::round(kept * kVolumeFigure) / kVolumeFigure; }
+double roundedVolume(double share) { return std::round(share * kVolumeFigure) / kVolumeFigure; }
 LevelError rounded(const LevelError& error) {
-  LevelError out{
-      rounded(error.toLevel), rounded(error.toOriginal), roundedVolume(error.volumeKept), {}};
+  LevelError out{rounded(error.toLevel),
+                 rounded(error.toOriginal),
+                 roundedVolume(error.volumeLost),
+                 roundedVolume(error.volumeGained),
+                 {}};
   for (const FieldError& field : error.fields)
     out.fields.push_back({roundedUp(field.rms), roundedUp(field.max)});
   return out;
@@ -85,8 +88,11 @@ class ErrorMeter {
   }
 
   [[nodiscard]] LevelError measure() {
-    LevelError out{boundary_.toLevel(), boundary_.toOriginal(), mesh_.volumeKept(),
-                   fields_.errors()};
+    mesh_.fitTree();
+    boundary_.search();
+    fields_.measure();
+    LevelError out{boundary_.toLevel(), boundary_.toOriginal(), 0, 0, fields_.errors()};
+    findVolumes(out);
     if (countsRounding_) addRounding(out);
     return rounded(out);
   }
@@ -100,6 +106,21 @@ class ErrorMeter {
   }
 
  private:
+  /// The difference of gained and lost is exact, one of them an estimate from the places. It counts
+  /// as 0 where it is not above what chance alone may make of 0.
+  void findVolumes(LevelError& error) const {
+    const double net = mesh_.volumeKept() - 1;
+    const auto [places, all] = fields_.uncovered();
+    const double n = static_cast<double>(std::max<std::size_t>(all, 1)),
+                 lost = static_cast<double>(places) / n;
+    const double chance = kDeviations * std::sqrt(lost * (1 - lost) / n);
+    const double both = std::min(lost, lost + net);  // as much lost as gained
+    error.volumeLost = std::max(-net, 0.0) + (both > chance ? both : 0);
+    error.volumeGained = error.volumeLost + net;
+  }
+
+  /// Standard deviations that are still chance: once in 700 where nothing is lost and gained.
+  static constexpr double kDeviations = 3;
   static constexpr std::uint64_t kFieldSeed = 0x5EEDF1E1D5u;  // other numbers than the surface's
 
   void addRounding(LevelError& error) const {
@@ -163,28 +184,32 @@ class LevelBounds {
       if (!isCellField(field)) components_ += field.components;
   }
 
-  /// Whether a level with this error may be the base mesh, instead of the finer one of this size.
-  [[nodiscard]] bool hold(const LevelError& error, const LevelSize& size) const {
-    const double distance = error.boundaryDistance();
-    return isNear(distance, options_.bounds.boundary.value_or(distance)) &&
+  /// Whether a level with this error may be the base mesh, instead of the finer one of this size;
+  /// with bounds of this share of the asked ones.
+  [[nodiscard]] bool hold(const LevelError& error, const LevelSize& size, double share = 1) const {
+    return (!options_.bounds.boundary || isNear(error, share * *options_.bounds.boundary)) &&
            std::ranges::all_of(fields_,
                                [&](const FieldBound& bound) {
                                  return error.fields[bound.first].rms <=
-                                        std::max(bound.second, least_.fields[bound.first].rms);
+                                        std::max(share * bound.second,
+                                                 least_.fields[bound.first].rms);
                                }) &&
-           (!options_.base || isBase(*options_.base, error, size));
+           (!options_.base || isBase(*options_.base, error, size, share));
   }
 
  private:
-  [[nodiscard]] bool isNear(double distance, double bound) const {
-    return distance <= std::max(bound, least_.boundaryDistance());
+  [[nodiscard]] bool isNear(const LevelError& error, double bound) const {
+    return error.boundaryDistance() <= std::max(bound, least_.boundaryDistance());
   }
-  [[nodiscard]] bool isBase(const BaseRule& rule, const LevelError& error,
-                            const LevelSize& size) const {
-    return size.tetrahedra > rule.maxCells ||
-           baseBytesOf(size.vertices, components_) > rule.maxBytes ||
-           (isNear(error.boundaryDistance(), rule.error) &&
-            std::abs(1 - error.volumeKept) <= 2 * rule.error);
+  [[nodiscard]] bool isBase(const BaseRule& rule, const LevelError& error, const LevelSize& size,
+                            double share) const {
+    const auto isAbove = [share](std::size_t count, std::size_t most) {
+      return share * static_cast<double>(count) > static_cast<double>(most);
+    };
+    return isAbove(size.tetrahedra, rule.maxCells) ||
+           isAbove(baseBytesOf(size.vertices, components_), rule.maxBytes) ||
+           (isNear(error, share * rule.error) &&
+            std::max(error.volumeLost, error.volumeGained) <= share * 2 * rule.error);
   }
 
   const MeasureOptions& options_;
@@ -193,29 +218,61 @@ class LevelBounds {
   std::size_t components_ = 0;
 };
 
-Result<std::vector<LevelError>> measured(FusionHistory& history, const MeasureOptions& options) {
+/// From this share of a bound on every level is measured, so that the base mesh is not finer than
+/// it need be.
+constexpr double kNearTheEnd = 0.7;
+
+/// Which levels are measured.
+class LevelRow {
+ public:
+  LevelRow(const MeasureOptions& options, std::uint32_t finest)
+      : options_(options),
+        last_(finest),
+        step_(options.effort == Effort::kAll ? 1 : (finest + kRowLevels - 2) / (kRowLevels - 1)) {}
+
+  /// Whether a coarser one is.
+  bool isNext(std::uint32_t level) {
+    const bool isIt =
+        options_.levels.empty() ? last_ - level >= step_ : options_.levels[level] != 0;
+    if (!isIt && level > 0) return false;
+    last_ = level;
+    return true;
+  }
+  void takeAllFromNowOn() { step_ = 1; }
+
+ private:
+  const MeasureOptions& options_;
+  std::uint32_t last_, step_;
+};
+
+Result<LevelErrors> measured(FusionHistory& history, const MeasureOptions& options) {
   Result<std::vector<FieldBound>> fields = fieldBounds(history, options.bounds);
   if (!fields) return std::unexpected(fields.error());
   HistoryLevels levels(history);
   for (; levels.level() < levels.finest(); levels.refine()) throwIfStopped(options.stop);
   ErrorMeter meter(levels, options, samplesFor(options.effort, history));
-  LevelSize size(history);
+  LevelSize size(history), base = size;
   const LevelBounds bounds(history, options, std::move(*fields), meter.rounding());
-  std::vector<LevelError> out{meter.measure()};
+  LevelRow row(options, levels.finest());
+  LevelErrors out(levels.finest() + std::size_t{1});
+  std::uint32_t coarsest = levels.finest();
+  out[coarsest] = meter.measure();
   while (levels.level() > 0) {
     meter.coarsen();
-    LevelError error = meter.measure();
-    if (!bounds.hold(error, size)) {
-      levels.refine();
-      break;
-    }
     size.coarsenBy(history, levels.fusionsInto(levels.level()));
-    out.push_back(std::move(error));
     if (options.progress)
-      options.progress(static_cast<double>(out.size()) / (levels.finest() + 1.0));
+      options.progress(1 - static_cast<double>(levels.level()) / levels.finest());
+    if (!row.isNext(levels.level())) continue;
+    LevelError error = meter.measure();
+    if (!bounds.hold(error, base)) break;
+    if (!bounds.hold(error, size, kNearTheEnd)) row.takeAllFromNowOn();
+    out[levels.level()] = std::move(error);
+    coarsest = levels.level();
+    base = size;
   }
+  levels.moveTo(coarsest);
   levels.forgetCoarser();
-  std::ranges::reverse(out);
+  out.erase(out.begin(), out.begin() + coarsest);
   return out;
 }
 
@@ -228,8 +285,7 @@ std::size_t baseBytesOf(std::size_t vertices, std::size_t components) {
       (kBytesAVertex + kBytesAComponent * static_cast<double>(components)));
 }
 
-Result<std::vector<LevelError>> measureLevels(FusionHistory& history,
-                                              const MeasureOptions& options) {
+Result<LevelErrors> measureLevels(FusionHistory& history, const MeasureOptions& options) {
   return orCancelled([&] { return measured(history, options); });
 }
 

@@ -16,11 +16,15 @@
 
 namespace qtet {
 
-/// The number of places that stand for the surfaces and the volume.
+/// How many levels are measured, and by how many places.
 enum class Effort : std::uint8_t {
-  kLevels,  ///< in proportion to the cells, from 3,000 to 50,000 in the volume
-  kAll,     ///< 200,000 in the volume and on each boundary, whatever that costs
+  kLevels,  ///< some kRowLevels; places in proportion to the cells, from 3,000 to 50,000
+  kAll,     ///< all levels; 200,000 places in the volume and on each boundary, whatever that costs
 };
+
+/// Levels that Effort::kLevels measures at most, where no bound or rule wants more. Their numbers
+/// are evenly spaced, so their sizes are about a geometric row.
+inline constexpr std::uint32_t kRowLevels = 12;
 
 /// The largest errors that a level may have. A mesh beyond them is no level.
 struct ErrorBounds {
@@ -38,7 +42,9 @@ inline constexpr std::size_t kMaxBaseBytes = 64'000;
 /// Where the base mesh is when its size is not given: the coarsest level of which it and all finer
 /// ones are near the original.
 struct BaseRule {
-  double error = kBaseError;  ///< of LevelError::boundaryDistance(); twice that of the volume
+  /// Of LevelError::boundaryDistance(). Twice that is the bound of the volume lost, and of the
+  /// volume gained.
+  double error = kBaseError;
   /// A larger level is no base mesh, however far from the original the coarser ones are.
   std::size_t maxCells = std::numeric_limits<std::size_t>::max();
   std::size_t maxBytes = std::numeric_limits<std::size_t>::max();  ///< as baseBytesOf tells
@@ -50,6 +56,8 @@ struct BaseRule {
 
 struct MeasureOptions {
   Effort effort = Effort::kLevels;
+  /// By level, 1 for those that are measured besides the first and the last. Empty: `effort` says.
+  std::vector<std::uint8_t> levels;
   ErrorBounds bounds;
   std::optional<BaseRule> base{};  ///< where no level's size was asked for
   /// Whether what the lattice and the fields' steps have moved counts too: the original is then the
@@ -61,15 +69,15 @@ struct MeasureOptions {
   std::stop_token stop{};                         ///< asked many times a second
 };
 
-/// The error of each level, coarse-first. The last one (the original itself) has all zero, or the
-/// error of rounding alone. Figures are those that a log can state (errors rounded up to three
-/// significant digits, volumeKept to 10^-6) and depend on the history and the options only. With
-/// bounds or a rule, `history` forgets the coarse levels from the first one on, counted from the
-/// finest, that passes them. Level 0 is then the coarsest such that it and all finer ones keep
-/// them. Errors: not-found (a bound names no field of the history), cancelled (the history is
-/// unspecified then).
+/// The errors, coarse-first; the first and the last level have one. The last one (the original
+/// itself) has all zero, or the error of rounding alone. Figures are those that a log can state
+/// (errors rounded up to three significant digits, volumes to 10^-6) and depend on the history and
+/// the options only. With bounds or a rule, `history` forgets the coarse levels behind the last one,
+/// counted from the finest, that keeps them. Level 0 is then the coarsest measured one such that it
+/// and all finer measured ones keep them. Errors: not-found (a bound names no field of the history),
+/// cancelled (the history is unspecified then).
 /// REQUIRES: as HistoryLevels; it stands at level 0 before and after.
-[[nodiscard]] Result<std::vector<LevelError>> measureLevels(FusionHistory& history,
-                                                            const MeasureOptions& options);
+[[nodiscard]] Result<LevelErrors> measureLevels(FusionHistory& history,
+                                                const MeasureOptions& options);
 
 }  // namespace qtet

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "simplify/measure/measure_boundary.h"
@@ -42,15 +43,15 @@ FieldMeter::FieldMeter(const MeasuredMesh& mesh, const FieldOptions& options)
     : mesh_(mesh), options_(options) {
   assert(mesh.level() == mesh.history().levels);
   const FusionHistory& history = mesh.history();
+  for (const Sample& sample :
+       samplesInVolume(history.points, history.cells, options.samples, options.seed))
+    places_.push_back({sample, {}, sample.cell});
+  uniform_ = places_.size();
   if (history.fields.empty()) return;
   std::vector<std::uint8_t> isOriginal(history.points.size(), 0);
   for (std::uint32_t id = 0; id < history.cells.size() && !mesh.isGhost(id); ++id)
     for (const VertexId v : history.cells[id]) isOriginal[v] = 1;
   findRanges(isOriginal);
-  for (const Sample& sample :
-       samplesInVolume(history.points, history.cells, options.samples, options.seed))
-    places_.push_back({sample, {}, sample.cell});
-  uniform_ = places_.size();
   addVertices(std::move(isOriginal));
   keepTruth();
   squaredErrors_.assign(history.fields.size(), std::vector<double>(places_.size(), 0));
@@ -121,22 +122,30 @@ double FieldMeter::valueAt(const Place& place, std::size_t field, std::size_t co
 
 void FieldMeter::follow() {
   options_.workers->forRuns(places_.size(), kPlacesPerRun, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      if (follow(places_[i])) measure(i);
+    for (std::size_t i = begin; i < end; ++i) follow(places_[i]);
   });
 }
 
-bool FieldMeter::follow(Place& place) const {
+void FieldMeter::measure() {
+  options_.workers->forRuns(places_.size(), kPlacesPerRun, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (std::exchange(places_[i].isMeasured, true)) continue;
+      if (mesh_.isGhost(places_[i].sample.cell)) findOnBoundary(places_[i]);
+      measure(i);
+    }
+  });
+}
+
+void FieldMeter::follow(Place& place) const {
   const Fusion* fusion = mesh_.fusionOf(place.sample.cell);
-  if (fusion == nullptr) return false;
-  if (mesh_.isGhost(place.sample.cell)) {
-    leave(*fusion, place);
-  } else if (findIn(*fusion, place)) {
+  if (fusion == nullptr) return;
+  place.isMeasured = false;
+  if (findIn(*fusion, place)) {
     place.tetrahedron = place.sample.cell;
   } else {
-    leave(*fusion, place);
+    followFusion(mesh_, *fusion, place.sample.at, place.nearest);
+    place.sample.cell = place.nearest.triangle;
   }
-  return true;
 }
 
 bool FieldMeter::findIn(const Fusion& fusion, Place& place) const {
@@ -144,31 +153,34 @@ bool FieldMeter::findIn(const Fusion& fusion, Place& place) const {
   double best = -std::numeric_limits<double>::infinity();
   bool mayLeave = false;
   std::array<double, 4> weights;
+  const auto isIn = [&](std::uint32_t id, double least) {
+    std::array<Vector3, 4> corners;
+    for (std::size_t i = 0; i < 4; ++i) corners[i] = toVector(history.points[history.cells[id][i]]);
+    if (!weightsIn(corners, place.sample.at, std::max(least, best), weights)) return false;
+    best = *std::ranges::min_element(weights);
+    place.sample.cell = id;
+    place.sample.weights = weights;
+    return best >= 0;
+  };
   const auto tryCells = [&](double least) {
     for (const std::uint32_t id : mesh_.affected(fusion)) {
-      const auto& cell = history.cells[id];
-      if (cell[3] == kGhost) {
+      if (mesh_.isGhost(id)) {
         mayLeave = true;
-        continue;
+      } else if (isIn(id, least)) {
+        return true;
       }
-      std::array<Vector3, 4> corners;
-      for (std::size_t i = 0; i < 4; ++i) corners[i] = toVector(history.points[cell[i]]);
-      if (!weightsIn(corners, place.sample.at, std::max(least, best), weights)) continue;
-      best = *std::ranges::min_element(weights);
-      place.sample.cell = id;
-      place.sample.weights = weights;
-      if (best >= 0) return true;
     }
     return best > least;
   };
+  const CellId own = place.sample.cell;
+  if (history.live[own] && !mesh_.isGhost(own) && isIn(own, -kRounding)) return true;
   // Nearly always a cell holds the place. Rounding at a face, or an inverted cell of the input, may
   // leave it just beside all of them.
   if (tryCells(-kRounding)) return true;
   return !mayLeave && tryCells(-std::numeric_limits<double>::infinity());
 }
 
-void FieldMeter::leave(const Fusion& fusion, Place& place) const {
-  followFusion(mesh_, fusion, place.sample.at, place.nearest);
+void FieldMeter::findOnBoundary(Place& place) const {
   mesh_.boundaryTree().nearest(place.sample.at, place.nearest);
   place.sample.cell = place.nearest.triangle;
   const auto& weights = place.nearest.point.weights;
@@ -186,6 +198,12 @@ void FieldMeter::measure(std::size_t place) {
     }
     squaredErrors_[f][place] = squared / (ranges_[f] * ranges_[f]);
   }
+}
+
+FieldMeter::Uncovered FieldMeter::uncovered() const {
+  const auto isUncovered = [&](const Place& place) { return mesh_.isGhost(place.sample.cell); };
+  const auto uniform = std::span(places_).first(uniform_);
+  return {static_cast<std::size_t>(std::ranges::count_if(uniform, isUncovered)), uniform_};
 }
 
 bool FieldMeter::isOriginal(const Place& place, std::size_t field) const {

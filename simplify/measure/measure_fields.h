@@ -1,4 +1,5 @@
-// How far the fields of a level are from the original's, over the original's volume.
+// How far the fields of a level are from the original's, over the original's volume, and how much
+// of that volume the level does not cover.
 #pragma once
 
 #include <cstdint>
@@ -28,9 +29,7 @@ struct FieldOptions {
 /// a constant field the error is 0. Where the level's solid does not cover a place, its value is
 /// that at the nearest point of its boundary. A cell field's value there is that of the cell that
 /// held the place last. Places are followed from cell to cell through the fusions. A place that the
-/// solid has left stays outside. That is true while each level is a subset of the one before it.
-/// Otherwise the value at the boundary differs from the one inside by what the field changes within
-/// the tolerance.
+/// solid has left is covered again when a fusion at its nearest triangle covers it.
 class FieldMeter {
  public:
   /// REQUIRES: `mesh` at its finest level. It must outlive this.
@@ -38,8 +37,15 @@ class FieldMeter {
 
   /// The step that `mesh` has just done.
   void follow();
+  /// After follow(), before the figures are asked for. REQUIRES: the mesh's tree fits.
+  void measure();
   /// One a field of the history, in its order.
   [[nodiscard]] std::vector<FieldError> errors() const;
+  /// How many of the uniform places the level does not cover, and how many there are.
+  struct Uncovered {
+    std::size_t places = 0, all = 0;
+  };
+  [[nodiscard]] Uncovered uncovered() const;
   /// The errors of the original from rounding alone.
   [[nodiscard]] std::vector<FieldError> roundings() const;
 
@@ -49,16 +55,17 @@ class FieldMeter {
     Sample sample;
     NearestTriangle nearest;  // of a place that is not covered
     CellId tetrahedron = 0;   // the last that covered it
+    bool isMeasured = true;
   };
 
   void findRanges(const std::vector<std::uint8_t>& isOriginal);
   void addVertices(std::vector<std::uint8_t> isOriginal);
   void keepTruth();
   [[nodiscard]] double valueAt(const Place& place, std::size_t field, std::size_t component) const;
-  /// Whether the place's cell or weights have changed.
-  [[nodiscard]] bool follow(Place& place) const;
+  void follow(Place& place) const;
   [[nodiscard]] bool findIn(const Fusion& fusion, Place& place) const;
-  void leave(const Fusion& fusion, Place& place) const;
+  /// The nearest place of the boundary, for one that is not covered.
+  void findOnBoundary(Place& place) const;
   void measure(std::size_t place);
   /// Whether the level has at the place what the original has.
   [[nodiscard]] bool isOriginal(const Place& place, std::size_t field) const;

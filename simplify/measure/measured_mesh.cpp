@@ -54,6 +54,9 @@ void MeasuredMesh::coarsen() {
          std::span(history().deletedCells).subspan(fusion.firstDeleted, fusion.deletedCount))
       lastFusion_[cell] = mark;
   }
+}
+
+void MeasuredMesh::fitTree() {
   std::erase_if(boundary_, [&](std::uint32_t ghost) { return !history().live[ghost]; });
   if (boundary_.size() * 2 < tree_->builtOver()) {
     rebuildTree();

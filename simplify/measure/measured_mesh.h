@@ -20,9 +20,12 @@ class MeasuredMesh {
 
   [[nodiscard]] const FusionHistory& history() const { return levels_.history(); }
   [[nodiscard]] std::uint32_t level() const { return levels_.level(); }
-  /// One level coarser. REQUIRES: level() > 0.
+  /// One level coarser. boundaryTree() searches for nothing until fitTree(). REQUIRES: level() > 0.
   void coarsen();
+  void fitTree();
 
+  /// The fusions of the last step.
+  [[nodiscard]] std::span<const Fusion> step() const { return step_; }
   /// The fusion of the last step whose star holds the cell, nullptr if there is none. The cell then
   /// is what and where it was before.
   [[nodiscard]] const Fusion* fusionOf(std::uint32_t cell) const;

@@ -21,10 +21,12 @@ std::string percent(double fraction) {
 
 /// "the base mesh has lost 4.1 % of the volume, and its boundary is up to 12 % of the diagonal off"
 std::string whatIsLost(const LevelError& error, bool volume, bool boundary) {
+  const bool lost = error.volumeLost > kVolumeLossWarned,
+             gained = error.volumeGained > kVolumeLossWarned;
   std::string out = "the base mesh ";
-  if (volume)
-    out += (error.volumeKept < 1 ? "has lost " : "has gained ") +
-           percent(std::abs(1 - error.volumeKept)) + " of the volume";
+  if (lost) out += "has lost " + percent(error.volumeLost);
+  if (gained) out += (lost ? " and gained " : "has gained ") + percent(error.volumeGained);
+  if (volume) out += " of the volume";
   if (volume && boundary) out += ", and its boundary ";
   if (boundary)
     out += std::string(volume ? "is" : "has a boundary that is") + " up to " +
@@ -33,7 +35,7 @@ std::string whatIsLost(const LevelError& error, bool volume, bool boundary) {
 }
 
 bool volumeIsOff(const LevelError& error) {
-  return std::abs(1 - error.volumeKept) > kVolumeLossWarned;
+  return std::max(error.volumeLost, error.volumeGained) > kVolumeLossWarned;
 }
 bool boundaryIsOff(const LevelError& error, const LossFacts& facts) {
   return error.boundaryDistance() > std::max(kBoundaryErrorWarned, facts.allowedBoundaryError);
@@ -42,11 +44,12 @@ bool isOff(const ManifestLevel& level, const LossFacts& facts) {
   return level.error && (volumeIsOff(*level.error) || boundaryIsOff(*level.error, facts));
 }
 
-/// The option that makes the base mesh the coarsest level of which it and all finer ones lose
-/// little. Fusing ends at that level then, so its errors are the ones in the manifest.
+/// The option that makes the base mesh the coarsest measured level of which it and all finer ones
+/// lose little. Fusing ends at that level then, so its errors are the ones in the manifest.
 std::string enoughCells(const Manifest& manifest, const LossFacts& facts) {
   std::size_t level = manifest.levels.size() - 1;
-  while (level > 0 && !isOff(manifest.levels[level - 1], facts)) --level;
+  for (std::size_t coarser = level; coarser-- > 0 && !isOff(manifest.levels[coarser], facts);)
+    if (manifest.levels[coarser].error) level = coarser;
   const std::string out = "`baseCells` " + std::to_string(manifest.levels[level].tetrahedra);
   if (facts.hasTargetRatio) return out + " in place of `targetRatio`";
   return facts.isByRule ? out + " (unasked it takes " + std::to_string(kMaxBaseBytes / 1000) +

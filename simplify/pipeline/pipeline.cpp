@@ -136,8 +136,8 @@ std::optional<BaseRule> baseRuleOf(const PipelineOptions& options) {
 }
 
 /// The known error of each level; with bounds, the history ends where they would be passed.
-Result<std::vector<LevelError>> measure(FusionHistory& history, Run& run) {
-  if (!run.options.measure) return {};
+Result<LevelErrors> measure(FusionHistory& history, Run& run) {
+  if (!run.options.measure) return LevelErrors{};
   if (Status s = run.stages.begin(Stage::kMeasure); !s) return std::unexpected(s.error());
   MeasureOptions options = *run.options.measure;
   options.countsRounding = true;
@@ -148,7 +148,7 @@ Result<std::vector<LevelError>> measure(FusionHistory& history, Run& run) {
   return measureLevels(history, options);
 }
 
-Result<Bytes> encode(const FusionHistory& history, std::vector<LevelError> errors, Run& run) {
+Result<Bytes> encode(const FusionHistory& history, LevelErrors errors, Run& run) {
   if (Status s = run.stages.begin(Stage::kEncode); !s) return std::unexpected(s.error());
   LogWriterOptions options;
   options.source = run.options.source;
@@ -216,7 +216,7 @@ Result<PipelineOutput> simplifyToLog(TetMesh&& mesh, const PipelineOptions& opti
   if (!quantised) return std::unexpected(quantised.error());
   Result<FusionHistory> history = simplify(*quantised, run);
   if (!history) return std::unexpected(history.error());
-  Result<std::vector<LevelError>> errors = measure(*history, run);
+  Result<LevelErrors> errors = measure(*history, run);
   if (!errors) return std::unexpected(errors.error());
   restoreMissing(*history, quantised->missing);
   Result<Bytes> log = encode(*history, std::move(*errors), run);

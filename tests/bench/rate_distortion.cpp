@@ -83,8 +83,8 @@ OpenedLog logOf(const std::filesystem::path& mesh, const std::string& field,
                 const std::string& options, const std::filesystem::path& folder) {
   const std::filesystem::path log = folder / (mesh.stem().string() + ".qtet");
   const std::string command = quoted(testing::kTool) + " simplify " + quoted(mesh) + " -o " +
-                              quoted(log) + " --fields " + quoted("point:" + field) + " " +
-                              options + " >/dev/null";
+                              quoted(log) + " --fields " + quoted("point:" + field) +
+                              " --measure all " + options + " >/dev/null";
   if (std::system(command.c_str()) != 0)
     throw std::runtime_error("the tool failed (its message stands above): " + command);
   return need(openLog(log));

@@ -91,7 +91,7 @@ Bytes knownErrorsSeed() {
   for (std::uint32_t l = 0; l < 6; ++l) {
     const double e = (5 - l) * 0.01;
     m.levels.push_back({l, 100 + 10 * l * l, 40 + 3 * l, 50 + 2 * l, 0,
-                        LevelError{{e / 3, e}, {e / 4, e}, 1 - e, {{e / 9, e}, {0, e / 2}}}});
+                        LevelError{{e / 3, e}, {e / 4, e}, e, e / 2, {{e / 9, e}, {0, e / 2}}}});
   }
   Bytes out = manifestBlock(m).value();
   out.insert(out.begin(), 5);

@@ -126,7 +126,26 @@ Bytes withFirstView(const Bytes& log, const Focus& focus, const Opening& opening
   m.focus = focus;
   m.opening = opening;
   parts.index.manifest = manifestBlock(m).value();
-  parts.index.hasFirstView = inHeader;
+  parts.index.manifestMinor = inHeader ? minorOf(m) : std::uint16_t{0};
+  return parts.together();
+}
+
+/// With the errors of levels 0, 3, 4, 9 and the last.
+Bytes withSomeErrors(const Bytes& log) {
+  testing::TakenApart parts = testing::takeApart(log);
+  Manifest m = manifestOf(parts.index).value();
+  for (const std::size_t level :
+       {std::size_t{0}, std::size_t{3}, std::size_t{4}, std::size_t{9}, m.levels.size() - 1}) {
+    const double e = 0.08 / static_cast<double>(1 + level * level);
+    m.levels[level].error =
+        LevelError{{e / 7, e},
+                   {e / 9, e / 2},
+                   e / 3,
+                   e / 5,
+                   std::vector<FieldError>(m.fields.size(), FieldError{e / 11, e / 2})};
+  }
+  parts.index.manifest = manifestBlock(m).value();
+  parts.index.manifestMinor = minorOf(m);
   return parts.together();
 }
 
@@ -182,9 +201,29 @@ void writeBadHeads(const std::filesystem::path& folder, const Bytes& good) {
        {&ManifestLevel::tetrahedra, &ManifestLevel::vertices, &ManifestLevel::boundaryTriangles})
     for (const ManifestLevel& level : m.levels) columns.push_back(level.*count);
   const std::size_t size =
-      encodeLevelColumns(columns, static_cast<std::uint32_t>(m.levels.size())).size();
+      encodeLevelColumns(columns, static_cast<std::uint32_t>(m.levels.size()), KnownErrors::kNone)
+          .size();
   write(folder / "limit-exceeded.manifest-bomb.qtet",
         manifest([size](Bytes& b) { b.resize(b.size() - size); }));
+  // Errors of some levels: the last one's alone, or without the header's version, or twice.
+  columns.resize(m.levels.size() * levelColumnCount(2, KnownErrors::kSome));
+  const std::size_t known = kKnownColumn * m.levels.size();
+  const auto errors = [&](std::uint8_t flags, std::uint32_t ofFirst, std::uint16_t minor) {
+    columns[known] = ofFirst;
+    columns[known + m.levels.size() - 1] = 1;
+    testing::TakenApart parts = testing::takeApart(good);
+    Bytes& b = parts.index.manifest;
+    b.resize(b.size() - size);
+    b.back() = flags;
+    const Bytes told = encodeLevelColumns(columns, static_cast<std::uint32_t>(m.levels.size()),
+                                          KnownErrors::kSome);
+    b.insert(b.end(), told.begin(), told.end());
+    parts.index.manifestMinor = minor;
+    return parts.together();
+  };
+  write(folder / "bad-value.manifest-base-without-error.qtet", errors(8, 0, 3));
+  write(folder / "bad-value.manifest-errors-of-an-older-version.qtet", errors(8, 1, 2));
+  write(folder / "bad-value.manifest-errors-twice.qtet", errors(9, 1, 3));
 }
 
 void writeBadClosing(const std::filesystem::path& folder, const Bytes& kept) {
@@ -304,6 +343,7 @@ int main(int argc, char** argv) {
   qtet::write(folder / "valid" / "solid.qtet", solid);
   qtet::write(folder / "valid" / "first-view.qtet",
               qtet::withFirstView(solid, qtet::kSomeFocus, qtet::kSomeOpening));
+  qtet::write(folder / "valid" / "some-errors.qtet", qtet::withSomeErrors(solid));
   qtet::write(folder / "valid" / "tunnel.qtet",
               qtet::logOf(gridMesh(3, 2, [](int i, int j, int) { return i != 1 || j != 1; }), 300));
   qtet::write(

@@ -17,10 +17,11 @@ Manifest sample() {
   m.latticeBits = 16;
   m.fields.push_back({"density", 1, "float32", "point", 12, 0.00025, {0.1}, {0.1, 0.9}});
   m.fields.push_back({"velocity", 3, "float64", "point", 14, 0.5, {-1, -2, -3}, {0, 7}});
-  const LevelError base{{0.001234, 0.02}, {0.001, 0.03}, 0.987654, {{0.0125, 0.3}, {1e-7, 2.5}}};
+  const LevelError base{
+      {0.001234, 0.02}, {0.001, 0.03}, 0.012346, 0.004, {{0.0125, 0.3}, {1e-7, 2.5}}};
   m.levels = {{0, 100, 40, 60, 0, base},
               {1, 105, 42, 62, 0},
-              {2, 230, 80, 90, 3, LevelError{{}, {}, 1, {{}, {}}}}};
+              {2, 230, 80, 90, 3, LevelError{{}, {}, 0, 0, {{}, {}}}}};
   return m;
 }
 
@@ -35,7 +36,8 @@ TEST(LevelError, theLargerOfBothWaysCounts) {
 TEST(LevelError, isWrittenAsTheFormatSays) {
   EXPECT_EQ(sampleJson()["levels"][0]["error"],
             Json::parse(R"({"boundary": {"toLevel": {"mean": 0.001234, "max": 0.02},
-    "toOriginal": {"mean": 0.001, "max": 0.03}}, "volumeKept": 0.987654, "fields": [{"rms": 0.0125, "max": 0.3}, {"rms": 1e-7, "max": 2.5}]})"));
+    "toOriginal": {"mean": 0.001, "max": 0.03}}, "volumeLost": 0.012346, "volumeGained": 0.004,
+    "fields": [{"rms": 0.0125, "max": 0.3}, {"rms": 1e-7, "max": 2.5}]})"));
   EXPECT_FALSE(sampleJson()["levels"][1].contains("error"));
 }
 

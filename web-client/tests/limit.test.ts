@@ -40,12 +40,15 @@ test('theErrorIsThatOfTheWorstFieldShownOrElseOfTheBoundary', () => {
     error: {
       toLevel: spread(0.5),
       toOriginal: spread(0.25),
-      volumeKept: 1,
+      volumeLost: 0,
+      volumeGained: 0,
       fields: [spread(0.1), spread(0.2)],
     },
   };
-  expect([errorOfLevel(level, []), errorOfLevel(level, [0]), errorOfLevel(level, [0, 1])]).toEqual([
-    0.25, 0.1, 0.2,
-  ]);
-  expect(errorOfLevel({...level, error: undefined} as never, [0])).toBeNull();
+  const unknown = {level: 1, tetrahedra: 2, vertices: 5, boundaryTriangles: 6};
+  const of = (at: number, fields: number[]): number | null =>
+    errorOfLevel([level, unknown], at, fields);
+  expect([of(0, []), of(0, [0]), of(0, [0, 1])]).toEqual([0.25, 0.1, 0.2]);
+  expect(of(1, [0]), 'that of the last coarser level where it was measured').toBe(0.1);
+  expect(errorOfLevel([unknown], 0, [0])).toBeNull();
 });

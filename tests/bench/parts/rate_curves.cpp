@@ -44,7 +44,7 @@ Result<RateCurve> logCurve(const OpenedLog& log) {
     if (!level.error || level.error->fields.empty())
       return fail(ErrorCode::kNotFound, "the log does not have the error of level " +
                                             std::to_string(level.level) +
-                                            " for a field; make it with one and --measure levels");
+                                            " for a field; make it with one and --measure all");
     const RatePoint point = pointOf(level, static_cast<double>(log.prefixBytes(level.level)));
     if (!out.empty() && out.back().bytes == point.bytes) out.pop_back();
     out.push_back(point);

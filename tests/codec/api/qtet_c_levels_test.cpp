@@ -27,7 +27,7 @@ class QtetCKnownErrors : public ::testing::Test {
     for (std::uint32_t i = 0; i <= history->levels; ++i) {
       const double e = 1.0 / (i + 1);
       options.errors.push_back(
-          {{e / 8, e / 2}, {e / 16, 2 * e / 2}, 1 - e / 10, {{e, 2 * e}, {e / 4, e / 2}}});
+          LevelError{{e / 8, e / 2}, {e / 16, e}, e / 10, e / 5, {{e, 2 * e}, {e / 4, e / 2}}});
     }
     const Result<EncodedLog> log = encodeLog(*history, options);
     ASSERT_TRUE(log) << log.error().text();
@@ -51,7 +51,9 @@ TEST_F(QtetCKnownErrors, standAtTheirLevels) {
     EXPECT_NEAR(level.toOriginalMean, e / 16, 1e-2 * e);
     EXPECT_NEAR(level.toOriginalMax, e, 1e-2 * e);
     EXPECT_EQ(level.boundaryDistance, level.toOriginalMax);
-    EXPECT_NEAR(level.volumeKept, 1 - e / 10, 1e-2 * e);
+    EXPECT_NEAR(level.volumeLost, e / 10, 1e-2 * e);
+    EXPECT_NEAR(level.volumeGained, e / 5, 1e-2 * e);
+    EXPECT_NEAR(level.volumeKept, 1 + e / 10, 1e-2 * e);
     double rms = 0, max = 0;
     ASSERT_EQ(qtet_log_field_error(log_.get(), l, 1, &rms, &max), QTET_OK);
     EXPECT_NEAR(rms, e / 4, 1e-2 * e);

@@ -21,7 +21,8 @@ class LogLevels : public ::testing::Test {
     options.chunkBytes = 1024;
     for (std::size_t i = 0; i < errors; ++i) {
       const double e = 1.0 / static_cast<double>(i + 1);
-      options.errors.push_back({{e / 2, e}, {e / 4, e / 2}, 1 - e / 10, {{e / 8, e}, {e / 16, e}}});
+      options.errors.push_back(
+          LevelError{{e / 2, e}, {e / 4, e / 2}, e / 10, 0, {{e / 8, e}, {e / 16, e}}});
     }
     return encodeLog(history_, options);
   }

@@ -32,7 +32,7 @@ Manifest sample(bool withErrors = true) {
     const double e = roundedUp(0.02 * std::pow(0.9, l)), half = roundedUp(e / 2);
     if (withErrors)
       m.levels.back().error =
-          LevelError{{half, e}, {0, 1e-12}, 1 - l * 1e-6, {{half, 0.676}, {3e-7, 2.5}}};
+          LevelError{{half, e}, {0, 1e-12}, 0.9 - l * 1e-6, 0.5, {{half, 0.676}, {3e-7, 2.5}}};
   }
   return m;
 }
@@ -51,6 +51,7 @@ LogIndex indexOf(const Manifest& manifest) {
   index.chunks[2].firstLevel = 10, index.chunks[2].lastLevel = kLevels - 2;
   index.chunks[3].firstLevel = index.chunks[3].lastLevel = kLevels - 1;
   index.manifest = manifestBlock(manifest).value();
+  index.manifestMinor = minorOf(manifest);
   return index;
 }
 
@@ -84,7 +85,7 @@ TEST(LogManifest, itsFocusComesBack) {
   Manifest m = sample();
   m.focus = {0, 1, 2, 1, 0x8000, 0xffff};
   LogIndex index = indexOf(m);
-  index.hasFirstView = true;
+  index.manifestMinor = LogIndex::kMinorOfSomeErrors;
   const Result<Manifest> read = manifestOf(index);
   ASSERT_TRUE(read) << read.error().text();
   EXPECT_EQ(read->focus, m.focus);
@@ -97,7 +98,7 @@ TEST(LogManifest, itsOpeningComesBack) {
   for (const Opening& opening : {Opening{1, 2}, Opening{0, 0}, Opening{1}}) {
     m.opening = opening;
     LogIndex index = indexOf(m);
-    index.hasFirstView = true;
+    index.manifestMinor = LogIndex::kMinorOfSomeErrors;
     const Result<Manifest> read = manifestOf(index);
     ASSERT_TRUE(read) << read.error().text();
     EXPECT_EQ(read->opening, m.opening);
@@ -108,23 +109,44 @@ TEST(LogManifest, itsOpeningComesBack) {
   for (const Opening& wrong : {Opening{2}, Opening{0, 4}}) {
     m.opening = wrong;
     LogIndex index = indexOf(m);
-    index.hasFirstView = true;
+    index.manifestMinor = LogIndex::kMinorOfSomeErrors;
     expectRefused(index, ErrorCode::kBadValue, "opening");
   }
 }
 
 TEST(LogManifest, aFocusIsABoxThatTheHeaderKnowsOf) {
-  Manifest m = sample();
+  Manifest m = sample(false);
   m.focus = {0, 1, 2, 1, 0x8000, 0xffff};
-  expectRefused(indexOf(m), ErrorCode::kBadValue, "knows nothing");
+  LogIndex older = indexOf(m);
+  older.manifestMinor = LogIndex::kMinorOfOriginalCells;
+  expectRefused(older, ErrorCode::kBadValue, "does not know");
   m.focus->at(4) = m.focus->at(1);
   LogIndex index = indexOf(m);
-  index.hasFirstView = true;
+  index.manifestMinor = LogIndex::kMinorOfSomeErrors;
   expectRefused(index, ErrorCode::kBadValue, "empty box");
   m.focus.reset();
   index = indexOf(m);
-  index.hasFirstView = true;
+  index.manifestMinor = LogIndex::kMinorOfSomeErrors;
   EXPECT_TRUE(manifestOf(index)) << "a later version that has neither";
+}
+
+/// `m` without the errors of the levels that are not multiples of `step`, nor the last.
+void keepErrors(Manifest& m, std::uint32_t step) {
+  for (ManifestLevel& level : m.levels)
+    if (level.level % step != 0 && level.level + 1 < m.levels.size()) level.error.reset();
+}
+
+TEST(LogManifest, errorsOfSomeLevelsComeBack) {
+  for (const std::uint32_t step : {1u, 2u, 7u, kLevels}) {
+    Manifest m = sample();
+    keepErrors(m, step);
+    LogIndex index = indexOf(m);
+    const Result<Manifest> read = manifestOf(index);
+    ASSERT_TRUE(read) << read.error().text();
+    EXPECT_EQ(manifestToJson(*read), manifestToJson(m));
+    index.manifestMinor = LogIndex::kMinorOfFirstView;
+    expectRefused(index, ErrorCode::kBadValue, "does not know");
+  }
 }
 
 TEST(LogManifest, takesAFewBytesALevel) {
@@ -182,7 +204,7 @@ TEST(LogManifest, limitsThemselvesAreAllowed) {
   m.fields[0].bits = kMaxFieldBits;
   m.levels[7].vertices = kMaxElements;
   m.levels[7].error->toLevel.max = errorOfFigure(kMaxErrorFigure);
-  m.levels[7].error->volumeKept = 10;
+  m.levels[7].error->volumeLost = m.levels[7].error->volumeGained = 10;
   const Result<Manifest> read = manifestOf(indexOf(m));
   ASSERT_TRUE(read) << read.error().text();
   EXPECT_EQ(manifestToJson(*read), manifestToJson(m));
@@ -199,12 +221,22 @@ TEST(LogManifest, errorsThatNoLogCanTellAreNotWritten) {
   for (const double bad : {-1e-9, std::numeric_limits<double>::quiet_NaN(), 1e7}) {
     EXPECT_NE(refusal([bad](ManifestLevel& l) { l.error->fields[0].max = bad; }).find("level 5"),
               std::string::npos);
-    EXPECT_NE(refusal([bad](ManifestLevel& l) { l.error->volumeKept = bad; }).find("level 5"),
-              std::string::npos);
+    for (const auto volume : {&LevelError::volumeLost, &LevelError::volumeGained})
+      EXPECT_NE(refusal([&](ManifestLevel& l) { (*l.error).*volume = bad; }).find("level 5"),
+                std::string::npos);
   }
-  EXPECT_NE(refusal([](ManifestLevel& l) { l.error.reset(); }).find("level 5"), std::string::npos);
   EXPECT_NE(refusal([](ManifestLevel& l) { l.error->fields.pop_back(); }).find("level 5"),
             std::string::npos);
+}
+
+TEST(LogManifest, theErrorsOfTheEndsAreNotLeftOut) {
+  for (const std::uint32_t end : {0u, kLevels - 1}) {
+    Manifest m = sample();
+    m.levels[end].error.reset();
+    const Result<Bytes> block = manifestBlock(m);
+    ASSERT_FALSE(block);
+    EXPECT_NE(block.error().message.find("level " + std::to_string(end)), std::string::npos);
+  }
 }
 
 TEST(LogManifest, everyTruncationAndEveryByteMoreIsRefused) {
@@ -226,19 +258,41 @@ TEST(LogManifest, everyTruncationAndEveryByteMoreIsRefused) {
 TEST(LevelColumns, numbersThatTheBytesCannotHoldAreRefusedBeforeAllocating) {
   // A byte of the range coder holds at most kMaxDecisionsPerByte numbers.
   const Bytes few(4, 0);
-  const auto levels = static_cast<std::uint32_t>(4 * kMaxDecisionsPerByte / 16);
-  const std::size_t peak = testing::peakBytesOf([&] {
-    EXPECT_EQ(decodeLevelColumns(few, levels + 1, 16).error().code, ErrorCode::kLimitExceeded);
-  });
+  constexpr std::uint32_t kFields = 4;
+  const auto levels = static_cast<std::uint32_t>(4 * kMaxDecisionsPerByte /
+                                                 levelColumnCount(kFields, KnownErrors::kAll));
+  const auto refusal = [&](std::uint32_t count) {
+    return decodeLevelColumns(few, count, kFields, KnownErrors::kAll).error().code;
+  };
+  const std::size_t peak =
+      testing::peakBytesOf([&] { EXPECT_EQ(refusal(levels + 1), ErrorCode::kLimitExceeded); });
   EXPECT_LT(peak, 4096u);
-  EXPECT_NE(decodeLevelColumns(few, levels, 16).error().code, ErrorCode::kLimitExceeded);
+  EXPECT_NE(refusal(levels), ErrorCode::kLimitExceeded);
 }
 
 TEST(LevelColumns, anyNumberFollowsAnyOther) {
   const LevelColumns numbers{0, kMaxElements, 1, kMaxElements, 0, 0, kMaxElements, kMaxElements, 5};
-  const Result<LevelColumns> read = decodeLevelColumns(encodeLevelColumns(numbers, 3), 3, 3);
+  const Result<LevelColumns> read = decodeLevelColumns(
+      encodeLevelColumns(numbers, 3, KnownErrors::kNone), 3, 2, KnownErrors::kNone);
   ASSERT_TRUE(read) << read.error().text();
   EXPECT_EQ(*read, numbers);
+}
+
+TEST(LevelColumns, aLevelIsKnownOrNotAndTheEndsAre) {
+  constexpr std::uint32_t kThree = 3;
+  LevelColumns numbers(kThree * levelColumnCount(0, KnownErrors::kSome), 0);
+  const auto isRead = [&](std::uint32_t first, std::uint32_t second, std::uint32_t last) {
+    for (const auto& [level, known] : {std::pair(0u, first), {1u, second}, {2u, last}})
+      numbers[kKnownColumn * kThree + level] = known;
+    return decodeLevelColumns(encodeLevelColumns(numbers, kThree, KnownErrors::kSome), kThree, 0,
+                              KnownErrors::kSome)
+        .has_value();
+  };
+  EXPECT_TRUE(isRead(1, 1, 1));
+  EXPECT_TRUE(isRead(1, 0, 1));
+  EXPECT_FALSE(isRead(0, 1, 1));
+  EXPECT_FALSE(isRead(1, 1, 0));
+  EXPECT_FALSE(isRead(1, 2, 1));
 }
 
 TEST(ErrorFigure, growsWithTheErrorAndComesBack) {

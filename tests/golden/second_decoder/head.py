@@ -74,8 +74,9 @@ class Log:
             reader.unpack("2d")
             self.infos.append((kind & 127, bits, step, minimum))
         flags = reader.u8()
-        refuse_unless(flags < 8, "flags of the manifest")
+        refuse_unless(flags < 16 and flags & 9 != 9, "flags of the manifest")
         refuse_unless(flags <= 1 or self.minor >= 2, "a first view in an older version")
+        refuse_unless(flags < 8 or self.minor >= 3, "errors of some levels in an older version")
         six = "6B" if self.misreading == "a focus has six bytes" else "6H"
         self.focus = reader.unpack(six) if flags & 2 else None
         if self.focus:
@@ -86,23 +87,38 @@ class Log:
             field, cut = reader.unpack("BB")
             refuse_unless(field < self.fields and cut <= 3, "the opening's field or axis")
         levels = self.rows[-1].last + 1
-        columns = 3 + (1 + 2 * (2 + self.fields) if flags & 1 else 0)
         stream = Stream(reader.take(len(self.manifest) - reader.at), None, self.misreading)
+        self.read_columns(stream, levels, flags)
+        refuse_unless(stream.at_end(), "level columns are too long")
+
+    def read_columns(self, stream, levels, flags):
+        pairs = {0: 3, 1: 4, 8: 6}[flags & 9]  # the first column of a pair
+        columns = pairs + (2 * (2 + self.fields) if flags & 9 else 0)
         self.columns = []
+        known = [1] * levels
         for column in range(columns):
-            told = []
+            stays = column >= pairs and (column - pairs) % 2 == 1 or flags & 8 and column == 3
+            if self.misreading == "a max is predicted like a mean":
+                stays = False
+            told = []  # of the levels that are known
             for level in range(levels):
+                if column > 3 and not known[level]:
+                    if self.misreading == "an unknown level has entries":
+                        stream.number(column)
+                    if self.misreading == "an unknown level counts in predictions":
+                        told.append(told[-1])
+                    continue
                 predicted = told[-1] if told else 0
-                is_max = column > 3 and column % 2 == 1
-                if self.misreading == "a max is predicted like a mean":
-                    is_max = False
-                if level > 1 and not is_max:
+                if len(told) > 1 and not stays:
                     predicted = 2 * told[-1] - told[-2]
                 code = stream.number(column)
                 difference = code // 2 if code % 2 == 0 else -(code + 1) // 2
                 told.append((predicted + difference) % 2**32)
+            if flags & 8 and column == 3:
+                known = told
+                refuse_unless(all(k < 2 for k in known), "an error is known or not")
+                refuse_unless(known[0] and known[-1], "an end without a known error")
             self.columns.append(told)
-        refuse_unless(stream.at_end(), "level columns are too long")
-        for column in range(4, columns, 2):
+        for column in range(pairs, columns, 2):
             for mean, most in zip(self.columns[column], self.columns[column + 1]):
                 refuse_unless(mean <= most <= 17100, "a mean above its maximum")

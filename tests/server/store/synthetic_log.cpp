@@ -46,7 +46,8 @@ Manifest makeManifest(const SyntheticLog& options) {
                                : std::ldexp(0.5, -static_cast<int>(level.level));
       level.error = LevelError{{error, error},
                                {error, error},
-                               1,
+                               0,
+                               0,
                                std::vector<FieldError>(out.fields.size(), {error, error})};
     }
   return out;

@@ -188,14 +188,15 @@ TEST(AddFields, errorsAreMeasuredWhereTheLogKnowsThemAndAbsentElsewhere) {
     const LogFile log = sample.log();
     const LogFile after = LogFile::fromBytes(withAdded(log, shuffled(sample.mesh, 1, 4))).value();
     const Manifest manifest = manifestOf(after.index()).value();
+    const Manifest before = manifestOf(log.index()).value();
+    ASSERT_EQ(before.levels.front().error.has_value(), measured);
     for (const ManifestLevel& level : manifest.levels) {
-      ASSERT_EQ(level.error.has_value(), measured);
-      if (!measured) continue;
+      ASSERT_EQ(level.error.has_value(), before.levels[level.level].error.has_value());
+      if (!level.error) continue;
       ASSERT_EQ(level.error->fields.size(), manifest.fields.size());
       EXPECT_EQ(level.error->fields[1].rms > 0, level.level + 1 < manifest.levels.size())
           << level.level;
-      EXPECT_EQ(level.error->toLevel.max,
-                manifestOf(log.index())->levels[level.level].error->toLevel.max);
+      EXPECT_EQ(level.error->toLevel.max, before.levels[level.level].error->toLevel.max);
     }
   }
 }

@@ -66,7 +66,9 @@ OpenedLog boxLog() {
   FusionHistory history = simplify(std::move(mesh), options).value();
   LogWriterOptions writing;
   writing.chunkBytes = 256;
-  writing.errors = measureLevels(history, {}).value();
+  MeasureOptions measuring;
+  measuring.levels.assign(history.levels + std::size_t{1}, 1);
+  writing.errors = measureLevels(history, measuring).value();
   const auto path = testing::freshFolder("rate-curves") / "box.qtet";
   if (!writeFileAtomically(path, encodeLog(history, writing).value().bytes))
     throw std::runtime_error("box.qtet could not be written");

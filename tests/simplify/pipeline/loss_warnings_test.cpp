@@ -151,11 +151,12 @@ TEST(LossWarnings, thinWallsAreTheReason) {
   expectItsAdviceToHelp(thinWave(), options);
 }
 
-Manifest manifestOf(double volumeKept, double boundary) {
+Manifest manifestOf(double net, double boundary) {
   Manifest manifest;
   manifest.levels = {{0, 10, 10, 10, 0, std::nullopt}, {1, 1000, 1000, 500, 1, std::nullopt}};
   manifest.levels[0].error.emplace();
-  manifest.levels[0].error->volumeKept = volumeKept;
+  manifest.levels[0].error->volumeLost = std::max(-net, 0.0);
+  manifest.levels[0].error->volumeGained = std::max(net, 0.0);
   manifest.levels[0].error->toOriginal.max = boundary;
   return manifest;
 }
@@ -163,16 +164,16 @@ Manifest manifestOf(double volumeKept, double boundary) {
 TEST(LossWarnings, beginAboveTheLimitsOnly) {
   const CleanReport clean;
   const LossFacts facts{clean, 0.2};
-  EXPECT_TRUE(lossWarnings(manifestOf(1 - 0.0199, 0.02), facts).empty());
-  EXPECT_TRUE(lossWarnings(manifestOf(1 + 0.0199, 0.02), facts).empty());
-  expectWarning(lossWarnings(manifestOf(0.95, 0), facts), {"has lost 5 % of the volume"});
-  expectWarning(lossWarnings(manifestOf(1.05, 0), facts), {"has gained 5 % of the volume"});
-  expectWarning(lossWarnings(manifestOf(1, 0.03), facts), {"up to 3 % of the diagonal off"});
-  EXPECT_TRUE(lossWarnings(manifestOf(1, 0.03), {clean, 0.2, 0.04}).empty())
+  EXPECT_TRUE(lossWarnings(manifestOf(-0.0199, 0.02), facts).empty());
+  EXPECT_TRUE(lossWarnings(manifestOf(0.0199, 0.02), facts).empty());
+  expectWarning(lossWarnings(manifestOf(-0.05, 0), facts), {"has lost 5 % of the volume"});
+  expectWarning(lossWarnings(manifestOf(0.05, 0), facts), {"has gained 5 % of the volume"});
+  expectWarning(lossWarnings(manifestOf(0, 0.03), facts), {"up to 3 % of the diagonal off"});
+  EXPECT_TRUE(lossWarnings(manifestOf(0, 0.03), {clean, 0.2, 0.04}).empty())
       << "the user allowed it";
-  expectWarning(lossWarnings(manifestOf(0.95, 0), {clean, 0.2, 0, false, true}),
+  expectWarning(lossWarnings(manifestOf(-0.05, 0), {clean, 0.2, 0, false, true}),
                 {"`baseCells` 1000 (unasked it takes 64 kB or 30000 tetrahedra at most)"});
-  Manifest unmeasured = manifestOf(0.5, 0.5);
+  Manifest unmeasured = manifestOf(-0.5, 0.5);
   unmeasured.levels[0].error.reset();
   EXPECT_TRUE(lossWarnings(unmeasured, facts).empty());
 }

@@ -246,7 +246,9 @@ export class Assembler implements LogTable {
 
   private takeHead(head: Uint8Array): void {
     this.codec.open(head);
-    this.manifest = readManifest(head, (bytes, columns) => this.codec.levelColumns(bytes, columns));
+    this.manifest = readManifest(head, (bytes, errors, columns) =>
+      this.codec.levelColumns(bytes, errors, columns),
+    );
     this.ledger = new Ledger(this.codec, head.length);
     this.head = head.slice();
     this.packetList = packetsOf(this.codec);

@@ -3,6 +3,7 @@
 
 import type {Counts} from '../protocol/counts';
 import {QtetError} from '../protocol/errors';
+import type {KnownErrors} from '../protocol/manifest';
 import type {PacketBox} from '../protocol/packet';
 
 /** The codec as the session needs it. Tests bring their own. */
@@ -15,7 +16,7 @@ export interface Codec {
    * The numbers of all levels, column by column, from the end of the manifest. Throws
    * `limit-exceeded`, `truncated`, `bad-value`.
    */
-  levelColumns(bytes: Uint8Array, columns: number): Uint32Array;
+  levelColumns(bytes: Uint8Array, errors: KnownErrors, columns: number): Uint32Array;
   /** Byte offset in the file. */
   blockOffset(chunk: number, part: number): number;
   blockSize(chunk: number, part: number): number;
@@ -65,6 +66,8 @@ export const kAdaptiveCodec = 3;
 /** Association of codec/log_index.h. */
 const kOfCells = 1;
 
+/** By the numbers of KnownErrors of codec/coding/level_columns.h. */
+const kKnownErrors: readonly KnownErrors[] = ['none', 'all', 'some'];
 /** Names by ErrorCode of proto/error.h. */
 const kErrorCodes = [
   'truncated',
@@ -90,7 +93,7 @@ interface Exports {
   qtet_error(): number;
   qtet_chunk_count(): number;
   qtet_level_count(): number;
-  qtet_level_columns(bytes: number, size: number, columns: number): number;
+  qtet_level_columns(bytes: number, size: number, errors: number): number;
   qtet_level_numbers(): number;
   qtet_block_offset(chunk: number, part: number): number;
   qtet_block_size(chunk: number, part: number): number;
@@ -158,9 +161,9 @@ export class WasmCodec implements Codec {
   get chunkCount(): number {
     return this.wasm.qtet_chunk_count() >>> 0;
   }
-  levelColumns(bytes: Uint8Array, columns: number): Uint32Array {
+  levelColumns(bytes: Uint8Array, errors: KnownErrors, columns: number): Uint32Array {
     this.with([bytes], ([address]) =>
-      this.wasm.qtet_level_columns(address!, bytes.length, columns),
+      this.wasm.qtet_level_columns(address!, bytes.length, kKnownErrors.indexOf(errors)),
     );
     const count = columns * (this.wasm.qtet_level_count() >>> 0);
     return new Uint32Array(

@@ -29,7 +29,7 @@ export function targetOf(
 ): Target | null {
   if (limit.kind === 'full' || codec.headChunks < codec.chunkCount) return null;
   for (const {chunks, tetrahedra, bytes, level} of stepsOf(codec, levels, fields, headBytes)) {
-    if (!limitReached(limit, {tetrahedra, bytes}, errorOfLevel(levels[level], fields))) continue;
+    if (!limitReached(limit, {tetrahedra, bytes}, errorOfLevel(levels, level, fields))) continue;
     const holding = levels.find((info) => info.tetrahedra >= tetrahedra);
     return holding ? {chunks, level: holding.level} : null;
   }

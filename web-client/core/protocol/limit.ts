@@ -1,6 +1,6 @@
 // How far to refine: fully, or up to a number of cells, a number of bytes, or an error.
 
-import type {LevelInfo} from './manifest';
+import type {LevelError, LevelInfo} from './manifest';
 
 export type Limit =
   | {kind: 'full'}
@@ -14,15 +14,19 @@ export const kFull: Limit = {kind: 'full'};
 
 /**
  * The known error of a level: the largest of these fields', or the boundary's if there are none.
- * Null: the log does not tell.
+ * Where it was not measured, that of the last coarser level where it was. Null: the log does not
+ * tell.
  */
 export function errorOfLevel(
-  level: LevelInfo | undefined,
+  levels: readonly LevelInfo[] | undefined,
+  level: number,
   fields: readonly number[],
 ): number | null {
-  if (!level?.error) return null;
-  if (fields.length === 0) return level.error.toOriginal.mean;
-  return Math.max(...fields.map((field) => level.error!.fields[field]?.mean ?? 0));
+  let error: LevelError | undefined;
+  for (let at = level; at >= 0 && !error; --at) error = levels?.[at]?.error;
+  if (!error) return null;
+  if (fields.length === 0) return error.toOriginal.mean;
+  return Math.max(...fields.map((field) => error.fields[field]?.mean ?? 0));
 }
 
 export function limitReached(

@@ -28,16 +28,23 @@ export interface Spread {
 export interface LevelError {
   toLevel: Spread;
   toOriginal: Spread;
-  volumeKept: number;
+  /** The part of the original that is not covered, over its volume. */
+  volumeLost: number;
+  /** What is covered outside of the original, over its volume. */
+  volumeGained: number;
   /** One for each field; `mean` is the rms. */
   fields: Spread[];
 }
+
+/** Which levels have a known error: none, all as before version 2.3, or some. */
+export type KnownErrors = 'none' | 'all' | 'some';
 
 export interface LevelInfo {
   level: number;
   tetrahedra: number;
   vertices: number;
   boundaryTriangles: number;
+  /** Absent where it was not measured. If a level has one, the first and the last do. */
   error?: LevelError;
 }
 
@@ -79,6 +86,7 @@ export function fieldKeys(fields: readonly FieldInfo[]): string[] {
 const kHeaderBytes = 64;
 const kMinorAt = 10;
 const kMinorOfFirstView = 2;
+const kMinorOfSomeErrors = 3;
 const kPositionBitsAt = 13;
 const kManifestBytesAt = 24;
 const kFieldsAt = 44;
@@ -93,12 +101,14 @@ const kMaxNameBytes = 256;
 const kFieldTypes = 10;
 const kFirstWholeType = 2;
 const kMaxFieldBits = 28;
-const kErrorsFollow = 1;
+const kAllErrorsFollow = 1;
 const kFocusFollows = 2;
 const kOpeningFollows = 4;
+const kSomeErrorsFollow = 8;
 const kNoCut = 3;
 const kShareBytes = 2;
 const kCountColumns = 3;
+const kKnownColumn = 3;
 const kVolumeFigure = 1e6;
 const kErrorFigureDigits = 14;
 
@@ -109,7 +119,7 @@ const kErrorFigureDigits = 14;
  */
 export function readManifest(
   head: Uint8Array,
-  levelColumns: (bytes: Uint8Array, columns: number) => Uint32Array,
+  levelColumns: (bytes: Uint8Array, errors: KnownErrors, columns: number) => Uint32Array,
 ): Manifest {
   const header = new DataView(head.buffer, head.byteOffset, head.byteLength);
   const tableAt = kHeaderBytes + header.getUint32(kManifestBytesAt, true);
@@ -131,16 +141,32 @@ export function readManifest(
   if (new Set(fields.map(({association, name}) => `${association}:${name}`)).size < fields.length)
     throw damaged('has a field twice');
   const flags = reader.byte();
-  if (flags > kErrorsFollow && header.getUint16(kMinorAt, true) < kMinorOfFirstView)
-    throw damaged('has a first view, of which its version knows nothing');
-  if (flags > (kErrorsFollow | kFocusFollows | kOpeningFollows))
-    throw damaged('has flags that this viewer does not know');
+  const errors = knownErrorsOf(flags);
+  if (minorOf(flags) > header.getUint16(kMinorAt, true))
+    throw damaged('has flags that its version does not know');
   const focus = flags & kFocusFollows ? readFocus(reader, lattice.bits) : undefined;
   const opening = flags & kOpeningFollows ? readOpening(reader, fields.length) : undefined;
-  const hasErrors = (flags & kErrorsFollow) !== 0;
-  const columns = kCountColumns + (hasErrors ? 1 + 2 * (2 + fields.length) : 0);
-  const levels = levelsOf(levelColumns(reader.rest(), columns), columns);
+  const columns =
+    errors === 'none' ? kCountColumns : firstPairOf(errors) + 2 * (2 + fields.length);
+  const levels = levelsOf(levelColumns(reader.rest(), errors, columns), columns, errors);
   return {source, lattice, ...(focus && {focus}), ...(opening && {opening}), fields, levels};
+}
+
+function knownErrorsOf(flags: number): KnownErrors {
+  const both = kAllErrorsFollow | kSomeErrorsFollow;
+  if (flags >= 2 * kSomeErrorsFollow || (flags & both) === both)
+    throw damaged('has flags that this viewer does not know');
+  return flags & kSomeErrorsFollow ? 'some' : flags & kAllErrorsFollow ? 'all' : 'none';
+}
+
+function minorOf(flags: number): number {
+  if (flags & kSomeErrorsFollow) return kMinorOfSomeErrors;
+  return flags > kAllErrorsFollow ? kMinorOfFirstView : 0;
+}
+
+/** The column behind those of the volume. */
+function firstPairOf(errors: KnownErrors): number {
+  return errors === 'some' ? kKnownColumn + 3 : kCountColumns + 1;
 }
 
 function readOpening(reader: ManifestReader, fields: number): Opening {
@@ -183,24 +209,37 @@ function readField(
   };
 }
 
-function levelsOf(numbers: Uint32Array, columns: number): LevelInfo[] {
+function levelsOf(numbers: Uint32Array, columns: number, errors: KnownErrors): LevelInfo[] {
   const levels = numbers.length / columns;
   return Array.from({length: levels}, (_, level) => {
     const at = (column: number): number => numbers[column * levels + level]!;
     const info: LevelInfo = {level, tetrahedra: at(0), vertices: at(1), boundaryTriangles: at(2)};
-    if (columns === kCountColumns) return info;
+    if (errors === 'none' || (errors === 'some' && at(kKnownColumn) === 0)) return info;
     const pairs: Spread[] = [];
-    for (let column = kCountColumns + 1; column < columns; column += 2)
+    for (let column = firstPairOf(errors); column < columns; column += 2)
       pairs.push({mean: errorOf(at(column)), max: errorOf(at(column + 1))});
     const [toLevel, toOriginal, ...fields] = pairs;
     info.error = {
       toLevel: toLevel!,
       toOriginal: toOriginal!,
-      volumeKept: at(kCountColumns) / kVolumeFigure,
+      ...volumesOf(errors, at),
       fields,
     };
     return info;
   });
+}
+
+/** A log before version 2.3 has what is left of both after they have cancelled each other out. */
+function volumesOf(
+  errors: KnownErrors,
+  at: (column: number) => number,
+): {volumeLost: number; volumeGained: number} {
+  const net = at(kCountColumns) - kVolumeFigure;
+  const [lost, gained] =
+    errors === 'some'
+      ? [at(kKnownColumn + 1), at(kKnownColumn + 2)]
+      : [Math.max(-net, 0), Math.max(net, 0)];
+  return {volumeLost: lost / kVolumeFigure, volumeGained: gained / kVolumeFigure};
 }
 
 /** Decodes three significant digits (codec/error_figure.h). Parsing a decimal rounds only once. */

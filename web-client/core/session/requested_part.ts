@@ -105,7 +105,7 @@ export class RequestedPart {
     const {codec, manifest} = this.assembler;
     if (this.limit.kind === 'full' || !manifest || codec.chunksApplied === 0) return false;
     const {statistics, fields} = this;
-    const error = errorOfLevel(manifest.levels[statistics.level], fields);
+    const error = errorOfLevel(manifest.levels, statistics.level, fields);
     return limitReached(this.limit, statistics, error);
   }
 

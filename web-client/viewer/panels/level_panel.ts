@@ -31,7 +31,7 @@ export class LevelPanel {
         fields,
       } = now();
       // Starts from the mesh as it is now.
-      const error = errorOfLevel(manifest?.levels[level], fields) ?? 0;
+      const error = errorOfLevel(manifest?.levels, level, fields) ?? 0;
       const value = {
         cells: tetrahedra,
         bytes,

@@ -109,7 +109,7 @@ export class ProgressPanel {
   /** The known error of the mesh on the screen; null if the log does not tell. */
   errorLeft(): number | null {
     return this.manifest && this.statistics
-      ? errorOfLevel(this.manifest.levels[this.statistics.level], this.fields)
+      ? errorOfLevel(this.manifest.levels, this.statistics.level, this.fields)
       : null;
   }
 
@@ -181,7 +181,7 @@ export class ProgressPanel {
     const {bytes, level: now} = this.statistics!;
     const points = this.plan.map(({bytes: needed, level}) => ({
       level,
-      point: [needed, errorOfLevel(this.manifest?.levels[level], this.fields) ?? 0] as Point,
+      point: [needed, errorOfLevel(this.manifest?.levels, level, this.fields) ?? 0] as Point,
     }));
     const line = points.map(({point}) => point);
     const [firstBytes, firstError] = line[0] ?? [0, 0];
