@@ -184,8 +184,8 @@ class LevelBounds {
       if (!isCellField(field)) components_ += field.components;
   }
 
-  /// Whether a level with this error may be the base mesh, instead of the finer one of this size;
-  /// with bounds of this share of the asked ones.
+  /// Whether a level with this error may be the base mesh, instead of the finer one of this size.
+  /// Bounds count with this share of them.
   [[nodiscard]] bool hold(const LevelError& error, const LevelSize& size, double share = 1) const {
     return (!options_.bounds.boundary || isNear(error, share * *options_.bounds.boundary)) &&
            std::ranges::all_of(fields_,

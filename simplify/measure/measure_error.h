@@ -42,8 +42,8 @@ inline constexpr std::size_t kMaxBaseBytes = 64'000;
 /// Where the base mesh is when its size is not given: the coarsest level of which it and all finer
 /// ones are near the original.
 struct BaseRule {
-  /// Of LevelError::boundaryDistance(). Twice that is the bound of the volume lost, and of the
-  /// volume gained.
+  /// The largest LevelError::boundaryDistance(). Twice that is the bound of the volume lost, and of
+  /// the volume gained.
   double error = kBaseError;
   /// A larger level is no base mesh, however far from the original the coarser ones are.
   std::size_t maxCells = std::numeric_limits<std::size_t>::max();

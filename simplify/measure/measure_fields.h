@@ -1,4 +1,4 @@
-// How far the fields of a level are from the original's, over the original's volume, and how much
+// How far the fields of a level are from the original's, over the original's volume. Also how much
 // of that volume the level does not cover.
 #pragma once
 

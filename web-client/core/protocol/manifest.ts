@@ -30,7 +30,7 @@ export interface LevelError {
   toOriginal: Spread;
   /** The part of the original that is not covered, over its volume. */
   volumeLost: number;
-  /** What is covered outside of the original, over its volume. */
+  /** The part that lies outside of the original, over the original's volume. */
   volumeGained: number;
   /** One for each field; `mean` is the rms. */
   fields: Spread[];
