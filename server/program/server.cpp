@@ -62,8 +62,10 @@ bool endPacing(tcp::acceptor& on) {
 /// buffer is not waited for.
 void turnAway(tcp::socket socket, unsigned status, std::string_view type, std::string_view detail) {
   Reply busy = problem(status, type, detail);
-  busy.headers.emplace_back("Retry-After", std::to_string(limits::kRetryAfterSeconds));
-  const std::string text = headerText(busy, false) + std::get<std::string>(busy.body);
+  busy.headers.add("Retry-After", std::to_string(limits::kRetryAfterSeconds));
+  std::string text;
+  appendHead(text, busy, Afterwards::kCloses);
+  text += std::get<std::string>(busy.body);
   error_code ec;
   socket.non_blocking(true, ec);
   if (!ec) socket.write_some(asio::buffer(text), ec);

@@ -4,7 +4,11 @@
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "server/wire/http_limits.h"
 #include "server/wire/request_trace.h"
 #include "tests/server/program/loopback.h"
 #include "tests/server/program/served_folder.h"
@@ -77,6 +81,32 @@ TEST(AccessLog, aLineOfJsonForEveryRequest) {
   EXPECT_TRUE(lines[0]["whole"].isTrue());
   EXPECT_EQ(lines[0]["time"].string().size(), std::string("2026-01-01T00:00:00.000Z").size());
   EXPECT_EQ(lines[1]["status"], 404);
+}
+
+TEST(AccessLog, bytesAreThoseOfTheBodyHoweverItIsSent) {
+  const Logged logged;
+  ASSERT_TRUE(logged.log);
+  std::vector<std::pair<std::string, std::size_t>> sent;  // id and body's bytes
+  {
+    test::RunningServer server(logged.folder.store(), logged.folder.viewer(),
+                               {.accessLog = logged.log->get()});
+    test::RawClient client(server.port());
+    for (const std::size_t bytes : {std::size_t{1}, limits::kMaxWithHead - 1, limits::kMaxWithHead,
+                                    limits::kMaxWithHead + 1}) {
+      const auto response =
+          client.get(logged.folder.log(), "Range: bytes=0-" + std::to_string(bytes - 1) + "\r\n");
+      EXPECT_EQ(response.body, logged.folder.file().substr(0, bytes));
+      sent.emplace_back(response.header("x-request-id"), bytes);
+    }
+  }
+  std::ifstream in(logged.path);
+  for (const auto& [id, bytes] : sent) {
+    std::string line;
+    ASSERT_TRUE(std::getline(in, line));
+    EXPECT_EQ(Json::parse(line)["id"], id) << "the log's line is found by it";
+    EXPECT_EQ(Json::parse(line)["bytes"], bytes);
+    EXPECT_TRUE(Json::parse(line)["whole"].isTrue());
+  }
 }
 
 TEST(AccessLog, aStreamHasALineAtItsEnd) {
