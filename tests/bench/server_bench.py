@@ -191,6 +191,10 @@ def measure(args):
     print(json.dumps({"congestion": congestion, "heads": heads, "rounds": rounds}))
 
 
+def amount(value):
+    return f"{value:,.0f}" if value >= 100 else f"{value:.1f}"
+
+
 def figure(ratios):
     return f"{statistics.median(ratios):.2f} ({min(ratios):.2f} to {max(ratios):.2f})"
 
@@ -225,7 +229,7 @@ def place_table(place, result, log_bytes, earlier, missed):
         agrees = before and abs(median / before - 1) <= AGREES
         other = "none" if before is None else f"{before:.2f}" + ("" if agrees else ", differs")
         out.append(
-            f"| {name} | {ours:,.0f} {unit} | {theirs:,.0f} {unit}"
+            f"| {name} | {amount(ours)} {unit} | {amount(theirs)} {unit}"
             f" | {figure(server)} | {figure(both)} | {other} |"
         )
         if place == "veth" and aim and median < aim:
