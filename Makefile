@@ -21,7 +21,7 @@ SHELL := /bin/bash
 .DELETE_ON_ERROR:
 .PHONY: help setup build build-checked demo demo-port demo-log test test-units test-system check
 .PHONY: soak format format-check lint tidy sanitize fuzz fresh bench results sizes rate deb test-deb
-.PHONY: clean
+.PHONY: bench-server clean
 .DEFAULT_GOAL := help
 
 help:
@@ -44,6 +44,7 @@ help:
 	make build                 build only: build/release/bin/qtet and qtet-server
 	make setup                 install what is missing of .ci/packages.txt (asks sudo if not root)
 	make bench                 build and run the benchmarks
+	make bench-server          qtet-server beside nginx: the table of tests/bench/SERVER.md made anew
 	make results               compare with VTK's decimation: tests/bench/RESULTS.md
 	make sizes                 tests/bench/SIZES.md made anew: to the byte
 	make rate                  tests/bench/RATE.md made anew: error against bytes
@@ -323,6 +324,13 @@ bench: setup build
 	  echo "== $$program"
 	  "$$program"
 	done
+
+# The table of tests/bench/SERVER.md. Counts on a quiet machine only.
+bench-server: TARGETS := --target qtet-server server_log
+bench-server: setup build
+	@log=build/bench-server.qtet
+	[[ -f $$log && ! $(BUILD)/bin/server_log -nt $$log ]] || $(BUILD)/bin/server_log "$$log"
+	python3 tests/bench/server_bench.py --bin $(BUILD)/bin --log "$$log"
 
 # Writes tests/bench/RESULTS.md. Finished results stay in build/results, so the run may be stopped
 # and started again.

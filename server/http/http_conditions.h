@@ -2,29 +2,11 @@
 #pragma once
 
 #include <cstdint>
-#include <ctime>
-#include <optional>
-#include <string>
-#include <string_view>
 
 #include "server/http/http_message.h"
+#include "server/wire/resource.h"
 
 namespace qtet {
-
-/// "Sun, 06 Nov 1994 08:49:37 GMT".
-[[nodiscard]] std::string httpDate(std::time_t time);
-/// The form above, and the two that old clients send (RFC 9110, 5.6.7): "Sunday, 06-Nov-94 08:49:37
-/// GMT" and "Sun Nov  6 08:49:37 1994". Anything else is no date.
-[[nodiscard]] std::optional<std::time_t> parseHttpDate(std::string_view text);
-
-/// The values by which conditions compare a resource. `etag` is strong and has its quotes.
-struct Validators {
-  std::string etag;
-  std::time_t modified = 0;
-  /// For a coded variant, the tag of the uncoded one; else empty. If-Match accepts this tag too,
-  /// since both stand for the same state of the resource.
-  std::string plainEtag{};
-};
 
 enum class Verdict { kSend, kNotModified, kPreconditionFailed };
 /// If-Match, If-Unmodified-Since, If-None-Match and If-Modified-Since in the order of RFC 9110,

@@ -1,22 +1,13 @@
 #include "server/http/http_message.h"
 
-#include <chrono>
+#include <utility>
 
 #include "proto/json_reader.h"
 #include "proto/sentence.h"
-#include "server/http/http_conditions.h"
 #include "server/wire/connection_limits.h"
+#include "server/wire/http_date.h"
 
 namespace qtet {
-namespace {
-
-/// Headers that a page of another origin may read, besides the few that it always may.
-constexpr const char* kExposedHeaders =
-    "Accept-Ranges, Allow, Content-Disposition, Content-Encoding, Content-Location, Content-Range, "
-    "ETag, Link, Location, "
-    "Retry-After, traceparent, WWW-Authenticate, X-Request-Id";
-
-}  // namespace
 
 std::optional<std::uint64_t> Reply::bodyBytes() const {
   if (const auto* text = std::get_if<std::string>(&body)) return text->size();
@@ -24,10 +15,8 @@ std::optional<std::uint64_t> Reply::bodyBytes() const {
   return std::nullopt;
 }
 
-std::string Reply::header(std::string_view name) const {
-  for (const auto& [key, value] : headers)
-    if (key == name) return value;
-  return "";
+std::string_view Reply::header(std::string_view name) const {
+  return headers.find(name).value_or("");
 }
 
 std::string_view reasonPhrase(unsigned status) {
@@ -65,17 +54,34 @@ std::string_view reasonPhrase(unsigned status) {
   }
 }
 
-std::string headerText(const Reply& reply, bool keepAlive) {
-  std::string out = "HTTP/1.1 " + std::to_string(reply.status) + " ";
+void appendHead(std::string& out, const Reply& reply, Afterwards afterwards) {
+  out += "HTTP/1.1 ";
+  out += std::to_string(reply.status);
+  out += ' ';
   out += reasonPhrase(reply.status);
-  out += "\r\nDate: " +
-         httpDate(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())) + "\r\n";
-  for (const auto& [name, value] : reply.headers) out += name + ": " + value + "\r\n";
+  out += "\r\nDate: ";
+  out += httpDateNow();
+  out += "\r\n";
+  out += reply.headers.text();
   // RFC 9110, 8.6: none with 204; with 304 it would have to be that of the 200.
   const std::optional<std::uint64_t> bytes = reply.bodyBytes();
-  if (bytes && reply.status != 204 && reply.status != 304)
-    out += "Content-Length: " + std::to_string(*bytes) + "\r\n";
-  out += keepAlive && !reply.close ? "Connection: keep-alive\r\n\r\n" : "Connection: close\r\n\r\n";
+  if (bytes && reply.status != 204 && reply.status != 304) {
+    out += "Content-Length: ";
+    out += std::to_string(*bytes);
+    out += "\r\n";
+  }
+  if (afterwards == Afterwards::kKept) out += "Connection: keep-alive\r\n";
+  if (afterwards == Afterwards::kCloses) out += "Connection: close\r\n";
+  out += "\r\n";
+}
+
+Reply momentaryReply(unsigned status, std::string_view type, std::string body) {
+  Reply out;
+  out.status = status;
+  out.headers = {{"Cache-Control", "no-store"}};
+  addType(out.headers, type);
+  addCommonHeaders(out.headers);
+  out.body = std::move(body);
   return out;
 }
 
@@ -84,17 +90,12 @@ Reply problem(unsigned status, std::string_view type, std::string_view detail) {
                      {"title", reasonPhrase(status)},
                      {"status", status},
                      {"detail", sentence(detail)}};
-  Reply out;
-  out.status = status;
-  out.headers = {{"Content-Type", "application/problem+json"}, {"Cache-Control", "no-store"}};
-  out.body = dumpJson(json);
-  addCommonHeaders(out);
-  return out;
+  return momentaryReply(status, "application/problem+json", dumpJson(json));
 }
 
 Reply busyReply(std::string_view detail) {
   Reply out = problem(503, "busy", detail);
-  out.headers.emplace_back("Retry-After", std::to_string(limits::kRetryAfterSeconds));
+  out.headers.add("Retry-After", std::to_string(limits::kRetryAfterSeconds));
   return out;
 }
 
@@ -102,17 +103,6 @@ Reply noPlaceReply(std::string_view detail) {
   Reply out = busyReply(detail);
   out.refusal = Refusal::kPlaces;
   return out;
-}
-
-void addCommonHeaders(Reply& reply) {
-  // Logs are public and there are no cookies: any page may read them, also one that isolates itself
-  // (COEP).
-  reply.headers.insert(reply.headers.end(), {{"Server", "qtet-server/" QTET_VERSION},
-                                             {"X-Content-Type-Options", "nosniff"},
-                                             {"Access-Control-Allow-Origin", "*"},
-                                             {"Access-Control-Expose-Headers", kExposedHeaders},
-                                             {"Timing-Allow-Origin", "*"},
-                                             {"Cross-Origin-Resource-Policy", "cross-origin"}});
 }
 
 }  // namespace qtet

@@ -7,12 +7,11 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <variant>
-#include <vector>
 
 #include "proto/bytes.h"
 #include "server/wire/file_part.h"
+#include "server/wire/header_lines.h"
 #include "server/wire/refusal.h"
 
 namespace qtet {
@@ -43,7 +42,7 @@ struct RequestView {
 struct Reply {
   unsigned status = 200;
   /// Without Content-Length, Date and Connection.
-  std::vector<std::pair<std::string, std::string>> headers;
+  HeaderLines headers;
   std::variant<std::string, ByteView, std::monostate> body;
   /// Owner of the body's bytes, unless they are the router's or the viewer's.
   std::shared_ptr<const void> owner{};
@@ -54,7 +53,7 @@ struct Reply {
   Refusal refusal = Refusal::kNone;  ///< where the status does not say it
 
   /// The first header of that name, as it is written here; "" where there is none.
-  [[nodiscard]] std::string header(std::string_view name) const;
+  [[nodiscard]] std::string_view header(std::string_view name) const;
   /// Bytes of the body; nullopt where it is left open.
   [[nodiscard]] std::optional<std::uint64_t> bodyBytes() const;
 };
@@ -65,10 +64,19 @@ inline constexpr unsigned kClientGone = 499;
 /// "Not Found" for 404.
 [[nodiscard]] std::string_view reasonPhrase(unsigned status);
 
-/// The status line and the headers, with Content-Length, Date and Connection, up to and with the
-/// empty line.
-[[nodiscard]] std::string headerText(const Reply& reply, bool keepAlive);
+/// The connection's future once the answer is sent.
+enum class Afterwards : std::uint8_t {
+  kStays,  ///< as HTTP/1.1 has it, unless somebody says otherwise
+  kKept,   ///< the same to a client of HTTP/1.0, which has to be told
+  kCloses,
+};
 
+/// Appends the status line and the headers, with Content-Length, Date and Connection, and the empty
+/// line.
+void appendHead(std::string& out, const Reply& reply, Afterwards afterwards);
+
+/// An answer that holds for this moment alone and is not to be kept.
+[[nodiscard]] Reply momentaryReply(unsigned status, std::string_view type, std::string body);
 /// An error as RFC 9457 has it; `type` is the last part of a path under /problems/.
 [[nodiscard]] Reply problem(unsigned status, std::string_view type, std::string_view detail);
 
@@ -76,8 +84,5 @@ inline constexpr unsigned kClientGone = 499;
 [[nodiscard]] Reply busyReply(std::string_view detail);
 /// The same where all places are taken.
 [[nodiscard]] Reply noPlaceReply(std::string_view detail);
-
-/// Headers that every answer of this server carries.
-void addCommonHeaders(Reply& reply);
 
 }  // namespace qtet

@@ -1,48 +1,63 @@
 #include "server/http/http_resource.h"
 
+#include "server/wire/http_date.h"
+
 namespace qtet {
+namespace {
+
+Reply notModified(HeaderLines headers) {
+  removeType(headers);
+  Reply out;
+  out.status = 304;
+  out.headers = std::move(headers);
+  return out;
+}
+
+Reply preconditionFailed(const Validators& now) {
+  return problem(412, "precondition-failed",
+                 "the resource is another one by now: its ETag is " + now.etag);
+}
+
+}  // namespace
 
 Reply beginReply(unsigned status, const Resource& resource) {
   Reply out;
   out.status = status;
-  out.headers = {{"ETag", resource.validators.etag},
-                 {"Last-Modified", httpDate(resource.validators.modified)},
-                 {"Cache-Control", std::string(resource.cacheControl)}};
-  if (status != 304) out.headers.emplace_back("Content-Type", resource.type);
-  out.headers.insert(out.headers.end(), resource.headers.begin(), resource.headers.end());
-  addCommonHeaders(out);
+  out.headers = headOf(resource);
   return out;
 }
 
 std::optional<Reply> conditionalReply(const RequestView& request, const Resource& resource) {
   switch (evaluateConditions(request, resource.validators)) {
     case Verdict::kSend: return std::nullopt;
-    case Verdict::kNotModified: return beginReply(304, resource);
+    case Verdict::kNotModified: return notModified(headOf(resource));
     case Verdict::kPreconditionFailed: break;
   }
-  return problem(412, "precondition-failed",
-                 "the resource is another one by now: its ETag is " + resource.validators.etag);
+  return preconditionFailed(resource.validators);
 }
 
 Reply rangeReply(const RequestView& request, Reply begun, ByteView bytes,
                  std::shared_ptr<const void> owner) {
-  const std::string date = begun.header("Last-Modified");
-  const ByteRange range =
-      selectRange(request, {begun.header("ETag"), parseHttpDate(date).value_or(0)}, bytes.size());
-  const std::string size = std::to_string(bytes.size());
+  Validators validators;
+  if (request.range && request.ifRange)
+    validators = {std::string(begun.header("ETag")),
+                  parseHttpDate(begun.header("Last-Modified")).value_or(0)};
+  const ByteRange range = selectRange(request, validators, bytes.size());
   if (range.kind == ByteRange::Kind::kUnsatisfiable) {
+    const std::string size = std::to_string(bytes.size());
     Reply out = problem(416, "range-not-satisfiable",
                         "the range starts behind the end; there are " + size + " bytes");
-    out.headers.emplace_back("Content-Range", "bytes */" + size);
+    out.headers.add("Content-Range", "bytes */" + size);
     return out;
   }
   begun.owner = std::move(owner);
   begun.body = bytes;
   if (range.kind == ByteRange::Kind::kWhole) return begun;
   begun.status = 206;
-  begun.headers.emplace_back("Content-Range", "bytes " + std::to_string(range.first) + "-" +
-                                                  std::to_string(range.first + range.size - 1) +
-                                                  "/" + size);
+  begun.headers.remove("Accept-Ranges");  // the status says it
+  begun.headers.add("Content-Range", "bytes " + std::to_string(range.first) + "-" +
+                                         std::to_string(range.first + range.size - 1) + "/" +
+                                         std::to_string(bytes.size()));
   begun.body = bytes.subspan(range.first, range.size);
   return begun;
 }
@@ -50,19 +65,26 @@ Reply rangeReply(const RequestView& request, Reply begun, ByteView bytes,
 Reply bytesReply(const RequestView& request, const Resource& resource, ByteView bytes,
                  std::shared_ptr<const void> owner) {
   if (std::optional<Reply> early = conditionalReply(request, resource)) return std::move(*early);
-  Reply begun = beginReply(200, resource);
-  begun.headers.emplace_back("Accept-Ranges", "bytes");
-  return rangeReply(request, std::move(begun), bytes, std::move(owner));
+  return rangeReply(request, beginReply(200, resource), bytes, std::move(owner));
 }
 
-void becomeVariant(Resource& resource, ContentCoding coding) {
-  resource.headers.emplace_back("Vary", "Accept-Encoding");
-  if (coding == ContentCoding::kIdentity) return;
-  const std::string name(codingName(coding));
-  // other bytes, another strong tag
-  resource.validators.plainEtag = resource.validators.etag;
-  resource.validators.etag.insert(resource.validators.etag.size() - 1, "-" + name);
-  resource.headers.emplace_back("Content-Encoding", name);
+Reply formReply(const RequestView& request, const DocumentForm& form,
+                std::shared_ptr<const void> owner) {
+  switch (evaluateConditions(request, form.validators)) {
+    case Verdict::kNotModified: return notModified(form.headers);
+    case Verdict::kPreconditionFailed: return preconditionFailed(form.validators);
+    case Verdict::kSend: break;
+  }
+  Reply out;
+  out.headers = form.headers;
+  return rangeReply(request, std::move(out), form.bytes, std::move(owner));
+}
+
+Reply documentReply(const RequestView& request, const Document& document,
+                    std::shared_ptr<const void> owner) {
+  const ContentCoding coding = chooseCoding(request.acceptEncoding.value_or(""),
+                                            document.gzip.has_value(), document.zstd.has_value());
+  return formReply(request, document.form(coding), std::move(owner));
 }
 
 Reply variantReply(const RequestView& request, Resource resource, const Variants& variants,

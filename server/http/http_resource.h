@@ -4,27 +4,13 @@
 
 #include <memory>
 #include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include "server/http/http_conditions.h"
 #include "server/http/http_message.h"
-#include "server/wire/content_coding.h"
 #include "server/wire/document.h"
+#include "server/wire/resource.h"
 
 namespace qtet {
-
-inline constexpr std::string_view kRevalidate = "no-cache";
-inline constexpr std::string_view kForEver = "public, max-age=31536000, immutable";
-
-/// Describes bytes, and how long they may be cached.
-struct Resource {
-  Validators validators;
-  std::string type;
-  std::string_view cacheControl = kRevalidate;
-  std::vector<std::pair<std::string, std::string>> headers{};
-};
 
 /// The same bytes in every coding that there is; an empty one is not there.
 struct Variants {
@@ -46,8 +32,12 @@ struct Variants {
 /// The same of the variant that the client likes best; every variant has a tag of its own.
 [[nodiscard]] Reply variantReply(const RequestView& request, Resource resource,
                                  const Variants& variants, std::shared_ptr<const void> owner);
-/// `resource` as the variant of that coding: its tag, Vary and Content-Encoding.
-void becomeVariant(Resource& resource, ContentCoding coding);
+/// 200, 206, 304, 412 or 416 of that form, whose head is made already.
+[[nodiscard]] Reply formReply(const RequestView& request, const DocumentForm& form,
+                              std::shared_ptr<const void> owner);
+/// The same of the form that the client likes best.
+[[nodiscard]] Reply documentReply(const RequestView& request, const Document& document,
+                                  std::shared_ptr<const void> owner);
 
 [[nodiscard]] inline ByteView viewOf(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};

@@ -93,12 +93,8 @@ std::optional<Reply> Upload::partial() {
   struct stat info{};
   if (::fstat(file_, &info) != 0) return diskTrouble("the upload cannot be read", errno);
   if (static_cast<std::uint64_t>(info.st_size) >= request_.totalBytes) return std::nullopt;
-  Reply out;
-  out.status = 202;
-  out.headers = {{"Content-Type", "application/json"}, {"Cache-Control", "no-store"}};
-  out.body = dumpJson({{"digest", *request_.digest}, {"bytes", info.st_size}});
-  addCommonHeaders(out);
-  return out;
+  return momentaryReply(202, "application/json",
+                        dumpJson({{"digest", *request_.digest}, {"bytes", info.st_size}}));
 }
 
 std::optional<Reply> Upload::verify(const std::stop_token& stop, MeshPointer& mesh) {
@@ -163,11 +159,11 @@ Reply Upload::publish(const std::string& digest) {
   if (!change || !mesh || mesh->log.digest() != digest)
     return problem(500, "internal", "the log was published but cannot be served now");
   spdlog::info("{}: uploaded, {} bytes", mesh->id, mesh->log.bytes().size());
-  Reply out =
-      beginReply(replaced ? 200 : 201,
-                 {{mesh->description().etag, mesh->modified}, "application/json", "no-store", {}});
-  out.headers.emplace_back("Location", "/v1/meshes/" + percentEncode(mesh->id));
-  out.body = mesh->description().text;
+  Reply out = beginReply(
+      replaced ? 200 : 201,
+      {{mesh->description().etag(), mesh->modified}, "application/json", "no-store", {}});
+  out.headers.add("Location", "/v1/meshes/" + percentEncode(mesh->id));
+  out.body = std::string(mesh->description().text());
   return out;
 }
 
@@ -178,12 +174,13 @@ std::optional<Reply> Uploads::precondition(const UploadRequest& request) const {
   if (request.ifNoneMatch) view.ifNoneMatch = *request.ifNoneMatch;
   // A mesh that does not exist has no tag at all: If-Match fails and If-None-Match succeeds.
   const bool fails =
-      mesh ? evaluateConditions(view, {mesh->description().etag, mesh->modified}) != Verdict::kSend
-           : request.ifMatch.has_value();
+      mesh
+          ? evaluateConditions(view, {mesh->description().etag(), mesh->modified}) != Verdict::kSend
+          : request.ifMatch.has_value();
   if (!fails) return std::nullopt;
   return problem(
       412, "precondition-failed",
-      mesh ? "the mesh's ETag is " + mesh->description().etag : "there is no mesh of that name");
+      mesh ? "the mesh's ETag is " + mesh->description().etag() : "there is no mesh of that name");
 }
 
 std::expected<std::unique_ptr<Upload>, Reply> Uploads::begin(const UploadRequest& request) {
@@ -254,7 +251,7 @@ Reply Uploads::remove(const UploadRequest& request) {
   spdlog::info("{}: removed by request", request.id);
   Reply out;
   out.status = 204;
-  addCommonHeaders(out);
+  addCommonHeaders(out.headers);
   return out;
 }
 

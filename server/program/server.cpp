@@ -62,8 +62,10 @@ bool endPacing(tcp::acceptor& on) {
 /// buffer is not waited for.
 void turnAway(tcp::socket socket, unsigned status, std::string_view type, std::string_view detail) {
   Reply busy = problem(status, type, detail);
-  busy.headers.emplace_back("Retry-After", std::to_string(limits::kRetryAfterSeconds));
-  const std::string text = headerText(busy, false) + std::get<std::string>(busy.body);
+  busy.headers.add("Retry-After", std::to_string(limits::kRetryAfterSeconds));
+  std::string text;
+  appendHead(text, busy, Afterwards::kCloses);
+  text += std::get<std::string>(busy.body);
   error_code ec;
   socket.non_blocking(true, ec);
   if (!ec) socket.write_some(asio::buffer(text), ec);
@@ -106,9 +108,8 @@ struct Server::State {
   /// Why new work is not welcome; "": it is.
   [[nodiscard]] std::string_view unready() {
     if (draining || ending) return "the server is ending";
-    // Files that come later make no server unready.
-    if (!hasRead && store.catalogue()->unread.empty()) hasRead = true;
-    return options.readyEarly || hasRead ? "" : "the folder is still being read";
+    return options.readyEarly || store.catalogue()->named ? ""
+                                                          : "the folder's names are not known yet";
   }
   void end();
   void drain();
@@ -122,7 +123,6 @@ struct Server::State {
   ServerOptions options;
   Metrics metrics;
   std::atomic<bool> draining = false, ending = false;
-  std::atomic<bool> hasRead = false;  ///< the folder, once to its end
   AdminRoutes admin{metrics, [this] { return unready(); }, [this] { return figures(); }};
   Uploads uploads;
   Router router;

@@ -10,7 +10,7 @@ namespace {
 
 Reply unauthorized(std::string_view detail) {
   Reply out = problem(401, "unauthorized", detail);
-  out.headers.emplace_back("WWW-Authenticate", "Bearer realm=\"qtet\"");
+  out.headers.add("WWW-Authenticate", "Bearer realm=\"qtet\"");
   return out;
 }
 
@@ -40,15 +40,11 @@ Reply ticketReply(const RequestView& request, Access& access) {
     Reply busy = problem(429, "too-many-requests",
                          "there are as many unused tickets of this token as there may be");
     busy.refusal = Refusal::kPlaces;
-    busy.headers.emplace_back("Retry-After", std::to_string(limits::kTicketTime.count()));
+    busy.headers.add("Retry-After", std::to_string(limits::kTicketTime.count()));
     return busy;
   }
-  Reply out;
-  out.status = 201;
-  out.headers = {{"Content-Type", "application/json"}, {"Cache-Control", "no-store"}};
-  out.body = dumpJson({{"ticket", *ticket}, {"seconds", limits::kTicketTime.count()}});
-  addCommonHeaders(out);
-  return out;
+  return momentaryReply(201, "application/json",
+                        dumpJson({{"ticket", *ticket}, {"seconds", limits::kTicketTime.count()}}));
 }
 
 std::expected<MayRead, Reply> admitStream(const RequestView& request, Access* access) {
@@ -68,15 +64,10 @@ std::expected<MayRead, Reply> admitStream(const RequestView& request, Access* ac
 
 void keepPrivate(Reply& reply) {
   constexpr std::string_view kPublic = "public";
-  for (auto& [name, value] : reply.headers)
-    if (name == "Cache-Control" && value.starts_with(kPublic))
-      value.replace(0, kPublic.size(), "private");
-  const auto vary =
-      std::ranges::find(reply.headers, "Vary", &std::pair<std::string, std::string>::first);
-  if (vary == reply.headers.end())
-    reply.headers.emplace_back("Vary", "Authorization");
-  else
-    vary->second += ", Authorization";
+  const std::string cache(reply.header("Cache-Control")), vary(reply.header("Vary"));
+  if (cache.starts_with(kPublic))
+    reply.headers.set("Cache-Control", "private" + cache.substr(kPublic.size()));
+  reply.headers.set("Vary", vary.empty() ? "Authorization" : vary + ", Authorization");
 }
 
 }  // namespace qtet

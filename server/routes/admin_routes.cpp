@@ -4,34 +4,21 @@
 #include "proto/messages.h"
 
 namespace qtet {
-namespace {
-
-Reply text(unsigned status, std::string type, std::string body) {
-  Reply out;
-  out.status = status;
-  out.headers = {{"Content-Type", std::move(type)}, {"Cache-Control", "no-store"}};
-  out.body = std::move(body);
-  addCommonHeaders(out);
-  return out;
-}
-
-}  // namespace
-
 std::optional<Reply> AdminRoutes::route(const RequestTarget& target) const {
   if (target.segments.size() != 1) return std::nullopt;
   const std::string& name = target.segments[0];
-  if (name == "livez") return text(200, "text/plain; charset=utf-8", "ok\n");
+  if (name == "livez") return momentaryReply(200, "text/plain; charset=utf-8", "ok\n");
   if (name == "readyz") {
     const std::string_view why = unready();
-    if (why.empty()) return text(200, "text/plain; charset=utf-8", "ok\n");
+    if (why.empty()) return momentaryReply(200, "text/plain; charset=utf-8", "ok\n");
     Reply out = problem(503, "busy", why);
-    out.headers.emplace_back("Retry-After", "2");
+    out.headers.add("Retry-After", "2");
     return out;
   }
   if (name == "metrics")
-    return text(200, "text/plain; version=0.0.4; charset=utf-8", metrics.text(figures()));
+    return momentaryReply(200, "text/plain; version=0.0.4; charset=utf-8", metrics.text(figures()));
   if (name == "version")
-    return text(
+    return momentaryReply(
         200, "application/json",
         dumpJson(
             {{"version", QTET_VERSION}, {"logFormat", "2.0"}, {"protocol", kStreamSubprotocol}}));

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
+#include <ctime>
 
 #include "server/http/http_resource.h"
 #include "server/routes/access_routes.h"
@@ -30,14 +30,14 @@ constexpr const char* kReferrerPolicy = "same-origin";
 Reply optionsReply(std::string_view allow = kAllow) {
   Reply out;
   out.status = 204;
-  out.headers = {{"Allow", std::string(allow)},
-                 {"Access-Control-Allow-Methods", std::string(allow)},
+  out.headers = {{"Allow", allow},
+                 {"Access-Control-Allow-Methods", allow},
                  {"Access-Control-Allow-Headers",
                   "Authorization, Content-Range, Content-Type, Range, If-Range, If-Match, "
                   "If-None-Match, If-Modified-Since, If-Unmodified-Since, "
                   "traceparent, X-Request-Id"},
                  {"Access-Control-Max-Age", "7200"}};
-  addCommonHeaders(out);
+  addCommonHeaders(out.headers);
   return out;
 }
 
@@ -54,7 +54,7 @@ Reply methodRefused(std::string_view method, std::string_view allow = kAllow) {
   const std::string detail = "what is to be had here takes " + std::string(allow);
   Reply out = knownMethod(method) ? problem(405, "method-not-allowed", detail)
                                   : problem(501, "not-implemented", detail);
-  out.headers.emplace_back("Allow", allow);
+  out.headers.add("Allow", allow);
   return out;
 }
 
@@ -80,8 +80,8 @@ Reply toLog(const RequestTarget& target, const ServedMesh& mesh) {
   if (!target.query.empty()) location += "?" + target.query;
   Reply out;
   out.status = 307;
-  out.headers = {{"Location", std::move(location)}, {"Cache-Control", std::string(kRevalidate)}};
-  addCommonHeaders(out);
+  out.headers = {{"Location", location}, {"Cache-Control", kRevalidate}};
+  addCommonHeaders(out.headers);
   return out;
 }
 
@@ -101,10 +101,13 @@ std::optional<Reply> readingRefusal(const RequestView& request, const std::strin
 std::optional<std::string> readableName(const MayRead& mayRead, const ServedMesh& mesh,
                                         const Catalogue& catalogue) {
   if (mayRead(mesh.id)) return mesh.id;
-  const auto found = std::ranges::find_if(catalogue.meshes, [&](const auto& entry) {
-    return entry.second->digest == mesh.log.digest() && mayRead(entry.first);
-  });
-  return found == catalogue.meshes.end() ? std::nullopt : std::optional(found->first);
+  const std::string& digest = mesh.log.digest();
+  for (auto at = catalogue.logs.lowerBound({digest, ""});
+       at != catalogue.logs.end() && (*at)->digest == digest; ++at)
+    if (const EntryPointer* served = catalogue.meshes.find((*at)->id);
+        served != nullptr && *served == *at && mayRead((*at)->id))
+      return (*at)->id;
+  return std::nullopt;
 }
 
 /// Handles the part that is the same for every path: methods, and invalid targets.
@@ -133,8 +136,7 @@ Router::Router(const MeshStore& store, const ViewerFiles& viewer, const AdminRou
       viewer_(viewer),
       admin_(admin),
       writing_(std::move(writing)),
-      started_(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())),
-      openApi_(openApiJson()),
+      openApi_(openApiJson(), {{"", std::time(nullptr)}, "application/json", kRevalidate}),
       pagePolicy_(std::string(kPagePolicy) + "; frame-ancestors " + frameAncestors) {}
 
 /// Routes that only a server with tokens answers: changes, and tickets.
@@ -173,8 +175,7 @@ Answer Router::find(const RequestView& request, const RequestTarget& target) con
   const auto& path = target.segments;
   if (path[0] == "v1") return api(request, target);
   if (path.size() == 1 && path[0] == "openapi.json")
-    return variantReply(request, {{openApi_.etag, started_}, "application/json", kRevalidate, {}},
-                        {viewOf(openApi_.text), openApi_.gzip, openApi_.zstd}, nullptr);
+    return documentReply(request, openApi_, nullptr);
   if (admin_ != nullptr)
     if (std::optional<Reply> reply = admin_->route(target)) return std::move(*reply);
   return viewerReply(request, target);
@@ -184,7 +185,7 @@ Answer Router::api(const RequestView& request, const RequestTarget& target) cons
   const auto& path = target.segments;
   if (path.size() == 2 && path[1] == "stream") {
     Reply out = problem(426, "upgrade-required", "this is a WebSocket, subprotocol qtet.v1");
-    out.headers.emplace_back("Upgrade", "websocket");
+    out.headers.add("Upgrade", "websocket");
     return out;
   }
   if (path.size() >= 2 && path[1] == "meshes") return meshes(request, target);
@@ -235,9 +236,7 @@ Reply Router::meshes(const RequestView& request, const RequestTarget& target) co
     return busyReply("this log cannot be opened now, or the folder is still being read; try again");
   if (!mesh) return notFound("there is no mesh of that name; the list is at /v1/meshes");
   if (path.size() > 3) return toLog(target, *mesh);
-  const Document& text = mesh->description();
-  return variantReply(request, {{text.etag, mesh->modified}, "application/json", kRevalidate, {}},
-                      {viewOf(text.text), text.gzip, text.zstd}, mesh);
+  return documentReply(request, mesh->description(), mesh);
 }
 
 Reply Router::viewerReply(const RequestView& request, const RequestTarget& target) const {
@@ -250,9 +249,10 @@ Reply Router::viewerReply(const RequestView& request, const RequestTarget& targe
   if (file == nullptr) return notFound("the viewer has no file of that name; its page is at /");
   Resource resource{
       {file->etag, file->modified}, file->type, file->immutable ? kForEver : kRevalidate, {}};
+  becomeEmbeddable(resource);
   if (file->type.starts_with("text/html")) {
-    resource.headers.emplace_back("Content-Security-Policy", pagePolicy_);
-    resource.headers.emplace_back("Referrer-Policy", kReferrerPolicy);
+    resource.headers.add("Content-Security-Policy", pagePolicy_);
+    resource.headers.add("Referrer-Policy", kReferrerPolicy);
   }
   return variantReply(request, std::move(resource), {file->bytes, file->gzip, file->zstd}, nullptr);
 }

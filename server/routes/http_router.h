@@ -48,7 +48,6 @@ class Router {
   const ViewerFiles& viewer_;
   const AdminRoutes* admin_;
   std::optional<Writing> writing_;
-  std::time_t started_;
   Document openApi_;
   std::unique_ptr<KeptPages> lists_ = std::make_unique<KeptPages>();
   std::string pagePolicy_;

@@ -8,8 +8,7 @@
 #include <mutex>
 #include <string>
 
-#include "proto/bytes.h"
-#include "server/wire/content_coding.h"
+#include "server/wire/document.h"
 
 namespace qtet {
 
@@ -18,14 +17,14 @@ namespace limits {
 inline constexpr std::size_t kMaxKeptPageBytes = 16u << 20;
 }  // namespace limits
 
-/// A page's bytes in `coding`.
+/// A page in one coding, with the head of its answer.
 struct KeptPage {
-  Bytes bytes{};
-  ContentCoding coding = ContentCoding::kIdentity;
-  std::string next{};  ///< path of the page behind it; "": it is the last
+  DocumentForm form{};
 
   /// With what the map and the list take.
-  [[nodiscard]] std::size_t cost() const { return bytes.size() + next.size() + 256; }
+  [[nodiscard]] std::size_t cost() const {
+    return form.bytes.size() + form.headers.text().size() + 512;
+  }
 };
 using KeptPagePointer = std::shared_ptr<const KeptPage>;
 

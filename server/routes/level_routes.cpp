@@ -126,18 +126,20 @@ std::string canonicalPath(const LevelRequest& level) {
 /// is part of the tag.
 Resource resourceOf(const LevelRequest& wanted, const std::string& name) {
   const bool picture = wanted.form == LevelForm::kPng;  // looked at, not saved
-  return {{'"' + wanted.key() + '"', wanted.mesh->modified},
-          std::string(mediaType(wanted.form)),
-          kForEver,
-          {{"Content-Disposition",
-            contentDisposition(picture ? Disposition::kInline : Disposition::kAttachment,
-                               name + "." + std::string(formName(wanted.form)))}}};
+  Resource out{{'"' + wanted.key() + '"', wanted.mesh->modified},
+               std::string(mediaType(wanted.form)),
+               kForEver};
+  out.headers.add("Content-Disposition",
+                  contentDisposition(picture ? Disposition::kInline : Disposition::kAttachment,
+                                     name + "." + std::string(formName(wanted.form))));
+  becomeEmbeddable(out);
+  return out;
 }
 
 Answer toBeMade(const RequestView& request, const Resource& resource, LevelRequest wanted) {
   if (std::optional<Reply> early = conditionalReply(request, resource)) return std::move(*early);
   Reply out = beginReply(200, resource);
-  out.headers.emplace_back("Accept-Ranges", "bytes");
+  out.headers.add("Accept-Ranges", "bytes");
   out.body = std::monostate();
   return {std::move(out), std::move(wanted)};
 }
@@ -160,8 +162,7 @@ Answer routeLevel(const RequestView& request, const RequestTarget& target, const
   LevelRequest wanted{mesh, *level, *form, *fields};
 
   Resource resource = resourceOf(wanted, log.name + "-level-" + std::to_string(*level));
-  if (name.starts_with("fit."))
-    resource.headers.emplace_back("Content-Location", canonicalPath(wanted));
+  if (name.starts_with("fit.")) resource.headers.add("Content-Location", canonicalPath(wanted));
   if (!isCompressed(*form)) {
     wanted.coding = chooseCoding(request.acceptEncoding.value_or(""), true, true);
     becomeVariant(resource, wanted.coding);

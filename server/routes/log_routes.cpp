@@ -27,8 +27,10 @@ std::optional<std::uint32_t> parseIndex(std::string_view text) {
 Reply part(const RequestView& request, const MeshPointer& mesh, const std::string& name,
            std::uint64_t first, std::uint64_t end) {
   const std::string tag = '"' + mesh->log.digest() + (name.empty() ? "" : "-" + name) + '"';
-  Reply out = bytesReply(request, {{tag, mesh->modified}, "application/octet-stream", kForEver, {}},
-                         mesh->log.bytes().subspan(first, end - first), mesh);
+  Resource resource{{tag, mesh->modified}, "application/octet-stream", kForEver};
+  becomeMeasurable(resource);
+  Reply out = bytesReply(request, resource, mesh->log.bytes().subspan(first, end - first), mesh);
+  if (out.status == 200) out.headers.add("Accept-Ranges", "bytes");
   if (const auto* body = std::get_if<ByteView>(&out.body))
     out.file = FilePart{mesh->descriptor->number,
                         static_cast<std::uint64_t>(body->data() - mesh->log.bytes().data())};
@@ -71,11 +73,8 @@ Answer routeLog(const RequestView& request, const RequestTarget& target, const N
     return part(request, mesh, "", 0, mesh->log.bytes().size());
   if (path.size() == 1 && what == "base")
     return part(request, mesh, "base", 0, endOf(index.block(0, kPositionsPart)));
-  if (path.size() == 1 && what == "manifest") {
-    const Document& text = mesh->manifestText();
-    return variantReply(request, {{text.etag, mesh->modified}, "application/json", kForEver, {}},
-                        {viewOf(text.text), text.gzip, text.zstd}, mesh);
-  }
+  if (path.size() == 1 && what == "manifest")
+    return documentReply(request, mesh->manifestText(), mesh);
   if (path.size() == 1 && what == "preview.png") return routePreview(request, target, log);
   if (path.size() == 2 && what == "chunks") return chunkReply(request, mesh, path[1], std::nullopt);
   if (path.size() == 2 && what == "levels") return routeLevel(request, target, log, path[1]);

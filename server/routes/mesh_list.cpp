@@ -21,68 +21,82 @@ std::optional<std::size_t> pageSize(const RequestTarget& target) {
 
 /// Where the page begins, and how long it may be.
 struct PageStart {
-  Catalogue::Meshes::const_iterator at;
+  Catalogue::Meshes::Iterator at;
   std::size_t limit = 0;
 };
 
-/// The page in its plain form, with the path of the next.
-KeptPage makePage(const CataloguePointer& catalogue, PageStart start, const MayRead& mayRead) {
-  std::string text = R"({"meshes":[)", next, last;
-  auto it = start.at;
-  const auto skipHidden = [&] {
-    while (it != catalogue->meshes.end() && mayRead && !mayRead(it->first)) ++it;
-  };
-  std::size_t count = 0;
-  for (skipHidden(); it != catalogue->meshes.end() && count < start.limit;
-       ++it, ++count, skipHidden()) {
-    text += (count > 0 ? "," : "") + it->second->listEntry;
-    last = it->first;
-  }
-  text += "]";
-  if (it != catalogue->meshes.end()) {
-    next = "/v1/meshes?limit=" + std::to_string(start.limit) + "&after=" + percentEncode(last);
-    text += ",\"next\":" + dumpJson(Json(next));
-  }
-  if (!catalogue->unread.empty()) text += R"(,"complete":false)";
-  text += "}";
-  return {Bytes(text.begin(), text.end()), ContentCoding::kIdentity, std::move(next)};
-}
-
-/// The same in that coding, if it is large enough for one.
-KeptPagePointer inCoding(KeptPage page, ContentCoding coding) {
-  if (page.bytes.size() >= kMinCompressedBytes) {
-    page.bytes = encoded(std::move(page.bytes), coding);
-    page.coding = coding;
-  }
-  return std::make_shared<const KeptPage>(std::move(page));
-}
-
-/// The page, and its tag without quotes and coding.
-struct TaggedPage {
-  KeptPagePointer page;
-  std::string tag;
+/// A page in its plain form, with the path of the next; "": it is the last.
+struct PlainPage {
+  std::string text, next;
 };
 
+PlainPage makePage(const Catalogue& catalogue, PageStart start, const MayRead& mayRead) {
+  PlainPage out{R"({"meshes":[)", ""};
+  std::string last;
+  auto it = start.at;
+  const auto skipHidden = [&] {
+    while (it != catalogue.meshes.end() && mayRead && !mayRead((*it)->id)) ++it;
+  };
+  std::size_t count = 0;
+  for (skipHidden(); it != catalogue.meshes.end() && count < start.limit;
+       ++it, ++count, skipHidden()) {
+    out.text += (count > 0 ? "," : "") + (*it)->listEntry;
+    last = (*it)->id;
+  }
+  out.text += "]";
+  if (it != catalogue.meshes.end()) {
+    out.next = "/v1/meshes?limit=" + std::to_string(start.limit) + "&after=" + percentEncode(last);
+    out.text += ",\"next\":" + dumpJson(Json(out.next));
+  }
+  if (!catalogue.complete()) out.text += R"(,"complete":false)";
+  out.text += "}";
+  return out;
+}
+
+/// The page as it is sent: in that coding, if it is large enough for one.
+KeptPagePointer finish(const PlainPage& page, const std::string& tag, std::time_t changed,
+                       ContentCoding coding) {
+  if (page.text.size() < kMinCompressedBytes) coding = ContentCoding::kIdentity;
+  Resource resource{{'"' + tag + '"', changed}, "application/json", kRevalidate};
+  if (!page.next.empty()) resource.headers.add("Link", "<" + page.next + ">; rel=\"next\"");
+  Bytes bytes = encoded({page.text.begin(), page.text.end()}, coding);
+  return std::make_shared<const KeptPage>(
+      KeptPage{formOf(std::move(resource), std::move(bytes), coding)});
+}
+
+/// A key ends with the coding and with the date, which stands in the head but not in the tag.
+std::string keyOf(std::string key, std::time_t changed, ContentCoding coding) {
+  key += ' ';
+  key += codingName(coding);
+  key += std::to_string(changed);
+  return key;
+}
+
 /// The same for all: made once for each version of the catalogue.
-TaggedPage openPage(const CataloguePointer& catalogue, PageStart start, ContentCoding coding,
-                    KeptPages& kept) {
-  const std::string first = start.at == catalogue->meshes.end() ? "" : start.at->first;
-  const std::string tag =
-      hexDigestOf(catalogue->etag + (catalogue->unread.empty() ? " " : " incomplete ") +
-                  std::to_string(start.limit) + ' ' + first);
-  const std::string key = tag + std::string(codingName(coding));
-  KeptPagePointer page = kept.find(key);
-  if (!page) kept.keep(key, page = inCoding(makePage(catalogue, start, {}), coding));
-  return {std::move(page), tag};
+KeptPagePointer openPage(const Catalogue& catalogue, PageStart start, ContentCoding coding,
+                         KeptPages& kept) {
+  std::string version = catalogue.etag();
+  version += catalogue.complete() ? " " : " incomplete ";
+  version += std::to_string(start.limit);
+  version += ' ';
+  if (start.at != catalogue.meshes.end()) version += (*start.at)->id;
+  const std::string key = keyOf(version, catalogue.changed, coding);
+  KeptPagePointer out = kept.find(key);
+  if (out) return out;
+  out = finish(makePage(catalogue, start, {}), tagOf(version), catalogue.changed, coding);
+  kept.keep(key, out);
+  return out;
 }
 
 /// Known by its bytes alone, since who may read what changes unseen; compressed once.
-TaggedPage restrictedPage(KeptPage plain, ContentCoding coding, KeptPages& kept) {
-  const std::string tag = hexDigestOf(ByteView(plain.bytes));
-  const std::string key = tag + std::string(codingName(coding));
-  KeptPagePointer page = kept.find(key);
-  if (!page) kept.keep(key, page = inCoding(std::move(plain), coding));
-  return {std::move(page), tag};
+KeptPagePointer restrictedPage(const Catalogue& catalogue, PageStart start, const MayRead& mayRead,
+                               ContentCoding coding, KeptPages& kept) {
+  const PlainPage plain = makePage(catalogue, start, mayRead);
+  const std::string tag = tagOf(plain.text);
+  const std::string key = keyOf(tag, catalogue.changed, coding);
+  KeptPagePointer out = kept.find(key);
+  if (!out) kept.keep(key, out = finish(plain, tag, catalogue.changed, coding));
+  return out;
 }
 
 }  // namespace
@@ -95,16 +109,12 @@ Reply meshListReply(const RequestView& request, const RequestTarget& target,
                    "limit is a whole number from 1 to " + std::to_string(limits::kMaxListPage));
   const std::string after = target.parameter("after").value_or("");
   const PageStart start = {
-      after.empty() ? catalogue->meshes.begin() : catalogue->meshes.upper_bound(after), *limit};
+      after.empty() ? catalogue->meshes.begin() : catalogue->meshes.upperBound(after), *limit};
   const ContentCoding coding = chooseCoding(request.acceptEncoding.value_or(""), true, true);
-  const auto [page, tag] = mayRead
-                               ? restrictedPage(makePage(catalogue, start, mayRead), coding, kept)
-                               : openPage(catalogue, start, coding, kept);
-  Resource resource{{'"' + tag + '"', catalogue->changed}, "application/json", kRevalidate, {}};
-  if (!page->next.empty())
-    resource.headers.emplace_back("Link", "<" + page->next + ">; rel=\"next\"");
-  becomeVariant(resource, page->coding);
-  return bytesReply(request, resource, page->bytes, page);
+  KeptPagePointer page = mayRead ? restrictedPage(*catalogue, start, mayRead, coding, kept)
+                                 : openPage(*catalogue, start, coding, kept);
+  const DocumentForm& form = page->form;
+  return formReply(request, form, std::move(page));
 }
 
 }  // namespace qtet

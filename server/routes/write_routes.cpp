@@ -111,11 +111,8 @@ Reply partialReply(const RequestView& request, const RequestTarget& target,
   if (!pathOfMesh("", id)) return problem(404, "not-found", "this cannot be the name of a mesh");
   const std::optional<std::uint64_t> bytes = writing.uploads.partialBytes(id, *digest);
   if (!bytes) return problem(404, "not-found", "nothing is there of an upload of that log");
-  Reply out;
-  out.headers = {{"Content-Type", "application/json"}, {"Cache-Control", "no-store"}};
-  out.body = dumpJson({{"digest", *digest}, {"bytes", *bytes}});
-  addCommonHeaders(out);
-  return out;
+  return momentaryReply(200, "application/json",
+                        dumpJson({{"digest", *digest}, {"bytes", *bytes}}));
 }
 
 }  // namespace qtet

@@ -35,7 +35,7 @@ Reply refusedLevel(LevelRefusal refusal) {
   Reply out = problem(429, "too-many-requests",
                       "as many levels are being made for this address as may be; try again");
   out.refusal = Refusal::kPlaces;
-  out.headers.emplace_back("Retry-After", std::to_string(limits::kRetryAfterSeconds));
+  out.headers.add("Retry-After", std::to_string(limits::kRetryAfterSeconds));
   return out;
 }
 

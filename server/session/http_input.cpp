@@ -59,9 +59,10 @@ asio::awaitable<HttpInput::Begun> HttpInput::waitForRequest() {
     readSome(ec, kReadBytes);
     if (ec == asio::error::would_block) {
       buffer_ = beast::flat_buffer(limits::kMaxHeaderBytes);  // a silent client has none
-      const Deadline deadline(peer_.socket, timeouts_.idle);
+      idleTimer_.begin(timeouts_.idle);
       const IdleScope idle(peer_);
       ec = co_await peer_.socket.waitToRead();
+      idleTimer_.stop();
       out = Begun::kWaited;
     }
     if (ec) co_return Begun::kNot;

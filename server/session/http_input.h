@@ -14,6 +14,7 @@
 #include <string_view>
 
 #include "server/http/http_message.h"
+#include "server/http/idle_timer.h"
 #include "server/session/services.h"
 #include "server/wire/http_limits.h"
 #include "server/wire/peer.h"
@@ -27,7 +28,10 @@ class HttpInput {
   using Parser = boost::beast::http::request_parser<boost::beast::http::empty_body>;
 
   HttpInput(Peer& peer, const Timeouts& timeouts)
-      : peer_(peer), timeouts_(timeouts), buffer_(limits::kMaxHeaderBytes) {}
+      : peer_(peer),
+        timeouts_(timeouts),
+        idleTimer_(peer.socket),
+        buffer_(limits::kMaxHeaderBytes) {}
 
   enum class Begun : std::uint8_t {
     kNot,     ///< the client has gone or said nothing for too long, or the server ends
@@ -57,6 +61,7 @@ class HttpInput {
 
   Peer& peer_;
   const Timeouts& timeouts_;
+  IdleTimer idleTimer_;
   boost::beast::flat_buffer buffer_;
   std::uint64_t bodyBytes_ = 0;
 };

@@ -18,7 +18,7 @@ using boost::system::error_code;
 /// body, or a part of the body alone.
 std::size_t writeSome(ClientSocket& socket, const OutgoingReply& reply, bool headWaits,
                       error_code& ec) {
-  const auto& [head, body, file] = reply;
+  const auto& [head, bodyInHead, body, file] = reply;
   if (head.empty() && file)
     return socket.writeFile(*file, body.first(std::min(body.size(), limits::kMaxFromFile)), ec);
   const std::array<iovec, 2> parts = {
@@ -33,6 +33,8 @@ std::size_t writeSome(ClientSocket& socket, const OutgoingReply& reply, bool hea
 asio::awaitable<Sent> sendReply(ClientSocket& socket, OutgoingReply reply,
                                 std::chrono::milliseconds patience, bool unpaced) {
   Sent out;
+  const std::size_t headBytes = reply.head.size() - reply.bodyInHead;
+  std::size_t sent = 0;
   // The head goes with the first bytes, except before a large body for a client on this machine.
   // There its own packet costs less than misaligning all further packets.
   const bool headWaits = reply.file && !(unpaced && reply.body.size() >= limits::kMaxFromFile);
@@ -44,13 +46,14 @@ asio::awaitable<Sent> sendReply(ClientSocket& socket, OutgoingReply reply,
     reply.head.remove_prefix(ofHead);
     reply.body = reply.body.subspan(count - ofHead);
     if (reply.file) reply.file->offset += count - ofHead;
-    out.bytes += count - ofHead;
+    sent += count;
     taken += count;
     if (deadline && taken >= limits::kWritePiece) deadline.reset(), taken = 0;
     if (ec == asio::error::would_block) {
       if (!deadline) deadline.emplace(socket, patience), taken = 0;
       ec = deadline->passed() ? asio::error::timed_out : co_await socket.waitToWrite();
     }
+    out.bytes = sent - std::min(sent, headBytes);
     if (ec) co_return out;
   }
   out.whole = true;

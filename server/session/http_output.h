@@ -18,7 +18,8 @@ namespace qtet {
 /// A reply to send; all of it outlives the call.
 struct OutgoingReply {
   std::string_view head{};
-  ByteView body{};
+  std::size_t bodyInHead = 0;      ///< bytes at the end of `head` that are the body's
+  ByteView body{};                 ///< what of it comes behind them
   std::optional<FilePart> file{};  ///< where the body stands as well: it is sent from there
 };
 

@@ -143,8 +143,8 @@ std::optional<Reply> refusalOf(const RequestHeader& header) {
     if (header.count(name) > 1)
       return closing(400, "bad-request",
                      std::string(toView(http::to_string(name))) + " may be there once");
-  const auto expect = viewOf(header).expect;
-  if (expect && !understood(*expect))
+  const auto expect = headerValue(header, http::field::expect);
+  if (expect && header.version() == 11 && !understood(*expect))
     return closing(417, "expectation-failed",
                    "the only expectation that is understood is 100-continue");
   return bodyRefusal(header);
@@ -179,7 +179,7 @@ std::optional<Reply> handshakeRefusal(const RequestHeader& header) {
   if (header[http::field::sec_websocket_version] != "13") {
     Reply out =
         closing(426, "upgrade-required", "this server speaks version 13 of the WebSocket protocol");
-    out.headers.emplace_back("Sec-WebSocket-Version", "13");
+    out.headers.add("Sec-WebSocket-Version", "13");
     return out;
   }
   if (header.count(http::field::sec_websocket_key) != 1 ||

@@ -74,10 +74,14 @@ class HttpSession {
   asio::awaitable<bool> serveRequest(bool pipelined);
   /// The answer to a request if nothing of what it asks for matters.
   /// `placed`: the client has a place among those of its address.
-  std::optional<Reply> earlyAnswer(const RequestHeader& header, bool placed);
+  std::optional<Reply> earlyAnswer(const RequestHeader& header, const RequestView& view,
+                                   bool placed);
   asio::awaitable<bool> becomeStream(Parser& parser);
   /// Answers one request; false: the connection is not to be used further.
-  asio::awaitable<bool> answer(const RequestHeader& request, bool keepAlive);
+  asio::awaitable<bool> answer(const RequestHeader& request, const RequestView& view,
+                               bool keepAlive);
+  /// The head in one buffer with `body` behind it.
+  [[nodiscard]] std::string headOf(const Reply& reply, bool keepAlive, ByteView body) const;
   asio::awaitable<bool> send(Reply reply, bool keepAlive);
   asio::awaitable<void> refuse(Reply reply);
 
@@ -88,6 +92,7 @@ class HttpSession {
   const TrustedProxies* proxies_;           // nullptr: the client is the peer
   std::optional<asio::ip::address> proxy_;  // its own address
   bool headOnly_ = false;  // the request under way is a HEAD: its answer has no body
+  bool isOld_ = false;     // it is one of HTTP/1.0
 };
 
 bool HttpSession::belongsTo(std::optional<asio::ip::address> client) {
@@ -138,6 +143,7 @@ asio::awaitable<void> HttpSession::run() {
 
 asio::awaitable<bool> HttpSession::serveRequest(bool pipelined) {
   report_.begin();
+  isOld_ = false;
   Parser parser;
   auto head = co_await input_.readHead(parser);
   headOnly_ =
@@ -147,27 +153,30 @@ asio::awaitable<bool> HttpSession::serveRequest(bool pipelined) {
     co_return false;
   }
   joinLists(parser.get());
+  isOld_ = parser.get().version() == 10;
+  const RequestView view = viewOf(parser.get());
   const bool placed = proxies_ == nullptr || asksProxyOnce() ||
                       belongsTo(forwardedClientOf(parser.get(), *proxies_, *proxy_));
   {
     const Charge charge(peer_.client.get());
-    report_.identify(viewOf(parser.get()));
+    report_.identify(view);
   }
   if (pipelined || owesTurn(peer_.client.get())) co_await giveWay();
   const bool keepAlive = parser.get().keep_alive();
   bool again = false;
-  if (std::optional<Reply> early = earlyAnswer(parser.get(), placed)) {
+  if (std::optional<Reply> early = earlyAnswer(parser.get(), view, placed)) {
     again = co_await send(std::move(*early), keepAlive);
   } else if (services_.streams && isStreamHandshake(parser.get())) {
     co_await becomeStream(parser);
   } else {
-    again = co_await answer(parser.get(), keepAlive);
+    again = co_await answer(parser.get(), view, keepAlive);
   }
   if (proxies_ != nullptr && !asksProxyOnce()) peer_.client.reset();  // the next may be another's
   co_return again;
 }
 
-std::optional<Reply> HttpSession::earlyAnswer(const RequestHeader& header, bool placed) {
+std::optional<Reply> HttpSession::earlyAnswer(const RequestHeader& header, const RequestView& view,
+                                              bool placed) {
   if (std::optional<Reply> refusal = refusalOf(header)) {
     refusal->close = true;
     return refusal;
@@ -182,8 +191,8 @@ std::optional<Reply> HttpSession::earlyAnswer(const RequestHeader& header, bool 
   out.refusal = !placed                        ? Refusal::kPlaces
                 : peer_.client->overdrawn(now) ? Refusal::kCredit
                                                : Refusal::kRate;
-  out.headers.emplace_back("Retry-After", "1");
-  out.close = hasBody(viewOf(header));
+  out.headers.add("Retry-After", "1");
+  out.close = hasBody(view);
   return out;
 }
 
@@ -221,8 +230,8 @@ asio::awaitable<bool> HttpSession::becomeStream(Parser& parser) {
   co_return true;
 }
 
-asio::awaitable<bool> HttpSession::answer(const RequestHeader& request, bool keepAlive) {
-  const RequestView view = viewOf(request);
+asio::awaitable<bool> HttpSession::answer(const RequestHeader& request, const RequestView& view,
+                                          bool keepAlive) {
   Answer answer = [&] {
     const Charge charge(peer_.client.get());
     return services_.route(view);
@@ -236,23 +245,36 @@ asio::awaitable<bool> HttpSession::answer(const RequestHeader& request, bool kee
   co_return co_await send(std::move(*reply), keepAlive);
 }
 
+std::string HttpSession::headOf(const Reply& reply, bool keepAlive, ByteView body) const {
+  constexpr std::size_t kFurther = 160;  // the status line, Date, Content-Length, Connection
+  std::string out;
+  out.reserve(reply.headers.text().size() + kFurther + body.size());
+  appendHead(out, reply,
+             !keepAlive ? Afterwards::kCloses
+             : isOld_   ? Afterwards::kKept
+                        : Afterwards::kStays);
+  out.append(body.begin(), body.end());
+  return out;
+}
+
 asio::awaitable<bool> HttpSession::send(Reply reply, bool keepAlive) {
   if (reply.status == kClientGone) {
     report_.end(reply.status, 0, false);
     co_return false;
   }
   keepAlive = keepAlive && !reply.close && !peer_.connection->ending();
-  if (peer_.socket.isTls())
-    reply.headers.emplace_back("Strict-Transport-Security", kStrictTransport);
+  if (peer_.socket.isTls()) reply.headers.add("Strict-Transport-Security", kStrictTransport);
   report_.addHeaders(reply);
-  const std::string head = headerText(reply, keepAlive);
   ByteView body;
   if (const auto* text = std::get_if<std::string>(&reply.body)) body = viewOf(*text);
   if (const auto* view = std::get_if<ByteView>(&reply.body)) body = *view;
   if (!reply.sendBody || headOnly_) body = {};
   if (body.size() < limits::kMinFromFile) reply.file.reset();
-  const Sent sent = co_await sendReply(peer_.socket, {head, body, reply.file},
-                                       services_.timeouts.write, services_.unpaced);
+  const bool together = body.size() <= limits::kMaxWithHead;
+  const std::string head = headOf(reply, keepAlive, together ? body : ByteView());
+  const Sent sent = co_await sendReply(
+      peer_.socket, {head, together ? body.size() : 0, together ? ByteView() : body, reply.file},
+      services_.timeouts.write, services_.unpaced);
   report_.end(reply.status, sent.bytes, sent.whole, reply.refusal);
   if (!sent.whole) co_return false;
   if (!keepAlive) {

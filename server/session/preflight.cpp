@@ -26,19 +26,18 @@ void answerForOrigin(Reply& reply, const RequestHeader& header,
                      const std::vector<std::string>* origins) {
   if (header.method() != http::verb::options || origins == nullptr || origins->empty()) return;
   // A browser or a proxy that keeps the answer must not take it for another page's.
-  reply.headers.emplace_back("Vary", "Origin, Access-Control-Request-Method");
+  reply.headers.add("Vary", "Origin, Access-Control-Request-Method");
   const auto origin = header.find(http::field::origin);
   if (origin == header.end()) return;
   const bool stranger = originRefusal(header, origins).has_value();
   const auto asked = header[http::field::access_control_request_method];
   const bool changes = !asked.empty() && !isReading(http::string_to_verb(asked));
-  for (auto& [name, value] : reply.headers) {
-    if (name == kAllowMethods && stranger) value = readingOnly(value);
-    if (name == kAllowOrigin && !stranger)
-      value.assign(origin->value().data(), origin->value().size());
-  }
-  if (stranger && changes)
-    std::erase_if(reply.headers, [](const auto& entry) { return entry.first == kAllowOrigin; });
+  if (!stranger)
+    reply.headers.set(kAllowOrigin, {origin->value().data(), origin->value().size()});
+  else if (changes)
+    reply.headers.remove(kAllowOrigin);
+  if (stranger && reply.headers.find(kAllowMethods))
+    reply.headers.set(kAllowMethods, readingOnly(reply.header(kAllowMethods)));
 }
 
 }  // namespace qtet

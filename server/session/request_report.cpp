@@ -19,7 +19,7 @@ std::string meshOf(std::string_view target) {
 }  // namespace
 
 void RequestReport::begin() {
-  trace_ = traceOf(std::nullopt, std::nullopt);
+  trace_ = log_ != nullptr ? traceOf(std::nullopt, std::nullopt) : RequestTrace();
   client_ = peer_;
   kind_ = {};
   method_.clear();
@@ -30,11 +30,11 @@ void RequestReport::begin() {
 }
 
 void RequestReport::identify(const RequestView& request) {
-  trace_ = traceOf(request.requestId, request.traceparent);
   kind_ = kindOf(request.method, request.target);
-  method_ = request.method;
-  target_ = request.target;
+  if (log_ != nullptr || request.requestId || request.traceparent)
+    trace_ = traceOf(request.requestId, request.traceparent);
   if (log_ == nullptr) return;
+  method_ = request.method;
   const auto tokens = access_ != nullptr ? access_->tokens() : nullptr;
   const auto hidden = [&](std::string_view text) { return holdsSecret(text, tokens.get()); };
   target_ = loggableTarget(request.target, tokens.get());
@@ -46,8 +46,8 @@ void RequestReport::identify(const RequestView& request) {
 }
 
 void RequestReport::addHeaders(Reply& reply) const {
-  reply.headers.emplace_back("X-Request-Id", trace_.id);
-  if (!trace_.traceId.empty()) reply.headers.emplace_back("traceparent", trace_.traceparent());
+  if (!trace_.id.empty()) reply.headers.add("X-Request-Id", trace_.id);
+  if (!trace_.traceId.empty()) reply.headers.add("traceparent", trace_.traceparent());
 }
 
 void RequestReport::end(unsigned status, std::uint64_t bytes, bool whole, Refusal refusal) const {

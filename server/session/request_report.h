@@ -34,7 +34,8 @@ class RequestReport {
   void identify(const RequestView& request);
   /// Bytes of the request's body that have come.
   void received(std::uint64_t bytes) { received_ += bytes; }
-  /// X-Request-Id, and traceparent if the client has sent one.
+  /// X-Request-Id if the client has sent one or the access log has a line of that id; traceparent
+  /// if the client has sent one.
   void addHeaders(Reply& reply) const;
   /// The request's data for the report of the stream that it becomes.
   [[nodiscard]] StreamRequest streamRequest() const { return {client_, target_, trace_}; }

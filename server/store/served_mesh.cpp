@@ -38,14 +38,18 @@ struct ServedMesh::Texts {
 std::shared_ptr<ServedMesh::Texts> ServedMesh::makeTexts() { return std::make_shared<Texts>(); }
 
 const Document& ServedMesh::description() const {
-  std::call_once(texts->describedOnce,
-                 [this] { texts->description = Document(describeMesh(*this)); });
+  std::call_once(texts->describedOnce, [this] {
+    texts->description =
+        Document(describeMesh(*this), {{"", modified}, "application/json", kRevalidate});
+  });
   return texts->description;
 }
 
 const Document& ServedMesh::manifestText() const {
-  std::call_once(texts->manifestOnce,
-                 [this] { texts->manifest = Document(manifestToJson(manifest)); });
+  std::call_once(texts->manifestOnce, [this] {
+    texts->manifest =
+        Document(manifestToJson(manifest), {{"", modified}, "application/json", kForEver});
+  });
   return texts->manifest;
 }
 

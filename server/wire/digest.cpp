@@ -7,6 +7,11 @@
 #include "proto/checksum.h"
 
 namespace qtet {
+namespace {
+
+constexpr std::size_t kTagCharacters = 32;
+
+}  // namespace
 
 Digest digestOf(ByteView bytes) {
   // fetched once: EVP_sha256() would look for it at every call
@@ -24,5 +29,8 @@ Digest digestOf(std::string_view text) {
 
 std::string hexDigestOf(ByteView bytes) { return toHex(digestOf(bytes)); }
 std::string hexDigestOf(std::string_view text) { return toHex(digestOf(text)); }
+
+std::string tagOf(ByteView bytes) { return hexDigestOf(bytes).substr(0, kTagCharacters); }
+std::string tagOf(std::string_view text) { return hexDigestOf(text).substr(0, kTagCharacters); }
 
 }  // namespace qtet

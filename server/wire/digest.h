@@ -20,4 +20,8 @@ using Digest = std::array<std::uint8_t, 32>;
 [[nodiscard]] std::string hexDigestOf(ByteView bytes);
 [[nodiscard]] std::string hexDigestOf(std::string_view text);
 
+/// The first half of it: 128 bits tell versions of a text apart, and go with every answer.
+[[nodiscard]] std::string tagOf(ByteView bytes);
+[[nodiscard]] std::string tagOf(std::string_view text);
+
 }  // namespace qtet

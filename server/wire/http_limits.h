@@ -27,6 +27,9 @@ inline constexpr auto kIdleTime = 75s;
 /// served (9 KB/s suffice), a dead one is not.
 inline constexpr std::size_t kWritePiece = 256u << 10;
 inline constexpr auto kWriteTime = 30s;
+/// A body of at most so many bytes goes in one buffer with its head. Copying a page costs less than
+/// a second part of the message.
+inline constexpr std::size_t kMaxWithHead = 4096;
 /// The kernel sends a log's bytes directly from the file if there are at least this many. The
 /// second figure is the most at once before other connections have their turn.
 inline constexpr std::size_t kMinFromFile = 16u << 10;

@@ -1,4 +1,4 @@
-// The peer of server_bench.py: the same chunks by npm's ws, as one would write it. Prints its port.
+// The peer of stream_bench.py: the same chunks by npm's ws, as one would write it. Prints its port.
 //
 //   node server_peer.mjs FOLDER_WITH_node_modules FILE CHUNK_BYTES
 import {createRequire} from 'node:module';

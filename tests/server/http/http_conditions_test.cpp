@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "server/wire/http_date.h"
+
 namespace qtet {
 namespace {
 

@@ -700,7 +700,7 @@ TEST(Uploads, ofTwoServersOnOneFolderOneMakesANewMesh) {
   EXPECT_EQ(one->finish({}).status, 201u);
   EXPECT_EQ(two->finish({}).status, 412u);
   one.reset(), two.reset();
-  const std::string tag = folder.store().find("wing")->description().etag;
+  const std::string tag = folder.store().find("wing")->description().etag();
   (void)others.rescan();
   const auto third = send(first, another, {.ifMatch = tag}),
              fourth = send(second, log, {.ifMatch = tag});

@@ -205,6 +205,27 @@ TEST_F(HttpServerTest, listsOnSeveralLinesAreOneList) {
             "close");
 }
 
+TEST_F(HttpServerTest, onlyAClientOfHttp10IsToldThatTheConnectionStays) {
+  RawClient client(server_.port());
+  EXPECT_EQ(client.get("/livez").headers.count("connection"), 0u);
+  ASSERT_TRUE(client.send("GET /v1/meshes HTTP/1.0\r\nConnection: keep-alive\r\n\r\n"));
+  EXPECT_EQ(client.receive().header("connection"), "keep-alive");
+  EXPECT_EQ(client.get("/v1/meshes").status, 200u) << "and it did";
+}
+
+TEST_F(HttpServerTest, anIdComesBackToWhoHasSentOne) {
+  RawClient client(server_.port());
+  EXPECT_EQ(client.get("/v1/meshes").headers.count("x-request-id"), 0u) << "no log has it";
+  EXPECT_EQ(client.get("/v1/meshes", "X-Request-Id: mine\r\n").header("x-request-id"), "mine");
+}
+
+TEST_F(HttpServerTest, theHeadOfASmallAnswerIsSmall) {
+  RawClient client(server_.port());
+  ASSERT_TRUE(client.send("GET /v1/meshes HTTP/1.1\r\nHost: a\r\nConnection: close\r\n\r\n"));
+  const std::string all = client.readToEnd();
+  EXPECT_LT(all.find("\r\n\r\n"), 400u) << all.substr(0, all.find("\r\n\r\n"));
+}
+
 TEST_F(HttpServerTest, twoRangesOnTwoLinesAreAsManyOnOneAndIgnored) {
   RawClient client(server_.port());
   const HttpResponse whole = client.get(folder_.log(), "Range: bytes=0-1\r\nRange: bytes=2-3\r\n");
@@ -573,6 +594,9 @@ TEST(ServerLimits, aHeadAndASilenceEndInTime) {
   EXPECT_EQ(slow.receive().status, 408u);
   EXPECT_TRUE(slow.closedByServer());
   EXPECT_TRUE(silent.closedByServer()) << "without a word: nothing was asked";
+  RawClient kept(patient->port());
+  EXPECT_EQ(kept.get("/livez").status, 200u);
+  EXPECT_TRUE(kept.closedByServer()) << "the limit of the first wait is over, that of this one not";
   const auto lasting = with({.header = test::kNever, .idle = test::kNever});
   RawClient late(lasting->port());
   late.send("GET /v1/meshes HTTP/1.1\r\n");

@@ -4,7 +4,11 @@
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "server/wire/http_limits.h"
 #include "server/wire/request_trace.h"
 #include "tests/server/program/loopback.h"
 #include "tests/server/program/served_folder.h"
@@ -79,6 +83,32 @@ TEST(AccessLog, aLineOfJsonForEveryRequest) {
   EXPECT_EQ(lines[1]["status"], 404);
 }
 
+TEST(AccessLog, bytesAreThoseOfTheBodyHoweverItIsSent) {
+  const Logged logged;
+  ASSERT_TRUE(logged.log);
+  std::vector<std::pair<std::string, std::size_t>> sent;  // id and body's bytes
+  {
+    test::RunningServer server(logged.folder.store(), logged.folder.viewer(),
+                               {.accessLog = logged.log->get()});
+    test::RawClient client(server.port());
+    for (const std::size_t bytes : {std::size_t{1}, limits::kMaxWithHead - 1, limits::kMaxWithHead,
+                                    limits::kMaxWithHead + 1}) {
+      const auto response =
+          client.get(logged.folder.log(), "Range: bytes=0-" + std::to_string(bytes - 1) + "\r\n");
+      EXPECT_EQ(response.body, logged.folder.file().substr(0, bytes));
+      sent.emplace_back(response.header("x-request-id"), bytes);
+    }
+  }
+  std::ifstream in(logged.path);
+  for (const auto& [id, bytes] : sent) {
+    std::string line;
+    ASSERT_TRUE(std::getline(in, line));
+    EXPECT_EQ(Json::parse(line)["id"], id) << "the log's line is found by it";
+    EXPECT_EQ(Json::parse(line)["bytes"], bytes);
+    EXPECT_TRUE(Json::parse(line)["whole"].isTrue());
+  }
+}
+
 TEST(AccessLog, aStreamHasALineAtItsEnd) {
   const Logged logged;
   ASSERT_TRUE(logged.log);
@@ -87,7 +117,7 @@ TEST(AccessLog, aStreamHasALineAtItsEnd) {
     test::RunningServer server(logged.folder.store(), logged.folder.viewer(),
                                {.accessLog = logged.log->get()});
     test::StreamClient client(server.port());
-    const std::string mesh = logged.folder.store().catalogue()->meshes.begin()->first;
+    const std::string mesh = logged.folder.store().catalogue()->meshes.begin()->get()->id;
     ASSERT_TRUE(client.send(R"({"type":"open","mesh":")" + mesh + R"(","credit":1})"));
     while (const auto message = client.receive(frames == 1 ? test::kQuiet : test::kPatience)) {
       bytes += message->bytes.size();
@@ -266,30 +296,35 @@ TEST(Operators, anAddressOfTheirOwnHasTheirPathsAlone) {
 }
 
 TEST(Operators, aServerThatStillReadsItsFolderSaysSo) {
+  constexpr auto kNoTime = std::chrono::milliseconds::zero();
   const test::ServedFolder viewer;
   test::TempFolder folder;
   const Bytes log = test::makeLog({.chunks = 1, .fields = {}});
-  for (std::size_t i = 0; i < limits::kLogsReadAtOnce + 1; ++i)
-    folder.write(std::to_string(1000 + i) + ".qtet", log);
-  const auto store =
-      MeshStore::open(folder.path(), {.readTime = std::chrono::milliseconds::zero()});
+  for (std::size_t i = 0; i < 300; ++i) folder.write(std::to_string(1000 + i) + ".qtet", log);
+  folder.write("large.qtet", test::makeLog({.chunks = 20}));
+  const auto store = MeshStore::open(
+      folder.path(), {.readTime = kNoTime, .nameTime = kNoTime, .maxReadWhenAsked = log.size()});
   ASSERT_TRUE(store);
   test::RunningServer server(*store, viewer.viewer()),
       early(*store, viewer.viewer(), {.readyEarly = true});
   test::RawClient client(server.port());
-  EXPECT_EQ(client.get("/readyz").status, 503u);
+  EXPECT_EQ(client.get("/readyz").status, 503u) << "names are missing";
   EXPECT_EQ(test::RawClient(early.port()).get("/readyz").status, 200u);
   EXPECT_EQ(client.get("/livez").status, 200u);
+  EXPECT_EQ(client.get("/v1/meshes/1299").status, 200u);
+  while (!store->catalogue()->named) ASSERT_TRUE(store->readOn());
+  ASSERT_FALSE(store->catalogue()->complete());
+  EXPECT_EQ(client.get("/readyz").status, 200u) << "names are known";
   const auto partial = client.get("/v1/meshes?limit=1");
   EXPECT_NE(partial.body.find(R"("complete":false)"), std::string::npos) << partial.body;
-  EXPECT_EQ(client.get("/v1/meshes/1064").status, 503u);
+  EXPECT_EQ(client.get("/v1/meshes/1298").status, 200u);
+  EXPECT_EQ(client.get("/v1/meshes/large").status, 503u) << "nobody waits for a large one";
   EXPECT_EQ(client.get("/v1/meshes/nothing").status, 404u);
-  ASSERT_TRUE(store->rescan());
-  EXPECT_EQ(client.get("/readyz").status, 200u);
+  while (!store->catalogue()->complete()) ASSERT_TRUE(store->readOn());
   const auto whole = client.get("/v1/meshes?limit=1");
   EXPECT_FALSE(Json::parse(whole.body).contains("complete")) << whole.body;
   EXPECT_NE(whole.header("etag"), partial.header("etag"));
-  EXPECT_EQ(client.get("/v1/meshes/1064").status, 200u);
+  EXPECT_EQ(client.get("/v1/meshes/large").status, 200u);
 }
 
 TEST(Operators, aServerThatDrainsServesOnAndIsNotReady) {

@@ -1,6 +1,11 @@
 #include "server/routes/http_router.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <sstream>
+#include <string>
+#include <vector>
 
 #include "tests/server/program/served_folder.h"
 #include "tests/server/support/json.h"
@@ -22,9 +27,7 @@ class RouterTest : public testing::Test {
   }
 
   static std::string header(const Reply& reply, std::string_view name) {
-    for (const auto& [key, value] : reply.headers)
-      if (key == name) return value;
-    return "";
+    return std::string(reply.header(name));
   }
   static std::string body(const Reply& reply) {
     if (const auto* text = std::get_if<std::string>(&reply.body)) return *text;
@@ -427,22 +430,79 @@ TEST_F(RouterTest, everyAnswerMayBeReadFromAnywhereAndIsNotSniffed) {
                                     std::string("/nothing"), std::string("/%")}) {
     const Reply reply = get(target);
     EXPECT_EQ(header(reply, "Access-Control-Allow-Origin"), "*") << target;
+    EXPECT_EQ(header(reply, "Access-Control-Expose-Headers"), "*") << target;
     EXPECT_EQ(header(reply, "X-Content-Type-Options"), "nosniff") << target;
   }
 }
 
-TEST(HeaderText, speaksOfTheBodyAndTheConnection) {
+/// The names of a head's lines, in their order.
+std::vector<std::string> namesOf(const Reply& reply) {
+  std::vector<std::string> out;
+  std::stringstream lines(reply.headers.text());
+  for (std::string line; std::getline(lines, line);) out.push_back(line.substr(0, line.find(':')));
+  return out;
+}
+
+TEST_F(RouterTest, aHeadHasWhatItsClientCanUseAndNoMore) {
+  using testing::ElementsAre;
+  EXPECT_THAT(namesOf(get("/v1/meshes")),
+              ElementsAre("ETag", "Last-Modified", "Cache-Control", "Content-Type",
+                          "X-Content-Type-Options", "Vary", "Access-Control-Allow-Origin",
+                          "Access-Control-Expose-Headers"));
+  EXPECT_THAT(
+      namesOf(get(folder_.log())),
+      ElementsAre("ETag", "Last-Modified", "Cache-Control", "Content-Type",
+                  "X-Content-Type-Options", "Timing-Allow-Origin", "Access-Control-Allow-Origin",
+                  "Access-Control-Expose-Headers", "Accept-Ranges"));
+  EXPECT_THAT(namesOf(get("/nothing")),
+              ElementsAre("Cache-Control", "Content-Type", "X-Content-Type-Options",
+                          "Access-Control-Allow-Origin", "Access-Control-Expose-Headers"));
+  const Reply part = route({.method = "GET", .target = folder_.log(), .range = "bytes=1-3"});
+  EXPECT_EQ(part.status, 206u);
+  EXPECT_EQ(header(part, "Accept-Ranges"), "") << "206 says it";
+}
+
+TEST_F(RouterTest, anElementOfAnyPageMayLoadAFileAPictureAndALevel) {
+  for (const std::string& target :
+       {std::string("/"), folder_.log("preview.png"), folder_.log("levels/1.glb")}) {
+    EXPECT_EQ(header(get(target), "Cross-Origin-Resource-Policy"), "cross-origin") << target;
+    EXPECT_EQ(header(get(target), "Timing-Allow-Origin"), "*") << target;
+  }
+  for (const std::string& target :
+       {folder_.log(), std::string("/v1/meshes"), std::string("/nothing")})
+    EXPECT_EQ(header(get(target), "Cross-Origin-Resource-Policy"), "") << target;
+}
+
+TEST_F(RouterTest, anAnswerWithoutABodyHasNoType) {
+  const std::string tag = header(get("/v1/meshes"), "ETag");
+  const Reply reply = route({.method = "GET", .target = "/v1/meshes", .ifNoneMatch = tag});
+  EXPECT_EQ(reply.status, 304u);
+  EXPECT_EQ(header(reply, "ETag"), tag);
+  EXPECT_EQ(header(reply, "Content-Type"), "");
+  EXPECT_EQ(header(reply, "X-Content-Type-Options"), "");
+  EXPECT_EQ(header(reply, "Access-Control-Allow-Origin"), "*");
+}
+
+std::string headOf(const Reply& reply, Afterwards afterwards) {
+  std::string out;
+  appendHead(out, reply, afterwards);
+  return out;
+}
+
+TEST(Head, speaksOfTheBodyAndTheConnection) {
   Reply reply = problem(404, "not-found", "no");
   const std::string size = std::to_string(*reply.bodyBytes());
-  const std::string kept = headerText(reply, true);
-  EXPECT_TRUE(kept.starts_with("HTTP/1.1 404 Not Found\r\nDate: "));
-  EXPECT_TRUE(kept.ends_with("\r\n\r\n"));
-  EXPECT_NE(kept.find("\r\nContent-Length: " + size + "\r\n"), std::string::npos);
-  EXPECT_NE(kept.find("\r\nConnection: keep-alive\r\n"), std::string::npos);
-  reply.close = true;
-  EXPECT_NE(headerText(reply, true).find("\r\nConnection: close\r\n"), std::string::npos);
+  const std::string stays = headOf(reply, Afterwards::kStays);
+  EXPECT_TRUE(stays.starts_with("HTTP/1.1 404 Not Found\r\nDate: "));
+  EXPECT_TRUE(stays.ends_with("\r\n\r\n"));
+  EXPECT_NE(stays.find("\r\nContent-Length: " + size + "\r\n"), std::string::npos);
+  EXPECT_EQ(stays.find("\r\nConnection:"), std::string::npos);
+  EXPECT_NE(headOf(reply, Afterwards::kKept).find("\r\nConnection: keep-alive\r\n"),
+            std::string::npos);
+  EXPECT_NE(headOf(reply, Afterwards::kCloses).find("\r\nConnection: close\r\n"),
+            std::string::npos);
   reply.status = 304;
-  EXPECT_EQ(headerText(reply, true).find("Content-Length"), std::string::npos);
+  EXPECT_EQ(headOf(reply, Afterwards::kStays).find("Content-Length"), std::string::npos);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@ namespace qtet {
 namespace {
 
 KeptPagePointer pageOf(std::size_t bytes) {
-  return std::make_shared<const KeptPage>(KeptPage{Bytes(bytes)});
+  return std::make_shared<const KeptPage>(KeptPage{{Bytes(bytes)}});
 }
 
 const std::size_t kCost = pageOf(100)->cost();

@@ -27,6 +27,6 @@ std::uint64_t Json::count() const { return json::parse(text_).get<std::uint64_t>
 
 double Json::number() const { return json::parse(text_).get<double>(); }
 
-std::ostream& operator<<(std::ostream& out, const Json& json) { return out << json.text_; }
+std::ostream& operator<<(std::ostream& out, const Json& value) { return out << value.text_; }
 
 }  // namespace qtet::test

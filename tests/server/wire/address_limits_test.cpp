@@ -99,6 +99,21 @@ TEST(AddressLimits, aChargeIsTheThreadsTimeNotTheWait) {
   const Charge nobody(nullptr);
 }
 
+TEST(AddressLimits, aChargeIsNoLessThanTheThreadHasWorked) {
+  AddressLimits limits({0, 1000});
+  const auto client = limits.enter(at("192.0.2.1"));
+  const auto worked = [] {
+    timespec time{};
+    (void)::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
+  };
+  {
+    const Charge charge(client.get());
+    for (const auto end = worked() + 30ms; worked() < end;) continue;
+  }
+  EXPECT_GT(client->debt(), 20ms);
+}
+
 TEST(AddressLimits, aPlaceMayOutliveTheLimits) {
   std::unique_ptr<AddressLimits::Client> client;
   {

@@ -28,7 +28,7 @@ TEST(Loggable, aTokenOfTheFileIsFoundWhereverItStands) {
 }
 
 TEST(Loggable, aQueryThatSpeaksOfSecretsIsCutOff) {
-  for (const std::string& query :
+  for (const std::string query :
        {"token=x", "TOKEN=x", "ticket=x", "a=b&access_token=x", "%74oken=x", "Authorization=x",
         "a=Bearer%20x", "password=x", "client_secret=x"})
     EXPECT_EQ(loggableTarget("/v1/meshes?" + query, nullptr), "/v1/meshes") << query;

@@ -116,7 +116,7 @@ TEST(TrustedProxies, anyBytesNameAnAddressOrTheProxy) {
   const std::string alphabet = "0123456789abcdef:.[]%,; \"=_forFOR";
   for (int i = 0; i < 20'000; ++i) {
     std::string list;
-    for (unsigned n = random() % 40; n > 0; --n) list += alphabet[random() % alphabet.size()];
+    for (std::size_t n = random() % 40; n > 0; --n) list += alphabet[random() % alphabet.size()];
     for (const ProxyHeader header : {ProxyHeader::kForwardedFor, ProxyHeader::kForwarded}) {
       EXPECT_NE(clientOf(list, header), "");
       EXPECT_EQ(clientOf(list + ",unknown", header), kSender) << list;
