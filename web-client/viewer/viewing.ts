@@ -36,7 +36,7 @@ export class Viewing implements ActionsHost, PanelsHost {
   /** The values that the colours span; null if nothing is coloured. */
   range: ShownRange | null = null;
   readonly stream: StreamControl;
-  private readonly notices: Notices;
+  readonly notices: Notices;
   private readonly graphics: Graphics;
   private readonly camera: CameraWatch;
   private readonly requests: Requests;
@@ -44,7 +44,7 @@ export class Viewing implements ActionsHost, PanelsHost {
   /** They are built a task later than the rest. */
   private panels: Panels | null = null;
   /** Loaded behind the first picture. */
-  private later: Later | null = null;
+  later: Later | null = null;
   /** The sentences about attributes that were shown last. */
   private wrong = '';
   /** The `complete` event has been dispatched. */

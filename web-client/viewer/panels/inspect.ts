@@ -191,9 +191,9 @@ export class Inspect {
 
   private async saveTable(): Promise<void> {
     const {client, manifest} = this.host;
-    const [from, to] = this.points;
+    const [from, to] = this.points.map(({lattice}) => lattice);
     const {tableOf} = await import('./probe_plot'); // the plot has loaded it
-    const places = await client!.line(from!.lattice, to!.lattice);
+    const places = await client!.line(from!, to!);
     save(tableOf(places, manifest!.fields), 'line.csv');
   }
 
