@@ -67,7 +67,7 @@ const kMarkup = `
 <div class="row">
   <p class="hint">A saved picture opens its view again: drop it on this page.</p>
   <label class="toggle"><input type="file" name="picture" accept="image/png">
-    <span>Open a picture's view</span></label>
+    <span>Open&nbsp;a&nbsp;file</span></label>
 </div>`;
 
 export interface PictureHost {
